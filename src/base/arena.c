@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/arena.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#if defined(__SANITIZE_ADDRESS__)
+#    define ARENA_ASAN 1
+#elif defined(__has_feature)
+#    if __has_feature(address_sanitizer)
+#        define ARENA_ASAN 1
+#    endif
+#endif
+
+#ifdef ARENA_ASAN
+#    include <sanitizer/asan_interface.h>
+#    define POISON(p, n)   ASAN_POISON_MEMORY_REGION((p), (n))
+#    define UNPOISON(p, n) ASAN_UNPOISON_MEMORY_REGION((p), (n))
+#else
+#    define POISON(p, n)   ((void)(p), (void)(n))
+#    define UNPOISON(p, n) ((void)(p), (void)(n))
+#endif
+
+enum { DEFAULT_BLOCK_SIZE = 64 * 1024 };
+
+/* data points behind the header, at the first multiple of MT_ALIGN. */
+struct mt_arena_block {
+    mt_arena_block *next;
+    unsigned char *data;
+    size_t size;
+    size_t used; /* a multiple of MT_ALIGN */
+};
+
+static mt_arena_block *block_new(size_t size)
+{
+    if (size > SIZE_MAX - sizeof(mt_arena_block) - MT_ALIGN) {
+        return NULL;
+    }
+    mt_arena_block *const b = malloc(sizeof *b + MT_ALIGN + size);
+    if (b == NULL) {
+        return NULL;
+    }
+    unsigned char *const after = (unsigned char *)(b + 1);
+    const size_t skew = (size_t)((uintptr_t)after % MT_ALIGN);
+    b->next = NULL;
+    b->data = after + (skew == 0 ? 0 : MT_ALIGN - skew);
+    b->size = size;
+    b->used = 0;
+    POISON(b->data, size);
+    return b;
+}
+
+/* bytes rounded up to a multiple of MT_ALIGN; 0 where count * size does not fit. */
+static size_t rounded(size_t count, size_t size)
+{
+    if (size != 0 && count > (SIZE_MAX - MT_ALIGN) / size) {
+        return 0;
+    }
+    const size_t bytes = count * size;
+    return bytes == 0 ? MT_ALIGN : (bytes + MT_ALIGN - 1) / MT_ALIGN * MT_ALIGN;
+}
+
+mt_status mt_arena_init(mt_arena *a, size_t block_size, mt_err *err)
+{
+    *a = (mt_arena){0};
+    a->block_size = rounded(block_size == 0 ? DEFAULT_BLOCK_SIZE : block_size, 1);
+    a->first = a->block_size == 0 ? NULL : block_new(a->block_size);
+    a->current = a->first;
+    return a->first == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+void mt_arena_free(mt_arena *a)
+{
+    mt_arena_block *b = a->first;
+    while (b != NULL) {
+        mt_arena_block *const next = b->next;
+        UNPOISON(b->data, b->size);
+        free(b);
+        b = next;
+    }
+    *a = (mt_arena){0};
+}
+
+static bool fits(const mt_arena_block *b, size_t bytes)
+{
+    return b != NULL && bytes <= b->size - b->used;
+}
+
+/* Make `current` a block with room for bytes. Blocks behind the current one are empty, left over by a rewind: the next is used where it
+ * is large enough, else a new one is put before it, so that the same sequence of requests finds the same blocks again. */
+static bool make_room(mt_arena *a, size_t bytes)
+{
+    if (fits(a->current, bytes)) {
+        return true;
+    }
+    mt_arena_block **const link = a->current == NULL ? &a->first : &a->current->next;
+    if (!fits(*link, bytes)) {
+        const size_t least = a->block_size == 0 ? DEFAULT_BLOCK_SIZE : a->block_size;
+        mt_arena_block *const b = block_new(bytes > least ? bytes : least);
+        if (b == NULL) {
+            return false;
+        }
+        b->next = *link;
+        *link = b;
+    }
+    a->current = *link;
+    return true;
+}
+
+void *mt_arena_alloc(mt_arena *a, size_t count, size_t size)
+{
+    const size_t bytes = rounded(count, size);
+    if (bytes == 0 || !make_room(a, bytes)) {
+        return NULL;
+    }
+    unsigned char *const p = a->current->data + a->current->used;
+    a->current->used += bytes;
+    a->used += bytes;
+    a->peak = a->used > a->peak ? a->used : a->peak;
+    UNPOISON(p, count * size);
+    memset(p, 0, count * size);
+    return p;
+}
+
+double *mt_arena_f64(mt_arena *a, size_t m, size_t n)
+{
+    if (n != 0 && m > SIZE_MAX / n) {
+        return NULL;
+    }
+    return mt_arena_alloc(a, m * n, sizeof(double));
+}
+
+int *mt_arena_int(mt_arena *a, size_t n)
+{
+    return mt_arena_alloc(a, n, sizeof(int));
+}
+
+char *mt_arena_strdup(mt_arena *a, const char *s)
+{
+    return mt_arena_strndup(a, s, strlen(s));
+}
+
+char *mt_arena_strndup(mt_arena *a, const char *s, size_t length)
+{
+    char *const copy = length == SIZE_MAX ? NULL : mt_arena_alloc(a, length + 1, 1);
+    if (copy != NULL) {
+        memcpy(copy, s, length);
+    }
+    return copy;
+}
+
+char *mt_arena_vprintf(mt_arena *a, const char *fmt, va_list args)
+{
+    va_list again;
+    va_copy(again, args);
+    const int n = vsnprintf(NULL, 0, fmt, args);
+    char *const s = n < 0 ? NULL : mt_arena_alloc(a, (size_t)n + 1, 1);
+    if (s != NULL) {
+        (void)vsnprintf(s, (size_t)n + 1, fmt, again);
+    }
+    va_end(again);
+    return s;
+}
+
+char *mt_arena_printf(mt_arena *a, const char *fmt, ...)
+{
+    va_list args;
+    va_start(args, fmt);
+    char *const s = mt_arena_vprintf(a, fmt, args);
+    va_end(args);
+    return s;
+}
+
+void *mt_arena_grow(mt_arena *a, void *items, int count, int *capacity, size_t size)
+{
+    enum { FIRST_CAPACITY = 8 };
+    if (count < *capacity) {
+        return items;
+    }
+    if (count > INT_MAX / 2) {
+        return NULL;
+    }
+    const int room = count < FIRST_CAPACITY / 2 ? FIRST_CAPACITY : 2 * count;
+    void *const grown = mt_arena_alloc(a, (size_t)room, size);
+    if (grown == NULL) {
+        return NULL;
+    }
+    if (count > 0) {
+        memcpy(grown, items, (size_t)count * size);
+    }
+    *capacity = room;
+    return grown;
+}
+
+mt_arena_mark mt_arena_get_mark(const mt_arena *a)
+{
+    return (mt_arena_mark){
+        .block = a->current,
+        .block_used = a->current == NULL ? 0 : a->current->used,
+        .used = a->used,
+    };
+}
+
+void mt_arena_rewind(mt_arena *a, mt_arena_mark mark)
+{
+    mt_arena_block *b = mark.block == NULL ? a->first : mark.block;
+    a->current = mark.block;
+    a->used = mark.used;
+    size_t keep = mark.block_used;
+    for (; b != NULL; b = b->next) {
+        b->used = keep;
+        POISON(b->data + keep, b->size - keep);
+        keep = 0;
+    }
+}
+
+mt_status mt_fail_memory(mt_err *err)
+{
+    return mt_fail(err, MT_E_MEMORY, "%s", mt_status_text(MT_E_MEMORY));
+}

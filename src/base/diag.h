@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef BASE_DIAG_H
+#define BASE_DIAG_H
+
+#include "base/arena.h"
+
+/*
+ * Problems found in an input, all of them, in the order found. An address is a number that the reader of the file hands
+ * out (for JSON: the index of the value in document order); only that reader can turn it into file:line:column and a
+ * JSON pointer. MT_NO_ADDR: the problem belongs to no place (a model built in memory).
+ */
+typedef int mt_addr;
+enum { MT_NO_ADDR = -1, MT_DIAG_LIMIT = 200 };
+
+typedef enum mt_severity { MT_SEV_ERROR, MT_SEV_WARNING } mt_severity;
+
+typedef struct mt_diag {
+    mt_addr addr;
+    mt_severity severity;
+    const char *text;
+} mt_diag;
+
+typedef struct mt_diags {
+    mt_arena *mem; /* not owned */
+    mt_diag *items;
+    int count;
+    int capacity;
+    int errors; /* how many of them are errors (also those beyond the limit) */
+    int out_of_memory;
+} mt_diags;
+
+/* Empty list whose texts live in mem. */
+mt_diags mt_diags_default(mt_arena *mem);
+/* Add a problem; beyond MT_DIAG_LIMIT only counted. */
+void mt_diag_error(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
+void mt_diag_warning(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
+
+#endif
