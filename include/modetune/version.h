@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The version, in the one place that C code reads; the build refuses to differ from it. */
+#ifndef MODETUNE_VERSION_H
+#define MODETUNE_VERSION_H
+
+#include "modetune/export.h"
+
+#define MT_VERSION_MAJOR  0
+#define MT_VERSION_MINOR  1
+#define MT_VERSION_PATCH  0
+#define MT_VERSION_STRING "0.1.0"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/**
+ * Version of the library that is linked, for comparison with MT_VERSION_STRING of the header.
+ * @return "major.minor.patch", static storage. Cannot fail.
+ */
+MT_API const char *mt_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
