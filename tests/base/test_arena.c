@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <limits.h>
+#include <string.h>
+
+#include "base/arena.h"
+#include "support/mt_test.h"
+
+static bool all_zero(const void *p, size_t n)
+{
+    const unsigned char *const byte = p;
+    for (size_t i = 0; i < n; i++) {
+        if (byte[i] != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void arena__memory_is_aligned_zeroed_and_apart(mt_test *t)
+{
+    static const size_t sizes[] = {1, 7, 64, 65, 1000, 4096, 20000, 3};
+    unsigned char *got[MT_COUNT(sizes)];
+    mt_arena a;
+    REQUIRE(t, mt_arena_init(&a, 4096, NULL) == MT_OK);
+    for (int i = 0; i < MT_COUNT(sizes); i++) {
+        mt_test_row(t, "%zu bytes", sizes[i]);
+        got[i] = mt_arena_alloc(&a, sizes[i], 1);
+        if (CHECK(t, got[i] != NULL)) {
+            CHECK(t, (uintptr_t)got[i] % MT_ALIGN == 0);
+            CHECK(t, all_zero(got[i], sizes[i]));
+            memset(got[i], 0x40 + i, sizes[i]);
+        }
+    }
+    for (int i = 0; i < MT_COUNT(sizes); i++) {
+        mt_test_row(t, "%zu bytes are still theirs", sizes[i]);
+        CHECK_INT(t, got[i][0], 0x40 + i);
+        CHECK_INT(t, got[i][sizes[i] - 1], 0x40 + i);
+    }
+    mt_arena_free(&a);
+}
+
+static void arena__products_that_wrap_give_null(mt_test *t)
+{
+    mt_arena a;
+    REQUIRE(t, mt_arena_init(&a, 0, NULL) == MT_OK);
+    CHECK(t, mt_arena_alloc(&a, SIZE_MAX, 1) == NULL);
+    CHECK(t, mt_arena_alloc(&a, SIZE_MAX / 2, 3) == NULL);
+    CHECK(t, mt_arena_alloc(&a, 2, SIZE_MAX / 2 + 1) == NULL); /* the product wraps to 0 */
+    CHECK(t, mt_arena_f64(&a, SIZE_MAX / 8, 9) == NULL);
+    CHECK(t, mt_arena_f64(&a, SIZE_MAX / 2 + 1, 2) == NULL); /* m * n wraps to 0 */
+    CHECK(t, mt_arena_int(&a, SIZE_MAX / 2) == NULL);
+    CHECK(t, mt_arena_strndup(&a, "", SIZE_MAX) == NULL);
+    CHECK_INT(t, a.used, 0);
+    mt_arena_free(&a);
+}
+
+static void arena__zero_products_give_pointers_of_their_own(mt_test *t)
+{
+    mt_arena a;
+    REQUIRE(t, mt_arena_init(&a, 0, NULL) == MT_OK);
+    const void *const p = mt_arena_alloc(&a, 0, 8);
+    const void *const q = mt_arena_f64(&a, 5, 0);
+    CHECK(t, p != NULL && q != NULL && p != q);
+    mt_arena_free(&a);
+}
+
+/* A loop that allocates across several blocks, run again after a rewind. */
+static void *fill(mt_arena *a)
+{
+    (void)mt_arena_alloc(a, 900, 1);
+    (void)mt_arena_alloc(a, 5000, 1);
+    (void)mt_arena_alloc(a, 100, 1);
+    unsigned char *const last = mt_arena_alloc(a, 600, 1);
+    memset(last, 0xFF, 600);
+    return last;
+}
+
+static void arena__rewind_gives_the_same_memory_again_zeroed(mt_test *t)
+{
+    mt_arena a;
+    REQUIRE(t, mt_arena_init(&a, 1024, NULL) == MT_OK);
+    (void)mt_arena_alloc(&a, 10, 1);
+    const mt_arena_mark mark = mt_arena_get_mark(&a);
+    const void *const first = fill(&a);
+    const size_t used = a.used;
+    for (int round = 0; round < 3; round++) {
+        mt_test_row(t, "round %d", round);
+        mt_arena_rewind(&a, mark);
+        CHECK_INT(t, a.used, MT_ALIGN);
+        CHECK(t, fill(&a) == first);
+        CHECK_INT(t, a.used, used);
+        CHECK_INT(t, a.peak, used);
+    }
+    mt_arena_rewind(&a, mark);
+    (void)mt_arena_alloc(&a, 900, 1);
+    (void)mt_arena_alloc(&a, 5000, 1);
+    (void)mt_arena_alloc(&a, 100, 1);
+    CHECK(t, all_zero(mt_arena_alloc(&a, 600, 1), 600));
+    mt_arena_free(&a);
+}
+
+static void arena__works_from_all_zero_and_frees_twice(mt_test *t)
+{
+    mt_arena a = {0};
+    mt_arena_free(&a);
+    const mt_arena_mark empty = mt_arena_get_mark(&a);
+    const char *const p = mt_arena_strdup(&a, "text");
+    CHECK_STR(t, p, "text");
+    mt_arena_rewind(&a, empty);
+    CHECK(t, mt_arena_strdup(&a, "other") == p);
+    mt_arena_free(&a);
+    mt_arena_free(&a);
+    CHECK(t, a.first == NULL);
+}
+
+static void arena__text_is_copied_and_formatted(mt_test *t)
+{
+    mt_arena a;
+    REQUIRE(t, mt_arena_init(&a, 0, NULL) == MT_OK);
+    CHECK_STR(t, mt_arena_strndup(&a, "stiffness", 5), "stiff");
+    CHECK_STR(t, mt_arena_printf(&a, "%s.k%d", "beam", 3), "beam.k3");
+    mt_arena_free(&a);
+}
+
+static void arena__grow_doubles_and_keeps_the_items(mt_test *t)
+{
+    enum { N = 1000 };
+    mt_arena a;
+    REQUIRE(t, mt_arena_init(&a, 0, NULL) == MT_OK);
+    int *items = NULL;
+    int capacity = 0;
+    int moves = 0;
+    for (int i = 0; i < N; i++) {
+        int *const grown = mt_arena_grow(&a, items, i, &capacity, sizeof *items);
+        REQUIRE(t, grown != NULL && capacity > i);
+        moves += grown != items;
+        items = grown;
+        items[i] = 3 * i;
+    }
+    bool kept = true;
+    for (int i = 0; i < N; i++) {
+        kept = kept && items[i] == 3 * i;
+    }
+    CHECK(t, kept);
+    CHECK(t, moves <= 8); /* 8, 16, ..., 1024 */
+    capacity = INT_MAX;
+    CHECK(t, mt_arena_grow(&a, items, INT_MAX, &capacity, sizeof *items) == NULL);
+    CHECK_INT(t, capacity, INT_MAX);
+    mt_arena_free(&a);
+}
+
+MT_TEST_MAIN(MT_TEST(arena__memory_is_aligned_zeroed_and_apart),
+             MT_TEST(arena__products_that_wrap_give_null),
+             MT_TEST(arena__zero_products_give_pointers_of_their_own),
+             MT_TEST(arena__rewind_gives_the_same_memory_again_zeroed),
+             MT_TEST(arena__works_from_all_zero_and_frees_twice),
+             MT_TEST(arena__text_is_copied_and_formatted),
+             MT_TEST(arena__grow_doubles_and_keeps_the_items))
