@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef EXPR_EXPR_H
+#define EXPR_EXPR_H
+
+#include <stdbool.h>
+
+#include "base/arena.h"
+#include "base/diag.h"
+
+/*
+ * Parameter expressions, parsed once into postfix code. Grammar (no recursion in the evaluator; nesting limited in the parser):
+ *   sum     = product { ("+" | "-") product }
+ *   product = unary { ("*" | "/") unary }
+ *   unary   = ("+" | "-") unary | power
+ *   power   = atom [ "^" unary ]            right associative, binds tighter than a sign on its left: -2^2 = -4
+ *   atom    = number | name | function "(" sum { "," sum } ")" | "(" sum ")"
+ * Functions: sqrt cbrt exp ln log10 sin cos tan asin acos atan sinh cosh tanh abs (one argument), atan2 min max hypot pow (two).
+ * Constants: pi, deg (pi/180), rpm (1/60: "258*rpm" is a speed in Hz), e is not a constant.
+ * A parameter name is [A-Za-z_][A-Za-z0-9_]*; names of functions and constants are reserved.
+ */
+enum { MT_EXPR_MAX_LENGTH = 4096, MT_EXPR_MAX_DEPTH = 64, MT_EXPR_MAX_CODE = 1024 };
+
+typedef enum mt_op {
+    MT_OP_CONST,
+    MT_OP_PARAM, /* in mt_expr: a parameter of the model; in mt_program: an input */
+    MT_OP_NEG,
+    MT_OP_SQRT,
+    MT_OP_CBRT,
+    MT_OP_EXP,
+    MT_OP_LN,
+    MT_OP_LOG10,
+    MT_OP_SIN,
+    MT_OP_COS,
+    MT_OP_TAN,
+    MT_OP_ASIN,
+    MT_OP_ACOS,
+    MT_OP_ATAN,
+    MT_OP_SINH,
+    MT_OP_COSH,
+    MT_OP_TANH,
+    MT_OP_ABS,
+    MT_OP_ADD,
+    MT_OP_SUB,
+    MT_OP_MUL,
+    MT_OP_DIV,
+    MT_OP_POW,
+    MT_OP_ATAN2,
+    MT_OP_MIN,
+    MT_OP_MAX,
+    MT_OP_HYPOT,
+    MT_OP_COUNT
+} mt_op;
+
+typedef struct mt_code {
+    mt_op op;
+    int param;    /* MT_OP_PARAM: which */
+    double value; /* MT_OP_CONST */
+} mt_code;
+
+/* One parsed expression: postfix code in an arena; immutable. */
+typedef struct mt_expr {
+    const mt_code *code;
+    int length;
+} mt_expr;
+
+/* Finds a parameter by name (not NUL-terminated: length given); -1 where there is none. */
+typedef int (*mt_expr_lookup)(const void *context, const char *name, size_t length);
+
+/* Is the name taken by a function or a constant? */
+bool mt_expr_reserved(const char *name);
+/* Names of all functions and constants, for "did you mean"; *n their number. */
+const char *const *mt_expr_names(int *n);
+/* Parse text. Fails MT_E_INPUT with "at character 7: unknown name \"K_T9\"; did you mean \"K_T8\"?" (names gives the candidates, may be
+ * NULL), MT_E_MEMORY. */
+mt_status mt_expr_parse(const char *text, mt_expr_lookup lookup, const void *context, const char *const *names, int n_names,
+                        mt_arena *mem, mt_expr *out, mt_err *err);
+/* The expression that is one number. */
+mt_status mt_expr_number(double value, mt_arena *mem, mt_expr *out, mt_err *err);
+/* A constant expression (no parameters)? Then *value. */
+bool mt_expr_is_constant(const mt_expr *e, double *value);
+
+#endif

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef EXPR_PROGRAM_H
+#define EXPR_PROGRAM_H
+
+#include "expr/expr.h"
+
+/*
+ * A program: many numbers that depend on few inputs, as one list of nodes in order of evaluation (operands before results). Equal
+ * nodes are shared and constants folded while it is built. Then it is evaluated often:
+ *   values; values with exact first derivatives (forward mode); interval enclosures (outward rounded); first derivatives' intervals.
+ * Nodes that depend on no input are computed once, at mt_program_finish.
+ */
+typedef int mt_node; /* index of a node; MT_NO_NODE: absent */
+enum { MT_NO_NODE = -1 };
+
+typedef struct mt_program_node {
+    mt_op op;
+    mt_node a; /* operands; MT_NO_NODE where there is none */
+    mt_node b;
+    int input;    /* MT_OP_PARAM */
+    double value; /* MT_OP_CONST */
+    mt_addr addr; /* the number in the input file that this belongs to, for messages */
+} mt_program_node;
+
+typedef struct mt_program {
+    mt_arena *mem; /* not owned; holds everything below */
+    mt_program_node *nodes;
+    int count;
+    int capacity;
+    int n_inputs;
+    int *table; /* hash table of nodes, for sharing */
+    int table_size;
+    bool *active;      /* [count] depends on some input; made by finish */
+    int *active_nodes; /* the active ones in order */
+    int n_active;
+    bool out_of_memory; /* set while building; finish turns it into MT_E_MEMORY */
+} mt_program;
+
+mt_status mt_program_init(mt_program *p, int n_inputs, mt_arena *mem, mt_err *err);
+mt_node mt_program_const(mt_program *p, double value);
+mt_node mt_program_input(mt_program *p, int input, mt_addr addr);
+mt_node mt_program_unary(mt_program *p, mt_op op, mt_node a, mt_addr addr);
+mt_node mt_program_binary(mt_program *p, mt_op op, mt_node a, mt_node b, mt_addr addr);
+/* Emit a parsed expression; parameter i of it stands for node params[i]. */
+mt_node mt_program_expr(mt_program *p, const mt_expr *e, const mt_node *params, mt_addr addr);
+/* Shorthands without address for sums built by the mechanics. */
+mt_node mt_program_add(mt_program *p, mt_node a, mt_node b);
+mt_node mt_program_sub(mt_program *p, mt_node a, mt_node b);
+mt_node mt_program_mul(mt_program *p, mt_node a, mt_node b);
+mt_node mt_program_div(mt_program *p, mt_node a, mt_node b);
+/* Close the program. Fails MT_E_MEMORY. */
+mt_status mt_program_finish(mt_program *p, mt_err *err);
+
+/* Is the value of the node fixed (no input in it)? Only after finish. */
+bool mt_program_is_constant(const mt_program *p, mt_node node);
+/* depends[i] = does the node depend on input i (structurally); [n_inputs]. */
+void mt_program_depends(const mt_program *p, mt_node node, bool *depends);
+
+/* value[count]: values of all nodes at inputs[n_inputs]. No heap. Fails MT_E_DOMAIN (a value is not finite), *bad (may be NULL) the node. */
+mt_status mt_program_eval(const mt_program *p, const double *inputs, double *value, mt_node *bad, mt_err *err);
+/* Values and gradient: grad[node * n_inputs + i] = d value[node] / d inputs[i]. abs, min, max take a one-sided value at a kink (that of
+ * the first operand). Fails MT_E_DOMAIN also where a derivative is not finite. */
+mt_status mt_program_gradient(const mt_program *p, const double *inputs, double *value, double *grad, mt_node *bad, mt_err *err);
+/* Interval enclosures: for all inputs within [lower, upper], lo[node] <= value[node] <= hi[node], proven (outward rounding). Where
+ * nothing is known (division by an interval around zero, leaving a domain) -inf/+inf. lo, hi [count]. */
+void mt_program_interval(const mt_program *p, const double *lower, const double *upper, double *lo, double *hi);
+/* Enclosures of the derivatives of all nodes over the box, forward mode: dlo, dhi [count * n_inputs]; lo, hi as above. */
+void mt_program_interval_gradient(const mt_program *p, const double *lower, const double *upper, double *lo, double *hi,
+                                  double *dlo, double *dhi);
+
+#endif

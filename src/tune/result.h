@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef TUNE_RESULT_H
+#define TUNE_RESULT_H
+
+#include <stdbool.h>
+
+#include "base/arena.h"
+
+/* What a study answers: plain records, no computation. All texts live in the result's arena. NaN: not applicable (written as null). */
+
+typedef enum mt_result_status { MT_RESULT_SOLVED, MT_RESULT_COMPROMISE, MT_RESULT_INFEASIBLE, MT_RESULT_INTERRUPTED } mt_result_status;
+
+typedef struct mt_result_parameter {
+    const char *name;
+    const char *unit; /* may be NULL */
+    double original;
+    double recommended;
+    double change_percent; /* NaN where original is 0 */
+    const char *at_bound;  /* NULL, "lower", "upper" */
+} mt_result_parameter;
+
+typedef struct mt_result_frequency {
+    const char *configuration;
+    int mode;         /* vibration index at this design */
+    const char *name; /* named mode; NULL */
+    double original_hz;
+    double recommended_hz;
+    double target_hz;   /* NaN: no target */
+    double at_least_hz;
+    double at_most_hz;
+    double error_percent; /* to the target, or beyond the limit; 0 inside limits */
+    double mac;           /* NaN: no reference shape asked for */
+    const char *reference; /* NULL */
+    double residual;      /* LAPACK-style ratio of this mode */
+    double orthogonality;
+    double *sensitivity;  /* [n_parameters] Hz per unit of each variable; NaN at a repeated mode */
+    bool repeated;
+} mt_result_frequency;
+
+/* A goal judged at a design. */
+typedef struct mt_result_goal {
+    const char *text;     /* "installed mode 1 at 18 Hz" */
+    const char *pointer;  /* "/goals/0" */
+    double value;
+    double demand;        /* target or limit */
+    double violation_percent;
+    bool met;
+    bool weighted;        /* part of the misfit: does not decide status */
+} mt_result_goal;
+
+typedef struct mt_recommendation {
+    int rank;
+    bool feasible;
+    const char *grade; /* "feasible and proven" | "feasible" | "compromise" | "infeasible" */
+    double score;      /* first objective's value in its unit; NaN where infeasible */
+    const char *score_unit;
+    double change;     /* size of the redesign */
+    double misfit;     /* NaN: no weighted goals */
+    double violation_percent;
+    double kkt_residual; /* relative; NaN where not an optimum */
+    bool singular;       /* a double solution: the Jacobian of the goals is singular here */
+    int n_parameters;
+    mt_result_parameter *parameters;
+    int n_frequencies;
+    mt_result_frequency *frequencies;
+    int n_goals;
+    mt_result_goal *goals;
+    int n_reasons;
+    const char **reasons; /* sentences */
+} mt_recommendation;
+
+/* A direction in the space of the variables along which the goals do not change. */
+typedef struct mt_undetermined {
+    int n;                /* number of variables */
+    double *direction;    /* unit vector in ln(parameter) (positive ones) or parameter/scale */
+    const char *text;     /* "K_T2" or "0.71 ln a - 0.71 ln b" */
+    double effect_percent; /* greatest change of any goal when the bounds are crossed along it */
+} mt_undetermined;
+
+typedef struct mt_result_published {
+    const char *label;
+    const char *pointer;
+    const char *role;   /* "calibrates" | "verifies" | "not_comparable" */
+    const char *source; /* may be NULL */
+    const char *kind;   /* "parameter" | "quantity" | "frequency" | "mac" | "status" */
+    double published;   /* value or limit; NaN for status */
+    double computed;
+    double difference;  /* computed - published */
+    double difference_percent;
+    const char *published_text; /* status */
+    const char *computed_text;
+    const char *demand; /* "within 0.1 %", "at least" */
+    bool holds;
+} mt_result_published;
+
+typedef struct mt_certificate {
+    const char *kind;  /* "infeasible", "range", ... */
+    const char *text;
+    bool proven;       /* false: sampled */
+} mt_certificate;
+
+typedef struct mt_result_run {
+    const char *modetune_version;
+    const char *blas;
+    const char *nlopt_version;
+    const char *gsl_version;
+    unsigned long seed;
+    long evaluations;
+    int starts;
+    int n_inputs;
+    const char **input_names;
+    const char **input_sha256;
+} mt_result_run;
+
+typedef struct mt_result {
+    mt_arena mem;
+    const char *study_name;
+    const char *model_name;
+    mt_result_status status;
+    const char *status_text; /* one sentence */
+    mt_recommendation baseline; /* the original design, rank 0 */
+    int n_recommendations;
+    mt_recommendation *recommendations;
+    int n_undetermined;
+    mt_undetermined *undetermined;
+    int n_variables;
+    const char **variables;
+    int n_certificates;
+    mt_certificate *certificates;
+    int n_published;
+    mt_result_published *published;
+    int n_warnings;
+    const char **warnings;
+    mt_result_run run;
+} mt_result;
+
+mt_status mt_result_new(mt_result **out, mt_err *err);
+void mt_result_delete(mt_result *result);
+const char *mt_result_status_name(mt_result_status status); /* "solved" ... */
+
+#endif
