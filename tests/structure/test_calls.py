@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Below src/cli nothing prints, exits, reads the clock or the environment, or keeps global state."""
+import os
+import re
+import subprocess
+import tempfile
+from pathlib import Path
+
+from common import ROOT, c_files, code_only, verdict
+
+CALLS = """printf vprintf puts putchar perror scanf getchar gets
+    exit _exit _Exit quick_exit abort atexit system
+    getenv secure_getenv setenv putenv time clock clock_gettime gettimeofday localtime gmtime
+    rand srand random srandom drand48 setlocale strtok alloca longjmp signal sleep usleep""".split()
+FORBIDDEN = re.compile(r"(?<![\w.>])(?:(" + "|".join(CALLS) + r")\s*\(|(stdout|stderr|stdin)\b)")
+MUTABLE = re.compile(r" O (\.data(?!\.rel\.ro)|\.bss|\.tdata|\.tbss|\*COM\*)\S*\s+\S+\s+(?:\.hidden )?(\S+)$")
+
+
+def check_text(name, text):
+    code = code_only(text)
+    for match in FORBIDDEN.finditer(code):
+        line = code.count("\n", 0, match.start()) + 1
+        yield f"{name}:{line}: {match.group(1) or match.group(2)} is for src/cli alone"
+
+
+def check_object(path):
+    """Variables of an object or archive that stand in writable memory."""
+    table = subprocess.run(["objdump", "-t", path], check=True, capture_output=True, text=True).stdout
+    member = Path(path).name
+    for line in table.splitlines():
+        if ":     file format" in line:
+            member = line.partition(":")[0]
+        found = MUTABLE.search(line)
+        if found:
+            yield f"{member}: {found.group(2)} is a mutable global ({found.group(1)})"
+
+
+def self_test():
+    """Faults are found; names that only look like them, comments and literals are not."""
+    bad = ['printf("x");', "exit(1);", "x = getenv(name);", 'fprintf(stderr, "x");', "t = time(NULL);",
+           "r = rand ();", "strtok(s, d);"]
+    good = ["snprintf(b, n, f);", "/* printf(x) */", 's = "exit(1)";', "f->time(x);", "my_exit(1);",
+            "fprintf(f, x);", "double time;"]
+    problems = [f"self-test: {line} passed" for line in bad if not list(check_text("x", line))]
+    problems += [f"self-test: {line} was refused" for line in good if list(check_text("x", line))]
+    source = """static int counter; int next(void); int next(void) { return ++counter; }
+        const char *const names[]; const char *const names[] = {"a"};
+        int filled[2] = {1, 2}; int once(void); int once(void) { static int seen = 3; return seen++; }"""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "x.c")
+        path.write_text(source)
+        subprocess.run([os.environ.get("CC", "cc"), "-fPIC", "-fvisibility=hidden", "-c", path, "-o",
+                        f"{path}.o"], check=True)
+        found = " ".join(check_object(f"{path}.o"))
+        for name in ("counter", "filled", "seen"):
+            if name not in found:
+                problems.append(f"self-test: mutable {name} was not found")
+        if "names" in found:
+            problems.append("self-test: constant names counted as mutable")
+    return problems
+
+
+if __name__ == "__main__":
+    sources = [p for p in c_files(ROOT / "src") if p.relative_to(ROOT / "src").parts[0] != "cli"]
+    faults = [f for p in sources for f in check_text(p, p.read_text(encoding="utf-8"))]
+    library = Path(os.environ.get("BUILD_DIR", ROOT / "build/release"), "libmodetune.a")
+    if os.environ.get("MT_INSTRUMENTED", "0") != "1":  # sanitizers and counters add their own data
+        faults += check_object(library)
+    verdict("calls", len(sources), faults + self_test())

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rooms include only what the table allows, and every third party has one door."""
+import re
+import shutil
+import tempfile
+from pathlib import Path
+
+from common import ROOMS, ROOT, c_files, verdict
+
+# room: rooms whose headers it may include, besides its own
+ALLOWED = {
+    "base": set(),
+    "linalg": {"base"},
+    "expr": {"base"},
+    "model": {"base", "expr"},
+    "mechanics": {"base", "linalg", "model", "expr"},
+    "modal": {"base", "linalg"},
+    "tune": {"base", "linalg", "model", "expr", "mechanics", "modal"},
+    "io": {"base", "expr", "model", "tune"},
+    "report": {"base", "tune"},
+    "cli": set(ROOMS),
+}
+# public headers stand in include/modetune and belong to a room: the one of the same name, or
+PUBLIC = {"export": "base", "version": "base", "status": "base"}
+# <system header> pattern: the rooms that may include it
+DOORS = [
+    (re.compile(r"lapacke|cblas|lapack|openblas"), {"linalg"}),
+    (re.compile(r"(cjson/)?cJSON"), {"io"}),
+    (re.compile(r"nlopt|gsl/"), {"tune"}),
+    (re.compile(r"pthread\.h|threads\.h"), {"base"}),
+    (re.compile(r"signal\.h|time\.h|sys/time\.h|locale\.h"), {"cli"}),
+]
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(.*)$', re.M)
+
+
+def quoted_problem(room, name):
+    folder, _, rest = name.partition("/")
+    if not rest or ".." in name:
+        return "is not written as \"room/file.h\""
+    if folder == "modetune":
+        stem = rest.removesuffix(".h")
+        owner = PUBLIC.get(stem, stem if stem in ROOMS else None)
+        if owner is None:
+            return "is a public header without a room: add it to PUBLIC in tests/structure/test_includes.py"
+        folder = owner
+    if folder not in ROOMS:
+        return "names no room"
+    if folder != room and folder not in ALLOWED[room]:
+        return f"is not allowed in {room}"
+    return None
+
+
+def system_problem(room, name):
+    for pattern, rooms in DOORS:
+        if pattern.match(name) and room not in rooms:
+            return f"has its only door in {'/'.join(sorted(rooms))}"
+    return None
+
+
+def check_file(path, room):
+    text = path.read_text(encoding="utf-8")
+    for match in INCLUDE.finditer(text):
+        target = match.group(1).strip()
+        line = text.count("\n", 0, match.start()) + 1
+        if target.startswith('"'):
+            name = target[1:].partition('"')[0]
+            problem = None if room == "public" and name.startswith("modetune/") else \
+                "is not public" if room == "public" else quoted_problem(room, name)
+        elif target.startswith("<"):
+            name = target[1:].partition(">")[0]
+            problem = system_problem(room, name)
+        else:
+            name, problem = target, "is neither <file> nor \"file\""
+        if problem:
+            yield f"{path}:{line}: include of {name} {problem}"
+
+
+def check(root):
+    """(number of files, problems) of the tree below root."""
+    files, problems = 0, []
+    for path in c_files(root / "src"):
+        files += 1
+        parts = path.relative_to(root / "src").parts
+        if len(parts) != 2 or parts[0] not in ROOMS:
+            problems.append(f"{path}: is not directly in a room of src/")
+        else:
+            problems += check_file(path, parts[0])
+    for path in c_files(root / "include"):
+        files += 1
+        problems += check_file(path, "public")
+    return files, problems
+
+
+def self_test():
+    """Every planted fault is found, and an empty tree is not a pass."""
+    planted = [
+        ("src/base/x.c", '#include "linalg/dense.h"', "not allowed in base"),
+        ("src/modal/x.c", '#include "mechanics/x.h"', "not allowed in modal"),
+        ("src/report/x.h", '#include "model/model.h"', "not allowed in report"),
+        ("src/model/x.c", "#include <cjson/cJSON.h>", "only door in io"),
+        ("src/modal/x.c", "  #  include <lapacke.h>", "only door in linalg"),
+        ("src/io/x.c", "#include <nlopt.h>", "only door in tune"),
+        ("src/mechanics/x.c", "#include <gsl/gsl_math.h>", "only door in tune"),
+        ("src/tune/x.c", "#include <time.h>", "only door in cli"),
+        ("src/base/x.c", '#include "arena.h"', "not written as"),
+        ("src/base/x.c", '#include "../linalg/dense.h"', "not written as"),
+        ("src/base/x.c", '#include "modetune/unheard.h"', "without a room"),
+        ("src/base/x.c", '#include "modetune/tune.h"', "not allowed in base"),
+        ("src/base/x.c", "#include SOME_MACRO", "neither"),
+        ("src/odd/x.c", "", "not directly in a room"),
+        ("include/modetune/x.h", '#include "base/arena.h"', "not public"),
+        ("include/modetune/x.h", "#include <lapacke.h>", "only door in linalg"),
+    ]
+    problems = []
+    for name, line, expected in planted:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, name)
+            path.parent.mkdir(parents=True)
+            path.write_text(f"/* x */\n{line}\n")
+            found = check(Path(folder))[1]
+            if len(found) != 1 or expected not in found[0]:
+                problems.append(f"self-test: {line!r} in {name} gave {found}")
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder, "copy")
+        shutil.copytree(ROOT / "src", copy / "src")
+        before = check(copy)[1]
+        (copy / "src/base/zz_planted.c").write_text('#include "cli/cli.h"\n')
+        if len(check(copy)[1]) != len(before) + 1:
+            problems.append("self-test: a fault planted in a copy of this tree was not found")
+        if check(Path(folder, "nothing"))[0] != 0:
+            problems.append("self-test: an empty tree has files")
+    return problems
+
+
+if __name__ == "__main__":
+    count, faults = check(ROOT)
+    verdict("includes", count, faults + self_test())
