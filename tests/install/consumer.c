@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A stranger's program: includes what is installed, links it, and sees one version. */
 #include <modetune/version.h>
-
 #include <stdio.h>
 #include <string.h>
 

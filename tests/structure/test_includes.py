@@ -17,9 +17,10 @@ ALLOWED = {
     "modal": {"base", "linalg"},
     "tune": {"base", "linalg", "model", "expr", "mechanics", "modal"},
     "io": {"base", "expr", "model", "tune"},
-    "report": {"base", "tune"},
+    "report": {"base", "tune"},  # of tune only the result types, see RESULT_TYPES
     "cli": set(ROOMS),
 }
+RESULT_TYPES = re.compile(r"tune/result\w*\.h")
 # public headers stand in include/modetune and belong to a room: the one of the same name, or
 PUBLIC = {"export": "base", "version": "base", "status": "base"}
 # <system header> pattern: the rooms that may include it
@@ -47,6 +48,8 @@ def quoted_problem(room, name):
         return "names no room"
     if folder != room and folder not in ALLOWED[room]:
         return f"is not allowed in {room}"
+    if room == "report" and folder == "tune" and not RESULT_TYPES.fullmatch(name):
+        return "is not a result type, and report computes nothing"
     return None
 
 
@@ -97,6 +100,7 @@ def self_test():
         ("src/base/x.c", '#include "linalg/dense.h"', "not allowed in base"),
         ("src/modal/x.c", '#include "mechanics/x.h"', "not allowed in modal"),
         ("src/report/x.h", '#include "model/model.h"', "not allowed in report"),
+        ("src/report/x.c", '#include "tune/study.h"', "not a result type"),
         ("src/model/x.c", "#include <cjson/cJSON.h>", "only door in io"),
         ("src/modal/x.c", "  #  include <lapacke.h>", "only door in linalg"),
         ("src/io/x.c", "#include <nlopt.h>", "only door in tune"),

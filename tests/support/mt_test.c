@@ -19,7 +19,7 @@ mt_test mt_test_begin(void)
         char *end = NULL;
         t.tol_scale = strtod(text, &end);
         if (end == text || *end != '\0' || !(t.tol_scale >= 0.0)) {
-            fprintf(stderr, "MT_TOL_SCALE: \"%s\" is not a number >= 0\n", text);
+            (void)fprintf(stderr, "MT_TOL_SCALE: \"%s\" is not a number >= 0\n", text);
             exit(2);
         }
     }
@@ -49,9 +49,9 @@ static bool record(mt_test *t, bool holds, bool always, const char *file, int li
     if (t->quiet || (holds && !always)) {
         return false;
     }
-    fprintf(stderr, "%s:%d: %s", file, line, holds ? "note: " : "failed: ");
+    (void)fprintf(stderr, "%s:%d: %s", file, line, holds ? "note: " : "failed: ");
     if (t->row[0] != '\0') {
-        fprintf(stderr, "[%s] ", t->row);
+        (void)fprintf(stderr, "[%s] ", t->row);
     }
     return true;
 }
@@ -59,7 +59,7 @@ static bool record(mt_test *t, bool holds, bool always, const char *file, int li
 bool mt_test_true(mt_test *t, bool holds, const char *text, const char *file, int line)
 {
     if (record(t, holds, false, file, line)) {
-        fprintf(stderr, "%s\n", text);
+        (void)fprintf(stderr, "%s\n", text);
     }
     return holds;
 }
@@ -72,8 +72,8 @@ bool mt_test_near(mt_test *t, double got, double want, double tol_abs, const cha
     /* false for NaN in any of the three; equal infinities have a NaN residual and fail as well */
     const bool holds = residual <= tol;
     if (record(t, holds, t->tol_scale <= 0.0, file, line)) {
-        fprintf(stderr, "%s is %.17g, want %.17g, off by %.3g, tolerance %.3g\n", text, got,
-                want, residual, tol);
+        (void)fprintf(stderr, "%s is %.17g, want %.17g, off by %.3g, tolerance %.3g\n", text,
+                      got, want, residual, tol);
     }
     return holds;
 }
@@ -82,7 +82,7 @@ bool mt_test_int(mt_test *t, long long got, long long want, const char *text, co
                  int line)
 {
     if (record(t, got == want, false, file, line)) {
-        fprintf(stderr, "%s is %lld, want %lld\n", text, got, want);
+        (void)fprintf(stderr, "%s is %lld, want %lld\n", text, got, want);
     }
     return got == want;
 }
@@ -93,8 +93,8 @@ bool mt_test_str(mt_test *t, const char *got, const char *want, const char *text
     const bool both = got != NULL && want != NULL;
     const bool holds = both ? strcmp(got, want) == 0 : got == want;
     if (record(t, holds, false, file, line)) {
-        fprintf(stderr, "%s is\n    \"%s\", want\n    \"%s\"\n", text, got ? got : "(null)",
-                want ? want : "(null)");
+        (void)fprintf(stderr, "%s is\n    \"%s\", want\n    \"%s\"\n", text,
+                      got ? got : "(null)", want ? want : "(null)");
     }
     return holds;
 }
