@@ -17,6 +17,7 @@ typedef enum mt_severity { MT_SEV_ERROR, MT_SEV_WARNING } mt_severity;
 typedef struct mt_diag {
     mt_addr addr;
     mt_severity severity;
+    bool structural; /* an error that a schema of the format can see as well */
     const char *text;
 } mt_diag;
 
@@ -26,6 +27,8 @@ typedef struct mt_diags {
     int count;
     int capacity;
     int errors; /* how many of them are errors (also those beyond the limit) */
+    int structural; /* how many of the errors are structural, likewise */
+    int warnings;   /* how many are warnings, likewise */
     int out_of_memory;
 } mt_diags;
 
@@ -33,6 +36,8 @@ typedef struct mt_diags {
 mt_diags mt_diags_default(mt_arena *mem);
 /* Add a problem; beyond MT_DIAG_LIMIT only counted. */
 void mt_diag_error(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
+/* An error of structure: a schema (types, names of members, choices) sees it as well. */
+void mt_diag_structure(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
 void mt_diag_warning(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
 
 #endif

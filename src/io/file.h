@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef IO_FILE_H
+#define IO_FILE_H
+
+#include <stddef.h>
+
+#include "base/base.h"
+
+enum { MT_SHA256_TEXT = 65 }; /* 64 hexadecimal digits and the terminator */
+
+/* A whole file in memory (heap). */
+typedef struct mt_file {
+    char *bytes; /* length bytes and a NUL */
+    size_t length;
+    char sha256[MT_SHA256_TEXT];
+} mt_file;
+
+/**
+ * Read a regular file of at most `limit` bytes. Symbolic links are followed; where root is not NULL the file that they lead to must
+ * lie beneath that folder (whose links are resolved as well). Fails: MT_E_INPUT (not a regular file, too long, outside root),
+ * MT_E_SYSTEM (does not exist, not readable), MT_E_MEMORY. The messages name the path as given.
+ */
+mt_status mt_file_read(const char *path, const char *root, size_t limit, mt_file *out, mt_err *err);
+void mt_file_free(mt_file *f);
+
+/* The path of `name` as meant by the file `naming`: relative names start in the folder of `naming`. Heap, to be freed by the
+ * caller; NULL when out of memory. Only joins: nothing is looked up. */
+char *mt_file_join(const char *naming, const char *name);
+/* The folder of a file ("." where the path has none); heap, NULL when out of memory. */
+char *mt_file_folder(const char *path);
+/* The folder that the files named by a study must lie in by default: the parent of its folder ("folder/.."). Heap. */
+char *mt_file_default_root(const char *study_path);
+
+/* Write a file whole or not at all: a temporary file in the same folder, fsync, rename. An existing file is replaced and keeps its
+ * permissions. Fails: MT_E_SYSTEM (nothing is left behind), MT_E_MEMORY. */
+mt_status mt_file_write(const char *path, const char *bytes, size_t length, mt_err *err);
+
+/* SHA-256 (FIPS 180-4) of the bytes, in lower-case hexadecimal digits. */
+void mt_sha256(const void *bytes, size_t length, char out[MT_SHA256_TEXT]);
+
+#endif

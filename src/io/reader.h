@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef IO_READER_H
+#define IO_READER_H
+
+#include "expr/expr.h"
+#include "io/json.h"
+#include "model/model.h"
+
+/*
+ * What the readers of models and studies share: objects are checked against tables of keys, values against types; every problem
+ * is noted (mt_json_diags) and reading goes on. A problem that a JSON Schema can see as well (unknown or missing member, wrong
+ * type, wrong choice, bad form of a name, wrong count where it is fixed) is noted by mt_diag_structure, others by mt_diag_error:
+ * schema and reader agree on the former. An address MT_NO_ADDR stands for "not given" and is accepted everywhere: the answer is then
+ * the default that each function names, without a message.
+ */
+typedef struct mt_reader {
+    mt_json *doc;
+    mt_diags *diags; /* of doc */
+    mt_arena *mem;   /* what is read is copied into it */
+    mt_expr_lookup lookup; /* parameters of expressions; NULL: none known */
+    const void *context;
+    const char *const *names; /* candidates for "did you mean" in expressions */
+    int n_names;
+    bool out_of_memory;
+} mt_reader;
+
+/* id, JSON types, what a message calls it */
+#define MT_KEY_TYPE_LIST(X)                                                                            \
+    X(MT_KEY_ANY, 63, "any value")                                                                     \
+    X(MT_KEY_TEXT, MT_JSON_STRING, "a string")                                                         \
+    X(MT_KEY_NUMBER, MT_JSON_NUMBER | MT_JSON_STRING, "a number or an expression")                     \
+    X(MT_KEY_COUNT, MT_JSON_NUMBER, "a whole number")                                                  \
+    X(MT_KEY_BOOL, MT_JSON_BOOL, "true or false")                                                      \
+    X(MT_KEY_LIST, MT_JSON_ARRAY, "a list")                                                            \
+    X(MT_KEY_OBJECT, MT_JSON_OBJECT, "an object")                                                      \
+    X(MT_KEY_TEXT_OR_LIST, MT_JSON_STRING | MT_JSON_ARRAY, "a string or a list")                       \
+    X(MT_KEY_TEXT_OR_OBJECT, MT_JSON_STRING | MT_JSON_OBJECT, "a string or an object")                 \
+    X(MT_KEY_TEXT_OR_COUNT, MT_JSON_NUMBER | MT_JSON_STRING, "a name or a whole number")               \
+    X(MT_KEY_OBJECT_OR_LIST, MT_JSON_OBJECT | MT_JSON_ARRAY, "an object or a list of objects")         \
+    X(MT_KEY_NUMBER_OR_LIST, MT_JSON_NUMBER | MT_JSON_STRING | MT_JSON_ARRAY,                          \
+      "a number, an expression or a list of them")                                                     \
+    X(MT_KEY_NUMBER_OR_OBJECT, MT_JSON_NUMBER | MT_JSON_STRING | MT_JSON_OBJECT,                       \
+      "a number, an expression or an object")
+#define MT_KEY_TYPE_ENUM(id, types, text) id,
+typedef enum mt_key_type { MT_KEY_TYPE_LIST(MT_KEY_TYPE_ENUM) MT_KEY_TYPE_COUNT } mt_key_type;
+#undef MT_KEY_TYPE_ENUM
+
+typedef struct mt_key {
+    const char *name;
+    mt_key_type type;
+    bool required;
+} mt_key;
+
+/* The members of one kind of object. `what` names it in messages ("unknown member ... of a body" is not said, the pointer tells)
+ * and is the name of its definition in the JSON Schema; "" for the root. */
+typedef struct mt_key_table {
+    const char *what;
+    const mt_key *keys;
+    int n;
+} mt_key_table;
+
+enum { MT_MAX_KEYS = 40 }; /* a table has at most as many */
+
+/**
+ * Match an object with a table: members not in it, missing ones and those of a wrong type are noted.
+ * @param[out] found  [table->n] address of each member, in the table's order; MT_NO_ADDR where absent or of a wrong type
+ * Returns false (all of found MT_NO_ADDR) where value is MT_NO_ADDR or no object; the latter is noted.
+ */
+bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt_addr *found);
+/* Is the value of this type? Notes it where not ("must be a number or an expression, not a list"). */
+bool mt_reader_type(mt_reader *r, mt_addr value, mt_key_type type);
+
+/* Copy of a string into r->mem; NULL where absent or not a string (noted). */
+const char *mt_reader_text(mt_reader *r, mt_addr value);
+/* A string that refers to something, unchecked; s == NULL where absent or wrong. */
+mt_name mt_reader_ref(mt_reader *r, mt_addr value);
+/* A string that names a new thing: form [A-Za-z_][A-Za-z0-9_+-]*, noted where not. */
+mt_name mt_reader_name(mt_reader *r, mt_addr value);
+/* The forms of member names that name a thing: item (as above), parameter (without + and -), title (any text, not empty). */
+typedef enum mt_name_form { MT_NAME_ITEM, MT_NAME_PARAMETER, MT_NAME_TITLE } mt_name_form;
+/* The name of a member of a free object (parameters, points, modes, ...) as the name of a new thing; its addr is the name's. */
+mt_name mt_reader_member_name(mt_reader *r, mt_addr value, mt_name_form form);
+/* A list of strings that refer to something; an absent one gives count 0. */
+mt_name_list mt_reader_refs(mt_reader *r, mt_addr value);
+/* Which of n names the string is; MT_ABSENT where absent or none (noted, with "did you mean" and the known ones). what: "type". */
+int mt_reader_choice(mt_reader *r, mt_addr value, const char *what, const char *const *names, int n);
+/* A whole number within least..most; fallback where absent or wrong (noted). 9, 9.0 and 9e0 are whole. */
+int mt_reader_count(mt_reader *r, mt_addr value, int least, int most, int fallback);
+bool mt_reader_flag(mt_reader *r, mt_addr value, bool fallback);
+/* A number or an expression; false (out is zeroed) where absent, wrong (noted), or out of memory. */
+bool mt_reader_expr(mt_reader *r, mt_addr value, mt_expr *out);
+/* The same for a text that came from elsewhere than a value of its own. */
+bool mt_reader_expr_text(mt_reader *r, mt_addr addr, const char *text, mt_expr *out);
+
+/* MT_E_MEMORY, MT_E_INPUT where the document has errors, or MT_OK. err: the first diagnostic and how many more there are. */
+mt_status mt_reader_status(const mt_reader *r, const char *file, mt_err *err);
+
+#endif
