@@ -49,13 +49,21 @@ bool mt_test_passed(const mt_test *t);
 void mt_test_row(mt_test *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Each records one check and returns whether it held, so that a caller can stop where going on makes no sense. */
-bool mt_test_true(mt_test *t, bool holds, const char *text, const char *file, int line);
+void mt_test_note(mt_test *t, bool holds, const char *text, const char *file, int line);
 bool mt_test_near(mt_test *t, double got, double want, double tol_abs, const char *text,
                   const char *file, int line);
 bool mt_test_int(mt_test *t, long long got, long long want, const char *text, const char *file,
                  int line);
 bool mt_test_str(mt_test *t, const char *got, const char *want, const char *text,
                  const char *file, int line);
+
+/* Inline, so that compilers and analysers see that what was checked holds where this returned true. */
+static inline bool mt_test_true(mt_test *t, bool holds, const char *text, const char *file,
+                                int line)
+{
+    mt_test_note(t, holds, text, file, line);
+    return holds;
+}
 
 /* The condition holds. */
 #define CHECK(t, cond) mt_test_true((t), (cond), #cond, __FILE__, __LINE__)

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Counts and fails allocations: in every test program malloc, calloc, realloc, aligned_alloc,
+ * posix_memalign and free are replaced, also as the shared libraries see them. Where somebody else already replaces them (a
+ * sanitizer, valgrind) the counters mean nothing and nothing fails, which mt_alloc_works() tells: ask it first.
+ *
+ *     for (long nth = 0; mt_alloc_works(); nth++) {
+ *         mt_alloc_fail_after(nth);
+ *         rc = load(...);
+ *         mt_alloc_fail_after(-1);
+ *         free what rc == MT_OK gave, then CHECK(t, mt_alloc_live() == before);
+ *         if (rc == MT_OK) break;
+ *     }
+ */
+#ifndef MT_ALLOC_H
+#define MT_ALLOC_H
+
+#include <stdbool.h>
+
+/* True where allocations are seen and can be failed. */
+bool mt_alloc_works(void);
+
+/* Let the next nth allocations succeed and every later one return NULL; nth < 0: none fails. */
+void mt_alloc_fail_after(long nth);
+
+/* Successful allocations since the program started. */
+long mt_alloc_count(void);
+
+/* Blocks that are allocated and not yet freed. */
+long mt_alloc_live(void);
+
+#endif
