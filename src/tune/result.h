@@ -8,7 +8,16 @@
 
 /* What a study answers: plain records, no computation. All texts live in the result's arena. NaN: not applicable (written as null). */
 
-typedef enum mt_result_status { MT_RESULT_SOLVED, MT_RESULT_COMPROMISE, MT_RESULT_INFEASIBLE, MT_RESULT_INTERRUPTED } mt_result_status;
+#define MT_RESULT_STATUS_LIST(X)          \
+    X(MT_RESULT_SOLVED, "solved")         \
+    X(MT_RESULT_COMPROMISE, "compromise") \
+    X(MT_RESULT_INFEASIBLE, "infeasible") \
+    X(MT_RESULT_INTERRUPTED, "interrupted")
+#define MT_RESULT_STATUS_ENUM(id, name) id,
+typedef enum mt_result_status {
+    MT_RESULT_STATUS_LIST(MT_RESULT_STATUS_ENUM) MT_RESULT_STATUS_COUNT
+} mt_result_status;
+#undef MT_RESULT_STATUS_ENUM
 
 typedef struct mt_result_parameter {
     const char *name;
@@ -25,27 +34,28 @@ typedef struct mt_result_frequency {
     const char *name; /* named mode; NULL */
     double original_hz;
     double recommended_hz;
-    double target_hz;   /* NaN: no target */
+    double target_hz; /* NaN: no target */
     double at_least_hz;
     double at_most_hz;
-    double error_percent; /* to the target, or beyond the limit; 0 inside limits */
-    double mac;           /* NaN: no reference shape asked for */
+    double error_percent;  /* to the target, or beyond the limit; 0 inside limits */
+    double mac;            /* NaN: no reference shape asked for */
     const char *reference; /* NULL */
-    double residual;      /* LAPACK-style ratio of this mode */
+    double residual;       /* LAPACK-style ratio of this mode */
     double orthogonality;
-    double *sensitivity;  /* [n_parameters] Hz per unit of each variable; NaN at a repeated mode */
+    /* [n_parameters] Hz per unit of each variable; NaN at a repeated mode; NULL: not computed */
+    double *sensitivity;
     bool repeated;
 } mt_result_frequency;
 
 /* A goal judged at a design. */
 typedef struct mt_result_goal {
-    const char *text;     /* "installed mode 1 at 18 Hz" */
-    const char *pointer;  /* "/goals/0" */
+    const char *text;    /* "installed mode 1 at 18 Hz" */
+    const char *pointer; /* "/goals/0" */
     double value;
-    double demand;        /* target or limit */
+    double demand; /* target or limit */
     double violation_percent;
     bool met;
-    bool weighted;        /* part of the misfit: does not decide status */
+    bool weighted; /* part of the misfit: does not decide status */
 } mt_result_goal;
 
 typedef struct mt_recommendation {
@@ -54,8 +64,8 @@ typedef struct mt_recommendation {
     const char *grade; /* "feasible and proven" | "feasible" | "compromise" | "infeasible" */
     double score;      /* first objective's value in its unit; NaN where infeasible */
     const char *score_unit;
-    double change;     /* size of the redesign */
-    double misfit;     /* NaN: no weighted goals */
+    double change; /* size of the redesign */
+    double misfit; /* NaN: no weighted goals */
     double violation_percent;
     double kkt_residual; /* relative; NaN where not an optimum */
     bool singular;       /* a double solution: the Jacobian of the goals is singular here */
@@ -71,10 +81,11 @@ typedef struct mt_recommendation {
 
 /* A direction in the space of the variables along which the goals do not change. */
 typedef struct mt_undetermined {
-    int n;                /* number of variables */
-    double *direction;    /* unit vector in ln(parameter) (positive ones) or parameter/scale */
-    const char *text;     /* "K_T2" or "0.71 ln a - 0.71 ln b" */
-    double effect_percent; /* greatest change of any goal when the bounds are crossed along it */
+    int n;             /* number of variables */
+    double *direction; /* unit vector in ln(parameter) (positive ones) or parameter/scale */
+    const char *text;  /* "K_T2" or "0.71 ln a - 0.71 ln b" */
+    /* greatest change of any goal when the bounds are crossed along it */
+    double effect_percent;
 } mt_undetermined;
 
 typedef struct mt_result_published {
@@ -85,7 +96,7 @@ typedef struct mt_result_published {
     const char *kind;   /* "parameter" | "quantity" | "frequency" | "mac" | "status" */
     double published;   /* value or limit; NaN for status */
     double computed;
-    double difference;  /* computed - published */
+    double difference; /* computed - published */
     double difference_percent;
     const char *published_text; /* status */
     const char *computed_text;
@@ -94,9 +105,9 @@ typedef struct mt_result_published {
 } mt_result_published;
 
 typedef struct mt_certificate {
-    const char *kind;  /* "infeasible", "range", ... */
+    const char *kind; /* "infeasible", "range", ... */
     const char *text;
-    bool proven;       /* false: sampled */
+    bool proven; /* false: sampled */
 } mt_certificate;
 
 typedef struct mt_result_run {
@@ -115,9 +126,11 @@ typedef struct mt_result_run {
 typedef struct mt_result {
     mt_arena mem;
     const char *study_name;
+    const char *study_file; /* its file name, without folder */
     const char *model_name;
+    const char *model_file; /* as the study writes it, relative to its folder: for `apply` */
     mt_result_status status;
-    const char *status_text; /* one sentence */
+    const char *status_text;    /* one sentence */
     mt_recommendation baseline; /* the original design, rank 0 */
     int n_recommendations;
     mt_recommendation *recommendations;
@@ -134,8 +147,15 @@ typedef struct mt_result {
     mt_result_run run;
 } mt_result;
 
+/* An empty result (status interrupted: nothing is known yet). Fails: MT_E_MEMORY. */
 mt_status mt_result_new(mt_result **out, mt_err *err);
+/* Frees everything; NULL is accepted. */
 void mt_result_delete(mt_result *result);
-const char *mt_result_status_name(mt_result_status status); /* "solved" ... */
+/* A recommendation whose numbers are all "not applicable". */
+mt_recommendation mt_recommendation_default(void);
+mt_result_frequency mt_result_frequency_default(void);
+mt_result_published mt_result_published_default(void);
+/* "solved" ... */
+const char *mt_result_status_name(mt_result_status status);
 
 #endif

@@ -17,38 +17,52 @@ typedef struct mt_variable {
     int parameter;
     double lower; /* continuous: both bounds are required, lower < upper */
     double upper;
-    int n_catalogue;       /* > 0: discrete */
-    double *catalogue;     /* ascending after finish */
-    double weight;         /* of the change; default 1 */
-    double scale;          /* change of a parameter that may be zero or negative: (new - original)/scale; default upper - lower */
+    int n_catalogue;   /* > 0: discrete */
+    double *catalogue; /* ascending after finish */
+    double weight;     /* of the change; default 1 */
+    /* change of a parameter that may be zero or negative: (new - original)/scale; default: the range */
+    double scale;
     double tolerance_percent; /* robust search; NaN: none */
-    double original;       /* the model's value; by finish */
+    double original;          /* the model's value; by finish */
     mt_addr addr;
-    mt_addr lower_addr;
+    mt_addr lower_addr; /* the addresses of what was not given equal addr */
     mt_addr upper_addr;
+    mt_addr catalogue_addr;
+    mt_addr weight_addr;
+    mt_addr scale_addr;
+    mt_addr tolerance_addr;
 } mt_variable;
 
 typedef struct mt_mode_ref {
-    int index;          /* 1-based vibration mode; 0: by name */
+    int index; /* 1-based vibration mode; 0: by name */
     mt_name mode_name;
-    int named;          /* resolved named mode of the model */
+    int named; /* resolved named mode of the model; MT_ABSENT: by index */
     mt_addr addr;
 } mt_mode_ref;
 
-typedef enum mt_goal_type { MT_GOAL_FREQUENCY, MT_GOAL_SHAPE, MT_GOAL_MAC, MT_GOAL_LIMIT, MT_GOAL_AVOID } mt_goal_type;
+#define MT_GOAL_LIST(X)               \
+    X(MT_GOAL_FREQUENCY, "frequency") \
+    X(MT_GOAL_SHAPE, "shape")         \
+    X(MT_GOAL_MAC, "mac")             \
+    X(MT_GOAL_LIMIT, "limit")         \
+    X(MT_GOAL_AVOID, "avoid")
+#define MT_GOAL_ENUM(id, name) id,
+typedef enum mt_goal_type { MT_GOAL_LIST(MT_GOAL_ENUM) MT_GOAL_TYPE_COUNT } mt_goal_type;
+#undef MT_GOAL_ENUM
 
 typedef struct mt_goal {
     mt_goal_type type;
-    mt_name_list configuration_names; /* one ("configuration") or several ("configurations"); none given: the model's only one */
+    /* one ("configuration") or several ("configurations"); none given: the model's only one */
+    mt_name_list configuration_names;
     int n_configurations;
     int *configurations;
     mt_mode_ref mode;
     double target_hz;
     double at_least; /* frequency: Hz; mac: 0..1; limit: unit of the expression */
     double at_most;
-    double equals;   /* limit */
+    double equals;            /* limit */
     double tolerance_percent; /* default 1e-4 */
-    double weight;   /* NaN: a constraint; else a residual of the misfit */
+    double weight;            /* NaN: a constraint; else a residual of the misfit */
     mt_name reference_name;
     int reference;
     int reference_mode; /* 1-based; 0: same index as mode */
@@ -56,20 +70,28 @@ typedef struct mt_goal {
     const char *expression_text;
     const char *description;
     mt_addr addr;
+    mt_addr target_addr; /* the addresses of what was not given equal addr */
+    mt_addr at_least_addr;
+    mt_addr at_most_addr;
+    mt_addr equals_addr;
+    mt_addr tolerance_addr;
+    mt_addr weight_addr;
 } mt_goal;
 
 /* Modes to compare with: another model's configuration, or measured values at sensors. */
 typedef struct mt_measured_mode {
     double frequency_hz; /* NaN: not given */
     int n_values;
-    mt_name *channels;   /* "sensor.direction" */
+    mt_name *channels; /* "sensor.direction" */
     double *values;
+    mt_addr addr;
+    mt_addr frequency_addr;
 } mt_measured_mode;
 
 typedef struct mt_reference {
     mt_name name;
-    mt_name model_path;       /* as written; NULL: measured */
-    mt_model *model;          /* owned by the study; NULL: measured */
+    mt_name model_path; /* as written; NULL: measured */
+    mt_model *model;    /* owned by the study; NULL: measured */
     mt_name configuration_name;
     int configuration;
     int n_modes;
@@ -91,12 +113,29 @@ typedef struct mt_objective {
     mt_objective_type type;
     mt_expr expression;
     const char *expression_text;
-    mt_name_list of; /* mass: patterns of item names (bodies, links, springs that have mass); none: all */
+    mt_name_list of; /* mass: patterns of names of bodies, links, bars; none: all */
     mt_addr addr;
 } mt_objective;
 
-typedef enum mt_role { MT_ROLE_VERIFIES, MT_ROLE_CALIBRATES, MT_ROLE_NOT_COMPARABLE } mt_role;
-typedef enum mt_published_kind { MT_PUBLISHED_PARAMETER, MT_PUBLISHED_QUANTITY, MT_PUBLISHED_FREQUENCY, MT_PUBLISHED_MAC, MT_PUBLISHED_STATUS } mt_published_kind;
+#define MT_ROLE_LIST(X)                 \
+    X(MT_ROLE_VERIFIES, "verifies")     \
+    X(MT_ROLE_CALIBRATES, "calibrates") \
+    X(MT_ROLE_NOT_COMPARABLE, "not_comparable")
+#define MT_ROLE_ENUM(id, name) id,
+typedef enum mt_role { MT_ROLE_LIST(MT_ROLE_ENUM) MT_ROLE_COUNT } mt_role;
+#undef MT_ROLE_ENUM
+
+#define MT_PUBLISHED_LIST(X)               \
+    X(MT_PUBLISHED_PARAMETER, "parameter") \
+    X(MT_PUBLISHED_QUANTITY, "quantity")   \
+    X(MT_PUBLISHED_FREQUENCY, "frequency") \
+    X(MT_PUBLISHED_MAC, "mac")             \
+    X(MT_PUBLISHED_STATUS, "status")
+#define MT_PUBLISHED_ENUM(id, name) id,
+typedef enum mt_published_kind {
+    MT_PUBLISHED_LIST(MT_PUBLISHED_ENUM) MT_PUBLISHED_KIND_COUNT
+} mt_published_kind;
+#undef MT_PUBLISHED_ENUM
 
 typedef struct mt_published {
     mt_published_kind kind;
@@ -110,24 +149,33 @@ typedef struct mt_published {
     mt_name reference_name; /* mac */
     int reference;
     int reference_mode;
-    const char *status;     /* "solved" | "compromise" | "infeasible" */
-    bool original;          /* judge at the original design instead of the recommended one ("design": "original") */
+    const char *status; /* "solved" | "compromise" | "infeasible" */
+    bool original;      /* "design": "original": judged there, not at the recommended design */
     double value;
-    double tolerance;         /* absolute */
+    double tolerance; /* absolute */
     double tolerance_percent;
     double at_least;
     double at_most;
     mt_role role;
     const char *source;
-    const char *label;        /* "label": what a comparison table calls it; NULL: made from the rest */
+    const char *label; /* "label": what a comparison table calls it; NULL: made from the rest */
     mt_addr addr;
+    mt_addr status_addr; /* the addresses of what was not given equal addr */
+    mt_addr value_addr;
+    mt_addr tolerance_addr;
+    mt_addr tolerance_percent_addr;
 } mt_published;
 
 typedef struct mt_search {
     unsigned long seed;
-    int starts;         /* 0: chosen by the number of variables */
+    int starts;           /* 0: chosen by the number of variables */
     long max_evaluations; /* 0: default */
 } mt_search;
+
+typedef struct mt_input_file {
+    const char *name;   /* relative to the study's folder */
+    const char *sha256; /* hex */
+} mt_input_file;
 
 typedef struct mt_study {
     mt_arena mem; /* owns everything but the models' own memory */
@@ -136,26 +184,43 @@ typedef struct mt_study {
     const char *description;
     mt_name model_path;
     mt_model *model; /* owned */
+    /* [model's parameters] values at the original design (model/values.h); made by finish where NULL */
+    double *original;
     MT_LIST_OF(mt_variable, variables);
     MT_LIST_OF(mt_goal, goals);
     MT_LIST_OF(mt_reference, references);
     MT_LIST_OF(mt_objective, objectives);
     MT_LIST_OF(mt_published, published);
     int recommendations; /* how many to report; default 5 */
+    mt_addr recommendations_addr;
     mt_search search;
-    int n_inputs;        /* files read: study, models */
-    struct mt_input_file {
-        const char *name;    /* relative to the study's folder */
-        const char *sha256;  /* hex */
-    } *inputs;
+    int n_inputs; /* files read: study, models */
+    mt_input_file *inputs;
 } mt_study;
 
+/* A reference may use the same mt_model as the study or another reference: mt_study_delete frees each model once. */
 mt_status mt_study_new(mt_study **out, mt_err *err);
 void mt_study_delete(mt_study *study);
-/* Resolve names and check meaning (model is set and finished): unknown names with "did you mean", lower >= upper, a positive parameter with bounds <= 0 is fine (linear scale),
- * goals without any demand, weights without misfit objective and misfit objective without weights, a variable overridden in every configuration that goals name, references without a common sensor,
- * mode indices < 1, duplicate variables, catalogue and bounds together, ... Returns MT_E_INPUT where diags holds errors. */
+/* Records with every optional member at "not given" (NaN, MT_ABSENT, defaults) and all addresses at addr. */
+mt_variable mt_variable_default(mt_addr addr);
+mt_goal mt_goal_default(mt_goal_type type, mt_addr addr);
+mt_published mt_published_default(mt_published_kind kind, mt_addr addr);
+/*
+ * Resolve names and check meaning, all problems at once: unknown names with "did you mean", bounds in the wrong order, catalogue and
+ * bounds together, duplicate variables, goals without a demand, weights without the objective "misfit" and the reverse, a variable
+ * overridden in every configuration that the goals name, references without a common sensor, mode indices below 1, ... Fills in
+ * defaults (configuration: the model's only one; objective: change; scale: the range), sorts catalogues, sets `original`. study->model
+ * is set and finished before. Bounds at or below 0 are fine for a positive parameter (its scale is linear then).
+ * Returns MT_E_INPUT where diags holds errors, MT_E_MEMORY.
+ */
 mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err);
+/* MT_ABSENT where there is none. */
 int mt_study_find_reference(const mt_study *study, const char *name);
+/* The names that files use: "frequency", "verifies", "parameter". */
+const char *mt_goal_type_name(mt_goal_type type);
+const char *mt_role_name(mt_role role);
+const char *mt_published_kind_name(mt_published_kind kind);
+/* What a published `status` may say, in the order of mt_result_status; *n their number. */
+const char *const *mt_study_statuses(int *n);
 
 #endif

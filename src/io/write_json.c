@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "io/write_json.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+mt_json_writer mt_json_writer_default(mt_text *out)
+{
+    return (mt_json_writer){.out = out};
+}
+
+static bool is_number_char(char c)
+{
+    return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == 'e';
+}
+
+/* printf writes the decimal point of the locale, which may be several bytes: whatever is not a digit, sign or exponent
+ * becomes one point. 17 digits identify a double (IEEE 754-2019, 5.12.2). */
+const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE])
+{
+    if (!isfinite(value)) {
+        memcpy(buffer, "null", sizeof "null");
+        return buffer;
+    }
+    char raw[MT_JSON_NUMBER_SIZE];
+    const int length = snprintf(raw, sizeof raw, "%.17g", value);
+    int n = 0;
+    for (int i = 0; i < length && i < MT_JSON_NUMBER_SIZE - 1; i++) {
+        if (is_number_char(raw[i])) {
+            buffer[n++] = raw[i];
+        } else if (n > 0 && buffer[n - 1] != '.') {
+            buffer[n++] = '.';
+        }
+    }
+    buffer[n] = '\0';
+    return buffer;
+}
+
+/* Length of the well-formed UTF-8 sequence at s (Unicode 15, table 3-7), 0 where there is none. Stops at the terminator. */
+static int sequence_length(const unsigned char *s)
+{
+    if (s[0] < 0x80U) {
+        return 1;
+    }
+    if (s[0] < 0xC2U || s[0] > 0xF4U) {
+        return 0;
+    }
+    const int n = s[0] < 0xE0U ? 2 : s[0] < 0xF0U ? 3 : 4;
+    const unsigned low = s[0] == 0xE0U ? 0xA0U : s[0] == 0xF0U ? 0x90U : 0x80U;
+    const unsigned high = s[0] == 0xEDU ? 0x9FU : s[0] == 0xF4U ? 0x8FU : 0xBFU;
+    if (s[1] < low || s[1] > high) {
+        return 0;
+    }
+    for (int i = 2; i < n; i++) {
+        if ((s[i] & 0xC0U) != 0x80U) {
+            return 0;
+        }
+    }
+    return n;
+}
+
+/* One character at s as JSON text; returns how many bytes of s it took. */
+static int put_character(mt_text *out, const char *s)
+{
+    static const char SHORT[] = "\"\"\\\\\bb\ff\nn\rr\tt"; /* character, letter of its escape */
+    for (const char *pair = SHORT; *pair != '\0'; pair += 2) {
+        if (*s == *pair) {
+            mt_text_addf(out, "\\%c", pair[1]);
+            return 1;
+        }
+    }
+    if ((unsigned char)*s < 0x20U || *s == 0x7F) {
+        mt_text_addf(out, "\\u%04x", (unsigned)(unsigned char)*s);
+        return 1;
+    }
+    const int n = sequence_length((const unsigned char *)s);
+    if (n == 0) {
+        mt_text_add(out, "\xEF\xBF\xBD");
+        return 1;
+    }
+    mt_text_add_n(out, s, (size_t)n);
+    return n;
+}
+
+static void put_text(mt_text *out, const char *s)
+{
+    mt_text_add(out, "\"");
+    while (*s != '\0') {
+        s += put_character(out, s);
+    }
+    mt_text_add(out, "\"");
+}
+
+static void new_line(mt_json_writer *w)
+{
+    mt_text_add(w->out, "\n");
+    for (int i = 0; i < w->depth; i++) {
+        mt_text_add(w->out, "  ");
+    }
+}
+
+/* Comma, line and name before a value; false where the writer was misused. */
+static bool begin_value(mt_json_writer *w, const char *name)
+{
+    const int level = w->depth - 1;
+    const bool in_object = level >= 0 && w->close[level] == '}';
+    const bool second_top = level < 0 && w->any[0];
+    if (w->misused || in_object != (name != NULL) || second_top) {
+        w->misused = true;
+        return false;
+    }
+    if (level < 0) {
+        w->any[0] = true;
+        return true;
+    }
+    mt_text_add(w->out, w->any[level] ? "," : "");
+    if (!w->flat[level]) {
+        new_line(w);
+    } else if (w->any[level]) {
+        mt_text_add(w->out, " ");
+    }
+    w->any[level] = true;
+    if (name != NULL) {
+        put_text(w->out, name);
+        mt_text_add(w->out, ": ");
+    }
+    return true;
+}
+
+static void open_level(mt_json_writer *w, const char *name, char bracket, bool flat)
+{
+    const bool known = bracket == '{' || bracket == '[';
+    if (!known || w->depth == MT_JSON_WRITER_DEPTH) {
+        w->misused = true;
+    }
+    if (!begin_value(w, name)) {
+        return;
+    }
+    mt_text_add_n(w->out, &bracket, 1);
+    const bool inherited = w->depth > 0 && w->flat[w->depth - 1];
+    w->close[w->depth] = bracket == '{' ? '}' : ']';
+    w->any[w->depth] = false;
+    w->flat[w->depth] = flat || inherited;
+    w->depth++;
+}
+
+void mt_json_open(mt_json_writer *w, const char *name, char bracket)
+{
+    open_level(w, name, bracket, false);
+}
+
+void mt_json_open_flat(mt_json_writer *w, const char *name, char bracket)
+{
+    open_level(w, name, bracket, true);
+}
+
+void mt_json_close(mt_json_writer *w)
+{
+    if (w->misused || w->depth == 0) {
+        w->misused = true;
+        return;
+    }
+    w->depth--;
+    if (w->any[w->depth] && !w->flat[w->depth]) {
+        new_line(w);
+    }
+    mt_text_add_n(w->out, &w->close[w->depth], 1);
+    w->any[w->depth == 0 ? 0 : w->depth - 1] = true;
+}
+
+static void put_raw(mt_json_writer *w, const char *name, const char *value)
+{
+    if (begin_value(w, name)) {
+        mt_text_add(w->out, value);
+    }
+}
+
+void mt_json_put_number(mt_json_writer *w, const char *name, double value)
+{
+    char buffer[MT_JSON_NUMBER_SIZE];
+    put_raw(w, name, mt_json_format_number(value, buffer));
+}
+
+void mt_json_put_integer(mt_json_writer *w, const char *name, long long value)
+{
+    if (begin_value(w, name)) {
+        mt_text_addf(w->out, "%lld", value);
+    }
+}
+
+void mt_json_put_bool(mt_json_writer *w, const char *name, bool value)
+{
+    put_raw(w, name, value ? "true" : "false");
+}
+
+void mt_json_put_string(mt_json_writer *w, const char *name, const char *value)
+{
+    if (value == NULL) {
+        put_raw(w, name, "null");
+    } else if (begin_value(w, name)) {
+        put_text(w->out, value);
+    }
+}
+
+void mt_json_put_null(mt_json_writer *w, const char *name)
+{
+    put_raw(w, name, "null");
+}
+
+bool mt_json_done(mt_json_writer *w)
+{
+    if (w->depth != 0 || !w->any[0]) {
+        w->misused = true;
+    }
+    if (!w->misused) {
+        mt_text_add(w->out, "\n");
+    }
+    return !w->misused && !w->out->failed;
+}

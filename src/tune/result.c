@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tune/result.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+mt_status mt_result_new(mt_result **out, mt_err *err)
+{
+    *out = NULL;
+    mt_result *const result = calloc(1, sizeof *result);
+    if (result == NULL) {
+        return mt_fail_memory(err);
+    }
+    const mt_status rc = mt_arena_init(&result->mem, 0, err);
+    if (rc != MT_OK) {
+        free(result);
+        return rc;
+    }
+    result->status = MT_RESULT_INTERRUPTED;
+    result->baseline = mt_recommendation_default();
+    *out = result;
+    return MT_OK;
+}
+
+void mt_result_delete(mt_result *result)
+{
+    if (result != NULL) {
+        mt_arena_free(&result->mem);
+        free(result);
+    }
+}
+
+mt_recommendation mt_recommendation_default(void)
+{
+    return (mt_recommendation){
+        .score = nan(""),
+        .change = nan(""),
+        .misfit = nan(""),
+        .violation_percent = nan(""),
+        .kkt_residual = nan(""),
+    };
+}
+
+mt_result_frequency mt_result_frequency_default(void)
+{
+    return (mt_result_frequency){
+        .original_hz = nan(""),
+        .recommended_hz = nan(""),
+        .target_hz = nan(""),
+        .at_least_hz = nan(""),
+        .at_most_hz = nan(""),
+        .error_percent = nan(""),
+        .mac = nan(""),
+        .residual = nan(""),
+        .orthogonality = nan(""),
+    };
+}
+
+mt_result_published mt_result_published_default(void)
+{
+    return (mt_result_published){
+        .published = nan(""),
+        .computed = nan(""),
+        .difference = nan(""),
+        .difference_percent = nan(""),
+    };
+}
+
+#define NAME_CASE(id, name) \
+    case id:                \
+        return name;
+
+const char *mt_result_status_name(mt_result_status status)
+{
+    switch (status) {
+        MT_RESULT_STATUS_LIST(NAME_CASE)
+    case MT_RESULT_STATUS_COUNT:
+        break;
+    }
+    return "unknown";
+}

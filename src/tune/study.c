@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tune/study.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tune/result.h"
+
+enum { DEFAULT_RECOMMENDATIONS = 5, DEFAULT_SEED = 1 };
+
+/* A goal is met within this, in percent of the demand: far below what an engineer can build, far above rounding. */
+static const double DEFAULT_TOLERANCE_PERCENT = 1e-4;
+
+mt_status mt_study_new(mt_study **out, mt_err *err)
+{
+    *out = NULL;
+    mt_study *const study = calloc(1, sizeof *study);
+    if (study == NULL) {
+        return mt_fail_memory(err);
+    }
+    const mt_status rc = mt_arena_init(&study->mem, 0, err);
+    if (rc != MT_OK) {
+        free(study);
+        return rc;
+    }
+    study->recommendations = DEFAULT_RECOMMENDATIONS;
+    study->search.seed = DEFAULT_SEED;
+    *out = study;
+    return MT_OK;
+}
+
+void mt_study_delete(mt_study *study)
+{
+    if (study == NULL) {
+        return;
+    }
+    for (int i = 0; i < study->n_references; i++) {
+        mt_model *const model = study->references[i].model;
+        bool shared = model == study->model;
+        for (int j = i + 1; j < study->n_references; j++) {
+            shared = shared || study->references[j].model == model;
+        }
+        if (!shared) {
+            mt_model_delete(model);
+        }
+    }
+    mt_model_delete(study->model);
+    mt_arena_free(&study->mem);
+    free(study);
+}
+
+int mt_study_find_reference(const mt_study *study, const char *name)
+{
+    for (int i = 0; i < study->n_references; i++) {
+        if (strcmp(study->references[i].name.s, name) == 0) {
+            return i;
+        }
+    }
+    return MT_ABSENT;
+}
+
+static mt_mode_ref no_mode(mt_addr addr)
+{
+    return (mt_mode_ref){.named = MT_ABSENT, .addr = addr};
+}
+
+mt_variable mt_variable_default(mt_addr addr)
+{
+    return (mt_variable){
+        .parameter = MT_ABSENT,
+        .lower = nan(""),
+        .upper = nan(""),
+        .weight = 1.0,
+        .scale = nan(""),
+        .tolerance_percent = nan(""),
+        .original = nan(""),
+        .addr = addr,
+        .lower_addr = addr,
+        .upper_addr = addr,
+        .catalogue_addr = addr,
+        .weight_addr = addr,
+        .scale_addr = addr,
+        .tolerance_addr = addr,
+    };
+}
+
+mt_goal mt_goal_default(mt_goal_type type, mt_addr addr)
+{
+    return (mt_goal){
+        .type = type,
+        .mode = no_mode(addr),
+        .target_hz = nan(""),
+        .at_least = nan(""),
+        .at_most = nan(""),
+        .equals = nan(""),
+        .tolerance_percent = DEFAULT_TOLERANCE_PERCENT,
+        .weight = nan(""),
+        .reference = MT_ABSENT,
+        .addr = addr,
+        .target_addr = addr,
+        .at_least_addr = addr,
+        .at_most_addr = addr,
+        .equals_addr = addr,
+        .tolerance_addr = addr,
+        .weight_addr = addr,
+    };
+}
+
+mt_published mt_published_default(mt_published_kind kind, mt_addr addr)
+{
+    return (mt_published){
+        .kind = kind,
+        .parameter = MT_ABSENT,
+        .configuration = MT_ABSENT,
+        .mode = no_mode(addr),
+        .reference = MT_ABSENT,
+        .value = nan(""),
+        .tolerance = nan(""),
+        .tolerance_percent = nan(""),
+        .at_least = nan(""),
+        .at_most = nan(""),
+        .role = MT_ROLE_VERIFIES,
+        .addr = addr,
+        .status_addr = addr,
+        .value_addr = addr,
+        .tolerance_addr = addr,
+        .tolerance_percent_addr = addr,
+    };
+}
+
+#define NAME_CASE(id, name) \
+    case id:                \
+        return name;
+
+const char *mt_goal_type_name(mt_goal_type type)
+{
+    switch (type) {
+        MT_GOAL_LIST(NAME_CASE)
+    case MT_GOAL_TYPE_COUNT:
+        break;
+    }
+    return "unknown";
+}
+
+const char *mt_role_name(mt_role role)
+{
+    switch (role) {
+        MT_ROLE_LIST(NAME_CASE)
+    case MT_ROLE_COUNT:
+        break;
+    }
+    return "unknown";
+}
+
+const char *mt_published_kind_name(mt_published_kind kind)
+{
+    switch (kind) {
+        MT_PUBLISHED_LIST(NAME_CASE)
+    case MT_PUBLISHED_KIND_COUNT:
+        break;
+    }
+    return "unknown";
+}
+
+const char *const *mt_study_statuses(int *n)
+{
+    /* a study that was interrupted says nothing that could be published */
+#define STATUS_NAME(id, name) name,
+    static const char *const names[] = {MT_RESULT_STATUS_LIST(STATUS_NAME)};
+#undef STATUS_NAME
+    *n = MT_RESULT_INTERRUPTED;
+    return names;
+}
