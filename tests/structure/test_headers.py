@@ -10,6 +10,7 @@ from common import ROOT, c_files, verdict
 
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wundef", "-Werror", "-fsyntax-only"]
 C11 = [os.environ.get("CC", "cc"), "-x", "c", "-std=c11", "-Wstrict-prototypes"]
+PACKAGES = ["openblas", "lapacke", "nlopt", "gsl", "libcjson"]
 CXX17 = ["g++", "-x", "c++", "-std=c++17", "-Wold-style-cast"]
 
 
@@ -22,7 +23,7 @@ def compiles(command, folders, header):
 
 def check(root):
     public, internal = c_files(root / "include"), [p for p in c_files(root / "src") if p.suffix == ".h"]
-    third = shlex.split(subprocess.run(["pkg-config", "--cflags", "openblas", "lapacke"], check=True,
+    third = shlex.split(subprocess.run(["pkg-config", "--cflags", *PACKAGES], check=True,
                                        capture_output=True, text=True).stdout)
     problems = []
     for path in public:
@@ -32,7 +33,7 @@ def check(root):
             problems += [f"{name} as {command[3]}:\n{said}"] if said else []
     for path in internal:
         name = str(path.relative_to(root / "src"))
-        said = compiles(C11, [f"-I{root / 'include'}", f"-I{root / 'src'}", *third], name)
+        said = compiles(C11, ["-D_POSIX_C_SOURCE=200809L", f"-I{root / 'include'}", f"-I{root / 'src'}", *third], name)
         problems += [f"{name} as C11:\n{said}"] if said else []
     return len(public), problems
 

@@ -94,6 +94,20 @@ def check(root):
     return files, problems
 
 
+def documented(text):
+    """The table of CONTRIBUTING.md: {room: rooms it may include}."""
+    table = {}
+    for room, allowed in re.findall(r"^\| `(\w+)` \|[^|]*\|([^|]*)\|[^|]*\|$", text, re.M):
+        table[room] = set(ROOMS) if "everything" in allowed else set(re.findall(r"\w+", allowed)) & set(ROOMS)
+    return table
+
+
+def guide_problems(text):
+    table = documented(text)
+    return [f"CONTRIBUTING.md: room {room} may include {sorted(table.get(room, []))}, here {sorted(ALLOWED[room])}"
+            for room in ROOMS if table.get(room) != ALLOWED[room]]
+
+
 def self_test():
     """Every planted fault is found, and an empty tree is not a pass."""
     planted = [
@@ -131,6 +145,8 @@ def self_test():
         (copy / "src/base/zz_planted.c").write_text('#include "cli/cli.h"\n')
         if len(check(copy)[1]) != len(before) + 1:
             problems.append("self-test: a fault planted in a copy of this tree was not found")
+        if len(guide_problems("| `base` | promise | linalg | |")) != len(ROOMS):
+            problems.append("self-test: a guide that differs from the table was accepted")
         if check(Path(folder, "nothing"))[0] != 0:
             problems.append("self-test: an empty tree has files")
     return problems
@@ -138,4 +154,5 @@ def self_test():
 
 if __name__ == "__main__":
     count, faults = check(ROOT)
+    faults += guide_problems((ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"))
     verdict("includes", count, faults + self_test())
