@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Addresses to places and JSON pointers, diagnostics to text. */
+#include "io/json_priv.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    LINE_MAX_BYTES = 1000, /* a message is cut there */
+    INDEX_TEXT = 16
+};
+
+/* A place while walking through the text. */
+typedef struct cursor {
+    size_t offset;
+    int line;
+    int column;
+} cursor;
+
+static void advance(const mt_json *doc, cursor *at, size_t offset)
+{
+    const char *const s = doc->text;
+    for (; at->offset < offset && at->offset < doc->length; at->offset++) {
+        const char c = s[at->offset];
+        if (c == '\n' || (c == '\r' && s[at->offset + 1] != '\n')) {
+            at->line++;
+            at->column = 1;
+        } else if (((unsigned char)c & 0xC0U) != 0x80U) { /* 10xxxxxx continues a code point */
+            at->column++;
+        }
+    }
+}
+
+/* The node of an address; *name: the address means the member name in front of it. */
+static const mt_json_node *node_of(const mt_json *doc, mt_addr addr, bool *name)
+{
+    *name = addr >= doc->count;
+    const mt_addr index = *name ? addr - doc->count : addr;
+    return index >= 0 && index < doc->count ? &doc->nodes[index] : NULL;
+}
+
+static size_t offset_of(const mt_json *doc, mt_addr addr)
+{
+    bool name = false;
+    const mt_json_node *const node = node_of(doc, addr, &name);
+    return node == NULL ? 0 : name ? node->name : node->start;
+}
+
+void mt_json_place(const mt_json *doc, mt_addr addr, int *line, int *column)
+{
+    cursor at = {0, 1, 1};
+    advance(doc, &at, offset_of(doc, addr));
+    *line = at.line;
+    *column = at.column;
+}
+
+/* A member name as a pointer writes it: decoded where the values stand, else as in the source. */
+static void add_name(const mt_json *doc, const mt_json_node *node, mt_text *out)
+{
+    const char *s = node->item == NULL ? doc->text + node->name + 1 : node->item->string;
+    const bool in_source = node->item == NULL;
+    for (; *s != '\0' && !(in_source && (*s == '"' || *s == ':')); s++) {
+        if (in_source && *s == '\\' && s[1] != '\0') {
+            mt_text_add_n(out, s++, 1);
+        }
+        if (*s == '~' || *s == '/') {
+            mt_text_add(out, *s == '~' ? "~0" : "~1");
+        } else {
+            mt_text_add_n(out, s, 1);
+        }
+    }
+}
+
+static int index_among_siblings(const mt_json *doc, mt_addr value)
+{
+    int index = 0;
+    mt_addr at = doc->nodes[value].parent + 1;
+    /* syntax errors leave nodes of type 0 in front of the first item */
+    while (at < value && doc->nodes[at].type == 0) {
+        at++;
+    }
+    while (at != value && at != MT_NO_ADDR) {
+        at = doc->nodes[at].next;
+        index++;
+    }
+    return index;
+}
+
+void mt_json_pointer(const mt_json *doc, mt_addr addr, mt_text *out)
+{
+    bool name = false;
+    const mt_json_node *node = node_of(doc, addr, &name);
+    mt_addr path[MT_JSON_MAX_DEPTH + 1];
+    int depth = 0;
+    if (node == NULL) {
+        return;
+    }
+    const bool outer = name || node->type == 0;
+    mt_addr at = outer ? node->parent : (mt_addr)(node - doc->nodes);
+    for (; at > MT_JSON_ROOT && depth <= MT_JSON_MAX_DEPTH; at = doc->nodes[at].parent) {
+        path[depth++] = at;
+    }
+    while (depth > 0) {
+        at = path[--depth];
+        node = &doc->nodes[at];
+        mt_text_add(out, "/");
+        if (node->name != 0) {
+            add_name(doc, node, out);
+        } else {
+            mt_text_addf(out, "%d", index_among_siblings(doc, at));
+        }
+    }
+}
+
+typedef struct entry {
+    long long offset; /* -1: no place */
+    int index;
+} entry;
+
+static int compare_entries(const void *a, const void *b)
+{
+    const entry *const x = a;
+    const entry *const y = b;
+    if (x->offset != y->offset) {
+        return x->offset < y->offset ? -1 : 1;
+    }
+    return (x->index > y->index) - (x->index < y->index);
+}
+
+/* Text with control characters (C0, DEL, C1) made visible, cut at a character boundary. */
+static void add_visible(const char *text, mt_text *out)
+{
+    const size_t length = strlen(text);
+    size_t end = length;
+    if (length > LINE_MAX_BYTES) {
+        end = LINE_MAX_BYTES;
+        while (end > 0 && ((unsigned char)text[end] & 0xC0U) == 0x80U) {
+            end--;
+        }
+    }
+    for (size_t i = 0; i < end; i++) {
+        const unsigned char c = (unsigned char)text[i];
+        const unsigned char second = (unsigned char)text[i + 1];
+        if (c < ' ' || c == 0x7FU) {
+            mt_text_addf(out, "\\u%04x", (unsigned)c);
+        } else if (c == 0xC2U && second >= 0x80U && second < 0xA0U) {
+            mt_text_addf(out, "\\u%04x", (unsigned)second);
+            i++;
+        } else {
+            mt_text_add_n(out, text + i, 1);
+        }
+    }
+    if (end < length) {
+        mt_text_add(out, "...");
+    }
+}
+
+static void print_one(const mt_json *doc, const char *file, const mt_diag *diag, cursor *at,
+                      mt_text *out)
+{
+    mt_text pointer = {0};
+    mt_text_add(out, file);
+    if (diag->addr != MT_NO_ADDR) {
+        advance(doc, at, offset_of(doc, diag->addr));
+        mt_text_addf(out, ":%d:%d", at->line, at->column);
+        mt_json_pointer(doc, diag->addr, &pointer);
+    }
+    mt_text_add(out, diag->severity == MT_SEV_ERROR ? ": error: " : ": warning: ");
+    if (pointer.s != NULL) {
+        add_visible(pointer.s, out);
+        mt_text_add(out, ": ");
+    }
+    add_visible(diag->text, out);
+    mt_text_add(out, "\n");
+    out->failed = out->failed || pointer.failed;
+    mt_text_free(&pointer);
+}
+
+void mt_json_print(const mt_json *doc, const char *file, mt_text *out)
+{
+    const mt_diags *const diags = &doc->diags;
+    entry order[MT_DIAG_LIMIT];
+    int n = 0;
+    for (; n < diags->count && n < MT_DIAG_LIMIT; n++) {
+        const mt_addr addr = diags->items[n].addr;
+        order[n] = (entry){addr == MT_NO_ADDR ? -1 : (long long)offset_of(doc, addr), n};
+    }
+    qsort(order, (size_t)n, sizeof order[0], compare_entries);
+    cursor at = {0, 1, 1};
+    for (int i = 0; i < n; i++) {
+        print_one(doc, file, &diags->items[order[i].index], &at, out);
+    }
+    const int more = diags->errors + diags->warnings - n;
+    if (more > 0) {
+        mt_text_addf(out, "%s: %d more not shown\n", file, more);
+    }
+}

@@ -1,0 +1,302 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "io/reader.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+static const char *const KEY_TEXTS[] = {
+#define MT_KEY_TYPE_TEXT(id, types, text) text,
+    MT_KEY_TYPE_LIST(MT_KEY_TYPE_TEXT)
+#undef MT_KEY_TYPE_TEXT
+};
+static const int KEY_JSON_TYPES[] = {
+#define MT_KEY_TYPE_BITS(id, types, text) (types),
+    MT_KEY_TYPE_LIST(MT_KEY_TYPE_BITS)
+#undef MT_KEY_TYPE_BITS
+};
+
+bool mt_reader_type(mt_reader *r, mt_addr value, mt_key_type type)
+{
+    if (value == MT_NO_ADDR) {
+        return false;
+    }
+    const mt_json_type is = mt_json_type_of(r->doc, value);
+    if (((int)is & KEY_JSON_TYPES[type]) != 0) {
+        return true;
+    }
+    mt_diag_structure(r->diags, value, "must be %s, not %s", KEY_TEXTS[type],
+                      mt_json_type_text(is));
+    return false;
+}
+
+static void unknown_member(mt_reader *r, mt_addr member, const mt_key_table *table)
+{
+    const char *names[MT_MAX_KEYS];
+    for (int i = 0; i < table->n; i++) {
+        names[i] = table->keys[i].name;
+    }
+    const char *const name = mt_json_name(r->doc, member);
+    const char *const near = mt_text_nearest(name, names, table->n);
+    const mt_addr at = mt_json_name_addr(r->doc, member);
+    if (near != NULL) {
+        mt_diag_structure(r->diags, at, "unknown member \"%s\"; did you mean \"%s\"?", name,
+                          near);
+    } else {
+        mt_diag_structure(r->diags, at, "unknown member \"%s\"", name);
+    }
+}
+
+static int find_key(const mt_key_table *table, const char *name)
+{
+    for (int i = 0; i < table->n; i++) {
+        if (strcmp(table->keys[i].name, name) == 0) {
+            return i;
+        }
+    }
+    return MT_ABSENT;
+}
+
+bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt_addr *found)
+{
+    bool seen[MT_MAX_KEYS] = {false};
+    for (int i = 0; i < table->n; i++) {
+        found[i] = MT_NO_ADDR;
+    }
+    if (!mt_reader_type(r, value, MT_KEY_OBJECT)) {
+        return false;
+    }
+    for (mt_addr m = mt_json_first(r->doc, value); m != MT_NO_ADDR;
+         m = mt_json_next(r->doc, m)) {
+        const int k = find_key(table, mt_json_name(r->doc, m));
+        if (k == MT_ABSENT) {
+            unknown_member(r, m, table);
+        } else if (!seen[k]) { /* a second one has been noted as given twice */
+            seen[k] = true;
+            found[k] = mt_reader_type(r, m, table->keys[k].type) ? m : MT_NO_ADDR;
+        }
+    }
+    for (int i = 0; i < table->n; i++) {
+        if (table->keys[i].required && !seen[i]) {
+            mt_diag_structure(r->diags, value, "member \"%s\" is missing", table->keys[i].name);
+        }
+    }
+    return true;
+}
+
+const char *mt_reader_text(mt_reader *r, mt_addr value)
+{
+    if (!mt_reader_type(r, value, MT_KEY_TEXT)) {
+        return NULL;
+    }
+    const char *const copy = mt_arena_strdup(r->mem, mt_json_string(r->doc, value));
+    r->out_of_memory = r->out_of_memory || copy == NULL;
+    return copy;
+}
+
+mt_name mt_reader_ref(mt_reader *r, mt_addr value)
+{
+    return (mt_name){.s = mt_reader_text(r, value), .addr = value};
+}
+
+static bool is_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+static bool has_form(const char *s, mt_name_form form)
+{
+    if (form == MT_NAME_TITLE) {
+        return *s != '\0';
+    }
+    if (!is_letter(*s)) {
+        return false;
+    }
+    for (s++; *s != '\0'; s++) {
+        const bool digit = *s >= '0' && *s <= '9';
+        const bool sign = form == MT_NAME_ITEM && (*s == '+' || *s == '-');
+        if (!is_letter(*s) && !digit && !sign) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void check_form(mt_reader *r, mt_addr at, const char *s, mt_name_form form)
+{
+    if (has_form(s, form)) {
+        return;
+    }
+    if (form == MT_NAME_TITLE || *s == '\0') {
+        mt_diag_structure(r->diags, at, "a name must not be empty");
+    } else if (form == MT_NAME_PARAMETER) {
+        mt_diag_structure(r->diags, at,
+                          "\"%s\" is no name: a letter or _, then letters, digits and _", s);
+    } else {
+        mt_diag_structure(r->diags, at,
+                          "\"%s\" is no name: a letter or _, then letters, digits, _, + and -",
+                          s);
+    }
+}
+
+mt_name mt_reader_name(mt_reader *r, mt_addr value)
+{
+    const mt_name name = mt_reader_ref(r, value);
+    if (name.s != NULL) {
+        check_form(r, value, name.s, MT_NAME_ITEM);
+    }
+    return name;
+}
+
+mt_name mt_reader_member_name(mt_reader *r, mt_addr value, mt_name_form form)
+{
+    const char *const s = mt_json_name(r->doc, value);
+    const mt_addr at = mt_json_name_addr(r->doc, value);
+    if (s == NULL) {
+        return (mt_name){.s = NULL, .addr = value};
+    }
+    check_form(r, at, s, form);
+    const mt_name name = {.s = mt_arena_strdup(r->mem, s), .addr = at};
+    r->out_of_memory = r->out_of_memory || name.s == NULL;
+    return name;
+}
+
+mt_name_list mt_reader_refs(mt_reader *r, mt_addr value)
+{
+    mt_name_list list = {0};
+    if (!mt_reader_type(r, value, MT_KEY_LIST)) {
+        return list;
+    }
+    const int n = mt_json_count(r->doc, value);
+    list.items = mt_arena_alloc(r->mem, (size_t)n, sizeof *list.items);
+    if (list.items == NULL) {
+        r->out_of_memory = true;
+        return list;
+    }
+    for (mt_addr m = mt_json_first(r->doc, value); m != MT_NO_ADDR;
+         m = mt_json_next(r->doc, m)) {
+        const mt_name name = mt_reader_ref(r, m);
+        if (name.s != NULL) {
+            list.items[list.count++] = name;
+        }
+    }
+    return list;
+}
+
+/* "a, b, c" in the reader's arena. */
+static const char *joined(mt_reader *r, const char *const *names, int n)
+{
+    const char *text = "";
+    for (int i = 0; i < n && text != NULL; i++) {
+        text = mt_arena_printf(r->mem, "%s%s%s", text, i == 0 ? "" : ", ", names[i]);
+    }
+    r->out_of_memory = r->out_of_memory || text == NULL;
+    return text == NULL ? "" : text;
+}
+
+int mt_reader_choice(mt_reader *r, mt_addr value, const char *what, const char *const *names,
+                     int n)
+{
+    if (!mt_reader_type(r, value, MT_KEY_TEXT)) {
+        return MT_ABSENT;
+    }
+    const char *const s = mt_json_string(r->doc, value);
+    for (int i = 0; i < n; i++) {
+        if (strcmp(names[i], s) == 0) {
+            return i;
+        }
+    }
+    const char *const near = mt_text_nearest(s, names, n);
+    if (near != NULL) {
+        mt_diag_structure(r->diags, value, "unknown %s \"%s\"; did you mean \"%s\"?", what, s,
+                          near);
+    } else {
+        mt_diag_structure(r->diags, value, "unknown %s \"%s\" (known: %s)", what, s,
+                          joined(r, names, n));
+    }
+    return MT_ABSENT;
+}
+
+int mt_reader_count(mt_reader *r, mt_addr value, int least, int most, int fallback)
+{
+    if (!mt_reader_type(r, value, MT_KEY_COUNT)) {
+        return fallback;
+    }
+    const double number = mt_json_number(r->doc, value);
+    if (number == floor(number) && number >= (double)least && number <= (double)most) {
+        return (int)number;
+    }
+    if (most == INT_MAX) {
+        mt_diag_structure(r->diags, value, "must be a whole number, %d or more", least);
+    } else {
+        mt_diag_structure(r->diags, value, "must be a whole number from %d to %d", least, most);
+    }
+    return fallback;
+}
+
+bool mt_reader_flag(mt_reader *r, mt_addr value, bool fallback)
+{
+    return mt_reader_type(r, value, MT_KEY_BOOL) ? mt_json_bool(r->doc, value) : fallback;
+}
+
+bool mt_reader_expr_text(mt_reader *r, mt_addr addr, const char *text, mt_expr *out)
+{
+    mt_err err = {MT_OK, ""};
+    const mt_status rc =
+        mt_expr_parse(text, r->lookup, r->context, r->names, r->n_names, r->mem, out, &err);
+    if (rc == MT_OK) {
+        return true;
+    }
+    *out = (mt_expr){0};
+    if (rc == MT_E_MEMORY) {
+        r->out_of_memory = true;
+    } else {
+        mt_diag_error(r->diags, addr, "%s", err.text);
+    }
+    return false;
+}
+
+bool mt_reader_expr(mt_reader *r, mt_addr value, mt_expr *out)
+{
+    *out = (mt_expr){0};
+    if (!mt_reader_type(r, value, MT_KEY_NUMBER)) {
+        return false;
+    }
+    if (mt_json_type_of(r->doc, value) == MT_JSON_STRING) {
+        return mt_reader_expr_text(r, value, mt_json_string(r->doc, value), out);
+    }
+    if (mt_expr_number(mt_json_number(r->doc, value), r->mem, out, NULL) != MT_OK) {
+        *out = (mt_expr){0};
+        r->out_of_memory = true;
+        return false;
+    }
+    return true;
+}
+
+mt_status mt_reader_status(const mt_reader *r, const char *file, mt_err *err)
+{
+    if (r->out_of_memory || r->diags->out_of_memory) {
+        return mt_fail_memory(err);
+    }
+    if (r->diags->errors == 0) {
+        return MT_OK;
+    }
+    mt_text text = {0};
+    mt_json_print(r->doc, file, &text);
+    if (text.failed) {
+        mt_text_free(&text);
+        return mt_fail_memory(err);
+    }
+    /* the first error: warnings may stand before it */
+    const char *line = text.s == NULL ? "" : text.s;
+    while (strchr(line, '\n') != NULL && strstr(line, ": error: ") > strchr(line, '\n')) {
+        line = strchr(line, '\n') + 1;
+    }
+    const int length = (int)strcspn(line, "\n");
+    const int more = r->diags->errors - 1;
+    const mt_status rc =
+        more == 0 ? mt_fail(err, MT_E_INPUT, "%.*s", length, line)
+                  : mt_fail(err, MT_E_INPUT, "%.*s (and %d more)", length, line, more);
+    mt_text_free(&text);
+    return rc;
+}
