@@ -72,8 +72,9 @@ bool mt_expr_reserved(const char *name);
 const char *const *mt_expr_names(int *n);
 /* Parse text. Fails MT_E_INPUT with "at character 7: unknown name \"K_T9\"; did you mean \"K_T8\"?" (names gives the candidates, may be
  * NULL), MT_E_MEMORY. */
-mt_status mt_expr_parse(const char *text, mt_expr_lookup lookup, const void *context, const char *const *names, int n_names,
-                        mt_arena *mem, mt_expr *out, mt_err *err);
+mt_status mt_expr_parse(const char *text, mt_expr_lookup lookup, const void *context,
+                        const char *const *names, int n_names, mt_arena *mem, mt_expr *out,
+                        mt_err *err);
 /* The expression that is one number. */
 mt_status mt_expr_number(double value, mt_arena *mem, mt_expr *out, mt_err *err);
 /* A constant expression (no parameters)? Then *value. */

@@ -2,6 +2,8 @@
 #ifndef EXPR_PROGRAM_H
 #define EXPR_PROGRAM_H
 
+#include <stdint.h>
+
 #include "expr/expr.h"
 
 /*
@@ -30,7 +32,10 @@ typedef struct mt_program {
     int n_inputs;
     int *table; /* hash table of nodes, for sharing */
     int table_size;
-    bool *active;      /* [count] depends on some input; made by finish */
+    bool *active; /* [count] depends on some input; made by finish */
+    uint64_t
+        *inputs_of; /* [count * words] set of inputs that each node depends on, 64 to a word */
+    int words;
     int *active_nodes; /* the active ones in order */
     int n_active;
     bool out_of_memory; /* set while building; finish turns it into MT_E_MEMORY */
@@ -57,15 +62,18 @@ bool mt_program_is_constant(const mt_program *p, mt_node node);
 void mt_program_depends(const mt_program *p, mt_node node, bool *depends);
 
 /* value[count]: values of all nodes at inputs[n_inputs]. No heap. Fails MT_E_DOMAIN (a value is not finite), *bad (may be NULL) the node. */
-mt_status mt_program_eval(const mt_program *p, const double *inputs, double *value, mt_node *bad, mt_err *err);
+mt_status mt_program_eval(const mt_program *p, const double *inputs, double *value,
+                          mt_node *bad, mt_err *err);
 /* Values and gradient: grad[node * n_inputs + i] = d value[node] / d inputs[i]. abs, min, max take a one-sided value at a kink (that of
  * the first operand). Fails MT_E_DOMAIN also where a derivative is not finite. */
-mt_status mt_program_gradient(const mt_program *p, const double *inputs, double *value, double *grad, mt_node *bad, mt_err *err);
+mt_status mt_program_gradient(const mt_program *p, const double *inputs, double *value,
+                              double *grad, mt_node *bad, mt_err *err);
 /* Interval enclosures: for all inputs within [lower, upper], lo[node] <= value[node] <= hi[node], proven (outward rounding). Where
  * nothing is known (division by an interval around zero, leaving a domain) -inf/+inf. lo, hi [count]. */
-void mt_program_interval(const mt_program *p, const double *lower, const double *upper, double *lo, double *hi);
+void mt_program_interval(const mt_program *p, const double *lower, const double *upper,
+                         double *lo, double *hi);
 /* Enclosures of the derivatives of all nodes over the box, forward mode: dlo, dhi [count * n_inputs]; lo, hi as above. */
-void mt_program_interval_gradient(const mt_program *p, const double *lower, const double *upper, double *lo, double *hi,
-                                  double *dlo, double *dhi);
+void mt_program_interval_gradient(const mt_program *p, const double *lower, const double *upper,
+                                  double *lo, double *hi, double *dlo, double *dhi);
 
 #endif

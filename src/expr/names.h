@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef EXPR_NAMES_H
+#define EXPR_NAMES_H
+
+#include "expr/expr.h"
+
+/* The functions and constants of the expression language by name (length bytes); false: no such. */
+bool mt_expr_find_function(const char *name, size_t length, mt_op *op);
+bool mt_expr_find_constant(const char *name, size_t length, double *value);
+
+#endif

@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Building a program. A node is known by (op, operands, input, value): the hash table gives the node
+ * that is already there. Operations on constants are carried out at once where the result is finite;
+ * where it is not, the node stays, so that evaluation reports it with its address.
+ *
+ * Simplifications keep every value of the program (up to the sign of zero), and since a node that is
+ * no longer used is still evaluated, they hide no domain error either:
+ *   x + 0 = x - 0 = x * 1 = x / 1 = x ^ 1 = x,   x * 0 = x - x = 0,   x ^ 0 = 1,   -(-x) = x
+ * Operands of + and * are put in order, so that a + b and b + a are one node.
+ */
+#include "expr/program.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#include "expr/op.h"
+
+enum { FIRST_TABLE_SIZE = 64, BITS = 64 };
+
+mt_status mt_program_init(mt_program *p, int n_inputs, mt_arena *mem, mt_err *err)
+{
+    *p = (mt_program){.mem = mem, .n_inputs = n_inputs};
+    p->table = mt_arena_int(mem, FIRST_TABLE_SIZE);
+    if (p->table == NULL) {
+        return mt_fail_memory(err);
+    }
+    p->table_size = FIRST_TABLE_SIZE;
+    return MT_OK;
+}
+
+static uint64_t value_bits(double value)
+{
+    uint64_t bits = 0;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+/* Multiply and rotate; any odd multiplier with well mixed bits does, this one is 2^64 / golden ratio. */
+static uint64_t mix(uint64_t hash, uint64_t word)
+{
+    hash = (hash ^ word) * UINT64_C(0x9E3779B97F4A7C15);
+    return hash ^ (hash >> 29);
+}
+
+static uint64_t node_hash(const mt_program_node *n)
+{
+    uint64_t h = mix(1, (uint64_t)n->op);
+    h = mix(h, (uint32_t)n->a);
+    h = mix(h, (uint32_t)n->b);
+    h = mix(h, (uint32_t)n->input);
+    return mix(h, value_bits(n->value));
+}
+
+static bool node_equal(const mt_program_node *m, const mt_program_node *n)
+{
+    return m->op == n->op && m->a == n->a && m->b == n->b && m->input == n->input &&
+           value_bits(m->value) == value_bits(n->value);
+}
+
+/* The place of the node in the table (entries are node + 1, 0 is free): its own or the free one. */
+static int table_slot(const mt_program *p, const mt_program_node *n)
+{
+    const uint64_t mask = (uint64_t)p->table_size - 1; /* the size is a power of two */
+    uint64_t slot = node_hash(n) & mask;
+    while (p->table[slot] != 0 && !node_equal(&p->nodes[p->table[slot] - 1], n)) {
+        slot = (slot + 1) & mask;
+    }
+    return (int)slot;
+}
+
+/* Keep the table at most half full. */
+static bool table_reserve(mt_program *p)
+{
+    if (p->count < p->table_size / 2) {
+        return true;
+    }
+    int *const table =
+        p->table_size > INT_MAX / 4 ? NULL : mt_arena_int(p->mem, 2 * (size_t)p->table_size);
+    if (table == NULL) {
+        return false;
+    }
+    p->table = table;
+    p->table_size *= 2;
+    for (int i = 0; i < p->count; i++) {
+        p->table[table_slot(p, &p->nodes[i])] = i + 1;
+    }
+    return true;
+}
+
+static mt_node intern(mt_program *p, const mt_program_node *n)
+{
+    if (p->out_of_memory) {
+        return MT_NO_NODE;
+    }
+    const int slot = table_slot(p, n);
+    if (p->table[slot] != 0) {
+        return p->table[slot] - 1;
+    }
+    mt_program_node *const nodes =
+        mt_arena_grow(p->mem, p->nodes, p->count, &p->capacity, sizeof *nodes);
+    if (nodes == NULL) {
+        p->out_of_memory = true;
+        return MT_NO_NODE;
+    }
+    p->nodes = nodes;
+    p->nodes[p->count] = *n;
+    p->table[slot] = ++p->count;
+    if (!table_reserve(p)) {
+        p->out_of_memory = true;
+        return MT_NO_NODE;
+    }
+    return p->count - 1;
+}
+
+mt_node mt_program_const(mt_program *p, double value)
+{
+    const mt_program_node n = {.op = MT_OP_CONST,
+                               .a = MT_NO_NODE,
+                               .b = MT_NO_NODE,
+                               .input = -1,
+                               .value = value,
+                               .addr = MT_NO_ADDR};
+    return intern(p, &n);
+}
+
+mt_node mt_program_input(mt_program *p, int input, mt_addr addr)
+{
+    const mt_program_node n = {
+        .op = MT_OP_PARAM, .a = MT_NO_NODE, .b = MT_NO_NODE, .input = input, .addr = addr};
+    return intern(p, &n);
+}
+
+/* Is the node the constant `value`? */
+static bool is_value(const mt_program *p, mt_node node, double value)
+{
+    return p->nodes[node].op == MT_OP_CONST && p->nodes[node].value == value;
+}
+
+static mt_node operation(mt_program *p, mt_op op, mt_node a, mt_node b, mt_addr addr)
+{
+    const mt_program_node *const na = &p->nodes[a];
+    const mt_program_node *const nb = b == MT_NO_NODE ? na : &p->nodes[b];
+    if (na->op == MT_OP_CONST && nb->op == MT_OP_CONST) {
+        const double value = mt_op_value(op, na->value, nb->value);
+        if (isfinite(value)) {
+            return mt_program_const(p, value);
+        }
+    }
+    const mt_program_node n = {.op = op, .a = a, .b = b, .input = -1, .addr = addr};
+    return intern(p, &n);
+}
+
+mt_node mt_program_unary(mt_program *p, mt_op op, mt_node a, mt_addr addr)
+{
+    if (a == MT_NO_NODE) {
+        return MT_NO_NODE;
+    }
+    if (op == MT_OP_NEG && p->nodes[a].op == MT_OP_NEG) {
+        return p->nodes[a].a;
+    }
+    return operation(p, op, a, MT_NO_NODE, addr);
+}
+
+/* The node that op(a, b) simplifies to; MT_NO_NODE: it does not. */
+static mt_node simplified(mt_program *p, mt_op op, mt_node a, mt_node b)
+{
+    const bool b_zero = is_value(p, b, 0.0);
+    const bool b_one = is_value(p, b, 1.0);
+    if ((op == MT_OP_ADD || op == MT_OP_SUB) && b_zero) {
+        return a;
+    }
+    if ((op == MT_OP_MUL || op == MT_OP_DIV || op == MT_OP_POW) && b_one) {
+        return a;
+    }
+    if (op == MT_OP_MUL && b_zero) {
+        return b;
+    }
+    if (op == MT_OP_SUB && a == b) {
+        return mt_program_const(p, 0.0);
+    }
+    if (op == MT_OP_POW && b_zero) {
+        return mt_program_const(p, 1.0);
+    }
+    return MT_NO_NODE;
+}
+
+mt_node mt_program_binary(mt_program *p, mt_op op, mt_node a, mt_node b, mt_addr addr)
+{
+    if (a == MT_NO_NODE || b == MT_NO_NODE) {
+        return MT_NO_NODE;
+    }
+    if (op == MT_OP_ADD || op == MT_OP_MUL) {
+        /* constants last, where `simplified` looks for them */
+        const bool a_const = p->nodes[a].op == MT_OP_CONST;
+        const bool b_const = p->nodes[b].op == MT_OP_CONST;
+        if (a_const != b_const ? a_const : a > b) {
+            const mt_node swap = a;
+            a = b;
+            b = swap;
+        }
+    }
+    const mt_node simple = simplified(p, op, a, b);
+    return simple != MT_NO_NODE ? simple : operation(p, op, a, b, addr);
+}
+
+mt_node mt_program_expr(mt_program *p, const mt_expr *e, const mt_node *params, mt_addr addr)
+{
+    mt_node stack[MT_EXPR_MAX_CODE] = {0};
+    int top = 0;
+    for (int i = 0; i < e->length; i++) {
+        const mt_code c = e->code[i];
+        const int operands = mt_op_operands(c.op);
+        mt_node node = MT_NO_NODE;
+        if (operands == 2) {
+            node = mt_program_binary(p, c.op, stack[top - 2], stack[top - 1], addr);
+        } else if (operands == 1) {
+            node = mt_program_unary(p, c.op, stack[top - 1], addr);
+        } else {
+            node = c.op == MT_OP_PARAM ? params[c.param] : mt_program_const(p, c.value);
+        }
+        top -= operands;
+        stack[top++] = node;
+    }
+    return top == 1 ? stack[0] : MT_NO_NODE;
+}
+
+mt_node mt_program_add(mt_program *p, mt_node a, mt_node b)
+{
+    return mt_program_binary(p, MT_OP_ADD, a, b, MT_NO_ADDR);
+}
+
+mt_node mt_program_sub(mt_program *p, mt_node a, mt_node b)
+{
+    return mt_program_binary(p, MT_OP_SUB, a, b, MT_NO_ADDR);
+}
+
+mt_node mt_program_mul(mt_program *p, mt_node a, mt_node b)
+{
+    return mt_program_binary(p, MT_OP_MUL, a, b, MT_NO_ADDR);
+}
+
+mt_node mt_program_div(mt_program *p, mt_node a, mt_node b)
+{
+    return mt_program_binary(p, MT_OP_DIV, a, b, MT_NO_ADDR);
+}
+
+/* Set of inputs of node i: its own, or the union of those of its operands. */
+static void collect_inputs(mt_program *p, int i)
+{
+    const mt_program_node *const n = &p->nodes[i];
+    uint64_t *const set = p->inputs_of + (size_t)i * (size_t)p->words;
+    if (n->op == MT_OP_PARAM) {
+        set[n->input / BITS] |= UINT64_C(1) << (n->input % BITS);
+        p->active[i] = true;
+        return;
+    }
+    const mt_node operands[2] = {n->a, n->b};
+    for (int k = 0; k < 2; k++) {
+        if (operands[k] == MT_NO_NODE) {
+            continue;
+        }
+        const uint64_t *const from = p->inputs_of + (size_t)operands[k] * (size_t)p->words;
+        for (int w = 0; w < p->words; w++) {
+            set[w] |= from[w];
+        }
+        p->active[i] = p->active[i] || p->active[operands[k]];
+    }
+}
+
+mt_status mt_program_finish(mt_program *p, mt_err *err)
+{
+    const size_t count = (size_t)p->count;
+    p->words = p->n_inputs / BITS + 1;
+    p->active = mt_arena_alloc(p->mem, count, sizeof *p->active);
+    p->active_nodes = mt_arena_int(p->mem, count);
+    p->inputs_of = mt_arena_alloc(p->mem, count, (size_t)p->words * sizeof *p->inputs_of);
+    if (p->out_of_memory || p->active == NULL || p->active_nodes == NULL ||
+        p->inputs_of == NULL) {
+        return mt_fail_memory(err);
+    }
+    p->n_active = 0;
+    for (int i = 0; i < p->count; i++) {
+        collect_inputs(p, i);
+        if (p->active[i]) {
+            p->active_nodes[p->n_active++] = i;
+        }
+    }
+    return MT_OK;
+}
+
+bool mt_program_is_constant(const mt_program *p, mt_node node)
+{
+    return !p->active[node];
+}
+
+void mt_program_depends(const mt_program *p, mt_node node, bool *depends)
+{
+    const uint64_t *const set = p->inputs_of + (size_t)node * (size_t)p->words;
+    for (int i = 0; i < p->n_inputs; i++) {
+        depends[i] = ((set[i / BITS] >> (i % BITS)) & 1U) != 0;
+    }
+}
