@@ -25,13 +25,14 @@ static void arena__memory_is_aligned_zeroed_and_apart(mt_test *t)
     for (int i = 0; i < MT_COUNT(sizes); i++) {
         mt_test_row(t, "%zu bytes", sizes[i]);
         got[i] = mt_arena_alloc(&a, sizes[i], 1);
-        if (CHECK(t, got[i] != NULL)) {
+        CHECK(t, got[i] != NULL);
+        if (got[i] != NULL) {
             CHECK(t, (uintptr_t)got[i] % MT_ALIGN == 0);
             CHECK(t, all_zero(got[i], sizes[i]));
             memset(got[i], 0x40 + i, sizes[i]);
         }
     }
-    for (int i = 0; i < MT_COUNT(sizes); i++) {
+    for (int i = 0; i < MT_COUNT(sizes) && got[i] != NULL; i++) {
         mt_test_row(t, "%zu bytes are still theirs", sizes[i]);
         CHECK_INT(t, got[i][0], 0x40 + i);
         CHECK_INT(t, got[i][sizes[i] - 1], 0x40 + i);
