@@ -4,9 +4,12 @@
 
 #include "base/text.h"
 #include "model/model.h"
+#include "tune/result.h"
+#include "tune/study.h"
 
 typedef struct mt_io_options {
-    const char *root; /* folder that files named by other files must lie in; NULL: for a study the parent of its folder, for a
+    const char *
+        root; /* folder that files named by other files must lie in; NULL: for a study the parent of its folder, for a
                          model no limit */
     size_t max_bytes; /* of one file; 0: MT_JSON_MAX_BYTES */
 } mt_io_options;
@@ -18,7 +21,29 @@ typedef struct mt_io_options {
  * @param[out] messages  every diagnostic, warnings included, is appended as text (mt_json_print); may be NULL
  * Fails: MT_E_INPUT (err: the first diagnostic), MT_E_SYSTEM, MT_E_MEMORY.
  */
-mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **out, mt_text *messages,
-                        mt_err *err);
+mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **out,
+                        mt_text *messages, mt_err *err);
+
+/**
+ * Read, resolve and check a study file (format "modetune-study/1") with the models that it names.
+ * @param[in]  opt       NULL: defaults; the models must lie beneath root
+ * @param[out] out       the study, owned by the caller (mt_study_delete), models included; NULL on failure
+ * @param[out] messages  the diagnostics of the study, then those of the models, are appended; may be NULL
+ * Every problem is reported, whichever file it is in. Fails: MT_E_INPUT (err: the first; a model that is not there counts as one of the
+ * study's problems), MT_E_SYSTEM (the study itself cannot be read), MT_E_MEMORY.
+ */
+mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **out,
+                        mt_text *messages, mt_err *err);
+
+/* Append a result as JSON (format "modetune-result/1"): the same result gives the same bytes. Fails: MT_E_MEMORY. */
+mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err);
+
+/**
+ * Read back from a result file what `apply` needs: status, names and files of study and model, inputs, and of every recommendation
+ * rank, feasibility, grade, score, change, violation and parameters. What else the file holds is left alone.
+ * Owned by the caller (mt_result_delete). Fails: MT_E_INPUT, MT_E_SYSTEM, MT_E_MEMORY; messages as for mt_study_load.
+ */
+mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result **out,
+                         mt_text *messages, mt_err *err);
 
 #endif

@@ -1,0 +1,335 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "io/read_study.h"
+
+#include "io/read_study_priv.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/file.h"
+#include "model/values.h"
+
+#define STUDY_KEYS(X)                                                \
+    X(STUDY_SCHEMA, "$schema", MT_KEY_TEXT, false)                   \
+    X(STUDY_FORMAT, "format", MT_KEY_TEXT, true)                     \
+    X(STUDY_NAME, "name", MT_KEY_TEXT, false)                        \
+    X(STUDY_DESCRIPTION, "description", MT_KEY_TEXT, false)          \
+    X(STUDY_SOURCE, "source", MT_KEY_TEXT, false)                    \
+    X(STUDY_MODEL, "model", MT_KEY_TEXT, true)                       \
+    X(STUDY_VARIABLES, "variables", MT_KEY_LIST, false)              \
+    X(STUDY_GOALS, "goals", MT_KEY_LIST, false)                      \
+    X(STUDY_OBJECTIVE, "objective", MT_KEY_OBJECT_OR_LIST, false)    \
+    X(STUDY_REFERENCES, "references", MT_KEY_OBJECT, false)          \
+    X(STUDY_RECOMMENDATIONS, "recommendations", MT_KEY_COUNT, false) \
+    X(STUDY_SEARCH, "search", MT_KEY_OBJECT, false)                  \
+    X(STUDY_PUBLISHED, "published", MT_KEY_LIST, false)
+enum { STUDY_KEYS(MT_STUDY_KEY_ENUM) STUDY_KEY_COUNT };
+static const mt_key KEYS[] = {STUDY_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_keys = {"", KEYS, STUDY_KEY_COUNT};
+
+#define SEARCH_KEYS(X)                                                \
+    X(SEARCH_SEED, "seed", MT_KEY_COUNT, false)                       \
+    X(SEARCH_STARTS, "starts", MT_KEY_COUNT, false)                   \
+    X(SEARCH_MAX_EVALUATIONS, "max_evaluations", MT_KEY_COUNT, false) \
+    X(SEARCH_DESCRIPTION, "description", MT_KEY_TEXT, false)          \
+    X(SEARCH_SOURCE, "source", MT_KEY_TEXT, false)
+enum { SEARCH_KEYS(MT_STUDY_KEY_ENUM) SEARCH_KEY_COUNT };
+static const mt_key SEARCH[] = {SEARCH_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_search_keys = {"search", SEARCH, SEARCH_KEY_COUNT};
+
+enum { MAX_RECOMMENDATIONS = 1000, MAX_STARTS = 100000 };
+
+const mt_key_table *const *mt_study_key_tables(int *n)
+{
+    static const mt_key_table *const tables[] = {
+        &mt_study_keys,
+        &mt_study_search_keys,
+        &mt_study_variable_keys,
+        &mt_study_reference_keys,
+        &mt_study_measured_keys,
+        &mt_study_frequency_keys,
+        &mt_study_shape_keys,
+        &mt_study_mac_keys,
+        &mt_study_limit_keys,
+        &mt_study_objective_keys,
+        &mt_study_published_keys,
+        &mt_study_published_frequency_keys,
+        &mt_study_published_mac_keys,
+    };
+    *n = MT_COUNT(tables);
+    return tables;
+}
+
+/* Remember a file that was read, with the digest of its bytes. */
+static void note_input(mt_study_reader *s, const char *name, const char *sha256)
+{
+    mt_study *const study = s->study;
+    mt_input_file *const inputs =
+        mt_arena_alloc(&study->mem, (size_t)study->n_inputs + 1, sizeof *inputs);
+    if (inputs == NULL) {
+        s->r.out_of_memory = true;
+        return;
+    }
+    for (int i = 0; i < study->n_inputs; i++) {
+        inputs[i] = study->inputs[i];
+    }
+    mt_input_file *const added = &inputs[study->n_inputs];
+    added->name = mt_arena_strdup(&study->mem, name);
+    added->sha256 = mt_arena_strdup(&study->mem, sha256);
+    s->r.out_of_memory = s->r.out_of_memory || added->name == NULL || added->sha256 == NULL;
+    study->inputs = inputs;
+    study->n_inputs++;
+}
+
+/* A model file was refused: its own diagnostics tell, or, where there are none, the study's "model" member does. */
+static void note_failure(mt_study_reader *s, mt_name path, mt_status rc, const mt_err *why,
+                         bool told)
+{
+    if (rc == MT_E_MEMORY || rc == MT_E_INTERNAL) {
+        s->failed = rc;
+        s->why = *why;
+        return;
+    }
+    if (!told) {
+        mt_diag_error(s->r.diags, path.addr, "%s", why->text);
+    }
+    if (s->failed == MT_OK) {
+        s->failed = MT_E_INPUT;
+        s->why = *why;
+    }
+}
+
+static mt_model *load_model(mt_study_reader *s, mt_name path)
+{
+    mt_err why = {.code = MT_OK};
+    mt_model *model = NULL;
+    mt_text messages = {0};
+    mt_file file = {0};
+    char *const joined = mt_file_join(s->study->path, path.s);
+    if (joined == NULL) {
+        s->r.out_of_memory = true;
+        return NULL;
+    }
+    const size_t limit = s->files.max_bytes == 0 ? MT_JSON_MAX_BYTES : s->files.max_bytes;
+    mt_status rc = mt_file_read(joined, s->files.root, limit, &file, &why);
+    if (rc == MT_OK) {
+        note_input(s, path.s, file.sha256);
+        rc = mt_model_load(joined, &s->files, &model, &messages, &why);
+    }
+    if (rc != MT_OK) {
+        note_failure(s, path, rc, &why, messages.length > 0);
+    }
+    if (messages.length > 0) {
+        mt_text_add(s->model_messages, messages.s);
+    }
+    s->r.out_of_memory = s->r.out_of_memory || messages.failed;
+    mt_file_free(&file);
+    mt_text_free(&messages);
+    free(joined);
+    return model;
+}
+
+mt_model *mt_read_study_model(mt_study_reader *s, mt_name path)
+{
+    if (path.s == NULL) {
+        return NULL;
+    }
+    for (int i = 0; i < s->n_read; i++) {
+        if (strcmp(s->read[i].path.s, path.s) == 0) {
+            return s->read[i].model;
+        }
+    }
+    mt_study_file *const read =
+        mt_arena_grow(&s->study->mem, s->read, s->n_read, &s->cap_read, sizeof *read);
+    if (read == NULL) {
+        s->r.out_of_memory = true;
+        return NULL;
+    }
+    read[s->n_read] = (mt_study_file){path, load_model(s, path)};
+    s->read = read;
+    return s->read[s->n_read++].model;
+}
+
+/* The names that expressions may use. */
+static void use_parameters(mt_study_reader *s)
+{
+    const mt_model *const model = s->study->model;
+    const size_t n = (size_t)model->n_parameters;
+    const char **const names = mt_arena_alloc(&s->study->mem, n, sizeof *names);
+    if (names == NULL) {
+        s->r.out_of_memory = true;
+        return;
+    }
+    for (size_t i = 0; i < n; i++) {
+        names[i] = model->parameters[i].name.s;
+    }
+    s->r.lookup = mt_model_lookup;
+    s->r.context = model;
+    s->r.names = names;
+    s->r.n_names = model->n_parameters;
+}
+
+/* The study's own model and its parameters' values, before anything that is measured in them. */
+static void read_model(mt_study_reader *s, mt_addr value)
+{
+    mt_study *const study = s->study;
+    study->model_path = mt_reader_ref(&s->r, value);
+    study->model = mt_read_study_model(s, study->model_path);
+    if (study->model == NULL) {
+        return;
+    }
+    use_parameters(s);
+    double *const values = mt_arena_f64(&study->mem, (size_t)study->model->n_parameters, 1);
+    if (values == NULL) {
+        s->r.out_of_memory = true;
+        return;
+    }
+    const mt_status rc =
+        mt_model_original_values(study->model, &study->mem, values, NULL, NULL);
+    s->r.out_of_memory = s->r.out_of_memory || rc == MT_E_MEMORY;
+    study->original = rc == MT_OK ? values : NULL; /* mt_study_finish says what is wrong */
+}
+
+static void read_search(mt_study_reader *s, mt_addr value)
+{
+    mt_search *const search = &s->study->search;
+    mt_study_object o;
+    if (value == MT_NO_ADDR || !mt_read_study_object(s, value, &mt_study_search_keys, &o)) {
+        return;
+    }
+    search->seed = (unsigned long)mt_reader_count(&s->r, o.found[SEARCH_SEED], 0, INT_MAX,
+                                                  (int)search->seed);
+    search->starts = mt_reader_count(&s->r, o.found[SEARCH_STARTS], 1, MAX_STARTS, 0);
+    search->max_evaluations =
+        mt_reader_count(&s->r, o.found[SEARCH_MAX_EVALUATIONS], 1, INT_MAX, 0);
+}
+
+static void read_root(mt_study_reader *s)
+{
+    static const char *const formats[] = {"modetune-study/1"};
+    mt_study *const study = s->study;
+    mt_study_object o;
+    if (!mt_read_study_object(s, MT_JSON_ROOT, &mt_study_keys, &o)) {
+        return;
+    }
+    (void)mt_reader_choice(&s->r, o.found[STUDY_FORMAT], "format", formats, MT_COUNT(formats));
+    study->name = mt_reader_text(&s->r, o.found[STUDY_NAME]);
+    study->description = mt_reader_text(&s->r, o.found[STUDY_DESCRIPTION]);
+    study->recommendations_addr = mt_read_study_place(s, &o, STUDY_RECOMMENDATIONS);
+    study->recommendations = mt_reader_count(&s->r, o.found[STUDY_RECOMMENDATIONS], 1,
+                                             MAX_RECOMMENDATIONS, study->recommendations);
+    read_search(s, o.found[STUDY_SEARCH]);
+    read_model(s, o.found[STUDY_MODEL]);
+    mt_read_study_variables(s, o.found[STUDY_VARIABLES]);
+    mt_read_study_references(s, o.found[STUDY_REFERENCES]);
+    mt_read_study_goals(s, o.found[STUDY_GOALS]);
+    mt_read_study_objectives(s, o.found[STUDY_OBJECTIVE]);
+    mt_read_study_published(s, o.found[STUDY_PUBLISHED]);
+}
+
+static const char *base_name(const char *path)
+{
+    const char *const slash = strrchr(path, '/');
+    return slash == NULL ? path : slash + 1;
+}
+
+/* "beam" for "studies/beam.json": what an unnamed study is called. */
+static void name_by_file(mt_study_reader *s)
+{
+    mt_study *const study = s->study;
+    const char *const file = base_name(study->path);
+    const char *const dot = strrchr(file, '.');
+    const size_t length = dot == NULL || dot == file ? strlen(file) : (size_t)(dot - file);
+    study->name = mt_arena_strndup(&study->mem, file, length);
+    s->r.out_of_memory = s->r.out_of_memory || study->name == NULL;
+}
+
+static mt_status read_document(mt_study_reader *s, mt_err *err)
+{
+    read_root(s);
+    if (s->study->name == NULL) {
+        name_by_file(s);
+    }
+    if (s->r.out_of_memory) {
+        return mt_fail_memory(err);
+    }
+    if (s->failed != MT_OK && s->failed != MT_E_INPUT) {
+        return mt_fail(err, s->failed, "%s", s->why.text);
+    }
+    if (s->study->model != NULL) {
+        const mt_status rc = mt_study_finish(s->study, s->r.diags, err);
+        if (rc != MT_OK && rc != MT_E_INPUT) {
+            return rc;
+        }
+    }
+    const mt_status rc = mt_reader_status(&s->r, s->study->path, err);
+    if (rc == MT_OK && s->failed != MT_OK) {
+        return mt_fail(err, s->failed, "%s", s->why.text);
+    }
+    return rc;
+}
+
+/* Parse and read the study's text; the document's diagnostics go to messages, before those of the models. */
+static mt_status read_text(mt_study_reader *s, const mt_file *file, mt_text *messages,
+                           mt_err *err)
+{
+    mt_json *doc = NULL;
+    mt_text model_messages = {0};
+    mt_status rc = mt_json_parse(file->bytes, file->length, &doc, err);
+    if (doc == NULL) {
+        return rc;
+    }
+    s->r.doc = doc;
+    s->r.diags = mt_json_diags(doc);
+    s->model_messages = &model_messages;
+    rc = rc == MT_OK ? read_document(s, err) : mt_reader_status(&s->r, s->study->path, err);
+    if (messages != NULL) {
+        mt_json_print(doc, s->study->path, messages);
+        mt_text_add(messages, model_messages.s == NULL ? "" : model_messages.s);
+    }
+    if (model_messages.failed || (messages != NULL && messages->failed)) {
+        rc = mt_fail_memory(err);
+    }
+    mt_text_free(&model_messages);
+    mt_json_delete(doc);
+    return rc;
+}
+
+mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **out,
+                        mt_text *messages, mt_err *err)
+{
+    mt_file file = {0};
+    char *root = NULL;
+    mt_study_reader s = {.failed = MT_OK};
+    *out = NULL;
+    mt_status rc = mt_study_new(&s.study, err);
+    if (rc != MT_OK) {
+        return rc;
+    }
+    s.files = opt == NULL ? (mt_io_options){0} : *opt;
+    s.r.mem = &s.study->mem;
+    s.study->path = mt_arena_strdup(&s.study->mem, path);
+    root = s.files.root == NULL ? mt_file_default_root(path) : NULL;
+    if (s.study->path == NULL || (root == NULL && s.files.root == NULL)) {
+        rc = mt_fail_memory(err);
+        goto done;
+    }
+    s.files.root = root == NULL ? s.files.root : root;
+    const size_t limit = s.files.max_bytes == 0 ? MT_JSON_MAX_BYTES : s.files.max_bytes;
+    rc = mt_file_read(path, NULL, limit, &file, err);
+    if (rc != MT_OK) {
+        goto done;
+    }
+    note_input(&s, base_name(path), file.sha256);
+    rc = read_text(&s, &file, messages, err);
+done:
+    mt_file_free(&file);
+    free(root);
+    if (rc != MT_OK) {
+        mt_study_delete(s.study);
+        return rc;
+    }
+    *out = s.study;
+    return MT_OK;
+}

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "io/read_study_priv.h"
+
+#include <string.h>
+
+/* Each type of goal has a table of its own, which begins with what all have; limits have no mode. */
+#define GOAL_KEYS(X)                                       \
+    X(GOAL_TYPE, "type", MT_KEY_TEXT, true)                \
+    X(GOAL_DESCRIPTION, "description", MT_KEY_TEXT, false) \
+    X(GOAL_SOURCE, "source", MT_KEY_TEXT, false)           \
+    X(GOAL_TOLERANCE, "tolerance_percent", MT_KEY_NUMBER, false)
+#define MODE_KEYS(X)                                             \
+    GOAL_KEYS(X)                                                 \
+    X(GOAL_CONFIGURATION, "configuration", MT_KEY_TEXT, false)   \
+    X(GOAL_CONFIGURATIONS, "configurations", MT_KEY_LIST, false) \
+    X(GOAL_MODE, "mode", MT_KEY_TEXT_OR_COUNT, true)
+enum { MODE_KEYS(MT_STUDY_KEY_ENUM) GOAL_KEY_COUNT };
+
+#define FREQUENCY_KEYS(X)                                      \
+    X(FREQUENCY_TARGET, "target_hz", MT_KEY_NUMBER, false)     \
+    X(FREQUENCY_AT_LEAST, "at_least_hz", MT_KEY_NUMBER, false) \
+    X(FREQUENCY_AT_MOST, "at_most_hz", MT_KEY_NUMBER, false)   \
+    X(FREQUENCY_WEIGHT, "weight", MT_KEY_NUMBER, false)
+enum { FREQUENCY_BASE = GOAL_KEY_COUNT - 1, FREQUENCY_KEYS(MT_STUDY_KEY_ENUM) FREQUENCY_COUNT };
+static const mt_key FREQUENCY[] = {MODE_KEYS(MT_STUDY_KEY) FREQUENCY_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_frequency_keys = {"goal_frequency", FREQUENCY, FREQUENCY_COUNT};
+
+#define SHAPE_KEYS(X)                                              \
+    X(SHAPE_REFERENCE, "reference", MT_KEY_TEXT, true)             \
+    X(SHAPE_REFERENCE_MODE, "reference_mode", MT_KEY_COUNT, false) \
+    X(SHAPE_WEIGHT, "weight", MT_KEY_NUMBER, true)
+enum { SHAPE_BASE = GOAL_KEY_COUNT - 1, SHAPE_KEYS(MT_STUDY_KEY_ENUM) SHAPE_COUNT };
+static const mt_key SHAPE[] = {MODE_KEYS(MT_STUDY_KEY) SHAPE_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_shape_keys = {"goal_shape", SHAPE, SHAPE_COUNT};
+
+#define MAC_KEYS(X)                                              \
+    X(MAC_REFERENCE, "reference", MT_KEY_TEXT, true)             \
+    X(MAC_REFERENCE_MODE, "reference_mode", MT_KEY_COUNT, false) \
+    X(MAC_AT_LEAST, "at_least", MT_KEY_NUMBER, true)
+enum { MAC_BASE = GOAL_KEY_COUNT - 1, MAC_KEYS(MT_STUDY_KEY_ENUM) MAC_COUNT };
+static const mt_key MAC[] = {MODE_KEYS(MT_STUDY_KEY) MAC_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_mac_keys = {"goal_mac", MAC, MAC_COUNT};
+
+#define LIMIT_KEYS(X)                                    \
+    X(LIMIT_EXPRESSION, "expression", MT_KEY_TEXT, true) \
+    X(LIMIT_AT_LEAST, "at_least", MT_KEY_NUMBER, false)  \
+    X(LIMIT_AT_MOST, "at_most", MT_KEY_NUMBER, false)    \
+    X(LIMIT_EQUALS, "equals", MT_KEY_NUMBER, false)
+enum { LIMIT_BASE = GOAL_CONFIGURATION - 1, LIMIT_KEYS(MT_STUDY_KEY_ENUM) LIMIT_COUNT };
+static const mt_key LIMIT[] = {GOAL_KEYS(MT_STUDY_KEY) LIMIT_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_limit_keys = {"goal_limit", LIMIT, LIMIT_COUNT};
+
+static void read_configurations(mt_study_reader *s, const mt_study_object *o, mt_goal *goal)
+{
+    const bool one = mt_read_study_has(s, o, GOAL_CONFIGURATION);
+    const bool several = mt_read_study_has(s, o, GOAL_CONFIGURATIONS);
+    if (one && several) {
+        (void)mt_read_study_one_of(s, o, GOAL_CONFIGURATION, 2);
+        return;
+    }
+    const mt_addr list = o->found[GOAL_CONFIGURATIONS];
+    if (list != MT_NO_ADDR) {
+        goal->configuration_names = mt_reader_refs(&s->r, list);
+        if (mt_json_count(s->r.doc, list) == 0) {
+            mt_diag_structure(s->r.diags, list, "the list of configurations is empty");
+        }
+        return;
+    }
+    const mt_name name = mt_reader_ref(&s->r, o->found[GOAL_CONFIGURATION]);
+    mt_name *const items = mt_arena_alloc(&s->study->mem, 1, sizeof *items);
+    if (items == NULL) {
+        s->r.out_of_memory = true;
+    } else if (name.s != NULL) {
+        items[0] = name;
+        goal->configuration_names = (mt_name_list){1, items};
+    }
+}
+
+static void read_frequency(mt_study_reader *s, const mt_study_object *o, mt_goal *goal)
+{
+    goal->target_hz = mt_read_study_member(s, o, FREQUENCY_TARGET, &goal->target_addr);
+    goal->at_least = mt_read_study_member(s, o, FREQUENCY_AT_LEAST, &goal->at_least_addr);
+    goal->at_most = mt_read_study_member(s, o, FREQUENCY_AT_MOST, &goal->at_most_addr);
+    goal->weight = mt_read_study_member(s, o, FREQUENCY_WEIGHT, &goal->weight_addr);
+}
+
+static void read_shape(mt_study_reader *s, const mt_study_object *o, mt_goal *goal)
+{
+    goal->reference_name = mt_reader_ref(&s->r, o->found[SHAPE_REFERENCE]);
+    goal->reference_mode = mt_read_study_index(s, o->found[SHAPE_REFERENCE_MODE]);
+    goal->weight = mt_read_study_member(s, o, SHAPE_WEIGHT, &goal->weight_addr);
+}
+
+static void read_mac(mt_study_reader *s, const mt_study_object *o, mt_goal *goal)
+{
+    goal->reference_name = mt_reader_ref(&s->r, o->found[MAC_REFERENCE]);
+    goal->reference_mode = mt_read_study_index(s, o->found[MAC_REFERENCE_MODE]);
+    goal->at_least = mt_read_study_member(s, o, MAC_AT_LEAST, &goal->at_least_addr);
+}
+
+static void read_limit(mt_study_reader *s, const mt_study_object *o, mt_goal *goal)
+{
+    mt_read_study_expr(s, o->found[LIMIT_EXPRESSION], &goal->expression,
+                       &goal->expression_text);
+    goal->at_least = mt_read_study_member(s, o, LIMIT_AT_LEAST, &goal->at_least_addr);
+    goal->at_most = mt_read_study_member(s, o, LIMIT_AT_MOST, &goal->at_most_addr);
+    goal->equals = mt_read_study_member(s, o, LIMIT_EQUALS, &goal->equals_addr);
+}
+
+static const struct {
+    mt_goal_type type;
+    const mt_key_table *table;
+    void (*read)(mt_study_reader *s, const mt_study_object *o, mt_goal *goal);
+} TYPES[] = {
+    {MT_GOAL_FREQUENCY, &mt_study_frequency_keys, read_frequency},
+    {    MT_GOAL_SHAPE,     &mt_study_shape_keys,     read_shape},
+    {      MT_GOAL_MAC,       &mt_study_mac_keys,       read_mac},
+    {    MT_GOAL_LIMIT,     &mt_study_limit_keys,     read_limit},
+};
+
+/* Which row of TYPES; MT_ABSENT (noted) where the type is missing or none of them. */
+static int type_of(mt_study_reader *s, mt_addr value)
+{
+    const char *names[MT_COUNT(TYPES)];
+    for (int i = 0; i < MT_COUNT(TYPES); i++) {
+        names[i] = mt_goal_type_name(TYPES[i].type);
+    }
+    if (!mt_reader_type(&s->r, value, MT_KEY_OBJECT)) {
+        return MT_ABSENT;
+    }
+    const mt_addr type = mt_json_member(s->r.doc, value, FREQUENCY[GOAL_TYPE].name);
+    if (type == MT_NO_ADDR) {
+        mt_diag_structure(s->r.diags, value, "member \"%s\" is missing",
+                          FREQUENCY[GOAL_TYPE].name);
+    }
+    return mt_reader_choice(&s->r, type, "type of goal", names, MT_COUNT(TYPES));
+}
+
+static bool read_goal(mt_study_reader *s, mt_addr value, mt_goal *goal)
+{
+    const int row = type_of(s, value);
+    mt_study_object o;
+    if (row == MT_ABSENT || !mt_read_study_object(s, value, TYPES[row].table, &o)) {
+        return false;
+    }
+    *goal = mt_goal_default(TYPES[row].type, value);
+    goal->description = mt_reader_text(&s->r, o.found[GOAL_DESCRIPTION]);
+    const double tolerance = mt_read_study_member(s, &o, GOAL_TOLERANCE, &goal->tolerance_addr);
+    goal->tolerance_percent = MT_HAS(tolerance) ? tolerance : goal->tolerance_percent;
+    if (goal->type != MT_GOAL_LIMIT) {
+        read_configurations(s, &o, goal);
+        goal->mode = mt_read_study_mode(s, &o, GOAL_MODE);
+    }
+    TYPES[row].read(s, &o, goal);
+    return true;
+}
+
+void mt_read_study_goals(mt_study_reader *s, mt_addr list)
+{
+    mt_study *const study = s->study;
+    study->goals = mt_read_study_list(s, list, sizeof *study->goals);
+    if (list == MT_NO_ADDR || study->goals == NULL) {
+        return;
+    }
+    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
+         at = mt_json_next(s->r.doc, at)) {
+        study->n_goals += read_goal(s, at, &study->goals[study->n_goals]) ? 1 : 0;
+    }
+}

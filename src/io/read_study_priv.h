@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef IO_READ_STUDY_PRIV_H
+#define IO_READ_STUDY_PRIV_H
+
+#include "io/io.h"
+#include "io/reader.h"
+#include "tune/study.h"
+
+/* A model file that has been asked for. */
+typedef struct mt_study_file {
+    mt_name path;    /* as written */
+    mt_model *model; /* NULL: it could not be read, which has been noted */
+} mt_study_file;
+
+/* A study being read: what its parts (read_study_*.c) share. */
+typedef struct mt_study_reader {
+    mt_reader r;
+    mt_study *study;
+    mt_io_options files;     /* for the models; root is set */
+    mt_text *model_messages; /* diagnostics of the model files */
+    mt_status
+        failed; /* MT_OK, or why a model could not be read; only MT_E_INPUT lets reading go on */
+    mt_err why; /* the first such failure */
+    MT_LIST_OF(mt_study_file, read);
+} mt_study_reader;
+
+/* One list of keys makes their places in `found` and the table. */
+#define MT_STUDY_KEY_ENUM(id, name, type, required) id,
+#define MT_STUDY_KEY(id, name, type, required)      {name, type, required},
+
+/* An object matched with its table: the address of every member (MT_NO_ADDR: absent or of a wrong type). */
+typedef struct mt_study_object {
+    mt_addr addr;
+    const mt_key_table *table;
+    mt_addr found[MT_MAX_KEYS];
+} mt_study_object;
+bool mt_read_study_object(mt_study_reader *s, mt_addr value, const mt_key_table *table,
+                          mt_study_object *out);
+/* Is the member there, be it of a wrong type? Then its address, else the object's. */
+bool mt_read_study_has(const mt_study_reader *s, const mt_study_object *o, int key);
+mt_addr mt_read_study_place(const mt_study_reader *s, const mt_study_object *o, int key);
+/* Which one of n members (neighbours in the table, from `first`) is there? MT_ABSENT where none or several are (noted). */
+int mt_read_study_one_of(mt_study_reader *s, const mt_study_object *o, int first, int n);
+
+/* A number; expressions are evaluated at the original design. NaN where absent or wrong (noted). */
+double mt_read_study_number(mt_study_reader *s, mt_addr value);
+/* A member that is a number, and its place. */
+double mt_read_study_member(mt_study_reader *s, const mt_study_object *o, int key,
+                            mt_addr *place);
+/* An expression that follows the design, and its text. */
+void mt_read_study_expr(mt_study_reader *s, mt_addr value, mt_expr *out, const char **text);
+/* "mode": a name or an index from 1. */
+mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_study_object *o, int key);
+/* An index from 1; 0 where absent or wrong. */
+int mt_read_study_index(mt_study_reader *s, mt_addr value);
+/* Load a model that the study names, once; NULL where it cannot be read (noted). */
+mt_model *mt_read_study_model(mt_study_reader *s, mt_name path);
+/* Room for as many records as a list has items or an object members, zeroed; NULL (noted) when out of memory. */
+void *mt_read_study_list(mt_study_reader *s, mt_addr value, size_t size);
+
+void mt_read_study_variables(mt_study_reader *s, mt_addr list);
+void mt_read_study_references(mt_study_reader *s, mt_addr object);
+void mt_read_study_goals(mt_study_reader *s, mt_addr list);
+void mt_read_study_objectives(mt_study_reader *s, mt_addr value);
+void mt_read_study_published(mt_study_reader *s, mt_addr list);
+
+extern const mt_key_table mt_study_keys;
+extern const mt_key_table mt_study_search_keys;
+extern const mt_key_table mt_study_variable_keys;
+extern const mt_key_table mt_study_reference_keys;
+extern const mt_key_table mt_study_measured_keys;
+extern const mt_key_table mt_study_frequency_keys;
+extern const mt_key_table mt_study_shape_keys;
+extern const mt_key_table mt_study_mac_keys;
+extern const mt_key_table mt_study_limit_keys;
+extern const mt_key_table mt_study_objective_keys;
+extern const mt_key_table mt_study_published_keys;
+extern const mt_key_table mt_study_published_frequency_keys;
+extern const mt_key_table mt_study_published_mac_keys;
+
+#endif

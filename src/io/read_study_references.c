@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "io/read_study_priv.h"
+
+#include <math.h>
+#include <string.h>
+
+#define REFERENCE_KEYS(X)                                           \
+    X(REFERENCE_MODEL, "model", MT_KEY_TEXT, false)                 \
+    X(REFERENCE_MODES, "modes", MT_KEY_LIST, false)                 \
+    X(REFERENCE_CONFIGURATION, "configuration", MT_KEY_TEXT, false) \
+    X(REFERENCE_DESCRIPTION, "description", MT_KEY_TEXT, false)     \
+    X(REFERENCE_SOURCE, "source", MT_KEY_TEXT, false)
+enum { REFERENCE_KEYS(MT_STUDY_KEY_ENUM) REFERENCE_KEY_COUNT };
+static const mt_key KEYS[] = {REFERENCE_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_reference_keys = {"reference", KEYS, REFERENCE_KEY_COUNT};
+
+#define MEASURED_KEYS(X)                                        \
+    X(MEASURED_FREQUENCY, "frequency_hz", MT_KEY_NUMBER, false) \
+    X(MEASURED_SHAPE, "shape", MT_KEY_OBJECT, false)            \
+    X(MEASURED_DESCRIPTION, "description", MT_KEY_TEXT, false)  \
+    X(MEASURED_SOURCE, "source", MT_KEY_TEXT, false)
+enum { MEASURED_KEYS(MT_STUDY_KEY_ENUM) MEASURED_KEY_COUNT };
+static const mt_key MODE_KEYS[] = {MEASURED_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_measured_keys = {"measured_mode", MODE_KEYS, MEASURED_KEY_COUNT};
+
+/* "sensor.direction" */
+static bool is_channel(const char *s)
+{
+    static const char *const directions[] = {".x", ".y", ".z", ".rx", ".ry", ".rz", ".r"};
+    const char *const dot = strrchr(s, '.');
+    if (dot == NULL || dot == s || memchr(s, '.', (size_t)(dot - s)) != NULL) {
+        return false;
+    }
+    for (int i = 0; i < MT_COUNT(directions); i++) {
+        if (strcmp(dot, directions[i]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void read_shape(mt_study_reader *s, mt_addr object, mt_measured_mode *mode)
+{
+    if (object == MT_NO_ADDR) {
+        return;
+    }
+    if (mt_json_count(s->r.doc, object) == 0) {
+        mt_diag_structure(s->r.diags, object, "the shape is empty");
+    }
+    mode->channels = mt_read_study_list(s, object, sizeof *mode->channels);
+    mode->values = mt_read_study_list(s, object, sizeof *mode->values);
+    if (mode->channels == NULL || mode->values == NULL) {
+        return;
+    }
+    bool zero = true;
+    for (mt_addr at = mt_json_first(s->r.doc, object); at != MT_NO_ADDR;
+         at = mt_json_next(s->r.doc, at)) {
+        const mt_name channel = mt_reader_member_name(&s->r, at, MT_NAME_TITLE);
+        const double value = mt_read_study_number(s, at);
+        if (channel.s != NULL && *channel.s != '\0' && !is_channel(channel.s)) {
+            mt_diag_structure(s->r.diags, channel.addr,
+                              "\"%s\" is no sensor and direction (\"c1.y\")", channel.s);
+        } else if (channel.s != NULL) {
+            zero = zero && value == 0.0;
+            mode->channels[mode->n_values] = channel;
+            mode->values[mode->n_values++] = value;
+        }
+    }
+    if (zero && mode->n_values > 0) {
+        mt_diag_error(s->r.diags, object, "every value of the shape is 0");
+    }
+}
+
+static void read_measured(mt_study_reader *s, mt_addr value, mt_measured_mode *mode)
+{
+    mt_study_object o;
+    *mode = (mt_measured_mode){
+        .frequency_hz = nan(""),
+        .addr = value,
+        .frequency_addr = value,
+    };
+    if (!mt_read_study_object(s, value, &mt_study_measured_keys, &o)) {
+        return;
+    }
+    if (!mt_read_study_has(s, &o, MEASURED_FREQUENCY) &&
+        !mt_read_study_has(s, &o, MEASURED_SHAPE)) {
+        mt_diag_structure(s->r.diags, value,
+                          "a measured mode needs \"frequency_hz\" or \"shape\"");
+    }
+    mode->frequency_hz = mt_read_study_member(s, &o, MEASURED_FREQUENCY, &mode->frequency_addr);
+    read_shape(s, o.found[MEASURED_SHAPE], mode);
+}
+
+static void read_modes(mt_study_reader *s, mt_addr list, mt_reference *r)
+{
+    if (list == MT_NO_ADDR) {
+        return;
+    }
+    if (mt_json_count(s->r.doc, list) == 0) {
+        mt_diag_structure(s->r.diags, list, "the list of modes is empty");
+    }
+    r->modes = mt_read_study_list(s, list, sizeof *r->modes);
+    if (r->modes == NULL) {
+        return;
+    }
+    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
+         at = mt_json_next(s->r.doc, at)) {
+        read_measured(
+            s, at, &r->modes[r->n_modes++]); /* a wrong one still counts: modes are numbered */
+    }
+}
+
+static void read_reference(mt_study_reader *s, mt_addr value, mt_reference *r)
+{
+    mt_study_object o;
+    r->addr = value;
+    r->configuration = MT_ABSENT;
+    if (!mt_read_study_object(s, value, &mt_study_reference_keys, &o)) {
+        return;
+    }
+    (void)mt_read_study_one_of(s, &o, REFERENCE_MODEL, 2);
+    if (mt_read_study_has(s, &o, REFERENCE_CONFIGURATION) &&
+        !mt_read_study_has(s, &o, REFERENCE_MODEL)) {
+        mt_diag_structure(s->r.diags, mt_read_study_place(s, &o, REFERENCE_CONFIGURATION),
+                          "\"configuration\" goes with \"model\"");
+    }
+    r->source = mt_reader_text(&s->r, o.found[REFERENCE_SOURCE]);
+    r->configuration_name = mt_reader_ref(&s->r, o.found[REFERENCE_CONFIGURATION]);
+    r->model_path = mt_reader_ref(&s->r, o.found[REFERENCE_MODEL]);
+    r->model = mt_read_study_model(s, r->model_path);
+    read_modes(s, o.found[REFERENCE_MODES], r);
+}
+
+void mt_read_study_references(mt_study_reader *s, mt_addr object)
+{
+    mt_study *const study = s->study;
+    study->references = mt_read_study_list(s, object, sizeof *study->references);
+    if (object == MT_NO_ADDR || study->references == NULL) {
+        return;
+    }
+    for (mt_addr at = mt_json_first(s->r.doc, object); at != MT_NO_ADDR;
+         at = mt_json_next(s->r.doc, at)) {
+        const mt_name name = mt_reader_member_name(&s->r, at, MT_NAME_ITEM);
+        if (name.s != NULL) {
+            mt_reference *const r = &study->references[study->n_references++];
+            r->name = name;
+            read_reference(s, at, r);
+        }
+    }
+}
