@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Kinds, clusters and indices of computed eigenvalues. */
+#include "modal/modal_priv.h"
+
+#include <float.h>
+#include <math.h>
+
+/*
+ * Neighbours closer than CLUSTER_GAP of their size are one cluster. The eigenvector of a single mode, and with it any gradient that uses it, describes
+ * the system for relative parameter changes up to about the gap only; sqrt(eps) is the smallest step that a search with 16 digits can make and judge, so a
+ * gap below that is a repeated mode to every user of these numbers. Mirror modes of a symmetrical structure agree to rounding, 1e-14 or so; distinct modes as close as
+ * this have not been met. Eigenvalues that differ by less than their error bound cannot be told apart either.
+ */
+static const double CLUSTER_GAP = 1.5e-8;
+
+/* First of the n_rigid consecutive values with the smallest magnitudes (lambda ascends, so they are consecutive). */
+static int first_rigid(const mt_modes *modes, int n_rigid)
+{
+    int first = 0;
+    while (first + n_rigid < modes->count &&
+           fabs(modes->lambda[first + n_rigid]) < fabs(modes->lambda[first])) {
+        first++;
+    }
+    return first;
+}
+
+static mt_mode_kind kind_of(double lambda, double noise, bool decide)
+{
+    if (lambda < -noise) {
+        return MT_MODE_UNSTABLE;
+    }
+    return decide && lambda <= noise ? MT_MODE_RIGID_BODY : MT_MODE_FLEXIBLE;
+}
+
+void mt_modal_classify(mt_modes *modes, int n_rigid)
+{
+    const double noise = modes->error_bound;
+    const bool decide = n_rigid < 0;
+    const int rigid = decide || n_rigid <= modes->count ? n_rigid : modes->count;
+    const int first = decide ? modes->count : first_rigid(modes, rigid);
+    modes->n_rigid = 0;
+    modes->n_unstable = modes->n_unstable_condensed;
+    for (int i = 0; i < modes->count; i++) {
+        const bool given = !decide && i >= first && i < first + rigid;
+        const mt_mode_kind kind =
+            given ? MT_MODE_RIGID_BODY : kind_of(modes->lambda[i], noise, decide);
+        modes->kind[i] = kind;
+        modes->n_rigid += kind == MT_MODE_RIGID_BODY ? 1 : 0;
+        modes->n_unstable += kind == MT_MODE_UNSTABLE ? 1 : 0;
+        if (kind == MT_MODE_RIGID_BODY ||
+            (kind == MT_MODE_FLEXIBLE && modes->lambda[i] < 0.0)) {
+            modes->lambda[i] = 0.0;
+        }
+    }
+}
+
+void mt_modal_find_clusters(mt_modes *modes)
+{
+    int number = 0;
+    for (int i = 0; i < modes->count; i++) {
+        if (i > 0) {
+            const double a = modes->lambda[i - 1];
+            const double b = modes->lambda[i];
+            const double tol = CLUSTER_GAP * fmax(fabs(a), fabs(b)) + modes->error_bound;
+            number += b - a <= tol ? 0 : 1;
+        }
+        modes->cluster[i] = number;
+    }
+}
+
+int mt_modal_cluster(const mt_modes *modes, int i, int *size)
+{
+    int first = i;
+    int end = i + 1;
+    while (first > 0 && modes->cluster[first - 1] == modes->cluster[i]) {
+        first--;
+    }
+    while (end < modes->count && modes->cluster[end] == modes->cluster[i]) {
+        end++;
+    }
+    *size = end - first;
+    return first;
+}
+
+double mt_modal_hz(const mt_modes *modes, int i)
+{
+    static const double TWO_PI = 6.283185307179586476925;
+    if (modes->kind[i] == MT_MODE_UNSTABLE) {
+        return nan("");
+    }
+    return modes->kind[i] == MT_MODE_RIGID_BODY ? 0.0 : sqrt(modes->lambda[i]) / TWO_PI;
+}
+
+int mt_modal_flexible(const mt_modes *modes, int index)
+{
+    if (modes->n_unstable > 0 || index < 1) {
+        return -1;
+    }
+    int seen = 0;
+    for (int i = 0; i < modes->count; i++) {
+        seen += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
+        if (seen == index) {
+            return i;
+        }
+    }
+    return -1;
+}

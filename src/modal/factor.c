@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Modes from the spring factors. K = B^T diag(c) B, M = L L^T, C = B L^-T:
+ *     L^-1 K L^-T = (diag(sqrt c) C)^T (diag(sqrt c) C),
+ * so omega are the singular values of diag(sqrt c) C and the vectors its right singular vectors. Forming the product first loses everything below eps c_max; the singular
+ * values of D C with D diagonal and C well conditioned are determined to a relative n eps cond(C), however far D spreads, and one-sided Jacobi finds them (Drmac and Veselic 2008).
+ *
+ * C may be rank deficient (rigid-body modes; more springs than freedoms). Its null space does not depend on D, so it is split off first: rows of C are scaled to unit norm (the
+ * norms join D), C^T P = Q R with column pivoting has Q = [Q1 Q2], Q2 the null space. Then D C Q1 = D P R^T (rows of R^T in C's order) is of full column rank. Rows of R^T keep the
+ * relative error of their row, hence the grading by D is harmless.
+ * lambda: zero for Q2, sigma^2 for Q1 V.
+ */
+#include "modal/modal_priv.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "linalg/dense.h"
+
+typedef struct graded {
+    int n;
+    int rows;   /* rows of B with c > 0 and some entry */
+    double *ct; /* n x rows: columns are unit rows of C */
+    double *d;  /* [rows] sqrt(c) times the norm of the row */
+    mt_qr qr;   /* of ct */
+    double *f;  /* rows x rank: D P R^T */
+    double *s;  /* [rank] descending */
+    double *v;  /* rank x rank */
+} graded;
+
+/* ct := (T or L^-1) B^T, all rows of B. */
+static void transform(const mt_stiffness_factor *b, const mt_mass_factor *mass, double *bt,
+                      double *ct)
+{
+    const int n = mass->n;
+    double *const to = mass->t != NULL ? bt : ct;
+    mt_transpose(b->rows, n, b->b, to);
+    if (mass->t != NULL) {
+        mt_gemm(true, false, n, b->rows, n, 1.0, mass->t, n, bt, n, 0.0, ct, n);
+    } else if (mass->l != NULL) {
+        mt_tri_solve(false, n, b->rows, mass->l, ct, n);
+    }
+}
+
+/* Unit columns, empty ones squeezed out. */
+static mt_status normalise(const mt_stiffness_factor *b, graded *g, mt_err *err)
+{
+    for (int j = 0; j < b->rows; j++) {
+        const double *const from = g->ct + (ptrdiff_t)j * g->n;
+        double *const to = g->ct + (ptrdiff_t)g->rows * g->n;
+        const double norm = mt_norm2(g->n, from);
+        if (!(b->c[j] >= 0.0 && isfinite(b->c[j]) && isfinite(norm))) {
+            return mt_fail(err, MT_E_DOMAIN,
+                           "stiffness factor: row %d is negative or not finite", j + 1);
+        }
+        if (b->c[j] > 0.0 && norm > 0.0) {
+            for (int i = 0; i < g->n; i++) {
+                to[i] = from[i] / norm;
+            }
+            g->d[g->rows] = sqrt(b->c[j]) * norm;
+            g->rows++;
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status prepare(const mt_stiffness_factor *b, const mt_mass_factor *mass, graded *g,
+                         mt_arena *scratch, mt_err *err)
+{
+    const size_t rows = (size_t)b->rows;
+    const size_t n = (size_t)g->n;
+    double *const bt = mass->t != NULL ? mt_arena_f64(scratch, n, rows) : NULL;
+    g->ct = mt_arena_f64(scratch, n, rows);
+    g->d = mt_arena_f64(scratch, rows, 1);
+    if (g->ct == NULL || g->d == NULL || (mass->t != NULL && bt == NULL)) {
+        return mt_fail_memory(err);
+    }
+    if (!mt_all_finite((ptrdiff_t)b->rows * g->n, b->b)) {
+        return mt_fail(err, MT_E_DOMAIN, "stiffness factor: an entry is not a finite number");
+    }
+    transform(b, mass, bt, g->ct);
+    MT_TRY(normalise(b, g, err));
+    const int larger = g->n > g->rows ? g->n : g->rows;
+    return mt_qr_factor(g->n, g->rows, g->ct, g->n, mt_modal_tolerance(larger), scratch, &g->qr,
+                        err);
+}
+
+static mt_status singular_values(graded *g, mt_arena *scratch, mt_err *err)
+{
+    const int r = g->qr.rank;
+    g->f = mt_arena_f64(scratch, (size_t)g->rows, (size_t)r);
+    g->s = mt_arena_f64(scratch, (size_t)r, 1);
+    g->v = mt_arena_f64(scratch, (size_t)r, (size_t)r);
+    if (g->f == NULL || g->s == NULL || g->v == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int j = 0; j < g->rows; j++) {
+        const int row = g->qr.perm[j];
+        for (int i = 0; i < r && i <= j; i++) {
+            g->f[row + (ptrdiff_t)i * g->rows] = g->d[row] * g->qr.qr[i + (ptrdiff_t)j * g->n];
+        }
+    }
+    return mt_svd_jacobi(g->rows, r, g->f, g->s, g->v, scratch, err);
+}
+
+/* Q := [Q2, Q1 V] in ascending order, then y. */
+static mt_status vectors(const graded *g, const mt_mass_factor *mass, mt_arena *scratch,
+                         double *y, mt_err *err)
+{
+    const int n = g->n;
+    const int r = g->qr.rank;
+    double *const q = mt_arena_f64(scratch, (size_t)n, (size_t)n);
+    if (q == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int j = 0; j < n - r; j++) {
+        q[r + j + (ptrdiff_t)j * n] = 1.0;
+    }
+    for (int j = 0; j < r; j++) {
+        memcpy(q + (ptrdiff_t)(n - 1 - j) * n, g->v + (ptrdiff_t)j * r, (size_t)r * sizeof *q);
+    }
+    MT_TRY(mt_qr_apply_q(&g->qr, false, n, q, scratch, err));
+    mt_modal_back(mass, q, y);
+    return MT_OK;
+}
+
+mt_status mt_modal_by_factor(const mt_stiffness_factor *factor, const mt_mass_factor *mass,
+                             mt_arena *scratch, mt_modes *out, int *null_count, mt_err *err)
+{
+    graded g = {.n = mass->n};
+    MT_TRY(prepare(factor, mass, &g, scratch, err));
+    MT_TRY(singular_values(&g, scratch, err));
+    const int r = g.qr.rank;
+    *null_count = g.n - r;
+    for (int i = 0; i < g.n; i++) {
+        const double omega = i < g.n - r ? 0.0 : g.s[g.n - 1 - i];
+        out->lambda[i] = omega * omega;
+    }
+    if (out->y != NULL) {
+        MT_TRY(vectors(&g, mass, scratch, out->y, err));
+    }
+    out->from_factor = true;
+    out->error_bound = 0.0;
+    out->error_relative = mt_modal_tolerance(g.n) * (mass->condition + 1.0 / g.qr.kept);
+    return MT_OK;
+}

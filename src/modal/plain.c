@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A = L^-1 K L^-T (or T^T K T, or the condensed matrix), A Q = Q Lambda by dsyevd, Y = L^-T Q (or T1 Q). Absolute error of each lambda: about n eps s. */
+#include "modal/modal_priv.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "linalg/dense.h"
+
+/* s = max(|lambda|max, max |K_ii| (M^-1)_ii). */
+static double stiffness_scale(const double *k, const mt_mass_factor *mass,
+                              const mt_modes *modes)
+{
+    double s = mt_max_abs(modes->count, modes->lambda);
+    for (int i = 0; i < mass->n; i++) {
+        s = fmax(s, fabs(k[i + (ptrdiff_t)i * mass->n]) * mass->w[i]);
+    }
+    return s;
+}
+
+/* Regular M. a is n x n: A, then its eigenvectors, then Y. */
+static mt_status regular(const double *k, const mt_mass_factor *mass, double *a,
+                         mt_arena *scratch, mt_modes *out, mt_err *err)
+{
+    const int n = mass->n;
+    const bool vectors = out->y != NULL;
+    double *q = a;
+    if (mass->t != NULL) {
+        q = mt_arena_f64(scratch, (size_t)n, (size_t)n);
+        if (q == NULL) {
+            return mt_fail_memory(err);
+        }
+        mt_symm(n, n, k, mass->t, a);
+        mt_gemm(true, false, n, n, n, 1.0, mass->t, n, a, n, 0.0, q, n);
+    } else {
+        for (int j = 0; j < n; j++) {
+            const ptrdiff_t jj = j + (ptrdiff_t)j * n;
+            memcpy(a + jj, k + jj, (size_t)(n - j) * sizeof *a);
+        }
+        if (mass->l != NULL) {
+            mt_congruence_inverse(n, mass->l, a);
+        }
+    }
+    MT_TRY(mt_eig_sym(n, q, out->lambda, vectors, scratch, err));
+    if (vectors) {
+        mt_modal_back(mass, q, a);
+    }
+    return MT_OK;
+}
+
+static mt_status condensed(const double *k, const mt_mass_factor *mass, mt_arena *scratch,
+                           mt_modes *out, mt_err *err)
+{
+    const int n = mass->n;
+    const int r = mass->rank;
+    const bool vectors = out->y != NULL;
+    double *const a = mt_arena_f64(scratch, (size_t)r, (size_t)r);
+    double *const t1 = mt_arena_f64(scratch, (size_t)n, (size_t)r);
+    if (a == NULL || t1 == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_modal_condense(k, mass, scratch, a, t1, out, err));
+    MT_TRY(mt_eig_sym(r, a, out->lambda, vectors, scratch, err));
+    if (vectors) {
+        mt_gemm(false, false, n, r, r, 1.0, t1, n, a, r, 0.0, out->y, n);
+    }
+    return MT_OK;
+}
+
+mt_status mt_modal_plain(const double *k, const mt_mass_factor *mass, mt_arena *scratch,
+                         mt_modes *out, mt_err *err)
+{
+    const int n = mass->n;
+    if (!mt_lower_finite(n, k)) {
+        return mt_fail(err, MT_E_DOMAIN, "stiffness matrix: an entry is not a finite number");
+    }
+    if (mass->rank < n) {
+        MT_TRY(condensed(k, mass, scratch, out, err));
+    } else {
+        double *const a = out->y != NULL ? out->y : mt_arena_f64(scratch, (size_t)n, (size_t)n);
+        if (a == NULL) {
+            return mt_fail_memory(err);
+        }
+        MT_TRY(regular(k, mass, a, scratch, out, err));
+    }
+    out->scale = stiffness_scale(k, mass, out);
+    out->error_bound = mt_modal_tolerance(n) * out->scale;
+    out->error_relative = mt_modal_tolerance(n) * fmin(mass->condition, 1.0 / DBL_EPSILON);
+    return MT_OK;
+}

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * One solve:
+ *   take results from mem; mark; plain path; kinds; perhaps the factor path and kinds again; clusters; signs; checks; rewind to the mark.
+ */
+#include "modal/modal_priv.h"
+
+#include <float.h>
+#include <math.h>
+
+/*
+ * The plain path leaves an error of about eps s on every eigenvalue. Results are promised to a relative 1e-9 or better; at FACTOR_SWITCH the lowest mode still has two
+ * digits to spare for the moderate factors in that "about". The factor path costs two to four times as much.
+ */
+static const double FACTOR_SWITCH = 1e-11;
+
+mt_modal_options mt_modal_options_default(void)
+{
+    return (mt_modal_options){
+        .n_rigid = -1, .vectors = true, .need_accuracy = false, .check = true};
+}
+
+static mt_status claim(const mt_mass_factor *mass, const mt_modal_options *opt, mt_arena *mem,
+                       mt_modes *out, mt_err *err)
+{
+    const int count = mass->rank;
+    const size_t c = (size_t)count;
+    *out = (mt_modes){.n = mass->n, .count = count, .n_condensed = mass->n - count};
+    out->lambda = mt_arena_f64(mem, c, 1);
+    out->kind = mt_arena_alloc(mem, c, sizeof *out->kind);
+    out->cluster = mt_arena_int(mem, c);
+    bool ok = out->lambda != NULL && out->kind != NULL && out->cluster != NULL;
+    if (opt->vectors) {
+        out->y = mt_arena_f64(mem, (size_t)mass->n, c);
+        ok = ok && out->y != NULL;
+    }
+    if (opt->vectors && opt->check) {
+        out->residual = mt_arena_f64(mem, c, 1);
+        out->orthogonality = mt_arena_f64(mem, c, 1);
+        ok = ok && out->residual != NULL && out->orthogonality != NULL;
+    }
+    if (out->n_condensed > 0) {
+        out->massless = mt_arena_f64(mem, (size_t)mass->n, 1);
+        ok = ok && out->massless != NULL;
+    }
+    return ok ? MT_OK : mt_fail_memory(err);
+}
+
+/* Is the plain result good enough? Signs and ranks are in doubt where a factor (K semidefinite by construction) shows instability, or rigid-body modes that nobody announced. */
+static bool needs_factor(const mt_modes *modes, const mt_modal_options *opt)
+{
+    if (modes->n_unstable > 0 || (opt->n_rigid < 0 && modes->n_rigid > 0)) {
+        return true;
+    }
+    const int lowest = mt_modal_flexible(modes, 1);
+    return lowest >= 0 && DBL_EPSILON * modes->scale > FACTOR_SWITCH * modes->lambda[lowest];
+}
+
+static mt_status compute(const double *k, const mt_mass_factor *mass,
+                         const mt_stiffness_factor *factor, const mt_modal_options *opt,
+                         mt_arena *scratch, mt_modes *out, mt_err *err)
+{
+    MT_TRY(mt_modal_plain(k, mass, scratch, out, err));
+    mt_modal_classify(out, opt->n_rigid);
+    const bool usable = factor != NULL && opt->need_accuracy && mass->rank == mass->n;
+    if (usable && needs_factor(out, opt)) {
+        int null_count = 0;
+        MT_TRY(mt_modal_by_factor(factor, mass, scratch, out, &null_count, err));
+        mt_modal_classify(out, opt->n_rigid < 0 ? null_count : opt->n_rigid);
+    }
+    mt_modal_find_clusters(out);
+    if (opt->vectors) {
+        mt_modal_fix_sign(out->n, out->count, out->y);
+    }
+    return out->residual == NULL ? MT_OK : mt_modal_check(k, mass, scratch, out, err);
+}
+
+mt_status mt_modal_solve_factored(const double *k, const mt_mass_factor *mass,
+                                  const mt_stiffness_factor *factor,
+                                  const mt_modal_options *opt, mt_arena *mem, mt_modes *out,
+                                  mt_err *err)
+{
+    const mt_modal_options used = opt == NULL ? mt_modal_options_default() : *opt;
+    MT_TRY(claim(mass, &used, mem, out, err));
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    const mt_status rc = compute(k, mass, factor, &used, mem, out, err);
+    mt_arena_rewind(mem, mark);
+    if (rc != MT_E_MASSLESS) {
+        out->massless = NULL;
+    }
+    return rc;
+}
+
+mt_status mt_modal_solve(int n, const double *k, const double *m,
+                         const mt_stiffness_factor *factor, const mt_modal_options *opt,
+                         mt_arena *mem, mt_modes *out, mt_err *err)
+{
+    mt_mass_factor mass;
+    *out = (mt_modes){.n = n};
+    MT_TRY(mt_modal_factor_mass(n, m, mem, &mass, err));
+    return mt_modal_solve_factored(k, &mass, factor, opt, mem, out, err);
+}
