@@ -17,7 +17,7 @@ static mt_arena mem;
 /* Random symmetric matrix with NaN in the upper triangle. */
 static void poisoned_symmetric(mt_random *r, int n, double *a)
 {
-    mt_random_fill(r, (ptrdiff_t)n * n, a);
+    mt_random_fill(r, n * n, a);
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < j; i++) {
             a[i + j * n] = nan("");
@@ -31,7 +31,7 @@ static double residual(int n, const double *a, const double *v, const double *w)
     static double av[MOST * MOST];
     mt_symm(n, n, a, v, av);
     for (int j = 0; j < n; j++) {
-        mt_axpy(n, -w[j], v + j * n, av + j * n);
+        mt_axpy(n, -w[j], v + (ptrdiff_t)j * n, av + (ptrdiff_t)j * n);
     }
     return mt_max_abs((ptrdiff_t)n * n, av) / (n * DBL_EPSILON * mt_max_abs(n, w));
 }

@@ -37,7 +37,7 @@ static void svd__thin_factors_reproduce_the_matrix(mt_test *t)
         double vt[MOST * MOST];
         double back[MOST * MOST];
         mt_test_row(t, "%d x %d", m, n);
-        mt_random_fill(&g, (ptrdiff_t)m * n, a);
+        mt_random_fill(&g, m * n, a);
         memcpy(copy, a, sizeof a);
         CHECK_INT(t, mt_svd(m, n, copy, s, u, vt, &mem, NULL), MT_OK);
         for (int j = 0; j < r; j++) {

@@ -3,7 +3,6 @@
 #ifndef MT_RANDOM_H
 #define MT_RANDOM_H
 
-#include <stddef.h>
 #include <stdint.h>
 
 typedef struct mt_random {
@@ -36,9 +35,9 @@ static inline int mt_random_int(mt_random *r, int n)
     return (int)(mt_random_bits(r) % (uint64_t)n);
 }
 
-static inline void mt_random_fill(mt_random *r, ptrdiff_t n, double *x)
+static inline void mt_random_fill(mt_random *r, int n, double *x)
 {
-    for (ptrdiff_t i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++) {
         x[i] = mt_random_in(r, -1.0, 1.0);
     }
 }
