@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A result read back: what `apply` needs. Members that are not looked at may be anything, so that later versions can add some. */
+#include <math.h>
+
+#include "io/file.h"
+#include "io/io.h"
+#include "io/reader.h"
+
+typedef struct result_reader {
+    mt_reader r;
+    mt_result *result;
+} result_reader;
+
+/* A member that must be there and of the given type; MT_NO_ADDR where it is not (noted). */
+static mt_addr need(result_reader *s, mt_addr object, const char *name, mt_key_type type)
+{
+    const mt_addr value = mt_json_member(s->r.doc, object, name);
+    if (value == MT_NO_ADDR && object != MT_NO_ADDR) {
+        mt_diag_structure(s->r.diags, object, "member \"%s\" is missing", name);
+    }
+    return mt_reader_type(&s->r, value, type) ? value : MT_NO_ADDR;
+}
+
+/* A number; NaN for null, absent or wrong (noted). */
+static double number(result_reader *s, mt_addr object, const char *name)
+{
+    const mt_addr value = need(s, object, name, MT_KEY_ANY);
+    const mt_json_type type =
+        value == MT_NO_ADDR ? MT_JSON_NULL : mt_json_type_of(s->r.doc, value);
+    if (type == MT_JSON_NUMBER) {
+        return mt_json_number(s->r.doc, value);
+    }
+    if (type != MT_JSON_NULL) {
+        mt_diag_structure(s->r.diags, value, "must be a number or null, not %s",
+                          mt_json_type_text(type));
+    }
+    return nan("");
+}
+
+/* A text; NULL for null, absent or wrong (noted). */
+static const char *text(result_reader *s, mt_addr object, const char *name)
+{
+    const mt_addr value = need(s, object, name, MT_KEY_ANY);
+    if (value == MT_NO_ADDR || mt_json_type_of(s->r.doc, value) == MT_JSON_NULL) {
+        return NULL;
+    }
+    return mt_reader_text(&s->r, value);
+}
+
+static void *list_room(result_reader *s, mt_addr list, size_t size)
+{
+    const int n = list == MT_NO_ADDR ? 0 : mt_json_count(s->r.doc, list);
+    void *const items = mt_arena_alloc(s->r.mem, (size_t)n, size);
+    s->r.out_of_memory = s->r.out_of_memory || items == NULL;
+    return items;
+}
+
+static mt_addr first_of(const result_reader *s, mt_addr list)
+{
+    return list == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(s->r.doc, list);
+}
+
+static void read_parameter(result_reader *s, mt_addr value, mt_result_parameter *p)
+{
+    if (!mt_reader_type(&s->r, value, MT_KEY_OBJECT)) {
+        return;
+    }
+    p->name = mt_reader_text(&s->r, need(s, value, "name", MT_KEY_TEXT));
+    p->unit = text(s, value, "unit");
+    p->original = number(s, value, "original");
+    p->recommended = number(s, value, "recommended");
+    p->change_percent = number(s, value, "change_percent");
+    p->at_bound = text(s, value, "at_bound");
+}
+
+static void read_design(result_reader *s, mt_addr value, mt_recommendation *out)
+{
+    *out = mt_recommendation_default();
+    if (!mt_reader_type(&s->r, value, MT_KEY_OBJECT)) {
+        return;
+    }
+    out->rank = mt_reader_count(&s->r, need(s, value, "rank", MT_KEY_COUNT), 0, MT_MAX_LIST, 0);
+    out->feasible = mt_reader_flag(&s->r, need(s, value, "feasible", MT_KEY_BOOL), false);
+    out->grade = text(s, value, "grade");
+    out->score = number(s, value, "score");
+    out->score_unit = text(s, value, "score_unit");
+    out->change = number(s, value, "change");
+    out->misfit = number(s, value, "misfit");
+    out->violation_percent = number(s, value, "violation_percent");
+    const mt_addr list = need(s, value, "parameters", MT_KEY_LIST);
+    out->parameters = list_room(s, list, sizeof *out->parameters);
+    if (out->parameters == NULL) {
+        return;
+    }
+    for (mt_addr at = first_of(s, list); at != MT_NO_ADDR; at = mt_json_next(s->r.doc, at)) {
+        read_parameter(s, at, &out->parameters[out->n_parameters++]);
+    }
+}
+
+static void read_recommendations(result_reader *s, mt_addr list)
+{
+    mt_result *const result = s->result;
+    result->recommendations = list_room(s, list, sizeof *result->recommendations);
+    if (result->recommendations == NULL) {
+        return;
+    }
+    for (mt_addr at = first_of(s, list); at != MT_NO_ADDR; at = mt_json_next(s->r.doc, at)) {
+        read_design(s, at, &result->recommendations[result->n_recommendations++]);
+    }
+}
+
+static void read_inputs(result_reader *s, mt_addr list)
+{
+    mt_result_run *const run = &s->result->run;
+    run->input_names = list_room(s, list, sizeof *run->input_names);
+    run->input_sha256 = list_room(s, list, sizeof *run->input_sha256);
+    if (run->input_names == NULL || run->input_sha256 == NULL) {
+        return;
+    }
+    for (mt_addr at = first_of(s, list); at != MT_NO_ADDR; at = mt_json_next(s->r.doc, at)) {
+        if (mt_reader_type(&s->r, at, MT_KEY_OBJECT)) {
+            const int i = run->n_inputs++;
+            run->input_names[i] = mt_reader_text(&s->r, need(s, at, "file", MT_KEY_TEXT));
+            run->input_sha256[i] = mt_reader_text(&s->r, need(s, at, "sha256", MT_KEY_TEXT));
+        }
+    }
+}
+
+static void read_named_file(result_reader *s, const char *member, const char **name,
+                            const char **file)
+{
+    const mt_addr object = need(s, MT_JSON_ROOT, member, MT_KEY_OBJECT);
+    *name = text(s, object, "name");
+    *file = mt_reader_text(&s->r, need(s, object, "file", MT_KEY_TEXT));
+}
+
+static void read_root(result_reader *s)
+{
+#define STATUS_NAME(id, name) name,
+    static const char *const statuses[] = {MT_RESULT_STATUS_LIST(STATUS_NAME)};
+#undef STATUS_NAME
+    static const char *const formats[] = {"modetune-result/1"};
+    mt_result *const result = s->result;
+    if (!mt_reader_type(&s->r, MT_JSON_ROOT, MT_KEY_OBJECT)) {
+        return;
+    }
+    (void)mt_reader_choice(&s->r, need(s, MT_JSON_ROOT, "format", MT_KEY_TEXT), "format",
+                           formats, MT_COUNT(formats));
+    read_named_file(s, "study", &result->study_name, &result->study_file);
+    read_named_file(s, "model", &result->model_name, &result->model_file);
+    const int status = mt_reader_choice(&s->r, need(s, MT_JSON_ROOT, "status", MT_KEY_TEXT),
+                                        "status", statuses, MT_COUNT(statuses));
+    result->status = status == MT_ABSENT ? MT_RESULT_INTERRUPTED : (mt_result_status)status;
+    result->status_text = text(s, MT_JSON_ROOT, "status_text");
+    read_design(s, need(s, MT_JSON_ROOT, "baseline", MT_KEY_OBJECT), &result->baseline);
+    read_recommendations(s, need(s, MT_JSON_ROOT, "recommendations", MT_KEY_LIST));
+    const mt_addr run = need(s, MT_JSON_ROOT, "run", MT_KEY_OBJECT);
+    read_inputs(s, need(s, run, "inputs", MT_KEY_LIST));
+}
+
+static mt_status read_text(result_reader *s, const char *path, const mt_file *file,
+                           mt_text *messages, mt_err *err)
+{
+    mt_json *doc = NULL;
+    mt_status rc = mt_json_parse(file->bytes, file->length, &doc, err);
+    if (doc == NULL) {
+        return rc;
+    }
+    s->r.doc = doc;
+    s->r.diags = mt_json_diags(doc);
+    s->r.mem = &s->result->mem;
+    if (rc == MT_OK) {
+        read_root(s);
+    }
+    rc = mt_reader_status(&s->r, path, err);
+    if (messages != NULL) {
+        mt_json_print(doc, path, messages);
+        rc = messages->failed ? mt_fail_memory(err) : rc;
+    }
+    mt_json_delete(doc);
+    return rc;
+}
+
+mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result **out,
+                         mt_text *messages, mt_err *err)
+{
+    const size_t limit =
+        opt == NULL || opt->max_bytes == 0 ? MT_JSON_MAX_BYTES : opt->max_bytes;
+    mt_file file = {0};
+    result_reader s = {.result = NULL};
+    *out = NULL;
+    mt_status rc = mt_result_new(&s.result, err);
+    if (rc == MT_OK) {
+        rc = mt_file_read(path, NULL, limit, &file, err);
+    }
+    if (rc == MT_OK) {
+        rc = read_text(&s, path, &file, messages, err);
+    }
+    mt_file_free(&file);
+    if (rc != MT_OK) {
+        mt_result_delete(s.result);
+        return rc;
+    }
+    *out = s.result;
+    return MT_OK;
+}

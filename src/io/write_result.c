@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* result.json: everything that a study answered, and nothing about where, when or with how many workers. */
+#include "io/io.h"
+#include "io/write_json.h"
+
+/* A list of objects, one per item. */
+#define WRITE_LIST(w, name, n, items, write) \
+    do {                                     \
+        mt_json_open((w), (name), '[');      \
+        for (int i = 0; i < (n); i++) {      \
+            write((w), &(items)[i]);         \
+        }                                    \
+        mt_json_close(w);                    \
+    } while (0)
+
+static void write_strings(mt_json_writer *w, const char *name, int n, const char *const *items)
+{
+    mt_json_open(w, name, '[');
+    for (int i = 0; i < n; i++) {
+        mt_json_put_string(w, NULL, items[i]);
+    }
+    mt_json_close(w);
+}
+
+static void write_parameter(mt_json_writer *w, const mt_result_parameter *p)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "name", p->name);
+    mt_json_put_string(w, "unit", p->unit);
+    mt_json_put_number(w, "original", p->original);
+    mt_json_put_number(w, "recommended", p->recommended);
+    mt_json_put_number(w, "change_percent", p->change_percent);
+    mt_json_put_string(w, "at_bound", p->at_bound);
+    mt_json_close(w);
+}
+
+static void write_sensitivity(mt_json_writer *w, const mt_result_frequency *f,
+                              const mt_recommendation *r)
+{
+    if (f->sensitivity == NULL) {
+        mt_json_put_null(w, "sensitivity");
+        return;
+    }
+    mt_json_open(w, "sensitivity", '{');
+    for (int i = 0; i < r->n_parameters; i++) {
+        mt_json_put_number(w, r->parameters[i].name, f->sensitivity[i]);
+    }
+    mt_json_close(w);
+}
+
+static void write_frequency(mt_json_writer *w, const mt_result_frequency *f,
+                            const mt_recommendation *r)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "configuration", f->configuration);
+    mt_json_put_integer(w, "mode", f->mode);
+    mt_json_put_string(w, "name", f->name);
+    mt_json_put_number(w, "original_hz", f->original_hz);
+    mt_json_put_number(w, "recommended_hz", f->recommended_hz);
+    mt_json_put_number(w, "target_hz", f->target_hz);
+    mt_json_put_number(w, "at_least_hz", f->at_least_hz);
+    mt_json_put_number(w, "at_most_hz", f->at_most_hz);
+    mt_json_put_number(w, "error_percent", f->error_percent);
+    mt_json_put_string(w, "reference", f->reference);
+    mt_json_put_number(w, "mac", f->mac);
+    mt_json_put_bool(w, "repeated", f->repeated);
+    write_sensitivity(w, f, r);
+    mt_json_put_number(w, "residual", f->residual);
+    mt_json_put_number(w, "orthogonality", f->orthogonality);
+    mt_json_close(w);
+}
+
+static void write_goal(mt_json_writer *w, const mt_result_goal *g)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "goal", g->text);
+    mt_json_put_string(w, "pointer", g->pointer);
+    mt_json_put_number(w, "value", g->value);
+    mt_json_put_number(w, "demand", g->demand);
+    mt_json_put_number(w, "violation_percent", g->violation_percent);
+    mt_json_put_bool(w, "met", g->met);
+    mt_json_put_bool(w, "weighted", g->weighted);
+    mt_json_close(w);
+}
+
+static void write_design(mt_json_writer *w, const char *name, const mt_recommendation *r)
+{
+    mt_json_open(w, name, '{');
+    mt_json_put_integer(w, "rank", r->rank);
+    mt_json_put_bool(w, "feasible", r->feasible);
+    mt_json_put_string(w, "grade", r->grade);
+    mt_json_put_number(w, "score", r->score);
+    mt_json_put_string(w, "score_unit", r->score_unit);
+    mt_json_put_number(w, "change", r->change);
+    mt_json_put_number(w, "misfit", r->misfit);
+    mt_json_put_number(w, "violation_percent", r->violation_percent);
+    mt_json_put_number(w, "kkt_residual", r->kkt_residual);
+    mt_json_put_bool(w, "singular", r->singular);
+    WRITE_LIST(w, "parameters", r->n_parameters, r->parameters, write_parameter);
+    mt_json_open(w, "frequencies", '[');
+    for (int i = 0; i < r->n_frequencies; i++) {
+        write_frequency(w, &r->frequencies[i], r);
+    }
+    mt_json_close(w);
+    /* no study asks for bands yet: their members are there for the readers of later files */
+    mt_json_open(w, "clearances", '[');
+    mt_json_close(w);
+    mt_json_put_null(w, "gap_assignment");
+    mt_json_put_null(w, "tolerance_box");
+    WRITE_LIST(w, "goals", r->n_goals, r->goals, write_goal);
+    write_strings(w, "reasons", r->n_reasons, r->reasons);
+    mt_json_close(w);
+}
+
+static void write_recommendation(mt_json_writer *w, const mt_recommendation *r)
+{
+    write_design(w, NULL, r);
+}
+
+static void write_undetermined(mt_json_writer *w, const mt_result *result,
+                               const mt_undetermined *u)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "direction", u->text);
+    mt_json_put_number(w, "effect_percent", u->effect_percent);
+    mt_json_open(w, "components", '{');
+    for (int i = 0; i < u->n && i < result->n_variables; i++) {
+        mt_json_put_number(w, result->variables[i], u->direction[i]);
+    }
+    mt_json_close(w);
+    mt_json_close(w);
+}
+
+static void write_certificate(mt_json_writer *w, const mt_certificate *c)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "kind", c->kind);
+    mt_json_put_string(w, "text", c->text);
+    mt_json_put_bool(w, "proven", c->proven);
+    mt_json_close(w);
+}
+
+static void write_published(mt_json_writer *w, const mt_result_published *p)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "label", p->label);
+    mt_json_put_string(w, "kind", p->kind);
+    mt_json_put_string(w, "pointer", p->pointer);
+    mt_json_put_string(w, "role", p->role);
+    if (p->published_text != NULL) {
+        mt_json_put_string(w, "published", p->published_text);
+        mt_json_put_string(w, "computed", p->computed_text);
+    } else {
+        mt_json_put_number(w, "published", p->published);
+        mt_json_put_number(w, "computed", p->computed);
+    }
+    mt_json_put_number(w, "difference", p->difference);
+    mt_json_put_number(w, "difference_percent", p->difference_percent);
+    mt_json_put_string(w, "demand", p->demand);
+    mt_json_put_bool(w, "holds", p->holds);
+    mt_json_put_string(w, "source", p->source);
+    mt_json_close(w);
+}
+
+static void write_run(mt_json_writer *w, const mt_result_run *run)
+{
+    mt_json_open(w, "run", '{');
+    mt_json_put_string(w, "modetune", run->modetune_version);
+    mt_json_put_string(w, "blas", run->blas);
+    mt_json_put_string(w, "nlopt", run->nlopt_version);
+    mt_json_put_string(w, "gsl", run->gsl_version);
+    mt_json_put_integer(w, "seed", (long long)run->seed);
+    mt_json_put_integer(w, "starts", run->starts);
+    mt_json_put_integer(w, "evaluations", run->evaluations);
+    mt_json_open(w, "inputs", '[');
+    for (int i = 0; i < run->n_inputs; i++) {
+        mt_json_open(w, NULL, '{');
+        mt_json_put_string(w, "file", run->input_names[i]);
+        mt_json_put_string(w, "sha256", run->input_sha256[i]);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+    mt_json_close(w);
+}
+
+static void write_named_file(mt_json_writer *w, const char *member, const char *name,
+                             const char *file)
+{
+    mt_json_open(w, member, '{');
+    mt_json_put_string(w, "name", name);
+    mt_json_put_string(w, "file", file);
+    mt_json_close(w);
+}
+
+mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err)
+{
+    mt_json_writer writer = mt_json_writer_default(out);
+    mt_json_writer *const w = &writer;
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "format", "modetune-result/1");
+    write_named_file(w, "study", result->study_name, result->study_file);
+    write_named_file(w, "model", result->model_name, result->model_file);
+    mt_json_put_string(w, "status", mt_result_status_name(result->status));
+    mt_json_put_string(w, "status_text", result->status_text);
+    write_strings(w, "variables", result->n_variables, result->variables);
+    write_design(w, "baseline", &result->baseline);
+    WRITE_LIST(w, "recommendations", result->n_recommendations, result->recommendations,
+               write_recommendation);
+    mt_json_open(w, "undetermined", '[');
+    for (int i = 0; i < result->n_undetermined; i++) {
+        write_undetermined(w, result, &result->undetermined[i]);
+    }
+    mt_json_close(w);
+    WRITE_LIST(w, "certificates", result->n_certificates, result->certificates,
+               write_certificate);
+    WRITE_LIST(w, "published", result->n_published, result->published, write_published);
+    write_strings(w, "warnings", result->n_warnings, result->warnings);
+    write_run(w, &result->run);
+    mt_json_close(w);
+    if (mt_json_done(w)) {
+        return MT_OK;
+    }
+    return writer.misused ? mt_fail(err, MT_E_INTERNAL, "the result cannot be written as JSON")
+                          : mt_fail_memory(err);
+}
