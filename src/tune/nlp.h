@@ -15,19 +15,20 @@
  * This file and its .c know no mechanism: tests drive them with closed-form functions.
  */
 typedef struct mt_nlp_values {
-    double f;      /* objective; where n_res > 0: ignored, 1/2 |r|^2 is used */
-    double *df;    /* [n] */
-    double *r;     /* [n_res] */
-    double *dr;    /* n_res x n column-major */
-    double *eq;    /* [n_eq] */
-    double *deq;   /* n_eq x n */
-    double *in;    /* [n_in], >= 0 feasible */
-    double *din;   /* n_in x n */
+    double f;    /* objective; where n_res > 0: ignored, 1/2 |r|^2 is used */
+    double *df;  /* [n] */
+    double *r;   /* [n_res] */
+    double *dr;  /* n_res x n column-major */
+    double *eq;  /* [n_eq] */
+    double *deq; /* n_eq x n */
+    double *in;  /* [n_in], >= 0 feasible */
+    double *din; /* n_in x n */
 } mt_nlp_values;
 
 /* Evaluate at t. with_gradient false: only values are filled. A status other than MT_OK means "no value here" (the search steps back), except MT_E_INTERRUPTED,
  * MT_E_MEMORY and MT_E_INTERNAL, which end it. */
-typedef mt_status (*mt_nlp_eval)(void *context, const double *t, bool with_gradient, mt_nlp_values *out, mt_err *err);
+typedef mt_status (*mt_nlp_eval)(void *context, const double *t, bool with_gradient,
+                                 mt_nlp_values *out, mt_err *err);
 
 typedef struct mt_nlp {
     int n;
@@ -45,10 +46,11 @@ typedef struct mt_nlp {
 
 typedef struct mt_nlp_options {
     unsigned long seed;
-    int starts;        /* local solves from the origin and Sobol points (reverse Halton beyond 40 variables); 0: 8 + 4 n, at most 64 */
+    int starts; /* local solves from the origin and Sobol points (reverse Halton beyond 40 variables); 0: 8 + 4 n, at most 64 */
     long max_evals;    /* over all starts; enforced inside the callbacks; 0: 2000 * starts */
     int max_solutions; /* how many distinct ones to keep; 0: 16 */
-    bool least_change; /* where equalities leave freedom and f is the change: keep undetermined directions at the origin */
+    bool
+        least_change; /* where equalities leave freedom and f is the change: keep undetermined directions at the origin */
 } mt_nlp_options;
 mt_nlp_options mt_nlp_options_default(void);
 
@@ -56,28 +58,34 @@ typedef enum mt_stop { MT_STOP_DONE, MT_STOP_MAX_EVALS, MT_STOP_USER } mt_stop;
 
 typedef struct mt_nlp_solution {
     double *t;
-    double f;          /* recomputed at t */
-    double violation;  /* max over constraints of |violation| / tolerance; <= 1 is feasible */
+    double f;         /* recomputed at t */
+    double violation; /* max over constraints of |violation| / tolerance; <= 1 is feasible */
+    double
+        squares; /* sum of squares of eq and of the negative part of in: what a compromise minimises */
     bool feasible;
-    bool singular;     /* Jacobian of the active constraints (or of r) rank deficient at t: a double root */
-    double kkt;        /* ||grad of the Lagrangian projected on the free variables|| relative; NaN for isolated roots (no freedom left) */
-    int start;         /* which start found it first */
-    int *bound;        /* [n] -1 at lower, +1 at upper, 0 free */
-    double *mult_eq;   /* [n_eq] multipliers, NaN where undetermined */
-    double *mult_in;   /* [n_in] */
+    bool
+        singular; /* Jacobian of the active constraints (or of r) rank deficient at t: a double root */
+    double
+        kkt; /* ||grad of the Lagrangian projected on the free variables|| relative; NaN for isolated roots (no freedom left) */
+    int start;          /* which start found it first */
+    int *bound;         /* [n] -1 at lower, +1 at upper, 0 free */
+    double *mult_eq;    /* [n_eq] multipliers, NaN where undetermined */
+    double *mult_in;    /* [n_in] */
     double *mult_bound; /* [n] */
 } mt_nlp_solution;
 
 typedef struct mt_nlp_result {
-    int n_solutions;            /* feasible ones first, by f; else compromises by violation */
+    int n_solutions; /* feasible ones first, by f; else compromises by violation */
     mt_nlp_solution *solutions;
-    bool compromise;            /* none is feasible: these minimise the sum of squares of the violations relative to the demands */
+    bool
+        compromise; /* none is feasible: these minimise the sum of squares of the violations relative to the demands */
     long evals;
     int starts;
     mt_stop stop;
-    int n_undetermined;         /* at the best solution: orthonormal directions of t-space along which crossing the whole bounds changes every residual and constraint by less than its tolerance */
-    double *undetermined;       /* n x n_undetermined */
-    double *undetermined_effect; /* [n_undetermined] greatest change / tolerance found when crossing */
+    int n_undetermined; /* at the best solution: orthonormal directions of t-space along which crossing the whole bounds changes every residual and constraint by less than its tolerance */
+    double *undetermined; /* n x n_undetermined */
+    double *
+        undetermined_effect; /* [n_undetermined] greatest change / tolerance found when crossing */
 } mt_nlp_result;
 
 /*
@@ -85,6 +93,7 @@ typedef struct mt_nlp_result {
  * then a polish (Gauss-Newton / Newton on the KKT system) to full accuracy; misfit with equalities: SLSQP, then polish. Feasibility and KKT are recomputed here, NLopt's return code decides nothing.
  * No feasible point: the compromise. Results in mem. Deterministic for equal seed.
  */
-mt_status mt_nlp_solve(const mt_nlp *nlp, const mt_nlp_options *opt, mt_arena *mem, mt_nlp_result *out, mt_err *err);
+mt_status mt_nlp_solve(const mt_nlp *nlp, const mt_nlp_options *opt, mt_arena *mem,
+                       mt_nlp_result *out, mt_err *err);
 
 #endif

@@ -1,0 +1,308 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The search: local solves from many starts, then judgement.
+ *
+ *     every start:  roots by least squares     where the equalities leave no freedom
+ *                   least squares, Newton      where there are residuals and bounds only
+ *                   SLSQP, restoration, Newton otherwise; a saddle is left along its direction
+ *                   an infeasible end is a local minimum of the squares of the violations
+ *     all ends:     feasible ones only, if any; undetermined directions at the best, all ends pulled
+ *                   back along them; equal ones merged; ranked; multipliers, KKT, singularity
+ *
+ * Nothing here depends on time, addresses or the order of memory: equal input, equal bytes.
+ */
+#include "tune/nlp_priv.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { ROUNDS = 3, HALVINGS = 6 };
+/* Ends nearer than this are one (0.1 percent in a parameter: the same design to an engineer), and nearer than the
+ * root of the tolerance, which a double root smears; that is capped where tolerances are wide. */
+static const double SAME = 1e-3;
+static const double SAME_MOST = 1e-2;
+/* Ends nearer than this are one and the same to rounding; merged ones farther apart were two roots. */
+static const double IDENTICAL = 1e-5;
+/* A feasible end with a KKT residual above this is no local solution, if there are better ones. */
+static const double STATIONARY = 1e-6;
+static const double NOT_STATIONARY = 1e-3;
+/* Length of the first step away from a saddle. */
+static const double SADDLE_STEP = 0.05;
+/* Violation (in tolerances) below which an end is worth a Newton polish before a restoration. */
+static const double NEARLY = 1e4;
+
+typedef struct ends {
+    mt_nlp_point **p;
+    bool *merged; /* another root was merged into it */
+    int count;
+    int capacity;
+} ends;
+
+static void add_end(mt_nlp_engine *e, ends *all, const mt_nlp_point *p)
+{
+    if (all->count < all->capacity) {
+        mt_nlp_point_copy(e, all->p[all->count], p);
+        all->merged[all->count++] = false;
+    }
+}
+
+/* Newton from `last`, where SLSQP ended, if that serves better than from p, the best it met. */
+static void polish_both(mt_nlp_engine *e, mt_nlp_point *p, mt_nlp_point *last, double *saddle)
+{
+    if (last->violation <= NEARLY) {
+        mt_nlp_polish(e, MT_NLP_OBJECTIVE, last, saddle);
+        if (mt_nlp_feasible(last) && (last->kkt <= STATIONARY || !mt_nlp_feasible(p))) {
+            mt_nlp_point_copy(e, p, last);
+            return;
+        }
+    }
+    if (mt_nlp_feasible(p)) {
+        mt_nlp_polish(e, MT_NLP_OBJECTIVE, p, saddle);
+    }
+}
+
+/* Objective under the constraints from p, the equalities reduced to rows. p: where it ends. */
+static void minimise(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p)
+{
+    mt_nlp_point *const last = mt_nlp_point_new(e, &e->scratch);
+    double *const saddle = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
+    for (int round = 0; round < ROUNDS && saddle != NULL && last != NULL && !e->ended;
+         round++) {
+        memset(saddle, 0, (size_t)e->n * sizeof *saddle);
+        mt_nlp_slsqp(e, n_rows, rows, p, last);
+        polish_both(e, p, last, saddle);
+        if (!mt_nlp_feasible(p)) {
+            mt_nlp_least_squares(e, MT_NLP_SQUARES, p);
+            if (!mt_nlp_feasible(p)) {
+                return;
+            }
+            mt_nlp_polish(e, MT_NLP_OBJECTIVE, p, saddle);
+        }
+        const double kick = mt_max_abs(e->n, saddle);
+        if (p->kkt <= STATIONARY && !(kick > 0)) {
+            return;
+        }
+        if (kick > 0) {
+            mt_nlp_point_copy(e, last, p);
+            mt_axpy(e->n, SADDLE_STEP / kick, saddle, last->t);
+            if (mt_nlp_evaluate(e, last->t, true, last)) {
+                last->start = p->start;
+                mt_nlp_point_copy(e, p, last);
+            }
+        }
+    }
+}
+
+/* Equalities settle everything: roots. Where they turn out dependent, the objective decides. */
+static void find_root(mt_nlp_engine *e, mt_nlp_point *p)
+{
+    mt_nlp_least_squares(e, MT_NLP_SQUARES, p);
+    if (!mt_nlp_feasible(p) || e->ended) {
+        return;
+    }
+    mt_nlp_weakness w;
+    if (mt_nlp_weakness_at(e, p, &e->scratch, &w) && w.curve && w.n_rows < e->n_free) {
+        minimise(e, w.n_rows, w.rows, p);
+    }
+}
+
+/* Local search from p, which has values. */
+static void local_search(mt_nlp_engine *e, const int *all_rows, mt_nlp_point *p)
+{
+    const mt_nlp *const q = e->nlp;
+    if (e->n_free == 0) {
+        return;
+    }
+    if (q->n_eq >= e->n_free) {
+        find_root(e, p);
+    } else if (q->n_res > 0 && q->n_eq == 0 && q->n_in == 0) {
+        mt_nlp_least_squares(e, MT_NLP_RESIDUALS, p);
+        mt_nlp_polish(e, MT_NLP_RESIDUALS, p, NULL);
+    } else {
+        minimise(e, q->n_eq, all_rows, p);
+    }
+    if (!mt_nlp_feasible(p)) {
+        mt_nlp_polish(e, MT_NLP_SQUARES, p, NULL);
+    }
+}
+
+/* Values at the start t, or half way to the origin, and so on. */
+static bool begin(mt_nlp_engine *e, double *t, mt_nlp_point *p)
+{
+    for (int k = 0; k <= HALVINGS && !e->ended; k++) {
+        if (mt_nlp_evaluate(e, t, true, p)) {
+            e->df_scale = fmax(e->df_scale, mt_norm2(e->n, p->df));
+            return true;
+        }
+        for (int j = 0; j < e->n; j++) {
+            t[j] = 0.5 * (t[j] + e->origin[j]);
+        }
+    }
+    return false;
+}
+
+static bool allocate_ends(mt_nlp_engine *e, ends *all)
+{
+    all->p = mt_arena_alloc(&e->scratch, (size_t)all->capacity, sizeof(mt_nlp_point *));
+    all->merged = mt_arena_alloc(&e->scratch, (size_t)all->capacity, sizeof *all->merged);
+    bool ok = all->p != NULL && all->merged != NULL;
+    for (int i = 0; ok && i < all->capacity; i++) {
+        all->p[i] = mt_nlp_point_new(e, &e->scratch);
+        ok = all->p[i] != NULL;
+    }
+    if (!ok) {
+        mt_nlp_end(e, mt_fail_memory(e->err));
+    }
+    return ok;
+}
+
+static void all_starts(mt_nlp_engine *e, ends *all, mt_nlp_result *out)
+{
+    mt_arena *const mem = &e->scratch;
+    double *const t = mt_nlp_starts(e, all->capacity, mem);
+    int *const rows = mt_arena_int(mem, (size_t)e->nlp->n_eq);
+    mt_nlp_point *const p = mt_nlp_point_new(e, mem);
+    if (t == NULL || rows == NULL || p == NULL) {
+        mt_nlp_end(e, mt_fail_memory(e->err));
+        return;
+    }
+    for (int i = 0; i < e->nlp->n_eq; i++) {
+        rows[i] = i;
+    }
+    for (int k = 0; k < all->capacity && !e->ended; k++) {
+        const mt_arena_mark mark = mt_arena_get_mark(mem);
+        out->starts = k + 1;
+        if (begin(e, t + (ptrdiff_t)k * e->n, p)) {
+            p->start = k;
+            local_search(e, rows, p);
+            p->start = k;
+            add_end(e, all, p);
+        }
+        mt_arena_rewind(mem, mark);
+    }
+}
+
+/* Insertion sort, stable: what is equal keeps the order of the starts. */
+static void rank(ends *all)
+{
+    for (int i = 1; i < all->count; i++) {
+        mt_nlp_point *const p = all->p[i];
+        const bool merged = all->merged[i];
+        int k = i;
+        for (; k > 0 && mt_nlp_better(p, all->p[k - 1]); k--) {
+            all->p[k] = all->p[k - 1];
+            all->merged[k] = all->merged[k - 1];
+        }
+        all->p[k] = p;
+        all->merged[k] = merged;
+    }
+}
+
+/* Drop infeasible ends where one is feasible, and feasible ones that are no local minima. Ranked. */
+static void drop_useless(ends *all)
+{
+    const bool any = all->count > 0 && mt_nlp_feasible(all->p[0]);
+    bool stationary = false;
+    for (int i = 0; i < all->count; i++) {
+        stationary = stationary || (mt_nlp_feasible(all->p[i]) && all->p[i]->kkt <= STATIONARY);
+    }
+    int kept = 0;
+    for (int i = 0; i < all->count; i++) {
+        mt_nlp_point *const p = all->p[i];
+        const bool useless =
+            any && (!mt_nlp_feasible(p) || (i > 0 && stationary && p->kkt > NOT_STATIONARY &&
+                                            p->kkt < HUGE_VAL)); /* roots have no residual */
+        if (!useless) {
+            mt_nlp_point_swap(&all->p[kept++], &all->p[i]);
+        }
+    }
+    all->count = kept;
+}
+
+/* Merge equal ends into the better one. Ranked. */
+static void merge(const mt_nlp_engine *e, ends *all)
+{
+    const double same = fmax(SAME, fmin(sqrt(e->eq_tol), SAME_MOST));
+    int kept = 0;
+    for (int i = 0; i < all->count; i++) {
+        int twin = -1;
+        for (int k = 0; k < kept && twin < 0; k++) {
+            twin = mt_nlp_distance(e, all->p[k], all->p[i]) <= same ? k : -1;
+        }
+        if (twin < 0) {
+            mt_nlp_point_swap(&all->p[kept++], &all->p[i]);
+        } else if (mt_nlp_distance(e, all->p[twin], all->p[i]) > IDENTICAL) {
+            all->merged[twin] = true;
+        }
+    }
+    all->count = kept;
+}
+
+/* A double root; of two roots that were merged the Jacobian changes its sign in between. */
+static bool is_singular(mt_nlp_engine *e, const mt_nlp_point *p, bool merged)
+{
+    const bool roots = e->nlp->n_eq >= e->n_free && e->n_free > 0;
+    if (!mt_nlp_feasible(p) || e->ended || (merged && roots)) {
+        return mt_nlp_feasible(p) && merged && roots;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    mt_nlp_weakness w = {0};
+    (void)mt_nlp_weakness_at(e, p, &e->scratch, &w);
+    mt_arena_rewind(&e->scratch, mark);
+    return w.singular;
+}
+
+static void judge(mt_nlp_engine *e, ends *all, mt_arena *mem, mt_nlp_result *out)
+{
+    rank(all);
+    drop_useless(all);
+    out->compromise = all->count > 0 && !mt_nlp_feasible(all->p[0]);
+    if (all->count > 0 && !mt_nlp_undetermined(e, all->p[0], mem, out)) {
+        return;
+    }
+    for (int i = 0; i < all->count && out->n_undetermined > 0; i++) {
+        mt_nlp_pull_back(e, out, all->p[i]);
+    }
+    rank(all);
+    merge(e, all);
+    const int count = all->count < e->opt.max_solutions ? all->count : e->opt.max_solutions;
+    out->solutions = mt_arena_alloc(mem, (size_t)count, sizeof *out->solutions);
+    if (out->solutions == NULL) {
+        mt_nlp_end(e, mt_fail_memory(e->err));
+        return;
+    }
+    for (int i = 0; i < count && mt_nlp_report(e, all->p[i], mem, &out->solutions[i]); i++) {
+        out->solutions[i].singular = is_singular(e, all->p[i], all->merged[i]);
+        out->n_solutions = i + 1;
+    }
+}
+
+static mt_status finish(mt_nlp_engine *e, const ends *all, mt_nlp_result *out)
+{
+    out->evals = e->evals;
+    out->stop = e->stop;
+    if (e->fatal != MT_OK) {
+        return e->fatal;
+    }
+    if (all->count == 0 && e->stop == MT_STOP_DONE && e->refused != MT_OK) {
+        return mt_fail(e->err, e->refused, "no start of the search has a value: %s",
+                       e->refused_err.text);
+    }
+    return MT_OK;
+}
+
+mt_status mt_nlp_solve(const mt_nlp *nlp, const mt_nlp_options *opt, mt_arena *mem,
+                       mt_nlp_result *out, mt_err *err)
+{
+    mt_nlp_engine e;
+    *out = (mt_nlp_result){.stop = MT_STOP_DONE};
+    MT_TRY(mt_nlp_engine_init(&e, nlp, opt, err));
+    ends all = {.capacity = e.n_free > 0 ? e.opt.starts : 1};
+    if (allocate_ends(&e, &all)) {
+        all_starts(&e, &all, out);
+        judge(&e, &all, mem, out);
+    }
+    const mt_status rc = finish(&e, &all, out);
+    mt_nlp_engine_free(&e);
+    return rc;
+}

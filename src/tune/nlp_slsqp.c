@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The only door to NLopt: SLSQP with exact gradients. Nothing it returns is believed. Every point it
+ * asks about is evaluated once (objective and constraints are asked for separately at the same t) and
+ * kept when it is better than all before. It never sees a value that is not finite: such a point
+ * gets the last finite values, and the run is stopped and begun again from the best point in a box
+ * half as wide as the failing step; the box widens again while the runs in it succeed.
+ */
+#include "tune/nlp_priv.h"
+
+#include <nlopt.h>
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+enum { EVALS_BASE = 200, EVALS_PER_VARIABLE = 20, RESTARTS = 12 };
+/* Where SLSQP may stop: what is left, our Newton iteration does in a few steps. */
+static const double F_TOL_REL = 1e-10;
+static const double T_TOL_ABS = 1e-9;
+/* Change of the box after a failed (half the failing step) and after a good run. */
+static const double BOX_SHRINK = 0.5;
+static const double BOX_GROW = 4.0;
+
+typedef struct slsqp {
+    mt_nlp_engine *e;
+    int n; /* free variables */
+    int *free;
+    int n_rows;
+    const int *rows;
+    double *lower;
+    double *upper;
+    double *x;
+    double *tol;
+    double *t;        /* [engine n] */
+    double *t_failed; /* [engine n] */
+    mt_nlp_point *cur;
+    mt_nlp_point *trial;
+    mt_nlp_point *best;
+    bool failed;
+    nlopt_opt opt;
+} slsqp;
+
+/* Bring cur to x. On failure cur stays the last finite point and the run is told to stop. */
+static void visit(slsqp *w, const double *x)
+{
+    mt_nlp_engine *const e = w->e;
+    bool same = true;
+    for (int i = 0; i < w->n; i++) {
+        w->t[w->free[i]] = x[i];
+        same = same && x[i] == w->cur->t[w->free[i]];
+    }
+    if (same || w->failed) {
+        return;
+    }
+    if (!mt_nlp_evaluate(e, w->t, true, w->trial)) {
+        w->failed = true;
+        memcpy(w->t_failed, w->t, (size_t)e->n * sizeof *w->t);
+        (void)nlopt_force_stop(w->opt);
+        return;
+    }
+    mt_nlp_point_swap(&w->cur, &w->trial);
+    if (mt_nlp_better(w->cur, w->best)) {
+        mt_nlp_point_copy(e, w->best, w->cur);
+    }
+}
+
+static double objective(unsigned int n, const double *x, double *grad, void *data)
+{
+    slsqp *const w = data;
+    visit(w, x);
+    for (unsigned int i = 0; grad != NULL && i < n; i++) {
+        grad[i] = w->cur->df[w->free[i]];
+    }
+    return w->cur->f;
+}
+
+static void equalities(unsigned int m, double *c, unsigned int n, const double *x, double *grad,
+                       void *data)
+{
+    slsqp *const w = data;
+    visit(w, x);
+    for (unsigned int i = 0; i < m; i++) {
+        const int row = w->rows[i];
+        c[i] = w->cur->eq[row];
+        for (unsigned int j = 0; grad != NULL && j < n; j++) {
+            grad[(size_t)i * n + j] =
+                w->cur->deq[row + (ptrdiff_t)w->free[j] * w->e->nlp->n_eq];
+        }
+    }
+}
+
+/* NLopt wants c <= 0. */
+static void inequalities(unsigned int m, double *c, unsigned int n, const double *x,
+                         double *grad, void *data)
+{
+    slsqp *const w = data;
+    visit(w, x);
+    for (unsigned int i = 0; i < m; i++) {
+        c[i] = -w->cur->in[i];
+        for (unsigned int j = 0; grad != NULL && j < n; j++) {
+            grad[(size_t)i * n + j] = -w->cur->din[i + (ptrdiff_t)w->free[j] * w->e->nlp->n_in];
+        }
+    }
+}
+
+static bool set_up(slsqp *w)
+{
+    const mt_nlp *const q = w->e->nlp;
+    const unsigned int n_eq = (unsigned int)w->n_rows;
+    const unsigned int n_in = (unsigned int)q->n_in;
+    const long left = w->e->opt.max_evals - w->e->evals;
+    const int most = EVALS_BASE + EVALS_PER_VARIABLE * w->n;
+    for (int i = 0; i < w->n_rows; i++) {
+        w->tol[i] = q->eq_tol[w->rows[i]];
+    }
+    w->opt = nlopt_create(NLOPT_LD_SLSQP, (unsigned int)w->n);
+    return w->opt != NULL && nlopt_set_min_objective(w->opt, objective, w) > 0 &&
+           (n_eq == 0 ||
+            nlopt_add_equality_mconstraint(w->opt, n_eq, equalities, w, w->tol) > 0) &&
+           (n_in == 0 ||
+            nlopt_add_inequality_mconstraint(w->opt, n_in, inequalities, w, q->in_tol) > 0) &&
+           nlopt_set_lower_bounds(w->opt, w->lower) > 0 &&
+           nlopt_set_upper_bounds(w->opt, w->upper) > 0 &&
+           nlopt_set_ftol_rel(w->opt, F_TOL_REL) > 0 &&
+           nlopt_set_xtol_abs1(w->opt, T_TOL_ABS) > 0 &&
+           /* one more than we allow: our own budget, not NLopt's, ends the search */
+           nlopt_set_maxeval(w->opt, left < most ? (int)left + 1 : most) > 0;
+}
+
+/* One run from cur in the box [centre - radius, centre + radius] within the bounds. False: it met
+ * a point without value, or could not be started. */
+static bool run_once(slsqp *w, double radius)
+{
+    const mt_nlp *const q = w->e->nlp;
+    for (int i = 0; i < w->n; i++) {
+        const int j = w->free[i];
+        w->x[i] = w->cur->t[j];
+        w->lower[i] = fmax(q->lower[j], w->x[i] - radius);
+        w->upper[i] = fmin(q->upper[j], w->x[i] + radius);
+    }
+    w->failed = false;
+    double f = 0;
+    if (set_up(w)) {
+        nlopt_srand(w->e->opt.seed);
+        (void)nlopt_optimize(w->opt, w->x, &f); /* its verdict decides nothing */
+    } else {
+        mt_nlp_end(w->e, mt_fail_memory(w->e->err));
+    }
+    nlopt_destroy(w->opt);
+    w->opt = NULL;
+    return !w->failed && !w->e->ended;
+}
+
+/* Did the run stop at the box and not at the bounds of the problem? */
+static bool at_box(const slsqp *w)
+{
+    const mt_nlp *const q = w->e->nlp;
+    for (int i = 0; i < w->n; i++) {
+        const int j = w->free[i];
+        const double t = w->cur->t[j];
+        if ((t <= w->lower[i] && t > q->lower[j]) || (t >= w->upper[i] && t < q->upper[j])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static double failed_step(const slsqp *w)
+{
+    double step = 0;
+    for (int j = 0; j < w->e->n; j++) {
+        step = fmax(step, fabs(w->t_failed[j] - w->best->t[j]));
+    }
+    return step;
+}
+
+static void search(slsqp *w)
+{
+    double radius = HUGE_VAL;
+    for (int k = 0; k < RESTARTS && !w->e->ended; k++) {
+        if (!run_once(w, radius)) {
+            radius = fmin(radius, failed_step(w)) * BOX_SHRINK;
+            mt_nlp_point_copy(w->e, w->cur, w->best);
+        } else if (at_box(w)) {
+            radius *= BOX_GROW;
+        } else {
+            return;
+        }
+    }
+}
+
+static bool allocate(slsqp *w)
+{
+    mt_nlp_engine *const e = w->e;
+    mt_arena *const mem = &e->scratch;
+    const size_t n = (size_t)e->n;
+    w->free = mt_arena_int(mem, n);
+    w->lower = mt_arena_f64(mem, n, 1);
+    w->upper = mt_arena_f64(mem, n, 1);
+    w->x = mt_arena_f64(mem, n, 1);
+    w->t = mt_arena_f64(mem, n, 1);
+    w->t_failed = mt_arena_f64(mem, n, 1);
+    w->tol = mt_arena_f64(mem, (size_t)w->n_rows, 1);
+    w->cur = mt_nlp_point_new(e, mem);
+    w->trial = mt_nlp_point_new(e, mem);
+    w->best = mt_nlp_point_new(e, mem);
+    if (!w->free || !w->lower || !w->upper || !w->x || !w->t || !w->t_failed || !w->tol ||
+        !w->cur || !w->trial || !w->best) {
+        mt_nlp_end(e, mt_fail_memory(e->err));
+        return false;
+    }
+    return true;
+}
+
+void mt_nlp_slsqp(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p,
+                  mt_nlp_point *last)
+{
+    slsqp w = {.e = e, .n_rows = n_rows, .rows = rows};
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    mt_nlp_point_copy(e, last, p);
+    if (e->n_free > n_rows && allocate(&w)) {
+        for (int j = 0; j < e->n; j++) {
+            w.t[j] = p->t[j];
+            if (!e->held[j]) {
+                w.free[w.n++] = j;
+            }
+        }
+        mt_nlp_point_copy(e, w.cur, p);
+        mt_nlp_point_copy(e, w.best, p);
+        if (w.n > n_rows) {
+            search(&w);
+        }
+        mt_nlp_point_copy(e, p, w.best);
+        mt_nlp_point_copy(e, last, w.cur);
+    }
+    mt_arena_rewind(&e->scratch, mark);
+}

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef TESTS_TUNE_NLP_PROBLEM_H
+#define TESTS_TUNE_NLP_PROBLEM_H
+
+/* Closed-form problems for the search engine: a callback over plain functions, and its result. */
+#include <math.h>
+#include <string.h>
+
+#include "mt_test.h"
+#include "tune/nlp.h"
+
+enum { N_MOST = 48, M_MOST = 48 };
+
+typedef struct nlp_case {
+    mt_nlp nlp;
+    double lower[N_MOST];
+    double upper[N_MOST];
+    double origin[N_MOST];
+    double eq_tol[M_MOST];
+    double in_tol[M_MOST];
+    double target[M_MOST]; /* whatever the callback wants */
+    long calls;
+    mt_arena mem;
+    mt_nlp_result result;
+} nlp_case;
+
+/* n variables between lower and upper, origin given for all; tolerances 1e-6. */
+static inline void case_begin(nlp_case *c, int n, mt_nlp_eval eval, double lower, double upper)
+{
+    memset(c, 0, sizeof *c);
+    for (int j = 0; j < N_MOST; j++) {
+        c->lower[j] = lower;
+        c->upper[j] = upper;
+    }
+    for (int i = 0; i < M_MOST; i++) {
+        c->eq_tol[i] = 1e-6;
+        c->in_tol[i] = 1e-6;
+    }
+    c->nlp = (mt_nlp){.n = n,
+                      .lower = c->lower,
+                      .upper = c->upper,
+                      .origin = c->origin,
+                      .eq_tol = c->eq_tol,
+                      .in_tol = c->in_tol,
+                      .eval = eval,
+                      .context = c};
+}
+
+static inline mt_status case_solve(nlp_case *c, const mt_nlp_options *opt)
+{
+    mt_err err = {MT_OK, ""};
+    mt_arena_free(&c->mem);
+    const mt_status rc = mt_arena_init(&c->mem, 0, NULL);
+    return rc == MT_OK ? mt_nlp_solve(&c->nlp, opt, &c->mem, &c->result, &err) : rc;
+}
+
+/* f = 1/2 sum (t - origin)^2 */
+static inline void change(const nlp_case *c, const double *t, mt_nlp_values *out)
+{
+    out->f = 0;
+    for (int j = 0; j < c->nlp.n; j++) {
+        const double d = t[j] - c->origin[j];
+        out->f += 0.5 * d * d;
+        out->df[j] = d;
+    }
+}
+
+#endif
