@@ -1,0 +1,336 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* result.json: what is written, what `apply` reads back, and what damaged files say. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "io/file.h"
+#include "io/io.h"
+#include "io/json.h"
+#include "mt_alloc.h"
+#include "mt_test.h"
+
+static mt_result_parameter PARAMETERS[] = {
+    { .name = "K_T1",
+     .unit = "N m/rad",
+     .original = 1e4,
+     .recommended = 10147.0 + 1.0 / 3.0,
+     .change_percent = 1.4733333333333334,
+     .at_bound = NULL},
+    {.name = "M_SAU", .unit = NULL, .original = 0.0, .recommended = 0.2, .at_bound = "lower" },
+};
+static double SENSITIVITY[] = {1.25e-3, -2.0};
+static mt_result_goal GOALS[] = {
+    {.text = "installed mode 1 at 18 Hz",
+     .pointer = "/goals/0",
+     .value = 18.0,
+     .demand = 18.0,
+     .met = true}
+};
+static const char *REASONS[] = {"K_T1 rises by 1.5 %."};
+static const char *VARIABLES[] = {"K_T1", "M_SAU"};
+static double DIRECTION[] = {0.0, 1.0};
+static const char *INPUT_NAMES[] = {"study.json"};
+static const char *INPUT_DIGESTS[] = {
+    "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"};
+
+typedef struct sample {
+    mt_result *result;
+    mt_result_frequency frequency;
+    mt_recommendation recommendation;
+    mt_undetermined undetermined;
+    mt_certificate certificate;
+    mt_result_published published[2];
+} sample;
+
+static void fill_design(sample *s, mt_recommendation *r)
+{
+    PARAMETERS[1].change_percent = nan("");
+    *r = mt_recommendation_default();
+    r->feasible = true;
+    r->grade = "feasible";
+    r->score = 0.1 + 0.2;
+    r->score_unit = "";
+    r->change = 0.25;
+    r->violation_percent = 0.0;
+    r->n_parameters = MT_COUNT(PARAMETERS);
+    r->parameters = PARAMETERS;
+    r->n_frequencies = 1;
+    r->frequencies = &s->frequency;
+    r->n_goals = MT_COUNT(GOALS);
+    r->goals = GOALS;
+    r->n_reasons = MT_COUNT(REASONS);
+    r->reasons = REASONS;
+}
+
+static bool make_sample(sample *s)
+{
+    if (mt_result_new(&s->result, NULL) != MT_OK) {
+        return false;
+    }
+    mt_result *const r = s->result;
+    s->frequency = mt_result_frequency_default();
+    s->frequency.configuration = "installed";
+    s->frequency.mode = 1;
+    s->frequency.original_hz = 17.5;
+    s->frequency.recommended_hz = 18.0;
+    s->frequency.target_hz = 18.0;
+    s->frequency.error_percent = 0.0;
+    s->frequency.sensitivity = SENSITIVITY;
+    fill_design(s, &r->baseline);
+    fill_design(s, &s->recommendation);
+    s->recommendation.rank = 1;
+    s->undetermined = (mt_undetermined){2, DIRECTION, "M_SAU", 1e-5};
+    s->certificate = (mt_certificate){"range", "Mode 1 stays below 20 Hz.", true};
+    s->published[0] = mt_result_published_default();
+    s->published[0].label = "M_SAU";
+    s->published[0].pointer = "/published/0";
+    s->published[0].role = "verifies";
+    s->published[0].kind = "parameter";
+    s->published[0].published = 0.2;
+    s->published[0].computed = 0.2;
+    s->published[0].demand = "within 1 %";
+    s->published[0].holds = true;
+    s->published[1] = s->published[0];
+    s->published[1].kind = "status";
+    s->published[1].published_text = "solved";
+    s->published[1].computed_text = "compromise";
+    s->published[1].holds = false;
+    r->study_name = "Study \"1\"";
+    r->study_file = "study_1.json";
+    r->model_name = "Inceptor";
+    r->model_file = "../problems/inceptor.json";
+    r->status = MT_RESULT_COMPROMISE;
+    r->status_text = "No design meets every goal.";
+    r->n_variables = MT_COUNT(VARIABLES);
+    r->variables = VARIABLES;
+    r->n_recommendations = 1;
+    r->recommendations = &s->recommendation;
+    r->n_undetermined = 1;
+    r->undetermined = &s->undetermined;
+    r->n_certificates = 1;
+    r->certificates = &s->certificate;
+    r->n_published = 2;
+    r->published = s->published;
+    r->n_warnings = 1;
+    r->warnings = REASONS;
+    r->run = (mt_result_run){"0.1.0", "OpenBLAS 0.3.21", "2.7.1",      "2.7.1", 1, 1234, 16,
+                             1,       INPUT_NAMES,       INPUT_DIGESTS};
+    return true;
+}
+
+/* A new file with this text; its path is in `path`, "" where that failed. */
+static void write_file(const char *text, char path[64])
+{
+    (void)snprintf(path, 64, "/tmp/mt_result_XXXXXX");
+    const int fd = mkstemp(path);
+    const size_t length = strlen(text);
+    if (fd < 0 || write(fd, text, length) != (ssize_t)length) {
+        path[0] = '\0';
+    }
+    if (fd >= 0) {
+        (void)close(fd);
+    }
+}
+
+/* The sample written, with one text replaced by another; heap (mt_text). */
+static mt_text written(const char *find, const char *replace)
+{
+    sample s = {.result = NULL};
+    mt_text all = {0};
+    if (!make_sample(&s) || mt_result_write(s.result, &all, NULL) != MT_OK) {
+        mt_text_free(&all);
+    }
+    mt_result_delete(s.result);
+    char *const at = find == NULL || all.s == NULL ? NULL : strstr(all.s, find);
+    mt_text out = {0};
+    if (find == NULL) {
+        return all;
+    }
+    if (at != NULL) {
+        mt_text_add_n(&out, all.s, (size_t)(at - all.s));
+        mt_text_add(&out, replace);
+        mt_text_add(&out, at + strlen(find));
+    }
+    mt_text_free(&all);
+    return out;
+}
+
+static void check_parameters(mt_test *t, const mt_recommendation *r)
+{
+    if (!CHECK_INT(t, r->n_parameters, 2)) {
+        return;
+    }
+    CHECK_STR(t, r->parameters[0].name, "K_T1");
+    CHECK_STR(t, r->parameters[0].unit, "N m/rad");
+    CHECK(t, r->parameters[0].recommended == PARAMETERS[0].recommended);
+    CHECK(t, r->parameters[0].original == 1e4);
+    CHECK_STR(t, r->parameters[0].at_bound, NULL);
+    CHECK(t, isnan(r->parameters[1].change_percent));
+    CHECK_STR(t, r->parameters[1].at_bound, "lower");
+}
+
+static void result_file__comes_back(mt_test *t)
+{
+    char path[64];
+    mt_text text = written(NULL, NULL);
+    mt_text messages = {0};
+    mt_result *r = NULL;
+    mt_err err = {.text = ""};
+    REQUIRE(t, text.s != NULL);
+    write_file(text.s, path);
+    CHECK_INT(t, mt_result_load(path, NULL, &r, &messages, &err), MT_OK);
+    CHECK_STR(t, err.text, "");
+    CHECK_STR(t, messages.s, NULL);
+    if (r != NULL) {
+        CHECK_STR(t, r->study_name, "Study \"1\"");
+        CHECK_STR(t, r->study_file, "study_1.json");
+        CHECK_STR(t, r->model_file, "../problems/inceptor.json");
+        CHECK_INT(t, r->status, MT_RESULT_COMPROMISE);
+        CHECK_INT(t, r->baseline.rank, 0);
+        check_parameters(t, &r->baseline);
+        if (CHECK_INT(t, r->n_recommendations, 1)) {
+            CHECK_INT(t, r->recommendations[0].rank, 1);
+            CHECK(t, r->recommendations[0].feasible);
+            CHECK(t, r->recommendations[0].score == 0.1 + 0.2);
+            CHECK(t, isnan(r->recommendations[0].misfit));
+            check_parameters(t, &r->recommendations[0]);
+        }
+        if (CHECK_INT(t, r->run.n_inputs, 1)) {
+            CHECK_STR(t, r->run.input_names[0], "study.json");
+            CHECK_STR(t, r->run.input_sha256[0], INPUT_DIGESTS[0]);
+        }
+    }
+    mt_result_delete(r);
+    (void)unlink(path);
+    mt_text_free(&messages);
+    mt_text_free(&text);
+}
+
+static void result_file__holds_what_the_design_promises(mt_test *t)
+{
+    static const char *const members[] = {
+        "\"status\": \"compromise\"",
+        "\"grade\": \"feasible\"",
+        "\"score\": 0.30000000000000004",
+        "\"violation_percent\": 0",
+        "\"target_hz\": 18",
+        "\"error_percent\": 0",
+        "\"K_T1\": 0.00125",
+        "\"clearances\": []",
+        "\"gap_assignment\": null",
+        "\"tolerance_box\": null",
+        "\"published\": \"solved\"",
+        "\"computed\": \"compromise\"",
+        "\"kkt_residual\": null",
+        "\"direction\": \"M_SAU\"",
+        "\"proven\": true",
+        "\"seed\": 1",
+    };
+    mt_text text = written(NULL, NULL);
+    REQUIRE(t, text.s != NULL);
+    for (int i = 0; i < MT_COUNT(members); i++) {
+        CHECK(t, strstr(text.s, members[i]) != NULL);
+    }
+    mt_text_free(&text);
+}
+
+static void result_file__writing_twice_gives_the_same_bytes(mt_test *t)
+{
+    mt_text a = written(NULL, NULL);
+    mt_text b = written(NULL, NULL);
+    CHECK(t, a.s != NULL);
+    CHECK_STR(t, a.s, b.s);
+    mt_text_free(&a);
+    mt_text_free(&b);
+}
+
+static void result_file__a_damaged_one_is_refused(mt_test *t)
+{
+    static const struct {
+        const char *name;
+        const char *find;
+        const char *replace;
+        const char *want; /* the message, behind the path */
+    } rows[] = {
+        {           "format",                    "modetune-result/1","modetune-result/2",
+         ":2:13: error: /format: unknown format \"modetune-result/2\"; did you mean "
+         "\"modetune-result/1\"?\n"                                                                },
+        {      "member gone",      "  \"status\": \"compromise\",\n",                  "",
+         ":1:1: error: member \"status\" is missing\n"                                             },
+        {             "rank",                          "\"rank\": 1",     "\"rank\": 1.5",
+         ":88:15: error: /recommendations/0/rank: must be a whole number from 0 to 100000\n"       },
+        {"text for a number", "\"recommended\": 0.20000000000000001",
+         "\"recommended\": \"0.2\"",                                                     ":41:24: error: /baseline/parameters/1/recommended: must be a number or null, not a "
+                                                     "string\n"},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        char path[64];
+        mt_test_row(t, "%s", rows[i].name);
+        mt_text text = written(rows[i].find, rows[i].replace);
+        mt_text messages = {0};
+        mt_result *r = NULL;
+        if (CHECK(t, text.s != NULL)) {
+            write_file(text.s, path);
+            CHECK_INT(t, mt_result_load(path, NULL, &r, &messages, NULL), MT_E_INPUT);
+            CHECK(t, r == NULL);
+            const size_t length = strlen(path);
+            CHECK_STR(
+                t, messages.s != NULL && messages.length > length ? messages.s + length : NULL,
+                rows[i].want);
+            (void)unlink(path);
+        }
+        mt_text_free(&messages);
+        mt_text_free(&text);
+    }
+}
+
+static void result_file__no_file_is_a_system_failure(mt_test *t)
+{
+    mt_result *r = NULL;
+    mt_err err = {.text = ""};
+    CHECK_INT(t, mt_result_load("/nonexistent/result.json", NULL, &r, NULL, &err), MT_E_SYSTEM);
+    CHECK(t, r == NULL);
+    CHECK(t, strstr(err.text, "/nonexistent/result.json") != NULL);
+}
+
+static void result_file__every_failing_allocation_is_survived(mt_test *t)
+{
+    char path[64];
+    mt_text text = written(NULL, NULL);
+    REQUIRE(t, text.s != NULL);
+    write_file(text.s, path);
+    CHECK(t, path[0] != '\0');
+    for (long nth = 0; mt_alloc_works(); nth++) {
+        mt_result *r = NULL;
+        mt_text again = {0};
+        sample s = {.result = NULL};
+        const long before = mt_alloc_live();
+        mt_test_row(t, "allocation %ld", nth);
+        mt_alloc_fail_after(nth);
+        mt_status rc = mt_result_load(path, NULL, &r, &again, NULL);
+        if (rc == MT_OK) {
+            rc = make_sample(&s) ? mt_result_write(s.result, &again, NULL) : MT_E_MEMORY;
+        }
+        mt_alloc_fail_after(-1);
+        CHECK(t, rc == MT_OK || rc == MT_E_MEMORY);
+        mt_result_delete(r);
+        mt_result_delete(s.result);
+        mt_text_free(&again);
+        CHECK_INT(t, mt_alloc_live(), before);
+        if (rc != MT_E_MEMORY) {
+            break;
+        }
+    }
+    (void)unlink(path);
+    mt_text_free(&text);
+}
+
+MT_TEST_MAIN(MT_TEST(result_file__comes_back),
+             MT_TEST(result_file__holds_what_the_design_promises),
+             MT_TEST(result_file__writing_twice_gives_the_same_bytes),
+             MT_TEST(result_file__a_damaged_one_is_refused),
+             MT_TEST(result_file__no_file_is_a_system_failure),
+             MT_TEST(result_file__every_failing_allocation_is_survived))
