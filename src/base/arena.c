@@ -97,8 +97,8 @@ static bool make_room(mt_arena *a, size_t bytes)
     }
     mt_arena_block **const link = a->current == NULL ? &a->first : &a->current->next;
     if (!fits(*link, bytes)) {
-        const size_t least = a->block_size == 0 ? DEFAULT_BLOCK_SIZE : a->block_size;
-        mt_arena_block *const b = block_new(bytes > least ? bytes : least);
+        const size_t smallest = a->block_size == 0 ? DEFAULT_BLOCK_SIZE : a->block_size;
+        mt_arena_block *const b = block_new(bytes > smallest ? bytes : smallest);
         if (b == NULL) {
             return false;
         }

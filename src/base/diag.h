@@ -26,7 +26,7 @@ typedef struct mt_diags {
     mt_diag *items;
     int count;
     int capacity;
-    int errors; /* how many of them are errors (also those beyond the limit) */
+    int errors;     /* how many of them are errors (also those beyond the limit) */
     int structural; /* how many of the errors are structural, likewise */
     int warnings;   /* how many are warnings, likewise */
     int out_of_memory;

@@ -89,7 +89,7 @@ static mt_status expected(parser *p, const char *what)
     }
     const char *const from = p->text + p->at;
     size_t n = 1;
-    while (c >= 0x80U ? ((unsigned char)from[n] & 0xC0U) == 0x80U && n < 4
+    while (c >= 0x80U ? n < 4 && ((unsigned char)from[n] & 0xC0U) == 0x80U
                       : is_name_part((char)c) && is_name_part(from[n])) {
         n++;
     }

@@ -71,6 +71,12 @@ static inline bool fixture_init(fixture *f, const char *text, mt_err *err)
     return mt_program_finish(&f->p, err) == MT_OK && fixture_buffers(f);
 }
 
+/* The root's row of an array of rows of N_PARAMS: its derivatives. */
+static inline const double *root_row(const fixture *f, const double *rows)
+{
+    return rows + (ptrdiff_t)f->root * N_PARAMS;
+}
+
 static inline void fixture_free(fixture *f)
 {
     mt_arena_free(&f->mem);

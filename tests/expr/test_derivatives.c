@@ -37,7 +37,7 @@ static void check_row(mt_test *t, const derivative_row *row)
         return;
     }
     for (int i = 0; i < 2; i++) {
-        const double got = f.grad[f.root * N_PARAMS + i];
+        const double got = root_row(&f, f.grad)[i];
         CHECK_NEAR_ABS(t, got, want[i], 16.0 * DBL_EPSILON * (fabs(want[i]) + DBL_MIN));
         const double step = 1e-3 * fmax(fabs(at[i]), 0.1);
         CHECK(t, mt_slope_agrees(value_at, &f, N_PARAMS, at, i, got, step, 2.0 * DBL_EPSILON));
@@ -135,8 +135,8 @@ static void derivatives__at_kinks_and_powers_of_zero_are_those_documented(mt_tes
         mt_err err = {.code = MT_OK};
         if (CHECK(t, fixture_init(&f, rows[i].text, &err))) {
             CHECK_INT(t, mt_program_gradient(&f.p, at, f.value, f.grad, NULL, &err), MT_OK);
-            CHECK(t, f.grad[f.root * N_PARAMS] == rows[i].dx);
-            CHECK(t, f.grad[f.root * N_PARAMS + 1] == rows[i].dy);
+            CHECK(t, root_row(&f, f.grad)[0] == rows[i].dx);
+            CHECK(t, root_row(&f, f.grad)[1] == rows[i].dy);
         }
         fixture_free(&f);
     }
@@ -184,7 +184,7 @@ static void derivatives__of_constants_need_not_exist(mt_test *t)
     mt_err err = {.code = MT_OK};
     if (CHECK(t, fixture_init(&f, "x*abs(sqrt(0)) + x^2 + hypot(0,0) + 0^0*x", &err))) {
         CHECK_INT(t, mt_program_gradient(&f.p, at, f.value, f.grad, NULL, &err), MT_OK);
-        CHECK(t, f.grad[f.root * N_PARAMS] == 7.0);
+        CHECK(t, root_row(&f, f.grad)[0] == 7.0);
     }
     fixture_free(&f);
 }

@@ -34,7 +34,7 @@ static void program__sharing_survives_growth(mt_test *t)
     REQUIRE(t, mt_arena_init(&mem, 0, NULL) == MT_OK);
     CHECK_INT(t, mt_program_init(&p, 1, &mem, NULL), MT_OK);
     const mt_node x = mt_program_input(&p, 0, MT_NO_ADDR);
-    mt_node first[N];
+    mt_node first[N] = {0};
     bool same = true;
     for (int round = 0; round < 2; round++) {
         for (int i = 0; i < N; i++) {
