@@ -38,7 +38,7 @@ double mt_nlp_row_slope(const mt_nlp_engine *e, const mt_nlp_point *p, int i, in
 static bool allocate(mt_nlp_engine *e, mt_arena *mem, mt_nlp_active *a)
 {
     const size_t n = (size_t)e->n;
-    const size_t k = (size_t)(e->nlp->n_eq + e->nlp->n_in);
+    const size_t k = (size_t)e->nlp->n_eq + (size_t)e->nlp->n_in;
     *a = (mt_nlp_active){.free = mt_arena_int(mem, n),
                          .side = mt_arena_int(mem, n),
                          .row = mt_arena_int(mem, k),

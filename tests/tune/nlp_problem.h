@@ -24,9 +24,10 @@ typedef struct nlp_case {
     mt_nlp_result result;
 } nlp_case;
 
-/* n variables between lower and upper, origin given for all; tolerances 1e-6. */
+/* c zeroed or used before; n variables between lower and upper, origin 0; tolerances 1e-6. */
 static inline void case_begin(nlp_case *c, int n, mt_nlp_eval eval, double lower, double upper)
 {
+    mt_arena_free(&c->mem);
     memset(c, 0, sizeof *c);
     for (int j = 0; j < N_MOST; j++) {
         c->lower[j] = lower;

@@ -57,7 +57,7 @@ static void chain_case(nlp_case *c, double target_lo, double target_hi)
 
 static void nlp_roots__chain_finds_both_spring_pairs_ranked(mt_test *t)
 {
-    nlp_case c;
+    nlp_case c = {0};
     chain_case(&c, 0.6972243623, 4.3027756377);
     const mt_nlp_options opt = mt_nlp_options_default();
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);
@@ -85,7 +85,7 @@ static void nlp_roots__chain_finds_both_spring_pairs_ranked(mt_test *t)
 
 static void nlp_roots__double_root_is_one_singular_solution(mt_test *t)
 {
-    nlp_case c;
+    nlp_case c = {0};
     chain_case(&c, 2 - sqrt(2), 2 + sqrt(2));
     for (unsigned long seed = 1; seed < 6; seed++) {
         mt_test_row(t, "seed %lu", seed);
@@ -107,7 +107,7 @@ static void nlp_roots__double_root_is_one_singular_solution(mt_test *t)
 /* Just below and just above the fold: no root, or two roots 2 sqrt(d) apart. */
 static void nlp_roots__near_the_fold_roots_are_told_apart_or_absent(mt_test *t)
 {
-    nlp_case c;
+    nlp_case c = {0};
     const mt_nlp_options opt = mt_nlp_options_default();
     chain_case(&c, (2 - sqrt(2)) * 1.001, (2 + sqrt(2)) / 1.001 * 0.999);
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);
@@ -122,7 +122,7 @@ static void nlp_roots__near_the_fold_roots_are_told_apart_or_absent(mt_test *t)
 
 static void nlp_roots__repeated_equalities_change_nothing(mt_test *t)
 {
-    nlp_case c;
+    nlp_case c = {0};
     chain_case(&c, 0.6972243623, 4.3027756377);
     c.nlp.n_eq = 4;
     c.target[2] = c.target[0];
@@ -137,7 +137,7 @@ static void nlp_roots__repeated_equalities_change_nothing(mt_test *t)
 
 static void nlp_roots__variable_without_influence_stays_exactly(mt_test *t)
 {
-    nlp_case c;
+    nlp_case c = {0};
     for (int row = 0; row < 2; row++) {
         /* 4 equalities >= 3 variables: least squares; 2 equalities: SLSQP */
         mt_test_row(t, "%s", row == 0 ? "least squares" : "SLSQP");
@@ -166,7 +166,7 @@ static void nlp_roots__variable_without_influence_stays_exactly(mt_test *t)
 /* A root at a bound is found there, and bounds cut the other one off. */
 static void nlp_roots__bounds_are_respected(mt_test *t)
 {
-    nlp_case c;
+    nlp_case c = {0};
     chain_case(&c, 0.6972243623, 4.3027756377);
     c.upper[0] = log(2.5);
     const mt_nlp_options opt = mt_nlp_options_default();

@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Demands that cannot be met: the least sum of squares within the bounds, and it says so. */
+#include "nlp_problem.h"
+
+/* eq_i = t_0 - target_i (i < n_eq), f = change; further variables are not seen. */
+static mt_status same_variable(void *context, const double *t, bool with_gradient,
+                               mt_nlp_values *out, mt_err *err)
+{
+    nlp_case *const c = context;
+    (void)with_gradient;
+    (void)err;
+    c->calls++;
+    change(c, t, out);
+    for (int i = 0; i < c->nlp.n_eq; i++) {
+        out->eq[i] = t[0] - c->target[i];
+        for (int j = 0; j < c->nlp.n; j++) {
+            out->deq[i + j * c->nlp.n_eq] = j == 0;
+        }
+    }
+    return MT_OK;
+}
+
+static void nlp_compromise__contradicting_targets_are_averaged(mt_test *t)
+{
+    nlp_case c = {0};
+    for (int n = 1; n <= 4; n += 3) { /* as many equalities as variables or more; then fewer */
+        mt_test_row(t, "%d variables", n);
+        case_begin(&c, n, same_variable, -2, 2);
+        c.nlp.n_eq = 3;
+        c.target[0] = 0.1;
+        c.target[1] = 0.2;
+        c.target[2] = 0.6;
+        c.origin[3] = 0.5;
+        const mt_nlp_options opt = mt_nlp_options_default();
+        REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+        CHECK(t, c.result.compromise);
+        CHECK_INT(t, c.result.n_solutions, 1);
+        CHECK_INT(t, c.result.n_undetermined, n - 1);
+        const mt_nlp_solution *const s = &c.result.solutions[0];
+        CHECK_NEAR(t, s->t[0], 0.3, 1e-10);
+        CHECK_NEAR(t, s->squares, 0.04 + 0.01 + 0.09, 1e-10);
+        CHECK_NEAR(t, s->violation, 0.3 / 1e-6, 1e-8);
+        CHECK(t, !s->feasible && isnan(s->mult_eq[0]));
+        if (n == 4) {
+            CHECK(t, s->t[1] == 0 && s->t[2] == 0 && s->t[3] == 0.5);
+        }
+    }
+    mt_arena_free(&c.mem);
+}
+
+static void nlp_compromise__bounds_are_respected(mt_test *t)
+{
+    nlp_case c = {0};
+    case_begin(&c, 2, same_variable, -2, 2);
+    c.nlp.n_eq = 1;
+    c.target[0] = 3;
+    const mt_nlp_options opt = mt_nlp_options_default();
+    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    CHECK(t, c.result.compromise);
+    CHECK_INT(t, c.result.n_solutions, 1);
+    CHECK(t, c.result.solutions[0].t[0] == 2 && c.result.solutions[0].t[1] == 0);
+    CHECK_INT(t, c.result.solutions[0].bound[0], 1);
+    mt_arena_free(&c.mem);
+}
+
+/* Two local compromises: cos(t) = 1.5 has the nearest values at every multiple of 2 pi; with the
+ * second equality t = 1 in weak form they differ, and are ranked by their squares. */
+static mt_status wave(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
+                      mt_err *err)
+{
+    nlp_case *const c = context;
+    (void)with_gradient;
+    (void)err;
+    c->calls++;
+    change(c, t, out);
+    out->eq[0] = cos(t[0]) - 1.5;
+    out->eq[1] = 0.01 * (t[0] - 1);
+    out->deq[0] = -sin(t[0]);
+    out->deq[1] = 0.01;
+    return MT_OK;
+}
+
+static void nlp_compromise__local_ones_are_kept_and_ranked_by_squares(mt_test *t)
+{
+    nlp_case c = {0};
+    case_begin(&c, 1, wave, -8, 8);
+    c.nlp.n_eq = 2;
+    c.origin[0] = 6; /* near the worse one: rank does not follow the change */
+    const mt_nlp_options opt = mt_nlp_options_default();
+    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    CHECK(t, c.result.compromise);
+    REQUIRE(t, c.result.n_solutions == 3);
+    double previous = 0;
+    for (int i = 0; i < 3; i++) {
+        const mt_nlp_solution *const s = &c.result.solutions[i];
+        static const double near[3] = {0, 1, -1};
+        mt_test_row(t, "compromise %d", i + 1);
+        CHECK(t, s->squares >= previous);
+        previous = s->squares;
+        const double x = s->t[0];
+        const double slope = -sin(x) * (cos(x) - 1.5) + 1e-4 * (x - 1);
+        CHECK_NEAR_ABS(t, slope, 0, 1e-10);
+        CHECK_NEAR_ABS(t, x, near[i] * 2 * acos(-1.0), 0.01);
+    }
+    mt_arena_free(&c.mem);
+}
+
+/* Inequalities that exclude each other: t0 >= 1 and t0 <= 0 (as 0 - t0 >= 0). */
+static mt_status apart(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
+                       mt_err *err)
+{
+    nlp_case *const c = context;
+    (void)with_gradient;
+    (void)err;
+    c->calls++;
+    change(c, t, out);
+    out->in[0] = t[0] - 1;
+    out->in[1] = -t[0];
+    out->din[0] = 1;
+    out->din[1] = -1;
+    return MT_OK;
+}
+
+static void nlp_compromise__excluding_inequalities_meet_half_way(mt_test *t)
+{
+    nlp_case c = {0};
+    case_begin(&c, 1, apart, -2, 2);
+    c.nlp.n_in = 2;
+    c.origin[0] = -1.5;
+    const mt_nlp_options opt = mt_nlp_options_default();
+    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    CHECK(t, c.result.compromise);
+    CHECK_INT(t, c.result.n_solutions, 1);
+    CHECK_NEAR(t, c.result.solutions[0].t[0], 0.5, 1e-10);
+    mt_arena_free(&c.mem);
+}
+
+MT_TEST_MAIN(MT_TEST(nlp_compromise__contradicting_targets_are_averaged),
+             MT_TEST(nlp_compromise__bounds_are_respected),
+             MT_TEST(nlp_compromise__local_ones_are_kept_and_ranked_by_squares),
+             MT_TEST(nlp_compromise__excluding_inequalities_meet_half_way))
