@@ -55,6 +55,12 @@ static inline mt_status case_solve(nlp_case *c, const mt_nlp_options *opt)
     return rc == MT_OK ? mt_nlp_solve(&c->nlp, opt, &c->mem, &c->result, &err) : rc;
 }
 
+/* Equal to the bit. */
+static inline bool same_bytes(const void *a, const void *b, size_t n)
+{
+    return memcmp(a, b, n) == 0;
+}
+
 /* f = 1/2 sum (t - origin)^2 */
 static inline void change(const nlp_case *c, const double *t, mt_nlp_values *out)
 {

@@ -41,7 +41,7 @@ static void nlp_robust__tutorial_is_solved_from_every_start(mt_test *t)
         case_begin(&c, 2, tutorial, -10, 10);
         c.nlp.n_in = 2;
         c.origin[0] = -8 + 4 * (k % TUTORIAL_SIDE);
-        c.origin[1] = 0.01 + 2.4 * (double)(k / TUTORIAL_SIDE);
+        c.origin[1] = 0.01 + 2.4 * (k - k % TUTORIAL_SIDE) / TUTORIAL_SIDE;
         mt_test_row(t, "from %g, %g", c.origin[0], c.origin[1]);
         if (!CHECK(t, case_solve(&c, &opt) == MT_OK && c.result.n_solutions == 1)) {
             continue;
@@ -212,9 +212,9 @@ static void nlp_robust__two_runs_are_bitwise_equal(mt_test *t)
     for (int i = 0; i < a.result.n_solutions; i++) {
         const mt_nlp_solution *const x = &a.result.solutions[i];
         const mt_nlp_solution *const y = &b.result.solutions[i];
-        CHECK(t, memcmp(x->t, y->t, 6 * sizeof *x->t) == 0 &&
-                     memcmp(&x->f, &y->f, sizeof x->f) == 0);
-        CHECK(t, memcmp(x->mult_eq, y->mult_eq, sizeof *x->mult_eq) == 0);
+        CHECK(t, same_bytes(x->t, y->t, 6 * sizeof *x->t) &&
+                     same_bytes(&x->f, &y->f, sizeof x->f));
+        CHECK(t, same_bytes(x->mult_eq, y->mult_eq, sizeof *x->mult_eq));
     }
     /* all are local minima: stationary, in order */
     for (int i = 0; i < a.result.n_solutions; i++) {

@@ -23,7 +23,7 @@ static mt_status chain(void *context, const double *t, bool with_gradient, mt_nl
     const double lo = k1 * k2 / hi; /* no cancellation */
     const double ds[2] = {k1 * k1 / s, 4 * k2 * k2 / s};
     const double da[2] = {k1, 2 * k2};
-    const int n_eq = c->nlp.n_eq;
+    const ptrdiff_t n_eq = c->nlp.n_eq;
     change(c, t, out);
     out->eq[0] = 0.5 * log(lo / c->target[0]);
     out->eq[1] = 0.5 * log(hi / c->target[1]);

@@ -102,9 +102,9 @@ static void nlp_starts__seed_turns_the_sequence_reproducibly(mt_test *t)
     const double *const other = starts_in(&b, 5, 8, &e[2]);
     REQUIRE(t, one != NULL && two != NULL && other != NULL);
     const size_t bytes = (size_t)STARTS * 5 * sizeof(double);
-    CHECK(t, memcmp(one, two, bytes) == 0);
-    CHECK(t, memcmp(one, other, bytes) != 0);
-    CHECK(t, memcmp(one, other, 5 * sizeof(double)) == 0); /* the origin stays the first */
+    CHECK(t, same_bytes(one, two, bytes));
+    CHECK(t, !same_bytes(one, other, bytes));
+    CHECK(t, same_bytes(one, other, 5 * sizeof(double))); /* the origin stays the first */
     for (int k = 0; k < 3; k++) {
         mt_nlp_engine_free(&e[k]);
     }
