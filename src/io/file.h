@@ -20,7 +20,8 @@ typedef struct mt_file {
  * lie beneath that folder (whose links are resolved as well). Fails: MT_E_INPUT (not a regular file, too long, outside root),
  * MT_E_SYSTEM (does not exist, not readable), MT_E_MEMORY. The messages name the path as given.
  */
-mt_status mt_file_read(const char *path, const char *root, size_t limit, mt_file *out, mt_err *err);
+mt_status mt_file_read(const char *path, const char *root, size_t limit, mt_file *out,
+                       mt_err *err);
 void mt_file_free(mt_file *f);
 
 /* The path of `name` as meant by the file `naming`: relative names start in the folder of `naming`. Heap, to be freed by the

@@ -3,14 +3,14 @@
 #define IO_IO_H
 
 #include "base/text.h"
+#include "io/json.h"
 #include "model/model.h"
 #include "tune/result.h"
 #include "tune/study.h"
 
 typedef struct mt_io_options {
-    const char *
-        root; /* folder that files named by other files must lie in; NULL: for a study the parent of its folder, for a
-                         model no limit */
+    /* folder that files named by other files must lie in; NULL: for a study the parent of its folder, for a model no limit */
+    const char *root;
     size_t max_bytes; /* of one file; 0: MT_JSON_MAX_BYTES */
 } mt_io_options;
 
@@ -23,6 +23,8 @@ typedef struct mt_io_options {
  */
 mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **out,
                         mt_text *messages, mt_err *err);
+/* The same from a document that is parsed already; problems go to its diagnostics. `file` names it in err. */
+mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_err *err);
 
 /**
  * Read, resolve and check a study file (format "modetune-study/1") with the models that it names.

@@ -226,7 +226,9 @@ int mt_reader_count(mt_reader *r, mt_addr value, int least, int most, int fallba
     if (number == floor(number) && number >= (double)least && number <= (double)most) {
         return (int)number;
     }
-    if (most == INT_MAX) {
+    if (most == least + 1) {
+        mt_diag_structure(r->diags, value, "must be %d or %d", least, most);
+    } else if (most == INT_MAX) {
         mt_diag_structure(r->diags, value, "must be a whole number, %d or more", least);
     } else {
         mt_diag_structure(r->diags, value, "must be a whole number from %d to %d", least, most);

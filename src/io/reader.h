@@ -15,8 +15,8 @@
  */
 typedef struct mt_reader {
     mt_json *doc;
-    mt_diags *diags; /* of doc */
-    mt_arena *mem;   /* what is read is copied into it */
+    mt_diags *diags;       /* of doc */
+    mt_arena *mem;         /* what is read is copied into it */
     mt_expr_lookup lookup; /* parameters of expressions; NULL: none known */
     const void *context;
     const char *const *names; /* candidates for "did you mean" in expressions */
@@ -25,21 +25,21 @@ typedef struct mt_reader {
 } mt_reader;
 
 /* id, JSON types, what a message calls it */
-#define MT_KEY_TYPE_LIST(X)                                                                            \
-    X(MT_KEY_ANY, 63, "any value")                                                                     \
-    X(MT_KEY_TEXT, MT_JSON_STRING, "a string")                                                         \
-    X(MT_KEY_NUMBER, MT_JSON_NUMBER | MT_JSON_STRING, "a number or an expression")                     \
-    X(MT_KEY_COUNT, MT_JSON_NUMBER, "a whole number")                                                  \
-    X(MT_KEY_BOOL, MT_JSON_BOOL, "true or false")                                                      \
-    X(MT_KEY_LIST, MT_JSON_ARRAY, "a list")                                                            \
-    X(MT_KEY_OBJECT, MT_JSON_OBJECT, "an object")                                                      \
-    X(MT_KEY_TEXT_OR_LIST, MT_JSON_STRING | MT_JSON_ARRAY, "a string or a list")                       \
-    X(MT_KEY_TEXT_OR_OBJECT, MT_JSON_STRING | MT_JSON_OBJECT, "a string or an object")                 \
-    X(MT_KEY_TEXT_OR_COUNT, MT_JSON_NUMBER | MT_JSON_STRING, "a name or a whole number")               \
-    X(MT_KEY_OBJECT_OR_LIST, MT_JSON_OBJECT | MT_JSON_ARRAY, "an object or a list of objects")         \
-    X(MT_KEY_NUMBER_OR_LIST, MT_JSON_NUMBER | MT_JSON_STRING | MT_JSON_ARRAY,                          \
-      "a number, an expression or a list of them")                                                     \
-    X(MT_KEY_NUMBER_OR_OBJECT, MT_JSON_NUMBER | MT_JSON_STRING | MT_JSON_OBJECT,                       \
+#define MT_KEY_TYPE_LIST(X)                                                                    \
+    X(MT_KEY_ANY, 63, "any value")                                                             \
+    X(MT_KEY_TEXT, MT_JSON_STRING, "a string")                                                 \
+    X(MT_KEY_NUMBER, MT_JSON_NUMBER | MT_JSON_STRING, "a number or an expression")             \
+    X(MT_KEY_COUNT, MT_JSON_NUMBER, "a whole number")                                          \
+    X(MT_KEY_BOOL, MT_JSON_BOOL, "true or false")                                              \
+    X(MT_KEY_LIST, MT_JSON_ARRAY, "a list")                                                    \
+    X(MT_KEY_OBJECT, MT_JSON_OBJECT, "an object")                                              \
+    X(MT_KEY_TEXT_OR_LIST, MT_JSON_STRING | MT_JSON_ARRAY, "a string or a list")               \
+    X(MT_KEY_TEXT_OR_OBJECT, MT_JSON_STRING | MT_JSON_OBJECT, "a string or an object")         \
+    X(MT_KEY_TEXT_OR_COUNT, MT_JSON_NUMBER | MT_JSON_STRING, "a name or a whole number")       \
+    X(MT_KEY_OBJECT_OR_LIST, MT_JSON_OBJECT | MT_JSON_ARRAY, "an object or a list of objects") \
+    X(MT_KEY_NUMBER_OR_LIST, MT_JSON_NUMBER | MT_JSON_STRING | MT_JSON_ARRAY,                  \
+      "a number, an expression or a list of them")                                             \
+    X(MT_KEY_NUMBER_OR_OBJECT, MT_JSON_NUMBER | MT_JSON_STRING | MT_JSON_OBJECT,               \
       "a number, an expression or an object")
 #define MT_KEY_TYPE_ENUM(id, types, text) id,
 typedef enum mt_key_type { MT_KEY_TYPE_LIST(MT_KEY_TYPE_ENUM) MT_KEY_TYPE_COUNT } mt_key_type;
@@ -83,7 +83,8 @@ mt_name mt_reader_member_name(mt_reader *r, mt_addr value, mt_name_form form);
 /* A list of strings that refer to something; an absent one gives count 0. */
 mt_name_list mt_reader_refs(mt_reader *r, mt_addr value);
 /* Which of n names the string is; MT_ABSENT where absent or none (noted, with "did you mean" and the known ones). what: "type". */
-int mt_reader_choice(mt_reader *r, mt_addr value, const char *what, const char *const *names, int n);
+int mt_reader_choice(mt_reader *r, mt_addr value, const char *what, const char *const *names,
+                     int n);
 /* A whole number within least..most; fallback where absent or wrong (noted). 9, 9.0 and 9e0 are whole. */
 int mt_reader_count(mt_reader *r, mt_addr value, int least, int most, int fallback);
 bool mt_reader_flag(mt_reader *r, mt_addr value, bool fallback);

@@ -37,12 +37,17 @@ typedef struct mt_name_list {
 
 /* `in`: which configurations contain an item. */
 typedef struct mt_presence {
-    bool given;           /* false: all configurations */
-    mt_name_list names;   /* as written */
-    bool *present;        /* [n_configurations], resolved through `like`; NULL: all */
+    bool given;         /* false: all configurations */
+    mt_name_list names; /* as written */
+    bool *present;      /* [n_configurations], resolved through `like`; NULL: all */
 } mt_presence;
 
-typedef enum mt_origin { MT_ORIGIN_NONE, MT_ORIGIN_PUBLISHED, MT_ORIGIN_IDENTIFIED, MT_ORIGIN_ASSUMED } mt_origin;
+typedef enum mt_origin {
+    MT_ORIGIN_NONE,
+    MT_ORIGIN_PUBLISHED,
+    MT_ORIGIN_IDENTIFIED,
+    MT_ORIGIN_ASSUMED
+} mt_origin;
 
 typedef struct mt_parameter {
     mt_name name;
@@ -68,7 +73,13 @@ typedef struct mt_point {
 } mt_point;
 
 /* What a joint, spring or sensor holds on to. Written "ground", "crank", "beam.start", "beam.end", "beam.3" (rigid element, 1-based). */
-typedef enum mt_attach_kind { MT_ATTACH_GROUND, MT_ATTACH_BODY, MT_ATTACH_LINK_START, MT_ATTACH_LINK_END, MT_ATTACH_LINK_ELEMENT } mt_attach_kind;
+typedef enum mt_attach_kind {
+    MT_ATTACH_GROUND,
+    MT_ATTACH_BODY,
+    MT_ATTACH_LINK_START,
+    MT_ATTACH_LINK_END,
+    MT_ATTACH_LINK_ELEMENT
+} mt_attach_kind;
 typedef struct mt_attach {
     mt_name name;
     mt_attach_kind kind;
@@ -79,14 +90,21 @@ typedef struct mt_attach {
 /* A rigid body; without `inertia_kg_m2` a point mass (no rotation of its own, 2 or 3 states). */
 typedef struct mt_body {
     mt_name name;
-    mt_num mass;       /* kg; absent: 0 */
+    mt_num mass; /* kg; absent: 0 */
     bool point_mass;
-    mt_num inertia[6]; /* about the centre of mass, global axes in the reference position [kg m^2]. 2-D: [0]. 3-D: xx yy zz xy xz yz (absent: 0) */
+    mt_num inertia
+        [6]; /* about the centre of mass, global axes in the reference position [kg m^2]. 2-D: [0]. 3-D: xx yy zz xy xz yz (absent: 0) */
     mt_position centre;
     mt_presence in;
 } mt_body;
 
-typedef enum mt_section_shape { MT_SECTION_NONE, MT_SECTION_RECTANGLE, MT_SECTION_CIRCLE, MT_SECTION_TUBE, MT_SECTION_GENERAL } mt_section_shape;
+typedef enum mt_section_shape {
+    MT_SECTION_NONE,
+    MT_SECTION_RECTANGLE,
+    MT_SECTION_CIRCLE,
+    MT_SECTION_TUBE,
+    MT_SECTION_GENERAL
+} mt_section_shape;
 /* rectangle: width (out of plane, 2-D; along hinge_axis, 3-D), height (in the plane of bending); circle: diameter; tube: outer, inner diameter;
  * general: area_m2, second_moment_m4 (bending about hinge axis / out of plane), in 3-D also second_moment_other_m4, torsion_constant_m4. */
 typedef struct mt_section {
@@ -112,21 +130,21 @@ typedef struct mt_link {
     mt_position from;
     mt_position to;
     int elements;
-    mt_num mass;              /* kg, whole link; or density x section; or element_mass */
-    mt_num density;           /* kg/m^3 */
-    mt_num youngs_modulus;    /* Pa */
-    mt_num shear_modulus;     /* Pa, 3-D beams (torsion) */
+    mt_num mass;           /* kg, whole link; or density x section; or element_mass */
+    mt_num density;        /* kg/m^3 */
+    mt_num youngs_modulus; /* Pa */
+    mt_num shear_modulus;  /* Pa, 3-D beams (torsion) */
     mt_section section;
-    int n_stiffness;          /* 0, 1 or elements - 1 */
-    mt_num *stiffness;        /* N m/rad */
-    int n_element_length;     /* 0, 1 or elements */
-    mt_num *element_length;   /* m */
+    int n_stiffness;        /* 0, 1 or elements - 1 */
+    mt_num *stiffness;      /* N m/rad */
+    int n_element_length;   /* 0, 1 or elements */
+    mt_num *element_length; /* m */
     int n_element_mass;
-    mt_num *element_mass;     /* kg */
+    mt_num *element_mass; /* kg */
     int n_element_inertia;
-    mt_num *element_inertia;  /* kg m^2 about the element's centre, hinge axis */
+    mt_num *element_inertia; /* kg m^2 about the element's centre, hinge axis */
     bool has_hinge_axis;
-    mt_num hinge_axis[3];     /* 3-D */
+    mt_num hinge_axis[3];      /* 3-D */
     mt_num radius_of_gyration; /* m, 3-D lumped: about the element's own long axis; absent: 0 */
     mt_presence in;
     mt_addr elements_addr;
@@ -134,16 +152,16 @@ typedef struct mt_link {
 } mt_link;
 
 /* type, JSON name, in 2-D, in 3-D, coordinate: 'a' angle, 'd' displacement, '-' none (what `drive` may move) */
-#define MT_JOINT_LIST(X)                                   \
-    X(MT_JOINT_FIXED, "fixed", true, true, '-')            \
-    X(MT_JOINT_REVOLUTE, "revolute", true, true, 'a')      \
-    X(MT_JOINT_PRISMATIC, "prismatic", true, true, 'd')    \
-    X(MT_JOINT_PIN_IN_SLOT, "pin-in-slot", true, false, 'd') \
-    X(MT_JOINT_DISTANCE, "distance", true, true, '-')      \
-    X(MT_JOINT_CYLINDRICAL, "cylindrical", false, true, 'a') \
-    X(MT_JOINT_SPHERICAL, "spherical", false, true, '-')   \
-    X(MT_JOINT_UNIVERSAL, "universal", false, true, '-')   \
-    X(MT_JOINT_PLANAR, "planar", false, true, '-')         \
+#define MT_JOINT_LIST(X)                                         \
+    X(MT_JOINT_FIXED, "fixed", true, true, '-')                  \
+    X(MT_JOINT_REVOLUTE, "revolute", true, true, 'a')            \
+    X(MT_JOINT_PRISMATIC, "prismatic", true, true, 'd')          \
+    X(MT_JOINT_PIN_IN_SLOT, "pin-in-slot", true, false, 'd')     \
+    X(MT_JOINT_DISTANCE, "distance", true, true, '-')            \
+    X(MT_JOINT_CYLINDRICAL, "cylindrical", false, true, 'a')     \
+    X(MT_JOINT_SPHERICAL, "spherical", false, true, '-')         \
+    X(MT_JOINT_UNIVERSAL, "universal", false, true, '-')         \
+    X(MT_JOINT_PLANAR, "planar", false, true, '-')               \
     X(MT_JOINT_POINT_ON_LINE, "point-on-line", false, true, 'd') \
     X(MT_JOINT_GEAR, "gear", false, true, '-')
 #define MT_JOINT_ENUM(id, name, in2, in3, coordinate) id,
@@ -154,26 +172,29 @@ typedef struct mt_joint {
     mt_name name;
     mt_joint_type type;
     mt_attach bodies[2];
-    int n_at;             /* 0, 1 or 2 */
-    mt_position at[2];    /* one point, or the point on each body as drawn */
+    int n_at;          /* 0, 1 or 2 */
+    mt_position at[2]; /* one point, or the point on each body as drawn */
     bool has_axis;
-    mt_num axis[3];       /* revolute, cylindrical, planar: axis / normal; prismatic, slot, line: direction. Fixed to bodies[0] (drawn on both). Not normalised */
+    mt_num axis
+        [3]; /* revolute, cylindrical, planar: axis / normal; prismatic, slot, line: direction. Fixed to bodies[0] (drawn on both). Not normalised */
     bool has_axis_b;
-    mt_num axis_b[3];     /* universal: second axis, on bodies[1] */
-    mt_num length;        /* distance: m; absent: as drawn */
+    mt_num axis_b[3];       /* universal: second axis, on bodies[1] */
+    mt_num length;          /* distance: m; absent: as drawn */
     mt_name gear_joints[2]; /* gear: angle of [1] = ratio * angle of [0] */
     int gear_joint[2];
     mt_num ratio;
     mt_presence in;
 } mt_joint;
 
-#define MT_SPRING_LIST(X)               \
-    X(MT_SPRING_TORSION, "torsion")     \
-    X(MT_SPRING_AXIAL, "axial")         \
-    X(MT_SPRING_BAR, "bar")             \
+#define MT_SPRING_LIST(X)           \
+    X(MT_SPRING_TORSION, "torsion") \
+    X(MT_SPRING_AXIAL, "axial")     \
+    X(MT_SPRING_BAR, "bar")         \
     X(MT_SPRING_BUSHING, "bushing")
 #define MT_SPRING_ENUM(id, name) id,
-typedef enum mt_spring_type { MT_SPRING_LIST(MT_SPRING_ENUM) MT_SPRING_TYPE_COUNT } mt_spring_type;
+typedef enum mt_spring_type {
+    MT_SPRING_LIST(MT_SPRING_ENUM) MT_SPRING_TYPE_COUNT
+} mt_spring_type;
 #undef MT_SPRING_ENUM
 
 /* Also a damper (list `dampers`: torsion, axial, bushing; stiffness members become damping_*). */
@@ -181,23 +202,24 @@ typedef struct mt_spring {
     mt_name name;
     mt_spring_type type;
     bool damper;
-    mt_attach bodies[2];     /* absent for a torsion spring that names its joint */
+    mt_attach bodies[2]; /* absent for a torsion spring that names its joint */
     mt_name joint_name;
-    int joint;               /* resolved joint, MT_ABSENT */
-    int joint_link;          /* or hinge joint_hinge (0-based) of this link ("beam.h3"), MT_ABSENT */
+    int joint;      /* resolved joint, MT_ABSENT */
+    int joint_link; /* or hinge joint_hinge (0-based) of this link ("beam.h3"), MT_ABSENT */
     int joint_hinge;
-    int n_at;                /* default: the centres of the bodies */
+    int n_at; /* default: the centres of the bodies */
     mt_position at[2];
-    mt_num stiffness;        /* axial N/m; torsion N m/rad; (damper N s/m, N m s/rad) */
-    mt_num free_length;      /* m */
-    mt_num free_angle;       /* rad, of the joint's coordinate / of the relative angle */
-    mt_num preload;          /* N tension positive; N m; in the reference position */
-    mt_num youngs_modulus;   /* bar */
+    mt_num stiffness;      /* axial N/m; torsion N m/rad; (damper N s/m, N m s/rad) */
+    mt_num free_length;    /* m */
+    mt_num free_angle;     /* rad, of the joint's coordinate / of the relative angle */
+    mt_num preload;        /* N tension positive; N m; in the reference position */
+    mt_num youngs_modulus; /* bar */
     mt_num area;
     mt_num density;
-    mt_num translation[3];   /* bushing N/m in global axes of the reference position, attached to bodies[0] */
-    mt_num rotation[3];      /* bushing N m/rad */
-    mt_num *matrix;          /* bushing 6 x 6, row-major, lower triangle used, symmetric; NULL */
+    mt_num translation
+        [3]; /* bushing N/m in global axes of the reference position, attached to bodies[0] */
+    mt_num rotation[3]; /* bushing N m/rad */
+    mt_num *matrix;     /* bushing 6 x 6, row-major, lower triangle used, symmetric; NULL */
     mt_presence in;
 } mt_spring;
 
@@ -205,11 +227,12 @@ typedef struct mt_spring {
 typedef struct mt_sensor {
     mt_name name;
     mt_name on_name;
-    mt_attach_kind on_kind; /* MT_ATTACH_BODY, MT_ATTACH_LINK_ELEMENT, or MT_ATTACH_LINK_START meaning: on a link at `fraction` */
-    int on;                 /* body or link */
+    mt_attach_kind
+        on_kind; /* MT_ATTACH_BODY, MT_ATTACH_LINK_ELEMENT, or MT_ATTACH_LINK_START meaning: on a link at `fraction` */
+    int on;      /* body or link */
     int element;
-    mt_num fraction;        /* on a link: 0 at from, 1 at to */
-    mt_position at;         /* on a body: default its centre */
+    mt_num fraction; /* on a link: 0 at from, 1 at to */
+    mt_position at;  /* on a body: default its centre */
     unsigned directions;
     mt_addr directions_addr;
 } mt_sensor;
@@ -232,23 +255,24 @@ typedef struct mt_drive {
     bool given;
     mt_name joint_name;
     int joint;
-    mt_num position;     /* rad or m, relative to the reference position */
+    mt_num position;        /* rad or m, relative to the reference position */
     bool position_is_angle; /* which of position_rad / position_m was written */
-    bool trim;           /* false: locked there */
+    bool trim;              /* false: locked there */
     mt_name trim_name;
     int trim_spring;
+    bool inherited;      /* by finish: taken over from the configuration that this one is like */
     mt_addr addr;
 } mt_drive;
 
 typedef struct mt_configuration {
     mt_name name;
     mt_name like_name;
-    int like;            /* MT_ABSENT */
-    int n_overrides;     /* own ones as read; after finish: all, inherited ones included */
+    int like;        /* MT_ABSENT */
+    int n_overrides; /* own ones as read; after finish: all, inherited ones included */
     mt_override *overrides;
     bool has_gravity;
-    mt_num gravity[3];   /* after finish: the one in force (inherited or the model's) */
-    mt_drive drive;      /* after finish: the one in force */
+    mt_num gravity[3]; /* after finish: the one in force (inherited or the model's) */
+    mt_drive drive;    /* after finish: the one in force */
 } mt_configuration;
 
 #define MT_LIST_OF(type, name) \
@@ -257,11 +281,11 @@ typedef struct mt_configuration {
     int cap_##name
 
 typedef struct mt_model {
-    mt_arena mem; /* owns everything below; freed by mt_model_delete */
-    const char *path;        /* as given to the reader; NULL */
+    mt_arena mem;     /* owns everything below; freed by mt_model_delete */
+    const char *path; /* as given to the reader; NULL */
     const char *name;
     const char *description;
-    int dimension;           /* 2 or 3 */
+    int dimension; /* 2 or 3 */
     mt_addr dimension_addr;
     bool has_gravity;
     mt_num gravity[3];
@@ -274,7 +298,12 @@ typedef struct mt_model {
     MT_LIST_OF(mt_spring, springs); /* springs, then dampers */
     MT_LIST_OF(mt_sensor, sensors);
     MT_LIST_OF(mt_named_mode, modes);
-    MT_LIST_OF(mt_configuration, configurations); /* never empty after finish: "default" is made where none is given */
+    MT_LIST_OF(
+        mt_configuration,
+        configurations); /* never empty after finish: "default" is made where none is given */
+    const char *sha256;  /* of the file's bytes, hexadecimal; NULL: not read from a file */
+    struct mt_model_names *tables; /* private: names to indices */
+    bool out_of_memory;            /* while it was filled; mt_model_finish fails then */
 } mt_model;
 
 /* An empty model (dimension 0). Fails: MT_E_MEMORY. */
@@ -287,10 +316,14 @@ int mt_model_lookup(const void *model, const char *name, size_t length);
 
 /* Resolve and check; every problem goes to diags (duplicate names, unknown names with "did you mean", wrong list lengths, joint types not in this dimension, cycles of `like` and of
  * parameters with their path "a -> b -> a" per configuration, a point mass where an orientation is needed, reserved names, names with a dot, a point named like a parameter where `at` is ambiguous ...).
- * Returns MT_E_INPUT where diags holds errors, else MT_OK. */
+ * An item that a reader could not read completely (its faults are in diags already) carries a type of ..._TYPE_COUNT (joint, spring), 0 elements
+ * (link) or no name in `on` (sensor) and is only checked for its name. The form of names is the reader's to check.
+ * Returns MT_E_INPUT where diags holds errors, else MT_OK; MT_E_MEMORY. */
 mt_status mt_model_finish(mt_model *model, mt_diags *diags, mt_err *err);
 
-int mt_model_find_parameter(const mt_model *model, const char *name);     /* MT_ABSENT where there is none, likewise below */
+int mt_model_find_parameter(
+    const mt_model *model,
+    const char *name); /* MT_ABSENT where there is none, likewise below */
 int mt_model_find_configuration(const mt_model *model, const char *name);
 int mt_model_find_mode(const mt_model *model, const char *name);
 int mt_model_find_body(const mt_model *model, const char *name);

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Flexible links and their sections. */
+#include <limits.h>
+
+#include "io/read_model.h"
+
+#define LINK_KEYS(X)                                                  \
+    X(LINK_NAME, "name", TEXT, true)                                  \
+    X(LINK_KIND, "kind", TEXT, false)                                 \
+    X(LINK_FROM, "from", TEXT_OR_LIST, true)                          \
+    X(LINK_TO, "to", TEXT_OR_LIST, true)                              \
+    X(LINK_ELEMENTS, "elements", COUNT, true)                         \
+    X(LINK_MASS, "mass_kg", NUMBER, false)                            \
+    X(LINK_DENSITY, "density_kg_per_m3", NUMBER, false)               \
+    X(LINK_YOUNG, "youngs_modulus_pa", NUMBER, false)                 \
+    X(LINK_SHEAR, "shear_modulus_pa", NUMBER, false)                  \
+    X(LINK_SECTION, "section", OBJECT, false)                         \
+    X(LINK_STIFFNESS, "stiffness_n_m_per_rad", NUMBER_OR_LIST, false) \
+    X(LINK_LENGTH, "element_length_m", NUMBER_OR_LIST, false)         \
+    X(LINK_ELEMENT_MASS, "element_mass_kg", NUMBER_OR_LIST, false)    \
+    X(LINK_INERTIA, "element_inertia_kg_m2", NUMBER_OR_LIST, false)   \
+    X(LINK_HINGE_AXIS, "hinge_axis", LIST, false)                     \
+    X(LINK_GYRATION, "radius_of_gyration_m", NUMBER, false)           \
+    X(LINK_IN, "in", LIST, false)                                     \
+    X(LINK_DESCRIPTION, "description", TEXT, false)                   \
+    X(LINK_SOURCE, "source", TEXT, false)
+enum { LINK_KEYS(MT_READ_ENUM) LINK_COUNT };
+MT_READ_TABLE(mt_link_keys, "link", LINK_KEYS);
+
+#define SECTION_KEYS(X)                                              \
+    X(SECTION_SHAPE, "shape", TEXT, true)                            \
+    X(SECTION_WIDTH, "width_m", NUMBER, false)                       \
+    X(SECTION_HEIGHT, "height_m", NUMBER, false)                     \
+    X(SECTION_DIAMETER, "diameter_m", NUMBER, false)                 \
+    X(SECTION_OUTER, "outer_diameter_m", NUMBER, false)              \
+    X(SECTION_INNER, "inner_diameter_m", NUMBER, false)              \
+    X(SECTION_AREA, "area_m2", NUMBER, false)                        \
+    X(SECTION_MOMENT, "second_moment_m4", NUMBER, false)             \
+    X(SECTION_MOMENT_OTHER, "second_moment_other_m4", NUMBER, false) \
+    X(SECTION_TORSION, "torsion_constant_m4", NUMBER, false)         \
+    X(SECTION_DESCRIPTION, "description", TEXT, false)               \
+    X(SECTION_SOURCE, "source", TEXT, false)
+enum { SECTION_KEYS(MT_READ_ENUM) SECTION_COUNT };
+MT_READ_TABLE(mt_section_keys, "section", SECTION_KEYS);
+
+static mt_section read_section(mt_model_reader *mr, mt_addr value)
+{
+    static const char *const shapes[] = {"rectangle", "circle", "tube", "general"};
+    mt_addr at[SECTION_COUNT];
+    (void)mt_reader_object(&mr->r, value, &mt_section_keys, at);
+    /* the list lacks the first shape, "none" */
+    const int shape =
+        mt_reader_choice(&mr->r, at[SECTION_SHAPE], "shape", shapes, MT_COUNT(shapes));
+    mt_section s = {.shape = (mt_section_shape)(shape + 1), .addr = value};
+    s.width = mt_read_num(mr, at[SECTION_WIDTH]);
+    s.height = mt_read_num(mr, at[SECTION_HEIGHT]);
+    s.diameter = mt_read_num(mr, at[SECTION_DIAMETER]);
+    const mt_num outer = mt_read_num(mr, at[SECTION_OUTER]);
+    s.inner_diameter = mt_read_num(mr, at[SECTION_INNER]);
+    s.area = mt_read_num(mr, at[SECTION_AREA]);
+    s.second_moment = mt_read_num(mr, at[SECTION_MOMENT]);
+    s.second_moment_other = mt_read_num(mr, at[SECTION_MOMENT_OTHER]);
+    s.torsion_constant = mt_read_num(mr, at[SECTION_TORSION]);
+    /* one place for both diameters: what does not belong to the shape is refused here */
+    const bool tube = s.shape == MT_SECTION_TUBE;
+    const mt_num misplaced = tube ? s.diameter : outer;
+    if (misplaced != MT_ABSENT && s.shape != MT_SECTION_NONE) {
+        mt_diag_error(mr->r.diags, at[tube ? SECTION_DIAMETER : SECTION_OUTER],
+                      "a section of shape \"%s\" has no \"%s\"", shapes[shape],
+                      tube ? "diameter_m" : "outer_diameter_m");
+    }
+    if (tube) {
+        s.diameter = outer;
+    }
+    return s;
+}
+
+static void read_lists(mt_model_reader *mr, const mt_addr *at, mt_link *l)
+{
+    l->stiffness = mt_read_nums(mr, at[LINK_STIFFNESS], true, 1, MT_MAX_LIST, &l->n_stiffness);
+    l->element_length =
+        mt_read_nums(mr, at[LINK_LENGTH], true, 1, MT_MAX_LIST, &l->n_element_length);
+    l->element_mass =
+        mt_read_nums(mr, at[LINK_ELEMENT_MASS], true, 1, MT_MAX_LIST, &l->n_element_mass);
+    l->element_inertia =
+        mt_read_nums(mr, at[LINK_INERTIA], true, 1, MT_MAX_LIST, &l->n_element_inertia);
+}
+
+static void read_link(mt_model_reader *mr, mt_addr value, mt_link *l)
+{
+    static const char *const kinds[] = {"rigid_elements", "beam"};
+    const int before = mr->r.diags->errors;
+    mt_addr at[LINK_COUNT];
+    (void)mt_reader_object(&mr->r, value, &mt_link_keys, at);
+    *l = (mt_link){.elements_addr = at[LINK_ELEMENTS], .stiffness_addr = at[LINK_STIFFNESS]};
+    l->name = mt_reader_name(&mr->r, at[LINK_NAME]);
+    const int kind = mt_reader_choice(&mr->r, at[LINK_KIND], "kind", kinds, MT_COUNT(kinds));
+    l->kind = kind == 1 ? MT_LINK_BEAM : MT_LINK_LUMPED;
+    l->from = mt_read_position(mr, at[LINK_FROM]);
+    l->to = mt_read_position(mr, at[LINK_TO]);
+    l->elements = mt_reader_count(&mr->r, at[LINK_ELEMENTS], 1, MT_MAX_LIST, 0);
+    l->mass = mt_read_num(mr, at[LINK_MASS]);
+    l->density = mt_read_num(mr, at[LINK_DENSITY]);
+    l->youngs_modulus = mt_read_num(mr, at[LINK_YOUNG]);
+    l->shear_modulus = mt_read_num(mr, at[LINK_SHEAR]);
+    l->section = read_section(mr, at[LINK_SECTION]);
+    read_lists(mr, at, l);
+    l->has_hinge_axis = mt_read_vector(mr, at[LINK_HINGE_AXIS], l->hinge_axis);
+    l->radius_of_gyration = mt_read_num(mr, at[LINK_GYRATION]);
+    l->in = mt_read_presence(mr, at[LINK_IN]);
+    if (mr->r.diags->errors > before) {
+        l->elements = 0;
+    }
+}
+
+void mt_read_links(mt_model_reader *mr, mt_addr list)
+{
+    mt_model *const m = mr->m;
+    for (mt_addr i = list == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(mr->r.doc, list);
+         i != MT_NO_ADDR; i = mt_json_next(mr->r.doc, i)) {
+        mt_link *const grown =
+            mt_read_grow(mr, m->links, m->n_links, &m->cap_links, sizeof *grown);
+        if (grown == NULL) {
+            return;
+        }
+        m->links = grown;
+        read_link(mr, i, &m->links[m->n_links++]);
+    }
+}

@@ -1,0 +1,317 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A model file: the root, parameters, points and bodies, and how the parts come together. */
+#include "io/read_model.h"
+
+#include "modetune/model.h"
+
+#include <string.h>
+
+#include "io/file.h"
+#include "io/io.h"
+#include "model/names.h"
+
+#define MODEL_KEYS(X)                                 \
+    X(MODEL_SCHEMA, "$schema", TEXT, false)           \
+    X(MODEL_FORMAT, "format", TEXT, true)             \
+    X(MODEL_NAME, "name", TEXT, true)                 \
+    X(MODEL_DESCRIPTION, "description", TEXT, false)  \
+    X(MODEL_SOURCE, "source", TEXT, false)            \
+    X(MODEL_DIMENSION, "dimension", COUNT, true)      \
+    X(MODEL_GRAVITY, "gravity_m_per_s2", LIST, false) \
+    X(MODEL_PARAMETERS, "parameters", OBJECT, false)  \
+    X(MODEL_POINTS, "points", OBJECT, false)          \
+    X(MODEL_BODIES, "bodies", LIST, false)            \
+    X(MODEL_LINKS, "links", LIST, false)              \
+    X(MODEL_JOINTS, "joints", LIST, false)            \
+    X(MODEL_SPRINGS, "springs", LIST, false)          \
+    X(MODEL_DAMPERS, "dampers", LIST, false)          \
+    X(MODEL_SENSORS, "sensors", LIST, false)          \
+    X(MODEL_MODES, "modes", OBJECT, false)            \
+    X(MODEL_CONFIGURATIONS, "configurations", OBJECT, false)
+enum { MODEL_KEYS(MT_READ_ENUM) MODEL_COUNT };
+MT_READ_TABLE(mt_model_keys, "", MODEL_KEYS);
+
+#define PARAMETER_KEYS(X)                                \
+    X(PARAMETER_VALUE, "value", NUMBER, true)            \
+    X(PARAMETER_UNIT, "unit", TEXT, false)               \
+    X(PARAMETER_DESCRIPTION, "description", TEXT, false) \
+    X(PARAMETER_SOURCE, "source", TEXT, false)           \
+    X(PARAMETER_ORIGIN, "origin", TEXT, false)
+enum { PARAMETER_KEYS(MT_READ_ENUM) PARAMETER_COUNT };
+MT_READ_TABLE(mt_parameter_keys, "parameter", PARAMETER_KEYS);
+
+#define BODY_KEYS(X)                                        \
+    X(BODY_NAME, "name", TEXT, true)                        \
+    X(BODY_MASS, "mass_kg", NUMBER, false)                  \
+    X(BODY_INERTIA, "inertia_kg_m2", NUMBER_OR_LIST, false) \
+    X(BODY_CENTRE, "centre", TEXT_OR_LIST, true)            \
+    X(BODY_IN, "in", LIST, false)                           \
+    X(BODY_DESCRIPTION, "description", TEXT, false)         \
+    X(BODY_SOURCE, "source", TEXT, false)                   \
+    X(BODY_ORIGIN, "origin", TEXT, false)
+enum { BODY_KEYS(MT_READ_ENUM) BODY_COUNT };
+MT_READ_TABLE(mt_body_keys, "body", BODY_KEYS);
+
+const mt_key_table *const *mt_model_key_tables(int *n)
+{
+    static const mt_key_table *const tables[] = {
+        &mt_model_keys,   &mt_parameter_keys, &mt_body_keys,          &mt_link_keys,
+        &mt_section_keys, &mt_joint_keys,     &mt_spring_keys,        &mt_damper_keys,
+        &mt_sensor_keys,  &mt_mode_keys,      &mt_configuration_keys, &mt_drive_keys,
+        &mt_hold_keys,
+    };
+    *n = MT_COUNT(tables);
+    return tables;
+}
+
+static mt_origin read_origin(mt_model_reader *mr, mt_addr value)
+{
+    static const char *const names[] = {"published", "identified", "assumed"};
+    /* the list lacks the first origin, none; MT_ABSENT is -1 */
+    return (mt_origin)(mt_reader_choice(&mr->r, value, "origin", names, MT_COUNT(names)) + 1);
+}
+
+/* Parameters are entered by name first: expressions may look ahead. */
+static void read_parameter_names(mt_model_reader *mr, mt_addr object)
+{
+    mt_model *const m = mr->m;
+    const int n = object == MT_NO_ADDR ? 0 : mt_json_count(mr->r.doc, object);
+    int n_more = 0;
+    const char *const *const more = mt_expr_names(&n_more);
+    const char **const names = mt_arena_alloc(&m->mem, (size_t)(n + n_more), sizeof *names);
+    m->parameters = mt_arena_alloc(&m->mem, (size_t)n, sizeof *m->parameters);
+    if (names == NULL || m->parameters == NULL) {
+        mr->r.out_of_memory = true;
+        return;
+    }
+    m->cap_parameters = n;
+    int n_names = 0;
+    for (mt_addr i = n == 0 ? MT_NO_ADDR : mt_json_first(mr->r.doc, object); i != MT_NO_ADDR;
+         i = mt_json_next(mr->r.doc, i)) {
+        mt_parameter *const p = &m->parameters[m->n_parameters++];
+        p->name = mt_reader_member_name(&mr->r, i, MT_NAME_PARAMETER);
+        p->value = MT_ABSENT;
+        if (p->name.s != NULL) {
+            names[n_names++] = p->name.s;
+        }
+    }
+    for (int i = 0; i < n_more; i++) {
+        names[n_names++] = more[i];
+    }
+    mr->r.names = names;
+    mr->r.n_names = n_names;
+    if (!mt_model_index_parameters(m)) {
+        mr->r.out_of_memory = true;
+    }
+}
+
+static void read_parameter(mt_model_reader *mr, mt_addr value, mt_parameter *p)
+{
+    int n = 0;
+    const char *const *const units = mt_model_units(&n);
+    mt_addr at[PARAMETER_COUNT];
+    if (!mt_reader_type(&mr->r, value, MT_KEY_NUMBER_OR_OBJECT)) {
+        return;
+    }
+    if (mt_json_type_of(mr->r.doc, value) != MT_JSON_OBJECT) {
+        p->value = mt_read_num(mr, value);
+        return;
+    }
+    (void)mt_reader_object(&mr->r, value, &mt_parameter_keys, at);
+    p->value = mt_read_num(mr, at[PARAMETER_VALUE]);
+    const int unit = mt_reader_choice(&mr->r, at[PARAMETER_UNIT], "unit", units, n);
+    p->unit = unit == MT_ABSENT ? NULL : units[unit];
+    p->description = mt_reader_text(&mr->r, at[PARAMETER_DESCRIPTION]);
+    p->source = mt_reader_text(&mr->r, at[PARAMETER_SOURCE]);
+    p->origin = read_origin(mr, at[PARAMETER_ORIGIN]);
+}
+
+static void read_parameters(mt_model_reader *mr, mt_addr object)
+{
+    read_parameter_names(mr, object);
+    int k = 0;
+    for (mt_addr i = object == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(mr->r.doc, object);
+         i != MT_NO_ADDR && !mr->r.out_of_memory; i = mt_json_next(mr->r.doc, i)) {
+        read_parameter(mr, i, &mr->m->parameters[k++]);
+    }
+}
+
+static void read_points(mt_model_reader *mr, mt_addr object)
+{
+    mt_model *const m = mr->m;
+    for (mt_addr i = object == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(mr->r.doc, object);
+         i != MT_NO_ADDR; i = mt_json_next(mr->r.doc, i)) {
+        mt_point *const grown =
+            mt_read_grow(mr, m->points, m->n_points, &m->cap_points, sizeof *grown);
+        if (grown == NULL) {
+            return;
+        }
+        m->points = grown;
+        mt_point *const p = &m->points[m->n_points++];
+        p->name = mt_reader_member_name(&mr->r, i, MT_NAME_ITEM);
+        (void)mt_read_vector(mr, i, p->x);
+    }
+}
+
+/* In two dimensions one moment; in three three moments, or six with the products; none: a point mass. */
+static void read_inertia(mt_model_reader *mr, mt_addr value, mt_body *b)
+{
+    enum { MOMENTS = 3, ALL = 6 };
+    int n = 0;
+    for (int k = 0; k < ALL; k++) {
+        b->inertia[k] = MT_ABSENT;
+    }
+    b->point_mass = value == MT_NO_ADDR;
+    const mt_num *const nums = mt_read_nums(mr, value, true, MOMENTS, ALL, &n);
+    if (nums == NULL) {
+        return;
+    }
+    const bool fits = mr->m->dimension == 2 ? n == 1 : n == MOMENTS || n == ALL;
+    if (!fits && mr->m->dimension != 0) {
+        mt_diag_error(mr->r.diags, value, "must be %s: the model has %d dimensions",
+                      mr->m->dimension == 2 ? "one number"
+                                            : "[xx, yy, zz] or [xx, yy, zz, xy, xz, yz]",
+                      mr->m->dimension);
+        return;
+    }
+    memcpy(b->inertia, nums, (size_t)n * sizeof *nums);
+}
+
+static void read_bodies(mt_model_reader *mr, mt_addr list)
+{
+    mt_model *const m = mr->m;
+    for (mt_addr i = list == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(mr->r.doc, list);
+         i != MT_NO_ADDR; i = mt_json_next(mr->r.doc, i)) {
+        mt_body *const grown =
+            mt_read_grow(mr, m->bodies, m->n_bodies, &m->cap_bodies, sizeof *grown);
+        if (grown == NULL) {
+            return;
+        }
+        m->bodies = grown;
+        mt_body *const b = &m->bodies[m->n_bodies++];
+        mt_addr at[BODY_COUNT];
+        (void)mt_reader_object(&mr->r, i, &mt_body_keys, at);
+        b->name = mt_reader_name(&mr->r, at[BODY_NAME]);
+        b->mass = mt_read_num(mr, at[BODY_MASS]);
+        read_inertia(mr, at[BODY_INERTIA], b);
+        b->centre = mt_read_position(mr, at[BODY_CENTRE]);
+        b->in = mt_read_presence(mr, at[BODY_IN]);
+        (void)read_origin(mr, at[BODY_ORIGIN]);
+    }
+}
+
+/* Everything behind the format. Points and parameters come first: positions and expressions refer to them. */
+static void read_root(mt_model_reader *mr, const mt_addr *at)
+{
+    mt_model *const m = mr->m;
+    m->name = mt_reader_text(&mr->r, at[MODEL_NAME]);
+    m->description = mt_reader_text(&mr->r, at[MODEL_DESCRIPTION]);
+    m->dimension = mt_reader_count(&mr->r, at[MODEL_DIMENSION], 2, 3, 0);
+    m->dimension_addr = at[MODEL_DIMENSION];
+    read_parameters(mr, at[MODEL_PARAMETERS]);
+    if (mr->r.out_of_memory) {
+        return;
+    }
+    m->has_gravity = mt_read_vector(mr, at[MODEL_GRAVITY], m->gravity);
+    read_points(mr, at[MODEL_POINTS]);
+    read_bodies(mr, at[MODEL_BODIES]);
+    mt_read_links(mr, at[MODEL_LINKS]);
+    mt_read_joints(mr, at[MODEL_JOINTS]);
+    mt_read_springs(mr, at[MODEL_SPRINGS], at[MODEL_DAMPERS]);
+    mt_read_sensors(mr, at[MODEL_SENSORS]);
+    mt_read_modes(mr, at[MODEL_MODES]);
+    mt_read_configurations(mr, at[MODEL_CONFIGURATIONS]);
+}
+
+/* Is this a model file at all? Otherwise nothing else is worth saying. */
+static bool check_format(mt_reader *r)
+{
+    static const char format[] = "modetune-model/1";
+    const mt_addr at = mt_json_member(r->doc, MT_JSON_ROOT, "format");
+    if (mt_json_type_of(r->doc, MT_JSON_ROOT) != MT_JSON_OBJECT) {
+        return mt_reader_type(r, MT_JSON_ROOT, MT_KEY_OBJECT);
+    }
+    if (at == MT_NO_ADDR || mt_json_type_of(r->doc, at) != MT_JSON_STRING) {
+        return true; /* the table of keys will tell */
+    }
+    if (strcmp(mt_json_string(r->doc, at), format) != 0) {
+        mt_diag_structure(r->diags, at, "the format is not \"%s\": this is no model file",
+                          format);
+        return false;
+    }
+    return true;
+}
+
+mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_err *err)
+{
+    mt_model *m = NULL;
+    *out = NULL;
+    MT_TRY(mt_model_new(&m, err));
+    mt_model_reader mr = {
+        .r = {.doc = doc,
+              .diags = mt_json_diags(doc),
+              .mem = &m->mem,
+              .lookup = mt_model_lookup,
+              .context = m},
+        .m = m
+    };
+    mt_addr at[MODEL_COUNT];
+    if (check_format(&mr.r) && mt_reader_object(&mr.r, MT_JSON_ROOT, &mt_model_keys, at)) {
+        read_root(&mr, at);
+        if (!mr.r.out_of_memory && mt_model_finish(m, mr.r.diags, NULL) == MT_E_MEMORY) {
+            mr.r.out_of_memory = true;
+        }
+    }
+    const mt_status rc = mt_reader_status(&mr.r, file, err);
+    if (rc != MT_OK) {
+        mt_model_delete(m);
+        return rc;
+    }
+    *out = m;
+    return MT_OK;
+}
+
+/* What is kept of the file besides its contents. */
+static mt_status note_file(mt_model *m, const char *path, const mt_file *f, mt_err *err)
+{
+    m->path = mt_arena_strdup(&m->mem, path);
+    m->sha256 = mt_arena_strdup(&m->mem, f->sha256);
+    return m->path == NULL || m->sha256 == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **out,
+                        mt_text *messages, mt_err *err)
+{
+    const size_t limit =
+        opt != NULL && opt->max_bytes != 0 ? opt->max_bytes : MT_JSON_MAX_BYTES;
+    mt_file file = {0};
+    mt_json *doc = NULL;
+    *out = NULL;
+    MT_TRY(mt_file_read(path, opt == NULL ? NULL : opt->root, limit, &file, err));
+    mt_status rc = mt_json_parse(file.bytes, file.length, &doc, err);
+    if (rc == MT_OK) {
+        rc = mt_model_from_json(doc, path, out, err);
+    } else if (rc == MT_E_INPUT) {
+        const mt_reader r = {.doc = doc, .diags = mt_json_diags(doc)};
+        rc = mt_reader_status(&r, path, err);
+    }
+    if (rc == MT_OK) {
+        rc = note_file(*out, path, &file, err);
+    }
+    if (doc != NULL && messages != NULL) {
+        mt_json_print(doc, path, messages);
+        rc = messages->failed ? mt_fail_memory(err) : rc;
+    }
+    if (rc != MT_OK) {
+        mt_model_delete(*out);
+        *out = NULL;
+    }
+    mt_json_delete(doc);
+    mt_file_free(&file);
+    return rc;
+}
+
+mt_status mt_model_read(const char *path, mt_model **out, mt_err *err)
+{
+    return mt_model_load(path, NULL, out, NULL, err);
+}

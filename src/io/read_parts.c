@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the items of a model are made of: numbers, vectors, positions, names of bodies, presence. */
+#include <string.h>
+
+#include "io/read_model.h"
+
+mt_num mt_read_num(mt_model_reader *mr, mt_addr value)
+{
+    mt_expr expr;
+    return mt_reader_expr(&mr->r, value, &expr) ? mt_model_add_num(mr->m, expr, value)
+                                                : MT_ABSENT;
+}
+
+static void wrong_length(mt_model_reader *mr, mt_addr value, int least, int most)
+{
+    if (least == most) {
+        mt_diag_structure(mr->r.diags, value, "must have %d entries, not %d", least,
+                          mt_json_count(mr->r.doc, value));
+    } else if (mt_json_count(mr->r.doc, value) < least && least == 1) {
+        mt_diag_structure(mr->r.diags, value, "must not be empty");
+    } else {
+        mt_diag_structure(mr->r.diags, value, "must have %d to %d entries, not %d", least, most,
+                          mt_json_count(mr->r.doc, value));
+    }
+}
+
+mt_num *mt_read_nums(mt_model_reader *mr, mt_addr value, bool single, int least, int most,
+                     int *n)
+{
+    *n = 0;
+    if (!mt_reader_type(&mr->r, value, single ? MT_KEY_NUMBER_OR_LIST : MT_KEY_LIST)) {
+        return NULL;
+    }
+    const bool is_list = mt_json_type_of(mr->r.doc, value) == MT_JSON_ARRAY;
+    const int count = is_list ? mt_json_count(mr->r.doc, value) : 1;
+    if (is_list && (count < least || count > most)) {
+        wrong_length(mr, value, least, most);
+        return NULL;
+    }
+    mt_num *const nums = mt_arena_alloc(&mr->m->mem, (size_t)count, sizeof *nums);
+    if (nums == NULL) {
+        mr->r.out_of_memory = true;
+        return NULL;
+    }
+    if (!is_list) {
+        nums[0] = mt_read_num(mr, value);
+        *n = 1;
+        return nums;
+    }
+    for (mt_addr i = mt_json_first(mr->r.doc, value); i != MT_NO_ADDR;
+         i = mt_json_next(mr->r.doc, i)) {
+        nums[(*n)++] = mt_read_num(mr, i);
+    }
+    return nums;
+}
+
+static void no_vector(mt_num x[3])
+{
+    for (int k = 0; k < 3; k++) {
+        x[k] = MT_ABSENT;
+    }
+}
+
+bool mt_read_vector(mt_model_reader *mr, mt_addr value, mt_num x[3])
+{
+    int n = 0;
+    no_vector(x);
+    const mt_num *const nums = mt_read_nums(mr, value, false, 2, 3, &n);
+    if (nums == NULL) {
+        return false;
+    }
+    if (mr->m->dimension != 0 && n != mr->m->dimension) {
+        mt_diag_error(mr->r.diags, value, "must have %d entries: the model has %d dimensions",
+                      mr->m->dimension, mr->m->dimension);
+        return false;
+    }
+    memcpy(x, nums, (size_t)n * sizeof *nums);
+    return true;
+}
+
+mt_position mt_read_position(mt_model_reader *mr, mt_addr value)
+{
+    mt_position p = {
+        .point_name = {NULL, MT_NO_ADDR},
+          .point = MT_ABSENT, .addr = value
+    };
+    no_vector(p.x);
+    if (!mt_reader_type(&mr->r, value, MT_KEY_TEXT_OR_LIST)) {
+        return p;
+    }
+    if (mt_json_type_of(mr->r.doc, value) == MT_JSON_STRING) {
+        p.point_name = mt_reader_ref(&mr->r, value);
+        p.given = p.point_name.s != NULL;
+    } else {
+        p.given = mt_read_vector(mr, value, p.x);
+    }
+    return p;
+}
+
+static bool is_point(const mt_model_reader *mr, mt_addr value)
+{
+    const char *const s = mt_json_string(mr->r.doc, value);
+    for (int i = 0; i < mr->m->n_points; i++) {
+        if (mr->m->points[i].name.s != NULL && strcmp(mr->m->points[i].name.s, s) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A list of two strings: two points, or two expressions? In three dimensions only points can be meant. */
+static bool names_two_points(mt_model_reader *mr, mt_addr list)
+{
+    const mt_addr a = mt_json_first(mr->r.doc, list);
+    const mt_addr b = mt_json_next(mr->r.doc, a);
+    const bool strings = mt_json_type_of(mr->r.doc, a) == MT_JSON_STRING &&
+                         mt_json_type_of(mr->r.doc, b) == MT_JSON_STRING;
+    if (!strings || mr->m->dimension == 3) {
+        return strings;
+    }
+    const bool points = is_point(mr, a) && is_point(mr, b);
+    const char *const x = mt_json_string(mr->r.doc, a);
+    const char *const y = mt_json_string(mr->r.doc, b);
+    if (points && mt_model_lookup(mr->m, x, strlen(x)) >= 0 &&
+        mt_model_lookup(mr->m, y, strlen(y)) >= 0) {
+        mt_diag_error(mr->r.diags, list,
+                      "\"%s\" and \"%s\" are points and parameters: write coordinates as "
+                      "[\"1*%s\", \"1*%s\"]",
+                      x, y, x, y);
+    }
+    return points;
+}
+
+int mt_read_at(mt_model_reader *mr, mt_addr value, mt_position at[2])
+{
+    at[0] = mt_read_position(mr, MT_NO_ADDR);
+    at[1] = at[0];
+    if (!mt_reader_type(&mr->r, value, MT_KEY_TEXT_OR_LIST)) {
+        return 0;
+    }
+    bool pair = false;
+    if (mt_json_type_of(mr->r.doc, value) == MT_JSON_ARRAY) {
+        for (mt_addr i = mt_json_first(mr->r.doc, value); i != MT_NO_ADDR;
+             i = mt_json_next(mr->r.doc, i)) {
+            pair = pair || mt_json_type_of(mr->r.doc, i) == MT_JSON_ARRAY;
+        }
+        const int count = mt_json_count(mr->r.doc, value);
+        if (pair && count != 2) {
+            mt_diag_structure(mr->r.diags, value, "must be a pair of positions, not %d", count);
+            return 0;
+        }
+        pair = pair || (count == 2 && names_two_points(mr, value));
+    }
+    if (!pair) {
+        at[0] = mt_read_position(mr, value);
+        return at[0].given ? 1 : 0;
+    }
+    const mt_addr first = mt_json_first(mr->r.doc, value);
+    at[0] = mt_read_position(mr, first);
+    at[1] = mt_read_position(mr, mt_json_next(mr->r.doc, first));
+    return at[0].given && at[1].given ? 2 : 0;
+}
+
+void mt_read_bodies(mt_model_reader *mr, mt_addr value, mt_attach bodies[2])
+{
+    for (int side = 0; side < 2; side++) {
+        bodies[side] = (mt_attach){
+            .name = {NULL, MT_NO_ADDR},
+              .index = MT_GROUND, .element = MT_ABSENT
+        };
+    }
+    if (!mt_reader_type(&mr->r, value, MT_KEY_LIST)) {
+        return;
+    }
+    if (mt_json_count(mr->r.doc, value) != 2) {
+        wrong_length(mr, value, 2, 2);
+        return;
+    }
+    const mt_addr first = mt_json_first(mr->r.doc, value);
+    bodies[0].name = mt_reader_ref(&mr->r, first);
+    bodies[1].name = mt_reader_ref(&mr->r, mt_json_next(mr->r.doc, first));
+}
+
+mt_presence mt_read_presence(mt_model_reader *mr, mt_addr value)
+{
+    mt_presence in = {0};
+    if (mt_reader_type(&mr->r, value, MT_KEY_LIST)) {
+        in.given = true;
+        in.names = mt_reader_refs(&mr->r, value);
+    }
+    return in;
+}
+
+void *mt_read_grow(mt_model_reader *mr, void *items, int count, int *capacity, size_t size)
+{
+    void *const grown = mt_arena_grow(&mr->m->mem, items, count, capacity, size);
+    mr->r.out_of_memory = mr->r.out_of_memory || grown == NULL;
+    return grown;
+}

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Resolving and checking a model, stage by stage; this file has the name spaces and what the stages share. */
+#include "model/finish.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+
+mt_addr mt_finish_addr(const mt_model *m, mt_num num)
+{
+    return num == MT_ABSENT ? MT_NO_ADDR : m->nums[num].addr;
+}
+
+void mt_finish_unknown(mt_finish *f, mt_name name, const mt_names *table, const char *what,
+                       const char *const *more, int n_more)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(&f->m->mem);
+    const char **const names =
+        mt_arena_alloc(&f->m->mem, (size_t)(table->count + n_more), sizeof *names);
+    if (names == NULL) {
+        f->out_of_memory = true;
+        return;
+    }
+    int n = 0;
+    for (int i = 0; i < n_more; i++) {
+        names[n++] = more[i];
+    }
+    for (int i = 0; i < table->size; i++) {
+        if (table->keys[i] != NULL) {
+            names[n++] = table->keys[i];
+        }
+    }
+    const char *const near = mt_text_nearest(name.s, names, n);
+    mt_arena_rewind(&f->m->mem, mark);
+    if (near != NULL) {
+        mt_diag_error(f->d, name.addr, "unknown %s \"%s\"; did you mean \"%s\"?", what, name.s,
+                      near);
+    } else {
+        mt_diag_error(f->d, name.addr, "unknown %s \"%s\"", what, name.s);
+    }
+}
+
+int mt_finish_find(mt_finish *f, mt_name name, const mt_names *table, const char *what)
+{
+    if (name.s == NULL) {
+        return MT_ABSENT;
+    }
+    bool found = false;
+    const int i = mt_names_find(table, name.s, strlen(name.s), &found);
+    if (!found) {
+        mt_finish_unknown(f, name, table, what, NULL, 0);
+    }
+    return i;
+}
+
+void mt_finish_position(mt_finish *f, mt_position *p)
+{
+    p->point = mt_finish_find(f, p->point_name, &f->m->tables->points, "point");
+}
+
+static const mt_num *coordinates(const mt_model *m, const mt_position *p)
+{
+    return p->point == MT_ABSENT ? p->x : m->points[p->point].x;
+}
+
+static bool same_number(const mt_model *m, mt_num a, mt_num b)
+{
+    if (a == b || a == MT_ABSENT || b == MT_ABSENT) {
+        return a == b;
+    }
+    const mt_expr *const x = &m->nums[a].expr;
+    const mt_expr *const y = &m->nums[b].expr;
+    bool same = x->length == y->length;
+    for (int i = 0; i < x->length && same; i++) {
+        const mt_code *const p = &x->code[i];
+        const mt_code *const q = &y->code[i];
+        same = p->op == q->op && (p->op != MT_OP_PARAM || p->param == q->param) &&
+               (p->op != MT_OP_CONST || !(p->value < q->value || p->value > q->value));
+    }
+    return same;
+}
+
+bool mt_finish_same_position(const mt_model *m, const mt_position *a, const mt_position *b)
+{
+    const mt_num *const x = coordinates(m, a);
+    const mt_num *const y = coordinates(m, b);
+    return same_number(m, x[0], y[0]) && same_number(m, x[1], y[1]) &&
+           same_number(m, x[2], y[2]);
+}
+
+/* Enter one name; a second use is noted. */
+static void enter(mt_finish *f, mt_names *table, mt_name name, int value, const char *what)
+{
+    bool taken = false;
+    if (name.s == NULL) {
+        return;
+    }
+    if (!mt_names_add(table, &f->m->mem, name.s, value, &taken)) {
+        f->out_of_memory = true;
+    } else if (taken) {
+        mt_diag_error(f->d, name.addr, "the name \"%s\" is taken by another %s", name.s, what);
+    }
+}
+
+/* One name space: a list of items with a member `name`. */
+#define ENTER_ALL(f, table, list, what)                                      \
+    for (int i = 0; i < (f)->m->n_##list; i++) {                             \
+        enter((f), &(f)->m->tables->table, (f)->m->list[i].name, i, (what)); \
+    }
+
+void mt_finish_names(mt_finish *f)
+{
+    mt_model *const m = f->m;
+    *m->tables = (mt_model_names){0};
+    for (int i = 0; i < m->n_parameters; i++) {
+        const mt_name name = m->parameters[i].name;
+        if (name.s != NULL && mt_expr_reserved(name.s)) {
+            mt_diag_error(f->d, name.addr, "\"%s\" is a function or constant of expressions",
+                          name.s);
+        }
+    }
+    ENTER_ALL(f, parameters, parameters, "parameter")
+    ENTER_ALL(f, points, points, "point")
+    ENTER_ALL(f, bodies, bodies, "body or link")
+    for (int i = 0; i < m->n_links; i++) {
+        enter(f, &m->tables->bodies, m->links[i].name, -1 - i, "body or link");
+    }
+    ENTER_ALL(f, joints, joints, "joint")
+    ENTER_ALL(f, springs, springs, "spring or damper")
+    ENTER_ALL(f, sensors, sensors, "sensor")
+    ENTER_ALL(f, modes, modes, "mode")
+    ENTER_ALL(f, configurations, configurations, "configuration")
+    bool found = false;
+    const int i = mt_names_find(&m->tables->bodies, "ground", strlen("ground"), &found);
+    if (found) {
+        const mt_name name = i >= 0 ? m->bodies[i].name : m->links[-1 - i].name;
+        mt_diag_error(f->d, name.addr, "\"ground\" is the fixed world and cannot be a name");
+    }
+}
+
+void mt_finish_bodies(mt_finish *f)
+{
+    for (int i = 0; i < f->m->n_bodies; i++) {
+        mt_finish_position(f, &f->m->bodies[i].centre);
+    }
+}
+
+/* A model without configurations has one, "default". */
+static void ensure_configuration(mt_finish *f)
+{
+    mt_model *const m = f->m;
+    if (m->n_configurations > 0) {
+        return;
+    }
+    m->configurations = mt_arena_alloc(&m->mem, 1, sizeof *m->configurations);
+    if (m->configurations == NULL) {
+        f->out_of_memory = true;
+        return;
+    }
+    m->n_configurations = 1;
+    m->cap_configurations = 1;
+    m->configurations[0] = (mt_configuration){
+        .name = {.s = "default", .addr = MT_NO_ADDR},
+          .like = MT_ABSENT
+    };
+    m->configurations[0].like_name.addr = MT_NO_ADDR;
+    for (int k = 0; k < 3; k++) {
+        m->configurations[0].gravity[k] = MT_ABSENT;
+    }
+}
+
+mt_status mt_model_finish(mt_model *model, mt_diags *diags, mt_err *err)
+{
+    static void (*const stages[])(mt_finish *) = {
+        ensure_configuration, mt_finish_names,  mt_finish_configurations, mt_finish_presence,
+        mt_finish_bodies,     mt_finish_links,  mt_finish_joints,         mt_finish_springs,
+        mt_finish_sensors,    mt_finish_drives, mt_finish_cycles,
+    };
+    mt_finish f = {.m = model, .d = diags, .out_of_memory = model->out_of_memory};
+    for (int i = 0; i < MT_COUNT(stages) && !f.out_of_memory; i++) {
+        stages[i](&f);
+    }
+    if (f.out_of_memory || diags->out_of_memory) {
+        return mt_fail_memory(err);
+    }
+    if (diags->errors > 0) {
+        return mt_fail(err, MT_E_INPUT, "%s%s", diags->count > 0 ? diags->items[0].text : "",
+                       diags->errors > 1 ? " (and more)" : "");
+    }
+    return MT_OK;
+}

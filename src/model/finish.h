@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MODEL_FINISH_H
+#define MODEL_FINISH_H
+
+#include "model/names.h"
+
+/* What the files finish_*.c share while a model is resolved and checked. Problems go to diags; a function returns nothing. */
+typedef struct mt_finish {
+    mt_model *m;
+    mt_diags *d;
+    bool out_of_memory;
+} mt_finish;
+
+/* The index of a name, which is looked up in a table; MT_ABSENT where it is not there (noted: unknown `what` "x"; did you mean "y"?).
+ * A name that is absent itself gives MT_ABSENT without a message. */
+int mt_finish_find(mt_finish *f, mt_name name, const mt_names *table, const char *what);
+/* Note: unknown `what` "x", with the nearest of the names in the table, or of `more` names besides. */
+void mt_finish_unknown(mt_finish *f, mt_name name, const mt_names *table, const char *what,
+                       const char *const *more, int n_more);
+void mt_finish_position(mt_finish *f, mt_position *p);
+/* What stands where a body may. */
+void mt_finish_attach(mt_finish *f, mt_attach *a);
+/* Do both hold on to the same? */
+bool mt_finish_same_attach(const mt_attach *a, const mt_attach *b);
+/* The body is a point mass? */
+bool mt_finish_is_point_mass(const mt_finish *f, const mt_attach *a);
+/* Two positions that are the same by the way they are written, whatever the parameters are. */
+bool mt_finish_same_position(const mt_model *m, const mt_position *a, const mt_position *b);
+/* The presence of an item's parts in every configuration that holds the item; `what` "joint". */
+void mt_finish_needs(mt_finish *f, mt_name item, const char *what, const mt_presence *in,
+                     const mt_presence *part, const char *part_what, const char *part_name);
+void mt_finish_needs_attach(mt_finish *f, mt_name item, const char *what, const mt_presence *in,
+                            const mt_attach *part);
+/* The address of a number; MT_NO_ADDR where it is absent. */
+mt_addr mt_finish_addr(const mt_model *m, mt_num num);
+
+/* The stages, in order. */
+void mt_finish_names(mt_finish *f);
+void mt_finish_configurations(mt_finish *f);
+void mt_finish_presence(mt_finish *f);
+void mt_finish_bodies(mt_finish *f);
+void mt_finish_links(mt_finish *f);
+void mt_finish_joints(mt_finish *f);
+void mt_finish_springs(mt_finish *f);
+void mt_finish_sensors(mt_finish *f);
+void mt_finish_drives(mt_finish *f);
+void mt_finish_cycles(mt_finish *f);
+
+#endif

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What joints, springs and sensors hold on to: "ground", a body, "link.start", "link.end", "link.3". */
+#include <limits.h>
+#include <string.h>
+
+#include "model/finish.h"
+
+/* The number that s is, 1 or more without leading zeros; 0 where it is none. */
+static int whole_number(const char *s)
+{
+    int n = 0;
+    if (*s == '0') {
+        return 0;
+    }
+    for (; *s != '\0'; s++) {
+        if (*s < '0' || *s > '9' || n > (INT_MAX - 9) / 10) {
+            return 0;
+        }
+        n = 10 * n + (*s - '0');
+    }
+    return n;
+}
+
+/* Part of a link behind the dot. */
+static void attach_link(mt_finish *f, mt_attach *a, int link, const char *part)
+{
+    const mt_link *const l = &f->m->links[link];
+    a->index = link;
+    if (strcmp(part, "start") == 0) {
+        a->kind = MT_ATTACH_LINK_START;
+        return;
+    }
+    if (strcmp(part, "end") == 0) {
+        a->kind = MT_ATTACH_LINK_END;
+        return;
+    }
+    const int element = whole_number(part);
+    a->kind = MT_ATTACH_LINK_ELEMENT;
+    a->element = element - 1;
+    if (l->elements == 0) {
+        return; /* the link could not be read */
+    }
+    if (l->kind == MT_LINK_BEAM) {
+        mt_diag_error(f->d, a->name.addr,
+                      "\"%s\": a beam link is held at \"%s.start\" or \"%s.end\" only",
+                      a->name.s, l->name.s, l->name.s);
+    } else if (element < 1 || element > l->elements) {
+        mt_diag_error(f->d, a->name.addr,
+                      "\"%s\": link \"%s\" has \"start\", \"end\" and the elements 1 to %d",
+                      a->name.s, l->name.s, l->elements);
+    }
+}
+
+void mt_finish_attach(mt_finish *f, mt_attach *a)
+{
+    const mt_names *const table = &f->m->tables->bodies;
+    const char *const s = a->name.s;
+    a->kind = MT_ATTACH_GROUND;
+    a->index = MT_GROUND;
+    a->element = MT_ABSENT;
+    if (s == NULL || strcmp(s, "ground") == 0) {
+        return;
+    }
+    bool found = false;
+    const char *const dot = strchr(s, '.');
+    const size_t length = dot == NULL ? strlen(s) : (size_t)(dot - s);
+    const int i = mt_names_find(table, s, length, &found);
+    if (!found) {
+        static const char *const more[] = {"ground"};
+        const char *const stem = mt_arena_strndup(&f->m->mem, s, length);
+        const mt_name name = {.s = stem, .addr = a->name.addr};
+        if (stem == NULL) {
+            f->out_of_memory = true;
+            return;
+        }
+        mt_finish_unknown(f, name, table, dot == NULL ? "body" : "link", more,
+                          dot == NULL ? 1 : 0);
+    } else if (i >= 0 && dot == NULL) {
+        a->kind = MT_ATTACH_BODY;
+        a->index = i;
+    } else if (i >= 0) {
+        mt_diag_error(f->d, a->name.addr,
+                      "\"%s\": \"%.*s\" is a body, not a link: it has no parts", s, (int)length,
+                      s);
+    } else if (dot == NULL) {
+        mt_diag_error(f->d, a->name.addr,
+                      "\"%s\" is a link: write \"%s.start\", \"%s.end\" or one of its elements",
+                      s, s, s);
+    } else {
+        attach_link(f, a, -1 - i, dot + 1);
+    }
+}
+
+bool mt_finish_same_attach(const mt_attach *a, const mt_attach *b)
+{
+    if (a->name.s == NULL || b->name.s == NULL) {
+        return false;
+    }
+    if (a->kind == MT_ATTACH_GROUND || b->kind == MT_ATTACH_GROUND) {
+        return strcmp(a->name.s, b->name.s) == 0; /* an unknown name counts as ground as well */
+    }
+    return a->kind == b->kind && a->index == b->index && a->element == b->element;
+}
+
+bool mt_finish_is_point_mass(const mt_finish *f, const mt_attach *a)
+{
+    return a->kind == MT_ATTACH_BODY && f->m->bodies[a->index].point_mass;
+}
+
+void mt_finish_needs_attach(mt_finish *f, mt_name item, const char *what, const mt_presence *in,
+                            const mt_attach *part)
+{
+    switch (part->kind) {
+    case MT_ATTACH_GROUND:
+        return;
+    case MT_ATTACH_BODY:
+        mt_finish_needs(f, item, what, in, &f->m->bodies[part->index].in, "body",
+                        f->m->bodies[part->index].name.s);
+        return;
+    case MT_ATTACH_LINK_START:
+    case MT_ATTACH_LINK_END:
+    case MT_ATTACH_LINK_ELEMENT:
+        mt_finish_needs(f, item, what, in, &f->m->links[part->index].in, "link",
+                        f->m->links[part->index].name.s);
+        return;
+    }
+}

@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Configurations: `like`, what is inherited through it (overrides, gravity, drive), and which items each contains. */
+#include <string.h>
+
+#include "model/finish.h"
+
+enum { UNSEEN, ON_PATH, DONE };
+
+/* "a -> b -> a": from configuration c along `like` back to c. */
+static void note_like_cycle(mt_finish *f, int c)
+{
+    const mt_configuration *const all = f->m->configurations;
+    const char *path = all[c].name.s;
+    int at = c;
+    do {
+        at = all[at].like;
+        path = mt_arena_printf(&f->m->mem, "%s -> %s", path, all[at].name.s);
+    } while (path != NULL && at != c);
+    if (path == NULL) {
+        f->out_of_memory = true;
+        return;
+    }
+    mt_diag_error(f->d, all[c].like_name.addr,
+                  "configurations are like each other in a circle: %s", path);
+}
+
+/* Walk along `like` from c; a walk that meets itself is cut there. state [n_configurations]. */
+static void check_like(mt_finish *f, int c, int *state)
+{
+    mt_configuration *const all = f->m->configurations;
+    int at = c;
+    while (at != MT_ABSENT && state[at] == UNSEEN) {
+        state[at] = ON_PATH;
+        at = all[at].like;
+    }
+    if (at != MT_ABSENT && state[at] == ON_PATH) {
+        note_like_cycle(f, at);
+        all[at].like = MT_ABSENT;
+    }
+    for (at = c; at != MT_ABSENT && state[at] == ON_PATH; at = all[at].like) {
+        state[at] = DONE;
+    }
+}
+
+/* All configurations, those that others are like first; [n_configurations]. NULL when out of memory. */
+static int *inheritance_order(mt_finish *f)
+{
+    const int n = f->m->n_configurations;
+    int *const order = mt_arena_int(&f->m->mem, (size_t)n);
+    int *const chain = mt_arena_int(&f->m->mem, (size_t)n);
+    int *const state = mt_arena_int(&f->m->mem, (size_t)n);
+    if (order == NULL || chain == NULL || state == NULL) {
+        f->out_of_memory = true;
+        return NULL;
+    }
+    int done = 0;
+    for (int c = 0; c < n; c++) {
+        int depth = 0;
+        for (int at = c; at != MT_ABSENT && state[at] == UNSEEN;
+             at = f->m->configurations[at].like) {
+            state[at] = DONE;
+            chain[depth++] = at;
+        }
+        while (depth > 0) {
+            order[done++] = chain[--depth];
+        }
+    }
+    return order;
+}
+
+static bool overrides_parameter(const mt_configuration *c, int n, int parameter)
+{
+    for (int i = 0; i < n; i++) {
+        if (c->overrides[i].parameter == parameter) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Own overrides first, then those inherited that are not given again. */
+static void inherit_overrides(mt_finish *f, mt_configuration *c)
+{
+    const mt_configuration *const parent = &f->m->configurations[c->like];
+    const int own = c->n_overrides;
+    if (parent->n_overrides == 0) {
+        return;
+    }
+    mt_override *const all =
+        mt_arena_alloc(&f->m->mem, (size_t)(own + parent->n_overrides), sizeof *all);
+    if (all == NULL) {
+        f->out_of_memory = true;
+        return;
+    }
+    if (own > 0) {
+        memcpy(all, c->overrides, (size_t)own * sizeof *all);
+    }
+    c->overrides = all;
+    for (int i = 0; i < parent->n_overrides; i++) {
+        if (!overrides_parameter(c, own, parent->overrides[i].parameter)) {
+            all[c->n_overrides++] = parent->overrides[i];
+        }
+    }
+}
+
+/* Settings in force: own, else those of the configuration it is like, else the model's. */
+static void inherit(mt_finish *f, mt_configuration *c)
+{
+    const mt_configuration *const parent =
+        c->like == MT_ABSENT ? NULL : &f->m->configurations[c->like];
+    for (int i = 0; i < c->n_overrides; i++) {
+        mt_override *const o = &c->overrides[i];
+        o->parameter =
+            mt_finish_find(f, o->parameter_name, &f->m->tables->parameters, "parameter");
+    }
+    if (parent != NULL) {
+        inherit_overrides(f, c);
+    }
+    const bool model_has = parent == NULL && f->m->has_gravity;
+    if (!c->has_gravity && (model_has || (parent != NULL && parent->has_gravity))) {
+        c->has_gravity = true;
+        memcpy(c->gravity, model_has ? f->m->gravity : parent->gravity, sizeof c->gravity);
+    }
+    if (!c->drive.given && parent != NULL) {
+        c->drive = parent->drive;
+        c->drive.inherited = true;
+    }
+}
+
+void mt_finish_configurations(mt_finish *f)
+{
+    mt_model *const m = f->m;
+    int *const state = mt_arena_int(&m->mem, (size_t)m->n_configurations);
+    if (state == NULL) {
+        f->out_of_memory = true;
+        return;
+    }
+    for (int c = 0; c < m->n_configurations; c++) {
+        mt_configuration *const it = &m->configurations[c];
+        it->like =
+            mt_finish_find(f, it->like_name, &m->tables->configurations, "configuration");
+    }
+    for (int c = 0; c < m->n_configurations && !f->out_of_memory; c++) {
+        check_like(f, c, state);
+    }
+    const int *const order = f->out_of_memory ? NULL : inheritance_order(f);
+    for (int i = 0; order != NULL && i < m->n_configurations; i++) {
+        inherit(f, &m->configurations[order[i]]);
+    }
+    for (int i = 0; i < m->n_modes; i++) {
+        mt_named_mode *const mode = &m->modes[i];
+        mode->configuration = mt_finish_find(f, mode->configuration_name,
+                                             &m->tables->configurations, "configuration");
+    }
+}
+
+/* present[c] = c is named, or what c is like contains the item. */
+static void resolve_presence(mt_finish *f, mt_presence *in)
+{
+    mt_model *const m = f->m;
+    if (!in->given) {
+        return;
+    }
+    bool *const present = mt_arena_alloc(&m->mem, (size_t)m->n_configurations, sizeof *present);
+    if (present == NULL) {
+        f->out_of_memory = true;
+        return;
+    }
+    for (int i = 0; i < in->names.count; i++) {
+        const int c =
+            mt_finish_find(f, in->names.items[i], &m->tables->configurations, "configuration");
+        if (c != MT_ABSENT) {
+            present[c] = true;
+        }
+    }
+    for (int c = 0; c < m->n_configurations; c++) {
+        int at = c; /* `like` has no circles any more */
+        while (at != MT_ABSENT && !present[at]) {
+            at = m->configurations[at].like;
+        }
+        present[c] = at != MT_ABSENT;
+    }
+    in->present = present;
+}
+
+void mt_finish_presence(mt_finish *f)
+{
+    mt_model *const m = f->m;
+    for (int i = 0; i < m->n_bodies; i++) {
+        resolve_presence(f, &m->bodies[i].in);
+    }
+    for (int i = 0; i < m->n_links; i++) {
+        resolve_presence(f, &m->links[i].in);
+    }
+    for (int i = 0; i < m->n_joints; i++) {
+        resolve_presence(f, &m->joints[i].in);
+    }
+    for (int i = 0; i < m->n_springs; i++) {
+        resolve_presence(f, &m->springs[i].in);
+    }
+}
+
+void mt_finish_needs(mt_finish *f, mt_name item, const char *what, const mt_presence *in,
+                     const mt_presence *part, const char *part_what, const char *part_name)
+{
+    for (int c = 0; c < f->m->n_configurations; c++) {
+        if (mt_model_present(in, c) && !mt_model_present(part, c)) {
+            mt_diag_error(f->d, item.addr,
+                          "%s \"%s\" is in configuration \"%s\", but its %s \"%s\" is not",
+                          what, item.s, f->m->configurations[c].name.s, part_what, part_name);
+            return; /* one configuration is enough to say so */
+        }
+    }
+}
+
+/* The drive in force names a joint that the configuration contains and can move, and a spring that it contains. */
+static void check_drive(mt_finish *f, int index)
+{
+    mt_model *const m = f->m;
+    mt_configuration *const c = &m->configurations[index];
+    mt_drive *const drive = &c->drive;
+    const bool inherited = drive->inherited; /* unknown names have been noted where it stands */
+    if (!drive->given) {
+        return;
+    }
+    drive->joint = inherited
+                       ? mt_model_find_joint(m, drive->joint_name.s)
+                       : mt_finish_find(f, drive->joint_name, &m->tables->joints, "joint");
+    drive->trim_spring =
+        !drive->trim ? MT_ABSENT
+        : inherited  ? mt_model_find_spring(m, drive->trim_name.s)
+                     : mt_finish_find(f, drive->trim_name, &m->tables->springs, "spring");
+    if (drive->joint != MT_ABSENT && !mt_model_present(&m->joints[drive->joint].in, index)) {
+        mt_diag_error(f->d, drive->addr,
+                      "configuration \"%s\" drives joint \"%s\", which it does not contain",
+                      c->name.s, drive->joint_name.s);
+    }
+    if (drive->trim_spring != MT_ABSENT) {
+        const mt_spring *const spring = &m->springs[drive->trim_spring];
+        if (spring->damper) {
+            mt_diag_error(f->d, drive->trim_name.addr,
+                          "\"%s\" is a damper: only a spring holds a position", spring->name.s);
+        } else if (!mt_model_present(&spring->in, index)) {
+            mt_diag_error(f->d, drive->addr,
+                          "configuration \"%s\" trims spring \"%s\", which it does not contain",
+                          c->name.s, spring->name.s);
+        }
+    }
+}
+
+/* position_rad for a joint that turns, position_m for one that slides. */
+static void check_drive_unit(mt_finish *f, const mt_drive *drive)
+{
+#define COORDINATE_OF(id, name, in2, in3, coordinate) coordinate,
+    static const char coordinates[] = {MT_JOINT_LIST(COORDINATE_OF)};
+#undef COORDINATE_OF
+    const mt_joint *const joint = &f->m->joints[drive->joint];
+    if (joint->type == MT_JOINT_TYPE_COUNT) {
+        return;
+    }
+    const char coordinate = coordinates[joint->type];
+    if (coordinate == '-') {
+        mt_diag_error(f->d, drive->joint_name.addr, "a %s joint cannot be driven",
+                      mt_joint_type_name(joint->type));
+    } else if (drive->position != MT_ABSENT &&
+               drive->position_is_angle != (coordinate == 'a')) {
+        mt_diag_error(f->d, mt_finish_addr(f->m, drive->position),
+                      "the position of a %s joint is given as \"%s\"",
+                      mt_joint_type_name(joint->type),
+                      coordinate == 'a' ? "position_rad" : "position_m");
+    }
+}
+
+void mt_finish_drives(mt_finish *f)
+{
+    for (int c = 0; c < f->m->n_configurations; c++) {
+        const mt_configuration *const it = &f->m->configurations[c];
+        check_drive(f, c);
+        if (it->drive.given && !it->drive.inherited && it->drive.joint != MT_ABSENT) {
+            check_drive_unit(f, &it->drive);
+        }
+    }
+}

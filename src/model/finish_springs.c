@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Springs and dampers: what they hold on to, and which members each type needs. */
+#include <string.h>
+
+#include "model/finish.h"
+
+/* Members that a type needs (N), may have (M), or has not ( ). */
+typedef enum need { NONE, MAY, NEEDS } need;
+
+static void check_member(mt_finish *f, const mt_spring *s, bool given, need wanted,
+                         const char *member)
+{
+    const bool wrong = given ? wanted == NONE : wanted == NEEDS;
+    if (wrong) {
+        mt_diag_error(f->d, s->name.addr, "%s \"%s\": a %s %s %s \"%s\"",
+                      s->damper ? "damper" : "spring", s->name.s, mt_spring_type_name(s->type),
+                      s->damper ? "damper" : "spring", given ? "has no" : "needs", member);
+    }
+}
+
+/* "beam.h3": hinge 3 of link "beam". False where the name has no such form. */
+static bool resolve_hinge(mt_finish *f, mt_spring *s)
+{
+    const char *const dot = strchr(s->joint_name.s, '.');
+    bool found = false;
+    if (dot == NULL || dot[1] != 'h') {
+        return false;
+    }
+    const int i = mt_names_find(&f->m->tables->bodies, s->joint_name.s,
+                                (size_t)(dot - s->joint_name.s), &found);
+    if (!found || i >= 0) {
+        return false;
+    }
+    const mt_link *const link = &f->m->links[-1 - i];
+    int hinge = 0;
+    const char *c = dot + 2;
+    for (; *c >= '0' && *c <= '9' && hinge < MT_MAX_LIST; c++) {
+        hinge = 10 * hinge + (*c - '0');
+    }
+    const int hinges = link->kind == MT_LINK_BEAM ? 0 : link->elements - 1;
+    if (*c != '\0' || dot[2] == '0' || hinge < 1 || hinge > hinges) {
+        mt_diag_error(f->d, s->joint_name.addr, "\"%s\": link \"%s\" has %d hinges",
+                      s->joint_name.s, link->name.s, hinges < 0 ? 0 : hinges);
+        return true;
+    }
+    s->joint_link = -1 - i;
+    s->joint_hinge = hinge - 1;
+    return true;
+}
+
+static void check_torsion_joint(mt_finish *f, const mt_spring *s)
+{
+    const char *const what = s->damper ? "damper" : "spring";
+    if (s->joint != MT_ABSENT) {
+        const mt_joint *const joint = &f->m->joints[s->joint];
+        const bool turns = joint->type == MT_JOINT_REVOLUTE ||
+                           joint->type == MT_JOINT_CYLINDRICAL ||
+                           joint->type == MT_JOINT_TYPE_COUNT;
+        if (!turns) {
+            mt_diag_error(f->d, s->joint_name.addr,
+                          "a torsion %s acts on the angle of a revolute joint; \"%s\" is %s",
+                          what, joint->name.s, mt_joint_type_name(joint->type));
+        }
+        mt_finish_needs(f, s->name, what, &s->in, &joint->in, "joint", joint->name.s);
+        for (int side = 0; side < 2 && turns; side++) {
+            if (mt_finish_is_point_mass(f, &joint->bodies[side])) {
+                mt_diag_error(f->d, s->joint_name.addr,
+                              "\"%s\" of joint \"%s\" is a point mass, which does not turn",
+                              joint->bodies[side].name.s, joint->name.s);
+            }
+        }
+    } else if (s->joint_link != MT_ABSENT) {
+        mt_finish_needs(f, s->name, what, &s->in, &f->m->links[s->joint_link].in, "link",
+                        f->m->links[s->joint_link].name.s);
+    }
+}
+
+static void check_torsion(mt_finish *f, const mt_spring *s)
+{
+    const bool bodies = s->bodies[0].name.s != NULL;
+    const bool joint = s->joint_name.s != NULL;
+    if (bodies == joint || (bodies && f->m->dimension == 3)) {
+        mt_diag_error(f->d, s->name.addr, "a torsion %s needs %s",
+                      s->damper ? "damper" : "spring",
+                      f->m->dimension == 3 ? "\"joint\", not \"bodies\""
+                                           : "either \"joint\" or \"bodies\"");
+    }
+    check_torsion_joint(f, s);
+}
+
+static void check_bodies(mt_finish *f, const mt_spring *s)
+{
+    const char *const what = s->damper ? "damper" : "spring";
+    const bool turns = s->type == MT_SPRING_TORSION || s->type == MT_SPRING_BUSHING;
+    for (int side = 0; side < 2; side++) {
+        const mt_attach *const a = &s->bodies[side];
+        if (a->name.s == NULL) {
+            continue;
+        }
+        mt_finish_needs_attach(f, s->name, what, &s->in, a);
+        if (!mt_finish_is_point_mass(f, a)) {
+            continue;
+        }
+        const mt_body *const body = &f->m->bodies[a->index];
+        const int at = s->n_at == 2 ? side : 0;
+        if (turns && (s->type == MT_SPRING_TORSION || side == 0)) {
+            mt_diag_error(f->d, a->name.addr, "\"%s\" is a point mass, which does not turn",
+                          body->name.s);
+        } else if (s->n_at > 0 && !mt_finish_same_position(f->m, &s->at[at], &body->centre)) {
+            mt_diag_error(f->d, s->at[at].addr,
+                          "\"%s\" is a point mass and can be held at its centre only: use the "
+                          "same point for both",
+                          body->name.s);
+        }
+    }
+    const mt_attach *const a = &s->bodies[0];
+    const mt_attach *const b = &s->bodies[1];
+    if (mt_finish_same_attach(a, b)) {
+        mt_diag_error(f->d, b->name.addr, "%s \"%s\" holds \"%s\" to itself", what, s->name.s,
+                      a->name.s);
+    }
+}
+
+static void check_members(mt_finish *f, const mt_spring *s)
+{
+    const bool torsion = s->type == MT_SPRING_TORSION;
+    const bool axial = s->type == MT_SPRING_AXIAL;
+    const bool bar = s->type == MT_SPRING_BAR;
+    const bool bushing = s->type == MT_SPRING_BUSHING;
+    const bool two = f->m->dimension == 2;
+    check_member(f, s, s->bodies[0].name.s != NULL, torsion ? MAY : NEEDS, "bodies");
+    check_member(f, s, s->joint_name.s != NULL, torsion ? MAY : NONE, "joint");
+    check_member(f, s, s->n_at > 0, torsion ? NONE : MAY, "at");
+    const char *const force = s->damper ? "damping_n_s_per_m" : "stiffness_n_per_m";
+    const char *const torque = s->damper ? "damping_n_m_s_per_rad" : "stiffness_n_m_per_rad";
+    if (torsion || axial) {
+        check_member(f, s, s->stiffness != MT_ABSENT, NEEDS, torsion ? torque : force);
+    }
+    check_member(f, s, s->youngs_modulus != MT_ABSENT, bar ? NEEDS : NONE, "youngs_modulus_pa");
+    check_member(f, s, s->area != MT_ABSENT, bar ? NEEDS : NONE, "area_m2");
+    check_member(f, s, s->density != MT_ABSENT, bar ? MAY : NONE, "density_kg_per_m3");
+    check_member(f, s, s->free_length != MT_ABSENT, axial && !s->damper ? MAY : NONE,
+                 "free_length_m");
+    check_member(f, s, s->free_angle != MT_ABSENT, torsion && !s->damper ? MAY : NONE,
+                 "free_angle_rad");
+    check_member(f, s, s->preload != MT_ABSENT, !bushing && !s->damper ? MAY : NONE,
+                 torsion ? "preload_n_m" : "preload_n");
+    check_member(f, s, s->matrix != NULL, bushing && !s->damper && !two ? MAY : NONE,
+                 "stiffness_matrix");
+    if (bushing && s->matrix == NULL) {
+        check_member(f, s, s->translation[0] != MT_ABSENT, NEEDS, force);
+        check_member(f, s, s->rotation[2] != MT_ABSENT, NEEDS, torque);
+    }
+    if (s->matrix != NULL && (s->translation[0] != MT_ABSENT || s->rotation[2] != MT_ABSENT)) {
+        mt_diag_error(f->d, s->name.addr,
+                      "spring \"%s\": give \"stiffness_matrix\" or the two lists, not both",
+                      s->name.s);
+    }
+    const bool free_given = s->free_length != MT_ABSENT || s->free_angle != MT_ABSENT;
+    if (free_given && s->preload != MT_ABSENT) {
+        mt_diag_error(
+            f->d, mt_finish_addr(f->m, s->preload),
+            "spring \"%s\": a preload follows from the free length or angle; give one of them",
+            s->name.s);
+    }
+    if (axial || bar) {
+        if (s->n_at == 1) {
+            mt_diag_error(f->d, s->at[0].addr,
+                          "\"at\" of %s \"%s\" must be a pair: the point on each body",
+                          s->damper ? "damper" : "spring", s->name.s);
+        }
+    }
+}
+
+void mt_finish_springs(mt_finish *f)
+{
+    for (int i = 0; i < f->m->n_springs; i++) {
+        mt_spring *const s = &f->m->springs[i];
+        s->joint = MT_ABSENT;
+        s->joint_link = MT_ABSENT;
+        s->joint_hinge = MT_ABSENT;
+        for (int side = 0; side < 2; side++) {
+            mt_finish_attach(f, &s->bodies[side]);
+        }
+        for (int k = 0; k < s->n_at; k++) {
+            mt_finish_position(f, &s->at[k]);
+        }
+        if (s->joint_name.s != NULL && !resolve_hinge(f, s)) {
+            s->joint = mt_finish_find(f, s->joint_name, &f->m->tables->joints, "joint");
+        }
+        if (s->type == MT_SPRING_TYPE_COUNT || f->m->dimension == 0) {
+            continue; /* could not be read */
+        }
+        check_members(f, s);
+        check_bodies(f, s);
+        if (s->type == MT_SPRING_TORSION) {
+            check_torsion(f, s);
+        }
+    }
+}

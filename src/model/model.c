@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "model/model.h"
+
+#include "modetune/model.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/names.h"
+
+mt_status mt_model_new(mt_model **out, mt_err *err)
+{
+    *out = NULL;
+    mt_model *const model = calloc(1, sizeof *model);
+    if (model == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (mt_arena_init(&model->mem, 0, NULL) == MT_OK) {
+        model->tables = mt_arena_alloc(&model->mem, 1, sizeof *model->tables);
+    }
+    if (model->tables == NULL) {
+        mt_model_delete(model);
+        return mt_fail_memory(err);
+    }
+    for (int k = 0; k < 3; k++) {
+        model->gravity[k] = MT_ABSENT;
+    }
+    model->dimension_addr = MT_NO_ADDR;
+    *out = model;
+    return MT_OK;
+}
+
+void mt_model_delete(mt_model *model)
+{
+    if (model == NULL) {
+        return;
+    }
+    mt_arena_free(&model->mem);
+    free(model);
+}
+
+mt_num mt_model_add_num(mt_model *model, mt_expr expr, mt_addr addr)
+{
+    mt_number *const nums =
+        mt_arena_grow(&model->mem, model->nums, model->n_nums, &model->cap_nums, sizeof *nums);
+    if (nums == NULL) {
+        model->out_of_memory = true;
+        return MT_ABSENT;
+    }
+    model->nums = nums;
+    nums[model->n_nums] = (mt_number){.expr = expr, .addr = addr};
+    return model->n_nums++;
+}
+
+int mt_model_lookup(const void *model, const char *name, size_t length)
+{
+    const mt_model *const m = model;
+    const mt_names *const table = &m->tables->parameters;
+    bool found = false;
+    const int i = mt_names_find(table, name, length, &found);
+    if (found || table->count > 0) {
+        return i;
+    }
+    /* a model made in memory, not finished yet */
+    for (int k = 0; k < m->n_parameters; k++) {
+        const char *const s = m->parameters[k].name.s;
+        if (s != NULL && strlen(s) == length && memcmp(s, name, length) == 0) {
+            return k;
+        }
+    }
+    return MT_ABSENT;
+}
+
+static int find(const mt_names *table, const char *name)
+{
+    bool found = false;
+    return name == NULL ? MT_ABSENT : mt_names_find(table, name, strlen(name), &found);
+}
+
+int mt_model_find_parameter(const mt_model *model, const char *name)
+{
+    return find(&model->tables->parameters, name);
+}
+
+int mt_model_find_configuration(const mt_model *model, const char *name)
+{
+    return find(&model->tables->configurations, name);
+}
+
+int mt_model_find_mode(const mt_model *model, const char *name)
+{
+    return find(&model->tables->modes, name);
+}
+
+/* Bodies and links share a table: link i stands there as -1 - i, absent is -1, which would be link 0. */
+int mt_model_find_body(const mt_model *model, const char *name)
+{
+    bool found = false;
+    const int i = mt_names_find(&model->tables->bodies, name, strlen(name), &found);
+    return found && i >= 0 ? i : MT_ABSENT;
+}
+
+int mt_model_find_link(const mt_model *model, const char *name)
+{
+    bool found = false;
+    const int i = mt_names_find(&model->tables->bodies, name, strlen(name), &found);
+    return found && i < 0 ? -1 - i : MT_ABSENT;
+}
+
+int mt_model_find_joint(const mt_model *model, const char *name)
+{
+    return find(&model->tables->joints, name);
+}
+
+int mt_model_find_spring(const mt_model *model, const char *name)
+{
+    return find(&model->tables->springs, name);
+}
+
+int mt_model_find_sensor(const mt_model *model, const char *name)
+{
+    return find(&model->tables->sensors, name);
+}
+
+bool mt_model_present(const mt_presence *in, int configuration)
+{
+    return in->present == NULL || in->present[configuration];
+}
+
+#define MT_TYPE_NAME_CASE_2(id, name) \
+    case id:                          \
+        return name;
+#define MT_TYPE_NAME_CASE_5(id, name, in2, in3, coordinate) \
+    case id:                                                \
+        return name;
+
+const char *mt_joint_type_name(mt_joint_type type)
+{
+    switch (type) {
+        MT_JOINT_LIST(MT_TYPE_NAME_CASE_5)
+    case MT_JOINT_TYPE_COUNT:
+        break;
+    }
+    return "unknown";
+}
+
+const char *mt_spring_type_name(mt_spring_type type)
+{
+    switch (type) {
+        MT_SPRING_LIST(MT_TYPE_NAME_CASE_2)
+    case MT_SPRING_TYPE_COUNT:
+        break;
+    }
+    return "unknown";
+}
+
+const char *const *mt_model_units(int *n)
+{
+    static const char *const units[] = {
+        "1",      "m",         "m^2",    "m^3",   "m^4", "kg",  "kg/m",  "kg/m^2",
+        "kg/m^3", "kg m",      "kg m^2", "s",     "Hz",  "rad", "rad/s", "m/s",
+        "m/s^2",  "N",         "N/m",    "N/m^2", "Pa",  "N m", "N m^2", "N m/rad",
+        "N s/m",  "N m s/rad", "m/rad",  "rad/m", "J",   "W",
+    };
+    *n = MT_COUNT(units);
+    return units;
+}
+
+const char *mt_model_title(const mt_model *model)
+{
+    return model->name;
+}
+
+int mt_model_dimension(const mt_model *model)
+{
+    return model->dimension;
+}
+
+int mt_model_parameter_count(const mt_model *model)
+{
+    return model->n_parameters;
+}
+
+const char *mt_model_parameter_name(const mt_model *model, int parameter)
+{
+    return parameter >= 0 && parameter < model->n_parameters
+               ? model->parameters[parameter].name.s
+               : NULL;
+}
+
+int mt_model_configuration_count(const mt_model *model)
+{
+    return model->n_configurations;
+}
+
+const char *mt_model_configuration_name(const mt_model *model, int configuration)
+{
+    return configuration >= 0 && configuration < model->n_configurations
+               ? model->configurations[configuration].name.s
+               : NULL;
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MODEL_NAMES_H
+#define MODEL_NAMES_H
+
+#include "model/model.h"
+
+/* Names to indices: an open-addressing hash table in an arena. Names are not copied. */
+typedef struct mt_names {
+    const char **keys; /* [size], NULL: free */
+    int *values;
+    int size; /* a power of 2, at least twice the count; 0: nothing yet */
+    int count;
+} mt_names;
+
+/* One table per name space. Bodies and links share one: both stand where a body may. */
+typedef struct mt_model_names {
+    mt_names parameters;
+    mt_names points;
+    mt_names bodies; /* body i: i; link i: -1 - i */
+    mt_names joints;
+    mt_names springs;
+    mt_names sensors;
+    mt_names modes;
+    mt_names configurations;
+} mt_model_names;
+
+/* Enter a name. *taken (not NULL): it was there already, and stays as it was. False when out of memory. */
+bool mt_names_add(mt_names *t, mt_arena *mem, const char *name, int value, bool *taken);
+/* The value of a name of so many bytes; *found tells whether there is one. */
+int mt_names_find(const mt_names *t, const char *name, size_t length, bool *found);
+
+/* Make the table of parameters before the others exist, so that mt_model_lookup is fast while expressions are read. Duplicates are left to
+ * mt_model_finish. False when out of memory. */
+bool mt_model_index_parameters(mt_model *model);
+
+#endif
