@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_BUILD_H
+#define MECHANICS_BUILD_H
+
+#include "mechanics/system.h"
+
+/* What the files build_*.c share while a system is made. Out of memory is noted in program.out_of_memory and found at the end. */
+typedef struct mt_builder {
+    mt_system *sys;
+    const mt_model *model;
+    mt_node zero;
+    mt_node one;
+    int *body_of;          /* [model bodies] state body or -1 (absent in this configuration) */
+    int *link_first;       /* [model links] first state body of the link or -1 */
+    mt_node (*link_at)[3]; /* [model links] position of `from` */
+    int axis_vec[3];       /* vectors of the global axes */
+    mt_err *err;
+} mt_builder;
+
+mt_node mt_build_num(mt_builder *b, mt_num num); /* MT_ABSENT gives MT_NO_NODE */
+mt_node mt_build_num_or(mt_builder *b, mt_num num, mt_node otherwise);
+void mt_build_coordinates(mt_builder *b, const mt_num x[3], mt_node out[3]);
+void mt_build_position(mt_builder *b, const mt_position *p, mt_node out[3]);
+int mt_build_vec(mt_builder *b, mt_vec_kind kind, const mt_node node[3], const char *what);
+int mt_build_perp(mt_builder *b, int axis, int which); /* which: 1, 2 */
+mt_node mt_build_length(mt_builder *b, const mt_node from[3], const mt_node to[3]);
+/* Vector from the centre of the body (or the ground's origin) to the position. */
+int mt_build_arm(mt_builder *b, int body, const mt_node at[3], const char *what);
+int mt_build_body(mt_builder *b, const char *name, const mt_node centre[3], bool point_mass);
+int mt_build_measure(mt_builder *b, const mt_measure_def *def);
+void mt_build_constraint(mt_builder *b, int measure, mt_node target, bool drawn);
+void mt_build_inertia(mt_builder *b, const mt_inertia_def *def);
+void mt_build_gravity_at(mt_builder *b, int body, int point, mt_node mass);
+int mt_build_item(mt_builder *b, const char *name, mt_node mass);
+const char *mt_build_name(mt_builder *b, const char *fmt, ...) MT_PRINTF(2, 3);
+/* State body that an attachment means; false where it is absent in this configuration. MT_GROUND for the ground. */
+bool mt_build_attach(mt_builder *b, const mt_attach *a, int *body);
+mt_measure_def mt_measure_def_default(mt_measure_kind kind, int body_a, int body_b);
+/* ANGLE measure about a UNIT axis vector. In two dimensions axis is the global z. */
+int mt_build_angle(mt_builder *b, int body_a, int body_b, int axis);
+
+mt_status mt_build_bodies(mt_builder *b);
+mt_status mt_build_links(mt_builder *b);
+mt_status mt_build_joints(mt_builder *b);
+mt_status mt_build_springs(mt_builder *b);
+mt_status mt_build_sensors(mt_builder *b, const double *original);
+mt_status mt_build_drive(mt_builder *b);
+/* Equations of one joint between bodies at arms; used by joints and hinges. */
+void mt_build_joint_equations(mt_builder *b, mt_joint_type type, const int body[2],
+                              const int arm[2], const int axis[2], mt_node length);
+
+#endif

@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Joints as equations of measures. With P on body a, Q on body b (the joint's point as drawn on each), a the joint's axis and b, c = a x b perpendicular to it:
+ *   point      (Q - P) = 0 along all axes                    parallel   b_a . a_b = c_a . a_b = 0
+ *   on line    b_a . (Q - P) = c_a . (Q - P) = 0             no twist   b_a . c_b = 0
+ * revolute = point + parallel; cylindrical = on line + parallel; prismatic = cylindrical + no twist; spherical = point; universal = point + a_a . a'_b as drawn;
+ * planar = a_a . (Q - P) = 0 + parallel; fixed = point + no rotation; distance |Q - P| = length. In two dimensions what lies out of the plane is left out.
+ */
+#include "mechanics/build.h"
+
+static void plane(mt_builder *b, const int body[2], const int arm[2], int dir)
+{
+    mt_measure_def def = mt_measure_def_default(MT_MEASURE_PLANE, body[0], body[1]);
+    def.point[0] = arm[0];
+    def.point[1] = arm[1];
+    def.dir[0] = dir;
+    mt_build_constraint(b, mt_build_measure(b, &def), MT_NO_NODE, false);
+}
+
+static void dot(mt_builder *b, const int body[2], int u, int v, bool as_drawn)
+{
+    mt_measure_def def = mt_measure_def_default(MT_MEASURE_DOT, body[0], body[1]);
+    def.dir[0] = u;
+    def.dir[1] = v;
+    mt_build_constraint(b, mt_build_measure(b, &def), MT_NO_NODE, as_drawn);
+}
+
+static void coincide(mt_builder *b, const int body[2], const int arm[2])
+{
+    for (int i = 0; i < b->sys->dimension; i++) {
+        plane(b, body, arm, b->axis_vec[i]);
+    }
+}
+
+static void parallel(mt_builder *b, const int body[2], int axis)
+{
+    dot(b, body, mt_build_perp(b, axis, 1), axis, false);
+    dot(b, body, mt_build_perp(b, axis, 2), axis, false);
+}
+
+static void no_rotation(mt_builder *b, const int body[2])
+{
+    dot(b, body, b->axis_vec[0], b->axis_vec[1], false);
+    if (b->sys->dimension == 3) {
+        dot(b, body, b->axis_vec[1], b->axis_vec[2], false);
+        dot(b, body, b->axis_vec[2], b->axis_vec[0], false);
+    }
+}
+
+static void on_line(mt_builder *b, const int body[2], const int arm[2], int axis)
+{
+    plane(b, body, arm, mt_build_perp(b, axis, 1));
+    if (b->sys->dimension == 3) {
+        plane(b, body, arm, mt_build_perp(b, axis, 2));
+    }
+}
+
+static void distance(mt_builder *b, const int body[2], const int arm[2], mt_node length)
+{
+    mt_measure_def def = mt_measure_def_default(MT_MEASURE_DISTANCE, body[0], body[1]);
+    def.point[0] = arm[0];
+    def.point[1] = arm[1];
+    mt_build_constraint(b, mt_build_measure(b, &def), length, length == MT_NO_NODE);
+}
+
+void mt_build_joint_equations(mt_builder *b, mt_joint_type type, const int body[2],
+                              const int arm[2], const int axis[2], mt_node length)
+{
+    const bool spatial = b->sys->dimension == 3;
+    switch (type) {
+    case MT_JOINT_FIXED:
+        coincide(b, body, arm);
+        no_rotation(b, body);
+        break;
+    case MT_JOINT_REVOLUTE:
+        coincide(b, body, arm);
+        if (spatial) {
+            parallel(b, body, axis[0]);
+        }
+        break;
+    case MT_JOINT_PRISMATIC:
+        on_line(b, body, arm, axis[0]);
+        if (spatial) {
+            parallel(b, body, axis[0]);
+            dot(b, body, mt_build_perp(b, axis[0], 1), mt_build_perp(b, axis[0], 2), false);
+        } else {
+            no_rotation(b, body);
+        }
+        break;
+    case MT_JOINT_PIN_IN_SLOT:
+    case MT_JOINT_POINT_ON_LINE:
+        on_line(b, body, arm, axis[0]);
+        break;
+    case MT_JOINT_DISTANCE:
+        distance(b, body, arm, length);
+        break;
+    case MT_JOINT_CYLINDRICAL:
+        on_line(b, body, arm, axis[0]);
+        parallel(b, body, axis[0]);
+        break;
+    case MT_JOINT_SPHERICAL:
+        coincide(b, body, arm);
+        break;
+    case MT_JOINT_UNIVERSAL:
+        coincide(b, body, arm);
+        dot(b, body, axis[0], axis[1], true);
+        break;
+    case MT_JOINT_PLANAR:
+        plane(b, body, arm, axis[0]);
+        parallel(b, body, axis[0]);
+        break;
+    case MT_JOINT_GEAR:
+    case MT_JOINT_TYPE_COUNT:
+        break;
+    }
+}
+
+/* The joint's coordinate from the reference position: an angle about its axis or a displacement along it; -1: none. */
+static int coordinate_of(mt_builder *b, mt_joint_type type, const int body[2], const int arm[2],
+                         int axis)
+{
+    if (type == MT_JOINT_REVOLUTE || type == MT_JOINT_CYLINDRICAL) {
+        return mt_build_angle(b, body[0], body[1], axis);
+    }
+    if (type == MT_JOINT_PRISMATIC || type == MT_JOINT_PIN_IN_SLOT ||
+        type == MT_JOINT_POINT_ON_LINE) {
+        mt_measure_def def = mt_measure_def_default(MT_MEASURE_PLANE, body[0], body[1]);
+        def.point[0] = arm[0];
+        def.point[1] = arm[1];
+        def.dir[0] = axis;
+        return mt_build_measure(b, &def);
+    }
+    return -1;
+}
+
+static mt_system_joint *new_joint(mt_builder *b, const mt_joint *joint, const int body[2])
+{
+    mt_system *const sys = b->sys;
+    mt_system_joint *const joints =
+        mt_arena_grow(&sys->mem, sys->joints, sys->n_joints, &sys->cap_joints, sizeof *joints);
+    if (joints == NULL) {
+        sys->program.out_of_memory = true;
+        return NULL;
+    }
+    sys->joints = joints;
+    sys->joints[sys->n_joints] = (mt_system_joint){
+        .name = joint->name.s,
+        .type = joint->type,
+        .first = sys->n_constraints,
+        .coordinate = -1,
+        .body = {body[0], body[1]},
+        .model_joint = (int)(joint - b->model->joints),
+        .link = MT_ABSENT,
+        .hinge = -1
+    };
+    return &sys->joints[sys->n_joints++];
+}
+
+static int find_model_joint(const mt_system *sys, int joint)
+{
+    for (int i = 0; i < sys->n_joints; i++) {
+        if (sys->joints[i].model_joint == joint) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static mt_status build_gear(mt_builder *b, const mt_joint *joint)
+{
+    mt_system *const sys = b->sys;
+    const int first = find_model_joint(sys, joint->gear_joint[0]);
+    const int second = find_model_joint(sys, joint->gear_joint[1]);
+    if (first < 0 || second < 0 || sys->joints[first].coordinate < 0 ||
+        sys->joints[second].coordinate < 0) {
+        return mt_fail(b->err, MT_E_INPUT,
+                       "joint \"%s\": its two joints must be present in configuration \"%s\" "
+                       "and have a coordinate",
+                       joint->name.s, b->model->configurations[sys->configuration].name.s);
+    }
+    mt_system_joint *const made = new_joint(
+        b, joint, (const int[2]){sys->joints[first].body[1], sys->joints[second].body[1]});
+    if (made == NULL) {
+        return MT_OK; /* noted in out_of_memory */
+    }
+    mt_build_constraint(b, sys->joints[second].coordinate, MT_NO_NODE, true);
+    if (sys->n_constraints > made->first) {
+        mt_constraint_def *const c = &sys->constraints[made->first];
+        c->terms = 2;
+        c->measure[1] = sys->joints[first].coordinate;
+        c->coefficient[0] = b->one;
+        c->coefficient[1] = mt_program_unary(
+            &sys->program, MT_OP_NEG, mt_build_num_or(b, joint->ratio, b->one), MT_NO_ADDR);
+        made->count = 1;
+    }
+    return MT_OK;
+}
+
+/* The points of the joint on both bodies; without `at` the centres. */
+static void joint_arms(mt_builder *b, const mt_joint *joint, const int body[2], int arm[2])
+{
+    const char *const what = mt_build_name(b, "point of joint \"%s\"", joint->name.s);
+    for (int side = 0; side < 2; side++) {
+        mt_node at[3];
+        if (joint->n_at == 0) {
+            arm[side] = -1;
+            continue;
+        }
+        mt_build_position(b, &joint->at[joint->n_at == 2 ? side : 0], at);
+        arm[side] = mt_build_arm(b, body[side], at, what);
+    }
+}
+
+static mt_status build_joint(mt_builder *b, const mt_joint *joint)
+{
+    int body[2];
+    int arm[2];
+    int axis[2] = {b->axis_vec[2], -1};
+    if (!mt_build_attach(b, &joint->bodies[0], &body[0]) ||
+        !mt_build_attach(b, &joint->bodies[1], &body[1])) {
+        return mt_fail(b->err, MT_E_INPUT,
+                       "joint \"%s\" holds a body that is not in configuration \"%s\"",
+                       joint->name.s, b->model->configurations[b->sys->configuration].name.s);
+    }
+    if (body[0] == body[1]) {
+        return mt_fail(b->err, MT_E_INPUT, "joint \"%s\" connects a body with itself",
+                       joint->name.s);
+    }
+    joint_arms(b, joint, body, arm);
+    if (joint->has_axis) {
+        mt_node node[3];
+        mt_build_coordinates(b, joint->axis, node);
+        axis[0] = mt_build_vec(b, MT_VEC_UNIT, node,
+                               mt_build_name(b, "axis of joint \"%s\"", joint->name.s));
+    }
+    if (joint->has_axis_b) {
+        mt_node node[3];
+        mt_build_coordinates(b, joint->axis_b, node);
+        axis[1] = mt_build_vec(b, MT_VEC_UNIT, node,
+                               mt_build_name(b, "axis_b of joint \"%s\"", joint->name.s));
+    }
+    mt_system_joint *const made = new_joint(b, joint, body);
+    if (made == NULL) {
+        return MT_OK;
+    }
+    mt_build_joint_equations(b, joint->type, body, arm, axis, mt_build_num(b, joint->length));
+    made->count = b->sys->n_constraints - made->first;
+    made->coordinate = coordinate_of(b, joint->type, body, arm, axis[0]);
+    made->angle = joint->type == MT_JOINT_REVOLUTE || joint->type == MT_JOINT_CYLINDRICAL;
+    return MT_OK;
+}
+
+mt_status mt_build_joints(mt_builder *b)
+{
+    for (int pass = 0; pass < 2; pass++) { /* gears need the joints that they couple */
+        for (int i = 0; i < b->model->n_joints; i++) {
+            const mt_joint *const joint = &b->model->joints[i];
+            if ((joint->type == MT_JOINT_GEAR) != (pass == 1) ||
+                !mt_model_present(&joint->in, b->sys->configuration)) {
+                continue;
+            }
+            MT_TRY(pass == 1 ? build_gear(b, joint) : build_joint(b, joint));
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_build_drive(mt_builder *b)
+{
+    mt_system *const sys = b->sys;
+    const mt_drive *const drive = &b->model->configurations[sys->configuration].drive;
+    sys->drive_constraint = -1;
+    sys->drive_joint = -1;
+    sys->trim_spring = -1;
+    if (!drive->given) {
+        return MT_OK;
+    }
+    sys->drive_joint = find_model_joint(sys, drive->joint);
+    if (sys->drive_joint < 0 || sys->joints[sys->drive_joint].coordinate < 0) {
+        return mt_fail(b->err, MT_E_INPUT,
+                       "drive of configuration \"%s\": joint \"%s\" is absent there or has no "
+                       "coordinate to drive",
+                       b->model->configurations[sys->configuration].name.s,
+                       drive->joint_name.s);
+    }
+    sys->drive = mt_build_num(b, drive->position);
+    sys->driven = true;
+    sys->drive_constraint = sys->n_constraints;
+    mt_build_constraint(b, sys->joints[sys->drive_joint].coordinate, MT_NO_NODE, false);
+    if (!sys->program.out_of_memory) {
+        sys->constraints[sys->drive_constraint].joint = sys->drive_joint;
+    }
+    sys->trim = drive->trim;
+    if (!drive->trim) {
+        return MT_OK;
+    }
+    const char *const name = b->model->springs[drive->trim_spring].name.s;
+    for (int i = 0; i < sys->n_springs && sys->trim_spring < 0; i++) {
+        if (sys->springs[i].name == name &&
+            sys->springs[i].measure[0] == sys->springs[i].measure[1]) {
+            sys->trim_spring = i;
+        }
+    }
+    if (sys->trim_spring < 0) {
+        return mt_fail(b->err, MT_E_INPUT,
+                       "drive of configuration \"%s\": spring \"%s\" is absent there",
+                       b->model->configurations[sys->configuration].name.s, name);
+    }
+    return MT_OK;
+}

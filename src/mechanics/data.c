@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "mechanics/data.h"
+
+#include <stddef.h>
+
+static const mt_pose GROUND = {
+    {0.0, 0.0, 0.0 },
+    { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}
+};
+
+mt_pose mt_pose_ground(void)
+{
+    return GROUND;
+}
+
+const mt_pose *mt_pose_of(const mt_pose *poses, int body)
+{
+    return body == MT_GROUND ? &GROUND : &poses[body];
+}
+
+mt_status mt_data_init(mt_data *d, const mt_system *sys, mt_arena *mem, mt_err *err)
+{
+    *d = (mt_data){.sys = sys, .input = -1};
+    d->vec = mt_arena_alloc(mem, (size_t)sys->n_vecs, sizeof *d->vec);
+    d->rest = mt_arena_alloc(mem, (size_t)sys->n_springs, sizeof *d->rest);
+    d->target = mt_arena_alloc(mem, (size_t)sys->n_constraints, sizeof *d->target);
+    return d->vec == NULL || d->rest == NULL || d->target == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+mt_cx mt_data_scalar(const mt_data *d, mt_node node, double otherwise)
+{
+    if (node == MT_NO_NODE) {
+        return otherwise;
+    }
+    if (d->input < 0) {
+        return d->value[node];
+    }
+    return cx_make(d->value[node], d->grad[((ptrdiff_t)node * d->sys->n_inputs) + d->input]);
+}
+
+static void normalise(mt_cx *v)
+{
+    const mt_cx n = cx_sqrt(cx_dot3(v, v));
+    for (int k = 0; k < 3; k++) {
+        v[k] = cx_div(v[k], n);
+    }
+}
+
+void mt_data_vec(mt_data *d, int i)
+{
+    const mt_vec_def *const def = &d->sys->vecs[i];
+    mt_cx *const v = d->vec[i];
+    mt_cx e[3] = {0.0, 0.0, 0.0};
+    switch (def->kind) {
+    case MT_VEC_NODES:
+    case MT_VEC_UNIT:
+        for (int k = 0; k < 3; k++) {
+            v[k] = mt_data_scalar(d, def->node[k], 0.0);
+        }
+        if (def->kind == MT_VEC_UNIT) {
+            normalise(v);
+        }
+        return;
+    case MT_VEC_PERP1:
+    case MT_VEC_PERP2:
+        e[def->helper] = 1.0;
+        cx_cross3(d->vec[def->axis], e, v);
+        normalise(v);
+        if (def->kind == MT_VEC_PERP2) {
+            cx_cross3(d->vec[def->axis], v, v);
+        }
+        return;
+    case MT_VEC_CROSS:
+        cx_cross3(d->vec[def->axis], d->vec[def->helper], v);
+        normalise(v);
+        return;
+    }
+}
+
+void mt_data_vecs(mt_data *d)
+{
+    for (int i = 0; i < d->sys->n_vecs; i++) {
+        mt_data_vec(d, i);
+    }
+}
+
+static const mt_cx *vec_or_null(const mt_data *d, int i)
+{
+    return i < 0 ? NULL : d->vec[i];
+}
+
+mt_measure_data mt_data_measure(const mt_data *d, const mt_measure_def *def)
+{
+    const mt_measure_data m = {
+        .kind = def->kind,
+        .component = def->component,
+        .point = {vec_or_null(d, def->point[0]), vec_or_null(d, def->point[1])},
+        .dir = { vec_or_null(d, def->dir[0]), vec_or_null(d,   def->dir[1]),  vec_or_null(d, def->dir[2])},
+        .plane = vec_or_null(d, def->plane),
+        .weight = mt_data_scalar(d, def->weight, 0.0),
+    };
+    return m;
+}
+
+void mt_data_drawn(const mt_data *d, mt_pose *poses)
+{
+    for (int i = 0; i < d->sys->n_bodies; i++) {
+        poses[i] = GROUND;
+        for (int k = 0; k < 3; k++) {
+            poses[i].x[k] = d->vec[d->sys->bodies[i].centre][k];
+        }
+    }
+}
+
+static mt_cx drawn_value(const mt_data *d, const mt_measure_def *def)
+{
+    mt_pose pose[2] = {GROUND, GROUND};
+    const mt_measure_data m = mt_data_measure(d, def);
+    for (int side = 0; side < 2; side++) {
+        for (int k = 0; k < 3 && def->body[side] != MT_GROUND; k++) {
+            pose[side].x[k] = d->vec[d->sys->bodies[def->body[side]].centre][k];
+        }
+    }
+    return mt_measure_value(&m, &pose[0], &pose[1]);
+}
+
+void mt_data_targets(mt_data *d)
+{
+    for (int i = 0; i < d->sys->n_constraints; i++) {
+        const mt_constraint_def *const c = &d->sys->constraints[i];
+        d->target[i] = mt_data_scalar(d, c->target, 0.0);
+        for (int t = 0; t < c->terms && c->drawn; t++) {
+            const mt_cx v = drawn_value(d, &d->sys->measures[c->measure[t]]);
+            d->target[i] += cx_mul(mt_data_scalar(d, c->coefficient[t], 1.0), v);
+        }
+    }
+}
+
+void mt_data_rest(mt_data *d, const mt_pose *reference)
+{
+    const mt_system *const sys = d->sys;
+    for (int i = 0; i < sys->n_springs; i++) {
+        const mt_spring_def *const s = &sys->springs[i];
+        for (int side = 0; side < 2; side++) {
+            const mt_measure_def *const def = &sys->measures[s->measure[side]];
+            const mt_measure_data m = mt_data_measure(d, def);
+            d->rest[i][side] = s->free != MT_NO_NODE
+                                   ? mt_data_scalar(d, s->free, 0.0)
+                                   : mt_measure_value(&m, mt_pose_of(reference, def->body[0]),
+                                                      mt_pose_of(reference, def->body[1]));
+        }
+    }
+    if (sys->drive_constraint >= 0) {
+        const mt_measure_def *const def =
+            &sys->measures[sys->constraints[sys->drive_constraint].measure[0]];
+        const mt_measure_data m = mt_data_measure(d, def);
+        const mt_cx at = mt_measure_value(&m, mt_pose_of(reference, def->body[0]),
+                                          mt_pose_of(reference, def->body[1]));
+        d->target[sys->drive_constraint] = at + mt_data_scalar(d, sys->drive, 0.0);
+    }
+}

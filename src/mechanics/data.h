@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_DATA_H
+#define MECHANICS_DATA_H
+
+#include "mechanics/system.h"
+
+/*
+ * All numbers of a system at one design, as the complex kernels read them: values alone (input < 0), or values with the derivative with respect to one input.
+ */
+typedef struct mt_data {
+    const mt_system *sys;
+    const double *value; /* [program.count] */
+    const double *grad;  /* [program.count x n_inputs]; may be NULL where input < 0 */
+    int input;           /* -1: no derivative */
+    mt_cx (*vec)[3];     /* [n_vecs] */
+    mt_cx (*rest)[2];    /* [n_springs] rest values of the two measures of each spring */
+    mt_cx *target;       /* [n_constraints] */
+} mt_data;
+
+mt_status mt_data_init(mt_data *d, const mt_system *sys, mt_arena *mem, mt_err *err);
+/* Vector i from the vectors before it and the nodes. */
+void mt_data_vec(mt_data *d, int i);
+/* All vectors, targets at the drawn position, and rest values at `reference` (poses carrying their derivative): see mt_data_rest. */
+void mt_data_vecs(mt_data *d);
+void mt_data_targets(mt_data *d);
+/* Rest values and the target of the drive, at the reference position. */
+void mt_data_rest(mt_data *d, const mt_pose *reference);
+/* A node as a complex number; MT_NO_NODE gives `otherwise`. */
+mt_cx mt_data_scalar(const mt_data *d, mt_node node, double otherwise);
+/* The measure with its vectors filled in. */
+mt_measure_data mt_data_measure(const mt_data *d, const mt_measure_def *def);
+/* Positions as drawn (with their derivative); poses[n_bodies]. */
+void mt_data_drawn(const mt_data *d, mt_pose *poses);
+const mt_pose *mt_pose_of(const mt_pose *poses, int body); /* the ground's for MT_GROUND */
+mt_pose mt_pose_ground(void);
+
+#endif

@@ -1,0 +1,274 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "mechanics/lagrangian.h"
+
+#include <math.h>
+#include <string.h>
+
+mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, mt_arena *mem, mt_err *err)
+{
+    const size_t nq = (size_t)sys->nq;
+    const size_t m = (size_t)sys->n_constraints;
+    *l = (mt_lagrangian){0};
+    l->g = mt_arena_alloc(mem, nq, sizeof *l->g);
+    l->trim = mt_arena_alloc(mem, nq, sizeof *l->trim);
+    l->c = mt_arena_alloc(mem, m, sizeof *l->c);
+    l->a = mt_arena_alloc(mem, m * nq, sizeof *l->a);
+    l->h = mt_arena_alloc(mem, nq * nq, sizeof *l->h);
+    const bool bad =
+        l->g == NULL || l->trim == NULL || l->c == NULL || l->a == NULL || l->h == NULL;
+    return bad ? mt_fail_memory(err) : MT_OK;
+}
+
+int mt_local_dof(const mt_system *sys, const int body[2], int k)
+{
+    const int b = body[k / 6];
+    return b == MT_GROUND ? -1 : sys->bodies[b].dof[k % 6];
+}
+
+static void local_dofs(const mt_system *sys, const int body[2], int dof[MT_LOCAL])
+{
+    for (int k = 0; k < MT_LOCAL; k++) {
+        dof[k] = mt_local_dof(sys, body, k);
+    }
+}
+
+static void add_gradient(const mt_system *sys, const int body[2], const mt_cx *g, mt_cx scale,
+                         mt_cx *out)
+{
+    int dof[MT_LOCAL];
+    local_dofs(sys, body, dof);
+    for (int k = 0; k < MT_LOCAL; k++) {
+        if (dof[k] >= 0) {
+            out[dof[k]] += cx_mul(scale, g[k]);
+        }
+    }
+}
+
+/* h += scale * jet.h + outer * (ga gb^T + gb ga^T)/2. */
+static void add_hessian(const mt_system *sys, const int body[2], const mt_jet *jet, mt_cx scale,
+                        mt_cx outer, const mt_jet *other, mt_cx *h)
+{
+    int dof[MT_LOCAL];
+    local_dofs(sys, body, dof);
+    for (int c = 0; c < MT_LOCAL; c++) {
+        if (dof[c] < 0) {
+            continue;
+        }
+        for (int r = 0; r < MT_LOCAL; r++) {
+            if (dof[r] < 0) {
+                continue;
+            }
+            mt_cx v = cx_mul(scale, jet->h[r + (MT_LOCAL * c)]);
+            if (other != NULL) {
+                const mt_cx product =
+                    cx_mul(jet->g[r], other->g[c]) + cx_mul(other->g[r], jet->g[c]);
+                v += 0.5 * cx_mul(outer, product);
+            }
+            h[dof[r] + ((ptrdiff_t)dof[c] * sys->nq)] += v;
+        }
+    }
+}
+
+/* Torques count as forces at the model length. */
+static void note_force(const mt_system *sys, mt_lagrangian *out, const mt_jet *jet, mt_cx force)
+{
+    for (int k = 0; k < MT_LOCAL; k++) {
+        const double arm = k % 6 < 3 ? 1.0 : sys->length_m;
+        out->force_scale =
+            fmax(out->force_scale, fabs(creal(force)) * fabs(creal(jet->g[k])) / arm);
+    }
+}
+
+static void add_springs(const mt_data *d, const mt_pose *poses, bool hessian,
+                        bool geometric_only, mt_lagrangian *out)
+{
+    const mt_system *const sys = d->sys;
+    mt_jet jet[2];
+    for (int i = 0; i < sys->n_springs; i++) {
+        const mt_spring_def *const s = &sys->springs[i];
+        const bool coupling = s->measure[0] != s->measure[1];
+        mt_cx stretch[2];
+        if (s->damper) {
+            continue;
+        }
+        for (int side = 0; side < (coupling ? 2 : 1); side++) {
+            const mt_measure_def *const def = &sys->measures[s->measure[side]];
+            const mt_measure_data m = mt_data_measure(d, def);
+            mt_measure_eval(&m, mt_pose_of(poses, def->body[0]),
+                            mt_pose_of(poses, def->body[1]), hessian, &jet[side]);
+            stretch[side] = jet[side].value - d->rest[i][side];
+        }
+        const int *const body = sys->measures[s->measure[0]].body;
+        const mt_cx k = mt_data_scalar(d, s->stiffness, 0.0);
+        if (coupling) { /* V = 1/2 k d_a d_b */
+            for (int side = 0; side < 2; side++) {
+                const mt_cx force = 0.5 * cx_mul(k, stretch[1 - side]);
+                add_gradient(sys, body, jet[side].g, force, out->g);
+                note_force(sys, out, &jet[side], force);
+                if (hessian) {
+                    add_hessian(sys, body, &jet[side], force, geometric_only ? 0.0 : 0.5 * k,
+                                &jet[1 - side], out->h);
+                }
+            }
+            continue;
+        }
+        mt_cx force = cx_mul(k, stretch[0]) + mt_data_scalar(d, s->preload, 0.0);
+        if (i == sys->trim_spring) {
+            force = cx_make(out->trim_force, out->trim_force_derivative);
+            add_gradient(sys, body, jet[0].g, 1.0, out->trim);
+        }
+        add_gradient(sys, body, jet[0].g, force, out->g);
+        note_force(sys, out, &jet[0], force);
+        if (hessian) {
+            /* while the force of the trimmed spring is an unknown its stiffness does not act; in the linearised system (geometric_only) it does, elsewhere */
+            const bool rigid_part = geometric_only || i == sys->trim_spring;
+            add_hessian(sys, body, &jet[0], force, rigid_part ? 0.0 : k, &jet[0], out->h);
+        }
+    }
+}
+
+static void add_loads(const mt_data *d, const mt_pose *poses, bool hessian, mt_lagrangian *out)
+{
+    const mt_system *const sys = d->sys;
+    mt_jet jet;
+    for (int i = 0; i < sys->n_loads; i++) {
+        const mt_load_def *const load = &sys->loads[i];
+        const int body[2] = {load->body, MT_GROUND};
+        mt_cx f[3];
+        for (int k = 0; k < 3; k++) {
+            f[k] = mt_data_scalar(d, load->force[k], 0.0);
+        }
+        mt_measure_point(load->point < 0 ? NULL : d->vec[load->point], f, &poses[load->body],
+                         hessian, &jet);
+        add_gradient(sys, body, jet.g, -1.0, out->g);
+        note_force(sys, out, &jet, 1.0);
+        if (hessian) {
+            add_hessian(sys, body, &jet, -1.0, 0.0, NULL, out->h);
+        }
+    }
+}
+
+static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *poses,
+                       bool hessian, mt_lagrangian *out)
+{
+    const mt_system *const sys = d->sys;
+    const double l2 = sys->length_m * sys->length_m;
+    mt_jet jet;
+    for (int i = 0; i < sys->n_bodies; i++) {
+        const int body[2] = {MT_GROUND, i};
+        const mt_pose ground = mt_pose_ground();
+        const int *const dof = sys->bodies[i].dof;
+        for (int k = 0; k < 3; k++) {
+            if (dof[k] >= 0) {
+                out->g[dof[k]] += poses[i].x[k] - drawn[i].x[k];
+                if (hessian) {
+                    out->h[dof[k] + ((ptrdiff_t)dof[k] * sys->nq)] += 1.0;
+                }
+            }
+            /* -l^2/2 tr(R0^T R): drawn axes are the global ones */
+            mt_cx e[3] = {0.0, 0.0, 0.0};
+            e[k] = 1.0;
+            const mt_measure_data m = {
+                .kind = MT_MEASURE_DOT, .dir = {e, e, NULL}
+            };
+            mt_measure_eval(&m, &ground, &poses[i], hessian, &jet);
+            add_gradient(sys, body, jet.g, -0.5 * l2, out->g);
+            if (hessian) {
+                add_hessian(sys, body, &jet, -0.5 * l2, 0.0, NULL, out->h);
+            }
+        }
+    }
+}
+
+static void add_constraints(const mt_data *d, const mt_pose *poses, int m, const mt_cx *lambda,
+                            bool hessian, mt_lagrangian *out)
+{
+    const mt_system *const sys = d->sys;
+    mt_jet jet;
+    for (int i = 0; i < m; i++) {
+        const mt_constraint_def *const c = &sys->constraints[i];
+        const bool curved = hessian && lambda != NULL;
+        out->c[i] = -d->target[i];
+        for (int t = 0; t < c->terms; t++) {
+            const mt_measure_def *const def = &sys->measures[c->measure[t]];
+            const mt_measure_data measure = mt_data_measure(d, def);
+            const mt_cx factor = mt_data_scalar(d, c->coefficient[t], 1.0);
+            mt_measure_eval(&measure, mt_pose_of(poses, def->body[0]),
+                            mt_pose_of(poses, def->body[1]), curved, &jet);
+            out->c[i] += cx_mul(factor, jet.value);
+            for (int k = 0; k < MT_LOCAL; k++) {
+                const int dof = mt_local_dof(sys, def->body, k);
+                if (dof >= 0) {
+                    out->a[i + ((ptrdiff_t)dof * m)] += cx_mul(factor, jet.g[k]);
+                }
+            }
+            if (curved) {
+                add_hessian(sys, def->body, &jet, cx_mul(factor, lambda[i]), 0.0, NULL, out->h);
+            }
+        }
+        if (c->terms == 1 && sys->measures[c->measure[0]].kind == MT_MEASURE_ANGLE) {
+            /* an angle is known up to whole turns: take the turn nearest to the target */
+            const double turn = 6.283185307179586477;
+            out->c[i] -= turn * round(creal(out->c[i]) / turn);
+        }
+    }
+}
+
+void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,
+                        const mt_pose *poses, int m, const mt_cx *lambda, bool hessian,
+                        bool geometric_only, mt_lagrangian *out)
+{
+    const size_t nq = (size_t)d->sys->nq;
+    memset(out->g, 0, nq * sizeof *out->g);
+    memset(out->trim, 0, nq * sizeof *out->trim);
+    memset(out->a, 0, (size_t)m * nq * sizeof *out->a);
+    if (hessian) {
+        memset(out->h, 0, nq * nq * sizeof *out->h);
+    }
+    out->force_scale = 0.0;
+    if (energy == MT_ENERGY_PHYSICAL) {
+        add_springs(d, poses, hessian, geometric_only, out);
+        add_loads(d, poses, hessian, out);
+    } else {
+        add_anchor(d, drawn, poses, hessian, out);
+    }
+    add_constraints(d, poses, m, lambda, hessian, out);
+}
+
+double mt_energy_value(const mt_data *d, const mt_pose *poses, double trim_force)
+{
+    const mt_system *const sys = d->sys;
+    double v = 0.0;
+    for (int i = 0; i < sys->n_springs; i++) {
+        const mt_spring_def *const s = &sys->springs[i];
+        double stretch[2];
+        for (int side = 0; side < 2 && !s->damper; side++) {
+            const mt_measure_def *const def = &sys->measures[s->measure[side]];
+            const mt_measure_data m = mt_data_measure(d, def);
+            const mt_cx value = mt_measure_value(&m, mt_pose_of(poses, def->body[0]),
+                                                 mt_pose_of(poses, def->body[1]));
+            stretch[side] = creal(value) - creal(d->rest[i][side]);
+        }
+        if (s->damper) {
+            continue;
+        }
+        if (i == sys->trim_spring) {
+            v += trim_force * stretch[0];
+            continue;
+        }
+        v += 0.5 * creal(mt_data_scalar(d, s->stiffness, 0.0)) * stretch[0] * stretch[1];
+        v += creal(mt_data_scalar(d, s->preload, 0.0)) * stretch[0];
+    }
+    for (int i = 0; i < sys->n_loads; i++) {
+        const mt_load_def *const load = &sys->loads[i];
+        mt_jet jet;
+        mt_cx f[3];
+        for (int k = 0; k < 3; k++) {
+            f[k] = mt_data_scalar(d, load->force[k], 0.0);
+        }
+        mt_measure_point(load->point < 0 ? NULL : d->vec[load->point], f, &poses[load->body],
+                         false, &jet);
+        v -= creal(jet.value);
+    }
+    return v;
+}

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_LAGRANGIAN_H
+#define MECHANICS_LAGRANGIAN_H
+
+#include "mechanics/data.h"
+
+/*
+ * L = V + sum lambda_i c_i at given positions: gradient of V, constraints with their Jacobian, Hessian of L, all in the left exponential chart at those positions.
+ * V is the physical energy (springs, preloads, dead loads), or the anchor 1/2 sum |x - x0|^2 + 1/2 l^2 |R - R0|^2/2 that pulls every body to its drawn position
+ * (l: model length; |R - R0|_F^2/2 = 3 - tr(R0^T R), about theta^2): closing a loop is minimising the anchor under the constraints.
+ */
+typedef enum mt_energy { MT_ENERGY_PHYSICAL, MT_ENERGY_ANCHOR } mt_energy;
+
+typedef struct mt_lagrangian {
+    mt_cx *g; /* [nq] gradient of V (without lambda) */
+    mt_cx *c; /* [m] */
+    mt_cx *a; /* m x nq, column-major */
+    mt_cx *
+        h; /* nq x nq, Hessian of V + lambda c; only the geometric part (no k grad grad^T) where `geometric_only` */
+    mt_cx *trim; /* [nq] gradient of the trimmed spring's measure (where the system has one) */
+    double
+        force_scale; /* sum over all loads and springs of |contribution to g|, largest entry; 0 where nothing loads */
+    double trim_force; /* force of the trimmed spring, in; its own stiffness acts in h only */
+    double trim_force_derivative;
+} mt_lagrangian;
+
+/* m: how many constraints take part (the drive's is the last of them). lambda may be NULL (0). h is filled where `hessian`. */
+void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,
+                        const mt_pose *poses, int m, const mt_cx *lambda, bool hessian,
+                        bool geometric_only, mt_lagrangian *out);
+mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
+                             mt_err *err);
+/* Column of q for local freedom k (0..11) of a pair of bodies; -1: none. */
+int mt_local_dof(const mt_system *sys, const int body[2], int k);
+/* Energy alone. */
+double mt_energy_value(const mt_data *d, const mt_pose *poses, double trim_force);
+
+#endif

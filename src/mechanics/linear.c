@@ -1,0 +1,303 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "mechanics/linear.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mechanics/tangent.h"
+
+void mt_linear_delete(mt_linear *lin)
+{
+    if (lin != NULL) {
+        mt_arena_free(&lin->scratch);
+        mt_arena_free(&lin->geometry);
+        mt_arena_free(&lin->base);
+        free(lin);
+    }
+}
+
+static mt_status init(mt_linear *lin, const mt_system *sys, mt_err *err)
+{
+    const size_t count = (size_t)sys->program.count;
+    lin->sys = sys;
+    MT_TRY(mt_arena_init(&lin->base, 0, err));
+    MT_TRY(mt_arena_init(&lin->geometry, 0, err));
+    MT_TRY(mt_arena_init(&lin->scratch, 0, err));
+    lin->value = mt_arena_f64(&lin->base, count, 1);
+    lin->grad = mt_arena_f64(&lin->base, count, (size_t)sys->n_inputs);
+    if (lin->value == NULL || lin->grad == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_data_init(&lin->data, sys, &lin->base, err));
+    MT_TRY(mt_data_init(&lin->dual, sys, &lin->base, err));
+    lin->data.value = lin->value;
+    lin->dual.value = lin->value;
+    lin->dual.grad = lin->grad;
+    return mt_terms_new(sys, &lin->base, lin->list, err);
+}
+
+mt_status mt_linear_new(const mt_system *sys, mt_linear **out, mt_err *err)
+{
+    mt_linear *const lin = calloc(1, sizeof *lin);
+    *out = NULL;
+    if (lin == NULL) {
+        return mt_fail_memory(err);
+    }
+    const mt_status rc = init(lin, sys, err);
+    if (rc != MT_OK) {
+        mt_linear_delete(lin);
+        return rc;
+    }
+    *out = lin;
+    return MT_OK;
+}
+
+/* r = Z^T row for all rows of one kind. */
+static mt_status reduce_rows(mt_linear *lin, int kind, mt_err *err)
+{
+    const mt_term_list *const list = &lin->list[kind];
+    const ptrdiff_t nq = lin->sys->nq;
+    lin->reduced[kind] = mt_arena_f64(&lin->geometry, (size_t)lin->n, (size_t)list->n_rows);
+    if (lin->reduced[kind] == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < list->n_rows; i++) {
+        const mt_term *const t = &list->terms[list->row_term[i]];
+        const double *const row = lin->rows[kind] + ((ptrdiff_t)i * MT_LOCAL);
+        double *const out = lin->reduced[kind] + ((ptrdiff_t)i * lin->n);
+        for (int k = 0; k < MT_LOCAL; k++) {
+            const int dof = mt_local_dof(lin->sys, t->body, k);
+            if (dof < 0 || !(row[k] < 0.0 || row[k] > 0.0)) {
+                continue;
+            }
+            for (int c = 0; c < lin->n; c++) {
+                out[c] += row[k] * lin->e.z[dof + (c * nq)];
+            }
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status evaluate_rows(mt_linear *lin, mt_err *err)
+{
+    for (int kind = 0; kind < MT_TERM_KINDS; kind++) {
+        const mt_term_list *const list = &lin->list[kind];
+        const size_t size = (size_t)list->n_rows * MT_LOCAL;
+        lin->rows[kind] = mt_arena_f64(&lin->geometry, size, 1);
+        const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+        mt_cx *const rows = mt_arena_alloc(&lin->scratch, size, sizeof *rows);
+        if (lin->rows[kind] == NULL || rows == NULL) {
+            return mt_fail_memory(err);
+        }
+        mt_rows_eval(&lin->data, (mt_term_kind)kind, list, lin->position.pose, rows);
+        for (size_t i = 0; i < size; i++) {
+            lin->rows[kind][i] = creal(rows[i]);
+        }
+        mt_arena_rewind(&lin->scratch, mark);
+        if (kind != MT_TERM_CHANNEL) {
+            MT_TRY(reduce_rows(lin, kind, err));
+        }
+    }
+    return MT_OK;
+}
+
+/* Constraints at the final position, and the geometric stiffness where something loads the mechanism. */
+static mt_status constrain(mt_linear *lin, mt_err *err)
+{
+    const mt_system *const sys = lin->sys;
+    const ptrdiff_t nq = sys->nq;
+    mt_lagrangian l;
+    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    const bool loaded = lin->position.equilibrium.active;
+    const int all = sys->n_constraints;
+    lin->m = sys->trim ? all - 1 : all;
+    MT_TRY(mt_lagrangian_init(&l, sys, &lin->scratch, err));
+    mt_cx *const lambda = mt_arena_alloc(&lin->scratch, (size_t)all, sizeof *lambda);
+    lin->a = mt_arena_f64(&lin->geometry, (size_t)lin->m, (size_t)nq);
+    if (lambda == NULL || lin->a == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < all && loaded; i++) {
+        lambda[i] = lin->position.equilibrium.lambda[i];
+    }
+    l.trim_force = lin->position.trim_force;
+    mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, lin->position.pose,
+                       all, loaded ? lambda : NULL, loaded, true, &l);
+    for (ptrdiff_t j = 0; j < nq; j++) {
+        for (ptrdiff_t i = 0; i < lin->m; i++) {
+            lin->a[i + (j * lin->m)] = creal(l.a[i + (j * all)]);
+        }
+    }
+    lin->kg = NULL;
+    if (loaded) {
+        lin->kg = mt_arena_f64(&lin->geometry, (size_t)nq, (size_t)nq);
+        if (lin->kg == NULL) {
+            return mt_fail_memory(err);
+        }
+        for (ptrdiff_t i = 0; i < nq * nq; i++) {
+            lin->kg[i] = creal(l.h[i]);
+        }
+    }
+    mt_arena_rewind(&lin->scratch, mark);
+    MT_TRY(mt_eliminate(sys, lin->m, lin->a, &lin->geometry, &lin->e, err));
+    lin->n = lin->e.n;
+    return MT_OK;
+}
+
+/* out (n x n) += sum of the terms' contributions, lower triangle; which: 0 terms without inputs, 1 terms with, 2 all. */
+static void add_terms(const mt_linear *lin, int kind, int which, double *out)
+{
+    const mt_term_list *const list = &lin->list[kind];
+    const int n = lin->n;
+    for (int i = 0; i < list->n_terms; i++) {
+        const mt_term *const t = &list->terms[i];
+        const double c = lin->value[t->coefficient];
+        if ((which != 2 && t->varies != (which == 1)) || !(c < 0.0 || c > 0.0)) {
+            continue;
+        }
+        for (int r = 0; r < (t->pair ? 1 : t->count); r++) {
+            const double *const a = lin->reduced[kind] + ((ptrdiff_t)(t->first + r) * n);
+            const double *const b = t->pair ? a + n : a;
+            for (int col = 0; col < n; col++) {
+                double *const out_col = out + ((ptrdiff_t)col * n);
+                const double ca = 0.5 * c * a[col];
+                const double cb = 0.5 * c * b[col];
+                for (int row = col; row < n; row++) {
+                    out_col[row] += (b[row] * ca) + (a[row] * cb);
+                }
+            }
+        }
+    }
+}
+
+static mt_status fixed_parts(mt_linear *lin, mt_err *err)
+{
+    const size_t n = (size_t)lin->n;
+    const ptrdiff_t nq = lin->sys->nq;
+    lin->k = mt_arena_f64(&lin->geometry, n, n);
+    lin->m_r = mt_arena_f64(&lin->geometry, n, n);
+    lin->k_fixed = mt_arena_f64(&lin->geometry, n, n);
+    lin->m_fixed = mt_arena_f64(&lin->geometry, n, n);
+    const size_t rows = (size_t)lin->list[MT_TERM_STIFFNESS].n_rows;
+    lin->factor_b = mt_arena_f64(&lin->geometry, rows, n);
+    lin->factor_c = mt_arena_f64(&lin->geometry, rows, 1);
+    if (lin->k == NULL || lin->m_r == NULL || lin->k_fixed == NULL || lin->m_fixed == NULL ||
+        lin->factor_b == NULL || lin->factor_c == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (lin->kg != NULL) {
+        const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+        double *const kz = mt_arena_f64(&lin->scratch, (size_t)nq, n);
+        if (kz == NULL) {
+            return mt_fail_memory(err);
+        }
+        mt_gemm(false, false, (int)nq, lin->n, (int)nq, 1.0, lin->kg, (int)nq, lin->e.z,
+                (int)nq, 0.0, kz, (int)nq);
+        mt_gemm(true, false, lin->n, lin->n, (int)nq, 1.0, lin->e.z, (int)nq, kz, (int)nq, 0.0,
+                lin->k_fixed, lin->n);
+        mt_arena_rewind(&lin->scratch, mark);
+    }
+    add_terms(lin, MT_TERM_STIFFNESS, 0, lin->k_fixed);
+    add_terms(lin, MT_TERM_MASS, 0, lin->m_fixed);
+    for (size_t r = 0; r < rows; r++) {
+        for (size_t c = 0; c < n; c++) {
+            lin->factor_b[r + (c * rows)] = lin->reduced[MT_TERM_STIFFNESS][c + (r * n)];
+        }
+    }
+    return MT_OK;
+}
+
+static void assemble(mt_linear *lin, bool geometry_new)
+{
+    const int n = lin->n;
+    const size_t size = (size_t)n * (size_t)n * sizeof(double);
+    const mt_term_list *const stiffness = &lin->list[MT_TERM_STIFFNESS];
+    const mt_term_list *const mass = &lin->list[MT_TERM_MASS];
+    bool mass_varies = geometry_new;
+    memcpy(lin->k, lin->k_fixed, size);
+    add_terms(lin, MT_TERM_STIFFNESS, 1, lin->k);
+    mt_symmetrise_lower(n, lin->k);
+    for (int i = 0; i < mass->n_terms && !mass_varies; i++) {
+        mass_varies = mass->terms[i].varies;
+    }
+    if (mass_varies) {
+        memcpy(lin->m_r, lin->m_fixed, size);
+        add_terms(lin, MT_TERM_MASS, 1, lin->m_r);
+        mt_symmetrise_lower(n, lin->m_r);
+        lin->mass_version++;
+    }
+    lin->has_factor = lin->kg == NULL;
+    for (int i = 0; i < stiffness->n_terms; i++) {
+        const mt_term *const t = &stiffness->terms[i];
+        const double c = lin->value[t->coefficient];
+        lin->has_factor = lin->has_factor && !t->pair && c >= 0.0;
+        for (int r = 0; r < t->count; r++) {
+            lin->factor_c[t->first + r] = c;
+        }
+    }
+}
+
+static mt_status rebuild(mt_linear *lin, mt_err *err)
+{
+    const mt_arena_mark start = {lin->geometry.first, 0, 0};
+    lin->built = false;
+    mt_arena_rewind(&lin->geometry, start);
+    mt_data_vecs(&lin->data);
+    MT_TRY(mt_position_solve(lin->sys, &lin->data, &lin->geometry, &lin->position, err));
+    MT_TRY(constrain(lin, err));
+    MT_TRY(evaluate_rows(lin, err));
+    MT_TRY(fixed_parts(lin, err));
+    lin->geometry_version++;
+    lin->built = true;
+    return MT_OK;
+}
+
+static mt_status where_in_model(const mt_linear *lin, mt_node bad, mt_status rc, mt_err *err)
+{
+    const mt_model *const model = lin->sys->model;
+    for (int i = 0; i < model->n_parameters && bad != MT_NO_NODE; i++) {
+        if (model->nums[model->parameters[i].value].addr == lin->sys->program.nodes[bad].addr) {
+            return mt_err_in(err, rc, "parameter \"%s\"", model->parameters[i].name.s);
+        }
+    }
+    return rc;
+}
+
+mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradient,
+                           mt_err *err)
+{
+    const mt_system *const sys = lin->sys;
+    mt_node bad = MT_NO_NODE;
+    const mt_status rc =
+        with_gradient
+            ? mt_program_gradient(&sys->program, inputs, lin->value, lin->grad, &bad, err)
+            : mt_program_eval(&sys->program, inputs, lin->value, &bad, err);
+    if (rc != MT_OK) {
+        return where_in_model(lin, bad, rc, err);
+    }
+    const bool kept = lin->built && sys->geometry_fixed && !sys->loaded && !sys->driven;
+    if (!kept) {
+        MT_TRY(rebuild(lin, err));
+    }
+    assemble(lin, !kept);
+    lin->with_gradient = with_gradient;
+    if (with_gradient && !(sys->geometry_fixed && !lin->position.equilibrium.active)) {
+        return mt_tangent_update(lin, err);
+    }
+    lin->tangent = NULL;
+    return MT_OK;
+}
+
+void mt_linear_expand(const mt_linear *lin, int cols, const double *y, double *phi)
+{
+    mt_gemm(false, false, lin->sys->nq, cols, lin->n, 1.0, lin->e.z, lin->sys->nq, y, lin->n,
+            0.0, phi, lin->sys->nq);
+}
+
+void mt_linear_damping(const mt_linear *lin, double *c)
+{
+    memset(c, 0, (size_t)lin->n * (size_t)lin->n * sizeof *c);
+    add_terms(lin, MT_TERM_DAMPING, 2, c);
+    mt_symmetrise_lower(lin->n, c);
+}

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_LINEAR_H
+#define MECHANICS_LINEAR_H
+
+#include "mechanics/position.h"
+#include "mechanics/rows.h"
+
+/*
+ * A system linearised at one design: positions, reduced stiffness and mass, exact derivatives with respect to the inputs. All that moves is here, one per worker;
+ * the system is shared.
+ *
+ *     q = Z y,  A Z = 0,   K_r = Z^T K Z,  M_r = Z^T M Z    (n x n, column-major, both triangles filled)
+ *
+ * What does not change is not computed again: where the geometry is fixed and nothing loads the mechanism, an update is the evaluation of the program and a sum of reduced
+ * terms; where no mass depends on an input, M_r is left alone (mass_version tells).
+ */
+typedef struct mt_linear_tangent mt_linear_tangent;
+
+typedef struct mt_linear {
+    const mt_system *sys;
+    mt_arena base;     /* lives as long as this */
+    mt_arena geometry; /* rewound when the geometry changes */
+    mt_arena scratch;
+    double *value; /* [program.count] */
+    double *grad;  /* [program.count x n_inputs], after an update with gradients */
+    mt_term_list list[MT_TERM_KINDS];
+    mt_data data; /* real */
+    mt_data dual; /* with derivative */
+    mt_state position;
+    mt_elimination e; /* at the final position, constraints of the linearised system */
+    int m;            /* constraints in force */
+    double *a;        /* m x nq */
+    int n;            /* freedoms */
+    double *rows[MT_TERM_KINDS];    /* 12 x n_rows, local freedoms */
+    double *reduced[MT_TERM_KINDS]; /* n x n_rows: Z^T row; channels: not used */
+    double *kg;                     /* nq x nq geometric stiffness; NULL where nothing loads */
+    double *k;                      /* n x n */
+    double *m_r;                    /* n x n */
+    double *k_fixed;                /* part of K_r from terms without inputs (and Kg) */
+    double *m_fixed;
+    double *factor_b; /* list[STIFFNESS].n_rows x n: K_r = B^T diag(c) B, where has_factor */
+    double *factor_c;
+    bool has_factor; /* no geometric stiffness, no coupling terms, no negative coefficient */
+    unsigned long mass_version; /* changes when M_r does */
+    unsigned long geometry_version;
+    bool built;
+    bool with_gradient;
+    mt_linear_tangent *tangent; /* [n_inputs], where geometry or position depend on inputs */
+} mt_linear;
+
+mt_status mt_linear_new(const mt_system *sys, mt_linear **out, mt_err *err);
+void mt_linear_delete(mt_linear *lin);
+/* Evaluate at inputs[n_inputs]. Fails as mt_state_solve, MT_E_DOMAIN (names the number by its address in the text). No heap after the first calls. */
+mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradient,
+                           mt_err *err);
+/* phi = Z y: y n x cols, phi nq x cols. */
+void mt_linear_expand(const mt_linear *lin, int cols, const double *y, double *phi);
+/* dky = (dK_r/dp) y and dmy = (dM_r/dp) y for input p, with all that depends on it (geometry, constraints, equilibrium); n x cols. dm_zero (may be NULL): dmy is zero.
+ * After an update with gradients. */
+mt_status mt_linear_products(mt_linear *lin, int p, int cols, const double *y, double *dky,
+                             double *dmy, bool *dm_zero, mt_err *err);
+/* Values of channels channel[ns] for shapes y (n x cols): s ns x cols. */
+mt_status mt_linear_sense(mt_linear *lin, int ns, const int *channel, int cols, const double *y,
+                          double *s, mt_err *err);
+/* Their derivative with respect to input p, given dy = dy/dp (n x cols): ds ns x cols. */
+mt_status mt_linear_sense_derivative(mt_linear *lin, int p, int ns, const int *channel,
+                                     int cols, const double *y, const double *dy, double *ds,
+                                     mt_err *err);
+/* Number of redundant equations (m - rank) and, for set k, its joints' names: text "\"a\", \"b\"" (in the geometry arena, valid until the next update). */
+int mt_linear_redundant(const mt_linear *lin);
+mt_status mt_linear_redundant_set(mt_linear *lin, int k, const char **text, mt_err *err);
+/* Names of the bodies and directions that dominate a direction y in the freedoms: "bob (rotation)", for messages. Buffer of size bytes. */
+void mt_linear_name_direction(const mt_linear *lin, const double *y, char *text, size_t size);
+/* Reduced damping matrix Z^T C Z (n x n) into c. */
+void mt_linear_damping(const mt_linear *lin, double *c);
+
+#endif

@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_MEASURE_H
+#define MECHANICS_MEASURE_H
+
+#include <stdbool.h>
+
+#include "mechanics/cx.h"
+
+/*
+ * Scalar measures of the relative position of two bodies: every joint is a few equations "measure = value", every spring an energy of measures.
+ * Each is returned with its exact gradient and Hessian in the twelve local freedoms
+ *     (dx_a, theta_a, dx_b, theta_b):  x -> x + dx,  R -> exp(theta^) R     (displacements and rotation vector in global axes),
+ * that is, in the left exponential chart at the present position. All bodies are drawn with R = I, so a feature fixed to a body is given by
+ * its vector in the drawn position.
+ *
+ * With u, v directions and P, Q points of bodies a, b (Haug, Computer Aided Kinematics and Dynamics, 1989, ch. 9 uses the same primitives):
+ *   PLANE     u_a . (Q_b - P_a)
+ *   DOT       u_a . v_b
+ *   DISTANCE  |Q_b - P_a|
+ *   ANGLE     atan2(c_a . b_b, b_a . b_b): rotation of b against a about the axis b x c
+ *   ROTATION  component k of the rotation vector that takes the triad of a to that of b, in the triad of a
+ *   BEND      PLANE + weight * ROTATION (the two generalised strains of a bent beam element)
+ */
+typedef enum mt_measure_kind {
+    MT_MEASURE_PLANE,
+    MT_MEASURE_DOT,
+    MT_MEASURE_DISTANCE,
+    MT_MEASURE_ANGLE,
+    MT_MEASURE_ROTATION,
+    MT_MEASURE_BEND
+} mt_measure_kind;
+
+enum { MT_LOCAL = 12 };
+
+/* A body's position as the kernels read it; the ground is x = 0, R = I. */
+typedef struct mt_pose {
+    mt_cx x[3];
+    mt_cx r[9]; /* column-major */
+} mt_pose;
+
+/* Vectors in the drawn position. */
+typedef struct mt_measure_data {
+    mt_measure_kind kind;
+    int component;         /* ROTATION, BEND: 0, 1, 2 */
+    const mt_cx *point[2]; /* P - centre of a, Q - centre of b; NULL: the centre */
+    const mt_cx *dir
+        [3]; /* PLANE: u; DOT: u (a), v (b); ANGLE: b, c; ROTATION: triad e1 e2 e3; unit vectors */
+    const mt_cx *plane; /* BEND: u */
+    mt_cx weight;       /* BEND */
+} mt_measure_data;
+
+/* Value, gradient and (when asked for) Hessian of a scalar function of the twelve local freedoms. */
+typedef struct mt_jet {
+    mt_cx value;
+    mt_cx g[MT_LOCAL];
+    mt_cx h[MT_LOCAL * MT_LOCAL]; /* full symmetric */
+    bool second;                  /* is h filled? */
+} mt_jet;
+
+/* Evaluate. No heap. A distance of zero has no direction: its gradient is then NaN. */
+void mt_measure_eval(const mt_measure_data *m, const mt_pose *a, const mt_pose *b, bool second,
+                     mt_jet *out);
+/* Value only. */
+mt_cx mt_measure_value(const mt_measure_data *m, const mt_pose *a, const mt_pose *b);
+/* Jet of the work potential f . P of a point fixed to body a (local freedoms 0..5). */
+void mt_measure_point(const mt_cx *s, const mt_cx *f, const mt_pose *a, bool second,
+                      mt_jet *out);
+/* R -> exp(theta^) R (Rodrigues), x -> x + dx; real increments, the derivative parts of the pose are dropped. */
+void mt_pose_move(mt_pose *pose, const double *dx, const double *theta);
+/* Put the derivative (dx, theta) on a real pose: x + i h dx, R + i h theta^ R. */
+void mt_pose_tangent(mt_pose *pose, const double *dx, const double *theta);
+
+#endif

@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "mechanics/position.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "mechanics/newton.h"
+
+static void body_motion(const mt_system *sys, int body, const double *dq, double dx[3],
+                        double theta[3])
+{
+    for (int k = 0; k < 3; k++) {
+        const int *const dof = sys->bodies[body].dof;
+        dx[k] = dof[k] >= 0 ? dq[dof[k]] : 0.0;
+        theta[k] = dof[3 + k] >= 0 ? dq[dof[3 + k]] : 0.0;
+    }
+}
+
+void mt_position_move(const mt_system *sys, mt_pose *poses, const double *dq)
+{
+    for (int i = 0; i < sys->n_bodies; i++) {
+        double dx[3];
+        double theta[3];
+        body_motion(sys, i, dq, dx, theta);
+        mt_pose_move(&poses[i], dx, theta);
+    }
+}
+
+void mt_position_complex(const mt_system *sys, const mt_pose *poses, const double *dq,
+                         mt_pose *out)
+{
+    for (int i = 0; i < sys->n_bodies; i++) {
+        double dx[3];
+        double theta[3];
+        out[i] = poses[i];
+        body_motion(sys, i, dq, dx, theta);
+        mt_pose_tangent(&out[i], dx, theta);
+    }
+}
+
+/* Constraints of the plain assembly: all but the drive's. */
+static int assembly_constraints(const mt_system *sys)
+{
+    return sys->driven ? sys->n_constraints - 1 : sys->n_constraints;
+}
+
+/* Constraint violations at the drawing below this times the model length are rounding of the drawing's own numbers: it closes as it is. */
+static const double DRAWN_CLOSED = 1e-13;
+
+static mt_status close_loops(mt_state *p, mt_data *data, mt_arena *mem, mt_err *err)
+{
+    const mt_system *const sys = p->sys;
+    const mt_newton_problem problem = {.data = data,
+                                       .energy = MT_ENERGY_ANCHOR,
+                                       .drawn = p->drawn,
+                                       .m = assembly_constraints(sys),
+                                       .trim = false};
+    double gap = 0.0;
+    memcpy(p->reference, p->drawn, (size_t)sys->n_bodies * sizeof *p->reference);
+    MT_TRY(mt_newton_gap(&problem, p->reference, mem, &gap, err));
+    if (gap <= DRAWN_CLOSED * sys->length_m && sys->geometry_fixed) {
+        return MT_OK; /* where inputs shape the geometry the stage is needed for its derivative, even if nothing moves now */
+    }
+    return mt_newton_solve(&problem, p->reference, mem, p, &p->closure, err);
+}
+
+/* Largest step of the driven joint's coordinate between two closures [rad or model lengths]. */
+static const double DRIVE_STEP = 0.1;
+
+/* Bring the driven joint to its place in steps, so that the mechanism stays on its branch; the last closure is anchored to the drawing, which makes the result a function of the design alone. */
+static mt_status drive_joint(mt_state *p, mt_data *data, mt_arena *mem, mt_err *err)
+{
+    const mt_system *const sys = p->sys;
+    const int row = sys->drive_constraint;
+    const double full = creal(mt_data_scalar(data, sys->drive, 0.0));
+    const mt_cx target = data->target[row];
+    const double unit =
+        sys->joints[sys->drive_joint].angle ? DRIVE_STEP : DRIVE_STEP * sys->length_m;
+    const int steps = 1 + (int)fmin(ceil(fabs(full) / unit), 1000.0);
+    mt_pose *const previous = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *previous);
+    if (previous == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(p->pose, p->reference, (size_t)sys->n_bodies * sizeof *p->pose);
+    for (int i = 1; i <= steps; i++) {
+        const bool last = i == steps;
+        data->target[row] = target - (full * (double)(steps - i) / (double)steps);
+        memcpy(previous, p->pose, (size_t)sys->n_bodies * sizeof *previous);
+        const mt_newton_problem problem = {.data = data,
+                                           .energy = MT_ENERGY_ANCHOR,
+                                           .drawn = last ? p->drawn : previous,
+                                           .m = sys->n_constraints,
+                                           .trim = false};
+        const mt_status rc = mt_newton_solve(&problem, p->pose, mem, p, &p->driven, err);
+        if (rc != MT_OK) {
+            return mt_err_in(err, rc, "driving joint \"%s\" to %g (at %g)",
+                             sys->joints[sys->drive_joint].name, full,
+                             full * (double)i / (double)steps);
+        }
+    }
+    data->target[row] = target;
+    return MT_OK;
+}
+
+mt_status mt_position_solve(const mt_system *sys, mt_data *data, mt_arena *mem, mt_state *out,
+                            mt_err *err)
+{
+    const size_t n = (size_t)sys->n_bodies;
+    const size_t nq = (size_t)sys->nq;
+    *out = (mt_state){.sys = sys};
+    out->drawn = mt_arena_alloc(mem, n, sizeof *out->drawn);
+    out->reference = mt_arena_alloc(mem, n, sizeof *out->reference);
+    out->pose = mt_arena_alloc(mem, n, sizeof *out->pose);
+    out->d_reference = mt_arena_f64(mem, nq, 1);
+    out->d_pose = mt_arena_f64(mem, nq, 1);
+    out->d_lambda = mt_arena_f64(mem, (size_t)sys->n_constraints, 1);
+    if (out->drawn == NULL || out->reference == NULL || out->pose == NULL ||
+        out->d_reference == NULL || out->d_pose == NULL || out->d_lambda == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_data_drawn(data, out->drawn);
+    mt_data_targets(data);
+    MT_TRY(close_loops(out, data, mem, err));
+    mt_data_rest(data, out->reference);
+    memcpy(out->pose, out->reference, n * sizeof *out->pose);
+    if (sys->driven) {
+        MT_TRY(drive_joint(out, data, mem, err));
+    }
+    if (sys->loaded || sys->driven) {
+        const mt_newton_problem problem = {.data = data,
+                                           .energy = MT_ENERGY_PHYSICAL,
+                                           .drawn = out->drawn,
+                                           .m = sys->n_constraints,
+                                           .trim = sys->trim};
+        MT_TRY(mt_newton_solve(&problem, out->pose, mem, out, &out->equilibrium, err));
+    }
+    const mt_newton_problem check = {.data = data,
+                                     .energy = MT_ENERGY_ANCHOR,
+                                     .drawn = out->drawn,
+                                     .m = sys->n_constraints,
+                                     .trim = false};
+    return mt_newton_gap(&check, out->pose, mem, &out->gap_m, err);
+}
+
+mt_status mt_position_tangent(mt_state *p, mt_data *data, mt_arena *scratch, mt_err *err)
+{
+    const mt_system *const sys = p->sys;
+    const size_t n = (size_t)sys->n_bodies;
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    mt_pose *const drawn = mt_arena_alloc(scratch, n, sizeof *drawn);
+    mt_pose *const work = mt_arena_alloc(scratch, n, sizeof *work);
+    if (drawn == NULL || work == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_data_vecs(data);
+    mt_data_targets(data);
+    mt_data_drawn(data, drawn);
+    /* the drawn centres move with the geometry; where no loop had to be closed that is the whole motion unless the constraints open */
+    for (int i = 0; i < sys->n_bodies; i++) {
+        for (int k = 0; k < 3; k++) {
+            const int dof = sys->bodies[i].dof[k];
+            if (dof >= 0) {
+                p->d_reference[dof] = cx_derivative(drawn[i].x[k]);
+            }
+        }
+        for (int k = 3; k < 6; k++) {
+            const int dof = sys->bodies[i].dof[k];
+            if (dof >= 0) {
+                p->d_reference[dof] = 0.0;
+            }
+        }
+    }
+    mt_newton_problem problem = {.data = data,
+                                 .energy = MT_ENERGY_ANCHOR,
+                                 .drawn = drawn,
+                                 .m = assembly_constraints(sys),
+                                 .trim = false};
+    MT_TRY(mt_newton_tangent(&problem, p->reference, p, &p->closure, p->d_reference, scratch,
+                             err));
+    mt_position_complex(sys, p->reference, p->d_reference, work);
+    mt_data_rest(data, work);
+    memcpy(p->d_pose, p->d_reference, (size_t)sys->nq * sizeof *p->d_pose);
+    if (sys->driven) {
+        problem.m = sys->n_constraints;
+        MT_TRY(mt_newton_tangent(&problem, p->pose, p, &p->driven, p->d_pose, scratch, err));
+    }
+    if (p->equilibrium.active) {
+        problem.energy = MT_ENERGY_PHYSICAL;
+        problem.m = sys->n_constraints;
+        problem.trim = sys->trim;
+        MT_TRY(
+            mt_newton_tangent(&problem, p->pose, p, &p->equilibrium, p->d_pose, scratch, err));
+    }
+    mt_arena_rewind(scratch, mark);
+    return MT_OK;
+}

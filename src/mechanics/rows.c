@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Consistent masses are factored once, M = C C^T, so that they too are sums of squares of rows (C^T v):
+ *   bar            [1/3 1/6; 1/6 1/3] per direction on (v_a, v_b)
+ *   beam, bending  1/420 [156 22 54 -13; 22 4 13 -3; 54 13 156 -22; -13 -3 -22 4] on (w_a, l w'_a, w_b, l w'_b)
+ * (Przemieniecki, Theory of Matrix Structural Analysis, 1968, sec. 11.3 and 11.7), both times the mass of the element. Displacement of a point s from the centre: dx + theta x s.
+ */
+#include "mechanics/rows.h"
+
+#include <string.h>
+
+enum { BAR_ROWS = 2, BENDING_ROWS = 4 };
+
+static int inertia_rows(const mt_system *sys, const mt_inertia_def *def)
+{
+    switch (def->kind) {
+    case MT_INERTIA_TRANSLATION:
+        return sys->dimension;
+    case MT_INERTIA_ROTATION:
+        return def->dir[0] == def->dir[1] ? 1 : 2;
+    case MT_INERTIA_BAR:
+        return BAR_ROWS * sys->dimension;
+    case MT_INERTIA_BEAM:
+        return sys->dimension == 2 ? BAR_ROWS + BENDING_ROWS
+                                   : (2 * BAR_ROWS) + (2 * BENDING_ROWS);
+    }
+    return 0;
+}
+
+static void push(mt_term_list *list, const mt_program *p, mt_term term)
+{
+    term.first = list->n_rows;
+    term.varies =
+        term.coefficient != MT_NO_NODE && !mt_program_is_constant(p, term.coefficient);
+    for (int i = 0; i < term.count; i++) {
+        list->row_term[list->n_rows++] = list->n_terms;
+    }
+    list->terms[list->n_terms++] = term;
+}
+
+mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists, mt_err *err)
+{
+    const mt_program *const p = &sys->program;
+    const size_t most_terms =
+        (size_t)sys->n_springs + (size_t)sys->n_inertias + (size_t)sys->n_channels + 1;
+    for (int k = 0; k < MT_TERM_KINDS; k++) {
+        lists[k] = (mt_term_list){0};
+        lists[k].terms = mt_arena_alloc(mem, most_terms, sizeof(mt_term));
+        lists[k].row_term = mt_arena_int(mem, most_terms * 12);
+        if (lists[k].terms == NULL || lists[k].row_term == NULL) {
+            return mt_fail_memory(err);
+        }
+    }
+    for (int i = 0; i < sys->n_springs; i++) {
+        const mt_spring_def *const s = &sys->springs[i];
+        const mt_measure_def *const m = &sys->measures[s->measure[0]];
+        const bool pair = s->measure[0] != s->measure[1];
+        push(&lists[s->damper ? MT_TERM_DAMPING : MT_TERM_STIFFNESS], p,
+             (mt_term){
+                 .coefficient = s->stiffness,
+                 .count = pair ? 2 : 1,
+                 .pair = pair,
+                 .body = {m->body[0], m->body[1]},
+                 .source = i
+        });
+    }
+    for (int i = 0; i < sys->n_inertias; i++) {
+        const mt_inertia_def *const def = &sys->inertias[i];
+        push(&lists[MT_TERM_MASS], p,
+             (mt_term){
+                 .coefficient = def->coefficient,
+                 .count = inertia_rows(sys, def),
+                 .pair = def->kind == MT_INERTIA_ROTATION && def->dir[0] != def->dir[1],
+                 .body = {def->body[0], def->body[1]},
+                 .source = i
+        });
+    }
+    for (int i = 0; i < sys->n_channels; i++) {
+        push(&lists[MT_TERM_CHANNEL], p,
+             (mt_term){
+                 .coefficient = MT_NO_NODE,
+                 .count = 1,
+                 .body = {sys->channels[i].body[0], sys->channels[i].body[1]},
+                 .source = i
+        });
+    }
+    return MT_OK;
+}
+
+/* row += scale * (displacement of the point along unit vector e), local freedoms of side 0 or 1. */
+static void add_point(mt_cx *row, int side, const mt_cx *s, const mt_cx *e, mt_cx scale)
+{
+    mt_cx n[3];
+    cx_cross3(s, e, n);
+    for (int k = 0; k < 3; k++) {
+        row[(6 * side) + k] += cx_mul(scale, e[k]);
+        row[(6 * side) + 3 + k] += cx_mul(scale, n[k]);
+    }
+}
+
+static void add_turn(mt_cx *row, int side, const mt_cx *e, mt_cx scale)
+{
+    for (int k = 0; k < 3; k++) {
+        row[(6 * side) + 3 + k] += cx_mul(scale, e[k]);
+    }
+}
+
+static void spring_rows(const mt_data *d, const mt_spring_def *s, const mt_pose *poses,
+                        mt_cx *rows)
+{
+    const int count = s->measure[0] == s->measure[1] ? 1 : 2;
+    mt_jet jet;
+    for (int i = 0; i < count; i++) {
+        const mt_measure_def *const def = &d->sys->measures[s->measure[i]];
+        const mt_measure_data m = mt_data_measure(d, def);
+        mt_measure_eval(&m, mt_pose_of(poses, def->body[0]), mt_pose_of(poses, def->body[1]),
+                        false, &jet);
+        memcpy(rows + ((ptrdiff_t)i * MT_LOCAL), jet.g, sizeof jet.g);
+    }
+}
+
+static const double ONE_THIRD_ROOT = 0.57735026918962576451; /* sqrt(1/3) */
+
+/* (v_a + v_b/2)/sqrt 3 and v_b/2: their squares sum to (v_a^2 + v_a v_b + v_b^2)/3. */
+static void bar_rows(const mt_data *d, const mt_inertia_def *def, const mt_pose *poses,
+                     mt_cx *rows)
+{
+    mt_cx s[2][3];
+    static const mt_cx zero[3] = {0.0, 0.0, 0.0};
+    for (int side = 0; side < 2; side++) {
+        cx_rotate3(mt_pose_of(poses, def->body[side])->r,
+                   def->point[side] < 0 ? zero : d->vec[def->point[side]], s[side]);
+    }
+    for (int k = 0; k < d->sys->dimension; k++) {
+        mt_cx e[3] = {0.0, 0.0, 0.0};
+        mt_cx *const first = rows + ((ptrdiff_t)(2 * k) * MT_LOCAL);
+        e[k] = 1.0;
+        add_point(first, 0, s[0], e, ONE_THIRD_ROOT);
+        add_point(first, 1, s[1], e, 0.5 * ONE_THIRD_ROOT);
+        add_point(first + MT_LOCAL, 1, s[1], e, 0.5);
+    }
+}
+
+/* Lower Cholesky factor of the bending mass matrix. */
+static void bending_factor(double c[BENDING_ROWS][BENDING_ROWS])
+{
+    static const double m[BENDING_ROWS][BENDING_ROWS] = {
+        {156.0, 22.0,  54.0, -13.0},
+        { 22.0,  4.0,  13.0,  -3.0},
+        { 54.0, 13.0, 156.0, -22.0},
+        {-13.0, -3.0, -22.0,   4.0}
+    };
+    for (int j = 0; j < BENDING_ROWS; j++) {
+        for (int i = 0; i < BENDING_ROWS; i++) {
+            double s = m[i][j] / 420.0;
+            for (int k = 0; k < j; k++) {
+                s -= c[i][k] * c[j][k];
+            }
+            c[i][j] = i < j ? 0.0 : (i == j ? sqrt(s) : s / c[j][j]);
+        }
+    }
+}
+
+/* Deflection along u, rotation about t with slope sign. */
+static void bending_rows(const mt_cx *u, const mt_cx *t, double sign, mt_cx length, mt_cx *rows)
+{
+    double c[BENDING_ROWS][BENDING_ROWS];
+    static const mt_cx zero[3] = {0.0, 0.0, 0.0};
+    bending_factor(c);
+    for (int i = 0; i < BENDING_ROWS; i++) {
+        mt_cx *const row = rows + ((ptrdiff_t)i * MT_LOCAL);
+        for (int side = 0; side < 2; side++) {
+            add_point(row, side, zero, u, c[2 * side][i]);
+            add_turn(row, side, t, sign * c[(2 * side) + 1][i] * length);
+        }
+    }
+}
+
+static void beam_rows(const mt_data *d, const mt_inertia_def *def, const mt_pose *poses,
+                      mt_cx *rows)
+{
+    mt_cx e[3][3];
+    static const mt_cx zero[3] = {0.0, 0.0, 0.0};
+    const mt_cx length = mt_data_scalar(d, def->length, 0.0);
+    for (int k = 0; k < 3; k++) {
+        cx_rotate3(mt_pose_of(poses, def->body[0])->r, d->vec[def->dir[k]], e[k]);
+    }
+    add_point(rows, 0, zero, e[0], ONE_THIRD_ROOT);
+    add_point(rows, 1, zero, e[0], 0.5 * ONE_THIRD_ROOT);
+    add_point(rows + MT_LOCAL, 1, zero, e[0], 0.5);
+    bending_rows(e[1], e[2], 1.0, length, rows + ((ptrdiff_t)BAR_ROWS * MT_LOCAL));
+    if (d->sys->dimension == 3) {
+        const mt_cx gyration = cx_sqrt(mt_data_scalar(d, def->gyration2, 0.0));
+        mt_cx *const twist = rows + ((ptrdiff_t)(BAR_ROWS + (2 * BENDING_ROWS)) * MT_LOCAL);
+        bending_rows(e[2], e[1], -1.0, length,
+                     rows + ((ptrdiff_t)(BAR_ROWS + BENDING_ROWS) * MT_LOCAL));
+        add_turn(twist, 0, e[0], ONE_THIRD_ROOT * gyration);
+        add_turn(twist, 1, e[0], 0.5 * ONE_THIRD_ROOT * gyration);
+        add_turn(twist + MT_LOCAL, 1, e[0], 0.5 * gyration);
+    }
+}
+
+static void inertia_eval(const mt_data *d, const mt_inertia_def *def, const mt_pose *poses,
+                         mt_cx *rows)
+{
+    static const mt_cx zero[3] = {0.0, 0.0, 0.0};
+    mt_cx e[3] = {0.0, 0.0, 0.0};
+    switch (def->kind) {
+    case MT_INERTIA_TRANSLATION:
+        for (int k = 0; k < d->sys->dimension; k++) {
+            memset(e, 0, sizeof e);
+            e[k] = 1.0;
+            add_point(rows + ((ptrdiff_t)k * MT_LOCAL), 0, zero, e, 1.0);
+        }
+        break;
+    case MT_INERTIA_ROTATION:
+        for (int k = 0; k < (def->dir[0] == def->dir[1] ? 1 : 2); k++) {
+            cx_rotate3(poses[def->body[0]].r, d->vec[def->dir[k]], e);
+            add_turn(rows + ((ptrdiff_t)k * MT_LOCAL), 0, e, 1.0);
+        }
+        break;
+    case MT_INERTIA_BAR:
+        bar_rows(d, def, poses, rows);
+        break;
+    case MT_INERTIA_BEAM:
+        beam_rows(d, def, poses, rows);
+        break;
+    }
+}
+
+/* Hermite shape functions (order 0: deflection, order 1: slope) at x in [0, 1] for (w_a, l w'_a, w_b, l w'_b); slopes are per l. */
+static void hermite(mt_cx x, int order, mt_cx n[4])
+{
+    const mt_cx x2 = cx_mul(x, x);
+    const mt_cx x3 = cx_mul(x2, x);
+    if (order == 0) {
+        n[0] = 1.0 - (3.0 * x2) + (2.0 * x3);
+        n[1] = x - (2.0 * x2) + x3;
+        n[2] = (3.0 * x2) - (2.0 * x3);
+        n[3] = x3 - x2;
+        return;
+    }
+    n[0] = (6.0 * x2) - (6.0 * x);
+    n[1] = 1.0 - (4.0 * x) + (3.0 * x2);
+    n[2] = -n[0];
+    n[3] = (3.0 * x2) - (2.0 * x);
+}
+
+/* row += weight * (bending deflection or slope * l) for deflection along u, rotation about t. */
+static void add_bending_channel(mt_cx *row, const mt_cx n[4], const mt_cx *u, const mt_cx *t,
+                                double sign, mt_cx length, mt_cx weight)
+{
+    static const mt_cx zero[3] = {0.0, 0.0, 0.0};
+    for (int side = 0; side < 2; side++) {
+        add_point(row, side, zero, u, cx_mul(weight, n[2 * side]));
+        add_turn(row, side, t, sign * cx_mul(weight, cx_mul(length, n[(2 * side) + 1])));
+    }
+}
+
+static void beam_channel(const mt_data *d, const mt_channel_def *c, const mt_pose *poses,
+                         mt_cx *row)
+{
+    mt_cx e[3][3];
+    mt_cx n[4];
+    static const mt_cx zero[3] = {0.0, 0.0, 0.0};
+    const mt_cx x = mt_data_scalar(d, c->fraction, 0.0);
+    const mt_cx length = mt_data_scalar(d, c->length, 1.0);
+    for (int k = 0; k < 3; k++) {
+        cx_rotate3(mt_pose_of(poses, c->body[0])->r, d->vec[c->dir[k]], e[k]);
+    }
+    if (c->kind == MT_CHANNEL_BEAM_POINT) {
+        hermite(x, 0, n);
+        add_point(row, 0, zero, e[0], cx_mul(1.0 - x, e[0][c->axis]));
+        add_point(row, 1, zero, e[0], cx_mul(x, e[0][c->axis]));
+        add_bending_channel(row, n, e[1], e[2], 1.0, length, e[1][c->axis]);
+        add_bending_channel(row, n, e[2], e[1], -1.0, length, e[2][c->axis]);
+        return;
+    }
+    hermite(x, 1, n); /* theta3 = w2', theta2 = -w3' */
+    add_turn(row, 0, e[0], cx_mul(1.0 - x, e[0][c->axis]));
+    add_turn(row, 1, e[0], cx_mul(x, e[0][c->axis]));
+    add_bending_channel(row, n, e[1], e[2], 1.0, length, cx_div(e[2][c->axis], length));
+    add_bending_channel(row, n, e[2], e[1], -1.0, length, -cx_div(e[1][c->axis], length));
+}
+
+static void channel_eval(const mt_data *d, const mt_channel_def *c, const mt_pose *poses,
+                         mt_cx *row)
+{
+    static const mt_cx zero[3] = {0.0, 0.0, 0.0};
+    mt_cx e[3] = {0.0, 0.0, 0.0};
+    mt_cx s[3];
+    e[c->axis] = 1.0;
+    switch (c->kind) {
+    case MT_CHANNEL_POINT:
+        cx_rotate3(mt_pose_of(poses, c->body[0])->r, c->point < 0 ? zero : d->vec[c->point], s);
+        add_point(row, 0, s, e, 1.0);
+        break;
+    case MT_CHANNEL_ROTATION:
+        add_turn(row, 0, e, 1.0);
+        break;
+    case MT_CHANNEL_BEAM_POINT:
+    case MT_CHANNEL_BEAM_ROTATION:
+        beam_channel(d, c, poses, row);
+        break;
+    }
+}
+
+void mt_rows_eval(const mt_data *d, mt_term_kind kind, const mt_term_list *list,
+                  const mt_pose *poses, mt_cx *rows)
+{
+    memset(rows, 0, (size_t)list->n_rows * MT_LOCAL * sizeof *rows);
+    for (int i = 0; i < list->n_terms; i++) {
+        const mt_term *const t = &list->terms[i];
+        mt_cx *const at = rows + ((ptrdiff_t)t->first * MT_LOCAL);
+        switch (kind) {
+        case MT_TERM_STIFFNESS:
+        case MT_TERM_DAMPING:
+            spring_rows(d, &d->sys->springs[t->source], poses, at);
+            break;
+        case MT_TERM_MASS:
+            inertia_eval(d, &d->sys->inertias[t->source], poses, at);
+            break;
+        case MT_TERM_CHANNEL:
+            channel_eval(d, &d->sys->channels[t->source], poses, at);
+            break;
+        case MT_TERM_KINDS:
+            break;
+        }
+    }
+}

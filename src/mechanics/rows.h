@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_ROWS_H
+#define MECHANICS_ROWS_H
+
+#include "mechanics/data.h"
+
+/*
+ * Stiffness, damping, mass and sensors as sparse rows over the states of (at most) two bodies:
+ *     K = sum_t k_t f_t f_t^T (+ geometric part),   M = sum_t m_t sum_i f_ti f_ti^T,   sensor = f . dq.
+ * A term's coefficient is one node of the program, its rows are geometry. That is what makes repeated evaluation at fixed geometry a short sum, gives derivatives and
+ * interval bounds of K and M term by term, and keeps the factor of K for badly scaled models.
+ */
+typedef enum mt_term_kind {
+    MT_TERM_STIFFNESS,
+    MT_TERM_DAMPING,
+    MT_TERM_MASS,
+    MT_TERM_CHANNEL,
+    MT_TERM_KINDS
+} mt_term_kind;
+
+typedef struct mt_term {
+    mt_node coefficient; /* MT_NO_NODE for channels */
+    int first;           /* rows first .. first + count - 1 */
+    int count;
+    bool pair;   /* two rows a, b: coefficient * (a b^T + b a^T)/2; else the sum of squares */
+    bool varies; /* does the coefficient depend on an input? */
+    int body[2];
+    int source; /* spring, inertia or channel it comes from */
+} mt_term;
+
+typedef struct mt_term_list {
+    mt_term *terms;
+    int n_terms;
+    int n_rows;
+    int *row_term; /* [n_rows] */
+} mt_term_list;
+
+/* The terms of a system (topology only). lists[MT_TERM_KINDS]. */
+mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists, mt_err *err);
+/* Rows of one kind at given poses: rows[12 * n_rows], entry k of a row belongs to local freedom k of the term's bodies. */
+void mt_rows_eval(const mt_data *d, mt_term_kind kind, const mt_term_list *list,
+                  const mt_pose *poses, mt_cx *rows);
+
+#endif

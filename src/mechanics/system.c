@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "mechanics/system.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mechanics/build.h"
+#include "mechanics/data.h"
+
+static mt_status prepare(mt_builder *b, mt_system *sys, mt_err *err)
+{
+    const mt_model *const model = sys->model;
+    b->sys = sys;
+    b->model = model;
+    b->err = err;
+    b->body_of = mt_arena_int(&sys->mem, (size_t)model->n_bodies + 1);
+    b->link_first = mt_arena_int(&sys->mem, (size_t)model->n_links + 1);
+    if (b->body_of == NULL || b->link_first == NULL) {
+        return mt_fail_memory(err);
+    }
+    b->zero = mt_program_const(&sys->program, 0.0);
+    b->one = mt_program_const(&sys->program, 1.0);
+    for (int i = 0; i < 3; i++) {
+        mt_node e[3] = {b->zero, b->zero, b->zero};
+        e[i] = b->one;
+        b->axis_vec[i] = mt_build_vec(b, MT_VEC_UNIT, e, "global axis");
+    }
+    return MT_OK;
+}
+
+static bool node_fixed(const mt_program *p, mt_node node)
+{
+    return node == MT_NO_NODE || mt_program_is_constant(p, node);
+}
+
+/* Does any number that shapes the geometry depend on an input? */
+static bool geometry_is_fixed(const mt_system *sys)
+{
+    const mt_program *const p = &sys->program;
+    bool fixed = node_fixed(p, sys->drive);
+    for (int i = 0; i < sys->n_vecs && fixed; i++) {
+        for (int k = 0; k < 3; k++) {
+            fixed = fixed && node_fixed(p, sys->vecs[i].node[k]);
+        }
+    }
+    for (int i = 0; i < sys->n_measures && fixed; i++) {
+        fixed = node_fixed(p, sys->measures[i].weight);
+    }
+    for (int i = 0; i < sys->n_constraints && fixed; i++) {
+        const mt_constraint_def *const c = &sys->constraints[i];
+        fixed = node_fixed(p, c->target) && node_fixed(p, c->coefficient[0]) &&
+                node_fixed(p, c->coefficient[1]);
+    }
+    for (int i = 0; i < sys->n_inertias && fixed; i++) {
+        fixed =
+            node_fixed(p, sys->inertias[i].length) && node_fixed(p, sys->inertias[i].gyration2);
+    }
+    for (int i = 0; i < sys->n_channels && fixed; i++) {
+        fixed =
+            node_fixed(p, sys->channels[i].length) && node_fixed(p, sys->channels[i].fraction);
+    }
+    return fixed;
+}
+
+/* Global axis least along v (in two dimensions always z, so that the perpendicular lies in the plane). */
+static int helper_axis(const mt_system *sys, const double v[3])
+{
+    int best = 2;
+    for (int k = 1; k >= 0 && sys->dimension == 3; k--) {
+        best = fabs(v[k]) < fabs(v[best]) ? k : best;
+    }
+    return best;
+}
+
+static double length_of(const mt_cx *x)
+{
+    return hypot(hypot(creal(x[0]), creal(x[1])), creal(x[2]));
+}
+
+/* Hinge axes drawn further than this (cosine) from a right angle to their link are refused. */
+static const double NOT_PERPENDICULAR = 1e-6;
+
+/* Walk through the vectors in order, choosing helper axes and refusing directions of length zero. */
+static mt_status choose_helpers(mt_system *sys, const double *v, mt_err *err)
+{
+    mt_data d;
+    MT_TRY(mt_data_init(&d, sys, &sys->mem, err));
+    d.value = v;
+    for (int i = 0; i < sys->n_vecs; i++) {
+        mt_vec_def *const def = &sys->vecs[i];
+        const char *const what = def->what != NULL ? def->what : "a direction";
+        if (def->kind == MT_VEC_PERP1 || def->kind == MT_VEC_PERP2) {
+            const double a[3] = {creal(d.vec[def->axis][0]), creal(d.vec[def->axis][1]),
+                                 creal(d.vec[def->axis][2])};
+            def->helper = helper_axis(sys, a);
+        }
+        if (def->kind == MT_VEC_CROSS) {
+            const double cosine = creal(cx_dot3(d.vec[def->axis], d.vec[def->helper]));
+            if (!(fabs(cosine) <= NOT_PERPENDICULAR)) {
+                return mt_fail(err, MT_E_INPUT,
+                               "%s is not perpendicular to the link (cosine %g)", what, cosine);
+            }
+        }
+        if (def->kind == MT_VEC_UNIT &&
+            !(hypot(hypot(v[def->node[0]], v[def->node[1]]), v[def->node[2]]) > 0.0)) {
+            return mt_fail(err, MT_E_INPUT, "%s has length zero", what);
+        }
+        mt_data_vec(&d, i);
+    }
+    return MT_OK;
+}
+
+/* Choices that need numbers: helper axes, the model length, and the checks of arms of point masses. */
+static mt_status settle(mt_system *sys, const double *at, mt_err *err)
+{
+    mt_node bad = MT_NO_NODE;
+    const mt_arena_mark mark = mt_arena_get_mark(&sys->mem);
+    double *const v = mt_arena_f64(&sys->mem, (size_t)sys->program.count, 1);
+    if (v == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_program_eval(&sys->program, at, v, &bad, err));
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    double high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    for (int i = 0; i < sys->n_bodies; i++) {
+        for (int k = 0; k < 3; k++) {
+            const double x = v[sys->vecs[sys->bodies[i].centre].node[k]];
+            low[k] = fmin(low[k], x);
+            high[k] = fmax(high[k], x);
+        }
+    }
+    double reach = 0.0; /* longest arm from a centre */
+    MT_TRY(choose_helpers(sys, v, err));
+    for (int i = 0; i < sys->n_measures; i++) {
+        for (int side = 0; side < 2; side++) {
+            const mt_measure_def *const m = &sys->measures[i];
+            if (m->point[side] < 0 || m->body[side] == MT_GROUND) {
+                continue;
+            }
+            const mt_vec_def *const arm = &sys->vecs[m->point[side]];
+            const mt_cx at_arm[3] = {v[arm->node[0]], v[arm->node[1]], v[arm->node[2]]};
+            const double n = length_of(at_arm);
+            reach = fmax(reach, n);
+            const mt_state_body *const body = &sys->bodies[m->body[side]];
+            if (body->dof[5] < 0 && n > 0.0) {
+                return mt_fail(
+                    err, MT_E_INPUT,
+                    "%s lies %g m from the centre of \"%s\", which has no inertia_kg_m2 and is "
+                    "therefore a point mass; hold it at its centre or give it an inertia",
+                    arm->what != NULL ? arm->what : "a joint or spring", n, body->name);
+            }
+        }
+    }
+    double diagonal = 0.0;
+    for (int k = 0; k < 3 && sys->n_bodies > 0; k++) {
+        diagonal = hypot(diagonal, high[k] - low[k]);
+    }
+    sys->length_m = fmax(diagonal, reach) > 0.0 ? fmax(diagonal, reach) : 1.0;
+    mt_arena_rewind(&sys->mem, mark);
+    return MT_OK;
+}
+
+static mt_status build(mt_system *sys, const double *at, mt_err *err)
+{
+    mt_builder b = {0};
+    const size_t n_parameters = (size_t)sys->model->n_parameters;
+    int *const is_input = mt_arena_int(&sys->mem, n_parameters + 1);
+    sys->parameters = mt_arena_alloc(&sys->mem, n_parameters + 1, sizeof *sys->parameters);
+    if (is_input == NULL || sys->parameters == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (size_t i = 0; i < n_parameters; i++) {
+        is_input[i] = -1;
+    }
+    for (int i = 0; i < sys->n_inputs; i++) {
+        is_input[sys->inputs[i]] = i;
+    }
+    MT_TRY(mt_program_init(&sys->program, sys->n_inputs, &sys->mem, err));
+    MT_TRY(mt_emit_parameters(sys->model, sys->configuration, is_input, &sys->program,
+                              sys->parameters, &sys->mem, err));
+    MT_TRY(prepare(&b, sys, err));
+    MT_TRY(mt_build_bodies(&b));
+    MT_TRY(mt_build_links(&b));
+    MT_TRY(mt_build_joints(&b));
+    MT_TRY(mt_build_springs(&b));
+    MT_TRY(mt_build_drive(&b));
+    MT_TRY(mt_build_sensors(&b, at));
+    MT_TRY(mt_program_finish(&sys->program, err));
+    sys->geometry_fixed = geometry_is_fixed(sys);
+    return settle(sys, at, err);
+}
+
+mt_status mt_system_new(const mt_model *model, int configuration, int n_inputs,
+                        const int *inputs, const double *at, mt_system **out, mt_err *err)
+{
+    mt_system *const sys = calloc(1, sizeof *sys);
+    *out = NULL;
+    if (sys == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_status rc = mt_arena_init(&sys->mem, 0, err);
+    if (rc == MT_OK) {
+        sys->model = model;
+        sys->configuration = configuration;
+        sys->dimension = model->dimension;
+        sys->n_inputs = n_inputs;
+        sys->drive = MT_NO_NODE;
+        sys->inputs = mt_arena_int(&sys->mem, (size_t)n_inputs + 1);
+        rc = sys->inputs == NULL ? mt_fail_memory(err) : MT_OK;
+    }
+    if (rc == MT_OK) {
+        if (n_inputs > 0) {
+            memcpy(sys->inputs, inputs, (size_t)n_inputs * sizeof *inputs);
+        }
+        rc = build(sys, at, err);
+    }
+    if (rc != MT_OK) {
+        mt_system_delete(sys);
+        return rc;
+    }
+    *out = sys;
+    return MT_OK;
+}
+
+void mt_system_delete(mt_system *sys)
+{
+    if (sys != NULL) {
+        mt_arena_free(&sys->mem);
+        free(sys);
+    }
+}
+
+int mt_system_find_channel(const mt_system *sys, const char *name)
+{
+    for (int i = 0; i < sys->n_channels; i++) {
+        if (strcmp(sys->channels[i].name, name) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+int mt_system_find_joint(const mt_system *sys, const char *name)
+{
+    for (int i = 0; i < sys->n_joints; i++) {
+        if (strcmp(sys->joints[i].name, name) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_SYSTEM_H
+#define MECHANICS_SYSTEM_H
+
+#include "expr/program.h"
+#include "mechanics/measure.h"
+#include "model/model.h"
+
+/*
+ * One configuration of a model, flattened: links are elements, joints are equations, springs are energies of measures, every number is a node of one program. A system is
+ * immutable once made and may be shared by threads; what moves lives in mt_linear (linear.h).
+ *
+ * States q: increments of each body, (dx, dy, dtheta) in two dimensions, (dx, dy, dz, theta_x, theta_y, theta_z) in three, translations alone for a point mass.
+ */
+
+/* A 3-vector of the geometry, in the drawn position. */
+typedef enum mt_vec_kind {
+    MT_VEC_NODES, /* as the nodes say */
+    MT_VEC_UNIT,  /* the same, normalised */
+    MT_VEC_PERP1, /* unit, perpendicular to vector `axis`: axis x e_helper, normalised */
+    MT_VEC_PERP2, /* axis x PERP1 */
+    MT_VEC_CROSS  /* vector axis x vector helper, normalised */
+} mt_vec_kind;
+
+typedef struct mt_vec_def {
+    mt_vec_kind kind;
+    mt_node node[3];
+    int axis;         /* PERP: a UNIT vector */
+    int helper;       /* PERP: global axis least along the axis at the original design */
+    const char *what; /* for messages: "axis of joint \"pivot\"" */
+} mt_vec_def;
+
+typedef struct mt_measure_def {
+    mt_measure_kind kind;
+    int component;
+    int body[2];  /* index of a state body; MT_GROUND */
+    int point[2]; /* vectors; -1: the centre */
+    int dir[3];
+    int plane;
+    mt_node weight;
+} mt_measure_def;
+
+typedef struct mt_state_body {
+    const char *name; /* "crank", "beam.3", "fe.node0" */
+    int centre;       /* vector: position of the centre as drawn */
+    int dof[6];       /* column of q for x y z rx ry rz; -1: none */
+} mt_state_body;
+
+typedef struct mt_constraint_def {
+    int terms; /* 1, or 2 for a gear */
+    int measure[2];
+    mt_node coefficient[2]; /* gear only; else MT_NO_NODE (1) */
+    mt_node target;         /* MT_NO_NODE: the value as drawn where `drawn`, else 0 */
+    bool drawn;
+    int joint; /* of the system's joints */
+} mt_constraint_def;
+
+typedef struct mt_system_joint {
+    const char *name;
+    mt_joint_type type;
+    int first; /* constraints first .. first + count - 1 */
+    int count;
+    int coordinate; /* measure of its coordinate (angle or displacement from the reference position); -1: none */
+    bool angle;
+    int body[2];
+    int model_joint; /* MT_ABSENT for hinges of links */
+    int link;        /* hinge of this link, MT_ABSENT */
+    int hinge;
+} mt_system_joint;
+
+/* V = 1/2 k d_a d_b (+ preload d_a), d = measure - rest value, rest value: that of the reference position or `free`. a == b but for couplings of a bushing. */
+typedef struct mt_spring_def {
+    const char *name;
+    int measure[2];
+    mt_node stiffness;
+    mt_node free;    /* MT_NO_NODE: unstressed in the reference position */
+    mt_node preload; /* MT_NO_NODE: 0 */
+    bool damper;     /* no energy, a damping coefficient */
+    int item;        /* springs of one item of the model stand together */
+} mt_spring_def;
+
+typedef enum mt_inertia_kind {
+    MT_INERTIA_TRANSLATION, /* m |v|^2 of a centre */
+    MT_INERTIA_ROTATION,    /* J_ab (omega . dir0)(omega . dir1) */
+    MT_INERTIA_BAR,         /* bar with consistent mass between two points */
+    MT_INERTIA_BEAM         /* consistent mass of a beam element between two node bodies */
+} mt_inertia_kind;
+
+typedef struct mt_inertia_def {
+    mt_inertia_kind kind;
+    mt_node coefficient; /* kg, kg m^2, or kg of the whole element */
+    int body[2];
+    int point[2];
+    int dir[3];        /* BEAM: triad; ROTATION: dir[0], dir[1], unit vectors of the body */
+    mt_node length;    /* BEAM */
+    mt_node gyration2; /* BEAM, 3-D: polar second moment / area; MT_NO_NODE */
+    int item;
+} mt_inertia_def;
+
+typedef struct mt_load_def { /* dead force at a point of a body */
+    int body;
+    int point;
+    mt_node force[3];
+} mt_load_def;
+
+typedef enum mt_channel_kind {
+    MT_CHANNEL_POINT,
+    MT_CHANNEL_ROTATION,
+    MT_CHANNEL_BEAM_POINT,
+    MT_CHANNEL_BEAM_ROTATION
+} mt_channel_kind;
+/* One scalar output of a sensor: a displacement or rotation along a global axis, per unit of q. */
+typedef struct mt_channel_def {
+    const char *name; /* "c1.y" */
+    mt_channel_kind kind;
+    int axis; /* global 0..2 */
+    int body[2];
+    int point;        /* POINT */
+    int dir[3];       /* BEAM: triad; ROTATION: dir[0], dir[1], unit vectors of the body */
+    mt_node length;   /* BEAM */
+    mt_node fraction; /* BEAM: 0..1 within the element */
+} mt_channel_def;
+
+typedef struct mt_item_def { /* what `mass` counts: bodies, links, bars */
+    const char *name;
+    mt_node mass; /* MT_NO_NODE: none */
+} mt_item_def;
+
+typedef struct mt_system {
+    mt_arena mem;
+    const mt_model *model; /* not owned; must outlive the system */
+    int configuration;
+    int dimension;
+    int n_inputs;
+    int *inputs;         /* parameter of each input */
+    mt_node *parameters; /* [model parameters] node of each parameter in this configuration */
+    mt_program program;
+    int nq; /* states */
+    double
+        length_m; /* model length: diagonal of the box around all centres and points at the original design (1 where that is zero); scales rotations */
+    MT_LIST_OF(mt_vec_def, vecs);
+    MT_LIST_OF(mt_measure_def, measures);
+    MT_LIST_OF(mt_state_body, bodies);
+    MT_LIST_OF(mt_constraint_def, constraints); /* that of `drive` last */
+    MT_LIST_OF(mt_system_joint, joints);
+    MT_LIST_OF(mt_spring_def, springs);
+    MT_LIST_OF(mt_inertia_def, inertias);
+    MT_LIST_OF(mt_load_def, loads);
+    MT_LIST_OF(mt_channel_def, channels);
+    MT_LIST_OF(mt_item_def, items);
+    bool loaded; /* gravity, preload or free length present: equilibrium needed */
+    bool driven;
+    mt_node drive;        /* position of the driven joint's coordinate */
+    int drive_constraint; /* its constraint; -1 */
+    int drive_joint;      /* of joints; -1 */
+    bool
+        trim; /* hold by a spring: the drive's constraint is absent from the linearised system */
+    int trim_spring;     /* of springs; -1 */
+    bool geometry_fixed; /* no vector, weight or target depends on an input */
+} mt_system;
+
+/*
+ * Flatten configuration `configuration` of the model. inputs: parameters that the caller will vary (an override of the configuration wins over an input; an input wins over the parameter's own
+ * definition); at[n_inputs]: their values at the original design, where discrete choices (helper axes, model length) are made.
+ * Fails: MT_E_INPUT (a point mass held away from its centre, beam section incomplete, ...), MT_E_DOMAIN, MT_E_MEMORY.
+ */
+mt_status mt_system_new(const mt_model *model, int configuration, int n_inputs,
+                        const int *inputs, const double *at, mt_system **out, mt_err *err);
+void mt_system_delete(mt_system *sys);
+
+/* Values of all parameters of the model at its own definitions (configuration MT_ABSENT) or in a configuration. values[n_parameters]. */
+mt_status mt_parameter_values(const mt_model *model, int configuration, double *values,
+                              mt_err *err);
+
+/* Emit all parameters of the configuration into a program; is_input[p] >= 0: parameter p is that input. nodes[n_parameters]. The model has been checked for cycles. */
+mt_status mt_emit_parameters(const mt_model *model, int configuration, const int *is_input,
+                             mt_program *program, mt_node *nodes, mt_arena *scratch,
+                             mt_err *err);
+
+int mt_system_find_channel(const mt_system *sys, const char *name);
+int mt_system_find_joint(const mt_system *sys, const char *name);
+
+#endif

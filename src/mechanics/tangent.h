@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_TANGENT_H
+#define MECHANICS_TANGENT_H
+
+#include "mechanics/linear.h"
+
+/* What depends on one input beyond the coefficients: geometry, position, constraint forces. */
+struct mt_linear_tangent {
+    bool moves;                  /* anything below non-zero? */
+    double *rows[MT_TERM_KINDS]; /* derivative of lin->rows */
+    double *a;                   /* m x nq, derivative of the constraint Jacobian */
+    double *kg;                  /* nq x nq; NULL where nothing loads */
+};
+
+/* Fill lin->tangent for all inputs. */
+mt_status mt_tangent_update(mt_linear *lin, mt_err *err);
+
+#endif
