@@ -105,26 +105,21 @@ static mt_model *load_model(mt_study_reader *s, mt_name path)
     mt_err why = {.code = MT_OK};
     mt_model *model = NULL;
     mt_text messages = {0};
-    mt_file file = {0};
     char *const joined = mt_file_join(s->study->path, path.s);
     if (joined == NULL) {
         s->r.out_of_memory = true;
         return NULL;
     }
-    const size_t limit = s->files.max_bytes == 0 ? MT_JSON_MAX_BYTES : s->files.max_bytes;
-    mt_status rc = mt_file_read(joined, s->files.root, limit, &file, &why);
+    const mt_status rc = mt_model_load(joined, &s->files, &model, &messages, &why);
     if (rc == MT_OK) {
-        note_input(s, path.s, file.sha256);
-        rc = mt_model_load(joined, &s->files, &model, &messages, &why);
-    }
-    if (rc != MT_OK) {
+        note_input(s, path.s, model->sha256);
+    } else {
         note_failure(s, path, rc, &why, messages.length > 0);
     }
     if (messages.length > 0) {
         mt_text_add(s->model_messages, messages.s);
     }
     s->r.out_of_memory = s->r.out_of_memory || messages.failed;
-    mt_file_free(&file);
     mt_text_free(&messages);
     free(joined);
     return model;
@@ -205,15 +200,27 @@ static void read_search(mt_study_reader *s, mt_addr value)
         mt_reader_count(&s->r, o.found[SEARCH_MAX_EVALUATIONS], 1, INT_MAX, 0);
 }
 
+/* A file of another kind or version gets one message, not one per member. */
+static bool check_format(mt_study_reader *s)
+{
+    static const char format[] = "modetune-study/1";
+    const mt_addr at = mt_json_member(s->r.doc, MT_JSON_ROOT, "format");
+    if (at == MT_NO_ADDR || mt_json_type_of(s->r.doc, at) != MT_JSON_STRING ||
+        strcmp(mt_json_string(s->r.doc, at), format) == 0) {
+        return true; /* or the table of keys will tell */
+    }
+    mt_diag_structure(s->r.diags, at, "the format is not \"%s\": this is no study file",
+                      format);
+    return false;
+}
+
 static void read_root(mt_study_reader *s)
 {
-    static const char *const formats[] = {"modetune-study/1"};
     mt_study *const study = s->study;
     mt_study_object o;
-    if (!mt_read_study_object(s, MT_JSON_ROOT, &mt_study_keys, &o)) {
+    if (!check_format(s) || !mt_read_study_object(s, MT_JSON_ROOT, &mt_study_keys, &o)) {
         return;
     }
-    (void)mt_reader_choice(&s->r, o.found[STUDY_FORMAT], "format", formats, MT_COUNT(formats));
     study->name = mt_reader_text(&s->r, o.found[STUDY_NAME]);
     study->description = mt_reader_text(&s->r, o.found[STUDY_DESCRIPTION]);
     study->recommendations_addr = mt_read_study_place(s, &o, STUDY_RECOMMENDATIONS);

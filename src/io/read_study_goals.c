@@ -54,6 +54,8 @@ static void read_configurations(mt_study_reader *s, const mt_study_object *o, mt
 {
     const bool one = mt_read_study_has(s, o, GOAL_CONFIGURATION);
     const bool several = mt_read_study_has(s, o, GOAL_CONFIGURATIONS);
+    goal->configurations_addr =
+        mt_read_study_place(s, o, one ? GOAL_CONFIGURATION : GOAL_CONFIGURATIONS);
     if (one && several) {
         (void)mt_read_study_one_of(s, o, GOAL_CONFIGURATION, 2);
         return;

@@ -55,9 +55,9 @@ static bool read_objective(mt_study_reader *s, mt_addr value, mt_objective *obje
     if (sense == OBJECTIVE_MINIMISE) {
         read_minimise(s, o.found[OBJECTIVE_MINIMISE], objective);
     } else if (sense == OBJECTIVE_MAXIMISE) {
-        objective->type = MT_OBJECTIVE_CLEARANCE;
-        (void)mt_reader_choice(&s->r, o.found[OBJECTIVE_MAXIMISE], "objective", maximised,
-                               MT_COUNT(maximised));
+        const int choice = mt_reader_choice(&s->r, o.found[OBJECTIVE_MAXIMISE], "objective",
+                                            maximised, MT_COUNT(maximised));
+        objective->type = choice == MT_ABSENT ? MT_OBJECTIVE_NONE : MT_OBJECTIVE_CLEARANCE;
     }
     objective->of = mt_reader_refs(&s->r, o.found[OBJECTIVE_OF]);
     if (mt_read_study_has(s, &o, OBJECTIVE_OF) && objective->type != MT_OBJECTIVE_MASS) {

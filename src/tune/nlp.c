@@ -26,6 +26,8 @@ static const double IDENTICAL = 1e-5;
 /* A feasible end with a KKT residual above this is no local solution, if there are better ones. */
 static const double STATIONARY = 1e-6;
 static const double NOT_STATIONARY = 1e-3;
+/* Relative growth of the squares of a compromise that is rounding and the tolerance of its search. */
+static const double SETTLED = 1e-6;
 /* Length of the first step away from a saddle. */
 static const double SADDLE_STEP = 0.05;
 /* Violation (in tolerances) below which an end is worth a Newton polish before a restoration. */
@@ -198,13 +200,14 @@ static void rank(ends *all)
     }
 }
 
-/* Drop infeasible ends where one is feasible, and feasible ones that are no local minima. Ranked. */
+/* Drop infeasible ends where one is feasible, and those that are no local minima. Ranked. */
 static void drop_useless(ends *all)
 {
     const bool any = all->count > 0 && mt_nlp_feasible(all->p[0]);
     bool stationary = false;
     for (int i = 0; i < all->count; i++) {
-        stationary = stationary || (mt_nlp_feasible(all->p[i]) && all->p[i]->kkt <= STATIONARY);
+        const bool counts = any == mt_nlp_feasible(all->p[i]);
+        stationary = stationary || (counts && all->p[i]->kkt <= STATIONARY);
     }
     int kept = 0;
     for (int i = 0; i < all->count; i++) {
@@ -234,8 +237,60 @@ static void merge(const mt_nlp_engine *e, ends *all)
         } else if (mt_nlp_distance(e, all->p[twin], all->p[i]) > IDENTICAL) {
             all->merged[twin] = true;
         }
+        if (twin >= 0 && all->p[i]->start < all->p[twin]->start) {
+            all->p[twin]->start = all->p[i]->start;
+        }
     }
     all->count = kept;
+}
+
+/*
+ * Many designs may be equally far from the demands: then the one of least objective is wanted. With
+ * the constraints moved to what the compromise reaches, that is a feasible problem.
+ */
+static void settle(mt_nlp_engine *e, mt_nlp_point *p)
+{
+    const mt_nlp *const q = e->nlp;
+    mt_arena *const mem = &e->scratch;
+    mt_nlp_point *const to = mt_nlp_point_new(e, mem);
+    double *const eq = mt_arena_f64(mem, (size_t)q->n_eq, 1);
+    double *const in = mt_arena_f64(mem, (size_t)q->n_in, 1);
+    if (to == NULL || eq == NULL || in == NULL) {
+        mt_nlp_end(e, mt_fail_memory(e->err));
+        return;
+    }
+    memcpy(eq, p->eq, (size_t)q->n_eq * sizeof *eq);
+    for (int i = 0; i < q->n_in; i++) {
+        in[i] = fmin(p->in[i], 0);
+    }
+    e->eq_shift = eq;
+    e->in_shift = in;
+    mt_nlp_weakness w;
+    const bool minimised = mt_nlp_evaluate(e, p->t, true, to) &&
+                           mt_nlp_weakness_at(e, to, mem, &w) && w.curve &&
+                           w.n_rows < e->n_free;
+    if (minimised) {
+        minimise(e, w.n_rows, w.rows, to);
+    }
+    e->eq_shift = NULL;
+    e->in_shift = NULL;
+    if (!minimised || !mt_nlp_evaluate(e, to->t, true, to)) {
+        return;
+    }
+    to->start = p->start;
+    to->kkt = p->kkt;
+    if (to->f < p->f && to->squares <= p->squares * (1 + SETTLED)) {
+        mt_nlp_point_copy(e, p, to);
+    }
+}
+
+static void settle_all(mt_nlp_engine *e, ends *all)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    for (int i = 0; i < all->count && !e->ended; i++) {
+        settle(e, all->p[i]);
+        mt_arena_rewind(&e->scratch, mark);
+    }
 }
 
 /* A double root; of two roots that were merged the Jacobian changes its sign in between. */
@@ -265,6 +320,11 @@ static void judge(mt_nlp_engine *e, ends *all, mt_arena *mem, mt_nlp_result *out
     }
     rank(all);
     merge(e, all);
+    if (out->compromise && e->n_free > 0) {
+        settle_all(e, all);
+        rank(all);
+        merge(e, all);
+    }
     const int count = all->count < e->opt.max_solutions ? all->count : e->opt.max_solutions;
     out->solutions = mt_arena_alloc(mem, (size_t)count, sizeof *out->solutions);
     if (out->solutions == NULL) {

@@ -201,6 +201,17 @@ static void derive(const mt_nlp_engine *e, mt_nlp_point *p, bool with_gradient)
     p->kkt = HUGE_VAL;
 }
 
+/* Constraints relative to what a compromise reaches. */
+static void shift(const mt_nlp_engine *e, mt_nlp_point *p)
+{
+    for (int i = 0; i < e->nlp->n_eq; i++) {
+        p->eq[i] -= e->eq_shift[i];
+    }
+    for (int i = 0; i < e->nlp->n_in; i++) {
+        p->in[i] -= e->in_shift[i];
+    }
+}
+
 /* Does this status of the callback end the search? */
 static bool is_final(mt_nlp_engine *e, mt_status rc, const mt_err *here)
 {
@@ -261,6 +272,9 @@ bool mt_nlp_evaluate(mt_nlp_engine *e, const double *t, bool with_gradient, mt_n
         return false;
     }
     p->f = e->nlp->n_res > 0 ? 0 : v.f;
+    if (e->eq_shift != NULL) {
+        shift(e, p);
+    }
     derive(e, p, with_gradient);
     if (!point_finite(e, p, with_gradient)) {
         (void)mt_fail(&here, MT_E_DOMAIN, "search: a value is not finite");

@@ -30,9 +30,13 @@ typedef struct mt_nlp_engine {
     const mt_nlp *nlp;
     mt_nlp_options opt;
     int n;
-    int n_free;      /* variables with lower < upper */
-    double *origin;  /* [n] clamped */
-    bool *held;      /* [n] */
+    int n_free;     /* variables with lower < upper */
+    double *origin; /* [n] clamped */
+    bool *held;     /* [n] */
+    /* what the constraints fall short of at a compromise ([n_eq], [n_in]): subtracted from their
+     * values while its change is minimised; NULL otherwise */
+    const double *eq_shift;
+    const double *in_shift;
     double eq_tol;   /* largest tolerance of an equality, 0 without */
     double df_scale; /* largest gradient of the objective at a start */
     long evals;

@@ -89,6 +89,7 @@ mt_goal mt_goal_default(mt_goal_type type, mt_addr addr)
 {
     return (mt_goal){
         .type = type,
+        .configurations_addr = addr,
         .mode = no_mode(addr),
         .target_hz = nan(""),
         .at_least = nan(""),

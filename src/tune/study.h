@@ -54,6 +54,7 @@ typedef struct mt_goal {
     mt_goal_type type;
     /* one ("configuration") or several ("configurations"); none given: the model's only one */
     mt_name_list configuration_names;
+    mt_addr configurations_addr; /* of either member; addr: none is there */
     int n_configurations;
     int *configurations;
     mt_mode_ref mode;

@@ -12,7 +12,9 @@ static void resolve_configurations(mt_study_check *c, mt_goal *goal)
     }
     goal->n_configurations = n;
     if (names->count == 0) {
-        goal->configurations[0] = mt_check_only_configuration(c, c->model, goal->addr);
+        goal->configurations[0] = goal->configurations_addr == goal->addr
+                                      ? mt_check_only_configuration(c, c->model, goal->addr)
+                                      : MT_ABSENT; /* a wrong member has been noted */
         return;
     }
     for (int i = 0; i < n; i++) {

@@ -71,6 +71,10 @@ static void check_original(mt_study_check *c, mt_variable *v)
         return;
     }
     v->original = c->study->original[v->parameter];
+    const bool range = v->lower < v->upper || v->n_catalogue > 0;
+    if (!range) {
+        return; /* there is more to say about the bounds */
+    }
     if (v->original < v->lower || v->original > v->upper) {
         mt_diag_warning(c->diags, v->addr,
                         "the original value of \"%s\" (%g) lies outside %g to %g",
