@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Assignment by shortest augmenting paths. With costs c_ij = -score and potentials u (rows), v (columns) such that the reduced costs c_ij - u_i - v_j are
- * never negative and zero on pairs, each row in turn is added by the cheapest alternating path (Dijkstra over columns) to a free column; the potentials
- * then move by the distances, which keeps both properties, so the pairing is optimal for the rows added so far. The shorter side plays the rows.
+ * Assignment by shortest augmenting paths. With costs c_ij = -score and potentials u (rows), v
+ * (columns) such that the reduced costs c_ij - u_i - v_j are never negative and zero on pairs,
+ * each row in turn is added by the cheapest alternating path (Dijkstra over columns) to a free
+ * column; the potentials then move by the distances, which keeps both properties, so the
+ * pairing is optimal for the rows added so far. The shorter side plays the rows.
  */
 #include <math.h>
 
@@ -67,7 +69,8 @@ static int nearest(const matching *g)
     return best;
 }
 
-/* Shorten the distances of unfinished columns by paths through `row`, reached over column `via` (-1: the start) at distance `so_far`. */
+/* Shorten the distances of unfinished columns by paths through `row`, reached over column `via`
+ * (-1: the start) at distance `so_far`. */
 static void relax(matching *g, int row, int via, double so_far)
 {
     for (int j = 0; j < g->columns; j++) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Eigenvalues. dsyevd and not dsyevr: the latter loses orthogonality on clusters in the LAPACK that we build on. */
+/* Eigenvalues. dsyevd and not dsyevr: the latter loses orthogonality on clusters in the LAPACK
+ * that we build on. */
 #include "linalg/lapack_priv.h"
 
 #include <limits.h>

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Sylvester: P^T S (A - shift B) S P = L D L^T keeps the numbers of negative, zero and positive eigenvalues, and D has blocks of order one and two only.
- * S = diag(2^-e), e chosen such that |a_ii| + |shift b_ii| becomes about one: the pivots of D then say how much is left after cancellation, whatever
- * the units of the rows are; powers of two change no digit.
+ * Sylvester: P^T S (A - shift B) S P = L D L^T keeps the numbers of negative, zero and positive
+ * eigenvalues, and D has blocks of order one and two only. S = diag(2^-e), e chosen such that
+ * |a_ii| + |shift b_ii| becomes about one: the pivots of D then say how much is left after
+ * cancellation, whatever the units of the rows are; powers of two change no digit.
  */
 #include "linalg/lapack_priv.h"
 
@@ -32,7 +33,8 @@ static void shifted(int n, const double *a, const double *b, double shift, doubl
     }
 }
 
-/* Eigenvalues of [p q; q r]: the large one by the formula without cancellation, the small one from the determinant. */
+/* Eigenvalues of [p q; q r]: the large one by the formula without cancellation, the small one
+ * from the determinant. */
 static void eig2(double p, double q, double r, double e[2])
 {
     const double mean = 0.5 * (p + r);

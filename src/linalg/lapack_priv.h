@@ -10,8 +10,9 @@
 mt_status mt_lapack_bug(const char *routine, lapack_int info, mt_err *err);
 /* An entry handed to the routine is NaN or infinite: MT_E_DOMAIN. */
 mt_status mt_lapack_not_finite(const char *routine, mt_err *err);
-/* Work array of max(query, minimum) doubles: queries of some routines answer less than their documented minimum. Sizes beyond LAPACK's
- * integers are MT_E_MEMORY. The sizes are doubles since LAPACK answers so and since sums of products of orders must not wrap. */
+/* Work array of max(query, minimum) doubles: queries of some routines answer less than their
+ * documented minimum. Sizes beyond LAPACK's integers are MT_E_MEMORY. The sizes are doubles
+ * since LAPACK answers so and since sums of products of orders must not wrap. */
 mt_status mt_lapack_work(mt_arena *scratch, double query, double minimum, double **work,
                          lapack_int *lwork, mt_err *err);
 

@@ -126,7 +126,8 @@ mt_status mt_qr_q(const mt_qr *f, int from, double *q, mt_arena *scratch, mt_err
     return mt_qr_apply_q(f, false, columns, q, scratch, err);
 }
 
-/* x := R11^-1 x (back substitution) or, transposed, R11^-T x (forward), with the leading rank x rank block. */
+/* x := R11^-1 x (back substitution) or, transposed, R11^-T x (forward), with the leading rank x
+ * rank block. */
 static void solve_r(const mt_qr *f, bool trans, double *x)
 {
     const int r = f->rank;

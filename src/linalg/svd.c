@@ -38,7 +38,8 @@ static mt_status svd_work(const svd_job *j, mt_arena *scratch, double **work, la
     if (info != 0 || info2 != 0) {
         return mt_lapack_bug(info != 0 ? "dgesdd" : "dgesvd", info != 0 ? info : info2, err);
     }
-    /* documented minima: dgesdd 4 r^2 + 7 r ('S') or 3 r + max(m, n, 7 r) ('N'), dgesvd max(3 r + max(m, n), 5 r) */
+    /* documented minima: dgesdd 4 r^2 + 7 r ('S') or 3 r + max(m, n, 7 r) ('N'), dgesvd max(3 r
+     * + max(m, n), 5 r) */
     const double r = j->r;
     const double most = j->m > j->n ? j->m : j->n;
     const double least = 4.0 * r * r + 10.0 * r + most;
@@ -99,7 +100,8 @@ mt_status mt_svd(int m, int n, double *a, double *s, double *u, double *vt, mt_a
     return rc;
 }
 
-/* dgejsv: A as D1 C D2 with row pivoting ('F'), no left vectors ('N'), right ones ('V'), tiny columns kept ('N'), no transposition ('N'), no perturbation ('N'). */
+/* dgejsv: A as D1 C D2 with row pivoting ('F'), no left vectors ('N'), right ones ('V'), tiny
+ * columns kept ('N'), no transposition ('N'), no perturbation ('N'). */
 static mt_status jacobi(int m, int n, double *a, double *s, double *v, mt_arena *scratch,
                         mt_err *err)
 {

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Lee and Jung's bordered system for one eigenvector. Scaled first, so that neither units nor stiffness decide how regular it is: with D = diag(m_ii)^-1/2 (a coordinate
- * without mass takes |k_ii|/s), s the largest entry of D K D and of |lambda|, g = D M y,
- *     [D (K - lambda M) D / s   -g] [D^-1 ydot     ]   [-D f / s       ]
- *     [-g^T                      0] [lambdadot / s ] = [1/2 y^T Mdot y ]
- * has a reciprocal condition of about (gap to the next eigenvalue) / s. Below 16 n eps that gap is rounding: the mode is repeated.
+ * Lee and Jung's bordered system for one eigenvector. Scaled first, so that neither units nor
+ * stiffness decide how regular it is: with D = diag(m_ii)^-1/2 (a coordinate without mass takes
+ * |k_ii|/s), s the largest k_ii/m_ii or |lambda|, g = D M y, f = (Kdot - lambda Mdot) y,
+ *     [D (K - lambda M) D / s   -g] [D^-1 ydot    ]   [-D f / s       ]
+ *     [-g^T                      0] [lambdadot / s] = [1/2 y^T Mdot y ]
+ * has a reciprocal condition of about (gap to the next eigenvalue) / s. Below 16 n eps that gap
+ * is rounding: the mode is repeated.
  */
 #include "modal/modal_priv.h"
 

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Residual and orthogonality, judged as LAPACK's own tests judge them: in units of n eps, so that O(1) is perfect. Rows of K may have different units, so
- * vectors and forces are measured in coordinates in which m_ii = 1, D = diag(m_ii)^-1/2:
+ * Residual and orthogonality, judged as LAPACK's own tests judge them: in units of n eps, so
+ * that O(1) is perfect. Rows of K may have different units, so vectors and forces are measured
+ * in coordinates in which m_ii = 1, D = diag(m_ii)^-1/2:
  *     ||D (K y - lambda M y)|| / ((||D K D|| + |lambda| ||D M D||) ||D^-1 y|| n eps).
- * A coordinate without mass takes the mass that would move it at the stiffness scale s, |k_ii| / s.
+ * A coordinate without mass takes the mass that would move it at the stiffness scale s, which
+ * is |k_ii| / s.
  */
 #include "modal/modal_priv.h"
 

@@ -6,14 +6,18 @@
 #include <math.h>
 
 /*
- * Neighbours closer than CLUSTER_GAP of their size are one cluster. The eigenvector of a single mode, and with it any gradient that uses it, describes
- * the system for relative parameter changes up to about the gap only; sqrt(eps) is the smallest step that a search with 16 digits can make and judge, so a
- * gap below that is a repeated mode to every user of these numbers. Mirror modes of a symmetrical structure agree to rounding, 1e-14 or so; distinct modes as close as
- * this have not been met. Eigenvalues that differ by less than their error bound cannot be told apart either.
+ * Neighbours closer than CLUSTER_GAP of their size are one cluster. The eigenvector of a single
+ * mode, and with it any gradient that uses it, describes the system for relative parameter
+ * changes up to about the gap only; sqrt(eps) is the smallest step that a search with 16 digits
+ * can make and judge, so a gap below that is a repeated mode to every user of these numbers.
+ * Mirror modes of a symmetrical structure agree to rounding, 1e-14 or so; distinct modes as
+ * close as this have not been met. Eigenvalues that differ by less than their error bound
+ * cannot be told apart either.
  */
 static const double CLUSTER_GAP = 1.5e-8;
 
-/* First of the n_rigid consecutive values with the smallest magnitudes (lambda ascends, so they are consecutive). */
+/* First of the n_rigid consecutive values with the smallest magnitudes (lambda ascends, so they
+ * are consecutive). */
 static int first_rigid(const mt_modes *modes, int n_rigid)
 {
     int first = 0;

@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Directions without mass. With the basis [T1 T0] of mass.c, y = T1 a + T0 b, the lower rows of the eigenproblem read
- *     K01 a + K00 b = 0   (no inertia force)   =>   b = -K00^-1 K01 a,
- * and the upper ones become  (K11 - K10 K00^-1 K01) a = lambda a,  so Y = (T1 - T0 K00^-1 K01) Q.
- * K00 may be indefinite, so its eigenvalues decide. Its rows are scaled by h_j = (|t_j|^T |K| |t_j|)^-1/2, the size of the terms that make the diagonal: what is left
- * after cancellation is then relative to one, and at most 16 n eps of that is nothing. A negative eigenvalue is an instability without inertia (the limit of one whose rate
- * grows beyond bounds): it is condensed and counted.
+ * Directions without mass. With the basis [T1 T0] of mass.c, y = T1 a + T0 b, the lower rows of
+ * the eigenproblem have no inertia force,
+ *     K01 a + K00 b = 0   =>   b = -K00^-1 K01 a,
+ * and the upper ones become (K11 - K10 K00^-1 K01) a = lambda a, so that
+ *     Y = (T1 - T0 K00^-1 K01) Q.
+ * K00 may be indefinite, so its eigenvalues decide. Its rows are scaled by
+ * h_j = (|t_j|^T |K| |t_j|)^-1/2, the size of the terms that make the diagonal: what is left
+ * after cancellation is then relative to one, and at most 16 n eps of that is nothing. A
+ * negative eigenvalue is an instability without inertia (the limit of one whose rate grows
+ * beyond bounds): it is condensed and counted.
  */
 #include "modal/modal_priv.h"
 

@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Differentiate K y = lambda M y and y^T M y = 1 along a parameter (a dot is d/dp), f = (Kdot - lambda Mdot) y:
- *     (K - lambda M) ydot - lambdadot M y = -f,        y^T M ydot = -1/2 y^T Mdot y.
- * From the left with y^T:   lambdadot = y^T f.   With y_j^T of another mode:   y_j^T M ydot = y_j^T f / (lambda - lambda_j).
+ * Differentiate K y = lambda M y and y^T M y = 1 along a parameter (a dot is d/dp), with
+ * f = (Kdot - lambda Mdot) y:
+ *     (K - lambda M) ydot - lambdadot M y = -f,
+ *     y^T M ydot = -1/2 y^T Mdot y.
+ * From the left with y^T:                   lambdadot = y^T f.
+ * From the left with another mode's y_j^T:  y_j^T M ydot = y_j^T f / (lambda - lambda_j).
  */
 #include "modal/modal_priv.h"
 

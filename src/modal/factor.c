@@ -2,13 +2,17 @@
 /*
  * Modes from the spring factors. K = B^T diag(c) B, M = L L^T, C = B L^-T:
  *     L^-1 K L^-T = (diag(sqrt c) C)^T (diag(sqrt c) C),
- * so omega are the singular values of diag(sqrt c) C and the vectors its right singular vectors. Forming the product first loses everything below eps c_max; the singular
- * values of D C with D diagonal and C well conditioned are determined to a relative n eps cond(C), however far D spreads, and one-sided Jacobi finds them (Drmac and Veselic 2008).
+ * so omega are the singular values of diag(sqrt c) C and the vectors its right singular
+ * vectors. Forming the product first loses everything below eps c_max; the singular values of
+ * a product D C with D diagonal and C well conditioned are determined to a relative
+ * n eps cond(C), however far D spreads, and one-sided Jacobi finds them.
  *
- * C may be rank deficient (rigid-body modes; more springs than freedoms). Its null space does not depend on D, so it is split off first: rows of C are scaled to unit norm (the
- * norms join D), C^T P = Q R with column pivoting has Q = [Q1 Q2], Q2 the null space. Then D C Q1 = D P R^T (rows of R^T in C's order) is of full column rank. Rows of R^T keep the
- * relative error of their row, hence the grading by D is harmless.
- * lambda: zero for Q2, sigma^2 for Q1 V.
+ * C may be rank deficient (rigid-body modes; more springs than freedoms). Its null space does
+ * not depend on D, so it is split off first: rows of C are scaled to unit norm (the norms join
+ * D), C^T P = Q R with column pivoting has Q = [Q1 Q2], Q2 the null space. Then
+ *     D C Q1 = D P R^T   (rows of R^T put into C's order)
+ * is of full column rank, and every row of R^T keeps its own relative error, so that D, which
+ * scales rows, does no harm. lambda: zero for Q2, sigma^2 for Q1 V.
  */
 #include "modal/modal_priv.h"
 

@@ -1,12 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The mass matrix, factored. Rows of M may have different units, so questions of rank are asked of the scaled matrix S = D M D with D = diag(m_ii)^-1/2, whose
- * diagonal is one and whose eigenvalues say which part of its own mass a direction keeps.
+ * The mass matrix, factored. Rows of M may have different units, so questions of rank are asked
+ * of the scaled matrix S = D M D with D = diag(m_ii)^-1/2, whose diagonal is one and whose
+ * eigenvalues say which part of its own mass a direction keeps.
  *
- * Usual case: Cholesky, M = L L^T. With W = M^-1 (from L^-1) the numbers m_ii W_ii are the diagonal of S^-1, hence
+ * Usual case: Cholesky, M = L L^T. With W = M^-1 (from L^-1) the numbers m_ii W_ii are the
+ * diagonal of S^-1, hence
  *     1 / (n max_i m_ii W_ii)  <=  lambda_min(S)  <=  1 / max_i m_ii W_ii,
- * a two-sided bound that costs n^3/3: where even the lower one is above the tolerance, M is regular for certain. Cholesky does not mind scaling, so S is never formed.
- * Else the eigenvectors V of S split the space: T1 = D V1 w1^-1/2 has mass (T1^T M T1 = I), T0 = D V0 has none.
+ * a two-sided bound that costs n^3/3: where even the lower one is above the tolerance, M is
+ * regular for certain. Cholesky does not mind scaling, so S is never formed.
+ *
+ * Else the eigenvectors V of S split the space: T1 = D V1 e1^-1/2 has mass (T1^T M T1 = I),
+ * T0 = D V0 has none.
  */
 #include "modal/modal_priv.h"
 
@@ -21,7 +26,8 @@ double mt_modal_tolerance(int n)
     return MT_MODAL_NOISE_ULPS * (double)n * DBL_EPSILON;
 }
 
-/* d_i = 1/sqrt(m_ii), 0 for coordinates without mass. False where there are such. Fails on a negative mass. */
+/* d_i = 1/sqrt(m_ii), 0 for coordinates without mass. False where there are such. Fails on a
+ * negative mass. */
 static mt_status scaling(int n, const double *m, double *d, bool *all, mt_err *err)
 {
     const double tol = mt_modal_tolerance(n);
@@ -59,7 +65,8 @@ static double inverse_diagonal(int n, const double *linv, const double *d, doubl
     return condition;
 }
 
-/* A positive semidefinite matrix has |m_ij|^2 <= m_ii m_jj: a coordinate without mass couples with none. */
+/* A positive semidefinite matrix has |m_ij|^2 <= m_ii m_jj: a coordinate without mass couples
+ * with none. */
 static mt_status check_coupling(int n, const double *m, const double *d, mt_err *err)
 {
     double most = 0.0;

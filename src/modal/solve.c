@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * One solve:
- *   take results from mem; mark; plain path; kinds; perhaps the factor path and kinds again; clusters; signs; checks; rewind to the mark.
+ *   take results from mem; mark; plain path; kinds; perhaps the factor path and kinds again;
+ *   clusters; signs; checks; rewind to the mark.
  */
 #include "modal/modal_priv.h"
 
@@ -9,8 +10,9 @@
 #include <math.h>
 
 /*
- * The plain path leaves an error of about eps s on every eigenvalue. Results are promised to a relative 1e-9 or better; at FACTOR_SWITCH the lowest mode still has two
- * digits to spare for the moderate factors in that "about". The factor path costs two to four times as much.
+ * The plain path leaves an error of about eps s on every eigenvalue. Results are promised to a
+ * relative 1e-9 or better; at FACTOR_SWITCH the lowest mode still has two digits to spare for
+ * the moderate factors in that "about". The factor path costs about three times as much.
  */
 static const double FACTOR_SWITCH = 1e-11;
 
@@ -46,7 +48,8 @@ static mt_status claim(const mt_mass_factor *mass, const mt_modal_options *opt, 
     return ok ? MT_OK : mt_fail_memory(err);
 }
 
-/* Is the plain result good enough? Signs and ranks are in doubt where a factor (K semidefinite by construction) shows instability, or rigid-body modes that nobody announced. */
+/* Is the plain result good enough? Signs and ranks are in doubt where a factor (K semidefinite
+ * by construction) shows instability, or rigid-body modes that nobody announced. */
 static bool needs_factor(const mt_modes *modes, const mt_modal_options *opt)
 {
     if (modes->n_unstable > 0 || (opt->n_rigid < 0 && modes->n_rigid > 0)) {

@@ -13,7 +13,8 @@ static const double *scores;
 static int rows;
 static int columns;
 
-/* Best sum over all one-to-one pairings of rows from..rows-1, by trying every column and (m > n) leaving the row out. */
+/* Best sum over all one-to-one pairings of rows from..rows-1, by trying every column and (m >
+ * n) leaving the row out. */
 static double brute(int from, unsigned taken)
 {
     if (from == rows) {

@@ -9,7 +9,8 @@
 
 enum { MOST = 70 };
 
-/* LAPACK's own test ratios stay below 30 for its residuals in units of n eps; healthy results are near one. */
+/* LAPACK's own test ratios stay below 30 for its residuals in units of n eps; healthy results
+ * are near one. */
 static const double RATIO = 10.0;
 
 static mt_arena mem;
@@ -176,7 +177,8 @@ static void eig__inertia_counts_eigenvalues_below_the_shift(mt_test *t)
         for (int i = 0; i < N; i++) {
             below += w[i] < shift ? 1 : 0;
         }
-        /* congruence by powers of ten changes units of rows: A - shift I becomes S A S - shift S^2 */
+        /* congruence by powers of ten changes units of rows: A - shift I becomes S A S - shift
+         * S^2 */
         double b[N * N];
         double sas[N * N];
         for (int j = 0; j < N; j++) {

@@ -9,9 +9,11 @@
 
 enum { MOST = 12 };
 
-/* Entries are of order one and orders below twelve: rounding stays below 1e-13 for these well-conditioned matrices. */
+/* Entries are of order one and orders below twelve: rounding stays below 1e-13 for these
+ * well-conditioned matrices. */
 static const double TOL = 1e-13;
-/* Rank tolerance: far above rounding, far below the smallest independent part of a random matrix. */
+/* Rank tolerance: far above rounding, far below the smallest independent part of a random
+ * matrix. */
 static const double RANK_TOL = 1e-10;
 
 static mt_arena mem;

@@ -29,7 +29,7 @@ static void svd__thin_factors_reproduce_the_matrix(mt_test *t)
         const int m = sizes[k][0];
         const int n = sizes[k][1];
         const int r = m < n ? m : n;
-        double a[MOST * MOST];
+        double a[MOST * MOST] = {0};
         double copy[MOST * MOST];
         double s[MOST];
         double only[MOST];
@@ -60,8 +60,9 @@ static void svd__thin_factors_reproduce_the_matrix(mt_test *t)
 }
 
 /*
- * D C with C = [1 1; 1 -1; ...] well conditioned and D = 1, 1e-10: for the 2 x 2 matrix [1 1; d -d] the rows are orthogonal, so the singular values are sqrt 2 and d sqrt 2
- * exactly, and so are the right vectors (1, +-1)/sqrt 2.
+ * D C with C = [1 1; 1 -1; ...] well conditioned and D = 1, 1e-10: for the 2 x 2 matrix [1 1; d
+ * -d] the rows are orthogonal, so the singular values are sqrt 2 and d sqrt 2 exactly, and so
+ * are the right vectors (1, +-1)/sqrt 2.
  */
 static void svd__jacobi_keeps_tiny_values_to_full_relative_accuracy(mt_test *t)
 {
