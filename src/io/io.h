@@ -12,6 +12,8 @@ typedef struct mt_io_options {
     /* folder that files named by other files must lie in; NULL: for a study the parent of its folder, for a model no limit */
     const char *root;
     size_t max_bytes; /* of one file; 0: MT_JSON_MAX_BYTES */
+    int *
+        structural; /* [out] number of errors that a JSON Schema of the file sees as well; NULL: not wanted */
 } mt_io_options;
 
 /**

@@ -13,7 +13,7 @@
 #define MODEL_KEYS(X)                                 \
     X(MODEL_SCHEMA, "$schema", TEXT, false)           \
     X(MODEL_FORMAT, "format", TEXT, true)             \
-    X(MODEL_NAME, "name", TEXT, true)                 \
+    X(MODEL_NAME, "name", TEXT, false)                \
     X(MODEL_DESCRIPTION, "description", TEXT, false)  \
     X(MODEL_SOURCE, "source", TEXT, false)            \
     X(MODEL_DIMENSION, "dimension", COUNT, true)      \
@@ -297,6 +297,9 @@ mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **o
     }
     if (rc == MT_OK) {
         rc = note_file(*out, path, &file, err);
+    }
+    if (doc != NULL && opt != NULL && opt->structural != NULL) {
+        *opt->structural = mt_json_diags(doc)->structural;
     }
     if (doc != NULL && messages != NULL) {
         mt_json_print(doc, path, messages);

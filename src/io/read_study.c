@@ -290,7 +290,12 @@ static mt_status read_text(mt_study_reader *s, const mt_file *file, mt_text *mes
     s->r.doc = doc;
     s->r.diags = mt_json_diags(doc);
     s->model_messages = &model_messages;
+    int *const structural = s->files.structural;
+    s->files.structural = NULL; /* counts this file, not the models */
     rc = rc == MT_OK ? read_document(s, err) : mt_reader_status(&s->r, s->study->path, err);
+    if (structural != NULL) {
+        *structural = s->r.diags->structural;
+    }
     if (messages != NULL) {
         mt_json_print(doc, s->study->path, messages);
         mt_text_add(messages, model_messages.s == NULL ? "" : model_messages.s);
