@@ -298,7 +298,9 @@ static mt_status read_text(mt_study_reader *s, const mt_file *file, mt_text *mes
     }
     if (messages != NULL) {
         mt_json_print(doc, s->study->path, messages);
-        mt_text_add(messages, model_messages.s == NULL ? "" : model_messages.s);
+        if (model_messages.length > 0) {
+            mt_text_add(messages, model_messages.s);
+        }
     }
     if (model_messages.failed || (messages != NULL && messages->failed)) {
         rc = mt_fail_memory(err);
