@@ -200,7 +200,7 @@ void mt_build_inertia(mt_builder *b, const mt_inertia_def *def)
 {
     mt_system *const sys = b->sys;
     const mt_program_node *const node = &sys->program.nodes[def->coefficient];
-    if (node->op == MT_OP_CONST && !(node->value < 0.0) && !(node->value > 0.0)) {
+    if (node->op == MT_OP_CONST && node->value == 0.0) {
         return; /* massless: nothing to add */
     }
     mt_inertia_def *const grown = GROW(b, inertias);

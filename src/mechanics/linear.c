@@ -68,7 +68,7 @@ static mt_status reduce_rows(mt_linear *lin, int kind, mt_err *err)
         double *const out = lin->reduced[kind] + ((ptrdiff_t)i * lin->n);
         for (int k = 0; k < MT_LOCAL; k++) {
             const int dof = mt_local_dof(lin->sys, t->body, k);
-            if (dof < 0 || !(row[k] < 0.0 || row[k] > 0.0)) {
+            if (dof < 0 || row[k] == 0.0) {
                 continue;
             }
             for (int c = 0; c < lin->n; c++) {
@@ -153,7 +153,7 @@ static void add_terms(const mt_linear *lin, int kind, int which, double *out)
     for (int i = 0; i < list->n_terms; i++) {
         const mt_term *const t = &list->terms[i];
         const double c = lin->value[t->coefficient];
-        if ((which != 2 && t->varies != (which == 1)) || !(c < 0.0 || c > 0.0)) {
+        if ((which != 2 && t->varies != (which == 1)) || c == 0.0) {
             continue;
         }
         for (int r = 0; r < (t->pair ? 1 : t->count); r++) {

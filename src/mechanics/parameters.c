@@ -37,12 +37,11 @@ static int missing_operand(const mt_expr *e, const mt_node *nodes)
 }
 
 mt_status mt_emit_parameters(const mt_model *model, int configuration, const int *is_input,
-                             mt_program *program, mt_node *nodes, mt_arena *scratch,
+                             mt_program *program, mt_node *nodes, mt_arena *mem,
                              mt_err *err)
 {
     const int n = model->n_parameters;
-    const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    int *const stack = mt_arena_int(scratch, (size_t)n + 1);
+    int *const stack = mt_arena_int(mem, (size_t)n + 1);
     if (stack == NULL) {
         return mt_fail_memory(err);
     }
@@ -74,34 +73,5 @@ mt_status mt_emit_parameters(const mt_model *model, int configuration, const int
             depth--;
         }
     }
-    mt_arena_rewind(scratch, mark);
     return MT_OK;
-}
-
-mt_status mt_parameter_values(const mt_model *model, int configuration, double *values,
-                              mt_err *err)
-{
-    mt_arena mem = {0};
-    mt_program program;
-    MT_TRY(mt_arena_init(&mem, 0, err));
-    const size_t n = (size_t)model->n_parameters;
-    mt_node *const nodes = mt_arena_alloc(&mem, n, sizeof *nodes);
-    mt_status rc =
-        nodes == NULL ? mt_fail_memory(err) : mt_program_init(&program, 0, &mem, err);
-    if (rc == MT_OK) {
-        rc = mt_emit_parameters(model, configuration, NULL, &program, nodes, &mem, err);
-    }
-    if (rc == MT_OK) {
-        rc = mt_program_finish(&program, err);
-    }
-    if (rc == MT_OK) {
-        double *const all = mt_arena_f64(&mem, (size_t)program.count, 1);
-        rc =
-            all == NULL ? mt_fail_memory(err) : mt_program_eval(&program, NULL, all, NULL, err);
-        for (size_t i = 0; i < n && rc == MT_OK; i++) {
-            values[i] = all[nodes[i]];
-        }
-    }
-    mt_arena_free(&mem);
-    return rc;
 }

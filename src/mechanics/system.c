@@ -63,12 +63,13 @@ static bool geometry_is_fixed(const mt_system *sys)
     return fixed;
 }
 
-/* Global axis least along v (in two dimensions always z, so that the perpendicular lies in the plane). */
+/* Global axis least along v; in two dimensions z for a direction in the plane, so that the perpendicular lies in the plane too. */
 static int helper_axis(const mt_system *sys, const double v[3])
 {
     int best = 2;
-    for (int k = 1; k >= 0 && sys->dimension == 3; k--) {
-        best = fabs(v[k]) < fabs(v[best]) ? k : best;
+    for (int k = 1; k >= 0; k--) {
+        const bool planar = sys->dimension == 2 && v[2] == 0.0;
+        best = !planar && fabs(v[k]) < fabs(v[best]) ? k : best;
     }
     return best;
 }

@@ -168,13 +168,9 @@ mt_status mt_system_new(const mt_model *model, int configuration, int n_inputs,
                         const int *inputs, const double *at, mt_system **out, mt_err *err);
 void mt_system_delete(mt_system *sys);
 
-/* Values of all parameters of the model at its own definitions (configuration MT_ABSENT) or in a configuration. values[n_parameters]. */
-mt_status mt_parameter_values(const mt_model *model, int configuration, double *values,
-                              mt_err *err);
-
 /* Emit all parameters of the configuration into a program; is_input[p] >= 0: parameter p is that input. nodes[n_parameters]. The model has been checked for cycles. */
 mt_status mt_emit_parameters(const mt_model *model, int configuration, const int *is_input,
-                             mt_program *program, mt_node *nodes, mt_arena *scratch,
+                             mt_program *program, mt_node *nodes, mt_arena *mem,
                              mt_err *err);
 
 int mt_system_find_channel(const mt_system *sys, const char *name);

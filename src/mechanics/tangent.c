@@ -14,7 +14,7 @@
 static bool all_zero(size_t n, const double *x)
 {
     for (size_t i = 0; i < n; i++) {
-        if (x[i] < 0.0 || x[i] > 0.0 || x[i] != x[i]) {
+        if (!(x[i] == 0.0)) {
             return false;
         }
     }
@@ -172,7 +172,7 @@ static bool coefficient_products(const mt_linear *lin, int kind, int p, int cols
             continue;
         }
         const double dc = lin->grad[((ptrdiff_t)t->coefficient * lin->sys->n_inputs) + p];
-        if (!(dc < 0.0 || dc > 0.0)) {
+        if (dc == 0.0) {
             continue;
         }
         any = true;

@@ -26,8 +26,10 @@ static const double IDENTICAL = 1e-5;
 /* A feasible end with a KKT residual above this is no local solution, if there are better ones. */
 static const double STATIONARY = 1e-6;
 static const double NOT_STATIONARY = 1e-3;
-/* Relative growth of the squares of a compromise that is rounding and the tolerance of its search. */
-static const double SETTLED = 1e-6;
+/* Compromises whose squares differ by less, relatively, are equally good (their minima are known to
+ * rounding, about 1e-12); a smaller objective decides where it is smaller by more than rounding. */
+static const double EQUAL_SQUARES = 1e-8;
+static const double SETTLED_GAIN = 1e-6;
 /* Length of the first step away from a saddle. */
 static const double SADDLE_STEP = 0.05;
 /* Violation (in tolerances) below which an end is worth a Newton polish before a restoration. */
@@ -63,36 +65,68 @@ static void polish_both(mt_nlp_engine *e, mt_nlp_point *p, mt_nlp_point *last, d
     }
 }
 
-/* Objective under the constraints from p, the equalities reduced to rows. p: where it ends. */
-static void minimise(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p)
+/* Move p a little along `saddle`; false where there is none, or no value there. */
+static bool step_off(mt_nlp_engine *e, const double *saddle, mt_nlp_point *p)
 {
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    const double most = mt_max_abs(e->n, saddle);
+    mt_nlp_point *const to = most > 0 ? mt_nlp_point_new(e, &e->scratch) : NULL;
+    bool moved = false;
+    if (to != NULL) {
+        mt_nlp_point_copy(e, to, p);
+        mt_axpy(e->n, SADDLE_STEP / most, saddle, to->t);
+        moved = mt_nlp_evaluate(e, to->t, true, to);
+        if (moved) {
+            mt_nlp_point_copy(e, p, to);
+        }
+    }
+    mt_arena_rewind(&e->scratch, mark);
+    return moved;
+}
+
+/* SLSQP from p, then Newton; an infeasible end is restored first, if it can be. */
+static void minimise_once(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p,
+                          double *saddle)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     mt_nlp_point *const last = mt_nlp_point_new(e, &e->scratch);
-    double *const saddle = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
-    for (int round = 0; round < ROUNDS && saddle != NULL && last != NULL && !e->ended;
-         round++) {
-        memset(saddle, 0, (size_t)e->n * sizeof *saddle);
+    memset(saddle, 0, (size_t)e->n * sizeof *saddle);
+    if (last != NULL) {
         mt_nlp_slsqp(e, n_rows, rows, p, last);
         polish_both(e, p, last, saddle);
         if (!mt_nlp_feasible(p)) {
             mt_nlp_least_squares(e, MT_NLP_SQUARES, p);
-            if (!mt_nlp_feasible(p)) {
-                return;
-            }
-            mt_nlp_polish(e, MT_NLP_OBJECTIVE, p, saddle);
-        }
-        const double kick = mt_max_abs(e->n, saddle);
-        if (p->kkt <= STATIONARY && !(kick > 0)) {
-            return;
-        }
-        if (kick > 0) {
-            mt_nlp_point_copy(e, last, p);
-            mt_axpy(e->n, SADDLE_STEP / kick, saddle, last->t);
-            if (mt_nlp_evaluate(e, last->t, true, last)) {
-                last->start = p->start;
-                mt_nlp_point_copy(e, p, last);
+            if (mt_nlp_feasible(p)) {
+                mt_nlp_polish(e, MT_NLP_OBJECTIVE, p, saddle);
             }
         }
     }
+    mt_arena_rewind(&e->scratch, mark);
+}
+
+/* Objective under the constraints from p, the equalities reduced to rows. p: where it ends. Again
+ * from there while it is no minimum, and never for the worse. */
+static void minimise(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p)
+{
+    mt_nlp_point *const before = mt_nlp_point_new(e, &e->scratch);
+    double *const saddle = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
+    if (saddle == NULL || before == NULL) {
+        mt_nlp_end(e, mt_fail_memory(e->err));
+        return;
+    }
+    for (int round = 0; round < ROUNDS && !e->ended; round++) {
+        minimise_once(e, n_rows, rows, p, saddle);
+        if (round > 0 && mt_nlp_better(before, p)) {
+            mt_nlp_point_copy(e, p, before);
+            return;
+        }
+        mt_nlp_point_copy(e, before, p);
+        const bool last = round + 1 == ROUNDS || !mt_nlp_feasible(p);
+        if (last || (!step_off(e, saddle, p) && p->kkt <= STATIONARY)) {
+            return;
+        }
+    }
+    mt_nlp_point_copy(e, p, before); /* the search ended on the way */
 }
 
 /* Equalities settle everything: roots. Where they turn out dependent, the objective decides. */
@@ -108,13 +142,9 @@ static void find_root(mt_nlp_engine *e, mt_nlp_point *p)
     }
 }
 
-/* Local search from p, which has values. */
-static void local_search(mt_nlp_engine *e, const int *all_rows, mt_nlp_point *p)
+static void descend(mt_nlp_engine *e, const int *all_rows, mt_nlp_point *p)
 {
     const mt_nlp *const q = e->nlp;
-    if (e->n_free == 0) {
-        return;
-    }
     if (q->n_eq >= e->n_free) {
         find_root(e, p);
     } else if (q->n_res > 0 && q->n_eq == 0 && q->n_in == 0) {
@@ -123,8 +153,26 @@ static void local_search(mt_nlp_engine *e, const int *all_rows, mt_nlp_point *p)
     } else {
         minimise(e, q->n_eq, all_rows, p);
     }
-    if (!mt_nlp_feasible(p)) {
-        mt_nlp_polish(e, MT_NLP_SQUARES, p, NULL);
+}
+
+/* Local search from p, which has values. An infeasible end that is a saddle of the squares is left. */
+static void local_search(mt_nlp_engine *e, const int *all_rows, mt_nlp_point *p)
+{
+    mt_nlp_point *const before = mt_nlp_point_new(e, &e->scratch);
+    double *const saddle = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
+    for (int round = 0; before != NULL && saddle != NULL && round < ROUNDS; round++) {
+        descend(e, all_rows, p);
+        if (!mt_nlp_feasible(p)) {
+            mt_nlp_polish(e, MT_NLP_SQUARES, p, saddle);
+        }
+        if (round > 0 && mt_nlp_better(before, p)) {
+            mt_nlp_point_copy(e, p, before);
+        }
+        mt_nlp_point_copy(e, before, p);
+        const bool last = round + 1 == ROUNDS || mt_nlp_feasible(p) || e->ended;
+        if (last || !step_off(e, saddle, p)) {
+            return;
+        }
     }
 }
 
@@ -175,8 +223,9 @@ static void all_starts(mt_nlp_engine *e, ends *all, mt_nlp_result *out)
         const mt_arena_mark mark = mt_arena_get_mark(mem);
         out->starts = k + 1;
         if (begin(e, t + (ptrdiff_t)k * e->n, p)) {
-            p->start = k;
-            local_search(e, rows, p);
+            if (e->n_free > 0) {
+                local_search(e, rows, p);
+            }
             p->start = k;
             add_end(e, all, p);
         }
@@ -197,6 +246,21 @@ static void rank(ends *all)
         }
         all->p[k] = p;
         all->merged[k] = merged;
+    }
+}
+
+/* Ranked compromises: among equally good ones the objective decides. */
+static void rank_equals(ends *all)
+{
+    for (int first = 0; first < all->count;) {
+        const double most = all->p[first]->squares * (1 + EQUAL_SQUARES);
+        int i = first + 1;
+        for (; i < all->count && all->p[i]->squares <= most; i++) {
+            for (int k = i; k > first && all->p[k]->f < all->p[k - 1]->f; k--) {
+                mt_nlp_point_swap(&all->p[k], &all->p[k - 1]);
+            }
+        }
+        first = i;
     }
 }
 
@@ -277,9 +341,12 @@ static void settle(mt_nlp_engine *e, mt_nlp_point *p)
     if (!minimised || !mt_nlp_evaluate(e, to->t, true, to)) {
         return;
     }
+    if (!(to->f < p->f - SETTLED_GAIN * fabs(p->f))) {
+        return;
+    }
     to->start = p->start;
-    to->kkt = p->kkt;
-    if (to->f < p->f && to->squares <= p->squares * (1 + SETTLED)) {
+    mt_nlp_polish(e, MT_NLP_SQUARES, to, NULL); /* back from within the tolerances */
+    if (to->squares <= p->squares * (1 + EQUAL_SQUARES)) {
         mt_nlp_point_copy(e, p, to);
     }
 }
@@ -324,6 +391,7 @@ static void judge(mt_nlp_engine *e, ends *all, mt_arena *mem, mt_nlp_result *out
         settle_all(e, all);
         rank(all);
         merge(e, all);
+        rank_equals(all);
     }
     const int count = all->count < e->opt.max_solutions ? all->count : e->opt.max_solutions;
     out->solutions = mt_arena_alloc(mem, (size_t)count, sizeof *out->solutions);
