@@ -15,42 +15,49 @@
  * This file and its .c know no mechanism: tests drive them with closed-form functions.
  */
 typedef struct mt_nlp_values {
-    double f;    /* objective; where n_res > 0: ignored, 1/2 |r|^2 is used */
-    double *df;  /* [n] */
-    double *r;   /* [n_res] */
-    double *dr;  /* n_res x n column-major */
-    double *eq;  /* [n_eq] */
-    double *deq; /* n_eq x n */
-    double *in;  /* [n_in], >= 0 feasible */
-    double *din; /* n_in x n */
+    double
+        f; /* objective; where n_res > 0: ignored, 1/2 |r|^2 is used. Smooth: the square of a change, not its root */
+    double *df; /* [n] */
+    double *
+        r; /* [n_res] dimensionless: a change below 1e-6 counts as none where directions are judged */
+    double *dr; /* n_res x n column-major */
+    double *
+        eq; /* [n_eq] relative to the demand (ln of a ratio), so that a compromise weighs them fairly */
+    double *deq; /* n_eq x n column-major */
+    double *in;  /* [n_in] >= 0 feasible */
+    double *din; /* n_in x n column-major */
 } mt_nlp_values;
 
-/* Evaluate at t. with_gradient false: only values are filled. A status other than MT_OK means "no value here" (the search steps back), except MT_E_INTERRUPTED,
- * MT_E_MEMORY and MT_E_INTERNAL, which end it. */
+/*
+ * Evaluate at t, which is within the bounds. with_gradient false: only values are needed. Called once per point.
+ * A status other than MT_OK, or a value that is not finite, means "no value here" (the search steps back), except
+ * MT_E_INTERRUPTED, which ends it with what was found (MT_STOP_USER), and MT_E_MEMORY and MT_E_INTERNAL, which
+ * mt_nlp_solve returns.
+ */
 typedef mt_status (*mt_nlp_eval)(void *context, const double *t, bool with_gradient,
                                  mt_nlp_values *out, mt_err *err);
 
 typedef struct mt_nlp {
     int n;
-    const double *lower;
+    const double *lower; /* [n] finite; lower == upper: fixed, eliminated */
     const double *upper;
-    const double *origin; /* the original design, clamped by the engine */
+    const double *origin; /* [n] the original design, clamped by the engine */
     int n_res;
     int n_eq;
     int n_in;
-    const double *eq_tol; /* > 0 */
-    const double *in_tol; /* > 0 */
+    const double *eq_tol; /* [n_eq] > 0 */
+    const double *in_tol; /* [n_in] > 0 */
     mt_nlp_eval eval;
     void *context;
 } mt_nlp;
 
 typedef struct mt_nlp_options {
-    unsigned long seed;
+    unsigned long seed; /* turns the sequence of starts; 0 and 1: as it is */
     int starts; /* local solves from the origin and Sobol points (reverse Halton beyond 40 variables); 0: 8 + 4 n, at most 64 */
-    long max_evals;    /* over all starts; enforced inside the callbacks; 0: 2000 * starts */
+    long max_evals;    /* over all starts, never exceeded; 0: 2000 * starts */
     int max_solutions; /* how many distinct ones to keep; 0: 16 */
     bool
-        least_change; /* where equalities leave freedom and f is the change: keep undetermined directions at the origin */
+        least_change; /* f is the change: it does not count when undetermined directions are sought (without residuals) */
 } mt_nlp_options;
 mt_nlp_options mt_nlp_options_default(void);
 
@@ -75,7 +82,7 @@ typedef struct mt_nlp_solution {
 } mt_nlp_solution;
 
 typedef struct mt_nlp_result {
-    int n_solutions; /* feasible ones first, by f; else compromises by violation */
+    int n_solutions; /* only feasible ones, by f; else compromises, by squares, equal ones by f */
     mt_nlp_solution *solutions;
     bool
         compromise; /* none is feasible: these minimise the sum of squares of the violations relative to the demands */
@@ -89,9 +96,14 @@ typedef struct mt_nlp_result {
 } mt_nlp_result;
 
 /*
- * All distinct local solutions from several starts, ranked. Method: n_eq >= number of free variables: roots by bounded least squares; else SLSQP (exact gradients) with our own incumbent,
- * then a polish (Gauss-Newton / Newton on the KKT system) to full accuracy; misfit with equalities: SLSQP, then polish. Feasibility and KKT are recomputed here, NLopt's return code decides nothing.
- * No feasible point: the compromise. Results in mem. Deterministic for equal seed.
+ * All distinct local solutions from several starts, ranked. Method: n_eq >= number of free variables: roots by bounded
+ * least squares; else SLSQP (exact gradients) with an incumbent of our own, then Newton on the KKT system to full accuracy;
+ * residuals under bounds alone: least squares, then Newton. Feasibility and KKT are recomputed here, NLopt's return code
+ * decides nothing. Solutions nearer than sqrt(tolerance) (within 0.001 to 0.01 in t) are one. No feasible point: the
+ * compromise of least squares and, among equal ones, least f. Undetermined directions are left at the origin.
+ * Results in mem. Deterministic for equal seed. Cost: some 20 to 100 evaluations per start; O(n^3) of linear algebra each step.
+ * Fails: MT_E_USAGE (sizes, bounds, tolerances), MT_E_MEMORY and MT_E_INTERNAL, and the callback's first status where it had
+ * no value at any start. A spent budget and an interruption are outcomes: out->stop, with the best so far (n_solutions may be 0).
  */
 mt_status mt_nlp_solve(const mt_nlp *nlp, const mt_nlp_options *opt, mt_arena *mem,
                        mt_nlp_result *out, mt_err *err);

@@ -135,7 +135,78 @@ static void nlp_compromise__excluding_inequalities_meet_half_way(mt_test *t)
     mt_arena_free(&c.mem);
 }
 
+/* One demand is out of reach (t0 <= 2 < 3), the other, t1 + 2 t2 = 1, leaves a line: of all equal
+ * compromises the one of least change, t = (2, 1/5, 2/5), and only that. */
+static mt_status line(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
+                      mt_err *err)
+{
+    nlp_case *const c = context;
+    (void)with_gradient;
+    (void)err;
+    c->calls++;
+    change(c, t, out);
+    out->eq[0] = t[0] - 3;
+    out->eq[1] = sinh(t[1] + 2 * t[2] - 1);
+    const double slope = cosh(t[1] + 2 * t[2] - 1);
+    const double jacobian[6] = {1, 0, 0, slope, 0, 2 * slope};
+    memcpy(out->deq, jacobian, sizeof jacobian);
+    return MT_OK;
+}
+
+static void nlp_compromise__of_equal_ones_the_least_change_is_taken(mt_test *t)
+{
+    nlp_case c = {0};
+    case_begin(&c, 3, line, -2, 2);
+    c.nlp.n_eq = 2;
+    const mt_nlp_options opt = mt_nlp_options_default();
+    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    CHECK(t, c.result.compromise);
+    CHECK_INT(t, c.result.n_solutions, 1);
+    CHECK_INT(t, c.result.n_undetermined, 1); /* (0, 2, -1)/sqrt 5 */
+    const mt_nlp_solution *const s = &c.result.solutions[0];
+    CHECK(t, s->t[0] == 2 && s->start == 0);
+    CHECK_NEAR(t, s->t[1], 0.2, 1e-9);
+    CHECK_NEAR(t, s->t[2], 0.4, 1e-9);
+    CHECK_NEAR(t, s->squares, 1, 1e-9);
+    mt_arena_free(&c.mem);
+}
+
+/* The same on a circle, where no straight direction is undetermined. */
+static mt_status circle(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
+                        mt_err *err)
+{
+    nlp_case *const c = context;
+    (void)with_gradient;
+    (void)err;
+    c->calls++;
+    change(c, t, out);
+    out->eq[0] = t[0] - 3;
+    out->eq[1] = 0.5 * (t[1] * t[1] + t[2] * t[2] - 1);
+    const double jacobian[6] = {1, 0, 0, t[1], 0, t[2]};
+    memcpy(out->deq, jacobian, sizeof jacobian);
+    return MT_OK;
+}
+
+static void nlp_compromise__least_change_also_on_a_curve(mt_test *t)
+{
+    nlp_case c = {0};
+    case_begin(&c, 3, circle, -2, 2);
+    c.nlp.n_eq = 2;
+    c.origin[1] = 0.3;
+    c.origin[2] = 0.4;
+    const mt_nlp_options opt = mt_nlp_options_default();
+    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    CHECK(t, c.result.compromise);
+    CHECK_INT(t, c.result.n_solutions, 1);
+    CHECK_INT(t, c.result.n_undetermined, 0);
+    CHECK_NEAR(t, c.result.solutions[0].t[1], 0.6, 1e-8);
+    CHECK_NEAR(t, c.result.solutions[0].t[2], 0.8, 1e-8);
+    mt_arena_free(&c.mem);
+}
+
 MT_TEST_MAIN(MT_TEST(nlp_compromise__contradicting_targets_are_averaged),
              MT_TEST(nlp_compromise__bounds_are_respected),
              MT_TEST(nlp_compromise__local_ones_are_kept_and_ranked_by_squares),
-             MT_TEST(nlp_compromise__excluding_inequalities_meet_half_way))
+             MT_TEST(nlp_compromise__excluding_inequalities_meet_half_way),
+             MT_TEST(nlp_compromise__of_equal_ones_the_least_change_is_taken),
+             MT_TEST(nlp_compromise__least_change_also_on_a_curve))
