@@ -88,8 +88,6 @@ static void write_json__misuse_is_remembered(mt_test *t)
                 mt_json_close(&w);
             } else if (*c == '{' || *c == '[') {
                 mt_json_open(&w, NULL, *c);
-            } else if (*c == ']') {
-                mt_json_close(&w);
             } else {
                 mt_json_put_integer(&w, *c == 'n' ? "n" : NULL, 1);
             }
