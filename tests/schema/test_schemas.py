@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every shipped file validates against its schema, and on generated mutants schema and reader agree about structure."""
+import copy
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import jsonschema
+
+ROOT = Path(os.environ.get("SOURCE_DIR", Path(__file__).resolve().parents[2]))
+BUILD = Path(os.environ.get("BUILD_DIR", ROOT / "build/release"))
+HERE = ROOT / "tests/schema"
+KINDS = {"modetune-model/1": "model", "modetune-study/1": "study", "modetune-result/1": "result"}
+
+
+def load(path):
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def validators():
+    found = {}
+    for kind in KINDS.values():
+        schema = load(ROOT / f"schemas/{kind}.schema.json")
+        jsonschema.Draft7Validator.check_schema(schema)
+        found[kind] = jsonschema.Draft7Validator(schema)
+    return found
+
+
+def shipped():
+    """All files that are there to be read, with their kind."""
+    files = [p for folder in ("problems", "studies", "tests/schema") for p in sorted((ROOT / folder).glob("*.json"))]
+    return [(p, KINDS.get(load(p).get("format"))) for p in files]
+
+
+def undocumented(schema, where="#"):
+    """Members of a schema without a description, which an editor would not explain."""
+    if isinstance(schema, dict):
+        for name, value in schema.get("properties", {}).items():
+            if isinstance(value, dict) and "description" not in value and "$ref" not in value:
+                yield f"{where}/properties/{name}"
+        for key, value in schema.items():
+            if key not in ("if", "not"):  # conditions: the members are described where they are allowed
+                yield from undocumented(value, f"{where}/{key}")
+    elif isinstance(schema, list):
+        for i, value in enumerate(schema):
+            yield from undocumented(value, f"{where}/{i}")
+
+
+def places(value, path=()):
+    """All places in a document, outer before inner."""
+    yield path
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield from places(inner, path + (key,))
+    elif isinstance(value, list):
+        for i, inner in enumerate(value):
+            yield from places(inner, path + (i,))
+
+
+OTHER_TYPES = [None, True, 7, 0, 2.5, -1, "x", "", [], {}, [1], ["x", "y"], {"x": 1}, [[0, 0], "x"]]
+
+
+def mutants(document):
+    """Members dropped, renamed, doubled in lists, of another type; unknown members added; lists cut and stretched."""
+    for path in places(document):
+        if not path:
+            continue
+        for change in ["drop", "rename", "sign", "add", "double"] + [("type", v) for v in OTHER_TYPES]:
+            mutant = copy.deepcopy(document)
+            parent = mutant
+            for step in path[:-1]:
+                parent = parent[step]
+            key, value = path[-1], parent[path[-1]]
+            is_member = isinstance(parent, dict)
+            if change == "drop":
+                del parent[key]
+            elif change in ("rename", "sign"):
+                if not is_member:
+                    continue
+                parent[key + ("x" if change == "rename" else "-")] = parent.pop(key)
+            elif change == "add":
+                if not isinstance(value, dict):
+                    continue
+                value["unknown_member"] = 1
+            elif change == "double":
+                if is_member:
+                    continue
+                parent.append(copy.deepcopy(value))
+            else:
+                if type(value) is type(change[1]) and value == change[1]:
+                    continue
+                parent[key] = change[1]
+            # a file of another format is not read on: the verdicts agree, but there is nothing to compare
+            yield f"{'/'.join(map(str, path))}: {change}", mutant
+
+
+def main():
+    problems, checked = [], 0
+    schema_of = validators()
+    for kind, validator in schema_of.items():
+        problems += [f"{kind}.schema.json: {where} has no description" for where in undocumented(validator.schema)]
+    files = shipped()
+    jobs, originals = [], []
+    for path, kind in files:
+        if kind is None:
+            problems.append(f"{path}: member \"format\" names no known format")
+            continue
+        problems += [f"{path}: {e.json_path}: {e.message}" for e in schema_of[kind].iter_errors(load(path))]
+        checked += 1
+        if kind != "result":
+            originals.append((path, kind, "as it is", load(path)))
+            jobs += [(path, kind, text, mutant) for text, mutant in mutants(load(path))]
+    step = max(1, len(jobs) // int(os.environ.get("MT_MUTANTS", "6000")))  # evenly thinned where there are many
+    jobs = originals + jobs[::step]
+    with tempfile.TemporaryDirectory() as folder:
+        names = []
+        for i, (path, kind, _, mutant) in enumerate(jobs):
+            if kind == "study":  # models are named relative to the study
+                mutant = json.loads(json.dumps(mutant))
+                for holder in [mutant] + [r for r in (mutant.get("references") or {}).values()
+                                          if isinstance(mutant.get("references"), dict) and isinstance(r, dict)]:
+                    if isinstance(holder.get("model"), str):
+                        holder["model"] = str((path.parent / holder["model"]).resolve())
+            name = Path(folder, f"{i}.json")
+            name.write_text(json.dumps(mutant), encoding="utf-8")
+            names.append(f"{kind} {name}\n")
+        Path(folder, "list").write_text("".join(names), encoding="utf-8")
+        told = subprocess.run([BUILD / "tests/schema/test_verdict", Path(folder, "list")], check=True,
+                              capture_output=True, text=True).stdout.splitlines()
+    if len(told) != len(jobs):
+        problems.append(f"{len(jobs)} mutants, but {len(told)} verdicts")
+    wrong = 0
+    for (path, kind, text, mutant), verdict in zip(jobs, told):
+        refused = int(verdict.split()[0]) > 0
+        if verdict.split()[2] not in ("MT_OK", "MT_E_INPUT"):
+            problems.append(f"{path.name}: {text}: {verdict}")
+        wrong += refused
+        if text == "as it is" and not verdict.endswith(" MT_OK"):
+            problems.append(f"{path}: the reader refuses it")
+        if refused == schema_of[kind].is_valid(mutant):
+            problems.append(f"{path.name}: {text}: the reader {'refuses' if refused else 'accepts'} it, the schema does not agree")
+    if jobs and (wrong == 0 or wrong == len(jobs)):
+        problems.append("all verdicts are the same: the comparison cannot fail")
+    for problem in problems[:60]:
+        print(problem)
+    print(f"schemas: {checked} files, {len(jobs)} mutants ({wrong} wrong in structure), {len(problems)} problems")
+    sys.exit(1 if problems or checked == 0 or not jobs else 0)
+
+
+if __name__ == "__main__":
+    main()
