@@ -305,6 +305,7 @@ static mt_status read_text(mt_study_reader *s, const mt_file *file, mt_text *mes
     if (model_messages.failed || (messages != NULL && messages->failed)) {
         rc = mt_fail_memory(err);
     }
+    s->model_messages = NULL;
     mt_text_free(&model_messages);
     mt_json_delete(doc);
     return rc;
