@@ -1,0 +1,290 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <locale.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/json.h"
+#include "mt_alloc.h"
+#include "mt_test.h"
+
+/* What the parser says about a text: all diagnostics, "" where there are none. Owned by the caller. */
+static mt_text said_about(const char *text, size_t length, mt_status *rc)
+{
+    mt_json *doc = NULL;
+    mt_text said = {0};
+    mt_text_add(&said, "");
+    *rc = mt_json_parse(text, length, &doc, NULL);
+    if (doc != NULL) {
+        mt_json_print(doc, "f", &said);
+    }
+    mt_json_delete(doc);
+    return said;
+}
+
+static void json__syntax_errors_are_told_exactly(mt_test *t)
+{
+    static const struct {
+        const char *text;
+        const char *said;
+    } rows[] = {
+        {                                                 "","f:1:1: error: the text is empty\n"                                                             },
+        {                                            " \n\t",                                        "f:1:1: error: the text is empty\n"},
+        {                                      "{\"a\": 1,}",
+         "f:1:8: error: no comma is allowed behind the last member of an object\n"                                                      },
+        {                                          "[1, 2,]",       "f:1:6: error: no comma is allowed behind the last item of a list\n"},
+        {                                            "[1 2]",        "f:1:4: error: unexpected \"2\" where \",\" or \"]\" is expected\n"},
+        {                                            "[1, 2",           "f:1:6: error: the text ends where \",\" or \"]\" is expected\n"},
+        {                                              "[1}",        "f:1:3: error: unexpected \"}\" where \",\" or \"]\" is expected\n"},
+        {                                        "{\"a\" 1}",                 "f:1:6: error: unexpected \"1\" where \":\" is expected\n"},
+        {                                           "{a: 1}",                "f:1:2: error: a member name must stand in double quotes\n"},
+        {                                        "{\"a\": }",               "f:1:7: error: unexpected \"}\" where a value is expected\n"},
+        {                                              "1 2",   "f:1:3: error: unexpected \"2\" where the end of the text is expected\n"},
+        {                                             "[01]",        "f:1:2: error: malformed number 01: it must not start with 0\n"},
+        {                                             "[.5]", "f:1:2: error: malformed number .5: digits are missing before the point\n"},
+        {                                             "[5.]",  "f:1:2: error: malformed number 5.: digits are missing after the point\n"},
+        {                                             "[1e]",  "f:1:2: error: malformed number 1e: digits are missing in the exponent\n"},
+        {                                             "[+1]",            "f:1:2: error: malformed number +1: it must not start with +\n"},
+        {                                              "[-]",  "f:1:2: error: malformed number -: digits are missing before the point\n"},
+        {                                           "[0x10]",                                                                            "f:1:2: error: malformed number 0x10: write an expression as a string in "
+         "double quotes\n"                                                                           },
+        {                                 "[NaN, -Infinity]",
+         "f:1:2: error: NaN is not a number in JSON: numbers must be finite\n"
+         "f:1:7: error: -Infinity is not a number in JSON: numbers must be finite\n"},
+        {                             "{\"a\": [True, 'x']}",
+         "f:1:8: error: /a: unexpected True: strings are written in double quotes\n"
+         "f:1:14: error: /a: strings are written in double quotes\n"                                                                          },
+        {                                       "[\"a\tb\"]",      "f:1:4: error: control character U+0009 in a string: write \\u0009\n"},
+        {                                       "[\"a\nb\"]",
+         "f:1:2: error: the string that begins here has no closing quote on its line\n"                                                                          },
+        {                                        "[\"\\x\"]",
+         "f:1:3: error: unknown escape in a string: write \"\\\\\" for a backslash\n"},
+        {                                    "[\"\\u12g4\"]",          "f:1:3: error: \\u must be followed by four hexadecimal digits\n"                                                                          },
+        {                                    "[\"\\ud800\"]",
+         "f:1:3: error: \\ud800 is half of a surrogate pair without its other half\n"},
+        {                             "[\"\\udc00\\ud800\"]",
+         "f:1:3: error: \\udc00 is half of a surrogate pair without its other half\n"
+         "f:1:9: error: \\ud800 is half of a surrogate pair without its other half\n"                                                                          },
+        {                                    "[\"\\u0000\"]",           "f:1:3: error: the character U+0000 is not allowed in strings\n"},
+        {                                   "[\"\xC0\x80\"]",                                                                            "f:1:3: error: byte 0xC0 is not valid UTF-8\nf:1:4: error: byte "
+         "0x80 is not valid UTF-8\n"                                                                          },
+        {                               "[\"\xED\xA0\x80\"]",                                                                       NULL                        },
+        {                           "[\"\xF4\x90\x80\x80\"]",                                                                       NULL                          },
+        {                                   "[\"\xE2\x82\"]",                                                                       NULL                        },
+        {                                  "\xEF\xBB\xBF[1]",                                                                            "f:1:1: error: the text starts with a byte order mark: save it as "
+         "UTF-8 without one\n"                          },
+        {                                        "\xFF\xFE[",                     "f:1:1: error: the text is UTF-16: save it as UTF-8\n"                                                                                                          },
+        {                                        "// x\n[1]",
+         "f:1:1: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"},
+        {                                   "[1, /* x */ 2]",
+         "f:1:5: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"                                          },
+        {"{\"a\": 1, \"b\": {\"c\": 1, \"c\": 2}, \"a\": 3}",
+         "f:1:24: error: /b: member \"c\" is given twice, first in line 1\n"
+         "f:1:33: error: member \"a\" is given twice, first in line 1\n"                                          },
+        {                       "{\"a\": 1, \"\\u0061\": 2}",
+         "f:1:10: error: member \"a\" is given twice, first in line 1\n"                                                                },
+        {                  "{\"a/b\": {\"~c\": [0, 1e999]}}",
+         "f:1:20: error: /a~1b/~0c/1: the number is beyond the range of a double\n"                                                                },
+        {                     "{\"\\u001b[2J\": [0, 1e999]}",
+         "f:1:19: error: /\\u001b[2J/1: the number is beyond the range of a double\n"                                                     },
+        {                         "{\n \"\xC3\xA4\": 1e999}",
+         "f:2:7: error: /\xC3\xA4: the number is beyond the range of a double\n"                                                   },
+        {                                    "[\r\n\r1e999]",           "f:3:1: error: /0: the number is beyond the range of a double\n"                                                        },
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        mt_status rc = MT_OK;
+        mt_text said = said_about(rows[i].text, strlen(rows[i].text), &rc);
+        mt_test_row(t, "%s", rows[i].text);
+        if (rows[i].said != NULL) {
+            CHECK_STR(t, said.s, rows[i].said);
+        } else {
+            CHECK_INT(t, rc, MT_E_INPUT);
+        }
+        mt_text_free(&said);
+    }
+}
+
+static void json__what_the_standard_allows_is_accepted(mt_test *t)
+{
+    static const char *const rows[] = {
+        "0",
+        "-0",
+        "1e5",
+        "1E+5",
+        "-0.5e-3",
+        "\"\"",
+        "[]",
+        "{}",
+        " [ ] ",
+        "\"\\ud83d\\ude00\"",
+        "{\"\": 0}",
+        "\"\xF0\x9F\x98\x80\"",
+        "\"\xED\x9F\xBF\xEE\x80\x80\"",
+        "\"\\\"\\\\\\/\\b\\f\\n\\r\\t\"",
+        "1e-999",
+        "[true, false, null]",
+        "\"\x7F\"",
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        mt_status rc = MT_E_INTERNAL;
+        mt_text said = said_about(rows[i], strlen(rows[i]), &rc);
+        mt_test_row(t, "%s", rows[i]);
+        CHECK_INT(t, rc, MT_OK);
+        CHECK_STR(t, said.s, "");
+        mt_text_free(&said);
+    }
+}
+
+static void json__nesting_and_length_are_limited(mt_test *t)
+{
+    char deep[2 * MT_JSON_MAX_DEPTH + 3];
+    for (int extra = 0; extra < 2; extra++) {
+        const size_t depth = (size_t)MT_JSON_MAX_DEPTH + (size_t)extra;
+        mt_status rc = MT_OK;
+        memset(deep, '[', depth);
+        memset(deep + depth, ']', depth);
+        mt_text said = said_about(deep, 2 * depth, &rc);
+        CHECK_INT(t, rc, extra == 0 ? MT_OK : MT_E_INPUT);
+        CHECK(t, extra == 0 || strstr(said.s, "nested deeper than 64 levels") != NULL);
+        mt_text_free(&said);
+    }
+    const size_t long_length = (size_t)MT_JSON_MAX_BYTES + 1;
+    char *const spaces = malloc(long_length);
+    REQUIRE(t, spaces != NULL);
+    memset(spaces, ' ', long_length);
+    spaces[0] = '1';
+    mt_status rc = MT_OK;
+    mt_text said = said_about(spaces, long_length, &rc);
+    CHECK_INT(t, rc, MT_E_INPUT);
+    CHECK_STR(t, said.s, "f:1:1: error: longer than 16777216 bytes\n");
+    mt_text_free(&said);
+    free(spaces);
+}
+
+/* Decimal texts and the doubles that are nearest to them, in hexadecimal notation: no decimal conversion of the test's own. */
+static void json__numbers_are_the_nearest_doubles(mt_test *t)
+{
+    static const struct {
+        const char *text;
+        double value;
+    } rows[] = {
+        {                                                                      "0.1",0x1.999999999999ap-4                                                                                              },
+        {                                                                  "9007199254740993",                  0x1p53},
+        {"9007199254740993.00000000000000000000000000000000000000000000000000000000000000001",
+         0x1.0000000000001p53                                                                                         },
+        {                                                                            "17.678",    0x1.1ad916872b021p+4},
+        {                                                            "1.7976931348623157e308",  0x1.fffffffffffffp1023},
+        {                                                           "4.9406564584124654e-324",               0x1p-1074},
+        {                                                                                "-0",                    -0.0},
+        {                                                           "2.2250738585072011e-308", 0x0.fffffffffffffp-1022},
+        {                                                                                    "0."
+         "000000000000000000000000000000000000000000000000000000000000000000000000000000000001e"
+         "84",                     1.0                                                                                                         },
+        {                           "1.00000000000000011102230246251565404236316680908203125",                     1.0},
+        {                           "1.00000000000000011102230246251565404236316680908203126",     0x1.0000000000001p0                       },
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        mt_json *doc = NULL;
+        mt_test_row(t, "%s", rows[i].text);
+        if (CHECK_INT(t, mt_json_parse(rows[i].text, strlen(rows[i].text), &doc, NULL),
+                      MT_OK)) {
+            const double got = mt_json_number(doc, MT_JSON_ROOT);
+            CHECK_NEAR_ABS(t, got, rows[i].value, 0.0);
+            CHECK(t, signbit(got) == signbit(rows[i].value));
+        }
+        mt_json_delete(doc);
+    }
+}
+
+static void json__a_locale_with_a_comma_changes_nothing(mt_test *t)
+{
+    static const char *const locales[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE",
+                                          "C"};
+    mt_json *doc = NULL;
+    for (int i = 0; i < MT_COUNT(locales) && setlocale(LC_NUMERIC, locales[i]) == NULL; i++) {
+    }
+    CHECK_INT(t, mt_json_parse("[1.5, 2.25e1]", 13, &doc, NULL), MT_OK);
+    if (doc != NULL) {
+        const mt_addr first = mt_json_first(doc, MT_JSON_ROOT);
+        CHECK_NEAR_ABS(t, mt_json_number(doc, first), 1.5, 0.0);
+        CHECK_NEAR_ABS(t, mt_json_number(doc, mt_json_next(doc, first)), 22.5, 0.0);
+    }
+    mt_json_delete(doc);
+    (void)setlocale(LC_NUMERIC, "C");
+}
+
+static void json__values_and_places_are_found_by_address(mt_test *t)
+{
+    static const char text[] =
+        "{\n  \"a\": [1, \"\\u00e4\\n\", true],\n  \"b\": {\"c\": null}\n}";
+    mt_json *doc = NULL;
+    REQUIRE(t, mt_json_parse(text, strlen(text), &doc, NULL) == MT_OK);
+    int line = 0;
+    int column = 0;
+    mt_text pointer = {0};
+    const mt_addr a = mt_json_member(doc, MT_JSON_ROOT, "a");
+    const mt_addr c = mt_json_member(doc, mt_json_member(doc, MT_JSON_ROOT, "b"), "c");
+    CHECK_INT(t, a, 1);
+    CHECK_INT(t, mt_json_count(doc, MT_JSON_ROOT), 2);
+    CHECK_INT(t, mt_json_count(doc, a), 3);
+    CHECK_STR(t, mt_json_string(doc, a + 2), "\xC3\xA4\n");
+    CHECK(t, mt_json_bool(doc, a + 3));
+    CHECK_INT(t, mt_json_next(doc, a + 3), MT_NO_ADDR);
+    CHECK_INT(t, mt_json_type_of(doc, c), MT_JSON_NULL);
+    CHECK_STR(t, mt_json_name(doc, c), "c");
+    CHECK_INT(t, mt_json_member(doc, MT_JSON_ROOT, "c"), MT_NO_ADDR);
+    mt_json_place(doc, c, &line, &column);
+    CHECK_INT(t, line, 3);
+    CHECK_INT(t, column, 14);
+    mt_json_place(doc, mt_json_name_addr(doc, c), &line, &column);
+    CHECK_INT(t, column, 9);
+    mt_json_pointer(doc, c, &pointer);
+    CHECK_STR(t, pointer.s, "/b/c");
+    mt_text_free(&pointer);
+    mt_json_pointer(doc, a + 2, &pointer);
+    CHECK_STR(t, pointer.s, "/a/1");
+    mt_text_free(&pointer);
+    mt_json_delete(doc);
+}
+
+static void json__more_problems_than_the_limit_are_counted(mt_test *t)
+{
+    mt_json *doc = NULL;
+    mt_text said = {0};
+    REQUIRE(t, mt_json_parse("[]", 2, &doc, NULL) == MT_OK);
+    for (int i = 0; i < MT_DIAG_LIMIT + 3; i++) {
+        mt_diag_error(mt_json_diags(doc), MT_JSON_ROOT, "problem %d", i);
+    }
+    mt_json_print(doc, "f", &said);
+    CHECK(t, strstr(said.s, "f:1:1: error: problem 199\nf: 3 more not shown\n") != NULL);
+    CHECK(t, strstr(said.s, "problem 200") == NULL);
+    mt_text_free(&said);
+    mt_json_delete(doc);
+}
+
+static void json__every_failing_allocation_is_survived(mt_test *t)
+{
+    static const char text[] = "{\"a\": [1.5, \"x\", {\"b\": 1e999}], \"a\": 2}";
+    mt_status rc = MT_E_MEMORY;
+    for (long nth = 0; rc == MT_E_MEMORY && mt_alloc_works(); nth++) {
+        const long before = mt_alloc_live();
+        mt_json *doc = NULL;
+        mt_test_row(t, "allocation %ld", nth);
+        mt_alloc_fail_after(nth);
+        rc = mt_json_parse(text, strlen(text), &doc, NULL);
+        mt_alloc_fail_after(-1);
+        CHECK(t, (rc == MT_OK) == (doc != NULL));
+        mt_json_delete(doc);
+        CHECK_INT(t, mt_alloc_live(), before);
+    }
+    CHECK(t, rc == MT_OK || !mt_alloc_works());
+}
+
+MT_TEST_MAIN(MT_TEST(json__syntax_errors_are_told_exactly),
+             MT_TEST(json__what_the_standard_allows_is_accepted),
+             MT_TEST(json__nesting_and_length_are_limited),
+             MT_TEST(json__numbers_are_the_nearest_doubles),
+             MT_TEST(json__a_locale_with_a_comma_changes_nothing),
+             MT_TEST(json__values_and_places_are_found_by_address),
+             MT_TEST(json__more_problems_than_the_limit_are_counted),
+             MT_TEST(json__every_failing_allocation_is_survived))
