@@ -31,7 +31,7 @@ def validators():
 
 def shipped():
     """All files that are there to be read, with their kind."""
-    files = [p for folder in ("problems", "studies", "tests/schema") for p in sorted((ROOT / folder).glob("*.json"))]
+    files = [p for folder in ("problems", "studies", "tests/schema", "tests/io/good") for p in sorted((ROOT / folder).glob("*.json"))]
     return [(p, KINDS.get(load(p).get("format"))) for p in files]
 
 
@@ -120,9 +120,9 @@ def main():
         for i, (path, kind, _, mutant) in enumerate(jobs):
             if kind == "study":  # models are named relative to the study
                 mutant = json.loads(json.dumps(mutant))
-                for holder in [mutant] + [r for r in (mutant.get("references") or {}).values()
-                                          if isinstance(mutant.get("references"), dict) and isinstance(r, dict)]:
-                    if isinstance(holder.get("model"), str):
+                references = mutant.get("references")
+                for holder in [mutant] + (list(references.values()) if isinstance(references, dict) else []):
+                    if isinstance(holder, dict) and isinstance(holder.get("model"), str):
                         holder["model"] = str((path.parent / holder["model"]).resolve())
             name = Path(folder, f"{i}.json")
             name.write_text(json.dumps(mutant), encoding="utf-8")
