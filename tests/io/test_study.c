@@ -6,10 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "io/file.h"
 #include "io/io.h"
-#include "io/json.h"
-#include "io/read_study.h"
 #include "mt_alloc.h"
 #include "mt_test.h"
 
@@ -305,73 +302,10 @@ static void study__every_failing_allocation_is_survived(mt_test *t)
     CHECK(t, rc == MT_OK || !mt_alloc_works());
 }
 
-/* The schema's definition of a table: {"properties": ..., "required": ...}. */
-static mt_addr definition_of(const mt_json *schema, const char *what)
-{
-    const mt_addr all = mt_json_member(schema, MT_JSON_ROOT, "definitions");
-    return *what == '\0' ? MT_JSON_ROOT : mt_json_member(schema, all, what);
-}
-
-static bool lists(const mt_json *doc, mt_addr list, const char *name)
-{
-    if (list == MT_NO_ADDR) {
-        return false;
-    }
-    for (mt_addr at = mt_json_first(doc, list); at != MT_NO_ADDR; at = mt_json_next(doc, at)) {
-        if (strcmp(mt_json_string(doc, at), name) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static void check_table(mt_test *t, const mt_json *schema, const mt_key_table *table)
-{
-    const mt_addr definition = definition_of(schema, table->what);
-    mt_test_row(t, "table \"%s\"", table->what);
-    if (!CHECK(t, definition != MT_NO_ADDR)) {
-        return;
-    }
-    const mt_addr properties = mt_json_member(schema, definition, "properties");
-    const mt_addr required = mt_json_member(schema, definition, "required");
-    CHECK(t, table->n > 0 && table->n <= MT_MAX_KEYS);
-    CHECK_INT(t, mt_json_count(schema, properties), table->n);
-    for (int k = 0; k < table->n; k++) {
-        const mt_key *const key = &table->keys[k];
-        mt_test_row(t, "table \"%s\", key \"%s\"", table->what, key->name);
-        CHECK(t, mt_json_member(schema, properties, key->name) != MT_NO_ADDR);
-        CHECK(t, lists(schema, required, key->name) == key->required);
-        for (int j = 0; j < k; j++) {
-            CHECK(t, strcmp(key->name, table->keys[j].name) != 0);
-        }
-    }
-}
-
-/* The same contract is written in the reader's tables and in the schema: neither may drift. */
-static void study__tables_of_keys_equal_the_schema(mt_test *t)
-{
-    mt_file file = {0};
-    mt_json *schema = NULL;
-    int n = 0;
-    const mt_key_table *const *const tables = mt_study_key_tables(&n);
-    CHECK(t, n > 10);
-    const bool read = mt_file_read(MT_TEST_SOURCE_DIR "/schemas/study.schema.json", NULL,
-                                   MT_JSON_MAX_BYTES, &file, NULL) == MT_OK;
-    if (CHECK(t, read) &&
-        CHECK_INT(t, mt_json_parse(file.bytes, file.length, &schema, NULL), MT_OK)) {
-        for (int i = 0; i < n; i++) {
-            check_table(t, schema, tables[i]);
-        }
-    }
-    mt_json_delete(schema);
-    mt_file_free(&file);
-}
-
 MT_TEST_MAIN(MT_TEST(study__every_member_arrives),
              MT_TEST(study__inputs_are_listed_with_their_digests),
              MT_TEST(study__defaults_are_filled_in), MT_TEST(study__bounds_below_zero_are_fine),
              MT_TEST(study__an_original_value_outside_the_bounds_is_a_warning),
              MT_TEST(study__models_lie_beneath_the_root),
              MT_TEST(study__no_file_is_a_system_failure),
-             MT_TEST(study__every_failing_allocation_is_survived),
-             MT_TEST(study__tables_of_keys_equal_the_schema))
+             MT_TEST(study__every_failing_allocation_is_survived))
