@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "mechanics/lagrangian.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -70,13 +71,37 @@ static void add_hessian(const mt_system *sys, const int body[2], const mt_jet *j
 }
 
 /* Torques count as forces at the model length. */
-static void note_force(const mt_system *sys, mt_lagrangian *out, const mt_jet *jet, mt_cx force)
+static double largest_push(const mt_system *sys, const mt_jet *jet)
 {
+    double push = 0.0;
     for (int k = 0; k < MT_LOCAL; k++) {
         const double arm = k % 6 < 3 ? 1.0 : sys->length_m;
-        out->force_scale =
-            fmax(out->force_scale, fabs(creal(force)) * fabs(creal(jet->g[k])) / arm);
+        push = fmax(push, fabs(creal(jet->g[k])) / arm);
     }
+    return push;
+}
+
+static void note_force(const mt_system *sys, mt_lagrangian *out, const mt_jet *jet, mt_cx force)
+{
+    const double size = fabs(creal(force)) * largest_push(sys, jet);
+    out->force_scale = fmax(out->force_scale, size);
+}
+
+/* Positions are known to eps of the coordinates that they are the difference of, angles to eps. */
+static void note_noise(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
+                       const mt_jet *jet, double stiffness, mt_lagrangian *out)
+{
+    const bool angle = def->kind == MT_MEASURE_ANGLE || def->kind == MT_MEASURE_ROTATION ||
+                       def->kind == MT_MEASURE_DOT;
+    double extent = angle ? 1.0 : d->sys->length_m;
+    for (int side = 0; side < 2 && !angle; side++) {
+        const mt_pose *const pose = mt_pose_of(poses, def->body[side]);
+        for (int k = 0; k < 3; k++) {
+            extent = fmax(extent, fabs(creal(pose->x[k])));
+        }
+    }
+    const double noise = DBL_EPSILON * extent * fabs(stiffness) * largest_push(d->sys, jet);
+    out->force_noise = fmax(out->force_noise, noise);
 }
 
 static void add_springs(const mt_data *d, const mt_pose *poses, bool hessian,
@@ -100,6 +125,7 @@ static void add_springs(const mt_data *d, const mt_pose *poses, bool hessian,
         }
         const int *const body = sys->measures[s->measure[0]].body;
         const mt_cx k = mt_data_scalar(d, s->stiffness, 0.0);
+        note_noise(d, &sys->measures[s->measure[0]], poses, &jet[0], creal(k), out);
         if (coupling) { /* V = 1/2 k d_a d_b */
             for (int side = 0; side < 2; side++) {
                 const mt_cx force = 0.5 * cx_mul(k, stretch[1 - side]);
@@ -226,6 +252,7 @@ void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn
         memset(out->h, 0, nq * nq * sizeof *out->h);
     }
     out->force_scale = 0.0;
+    out->force_noise = 0.0;
     if (energy == MT_ENERGY_PHYSICAL) {
         add_springs(d, poses, hessian, geometric_only, out);
         add_loads(d, poses, hessian, out);

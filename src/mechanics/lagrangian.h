@@ -20,6 +20,8 @@ typedef struct mt_lagrangian {
     mt_cx *trim; /* [nq] gradient of the trimmed spring's measure (where the system has one) */
     double
         force_scale; /* sum over all loads and springs of |contribution to g|, largest entry; 0 where nothing loads */
+    double
+        force_noise; /* what rounding of the positions may make of the stiffest spring's force, unit as force_scale */
     double trim_force; /* force of the trimmed spring, in; its own stiffness acts in h only */
     double trim_force_derivative;
 } mt_lagrangian;

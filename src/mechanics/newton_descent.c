@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Descent on the energy along the constraints: the reduced Hessian with the signs of its eigenvalues made positive gives a direction that leads downhill, the step is
+ * halved until the energy, evaluated back on the constraints, is lower. Used where Newton does not converge from the drawing; it ends near a stable equilibrium, and Newton
+ * finishes.
+ */
+#include "mechanics/newton_priv.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { DESCENT_LIMIT = 400, HALVINGS = 30, RESTORE_LIMIT = 20 };
+/* Descent hands over to Newton at an unbalanced force of this many times the one that counts as done: well within its basin. */
+static const double HAND_OVER = 1e3;
+
+/* Back to the constraints by least-norm steps. */
+static mt_status restore(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_err *err)
+{
+    for (int it = 0; it < RESTORE_LIMIT; it++) {
+        const mt_arena_mark mark = mt_arena_get_mark(mem);
+        mt_elimination e;
+        mt_newton_evaluate(w, poses, false);
+        if (mt_newton_gap_of(w) <= MT_STEP_DONE) {
+            return MT_OK;
+        }
+        double *const minus_c = mt_arena_f64(mem, (size_t)w->p->m, 1);
+        if (minus_c == NULL) {
+            return mt_fail_memory(err);
+        }
+        for (int i = 0; i < w->p->m; i++) {
+            minus_c[i] = -w->c[i];
+        }
+        MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &e, err));
+        MT_TRY(mt_eliminate_particular(&e, minus_c, w->step, mem, err));
+        w->moved = mt_newton_scaled_norm(w, w->step);
+        mt_newton_take_step(w, poses, MT_STEP_LIMIT);
+        mt_arena_rewind(mem, mark);
+    }
+    return mt_fail(err, MT_E_ASSEMBLY, "the joints do not stay closed");
+}
+
+/* One direction: eigenvalues of the reduced Hessian made positive, freedoms without stiffness given the softest stiffness that keeps the step short. */
+static mt_status direction_of(mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
+                              mt_err *err)
+{
+    const int n = e->n;
+    double *const k = mt_arena_f64(mem, (size_t)n, (size_t)n);
+    double *const values = mt_arena_f64(mem, (size_t)n, 1);
+    double *const eta = mt_arena_f64(mem, (size_t)n, 1);
+    if (k == NULL || values == NULL || eta == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_newton_reduce_hessian(w, e, k, n, mem, err));
+    mt_eliminate_project(e, w->g, w->reduced);
+    const double soft = mt_norm2(n, w->reduced) / (MT_STEP_LIMIT * w->sys->length_m);
+    MT_TRY(mt_eig_sym(n, k, values, true, mem, err));
+    for (int i = 0; i < n; i++) {
+        const double *const vec = k + ((ptrdiff_t)i * n);
+        mt_axpy(n, -mt_dot(n, vec, w->reduced) / fmax(fabs(values[i]), soft), vec, eta);
+    }
+    mt_eliminate_expand(e, eta, w->step);
+    w->moved = mt_newton_scaled_norm(w, w->step);
+    return MT_OK;
+}
+
+/* Halve the step until the energy is lower; *lower tells whether it is, else the poses are back where they were. */
+static mt_status search_line(mt_newton_work *w, mt_pose *poses, double *energy, bool *lower,
+                             mt_arena *mem, mt_err *err)
+{
+    const size_t nq = (size_t)w->sys->nq;
+    const size_t n = (size_t)w->sys->n_bodies;
+    const double full = w->moved;
+    double length = fmin(full, MT_STEP_LIMIT);
+    double *const direction = mt_arena_f64(mem, nq, 1);
+    mt_pose *const kept = mt_arena_alloc(mem, n, sizeof *kept);
+    if (direction == NULL || kept == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(direction, w->step, nq * sizeof *direction);
+    memcpy(kept, poses, n * sizeof *kept);
+    *lower = false;
+    for (int half = 0; half < HALVINGS && !*lower; half++) {
+        memcpy(poses, kept, n * sizeof *kept);
+        memcpy(w->step, direction, nq * sizeof *direction);
+        w->moved = full;
+        mt_newton_take_step(w, poses, length);
+        const mt_status rc = restore(w, poses, mem, NULL);
+        if (rc == MT_OK) {
+            const double now = mt_energy_value(w->p->data, poses, w->tau);
+            *lower = now < *energy;
+            *energy = *lower ? now : *energy;
+        } else if (rc != MT_E_ASSEMBLY && rc != MT_E_DOMAIN) {
+            return mt_fail_memory(err);
+        }
+        length *= 0.5;
+    }
+    if (!*lower) {
+        memcpy(poses, kept, n * sizeof *kept);
+    }
+    return MT_OK;
+}
+
+mt_status mt_newton_descend(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_err *err)
+{
+    MT_TRY(restore(w, poses, mem, err));
+    double energy = mt_energy_value(w->p->data, poses, w->tau);
+    bool lower = true;
+    for (int it = 0; it < DESCENT_LIMIT && lower; it++) {
+        const mt_arena_mark mark = mt_arena_get_mark(mem);
+        const double tau = w->tau;
+        mt_elimination e;
+        double *inverse = NULL;
+        MT_TRY(mt_newton_linearise(w, poses, mem, &e, &inverse, err));
+        w->tau = tau; /* the force of the trimmed spring stands while the energy is compared */
+        lower = w->residual > HAND_OVER * MT_FORCE_DONE;
+        if (lower) { /* not lower: as low as rounding lets us see, Newton decides */
+            MT_TRY(direction_of(w, &e, mem, err));
+            MT_TRY(search_line(w, poses, &energy, &lower, mem, err));
+        }
+        mt_arena_rewind(mem, mark);
+    }
+    return MT_OK;
+}

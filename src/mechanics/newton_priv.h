@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_NEWTON_PRIV_H
+#define MECHANICS_NEWTON_PRIV_H
+
+#include "mechanics/newton.h"
+
+/* What the files newton*.c share: one linearisation of a stage at the present position. All arrays live in the arena given to mt_newton_work_init. */
+typedef struct mt_newton_work {
+    const mt_newton_problem *p;
+    const mt_system *sys;
+    mt_lagrangian l;
+    mt_cx *lambda_cx;
+    double *lambda;  /* [m] */
+    double *g;       /* [nq] gradient of the energy */
+    double *c;       /* [m] */
+    double *a;       /* m x nq */
+    double *h;       /* nq x nq */
+    double *trim;    /* [nq] gradient of the trimmed spring's measure */
+    double *v;       /* [nq] step back to the constraints */
+    double *step;    /* [nq] */
+    double *reduced; /* [nq + 1] Z^T g, and the drive's equation with trim */
+    double tau;      /* force of the trimmed spring */
+    double residual; /* unbalanced force / force scale */
+    double noise;    /* what rounding may leave of it */
+    double gap;      /* model lengths */
+    double moved;    /* model lengths */
+    int null_freedoms;
+} mt_newton_work;
+
+/* Converged: the step is below this fraction of the model length (quadratic convergence makes the error its square)... */
+static const double MT_STEP_DONE = 1e-10;
+/* ...and the unbalanced force below this fraction of the forces at work (rounding of their sum is ~ n eps). */
+static const double MT_FORCE_DONE = 1e-11;
+/* Largest motion of one step in model lengths: beyond it the quadratic model means nothing. */
+static const double MT_STEP_LIMIT = 0.3;
+
+mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_arena *mem,
+                              mt_err *err);
+/* Lagrangian at poses with w->lambda and w->tau. */
+void mt_newton_evaluate(mt_newton_work *w, const mt_pose *poses, bool hessian);
+/* Everything at poses: multipliers, Hessian, elimination, inverse (of order n, with trim n + 1), and the step v + Z eta (unlimited); tau is advanced. */
+mt_status mt_newton_linearise(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
+                              mt_elimination *e, double **inverse, mt_err *err);
+/* Z^T H Z, n x n with leading dimension ld. */
+mt_status mt_newton_reduce_hessian(const mt_newton_work *w, const mt_elimination *e, double *k,
+                                   int ld, mt_arena *mem, mt_err *err);
+/* Move the poses along w->step, at most `limit` model lengths. */
+void mt_newton_take_step(mt_newton_work *w, mt_pose *poses, double limit);
+/* Largest motion of dq in model lengths, rotations as they are. */
+double mt_newton_scaled_norm(const mt_newton_work *w, const double *dq);
+/* Largest violation of the constraints last evaluated, in model lengths. */
+double mt_newton_gap_of(const mt_newton_work *w);
+/* Energy descent along the constraints until Newton is likely to finish. */
+mt_status mt_newton_descend(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_err *err);
+
+#endif

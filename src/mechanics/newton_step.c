@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Newton with multipliers. At a position q with constraints c, Jacobian A, freedoms Z (A Z = 0):
+ *     lambda  = least-squares solution of A^T lambda = -g
+ *     v       = -A^+ c                                    back to the constraints
+ *     H       = Hessian of V + lambda c
+ *     Z^T H Z eta = -Z^T (g + H v)                        towards equilibrium
+ *     q      <- q (+) (v + Z eta).
+ * Freedoms without stiffness (singular values of Z^T H Z below NO_STIFFNESS of the largest) take no step; the residual test then decides whether something still
+ * pushes along them. With `trim` the force tau of one spring is unknown and the drive's row (a_d, c_d) is its equation:
+ *     [Z^T H Z   Z^T t] [eta]   [-Z^T (g + H v)  ]
+ *     [a_d Z       0  ] [tau] = [-(c_d + a_d v)  ].
+ */
+#include "mechanics/newton_priv.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Singular values of the reduced Hessian below this fraction of the largest belong to freedoms without stiffness: rounding leaves about n eps ~ 1e-14 of them, and a real
+ * stiffness may be 1e12 times softer than its neighbour. */
+static const double NO_STIFFNESS = 1e-13;
+
+mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_arena *mem,
+                              mt_err *err)
+{
+    const mt_system *const sys = p->data->sys;
+    const size_t nq = (size_t)sys->nq;
+    const size_t m = (size_t)sys->n_constraints;
+    *w = (mt_newton_work){.p = p, .sys = sys};
+    MT_TRY(mt_lagrangian_init(&w->l, sys, mem, err));
+    w->lambda_cx = mt_arena_alloc(mem, m, sizeof *w->lambda_cx);
+    w->lambda = mt_arena_f64(mem, m, 1);
+    w->g = mt_arena_f64(mem, nq, 1);
+    w->c = mt_arena_f64(mem, m, 1);
+    w->a = mt_arena_f64(mem, m, nq);
+    w->h = mt_arena_f64(mem, nq, nq);
+    w->trim = mt_arena_f64(mem, nq, 1);
+    w->v = mt_arena_f64(mem, nq, 1);
+    w->step = mt_arena_f64(mem, nq, 1);
+    w->reduced = mt_arena_f64(mem, nq + 1, 1);
+    const bool bad = w->lambda_cx == NULL || w->lambda == NULL || w->g == NULL ||
+                     w->c == NULL || w->a == NULL || w->h == NULL || w->trim == NULL ||
+                     w->v == NULL || w->step == NULL || w->reduced == NULL;
+    return bad ? mt_fail_memory(err) : MT_OK;
+}
+
+static void real_part(ptrdiff_t n, const mt_cx *from, double *to)
+{
+    for (ptrdiff_t i = 0; i < n; i++) {
+        to[i] = creal(from[i]);
+    }
+}
+
+void mt_newton_evaluate(mt_newton_work *w, const mt_pose *poses, bool hessian)
+{
+    const int m = w->p->m;
+    const ptrdiff_t nq = w->sys->nq;
+    w->l.trim_force = w->tau;
+    w->l.trim_force_derivative = 0.0;
+    for (int i = 0; i < m; i++) {
+        w->lambda_cx[i] = w->lambda[i];
+    }
+    mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, poses, m, w->lambda_cx, hessian,
+                       false, &w->l);
+    real_part(nq, w->l.g, w->g);
+    real_part(nq, w->l.trim, w->trim);
+    real_part(m, w->l.c, w->c);
+    real_part(m * nq, w->l.a, w->a);
+    if (hessian) {
+        real_part(nq * nq, w->l.h, w->h);
+    }
+    if (w->p->energy == MT_ENERGY_ANCHOR) {
+        w->l.force_scale =
+            w->sys->length_m; /* the anchor's own unit: a displacement of one model length */
+    }
+}
+
+/* Elimination of the rows that carry a multiplier: with trim all but the last. */
+static mt_status eliminate(const mt_newton_work *w, mt_arena *mem, mt_elimination *e,
+                           mt_err *err)
+{
+    const int m = w->p->trim ? w->p->m - 1 : w->p->m;
+    if (m == w->p->m) {
+        return mt_eliminate(w->sys, m, w->a, mem, e, err);
+    }
+    double *const a = mt_arena_f64(mem, (size_t)m, (size_t)w->sys->nq);
+    if (a == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (ptrdiff_t j = 0; j < w->sys->nq; j++) {
+        memcpy(a + (j * m), w->a + (j * w->p->m), (size_t)m * sizeof *a);
+    }
+    return mt_eliminate(w->sys, m, a, mem, e, err);
+}
+
+double mt_newton_scaled_norm(const mt_newton_work *w, const double *dq)
+{
+    double s = 0.0;
+    for (int b = 0; b < w->sys->n_bodies; b++) {
+        for (int k = 0; k < 6; k++) {
+            const int dof = w->sys->bodies[b].dof[k];
+            if (dof >= 0) {
+                const double x = fabs(dq[dof]) * (k < 3 ? 1.0 / w->sys->length_m : 1.0);
+                s = !(x <= s) ? x : s; /* NaN is kept */
+            }
+        }
+    }
+    return s;
+}
+
+double mt_newton_gap_of(const mt_newton_work *w)
+{
+    double gap = 0.0;
+    for (int i = 0; i < w->p->m; i++) {
+        const mt_measure_kind kind = w->sys->measures[w->sys->constraints[i].measure[0]].kind;
+        const bool length = kind == MT_MEASURE_PLANE || kind == MT_MEASURE_DISTANCE;
+        const double c = fabs(w->c[i]) / (length ? w->sys->length_m : 1.0);
+        gap = !(c <= gap) ? c : gap;
+    }
+    return gap;
+}
+
+mt_status mt_newton_reduce_hessian(const mt_newton_work *w, const mt_elimination *e, double *k,
+                                   int ld, mt_arena *mem, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    double *const hz = mt_arena_f64(mem, (size_t)e->nq, (size_t)e->n);
+    if (hz == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_gemm(false, false, e->nq, e->n, e->nq, 1.0, w->h, e->nq, e->z, e->nq, 0.0, hz, e->nq);
+    mt_gemm(true, false, e->n, e->n, e->nq, 1.0, e->z, e->nq, hz, e->nq, 0.0, k, ld);
+    mt_arena_rewind(mem, mark);
+    return MT_OK;
+}
+
+/* Row and column of the drive, times `scale`. */
+static void border(const mt_newton_work *w, const mt_elimination *e, double scale, double *k)
+{
+    const int n = e->n;
+    const ptrdiff_t order = n + 1;
+    for (int c = 0; c < n; c++) {
+        const double *const zc = e->z + ((ptrdiff_t)c * e->nq);
+        double row = 0.0;
+        for (int j = 0; j < e->nq; j++) {
+            row += w->a[(w->p->m - 1) + ((ptrdiff_t)j * w->p->m)] * zc[j];
+        }
+        k[n + (c * order)] = scale * row;
+        k[c + (n * order)] = scale * mt_dot(e->nq, zc, w->trim);
+    }
+    k[n + (n * order)] = 0.0;
+}
+
+/* Pseudo-inverse (order x order) of the (bordered) reduced Hessian, and the number of freedoms without stiffness. */
+static mt_status invert_reduced(mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
+                                double **inverse, mt_err *err)
+{
+    const int order = e->n + (w->p->trim ? 1 : 0);
+    int rank = 0;
+    double scale = 1.0;
+    double *const k = mt_arena_f64(mem, (size_t)order, (size_t)order);
+    *inverse = mt_arena_f64(mem, (size_t)order, (size_t)order);
+    if (k == NULL || *inverse == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_newton_reduce_hessian(w, e, k, order, mem, err));
+    if (w->p->trim) { /* a force unit that keeps the border of the size of the rest */
+        const double stiffness = mt_max_abs((ptrdiff_t)order * order, k);
+        scale = stiffness > 0.0 ? stiffness : 1.0;
+        border(w, e, scale, k);
+    }
+    MT_TRY(mt_pinv(order, order, k, NO_STIFFNESS, *inverse, &rank, mem, err));
+    w->null_freedoms = order - rank;
+    for (int c = 0; c < order && w->p->trim;
+         c++) { /* undo the scale on the last row and column */
+        (*inverse)[e->n + ((ptrdiff_t)c * order)] *= scale;
+        (*inverse)[c + ((ptrdiff_t)e->n * order)] *= scale;
+    }
+    return MT_OK;
+}
+
+/* Multipliers, then gradient, Hessian and residual with them. */
+static mt_status balance(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
+                         mt_elimination *e, mt_err *err)
+{
+    memset(w->lambda, 0, (size_t)w->p->m * sizeof *w->lambda);
+    mt_newton_evaluate(w, poses, false);
+    MT_TRY(eliminate(w, mem, e, err));
+    for (int j = 0; j < w->sys->nq; j++) {
+        w->v[j] = -w->g[j];
+    }
+    MT_TRY(mt_eliminate_multipliers(e, w->v, w->lambda, mem, err));
+    mt_newton_evaluate(w, poses, true);
+    w->gap = mt_newton_gap_of(w);
+    mt_eliminate_project(e, w->g, w->reduced);
+    const double unbalanced = mt_max_abs(e->n, w->reduced);
+    const double scale = w->l.force_scale > 0.0 ? w->l.force_scale : 1.0;
+    w->residual = unbalanced / scale;
+    w->noise = w->l.force_noise / scale;
+    return MT_OK;
+}
+
+mt_status mt_newton_linearise(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
+                              mt_elimination *e, double **inverse, mt_err *err)
+{
+    const int nq = w->sys->nq;
+    MT_TRY(balance(w, poses, mem, e, err));
+    MT_TRY(invert_reduced(w, e, mem, inverse, err));
+    double *const minus_c = mt_arena_f64(mem, (size_t)w->p->m, 1);
+    double *const hv = mt_arena_f64(mem, (size_t)nq, 1);
+    double *const eta = mt_arena_f64(mem, (size_t)e->n + 1, 1);
+    if (minus_c == NULL || hv == NULL || eta == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < w->p->m; i++) {
+        minus_c[i] = -w->c[i];
+    }
+    MT_TRY(mt_eliminate_particular(e, minus_c, w->v, mem, err));
+    memcpy(hv, w->g, (size_t)nq * sizeof *hv);
+    mt_gemv(false, nq, nq, 1.0, w->h, nq, w->v, 1.0, hv);
+    mt_eliminate_project(e, hv, w->reduced);
+    const int order = e->n + (w->p->trim ? 1 : 0);
+    for (int i = 0; i < e->n; i++) {
+        w->reduced[i] = -w->reduced[i];
+    }
+    if (w->p->trim) {
+        double row = w->c[w->p->m - 1];
+        for (int j = 0; j < nq; j++) {
+            row += w->a[(w->p->m - 1) + ((ptrdiff_t)j * w->p->m)] * w->v[j];
+        }
+        w->reduced[e->n] = -row;
+    }
+    mt_gemv(false, order, order, 1.0, *inverse, order, w->reduced, 0.0, eta);
+    mt_eliminate_expand(e, eta, w->step);
+    mt_axpy(nq, 1.0, w->v, w->step);
+    w->moved = mt_newton_scaled_norm(w, w->step);
+    if (w->p->trim) {
+        w->tau += eta[e->n];
+    }
+    return MT_OK;
+}
+
+void mt_newton_take_step(mt_newton_work *w, mt_pose *poses, double limit)
+{
+    const double factor = w->moved > limit ? limit / w->moved : 1.0;
+    for (int j = 0; j < w->sys->nq; j++) {
+        w->step[j] *= factor;
+    }
+    mt_position_move(w->sys, poses, w->step);
+}
