@@ -130,6 +130,17 @@ static int compare_members(const void *a, const void *b)
     return order != 0 ? order : (x->value > y->value) - (x->value < y->value);
 }
 
+static void note_duplicate(mt_json *doc, const member *first, const member *again)
+{
+    int line = 0;
+    int column = 0;
+    if (doc->diags.errors < MT_DIAG_LIMIT) { /* finding a line takes a walk through the text */
+        mt_json_place(doc, mt_json_name_addr(doc, first->value), &line, &column);
+    }
+    mt_diag_error(&doc->diags, mt_json_name_addr(doc, again->value),
+                  "member \"%s\" is given twice, first in line %d", again->name, line);
+}
+
 /* Note names that an object has twice: all members sorted by object, name, place. */
 static bool find_duplicates(mt_json *doc)
 {
@@ -144,16 +155,16 @@ static bool find_duplicates(mt_json *doc)
         }
     }
     qsort(members, n, sizeof *members, compare_members);
+    size_t first = 0; /* of those equal to the one before i */
     for (size_t i = 1; i < n; i++) {
-        if (members[i].parent == members[i - 1].parent &&
-            strcmp(members[i].name, members[i - 1].name) == 0) {
-            int line = 0;
-            int column = 0;
-            mt_json_place(doc, mt_json_name_addr(doc, members[i - 1].value), &line, &column);
-            mt_diag_error(&doc->diags, mt_json_name_addr(doc, members[i].value),
-                          "member \"%s\" is given twice, first in line %d", members[i].name,
-                          line);
+        if (members[i].parent != members[first].parent ||
+            strcmp(members[i].name, members[first].name) != 0) {
+            first = i;
+            continue;
         }
+        doc->nodes[members[i].value].duplicate = true;
+        doc->nodes[members[i].parent].children--;
+        note_duplicate(doc, &members[first], &members[i]);
     }
     free(members);
     return true;
@@ -281,7 +292,14 @@ mt_addr mt_json_first(const mt_json *doc, mt_addr value)
 
 mt_addr mt_json_next(const mt_json *doc, mt_addr value)
 {
-    return is_value(doc, value) ? doc->nodes[value].next : MT_NO_ADDR;
+    if (!is_value(doc, value)) {
+        return MT_NO_ADDR;
+    }
+    mt_addr next = doc->nodes[value].next;
+    while (next != MT_NO_ADDR && doc->nodes[next].duplicate) {
+        next = doc->nodes[next].next;
+    }
+    return next;
 }
 
 mt_addr mt_json_member(const mt_json *doc, mt_addr value, const char *name)

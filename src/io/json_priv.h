@@ -15,7 +15,8 @@ typedef struct mt_json_node {
     int parent;     /* MT_NO_ADDR for the root */
     int next;
     int children;
-    int type; /* mt_json_type, 0 */
+    int type;       /* mt_json_type, 0 */
+    bool duplicate; /* a member whose name the object has already: passed over */
     cJSON *item;
 } mt_json_node;
 

@@ -113,7 +113,8 @@ void mt_read_joints(mt_model_reader *mr, mt_addr list)
 static void refuse(mt_model_reader *mr, mt_addr value, const mt_spring *s, const char *member)
 {
     if (value != MT_NO_ADDR) {
-        mt_diag_error(mr->r.diags, value, "a %s %s has no \"%s\"", mt_spring_type_name(s->type),
+        mt_diag_error(mr->r.diags, value, "%s %s %s has no \"%s\"",
+                      s->type == MT_SPRING_AXIAL ? "an" : "a", mt_spring_type_name(s->type),
                       s->damper ? "damper" : "spring", member);
     }
 }

@@ -30,6 +30,19 @@ bool mt_reader_type(mt_reader *r, mt_addr value, mt_key_type type)
     return false;
 }
 
+/* The nearest key; else one that only adds a unit or the like to the name ("mass" for "mass_kg"). */
+static const char *nearest_key(const char *name, const char *const *names, int n)
+{
+    const char *const near = mt_text_nearest(name, names, n);
+    const size_t length = strlen(name);
+    for (int i = 0; i < n && near == NULL && length > 0; i++) {
+        if (strncmp(names[i], name, length) == 0 && names[i][length] == '_') {
+            return names[i];
+        }
+    }
+    return near;
+}
+
 static void unknown_member(mt_reader *r, mt_addr member, const mt_key_table *table)
 {
     const char *names[MT_MAX_KEYS];
@@ -37,7 +50,7 @@ static void unknown_member(mt_reader *r, mt_addr member, const mt_key_table *tab
         names[i] = table->keys[i].name;
     }
     const char *const name = mt_json_name(r->doc, member);
-    const char *const near = mt_text_nearest(name, names, table->n);
+    const char *const near = nearest_key(name, names, table->n);
     const mt_addr at = mt_json_name_addr(r->doc, member);
     if (near != NULL) {
         mt_diag_structure(r->diags, at, "unknown member \"%s\"; did you mean \"%s\"?", name,

@@ -311,6 +311,9 @@ static bool unexpected(scan *sc, const char *wanted)
     if (c < 0) {
         return wrong(sc, sc->i, "the text ends where %s is expected", wanted);
     }
+    if (c == '"') {
+        return wrong(sc, sc->i, "unexpected string where %s is expected", wanted);
+    }
     if (c > ' ' && c < 0x7F) {
         return wrong(sc, sc->i, "unexpected \"%c\" where %s is expected", c, wanted);
     }

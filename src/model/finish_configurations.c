@@ -33,12 +33,13 @@ static void check_like(mt_finish *f, int c, int *state)
         state[at] = ON_PATH;
         at = all[at].like;
     }
-    if (at != MT_ABSENT && state[at] == ON_PATH) {
-        note_like_cycle(f, at);
-        all[at].like = MT_ABSENT;
-    }
+    const int again = at != MT_ABSENT && state[at] == ON_PATH ? at : MT_ABSENT;
     for (at = c; at != MT_ABSENT && state[at] == ON_PATH; at = all[at].like) {
         state[at] = DONE;
+    }
+    if (again != MT_ABSENT) {
+        note_like_cycle(f, again);
+        all[again].like = MT_ABSENT;
     }
 }
 

@@ -12,9 +12,10 @@ static void check_member(mt_finish *f, const mt_spring *s, bool given, need want
 {
     const bool wrong = given ? wanted == NONE : wanted == NEEDS;
     if (wrong) {
-        mt_diag_error(f->d, s->name.addr, "%s \"%s\": a %s %s %s \"%s\"",
-                      s->damper ? "damper" : "spring", s->name.s, mt_spring_type_name(s->type),
-                      s->damper ? "damper" : "spring", given ? "has no" : "needs", member);
+        const char *const what = s->damper ? "damper" : "spring";
+        mt_diag_error(f->d, s->name.addr, "%s \"%s\": %s %s %s %s \"%s\"", what, s->name.s,
+                      s->type == MT_SPRING_AXIAL ? "an" : "a", mt_spring_type_name(s->type),
+                      what, given ? "has no" : "needs", member);
     }
 }
 

@@ -111,7 +111,9 @@ static void wrong_files__say_exactly_what_is_expected(mt_test *t)
 /* Diagnostics are made under the same promise as everything else: no leak, no crash, whichever allocation fails. */
 static void wrong_files__every_failing_allocation_is_survived(mt_test *t)
 {
-    static const char *const names[] = {"study_unknown_names.json", "study_model_wrong.json"};
+    static const char *const names[] = {"study_unknown_names.json", "study_model_wrong.json",
+                                        "drive.json", "circle_in_configuration.json",
+                                        "joint_members.json"};
     REQUIRE(t, chdir(MT_TEST_SOURCE_DIR "/tests/io/wrong") == 0);
     for (int i = 0; i < MT_COUNT(names); i++) {
         mt_status rc = MT_E_MEMORY;
