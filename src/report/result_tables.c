@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/result_tables.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "report/number.h"
+
+/* Frequencies to 6 digits show changes of 1e-5; percentages and sizes of changes need no more than 3; parameters 6, as a drawing would. */
+enum { HZ_DIGITS = 6, VALUE_DIGITS = 6, PERCENT_DIGITS = 3, MAC_DIGITS = 5, DEMAND_TEXT = 120 };
+
+/* "18.0000", "at least 7.00000", "7.00000 to 9.00000", NULL where nothing is asked */
+static const char *demand_of(const mt_result_frequency *f, char *s, size_t size)
+{
+    char a[MT_NUMBER_TEXT];
+    char b[MT_NUMBER_TEXT];
+    (void)mt_report_number(f->at_least_hz, HZ_DIGITS, a);
+    (void)mt_report_number(f->at_most_hz, HZ_DIGITS, b);
+    if (!isnan(f->target_hz)) {
+        return mt_report_number(f->target_hz, HZ_DIGITS, s);
+    }
+    if (!isnan(f->at_least_hz) && !isnan(f->at_most_hz)) {
+        (void)snprintf(s, size, "%s to %s", a, b);
+    } else if (!isnan(f->at_least_hz)) {
+        (void)snprintf(s, size, "at least %s", a);
+    } else if (!isnan(f->at_most_hz)) {
+        (void)snprintf(s, size, "at most %s", b);
+    } else {
+        return NULL;
+    }
+    return s;
+}
+
+mt_table mt_report_frequencies(const mt_recommendation *r)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
+    mt_table_column(&t, "mode", "mode", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "name", "name", MT_ALIGN_LEFT);
+    mt_table_column(&t, "before [Hz]", "original_hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "after [Hz]", "recommended_hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "asked [Hz]", "asked_hz", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "error [%]", "error_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "MAC", "mac", MT_ALIGN_POINT);
+    for (int i = 0; i < r->n_frequencies; i++) {
+        const mt_result_frequency *const f = &r->frequencies[i];
+        char demand[DEMAND_TEXT];
+        mt_table_text(&t, f->configuration);
+        mt_table_integer(&t, f->mode);
+        mt_table_text(&t, f->name);
+        mt_table_number(&t, f->original_hz, HZ_DIGITS);
+        mt_table_number(&t, f->recommended_hz, HZ_DIGITS);
+        mt_table_text(&t, demand_of(f, demand, sizeof demand));
+        mt_table_change(&t, f->error_percent, PERCENT_DIGITS);
+        mt_table_number(&t, f->mac, MAC_DIGITS);
+    }
+    return t;
+}
+
+mt_table mt_report_parameters(const mt_recommendation *r)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "parameter", "name", MT_ALIGN_LEFT);
+    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_column(&t, "before", "original", MT_ALIGN_POINT);
+    mt_table_column(&t, "after", "recommended", MT_ALIGN_POINT);
+    mt_table_column(&t, "change [%]", "change_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "at bound", "at_bound", MT_ALIGN_LEFT);
+    for (int i = 0; i < r->n_parameters; i++) {
+        const mt_result_parameter *const p = &r->parameters[i];
+        mt_table_text(&t, p->name);
+        mt_table_text(&t, p->unit);
+        mt_table_number(&t, p->original, VALUE_DIGITS);
+        mt_table_number(&t, p->recommended, VALUE_DIGITS);
+        mt_table_change(&t, p->change_percent, PERCENT_DIGITS);
+        mt_table_text(&t, p->at_bound);
+    }
+    return t;
+}
+
+mt_table mt_report_goals(const mt_recommendation *r)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "goal", "goal", MT_ALIGN_LEFT);
+    mt_table_column(&t, "value", "value", MT_ALIGN_POINT);
+    mt_table_column(&t, "asked", "demand", MT_ALIGN_POINT);
+    mt_table_column(&t, "off by [%]", "violation_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "verdict", "verdict", MT_ALIGN_LEFT);
+    for (int i = 0; i < r->n_goals; i++) {
+        const mt_result_goal *const g = &r->goals[i];
+        mt_table_text(&t, g->text);
+        mt_table_number(&t, g->value, VALUE_DIGITS);
+        mt_table_number(&t, g->demand, VALUE_DIGITS);
+        mt_table_number(&t, g->violation_percent, PERCENT_DIGITS);
+        mt_table_text(&t, g->weighted ? "weighted" : g->met ? "met" : "not met");
+    }
+    return t;
+}
+
+mt_table mt_report_alternatives(const mt_result *result)
+{
+    mt_table t = mt_table_default();
+    char heading[MT_NUMBER_TEXT] = "score";
+    if (result->n_recommendations > 0) {
+        const char *const unit = result->recommendations[0].score_unit;
+        if (unit != NULL && unit[0] != '\0' &&
+            strlen(unit) < sizeof heading - sizeof "score []") {
+            (void)snprintf(heading, sizeof heading, "score [%s]", unit);
+        }
+    }
+    mt_table_column(&t, "rank", "rank", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "grade", "grade", MT_ALIGN_LEFT);
+    mt_table_column(&t, heading, "score", MT_ALIGN_POINT);
+    mt_table_column(&t, "change", "change", MT_ALIGN_POINT);
+    mt_table_column(&t, "off by [%]", "violation_percent", MT_ALIGN_POINT);
+    const int n = result->n_variables;
+    for (int k = 0; k < n; k++) {
+        mt_table_column(&t, result->variables[k], result->variables[k], MT_ALIGN_POINT);
+    }
+    for (int i = 0; i < result->n_recommendations; i++) {
+        const mt_recommendation *const r = &result->recommendations[i];
+        mt_table_integer(&t, r->rank);
+        mt_table_text(&t, r->grade);
+        mt_table_number(&t, r->score, VALUE_DIGITS);
+        mt_table_number(&t, r->change, PERCENT_DIGITS);
+        mt_table_number(&t, r->violation_percent, PERCENT_DIGITS);
+        for (int k = 0; k < n; k++) {
+            mt_table_number(&t, k < r->n_parameters ? r->parameters[k].recommended : nan(""),
+                            VALUE_DIGITS);
+        }
+    }
+    return t;
+}
+
+const char *mt_report_verdict(const mt_result_published *p)
+{
+    if (p->role != NULL && strcmp(p->role, "not_comparable") == 0) {
+        return "not comparable";
+    }
+    return p->holds ? "holds" : "FAILS";
+}
+
+bool mt_report_verified(const mt_result *result, int *judged)
+{
+    int n = 0;
+    bool all = true;
+    for (int i = 0; i < result->n_published; i++) {
+        const mt_result_published *const p = &result->published[i];
+        if (p->role == NULL || strcmp(p->role, "not_comparable") != 0) {
+            n++;
+            all = all && p->holds;
+        }
+    }
+    if (judged != NULL) {
+        *judged = n;
+    }
+    return all;
+}
+
+mt_table mt_report_published(const mt_result *result)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "what", "label", MT_ALIGN_LEFT);
+    mt_table_column(&t, "published", "published", MT_ALIGN_POINT);
+    mt_table_column(&t, "computed", "computed", MT_ALIGN_POINT);
+    mt_table_column(&t, "difference", "difference", MT_ALIGN_POINT);
+    mt_table_column(&t, "[%]", "difference_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "asked", "demand", MT_ALIGN_LEFT);
+    mt_table_column(&t, "role", "role", MT_ALIGN_LEFT);
+    mt_table_column(&t, "verdict", "verdict", MT_ALIGN_LEFT);
+    mt_table_column(&t, "source", "source", MT_ALIGN_LEFT);
+    for (int i = 0; i < result->n_published; i++) {
+        const mt_result_published *const p = &result->published[i];
+        mt_table_text(&t, p->label);
+        if (p->published_text != NULL) {
+            mt_table_text(&t, p->published_text);
+            mt_table_text(&t, p->computed_text);
+        } else {
+            mt_table_number(&t, p->published, VALUE_DIGITS);
+            mt_table_number(&t, p->computed, VALUE_DIGITS);
+        }
+        mt_table_change(&t, p->difference, PERCENT_DIGITS);
+        mt_table_change(&t, p->difference_percent, PERCENT_DIGITS);
+        mt_table_text(&t, p->demand);
+        mt_table_text(&t, p->role);
+        mt_table_text(&t, mt_report_verdict(p));
+        mt_table_text(&t, p->source);
+    }
+    return t;
+}
+
+static void design_row(mt_table *t, const mt_result *result, const mt_recommendation *r)
+{
+    const mt_recommendation *const baseline = &result->baseline;
+    const bool is_baseline = r == baseline;
+    mt_table_integer(t, r->rank);
+    mt_table_text(t, r->feasible ? "true" : "false");
+    mt_table_text(t, r->grade);
+    mt_table_number(t, r->score, VALUE_DIGITS);
+    mt_table_text(t, r->score_unit);
+    mt_table_number(t, r->change, VALUE_DIGITS);
+    mt_table_number(t, r->misfit, VALUE_DIGITS);
+    mt_table_number(t, r->violation_percent, VALUE_DIGITS);
+    for (int k = 0; k < result->n_variables; k++) {
+        const bool has = k < r->n_parameters;
+        mt_table_number(t,
+                        !has          ? nan("")
+                        : is_baseline ? r->parameters[k].original
+                                      : r->parameters[k].recommended,
+                        VALUE_DIGITS);
+    }
+    for (int k = 0; k < baseline->n_frequencies; k++) {
+        const bool has = k < r->n_frequencies;
+        mt_table_number(t, has ? r->frequencies[k].recommended_hz : nan(""), HZ_DIGITS);
+    }
+}
+
+mt_table mt_report_designs(const mt_result *result)
+{
+    static const char *const fixed[] = {"rank",   "feasible",         "grade",
+                                        "score",  "score_unit",       "change",
+                                        "misfit", "violation_percent"};
+    mt_table t = mt_table_default();
+    for (int i = 0; i < MT_COUNT(fixed); i++) {
+        mt_table_column(&t, fixed[i], fixed[i], MT_ALIGN_RIGHT);
+    }
+    for (int k = 0; k < result->n_variables; k++) {
+        mt_table_column(&t, result->variables[k], result->variables[k], MT_ALIGN_RIGHT);
+    }
+    for (int k = 0; k < result->baseline.n_frequencies; k++) {
+        const mt_result_frequency *const f = &result->baseline.frequencies[k];
+        char name[DEMAND_TEXT];
+        (void)snprintf(name, sizeof name, "%.80s.mode_%d_hz",
+                       f->configuration == NULL ? "" : f->configuration, f->mode);
+        mt_table_column(&t, name, name, MT_ALIGN_RIGHT);
+    }
+    design_row(&t, result, &result->baseline);
+    for (int i = 0; i < result->n_recommendations; i++) {
+        design_row(&t, result, &result->recommendations[i]);
+    }
+    return t;
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef REPORT_RESULT_TABLES_H
+#define REPORT_RESULT_TABLES_H
+
+#include "report/table.h"
+#include "tune/result.h"
+
+/* Tables of a result; the caller frees them. Frequencies have 6 significant digits, changes 3. */
+
+/* configuration, mode, name, original, recommended, target or limits, error, MAC with the reference. */
+mt_table mt_report_frequencies(const mt_recommendation *r);
+/* name, unit, original, recommended, change, bound. */
+mt_table mt_report_parameters(const mt_recommendation *r);
+/* goal, value, demand, violation, met. */
+mt_table mt_report_goals(const mt_recommendation *r);
+/* One line per recommendation. */
+mt_table mt_report_alternatives(const mt_result *result);
+/* label, published, computed, difference, role, source, verdict. */
+mt_table mt_report_published(const mt_result *result);
+/* The whole of all designs, one row each (rank 0: the baseline), for a spreadsheet: recommendations.csv. */
+mt_table mt_report_designs(const mt_result *result);
+
+/* Does every published entry that can be compared hold? *judged (may be NULL): how many of them there are. */
+bool mt_report_verified(const mt_result *result, int *judged);
+/* "holds", "fails", "not comparable" */
+const char *mt_report_verdict(const mt_result_published *p);
+
+#endif

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/summary.h"
+
+#include <math.h>
+
+#include "report/number.h"
+#include "report/result_tables.h"
+
+enum { INDENT = 2, DIGITS = 4 };
+
+static void print_table(mt_table t, const char *title, mt_text *out)
+{
+    if (mt_table_rows(&t) > 0 || t.failed) {
+        mt_text_addf(out, "\n%s\n", title);
+        mt_table_print(&t, INDENT, out);
+    }
+    mt_table_free(&t);
+}
+
+static void print_list(int n, const char *const *items, const char *title, mt_text *out)
+{
+    if (n > 0) {
+        mt_text_addf(out, "\n%s\n", title);
+    }
+    for (int i = 0; i < n; i++) {
+        mt_text_addf(out, "  - %s\n", items[i]);
+    }
+}
+
+static void print_best(const mt_recommendation *r, mt_text *out)
+{
+    char change[MT_NUMBER_TEXT];
+    if (r->n_parameters > 0) {
+        mt_text_addf(out, "\nRecommendation %d (%s), size of the redesign %s%s\n", r->rank,
+                     r->grade == NULL ? "not graded" : r->grade,
+                     mt_report_number(r->change, DIGITS, change),
+                     r->singular ? ", a double solution: its parameters are sensitive" : "");
+    }
+    print_table(mt_report_parameters(r), "Parameters", out);
+    print_table(mt_report_frequencies(r), "Frequencies", out);
+    print_table(mt_report_goals(r), "Goals", out);
+    print_list(r->n_reasons, r->reasons, "Why", out);
+}
+
+static void print_undetermined(const mt_result *result, mt_text *out)
+{
+    if (result->n_undetermined > 0) {
+        mt_text_add(out, "\nUndetermined: the goals hardly change along\n");
+    }
+    for (int i = 0; i < result->n_undetermined; i++) {
+        char effect[MT_NUMBER_TEXT];
+        const mt_undetermined *const u = &result->undetermined[i];
+        mt_text_addf(out, "  - %s", u->text);
+        if (!isnan(u->effect_percent)) {
+            mt_text_addf(out, " (at most %s %% from bound to bound)",
+                         mt_report_number(u->effect_percent, DIGITS, effect));
+        }
+        mt_text_add(out, "\n");
+    }
+}
+
+void mt_report_summary(const mt_result *result, bool with_published, mt_text *out)
+{
+    mt_text_addf(out, "%s: %s\n",
+                 result->study_name == NULL ? result->study_file : result->study_name,
+                 mt_result_status_name(result->status));
+    if (result->status_text != NULL) {
+        mt_text_addf(out, "%s\n", result->status_text);
+    }
+    if (result->n_recommendations > 0) {
+        print_best(&result->recommendations[0], out);
+    } else {
+        print_table(mt_report_frequencies(&result->baseline), "Frequencies as they are", out);
+        print_table(mt_report_goals(&result->baseline), "Goals", out);
+        print_list(result->baseline.n_reasons, result->baseline.reasons, "Why", out);
+    }
+    if (result->n_recommendations > 1) {
+        print_table(mt_report_alternatives(result), "All recommendations", out);
+    }
+    print_undetermined(result, out);
+    if (result->n_certificates > 0) {
+        mt_text_add(out, "\nCertificates\n");
+    }
+    for (int i = 0; i < result->n_certificates; i++) {
+        const mt_certificate *const c = &result->certificates[i];
+        mt_text_addf(out, "  - %s: %s\n", c->proven ? "proven" : "sampled", c->text);
+    }
+    if (with_published) {
+        print_table(mt_report_published(result), "Published against computed", out);
+    }
+    print_list(result->n_warnings, result->warnings, "Warnings", out);
+}

@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/table.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "report/number.h"
+
+enum { INTEGER_TEXT = 24 };
+
+mt_table mt_table_default(void)
+{
+    mt_table t = {.columns = NULL};
+    t.failed = mt_arena_init(&t.mem, 0, NULL) != MT_OK;
+    return t;
+}
+
+void mt_table_free(mt_table *t)
+{
+    mt_arena_free(&t->mem);
+    memset(t, 0, sizeof *t);
+}
+
+static const char *copy(mt_table *t, const char *s)
+{
+    const char *const kept = t->failed ? NULL : mt_arena_strdup(&t->mem, s);
+    t->failed = t->failed || kept == NULL;
+    return kept;
+}
+
+void mt_table_column(mt_table *t, const char *heading, const char *member, mt_align align)
+{
+    const mt_column column = {copy(t, heading), copy(t, member), align};
+    if (t->failed) {
+        return;
+    }
+    mt_column *const grown =
+        mt_arena_grow(&t->mem, t->columns, t->n_columns, &t->cap_columns, sizeof *grown);
+    if (grown == NULL) {
+        t->failed = true;
+        return;
+    }
+    t->columns = grown;
+    t->columns[t->n_columns++] = column;
+}
+
+static void add_cell(mt_table *t, const char *text, const char *exact)
+{
+    const mt_cell cell = {copy(t, text), copy(t, exact)};
+    if (t->failed) {
+        return;
+    }
+    mt_cell *const grown =
+        mt_arena_grow(&t->mem, t->cells, t->n_cells, &t->cap_cells, sizeof *grown);
+    if (grown == NULL) {
+        t->failed = true;
+        return;
+    }
+    t->cells = grown;
+    t->cells[t->n_cells++] = cell;
+}
+
+void mt_table_text(mt_table *t, const char *text)
+{
+    add_cell(t, text == NULL ? "-" : text, text == NULL ? "" : text);
+}
+
+void mt_table_integer(mt_table *t, long long value)
+{
+    char s[INTEGER_TEXT];
+    (void)snprintf(s, sizeof s, "%lld", value);
+    add_cell(t, s, s);
+}
+
+void mt_table_number(mt_table *t, double value, int digits)
+{
+    char text[MT_NUMBER_TEXT];
+    char exact[MT_NUMBER_TEXT];
+    add_cell(t, mt_report_number(value, digits, text), mt_report_exact(value, exact));
+}
+
+void mt_table_change(mt_table *t, double value, int digits)
+{
+    char text[MT_NUMBER_TEXT];
+    char exact[MT_NUMBER_TEXT];
+    add_cell(t, mt_report_change(value, digits, text), mt_report_exact(value, exact));
+}
+
+int mt_table_rows(const mt_table *t)
+{
+    return t->n_columns == 0 ? 0 : t->n_cells / t->n_columns;
+}
+
+/* Characters up to the decimal point, or where it would stand. */
+static int before_point(const char *s)
+{
+    return (int)strcspn(s, ".e");
+}
+
+typedef struct layout {
+    int width;  /* of the column */
+    int before; /* MT_ALIGN_POINT: widest part before the point */
+} layout;
+
+static int larger(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+static layout measure(const mt_table *t, int column)
+{
+    layout l = {0, 0};
+    int after = 0;
+    const bool point = t->columns[column].align == MT_ALIGN_POINT;
+    for (int i = column; i < t->n_cells; i += t->n_columns) {
+        const char *const s = t->cells[i].text;
+        if (point) {
+            l.before = larger(l.before, before_point(s));
+            after = larger(after, (int)strlen(s) - before_point(s));
+        } else {
+            l.width = larger(l.width, mt_text_width(s));
+        }
+    }
+    l.width = larger(l.width, l.before + after);
+    const int heading = mt_text_width(t->columns[column].heading);
+    if (point && heading > l.width) {
+        l.before += heading - l.width; /* numbers stand at the right end of a wider heading */
+    }
+    l.width = larger(l.width, heading);
+    return l;
+}
+
+static void pad(mt_text *out, int n)
+{
+    for (int i = 0; i < n; i++) {
+        mt_text_add(out, " ");
+    }
+}
+
+static void print_cell(mt_align align, const layout *l, const char *s, bool last, mt_text *out)
+{
+    const int width = mt_text_width(s);
+    int before = align == MT_ALIGN_LEFT ? 0 : l->width - width;
+    if (align == MT_ALIGN_POINT) {
+        before = l->before - before_point(s);
+    }
+    pad(out, before);
+    mt_text_add(out, s);
+    pad(out, last ? 0 : l->width - width - before);
+}
+
+/* Trailing blanks of the line just written. */
+static void end_line(mt_text *out)
+{
+    while (!out->failed && out->length > 0 && out->s[out->length - 1] == ' ') {
+        out->s[--out->length] = '\0';
+    }
+    mt_text_add(out, "\n");
+}
+
+static void print_lines(const mt_table *t, const layout *l, int indent, mt_text *out)
+{
+    const int n = t->n_columns;
+    pad(out, indent);
+    for (int c = 0; c < n; c++) {
+        const mt_align align =
+            t->columns[c].align == MT_ALIGN_LEFT ? MT_ALIGN_LEFT : MT_ALIGN_RIGHT;
+        print_cell(align, &l[c], t->columns[c].heading, c == n - 1, out);
+        pad(out, c == n - 1 ? 0 : 2);
+    }
+    end_line(out);
+    pad(out, indent);
+    for (int c = 0; c < n; c++) {
+        for (int i = 0; i < l[c].width; i++) {
+            mt_text_add(out, "-");
+        }
+        pad(out, c == n - 1 ? 0 : 2);
+    }
+    end_line(out);
+    for (int i = 0; i < t->n_cells; i++) {
+        const int c = i % n;
+        pad(out, c == 0 ? indent : 0);
+        print_cell(t->columns[c].align, &l[c], t->cells[i].text, c == n - 1, out);
+        pad(out, c == n - 1 ? 0 : 2);
+        if (c == n - 1) {
+            end_line(out);
+        }
+    }
+}
+
+void mt_table_print(const mt_table *t, int indent, mt_text *out)
+{
+    mt_arena scratch = {.first = NULL};
+    layout *l = NULL;
+    if (!t->failed && mt_arena_init(&scratch, 0, NULL) == MT_OK) {
+        l = mt_arena_alloc(&scratch, (size_t)t->n_columns, sizeof *l);
+    }
+    if (l == NULL) {
+        out->failed = true;
+    } else {
+        for (int c = 0; c < t->n_columns; c++) {
+            l[c] = measure(t, c);
+        }
+        print_lines(t, l, indent, out);
+    }
+    mt_arena_free(&scratch);
+}
+
+void mt_csv_field(const char *s, mt_text *out)
+{
+    if (strpbrk(s, ",\"\r\n") == NULL) {
+        mt_text_add(out, s);
+        return;
+    }
+    mt_text_add(out, "\"");
+    for (; *s != '\0'; s++) {
+        mt_text_add_n(out, *s == '"' ? "\"\"" : s, *s == '"' ? 2 : 1);
+    }
+    mt_text_add(out, "\"");
+}
+
+void mt_table_csv(const mt_table *t, mt_text *out)
+{
+    const int n = t->n_columns;
+    out->failed = out->failed || t->failed;
+    for (int c = 0; !t->failed && c < n; c++) {
+        mt_csv_field(t->columns[c].member, out);
+        mt_text_add(out, c == n - 1 ? "\r\n" : ",");
+    }
+    for (int i = 0; !t->failed && i < t->n_cells; i++) {
+        mt_csv_field(t->cells[i].exact, out);
+        mt_text_add(out, i % n == n - 1 ? "\r\n" : ",");
+    }
+}
+
+void mt_html_escape(const char *s, mt_text *out)
+{
+    static const char special[] = "&<>\"'";
+    static const char *const reference[] = {"&amp;", "&lt;", "&gt;", "&quot;", "&#39;"};
+    for (; *s != '\0'; s++) {
+        const char *const found = strchr(special, *s);
+        const unsigned char c = (unsigned char)*s;
+        if (found != NULL) {
+            mt_text_add(out, reference[found - special]);
+        } else if ((c < ' ' && c != '\t' && c != '\n') || c == 0x7F) {
+            mt_text_add(out, "\xEF\xBF\xBD"); /* U+FFFD */
+        } else {
+            mt_text_add_n(out, s, 1);
+        }
+    }
+}
+
+static void html_cell(const char *tag, mt_align align, const char *text, mt_text *out)
+{
+    mt_text_addf(out, align == MT_ALIGN_LEFT ? "<%s>" : "<%s class=\"n\">", tag);
+    mt_html_escape(text, out);
+    mt_text_addf(out, "</%s>", tag);
+}
+
+void mt_table_html(const mt_table *t, mt_text *out)
+{
+    const int n = t->n_columns;
+    out->failed = out->failed || t->failed;
+    mt_text_add(out, "<table>\n<thead><tr>");
+    for (int c = 0; !t->failed && c < n; c++) {
+        html_cell("th", t->columns[c].align, t->columns[c].heading, out);
+    }
+    mt_text_add(out, "</tr></thead>\n<tbody>\n");
+    for (int i = 0; !t->failed && i < t->n_cells; i++) {
+        mt_text_add(out, i % n == 0 ? "<tr>" : "");
+        html_cell("td", t->columns[i % n].align, t->cells[i].text, out);
+        mt_text_add(out, i % n == n - 1 ? "</tr>\n" : "");
+    }
+    mt_text_add(out, "</tbody>\n</table>\n");
+}

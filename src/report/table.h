@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef REPORT_TABLE_H
+#define REPORT_TABLE_H
+
+#include "base/arena.h"
+#include "base/text.h"
+
+/*
+ * A table, made once and printed in any of three forms: aligned text, CSV (RFC 4180), HTML. Columns first, then cells row by row. Memory running out is
+ * remembered and passed on to the mt_text that the table is printed into: check that one at the end.
+ */
+typedef enum mt_align {
+    MT_ALIGN_LEFT,
+    MT_ALIGN_RIGHT,
+    MT_ALIGN_POINT /* numbers with their decimal points below each other */
+} mt_align;
+
+typedef struct mt_column {
+    const char *heading; /* for people, with its unit: "frequency [Hz]" */
+    const char *member;  /* for machines: "frequency_hz" */
+    mt_align align;
+} mt_column;
+
+typedef struct mt_cell {
+    const char *text;  /* for people */
+    const char *exact; /* for machines */
+} mt_cell;
+
+typedef struct mt_table {
+    mt_arena mem;
+    mt_column *columns;
+    int n_columns;
+    int cap_columns;
+    mt_cell *cells; /* row by row */
+    int n_cells;
+    int cap_cells;
+    bool failed; /* out of memory */
+} mt_table;
+
+/* An empty table; mt_table_free accepts one that was never used (zeroed). */
+mt_table mt_table_default(void);
+void mt_table_free(mt_table *t);
+/* All columns before the first cell. Texts are copied. */
+void mt_table_column(mt_table *t, const char *heading, const char *member, mt_align align);
+/* Cells. NULL and NaN are "-" for people and empty for machines. */
+void mt_table_text(mt_table *t, const char *text);
+void mt_table_integer(mt_table *t, long long value);
+void mt_table_number(mt_table *t, double value, int digits);
+void mt_table_change(mt_table *t, double value, int digits); /* with its sign */
+int mt_table_rows(const mt_table *t);
+
+/* Heading, rule, rows; two blanks between columns, `indent` before the first, none behind the last. */
+void mt_table_print(const mt_table *t, int indent, mt_text *out);
+/* Header line and rows, each ended by CR LF. */
+void mt_table_csv(const mt_table *t, mt_text *out);
+/* <table>...</table>, every text escaped. */
+void mt_table_html(const mt_table *t, mt_text *out);
+
+/* One CSV field, quoted where RFC 4180 asks for it. */
+void mt_csv_field(const char *s, mt_text *out);
+/* Text within HTML or a quoted attribute: & < > " ' become references, other control characters than tab and line feed U+FFFD. */
+void mt_html_escape(const char *s, mt_text *out);
+
+#endif
