@@ -8,7 +8,8 @@ enum { DIRECTION_TEXT = 300 };
 
 mt_analysis_options mt_analysis_options_default(void)
 {
-    const mt_analysis_options opt = {.gradient = false, .vectors = true, .accuracy = true, .check = true};
+    const mt_analysis_options opt = {
+        .gradient = false, .vectors = true, .accuracy = true, .check = true};
     return opt;
 }
 
@@ -28,7 +29,8 @@ void mt_analysis_delete(mt_analysis *a)
     }
 }
 
-mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs, const int *inputs, const double *at, mt_analysis **out, mt_err *err)
+mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs,
+                          const int *inputs, const double *at, mt_analysis **out, mt_err *err)
 {
     mt_analysis *const a = calloc(1, sizeof *a);
     const mt_analysis_options opt = mt_analysis_options_default();
@@ -46,7 +48,8 @@ mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs
     }
     if (rc != MT_OK) {
         mt_analysis_delete(a);
-        return mt_err_in(err, rc, "configuration \"%s\"", model->configurations[configuration].name.s);
+        return mt_err_in(err, rc, "configuration \"%s\"",
+                         model->configurations[configuration].name.s);
     }
     a->n_rigid = a->modes.n_rigid;
     *out = a;
@@ -67,7 +70,8 @@ static mt_status refresh_mass(mt_analysis *a, mt_err *err)
     return MT_OK;
 }
 
-mt_status mt_analysis_solve(mt_analysis *a, const double *inputs, const mt_analysis_options *opt, mt_err *err)
+mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
+                            const mt_analysis_options *opt, mt_err *err)
 {
     const mt_arena_mark start = {a->mem.first, 0, 0};
     mt_arena_rewind(&a->mem, start);
@@ -75,17 +79,21 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs, const mt_analy
     MT_TRY(mt_linear_update(a->lin, inputs, opt->gradient, err));
     MT_TRY(refresh_mass(a, err));
     const mt_linear *const lin = a->lin;
-    const mt_stiffness_factor factor = {.rows = lin->list[MT_TERM_STIFFNESS].n_rows, .b = lin->factor_b, .c = lin->factor_c};
+    const mt_stiffness_factor factor = {
+        .rows = lin->list[MT_TERM_STIFFNESS].n_rows, .b = lin->factor_b, .c = lin->factor_c};
     mt_modal_options options = mt_modal_options_default();
     options.n_rigid = a->n_rigid;
     options.vectors = opt->vectors || opt->gradient;
     options.need_accuracy = opt->accuracy && lin->has_factor;
     options.check = opt->check;
-    const mt_status rc = mt_modal_solve_factored(lin->k, &a->mass, lin->has_factor ? &factor : NULL, &options, &a->mem, &a->modes, err);
+    const mt_status rc = mt_modal_solve_factored(
+        lin->k, &a->mass, lin->has_factor ? &factor : NULL, &options, &a->mem, &a->modes, err);
     if (rc == MT_E_MASSLESS && a->modes.massless != NULL) {
         char text[DIRECTION_TEXT];
         mt_linear_name_direction(lin, a->modes.massless, text, sizeof text);
-        return mt_fail(err, rc, "neither mass nor stiffness holds %s: give it a mass, a spring, or a joint", text);
+        return mt_fail(
+            err, rc,
+            "neither mass nor stiffness holds %s: give it a mass, a spring, or a joint", text);
     }
     MT_TRY(rc);
     a->with_gradient = opt->gradient;
@@ -105,22 +113,38 @@ static mt_status products(mt_analysis *a, int pos, mt_err *err)
 {
     const ptrdiff_t n = a->lin->n;
     if (!a->with_gradient) {
-        return mt_fail(err, MT_E_INTERNAL, "derivatives asked for after a solve without gradient");
+        return mt_fail(err, MT_E_INTERNAL,
+                       "derivatives asked for after a solve without gradient");
     }
     for (int p = 0; p < a->sys->n_inputs; p++) {
-        MT_TRY(mt_linear_products(a->lin, p, 1, a->modes.y + (pos * n), a->dky + (p * n), a->dmy + (p * n), NULL, err));
+        MT_TRY(mt_linear_products(a->lin, p, 1, a->modes.y + (pos * n), a->dky + (p * n),
+                                  a->dmy + (p * n), NULL, err));
     }
     return MT_OK;
 }
 
-mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *repeated, mt_err *err)
+mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_err *err)
+{
+    const ptrdiff_t n = a->lin->n;
+    const double *const y = a->modes.y + (pos * n);
+    MT_TRY(products(a, pos, err));
+    for (int p = 0; p < a->sys->n_inputs; p++) {
+        dlambda[p] = mt_dot((int)n, y, a->dky + (p * n)) -
+                     (a->modes.lambda[pos] * mt_dot((int)n, y, a->dmy + (p * n)));
+    }
+    return MT_OK;
+}
+
+mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *repeated,
+                              mt_err *err)
 {
     const ptrdiff_t n = a->lin->n;
     bool any = false;
     MT_TRY(products(a, pos, err));
     for (int p = 0; p < a->sys->n_inputs; p++) {
         bool one = false;
-        mt_modal_dlambda(&a->modes, 1, &pos, a->dky + (p * n), a->dmy + (p * n), &dlambda[p], &one);
+        mt_modal_dlambda(&a->modes, 1, &pos, a->dky + (p * n), a->dmy + (p * n), &dlambda[p],
+                         &one);
         any = any || one;
     }
     if (repeated != NULL) {
@@ -129,7 +153,8 @@ mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *re
     return MT_OK;
 }
 
-mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel, double *s, double *ds, mt_err *err)
+mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel, double *s,
+                            double *ds, mt_err *err)
 {
     const ptrdiff_t n = a->lin->n;
     const int np = a->sys->n_inputs;
@@ -149,10 +174,12 @@ mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel,
     if (a->modes.n_condensed == 0) {
         MT_TRY(mt_modal_dvector_by_modes(&a->modes, pos, &given, dy, NULL, &a->mem, err));
     } else {
-        MT_TRY(mt_modal_dvector(&pencil, a->modes.lambda[pos], y, &given, dy, NULL, &a->mem, err));
+        MT_TRY(
+            mt_modal_dvector(&pencil, a->modes.lambda[pos], y, &given, dy, NULL, &a->mem, err));
     }
     for (int p = 0; p < np; p++) {
-        MT_TRY(mt_linear_sense_derivative(a->lin, p, ns, channel, 1, y, dy + (p * n), ds + ((ptrdiff_t)p * ns), err));
+        MT_TRY(mt_linear_sense_derivative(a->lin, p, ns, channel, 1, y, dy + (p * n),
+                                          ds + ((ptrdiff_t)p * ns), err));
     }
     mt_arena_rewind(&a->mem, mark);
     return MT_OK;

@@ -16,9 +16,9 @@ typedef struct mt_analysis {
     mt_mass_factor mass;
     unsigned long mass_version; /* of the factor; 0: none */
     mt_modes modes;
-    int n_rigid;         /* fixed at the original design by mt_analysis_new; -1 before */
+    int n_rigid; /* fixed at the original design by mt_analysis_new; -1 before */
     bool with_gradient;
-    double *dky;         /* work, n x n_inputs */
+    double *dky; /* work, n x n_inputs */
     double *dmy;
     long solves;
 } mt_analysis;
@@ -29,18 +29,25 @@ typedef struct mt_analysis_options {
     bool accuracy; /* use the stiffness factor where the plain method would lose digits */
     bool check;    /* residual and orthogonality of each mode */
 } mt_analysis_options;
-mt_analysis_options mt_analysis_options_default(void); /* vectors, accuracy, check; no gradient */
+mt_analysis_options mt_analysis_options_default(
+    void); /* vectors, accuracy, check; no gradient */
 
 /* Make the system of a configuration and solve it once at the original design at[n_inputs] (which fixes the number of rigid-body modes).
  * The model must outlive the analysis. Fails as mt_system_new, mt_linear_update, mt_modal_solve; texts name the configuration. */
-mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs, const int *inputs, const double *at, mt_analysis **out, mt_err *err);
+mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs,
+                          const int *inputs, const double *at, mt_analysis **out, mt_err *err);
 void mt_analysis_delete(mt_analysis *a);
 /* Modes at inputs[n_inputs] (a->modes, valid until the next call). */
-mt_status mt_analysis_solve(mt_analysis *a, const double *inputs, const mt_analysis_options *opt, mt_err *err);
+mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
+                            const mt_analysis_options *opt, mt_err *err);
 /* dlambda[n_inputs] of the mode at position pos of a->modes; NaN and *repeated (may be NULL) where it belongs to a cluster. After a solve with gradient. */
-mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *repeated, mt_err *err);
+mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *repeated,
+                              mt_err *err);
+/* y^T (dK - lambda dM) y of the mode at pos whatever its neighbours: not a derivative where the mode is repeated, but its mean over a cluster is that of the mean. */
+mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_err *err);
 /* Shape of the mode at position pos at channels: s[ns]; ds (may be NULL; needs gradient and a simple mode): ns x n_inputs. Mass-normalised, sign of the vector held. */
-mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel, double *s, double *ds, mt_err *err);
+mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel, double *s,
+                            double *ds, mt_err *err);
 /* Name of a massless direction etc. are in err's text already. */
 const char *mt_analysis_configuration(const mt_analysis *a);
 

@@ -12,7 +12,10 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+
+#include "tune/libraries.h"
 
 enum { EVALS_BASE = 200, EVALS_PER_VARIABLE = 20, RESTARTS = 12 };
 /* Where SLSQP may stop: what is left, our Newton iteration does in a few steps. */
@@ -235,4 +238,11 @@ void mt_nlp_slsqp(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p
         mt_nlp_point_copy(e, last, w.cur);
     }
     mt_arena_rewind(&e->scratch, mark);
+}
+
+void mt_nlopt_version(char text[16])
+{
+    int v[3];
+    nlopt_version(&v[0], &v[1], &v[2]);
+    (void)snprintf(text, 16, "%d.%d.%d", v[0], v[1], v[2]);
 }

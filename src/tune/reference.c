@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Shapes to compare with: another model's modes, or measured values, at the sensor channels that both sides have. */
+#include <math.h>
+#include <string.h>
+
+#include "tune/problem.h"
+
+static mt_status no_common(const mt_reference *r, mt_err *err)
+{
+    return mt_fail(err, MT_E_INPUT,
+                   "reference \"%s\": no sensor channel is common to it and the model",
+                   r->name.s);
+}
+
+static mt_status normalise(const mt_reference *r, mt_reference_shape *out, mt_err *err)
+{
+    const double norm = mt_norm2(out->ns, out->shape);
+    if (!(norm > 0.0)) {
+        return mt_fail(err, MT_E_INPUT,
+                       "reference \"%s\": mode %d does not move at the common sensors",
+                       r->name.s, out->mode);
+    }
+    for (int i = 0; i < out->ns; i++) {
+        out->shape[i] /= norm;
+    }
+    return MT_OK;
+}
+
+static mt_status measured(const mt_reference *r, const mt_system *sys, mt_arena *mem,
+                          mt_reference_shape *out, mt_err *err)
+{
+    if (out->mode > r->n_modes) {
+        return mt_fail(err, MT_E_INPUT, "reference \"%s\" has no mode %d (it lists %d)",
+                       r->name.s, out->mode, r->n_modes);
+    }
+    const mt_measured_mode *const m = &r->modes[out->mode - 1];
+    out->channel = mt_arena_int(mem, (size_t)m->n_values);
+    out->shape = mt_arena_f64(mem, (size_t)m->n_values, 1);
+    if (out->channel == NULL || out->shape == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < m->n_values; i++) {
+        const int c = mt_system_find_channel(sys, m->channels[i].s);
+        if (c >= 0) {
+            out->channel[out->ns] = c;
+            out->shape[out->ns++] = m->values[i];
+        }
+    }
+    out->frequency_hz = m->frequency_hz;
+    return out->ns == 0 ? no_common(r, err) : normalise(r, out, err);
+}
+
+mt_status mt_reference_cache_init(mt_reference_cache *cache, const mt_study *study,
+                                  mt_arena *mem, mt_err *err)
+{
+    cache->n = study->n_references;
+    cache->analysis = mt_arena_alloc(mem, (size_t)cache->n, sizeof(mt_analysis *));
+    return cache->analysis == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+void mt_reference_cache_free(mt_reference_cache *cache)
+{
+    for (int i = 0; i < cache->n; i++) {
+        mt_analysis_delete(cache->analysis[i]);
+    }
+    cache->n = 0;
+}
+
+static mt_status computed(mt_analysis *a, const mt_reference *r, const mt_system *sys,
+                          mt_arena *mem, mt_reference_shape *out, mt_err *err)
+{
+    const size_t most = (size_t)sys->n_channels;
+    int *const theirs = mt_arena_int(mem, most);
+    out->channel = mt_arena_int(mem, most);
+    out->shape = mt_arena_f64(mem, most, 1);
+    if (theirs == NULL || out->channel == NULL || out->shape == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < sys->n_channels; i++) {
+        const int c = mt_system_find_channel(a->sys, sys->channels[i].name);
+        if (c >= 0) {
+            out->channel[out->ns] = i;
+            theirs[out->ns++] = c;
+        }
+    }
+    const int pos = mt_modal_flexible(&a->modes, out->mode);
+    if (out->ns == 0) {
+        return no_common(r, err);
+    }
+    if (pos < 0) {
+        return mt_fail(err, MT_E_INPUT, "reference \"%s\" has no vibration mode %d", r->name.s,
+                       out->mode);
+    }
+    out->frequency_hz = mt_modal_hz(&a->modes, pos);
+    MT_TRY(mt_analysis_shape(a, pos, out->ns, theirs, out->shape, NULL, err));
+    return normalise(r, out, err);
+}
+
+mt_status mt_reference_shape_init(const mt_problem *p, int reference, int mode,
+                                  const mt_system *sys, mt_arena *mem, mt_reference_shape *out,
+                                  mt_err *err)
+{
+    const mt_reference *const r = &p->study->references[reference];
+    mt_analysis **const cached = &p->references->analysis[reference];
+    *out = (mt_reference_shape){.reference = r->name.s, .mode = mode, .frequency_hz = nan("")};
+    if (r->model == NULL) {
+        return measured(r, sys, mem, out, err);
+    }
+    if (*cached == NULL) {
+        MT_TRY(mt_err_in(
+            err, mt_analysis_new(r->model, r->configuration, 0, NULL, NULL, cached, err),
+            "reference \"%s\"", r->name.s));
+    }
+    return computed(*cached, r, sys, mem, out, err);
+}
+
+mt_status mt_reference_mac(mt_analysis *a, int pos, const mt_reference_shape *ref, double *mac,
+                           mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
+    double *const s = mt_arena_f64(&a->mem, (size_t)ref->ns, 1);
+    if (s == NULL) {
+        return mt_fail_memory(err);
+    }
+    const mt_status rc = mt_analysis_shape(a, pos, ref->ns, ref->channel, s, NULL, err);
+    if (rc == MT_OK) {
+        mt_mac_matrix(ref->ns, 1, s, 1, ref->shape, mac);
+    }
+    mt_arena_rewind(&a->mem, mark);
+    return rc;
+}
