@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* realpath is in POSIX.1-2008, but the C library shows it only with X/Open: asked for before any header. */
-#define _XOPEN_SOURCE 700
+#define _XOPEN_SOURCE 700 /* NOLINT(cert-dcl37-c,cert-dcl51-cpp): for the system, not ours */
 
 #include "io/file.h"
 
@@ -35,30 +35,30 @@ static bool beneath(const char *path, const char *folder)
     return strncmp(path, folder, n) == 0 && path[n] == '/';
 }
 
-/* The path without symbolic links, checked against root; heap. */
-static mt_status resolve(const char *path, const char *root, char **out, mt_err *err)
+/* The path without symbolic links, checked against root; heap. NULL on failure, with *rc. */
+static char *resolve(const char *path, const char *root, mt_status *rc, mt_err *err)
 {
-    *out = NULL;
     char *const real = realpath(path, NULL);
     if (real == NULL) {
-        return system_error(err, path, errno);
+        *rc = system_error(err, path, errno);
+        return NULL;
     }
-    mt_status rc = MT_OK;
-    if (root != NULL) {
-        char *const folder = realpath(root, NULL);
-        if (folder == NULL) {
-            rc = system_error(err, root, errno);
-        } else if (!beneath(real, folder)) {
-            rc = mt_fail(err, MT_E_INPUT, "%s: lies outside the root folder %s", path, root);
-        }
-        free(folder);
+    *rc = MT_OK;
+    if (root == NULL) {
+        return real;
     }
-    if (rc != MT_OK) {
+    char *const folder = realpath(root, NULL);
+    if (folder == NULL) {
+        *rc = system_error(err, root, errno);
+    } else if (!beneath(real, folder)) {
+        *rc = mt_fail(err, MT_E_INPUT, "%s: lies outside the root folder %s", path, root);
+    }
+    free(folder);
+    if (*rc != MT_OK) {
         free(real);
-        return rc;
+        return NULL;
     }
-    *out = real;
-    return MT_OK;
+    return real;
 }
 
 /* Bytes of an open file until its end; a growing file stops at the limit. */
@@ -97,8 +97,11 @@ mt_status mt_file_read(const char *path, const char *root, size_t limit, mt_file
                        mt_err *err)
 {
     *out = (mt_file){0};
-    char *real = NULL;
-    MT_TRY(resolve(path, root, &real, err));
+    mt_status rc = MT_OK;
+    char *const real = resolve(path, root, &rc, err);
+    if (real == NULL) {
+        return rc;
+    }
     /* the last part is no link any more; without O_NONBLOCK a pipe would block the open */
     const int fd = open(real, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     const int code = errno;
@@ -106,7 +109,7 @@ mt_status mt_file_read(const char *path, const char *root, size_t limit, mt_file
     if (fd < 0) {
         return system_error(err, path, code);
     }
-    const mt_status rc = read_all(fd, path, limit, out, err);
+    rc = read_all(fd, path, limit, out, err);
     (void)close(fd);
     if (rc != MT_OK) {
         mt_file_free(out);

@@ -54,6 +54,24 @@ void mt_json_place(const mt_json *doc, mt_addr addr, int *line, int *column)
     *column = at.column;
 }
 
+bool mt_json_span(const mt_json *doc, mt_addr value, size_t *begin, size_t *end)
+{
+    if (value < 0 || value >= doc->count) {
+        return false;
+    }
+    const mt_json_node *const node = &doc->nodes[value];
+    *begin = node->start;
+    *end = node->end;
+    if (node->type == MT_JSON_STRING) {
+        size_t at = node->start + 1;
+        while (at < doc->length && doc->text[at] != '"') {
+            at += doc->text[at] == '\\' ? 2 : 1;
+        }
+        *end = at + 1;
+    }
+    return node->type == MT_JSON_NUMBER || node->type == MT_JSON_STRING;
+}
+
 /* A member name as a pointer writes it: decoded where the values stand, else as in the source. */
 static void add_name(const mt_json *doc, const mt_json_node *node, mt_text *out)
 {
@@ -179,7 +197,9 @@ static void print_one(const mt_json *doc, const char *file, const mt_diag *diag,
 void mt_json_print(const mt_json *doc, const char *file, mt_text *out)
 {
     const mt_diags *const diags = &doc->diags;
-    entry order[MT_DIAG_LIMIT];
+    entry order[MT_DIAG_LIMIT] = {
+        {0, 0}
+    };
     int n = 0;
     for (; n < diags->count && n < MT_DIAG_LIMIT; n++) {
         const mt_addr addr = diags->items[n].addr;

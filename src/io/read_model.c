@@ -78,7 +78,8 @@ static void read_parameter_names(mt_model_reader *mr, mt_addr object)
     const int n = object == MT_NO_ADDR ? 0 : mt_json_count(mr->r.doc, object);
     int n_more = 0;
     const char *const *const more = mt_expr_names(&n_more);
-    const char **const names = mt_arena_alloc(&m->mem, (size_t)(n + n_more), sizeof *names);
+    const char **const names =
+        mt_arena_alloc(&m->mem, (size_t)n + (size_t)n_more, sizeof *names);
     m->parameters = mt_arena_alloc(&m->mem, (size_t)n, sizeof *m->parameters);
     if (names == NULL || m->parameters == NULL) {
         mr->r.out_of_memory = true;
@@ -295,7 +296,7 @@ mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **o
         const mt_reader r = {.doc = doc, .diags = mt_json_diags(doc)};
         rc = mt_reader_status(&r, path, err);
     }
-    if (rc == MT_OK) {
+    if (rc == MT_OK && *out != NULL) {
         rc = note_file(*out, path, &file, err);
     }
     if (doc != NULL && opt != NULL && opt->structural != NULL) {

@@ -88,9 +88,10 @@ static uint32_t rotate(uint32_t x, int n)
 static void compress(sha *s, const unsigned char *block)
 {
     uint32_t w[ROUNDS];
-    for (int t = 0; t < 16; t++) {
-        w[t] = (uint32_t)block[4 * t] << 24 | (uint32_t)block[4 * t + 1] << 16 |
-               (uint32_t)block[4 * t + 2] << 8 | (uint32_t)block[4 * t + 3];
+    for (size_t t = 0; t < 16; t++) {
+        const unsigned char *const b = block + 4 * t;
+        w[t] =
+            (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | (uint32_t)b[3];
     }
     for (int t = 16; t < ROUNDS; t++) {
         const uint32_t x = w[t - 15];

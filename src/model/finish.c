@@ -17,7 +17,7 @@ void mt_finish_unknown(mt_finish *f, mt_name name, const mt_names *table, const 
 {
     const mt_arena_mark mark = mt_arena_get_mark(&f->m->mem);
     const char **const names =
-        mt_arena_alloc(&f->m->mem, (size_t)(table->count + n_more), sizeof *names);
+        mt_arena_alloc(&f->m->mem, (size_t)table->count + (size_t)n_more, sizeof *names);
     if (names == NULL) {
         f->out_of_memory = true;
         return;

@@ -88,7 +88,7 @@ static void inherit_overrides(mt_finish *f, mt_configuration *c)
         return;
     }
     mt_override *const all =
-        mt_arena_alloc(&f->m->mem, (size_t)(own + parent->n_overrides), sizeof *all);
+        mt_arena_alloc(&f->m->mem, (size_t)own + (size_t)parent->n_overrides, sizeof *all);
     if (all == NULL) {
         f->out_of_memory = true;
         return;

@@ -122,54 +122,85 @@ static void check_bodies(mt_finish *f, const mt_spring *s)
     }
 }
 
+/* What a type of spring holds, by mt_spring_type; a damper can only have what its file format has. */
+typedef struct rule {
+    need bodies;
+    need joint;
+    need at;
+    need coefficient; /* one number, N/m or N m/rad */
+    need material;    /* Young's modulus, area */
+    need density;
+    need free_length;
+    need free_angle;
+    need preload;
+    need lists; /* per direction, N/m and N m/rad */
+    need matrix;
+} rule;
+
+static const rule RULES[] = {
+    [MT_SPRING_TORSION] =
+        {  .bodies = MAY, .joint = MAY, .coefficient = NEEDS,  .free_angle = MAY, .preload = MAY},
+    [MT_SPRING_AXIAL] =
+        {.bodies = NEEDS,    .at = MAY, .coefficient = NEEDS, .free_length = MAY, .preload = MAY},
+    [MT_SPRING_BAR] =
+        {.bodies = NEEDS,    .at = MAY,    .material = NEEDS,     .density = MAY, .preload = MAY},
+    [MT_SPRING_BUSHING] = {.bodies = NEEDS,    .at = MAY,       .lists = NEEDS,      .matrix = MAY               },
+};
+
 static void check_members(mt_finish *f, const mt_spring *s)
 {
+    const rule *const r = &RULES[s->type];
     const bool torsion = s->type == MT_SPRING_TORSION;
-    const bool axial = s->type == MT_SPRING_AXIAL;
-    const bool bar = s->type == MT_SPRING_BAR;
-    const bool bushing = s->type == MT_SPRING_BUSHING;
-    const bool two = f->m->dimension == 2;
-    check_member(f, s, s->bodies[0].name.s != NULL, torsion ? MAY : NEEDS, "bodies");
-    check_member(f, s, s->joint_name.s != NULL, torsion ? MAY : NONE, "joint");
-    check_member(f, s, s->n_at > 0, torsion ? NONE : MAY, "at");
     const char *const force = s->damper ? "damping_n_s_per_m" : "stiffness_n_per_m";
     const char *const torque = s->damper ? "damping_n_m_s_per_rad" : "stiffness_n_m_per_rad";
-    if (torsion || axial) {
-        check_member(f, s, s->stiffness != MT_ABSENT, NEEDS, torsion ? torque : force);
+    const struct {
+        bool given;
+        need wanted;
+        const char *member;
+    } members[] = {
+        {   s->bodies[0].name.s != NULL,                          r->bodies,                              "bodies"},
+        {       s->joint_name.s != NULL,                           r->joint,                               "joint"},
+        {                   s->n_at > 0,                              r->at,                                  "at"},
+        {     s->stiffness != MT_ABSENT,                     r->coefficient,              torsion ? torque : force},
+        {s->youngs_modulus != MT_ABSENT,                        r->material,                   "youngs_modulus_pa"},
+        {          s->area != MT_ABSENT,                        r->material,                             "area_m2"},
+        {       s->density != MT_ABSENT,                         r->density,                   "density_kg_per_m3"},
+        {   s->free_length != MT_ABSENT,                     r->free_length,                       "free_length_m"},
+        {    s->free_angle != MT_ABSENT,                      r->free_angle,                      "free_angle_rad"},
+        {       s->preload != MT_ABSENT,                         r->preload, torsion ? "preload_n_m" : "preload_n"},
+        {             s->matrix != NULL,                          r->matrix,                    "stiffness_matrix"},
+        {s->translation[0] != MT_ABSENT, s->matrix == NULL ? r->lists : MAY,                                 force},
+        {   s->rotation[2] != MT_ABSENT, s->matrix == NULL ? r->lists : MAY,                                torque},
+    };
+    for (int i = 0; i < MT_COUNT(members); i++) {
+        check_member(f, s, members[i].given, members[i].wanted, members[i].member);
     }
-    check_member(f, s, s->youngs_modulus != MT_ABSENT, bar ? NEEDS : NONE, "youngs_modulus_pa");
-    check_member(f, s, s->area != MT_ABSENT, bar ? NEEDS : NONE, "area_m2");
-    check_member(f, s, s->density != MT_ABSENT, bar ? MAY : NONE, "density_kg_per_m3");
-    check_member(f, s, s->free_length != MT_ABSENT, axial && !s->damper ? MAY : NONE,
-                 "free_length_m");
-    check_member(f, s, s->free_angle != MT_ABSENT, torsion && !s->damper ? MAY : NONE,
-                 "free_angle_rad");
-    check_member(f, s, s->preload != MT_ABSENT, !bushing && !s->damper ? MAY : NONE,
-                 torsion ? "preload_n_m" : "preload_n");
-    check_member(f, s, s->matrix != NULL, bushing && !s->damper && !two ? MAY : NONE,
-                 "stiffness_matrix");
-    if (bushing && s->matrix == NULL) {
-        check_member(f, s, s->translation[0] != MT_ABSENT, NEEDS, force);
-        check_member(f, s, s->rotation[2] != MT_ABSENT, NEEDS, torque);
-    }
-    if (s->matrix != NULL && (s->translation[0] != MT_ABSENT || s->rotation[2] != MT_ABSENT)) {
+}
+
+/* What depends on several members at once. */
+static void check_together(mt_finish *f, const mt_spring *s)
+{
+    const bool lists = s->translation[0] != MT_ABSENT || s->rotation[2] != MT_ABSENT;
+    const bool free_given = s->free_length != MT_ABSENT || s->free_angle != MT_ABSENT;
+    if (s->matrix != NULL && lists) {
         mt_diag_error(f->d, s->name.addr,
                       "spring \"%s\": give \"stiffness_matrix\" or the two lists, not both",
                       s->name.s);
     }
-    const bool free_given = s->free_length != MT_ABSENT || s->free_angle != MT_ABSENT;
+    if (s->matrix != NULL && f->m->dimension == 2) {
+        mt_diag_error(f->d, s->name.addr,
+                      "spring \"%s\": \"stiffness_matrix\" is for three dimensions", s->name.s);
+    }
     if (free_given && s->preload != MT_ABSENT) {
         mt_diag_error(
             f->d, mt_finish_addr(f->m, s->preload),
             "spring \"%s\": a preload follows from the free length or angle; give one of them",
             s->name.s);
     }
-    if (axial || bar) {
-        if (s->n_at == 1) {
-            mt_diag_error(f->d, s->at[0].addr,
-                          "\"at\" of %s \"%s\" must be a pair: the point on each body",
-                          s->damper ? "damper" : "spring", s->name.s);
-        }
+    if (s->n_at == 1 && (s->type == MT_SPRING_AXIAL || s->type == MT_SPRING_BAR)) {
+        mt_diag_error(f->d, s->at[0].addr,
+                      "\"at\" of %s \"%s\" must be a pair: the point on each body",
+                      s->damper ? "damper" : "spring", s->name.s);
     }
 }
 
@@ -193,6 +224,7 @@ void mt_finish_springs(mt_finish *f)
             continue; /* could not be read */
         }
         check_members(f, s);
+        check_together(f, s);
         check_bodies(f, s);
         if (s->type == MT_SPRING_TORSION) {
             check_torsion(f, s);

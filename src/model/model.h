@@ -260,7 +260,7 @@ typedef struct mt_drive {
     bool trim;              /* false: locked there */
     mt_name trim_name;
     int trim_spring;
-    bool inherited;      /* by finish: taken over from the configuration that this one is like */
+    bool inherited; /* by finish: taken over from the configuration that this one is like */
     mt_addr addr;
 } mt_drive;
 

@@ -40,56 +40,56 @@ static void json__syntax_errors_are_told_exactly(mt_test *t)
         {                                           "{a: 1}",                "f:1:2: error: a member name must stand in double quotes\n"},
         {                                        "{\"a\": }",               "f:1:7: error: unexpected \"}\" where a value is expected\n"},
         {                                              "1 2",   "f:1:3: error: unexpected \"2\" where the end of the text is expected\n"},
-        {                                             "[01]",        "f:1:2: error: malformed number 01: it must not start with 0\n"},
+        {                                             "[01]",            "f:1:2: error: malformed number 01: it must not start with 0\n"},
         {                                             "[.5]", "f:1:2: error: malformed number .5: digits are missing before the point\n"},
         {                                             "[5.]",  "f:1:2: error: malformed number 5.: digits are missing after the point\n"},
         {                                             "[1e]",  "f:1:2: error: malformed number 1e: digits are missing in the exponent\n"},
         {                                             "[+1]",            "f:1:2: error: malformed number +1: it must not start with +\n"},
         {                                              "[-]",  "f:1:2: error: malformed number -: digits are missing before the point\n"},
-        {                                           "[0x10]",                                                                            "f:1:2: error: malformed number 0x10: write an expression as a string in "
-         "double quotes\n"                                                                           },
+        {                                           "[0x10]",                                        "f:1:2: error: malformed number 0x10: write an expression as a string in "
+                                        "double quotes\n"                  },
         {                                 "[NaN, -Infinity]",
          "f:1:2: error: NaN is not a number in JSON: numbers must be finite\n"
-         "f:1:7: error: -Infinity is not a number in JSON: numbers must be finite\n"},
+         "f:1:7: error: -Infinity is not a number in JSON: numbers must be finite\n"                                                    },
         {                             "{\"a\": [True, 'x']}",
          "f:1:8: error: /a: unexpected True: strings are written in double quotes\n"
-         "f:1:14: error: /a: strings are written in double quotes\n"                                                                          },
+         "f:1:14: error: /a: strings are written in double quotes\n"                                                                    },
         {                                       "[\"a\tb\"]",      "f:1:4: error: control character U+0009 in a string: write \\u0009\n"},
         {                                       "[\"a\nb\"]",
-         "f:1:2: error: the string that begins here has no closing quote on its line\n"                                                                          },
+         "f:1:2: error: the string that begins here has no closing quote on its line\n"                                                 },
         {                                        "[\"\\x\"]",
-         "f:1:3: error: unknown escape in a string: write \"\\\\\" for a backslash\n"},
-        {                                    "[\"\\u12g4\"]",          "f:1:3: error: \\u must be followed by four hexadecimal digits\n"                                                                          },
+         "f:1:3: error: unknown escape in a string: write \"\\\\\" for a backslash\n"                                                   },
+        {                                    "[\"\\u12g4\"]",          "f:1:3: error: \\u must be followed by four hexadecimal digits\n"},
         {                                    "[\"\\ud800\"]",
-         "f:1:3: error: \\ud800 is half of a surrogate pair without its other half\n"},
+         "f:1:3: error: \\ud800 is half of a surrogate pair without its other half\n"                                                   },
         {                             "[\"\\udc00\\ud800\"]",
          "f:1:3: error: \\udc00 is half of a surrogate pair without its other half\n"
-         "f:1:9: error: \\ud800 is half of a surrogate pair without its other half\n"                                                                          },
+         "f:1:9: error: \\ud800 is half of a surrogate pair without its other half\n"                                                   },
         {                                    "[\"\\u0000\"]",           "f:1:3: error: the character U+0000 is not allowed in strings\n"},
-        {                                   "[\"\xC0\x80\"]",                                                                            "f:1:3: error: byte 0xC0 is not valid UTF-8\nf:1:4: error: byte "
-         "0x80 is not valid UTF-8\n"                                                                          },
-        {                               "[\"\xED\xA0\x80\"]",                                                                       NULL                        },
-        {                           "[\"\xF4\x90\x80\x80\"]",                                                                       NULL                          },
-        {                                   "[\"\xE2\x82\"]",                                                                       NULL                        },
-        {                                  "\xEF\xBB\xBF[1]",                                                                            "f:1:1: error: the text starts with a byte order mark: save it as "
-         "UTF-8 without one\n"                          },
-        {                                        "\xFF\xFE[",                     "f:1:1: error: the text is UTF-16: save it as UTF-8\n"                                                                                                          },
+        {                                   "[\"\xC0\x80\"]",                      "f:1:3: error: byte 0xC0 is not valid UTF-8\nf:1:4: error: byte "
+                      "0x80 is not valid UTF-8\n"                          },
+        {                               "[\"\xED\xA0\x80\"]",                                                                       NULL},
+        {                           "[\"\xF4\x90\x80\x80\"]",                                                                       NULL},
+        {                                   "[\"\xE2\x82\"]",                                                                       NULL},
+        {                                  "\xEF\xBB\xBF[1]",                           "f:1:1: error: the text starts with a byte order mark: save it as "
+                           "UTF-8 without one\n"                           },
+        {                                        "\xFF\xFE[",                     "f:1:1: error: the text is UTF-16: save it as UTF-8\n"},
         {                                        "// x\n[1]",
-         "f:1:1: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"},
+         "f:1:1: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"                                          },
         {                                   "[1, /* x */ 2]",
          "f:1:5: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"                                          },
         {"{\"a\": 1, \"b\": {\"c\": 1, \"c\": 2}, \"a\": 3}",
          "f:1:24: error: /b: member \"c\" is given twice, first in line 1\n"
-         "f:1:33: error: member \"a\" is given twice, first in line 1\n"                                          },
+         "f:1:33: error: member \"a\" is given twice, first in line 1\n"                                                                },
         {                       "{\"a\": 1, \"\\u0061\": 2}",
          "f:1:10: error: member \"a\" is given twice, first in line 1\n"                                                                },
         {                  "{\"a/b\": {\"~c\": [0, 1e999]}}",
-         "f:1:20: error: /a~1b/~0c/1: the number is beyond the range of a double\n"                                                                },
+         "f:1:20: error: /a~1b/~0c/1: the number is beyond the range of a double\n"                                                     },
         {                     "{\"\\u001b[2J\": [0, 1e999]}",
-         "f:1:19: error: /\\u001b[2J/1: the number is beyond the range of a double\n"                                                     },
+         "f:1:19: error: /\\u001b[2J/1: the number is beyond the range of a double\n"                                                   },
         {                         "{\n \"\xC3\xA4\": 1e999}",
-         "f:2:7: error: /\xC3\xA4: the number is beyond the range of a double\n"                                                   },
-        {                                    "[\r\n\r1e999]",           "f:3:1: error: /0: the number is beyond the range of a double\n"                                                        },
+         "f:2:7: error: /\xC3\xA4: the number is beyond the range of a double\n"                                                        },
+        {                                    "[\r\n\r1e999]",           "f:3:1: error: /0: the number is beyond the range of a double\n"},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_status rc = MT_OK;
@@ -168,7 +168,7 @@ static void json__numbers_are_the_nearest_doubles(mt_test *t)
         const char *text;
         double value;
     } rows[] = {
-        {                                                                      "0.1",0x1.999999999999ap-4                                                                                              },
+        {                                                                               "0.1",0x1.999999999999ap-4                                                                                              },
         {                                                                  "9007199254740993",                  0x1p53},
         {"9007199254740993.00000000000000000000000000000000000000000000000000000000000000001",
          0x1.0000000000001p53                                                                                         },
@@ -177,11 +177,11 @@ static void json__numbers_are_the_nearest_doubles(mt_test *t)
         {                                                           "4.9406564584124654e-324",               0x1p-1074},
         {                                                                                "-0",                    -0.0},
         {                                                           "2.2250738585072011e-308", 0x0.fffffffffffffp-1022},
-        {                                                                                    "0."
-         "000000000000000000000000000000000000000000000000000000000000000000000000000000000001e"
-         "84",                     1.0                                                                                                         },
+        {                                                                       "0."
+                                                                       "000000000000000000000000000000000000000000000000000000000000000000000000000000000001e"
+                                                                       "84",                     1.0         },
         {                           "1.00000000000000011102230246251565404236316680908203125",                     1.0},
-        {                           "1.00000000000000011102230246251565404236316680908203126",     0x1.0000000000001p0                       },
+        {                           "1.00000000000000011102230246251565404236316680908203126",     0x1.0000000000001p0},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_json *doc = NULL;
