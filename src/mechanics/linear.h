@@ -71,6 +71,8 @@ int mt_linear_redundant(const mt_linear *lin);
 mt_status mt_linear_redundant_set(mt_linear *lin, int k, const char **text, mt_err *err);
 /* Names of the bodies and directions that dominate a direction y in the freedoms: "bob (rotation)", for messages. Buffer of size bytes. */
 void mt_linear_name_direction(const mt_linear *lin, const double *y, char *text, size_t size);
+/* w = M Z y over all states, nq (mass-weighted shape, for correlation with shapes at other designs). */
+mt_status mt_linear_mass_product(mt_linear *lin, const double *y, double *w, mt_err *err);
 /* Reduced damping matrix Z^T C Z (n x n) into c. */
 void mt_linear_damping(const mt_linear *lin, double *c);
 

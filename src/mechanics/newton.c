@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { NEWTON_LIMIT = 60 };
+enum { NEWTON_LIMIT = 60, WHERE_SIZE = 300 };
 /* Rounding of the largest single spring force, summed over many springs and projected, stays below this many times itself. */
 static const double NOISE_ROOM = 32.0;
 
@@ -91,10 +91,15 @@ static mt_status refuse(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
     if (!(mt_newton_gap_of(w) <= MT_STEP_DONE)) {
         return mt_newton_open_loop(w->p, poses, &e, mem, err);
     }
+    char where[WHERE_SIZE];
+    mt_eliminate_project(&e, w->g, w->reduced);
+    const double unbalanced = mt_max_abs(e.n, w->reduced);
+    const double scale = w->l.force_scale > 0.0 ? w->l.force_scale : 1.0;
+    mt_position_name_motion(w->sys, &e, w->reduced, where, sizeof where);
     return mt_fail(err, MT_E_EQUILIBRIUM,
-                   "no equilibrium found after %d iterations: the largest unbalanced force is "
-                   "%.3g of the forces at work (free to move under load?)",
-                   report->iterations, w->residual);
+                   "no equilibrium found after %d iterations: %.3g of the forces at work stay "
+                   "unbalanced on %s (free to move under load?)",
+                   report->iterations, unbalanced / scale, where);
 }
 
 mt_status mt_newton_solve(const mt_newton_problem *problem, mt_pose *poses, mt_arena *mem,

@@ -58,4 +58,8 @@ void mt_position_move(const mt_system *sys, mt_pose *poses, const double *dq);
 void mt_position_complex(const mt_system *sys, const mt_pose *poses, const double *dq,
                          mt_pose *out);
 
+/* The bodies and directions that dominate the motion Z y, for messages: "bob" (along x), "rod" (rotation). y[e->n], text[size]. */
+void mt_position_name_motion(const mt_system *sys, const mt_elimination *e, const double *y,
+                             char *text, size_t size);
+
 #endif

@@ -41,34 +41,36 @@ mt_status mt_linear_redundant_set(mt_linear *lin, int k, const char **text, mt_e
 /* Freedoms that move more than this fraction of the largest motion are named. */
 static const double NAMED = 0.3;
 
-void mt_linear_name_direction(const mt_linear *lin, const double *y, char *text, size_t size)
+void mt_position_name_motion(const mt_system *sys, const mt_elimination *e, const double *y,
+                             char *text, size_t size)
 {
-    const mt_system *const sys = lin->sys;
     static const char *const MOTION[6] = {"along x",          "along y",
                                           "along z",          "rotation about x",
                                           "rotation about y", "rotation about z"};
     double largest = 0.0;
     size_t used = 0;
     text[0] = '\0';
-    for (int pass = 0; pass < 2; pass++) {
-        for (int b = 0; b < sys->n_bodies; b++) {
-            for (int k = 0; k < 6; k++) {
-                const int dof = sys->bodies[b].dof[k];
-                double s = 0.0;
-                for (int c = 0; c < lin->n && dof >= 0; c++) {
-                    s += lin->e.z[dof + ((ptrdiff_t)c * sys->nq)] * y[c];
-                }
-                s = fabs(s) * (k < 3 ? 1.0 : sys->length_m);
-                if (pass == 0) {
-                    largest = fmax(largest, s);
-                } else if (s > NAMED * largest && used < size) {
-                    const char *const motion =
-                        sys->dimension == 2 && k == 5 ? "rotation" : MOTION[k];
-                    const int n = snprintf(text + used, size - used, "%s\"%s\" (%s)",
-                                           used == 0 ? "" : ", ", sys->bodies[b].name, motion);
-                    used += n > 0 ? (size_t)n : 0;
-                }
-            }
+    for (int i = 0; i < 12 * sys->n_bodies; i++) { /* all bodies for the largest, then again */
+        const int b = i % (6 * sys->n_bodies) / 6;
+        const int k = i % 6;
+        const int dof = sys->bodies[b].dof[k];
+        double s = 0.0;
+        for (int c = 0; c < e->n && dof >= 0; c++) {
+            s += e->z[dof + ((ptrdiff_t)c * e->nq)] * y[c];
+        }
+        s = fabs(s) * (k < 3 ? 1.0 : sys->length_m);
+        if (i < 6 * sys->n_bodies) {
+            largest = fmax(largest, s);
+        } else if (s > NAMED * largest && used < size) {
+            const char *const motion = sys->dimension == 2 && k == 5 ? "rotation" : MOTION[k];
+            const int n = snprintf(text + used, size - used, "%s\"%s\" (%s)",
+                                   used == 0 ? "" : ", ", sys->bodies[b].name, motion);
+            used += n > 0 ? (size_t)n : 0;
         }
     }
+}
+
+void mt_linear_name_direction(const mt_linear *lin, const double *y, char *text, size_t size)
+{
+    mt_position_name_motion(lin->sys, &lin->e, y, text, size);
 }

@@ -320,3 +320,18 @@ mt_status mt_linear_sense_derivative(mt_linear *lin, int p, int ns, const int *c
     mt_arena_rewind(&lin->scratch, mark);
     return MT_OK;
 }
+
+mt_status mt_linear_mass_product(mt_linear *lin, const double *y, double *w, mt_err *err)
+{
+    const size_t nq = (size_t)lin->sys->nq;
+    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    double *const phi = mt_arena_f64(&lin->scratch, nq, 1);
+    if (phi == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_linear_expand(lin, 1, y, phi);
+    memset(w, 0, nq * sizeof *w);
+    full_product(lin, MT_TERM_MASS, phi, w);
+    mt_arena_rewind(&lin->scratch, mark);
+    return MT_OK;
+}

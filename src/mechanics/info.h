@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_INFO_H
+#define MECHANICS_INFO_H
+
+#include "mechanics/linear.h"
+
+/* What a configuration weighs and how it can move, at the position where it is linearised. */
+typedef struct mt_info {
+    int states;         /* coordinates of all bodies */
+    int equations;      /* of joints, links' hinges and the locked drive */
+    int freedoms;       /* states less independent equations (mobility) */
+    int redundant;      /* equations less independent ones; names: mt_linear_redundant_set */
+    double mass_kg;     /* everything with mass, fixed or moving */
+    double centre_m[3]; /* of mass, global; NaN where there is no mass */
+    double inertia_kg_m2
+        [6]; /* about the centre, global axes: xx yy zz xy xz yz as they stand in the tensor (xy = -sum m x y); in two dimensions zz alone, else 0 */
+    double residual; /* of the equilibrium, relative to the forces at work */
+    double gap_m;    /* largest violation of a joint */
+} mt_info;
+
+/* After mt_linear_update. Masses of consistent bars and beams included exactly. Fails: MT_E_MEMORY. */
+mt_status mt_info_fill(mt_linear *lin, mt_info *out, mt_err *err);
+
+#endif
