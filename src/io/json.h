@@ -75,6 +75,8 @@ void mt_json_place(const mt_json *doc, mt_addr addr, int *line, int *column);
 /* Where the source text of a number or string (quotes included) begins, and one past its end: for whoever replaces it. Offsets in bytes.
  * False for values of other types. */
 bool mt_json_span(const mt_json *doc, mt_addr value, size_t *begin, size_t *end);
+/* The same for n addresses of values in ascending order, in one walk through the text. */
+void mt_json_places(const mt_json *doc, int n, const mt_addr *addrs, int *lines, int *columns);
 /* Append the JSON pointer of an address (RFC 6901: ~ is ~0, / is ~1; the root's is empty). */
 void mt_json_pointer(const mt_json *doc, mt_addr addr, mt_text *out);
 /**

@@ -72,6 +72,16 @@ bool mt_json_span(const mt_json *doc, mt_addr value, size_t *begin, size_t *end)
     return node->type == MT_JSON_NUMBER || node->type == MT_JSON_STRING;
 }
 
+void mt_json_places(const mt_json *doc, int n, const mt_addr *addrs, int *lines, int *columns)
+{
+    cursor at = {0, 1, 1};
+    for (int i = 0; i < n; i++) {
+        advance(doc, &at, offset_of(doc, addrs[i]));
+        lines[i] = at.line;
+        columns[i] = at.column;
+    }
+}
+
 /* A member name as a pointer writes it: decoded where the values stand, else as in the source. */
 static void add_name(const mt_json *doc, const mt_json_node *node, mt_text *out)
 {

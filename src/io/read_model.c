@@ -4,6 +4,7 @@
 
 #include "modetune/model.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "io/file.h"
@@ -243,6 +244,39 @@ static bool check_format(mt_reader *r)
     return true;
 }
 
+static int compare_addrs(const void *a, const void *b)
+{
+    const mt_addr x = *(const mt_addr *)a;
+    const mt_addr y = *(const mt_addr *)b;
+    return (x > y) - (x < y);
+}
+
+/* Keep where every number stands: the document is gone when a value turns out to be wrong. */
+static bool note_places(mt_model_reader *mr)
+{
+    mt_model *const m = mr->m;
+    const size_t n = (size_t)m->n_nums;
+    m->places = mt_arena_alloc(&m->mem, n, sizeof *m->places);
+    const mt_arena_mark mark = mt_arena_get_mark(&m->mem);
+    int *const addrs = mt_arena_int(&m->mem, n);
+    int *const lines = mt_arena_int(&m->mem, n);
+    int *const columns = mt_arena_int(&m->mem, n);
+    if (m->places == NULL || addrs == NULL || lines == NULL || columns == NULL) {
+        return false;
+    }
+    for (size_t i = 0; i < n; i++) {
+        addrs[i] = m->nums[i].addr;
+    }
+    qsort(addrs, n, sizeof *addrs, compare_addrs);
+    mt_json_places(mr->r.doc, m->n_nums, addrs, lines, columns);
+    for (size_t i = 0; i < n; i++) {
+        m->places[i] = (mt_place){.addr = addrs[i], .line = lines[i], .column = columns[i]};
+    }
+    m->n_places = m->n_nums;
+    mt_arena_rewind(&m->mem, mark);
+    return true;
+}
+
 mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_err *err)
 {
     mt_model *m = NULL;
@@ -262,6 +296,7 @@ mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_
         if (!mr.r.out_of_memory && mt_model_finish(m, mr.r.diags, NULL) == MT_E_MEMORY) {
             mr.r.out_of_memory = true;
         }
+        mr.r.out_of_memory = mr.r.out_of_memory || !note_places(&mr);
     }
     const mt_status rc = mt_reader_status(&mr.r, file, err);
     if (rc != MT_OK) {

@@ -122,6 +122,27 @@ int mt_model_find_sensor(const mt_model *model, const char *name)
     return find(&model->tables->sensors, name);
 }
 
+bool mt_model_place(const mt_model *model, mt_addr addr, int *line, int *column)
+{
+    int first = 0;
+    int last = model->n_places - 1;
+    while (first <= last) {
+        const int middle = first + (last - first) / 2;
+        const mt_place *const p = &model->places[middle];
+        if (p->addr == addr) {
+            *line = p->line;
+            *column = p->column;
+            return true;
+        }
+        if (p->addr < addr) {
+            first = middle + 1;
+        } else {
+            last = middle - 1;
+        }
+    }
+    return false;
+}
+
 bool mt_model_present(const mt_presence *in, int configuration)
 {
     return in->present == NULL || in->present[configuration];

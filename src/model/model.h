@@ -275,6 +275,13 @@ typedef struct mt_configuration {
     mt_drive drive;    /* after finish: the one in force */
 } mt_configuration;
 
+/* Where an address of the model's file stands, kept for messages about values: lines and columns from 1. */
+typedef struct mt_place {
+    mt_addr addr;
+    int line;
+    int column;
+} mt_place;
+
 #define MT_LIST_OF(type, name) \
     type *name;                \
     int n_##name;              \
@@ -302,6 +309,8 @@ typedef struct mt_model {
         mt_configuration,
         configurations); /* never empty after finish: "default" is made where none is given */
     const char *sha256;  /* of the file's bytes, hexadecimal; NULL: not read from a file */
+    int n_places;        /* one per number, sorted by address; 0: not read from a file */
+    mt_place *places;
     struct mt_model_names *tables; /* private: names to indices */
     bool out_of_memory;            /* while it was filled; mt_model_finish fails then */
 } mt_model;
@@ -331,6 +340,8 @@ int mt_model_find_joint(const mt_model *model, const char *name);
 int mt_model_find_spring(const mt_model *model, const char *name);
 int mt_model_find_link(const mt_model *model, const char *name);
 int mt_model_find_sensor(const mt_model *model, const char *name);
+/* Line and column in model->path of the number at an address; false where it is not known. */
+bool mt_model_place(const mt_model *model, mt_addr addr, int *line, int *column);
 /* Is the item present in configuration c? */
 bool mt_model_present(const mt_presence *in, int configuration);
 const char *mt_joint_type_name(mt_joint_type type);
