@@ -113,7 +113,7 @@ def main():
         if kind != "result":
             originals.append((path, kind, "as it is", load(path)))
             jobs += [(path, kind, text, mutant) for text, mutant in mutants(load(path))]
-    step = max(1, len(jobs) // int(os.environ.get("MT_MUTANTS", "6000")))  # evenly thinned where there are many
+    step = max(1, len(jobs) // int(os.environ.get("MT_MUTANTS", "4000")))  # evenly thinned where there are many
     jobs = originals + jobs[::step]
     with tempfile.TemporaryDirectory() as folder:
         names = []
