@@ -16,10 +16,12 @@
     X(GOAL_MODE, "mode", MT_KEY_TEXT_OR_COUNT, true)
 enum { MODE_KEYS(MT_STUDY_KEY_ENUM) GOAL_KEY_COUNT };
 
-#define FREQUENCY_KEYS(X)                                      \
-    X(FREQUENCY_TARGET, "target_hz", MT_KEY_NUMBER, false)     \
-    X(FREQUENCY_AT_LEAST, "at_least_hz", MT_KEY_NUMBER, false) \
-    X(FREQUENCY_AT_MOST, "at_most_hz", MT_KEY_NUMBER, false)   \
+#define FREQUENCY_KEYS(X)                                              \
+    X(FREQUENCY_TARGET, "target_hz", MT_KEY_NUMBER, false)             \
+    X(FREQUENCY_REFERENCE, "reference", MT_KEY_TEXT, false)            \
+    X(FREQUENCY_REFERENCE_MODE, "reference_mode", MT_KEY_COUNT, false) \
+    X(FREQUENCY_AT_LEAST, "at_least_hz", MT_KEY_NUMBER, false)         \
+    X(FREQUENCY_AT_MOST, "at_most_hz", MT_KEY_NUMBER, false)           \
     X(FREQUENCY_WEIGHT, "weight", MT_KEY_NUMBER, false)
 enum { FREQUENCY_BASE = GOAL_KEY_COUNT - 1, FREQUENCY_KEYS(MT_STUDY_KEY_ENUM) FREQUENCY_COUNT };
 static const mt_key FREQUENCY[] = {MODE_KEYS(MT_STUDY_KEY) FREQUENCY_KEYS(MT_STUDY_KEY)};
@@ -81,6 +83,14 @@ static void read_configurations(mt_study_reader *s, const mt_study_object *o, mt
 static void read_frequency(mt_study_reader *s, const mt_study_object *o, mt_goal *goal)
 {
     goal->target_hz = mt_read_study_member(s, o, FREQUENCY_TARGET, &goal->target_addr);
+    goal->reference_name = mt_reader_ref(&s->r, o->found[FREQUENCY_REFERENCE]);
+    goal->reference_name.addr = mt_read_study_place(s, o, FREQUENCY_REFERENCE);
+    goal->reference_mode = mt_read_study_index(s, o->found[FREQUENCY_REFERENCE_MODE]);
+    if (mt_read_study_has(s, o, FREQUENCY_REFERENCE_MODE) &&
+        !mt_read_study_has(s, o, FREQUENCY_REFERENCE)) {
+        mt_diag_structure(s->r.diags, mt_read_study_place(s, o, FREQUENCY_REFERENCE_MODE),
+                          "\"reference_mode\" goes with \"reference\"");
+    }
     goal->at_least = mt_read_study_member(s, o, FREQUENCY_AT_LEAST, &goal->at_least_addr);
     goal->at_most = mt_read_study_member(s, o, FREQUENCY_AT_MOST, &goal->at_most_addr);
     goal->weight = mt_read_study_member(s, o, FREQUENCY_WEIGHT, &goal->weight_addr);

@@ -97,7 +97,10 @@ static const char *demand_text(const mt_problem *p, const mt_demand *d, mt_arena
     case MT_GOAL_FREQUENCY:
         if (MT_HAS(d->target_hz)) {
             *number = d->target_hz;
-            return mt_arena_printf(mem, "%s at %.10g Hz", mode, d->target_hz);
+            return d->shape.reference == NULL
+                       ? mt_arena_printf(mem, "%s at %.10g Hz", mode, d->target_hz)
+                       : mt_arena_printf(mem, "%s at %.10g Hz as mode %d of \"%s\"", mode,
+                                         d->target_hz, d->shape.mode, d->shape.reference);
         }
         if (MT_HAS(g->at_least) && MT_HAS(g->at_most)) {
             return mt_arena_printf(mem, "%s from %.10g to %.10g Hz", mode, g->at_least,

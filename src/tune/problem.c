@@ -159,6 +159,25 @@ static mt_status resolve_mode(const mt_problem *p, const mt_goal *goal, const mt
     return MT_OK;
 }
 
+/* What the goal is compared with: a shape, or a frequency, which is then the target. */
+static mt_status resolve_reference(mt_problem *p, const mt_view *view, mt_demand *d,
+                                   mt_err *err)
+{
+    const mt_goal *const g = d->goal;
+    if (g->reference_name.s == NULL) {
+        return MT_OK;
+    }
+    const int own = d->mode > 0 ? d->mode : p->study->model->modes[g->mode.named].index;
+    const int mode = g->reference_mode > 0 ? g->reference_mode : own;
+    if (g->type == MT_GOAL_FREQUENCY) {
+        MT_TRY(mt_reference_frequency_init(p, g->reference, mode, &d->shape, err));
+        d->target_hz = d->shape.frequency_hz;
+        return MT_OK;
+    }
+    return mt_reference_shape_init(p, g->reference, mode, view->analysis->sys, &p->mem,
+                                   &d->shape, err);
+}
+
 static void number_rows(mt_problem *p, mt_demand *d)
 {
     const mt_goal *const g = d->goal;
@@ -203,17 +222,7 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
                            view->analysis->modes.n_unstable > 0 ? " (it is unstable there)"
                                                                 : "");
         }
-        if (g->type == MT_GOAL_SHAPE || g->type == MT_GOAL_MAC || g->reference_name.s != NULL) {
-            const int own = d->mode > 0 ? d->mode : p->study->model->modes[g->mode.named].index;
-            const int mode = g->reference_mode > 0 ? g->reference_mode : own;
-            MT_TRY(mt_err_in(err,
-                             mt_reference_shape_init(p, g->reference, mode, view->analysis->sys,
-                                                     &p->mem, &d->shape, err),
-                             "/goals/%d", goal_index));
-            if (g->type == MT_GOAL_FREQUENCY) {
-                d->target_hz = d->shape.frequency_hz;
-            }
-        }
+        MT_TRY(mt_err_in(err, resolve_reference(p, view, d, err), "/goals/%d", goal_index));
         view->needs_vectors = view->needs_vectors || g->type == MT_GOAL_SHAPE ||
                               g->type == MT_GOAL_MAC || d->named >= 0;
     }

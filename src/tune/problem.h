@@ -44,7 +44,7 @@ typedef struct mt_demand {
     int mode;                 /* 1-based index; 0: by name */
     int named;                /* position in the view's list, where by name */
     mt_node node;             /* limit: node of the expressions' program */
-    mt_reference_shape shape; /* shape, mac */
+    mt_reference_shape shape; /* shape, mac; frequency: without the shape */
     double target_hz;
     int row_eq;       /* first row in eq, -1 none */
     int row_in;       /* first row in in (two rows where both limits are given), -1 */
@@ -119,6 +119,9 @@ int mt_problem_view(const mt_problem *p, int configuration);
 mt_status mt_reference_shape_init(const mt_problem *p, int reference, int mode,
                                   const mt_system *sys, mt_arena *mem, mt_reference_shape *out,
                                   mt_err *err);
+/* The reference's frequency alone, for a frequency goal: ns is 0, no sensor is needed. */
+mt_status mt_reference_frequency_init(const mt_problem *p, int reference, int mode,
+                                      mt_reference_shape *out, mt_err *err);
 /* MAC of the mode at pos with the reference; NaN where a shape vanishes. */
 mt_status mt_reference_mac(mt_analysis *a, int pos, const mt_reference_shape *ref, double *mac,
                            mt_err *err);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shapes to compare with: another model's modes, or measured values, at the sensor channels that both sides have. */
+/* Frequencies and shapes to compare with: those of another model's modes, or measured ones; shapes at the sensor channels that both
+ * sides have. */
 #include <math.h>
 #include <string.h>
 
@@ -26,14 +27,24 @@ static mt_status normalise(const mt_reference *r, mt_reference_shape *out, mt_er
     return MT_OK;
 }
 
+/* NULL, with the error told, where the list has no such mode. */
+static const mt_measured_mode *measured_mode(const mt_reference *r, int mode, mt_err *err)
+{
+    if (mode > r->n_modes) {
+        (void)mt_fail(err, MT_E_INPUT, "reference \"%s\" has no mode %d (it lists %d)",
+                      r->name.s, mode, r->n_modes);
+        return NULL;
+    }
+    return &r->modes[mode - 1];
+}
+
 static mt_status measured(const mt_reference *r, const mt_system *sys, mt_arena *mem,
                           mt_reference_shape *out, mt_err *err)
 {
-    if (out->mode > r->n_modes) {
-        return mt_fail(err, MT_E_INPUT, "reference \"%s\" has no mode %d (it lists %d)",
-                       r->name.s, out->mode, r->n_modes);
+    const mt_measured_mode *const m = measured_mode(r, out->mode, err);
+    if (m == NULL) {
+        return MT_E_INPUT;
     }
-    const mt_measured_mode *const m = &r->modes[out->mode - 1];
     out->channel = mt_arena_int(mem, (size_t)m->n_values);
     out->shape = mt_arena_f64(mem, (size_t)m->n_values, 1);
     if (out->channel == NULL || out->shape == NULL) {
@@ -66,7 +77,27 @@ void mt_reference_cache_free(mt_reference_cache *cache)
     cache->n = 0;
 }
 
-static mt_status computed(mt_analysis *a, const mt_reference *r, const mt_system *sys,
+/* The reference's own analysis, made when first asked for, and the position of its mode there. */
+static mt_status computed_mode(const mt_problem *p, int reference, int mode, mt_analysis **out,
+                               int *pos, mt_err *err)
+{
+    const mt_reference *const r = &p->study->references[reference];
+    mt_analysis **const cached = &p->references->analysis[reference];
+    if (*cached == NULL) {
+        MT_TRY(mt_err_in(
+            err, mt_analysis_new(r->model, r->configuration, 0, NULL, NULL, cached, err),
+            "reference \"%s\"", r->name.s));
+    }
+    *out = *cached;
+    *pos = mt_modal_flexible(&(*cached)->modes, mode);
+    if (*pos < 0) {
+        return mt_fail(err, MT_E_INPUT, "reference \"%s\" has no vibration mode %d", r->name.s,
+                       mode);
+    }
+    return MT_OK;
+}
+
+static mt_status computed(mt_analysis *a, int pos, const mt_reference *r, const mt_system *sys,
                           mt_arena *mem, mt_reference_shape *out, mt_err *err)
 {
     const size_t most = (size_t)sys->n_channels;
@@ -83,13 +114,8 @@ static mt_status computed(mt_analysis *a, const mt_reference *r, const mt_system
             theirs[out->ns++] = c;
         }
     }
-    const int pos = mt_modal_flexible(&a->modes, out->mode);
     if (out->ns == 0) {
         return no_common(r, err);
-    }
-    if (pos < 0) {
-        return mt_fail(err, MT_E_INPUT, "reference \"%s\" has no vibration mode %d", r->name.s,
-                       out->mode);
     }
     out->frequency_hz = mt_modal_hz(&a->modes, pos);
     MT_TRY(mt_analysis_shape(a, pos, out->ns, theirs, out->shape, NULL, err));
@@ -101,17 +127,38 @@ mt_status mt_reference_shape_init(const mt_problem *p, int reference, int mode,
                                   mt_err *err)
 {
     const mt_reference *const r = &p->study->references[reference];
-    mt_analysis **const cached = &p->references->analysis[reference];
+    mt_analysis *a = NULL;
+    int pos = -1;
     *out = (mt_reference_shape){.reference = r->name.s, .mode = mode, .frequency_hz = nan("")};
     if (r->model == NULL) {
         return measured(r, sys, mem, out, err);
     }
-    if (*cached == NULL) {
-        MT_TRY(mt_err_in(
-            err, mt_analysis_new(r->model, r->configuration, 0, NULL, NULL, cached, err),
-            "reference \"%s\"", r->name.s));
+    MT_TRY(computed_mode(p, reference, mode, &a, &pos, err));
+    return computed(a, pos, r, sys, mem, out, err);
+}
+
+mt_status mt_reference_frequency_init(const mt_problem *p, int reference, int mode,
+                                      mt_reference_shape *out, mt_err *err)
+{
+    const mt_reference *const r = &p->study->references[reference];
+    mt_analysis *a = NULL;
+    int pos = -1;
+    *out = (mt_reference_shape){.reference = r->name.s, .mode = mode, .frequency_hz = nan("")};
+    if (r->model != NULL) {
+        MT_TRY(computed_mode(p, reference, mode, &a, &pos, err));
+        out->frequency_hz = mt_modal_hz(&a->modes, pos);
+        return MT_OK;
     }
-    return computed(*cached, r, sys, mem, out, err);
+    const mt_measured_mode *const m = measured_mode(r, mode, err);
+    if (m == NULL) {
+        return MT_E_INPUT;
+    }
+    out->frequency_hz = m->frequency_hz;
+    if (!(m->frequency_hz > 0.0)) {
+        return mt_fail(err, MT_E_INPUT, "reference \"%s\": mode %d has no frequency", r->name.s,
+                       mode);
+    }
+    return MT_OK;
 }
 
 mt_status mt_reference_mac(mt_analysis *a, int pos, const mt_reference_shape *ref, double *mac,

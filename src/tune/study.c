@@ -97,6 +97,7 @@ mt_goal mt_goal_default(mt_goal_type type, mt_addr addr)
         .equals = nan(""),
         .tolerance_percent = DEFAULT_TOLERANCE_PERCENT,
         .weight = nan(""),
+        .reference_name = {.addr = addr},
         .reference = MT_ABSENT,
         .addr = addr,
         .target_addr = addr,

@@ -64,6 +64,7 @@ typedef struct mt_goal {
     double equals;            /* limit */
     double tolerance_percent; /* default 1e-4 */
     double weight;            /* NaN: a constraint; else a residual of the misfit */
+    /* shape, mac; frequency: its target is the frequency of that mode, instead of target_hz; its addr equals addr where it was not given */
     mt_name reference_name;
     int reference;
     int reference_mode; /* 1-based; 0: same index as mode */

@@ -107,7 +107,7 @@ int mt_check_mode(mt_study_check *c, mt_mode_ref *mode)
 }
 
 void mt_check_reference_mode(mt_study_check *c, int reference, int reference_mode,
-                             int mode_index, bool with_shape, mt_addr addr)
+                             int mode_index, bool shape, mt_addr addr)
 {
     if (reference == MT_ABSENT) {
         return;
@@ -120,8 +120,14 @@ void mt_check_reference_mode(mt_study_check *c, int reference, int reference_mod
     if (index > r->n_modes) {
         mt_diag_error(c->diags, addr, "reference \"%s\" has %d mode%s, not %d", r->name.s,
                       r->n_modes, r->n_modes == 1 ? "" : "s", index);
-    } else if (with_shape && r->modes[index - 1].n_values == 0) {
+        return;
+    }
+    const mt_measured_mode *const m = &r->modes[index - 1];
+    if (shape && m->n_values == 0) {
         mt_diag_error(c->diags, addr, "mode %d of reference \"%s\" has no shape", index,
+                      r->name.s);
+    } else if (!shape && !mt_check_given(m->frequency_hz, m->frequency_addr, m->addr)) {
+        mt_diag_error(c->diags, addr, "mode %d of reference \"%s\" has no frequency", index,
                       r->name.s);
     }
 }

@@ -28,9 +28,10 @@ int mt_check_reference(mt_study_check *c, mt_name name);
 int mt_check_only_configuration(mt_study_check *c, const mt_model *model, mt_addr addr);
 /* Resolve a mode and check its index (absent: noted). Returns its index, that of a named mode included; 0 where there is none. */
 int mt_check_mode(mt_study_check *c, mt_mode_ref *mode);
-/* Does the reference have the mode, and (with_shape) a shape of it? reference_mode 0: mode_index. Problems noted at addr. */
+/* Does the reference have the mode, and of it what is compared: its shape, else its frequency? reference_mode 0: mode_index. Problems
+ * noted at addr. */
 void mt_check_reference_mode(mt_study_check *c, int reference, int reference_mode,
-                             int mode_index, bool with_shape, mt_addr addr);
+                             int mode_index, bool shape, mt_addr addr);
 /* A shape or a MAC needs a sensor and a direction that the model and the reference's model both have. (study_references.c) */
 void mt_check_common_sensors(mt_study_check *c, int reference, mt_addr addr);
 /* Was a number given, even if it could not be read (then its own address is known)? */

@@ -30,22 +30,22 @@ static void resolve_configurations(mt_study_check *c, mt_goal *goal)
 }
 
 typedef struct demands {
-    bool equal;
+    const char *equal; /* the member that asks for a value; NULL: none does */
     bool at_least;
     bool at_most;
 } demands;
 
-/* An equality excludes limits, limits must leave room. `equal` names the member. */
-static void check_demands(mt_study_check *c, const mt_goal *goal, demands d, const char *equal,
-                          const char *unit)
+/* An equality excludes limits, limits must leave room. `choices` names the members that ask for a value. */
+static void check_demands(mt_study_check *c, const mt_goal *goal, demands d,
+                          const char *choices, const char *unit)
 {
-    if (d.equal && (d.at_least || d.at_most)) {
-        mt_diag_error(c->diags, goal->addr, "\"%s\" excludes \"%s%s\"", equal,
+    if (d.equal != NULL && (d.at_least || d.at_most)) {
+        mt_diag_error(c->diags, goal->addr, "\"%s\" excludes \"%s%s\"", d.equal,
                       d.at_least ? "at_least" : "at_most", unit);
-    } else if (!d.equal && !d.at_least && !d.at_most) {
+    } else if (d.equal == NULL && !d.at_least && !d.at_most) {
         mt_diag_error(c->diags, goal->addr,
-                      "the goal demands nothing: give \"%s\", \"at_least%s\" or \"at_most%s\"",
-                      equal, unit, unit);
+                      "the goal demands nothing: give %s, \"at_least%s\" or \"at_most%s\"",
+                      choices, unit, unit);
     }
     if (goal->at_least >= goal->at_most) {
         mt_diag_error(c->diags, goal->at_most_addr,
@@ -56,24 +56,38 @@ static void check_demands(mt_study_check *c, const mt_goal *goal, demands d, con
 
 static demands demands_of(const mt_goal *goal)
 {
-    const bool target = mt_check_given(goal->target_hz, goal->target_addr, goal->addr);
+    const char *equal = NULL;
+    if (goal->type == MT_GOAL_LIMIT) {
+        equal = mt_check_given(goal->equals, goal->equals_addr, goal->addr) ? "equals" : NULL;
+    } else if (mt_check_given(goal->target_hz, goal->target_addr, goal->addr)) {
+        equal = "target_hz";
+    } else if (goal->reference_name.addr != goal->addr) {
+        equal = "reference";
+    }
     return (demands){
-        .equal = target || mt_check_given(goal->equals, goal->equals_addr, goal->addr),
+        .equal = equal,
         .at_least = mt_check_given(goal->at_least, goal->at_least_addr, goal->addr),
         .at_most = mt_check_given(goal->at_most, goal->at_most_addr, goal->addr),
     };
 }
 
-static void check_frequency(mt_study_check *c, mt_goal *goal)
+static void check_frequency(mt_study_check *c, mt_goal *goal, int index)
 {
     const demands d = demands_of(goal);
+    const bool target = mt_check_given(goal->target_hz, goal->target_addr, goal->addr);
+    goal->reference = mt_check_reference(c, goal->reference_name);
+    mt_check_reference_mode(c, goal->reference, goal->reference_mode, index, false, goal->addr);
+    if (target && goal->reference_name.addr != goal->addr) {
+        mt_diag_error(c->diags, goal->addr, "\"target_hz\" excludes \"reference\"");
+    }
     mt_check_positive(c, goal->target_hz, goal->target_addr, "target_hz");
     mt_check_positive(c, goal->at_least, goal->at_least_addr, "at_least_hz");
     mt_check_positive(c, goal->at_most, goal->at_most_addr, "at_most_hz");
-    check_demands(c, goal, d, "target_hz", "_hz");
-    if (MT_HAS(goal->weight) && !d.equal && (d.at_least || d.at_most)) {
-        mt_diag_error(c->diags, goal->weight_addr,
-                      "only a goal with \"target_hz\" can be part of the misfit");
+    check_demands(c, goal, d, "\"target_hz\", \"reference\"", "_hz");
+    if (MT_HAS(goal->weight) && d.equal == NULL && (d.at_least || d.at_most)) {
+        mt_diag_error(
+            c->diags, goal->weight_addr,
+            "only a goal with \"target_hz\" or \"reference\" can be part of the misfit");
     }
 }
 
@@ -93,13 +107,13 @@ static void check_goal(mt_study_check *c, mt_goal *goal)
     mt_check_positive(c, goal->tolerance_percent, goal->tolerance_addr, "tolerance_percent");
     mt_check_positive(c, goal->weight, goal->weight_addr, "weight");
     if (goal->type == MT_GOAL_LIMIT) {
-        check_demands(c, goal, demands_of(goal), "equals", "");
+        check_demands(c, goal, demands_of(goal), "\"equals\"", "");
         return;
     }
     resolve_configurations(c, goal);
     const int index = mt_check_mode(c, &goal->mode);
     if (goal->type == MT_GOAL_FREQUENCY) {
-        check_frequency(c, goal);
+        check_frequency(c, goal, index);
     } else if (goal->type == MT_GOAL_SHAPE || goal->type == MT_GOAL_MAC) {
         check_compared(c, goal, index);
     }

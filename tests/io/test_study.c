@@ -112,6 +112,11 @@ static void check_other_goals(mt_test *t, const mt_study *s)
     CHECK_INT(t, g[4].n_configurations, 0);
     CHECK_NEAR(t, g[4].at_most, 7.0, TOL);
     CHECK_NEAR_ABS(t, g[5].equals, 0.0, 0.0);
+    CHECK_INT(t, g[6].type, MT_GOAL_FREQUENCY);
+    CHECK_INT(t, g[6].reference, mt_study_find_reference(s, "test"));
+    CHECK_INT(t, g[6].reference_mode, 2);
+    CHECK(t, !MT_HAS(g[6].target_hz));
+    CHECK_INT(t, g[0].reference, MT_ABSENT);
 }
 
 static void check_references(mt_test *t, const mt_study *s)
@@ -182,7 +187,7 @@ static void study__every_member_arrives(mt_test *t)
     CHECK_INT(t, s->search.seed, 7);
     CHECK_INT(t, s->search.starts, 12);
     CHECK_INT(t, s->search.max_evaluations, 5000);
-    if (CHECK_INT(t, s->n_goals, 6)) {
+    if (CHECK_INT(t, s->n_goals, 7)) {
         check_frequency_goals(t, s);
         check_other_goals(t, s);
     }
