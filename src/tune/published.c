@@ -129,6 +129,19 @@ static const char *label_of(const mt_problem *p, const mt_published *pub, mt_are
     return "";
 }
 
+/* A limit beside a published value is told; alone it stands in the value's place. */
+static const char *limit_text(const mt_published *pub, mt_arena *mem)
+{
+    const bool shown = MT_HAS(pub->value);
+    if (MT_HAS(pub->at_least) && MT_HAS(pub->at_most)) {
+        return mt_arena_printf(mem, "from %.10g to %.10g", pub->at_least, pub->at_most);
+    }
+    if (MT_HAS(pub->at_least)) {
+        return shown ? mt_arena_printf(mem, "at least %.10g", pub->at_least) : "at least";
+    }
+    return shown ? mt_arena_printf(mem, "at most %.10g", pub->at_most) : "at most";
+}
+
 static const char *demand_of(const mt_published *pub, mt_arena *mem)
 {
     if (MT_HAS(pub->tolerance)) {
@@ -137,11 +150,8 @@ static const char *demand_of(const mt_published *pub, mt_arena *mem)
     if (MT_HAS(pub->tolerance_percent)) {
         return mt_arena_printf(mem, "within %g %%", pub->tolerance_percent);
     }
-    if (MT_HAS(pub->at_least)) {
-        return "at least";
-    }
-    if (MT_HAS(pub->at_most)) {
-        return "at most";
+    if (MT_HAS(pub->at_least) || MT_HAS(pub->at_most)) {
+        return limit_text(pub, mem);
     }
     return "reported";
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tune/study_check.h"
 
-/* What a value is judged by: a tolerance, absolute or relative, or limits; one that is not comparable needs none. */
+/* What a value is judged by: a tolerance, absolute or relative, or limits; one that is not comparable needs none. Limits do without a
+ * value, too: it is then only shown. */
 static void check_judgement(mt_study_check *c, const mt_published *p)
 {
     const bool absolute = mt_check_given(p->tolerance, p->tolerance_addr, p->addr);
@@ -13,18 +14,15 @@ static void check_judgement(mt_study_check *c, const mt_published *p)
     mt_check_positive(c, p->tolerance_percent, p->tolerance_percent_addr, "tolerance_percent");
     if (!value && !limits) {
         mt_diag_error(c->diags, p->addr, "give \"value\", \"at_least\" or \"at_most\"");
-    } else if (value && limits) {
-        mt_diag_error(c->diags, p->value_addr, "\"value\" excludes \"%s\"",
-                      MT_HAS(p->at_least) ? "at_least" : "at_most");
+    } else if (limits && (absolute || relative)) {
+        mt_diag_error(c->diags, absolute ? p->tolerance_addr : p->tolerance_percent_addr,
+                      "a tolerance excludes limits");
     } else if (absolute && relative) {
         mt_diag_error(c->diags, p->tolerance_percent_addr,
                       "\"tolerance_percent\" excludes \"tolerance\"");
-    } else if (value && !absolute && !relative && p->role != MT_ROLE_NOT_COMPARABLE) {
+    } else if (!limits && !absolute && !relative && p->role != MT_ROLE_NOT_COMPARABLE) {
         mt_diag_error(c->diags, p->value_addr,
-                      "\"value\" needs \"tolerance\" or \"tolerance_percent\"");
-    } else if (limits && (absolute || relative)) {
-        mt_diag_error(c->diags, absolute ? p->tolerance_addr : p->tolerance_percent_addr,
-                      "a tolerance goes with \"value\", not with limits");
+                      "\"value\" needs \"tolerance\", \"tolerance_percent\" or a limit");
     }
     if (p->at_least > p->at_most) {
         mt_diag_error(c->diags, p->addr, "at_most (%g) is below at_least (%g)", p->at_most,

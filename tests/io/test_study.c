@@ -172,6 +172,7 @@ static void check_published(mt_test *t, const mt_study *s)
     CHECK_INT(t, p[3].kind, MT_PUBLISHED_MAC);
     CHECK_INT(t, p[3].reference, mt_study_find_reference(s, "test"));
     CHECK_INT(t, p[3].reference_mode, 1);
+    CHECK_NEAR(t, p[3].value, 0.99804, TOL);
     CHECK_NEAR(t, p[3].at_least, 0.99784, TOL);
     CHECK_NEAR(t, p[4].at_most, 1.5, TOL);
     CHECK_INT(t, p[5].kind, MT_PUBLISHED_STATUS);
