@@ -68,7 +68,7 @@ static double trimmed_force(const mt_linear *lin, const mt_pose *poses)
 }
 
 mt_status mt_displaced_eval(mt_linear *lin, const double *dq, double *m, double *q, double *a,
-                            mt_err *err)
+                            double *c, mt_err *err)
 {
     const mt_system *const sys = lin->sys;
     const size_t n = (size_t)sys->n_bodies;
@@ -92,6 +92,9 @@ mt_status mt_displaced_eval(mt_linear *lin, const double *dq, double *m, double 
         for (ptrdiff_t i = 0; i < lin->m; i++) {
             a[i + (j * lin->m)] = creal(l.a[i + (j * all)]);
         }
+    }
+    for (ptrdiff_t i = 0; i < lin->m && c != NULL; i++) {
+        c[i] = creal(l.c[i]);
     }
     MT_TRY(mt_mass_matrix(lin, poses, m, err));
     mt_arena_rewind(&lin->scratch, mark);

@@ -44,6 +44,7 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
                          mt_stage *stage, bool *done, mt_err *err)
 {
     double previous = HUGE_VAL;
+    double unbalanced = HUGE_VAL;
     *done = false;
     for (int it = 0; it < NEWTON_LIMIT; it++) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
@@ -56,14 +57,17 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
         const bool small = w->moved <= MT_STEP_DONE &&
                            (w->moved >= 0.25 * previous || w->moved <= 8.0 * DBL_EPSILON);
         if (small && w->gap <= MT_STEP_DONE) {
-            w->tau = tau;
-            if (!(w->residual <= MT_FORCE_DONE + (NOISE_ROOM * w->noise))) {
-                return MT_OK; /* something pushes along a freedom without stiffness */
+            if (w->residual <= MT_FORCE_DONE + (NOISE_ROOM * w->noise)) {
+                w->tau = tau;
+                *done = true;
+                return keep(w, &e, inverse, mem, report, stage, err);
             }
-            *done = true;
-            return keep(w, &e, inverse, mem, report, stage, err);
+            if (!w->p->trim || w->residual >= 0.25 * unbalanced) {
+                return MT_OK; /* something pushes along a freedom without stiffness */
+            }                 /* else the force of the trimmed spring is still settling */
         }
         previous = w->moved;
+        unbalanced = w->residual;
         mt_newton_take_step(w, poses, MT_STEP_LIMIT);
         mt_arena_rewind(mem, mark);
         if (!(w->moved < HUGE_VAL)) {
@@ -85,21 +89,21 @@ static mt_status refuse(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
                         const mt_state *report, mt_err *err)
 {
     mt_elimination e;
+    double *inverse = NULL;
     memset(w->lambda, 0, (size_t)w->p->m * sizeof *w->lambda);
     mt_newton_evaluate(w, poses, false);
     MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &e, err));
     if (!(mt_newton_gap_of(w) <= MT_STEP_DONE)) {
         return mt_newton_open_loop(w->p, poses, &e, mem, err);
     }
+    MT_TRY(mt_newton_linearise(w, poses, mem, &e, &inverse, err));
     char where[WHERE_SIZE];
     mt_eliminate_project(&e, w->g, w->reduced);
-    const double unbalanced = mt_max_abs(e.n, w->reduced);
-    const double scale = w->l.force_scale > 0.0 ? w->l.force_scale : 1.0;
     mt_position_name_motion(w->sys, &e, w->reduced, where, sizeof where);
     return mt_fail(err, MT_E_EQUILIBRIUM,
                    "no equilibrium found after %d iterations: %.3g of the forces at work stay "
                    "unbalanced on %s (free to move under load?)",
-                   report->iterations, unbalanced / scale, where);
+                   report->iterations, w->residual, where);
 }
 
 mt_status mt_newton_solve(const mt_newton_problem *problem, mt_pose *poses, mt_arena *mem,
