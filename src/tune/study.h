@@ -153,7 +153,7 @@ typedef struct mt_published {
     int reference_mode;
     const char *status; /* "solved" | "compromise" | "infeasible" */
     bool original;      /* "design": "original": judged there, not at the recommended design */
-    double value; /* judged within a tolerance, or shown beside limits, which then judge */
+    double value;     /* judged within a tolerance, or shown beside limits, which then judge */
     double tolerance; /* absolute */
     double tolerance_percent;
     double at_least;
