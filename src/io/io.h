@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "io/json.h"
+#include "io/write_json.h"
 #include "model/model.h"
 #include "tune/result.h"
 #include "tune/study.h"
@@ -41,6 +42,8 @@ mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **o
 
 /* Append a result as JSON (format "modetune-result/1"): the same result gives the same bytes. Fails: MT_E_MEMORY. */
 mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err);
+/* The same as a value within a larger document (name NULL: in a list, or the whole). */
+void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result);
 
 /**
  * Read back from a result file what `apply` needs: status, names and files of study and model, inputs, and of every recommendation

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* result.json: everything that a study answered, and nothing about where, when or with how many workers. */
 #include "io/io.h"
-#include "io/write_json.h"
 
 /* A list of objects, one per item. */
 #define WRITE_LIST(w, name, n, items, write) \
@@ -192,11 +191,9 @@ static void write_named_file(mt_json_writer *w, const char *member, const char *
     mt_json_close(w);
 }
 
-mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err)
+void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result)
 {
-    mt_json_writer writer = mt_json_writer_default(out);
-    mt_json_writer *const w = &writer;
-    mt_json_open(w, NULL, '{');
+    mt_json_open(w, name, '{');
     mt_json_put_string(w, "format", "modetune-result/1");
     write_named_file(w, "study", result->study_name, result->study_file);
     write_named_file(w, "model", result->model_name, result->model_file);
@@ -217,7 +214,13 @@ mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err)
     write_strings(w, "warnings", result->n_warnings, result->warnings);
     write_run(w, &result->run);
     mt_json_close(w);
-    if (mt_json_done(w)) {
+}
+
+mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err)
+{
+    mt_json_writer writer = mt_json_writer_default(out);
+    mt_result_put(&writer, NULL, result);
+    if (mt_json_done(&writer)) {
         return MT_OK;
     }
     return writer.misused ? mt_fail(err, MT_E_INTERNAL, "the result cannot be written as JSON")

@@ -61,12 +61,11 @@ static void print_undetermined(const mt_result *result, mt_text *out)
 
 void mt_report_summary(const mt_result *result, bool with_published, mt_text *out)
 {
-    mt_text_addf(out, "%s: %s\n",
-                 result->study_name == NULL ? result->study_file : result->study_name,
-                 mt_result_status_name(result->status));
-    if (result->status_text != NULL) {
-        mt_text_addf(out, "%s\n", result->status_text);
-    }
+    const char *const name =
+        result->study_name == NULL ? result->study_file : result->study_name;
+    mt_text_addf(out, "%s\n%s\n", name == NULL ? "study" : name,
+                 result->status_text == NULL ? mt_result_status_name(result->status)
+                                             : result->status_text);
     if (result->n_recommendations > 0) {
         print_best(&result->recommendations[0], out);
     } else {

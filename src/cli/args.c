@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/args.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SUGGESTION_TEXT = 64, MAX_THREADS = 1024 };
+
+/* "; did you mean "x"?" or nothing */
+static const char *did_you_mean(const char *name, const char *const *names, int n,
+                                const char *dashes, char text[SUGGESTION_TEXT])
+{
+    const char *const nearest = mt_text_nearest(name, names, n);
+    mt_text t = {.s = NULL};
+    text[0] = '\0';
+    if (nearest != NULL) {
+        mt_text_addf(&t, "; did you mean \"%s%s\"?", dashes, nearest);
+        if (!t.failed && t.length < SUGGESTION_TEXT) {
+            memcpy(text, t.s, t.length + 1);
+        }
+    }
+    mt_text_free(&t);
+    return text;
+}
+
+static int find_command(const char *name)
+{
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        if (strcmp(name, mt_commands[i].name) == 0) {
+            return i;
+        }
+    }
+    return MT_CMD_NONE;
+}
+
+static bool takes(int command, int option)
+{
+    const unsigned commands = mt_options[option].commands;
+    return command == MT_CMD_NONE
+               ? commands == 0U || option == MT_OPT_HELP
+               : (commands & (1U << (unsigned)command)) != 0U || option == MT_OPT_VERSION;
+}
+
+static mt_status unknown_option(int command, const char *name, size_t length, mt_err *err)
+{
+    const char *names[MT_OPT_IDS];
+    char given[SUGGESTION_TEXT];
+    char suggestion[SUGGESTION_TEXT];
+    int n = 0;
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        if (takes(command, i)) {
+            names[n++] = mt_options[i].name;
+        }
+    }
+    length = length < sizeof given ? length : sizeof given - 1;
+    memcpy(given, name, length);
+    given[length] = '\0';
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        if (strcmp(given, mt_options[i].name) == 0 && command != MT_CMD_NONE) {
+            return mt_fail(err, MT_E_USAGE, "\"%s\" has no option \"--%s\"",
+                           mt_commands[command].name, given);
+        }
+    }
+    return mt_fail(err, MT_E_USAGE, "unknown option \"--%s\"%s", given,
+                   did_you_mean(given, names, n, "--", suggestion));
+}
+
+/* A whole number of at least 1. */
+static mt_status read_count(const char *s, const char *option, int most, int *out, mt_err *err)
+{
+    char *end = NULL;
+    errno = 0;
+    const long value = strtol(s, &end, 10);
+    if (s[0] < '0' || s[0] > '9' || *end != '\0' || errno != 0 || value < 1 || value > most) {
+        return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not a whole number from 1 to %d",
+                       option, s, most);
+    }
+    *out = (int)value;
+    return MT_OK;
+}
+
+static mt_status read_format(const char *s, mt_format *out, mt_err *err)
+{
+    static const char *const names[] = {"text", "json", "csv"};
+    char suggestion[SUGGESTION_TEXT];
+    for (int i = 0; i < MT_COUNT(names); i++) {
+        if (strcmp(s, names[i]) == 0) {
+            *out = (mt_format)i;
+            return MT_OK;
+        }
+    }
+    return mt_fail(err, MT_E_USAGE, "--format: \"%s\" is none of text, json, csv%s", s,
+                   did_you_mean(s, names, MT_COUNT(names), "", suggestion));
+}
+
+static mt_status store(mt_args *args, int option, const char *value, mt_err *err)
+{
+    const mt_option *const o = &mt_options[option];
+    if (args->given[option] && o->value != NULL && option != MT_OPT_SET) {
+        return mt_fail(err, MT_E_USAGE, "--%s is given twice", o->name);
+    }
+    args->given[option] = true;
+    args->value[option] = value;
+    if (value != NULL && value[0] == '\0') {
+        return mt_fail(err, MT_E_USAGE, "--%s: the value is empty", o->name);
+    }
+    switch (option) {
+    case MT_OPT_SET:
+        args->sets[args->n_sets++] = value;
+        return MT_OK;
+    case MT_OPT_COUNT:
+        return read_count(value, o->name, INT_MAX, &args->count, err);
+    case MT_OPT_RANK:
+        return read_count(value, o->name, INT_MAX, &args->rank, err);
+    case MT_OPT_THREADS:
+        return read_count(value, o->name, MAX_THREADS, &args->threads, err);
+    case MT_OPT_FORMAT:
+        return read_format(value, &args->format, err);
+    default:
+        return MT_OK;
+    }
+}
+
+/* The argument at *at is an option: read it, with its value from the same or the next argument. */
+static mt_status read_long(mt_args *args, int argc, char *const argv[], int *at, mt_err *err)
+{
+    const char *const name = argv[*at] + 2;
+    const size_t length = strcspn(name, "=");
+    int option = MT_OPT_NONE;
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        if (strlen(mt_options[i].name) == length &&
+            strncmp(name, mt_options[i].name, length) == 0 && takes(args->command, i)) {
+            option = i;
+        }
+    }
+    if (option == MT_OPT_NONE) {
+        return unknown_option(args->command, name, length, err);
+    }
+    const bool attached = name[length] == '=';
+    if (mt_options[option].value == NULL) {
+        return attached
+                   ? mt_fail(err, MT_E_USAGE, "--%s takes no value", mt_options[option].name)
+                   : store(args, option, NULL, err);
+    }
+    if (!attached && *at + 1 >= argc) {
+        return mt_fail(err, MT_E_USAGE, "--%s needs a value: %s", mt_options[option].name,
+                       mt_options[option].value);
+    }
+    return store(args, option, attached ? name + length + 1 : argv[++*at], err);
+}
+
+static mt_status read_short(mt_args *args, int argc, char *const argv[], int *at, mt_err *err)
+{
+    const char *const text = argv[*at] + 1;
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        const mt_option *const o = &mt_options[i];
+        if (o->letter != text[0] || !takes(args->command, i)) {
+            continue;
+        }
+        if (o->value == NULL) {
+            return text[1] == '\0' ? store(args, i, NULL, err)
+                                   : mt_fail(err, MT_E_USAGE, "-%c takes no value", o->letter);
+        }
+        if (text[1] == '\0' && *at + 1 >= argc) {
+            return mt_fail(err, MT_E_USAGE, "-%c needs a value: %s", o->letter, o->value);
+        }
+        return store(args, i, text[1] != '\0' ? text + 1 : argv[++*at], err);
+    }
+    return mt_fail(err, MT_E_USAGE, "unknown option \"-%s\"", text);
+}
+
+static mt_status read_command(mt_args *args, const char *name, mt_err *err)
+{
+    const char *names[MT_CMD_IDS];
+    char suggestion[SUGGESTION_TEXT];
+    args->command = find_command(name);
+    if (args->command != MT_CMD_NONE) {
+        return MT_OK;
+    }
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        names[i] = mt_commands[i].name;
+    }
+    return mt_fail(err, MT_E_USAGE, "unknown command \"%s\"%s", name,
+                   did_you_mean(name, names, MT_CMD_IDS, "", suggestion));
+}
+
+static mt_status check_operands(const mt_args *args, mt_err *err)
+{
+    if (args->given[MT_OPT_HELP] || args->given[MT_OPT_VERSION]) {
+        return MT_OK;
+    }
+    if (args->command == MT_CMD_NONE) {
+        return mt_fail(err, MT_E_USAGE, "a command is missing");
+    }
+    const mt_command *const c = &mt_commands[args->command];
+    if (args->n_operands < c->least) {
+        return mt_fail(err, MT_E_USAGE, "\"%s\" needs %s", c->name, c->operands);
+    }
+    if (c->most >= 0 && args->n_operands > c->most) {
+        return mt_fail(err, MT_E_USAGE, "\"%s\" takes %s, and \"%s\" is too many", c->name,
+                       c->operands, args->operands[c->most]);
+    }
+    return MT_OK;
+}
+
+static mt_status read_argument(mt_args *args, int argc, char *const argv[], int *at,
+                               bool *operands_only, mt_err *err)
+{
+    const char *const s = argv[*at];
+    if (!*operands_only && strcmp(s, "--") == 0) {
+        *operands_only = true;
+        return MT_OK;
+    }
+    if (!*operands_only && strncmp(s, "--", 2) == 0) {
+        return read_long(args, argc, argv, at, err);
+    }
+    if (!*operands_only && s[0] == '-' && s[1] != '\0') {
+        return read_short(args, argc, argv, at, err);
+    }
+    if (args->command == MT_CMD_NONE) {
+        return read_command(args, s, err);
+    }
+    args->operands[args->n_operands++] = s;
+    return MT_OK;
+}
+
+mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err)
+{
+    const size_t room = argc > 0 ? (size_t)argc : 1;
+    bool operands_only = false;
+    *out = (mt_args){.command = MT_CMD_NONE, .rank = 1, .threads = 1};
+    out->operands = calloc(room, sizeof *out->operands);
+    out->sets = calloc(room, sizeof *out->sets);
+    if (out->operands == NULL || out->sets == NULL) {
+        return mt_fail(err, MT_E_MEMORY, "out of memory");
+    }
+    for (int i = 1; i < argc; i++) {
+        MT_TRY(read_argument(out, argc, argv, &i, &operands_only, err));
+    }
+    return check_operands(out, err);
+}
+
+void mt_args_free(mt_args *args)
+{
+    free((void *)args->operands);
+    free((void *)args->sets);
+    *args = (mt_args){.command = MT_CMD_NONE};
+}

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CLI_ARGS_H
+#define CLI_ARGS_H
+
+#include <stdbool.h>
+
+#include "base/text.h"
+
+/*
+ * The command line, described once: commands and options in two tables (commands.c), from which come the parser, --help and "did you mean". A test holds the manual
+ * page to them.
+ */
+typedef enum mt_option_id {
+    MT_OPT_CONFIGURATION,
+    MT_OPT_SET,
+    MT_OPT_COUNT,
+    MT_OPT_SHAPES,
+    MT_OPT_PARAMETERS,
+    MT_OPT_OUTPUT,
+    MT_OPT_VERIFY,
+    MT_OPT_THREADS,
+    MT_OPT_RANK,
+    MT_OPT_MODEL,
+    MT_OPT_ROOT,
+    MT_OPT_FORMAT,
+    MT_OPT_QUIET,
+    MT_OPT_HELP,
+    MT_OPT_VERSION,
+    MT_OPT_IDS
+} mt_option_id;
+
+typedef enum mt_command_id {
+    MT_CMD_RUN,
+    MT_CMD_COMPARE,
+    MT_CMD_MODES,
+    MT_CMD_MAC,
+    MT_CMD_SENSITIVITY,
+    MT_CMD_INFO,
+    MT_CMD_APPLY,
+    MT_CMD_CHECK,
+    MT_CMD_IDS
+} mt_command_id;
+
+enum { MT_CMD_NONE = -1, MT_OPT_NONE = -1 };
+
+typedef struct mt_option {
+    char letter;       /* '\0': long form only */
+    const char *name;  /* without the dashes */
+    const char *value; /* what --help calls its value; NULL: a switch */
+    unsigned commands; /* bit 1 << mt_command_id */
+    const char *help;
+} mt_option;
+
+typedef struct mt_command {
+    const char *name;
+    const char *operands; /* "STUDY..." */
+    int least;            /* number of operands */
+    int most;             /* -1: any number */
+    const char *summary;  /* one line */
+    const char *details;  /* paragraphs of --help */
+} mt_command;
+
+extern const mt_option mt_options[MT_OPT_IDS];
+extern const mt_command mt_commands[MT_CMD_IDS];
+
+typedef enum mt_format { MT_FORMAT_TEXT, MT_FORMAT_JSON, MT_FORMAT_CSV } mt_format;
+
+typedef struct mt_args {
+    int command; /* mt_command_id, MT_CMD_NONE */
+    mt_format format;
+    bool given[MT_OPT_IDS];
+    const char *value[MT_OPT_IDS]; /* of the last one */
+    int count;                     /* --count, 0: not given */
+    int rank;                      /* --rank, default 1 */
+    int threads;                   /* --threads, default 1 */
+    int n_sets;
+    const char **sets; /* --set, in order; [argc] */
+    int n_operands;
+    const char **operands; /* [argc] */
+} mt_args;
+
+/**
+ * Read argv[1..argc-1]. Options may stand anywhere after the command; "--" ends them; "--name=value", "-oDIR" are fine.
+ * Fails: MT_E_USAGE (err: the first fault, with "did you mean"), MT_E_MEMORY. mt_args_free in any case. --help and --version win over missing operands.
+ */
+mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err);
+void mt_args_free(mt_args *args);
+
+/* What --help prints: of the whole (MT_CMD_NONE) or of one command. */
+void mt_help(int command, mt_text *out);
+/* "modetune modes MODEL [options]" */
+void mt_help_usage(int command, mt_text *out);
+
+#endif

@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * modetune apply: the model's own text with the recommended numbers put in.
+ *
+ * A result names its model relative to the study's folder and holds its SHA-256, but no path of this machine. So the model is looked for where it may be:
+ * from the study that timing.json beside the result names, from the result's folder and those above it, from the current folder and its "studies". Only the very bytes
+ * that were solved are taken; --model takes a file as it is, with a warning where it has changed.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "io/file.h"
+
+typedef struct replacement {
+    size_t begin;
+    size_t end;
+    double value;
+} replacement;
+
+/* The recorded hash of the model; NULL where the result has none. */
+static const char *hash_of_model(const mt_result *result)
+{
+    for (int i = 0; i < result->run.n_inputs; i++) {
+        if (strcmp(result->run.input_names[i], result->model_file) == 0) {
+            return result->run.input_sha256[i];
+        }
+    }
+    return NULL;
+}
+
+/* Read `name` as meant by the file `naming`; true where it holds what was solved. */
+static bool try_from(const char *naming, const mt_result *result, const char *root,
+                     mt_file *file, char **found)
+{
+    const char *const hash = hash_of_model(result);
+    char *const path = mt_file_join(naming, result->model_file);
+    bool ok = path != NULL && hash != NULL &&
+              mt_file_read(path, root, MT_JSON_MAX_BYTES, file, NULL) == MT_OK;
+    if (ok && strcmp(file->sha256, hash) != 0) {
+        mt_file_free(file);
+        ok = false;
+    }
+    if (ok) {
+        *found = path;
+    } else {
+        free(path);
+    }
+    return ok;
+}
+
+/* The study's path that `run` left in timing.json beside the result; heap or NULL. */
+static char *study_of(const char *result_path)
+{
+    char *const path = mt_file_join(result_path, "timing.json");
+    mt_file file = {.bytes = NULL};
+    mt_json *doc = NULL;
+    mt_text study = {.s = NULL};
+    if (path != NULL && mt_file_read(path, NULL, MT_JSON_MAX_BYTES, &file, NULL) == MT_OK &&
+        mt_json_parse(file.bytes, file.length, &doc, NULL) == MT_OK) {
+        const mt_addr member = mt_json_member(doc, MT_JSON_ROOT, "study_path");
+        if (member != MT_NO_ADDR && mt_json_type_of(doc, member) == MT_JSON_STRING) {
+            mt_text_add(&study, mt_json_string(doc, member));
+        }
+    }
+    mt_json_delete(doc);
+    mt_file_free(&file);
+    free(path);
+    return study.s;
+}
+
+static bool search(const char *result_path, const mt_result *result, const char *root,
+                   mt_file *file, char **found)
+{
+    static const char *const beside[] = {"x", "../x", "../../x", "../studies/x",
+                                         "../../studies/x"};
+    static const char *const here[] = {"x", "studies/x"};
+    bool ok = false;
+    char *const study = study_of(result_path);
+    ok = study != NULL && try_from(study, result, root, file, found);
+    free(study);
+    for (int i = 0; !ok && i < MT_COUNT(beside); i++) {
+        char *const naming = mt_file_join(result_path, beside[i]);
+        ok = naming != NULL && try_from(naming, result, root, file, found);
+        free(naming);
+    }
+    for (int i = 0; !ok && i < MT_COUNT(here); i++) {
+        ok = try_from(here[i], result, root, file, found);
+    }
+    return ok;
+}
+
+static mt_status find_model(const mt_args *args, const mt_result *result, mt_file *file,
+                            char **path, mt_err *err)
+{
+    const char *const given = args->value[MT_OPT_MODEL];
+    const char *const root = args->value[MT_OPT_ROOT];
+    if (given == NULL) {
+        return search(args->operands[0], result, root, file, path)
+                   ? MT_OK
+                   : mt_fail(err, MT_E_INPUT,
+                             "%s: the model \"%s\" is not found as it was when the study was "
+                             "solved: name it with --model",
+                             args->operands[0], result->model_file);
+    }
+    MT_TRY(mt_file_read(given, root, MT_JSON_MAX_BYTES, file, err));
+    const char *const hash = hash_of_model(result);
+    if (hash == NULL || strcmp(hash, file->sha256) != 0) {
+        mt_terminal_warning("%s is not what was solved: it has changed since", given);
+    }
+    *path = mt_file_join("x", given);
+    return *path == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+static const mt_recommendation *choose(const mt_result *result, int rank, const char *path,
+                                       mt_err *err)
+{
+    for (int i = 0; i < result->n_recommendations; i++) {
+        if (result->recommendations[i].rank == rank) {
+            return &result->recommendations[i];
+        }
+    }
+    (void)mt_fail(err, MT_E_USAGE, "%s has %d recommendation%s: there is no rank %d", path,
+                  result->n_recommendations, result->n_recommendations == 1 ? "" : "s", rank);
+    return NULL;
+}
+
+/* Where the value of a parameter stands: the value itself, or member "value" of an object. */
+static mt_addr value_of(const mt_json *doc, const char *name)
+{
+    const mt_addr parameters = mt_json_member(doc, MT_JSON_ROOT, "parameters");
+    const mt_addr value =
+        parameters == MT_NO_ADDR ? MT_NO_ADDR : mt_json_member(doc, parameters, name);
+    return value == MT_NO_ADDR || mt_json_type_of(doc, value) != MT_JSON_OBJECT
+               ? value
+               : mt_json_member(doc, value, "value");
+}
+
+static int by_place(const void *a, const void *b)
+{
+    const replacement *const x = a;
+    const replacement *const y = b;
+    return (x->begin > y->begin) - (x->begin < y->begin);
+}
+
+static mt_status substitute(const mt_recommendation *r, const mt_file *file, const char *path,
+                            mt_text *out, mt_err *err)
+{
+    mt_json *doc = NULL;
+    replacement *const list = calloc((size_t)r->n_parameters + 1, sizeof *list);
+    mt_status rc = list == NULL ? mt_fail_memory(err)
+                                : mt_json_parse(file->bytes, file->length, &doc, err);
+    for (int i = 0; rc == MT_OK && i < r->n_parameters; i++) {
+        const mt_addr value = value_of(doc, r->parameters[i].name);
+        list[i].value = r->parameters[i].recommended;
+        if (value == MT_NO_ADDR || !mt_json_span(doc, value, &list[i].begin, &list[i].end)) {
+            rc = mt_fail(err, MT_E_INPUT, "%s: there is no parameter \"%s\"", path,
+                         r->parameters[i].name);
+        }
+    }
+    if (rc == MT_OK) {
+        size_t at = 0;
+        qsort(list, (size_t)r->n_parameters, sizeof *list, by_place);
+        for (int i = 0; i < r->n_parameters; i++) {
+            char number[MT_JSON_NUMBER_SIZE];
+            mt_text_add_n(out, file->bytes + at, list[i].begin - at);
+            mt_text_add(out, mt_json_format_number(list[i].value, number));
+            at = list[i].end;
+        }
+        mt_text_add_n(out, file->bytes + at, file->length - at);
+    }
+    mt_json_delete(doc);
+    free(list);
+    return rc;
+}
+
+int mt_cmd_apply(const mt_args *args, mt_text *out)
+{
+    const mt_io_options opt = mt_cli_io(args);
+    const char *const path = args->operands[0];
+    mt_text messages = {.s = NULL};
+    mt_err err = {.code = MT_OK};
+    mt_result *result = NULL;
+    mt_file file = {.bytes = NULL};
+    char *model_path = NULL;
+    mt_status rc = mt_result_load(path, &opt, &result, &messages, &err);
+    const int loaded = mt_cli_loaded(rc, &messages, &err);
+    if (rc != MT_OK) {
+        return loaded;
+    }
+    const mt_recommendation *const chosen = choose(result, args->rank, path, &err);
+    rc = chosen == NULL ? err.code : find_model(args, result, &file, &model_path, &err);
+    if (rc == MT_OK) {
+        rc = substitute(chosen, &file, model_path, out, &err);
+    }
+    if (rc == MT_OK && args->format != MT_FORMAT_TEXT) {
+        rc = args->format == MT_FORMAT_JSON
+                 ? MT_OK
+                 : mt_fail(&err, MT_E_USAGE, "a model has no CSV form");
+    }
+    if (rc == MT_OK && !chosen->feasible) {
+        mt_terminal_warning("recommendation %d does not meet all goals", chosen->rank);
+    }
+    if (rc != MT_OK) {
+        mt_text_free(out);
+    }
+    free(model_path);
+    mt_file_free(&file);
+    mt_result_delete(result);
+    return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
+}

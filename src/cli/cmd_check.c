@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* modetune check: every problem of model, study and result files. */
+#include <string.h>
+
+#include "cli/cli.h"
+#include "io/file.h"
+#include "report/table.h"
+
+typedef enum file_kind { KIND_MODEL, KIND_STUDY, KIND_RESULT, KIND_COUNT } file_kind;
+
+static const char *const formats[KIND_COUNT] = {"modetune-model/1", "modetune-study/1",
+                                                "modetune-result/1"};
+static const char *const kinds[KIND_COUNT] = {"model", "study", "result"};
+
+/* What the document says it is; KIND_COUNT with a diagnostic where that cannot be told. */
+static int kind_of(mt_json *doc)
+{
+    mt_diags *const diags = mt_json_diags(doc);
+    const mt_addr value = mt_json_member(doc, MT_JSON_ROOT, "format");
+    if (mt_json_type_of(doc, MT_JSON_ROOT) != MT_JSON_OBJECT) {
+        mt_diag_structure(diags, MT_JSON_ROOT, "must be an object with a member \"format\"");
+        return KIND_COUNT;
+    }
+    if (value == MT_NO_ADDR) {
+        mt_diag_structure(diags, MT_JSON_ROOT,
+                          "member \"format\" is missing: one of \"%s\", \"%s\", \"%s\"",
+                          formats[0], formats[1], formats[2]);
+        return KIND_COUNT;
+    }
+    const char *const text =
+        mt_json_type_of(doc, value) == MT_JSON_STRING ? mt_json_string(doc, value) : "";
+    for (int i = 0; i < KIND_COUNT; i++) {
+        if (strcmp(text, formats[i]) == 0) {
+            return i;
+        }
+    }
+    const char *const nearest = mt_text_nearest(text, formats, KIND_COUNT);
+    mt_diag_structure(diags, value, "must be one of \"%s\", \"%s\", \"%s\"%s%s%s", formats[0],
+                      formats[1], formats[2], nearest == NULL ? "" : "; did you mean \"",
+                      nearest == NULL ? "" : nearest, nearest == NULL ? "" : "\"?");
+    return KIND_COUNT;
+}
+
+static mt_status find_kind(const char *path, const mt_io_options *opt, int *kind,
+                           mt_text *messages, mt_err *err)
+{
+    mt_file file = {.bytes = NULL};
+    mt_json *doc = NULL;
+    *kind = KIND_COUNT;
+    mt_status rc = mt_file_read(path, opt->root, MT_JSON_MAX_BYTES, &file, err);
+    if (rc == MT_OK) {
+        rc = mt_json_parse(file.bytes, file.length, &doc, err);
+    }
+    if (doc != NULL) {
+        *kind = rc == MT_OK ? kind_of(doc) : KIND_COUNT;
+        if (*kind == KIND_COUNT) {
+            rc = rc == MT_OK ? mt_fail(err, MT_E_INPUT, "%s: the format is unknown", path) : rc;
+            mt_json_print(doc, path, messages);
+        }
+    }
+    mt_json_delete(doc);
+    mt_file_free(&file);
+    return rc;
+}
+
+static mt_status load(int kind, const char *path, const mt_io_options *opt, mt_text *messages,
+                      mt_err *err)
+{
+    mt_model *model = NULL;
+    mt_study *study = NULL;
+    mt_result *result = NULL;
+    mt_status rc = MT_OK;
+    switch ((file_kind)kind) {
+    case KIND_MODEL:
+        rc = mt_model_load(path, opt, &model, messages, err);
+        break;
+    case KIND_STUDY:
+        rc = mt_study_load(path, opt, &study, messages, err);
+        break;
+    case KIND_RESULT:
+        rc = mt_result_load(path, opt, &result, messages, err);
+        break;
+    case KIND_COUNT:
+        break;
+    }
+    mt_model_delete(model);
+    mt_study_delete(study);
+    mt_result_delete(result);
+    return rc;
+}
+
+static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_table *t,
+                 mt_text *out)
+{
+    const mt_io_options opt = mt_cli_io(args);
+    mt_text messages = {.s = NULL};
+    mt_err err = {.code = MT_OK};
+    int kind = KIND_COUNT;
+    mt_status rc = find_kind(path, &opt, &kind, &messages, &err);
+    if (rc == MT_OK) {
+        rc = load(kind, path, &opt, &messages, &err);
+    }
+    const char *const name = kind == KIND_COUNT ? NULL : kinds[kind];
+    if (args->format == MT_FORMAT_JSON) {
+        mt_json_open(w, NULL, '{');
+        mt_json_put_string(w, "file", path);
+        mt_json_put_string(w, "kind", name);
+        mt_json_put_bool(w, "ok", rc == MT_OK);
+        mt_json_put_string(w, "problems",
+                           messages.s == NULL && rc != MT_OK ? err.text
+                           : messages.s == NULL              ? ""
+                                                             : messages.s);
+        mt_json_close(w);
+    } else if (args->format == MT_FORMAT_CSV) {
+        mt_table_text(t, path);
+        mt_table_text(t, name);
+        mt_table_text(t, rc == MT_OK ? "true" : "false");
+    } else if (rc == MT_OK) {
+        mt_text_addf(out, "%s: ok (%s)\n", path, name);
+    }
+    return mt_cli_loaded(rc, &messages, &err);
+}
+
+int mt_cmd_check(const mt_args *args, mt_text *out)
+{
+    mt_json_writer w = mt_json_writer_default(out);
+    mt_table t = mt_table_default();
+    int code = MT_EXIT_DONE;
+    mt_table_column(&t, "file", "file", MT_ALIGN_LEFT);
+    mt_table_column(&t, "kind", "kind", MT_ALIGN_LEFT);
+    mt_table_column(&t, "ok", "ok", MT_ALIGN_LEFT);
+    if (args->format == MT_FORMAT_JSON) {
+        mt_json_open(&w, NULL, '[');
+    }
+    for (int i = 0; i < args->n_operands; i++) {
+        code = mt_exit_worse(code, check(args, args->operands[i], &w, &t, out));
+    }
+    if (args->format == MT_FORMAT_JSON) {
+        mt_json_close(&w);
+        code = mt_exit_worse(code, mt_cli_json_done(&w));
+    }
+    if (args->format == MT_FORMAT_CSV) {
+        mt_table_csv(&t, out);
+    }
+    mt_table_free(&t);
+    return code;
+}

@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* modetune info: what each configuration weighs and how it can move. */
+#include <math.h>
+#include <stdio.h>
+
+#include "cli/cli.h"
+#include "mechanics/info.h"
+#include "report/number.h"
+#include "report/table.h"
+
+enum { DIGITS = 6, SPATIAL = 6 };
+
+static const char *const inertia_member[SPATIAL] = {"xx", "yy", "zz", "xy", "xz", "yz"};
+
+typedef struct view {
+    const mt_subject *s;
+    int c;
+    mt_analysis *a;
+    mt_info info;
+} view;
+
+static mt_status write_json(mt_json_writer *w, const view *v, mt_err *err)
+{
+    const mt_info *const i = &v->info;
+    const bool planar = v->s->model->dimension == 2;
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
+    mt_json_put_number(w, "mass_kg", i->mass_kg);
+    mt_json_open_flat(w, "centre_m", '[');
+    for (int k = 0; k < v->s->model->dimension; k++) {
+        mt_json_put_number(w, NULL, i->centre_m[k]);
+    }
+    mt_json_close(w);
+    mt_json_open_flat(w, "inertia_kg_m2", '{');
+    for (int k = planar ? 2 : 0; k < (planar ? 3 : SPATIAL); k++) {
+        mt_json_put_number(w, inertia_member[k], i->inertia_kg_m2[k]);
+    }
+    mt_json_close(w);
+    mt_json_put_integer(w, "states", i->states);
+    mt_json_put_integer(w, "equations", i->equations);
+    mt_json_put_integer(w, "freedoms", i->freedoms);
+    mt_json_put_integer(w, "redundant_equations", i->redundant);
+    mt_json_open(w, "redundant_constraints", '[');
+    for (int k = 0; k < i->redundant; k++) {
+        const char *text = NULL;
+        MT_TRY(mt_linear_redundant_set(v->a->lin, k, &text, err));
+        mt_json_open_flat(w, NULL, '[');
+        mt_cli_json_names(w, text);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+    mt_json_put_number(w, "equilibrium_residual", i->residual);
+    mt_json_put_number(w, "gap_m", i->gap_m);
+    mt_json_close(w);
+    return MT_OK;
+}
+
+static const char *point_text(const double *x, int n, char *text, size_t size)
+{
+    char s[3][MT_NUMBER_TEXT];
+    for (int k = 0; k < 3; k++) {
+        (void)mt_report_number(k < n ? x[k] : nan(""), DIGITS, s[k]);
+    }
+    (void)snprintf(text, size, n == 3 ? "%s, %s, %s" : "%s, %s", s[0], s[1], s[2]);
+    return text;
+}
+
+static mt_status write_text(mt_text *out, const view *v, mt_err *err)
+{
+    const mt_info *const i = &v->info;
+    const int n = v->s->model->dimension;
+    char a[3 * MT_NUMBER_TEXT + 8];
+    char b[3 * MT_NUMBER_TEXT + 8];
+    mt_text_addf(out, "%s\n", mt_subject_configuration(v->s, v->c));
+    mt_text_addf(out, "  mass        %s kg\n", mt_report_number(i->mass_kg, DIGITS, a));
+    mt_text_addf(out, "  centre      (%s) m\n", point_text(i->centre_m, n, a, sizeof a));
+    if (n == 2) {
+        mt_text_addf(out, "  inertia     %s kg m^2 about the centre\n",
+                     mt_report_number(i->inertia_kg_m2[2], DIGITS, a));
+    } else {
+        mt_text_addf(out,
+                     "  inertia     xx, yy, zz %s; xy, xz, yz %s kg m^2 about the centre\n",
+                     point_text(i->inertia_kg_m2, 3, a, sizeof a),
+                     point_text(i->inertia_kg_m2 + 3, 3, b, sizeof b));
+    }
+    mt_text_addf(out,
+                 "  mobility    %d freedoms = %d states - %d independent of %d equations\n",
+                 i->freedoms, i->states, i->equations - i->redundant, i->equations);
+    for (int k = 0; k < i->redundant; k++) {
+        const char *text = NULL;
+        MT_TRY(mt_linear_redundant_set(v->a->lin, k, &text, err));
+        mt_text_addf(out, "  redundant   one equation of %s\n", text);
+    }
+    if (v->a->lin->position.equilibrium.active) {
+        mt_text_addf(out, "  equilibrium residual %.1e, largest gap of a joint %.1e m\n",
+                     i->residual, i->gap_m);
+    }
+    mt_text_add(out, "\n");
+    return MT_OK;
+}
+
+static mt_table table_new(void)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
+    mt_table_column(&t, "mass [kg]", "mass_kg", MT_ALIGN_POINT);
+    mt_table_column(&t, "x [m]", "centre_x_m", MT_ALIGN_POINT);
+    mt_table_column(&t, "y [m]", "centre_y_m", MT_ALIGN_POINT);
+    mt_table_column(&t, "z [m]", "centre_z_m", MT_ALIGN_POINT);
+    for (int k = 0; k < SPATIAL; k++) {
+        char member[32];
+        (void)snprintf(member, sizeof member, "inertia_%s_kg_m2", inertia_member[k]);
+        mt_table_column(&t, member, member, MT_ALIGN_POINT);
+    }
+    mt_table_column(&t, "states", "states", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "equations", "equations", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "freedoms", "freedoms", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "redundant", "redundant_equations", MT_ALIGN_RIGHT);
+    return t;
+}
+
+static void fill_table(mt_table *t, const view *v)
+{
+    const mt_info *const i = &v->info;
+    mt_table_text(t, mt_subject_configuration(v->s, v->c));
+    mt_table_number(t, i->mass_kg, DIGITS);
+    for (int k = 0; k < 3; k++) {
+        mt_table_number(t, i->centre_m[k], DIGITS);
+    }
+    for (int k = 0; k < SPATIAL; k++) {
+        mt_table_number(t, i->inertia_kg_m2[k], DIGITS);
+    }
+    mt_table_integer(t, i->states);
+    mt_table_integer(t, i->equations);
+    mt_table_integer(t, i->freedoms);
+    mt_table_integer(t, i->redundant);
+}
+
+static mt_status one(const mt_args *args, view *v, mt_json_writer *w, mt_table *t, mt_text *out,
+                     mt_err *err)
+{
+    MT_TRY(mt_subject_analyse(v->s, v->c, &v->a, err));
+    MT_TRY(mt_info_fill(v->a->lin, &v->info, err));
+    switch (args->format) {
+    case MT_FORMAT_JSON:
+        return write_json(w, v, err);
+    case MT_FORMAT_CSV:
+        fill_table(t, v);
+        return MT_OK;
+    case MT_FORMAT_TEXT:
+        break;
+    }
+    return write_text(out, v, err);
+}
+
+int mt_cmd_info(const mt_args *args, mt_text *out)
+{
+    mt_subject s = {.model = NULL};
+    mt_json_writer w = mt_json_writer_default(out);
+    mt_table t = table_new();
+    const bool json = args->format == MT_FORMAT_JSON;
+    const bool list = json && !args->given[MT_OPT_CONFIGURATION];
+    int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
+    if (code != MT_EXIT_DONE) {
+        goto done;
+    }
+    if (list) {
+        mt_json_open(&w, NULL, '[');
+    }
+    for (int i = 0; i < s.n_configurations; i++) {
+        view v = {.s = &s, .c = s.configurations[i]};
+        mt_err err = {.code = MT_OK};
+        mt_subject_warn_overridden(&s, v.c);
+        const mt_status rc = one(args, &v, &w, &t, out, &err);
+        if (rc != MT_OK) {
+            code = mt_exit_worse(code, mt_cli_failed(rc, &err));
+        }
+        if (rc != MT_OK && json) {
+            mt_json_open(&w, NULL, '{');
+            mt_json_put_string(&w, "configuration", mt_subject_configuration(&s, v.c));
+            mt_json_put_string(&w, "error", err.text);
+            mt_json_close(&w);
+        }
+        mt_analysis_delete(v.a);
+    }
+    if (list) {
+        mt_json_close(&w);
+    }
+    if (json) {
+        code = mt_exit_worse(code, mt_cli_json_done(&w));
+    }
+    if (args->format == MT_FORMAT_CSV) {
+        mt_table_csv(&t, out);
+    }
+done:
+    mt_table_free(&t);
+    mt_subject_free(&s);
+    return code;
+}

@@ -1,0 +1,387 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* modetune mac: pair and correlate two sets of modes at the sensors that both models have. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "cli/shapes.h"
+#include "report/table.h"
+
+/* Two different modes of one model whose MAC at the sensors is above this look the same there: a correlation with either says little about which. Common practice
+ * in modal testing calls 0.9 a correlation (Ewins, Modal Testing, section on MAC). */
+static const double LOOKS_THE_SAME = 0.9;
+
+enum { DIGITS = 6, MAC_DIGITS = 5, PAIR_TEXT = 32 };
+
+/* One of the two sides. */
+typedef struct side {
+    const char *letter;
+    mt_subject s;
+    mt_analysis *a;
+    int *channels; /* [ns] the common ones, in this system */
+    int n;         /* vibration modes compared */
+    int *position; /* [n] */
+    double *shape; /* ns x n */
+} side;
+
+typedef struct comparison {
+    side a;
+    side b;
+    int ns;
+    double *mac; /* a.n x b.n */
+    int *pair;   /* [a.n] */
+    mt_arena mem;
+} comparison;
+
+static const char *name_of(const side *x)
+{
+    return mt_subject_configuration(&x->s, x->s.configurations[0]);
+}
+
+/* "MODEL:CONFIGURATION", split at the last colon that is not part of a folder's name. */
+static int load(const mt_args *args, const char *text, comparison *c, side *x)
+{
+    const char *const colon = strrchr(text, ':');
+    const bool split = colon != NULL && strchr(colon, '/') == NULL;
+    const char *path = text;
+    const char *configuration = NULL;
+    if (split) {
+        path = mt_arena_strndup(&c->mem, text, (size_t)(colon - text));
+        configuration = colon + 1;
+    }
+    if (path == NULL) {
+        mt_terminal_error("out of memory");
+        return MT_EXIT_SYSTEM;
+    }
+    const int code = mt_subject_load(args, path, configuration, &x->s);
+    if (code == MT_EXIT_DONE && x->s.n_configurations != 1) {
+        mt_terminal_error("\"%s\" has %d configurations: name one, as %s:%s", path,
+                          x->s.n_configurations, path, name_of(x));
+        return MT_EXIT_INPUT;
+    }
+    return code;
+}
+
+static mt_status common_channels(comparison *c, mt_err *err)
+{
+    const mt_system *const a = c->a.a->sys;
+    const mt_system *const b = c->b.a->sys;
+    c->a.channels = mt_arena_int(&c->mem, (size_t)a->n_channels);
+    c->b.channels = mt_arena_int(&c->mem, (size_t)a->n_channels);
+    if (c->a.channels == NULL || c->b.channels == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < a->n_channels; i++) {
+        const int other = mt_system_find_channel(b, a->channels[i].name);
+        if (other >= 0) {
+            c->a.channels[c->ns] = i;
+            c->b.channels[c->ns++] = other;
+        }
+    }
+    return c->ns > 0 ? MT_OK
+                     : mt_fail(err, MT_E_INPUT,
+                               "the two have no sensor and direction in common (%d channels in "
+                               "A, %d in B)",
+                               a->n_channels, b->n_channels);
+}
+
+static mt_status choose_modes(comparison *c, side *x, int wanted, mt_err *err)
+{
+    const mt_modes *const m = &x->a->modes;
+    x->position = mt_arena_int(&c->mem, (size_t)m->count);
+    if (x->position == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < m->count && x->n < wanted; i++) {
+        if (m->kind[i] == MT_MODE_FLEXIBLE) {
+            x->position[x->n++] = i;
+        }
+    }
+    x->shape = mt_arena_f64(&c->mem, (size_t)c->ns, (size_t)x->n);
+    if (x->shape == NULL) {
+        return mt_fail_memory(err);
+    }
+    return mt_shapes_at(x->a, c->ns, x->channels, x->n, x->position, x->shape, err);
+}
+
+static mt_status correlate(comparison *c, int count, mt_err *err)
+{
+    MT_TRY(mt_subject_analyse(&c->a.s, c->a.s.configurations[0], &c->a.a, err));
+    MT_TRY(mt_subject_analyse(&c->b.s, c->b.s.configurations[0], &c->b.a, err));
+    MT_TRY(common_channels(c, err));
+    const int wanted = count > 0 ? count : c->ns;
+    MT_TRY(choose_modes(c, &c->a, wanted, err));
+    MT_TRY(choose_modes(c, &c->b, wanted, err));
+    c->mac = mt_arena_f64(&c->mem, (size_t)c->a.n, (size_t)c->b.n);
+    c->pair = mt_arena_int(&c->mem, (size_t)c->a.n);
+    if (c->mac == NULL || c->pair == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_mac_matrix(c->ns, c->a.n, c->a.shape, c->b.n, c->b.shape, c->mac);
+    return mt_mac_pair(c->a.n, c->b.n, c->mac, c->pair, &c->mem, err);
+}
+
+/* Modes of one side that the sensors cannot tell apart, and other doubts, as sentences; emit writes one. */
+typedef void (*emit_note)(void *context, const char *text);
+
+static mt_status note_alike(comparison *c, const side *x, emit_note emit, void *context,
+                            mt_err *err)
+{
+    const int n = x->n;
+    double *const own = mt_arena_f64(&c->mem, (size_t)n, (size_t)n);
+    if (own == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_mac_matrix(c->ns, n, x->shape, n, x->shape, own);
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < j; i++) {
+            const double mac = own[i + ((ptrdiff_t)j * n)];
+            char text[160];
+            if (mac > LOOKS_THE_SAME) {
+                (void)snprintf(text, sizeof text,
+                               "modes %d and %d of %s look the same at the sensors (MAC %.4f)",
+                               i + 1, j + 1, x->letter, mac);
+                emit(context, text);
+            }
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status notes(comparison *c, emit_note emit, void *context, mt_err *err)
+{
+    const int most = c->a.n > c->b.n ? c->a.n : c->b.n;
+    char text[160];
+    if (most > c->ns) {
+        (void)snprintf(text, sizeof text,
+                       "%d sensor channels cannot tell %d modes apart: shapes beyond %d depend "
+                       "on each other there",
+                       c->ns, most, c->ns);
+        emit(context, text);
+    }
+    MT_TRY(note_alike(c, &c->a, emit, context, err));
+    return note_alike(c, &c->b, emit, context, err);
+}
+
+/* A cluster of repeated modes of A, and the modes of B that its members are paired with. */
+typedef struct subspace {
+    int first; /* 0-based mode of A */
+    int size;
+    int n_b;
+    double *cos2; /* [min(size, n_b)] */
+} subspace;
+
+/* The cluster of A that begins at mode i; size 1 where it does not. */
+static mt_status subspace_at(comparison *c, int i, subspace *out, mt_err *err)
+{
+    const mt_modes *const m = &c->a.a->modes;
+    int size = 1;
+    const int first = mt_modal_cluster(m, c->a.position[i], &size);
+    *out = (subspace){.first = i, .size = 1};
+    if (size < 2 || first != c->a.position[i]) {
+        return MT_OK;
+    }
+    out->size = size < c->a.n - i ? size : c->a.n - i;
+    const size_t ns = (size_t)c->ns;
+    double *const b = mt_arena_f64(&c->mem, ns, (size_t)out->size);
+    out->cos2 = mt_arena_f64(&c->mem, (size_t)out->size, 1);
+    if (b == NULL || out->cos2 == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int k = 0; k < out->size; k++) {
+        const int j = c->pair[i + k];
+        if (j >= 0) {
+            memcpy(b + ((size_t)out->n_b * ns), c->b.shape + ((size_t)j * ns), ns * sizeof *b);
+            out->n_b++;
+        }
+    }
+    return mt_mac_subspace(c->ns, out->size, c->a.shape + ((size_t)i * ns), out->n_b, b,
+                           out->cos2, &c->mem, err);
+}
+
+static double hz(const side *x, int mode)
+{
+    return mt_modal_hz(&x->a->modes, x->position[mode]);
+}
+
+static mt_table pairs_table(const comparison *c)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "A", "a", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "B", "b", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "MAC", "mac", MT_ALIGN_POINT);
+    mt_table_column(&t, "A [Hz]", "frequency_a_hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "B [Hz]", "frequency_b_hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "B - A [%]", "difference_percent", MT_ALIGN_POINT);
+    for (int i = 0; i < c->a.n; i++) {
+        const int j = c->pair[i];
+        if (j >= 0) {
+            mt_table_integer(&t, i + 1);
+            mt_table_integer(&t, j + 1);
+            mt_table_number(&t, c->mac[i + ((ptrdiff_t)j * c->a.n)], MAC_DIGITS);
+            mt_table_number(&t, hz(&c->a, i), DIGITS);
+            mt_table_number(&t, hz(&c->b, j), DIGITS);
+            mt_table_change(&t, 100.0 * (hz(&c->b, j) / hz(&c->a, i) - 1.0), 3);
+        }
+    }
+    return t;
+}
+
+static void json_note(void *context, const char *text)
+{
+    mt_json_put_string(context, NULL, text);
+}
+
+static mt_status json_subspaces(comparison *c, mt_json_writer *w, mt_err *err)
+{
+    mt_json_open(w, "subspaces", '[');
+    subspace s = {.size = 1};
+    for (int i = 0; i < c->a.n; i += s.size) {
+        MT_TRY(subspace_at(c, i, &s, err));
+        if (s.size > 1) {
+            mt_json_open(w, NULL, '{');
+            mt_json_put_integer(w, "first_a", i + 1);
+            mt_json_put_integer(w, "modes", s.size);
+            mt_json_open_flat(w, "mac", '[');
+            for (int k = 0; k < s.n_b; k++) {
+                mt_json_put_number(w, NULL, s.cos2[k]);
+            }
+            mt_json_close(w);
+            mt_json_close(w);
+        }
+    }
+    mt_json_close(w);
+    return MT_OK;
+}
+
+static mt_status write_json(comparison *c, mt_json_writer *w, mt_err *err)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_open(w, "pairs", '[');
+    for (int i = 0; i < c->a.n; i++) {
+        const int j = c->pair[i];
+        if (j >= 0) {
+            mt_json_open(w, NULL, '{');
+            mt_json_put_integer(w, "a", i + 1);
+            mt_json_put_integer(w, "b", j + 1);
+            mt_json_put_number(w, "mac", c->mac[i + ((ptrdiff_t)j * c->a.n)]);
+            mt_json_put_number(w, "frequency_a_hz", hz(&c->a, i));
+            mt_json_put_number(w, "frequency_b_hz", hz(&c->b, j));
+            mt_json_close(w);
+        }
+    }
+    mt_json_close(w);
+    mt_json_open(w, "matrix", '[');
+    for (int i = 0; i < c->a.n; i++) {
+        mt_json_open_flat(w, NULL, '[');
+        for (int j = 0; j < c->b.n; j++) {
+            mt_json_put_number(w, NULL, c->mac[i + ((ptrdiff_t)j * c->a.n)]);
+        }
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+    MT_TRY(json_subspaces(c, w, err));
+    mt_json_open_flat(w, "channels", '[');
+    for (int k = 0; k < c->ns; k++) {
+        mt_json_put_string(w, NULL, c->a.a->sys->channels[c->a.channels[k]].name);
+    }
+    mt_json_close(w);
+    mt_json_open(w, "notes", '[');
+    MT_TRY(notes(c, json_note, w, err));
+    mt_json_close(w);
+    mt_json_close(w);
+    return MT_OK;
+}
+
+static void text_note(void *context, const char *text)
+{
+    mt_text_addf(context, "  Note: %s.\n", text);
+}
+
+static void text_matrix(const comparison *c, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    char heading[PAIR_TEXT];
+    mt_table_column(&t, "A \\ B", "a", MT_ALIGN_RIGHT);
+    for (int j = 0; j < c->b.n; j++) {
+        (void)snprintf(heading, sizeof heading, "%d", j + 1);
+        mt_table_column(&t, heading, heading, MT_ALIGN_RIGHT);
+    }
+    for (int i = 0; i < c->a.n; i++) {
+        mt_table_integer(&t, i + 1);
+        for (int j = 0; j < c->b.n; j++) {
+            const double mac = c->mac[i + ((ptrdiff_t)j * c->a.n)];
+            (void)snprintf(heading, sizeof heading, "%.3f", mac);
+            mt_table_text(&t, isfinite(mac) ? heading : NULL);
+        }
+    }
+    mt_text_add(out, "\nMAC matrix\n");
+    mt_table_print(&t, 2, out);
+    mt_table_free(&t);
+}
+
+static mt_status write_text(comparison *c, mt_text *out, mt_err *err)
+{
+    mt_text_addf(out, "A: %s, %s\nB: %s, %s\n%d common sensor channels\n\n", c->a.s.path,
+                 name_of(&c->a), c->b.s.path, name_of(&c->b), c->ns);
+    mt_table t = pairs_table(c);
+    mt_table_print(&t, 2, out);
+    mt_table_free(&t);
+    text_matrix(c, out);
+    subspace s = {.size = 1};
+    for (int i = 0; i < c->a.n; i += s.size) {
+        MT_TRY(subspace_at(c, i, &s, err));
+        if (s.size > 1) {
+            mt_text_addf(out, "  Repeated modes %d to %d of A as a space: MAC", i + 1,
+                         i + s.size);
+            for (int k = 0; k < s.n_b; k++) {
+                mt_text_addf(out, " %.5f", s.cos2[k]);
+            }
+            mt_text_add(out, "\n");
+        }
+    }
+    return notes(c, text_note, out, err);
+}
+
+static mt_status write_out(comparison *c, mt_format format, mt_text *out, mt_err *err)
+{
+    mt_json_writer w = mt_json_writer_default(out);
+    mt_table t;
+    switch (format) {
+    case MT_FORMAT_JSON:
+        MT_TRY(write_json(c, &w, err));
+        return mt_json_done(&w) ? MT_OK : mt_fail_memory(err);
+    case MT_FORMAT_CSV:
+        t = pairs_table(c);
+        mt_table_csv(&t, out);
+        mt_table_free(&t);
+        return MT_OK;
+    case MT_FORMAT_TEXT:
+        break;
+    }
+    return write_text(c, out, err);
+}
+
+int mt_cmd_mac(const mt_args *args, mt_text *out)
+{
+    comparison c = {.a = {.letter = "A"}, .b = {.letter = "B"}};
+    mt_err err = {.code = MT_OK};
+    int code = MT_EXIT_DONE;
+    mt_status rc = mt_arena_init(&c.mem, 0, &err);
+    if (rc == MT_OK) {
+        code = load(args, args->operands[0], &c, &c.a);
+        code = code == MT_EXIT_DONE ? load(args, args->operands[1], &c, &c.b) : code;
+    }
+    if (rc == MT_OK && code == MT_EXIT_DONE) {
+        rc = correlate(&c, args->count, &err);
+        rc = rc == MT_OK ? write_out(&c, args->format, out, &err) : rc;
+    }
+    code = rc == MT_OK ? code : mt_cli_failed(rc, &err);
+    mt_analysis_delete(c.a.a);
+    mt_analysis_delete(c.b.a);
+    mt_subject_free(&c.a.s);
+    mt_subject_free(&c.b.s);
+    mt_arena_free(&c.mem);
+    return code;
+}

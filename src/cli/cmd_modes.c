@@ -1,0 +1,334 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* modetune modes: natural frequencies and shapes of one configuration, or of all. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "cli/shapes.h"
+#include "report/table.h"
+
+enum { HZ_DIGITS = 6, RATIO_DIGITS = 2 };
+
+/* One configuration, ready to be written. */
+typedef struct view {
+    const mt_subject *s;
+    int c;
+    mt_analysis *a;
+    int shown;        /* positions of modes to write */
+    mt_shapes shapes; /* n 0: not asked for */
+} view;
+
+static void json_mode(mt_json_writer *w, const view *v, int i)
+{
+    const mt_modes *const m = &v->a->modes;
+    const int index = mt_modes_index(m, i);
+    int size = 1;
+    (void)mt_modal_cluster(m, i, &size);
+    mt_json_open(w, NULL, '{');
+    if (index > 0) {
+        mt_json_put_integer(w, "index", index);
+    } else {
+        mt_json_put_null(w, "index");
+    }
+    mt_json_put_string(w, "name", mt_mode_name(v->s, v->c, index));
+    mt_json_put_number(w, "frequency_hz", mt_modal_hz(m, i));
+    mt_json_put_string(w, "kind", mt_mode_kind_name(m->kind[i]));
+    mt_json_put_number(w, "omega_squared", m->lambda[i]);
+    mt_json_put_integer(w, "repeated", size);
+    mt_json_put_number(w, "residual", m->residual[i]);
+    mt_json_put_number(w, "orthogonality", m->orthogonality[i]);
+    if (v->shapes.n > 0) {
+        mt_json_open(w, "shape", '{');
+        for (int k = 0; k < v->shapes.n; k++) {
+            mt_json_put_number(w, v->shapes.name[k],
+                               v->shapes.value[k + ((ptrdiff_t)i * v->shapes.n)]);
+        }
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+}
+
+static mt_status json_redundant(mt_json_writer *w, mt_linear *lin, mt_err *err)
+{
+    mt_json_open(w, "redundant_constraints", '[');
+    for (int k = 0; k < mt_linear_redundant(lin); k++) {
+        const char *text = NULL;
+        MT_TRY(mt_linear_redundant_set(lin, k, &text, err));
+        mt_json_open_flat(w, NULL, '[');
+        mt_cli_json_names(w, text);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+    return MT_OK;
+}
+
+static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
+{
+    const mt_modes *const m = &v->a->modes;
+    const mt_linear *const lin = v->a->lin;
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
+    mt_json_put_integer(w, "freedoms", lin->n);
+    mt_json_put_integer(w, "rigid_body_modes", m->n_rigid);
+    mt_json_put_integer(w, "unstable_modes", m->n_unstable + m->n_unstable_condensed);
+    mt_json_put_integer(w, "massless_directions", m->n_condensed);
+    mt_json_open(w, "modes", '[');
+    for (int i = 0; i < v->shown; i++) {
+        json_mode(w, v, i);
+    }
+    mt_json_close(w);
+    MT_TRY(json_redundant(w, v->a->lin, err));
+    mt_json_open(w, "equilibrium", '{');
+    mt_json_put_bool(w, "solved", lin->position.equilibrium.active);
+    mt_json_put_integer(w, "iterations", lin->position.iterations);
+    mt_json_put_number(w, "residual", lin->position.residual);
+    mt_json_put_number(w, "gap_m", lin->position.gap_m);
+    mt_json_close(w);
+    mt_json_close(w);
+    return MT_OK;
+}
+
+static mt_table table_new(bool with_configuration, int n_shapes, const mt_shapes *shapes)
+{
+    mt_table t = mt_table_default();
+    if (with_configuration) {
+        mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
+    }
+    mt_table_column(&t, "mode", "index", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "kind", "kind", MT_ALIGN_LEFT);
+    mt_table_column(&t, "frequency [Hz]", "frequency_hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "name", "name", MT_ALIGN_LEFT);
+    mt_table_column(&t, "residual", "residual", MT_ALIGN_POINT);
+    mt_table_column(&t, "orthogonality", "orthogonality", MT_ALIGN_POINT);
+    if (with_configuration) {
+        mt_table_column(&t, "omega^2 [rad^2/s^2]", "omega_squared", MT_ALIGN_POINT);
+    }
+    for (int k = 0; k < n_shapes; k++) {
+        mt_table_column(&t, shapes->name[k], shapes->name[k], MT_ALIGN_POINT);
+    }
+    return t;
+}
+
+static void fill_table(mt_table *t, const view *v, bool csv)
+{
+    const mt_modes *const m = &v->a->modes;
+    for (int i = 0; i < v->shown; i++) {
+        const int index = mt_modes_index(m, i);
+        char text[24];
+        (void)snprintf(text, sizeof text, "%d", index);
+        if (csv) {
+            mt_table_text(t, mt_subject_configuration(v->s, v->c));
+        }
+        mt_table_text(t, index > 0 ? text : NULL);
+        mt_table_text(t,
+                      csv ? mt_mode_kind_name(m->kind[i])
+                          : (m->kind[i] == MT_MODE_RIGID_BODY ? "rigid body"
+                                                              : mt_mode_kind_name(m->kind[i])));
+        mt_table_number(t, mt_modal_hz(m, i), HZ_DIGITS);
+        mt_table_text(t, mt_mode_name(v->s, v->c, index));
+        mt_table_number(t, m->residual[i], RATIO_DIGITS);
+        mt_table_number(t, m->orthogonality[i], RATIO_DIGITS);
+        if (csv) {
+            mt_table_number(t, m->lambda[i], HZ_DIGITS);
+            for (int k = 0; k < v->shapes.n; k++) {
+                mt_table_number(t, v->shapes.value[k + ((ptrdiff_t)i * v->shapes.n)],
+                                HZ_DIGITS);
+            }
+        }
+    }
+}
+
+/* Rows of channels, columns of modes: a mechanism has more sensors than a page has room beside. */
+static void print_shapes(const view *v, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, v->shapes.sensors ? "sensor" : "body", "channel", MT_ALIGN_LEFT);
+    for (int i = 0; i < v->shown; i++) {
+        char heading[40];
+        const int index = mt_modes_index(&v->a->modes, i);
+        (void)snprintf(heading, sizeof heading, index > 0 ? "mode %d" : "(%d)",
+                       index > 0 ? index : i + 1);
+        mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
+    }
+    for (int k = 0; k < v->shapes.n; k++) {
+        mt_table_text(&t, v->shapes.name[k]);
+        for (int i = 0; i < v->shown; i++) {
+            mt_table_number(&t, v->shapes.value[k + ((ptrdiff_t)i * v->shapes.n)], 4);
+        }
+    }
+    mt_text_add(out, "\n  Mass-normalised shapes (numbers in parentheses: rigid-body or "
+                     "unstable modes, by position) [1/sqrt(kg) and rad/(m sqrt(kg))]\n");
+    mt_table_print(&t, 2, out);
+    mt_table_free(&t);
+}
+
+static void tell_clusters(const mt_modes *m, int shown, mt_text *out)
+{
+    for (int i = 0; i < shown; i++) {
+        int size = 1;
+        const int first = mt_modal_cluster(m, i, &size);
+        if (size > 1 && first == i && m->kind[i] == MT_MODE_FLEXIBLE) {
+            const int index = mt_modes_index(m, i);
+            mt_text_addf(out,
+                         "  Modes %d to %d are repeated: only the space that their shapes span "
+                         "is determined.\n",
+                         index, index + size - 1);
+        }
+    }
+}
+
+static mt_status tell(const view *v, mt_text *out, mt_err *err)
+{
+    const mt_modes *const m = &v->a->modes;
+    mt_linear *const lin = v->a->lin;
+    const int unstable = m->n_unstable + m->n_unstable_condensed;
+    if (lin->position.equilibrium.active) {
+        mt_text_addf(out, "  Equilibrium found in %d iterations, residual %.1e.\n",
+                     lin->position.iterations, lin->position.residual);
+    }
+    if (m->n_rigid > 0) {
+        mt_text_addf(out, "  %d rigid-body mode%s: it can move freely.\n", m->n_rigid,
+                     m->n_rigid == 1 ? "" : "s");
+    }
+    if (unstable > 0) {
+        mt_text_addf(out, "  UNSTABLE in %d direction%s: this position does not hold.\n",
+                     unstable, unstable == 1 ? "" : "s");
+    }
+    if (m->n_condensed > 0) {
+        mt_text_addf(out, "  %d direction%s without mass follow%s statically.\n",
+                     m->n_condensed, m->n_condensed == 1 ? "" : "s",
+                     m->n_condensed == 1 ? "s" : "");
+    }
+    tell_clusters(m, v->shown, out);
+    for (int k = 0; k < mt_linear_redundant(lin); k++) {
+        const char *text = NULL;
+        MT_TRY(mt_linear_redundant_set(lin, k, &text, err));
+        mt_text_addf(out, "  Redundant: one equation of %s changes nothing.\n", text);
+    }
+    return MT_OK;
+}
+
+static mt_status text_view(const view *v, mt_text *out, mt_err *err)
+{
+    mt_table t = table_new(false, 0, NULL);
+    fill_table(&t, v, false);
+    mt_text_addf(out, "%s\n", mt_subject_configuration(v->s, v->c));
+    mt_table_print(&t, 2, out);
+    mt_table_free(&t);
+    MT_TRY(tell(v, out, err));
+    if (v->shapes.n > 0) {
+        print_shapes(v, out);
+    }
+    mt_text_add(out, "\n");
+    return MT_OK;
+}
+
+typedef struct sink {
+    const mt_args *args;
+    mt_text *out;
+    mt_json_writer *w;
+    mt_table table; /* CSV */
+} sink;
+
+static mt_status csv_view(sink *to, const view *v)
+{
+    if (to->table.n_columns == 0) {
+        to->table = table_new(true, v->shapes.n, &v->shapes);
+    }
+    if (to->table.n_columns != 8 + v->shapes.n) {
+        return MT_E_USAGE;
+    }
+    fill_table(&to->table, v, true);
+    return MT_OK;
+}
+
+static mt_status one(sink *to, const mt_subject *s, int c, mt_err *err)
+{
+    view v = {.s = s, .c = c};
+    mt_arena mem = {.first = NULL};
+    mt_status rc = mt_arena_init(&mem, 0, err);
+    rc = rc == MT_OK ? mt_subject_analyse(s, c, &v.a, err) : rc;
+    if (rc != MT_OK) {
+        goto done;
+    }
+    v.shown = mt_modes_shown(&v.a->modes, to->args->count);
+    if (to->args->given[MT_OPT_SHAPES]) {
+        rc = mt_shapes_of(v.a, v.shown, &mem, &v.shapes, err);
+    }
+    if (rc != MT_OK) {
+        goto done;
+    }
+    switch (to->args->format) {
+    case MT_FORMAT_JSON:
+        rc = json_view(to->w, &v, err);
+        break;
+    case MT_FORMAT_CSV:
+        rc = csv_view(to, &v);
+        if (rc != MT_OK) {
+            (void)mt_fail(err, rc,
+                          "configurations with different bodies do not fit into one CSV table: "
+                          "choose one with -c");
+        }
+        break;
+    case MT_FORMAT_TEXT:
+        rc = text_view(&v, to->out, err);
+        break;
+    }
+done:
+    mt_analysis_delete(v.a);
+    mt_arena_free(&mem);
+    return rc;
+}
+
+/* A configuration that cannot be analysed does not hide the others. */
+static int each(sink *to, const mt_subject *s)
+{
+    int code = MT_EXIT_DONE;
+    for (int i = 0; i < s->n_configurations; i++) {
+        const int c = s->configurations[i];
+        mt_err err = {.code = MT_OK};
+        mt_subject_warn_overridden(s, c);
+        const mt_status rc = one(to, s, c, &err);
+        if (rc == MT_OK) {
+            continue;
+        }
+        code = mt_exit_worse(code, mt_cli_failed(rc, &err));
+        if (to->w != NULL) {
+            mt_json_open(to->w, NULL, '{');
+            mt_json_put_string(to->w, "configuration", mt_subject_configuration(s, c));
+            mt_json_put_string(to->w, "error", err.text);
+            mt_json_close(to->w);
+        }
+    }
+    return code;
+}
+
+int mt_cmd_modes(const mt_args *args, mt_text *out)
+{
+    mt_subject s = {.model = NULL};
+    mt_json_writer w = mt_json_writer_default(out);
+    sink to = {.args = args, .out = out, .w = args->format == MT_FORMAT_JSON ? &w : NULL};
+    int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
+    if (code != MT_EXIT_DONE) {
+        goto done;
+    }
+    const bool list = to.w != NULL && !args->given[MT_OPT_CONFIGURATION];
+    if (list) {
+        mt_json_open(&w, NULL, '[');
+    }
+    code = each(&to, &s);
+    if (list) {
+        mt_json_close(&w);
+    }
+    if (to.w != NULL) {
+        code = mt_exit_worse(code, mt_cli_json_done(&w));
+    }
+    if (args->format == MT_FORMAT_CSV) {
+        mt_table_csv(&to.table, out);
+    }
+done:
+    mt_table_free(&to.table);
+    mt_subject_free(&s);
+    return code;
+}

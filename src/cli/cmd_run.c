@@ -1,0 +1,328 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* modetune run and compare: answer studies, write what was found, judge published values. */
+/* realpath is in POSIX.1-2008, but the C library shows it only with X/Open: asked for before any header. */
+#define _XOPEN_SOURCE 700 /* NOLINT(cert-dcl37-c,cert-dcl51-cpp): for the system, not ours */
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cli/cli.h"
+#include "io/file.h"
+#include "report/result_tables.h"
+#include "report/summary.h"
+#include "tune/solve.h"
+
+static const char DEFAULT_FOLDER[] = "results";
+
+/* One study on its way. */
+typedef struct job {
+    const mt_args *args;
+    const char *path;
+    mt_study *study;
+    mt_result *result;
+    double seconds;
+} job;
+
+static void progress(void *context, const char *text)
+{
+    const mt_args *const args = context;
+    mt_terminal_progress(args->given[MT_OPT_QUIET], text);
+}
+
+/* Load and solve; everything that went wrong is said. */
+static int answer(job *j)
+{
+    mt_io_options io = mt_cli_io(j->args);
+    mt_text messages = {.s = NULL};
+    mt_err err = {.code = MT_OK};
+    mt_status rc = mt_study_load(j->path, &io, &j->study, &messages, &err);
+    const int code = mt_cli_loaded(rc, &messages, &err);
+    if (rc != MT_OK) {
+        return code;
+    }
+    mt_solve_options opt = mt_solve_options_default();
+    mt_args progress_args = *j->args;
+    opt.threads = j->args->threads;
+    opt.stop = mt_terminal_stop();
+    opt.progress = progress;
+    opt.progress_context = &progress_args;
+    const double start = mt_terminal_seconds();
+    rc = mt_study_solve(j->study, &opt, &j->result, &err);
+    j->seconds = mt_terminal_seconds() - start;
+    mt_terminal_progress(j->args->given[MT_OPT_QUIET], NULL);
+    return rc == MT_OK ? MT_EXIT_DONE
+                       : mt_cli_failed(rc, (mt_err_in(&err, rc, "%s", j->path), &err));
+}
+
+static void finish(job *j)
+{
+    mt_result_delete(j->result);
+    mt_study_delete(j->study);
+    j->result = NULL;
+    j->study = NULL;
+}
+
+/* The study's file name without ".json"; heap. */
+static char *name_of_study(const char *path)
+{
+    const char *const slash = strrchr(path, '/');
+    const char *const name = slash == NULL ? path : slash + 1;
+    const size_t length = strlen(name);
+    mt_text t = {.s = NULL};
+    mt_text_add_n(&t, name,
+                  length > 5 && strcmp(name + length - 5, ".json") == 0 ? length - 5 : length);
+    return t.s;
+}
+
+/* Make a folder and those above it. */
+static mt_status make_folders(const char *path, mt_err *err)
+{
+    mt_text t = {.s = NULL};
+    mt_status rc = MT_OK;
+    for (size_t i = 1; rc == MT_OK && i <= strlen(path); i++) {
+        if (path[i] == '/' || path[i] == '\0') {
+            t.length = 0;
+            mt_text_add_n(&t, path, i);
+            if (t.failed) {
+                rc = mt_fail_memory(err);
+            } else if (mkdir(t.s, 0777) != 0 && errno != EEXIST) {
+                rc = mt_fail(err, MT_E_SYSTEM, "%s: %s", t.s, strerror(errno));
+            }
+        }
+    }
+    mt_text_free(&t);
+    return rc;
+}
+
+static mt_status write_timing(const job *j, mt_text *out, mt_err *err)
+{
+    mt_json_writer w = mt_json_writer_default(out);
+    char *const absolute = realpath(j->path, NULL);
+    mt_json_open(&w, NULL, '{');
+    mt_json_put_string(&w, "format", "modetune-timing/1");
+    mt_json_put_string(&w, "study_path", absolute);
+    mt_json_put_number(&w, "solve_s", j->seconds);
+    mt_json_put_integer(&w, "evaluations", j->result->run.evaluations);
+    mt_json_put_integer(&w, "threads", j->args->threads);
+    mt_json_close(&w);
+    free(absolute);
+    return mt_json_done(&w) ? MT_OK : mt_fail_memory(err);
+}
+
+typedef enum output_file { RESULT, DESIGNS, REPORT, TIMING, OUTPUT_COUNT } output_file;
+
+static mt_status make_text(const job *j, output_file which, mt_text *out, mt_err *err)
+{
+    mt_table designs;
+    switch (which) {
+    case RESULT:
+        return mt_result_write(j->result, out, err);
+    case DESIGNS:
+        designs = mt_report_designs(j->result);
+        mt_table_csv(&designs, out);
+        mt_table_free(&designs);
+        break;
+    case REPORT:
+        mt_report_html(j->result, out);
+        break;
+    case TIMING:
+        return write_timing(j, out, err);
+    case OUTPUT_COUNT:
+        break;
+    }
+    return out->failed ? mt_fail_memory(err) : MT_OK;
+}
+
+/* All texts are made before the first file is written, each file whole or not at all. */
+static mt_status write_files(const job *j, const char *folder, mt_err *err)
+{
+    static const char *const names[OUTPUT_COUNT] = {"result.json", "recommendations.csv",
+                                                    "report.html", "timing.json"};
+    mt_text texts[OUTPUT_COUNT] = {{.s = NULL}};
+    mt_status rc = MT_OK;
+    for (int i = 0; rc == MT_OK && i < OUTPUT_COUNT; i++) {
+        rc = make_text(j, (output_file)i, &texts[i], err);
+    }
+    rc = rc == MT_OK ? make_folders(folder, err) : rc;
+    for (int i = 0; rc == MT_OK && i < OUTPUT_COUNT; i++) {
+        mt_text path = {.s = NULL};
+        mt_text_addf(&path, "%s/%s", folder, names[i]);
+        rc = path.failed ? mt_fail_memory(err)
+                         : mt_file_write(path.s, texts[i].s, texts[i].length, err);
+        mt_text_free(&path);
+    }
+    for (int i = 0; i < OUTPUT_COUNT; i++) {
+        mt_text_free(&texts[i]);
+    }
+    return rc;
+}
+
+static int save(const job *j)
+{
+    const char *const base =
+        j->args->given[MT_OPT_OUTPUT] ? j->args->value[MT_OPT_OUTPUT] : DEFAULT_FOLDER;
+    char *const name = name_of_study(j->path);
+    mt_text folder = {.s = NULL};
+    mt_err err = {.code = MT_OK};
+    mt_text_addf(&folder, "%s/%s", base, name == NULL ? "" : name);
+    mt_status rc =
+        name == NULL || folder.failed ? mt_fail_memory(&err) : write_files(j, folder.s, &err);
+    if (rc == MT_OK) {
+        mt_terminal_talk(j->args->given[MT_OPT_QUIET],
+                         "%s: %.3g s, %ld evaluations; written to %s/", j->path, j->seconds,
+                         j->result->run.evaluations, folder.s);
+    }
+    mt_text_free(&folder);
+    free(name);
+    return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
+}
+
+/* Nothing to judge must not look like a success. */
+static int verdict(const job *j)
+{
+    int judged = 0;
+    const bool holds = mt_report_verified(j->result, &judged);
+    if (judged == 0) {
+        mt_terminal_error("%s: there are no published values to judge", j->path);
+        return MT_EXIT_INPUT;
+    }
+    return holds ? MT_EXIT_DONE : MT_EXIT_GOALS;
+}
+
+static int outcome(const job *j, bool verify)
+{
+    if (j->result->status == MT_RESULT_INTERRUPTED) {
+        return MT_EXIT_INTERRUPTED;
+    }
+    if (verify) {
+        return verdict(j);
+    }
+    return j->result->status == MT_RESULT_SOLVED ? MT_EXIT_DONE : MT_EXIT_GOALS;
+}
+
+static void print_result(const job *j, bool verify, mt_json_writer *w, mt_text *out)
+{
+    mt_table designs;
+    switch (j->args->format) {
+    case MT_FORMAT_JSON:
+        mt_result_put(w, NULL, j->result);
+        break;
+    case MT_FORMAT_CSV:
+        designs = mt_report_designs(j->result);
+        mt_table_csv(&designs, out);
+        mt_table_free(&designs);
+        break;
+    case MT_FORMAT_TEXT:
+        mt_report_summary(j->result, verify, out);
+        mt_text_add(out, "\n");
+        break;
+    }
+}
+
+/* What a command does with an answer; its exit status. */
+typedef int (*use_answer)(const job *j, mt_json_writer *w, mt_text *out);
+
+static int run_one(const job *j, mt_json_writer *w, mt_text *out)
+{
+    const bool verify = j->args->given[MT_OPT_VERIFY];
+    print_result(j, verify, w, out);
+    return mt_exit_worse(outcome(j, verify), save(j));
+}
+
+/* All studies in turn. Text leaves as it comes; JSON is one document (a list where several studies are given). */
+static int for_each_study(const mt_args *args, mt_text *out, use_answer use)
+{
+    const bool json = args->format == MT_FORMAT_JSON;
+    const bool list = json && args->n_operands > 1;
+    mt_json_writer w = mt_json_writer_default(out);
+    int code = MT_EXIT_DONE;
+    if (list) {
+        mt_json_open(&w, NULL, '[');
+    }
+    for (int i = 0; i < args->n_operands && code != MT_EXIT_INTERRUPTED; i++) {
+        job j = {.args = args, .path = args->operands[i]};
+        int one = answer(&j);
+        if (one == MT_EXIT_DONE) {
+            one = use(&j, &w, out);
+        }
+        finish(&j);
+        code = mt_exit_worse(code, one);
+        code = mt_exit_worse(code, json ? MT_EXIT_DONE : mt_terminal_put(out));
+    }
+    if (list) {
+        mt_json_close(&w);
+    }
+    if (json && out->length > 0) {
+        code = mt_exit_worse(code, mt_cli_json_done(&w));
+    }
+    return code;
+}
+
+int mt_cmd_run(const mt_args *args, mt_text *out)
+{
+    return for_each_study(args, out, run_one);
+}
+
+static void json_published(mt_json_writer *w, const mt_result_published *p)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "label", p->label);
+    mt_json_put_string(w, "kind", p->kind);
+    if (p->published_text != NULL) {
+        mt_json_put_string(w, "published", p->published_text);
+        mt_json_put_string(w, "computed", p->computed_text);
+    } else {
+        mt_json_put_number(w, "published", p->published);
+        mt_json_put_number(w, "computed", p->computed);
+    }
+    mt_json_put_number(w, "difference", p->difference);
+    mt_json_put_number(w, "difference_percent", p->difference_percent);
+    mt_json_put_string(w, "demand", p->demand);
+    mt_json_put_string(w, "role", p->role);
+    mt_json_put_string(w, "source", p->source);
+    mt_json_put_bool(w, "holds", p->holds);
+    mt_json_close(w);
+}
+
+static void print_comparison(const job *j, mt_json_writer *w, mt_text *out)
+{
+    const mt_result *const r = j->result;
+    mt_table t = mt_report_published(r);
+    switch (j->args->format) {
+    case MT_FORMAT_JSON:
+        mt_json_open(w, NULL, '{');
+        mt_json_put_string(w, "study", r->study_file);
+        mt_json_put_string(w, "status", mt_result_status_name(r->status));
+        mt_json_put_bool(w, "holds", mt_report_verified(r, NULL));
+        mt_json_open(w, "published", '[');
+        for (int i = 0; i < r->n_published; i++) {
+            json_published(w, &r->published[i]);
+        }
+        mt_json_close(w);
+        mt_json_close(w);
+        break;
+    case MT_FORMAT_CSV:
+        mt_table_csv(&t, out);
+        break;
+    case MT_FORMAT_TEXT:
+        mt_text_addf(out, "%s: %s\n", r->study_name == NULL ? j->path : r->study_name,
+                     mt_result_status_name(r->status));
+        mt_table_print(&t, 2, out);
+        mt_text_add(out, "\n");
+        break;
+    }
+    mt_table_free(&t);
+}
+
+static int compare_one(const job *j, mt_json_writer *w, mt_text *out)
+{
+    print_comparison(j, w, out);
+    return outcome(j, true);
+}
+
+int mt_cmd_compare(const mt_args *args, mt_text *out)
+{
+    return for_each_study(args, out, compare_one);
+}

@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* modetune sensitivity: how far one per cent more of a parameter moves each frequency. */
+#include <stdio.h>
+
+#include "cli/survey.h"
+#include "report/table.h"
+
+enum { DEFAULT_MODES = 6, DIGITS = 4, HZ_DIGITS = 6, HEADING_TEXT = 40 };
+
+static const char *unit_of(const mt_survey *v, int k)
+{
+    return v->s->model->parameters[v->parameter[k]].unit;
+}
+
+static const char *name_of(const mt_survey *v, int k)
+{
+    return v->s->model->parameters[v->parameter[k]].name.s;
+}
+
+static void write_json(mt_json_writer *w, const mt_survey *v)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
+    mt_json_open(w, "modes", '[');
+    for (int i = 0; i < v->modes; i++) {
+        mt_json_open(w, NULL, '{');
+        mt_json_put_integer(w, "index", i + 1);
+        mt_json_put_number(w, "frequency_hz", v->hz[i]);
+        mt_json_put_bool(w, "repeated", v->repeated[i]);
+        mt_json_open(w, "sensitivities", '[');
+        for (int k = 0; k < v->n; k++) {
+            mt_json_open(w, NULL, '{');
+            mt_json_put_string(w, "parameter", name_of(v, k));
+            mt_json_put_string(w, "unit", unit_of(v, k));
+            mt_json_put_number(w, "value", v->value[k]);
+            mt_json_put_number(w, "hz_per_percent", mt_survey_per_percent(v, i, k));
+            mt_json_put_number(w, "hz_per_unit", v->per_unit[i + ((ptrdiff_t)k * v->room)]);
+            mt_json_close(w);
+        }
+        mt_json_close(w);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+    mt_json_close(w);
+}
+
+static mt_table csv_table(void)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
+    mt_table_column(&t, "mode", "index", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "frequency [Hz]", "frequency_hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "repeated", "repeated", MT_ALIGN_LEFT);
+    mt_table_column(&t, "parameter", "parameter", MT_ALIGN_LEFT);
+    mt_table_column(&t, "value", "value", MT_ALIGN_POINT);
+    mt_table_column(&t, "Hz per %", "hz_per_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "Hz per unit", "hz_per_unit", MT_ALIGN_POINT);
+    return t;
+}
+
+static void fill_csv(mt_table *t, const mt_survey *v)
+{
+    for (int i = 0; i < v->modes; i++) {
+        for (int k = 0; k < v->n; k++) {
+            mt_table_text(t, mt_subject_configuration(v->s, v->c));
+            mt_table_integer(t, i + 1);
+            mt_table_number(t, v->hz[i], HZ_DIGITS);
+            mt_table_text(t, v->repeated[i] ? "true" : "false");
+            mt_table_text(t, name_of(v, k));
+            mt_table_number(t, v->value[k], HZ_DIGITS);
+            mt_table_number(t, mt_survey_per_percent(v, i, k), DIGITS);
+            mt_table_number(t, v->per_unit[i + ((ptrdiff_t)k * v->room)], DIGITS);
+        }
+    }
+}
+
+static void write_text(mt_text *out, const mt_survey *v)
+{
+    mt_table t = mt_table_default();
+    bool repeated = false;
+    bool overridden = false;
+    mt_table_column(&t, "parameter", "parameter", MT_ALIGN_LEFT);
+    mt_table_column(&t, "value", "value", MT_ALIGN_POINT);
+    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    for (int i = 0; i < v->modes; i++) {
+        char heading[HEADING_TEXT];
+        (void)snprintf(heading, sizeof heading, "%d%s (%.5g Hz)", i + 1,
+                       v->repeated[i] ? "*" : "", v->hz[i]);
+        mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
+        repeated = repeated || v->repeated[i];
+    }
+    for (int k = 0; k < v->n; k++) {
+        mt_table_text(&t, name_of(v, k));
+        mt_table_number(&t, v->value[k], HZ_DIGITS);
+        mt_table_text(&t, unit_of(v, k));
+        for (int i = 0; i < v->modes; i++) {
+            mt_table_change(&t, mt_survey_per_percent(v, i, k), DIGITS);
+        }
+        overridden = overridden || v->overridden[k];
+    }
+    mt_text_addf(out, "%s: Hz for one per cent more of each parameter, by mode\n",
+                 mt_subject_configuration(v->s, v->c));
+    mt_table_print(&t, 2, out);
+    mt_table_free(&t);
+    if (repeated) {
+        mt_text_add(out,
+                    "  * Repeated modes: none of them has a derivative of its own; these are "
+                    "the values along\n    the directions into which each parameter splits "
+                    "them, lowest first.\n");
+    }
+    if (overridden) {
+        mt_text_add(out,
+                    "  Parameters with a value of this configuration's own have no influence "
+                    "here.\n");
+    }
+    if (v->unstable > 0) {
+        mt_text_add(out, "  UNSTABLE: this position does not hold.\n");
+    }
+    mt_text_add(out, "\n");
+}
+
+static mt_status one(const mt_args *args, const mt_subject *s, int c, mt_json_writer *w,
+                     mt_table *t, mt_text *out, mt_err *err)
+{
+    mt_survey v = {.s = NULL};
+    const int modes = args->count > 0 ? args->count : DEFAULT_MODES;
+    const mt_status rc = mt_survey_take(s, c, args->value[MT_OPT_PARAMETERS], modes, &v, err);
+    if (rc == MT_OK) {
+        switch (args->format) {
+        case MT_FORMAT_JSON:
+            write_json(w, &v);
+            break;
+        case MT_FORMAT_CSV:
+            fill_csv(t, &v);
+            break;
+        case MT_FORMAT_TEXT:
+            write_text(out, &v);
+            break;
+        }
+    }
+    mt_survey_free(&v);
+    return rc;
+}
+
+int mt_cmd_sensitivity(const mt_args *args, mt_text *out)
+{
+    mt_subject s = {.model = NULL};
+    mt_json_writer w = mt_json_writer_default(out);
+    mt_table t = csv_table();
+    const bool json = args->format == MT_FORMAT_JSON;
+    const bool list = json && !args->given[MT_OPT_CONFIGURATION];
+    int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
+    if (code != MT_EXIT_DONE) {
+        goto done;
+    }
+    if (list) {
+        mt_json_open(&w, NULL, '[');
+    }
+    for (int i = 0; i < s.n_configurations; i++) {
+        mt_err err = {.code = MT_OK};
+        mt_subject_warn_overridden(&s, s.configurations[i]);
+        const mt_status rc = one(args, &s, s.configurations[i], &w, &t, out, &err);
+        if (rc != MT_OK) {
+            code = mt_exit_worse(code, mt_cli_failed(rc, &err));
+        }
+        if (rc == MT_E_USAGE) {
+            break; /* the same for every configuration */
+        }
+        if (rc != MT_OK && json) {
+            mt_json_open(&w, NULL, '{');
+            mt_json_put_string(&w, "configuration",
+                               mt_subject_configuration(&s, s.configurations[i]));
+            mt_json_put_string(&w, "error", err.text);
+            mt_json_close(&w);
+        }
+    }
+    if (list) {
+        mt_json_close(&w);
+    }
+    if (json && w.out->length > 0) {
+        code = mt_exit_worse(code, mt_cli_json_done(&w));
+    }
+    if (args->format == MT_FORMAT_CSV) {
+        mt_table_csv(&t, out);
+    }
+done:
+    mt_table_free(&t);
+    mt_subject_free(&s);
+    return code;
+}

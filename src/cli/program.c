@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "modetune/version.h"
+
+#include "cli/cli.h"
+
+typedef int (*command_function)(const mt_args *args, mt_text *out);
+
+static const command_function functions[MT_CMD_IDS] = {
+    [MT_CMD_RUN] = mt_cmd_run,
+    [MT_CMD_COMPARE] = mt_cmd_compare,
+    [MT_CMD_MODES] = mt_cmd_modes,
+    [MT_CMD_MAC] = mt_cmd_mac,
+    [MT_CMD_SENSITIVITY] = mt_cmd_sensitivity,
+    [MT_CMD_INFO] = mt_cmd_info,
+    [MT_CMD_APPLY] = mt_cmd_apply,
+    [MT_CMD_CHECK] = mt_cmd_check,
+};
+
+static int wrong_use(const mt_args *args, mt_status rc, const mt_err *err)
+{
+    mt_terminal_error("%s", err->text);
+    if (rc == MT_E_USAGE) {
+        mt_terminal_talk(false, "Try \"modetune%s%s --help\".",
+                         args->command == MT_CMD_NONE ? "" : " ",
+                         args->command == MT_CMD_NONE ? "" : mt_commands[args->command].name);
+    }
+    return mt_exit_of(rc);
+}
+
+int mt_cli_main(int argc, char *const argv[])
+{
+    mt_args args;
+    mt_err err = {.code = MT_OK};
+    mt_text out = {.s = NULL};
+    int code = MT_EXIT_DONE;
+    const mt_status rc = mt_args_parse(argc, argv, &args, &err);
+    if (rc != MT_OK) {
+        code = wrong_use(&args, rc, &err);
+    } else if (args.given[MT_OPT_VERSION]) {
+        mt_text_addf(&out, "modetune %s\n", mt_version());
+    } else if (args.given[MT_OPT_HELP]) {
+        mt_help(args.command, &out);
+    } else {
+        code = functions[args.command](&args, &out);
+    }
+    code = mt_exit_worse(code, mt_terminal_put(&out));
+    mt_args_free(&args);
+    return code;
+}

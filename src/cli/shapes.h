@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CLI_SHAPES_H
+#define CLI_SHAPES_H
+
+#include "tune/analysis.h"
+
+/* Shapes of modes where they can be seen: at the sensors, or, without any, as motions of the bodies. */
+typedef struct mt_shapes {
+    bool sensors;
+    int n;             /* channels; 0: nothing */
+    const char **name; /* [n] "c1.y", "crank.rz" */
+    double *value;     /* n x modes, mass-normalised */
+} mt_shapes;
+
+/* Shapes of the first `modes` positions, in mem. */
+mt_status mt_shapes_of(mt_analysis *a, int modes, mt_arena *mem, mt_shapes *out, mt_err *err);
+/* Shapes at given channels of the given positions: value ns x n. */
+mt_status mt_shapes_at(mt_analysis *a, int ns, const int *channels, int n, const int *positions,
+                       double *value, mt_err *err);
+
+#endif

@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From the command line to a model, values and configurations. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "model/values.h"
+
+int mt_cli_failed(mt_status rc, const mt_err *err)
+{
+    mt_terminal_error("%s", err->text);
+    return mt_exit_of(rc);
+}
+
+int mt_cli_loaded(mt_status rc, mt_text *messages, const mt_err *err)
+{
+    const bool told = messages->s != NULL && strstr(messages->s, "error: ") != NULL;
+    if (messages->s != NULL) {
+        mt_terminal_diagnostics(messages->s);
+    }
+    mt_text_free(messages);
+    if (rc != MT_OK && !(told && rc == MT_E_INPUT)) {
+        return mt_cli_failed(rc, err);
+    }
+    return mt_exit_of(rc);
+}
+
+mt_io_options mt_cli_io(const mt_args *args)
+{
+    const mt_io_options opt = {.root = args->value[MT_OPT_ROOT]};
+    return opt;
+}
+
+int mt_cli_json_done(mt_json_writer *w)
+{
+    if (mt_json_done(w)) {
+        return MT_EXIT_DONE;
+    }
+    mt_terminal_error("the output cannot be written as JSON");
+    return w->misused ? MT_EXIT_NUMERICAL : MT_EXIT_SYSTEM;
+}
+
+static mt_status unknown(const char *what, const char *name, const char *const *names, int n,
+                         mt_err *err)
+{
+    const char *const nearest = mt_text_nearest(name, names, n);
+    return nearest == NULL ? mt_fail(err, MT_E_USAGE, "unknown %s \"%s\"", what, name)
+                           : mt_fail(err, MT_E_USAGE, "unknown %s \"%s\"; did you mean \"%s\"?",
+                                     what, name, nearest);
+}
+
+static const char **parameter_names(mt_subject *s)
+{
+    const int n = s->model->n_parameters;
+    const char **const names = mt_arena_alloc(&s->mem, (size_t)n, sizeof *names);
+    for (int i = 0; names != NULL && i < n; i++) {
+        names[i] = s->model->parameters[i].name.s;
+    }
+    return names;
+}
+
+static mt_status find_configuration(mt_subject *s, const char *name, mt_err *err)
+{
+    const int n = s->model->n_configurations;
+    const int found = mt_model_find_configuration(s->model, name);
+    if (found != MT_ABSENT) {
+        s->configurations[0] = found;
+        s->n_configurations = 1;
+        return MT_OK;
+    }
+    const char **const names = mt_arena_alloc(&s->mem, (size_t)n, sizeof *names);
+    if (names == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < n; i++) {
+        names[i] = s->model->configurations[i].name.s;
+    }
+    return unknown("configuration", name, names, n, err);
+}
+
+/* "k=1.1*k": the expression is evaluated at the file's own values, so that order does not matter. */
+static mt_status read_set(mt_subject *s, const char *text, const char *const *names,
+                          mt_err *err)
+{
+    const char *const equals = strchr(text, '=');
+    if (equals == NULL || equals == text) {
+        return mt_fail(err, MT_E_USAGE, "\"%s\" is not NAME=VALUE", text);
+    }
+    const char *const name = mt_arena_strndup(&s->mem, text, (size_t)(equals - text));
+    if (name == NULL) {
+        return mt_fail_memory(err);
+    }
+    const int parameter = mt_model_find_parameter(s->model, name);
+    if (parameter == MT_ABSENT) {
+        return unknown("parameter", name, names, s->model->n_parameters, err);
+    }
+    for (int i = 0; i < s->n_inputs; i++) {
+        if (s->inputs[i] == parameter) {
+            return mt_fail(err, MT_E_USAGE, "parameter \"%s\" is set twice", name);
+        }
+    }
+    mt_expr e;
+    double value = 0.0;
+    const int n = s->model->n_parameters;
+    mt_status rc =
+        mt_expr_parse(equals + 1, mt_model_lookup, s->model, names, n, &s->mem, &e, err);
+    if (rc == MT_OK) {
+        rc = mt_model_expr_value(s->model, s->original, &e, &s->mem, &value, err);
+    }
+    if (rc != MT_OK) {
+        return mt_err_in(err, rc == MT_E_MEMORY ? rc : MT_E_USAGE, "%s", text);
+    }
+    s->inputs[s->n_inputs] = parameter;
+    s->at[s->n_inputs++] = value;
+    return MT_OK;
+}
+
+/* Values of all parameters where some are inputs. */
+static mt_status follow(mt_subject *s, mt_err *err)
+{
+    const int n = s->model->n_parameters;
+    int *const is_input = mt_arena_int(&s->mem, (size_t)n);
+    mt_node *const nodes = mt_arena_int(&s->mem, (size_t)n);
+    mt_program program;
+    if (is_input == NULL || nodes == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < n; i++) {
+        is_input[i] = MT_ABSENT;
+    }
+    for (int i = 0; i < s->n_inputs; i++) {
+        is_input[s->inputs[i]] = i;
+    }
+    MT_TRY(mt_program_init(&program, s->n_inputs, &s->mem, err));
+    MT_TRY(mt_emit_parameters(s->model, MT_ABSENT, is_input, &program, nodes, &s->mem, err));
+    MT_TRY(mt_program_finish(&program, err));
+    double *const all = mt_arena_f64(&s->mem, (size_t)program.count, 1);
+    if (all == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_program_eval(&program, s->at, all, NULL, err));
+    for (int i = 0; i < n; i++) {
+        s->values[i] = all[nodes[i]];
+    }
+    return MT_OK;
+}
+
+static mt_status choose(const mt_args *args, const char *configuration, mt_subject *s,
+                        mt_err *err)
+{
+    const size_t np = (size_t)s->model->n_parameters;
+    const int nc = s->model->n_configurations;
+    const char **const names = parameter_names(s);
+    s->original = mt_arena_f64(&s->mem, np, 1);
+    s->values = mt_arena_f64(&s->mem, np, 1);
+    s->inputs = mt_arena_int(&s->mem, np);
+    s->at = mt_arena_f64(&s->mem, np, 1);
+    s->configurations = mt_arena_int(&s->mem, (size_t)nc);
+    if (names == NULL || s->original == NULL || s->values == NULL || s->inputs == NULL ||
+        s->at == NULL || s->configurations == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (configuration != NULL) {
+        MT_TRY(find_configuration(s, configuration, err));
+    } else {
+        for (int i = 0; i < nc; i++) {
+            s->configurations[s->n_configurations++] = i;
+        }
+    }
+    mt_status rc = mt_model_original_values(s->model, &s->mem, s->original, NULL, err);
+    for (int i = 0; rc == MT_OK && i < args->n_sets; i++) {
+        rc = read_set(s, args->sets[i], names, err);
+        if (rc != MT_OK) {
+            return mt_err_in(err, rc, "--set");
+        }
+    }
+    return rc == MT_OK ? follow(s, err) : rc;
+}
+
+int mt_subject_load(const mt_args *args, const char *path, const char *configuration,
+                    mt_subject *out)
+{
+    const mt_io_options opt = mt_cli_io(args);
+    mt_text messages = {.s = NULL};
+    mt_err err = {.code = MT_OK};
+    out->path = path;
+    mt_status rc = mt_arena_init(&out->mem, 0, &err);
+    if (rc != MT_OK) {
+        return mt_cli_failed(rc, &err);
+    }
+    rc = mt_model_load(path, &opt, &out->model, &messages, &err);
+    const int code = mt_cli_loaded(rc, &messages, &err);
+    if (code != MT_EXIT_DONE) {
+        return code;
+    }
+    rc = choose(args, configuration, out, &err);
+    return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
+}
+
+void mt_subject_free(mt_subject *s)
+{
+    mt_model_delete(s->model);
+    mt_arena_free(&s->mem);
+    memset(s, 0, sizeof *s);
+}
+
+mt_status mt_subject_analyse(const mt_subject *s, int c, mt_analysis **out, mt_err *err)
+{
+    const mt_status rc = mt_analysis_new(s->model, c, s->n_inputs, s->inputs, s->at, out, err);
+    return rc == MT_OK ? rc : mt_err_in(err, rc, "%s", s->path);
+}
+
+const char *mt_subject_configuration(const mt_subject *s, int c)
+{
+    return s->model->configurations[c].name.s;
+}
+
+void mt_subject_warn_overridden(const mt_subject *s, int c)
+{
+    const mt_configuration *const conf = &s->model->configurations[c];
+    for (int k = 0; k < conf->n_overrides; k++) {
+        for (int i = 0; i < s->n_inputs; i++) {
+            if (conf->overrides[k].parameter == s->inputs[i]) {
+                mt_terminal_warning("configuration \"%s\" has its own value of \"%s\": --set "
+                                    "changes nothing there",
+                                    conf->name.s, s->model->parameters[s->inputs[i]].name.s);
+            }
+        }
+    }
+}
+
+int mt_modes_index(const mt_modes *modes, int pos)
+{
+    int index = 0;
+    if (modes->kind[pos] != MT_MODE_FLEXIBLE) {
+        return 0;
+    }
+    for (int i = 0; i <= pos; i++) {
+        index += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
+    }
+    return index;
+}
+
+const char *mt_mode_kind_name(mt_mode_kind kind)
+{
+    switch (kind) {
+    case MT_MODE_FLEXIBLE:
+        return "flexible";
+    case MT_MODE_RIGID_BODY:
+        return "rigid_body";
+    case MT_MODE_UNSTABLE:
+        break;
+    }
+    return "unstable";
+}
+
+const char *mt_mode_name(const mt_subject *s, int c, int index)
+{
+    for (int i = 0; i < s->model->n_modes && s->n_inputs == 0; i++) {
+        const mt_named_mode *const m = &s->model->modes[i];
+        if (m->configuration == c && m->index == index && index > 0) {
+            return m->name.s;
+        }
+    }
+    return NULL;
+}
+
+int mt_modes_shown(const mt_modes *modes, int count)
+{
+    int flexible = 0;
+    for (int i = 0; i < modes->count; i++) {
+        if (modes->kind[i] == MT_MODE_FLEXIBLE && count > 0 && ++flexible > count) {
+            return i;
+        }
+    }
+    return modes->count;
+}
+
+void mt_cli_json_names(mt_json_writer *w, const char *quoted)
+{
+    mt_text name = {.s = NULL};
+    for (const char *at = strchr(quoted, '"'); at != NULL; at = strchr(at, '"')) {
+        const size_t length = strcspn(at + 1, "\"");
+        mt_text_free(&name);
+        mt_text_add_n(&name, at + 1, length);
+        mt_json_put_string(w, NULL, name.s);
+        at += length + (at[length + 1] == '"' ? 2 : 1);
+    }
+    w->out->failed = w->out->failed || name.failed;
+    mt_text_free(&name);
+}

@@ -1,0 +1,256 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ *     dlambda/dp = y^T (dK - lambda dM) y,   f = sqrt(lambda) / (2 pi),   df/dp = (dlambda/dp) / (8 pi^2 f).
+ *
+ * A parameter that is made of others ("EI": "E*I") must not be an input together with them, or it would no longer follow: it gets an analysis of its own.
+ */
+#include "cli/survey.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "linalg/dense.h"
+
+static const double PI = 3.14159265358979323846;
+static const double PER_CENT = 0.01;
+
+static bool depends_on_others(const mt_model *model, int parameter)
+{
+    double value = 0.0;
+    return !mt_expr_is_constant(&model->nums[model->parameters[parameter].value].expr, &value);
+}
+
+static bool is_overridden(const mt_survey *v, int parameter)
+{
+    const mt_configuration *const conf = &v->s->model->configurations[v->c];
+    for (int k = 0; k < conf->n_overrides; k++) {
+        if (conf->overrides[k].parameter == parameter) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static mt_status add_parameter(mt_survey *v, const char *name, mt_err *err)
+{
+    const mt_model *const model = v->s->model;
+    const int found = mt_model_find_parameter(model, name);
+    if (found == MT_ABSENT) {
+        const char **const names =
+            mt_arena_alloc(&v->mem, (size_t)model->n_parameters, sizeof *names);
+        for (int i = 0; names != NULL && i < model->n_parameters; i++) {
+            names[i] = model->parameters[i].name.s;
+        }
+        const char *const nearest =
+            names == NULL ? NULL : mt_text_nearest(name, names, model->n_parameters);
+        return mt_fail(err, MT_E_USAGE, "--parameters: unknown parameter \"%s\"%s%s%s", name,
+                       nearest == NULL ? "" : "; did you mean \"",
+                       nearest == NULL ? "" : nearest, nearest == NULL ? "" : "\"?");
+    }
+    for (int i = 0; i < v->n; i++) {
+        if (v->parameter[i] == found) {
+            return mt_fail(err, MT_E_USAGE, "--parameters: \"%s\" is given twice", name);
+        }
+    }
+    v->parameter[v->n++] = found;
+    return MT_OK;
+}
+
+static mt_status choose_parameters(mt_survey *v, const char *list, mt_err *err)
+{
+    const mt_model *const model = v->s->model;
+    v->parameter = mt_arena_int(&v->mem, (size_t)model->n_parameters);
+    if (v->parameter == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; list == NULL && i < model->n_parameters; i++) {
+        if (!depends_on_others(model, i)) {
+            v->parameter[v->n++] = i;
+        }
+    }
+    while (list != NULL && *list != '\0') {
+        const size_t length = strcspn(list, ",");
+        const char *const name = mt_arena_strndup(&v->mem, list, length);
+        if (name == NULL) {
+            return mt_fail_memory(err);
+        }
+        MT_TRY(add_parameter(v, name, err));
+        list += length + (list[length] == ',' ? 1 : 0);
+    }
+    return v->n > 0
+               ? MT_OK
+               : mt_fail(err, MT_E_INPUT, "%s: there are no parameters to vary", v->s->path);
+}
+
+/* Which modes, once; later analyses have the same ones. */
+static mt_status choose_modes(mt_survey *v, const mt_modes *m, int wanted, mt_err *err)
+{
+    if (v->position != NULL) {
+        return MT_OK;
+    }
+    const size_t most = (size_t)m->count;
+    v->room = m->count;
+    v->unstable = m->n_unstable + m->n_unstable_condensed;
+    v->position = mt_arena_int(&v->mem, most);
+    v->hz = mt_arena_f64(&v->mem, most, 1);
+    v->repeated = mt_arena_alloc(&v->mem, most, sizeof *v->repeated);
+    v->per_unit = mt_arena_f64(&v->mem, most, (size_t)v->n);
+    if (v->position == NULL || v->hz == NULL || v->repeated == NULL || v->per_unit == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < m->count && v->modes < wanted; i++) {
+        int size = 1;
+        if (m->kind[i] == MT_MODE_FLEXIBLE) {
+            (void)mt_modal_cluster(m, i, &size);
+            v->position[v->modes] = i;
+            v->hz[v->modes] = mt_modal_hz(m, i);
+            v->repeated[v->modes] = size > 1;
+            v->modes++;
+        }
+    }
+    return MT_OK;
+}
+
+/* Derivatives of the cluster that begins at position first with respect to input p: its directional values, ascending. */
+static mt_status cluster_values(mt_analysis *a, int p, int first, int size, double *dlambda,
+                                mt_err *err)
+{
+    const size_t n = (size_t)a->lin->n;
+    const size_t r = (size_t)size;
+    const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
+    double *const dky = mt_arena_f64(&a->mem, n, r);
+    double *const dmy = mt_arena_f64(&a->mem, n, r);
+    double *const matrix = mt_arena_f64(&a->mem, r, r);
+    if (dky == NULL || dmy == NULL || matrix == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_linear_products(a->lin, p, size, a->modes.y + ((size_t)first * n), dky, dmy, NULL,
+                              err));
+    MT_TRY(mt_modal_dcluster(&a->modes, first, size, dky, dmy, matrix, &a->mem, err));
+    MT_TRY(mt_eig_sym(size, matrix, dlambda, false, &a->mem, err));
+    mt_arena_rewind(&a->mem, mark);
+    return MT_OK;
+}
+
+/* All modes with respect to input p of the analysis, which is entry k of the survey. */
+static mt_status differentiate(mt_survey *v, mt_analysis *a, int p, int k, mt_err *err)
+{
+    double *const out = v->per_unit + ((ptrdiff_t)k * v->room);
+    double *const values = mt_arena_f64(&v->mem, (size_t)v->room, 1);
+    if (values == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < v->modes;) {
+        int size = 1;
+        const int first = mt_modal_cluster(&a->modes, v->position[i], &size);
+        MT_TRY(cluster_values(a, p, first, size, values, err));
+        for (int j = 0; j < size && i < v->modes; j++) {
+            out[i] = values[j] / (8.0 * PI * PI * v->hz[i]);
+            i++;
+        }
+    }
+    return MT_OK;
+}
+
+/* One analysis with the inputs of --set and the parameters entry[n] of the survey. */
+static mt_status analyse(mt_survey *v, int n, const int *entry, int wanted, mt_err *err)
+{
+    const mt_subject *const s = v->s;
+    const size_t room = (size_t)s->n_inputs + (size_t)n;
+    int *const inputs = mt_arena_int(&v->mem, room);
+    int *const slot = mt_arena_int(&v->mem, room);
+    double *const at = mt_arena_f64(&v->mem, room, 1);
+    mt_analysis *a = NULL;
+    if (inputs == NULL || slot == NULL || at == NULL) {
+        return mt_fail_memory(err);
+    }
+    int count = 0;
+    for (int i = 0; i < s->n_inputs; i++) {
+        inputs[count] = s->inputs[i];
+        at[count++] = s->at[i];
+    }
+    for (int i = 0; i < n; i++) {
+        const int parameter = v->parameter[entry[i]];
+        slot[i] = count;
+        for (int k = 0; k < s->n_inputs; k++) {
+            slot[i] = s->inputs[k] == parameter ? k : slot[i];
+        }
+        if (slot[i] == count) {
+            inputs[count] = parameter;
+            at[count++] = v->value[entry[i]];
+        }
+    }
+    mt_analysis_options opt = mt_analysis_options_default();
+    opt.gradient = true;
+    mt_status rc = mt_analysis_new(s->model, v->c, count, inputs, at, &a, err);
+    rc = rc == MT_OK ? mt_analysis_solve(a, at, &opt, err) : rc;
+    rc = rc == MT_OK ? choose_modes(v, &a->modes, wanted, err) : rc;
+    for (int i = 0; rc == MT_OK && i < n; i++) {
+        rc = differentiate(v, a, slot[i], entry[i], err);
+    }
+    mt_analysis_delete(a);
+    return rc;
+}
+
+/* What the parameters are in this configuration, its own overrides included. */
+static mt_status find_values(mt_survey *v, mt_err *err)
+{
+    mt_analysis *a = NULL;
+    v->value = mt_arena_f64(&v->mem, (size_t)v->n, 1);
+    v->overridden = mt_arena_alloc(&v->mem, (size_t)v->n, sizeof *v->overridden);
+    if (v->value == NULL || v->overridden == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_subject_analyse(v->s, v->c, &a, err));
+    for (int k = 0; k < v->n; k++) {
+        v->value[k] = a->lin->value[a->sys->parameters[v->parameter[k]]];
+        v->overridden[k] = is_overridden(v, v->parameter[k]);
+    }
+    mt_analysis_delete(a);
+    return MT_OK;
+}
+
+static mt_status carry_out(mt_survey *v, int wanted, mt_err *err)
+{
+    int *const together = mt_arena_int(&v->mem, (size_t)v->n);
+    int n = 0;
+    if (together == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int k = 0; k < v->n; k++) {
+        if (!depends_on_others(v->s->model, v->parameter[k])) {
+            together[n++] = k;
+        }
+    }
+    if (n > 0) {
+        MT_TRY(analyse(v, n, together, wanted, err));
+    }
+    for (int k = 0; k < v->n; k++) {
+        if (depends_on_others(v->s->model, v->parameter[k])) {
+            MT_TRY(analyse(v, 1, &k, wanted, err));
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_survey_take(const mt_subject *s, int c, const char *parameters, int modes,
+                         mt_survey *v, mt_err *err)
+{
+    v->s = s;
+    v->c = c;
+    MT_TRY(mt_arena_init(&v->mem, 0, err));
+    MT_TRY(choose_parameters(v, parameters, err));
+    MT_TRY(find_values(v, err));
+    return mt_err_in(err, carry_out(v, modes, err), "%s", s->path);
+}
+
+void mt_survey_free(mt_survey *v)
+{
+    mt_arena_free(&v->mem);
+    memset(v, 0, sizeof *v);
+}
+
+double mt_survey_per_percent(const mt_survey *v, int i, int k)
+{
+    return PER_CENT * v->value[k] * v->per_unit[i + ((ptrdiff_t)k * v->room)];
+}

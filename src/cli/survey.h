@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CLI_SURVEY_H
+#define CLI_SURVEY_H
+
+#include "cli/cli.h"
+
+/*
+ * How far parameters move the frequencies of one configuration: exact derivatives of the first vibration modes.
+ * At repeated modes no single one has a derivative; there, directional values are given (eigenvalues of Y^T (dK - lambda dM) Y over the cluster), ascending.
+ */
+typedef struct mt_survey {
+    const mt_subject *s;
+    int c;
+    mt_arena mem;
+    int n;            /* parameters */
+    int *parameter;   /* [n] */
+    double *value;    /* [n] in this configuration */
+    bool *overridden; /* [n] by the configuration: no influence there */
+    int modes;        /* vibration modes looked at */
+    int unstable;     /* of the configuration */
+    int *position;    /* [modes] */
+    double *hz;       /* [modes] */
+    bool *repeated;   /* [modes] */
+    int room;         /* leading dimension of per_unit */
+    double *per_unit; /* room x n: Hz per unit of the parameter */
+} mt_survey;
+
+/* `parameters`: "A,B", or NULL for all that are not made of others. v zeroed before; mt_survey_free in any case. */
+mt_status mt_survey_take(const mt_subject *s, int c, const char *parameters, int modes,
+                         mt_survey *v, mt_err *err);
+void mt_survey_free(mt_survey *v);
+/* Hz for one per cent more of parameter k, mode i. */
+double mt_survey_per_percent(const mt_survey *v, int i, int k);
+
+#endif

@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The only place that prints, looks at the environment, the clock or signals. */
+#include "cli/terminal.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static const char RED[] = "\033[1;31m";
+static const char YELLOW[] = "\033[1;33m";
+static const char PLAIN[] = "\033[0m";
+
+static volatile sig_atomic_t stop_requested = 0;
+
+int mt_exit_of(mt_status status)
+{
+    switch (status) {
+    case MT_OK:
+        return MT_EXIT_DONE;
+    case MT_E_USAGE:
+    case MT_E_INPUT:
+        return MT_EXIT_INPUT;
+    case MT_E_SYSTEM:
+    case MT_E_MEMORY:
+        return MT_EXIT_SYSTEM;
+    case MT_E_INTERRUPTED:
+        return MT_EXIT_INTERRUPTED;
+    case MT_E_NOT_SPD:
+    case MT_E_SINGULAR:
+    case MT_E_ASSEMBLY:
+    case MT_E_EQUILIBRIUM:
+    case MT_E_MASSLESS:
+    case MT_E_NO_CONVERGENCE:
+    case MT_E_DOMAIN:
+    case MT_E_INTERNAL:
+    case MT_STATUS_COUNT:
+        break;
+    }
+    return MT_EXIT_NUMERICAL;
+}
+
+int mt_exit_worse(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+bool mt_terminal_colour(int descriptor)
+{
+    const char *const refused = getenv("NO_COLOR");
+    const char *const terminal = getenv("TERM");
+    return (refused == NULL || refused[0] == '\0') && isatty(descriptor) == 1 &&
+           terminal != NULL && strcmp(terminal, "dumb") != 0;
+}
+
+int mt_terminal_put(mt_text *out)
+{
+    bool ok = !out->failed;
+    if (!ok) {
+        mt_terminal_error("out of memory");
+    } else if (out->length > 0) {
+        errno = 0;
+        ok = fwrite(out->s, 1, out->length, stdout) == out->length && fflush(stdout) == 0;
+        if (!ok && errno != EPIPE) {
+            mt_terminal_error("standard output: %s", strerror(errno));
+        }
+    }
+    mt_text_free(out);
+    return ok ? MT_EXIT_DONE : MT_EXIT_SYSTEM;
+}
+
+static void say(const char *kind, const char *colour, const char *fmt, va_list args)
+{
+    const bool coloured = mt_terminal_colour(STDERR_FILENO);
+    (void)fprintf(stderr, "modetune: %s%s:%s ", coloured ? colour : "", kind,
+                  coloured ? PLAIN : "");
+    (void)vfprintf(stderr, fmt, args);
+    (void)fputc('\n', stderr);
+}
+
+void mt_terminal_error(const char *fmt, ...)
+{
+    va_list args;
+    va_start(args, fmt);
+    say("error", RED, fmt, args);
+    va_end(args);
+}
+
+void mt_terminal_warning(const char *fmt, ...)
+{
+    va_list args;
+    va_start(args, fmt);
+    say("warning", YELLOW, fmt, args);
+    va_end(args);
+}
+
+static void diagnostic(const char *line, size_t length)
+{
+    static const struct {
+        const char *word;
+        const char *colour;
+    } words[] = {
+        {  " error: ",    RED},
+        {" warning: ", YELLOW},
+    };
+    for (int i = 0; i < MT_COUNT(words); i++) {
+        const char *const at = strstr(line, words[i].word);
+        if (at != NULL && at < line + length) {
+            const size_t before = (size_t)(at - line) + 1;
+            const size_t word = strlen(words[i].word) - 2;
+            (void)fprintf(stderr, "%.*s%s%.*s%s%.*s\n", (int)before, line, words[i].colour,
+                          (int)word, line + before, PLAIN, (int)(length - before - word),
+                          line + before + word);
+            return;
+        }
+    }
+    (void)fprintf(stderr, "%.*s\n", (int)length, line);
+}
+
+void mt_terminal_diagnostics(const char *lines)
+{
+    if (!mt_terminal_colour(STDERR_FILENO)) {
+        (void)fputs(lines, stderr);
+        return;
+    }
+    while (*lines != '\0') {
+        const size_t length = strcspn(lines, "\n");
+        diagnostic(lines, length);
+        lines += length + (lines[length] == '\n' ? 1 : 0);
+    }
+}
+
+void mt_terminal_talk(bool quiet, const char *fmt, ...)
+{
+    va_list args;
+    if (!quiet) {
+        va_start(args, fmt);
+        (void)vfprintf(stderr, fmt, args);
+        va_end(args);
+        (void)fputc('\n', stderr);
+    }
+}
+
+void mt_terminal_progress(bool quiet, const char *text)
+{
+    if (!quiet && isatty(STDERR_FILENO) == 1) {
+        (void)fprintf(stderr, "\r\033[K%.100s", text == NULL ? "" : text);
+        (void)fflush(stderr);
+    }
+}
+
+static void on_stop(int number)
+{
+    (void)number;
+    stop_requested = 1;
+}
+
+void mt_terminal_catch_signals(void)
+{
+    struct sigaction stop;
+    struct sigaction ignore;
+    memset(&stop, 0, sizeof stop);
+    memset(&ignore, 0, sizeof ignore);
+    stop.sa_handler = on_stop;
+    stop.sa_flags = (int)SA_RESETHAND;
+    ignore.sa_handler = SIG_IGN;
+    (void)sigaction(SIGINT, &stop, NULL);
+    (void)sigaction(SIGTERM, &stop, NULL);
+    (void)sigaction(SIGPIPE, &ignore, NULL);
+}
+
+const volatile sig_atomic_t *mt_terminal_stop(void)
+{
+    return &stop_requested;
+}
+
+double mt_terminal_seconds(void)
+{
+    struct timespec now = {0};
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + ((double)now.tv_nsec * 1e-9);
+}

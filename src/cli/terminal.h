@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CLI_TERMINAL_H
+#define CLI_TERMINAL_H
+
+#include <signal.h>
+#include <stdbool.h>
+
+#include "base/text.h"
+
+/* Exit status of the program. */
+enum {
+    MT_EXIT_DONE = 0,
+    MT_EXIT_GOALS = 1,
+    MT_EXIT_INPUT = 2,
+    MT_EXIT_NUMERICAL = 3,
+    MT_EXIT_SYSTEM = 4,
+    MT_EXIT_INTERRUPTED = 130
+};
+int mt_exit_of(mt_status status);
+/* The worse of two: 130, then 4, 3, 2, 1, 0. */
+int mt_exit_worse(int a, int b);
+
+/* Everything that is written to standard output is collected in a text and leaves through here; the text is empty afterwards. A reader that has gone
+ * (EPIPE) is not complained about, but is a failure, too. Returns MT_EXIT_DONE or MT_EXIT_SYSTEM. */
+int mt_terminal_put(mt_text *out);
+/* To standard error: "modetune: error: ..." */
+void mt_terminal_error(const char *fmt, ...) MT_PRINTF(1, 2);
+void mt_terminal_warning(const char *fmt, ...) MT_PRINTF(1, 2);
+/* Lines of diagnostics as they are; "error:" and "warning:" coloured on a terminal. */
+void mt_terminal_diagnostics(const char *lines);
+/* Talk: a line to standard error unless quiet. */
+void mt_terminal_talk(bool quiet, const char *fmt, ...) MT_PRINTF(2, 3);
+/* One line that is written over again and again, on a terminal only. Text NULL: wipe it. */
+void mt_terminal_progress(bool quiet, const char *text);
+/* Is standard output (descriptor 1) or error (2) a terminal where colour is welcome? */
+bool mt_terminal_colour(int descriptor);
+
+/* SIGINT and SIGTERM set a flag (the second one ends the program), SIGPIPE becomes an error of writing. */
+void mt_terminal_catch_signals(void);
+const volatile sig_atomic_t *mt_terminal_stop(void);
+/* Seconds of a clock that only runs forward. */
+double mt_terminal_seconds(void);
+
+#endif
