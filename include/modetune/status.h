@@ -52,7 +52,7 @@ MT_API const char *mt_status_text(mt_status code);
 MT_API const char *mt_status_name(mt_status code);
 /* Set err (when not NULL) to code and the formatted text; longer text is cut at a character boundary. Returns code. */
 MT_API mt_status mt_fail(mt_err *err, mt_status code, const char *fmt, ...) MT_PRINTF(3, 4);
-/* Put "context: " before the text that is already in err (context formatted). Returns rc unchanged. */
+/* Put "context: " before the text that is already in err (context formatted); nothing where rc is MT_OK. Returns rc unchanged. */
 MT_API mt_status mt_err_in(mt_err *err, mt_status rc, const char *fmt, ...) MT_PRINTF(3, 4);
 
 #ifdef __cplusplus

@@ -74,7 +74,7 @@ mt_status mt_fail(mt_err *err, mt_status code, const char *fmt, ...)
 
 mt_status mt_err_in(mt_err *err, mt_status rc, const char *fmt, ...)
 {
-    if (err == NULL) {
+    if (err == NULL || rc == MT_OK) {
         return rc;
     }
     char text[BUFFER_SIZE];

@@ -29,6 +29,9 @@ static void status__failures_carry_text_and_context(mt_test *t)
     CHECK_STR(t, err.text, "/variables/2: lower 3 is not below upper 2!");
     CHECK_INT(t, mt_fail(NULL, MT_E_MEMORY, "%d", 1), MT_E_MEMORY);
     CHECK_INT(t, mt_err_in(NULL, MT_E_MEMORY, "%d", 1), MT_E_MEMORY);
+    mt_err fine = {.text = ""};
+    CHECK_INT(t, mt_err_in(&fine, MT_OK, "%d", 1), MT_OK);
+    CHECK_STR(t, fine.text, "");
 }
 
 /* a string of n bytes: some ASCII, then only two-byte characters */
