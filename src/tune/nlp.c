@@ -16,6 +16,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/workers.h"
+
 enum { ROUNDS = 3, HALVINGS = 6 };
 /* Ends nearer than this are one (0.1 percent in a parameter: the same design to an engineer), and nearer than the
  * root of the tolerance, which a double root smears; that is capped where tolerances are wide. */
@@ -41,14 +43,6 @@ typedef struct ends {
     int count;
     int capacity;
 } ends;
-
-static void add_end(mt_nlp_engine *e, ends *all, const mt_nlp_point *p)
-{
-    if (all->count < all->capacity) {
-        mt_nlp_point_copy(e, all->p[all->count], p);
-        all->merged[all->count++] = false;
-    }
-}
 
 /* Newton from `last`, where SLSQP ended, if that serves better than from p, the best it met. */
 static void polish_both(mt_nlp_engine *e, mt_nlp_point *p, mt_nlp_point *last, double *saddle)
@@ -181,7 +175,6 @@ static bool begin(mt_nlp_engine *e, double *t, mt_nlp_point *p)
 {
     for (int k = 0; k <= HALVINGS && !e->ended; k++) {
         if (mt_nlp_evaluate(e, t, true, p)) {
-            e->df_scale = fmax(e->df_scale, mt_norm2(e->n, p->df));
             return true;
         }
         for (int j = 0; j < e->n; j++) {
@@ -206,30 +199,128 @@ static bool allocate_ends(mt_nlp_engine *e, ends *all)
     return ok;
 }
 
+/* What one start left behind; slots are filled by workers in any order and read in order. */
+typedef struct start_slot {
+    mt_nlp_point *p;
+    bool begun;
+    long evals;
+    mt_stop stop;
+    mt_status fatal;
+    mt_status refused;
+    mt_err fatal_err;
+    mt_err refused_err;
+} start_slot;
+
+typedef struct start_job {
+    mt_nlp_engine *e; /* the search's own; read only while workers run */
+    double *t;        /* n x starts */
+    start_slot *slots;
+    const int *rows;
+    int n;
+    bool search; /* false: only evaluate the starts */
+    atomic_int abort;
+} start_job;
+
+/* The budget of start k: an even share. */
+static long share(const mt_nlp_engine *e, int k, int starts)
+{
+    const long most = e->opt.max_evals;
+    return (most / starts) + (k < most % starts ? 1 : 0);
+}
+
+static mt_status run_start(void *context, int worker, int k, mt_err *err)
+{
+    start_job *const job = context;
+    const mt_nlp_engine *const all = job->e;
+    start_slot *const slot = &job->slots[k];
+    mt_nlp nlp = *all->nlp;
+    mt_nlp_options opt = all->opt;
+    mt_nlp_engine e;
+    nlp.context = nlp.contexts != NULL ? nlp.contexts[worker] : nlp.context;
+    opt.max_evals = share(all, k, job->n);
+    if (opt.max_evals <= 0) {
+        slot->stop = MT_STOP_MAX_EVALS;
+        return MT_OK;
+    }
+    MT_TRY(mt_nlp_engine_init(&e, &nlp, &opt, &slot->fatal_err));
+    e.evals = slot->evals;
+    e.abort = &job->abort;
+    e.df_scale = all->df_scale;
+    if (!job->search) {
+        slot->begun = begin(&e, job->t + (ptrdiff_t)k * e.n, slot->p);
+    } else if (slot->begun && e.n_free > 0) {
+        local_search(&e, job->rows, slot->p);
+    }
+    slot->p->start = k;
+    slot->evals = e.evals;
+    slot->stop = e.stop != MT_STOP_DONE ? e.stop : slot->stop;
+    slot->fatal = e.fatal;
+    if (slot->refused == MT_OK && e.refused != MT_OK) {
+        slot->refused = e.refused;
+        slot->refused_err = e.refused_err;
+    }
+    if (e.fatal != MT_OK || e.stop == MT_STOP_USER) {
+        atomic_store(&job->abort, 1);
+    }
+    mt_nlp_engine_free(&e);
+    (void)err;
+    return MT_OK;
+}
+
+/* Add up what the starts used and how they ended; the first failure in order counts. */
+static void collect(mt_nlp_engine *e, const start_slot *slots, int n)
+{
+    e->evals = 0;
+    for (int k = 0; k < n; k++) {
+        const start_slot *const s = &slots[k];
+        e->evals += s->evals;
+        e->stop = s->stop == MT_STOP_USER || e->stop == MT_STOP_DONE ? s->stop : e->stop;
+        if (s->fatal != MT_OK && e->fatal == MT_OK) {
+            mt_nlp_end(e, mt_fail(e->err, s->fatal, "%s", s->fatal_err.text));
+        }
+        if (s->refused != MT_OK && e->refused == MT_OK) {
+            e->refused = s->refused;
+            e->refused_err = s->refused_err;
+        }
+    }
+    e->ended = e->ended || e->stop == MT_STOP_USER;
+}
+
 static void all_starts(mt_nlp_engine *e, ends *all, mt_nlp_result *out)
 {
     mt_arena *const mem = &e->scratch;
-    double *const t = mt_nlp_starts(e, all->capacity, mem);
+    const int n = all->capacity;
     int *const rows = mt_arena_int(mem, (size_t)e->nlp->n_eq);
-    mt_nlp_point *const p = mt_nlp_point_new(e, mem);
-    if (t == NULL || rows == NULL || p == NULL) {
+    start_job job = {.e = e, .rows = rows, .n = n};
+    job.t = mt_nlp_starts(e, n, mem);
+    job.slots = mt_arena_alloc(mem, (size_t)n, sizeof *job.slots);
+    if (job.t == NULL || rows == NULL || job.slots == NULL) {
         mt_nlp_end(e, mt_fail_memory(e->err));
         return;
     }
     for (int i = 0; i < e->nlp->n_eq; i++) {
         rows[i] = i;
     }
-    for (int k = 0; k < all->capacity && !e->ended; k++) {
-        const mt_arena_mark mark = mt_arena_get_mark(mem);
-        out->starts = k + 1;
-        if (begin(e, t + (ptrdiff_t)k * e->n, p)) {
-            if (e->n_free > 0) {
-                local_search(e, rows, p);
-            }
-            p->start = k;
-            add_end(e, all, p);
+    for (int k = 0; k < n; k++) {
+        job.slots[k].p = all->p[k];
+    }
+    out->starts = n;
+    for (int pass = 0; pass < 2 && e->fatal == MT_OK && e->stop != MT_STOP_USER; pass++) {
+        job.search = pass == 1;
+        const mt_status rc = mt_workers_run(e->nlp->n_workers, n, run_start, &job, e->err);
+        if (rc != MT_OK) {
+            mt_nlp_end(e, rc);
         }
-        mt_arena_rewind(mem, mark);
+        collect(e, job.slots, n);
+        for (int k = 0; k < n && pass == 0; k++) {
+            const double norm = job.slots[k].begun ? mt_norm2(e->n, all->p[k]->df) : 0.0;
+            e->df_scale = fmax(e->df_scale, norm);
+        }
+    }
+    for (int k = 0; k < n; k++) {
+        if (job.slots[k].begun) {
+            mt_nlp_point_swap(&all->p[all->count++], &all->p[k]);
+        }
     }
 }
 

@@ -49,6 +49,9 @@ typedef struct mt_nlp {
     const double *in_tol; /* [n_in] > 0 */
     mt_nlp_eval eval;
     void *context;
+    int n_workers; /* starts run on so many threads; 0 or 1: the caller's own */
+    void *const *
+        contexts; /* [n_workers] a context for each, contexts[0] == context; NULL with one worker */
 } mt_nlp;
 
 typedef struct mt_nlp_options {

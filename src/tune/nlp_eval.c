@@ -241,6 +241,10 @@ bool mt_nlp_evaluate(mt_nlp_engine *e, const double *t, bool with_gradient, mt_n
     if (e->ended) {
         return false;
     }
+    if (e->abort != NULL && atomic_load(e->abort) != 0) {
+        e->ended = true;
+        return false;
+    }
     if (e->evals >= e->opt.max_evals) {
         e->ended = true;
         e->stop = MT_STOP_MAX_EVALS;

@@ -2,6 +2,8 @@
 #ifndef TUNE_NLP_PRIV_H
 #define TUNE_NLP_PRIV_H
 
+#include <stdatomic.h>
+
 #include "linalg/dense.h"
 #include "tune/nlp.h"
 
@@ -40,7 +42,8 @@ typedef struct mt_nlp_engine {
     double eq_tol;   /* largest tolerance of an equality, 0 without */
     double df_scale; /* largest gradient of the objective at a start */
     long evals;
-    bool ended; /* budget spent, interrupted or fatal: no evaluation happens any more */
+    atomic_int *abort; /* set when one worker must end the search for all; may be NULL */
+    bool ended;        /* budget spent, interrupted or fatal: no evaluation happens any more */
     mt_stop stop;
     mt_status fatal;   /* status that must be returned */
     mt_status refused; /* first "no value here" and its text */
