@@ -52,7 +52,7 @@ mt_table mt_report_frequencies(const mt_recommendation *r)
         mt_table_number(&t, f->original_hz, HZ_DIGITS);
         mt_table_number(&t, f->recommended_hz, HZ_DIGITS);
         mt_table_text(&t, demand_of(f, demand, sizeof demand));
-        mt_table_change(&t, f->error_percent, PERCENT_DIGITS);
+        mt_table_percent(&t, f->error_percent, PERCENT_DIGITS);
         mt_table_number(&t, f->mac, MAC_DIGITS);
     }
     return t;
@@ -73,7 +73,7 @@ mt_table mt_report_parameters(const mt_recommendation *r)
         mt_table_text(&t, p->unit);
         mt_table_number(&t, p->original, VALUE_DIGITS);
         mt_table_number(&t, p->recommended, VALUE_DIGITS);
-        mt_table_change(&t, p->change_percent, PERCENT_DIGITS);
+        mt_table_percent(&t, p->change_percent, PERCENT_DIGITS);
         mt_table_text(&t, p->at_bound);
     }
     return t;
@@ -92,7 +92,7 @@ mt_table mt_report_goals(const mt_recommendation *r)
         mt_table_text(&t, g->text);
         mt_table_number(&t, g->value, VALUE_DIGITS);
         mt_table_number(&t, g->demand, VALUE_DIGITS);
-        mt_table_number(&t, g->violation_percent, PERCENT_DIGITS);
+        mt_table_percent(&t, g->violation_percent, PERCENT_DIGITS);
         mt_table_text(&t, g->weighted ? "weighted" : g->met ? "met" : "not met");
     }
     return t;
@@ -124,7 +124,7 @@ mt_table mt_report_alternatives(const mt_result *result)
         mt_table_text(&t, r->grade);
         mt_table_number(&t, r->score, VALUE_DIGITS);
         mt_table_number(&t, r->change, PERCENT_DIGITS);
-        mt_table_number(&t, r->violation_percent, PERCENT_DIGITS);
+        mt_table_percent(&t, r->violation_percent, PERCENT_DIGITS);
         for (int k = 0; k < n; k++) {
             mt_table_number(&t, k < r->n_parameters ? r->parameters[k].recommended : nan(""),
                             VALUE_DIGITS);
@@ -181,7 +181,7 @@ mt_table mt_report_published(const mt_result *result)
             mt_table_number(&t, p->computed, VALUE_DIGITS);
         }
         mt_table_change(&t, p->difference, PERCENT_DIGITS);
-        mt_table_change(&t, p->difference_percent, PERCENT_DIGITS);
+        mt_table_percent(&t, p->difference_percent, PERCENT_DIGITS);
         mt_table_text(&t, p->demand);
         mt_table_text(&t, p->role);
         mt_table_text(&t, mt_report_verdict(p));

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/table.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -84,6 +85,17 @@ void mt_table_change(mt_table *t, double value, int digits)
     char text[MT_NUMBER_TEXT];
     char exact[MT_NUMBER_TEXT];
     add_cell(t, mt_report_change(value, digits, text), mt_report_exact(value, exact));
+}
+
+/* Below this a percentage says nothing: the tightest tolerance of a goal is 1e-4 % by default, and frequencies carry relative rounding of about 1e-14. */
+static const double PERCENT_NOISE = 1e-9;
+
+void mt_table_percent(mt_table *t, double value, int digits)
+{
+    char text[MT_NUMBER_TEXT];
+    char exact[MT_NUMBER_TEXT];
+    const double shown = fabs(value) < PERCENT_NOISE ? 0.0 : value;
+    add_cell(t, mt_report_change(shown, digits, text), mt_report_exact(value, exact));
 }
 
 int mt_table_rows(const mt_table *t)

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""--help, the manual page and the README say the same; wrong use is answered helpfully."""
+import re
+import subprocess
+
+from common_cli import COMMANDS, SOURCE, CliTest, main, options_in
+
+# Which options each command has: written down once more, so that a change is a decision.
+EVERYWHERE = {"root", "format", "quiet", "help"}
+OPTIONS = {
+    "run": {"output", "verify", "threads"},
+    "compare": {"threads"},
+    "modes": {"configuration", "set", "count", "shapes"},
+    "mac": {"count"},
+    "sensitivity": {"configuration", "set", "count", "parameters"},
+    "info": {"configuration", "set"},
+    "apply": {"rank", "model"},
+    "check": set(),
+}
+
+
+def listed(text):
+    """Options in the list of a help text: lines that begin with one."""
+    return set(re.findall(r"^\s+(?:-\w, )?--([a-z][a-z-]*)", text, re.M))
+
+
+class Help(CliTest):
+    def test_every_command_explains_itself_and_its_options(self):
+        for command in COMMANDS:
+            with self.subTest(command):
+                done = self.expect(0, command, "--help")
+                self.assertEqual(done.stderr, "")
+                self.assertTrue(done.stdout.startswith(f"Usage: modetune {command} "))
+                self.assertEqual(listed(done.stdout), OPTIONS[command] | EVERYWHERE)
+                self.assertLessEqual(max(map(len, done.stdout.splitlines())), 96)
+                self.assertEqual(done.stdout, self.expect(0, command, "-h").stdout)
+
+    def test_the_whole_lists_all_commands(self):
+        text = self.expect(0, "--help").stdout
+        self.assertEqual(re.findall(r"^  ([a-z]+)  +\S", text, re.M), COMMANDS)
+        self.assertEqual(listed(text), EVERYWHERE | {"version"})
+
+    def test_version_is_that_of_the_header(self):
+        header = (SOURCE / "include/modetune/version.h").read_text(encoding="utf-8")
+        version = re.search(r'MT_VERSION_STRING "([^"]+)"', header).group(1)
+        self.assertEqual(self.expect(0, "--version").stdout, f"modetune {version}\n")
+
+    def test_manual_page_lists_the_same_commands_and_options(self):
+        page = (SOURCE / "src/cli/modetune.1").read_text(encoding="utf-8")
+        self.assertNotIn("Warning", subprocess.run(["sh", "-c", "command -v man >/dev/null || exit 0; "
+                                                    "man --warnings -E UTF-8 -l -Tutf8 -Z \"$0\" >/dev/null",
+                                                    SOURCE / "src/cli/modetune.1"],
+                                                   capture_output=True, text=True).stderr)
+        self.assertEqual(re.findall(r'^\.BI "([a-z]+) "', page, re.M), COMMANDS)
+        own = set().union(*OPTIONS.values())
+        self.assertEqual(options_in(page.replace("\\-", "-").replace("\\", "")), own | EVERYWHERE | {"version"})
+        section = page[page.index(".SH OPTIONS"):page.index(".SH EXIT")].replace("\\-", "-")
+        self.assertEqual(set(re.findall(r"^\.BR? .*?--([a-z-]+)", section, re.M)), own | EVERYWHERE | {"version"})
+
+    def test_readme_names_real_commands_and_options(self):
+        text = (SOURCE / "README.md").read_text(encoding="utf-8")
+        found = set(re.findall(r"^(?:\$ )?(?:build/\w+/)?modetune ([a-z]+)\b", text, re.M))
+        self.assertEqual(found - set(COMMANDS), set())
+        self.assertGreaterEqual(len(found), len(COMMANDS))
+        for line in re.findall(r"^(?:\$ )?(?:build/\w+/)?modetune [a-z]+ .*$", text, re.M):
+            command = re.search(r"modetune ([a-z]+)", line).group(1)
+            self.assertLessEqual(options_in(line), OPTIONS[command] | EVERYWHERE, line)
+
+
+class WrongUse(CliTest):
+    def wrong(self, want, *args):
+        with self.subTest(args):
+            done = self.expect(2, *args)
+            self.assertEqual(done.stdout, "")
+            self.assertEqual(done.stderr.splitlines()[0], f"modetune: error: {want}")
+
+    def test_messages(self):
+        self.wrong('a command is missing')
+        self.wrong('unknown command "mods"; did you mean "modes"?', "mods")
+        self.wrong('unknown command "xyzzy"', "xyzzy")
+        self.wrong('unknown option "--hlep"; did you mean "--help"?', "--hlep")
+        self.wrong('unknown option "--shape"; did you mean "--shapes"?', "modes", self.model, "--shape")
+        self.wrong('unknown option "-z"', "modes", self.model, "-z")
+        self.wrong('"info" has no option "--verify"', "info", self.model, "--verify")
+        self.wrong('"modes" needs MODEL', "modes")
+        self.wrong('"mac" needs MODEL:CONFIGURATION MODEL:CONFIGURATION', "mac", "a:b")
+        self.wrong('"modes" takes MODEL, and "y" is too many', "modes", "x", "y")
+        self.wrong('-c needs a value: CONFIGURATION', "modes", self.model, "-c")
+        self.wrong('--count needs a value: N', "modes", self.model, "--count")
+        self.wrong('--count: "0" is not a whole number from 1 to 2147483647', "modes", self.model, "--count", "0")
+        self.wrong('--count: "2x" is not a whole number from 1 to 2147483647', "modes", self.model, "--count=2x")
+        self.wrong('--threads: "-1" is not a whole number from 1 to 1024', "run", "x", "--threads", "-1")
+        self.wrong('--shapes takes no value', "modes", self.model, "--shapes=yes")
+        self.wrong('--format is given twice', "modes", self.model, "--format", "csv", "--format=json")
+        self.wrong('--format: "jsn" is none of text, json, csv; did you mean "json"?', "modes", "--format=jsn", "m")
+        self.wrong('--output: the value is empty', "run", "x", "--output=")
+        self.wrong('unknown configuration "hold"; did you mean "held"?', "modes", self.model, "-c", "hold")
+        self.wrong('--set: "k1" is not NAME=VALUE', "modes", self.model, "--set", "k1")
+        self.wrong('--set: unknown parameter "k3"; did you mean "k1"?', "modes", self.model, "--set", "k3=1")
+        self.wrong('--set: parameter "k1" is set twice', "modes", self.model, "--set", "k1=1", "--set", "k1=2")
+        self.wrong('--parameters: unknown parameter "k9"; did you mean "k1"?', "sensitivity", self.model,
+                   "--parameters", "m,k9")
+        self.wrong('"problems/model.json" has 4 configurations: name one, as problems/model.json:held', "mac",
+                   self.model, f"{self.model}:held")
+
+    def test_a_hint_points_to_the_help(self):
+        self.assertIn('Try "modetune modes --help".\n', self.expect(2, "modes").stderr)
+        self.assertIn('Try "modetune --help".\n', self.expect(2).stderr)
+
+    def test_double_dash_ends_the_options(self):
+        self.write("--help", "{}")
+        self.assertIn("--help:1:1: error: ", self.expect(2, "check", "--", "--help").stderr)
+
+
+if __name__ == "__main__":
+    main()

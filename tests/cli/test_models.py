@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""modes, mac, sensitivity, info and check on small models with known answers."""
+import csv
+import io
+import math
+
+from common_cli import MASSLESS, REPEATED, CliTest, main
+
+LOW, HIGH = 0.6972243622680054, 4.302775637731995  # omega^2 = (5 -+ sqrt 13)/2 for k1 = 3, k2 = 1
+HZ = [math.sqrt(x) / (2 * math.pi) for x in (LOW, HIGH)]
+TOL = 1e-12  # two unknowns, condition 6: a few units in the last place
+
+
+class Modes(CliTest):
+    def test_json_of_one_configuration_is_an_object(self):
+        got = self.json_of("modes", self.model, "-c", "held")
+        self.assertEqual(got["configuration"], "held")
+        self.assertEqual([m["index"] for m in got["modes"]], [1, 2])
+        self.assertEqual([m["name"] for m in got["modes"]], ["first", None])
+        self.assertEqual({m["kind"] for m in got["modes"]}, {"flexible"})
+        for mode, hz, squared in zip(got["modes"], HZ, (LOW, HIGH)):
+            self.assertAlmostEqual(mode["frequency_hz"] / hz, 1, delta=TOL)
+            self.assertAlmostEqual(mode["omega_squared"] / squared, 1, delta=TOL)
+            self.assertTrue(0 <= mode["residual"] < 10)
+            self.assertTrue(0 <= mode["orthogonality"] < 10)
+        self.assertEqual(got["redundant_constraints"], [])
+        self.assertEqual(got["freedoms"], 2)
+        self.assertIs(got["equilibrium"]["solved"], False)
+
+    def test_json_of_all_configurations_is_a_list_in_the_file_s_order(self):
+        got = self.json_of("modes", self.model)
+        self.assertEqual([c["configuration"] for c in got], ["held", "twice", "free", "heavy"])
+        self.assertEqual([len(c["modes"]) for c in got], [2, 2, 2, 2])
+        self.assertEqual(got[1]["redundant_constraints"], [["rb", "rc"], ["rb", "rc"]])
+        rigid = got[2]["modes"][0]
+        self.assertEqual((rigid["kind"], rigid["index"], rigid["frequency_hz"]), ("rigid_body", None, 0))
+        self.assertAlmostEqual(got[2]["modes"][1]["omega_squared"], 2, delta=TOL)
+        for a, b in zip(got[0]["modes"], got[3]["modes"]):
+            self.assertAlmostEqual(a["omega_squared"] / b["omega_squared"], 4, delta=4 * TOL)
+
+    def test_set_takes_expressions_of_the_file_s_values(self):
+        got = self.json_of("modes", self.model, "-c", "held", "--set", "k1=k1-1", "--set", "k2=k1/2")["modes"]
+        for mode, squared in zip(got, (LOW, HIGH)):  # (2, 1.5) has the same eigenvalues as (3, 1)
+            self.assertAlmostEqual(mode["omega_squared"] / squared, 1, delta=TOL)
+        wrong = self.expect(2, "modes", self.model, "--set", "k1=1/0").stderr
+        self.assertIn("modetune: error: --set: k1=1/0: ", wrong)
+
+    def test_set_that_a_configuration_overrides_is_warned_about(self):
+        done = self.expect(0, "modes", self.model, "-c", "heavy", "--set", "m=2")
+        self.assertEqual(done.stderr, 'modetune: warning: configuration "heavy" has its own value of "m": --set '
+                                      'changes nothing there\n')
+
+    def test_count_counts_vibration_modes(self):
+        got = self.json_of("modes", self.model, "-c", "free", "--count", "1")["modes"]
+        self.assertEqual([m["kind"] for m in got], ["rigid_body", "flexible"])
+        self.assertEqual(len(self.json_of("modes", self.model, "-c", "held", "--count", "1")["modes"]), 1)
+
+    def test_shapes_are_mass_normalised_sensor_values(self):
+        got = self.json_of("modes", self.model, "-c", "held", "--shapes")["modes"]
+        for mode in got:
+            self.assertEqual(list(mode["shape"]), ["a.x", "b.x"])
+            self.assertAlmostEqual(sum(v * v for v in mode["shape"].values()), 1, delta=TOL)
+        ratio = got[0]["shape"]["b.x"] / got[0]["shape"]["a.x"]
+        self.assertAlmostEqual(ratio, 4 - LOW, delta=10 * TOL)  # row of a: (k1 + k2 - omega^2) a = k2 b
+
+    def test_shapes_without_sensors_are_body_motions(self):
+        path = self.write("problems/repeated.json", REPEATED)
+        got = self.json_of("modes", path, "--shapes")[0]["modes"]
+        self.assertEqual(list(got[0]["shape"]), ["p.x", "p.y"])
+        self.assertIn("Modes 1 to 2 are repeated", self.expect(0, "modes", path).stdout)
+        self.assertIn("body", self.expect(0, "modes", path, "--shapes").stdout)
+
+    def test_csv_reads_back(self):
+        text = self.expect(0, "modes", self.model, "--shapes", "--format", "csv").stdout
+        rows = list(csv.DictReader(io.StringIO(text)))
+        self.assertEqual(len(rows), 8)
+        self.assertEqual(float(rows[0]["frequency_hz"]), self.json_of("modes", self.model)[0]["modes"][0]["frequency_hz"])
+        self.assertEqual((rows[4]["configuration"], rows[4]["index"], rows[4]["kind"]), ("free", "", "rigid_body"))
+
+    def test_text_is_aligned_and_says_what_is_special(self):
+        text = self.expect(0, "modes", self.model).stdout
+        self.assertIn("  mode  kind      frequency [Hz]  name   residual  orthogonality\n"
+                      "  ----  --------  --------------  -----  --------  -------------\n"
+                      "     1  flexible        0.132894  first ", text)
+        self.assertIn("  1 rigid-body mode: it can move freely.\n", text)
+        self.assertIn('  Redundant: one equation of "rb", "rc" changes nothing.\n', text)
+        self.assertFalse([line for line in text.splitlines() if line.endswith(" ")])
+
+    def test_a_numerical_failure_is_3_and_names_its_place(self):
+        path = self.write("problems/massless.json", MASSLESS)
+        done = self.expect(3, "modes", path)
+        self.assertIn(f"modetune: error: {path}: configuration ", done.stderr)
+        self.assertIn("ghost", done.stderr)
+
+    def test_the_locale_changes_nothing(self):
+        plain = self.expect(0, "modes", self.model, "--format", "json", env={"LC_ALL": "C"}).stdout
+        for name in ("de_DE.UTF-8", "C.UTF-8", "nonsense"):
+            self.assertEqual(self.expect(0, "modes", self.model, "--format", "json", env={"LC_ALL": name}).stdout, plain)
+
+
+class Mac(CliTest):
+    def test_a_configuration_against_itself_is_the_identity(self):
+        got = self.json_of("mac", f"{self.model}:held", f"{self.model}:heavy")
+        self.assertEqual([(p["a"], p["b"]) for p in got["pairs"]], [(1, 1), (2, 2)])
+        for pair, hz in zip(got["pairs"], HZ):
+            self.assertAlmostEqual(pair["mac"], 1, delta=TOL)
+            self.assertAlmostEqual(pair["frequency_a_hz"] / hz, 1, delta=TOL)
+            self.assertAlmostEqual(pair["frequency_b_hz"] / hz, 0.5, delta=TOL)
+        for i in range(2):
+            for j in range(2):
+                self.assertAlmostEqual(got["matrix"][i][j], float(i == j), delta=TOL)
+        self.assertEqual(got["channels"], ["a.x", "b.x"])
+        self.assertEqual(got["notes"], [])
+
+    def test_too_few_sensors_are_said(self):
+        text = (self.folder / self.model).read_text(encoding="utf-8").replace(
+            ', { "name": "b", "on": "b", "directions": ["x"] }', "")
+        one = self.write("problems/one.json", text)
+        got = self.json_of("mac", f"{one}:held", f"{self.model}:held", "--count", "2")
+        self.assertIn("1 sensor channels cannot tell 2 modes apart: shapes beyond 1 depend on each other there",
+                      got["notes"])
+        self.assertIn("modes 1 and 2 of A look the same at the sensors (MAC 1.0000)", got["notes"])
+        self.assertEqual(len(self.json_of("mac", f"{one}:held", f"{one}:held")["pairs"]), 1)
+
+    def test_no_common_sensor_is_an_error(self):
+        path = self.write("problems/repeated.json", REPEATED)
+        self.assertIn("no sensor and direction in common", self.expect(2, "mac", path, f"{self.model}:held").stderr)
+
+    def test_repeated_modes_are_compared_as_a_space(self):
+        text = REPEATED.rstrip()[:-1] + ', "sensors": [ { "name": "p", "on": "p", "directions": ["x", "y"] } ] }'
+        path = self.write("problems/repeated.json", text)
+        got = self.json_of("mac", path, path)
+        self.assertEqual((got["subspaces"][0]["first_a"], got["subspaces"][0]["modes"]), (1, 2))
+        for value in got["subspaces"][0]["mac"]:
+            self.assertAlmostEqual(value, 1, delta=TOL)
+        self.assertIn("Repeated modes 1 to 2 of A as a space: MAC 1.00000 1.00000", self.expect(0, "mac", path, path).stdout)
+
+
+class Sensitivity(CliTest):
+    def entries(self, *args):
+        got = self.json_of("sensitivity", self.model, "-c", "held", *args)
+        return [{e["parameter"]: e for e in m["sensitivities"]} for m in got["modes"]]
+
+    def test_values_are_the_derivatives(self):
+        modes = self.entries()
+        self.assertEqual(list(modes[0]), ["k1", "k2", "m"])  # "both" is made of others
+        for mode, squared, hz in zip(modes, (LOW, HIGH), HZ):
+            # implicit differentiation of omega^4 - (k1 + 2 k2) omega^2 + k1 k2 = 0
+            slope = 2 * squared - 5
+            for name, d in (("k1", (squared - 1) / slope), ("k2", (2 * squared - 3) / slope)):
+                want = d / (8 * math.pi ** 2 * hz)
+                self.assertAlmostEqual(mode[name]["hz_per_unit"] / want, 1, delta=100 * TOL)
+            self.assertAlmostEqual(mode["m"]["hz_per_percent"] / (-0.005 * hz), 1, delta=100 * TOL)
+            self.assertAlmostEqual(mode["k1"]["hz_per_percent"] / (0.03 * mode["k1"]["hz_per_unit"]), 1, delta=TOL)
+            # Euler: frequencies are of degree 1/2 in the stiffnesses
+            total = mode["k1"]["hz_per_percent"] + mode["k2"]["hz_per_percent"]
+            self.assertAlmostEqual(total / (0.005 * hz), 1, delta=100 * TOL)
+
+    def test_a_parameter_made_of_others_does_not_stop_them(self):
+        with_both = self.entries("--parameters", "k1,both")
+        alone = self.entries("--parameters", "k1")
+        self.assertEqual(with_both[0]["k1"], alone[0]["k1"])
+        self.assertEqual(with_both[0]["both"]["hz_per_unit"], 0)
+
+    def test_overridden_parameters_have_no_influence(self):
+        got = self.json_of("sensitivity", self.model, "-c", "heavy", "--parameters", "m")
+        self.assertEqual(got["modes"][0]["sensitivities"][0]["value"], 4)
+        self.assertEqual(got["modes"][0]["sensitivities"][0]["hz_per_percent"], 0)
+        self.assertIn("value of this configuration's own", self.expect(0, "sensitivity", self.model, "-c", "heavy").stdout)
+
+    def test_repeated_modes_have_directional_values(self):
+        path = self.write("problems/repeated.json", REPEATED)
+        got = self.json_of("sensitivity", path)[0]["modes"]
+        self.assertEqual([m["repeated"] for m in got], [True, True])
+        values = [m["sensitivities"][0]["hz_per_percent"] for m in got]
+        hz = 10 / (2 * math.pi)  # kx moves one direction by 0.5 % of f, the other not at all
+        self.assertAlmostEqual(values[0], 0, delta=hz * TOL)
+        self.assertAlmostEqual(values[1] / (0.005 * hz), 1, delta=100 * TOL)
+        self.assertIn("* Repeated modes: none of them has a derivative of its own", self.expect(0, "sensitivity", path).stdout)
+
+    def test_set_moves_the_point_of_expansion(self):
+        got = self.entries("--set", "k1=2", "--set", "k2=1.5")
+        self.assertEqual(got[0]["k1"]["value"], 2)
+        self.assertNotAlmostEqual(got[0]["k1"]["hz_per_unit"], self.entries()[0]["k1"]["hz_per_unit"], delta=1e-4)
+
+    def test_csv_has_one_row_per_mode_and_parameter(self):
+        text = self.expect(0, "sensitivity", self.model, "--format", "csv").stdout
+        self.assertEqual(len(list(csv.DictReader(io.StringIO(text)))), (2 + 2 + 1 + 2) * 3)
+
+
+class Info(CliTest):
+    def test_mass_centre_inertia_and_mobility(self):
+        got = self.json_of("info", self.model)
+        held, twice = got[0], got[1]
+        self.assertEqual((held["mass_kg"], held["centre_m"]), (2, [1.5, 0]))
+        self.assertAlmostEqual(held["inertia_kg_m2"]["zz"], 2.5, delta=TOL)  # 1 + 1 + 2 * 0.5^2
+        self.assertEqual((held["states"], held["equations"], held["freedoms"]), (6, 4, 2))
+        self.assertEqual((twice["equations"], twice["freedoms"], twice["redundant_equations"]), (6, 2, 2))
+        self.assertEqual(twice["redundant_constraints"], [["rb", "rc"], ["rb", "rc"]])
+        self.assertEqual(got[3]["mass_kg"], 8)
+
+    def test_text_and_csv(self):
+        text = self.expect(0, "info", self.model, "-c", "twice").stdout
+        self.assertIn("  mobility    2 freedoms = 6 states - 4 independent of 6 equations\n", text)
+        rows = list(csv.DictReader(io.StringIO(self.expect(0, "info", self.model, "--format", "csv").stdout)))
+        self.assertEqual([r["mass_kg"] for r in rows], ["2", "2", "2", "8"])
+
+
+class Check(CliTest):
+    def test_good_files_are_ok(self):
+        done = self.expect(0, "check", self.model)
+        self.assertEqual((done.stdout, done.stderr), (f"{self.model}: ok (model)\n", ""))
+
+    def test_every_problem_of_every_file_is_told(self):
+        bad = self.write("bad.json", '{ "format": "modetune-modl/1" }\n')
+        none = self.write("none.json", "[1, 2]\n")
+        broken = self.write("broken.json", '{ "format": }\n')
+        done = self.expect(2, "check", bad, self.model, none, broken)
+        self.assertEqual(done.stdout, f"{self.model}: ok (model)\n")
+        lines = done.stderr.splitlines()
+        self.assertEqual(lines[0], 'bad.json:1:13: error: /format: must be one of "modetune-model/1", "modetune-study/1", '
+                                   '"modetune-result/1"; did you mean "modetune-model/1"?')
+        self.assertEqual(lines[1], 'none.json:1:1: error: must be an object with a member "format"')
+        self.assertTrue(lines[2].startswith("broken.json:1:13: error: "), lines[2])
+
+    def test_a_missing_file_is_4_and_the_worst_counts(self):
+        bad = self.write("bad.json", "{}")
+        done = self.expect(4, "check", bad, "nowhere.json", self.model)
+        self.assertIn("modetune: error: nowhere.json: ", done.stderr)
+        self.assertIn("bad.json:1:1: error: member \"format\" is missing", done.stderr)
+
+    def test_json_says_the_same(self):
+        bad = self.write("bad.json", "{}")
+        got = self.json_of("check", self.model, bad, code=2)
+        self.assertEqual([(g["file"], g["kind"], g["ok"]) for g in got],
+                         [(self.model, "model", True), (bad, None, False)])
+        self.assertIn("bad.json:1:1: error: ", got[1]["problems"])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A result built by hand: what its summary, spreadsheet and page say. */
+#include <math.h>
+#include <string.h>
+
+#include "mt_test.h"
+#include "report/result_tables.h"
+#include "report/summary.h"
+
+static mt_result_parameter parameters[2];
+static mt_result_frequency frequencies[2];
+static mt_recommendation recommendations[1];
+static mt_result_published published[3];
+
+/* Two variables, two frequencies, one recommendation; published values that hold, fail and cannot be compared. */
+static mt_result *make(mt_test *t)
+{
+    static const char *variables[] = {"k<1>", "m"};
+    static const char *reasons[] = {"k<1> rises & m falls."};
+    mt_result *r = NULL;
+    if (!CHECK(t, mt_result_new(&r, NULL) == MT_OK)) {
+        return NULL;
+    }
+    parameters[0] = (mt_result_parameter){"k<1>", "N/m", 50.0, 92.942, 85.884, NULL};
+    parameters[1] = (mt_result_parameter){"m", NULL, 1.0, 0.5, -50.0, "lower"};
+    for (int i = 0; i < 2; i++) {
+        frequencies[i] = mt_result_frequency_default();
+        frequencies[i].configuration = "held";
+        frequencies[i].mode = i + 1;
+        frequencies[i].original_hz = 0.75 + i;
+        frequencies[i].recommended_hz = 1.0 + i;
+    }
+    frequencies[0].target_hz = 1.0;
+    frequencies[0].error_percent = 2e-14;
+    frequencies[1].at_least_hz = 1.9;
+    recommendations[0] = mt_recommendation_default();
+    recommendations[0].rank = 1;
+    recommendations[0].feasible = true;
+    recommendations[0].grade = "feasible";
+    recommendations[0].parameters = parameters;
+    recommendations[0].n_parameters = 2;
+    recommendations[0].frequencies = frequencies;
+    recommendations[0].n_frequencies = 2;
+    recommendations[0].reasons = reasons;
+    recommendations[0].n_reasons = 1;
+    for (int i = 0; i < 3; i++) {
+        published[i] = mt_result_published_default();
+        published[i].label = i == 0 ? "good" : i == 1 ? "bad" : "other";
+        published[i].role = i == 2 ? "not_comparable" : "verifies";
+        published[i].published = 1.0;
+        published[i].computed = 1.0 + i;
+        published[i].holds = i == 0;
+    }
+    r->study_name = "A <study>";
+    r->status = MT_RESULT_SOLVED;
+    r->status_text = "Solved.";
+    r->baseline = recommendations[0];
+    r->baseline.rank = 0;
+    r->recommendations = recommendations;
+    r->n_recommendations = 1;
+    r->variables = variables;
+    r->n_variables = 2;
+    r->published = published;
+    r->n_published = 3;
+    return r;
+}
+
+static void summary__says_status_numbers_and_reasons(mt_test *t)
+{
+    static const char *const parts[] = {
+        "A <study>\nSolved.\n",
+        "  k<1>       N/m   50.0000   92.9420         +85.9  -\n",
+        "  m          -      1.00000   0.500000       -50.0  lower\n",
+        "  held              1  -         0.750000     1.00000          1.00000       0        "
+        "-\n",
+        "at least 1.90000",
+        "  - k<1> rises & m falls.\n",
+    };
+    mt_result *const r = make(t);
+    REQUIRE(t, r != NULL);
+    mt_text out = {.s = NULL};
+    mt_report_summary(r, false, &out);
+    CHECK(t, !out.failed && out.s != NULL);
+    for (int i = 0; out.s != NULL && i < MT_COUNT(parts); i++) {
+        mt_test_row(t, "%s", parts[i]);
+        CHECK(t, strstr(out.s, parts[i]) != NULL);
+    }
+    CHECK(t, out.s != NULL && strstr(out.s, "Published") == NULL);
+    mt_text_free(&out);
+    mt_report_summary(r, true, &out);
+    CHECK(t, out.s != NULL && strstr(out.s, "Published against computed") != NULL);
+    CHECK(t, out.s != NULL && strstr(out.s, "FAILS") != NULL);
+    mt_text_free(&out);
+    mt_result_delete(r);
+}
+
+static void verification__ignores_only_what_is_not_comparable(mt_test *t)
+{
+    mt_result *const r = make(t);
+    int judged = 0;
+    REQUIRE(t, r != NULL);
+    CHECK(t, !mt_report_verified(r, &judged));
+    CHECK_INT(t, judged, 2);
+    published[1].holds = true;
+    CHECK(t, mt_report_verified(r, NULL));
+    r->n_published = 0;
+    CHECK(t, mt_report_verified(r, &judged));
+    CHECK_INT(t, judged, 0);
+    mt_result_delete(r);
+}
+
+static void designs__have_the_baseline_first_and_one_column_per_variable(mt_test *t)
+{
+    mt_result *const r = make(t);
+    mt_text out = {.s = NULL};
+    REQUIRE(t, r != NULL);
+    mt_table designs = mt_report_designs(r);
+    mt_table_csv(&designs, &out);
+    CHECK_STR(t, out.s,
+              "rank,feasible,grade,score,score_unit,change,misfit,violation_percent,k<1>,m,"
+              "held.mode_1_hz,held.mode_2_hz\r\n"
+              "0,true,feasible,,,,,,50,1,1,2\r\n"
+              "1,true,feasible,,,,,,92.941999999999993,0.5,1,2\r\n");
+    mt_text_free(&out);
+    mt_table_free(&designs);
+    mt_result_delete(r);
+}
+
+static void page__is_self_contained_and_escaped(mt_test *t)
+{
+    mt_result *const r = make(t);
+    mt_text out = {.s = NULL};
+    REQUIRE(t, r != NULL);
+    mt_report_html(r, &out);
+    CHECK(t, !out.failed);
+    if (CHECK(t, out.s != NULL)) {
+        CHECK(t, strstr(out.s, "<title>A &lt;study&gt;</title>") != NULL);
+        CHECK(t, strstr(out.s, "k<1>") == NULL);
+        CHECK(t, strstr(out.s, "<script") == NULL);
+        CHECK(t, strstr(out.s, "src=") == NULL && strstr(out.s, "href=") == NULL);
+        CHECK(t, strstr(out.s, "k&lt;1&gt; rises &amp; m falls.") != NULL);
+        CHECK(t, strstr(out.s, "<svg") != NULL && strstr(out.s, "</html>") != NULL);
+        CHECK(t, strstr(out.s, "nan") == NULL && strstr(out.s, "inf\"") == NULL);
+    }
+    mt_text_free(&out);
+    mt_result_delete(r);
+}
+
+static void figures__stand_without_any_finite_number(mt_test *t)
+{
+    mt_result *const r = make(t);
+    mt_text out = {.s = NULL};
+    REQUIRE(t, r != NULL);
+    for (int i = 0; i < 2; i++) {
+        frequencies[i] = mt_result_frequency_default();
+        parameters[i].change_percent = nan("");
+    }
+    mt_report_svg_frequencies(recommendations, &out);
+    mt_report_svg_changes(recommendations, &out);
+    CHECK(t, !out.failed && out.s != NULL && strstr(out.s, "nan") == NULL);
+    mt_text_free(&out);
+    mt_result_delete(r);
+}
+
+MT_TEST_MAIN(MT_TEST(summary__says_status_numbers_and_reasons),
+             MT_TEST(verification__ignores_only_what_is_not_comparable),
+             MT_TEST(designs__have_the_baseline_first_and_one_column_per_variable),
+             MT_TEST(page__is_self_contained_and_escaped),
+             MT_TEST(figures__stand_without_any_finite_number))

@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
+
+#include "mt_test.h"
+#include "report/number.h"
+#include "report/table.h"
+
+static void number__shows_significant_digits(mt_test *t)
+{
+    static const struct {
+        double x;
+        int digits;
+        const char *want;
+    } rows[] = {
+        {       18.0, 6,  "18.0000"},
+        {0.610329821, 6, "0.610330"},
+        {    17678.0, 6,  "17678.0"},
+        {   100000.0, 6,   "100000"},
+        {     2.1e11, 6,  "2.1e+11"},
+        {    -1.5e-9, 3, "-1.5e-09"},
+        {        0.0, 6,        "0"},
+        {       -0.0, 6,        "0"},
+    };
+    char s[MT_NUMBER_TEXT];
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        mt_test_row(t, "%s", rows[i].want);
+        CHECK_STR(t, mt_report_number(rows[i].x, rows[i].digits, s), rows[i].want);
+    }
+    CHECK_STR(t, mt_report_number(nan(""), 6, s), "-");
+    CHECK_STR(t, mt_report_change(3.2, 3, s), "+3.20");
+    CHECK_STR(t, mt_report_change(nan(""), 3, s), "-");
+    CHECK_STR(t, mt_report_exact(0.1, s), "0.10000000000000001");
+    CHECK_STR(t, mt_report_exact(nan(""), s), "");
+}
+
+/* name, value */
+static mt_table two_columns(void)
+{
+    mt_table table = mt_table_default();
+    mt_table_column(&table, "name", "name", MT_ALIGN_LEFT);
+    mt_table_column(&table, "f [Hz]", "frequency_hz", MT_ALIGN_POINT);
+    return table;
+}
+
+static void table__aligns_decimal_points_and_counts_characters_not_bytes(mt_test *t)
+{
+    mt_table table = two_columns();
+    mt_text out = {.s = NULL};
+    mt_table_text(&table, "größe");
+    mt_table_number(&table, 1234.5, 5);
+    mt_table_text(&table, "b");
+    mt_table_number(&table, 1.0, 3);
+    mt_table_text(&table, NULL);
+    mt_table_number(&table, nan(""), 3);
+    mt_table_print(&table, 1, &out);
+    CHECK_STR(t, out.s,
+              " name    f [Hz]\n"
+              " -----  -------\n"
+              " größe  1234.5\n"
+              " b         1.00\n"
+              " -         -\n");
+    CHECK_INT(t, mt_table_rows(&table), 3);
+    mt_text_free(&out);
+    mt_table_free(&table);
+}
+
+static void table__puts_numbers_below_the_end_of_a_wide_heading(mt_test *t)
+{
+    mt_table table = mt_table_default();
+    mt_text out = {.s = NULL};
+    mt_table_column(&table, "frequency [Hz]", "f", MT_ALIGN_POINT);
+    mt_table_column(&table, "n", "n", MT_ALIGN_RIGHT);
+    mt_table_number(&table, 1.5, 2);
+    mt_table_integer(&table, 12);
+    mt_table_print(&table, 0, &out);
+    CHECK_STR(t, out.s,
+              "frequency [Hz]   n\n"
+              "--------------  --\n"
+              "           1.5  12\n");
+    mt_text_free(&out);
+    mt_table_free(&table);
+}
+
+static void csv__quotes_what_rfc_4180_asks_for(mt_test *t)
+{
+    static const struct {
+        const char *field;
+        const char *want;
+    } rows[] = {
+        {     "plain",              "plain"},
+        {       "a,b",            "\"a,b\""},
+        {"say \"no\"", "\"say \"\"no\"\"\""},
+        {      "a\nb",           "\"a\nb\""},
+        {      "a\rb",           "\"a\rb\""},
+        {          "",                   ""},
+        {   "größe",            "größe"},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        mt_text out = {.s = NULL};
+        mt_test_row(t, "%s", rows[i].field);
+        mt_csv_field(rows[i].field, &out);
+        CHECK_STR(t, out.s == NULL ? "" : out.s, rows[i].want);
+        mt_text_free(&out);
+    }
+}
+
+static void csv__has_members_exact_numbers_and_crlf(mt_test *t)
+{
+    mt_table table = two_columns();
+    mt_text out = {.s = NULL};
+    mt_table_text(&table, "a,b");
+    mt_table_number(&table, 0.1, 3);
+    mt_table_text(&table, NULL);
+    mt_table_percent(&table, -3.3e-14, 3);
+    mt_table_csv(&table, &out);
+    CHECK_STR(t, out.s,
+              "name,frequency_hz\r\n"
+              "\"a,b\",0.10000000000000001\r\n"
+              ",-3.2999999999999998e-14\r\n");
+    mt_text_free(&out);
+    mt_table_free(&table);
+}
+
+static void html__escapes_every_special_character(mt_test *t)
+{
+    mt_text out = {.s = NULL};
+    mt_html_escape("<b a=\"1\">&'\x01\xC3\xA9</b>", &out);
+    CHECK_STR(t, out.s, "&lt;b a=&quot;1&quot;&gt;&amp;&#39;\xEF\xBF\xBD\xC3\xA9&lt;/b&gt;");
+    mt_text_free(&out);
+    mt_table table = two_columns();
+    mt_table_text(&table, "<script>");
+    mt_table_number(&table, 2.0, 2);
+    mt_table_html(&table, &out);
+    CHECK_STR(t, out.s,
+              "<table>\n<thead><tr><th>name</th><th class=\"n\">f [Hz]</th></tr></thead>\n"
+              "<tbody>\n<tr><td>&lt;script&gt;</td><td class=\"n\">2.0</td></tr>\n"
+              "</tbody>\n</table>\n");
+    mt_text_free(&out);
+    mt_table_free(&table);
+}
+
+MT_TEST_MAIN(MT_TEST(number__shows_significant_digits),
+             MT_TEST(table__aligns_decimal_points_and_counts_characters_not_bytes),
+             MT_TEST(table__puts_numbers_below_the_end_of_a_wide_heading),
+             MT_TEST(csv__quotes_what_rfc_4180_asks_for),
+             MT_TEST(csv__has_members_exact_numbers_and_crlf),
+             MT_TEST(html__escapes_every_special_character))
