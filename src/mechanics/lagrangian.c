@@ -232,8 +232,9 @@ static void add_constraints(const mt_data *d, const mt_pose *poses, int m, const
                 add_hessian(sys, def->body, &jet, cx_mul(factor, lambda[i]), 0.0, NULL, out->h);
             }
         }
-        if (c->terms == 1 && sys->measures[c->measure[0]].kind == MT_MEASURE_ANGLE) {
-            /* an angle is known up to whole turns: take the turn nearest to the target */
+        if (sys->measures[c->measure[0]].kind == MT_MEASURE_ANGLE) {
+            /* an angle is known up to whole turns: take the turn nearest to the target; of a gear's
+             * two angles the one without a ratio (term 0) may turn on, the other stays within half a turn */
             const double turn = 6.283185307179586477;
             out->c[i] -= turn * round(creal(out->c[i]) / turn);
         }
