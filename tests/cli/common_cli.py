@@ -46,7 +46,8 @@ MASSLESS = """{ "format": "modetune-model/1", "dimension": 2,
 """
 
 
-def study(first_hz=0.132894, second_hz=0.330141, lower=0.1, extra=""):
+def study(first_hz="sqrt((5-sqrt(13))/2)/(2*pi)", second_hz="sqrt((5+sqrt(13))/2)/(2*pi)", lower=0.1, extra=""):
+    """Asks for the frequencies of the original design, unless others are given: (k1, k2) = (3, 1) and (2, 1.5) solve it."""
     return json.dumps({
         "format": "modetune-study/1", "name": "Two springs", "model": "../problems/model.json",
         "variables": [{"parameter": "k1", "lower": lower, "upper": 100}, {"parameter": "k2", "lower": lower, "upper": 100}],

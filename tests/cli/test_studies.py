@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""run, compare and apply: files, exit status, interruption, and what happens when nothing can be written."""
+import csv
+import json
+import math
+import os
+import pty
+import re
+import signal
+import subprocess
+import time
+
+from common_cli import MODEL, PROGRAM, CliTest, main, study
+
+# What the study publishes.
+HOLDS = ', "published": [ { "parameter": "k1", "value": 3, "tolerance_percent": 0.1, "source": "a, \\"b\\"" }, { "status": "solved" } ]'
+FAILS = ', "published": [ { "parameter": "k1", "value": 5, "tolerance_percent": 0.1, "role": "verifies" } ]'
+FILES = ["recommendations.csv", "report.html", "result.json", "timing.json"]
+
+
+class Run(CliTest):
+    def test_both_solutions_are_found_written_and_summarised(self):
+        path = self.write("studies/two.json", study(extra=HOLDS))
+        done = self.expect(0, "run", path)
+        folder = self.folder / "results/two"
+        self.assertEqual(sorted(p.name for p in folder.iterdir()), FILES)
+        result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
+        self.assertEqual((result["format"], result["status"]), ("modetune-result/1", "solved"))
+        found = sorted(tuple(p["recommended"] for p in r["parameters"]) for r in result["recommendations"])
+        self.assertEqual(len(found), 2)
+        for got, want in zip(found, [(2, 1.5), (3, 1)]):
+            self.assertAlmostEqual(got[0], want[0], delta=1e-5)  # goals are met within 1e-4 %, and the slopes are about 1
+            self.assertAlmostEqual(got[1], want[1], delta=1e-5)  # goals are met within 1e-4 %, and the slopes are about 1
+        rows = list(csv.DictReader((folder / "recommendations.csv").read_text(encoding="utf-8").splitlines()))
+        self.assertEqual([r["rank"] for r in rows], ["0", "1", "2"])
+        self.assertEqual((rows[0]["k1"], rows[0]["k2"]), ("3", "1"))
+        page = (folder / "report.html").read_text(encoding="utf-8")
+        self.assertTrue(page.startswith("<!DOCTYPE html>") and page.endswith("</html>\n"))
+        for part in ("Two springs\n", "\nParameters\n", "\nFrequencies\n", "\nWhy\n", "\nAll recommendations\n"):
+            self.assertIn(part, done.stdout)
+        self.assertNotIn("Published", done.stdout)
+        self.assertRegex(done.stderr, r"^studies/two.json: \S+ s, \d+ evaluations; written to results/two/\n$")
+
+    def test_results_hold_no_time_or_path_and_repeat_byte_for_byte(self):
+        path = self.write("studies/two.json", study(extra=HOLDS))
+        self.expect(0, "run", path, "-o", "one", "--quiet")
+        done = self.expect(0, "run", str(self.folder / path), "-o", "deep/er/two", "--quiet", "--threads", "2")
+        self.assertEqual(done.stderr, "")
+        for name in ("result.json", "recommendations.csv", "report.html"):
+            a = (self.folder / "one/two" / name).read_bytes()
+            self.assertEqual(a, (self.folder / "deep/er/two/two" / name).read_bytes())
+            self.assertNotIn(str(self.folder).encode(), a)
+
+    def test_exit_status_follows_the_goals_or_the_published_values(self):
+        impossible = {"first_hz": 0.01, "second_hz": 0.0101}
+        for want, options, given in ((0, [], {}), (1, [], impossible), (0, ["--verify"], {"extra": HOLDS}),
+                                     (1, ["--verify"], {"extra": FAILS}), (0, [], {"extra": FAILS}),
+                                     (2, ["--verify"], {}),
+                                     (0, ["--verify"], dict(impossible, extra=', "published": [{ "status": "compromise" }]'))):
+            with self.subTest(options=options, given=given):
+                path = self.write("studies/s.json", study(**given))
+                self.expect(want, "run", path, *options)
+
+    def test_the_worst_of_several_studies_counts(self):
+        good = self.write("studies/good.json", study())
+        bad = self.write("studies/bad.json", study(first_hz=0.01, second_hz=0.0101))
+        wrong = self.write("studies/wrong.json", "{}")
+        self.expect(1, "run", good, bad)
+        done = self.expect(2, "run", wrong, good)
+        self.assertIn("Solved", done.stdout)
+        self.expect(4, "run", "studies/none.json", wrong, good)
+        self.assertEqual(len(self.json_of("run", good, bad, code=1)), 2)
+        self.assertEqual(self.json_of("run", good)["status"], "solved")
+
+    def test_verify_prints_the_published_table(self):
+        path = self.write("studies/two.json", study(extra=HOLDS))
+        text = self.expect(0, "run", path, "--verify").stdout
+        self.assertIn("\nPublished against computed\n", text)
+        self.assertIn("within 0.1 %", text)
+        self.assertIn('a, "b"', text)
+
+    def test_a_folder_that_cannot_be_written_is_4_and_leaves_nothing(self):
+        path = self.write("studies/two.json", study())
+        self.write("file", "in the way")
+        done = self.expect(4, "run", path, "-o", "file")
+        self.assertEqual(done.stderr, "modetune: error: file/two: Not a directory\n")
+        self.expect(4, "run", path, "-o", "/proc/nowhere")
+        (self.folder / "taken/two/result.json").mkdir(parents=True)
+        self.expect(4, "run", path, "-o", "taken")
+        self.assertEqual([p.name for p in (self.folder / "taken/two").iterdir()], ["result.json"])
+
+    def test_root_keeps_files_inside(self):
+        path = self.write("studies/two.json", study())
+        self.assertIn("studies/two.json:1:", self.expect(2, "run", path, "--root", "studies").stderr)
+        self.expect(0, "run", path, "--root", ".")
+
+
+class Compare(CliTest):
+    def test_table_and_exit_status(self):
+        path = self.write("studies/two.json", study(extra=HOLDS))
+        done = self.expect(0, "compare", path)
+        self.assertRegex(done.stdout, r"k1 +3\.00000 +3\.00000 ")
+        self.assertFalse((self.folder / "results").exists())
+        got = self.json_of("compare", path)
+        self.assertEqual([p["holds"] for p in got["published"]], [True, True])
+        self.assertEqual(got["published"][1]["computed"], "solved")
+        rows = self.expect(0, "compare", path, "--format", "csv").stdout
+        self.assertIn('"a, ""b"""', rows)
+        self.write("studies/two.json", study(extra=FAILS))
+        self.assertIn("FAILS", self.expect(1, "compare", path).stdout)
+        self.write("studies/two.json", study())
+        self.assertIn("no published values to judge", self.expect(2, "compare", path).stderr)
+
+
+class Apply(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.study = self.write("studies/two.json", study(extra=HOLDS))
+        self.expect(0, "run", self.study)
+
+    def applied(self, *args, code=0):
+        return self.expect(code, "apply", "results/two/result.json", *args)
+
+    def test_only_the_values_change(self):
+        result = json.loads((self.folder / "results/two/result.json").read_text(encoding="utf-8"))
+        for rank in (1, 2):
+            text = self.applied("--rank", str(rank)).stdout
+            k1, k2 = (p["recommended"] for p in result["recommendations"][rank - 1]["parameters"])
+            self.assertEqual(json.loads(text)["parameters"]["k1"]["value"], k1)
+            self.assertEqual(json.loads(text)["parameters"]["k2"]["value"], k2)
+            back = re.sub(r'("k1": \{ "value": )[^,]*', r"\g<1>3", text)
+            self.assertEqual(re.sub(r'("k2": \{"value":)[^,]*', r"\g<1>1e0", back), MODEL)
+
+    def test_the_applied_model_has_the_frequencies(self):
+        self.write("problems/new.json", self.applied("--rank", "2").stdout)
+        hz = [m["frequency_hz"] for m in self.json_of("modes", "problems/new.json", "-c", "held")["modes"]]
+        for got, squared in zip(hz, ((5 - math.sqrt(13)) / 2, (5 + math.sqrt(13)) / 2)):
+            self.assertAlmostEqual(got * 2 * math.pi / math.sqrt(squared), 1, delta=1e-6)  # the goals' tolerance
+
+    def test_a_rank_that_is_not_there(self):
+        self.assertEqual(self.applied("--rank", "3", code=2).stderr,
+                         "modetune: error: results/two/result.json has 2 recommendations: there is no rank 3\n")
+
+    def test_a_changed_model_is_not_taken_unless_named(self):
+        self.write("problems/model.json", MODEL + "\n")
+        self.assertIn("name it with --model", self.applied(code=2).stderr)
+        done = self.applied("--model", "problems/model.json")
+        self.assertIn("modetune: warning: problems/model.json is not what was solved", done.stderr)
+        self.assertTrue(done.stdout.endswith("}\n\n"))
+
+    def test_the_model_is_found_without_timing_and_from_elsewhere(self):
+        (self.folder / "results/two/timing.json").unlink()
+        self.applied()
+        self.expect(0, "run", self.study, "-o", str(self.folder / "far/away/out"))
+        os.chdir("/")
+        done = subprocess.run([PROGRAM, "apply", self.folder / "far/away/out/two/result.json"], cwd="/",
+                              capture_output=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_check_knows_results_and_studies(self):
+        self.assertEqual(self.expect(0, "check", "results/two/result.json", self.study).stdout,
+                         "results/two/result.json: ok (result)\nstudies/two.json: ok (study)\n")
+
+
+class Output(CliTest):
+    def test_a_closed_pipe_is_quiet_and_4(self):
+        read, write = os.pipe()
+        os.close(read)
+        done = subprocess.run([PROGRAM, "modes", self.model], cwd=self.folder, stdout=write, stderr=subprocess.PIPE,
+                              check=False)
+        os.close(write)
+        self.assertEqual((done.returncode, done.stderr), (4, b""))
+
+    def test_a_full_device_is_told_and_4(self):
+        with open("/dev/full", "wb") as full:
+            done = subprocess.run([PROGRAM, "modes", self.model], cwd=self.folder, stdout=full,
+                                  stderr=subprocess.PIPE, check=False)
+        self.assertEqual((done.returncode, done.stderr),
+                         (4, b"modetune: error: standard output: No space left on device\n"))
+
+    def on_terminal(self, **environment):
+        """Standard error of a failing command when that is a terminal."""
+        master, slave = pty.openpty()
+        env = {k: v for k, v in os.environ.items() if k not in ("NO_COLOR", "TERM")}
+        subprocess.run([PROGRAM, "check", self.write("bad.json", "{}"), "none.json"], cwd=self.folder,
+                       stdout=slave, stderr=slave, env=dict(env, **environment), check=False)
+        os.close(slave)
+        text = os.read(master, 65536)
+        os.close(master)
+        return text
+
+    def test_colour_on_a_terminal_only_and_never_under_no_color(self):
+        self.assertEqual(self.on_terminal(TERM="xterm").count(b"\033[1;31merror"), 2)
+        self.assertNotIn(b"\033", self.on_terminal(TERM="xterm", NO_COLOR="1"))
+        self.assertNotIn(b"\033", self.on_terminal(TERM="dumb"))
+        self.assertNotIn("\033", self.expect(2, "check", "bad.json", env={"TERM": "xterm"}).stderr)
+
+
+class Interrupt(CliTest):
+    def test_the_best_so_far_is_written_and_130(self):
+        path = self.write("studies/long.json", study(extra=LONG))
+        with subprocess.Popen([PROGRAM, "run", path], cwd=self.folder, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, encoding="utf-8") as running:
+            time.sleep(1.0)
+            self.assertIsNone(running.poll(), "the study is too short for this test")
+            running.send_signal(signal.SIGINT)
+            stdout, stderr = running.communicate(timeout=120)
+        self.assertEqual(running.returncode, 130, stderr)
+        result = json.loads((self.folder / "results/long/result.json").read_text(encoding="utf-8"))
+        self.assertEqual(result["status"], "interrupted")
+        self.assertGreaterEqual(len(result["recommendations"]), 1)
+        self.assertIn("Interrupted", stdout)
+
+
+# A search far longer than any test waits: many starts.
+LONG = ', "search": { "starts": 100000, "max_evaluations": 1000000000 }'
+
+if __name__ == "__main__":
+    main()
