@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Mass properties from the kinetic energy of the six rigid-body motions of everything together: with R = [translations, rotations about the origin] over all states,
+ * Mass properties from the kinetic energy of the six rigid-body motions of everything together: with R = [translations, rotations about the origin],
  *     R^T M R = [ m I     -m [c]x          ]        [c]x v = c x v,
  *               [ m [c]x   J - m [c]x [c]x ]
  * which holds for points, bodies, and consistent bars and beams alike.
@@ -9,26 +9,39 @@
 
 #include <math.h>
 
-#include "mechanics/displaced.h"
-
 enum { MOTIONS = 6 };
 
-/* Motion k of the whole: translation along axis k, or rotation about axis k - 3 through the origin. */
-static void rigid_motion(const mt_linear *lin, int k, double *phi)
+/* What a row of a mass term says of motion k of the whole: translation along axis k, or rotation about axis k - 3 through the origin. */
+static double row_of_motion(const mt_linear *lin, const mt_term *t, const double *row, int k)
 {
-    const mt_system *const sys = lin->sys;
-    for (int b = 0; b < sys->n_bodies; b++) {
-        const mt_pose *const pose = &lin->position.pose[b];
+    double sum = 0.0;
+    for (int i = 0; i < MT_LOCAL; i++) {
+        const mt_pose *const pose = mt_pose_of(lin->position.pose, t->body[i / 6]);
+        const int axis = i % 6;
+        double v = axis == k ? 1.0 : 0.0;
+        if (axis < 3 && k >= 3 && axis != k - 3) { /* e_(k-3) x r */
+            const int other = 3 - axis - (k - 3);
+            v = ((k - 2) % 3 == other ? 1.0 : -1.0) * creal(pose->x[other]);
+        }
+        sum += row[i] * v;
+    }
+    return sum;
+}
+
+/* g = R^T M R, summed row by row: so the ends of bars that the ground holds count as well. */
+static void rigid_energy(const mt_linear *lin, double g[MOTIONS][MOTIONS])
+{
+    const mt_term_list *const list = &lin->list[MT_TERM_MASS];
+    for (int r = 0; r < list->n_rows; r++) {
+        const mt_term *const t = &list->terms[list->row_term[r]];
+        const int other = t->pair ? (2 * t->first) + 1 - r : r;
+        const double c = lin->value[t->coefficient] * (t->pair ? 0.5 : 1.0);
+        const double *const rows = lin->rows[MT_TERM_MASS];
         for (int i = 0; i < MOTIONS; i++) {
-            const int dof = sys->bodies[b].dof[i];
-            double v = i == k ? 1.0 : 0.0;
-            if (i < 3 && k >= 3 && i != k - 3) { /* e_axis x r */
-                const int other = 3 - i - (k - 3);
-                const bool cyclic = (k - 3 + 1) % 3 == other;
-                v = (cyclic ? 1.0 : -1.0) * creal(pose->x[other]);
-            }
-            if (dof >= 0) {
-                phi[dof] = v;
+            const double a = row_of_motion(lin, t, rows + ((ptrdiff_t)r * MT_LOCAL), i);
+            for (int j = 0; j < MOTIONS; j++) {
+                g[i][j] +=
+                    c * a * row_of_motion(lin, t, rows + ((ptrdiff_t)other * MT_LOCAL), j);
             }
         }
     }
@@ -63,36 +76,19 @@ static void from_energy(const double g[MOTIONS][MOTIONS], int dimension, mt_info
     }
 }
 
-mt_status mt_info_fill(mt_linear *lin, mt_info *out, mt_err *err)
+mt_status mt_info_fill(const mt_linear *lin, mt_info *out, mt_err *err)
 {
-    const mt_system *const sys = lin->sys;
-    const size_t nq = (size_t)sys->nq;
+    if (!lin->built) {
+        return mt_fail(err, MT_E_INTERNAL, "mass properties asked for before an update");
+    }
     double g[MOTIONS][MOTIONS] = {{0.0}};
-    *out = (mt_info){.states = sys->nq,
+    *out = (mt_info){.states = lin->sys->nq,
                      .equations = lin->m,
                      .freedoms = lin->n,
                      .redundant = mt_linear_redundant(lin),
                      .residual = lin->position.residual,
                      .gap_m = lin->position.gap_m};
-    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
-    double *const m = mt_arena_f64(&lin->scratch, nq, nq);
-    double *const r = mt_arena_f64(&lin->scratch, nq, MOTIONS);
-    double *const mr = mt_arena_f64(&lin->scratch, nq, MOTIONS);
-    if (m == NULL || r == NULL || mr == NULL) {
-        return mt_fail_memory(err);
-    }
-    MT_TRY(mt_mass_matrix(lin, lin->position.pose, m, err));
-    for (size_t k = 0; k < MOTIONS; k++) {
-        rigid_motion(lin, (int)k, r + (k * nq));
-    }
-    mt_gemm(false, false, (int)nq, MOTIONS, (int)nq, 1.0, m, (int)nq, r, (int)nq, 0.0, mr,
-            (int)nq);
-    for (size_t i = 0; i < MOTIONS; i++) {
-        for (size_t j = 0; j < MOTIONS; j++) {
-            g[i][j] = mt_dot((int)nq, r + (i * nq), mr + (j * nq));
-        }
-    }
-    from_energy((const double(*)[MOTIONS])g, sys->dimension, out);
-    mt_arena_rewind(&lin->scratch, mark);
+    rigid_energy(lin, g);
+    from_energy((const double(*)[MOTIONS])g, lin->sys->dimension, out);
     return MT_OK;
 }

@@ -18,7 +18,7 @@ typedef struct mt_info {
     double gap_m;    /* largest violation of a joint */
 } mt_info;
 
-/* After mt_linear_update. Masses of consistent bars and beams included exactly. Fails: MT_E_MEMORY. */
-mt_status mt_info_fill(mt_linear *lin, mt_info *out, mt_err *err);
+/* After mt_linear_update. Exact for consistent bars and beams as well. Fails: MT_E_INTERNAL before an update. */
+mt_status mt_info_fill(const mt_linear *lin, mt_info *out, mt_err *err);
 
 #endif
