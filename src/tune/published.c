@@ -175,15 +175,6 @@ static bool holds(const mt_published *pub, double computed)
     return ok;
 }
 
-static const char *const ROLES[] = {[MT_ROLE_VERIFIES] = "verifies",
-                                    [MT_ROLE_CALIBRATES] = "calibrates",
-                                    [MT_ROLE_NOT_COMPARABLE] = "not_comparable"};
-static const char *const KINDS[] = {[MT_PUBLISHED_PARAMETER] = "parameter",
-                                    [MT_PUBLISHED_QUANTITY] = "quantity",
-                                    [MT_PUBLISHED_FREQUENCY] = "frequency",
-                                    [MT_PUBLISHED_MAC] = "mac",
-                                    [MT_PUBLISHED_STATUS] = "status"};
-
 static mt_status judge_one(judge *j, int i, mt_result_published *out, mt_err *err)
 {
     const mt_published *const pub = &j->p->study->published[i];
@@ -191,8 +182,8 @@ static mt_status judge_one(judge *j, int i, mt_result_published *out, mt_err *er
     *out = mt_result_published_default();
     out->label = label_of(j->p, pub, mem);
     out->pointer = mt_arena_printf(mem, "/published/%d", i);
-    out->role = ROLES[pub->role];
-    out->kind = KINDS[pub->kind];
+    out->role = mt_role_name(pub->role);
+    out->kind = mt_published_kind_name(pub->kind);
     out->source = pub->source;
     out->demand = demand_of(pub, mem);
     if (out->label == NULL || out->pointer == NULL || out->demand == NULL) {
@@ -227,7 +218,7 @@ mt_status mt_describe_published(mt_problem *p, const double *x_original,
         .x = {x_original, x_recommended != NULL ? x_recommended : x_original}
     };
     result->published = mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->published);
-    j.analysis = mt_arena_alloc(&result->mem, n_analyses, sizeof *j.analysis);
+    j.analysis = mt_arena_alloc(&result->mem, n_analyses, sizeof(mt_analysis *));
     for (int d = 0; d < 2; d++) {
         j.value[d] = mt_arena_f64(&result->mem, (size_t)p->program.count, 1);
         if (result->published == NULL || j.analysis == NULL || j.value[d] == NULL) {
