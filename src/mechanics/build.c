@@ -199,6 +199,9 @@ void mt_build_constraint(mt_builder *b, int measure, mt_node target, bool drawn)
 void mt_build_inertia(mt_builder *b, const mt_inertia_def *def)
 {
     mt_system *const sys = b->sys;
+    if (def->coefficient == MT_NO_NODE) {
+        return; /* out of memory */
+    }
     const mt_program_node *const node = &sys->program.nodes[def->coefficient];
     if (node->op == MT_OP_CONST && node->value == 0.0) {
         return; /* massless: nothing to add */

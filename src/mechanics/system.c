@@ -8,6 +8,20 @@
 #include "mechanics/build.h"
 #include "mechanics/data.h"
 
+/* Give a list its first entry: where memory ends later, index 0 stands for what could not be made and may be read until the shortage is reported. */
+#define RESERVE(sys, name)                                                  \
+    (((sys)->name = mt_arena_grow(&(sys)->mem, NULL, 0, &(sys)->cap_##name, \
+                                  sizeof *(sys)->name)) != NULL)
+
+static mt_status reserve(mt_system *sys, mt_err *err)
+{
+    const bool ok = RESERVE(sys, vecs) && RESERVE(sys, measures) && RESERVE(sys, bodies) &&
+                    RESERVE(sys, constraints) && RESERVE(sys, joints) &&
+                    RESERVE(sys, springs) && RESERVE(sys, inertias) && RESERVE(sys, loads) &&
+                    RESERVE(sys, channels) && RESERVE(sys, items);
+    return ok ? MT_OK : mt_fail_memory(err);
+}
+
 static mt_status prepare(mt_builder *b, mt_system *sys, mt_err *err)
 {
     const mt_model *const model = sys->model;
@@ -19,6 +33,7 @@ static mt_status prepare(mt_builder *b, mt_system *sys, mt_err *err)
     if (b->body_of == NULL || b->link_first == NULL) {
         return mt_fail_memory(err);
     }
+    MT_TRY(reserve(sys, err));
     b->zero = mt_program_const(&sys->program, 0.0);
     b->one = mt_program_const(&sys->program, 1.0);
     for (int i = 0; i < 3; i++) {
@@ -162,6 +177,16 @@ static mt_status settle(mt_system *sys, const double *at, mt_err *err)
     return MT_OK;
 }
 
+static mt_status build_parts(mt_builder *b, const double *at)
+{
+    MT_TRY(mt_build_bodies(b));
+    MT_TRY(mt_build_links(b));
+    MT_TRY(mt_build_joints(b));
+    MT_TRY(mt_build_springs(b));
+    MT_TRY(mt_build_drive(b));
+    return mt_build_sensors(b, at);
+}
+
 static mt_status build(mt_system *sys, const double *at, mt_err *err)
 {
     mt_builder b = {0};
@@ -181,12 +206,11 @@ static mt_status build(mt_system *sys, const double *at, mt_err *err)
     MT_TRY(mt_emit_parameters(sys->model, sys->configuration, is_input, &sys->program,
                               sys->parameters, &sys->mem, err));
     MT_TRY(prepare(&b, sys, err));
-    MT_TRY(mt_build_bodies(&b));
-    MT_TRY(mt_build_links(&b));
-    MT_TRY(mt_build_joints(&b));
-    MT_TRY(mt_build_springs(&b));
-    MT_TRY(mt_build_drive(&b));
-    MT_TRY(mt_build_sensors(&b, at));
+    const mt_status rc = build_parts(&b, at);
+    if (sys->program.out_of_memory) {
+        return mt_fail_memory(err); /* whatever else the shortage led to */
+    }
+    MT_TRY(rc);
     MT_TRY(mt_program_finish(&sys->program, err));
     sys->geometry_fixed = geometry_is_fixed(sys);
     return settle(sys, at, err);
