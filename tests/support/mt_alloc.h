@@ -3,6 +3,7 @@
  * Counts and fails allocations: in every test program malloc, calloc, realloc, aligned_alloc,
  * posix_memalign and free are replaced, also as the shared libraries see them. Where somebody else already replaces them (a
  * sanitizer, valgrind) the counters mean nothing and nothing fails, which mt_alloc_works() tells: ask it first.
+ * What OpenBLAS takes for itself is neither counted nor failed: it could not bear it.
  *
  *     for (long nth = 0; mt_alloc_works(); nth++) {
  *         mt_alloc_fail_after(nth);
