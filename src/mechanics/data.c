@@ -24,7 +24,10 @@ mt_status mt_data_init(mt_data *d, const mt_system *sys, mt_arena *mem, mt_err *
     d->vec = mt_arena_alloc(mem, (size_t)sys->n_vecs, sizeof *d->vec);
     d->rest = mt_arena_alloc(mem, (size_t)sys->n_springs, sizeof *d->rest);
     d->target = mt_arena_alloc(mem, (size_t)sys->n_constraints, sizeof *d->target);
-    return d->vec == NULL || d->rest == NULL || d->target == NULL ? mt_fail_memory(err) : MT_OK;
+    d->turn = mt_arena_f64(mem, (size_t)sys->n_measures, 1);
+    return d->vec == NULL || d->rest == NULL || d->target == NULL || d->turn == NULL
+               ? mt_fail_memory(err)
+               : MT_OK;
 }
 
 mt_cx mt_data_scalar(const mt_data *d, mt_node node, double otherwise)
@@ -98,8 +101,29 @@ mt_measure_data mt_data_measure(const mt_data *d, const mt_measure_def *def)
         .dir = { vec_or_null(d, def->dir[0]), vec_or_null(d,   def->dir[1]),  vec_or_null(d, def->dir[2])},
         .plane = vec_or_null(d, def->plane),
         .weight = mt_data_scalar(d, def->weight, 0.0),
+        .near = d->turn[def - d->sys->measures],
     };
     return m;
+}
+
+/* The same as the reference position sees it: no angle has turned yet. */
+static mt_measure_data unturned(const mt_data *d, const mt_measure_def *def)
+{
+    mt_measure_data m = mt_data_measure(d, def);
+    m.near = 0.0;
+    return m;
+}
+
+void mt_data_turns(mt_data *d, const mt_pose *poses)
+{
+    for (int i = 0; i < d->sys->n_measures; i++) {
+        const mt_measure_def *const def = &d->sys->measures[i];
+        if (def->kind == MT_MEASURE_ANGLE) {
+            const mt_measure_data m = mt_data_measure(d, def);
+            d->turn[i] = creal(mt_measure_value(&m, mt_pose_of(poses, def->body[0]),
+                                                mt_pose_of(poses, def->body[1])));
+        }
+    }
 }
 
 void mt_data_drawn(const mt_data *d, mt_pose *poses)
@@ -115,7 +139,7 @@ void mt_data_drawn(const mt_data *d, mt_pose *poses)
 static mt_cx drawn_value(const mt_data *d, const mt_measure_def *def)
 {
     mt_pose pose[2] = {GROUND, GROUND};
-    const mt_measure_data m = mt_data_measure(d, def);
+    const mt_measure_data m = unturned(d, def);
     for (int side = 0; side < 2; side++) {
         for (int k = 0; k < 3 && def->body[side] != MT_GROUND; k++) {
             pose[side].x[k] = d->vec[d->sys->bodies[def->body[side]].centre][k];
@@ -143,7 +167,7 @@ void mt_data_rest(mt_data *d, const mt_pose *reference)
         const mt_spring_def *const s = &sys->springs[i];
         for (int side = 0; side < 2; side++) {
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
-            const mt_measure_data m = mt_data_measure(d, def);
+            const mt_measure_data m = unturned(d, def);
             d->rest[i][side] = s->free != MT_NO_NODE
                                    ? mt_data_scalar(d, s->free, 0.0)
                                    : mt_measure_value(&m, mt_pose_of(reference, def->body[0]),
@@ -153,7 +177,7 @@ void mt_data_rest(mt_data *d, const mt_pose *reference)
     if (sys->drive_constraint >= 0) {
         const mt_measure_def *const def =
             &sys->measures[sys->constraints[sys->drive_constraint].measure[0]];
-        const mt_measure_data m = mt_data_measure(d, def);
+        const mt_measure_data m = unturned(d, def);
         const mt_cx at = mt_measure_value(&m, mt_pose_of(reference, def->body[0]),
                                           mt_pose_of(reference, def->body[1]));
         d->target[sys->drive_constraint] = at + mt_data_scalar(d, sys->drive, 0.0);

@@ -15,6 +15,8 @@ typedef struct mt_data {
     mt_cx (*vec)[3];     /* [n_vecs] */
     mt_cx (*rest)[2];    /* [n_springs] rest values of the two measures of each spring */
     mt_cx *target;       /* [n_constraints] */
+    double *
+        turn; /* [n_measures] where each angle stands, whole turns counted; 0 in the reference position. An angle is read as the value nearest to this */
 } mt_data;
 
 mt_status mt_data_init(mt_data *d, const mt_system *sys, mt_arena *mem, mt_err *err);
@@ -25,6 +27,8 @@ void mt_data_vecs(mt_data *d);
 void mt_data_targets(mt_data *d);
 /* Rest values and the target of the drive, at the reference position. */
 void mt_data_rest(mt_data *d, const mt_pose *reference);
+/* Note where the angles stand at `poses`, which are less than half a turn from the last noted ones. */
+void mt_data_turns(mt_data *d, const mt_pose *poses);
 /* A node as a complex number; MT_NO_NODE gives `otherwise`. */
 mt_cx mt_data_scalar(const mt_data *d, mt_node node, double otherwise);
 /* The measure with its vectors filled in. */

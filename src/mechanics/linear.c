@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mechanics/drive.h"
 #include "mechanics/tangent.h"
 
 void mt_linear_delete(mt_linear *lin)
@@ -34,6 +35,12 @@ static mt_status init(mt_linear *lin, const mt_system *sys, mt_err *err)
     lin->data.value = lin->value;
     lin->dual.value = lin->value;
     lin->dual.grad = lin->grad;
+    lin->dual.turn = lin->data.turn; /* both see the angles where they stand */
+    lin->last.pose = mt_arena_alloc(&lin->base, (size_t)sys->n_bodies, sizeof *lin->last.pose);
+    lin->last.turn = mt_arena_f64(&lin->base, (size_t)sys->n_measures, 1);
+    if (lin->last.pose == NULL || lin->last.turn == NULL) {
+        return mt_fail_memory(err);
+    }
     return mt_terms_new(sys, &lin->base, lin->list, err);
 }
 
@@ -244,7 +251,11 @@ static mt_status rebuild(mt_linear *lin, mt_err *err)
     lin->built = false;
     mt_arena_rewind(&lin->geometry, start);
     mt_data_vecs(&lin->data);
-    MT_TRY(mt_position_solve(lin->sys, &lin->data, &lin->geometry, &lin->position, err));
+    MT_TRY(mt_position_solve(lin->sys, &lin->data, lin->follow ? &lin->last : NULL,
+                             &lin->geometry, &lin->position, err));
+    if (lin->sys->driven) {
+        mt_drive_keep(&lin->position, &lin->data, &lin->last);
+    }
     MT_TRY(constrain(lin, err));
     MT_TRY(evaluate_rows(lin, err));
     MT_TRY(fixed_parts(lin, err));

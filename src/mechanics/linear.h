@@ -27,6 +27,9 @@ typedef struct mt_linear {
     mt_data data; /* real */
     mt_data dual; /* with derivative */
     mt_state position;
+    bool
+        follow; /* a driven joint begins where the last update left it, instead of at the reference position: for sweeps */
+    mt_drive_start last;
     mt_elimination e; /* at the final position, constraints of the linearised system */
     int m;            /* constraints in force */
     double *a;        /* m x nq */

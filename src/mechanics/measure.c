@@ -14,6 +14,7 @@
 #include <stddef.h>
 #include <string.h>
 
+static const double TURN = 6.283185307179586477; /* 2 pi */
 static const mt_cx ZERO3[3] = {0.0, 0.0, 0.0};
 
 static void jet_clear(mt_jet *j, bool second)
@@ -326,6 +327,7 @@ void mt_measure_eval(const mt_measure_data *m, const mt_pose *a, const mt_pose *
         break;
     case MT_MEASURE_ANGLE:
         angle_jet(e[0], e[1], f[0], second, out);
+        out->value += TURN * rint((m->near - creal(out->value)) / TURN);
         break;
     case MT_MEASURE_ROTATION:
         rotation_jet(e, f, m->component, second, out);

@@ -17,7 +17,7 @@
  *   PLANE     u_a . (Q_b - P_a)
  *   DOT       u_a . v_b
  *   DISTANCE  |Q_b - P_a|
- *   ANGLE     atan2(c_a . b_b, b_a . b_b): rotation of b against a about the axis b x c
+ *   ANGLE     atan2(c_a . b_b, b_a . b_b): rotation of b against a about the axis b x c, plus the whole turns that bring it next to `near`
  *   ROTATION  component k of the rotation vector that takes the triad of a to that of b, in the triad of a
  *   BEND      PLANE + weight * ROTATION (the two generalised strains of a bent beam element)
  */
@@ -47,6 +47,7 @@ typedef struct mt_measure_data {
         [3]; /* PLANE: u; DOT: u (a), v (b); ANGLE: b, c; ROTATION: triad e1 e2 e3; unit vectors */
     const mt_cx *plane; /* BEND: u */
     mt_cx weight;       /* BEND */
+    double near;        /* ANGLE: of all whole turns the value nearest to this is meant [rad] */
 } mt_measure_data;
 
 /* Value, gradient and (when asked for) Hessian of a scalar function of the twelve local freedoms. */

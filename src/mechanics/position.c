@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "mechanics/drive.h"
 #include "mechanics/newton.h"
 
 static void body_motion(const mt_system *sys, int body, const double *dq, double dx[3],
@@ -64,67 +65,33 @@ static mt_status close_loops(mt_state *p, mt_data *data, mt_arena *mem, mt_err *
     return mt_newton_solve(&problem, p->reference, mem, p, &p->closure, err);
 }
 
-/* Largest step of the driven joint's coordinate between two closures [rad or model lengths]. */
-static const double DRIVE_STEP = 0.1;
-
-/* Bring the driven joint to its place in steps, so that the mechanism stays on its branch; the last closure is anchored to the drawing, which makes the result a function of the design alone. */
-static mt_status drive_joint(mt_state *p, mt_data *data, mt_arena *mem, mt_err *err)
-{
-    const mt_system *const sys = p->sys;
-    const int row = sys->drive_constraint;
-    const double full = creal(mt_data_scalar(data, sys->drive, 0.0));
-    const mt_cx target = data->target[row];
-    const double unit =
-        sys->joints[sys->drive_joint].angle ? DRIVE_STEP : DRIVE_STEP * sys->length_m;
-    const int steps = 1 + (int)fmin(ceil(fabs(full) / unit), 1000.0);
-    mt_pose *const previous = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *previous);
-    if (previous == NULL) {
-        return mt_fail_memory(err);
-    }
-    memcpy(p->pose, p->reference, (size_t)sys->n_bodies * sizeof *p->pose);
-    for (int i = 1; i <= steps; i++) {
-        const bool last = i == steps;
-        data->target[row] = target - (full * (double)(steps - i) / (double)steps);
-        memcpy(previous, p->pose, (size_t)sys->n_bodies * sizeof *previous);
-        const mt_newton_problem problem = {.data = data,
-                                           .energy = MT_ENERGY_ANCHOR,
-                                           .drawn = last ? p->drawn : previous,
-                                           .m = sys->n_constraints,
-                                           .trim = false};
-        const mt_status rc = mt_newton_solve(&problem, p->pose, mem, p, &p->driven, err);
-        if (rc != MT_OK) {
-            return mt_err_in(err, rc, "driving joint \"%s\" to %g (at %g)",
-                             sys->joints[sys->drive_joint].name, full,
-                             full * (double)i / (double)steps);
-        }
-    }
-    data->target[row] = target;
-    return MT_OK;
-}
-
-mt_status mt_position_solve(const mt_system *sys, mt_data *data, mt_arena *mem, mt_state *out,
-                            mt_err *err)
+mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_drive_start *start,
+                            mt_arena *mem, mt_state *out, mt_err *err)
 {
     const size_t n = (size_t)sys->n_bodies;
     const size_t nq = (size_t)sys->nq;
     *out = (mt_state){.sys = sys};
     out->drawn = mt_arena_alloc(mem, n, sizeof *out->drawn);
     out->reference = mt_arena_alloc(mem, n, sizeof *out->reference);
+    out->driven_pose = mt_arena_alloc(mem, n, sizeof *out->driven_pose);
     out->pose = mt_arena_alloc(mem, n, sizeof *out->pose);
     out->d_reference = mt_arena_f64(mem, nq, 1);
     out->d_pose = mt_arena_f64(mem, nq, 1);
     out->d_lambda = mt_arena_f64(mem, (size_t)sys->n_constraints, 1);
-    if (out->drawn == NULL || out->reference == NULL || out->pose == NULL ||
-        out->d_reference == NULL || out->d_pose == NULL || out->d_lambda == NULL) {
+    if (out->drawn == NULL || out->reference == NULL || out->driven_pose == NULL ||
+        out->pose == NULL || out->d_reference == NULL || out->d_pose == NULL ||
+        out->d_lambda == NULL) {
         return mt_fail_memory(err);
     }
+    memset(data->turn, 0, (size_t)sys->n_measures * sizeof *data->turn);
     mt_data_drawn(data, out->drawn);
     mt_data_targets(data);
     MT_TRY(close_loops(out, data, mem, err));
     mt_data_rest(data, out->reference);
     memcpy(out->pose, out->reference, n * sizeof *out->pose);
     if (sys->driven) {
-        MT_TRY(drive_joint(out, data, mem, err));
+        MT_TRY(mt_drive_solve(out, data, start, mem, err));
+        memcpy(out->driven_pose, out->pose, n * sizeof *out->pose);
     }
     if (sys->loaded || sys->driven) {
         const mt_newton_problem problem = {.data = data,

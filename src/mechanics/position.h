@@ -26,14 +26,24 @@ typedef struct mt_stage {
     int null_freedoms; /* freedoms without stiffness at the solution */
 } mt_stage;
 
+/* Where to begin driving from, instead of the reference position: a sweep's last point. */
+typedef struct mt_drive_start {
+    bool valid;
+    double position; /* of the driven joint */
+    mt_pose *pose;   /* [bodies] */
+    double *turn;    /* [measures] as mt_data.turn */
+} mt_drive_start;
+
 typedef struct mt_state {
     const mt_system *sys;
     mt_pose *drawn;
     mt_pose *reference;
-    mt_pose *pose; /* where the system is linearised */
+    mt_pose *driven_pose; /* after the driven stage */
+    mt_pose *pose;        /* where the system is linearised */
     mt_stage closure;
     mt_stage driven;
     mt_stage equilibrium;
+    double reached;    /* how far the driven joint came, rad or m from the reference position */
     double trim_force; /* of the trimmed spring, N or N m */
     int iterations;
     double
@@ -46,10 +56,10 @@ typedef struct mt_state {
     double d_trim_force;
 } mt_state;
 
-/* data holds values (input -1) with vectors loaded; targets and rest values are filled here. Results and work in mem.
+/* data holds values (input -1) with vectors loaded; targets, rest values and turns are filled here. Results and work in mem. start: NULL, or where a driven joint begins.
  * Fails: MT_E_ASSEMBLY (a gap, named with its joint; contradictory joints), MT_E_EQUILIBRIUM (does not converge, or free to move under load). */
-mt_status mt_position_solve(const mt_system *sys, mt_data *data, mt_arena *mem, mt_state *out,
-                            mt_err *err);
+mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_drive_start *start,
+                            mt_arena *mem, mt_state *out, mt_err *err);
 /* Derivative with respect to data->input (vectors, targets loaded with derivatives here). Fills d_*, and data's rest values with their derivative. */
 mt_status mt_position_tangent(mt_state *p, mt_data *data, mt_arena *scratch, mt_err *err);
 /* Move all bodies by dq (real). */

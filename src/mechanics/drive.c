@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Continuation in the position s of the driven joint. At a closed position, with A the Jacobian of all constraints and e_d the drive's row,
+ *     dq/ds = A^+ e_d                                        the smallest motion that drives the joint;
+ * a step h goes to q (+) h dq/ds and is closed again by Newton from there. The correction is of order h^2 on a smooth branch; where it is not small beside the step, or Newton does
+ * not close the mechanism, the step is halved, so that the way never leaves its branch. Towards a limit position (a toggle) s -> s*, |dq/ds| grows as (s* - s)^-1/2: no step
+ * closes beyond it, and halving closes in on it geometrically.
+ */
+#include "mechanics/drive.h"
+
+#include "mechanics/newton_priv.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Longest step of the driven joint's coordinate [rad or model lengths], and of any body. */
+static const double DRIVE_STEP = 0.1;
+static const double BODY_STEP = 0.3;
+/* A step is taken where the way back to the constraints is at most this part of it: on one branch it is about h |q''| / (2 |q'|) of it. */
+static const double CORRECTION = 0.3;
+/* Steps shorter than this part of DRIVE_STEP are not tried: the limit is then known to 1e-8 rad. */
+static const double SHORTEST = 1e-7;
+/* Rows of A dq/ds = e_d that fail by more than this say that the other joints hold the driven one; at the shortest step before a limit the ratio is still below 1/this. */
+static const double HELD = 1e-6;
+/* Bodies that move this many times further than the driven joint (model lengths, rad): a limit position is near. */
+static const double LIMIT_RATIO = 100.0;
+
+typedef struct walk {
+    mt_state *p;
+    mt_data *data;
+    mt_arena *mem;
+    int row;        /* of the drive */
+    double unit;    /* of the joint's coordinate: 1 rad, or the model length [m] */
+    double goal;    /* position of the joint that is asked for */
+    mt_cx target;   /* of the drive's row there */
+    double at;      /* present position */
+    mt_pose *trial; /* [bodies] */
+    mt_pose *guess; /* [bodies] */
+    double *rate;   /* [nq] dq/ds */
+    double *motion; /* [nq] */
+    bool held;      /* by the other joints, where the walk stands */
+    mt_err why;     /* what the last closure that failed said */
+} walk;
+
+static mt_status walk_init(walk *w, mt_err *err)
+{
+    const mt_system *const sys = w->p->sys;
+    const size_t n = (size_t)sys->n_bodies;
+    w->row = sys->drive_constraint;
+    w->unit = sys->joints[sys->drive_joint].angle ? 1.0 : sys->length_m;
+    w->goal = creal(mt_data_scalar(w->data, sys->drive, 0.0));
+    w->target = w->data->target[w->row];
+    w->trial = mt_arena_alloc(w->mem, n, sizeof *w->trial);
+    w->guess = mt_arena_alloc(w->mem, n, sizeof *w->guess);
+    w->rate = mt_arena_f64(w->mem, (size_t)sys->nq, 1);
+    w->motion = mt_arena_f64(w->mem, (size_t)sys->nq, 1);
+    const bool ok =
+        w->trial != NULL && w->guess != NULL && w->rate != NULL && w->motion != NULL;
+    return ok ? MT_OK : mt_fail_memory(err);
+}
+
+/* Largest |A rate - e_d| in rows scaled as the elimination does. */
+static double misfit(const mt_elimination *e, const double *a, int row, const double *rate)
+{
+    double worst = 0.0;
+    for (int i = 0; i < e->m; i++) {
+        double s = i == row ? -1.0 : 0.0;
+        for (ptrdiff_t j = 0; j < e->nq; j++) {
+            s += a[i + (j * e->m)] * rate[j];
+        }
+        worst = fmax(worst, fabs(s) * (i == row ? 1.0 : e->dr[i] / e->dr[row]));
+    }
+    return worst;
+}
+
+/* dq/ds where the walk stands, and its size in model lengths per unit of the coordinate. Held: the old rate stays. */
+static mt_status find_rate(walk *w, double *size, mt_err *err)
+{
+    const mt_system *const sys = w->p->sys;
+    const mt_arena_mark mark = mt_arena_get_mark(w->mem);
+    const mt_newton_problem problem = {.data = w->data,
+                                       .energy = MT_ENERGY_ANCHOR,
+                                       .drawn = w->p->pose,
+                                       .m = sys->n_constraints,
+                                       .trim = false};
+    mt_newton_work work;
+    mt_elimination e;
+    MT_TRY(mt_newton_work_init(&work, &problem, w->mem, err));
+    mt_newton_evaluate(&work, w->p->pose, false);
+    MT_TRY(mt_eliminate(sys, problem.m, work.a, w->mem, &e, err));
+    memset(work.c, 0, (size_t)problem.m * sizeof *work.c);
+    work.c[w->row] = 1.0;
+    MT_TRY(mt_eliminate_particular(&e, work.c, work.v, w->mem, err));
+    w->held = !(misfit(&e, work.a, w->row, work.v) <= HELD);
+    if (!w->held) {
+        memcpy(w->rate, work.v, (size_t)sys->nq * sizeof *w->rate);
+    }
+    *size = mt_newton_scaled_norm(&work, w->rate) * w->unit;
+    mt_arena_rewind(w->mem, mark);
+    return MT_OK;
+}
+
+/* Largest difference of two positions: model lengths, and entries of the rotations. */
+static double distance(const mt_system *sys, const mt_pose *a, const mt_pose *b)
+{
+    double most = 0.0;
+    for (int i = 0; i < sys->n_bodies; i++) {
+        for (int k = 0; k < 9; k++) {
+            const double x = k < 3 ? fabs(creal(a[i].x[k] - b[i].x[k])) / sys->length_m : 0.0;
+            const double d = fmax(x, fabs(creal(a[i].r[k] - b[i].r[k])));
+            most = !(d <= most) ? d : most; /* NaN is kept */
+        }
+    }
+    return most;
+}
+
+/* Close the mechanism with the joint at `to`, from the guess; *good: closed, and still on the branch. */
+static mt_status try_step(walk *w, double to, double length, bool *good, mt_err *err)
+{
+    const mt_system *const sys = w->p->sys;
+    const mt_arena_mark mark = mt_arena_get_mark(w->mem);
+    mt_stage stage = {.active = false};
+    memcpy(w->trial, w->guess, (size_t)sys->n_bodies * sizeof *w->trial);
+    w->data->target[w->row] = w->target - (w->goal - to);
+    const mt_newton_problem problem = {.data = w->data,
+                                       .energy = MT_ENERGY_ANCHOR,
+                                       .drawn = w->guess,
+                                       .m = sys->n_constraints,
+                                       .trim = false};
+    const mt_status rc = mt_newton_solve(&problem, w->trial, w->mem, w->p, &stage, &w->why);
+    mt_arena_rewind(w->mem, mark);
+    if (rc == MT_E_MEMORY || rc == MT_E_INTERNAL) {
+        return mt_fail(err, rc, "%s", w->why.text);
+    }
+    *good = rc == MT_OK && distance(sys, w->trial, w->guess) <= CORRECTION * length;
+    return MT_OK;
+}
+
+/* One step of at most *h towards the goal, halved until it holds. *h: what to try next; 0: no step holds. */
+static mt_status advance(walk *w, double *h, mt_err *err)
+{
+    const mt_system *const sys = w->p->sys;
+    const double way = w->goal - w->at;
+    double size = 0.0;
+    bool good = false;
+    MT_TRY(find_rate(w, &size, err));
+    if (!(size > 0.0)) { /* held from the start: there is no way to go */
+        *h = 0.0;
+        return MT_OK;
+    }
+    double step = fmin(fmin(*h, fabs(way)), BODY_STEP * w->unit / size);
+    while (!good && step >= fmin(SHORTEST * DRIVE_STEP * w->unit, fabs(way))) {
+        const double to = step >= fabs(way) ? w->goal : w->at + copysign(step, way);
+        for (int j = 0; j < sys->nq; j++) {
+            w->motion[j] = (to - w->at) * w->rate[j];
+        }
+        memcpy(w->guess, w->p->pose, (size_t)sys->n_bodies * sizeof *w->guess);
+        mt_position_move(sys, w->guess, w->motion);
+        MT_TRY(try_step(w, to, step * size / w->unit, &good, err));
+        *h = good ? 2.0 * step : 0.0;
+        step = good ? step : 0.5 * step;
+        if (good) {
+            memcpy(w->p->pose, w->trial, (size_t)sys->n_bodies * sizeof *w->trial);
+            mt_data_turns(w->data, w->p->pose);
+            w->at = to;
+        }
+    }
+    *h = fmin(*h, DRIVE_STEP * w->unit);
+    return MT_OK;
+}
+
+/* The joint that turns or slides furthest along dq/ds, other than the driven one; -1: none. */
+static int fastest_joint(const walk *w, double *ratio)
+{
+    const mt_system *const sys = w->p->sys;
+    int best = -1;
+    double most = 0.0;
+    for (int i = 0; i < sys->n_joints; i++) {
+        const mt_system_joint *const joint = &sys->joints[i];
+        if (joint->coordinate < 0 || i == sys->drive_joint) {
+            continue;
+        }
+        const double rate = mt_drive_rate(w->data, joint->coordinate, w->p->pose, w->rate);
+        const double scaled = fabs(rate) / (joint->angle ? 1.0 : sys->length_m);
+        if (scaled > most) {
+            most = scaled;
+            best = i;
+            *ratio = rate;
+        }
+    }
+    return best;
+}
+
+static mt_status refuse(walk *w, mt_err *err)
+{
+    const mt_system *const sys = w->p->sys;
+    const mt_system_joint *const joint = &sys->joints[sys->drive_joint];
+    const char *const unit = joint->angle ? "rad" : "m";
+    double size = 0.0;
+    double ratio = 0.0;
+    MT_TRY(find_rate(w, &size, err));
+    if (!(size > 0.0)) {
+        return mt_fail(err, MT_E_ASSEMBLY,
+                       "joint \"%s\" cannot be driven: the other joints hold it where it is "
+                       "(or it stands at a limit position)",
+                       joint->name);
+    }
+    const int fast = fastest_joint(w, &ratio);
+    if (w->held || size >= LIMIT_RATIO) {
+        return fast < 0 ? mt_fail(err, MT_E_ASSEMBLY,
+                                  "joint \"%s\" cannot be driven beyond %.6g %s: limit "
+                                  "position, where the mechanism moves without it",
+                                  joint->name, w->at, unit)
+                        : mt_fail(err, MT_E_ASSEMBLY,
+                                  "joint \"%s\" cannot be driven beyond %.6g %s: limit "
+                                  "position, where joint \"%s\" moves without it (%.2g %s per "
+                                  "%s just before)",
+                                  joint->name, w->at, unit, sys->joints[fast].name, ratio,
+                                  sys->joints[fast].angle ? "rad" : "m", unit);
+    }
+    return mt_fail(err, MT_E_ASSEMBLY, "joint \"%s\" cannot be driven beyond %.6g %s: %s",
+                   joint->name, w->at, unit,
+                   w->why.text[0] != '\0'
+                       ? w->why.text
+                       : "singular position, from which several ways lead on");
+}
+
+/* The last closure, at the goal: nothing moves any more but freedoms that the joints leave. */
+static mt_status settle(walk *w, mt_err *err)
+{
+    const mt_system *const sys = w->p->sys;
+    const mt_newton_problem problem = {.data = w->data,
+                                       .energy = MT_ENERGY_ANCHOR,
+                                       .drawn = w->p->drawn,
+                                       .m = sys->n_constraints,
+                                       .trim = false};
+    w->data->target[w->row] = w->target;
+    const mt_status rc =
+        mt_newton_solve(&problem, w->p->pose, w->mem, w->p, &w->p->driven, err);
+    if (rc != MT_OK) {
+        return mt_err_in(err, rc, "driving joint \"%s\" to %g",
+                         sys->joints[sys->drive_joint].name, w->goal);
+    }
+    mt_data_turns(w->data, w->p->pose);
+    return MT_OK;
+}
+
+mt_status mt_drive_solve(mt_state *p, mt_data *data, const mt_drive_start *start, mt_arena *mem,
+                         mt_err *err)
+{
+    const mt_system *const sys = p->sys;
+    walk w = {.p = p, .data = data, .mem = mem};
+    MT_TRY(walk_init(&w, err));
+    if (start != NULL && start->valid) {
+        w.at = start->position;
+        memcpy(p->pose, start->pose, (size_t)sys->n_bodies * sizeof *p->pose);
+        memcpy(data->turn, start->turn, (size_t)sys->n_measures * sizeof *data->turn);
+    }
+    double h = DRIVE_STEP * w.unit;
+    while (w.at != w.goal && h > 0.0) {
+        MT_TRY(advance(&w, &h, err));
+    }
+    p->reached = w.at;
+    if (w.at != w.goal) {
+        return refuse(&w, err);
+    }
+    return settle(&w, err);
+}
+
+void mt_drive_keep(const mt_state *p, const mt_data *data, mt_drive_start *start)
+{
+    const mt_system *const sys = p->sys;
+    memcpy(start->pose, p->driven_pose, (size_t)sys->n_bodies * sizeof *start->pose);
+    memcpy(start->turn, data->turn, (size_t)sys->n_measures * sizeof *start->turn);
+    start->position = p->reached;
+    start->valid = true;
+}
+
+double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses, const double *rate)
+{
+    const mt_measure_def *const def = &data->sys->measures[measure];
+    const mt_measure_data m = mt_data_measure(data, def);
+    mt_jet jet;
+    double s = 0.0;
+    mt_measure_eval(&m, mt_pose_of(poses, def->body[0]), mt_pose_of(poses, def->body[1]), false,
+                    &jet);
+    for (int k = 0; k < MT_LOCAL; k++) {
+        const int dof = mt_local_dof(data->sys, def->body, k);
+        s += dof >= 0 ? creal(jet.g[k]) * rate[dof] : 0.0;
+    }
+    return s;
+}

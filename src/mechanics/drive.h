@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_DRIVE_H
+#define MECHANICS_DRIVE_H
+
+#include "mechanics/position.h"
+
+/*
+ * Bring the driven joint from where it stands (the reference position, or `start`) to its place, on the branch where it stands. p->pose: in, out. p->driven is the last closure, anchored to the
+ * drawing, so that the result is a function of the design alone as long as the branch is the same. Angles are followed over whole turns (data->turn).
+ * p->reached tells how far it came [rad, m]. Fails: MT_E_ASSEMBLY at a limit position, in a position that the other joints hold, and where they do not stay closed; MT_E_MEMORY.
+ */
+mt_status mt_drive_solve(mt_state *p, mt_data *data, const mt_drive_start *start, mt_arena *mem,
+                         mt_err *err);
+
+/* Keep where the walk ended, for the next one. */
+void mt_drive_keep(const mt_state *p, const mt_data *data, mt_drive_start *start);
+/* d(measure)/ds along the motion rate[nq] at poses. */
+double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses,
+                     const double *rate);
+
+#endif
