@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/workers.h"
 #include "linalg/blas.h"
 #include "tune/describe.h"
 #include "tune/libraries.h"
@@ -222,15 +223,58 @@ static mt_status set_status(const mt_problem *p, const mt_nlp_result *found, mt_
     return result->status_text == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
-static mt_status search(mt_problem *p, mt_arena *mem, mt_nlp_result *found, mt_err *err)
+/* One problem for each worker: worker 0 has the caller's, the others their own, made alike. */
+typedef struct crew {
+    int n;
+    mt_problem **problems;
+    void **contexts;
+} crew;
+
+static void crew_free(crew *c)
 {
-    const mt_nlp nlp = mt_problem_nlp(p);
+    for (int i = 1; i < c->n; i++) {
+        mt_problem_delete(c->problems[i]);
+    }
+}
+
+static mt_status crew_init(crew *c, mt_problem *p, int workers, mt_arena *mem, mt_err *err)
+{
+    const int most = workers > MT_WORKERS_MOST ? MT_WORKERS_MOST : workers;
+    c->problems = mt_arena_alloc(mem, (size_t)most + 1, sizeof(mt_problem *));
+    c->contexts = mt_arena_alloc(mem, (size_t)most + 1, sizeof(void *));
+    if (c->problems == NULL || c->contexts == NULL) {
+        return mt_fail_memory(err);
+    }
+    c->problems[0] = p;
+    c->contexts[0] = p;
+    c->n = 1;
+    while (c->n < most) {
+        MT_TRY(mt_problem_new(p->study, p->references, &c->problems[c->n], err));
+        c->problems[c->n]->stop = p->stop;
+        c->contexts[c->n] = c->problems[c->n];
+        c->n++;
+    }
+    return MT_OK;
+}
+
+static mt_status search(mt_problem *p, int workers, mt_arena *mem, mt_nlp_result *found,
+                        mt_err *err)
+{
+    mt_nlp nlp = mt_problem_nlp(p);
     mt_nlp_options options = mt_nlp_options_default();
+    crew c = {0};
     options.seed = p->study->search.seed;
     options.starts = p->study->search.starts;
     options.max_evals = p->study->search.max_evaluations;
     options.least_change = p->objective == MT_OBJECTIVE_CHANGE;
-    return mt_nlp_solve(&nlp, &options, mem, found, err);
+    mt_status rc = crew_init(&c, p, workers, mem, err);
+    if (rc == MT_OK) {
+        nlp.n_workers = c.n;
+        nlp.contexts = c.contexts;
+        rc = mt_nlp_solve(&nlp, &options, mem, found, err);
+    }
+    crew_free(&c);
+    return rc;
 }
 
 static mt_status answer(const mt_study *study, const mt_solve_options *opt, mt_problem *p,
@@ -247,7 +291,7 @@ static mt_status answer(const mt_study *study, const mt_solve_options *opt, mt_p
     MT_TRY(describe_run(study, result, err));
     MT_TRY(mt_describe_design(p, &original, NULL, result, &result->baseline, err));
     if (any) {
-        MT_TRY(search(p, mem, &found, err));
+        MT_TRY(search(p, opt->threads, mem, &found, err));
         MT_TRY(describe_solutions(p, &found, result, err));
     }
     if (found.stop == MT_STOP_MAX_EVALS) {
