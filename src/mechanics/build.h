@@ -14,6 +14,7 @@ typedef struct mt_builder {
     int *link_first;       /* [model links] first state body of the link or -1 */
     mt_node (*link_at)[3]; /* [model links] position of `from` */
     int axis_vec[3];       /* vectors of the global axes */
+    const mt_system_drive *drive; /* of the caller; NULL: the configuration's own */
     mt_err *err;
 } mt_builder;
 

@@ -187,9 +187,10 @@ static mt_status build_parts(mt_builder *b, const double *at)
     return mt_build_sensors(b, at);
 }
 
-static mt_status build(mt_system *sys, const double *at, mt_err *err)
+static mt_status build(mt_system *sys, const mt_system_drive *drive, const double *at,
+                       mt_err *err)
 {
-    mt_builder b = {0};
+    mt_builder b = {.drive = drive};
     const size_t n_parameters = (size_t)sys->model->n_parameters;
     int *const is_input = mt_arena_int(&sys->mem, n_parameters + 1);
     sys->parameters = mt_arena_alloc(&sys->mem, n_parameters + 1, sizeof *sys->parameters);
@@ -200,7 +201,9 @@ static mt_status build(mt_system *sys, const double *at, mt_err *err)
         is_input[i] = -1;
     }
     for (int i = 0; i < sys->n_inputs; i++) {
-        is_input[sys->inputs[i]] = i;
+        if (sys->inputs[i] != MT_ABSENT) {
+            is_input[sys->inputs[i]] = i;
+        }
     }
     MT_TRY(mt_program_init(&sys->program, sys->n_inputs, &sys->mem, err));
     MT_TRY(mt_emit_parameters(sys->model, sys->configuration, is_input, &sys->program,
@@ -216,8 +219,9 @@ static mt_status build(mt_system *sys, const double *at, mt_err *err)
     return settle(sys, at, err);
 }
 
-mt_status mt_system_new(const mt_model *model, int configuration, int n_inputs,
-                        const int *inputs, const double *at, mt_system **out, mt_err *err)
+mt_status mt_system_new_driven(const mt_model *model, int configuration,
+                               const mt_system_drive *drive, int n_inputs, const int *inputs,
+                               const double *at, mt_system **out, mt_err *err)
 {
     mt_system *const sys = calloc(1, sizeof *sys);
     *out = NULL;
@@ -229,7 +233,7 @@ mt_status mt_system_new(const mt_model *model, int configuration, int n_inputs,
         sys->model = model;
         sys->configuration = configuration;
         sys->dimension = model->dimension;
-        sys->n_inputs = n_inputs;
+        sys->n_inputs = n_inputs + (drive != NULL ? 1 : 0);
         sys->drive = MT_NO_NODE;
         sys->inputs = mt_arena_int(&sys->mem, (size_t)n_inputs + 1);
         rc = sys->inputs == NULL ? mt_fail_memory(err) : MT_OK;
@@ -238,7 +242,8 @@ mt_status mt_system_new(const mt_model *model, int configuration, int n_inputs,
         if (n_inputs > 0) {
             memcpy(sys->inputs, inputs, (size_t)n_inputs * sizeof *inputs);
         }
-        rc = build(sys, at, err);
+        sys->inputs[n_inputs] = MT_ABSENT;
+        rc = build(sys, drive, at, err);
     }
     if (rc != MT_OK) {
         mt_system_delete(sys);
@@ -246,6 +251,12 @@ mt_status mt_system_new(const mt_model *model, int configuration, int n_inputs,
     }
     *out = sys;
     return MT_OK;
+}
+
+mt_status mt_system_new(const mt_model *model, int configuration, int n_inputs,
+                        const int *inputs, const double *at, mt_system **out, mt_err *err)
+{
+    return mt_system_new_driven(model, configuration, NULL, n_inputs, inputs, at, out, err);
 }
 
 void mt_system_delete(mt_system *sys)

@@ -132,7 +132,7 @@ typedef struct mt_system {
     int configuration;
     int dimension;
     int n_inputs;
-    int *inputs;         /* parameter of each input */
+    int *inputs; /* parameter of each input; MT_ABSENT for the position of a caller's drive */
     mt_node *parameters; /* [model parameters] node of each parameter in this configuration */
     mt_program program;
     int nq; /* states */
@@ -166,6 +166,16 @@ typedef struct mt_system {
  */
 mt_status mt_system_new(const mt_model *model, int configuration, int n_inputs,
                         const int *inputs, const double *at, mt_system **out, mt_err *err);
+/* A joint driven from outside: it takes the place of the configuration's own drive. */
+typedef struct mt_system_drive {
+    const char *joint;  /* a joint with a coordinate, or a link's hinge ("beam.h3") */
+    const char *spring; /* re-trimmed to hold it; NULL: locked */
+} mt_system_drive;
+/* The same with a drive whose position [rad or m from the reference position] is one more input, the last: at[n_inputs + 1], and the system has n_inputs + 1 inputs.
+ * drive NULL: mt_system_new. Fails also MT_E_INPUT: no such joint or spring. */
+mt_status mt_system_new_driven(const mt_model *model, int configuration,
+                               const mt_system_drive *drive, int n_inputs, const int *inputs,
+                               const double *at, mt_system **out, mt_err *err);
 void mt_system_delete(mt_system *sys);
 
 /* Emit all parameters of the configuration into a program; is_input[p] >= 0: parameter p is that input. nodes[n_parameters]. The model has been checked for cycles. */

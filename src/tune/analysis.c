@@ -32,6 +32,13 @@ void mt_analysis_delete(mt_analysis *a)
 mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs,
                           const int *inputs, const double *at, mt_analysis **out, mt_err *err)
 {
+    return mt_analysis_new_driven(model, configuration, NULL, n_inputs, inputs, at, out, err);
+}
+
+mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
+                                 const mt_system_drive *drive, int n_inputs, const int *inputs,
+                                 const double *at, mt_analysis **out, mt_err *err)
+{
     mt_analysis *const a = calloc(1, sizeof *a);
     const mt_analysis_options opt = mt_analysis_options_default();
     *out = NULL;
@@ -39,7 +46,8 @@ mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs
         return mt_fail_memory(err);
     }
     a->n_rigid = -1;
-    mt_status rc = mt_system_new(model, configuration, n_inputs, inputs, at, &a->sys, err);
+    mt_status rc = mt_system_new_driven(model, configuration, drive, n_inputs, inputs, at,
+                                        &a->sys, err);
     if (rc == MT_OK) {
         rc = mt_linear_new(a->sys, &a->lin, err);
     }

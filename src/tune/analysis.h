@@ -36,6 +36,10 @@ mt_analysis_options mt_analysis_options_default(
  * The model must outlive the analysis. Fails as mt_system_new, mt_linear_update, mt_modal_solve; texts name the configuration. */
 mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs,
                           const int *inputs, const double *at, mt_analysis **out, mt_err *err);
+/* The same with a drive whose position is one more input, the last (mt_system_new_driven): at[n_inputs + 1]. drive NULL: mt_analysis_new. */
+mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
+                                 const mt_system_drive *drive, int n_inputs, const int *inputs,
+                                 const double *at, mt_analysis **out, mt_err *err);
 void mt_analysis_delete(mt_analysis *a);
 /* Modes at inputs[n_inputs] (a->modes, valid until the next call). */
 mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
