@@ -103,7 +103,10 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
     }
     args->given[option] = true;
     args->value[option] = value;
-    if (value != NULL && value[0] == '\0') {
+    if (value == NULL) {
+        return MT_OK;
+    }
+    if (value[0] == '\0') {
         return mt_fail(err, MT_E_USAGE, "--%s: the value is empty", o->name);
     }
     switch (option) {

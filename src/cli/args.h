@@ -44,11 +44,11 @@ typedef enum mt_command_id {
 enum { MT_CMD_NONE = -1, MT_OPT_NONE = -1 };
 
 typedef struct mt_option {
-    char letter;       /* '\0': long form only */
     const char *name;  /* without the dashes */
     const char *value; /* what --help calls its value; NULL: a switch */
-    unsigned commands; /* bit 1 << mt_command_id */
     const char *help;
+    unsigned commands; /* bit 1 << mt_command_id */
+    char letter;       /* '\0': long form only */
 } mt_option;
 
 typedef struct mt_command {

@@ -6,6 +6,7 @@
  * from the study that timing.json beside the result names, from the result's folder and those above it, from the current folder and its "studies". Only the very bytes
  * that were solved are taken; --model takes a file as it is, with a warning where it has changed.
  */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -112,16 +113,13 @@ static mt_status find_model(const mt_args *args, const mt_result *result, mt_fil
     return *path == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
-static const mt_recommendation *choose(const mt_result *result, int rank, const char *path,
-                                       mt_err *err)
+static const mt_recommendation *choose(const mt_result *result, int rank)
 {
     for (int i = 0; i < result->n_recommendations; i++) {
         if (result->recommendations[i].rank == rank) {
             return &result->recommendations[i];
         }
     }
-    (void)mt_fail(err, MT_E_USAGE, "%s has %d recommendation%s: there is no rank %d", path,
-                  result->n_recommendations, result->n_recommendations == 1 ? "" : "s", rank);
     return NULL;
 }
 
@@ -136,6 +134,7 @@ static mt_addr value_of(const mt_json *doc, const char *name)
                : mt_json_member(doc, value, "value");
 }
 
+/* Ascending by begin. */
 static int by_place(const void *a, const void *b)
 {
     const replacement *const x = a;
@@ -143,69 +142,99 @@ static int by_place(const void *a, const void *b)
     return (x->begin > y->begin) - (x->begin < y->begin);
 }
 
+/* Where each value goes. The result is a file, too: it may name what is not there, or the same thing twice. */
+static mt_status find_places(const mt_recommendation *r, const mt_json *doc, const char *path,
+                             replacement *list, mt_err *err)
+{
+    for (int i = 0; i < r->n_parameters; i++) {
+        const mt_result_parameter *const p = &r->parameters[i];
+        const mt_addr value = value_of(doc, p->name);
+        list[i].value = p->recommended;
+        if (value == MT_NO_ADDR || !mt_json_span(doc, value, &list[i].begin, &list[i].end)) {
+            return mt_fail(err, MT_E_INPUT, "%s: there is no parameter \"%s\"", path, p->name);
+        }
+        if (!isfinite(p->recommended)) {
+            return mt_fail(err, MT_E_INPUT, "the result recommends no value of \"%s\"",
+                           p->name);
+        }
+    }
+    qsort(list, (size_t)r->n_parameters, sizeof *list, by_place);
+    for (int i = 1; i < r->n_parameters; i++) {
+        if (list[i].begin < list[i - 1].end) {
+            return mt_fail(err, MT_E_INPUT, "the result names a parameter twice");
+        }
+    }
+    return MT_OK;
+}
+
 static mt_status substitute(const mt_recommendation *r, const mt_file *file, const char *path,
                             mt_text *out, mt_err *err)
 {
     mt_json *doc = NULL;
     replacement *const list = calloc((size_t)r->n_parameters + 1, sizeof *list);
-    mt_status rc = list == NULL ? mt_fail_memory(err)
-                                : mt_json_parse(file->bytes, file->length, &doc, err);
+    if (list == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_status rc = mt_json_parse(file->bytes, file->length, &doc, err);
+    if (rc != MT_OK) {
+        (void)mt_err_in(err, rc, "%s", path);
+        goto done;
+    }
+    rc = find_places(r, doc, path, list, err);
+    size_t at = 0;
     for (int i = 0; rc == MT_OK && i < r->n_parameters; i++) {
-        const mt_addr value = value_of(doc, r->parameters[i].name);
-        list[i].value = r->parameters[i].recommended;
-        if (value == MT_NO_ADDR || !mt_json_span(doc, value, &list[i].begin, &list[i].end)) {
-            rc = mt_fail(err, MT_E_INPUT, "%s: there is no parameter \"%s\"", path,
-                         r->parameters[i].name);
-        }
+        char number[MT_JSON_NUMBER_SIZE];
+        mt_text_add_n(out, file->bytes + at, list[i].begin - at);
+        mt_text_add(out, mt_json_format_number(list[i].value, number));
+        at = list[i].end;
     }
     if (rc == MT_OK) {
-        size_t at = 0;
-        qsort(list, (size_t)r->n_parameters, sizeof *list, by_place);
-        for (int i = 0; i < r->n_parameters; i++) {
-            char number[MT_JSON_NUMBER_SIZE];
-            mt_text_add_n(out, file->bytes + at, list[i].begin - at);
-            mt_text_add(out, mt_json_format_number(list[i].value, number));
-            at = list[i].end;
-        }
         mt_text_add_n(out, file->bytes + at, file->length - at);
     }
+done:
     mt_json_delete(doc);
     free(list);
+    return rc;
+}
+
+static mt_status apply(const mt_args *args, const mt_result *result, mt_text *out, mt_err *err)
+{
+    const char *const path = args->operands[0];
+    const int n = result->n_recommendations;
+    const mt_recommendation *const chosen = choose(result, args->rank);
+    mt_file file = {.bytes = NULL};
+    char *model_path = NULL;
+    if (chosen == NULL) {
+        return mt_fail(err, MT_E_USAGE, "%s has %d recommendation%s: there is no rank %d", path,
+                       n, n == 1 ? "" : "s", args->rank);
+    }
+    mt_status rc = find_model(args, result, &file, &model_path, err);
+    if (rc == MT_OK) {
+        rc = substitute(chosen, &file, model_path, out, err);
+    }
+    if (rc == MT_OK && !chosen->feasible) {
+        mt_terminal_warning("recommendation %d does not meet all goals", chosen->rank);
+    }
+    free(model_path);
+    mt_file_free(&file);
     return rc;
 }
 
 int mt_cmd_apply(const mt_args *args, mt_text *out)
 {
     const mt_io_options opt = mt_cli_io(args);
-    const char *const path = args->operands[0];
     mt_text messages = {.s = NULL};
     mt_err err = {.code = MT_OK};
     mt_result *result = NULL;
-    mt_file file = {.bytes = NULL};
-    char *model_path = NULL;
-    mt_status rc = mt_result_load(path, &opt, &result, &messages, &err);
-    const int loaded = mt_cli_loaded(rc, &messages, &err);
-    if (rc != MT_OK) {
-        return loaded;
+    if (args->format == MT_FORMAT_CSV) {
+        return mt_cli_failed(mt_fail(&err, MT_E_USAGE, "a model has no CSV form"), &err);
     }
-    const mt_recommendation *const chosen = choose(result, args->rank, path, &err);
-    rc = chosen == NULL ? err.code : find_model(args, result, &file, &model_path, &err);
+    mt_status rc = mt_result_load(args->operands[0], &opt, &result, &messages, &err);
+    int code = mt_cli_loaded(rc, &messages, &err);
     if (rc == MT_OK) {
-        rc = substitute(chosen, &file, model_path, out, &err);
+        rc = apply(args, result, out, &err);
+        code = rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
     }
-    if (rc == MT_OK && args->format != MT_FORMAT_TEXT) {
-        rc = args->format == MT_FORMAT_JSON
-                 ? MT_OK
-                 : mt_fail(&err, MT_E_USAGE, "a model has no CSV form");
-    }
-    if (rc == MT_OK && !chosen->feasible) {
-        mt_terminal_warning("recommendation %d does not meet all goals", chosen->rank);
-    }
-    if (rc != MT_OK) {
-        mt_text_free(out);
-    }
-    free(model_path);
-    mt_file_free(&file);
     mt_result_delete(result);
-    return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
+    return code;
 }

@@ -101,15 +101,16 @@ static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_ta
         rc = load(kind, path, &opt, &messages, &err);
     }
     const char *const name = kind == KIND_COUNT ? NULL : kinds[kind];
+    const char *problems = rc == MT_OK ? "" : err.text;
+    if (messages.s != NULL) {
+        problems = messages.s;
+    }
     if (args->format == MT_FORMAT_JSON) {
         mt_json_open(w, NULL, '{');
         mt_json_put_string(w, "file", path);
         mt_json_put_string(w, "kind", name);
         mt_json_put_bool(w, "ok", rc == MT_OK);
-        mt_json_put_string(w, "problems",
-                           messages.s == NULL && rc != MT_OK ? err.text
-                           : messages.s == NULL              ? ""
-                                                             : messages.s);
+        mt_json_put_string(w, "problems", problems);
         mt_json_close(w);
     } else if (args->format == MT_FORMAT_CSV) {
         mt_table_text(t, path);

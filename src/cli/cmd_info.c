@@ -70,7 +70,6 @@ static mt_status write_text(mt_text *out, const view *v, mt_err *err)
     const mt_info *const i = &v->info;
     const int n = v->s->model->dimension;
     char a[3 * MT_NUMBER_TEXT + 8];
-    char b[3 * MT_NUMBER_TEXT + 8];
     mt_text_addf(out, "%s\n", mt_subject_configuration(v->s, v->c));
     mt_text_addf(out, "  mass        %s kg\n", mt_report_number(i->mass_kg, DIGITS, a));
     mt_text_addf(out, "  centre      (%s) m\n", point_text(i->centre_m, n, a, sizeof a));
@@ -78,6 +77,7 @@ static mt_status write_text(mt_text *out, const view *v, mt_err *err)
         mt_text_addf(out, "  inertia     %s kg m^2 about the centre\n",
                      mt_report_number(i->inertia_kg_m2[2], DIGITS, a));
     } else {
+        char b[3 * MT_NUMBER_TEXT + 8];
         mt_text_addf(out,
                      "  inertia     xx, yy, zz %s; xy, xz, yz %s kg m^2 about the centre\n",
                      point_text(i->inertia_kg_m2, 3, a, sizeof a),

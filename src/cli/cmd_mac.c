@@ -12,7 +12,7 @@
  * in modal testing calls 0.9 a correlation (Ewins, Modal Testing, section on MAC). */
 static const double LOOKS_THE_SAME = 0.9;
 
-enum { DIGITS = 6, MAC_DIGITS = 5, PAIR_TEXT = 32 };
+enum { DIGITS = 6, MAC_DIGITS = 5, PAIR_TEXT = 32, NOTE_TEXT = 160 };
 
 /* One of the two sides. */
 typedef struct side {
@@ -137,8 +137,8 @@ static mt_status note_alike(comparison *c, const side *x, emit_note emit, void *
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < j; i++) {
             const double mac = own[i + ((ptrdiff_t)j * n)];
-            char text[160];
             if (mac > LOOKS_THE_SAME) {
+                char text[NOTE_TEXT];
                 (void)snprintf(text, sizeof text,
                                "modes %d and %d of %s look the same at the sensors (MAC %.4f)",
                                i + 1, j + 1, x->letter, mac);
@@ -152,8 +152,8 @@ static mt_status note_alike(comparison *c, const side *x, emit_note emit, void *
 static mt_status notes(comparison *c, emit_note emit, void *context, mt_err *err)
 {
     const int most = c->a.n > c->b.n ? c->a.n : c->b.n;
-    char text[160];
     if (most > c->ns) {
+        char text[NOTE_TEXT];
         (void)snprintf(text, sizeof text,
                        "%d sensor channels cannot tell %d modes apart: shapes beyond %d depend "
                        "on each other there",

@@ -301,6 +301,7 @@ static void print_comparison(const job *j, mt_json_writer *w, mt_text *out)
             json_published(w, &r->published[i]);
         }
         mt_json_close(w);
+        mt_result_put_uncertainty(w, r);
         mt_json_close(w);
         break;
     case MT_FORMAT_CSV:
@@ -310,6 +311,7 @@ static void print_comparison(const job *j, mt_json_writer *w, mt_text *out)
         mt_text_addf(out, "%s: %s\n", r->study_name == NULL ? j->path : r->study_name,
                      mt_result_status_name(r->status));
         mt_table_print(&t, 2, out);
+        mt_report_uncertainty(r, out);
         mt_text_add(out, "\n");
         break;
     }

@@ -7,82 +7,99 @@
 #define ON_MODELS    (BIT(MT_CMD_MODES) | BIT(MT_CMD_SENSITIVITY) | BIT(MT_CMD_INFO))
 #define ON_STUDIES   (BIT(MT_CMD_RUN) | BIT(MT_CMD_COMPARE))
 
+#define OPTION(id, letter_, name_, value_, commands_, help_) \
+    [id] = {.letter = (letter_),                             \
+            .name = (name_),                                 \
+            .value = (value_),                               \
+            .commands = (commands_),                         \
+            .help = (help_)}
+
 const mt_option mt_options[MT_OPT_IDS] = {
-    [MT_OPT_CONFIGURATION] = { 'c', "configuration", "CONFIGURATION",ON_MODELS,
-                              "only this configuration (default: all)"                                                                                                    },
-    [MT_OPT_SET] =
-        {'\0',           "set",    "NAME=VALUE",               ON_MODELS,
-                              "give a parameter another value; an expression may use the model's own values "
-                              "(\"k=1.1*k\"); may be repeated"                                                                                                            },
-    [MT_OPT_COUNT] = {'\0',         "count",             "N",
-                              BIT(MT_CMD_MODES) | BIT(MT_CMD_MAC) | BIT(MT_CMD_SENSITIVITY),
-                              "only the first N vibration modes"                                                                                                          },
-    [MT_OPT_SHAPES] = {'\0',        "shapes",            NULL,       BIT(MT_CMD_MODES),
-                              "mode shapes at the sensors, or of the bodies where there are none"                                                                         },
-    [MT_OPT_PARAMETERS] = {'\0',    "parameters",           "A,B", BIT(MT_CMD_SENSITIVITY),
-                              "parameters to vary (default: all that are not made of others)"                                                                             },
-    [MT_OPT_OUTPUT] = { 'o',        "output",           "DIR",         BIT(MT_CMD_RUN),
-                              "folder for the results (default: results)"                                                                                                 },
-    [MT_OPT_VERIFY] = {'\0',        "verify",            NULL,         BIT(MT_CMD_RUN),
-                              "judge the study's published values; they alone decide the exit status"                                                                     },
-    [MT_OPT_THREADS] = {'\0',       "threads",             "N",              ON_STUDIES,
-                              "number of workers (the search uses one so far)"                                                                                            },
-    [MT_OPT_RANK] = {'\0',          "rank",             "N",       BIT(MT_CMD_APPLY),
-                              "which recommendation (default: 1, the best)"                                                                                               },
-    [MT_OPT_MODEL] = {'\0',         "model",         "MODEL",       BIT(MT_CMD_APPLY),
-                              "the model file, where it is not found from the result"                                                                                     },
-    [MT_OPT_ROOT] =
-        {'\0',          "root",           "DIR",              EVERYWHERE,
-                              "files named by other files must lie beneath DIR (default: the parent of the "
-                              "study's folder)"                                                                                                                           },
-    [MT_OPT_FORMAT] = {'\0',        "format", "text|json|csv",              EVERYWHERE,
-                              "form of what goes to standard output (default: text)"                                                                                      },
-    [MT_OPT_QUIET] = {'\0',         "quiet",            NULL,              EVERYWHERE,
-                              "no talk on standard error; errors and warnings stay"                                                                                       },
-    [MT_OPT_HELP] = { 'h',          "help",            NULL,              EVERYWHERE,                                                           "print this help"},
-    [MT_OPT_VERSION] = {'\0',       "version",            NULL,                       0,                                                         "print the version"},
+    OPTION(MT_OPT_CONFIGURATION, 'c', "configuration", "CONFIGURATION", ON_MODELS,
+           "only this configuration (default: all)"),
+    OPTION(MT_OPT_SET, '\0', "set", "NAME=VALUE", ON_MODELS,
+           "give a parameter another value; an expression may use the model's own values "
+           "(\"k=1.1*k\"); may be repeated"),
+    OPTION(MT_OPT_COUNT, '\0', "count", "N",
+           BIT(MT_CMD_MODES) | BIT(MT_CMD_MAC) | BIT(MT_CMD_SENSITIVITY),
+           "only the first N vibration modes"),
+    OPTION(MT_OPT_SHAPES, '\0', "shapes", NULL, BIT(MT_CMD_MODES),
+           "mode shapes at the sensors, or of the bodies where there are none"),
+    OPTION(MT_OPT_PARAMETERS, '\0', "parameters", "A,B", BIT(MT_CMD_SENSITIVITY),
+           "parameters to vary (default: all that are not made of others)"),
+    OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR", BIT(MT_CMD_RUN),
+           "folder for the results (default: results)"),
+    OPTION(MT_OPT_VERIFY, '\0', "verify", NULL, BIT(MT_CMD_RUN),
+           "judge the study's published values; they alone decide the exit status"),
+    OPTION(MT_OPT_THREADS, '\0', "threads", "N", ON_STUDIES,
+           "number of workers (the search uses one so far)"),
+    OPTION(MT_OPT_RANK, '\0', "rank", "N", BIT(MT_CMD_APPLY),
+           "which recommendation (default: 1, the best)"),
+    OPTION(MT_OPT_MODEL, '\0', "model", "MODEL", BIT(MT_CMD_APPLY),
+           "the model file, where it is not found from the result"),
+    OPTION(MT_OPT_ROOT, '\0', "root", "DIR", EVERYWHERE,
+           "files named by other files must lie beneath DIR (default: the parent of the "
+           "study's folder)"),
+    OPTION(MT_OPT_FORMAT, '\0', "format", "text|json|csv", EVERYWHERE,
+           "form of what goes to standard output (default: text)"),
+    OPTION(MT_OPT_QUIET, '\0', "quiet", NULL, EVERYWHERE,
+           "no talk on standard error; errors and warnings stay"),
+    OPTION(MT_OPT_HELP, 'h', "help", NULL, EVERYWHERE, "print this help"),
+    OPTION(MT_OPT_VERSION, '\0', "version", NULL, 0U, "print the version"),
 };
 
+#define COMMAND(id, name_, operands_, least_, most_, summary_, details_) \
+    [id] = {.name = (name_),                                             \
+            .operands = (operands_),                                     \
+            .least = (least_),                                           \
+            .most = (most_),                                             \
+            .summary = (summary_),                                       \
+            .details = (details_)}
+
 const mt_command mt_commands[MT_CMD_IDS] = {
-    [MT_CMD_RUN] =
-        {        "run",                                "STUDY...", 1, -1,"solve studies and write what was found",
-                      "Solves each study and writes result.json, recommendations.csv, report.html and\n"
-                      "timing.json into DIR/<study file name without .json>/. Prints a summary.\n"
-                      "An interrupt (Ctrl-C) ends the search; the best design so far is written."                                                                     },
-    [MT_CMD_COMPARE] =
-        {    "compare",                                "STUDY...", 1, -1,      "published against computed values",
-                      "Solves each study and prints its published values beside the computed ones, with\n"
-                      "differences, roles and sources. Writes no files. Exit status 0 when all hold, else "
-                      "1."                                                                                                                                            },
-    [MT_CMD_MODES] =
-        {      "modes",                                   "MODEL", 1,  1,    "natural frequencies and mode shapes",
-                      "Prints the modes of each configuration: rigid-body, flexible and unstable ones, the\n"
-                      "residual and orthogonality ratios of each (about 1 is perfect), redundant joints, "
-                      "and\n"
-                      "how the equilibrium was found. Shapes are mass-normalised."                                                                                    },
-    [MT_CMD_MAC] =
-        {        "mac", "MODEL:CONFIGURATION MODEL:CONFIGURATION", 2,  2,
-                      "pair and correlate two sets of modes", "Compares shapes at the sensors that both models have, pairs the modes one to one, "
- "and\n"
- "compares repeated modes as subspaces. The configuration may be left out where a "
- "model\n"
- "has only one. Default number of modes: as many as there are common sensor channels."                   },
-    [MT_CMD_SENSITIVITY] =
-        {"sensitivity",                                   "MODEL", 1,  1,
-                      "change of each frequency per per cent of each parameter",         "Prints exact derivatives: Hz for one per cent more of a parameter, for the first\n"
-         "modes (default: 6). Repeated modes have directional values, given as a set."},
-    [MT_CMD_INFO] = {       "info",                                   "MODEL", 1,  1,
-                      "masses, mobility and redundancies of each configuration",   "Prints the total mass, its centre and inertia, the freedoms, and the "
-   "sets of redundant\n"
-   "joints of each configuration, in the position where it is linearised."            },
-    [MT_CMD_APPLY] = {      "apply",                             "RESULT.json", 1,  1,  "the model with the recommended values",
-                      "Prints the model file with the recommended values put in; everything "
-                      "else of its text\n"
-                      "stays as it is. The model is found from the result's folder, and must "
-                      "be the one that\n"
-                      "was solved (same SHA-256) unless --model names it."                                                                                            },
-    [MT_CMD_CHECK] =
-        {      "check",                                 "FILE...", 1, -1, "validate model, study and result files",
-                      "Reads each file as its \"format\" says, and prints every problem found as\n"
-                      "file:line:column: error: /json/pointer: message."                                                                                              },
+    COMMAND(MT_CMD_RUN, "run", "STUDY...", 1, -1, "solve studies and write what was found",
+            "Solves each study and writes result.json, recommendations.csv, report.html "
+            "and\n"
+            "timing.json into DIR/<study file name without .json>/. Prints a summary.\n"
+            "An interrupt (Ctrl-C) ends the search; the best design so far is written."),
+    COMMAND(MT_CMD_COMPARE, "compare", "STUDY...", 1, -1, "published against computed values",
+            "Solves each study and prints its published values beside the computed "
+            "ones, with\n"
+            "differences, roles and sources. Writes no files. Exit status 0 when "
+            "all hold, else 1."),
+    COMMAND(MT_CMD_MODES, "modes", "MODEL", 1, 1, "natural frequencies and mode shapes",
+            "Prints the modes of each configuration: rigid-body, flexible and "
+            "unstable ones, the\n"
+            "residual and orthogonality ratios of each (about 1 is perfect), "
+            "redundant joints, and\n"
+            "how the equilibrium was found. Shapes are mass-normalised. Names that "
+            "the model gives\n"
+            "to modes are shown where nothing is changed by --set."),
+    COMMAND(MT_CMD_MAC, "mac", "MODEL:CONFIGURATION MODEL:CONFIGURATION", 2, 2,
+            "pair and correlate two sets of modes",
+            "Compares shapes at the sensors that both models have, pairs the modes "
+            "one to one, and\n"
+            "compares repeated modes as subspaces. The configuration may be left "
+            "out where a model\n"
+            "has only one. Default number of modes: as many as there are common "
+            "sensor channels."),
+    COMMAND(MT_CMD_SENSITIVITY, "sensitivity", "MODEL", 1, 1,
+            "change of each frequency per per cent of each parameter",
+            "Prints exact derivatives: Hz for one per cent more of a parameter, for the "
+            "first\n"
+            "modes (default: 6). Repeated modes have directional values, given as a set."),
+    COMMAND(MT_CMD_INFO, "info", "MODEL", 1, 1,
+            "masses, mobility and redundancies of each configuration",
+            "Prints the total mass, its centre and inertia, the freedoms, and the "
+            "sets of redundant\n"
+            "joints of each configuration, in the position where it is linearised."),
+    COMMAND(MT_CMD_APPLY, "apply", "RESULT.json", 1, 1, "the model with the recommended values",
+            "Prints the model file with the recommended values put in; everything "
+            "else of its text\n"
+            "stays as it is. The model is found from the result's folder, and must "
+            "be the one that\n"
+            "was solved (same SHA-256) unless --model names it."),
+    COMMAND(MT_CMD_CHECK, "check", "FILE...", 1, -1, "validate model, study and result files",
+            "Reads each file as its \"format\" says, and prints every problem found as\n"
+            "file:line:column: error: /json/pointer: message."),
 };

@@ -135,8 +135,8 @@ void mt_terminal_diagnostics(const char *lines)
 
 void mt_terminal_talk(bool quiet, const char *fmt, ...)
 {
-    va_list args;
     if (!quiet) {
+        va_list args;
         va_start(args, fmt);
         (void)vfprintf(stderr, fmt, args);
         va_end(args);

@@ -87,6 +87,15 @@ void mt_table_change(mt_table *t, double value, int digits)
     add_cell(t, mt_report_change(value, digits, text), mt_report_exact(value, exact));
 }
 
+void mt_table_quoted(mt_table *t, double value)
+{
+    char text[MT_NUMBER_TEXT];
+    char exact[MT_NUMBER_TEXT];
+    (void)snprintf(text, sizeof text, "%.10g", value);
+    add_cell(t, isfinite(value) ? text : mt_report_number(value, 1, text),
+             mt_report_exact(value, exact));
+}
+
 /* Below this a percentage says nothing: the tightest tolerance of a goal is 1e-4 % by default, and frequencies carry relative rounding of about 1e-14. */
 static const double PERCENT_NOISE = 1e-9;
 

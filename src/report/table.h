@@ -47,6 +47,8 @@ void mt_table_text(mt_table *t, const char *text);
 void mt_table_integer(mt_table *t, long long value);
 void mt_table_number(mt_table *t, double value, int digits);
 void mt_table_change(mt_table *t, double value, int digits); /* with its sign */
+/* A number as a source gives it: no more digits than it has. */
+void mt_table_quoted(mt_table *t, double value);
 /* A percentage with its sign; for people, what is below 1e-9 % is rounding and written 0. */
 void mt_table_percent(mt_table *t, double value, int digits);
 int mt_table_rows(const mt_table *t);

@@ -71,8 +71,9 @@ static void summary__says_status_numbers_and_reasons(mt_test *t)
         "A <study>\nSolved.\n",
         "  k<1>       N/m   50.0000   92.9420         +85.9  -\n",
         "  m          -      1.00000   0.500000       -50.0  lower\n",
-        "  held              1  -         0.750000     1.00000          1.00000       0        "
-        "-\n",
+        /* clang-format off */
+        "  held              1  -        0.750000     1.00000           1.00000          0    -\n",
+        /* clang-format on */
         "at least 1.90000",
         "  - k<1> rises & m falls.\n",
     };
