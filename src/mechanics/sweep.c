@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The ratio of a joint is the derivative of its coordinate with respect to the drive's position s: with q' = dq/ds of the whole position analysis (implicit function theorem,
+ * position.h), the coordinate's gradient times q'.
+ */
+#include "mechanics/sweep.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "mechanics/drive.h"
+
+void mt_sweep_range(double from, double to, int steps, double *positions)
+{
+    for (int i = 0; i < steps; i++) {
+        const double t = steps > 1 ? (double)i / (double)(steps - 1) : 0.0;
+        positions[i] = ((1.0 - t) * from) + (t * to);
+    }
+}
+
+static double value_at(const mt_data *data, int measure, const mt_pose *poses, bool turned)
+{
+    const mt_measure_def *const def = &data->sys->measures[measure];
+    mt_measure_data m = mt_data_measure(data, def);
+    if (!turned) {
+        m.near = 0.0;
+    }
+    return creal(
+        mt_measure_value(&m, mt_pose_of(poses, def->body[0]), mt_pose_of(poses, def->body[1])));
+}
+
+static mt_status record(mt_linear *lin, mt_sweep_point *point, mt_err *err)
+{
+    const mt_system *const sys = lin->sys;
+    mt_state *const p = &lin->position;
+    lin->dual.input = sys->n_inputs - 1;
+    MT_TRY(mt_position_tangent(p, &lin->dual, &lin->scratch, err));
+    for (int i = 0; i < sys->n_joints; i++) {
+        const int measure = sys->joints[i].coordinate;
+        point->coordinate[i] = nan("");
+        point->ratio[i] = nan("");
+        if (measure >= 0) {
+            point->coordinate[i] = value_at(&lin->data, measure, p->pose, true) -
+                                   value_at(&lin->data, measure, p->reference, false);
+            point->ratio[i] = mt_drive_rate(&lin->data, measure, p->pose, p->d_pose);
+        }
+    }
+    /* grad V + lambda grad s = 0: what holds the joint balances -dV/ds */
+    point->hold = sys->trim ? p->trim_force : -p->equilibrium.lambda[sys->drive_constraint];
+    point->residual = p->residual;
+    point->gap_m = p->gap_m;
+    return MT_OK;
+}
+
+static mt_status sweep_point_init(mt_sweep_point *point, int n_joints, double drive,
+                                  mt_arena *mem, mt_err *err)
+{
+    *point = (mt_sweep_point){
+        .drive = drive, .hold = nan(""), .residual = nan(""), .gap_m = nan("")};
+    point->coordinate = mt_arena_f64(mem, (size_t)n_joints, 1);
+    point->ratio = mt_arena_f64(mem, (size_t)n_joints, 1);
+    if (point->coordinate == NULL || point->ratio == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < n_joints; i++) {
+        point->coordinate[i] = nan("");
+        point->ratio[i] = nan("");
+    }
+    return MT_OK;
+}
+
+typedef struct sweeper {
+    mt_linear *lin;
+    double *inputs;
+    mt_sweep_visit *visit;
+    void *context;
+    mt_arena *mem;
+    mt_sweep *out;
+} sweeper;
+
+static mt_status solve_point(const sweeper *s, int i, mt_err *err)
+{
+    mt_sweep_point *const point = &s->out->points[i];
+    s->inputs[s->lin->sys->n_inputs - 1] = point->drive;
+    MT_TRY(s->visit != NULL ? s->visit(s->context, i, s->inputs, err)
+                            : mt_linear_update(s->lin, s->inputs, true, err));
+    MT_TRY(record(s->lin, point, err));
+    s->out->n_reached++;
+    return MT_OK;
+}
+
+/* Points first, first + step, ... up to the end of the list; where one cannot be reached the ones behind it cannot either. */
+static mt_status walk(const sweeper *s, int first, int step, mt_err *err)
+{
+    const char *limit = NULL;
+    for (int i = first; i >= 0 && i < s->out->n_points; i += step) {
+        mt_sweep_point *const point = &s->out->points[i];
+        mt_err why = {.code = MT_OK};
+        point->status = MT_E_ASSEMBLY;
+        point->why = limit;
+        if (limit != NULL) {
+            continue;
+        }
+        point->status = solve_point(s, i, &why);
+        if (point->status == MT_OK) {
+            continue;
+        }
+        if (point->status == MT_E_MEMORY || point->status == MT_E_INTERNAL ||
+            point->status == MT_E_INTERRUPTED) {
+            return mt_fail(err, point->status, "%s", why.text);
+        }
+        point->why = mt_arena_strdup(s->mem, why.text);
+        if (point->why == NULL) {
+            return mt_fail_memory(err);
+        }
+        limit = point->status == MT_E_ASSEMBLY ? point->why : NULL;
+    }
+    return MT_OK;
+}
+
+mt_status mt_sweep_run(mt_linear *lin, double *inputs, int n, const double *positions,
+                       mt_sweep_visit *visit, void *context, mt_arena *mem, mt_sweep *out,
+                       mt_err *err)
+{
+    const sweeper s = {lin, inputs, visit, context, mem, out};
+    int nearest = 0;
+    *out = (mt_sweep){.n_joints = lin->sys->n_joints, .n_points = n};
+    out->points = mt_arena_alloc(mem, (size_t)n, sizeof *out->points);
+    if (out->points == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < n; i++) {
+        MT_TRY(sweep_point_init(&out->points[i], out->n_joints, positions[i], mem, err));
+        nearest = fabs(positions[i]) < fabs(positions[nearest]) ? i : nearest;
+    }
+    if (n == 0) {
+        return MT_OK;
+    }
+    lin->follow = true;
+    lin->last.valid = false; /* begin at the reference position */
+    mt_status rc = walk(&s, nearest, 1, err);
+    lin->last.valid = false;
+    if (rc == MT_OK && nearest > 0) {
+        rc = walk(&s, nearest - 1, -1, err);
+    }
+    lin->follow = false;
+    return rc;
+}

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_SWEEP_H
+#define MECHANICS_SWEEP_H
+
+#include "mechanics/linear.h"
+
+/*
+ * The static response of a mechanism along the range of one driven joint: a system made by mt_system_new_driven, solved at one position after the other. The walk begins at
+ * the point nearest to the reference position and goes outwards both ways, each point from its neighbour, so that every point lies on the branch of the drawing.
+ */
+typedef struct mt_sweep_point {
+    double drive;     /* position of the driven joint from the reference position [rad, m] */
+    mt_status status; /* MT_OK, or why there is nothing at this point */
+    const char *why;  /* its text; NULL where MT_OK */
+    double *
+        coordinate; /* [n_joints] of each joint from the reference position, whole turns counted [rad, m]; NaN for a joint without one */
+    double *ratio;  /* [n_joints] d coordinate / d drive, exact, along the equilibria */
+    double
+        hold; /* what holds the joint: the moment or force of the lock along its coordinate, or the force of the trimmed spring [N m, N] */
+    double residual; /* of the equilibrium, relative to the forces at work */
+    double gap_m;    /* largest violation of a constraint */
+} mt_sweep_point;
+
+typedef struct mt_sweep {
+    int n_joints;
+    int n_points;
+    mt_sweep_point *points; /* in the order asked for */
+    int n_reached;          /* points with MT_OK */
+} mt_sweep;
+
+/* Brings lin to inputs (with gradient) and looks at what it wants to see there; NULL: mt_linear_update alone. What it fails with is noted at the point; memory, an
+ * interrupt, or our own error ends the sweep. */
+typedef mt_status mt_sweep_visit(void *context, int point, const double *inputs, mt_err *err);
+
+/* `steps` >= 2 positions from `from` to `to` (or 1: `from`), evenly spaced, both ends exact: positions[steps]. */
+void mt_sweep_range(double from, double to, int steps, double *positions);
+
+/**
+ * @param lin        of a system with a caller's drive; its scratch is used
+ * @param inputs     [lin->sys->n_inputs] the last of them, the position, is set here
+ * @param positions  [n] of the driven joint
+ * @param mem        holds the result
+ * A point beyond a limit position has MT_E_ASSEMBLY and the text that names the limit; so have all points further that way. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INTERRUPTED.
+ */
+mt_status mt_sweep_run(mt_linear *lin, double *inputs, int n, const double *positions,
+                       mt_sweep_visit *visit, void *context, mt_arena *mem, mt_sweep *out,
+                       mt_err *err);
+
+#endif
