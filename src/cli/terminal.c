@@ -72,6 +72,7 @@ int mt_terminal_put(mt_text *out)
     return ok ? MT_EXIT_DONE : MT_EXIT_SYSTEM;
 }
 
+MT_PRINTF(3, 0)
 static void say(const char *kind, const char *colour, const char *fmt, va_list args)
 {
     const bool coloured = mt_terminal_colour(STDERR_FILENO);
