@@ -86,7 +86,7 @@ mt_status mt_displaced_eval(mt_linear *lin, const double *dq, double *m, double 
     }
     l.trim_force = trimmed_force(lin, poses);
     mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, poses, (int)all,
-                       NULL, false, false, &l);
+                       NULL, MT_CURVATURE_NONE, &l);
     for (ptrdiff_t j = 0; j < sys->nq; j++) {
         q[j] = -creal(l.g[j]);
         for (ptrdiff_t i = 0; i < lin->m; i++) {

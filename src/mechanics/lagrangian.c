@@ -104,13 +104,52 @@ static void note_noise(const mt_data *d, const mt_measure_def *def, const mt_pos
     out->force_noise = fmax(out->force_noise, noise);
 }
 
-static void add_springs(const mt_data *d, const mt_pose *poses, bool hessian,
-                        bool geometric_only, mt_lagrangian *out)
+/* V = 1/2 k d_a d_b. */
+static void add_coupling(const mt_system *sys, const int body[2], mt_cx k,
+                         const mt_cx stretch[2], const mt_jet jet[2], mt_curvature curvature,
+                         mt_lagrangian *out)
+{
+    for (int side = 0; side < 2; side++) {
+        const mt_cx force = 0.5 * cx_mul(k, stretch[1 - side]);
+        add_gradient(sys, body, jet[side].g, force, out->g);
+        note_force(sys, out, &jet[side], force);
+        if (curvature != MT_CURVATURE_NONE) {
+            add_hessian(sys, body, &jet[side], force,
+                        curvature == MT_CURVATURE_GEOMETRIC ? 0.0 : 0.5 * k, &jet[1 - side],
+                        out->h);
+        }
+    }
+}
+
+static void add_spring(const mt_data *d, int i, mt_cx k, mt_cx stretch, const mt_jet *jet,
+                       mt_curvature curvature, mt_lagrangian *out)
+{
+    const mt_system *const sys = d->sys;
+    const mt_spring_def *const s = &sys->springs[i];
+    const int *const body = sys->measures[s->measure[0]].body;
+    const bool trimmed = i == sys->trim_spring;
+    mt_cx force = cx_mul(k, stretch) + mt_data_scalar(d, s->preload, 0.0);
+    if (trimmed) {
+        force = cx_make(out->trim_force, out->trim_force_derivative);
+        add_gradient(sys, body, jet->g, 1.0, out->trim);
+    }
+    add_gradient(sys, body, jet->g, force, out->g);
+    note_force(sys, out, jet, force);
+    if (curvature != MT_CURVATURE_NONE) {
+        /* while the force of the trimmed spring is an unknown its stiffness does not act; in the linearised system it does, there as a row (rows.h) */
+        const bool geometric = curvature == MT_CURVATURE_GEOMETRIC || trimmed;
+        add_hessian(sys, body, jet, force, geometric ? 0.0 : k, jet, out->h);
+    }
+}
+
+static void add_springs(const mt_data *d, const mt_pose *poses, mt_curvature curvature,
+                        mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
     mt_jet jet[2];
     for (int i = 0; i < sys->n_springs; i++) {
         const mt_spring_def *const s = &sys->springs[i];
+        const mt_measure_def *const first = &sys->measures[s->measure[0]];
         const bool coupling = s->measure[0] != s->measure[1];
         mt_cx stretch[2];
         if (s->damper) {
@@ -120,35 +159,16 @@ static void add_springs(const mt_data *d, const mt_pose *poses, bool hessian,
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
             const mt_measure_data m = mt_data_measure(d, def);
             mt_measure_eval(&m, mt_pose_of(poses, def->body[0]),
-                            mt_pose_of(poses, def->body[1]), hessian, &jet[side]);
+                            mt_pose_of(poses, def->body[1]), curvature != MT_CURVATURE_NONE,
+                            &jet[side]);
             stretch[side] = jet[side].value - d->rest[i][side];
         }
-        const int *const body = sys->measures[s->measure[0]].body;
         const mt_cx k = mt_data_scalar(d, s->stiffness, 0.0);
-        note_noise(d, &sys->measures[s->measure[0]], poses, &jet[0], creal(k), out);
-        if (coupling) { /* V = 1/2 k d_a d_b */
-            for (int side = 0; side < 2; side++) {
-                const mt_cx force = 0.5 * cx_mul(k, stretch[1 - side]);
-                add_gradient(sys, body, jet[side].g, force, out->g);
-                note_force(sys, out, &jet[side], force);
-                if (hessian) {
-                    add_hessian(sys, body, &jet[side], force, geometric_only ? 0.0 : 0.5 * k,
-                                &jet[1 - side], out->h);
-                }
-            }
-            continue;
-        }
-        mt_cx force = cx_mul(k, stretch[0]) + mt_data_scalar(d, s->preload, 0.0);
-        if (i == sys->trim_spring) {
-            force = cx_make(out->trim_force, out->trim_force_derivative);
-            add_gradient(sys, body, jet[0].g, 1.0, out->trim);
-        }
-        add_gradient(sys, body, jet[0].g, force, out->g);
-        note_force(sys, out, &jet[0], force);
-        if (hessian) {
-            /* while the force of the trimmed spring is an unknown its stiffness does not act; in the linearised system (geometric_only) it does, elsewhere */
-            const bool rigid_part = geometric_only || i == sys->trim_spring;
-            add_hessian(sys, body, &jet[0], force, rigid_part ? 0.0 : k, &jet[0], out->h);
+        note_noise(d, first, poses, &jet[0], creal(k), out);
+        if (coupling) {
+            add_coupling(sys, first->body, k, stretch, jet, curvature, out);
+        } else {
+            add_spring(d, i, k, stretch[0], jet, curvature, out);
         }
     }
 }
@@ -242,9 +262,10 @@ static void add_constraints(const mt_data *d, const mt_pose *poses, int m, const
 }
 
 void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,
-                        const mt_pose *poses, int m, const mt_cx *lambda, bool hessian,
-                        bool geometric_only, mt_lagrangian *out)
+                        const mt_pose *poses, int m, const mt_cx *lambda,
+                        mt_curvature curvature, mt_lagrangian *out)
 {
+    const bool hessian = curvature != MT_CURVATURE_NONE;
     const size_t nq = (size_t)d->sys->nq;
     memset(out->g, 0, nq * sizeof *out->g);
     memset(out->trim, 0, nq * sizeof *out->trim);
@@ -255,7 +276,7 @@ void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn
     out->force_scale = 0.0;
     out->force_noise = 0.0;
     if (energy == MT_ENERGY_PHYSICAL) {
-        add_springs(d, poses, hessian, geometric_only, out);
+        add_springs(d, poses, curvature, out);
         add_loads(d, poses, hessian, out);
     } else {
         add_anchor(d, drawn, poses, hessian, out);

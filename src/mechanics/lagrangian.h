@@ -11,12 +11,18 @@
  */
 typedef enum mt_energy { MT_ENERGY_PHYSICAL, MT_ENERGY_ANCHOR } mt_energy;
 
+/* What is wanted of the Hessian: nothing, all of it, or the geometric part alone (no k grad grad^T of springs). */
+typedef enum mt_curvature {
+    MT_CURVATURE_NONE,
+    MT_CURVATURE_FULL,
+    MT_CURVATURE_GEOMETRIC
+} mt_curvature;
+
 typedef struct mt_lagrangian {
-    mt_cx *g; /* [nq] gradient of V (without lambda) */
-    mt_cx *c; /* [m] */
-    mt_cx *a; /* m x nq, column-major */
-    mt_cx *
-        h; /* nq x nq, Hessian of V + lambda c; only the geometric part (no k grad grad^T) where `geometric_only` */
+    mt_cx *g;    /* [nq] gradient of V (without lambda) */
+    mt_cx *c;    /* [m] */
+    mt_cx *a;    /* m x nq, column-major */
+    mt_cx *h;    /* nq x nq, Hessian of V + lambda c */
     mt_cx *trim; /* [nq] gradient of the trimmed spring's measure (where the system has one) */
     double
         force_scale; /* sum over all loads and springs of |contribution to g|, largest entry; 0 where nothing loads */
@@ -26,10 +32,10 @@ typedef struct mt_lagrangian {
     double trim_force_derivative;
 } mt_lagrangian;
 
-/* m: how many constraints take part (the drive's is the last of them). lambda may be NULL (0). h is filled where `hessian`. */
+/* m: how many constraints take part (the drive's is the last of them). lambda may be NULL (0). h is filled as `curvature` says. */
 void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,
-                        const mt_pose *poses, int m, const mt_cx *lambda, bool hessian,
-                        bool geometric_only, mt_lagrangian *out);
+                        const mt_pose *poses, int m, const mt_cx *lambda,
+                        mt_curvature curvature, mt_lagrangian *out);
 mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
                              mt_err *err);
 /* Column of q for local freedom k (0..11) of a pair of bodies; -1: none. */

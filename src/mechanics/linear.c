@@ -130,7 +130,8 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     }
     l.trim_force = lin->position.trim_force;
     mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, lin->position.pose,
-                       all, loaded ? lambda : NULL, loaded, true, &l);
+                       all, loaded ? lambda : NULL,
+                       loaded ? MT_CURVATURE_GEOMETRIC : MT_CURVATURE_NONE, &l);
     for (ptrdiff_t j = 0; j < nq; j++) {
         for (ptrdiff_t i = 0; i < lin->m; i++) {
             lin->a[i + (j * lin->m)] = creal(l.a[i + (j * all)]);

@@ -371,8 +371,8 @@ void mt_pose_move(mt_pose *pose, const double *dx, const double *theta)
     const double sh = half > 0.0 ? sin(half) / half : 1.0;
     const double s2 = 0.5 * sh * sh;
     for (int c = 0; c < 3; c++) {
-        const double v[3] = {creal(pose->r[3 * c]), creal(pose->r[(3 * c) + 1]),
-                             creal(pose->r[(3 * c) + 2])};
+        const mt_cx *const col = pose->r + ((ptrdiff_t)3 * c);
+        const double v[3] = {creal(col[0]), creal(col[1]), creal(col[2])};
         const double w[3] = {(theta[1] * v[2]) - (theta[2] * v[1]),
                              (theta[2] * v[0]) - (theta[0] * v[2]),
                              (theta[0] * v[1]) - (theta[1] * v[0])};

@@ -60,8 +60,8 @@ void mt_newton_evaluate(mt_newton_work *w, const mt_pose *poses, bool hessian)
     for (int i = 0; i < m; i++) {
         w->lambda_cx[i] = w->lambda[i];
     }
-    mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, poses, m, w->lambda_cx, hessian,
-                       false, &w->l);
+    mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, poses, m, w->lambda_cx,
+                       hessian ? MT_CURVATURE_FULL : MT_CURVATURE_NONE, &w->l);
     real_part(nq, w->l.g, w->g);
     real_part(nq, w->l.trim, w->trim);
     real_part(m, w->l.c, w->c);

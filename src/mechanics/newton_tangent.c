@@ -25,8 +25,8 @@ static mt_status differentiate(mt_newton_work *w, const mt_pose *poses, const mt
     }
     w->l.trim_force = p->trim_force;
     w->l.trim_force_derivative = 0.0;
-    mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, moved, m, w->lambda_cx, false,
-                       false, &w->l);
+    mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, moved, m, w->lambda_cx,
+                       MT_CURVATURE_NONE, &w->l);
     for (int j = 0; j < w->sys->nq; j++) {
         mt_cx sum = w->l.g[j];
         for (int i = 0; i < m; i++) {

@@ -170,8 +170,10 @@ static void bending_rows(const mt_cx *u, const mt_cx *t, double sign, mt_cx leng
     for (int i = 0; i < BENDING_ROWS; i++) {
         mt_cx *const row = rows + ((ptrdiff_t)i * MT_LOCAL);
         for (int side = 0; side < 2; side++) {
-            add_point(row, side, zero, u, c[2 * side][i]);
-            add_turn(row, side, t, sign * c[(2 * side) + 1][i] * length);
+            const double *const deflection = c[side == 0 ? 0 : 2];
+            const double *const slope = c[side == 0 ? 1 : 3];
+            add_point(row, side, zero, u, deflection[i]);
+            add_turn(row, side, t, sign * slope[i] * length);
         }
     }
 }
@@ -252,8 +254,9 @@ static void add_bending_channel(mt_cx *row, const mt_cx n[4], const mt_cx *u, co
 {
     static const mt_cx zero[3] = {0.0, 0.0, 0.0};
     for (int side = 0; side < 2; side++) {
-        add_point(row, side, zero, u, cx_mul(weight, n[2 * side]));
-        add_turn(row, side, t, sign * cx_mul(weight, cx_mul(length, n[(2 * side) + 1])));
+        const mt_cx *const own = n + (side == 0 ? 0 : 2);
+        add_point(row, side, zero, u, cx_mul(weight, own[0]));
+        add_turn(row, side, t, sign * cx_mul(weight, cx_mul(length, own[1])));
     }
 }
 

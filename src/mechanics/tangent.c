@@ -65,7 +65,8 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_pose *poses, mt_li
     l.trim_force = lin->position.trim_force;
     l.trim_force_derivative = lin->position.d_trim_force;
     mt_lagrangian_eval(&lin->dual, MT_ENERGY_PHYSICAL, lin->position.drawn, poses, all,
-                       loaded ? lambda : NULL, loaded, true, &l);
+                       loaded ? lambda : NULL,
+                       loaded ? MT_CURVATURE_GEOMETRIC : MT_CURVATURE_NONE, &l);
     for (ptrdiff_t j = 0; j < nq; j++) {
         for (ptrdiff_t i = 0; i < lin->m; i++) {
             t->a[i + (j * lin->m)] = cx_derivative(l.a[i + (j * all)]);
@@ -293,6 +294,7 @@ mt_status mt_linear_sense(mt_linear *lin, int ns, const int *channel, int cols, 
     return MT_OK;
 }
 
+/* NOLINTNEXTLINE(readability-function-size): shapes and their derivative, both as mt_linear_sense takes them */
 mt_status mt_linear_sense_derivative(mt_linear *lin, int p, int ns, const int *channel,
                                      int cols, const double *y, const double *dy, double *ds,
                                      mt_err *err)

@@ -95,18 +95,18 @@ static inline bool mech_open(mt_test *t, mt_model *model, const char *configurat
         return false;
     }
     s->rc = mt_analysis_new(model, c, s->n, parameter, s->at, &s->a, &s->err);
-    return s->rc == MT_OK;
+    return s->rc == MT_OK && s->a != NULL;
 }
 
 /* The same, and it must succeed. */
 static inline bool mech_must(mt_test *t, mt_model *model, const char *configuration,
                              const char *inputs, mech *s)
 {
-    const bool ok = mech_open(t, model, configuration, inputs, s);
-    if (!CHECK(t, ok)) {
-        (void)fprintf(stderr, "%s: %s\n", mt_status_name(s->rc), s->err.text);
+    if (CHECK(t, mech_open(t, model, configuration, inputs, s)) && s->a != NULL) {
+        return true;
     }
-    return ok;
+    (void)fprintf(stderr, "%s: %s\n", mt_status_name(s->rc), s->err.text);
+    return false;
 }
 
 /* Frequency of vibration mode `index` (from 1) [Hz]; NaN where there is none. */

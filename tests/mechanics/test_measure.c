@@ -28,10 +28,10 @@ typedef struct scene {
 static void random_unit(mt_random *r, double *v)
 {
     double n = 0.0;
-    while (!(n > 0.1)) {
+    do {
         mt_random_fill(r, 3, v);
         n = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    }
+    } while (!(n > 0.1));
     for (int i = 0; i < 3; i++) {
         v[i] /= n;
     }
@@ -86,7 +86,7 @@ static void make(mt_random *r, int kind, double angle, scene *s)
     s->pose[1] = s->pose[0];
     const mt_pose other = random_pose(r, angle);
     for (int c = 0; c < 3; c++) {
-        cx_rotate3(other.r, &s->pose[0].r[3 * c], &s->pose[1].r[3 * c]);
+        cx_rotate3(other.r, s->pose[0].r + (ptrdiff_t)3 * c, s->pose[1].r + (ptrdiff_t)3 * c);
         s->pose[1].x[c] = other.x[c] + 2.0;
     }
     s->m = (mt_measure_data){
@@ -104,7 +104,8 @@ static void displaced(const scene *s, const double *x, mt_pose p[2])
 {
     for (int b = 0; b < 2; b++) {
         p[b] = s->pose[b];
-        mt_pose_move(&p[b], x + (6 * b), x + (6 * b) + 3);
+        const double *const dx = x + (ptrdiff_t)6 * b;
+        mt_pose_move(&p[b], dx, dx + 3);
     }
 }
 
@@ -135,36 +136,51 @@ static double inner_slope(const void *ctx, int n, const double *x)
     return d + 1.0;
 }
 
+static void check_gradient(mt_test *t, scene *s, const char *name, double angle)
+{
+    const double step =
+        angle > 2.0 ? 0.1 * STEP : STEP; /* near half a turn kernels bend more */
+    double x[MT_LOCAL] = {0.0};
+    mt_jet jet;
+    mt_measure_eval(&s->m, &s->pose[0], &s->pose[1], false, &jet);
+    CHECK_NEAR_ABS(t, creal(jet.value) + 1.0, value_at(s, MT_LOCAL, x), 1e-15);
+    for (int i = 0; i < MT_LOCAL; i++) {
+        mt_test_row(t, "%s, %g rad, gradient %d", name, angle, i);
+        CHECK(t, mt_slope_agrees(value_at, s, MT_LOCAL, x, i, creal(jet.g[i]), step, NOISE));
+    }
+}
+
+/* The Hessian of the chart off its diagonal: mixed slopes of the value itself. */
+static void check_hessian(mt_test *t, scene *s, const char *name, double angle)
+{
+    static const double INNER_NOISE = 1e-12;
+    double x[MT_LOCAL] = {0.0};
+    mt_jet jet;
+    mt_measure_eval(&s->m, &s->pose[0], &s->pose[1], true, &jet);
+    for (int i = 0; i < MT_LOCAL; i++) {
+        s->entry = i;
+        for (int k = 0; k < MT_LOCAL; k++) {
+            const double h = creal(jet.h[i + (MT_LOCAL * k)]);
+            mt_test_row(t, "%s, %g rad, Hessian %d %d", name, angle, i, k);
+            CHECK_NEAR_ABS(t, creal(jet.h[k + (MT_LOCAL * i)]), h, 1e-14 * (1.0 + fabs(h)));
+            if (i != k) {
+                CHECK(t, mt_slope_agrees(inner_slope, s, MT_LOCAL, x, k, h, STEP, INNER_NOISE));
+            }
+        }
+    }
+}
+
 static void measure__gradient_and_hessian_agree_with_slopes(mt_test *t)
 {
     static const double ANGLES[] = {0.0, 1e-6, 0.1, 0.2, 1.2, 2.5, 3.0};
-    static const double INNER_NOISE = 1e-12;
     mt_random r = mt_random_seed(7);
     for (int kind = 0; kind < KINDS; kind++) {
         for (int a = 0; a < MT_COUNT(ANGLES); a++) {
             scene s;
-            mt_jet jet;
-            double x[MT_LOCAL] = {0.0};
             make(&r, kind, ANGLES[a], &s);
-            mt_measure_eval(&s.m, &s.pose[0], &s.pose[1], true, &jet);
-            CHECK_NEAR_ABS(t, creal(jet.value) + 1.0, value_at(&s, MT_LOCAL, x), 1e-15);
-            for (int i = 0; i < MT_LOCAL; i++) {
-                const double step = ANGLES[a] > 2.0 ? 0.1 * STEP : STEP;
-                mt_test_row(t, "%s, %g rad, gradient %d", NAMES[kind], ANGLES[a], i);
-                CHECK(t, mt_slope_agrees(value_at, &s, MT_LOCAL, x, i, creal(jet.g[i]), step,
-                                         NOISE));
-                /* the Hessian of the chart: mixed slopes of the value itself */
-                for (int k = 0; k < MT_LOCAL && ANGLES[a] < 2.0; k++) {
-                    const double h = creal(jet.h[i + (MT_LOCAL * k)]);
-                    CHECK_NEAR_ABS(t, creal(jet.h[k + (MT_LOCAL * i)]), h,
-                                   1e-14 * (1.0 + fabs(h)));
-                    mt_test_row(t, "%s, %g rad, Hessian %d %d", NAMES[kind], ANGLES[a], i, k);
-                    s.entry = i;
-                    if (i != k) {
-                        CHECK(t, mt_slope_agrees(inner_slope, &s, MT_LOCAL, x, k, h, STEP,
-                                                 INNER_NOISE));
-                    }
-                }
+            check_gradient(t, &s, NAMES[kind], ANGLES[a]);
+            if (ANGLES[a] < 2.0) {
+                check_hessian(t, &s, NAMES[kind], ANGLES[a]);
             }
         }
     }
@@ -266,7 +282,7 @@ static void measure__complex_step_carries_derivatives(mt_test *t)
         for (int i = 0; i < 2; i++) {
             c.s.m.point[i] = c.s.v[i];
             p[i] = l.s.pose[i];
-            mt_pose_tangent(&p[i], l.q + (6 * i), l.q + (6 * i) + 3);
+            mt_pose_tangent(&p[i], l.q + (ptrdiff_t)6 * i, l.q + (ptrdiff_t)6 * i + 3);
         }
         for (int i = 0; i < 3; i++) {
             c.s.m.dir[i] = c.s.v[2 + i];
