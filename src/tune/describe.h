@@ -14,21 +14,36 @@
 typedef struct mt_design {
     const double *t;              /* [n] coordinates */
     const mt_nlp_solution *found; /* NULL: the original design */
+    int stage;                    /* the objective that found->f belongs to */
     int rank;
-    bool interrupted;
 } mt_design;
 
-/* Fill rec (texts and lists in result->mem). baseline: NULL while the baseline itself is described. */
+/* Fill rec (lists and texts in result->mem; names are the study's until mt_describe_own). baseline: NULL while the baseline itself is described. A design where goals have no
+ * value (an unstable configuration) is described as far as it goes, with a warning. Fails: MT_E_MEMORY, MT_E_INTERNAL, failures of the fresh analyses. */
 mt_status mt_describe_design(mt_problem *p, const mt_design *design,
                              const mt_recommendation *baseline, mt_result *result,
                              mt_recommendation *rec, mt_err *err);
-/* Sentences why a recommendation is what it is (reasons.c). */
+/* Parts of it. describe_goals.c: place and solve everything of fresh at t and judge every goal. */
+mt_status mt_describe_goals(mt_problem *fresh, const mt_design *design, mt_result *result,
+                            mt_recommendation *rec, mt_err *err);
+/* describe_frequencies.c: after mt_describe_goals, whose views are compared. */
+mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
+                                  const mt_recommendation *baseline, mt_result *result,
+                                  mt_recommendation *rec, mt_err *err);
+/* describe_undetermined.c: directions that the goals do not settle. */
+mt_status mt_describe_undetermined(const mt_problem *p, const mt_nlp_result *found,
+                                   mt_result *result, mt_err *err);
+/* Sentences why a recommendation is what it is; after mt_describe_undetermined (reasons.c). */
 mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
                               const mt_nlp_result *search, mt_result *result,
                               mt_recommendation *rec, mt_err *err);
-/* Judge the published list: x_recommended NULL where there is none (then the original design stands in) (published.c). */
+/* Judge the published list: x_recommended NULL where there is none (then the original design stands in). Fails with the entry's address in the text (published.c). */
 mt_status mt_describe_published(mt_problem *p, const double *x_original,
                                 const double *x_recommended, mt_result *result, mt_err *err);
+/* Versions, seed, inputs, names of the variables (describe_run.c). */
+mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err);
+/* Copy every text that study and problem lent into the result, which may outlive them (describe_run.c). */
+mt_status mt_describe_own(const mt_study *study, mt_result *result, mt_err *err);
 /* Add a warning (formatted) to the result. */
 mt_status mt_describe_warn(mt_result *result, mt_err *err, const char *fmt, ...)
     MT_PRINTF(3, 4);

@@ -2,39 +2,37 @@
 #ifndef TUNE_PROBLEM_H
 #define TUNE_PROBLEM_H
 
-#include "tune/analysis.h"
 #include "tune/nlp.h"
+#include "tune/reference.h"
 #include "tune/study.h"
+#include "tune/tracking.h"
 
 /*
  * A study compiled for evaluation: variables as scaled coordinates t, one analysis per configuration that a goal names, goals as a flat list of demands (one per goal and
- * configuration), the objective. One problem, one worker.
+ * configuration), the objectives. One problem, one worker.
  *
- * Coordinates: t = ln x where both bounds and the original value are positive, else t = x / scale. The change of a redesign is then
+ * Coordinates: t = ln x where the lower bound and the original value are positive, else t = x / scale. The change of a redesign is then
  *     sqrt(sum w_i (t_i - t_i(original))^2).
+ *
+ * Objectives in order: `stage` is the one that is minimised; the ones before it are held by one inequality each,
+ *     (limit_j - f_j) / unit_j >= 0.
+ *
+ * Files: problem.c (life, coordinates, the face to the search), problem_demands.c (goals to demands), problem_aims.c (expressions, objectives), problem_eval.c (one evaluation),
+ * demand.c (value and gradient of one demand).
  */
-typedef struct mt_reference_shape {
-    const char *reference; /* name */
-    int mode;              /* 1-based in the reference */
-    int ns;
-    int *channel;        /* [ns] channels of the configuration's system */
-    double *shape;       /* [ns] of the reference, unit norm */
-    double frequency_hz; /* NaN: not known */
-} mt_reference_shape;
 
-/* Named mode of the model, as it is at the original design: w = M phi over all states, for the mass-weighted correlation. */
-typedef struct mt_named_shape {
-    int named; /* of the model */
-    double *w; /* [nq] */
-} mt_named_shape;
-
+/* A configuration that goals speak of. */
 typedef struct mt_view {
     int configuration;
     mt_analysis *analysis; /* owned */
-    int n_named;
-    mt_named_shape *named; /* named modes of this configuration */
-    bool needs_gradient;
-    bool needs_vectors;
+    int n_named; /* named modes of this configuration that exist at the original design */
+    int *named;  /* [n_named] of the model */
+    const double **shape; /* [n_named] weighed there (tracking.h) */
+    int *pair;            /* [n_named] positions after mt_view_track */
+    double *share;        /* [n_named] likewise */
+    bool needs_vectors;   /* a goal needs shapes even where no gradient is asked for */
+    bool tracked;         /* pair and share belong to the last solve */
+    bool solved;          /* the last solve succeeded */
 } mt_view;
 
 typedef struct mt_demand {
@@ -45,18 +43,25 @@ typedef struct mt_demand {
     int named;                /* position in the view's list, where by name */
     mt_node node;             /* limit: node of the expressions' program */
     mt_reference_shape shape; /* shape, mac; frequency: without the shape */
-    double target_hz;
-    int row_eq;       /* first row in eq, -1 none */
-    int row_in;       /* first row in in (two rows where both limits are given), -1 */
-    int row_res;      /* first residual, -1 */
+    double target_hz;         /* frequency; NaN: limits only */
+    double weight;    /* the goal's, unless changed to see what it does; NaN: a constraint */
+    int row_eq;       /* its row in eq, -1 none */
+    int row_in;       /* first row in in, -1 none */
+    int n_in;         /* 2 where at_least and at_most are both given */
+    int row_res;      /* first residual, -1 none */
     double tolerance; /* relative */
 } mt_demand;
 
-/* References that are models are analysed once, when first asked for, and shared by all problems of a study: they do not depend on the design. */
-typedef struct mt_reference_cache {
-    int n;
-    mt_analysis **analysis; /* [n_references] owned */
-} mt_reference_cache;
+/* An objective. Its value f is what the search minimises: 1/2 change^2, kg, the expression's value, 1/2 |r|^2. */
+typedef struct mt_aim {
+    mt_objective_type type;
+    const mt_objective *objective; /* NULL: none */
+    mt_node node;                  /* expression: in the problem's program */
+    int n_mass;                    /* items counted by a mass */
+    mt_node *mass;                 /* [n_mass] nodes in the first view's program */
+    double limit;                  /* f at most this while it is held */
+    double unit;                   /* what a violation of the limit is divided by */
+} mt_aim;
 
 typedef struct mt_problem {
     const mt_study *study;          /* must outlive the problem */
@@ -67,67 +72,81 @@ typedef struct mt_problem {
     double *original; /* [n] */
     double *lower_t;
     double *upper_t;
-    double *origin_t;
-    double *scale; /* [n] NaN: logarithmic; else x = t * scale */
+    double *origin_t; /* may lie outside the bounds, where the original design does */
+    double *scale;    /* [n] NaN: logarithmic; else x = t * scale */
     int n_views;
     mt_view *views;
     int n_demands;
     mt_demand *demands;
     int n_eq;
-    int n_in;
+    int n_in; /* of the goals; held objectives follow */
     int n_res;
-    double *eq_tol;
-    double *in_tol;
-    mt_program program; /* expressions: limits, objective, published quantities */
-    mt_node *limit;     /* [n_demands] in program */
-    mt_node objective_node;
+    double *eq_tol;     /* [n_eq] */
+    double *in_tol;     /* [n_in + n_aims] */
+    double weights;     /* sum of the weights of the demands that are residuals */
+    mt_program program; /* expressions: limits, objectives, published quantities */
     mt_node *published; /* [study->n_published] */
     double *value;      /* [program.count] */
-    double *grad;
-    mt_objective_type objective;
-    int n_mass;      /* items counted by a mass objective */
-    mt_node *mass;   /* nodes in the first view's program */
-    double *x;       /* [n] work */
-    double *dlambda; /* [n] work */
-    double *shape;   /* [max ns] work */
-    double *dshape;  /* [max ns x n] work */
+    double *grad;       /* program.count rows of n, after an evaluation with gradient */
+    int n_aims;         /* at least one */
+    mt_aim *aims;
+    int stage;           /* of aims */
+    double *x;           /* [n] parameters of the last evaluation */
+    double *t;           /* [n] its coordinates */
+    double *r;           /* [n_res] residuals there */
+    double *dr;          /* n_res x n */
+    double *work;        /* [n] */
+    double *work_shape;  /* [max ns] */
+    double *work_dshape; /* max ns x n */
     long evaluations;
-    const volatile int *stop;
+    const volatile int *stop; /* NULL, or the search ends where it is set */
+    void (*progress)(void *context, const char *text); /* NULL, or called now and then */
+    void *progress_context;
 } mt_problem;
 
-/* Compile. Solves every view once at the original design. Fails: MT_E_INPUT (with the goal's address in the text: a mode that is not there, no common sensor), numerical failures. */
+/*
+ * Compile. Solves every view once at the original design; a configuration that is unstable there is no failure, its goals are unmet.
+ * Fails: MT_E_INPUT with the goal's address in the text (a mode that is not there, no common sensor; what this version does not search), numerical failures at the
+ * original design (no equilibrium, ...), MT_E_MEMORY.
+ */
 mt_status mt_problem_new(const mt_study *study, mt_reference_cache *references,
                          mt_problem **out, mt_err *err);
-mt_status mt_reference_cache_init(mt_reference_cache *cache, const mt_study *study,
-                                  mt_arena *mem, mt_err *err);
-void mt_reference_cache_free(mt_reference_cache *cache);
 void mt_problem_delete(mt_problem *p);
-/* Parameter values of coordinates t. */
+/* Parameter values x[n] of coordinates t[n]: a bound, and the original value, come back to the last bit. */
 void mt_problem_x(const mt_problem *p, const double *t, double *x);
-/* The nlp's callback: context is the problem. */
+/* dx_i/dt_i at the last evaluation. */
+double mt_problem_stretch(const mt_problem *p, int i);
+/* The present stage as a search problem (arrays belong to the problem). */
+mt_nlp mt_problem_nlp(mt_problem *p);
+/* The nlp's callback: context is the problem. Fails: MT_E_INTERRUPTED, and as its parts do. */
 mt_status mt_problem_eval(void *context, const double *t, bool with_gradient,
                           mt_nlp_values *out, mt_err *err);
-/* As a search problem (arrays belong to the problem). */
-mt_nlp mt_problem_nlp(mt_problem *p);
+/* The first half of an evaluation: parameters, expressions. The views follow with mt_view_solve. */
+mt_status mt_problem_place(mt_problem *p, const double *t, bool with_gradient, mt_err *err);
+mt_status mt_view_solve(mt_problem *p, mt_view *view, bool with_gradient, mt_err *err);
+/* Arrays of out for the present stage, in mem. */
+mt_status mt_problem_values_init(const mt_problem *p, mt_arena *mem, mt_nlp_values *out,
+                                 mt_err *err);
 
-/* Position of the demanded mode in the view's modes; -1: there is none (or the configuration is unstable). */
-int mt_view_position(mt_view *view, int mode, int named, mt_err *err);
 /* View of a configuration, -1. */
 int mt_problem_view(const mt_problem *p, int configuration);
+/* The same, made where it is not there yet. */
+mt_status mt_problem_add_view(mt_problem *p, int configuration, int *out, mt_err *err);
+/* *pos: position of a mode (by index, or by place in the view's list of named ones where mode is 0) in the view's modes; -1: there is none, or the configuration is unstable. */
+mt_status mt_view_position(mt_view *view, int mode, int named, int *pos, mt_err *err);
+/* pair and share of all named modes. */
+mt_status mt_view_track(mt_view *view, mt_err *err);
 
-/* Channels that both sides have: fills channel[] (of sys) and the reference's shape at them; see reference.c. */
-mt_status mt_reference_shape_init(const mt_problem *p, int reference, int mode,
-                                  const mt_system *sys, mt_arena *mem, mt_reference_shape *out,
-                                  mt_err *err);
-/* The reference's frequency alone, for a frequency goal: ns is 0, no sensor is needed. */
-mt_status mt_reference_frequency_init(const mt_problem *p, int reference, int mode,
-                                      mt_reference_shape *out, mt_err *err);
-/* MAC of the mode at pos with the reference; NaN where a shape vanishes. */
-mt_status mt_reference_mac(mt_analysis *a, int pos, const mt_reference_shape *ref, double *mac,
-                           mt_err *err);
-
-/* problem_demand.c: values (and gradients) of one demand, after its view has been solved. */
+/* problem_demands.c: views, demands and their rows. */
+mt_status mt_problem_init_demands(mt_problem *p, mt_err *err);
+/* demand.c: values (and gradients, unless NULL where out holds none) of one demand after its view has been solved; rows as numbered. */
 mt_status mt_demand_eval(mt_problem *p, const mt_demand *d, bool with_gradient,
                          mt_nlp_values *out, mt_err *err);
+/* problem_aims.c: the program of expressions, and the objectives. After the demands. */
+mt_status mt_problem_init_aims(mt_problem *p, mt_err *err);
+/* f of objective k at the last evaluation, gradient[n] (may be NULL) likewise. */
+double mt_aim_value(const mt_problem *p, int k, double *gradient);
+/* Hold objective k at f, as well as it can be told from f. */
+void mt_aim_hold(mt_problem *p, int k, double f);
 
 #endif

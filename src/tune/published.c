@@ -1,24 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Published values against computed ones. A value without any tolerance is reported and holds always only where it is "not comparable"; else it needs one. */
+/* Published values against computed ones, from analyses of their own. A value that could not be computed (NaN) never holds; one that is not comparable holds where it has a value. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "tune/describe.h"
 
+enum { ORIGINAL, RECOMMENDED, DESIGNS };
+
 typedef struct judge {
     mt_problem *p;
     mt_result *result;
-    const double *x[2];     /* original, recommended */
-    mt_analysis **analysis; /* [2 * configurations], made when first asked for */
-    double *value[2];       /* program values at both designs */
+    mt_arena mem;             /* work */
+    const double *x[DESIGNS]; /* parameters */
+    mt_analysis **analysis;   /* [DESIGNS * configurations] owned, made when first asked for */
+    double *value[DESIGNS];   /* program values at both designs */
 } judge;
 
-static mt_status analysis_at(judge *j, int configuration, bool original, mt_analysis **out,
+static mt_status analysis_at(judge *j, int configuration, int design, mt_analysis **out,
                              mt_err *err)
 {
-    const int design = original ? 0 : 1;
-    mt_analysis **const slot = &j->analysis[(2 * configuration) + design];
+    mt_analysis **const slot = &j->analysis[(DESIGNS * configuration) + design];
     if (*slot == NULL) {
         MT_TRY(mt_analysis_new(j->p->study->model, configuration, j->p->n, j->p->inputs,
                                j->x[design], slot, err));
@@ -27,72 +28,95 @@ static mt_status analysis_at(judge *j, int configuration, bool original, mt_anal
     return MT_OK;
 }
 
-/* Position of the mode meant: by index, or by name through the shape at the original design. */
+/* Position of a named mode at the recommended design: its configuration's named modes of the original design, paired one to one. */
+static mt_status named_at(judge *j, const mt_published *pub, mt_analysis *a, int *pos,
+                          mt_err *err)
+{
+    const mt_model *const model = j->p->study->model;
+    const size_t most = (size_t)model->n_modes;
+    mt_analysis *first = NULL;
+    int n = 0;
+    int wanted = -1;
+    MT_TRY(analysis_at(j, pub->configuration, ORIGINAL, &first, err));
+    const double **const w = mt_arena_alloc(&j->mem, most, sizeof *w);
+    int *const pair = mt_arena_int(&j->mem, most);
+    double *const share = mt_arena_f64(&j->mem, most, 1);
+    *pos = -1;
+    if (w == NULL || pair == NULL || share == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < model->n_modes; i++) {
+        const int there = mt_modal_flexible(&first->modes, model->modes[i].index);
+        if (model->modes[i].configuration != pub->configuration || there < 0) {
+            continue;
+        }
+        double *const shape = mt_arena_f64(&j->mem, (size_t)first->sys->nq, 1);
+        if (shape == NULL) {
+            return mt_fail_memory(err);
+        }
+        MT_TRY(mt_track_weigh(first, there, shape, err));
+        wanted = i == pub->mode.named ? n : wanted;
+        w[n++] = shape;
+    }
+    if (wanted >= 0) {
+        MT_TRY(mt_track_assign(a, n, w, pair, share, err));
+        *pos = pair[wanted];
+    }
+    return MT_OK;
+}
+
+/* Position of the mode meant and its index at the original design. */
 static mt_status mode_at(judge *j, const mt_published *pub, mt_analysis *a, int *pos,
                          int *index, mt_err *err)
 {
-    const mt_model *const model = j->p->study->model;
-    *index = pub->mode.index > 0 ? pub->mode.index : model->modes[pub->mode.named].index;
+    const bool by_index = pub->mode.index > 0;
+    *index = by_index ? pub->mode.index : j->p->study->model->modes[pub->mode.named].index;
     *pos = mt_modal_flexible(&a->modes, *index);
-    if (pub->mode.index > 0 || pub->original) {
+    if (by_index || pub->original) {
         return MT_OK;
     }
-    /* by name at the recommended design: largest mass-weighted correlation with the mode at the original design */
-    mt_analysis *first = NULL;
-    MT_TRY(analysis_at(j, pub->configuration, true, &first, err));
-    const int there = mt_modal_flexible(&first->modes, *index);
-    const ptrdiff_t nq = a->sys->nq;
-    double *const w = mt_arena_f64(&j->result->mem, (size_t)nq, 2);
-    double best = -1.0;
-    if (w == NULL) {
-        return mt_fail_memory(err);
-    }
-    if (there < 0 || *pos < 0) {
-        *pos = -1;
+    const mt_arena_mark mark = mt_arena_get_mark(&j->mem);
+    const mt_status rc = named_at(j, pub, a, pos, err);
+    mt_arena_rewind(&j->mem, mark);
+    return rc;
+}
+
+static mt_status compute_mode(judge *j, const mt_published *pub, double *value, mt_err *err)
+{
+    mt_analysis *a = NULL;
+    int pos = -1;
+    int index = 0;
+    MT_TRY(analysis_at(j, pub->configuration, pub->original ? ORIGINAL : RECOMMENDED, &a, err));
+    MT_TRY(mode_at(j, pub, a, &pos, &index, err));
+    if (pos < 0) {
         return MT_OK;
     }
-    MT_TRY(mt_linear_mass_product(first->lin,
-                                  first->modes.y + ((ptrdiff_t)there * first->lin->n), w, err));
-    for (int i = 0; i < a->modes.count; i++) {
-        mt_linear_expand(a->lin, 1, a->modes.y + ((ptrdiff_t)i * a->lin->n), w + nq);
-        const double c = fabs(mt_dot((int)nq, w, w + nq));
-        if (a->modes.kind[i] == MT_MODE_FLEXIBLE && c > best) {
-            best = c;
-            *pos = i;
-        }
+    if (pub->kind == MT_PUBLISHED_FREQUENCY) {
+        *value = mt_modal_hz(&a->modes, pos);
+        return MT_OK;
     }
-    return MT_OK;
+    mt_reference_shape shape;
+    const mt_arena_mark mark = mt_arena_get_mark(&j->mem);
+    mt_status rc = mt_reference_shape_init(
+        j->p->references, pub->reference, pub->reference_mode > 0 ? pub->reference_mode : index,
+        a->sys, &j->mem, &shape, err);
+    rc = rc == MT_OK ? mt_reference_mac(a, pos, &shape, value, err) : rc;
+    mt_arena_rewind(&j->mem, mark);
+    return rc;
 }
 
 static mt_status compute(judge *j, int i, double *value, mt_err *err)
 {
     const mt_published *const pub = &j->p->study->published[i];
-    mt_analysis *a = NULL;
-    int pos = -1;
-    int index = 0;
     *value = nan("");
     switch (pub->kind) {
     case MT_PUBLISHED_PARAMETER:
     case MT_PUBLISHED_QUANTITY:
-        *value = j->value[pub->original ? 0 : 1][j->p->published[i]];
+        *value = j->value[pub->original ? ORIGINAL : RECOMMENDED][j->p->published[i]];
         return MT_OK;
     case MT_PUBLISHED_FREQUENCY:
-    case MT_PUBLISHED_MAC: {
-        MT_TRY(analysis_at(j, pub->configuration, pub->original, &a, err));
-        MT_TRY(mode_at(j, pub, a, &pos, &index, err));
-        if (pos < 0) {
-            return MT_OK;
-        }
-        if (pub->kind == MT_PUBLISHED_FREQUENCY) {
-            *value = mt_modal_hz(&a->modes, pos);
-            return MT_OK;
-        }
-        mt_reference_shape shape;
-        MT_TRY(mt_reference_shape_init(j->p, pub->reference,
-                                       pub->reference_mode > 0 ? pub->reference_mode : index,
-                                       a->sys, &j->result->mem, &shape, err));
-        return mt_reference_mac(a, pos, &shape, value, err);
-    }
+    case MT_PUBLISHED_MAC:
+        return compute_mode(j, pub, value, err);
     case MT_PUBLISHED_STATUS:
     case MT_PUBLISHED_KIND_COUNT:
         break;
@@ -158,7 +182,7 @@ static const char *demand_of(const mt_published *pub, mt_arena *mem)
 
 static bool holds(const mt_published *pub, double computed)
 {
-    bool ok = computed == computed;
+    bool ok = MT_HAS(computed);
     if (MT_HAS(pub->value) && MT_HAS(pub->tolerance)) {
         ok = ok && fabs(computed - pub->value) <= pub->tolerance;
     }
@@ -203,36 +227,48 @@ static mt_status judge_one(judge *j, int i, mt_result_published *out, mt_err *er
     out->difference = out->computed - out->published;
     out->difference_percent =
         out->published != 0.0 ? 100.0 * out->difference / fabs(out->published) : nan("");
-    out->holds = pub->role == MT_ROLE_NOT_COMPARABLE || holds(pub, out->computed);
+    out->holds =
+        pub->role == MT_ROLE_NOT_COMPARABLE ? MT_HAS(out->computed) : holds(pub, out->computed);
+    return MT_OK;
+}
+
+static mt_status judge_all(judge *j, mt_err *err)
+{
+    mt_result *const result = j->result;
+    const int n = j->p->study->n_published;
+    result->published = mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->published);
+    if (result->published == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int d = 0; d < DESIGNS; d++) {
+        j->value[d] = mt_arena_f64(&j->mem, (size_t)j->p->program.count, 1);
+        if (j->value[d] == NULL) {
+            return mt_fail_memory(err);
+        }
+        MT_TRY(mt_program_eval(&j->p->program, j->x[d], j->value[d], NULL, err));
+    }
+    for (int i = 0; i < n; i++) {
+        MT_TRY(judge_one(j, i, &result->published[i], err));
+        result->n_published++;
+    }
     return MT_OK;
 }
 
 mt_status mt_describe_published(mt_problem *p, const double *x_original,
                                 const double *x_recommended, mt_result *result, mt_err *err)
 {
-    const int n = p->study->n_published;
-    const size_t n_analyses = 2 * (size_t)p->study->model->n_configurations;
+    const int n_analyses = DESIGNS * p->study->model->n_configurations;
     judge j = {
         .p = p,
         .result = result,
         .x = {x_original, x_recommended != NULL ? x_recommended : x_original}
     };
-    result->published = mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->published);
-    j.analysis = mt_arena_alloc(&result->mem, n_analyses, sizeof(mt_analysis *));
-    for (int d = 0; d < 2; d++) {
-        j.value[d] = mt_arena_f64(&result->mem, (size_t)p->program.count, 1);
-        if (result->published == NULL || j.analysis == NULL || j.value[d] == NULL) {
-            return mt_fail_memory(err);
-        }
-        MT_TRY(mt_program_eval(&p->program, j.x[d], j.value[d], NULL, err));
-    }
-    mt_status rc = MT_OK;
-    for (int i = 0; i < n && rc == MT_OK; i++) {
-        rc = judge_one(&j, i, &result->published[i], err);
-        result->n_published += rc == MT_OK ? 1 : 0;
-    }
-    for (size_t i = 0; i < n_analyses; i++) {
+    MT_TRY(mt_arena_init(&j.mem, 0, err));
+    j.analysis = mt_arena_alloc(&j.mem, (size_t)n_analyses, sizeof *j.analysis);
+    const mt_status rc = j.analysis == NULL ? mt_fail_memory(err) : judge_all(&j, err);
+    for (int i = 0; j.analysis != NULL && i < n_analyses; i++) {
         mt_analysis_delete(j.analysis[i]);
     }
+    mt_arena_free(&j.mem);
     return rc;
 }

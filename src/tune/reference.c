@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frequencies and shapes to compare with: those of another model's modes, or measured ones; shapes at the sensor channels that both
- * sides have. */
-#include <math.h>
-#include <string.h>
+#include "tune/reference.h"
 
-#include "tune/problem.h"
+#include <math.h>
 
 static mt_status no_common(const mt_reference *r, mt_err *err)
 {
@@ -64,25 +61,25 @@ static mt_status measured(const mt_reference *r, const mt_system *sys, mt_arena 
 mt_status mt_reference_cache_init(mt_reference_cache *cache, const mt_study *study,
                                   mt_arena *mem, mt_err *err)
 {
-    cache->n = study->n_references;
-    cache->analysis = mt_arena_alloc(mem, (size_t)cache->n, sizeof(mt_analysis *));
+    cache->analysis = mt_arena_alloc(mem, (size_t)study->n_references, sizeof(mt_analysis *));
+    cache->study = study;
     return cache->analysis == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
 void mt_reference_cache_free(mt_reference_cache *cache)
 {
-    for (int i = 0; i < cache->n; i++) {
+    for (int i = 0; cache->analysis != NULL && i < cache->study->n_references; i++) {
         mt_analysis_delete(cache->analysis[i]);
     }
-    cache->n = 0;
+    *cache = (mt_reference_cache){0};
 }
 
 /* The reference's own analysis, made when first asked for, and the position of its mode there. */
-static mt_status computed_mode(const mt_problem *p, int reference, int mode, mt_analysis **out,
-                               int *pos, mt_err *err)
+static mt_status computed_mode(mt_reference_cache *cache, int reference, int mode,
+                               mt_analysis **out, int *pos, mt_err *err)
 {
-    const mt_reference *const r = &p->study->references[reference];
-    mt_analysis **const cached = &p->references->analysis[reference];
+    const mt_reference *const r = &cache->study->references[reference];
+    mt_analysis **const cached = &cache->analysis[reference];
     if (*cached == NULL) {
         MT_TRY(mt_err_in(
             err, mt_analysis_new(r->model, r->configuration, 0, NULL, NULL, cached, err),
@@ -122,30 +119,30 @@ static mt_status computed(mt_analysis *a, int pos, const mt_reference *r, const 
     return normalise(r, out, err);
 }
 
-mt_status mt_reference_shape_init(const mt_problem *p, int reference, int mode,
+mt_status mt_reference_shape_init(mt_reference_cache *cache, int reference, int mode,
                                   const mt_system *sys, mt_arena *mem, mt_reference_shape *out,
                                   mt_err *err)
 {
-    const mt_reference *const r = &p->study->references[reference];
+    const mt_reference *const r = &cache->study->references[reference];
     mt_analysis *a = NULL;
     int pos = -1;
     *out = (mt_reference_shape){.reference = r->name.s, .mode = mode, .frequency_hz = nan("")};
     if (r->model == NULL) {
         return measured(r, sys, mem, out, err);
     }
-    MT_TRY(computed_mode(p, reference, mode, &a, &pos, err));
+    MT_TRY(computed_mode(cache, reference, mode, &a, &pos, err));
     return computed(a, pos, r, sys, mem, out, err);
 }
 
-mt_status mt_reference_frequency_init(const mt_problem *p, int reference, int mode,
+mt_status mt_reference_frequency_init(mt_reference_cache *cache, int reference, int mode,
                                       mt_reference_shape *out, mt_err *err)
 {
-    const mt_reference *const r = &p->study->references[reference];
+    const mt_reference *const r = &cache->study->references[reference];
     mt_analysis *a = NULL;
     int pos = -1;
     *out = (mt_reference_shape){.reference = r->name.s, .mode = mode, .frequency_hz = nan("")};
     if (r->model != NULL) {
-        MT_TRY(computed_mode(p, reference, mode, &a, &pos, err));
+        MT_TRY(computed_mode(cache, reference, mode, &a, &pos, err));
         out->frequency_hz = mt_modal_hz(&a->modes, pos);
         return MT_OK;
     }

@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tune/solve.h"
 
-#include "modetune/version.h"
-
-#include <math.h>
-#include <string.h>
-
-#include "base/workers.h"
-#include "linalg/blas.h"
 #include "tune/describe.h"
-#include "tune/libraries.h"
+#include "tune/search.h"
 
 mt_solve_options mt_solve_options_default(void)
 {
@@ -17,171 +10,41 @@ mt_solve_options mt_solve_options_default(void)
     return opt;
 }
 
-static mt_status describe_run(const mt_study *study, mt_result *result, mt_err *err)
-{
-    mt_result_run *const run = &result->run;
-    run->modetune_version = MT_VERSION_STRING;
-    run->blas = mt_arena_strdup(&result->mem, mt_blas_description());
-    char nlopt[16];
-    mt_nlopt_version(nlopt);
-    run->nlopt_version = mt_arena_strdup(&result->mem, nlopt);
-    run->gsl_version = mt_arena_strdup(&result->mem, mt_gsl_version());
-    run->seed = study->search.seed;
-    run->n_inputs = study->n_inputs;
-    run->input_names =
-        mt_arena_alloc(&result->mem, (size_t)study->n_inputs, sizeof *run->input_names);
-    run->input_sha256 =
-        mt_arena_alloc(&result->mem, (size_t)study->n_inputs, sizeof *run->input_sha256);
-    result->variables =
-        mt_arena_alloc(&result->mem, (size_t)study->n_variables, sizeof *result->variables);
-    if (run->blas == NULL || run->nlopt_version == NULL || run->gsl_version == NULL ||
-        run->input_names == NULL || run->input_sha256 == NULL || result->variables == NULL) {
-        return mt_fail_memory(err);
-    }
-    for (int i = 0; i < study->n_inputs; i++) {
-        run->input_names[i] = study->inputs[i].name;
-        run->input_sha256[i] = study->inputs[i].sha256;
-    }
-    result->n_variables = study->n_variables;
-    for (int i = 0; i < study->n_variables; i++) {
-        result->variables[i] = study->variables[i].parameter_name.s;
-    }
-    return MT_OK;
-}
+/* One study being answered. */
+typedef struct answer {
+    const mt_study *study;
+    mt_problem *p;        /* workers[0] */
+    mt_problem **workers; /* [n_workers] owned */
+    int n_workers;
+    mt_result *result;
+    mt_arena mem;
+    mt_reference_cache references;
+    mt_nlp_result found;
+    int stage;  /* of found */
+    mt_err why; /* no start of the search had a value */
+    bool searched;
+} answer;
 
-/* Names of the result must not outlive the study: copy every text that the problem lent. */
-static mt_status own_text(mt_result *result, const char **text, mt_err *err)
+static mt_status describe_solutions(answer *a, mt_err *err)
 {
-    if (*text == NULL) {
-        return MT_OK;
-    }
-    *text = mt_arena_strdup(&result->mem, *text);
-    return *text == NULL ? mt_fail_memory(err) : MT_OK;
-}
-
-static mt_status own_recommendation(mt_result *result, mt_recommendation *r, mt_err *err)
-{
-    for (int i = 0; i < r->n_parameters; i++) {
-        MT_TRY(own_text(result, &r->parameters[i].name, err));
-        MT_TRY(own_text(result, &r->parameters[i].unit, err));
-    }
-    for (int i = 0; i < r->n_frequencies; i++) {
-        MT_TRY(own_text(result, &r->frequencies[i].configuration, err));
-        MT_TRY(own_text(result, &r->frequencies[i].name, err));
-        MT_TRY(own_text(result, &r->frequencies[i].reference, err));
-    }
-    for (int i = 0; i < r->n_goals; i++) {
-        MT_TRY(own_text(result, &r->goals[i].text, err));
-    }
-    return MT_OK;
-}
-
-static mt_status own_texts(const mt_study *study, mt_result *result, mt_err *err)
-{
-    result->study_name = study->name;
-    result->study_file = study->path != NULL && strrchr(study->path, '/') != NULL
-                             ? strrchr(study->path, '/') + 1
-                             : study->path;
-    result->model_name = study->model->name;
-    result->model_file = study->model_path.s;
-    MT_TRY(own_text(result, &result->study_name, err));
-    MT_TRY(own_text(result, &result->study_file, err));
-    MT_TRY(own_text(result, &result->model_name, err));
-    MT_TRY(own_text(result, &result->model_file, err));
-    MT_TRY(own_recommendation(result, &result->baseline, err));
-    for (int i = 0; i < result->n_recommendations; i++) {
-        MT_TRY(own_recommendation(result, &result->recommendations[i], err));
-    }
-    for (int i = 0; i < result->n_published; i++) {
-        MT_TRY(own_text(result, &result->published[i].label, err));
-        MT_TRY(own_text(result, &result->published[i].source, err));
-        MT_TRY(own_text(result, &result->published[i].published_text, err));
-    }
-    for (int i = 0; i < result->n_variables; i++) {
-        MT_TRY(own_text(result, &result->variables[i], err));
-    }
-    for (int i = 0; i < result->run.n_inputs; i++) {
-        MT_TRY(own_text(result, &result->run.input_names[i], err));
-        MT_TRY(own_text(result, &result->run.input_sha256[i], err));
-    }
-    return MT_OK;
-}
-
-/* Entries of a direction below this part of the largest are rounding. */
-static const double PART_OF_DIRECTION = 1e-3;
-
-/* "K_T2", or "0.71 ln a - 0.71 ln b". */
-static const char *direction_text(const mt_problem *p, const double *v, mt_arena *mem)
-{
-    double largest = 0.0;
-    int parts = 0;
-    char *text = mt_arena_strdup(mem, "");
-    for (int i = 0; i < p->n; i++) {
-        largest = fmax(largest, fabs(v[i]));
-    }
-    for (int i = 0; i < p->n; i++) {
-        parts += fabs(v[i]) > PART_OF_DIRECTION * largest ? 1 : 0;
-    }
-    for (int i = 0; i < p->n && text != NULL; i++) {
-        const char *const name = p->study->variables[i].parameter_name.s;
-        if (!(fabs(v[i]) > PART_OF_DIRECTION * largest)) {
-            continue;
-        }
-        if (parts == 1) {
-            return mt_arena_strdup(mem, name);
-        }
-        const char *const sign =
-            v[i] < 0.0 ? (text[0] == '\0' ? "-" : " - ") : (text[0] == '\0' ? "" : " + ");
-        text = mt_arena_printf(mem, "%s%s%.2g %s%s", text, sign, fabs(v[i]),
-                               MT_HAS(p->scale[i]) ? "" : "ln ", name);
-    }
-    return text;
-}
-
-static mt_status describe_undetermined(const mt_problem *p, const mt_nlp_result *found,
-                                       mt_result *result, mt_err *err)
-{
-    double tolerance = 1e-6;
-    for (int i = 0; i < p->n_demands; i++) {
-        tolerance = fmax(tolerance, p->demands[i].tolerance);
-    }
-    result->n_undetermined = found->n_undetermined;
-    result->undetermined = mt_arena_alloc(&result->mem, (size_t)found->n_undetermined,
-                                          sizeof *result->undetermined);
-    if (result->undetermined == NULL) {
-        return mt_fail_memory(err);
-    }
-    for (int k = 0; k < found->n_undetermined; k++) {
-        mt_undetermined *const u = &result->undetermined[k];
-        u->n = p->n;
-        u->direction = mt_arena_f64(&result->mem, (size_t)p->n, 1);
-        u->text = direction_text(p, found->undetermined + ((ptrdiff_t)k * p->n), &result->mem);
-        u->effect_percent = 100.0 * tolerance * found->undetermined_effect[k];
-        if (u->direction == NULL || u->text == NULL) {
-            return mt_fail_memory(err);
-        }
-        memcpy(u->direction, found->undetermined + ((ptrdiff_t)k * p->n),
-               (size_t)p->n * sizeof *u->direction);
-    }
-    return MT_OK;
-}
-
-static mt_status describe_solutions(mt_problem *p, const mt_nlp_result *found,
-                                    mt_result *result, mt_err *err)
-{
-    const int most = p->study->recommendations;
+    const mt_nlp_result *const found = &a->found;
+    mt_result *const result = a->result;
+    const int most = a->study->recommendations;
     const int n = found->n_solutions < most ? found->n_solutions : most;
     result->recommendations =
         mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->recommendations);
     if (result->recommendations == NULL) {
         return mt_fail_memory(err);
     }
+    MT_TRY(mt_describe_undetermined(a->p, found, result, err));
     for (int i = 0; i < n; i++) {
-        const mt_design design = {
-            .t = found->solutions[i].t, .found = &found->solutions[i], .rank = i + 1};
+        const mt_design design = {.t = found->solutions[i].t,
+                                  .found = &found->solutions[i],
+                                  .stage = a->stage,
+                                  .rank = i + 1};
         mt_recommendation *const rec = &result->recommendations[i];
-        MT_TRY(mt_describe_design(p, &design, &result->baseline, result, rec, err));
-        MT_TRY(mt_describe_reasons(p, &design, found, result, rec, err));
+        MT_TRY(mt_describe_design(a->p, &design, &result->baseline, result, rec, err));
+        MT_TRY(mt_describe_reasons(a->p, &design, found, result, rec, err));
         result->n_recommendations++;
     }
     if (found->n_solutions > n) {
@@ -190,148 +53,155 @@ static mt_status describe_solutions(mt_problem *p, const mt_nlp_result *found,
                                 "the study says how many to report",
                                 found->n_solutions - n));
     }
-    return describe_undetermined(p, found, result, err);
+    return MT_OK;
 }
 
-static mt_status set_status(const mt_problem *p, const mt_nlp_result *found, mt_result *result,
-                            mt_err *err)
+/* What the engineer should know of the search besides its answers. */
+static mt_status warn(const answer *a, mt_err *err)
 {
-    const bool interrupted = found != NULL && found->stop == MT_STOP_USER;
-    const mt_recommendation *const best =
-        result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline;
-    const int goals = best->n_goals;
-    result->status = interrupted ? MT_RESULT_INTERRUPTED
-                                 : (best->feasible ? MT_RESULT_SOLVED : MT_RESULT_COMPROMISE);
-    if (interrupted) {
-        result->status_text = "Interrupted: the best designs found so far.";
-    } else if (goals == 0) {
-        result->status_text = "No goals: the model as it is, against published values.";
-    } else if (p->n == 0) {
-        result->status_text = best->feasible ? "The original design meets all goals."
-                                             : "The original design does not meet all goals.";
-    } else if (best->feasible) {
-        result->status_text =
-            mt_arena_printf(&result->mem, "Solved: %d distinct design%s all goals.",
-                            found->n_solutions, found->n_solutions == 1 ? " meets" : "s meet");
-    } else {
-        result->status_text =
-            mt_arena_printf(&result->mem,
-                            "Compromise: no design found within the bounds meets all goals; "
-                            "the nearest misses by %.3g %% at most (sampled, not proven).",
-                            best->violation_percent);
+    for (int i = 0; i < a->p->n; i++) {
+        const mt_variable *const v = &a->study->variables[i];
+        if (v->original < v->lower || v->original > v->upper) {
+            MT_TRY(mt_describe_warn(a->result, err,
+                                    "the original value of %s, %.6g, lies outside its bounds "
+                                    "(%.6g to %.6g)",
+                                    v->parameter_name.s, v->original, v->lower, v->upper));
+        }
     }
-    return result->status_text == NULL ? mt_fail_memory(err) : MT_OK;
-}
-
-/* One problem for each worker: worker 0 has the caller's, the others their own, made alike. */
-typedef struct crew {
-    int n;
-    mt_problem **problems;
-    void **contexts;
-} crew;
-
-static void crew_free(crew *c)
-{
-    for (int i = 1; i < c->n; i++) {
-        mt_problem_delete(c->problems[i]);
+    if (a->found.stop == MT_STOP_MAX_EVALS) {
+        MT_TRY(mt_describe_warn(a->result, err,
+                                "the budget of evaluations ran out after %ld: a larger "
+                                "\"max_evaluations\" may find more",
+                                a->found.evals));
     }
-}
-
-static mt_status crew_init(crew *c, mt_problem *p, int workers, mt_arena *mem, mt_err *err)
-{
-    const int most = workers > MT_WORKERS_MOST ? MT_WORKERS_MOST : workers;
-    c->problems = mt_arena_alloc(mem, (size_t)most + 1, sizeof(mt_problem *));
-    c->contexts = mt_arena_alloc(mem, (size_t)most + 1, sizeof(void *));
-    if (c->problems == NULL || c->contexts == NULL) {
-        return mt_fail_memory(err);
-    }
-    c->problems[0] = p;
-    c->contexts[0] = p;
-    c->n = 1;
-    while (c->n < most) {
-        MT_TRY(mt_problem_new(p->study, p->references, &c->problems[c->n], err));
-        c->problems[c->n]->stop = p->stop;
-        c->contexts[c->n] = c->problems[c->n];
-        c->n++;
+    if (a->why.code != MT_OK) {
+        MT_TRY(mt_describe_warn(a->result, err, "%s", a->why.text));
     }
     return MT_OK;
 }
 
-static mt_status search(mt_problem *p, int workers, mt_arena *mem, mt_nlp_result *found,
-                        mt_err *err)
+static mt_result_status status_of(const answer *a, const mt_recommendation *best)
 {
-    mt_nlp nlp = mt_problem_nlp(p);
-    mt_nlp_options options = mt_nlp_options_default();
-    crew c = {0};
-    options.seed = p->study->search.seed;
-    options.starts = p->study->search.starts;
-    options.max_evals = p->study->search.max_evaluations;
-    options.least_change = p->objective == MT_OBJECTIVE_CHANGE;
-    mt_status rc = crew_init(&c, p, workers, mem, err);
-    if (rc == MT_OK) {
-        nlp.n_workers = c.n;
-        nlp.contexts = c.contexts;
-        rc = mt_nlp_solve(&nlp, &options, mem, found, err);
+    if (a->found.stop == MT_STOP_USER) {
+        return MT_RESULT_INTERRUPTED;
     }
-    crew_free(&c);
-    return rc;
+    return best->feasible ? MT_RESULT_SOLVED : MT_RESULT_COMPROMISE;
 }
 
-static mt_status answer(const mt_study *study, const mt_solve_options *opt, mt_problem *p,
-                        mt_arena *mem, mt_result *result, mt_err *err)
+static const char *status_text(const answer *a, const mt_recommendation *best)
 {
-    mt_nlp_result found = {0};
-    const mt_design original = {.t = p->origin_t, .found = NULL, .rank = 0};
-    const bool any = p->n > 0 && p->n_demands > 0;
-    double *const x = mt_arena_f64(mem, (size_t)p->n, 1);
-    p->stop = opt->stop;
+    mt_arena *const mem = &a->result->mem;
+    const int n = a->found.n_solutions;
+    if (a->found.stop == MT_STOP_USER) {
+        return n > 0 ? "Interrupted: the best designs found so far."
+                     : "Interrupted before any design was found.";
+    }
+    if (best->n_goals == 0) {
+        return "No goals: the model as it is, against published values.";
+    }
+    if (!a->searched) {
+        return best->feasible ? "The original design meets all goals."
+                              : "The original design does not meet all goals.";
+    }
+    if (n == 0) {
+        return a->why.code != MT_OK ? "No design that was tried could be evaluated."
+                                    : "The budget ended before any design was found.";
+    }
+    if (best->feasible) {
+        return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.", n,
+                               n == 1 ? " meets" : "s meet");
+    }
+    return mt_arena_printf(mem,
+                           "Compromise: no design found within the bounds meets all goals; the "
+                           "nearest misses by %.3g %% at most (sampled, not proven).",
+                           best->violation_percent);
+}
+
+static mt_status set_status(const answer *a, mt_err *err)
+{
+    mt_result *const result = a->result;
+    const mt_recommendation *const best =
+        result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline;
+    const bool nothing = a->searched && result->n_recommendations == 0;
+    result->status = status_of(a, best);
+    if (nothing && result->status == MT_RESULT_SOLVED) {
+        result->status = MT_RESULT_COMPROMISE; /* the baseline is no answer of the search */
+    }
+    result->status_text = status_text(a, best);
+    return result->status_text == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
+{
+    mt_problem *const p = a->p;
+    mt_result *const result = a->result;
+    const mt_design original = {.t = p->origin_t};
+    double *const x = mt_arena_f64(&a->mem, (size_t)p->n, 1);
+    for (int i = 0; i < a->n_workers; i++) {
+        a->workers[i]->stop = opt->stop;
+    }
+    p->progress = opt->progress; /* the first worker's: one line at a time */
+    p->progress_context = opt->progress_context;
+    a->searched = p->n > 0 && p->n_demands > 0;
     if (x == NULL) {
         return mt_fail_memory(err);
     }
-    MT_TRY(describe_run(study, result, err));
+    MT_TRY(mt_describe_run(a->study, result, err));
     MT_TRY(mt_describe_design(p, &original, NULL, result, &result->baseline, err));
-    if (any) {
-        MT_TRY(search(p, opt->threads, mem, &found, err));
-        MT_TRY(describe_solutions(p, &found, result, err));
+    if (a->searched) {
+        MT_TRY(mt_search_designs(a->workers, a->n_workers, &a->mem, &a->found, &a->stage,
+                                 &a->why, err));
+        MT_TRY(describe_solutions(a, err));
     }
-    if (found.stop == MT_STOP_MAX_EVALS) {
-        MT_TRY(mt_describe_warn(
-            result, err,
-            "the budget of evaluations ran out after %ld: more starts may find more",
-            found.evals));
-    }
-    result->run.evaluations = found.evals;
-    result->run.starts = found.starts;
-    MT_TRY(set_status(p, any ? &found : NULL, result, err));
-    const bool recommended = found.n_solutions > 0;
+    MT_TRY(warn(a, err));
+    result->run.evaluations = a->found.evals;
+    result->run.starts = a->found.starts;
+    MT_TRY(set_status(a, err));
+    const bool recommended = a->found.n_solutions > 0;
     if (recommended) {
-        mt_problem_x(p, found.solutions[0].t, x);
+        mt_problem_x(p, a->found.solutions[0].t, x);
     }
     MT_TRY(mt_describe_published(p, p->original, recommended ? x : NULL, result, err));
-    return own_texts(study, result, err);
+    return mt_describe_own(a->study, result, err);
+}
+
+/* One problem for each worker; references are analysed with the first and only read afterwards. */
+static mt_status open_problems(answer *a, int threads, mt_err *err)
+{
+    const int n = a->study->n_variables > 0 && threads > 1 ? threads : 1;
+    a->workers = mt_arena_alloc(&a->mem, (size_t)n, sizeof(mt_problem *));
+    if (a->workers == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < n; i++) {
+        MT_TRY(mt_problem_new(a->study, &a->references, &a->workers[i], err));
+        a->n_workers = i + 1;
+    }
+    a->p = a->workers[0];
+    return MT_OK;
 }
 
 mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_result **out,
                          mt_err *err)
 {
-    mt_problem *p = NULL;
-    mt_result *result = NULL;
-    mt_arena mem = {0};
-    mt_reference_cache references = {0};
     const mt_solve_options defaults = mt_solve_options_default();
+    const mt_solve_options *const use = opt != NULL ? opt : &defaults;
+    answer a = {.study = study};
     *out = NULL;
-    mt_status rc = mt_arena_init(&mem, 0, err);
-    rc = rc == MT_OK ? mt_result_new(&result, err) : rc;
-    rc = rc == MT_OK ? mt_reference_cache_init(&references, study, &mem, err) : rc;
-    rc = rc == MT_OK ? mt_problem_new(study, &references, &p, err) : rc;
-    rc = rc == MT_OK ? answer(study, opt != NULL ? opt : &defaults, p, &mem, result, err) : rc;
-    mt_problem_delete(p);
-    mt_reference_cache_free(&references);
-    mt_arena_free(&mem);
+    mt_status rc = mt_arena_init(&a.mem, 0, err);
+    rc = rc == MT_OK ? mt_result_new(&a.result, err) : rc;
+    rc = rc == MT_OK ? mt_reference_cache_init(&a.references, study, &a.mem, err) : rc;
+    rc = rc == MT_OK ? open_problems(&a, use->threads, err) : rc;
+    rc = rc == MT_OK ? fill(&a, use, err) : rc;
+    for (int i = 0; i < a.n_workers; i++) {
+        mt_problem_delete(a.workers[i]);
+    }
+    mt_reference_cache_free(&a.references);
+    mt_arena_free(&a.mem);
     if (rc != MT_OK) {
-        mt_result_delete(result);
+        mt_result_delete(a.result);
         return rc;
     }
-    *out = result;
+    *out = a.result;
     return MT_OK;
 }

@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The table of frequencies of a design: for each view the modes that goals name and the first few besides, from an analysis made anew at that design. */
+#include <math.h>
+#include <string.h>
+
+#include "tune/describe.h"
+
+/* Modes listed of a configuration beyond those that goals name. */
+enum { LISTED_MODES = 4 };
+/* Frequencies of the search and of the fresh analysis that differ by more than this (relative) are worth a warning; both are good to about n eps. */
+static const double RECOMPUTED_AGREES = 1e-9;
+static const double PI = 3.14159265358979323846;
+
+/* One configuration while its modes are listed. */
+typedef struct listing {
+    mt_problem *fresh;
+    const mt_design *design;
+    mt_result *result;
+    mt_recommendation *rec;
+    mt_view *
+        view; /* its analysis was opened at the original design and solved here, as in the search */
+    mt_analysis *scratch; /* opened here */
+    int first;            /* its first row of rec->frequencies */
+} listing;
+
+/* Which vibration index has the mode at position pos? 0 for -1. */
+static int index_of(const mt_modes *modes, int pos)
+{
+    int index = 0;
+    for (int i = 0; i <= pos; i++) {
+        index += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
+    }
+    return index;
+}
+
+/* Vibration index of a demand's mode at this design; 0: it has none. */
+static mt_status index_of_demand(mt_view *view, const mt_demand *d, int *index, mt_err *err)
+{
+    int pos = -1;
+    MT_TRY(mt_view_position(view, d->mode, d->named, &pos, err));
+    *index = index_of(&view->analysis->modes, pos);
+    return MT_OK;
+}
+
+/* The name of the mode with this index, in the model's words; NULL. */
+static mt_status name_of(const listing *l, int index, const char **name, mt_err *err)
+{
+    for (int i = 0; i < l->view->n_named; i++) {
+        int pos = -1;
+        MT_TRY(mt_view_position(l->view, 0, i, &pos, err));
+        if (pos >= 0 && index_of(&l->view->analysis->modes, pos) == index) {
+            *name = l->fresh->study->model->modes[l->view->named[i]].name.s;
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status compare(const listing *l, const mt_result_frequency *f, mt_err *err)
+{
+    const mt_modes *const had = &l->view->analysis->modes;
+    const int pos = l->view->solved ? mt_modal_flexible(had, f->mode) : -1;
+    const double hz = pos >= 0 ? mt_modal_hz(had, pos) : nan("");
+    if (fabs(hz - f->recommended_hz) <= RECOMPUTED_AGREES * f->recommended_hz) {
+        return MT_OK;
+    }
+    return mt_describe_warn(
+        l->result, err, "%s mode %d: the search had %.12g Hz, a fresh analysis gives %.12g Hz",
+        f->configuration, f->mode, hz, f->recommended_hz);
+}
+
+static mt_status describe_mode(const listing *l, int index, mt_result_frequency *f, mt_err *err)
+{
+    mt_analysis *const a = l->scratch;
+    const int n = l->fresh->n;
+    const int pos = mt_modal_flexible(&a->modes, index);
+    *f = mt_result_frequency_default();
+    f->configuration = mt_analysis_configuration(a);
+    f->mode = index;
+    f->sensitivity = mt_arena_f64(&l->result->mem, (size_t)n, 1);
+    if (f->sensitivity == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (pos < 0) { /* unstable here */
+        for (int i = 0; i < n; i++) {
+            f->sensitivity[i] = nan("");
+        }
+        return MT_OK;
+    }
+    f->recommended_hz = mt_modal_hz(&a->modes, pos);
+    f->residual = a->modes.residual[pos];
+    f->orthogonality = a->modes.orthogonality[pos];
+    MT_TRY(mt_analysis_dlambda(a, pos, f->sensitivity, &f->repeated, err));
+    for (int i = 0; i < n; i++) { /* d Hz = d lambda / (8 pi^2 Hz) */
+        f->sensitivity[i] /= 8.0 * PI * PI * f->recommended_hz;
+    }
+    MT_TRY(name_of(l, index, &f->name, err));
+    return compare(l, f, err);
+}
+
+static void attach_frequency(const mt_demand *d, mt_result_frequency *f)
+{
+    const mt_goal *const g = d->goal;
+    f->target_hz = MT_HAS(d->target_hz) ? d->target_hz : f->target_hz;
+    f->at_least_hz = MT_HAS(g->at_least) ? g->at_least : f->at_least_hz;
+    f->at_most_hz = MT_HAS(g->at_most) ? g->at_most : f->at_most_hz;
+    if (MT_HAS(f->target_hz)) {
+        f->error_percent = 100.0 * ((f->recommended_hz / f->target_hz) - 1.0);
+        return;
+    }
+    double over = f->recommended_hz - f->recommended_hz; /* 0, or NaN with the frequency */
+    over = f->recommended_hz < f->at_least_hz ? f->at_least_hz / f->recommended_hz - 1.0 : over;
+    over = f->recommended_hz > f->at_most_hz ? f->recommended_hz / f->at_most_hz - 1.0 : over;
+    f->error_percent = 100.0 * over;
+}
+
+/* What the demand wants of its mode, into the row of that mode. */
+static mt_status attach(const listing *l, const mt_demand *d, mt_err *err)
+{
+    int index = 0;
+    MT_TRY(index_of_demand(l->view, d, &index, err));
+    index = index == 0 ? d->mode : index; /* unstable: the rows stand without frequency */
+    for (int k = l->first; k < l->rec->n_frequencies; k++) {
+        mt_result_frequency *const f = &l->rec->frequencies[k];
+        const int pos = mt_modal_flexible(&l->scratch->modes, index);
+        if (f->mode != index) {
+            continue;
+        }
+        if (d->goal->type == MT_GOAL_FREQUENCY) {
+            attach_frequency(d, f);
+        } else if (pos >= 0) {
+            f->reference = d->shape.reference;
+            MT_TRY(mt_reference_mac(l->scratch, pos, &d->shape, &f->mac, err));
+        }
+    }
+    return MT_OK;
+}
+
+/* Named modes that goals speak of and that can no longer be told for sure. */
+static mt_status warn_lost(const listing *l, const mt_demand *d, mt_err *err)
+{
+    int index = 0;
+    if (d->named < 0 || l->design->found == NULL || !l->view->solved) {
+        return MT_OK;
+    }
+    MT_TRY(index_of_demand(l->view, d, &index, err));
+    if (index == 0 || l->view->share[d->named] >= MT_TRACK_LOST) {
+        return MT_OK;
+    }
+    return mt_describe_warn(
+        l->result, err,
+        "recommendation %d: mode \"%s\" of configuration \"%s\" has lost its shape among its "
+        "neighbours: mode %d, taken for it, carries %.0f %% of it",
+        l->design->rank, d->goal->mode.mode_name.s, mt_analysis_configuration(l->scratch),
+        index, 100.0 * l->view->share[d->named]);
+}
+
+static mt_status count_modes(mt_problem *fresh, int v, int *count, mt_err *err)
+{
+    mt_view *const view = &fresh->views[v];
+    const mt_modes *const modes = &view->analysis->modes;
+    int flexible = 0;
+    int wanted = LISTED_MODES;
+    *count = 0;
+    if (!view->solved) {
+        return MT_OK;
+    }
+    for (int i = 0; i < modes->count; i++) {
+        flexible += modes->kind[i] == MT_MODE_RIGID_BODY ? 0 : 1;
+    }
+    for (int i = 0; i < fresh->n_demands; i++) {
+        int index = 0;
+        if (fresh->demands[i].view == v) {
+            MT_TRY(index_of_demand(view, &fresh->demands[i], &index, err));
+            index = index == 0 ? fresh->demands[i].mode : index;
+        }
+        wanted = index > wanted ? index : wanted;
+    }
+    *count = wanted < flexible ? wanted : flexible;
+    return MT_OK;
+}
+
+/* The frequency that the same mode has in the baseline: the same name, else the same index. */
+static double original_hz(const mt_recommendation *baseline, const mt_result_frequency *f)
+{
+    for (int i = 0; baseline != NULL && i < baseline->n_frequencies; i++) {
+        const mt_result_frequency *const b = &baseline->frequencies[i];
+        const bool same_name =
+            f->name != NULL && b->name != NULL && strcmp(f->name, b->name) == 0;
+        if (strcmp(f->configuration, b->configuration) == 0 &&
+            (f->name != NULL ? same_name : f->mode == b->mode)) {
+            return b->recommended_hz;
+        }
+    }
+    return baseline == NULL ? f->recommended_hz : nan("");
+}
+
+static mt_status list_view(listing *l, int v, int count, mt_err *err)
+{
+    mt_problem *const fresh = l->fresh;
+    mt_analysis_options opt = mt_analysis_options_default();
+    opt.gradient = true;
+    MT_TRY(mt_analysis_solve(l->scratch, fresh->x, &opt, err));
+    for (int k = 1; k <= count; k++) {
+        MT_TRY(describe_mode(l, k, &l->rec->frequencies[l->rec->n_frequencies], err));
+        l->rec->n_frequencies++;
+    }
+    for (int i = 0; i < fresh->n_demands; i++) {
+        if (fresh->demands[i].view == v) {
+            MT_TRY(attach(l, &fresh->demands[i], err));
+            MT_TRY(warn_lost(l, &fresh->demands[i], err));
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
+                                  const mt_recommendation *baseline, mt_result *result,
+                                  mt_recommendation *rec, mt_err *err)
+{
+    size_t most = 0;
+    for (int v = 0; v < fresh->n_views; v++) {
+        int count = 0;
+        MT_TRY(count_modes(fresh, v, &count, err));
+        most += (size_t)count;
+    }
+    rec->frequencies = mt_arena_alloc(&result->mem, most, sizeof *rec->frequencies);
+    if (rec->frequencies == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int v = 0; v < fresh->n_views; v++) {
+        int count = 0;
+        listing l = {.fresh = fresh, .design = design, .result = result, .rec = rec};
+        l.view = &fresh->views[v];
+        l.first = rec->n_frequencies;
+        MT_TRY(count_modes(fresh, v, &count, err));
+        if (count == 0) {
+            continue;
+        }
+        mt_status rc = mt_analysis_new(fresh->study->model, l.view->configuration, fresh->n,
+                                       fresh->inputs, fresh->x, &l.scratch, err);
+        rc = rc == MT_OK ? list_view(&l, v, count, err) : rc;
+        mt_analysis_delete(l.scratch);
+        MT_TRY(rc);
+    }
+    for (int k = 0; k < rec->n_frequencies; k++) {
+        rec->frequencies[k].original_hz = original_hz(baseline, &rec->frequencies[k]);
+    }
+    return MT_OK;
+}

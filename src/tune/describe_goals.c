@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Every goal as text, with its value, what it asks for, and whether it is met. */
+#include <math.h>
+
+#include "tune/describe.h"
+
+/* Rounding of ln and of the eigenvalues may push a goal that is met exactly on its tolerance over it. */
+static const double MET_SLACK = 1e-6;
+
+/* "from a to b Hz", "at least a Hz", "at most b Hz"; *number: the limit meant. */
+static const char *range_text(const char *what, const mt_goal *g, const char *unit,
+                              mt_arena *mem, double *number)
+{
+    const bool least = MT_HAS(g->at_least);
+    *number = least ? g->at_least : g->at_most;
+    if (least && MT_HAS(g->at_most)) {
+        return mt_arena_printf(mem, "%s from %.10g to %.10g%s", what, g->at_least, g->at_most,
+                               unit);
+    }
+    return mt_arena_printf(mem, "%s at %s %.10g%s", what, least ? "least" : "most", *number,
+                           unit);
+}
+
+static const char *mode_text(const mt_problem *p, const mt_demand *d, mt_arena *mem)
+{
+    const char *const configuration = mt_analysis_configuration(p->views[d->view].analysis);
+    if (d->mode > 0) {
+        return mt_arena_printf(mem, "%s mode %d", configuration, d->mode);
+    }
+    return mt_arena_printf(mem, "%s \"%s\"", configuration, d->goal->mode.mode_name.s);
+}
+
+static const char *frequency_text(const mt_demand *d, const char *mode, mt_arena *mem,
+                                  double *number)
+{
+    if (!MT_HAS(d->target_hz)) {
+        return range_text(mode, d->goal, " Hz", mem, number);
+    }
+    *number = d->target_hz;
+    if (d->shape.reference == NULL) {
+        return mt_arena_printf(mem, "%s at %.10g Hz", mode, d->target_hz);
+    }
+    return mt_arena_printf(mem, "%s at %.10g Hz as mode %d of \"%s\"", mode, d->target_hz,
+                           d->shape.mode, d->shape.reference);
+}
+
+/* What a demand asks for, as text, and the number that it asks for. NULL where memory is out. */
+static const char *demand_text(const mt_problem *p, const mt_demand *d, mt_arena *mem,
+                               double *number)
+{
+    const mt_goal *const g = d->goal;
+    const char *const what = d->view >= 0 ? mode_text(p, d, mem) : g->expression_text;
+    *number = 0.0;
+    if (what == NULL) {
+        return NULL;
+    }
+    switch (g->type) {
+    case MT_GOAL_FREQUENCY:
+        return frequency_text(d, what, mem, number);
+    case MT_GOAL_SHAPE:
+        return mt_arena_printf(mem, "%s shaped as mode %d of \"%s\"", what, d->shape.mode,
+                               d->shape.reference);
+    case MT_GOAL_MAC: {
+        const char *const mac = mt_arena_printf(mem, "%s: MAC with mode %d of \"%s\"", what,
+                                                d->shape.mode, d->shape.reference);
+        return mac == NULL ? NULL : range_text(mac, g, "", mem, number);
+    }
+    case MT_GOAL_LIMIT:
+        if (MT_HAS(g->equals)) {
+            *number = g->equals;
+            return mt_arena_printf(mem, "%s equal to %.10g", what, g->equals);
+        }
+        return range_text(what, g, "", mem, number);
+    case MT_GOAL_AVOID:
+    case MT_GOAL_TYPE_COUNT:
+        break;
+    }
+    return "";
+}
+
+/* The demand's quantity: Hz, distance of unit shapes, MAC, value of an expression; NaN where there is none. */
+static mt_status demand_value(mt_problem *fresh, const mt_demand *d, double *value, mt_err *err)
+{
+    int pos = -1;
+    *value = nan("");
+    if (d->goal->type == MT_GOAL_LIMIT) {
+        *value = fresh->value[d->node];
+        return MT_OK;
+    }
+    mt_view *const view = &fresh->views[d->view];
+    MT_TRY(mt_view_position(view, d->mode, d->named, &pos, err));
+    if (pos < 0) {
+        return MT_OK;
+    }
+    if (d->goal->type == MT_GOAL_FREQUENCY) {
+        *value = mt_modal_hz(&view->analysis->modes, pos);
+        return MT_OK;
+    }
+    if (d->goal->type == MT_GOAL_SHAPE) {
+        *value = mt_norm2(d->shape.ns, fresh->r + d->row_res) / sqrt(d->weight);
+        return MT_OK;
+    }
+    return mt_reference_mac(view->analysis, pos, &d->shape, value, err);
+}
+
+/* Relative violation of a demand that has been evaluated; of a shape its distance. */
+static double demand_violation(const mt_problem *fresh, const mt_demand *d,
+                               const mt_nlp_values *v)
+{
+    if (d->row_res >= 0) {
+        const int rows = d->goal->type == MT_GOAL_SHAPE ? d->shape.ns : 1;
+        return mt_norm2(rows, fresh->r + d->row_res) / sqrt(d->weight);
+    }
+    if (d->row_eq >= 0) {
+        return fabs(v->eq[d->row_eq]);
+    }
+    double worst = 0.0;
+    for (int k = 0; k < d->n_in; k++) {
+        const double below = -v->in[d->row_in + k];
+        worst = below <= worst ? worst : below; /* NaN is the worst */
+    }
+    return worst;
+}
+
+static bool ends(mt_status rc)
+{
+    return rc == MT_E_MEMORY || rc == MT_E_INTERNAL;
+}
+
+/* Solve all views; the first that fails otherwise than by memory is told in `why`. */
+static mt_status solve_views(mt_problem *fresh, mt_err *why, mt_err *err)
+{
+    for (int i = 0; i < fresh->n_views; i++) {
+        mt_view *const view = &fresh->views[i];
+        mt_err own = {0};
+        view->needs_vectors = view->needs_vectors || view->n_named > 0;
+        const mt_status rc = mt_view_solve(fresh, view, false, &own);
+        if (ends(rc)) {
+            return mt_fail(err, rc, "%s", own.text);
+        }
+        if (rc != MT_OK && why->code == MT_OK) {
+            *why = own;
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
+                       mt_result *result, mt_result_goal *g, mt_err *why, mt_err *err)
+{
+    mt_err own = {0};
+    double violation = nan("");
+    const mt_status rc = mt_demand_eval(fresh, d, false, v, &own);
+    if (ends(rc)) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    if (rc == MT_OK) {
+        violation = demand_violation(fresh, d, v);
+        MT_TRY(demand_value(fresh, d, &g->value, err));
+    } else {
+        g->value = nan("");
+        *why = why->code == MT_OK ? own : *why;
+    }
+    g->weighted = d->row_res >= 0;
+    g->text = demand_text(fresh, d, &result->mem, &g->demand);
+    g->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
+    g->violation_percent = 100.0 * violation;
+    g->met = violation <= d->tolerance * (1.0 + MET_SLACK);
+    return g->text == NULL || g->pointer == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+static const char *design_text(const mt_design *design, mt_arena *mem)
+{
+    return design->found == NULL ? "the original design"
+                                 : mt_arena_printf(mem, "recommendation %d", design->rank);
+}
+
+mt_status mt_describe_goals(mt_problem *fresh, const mt_design *design, mt_result *result,
+                            mt_recommendation *rec, mt_err *err)
+{
+    mt_nlp_values v;
+    mt_err why = {.code = MT_OK};
+    rec->n_goals = fresh->n_demands;
+    rec->goals = mt_arena_alloc(&result->mem, (size_t)fresh->n_demands, sizeof *rec->goals);
+    rec->feasible = true;
+    rec->violation_percent = 0.0;
+    if (rec->goals == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_problem_values_init(fresh, &fresh->mem, &v, err));
+    MT_TRY(mt_problem_place(fresh, design->t, false, err));
+    MT_TRY(solve_views(fresh, &why, err));
+    for (int i = 0; i < fresh->n_demands; i++) {
+        mt_result_goal *const g = &rec->goals[i];
+        MT_TRY(judge(fresh, &fresh->demands[i], &v, result, g, &why, err));
+        if (!g->weighted) {
+            const bool worse = !(g->violation_percent <= rec->violation_percent);
+            rec->feasible = rec->feasible && g->met;
+            rec->violation_percent = worse ? g->violation_percent : rec->violation_percent;
+        } else if (!(g->violation_percent >= 0.0)) {
+            rec->feasible = false; /* a residual without a value: the misfit has none */
+        }
+    }
+    if (why.code == MT_OK) {
+        return MT_OK;
+    }
+    rec->violation_percent = nan("");
+    const char *const where = design_text(design, &result->mem);
+    return where == NULL ? mt_fail_memory(err)
+                         : mt_describe_warn(result, err, "not all goals have a value at %s: %s",
+                                            where, why.text);
+}

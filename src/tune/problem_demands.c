@@ -1,0 +1,253 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From goals to demands: one per goal and configuration, each with a view, a mode, a reference and its rows. */
+#include <math.h>
+
+#include "tune/problem.h"
+
+/* Default tolerance of a goal in percent (the format's documentation says so too). */
+static const double DEFAULT_TOLERANCE_PERCENT = 1e-4;
+
+int mt_problem_view(const mt_problem *p, int configuration)
+{
+    for (int i = 0; i < p->n_views; i++) {
+        if (p->views[i].configuration == configuration) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+/* Shape of each named mode of the configuration at the original design; of those that are there. */
+static mt_status name_modes(mt_problem *p, mt_view *view, mt_err *err)
+{
+    const mt_model *const model = p->study->model;
+    mt_analysis *const a = view->analysis;
+    const size_t most = (size_t)model->n_modes;
+    view->named = mt_arena_int(&p->mem, most);
+    view->pair = mt_arena_int(&p->mem, most);
+    view->share = mt_arena_f64(&p->mem, most, 1);
+    view->shape = mt_arena_alloc(&p->mem, most, sizeof *view->shape);
+    if (view->named == NULL || view->pair == NULL || view->share == NULL ||
+        view->shape == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < model->n_modes; i++) {
+        const int pos = mt_modal_flexible(&a->modes, model->modes[i].index);
+        if (model->modes[i].configuration != view->configuration || pos < 0) {
+            continue;
+        }
+        double *const w = mt_arena_f64(&p->mem, (size_t)a->sys->nq, 1);
+        if (w == NULL) {
+            return mt_fail_memory(err);
+        }
+        MT_TRY(mt_track_weigh(a, pos, w, err));
+        view->named[view->n_named] = i;
+        view->shape[view->n_named++] = w;
+    }
+    return MT_OK;
+}
+
+mt_status mt_problem_add_view(mt_problem *p, int configuration, int *out, mt_err *err)
+{
+    *out = mt_problem_view(p, configuration);
+    if (*out >= 0) {
+        return MT_OK;
+    }
+    mt_view *const view = &p->views[p->n_views];
+    *view = (mt_view){.configuration = configuration, .solved = true};
+    MT_TRY(mt_analysis_new(p->study->model, configuration, p->n, p->inputs, p->original,
+                           &view->analysis, err));
+    *out = p->n_views++;
+    return name_modes(p, view, err);
+}
+
+mt_status mt_view_track(mt_view *view, mt_err *err)
+{
+    if (!view->tracked) {
+        MT_TRY(mt_track_assign(view->analysis, view->n_named, view->shape, view->pair,
+                               view->share, err));
+        view->tracked = true;
+    }
+    return MT_OK;
+}
+
+mt_status mt_view_position(mt_view *view, int mode, int named, int *pos, mt_err *err)
+{
+    *pos = -1;
+    if (!view->solved) {
+        return MT_OK;
+    }
+    if (mode > 0) {
+        *pos = mt_modal_flexible(&view->analysis->modes, mode);
+        return MT_OK;
+    }
+    MT_TRY(mt_view_track(view, err));
+    *pos = view->pair[named];
+    return MT_OK;
+}
+
+static const char *instability(const mt_view *view)
+{
+    return view->analysis->modes.n_unstable > 0 ? " (it is unstable there)" : "";
+}
+
+/* Resolve a mode given by name: its place in the view's list. */
+static mt_status resolve_name(const mt_problem *p, const mt_view *view, mt_demand *d,
+                              mt_err *err)
+{
+    const mt_model *const model = p->study->model;
+    const mt_named_mode *const wanted = &model->modes[d->goal->mode.named];
+    for (int i = 0; i < view->n_named; i++) {
+        if (view->named[i] == d->goal->mode.named) {
+            d->named = i;
+            return MT_OK;
+        }
+    }
+    if (wanted->configuration != view->configuration) {
+        return mt_fail(err, MT_E_INPUT,
+                       "/goals/%d: mode \"%s\" is named in configuration \"%s\", not in \"%s\"",
+                       d->goal_index, wanted->name.s,
+                       model->configurations[wanted->configuration].name.s,
+                       mt_analysis_configuration(view->analysis));
+    }
+    return mt_fail(err, MT_E_INPUT,
+                   "/goals/%d: mode \"%s\" is vibration mode %d of configuration \"%s\", "
+                   "which has none at the original design%s",
+                   d->goal_index, wanted->name.s, wanted->index,
+                   mt_analysis_configuration(view->analysis), instability(view));
+}
+
+/* An index must be there at the original design; where that is unstable nothing has an index, and it is enough that there are as many freedoms. */
+static mt_status resolve_index(const mt_view *view, const mt_demand *d, mt_err *err)
+{
+    const mt_modes *const modes = &view->analysis->modes;
+    const int most = modes->count - modes->n_rigid;
+    if (d->mode <= most) {
+        return MT_OK;
+    }
+    return mt_fail(err, MT_E_INPUT,
+                   "/goals/%d: configuration \"%s\" has no vibration mode %d (it has %d)",
+                   d->goal_index, mt_analysis_configuration(view->analysis), d->mode, most);
+}
+
+/* What the goal is compared with: a shape, or a frequency, which is then the target. */
+static mt_status resolve_reference(mt_problem *p, const mt_view *view, mt_demand *d,
+                                   mt_err *err)
+{
+    const mt_goal *const g = d->goal;
+    if (g->reference_name.s == NULL) {
+        return MT_OK;
+    }
+    const int own = d->mode > 0 ? d->mode : p->study->model->modes[g->mode.named].index;
+    const int mode = g->reference_mode > 0 ? g->reference_mode : own;
+    if (g->type == MT_GOAL_FREQUENCY) {
+        MT_TRY(mt_reference_frequency_init(p->references, g->reference, mode, &d->shape, err));
+        d->target_hz = d->shape.frequency_hz;
+        return MT_OK;
+    }
+    return mt_reference_shape_init(p->references, g->reference, mode, view->analysis->sys,
+                                   &p->mem, &d->shape, err);
+}
+
+static void number_rows(mt_problem *p, mt_demand *d)
+{
+    const mt_goal *const g = d->goal;
+    const double percent =
+        MT_HAS(g->tolerance_percent) ? g->tolerance_percent : DEFAULT_TOLERANCE_PERCENT;
+    d->tolerance = percent / 100.0;
+    if (MT_HAS(g->weight)) {
+        d->row_res = p->n_res;
+        p->n_res += g->type == MT_GOAL_SHAPE ? d->shape.ns : 1;
+        p->weights += g->weight;
+    } else if (MT_HAS(g->equals) || MT_HAS(d->target_hz)) {
+        d->row_eq = p->n_eq++;
+    } else {
+        d->row_in = p->n_in;
+        d->n_in = (MT_HAS(g->at_least) ? 1 : 0) + (MT_HAS(g->at_most) ? 1 : 0);
+        p->n_in += d->n_in;
+    }
+}
+
+static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt_err *err)
+{
+    const mt_goal *const g = &p->study->goals[goal_index];
+    mt_demand *const d = &p->demands[p->n_demands];
+    *d = (mt_demand){.goal = g,
+                     .goal_index = goal_index,
+                     .view = -1,
+                     .mode = g->mode.index,
+                     .named = -1,
+                     .node = MT_NO_NODE,
+                     .row_eq = -1,
+                     .row_in = -1,
+                     .row_res = -1,
+                     .target_hz = g->target_hz,
+                     .weight = g->weight};
+    if (g->type != MT_GOAL_LIMIT) {
+        MT_TRY(mt_err_in(err, mt_problem_add_view(p, configuration, &d->view, err), "/goals/%d",
+                         goal_index));
+        mt_view *const view = &p->views[d->view];
+        MT_TRY(d->mode > 0 ? resolve_index(view, d, err) : resolve_name(p, view, d, err));
+        MT_TRY(mt_err_in(err, resolve_reference(p, view, d, err), "/goals/%d", goal_index));
+        view->needs_vectors =
+            view->needs_vectors || g->type != MT_GOAL_FREQUENCY || d->named >= 0;
+    }
+    number_rows(p, d);
+    p->n_demands++;
+    return MT_OK;
+}
+
+/* Once the rows are counted: tolerances and work space. */
+static mt_status init_rows(mt_problem *p, mt_err *err)
+{
+    const size_t n = (size_t)p->n;
+    size_t ns = 1;
+    for (int i = 0; i < p->n_demands; i++) {
+        const size_t own = (size_t)p->demands[i].shape.ns;
+        ns = own > ns ? own : ns;
+    }
+    p->eq_tol = mt_arena_f64(&p->mem, (size_t)p->n_eq, 1);
+    p->in_tol = mt_arena_f64(&p->mem, (size_t)p->n_in + (size_t)p->study->n_objectives, 1);
+    p->r = mt_arena_f64(&p->mem, (size_t)p->n_res, 1);
+    p->dr = mt_arena_f64(&p->mem, (size_t)p->n_res, n);
+    p->work_shape = mt_arena_f64(&p->mem, ns, 1);
+    p->work_dshape = mt_arena_f64(&p->mem, ns, n);
+    if (p->eq_tol == NULL || p->in_tol == NULL || p->r == NULL || p->dr == NULL ||
+        p->work_shape == NULL || p->work_dshape == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n_demands; i++) {
+        const mt_demand *const d = &p->demands[i];
+        if (d->row_eq >= 0) {
+            p->eq_tol[d->row_eq] = d->tolerance;
+        }
+        for (int k = 0; k < d->n_in; k++) {
+            p->in_tol[d->row_in + k] = d->tolerance;
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_problem_init_demands(mt_problem *p, mt_err *err)
+{
+    const mt_study *const s = p->study;
+    size_t most = 0;
+    for (int i = 0; i < s->n_goals; i++) {
+        most += (size_t)s->goals[i].n_configurations + 1;
+    }
+    p->demands = mt_arena_alloc(&p->mem, most, sizeof *p->demands);
+    p->views = mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations, sizeof *p->views);
+    if (p->demands == NULL || p->views == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < s->n_goals; i++) {
+        if (s->goals[i].type == MT_GOAL_LIMIT) {
+            MT_TRY(add_demand(p, i, -1, err));
+            continue;
+        }
+        for (int k = 0; k < s->goals[i].n_configurations; k++) {
+            MT_TRY(add_demand(p, i, s->goals[i].configurations[k], err));
+        }
+    }
+    return init_rows(p, err);
+}

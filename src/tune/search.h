@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef TUNE_SEARCH_H
+#define TUNE_SEARCH_H
+
+#include "tune/problem.h"
+
+/*
+ * Search a problem for designs. The first objective from many starts (mt_nlp_solve); then, for every design found, the next objective from there with the ones before it held
+ * (mt_aim_hold), and so on through the list. Designs that have become one are reported once, in the order of the objectives. A compromise, a spent budget or an interruption
+ * ends the list: out->stop tells, and *stage is the objective that the solutions' f belongs to. Undetermined directions are those at the best design.
+ * problems[n_workers]: the same study compiled once for each worker; the result is the same for any number of them.
+ * Results in mem; the stage of problems[0] is 0 again. Deterministic. That no start has any value is no failure: then there are no solutions and *why tells what was wrong.
+ * Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_USAGE.
+ */
+mt_status mt_search_designs(mt_problem *const *problems, int n_workers, mt_arena *mem,
+                            mt_nlp_result *out, int *stage, mt_err *why, mt_err *err);
+
+#endif
