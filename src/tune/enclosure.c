@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Making an enclosure: conditions, coefficients, basis. And what is asked of an input. */
+#include "tune/enclosure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tune/enclosure_priv.h"
+
+void mt_enclosure_delete(mt_enclosure *e)
+{
+    if (e != NULL) {
+        mt_arena_free(&e->mem);
+        mt_arena_free(&e->scratch);
+        free(e);
+    }
+}
+
+static mt_status keep_bounds(mt_enclosure *e, const double *lower, const double *upper,
+                             mt_err *err)
+{
+    const size_t n = (size_t)e->n_inputs;
+    e->lower = mt_arena_f64(&e->mem, n, 1);
+    e->upper = mt_arena_f64(&e->mem, n, 1);
+    e->in[MT_STIFFNESS] = mt_arena_alloc(&e->mem, n, sizeof(bool));
+    e->in[MT_MASS] = mt_arena_alloc(&e->mem, n, sizeof(bool));
+    if (e->lower == NULL || e->upper == NULL || e->in[MT_STIFFNESS] == NULL ||
+        e->in[MT_MASS] == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (n > 0) {
+        memcpy(e->lower, lower, n * sizeof *lower);
+        memcpy(e->upper, upper, n * sizeof *upper);
+    }
+    return MT_OK;
+}
+
+static mt_status note_inputs(mt_enclosure *e, mt_err *err)
+{
+    bool *const depends = mt_arena_alloc(&e->mem, (size_t)e->n_inputs, sizeof *depends);
+    if (depends == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < e->n_coefficients; i++) {
+        mt_program_depends(&e->program, e->coefficients[i].node, depends);
+        for (int m = 0; m < MT_MATRICES; m++) {
+            for (int k = 0; k < e->n_inputs; k++) {
+                e->in[m][k] =
+                    e->in[m][k] || (depends[k] && e->coefficients[i].part[m].count > 0);
+            }
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status build(mt_enclosure *e, const mt_analysis *a, const double *lower,
+                       const double *upper, bool *ok, char *reason, mt_err *err)
+{
+    *ok = false;
+    if (!mt_enclosure_admits(a, reason)) {
+        return MT_OK;
+    }
+    if (a->modes.n_unstable > 0) {
+        (void)snprintf(reason, MT_REASON_SIZE, "the mechanism is unstable");
+        return MT_OK;
+    }
+    MT_TRY(mt_arena_init(&e->mem, 0, err));
+    MT_TRY(mt_arena_init(&e->scratch, 0, err));
+    e->n_inputs = a->sys->n_inputs;
+    e->n_rigid = a->n_rigid;
+    MT_TRY(keep_bounds(e, lower, upper, err));
+    MT_TRY(mt_enclosure_collect(e, a->lin, ok, reason, err));
+    if (*ok) {
+        MT_TRY(mt_enclosure_reduce(e, a->lin, ok, reason, err));
+    }
+    return *ok ? note_inputs(e, err) : MT_OK;
+}
+
+mt_status mt_enclosure_new(const mt_analysis *a, const double *lower, const double *upper,
+                           mt_enclosure **out, char *reason, mt_err *err)
+{
+    mt_enclosure *const e = calloc(1, sizeof *e);
+    bool ok = false;
+    *out = NULL;
+    reason[0] = '\0';
+    if (e == NULL) {
+        return mt_fail_memory(err);
+    }
+    const mt_status rc = build(e, a, lower, upper, &ok, reason, err);
+    if (rc != MT_OK || !ok) {
+        mt_enclosure_delete(e);
+        return rc;
+    }
+    *out = e;
+    return MT_OK;
+}
+
+bool mt_enclosure_loose(const mt_enclosure *e, int i)
+{
+    return e->in[MT_STIFFNESS][i] && e->in[MT_MASS][i];
+}
+
+bool mt_enclosure_depends(const mt_enclosure *e, int i)
+{
+    return e->in[MT_STIFFNESS][i] || e->in[MT_MASS][i];
+}
+
+enum { STIFFENS = 1, SOFTENS = 2 };
+
+/* What raising input k does over the box whose gradient is in dnode: bits of STIFFENS, SOFTENS. */
+static int effect(const mt_enclosure *e, int k)
+{
+    int bits = 0;
+    for (int i = 0; i < e->n_coefficients; i++) {
+        const mt_enclosure_coefficient *const c = &e->coefficients[i];
+        const size_t at = ((size_t)c->node * (size_t)e->n_inputs) + (size_t)k;
+        const bool rises = e->dnode[MT_HIGH][at] > 0.0;
+        const bool falls = e->dnode[MT_LOW][at] < 0.0;
+        if (c->part[MT_STIFFNESS].count > 0) {
+            bits |= (rises ? STIFFENS : 0) | (falls ? SOFTENS : 0);
+        }
+        if (c->part[MT_MASS].count > 0) {
+            bits |= (rises ? SOFTENS : 0) | (falls ? STIFFENS : 0);
+        }
+    }
+    return bits;
+}
+
+bool mt_enclosure_corners(mt_enclosure *e, const mt_model *model, const int *inputs,
+                          const double *lo, const double *hi, double *soft, double *stiff,
+                          char *reason)
+{
+    mt_program_interval_gradient(&e->program, lo, hi, e->node[MT_LOW], e->node[MT_HIGH],
+                                 e->dnode[MT_LOW], e->dnode[MT_HIGH]);
+    for (int k = 0; k < e->n_inputs; k++) {
+        const int bits = effect(e, k);
+        if (bits == (STIFFENS | SOFTENS) && lo[k] < hi[k]) {
+            (void)snprintf(
+                reason, MT_REASON_SIZE, "parameter \"%s\" %s",
+                model->parameters[inputs[k]].name.s,
+                mt_enclosure_loose(e, k) ? "enters both stiffness and mass"
+                                         : "stiffens in one place and softens in another");
+            return false;
+        }
+        const double middle = 0.5 * (lo[k] + hi[k]);
+        soft[k] = bits == 0 ? middle : (bits == SOFTENS ? hi[k] : lo[k]);
+        stiff[k] = bits == 0 ? middle : (bits == SOFTENS ? lo[k] : hi[k]);
+    }
+    return true;
+}

@@ -1,0 +1,327 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Coordinates in which the eigenvalue problem of every box is (nearly) a standard one: M_low is the mass at the low end of the bounds, W the basis with
+ * W^T M_low W = I. Then W^T M(x) W >= I within the bounds, so a perturbation of norm e of W^T (K - lambda M) W moves no eigenvalue by more than e.
+ *
+ * Regular M_low = L L^T: W = L^-T, which keeps chains sparse (L is diagonal there). Directions T0 without mass: where the varying springs do not act on them
+ * (T0^T r = 0), their static condensation is the same at every design, and the mode shapes Y at the soft corner span {y: T0^T K y = 0}: W = Y.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "linalg/dense.h"
+#include "modal/modal.h"
+#include "tune/enclosure_priv.h"
+
+typedef struct basis {
+    const mt_linear *lin;
+    int n;          /* freedoms of the analysis */
+    int r;          /* order of the enclosure: directions with mass */
+    const double *l; /* n x n Cholesky factor of M_low; NULL where y is used */
+    const double *y; /* n x r */
+    double condition;
+    double *k_low; /* n x n, full */
+    double *m_low;
+} basis;
+
+static const mt_term_kind KINDS[MT_MATRICES] = {MT_TERM_STIFFNESS, MT_TERM_MASS};
+
+/* The massless part of a varying spring's row, relative to the row, that counts as none: rounding of rows and null space. */
+static const double MASSLESS_SHARE = 1e-12;
+
+static mt_status room(mt_arena *mem, size_t m, size_t n, double **out, mt_err *err)
+{
+    *out = mt_arena_f64(mem, m, n);
+    return *out == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+/* fixed + sum of the varying terms with their coefficients at the low end of the bounds. */
+static mt_status low_matrix(const mt_enclosure *e, const mt_linear *lin, mt_matrix which,
+                            mt_arena *mem, double **out, mt_err *err)
+{
+    const ptrdiff_t n = lin->n;
+    const mt_term_list *const list = &lin->list[KINDS[which]];
+    MT_TRY(room(mem, (size_t)n, (size_t)n, out, err));
+    memcpy(*out, which == MT_STIFFNESS ? lin->k_fixed : lin->m_fixed,
+           (size_t)(n * n) * sizeof **out);
+    for (int i = 0; i < list->n_rows; i++) {
+        const mt_term *const t = &list->terms[list->row_term[i]];
+        const double *const row = lin->reduced[KINDS[which]] + (i * n);
+        if (!t->varies) {
+            continue;
+        }
+        const double c = e->value[MT_LOW][mt_enclosure_find(e, t->coefficient)];
+        for (ptrdiff_t j = 0; j < n; j++) {
+            for (ptrdiff_t k = j; k < n; k++) {
+                (*out)[k + (j * n)] += c * row[k] * row[j];
+            }
+        }
+    }
+    mt_symmetrise_lower((int)n, *out);
+    return MT_OK;
+}
+
+/* max_i m_ii (Y Y^T)_ii: how oblique the coordinates are to M. */
+static double condition_of(const basis *b)
+{
+    double most = 1.0;
+    for (ptrdiff_t i = 0; i < b->n; i++) {
+        double sum = 0.0;
+        for (ptrdiff_t j = 0; j < b->r; j++) {
+            sum += b->y[i + (j * b->n)] * b->y[i + (j * b->n)];
+        }
+        most = fmax(most, b->m_low[i + (i * b->n)] * sum);
+    }
+    return most;
+}
+
+/* Does no varying spring act on the directions without mass, and does no varying mass fade? */
+static mt_status check_massless(const mt_enclosure *e, const basis *b, mt_arena *scratch,
+                                bool *ok, char *reason, mt_err *err)
+{
+    const size_t n = (size_t)b->n;
+    const size_t z = n - (size_t)b->r;
+    const mt_linear *const lin = b->lin;
+    double *my = NULL;
+    double *t0 = NULL;
+    double *part = NULL;
+    mt_qr qr;
+    MT_TRY(room(scratch, n, (size_t)b->r, &my, err));
+    MT_TRY(room(scratch, n, z, &t0, err));
+    MT_TRY(room(scratch, z, 1, &part, err));
+    mt_symm(b->n, b->r, b->m_low, b->y, my);
+    MT_TRY(mt_qr_factor(b->n, b->r, my, b->n, 0.0, scratch, &qr, err));
+    MT_TRY(mt_qr_q(&qr, b->r, t0, scratch, err));
+    const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];
+    for (int i = 0; i < list->n_rows && *ok; i++) {
+        const mt_term *const t = &list->terms[list->row_term[i]];
+        const double *const row = lin->reduced[MT_TERM_STIFFNESS] + ((ptrdiff_t)i * b->n);
+        mt_gemv(true, b->n, (int)z, 1.0, t0, b->n, row, 0.0, part);
+        if (t->varies && mt_norm2((int)z, part) > MASSLESS_SHARE * mt_norm2(b->n, row)) {
+            *ok = false;
+            (void)snprintf(reason, MT_REASON_SIZE, "spring \"%s\" acts on a massless freedom",
+                           lin->sys->springs[t->source].name);
+        }
+    }
+    for (int i = 0; i < e->n_coefficients && *ok; i++) {
+        const mt_enclosure_coefficient *const c = &e->coefficients[i];
+        const bool mass = c->part[MT_MASS].count < 0; /* marked by find_kinds */
+        if (mass && !(c->least > 0.0)) {
+            *ok = false;
+            (void)snprintf(reason, MT_REASON_SIZE,
+                           "mass of \"%s\" may vanish within the bounds", c->name);
+        }
+    }
+    return MT_OK;
+}
+
+/* Modes of (K low, M low) show an instability; and they are the basis where M is singular. */
+static mt_status choose(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_err *err)
+{
+    mt_mass_factor mass;
+    mt_modes modes;
+    mt_modal_options opt = mt_modal_options_default();
+    opt.n_rigid = e->n_rigid;
+    opt.check = false;
+    mt_status rc = mt_modal_factor_mass(b->n, b->m_low, &e->scratch, &mass, err);
+    rc = rc == MT_OK ? mt_modal_solve_factored(b->k_low, &mass, NULL, &opt, &e->scratch, &modes,
+                                               err)
+                     : rc;
+    *ok = rc == MT_OK && modes.n_unstable == 0;
+    if (rc == MT_E_NOT_SPD || rc == MT_E_MASSLESS || (rc == MT_OK && !*ok)) {
+        (void)snprintf(reason, MT_REASON_SIZE, "%s",
+                       rc == MT_OK ? "the mechanism may be unstable within the bounds"
+                                   : "a freedom may lose its mass or its stiffness within the "
+                                     "bounds");
+        return MT_OK;
+    }
+    MT_TRY(rc);
+    b->r = mass.rank;
+    if (b->r == b->n && isfinite(mass.condition)) {
+        double *l = NULL;
+        MT_TRY(room(&e->scratch, (size_t)b->n, (size_t)b->n, &l, err));
+        memcpy(l, b->m_low, (size_t)b->n * (size_t)b->n * sizeof *l);
+        MT_TRY(mt_cholesky(b->n, l, NULL, err));
+        b->l = l;
+        b->condition = mass.condition;
+        return MT_OK;
+    }
+    b->y = modes.y;
+    b->condition = condition_of(b);
+    return b->r == b->n ? MT_OK : check_massless(e, b, &e->scratch, ok, reason, err);
+}
+
+/* out (r) = W^T row. */
+static void to_basis(const basis *b, const double *row, double *out)
+{
+    if (b->l != NULL) {
+        memcpy(out, row, (size_t)b->n * sizeof *out);
+        mt_tri_solve(false, b->n, 1, b->l, out, b->n);
+    } else {
+        mt_gemv(true, b->n, b->r, 1.0, b->y, b->n, row, 0.0, out);
+    }
+}
+
+/* W^T A W of a fixed matrix (lower triangle given), full. */
+static mt_status to_basis_matrix(const basis *b, const double *a, mt_arena *scratch,
+                                 double *out, mt_err *err)
+{
+    double *full = NULL;
+    double *ay = NULL;
+    MT_TRY(room(scratch, (size_t)b->n, (size_t)b->n, &full, err));
+    memcpy(full, a, (size_t)b->n * (size_t)b->n * sizeof *full);
+    mt_symmetrise_lower(b->n, full);
+    if (b->l != NULL) {
+        mt_congruence_inverse(b->n, b->l, full);
+        memcpy(out, full, (size_t)b->n * (size_t)b->n * sizeof *out);
+        return MT_OK;
+    }
+    MT_TRY(room(scratch, (size_t)b->n, (size_t)b->r, &ay, err));
+    mt_symm(b->n, b->r, full, b->y, ay);
+    mt_gemm(true, false, b->r, b->r, b->n, 1.0, b->y, b->n, ay, b->n, 0.0, out, b->r);
+    return MT_OK;
+}
+
+/* dense (r x r, lower) += row row^T in the basis, for all rows of the coefficient's terms; returns whether there were any. */
+static bool add_rows(const basis *b, mt_matrix which, mt_node source, double *row,
+                     double *dense)
+{
+    const mt_term_list *const list = &b->lin->list[KINDS[which]];
+    const ptrdiff_t r = b->r;
+    bool any = false;
+    memset(dense, 0, (size_t)(r * r) * sizeof *dense);
+    for (int i = 0; i < list->n_rows; i++) {
+        const mt_term *const t = &list->terms[list->row_term[i]];
+        if (!t->varies || t->coefficient != source) {
+            continue;
+        }
+        any = true;
+        to_basis(b, b->lin->reduced[KINDS[which]] + ((ptrdiff_t)i * b->n), row);
+        for (ptrdiff_t j = 0; j < r; j++) {
+            for (ptrdiff_t k = j; k < r; k++) {
+                dense[k + (j * r)] += row[k] * row[j];
+            }
+        }
+    }
+    return any;
+}
+
+static mt_status make_part(const double *dense, ptrdiff_t r, mt_arena *mem,
+                           mt_enclosure_part *part, mt_err *err)
+{
+    int count = 0;
+    for (ptrdiff_t i = 0; i < r * r; i++) {
+        count += dense[i] != 0.0 ? 1 : 0;
+    }
+    part->at = mt_arena_int(mem, (size_t)count);
+    part->value = mt_arena_f64(mem, (size_t)count, 1);
+    if (part->at == NULL || part->value == NULL) {
+        return mt_fail_memory(err);
+    }
+    part->count = 0;
+    for (ptrdiff_t i = 0; i < r * r; i++) {
+        if (dense[i] != 0.0) {
+            part->at[part->count] = (int)i;
+            part->value[part->count++] = dense[i];
+        }
+    }
+    for (ptrdiff_t i = 0; i < r; i++) {
+        part->trace += dense[i + (i * r)];
+    }
+    return MT_OK;
+}
+
+static mt_status make_parts(mt_enclosure *e, const basis *b, mt_err *err)
+{
+    double *dense = NULL;
+    double *row = NULL;
+    MT_TRY(room(&e->scratch, (size_t)b->r, (size_t)b->r, &dense, err));
+    MT_TRY(room(&e->scratch, (size_t)b->n, 1, &row, err));
+    for (int i = 0; i < e->n_coefficients; i++) {
+        mt_enclosure_coefficient *const c = &e->coefficients[i];
+        for (mt_matrix m = MT_STIFFNESS; m < MT_MATRICES; m++) {
+            c->part[m].count = 0;
+            if (add_rows(b, m, e->sources[i], row, dense)) {
+                MT_TRY(make_part(dense, b->r, &e->mem, &c->part[m], err));
+            }
+            e->mass_varies = e->mass_varies || (m == MT_MASS && c->part[m].count > 0);
+        }
+    }
+    return MT_OK;
+}
+
+/* Mark coefficients of masses by a part of -1 entries, until make_parts fills them. */
+static void find_kinds(mt_enclosure *e, const mt_linear *lin)
+{
+    const mt_term_list *const list = &lin->list[MT_TERM_MASS];
+    for (int i = 0; i < list->n_terms; i++) {
+        if (list->terms[i].varies) {
+            const int at = mt_enclosure_find(e, list->terms[i].coefficient);
+            e->coefficients[at].part[MT_MASS].count = -1;
+        }
+    }
+}
+
+static bool all_squares(const mt_linear *lin)
+{
+    bool squares = true;
+    for (int m = 0; m < MT_MATRICES; m++) {
+        const mt_term_list *const list = &lin->list[KINDS[m]];
+        for (int i = 0; i < list->n_terms; i++) {
+            const mt_term *const t = &list->terms[i];
+            const double c = t->varies ? 0.0 : lin->value[t->coefficient];
+            squares = squares && (c == 0.0 || (c > 0.0 && !t->pair));
+        }
+    }
+    return squares;
+}
+
+/*
+ * Slack of an eigenvalue relative to the trace of K (or of lambda M): ROUNDING_ULPS (n + terms) eps, times the condition of the basis, for the rounding of the rows in the
+ * basis (n eps each, amplified by the condition), of sums of `terms` parts, and of the model's own evaluation. 16 as the modal room counts (modal_priv.h).
+ */
+static const double ROUNDING_ULPS = 16.0;
+
+static mt_status reduce(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_err *err)
+{
+    const mt_linear *const lin = b->lin;
+    find_kinds(e, lin);
+    MT_TRY(low_matrix(e, lin, MT_STIFFNESS, &e->scratch, &b->k_low, err));
+    MT_TRY(low_matrix(e, lin, MT_MASS, &e->scratch, &b->m_low, err));
+    MT_TRY(choose(e, b, ok, reason, err));
+    if (!*ok) {
+        return MT_OK;
+    }
+    const size_t r = (size_t)b->r;
+    e->n = b->r;
+    e->n_modes = e->n - e->n_rigid;
+    MT_TRY(make_parts(e, b, err));
+    for (mt_matrix m = MT_STIFFNESS; m < MT_MATRICES; m++) {
+        MT_TRY(room(&e->mem, r, r, &e->fixed[m], err));
+        MT_TRY(to_basis_matrix(b, m == MT_STIFFNESS ? lin->k_fixed : lin->m_fixed, &e->scratch,
+                               e->fixed[m], err));
+        for (mt_side s = MT_LOW; s <= MT_HIGH && (m == MT_STIFFNESS || e->mass_varies); s++) {
+            MT_TRY(room(&e->mem, r, r, &e->at[m][s], err));
+        }
+    }
+    MT_TRY(room(&e->mem, r, r, &e->work, err));
+    e->fixed_norm = mt_norm2((int)(r * r), e->fixed[MT_STIFFNESS]);
+    e->squares = all_squares(lin);
+    e->roundoff = ROUNDING_ULPS * (double)(e->n + lin->list[MT_TERM_STIFFNESS].n_rows +
+                                           lin->list[MT_TERM_MASS].n_rows) *
+                  DBL_EPSILON * b->condition;
+    return MT_OK;
+}
+
+mt_status mt_enclosure_reduce(mt_enclosure *e, const mt_linear *lin, bool *ok, char *reason,
+                              mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    basis b = {.lin = lin, .n = lin->n};
+    *ok = true;
+    const mt_status rc = reduce(e, &b, ok, reason, err);
+    mt_arena_rewind(&e->scratch, mark);
+    return rc;
+}

@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The coefficients that vary: each node once, in a program of their own, so that a box costs no more than it must.
+ *
+ * An interval evaluation is tight where each input occurs once in an expression. Where one occurs twice (h^3 b / (h b + ...)) the value at the right corner is
+ * used instead: over a box in which the derivative's enclosure has one sign for an input, the extremes lie at that input's ends.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "tune/enclosure_priv.h"
+
+int mt_enclosure_find(const mt_enclosure *e, mt_node source)
+{
+    for (int i = 0; i < e->n_coefficients; i++) {
+        if (e->sources[i] == source) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+/* List the coefficients of the varying terms of one kind. */
+static void list_terms(mt_enclosure *e, const mt_linear *lin, mt_term_kind kind)
+{
+    const mt_system *const sys = lin->sys;
+    for (int i = 0; i < lin->list[kind].n_terms; i++) {
+        const mt_term *const t = &lin->list[kind].terms[i];
+        if (!t->varies || mt_enclosure_find(e, t->coefficient) >= 0) {
+            continue;
+        }
+        e->sources[e->n_coefficients] = t->coefficient;
+        e->coefficients[e->n_coefficients++].name =
+            kind == MT_TERM_STIFFNESS ? sys->springs[t->source].name
+                                      : sys->items[sys->inertias[t->source].item].name;
+    }
+}
+
+/* Copy what the coefficients need of the system's program. */
+static mt_status extract(mt_enclosure *e, const mt_program *from, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    int *const map = mt_arena_int(&e->scratch, (size_t)from->count);
+    if (map == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < e->n_coefficients; i++) {
+        map[e->sources[i]] = 1;
+    }
+    for (int i = from->count - 1; i >= 0; i--) {
+        const mt_program_node *const n = &from->nodes[i];
+        if (map[i] != 0 && n->a != MT_NO_NODE) {
+            map[n->a] = 1;
+        }
+        if (map[i] != 0 && n->b != MT_NO_NODE) {
+            map[n->b] = 1;
+        }
+    }
+    MT_TRY(mt_program_init(&e->program, e->n_inputs, &e->mem, err));
+    for (int i = 0; i < from->count; i++) {
+        const mt_program_node *const n = &from->nodes[i];
+        if (map[i] == 0) {
+            continue;
+        }
+        if (n->op == MT_OP_CONST) {
+            map[i] = mt_program_const(&e->program, n->value);
+        } else if (n->op == MT_OP_PARAM) {
+            map[i] = mt_program_input(&e->program, n->input, n->addr);
+        } else if (n->b == MT_NO_NODE) {
+            map[i] = mt_program_unary(&e->program, n->op, map[n->a], n->addr);
+        } else {
+            map[i] = mt_program_binary(&e->program, n->op, map[n->a], map[n->b], n->addr);
+        }
+    }
+    for (int i = 0; i < e->n_coefficients; i++) {
+        e->coefficients[i].node = map[e->sources[i]];
+    }
+    mt_arena_rewind(&e->scratch, mark);
+    return mt_program_finish(&e->program, err);
+}
+
+/* Does an input reach the node on two ways? (x * x is a square, enclosed as one.) */
+static mt_status find_dependent(mt_enclosure *e, mt_err *err)
+{
+    const mt_program *const p = &e->program;
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    const size_t inputs = (size_t)e->n_inputs;
+    int *const ways = mt_arena_int(&e->scratch, (size_t)p->count * inputs);
+    if (ways == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->count; i++) {
+        const mt_program_node *const n = &p->nodes[i];
+        int *const own = ways + ((size_t)i * inputs);
+        if (n->op == MT_OP_PARAM) {
+            own[n->input] = 1;
+        }
+        for (size_t k = 0; k < inputs; k++) {
+            const int a = n->a == MT_NO_NODE ? 0 : ways[((size_t)n->a * inputs) + k];
+            const bool square = n->op == MT_OP_MUL && n->a == n->b;
+            const int b = n->b == MT_NO_NODE || square ? 0 : ways[((size_t)n->b * inputs) + k];
+            own[k] = a + b > 2 ? 2 : (a + b > own[k] ? a + b : own[k]);
+        }
+    }
+    for (int i = 0; i < e->n_coefficients; i++) {
+        mt_enclosure_coefficient *const c = &e->coefficients[i];
+        for (size_t k = 0; k < inputs; k++) {
+            c->dependent = c->dependent || ways[((size_t)c->node * inputs) + k] > 1;
+        }
+    }
+    mt_arena_rewind(&e->scratch, mark);
+    return MT_OK;
+}
+
+static void set_signs(mt_enclosure *e)
+{
+    mt_program_interval_gradient(&e->program, e->lower, e->upper, e->node[MT_LOW],
+                                 e->node[MT_HIGH], e->dnode[MT_LOW], e->dnode[MT_HIGH]);
+    for (int i = 0; i < e->n_coefficients; i++) {
+        mt_enclosure_coefficient *const c = &e->coefficients[i];
+        const size_t row = (size_t)c->node * (size_t)e->n_inputs;
+        c->monotone = true;
+        for (int k = 0; k < e->n_inputs; k++) {
+            const double lo = e->dnode[MT_LOW][row + (size_t)k];
+            const double hi = e->dnode[MT_HIGH][row + (size_t)k];
+            c->sign[k] = (signed char)(lo >= 0.0 && hi > 0.0 ? 1 : (hi <= 0.0 && lo < 0.0 ? -1 : 0));
+            c->monotone = c->monotone && (lo >= 0.0 || hi <= 0.0);
+        }
+    }
+}
+
+static mt_status claim(mt_enclosure *e, const mt_linear *lin, mt_err *err)
+{
+    const size_t most = (size_t)lin->list[MT_TERM_STIFFNESS].n_terms +
+                        (size_t)lin->list[MT_TERM_MASS].n_terms + 1;
+    e->sources = mt_arena_int(&e->mem, most);
+    e->coefficients = mt_arena_alloc(&e->mem, most, sizeof *e->coefficients);
+    return e->sources == NULL || e->coefficients == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+static mt_status claim_work(mt_enclosure *e, mt_err *err)
+{
+    const size_t inputs = (size_t)e->n_inputs;
+    bool ok = true;
+    for (int s = 0; s < 2; s++) {
+        e->value[s] = mt_arena_f64(&e->mem, (size_t)e->n_coefficients, 1);
+        e->node[s] = mt_arena_f64(&e->mem, (size_t)e->program.count, 1);
+        e->dnode[s] = mt_arena_f64(&e->mem, (size_t)e->program.count, inputs);
+        e->corner_x[s] = mt_arena_f64(&e->mem, inputs, 1);
+        ok = ok && e->value[s] != NULL && e->node[s] != NULL && e->dnode[s] != NULL &&
+             e->corner_x[s] != NULL;
+    }
+    for (int i = 0; i < e->n_coefficients && ok; i++) {
+        e->coefficients[i].sign = mt_arena_alloc(&e->mem, inputs, sizeof(signed char));
+        ok = e->coefficients[i].sign != NULL;
+    }
+    return ok ? MT_OK : mt_fail_memory(err);
+}
+
+mt_status mt_enclosure_collect(mt_enclosure *e, const mt_linear *lin, bool *ok, char *reason,
+                               mt_err *err)
+{
+    MT_TRY(claim(e, lin, err));
+    list_terms(e, lin, MT_TERM_STIFFNESS);
+    const int n_stiffness = e->n_coefficients;
+    list_terms(e, lin, MT_TERM_MASS);
+    MT_TRY(extract(e, &lin->sys->program, err));
+    MT_TRY(claim_work(e, err));
+    MT_TRY(find_dependent(e, err));
+    set_signs(e);
+    mt_enclosure_bounds(e, e->lower, e->upper);
+    *ok = true;
+    for (int i = 0; i < e->n_coefficients && *ok; i++) {
+        mt_enclosure_coefficient *const c = &e->coefficients[i];
+        c->least = e->value[MT_LOW][i];
+        *ok = c->least >= 0.0 && isfinite(e->value[MT_HIGH][i]);
+        if (!*ok) {
+            (void)snprintf(reason, MT_REASON_SIZE, "%s of \"%s\" may be %s within the bounds",
+                           i < n_stiffness ? "stiffness" : "mass", c->name,
+                           c->least < 0.0 ? "negative" : "without limit");
+        }
+    }
+    return MT_OK;
+}
+
+/* The inputs at which a coefficient is least (side MT_LOW) or greatest: the end that its derivative's sign says, the whole interval where it has none. */
+static void corner_of(mt_enclosure *e, const mt_enclosure_coefficient *c, mt_side side,
+                      const double *lo, const double *hi)
+{
+    const size_t row = (size_t)c->node * (size_t)e->n_inputs;
+    for (int k = 0; k < e->n_inputs; k++) {
+        const bool rises = e->dnode[MT_LOW][row + (size_t)k] >= 0.0;
+        const bool falls = e->dnode[MT_HIGH][row + (size_t)k] <= 0.0;
+        const bool at_low = side == MT_LOW ? rises : falls;
+        const bool at_high = side == MT_LOW ? falls : rises;
+        e->corner_x[MT_LOW][k] = at_high && !at_low ? hi[k] : lo[k];
+        e->corner_x[MT_HIGH][k] = at_low ? lo[k] : hi[k];
+    }
+}
+
+void mt_enclosure_bounds(mt_enclosure *e, const double *lo, const double *hi)
+{
+    bool dependent = false;
+    mt_program_interval(&e->program, lo, hi, e->node[MT_LOW], e->node[MT_HIGH]);
+    for (int i = 0; i < e->n_coefficients; i++) {
+        const mt_enclosure_coefficient *const c = &e->coefficients[i];
+        e->value[MT_LOW][i] = e->node[MT_LOW][c->node];
+        e->value[MT_HIGH][i] = e->node[MT_HIGH][c->node];
+        dependent = dependent || c->dependent;
+    }
+    if (!dependent) {
+        return;
+    }
+    mt_program_interval_gradient(&e->program, lo, hi, e->node[MT_LOW], e->node[MT_HIGH],
+                                 e->dnode[MT_LOW], e->dnode[MT_HIGH]);
+    for (int i = 0; i < e->n_coefficients; i++) {
+        const mt_enclosure_coefficient *const c = &e->coefficients[i];
+        for (mt_side side = MT_LOW; c->dependent && side <= MT_HIGH; side++) {
+            corner_of(e, c, side, lo, hi);
+            mt_program_interval(&e->program, e->corner_x[MT_LOW], e->corner_x[MT_HIGH],
+                                e->node[MT_LOW], e->node[MT_HIGH]);
+            double *const v = &e->value[side][i];
+            const double corner = e->node[side][c->node];
+            *v = side == MT_LOW ? fmax(*v, corner) : fmin(*v, corner);
+        }
+    }
+}
