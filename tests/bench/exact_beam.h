@@ -124,7 +124,7 @@ static inline void xb_solve(const long double *spring, xb_modes *out)
     xb_matrix k;
     xb_matrix m;
     xb_matrix v = {{0.0L}};
-    int order[XB_N];
+    int order[XB_N] = {0};
     xb_matrices(spring, k, m);
     xb_standard(k, m);
     for (int i = 0; i < XB_N; i++) {
@@ -146,7 +146,7 @@ static inline void xb_solve(const long double *spring, xb_modes *out)
     }
     for (int mode = 0; mode < XB_MODES; mode++) {
         const int j = order[mode + 2];
-        long double phi[XB_N];
+        long double phi[XB_N] = {0.0L};
         out->hz[mode] = sqrtl(k[j][j]) / (2.0L * XB_PI);
         for (int i = XB_N - 1; i >= 0; i--) { /* L^T phi = v */
             long double s = v[i][j];
