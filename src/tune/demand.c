@@ -12,8 +12,8 @@
 
 #include "tune/problem.h"
 
-/* lambda'/(2 lambda) for all variables, chained to t. A repeated mode: the mean of its cluster, which is smooth where the single modes are not. */
-static mt_status dln_frequency(mt_problem *p, mt_analysis *a, int pos, double *out, mt_err *err)
+mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, double *out,
+                                   mt_err *err)
 {
     int size = 1;
     const int first = mt_modal_cluster(&a->modes, pos, &size);
@@ -61,7 +61,7 @@ static void store_scalar(mt_problem *p, const mt_demand *d, const scalar *v,
         put(out->deq, p->n_eq, d->row_eq, p->n, v->target_slope, gradient);
         return;
     }
-    const int rows = p->n_in + p->stage;
+    const int rows = mt_problem_rows_in(p);
     int row = d->row_in;
     if (MT_HAS(g->at_least)) {
         out->in[row] = v->above;
@@ -78,13 +78,13 @@ static mt_status frequency_demand(mt_problem *p, const mt_demand *d, int pos,
 {
     mt_analysis *const a = p->views[d->view].analysis;
     const double hz = mt_modal_hz(&a->modes, pos);
-    double *const gradient = with_gradient ? p->work_dshape : NULL; /* n numbers of it */
+    double *const gradient = with_gradient ? p->dshape : NULL; /* n numbers of it */
     if (!(hz > 0.0)) {
         return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\": the mode has no frequency",
                        mt_analysis_configuration(a));
     }
     if (with_gradient) {
-        MT_TRY(dln_frequency(p, a, pos, gradient, err));
+        MT_TRY(mt_problem_dln_frequency(p, a, pos, gradient, err));
     }
     const scalar v = {.to_target = log(hz / d->target_hz),
                       .above = log(hz / d->goal->at_least),
@@ -96,14 +96,14 @@ static mt_status frequency_demand(mt_problem *p, const mt_demand *d, int pos,
     return MT_OK;
 }
 
-/* Shape at the demand's channels into work_shape (and work_dshape); it must move there. */
+/* Shape at the demand's channels into shape (and dshape); it must move there. */
 static mt_status sense(mt_problem *p, const mt_demand *d, int pos, bool with_gradient,
                        double *norm, mt_err *err)
 {
     mt_analysis *const a = p->views[d->view].analysis;
-    MT_TRY(mt_analysis_shape(a, pos, d->shape.ns, d->shape.channel, p->work_shape,
-                             with_gradient ? p->work_dshape : NULL, err));
-    *norm = mt_norm2(d->shape.ns, p->work_shape);
+    MT_TRY(mt_analysis_shape(a, pos, d->shape.ns, d->shape.channel, p->shape,
+                             with_gradient ? p->dshape : NULL, err));
+    *norm = mt_norm2(d->shape.ns, p->shape);
     if (!(*norm > 0.0)) {
         return mt_fail(err, MT_E_DOMAIN,
                        "configuration \"%s\": the mode does not move at the sensors of "
@@ -119,7 +119,7 @@ static mt_status shape_demand(mt_problem *p, const mt_demand *d, int pos, bool w
 {
     const int ns = d->shape.ns;
     const double w = sqrt(d->weight);
-    double *const u = p->work_shape;
+    double *const u = p->shape;
     double norm = 0.0;
     MT_TRY(sense(p, d, pos, with_gradient, &norm, err));
     const double sign = mt_dot(ns, u, d->shape.shape) < 0.0 ? -1.0 : 1.0;
@@ -128,7 +128,7 @@ static mt_status shape_demand(mt_problem *p, const mt_demand *d, int pos, bool w
         p->r[d->row_res + i] = w * ((sign * u[i]) - d->shape.shape[i]);
     }
     for (int k = 0; k < p->n && with_gradient; k++) {
-        const double *const ds = p->work_dshape + ((ptrdiff_t)k * ns);
+        const double *const ds = p->dshape + ((ptrdiff_t)k * ns);
         const double along = mt_dot(ns, u, ds);
         const double factor = w * sign * mt_problem_stretch(p, k) / norm;
         for (int i = 0; i < ns; i++) {
@@ -146,11 +146,11 @@ static mt_status mac_demand(mt_problem *p, const mt_demand *d, int pos, bool wit
     double norm = 0.0;
     double mac = 0.0;
     MT_TRY(sense(p, d, pos, with_gradient, &norm, err));
-    mt_mac_matrix(ns, 1, p->work_shape, 1, d->shape.shape, &mac);
+    mt_mac_matrix(ns, 1, p->shape, 1, d->shape.shape, &mac);
     for (int k = 0; k < p->n && with_gradient; k++) {
-        const double *const ds = p->work_dshape + ((ptrdiff_t)k * ns);
+        const double *const ds = p->dshape + ((ptrdiff_t)k * ns);
         p->work[k] =
-            mt_problem_stretch(p, k) * mt_mac_derivative(ns, p->work_shape, ds, d->shape.shape);
+            mt_problem_stretch(p, k) * mt_mac_derivative(ns, p->shape, ds, d->shape.shape);
     }
     const scalar v = {.to_target = nan(""),
                       .above = mac - d->goal->at_least,

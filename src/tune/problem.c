@@ -115,6 +115,11 @@ static int residuals(const mt_problem *p)
     return p->aims[p->stage].type == MT_OBJECTIVE_MISFIT ? p->n_res : 0;
 }
 
+int mt_problem_rows_in(const mt_problem *p)
+{
+    return p->n_in + p->stage;
+}
+
 mt_nlp mt_problem_nlp(mt_problem *p)
 {
     const mt_nlp nlp = {.n = p->n,
@@ -123,7 +128,7 @@ mt_nlp mt_problem_nlp(mt_problem *p)
                         .origin = p->origin_t,
                         .n_res = residuals(p),
                         .n_eq = p->n_eq,
-                        .n_in = p->n_in + p->stage,
+                        .n_in = mt_problem_rows_in(p),
                         .eq_tol = p->eq_tol,
                         .in_tol = p->in_tol,
                         .eval = mt_problem_eval,
@@ -137,7 +142,7 @@ mt_status mt_problem_values_init(const mt_problem *p, mt_arena *mem, mt_nlp_valu
     const size_t n = (size_t)p->n;
     const size_t n_res = (size_t)residuals(p);
     const size_t n_eq = (size_t)p->n_eq;
-    const size_t n_in = (size_t)p->n_in + (size_t)p->stage;
+    const size_t n_in = (size_t)mt_problem_rows_in(p);
     *out = (mt_nlp_values){
         .f = 0.0,
         .df = mt_arena_f64(mem, n, 1),

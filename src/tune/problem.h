@@ -90,14 +90,14 @@ typedef struct mt_problem {
     double *grad;       /* program.count rows of n, after an evaluation with gradient */
     int n_aims;         /* at least one */
     mt_aim *aims;
-    int stage;           /* of aims */
-    double *x;           /* [n] parameters of the last evaluation */
-    double *t;           /* [n] its coordinates */
-    double *r;           /* [n_res] residuals there */
-    double *dr;          /* n_res x n */
-    double *work;        /* [n] */
-    double *work_shape;  /* [max ns] */
-    double *work_dshape; /* max ns x n */
+    int stage;      /* of aims */
+    double *x;      /* [n] parameters of the last evaluation */
+    double *t;      /* [n] its coordinates */
+    double *r;      /* [n_res] residuals there */
+    double *dr;     /* n_res x n */
+    double *work;   /* [n] */
+    double *shape;  /* [max ns] */
+    double *dshape; /* max ns x n */
     long evaluations;
     const volatile int *stop; /* NULL, or the search ends where it is set */
     void (*progress)(void *context, const char *text); /* NULL, or called now and then */
@@ -114,6 +114,8 @@ mt_status mt_problem_new(const mt_study *study, mt_reference_cache *references,
 void mt_problem_delete(mt_problem *p);
 /* Parameter values x[n] of coordinates t[n]: a bound, and the original value, come back to the last bit. */
 void mt_problem_x(const mt_problem *p, const double *t, double *x);
+/* Rows of `in` and of its derivative in the present stage: goals, then held objectives. */
+int mt_problem_rows_in(const mt_problem *p);
 /* dx_i/dt_i at the last evaluation. */
 double mt_problem_stretch(const mt_problem *p, int i);
 /* The present stage as a search problem (arrays belong to the problem). */
@@ -139,7 +141,11 @@ mt_status mt_view_track(mt_view *view, mt_err *err);
 
 /* problem_demands.c: views, demands and their rows. */
 mt_status mt_problem_init_demands(mt_problem *p, mt_err *err);
-/* demand.c: values (and gradients, unless NULL where out holds none) of one demand after its view has been solved; rows as numbered. */
+/* demand.c: lambda'/(2 lambda) of the mode at pos for all variables, chained to t: out[n]. A repeated mode: the mean of its cluster, which is smooth where the single modes are
+ * not. */
+mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, double *out,
+                                   mt_err *err);
+/* Values (and gradients, unless NULL where out holds none) of one demand after its view has been solved; rows as numbered. */
 mt_status mt_demand_eval(mt_problem *p, const mt_demand *d, bool with_gradient,
                          mt_nlp_values *out, mt_err *err);
 /* problem_aims.c: the program of expressions, and the objectives. After the demands. */

@@ -210,10 +210,10 @@ static mt_status init_rows(mt_problem *p, mt_err *err)
     p->in_tol = mt_arena_f64(&p->mem, (size_t)p->n_in + (size_t)p->study->n_objectives, 1);
     p->r = mt_arena_f64(&p->mem, (size_t)p->n_res, 1);
     p->dr = mt_arena_f64(&p->mem, (size_t)p->n_res, n);
-    p->work_shape = mt_arena_f64(&p->mem, ns, 1);
-    p->work_dshape = mt_arena_f64(&p->mem, ns, n);
+    p->shape = mt_arena_f64(&p->mem, ns, 1);
+    p->dshape = mt_arena_f64(&p->mem, ns, n);
     if (p->eq_tol == NULL || p->in_tol == NULL || p->r == NULL || p->dr == NULL ||
-        p->work_shape == NULL || p->work_dshape == NULL) {
+        p->shape == NULL || p->dshape == NULL) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < p->n_demands; i++) {

@@ -33,7 +33,7 @@ mt_status mt_view_solve(mt_problem *p, mt_view *view, bool with_gradient, mt_err
 /* Objectives of earlier stages stay where they are: (limit - f) / unit >= 0. */
 static void hold_rows(mt_problem *p, bool with_gradient, mt_nlp_values *out)
 {
-    const ptrdiff_t rows = p->n_in + p->stage;
+    const ptrdiff_t rows = mt_problem_rows_in(p);
     for (int k = 0; k < p->stage; k++) {
         const mt_aim *const a = &p->aims[k];
         const double f = mt_aim_value(p, k, with_gradient ? p->work : NULL);
