@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Three dimensions: closed forms of one body, planar mechanisms in space. */
+#include "linalg/dense.h"
 #include "mechanics/mech.h"
 
 enum { TEXT = 4000 };
@@ -27,6 +28,61 @@ static void space__one_body_on_bushings(mt_test *t)
         }
         mech_free(&s);
     }
+}
+
+/* xdd = -M^-1 (K x + C xd) as a first-order system: eigenvalues -zeta w +- i w sqrt(1 - zeta^2). */
+static bool damped_roots(mt_linear *lin, mt_arena *mem, double *wr, double *wi, mt_err *err)
+{
+    const int n = lin->n;
+    const size_t size = (size_t)n;
+    double *const a = mt_arena_f64(mem, 2 * size, 2 * size);
+    double *const m = mt_arena_f64(mem, size, size);
+    double *const kc = mt_arena_f64(mem, size, 2 * size); /* K beside C, then M^-1 of both */
+    memcpy(m, lin->m_r, size * size * sizeof *m);
+    memcpy(kc, lin->k, size * size * sizeof *kc);
+    mt_linear_damping(lin, kc + size * size);
+    if (mt_lu_solve(n, m, 2 * n, kc, NULL, mem, err) != MT_OK) {
+        return false;
+    }
+    for (size_t j = 0; j < 2 * size; j++) {
+        for (size_t i = 0; i < size; i++) {
+            a[i + 2 * size * j] = j == i + size ? 1.0 : 0.0;
+            a[size + i + 2 * size * j] = -kc[i + size * j];
+        }
+    }
+    return mt_eig_general(2 * n, a, wr, wi, NULL, mem, err) == MT_OK;
+}
+
+static void space__dampers_enter_the_damping_matrix(mt_test *t)
+{
+    static const double HZ[3] = {3.53650019, 5.71383732, 8.38400687};
+    static const double PERCENT[3] = {11.180339887, 18.257418584, 27.386127875};
+    mt_arena mem;
+    mech s;
+    mt_err err = {.text = ""};
+    REQUIRE(t, mt_arena_init(&mem, 0, &err) == MT_OK);
+    if (mech_must(t, mech_load(t, "space_body"), "damped", "", &s)) {
+        double wr[6];
+        double wi[6];
+        CHECK_INT(t, s.a->lin->n, 3);
+        CHECK(t, damped_roots(s.a->lin, &mem, wr, wi, &s.err));
+        for (int k = 0; k < 3; k++) {
+            double nearest = HUGE_VAL;
+            double percent = 0.0;
+            for (int i = 0; i < 6; i++) {
+                const double off = fabs(wi[i] / (2.0 * MECH_PI) / HZ[k] - 1.0);
+                if (off < nearest) {
+                    nearest = off;
+                    percent = -100.0 * wr[i] / hypot(wr[i], wi[i]);
+                }
+            }
+            mt_test_row(t, "mode %d", k + 1);
+            CHECK(t, nearest <= 1e-8);
+            CHECK_NEAR(t, percent, PERCENT[k], 1e-9);
+        }
+    }
+    mech_free(&s);
+    mt_arena_free(&mem);
 }
 
 /* Stiffness from the constraint force alone: the body hangs on a string at its centre. */
@@ -162,6 +218,7 @@ static void space__clamped_beam_bends_both_ways_and_twists(mt_test *t)
 }
 
 MT_TEST_MAIN(MT_TEST(space__one_body_on_bushings), MT_TEST(space__body_hangs_on_a_string),
+             MT_TEST(space__dampers_enter_the_damping_matrix),
              MT_TEST(space__planar_four_bar_with_redundant_hinges),
              MT_TEST(space__planar_links_keep_their_frequencies),
              MT_TEST(space__clamped_beam_bends_both_ways_and_twists))
