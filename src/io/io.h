@@ -6,6 +6,7 @@
 #include "io/json.h"
 #include "io/write_json.h"
 #include "model/model.h"
+#include "tune/aircraft.h"
 #include "tune/result.h"
 #include "tune/study.h"
 
@@ -40,10 +41,20 @@ mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_
 mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **out,
                         mt_text *messages, mt_err *err);
 
+/**
+ * Read and check a catalogue of aircraft (format "modetune-aircraft/1").
+ * @param[in]  mem  owns the records; not freed on failure
+ * Fails and messages as for mt_model_load.
+ */
+mt_status mt_aircraft_load(const char *path, const mt_io_options *opt, mt_arena *mem,
+                           mt_aircraft_list *out, mt_text *messages, mt_err *err);
+
 /* Append a result as JSON (format "modetune-result/1"): the same result gives the same bytes. Fails: MT_E_MEMORY. */
 mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err);
 /* The same as a value within a larger document (name NULL: in a list, or the whole). */
 void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result);
+/* Of it, the members "undetermined" and "spread", into an object that is open. */
+void mt_result_put_uncertainty(mt_json_writer *w, const mt_result *result);
 
 /**
  * Read back from a result file what `apply` needs: status, names and files of study and model, inputs, and of every recommendation

@@ -23,6 +23,9 @@
     X(STUDY_REFERENCES, "references", MT_KEY_OBJECT, false)          \
     X(STUDY_RECOMMENDATIONS, "recommendations", MT_KEY_COUNT, false) \
     X(STUDY_SEARCH, "search", MT_KEY_OBJECT, false)                  \
+    X(STUDY_SPREAD, "spread", MT_KEY_OBJECT, false)                  \
+    X(STUDY_AIRCRAFT, "aircraft", MT_KEY_TEXT, false)                \
+    X(STUDY_TRADE, "trade", MT_KEY_OBJECT, false)                    \
     X(STUDY_PUBLISHED, "published", MT_KEY_LIST, false)
 enum { STUDY_KEYS(MT_STUDY_KEY_ENUM) STUDY_KEY_COUNT };
 static const mt_key KEYS[] = {STUDY_KEYS(MT_STUDY_KEY)};
@@ -38,6 +41,14 @@ enum { SEARCH_KEYS(MT_STUDY_KEY_ENUM) SEARCH_KEY_COUNT };
 static const mt_key SEARCH[] = {SEARCH_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_search_keys = {"search", SEARCH, SEARCH_KEY_COUNT};
 
+#define SPREAD_KEYS(X)                                       \
+    X(SPREAD_FACTOR, "factor", MT_KEY_NUMBER, true)          \
+    X(SPREAD_DESCRIPTION, "description", MT_KEY_TEXT, false) \
+    X(SPREAD_SOURCE, "source", MT_KEY_TEXT, false)
+enum { SPREAD_KEYS(MT_STUDY_KEY_ENUM) SPREAD_KEY_COUNT };
+static const mt_key SPREAD[] = {SPREAD_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_spread_keys = {"spread", SPREAD, SPREAD_KEY_COUNT};
+
 enum { MAX_RECOMMENDATIONS = 1000, MAX_STARTS = 100000 };
 
 const mt_key_table *const *mt_study_key_tables(int *n)
@@ -45,6 +56,7 @@ const mt_key_table *const *mt_study_key_tables(int *n)
     static const mt_key_table *const tables[] = {
         &mt_study_keys,
         &mt_study_search_keys,
+        &mt_study_spread_keys,
         &mt_study_variable_keys,
         &mt_study_reference_keys,
         &mt_study_measured_keys,
@@ -52,6 +64,13 @@ const mt_key_table *const *mt_study_key_tables(int *n)
         &mt_study_shape_keys,
         &mt_study_mac_keys,
         &mt_study_limit_keys,
+        &mt_study_avoid_keys,
+        &mt_study_rotor_keys,
+        &mt_study_tail_keys,
+        &mt_study_catalogue_keys,
+        &mt_study_trade_keys,
+        &mt_study_vary_keys,
+        &mt_study_span_keys,
         &mt_study_objective_keys,
         &mt_study_published_keys,
         &mt_study_published_frequency_keys,
@@ -61,8 +80,7 @@ const mt_key_table *const *mt_study_key_tables(int *n)
     return tables;
 }
 
-/* Remember a file that was read, with the digest of its bytes. */
-static void note_input(mt_study_reader *s, const char *name, const char *sha256)
+void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *sha256)
 {
     mt_study *const study = s->study;
     mt_input_file *const inputs =
@@ -82,9 +100,8 @@ static void note_input(mt_study_reader *s, const char *name, const char *sha256)
     study->n_inputs++;
 }
 
-/* A model file was refused: its own diagnostics tell, or, where there are none, the study's "model" member does. */
-static void note_failure(mt_study_reader *s, mt_name path, mt_status rc, const mt_err *why,
-                         bool told)
+void mt_read_study_note_failure(mt_study_reader *s, mt_name path, mt_status rc,
+                                const mt_err *why, bool told)
 {
     if (rc == MT_E_MEMORY || rc == MT_E_INTERNAL) {
         s->failed = rc;
@@ -112,9 +129,9 @@ static mt_model *load_model(mt_study_reader *s, mt_name path)
     }
     const mt_status rc = mt_model_load(joined, &s->files, &model, &messages, &why);
     if (rc == MT_OK) {
-        note_input(s, path.s, model->sha256);
+        mt_read_study_note_input(s, path.s, model->sha256);
     } else {
-        note_failure(s, path, rc, &why, messages.length > 0);
+        mt_read_study_note_failure(s, path, rc, &why, messages.length > 0);
     }
     if (messages.length > 0) {
         mt_text_add(s->model_messages, messages.s);
@@ -200,6 +217,15 @@ static void read_search(mt_study_reader *s, mt_addr value)
         mt_reader_count(&s->r, o.found[SEARCH_MAX_EVALUATIONS], 1, INT_MAX, 0);
 }
 
+static void read_spread(mt_study_reader *s, mt_addr value)
+{
+    mt_study_object o;
+    if (value != MT_NO_ADDR && mt_read_study_object(s, value, &mt_study_spread_keys, &o)) {
+        mt_spread *const spread = &s->study->spread;
+        spread->factor = mt_read_study_member(s, &o, SPREAD_FACTOR, &spread->factor_addr);
+    }
+}
+
 /* A file of another kind or version gets one message, not one per member. */
 static bool check_format(mt_study_reader *s)
 {
@@ -231,7 +257,10 @@ static void read_root(mt_study_reader *s)
     mt_read_study_variables(s, o.found[STUDY_VARIABLES]);
     mt_read_study_references(s, o.found[STUDY_REFERENCES]);
     mt_read_study_goals(s, o.found[STUDY_GOALS]);
+    mt_read_study_aircraft(s, o.found[STUDY_AIRCRAFT]);
     mt_read_study_objectives(s, o.found[STUDY_OBJECTIVE]);
+    read_spread(s, o.found[STUDY_SPREAD]);
+    mt_read_study_trade(s, o.found[STUDY_TRADE], o.found[STUDY_GOALS]);
     mt_read_study_published(s, o.found[STUDY_PUBLISHED]);
 }
 
@@ -336,7 +365,7 @@ mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **o
     if (rc != MT_OK) {
         goto done;
     }
-    note_input(&s, base_name(path), file.sha256);
+    mt_read_study_note_input(&s, base_name(path), file.sha256);
     rc = read_text(&s, &file, messages, err);
 done:
     mt_file_free(&file);

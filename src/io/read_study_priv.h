@@ -55,24 +55,44 @@ mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_study_object *o, int
 int mt_read_study_index(mt_study_reader *s, mt_addr value);
 /* Load a model that the study names, once; NULL where it cannot be read (noted). */
 mt_model *mt_read_study_model(mt_study_reader *s, mt_name path);
+/* A list of two numbers, lower and upper; false (noted) where it is anything else. Numbers that are wrong are NaN. */
+bool mt_read_study_pair(mt_study_reader *s, mt_addr value, double out[2]);
+/* Remember a file that was read, with the digest of its bytes. */
+void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *sha256);
+/* A file was refused: its own diagnostics tell (`told`), or, where there are none, the address of `path` in the study does. */
+void mt_read_study_note_failure(mt_study_reader *s, mt_name path, mt_status rc,
+                                const mt_err *why, bool told);
 /* Room for as many records as a list has items or an object members, zeroed; NULL (noted) when out of memory. */
 void *mt_read_study_list(mt_study_reader *s, mt_addr value, size_t size);
 
 void mt_read_study_variables(mt_study_reader *s, mt_addr list);
 void mt_read_study_references(mt_study_reader *s, mt_addr object);
 void mt_read_study_goals(mt_study_reader *s, mt_addr list);
+void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor);
+/* The catalogue of aircraft: the one named, else, where a goal needs one, the one beside the model. After the goals. */
+void mt_read_study_aircraft(mt_study_reader *s, mt_addr value);
+/* After variables and goals; goals: the list of goals, whose indices it uses. */
+void mt_read_study_trade(mt_study_reader *s, mt_addr value, mt_addr goals);
 void mt_read_study_objectives(mt_study_reader *s, mt_addr value);
 void mt_read_study_published(mt_study_reader *s, mt_addr list);
 
 extern const mt_key_table mt_study_keys;
 extern const mt_key_table mt_study_search_keys;
+extern const mt_key_table mt_study_spread_keys;
 extern const mt_key_table mt_study_variable_keys;
+extern const mt_key_table mt_study_catalogue_keys;
+extern const mt_key_table mt_study_trade_keys;
+extern const mt_key_table mt_study_vary_keys;
+extern const mt_key_table mt_study_span_keys;
 extern const mt_key_table mt_study_reference_keys;
 extern const mt_key_table mt_study_measured_keys;
 extern const mt_key_table mt_study_frequency_keys;
 extern const mt_key_table mt_study_shape_keys;
 extern const mt_key_table mt_study_mac_keys;
 extern const mt_key_table mt_study_limit_keys;
+extern const mt_key_table mt_study_avoid_keys;
+extern const mt_key_table mt_study_rotor_keys;
+extern const mt_key_table mt_study_tail_keys;
 extern const mt_key_table mt_study_objective_keys;
 extern const mt_key_table mt_study_published_keys;
 extern const mt_key_table mt_study_published_frequency_keys;

@@ -130,6 +130,23 @@ static void write_undetermined(mt_json_writer *w, const mt_result *result,
     mt_json_close(w);
 }
 
+static void write_spread(mt_json_writer *w, const mt_result_spread *s)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "parameter", s->parameter);
+    mt_json_put_string(w, "unit", s->unit);
+    mt_json_put_number(w, "value", s->value);
+    mt_json_put_number(w, "low", s->low);
+    mt_json_put_number(w, "low_percent", s->low_percent);
+    mt_json_put_string(w, "low_goal", s->low_goal);
+    mt_json_put_number(w, "low_weight_factor", s->low_factor);
+    mt_json_put_number(w, "high", s->high);
+    mt_json_put_number(w, "high_percent", s->high_percent);
+    mt_json_put_string(w, "high_goal", s->high_goal);
+    mt_json_put_number(w, "high_weight_factor", s->high_factor);
+    mt_json_close(w);
+}
+
 static void write_certificate(mt_json_writer *w, const mt_certificate *c)
 {
     mt_json_open(w, NULL, '{');
@@ -191,6 +208,16 @@ static void write_named_file(mt_json_writer *w, const char *member, const char *
     mt_json_close(w);
 }
 
+void mt_result_put_uncertainty(mt_json_writer *w, const mt_result *result)
+{
+    mt_json_open(w, "undetermined", '[');
+    for (int i = 0; i < result->n_undetermined; i++) {
+        write_undetermined(w, result, &result->undetermined[i]);
+    }
+    mt_json_close(w);
+    WRITE_LIST(w, "spread", result->n_spread, result->spread, write_spread);
+}
+
 void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result)
 {
     mt_json_open(w, name, '{');
@@ -203,11 +230,7 @@ void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result)
     write_design(w, "baseline", &result->baseline);
     WRITE_LIST(w, "recommendations", result->n_recommendations, result->recommendations,
                write_recommendation);
-    mt_json_open(w, "undetermined", '[');
-    for (int i = 0; i < result->n_undetermined; i++) {
-        write_undetermined(w, result, &result->undetermined[i]);
-    }
-    mt_json_close(w);
+    mt_result_put_uncertainty(w, result);
     WRITE_LIST(w, "certificates", result->n_certificates, result->certificates,
                write_certificate);
     WRITE_LIST(w, "published", result->n_published, result->published, write_published);

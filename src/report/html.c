@@ -133,6 +133,7 @@ void mt_report_html(const mt_result *result, mt_text *out)
         add_table(mt_report_alternatives(result), "All recommendations", out);
     }
     add_undetermined(result, out);
+    add_table(mt_report_spread(result), "Spread under other weights", out);
     add_certificates(result, out);
     add_table(mt_report_published(result), "Published against computed", out);
     add_list(result->n_warnings, result->warnings, "Warnings", out);

@@ -8,7 +8,14 @@
 #include "report/number.h"
 
 /* Frequencies to 6 digits show changes of 1e-5; percentages and sizes of changes need no more than 3; parameters 6, as a drawing would. */
-enum { HZ_DIGITS = 6, VALUE_DIGITS = 6, PERCENT_DIGITS = 3, MAC_DIGITS = 5, DEMAND_TEXT = 120 };
+enum {
+    HZ_DIGITS = 6,
+    VALUE_DIGITS = 6,
+    PERCENT_DIGITS = 3,
+    MAC_DIGITS = 5,
+    DEMAND_TEXT = 120,
+    WEIGHT_TEXT = 240
+};
 
 /* "18.0000", "at least 7.00000", "7.00000 to 9.00000", NULL where nothing is asked */
 static const char *demand_of(const mt_result_frequency *f, char *s, size_t size)
@@ -158,6 +165,48 @@ bool mt_report_verified(const mt_result *result, int *judged)
     return all;
 }
 
+/* "4 x installed mode 1 at 18 Hz": a goal by its words, which are the first demand's where it has several. */
+static void weight_cell(mt_table *t, const mt_result *result, const char *goal, double factor)
+{
+    char text[WEIGHT_TEXT];
+    const char *words = goal;
+    for (int i = result->baseline.n_goals - 1; i >= 0 && goal != NULL; i--) {
+        const mt_result_goal *const g = &result->baseline.goals[i];
+        words = g->pointer != NULL && strcmp(g->pointer, goal) == 0 ? g->text : words;
+    }
+    if (words != NULL) {
+        (void)snprintf(text, sizeof text, "%g x %s", factor, words);
+    }
+    mt_table_text(t, words == NULL ? NULL : text);
+}
+
+mt_table mt_report_spread(const mt_result *result)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "parameter", "parameter", MT_ALIGN_LEFT);
+    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_column(&t, "value", "value", MT_ALIGN_POINT);
+    mt_table_column(&t, "low", "low", MT_ALIGN_POINT);
+    mt_table_column(&t, "[%]", "low_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "by weight", "low_goal", MT_ALIGN_LEFT);
+    mt_table_column(&t, "high", "high", MT_ALIGN_POINT);
+    mt_table_column(&t, "[%]", "high_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "by weight", "high_goal", MT_ALIGN_LEFT);
+    for (int i = 0; i < result->n_spread; i++) {
+        const mt_result_spread *const s = &result->spread[i];
+        mt_table_text(&t, s->parameter);
+        mt_table_text(&t, s->unit);
+        mt_table_number(&t, s->value, VALUE_DIGITS);
+        mt_table_number(&t, s->low, VALUE_DIGITS);
+        mt_table_percent(&t, s->low_percent, PERCENT_DIGITS);
+        weight_cell(&t, result, s->low_goal, s->low_factor);
+        mt_table_number(&t, s->high, VALUE_DIGITS);
+        mt_table_percent(&t, s->high_percent, PERCENT_DIGITS);
+        weight_cell(&t, result, s->high_goal, s->high_factor);
+    }
+    return t;
+}
+
 mt_table mt_report_published(const mt_result *result)
 {
     mt_table t = mt_table_default();
@@ -177,7 +226,7 @@ mt_table mt_report_published(const mt_result *result)
             mt_table_text(&t, p->published_text);
             mt_table_text(&t, p->computed_text);
         } else {
-            mt_table_number(&t, p->published, VALUE_DIGITS);
+            mt_table_quoted(&t, p->published);
             mt_table_number(&t, p->computed, VALUE_DIGITS);
         }
         mt_table_change(&t, p->difference, PERCENT_DIGITS);

@@ -29,8 +29,8 @@ static void print_list(int n, const char *const *items, const char *title, mt_te
 
 static void print_best(const mt_recommendation *r, mt_text *out)
 {
-    char change[MT_NUMBER_TEXT];
     if (r->n_parameters > 0) {
+        char change[MT_NUMBER_TEXT];
         mt_text_addf(out, "\nRecommendation %d (%s), size of the redesign %s%s\n", r->rank,
                      r->grade == NULL ? "not graded" : r->grade,
                      mt_report_number(r->change, DIGITS, change),
@@ -48,15 +48,21 @@ static void print_undetermined(const mt_result *result, mt_text *out)
         mt_text_add(out, "\nUndetermined: the goals hardly change along\n");
     }
     for (int i = 0; i < result->n_undetermined; i++) {
-        char effect[MT_NUMBER_TEXT];
         const mt_undetermined *const u = &result->undetermined[i];
         mt_text_addf(out, "  - %s", u->text);
         if (!isnan(u->effect_percent)) {
+            char effect[MT_NUMBER_TEXT];
             mt_text_addf(out, " (at most %s %% from bound to bound)",
                          mt_report_number(u->effect_percent, DIGITS, effect));
         }
         mt_text_add(out, "\n");
     }
+}
+
+void mt_report_uncertainty(const mt_result *result, mt_text *out)
+{
+    print_undetermined(result, out);
+    print_table(mt_report_spread(result), "Spread under other weights", out);
 }
 
 void mt_report_summary(const mt_result *result, bool with_published, mt_text *out)
@@ -76,7 +82,7 @@ void mt_report_summary(const mt_result *result, bool with_published, mt_text *ou
     if (result->n_recommendations > 1) {
         print_table(mt_report_alternatives(result), "All recommendations", out);
     }
-    print_undetermined(result, out);
+    mt_report_uncertainty(result, out);
     if (result->n_certificates > 0) {
         mt_text_add(out, "\nCertificates\n");
     }

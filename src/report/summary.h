@@ -8,6 +8,8 @@
 /* What a result says, as text for a terminal: status, goals, frequencies, parameters, reasons, alternatives, what stays undetermined, certificates and,
  * where asked for, published against computed. Memory running out shows in out->failed. */
 void mt_report_summary(const mt_result *result, bool with_published, mt_text *out);
+/* Of it, what the goals leave open: undetermined directions and the spread under other weights. Nothing where there is neither. */
+void mt_report_uncertainty(const mt_result *result, mt_text *out);
 
 /* The same as one self-contained HTML page (no scripts, nothing loaded from elsewhere, figures as inline SVG), light and printable. */
 void mt_report_html(const mt_result *result, mt_text *out);

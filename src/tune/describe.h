@@ -37,6 +37,12 @@ mt_status mt_describe_undetermined(const mt_problem *p, const mt_nlp_result *fou
 mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
                               const mt_nlp_result *search, mt_result *result,
                               mt_recommendation *rec, mt_err *err);
+/*
+ * How the best design moves when the weight of one goal at a time is multiplied or divided by the study's factor, the misfit minimised again from the best design (spread.c). Nothing where
+ * the study does not ask for it. p's weights are changed meanwhile and put back. Evaluations are added to *evaluations. Cost: one local search for each weighted goal and side.
+ */
+mt_status mt_describe_spread(mt_problem *p, const mt_nlp_solution *best, mt_arena *mem,
+                             long *evaluations, mt_result *result, mt_err *err);
 /* Judge the published list: x_recommended NULL where there is none (then the original design stands in). Fails with the entry's address in the text (published.c). */
 mt_status mt_describe_published(mt_problem *p, const double *x_original,
                                 const double *x_recommended, mt_result *result, mt_err *err);

@@ -88,6 +88,21 @@ typedef struct mt_undetermined {
     double effect_percent;
 } mt_undetermined;
 
+/* Where a variable of the best design moves when the weight of one goal at a time is changed. */
+typedef struct mt_result_spread {
+    const char *parameter;
+    const char *unit; /* may be NULL */
+    double value;     /* with the weights as given */
+    double low;       /* smallest and greatest of all solutions, the given weights' among them */
+    double high;
+    double low_percent; /* of |value|; NaN where that is 0 */
+    double high_percent;
+    const char *low_goal; /* "/goals/3": whose weight; NULL: no change of a weight goes there */
+    const char *high_goal;
+    double low_factor; /* what its weight was multiplied with; NaN without a goal */
+    double high_factor;
+} mt_result_spread;
+
 typedef struct mt_result_published {
     const char *label;
     const char *pointer;
@@ -136,6 +151,8 @@ typedef struct mt_result {
     mt_recommendation *recommendations;
     int n_undetermined;
     mt_undetermined *undetermined;
+    int n_spread; /* 0, or one per variable */
+    mt_result_spread *spread;
     int n_variables;
     const char **variables;
     int n_certificates;

@@ -152,6 +152,10 @@ static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
         MT_TRY(mt_search_designs(a->workers, a->n_workers, &a->mem, &a->found, &a->stage,
                                  &a->why, err));
         MT_TRY(describe_solutions(a, err));
+        if (a->found.n_solutions > 0 && a->found.stop != MT_STOP_USER) {
+            MT_TRY(mt_describe_spread(p, &a->found.solutions[0], &a->mem, &a->found.evals, result,
+                                      err));
+        }
     }
     MT_TRY(warn(a, err));
     result->run.evaluations = a->found.evals;

@@ -26,6 +26,7 @@ mt_status mt_study_new(mt_study **out, mt_err *err)
     }
     study->recommendations = DEFAULT_RECOMMENDATIONS;
     study->search.seed = DEFAULT_SEED;
+    study->spread = (mt_spread){.factor = nan(""), .factor_addr = MT_NO_ADDR};
     *out = study;
     return MT_OK;
 }

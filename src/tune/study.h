@@ -174,6 +174,12 @@ typedef struct mt_search {
     long max_evaluations; /* 0: default */
 } mt_search;
 
+/* How far the best design of a misfit moves when single weights are changed: the uncertainty that a choice of weights hides. */
+typedef struct mt_spread {
+    double factor; /* every weighted goal's weight times and divided by it in turn; NaN: not asked for */
+    mt_addr factor_addr;
+} mt_spread;
+
 typedef struct mt_input_file {
     const char *name;   /* relative to the study's folder */
     const char *sha256; /* hex */
@@ -196,6 +202,7 @@ typedef struct mt_study {
     int recommendations; /* how many to report; default 5 */
     mt_addr recommendations_addr;
     mt_search search;
+    mt_spread spread;
     int n_inputs; /* files read: study, models */
     mt_input_file *inputs;
 } mt_study;

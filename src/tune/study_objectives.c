@@ -73,6 +73,25 @@ static void check_misfit(mt_study_check *c)
     }
 }
 
+/* Only a misfit has weights to change, and a factor of 1 changes none. */
+static void check_spread(mt_study_check *c)
+{
+    const mt_spread *const spread = &c->study->spread;
+    if (spread->factor_addr == MT_NO_ADDR) {
+        return;
+    }
+    const bool first =
+        c->study->n_objectives > 0 && c->study->objectives[0].type == MT_OBJECTIVE_MISFIT;
+    if (!first) {
+        mt_diag_error(c->diags, spread->factor_addr,
+                      "a spread needs \"objective\": {\"minimise\": \"misfit\"}");
+    }
+    if (MT_HAS(spread->factor) && !(spread->factor > 1.0)) {
+        mt_diag_error(c->diags, spread->factor_addr, "factor (%g) must be above 1",
+                      spread->factor);
+    }
+}
+
 static void check_clearance(mt_study_check *c)
 {
     const mt_objective *const clearance = find(c->study, MT_OBJECTIVE_CLEARANCE);
@@ -94,6 +113,7 @@ void mt_study_check_objectives(mt_study_check *c)
         check_objective(c, i);
     }
     check_misfit(c);
+    check_spread(c);
     check_clearance(c);
     if (s->n_objectives > 0 || s->n_variables == 0) {
         return;

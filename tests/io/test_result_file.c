@@ -41,6 +41,7 @@ typedef struct sample {
     mt_result_frequency frequency;
     mt_recommendation recommendation;
     mt_undetermined undetermined;
+    mt_result_spread spread;
     mt_certificate certificate;
     mt_result_published published[2];
 } sample;
@@ -83,6 +84,8 @@ static bool make_sample(sample *s)
     fill_design(s, &s->recommendation);
     s->recommendation.rank = 1;
     s->undetermined = (mt_undetermined){2, DIRECTION, "M_SAU", 1e-5};
+    s->spread = (mt_result_spread){"M_SAU", "kg",       0.4,  0.3,  0.4,    -25.0,
+                                   nan(""), "/goals/0", NULL, 0.25, nan("")};
     s->certificate = (mt_certificate){"range", "Mode 1 stays below 20 Hz.", true};
     s->published[0] = mt_result_published_default();
     s->published[0].label = "M_SAU";
@@ -110,6 +113,8 @@ static bool make_sample(sample *s)
     r->recommendations = &s->recommendation;
     r->n_undetermined = 1;
     r->undetermined = &s->undetermined;
+    r->n_spread = 1;
+    r->spread = &s->spread;
     r->n_certificates = 1;
     r->certificates = &s->certificate;
     r->n_published = 2;

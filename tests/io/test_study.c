@@ -188,6 +188,7 @@ static void study__every_member_arrives(mt_test *t)
     CHECK_INT(t, s->search.seed, 7);
     CHECK_INT(t, s->search.starts, 12);
     CHECK_INT(t, s->search.max_evaluations, 5000);
+    CHECK_NEAR(t, s->spread.factor, 4.0, 0.0);
     if (CHECK_INT(t, s->n_goals, 7)) {
         check_frequency_goals(t, s);
         check_other_goals(t, s);
@@ -220,6 +221,7 @@ static void study__defaults_are_filled_in(mt_test *t)
         CHECK_INT(t, s->recommendations, 5);
         CHECK_INT(t, s->search.seed, 1);
         CHECK_INT(t, s->search.starts, 0);
+        CHECK(t, isnan(s->spread.factor));
         CHECK_INT(t, s->n_objectives, 0); /* nothing may change */
     }
     mt_study_delete(s);
