@@ -28,8 +28,14 @@ mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, doubl
     return MT_OK;
 }
 
-static void put(double *matrix, int rows, int row, int n, double factor, const double *gradient)
+static void put(const mt_problem *p, double *matrix, int rows, int row, double factor,
+                const double *gradient)
 {
+    const int n = p->n;
+    if (gradient != NULL && p->n_t > n && matrix != p->dr) {
+        matrix[row + ((ptrdiff_t)n * rows)] =
+            0.0; /* the clearance enters no goal but the bands */
+    }
     for (int i = 0; i < n && gradient != NULL; i++) {
         matrix[row + ((ptrdiff_t)i * rows)] = factor * gradient[i];
     }
@@ -53,23 +59,23 @@ static void store_scalar(mt_problem *p, const mt_demand *d, const scalar *v,
     if (d->row_res >= 0) {
         const double w = sqrt(d->weight);
         p->r[d->row_res] = w * v->to_target;
-        put(p->dr, p->n_res, d->row_res, p->n, w * v->target_slope, gradient);
+        put(p, p->dr, p->n_res, d->row_res, w * v->target_slope, gradient);
         return;
     }
     if (d->row_eq >= 0) {
         out->eq[d->row_eq] = v->to_target;
-        put(out->deq, p->n_eq, d->row_eq, p->n, v->target_slope, gradient);
+        put(p, out->deq, p->n_eq, d->row_eq, v->target_slope, gradient);
         return;
     }
     const int rows = mt_problem_rows_in(p);
     int row = d->row_in;
     if (MT_HAS(g->at_least)) {
         out->in[row] = v->above;
-        put(out->din, rows, row++, p->n, v->above_slope, gradient);
+        put(p, out->din, rows, row++, v->above_slope, gradient);
     }
     if (MT_HAS(g->at_most)) {
         out->in[row] = v->below;
-        put(out->din, rows, row, p->n, v->below_slope, gradient);
+        put(p, out->din, rows, row, v->below_slope, gradient);
     }
 }
 

@@ -50,11 +50,6 @@ static mt_status refuse_unsearched(const mt_study *s, mt_err *err)
                            "/variables/%d: this version does not search with tolerances", i);
         }
     }
-    for (int i = 0; i < s->n_goals; i++) {
-        if (s->goals[i].type == MT_GOAL_AVOID) {
-            return mt_fail(err, MT_E_INPUT, "/goals/%d: this version does not search bands", i);
-        }
-    }
     return MT_OK;
 }
 
@@ -66,7 +61,7 @@ static mt_status init_variables(mt_problem *p, mt_err *err)
     p->inputs = mt_arena_int(&p->mem, n);
     bool bad = p->inputs == NULL;
     for (int i = 0; i < MT_COUNT(arrays); i++) {
-        *arrays[i] = mt_arena_f64(&p->mem, n, 1);
+        *arrays[i] = mt_arena_f64(&p->mem, n + 1, 1); /* one more for the clearance */
         bad = bad || *arrays[i] == NULL;
     }
     if (bad) {
@@ -89,6 +84,19 @@ static mt_status init_variables(mt_problem *p, mt_err *err)
 mt_status mt_problem_new(const mt_study *study, mt_reference_cache *references,
                          mt_problem **out, mt_err *err)
 {
+    return mt_problem_new_in_gap(study, references, NULL, out, err);
+}
+
+static mt_status init_demands(mt_problem *p, const int *below, mt_err *err)
+{
+    MT_TRY(mt_problem_init_demands(p, err));
+    MT_TRY(mt_clear_init(p, below, err));
+    return mt_problem_init_rows(p, err);
+}
+
+mt_status mt_problem_new_in_gap(const mt_study *study, mt_reference_cache *references,
+                                const int *below, mt_problem **out, mt_err *err)
+{
     *out = NULL;
     MT_TRY(refuse_unsearched(study, err));
     mt_problem *const p = calloc(1, sizeof *p);
@@ -98,9 +106,12 @@ mt_status mt_problem_new(const mt_study *study, mt_reference_cache *references,
     p->study = study;
     p->references = references;
     p->n = study->n_variables;
+    p->clearance = below != NULL && study->n_objectives > 0 &&
+                   study->objectives[0].type == MT_OBJECTIVE_CLEARANCE;
+    p->n_t = p->n + (p->clearance ? 1 : 0);
     mt_status rc = mt_arena_init(&p->mem, 0, err);
     rc = rc == MT_OK ? init_variables(p, err) : rc;
-    rc = rc == MT_OK ? mt_problem_init_demands(p, err) : rc;
+    rc = rc == MT_OK ? init_demands(p, below, err) : rc;
     rc = rc == MT_OK ? mt_problem_init_aims(p, err) : rc;
     if (rc != MT_OK) {
         mt_problem_delete(p);
@@ -122,7 +133,7 @@ int mt_problem_rows_in(const mt_problem *p)
 
 mt_nlp mt_problem_nlp(mt_problem *p)
 {
-    const mt_nlp nlp = {.n = p->n,
+    const mt_nlp nlp = {.n = p->n_t,
                         .lower = p->lower_t,
                         .upper = p->upper_t,
                         .origin = p->origin_t,
@@ -139,7 +150,7 @@ mt_nlp mt_problem_nlp(mt_problem *p)
 mt_status mt_problem_values_init(const mt_problem *p, mt_arena *mem, mt_nlp_values *out,
                                  mt_err *err)
 {
-    const size_t n = (size_t)p->n;
+    const size_t n = (size_t)p->n_t;
     const size_t n_res = (size_t)residuals(p);
     const size_t n_eq = (size_t)p->n_eq;
     const size_t n_in = (size_t)mt_problem_rows_in(p);

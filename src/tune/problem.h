@@ -2,6 +2,7 @@
 #ifndef TUNE_PROBLEM_H
 #define TUNE_PROBLEM_H
 
+#include "tune/bands.h"
 #include "tune/nlp.h"
 #include "tune/reference.h"
 #include "tune/study.h"
@@ -52,6 +53,21 @@ typedef struct mt_demand {
     double tolerance; /* relative */
 } mt_demand;
 
+/*
+ * The bands that one configuration keeps clear of: all avoid goals that name it, united. A gap assignment says how many vibration modes lie below each band; with one, the
+ * cluster of modes on each side of each band is constrained (in = ln(lower / f), ln(f / upper)), which is smooth where "no mode inside" is not. Without one, no rows.
+ */
+typedef struct mt_clear {
+    int view;
+    int goal_index; /* of the first goal */
+    mt_bands bands;
+    int cluster;
+    int first;  /* bands first .. first + bands.n - 1 of an assignment */
+    int row_in; /* first row; rows run over bands, below then above, nearest mode first */
+    int n_rows;
+    double tolerance;
+} mt_clear;
+
 /* An objective. Its value f is what the search minimises: 1/2 change^2, kg, the expression's value, 1/2 |r|^2. */
 typedef struct mt_aim {
     mt_objective_type type;
@@ -78,6 +94,13 @@ typedef struct mt_problem {
     mt_view *views;
     int n_demands;
     mt_demand *demands;
+    int n_clears;
+    mt_clear *clears;
+    int n_bands; /* of all clears: length of a gap assignment */
+    int *below;  /* [n_bands] the assignment that is searched; NULL: none */
+    bool
+        clearance; /* t has one more entry, the least clearance ln(...) that is made greatest */
+    int n_t;       /* n, or n + 1 */
     int n_eq;
     int n_in; /* of the goals; held objectives follow */
     int n_res;
@@ -111,6 +134,9 @@ typedef struct mt_problem {
  */
 mt_status mt_problem_new(const mt_study *study, mt_reference_cache *references,
                          mt_problem **out, mt_err *err);
+/* The same with a gap assignment below[n_bands] (of the problem without one). */
+mt_status mt_problem_new_in_gap(const mt_study *study, mt_reference_cache *references,
+                                const int *below, mt_problem **out, mt_err *err);
 void mt_problem_delete(mt_problem *p);
 /* Parameter values x[n] of coordinates t[n]: a bound, and the original value, come back to the last bit. */
 void mt_problem_x(const mt_problem *p, const double *t, double *x);
@@ -139,8 +165,21 @@ mt_status mt_view_position(mt_view *view, int mode, int named, int *pos, mt_err 
 /* pair and share of all named modes. */
 mt_status mt_view_track(mt_view *view, mt_err *err);
 
+/* problem_clear.c */
+mt_status mt_clear_init(mt_problem *p, const int *below, mt_err *err);
+/* Fill the rows of all clears, after their views have been solved. */
+mt_status mt_clear_eval(mt_problem *p, const double *t, bool with_gradient, mt_nlp_values *out,
+                        mt_err *err);
+/* How the modes of an analysis lie: below[bands.n] (may be NULL) modes below the middle of each band; the largest relative way that a mode is inside a band with its margin (0: none is); *worst
+ * (may be NULL) its position; NaN where the configuration is unstable. */
+double mt_clear_violation(const mt_clear *c, const mt_modes *modes, int *below, int *worst);
+/* Least clearance of any vibration mode from any band without its margin, in percent of the edge; *band, *pos (may be NULL) say where. */
+double mt_clear_least_percent(const mt_clear *c, const mt_modes *modes, int *band, int *pos);
+
 /* problem_demands.c: views, demands and their rows. */
 mt_status mt_problem_init_demands(mt_problem *p, mt_err *err);
+/* Once all rows are counted: tolerances and work space. */
+mt_status mt_problem_init_rows(mt_problem *p, mt_err *err);
 /* demand.c: lambda'/(2 lambda) of the mode at pos for all variables, chained to t: out[n]. A repeated mode: the mean of its cluster, which is smooth where the single modes are
  * not. */
 mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, double *out,

@@ -180,8 +180,12 @@ double mt_aim_value(const mt_problem *p, int k, double *gradient)
         return expression_value(p, a, gradient);
     case MT_OBJECTIVE_MISFIT:
         return misfit_value(p, gradient);
-    case MT_OBJECTIVE_NONE:
     case MT_OBJECTIVE_CLEARANCE:
+        if (p->clearance && gradient != NULL) {
+            gradient[p->n] = -1.0;
+        }
+        return p->clearance ? -p->t[p->n] : 0.0;
+    case MT_OBJECTIVE_NONE:
         break;
     }
     return 0.0;

@@ -198,7 +198,7 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
 }
 
 /* Once the rows are counted: tolerances and work space. */
-static mt_status init_rows(mt_problem *p, mt_err *err)
+mt_status mt_problem_init_rows(mt_problem *p, mt_err *err)
 {
     const size_t n = (size_t)p->n;
     size_t ns = 1;
@@ -215,6 +215,11 @@ static mt_status init_rows(mt_problem *p, mt_err *err)
     if (p->eq_tol == NULL || p->in_tol == NULL || p->r == NULL || p->dr == NULL ||
         p->shape == NULL || p->dshape == NULL) {
         return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n_clears; i++) {
+        for (int k = 0; k < p->clears[i].n_rows; k++) {
+            p->in_tol[p->clears[i].row_in + k] = p->clears[i].tolerance;
+        }
     }
     for (int i = 0; i < p->n_demands; i++) {
         const mt_demand *const d = &p->demands[i];
@@ -246,8 +251,11 @@ mt_status mt_problem_init_demands(mt_problem *p, mt_err *err)
             continue;
         }
         for (int k = 0; k < s->goals[i].n_configurations; k++) {
-            MT_TRY(add_demand(p, i, s->goals[i].configurations[k], err));
+            int view = -1;
+            MT_TRY(s->goals[i].type == MT_GOAL_AVOID
+                       ? mt_problem_add_view(p, s->goals[i].configurations[k], &view, err)
+                       : add_demand(p, i, s->goals[i].configurations[k], err));
         }
     }
-    return init_rows(p, err);
+    return MT_OK;
 }

@@ -10,7 +10,7 @@ enum { PROGRESS_EVERY = 500, PROGRESS_TEXT = 80 };
 
 mt_status mt_problem_place(mt_problem *p, const double *t, bool with_gradient, mt_err *err)
 {
-    memmove(p->t, t, (size_t)p->n * sizeof *t);
+    memmove(p->t, t, (size_t)p->n_t * sizeof *t);
     mt_problem_x(p, t, p->x);
     return with_gradient ? mt_program_gradient(&p->program, p->x, p->value, p->grad, NULL, err)
                          : mt_program_eval(&p->program, p->x, p->value, NULL, err);
@@ -40,6 +40,10 @@ static void hold_rows(mt_problem *p, bool with_gradient, mt_nlp_values *out)
         out->in[p->n_in + k] = (a->limit - f) / a->unit;
         for (int i = 0; i < p->n && with_gradient; i++) {
             out->din[p->n_in + k + (i * rows)] = -p->work[i] / a->unit;
+        }
+        if (p->n_t > p->n && with_gradient) {
+            out->din[p->n_in + k + (p->n * rows)] =
+                a->type == MT_OBJECTIVE_CLEARANCE ? 1.0 / a->unit : 0.0;
         }
     }
 }
@@ -71,11 +75,15 @@ mt_status mt_problem_eval(void *context, const double *t, bool with_gradient,
         MT_TRY(mt_err_in(err, mt_demand_eval(p, &p->demands[i], with_gradient, out, err),
                          "/goals/%d", p->demands[i].goal_index));
     }
+    MT_TRY(mt_clear_eval(p, t, with_gradient, out, err));
     if (p->aims[p->stage].type == MT_OBJECTIVE_MISFIT) {
         memcpy(out->r, p->r, (size_t)p->n_res * sizeof *p->r);
         if (with_gradient) {
             memcpy(out->dr, p->dr, (size_t)p->n_res * (size_t)p->n * sizeof *p->dr);
         }
+    }
+    if (p->n_t > p->n && with_gradient) {
+        out->df[p->n] = 0.0;
     }
     out->f = mt_aim_value(p, p->stage, with_gradient ? out->df : NULL);
     hold_rows(p, with_gradient, out);

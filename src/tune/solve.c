@@ -2,6 +2,7 @@
 #include "tune/solve.h"
 
 #include "tune/describe.h"
+#include "tune/gaps.h"
 #include "tune/search.h"
 
 mt_solve_options mt_solve_options_default(void)
@@ -20,6 +21,7 @@ typedef struct answer {
     mt_arena mem;
     mt_reference_cache references;
     mt_nlp_result found;
+    mt_gap_result gaps; /* where there are bands: found is made from it */
     int stage;  /* of found */
     mt_err why; /* no start of the search had a value */
     bool searched;
@@ -131,6 +133,27 @@ static mt_status set_status(const answer *a, mt_err *err)
     return result->status_text == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
+/* The search over gap assignments, its solutions in the form of any other search. */
+static mt_status search_gaps(answer *a, mt_err *err)
+{
+    mt_gap_result *const g = &a->gaps;
+    MT_TRY(mt_gaps_solve(a->p, a->n_workers, &a->mem, g, err));
+    a->found.solutions =
+        mt_arena_alloc(&a->mem, (size_t)g->n_solutions, sizeof *a->found.solutions);
+    if (a->found.solutions == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < g->n_solutions; i++) {
+        a->found.solutions[i] = *g->solutions[i].found;
+    }
+    a->found.n_solutions = g->n_solutions;
+    a->found.compromise = g->compromise;
+    a->found.evals = g->evals;
+    a->found.starts = g->starts;
+    a->found.stop = g->stop;
+    return MT_OK;
+}
+
 static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
 {
     mt_problem *const p = a->p;
@@ -142,15 +165,16 @@ static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
     }
     p->progress = opt->progress; /* the first worker's: one line at a time */
     p->progress_context = opt->progress_context;
-    a->searched = p->n > 0 && p->n_demands > 0;
+    a->searched = p->n > 0 && (p->n_demands > 0 || p->n_clears > 0);
     if (x == NULL) {
         return mt_fail_memory(err);
     }
     MT_TRY(mt_describe_run(a->study, result, err));
     MT_TRY(mt_describe_design(p, &original, NULL, result, &result->baseline, err));
     if (a->searched) {
-        MT_TRY(mt_search_designs(a->workers, a->n_workers, &a->mem, &a->found, &a->stage,
-                                 &a->why, err));
+        MT_TRY(p->n_clears > 0 ? search_gaps(a, err)
+                               : mt_search_designs(a->workers, a->n_workers, &a->mem, &a->found,
+                                                   &a->stage, &a->why, err));
         MT_TRY(describe_solutions(a, err));
         if (a->found.n_solutions > 0 && a->found.stop != MT_STOP_USER) {
             MT_TRY(mt_describe_spread(p, &a->found.solutions[0], &a->mem, &a->found.evals, result,

@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Which gap assignments are worth a search. Sampled: designs spread over the bounds; each says how many modes lie below the middle of each band, and its assignment becomes a candidate. A design
+ * clear of all bands has the same assignment as the samples around it, so a kind of design is only missed where it is smaller than the samples are apart. That is labelled as sampled.
+ */
+#include "tune/nlp_priv.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tune/gaps.h"
+
+enum { SAMPLES_PER_VARIABLE = 256, SAMPLES_MOST = 4096, CANDIDATES_MOST = 256 };
+
+typedef struct sampled {
+    int *below;
+    double violation;
+} sampled;
+
+static int compare_below(const int *a, const int *b, int n)
+{
+    for (int i = 0; i < n; i++) {
+        if (a[i] != b[i]) {
+            return a[i] < b[i] ? -1 : 1;
+        }
+    }
+    return 0;
+}
+
+/* Assignment of the design at t, and its worst violation; false where it cannot be evaluated. */
+static bool assign(mt_problem *p, const double *t, int *below, double *violation, mt_err *err)
+{
+    mt_problem_x(p, t, p->x);
+    *violation = 0.0;
+    for (int i = 0; i < p->n_clears; i++) {
+        const mt_clear *const c = &p->clears[i];
+        mt_analysis *const a = p->views[c->view].analysis;
+        const mt_analysis_options opt = {.accuracy = false};
+        if (mt_analysis_solve(a, p->x, &opt, err) != MT_OK) {
+            return false;
+        }
+        const double v = mt_clear_violation(c, &a->modes, below + c->first, NULL);
+        *violation = !(v <= *violation) ? v : *violation;
+    }
+    return *violation == *violation;
+}
+
+/* Insert into the sorted list, keeping the least violation of equal ones. */
+static void insert(const mt_problem *p, sampled *list, int *n, const int *below,
+                   double violation)
+{
+    int at = 0;
+    while (at < *n && compare_below(list[at].below, below, p->n_bands) < 0) {
+        at++;
+    }
+    if (at < *n && compare_below(list[at].below, below, p->n_bands) == 0) {
+        list[at].violation = fmin(list[at].violation, violation);
+        return;
+    }
+    int victim = *n; /* where the list is full, the least promising makes room */
+    if (*n == CANDIDATES_MOST) {
+        victim = 0;
+        for (int i = 1; i < *n; i++) {
+            victim = list[i].violation > list[victim].violation ? i : victim;
+        }
+        if (list[victim].violation <= violation) {
+            return;
+        }
+    } else {
+        (*n)++;
+    }
+    const sampled fresh = {list[victim].below, violation};
+    if (victim < at) {
+        at--;
+        memmove(&list[victim], &list[victim + 1], (size_t)(at - victim) * sizeof *list);
+    } else {
+        memmove(&list[at + 1], &list[at], (size_t)(victim - at) * sizeof *list);
+    }
+    list[at] = fresh;
+    memcpy(list[at].below, below, (size_t)p->n_bands * sizeof *below);
+}
+
+/* Monotone assignments of m bands to n modes: C(n + m, m), over all configurations. */
+static double count_possible(const mt_problem *p)
+{
+    double all = 1.0;
+    for (int i = 0; i < p->n_clears; i++) {
+        const mt_modes *const modes = &p->views[p->clears[i].view].analysis->modes;
+        const int m = p->clears[i].bands.n;
+        int n = 0;
+        for (int k = 0; k < modes->count; k++) {
+            n += modes->kind[k] == MT_MODE_FLEXIBLE ? 1 : 0;
+        }
+        for (int k = 1; k <= m; k++) {
+            all *= (double)(n + k) / (double)k;
+        }
+    }
+    return round(all);
+}
+
+static mt_status sample(mt_problem *p, mt_arena *mem, mt_gap_candidates *out, mt_err *err)
+{
+    const int wanted = SAMPLES_PER_VARIABLE * (p->n + 1);
+    const int n = wanted < SAMPLES_MOST ? wanted : SAMPLES_MOST;
+    mt_nlp nlp = mt_problem_nlp(p);
+    mt_nlp_options opt = mt_nlp_options_default();
+    mt_nlp_engine e;
+    nlp.n = p->n;
+    opt.seed = p->study->search.seed;
+    sampled *const list = mt_arena_alloc(mem, CANDIDATES_MOST, sizeof *list);
+    int *const below = mt_arena_int(mem, (size_t)p->n_bands);
+    if (list == NULL || below == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < CANDIDATES_MOST; i++) {
+        list[i].below = mt_arena_int(mem, (size_t)p->n_bands);
+        if (list[i].below == NULL) {
+            return mt_fail_memory(err);
+        }
+    }
+    MT_TRY(mt_nlp_engine_init(&e, &nlp, &opt, err));
+    const double *const t = mt_nlp_starts(&e, n, mem);
+    for (int k = 0; t != NULL && k < n; k++) {
+        double violation = 0.0;
+        mt_err ignored = {0};
+        if (p->stop != NULL && *p->stop != 0) {
+            break;
+        }
+        if (assign(p, t + ((ptrdiff_t)k * p->n), below, &violation, &ignored)) {
+            insert(p, list, &out->n, below, violation);
+        }
+        out->evals++;
+    }
+    mt_nlp_engine_free(&e);
+    if (t == NULL) {
+        return mt_fail_memory(err);
+    }
+    out->below = mt_arena_int(mem, (size_t)out->n * (size_t)p->n_bands);
+    if (out->below == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < out->n; i++) {
+        memcpy(out->below + ((ptrdiff_t)i * p->n_bands), list[i].below,
+               (size_t)p->n_bands * sizeof *below);
+    }
+    return MT_OK;
+}
+
+mt_status mt_gap_candidates_find(mt_problem *p, mt_arena *mem, mt_gap_candidates *out,
+                                 mt_err *err)
+{
+    *out = (mt_gap_candidates){.possible = count_possible(p), .reason = "sampled"};
+    return sample(p, mem, out, err);
+}

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tune/gaps.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/workers.h"
+
+/* What the search of one candidate left behind, in its own memory. */
+typedef struct slot {
+    mt_arena mem;
+    mt_nlp_result found;
+    mt_status rc;
+} slot;
+
+typedef struct job {
+    mt_problem *p;
+    const mt_gap_candidates *candidates;
+    slot *slots;
+    mt_nlp_options options;
+} job;
+
+enum { STARTS_PER_CANDIDATE = 8, SOLUTIONS_PER_CANDIDATE = 4 };
+
+/* A candidate that cannot even be evaluated anywhere is no failure of the study: it has no solution. */
+static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
+{
+    job *const j = context;
+    slot *const s = &j->slots[k];
+    mt_problem *p = NULL;
+    mt_err why = {0};
+    (void)worker;
+    MT_TRY(mt_arena_init(&s->mem, 0, err));
+    MT_TRY(mt_problem_new_in_gap(j->p->study, j->p->references,
+                                 j->candidates->below + ((ptrdiff_t)k * j->p->n_bands), &p,
+                                 err));
+    p->stop = j->p->stop;
+    const mt_nlp nlp = mt_problem_nlp(p);
+    s->rc = mt_nlp_solve(&nlp, &j->options, &s->mem, &s->found, &why);
+    mt_problem_delete(p);
+    const bool fatal = s->rc == MT_E_MEMORY || s->rc == MT_E_INTERNAL;
+    return fatal ? mt_fail(err, s->rc, "%s", why.text) : MT_OK;
+}
+
+/* References that are models are analysed before the workers start: the cache is shared and not locked. */
+static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem,
+                                mt_gap_result *out, mt_err *err)
+{
+    int most = 0;
+    for (int k = 0; k < j->candidates->n; k++) {
+        most += j->slots[k].found.n_solutions;
+    }
+    out->solutions = mt_arena_alloc(mem, (size_t)most, sizeof *out->solutions);
+    if (out->solutions == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int k = 0; k < j->candidates->n; k++) {
+        const mt_nlp_result *const found = &j->slots[k].found;
+        out->n_feasible += found->n_solutions > 0 && found->solutions[0].feasible ? 1 : 0;
+    }
+    out->compromise = out->n_feasible == 0;
+    for (int k = 0; k < j->candidates->n; k++) {
+        const mt_nlp_result *const found = &j->slots[k].found;
+        /* one design for each assignment: its best; further local optima of the same kind come after (see rank) */
+        for (int i = 0; i < found->n_solutions && i < 1; i++) {
+            if (found->solutions[i].feasible != out->compromise) {
+                out->solutions[out->n_solutions++] = (mt_gap_solution){
+                    &found->solutions[i], j->candidates->below + ((ptrdiff_t)k * p->n_bands)};
+            }
+        }
+    }
+    return MT_OK;
+}
+
+static bool better(const mt_gap_solution *a, const mt_gap_solution *b, bool compromise)
+{
+    return compromise ? a->found->squares < b->found->squares : a->found->f < b->found->f;
+}
+
+/* Stable: what is equal keeps the order of the assignments. */
+static void rank(mt_gap_result *r)
+{
+    for (int i = 1; i < r->n_solutions; i++) {
+        const mt_gap_solution s = r->solutions[i];
+        int k = i;
+        for (; k > 0 && better(&s, &r->solutions[k - 1], r->compromise); k--) {
+            r->solutions[k] = r->solutions[k - 1];
+        }
+        r->solutions[k] = s;
+    }
+}
+
+/* Solutions outlive the slots: copy what is kept. */
+static mt_status copy_solution(const mt_problem *p, const mt_nlp_solution *from, mt_arena *mem,
+                               const mt_nlp_solution **out, mt_err *err)
+{
+    const size_t n = (size_t)p->n + 1;
+    mt_nlp_solution *const s = mt_arena_alloc(mem, 1, sizeof *s);
+    double *const t = mt_arena_f64(mem, n, 1);
+    int *const bound = mt_arena_int(mem, n);
+    double *const mult = mt_arena_f64(mem, n, 1);
+    if (s == NULL || t == NULL || bound == NULL || mult == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(t, from->t, (size_t)p->n * sizeof *t);
+    memcpy(bound, from->bound, (size_t)p->n * sizeof *bound);
+    memcpy(mult, from->mult_bound, (size_t)p->n * sizeof *mult);
+    *s = *from;
+    s->t = t;
+    s->bound = bound;
+    s->mult_bound = mult;
+    s->mult_eq = NULL;
+    s->mult_in = NULL;
+    *out = s;
+    return MT_OK;
+}
+
+static mt_status collect(const mt_problem *p, const job *j, mt_arena *mem, mt_gap_result *out,
+                         mt_err *err)
+{
+    MT_TRY(keep_solutions(p, j, mem, out, err));
+    rank(out);
+    for (int i = 0; i < out->n_solutions; i++) {
+        MT_TRY(copy_solution(p, out->solutions[i].found, mem, &out->solutions[i].found, err));
+    }
+    for (int k = 0; k < j->candidates->n; k++) {
+        const mt_nlp_result *const found = &j->slots[k].found;
+        out->evals += found->evals;
+        out->starts += found->starts;
+        out->stop = found->stop > out->stop ? found->stop : out->stop;
+    }
+    return MT_OK;
+}
+
+mt_status mt_gaps_solve(mt_problem *p, int workers, mt_arena *mem, mt_gap_result *out,
+                        mt_err *err)
+{
+    mt_gap_candidates candidates = {0};
+    *out = (mt_gap_result){.stop = MT_STOP_DONE};
+    MT_TRY(mt_gap_candidates_find(p, mem, &candidates, err));
+    out->n_candidates = candidates.n;
+    out->n_possible = candidates.possible;
+    out->proven = candidates.proven;
+    out->reason = candidates.reason;
+    out->boxes = candidates.boxes;
+    out->evals = candidates.evals;
+    job j = {.p = p, .candidates = &candidates, .options = mt_nlp_options_default()};
+    j.options.seed = p->study->search.seed;
+    j.options.starts =
+        p->study->search.starts > 0 ? p->study->search.starts : STARTS_PER_CANDIDATE + p->n;
+    j.options.max_evals = p->study->search.max_evaluations;
+    j.options.max_solutions = SOLUTIONS_PER_CANDIDATE;
+    j.options.least_change = p->aims[p->stage].type == MT_OBJECTIVE_CHANGE;
+    j.slots = mt_arena_alloc(mem, (size_t)candidates.n, sizeof *j.slots);
+    if (j.slots == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_status rc = mt_workers_run(workers, candidates.n, search_candidate, &j, err);
+    rc = rc == MT_OK ? collect(p, &j, mem, out, err) : rc;
+    for (int k = 0; k < candidates.n; k++) {
+        mt_arena_free(&j.slots[k].mem);
+    }
+    return rc;
+}

@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Bands. Modes are sorted, so a design without a mode inside any band has one gap assignment: how many modes lie below each band. For a given assignment k_b the
+ * condition is smooth wherever the modes are simple:
+ *     f_k <= lower_b,   f_(k+1) >= upper_b.
+ * Where neighbours change places on the way the next modes on each side take over, so a cluster of them is constrained (their rows follow from the first by the order of the
+ * modes; they only tell the search what comes next). With the objective "clearance" every row has to exceed the extra coordinate z, which is made as great as it can be.
+ */
+#include <math.h>
+
+#include "tune/problem.h"
+
+/* Range of the extra coordinate: a clearance of -95 % to +2000 %. */
+static const double CLEARANCE_LOWER = -3.0;
+static const double CLEARANCE_UPPER = 3.0;
+static const double DEFAULT_TOLERANCE = 1e-6;
+
+static int flexible_count(const mt_modes *modes)
+{
+    int n = 0;
+    for (int i = 0; i < modes->count; i++) {
+        n += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
+    }
+    return n;
+}
+
+/* Rows of one band: modes k, k-1, ... below and k+1, k+2, ... above, as many as there are and at most the cluster. */
+static int rows_below(const mt_clear *c, int below)
+{
+    return below < c->cluster ? below : c->cluster;
+}
+
+static int rows_above(const mt_clear *c, int below, int flexible)
+{
+    const int left = flexible - below;
+    return left < c->cluster ? left : c->cluster;
+}
+
+static mt_status unite(mt_problem *p, mt_clear *c, mt_err *err)
+{
+    const mt_study *const s = p->study;
+    const mt_bands **const lists =
+        mt_arena_alloc(&p->mem, (size_t)s->n_goals, sizeof(mt_bands *));
+    int n = 0;
+    if (lists == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < s->n_goals; i++) {
+        const mt_goal *const g = &s->goals[i];
+        for (int k = 0; g->type == MT_GOAL_AVOID && k < g->n_configurations; k++) {
+            if (g->configurations[k] == p->views[c->view].configuration) {
+                lists[n++] = &g->avoid->bands;
+            }
+        }
+    }
+    return mt_bands_unite(n, lists, &p->mem, &c->bands, err);
+}
+
+static mt_status add_clear(mt_problem *p, int goal_index, int view, mt_err *err)
+{
+    const mt_goal *const g = &p->study->goals[goal_index];
+    for (int i = 0; i < p->n_clears; i++) {
+        if (p->clears[i].view == view) {
+            p->clears[i].cluster = g->avoid->cluster > p->clears[i].cluster
+                                       ? g->avoid->cluster
+                                       : p->clears[i].cluster;
+            return MT_OK;
+        }
+    }
+    mt_clear *const c = &p->clears[p->n_clears];
+    *c = (mt_clear){.view = view,
+                    .goal_index = goal_index,
+                    .cluster = g->avoid->cluster,
+                    .first = p->n_bands,
+                    .row_in = -1,
+                    .tolerance = MT_HAS(g->tolerance_percent) ? g->tolerance_percent / 100.0
+                                                              : DEFAULT_TOLERANCE};
+    MT_TRY(unite(p, c, err));
+    p->n_bands += c->bands.n;
+    p->n_clears++;
+    return MT_OK;
+}
+
+static void number_rows(mt_problem *p, mt_clear *c)
+{
+    const int flexible = flexible_count(&p->views[c->view].analysis->modes);
+    c->row_in = p->n_in;
+    for (int b = 0; b < c->bands.n; b++) {
+        const int below = p->below[c->first + b];
+        c->n_rows += rows_below(c, below) + rows_above(c, below, flexible);
+    }
+    p->n_in += c->n_rows;
+}
+
+mt_status mt_clear_init(mt_problem *p, const int *below, mt_err *err)
+{
+    const mt_study *const s = p->study;
+    p->clears =
+        mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations + 1, sizeof *p->clears);
+    if (p->clears == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < s->n_goals; i++) {
+        const mt_goal *const g = &s->goals[i];
+        for (int k = 0; g->type == MT_GOAL_AVOID && k < g->n_configurations; k++) {
+            MT_TRY(add_clear(p, i, mt_problem_view(p, g->configurations[k]), err));
+        }
+    }
+    if (below == NULL || p->n_bands == 0) {
+        return MT_OK;
+    }
+    p->below = mt_arena_int(&p->mem, (size_t)p->n_bands);
+    if (p->below == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n_bands; i++) {
+        p->below[i] = below[i];
+    }
+    for (int i = 0; i < p->n_clears; i++) {
+        number_rows(p, &p->clears[i]);
+    }
+    if (p->clearance) {
+        p->lower_t[p->n] = CLEARANCE_LOWER;
+        p->upper_t[p->n] = CLEARANCE_UPPER;
+        p->origin_t[p->n] = 0.0;
+    }
+    return MT_OK;
+}
+
+/* One row: in = sign ln(f / edge) - z, sign -1 for a mode below the band. */
+static mt_status put_row(mt_problem *p, mt_analysis *a, int index, double edge_hz, double sign,
+                         int row, double z, bool with_gradient, mt_nlp_values *out, mt_err *err)
+{
+    const int pos = mt_modal_flexible(&a->modes, index);
+    const double hz = pos >= 0 ? mt_modal_hz(&a->modes, pos) : nan("");
+    if (!(hz > 0.0)) {
+        return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\" has no vibration mode %d here",
+                       mt_analysis_configuration(a), index);
+    }
+    out->in[row] = (sign * log(hz / edge_hz)) - z;
+    if (!with_gradient) {
+        return MT_OK;
+    }
+    MT_TRY(mt_problem_dln_frequency(p, a, pos, p->dshape, err));
+    for (int i = 0; i < p->n; i++) {
+        out->din[row + ((ptrdiff_t)i * mt_problem_rows_in(p))] = sign * p->dshape[i];
+    }
+    if (p->clearance) {
+        out->din[row + ((ptrdiff_t)p->n * mt_problem_rows_in(p))] = -1.0;
+    }
+    return MT_OK;
+}
+
+mt_status mt_clear_eval(mt_problem *p, const double *t, bool with_gradient, mt_nlp_values *out,
+                        mt_err *err)
+{
+    for (int i = 0; i < p->n_clears && p->below != NULL; i++) {
+        const mt_clear *const c = &p->clears[i];
+        mt_analysis *const a = p->views[c->view].analysis;
+        const int flexible = flexible_count(&a->modes);
+        const double z = p->clearance ? t[p->n] : 0.0;
+        int row = c->row_in;
+        for (int b = 0; b < c->bands.n; b++) {
+            const mt_band *const band = &c->bands.items[b];
+            const int below = p->below[c->first + b];
+            for (int k = 0; k < rows_below(c, below); k++) {
+                MT_TRY(put_row(p, a, below - k, band->lower_hz, -1.0, row++, z, with_gradient,
+                               out, err));
+            }
+            for (int k = 0; k < rows_above(c, below, flexible); k++) {
+                MT_TRY(put_row(p, a, below + 1 + k, band->upper_hz, 1.0, row++, z,
+                               with_gradient, out, err));
+            }
+        }
+        if (row != c->row_in + c->n_rows) {
+            return mt_fail(err, MT_E_DOMAIN,
+                           "configuration \"%s\" has another number of modes here",
+                           mt_analysis_configuration(a));
+        }
+    }
+    return MT_OK;
+}
+
+double mt_clear_violation(const mt_clear *c, const mt_modes *modes, int *below, int *worst)
+{
+    double violation = modes->n_unstable > 0 ? nan("") : 0.0;
+    for (int b = 0; b < c->bands.n; b++) {
+        const mt_band *const band = &c->bands.items[b];
+        const double middle = sqrt(fmax(band->lower_hz, 0.0) * band->upper_hz);
+        int count = 0;
+        for (int i = 0; i < modes->count; i++) {
+            const double hz =
+                modes->kind[i] == MT_MODE_FLEXIBLE ? mt_modal_hz(modes, i) : nan("");
+            const double inside = fmin(log(hz / band->lower_hz), log(band->upper_hz / hz));
+            count += hz <= middle ? 1 : 0;
+            if (inside > violation) {
+                violation = inside;
+                if (worst != NULL) {
+                    *worst = i;
+                }
+            }
+        }
+        if (below != NULL) {
+            below[b] = count;
+        }
+    }
+    return violation;
+}
+
+double mt_clear_least_percent(const mt_clear *c, const mt_modes *modes, int *band, int *pos)
+{
+    double least = HUGE_VAL;
+    for (int b = 0; b < c->bands.n; b++) {
+        for (int i = 0; i < modes->count; i++) {
+            if (modes->kind[i] != MT_MODE_FLEXIBLE) {
+                continue;
+            }
+            const double percent =
+                mt_band_clearance_percent(&c->bands.items[b], mt_modal_hz(modes, i), NULL);
+            if (!(percent >= least)) {
+                least = percent;
+                if (band != NULL) {
+                    *band = b;
+                }
+                if (pos != NULL) {
+                    *pos = i;
+                }
+            }
+        }
+    }
+    return least;
+}
