@@ -125,6 +125,11 @@ void mt_file_free(mt_file *f)
     *f = (mt_file){0};
 }
 
+bool mt_file_exists(const char *path)
+{
+    return access(path, F_OK) == 0;
+}
+
 /* a, the first n bytes of it, and b; heap. */
 static char *concatenated(const char *a, size_t n, const char *b)
 {

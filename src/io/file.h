@@ -2,6 +2,7 @@
 #ifndef IO_FILE_H
 #define IO_FILE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/base.h"
@@ -23,6 +24,8 @@ typedef struct mt_file {
 mt_status mt_file_read(const char *path, const char *root, size_t limit, mt_file *out,
                        mt_err *err);
 void mt_file_free(mt_file *f);
+/* Is there anything of that name, readable or not? */
+bool mt_file_exists(const char *path);
 
 /* The path of `name` as meant by the file `naming`: relative names start in the folder of `naming`. Heap, to be freed by the
  * caller; NULL when out of memory. Only joins: nothing is looked up. */

@@ -3,16 +3,18 @@
 
 #include <string.h>
 
-/* Each type of goal has a table of its own, which begins with what all have; limits have no mode. */
+/* Each type of goal has a table of its own, which begins with what all have; limits have no mode, bands none of their own. */
 #define GOAL_KEYS(X)                                       \
     X(GOAL_TYPE, "type", MT_KEY_TEXT, true)                \
     X(GOAL_DESCRIPTION, "description", MT_KEY_TEXT, false) \
     X(GOAL_SOURCE, "source", MT_KEY_TEXT, false)           \
     X(GOAL_TOLERANCE, "tolerance_percent", MT_KEY_NUMBER, false)
-#define MODE_KEYS(X)                                             \
-    GOAL_KEYS(X)                                                 \
-    X(GOAL_CONFIGURATION, "configuration", MT_KEY_TEXT, false)   \
-    X(GOAL_CONFIGURATIONS, "configurations", MT_KEY_LIST, false) \
+#define PLACE_KEYS(X)                                          \
+    GOAL_KEYS(X)                                               \
+    X(GOAL_CONFIGURATION, "configuration", MT_KEY_TEXT, false) \
+    X(GOAL_CONFIGURATIONS, "configurations", MT_KEY_LIST, false)
+#define MODE_KEYS(X) \
+    PLACE_KEYS(X)    \
     X(GOAL_MODE, "mode", MT_KEY_TEXT_OR_COUNT, true)
 enum { MODE_KEYS(MT_STUDY_KEY_ENUM) GOAL_KEY_COUNT };
 
@@ -51,6 +53,17 @@ const mt_key_table mt_study_mac_keys = {"goal_mac", MAC, MAC_COUNT};
 enum { LIMIT_BASE = GOAL_CONFIGURATION - 1, LIMIT_KEYS(MT_STUDY_KEY_ENUM) LIMIT_COUNT };
 static const mt_key LIMIT[] = {GOAL_KEYS(MT_STUDY_KEY) LIMIT_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_limit_keys = {"goal_limit", LIMIT, LIMIT_COUNT};
+
+#define AVOID_KEYS(X)                                       \
+    X(AVOID_BANDS, "bands_hz", MT_KEY_LIST, false)          \
+    X(AVOID_ROTOR, "rotor", MT_KEY_OBJECT, false)           \
+    X(AVOID_ROTORS, "rotors", MT_KEY_LIST, false)           \
+    X(AVOID_MARGIN, "margin_percent", MT_KEY_NUMBER, false) \
+    X(AVOID_UP_TO, "up_to_hz", MT_KEY_NUMBER, false)        \
+    X(AVOID_CLUSTER, "cluster", MT_KEY_COUNT, false)
+enum { AVOID_BASE = GOAL_MODE - 1, AVOID_KEYS(MT_STUDY_KEY_ENUM) AVOID_COUNT };
+static const mt_key AVOID[] = {PLACE_KEYS(MT_STUDY_KEY) AVOID_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_avoid_keys = {"goal_avoid", AVOID, AVOID_COUNT};
 
 static void read_configurations(mt_study_reader *s, const mt_study_object *o, mt_goal *goal)
 {
@@ -119,6 +132,73 @@ static void read_limit(mt_study_reader *s, const mt_study_object *o, mt_goal *go
     goal->equals = mt_read_study_member(s, o, LIMIT_EQUALS, &goal->equals_addr);
 }
 
+static void read_bands(mt_study_reader *s, mt_addr list, mt_bands_source *source)
+{
+    source->intervals = mt_read_study_list(s, list, sizeof *source->intervals);
+    if (list == MT_NO_ADDR || source->intervals == NULL) {
+        return;
+    }
+    if (mt_json_count(s->r.doc, list) == 0) {
+        mt_diag_structure(s->r.diags, list, "the list of bands is empty");
+    }
+    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
+         at = mt_json_next(s->r.doc, at)) {
+        double edges[2];
+        if (mt_read_study_pair(s, at, edges)) {
+            source->intervals[source->n_intervals++] = (mt_band_hz){edges[0], edges[1], at};
+        }
+    }
+}
+
+static void read_rotors(mt_study_reader *s, const mt_study_object *o, mt_bands_source *source)
+{
+    const mt_addr list = o->found[AVOID_ROTORS];
+    if (mt_read_study_has(s, o, AVOID_ROTOR) && mt_read_study_has(s, o, AVOID_ROTORS)) {
+        (void)mt_read_study_one_of(s, o, AVOID_ROTOR, 2);
+    }
+    if (list == MT_NO_ADDR) {
+        source->rotors = mt_arena_alloc(&s->study->mem, 1, sizeof *source->rotors);
+        s->r.out_of_memory = s->r.out_of_memory || source->rotors == NULL;
+        if (source->rotors != NULL && o->found[AVOID_ROTOR] != MT_NO_ADDR) {
+            mt_read_study_rotor(s, o->found[AVOID_ROTOR], &source->rotors[source->n_rotors++]);
+        }
+        return;
+    }
+    source->rotors = mt_read_study_list(s, list, sizeof *source->rotors);
+    if (mt_json_count(s->r.doc, list) == 0) {
+        mt_diag_structure(s->r.diags, list, "the list of rotors is empty");
+    }
+    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR && source->rotors != NULL;
+         at = mt_json_next(s->r.doc, at)) {
+        if (mt_reader_type(&s->r, at, MT_KEY_OBJECT)) {
+            mt_read_study_rotor(s, at, &source->rotors[source->n_rotors++]);
+        }
+    }
+}
+
+static void read_avoid(mt_study_reader *s, const mt_study_object *o, mt_goal *goal)
+{
+    mt_avoid *const avoid = mt_arena_alloc(&s->study->mem, 1, sizeof *avoid);
+    if (avoid == NULL) {
+        s->r.out_of_memory = true;
+        return;
+    }
+    *avoid = mt_avoid_default(goal->addr);
+    goal->avoid = avoid;
+    if (!mt_read_study_has(s, o, AVOID_BANDS) && !mt_read_study_has(s, o, AVOID_ROTOR) &&
+        !mt_read_study_has(s, o, AVOID_ROTORS)) {
+        (void)mt_read_study_one_of(s, o, AVOID_BANDS, 3);
+    }
+    avoid->bands_addr = mt_read_study_place(s, o, AVOID_BANDS);
+    read_bands(s, o->found[AVOID_BANDS], &avoid->source);
+    read_rotors(s, o, &avoid->source);
+    avoid->source.margin_percent =
+        mt_read_study_member(s, o, AVOID_MARGIN, &avoid->margin_addr);
+    avoid->source.up_to_hz = mt_read_study_member(s, o, AVOID_UP_TO, &avoid->up_to_addr);
+    avoid->cluster =
+        mt_reader_count(&s->r, o->found[AVOID_CLUSTER], 1, MT_MAX_CLUSTER, avoid->cluster);
+}
+
 static const struct {
     mt_goal_type type;
     const mt_key_table *table;
@@ -128,6 +208,7 @@ static const struct {
     {    MT_GOAL_SHAPE,     &mt_study_shape_keys,     read_shape},
     {      MT_GOAL_MAC,       &mt_study_mac_keys,       read_mac},
     {    MT_GOAL_LIMIT,     &mt_study_limit_keys,     read_limit},
+    {    MT_GOAL_AVOID,     &mt_study_avoid_keys,     read_avoid},
 };
 
 /* Which row of TYPES; MT_ABSENT (noted) where the type is missing or none of them. */
@@ -161,6 +242,8 @@ static bool read_goal(mt_study_reader *s, mt_addr value, mt_goal *goal)
     goal->tolerance_percent = MT_HAS(tolerance) ? tolerance : goal->tolerance_percent;
     if (goal->type != MT_GOAL_LIMIT) {
         read_configurations(s, &o, goal);
+    }
+    if (goal->type != MT_GOAL_LIMIT && goal->type != MT_GOAL_AVOID) {
         goal->mode = mt_read_study_mode(s, &o, GOAL_MODE);
     }
     TYPES[row].read(s, &o, goal);

@@ -100,6 +100,23 @@ double mt_read_study_member(mt_study_reader *s, const mt_study_object *o, int ke
     return mt_read_study_number(s, o->found[key]);
 }
 
+bool mt_read_study_pair(mt_study_reader *s, mt_addr value, double out[2])
+{
+    out[0] = nan("");
+    out[1] = nan("");
+    if (!mt_reader_type(&s->r, value, MT_KEY_LIST)) {
+        return false;
+    }
+    if (mt_json_count(s->r.doc, value) != 2) {
+        mt_diag_structure(s->r.diags, value, "must be two numbers: [lower, upper]");
+        return false;
+    }
+    const mt_addr first = mt_json_first(s->r.doc, value);
+    out[0] = mt_read_study_number(s, first);
+    out[1] = mt_read_study_number(s, mt_json_next(s->r.doc, first));
+    return true;
+}
+
 void mt_read_study_expr(mt_study_reader *s, mt_addr value, mt_expr *out, const char **text)
 {
     *out = (mt_expr){0};

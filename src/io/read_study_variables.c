@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/read_study_priv.h"
 
+#include "tune/catalogue.h"
+
 #define VARIABLE_KEYS(X)                                             \
     X(VARIABLE_PARAMETER, "parameter", MT_KEY_TEXT, true)            \
     X(VARIABLE_LOWER, "lower", MT_KEY_NUMBER, false)                 \
     X(VARIABLE_UPPER, "upper", MT_KEY_NUMBER, false)                 \
-    X(VARIABLE_CATALOGUE, "catalogue", MT_KEY_LIST, false)           \
+    X(VARIABLE_CATALOGUE, "catalogue", MT_KEY_LIST_OR_OBJECT, false) \
     X(VARIABLE_WEIGHT, "weight", MT_KEY_NUMBER, false)               \
     X(VARIABLE_SCALE, "scale", MT_KEY_NUMBER, false)                 \
     X(VARIABLE_TOLERANCE, "tolerance_percent", MT_KEY_NUMBER, false) \
@@ -15,9 +17,90 @@ enum { VARIABLE_KEYS(MT_STUDY_KEY_ENUM) VARIABLE_KEY_COUNT };
 static const mt_key KEYS[] = {VARIABLE_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_variable_keys = {"variable", KEYS, VARIABLE_KEY_COUNT};
 
+#define CATALOGUE_KEYS(X)                                       \
+    X(CATALOGUE_SERIES, "series", MT_KEY_TEXT, false)           \
+    X(CATALOGUE_STEP, "step", MT_KEY_NUMBER, false)             \
+    X(CATALOGUE_LOWER, "lower", MT_KEY_NUMBER, true)            \
+    X(CATALOGUE_UPPER, "upper", MT_KEY_NUMBER, true)            \
+    X(CATALOGUE_DESCRIPTION, "description", MT_KEY_TEXT, false) \
+    X(CATALOGUE_SOURCE, "source", MT_KEY_TEXT, false)
+enum { CATALOGUE_KEYS(MT_STUDY_KEY_ENUM) CATALOGUE_KEY_COUNT };
+static const mt_key CATALOGUE[] = {CATALOGUE_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_catalogue_keys = {"catalogue", CATALOGUE, CATALOGUE_KEY_COUNT};
+
+/* A series or steps between two bounds. */
+typedef struct rule {
+    int series; /* MT_ABSENT: steps */
+    double step;
+    double lower;
+    double upper;
+} rule;
+
+static int expand(const rule *r, int most, double *values)
+{
+    return r->series != MT_ABSENT
+               ? mt_catalogue_series(r->series, r->lower, r->upper, most, values)
+               : mt_catalogue_steps(r->step, r->lower, r->upper, most, values);
+}
+
+/* The values of a rule whose numbers are given, or what is wrong with them. */
+static void expand_rule(mt_study_reader *s, const mt_study_object *o, const rule *r,
+                        mt_variable *v)
+{
+    mt_diags *const diags = s->r.diags;
+    if (r->series == MT_ABSENT && !(r->step > 0.0)) {
+        mt_diag_error(diags, o->found[CATALOGUE_STEP], "step (%g) must be above 0", r->step);
+    } else if (r->series != MT_ABSENT && !(r->lower > 0.0)) {
+        mt_diag_error(diags, o->found[CATALOGUE_LOWER], "lower (%g) must be above 0", r->lower);
+    } else if (r->lower > r->upper) {
+        mt_diag_error(diags, o->found[CATALOGUE_UPPER], "upper (%g) is below lower (%g)",
+                      r->upper, r->lower);
+    } else {
+        const int n = expand(r, 0, NULL);
+        if (n == 0 || n > MT_MAX_CATALOGUE) {
+            mt_diag_error(diags, o->addr,
+                          n == 0 ? "no value lies from %g to %g"
+                                 : "more than 10000 values lie from %g to %g",
+                          r->lower, r->upper);
+            return;
+        }
+        v->catalogue = mt_arena_f64(&s->study->mem, (size_t)n, 1);
+        if (v->catalogue == NULL) {
+            s->r.out_of_memory = true;
+            return;
+        }
+        v->n_catalogue = expand(r, n, v->catalogue);
+    }
+}
+
+static void read_rule(mt_study_reader *s, mt_addr value, mt_variable *v)
+{
+    mt_study_object o;
+    int n = 0;
+    const char *const *const names = mt_series_names(&n);
+    if (!mt_read_study_object(s, value, &mt_study_catalogue_keys, &o)) {
+        return;
+    }
+    const int which = mt_read_study_one_of(s, &o, CATALOGUE_SERIES, 2);
+    const rule r = {
+        .series = mt_reader_choice(&s->r, o.found[CATALOGUE_SERIES], "series", names, n),
+        .step = mt_read_study_number(s, o.found[CATALOGUE_STEP]),
+        .lower = mt_read_study_number(s, o.found[CATALOGUE_LOWER]),
+        .upper = mt_read_study_number(s, o.found[CATALOGUE_UPPER]),
+    };
+    const bool known = which == CATALOGUE_SERIES ? r.series != MT_ABSENT : MT_HAS(r.step);
+    if (which != MT_ABSENT && known && MT_HAS(r.lower) && MT_HAS(r.upper)) {
+        expand_rule(s, &o, &r, v);
+    }
+}
+
 static void read_catalogue(mt_study_reader *s, mt_addr list, mt_variable *v)
 {
     if (list == MT_NO_ADDR) {
+        return;
+    }
+    if (mt_json_type_of(s->r.doc, list) == MT_JSON_OBJECT) {
+        read_rule(s, list, v);
         return;
     }
     if (mt_json_count(s->r.doc, list) == 0) {

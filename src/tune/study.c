@@ -110,6 +110,29 @@ mt_goal mt_goal_default(mt_goal_type type, mt_addr addr)
     };
 }
 
+mt_avoid mt_avoid_default(mt_addr addr)
+{
+    return (mt_avoid){
+        .source = {.margin_percent = nan(""), .up_to_hz = nan("")},
+        .cluster = MT_DEFAULT_CLUSTER,
+        .bands_addr = addr,
+        .margin_addr = addr,
+        .up_to_addr = addr,
+    };
+}
+
+mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr)
+{
+    return (mt_vary){
+        .kind = kind,
+        .variable = MT_ABSENT,
+        .parameter = MT_ABSENT,
+        .goal = MT_ABSENT,
+        .addr = addr,
+        .values_addr = addr,
+    };
+}
+
 mt_published mt_published_default(mt_published_kind kind, mt_addr addr)
 {
     return (mt_published){
@@ -164,6 +187,35 @@ const char *mt_published_kind_name(mt_published_kind kind)
         break;
     }
     return "unknown";
+}
+
+const char *mt_goal_member_name(mt_goal_member member)
+{
+    switch (member) {
+        MT_GOAL_MEMBER_LIST(NAME_CASE)
+    case MT_GOAL_MEMBER_COUNT:
+        break;
+    }
+    return "unknown";
+}
+
+const char *mt_objective_type_name(mt_objective_type type)
+{
+    switch (type) {
+    case MT_OBJECTIVE_CHANGE:
+        return "change";
+    case MT_OBJECTIVE_MASS:
+        return "mass";
+    case MT_OBJECTIVE_EXPRESSION:
+        return "expression";
+    case MT_OBJECTIVE_MISFIT:
+        return "misfit";
+    case MT_OBJECTIVE_CLEARANCE:
+        return "clearance";
+    case MT_OBJECTIVE_NONE:
+        break;
+    }
+    return "none";
 }
 
 const char *const *mt_study_statuses(int *n)

@@ -3,6 +3,8 @@
 #define TUNE_STUDY_H
 
 #include "model/model.h"
+#include "tune/aircraft.h"
+#include "tune/bands.h"
 
 /*
  * A question asked of a model: variables, goals, objective, references, published values. Filled by a reader (io), checked by
@@ -50,6 +52,17 @@ typedef struct mt_mode_ref {
 typedef enum mt_goal_type { MT_GOAL_LIST(MT_GOAL_ENUM) MT_GOAL_TYPE_COUNT } mt_goal_type;
 #undef MT_GOAL_ENUM
 
+/* What modes must keep clear of, and how the search goes about it. */
+typedef struct mt_avoid {
+    mt_bands_source source;
+    /* modes on each side of a band that are held there by constraints of their own, so that neighbours which change places are seen */
+    int cluster;
+    mt_bands bands;     /* of the source; by finish */
+    mt_addr bands_addr; /* the addresses of what was not given equal the goal's */
+    mt_addr margin_addr;
+    mt_addr up_to_addr;
+} mt_avoid;
+
 typedef struct mt_goal {
     mt_goal_type type;
     /* one ("configuration") or several ("configurations"); none given: the model's only one */
@@ -70,6 +83,7 @@ typedef struct mt_goal {
     int reference_mode; /* 1-based; 0: same index as mode */
     mt_expr expression; /* limit */
     const char *expression_text;
+    mt_avoid *avoid; /* avoid: in the study's arena; else NULL */
     const char *description;
     mt_addr addr;
     mt_addr target_addr; /* the addresses of what was not given equal addr */
@@ -168,6 +182,54 @@ typedef struct mt_published {
     mt_addr tolerance_percent_addr;
 } mt_published;
 
+/* A trade study: one or two quantities take each of their values (all pairs of two), and every such study is answered by its best design. */
+typedef enum mt_vary_kind {
+    MT_VARY_BOUND,    /* a bound of a variable */
+    MT_VARY_GOAL,     /* a number of a goal */
+    MT_VARY_PARAMETER /* a parameter that is no variable */
+} mt_vary_kind;
+
+/* Numbers of goals that may vary, as files name them. */
+#define MT_GOAL_MEMBER_LIST(X)              \
+    X(MT_MEMBER_TARGET, "target_hz")        \
+    X(MT_MEMBER_AT_LEAST_HZ, "at_least_hz") \
+    X(MT_MEMBER_AT_MOST_HZ, "at_most_hz")   \
+    X(MT_MEMBER_AT_LEAST, "at_least")       \
+    X(MT_MEMBER_AT_MOST, "at_most")         \
+    X(MT_MEMBER_EQUALS, "equals")           \
+    X(MT_MEMBER_MARGIN, "margin_percent")
+#define MT_GOAL_MEMBER_ENUM(id, name) id,
+typedef enum mt_goal_member {
+    MT_GOAL_MEMBER_LIST(MT_GOAL_MEMBER_ENUM) MT_GOAL_MEMBER_COUNT
+} mt_goal_member;
+#undef MT_GOAL_MEMBER_ENUM
+
+typedef struct mt_vary {
+    mt_vary_kind kind;
+    mt_name name;  /* of the variable or parameter */
+    int variable;  /* bound: index in the study's variables */
+    bool upper;    /* bound: which one */
+    int parameter; /* parameter: of the model */
+    int goal;      /* goal: index in the study's goals */
+    mt_goal_member member;
+    int n_values;
+    double *values;   /* [n_values] in the order given; in the unit of what varies */
+    const char *text; /* "upper bound of M_SAU", "target_hz of goal 1": by finish */
+    mt_addr addr;
+    mt_addr values_addr;
+} mt_vary;
+
+enum { MT_MAX_VARY = 2, MT_MAX_TRADE_POINTS = 10000 };
+
+typedef struct mt_trade {
+    int n_vary; /* 0: there is no trade study */
+    mt_vary vary[MT_MAX_VARY];
+    int n_objectives; /* 0 or 2: of the Pareto front */
+    mt_objective_type objectives[2];
+    mt_addr addr;
+    mt_addr objectives_addr; /* addr where not given */
+} mt_trade;
+
 typedef struct mt_search {
     unsigned long seed;
     int starts;           /* 0: chosen by the number of variables */
@@ -176,7 +238,8 @@ typedef struct mt_search {
 
 /* How far the best design of a misfit moves when single weights are changed: the uncertainty that a choice of weights hides. */
 typedef struct mt_spread {
-    double factor; /* every weighted goal's weight times and divided by it in turn; NaN: not asked for */
+    double
+        factor; /* every weighted goal's weight times and divided by it in turn; NaN: not asked for */
     mt_addr factor_addr;
 } mt_spread;
 
@@ -199,6 +262,11 @@ typedef struct mt_study {
     MT_LIST_OF(mt_reference, references);
     MT_LIST_OF(mt_objective, objectives);
     MT_LIST_OF(mt_published, published);
+    mt_trade trade;
+    mt_name aircraft_path; /* of the catalogue read, or unreadable (noted); s NULL: none */
+    mt_aircraft_list aircraft;
+    /* for the result: what a reader of it must know (values that nobody confirmed, bands that were merged); by finish */
+    MT_LIST_OF(const char *, warnings);
     int recommendations; /* how many to report; default 5 */
     mt_addr recommendations_addr;
     mt_search search;
@@ -213,12 +281,15 @@ void mt_study_delete(mt_study *study);
 /* Records with every optional member at "not given" (NaN, MT_ABSENT, defaults) and all addresses at addr. */
 mt_variable mt_variable_default(mt_addr addr);
 mt_goal mt_goal_default(mt_goal_type type, mt_addr addr);
+mt_avoid mt_avoid_default(mt_addr addr);
+mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr);
 mt_published mt_published_default(mt_published_kind kind, mt_addr addr);
 /*
  * Resolve names and check meaning, all problems at once: unknown names with "did you mean", bounds in the wrong order, catalogue and
  * bounds together, duplicate variables, goals without a demand, weights without the objective "misfit" and the reverse, a variable
  * overridden in every configuration that the goals name, references without a common sensor, mode indices below 1, ... Fills in
- * defaults (configuration: the model's only one; objective: change; scale: the range), sorts catalogues, sets `original`. study->model
+ * defaults (configuration: the model's only one; objective: change; scale: the range), sorts catalogues, looks up aircraft, makes the
+ * bands, sets `original` and `warnings`. study->model
  * is set and finished before. Bounds at or below 0 are fine for a positive parameter (its scale is linear then).
  * Returns MT_E_INPUT where diags holds errors, MT_E_MEMORY.
  */
@@ -229,6 +300,9 @@ int mt_study_find_reference(const mt_study *study, const char *name);
 const char *mt_goal_type_name(mt_goal_type type);
 const char *mt_role_name(mt_role role);
 const char *mt_published_kind_name(mt_published_kind kind);
+const char *mt_goal_member_name(mt_goal_member member);
+/* "change", "mass", "misfit", "clearance"; "expression" and "none" for the others. */
+const char *mt_objective_type_name(mt_objective_type type);
 /* What a published `status` may say, in the order of mt_result_status; *n their number. */
 const char *const *mt_study_statuses(int *n);
 

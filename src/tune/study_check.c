@@ -2,6 +2,7 @@
 #include "tune/study_check.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #include "base/text.h"
 #include "model/values.h"
@@ -76,6 +77,42 @@ int mt_check_reference(mt_study_check *c, mt_name name)
                 nearest(c, name.s, s->references, s->n_references, sizeof *s->references));
     }
     return found;
+}
+
+const mt_aircraft *mt_check_aircraft(mt_study_check *c, mt_name name)
+{
+    const mt_aircraft_list *const list = &c->study->aircraft;
+    if (name.s == NULL) {
+        return NULL;
+    }
+    for (int i = 0; i < list->n; i++) {
+        if (strcmp(list->items[i].name.s, name.s) == 0) {
+            return &list->items[i];
+        }
+    }
+    if (list->n > 0) {
+        unknown(c, name, "aircraft",
+                nearest(c, name.s, list->items, list->n, sizeof *list->items));
+    } else if (c->study->aircraft_path.s == NULL) {
+        mt_diag_error(c->diags, name.addr,
+                      "there is no catalogue to look up \"%s\" in: the study names none "
+                      "(\"aircraft\") and no aircraft.json lies beside the model",
+                      name.s);
+    }
+    return NULL;
+}
+
+void mt_check_warn_result(mt_study_check *c, const char *text)
+{
+    mt_study *const s = c->study;
+    const char **const list = mt_arena_grow(&s->mem, (void *)s->warnings, s->n_warnings,
+                                            &s->cap_warnings, sizeof *list);
+    if (text == NULL || list == NULL) {
+        c->out_of_memory = true;
+        return;
+    }
+    list[s->n_warnings++] = text;
+    s->warnings = list;
 }
 
 int mt_check_only_configuration(mt_study_check *c, const mt_model *model, mt_addr addr)
@@ -181,6 +218,7 @@ mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err)
     mt_study_check_overrides(&c);
     mt_study_check_objectives(&c);
     mt_study_check_published(&c);
+    mt_study_check_trade(&c);
     if (study->recommendations < 1) {
         mt_diag_error(diags, study->recommendations_addr,
                       "recommendations (%d) must be above 0", study->recommendations);

@@ -13,17 +13,23 @@ typedef struct mt_study_check {
     bool out_of_memory;
 } mt_study_check;
 
-void mt_study_check_references(mt_study_check *c); /* study_references.c */
-void mt_study_check_variables(mt_study_check *c);  /* study_variables.c */
-void mt_study_check_goals(mt_study_check *c);      /* study_goals.c */
+void mt_study_check_references(mt_study_check *c);           /* study_references.c */
+void mt_study_check_variables(mt_study_check *c);            /* study_variables.c */
+void mt_study_check_goals(mt_study_check *c);                /* study_goals.c */
+void mt_study_check_avoid(mt_study_check *c, mt_goal *goal); /* study_avoid.c; by the former */
 void mt_study_check_overrides(mt_study_check *c);  /* study_variables.c; after the goals */
 void mt_study_check_objectives(mt_study_check *c); /* study_objectives.c; after the goals */
 void mt_study_check_published(mt_study_check *c);  /* study_published.c */
+void mt_study_check_trade(mt_study_check *c);      /* study_trade.c; last */
 
 /* Shared: names to indices, with "did you mean". An absent name gives MT_ABSENT without a message. */
 int mt_check_parameter(mt_study_check *c, mt_name name);
 int mt_check_configuration(mt_study_check *c, const mt_model *model, mt_name name);
 int mt_check_reference(mt_study_check *c, mt_name name);
+/* NULL where the name is absent or unknown (noted, unless the catalogue itself could not be read). */
+const mt_aircraft *mt_check_aircraft(mt_study_check *c, mt_name name);
+/* A sentence for the result; text is in the study's arena (NULL: out of memory). */
+void mt_check_warn_result(mt_study_check *c, const char *text);
 /* The model's only configuration where a name is absent; noted at addr where there are several. */
 int mt_check_only_configuration(mt_study_check *c, const mt_model *model, mt_addr addr);
 /* Resolve a mode and check its index (absent: noted). Returns its index, that of a named mode included; 0 where there is none. */

@@ -111,6 +111,10 @@ static void check_goal(mt_study_check *c, mt_goal *goal)
         return;
     }
     resolve_configurations(c, goal);
+    if (goal->type == MT_GOAL_AVOID) {
+        mt_study_check_avoid(c, goal);
+        return;
+    }
     const int index = mt_check_mode(c, &goal->mode);
     if (goal->type == MT_GOAL_FREQUENCY) {
         check_frequency(c, goal, index);

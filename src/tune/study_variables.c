@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "tune/catalogue.h"
 #include "tune/study_check.h"
 
 static int ascending(const void *a, const void *b)
@@ -13,6 +14,10 @@ static int ascending(const void *a, const void *b)
 
 static void check_catalogue(mt_study_check *c, mt_variable *v)
 {
+    if (v->n_catalogue > MT_MAX_CATALOGUE) {
+        mt_diag_error(c->diags, v->catalogue_addr, "the catalogue has more than %d values",
+                      MT_MAX_CATALOGUE);
+    }
     qsort(v->catalogue, (size_t)v->n_catalogue, sizeof *v->catalogue, ascending);
     for (int i = 1; i < v->n_catalogue; i++) {
         if (v->catalogue[i] <= v->catalogue[i - 1]) {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "io/file.h"
+#include "io/read_aircraft.h"
 #include "io/read_model.h"
 #include "io/read_study.h"
 #include "mt_test.h"
@@ -71,5 +72,13 @@ static void schema__has_the_members_of_the_study_reader(mt_test *t)
     check_schema(t, MT_TEST_SOURCE_DIR "/schemas/study.schema.json", tables, n);
 }
 
+static void schema__has_the_members_of_the_aircraft_reader(mt_test *t)
+{
+    int n = 0;
+    const mt_key_table *const *const tables = mt_aircraft_key_tables(&n);
+    check_schema(t, MT_TEST_SOURCE_DIR "/schemas/aircraft.schema.json", tables, n);
+}
+
 MT_TEST_MAIN(MT_TEST(schema__has_the_members_of_the_model_reader),
-             MT_TEST(schema__has_the_members_of_the_study_reader))
+             MT_TEST(schema__has_the_members_of_the_study_reader),
+             MT_TEST(schema__has_the_members_of_the_aircraft_reader))

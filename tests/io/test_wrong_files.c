@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Every tests/io/wrong/NAME.json is wrong, and NAME.expected holds the exact text that says so: all problems, with the file's base
- * name. Files study_* are studies, result_* results, all others models. The files in wrong/parts are what studies refer to.
+ * name. Files study_* are studies, result_* results, aircraft_* catalogues of aircraft, all others models. The files in wrong/parts are what studies refer to.
  * MT_WRONG_PRINT=1 prints what is said, for whoever writes the expected text of a new file: read it, do not just copy it.
  */
 #include <dirent.h>
@@ -57,6 +57,12 @@ static mt_status read_wrong(const char *name, mt_text *said)
     mt_status rc = MT_OK;
     if (starts_with(name, "study_")) {
         rc = mt_study_load(name, NULL, &study, said, &err);
+    } else if (starts_with(name, "aircraft_")) {
+        mt_aircraft_list list = {0};
+        mt_arena mem = {0};
+        rc = mt_arena_init(&mem, 0, &err);
+        rc = rc == MT_OK ? mt_aircraft_load(name, NULL, &mem, &list, said, &err) : rc;
+        mt_arena_free(&mem);
     } else if (starts_with(name, "result_")) {
         rc = mt_result_load(name, NULL, &result, said, &err);
     } else {

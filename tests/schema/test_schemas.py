@@ -13,7 +13,8 @@ import jsonschema
 ROOT = Path(os.environ.get("SOURCE_DIR", Path(__file__).resolve().parents[2]))
 BUILD = Path(os.environ.get("BUILD_DIR", ROOT / "build/release"))
 HERE = ROOT / "tests/schema"
-KINDS = {"modetune-model/1": "model", "modetune-study/1": "study", "modetune-result/1": "result"}
+KINDS = {"modetune-model/1": "model", "modetune-study/1": "study", "modetune-result/1": "result",
+         "modetune-aircraft/1": "aircraft"}
 
 
 def load(path):
@@ -120,6 +121,8 @@ def main():
         for i, (path, kind, _, mutant) in enumerate(jobs):
             if kind == "study":  # models are named relative to the study
                 mutant = json.loads(json.dumps(mutant))
+                if isinstance(mutant.get("aircraft"), str):
+                    mutant["aircraft"] = str((path.parent / mutant["aircraft"]).resolve())
                 references = mutant.get("references")
                 for holder in [mutant] + (list(references.values()) if isinstance(references, dict) else []):
                     if isinstance(holder, dict) and isinstance(holder.get("model"), str):

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * What the readers think of the structure of files, for test_schemas.py, which compares it with the schemas. Started with the name of a
- * list, a line "model PATH" or "study PATH" each, it prints for each the number of errors of structure, the number of lines said, and the
+ * list, a line "model PATH", "study PATH" or "aircraft PATH" each, it prints for each the number of errors of structure, the number of lines said, and the
  * status. Without arguments it tests itself: that it can tell right from wrong.
  */
 #include <stdio.h>
@@ -26,8 +26,17 @@ static verdict judge(const char *kind, const char *path)
     mt_model *model = NULL;
     mt_study *study = NULL;
     const mt_io_options opt = {.root = "/", .structural = &v.structural};
-    v.rc = strcmp(kind, "study") == 0 ? mt_study_load(path, &opt, &study, &said, NULL)
-                                      : mt_model_load(path, &opt, &model, &said, NULL);
+    if (strcmp(kind, "aircraft") == 0) {
+        mt_aircraft_list list = {0};
+        mt_arena mem = {0};
+        v.rc = mt_arena_init(&mem, 0, NULL);
+        v.rc = v.rc == MT_OK ? mt_aircraft_load(path, &opt, &mem, &list, &said, NULL) : v.rc;
+        mt_arena_free(&mem);
+    } else if (strcmp(kind, "study") == 0) {
+        v.rc = mt_study_load(path, &opt, &study, &said, NULL);
+    } else {
+        v.rc = mt_model_load(path, &opt, &model, &said, NULL);
+    }
     for (const char *s = said.s; s != NULL && *s != '\0'; s++) {
         v.lines += *s == '\n';
     }

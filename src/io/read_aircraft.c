@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The catalogue of aircraft: rotor speeds and numbers of blades, each with its source. */
+#include "io/read_aircraft.h"
+
+#include <string.h>
+
+#include "io/file.h"
+#include "tune/bands.h"
+
+#define KEY_ENUM(id, name, type, required) id,
+#define KEY(id, name, type, required)      {name, type, required},
+
+#define ROOT_KEYS(X)                                       \
+    X(ROOT_SCHEMA, "$schema", MT_KEY_TEXT, false)          \
+    X(ROOT_FORMAT, "format", MT_KEY_TEXT, true)            \
+    X(ROOT_DESCRIPTION, "description", MT_KEY_TEXT, false) \
+    X(ROOT_SOURCE, "source", MT_KEY_TEXT, false)           \
+    X(ROOT_AIRCRAFT, "aircraft", MT_KEY_LIST, true)
+enum { ROOT_KEYS(KEY_ENUM) ROOT_KEY_COUNT };
+static const mt_key ROOT[] = {ROOT_KEYS(KEY)};
+static const mt_key_table ROOT_TABLE = {"", ROOT, ROOT_KEY_COUNT};
+
+#define AIRCRAFT_KEYS(X)                                       \
+    X(AIRCRAFT_NAME, "name", MT_KEY_TEXT, true)                \
+    X(AIRCRAFT_DESCRIPTION, "description", MT_KEY_TEXT, false) \
+    X(AIRCRAFT_SOURCE, "source", MT_KEY_TEXT, false)           \
+    X(AIRCRAFT_MAIN, "main", MT_KEY_OBJECT, true)              \
+    X(AIRCRAFT_TAIL, "tail", MT_KEY_OBJECT, false)
+enum { AIRCRAFT_KEYS(KEY_ENUM) AIRCRAFT_KEY_COUNT };
+static const mt_key AIRCRAFT[] = {AIRCRAFT_KEYS(KEY)};
+static const mt_key_table AIRCRAFT_TABLE = {"aircraft", AIRCRAFT, AIRCRAFT_KEY_COUNT};
+
+#define ROTOR_KEYS(X)                                     \
+    X(ROTOR_SPEED_HZ, "speed_hz", MT_KEY_OBJECT, false)   \
+    X(ROTOR_SPEED_RPM, "speed_rpm", MT_KEY_OBJECT, false) \
+    X(ROTOR_BLADES, "blades", MT_KEY_OBJECT, true)        \
+    X(ROTOR_DESCRIPTION, "description", MT_KEY_TEXT, false)
+enum { ROTOR_KEYS(KEY_ENUM) ROTOR_KEY_COUNT };
+static const mt_key ROTOR[] = {ROTOR_KEYS(KEY)};
+static const mt_key_table ROTOR_TABLE = {"rotor", ROTOR, ROTOR_KEY_COUNT};
+
+#define VALUE_KEYS(X, type)                            \
+    X(VALUE_VALUE, "value", type, true)                \
+    X(VALUE_SOURCE, "source", MT_KEY_TEXT, true)       \
+    X(VALUE_CONFIRMED, "confirmed", MT_KEY_BOOL, true) \
+    X(VALUE_DESCRIPTION, "description", MT_KEY_TEXT, false)
+enum { VALUE_KEYS(KEY_ENUM, ) VALUE_KEY_COUNT };
+static const mt_key SPEED[] = {VALUE_KEYS(KEY, MT_KEY_VALUE)};
+static const mt_key_table SPEED_TABLE = {"speed", SPEED, VALUE_KEY_COUNT};
+static const mt_key BLADES[] = {VALUE_KEYS(KEY, MT_KEY_COUNT)};
+static const mt_key_table BLADES_TABLE = {"blades", BLADES, VALUE_KEY_COUNT};
+
+const mt_key_table *const *mt_aircraft_key_tables(int *n)
+{
+    static const mt_key_table *const tables[] = {&ROOT_TABLE, &AIRCRAFT_TABLE, &ROTOR_TABLE,
+                                                 &SPEED_TABLE, &BLADES_TABLE};
+    *n = MT_COUNT(tables);
+    return tables;
+}
+
+/* What speed and number of blades have in common. */
+static void read_origin(mt_reader *r, const mt_addr *found, mt_aircraft_value *out)
+{
+    out->source = mt_reader_text(r, found[VALUE_SOURCE]);
+    out->confirmed = mt_reader_flag(r, found[VALUE_CONFIRMED], false);
+}
+
+static void read_speed(mt_reader *r, mt_addr value, bool rpm, mt_aircraft_value *out)
+{
+    mt_addr found[VALUE_KEY_COUNT];
+    if (!mt_reader_object(r, value, &SPEED_TABLE, found)) {
+        return;
+    }
+    read_origin(r, found, out);
+    if (found[VALUE_VALUE] == MT_NO_ADDR) {
+        return;
+    }
+    const double speed = mt_json_number(r->doc, found[VALUE_VALUE]);
+    if (!(speed > 0.0)) {
+        mt_diag_error(r->diags, found[VALUE_VALUE], "the speed (%g) must be above 0", speed);
+    }
+    out->value = rpm ? speed / 60.0 : speed;
+    out->text = mt_arena_printf(r->mem, "%.10g %s", speed, rpm ? "rpm" : "Hz");
+    r->out_of_memory = r->out_of_memory || out->text == NULL;
+}
+
+static void read_blades(mt_reader *r, mt_addr value, mt_aircraft_value *out)
+{
+    mt_addr found[VALUE_KEY_COUNT];
+    if (!mt_reader_object(r, value, &BLADES_TABLE, found)) {
+        return;
+    }
+    read_origin(r, found, out);
+    const int blades = mt_reader_count(r, found[VALUE_VALUE], 1, MT_MAX_BLADES, 1);
+    out->value = (double)blades;
+    out->text = mt_arena_printf(r->mem, "%d", blades);
+    r->out_of_memory = r->out_of_memory || out->text == NULL;
+}
+
+static void read_rotor(mt_reader *r, mt_addr value, mt_aircraft_rotor *out)
+{
+    mt_addr found[ROTOR_KEY_COUNT];
+    if (value == MT_NO_ADDR || !mt_reader_object(r, value, &ROTOR_TABLE, found)) {
+        return;
+    }
+    const bool hz = mt_json_member(r->doc, value, ROTOR[ROTOR_SPEED_HZ].name) != MT_NO_ADDR;
+    const mt_addr rpm = mt_json_member(r->doc, value, ROTOR[ROTOR_SPEED_RPM].name);
+    if (hz && rpm != MT_NO_ADDR) {
+        mt_diag_structure(r->diags, mt_json_name_addr(r->doc, rpm),
+                          "\"speed_rpm\" excludes \"speed_hz\"");
+    } else if (!hz && rpm == MT_NO_ADDR) {
+        mt_diag_structure(r->diags, value, "one of \"speed_hz\" or \"speed_rpm\" is missing");
+    }
+    if (found[ROTOR_SPEED_HZ] != MT_NO_ADDR) {
+        read_speed(r, found[ROTOR_SPEED_HZ], false, &out->speed);
+    }
+    if (found[ROTOR_SPEED_RPM] != MT_NO_ADDR) {
+        read_speed(r, found[ROTOR_SPEED_RPM], true, &out->speed);
+    }
+    if (found[ROTOR_BLADES] != MT_NO_ADDR) {
+        read_blades(r, found[ROTOR_BLADES], &out->blades);
+    }
+}
+
+static void read_one(mt_reader *r, mt_addr value, mt_aircraft_list *list)
+{
+    mt_addr found[AIRCRAFT_KEY_COUNT];
+    if (!mt_reader_object(r, value, &AIRCRAFT_TABLE, found)) {
+        return;
+    }
+    mt_aircraft *const a = &list->items[list->n];
+    a->name = mt_reader_ref(r, found[AIRCRAFT_NAME]);
+    if (a->name.s != NULL && *a->name.s == '\0') {
+        mt_diag_structure(r->diags, a->name.addr, "a name must not be empty");
+    }
+    for (int i = 0; i < list->n && a->name.s != NULL; i++) {
+        if (strcmp(list->items[i].name.s, a->name.s) == 0) {
+            mt_diag_error(r->diags, a->name.addr, "\"%s\" is listed twice", a->name.s);
+        }
+    }
+    read_rotor(r, found[AIRCRAFT_MAIN], &a->main_rotor);
+    read_rotor(r, found[AIRCRAFT_TAIL], &a->tail_rotor);
+    a->has_tail = found[AIRCRAFT_TAIL] != MT_NO_ADDR;
+    list->n += a->name.s != NULL ? 1 : 0;
+}
+
+static void read_list(mt_reader *r, mt_addr value, mt_aircraft_list *list)
+{
+    const int n = value == MT_NO_ADDR ? 0 : mt_json_count(r->doc, value);
+    if (value == MT_NO_ADDR) {
+        return;
+    }
+    if (n == 0) {
+        mt_diag_structure(r->diags, value, "the list of aircraft is empty");
+    }
+    list->items = mt_arena_alloc(r->mem, (size_t)n, sizeof *list->items);
+    if (list->items == NULL) {
+        r->out_of_memory = true;
+        return;
+    }
+    for (mt_addr at = mt_json_first(r->doc, value); at != MT_NO_ADDR;
+         at = mt_json_next(r->doc, at)) {
+        if (mt_reader_type(r, at, MT_KEY_OBJECT)) {
+            read_one(r, at, list);
+        }
+    }
+}
+
+static void read_root(mt_reader *r, mt_aircraft_list *list)
+{
+    static const char *const formats[] = {"modetune-aircraft/1"};
+    mt_addr found[ROOT_KEY_COUNT];
+    if (!mt_reader_object(r, MT_JSON_ROOT, &ROOT_TABLE, found)) {
+        return;
+    }
+    (void)mt_reader_choice(r, found[ROOT_FORMAT], "format", formats, MT_COUNT(formats));
+    read_list(r, found[ROOT_AIRCRAFT], list);
+}
+
+static mt_status read_text(const char *path, const mt_file *file, const mt_io_options *opt,
+                           mt_arena *mem, mt_aircraft_list *out, mt_text *messages, mt_err *err)
+{
+    mt_json *doc = NULL;
+    mt_status rc = mt_json_parse(file->bytes, file->length, &doc, err);
+    if (doc == NULL) {
+        return rc;
+    }
+    mt_reader r = {.doc = doc, .diags = mt_json_diags(doc), .mem = mem};
+    if (rc == MT_OK) {
+        read_root(&r, out);
+    }
+    rc = mt_reader_status(&r, path, err);
+    if (opt != NULL && opt->structural != NULL) {
+        *opt->structural = r.diags->structural;
+    }
+    if (messages != NULL) {
+        mt_json_print(doc, path, messages);
+        rc = messages->failed ? mt_fail_memory(err) : rc;
+    }
+    mt_json_delete(doc);
+    return rc;
+}
+
+mt_status mt_aircraft_load(const char *path, const mt_io_options *opt, mt_arena *mem,
+                           mt_aircraft_list *out, mt_text *messages, mt_err *err)
+{
+    const size_t limit =
+        opt == NULL || opt->max_bytes == 0 ? MT_JSON_MAX_BYTES : opt->max_bytes;
+    mt_file file = {0};
+    *out = (mt_aircraft_list){0};
+    mt_status rc = mt_file_read(path, opt == NULL ? NULL : opt->root, limit, &file, err);
+    if (rc == MT_OK) {
+        rc = read_text(path, &file, opt, mem, out, messages, err);
+    }
+    if (rc == MT_OK) {
+        out->sha256 = mt_arena_strdup(mem, file.sha256);
+        rc = out->sha256 == NULL ? mt_fail_memory(err) : rc;
+    }
+    mt_file_free(&file);
+    return rc;
+}

@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rotors whose harmonics are to be avoided, and the catalogue of aircraft that they may come from. */
+#include "io/read_study_priv.h"
+
+#include <stdlib.h>
+
+#include "io/file.h"
+
+#define ROTOR_KEYS(X)                                       \
+    X(ROTOR_AIRCRAFT, "aircraft", MT_KEY_TEXT, false)       \
+    X(ROTOR_SPEED_HZ, "speed_hz", MT_KEY_NUMBER, false)     \
+    X(ROTOR_SPEED_RPM, "speed_rpm", MT_KEY_NUMBER, false)   \
+    X(ROTOR_BLADES, "blades", MT_KEY_COUNT, false)          \
+    X(ROTOR_TAIL, "tail", MT_KEY_OBJECT, false)             \
+    X(ROTOR_NAME, "name", MT_KEY_TEXT, false)               \
+    X(ROTOR_HARMONICS, "harmonics", MT_KEY_LIST, true)      \
+    X(ROTOR_RANGE, "speed_range", MT_KEY_LIST, false)       \
+    X(ROTOR_MARGIN, "margin_percent", MT_KEY_NUMBER, false) \
+    X(ROTOR_DESCRIPTION, "description", MT_KEY_TEXT, false) \
+    X(ROTOR_SOURCE, "source", MT_KEY_TEXT, false)
+enum { ROTOR_KEYS(MT_STUDY_KEY_ENUM) ROTOR_KEY_COUNT };
+static const mt_key ROTOR[] = {ROTOR_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_rotor_keys = {"rotor", ROTOR, ROTOR_KEY_COUNT};
+
+#define TAIL_KEYS(X)                                       \
+    X(TAIL_SPEED_HZ, "speed_hz", MT_KEY_NUMBER, false)     \
+    X(TAIL_SPEED_RPM, "speed_rpm", MT_KEY_NUMBER, false)   \
+    X(TAIL_BLADES, "blades", MT_KEY_COUNT, false)          \
+    X(TAIL_DESCRIPTION, "description", MT_KEY_TEXT, false) \
+    X(TAIL_SOURCE, "source", MT_KEY_TEXT, false)
+enum { TAIL_KEYS(MT_STUDY_KEY_ENUM) TAIL_KEY_COUNT };
+static const mt_key TAIL[] = {TAIL_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_tail_keys = {"tail_rotor", TAIL, TAIL_KEY_COUNT};
+
+static const double RPM_PER_HZ = 60.0;
+
+/* One of two members, neighbours in the table: speed_hz or speed_rpm [Hz]. */
+static double read_speed(mt_study_reader *s, const mt_study_object *o, int hz, mt_addr *place)
+{
+    *place = o->addr;
+    if (mt_read_study_has(s, o, hz)) {
+        return mt_read_study_member(s, o, hz, place);
+    }
+    if (mt_read_study_has(s, o, hz + 1)) {
+        return mt_read_study_member(s, o, hz + 1, place) / RPM_PER_HZ;
+    }
+    return mt_read_study_number(s, MT_NO_ADDR);
+}
+
+static void read_tail(mt_study_reader *s, mt_addr value, mt_rotor *rotor)
+{
+    mt_study_object o;
+    if (value == MT_NO_ADDR || !mt_read_study_object(s, value, &mt_study_tail_keys, &o)) {
+        return;
+    }
+    (void)mt_read_study_one_of(s, &o, TAIL_SPEED_HZ, 2);
+    rotor->tail_speed_hz = read_speed(s, &o, TAIL_SPEED_HZ, &rotor->tail_speed_addr);
+    rotor->tail_blades = mt_reader_count(&s->r, o.found[TAIL_BLADES], 1, MT_MAX_BLADES, 0);
+}
+
+static void read_harmonic(mt_study_reader *s, mt_addr at, mt_rotor *rotor)
+{
+    mt_harmonic *const h = &rotor->harmonics[rotor->n_harmonics];
+    const char *const text = mt_reader_text(&s->r, at);
+    if (text == NULL) {
+        return;
+    }
+    if (mt_harmonic_parse(text, h)) {
+        h->addr = at;
+        rotor->n_harmonics++;
+    } else {
+        mt_diag_structure(s->r.diags, at,
+                          "\"%s\" is no harmonic: a number from 1 to 999, n (the number of "
+                          "blades) or both, then P (main rotor) or T (tail rotor)",
+                          text);
+    }
+}
+
+static void read_harmonics(mt_study_reader *s, mt_addr list, mt_rotor *rotor)
+{
+    rotor->harmonics = mt_read_study_list(s, list, sizeof *rotor->harmonics);
+    if (list == MT_NO_ADDR || rotor->harmonics == NULL) {
+        return;
+    }
+    if (mt_json_count(s->r.doc, list) == 0) {
+        mt_diag_structure(s->r.diags, list, "the list of harmonics is empty");
+    }
+    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
+         at = mt_json_next(s->r.doc, at)) {
+        read_harmonic(s, at, rotor);
+    }
+}
+
+/* An aircraft of the catalogue brings its own numbers. */
+static void exclude(mt_study_reader *s, const mt_study_object *o, int key)
+{
+    if (mt_read_study_has(s, o, ROTOR_AIRCRAFT) && mt_read_study_has(s, o, key)) {
+        mt_diag_structure(s->r.diags,
+                          mt_json_name_addr(s->r.doc, mt_read_study_place(s, o, key)),
+                          "\"%s\" excludes \"aircraft\"", o->table->keys[key].name);
+    }
+}
+
+void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor)
+{
+    mt_study_object o;
+    double range[2];
+    *rotor = mt_rotor_default(value);
+    rotor->aircraft.addr = value;
+    if (!mt_read_study_object(s, value, &mt_study_rotor_keys, &o)) {
+        return;
+    }
+    (void)mt_read_study_one_of(s, &o, ROTOR_AIRCRAFT, 3);
+    exclude(s, &o, ROTOR_BLADES);
+    exclude(s, &o, ROTOR_TAIL);
+    rotor->aircraft = mt_reader_ref(&s->r, o.found[ROTOR_AIRCRAFT]);
+    rotor->aircraft.addr = mt_read_study_place(s, &o, ROTOR_AIRCRAFT);
+    rotor->name = mt_reader_text(&s->r, o.found[ROTOR_NAME]);
+    rotor->speed_hz = read_speed(s, &o, ROTOR_SPEED_HZ, &rotor->speed_addr);
+    rotor->blades = mt_reader_count(&s->r, o.found[ROTOR_BLADES], 1, MT_MAX_BLADES, 0);
+    rotor->tail_addr = mt_read_study_place(s, &o, ROTOR_TAIL);
+    read_tail(s, o.found[ROTOR_TAIL], rotor);
+    read_harmonics(s, o.found[ROTOR_HARMONICS], rotor);
+    rotor->range_addr = mt_read_study_place(s, &o, ROTOR_RANGE);
+    if (o.found[ROTOR_RANGE] != MT_NO_ADDR &&
+        mt_read_study_pair(s, o.found[ROTOR_RANGE], range)) {
+        rotor->range_lower = range[0];
+        rotor->range_upper = range[1];
+    }
+    rotor->margin_percent = mt_read_study_member(s, &o, ROTOR_MARGIN, &rotor->margin_addr);
+}
+
+static bool needs_catalogue(const mt_study *study)
+{
+    for (int i = 0; i < study->n_goals; i++) {
+        const mt_avoid *const avoid = study->goals[i].avoid;
+        for (int k = 0; avoid != NULL && k < avoid->source.n_rotors; k++) {
+            if (avoid->source.rotors[k].aircraft.s != NULL) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static void load(mt_study_reader *s, mt_name path, const char *file)
+{
+    mt_study *const study = s->study;
+    mt_err why = {.code = MT_OK};
+    mt_text messages = {0};
+    study->aircraft_path = path;
+    const mt_status rc =
+        mt_aircraft_load(file, &s->files, &study->mem, &study->aircraft, &messages, &why);
+    if (rc == MT_OK) {
+        mt_read_study_note_input(s, path.s, study->aircraft.sha256);
+    } else {
+        study->aircraft = (mt_aircraft_list){0};
+        mt_read_study_note_failure(s, path, rc, &why, messages.length > 0);
+    }
+    if (messages.length > 0) {
+        mt_text_add(s->model_messages, messages.s);
+    }
+    s->r.out_of_memory = s->r.out_of_memory || messages.failed;
+    mt_text_free(&messages);
+}
+
+/* Where the study names no catalogue: the one beside the model, if there is one. */
+static mt_name beside_model(mt_study_reader *s)
+{
+    const mt_name model = s->study->model_path;
+    char *const joined = model.s == NULL ? NULL : mt_file_join(model.s, "aircraft.json");
+    const mt_name path = {.s = joined == NULL ? NULL : mt_arena_strdup(&s->study->mem, joined),
+                          .addr = model.addr};
+    s->r.out_of_memory = s->r.out_of_memory || (model.s != NULL && path.s == NULL);
+    free(joined);
+    return path;
+}
+
+void mt_read_study_aircraft(mt_study_reader *s, mt_addr value)
+{
+    const bool named = value != MT_NO_ADDR;
+    if (!named && !needs_catalogue(s->study)) {
+        return;
+    }
+    const mt_name path = named ? mt_reader_ref(&s->r, value) : beside_model(s);
+    char *const file = path.s == NULL ? NULL : mt_file_join(s->study->path, path.s);
+    if (path.s != NULL && file == NULL) {
+        s->r.out_of_memory = true;
+    } else if (file != NULL && (named || mt_file_exists(file))) {
+        load(s, path, file);
+    }
+    free(file);
+}
