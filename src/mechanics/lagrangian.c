@@ -194,11 +194,21 @@ static void add_loads(const mt_data *d, const mt_pose *poses, bool hessian, mt_l
     }
 }
 
+/*
+ * Length that weighs a rotation against a displacement in the anchor: the power of ten nearest to the model's size. The size itself is that of the original design; with it, where a loop
+ * closes would depend on which design was called original, and a model with the recommended values put in would not be the design that was recommended.
+ */
+static double anchor_length(const mt_system *sys)
+{
+    return pow(10.0, round(log10(sys->length_m)));
+}
+
 static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *poses,
                        bool hessian, mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
-    const double l2 = sys->length_m * sys->length_m;
+    const double l = anchor_length(sys);
+    const double l2 = l * l;
     mt_jet jet;
     for (int i = 0; i < sys->n_bodies; i++) {
         const int body[2] = {MT_GROUND, i};
