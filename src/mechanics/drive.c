@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Continuation in the position s of the driven joint. At a closed position, with A the Jacobian of all constraints and e_d the drive's row,
- *     dq/ds = A^+ e_d                                        the smallest motion that drives the joint;
+ *     v     = A^+ e_d                            the smallest motion that drives the joint
+ *     dq/ds = v - Z (Z^T K Z)^+ Z^T K v          the one that strains the springs least (K: their elastic stiffness), so that what hangs on springs comes along;
  * a step h goes to q (+) h dq/ds and is closed again by Newton from there. The correction is of order h^2 on a smooth branch; where it is not small beside the step, or Newton does
  * not close the mechanism, the step is halved, so that the way never leaves its branch. Towards a limit position (a toggle) s -> s*, |dq/ds| grows as (s* - s)^-1/2: no step
  * closes beyond it, and halving closes in on it geometrically.
@@ -73,6 +74,29 @@ static double misfit(const mt_elimination *e, const double *a, int row, const do
     return worst;
 }
 
+/* work->v := v - Z (Z^T K Z)^+ Z^T K v. */
+static mt_status relax(walk *w, mt_newton_work *work, const mt_elimination *e, mt_err *err)
+{
+    const int nq = e->nq;
+    double *inverse = NULL;
+    double *const eta = mt_arena_f64(w->mem, (size_t)e->n, 1);
+    if (eta == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_lagrangian_eval(w->data, MT_ENERGY_PHYSICAL, w->p->pose, w->p->pose, work->p->m, NULL,
+                       MT_CURVATURE_ELASTIC, &work->l);
+    for (ptrdiff_t i = 0; i < (ptrdiff_t)nq * nq; i++) {
+        work->h[i] = creal(work->l.h[i]);
+    }
+    MT_TRY(mt_newton_invert(work, e, w->mem, &inverse, err));
+    mt_gemv(false, nq, nq, -1.0, work->h, nq, work->v, 0.0, work->g);
+    mt_eliminate_project(e, work->g, work->reduced);
+    mt_gemv(false, e->n, e->n, 1.0, inverse, e->n, work->reduced, 0.0, eta);
+    mt_eliminate_expand(e, eta, work->step);
+    mt_axpy(nq, 1.0, work->step, work->v);
+    return MT_OK;
+}
+
 /* dq/ds where the walk stands, and its size in model lengths per unit of the coordinate. Held: the old rate stays. */
 static mt_status find_rate(walk *w, double *size, mt_err *err)
 {
@@ -93,6 +117,7 @@ static mt_status find_rate(walk *w, double *size, mt_err *err)
     MT_TRY(mt_eliminate_particular(&e, work.c, work.v, w->mem, err));
     w->held = !(misfit(&e, work.a, w->row, work.v) <= HELD);
     if (!w->held) {
+        MT_TRY(relax(w, &work, &e, err));
         memcpy(w->rate, work.v, (size_t)sys->nq * sizeof *w->rate);
     }
     *size = mt_newton_scaled_norm(&work, w->rate) * w->unit;
@@ -225,26 +250,6 @@ static mt_status refuse(walk *w, mt_err *err)
                        : "singular position, from which several ways lead on");
 }
 
-/* The last closure, at the goal: nothing moves any more but freedoms that the joints leave. */
-static mt_status settle(walk *w, mt_err *err)
-{
-    const mt_system *const sys = w->p->sys;
-    const mt_newton_problem problem = {.data = w->data,
-                                       .energy = MT_ENERGY_ANCHOR,
-                                       .drawn = w->p->drawn,
-                                       .m = sys->n_constraints,
-                                       .trim = false};
-    w->data->target[w->row] = w->target;
-    const mt_status rc =
-        mt_newton_solve(&problem, w->p->pose, w->mem, w->p, &w->p->driven, err);
-    if (rc != MT_OK) {
-        return mt_err_in(err, rc, "driving joint \"%s\" to %g",
-                         sys->joints[sys->drive_joint].name, w->goal);
-    }
-    mt_data_turns(w->data, w->p->pose);
-    return MT_OK;
-}
-
 mt_status mt_drive_solve(mt_state *p, mt_data *data, const mt_drive_start *start, mt_arena *mem,
                          mt_err *err)
 {
@@ -261,10 +266,8 @@ mt_status mt_drive_solve(mt_state *p, mt_data *data, const mt_drive_start *start
         MT_TRY(advance(&w, &h, err));
     }
     p->reached = w.at;
-    if (w.at != w.goal) {
-        return refuse(&w, err);
-    }
-    return settle(&w, err);
+    data->target[w.row] = w.target;
+    return w.at == w.goal ? MT_OK : refuse(&w, err);
 }
 
 void mt_drive_keep(const mt_state *p, const mt_data *data, mt_drive_start *start)

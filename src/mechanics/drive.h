@@ -5,8 +5,8 @@
 #include "mechanics/position.h"
 
 /*
- * Bring the driven joint from where it stands (the reference position, or `start`) to its place, on the branch where it stands. p->pose: in, out. p->driven is the last closure, anchored to the
- * drawing, so that the result is a function of the design alone as long as the branch is the same. Angles are followed over whole turns (data->turn).
+ * Bring the driven joint from where it stands (the reference position, or `start`) to its place, on the branch where it stands. p->pose: in, out. Closed there, the springs strained
+ * about as little as they can be. Angles are followed over whole turns (data->turn).
  * p->reached tells how far it came [rad, m]. Fails: MT_E_ASSEMBLY at a limit position, in a position that the other joints hold, and where they do not stay closed; MT_E_MEMORY.
  */
 mt_status mt_drive_solve(mt_state *p, mt_data *data, const mt_drive_start *start, mt_arena *mem,

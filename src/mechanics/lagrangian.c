@@ -114,7 +114,7 @@ static void add_coupling(const mt_system *sys, const int body[2], mt_cx k,
         add_gradient(sys, body, jet[side].g, force, out->g);
         note_force(sys, out, &jet[side], force);
         if (curvature != MT_CURVATURE_NONE) {
-            add_hessian(sys, body, &jet[side], force,
+            add_hessian(sys, body, &jet[side], curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
                         curvature == MT_CURVATURE_GEOMETRIC ? 0.0 : 0.5 * k, &jet[1 - side],
                         out->h);
         }
@@ -138,7 +138,8 @@ static void add_spring(const mt_data *d, int i, mt_cx k, mt_cx stretch, const mt
     if (curvature != MT_CURVATURE_NONE) {
         /* while the force of the trimmed spring is an unknown its stiffness does not act; in the linearised system it does, there as a row (rows.h) */
         const bool geometric = curvature == MT_CURVATURE_GEOMETRIC || trimmed;
-        add_hessian(sys, body, jet, force, geometric ? 0.0 : k, jet, out->h);
+        add_hessian(sys, body, jet, curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
+                    geometric ? 0.0 : k, jet, out->h);
     }
 }
 
@@ -212,7 +213,7 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
     mt_jet jet;
     for (int i = 0; i < sys->n_bodies; i++) {
         const int body[2] = {MT_GROUND, i};
-        const mt_pose ground = mt_pose_ground();
+        const mt_pose *const anchor = &drawn[i];
         const int *const dof = sys->bodies[i].dof;
         for (int k = 0; k < 3; k++) {
             if (dof[k] >= 0) {
@@ -221,13 +222,13 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
                     out->h[dof[k] + ((ptrdiff_t)dof[k] * sys->nq)] += 1.0;
                 }
             }
-            /* -l^2/2 tr(R0^T R): drawn axes are the global ones */
+            /* -l^2/2 tr(R0^T R) */
             mt_cx e[3] = {0.0, 0.0, 0.0};
             e[k] = 1.0;
             const mt_measure_data m = {
                 .kind = MT_MEASURE_DOT, .dir = {e, e, NULL}
             };
-            mt_measure_eval(&m, &ground, &poses[i], hessian, &jet);
+            mt_measure_eval(&m, anchor, &poses[i], hessian, &jet);
             add_gradient(sys, body, jet.g, -0.5 * l2, out->g);
             if (hessian) {
                 add_hessian(sys, body, &jet, -0.5 * l2, 0.0, NULL, out->h);
@@ -287,7 +288,7 @@ void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn
     out->force_noise = 0.0;
     if (energy == MT_ENERGY_PHYSICAL) {
         add_springs(d, poses, curvature, out);
-        add_loads(d, poses, hessian, out);
+        add_loads(d, poses, hessian && curvature != MT_CURVATURE_ELASTIC, out);
     } else {
         add_anchor(d, drawn, poses, hessian, out);
     }

@@ -11,11 +11,13 @@
  */
 typedef enum mt_energy { MT_ENERGY_PHYSICAL, MT_ENERGY_ANCHOR } mt_energy;
 
-/* What is wanted of the Hessian: nothing, all of it, or the geometric part alone (no k grad grad^T of springs). */
+/* What is wanted of the Hessian: nothing, all of it, the geometric part alone (no k grad grad^T of springs), or the rest of it (k grad grad^T alone; that of the trimmed spring
+ * is left out, as in all of it). */
 typedef enum mt_curvature {
     MT_CURVATURE_NONE,
     MT_CURVATURE_FULL,
-    MT_CURVATURE_GEOMETRIC
+    MT_CURVATURE_GEOMETRIC,
+    MT_CURVATURE_ELASTIC
 } mt_curvature;
 
 typedef struct mt_lagrangian {

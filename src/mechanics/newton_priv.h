@@ -44,6 +44,9 @@ mt_status mt_newton_linearise(mt_newton_work *w, const mt_pose *poses, mt_arena 
 /* Z^T H Z, n x n with leading dimension ld. */
 mt_status mt_newton_reduce_hessian(const mt_newton_work *w, const mt_elimination *e, double *k,
                                    int ld, mt_arena *mem, mt_err *err);
+/* Pseudo-inverse (order n, with trim n + 1) of the (bordered) reduced w->h, and the number of freedoms without stiffness into w. */
+mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
+                           double **inverse, mt_err *err);
 /* Move the poses along w->step, at most `limit` model lengths. */
 void mt_newton_take_step(mt_newton_work *w, mt_pose *poses, double limit);
 /* Largest motion of dq in model lengths, rotations as they are. */

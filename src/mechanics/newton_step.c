@@ -6,7 +6,7 @@
  *     H       = Hessian of V + lambda c
  *     Z^T H Z eta = -Z^T (g + H v)                        towards equilibrium
  *     q      <- q (+) (v + Z eta).
- * Freedoms without stiffness (singular values of Z^T H Z below NO_STIFFNESS of the largest) take no step; the residual test then decides whether something still
+ * Freedoms without stiffness (singular values of Z^T H Z below NO_STIFFNESS of H itself in scaled coordinates) take no step; the residual test then decides whether something still
  * pushes along them. With `trim` the force tau of one spring is unknown and the drive's row (a_d, c_d) is its equation:
  *     [Z^T H Z   Z^T t] [eta]   [-Z^T (g + H v)  ]
  *     [a_d Z       0  ] [tau] = [-(c_d + a_d v)  ].
@@ -16,7 +16,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Singular values of the reduced Hessian below this fraction of the largest belong to freedoms without stiffness: rounding leaves about n eps ~ 1e-14 of them, and a real
+/* Singular values of the reduced Hessian below this fraction of the largest stiffness, be it one that the joints hold, belong to freedoms without stiffness: rounding leaves about n eps ~ 1e-14 of them, and a real
  * stiffness may be 1e12 times softer than its neighbour. */
 static const double NO_STIFFNESS = 1e-13;
 
@@ -151,9 +151,20 @@ static void border(const mt_newton_work *w, const mt_elimination *e, double scal
     k[n + (n * order)] = 0.0;
 }
 
-/* Pseudo-inverse (order x order) of the (bordered) reduced Hessian, and the number of freedoms without stiffness. */
-static mt_status invert_reduced(mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
-                                double **inverse, mt_err *err)
+/* Largest entry of the Hessian in the elimination's coordinates, in which Z has orthonormal columns. */
+static double stiffness_scale(const mt_newton_work *w, const mt_elimination *e)
+{
+    double most = 0.0;
+    for (ptrdiff_t j = 0; j < e->nq; j++) {
+        for (ptrdiff_t i = 0; i < e->nq; i++) {
+            most = fmax(most, fabs(e->dc[i] * w->h[i + (j * e->nq)] * e->dc[j]));
+        }
+    }
+    return most;
+}
+
+mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
+                           double **inverse, mt_err *err)
 {
     const int order = e->n + (w->p->trim ? 1 : 0);
     int rank = 0;
@@ -164,12 +175,15 @@ static mt_status invert_reduced(mt_newton_work *w, const mt_elimination *e, mt_a
         return mt_fail_memory(err);
     }
     MT_TRY(mt_newton_reduce_hessian(w, e, k, order, mem, err));
+    const double noise = NO_STIFFNESS * stiffness_scale(w, e);
     if (w->p->trim) { /* a force unit that keeps the border of the size of the rest */
         const double stiffness = mt_max_abs((ptrdiff_t)order * order, k);
         scale = stiffness > 0.0 ? stiffness : 1.0;
         border(w, e, scale, k);
     }
-    MT_TRY(mt_pinv(order, order, k, NO_STIFFNESS, *inverse, &rank, mem, err));
+    const double most = mt_max_abs((ptrdiff_t)order * order, k);
+    const double tolerance = fmax(NO_STIFFNESS, most > 0.0 ? noise / most : 0.0);
+    MT_TRY(mt_pinv(order, order, k, tolerance, *inverse, &rank, mem, err));
     w->null_freedoms = order - rank;
     for (int c = 0; c < order && w->p->trim;
          c++) { /* undo the scale on the last row and column */
@@ -205,7 +219,7 @@ mt_status mt_newton_linearise(mt_newton_work *w, const mt_pose *poses, mt_arena 
 {
     const int nq = w->sys->nq;
     MT_TRY(balance(w, poses, mem, e, err));
-    MT_TRY(invert_reduced(w, e, mem, inverse, err));
+    MT_TRY(mt_newton_invert(w, e, mem, inverse, err));
     double *const minus_c = mt_arena_f64(mem, (size_t)w->p->m, 1);
     double *const hv = mt_arena_f64(mem, (size_t)nq, 1);
     double *const eta = mt_arena_f64(mem, (size_t)e->n + 1, 1);

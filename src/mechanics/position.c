@@ -58,11 +58,52 @@ static mt_status close_loops(mt_state *p, mt_data *data, mt_arena *mem, mt_err *
                                        .trim = false};
     double gap = 0.0;
     memcpy(p->reference, p->drawn, (size_t)sys->n_bodies * sizeof *p->reference);
+    if (sys->drawn_closed) {
+        return MT_OK; /* and the drawing's motion is the reference's */
+    }
     MT_TRY(mt_newton_gap(&problem, p->reference, mem, &gap, err));
     if (gap <= DRAWN_CLOSED * sys->length_m && sys->geometry_fixed) {
         return MT_OK; /* where inputs shape the geometry the stage is needed for its derivative, even if nothing moves now */
     }
     return mt_newton_solve(&problem, p->reference, mem, p, &p->closure, err);
+}
+
+static mt_status balance(mt_state *p, mt_data *data, mt_arena *mem, mt_err *err)
+{
+    const mt_newton_problem problem = {.data = data,
+                                       .energy = MT_ENERGY_PHYSICAL,
+                                       .drawn = p->drawn,
+                                       .m = p->sys->n_constraints,
+                                       .trim = p->sys->trim};
+    return mt_newton_solve(&problem, p->pose, mem, p, &p->equilibrium, err);
+}
+
+/*
+ * Nothing but the way that the drive took says where a freedom without stiffness stands. Begin again from the closure next to the drawing: that makes the result a function of
+ * the design alone, with a derivative. Where that closure or the equilibrium from there fails (far from the drawing the anchor pulls no longer), what was found stands.
+ */
+static mt_status anchor_loose_freedoms(mt_state *p, mt_data *data, mt_arena *mem, mt_err *err)
+{
+    const size_t n = (size_t)p->sys->n_bodies;
+    const mt_newton_problem problem = {.data = data,
+                                       .energy = MT_ENERGY_ANCHOR,
+                                       .drawn = p->drawn,
+                                       .m = p->sys->n_constraints,
+                                       .trim = false};
+    mt_state other = *p;
+    other.pose = mt_arena_alloc(mem, n, sizeof *other.pose);
+    if (other.pose == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(other.pose, p->driven_pose, n * sizeof *other.pose);
+    mt_status rc = mt_newton_solve(&problem, other.pose, mem, &other, &other.driven, NULL);
+    if (rc == MT_OK) {
+        rc = balance(&other, data, mem, NULL);
+    }
+    if (rc == MT_OK) {
+        *p = other;
+    }
+    return rc == MT_E_MEMORY ? mt_fail_memory(err) : MT_OK;
 }
 
 mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_drive_start *start,
@@ -94,12 +135,10 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_drive_
         memcpy(out->driven_pose, out->pose, n * sizeof *out->pose);
     }
     if (sys->loaded || sys->driven) {
-        const mt_newton_problem problem = {.data = data,
-                                           .energy = MT_ENERGY_PHYSICAL,
-                                           .drawn = out->drawn,
-                                           .m = sys->n_constraints,
-                                           .trim = sys->trim};
-        MT_TRY(mt_newton_solve(&problem, out->pose, mem, out, &out->equilibrium, err));
+        MT_TRY(balance(out, data, mem, err));
+    }
+    if (sys->driven && out->equilibrium.null_freedoms > 0) {
+        MT_TRY(anchor_loose_freedoms(out, data, mem, err));
     }
     const mt_newton_problem check = {.data = data,
                                      .energy = MT_ENERGY_ANCHOR,
