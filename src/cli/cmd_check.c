@@ -1,16 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* modetune check: every problem of model, study and result files. */
+/* modetune check: every problem of model, study, result and aircraft files. */
 #include <string.h>
 
 #include "cli/cli.h"
 #include "io/file.h"
 #include "report/table.h"
 
-typedef enum file_kind { KIND_MODEL, KIND_STUDY, KIND_RESULT, KIND_COUNT } file_kind;
+typedef enum file_kind {
+    KIND_MODEL,
+    KIND_STUDY,
+    KIND_RESULT,
+    KIND_AIRCRAFT,
+    KIND_COUNT
+} file_kind;
 
 static const char *const formats[KIND_COUNT] = {"modetune-model/1", "modetune-study/1",
-                                                "modetune-result/1"};
-static const char *const kinds[KIND_COUNT] = {"model", "study", "result"};
+                                                "modetune-result/1", "modetune-aircraft/1"};
+static const char *const kinds[KIND_COUNT] = {"model", "study", "result", "aircraft"};
 
 /* What the document says it is; KIND_COUNT with a diagnostic where that cannot be told. */
 static int kind_of(mt_json *doc)
@@ -23,8 +29,8 @@ static int kind_of(mt_json *doc)
     }
     if (value == MT_NO_ADDR) {
         mt_diag_structure(diags, MT_JSON_ROOT,
-                          "member \"format\" is missing: one of \"%s\", \"%s\", \"%s\"",
-                          formats[0], formats[1], formats[2]);
+                          "member \"format\" is missing: one of \"%s\", \"%s\", \"%s\", \"%s\"",
+                          formats[0], formats[1], formats[2], formats[3]);
         return KIND_COUNT;
     }
     const char *const text =
@@ -35,8 +41,9 @@ static int kind_of(mt_json *doc)
         }
     }
     const char *const nearest = mt_text_nearest(text, formats, KIND_COUNT);
-    mt_diag_structure(diags, value, "must be one of \"%s\", \"%s\", \"%s\"%s%s%s", formats[0],
-                      formats[1], formats[2], nearest == NULL ? "" : "; did you mean \"",
+    mt_diag_structure(diags, value, "must be one of \"%s\", \"%s\", \"%s\", \"%s\"%s%s%s",
+                      formats[0], formats[1], formats[2], formats[3],
+                      nearest == NULL ? "" : "; did you mean \"",
                       nearest == NULL ? "" : nearest, nearest == NULL ? "" : "\"?");
     return KIND_COUNT;
 }
@@ -69,6 +76,8 @@ static mt_status load(int kind, const char *path, const mt_io_options *opt, mt_t
     mt_model *model = NULL;
     mt_study *study = NULL;
     mt_result *result = NULL;
+    mt_aircraft_list aircraft = {0};
+    mt_arena mem = {0};
     mt_status rc = MT_OK;
     switch ((file_kind)kind) {
     case KIND_MODEL:
@@ -80,9 +89,14 @@ static mt_status load(int kind, const char *path, const mt_io_options *opt, mt_t
     case KIND_RESULT:
         rc = mt_result_load(path, opt, &result, messages, err);
         break;
+    case KIND_AIRCRAFT:
+        rc = mt_arena_init(&mem, 0, err);
+        rc = rc == MT_OK ? mt_aircraft_load(path, opt, &mem, &aircraft, messages, err) : rc;
+        break;
     case KIND_COUNT:
         break;
     }
+    mt_arena_free(&mem);
     mt_model_delete(model);
     mt_study_delete(study);
     mt_result_delete(result);

@@ -82,6 +82,58 @@ static void write_goal(mt_json_writer *w, const mt_result_goal *g)
     mt_json_close(w);
 }
 
+static void write_clearance(mt_json_writer *w, const mt_result_clearance *c)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "configuration", c->configuration);
+    mt_json_put_string(w, "band", c->band);
+    mt_json_put_integer(w, "mode", c->mode);
+    mt_json_put_number(w, "hz", c->hz);
+    mt_json_put_number(w, "percent", c->percent);
+    mt_json_put_string(w, "side", c->side);
+    mt_json_close(w);
+}
+
+static void write_gap(mt_json_writer *w, const mt_result_gap *g)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "configuration", g->configuration);
+    mt_json_put_string(w, "band", g->band);
+    mt_json_put_integer(w, "modes_below", g->modes_below);
+    mt_json_close(w);
+}
+
+static void write_tolerance(mt_json_writer *w, const mt_result_tolerance *t)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "name", t->name);
+    mt_json_put_number(w, "percent", t->percent);
+    mt_json_put_string(w, "edge", t->edge);
+    mt_json_close(w);
+}
+
+/* What a design keeps clear of, how, and how surely. */
+static void write_bands(mt_json_writer *w, const mt_recommendation *r)
+{
+    const mt_tolerance_box *const box = r->tolerance_box;
+    WRITE_LIST(w, "clearances", r->n_clearances, r->clearances, write_clearance);
+    if (r->n_gaps > 0) {
+        WRITE_LIST(w, "gap_assignment", r->n_gaps, r->gaps, write_gap);
+    } else {
+        mt_json_put_null(w, "gap_assignment");
+    }
+    if (box == NULL) {
+        mt_json_put_null(w, "tolerance_box");
+        return;
+    }
+    mt_json_open(w, "tolerance_box", '{');
+    mt_json_put_number(w, "all_percent", box->all_percent);
+    mt_json_put_string(w, "edge", box->edge);
+    mt_json_put_bool(w, "proven", box->proven);
+    WRITE_LIST(w, "per_variable", box->n_variables, box->variables, write_tolerance);
+    mt_json_close(w);
+}
+
 static void write_design(mt_json_writer *w, const char *name, const mt_recommendation *r)
 {
     mt_json_open(w, name, '{');
@@ -93,6 +145,7 @@ static void write_design(mt_json_writer *w, const char *name, const mt_recommend
     mt_json_put_number(w, "change", r->change);
     mt_json_put_number(w, "misfit", r->misfit);
     mt_json_put_number(w, "violation_percent", r->violation_percent);
+    mt_json_put_number(w, "clearance_percent", r->clearance_percent);
     mt_json_put_number(w, "kkt_residual", r->kkt_residual);
     mt_json_put_bool(w, "singular", r->singular);
     WRITE_LIST(w, "parameters", r->n_parameters, r->parameters, write_parameter);
@@ -101,11 +154,7 @@ static void write_design(mt_json_writer *w, const char *name, const mt_recommend
         write_frequency(w, &r->frequencies[i], r);
     }
     mt_json_close(w);
-    /* no study asks for bands yet: their members are there for the readers of later files */
-    mt_json_open(w, "clearances", '[');
-    mt_json_close(w);
-    mt_json_put_null(w, "gap_assignment");
-    mt_json_put_null(w, "tolerance_box");
+    write_bands(w, r);
     WRITE_LIST(w, "goals", r->n_goals, r->goals, write_goal);
     write_strings(w, "reasons", r->n_reasons, r->reasons);
     mt_json_close(w);
@@ -153,6 +202,46 @@ static void write_certificate(mt_json_writer *w, const mt_certificate *c)
     mt_json_put_string(w, "kind", c->kind);
     mt_json_put_string(w, "text", c->text);
     mt_json_put_bool(w, "proven", c->proven);
+    mt_json_put_string(w, "pointer", c->pointer);
+    mt_json_put_number(w, "reachable_lower_hz", c->reachable_lower_hz);
+    mt_json_put_number(w, "reachable_upper_hz", c->reachable_upper_hz);
+    mt_json_close(w);
+}
+
+static void write_vary(mt_json_writer *w, const mt_trade_vary *v)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "quantity", v->text);
+    mt_json_put_string(w, "pointer", v->pointer);
+    mt_json_put_string(w, "unit", v->unit);
+    mt_json_close(w);
+}
+
+static void write_trade(mt_json_writer *w, const mt_trade_result *trade)
+{
+    if (trade == NULL) {
+        mt_json_put_null(w, "trade");
+        return;
+    }
+    mt_json_open(w, "trade", '{');
+    WRITE_LIST(w, "vary", trade->n_vary, trade->vary, write_vary);
+    write_strings(w, "objectives", trade->n_objectives, trade->objectives);
+    mt_json_open(w, "points", '[');
+    for (int i = 0; i < trade->n_points; i++) {
+        const mt_trade_point *const p = &trade->points[i];
+        mt_json_open(w, NULL, '{');
+        mt_json_open_flat(w, "values", '[');
+        for (int k = 0; k < trade->n_vary; k++) {
+            mt_json_put_number(w, NULL, p->values[k]);
+        }
+        mt_json_close(w);
+        mt_json_put_string(w, "status", mt_result_status_name(p->status));
+        mt_json_put_string(w, "status_text", p->status_text);
+        mt_json_put_bool(w, "pareto", p->pareto);
+        write_design(w, "best", &p->best);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
     mt_json_close(w);
 }
 
@@ -233,6 +322,7 @@ void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result)
     mt_result_put_uncertainty(w, result);
     WRITE_LIST(w, "certificates", result->n_certificates, result->certificates,
                write_certificate);
+    write_trade(w, result->trade);
     WRITE_LIST(w, "published", result->n_published, result->published, write_published);
     write_strings(w, "warnings", result->n_warnings, result->warnings);
     write_run(w, &result->run);

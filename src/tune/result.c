@@ -37,6 +37,7 @@ mt_recommendation mt_recommendation_default(void)
         .change = nan(""),
         .misfit = nan(""),
         .violation_percent = nan(""),
+        .clearance_percent = nan(""),
         .kkt_residual = nan(""),
     };
 }
@@ -64,6 +65,16 @@ mt_result_published mt_result_published_default(void)
         .difference = nan(""),
         .difference_percent = nan(""),
     };
+}
+
+mt_certificate mt_certificate_default(void)
+{
+    return (mt_certificate){.reachable_lower_hz = nan(""), .reachable_upper_hz = nan("")};
+}
+
+mt_tolerance_box mt_tolerance_box_default(void)
+{
+    return (mt_tolerance_box){.all_percent = nan("")};
 }
 
 #define NAME_CASE(id, name) \

@@ -58,6 +58,39 @@ typedef struct mt_result_goal {
     bool weighted; /* part of the misfit: does not decide status */
 } mt_result_goal;
 
+/* A mode beside a band. */
+typedef struct mt_result_clearance {
+    const char *configuration;
+    const char *band; /* its label: "4P of UH-60" */
+    int mode;         /* vibration index at this design */
+    double hz;
+    double percent;   /* of the nearest edge of the band without its margin; negative inside */
+    const char *side; /* where the mode lies: "below", "inside", "above" */
+} mt_result_clearance;
+
+/* How many modes lie below a band: the kind of a design. */
+typedef struct mt_result_gap {
+    const char *configuration;
+    const char *band;
+    int modes_below;
+} mt_result_gap;
+
+typedef struct mt_result_tolerance {
+    const char *name; /* of the variable */
+    double percent;   /* it alone may change so much either way; NaN: not known */
+    const char *edge; /* what would be met there, in words; NULL */
+} mt_result_tolerance;
+
+/* Inside it the bands, without their margin, are kept. */
+typedef struct mt_tolerance_box {
+    double all_percent; /* all variables together; 0 for a design on an edge */
+    /* what would be met there: "mode 2 of \"installed\" at the lower edge of 4P of UH-60"; NULL */
+    const char *edge;
+    bool proven; /* false: sampled */
+    int n_variables;
+    mt_result_tolerance *variables; /* in the study's order */
+} mt_tolerance_box;
+
 typedef struct mt_recommendation {
     int rank;
     bool feasible;
@@ -67,12 +100,18 @@ typedef struct mt_recommendation {
     double change; /* size of the redesign */
     double misfit; /* NaN: no weighted goals */
     double violation_percent;
-    double kkt_residual; /* relative; NaN where not an optimum */
-    bool singular;       /* a double solution: the Jacobian of the goals is singular here */
+    double clearance_percent; /* least of all clearances; NaN: no bands */
+    double kkt_residual;      /* relative; NaN where not an optimum */
+    bool singular; /* a double solution: the Jacobian of the goals is singular here */
     int n_parameters;
     mt_result_parameter *parameters;
     int n_frequencies;
     mt_result_frequency *frequencies;
+    int n_clearances;
+    mt_result_clearance *clearances;
+    int n_gaps; /* 0: no bands */
+    mt_result_gap *gaps;
+    mt_tolerance_box *tolerance_box; /* NULL: not computed */
     int n_goals;
     mt_result_goal *goals;
     int n_reasons;
@@ -93,7 +132,7 @@ typedef struct mt_result_spread {
     const char *parameter;
     const char *unit; /* may be NULL */
     double value;     /* with the weights as given */
-    double low;       /* smallest and greatest of all solutions, the given weights' among them */
+    double low; /* smallest and greatest of all solutions, the given weights' among them */
     double high;
     double low_percent; /* of |value|; NaN where that is 0 */
     double high_percent;
@@ -122,8 +161,36 @@ typedef struct mt_result_published {
 typedef struct mt_certificate {
     const char *kind; /* "infeasible", "range", ... */
     const char *text;
-    bool proven; /* false: sampled */
+    bool proven;         /* false: sampled */
+    const char *pointer; /* of the goal that it speaks of, "/goals/0"; NULL: of all */
+    /* range that the goal's mode can reach within the bounds; NaN: not applicable */
+    double reachable_lower_hz;
+    double reachable_upper_hz;
 } mt_certificate;
+
+/* One study of a trade study, with its best design. */
+typedef struct mt_trade_point {
+    double *values; /* [n_vary] */
+    mt_result_status status;
+    const char *status_text;
+    mt_recommendation best;
+    bool pareto; /* no other point is better in one objective and not worse in the other */
+} mt_trade_point;
+
+typedef struct mt_trade_vary {
+    const char *text;    /* "upper bound of M_SAU" */
+    const char *pointer; /* "/trade/vary/0" */
+    const char *unit;    /* may be NULL */
+} mt_trade_vary;
+
+typedef struct mt_trade_result {
+    int n_vary;
+    mt_trade_vary *vary;
+    int n_objectives; /* 0 or 2: of the Pareto front */
+    const char **objectives;
+    int n_points;
+    mt_trade_point *points; /* in the order of the values; the last quantity varies fastest */
+} mt_trade_result;
 
 typedef struct mt_result_run {
     const char *modetune_version;
@@ -157,6 +224,7 @@ typedef struct mt_result {
     const char **variables;
     int n_certificates;
     mt_certificate *certificates;
+    mt_trade_result *trade; /* NULL: the study has none */
     int n_published;
     mt_result_published *published;
     int n_warnings;
@@ -172,6 +240,8 @@ void mt_result_delete(mt_result *result);
 mt_recommendation mt_recommendation_default(void);
 mt_result_frequency mt_result_frequency_default(void);
 mt_result_published mt_result_published_default(void);
+mt_certificate mt_certificate_default(void);
+mt_tolerance_box mt_tolerance_box_default(void);
 /* "solved" ... */
 const char *mt_result_status_name(mt_result_status status);
 

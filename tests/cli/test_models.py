@@ -219,7 +219,7 @@ class Check(CliTest):
         self.assertEqual(done.stdout, f"{self.model}: ok (model)\n")
         lines = done.stderr.splitlines()
         self.assertEqual(lines[0], 'bad.json:1:13: error: /format: must be one of "modetune-model/1", "modetune-study/1", '
-                                   '"modetune-result/1"; did you mean "modetune-model/1"?')
+                                   '"modetune-result/1", "modetune-aircraft/1"; did you mean "modetune-model/1"?')
         self.assertEqual(lines[1], 'none.json:1:1: error: must be an object with a member "format"')
         self.assertTrue(lines[2].startswith("broken.json:1:13: error: "), lines[2])
 

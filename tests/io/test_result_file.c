@@ -43,6 +43,9 @@ typedef struct sample {
     mt_undetermined undetermined;
     mt_result_spread spread;
     mt_certificate certificate;
+    mt_tolerance_box box;
+    mt_trade_point point;
+    mt_trade_result trade;
     mt_result_published published[2];
 } sample;
 
@@ -66,6 +69,51 @@ static void fill_design(sample *s, mt_recommendation *r)
     r->reasons = REASONS;
 }
 
+static mt_result_clearance CLEARANCES[] = {
+    {"installed", "4P of UH-60", 1, 14.0, 12.5, "below"},
+    {"installed", "4P of UH-60", 2, 25.0, 30.0, "above"},
+};
+static mt_result_gap GAPS[] = {
+    {"installed", "4P of UH-60", 1}
+};
+static mt_result_tolerance TOLERANCES[] = {
+    { "K_T1",      4.5, "mode 1 at 4P of UH-60"},
+    {"M_SAU", HUGE_VAL,                    NULL},
+};
+static double TRADE_VALUES[] = {10.0, 0.25};
+static mt_trade_vary VARY[] = {
+    {"upper bound of M_SAU", "/trade/vary/0", "kg"},
+    {      "margin_percent", "/trade/vary/1", NULL},
+};
+static const char *FRONT[] = {"change", "clearance"};
+
+/* What a study with bands and a trade section adds. */
+static void fill_bands(sample *s)
+{
+    s->box = mt_tolerance_box_default();
+    s->box.all_percent = 2.5;
+    s->box.edge = "mode 1 at 4P of UH-60";
+    s->box.proven = true;
+    s->box.n_variables = MT_COUNT(TOLERANCES);
+    s->box.variables = TOLERANCES;
+    mt_recommendation *const r = &s->recommendation;
+    r->clearance_percent = 12.5;
+    r->n_clearances = MT_COUNT(CLEARANCES);
+    r->clearances = CLEARANCES;
+    r->n_gaps = MT_COUNT(GAPS);
+    r->gaps = GAPS;
+    r->tolerance_box = &s->box;
+    s->point = (mt_trade_point){.values = TRADE_VALUES,
+                                .status = MT_RESULT_SOLVED,
+                                .status_text = "Solved.",
+                                .best = *r,
+                                .pareto = true};
+    s->trade = (mt_trade_result){
+        MT_COUNT(VARY), VARY, MT_COUNT(FRONT), FRONT, 1, &s->point,
+    };
+    s->result->trade = &s->trade;
+}
+
 static bool make_sample(sample *s)
 {
     if (mt_result_new(&s->result, NULL) != MT_OK) {
@@ -86,7 +134,13 @@ static bool make_sample(sample *s)
     s->undetermined = (mt_undetermined){2, DIRECTION, "M_SAU", 1e-5};
     s->spread = (mt_result_spread){"M_SAU", "kg",       0.4,  0.3,  0.4,    -25.0,
                                    nan(""), "/goals/0", NULL, 0.25, nan("")};
-    s->certificate = (mt_certificate){"range", "Mode 1 stays below 20 Hz.", true};
+    s->certificate = mt_certificate_default();
+    s->certificate.kind = "range";
+    s->certificate.text = "Mode 1 stays below 20 Hz.";
+    s->certificate.proven = true;
+    s->certificate.pointer = "/goals/0";
+    s->certificate.reachable_upper_hz = 19.5;
+    fill_bands(s);
     s->published[0] = mt_result_published_default();
     s->published[0].label = "M_SAU";
     s->published[0].pointer = "/published/0";
@@ -227,6 +281,17 @@ static void result_file__holds_what_the_design_promises(mt_test *t)
         "\"clearances\": []",
         "\"gap_assignment\": null",
         "\"tolerance_box\": null",
+        "\"clearance_percent\": null",
+        "\"clearance_percent\": 12.5",
+        "\"side\": \"above\"",
+        "\"modes_below\": 1",
+        "\"all_percent\": 2.5",
+        "\"per_variable\": [",
+        "\"reachable_lower_hz\": null",
+        "\"reachable_upper_hz\": 19.5",
+        "\"values\": [10, 0.25]",
+        "\"quantity\": \"upper bound of M_SAU\"",
+        "\"pareto\": true",
         "\"published\": \"solved\"",
         "\"computed\": \"compromise\"",
         "\"kkt_residual\": null",
@@ -266,9 +331,9 @@ static void result_file__a_damaged_one_is_refused(mt_test *t)
         {      "member gone",      "  \"status\": \"compromise\",\n",                  "",
          ":1:1: error: member \"status\" is missing\n"                                             },
         {             "rank",                          "\"rank\": 1",     "\"rank\": 1.5",
-         ":88:15: error: /recommendations/0/rank: must be a whole number from 0 to 100000\n"       },
+         ":89:15: error: /recommendations/0/rank: must be a whole number from 0 to 100000\n"       },
         {"text for a number", "\"recommended\": 0.20000000000000001",
-         "\"recommended\": \"0.2\"",                                                     ":41:24: error: /baseline/parameters/1/recommended: must be a number or null, not a "
+         "\"recommended\": \"0.2\"",                                                     ":42:24: error: /baseline/parameters/1/recommended: must be a number or null, not a "
                                                      "string\n"},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
