@@ -82,6 +82,29 @@ mt_status mt_qr_factor(int m, int n, const double *a, int lda, double tol, mt_ar
     return MT_OK;
 }
 
+/* Up to so many columns the reflectors are applied one by one: the blocked routine first multiplies them together, which costs as much as some ten columns, and wants a
+ * workspace of 33 kB. */
+enum { FEW_COLUMNS = 8 };
+
+/* x := H_1 ... H_k x, or H_k ... H_1 x, with H_i = 1 - tau_i v v^T, v = (0, ..., 0, 1, below the diagonal of column i). */
+static void reflect(const mt_qr *f, bool trans, double *x)
+{
+    const int k = least(f->m, f->n);
+    for (int step = 0; step < k; step++) {
+        const int i = trans ? step : k - 1 - step;
+        const double *const v = f->qr + ((ptrdiff_t)i * f->m);
+        double s = x[i];
+        for (int j = i + 1; j < f->m; j++) {
+            s += v[j] * x[j];
+        }
+        s *= f->tau[i];
+        x[i] -= s;
+        for (int j = i + 1; j < f->m; j++) {
+            x[j] -= s * v[j];
+        }
+    }
+}
+
 static mt_status apply_q(const mt_qr *f, char trans, int nrhs, double *x, mt_arena *scratch,
                          mt_err *err)
 {
@@ -107,6 +130,12 @@ mt_status mt_qr_apply_q(const mt_qr *f, bool trans, int nrhs, double *x, mt_aren
         return mt_lapack_not_finite("dormqr", err);
     }
     if (f->m == 0 || f->n == 0 || nrhs == 0) {
+        return MT_OK;
+    }
+    if (nrhs <= FEW_COLUMNS) {
+        for (int c = 0; c < nrhs; c++) {
+            reflect(f, trans, x + ((ptrdiff_t)c * f->m));
+        }
         return MT_OK;
     }
     const mt_arena_mark mark = mt_arena_get_mark(scratch);

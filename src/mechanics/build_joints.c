@@ -227,6 +227,9 @@ static mt_status build_joint(mt_builder *b, const mt_joint *joint)
                        joint->name.s);
     }
     joint_arms(b, joint, body, arm);
+    if (joint->n_at != 1 || joint->length != MT_ABSENT) {
+        b->sys->drawn_closed = false;
+    }
     if (joint->has_axis) {
         mt_node node[3];
         mt_build_coordinates(b, joint->axis, node);

@@ -140,6 +140,9 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_drive_
     if (sys->driven && out->equilibrium.null_freedoms > 0) {
         MT_TRY(anchor_loose_freedoms(out, data, mem, err));
     }
+    if (sys->drawn_closed && !sys->driven && !sys->loaded) {
+        return MT_OK; /* nothing was moved: no gap */
+    }
     const mt_newton_problem check = {.data = data,
                                      .energy = MT_ENERGY_ANCHOR,
                                      .drawn = out->drawn,

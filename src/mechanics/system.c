@@ -205,6 +205,7 @@ static mt_status build(mt_system *sys, const mt_system_drive *drive, const doubl
             is_input[sys->inputs[i]] = i;
         }
     }
+    sys->drawn_closed = true; /* until a joint says otherwise */
     MT_TRY(mt_program_init(&sys->program, sys->n_inputs, &sys->mem, err));
     MT_TRY(mt_emit_parameters(sys->model, sys->configuration, is_input, &sys->program,
                               sys->parameters, &sys->mem, err));

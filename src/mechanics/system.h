@@ -157,6 +157,8 @@ typedef struct mt_system {
         trim; /* hold by a spring: the drive's constraint is absent from the linearised system */
     int trim_spring;     /* of springs; -1 */
     bool geometry_fixed; /* no vector, weight or target depends on an input */
+    bool
+        drawn_closed; /* the joints are closed as drawn, whatever the inputs: each has one point and no length of its own */
 } mt_system;
 
 /*
