@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Which gap assignments are worth a search. Sampled: designs spread over the bounds; each says how many modes lie below the middle of each band, and its assignment becomes a candidate. A design
+ * Which gap assignments are worth a search. Where the modes can be enclosed (proof.h), branch and bound over the bounds finds every assignment that some design has, with such a design, and proves that
+ * there is no other. Elsewhere, sampled: designs spread over the bounds; each says how many modes lie below the middle of each band, and its assignment becomes a candidate. A design
  * clear of all bands has the same assignment as the samples around it, so a kind of design is only missed where it is smaller than the samples are apart. That is labelled as sampled.
  */
 #include "tune/nlp_priv.h"
@@ -10,6 +11,7 @@
 #include <string.h>
 
 #include "tune/gaps.h"
+#include "tune/proof.h"
 
 enum { SAMPLES_PER_VARIABLE = 256, SAMPLES_MOST = 4096, CANDIDATES_MOST = 256 };
 
@@ -147,9 +149,55 @@ static mt_status sample(mt_problem *p, mt_arena *mem, mt_gap_candidates *out, mt
     return MT_OK;
 }
 
+/* What branch and bound found feasible, each with a design, and what it left open when its budget ended. */
+static mt_status keep_proven(const mt_problem *p, const mt_certify_search *found, mt_arena *mem,
+                             mt_gap_candidates *out, mt_err *err)
+{
+    const size_t row = (size_t)p->n_bands;
+    const int n = found->n_found + found->n_open;
+    out->below = mt_arena_int(mem, (size_t)n * row);
+    out->at = mt_arena_f64(mem, (size_t)p->n, (size_t)n);
+    if (out->below == NULL || out->at == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (found->n_found > 0) {
+        memcpy(out->below, found->found, (size_t)found->n_found * row * sizeof *out->below);
+    }
+    if (found->n_open > 0) {
+        memcpy(out->below + ((ptrdiff_t)found->n_found * p->n_bands), found->open,
+               (size_t)found->n_open * row * sizeof *out->below);
+    }
+    for (int k = 0; k < n; k++) {
+        for (int i = 0; i < p->n; i++) {
+            const double x =
+                k < found->n_found ? found->at[i + ((ptrdiff_t)k * p->n)] : p->original[i];
+            out->at[i + ((ptrdiff_t)k * p->n)] = MT_HAS(p->scale[i]) ? x / p->scale[i] : log(x);
+        }
+    }
+    out->n = n;
+    out->n_proven = found->n_found;
+    out->proven = found->proven;
+    out->boxes = found->boxes;
+    out->reason = found->proven ? NULL : "the budget of boxes ended";
+    return MT_OK;
+}
+
 mt_status mt_gap_candidates_find(mt_problem *p, mt_arena *mem, mt_gap_candidates *out,
                                  mt_err *err)
 {
-    *out = (mt_gap_candidates){.possible = count_possible(p), .reason = "sampled"};
-    return sample(p, mem, out, err);
+    mt_proof proof;
+    mt_certify_search found = {0};
+    *out = (mt_gap_candidates){.possible = count_possible(p)};
+    mt_status rc = mt_proof_init(&proof, p, mem, err);
+    if (rc == MT_OK && proof.possible) {
+        rc = mt_certify_assignments(&proof.question, 0, NULL, mem, &found, err);
+        rc = rc == MT_OK ? keep_proven(p, &found, mem, out, err) : rc;
+    }
+    const bool by_samples = !proof.possible || (!out->proven && out->n == 0);
+    if (rc == MT_OK && by_samples) {
+        out->reason = mt_arena_strdup(mem, proof.reason);
+        rc = out->reason == NULL ? mt_fail_memory(err) : sample(p, mem, out, err);
+    }
+    mt_proof_free(&proof, p);
+    return rc;
 }

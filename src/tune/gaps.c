@@ -35,7 +35,12 @@ static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
                                  j->candidates->below + ((ptrdiff_t)k * j->p->n_bands), &p,
                                  err));
     p->stop = j->p->stop;
-    const mt_nlp nlp = mt_problem_nlp(p);
+    mt_nlp nlp = mt_problem_nlp(p);
+    double *const hint = mt_arena_f64(&s->mem, (size_t)p->n_t, 1);
+    if (hint != NULL && j->candidates->at != NULL) {
+        memcpy(hint, j->candidates->at + ((ptrdiff_t)k * p->n), (size_t)p->n * sizeof *hint);
+        nlp.hint = hint;
+    }
     s->rc = mt_nlp_solve(&nlp, &j->options, &s->mem, &s->found, &why);
     mt_problem_delete(p);
     const bool fatal = s->rc == MT_E_MEMORY || s->rc == MT_E_INTERNAL;

@@ -3,6 +3,7 @@
 #define TUNE_GAPS_H
 
 #include "tune/problem.h"
+#include "tune/result.h"
 
 /*
  * Search over gap assignments: every qualitatively different way to keep clear of the bands is a search of its own. Candidates come from a proof where one is possible (branch and bound
@@ -34,10 +35,19 @@ typedef struct mt_gap_result {
 mt_status mt_gaps_solve(mt_problem *p, int workers, mt_arena *mem, mt_gap_result *out,
                         mt_err *err);
 
-/* gap_candidates.c: the assignments worth searching, n x n_bands, lexicographically sorted, with sample designs t (n x p->n; NULL entries: none). */
+/* certificates.c: what the answer may claim as proven. infeasible: it is a proof that no design exists. */
+mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *result,
+                                      bool *infeasible, mt_err *err);
+/* After a search without bands that met no goal fully: what each limit can reach, and whether that is a proof. */
+mt_status mt_describe_limit_certificates(mt_problem *p, mt_arena *mem, mt_result *result,
+                                         bool *infeasible, mt_err *err);
+
+/* gap_candidates.c: the assignments worth searching, n rows of n_bands. */
 typedef struct mt_gap_candidates {
     int n;
     int *below;
+    double *at;   /* n rows of p->n: a design t to start from; NULL: none */
+    int n_proven; /* the first ones: a design that has them is known */
     double possible;
     bool proven;
     const char *reason;

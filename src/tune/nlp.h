@@ -41,6 +41,7 @@ typedef struct mt_nlp {
     int n;
     const double *lower; /* [n] finite; lower == upper: fixed, eliminated */
     const double *upper;
+    const double *hint;   /* [n] another start beside origin and sequence; NULL: none */
     const double *origin; /* [n] the original design, clamped by the engine */
     int n_res;
     int n_eq;

@@ -66,6 +66,12 @@ double *mt_nlp_starts(const mt_nlp_engine *e, int starts, mt_arena *mem)
         if (k == 0) {
             continue;
         }
+        if (k == 1 && p->hint != NULL) {
+            for (int j = 0; j < e->n; j++) {
+                tk[j] = mt_nlp_clamp(e, j, p->hint[j]);
+            }
+            continue;
+        }
         next_point(q, &state, d, shift, u);
         for (int j = 0, i = 0; j < e->n; j++) {
             if (!e->held[j]) {

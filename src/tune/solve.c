@@ -22,9 +22,10 @@ typedef struct answer {
     mt_reference_cache references;
     mt_nlp_result found;
     mt_gap_result gaps; /* where there are bands: found is made from it */
-    int stage;  /* of found */
-    mt_err why; /* no start of the search had a value */
+    int stage;          /* of found */
+    mt_err why;         /* no start of the search had a value */
     bool searched;
+    bool infeasible; /* proven */
 } answer;
 
 static mt_status describe_solutions(answer *a, mt_err *err)
@@ -61,6 +62,9 @@ static mt_status describe_solutions(answer *a, mt_err *err)
 /* What the engineer should know of the search besides its answers. */
 static mt_status warn(const answer *a, mt_err *err)
 {
+    for (int i = 0; i < a->study->n_warnings; i++) {
+        MT_TRY(mt_describe_warn(a->result, err, "%s", a->study->warnings[i]));
+    }
     for (int i = 0; i < a->p->n; i++) {
         const mt_variable *const v = &a->study->variables[i];
         if (v->original < v->lower || v->original > v->upper) {
@@ -87,6 +91,9 @@ static mt_result_status status_of(const answer *a, const mt_recommendation *best
     if (a->found.stop == MT_STOP_USER) {
         return MT_RESULT_INTERRUPTED;
     }
+    if (a->infeasible) {
+        return MT_RESULT_INFEASIBLE;
+    }
     return best->feasible ? MT_RESULT_SOLVED : MT_RESULT_COMPROMISE;
 }
 
@@ -104,6 +111,10 @@ static const char *status_text(const answer *a, const mt_recommendation *best)
     if (!a->searched) {
         return best->feasible ? "The original design meets all goals."
                               : "The original design does not meet all goals.";
+    }
+    if (a->infeasible) {
+        return "Infeasible: no design within the bounds meets all goals, which is proven (see "
+               "the certificates).";
     }
     if (n == 0) {
         return a->why.code != MT_OK ? "No design that was tried could be evaluated."
@@ -154,6 +165,19 @@ static mt_status search_gaps(answer *a, mt_err *err)
     return MT_OK;
 }
 
+static mt_status certify(answer *a, mt_err *err)
+{
+    if (!a->searched || a->found.stop == MT_STOP_USER) {
+        return MT_OK;
+    }
+    if (a->p->n_clears > 0) {
+        return mt_describe_gap_certificate(&a->gaps, a->result, &a->infeasible, err);
+    }
+    return a->found.compromise
+               ? mt_describe_limit_certificates(a->p, &a->mem, a->result, &a->infeasible, err)
+               : MT_OK;
+}
+
 static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
 {
     mt_problem *const p = a->p;
@@ -177,10 +201,11 @@ static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
                                                    &a->stage, &a->why, err));
         MT_TRY(describe_solutions(a, err));
         if (a->found.n_solutions > 0 && a->found.stop != MT_STOP_USER) {
-            MT_TRY(mt_describe_spread(p, &a->found.solutions[0], &a->mem, &a->found.evals, result,
-                                      err));
+            MT_TRY(mt_describe_spread(p, &a->found.solutions[0], &a->mem, &a->found.evals,
+                                      result, err));
         }
     }
+    MT_TRY(certify(a, err));
     MT_TRY(warn(a, err));
     result->run.evaluations = a->found.evals;
     result->run.starts = a->found.starts;

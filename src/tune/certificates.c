@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a study's answer may claim as proven, in sentences; and whether it is a proof that no design exists. */
+#include <math.h>
+#include <stdarg.h>
+
+#include "tune/describe.h"
+#include "tune/gaps.h"
+#include "tune/proof.h"
+
+static mt_status state(mt_result *result, const char *kind, bool proven, mt_err *err,
+                       const char *fmt, ...) MT_PRINTF(5, 6);
+
+static mt_status state(mt_result *result, const char *kind, bool proven, mt_err *err,
+                       const char *fmt, ...)
+{
+    va_list args;
+    int capacity = result->n_certificates;
+    mt_certificate *const grown = mt_arena_grow(
+        &result->mem, result->certificates, result->n_certificates, &capacity, sizeof *grown);
+    va_start(args, fmt);
+    const char *const text = mt_arena_vprintf(&result->mem, fmt, args);
+    va_end(args);
+    if (grown == NULL || text == NULL) {
+        return mt_fail_memory(err);
+    }
+    result->certificates = grown;
+    mt_certificate *const c = &result->certificates[result->n_certificates++];
+    *c = mt_certificate_default();
+    c->kind = kind;
+    c->text = text;
+    c->proven = proven;
+    return MT_OK;
+}
+
+mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *result,
+                                      bool *infeasible, mt_err *err)
+{
+    *infeasible = gaps->proven && gaps->n_candidates == 0;
+    if (*infeasible) {
+        return state(
+            result, "infeasible", true, err,
+            "No design within the bounds keeps clear of the bands and meets the other limits: "
+            "all %.0f gap assignments are proven infeasible (branch and bound, %ld boxes).",
+            gaps->n_possible, gaps->boxes);
+    }
+    if (gaps->proven) {
+        return state(result, "gap_assignments", true, err,
+                     "Of %.0f gap assignments %d can be met within the bounds; all others are "
+                     "proven infeasible (branch and bound, %ld boxes). That a design is the "
+                     "best of its kind is sampled (%d starts), not proven.",
+                     gaps->n_possible, gaps->n_candidates, gaps->boxes, gaps->starts);
+    }
+    return state(result, "gap_assignments", false, err,
+                 "Of %.0f gap assignments %d were searched, those met by samples over the "
+                 "bounds: others may exist (no proof: %s).",
+                 gaps->n_possible, gaps->n_candidates,
+                 gaps->reason != NULL && gaps->reason[0] != '\0' ? gaps->reason
+                                                                 : "not asked for");
+}
+
+static mt_status reach(mt_problem *p, const mt_proof *proof, int limit, mt_arena *mem,
+                       mt_result *result, bool *infeasible, mt_err *err)
+{
+    mt_certify_reach r = {0};
+    const mt_demand *const d = &p->demands[proof->limit_demand[limit]];
+    const char *const configuration = mt_analysis_configuration(p->views[d->view].analysis);
+    MT_TRY(mt_certify_reach_of(&proof->question, limit, mem, &r, err));
+    if (r.verdict == MT_VERDICT_IMPOSSIBLE) {
+        *infeasible = true;
+        return state(result, "infeasible", true, err,
+                     "Goal /goals/%d cannot be met within the bounds: %s mode %d stays between "
+                     "%.6g and %.6g Hz (two eigensolves and %ld boxes).",
+                     d->goal_index, configuration, d->mode, r.low_hz, r.high_hz, r.boxes);
+    }
+    return state(result, "range", true, err,
+                 "%s mode %d stays between %.6g and %.6g Hz within the bounds.", configuration,
+                 d->mode, r.low_hz, r.high_hz);
+}
+
+static mt_status jointly(const mt_proof *proof, mt_arena *mem, mt_result *result,
+                         bool *infeasible, mt_err *err)
+{
+    mt_certify q = proof->question;
+    mt_certify_search found = {0};
+    q.n_bands = 0;
+    MT_TRY(mt_certify_assignments(&q, 0, NULL, mem, &found, err));
+    if (!found.proven || found.n_found > 0) {
+        return MT_OK;
+    }
+    *infeasible = true;
+    return state(result, "infeasible", true, err,
+                 "No design within the bounds meets all limits together: proven by branch and "
+                 "bound (%ld boxes).",
+                 found.boxes);
+}
+
+mt_status mt_describe_limit_certificates(mt_problem *p, mt_arena *mem, mt_result *result,
+                                         bool *infeasible, mt_err *err)
+{
+    mt_proof proof;
+    *infeasible = false;
+    mt_status rc = mt_proof_init(&proof, p, mem, err);
+    if (rc == MT_OK && !proof.possible && proof.reason[0] != '\0') {
+        rc = state(result, "infeasible", false, err,
+                   "That no design meets all goals is sampled, not proven: no certificate, %s.",
+                   proof.reason);
+    }
+    for (int i = 0; rc == MT_OK && proof.possible && i < proof.question.n_limits; i++) {
+        rc = reach(p, &proof, i, mem, result, infeasible, err);
+    }
+    if (rc == MT_OK && proof.possible && !*infeasible && proof.question.n_limits > 0) {
+        rc = jointly(&proof, mem, result, infeasible, err);
+    }
+    mt_proof_free(&proof, p);
+    return rc;
+}
