@@ -79,7 +79,7 @@ mt_status mt_displaced_eval(mt_linear *lin, const double *dq, double *m, double 
     if (poses == NULL) {
         return mt_fail_memory(err);
     }
-    MT_TRY(mt_lagrangian_init(&l, sys, &lin->scratch, err));
+    MT_TRY(mt_lagrangian_init(&l, sys, false, &lin->scratch, err));
     memcpy(poses, lin->position.pose, n * sizeof *poses);
     if (dq != NULL) {
         mt_position_move(sys, poses, dq);

@@ -5,7 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, mt_arena *mem, mt_err *err)
+mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessian,
+                             mt_arena *mem, mt_err *err)
 {
     const size_t nq = (size_t)sys->nq;
     const size_t m = (size_t)sys->n_constraints;
@@ -14,16 +15,10 @@ mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, mt_arena *m
     l->trim = mt_arena_alloc(mem, nq, sizeof *l->trim);
     l->c = mt_arena_alloc(mem, m, sizeof *l->c);
     l->a = mt_arena_alloc(mem, m * nq, sizeof *l->a);
-    l->h = mt_arena_alloc(mem, nq * nq, sizeof *l->h);
-    const bool bad =
-        l->g == NULL || l->trim == NULL || l->c == NULL || l->a == NULL || l->h == NULL;
+    l->h = hessian ? mt_arena_alloc(mem, nq * nq, sizeof *l->h) : NULL;
+    const bool bad = l->g == NULL || l->trim == NULL || l->c == NULL || l->a == NULL ||
+                     (hessian && l->h == NULL);
     return bad ? mt_fail_memory(err) : MT_OK;
-}
-
-int mt_local_dof(const mt_system *sys, const int body[2], int k)
-{
-    const int b = body[k / 6];
-    return b == MT_GROUND ? -1 : sys->bodies[b].dof[k % 6];
 }
 
 static void local_dofs(const mt_system *sys, const int body[2], int dof[MT_LOCAL])

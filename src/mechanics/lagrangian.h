@@ -38,10 +38,15 @@ typedef struct mt_lagrangian {
 void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,
                         const mt_pose *poses, int m, const mt_cx *lambda,
                         mt_curvature curvature, mt_lagrangian *out);
-mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
-                             mt_err *err);
+/* hessian: will h be asked for? Without, it has no memory and curvature is MT_CURVATURE_NONE. */
+mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessian,
+                             mt_arena *mem, mt_err *err);
 /* Column of q for local freedom k (0..11) of a pair of bodies; -1: none. */
-int mt_local_dof(const mt_system *sys, const int body[2], int k);
+static inline int mt_local_dof(const mt_system *sys, const int body[2], int k)
+{
+    const int b = body[k / 6];
+    return b == MT_GROUND ? -1 : sys->bodies[b].dof[k % 6];
+}
 /* Energy alone. */
 double mt_energy_value(const mt_data *d, const mt_pose *poses, double trim_force);
 

@@ -119,7 +119,7 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     const bool loaded = lin->position.equilibrium.active;
     const int all = sys->n_constraints;
     lin->m = sys->trim ? all - 1 : all;
-    MT_TRY(mt_lagrangian_init(&l, sys, &lin->scratch, err));
+    MT_TRY(mt_lagrangian_init(&l, sys, loaded, &lin->scratch, err));
     mt_cx *const lambda = mt_arena_alloc(&lin->scratch, (size_t)all, sizeof *lambda);
     lin->a = mt_arena_f64(&lin->geometry, (size_t)lin->m, (size_t)nq);
     if (lambda == NULL || lin->a == NULL) {

@@ -27,7 +27,7 @@ mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_
     const size_t nq = (size_t)sys->nq;
     const size_t m = (size_t)sys->n_constraints;
     *w = (mt_newton_work){.p = p, .sys = sys};
-    MT_TRY(mt_lagrangian_init(&w->l, sys, mem, err));
+    MT_TRY(mt_lagrangian_init(&w->l, sys, true, mem, err));
     w->lambda_cx = mt_arena_alloc(mem, m, sizeof *w->lambda_cx);
     w->lambda = mt_arena_f64(mem, m, 1);
     w->g = mt_arena_f64(mem, nq, 1);

@@ -52,7 +52,7 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_pose *poses, mt_li
     const bool loaded = lin->position.equilibrium.active;
     mt_lagrangian l;
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
-    MT_TRY(mt_lagrangian_init(&l, sys, &lin->scratch, err));
+    MT_TRY(mt_lagrangian_init(&l, sys, loaded, &lin->scratch, err));
     mt_cx *const lambda = mt_arena_alloc(&lin->scratch, (size_t)all, sizeof *lambda);
     t->a = mt_arena_f64(&lin->geometry, (size_t)lin->m, (size_t)nq);
     t->kg = loaded ? mt_arena_f64(&lin->geometry, (size_t)nq, (size_t)nq) : NULL;
