@@ -77,15 +77,13 @@ static mt_status below(const mt_linear *lin, int n_rigid, double hz, mt_arena *s
 }
 
 mt_status mt_certify_count(const mt_linear *lin, int n_rigid, double lower_hz, double upper_hz,
-                           double tolerance, mt_arena *scratch, mt_band_count *out,
-                           mt_err *err)
+                           double tolerance, mt_arena *scratch, mt_band_count *out, mt_err *err)
 {
     int under = 0;
     *out = (mt_band_count){.sure = true};
     MT_TRY(below(lin, n_rigid, lower_hz * (1.0 + tolerance), scratch, &out->below, &out->sure,
                  err));
-    MT_TRY(
-        below(lin, n_rigid, upper_hz * (1.0 - tolerance), scratch, &under, &out->sure, err));
+    MT_TRY(below(lin, n_rigid, upper_hz * (1.0 - tolerance), scratch, &under, &out->sure, err));
     out->inside = under > out->below ? under - out->below : 0;
     return MT_OK;
 }

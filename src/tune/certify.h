@@ -51,22 +51,25 @@ typedef struct mt_certify {
     int n; /* inputs */
     const double *lower;
     const double *upper;
-    const double *scale; /* [n] NaN: bisected in ln x, else linearly; NULL: in ln x where lower > 0 */
-    long max_boxes;      /* 0: MT_CERTIFY_BOXES */
-    const volatile int *stop; /* NULL, or non-zero ends the search as an exhausted budget does */
+    const double
+        *scale; /* [n] NaN: bisected in ln x, else linearly; NULL: in ln x where lower > 0 */
+    long max_boxes; /* 0: MT_CERTIFY_BOXES */
+    const volatile int
+        *stop; /* NULL, or non-zero ends the search as an exhausted budget does */
 } mt_certify;
 
 enum { MT_CERTIFY_BOXES = 1000000, MT_CERTIFY_OPEN_MOST = 256 };
 
 /* Assignments that designs of the box can have. */
 typedef struct mt_certify_search {
-    bool proven; /* no design of the box meets bands, limits and bounds, but with an assignment of known or found */
+    bool
+        proven; /* no design of the box meets bands, limits and bounds, but with an assignment of known or found */
     int n_found; /* assignments that were not known, each with a design that has it and meets everything */
-    int *found;  /* [n_found x n_bands] */
-    double *at;  /* [n_found x n] */
-    int n_open;  /* neither excluded nor met when the budget ended (0 where proven) */
-    int *open;   /* [n_open x n_bands] */
-    bool more;   /* open was cut at MT_CERTIFY_OPEN_MOST */
+    int *found; /* [n_found x n_bands] */
+    double *at; /* [n_found x n] */
+    int n_open; /* neither excluded nor met when the budget ended (0 where proven) */
+    int *open;  /* [n_open x n_bands] */
+    bool more;  /* open was cut at MT_CERTIFY_OPEN_MOST */
     bool stopped;
     long boxes;
 } mt_certify_search;
@@ -76,7 +79,7 @@ typedef struct mt_certify_search {
 mt_status mt_certify_assignments(const mt_certify *c, int n_known, const int *known,
                                  mt_arena *mem, mt_certify_search *out, mt_err *err);
 
-#define MT_VERDICT_LIST(X)                         \
+#define MT_VERDICT_LIST(X)                        \
     X(MT_VERDICT_IMPOSSIBLE, "proven impossible") \
     X(MT_VERDICT_POSSIBLE, "possible")            \
     X(MT_VERDICT_OPEN, "not proven")
@@ -111,13 +114,14 @@ typedef struct mt_certify_edge {
 } mt_certify_edge;
 
 typedef enum mt_tolerance_end {
-    MT_TOLERANCE_EDGE,   /* beyond, the mode of `edge` may cross it (or, where the enclosure is loose, cannot be shown not to) */
+    MT_TOLERANCE_EDGE, /* beyond, the mode of `edge` may cross it (or, where the enclosure is loose, cannot be shown not to) */
     MT_TOLERANCE_DOMAIN, /* beyond, a stiffness or mass may be negative */
     MT_TOLERANCE_MOST    /* the largest percentage that was asked about */
 } mt_tolerance_end;
 
 typedef struct mt_tolerance {
-    double percent; /* proven: bands (their edges as given: leave out margins) and limits hold for every design within */
+    double
+        percent; /* proven: bands (their edges as given: leave out margins) and limits hold for every design within */
     mt_tolerance_end end;
     mt_certify_edge edge; /* where end is EDGE */
 } mt_tolerance;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The stack of boxes, and edges tested over one. */
+#include "tune/certify_priv.h"
+
 #include <math.h>
 #include <string.h>
-
-#include "tune/certify_priv.h"
 
 /* A variable is bisected this often at most: 2^-40 of the bounds, far below any tolerance. */
 enum { MOST_DEPTH = 40 };
@@ -145,7 +145,7 @@ int mt_certify_edges(const mt_certify *c, const int *assignment, bool granted,
     for (int i = 0; i < c->n_bands; i++) {
         const mt_certify_band *const band = &c->bands[i];
         const double room = granted ? band->tolerance : 0.0;
-        mt_certify_edge edge = {band->view,    i, -1, assignment[i], band->lower_hz * (1.0 + room),
+        mt_certify_edge edge = {band->view, i, -1, assignment[i], band->lower_hz * (1.0 + room),
                                 false};
         add_edge(out, &n, &edge);
         edge.mode++;

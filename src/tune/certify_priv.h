@@ -14,10 +14,10 @@ typedef struct mt_boxes {
     int capacity;
     double *lo; /* capacity x n */
     double *hi;
-    signed char *depth;    /* capacity x n */
-    bool *active;          /* [n] may be bisected */
-    bool *logarithmic;     /* [n] */
-    double *now_lo;        /* [n] the box that was popped */
+    signed char *depth; /* capacity x n */
+    bool *active;       /* [n] may be bisected */
+    bool *logarithmic;  /* [n] */
+    double *now_lo;     /* [n] the box that was popped */
     double *now_hi;
     signed char *now_depth;
     double *middle; /* [n] of it */

@@ -8,10 +8,10 @@
  * Passes go deeper and deeper (iterative deepening). Depth first at once would dive into the first surface on which two assignments touch, where boxes stay undecided down
  * to rounding, before it meets the designs next to it that settle the matter. What earlier passes cost is a fraction of the last one.
  */
+#include "tune/certify_priv.h"
+
 #include <math.h>
 #include <string.h>
-
-#include "tune/certify_priv.h"
 
 typedef struct search {
     const mt_certify *c;
@@ -19,9 +19,10 @@ typedef struct search {
     mt_arena *mem;   /* results */
     mt_err *err;
     int *previous; /* [n_bands] the band before in the same view; -1 */
-    int *least;    /* [n_bands] assignments of the box: j between, not below that of the band before */
+    int *
+        least; /* [n_bands] assignments of the box: j between, not below that of the band before */
     int *most;
-    int *tuple;    /* [n_bands] work */
+    int *tuple; /* [n_bands] work */
     int *single;
     mt_certify_edge *edges; /* work */
     double *node_lo;        /* [program.count] work */
@@ -39,15 +40,16 @@ typedef struct search {
 static mt_status claim(search *s, mt_arena *work)
 {
     const mt_certify *const c = s->c;
-    const size_t bands = (size_t)c->n_bands + 1; /* never of length 0: memcpy and memcmp want pointers */
+    const size_t bands =
+        (size_t)c->n_bands + 1; /* never of length 0: memcpy and memcmp want pointers */
     const size_t nodes = c->program == NULL ? 0 : (size_t)c->program->count;
     s->previous = mt_arena_int(work, bands);
     s->least = mt_arena_int(work, bands);
     s->most = mt_arena_int(work, bands);
     s->tuple = mt_arena_int(work, bands);
     s->single = mt_arena_int(work, bands);
-    s->edges = mt_arena_alloc(work, 2 * ((size_t)c->n_bands + (size_t)c->n_limits),
-                              sizeof *s->edges);
+    s->edges =
+        mt_arena_alloc(work, 2 * ((size_t)c->n_bands + (size_t)c->n_limits), sizeof *s->edges);
     s->node_lo = mt_arena_f64(work, nodes, 1);
     s->node_hi = mt_arena_f64(work, nodes, 1);
     if (s->previous == NULL || s->least == NULL || s->most == NULL || s->tuple == NULL ||

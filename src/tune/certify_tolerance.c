@@ -3,10 +3,10 @@
  * How far a design may stray: the largest percentage whose box is proven, by bisection. Boxes are nested and enclosures inclusion monotone, so what is proven for a
  * percentage is proven for all below. Where an input enters K and M, the test may halve its box along such inputs; a half whose very middle fails ends that.
  */
+#include "tune/certify_priv.h"
+
 #include <math.h>
 #include <string.h>
-
-#include "tune/certify_priv.h"
 
 enum { DEFAULT_BOXES = 64, MOST_STEPS = 40 };
 
@@ -49,8 +49,7 @@ static bool holds(tolerance *t, double percent, int alone)
     const mt_tolerance_question *const q = t->q;
     const long most = q->boxes_per_test > 0 ? q->boxes_per_test : DEFAULT_BOXES;
     for (int i = 0; i < t->c->n; i++) {
-        const double half =
-            alone >= 0 && alone != i ? 0.0 : percent / 100.0 * unit_of(q, i);
+        const double half = alone >= 0 && alone != i ? 0.0 : percent / 100.0 * unit_of(q, i);
         t->lo[i] = q->x[i] - half;
         t->hi[i] = q->x[i] + half;
     }

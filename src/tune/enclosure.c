@@ -2,12 +2,12 @@
 /* Making an enclosure: conditions, coefficients, basis. And what is asked of an input. */
 #include "tune/enclosure.h"
 
+#include "tune/enclosure_priv.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "tune/enclosure_priv.h"
 
 void mt_enclosure_delete(mt_enclosure *e)
 {
@@ -137,11 +137,11 @@ bool mt_enclosure_corners(mt_enclosure *e, const mt_model *model, const int *inp
     for (int k = 0; k < e->n_inputs; k++) {
         const int bits = effect(e, k);
         if (bits == (STIFFENS | SOFTENS) && lo[k] < hi[k]) {
-            (void)snprintf(
-                reason, MT_REASON_SIZE, "parameter \"%s\" %s",
-                model->parameters[inputs[k]].name.s,
-                mt_enclosure_loose(e, k) ? "enters both stiffness and mass"
-                                         : "stiffens in one place and softens in another");
+            (void)snprintf(reason, MT_REASON_SIZE, "parameter \"%s\" %s",
+                           model->parameters[inputs[k]].name.s,
+                           mt_enclosure_loose(e, k)
+                               ? "enters both stiffness and mass"
+                               : "stiffens in one place and softens in another");
             return false;
         }
         const double middle = 0.5 * (lo[k] + hi[k]);

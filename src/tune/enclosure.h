@@ -37,9 +37,10 @@ typedef struct mt_enclosure_coefficient {
     mt_node node;     /* of the enclosure's program */
     const char *name; /* "spring \"k1\"", "mass of \"bob\"" */
     bool dependent;   /* an input occurs twice in it: its interval alone is not tight */
-    signed char *sign; /* [n_inputs] of the derivative over the bounds; 0: none, or it changes */
-    bool monotone;     /* in all its inputs over the bounds */
-    double least;      /* over the bounds */
+    signed char
+        *sign;     /* [n_inputs] of the derivative over the bounds; 0: none, or it changes */
+    bool monotone; /* in all its inputs over the bounds */
+    double least;  /* over the bounds */
     mt_enclosure_part part[MT_MATRICES];
 } mt_enclosure_coefficient;
 
@@ -49,24 +50,24 @@ typedef struct mt_enclosure {
     int n_inputs;
     double *lower; /* [n_inputs] bounds that the conditions were checked for */
     double *upper;
-    int n;       /* order of the matrices below, in which M at the bounds' low end is the identity */
-    int n_rigid; /* rigid-body modes, fixed at the original design */
-    int n_modes; /* vibration modes: n - n_rigid */
+    int n; /* order of the matrices below, in which M at the bounds' low end is the identity */
+    int n_rigid;        /* rigid-body modes, fixed at the original design */
+    int n_modes;        /* vibration modes: n - n_rigid */
     mt_program program; /* of the coefficients alone */
     int n_coefficients;
     mt_node *sources; /* [n_coefficients] their nodes in the system's program */
     mt_enclosure_coefficient *coefficients;
     bool mass_varies;
-    bool squares; /* K0 and M0 are sums of squares: boxes may leave the bounds */
-    double *fixed[MT_MATRICES];  /* n x n, lower */
-    double fixed_norm;           /* of K0 */
-    double roundoff;             /* relative slack: see enclosure_box.c */
-    bool *in[MT_MATRICES];       /* [n_inputs] does the input enter this matrix? */
+    bool squares;               /* K0 and M0 are sums of squares: boxes may leave the bounds */
+    double *fixed[MT_MATRICES]; /* n x n, lower */
+    double fixed_norm;          /* of K0 */
+    double roundoff;            /* relative slack: see enclosure_box.c */
+    bool *in[MT_MATRICES];      /* [n_inputs] does the input enter this matrix? */
     /* of the box that is set */
-    double *value[2];    /* [n_coefficients] */
-    double *node[2];     /* [program.count] work */
-    double *dnode[2];    /* [program.count x n_inputs] work */
-    double *corner_x[2]; /* [n_inputs] work */
+    double *value[2];           /* [n_coefficients] */
+    double *node[2];            /* [program.count] work */
+    double *dnode[2];           /* [program.count x n_inputs] work */
+    double *corner_x[2];        /* [n_inputs] work */
     double *at[MT_MATRICES][2]; /* n x n, lower; mass: NULL where it does not vary */
     double *work;               /* n x n */
     double slack_k;             /* slack of an eigenvalue: slack_k + slack_m lambda */

@@ -6,6 +6,8 @@
  * Regular M_low = L L^T: W = L^-T, which keeps chains sparse (L is diagonal there). Directions T0 without mass: where the varying springs do not act on them
  * (T0^T r = 0), their static condensation is the same at every design, and the mode shapes Y at the soft corner span {y: T0^T K y = 0}: W = Y.
  */
+#include "tune/enclosure_priv.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,12 +15,11 @@
 
 #include "linalg/dense.h"
 #include "modal/modal.h"
-#include "tune/enclosure_priv.h"
 
 typedef struct basis {
     const mt_linear *lin;
-    int n;          /* freedoms of the analysis */
-    int r;          /* order of the enclosure: directions with mass */
+    int n;           /* freedoms of the analysis */
+    int r;           /* order of the enclosure: directions with mass */
     const double *l; /* n x n Cholesky factor of M_low; NULL where y is used */
     const double *y; /* n x r */
     double condition;
@@ -126,9 +127,9 @@ static mt_status choose(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_er
     opt.n_rigid = e->n_rigid;
     opt.check = false;
     mt_status rc = mt_modal_factor_mass(b->n, b->m_low, &e->scratch, &mass, err);
-    rc = rc == MT_OK ? mt_modal_solve_factored(b->k_low, &mass, NULL, &opt, &e->scratch, &modes,
-                                               err)
-                     : rc;
+    rc = rc == MT_OK
+             ? mt_modal_solve_factored(b->k_low, &mass, NULL, &opt, &e->scratch, &modes, err)
+             : rc;
     *ok = rc == MT_OK && modes.n_unstable == 0;
     if (rc == MT_E_NOT_SPD || rc == MT_E_MASSLESS || (rc == MT_OK && !*ok)) {
         (void)snprintf(reason, MT_REASON_SIZE, "%s",
@@ -309,9 +310,10 @@ static mt_status reduce(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_er
     MT_TRY(room(&e->mem, r, r, &e->work, err));
     e->fixed_norm = mt_norm2((int)(r * r), e->fixed[MT_STIFFNESS]);
     e->squares = all_squares(lin);
-    e->roundoff = ROUNDING_ULPS * (double)(e->n + lin->list[MT_TERM_STIFFNESS].n_rows +
-                                           lin->list[MT_TERM_MASS].n_rows) *
-                  DBL_EPSILON * b->condition;
+    e->roundoff =
+        ROUNDING_ULPS *
+        (double)(e->n + lin->list[MT_TERM_STIFFNESS].n_rows + lin->list[MT_TERM_MASS].n_rows) *
+        DBL_EPSILON * b->condition;
     return MT_OK;
 }
 

@@ -10,12 +10,13 @@
  *
  * e = slack_k + slack_m lambda, at least HARMLESS lambda.
  */
+#include "tune/enclosure_priv.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "linalg/dense.h"
-#include "tune/enclosure_priv.h"
 
 /* A shift of lambda by this share moves a frequency by half of it: far below the 1e-6 within which goals are met, and room for the growth of a factorisation without
  * pivoting in all but one case in a thousand or so. */
@@ -179,8 +180,7 @@ static int vibrating(const mt_enclosure *e, int count)
 int mt_enclosure_most_below(mt_enclosure *e, double lambda)
 {
     const double shift = slack(e, lambda);
-    const int count =
-        count_below(e, MT_LOW, MT_HIGH, lambda + shift, SHARE_OF_DATA * shift);
+    const int count = count_below(e, MT_LOW, MT_HIGH, lambda + shift, SHARE_OF_DATA * shift);
     return count < 0 ? e->n_modes : vibrating(e, count);
 }
 
@@ -190,8 +190,7 @@ int mt_enclosure_least_below(mt_enclosure *e, double lambda)
     if (!(lambda - shift > 0.0)) {
         return 0;
     }
-    const int count =
-        count_below(e, MT_HIGH, MT_LOW, lambda - shift, SHARE_OF_DATA * shift);
+    const int count = count_below(e, MT_HIGH, MT_LOW, lambda - shift, SHARE_OF_DATA * shift);
     return count < 0 ? 0 : vibrating(e, count);
 }
 

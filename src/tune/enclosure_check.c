@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Conditions under which bounds of the coefficients bound the modes, as far as the system's structure shows them. */
-#include <stdio.h>
-
 #include "tune/enclosure_priv.h"
+
+#include <stdio.h>
 
 static const char *input_name(const mt_system *sys, int i)
 {
@@ -17,7 +17,8 @@ static int input_of(const mt_system *sys, mt_node node)
         return -1;
     }
     for (int i = 0; i < p->n_inputs; i++) {
-        const uint64_t word = p->inputs_of[((size_t)node * (size_t)p->words) + (size_t)(i / 64)];
+        const uint64_t word =
+            p->inputs_of[((size_t)node * (size_t)p->words) + (size_t)(i / 64)];
         if (((word >> (i % 64)) & 1U) != 0) {
             return i;
         }
@@ -107,8 +108,7 @@ bool mt_enclosure_admits(const mt_analysis *a, char *reason)
             return m == MT_STIFFNESS
                        ? refuse(reason, "spring", sys->springs[t->source].name,
                                 "couples two directions with a stiffness that varies")
-                       : refuse(reason, "body",
-                                sys->items[sys->inertias[t->source].item].name,
+                       : refuse(reason, "body", sys->items[sys->inertias[t->source].item].name,
                                 "has a product of inertia that varies");
         }
     }

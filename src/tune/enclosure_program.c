@@ -5,11 +5,11 @@
  * An interval evaluation is tight where each input occurs once in an expression. Where one occurs twice (h^3 b / (h b + ...)) the value at the right corner is
  * used instead: over a box in which the derivative's enclosure has one sign for an input, the extremes lie at that input's ends.
  */
+#include "tune/enclosure_priv.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-#include "tune/enclosure_priv.h"
 
 int mt_enclosure_find(const mt_enclosure *e, mt_node source)
 {
@@ -124,7 +124,8 @@ static void set_signs(mt_enclosure *e)
         for (int k = 0; k < e->n_inputs; k++) {
             const double lo = e->dnode[MT_LOW][row + (size_t)k];
             const double hi = e->dnode[MT_HIGH][row + (size_t)k];
-            c->sign[k] = (signed char)(lo >= 0.0 && hi > 0.0 ? 1 : (hi <= 0.0 && lo < 0.0 ? -1 : 0));
+            c->sign[k] =
+                (signed char)(lo >= 0.0 && hi > 0.0 ? 1 : (hi <= 0.0 && lo < 0.0 ? -1 : 0));
             c->monotone = c->monotone && (lo >= 0.0 || hi <= 0.0);
         }
     }

@@ -197,7 +197,7 @@ static void enclosure__a_frequency_out_of_reach_is_proven_so(mt_test *t)
         const double f1 = mech_hz(&r.s, 1);
         const double root = sqrt(2.0);
         const mt_certify_limit limit[] = {
-            {0, 1,         f1 * 1.5,         nan(""), 1e-6},
+            {0, 1,         f1 * 1.5,          nan(""), 1e-6},
             {0, 1,          nan(""),         f1 / 1.5, 1e-6},
             {0, 1,         f1 * 1.2,         f1 * 1.2, 1e-6},
             {0, 1, f1 * root * 1.01, f1 * root * 1.01, 1e-6},
