@@ -90,6 +90,7 @@ static void write_clearance(mt_json_writer *w, const mt_result_clearance *c)
     mt_json_put_integer(w, "mode", c->mode);
     mt_json_put_number(w, "hz", c->hz);
     mt_json_put_number(w, "percent", c->percent);
+    mt_json_put_number(w, "margin_percent", c->margin_percent);
     mt_json_put_string(w, "side", c->side);
     mt_json_close(w);
 }
@@ -99,6 +100,10 @@ static void write_gap(mt_json_writer *w, const mt_result_gap *g)
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", g->configuration);
     mt_json_put_string(w, "band", g->band);
+    mt_json_put_number(w, "lower_hz", g->lower_hz);
+    mt_json_put_number(w, "upper_hz", g->upper_hz);
+    mt_json_put_number(w, "margin_lower_hz", g->margin_lower_hz);
+    mt_json_put_number(w, "margin_upper_hz", g->margin_upper_hz);
     mt_json_put_integer(w, "modes_below", g->modes_below);
     mt_json_close(w);
 }

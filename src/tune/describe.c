@@ -69,21 +69,37 @@ static double shown(const mt_problem *p, int k, double f)
     return type == MT_OBJECTIVE_CHANGE || type == MT_OBJECTIVE_MISFIT ? sqrt(2.0 * f) : f;
 }
 
+/* The objective at this design. The fresh problem has no coordinate for the least clearance: it is looked up among the modes. */
+static double aim_value(const mt_problem *fresh, int k)
+{
+    double least = HUGE_VAL;
+    if (fresh->aims[k].type != MT_OBJECTIVE_CLEARANCE) {
+        return mt_aim_value(fresh, k, NULL);
+    }
+    for (int i = 0; i < fresh->n_clears; i++) {
+        least = fmin(least, mt_clear_room(fresh, &fresh->clears[i]));
+    }
+    return -least;
+}
+
 static void describe_score(const mt_problem *fresh, mt_recommendation *rec)
 {
     const bool none = fresh->aims[0].type == MT_OBJECTIVE_NONE || !rec->feasible;
     if (fresh->n_res > 0) {
         rec->misfit = mt_norm2(fresh->n_res, fresh->r);
     }
-    rec->score = none ? nan("") : shown(fresh, 0, mt_aim_value(fresh, 0, NULL));
-    rec->score_unit = fresh->aims[0].type == MT_OBJECTIVE_MASS ? "kg" : "";
+    const bool clearance = fresh->aims[0].type == MT_OBJECTIVE_CLEARANCE;
+    const double score =
+        clearance ? rec->clearance_percent : shown(fresh, 0, aim_value(fresh, 0));
+    rec->score = none ? nan("") : score;
+    rec->score_unit = fresh->aims[0].type == MT_OBJECTIVE_MASS ? "kg" : clearance ? "%" : "";
 }
 
 /* Does the fresh objective agree with the one that the search ended with? */
 static mt_status compare(const mt_problem *fresh, const mt_design *design, mt_result *result,
                          mt_err *err)
 {
-    const double f = shown(fresh, design->stage, mt_aim_value(fresh, design->stage, NULL));
+    const double f = shown(fresh, design->stage, aim_value(fresh, design->stage));
     const double had = shown(fresh, design->stage, design->found->f);
     if (fabs(f - had) <= SAME_OBJECTIVE * fmax(fabs(f), 1.0)) {
         return MT_OK;
@@ -103,6 +119,7 @@ static mt_status describe(mt_problem *fresh, const mt_design *design,
     MT_TRY(mt_describe_goals(fresh, design, result, rec, err));
     MT_TRY(describe_parameters(fresh, fresh->x, design->t, result, rec, err));
     MT_TRY(mt_describe_frequencies(fresh, design, baseline, result, rec, err));
+    MT_TRY(mt_describe_clearances(fresh, result, rec, err));
     describe_score(fresh, rec);
     rec->grade = rec->feasible ? "feasible" : "compromise";
     if (design->found == NULL) {

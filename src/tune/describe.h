@@ -16,6 +16,7 @@ typedef struct mt_design {
     const mt_nlp_solution *found; /* NULL: the original design */
     int stage;                    /* the objective that found->f belongs to */
     int rank;
+    const struct mt_discrete_report *discrete; /* NULL: no catalogue was searched */
 } mt_design;
 
 /* Fill rec (lists and texts in result->mem; names are the study's until mt_describe_own). baseline: NULL while the baseline itself is described. A design where goals have no
@@ -26,6 +27,18 @@ mt_status mt_describe_design(mt_problem *p, const mt_design *design,
 /* Parts of it. describe_goals.c: place and solve everything of fresh at t and judge every goal. */
 mt_status mt_describe_goals(mt_problem *fresh, const mt_design *design, mt_result *result,
                             mt_recommendation *rec, mt_err *err);
+/* describe_bands.c: how many goals the avoid goals are, one per configuration; judge them into rec->goals[rec->n_goals...] once the views of fresh are solved. A goal's value is the
+ * clearance that comes nearest to its margin (or falls short of it most), in percent of the band's edge, its demand that margin. */
+int mt_describe_avoid_count(const mt_problem *p);
+mt_status mt_describe_avoid_goals(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+                                  mt_err *err);
+/* Clearance of each mode from its neighbouring bands, modes below each band, the least clearance. Nothing of an unstable configuration. */
+mt_status mt_describe_clearances(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+                                 mt_err *err);
+/* Vibration modes of a view up to the first above its highest band; 0 without bands. */
+int mt_describe_modes_in_reach(const mt_problem *p, int view);
+/* The margin that the edge of the band nearest to hz has, in percent of the edge. */
+double mt_describe_margin_percent(const mt_band *band, double hz);
 /* describe_frequencies.c: after mt_describe_goals, whose views are compared. */
 mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
                                   const mt_recommendation *baseline, mt_result *result,

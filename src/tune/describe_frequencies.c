@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of frequencies of a design: for each view the modes that goals name and the first few besides, from an analysis made anew at that design. */
+/* The table of frequencies of a design: for each view the modes that goals name, those between bands, and the first few besides, from an analysis made anew at that design. */
 #include <math.h>
 #include <string.h>
 
@@ -175,6 +175,8 @@ static mt_status count_modes(mt_problem *fresh, int v, int *count, mt_err *err)
         }
         wanted = index > wanted ? index : wanted;
     }
+    const int in_reach = mt_describe_modes_in_reach(fresh, v);
+    wanted = in_reach > wanted ? in_reach : wanted;
     *count = wanted < flexible ? wanted : flexible;
     return MT_OK;
 }

@@ -180,8 +180,8 @@ mt_status mt_describe_goals(mt_problem *fresh, const mt_design *design, mt_resul
 {
     mt_nlp_values v;
     mt_err why = {.code = MT_OK};
-    rec->n_goals = fresh->n_demands;
-    rec->goals = mt_arena_alloc(&result->mem, (size_t)fresh->n_demands, sizeof *rec->goals);
+    const size_t most = (size_t)fresh->n_demands + (size_t)mt_describe_avoid_count(fresh);
+    rec->goals = mt_arena_alloc(&result->mem, most, sizeof *rec->goals);
     rec->feasible = true;
     rec->violation_percent = 0.0;
     if (rec->goals == NULL) {
@@ -191,8 +191,12 @@ mt_status mt_describe_goals(mt_problem *fresh, const mt_design *design, mt_resul
     MT_TRY(mt_problem_place(fresh, design->t, false, err));
     MT_TRY(solve_views(fresh, &why, err));
     for (int i = 0; i < fresh->n_demands; i++) {
-        mt_result_goal *const g = &rec->goals[i];
-        MT_TRY(judge(fresh, &fresh->demands[i], &v, result, g, &why, err));
+        MT_TRY(judge(fresh, &fresh->demands[i], &v, result, &rec->goals[i], &why, err));
+        rec->n_goals++;
+    }
+    MT_TRY(mt_describe_avoid_goals(fresh, result, rec, err));
+    for (int i = 0; i < rec->n_goals; i++) {
+        const mt_result_goal *const g = &rec->goals[i];
         if (!g->weighted) {
             const bool worse = !(g->violation_percent <= rec->violation_percent);
             rec->feasible = rec->feasible && g->met;

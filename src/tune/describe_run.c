@@ -63,6 +63,12 @@ static mt_status own_design(mt_result *result, mt_recommendation *r, mt_err *err
         MT_TRY(own(result, &r->frequencies[i].name, err));
         MT_TRY(own(result, &r->frequencies[i].reference, err));
     }
+    for (int i = 0; i < r->n_clearances; i++) {
+        MT_TRY(own(result, &r->clearances[i].configuration, err));
+    }
+    for (int i = 0; i < r->n_gaps; i++) {
+        MT_TRY(own(result, &r->gaps[i].configuration, err));
+    }
     return MT_OK;
 }
 

@@ -96,26 +96,38 @@ static void rank(mt_gap_result *r)
 }
 
 /* Solutions outlive the slots: copy what is kept. */
-static mt_status copy_solution(const mt_problem *p, const mt_nlp_solution *from, mt_arena *mem,
+static mt_status copy_solution(const mt_problem *p, const int *below,
+                               const mt_nlp_solution *from, mt_arena *mem,
                                const mt_nlp_solution **out, mt_err *err)
 {
+    const size_t n_eq = (size_t)p->n_eq;
+    const size_t n_in = (size_t)p->n_in + (size_t)mt_clear_row_count(p, below);
     const size_t n = (size_t)p->n + 1;
     mt_nlp_solution *const s = mt_arena_alloc(mem, 1, sizeof *s);
     double *const t = mt_arena_f64(mem, n, 1);
     int *const bound = mt_arena_int(mem, n);
     double *const mult = mt_arena_f64(mem, n, 1);
-    if (s == NULL || t == NULL || bound == NULL || mult == NULL) {
+    double *const mult_eq = mt_arena_f64(mem, n_eq, 1);
+    double *const mult_in = mt_arena_f64(mem, n_in, 1);
+    if (s == NULL || t == NULL || bound == NULL || mult == NULL || mult_eq == NULL ||
+        mult_in == NULL) {
         return mt_fail_memory(err);
     }
     memcpy(t, from->t, (size_t)p->n * sizeof *t);
     memcpy(bound, from->bound, (size_t)p->n * sizeof *bound);
     memcpy(mult, from->mult_bound, (size_t)p->n * sizeof *mult);
+    if (n_eq > 0) {
+        memcpy(mult_eq, from->mult_eq, n_eq * sizeof *mult_eq);
+    }
+    if (n_in > 0) {
+        memcpy(mult_in, from->mult_in, n_in * sizeof *mult_in);
+    }
     *s = *from;
     s->t = t;
     s->bound = bound;
     s->mult_bound = mult;
-    s->mult_eq = NULL;
-    s->mult_in = NULL;
+    s->mult_eq = mult_eq;
+    s->mult_in = mult_in;
     *out = s;
     return MT_OK;
 }
@@ -126,7 +138,8 @@ static mt_status collect(const mt_problem *p, const job *j, mt_arena *mem, mt_ga
     MT_TRY(keep_solutions(p, j, mem, out, err));
     rank(out);
     for (int i = 0; i < out->n_solutions; i++) {
-        MT_TRY(copy_solution(p, out->solutions[i].found, mem, &out->solutions[i].found, err));
+        MT_TRY(copy_solution(p, out->solutions[i].below, out->solutions[i].found, mem,
+                             &out->solutions[i].found, err));
     }
     for (int k = 0; k < j->candidates->n; k++) {
         const mt_nlp_result *const found = &j->slots[k].found;

@@ -138,8 +138,10 @@ mt_status mt_problem_new(const mt_study *study, mt_reference_cache *references,
 mt_status mt_problem_new_in_gap(const mt_study *study, mt_reference_cache *references,
                                 const int *below, mt_problem **out, mt_err *err);
 void mt_problem_delete(mt_problem *p);
-/* Parameter values x[n] of coordinates t[n]: a bound, and the original value, come back to the last bit. */
+/* Parameter values x[n] of coordinates t[n]: a bound, a value of a catalogue, and the original value come back to the last bit. */
 void mt_problem_x(const mt_problem *p, const double *t, double *x);
+/* The coordinate of value x of variable i. */
+double mt_problem_t(const mt_problem *p, int i, double x);
 /* Rows of `in` and of its derivative in the present stage: goals, then held objectives. */
 int mt_problem_rows_in(const mt_problem *p);
 /* dx_i/dt_i at the last evaluation. */
@@ -173,11 +175,26 @@ mt_status mt_clear_eval(mt_problem *p, const double *t, bool with_gradient, mt_n
 /* How the modes of an analysis lie: below[bands.n] (may be NULL) modes below the middle of each band; the largest relative way that a mode is inside a band with its margin (0: none is); *worst
  * (may be NULL) its position; NaN where the configuration is unstable. */
 double mt_clear_violation(const mt_clear *c, const mt_modes *modes, int *below, int *worst);
+/* Which mode and edge does row `row` (0: the first of the bands, behind those of the demands) of a search with an assignment below[n_bands] hold? false: there is no such row. p: the
+ * problem without an assignment. */
+typedef struct mt_clear_row {
+    int clear;
+    int band; /* of its list */
+    int mode; /* vibration index */
+    bool above;
+} mt_clear_row;
+bool mt_clear_row_at(const mt_problem *p, const int *below, int row, mt_clear_row *out);
+int mt_clear_row_count(const mt_problem *p, const int *below);
+/* ln of the least ratio that any vibration mode keeps from a band with its margin (what the objective "clearance" makes greatest), after its view has been solved; negative: a mode is
+ * inside; NaN: unstable. */
+double mt_clear_room(const mt_problem *p, const mt_clear *c);
 /* Least clearance of any vibration mode from any band without its margin, in percent of the edge; *band, *pos (may be NULL) say where. */
 double mt_clear_least_percent(const mt_clear *c, const mt_modes *modes, int *band, int *pos);
 
 /* problem_demands.c: views, demands and their rows. */
 mt_status mt_problem_init_demands(mt_problem *p, mt_err *err);
+/* Relative tolerance of a goal. */
+double mt_problem_tolerance(const mt_goal *g);
 /* Once all rows are counted: tolerances and work space. */
 mt_status mt_problem_init_rows(mt_problem *p, mt_err *err);
 /* demand.c: lambda'/(2 lambda) of the mode at pos for all variables, chained to t: out[n]. A repeated mode: the mean of its cluster, which is smooth where the single modes are

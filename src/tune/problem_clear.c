@@ -13,15 +13,11 @@
 /* Range of the extra coordinate: a clearance of -95 % to +2000 %. */
 static const double CLEARANCE_LOWER = -3.0;
 static const double CLEARANCE_UPPER = 3.0;
-static const double DEFAULT_TOLERANCE = 1e-6;
 
+/* Modes that are vibrations wherever the configuration is stable: what is rigid is fixed at the original design. */
 static int flexible_count(const mt_modes *modes)
 {
-    int n = 0;
-    for (int i = 0; i < modes->count; i++) {
-        n += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
-    }
-    return n;
+    return modes->count - modes->n_rigid;
 }
 
 /* Rows of one band: modes k, k-1, ... below and k+1, k+2, ... above, as many as there are and at most the cluster. */
@@ -61,9 +57,9 @@ static mt_status add_clear(mt_problem *p, int goal_index, int view, mt_err *err)
     const mt_goal *const g = &p->study->goals[goal_index];
     for (int i = 0; i < p->n_clears; i++) {
         if (p->clears[i].view == view) {
-            p->clears[i].cluster = g->avoid->cluster > p->clears[i].cluster
-                                       ? g->avoid->cluster
-                                       : p->clears[i].cluster;
+            mt_clear *const c = &p->clears[i];
+            c->cluster = g->avoid->cluster > c->cluster ? g->avoid->cluster : c->cluster;
+            c->tolerance = fmin(c->tolerance, mt_problem_tolerance(g));
             return MT_OK;
         }
     }
@@ -73,8 +69,7 @@ static mt_status add_clear(mt_problem *p, int goal_index, int view, mt_err *err)
                     .cluster = g->avoid->cluster,
                     .first = p->n_bands,
                     .row_in = -1,
-                    .tolerance = MT_HAS(g->tolerance_percent) ? g->tolerance_percent / 100.0
-                                                              : DEFAULT_TOLERANCE};
+                    .tolerance = mt_problem_tolerance(g)};
     MT_TRY(unite(p, c, err));
     p->n_bands += c->bands.n;
     p->n_clears++;
@@ -205,6 +200,56 @@ double mt_clear_violation(const mt_clear *c, const mt_modes *modes, int *below, 
         }
     }
     return violation;
+}
+
+int mt_clear_row_count(const mt_problem *p, const int *below)
+{
+    mt_clear_row ignored;
+    int n = 0;
+    while (mt_clear_row_at(p, below, n, &ignored)) {
+        n++;
+    }
+    return n;
+}
+
+bool mt_clear_row_at(const mt_problem *p, const int *below, int row, mt_clear_row *out)
+{
+    int left = row;
+    for (int i = 0; i < p->n_clears; i++) {
+        const mt_clear *const c = &p->clears[i];
+        const int flexible = flexible_count(&p->views[c->view].analysis->modes);
+        for (int b = 0; b < c->bands.n; b++) {
+            const int k = below[c->first + b];
+            const int under = rows_below(c, k);
+            const int rows = under + rows_above(c, k, flexible);
+            if (left < rows) {
+                const bool above = left >= under;
+                const int mode = above ? k + 1 + left - under : k - left;
+                *out = (mt_clear_row){.clear = i, .band = b, .mode = mode, .above = above};
+                return true;
+            }
+            left -= rows;
+        }
+    }
+    return false;
+}
+
+double mt_clear_room(const mt_problem *p, const mt_clear *c)
+{
+    const mt_modes *const modes = &p->views[c->view].analysis->modes;
+    double room = modes->n_unstable > 0 ? nan("") : HUGE_VAL;
+    for (int b = 0; b < c->bands.n; b++) {
+        const mt_band *const band = &c->bands.items[b];
+        for (int i = 0; i < modes->count; i++) {
+            if (modes->kind[i] == MT_MODE_FLEXIBLE && MT_HAS(room)) {
+                const double hz = mt_modal_hz(modes, i);
+                const double below =
+                    band->lower_hz > 0.0 ? log(band->lower_hz / hz) : -HUGE_VAL;
+                room = fmin(room, fmax(below, log(hz / band->upper_hz)));
+            }
+        }
+    }
+    return room;
 }
 
 double mt_clear_least_percent(const mt_clear *c, const mt_modes *modes, int *band, int *pos)

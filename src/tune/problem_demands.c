@@ -149,12 +149,17 @@ static mt_status resolve_reference(mt_problem *p, const mt_view *view, mt_demand
                                    &p->mem, &d->shape, err);
 }
 
+double mt_problem_tolerance(const mt_goal *g)
+{
+    const double percent =
+        MT_HAS(g->tolerance_percent) ? g->tolerance_percent : DEFAULT_TOLERANCE_PERCENT;
+    return percent / 100.0;
+}
+
 static void number_rows(mt_problem *p, mt_demand *d)
 {
     const mt_goal *const g = d->goal;
-    const double percent =
-        MT_HAS(g->tolerance_percent) ? g->tolerance_percent : DEFAULT_TOLERANCE_PERCENT;
-    d->tolerance = percent / 100.0;
+    d->tolerance = mt_problem_tolerance(g);
     if (MT_HAS(g->weight)) {
         d->row_res = p->n_res;
         p->n_res += g->type == MT_GOAL_SHAPE ? d->shape.ns : 1;

@@ -64,14 +64,19 @@ typedef struct mt_result_clearance {
     const char *band; /* its label: "4P of UH-60" */
     int mode;         /* vibration index at this design */
     double hz;
-    double percent;   /* of the nearest edge of the band without its margin; negative inside */
-    const char *side; /* where the mode lies: "below", "inside", "above" */
+    double percent; /* of the nearest edge of the band without its margin; negative inside */
+    double margin_percent; /* what was asked for at that edge */
+    const char *side;      /* where the mode lies: "below", "inside", "above" */
 } mt_result_clearance;
 
 /* How many modes lie below a band: the kind of a design. */
 typedef struct mt_result_gap {
     const char *configuration;
     const char *band;
+    double lower_hz; /* of the band without its margin */
+    double upper_hz;
+    double margin_lower_hz; /* with it */
+    double margin_upper_hz;
     int modes_below;
 } mt_result_gap;
 
