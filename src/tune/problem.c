@@ -15,6 +15,32 @@ void mt_problem_delete(mt_problem *p)
     }
 }
 
+double mt_problem_t(const mt_problem *p, int i, double x)
+{
+    return MT_HAS(p->scale[i]) ? x / p->scale[i] : log(x);
+}
+
+/* The catalogue's value whose coordinate is t, to the last bit; false where there is none. */
+static bool catalogue_value(const mt_problem *p, int i, double t, double *x)
+{
+    const mt_variable *const v = &p->study->variables[i];
+    int low = 0;
+    int high = v->n_catalogue; /* the first value with a coordinate of at least t is in low .. high */
+    while (low < high) {
+        const int middle = low + ((high - low) / 2);
+        if (mt_problem_t(p, i, v->catalogue[middle]) < t) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    if (low == v->n_catalogue || mt_problem_t(p, i, v->catalogue[low]) != t) {
+        return false;
+    }
+    *x = v->catalogue[low];
+    return true;
+}
+
 void mt_problem_x(const mt_problem *p, const double *t, double *x)
 {
     for (int i = 0; i < p->n; i++) {
@@ -22,6 +48,8 @@ void mt_problem_x(const mt_problem *p, const double *t, double *x)
         /* the original value first: it may lie outside the bounds, where the baseline is meant */
         if (t[i] == p->origin_t[i]) {
             x[i] = p->original[i];
+        } else if (catalogue_value(p, i, t[i], &x[i])) {
+            continue;
         } else if (!(t[i] < p->upper_t[i])) {
             x[i] = v->upper;
         } else if (!(t[i] > p->lower_t[i])) {
@@ -41,10 +69,6 @@ double mt_problem_stretch(const mt_problem *p, int i)
 static mt_status refuse_unsearched(const mt_study *s, mt_err *err)
 {
     for (int i = 0; i < s->n_variables; i++) {
-        if (s->variables[i].n_catalogue > 0) {
-            return mt_fail(err, MT_E_INPUT,
-                           "/variables/%d: this version does not search catalogues", i);
-        }
         if (MT_HAS(s->variables[i].tolerance_percent)) {
             return mt_fail(err, MT_E_INPUT,
                            "/variables/%d: this version does not search with tolerances", i);
@@ -69,7 +93,9 @@ static mt_status init_variables(mt_problem *p, mt_err *err)
     }
     for (int i = 0; i < p->n; i++) {
         const mt_variable *const v = &p->study->variables[i];
-        const bool positive = v->lower > 0.0 && v->original > 0.0;
+        /* of the whole catalogue, also where the bounds have been closed on one of its values */
+        const double least = v->n_catalogue > 0 ? v->catalogue[0] : v->lower;
+        const bool positive = least > 0.0 && v->original > 0.0;
         const double scale = MT_HAS(v->scale) ? v->scale : v->upper - v->lower;
         p->inputs[i] = v->parameter;
         p->original[i] = v->original;

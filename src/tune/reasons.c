@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "tune/describe.h"
+#include "tune/discrete.h"
 
 /* Changes of a parameter below this many percent, and errors of a frequency, are not worth a number. */
 static const double WORTH_SAYING_PERCENT = 1e-4;
@@ -284,6 +285,12 @@ static const char *aim_text(const mt_aim *a)
 static void say_rank(sentences *s, const mt_nlp_result *search)
 {
     const char *const first = aim_text(&s->p->aims[0]);
+    if (s->design->discrete != NULL) {
+        const char *const text = mt_discrete_rank_text(s->design->discrete, search,
+                                                       s->rec->rank, first, &s->result->mem);
+        say(s, "%s", text == NULL ? "" : text);
+        return;
+    }
     if (search->compromise) {
         say(s,
             "No design within the bounds meets all goals exactly (%d starts, sampled, not "

@@ -2,6 +2,7 @@
 #include "tune/solve.h"
 
 #include "tune/describe.h"
+#include "tune/discrete.h"
 #include "tune/gaps.h"
 #include "tune/search.h"
 
@@ -22,7 +23,8 @@ typedef struct answer {
     mt_reference_cache references;
     mt_nlp_result found;
     mt_gap_result gaps; /* where there are bands: found is made from it */
-    int stage;          /* of found */
+    mt_discrete_report discrete; /* where there are catalogues: what the search did */
+    int stage;                   /* of found */
     mt_err why;         /* no start of the search had a value */
     bool searched;
     bool infeasible; /* proven */
@@ -32,6 +34,7 @@ static mt_status describe_solutions(answer *a, mt_err *err)
 {
     const mt_nlp_result *const found = &a->found;
     mt_result *const result = a->result;
+    const bool discrete = mt_study_is_discrete(a->study);
     const int most = a->study->recommendations;
     const int n = found->n_solutions < most ? found->n_solutions : most;
     result->recommendations =
@@ -44,7 +47,8 @@ static mt_status describe_solutions(answer *a, mt_err *err)
         const mt_design design = {.t = found->solutions[i].t,
                                   .found = &found->solutions[i],
                                   .stage = a->stage,
-                                  .rank = i + 1};
+                                  .rank = i + 1,
+                                  .discrete = discrete ? &a->discrete : NULL};
         mt_recommendation *const rec = &result->recommendations[i];
         MT_TRY(mt_describe_design(a->p, &design, &result->baseline, result, rec, err));
         MT_TRY(mt_describe_reasons(a->p, &design, found, result, rec, err));
@@ -165,10 +169,25 @@ static mt_status search_gaps(answer *a, mt_err *err)
     return MT_OK;
 }
 
+static mt_status search(answer *a, mt_err *err)
+{
+    if (mt_study_is_discrete(a->study)) {
+        return mt_discrete_solve(a->workers, a->n_workers, &a->mem, &a->found, &a->discrete,
+                                 err);
+    }
+    return a->p->n_clears > 0 ? search_gaps(a, err)
+                              : mt_search_designs(a->workers, a->n_workers, &a->mem, &a->found,
+                                                  &a->stage, &a->why, err);
+}
+
 static mt_status certify(answer *a, mt_err *err)
 {
     if (!a->searched || a->found.stop == MT_STOP_USER) {
         return MT_OK;
+    }
+    if (mt_study_is_discrete(a->study)) {
+        return mt_describe_discrete_certificate(&a->discrete, &a->found, a->result,
+                                                &a->infeasible, err);
     }
     if (a->p->n_clears > 0) {
         return mt_describe_gap_certificate(&a->gaps, a->result, &a->infeasible, err);
@@ -196,11 +215,10 @@ static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
     MT_TRY(mt_describe_run(a->study, result, err));
     MT_TRY(mt_describe_design(p, &original, NULL, result, &result->baseline, err));
     if (a->searched) {
-        MT_TRY(p->n_clears > 0 ? search_gaps(a, err)
-                               : mt_search_designs(a->workers, a->n_workers, &a->mem, &a->found,
-                                                   &a->stage, &a->why, err));
+        MT_TRY(search(a, err));
         MT_TRY(describe_solutions(a, err));
-        if (a->found.n_solutions > 0 && a->found.stop != MT_STOP_USER) {
+        if (a->found.n_solutions > 0 && a->found.stop != MT_STOP_USER &&
+            !mt_study_is_discrete(a->study)) {
             MT_TRY(mt_describe_spread(p, &a->found.solutions[0], &a->mem, &a->found.evals,
                                       result, err));
         }
