@@ -2,7 +2,7 @@
 #ifndef MODAL_MODAL_PRIV_H
 #define MODAL_MODAL_PRIV_H
 
-#include "modal/modal.h"
+#include "modal/damped.h"
 
 /*
  * Tolerances of this room. eps = DBL_EPSILON.
@@ -47,5 +47,9 @@ mt_status mt_modal_check(const double *k, const mt_mass_factor *mass, mt_arena *
  * t1 (n x rank) with Y = t1 Q. Fails MT_E_MASSLESS. */
 mt_status mt_modal_condense(const double *k, const mt_mass_factor *mass, mt_arena *scratch,
                             double *a, double *t1, mt_modes *out, mt_err *err);
+
+/* Refine s and fill the residual of damped modes. */
+mt_status mt_damped_check(const mt_damped_problem *p, mt_damped_modes *out, mt_arena *mem,
+                          mt_err *err);
 
 #endif

@@ -1,0 +1,328 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Damped modes against closed forms, characteristic polynomials and the undamped limit. */
+#include <complex.h>
+
+#include "mechanics/mech.h"
+#include "modal/damped.h"
+
+static const double TWO_PI = 2.0 * 3.14159265358979323846;
+/* Rounding of a few well-scaled freedoms. */
+static const double TOL = 1e-12;
+/* A residual of this many n eps is not perfect, but rounding. */
+static const double RESIDUAL = 20.0;
+
+/* Masses on a line; springs[i] before mass i, springs[n] behind the last one, to walls at both ends. */
+static void chain_matrices(int n, const double *springs, const double *masses, double *k,
+                           double *m)
+{
+    memset(k, 0, (size_t)n * (size_t)n * sizeof *k);
+    memset(m, 0, (size_t)n * (size_t)n * sizeof *m);
+    for (int i = 0; i < n; i++) {
+        m[i + i * n] = masses[i];
+        k[i + i * n] = springs[i] + springs[i + 1];
+        if (i > 0) {
+            k[i + (i - 1) * n] = -springs[i];
+            k[(i - 1) + i * n] = -springs[i];
+        }
+    }
+}
+
+typedef struct damped {
+    mt_arena mem;
+    mt_mass_factor mass;
+    mt_modes modes;
+    mt_damped_modes d;
+    mt_err err;
+} damped;
+
+static bool damped_solve(mt_test *t, int n, const double *k, const double *c, const double *m,
+                         damped *s)
+{
+    *s = (damped){.err.text = ""};
+    const mt_damped_problem p = {.n = n, .k = k, .c = c, .mass = &s->mass, .modes = &s->modes};
+    mt_status rc = mt_arena_init(&s->mem, 0, &s->err);
+    rc = rc == MT_OK ? mt_modal_factor_mass(n, m, &s->mem, &s->mass, &s->err) : rc;
+    rc = rc == MT_OK
+             ? mt_modal_solve_factored(k, &s->mass, NULL, NULL, &s->mem, &s->modes, &s->err)
+             : rc;
+    rc = rc == MT_OK ? mt_modal_damped(&p, &s->mem, &s->d, &s->err) : rc;
+    if (!CHECK(t, rc == MT_OK)) {
+        (void)fprintf(stderr, "%s\n", s->err.text);
+        return false;
+    }
+    for (int i = 0; i < s->d.count; i++) {
+        CHECK(t, s->d.residual[i] <= RESIDUAL);
+    }
+    return true;
+}
+
+static double complex root(const damped *s, int i)
+{
+    const union {
+        double part[2];
+        double complex z;
+    } u = {
+        {s->d.re[i], s->d.im[i]}
+    };
+    return u.z;
+}
+
+static void expect(mt_test *t, const damped *s, int i, mt_damped_kind kind, double re,
+                   double im)
+{
+    const double size = hypot(re, im);
+    REQUIRE(t, i < s->d.count);
+    CHECK_INT(t, s->d.kind[i], kind);
+    CHECK_NEAR_ABS(t, s->d.re[i], re, TOL * size);
+    CHECK_NEAR_ABS(t, s->d.im[i], im, TOL * size);
+}
+
+static void damped__single_mass_has_its_closed_form(mt_test *t)
+{
+    static const struct {
+        const char *name;
+        double m;
+        double c;
+        double k;
+    } rows[] = {
+        {        "undamped", 2.0,  0.0, 50.0},
+        {           "light", 2.0, 1e-9, 50.0},
+        {           "usual", 2.0,  3.0, 50.0},
+        { "nearly critical", 2.0, 19.9, 50.0},
+        {            "over", 2.0, 25.0, 50.0},
+        {    "heavily over", 2.0,  2e4, 50.0},
+        {"negative damping", 2.0, -3.0, 50.0},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        damped s;
+        mt_test_row(t, "%s", rows[i].name);
+        if (damped_solve(t, 1, &rows[i].k, &rows[i].c, &rows[i].m, &s)) {
+            const double omega = sqrt(rows[i].k / rows[i].m);
+            const double zeta = rows[i].c / (2.0 * rows[i].m * omega);
+            if (zeta < 1.0) {
+                CHECK_INT(t, s.d.count, 1);
+                expect(t, &s, 0, zeta < 0.0 ? MT_DAMPED_UNSTABLE : MT_DAMPED_OSCILLATING,
+                       -zeta * omega, omega * sqrt(1.0 - zeta * zeta));
+                CHECK_NEAR(t, mt_damped_natural_hz(&s.d, 0), omega / TWO_PI, TOL);
+                CHECK_NEAR_ABS(t, mt_damped_ratio(&s.d, 0), zeta, TOL);
+            } else {
+                const double fast = -omega * (zeta + sqrt(zeta * zeta - 1.0));
+                CHECK_INT(t, s.d.count, 2);
+                expect(t, &s, 1, MT_DAMPED_OVERDAMPED, fast, 0.0);
+                expect(t, &s, 0, MT_DAMPED_OVERDAMPED, omega * omega / fast, 0.0);
+                CHECK_NEAR(t, mt_damped_ratio(&s.d, 0), 1.0, TOL);
+            }
+        }
+        mt_arena_free(&s.mem);
+    }
+}
+
+static void damped__without_damping_meets_the_modal_solve(mt_test *t)
+{
+    enum { N = 6 };
+    double k[N * N];
+    double m[N * N];
+    double c[N * N] = {0.0};
+    double masses[N];
+    double springs[N + 1];
+    damped s;
+    for (int i = 0; i < N; i++) {
+        masses[i] = 1.0 + 0.3 * i;
+        springs[i] = 100.0 / (1.0 + i);
+    }
+    springs[0] = 0.0; /* free */
+    springs[N] = 0.0;
+    chain_matrices(N, springs, masses, k, m);
+    if (damped_solve(t, N, k, c, m, &s)) {
+        CHECK_INT(t, s.d.count, N);
+        CHECK_INT(t, s.d.kind[0], MT_DAMPED_RIGID_BODY);
+        for (int i = 1; i < N; i++) {
+            CHECK_INT(t, s.d.kind[i], MT_DAMPED_OSCILLATING);
+            CHECK_NEAR(t, mt_damped_hz(&s.d, i), mt_modal_hz(&s.modes, i), 10.0 * TOL);
+            CHECK_NEAR_ABS(t, mt_damped_ratio(&s.d, i), 0.0, 10.0 * TOL);
+        }
+    }
+    mt_arena_free(&s.mem);
+}
+
+static void damped__proportional_damping_keeps_each_mode(mt_test *t)
+{
+    enum { N = 5 };
+    const double alpha = 0.4;
+    const double beta = 0.01;
+    double k[N * N];
+    double m[N * N];
+    double c[N * N];
+    const double masses[N] = {1.0, 2.0, 1.0, 3.0, 1.0};
+    const double springs[N + 1] = {300.0, 200.0, 100.0, 50.0, 100.0, 20.0};
+    damped s;
+    chain_matrices(N, springs, masses, k, m);
+    for (int i = 0; i < N * N; i++) {
+        c[i] = alpha * m[i] + beta * k[i];
+    }
+    if (damped_solve(t, N, k, c, m, &s)) {
+        CHECK_INT(t, s.d.count, N);
+        for (int i = 0; i < N; i++) {
+            const double omega = sqrt(s.modes.lambda[i]);
+            mt_test_row(t, "mode %d", i + 1);
+            CHECK_NEAR(t, mt_damped_natural_hz(&s.d, i), omega / TWO_PI, 10.0 * TOL);
+            CHECK_NEAR(t, mt_damped_ratio(&s.d, i), 0.5 * (alpha / omega + beta * omega),
+                       10.0 * TOL);
+        }
+    }
+    mt_arena_free(&s.mem);
+}
+
+static void damped__rigid_body_pairs_stand_apart(mt_test *t)
+{
+    /* two masses, spring and damper between them; the second row also drags on the ground */
+    const double k[4] = {100.0, -100.0, -100.0, 100.0};
+    const double m[4] = {1.0, 0.0, 0.0, 4.0};
+    const double c[2][4] = {
+        {1.0, -1.0, -1.0, 1.0},
+        {1.0, -1.0, -1.0, 1.5}
+    };
+    damped s;
+    if (damped_solve(t, 2, k, c[0], m, &s)) {
+        CHECK_INT(t, s.d.count, 2);
+        expect(t, &s, 0, MT_DAMPED_RIGID_BODY, 0.0, 0.0);
+        expect(t, &s, 1, MT_DAMPED_OSCILLATING, -0.625, sqrt(125.0 - 0.625 * 0.625));
+        CHECK(t, isnan(mt_damped_ratio(&s.d, 0)));
+    }
+    mt_arena_free(&s.mem);
+    if (damped_solve(t, 2, k, c[1], m, &s)) {
+        CHECK_INT(t, s.d.count, 3);
+        expect(t, &s, 0, MT_DAMPED_RIGID_BODY, 0.0, 0.0);
+        CHECK_INT(t, s.d.kind[1], MT_DAMPED_OVERDAMPED);
+        CHECK_INT(t, s.d.kind[2], MT_DAMPED_OSCILLATING);
+        for (int i = 0; i < 3; i++) { /* det(s^2 M + s C + K) / s */
+            const double complex x = root(&s, i);
+            const double complex det = (x * x + x + 100.0) * (4.0 * x * x + 1.5 * x + 100.0) -
+                                       (x + 100.0) * (x + 100.0);
+            mt_test_row(t, "root %d", i);
+            CHECK_NEAR_ABS(t, cabs(det), 0.0, TOL * 1e4);
+        }
+    }
+    mt_arena_free(&s.mem);
+}
+
+static void damped__spring_and_damper_in_a_row_need_no_mass_between(mt_test *t)
+{
+    /* ground - k0 - mass, and mass - k1 - node - c - ground: (m s^2 + k0)(c s + k1) + k1 c s = 0 */
+    static const double k0s[] = {30.0, 0.0};
+    const double k1 = 80.0;
+    const double c1 = 2.0;
+    const double m[4] = {1.5, 0.0, 0.0, 0.0};
+    const double c[4] = {0.0, 0.0, 0.0, c1};
+    for (int row = 0; row < 2; row++) {
+        const double k0 = k0s[row];
+        const double k[4] = {k0 + k1, -k1, -k1, k1};
+        damped s;
+        mt_test_row(t, "k0 = %g", k0);
+        if (damped_solve(t, 2, k, c, m, &s)) {
+            CHECK_INT(t, s.d.count, row == 0 ? 2 : 3);
+            for (int i = 0; i < s.d.count; i++) {
+                const double complex x = root(&s, i);
+                const double complex p = (1.5 * x * x + k0) * (c1 * x + k1) + k1 * c1 * x;
+                const double size = (1.5 * cabs(x * x) + k0) * (c1 * cabs(x) + k1);
+                CHECK_NEAR_ABS(t, cabs(p), 0.0, TOL * (size + k1 * c1 * cabs(x)));
+            }
+            CHECK_INT(t, s.d.kind[row == 0 ? 1 : 0],
+                      row == 0 ? MT_DAMPED_OVERDAMPED : MT_DAMPED_RIGID_BODY);
+        }
+        mt_arena_free(&s.mem);
+    }
+}
+
+static void damped__massless_nodes_with_and_without_damper(mt_test *t)
+{
+    /* mass - k1 - node - k2 - node with a damper to ground: as one spring k1 k2/(k1 + k2) in that row */
+    const double k1 = 80.0;
+    const double k2 = 240.0;
+    const double k = 60.0;
+    const double m3[9] = {1.5};
+    const double k3[9] = {k1 + 30.0, -k1, 0.0, -k1, k1 + k2, -k2, 0.0, -k2, k2};
+    const double c3[9] = {[8] = 2.0};
+    const double m2[4] = {1.5};
+    const double kk[4] = {k + 30.0, -k, -k, k};
+    const double c2[4] = {[3] = 2.0};
+    damped a = {.err.text = ""};
+    damped b = {.err.text = ""};
+    const bool solved =
+        damped_solve(t, 3, k3, c3, m3, &a) && damped_solve(t, 2, kk, c2, m2, &b);
+    CHECK(t, solved);
+    if (solved && CHECK(t, a.d.count == b.d.count)) {
+        for (int i = 0; i < a.d.count; i++) {
+            expect(t, &a, i, b.d.kind[i], b.d.re[i], b.d.im[i]);
+        }
+    }
+    mt_arena_free(&a.mem);
+    mt_arena_free(&b.mem);
+}
+
+static void damped__unstable_directions_are_said(mt_test *t)
+{
+    const double k[1] = {-9.0};
+    const double m[1] = {1.0};
+    const double c[1] = {0.0};
+    damped s;
+    if (damped_solve(t, 1, k, c, m, &s)) {
+        CHECK_INT(t, s.d.count, 2);
+        CHECK_NEAR_ABS(t, fabs(s.d.re[0]), 3.0, TOL);
+        CHECK_INT(t, s.d.kind[s.d.re[0] > 0.0 ? 0 : 1], MT_DAMPED_UNSTABLE);
+    }
+    mt_arena_free(&s.mem);
+}
+
+/* One body of 1 kg, J = diag(1, 2, 3), 1 m above a ball joint, on a rotational bushing with a damper of 0.01 of its stiffness. */
+static void damped__body_on_a_damped_bushing(mt_test *t)
+{
+    static const double hz[] = {3.53650019, 5.71383732, 8.38400687};
+    static const double percent[] = {11.180339887, 18.257418584, 27.386127875};
+    mech s;
+    if (mech_must(
+            t,
+            mech_parse(
+                t, "{ \"format\": \"modetune-model/1\", \"name\": \"damped\", \"dimension\": 3,"
+                   "  \"bodies\": [ { \"name\": \"b\", \"mass_kg\": 1, \"inertia_kg_m2\": [1, "
+                   "2, 3], \"centre\": [0, 0, 1] } ],"
+                   "  \"joints\": [ { \"name\": \"ball\", \"type\": \"spherical\", \"bodies\": "
+                   "[\"ground\", \"b\"], \"at\": [0, 0, 0] } ],"
+                   "  \"springs\": [ { \"name\": \"s\", \"type\": \"bushing\", \"bodies\": "
+                   "[\"ground\", \"b\"], \"at\": [0, 0, 1],"
+                   "    \"stiffness_n_per_m\": [0, 0, 0], \"stiffness_n_m_per_rad\": [1e3, "
+                   "4e3, 9e3] } ],"
+                   "  \"dampers\": [ { \"name\": \"d\", \"type\": \"bushing\", \"bodies\": "
+                   "[\"ground\", \"b\"], \"at\": [0, 0, 1],"
+                   "    \"damping_n_s_per_m\": [0, 0, 0], \"damping_n_m_s_per_rad\": [10, 40, "
+                   "90] } ] }"),
+            NULL, "", &s)) {
+        double c[9];
+        mt_damped_modes d;
+        mt_arena mem;
+        const mt_damped_problem p = {
+            .n = 3, .k = s.a->lin->k, .c = c, .mass = &s.a->mass, .modes = &s.a->modes};
+        CHECK_INT(t, s.a->lin->n, 3);
+        mt_linear_damping(s.a->lin, c);
+        if (CHECK(t, mt_arena_init(&mem, 0, &s.err) == MT_OK) &&
+            CHECK(t, mt_modal_damped(&p, &mem, &d, &s.err) == MT_OK)) {
+            CHECK_INT(t, d.count, 3);
+            for (int i = 0; i < 3; i++) {
+                CHECK_NEAR(t, mt_damped_hz(&d, i), hz[i], 1e-8);
+                CHECK_NEAR(t, 100.0 * mt_damped_ratio(&d, i), percent[i], 1e-8);
+                CHECK(t, d.residual[i] <= RESIDUAL);
+            }
+        }
+        mt_arena_free(&mem);
+    }
+    mech_free(&s);
+}
+
+MT_TEST_MAIN(MT_TEST(damped__single_mass_has_its_closed_form),
+             MT_TEST(damped__without_damping_meets_the_modal_solve),
+             MT_TEST(damped__proportional_damping_keeps_each_mode),
+             MT_TEST(damped__rigid_body_pairs_stand_apart),
+             MT_TEST(damped__spring_and_damper_in_a_row_need_no_mass_between),
+             MT_TEST(damped__massless_nodes_with_and_without_damper),
+             MT_TEST(damped__unstable_directions_are_said),
+             MT_TEST(damped__body_on_a_damped_bushing))
