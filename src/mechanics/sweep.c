@@ -72,8 +72,7 @@ static mt_status sweep_point_init(mt_sweep_point *point, int n_joints, double dr
 typedef struct sweeper {
     mt_linear *lin;
     double *inputs;
-    mt_sweep_visit *visit;
-    void *context;
+    const mt_sweep_visitor *visitor;
     mt_arena *mem;
     mt_sweep *out;
 } sweeper;
@@ -82,8 +81,8 @@ static mt_status solve_point(const sweeper *s, int i, mt_err *err)
 {
     mt_sweep_point *const point = &s->out->points[i];
     s->inputs[s->lin->sys->n_inputs - 1] = point->drive;
-    MT_TRY(s->visit != NULL ? s->visit(s->context, i, s->inputs, err)
-                            : mt_linear_update(s->lin, s->inputs, true, err));
+    MT_TRY(s->visitor != NULL ? s->visitor->visit(s->visitor->context, i, s->inputs, err)
+                              : mt_linear_update(s->lin, s->inputs, true, err));
     MT_TRY(record(s->lin, point, err));
     s->out->n_reached++;
     return MT_OK;
@@ -118,16 +117,20 @@ static mt_status walk(const sweeper *s, int first, int step, mt_err *err)
     return MT_OK;
 }
 
-mt_status mt_sweep_run(mt_linear *lin, double *inputs, int n, const double *positions,
-                       mt_sweep_visit *visit, void *context, mt_arena *mem, mt_sweep *out,
+mt_status mt_sweep_run(mt_linear *lin, const double *inputs, int n, const double *positions,
+                       const mt_sweep_visitor *visitor, mt_arena *mem, mt_sweep *out,
                        mt_err *err)
 {
-    const sweeper s = {lin, inputs, visit, context, mem, out};
+    const size_t others = (size_t)lin->sys->n_inputs - 1;
+    const sweeper s = {lin, mt_arena_f64(mem, others + 1, 1), visitor, mem, out};
     int nearest = 0;
     *out = (mt_sweep){.n_joints = lin->sys->n_joints, .n_points = n};
     out->points = mt_arena_alloc(mem, (size_t)n, sizeof *out->points);
-    if (out->points == NULL) {
+    if (out->points == NULL || s.inputs == NULL) {
         return mt_fail_memory(err);
+    }
+    if (others > 0) {
+        memcpy(s.inputs, inputs, others * sizeof *inputs);
     }
     for (int i = 0; i < n; i++) {
         MT_TRY(sweep_point_init(&out->points[i], out->n_joints, positions[i], mem, err));

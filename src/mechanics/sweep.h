@@ -28,22 +28,26 @@ typedef struct mt_sweep {
     int n_reached;          /* points with MT_OK */
 } mt_sweep;
 
-/* Brings lin to inputs (with gradient) and looks at what it wants to see there; NULL: mt_linear_update alone. What it fails with is noted at the point; memory, an
- * interrupt, or our own error ends the sweep. */
-typedef mt_status mt_sweep_visit(void *context, int point, const double *inputs, mt_err *err);
+/* Brings lin to inputs (with gradient) and looks at what it wants to see there. What it fails with is noted at the point; memory, an interrupt, or our own error
+ * ends the sweep. */
+typedef struct mt_sweep_visitor {
+    mt_status (*visit)(void *context, int point, const double *inputs, mt_err *err);
+    void *context;
+} mt_sweep_visitor;
 
 /* `steps` >= 2 positions from `from` to `to` (or 1: `from`), evenly spaced, both ends exact: positions[steps]. */
 void mt_sweep_range(double from, double to, int steps, double *positions);
 
 /**
  * @param lin        of a system with a caller's drive; its scratch is used
- * @param inputs     [lin->sys->n_inputs] the last of them, the position, is set here
+ * @param inputs     [lin->sys->n_inputs - 1] the others than the position
  * @param positions  [n] of the driven joint
+ * @param visitor    NULL: mt_linear_update alone
  * @param mem        holds the result
  * A point beyond a limit position has MT_E_ASSEMBLY and the text that names the limit; so have all points further that way. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INTERRUPTED.
  */
-mt_status mt_sweep_run(mt_linear *lin, double *inputs, int n, const double *positions,
-                       mt_sweep_visit *visit, void *context, mt_arena *mem, mt_sweep *out,
+mt_status mt_sweep_run(mt_linear *lin, const double *inputs, int n, const double *positions,
+                       const mt_sweep_visitor *visitor, mt_arena *mem, mt_sweep *out,
                        mt_err *err);
 
 #endif
