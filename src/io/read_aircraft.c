@@ -166,15 +166,26 @@ static void read_list(mt_reader *r, mt_addr value, mt_aircraft_list *list)
     }
 }
 
+/* A file of another kind or version gets one message, not one per member. */
+static bool check_format(mt_reader *r)
+{
+    static const char format[] = "modetune-aircraft/1";
+    const mt_addr at = mt_json_member(r->doc, MT_JSON_ROOT, ROOT[ROOT_FORMAT].name);
+    if (at == MT_NO_ADDR || mt_json_type_of(r->doc, at) != MT_JSON_STRING ||
+        strcmp(mt_json_string(r->doc, at), format) == 0) {
+        return true; /* or the table of keys will tell */
+    }
+    mt_diag_structure(r->diags, at,
+                      "the format is not \"%s\": this is no catalogue of aircraft", format);
+    return false;
+}
+
 static void read_root(mt_reader *r, mt_aircraft_list *list)
 {
-    static const char *const formats[] = {"modetune-aircraft/1"};
     mt_addr found[ROOT_KEY_COUNT];
-    if (!mt_reader_object(r, MT_JSON_ROOT, &ROOT_TABLE, found)) {
-        return;
+    if (check_format(r) && mt_reader_object(r, MT_JSON_ROOT, &ROOT_TABLE, found)) {
+        read_list(r, found[ROOT_AIRCRAFT], list);
     }
-    (void)mt_reader_choice(r, found[ROOT_FORMAT], "format", formats, MT_COUNT(formats));
-    read_list(r, found[ROOT_AIRCRAFT], list);
 }
 
 static mt_status read_text(const char *path, const mt_file *file, const mt_io_options *opt,

@@ -216,9 +216,9 @@ typedef struct mt_result {
     const char *study_file; /* its file name, without folder */
     const char *model_name;
     const char *model_file; /* as the study writes it, relative to its folder: for `apply` */
-    mt_result_status status;
     const char *status_text;    /* one sentence */
     mt_recommendation baseline; /* the original design, rank 0 */
+    mt_result_status status;
     int n_recommendations;
     mt_recommendation *recommendations;
     int n_undetermined;

@@ -59,7 +59,7 @@ static void warn_unconfirmed(mt_study_check *c, const mt_rotor *rotor, const cha
                     what, value->text);
     mt_check_warn_result(
         c, mt_arena_printf(&c->study->mem,
-                           "%s: the %s (%s) is not confirmed by a public document (%s).",
+                           "%s: the %s (%s) is not confirmed by a public document (%s)",
                            rotor->aircraft.s, what, value->text, value->source));
 }
 
@@ -148,6 +148,17 @@ static void name_rotors(mt_study_check *c, const mt_bands_source *source)
     }
 }
 
+/* A catalogue that could not be read (noted) leaves rotors without a speed. */
+static bool is_known(const mt_bands_source *source)
+{
+    for (int i = 0; i < source->n_rotors; i++) {
+        if (!MT_HAS(source->rotors[i].speed_hz)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static void make_bands(mt_study_check *c, const mt_goal *goal)
 {
     mt_avoid *const avoid = goal->avoid;
@@ -161,7 +172,7 @@ static void make_bands(mt_study_check *c, const mt_goal *goal)
                       avoid->source.up_to_hz);
     }
     for (int i = 0; i < avoid->bands.n_notes; i++) {
-        mt_check_warn_result(c, mt_arena_printf(&s->mem, "/goals/%d: %s.",
+        mt_check_warn_result(c, mt_arena_printf(&s->mem, "/goals/%d: %s",
                                                 (int)(goal - s->goals), avoid->bands.notes[i]));
     }
 }
@@ -180,7 +191,7 @@ void mt_study_check_avoid(mt_study_check *c, mt_goal *goal)
     for (int i = 0; i < avoid->source.n_rotors; i++) {
         check_rotor(c, avoid, &avoid->source.rotors[i]);
     }
-    if (c->diags->errors == 0) {
+    if (c->diags->errors == 0 && is_known(&avoid->source)) {
         make_bands(c, goal);
     }
 }

@@ -70,11 +70,21 @@ static void fill_design(sample *s, mt_recommendation *r)
 }
 
 static mt_result_clearance CLEARANCES[] = {
-    {"installed", "4P of UH-60", 1, 14.0, 12.5, "below"},
-    {"installed", "4P of UH-60", 2, 25.0, 30.0, "above"},
+    {.configuration = "installed",
+     .band = "4P of UH-60",
+     .mode = 1,
+     .hz = 14.0,
+     .percent = 12.5,
+     .side = "below"},
+    {.configuration = "installed",
+     .band = "4P of UH-60",
+     .mode = 2,
+     .hz = 25.0,
+     .percent = 30.0,
+     .side = "above"},
 };
 static mt_result_gap GAPS[] = {
-    {"installed", "4P of UH-60", 1}
+    {.configuration = "installed", .band = "4P of UH-60", .modes_below = 1},
 };
 static mt_result_tolerance TOLERANCES[] = {
     { "K_T1",      4.5, "mode 1 at 4P of UH-60"},
