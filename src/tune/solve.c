@@ -22,10 +22,10 @@ typedef struct answer {
     mt_arena mem;
     mt_reference_cache references;
     mt_nlp_result found;
-    mt_gap_result gaps; /* where there are bands: found is made from it */
+    mt_gap_result gaps;          /* where there are bands: found is made from it */
     mt_discrete_report discrete; /* where there are catalogues: what the search did */
     int stage;                   /* of found */
-    mt_err why;         /* no start of the search had a value */
+    mt_err why;                  /* no start of the search had a value */
     bool searched;
     bool infeasible; /* proven */
 } answer;
@@ -192,9 +192,13 @@ static mt_status certify(answer *a, mt_err *err)
     if (a->p->n_clears > 0) {
         return mt_describe_gap_certificate(&a->gaps, a->result, &a->infeasible, err);
     }
-    return a->found.compromise
-               ? mt_describe_limit_certificates(a->p, &a->mem, a->result, &a->infeasible, err)
-               : MT_OK;
+    if (!a->found.compromise) {
+        return MT_OK;
+    }
+    MT_TRY(mt_describe_limit_certificates(a->p, &a->mem, a->result, &a->infeasible, err));
+    /* exact targets are answered by the nearest design, also where it is proven that they cannot be met */
+    a->infeasible = a->infeasible && a->p->n_eq == 0;
+    return MT_OK;
 }
 
 static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
