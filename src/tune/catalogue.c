@@ -42,7 +42,8 @@ int mt_series_per_decade(int which)
 static int digits(int per_decade, int i)
 {
     if (per_decade <= E24_SIZE) {
-        return E24[i * (E24_SIZE / per_decade)];
+        const int position = i * (E24_SIZE / per_decade);
+        return E24[position];
     }
     if (i * (E192_SIZE / per_decade) == E192_EXCEPTION) {
         return E192_EXCEPTIONAL;

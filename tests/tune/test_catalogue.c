@@ -29,7 +29,7 @@ static void catalogue__every_series_has_its_number_of_values(mt_test *t)
     CHECK_INT(t, n, 7);
     for (int i = 0; i < n && v != NULL; i++) {
         mt_test_row(t, "%s", names[i]);
-        const int per_decade = atoi(names[i] + 1);
+        const int per_decade = (int)strtol(names[i] + 1, NULL, 10);
         CHECK_INT(t, mt_series_per_decade(i), per_decade);
         CHECK_INT(t, mt_catalogue_series(i, 1.0, 9.999, ROOM, v), per_decade);
         CHECK(t, v[0] == 1.0);
@@ -60,7 +60,8 @@ static void catalogue__coarse_series_are_parts_of_fine_ones(mt_test *t)
         mt_test_row(t, "%s and %s", pairs[i][0], pairs[i][1]);
         CHECK_INT(t, mt_catalogue_series(series(pairs[i][1]), 1.0, 9.999, 192, fine), 2 * n);
         for (int k = 0; k < n; k++) {
-            CHECK(t, coarse[k] == fine[2 * k]);
+            const int same = 2 * k;
+            CHECK(t, coarse[k] == fine[same]);
         }
     }
 }
