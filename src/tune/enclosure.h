@@ -2,7 +2,6 @@
 #ifndef TUNE_ENCLOSURE_H
 #define TUNE_ENCLOSURE_H
 
-#include "expr/program.h"
 #include "tune/analysis.h"
 
 /*

@@ -35,7 +35,11 @@ static const double MASSLESS_SHARE = 1e-12;
 static mt_status room(mt_arena *mem, size_t m, size_t n, double **out, mt_err *err)
 {
     *out = mt_arena_f64(mem, m, n);
-    return *out == NULL ? mt_fail_memory(err) : MT_OK;
+    if (*out == NULL) {
+        (void)mt_fail_memory(err);
+        return MT_E_MEMORY;
+    }
+    return MT_OK;
 }
 
 /* fixed + sum of the varying terms with their coefficients at the low end of the bounds. */
@@ -234,6 +238,21 @@ static mt_status make_part(const double *dense, ptrdiff_t r, mt_arena *mem,
     return MT_OK;
 }
 
+/* The parts of coefficient i in both matrices. row, dense: work. */
+static mt_status parts_of(mt_enclosure *e, const basis *b, int i, double *row, double *dense,
+                          mt_err *err)
+{
+    for (mt_matrix m = MT_STIFFNESS; m < MT_MATRICES; m++) {
+        mt_enclosure_part *const part = &e->coefficients[i].part[m];
+        part->count = 0;
+        if (add_rows(b, m, e->sources[i], row, dense)) {
+            MT_TRY(make_part(dense, b->r, &e->mem, part, err));
+        }
+        e->mass_varies = e->mass_varies || (m == MT_MASS && part->count > 0);
+    }
+    return MT_OK;
+}
+
 static mt_status make_parts(mt_enclosure *e, const basis *b, mt_err *err)
 {
     double *dense = NULL;
@@ -241,14 +260,7 @@ static mt_status make_parts(mt_enclosure *e, const basis *b, mt_err *err)
     MT_TRY(room(&e->scratch, (size_t)b->r, (size_t)b->r, &dense, err));
     MT_TRY(room(&e->scratch, (size_t)b->n, 1, &row, err));
     for (int i = 0; i < e->n_coefficients; i++) {
-        mt_enclosure_coefficient *const c = &e->coefficients[i];
-        for (mt_matrix m = MT_STIFFNESS; m < MT_MATRICES; m++) {
-            c->part[m].count = 0;
-            if (add_rows(b, m, e->sources[i], row, dense)) {
-                MT_TRY(make_part(dense, b->r, &e->mem, &c->part[m], err));
-            }
-            e->mass_varies = e->mass_varies || (m == MT_MASS && c->part[m].count > 0);
-        }
+        MT_TRY(parts_of(e, b, i, row, dense, err));
     }
     return MT_OK;
 }

@@ -200,8 +200,10 @@ static mt_status solve_corner(mt_enclosure *e, mt_side side_k, mt_side side_m, m
 {
     const size_t n = (size_t)e->n;
     double *const m = mt_arena_f64(&e->scratch, n, n);
+    *modes = (mt_modes){0};
     if (m == NULL) {
-        return mt_fail_memory(err);
+        (void)mt_fail_memory(err);
+        return MT_E_MEMORY;
     }
     if (e->mass_varies) {
         memcpy(m, e->at[MT_MASS][side_m], n * n * sizeof *m);

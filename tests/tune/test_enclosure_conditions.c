@@ -192,7 +192,32 @@ static void enclosure__a_coupling_that_varies_gets_no_certificate(mt_test *t)
     end(&r);
 }
 
-/* One mass on one spring: f = sqrt(k/m)/(2 pi), known to the last digit. */
+/* Stiffnesses that lie 1e10 apart: the slack is that of the stiff ones, and bounds stay bounds. */
+static void enclosure__stiffnesses_far_apart_stay_enclosed(mt_test *t)
+{
+    rig r;
+    static const pair_text one = {"m1", "m2", "L", "k1", "", "k2*1e9"};
+    static const double narrow[2] = {0.999, 1.001};
+    if (enclose_pair(t, &one, "k1 k2 m1 m2", narrow, &r) && CHECK(t, r.e != NULL)) {
+        double low[2];
+        double high[2];
+        mt_err err;
+        CHECK(t, mt_enclosure_set(r.e, r.s.at, r.s.at));
+        CHECK(t, mt_enclosure_ranges(r.e, low, high, &err) == MT_OK);
+        for (int k = 0; k < 2; k++) {
+            const double f = mech_hz(&r.s, k + 1);
+            CHECK(t, low[k] <= f && f <= high[k]);
+            CHECK(t, high[k] - low[k] <= 2e-2 * f); /* and not useless */
+            CHECK_INT(t, mt_enclosure_most_below(r.e, mt_enclosure_lambda(0.9 * f)), k);
+            CHECK_INT(t, mt_enclosure_least_below(r.e, mt_enclosure_lambda(1.1 * f)), k + 1);
+            CHECK(t, mt_enclosure_most_below(r.e, mt_enclosure_lambda(f)) > k);
+            CHECK(t, mt_enclosure_least_below(r.e, mt_enclosure_lambda(f)) <= k);
+        }
+    }
+    end(&r);
+}
+
+/* A design on an edge: feasible, and without any room. */
 static void enclosure__an_edge_that_is_touched_exactly(mt_test *t)
 {
     rig r;
@@ -202,6 +227,7 @@ static void enclosure__an_edge_that_is_touched_exactly(mt_test *t)
         const double f2 = mech_hz(&r.s, 2);
         mt_arena mem = {0};
         mt_err err;
+        const double off = f1 * (1.0 + 1e-6);
         static const int below_1[1] = {1};
         static const int below_0[1] = {0};
         CHECK(t, mt_arena_init(&mem, 0, &err) == MT_OK);
@@ -209,27 +235,27 @@ static void enclosure__an_edge_that_is_touched_exactly(mt_test *t)
             const char *name;
             mt_certify_band band;
             const int *assignment;
-            bool zero; /* percentage zero, at this edge */
-            int mode;
             double hz;
+            int mode;
+            bool zero; /* percentage zero, at this edge */
             bool above;
         } rows[] = {
             {"mode 1 on the lower edge",
              {0, f1, 0.5 * (f1 + f2), 0.0},
-             below_1,  true,
-             1,                f1,
-             false                                                                                         },
-            {"mode 1 on the upper edge", {0, 0.5 * f1, f1, 0.0}, below_0,  true, 1,                f1, true},
+             below_1,  f1,
+             1,  true,
+             false                                                                           },
+            {"mode 1 on the upper edge", {0, 0.5 * f1, f1, 0.0}, below_0,  f1, 1,  true, true},
             {"mode 2 on the upper edge",
              {0, 0.5 * (f1 + f2), f2, 0.0},
-             below_1,  true,
-             2,                f2,
-             true                                                                                          },
+             below_1,  f2,
+             2,  true,
+             true                                                                            },
             { "just off the lower edge",
-             {0, f1 * (1.0 + 1e-6), 0.5 * (f1 + f2), 0.0},
-             below_1, false,
-             1, f1 * (1.0 + 1e-6),
-             false                                                                                         },
+             {0, off, 0.5 * (f1 + f2), 0.0},
+             below_1, off,
+             1, false,
+             false                                                                           },
         };
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
             mt_tolerance all;
@@ -388,6 +414,7 @@ static void enclosure__bands_are_counted_by_inertia_alone(mt_test *t)
 MT_TEST_MAIN(MT_TEST(enclosure__conditions_are_checked_and_named),
              MT_TEST(enclosure__a_hanging_double_pendulum_gets_no_certificate),
              MT_TEST(enclosure__a_coupling_that_varies_gets_no_certificate),
+             MT_TEST(enclosure__stiffnesses_far_apart_stay_enclosed),
              MT_TEST(enclosure__an_edge_that_is_touched_exactly),
              MT_TEST(enclosure__a_tolerance_box_is_as_large_as_it_can_be),
              MT_TEST(enclosure__corners_are_where_modes_are_lowest_and_highest),

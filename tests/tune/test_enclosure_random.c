@@ -297,7 +297,7 @@ static bool feasible(mt_test *t, rig *g, const double *x, double tolerance, int 
 static bool among(int n_bands, const int *list, int count, const int *one)
 {
     for (int i = 0; i < count; i++) {
-        if (memcmp(list + (i * n_bands), one, (size_t)n_bands * sizeof *one) == 0) {
+        if (memcmp(list + ((ptrdiff_t)i * n_bands), one, (size_t)n_bands * sizeof *one) == 0) {
             return true;
         }
     }
@@ -327,8 +327,8 @@ static void enclosure__no_sample_has_what_is_excluded(mt_test *t)
             n.proven += out.proven ? 1 : 0;
             n.infeasible += out.proven && out.n_found == 0 ? 1 : 0;
             for (int i = 0; i < out.n_found; i++) {
-                CHECK(t, feasible(t, &g, out.at + (i * g.c.n), 1e-6, below));
-                CHECK(t, memcmp(below, out.found + (i * g.c.n_bands),
+                CHECK(t, feasible(t, &g, out.at + ((ptrdiff_t)i * g.c.n), 1e-6, below));
+                CHECK(t, memcmp(below, out.found + ((ptrdiff_t)i * g.c.n_bands),
                                 (size_t)g.c.n_bands * sizeof *below) == 0);
             }
             for (int i = 0; i < SAMPLES; i++) {
@@ -349,41 +349,52 @@ static void enclosure__no_sample_has_what_is_excluded(mt_test *t)
     CHECK(t, n.feasible_samples > SYSTEMS);
 }
 
+/* Frequencies of one view at x against the ranges, and counts at exactly these frequencies. */
+static void check_view(mt_test *t, rig *g, int v, const double *low, const double *high)
+{
+    for (int k = 0; k < g->e[v]->n_modes; k++) {
+        const double f = hz(g->a[v], k + 1);
+        const double lambda = mt_enclosure_lambda(f);
+        CHECK(t, low[k] <= f && f <= high[k]);
+        CHECK(t, mt_enclosure_most_below(g->e[v], lambda) >= k + 1);
+        CHECK(t, mt_enclosure_least_below(g->e[v], lambda) <= k);
+    }
+}
+
+static void check_ranges(mt_test *t, rig *g, const double *lo, const double *hi)
+{
+    double low[MODES];
+    double high[MODES];
+    double x[MECH_INPUTS];
+    int below[BANDS];
+    mt_err err = {.text = ""};
+    for (int v = 0; v < VIEWS; v++) {
+        CHECK(t, mt_enclosure_set(g->e[v], lo, hi));
+        CHECK(t, mt_enclosure_ranges(g->e[v], low, high, &err) == MT_OK);
+        for (int i = 0; i < 40; i++) {
+            sample(&g->w.r, g->c.n, lo, hi, x);
+            (void)feasible(t, g, x, 0.0, below);
+            check_view(t, g, v, low, high);
+        }
+    }
+}
+
 static void enclosure__every_sample_lies_in_the_ranges(mt_test *t)
 {
     for (int seed = 0; seed < SYSTEMS; seed++) {
         rig g;
-        mt_err err = {.text = ""};
         mt_test_row(t, "system %d", seed);
         if (begin(t, seed, &g)) {
-            double low[MODES];
-            double high[MODES];
             double lo[MECH_INPUTS];
             double hi[MECH_INPUTS];
-            double x[MECH_INPUTS];
-            int below[BANDS];
             for (int i = 0; i < g.c.n;
-                 i++) { /* every third is a point in some input: rounding decides */
+                 i++) { /* every third box is one design: rounding decides */
                 const double a = mt_random_in(&g.w.r, g.lower[i], g.upper[i]);
                 const double b = mt_random_in(&g.w.r, g.lower[i], g.upper[i]);
                 lo[i] = fmin(a, b);
                 hi[i] = seed % 3 == 0 ? lo[i] : fmax(a, b);
             }
-            for (int v = 0; v < VIEWS; v++) {
-                CHECK(t, mt_enclosure_set(g.e[v], lo, hi));
-                CHECK(t, mt_enclosure_ranges(g.e[v], low, high, &err) == MT_OK);
-                for (int i = 0; i < 40; i++) {
-                    sample(&g.w.r, g.c.n, lo, hi, x);
-                    (void)feasible(t, &g, x, 0.0, below);
-                    for (int k = 0; k < g.e[v]->n_modes; k++) {
-                        const double f = hz(g.a[v], k + 1);
-                        const double lambda = mt_enclosure_lambda(f);
-                        CHECK(t, low[k] <= f && f <= high[k]);
-                        CHECK(t, mt_enclosure_most_below(g.e[v], lambda) >= k + 1);
-                        CHECK(t, mt_enclosure_least_below(g.e[v], lambda) <= k);
-                    }
-                }
-            }
+            check_ranges(t, &g, lo, hi);
         }
         end(&g);
     }
@@ -439,36 +450,41 @@ static bool tight(mt_test *t, rig *g, const double *x, double percent)
     return true;
 }
 
+static void check_tolerances(mt_test *t, rig *g, const double *x, const int *assignment,
+                             tally *n)
+{
+    mt_tolerance all;
+    mt_tolerance each[MECH_INPUTS];
+    mt_err err = {.text = ""};
+    const mt_tolerance_question q = {x, NULL, assignment, 60.0, 0};
+    CHECK(t, mt_certify_tolerance(&g->c, &q, &g->mem, &all, each, &err) == MT_OK);
+    n->boxes += all.percent > 0.01 ? 1 : 0;
+    check_inside(t, g, x, all.percent, -1, assignment);
+    for (int i = 0; i < g->c.n; i++) {
+        CHECK(t, each[i].percent >= all.percent * 0.999);
+        check_inside(t, g, x, each[i].percent, i, assignment);
+    }
+    if (all.end == MT_TOLERANCE_EDGE && !g->loose && all.percent > 0.0) {
+        n->tight += tight(t, g, x, all.percent) ? 1 : 0;
+    }
+}
+
 static void enclosure__no_design_in_a_tolerance_box_fails(mt_test *t)
 {
     tally n = {0};
     for (int seed = 0; seed < SYSTEMS; seed++) {
         rig g;
-        mt_err err = {.text = ""};
+        double x[MECH_INPUTS];
+        int below[BANDS];
+        bool found = false;
         mt_test_row(t, "system %d", seed);
-        if (begin(t, seed, &g)) {
-            double x[MECH_INPUTS];
-            int below[BANDS];
-            bool found = false;
-            for (int i = 0; i < SAMPLES && !found; i++) {
-                sample(&g.w.r, g.c.n, g.lower, g.upper, x);
-                found = feasible(t, &g, x, 0.0, below);
-            }
-            if (found) {
-                mt_tolerance all;
-                mt_tolerance each[MECH_INPUTS];
-                const mt_tolerance_question q = {x, NULL, below, 60.0, 0};
-                CHECK(t, mt_certify_tolerance(&g.c, &q, &g.mem, &all, each, &err) == MT_OK);
-                n.boxes += all.percent > 0.01 ? 1 : 0;
-                check_inside(t, &g, x, all.percent, -1, below);
-                for (int i = 0; i < g.c.n; i++) {
-                    CHECK(t, each[i].percent >= all.percent * 0.999);
-                    check_inside(t, &g, x, each[i].percent, i, below);
-                }
-                if (all.end == MT_TOLERANCE_EDGE && !g.loose && all.percent > 0.0) {
-                    n.tight += tight(t, &g, x, all.percent) ? 1 : 0;
-                }
-            }
+        const bool ok = begin(t, seed, &g);
+        for (int i = 0; ok && i < SAMPLES && !found; i++) {
+            sample(&g.w.r, g.c.n, g.lower, g.upper, x);
+            found = feasible(t, &g, x, 0.0, below);
+        }
+        if (found) {
+            check_tolerances(t, &g, x, below, &n);
         }
         end(&g);
     }
