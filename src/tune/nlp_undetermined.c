@@ -284,12 +284,16 @@ static bool is_single(const mt_nlp_engine *e, const mt_nlp_result *u, int j)
     return false;
 }
 
-/* Is a point as good as before: still within the tolerances, or no farther from them? */
-static bool as_good(const mt_nlp_point *after, const mt_nlp_point *before)
+/* Is a point as good as before: still within the tolerances, or, for a compromise, no farther from the demands than the tolerances
+ * together? That much the undetermined directions may do by what they are. */
+static bool as_good(const mt_nlp_engine *e, const mt_nlp_point *after,
+                    const mt_nlp_point *before)
 {
-    return mt_nlp_feasible(before)
-               ? mt_nlp_feasible(after)
-               : after->squares <= before->squares + RESIDUAL_TOL * sqrt(before->squares);
+    const mt_nlp *const q = e->nlp;
+    const double tol =
+        hypot(mt_norm2(q->n_eq, q->eq_tol), q->n_in > 0 ? mt_norm2(q->n_in, q->in_tol) : 0.0);
+    return mt_nlp_feasible(before) ? mt_nlp_feasible(after)
+                                   : sqrt(after->squares) <= sqrt(before->squares) + tol;
 }
 
 /* t := p pulled back to the origin along the directions; single variables exactly. True: it differs. */
@@ -342,7 +346,7 @@ void mt_nlp_pull_back(mt_nlp_engine *e, const mt_nlp_result *undetermined, mt_nl
             restore(e, undetermined, to);
         }
         to->kkt = p->kkt;
-        if (as_good(to, p)) {
+        if (as_good(e, to, p)) {
             mt_nlp_point_copy(e, p, to);
         }
     }

@@ -204,9 +204,46 @@ static void nlp_compromise__least_change_also_on_a_curve(mt_test *t)
     mt_arena_free(&c.mem);
 }
 
+/* t_0 = 0 and t_0 = 0.1 - 1e-4 t_1: t_1 at its bound would miss by 7e-5 less, which is less than the demands' tolerance of 1e-3. */
+static mt_status weakly_seen(void *context, const double *t, bool with_gradient,
+                             mt_nlp_values *out, mt_err *err)
+{
+    static const double weak = 1e-4;
+    nlp_case *const c = context;
+    (void)with_gradient;
+    (void)err;
+    c->calls++;
+    change(c, t, out);
+    out->eq[0] = t[0];
+    out->eq[1] = t[0] - 0.1 + (weak * t[1]);
+    out->deq[0] = 1;
+    out->deq[1] = 1;
+    out->deq[2] = 0;
+    out->deq[3] = weak;
+    return MT_OK;
+}
+
+static void nlp_compromise__what_demands_do_not_see_stays_at_the_origin(mt_test *t)
+{
+    nlp_case c = {0};
+    case_begin(&c, 2, weakly_seen, -1, 1);
+    c.nlp.n_eq = 2;
+    c.origin[1] = 0.3;
+    c.eq_tol[0] = 1e-3;
+    c.eq_tol[1] = 1e-3;
+    const mt_nlp_options opt = mt_nlp_options_default();
+    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    CHECK(t, c.result.compromise);
+    CHECK_INT(t, c.result.n_undetermined, 1);
+    CHECK(t, c.result.solutions[0].t[1] == 0.3);
+    CHECK_NEAR(t, c.result.solutions[0].t[0], 0.05 - (0.5e-4 * 0.3), 1e-6);
+    mt_arena_free(&c.mem);
+}
+
 MT_TEST_MAIN(MT_TEST(nlp_compromise__contradicting_targets_are_averaged),
              MT_TEST(nlp_compromise__bounds_are_respected),
              MT_TEST(nlp_compromise__local_ones_are_kept_and_ranked_by_squares),
              MT_TEST(nlp_compromise__excluding_inequalities_meet_half_way),
              MT_TEST(nlp_compromise__of_equal_ones_the_least_change_is_taken),
-             MT_TEST(nlp_compromise__least_change_also_on_a_curve))
+             MT_TEST(nlp_compromise__least_change_also_on_a_curve),
+             MT_TEST(nlp_compromise__what_demands_do_not_see_stays_at_the_origin))
