@@ -89,8 +89,9 @@ static void describe_score(const mt_problem *fresh, mt_recommendation *rec)
         rec->misfit = mt_norm2(fresh->n_res, fresh->r);
     }
     const bool clearance = fresh->aims[0].type == MT_OBJECTIVE_CLEARANCE;
-    const double score =
-        clearance ? rec->clearance_percent : shown(fresh, 0, aim_value(fresh, 0));
+    const double f =
+        aim_value(fresh, 0); /* of a clearance -ln of a ratio: shown in percent of it */
+    const double score = clearance ? 100.0 * expm1(-f) : shown(fresh, 0, f);
     rec->score = none ? nan("") : score;
     rec->score_unit = fresh->aims[0].type == MT_OBJECTIVE_MASS ? "kg" : clearance ? "%" : "";
 }

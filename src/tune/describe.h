@@ -17,6 +17,8 @@ typedef struct mt_design {
     int stage;                    /* the objective that found->f belongs to */
     int rank;
     const struct mt_discrete_report *discrete; /* NULL: no catalogue was searched */
+    const struct mt_gap_result *gaps; /* NULL: no gap assignments were searched */
+    const int *below;                 /* its assignment; NULL likewise */
 } mt_design;
 
 /* Fill rec (lists and texts in result->mem; names are the study's until mt_describe_own). baseline: NULL while the baseline itself is described. A design where goals have no
@@ -46,6 +48,8 @@ mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
 /* describe_undetermined.c: directions that the goals do not settle. */
 mt_status mt_describe_undetermined(const mt_problem *p, const mt_nlp_result *found,
                                    mt_result *result, mt_err *err);
+/* What is wrong with the original design, in sentences. */
+mt_status mt_describe_baseline_reasons(const mt_problem *p, mt_result *result, mt_err *err);
 /* Sentences why a recommendation is what it is; after mt_describe_undetermined (reasons.c). */
 mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
                               const mt_nlp_result *search, mt_result *result,

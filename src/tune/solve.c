@@ -35,6 +35,7 @@ static mt_status describe_solutions(answer *a, mt_err *err)
     const mt_nlp_result *const found = &a->found;
     mt_result *const result = a->result;
     const bool discrete = mt_study_is_discrete(a->study);
+    const bool kinds = a->gaps.n_solutions > 0;
     const int most = a->study->recommendations;
     const int n = found->n_solutions < most ? found->n_solutions : most;
     result->recommendations =
@@ -48,7 +49,9 @@ static mt_status describe_solutions(answer *a, mt_err *err)
                                   .found = &found->solutions[i],
                                   .stage = a->stage,
                                   .rank = i + 1,
-                                  .discrete = discrete ? &a->discrete : NULL};
+                                  .discrete = discrete ? &a->discrete : NULL,
+                                  .gaps = kinds ? &a->gaps : NULL,
+                                  .below = kinds ? a->gaps.solutions[i].below : NULL};
         mt_recommendation *const rec = &result->recommendations[i];
         MT_TRY(mt_describe_design(a->p, &design, &result->baseline, result, rec, err));
         MT_TRY(mt_describe_reasons(a->p, &design, found, result, rec, err));
@@ -123,6 +126,14 @@ static const char *status_text(const answer *a, const mt_recommendation *best)
     if (n == 0) {
         return a->why.code != MT_OK ? "No design that was tried could be evaluated."
                                     : "The budget ended before any design was found.";
+    }
+    if (best->feasible && a->gaps.n_solutions > 0) {
+        return mt_arena_printf(
+            mem,
+            "Solved: %d kind%s of design keep%s clear of the bands and meet%s all goals (of %.0f "
+            "gap assignments, %s).",
+            n, n == 1 ? "" : "s", n == 1 ? "s" : "", n == 1 ? "s" : "", a->gaps.n_possible,
+            a->gaps.proven ? "the others proven infeasible" : "sampled, not proven");
     }
     if (best->feasible) {
         return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.", n,
@@ -218,6 +229,7 @@ static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
     }
     MT_TRY(mt_describe_run(a->study, result, err));
     MT_TRY(mt_describe_design(p, &original, NULL, result, &result->baseline, err));
+    MT_TRY(mt_describe_baseline_reasons(p, result, err));
     if (a->searched) {
         MT_TRY(search(a, err));
         MT_TRY(describe_solutions(a, err));
