@@ -232,7 +232,7 @@ static bool begin(mt_test *t, int seed, rig *g)
     }
     for (int i = 0; i < g->w.n; i++) {
         const double reach = mt_random_in(&g->w.r, 1.05, 1.8);
-        char name[8];
+        char name[16];
         (void)snprintf(name, sizeof name, "p%d", i);
         inputs[i] = mt_model_find_parameter(g->model, name);
         g->lower[i] = g->w.value[i] / reach;
