@@ -30,8 +30,8 @@ static int compare_below(const int *a, const int *b, int n)
     return 0;
 }
 
-/* Assignment of the design at t, and its worst violation; false where it cannot be evaluated. */
-static bool assign(mt_problem *p, const double *t, int *below, double *violation, mt_err *err)
+bool mt_gap_assignment(mt_problem *p, const double *t, int *below, double *violation,
+                       mt_err *err)
 {
     mt_problem_x(p, t, p->x);
     *violation = 0.0;
@@ -129,7 +129,8 @@ static mt_status sample(mt_problem *p, mt_arena *mem, mt_gap_candidates *out, mt
         if (p->stop != NULL && *p->stop != 0) {
             break;
         }
-        if (assign(p, t + ((ptrdiff_t)k * p->n), below, &violation, &ignored)) {
+        if (mt_gap_assignment(p, t + ((ptrdiff_t)k * p->n), below, &violation,
+                              &ignored)) {
             insert(p, list, &out->n, below, violation);
         }
         out->evals++;

@@ -18,9 +18,21 @@ typedef struct job {
     const mt_gap_candidates *candidates;
     slot *slots;
     mt_nlp_options options;
+    const int *hint_below; /* [n_bands] assignment of p->hint; NULL: none */
 } job;
 
 enum { STARTS_PER_CANDIDATE = 8, SOLUTIONS_PER_CANDIDATE = 4 };
+
+/* The caller's design where it is of this kind, else the one that the candidate comes with; NULL: none. */
+static const double *hint_of(const job *j, int k)
+{
+    const size_t size = (size_t)j->p->n_bands * sizeof(int);
+    const int *const below = j->candidates->below + ((ptrdiff_t)k * j->p->n_bands);
+    if (j->hint_below != NULL && memcmp(below, j->hint_below, size) == 0) {
+        return j->p->hint;
+    }
+    return j->candidates->at == NULL ? NULL : j->candidates->at + ((ptrdiff_t)k * j->p->n);
+}
 
 /* A candidate that cannot even be evaluated anywhere is no failure of the study: it has no solution. */
 static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
@@ -37,8 +49,9 @@ static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
     p->stop = j->p->stop;
     mt_nlp nlp = mt_problem_nlp(p);
     double *const hint = mt_arena_f64(&s->mem, (size_t)p->n_t, 1);
-    if (hint != NULL && j->candidates->at != NULL) {
-        memcpy(hint, j->candidates->at + ((ptrdiff_t)k * p->n), (size_t)p->n * sizeof *hint);
+    const double *const from = hint_of(j, k);
+    if (hint != NULL && from != NULL) {
+        memcpy(hint, from, (size_t)p->n * sizeof *hint);
         nlp.hint = hint;
     }
     s->rc = mt_nlp_solve(&nlp, &j->options, &s->mem, &s->found, &why);
@@ -169,6 +182,14 @@ mt_status mt_gaps_solve(mt_problem *p, int workers, mt_arena *mem, mt_gap_result
     j.options.max_evals = p->study->search.max_evaluations;
     j.options.max_solutions = SOLUTIONS_PER_CANDIDATE;
     j.options.least_change = p->aims[p->stage].type == MT_OBJECTIVE_CHANGE;
+    if (p->hint != NULL) {
+        int *const below = mt_arena_int(mem, (size_t)p->n_bands);
+        double violation = 0.0;
+        mt_err ignored = {0};
+        const bool known =
+            below != NULL && mt_gap_assignment(p, p->hint, below, &violation, &ignored);
+        j.hint_below = known ? below : NULL;
+    }
     j.slots = mt_arena_alloc(mem, (size_t)candidates.n, sizeof *j.slots);
     if (j.slots == NULL) {
         return mt_fail_memory(err);

@@ -54,6 +54,9 @@ typedef struct mt_gap_candidates {
     long boxes;
     long evals;
 } mt_gap_candidates;
+/* Assignment below[n_bands] of the design at t[n], and its worst violation; false where it cannot be evaluated. */
+bool mt_gap_assignment(mt_problem *p, const double *t, int *below, double *violation,
+                       mt_err *err);
 mt_status mt_gap_candidates_find(mt_problem *p, mt_arena *mem, mt_gap_candidates *out,
                                  mt_err *err);
 

@@ -162,6 +162,7 @@ mt_nlp mt_problem_nlp(mt_problem *p)
     const mt_nlp nlp = {.n = p->n_t,
                         .lower = p->lower_t,
                         .upper = p->upper_t,
+                        .hint = p->hint,
                         .origin = p->origin_t,
                         .n_res = residuals(p),
                         .n_eq = p->n_eq,

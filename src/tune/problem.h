@@ -122,6 +122,7 @@ typedef struct mt_problem {
     double *shape;  /* [max ns] */
     double *dshape; /* max ns x n */
     long evaluations;
+    const double *hint; /* [n + 1] coordinates of one more design to start from; NULL: none */
     const volatile int *stop; /* NULL, or the search ends where it is set */
     void (*progress)(void *context, const char *text); /* NULL, or called now and then */
     void *progress_context;

@@ -5,6 +5,7 @@
 #include "tune/discrete.h"
 #include "tune/gaps.h"
 #include "tune/search.h"
+#include "tune/trade.h"
 
 mt_solve_options mt_solve_options_default(void)
 {
@@ -212,6 +213,23 @@ static mt_status certify(answer *a, mt_err *err)
     return MT_OK;
 }
 
+/* The caller's design as one more start of every search. */
+static mt_status take_hint(answer *a, const double *hint, mt_err *err)
+{
+    const mt_problem *const p = a->p;
+    double *const t = mt_arena_f64(&a->mem, (size_t)p->n + 1, 1);
+    if (t == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n; i++) {
+        t[i] = mt_problem_t(p, i, hint[i]); /* the search brings it within the bounds */
+    }
+    for (int i = 0; i < a->n_workers; i++) {
+        a->workers[i]->hint = t;
+    }
+    return MT_OK;
+}
+
 static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
 {
     mt_problem *const p = a->p;
@@ -226,6 +244,9 @@ static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
     a->searched = p->n > 0 && (p->n_demands > 0 || p->n_clears > 0);
     if (x == NULL) {
         return mt_fail_memory(err);
+    }
+    if (opt->hint != NULL) {
+        MT_TRY(take_hint(a, opt->hint, err));
     }
     MT_TRY(mt_describe_run(a->study, result, err));
     MT_TRY(mt_describe_design(p, &original, NULL, result, &result->baseline, err));
@@ -280,6 +301,9 @@ mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_
     rc = rc == MT_OK ? mt_reference_cache_init(&a.references, study, &a.mem, err) : rc;
     rc = rc == MT_OK ? open_problems(&a, use->threads, err) : rc;
     rc = rc == MT_OK ? fill(&a, use, err) : rc;
+    if (rc == MT_OK && a.result->status != MT_RESULT_INTERRUPTED) {
+        rc = mt_trade_solve(study, use, a.result, err);
+    }
     for (int i = 0; i < a.n_workers; i++) {
         mt_problem_delete(a.workers[i]);
     }

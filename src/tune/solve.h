@@ -6,7 +6,8 @@
 #include "tune/study.h"
 
 typedef struct mt_solve_options {
-    int threads; /* workers; 1 for now */
+    int threads;        /* workers */
+    const double *hint; /* [n_variables] one more design to start from; NULL: none */
     const volatile int *
         stop; /* NULL, or set non-zero from a signal handler: the search ends with what it has */
     void (*progress)(void *context,
