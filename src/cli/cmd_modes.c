@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/damped.h"
 #include "cli/shapes.h"
 #include "report/table.h"
 
@@ -17,6 +18,9 @@ typedef struct view {
     mt_analysis *a;
     int shown;        /* positions of modes to write */
     mt_shapes shapes; /* n 0: not asked for */
+    int count;        /* --count */
+    bool with_damping;
+    mt_damped_modes damped;
 } view;
 
 static void json_mode(mt_json_writer *w, const view *v, int i)
@@ -78,6 +82,9 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
         json_mode(w, v, i);
     }
     mt_json_close(w);
+    if (v->with_damping) {
+        mt_damped_json(&v->damped, v->count, w);
+    }
     MT_TRY(json_redundant(w, v->a->lin, err));
     mt_json_open(w, "equilibrium", '{');
     mt_json_put_bool(w, "solved", lin->position.equilibrium.active);
@@ -220,6 +227,9 @@ static mt_status text_view(const view *v, mt_text *out, mt_err *err)
     if (v->shapes.n > 0) {
         print_shapes(v, out);
     }
+    if (v->with_damping) {
+        mt_damped_print(&v->damped, v->count, out);
+    }
     mt_text_add(out, "\n");
     return MT_OK;
 }
@@ -233,6 +243,14 @@ typedef struct sink {
 
 static mt_status csv_view(sink *to, const view *v)
 {
+    if (v->with_damping) { /* a table of its own kind: the damped modes alone */
+        if (to->table.n_columns == 0) {
+            to->table = mt_table_default();
+            mt_damped_columns(&to->table, true);
+        }
+        mt_damped_rows(&to->table, &v->damped, v->count, mt_subject_configuration(v->s, v->c));
+        return MT_OK;
+    }
     if (to->table.n_columns == 0) {
         to->table = table_new(true, v->shapes.n, &v->shapes);
     }
@@ -245,7 +263,7 @@ static mt_status csv_view(sink *to, const view *v)
 
 static mt_status one(sink *to, const mt_subject *s, int c, mt_err *err)
 {
-    view v = {.s = s, .c = c};
+    view v = {.s = s, .c = c, .count = to->args->count};
     mt_arena mem = {.first = NULL};
     mt_status rc = mt_arena_init(&mem, 0, err);
     rc = rc == MT_OK ? mt_subject_analyse(s, c, &v.a, err) : rc;
@@ -255,6 +273,10 @@ static mt_status one(sink *to, const mt_subject *s, int c, mt_err *err)
     v.shown = mt_modes_shown(&v.a->modes, to->args->count);
     if (to->args->given[MT_OPT_SHAPES]) {
         rc = mt_shapes_of(v.a, v.shown, &mem, &v.shapes, err);
+    }
+    if (rc == MT_OK && to->args->given[MT_OPT_DAMPED]) {
+        v.with_damping = true;
+        rc = mt_damped_of(v.a, &mem, &v.damped, err);
     }
     if (rc != MT_OK) {
         goto done;

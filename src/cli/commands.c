@@ -4,8 +4,9 @@
 
 #define BIT(command) (1U << (unsigned)(command))
 #define EVERYWHERE   (BIT(MT_CMD_IDS) - 1U)
-#define ON_MODELS    (BIT(MT_CMD_MODES) | BIT(MT_CMD_SENSITIVITY) | BIT(MT_CMD_INFO))
-#define ON_STUDIES   (BIT(MT_CMD_RUN) | BIT(MT_CMD_COMPARE))
+#define ON_MODELS \
+    (BIT(MT_CMD_MODES) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY) | BIT(MT_CMD_INFO))
+#define ON_STUDIES (BIT(MT_CMD_RUN) | BIT(MT_CMD_COMPARE))
 
 #define OPTION(id, letter_, name_, value_, commands_, help_) \
     [id] = {.letter = (letter_),                             \
@@ -21,10 +22,19 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "give a parameter another value; an expression may use the model's own values "
            "(\"k=1.1*k\"); may be repeated"),
     OPTION(MT_OPT_COUNT, '\0', "count", "N",
-           BIT(MT_CMD_MODES) | BIT(MT_CMD_MAC) | BIT(MT_CMD_SENSITIVITY),
+           BIT(MT_CMD_MODES) | BIT(MT_CMD_MAC) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY),
            "only the first N vibration modes"),
     OPTION(MT_OPT_SHAPES, '\0', "shapes", NULL, BIT(MT_CMD_MODES),
            "mode shapes at the sensors, or of the bodies where there are none"),
+    OPTION(MT_OPT_DAMPED, '\0', "damped", NULL, BIT(MT_CMD_MODES),
+           "modes with the model's dampers, too: damped frequencies and damping ratios"),
+    OPTION(MT_OPT_DRIVE, '\0', "drive", "JOINT=FROM:TO:N", BIT(MT_CMD_SWEEP),
+           "the joint (or a link's hinge) and N positions of it from the reference position, "
+           "rad or m; FROM and TO may be expressions (\"pivot=-10*deg:10*deg:21\")"),
+    OPTION(MT_OPT_HOLD, '\0', "hold", "SPRING", BIT(MT_CMD_SWEEP),
+           "trim this spring so that it holds the joint (default: the joint is locked)"),
+    OPTION(MT_OPT_MODES, '\0', "modes", NULL, BIT(MT_CMD_SWEEP),
+           "natural frequencies at each position"),
     OPTION(MT_OPT_PARAMETERS, '\0', "parameters", "A,B", BIT(MT_CMD_SENSITIVITY),
            "parameters to vary (default: all that are not made of others)"),
     OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR", BIT(MT_CMD_RUN),
@@ -83,6 +93,15 @@ const mt_command mt_commands[MT_CMD_IDS] = {
             "out where a model\n"
             "has only one. Default number of modes: as many as there are common "
             "sensor channels."),
+    COMMAND(
+        MT_CMD_SWEEP, "sweep", "MODEL", 1, 1,
+        "positions and frequencies over a range of motion",
+        "Drives a joint through a range (--drive) and prints the coordinate of every joint, "
+        "its\n"
+        "ratio to the driven one (exact derivative), what holds the joint, and, with --modes,\n"
+        "the natural frequencies (default: 6) by index. Where a limit position ends the "
+        "range,\n"
+        "the positions before it are printed, the limit is named, and the exit status is 3."),
     COMMAND(MT_CMD_SENSITIVITY, "sensitivity", "MODEL", 1, 1,
             "change of each frequency per per cent of each parameter",
             "Prints exact derivatives: Hz for one per cent more of a parameter, for the "

@@ -10,8 +10,9 @@ EVERYWHERE = {"root", "format", "quiet", "help"}
 OPTIONS = {
     "run": {"output", "verify", "threads"},
     "compare": {"threads"},
-    "modes": {"configuration", "set", "count", "shapes"},
+    "modes": {"configuration", "set", "count", "shapes", "damped"},
     "mac": {"count"},
+    "sweep": {"configuration", "set", "count", "drive", "hold", "modes"},
     "sensitivity": {"configuration", "set", "count", "parameters"},
     "info": {"configuration", "set"},
     "apply": {"rank", "model"},

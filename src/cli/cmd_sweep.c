@@ -1,0 +1,308 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* modetune sweep: positions, ratios and frequencies along the range of one driven joint. */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/sweep.h"
+#include "model/values.h"
+
+enum { DEFAULT_MODES = 6, MOST_POINTS = 100001 };
+
+static mt_status wrong_form(const char *text, mt_err *err)
+{
+    return mt_fail(err, MT_E_USAGE, "--drive: \"%s\" is not JOINT=FROM:TO:N", text);
+}
+
+/* One bound: an expression of the model's values. */
+static mt_status read_bound(mt_subject *s, const char *text, size_t length, double *out,
+                            mt_err *err)
+{
+    const int n = s->model->n_parameters;
+    const char **const names = mt_arena_alloc(&s->mem, (size_t)n, sizeof *names);
+    const char *const copy = mt_arena_strndup(&s->mem, text, length);
+    mt_expr e;
+    if (names == NULL || copy == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < n; i++) {
+        names[i] = s->model->parameters[i].name.s;
+    }
+    mt_status rc = mt_expr_parse(copy, mt_model_lookup, s->model, names, n, &s->mem, &e, err);
+    if (rc == MT_OK) {
+        rc = mt_model_expr_value(s->model, s->values, &e, &s->mem, out, err);
+    }
+    return rc == MT_OK
+               ? rc
+               : mt_err_in(err, rc == MT_E_MEMORY ? rc : MT_E_USAGE, "--drive: %s", copy);
+}
+
+/* N, a whole number: 1 only where the range is a point. */
+static mt_status read_points(const char *text, const double range[2], int *out, mt_err *err)
+{
+    char *end = NULL;
+    errno = 0;
+    const long n = strtol(text, &end, 10);
+    const int least = range[0] == range[1] ? 1 : 2;
+    if (text[0] < '0' || text[0] > '9' || *end != '\0' || errno != 0 || n < least ||
+        n > MOST_POINTS) {
+        return mt_fail(
+            err, MT_E_USAGE,
+            "--drive: the number of positions, \"%s\", is not a whole number from %d "
+            "to %d",
+            text, least, (int)MOST_POINTS);
+    }
+    *out = (int)n;
+    return MT_OK;
+}
+
+mt_status mt_sweep_read(const mt_args *args, mt_subject *s, mt_sweep_request *out, mt_err *err)
+{
+    const char *const text = args->value[MT_OPT_DRIVE];
+    double range[2] = {0.0, 0.0};
+    if (text == NULL) {
+        return mt_fail(err, MT_E_USAGE, "\"sweep\" needs --drive JOINT=FROM:TO:N");
+    }
+    const char *const equals = strchr(text, '=');
+    const char *const first = equals == NULL ? NULL : strchr(equals, ':');
+    const char *const second = first == NULL ? NULL : strchr(first + 1, ':');
+    if (second == NULL || equals == text || strchr(second + 1, ':') != NULL) {
+        return wrong_form(text, err);
+    }
+    out->drive.joint = mt_arena_strndup(&s->mem, text, (size_t)(equals - text));
+    out->drive.spring = args->value[MT_OPT_HOLD];
+    if (out->drive.joint == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(read_bound(s, equals + 1, (size_t)(first - equals - 1), &range[0], err));
+    MT_TRY(read_bound(s, first + 1, (size_t)(second - first - 1), &range[1], err));
+    MT_TRY(read_points(second + 1, range, &out->n, err));
+    out->positions = mt_arena_f64(&s->mem, (size_t)out->n, 1);
+    if (out->positions == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_sweep_range(range[0], range[1], out->n, out->positions);
+    return MT_OK;
+}
+
+/* One configuration at work. */
+typedef struct job {
+    mt_sweep_view v;
+    mt_arena mem;
+    mt_analysis *a; /* with --modes */
+    mt_system *sys; /* without */
+    mt_linear *lin;
+} job;
+
+static void job_free(job *j)
+{
+    if (j->a == NULL) {
+        mt_linear_delete(j->lin);
+        mt_system_delete(j->sys);
+    }
+    mt_analysis_delete(j->a);
+    mt_arena_free(&j->mem);
+}
+
+/* Modes at one point. */
+static mt_status visit(void *context, int point, const double *inputs, mt_err *err)
+{
+    job *const j = context;
+    mt_analysis_options opt = mt_analysis_options_default();
+    opt.gradient = true; /* of the position */
+    opt.check = false;
+    MT_TRY(mt_analysis_solve(j->a, inputs, &opt, err));
+    const mt_modes *const m = &j->a->modes;
+    for (int i = 0; i < j->v.modes; i++) {
+        const int at = mt_modal_flexible(m, i + 1);
+        j->v.hz[i + ((ptrdiff_t)point * j->v.modes)] = at < 0 ? nan("") : mt_modal_hz(m, at);
+    }
+    j->v.rigid[point] = m->n_rigid;
+    j->v.unstable[point] = m->n_unstable + m->n_unstable_condensed;
+    return MT_OK;
+}
+
+static mt_status prepare_modes(job *j, int wanted, mt_err *err)
+{
+    const size_t n = (size_t)j->v.request->n;
+    const mt_modes *const m = &j->a->modes;
+    const int flexible = m->count - m->n_rigid;
+    j->v.modes = flexible < wanted ? flexible : wanted;
+    j->v.hz = mt_arena_f64(&j->mem, (size_t)j->v.modes, n);
+    j->v.rigid = mt_arena_int(&j->mem, n);
+    j->v.unstable = mt_arena_int(&j->mem, n);
+    if (j->v.hz == NULL || j->v.rigid == NULL || j->v.unstable == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (size_t i = 0; i < n * (size_t)j->v.modes; i++) {
+        j->v.hz[i] = nan("");
+    }
+    return MT_OK;
+}
+
+/* Position of the caller's drive that is nearest to the reference position: every system is made there. */
+static double nearest_position(const mt_sweep_request *r)
+{
+    double best = r->positions[0];
+    for (int i = 1; i < r->n; i++) {
+        best = fabs(r->positions[i]) < fabs(best) ? r->positions[i] : best;
+    }
+    return best;
+}
+
+static mt_status run(const mt_args *args, const mt_subject *s, int c, job *j, mt_err *err)
+{
+    const mt_sweep_request *const r = j->v.request;
+    const mt_sweep_visitor visitor = {visit, j};
+    const size_t n = (size_t)s->n_inputs;
+    MT_TRY(mt_arena_init(&j->mem, 0, err));
+    double *const at = mt_arena_f64(&j->mem, n + 1, 1);
+    if (at == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (size_t i = 0; i < n; i++) {
+        at[i] = s->at[i];
+    }
+    at[n] = nearest_position(r);
+    if (args->given[MT_OPT_MODES]) {
+        MT_TRY(mt_analysis_new_driven(s->model, c, &r->drive, s->n_inputs, s->inputs, at, &j->a,
+                                      err));
+        MT_TRY(prepare_modes(j, args->count > 0 ? args->count : DEFAULT_MODES, err));
+        j->sys = j->a->sys;
+        j->lin = j->a->lin;
+    } else {
+        MT_TRY(mt_system_new_driven(s->model, c, &r->drive, s->n_inputs, s->inputs, at, &j->sys,
+                                    err));
+        MT_TRY(mt_linear_new(j->sys, &j->lin, err));
+    }
+    j->v.sys = j->sys;
+    return mt_sweep_run(j->lin, at, r->n, r->positions,
+                        args->given[MT_OPT_MODES] ? &visitor : NULL, &j->mem, &j->v.sweep, err);
+}
+
+/* Each reason why points are missing, once. */
+static int tell_missing(const mt_subject *s, const mt_sweep_view *v)
+{
+    const char *last = NULL;
+    int code = MT_EXIT_DONE;
+    for (int i = 0; i < v->sweep.n_points; i++) {
+        const mt_sweep_point *const p = &v->sweep.points[i];
+        if (p->status == MT_OK) {
+            continue;
+        }
+        if (last == NULL || strcmp(last, p->why) != 0) {
+            mt_terminal_error("%s: configuration \"%s\": %s", s->path, v->configuration,
+                              p->why);
+        }
+        last = p->why;
+        code = mt_exit_worse(code, mt_exit_of(p->status));
+    }
+    return code;
+}
+
+typedef struct sink {
+    const mt_args *args;
+    mt_text *out;
+    mt_json_writer w;
+    mt_table table; /* CSV */
+} sink;
+
+static bool same_columns(const mt_table *a, const mt_table *b)
+{
+    bool same = a->n_columns == b->n_columns;
+    for (int i = 0; i < a->n_columns && same; i++) {
+        same = strcmp(a->columns[i].member, b->columns[i].member) == 0;
+    }
+    return same;
+}
+
+static mt_status add_csv(sink *to, const mt_sweep_view *v, mt_err *err)
+{
+    mt_table columns = mt_table_default();
+    mt_sweep_csv_columns(v, &columns);
+    if (to->table.n_columns == 0) {
+        to->table = columns;
+        mt_sweep_csv_rows(v, &to->table);
+        return MT_OK;
+    }
+    const bool same = same_columns(&to->table, &columns);
+    mt_table_free(&columns);
+    if (!same) {
+        return mt_fail(err, MT_E_USAGE,
+                       "configurations with different joints do not fit into one CSV table: "
+                       "choose one with -c");
+    }
+    mt_sweep_csv_rows(v, &to->table);
+    return MT_OK;
+}
+
+static int one(sink *to, const mt_subject *s, int c, const mt_sweep_request *request)
+{
+    job j = {.a = NULL};
+    mt_err err = {.code = MT_OK};
+    int code = MT_EXIT_DONE;
+    j.v.configuration = mt_subject_configuration(s, c);
+    j.v.request = request;
+    mt_subject_warn_overridden(s, c);
+    mt_status rc = run(to->args, s, c, &j, &err);
+    if (rc == MT_OK) {
+        code = tell_missing(s, &j.v);
+        switch (to->args->format) {
+        case MT_FORMAT_JSON:
+            mt_sweep_json(&j.v, &to->w);
+            break;
+        case MT_FORMAT_CSV:
+            rc = add_csv(to, &j.v, &err);
+            break;
+        case MT_FORMAT_TEXT:
+            mt_sweep_print(&j.v, to->out);
+            break;
+        }
+    } else if (to->args->format == MT_FORMAT_JSON) {
+        mt_json_open(&to->w, NULL, '{');
+        mt_json_put_string(&to->w, "configuration", j.v.configuration);
+        mt_json_put_string(&to->w, "error", err.text);
+        mt_json_close(&to->w);
+    }
+    job_free(&j);
+    return rc == MT_OK ? code : mt_exit_worse(code, mt_cli_failed(rc, &err));
+}
+
+int mt_cmd_sweep(const mt_args *args, mt_text *out)
+{
+    mt_subject s = {.model = NULL};
+    sink to = {.args = args, .out = out, .w = mt_json_writer_default(out)};
+    mt_sweep_request request = {.n = 0};
+    mt_err err = {.code = MT_OK};
+    const bool json = args->format == MT_FORMAT_JSON;
+    const bool list = json && !args->given[MT_OPT_CONFIGURATION];
+    int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
+    if (code != MT_EXIT_DONE) {
+        goto done;
+    }
+    const mt_status rc = mt_sweep_read(args, &s, &request, &err);
+    if (rc != MT_OK) {
+        code = mt_cli_failed(rc, &err);
+        goto done;
+    }
+    if (list) {
+        mt_json_open(&to.w, NULL, '[');
+    }
+    for (int i = 0; i < s.n_configurations; i++) {
+        code = mt_exit_worse(code, one(&to, &s, s.configurations[i], &request));
+    }
+    if (list) {
+        mt_json_close(&to.w);
+    }
+    if (json) {
+        code = mt_exit_worse(code, mt_cli_json_done(&to.w));
+    }
+    if (args->format == MT_FORMAT_CSV && to.table.n_columns > 0) {
+        mt_table_csv(&to.table, out);
+    }
+done:
+    mt_table_free(&to.table);
+    mt_subject_free(&s);
+    return code;
+}

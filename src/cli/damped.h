@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CLI_DAMPED_H
+#define CLI_DAMPED_H
+
+#include "cli/cli.h"
+#include "modal/damped.h"
+#include "report/table.h"
+
+/* Damped modes of an analysis, in mem. */
+mt_status mt_damped_of(mt_analysis *a, mt_arena *mem, mt_damped_modes *out, mt_err *err);
+/* Columns and rows; configuration NULL: no such column. */
+void mt_damped_columns(mt_table *t, bool with_configuration);
+void mt_damped_rows(mt_table *t, const mt_damped_modes *d, int count,
+                    const char *configuration);
+/* Table with what is to be said about it. count: oscillating modes to show, 0: all. */
+void mt_damped_print(const mt_damped_modes *d, int count, mt_text *out);
+/* Member "damped_modes". */
+void mt_damped_json(const mt_damped_modes *d, int count, mt_json_writer *w);
+
+#endif

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CLI_SWEEP_H
+#define CLI_SWEEP_H
+
+#include "cli/cli.h"
+#include "mechanics/sweep.h"
+#include "report/table.h"
+
+/* What --drive and --hold ask for. */
+typedef struct mt_sweep_request {
+    mt_system_drive drive;
+    int n;
+    double *positions; /* [n] rad or m from the reference position */
+} mt_sweep_request;
+
+/* The sweep of one configuration, ready to be written. */
+typedef struct mt_sweep_view {
+    const char *configuration;
+    const mt_sweep_request *request;
+    const mt_system *sys;
+    mt_sweep sweep;
+    int modes;     /* frequencies per point; 0: not asked for */
+    double *hz;    /* modes x n points; NaN: no such mode */
+    int *rigid;    /* [n] rigid-body modes */
+    int *unstable; /* [n] */
+} mt_sweep_view;
+
+/* "JOINT=FROM:TO:N" with expressions of the subject's values, into mem. Fails: MT_E_USAGE, MT_E_MEMORY. */
+mt_status mt_sweep_read(const mt_args *args, mt_subject *s, mt_sweep_request *out, mt_err *err);
+
+void mt_sweep_print(const mt_sweep_view *v, mt_text *out);
+void mt_sweep_json(const mt_sweep_view *v, mt_json_writer *w);
+/* Columns, then rows of all points; the columns of two configurations are the same where their joints are. */
+void mt_sweep_csv_columns(const mt_sweep_view *v, mt_table *t);
+void mt_sweep_csv_rows(const mt_sweep_view *v, mt_table *t);
+
+#endif
