@@ -128,6 +128,7 @@ static mt_status describe(mt_problem *fresh, const mt_design *design,
     }
     rec->kkt_residual = design->found->kkt;
     rec->singular = design->found->singular;
+    MT_TRY(mt_describe_tolerance(fresh, result, rec, err));
     return compare(fresh, design, result, err);
 }
 

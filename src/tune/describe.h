@@ -17,8 +17,8 @@ typedef struct mt_design {
     int stage;                    /* the objective that found->f belongs to */
     int rank;
     const struct mt_discrete_report *discrete; /* NULL: no catalogue was searched */
-    const struct mt_gap_result *gaps; /* NULL: no gap assignments were searched */
-    const int *below;                 /* its assignment; NULL likewise */
+    const struct mt_gap_result *gaps;          /* NULL: no gap assignments were searched */
+    const int *below;                          /* its assignment; NULL likewise */
 } mt_design;
 
 /* Fill rec (lists and texts in result->mem; names are the study's until mt_describe_own). baseline: NULL while the baseline itself is described. A design where goals have no
@@ -45,6 +45,9 @@ double mt_describe_margin_percent(const mt_band *band, double hz);
 mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
                                   const mt_recommendation *baseline, mt_result *result,
                                   mt_recommendation *rec, mt_err *err);
+/* tolerance_box.c: inertia counts confirm the bands of a feasible design; its tolerance box, where the modes can be enclosed. After the clearances. */
+mt_status mt_describe_tolerance(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+                                mt_err *err);
 /* describe_undetermined.c: directions that the goals do not settle. */
 mt_status mt_describe_undetermined(const mt_problem *p, const mt_nlp_result *found,
                                    mt_result *result, mt_err *err);

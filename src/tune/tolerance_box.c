@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * What is proven of one design: an inertia count at its own matrices confirms that every band is empty (no eigenvalue is involved), and, where the modes can be enclosed, the
+ * tolerance box says how far its variables may stray with the bands, without their margin, and the frequency limits still kept.
+ */
+#include <math.h>
+
+#include "tune/describe.h"
+#include "tune/proof.h"
+
+/* Tolerances beyond this are not asked about. */
+static const double MOST_PERCENT = 100.0;
+/* Sub-boxes of one test where an input enters both matrices: fewer for many variables, whose boxes cost more and gain less. */
+enum { BOXES_FEW_VARIABLES = 64, BOXES_MANY_VARIABLES = 8, FEW_VARIABLES = 8 };
+
+static mt_status count_band(mt_problem *fresh, const mt_clear *c, const mt_band *band,
+                            mt_result *result, bool *confirmed, mt_err *err)
+{
+    const mt_analysis *const a = fresh->views[c->view].analysis;
+    mt_band_count count = {0};
+    MT_TRY(mt_certify_count(a->lin, a->modes.n_rigid, band->lower_hz, band->upper_hz,
+                            c->tolerance, &fresh->mem, &count, err));
+    *confirmed = *confirmed && count.sure && count.inside == 0;
+    if (count.inside == 0) {
+        return MT_OK;
+    }
+    return mt_describe_warn(
+        result, err,
+        "%s: an inertia count finds %d mode%s inside the band %s of a recommended design",
+        mt_analysis_configuration(a), count.inside, count.inside == 1 ? "" : "s", band->label);
+}
+
+/* Every band of every clear, by inertia. */
+static mt_status confirm(mt_problem *fresh, mt_result *result, bool *confirmed, mt_err *err)
+{
+    *confirmed = fresh->n_bands > 0;
+    for (int i = 0; i < fresh->n_clears; i++) {
+        const mt_clear *const c = &fresh->clears[i];
+        for (int b = 0; b < c->bands.n; b++) {
+            MT_TRY(count_band(fresh, c, &c->bands.items[b], result, confirmed, err));
+        }
+    }
+    return MT_OK;
+}
+
+static const char *edge_text(const mt_problem *p, const mt_recommendation *rec,
+                             const mt_tolerance *t, mt_arena *mem)
+{
+    if (t->end == MT_TOLERANCE_DOMAIN) {
+        return "a stiffness or a mass would no longer be positive";
+    }
+    if (t->end != MT_TOLERANCE_EDGE) {
+        return NULL;
+    }
+    const mt_certify_edge *const e = &t->edge;
+    const char *const configuration = mt_analysis_configuration(p->views[e->view].analysis);
+    if (e->band >= 0) {
+        return mt_arena_printf(mem, "mode %d of \"%s\" at the %s edge of %s, %.6g Hz", e->mode,
+                               configuration, e->above ? "upper" : "lower",
+                               rec->gaps[e->band].band, e->hz);
+    }
+    return mt_arena_printf(mem, "mode %d of \"%s\" at its limit of %.6g Hz", e->mode,
+                           configuration, e->hz);
+}
+
+static mt_status fill_box(mt_problem *p, mt_proof *proof, const mt_recommendation *rec,
+                          mt_result *result, mt_tolerance_box *box, mt_err *err)
+{
+    mt_certify q = proof->question;
+    mt_tolerance all = {0};
+    mt_tolerance *const each = mt_arena_alloc(&p->mem, (size_t)p->n, sizeof *each);
+    int *const assignment = mt_arena_int(&p->mem, (size_t)p->n_bands);
+    box->variables = mt_arena_alloc(&result->mem, (size_t)p->n, sizeof *box->variables);
+    if (each == NULL || assignment == NULL || box->variables == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n_bands; i++) {
+        assignment[i] = rec->gaps[i].modes_below;
+    }
+    q.bands = proof->bases;
+    const mt_tolerance_question question = {
+        .x = p->x,
+        .assignment = assignment,
+        .most_percent = MOST_PERCENT,
+        .boxes_per_test = p->n <= FEW_VARIABLES ? BOXES_FEW_VARIABLES : BOXES_MANY_VARIABLES};
+    MT_TRY(mt_certify_tolerance(&q, &question, &p->mem, &all, each, err));
+    box->proven = true;
+    box->all_percent = all.percent;
+    box->edge = edge_text(p, rec, &all, &result->mem);
+    box->n_variables = p->n;
+    for (int i = 0; i < p->n; i++) {
+        box->variables[i] =
+            (mt_result_tolerance){.name = rec->parameters[i].name,
+                                  .percent = each[i].percent,
+                                  .edge = edge_text(p, rec, &each[i], &result->mem)};
+    }
+    return MT_OK;
+}
+
+/* Boxes speak of bands and limits; a study with exact targets has none to speak of. */
+static bool worth_a_box(const mt_problem *p)
+{
+    bool limits = false;
+    for (int i = 0; i < p->n_demands; i++) {
+        const mt_goal *const g = p->demands[i].goal;
+        limits = limits || (g->type == MT_GOAL_FREQUENCY && p->demands[i].n_in > 0 &&
+                            p->demands[i].mode > 0);
+    }
+    return p->n > 0 && p->n_eq == 0 && (p->n_bands > 0 || limits);
+}
+
+mt_status mt_describe_tolerance(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+                                mt_err *err)
+{
+    mt_proof proof;
+    bool confirmed = false;
+    if (!rec->feasible) {
+        return MT_OK;
+    }
+    MT_TRY(confirm(fresh, result, &confirmed, err));
+    rec->grade = confirmed ? "feasible and proven" : rec->grade;
+    if (!worth_a_box(fresh) || rec->n_gaps != fresh->n_bands) {
+        return MT_OK;
+    }
+    mt_status rc = mt_proof_init(&proof, fresh, &fresh->mem, err);
+    if (rc == MT_OK && proof.possible) {
+        mt_tolerance_box *const box = mt_arena_alloc(&result->mem, 1, sizeof *box);
+        rc = box == NULL ? mt_fail_memory(err) : MT_OK;
+        if (rc == MT_OK) {
+            *box = mt_tolerance_box_default();
+            rc = fill_box(fresh, &proof, rec, result, box, err);
+            rec->tolerance_box = box;
+        }
+    }
+    mt_proof_free(&proof, fresh);
+    return rc;
+}
