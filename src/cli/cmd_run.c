@@ -111,7 +111,7 @@ static mt_status write_timing(const job *j, mt_text *out, mt_err *err)
     return mt_json_done(&w) ? MT_OK : mt_fail_memory(err);
 }
 
-typedef enum output_file { RESULT, DESIGNS, REPORT, TIMING, OUTPUT_COUNT } output_file;
+typedef enum output_file { RESULT, DESIGNS, TRADE, REPORT, TIMING, OUTPUT_COUNT } output_file;
 
 static mt_status make_text(const job *j, output_file which, mt_text *out, mt_err *err)
 {
@@ -122,6 +122,13 @@ static mt_status make_text(const job *j, output_file which, mt_text *out, mt_err
     case DESIGNS:
         designs = mt_report_designs(j->result);
         mt_table_csv(&designs, out);
+        mt_table_free(&designs);
+        break;
+    case TRADE: /* empty where there is none: then no file is written */
+        designs = mt_report_trade(j->result);
+        if (j->result->trade != NULL) {
+            mt_table_csv(&designs, out);
+        }
         mt_table_free(&designs);
         break;
     case REPORT:
@@ -139,7 +146,7 @@ static mt_status make_text(const job *j, output_file which, mt_text *out, mt_err
 static mt_status write_files(const job *j, const char *folder, mt_err *err)
 {
     static const char *const names[OUTPUT_COUNT] = {"result.json", "recommendations.csv",
-                                                    "report.html", "timing.json"};
+                                                    "trade.csv", "report.html", "timing.json"};
     mt_text texts[OUTPUT_COUNT] = {{.s = NULL}};
     mt_status rc = MT_OK;
     for (int i = 0; rc == MT_OK && i < OUTPUT_COUNT; i++) {
@@ -148,6 +155,9 @@ static mt_status write_files(const job *j, const char *folder, mt_err *err)
     rc = rc == MT_OK ? make_folders(folder, err) : rc;
     for (int i = 0; rc == MT_OK && i < OUTPUT_COUNT; i++) {
         mt_text path = {.s = NULL};
+        if (i == TRADE && j->result->trade == NULL) {
+            continue;
+        }
         mt_text_addf(&path, "%s/%s", folder, names[i]);
         rc = path.failed ? mt_fail_memory(err)
                          : mt_file_write(path.s, texts[i].s, texts[i].length, err);

@@ -134,6 +134,8 @@ void mt_report_html(const mt_result *result, mt_text *out)
     }
     add_undetermined(result, out);
     add_table(mt_report_spread(result), "Spread under other weights", out);
+    add_table(mt_report_trade(result), "Trade study: the best design of each point", out);
+    mt_report_svg_trade(result, out);
     add_certificates(result, out);
     add_table(mt_report_published(result), "Published against computed", out);
     add_list(result->n_warnings, result->warnings, "Warnings", out);

@@ -17,6 +17,8 @@ mt_table mt_report_goals(const mt_recommendation *r);
 mt_table mt_report_alternatives(const mt_result *result);
 /* Under other weights: parameter, unit, value, low, high, change of both, and what takes them there. */
 mt_table mt_report_spread(const mt_result *result);
+/* One line per point of the trade study: what varies, status, score, change, clearance, parameters. No columns where there is none (trade.c). */
+mt_table mt_report_trade(const mt_result *result);
 /* label, published, computed, difference, role, source, verdict. */
 mt_table mt_report_published(const mt_result *result);
 /* The whole of all designs, one row each (rank 0: the baseline), for a spreadsheet: recommendations.csv. */

@@ -83,6 +83,7 @@ void mt_report_summary(const mt_result *result, bool with_published, mt_text *ou
         print_table(mt_report_alternatives(result), "All recommendations", out);
     }
     mt_report_uncertainty(result, out);
+    print_table(mt_report_trade(result), "Trade study: the best design of each point", out);
     if (result->n_certificates > 0) {
         mt_text_add(out, "\nCertificates\n");
     }

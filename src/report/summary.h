@@ -13,7 +13,8 @@ void mt_report_uncertainty(const mt_result *result, mt_text *out);
 
 /* The same as one self-contained HTML page (no scripts, nothing loaded from elsewhere, figures as inline SVG), light and printable. */
 void mt_report_html(const mt_result *result, mt_text *out);
-/* Its two figures. */
+/* Its figures; that of a trade study only where there is one and some point meets its goals. */
+void mt_report_svg_trade(const mt_result *result, mt_text *out);
 void mt_report_svg_frequencies(const mt_recommendation *r, mt_text *out);
 void mt_report_svg_changes(const mt_recommendation *r, mt_text *out);
 
