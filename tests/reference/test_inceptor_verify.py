@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`modetune run --verify` on the paper's inceptor: every study holds, says what it must, and notices a wrong number."""
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+TREE = Path(os.environ["SOURCE_DIR"])
+PROGRAM = os.environ["MODETUNE"]
+# published entries and expected status of each
+STUDIES = {"inceptor_prediction": (10, "solved"), "inceptor_identification": (12, "solved"), "inceptor_stick": (6, "solved"),
+           "inceptor_stick_mac": (6, "solved"), "inceptor_tuning_1": (7, "solved"), "inceptor_tuning_2": (7, "solved"),
+           "inceptor_tuning_3": (5, "compromise")}
+
+
+class Inceptor(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.answers = {}
+        cls.place = Path(tempfile.mkdtemp())
+        cls.addClassCleanup(shutil.rmtree, cls.place, ignore_errors=True)
+        for part in ("problems", "studies"):
+            shutil.copytree(TREE / part, cls.place / part)
+        for name in STUDIES:
+            cls.answers[name] = cls.run_study(name)
+
+    @classmethod
+    def run_study(cls, name):
+        """Exit status and result."""
+        done = subprocess.run([PROGRAM, "run", "--verify", f"studies/{name}.json", "-o", "out"], cwd=cls.place,
+                              capture_output=True, text=True, check=False)
+        file = cls.place / f"out/{name}/result.json"
+        return done.returncode, json.loads(file.read_text(encoding="utf-8")) if file.exists() else done.stderr
+
+    def result(self, name):
+        code, result = self.answers[name]
+        self.assertEqual(code, 0, result)
+        return result
+
+    def test_every_study_holds(self):
+        for name, (judged, status) in STUDIES.items():
+            with self.subTest(study=name):
+                result = self.result(name)
+                self.assertEqual([p["holds"] for p in result["published"]], [True] * judged)
+                self.assertEqual(result["status"], status)
+                for p in result["published"]:
+                    self.assertIn(p["role"], ("calibrates", "verifies", "not_comparable"))
+                    self.assertTrue(p["source"] or p["kind"] == "status", p)
+
+    def test_predictions_are_no_calibration(self):
+        # Tables 9 and 10 took no part: no goal names their configurations, and every entry about them verifies
+        result = self.result("inceptor_prediction")
+        about = [p for p in result["published"] if p["label"].startswith(("Table 9", "Table 10"))]
+        self.assertEqual([p["role"] for p in about], ["verifies"] * 4)
+        self.assertTrue(all(abs(p["difference_percent"]) < 0.5 for p in about))
+        goals = result["recommendations"][0]["goals"]
+        self.assertEqual(len(goals), 5)
+        self.assertFalse([g for g in goals if "table_9" in g["goal"] or "table_10" in g["goal"]])
+        # as many data as unknowns that they can tell: met exactly
+        self.assertLess(result["recommendations"][0]["misfit"], 1e-8)
+
+    def test_the_scale_of_the_stick_is_the_only_thing_left_open(self):
+        for name in ("inceptor_prediction", "inceptor_identification"):
+            with self.subTest(study=name):
+                open_ones = self.result(name)["undetermined"]
+                self.assertEqual(len(open_ones), 1)
+                part = open_ones[0]["components"]
+                for parameter, times in (("m_1", 2), ("m_u", 2), ("l_a", -1), ("L_u", -1)):
+                    self.assertAlmostEqual(part[parameter] / part["m_1"], times / 2, delta=1e-6)
+                for parameter in set(part) - {"m_1", "m_u", "l_a", "L_u"}:
+                    self.assertLess(abs(part[parameter]), 1e-6)
+
+    def test_the_spread_is_the_uncertainty_of_table_9(self):
+        spread = {s["parameter"]: s for s in self.result("inceptor_identification")["spread"]}
+        self.assertEqual(set(spread), {"m_1", "m_u", "l_a", "L_u", "k_servo", "J_rotor", "M_SAU_table_9", "K_T1_table_9"})
+        for s in spread.values():
+            self.assertLess(s["low"], s["value"])
+            self.assertGreater(s["high"], s["value"])
+            self.assertIn(s["low_weight_factor"], (4, 0.25))
+        # the data contradict each other most about the gearbox of Table 9, by a few percent; the unknowns hardly move
+        self.assertTrue(2 < spread["M_SAU_table_9"]["high_percent"] - spread["M_SAU_table_9"]["low_percent"] < 6)
+        self.assertTrue(all(s["high_percent"] - s["low_percent"] < 1 for n, s in spread.items() if "table_9" not in n))
+
+    def test_the_tuned_designs_are_those_of_the_identification(self):
+        # two ways to ask one thing: the exact frequencies as constraints of the identification, and study 2
+        tied = {p["name"]: p["recommended"] for p in self.result("inceptor_identification")["recommendations"][0]["parameters"]}
+        tuned = {p["name"]: p["recommended"] for p in self.result("inceptor_tuning_2")["recommendations"][0]["parameters"]}
+        self.assertAlmostEqual(tied["M_SAU_table_9"] / tuned["M_SAU"], 1, delta=1e-5)  # M_SAU moves 70 times as much as the frequency
+        self.assertAlmostEqual(tied["K_T1_table_9"] / tuned["K_T1"], 1, delta=1e-5)
+
+    def test_the_second_spring_is_undetermined_and_stays(self):
+        for name in ("inceptor_tuning_3", "inceptor_stick_mac"):
+            with self.subTest(study=name):
+                result = self.result(name)
+                self.assertEqual([u["direction"] for u in result["undetermined"]], ["K_T2"])
+                second = [p for p in result["recommendations"][0]["parameters"] if p["name"] == "K_T2"][0]
+                self.assertEqual(second["recommended"], second["original"])
+        self.assertEqual(self.result("inceptor_stick")["undetermined"], [])
+
+    def test_a_wrong_number_is_noticed(self):
+        for study, place, key, value in (("inceptor_tuning_1", 1, "value", 6.08), ("inceptor_tuning_2", 2, "value", 8050),
+                                         ("inceptor_tuning_3", 0, "status", "solved"), ("inceptor_tuning_3", 4, "value", 70.4)):
+            with self.subTest(study=study, place=place):
+                file = self.place / f"studies/{study}.json"
+                whole = file.read_text(encoding="utf-8")
+                data = json.loads(whole)
+                data["published"][place][key] = value
+                file.write_text(json.dumps(data), encoding="utf-8")
+                code, result = self.run_study(study)
+                file.write_text(whole, encoding="utf-8")
+                self.assertEqual(code, 1)
+                self.assertEqual([i for i, p in enumerate(result["published"]) if not p["holds"]], [place])
+
+
+if __name__ == "__main__":
+    unittest.main()
