@@ -4,6 +4,7 @@
 
 #include "mechanics/mech.h"
 #include "mechanics/sweep.h"
+#include "support/mt_alloc.h"
 
 enum { POINTS = 101 };
 
@@ -480,7 +481,41 @@ static void sweep__a_joint_that_others_hold_is_named(mt_test *t)
     run_free(&r);
 }
 
-MT_TEST_MAIN(MT_TEST(sweep__four_bar_obeys_freudenstein),
+static void sweep__failing_allocations_are_errors(mt_test *t)
+{
+    const mt_system_drive drive = {"shaft", "servo"};
+    mt_model *const model = mech_parse(t, SERVO_STICK);
+    CHECK(t, model != NULL);
+    for (long nth = 0; model != NULL && mt_alloc_works(); nth++) {
+        const double positions[] = {-0.2, 0.1, 0.3};
+        const double at[] = {0.0};
+        run r = {.rc = MT_OK};
+        const long before = mt_alloc_live();
+        mt_alloc_fail_after(nth);
+        r.rc = mt_arena_init(&r.mem, 0, &r.err);
+        if (r.rc == MT_OK) {
+            r.rc = mt_system_new_driven(model, 0, &drive, 0, NULL, at, &r.sys, &r.err);
+        }
+        if (r.rc == MT_OK) {
+            r.rc = mt_linear_new(r.sys, &r.lin, &r.err);
+        }
+        if (r.rc == MT_OK) {
+            r.rc = mt_sweep_run(r.lin, NULL, 3, positions, NULL, &r.mem, &r.sweep, &r.err);
+        }
+        mt_alloc_fail_after(-1);
+        const mt_status rc = r.rc;
+        CHECK(t, rc == MT_E_MEMORY || (rc == MT_OK && r.sweep.n_reached == 3));
+        run_free(&r);
+        CHECK_INT(t, mt_alloc_live(), before);
+        if (rc == MT_OK) {
+            break;
+        }
+    }
+    mt_model_delete(model);
+}
+
+MT_TEST_MAIN(MT_TEST(sweep__failing_allocations_are_errors),
+             MT_TEST(sweep__four_bar_obeys_freudenstein),
              MT_TEST(sweep__ratio_is_the_slope_of_the_coordinate),
              MT_TEST(sweep__slider_crank_stops_at_its_limit_positions),
              MT_TEST(sweep__the_crank_of_a_slider_crank_goes_round),

@@ -4,6 +4,7 @@
 
 #include "mechanics/mech.h"
 #include "modal/damped.h"
+#include "support/mt_alloc.h"
 
 static const double TWO_PI = 2.0 * 3.14159265358979323846;
 /* Rounding of a few well-scaled freedoms. */
@@ -318,7 +319,34 @@ static void damped__body_on_a_damped_bushing(mt_test *t)
     mech_free(&s);
 }
 
-MT_TEST_MAIN(MT_TEST(damped__single_mass_has_its_closed_form),
+static void damped__failing_allocations_are_errors(mt_test *t)
+{
+    const double m[9] = {1.5};
+    const double k[9] = {110.0, -80.0, 0.0, -80.0, 320.0, -240.0, 0.0, -240.0, 240.0};
+    const double c[9] = {[8] = 2.0};
+    damped s;
+    if (damped_solve(t, 3, k, c, m, &s)) {
+        const mt_damped_problem p = {
+            .n = 3, .k = k, .c = c, .mass = &s.mass, .modes = &s.modes};
+        for (long nth = 0; mt_alloc_works(); nth++) {
+            mt_arena mem = {.first = NULL};
+            mt_damped_modes d;
+            mt_alloc_fail_after(nth);
+            mt_status rc = mt_arena_init(&mem, 64, &s.err);
+            rc = rc == MT_OK ? mt_modal_damped(&p, &mem, &d, &s.err) : rc;
+            mt_alloc_fail_after(-1);
+            mt_arena_free(&mem);
+            CHECK(t, rc == MT_OK || rc == MT_E_MEMORY);
+            if (rc == MT_OK) {
+                break;
+            }
+        }
+    }
+    mt_arena_free(&s.mem);
+}
+
+MT_TEST_MAIN(MT_TEST(damped__failing_allocations_are_errors),
+             MT_TEST(damped__single_mass_has_its_closed_form),
              MT_TEST(damped__without_damping_meets_the_modal_solve),
              MT_TEST(damped__proportional_damping_keeps_each_mode),
              MT_TEST(damped__rigid_body_pairs_stand_apart),
