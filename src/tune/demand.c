@@ -64,7 +64,7 @@ static void store_scalar(mt_problem *p, const mt_demand *d, const scalar *v,
     }
     if (d->row_eq >= 0) {
         out->eq[d->row_eq] = v->to_target;
-        put(p, out->deq, p->n_eq, d->row_eq, v->target_slope, gradient);
+        put(p, out->deq, mt_problem_rows_eq(p), d->row_eq, v->target_slope, gradient);
         return;
     }
     const int rows = mt_problem_rows_in(p);

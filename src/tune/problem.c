@@ -25,7 +25,8 @@ static bool catalogue_value(const mt_problem *p, int i, double t, double *x)
 {
     const mt_variable *const v = &p->study->variables[i];
     int low = 0;
-    int high = v->n_catalogue; /* the first value with a coordinate of at least t is in low .. high */
+    int high =
+        v->n_catalogue; /* the first value with a coordinate of at least t is in low .. high */
     while (low < high) {
         const int middle = low + ((high - low) / 2);
         if (mt_problem_t(p, i, v->catalogue[middle]) < t) {
@@ -152,9 +153,25 @@ static int residuals(const mt_problem *p)
     return p->aims[p->stage].type == MT_OBJECTIVE_MISFIT ? p->n_res : 0;
 }
 
+/* Is a misfit among the objectives before the present one? */
+static bool misfit_held(const mt_problem *p)
+{
+    for (int k = 0; k < p->stage; k++) {
+        if (p->aims[k].type == MT_OBJECTIVE_MISFIT) {
+            return true;
+        }
+    }
+    return false;
+}
+
 int mt_problem_rows_in(const mt_problem *p)
 {
-    return p->n_in + p->stage;
+    return p->n_in + p->stage - (misfit_held(p) ? 1 : 0);
+}
+
+int mt_problem_rows_eq(const mt_problem *p)
+{
+    return p->n_eq + (misfit_held(p) ? p->n_res : 0);
 }
 
 mt_nlp mt_problem_nlp(mt_problem *p)
@@ -165,7 +182,7 @@ mt_nlp mt_problem_nlp(mt_problem *p)
                         .hint = p->hint,
                         .origin = p->origin_t,
                         .n_res = residuals(p),
-                        .n_eq = p->n_eq,
+                        .n_eq = mt_problem_rows_eq(p),
                         .n_in = mt_problem_rows_in(p),
                         .eq_tol = p->eq_tol,
                         .in_tol = p->in_tol,
@@ -179,7 +196,7 @@ mt_status mt_problem_values_init(const mt_problem *p, mt_arena *mem, mt_nlp_valu
 {
     const size_t n = (size_t)p->n_t;
     const size_t n_res = (size_t)residuals(p);
-    const size_t n_eq = (size_t)p->n_eq;
+    const size_t n_eq = (size_t)mt_problem_rows_eq(p);
     const size_t n_in = (size_t)mt_problem_rows_in(p);
     *out = (mt_nlp_values){
         .f = 0.0,

@@ -16,7 +16,8 @@
  *     sqrt(sum w_i (t_i - t_i(original))^2).
  *
  * Objectives in order: `stage` is the one that is minimised; the ones before it are held by one inequality each,
- *     (limit_j - f_j) / unit_j >= 0.
+ *     (limit_j - f_j) / unit_j >= 0,
+ * but a misfit by one equality for each residual, r - r_held = 0: at an exact fit the slope of |r|^2 vanishes and an inequality would hold nothing.
  *
  * Files: problem.c (life, coordinates, the face to the search), problem_demands.c (goals to demands), problem_aims.c (expressions, objectives), problem_eval.c (one evaluation),
  * demand.c (value and gradient of one demand).
@@ -104,7 +105,7 @@ typedef struct mt_problem {
     int n_eq;
     int n_in; /* of the goals; held objectives follow */
     int n_res;
-    double *eq_tol;     /* [n_eq] */
+    double *eq_tol;     /* [n_eq + n_res] */
     double *in_tol;     /* [n_in + n_aims] */
     double weights;     /* sum of the weights of the demands that are residuals */
     mt_program program; /* expressions: limits, objectives, published quantities */
@@ -118,6 +119,7 @@ typedef struct mt_problem {
     double *t;      /* [n] its coordinates */
     double *r;      /* [n_res] residuals there */
     double *dr;     /* n_res x n */
+    double *r_held; /* [n_res] what a held misfit keeps them at */
     double *work;   /* [n] */
     double *shape;  /* [max ns] */
     double *dshape; /* max ns x n */
@@ -143,8 +145,9 @@ void mt_problem_delete(mt_problem *p);
 void mt_problem_x(const mt_problem *p, const double *t, double *x);
 /* The coordinate of value x of variable i. */
 double mt_problem_t(const mt_problem *p, int i, double x);
-/* Rows of `in` and of its derivative in the present stage: goals, then held objectives. */
+/* Rows of `in` (of `eq`) and of its derivative in the present stage: goals, then held objectives. */
 int mt_problem_rows_in(const mt_problem *p);
+int mt_problem_rows_eq(const mt_problem *p);
 /* dx_i/dt_i at the last evaluation. */
 double mt_problem_stretch(const mt_problem *p, int i);
 /* The present stage as a search problem (arrays belong to the problem). */
@@ -207,9 +210,11 @@ mt_status mt_demand_eval(mt_problem *p, const mt_demand *d, bool with_gradient,
                          mt_nlp_values *out, mt_err *err);
 /* problem_aims.c: the program of expressions, and the objectives. After the demands. */
 mt_status mt_problem_init_aims(mt_problem *p, mt_err *err);
-/* f of objective k at the last evaluation, gradient[n] (may be NULL) likewise. */
+/* f of objective k at the last evaluation, gradient[n_t] (may be NULL) likewise. */
 double mt_aim_value(const mt_problem *p, int k, double *gradient);
-/* Hold objective k at f, as well as it can be told from f. */
+/* Hold objective k at f, as well as it can be told from f, from the next stage on; a misfit at the residuals of the last evaluation. */
 void mt_aim_hold(mt_problem *p, int k, double f);
+/* The rows of the objectives that are held. */
+void mt_aim_hold_rows(mt_problem *p, bool with_gradient, mt_nlp_values *out);
 
 #endif

@@ -168,7 +168,7 @@ static double misfit_value(const mt_problem *p, double *gradient)
 double mt_aim_value(const mt_problem *p, int k, double *gradient)
 {
     const mt_aim *const a = &p->aims[k];
-    for (int i = 0; i < p->n && gradient != NULL; i++) {
+    for (int i = 0; i < p->n_t && gradient != NULL; i++) {
         gradient[i] = 0.0;
     }
     switch (a->type) {
@@ -191,11 +191,28 @@ double mt_aim_value(const mt_problem *p, int k, double *gradient)
     return 0.0;
 }
 
+/* Row of `in` that holds objective k: a misfit among those before it has none. */
+static int held_row(const mt_problem *p, int k)
+{
+    int row = p->n_in;
+    for (int i = 0; i < k; i++) {
+        row += p->aims[i].type == MT_OBJECTIVE_MISFIT ? 0 : 1;
+    }
+    return row;
+}
+
 void mt_aim_hold(mt_problem *p, int k, double f)
 {
     mt_aim *const a = &p->aims[k];
-    if (a->type == MT_OBJECTIVE_CHANGE || a->type == MT_OBJECTIVE_MISFIT) {
-        const double root = sqrt(2.0 * f);
+    const double root = sqrt(2.0 * fmax(f, 0.0));
+    if (a->type == MT_OBJECTIVE_MISFIT) {
+        for (int i = 0; i < p->n_res; i++) {
+            p->r_held[i] = p->r[i];
+            p->eq_tol[p->n_eq + i] = HELD_ROOT * fmax(root, 1.0);
+        }
+        return;
+    }
+    if (a->type == MT_OBJECTIVE_CHANGE) {
         const double most = root + (HELD_ROOT * fmax(root, 1.0));
         a->limit = 0.5 * most * most;
         a->unit = a->limit;
@@ -203,5 +220,36 @@ void mt_aim_hold(mt_problem *p, int k, double f)
         a->unit = fmax(fabs(f), 1.0);
         a->limit = f + (HELD * a->unit);
     }
-    p->in_tol[p->n_in + k] = HELD_TOLERANCE * (a->limit - f) / a->unit;
+    p->in_tol[held_row(p, k)] = HELD_TOLERANCE * (a->limit - f) / a->unit;
+}
+
+/* r - r_held = 0 */
+static void hold_misfit(const mt_problem *p, bool with_gradient, mt_nlp_values *out)
+{
+    const ptrdiff_t rows = mt_problem_rows_eq(p);
+    for (int i = 0; i < p->n_res; i++) {
+        const ptrdiff_t row = p->n_eq + i;
+        out->eq[row] = p->r[i] - p->r_held[i];
+        for (int j = 0; j < p->n_t && with_gradient; j++) {
+            out->deq[row + (j * rows)] = j < p->n ? p->dr[i + ((ptrdiff_t)j * p->n_res)] : 0.0;
+        }
+    }
+}
+
+void mt_aim_hold_rows(mt_problem *p, bool with_gradient, mt_nlp_values *out)
+{
+    const ptrdiff_t rows = mt_problem_rows_in(p);
+    for (int k = 0; k < p->stage; k++) {
+        const mt_aim *const a = &p->aims[k];
+        if (a->type == MT_OBJECTIVE_MISFIT) {
+            hold_misfit(p, with_gradient, out);
+            continue;
+        }
+        const ptrdiff_t row = held_row(p, k);
+        out->in[row] =
+            (a->limit - mt_aim_value(p, k, with_gradient ? p->work : NULL)) / a->unit;
+        for (int j = 0; j < p->n_t && with_gradient; j++) {
+            out->din[row + (j * rows)] = -p->work[j] / a->unit;
+        }
+    }
 }

@@ -211,14 +211,15 @@ mt_status mt_problem_init_rows(mt_problem *p, mt_err *err)
         const size_t own = (size_t)p->demands[i].shape.ns;
         ns = own > ns ? own : ns;
     }
-    p->eq_tol = mt_arena_f64(&p->mem, (size_t)p->n_eq, 1);
+    p->eq_tol = mt_arena_f64(&p->mem, (size_t)p->n_eq + (size_t)p->n_res, 1);
     p->in_tol = mt_arena_f64(&p->mem, (size_t)p->n_in + (size_t)p->study->n_objectives, 1);
     p->r = mt_arena_f64(&p->mem, (size_t)p->n_res, 1);
     p->dr = mt_arena_f64(&p->mem, (size_t)p->n_res, n);
+    p->r_held = mt_arena_f64(&p->mem, (size_t)p->n_res, 1);
     p->shape = mt_arena_f64(&p->mem, ns, 1);
     p->dshape = mt_arena_f64(&p->mem, ns, n);
     if (p->eq_tol == NULL || p->in_tol == NULL || p->r == NULL || p->dr == NULL ||
-        p->shape == NULL || p->dshape == NULL) {
+        p->r_held == NULL || p->shape == NULL || p->dshape == NULL) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < p->n_clears; i++) {

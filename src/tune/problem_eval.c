@@ -30,24 +30,6 @@ mt_status mt_view_solve(mt_problem *p, mt_view *view, bool with_gradient, mt_err
     return MT_OK;
 }
 
-/* Objectives of earlier stages stay where they are: (limit - f) / unit >= 0. */
-static void hold_rows(mt_problem *p, bool with_gradient, mt_nlp_values *out)
-{
-    const ptrdiff_t rows = mt_problem_rows_in(p);
-    for (int k = 0; k < p->stage; k++) {
-        const mt_aim *const a = &p->aims[k];
-        const double f = mt_aim_value(p, k, with_gradient ? p->work : NULL);
-        out->in[p->n_in + k] = (a->limit - f) / a->unit;
-        for (int i = 0; i < p->n && with_gradient; i++) {
-            out->din[p->n_in + k + (i * rows)] = -p->work[i] / a->unit;
-        }
-        if (p->n_t > p->n && with_gradient) {
-            out->din[p->n_in + k + (p->n * rows)] =
-                a->type == MT_OBJECTIVE_CLEARANCE ? 1.0 / a->unit : 0.0;
-        }
-    }
-}
-
 static void say_progress(const mt_problem *p)
 {
     if (p->progress != NULL && p->evaluations % PROGRESS_EVERY == 0) {
@@ -82,10 +64,7 @@ mt_status mt_problem_eval(void *context, const double *t, bool with_gradient,
             memcpy(out->dr, p->dr, (size_t)p->n_res * (size_t)p->n * sizeof *p->dr);
         }
     }
-    if (p->n_t > p->n && with_gradient) {
-        out->df[p->n] = 0.0;
-    }
     out->f = mt_aim_value(p, p->stage, with_gradient ? out->df : NULL);
-    hold_rows(p, with_gradient, out);
+    mt_aim_hold_rows(p, with_gradient, out);
     return MT_OK;
 }

@@ -94,6 +94,7 @@ static mt_status refine(stages *s, int i, mt_err *err)
         s->out->stop = MT_STOP_MAX_EVALS;
         return MT_OK;
     }
+    MT_TRY(aims_at(p, old->t, s->mem, f, err)); /* the residuals that a misfit is held at */
     limit[p->stage - 1] = f[p->stage - 1];
     for (int k = 0; k < p->stage; k++) {
         mt_aim_hold(p, k, limit[k]);

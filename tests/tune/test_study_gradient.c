@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The whole callback of the search against central differences: every row of every kind of goal, every objective, every coordinate. */
+#include "mt_slope.h"
+#include "study_fixture.h"
+#include "tune/problem.h"
+
+/* One evaluation is good to some n eps of the eigenvalues, more where shapes enter. */
+static const double NOISE = 1e-13;
+static const double STEP = 1e-3;
+
+/* A study compiled. */
+typedef struct compiled {
+    study_case c;
+    mt_arena mem;
+    mt_reference_cache references;
+    mt_problem *p;
+} compiled;
+
+static bool compile(mt_test *t, const char *model, const char *members, compiled *s)
+{
+    *s = (compiled){.p = NULL};
+    return study_load(t, model, members, &s->c) &&
+           CHECK_INT(t, mt_arena_init(&s->mem, 0, NULL), MT_OK) &&
+           CHECK_INT(t, mt_reference_cache_init(&s->references, s->c.study, &s->mem, NULL),
+                     MT_OK) &&
+           CHECK_INT(t, mt_problem_new(s->c.study, &s->references, &s->p, &s->c.err), MT_OK);
+}
+
+static void compiled_free(compiled *s)
+{
+    mt_problem_delete(s->p);
+    mt_reference_cache_free(&s->references);
+    mt_arena_free(&s->mem);
+    study_free(&s->c);
+}
+
+typedef struct probe {
+    mt_problem *p;
+    mt_nlp_values *v; /* scratch */
+    const double *at; /* the entry that is looked at */
+} probe;
+
+/* Plus one: rows that are held are 0 here, and their noise is that of the residuals, which are of order one. */
+static double entry(const void *context, int n, const double *t)
+{
+    const probe *const q = context;
+    (void)n;
+    return mt_problem_eval(q->p, t, false, q->v, NULL) == MT_OK ? 1.0 + *q->at : nan("");
+}
+
+static void check_row(mt_test *t, const probe *q, double *at, const double *slope, int stride,
+                      const char *what)
+{
+    const mt_nlp nlp = mt_problem_nlp(q->p);
+    for (int i = 0; i < nlp.n; i++) {
+        mt_test_row(t, "stage %d, %s, variable %d", q->p->stage, what, i);
+        CHECK(t, mt_slope_agrees(entry, q, nlp.n, at, i, slope[(ptrdiff_t)i * stride], STEP,
+                                 NOISE));
+    }
+}
+
+static void check_rows(mt_test *t, mt_problem *p, double *at, mt_nlp_values *v, int rows,
+                       const double *value, const double *slope, const char *what)
+{
+    for (int i = 0; i < rows; i++) {
+        char name[32];
+        const probe q = {.p = p, .v = v, .at = &value[i]};
+        (void)snprintf(name, sizeof name, "%s %d", what, i);
+        check_row(t, &q, at, slope + i, rows, name);
+    }
+}
+
+/* All slopes of the present stage at t. */
+static void check_stage(mt_test *t, mt_problem *p, double *at, mt_arena *mem)
+{
+    const mt_nlp nlp = mt_problem_nlp(p);
+    mt_nlp_values g;
+    mt_nlp_values v;
+    CHECK_INT(t, mt_problem_values_init(p, mem, &g, NULL), MT_OK);
+    CHECK_INT(t, mt_problem_values_init(p, mem, &v, NULL), MT_OK);
+    if (CHECK_INT(t, mt_problem_eval(p, at, true, &g, NULL), MT_OK)) {
+        check_rows(t, p, at, &v, 1, &v.f, g.df, "objective");
+        check_rows(t, p, at, &v, nlp.n_res, v.r, g.dr, "residual");
+        check_rows(t, p, at, &v, nlp.n_eq, v.eq, g.deq, "equality");
+        check_rows(t, p, at, &v, nlp.n_in, v.in, g.din, "inequality");
+    }
+}
+
+/* The four-bar under gravity (loops, equilibrium) beside the same without gravity; logarithmic and linear variables; every goal and objective there is. */
+static const char *const EVERYTHING =
+    "'variables': [{'parameter': 'a', 'lower': 0.1, 'upper': 0.2},"
+    " {'parameter': 'm_c', 'lower': 1, 'upper': 4, 'weight': 2},"
+    " {'parameter': 'alpha', 'lower': -1, 'upper': 2}],"
+    "'references': {'test': {'modes': [{'frequency_hz': 2.0,"
+    " 'shape': {'tip.x': 1, 'tip.y': -0.4, 'crank.r': 0.5, 'mid.y': 2}}]}},"
+    "'goals': ["
+    "{'type': 'frequency', 'configuration': 'loaded', 'mode': 1, 'target_hz': 2.1},"
+    "{'type': 'frequency', 'configuration': 'still', 'mode': 1, 'at_least_hz': 1,"
+    " 'at_most_hz': 3},"
+    "{'type': 'frequency', 'configuration': 'trimmed', 'mode': 1, 'reference': 'test'},"
+    "{'type': 'frequency', 'configuration': 'loaded', 'mode': 1, 'reference': 'test',"
+    " 'weight': 3},"
+    "{'type': 'shape', 'configuration': 'loaded', 'mode': 1, 'reference': 'test',"
+    " 'weight': 0.7},"
+    "{'type': 'shape', 'configuration': 'still', 'mode': 1, 'reference': 'test', 'weight': 1},"
+    "{'type': 'mac', 'configuration': 'loaded', 'mode': 1, 'reference': 'test',"
+    " 'at_least': 0.5},"
+    "{'type': 'limit', 'expression': 'm_c*a', 'at_least': 0.1, 'at_most': 1},"
+    "{'type': 'limit', 'expression': 'alpha + a', 'equals': 1.2},"
+    "{'type': 'limit', 'expression': 'alpha', 'at_most': 0}],"
+    "'objective': [{'minimise': 'misfit'}, {'minimise': 'mass', 'of': ['c*']},"
+    " {'minimise': 'm_c^2*exp(alpha)/a'}, {'minimise': 'change'}]";
+
+static void callback__has_exact_gradients(mt_test *t)
+{
+    compiled s;
+    if (compile(t, "four_bar", EVERYTHING, &s)) {
+        double at[3] = {log(0.16), log(2.3), 0.9 / 3.0};
+        CHECK_INT(t, s.p->n_eq, 3);
+        CHECK_INT(t, s.p->n_in, 6);
+        CHECK_INT(t, s.p->n_res, 9);
+        CHECK_INT(t, s.p->n_aims, 4);
+        for (int k = 0; k < s.p->n_aims; k++) {
+            s.p->stage = k;
+            check_stage(t, s.p, at, &s.mem);
+            mt_aim_hold(s.p, k, 1.01 * mt_aim_value(s.p, k, NULL));
+        }
+    }
+    compiled_free(&s);
+}
+
+/* Named modes, and the mean of a repeated pair that no variable splits. */
+static void named_and_repeated_modes__have_exact_gradients(mt_test *t)
+{
+    compiled s;
+    if (compile(t,
+                "{'format': 'modetune-model/1', 'dimension': 2,"
+                "'parameters': {'k': 4, 'ka': 1, 'kc': 0.3, 'm': 1},"
+                "'bodies': [{'name': 'm1', 'mass_kg': 'm', 'centre': [1, 0]},"
+                " {'name': 'm2', 'mass_kg': 'm', 'centre': [2, 0]}],"
+                "'springs': [{'name': 'x1', 'type': 'axial', 'bodies': ['ground', 'm1'],"
+                " 'at': [[0, 0], [1, 0]], 'stiffness_n_per_m': 'k'},"
+                "{'name': 'y1', 'type': 'axial', 'bodies': ['ground', 'm1'],"
+                " 'at': [[1, 1], [1, 0]], 'stiffness_n_per_m': 'k'},"
+                "{'name': 'x2', 'type': 'axial', 'bodies': ['ground', 'm2'],"
+                " 'at': [[3, 0], [2, 0]], 'stiffness_n_per_m': 'ka'},"
+                "{'name': 'y2', 'type': 'axial', 'bodies': ['ground', 'm2'],"
+                " 'at': [[2, 1], [2, 0]], 'stiffness_n_per_m': 'ka + kc'}],"
+                "'modes': {'second': {'configuration': 'default', 'index': 2}}}",
+                "'variables': [{'parameter': 'k', 'lower': 1, 'upper': 9},"
+                " {'parameter': 'ka', 'lower': 0.1, 'upper': 9},"
+                " {'parameter': 'm', 'lower': 0.1, 'upper': 9}],"
+                "'goals': [{'type': 'frequency', 'mode': 'second', 'target_hz': 0.2},"
+                "{'type': 'frequency', 'mode': 3, 'target_hz': 0.3},"
+                "{'type': 'frequency', 'mode': 4, 'at_least_hz': 0.3}]",
+                &s)) {
+        double at[3] = {log(4.5), log(1.2), log(1.1)};
+        int size = 0;
+        check_stage(t, s.p, at, &s.mem);
+        (void)mt_modal_cluster(&s.p->views[0].analysis->modes, 2, &size);
+        CHECK_INT(t, size, 2); /* modes 3 and 4 are one pair */
+    }
+    compiled_free(&s);
+}
+
+MT_TEST_MAIN(MT_TEST(callback__has_exact_gradients),
+             MT_TEST(named_and_repeated_modes__have_exact_gradients))
