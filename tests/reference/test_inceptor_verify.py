@@ -62,6 +62,30 @@ class Inceptor(unittest.TestCase):
         # as many data as unknowns that they can tell: met exactly
         self.assertLess(result["recommendations"][0]["misfit"], 1e-8)
 
+    def test_predictions_do_not_depend_on_what_was_assumed(self):
+        def predicted(result):
+            return [p["computed"] for p in result["published"] if p["label"].startswith(("Table 9", "Table 10"))]
+        want = predicted(self.result("inceptor_prediction"))
+        model = self.place / "problems/inceptor.json"
+        study = self.place / "studies/inceptor_prediction.json"
+        model_text, study_text = model.read_text(encoding="utf-8"), study.read_text(encoding="utf-8")
+        data = json.loads(study_text)
+        data["search"] = {"starts": 4}
+        for parameter, value in (("part_2", 0.5), ("share_2", 0.5), ("beta", 1.6), ("r_SAU", 0.15), ("L_c", 0.09), ("s_z", 0.1),
+                                 ("N_gear", 30), ("m_c", 0.2), ("m_s", 0.16)):
+            with self.subTest(parameter=parameter):
+                changed = json.loads(model_text)
+                self.assertEqual(changed["parameters"][parameter]["origin"], "assumed")
+                changed["parameters"][parameter]["value"] = value
+                model.write_text(json.dumps(changed), encoding="utf-8")
+                study.write_text(json.dumps(data), encoding="utf-8")
+                code, result = self.run_study("inceptor_prediction")
+                self.assertEqual(code, 0)
+                for got, ours in zip(predicted(result), want):
+                    self.assertAlmostEqual(got / ours, 1, delta=1e-4)
+        model.write_text(model_text, encoding="utf-8")
+        study.write_text(study_text, encoding="utf-8")
+
     def test_the_scale_of_the_stick_is_the_only_thing_left_open(self):
         for name in ("inceptor_prediction", "inceptor_identification"):
             with self.subTest(study=name):
