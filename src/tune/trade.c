@@ -7,6 +7,9 @@
 #include "base/workers.h"
 #include "tune/discrete.h"
 
+/* Objectives that differ by less, relatively, are the same: searches of one optimum end so near. */
+static const double SAME = 1e-6;
+
 typedef struct point {
     double values[MT_MAX_VARY];
     mt_result *first; /* of the first pass; owned */
@@ -213,9 +216,18 @@ static double front_value(const mt_study *study, mt_objective_type type,
     return nan("");
 }
 
+/* Is a as good as b in both and better in one, by more than the searches' rounding? */
 static bool dominates(const double *a, const double *b)
 {
-    return a[0] <= b[0] && a[1] <= b[1] && (a[0] < b[0] || a[1] < b[1]);
+    bool gain = false;
+    for (int i = 0; i < 2; i++) {
+        const double slack = SAME * fmax(fabs(b[i]), SAME);
+        if (!(a[i] <= b[i] + slack)) {
+            return false;
+        }
+        gain = gain || a[i] < b[i] - slack;
+    }
+    return gain;
 }
 
 static void mark_front(const trade *t, mt_trade_result *out)

@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Catalogues against brute force: every combination judged by the modes alone. */
+#include "six.h"
+#include "tune/discrete.h"
+
+/* The change is the same sum in another order; ln of k exp(x) is x to rounding. */
+static const double ROUNDING = 1e-12;
+/* Two searches of one continuous optimum. */
+static const double SAME_OPTIMUM = 1e-6;
+
+enum { VALUES = 4, ALL = 4096 };
+static const double LN[VALUES] = {-0.6, -0.2, 0.2, 0.6};
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return x < y ? -1 : x > y ? 1 : 0;
+}
+
+/* Changes of all feasible combinations, ascending; their number. */
+static int brute_force(six *s, double change[ALL])
+{
+    int n = 0;
+    for (int c = 0; c < ALL; c++) {
+        double x[SIX];
+        for (int i = 0, rest = c; i < SIX; i++, rest /= VALUES) {
+            x[i] = s->catalogue[i][rest % VALUES];
+        }
+        if (six_clear(s, x, 0.0)) {
+            change[n++] = six_change(s, x);
+        }
+    }
+    qsort(change, (size_t)n, sizeof *change, ascending);
+    return n;
+}
+
+static const mt_certificate *enumeration(const mt_result *r)
+{
+    for (int i = 0; i < r->n_certificates; i++) {
+        if (strcmp(r->certificates[i].kind, "enumeration") == 0) {
+            return &r->certificates[i];
+        }
+    }
+    return NULL;
+}
+
+static void check_members(mt_test *t, const six *s, const mt_recommendation *r)
+{
+    for (int i = 0; i < SIX; i++) {
+        const mt_variable *const v = &s->study->variables[i];
+        bool member = v->n_catalogue == 0;
+        for (int k = 0; k < v->n_catalogue; k++) {
+            member = member || v->catalogue[k] == r->parameters[i].recommended;
+        }
+        mt_test_row(t, "recommendation %d, %s", r->rank, r->parameters[i].name);
+        CHECK(t, member);
+    }
+}
+
+static void discrete__enumeration_agrees_with_brute_force(mt_test *t)
+{
+    static double change[ALL];
+    six s;
+    REQUIRE(t, six_begin(t, &s));
+    for (int i = 0; i < SIX; i++) {
+        six_catalogue(&s, i, VALUES, LN);
+    }
+    const int n = brute_force(&s, change);
+    mt_result *const r = six_solve(t, s.study, 2);
+    CHECK(t, n > 7);
+    if (r != NULL && CHECK_INT(t, r->n_recommendations, 7)) {
+        for (int i = 0; i < 7; i++) {
+            mt_test_row(t, "recommendation %d", i + 1);
+            CHECK_NEAR(t, r->recommendations[i].change, change[i], ROUNDING);
+            CHECK(t, r->recommendations[i].feasible);
+            check_members(t, &s, &r->recommendations[i]);
+        }
+        const mt_certificate *const c = enumeration(r);
+        CHECK(t, c != NULL && c->proven);
+        CHECK_INT(t, r->status, MT_RESULT_SOLVED);
+    }
+    mt_result_delete(r);
+    six_same_bytes(t, s.study);
+    six_end(&s);
+}
+
+static void discrete__no_combination_is_listed_twice(mt_test *t)
+{
+    six s;
+    REQUIRE(t, six_begin(t, &s));
+    for (int i = 0; i < SIX; i++) {
+        six_catalogue(&s, i, VALUES, LN);
+    }
+    s.study->recommendations = 40;
+    mt_result *const r = six_solve(t, s.study, 1);
+    CHECK(t, r != NULL && r->n_recommendations > 16);
+    for (int i = 0; r != NULL && i < r->n_recommendations; i++) {
+        for (int k = 0; k < i; k++) {
+            double apart = 0.0;
+            for (int v = 0; v < SIX; v++) {
+                apart += fabs(r->recommendations[i].parameters[v].recommended -
+                              r->recommendations[k].parameters[v].recommended);
+            }
+            mt_test_row(t, "%d and %d", i, k);
+            CHECK(t, apart > 0.0);
+        }
+    }
+    mt_result_delete(r);
+    six_end(&s);
+}
+
+static void discrete__that_no_combination_works_is_proven(mt_test *t)
+{
+    static const double near[] = {-0.05, 0.0, 0.05};
+    six s;
+    REQUIRE(t, six_begin(t, &s));
+    for (int i = 0; i < SIX; i++) {
+        six_catalogue(&s, i, MT_COUNT(near), near);
+    }
+    mt_result *const r = six_solve(t, s.study, 1);
+    if (r != NULL) {
+        const mt_certificate *const c = enumeration(r);
+        CHECK_INT(t, r->status, MT_RESULT_INFEASIBLE);
+        CHECK(t, c != NULL && c->proven);
+        CHECK(t, r->n_recommendations > 0 && !r->recommendations[0].feasible);
+    }
+    mt_result_delete(r);
+    six_end(&s);
+}
+
+/* Each value of the catalogue as a study of its own, with that spring fixed. */
+static double best_of_fixed(mt_test *t, six *s)
+{
+    mt_variable *const v = &s->study->variables[1];
+    double best = HUGE_VAL;
+    v->n_catalogue = 0;
+    for (int k = 0; k < 2; k++) {
+        v->lower = s->catalogue[1][k];
+        v->upper = v->lower;
+        mt_result *const r = six_solve(t, s->study, 1);
+        if (r != NULL && r->n_recommendations > 0 && r->recommendations[0].feasible) {
+            best = fmin(best, r->recommendations[0].change);
+        }
+        mt_result_delete(r);
+    }
+    return best;
+}
+
+static void discrete__mixed_agrees_with_every_value_on_its_own(mt_test *t)
+{
+    six s;
+    REQUIRE(t, six_begin(t, &s));
+    six_catalogue(&s, 1, 2, LN + 1);
+    mt_result *const r = six_solve(t, s.study, 2);
+    six_same_bytes(t, s.study);
+    const double want = best_of_fixed(t, &s);
+    six_catalogue(&s, 1, 2, LN + 1);
+    if (r != NULL && CHECK(t, r->n_recommendations > 0)) {
+        const mt_certificate *const c = enumeration(r);
+        CHECK_NEAR(t, r->recommendations[0].change, want, SAME_OPTIMUM);
+        check_members(t, &s, &r->recommendations[0]);
+        CHECK(t, c != NULL && !c->proven);
+    }
+    mt_result_delete(r);
+    six_end(&s);
+}
+
+static void discrete__too_many_combinations_are_a_labelled_heuristic(mt_test *t)
+{
+    double fine[27];
+    six s;
+    REQUIRE(t, six_begin(t, &s));
+    for (int k = 0; k < 27; k++) {
+        fine[k] = 0.05 * (k - 13);
+    }
+    for (int i = 0; i < SIX; i++) {
+        six_catalogue(&s, i, MT_COUNT(fine), fine);
+    }
+    mt_result *const r = six_solve(t, s.study, 2);
+    if (r != NULL && CHECK(t, r->n_recommendations > 0)) {
+        const mt_certificate *const c = enumeration(r);
+        const mt_recommendation *const best = &r->recommendations[0];
+        double x[SIX];
+        for (int i = 0; i < SIX; i++) {
+            x[i] = best->parameters[i].recommended;
+        }
+        CHECK(t, c != NULL && !c->proven);
+        CHECK(t, six_clear(&s, x, 0.0));
+        check_members(t, &s, best);
+        /* no better than without catalogues (0.4142), and a step of 0.05 in each of six at most cost sqrt(6) 0.05 more */
+        CHECK(t, best->change > 0.4142 && best->change < 0.4143 + (sqrt(6.0) * 0.05));
+    }
+    mt_result_delete(r);
+    six_same_bytes(t, s.study);
+    six_end(&s);
+}
+
+static void discrete__a_budget_is_kept(mt_test *t)
+{
+    six s;
+    REQUIRE(t, six_begin(t, &s));
+    for (int i = 0; i < SIX; i++) {
+        six_catalogue(&s, i, VALUES, LN);
+    }
+    s.study->search.max_evaluations = 1000;
+    mt_result *const r = six_solve(t, s.study, 1);
+    if (r != NULL) {
+        const mt_certificate *const c = enumeration(r);
+        CHECK(t, r->run.evaluations <= 1000);
+        CHECK(t, c != NULL && !c->proven);
+        CHECK(t, r->n_warnings > 0);
+    }
+    mt_result_delete(r);
+    six_end(&s);
+}
+
+MT_TEST_MAIN(MT_TEST(discrete__enumeration_agrees_with_brute_force),
+             MT_TEST(discrete__no_combination_is_listed_twice),
+             MT_TEST(discrete__that_no_combination_works_is_proven),
+             MT_TEST(discrete__mixed_agrees_with_every_value_on_its_own),
+             MT_TEST(discrete__too_many_combinations_are_a_labelled_heuristic),
+             MT_TEST(discrete__a_budget_is_kept))
