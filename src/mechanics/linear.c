@@ -109,6 +109,9 @@ static mt_status evaluate_rows(mt_linear *lin, mt_err *err)
     return MT_OK;
 }
 
+/* Forces below this many times the rounding of the positions are none: what Newton leaves of a spring that nothing stretches. */
+static const double NO_FORCE = 1e4;
+
 /* Constraints at the final position, and the geometric stiffness where something loads the mechanism. */
 static mt_status constrain(mt_linear *lin, mt_err *err)
 {
@@ -137,8 +140,11 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
             lin->a[i + (j * lin->m)] = creal(l.a[i + (j * all)]);
         }
     }
+    /* a driven mechanism that nothing else loads often goes to its place without stretching a spring: then the position does not depend on any stiffness */
+    lin->unstressed = loaded && sys->geometry_fixed && !sys->loaded &&
+                      l.force_scale <= NO_FORCE * l.force_noise;
     lin->kg = NULL;
-    if (loaded) {
+    if (loaded && !lin->unstressed) {
         lin->kg = mt_arena_f64(&lin->geometry, (size_t)nq, (size_t)nq);
         if (lin->kg == NULL) {
             return mt_fail_memory(err);
@@ -288,13 +294,15 @@ mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradi
     if (rc != MT_OK) {
         return where_in_model(lin, bad, rc, err);
     }
-    const bool kept = lin->built && sys->geometry_fixed && !sys->loaded && !sys->driven;
+    const bool kept =
+        lin->built && sys->geometry_fixed && !sys->loaded && (!sys->driven || lin->unstressed);
     if (!kept) {
         MT_TRY(rebuild(lin, err));
     }
     assemble(lin, !kept);
     lin->with_gradient = with_gradient;
-    if (with_gradient && !(sys->geometry_fixed && !lin->position.equilibrium.active)) {
+    const bool still = !lin->position.equilibrium.active || lin->unstressed;
+    if (with_gradient && !(sys->geometry_fixed && still)) {
         return mt_tangent_update(lin, err);
     }
     lin->tangent = NULL;

@@ -46,6 +46,7 @@ typedef struct mt_linear {
     bool has_factor; /* no geometric stiffness, no coupling terms, no negative coefficient */
     unsigned long mass_version; /* changes when M_r does */
     unsigned long geometry_version;
+    bool unstressed; /* driven to its place with no spring stretched: as good as unloaded */
     bool built;
     bool with_gradient;
     mt_linear_tangent *tangent; /* [n_inputs], where geometry or position depend on inputs */

@@ -32,11 +32,10 @@ static mt_status state(mt_result *result, const char *kind, bool proven, mt_err 
     return MT_OK;
 }
 
-mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *result,
-                                      bool *infeasible, mt_err *err)
+static mt_status describe_gaps(const mt_gap_result *gaps, mt_result *result, bool infeasible,
+                               mt_err *err)
 {
-    *infeasible = gaps->proven && gaps->n_candidates == 0;
-    if (*infeasible) {
+    if (infeasible) {
         return state(
             result, "infeasible", true, err,
             "No design within the bounds keeps clear of the bands and meets the other limits: "
@@ -56,6 +55,19 @@ mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *resu
                  gaps->n_possible, gaps->n_candidates,
                  gaps->reason != NULL && gaps->reason[0] != '\0' ? gaps->reason
                                                                  : "not asked for");
+}
+
+mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *result,
+                                      bool *infeasible, mt_err *err)
+{
+    *infeasible = gaps->proven && gaps->n_candidates == 0;
+    MT_TRY(describe_gaps(gaps, result, *infeasible, err));
+    if (!gaps->driven) {
+        return MT_OK;
+    }
+    return state(result, "positions", false, err,
+                 "What is said of driven positions holds at the positions named; the motion "
+                 "between them is sampled by these, not proven.");
 }
 
 static mt_status reach(mt_problem *p, const mt_proof *proof, int limit, mt_arena *mem,

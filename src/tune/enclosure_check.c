@@ -87,7 +87,7 @@ bool mt_enclosure_admits(const mt_analysis *a, char *reason)
     if (!loads_refused(sys, reason)) {
         return false;
     }
-    if (sys->driven || a->lin->position.equilibrium.active) {
+    if (a->lin->position.equilibrium.active && !a->lin->unstressed) {
         (void)snprintf(reason, MT_REASON_SIZE,
                        "a driven joint or an equilibrium places the mechanism");
         return false;

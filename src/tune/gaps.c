@@ -172,6 +172,9 @@ mt_status mt_gaps_solve(mt_problem *p, int workers, mt_arena *mem, mt_gap_result
     out->n_candidates = candidates.n;
     out->n_possible = candidates.possible;
     out->proven = candidates.proven;
+    for (int i = 0; i < p->n_clears; i++) {
+        out->driven = out->driven || p->views[p->clears[i].view].analysis->sys->driven;
+    }
     out->reason = candidates.reason;
     out->boxes = candidates.boxes;
     out->evals = candidates.evals;
