@@ -239,7 +239,7 @@ mt_status mt_system_new_driven(const mt_model *model, int configuration,
         sys->inputs = mt_arena_int(&sys->mem, (size_t)n_inputs + 1);
         rc = sys->inputs == NULL ? mt_fail_memory(err) : MT_OK;
     }
-    if (rc == MT_OK) {
+    if (rc == MT_OK && sys->inputs != NULL) {
         if (n_inputs > 0) {
             memcpy(sys->inputs, inputs, (size_t)n_inputs * sizeof *inputs);
         }

@@ -84,7 +84,7 @@ static double residual(const checker *c, const mt_damped_modes *out, int i, doub
 static double complex pair(double re, double im)
 {
     const union {
-        double part[2];
+        double part[2]; /* cppcheck-suppress unusedStructMember */
         double complex z;
     } u = {
         {re, im}
