@@ -54,6 +54,14 @@ static void write_frequency(mt_json_writer *w, const mt_result_frequency *f,
     mt_json_put_string(w, "configuration", f->configuration);
     mt_json_put_integer(w, "mode", f->mode);
     mt_json_put_string(w, "name", f->name);
+    mt_json_put_string(w, "identity", f->identity);
+    mt_json_put_number(w, "share", f->share);
+    if (f->rival_mode > 0) {
+        mt_json_put_integer(w, "rival_mode", f->rival_mode);
+    } else {
+        mt_json_put_null(w, "rival_mode");
+    }
+    mt_json_put_number(w, "rival_share", f->rival_share);
     mt_json_put_number(w, "original_hz", f->original_hz);
     mt_json_put_number(w, "recommended_hz", f->recommended_hz);
     mt_json_put_number(w, "target_hz", f->target_hz);

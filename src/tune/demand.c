@@ -205,7 +205,7 @@ mt_status mt_demand_eval(mt_problem *p, const mt_demand *d, bool with_gradient,
         limit_demand(p, d, with_gradient, out);
         return MT_OK;
     }
-    MT_TRY(mt_view_position(&p->views[d->view], d->mode, d->named, &pos, err));
+    MT_TRY(mt_view_position(p, &p->views[d->view], d->mode, d->named, &pos, err));
     if (pos < 0) {
         return no_mode(p, d, err);
     }

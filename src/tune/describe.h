@@ -41,6 +41,12 @@ mt_status mt_describe_clearances(mt_problem *fresh, mt_result *result, mt_recomm
 int mt_describe_modes_in_reach(const mt_problem *p, int view);
 /* The margin that the edge of the band nearest to hz has, in percent of the edge. */
 double mt_describe_margin_percent(const mt_band *band, double hz);
+/* describe_track.c: vibration index of the mode at pos; 0 for -1. */
+int mt_describe_index(const mt_modes *modes, int pos);
+/* "ambiguous between modes 2 and 3", "lost: ..."; "" where the named mode is told. NULL: memory. */
+const char *mt_describe_identity(const mt_view *view, int named, mt_arena *mem);
+/* Is it certain enough which mode the demand means? A frequency that all candidates have is. */
+bool mt_describe_is_told(const mt_view *view, const mt_demand *d);
 /* describe_frequencies.c: after mt_describe_goals, whose views are compared. */
 mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
                                   const mt_recommendation *baseline, mt_result *result,

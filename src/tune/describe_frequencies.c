@@ -23,33 +23,30 @@ typedef struct listing {
     int first;            /* its first row of rec->frequencies */
 } listing;
 
-/* Which vibration index has the mode at position pos? 0 for -1. */
-static int index_of(const mt_modes *modes, int pos)
-{
-    int index = 0;
-    for (int i = 0; i <= pos; i++) {
-        index += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
-    }
-    return index;
-}
-
 /* Vibration index of a demand's mode at this design; 0: it has none. */
-static mt_status index_of_demand(mt_view *view, const mt_demand *d, int *index, mt_err *err)
+static mt_status index_of_demand(mt_problem *p, mt_view *view, const mt_demand *d, int *index,
+                                 mt_err *err)
 {
     int pos = -1;
-    MT_TRY(mt_view_position(view, d->mode, d->named, &pos, err));
-    *index = index_of(&view->analysis->modes, pos);
+    MT_TRY(mt_view_position(p, view, d->mode, d->named, &pos, err));
+    *index = mt_describe_index(&view->analysis->modes, pos);
     return MT_OK;
 }
 
-/* The name of the mode with this index, in the model's words; NULL. */
-static mt_status name_of(const listing *l, int index, const char **name, mt_err *err)
+/* The name of the mode with this index, in the model's words, and how surely it is that mode. */
+static mt_status put_name(const listing *l, mt_result_frequency *f, mt_err *err)
 {
+    const mt_modes *const modes = &l->view->analysis->modes;
     for (int i = 0; i < l->view->n_named; i++) {
         int pos = -1;
-        MT_TRY(mt_view_position(l->view, 0, i, &pos, err));
-        if (pos >= 0 && index_of(&l->view->analysis->modes, pos) == index) {
-            *name = l->fresh->study->model->modes[l->view->named[i]].name.s;
+        MT_TRY(mt_view_position(l->fresh, l->view, 0, i, &pos, err));
+        if (pos >= 0 && mt_describe_index(modes, pos) == f->mode) {
+            const mt_track *const k = &l->view->track[i];
+            f->name = l->fresh->study->model->modes[l->view->named[i]].name.s;
+            f->identity = mt_track_state_name(k->state);
+            f->share = k->share;
+            f->rival_mode = mt_describe_index(modes, k->rival);
+            f->rival_share = k->rival_share;
         }
     }
     return MT_OK;
@@ -93,7 +90,7 @@ static mt_status describe_mode(const listing *l, int index, mt_result_frequency 
     for (int i = 0; i < n; i++) { /* d Hz = d lambda / (8 pi^2 Hz) */
         f->sensitivity[i] /= 8.0 * PI * PI * f->recommended_hz;
     }
-    MT_TRY(name_of(l, index, &f->name, err));
+    MT_TRY(put_name(l, f, err));
     return compare(l, f, err);
 }
 
@@ -117,7 +114,7 @@ static void attach_frequency(const mt_demand *d, mt_result_frequency *f)
 static mt_status attach(const listing *l, const mt_demand *d, mt_err *err)
 {
     int index = 0;
-    MT_TRY(index_of_demand(l->view, d, &index, err));
+    MT_TRY(index_of_demand(l->fresh, l->view, d, &index, err));
     index = index == 0 ? d->mode : index; /* unstable: the rows stand without frequency */
     for (int k = l->first; k < l->rec->n_frequencies; k++) {
         mt_result_frequency *const f = &l->rec->frequencies[k];
@@ -142,16 +139,17 @@ static mt_status warn_lost(const listing *l, const mt_demand *d, mt_err *err)
     if (d->named < 0 || l->design->found == NULL || !l->view->solved) {
         return MT_OK;
     }
-    MT_TRY(index_of_demand(l->view, d, &index, err));
-    if (index == 0 || l->view->share[d->named] >= MT_TRACK_LOST) {
+    MT_TRY(index_of_demand(l->fresh, l->view, d, &index, err));
+    const char *const why = mt_describe_identity(l->view, d->named, &l->result->mem);
+    if (why == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (index == 0 || why[0] == '\0') {
         return MT_OK;
     }
     return mt_describe_warn(
-        l->result, err,
-        "recommendation %d: mode \"%s\" of configuration \"%s\" has lost its shape among its "
-        "neighbours: mode %d, taken for it, carries %.0f %% of it",
-        l->design->rank, d->goal->mode.mode_name.s, mt_analysis_configuration(l->scratch),
-        index, 100.0 * l->view->share[d->named]);
+        l->result, err, "recommendation %d: mode \"%s\" of configuration \"%s\" is %s",
+        l->design->rank, d->goal->mode.mode_name.s, mt_analysis_configuration(l->scratch), why);
 }
 
 static mt_status count_modes(mt_problem *fresh, int v, int *count, mt_err *err)
@@ -170,7 +168,7 @@ static mt_status count_modes(mt_problem *fresh, int v, int *count, mt_err *err)
     for (int i = 0; i < fresh->n_demands; i++) {
         int index = 0;
         if (fresh->demands[i].view == v) {
-            MT_TRY(index_of_demand(view, &fresh->demands[i], &index, err));
+            MT_TRY(index_of_demand(fresh, view, &fresh->demands[i], &index, err));
             index = index == 0 ? fresh->demands[i].mode : index;
         }
         wanted = index > wanted ? index : wanted;

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "tune/describe.h"
+#include "tune/robust.h"
 
 /* Rounding of ln and of the eigenvalues may push a goal that is met exactly on its tolerance over it. */
 static const double MET_SLACK = 1e-6;
@@ -88,7 +89,7 @@ static mt_status demand_value(mt_problem *fresh, const mt_demand *d, double *val
         return MT_OK;
     }
     mt_view *const view = &fresh->views[d->view];
-    MT_TRY(mt_view_position(view, d->mode, d->named, &pos, err));
+    MT_TRY(mt_view_position(fresh, view, d->mode, d->named, &pos, err));
     if (pos < 0) {
         return MT_OK;
     }
@@ -142,7 +143,22 @@ static mt_status solve_views(mt_problem *fresh, mt_err *why, mt_err *err)
             *why = own;
         }
     }
-    return MT_OK;
+    mt_err own = {0};
+    const mt_status rc = why->code == MT_OK ? mt_robust_solve(fresh, false, &own) : MT_OK;
+    *why = rc != MT_OK ? own : *why;
+    return ends(rc) ? mt_fail(err, rc, "%s", own.text) : MT_OK;
+}
+
+/* Nobody can tell which mode is meant: the goal is not met, whatever its number. */
+static mt_status doubt(const mt_problem *fresh, const mt_demand *d, mt_result *result,
+                       mt_result_goal *g, mt_err *err)
+{
+    const char *const why =
+        mt_describe_identity(&fresh->views[d->view], d->named, &result->mem);
+    g->met = false;
+    g->text = why == NULL ? NULL : mt_arena_printf(&result->mem, "%s, %s", g->text, why);
+    g->doubtful = true;
+    return g->text == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
 static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
@@ -150,7 +166,8 @@ static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
 {
     mt_err own = {0};
     double violation = nan("");
-    const mt_status rc = mt_demand_eval(fresh, d, false, v, &own);
+    mt_status rc = mt_demand_eval(fresh, d, false, v, &own);
+    rc = rc == MT_OK ? mt_robust_demand(fresh, d, false, v, &own) : rc;
     if (ends(rc)) {
         return mt_fail(err, rc, "%s", own.text);
     }
@@ -166,7 +183,12 @@ static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
     g->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
     g->violation_percent = 100.0 * violation;
     g->met = violation <= d->tolerance * (1.0 + MET_SLACK);
-    return g->text == NULL || g->pointer == NULL ? mt_fail_memory(err) : MT_OK;
+    if (g->text == NULL || g->pointer == NULL) {
+        return mt_fail_memory(err);
+    }
+    return d->view < 0 || mt_describe_is_told(&fresh->views[d->view], d)
+               ? MT_OK
+               : doubt(fresh, d, result, g, err);
 }
 
 static const char *design_text(const mt_design *design, mt_arena *mem)

@@ -4,12 +4,16 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "tune/robust.h"
+
 void mt_problem_delete(mt_problem *p)
 {
     if (p != NULL) {
         for (int i = 0; i < p->n_views; i++) {
             mt_analysis_delete(p->views[i].analysis);
+            mt_analysis_delete(p->views[i].scout);
         }
+        mt_robust_free(p->robust);
         mt_arena_free(&p->mem);
         free(p);
     }
@@ -66,18 +70,6 @@ double mt_problem_stretch(const mt_problem *p, int i)
     return MT_HAS(p->scale[i]) ? p->scale[i] : p->x[i];
 }
 
-/* What a study may ask for and this version would pass over in silence. */
-static mt_status refuse_unsearched(const mt_study *s, mt_err *err)
-{
-    for (int i = 0; i < s->n_variables; i++) {
-        if (MT_HAS(s->variables[i].tolerance_percent)) {
-            return mt_fail(err, MT_E_INPUT,
-                           "/variables/%d: this version does not search with tolerances", i);
-        }
-    }
-    return MT_OK;
-}
-
 static mt_status init_variables(mt_problem *p, mt_err *err)
 {
     const size_t n = (size_t)p->n;
@@ -125,7 +117,6 @@ mt_status mt_problem_new_in_gap(const mt_study *study, mt_reference_cache *refer
                                 const int *below, mt_problem **out, mt_err *err)
 {
     *out = NULL;
-    MT_TRY(refuse_unsearched(study, err));
     mt_problem *const p = calloc(1, sizeof *p);
     if (p == NULL) {
         return mt_fail_memory(err);
@@ -140,6 +131,7 @@ mt_status mt_problem_new_in_gap(const mt_study *study, mt_reference_cache *refer
     rc = rc == MT_OK ? init_variables(p, err) : rc;
     rc = rc == MT_OK ? init_demands(p, below, err) : rc;
     rc = rc == MT_OK ? mt_problem_init_aims(p, err) : rc;
+    rc = rc == MT_OK ? mt_robust_init(p, err) : rc;
     if (rc != MT_OK) {
         mt_problem_delete(p);
         return rc;

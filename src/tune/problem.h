@@ -30,10 +30,10 @@ typedef struct mt_view {
     int n_named; /* named modes of this configuration that exist at the original design */
     int *named;  /* [n_named] of the model */
     const double **shape; /* [n_named] weighed there (tracking.h) */
-    int *pair;            /* [n_named] positions after mt_view_track */
-    double *share;        /* [n_named] likewise */
+    mt_track *track;      /* [n_named] after mt_view_track */
+    mt_analysis *scout;   /* owned; for designs on the way there, made when first needed */
     bool needs_vectors;   /* a goal needs shapes even where no gradient is asked for */
-    bool tracked;         /* pair and share belong to the last solve */
+    bool tracked;         /* track belongs to the last solve */
     bool solved;          /* the last solve succeeded */
 } mt_view;
 
@@ -124,6 +124,7 @@ typedef struct mt_problem {
     double *shape;  /* [max ns] */
     double *dshape; /* max ns x n */
     long evaluations;
+    struct mt_robust *robust; /* variables with a tolerance (robust.h); NULL: none */
     const double *hint; /* [n + 1] coordinates of one more design to start from; NULL: none */
     const volatile int *stop; /* NULL, or the search ends where it is set */
     void (*progress)(void *context, const char *text); /* NULL, or called now and then */
@@ -167,9 +168,10 @@ int mt_problem_view(const mt_problem *p, int configuration);
 /* The same, made where it is not there yet. */
 mt_status mt_problem_add_view(mt_problem *p, int configuration, int *out, mt_err *err);
 /* *pos: position of a mode (by index, or by place in the view's list of named ones where mode is 0) in the view's modes; -1: there is none, or the configuration is unstable. */
-mt_status mt_view_position(mt_view *view, int mode, int named, int *pos, mt_err *err);
-/* pair and share of all named modes. */
-mt_status mt_view_track(mt_view *view, mt_err *err);
+mt_status mt_view_position(mt_problem *p, mt_view *view, int mode, int named, int *pos,
+                           mt_err *err);
+/* Where all named modes are at the last solve, which was at p->x (problem_track.c). */
+mt_status mt_view_track(mt_problem *p, mt_view *view, mt_err *err);
 
 /* problem_clear.c */
 mt_status mt_clear_init(mt_problem *p, const int *below, mt_err *err);

@@ -24,11 +24,9 @@ static mt_status name_modes(mt_problem *p, mt_view *view, mt_err *err)
     mt_analysis *const a = view->analysis;
     const size_t most = (size_t)model->n_modes;
     view->named = mt_arena_int(&p->mem, most);
-    view->pair = mt_arena_int(&p->mem, most);
-    view->share = mt_arena_f64(&p->mem, most, 1);
+    view->track = mt_arena_alloc(&p->mem, most, sizeof *view->track);
     view->shape = mt_arena_alloc(&p->mem, most, sizeof *view->shape);
-    if (view->named == NULL || view->pair == NULL || view->share == NULL ||
-        view->shape == NULL) {
+    if (view->named == NULL || view->track == NULL || view->shape == NULL) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < model->n_modes; i++) {
@@ -61,17 +59,8 @@ mt_status mt_problem_add_view(mt_problem *p, int configuration, int *out, mt_err
     return name_modes(p, view, err);
 }
 
-mt_status mt_view_track(mt_view *view, mt_err *err)
-{
-    if (!view->tracked) {
-        MT_TRY(mt_track_assign(view->analysis, view->n_named, view->shape, view->pair,
-                               view->share, err));
-        view->tracked = true;
-    }
-    return MT_OK;
-}
-
-mt_status mt_view_position(mt_view *view, int mode, int named, int *pos, mt_err *err)
+mt_status mt_view_position(mt_problem *p, mt_view *view, int mode, int named, int *pos,
+                           mt_err *err)
 {
     *pos = -1;
     if (!view->solved) {
@@ -81,8 +70,8 @@ mt_status mt_view_position(mt_view *view, int mode, int named, int *pos, mt_err 
         *pos = mt_modal_flexible(&view->analysis->modes, mode);
         return MT_OK;
     }
-    MT_TRY(mt_view_track(view, err));
-    *pos = view->pair[named];
+    MT_TRY(mt_view_track(p, view, err));
+    *pos = view->track[named].pos;
     return MT_OK;
 }
 

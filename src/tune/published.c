@@ -39,10 +39,9 @@ static mt_status named_at(judge *j, const mt_published *pub, mt_analysis *a, int
     int wanted = -1;
     MT_TRY(analysis_at(j, pub->configuration, ORIGINAL, &first, err));
     const double **const w = mt_arena_alloc(&j->mem, most, sizeof *w);
-    int *const pair = mt_arena_int(&j->mem, most);
-    double *const share = mt_arena_f64(&j->mem, most, 1);
+    mt_track *const track = mt_arena_alloc(&j->mem, most, sizeof *track);
     *pos = -1;
-    if (w == NULL || pair == NULL || share == NULL) {
+    if (w == NULL || track == NULL) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < model->n_modes; i++) {
@@ -59,8 +58,8 @@ static mt_status named_at(judge *j, const mt_published *pub, mt_analysis *a, int
         w[n++] = shape;
     }
     if (wanted >= 0) {
-        MT_TRY(mt_track_assign(a, n, w, pair, share, err));
-        *pos = pair[wanted];
+        MT_TRY(mt_track_match(a, n, w, track, err));
+        *pos = track[wanted].pos;
     }
     return MT_OK;
 }

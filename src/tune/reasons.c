@@ -185,7 +185,10 @@ static void say_violations(mt_sentences *s)
 {
     for (int i = 0; i < s->rec->n_goals; i++) {
         const mt_result_goal *const g = &s->rec->goals[i];
-        if (!g->weighted && !g->met) {
+        if (g->doubtful && !g->weighted) {
+            mt_say(s, "Goal %s (%s) does not count as met: it is not certain which mode it is.",
+                   g->pointer, g->text);
+        } else if (!g->weighted && !g->met) {
             mt_say(s, "Goal %s (%s) is missed by %.3g %%.", g->pointer, g->text,
                    g->violation_percent);
         }

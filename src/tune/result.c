@@ -52,6 +52,8 @@ mt_result_frequency mt_result_frequency_default(void)
         .at_most_hz = nan(""),
         .error_percent = nan(""),
         .mac = nan(""),
+        .share = nan(""),
+        .rival_share = nan(""),
         .residual = nan(""),
         .orthogonality = nan(""),
     };

@@ -30,8 +30,12 @@ typedef struct mt_result_parameter {
 
 typedef struct mt_result_frequency {
     const char *configuration;
-    int mode;         /* vibration index at this design */
-    const char *name; /* named mode; NULL */
+    int mode;             /* vibration index at this design */
+    const char *name;     /* named mode; NULL */
+    const char *identity; /* of a named mode: "tracked", "ambiguous", "lost"; NULL */
+    double share;   /* part of the named shape that this mode carries; NaN without a name */
+    int rival_mode; /* the mode that carries most of the rest; 0: none */
+    double rival_share;
     double original_hz;
     double recommended_hz;
     double target_hz; /* NaN: no target */
@@ -56,6 +60,7 @@ typedef struct mt_result_goal {
     double violation_percent;
     bool met;
     bool weighted; /* part of the misfit: does not decide status */
+    bool doubtful; /* its named mode is ambiguous or lost: not met, whatever the number */
 } mt_result_goal;
 
 /* A mode beside a band. */
@@ -215,8 +220,8 @@ typedef struct mt_result {
     const char *study_name;
     const char *study_file; /* its file name, without folder */
     const char *model_name;
-    const char *model_file; /* as the study writes it, relative to its folder: for `apply` */
-    const char *status_text;    /* one sentence */
+    const char *model_file;  /* as the study writes it, relative to its folder: for `apply` */
+    const char *status_text; /* one sentence */
     mt_recommendation baseline; /* the original design, rank 0 */
     mt_result_status status;
     int n_recommendations;

@@ -105,6 +105,20 @@ static mt_result_status status_of(const answer *a, const mt_recommendation *best
     return best->feasible ? MT_RESULT_SOLVED : MT_RESULT_COMPROMISE;
 }
 
+/* Is a named mode that cannot be told all that is wrong? */
+static bool is_doubtful(const mt_recommendation *best)
+{
+    bool doubtful = false;
+    for (int i = 0; i < best->n_goals; i++) {
+        const mt_result_goal *const g = &best->goals[i];
+        if (!g->met && !g->weighted && !g->doubtful) {
+            return false;
+        }
+        doubtful = doubtful || g->doubtful;
+    }
+    return doubtful;
+}
+
 static const char *status_text(const answer *a, const mt_recommendation *best)
 {
     mt_arena *const mem = &a->result->mem;
@@ -131,7 +145,8 @@ static const char *status_text(const answer *a, const mt_recommendation *best)
     if (best->feasible && a->gaps.n_solutions > 0) {
         return mt_arena_printf(
             mem,
-            "Solved: %d kind%s of design keep%s clear of the bands and meet%s all goals (of %.0f "
+            "Solved: %d kind%s of design keep%s clear of the bands and meet%s all goals (of "
+            "%.0f "
             "gap assignments, %s).",
             n, n == 1 ? "" : "s", n == 1 ? "s" : "", n == 1 ? "s" : "", a->gaps.n_possible,
             a->gaps.proven ? "the others proven infeasible" : "sampled, not proven");
@@ -139,6 +154,11 @@ static const char *status_text(const answer *a, const mt_recommendation *best)
     if (best->feasible) {
         return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.", n,
                                n == 1 ? " meets" : "s meet");
+    }
+    if (is_doubtful(best)) {
+        return "Compromise: by their numbers all goals can be met, but which modes the named "
+               "ones "
+               "are cannot be told there (see the goals).";
     }
     return mt_arena_printf(mem,
                            "Compromise: no design found within the bounds meets all goals; the "

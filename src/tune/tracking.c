@@ -30,12 +30,41 @@ static void shares(const mt_analysis *a, int n, const double *const *w, double *
     }
 }
 
-mt_status mt_track_assign(mt_analysis *a, int n, const double *const *w, int *pair,
-                          double *share, mt_err *err)
+static void put_track(const mt_analysis *a, int n, const double *all, int r, int pos,
+                      mt_track *out)
+{
+    int size = 1;
+    *out = (mt_track){.pos = -1, .rival = -1, .state = MT_TRACK_LOST_STATE};
+    if (pos < 0 || all[r + ((ptrdiff_t)pos * n)] < 0.0) {
+        return; /* no vibration mode was left */
+    }
+    out->pos = pos;
+    out->share = all[r + ((ptrdiff_t)pos * n)];
+    for (int c = 0; c < a->modes.count; c++) {
+        const double other = all[r + ((ptrdiff_t)c * n)];
+        if (c != pos && other >= 0.0 && (out->rival < 0 || other > out->rival_share)) {
+            out->rival = c;
+            out->rival_share = other;
+        }
+    }
+    const int first = mt_modal_cluster(&a->modes, pos, &size);
+    if (size > 1) {
+        out->rival = pos == first ? first + 1 : first;
+        out->rival_share = 1.0;
+    }
+    const bool rivalled = out->rival_share > MT_TRACK_RIVAL * out->share;
+    const bool lost = out->share + (rivalled ? out->rival_share : 0.0) < MT_TRACK_LOST;
+    out->state = lost                         ? MT_TRACK_LOST_STATE
+                 : rivalled                   ? MT_TRACK_AMBIGUOUS
+                 : out->share < MT_TRACK_LOST ? MT_TRACK_LOST_STATE
+                                              : MT_TRACKED;
+}
+
+mt_status mt_track_match(mt_analysis *a, int n, const double *const *w, mt_track *tracks,
+                         mt_err *err)
 {
     for (int r = 0; r < n; r++) {
-        pair[r] = -1;
-        share[r] = 0.0;
+        tracks[r] = (mt_track){.pos = -1, .rival = -1, .state = MT_TRACK_LOST_STATE};
     }
     if (a->modes.n_unstable > 0 || n == 0) {
         return MT_OK;
@@ -47,16 +76,29 @@ mt_status mt_track_assign(mt_analysis *a, int n, const double *const *w, int *pa
     const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
     double *const all = mt_arena_f64(&a->mem, (size_t)n, (size_t)a->modes.count);
     double *const phi = mt_arena_f64(&a->mem, (size_t)a->sys->nq, 1);
-    mt_status rc = all == NULL || phi == NULL ? mt_fail_memory(err) : MT_OK;
+    int *const pair = mt_arena_int(&a->mem, (size_t)n);
+    mt_status rc = all == NULL || phi == NULL || pair == NULL ? mt_fail_memory(err) : MT_OK;
     if (rc == MT_OK) {
         shares(a, n, w, phi, all);
         rc = mt_assign(n, a->modes.count, all, pair, &a->mem, err);
     }
     for (int r = 0; r < n && rc == MT_OK; r++) {
-        const double s = pair[r] < 0 ? -1.0 : all[r + ((ptrdiff_t)pair[r] * n)];
-        share[r] = s < 0.0 ? 0.0 : s;
-        pair[r] = s < 0.0 ? -1 : pair[r]; /* no vibration mode was left */
+        put_track(a, n, all, r, pair[r], &tracks[r]);
     }
     mt_arena_rewind(&a->mem, mark);
     return rc;
+}
+
+#define STATE_NAME(id, name) \
+    case id:                 \
+        return name;
+
+const char *mt_track_state_name(mt_track_state state)
+{
+    switch (state) {
+        MT_TRACK_STATE_LIST(STATE_NAME)
+    case MT_TRACK_STATE_COUNT:
+        break;
+    }
+    return "unknown";
 }

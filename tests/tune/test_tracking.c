@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Named modes along sweeps of a parameter. Two oscillators of unit mass, k1 and k2 to the ground and c between them:
+ *     K = [k1 + c, -c; -c, k2 + c],   tan 2 theta = -2 c / (k2 - k1),
+ * where theta is the angle of the modes to the masses. A name that was given at theta_0 has the share cos^2(theta - theta_0) of the mode that turned with it: everything below is that closed form.
+ */
+#include "study_fixture.h"
+#include "tune/problem.h"
+
+#define TWO_OSCILLATORS                                                                   \
+    "{'format': 'modetune-model/1', 'name': 'two oscillators', 'dimension': 2,"           \
+    "'parameters': {'k1': {'value': 1}, 'k2': {'value': 2}, 'c': {'value': 0}},"          \
+    "'bodies': [{'name': 'm1', 'mass_kg': 1, 'centre': [1, 0]},"                          \
+    " {'name': 'm2', 'mass_kg': 1, 'centre': [2, 0]}],"                                   \
+    "'joints': ["                                                                         \
+    "{'name': 'r1', 'type': 'pin-in-slot', 'bodies': ['ground', 'm1'], 'at': [1, 0],"     \
+    " 'axis': [1, 0]},"                                                                   \
+    "{'name': 'r2', 'type': 'pin-in-slot', 'bodies': ['ground', 'm2'], 'at': [2, 0],"     \
+    " 'axis': [1, 0]}],"                                                                  \
+    "'springs': ["                                                                        \
+    "{'name': 's1', 'type': 'axial', 'bodies': ['ground', 'm1'], 'at': [[0, 0], [1, 0]]," \
+    " 'stiffness_n_per_m': 'k1'},"                                                        \
+    "{'name': 's2', 'type': 'axial', 'bodies': ['ground', 'm2'], 'at': [[0, 0], [2, 0]]," \
+    " 'stiffness_n_per_m': 'k2'},"                                                        \
+    "{'name': 's12', 'type': 'axial', 'bodies': ['m1', 'm2'], 'at': [[1, 0], [2, 0]],"    \
+    " 'stiffness_n_per_m': 'c'}],"                                                        \
+    "'modes': {'first': {'configuration': 'held', 'index': 1},"                           \
+    " 'second': {'configuration': 'held', 'index': 2}},"                                  \
+    "'configurations': {'held': {'parameters': {'c': %s}}}}"
+
+static const char *const VARY_K1 =
+    "'name': 'two', 'variables': [{'parameter': 'k1', 'lower': 0.5, 'upper': 8}],"
+    "'goals': [{'type': 'frequency', 'mode': 'first', 'at_least_hz': 0.01}]";
+
+/* Angle of the lower mode to mass 1. */
+static double angle(double k1, double k2, double c)
+{
+    return 0.5 * atan2(2.0 * c, k2 - k1);
+}
+
+/* Omega^2 of the mode at this angle (exactly: both modes' angles differ by a right one). */
+static double lambda_at(double theta, double k1, double k2, double c)
+{
+    const double a = cos(theta);
+    const double b = sin(theta);
+    return (a * a * (k1 + c)) + (b * b * (k2 + c)) - (2.0 * a * b * c);
+}
+
+static const mt_view *track_at(mt_problem *p, double k1, mt_err *err)
+{
+    const double t = mt_problem_t(p, 0, k1);
+    mt_view *const view = &p->views[0];
+    const bool ok = mt_problem_place(p, &t, false, err) == MT_OK &&
+                    mt_view_solve(p, view, false, err) == MT_OK &&
+                    mt_view_track(p, view, err) == MT_OK;
+    return ok ? view : NULL;
+}
+
+typedef struct sweep_count {
+    int tracked;
+    int ambiguous;
+    int swapped; /* the name "first" is on the upper branch */
+} sweep_count;
+
+/* Every point of a sweep of k1 from 1 to 4 with k2 = 2 against the closed form. */
+static void sweep(mt_test *t, const char *coupling, sweep_count *count)
+{
+    char model[4096];
+    study_case s;
+    mt_reference_cache references = {0};
+    mt_arena mem = {0};
+    mt_problem *p = NULL;
+    const double c = atof(coupling);
+    enum { POINTS = 301 };
+    (void)snprintf(model, sizeof model, TWO_OSCILLATORS, coupling);
+    *count = (sweep_count){0};
+    if (!study_load(t, model, VARY_K1, &s)) {
+        return;
+    }
+    CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK);
+    CHECK_INT(t, mt_reference_cache_init(&references, s.study, &mem, NULL), MT_OK);
+    if (CHECK_INT(t, mt_problem_new(s.study, &references, &p, NULL), MT_OK)) {
+        const double start = angle(1.0, 2.0, c);
+        for (int i = 0; i < POINTS; i++) {
+            const double k1 = 1.0 + (3.0 * i / (POINTS - 1));
+            mt_err err = {0};
+            const mt_view *const view = track_at(p, k1, &err);
+            mt_test_row(t, "c = %s, k1 = %g", coupling, k1);
+            if (!CHECK(t, view != NULL)) {
+                continue;
+            }
+            const double theta = angle(k1, 2.0, c);
+            const double stays = pow(cos(theta - start), 2.0);
+            const bool lower = stays > 0.5;
+            const double share = lower ? stays : 1.0 - stays;
+            const bool equal = c == 0.0 && fabs(k1 - 2.0) < 1e-9;
+            const bool told = !equal && 1.0 - share <= MT_TRACK_RIVAL * share;
+            const mt_track *const first = &view->track[0];
+            CHECK_INT(t, (int)first->state, (int)(told ? MT_TRACKED : MT_TRACK_AMBIGUOUS));
+            count->tracked += told ? 1 : 0;
+            count->ambiguous += told ? 0 : 1;
+            count->swapped += told && !lower ? 1 : 0;
+            if (told) {
+                const double want =
+                    lambda_at(lower ? theta : theta + (STUDY_PI / 2.0), k1, 2.0, c);
+                /* two correctly rounded solves of order 2 */
+                CHECK_NEAR(t, view->analysis->modes.lambda[first->pos], want, 1e-12);
+                CHECK_NEAR_ABS(t, first->share, share, 1e-9);
+                CHECK_INT(t, view->track[1].pos, 1 - first->pos);
+            }
+        }
+    }
+    mt_problem_delete(p);
+    mt_reference_cache_free(&references);
+    mt_arena_free(&mem);
+    study_free(&s);
+}
+
+static void tracking__a_crossing_keeps_the_names(mt_test *t)
+{
+    sweep_count n;
+    sweep(t, "0", &n);
+    CHECK_INT(t, n.ambiguous, 1); /* where both frequencies are equal */
+    CHECK_INT(t, n.swapped, 200); /* k1 above 2 */
+}
+
+static void tracking__a_veering_hands_the_names_over(mt_test *t)
+{
+    sweep_count n;
+    sweep(t, "0.001", &n);
+    CHECK(t, n.ambiguous == 1); /* narrower than a step of the sweep */
+    CHECK_INT(t, n.swapped, 200);
+    sweep(t, "0.05", &n);
+    CHECK(t, n.ambiguous > 3 && n.ambiguous < 20); /* 35 to 55 degrees: |k1 - k2| < 0.7 c */
+    CHECK(t, n.swapped > 150);
+}
+
+/* Both frequencies are equal, the shapes any: the name cannot be told, but its frequency can. */
+static void tracking__equal_frequencies_are_ambiguous(mt_test *t)
+{
+    char model[4096];
+    study_case s;
+    (void)snprintf(model, sizeof model, TWO_OSCILLATORS, "0");
+    REQUIRE(t, study_solve(t, model,
+                           "'name': 'equal', 'variables': [{'parameter': 'k1', 'lower': 0.5,"
+                           " 'upper': 8}], 'goals': [{'type': 'frequency', 'mode': 'first',"
+                           " 'target_hz': 'sqrt(2)/(2*pi)'}]",
+                           &s));
+    const mt_recommendation *const best = &s.result->recommendations[0];
+    CHECK_NEAR(t, best->parameters[0].recommended, 2.0, 1e-6);
+    bool seen = false;
+    for (int i = 0; i < best->n_frequencies; i++) {
+        const mt_result_frequency *const f = &best->frequencies[i];
+        if (f->name != NULL && strcmp(f->name, "first") == 0) {
+            seen = true;
+            CHECK_STR(t, f->identity, "ambiguous");
+        }
+    }
+    CHECK(t, seen);
+    CHECK(t, best->feasible); /* whichever it is, it has the frequency */
+    CHECK(t, s.result->n_warnings > 0 &&
+                 strstr(s.result->warnings[0], "ambiguous between modes 1 and 2") != NULL);
+    study_free(&s);
+}
+
+/* Half way through a veering the named mode is either of two: a target met there by number is no answer. */
+static void tracking__a_goal_inside_a_veering_is_not_met(mt_test *t)
+{
+    char model[4096];
+    study_case s;
+    (void)snprintf(model, sizeof model, TWO_OSCILLATORS, "0.05");
+    REQUIRE(t, study_solve(t, model,
+                           "'name': 'inside', 'goals': [{'type': 'frequency', 'mode': 'first',"
+                           " 'at_least_hz': 0.01}],"
+                           "'variables': [{'parameter': 'k1', 'lower': 1.99, 'upper': 2.01}]",
+                           &s));
+    const mt_recommendation *const best = &s.result->recommendations[0];
+    REQUIRE(t, s.result->n_recommendations > 0 && best->n_goals == 1);
+    CHECK(t, !best->goals[0].met && best->goals[0].doubtful && !best->feasible);
+    CHECK(t, strstr(best->goals[0].text, "ambiguous between modes 1 and 2") != NULL);
+    CHECK_INT(t, (int)s.result->status, (int)MT_RESULT_COMPROMISE);
+    study_free(&s);
+}
+
+/* k1 is to bring the mode of mass 1 from 1 to 3 rad^2/s^2, past the other at 2: it is then the second mode. */
+static void tracking__a_named_goal_is_solved_through_a_swap(mt_test *t)
+{
+    static const char *const couplings[] = {"0", "0.001", "0.01"};
+    for (int i = 0; i < MT_COUNT(couplings); i++) {
+        char model[4096];
+        study_case s;
+        const double c = atof(couplings[i]);
+        mt_test_row(t, "c = %s", couplings[i]);
+        (void)snprintf(model, sizeof model, TWO_OSCILLATORS, couplings[i]);
+        if (!CHECK(t,
+                   study_solve(t, model,
+                               "'name': 'swap', 'variables': [{'parameter': 'k1', 'lower': 0.5,"
+                               " 'upper': 8}], 'goals': [{'type': 'frequency', 'mode': 'first',"
+                               " 'target_hz': 'sqrt(3)/(2*pi)'}]",
+                               &s))) {
+            continue;
+        }
+        const mt_recommendation *const best = &s.result->recommendations[0];
+        /* (k1 + c - 3)(k2 + c - 3) = c^2 */
+        const double want = 3.0 - c + (c * c / (2.0 + c - 3.0));
+        CHECK_INT(t, (int)s.result->status, (int)MT_RESULT_SOLVED);
+        CHECK_NEAR(t, best->parameters[0].recommended, want, 1e-5);
+        for (int k = 0; k < best->n_frequencies; k++) {
+            const mt_result_frequency *const f = &best->frequencies[k];
+            if (f->name != NULL && strcmp(f->name, "first") == 0) {
+                CHECK_INT(t, f->mode, 2);
+                CHECK_STR(t, f->identity, "tracked");
+            }
+        }
+        study_free(&s);
+    }
+}
+
+MT_TEST_MAIN(MT_TEST(tracking__a_crossing_keeps_the_names),
+             MT_TEST(tracking__a_veering_hands_the_names_over),
+             MT_TEST(tracking__equal_frequencies_are_ambiguous),
+             MT_TEST(tracking__a_goal_inside_a_veering_is_not_met),
+             MT_TEST(tracking__a_named_goal_is_solved_through_a_swap))
