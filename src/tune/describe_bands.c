@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "tune/describe.h"
+#include "tune/robust.h"
 
 /* Rounding of ln and of the eigenvalues may push a mode that stands on an edge over it. */
 static const double MET_SLACK = 1e-6;
@@ -89,9 +90,13 @@ static mt_status judge(mt_problem *fresh, int goal, int configuration, mt_result
     const mt_goal *const g = &fresh->study->goals[goal];
     const mt_view *const view = &fresh->views[mt_problem_view(fresh, configuration)];
     const mt_modes *const modes = &view->analysis->modes;
-    const mt_clear own = {.bands = g->avoid->bands};
-    const double violation =
-        view->solved ? mt_clear_violation(&own, modes, NULL, NULL) : nan("");
+    const mt_clear own = {.view = mt_problem_view(fresh, configuration),
+                          .bands = g->avoid->bands};
+    double violation = view->solved ? mt_clear_violation(&own, modes, NULL, NULL) : nan("");
+    if (MT_HAS(violation) && fresh->robust != NULL) {
+        const double room = mt_robust_room(fresh, &own);
+        violation = MT_HAS(room) ? fmax(-room, 0.0) : room;
+    }
     *out = (mt_result_goal){.value = nan(""), .demand = nan("")};
     if (MT_HAS(violation)) {
         tightest(&g->avoid->bands, modes, out);

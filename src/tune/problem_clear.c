@@ -8,7 +8,7 @@
  */
 #include <math.h>
 
-#include "tune/problem.h"
+#include "tune/robust.h"
 
 /* Range of the extra coordinate: a clearance of -95 % to +2000 %. */
 static const double CLEARANCE_LOWER = -3.0;
@@ -237,6 +237,9 @@ bool mt_clear_row_at(const mt_problem *p, const int *below, int row, mt_clear_ro
 double mt_clear_room(const mt_problem *p, const mt_clear *c)
 {
     const mt_modes *const modes = &p->views[c->view].analysis->modes;
+    if (p->robust != NULL) {
+        return mt_robust_room(p, c);
+    }
     double room = modes->n_unstable > 0 ? nan("") : HUGE_VAL;
     for (int b = 0; b < c->bands.n; b++) {
         const mt_band *const band = &c->bands.items[b];
