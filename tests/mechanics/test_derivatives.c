@@ -174,14 +174,14 @@ static const struct {
 
 static void derivatives__agree_with_slopes_in_every_mechanism(mt_test *t)
 {
-    const bool few =
-        getenv("MT_TEST_LAUNCHED") != NULL; /* valgrind: the first mode is enough */
-    for (int i = 0; i < MT_COUNT(CASES); i++) {
+    const bool few = getenv("MT_TEST_LAUNCHED") !=
+                     NULL; /* valgrind: one derivative of every third is enough */
+    for (int i = 0; i < MT_COUNT(CASES); i += few ? 3 : 1) {
         mech s;
         mt_test_row(t, "%s, %s", CASES[i].file, CASES[i].configuration);
         if (mech_must(t, mech_load(t, CASES[i].file), CASES[i].configuration, CASES[i].inputs,
                       &s)) {
-            for (int p = 0; p < s.n; p++) {
+            for (int p = 0; p < (few ? 1 : s.n); p++) {
                 for (int mode = 1; mode <= (few ? 1 : CASES[i].modes); mode++) {
                     const int parameter = s.a->sys->inputs[p];
                     mt_test_row(t, "%s, %s, mode %d, %s", CASES[i].file, CASES[i].configuration,

@@ -5,6 +5,7 @@
  * areas enter stiffness and mass.
  */
 #include <stdarg.h>
+#include <stdlib.h>
 
 #include "mechanics/mech.h"
 #include "support/mt_random.h"
@@ -304,6 +305,17 @@ static bool among(int n_bands, const int *list, int count, const int *one)
     return false;
 }
 
+/* Under valgrind a few systems are enough: what counts there is memory, not statistics. */
+static bool launched(void)
+{
+    return getenv("MT_TEST_LAUNCHED") != NULL;
+}
+
+static int systems(void)
+{
+    return launched() ? 6 : SYSTEMS;
+}
+
 typedef struct tally {
     int proven;
     int infeasible;
@@ -315,7 +327,7 @@ typedef struct tally {
 static void enclosure__no_sample_has_what_is_excluded(mt_test *t)
 {
     tally n = {0};
-    for (int seed = 0; seed < SYSTEMS; seed++) {
+    for (int seed = 0; seed < systems(); seed++) {
         rig g;
         mt_certify_search out;
         mt_err err = {.text = ""};
@@ -343,10 +355,10 @@ static void enclosure__no_sample_has_what_is_excluded(mt_test *t)
         end(&g);
     }
     (void)printf("%d of %d proven, %d of them infeasible; %ld feasible samples\n", n.proven,
-                 SYSTEMS, n.infeasible, n.feasible_samples);
-    CHECK(t, n.proven > SYSTEMS / 2); /* or the test shows nothing */
-    CHECK(t, n.infeasible > 0);
-    CHECK(t, n.feasible_samples > SYSTEMS);
+                 systems(), n.infeasible, n.feasible_samples);
+    CHECK(t, launched() || n.proven > systems() / 2); /* or the test shows nothing */
+    CHECK(t, launched() || n.infeasible > 0);
+    CHECK(t, launched() || n.feasible_samples > systems());
 }
 
 /* Frequencies of one view at x against the ranges, and counts at exactly these frequencies. */
@@ -381,7 +393,7 @@ static void check_ranges(mt_test *t, rig *g, const double *lo, const double *hi)
 
 static void enclosure__every_sample_lies_in_the_ranges(mt_test *t)
 {
-    for (int seed = 0; seed < SYSTEMS; seed++) {
+    for (int seed = 0; seed < systems(); seed++) {
         rig g;
         mt_test_row(t, "system %d", seed);
         if (begin(t, seed, &g)) {
@@ -472,7 +484,7 @@ static void check_tolerances(mt_test *t, rig *g, const double *x, const int *ass
 static void enclosure__no_design_in_a_tolerance_box_fails(mt_test *t)
 {
     tally n = {0};
-    for (int seed = 0; seed < SYSTEMS; seed++) {
+    for (int seed = 0; seed < systems(); seed++) {
         rig g;
         double x[MECH_INPUTS];
         int below[BANDS];
@@ -489,8 +501,8 @@ static void enclosure__no_design_in_a_tolerance_box_fails(mt_test *t)
         end(&g);
     }
     (void)printf("%d tolerance boxes, %d shown to be the largest\n", n.boxes, n.tight);
-    CHECK(t, n.boxes > SYSTEMS / 3);
-    CHECK(t, n.tight > SYSTEMS / 6);
+    CHECK(t, launched() || n.boxes > systems() / 3);
+    CHECK(t, launched() || n.tight > systems() / 6);
 }
 
 MT_TEST_MAIN(MT_TEST(enclosure__no_sample_has_what_is_excluded),
