@@ -65,6 +65,8 @@ static void add_best(const mt_recommendation *r, mt_text *out)
     if (r->n_frequencies > 0) {
         mt_report_svg_frequencies(r, out);
     }
+    add_table(mt_report_gaps(r), "Bands", out);
+    add_table(mt_report_clearances(r), "Clearances from bands", out);
     add_table(mt_report_goals(r), "Goals", out);
     add_list(r->n_reasons, r->reasons, "Why", out);
 }

@@ -39,6 +39,18 @@ static const char *demand_of(const mt_result_frequency *f, char *s, size_t size)
     return s;
 }
 
+/* "stick bending", "stick bending (ambiguous)" */
+static void name_cell(mt_table *t, const mt_result_frequency *f)
+{
+    char text[DEMAND_TEXT];
+    if (f->name == NULL || f->identity == NULL || strcmp(f->identity, "tracked") == 0) {
+        mt_table_text(t, f->name);
+        return;
+    }
+    (void)snprintf(text, sizeof text, "%.90s (%s)", f->name, f->identity);
+    mt_table_text(t, text);
+}
+
 mt_table mt_report_frequencies(const mt_recommendation *r)
 {
     mt_table t = mt_table_default();
@@ -55,7 +67,7 @@ mt_table mt_report_frequencies(const mt_recommendation *r)
         char demand[DEMAND_TEXT];
         mt_table_text(&t, f->configuration);
         mt_table_integer(&t, f->mode);
-        mt_table_text(&t, f->name);
+        name_cell(&t, f);
         mt_table_number(&t, f->original_hz, HZ_DIGITS);
         mt_table_number(&t, f->recommended_hz, HZ_DIGITS);
         mt_table_text(&t, demand_of(f, demand, sizeof demand));
@@ -105,6 +117,91 @@ mt_table mt_report_goals(const mt_recommendation *r)
     return t;
 }
 
+/* The clearance of the same mode on the other side: the lists have a mode's lower band first. */
+static bool same_mode(const mt_result_clearance *a, const mt_result_clearance *b)
+{
+    return a->mode == b->mode && strcmp(a->configuration, b->configuration) == 0;
+}
+
+mt_table mt_report_clearances(const mt_recommendation *r)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
+    mt_table_column(&t, "mode", "mode", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "[Hz]", "hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "above band", "above_band", MT_ALIGN_LEFT);
+    mt_table_column(&t, "by [%]", "above_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "below band", "below_band", MT_ALIGN_LEFT);
+    mt_table_column(&t, "by [%]", "below_percent", MT_ALIGN_POINT);
+    for (int i = 0; i < r->n_clearances; i++) {
+        const mt_result_clearance *const c = &r->clearances[i];
+        const mt_result_clearance *above = strcmp(c->side, "above") == 0 ? c : NULL;
+        const mt_result_clearance *below = strcmp(c->side, "below") == 0 ? c : NULL;
+        const bool inside = above == NULL && below == NULL;
+        if (above != NULL && i + 1 < r->n_clearances && same_mode(c, c + 1) &&
+            strcmp(c[1].side, "below") == 0) {
+            below = c + 1;
+            i++;
+        }
+        mt_table_text(&t, c->configuration);
+        mt_table_integer(&t, c->mode);
+        mt_table_number(&t, c->hz, HZ_DIGITS);
+        if (inside) {
+            char text[DEMAND_TEXT];
+            (void)snprintf(text, sizeof text, "inside %.100s", c->band);
+            mt_table_text(&t, text);
+        } else {
+            mt_table_text(&t, above != NULL ? above->band : NULL);
+        }
+        mt_table_number(&t,
+                        inside          ? c->percent
+                        : above != NULL ? above->percent
+                                        : nan(""),
+                        PERCENT_DIGITS);
+        mt_table_text(&t, below != NULL ? below->band : NULL);
+        mt_table_number(&t, below != NULL ? below->percent : nan(""), PERCENT_DIGITS);
+    }
+    return t;
+}
+
+mt_table mt_report_gaps(const mt_recommendation *r)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
+    mt_table_column(&t, "band", "band", MT_ALIGN_LEFT);
+    mt_table_column(&t, "from [Hz]", "lower_hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "to [Hz]", "upper_hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "with margin from", "margin_lower_hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "to", "margin_upper_hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "modes below", "modes_below", MT_ALIGN_RIGHT);
+    for (int i = 0; i < r->n_gaps; i++) {
+        const mt_result_gap *const g = &r->gaps[i];
+        mt_table_text(&t, g->configuration);
+        mt_table_text(&t, g->band);
+        mt_table_number(&t, g->lower_hz, HZ_DIGITS);
+        mt_table_number(&t, g->upper_hz, HZ_DIGITS);
+        mt_table_number(&t, g->margin_lower_hz, HZ_DIGITS);
+        mt_table_number(&t, g->margin_upper_hz, HZ_DIGITS);
+        mt_table_integer(&t, g->modes_below);
+    }
+    return t;
+}
+
+/* "0 1 2 4": modes below each band; NULL without bands. */
+static const char *assignment(const mt_recommendation *r, char *s, size_t size)
+{
+    size_t used = 0;
+    for (int i = 0; i < r->n_gaps; i++) {
+        const int n =
+            snprintf(s + used, size - used, "%s%d", i == 0 ? "" : " ", r->gaps[i].modes_below);
+        if (n < 0 || (size_t)n >= size - used) {
+            break; /* more bands than a cell holds: cut */
+        }
+        used += (size_t)n;
+    }
+    return r->n_gaps > 0 ? s : NULL;
+}
+
 mt_table mt_report_alternatives(const mt_result *result)
 {
     mt_table t = mt_table_default();
@@ -122,6 +219,11 @@ mt_table mt_report_alternatives(const mt_result *result)
     mt_table_column(&t, "change", "change", MT_ALIGN_POINT);
     mt_table_column(&t, "off by [%]", "violation_percent", MT_ALIGN_POINT);
     const int n = result->n_variables;
+    const bool bands = result->baseline.n_gaps > 0;
+    if (bands) {
+        mt_table_column(&t, "clearance [%]", "clearance_percent", MT_ALIGN_POINT);
+        mt_table_column(&t, "modes below bands", "gap_assignment", MT_ALIGN_LEFT);
+    }
     for (int k = 0; k < n; k++) {
         mt_table_column(&t, result->variables[k], result->variables[k], MT_ALIGN_POINT);
     }
@@ -132,6 +234,11 @@ mt_table mt_report_alternatives(const mt_result *result)
         mt_table_number(&t, r->score, VALUE_DIGITS);
         mt_table_number(&t, r->change, PERCENT_DIGITS);
         mt_table_percent(&t, r->violation_percent, PERCENT_DIGITS);
+        if (bands) {
+            char text[DEMAND_TEXT];
+            mt_table_number(&t, r->clearance_percent, PERCENT_DIGITS);
+            mt_table_text(&t, assignment(r, text, sizeof text));
+        }
         for (int k = 0; k < n; k++) {
             mt_table_number(&t, k < r->n_parameters ? r->parameters[k].recommended : nan(""),
                             VALUE_DIGITS);
@@ -239,6 +346,21 @@ mt_table mt_report_published(const mt_result *result)
     return t;
 }
 
+/* Frequency of the same mode, by index, at another design; NaN: it is not listed there. */
+static double hz_of(const mt_recommendation *r, const mt_result_frequency *f)
+{
+    for (int i = 0; i < r->n_frequencies; i++) {
+        const mt_result_frequency *const g = &r->frequencies[i];
+        const bool same = g->configuration == f->configuration ||
+                          (g->configuration != NULL && f->configuration != NULL &&
+                           strcmp(g->configuration, f->configuration) == 0);
+        if (same && g->mode == f->mode) {
+            return g->recommended_hz;
+        }
+    }
+    return nan("");
+}
+
 static void design_row(mt_table *t, const mt_result *result, const mt_recommendation *r)
 {
     const mt_recommendation *const baseline = &result->baseline;
@@ -251,6 +373,11 @@ static void design_row(mt_table *t, const mt_result *result, const mt_recommenda
     mt_table_number(t, r->change, VALUE_DIGITS);
     mt_table_number(t, r->misfit, VALUE_DIGITS);
     mt_table_number(t, r->violation_percent, VALUE_DIGITS);
+    if (baseline->n_gaps > 0) {
+        char text[DEMAND_TEXT];
+        mt_table_number(t, r->clearance_percent, VALUE_DIGITS);
+        mt_table_text(t, assignment(r, text, sizeof text));
+    }
     for (int k = 0; k < result->n_variables; k++) {
         const bool has = k < r->n_parameters;
         mt_table_number(t,
@@ -260,8 +387,7 @@ static void design_row(mt_table *t, const mt_result *result, const mt_recommenda
                         VALUE_DIGITS);
     }
     for (int k = 0; k < baseline->n_frequencies; k++) {
-        const bool has = k < r->n_frequencies;
-        mt_table_number(t, has ? r->frequencies[k].recommended_hz : nan(""), HZ_DIGITS);
+        mt_table_number(t, hz_of(r, &baseline->frequencies[k]), HZ_DIGITS);
     }
 }
 
@@ -273,6 +399,10 @@ mt_table mt_report_designs(const mt_result *result)
     mt_table t = mt_table_default();
     for (int i = 0; i < MT_COUNT(fixed); i++) {
         mt_table_column(&t, fixed[i], fixed[i], MT_ALIGN_RIGHT);
+    }
+    if (result->baseline.n_gaps > 0) {
+        mt_table_column(&t, "clearance_percent", "clearance_percent", MT_ALIGN_RIGHT);
+        mt_table_column(&t, "gap_assignment", "gap_assignment", MT_ALIGN_RIGHT);
     }
     for (int k = 0; k < result->n_variables; k++) {
         mt_table_column(&t, result->variables[k], result->variables[k], MT_ALIGN_RIGHT);

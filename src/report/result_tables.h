@@ -13,6 +13,10 @@ mt_table mt_report_frequencies(const mt_recommendation *r);
 mt_table mt_report_parameters(const mt_recommendation *r);
 /* goal, value, demand, violation, met. */
 mt_table mt_report_goals(const mt_recommendation *r);
+/* Each mode beside its neighbouring bands, one line per mode: the band below it and the band above it with the distance to each. */
+mt_table mt_report_clearances(const mt_recommendation *r);
+/* Bands and how many modes lie below each. */
+mt_table mt_report_gaps(const mt_recommendation *r);
 /* One line per recommendation. */
 mt_table mt_report_alternatives(const mt_result *result);
 /* Under other weights: parameter, unit, value, low, high, change of both, and what takes them there. */

@@ -38,6 +38,7 @@ static void print_best(const mt_recommendation *r, mt_text *out)
     }
     print_table(mt_report_parameters(r), "Parameters", out);
     print_table(mt_report_frequencies(r), "Frequencies", out);
+    print_table(mt_report_clearances(r), "Clearances from bands", out);
     print_table(mt_report_goals(r), "Goals", out);
     print_list(r->n_reasons, r->reasons, "Why", out);
 }
@@ -76,6 +77,7 @@ void mt_report_summary(const mt_result *result, bool with_published, mt_text *ou
         print_best(&result->recommendations[0], out);
     } else {
         print_table(mt_report_frequencies(&result->baseline), "Frequencies as they are", out);
+        print_table(mt_report_clearances(&result->baseline), "Clearances from bands", out);
         print_table(mt_report_goals(&result->baseline), "Goals", out);
         print_list(result->baseline.n_reasons, result->baseline.reasons, "Why", out);
     }

@@ -2,6 +2,7 @@
 /* The figures of the report: one row per frequency or parameter, drawn to a common linear scale. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "report/number.h"
 #include "report/summary.h"
@@ -98,6 +99,32 @@ static void demand(const scale *s, const mt_result_frequency *f, int y, mt_text 
     }
 }
 
+/* Bands behind the rows of their configuration, the margin lighter. */
+static void shade(const scale *s, double low, double high, int row, const char *colour,
+                  mt_text *out)
+{
+    const double a = place(s, fmax(low, s->low));
+    const double b = place(s, fmin(high, s->high));
+    if (b > a) {
+        mt_text_addf(out,
+                     "<rect x=\"%.1f\" y=\"%d\" width=\"%.1f\" height=\"%d\" fill=\"%s\"/>\n",
+                     a, TOP + (row * ROW), b - a, ROW, colour);
+    }
+}
+
+static void bands(const scale *s, const mt_recommendation *r, int row, mt_text *out)
+{
+    const char *const configuration = r->frequencies[row].configuration;
+    for (int i = 0; i < r->n_gaps; i++) {
+        const mt_result_gap *const g = &r->gaps[i];
+        if (configuration != NULL && g->configuration != NULL &&
+            strcmp(configuration, g->configuration) == 0) {
+            shade(s, g->margin_lower_hz, g->margin_upper_hz, row, "#fbe3df", out);
+            shade(s, g->lower_hz, g->upper_hz, row, "#f2b8ae", out);
+        }
+    }
+}
+
 void mt_report_svg_frequencies(const mt_recommendation *r, mt_text *out)
 {
     scale s = {0.0, 0.0};
@@ -110,8 +137,15 @@ void mt_report_svg_frequencies(const mt_recommendation *r, mt_text *out)
         widen(&s, f->at_most_hz);
     }
     s.high = s.high > 0.0 ? s.high * 1.05 : 1.0;
-    begin(r->n_frequencies, "Frequencies: open circles before, full after, green what is asked",
+    begin(r->n_frequencies,
+          r->n_gaps > 0
+              ? "Frequencies: open circles before, full after, green what is asked, red "
+                "the bands, lighter their margin"
+              : "Frequencies: open circles before, full after, green what is asked",
           out);
+    for (int i = 0; i < r->n_frequencies; i++) {
+        bands(&s, r, i, out);
+    }
     axis(&s, r->n_frequencies, "Hz", out);
     for (int i = 0; i < r->n_frequencies; i++) {
         const mt_result_frequency *const f = &r->frequencies[i];

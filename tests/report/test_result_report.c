@@ -127,6 +127,105 @@ static void designs__have_the_baseline_first_and_one_column_per_variable(mt_test
     mt_result_delete(r);
 }
 
+static mt_result_clearance clearances[] = {
+    {"held", "4P of X", 1, 1.0, 20.0, 10.0,  "below"},
+    {"held", "4P of X", 2, 2.0, 33.0, 10.0,  "above"},
+    {"held", "8P of X", 2, 2.0, -1.5, 10.0, "inside"},
+    {  "up", "4P of X", 2, 2.5, 40.0, 10.0,  "below"},
+};
+static mt_result_gap gaps[] = {
+    {"held", "4P of X", 1.25, 1.5, 1.125, 1.65, 1},
+    {  "up", "4P of X", 1.25, 1.5, 1.125, 1.65, 2},
+};
+
+/* The sample with bands. */
+static mt_result *make_banded(mt_test *t)
+{
+    mt_result *const r = make(t);
+    if (r != NULL) {
+        recommendations[0].clearances = clearances;
+        recommendations[0].n_clearances = MT_COUNT(clearances);
+        recommendations[0].gaps = gaps;
+        recommendations[0].n_gaps = MT_COUNT(gaps);
+        recommendations[0].clearance_percent = -1.5;
+        r->baseline = recommendations[0];
+        r->baseline.rank = 0;
+    }
+    return r;
+}
+
+static void clearances__stand_in_one_line_per_mode(mt_test *t)
+{
+    mt_result *const r = make_banded(t);
+    mt_text out = {.s = NULL};
+    REQUIRE(t, r != NULL);
+    mt_table table = mt_report_clearances(recommendations);
+    mt_table_csv(&table, &out);
+    CHECK_STR(t, out.s,
+              "configuration,mode,hz,above_band,above_percent,below_band,below_percent\r\n"
+              "held,1,1,,,4P of X,20\r\n"
+              "held,2,2,4P of X,33,,\r\n"
+              "held,2,2,inside 8P of X,-1.5,,\r\n"
+              "up,2,2.5,,,4P of X,40\r\n");
+    mt_text_free(&out);
+    mt_table_free(&table);
+    mt_result_delete(r);
+}
+
+static void designs__with_bands_have_clearance_and_assignment(mt_test *t)
+{
+    mt_result *const r = make_banded(t);
+    mt_text out = {.s = NULL};
+    REQUIRE(t, r != NULL);
+    mt_table designs = mt_report_designs(r);
+    mt_table_csv(&designs, &out);
+    CHECK(t, out.s != NULL && strstr(out.s, "violation_percent,clearance_percent,"
+                                            "gap_assignment,k<1>") != NULL);
+    CHECK(t, out.s != NULL && strstr(out.s, "\r\n1,true,feasible,,,,,,-1.5,1 2,92.9") != NULL);
+    mt_text_free(&out);
+    mt_table_free(&designs);
+    mt_result_delete(r);
+}
+
+/* A design that lists fewer modes of the first configuration must not shift those of the second. */
+static void designs__find_frequencies_by_configuration_and_mode(mt_test *t)
+{
+    mt_result *const r = make(t);
+    mt_text out = {.s = NULL};
+    REQUIRE(t, r != NULL);
+    frequencies[1].configuration = "up";
+    r->baseline.frequencies = frequencies;
+    recommendations[0].frequencies = &frequencies[1];
+    recommendations[0].n_frequencies = 1;
+    mt_table designs = mt_report_designs(r);
+    mt_table_csv(&designs, &out);
+    CHECK(t, out.s != NULL && strstr(out.s, ",0.5,,2\r\n") != NULL);
+    mt_text_free(&out);
+    mt_table_free(&designs);
+    mt_result_delete(r);
+}
+
+/* Base and margin behind the two rows of "held", nothing of "up". */
+static void figure__shades_bands_and_their_margin(mt_test *t)
+{
+    mt_result *const r = make_banded(t);
+    mt_text out = {.s = NULL};
+    int base = 0;
+    int margin = 0;
+    REQUIRE(t, r != NULL);
+    mt_report_svg_frequencies(recommendations, &out);
+    for (const char *s = out.s; s != NULL && (s = strstr(s, "#f2b8ae")) != NULL; s++) {
+        base++;
+    }
+    for (const char *s = out.s; s != NULL && (s = strstr(s, "#fbe3df")) != NULL; s++) {
+        margin++;
+    }
+    CHECK_INT(t, base, 2);
+    CHECK_INT(t, margin, 2);
+    mt_text_free(&out);
+    mt_result_delete(r);
+}
+
 static void page__is_self_contained_and_escaped(mt_test *t)
 {
     mt_result *const r = make(t);
@@ -166,5 +265,9 @@ static void figures__stand_without_any_finite_number(mt_test *t)
 MT_TEST_MAIN(MT_TEST(summary__says_status_numbers_and_reasons),
              MT_TEST(verification__ignores_only_what_is_not_comparable),
              MT_TEST(designs__have_the_baseline_first_and_one_column_per_variable),
+             MT_TEST(clearances__stand_in_one_line_per_mode),
+             MT_TEST(designs__with_bands_have_clearance_and_assignment),
+             MT_TEST(designs__find_frequencies_by_configuration_and_mode),
+             MT_TEST(figure__shades_bands_and_their_margin),
              MT_TEST(page__is_self_contained_and_escaped),
              MT_TEST(figures__stand_without_any_finite_number))
