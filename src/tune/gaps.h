@@ -20,10 +20,11 @@ typedef struct mt_gap_result {
     int n_solutions; /* feasible ones by objective; else compromises by violation */
     mt_gap_solution *solutions;
     bool compromise;
-    int n_candidates;   /* assignments that were searched */
-    int n_feasible;     /* of them with a design that meets all goals */
-    double n_possible;  /* all monotone assignments there are */
-    bool driven;        /* a configuration is a driven position: what lies between the positions is not searched */
+    int n_candidates;  /* assignments that were searched */
+    int n_feasible;    /* of them with a design that meets all goals */
+    double n_possible; /* all monotone assignments there are */
+    bool
+        driven; /* a configuration is a driven position: what lies between the positions is not searched */
     bool proven;        /* every assignment that was not searched is proven infeasible */
     const char *reason; /* why not, where not proven */
     long boxes;         /* of the proof */
