@@ -46,8 +46,8 @@ mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
         return mt_fail_memory(err);
     }
     a->n_rigid = -1;
-    mt_status rc = mt_system_new_driven(model, configuration, drive, n_inputs, inputs, at,
-                                        &a->sys, err);
+    mt_status rc =
+        mt_system_new_driven(model, configuration, drive, n_inputs, inputs, at, &a->sys, err);
     if (rc == MT_OK) {
         rc = mt_linear_new(a->sys, &a->lin, err);
     }

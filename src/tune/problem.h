@@ -92,8 +92,8 @@ typedef struct mt_problem {
     double *origin_t; /* may lie outside the bounds, where the original design does */
     double *scale;    /* [n] NaN: logarithmic; else x = t * scale */
     int n_views;
-    mt_view *views;
     int n_demands;
+    mt_view *views;
     mt_demand *demands;
     int n_clears;
     mt_clear *clears;
@@ -113,8 +113,8 @@ typedef struct mt_problem {
     double *value;      /* [program.count] */
     double *grad;       /* program.count rows of n, after an evaluation with gradient */
     int n_aims;         /* at least one */
+    int stage;          /* of aims */
     mt_aim *aims;
-    int stage;      /* of aims */
     double *x;      /* [n] parameters of the last evaluation */
     double *t;      /* [n] its coordinates */
     double *r;      /* [n_res] residuals there */

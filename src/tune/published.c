@@ -263,7 +263,7 @@ mt_status mt_describe_published(mt_problem *p, const double *x_original,
         .x = {x_original, x_recommended != NULL ? x_recommended : x_original}
     };
     MT_TRY(mt_arena_init(&j.mem, 0, err));
-    j.analysis = mt_arena_alloc(&j.mem, (size_t)n_analyses, sizeof *j.analysis);
+    j.analysis = mt_arena_alloc(&j.mem, (size_t)n_analyses, sizeof(mt_analysis *));
     const mt_status rc = j.analysis == NULL ? mt_fail_memory(err) : judge_all(&j, err);
     for (int i = 0; j.analysis != NULL && i < n_analyses; i++) {
         mt_analysis_delete(j.analysis[i]);

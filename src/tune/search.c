@@ -56,11 +56,14 @@ static mt_status aims_at(mt_problem *p, const double *t, mt_arena *mem, double *
 {
     mt_nlp_values v;
     const mt_arena_mark mark = mt_arena_get_mark(mem);
+    const int stage = p->stage;
+    p->stage = 0; /* nothing need be held yet */
     mt_status rc = mt_problem_values_init(p, mem, &v, err);
     rc = rc == MT_OK ? mt_problem_eval(p, t, false, &v, err) : rc;
     for (int k = 0; k < p->n_aims && rc == MT_OK; k++) {
         f[k] = mt_aim_value(p, k, NULL);
     }
+    p->stage = stage;
     mt_arena_rewind(mem, mark);
     return rc;
 }

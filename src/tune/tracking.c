@@ -77,11 +77,12 @@ mt_status mt_track_match(mt_analysis *a, int n, const double *const *w, mt_track
     double *const all = mt_arena_f64(&a->mem, (size_t)n, (size_t)a->modes.count);
     double *const phi = mt_arena_f64(&a->mem, (size_t)a->sys->nq, 1);
     int *const pair = mt_arena_int(&a->mem, (size_t)n);
-    mt_status rc = all == NULL || phi == NULL || pair == NULL ? mt_fail_memory(err) : MT_OK;
-    if (rc == MT_OK) {
-        shares(a, n, w, phi, all);
-        rc = mt_assign(n, a->modes.count, all, pair, &a->mem, err);
+    if (all == NULL || phi == NULL || pair == NULL) {
+        mt_arena_rewind(&a->mem, mark);
+        return mt_fail_memory(err);
     }
+    shares(a, n, w, phi, all);
+    const mt_status rc = mt_assign(n, a->modes.count, all, pair, &a->mem, err);
     for (int r = 0; r < n && rc == MT_OK; r++) {
         put_track(a, n, all, r, pair[r], &tracks[r]);
     }

@@ -127,7 +127,6 @@ static void mac_at_least__is_a_constraint(mt_test *t)
     char text[1024];
     char members[4096];
     double want[2];
-    double now[2];
     two_shape(2.0, 1.0, 1, want);
     (void)snprintf(
         members, sizeof members,
@@ -135,6 +134,7 @@ static void mac_at_least__is_a_constraint(mt_test *t)
         "'goals': [{'type': 'mac', 'mode': 2, 'reference': 'test', 'at_least': 0.99}]",
         references(text));
     if (study_solve(t, STUDY_TWO_MASSES("'k1': 2, 'k2': 6, 'm': 1", ""), members, &c)) {
+        double now[2];
         two_shape(2.0, study_value(&c, 1, "k2"), 1, now);
         CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
         CHECK_NEAR(t, two_mac(now, want), 0.99, TOL);
