@@ -37,8 +37,7 @@ static int missing_operand(const mt_expr *e, const mt_node *nodes)
 }
 
 mt_status mt_emit_parameters(const mt_model *model, int configuration, const int *is_input,
-                             mt_program *program, mt_node *nodes, mt_arena *mem,
-                             mt_err *err)
+                             mt_program *program, mt_node *nodes, mt_arena *mem, mt_err *err)
 {
     const int n = model->n_parameters;
     int *const stack = mt_arena_int(mem, (size_t)n + 1);

@@ -129,8 +129,7 @@ static mt_status sample(mt_problem *p, mt_arena *mem, mt_gap_candidates *out, mt
         if (p->stop != NULL && *p->stop != 0) {
             break;
         }
-        if (mt_gap_assignment(p, t + ((ptrdiff_t)k * p->n), below, &violation,
-                              &ignored)) {
+        if (mt_gap_assignment(p, t + ((ptrdiff_t)k * p->n), below, &violation, &ignored)) {
             insert(p, list, &out->n, below, violation);
         }
         out->evals++;
