@@ -18,7 +18,8 @@ enum {
     BOTTOM = 270,
     DOT = 4,
     MARKS = 6,
-    COLOURS = 6
+    COLOURS = 6,
+    LINE = 16
 };
 
 static void vary_columns(mt_table *t, const mt_trade_result *trade)
@@ -199,12 +200,12 @@ void mt_report_svg_trade(const mt_result *result, mt_text *out)
         "front; crosses: goals not met</title>\n",
         WIDTH, HEIGHT, WIDTH, HEIGHT);
     axes(&f, result, out);
-    for (int first = 0; first < trade->n_points; first += n) {
-        const char *const colour = colours[(first / n) % COLOURS];
+    for (int first = 0, curves = 0; first < trade->n_points; first += n, curves++) {
+        const char *const colour = colours[curves % COLOURS];
         curve(&f, trade, first, n, colour, out);
         if (trade->n_vary == 2) {
             mt_text_addf(out, "<text x=\"%d\" y=\"%d\" style=\"fill:%s\">%.6g</text>\n",
-                         RIGHT + 24, TOP + 12 + (first / n * 16), colour,
+                         RIGHT + 24, TOP + 12 + (curves * LINE), colour,
                          trade->points[first].values[0]);
         }
     }

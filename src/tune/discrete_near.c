@@ -101,6 +101,24 @@ static int bracket(const mt_discrete *d, int k, double t, double *part)
     return at;
 }
 
+/* The variables whose t lies nearest to the middle of two values: open[most]. */
+static void choose_undecided(int n, const double *part, int most, int *open)
+{
+    for (int b = 0; b < most; b++) {
+        double least = HUGE_VAL;
+        for (int k = 0; k < n; k++) {
+            bool taken = false;
+            for (int c = 0; c < b; c++) {
+                taken = taken || open[c] == k;
+            }
+            if (!taken && fabs(part[k] - 0.5) < least) {
+                least = fabs(part[k] - 0.5);
+                open[b] = k;
+            }
+        }
+    }
+}
+
 /* All roundings of the most undecided variables of t, the others to the nearest value. */
 static mt_status propose_roundings(walk *w, const double *t, mt_err *err)
 {
@@ -118,19 +136,7 @@ static mt_status propose_roundings(walk *w, const double *t, mt_err *err)
     for (int k = 0; k < n; k++) {
         low[k] = bracket(d, k, t[d->variable[k]], &part[k]);
     }
-    for (int b = 0; b < both; b++) {
-        double least = HUGE_VAL;
-        for (int k = 0; k < n; k++) {
-            bool taken = false;
-            for (int c = 0; c < b; c++) {
-                taken = taken || open[c] == k;
-            }
-            if (!taken && fabs(part[k] - 0.5) < least) {
-                least = fabs(part[k] - 0.5);
-                open[b] = k;
-            }
-        }
-    }
+    choose_undecided(n, part, both, open);
     for (int way = 0; way < 1 << both; way++) {
         for (int k = 0; k < n; k++) {
             pick[k] = low[k] + (part[k] > 0.5 ? 1 : 0);

@@ -109,6 +109,7 @@ typedef struct mt_problem {
     double *in_tol;     /* [n_in + n_aims] */
     double weights;     /* sum of the weights of the demands that are residuals */
     mt_program program; /* expressions: limits, objectives, published quantities */
+    int n_searched; /* nodes of it that the search needs: those of published quantities follow */
     mt_node *published; /* [study->n_published] */
     double *value;      /* [program.count] */
     double *grad;       /* program.count rows of n, after an evaluation with gradient */

@@ -51,6 +51,7 @@ static mt_status init_program(mt_problem *p, mt_err *err)
                                       a->objective->addr);
         }
     }
+    p->n_searched = p->program.count;
     for (int i = 0; i < s->n_published; i++) {
         const mt_published *const pub = &s->published[i];
         p->published[i] = MT_NO_NODE;

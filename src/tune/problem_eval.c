@@ -13,8 +13,17 @@ mt_status mt_problem_place(mt_problem *p, const double *t, bool with_gradient, m
 {
     memmove(p->t, t, (size_t)p->n_t * sizeof *t);
     mt_problem_x(p, t, p->x);
-    return with_gradient ? mt_program_gradient(&p->program, p->x, p->value, p->grad, NULL, err)
-                         : mt_program_eval(&p->program, p->x, p->value, NULL, err);
+    if (!with_gradient) {
+        return mt_program_eval(&p->program, p->x, p->value, NULL, err);
+    }
+    mt_node bad = MT_NO_NODE;
+    mt_err own = {0};
+    const mt_status rc =
+        mt_program_gradient(&p->program, p->x, p->value, p->grad, &bad, &own);
+    /* a published quantity may have no slope, as a change has none at the original design: nobody needs it */
+    return rc == MT_OK || (rc == MT_E_DOMAIN && bad >= p->n_searched)
+               ? MT_OK
+               : mt_fail(err, rc, "%s", own.text);
 }
 
 mt_status mt_view_solve(mt_problem *p, mt_view *view, bool with_gradient, mt_err *err)

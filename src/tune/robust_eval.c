@@ -43,23 +43,31 @@ static void put(const mt_problem *p, int row, double value, double sign, const d
 }
 
 /* in = sign ln(f / edge) - z of a vibration mode at a corner. */
-static mt_status put_mode(mt_problem *p, int view, int corner, int mode, double edge_hz,
-                          double z, int row, bool with_gradient, mt_nlp_values *out,
+typedef struct edge {
+    int view;
+    int corner;
+    int mode;
+    double hz;
+    double z;
+    int row;
+} edge;
+
+static mt_status put_mode(mt_problem *p, const edge *e, bool with_gradient, mt_nlp_values *out,
                           mt_err *err)
 {
-    const mt_corner *const c = corner_of(p, view, corner);
-    const double sign = corner == MT_SOFT ? 1.0 : -1.0;
+    const mt_corner *const c = corner_of(p, e->view, e->corner);
+    const double sign = e->corner == MT_SOFT ? 1.0 : -1.0;
     double *const slope = p->robust->slope;
     if (c->analysis == NULL) {
         return MT_OK; /* the row of the design itself stands */
     }
-    const int pos = mt_modal_flexible(&c->analysis->modes, mode);
+    const int pos = mt_modal_flexible(&c->analysis->modes, e->mode);
     const double hz = pos >= 0 ? mt_modal_hz(&c->analysis->modes, pos) : nan("");
     if (!(hz > 0.0)) {
         return mt_fail(err, MT_E_DOMAIN,
                        "configuration \"%s\" has no vibration mode %d at a corner of the "
                        "tolerances",
-                       mt_analysis_configuration(c->analysis), mode);
+                       mt_analysis_configuration(c->analysis), e->mode);
     }
     if (with_gradient) {
         MT_TRY(mt_problem_dln_frequency(p, c->analysis, pos, slope, err));
@@ -67,7 +75,7 @@ static mt_status put_mode(mt_problem *p, int view, int corner, int mode, double 
             slope[i] *= c->factor[i];
         }
     }
-    put(p, row, (sign * log(hz / edge_hz)) - z, sign, with_gradient ? slope : NULL, out);
+    put(p, e->row, (sign * log(hz / e->hz)) - e->z, sign, with_gradient ? slope : NULL, out);
     return MT_OK;
 }
 
@@ -89,9 +97,11 @@ static mt_status limit_value(mt_problem *p, int demand, int side, bool with_grad
     return MT_OK;
 }
 
-static mt_status put_limit(mt_problem *p, int demand, int side, double limit, int row,
-                           bool with_gradient, mt_nlp_values *out, mt_err *err)
+static mt_status put_limit(mt_problem *p, int demand, int side, int row, bool with_gradient,
+                           mt_nlp_values *out, mt_err *err)
 {
+    const mt_goal *const g = p->demands[demand].goal;
+    const double limit = side == 0 ? g->at_least : g->at_most;
     const double unit = fabs(limit) > 0.0 ? fabs(limit) : 1.0;
     const double sign = side == 0 ? 1.0 / unit : -1.0 / unit;
     double value = 0.0;
@@ -117,9 +127,13 @@ mt_status mt_robust_demand(mt_problem *p, const mt_demand *d, bool with_gradient
         if (!MT_HAS(ends[side])) {
             continue;
         }
-        MT_TRY(limit ? put_limit(p, demand, side, ends[side], row, with_gradient, out, err)
-                     : put_mode(p, d->view, side == 0 ? MT_SOFT : MT_STIFF, d->mode, ends[side],
-                                0.0, row, with_gradient, out, err));
+        const edge e = {.view = d->view,
+                        .corner = side == 0 ? MT_SOFT : MT_STIFF,
+                        .mode = d->mode,
+                        .hz = ends[side],
+                        .row = row};
+        MT_TRY(limit ? put_limit(p, demand, side, row, with_gradient, out, err)
+                     : put_mode(p, &e, with_gradient, out, err));
         row++;
     }
     return MT_OK;
@@ -136,9 +150,13 @@ mt_status mt_robust_clears(mt_problem *p, const double *t, bool with_gradient,
     for (int k = 0; mt_clear_row_at(p, p->below, k, &at); k++) {
         const mt_clear *const c = &p->clears[at.clear];
         const mt_band *const band = &c->bands.items[at.band];
-        MT_TRY(put_mode(p, c->view, at.above ? MT_SOFT : MT_STIFF, at.mode,
-                        at.above ? band->upper_hz : band->lower_hz, z, p->clears[0].row_in + k,
-                        with_gradient, out, err));
+        const edge e = {.view = c->view,
+                        .corner = at.above ? MT_SOFT : MT_STIFF,
+                        .mode = at.mode,
+                        .hz = at.above ? band->upper_hz : band->lower_hz,
+                        .z = z,
+                        .row = p->clears[0].row_in + k};
+        MT_TRY(put_mode(p, &e, with_gradient, out, err));
     }
     return MT_OK;
 }

@@ -141,7 +141,7 @@ static mt_status try_neighbours(const trade *t, int k, const mt_study *study, mt
         }
         mt_result *fresh = NULL;
         MT_TRY(answer(t, k, x, &fresh, err));
-        p->evaluations += fresh->run.evaluations;
+        p->evaluations += fresh != NULL ? fresh->run.evaluations : 0;
         if (better(study, fresh, answer_of(p))) {
             mt_result_delete(p->again);
             p->again = fresh;
@@ -185,7 +185,7 @@ static mt_status begin(trade *t, mt_arena *mem, mt_err *err)
     for (int k = 0; k < t->n; k++) {
         const int at[MT_MAX_VARY] = {k / t->size[1], k % t->size[1]};
         t->points[k] = (point){.first = NULL};
-        for (int i = 0; i < asked->n_vary; i++) {
+        for (int i = 0; i < asked->n_vary && i < MT_MAX_VARY; i++) {
             t->points[k].values[i] = asked->vary[i].values[at[i]];
         }
     }
