@@ -18,7 +18,7 @@
  *
  * A shape may also dissolve: change by much, and gradually, so that several modes carry some of it. Where the mode and its rival hold less than MT_TRACK_EXCHANGE of it together (there is more at
  * work than an exchange of two), the straight line of designs from the original one to the present one is
- * walked, each point's shapes being told from those of the point before. Steps are halved while anything is ambiguous, down to MT_TRACK_RESOLUTION of any coordinate (1 % of a parameter): a veering narrower than
+ * walked, each point's shapes being told from those of the point before. Steps are halved while anything is ambiguous or has turned by more than 18 degrees, down to MT_TRACK_RESOLUTION of any coordinate (1 % of a parameter): a veering narrower than
  * that is leapt over like a crossing (no part is made to sit inside it on purpose), a wider one is a gradual change. The pairing depends on the design alone, not on where a search came from.
  */
 

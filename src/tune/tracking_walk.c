@@ -4,6 +4,8 @@
 
 /* Leaps of up to so many shortest steps over what no step can settle: a crossing, or a veering narrower than that. */
 enum { LEAPS = 4 };
+/* A step that could be shorter must keep so much of every shape (turn it by less than 18 degrees), lest it leaps over a veering wider than the resolution. */
+static const double STEP_SHARE = 0.9;
 
 typedef struct walk {
     const mt_track_way *way;
@@ -13,6 +15,7 @@ typedef struct walk {
     double **own;           /* [n] room for them */
     mt_track *tracks;       /* [n] of the step tried */
     const mt_track *direct; /* [n] told from the original shapes */
+    double least;           /* share that a step must keep */
     double s;
 } walk;
 
@@ -32,7 +35,8 @@ static bool dissolved(const mt_track *k)
 static bool settled(const walk *k)
 {
     for (int r = 0; r < k->n; r++) {
-        if (dissolved(&k->direct[r]) && k->tracks[r].state != MT_TRACKED) {
+        if (dissolved(&k->direct[r]) &&
+            (k->tracks[r].state != MT_TRACKED || k->tracks[r].share < k->least)) {
             return false;
         }
     }
@@ -82,6 +86,7 @@ static mt_status go(walk *k, bool *arrived, mt_err *err)
     while (k->s < 1.0) {
         bool told = false;
         h = h < least ? least : h;
+        k->least = h > least ? STEP_SHARE : MT_TRACK_LOST;
         MT_TRY(try_at(k, k->s + h < 1.0 ? k->s + h : 1.0, &told, err));
         if (!told && h <= least) {
             MT_TRY(leap(k, &told, err));
