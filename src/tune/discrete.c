@@ -149,7 +149,8 @@ static mt_status enumerate(mt_discrete *d, int n, ranking *r, mt_discrete_report
 {
     mt_combination *list = NULL;
     const int batch = d->mixed ? BATCH_MIXED : BATCH;
-    mt_combination **const pointers = mt_arena_alloc(d->mem, (size_t)batch, sizeof *pointers);
+    mt_combination **const pointers =
+        mt_arena_alloc(d->mem, (size_t)batch, sizeof(mt_combination *));
     MT_TRY(list_all(d, n, &list, err));
     if (pointers == NULL) {
         return mt_fail_memory(err);

@@ -18,8 +18,7 @@ mt_status mt_problem_place(mt_problem *p, const double *t, bool with_gradient, m
     }
     mt_node bad = MT_NO_NODE;
     mt_err own = {0};
-    const mt_status rc =
-        mt_program_gradient(&p->program, p->x, p->value, p->grad, &bad, &own);
+    const mt_status rc = mt_program_gradient(&p->program, p->x, p->value, p->grad, &bad, &own);
     /* a published quantity may have no slope, as a change has none at the original design: nobody needs it */
     return rc == MT_OK || (rc == MT_E_DOMAIN && bad >= p->n_searched)
                ? MT_OK

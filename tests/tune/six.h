@@ -122,7 +122,7 @@ static inline void six_same_bytes(mt_test *t, const mt_study *study)
         CHECK(t, result != NULL && mt_result_write(result, &text[i], &err) == MT_OK);
         mt_result_delete(result);
         mt_test_row(t, "%d workers", workers[i]);
-        CHECK(t, text[i].s != NULL && strcmp(text[i].s, text[0].s) == 0);
+        CHECK(t, text[i].s != NULL && text[0].s != NULL && strcmp(text[i].s, text[0].s) == 0);
     }
     for (int i = 0; i < MT_COUNT(workers); i++) {
         mt_text_free(&text[i]);
