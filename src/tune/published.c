@@ -28,6 +28,35 @@ static mt_status analysis_at(judge *j, int configuration, int design, mt_analysi
     return MT_OK;
 }
 
+/* The same by the view that the goals use, which follows shapes where they dissolve; *found: there is one. */
+static mt_status viewed_at(judge *j, const mt_published *pub, const mt_analysis *a, int *pos,
+                           bool *found, mt_err *err)
+{
+    mt_problem *const p = j->p;
+    const int v = mt_problem_view(p, pub->configuration);
+    double *const t = mt_arena_f64(&j->mem, (size_t)p->n_t, 1);
+    *found = false;
+    if (t == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n; i++) {
+        t[i] = mt_problem_t(p, i, j->x[RECOMMENDED][i]);
+    }
+    for (int i = 0; v >= 0 && i < p->views[v].n_named; i++) {
+        mt_view *const view = &p->views[v];
+        if (view->named[i] != pub->mode.named) {
+            continue;
+        }
+        view->needs_vectors = true;
+        MT_TRY(mt_problem_place(p, t, false, err));
+        MT_TRY(mt_view_solve(p, view, false, err));
+        MT_TRY(mt_view_position(p, view, 0, i, pos, err));
+        *pos = mt_modal_flexible(&a->modes, mt_describe_index(&view->analysis->modes, *pos));
+        *found = true;
+    }
+    return MT_OK;
+}
+
 /* Position of a named mode at the recommended design: its configuration's named modes of the original design, paired one to one. */
 static mt_status named_at(judge *j, const mt_published *pub, mt_analysis *a, int *pos,
                           mt_err *err)
@@ -75,7 +104,9 @@ static mt_status mode_at(judge *j, const mt_published *pub, mt_analysis *a, int 
         return MT_OK;
     }
     const mt_arena_mark mark = mt_arena_get_mark(&j->mem);
-    const mt_status rc = named_at(j, pub, a, pos, err);
+    bool found = false;
+    mt_status rc = viewed_at(j, pub, a, pos, &found, err);
+    rc = rc == MT_OK && !found ? named_at(j, pub, a, pos, err) : rc;
     mt_arena_rewind(&j->mem, mark);
     return rc;
 }
