@@ -68,9 +68,9 @@ const mt_option mt_options[MT_OPT_IDS] = {
 
 const mt_command mt_commands[MT_CMD_IDS] = {
     COMMAND(MT_CMD_RUN, "run", "STUDY...", 1, -1, "solve studies and write what was found",
-            "Solves each study and writes result.json, recommendations.csv, report.html "
-            "and\n"
-            "timing.json into DIR/<study file name without .json>/. Prints a summary.\n"
+            "Solves each study and writes result.json, recommendations.csv, report.html,\n"
+            "trade.csv (of a trade study) and timing.json into DIR/<study file name\n"
+            "without .json>/. Prints a summary.\n"
             "An interrupt (Ctrl-C) ends the search; the best design so far is written."),
     COMMAND(MT_CMD_COMPARE, "compare", "STUDY...", 1, -1, "published against computed values",
             "Solves each study and prints its published values beside the computed "
