@@ -2,22 +2,13 @@
 #ifndef TUNE_RESULT_H
 #define TUNE_RESULT_H
 
+#include "modetune/study.h"
+
 #include <stdbool.h>
 
 #include "base/arena.h"
 
 /* What a study answers: plain records, no computation. All texts live in the result's arena. NaN: not applicable (written as null). */
-
-#define MT_RESULT_STATUS_LIST(X)          \
-    X(MT_RESULT_SOLVED, "solved")         \
-    X(MT_RESULT_COMPROMISE, "compromise") \
-    X(MT_RESULT_INFEASIBLE, "infeasible") \
-    X(MT_RESULT_INTERRUPTED, "interrupted")
-#define MT_RESULT_STATUS_ENUM(id, name) id,
-typedef enum mt_result_status {
-    MT_RESULT_STATUS_LIST(MT_RESULT_STATUS_ENUM) MT_RESULT_STATUS_COUNT
-} mt_result_status;
-#undef MT_RESULT_STATUS_ENUM
 
 typedef struct mt_result_parameter {
     const char *name;
@@ -244,15 +235,11 @@ typedef struct mt_result {
 
 /* An empty result (status interrupted: nothing is known yet). Fails: MT_E_MEMORY. */
 mt_status mt_result_new(mt_result **out, mt_err *err);
-/* Frees everything; NULL is accepted. */
-void mt_result_delete(mt_result *result);
 /* A recommendation whose numbers are all "not applicable". */
 mt_recommendation mt_recommendation_default(void);
 mt_result_frequency mt_result_frequency_default(void);
 mt_result_published mt_result_published_default(void);
 mt_certificate mt_certificate_default(void);
 mt_tolerance_box mt_tolerance_box_default(void);
-/* "solved" ... */
-const char *mt_result_status_name(mt_result_status status);
 
 #endif

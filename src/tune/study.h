@@ -2,6 +2,8 @@
 #ifndef TUNE_STUDY_H
 #define TUNE_STUDY_H
 
+#include "modetune/study.h"
+
 #include "model/model.h"
 #include "tune/aircraft.h"
 #include "tune/bands.h"
@@ -277,7 +279,6 @@ typedef struct mt_study {
 
 /* A reference may use the same mt_model as the study or another reference: mt_study_delete frees each model once. */
 mt_status mt_study_new(mt_study **out, mt_err *err);
-void mt_study_delete(mt_study *study);
 /* Records with every optional member at "not given" (NaN, MT_ABSENT, defaults) and all addresses at addr. */
 mt_variable mt_variable_default(mt_addr addr);
 mt_goal mt_goal_default(mt_goal_type type, mt_addr addr);

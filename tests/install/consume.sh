@@ -16,6 +16,7 @@ fail() { echo "consume.sh: $*" >&2; exit 1; }
 
 cmake --install "$build" --prefix "$prefix" >"$work/install.log" || fail "install failed"
 cp "$here/consumer.c" "$work/"
+inputs=("$here/../models/pendulum.json" "$here/pendulum_study.json")
 cd "$work"
 
 pc=$(find "$prefix" -name modetune.pc)
@@ -23,6 +24,9 @@ pc=$(find "$prefix" -name modetune.pc)
 libdir=$(dirname "$(dirname "$pc")")
 export PKG_CONFIG_PATH=$libdir/pkgconfig
 version=$(pkg-config --modversion modetune)
+# what the consumer must say: the pendulum at 0.6103298209 Hz, and the length for 0.7 Hz, the larger root of omega^2 (L^2/3 + w^2/12) = g L/2
+length=$(awk 'BEGIN { o = (2*3.14159265358979323846*0.7)^2; a = o/3; b = 9.81/2; c = o*0.05^2/12; printf "%.6f", (b + sqrt(b*b - 4*a*c))/(2*a) }')
+said="$version 1 mode 0.610330 Hz solved L $length"
 major=${version%%.*}
 newer=$((major + 1)).0.0
 minor_newer=$major.999.0
@@ -41,11 +45,11 @@ fi
 
 read -ra flags <<<"$(pkg-config --cflags --libs modetune)"
 gcc -std=c11 -Wall -Wextra -Wpedantic -Werror consumer.c -o by_pkg_config "${flags[@]}"
-[ "$(LD_LIBRARY_PATH=$libdir ./by_pkg_config)" = "$version" ] || fail "pkg-config: shared consumer failed"
+[ "$(LD_LIBRARY_PATH=$libdir ./by_pkg_config "${inputs[@]}")" = "$said" ] || fail "pkg-config: shared consumer failed"
 
 read -ra flags <<<"$(pkg-config --static --cflags --libs modetune | sed "s|-lmodetune|$libdir/libmodetune.a|")"
 gcc -std=c11 consumer.c -o by_pkg_config_static "${flags[@]}"
-[ "$(./by_pkg_config_static)" = "$version" ] || fail "pkg-config: static consumer failed"
+[ "$(./by_pkg_config_static "${inputs[@]}")" = "$said" ] || fail "pkg-config: static consumer failed"
 
 for wanted in "$newer" "$minor_newer"; do
     ! pkg-config --exists "modetune >= $wanted" || fail "pkg-config accepted version $wanted"
@@ -67,7 +71,7 @@ consume() { # version wanted
 consume "$version" || { cat cmake.log >&2; fail "find_package refused version $version"; }
 cmake --build out >cmake.log 2>&1 || { cat cmake.log >&2; fail "find_package: build failed"; }
 for program in shared static; do
-    [ "$(./out/$program)" = "$version" ] || fail "find_package: $program consumer failed"
+    [ "$(./out/$program "${inputs[@]}")" = "$said" ] || fail "find_package: $program consumer failed"
 done
 for wanted in "$newer" "$minor_newer"; do
     ! consume "$wanted" || fail "find_package accepted version $wanted"

@@ -22,7 +22,7 @@ ALLOWED = {
 }
 RESULT_TYPES = re.compile(r"tune/result\w*\.h")
 # public headers stand in include/modetune and belong to a room: the one of the same name, or
-PUBLIC = {"export": "base", "version": "base", "status": "base", "dynamics": "mechanics"}
+PUBLIC = {"export": "base", "version": "base", "status": "base", "dynamics": "mechanics", "study": "tune", "modes": "tune"}
 # <system header> pattern: the rooms that may include it
 DOORS = [
     (re.compile(r"lapacke|cblas|lapack|openblas"), {"linalg"}),

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * A study: a question asked of a model, read from a file and answered.
+ *
+ *     mt_study *study;
+ *     mt_result *result;
+ *     if (mt_study_read("studies/beam_identification.json", &study, &err) == MT_OK &&
+ *         mt_study_solve(study, NULL, &result, &err) == MT_OK &&
+ *         mt_result_outcome(result) == MT_RESULT_SOLVED) {
+ *         k = mt_result_value(result, 1, "K_T1");
+ *     }
+ *
+ * The search uses BLAS: have it use one thread, or the bits of results may differ from run to run. Have GSL's error handler switched off (gsl_set_error_handler_off), or a shortage of
+ * memory in it ends the process.
+ */
+#ifndef MODETUNE_STUDY_H
+#define MODETUNE_STUDY_H
+
+#include "modetune/export.h"
+#include "modetune/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct mt_study mt_study;
+typedef struct mt_result mt_result;
+
+/* How a search ended. Not to meet the goals is an answer, no failure. */
+#define MT_RESULT_STATUS_LIST(X)          \
+    X(MT_RESULT_SOLVED, "solved")         \
+    X(MT_RESULT_COMPROMISE, "compromise") \
+    X(MT_RESULT_INFEASIBLE, "infeasible") \
+    X(MT_RESULT_INTERRUPTED, "interrupted")
+#define MT_RESULT_STATUS_ENUM(id, name) id,
+typedef enum mt_result_status {
+    MT_RESULT_STATUS_LIST(MT_RESULT_STATUS_ENUM) MT_RESULT_STATUS_COUNT
+} mt_result_status;
+#undef MT_RESULT_STATUS_ENUM
+
+typedef struct mt_solve_options {
+    int threads;        /* workers; the result does not depend on it */
+    const double *hint; /* [variables of the study] one more design to start from; NULL: none */
+    /* NULL, or set non-zero (by a signal handler, by another thread): the search ends with what it has */
+    const volatile int *stop;
+    /* NULL, or called now and then from the caller's thread with one line of text */
+    void (*progress)(void *context, const char *text);
+    void *progress_context;
+} mt_solve_options;
+
+/**
+ * Read a study file (format "modetune-study/1") and the models that it names, which must lie beneath the parent of its folder.
+ * @param[out] out  the study, owned by the caller; NULL on failure
+ * Fails: MT_E_INPUT (err tells the first problem with file, line, column and JSON pointer, and how many more there are), MT_E_SYSTEM, MT_E_MEMORY.
+ */
+MT_API mt_status mt_study_read(const char *path, mt_study **out, mt_err *err);
+/* Accepts NULL. */
+MT_API void mt_study_delete(mt_study *study);
+
+/* One thread, nothing else. */
+MT_API mt_solve_options mt_solve_options_default(void);
+/**
+ * Answer a study: the original design described, searched for better ones, each recommendation analysed anew at its design, published values judged.
+ * @param[in]  opt  NULL: defaults
+ * @param[out] out  the result, owned by the caller, valid without the study; NULL on failure
+ * Deterministic: the same study, binary and machine give the same result. The study is not changed and may be shared by threads.
+ * Fails: MT_E_INPUT (what only numbers can tell: a mode that does not exist at the original design, ...), numerical failures at the original design, MT_E_MEMORY.
+ */
+MT_API mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt,
+                                mt_result **out, mt_err *err);
+
+/* Accepts NULL. */
+MT_API void mt_result_delete(mt_result *result);
+MT_API mt_result_status mt_result_outcome(const mt_result *result);
+/* "solved" ...; never NULL. */
+MT_API const char *mt_result_status_name(mt_result_status status);
+/* One sentence about the outcome; lives as long as the result, like all texts below. */
+MT_API const char *mt_result_summary(const mt_result *result);
+/* Designs that are recommended, best first: ranks 1 to this number. */
+MT_API int mt_result_recommendations(const mt_result *result);
+
+/*
+ * Of the design with this rank (0: the original design). Ranks that do not exist have no values (NaN) and no reasons (0, NULL).
+ */
+/* 1: all goals are met there, 0: not. */
+MT_API int mt_result_feasible(const mt_result *result, int rank);
+/* Value of a variable of the study; NaN where it has no variable of this name. */
+MT_API double mt_result_value(const mt_result *result, int rank, const char *parameter);
+/* Frequency of a vibration mode (from 1) of a configuration that a goal names [Hz]; NaN where it is not listed. */
+MT_API double mt_result_hz(const mt_result *result, int rank, const char *configuration,
+                           int mode);
+/* Sentences why it is what it is, and their number. */
+MT_API int mt_result_reasons(const mt_result *result, int rank);
+MT_API const char *mt_result_reason(const mt_result *result, int rank, int i);
+
+/**
+ * Everything, as a JSON text (format "modetune-result/1").
+ * @param[out] text  NUL-terminated, to be given to free(); NULL on failure
+ * Fails: MT_E_MEMORY.
+ */
+MT_API mt_status mt_result_json(const mt_result *result, char **text, mt_err *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
