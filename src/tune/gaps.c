@@ -21,7 +21,7 @@ typedef struct job {
     const int *hint_below; /* [n_bands] assignment of p->hint; NULL: none */
 } job;
 
-enum { STARTS_PER_CANDIDATE = 8, SOLUTIONS_PER_CANDIDATE = 4 };
+enum { STARTS_PER_CANDIDATE = 24, SOLUTIONS_PER_CANDIDATE = 4 };
 
 /* The caller's design where it is of this kind, else the one that the candidate comes with; NULL: none. */
 static const double *hint_of(const job *j, int k)
