@@ -259,7 +259,8 @@ const char *mt_band_side_name(mt_band_side side)
 
 double mt_band_clearance_percent(const mt_band *band, double hz, mt_band_side *side)
 {
-    const double below = PERCENT * (band->base_lower_hz - hz) / band->base_lower_hz;
+    const double lower = band->base_lower_hz;
+    const double below = lower > 0.0 ? PERCENT * (lower - hz) / lower : -HUGE_VAL;
     const double above = PERCENT * (hz - band->base_upper_hz) / band->base_upper_hz;
     const bool is_below = hz < band->base_lower_hz;
     const bool is_above = hz > band->base_upper_hz;
@@ -269,6 +270,5 @@ double mt_band_clearance_percent(const mt_band *band, double hz, mt_band_side *s
     if (is_below || is_above) {
         return is_below ? below : above;
     }
-    /* inside: no edge at 0 Hz can be crossed */
-    return band->base_lower_hz > 0.0 ? fmax(below, above) : above;
+    return fmax(below, above); /* inside: no edge at 0 Hz can be crossed */
 }

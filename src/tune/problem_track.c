@@ -47,9 +47,10 @@ static mt_status follow(const mt_problem *p, mt_view *view, mt_arena *mem, mt_er
         w.to[i] = mt_problem_t(p, i, p->x[i]);
         far = fmax(far, fabs(w.to[i] - p->origin_t[i]));
     }
-    const mt_track_way path = {.solve = solve_at,
-                               .context = &w,
-                               .resolution = fmax(MT_TRACK_RESOLUTION / far, 1.0 / MOST_STEPS)};
+    const mt_track_way path = {
+        .solve = solve_at,
+        .context = &w,
+        .resolution = far > 0.0 ? fmax(MT_TRACK_RESOLUTION / far, 1.0 / MOST_STEPS) : 1.0};
     return mt_track_follow(&path, view->n_named, view->shape, view->analysis, mem, view->track,
                            err);
 }
