@@ -12,7 +12,7 @@
 
 /* Changes of a parameter below this many percent, and errors of a frequency, are not worth a number. */
 static const double WORTH_SAYING_PERCENT = 1e-4;
-enum { NUMBER_SIZE = 32 };
+enum { NUMBER_SIZE = 32, DEMAND_SIZE = 128 };
 
 void mt_say(mt_sentences *s, const char *fmt, ...)
 {
@@ -99,67 +99,95 @@ static void say_changes(mt_sentences *s)
     }
 }
 
-/* "18 Hz", with as many digits as tell it from its target. */
-static const char *hz_text(double hz, char text[NUMBER_SIZE])
-{
-    (void)snprintf(text, NUMBER_SIZE, "%.6g", hz);
-    return text;
-}
-
-/* The variable that moves this frequency most, per percent of its value. */
-static void say_lever(mt_sentences *s, const mt_result_frequency *f)
+/* The variable that moves this frequency most, per percent of its value: "; M_SAU moves it most, -0.0494 Hz for 1 % more". "": none does, or it has no slope of its own. */
+static const char *lever_text(mt_sentences *s, const mt_result_frequency *f)
 {
     double most = 0.0;
     int lever = -1;
-    for (int i = 0; i < s->rec->n_parameters && f->sensitivity != NULL; i++) {
-        const double one = 0.01 * f->sensitivity[i] * s->rec->parameters[i].recommended;
+    for (int i = 0; i < s->rec->n_parameters && f->sensitivity != NULL && !f->repeated; i++) {
+        const double one = 0.01 * f->sensitivity[i] * fabs(s->rec->parameters[i].recommended);
         if (fabs(one) > fabs(most)) {
             most = one;
             lever = i;
         }
     }
-    if (lever >= 0) {
-        mt_say(s, "Its strongest lever is %s: 1 %% more of it moves it by %+.3g Hz.",
-               s->rec->parameters[lever].name, most);
+    if (lever < 0) {
+        return "";
+    }
+    const char *const text =
+        mt_arena_printf(&s->result->mem, "; %s moves it most, %+.3g Hz for 1 %% more",
+                        s->rec->parameters[lever].name, most);
+    s->failed = s->failed || text == NULL;
+    return text == NULL ? "" : text;
+}
+
+/* How the frequency stands to the limit that is nearer: "at its lower limit", "2 % below its lower limit of 7 Hz". */
+static void limit_text(const mt_result_frequency *f, char *text)
+{
+    const bool both = MT_HAS(f->at_least_hz) && MT_HAS(f->at_most_hz);
+    const bool over = f->recommended_hz > f->at_most_hz;
+    const double low =
+        MT_HAS(f->at_least_hz) ? log(f->recommended_hz / f->at_least_hz) : HUGE_VAL;
+    const double high =
+        MT_HAS(f->at_most_hz) ? log(f->at_most_hz / f->recommended_hz) : HUGE_VAL;
+    const char *const side = low < high ? "lower" : "upper";
+    const double limit = low < high ? f->at_least_hz : f->at_most_hz;
+    if (fabs(fmin(low, high)) <= 0.01 * WORTH_SAYING_PERCENT) {
+        (void)snprintf(text, DEMAND_SIZE, "at its %s limit", side);
+    } else if (f->error_percent > WORTH_SAYING_PERCENT) {
+        (void)snprintf(text, DEMAND_SIZE, "%.3g %% %s its %s limit of %.6g Hz",
+                       f->error_percent, over ? "above" : "below", side, limit);
+    } else if (both) {
+        (void)snprintf(text, DEMAND_SIZE, "between its limits of %.6g and %.6g Hz",
+                       f->at_least_hz, f->at_most_hz);
+    } else {
+        (void)snprintf(text, DEMAND_SIZE, "clear of its %s limit of %.6g Hz", side, limit);
     }
 }
 
-/* Where a goal's frequency goes, and what becomes of the demand. */
+static void demand_text(const mt_result_frequency *f, char *text)
+{
+    if (!MT_HAS(f->target_hz)) {
+        limit_text(f, text);
+    } else if (fabs(f->error_percent) <= WORTH_SAYING_PERCENT) {
+        (void)snprintf(text, DEMAND_SIZE, "its target");
+    } else {
+        (void)snprintf(text, DEMAND_SIZE, "%.3g %% %s its target of %.6g Hz",
+                       fabs(f->error_percent), f->error_percent > 0.0 ? "above" : "below",
+                       f->target_hz);
+    }
+}
+
+/* Where a goal's frequency goes, what becomes of the demand, and what moves it. */
 static void say_frequency(mt_sentences *s, const mt_result_frequency *f)
 {
     char from[NUMBER_SIZE];
     char to[NUMBER_SIZE];
-    char demand[3 * NUMBER_SIZE];
+    char demand[DEMAND_SIZE];
     const char *const name = f->name != NULL ? f->name : "";
     const char *const open = f->name != NULL ? " (" : "";
     const char *const close = f->name != NULL ? ")" : "";
-    if (MT_HAS(f->target_hz) && fabs(f->error_percent) <= WORTH_SAYING_PERCENT) {
-        (void)snprintf(demand, sizeof demand, "its target");
-    } else if (MT_HAS(f->target_hz)) {
-        (void)snprintf(demand, sizeof demand, "%+.3g %% off its target of %.6g Hz",
-                       f->error_percent, f->target_hz);
-    } else if (MT_HAS(f->at_least_hz) && MT_HAS(f->at_most_hz)) {
-        (void)snprintf(demand, sizeof demand, "allowed from %.6g to %.6g Hz", f->at_least_hz,
-                       f->at_most_hz);
-    } else {
-        const bool least = MT_HAS(f->at_least_hz);
-        (void)snprintf(demand, sizeof demand, "at %s %.6g Hz allowed", least ? "least" : "most",
-                       least ? f->at_least_hz : f->at_most_hz);
-    }
-    (void)hz_text(f->original_hz, from);
-    (void)hz_text(f->recommended_hz, to);
     if (!MT_HAS(f->recommended_hz)) {
         mt_say(s, "%s mode %d%s%s%s has no frequency here.", f->configuration, f->mode, open,
                name, close);
-    } else if (!MT_HAS(f->original_hz)) {
-        mt_say(s, "%s mode %d%s%s%s comes to %s Hz, %s.", f->configuration, f->mode, open, name,
-               close, to, demand);
+        return;
+    }
+    demand_text(f, demand);
+    (void)snprintf(from, sizeof from, "%.6g", f->original_hz);
+    (void)snprintf(to, sizeof to, "%.6g", f->recommended_hz);
+    const char *const lever = lever_text(s, f);
+    if (!MT_HAS(f->original_hz)) {
+        mt_say(s, "%s mode %d%s%s%s comes to %s Hz, %s%s.", f->configuration, f->mode, open,
+               name, close, to, demand, lever);
     } else if (strcmp(from, to) == 0) {
-        mt_say(s, "%s mode %d%s%s%s stays at %s Hz, %s.", f->configuration, f->mode, open, name,
-               close, to, demand);
+        mt_say(s, "%s mode %d%s%s%s stays at %s Hz, %s%s.", f->configuration, f->mode, open,
+               name, close, to, demand, lever);
     } else {
-        mt_say(s, "%s mode %d%s%s%s moves from %s to %s Hz, %s.", f->configuration, f->mode,
-               open, name, close, from, to, demand);
+        mt_say(s, "%s mode %d%s%s%s moves from %s to %s Hz, %s%s.", f->configuration, f->mode,
+               open, name, close, from, to, demand, lever);
+    }
+    if (f->repeated) {
+        mt_say(s, "It is a repeated mode and has no sensitivity of its own.");
     }
 }
 
@@ -167,16 +195,8 @@ static void say_frequencies(mt_sentences *s)
 {
     for (int i = 0; i < s->rec->n_frequencies; i++) {
         const mt_result_frequency *const f = &s->rec->frequencies[i];
-        const bool goal =
-            MT_HAS(f->target_hz) || MT_HAS(f->at_least_hz) || MT_HAS(f->at_most_hz);
-        if (!goal) {
-            continue;
-        }
-        say_frequency(s, f);
-        if (f->repeated) {
-            mt_say(s, "It is a repeated mode and has no sensitivity of its own.");
-        } else {
-            say_lever(s, f);
+        if (MT_HAS(f->target_hz) || MT_HAS(f->at_least_hz) || MT_HAS(f->at_most_hz)) {
+            say_frequency(s, f);
         }
     }
 }

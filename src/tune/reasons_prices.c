@@ -62,13 +62,12 @@ static void say_demands(mt_sentences *s)
                        g->pointer, g->text, win(s), saved);
             }
         }
-        const char *const cost = d->row_eq >= 0 && found->mult_eq != NULL
-                                     ? price(s, found->mult_eq[d->row_eq] / PERCENT)
-                                     : NULL;
+        const double slope =
+            d->row_eq >= 0 && found->mult_eq != NULL ? found->mult_eq[d->row_eq] : nan("");
+        const char *const cost = price(s, fabs(slope) / PERCENT);
         if (cost != NULL) {
-            mt_say(s,
-                   "Goal %s (%s) has a price: raising what it asks for by 1 %% would cost %s.",
-                   g->pointer, g->text, cost);
+            mt_say(s, "Goal %s (%s) has a price: asking for 1 %% %s would %s %s.", g->pointer,
+                   g->text, slope > 0.0 ? "less" : "more", win(s), cost);
         }
     }
 }
