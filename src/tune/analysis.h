@@ -18,41 +18,51 @@ typedef struct mt_analysis {
     mt_modes modes;
     int n_rigid; /* fixed at the original design by mt_analysis_new; -1 before */
     bool with_gradient;
-    double *dky; /* work, n x n_inputs */
+    double *dky; /* work, n x n_inputs, after a solve with gradient */
     double *dmy;
     long solves;
 } mt_analysis;
 
 typedef struct mt_analysis_options {
-    bool gradient; /* derivatives will be asked for */
-    bool vectors;
+    bool gradient; /* derivatives will be asked for (vectors come with them) */
+    bool vectors;  /* shapes will be asked for */
     bool accuracy; /* use the stiffness factor where the plain method would lose digits */
     bool check;    /* residual and orthogonality of each mode */
 } mt_analysis_options;
-mt_analysis_options mt_analysis_options_default(
-    void); /* vectors, accuracy, check; no gradient */
+/* Vectors, accuracy and check; no gradient. */
+mt_analysis_options mt_analysis_options_default(void);
 
-/* Make the system of a configuration and solve it once at the original design at[n_inputs] (which fixes the number of rigid-body modes).
- * The model must outlive the analysis. Fails as mt_system_new, mt_linear_update, mt_modal_solve; texts name the configuration. */
+/*
+ * Make the system of a configuration and solve it once, with default options, at the original design at[n_inputs], which fixes the number of rigid-body modes and every discrete choice
+ * (helper axes, the model's length). The model must outlive the analysis; *out is the caller's. Fails as mt_system_new, mt_linear_update and mt_modal_solve, the text naming the
+ * configuration; MT_E_MASSLESS names the bodies that nothing holds. A configuration with unstable modes is no failure.
+ */
 mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs,
                           const int *inputs, const double *at, mt_analysis **out, mt_err *err);
 /* The same with a drive whose position is one more input, the last (mt_system_new_driven): at[n_inputs + 1]. drive NULL: mt_analysis_new. */
 mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
                                  const mt_system_drive *drive, int n_inputs, const int *inputs,
                                  const double *at, mt_analysis **out, mt_err *err);
+/* Accepts NULL. */
 void mt_analysis_delete(mt_analysis *a);
-/* Modes at inputs[n_inputs] (a->modes, valid until the next call). */
+/* Modes at inputs[n_inputs] [the parameters' units] into a->modes, valid until the next call; opt is required. O(n^3); no heap after the first calls. Fails as above; then a->modes is void. */
 mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
                             const mt_analysis_options *opt, mt_err *err);
-/* dlambda[n_inputs] of the mode at position pos of a->modes; NaN and *repeated (may be NULL) where it belongs to a cluster. After a solve with gradient. */
+/*
+ * After a solve with gradient, of the mode at position pos of a->modes [rad^2/s^2 per unit of the input], dlambda[n_inputs]:
+ * its derivative; NaN, and *repeated (may be NULL), where it belongs to a cluster, which has none for a single mode. Fails: MT_E_INTERNAL (no gradient), as mt_linear_products.
+ */
 mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *repeated,
                               mt_err *err);
-/* y^T (dK - lambda dM) y of the mode at pos whatever its neighbours: not a derivative where the mode is repeated, but its mean over a cluster is that of the mean. */
+/* y^T (dK - lambda dM) y whatever its neighbours: not a derivative where the mode is repeated, but its mean over a cluster is that of the mean. */
 mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_err *err);
-/* Shape of the mode at position pos at channels: s[ns]; ds (may be NULL; needs gradient and a simple mode): ns x n_inputs. Mass-normalised, sign of the vector held. */
+/*
+ * Shape of the mode at position pos at channels channel[ns] of the system: s[ns] [a length or an angle, mass-normalised: per sqrt(kg) of modal mass]. ds (may be NULL): ns x n_inputs, its derivatives with the sign
+ * held, after a solve with gradient. Fails: MT_E_SINGULAR (ds of a repeated mode), MT_E_MEMORY, MT_E_INTERNAL.
+ */
 mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel, double *s,
                             double *ds, mt_err *err);
-/* Name of a massless direction etc. are in err's text already. */
+/* The configuration's name, as long as the model lives. */
 const char *mt_analysis_configuration(const mt_analysis *a);
 
 #endif
