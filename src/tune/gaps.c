@@ -5,11 +5,13 @@
 #include <string.h>
 
 #include "base/workers.h"
+#include "tune/search.h"
 
 /* What the search of one candidate left behind, in its own memory. */
 typedef struct slot {
     mt_arena mem;
     mt_nlp_result found;
+    double *aims; /* [n_aims] of the best solution, where there is one and several objectives */
     mt_status rc;
 } slot;
 
@@ -34,6 +36,38 @@ static const double *hint_of(const job *j, int k)
     return j->candidates->at == NULL ? NULL : j->candidates->at + ((ptrdiff_t)k * j->p->n);
 }
 
+/* Values of all objectives at the best solution, by which the candidates are ranked. */
+static mt_status keep_aims(mt_problem *p, slot *s, mt_err *err)
+{
+    mt_nlp_values v;
+    s->aims = mt_arena_f64(&s->mem, (size_t)p->n_aims, 1);
+    if (s->aims == NULL) {
+        return mt_fail_memory(err);
+    }
+    p->stage = 0;
+    MT_TRY(mt_problem_values_init(p, &s->mem, &v, err));
+    MT_TRY(mt_problem_eval(p, s->found.solutions[0].t, false, &v, err));
+    for (int k = 0; k < p->n_aims; k++) {
+        s->aims[k] = mt_aim_value(p, k, NULL);
+    }
+    return MT_OK;
+}
+
+/* The objectives in order, each with those before it held (search.h). */
+static mt_status search_in_order(mt_problem *p, const double *hint, slot *s, mt_err *err)
+{
+    int stage = 0;
+    mt_err why = {0};
+    p->hint = hint;
+    MT_TRY(mt_search_designs(&p, 1, &s->mem, &s->found, &stage, &why, err));
+    if (s->found.n_solutions == 0 || s->found.compromise || s->found.stop == MT_STOP_USER) {
+        return MT_OK;
+    }
+    MT_TRY(keep_aims(p, s, err));
+    s->found.solutions[0].f = s->aims[p->n_aims - 1];
+    return MT_OK;
+}
+
 /* A candidate that cannot even be evaluated anywhere is no failure of the study: it has no solution. */
 static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
 {
@@ -54,7 +88,8 @@ static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
         memcpy(hint, from, (size_t)p->n * sizeof *hint);
         nlp.hint = hint;
     }
-    s->rc = mt_nlp_solve(&nlp, &j->options, &s->mem, &s->found, &why);
+    s->rc = p->n_aims > 1 ? search_in_order(p, nlp.hint, s, &why)
+                          : mt_nlp_solve(&nlp, &j->options, &s->mem, &s->found, &why);
     mt_problem_delete(p);
     const bool fatal = s->rc == MT_E_MEMORY || s->rc == MT_E_INTERNAL;
     return fatal ? mt_fail(err, s->rc, "%s", why.text) : MT_OK;
@@ -83,15 +118,27 @@ static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem
         for (int i = 0; i < found->n_solutions && i < 1; i++) {
             if (found->solutions[i].feasible != out->compromise) {
                 out->solutions[out->n_solutions++] = (mt_gap_solution){
-                    &found->solutions[i], j->candidates->below + ((ptrdiff_t)k * p->n_bands)};
+                    .found = &found->solutions[i],
+                    .below = j->candidates->below + ((ptrdiff_t)k * p->n_bands),
+                    .aims = j->slots[k].aims,
+                    .n_aims = j->slots[k].aims == NULL ? 0 : p->n_aims};
             }
         }
     }
     return MT_OK;
 }
 
+/* Values of a held objective that differ by less, relatively, rank by the next one. */
+static const double EQUAL = 4e-6;
+
 static bool better(const mt_gap_solution *a, const mt_gap_solution *b, bool compromise)
 {
+    for (int k = 0; k < a->n_aims && k < b->n_aims && !compromise; k++) {
+        const double d = a->aims[k] - b->aims[k];
+        if (fabs(d) > EQUAL * fmax(fabs(a->aims[k]), fabs(b->aims[k]))) {
+            return d < 0.0;
+        }
+    }
     return compromise ? a->found->squares < b->found->squares : a->found->f < b->found->f;
 }
 
@@ -153,6 +200,8 @@ static mt_status collect(const mt_problem *p, const job *j, mt_arena *mem, mt_ga
     for (int i = 0; i < out->n_solutions; i++) {
         MT_TRY(copy_solution(p, out->solutions[i].below, out->solutions[i].found, mem,
                              &out->solutions[i].found, err));
+        out->solutions[i].aims = NULL; /* the slots' memory goes */
+        out->stage = out->solutions[i].n_aims > 0 ? p->n_aims - 1 : 0;
     }
     for (int k = 0; k < j->candidates->n; k++) {
         const mt_nlp_result *const found = &j->slots[k].found;

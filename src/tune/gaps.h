@@ -12,8 +12,10 @@
  */
 typedef struct mt_gap_solution {
     const mt_nlp_solution
-        *found;       /* its t has problem->n_t entries; the first n are the design */
-    const int *below; /* [n_bands] its assignment */
+        *found;         /* its t has problem->n_t entries; the first n are the design */
+    const int *below;   /* [n_bands] its assignment */
+    const double *aims; /* [n_aims] its objectives, while they are ranked */
+    int n_aims;
 } mt_gap_solution;
 
 typedef struct mt_gap_result {
@@ -30,6 +32,7 @@ typedef struct mt_gap_result {
     long boxes;         /* of the proof */
     long evals;
     int starts;
+    int stage; /* the objective that the solutions' f belongs to */
     mt_stop stop;
 } mt_gap_result;
 

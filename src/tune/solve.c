@@ -195,6 +195,7 @@ static mt_status search_gaps(answer *a, mt_err *err)
     }
     a->found.n_solutions = g->n_solutions;
     a->found.compromise = g->compromise;
+    a->stage = g->stage;
     a->found.evals = g->evals;
     a->found.starts = g->starts;
     a->found.stop = g->stop;

@@ -3,6 +3,7 @@
 """Every shipped study holds what it publishes, and says the same bytes for any number of workers."""
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -65,10 +66,29 @@ def alternatives(folder):
     check(any(abs(s - 530.57) <= 0.01 for s in scores), f"the second optimum of 530.57 kg: {scores}")
 
 
+def in_order(folder):
+    """Several objectives with bands: the second improves while the first is held."""
+    study = json.loads((SOURCE / "studies" / "six_masses_bands.json").read_text())
+    study["published"] = []
+    shutil.copytree(SOURCE / "problems", Path(folder) / "tree" / "problems")
+    (Path(folder) / "tree" / "studies").mkdir()
+    best = {}
+    for name, objective in (("one", {"maximise": "clearance"}), ("two", [{"maximise": "clearance"}, {"minimise": "change"}])):
+        study["objective"] = objective
+        path = Path(folder) / "tree" / "studies" / f"{name}.json"
+        path.write_text(json.dumps(study))
+        code, output = run(path, folder)
+        check(code == 0, f"{name}: exit {code}\n{output[-500:]}")
+        best[name] = json.loads((Path(folder) / name / "result.json").read_text())["recommendations"][0]
+    check(abs(best["two"]["score"] - best["one"]["score"]) <= 1e-3, "the clearance is held")
+    check(best["two"]["change"] <= best["one"]["change"] + 1e-6, "the change is not greater")
+
+
 with tempfile.TemporaryDirectory() as folder:
     verify_all(folder)
     same_bytes(folder)
     if not FEW:
         six_masses(folder)
         alternatives(folder)
+        in_order(folder)
 sys.exit(1 if failures else 0)
