@@ -351,7 +351,8 @@ mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **o
     if (rc != MT_OK) {
         return rc;
     }
-    s.files = opt == NULL ? (mt_io_options){0} : *opt;
+    const mt_io_options none = {0};
+    s.files = opt == NULL ? none : *opt;
     s.r.mem = &s.study->mem;
     s.study->path = mt_arena_strdup(&s.study->mem, path);
     root = s.files.root == NULL ? mt_file_default_root(path) : NULL;

@@ -249,7 +249,7 @@ static void build_lumped(mt_builder *b, const mt_link *link, const link_geometry
     const mt_node uniform_mass = mt_program_div(p, link_mass(b, link, g, s), count);
     const mt_node uniform_length = mt_program_div(p, g->span, count);
     mt_node along = b->zero;
-    mt_node previous = b->zero;
+    mt_node previous = MT_NO_NODE; /* length of the element before */
     mt_node total = b->zero;
     const int item = mt_build_item(b, link->name.s, b->zero);
     for (int i = 0; i < link->elements; i++) {

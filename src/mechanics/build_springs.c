@@ -174,7 +174,8 @@ static mt_status build_bushing(mt_builder *b, const mt_spring *spring)
         }
         def.component = k % 3;
         measure[k] = mt_build_measure(b, &def);
-        const mt_num diagonal = turns ? spring->rotation[k - 3] : spring->translation[k];
+        const mt_num *const diagonals = turns ? spring->rotation : spring->translation;
+        const mt_num diagonal = diagonals[k % 3];
         if (spring->matrix == NULL && diagonal != MT_ABSENT) {
             const mt_spring_def one =
                 spring_default(b, spring, measure[k], mt_build_num(b, diagonal));

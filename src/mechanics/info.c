@@ -11,6 +11,13 @@
 
 enum { MOTIONS = 6 };
 
+/* The third axis beside two different ones. */
+static const int THIRD[3][3] = {
+    {0, 2, 1},
+    {2, 1, 0},
+    {1, 0, 2}
+};
+
 /* What a row of a mass term says of motion k of the whole: translation along axis k, or rotation about axis k - 3 through the origin. */
 static double row_of_motion(const mt_linear *lin, const mt_term *t, const double *row, int k)
 {
@@ -20,7 +27,7 @@ static double row_of_motion(const mt_linear *lin, const mt_term *t, const double
         const int axis = i % 6;
         double v = axis == k ? 1.0 : 0.0;
         if (axis < 3 && k >= 3 && axis != k - 3) { /* e_(k-3) x r */
-            const int other = 3 - axis - (k - 3);
+            const int other = THIRD[axis][k - 3];
             v = ((k - 2) % 3 == other ? 1.0 : -1.0) * creal(pose->x[other]);
         }
         sum += row[i] * v;

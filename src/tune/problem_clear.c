@@ -123,16 +123,27 @@ mt_status mt_clear_init(mt_problem *p, const int *below, mt_err *err)
 }
 
 /* One row: in = sign ln(f / edge) - z, sign -1 for a mode below the band. */
-static mt_status put_row(mt_problem *p, mt_analysis *a, int index, double edge_hz, double sign,
-                         int row, double z, bool with_gradient, mt_nlp_values *out, mt_err *err)
+typedef struct edge_row {
+    int row;
+    int index; /* vibration mode */
+    double edge_hz;
+    double sign;
+} edge_row;
+
+static mt_status put_row(mt_problem *p, mt_analysis *a, const edge_row *e, const double *t,
+                         bool with_gradient, mt_nlp_values *out, mt_err *err)
 {
+    const int index = e->index;
+    const int row = e->row;
+    const double sign = e->sign;
+    const double z = p->clearance ? t[p->n] : 0.0;
     const int pos = mt_modal_flexible(&a->modes, index);
     const double hz = pos >= 0 ? mt_modal_hz(&a->modes, pos) : nan("");
     if (!(hz > 0.0)) {
         return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\" has no vibration mode %d here",
                        mt_analysis_configuration(a), index);
     }
-    out->in[row] = (sign * log(hz / edge_hz)) - z;
+    out->in[row] = (sign * log(hz / e->edge_hz)) - z;
     if (!with_gradient) {
         return MT_OK;
     }
@@ -146,32 +157,38 @@ static mt_status put_row(mt_problem *p, mt_analysis *a, int index, double edge_h
     return MT_OK;
 }
 
+/* Rows of one clear: over bands, below then above, nearest mode first. */
+static mt_status put_rows(mt_problem *p, const mt_clear *c, const double *t, bool with_gradient,
+                          mt_nlp_values *out, mt_err *err)
+{
+    mt_analysis *const a = p->views[c->view].analysis;
+    const int flexible = flexible_count(&a->modes);
+    int row = c->row_in;
+    for (int b = 0; b < c->bands.n; b++) {
+        const mt_band *const band = &c->bands.items[b];
+        const int below = p->below[c->first + b];
+        for (int k = 0; k < rows_below(c, below); k++) {
+            const edge_row e = {row++, below - k, band->lower_hz, -1.0};
+            MT_TRY(put_row(p, a, &e, t, with_gradient, out, err));
+        }
+        for (int k = 0; k < rows_above(c, below, flexible); k++) {
+            const edge_row e = {row++, below + 1 + k, band->upper_hz, 1.0};
+            MT_TRY(put_row(p, a, &e, t, with_gradient, out, err));
+        }
+    }
+    if (row != c->row_in + c->n_rows) {
+        return mt_fail(err, MT_E_DOMAIN,
+                       "configuration \"%s\" has another number of modes here",
+                       mt_analysis_configuration(a));
+    }
+    return MT_OK;
+}
+
 mt_status mt_clear_eval(mt_problem *p, const double *t, bool with_gradient, mt_nlp_values *out,
                         mt_err *err)
 {
     for (int i = 0; i < p->n_clears && p->below != NULL; i++) {
-        const mt_clear *const c = &p->clears[i];
-        mt_analysis *const a = p->views[c->view].analysis;
-        const int flexible = flexible_count(&a->modes);
-        const double z = p->clearance ? t[p->n] : 0.0;
-        int row = c->row_in;
-        for (int b = 0; b < c->bands.n; b++) {
-            const mt_band *const band = &c->bands.items[b];
-            const int below = p->below[c->first + b];
-            for (int k = 0; k < rows_below(c, below); k++) {
-                MT_TRY(put_row(p, a, below - k, band->lower_hz, -1.0, row++, z, with_gradient,
-                               out, err));
-            }
-            for (int k = 0; k < rows_above(c, below, flexible); k++) {
-                MT_TRY(put_row(p, a, below + 1 + k, band->upper_hz, 1.0, row++, z,
-                               with_gradient, out, err));
-            }
-        }
-        if (row != c->row_in + c->n_rows) {
-            return mt_fail(err, MT_E_DOMAIN,
-                           "configuration \"%s\" has another number of modes here",
-                           mt_analysis_configuration(a));
-        }
+        MT_TRY(put_rows(p, &p->clears[i], t, with_gradient, out, err));
     }
     return MT_OK;
 }
