@@ -17,8 +17,8 @@ typedef struct pool {
 
 typedef struct worker {
     pool *pool;
-    int number;
     pthread_t thread;
+    int number;
     bool started;
 } worker;
 

@@ -50,30 +50,37 @@ static void list_bands(mt_proof *proof, const mt_problem *p)
     proof->question.bands = proof->bands;
 }
 
-/* Frequency goals by index that are constraints, and limits on expressions with their tolerance granted. */
+static mt_certify_limit frequency_limit(const mt_demand *d)
+{
+    const bool target = MT_HAS(d->target_hz);
+    return (mt_certify_limit){d->view, d->mode, target ? d->target_hz : d->goal->at_least,
+                              target ? d->target_hz : d->goal->at_most, d->tolerance};
+}
+
+/* A limit on an expression, its relative tolerance granted. */
+static mt_certify_bound expression_bound(const mt_demand *d)
+{
+    const mt_goal *const g = d->goal;
+    const bool equal = MT_HAS(g->equals);
+    const double least = equal ? g->equals : g->at_least;
+    const double most = equal ? g->equals : g->at_most;
+    const double give_least = d->tolerance * (fabs(least) > 0.0 ? fabs(least) : 1.0);
+    const double give_most = d->tolerance * (fabs(most) > 0.0 ? fabs(most) : 1.0);
+    return (mt_certify_bound){d->node, least - give_least, most + give_most};
+}
+
+/* Frequency goals by index that are constraints, and limits on expressions. */
 static void list_limits(mt_proof *proof, const mt_problem *p)
 {
     mt_certify *const q = &proof->question;
     for (int i = 0; i < p->n_demands; i++) {
         const mt_demand *const d = &p->demands[i];
-        const mt_goal *const g = d->goal;
-        if (d->row_res >= 0) {
-            continue;
-        }
-        if (g->type == MT_GOAL_FREQUENCY && d->mode > 0) {
-            const bool target = MT_HAS(d->target_hz);
+        const bool constraint = d->row_res < 0;
+        if (constraint && d->goal->type == MT_GOAL_FREQUENCY && d->mode > 0) {
             proof->limit_demand[q->n_limits] = i;
-            proof->limits[q->n_limits++] =
-                (mt_certify_limit){d->view, d->mode, target ? d->target_hz : g->at_least,
-                                   target ? d->target_hz : g->at_most, d->tolerance};
-        } else if (g->type == MT_GOAL_LIMIT) {
-            const bool equal = MT_HAS(g->equals);
-            const double least = equal ? g->equals : g->at_least;
-            const double most = equal ? g->equals : g->at_most;
-            const double give_least = d->tolerance * (fabs(least) > 0.0 ? fabs(least) : 1.0);
-            const double give_most = d->tolerance * (fabs(most) > 0.0 ? fabs(most) : 1.0);
-            proof->bounds[q->n_bounds++] =
-                (mt_certify_bound){d->node, least - give_least, most + give_most};
+            proof->limits[q->n_limits++] = frequency_limit(d);
+        } else if (constraint && d->goal->type == MT_GOAL_LIMIT) {
+            proof->bounds[q->n_bounds++] = expression_bound(d);
         }
     }
     q->limits = proof->limits;

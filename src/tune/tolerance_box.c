@@ -125,8 +125,9 @@ mt_status mt_describe_tolerance(mt_problem *fresh, mt_result *result, mt_recomme
     mt_status rc = mt_proof_init(&proof, fresh, &fresh->mem, err);
     if (rc == MT_OK && proof.possible) {
         mt_tolerance_box *const box = mt_arena_alloc(&result->mem, 1, sizeof *box);
-        rc = box == NULL ? mt_fail_memory(err) : MT_OK;
-        if (rc == MT_OK) {
+        if (box == NULL) {
+            rc = mt_fail_memory(err);
+        } else {
             *box = mt_tolerance_box_default();
             rc = fill_box(fresh, &proof, rec, result, box, err);
             rec->tolerance_box = box;

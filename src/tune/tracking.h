@@ -44,10 +44,10 @@ const char *mt_track_state_name(mt_track_state state);
 
 /* Where a named mode is at a design. */
 typedef struct mt_track {
-    int pos; /* in a->modes; -1: no vibration mode is left, or the configuration is unstable */
-    double share;       /* of it, relative to the shapes it was told from; 0 without a mode */
-    int rival;          /* position of the other mode with the greatest share; -1: none */
+    double share; /* of its mode, relative to the shapes it was told from; 0 without one */
     double rival_share; /* 1 where both belong to one cluster: their shapes are any */
+    int pos; /* in a->modes; -1: no vibration mode is left, or the configuration is unstable */
+    int rival; /* position of the other mode with the greatest share; -1: none */
     mt_track_state state;
 } mt_track;
 

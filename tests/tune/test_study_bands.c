@@ -111,7 +111,6 @@ static void bands__greatest_clearance_is_the_middle(mt_test *t)
 static void bounds__say_what_more_room_buys(mt_test *t)
 {
     study_case c;
-    double hz = nan("");
     REQUIRE(t, study_solve(t, ROW,
                            "'name': 'short', 'variables': [{'parameter': 'k1', 'lower': 1,"
                            " 'upper': 4}], 'goals': [{'type': 'frequency', 'mode': 1,"
@@ -121,7 +120,7 @@ static void bounds__say_what_more_room_buys(mt_test *t)
     const char *const s =
         reason_with(&c.result->recommendations[0], "0.1 more allowed on k1 buys");
     if (CHECK(t, s != NULL)) {
-        hz = strtod(strstr(s, "buys") + strlen("buys"), NULL);
+        const double hz = strtod(strstr(s, "buys") + strlen("buys"), NULL);
         const double rise = study_hz(study_two_lambda(4.05, 1.0, 1.0, -1)) -
                             study_hz(study_two_lambda(3.95, 1.0, 1.0, -1));
         CHECK_NEAR(t, hz, rise, 0.01); /* three digits, third order of the step */
