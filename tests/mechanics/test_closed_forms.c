@@ -138,7 +138,7 @@ static void driven_rod_pair(double k, double a, double hz[2])
     const double jd = 0.004;
     const double kd = 3.0;
     const double inertia = m * l * l / 3.0 + md * l * l;
-    const double k11 = k + kd + (m / 2.0 + md) * l * 9.81 * cos(a);
+    const double k11 = k + kd + (0.5 * m + md) * l * 9.81 * cos(a);
     const double b = k11 / inertia + kd / jd;
     const double c = (k11 * kd - kd * kd) / (inertia * jd);
     const double high = 0.5 * (b + sqrt(b * b - 4.0 * c));
@@ -161,7 +161,7 @@ static void closed_form__driven_rod_is_locked_or_trimmed(mt_test *t)
         mech_expect(t, &s, 2, hz, 0, TOL);
         /* the servo carries the weight's moment */
         CHECK_NEAR(t, fabs(s.a->lin->position.trim_force),
-                   (2.0 / 2.0 + 0.5) * 0.8 * 9.81 * sin(angle), TOL);
+                   (1.0 + 0.5) * 0.8 * 9.81 * sin(angle), TOL);
     }
     mech_free(&s);
     if (mech_must(t, mech_load(t, "driven_rod"), "sprung", "", &s)) {
