@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tune/gaps.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "base/workers.h"
@@ -128,16 +127,14 @@ static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem
     return MT_OK;
 }
 
-/* Values of a held objective that differ by less, relatively, rank by the next one. */
-static const double EQUAL = 4e-6;
-
 static bool better(const mt_gap_solution *a, const mt_gap_solution *b, bool compromise)
 {
-    for (int k = 0; k < a->n_aims && k < b->n_aims && !compromise; k++) {
-        const double d = a->aims[k] - b->aims[k];
-        if (fabs(d) > EQUAL * fmax(fabs(a->aims[k]), fabs(b->aims[k]))) {
-            return d < 0.0;
-        }
+    const int n = compromise ? 0 : (a->n_aims < b->n_aims ? a->n_aims : b->n_aims);
+    if (mt_search_before(n, a->aims, b->aims)) {
+        return true;
+    }
+    if (mt_search_before(n, b->aims, a->aims)) {
+        return false;
     }
     return compromise ? a->found->squares < b->found->squares : a->found->f < b->found->f;
 }

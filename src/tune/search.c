@@ -121,8 +121,7 @@ static mt_status refine(stages *s, int i, mt_err *err)
     return aims_at(p, old->t, s->mem, f, err);
 }
 
-/* Is a before b? By the objectives in order. */
-static bool before(int n, const double *a, const double *b)
+bool mt_search_before(int n, const double *a, const double *b)
 {
     for (int k = 0; k < n; k++) {
         if (fabs(a[k] - b[k]) > EQUAL * fmax(fabs(a[k]), fabs(b[k]))) {
@@ -158,7 +157,8 @@ static void rank(stages *s)
             continue;
         }
         int at = kept++;
-        for (; at > 0 && before(n_aims, f, s->f + ((ptrdiff_t)(at - 1) * n_aims)); at--) {
+        for (; at > 0 && mt_search_before(n_aims, f, s->f + ((ptrdiff_t)(at - 1) * n_aims));
+             at--) {
             all[at] = all[at - 1];
         }
         all[at] = one;

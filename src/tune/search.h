@@ -15,4 +15,7 @@
 mt_status mt_search_designs(mt_problem *const *problems, int n_workers, mt_arena *mem,
                             mt_nlp_result *out, int *stage, mt_err *why, mt_err *err);
 
+/* Is a design with objectives a[n] before one with b[n]? By the objectives in order; values that a held objective may differ by count as equal. */
+bool mt_search_before(int n, const double *a, const double *b);
+
 #endif
