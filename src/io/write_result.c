@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* result.json: everything that a study answered, and nothing about where, when or with how many workers. */
+#include <math.h>
+
 #include "io/io.h"
 
 /* A list of objects, one per item. */
@@ -21,6 +23,19 @@ static void write_strings(mt_json_writer *w, const char *name, int n, const char
     mt_json_close(w);
 }
 
+/* How a change of the parameter counts. */
+static void write_measure(mt_json_writer *w, const mt_result_parameter *p)
+{
+    const bool linear = p->measure_scale > 0.0;
+    const bool floor = p->measure_floor > 0.0;
+    mt_json_put_string(w, "measure",
+                       linear  ? "linear"
+                       : floor ? "logarithmic with floor"
+                               : "logarithmic");
+    mt_json_put_number(w, "measure_floor", floor ? p->measure_floor : nan(""));
+    mt_json_put_number(w, "measure_scale", linear ? p->measure_scale : nan(""));
+}
+
 static void write_parameter(mt_json_writer *w, const mt_result_parameter *p)
 {
     mt_json_open(w, NULL, '{');
@@ -30,6 +45,7 @@ static void write_parameter(mt_json_writer *w, const mt_result_parameter *p)
     mt_json_put_number(w, "recommended", p->recommended);
     mt_json_put_number(w, "change_percent", p->change_percent);
     mt_json_put_string(w, "at_bound", p->at_bound);
+    write_measure(w, p);
     mt_json_close(w);
 }
 

@@ -58,6 +58,16 @@ static void add_list(int n, const char *const *items, const char *title, mt_text
 static void add_best(const mt_recommendation *r, mt_text *out)
 {
     add_table(mt_report_parameters(r), "Parameters", out);
+    for (int i = 0; i < r->n_parameters; i++) {
+        mt_text line = {0};
+        if (mt_report_measure(&r->parameters[i], &line)) {
+            mt_text_add(out, "<p>");
+            mt_html_escape(line.s, out);
+            mt_text_add(out, "</p>\n");
+        }
+        out->failed = out->failed || line.failed;
+        mt_text_free(&line);
+    }
     if (r->n_parameters > 0) {
         mt_report_svg_changes(r, out);
     }

@@ -98,6 +98,25 @@ mt_table mt_report_parameters(const mt_recommendation *r)
     return t;
 }
 
+bool mt_report_measure(const mt_result_parameter *p, mt_text *out)
+{
+    char number[MT_NUMBER_TEXT];
+    const char *const space = p->unit == NULL ? "" : " ";
+    const char *const unit = p->unit == NULL ? "" : p->unit;
+    if (p->measure_floor > 0.0) {
+        mt_text_addf(out, "The change of %s counts as ln(new/original), below %s%s%s linearly.",
+                     p->name, mt_report_number(p->measure_floor, VALUE_DIGITS, number), space,
+                     unit);
+        return true;
+    }
+    if (p->measure_scale > 0.0) {
+        mt_text_addf(out, "The change of %s counts linearly, %s%s%s as 1.", p->name,
+                     mt_report_number(p->measure_scale, VALUE_DIGITS, number), space, unit);
+        return true;
+    }
+    return false;
+}
+
 mt_table mt_report_goals(const mt_recommendation *r)
 {
     mt_table t = mt_table_default();

@@ -11,6 +11,8 @@
 mt_table mt_report_frequencies(const mt_recommendation *r);
 /* name, unit, original, recommended, change, bound. */
 mt_table mt_report_parameters(const mt_recommendation *r);
+/* How the change of a parameter counts, as a sentence; false (and nothing) where it is the plain logarithm. */
+bool mt_report_measure(const mt_result_parameter *p, mt_text *out);
 /* goal, value, demand, violation, met. */
 mt_table mt_report_goals(const mt_recommendation *r);
 /* Each mode beside its neighbouring bands, one line per mode: the band below it and the band above it with the distance to each. */

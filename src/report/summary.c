@@ -37,6 +37,14 @@ static void print_best(const mt_recommendation *r, mt_text *out)
                      r->singular ? ", a double solution: its parameters are sensitive" : "");
     }
     print_table(mt_report_parameters(r), "Parameters", out);
+    for (int i = 0; i < r->n_parameters; i++) {
+        mt_text line = {0};
+        if (mt_report_measure(&r->parameters[i], &line)) {
+            mt_text_addf(out, "  %s\n", line.s);
+        }
+        out->failed = out->failed || line.failed;
+        mt_text_free(&line);
+    }
     print_table(mt_report_frequencies(r), "Frequencies", out);
     print_table(mt_report_clearances(r), "Clearances from bands", out);
     print_table(mt_report_goals(r), "Goals", out);

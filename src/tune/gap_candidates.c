@@ -171,7 +171,7 @@ static mt_status keep_proven(const mt_problem *p, const mt_certify_search *found
         for (int i = 0; i < p->n; i++) {
             const double x =
                 k < found->n_found ? found->at[i + ((ptrdiff_t)k * p->n)] : p->original[i];
-            out->at[i + ((ptrdiff_t)k * p->n)] = MT_HAS(p->scale[i]) ? x / p->scale[i] : log(x);
+            out->at[i + ((ptrdiff_t)k * p->n)] = mt_problem_t(p, i, x);
         }
     }
     out->n = n;

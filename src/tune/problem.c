@@ -19,9 +19,29 @@ void mt_problem_delete(mt_problem *p)
     }
 }
 
+/* Values of a parameter below this part of the original are next to nothing: there t is linear in x, so that 0 itself is
+ * within reach (t = ln(floor) - 1). It is no smaller because the slope of a goal over t falls with it, and a search must
+ * still feel that slope to arrive at 0. */
+static const double FLOOR_PART = 1e-3;
+
 double mt_problem_t(const mt_problem *p, int i, double x)
 {
-    return MT_HAS(p->scale[i]) ? x / p->scale[i] : log(x);
+    const double floor = p->floor[i];
+    if (MT_HAS(p->scale[i])) {
+        return x / p->scale[i];
+    }
+    return x < floor ? log(floor) + ((x - floor) / floor) : log(x);
+}
+
+/* The inverse of mt_problem_t, between the bounds. */
+static double value_at(const mt_problem *p, int i, double t)
+{
+    const double floor = p->floor[i];
+    if (MT_HAS(p->scale[i])) {
+        return t * p->scale[i];
+    }
+    const double below = floor > 0.0 ? t - log(floor) : 0.0;
+    return below < 0.0 ? floor * (1.0 + below) : exp(t);
 }
 
 /* The catalogue's value whose coordinate is t, to the last bit; false where there is none. */
@@ -60,21 +80,41 @@ void mt_problem_x(const mt_problem *p, const double *t, double *x)
         } else if (!(t[i] > p->lower_t[i])) {
             x[i] = v->lower;
         } else {
-            x[i] = MT_HAS(p->scale[i]) ? t[i] * p->scale[i] : exp(t[i]);
+            x[i] = value_at(p, i, t[i]);
         }
     }
 }
 
+double mt_problem_stretch_at(const mt_problem *p, int i, double x)
+{
+    return MT_HAS(p->scale[i]) ? p->scale[i] : fmax(x, p->floor[i]);
+}
+
 double mt_problem_stretch(const mt_problem *p, int i)
 {
-    return MT_HAS(p->scale[i]) ? p->scale[i] : p->x[i];
+    return mt_problem_stretch_at(p, i, p->x[i]);
+}
+
+/* The measure of one variable's change. */
+static void init_measure(mt_problem *p, int i)
+{
+    const mt_variable *const v = &p->study->variables[i];
+    /* of the whole catalogue, also where the bounds have been closed on one of its values */
+    const double least = v->n_catalogue > 0 ? v->catalogue[0] : v->lower;
+    const bool logarithmic = !MT_HAS(v->scale) && least >= 0.0 && v->original > 0.0;
+    const double linear = MT_HAS(v->scale) ? v->scale : v->range;
+    p->scale[i] = logarithmic ? nan("") : linear;
+    p->floor[i] = logarithmic && !(least > 0.0) ? FLOOR_PART * v->original : 0.0;
+    p->lower_t[i] = mt_problem_t(p, i, v->lower);
+    p->upper_t[i] = mt_problem_t(p, i, v->upper);
+    p->origin_t[i] = mt_problem_t(p, i, v->original);
 }
 
 static mt_status init_variables(mt_problem *p, mt_err *err)
 {
     const size_t n = (size_t)p->n;
-    double **const arrays[] = {&p->original, &p->lower_t, &p->upper_t, &p->origin_t,
-                               &p->scale,    &p->x,       &p->t,       &p->work};
+    double **const arrays[] = {&p->original, &p->lower_t, &p->upper_t, &p->origin_t, &p->scale,
+                               &p->floor,    &p->x,       &p->t,       &p->work};
     p->inputs = mt_arena_int(&p->mem, n);
     bool bad = p->inputs == NULL;
     for (int i = 0; i < MT_COUNT(arrays); i++) {
@@ -86,16 +126,9 @@ static mt_status init_variables(mt_problem *p, mt_err *err)
     }
     for (int i = 0; i < p->n; i++) {
         const mt_variable *const v = &p->study->variables[i];
-        /* of the whole catalogue, also where the bounds have been closed on one of its values */
-        const double least = v->n_catalogue > 0 ? v->catalogue[0] : v->lower;
-        const bool positive = least > 0.0 && v->original > 0.0;
-        const double scale = MT_HAS(v->scale) ? v->scale : v->upper - v->lower;
         p->inputs[i] = v->parameter;
         p->original[i] = v->original;
-        p->scale[i] = positive ? nan("") : scale;
-        p->lower_t[i] = positive ? log(v->lower) : v->lower / scale;
-        p->upper_t[i] = positive ? log(v->upper) : v->upper / scale;
-        p->origin_t[i] = positive ? log(v->original) : v->original / scale;
+        init_measure(p, i);
     }
     return MT_OK;
 }

@@ -12,7 +12,10 @@
  * A study compiled for evaluation: variables as scaled coordinates t, one analysis per configuration that a goal names, goals as a flat list of demands (one per goal and
  * configuration), the objectives. One problem, one worker.
  *
- * Coordinates: t = ln x where the lower bound and the original value are positive, else t = x / scale. The change of a redesign is then
+ * Coordinates: t = ln x where the lower bound and the original value are positive. A lower bound of 0 keeps the logarithm down to a floor, a thousandth of the original,
+ *     t = ln x                              x >= floor
+ *     t = ln(floor) + (x - floor)/floor     x <  floor      (continuous with its slope; dx/dt = max(x, floor))
+ * Where the original is 0 or negative, the bounds reach below 0, or the study gives a scale, t = x / scale. The change of a redesign is then
  *     sqrt(sum w_i (t_i - t_i(original))^2).
  *
  * Objectives in order: `stage` is the one that is minimised; the ones before it are held by one inequality each,
@@ -91,6 +94,7 @@ typedef struct mt_problem {
     double *upper_t;
     double *origin_t; /* may lie outside the bounds, where the original design does */
     double *scale;    /* [n] NaN: logarithmic; else x = t * scale */
+    double *floor;    /* [n] where the logarithm ends; 0: nowhere */
     int n_views;
     int n_demands;
     mt_view *views;
@@ -150,6 +154,8 @@ double mt_problem_t(const mt_problem *p, int i, double x);
 /* Rows of `in` (of `eq`) and of its derivative in the present stage: goals, then held objectives. */
 int mt_problem_rows_in(const mt_problem *p);
 int mt_problem_rows_eq(const mt_problem *p);
+/* dx_i/dt_i at the value x of variable i. */
+double mt_problem_stretch_at(const mt_problem *p, int i, double x);
 /* dx_i/dt_i at the last evaluation. */
 double mt_problem_stretch(const mt_problem *p, int i);
 /* The present stage as a search problem (arrays belong to the problem). */

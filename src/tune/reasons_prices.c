@@ -116,8 +116,7 @@ static void say_bound_price(mt_sentences *s, int i, double amount)
 {
     const mt_nlp_solution *const found = s->design->found;
     const mt_result_parameter *const p = &s->rec->parameters[i];
-    const double scale = s->p->scale[i];
-    const double dt = amount / (MT_HAS(scale) ? scale : fabs(p->recommended));
+    const double dt = amount / mt_problem_stretch_at(s->p, i, p->recommended);
     const char *const saved = found->mult_bound != NULL && found->bound[i] != 0
                                   ? price(s, fabs(found->mult_bound[i]) * dt)
                                   : NULL;

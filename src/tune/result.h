@@ -17,6 +17,8 @@ typedef struct mt_result_parameter {
     double recommended;
     double change_percent; /* NaN where original is 0 */
     const char *at_bound;  /* NULL, "lower", "upper" */
+    double measure_scale; /* its change counts as (new - original)/scale; 0: ln(new/original) */
+    double measure_floor; /* where the logarithm goes on as its tangent; 0: nowhere */
 } mt_result_parameter;
 
 typedef struct mt_result_frequency {

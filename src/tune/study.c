@@ -74,6 +74,7 @@ mt_variable mt_variable_default(mt_addr addr)
         .upper = nan(""),
         .weight = 1.0,
         .scale = nan(""),
+        .range = nan(""),
         .tolerance_percent = nan(""),
         .original = nan(""),
         .addr = addr,

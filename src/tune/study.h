@@ -24,8 +24,8 @@ typedef struct mt_variable {
     int n_catalogue;   /* > 0: discrete */
     double *catalogue; /* ascending after finish */
     double weight;     /* of the change; default 1 */
-    /* change of a parameter that may be zero or negative: (new - original)/scale; default: the range */
-    double scale;
+    double scale; /* of the change, (new - original)/scale; NaN: ln(new/original), or range */
+    double range; /* scale of a change that has no logarithm; by finish */
     double tolerance_percent; /* robust search; NaN: none */
     double original;          /* the model's value; by finish */
     mt_addr addr;
@@ -289,9 +289,9 @@ mt_published mt_published_default(mt_published_kind kind, mt_addr addr);
  * Resolve names and check meaning, all problems at once: unknown names with "did you mean", bounds in the wrong order, catalogue and
  * bounds together, duplicate variables, goals without a demand, weights without the objective "misfit" and the reverse, a variable
  * overridden in every configuration that the goals name, references without a common sensor, mode indices below 1, ... Fills in
- * defaults (configuration: the model's only one; objective: change; scale: the range), sorts catalogues, looks up aircraft, makes the
+ * defaults (configuration: the model's only one; objective: change; range of a variable), sorts catalogues, looks up aircraft, makes the
  * bands, sets `original` and `warnings`. study->model
- * is set and finished before. Bounds at or below 0 are fine for a positive parameter (its scale is linear then).
+ * is set and finished before. Bounds at or below 0 are fine for a positive parameter (problem.h: how its change is measured then).
  * Returns MT_E_INPUT where diags holds errors, MT_E_MEMORY.
  */
 mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err);

@@ -65,9 +65,7 @@ static void check_weights(mt_study_check *c, mt_variable *v)
         mt_diag_error(c->diags, v->tolerance_addr, "tolerance_percent (%g) must be below 100",
                       v->tolerance_percent);
     }
-    if (!MT_HAS(v->scale)) {
-        v->scale = v->upper > v->lower ? v->upper - v->lower : 1.0; /* one value: any scale */
-    }
+    v->range = v->upper > v->lower ? v->upper - v->lower : 1.0; /* one value: any scale */
 }
 
 static void check_original(mt_study_check *c, mt_variable *v)

@@ -341,9 +341,9 @@ static void result_file__a_damaged_one_is_refused(mt_test *t)
         {      "member gone",      "  \"status\": \"compromise\",\n",                  "",
          ":1:1: error: member \"status\" is missing\n"                                             },
         {             "rank",                          "\"rank\": 1",     "\"rank\": 1.5",
-         ":93:15: error: /recommendations/0/rank: must be a whole number from 0 to 100000\n"       },
+         ":99:15: error: /recommendations/0/rank: must be a whole number from 0 to 100000\n"       },
         {"text for a number", "\"recommended\": 0.20000000000000001",
-         "\"recommended\": \"0.2\"",                                                     ":42:24: error: /baseline/parameters/1/recommended: must be a number or null, not a "
+         "\"recommended\": \"0.2\"",                                                     ":45:24: error: /baseline/parameters/1/recommended: must be a number or null, not a "
                                                      "string\n"},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {

@@ -68,7 +68,7 @@ static void check_variables(mt_test *t, const mt_study *s)
         CHECK_NEAR(t, v[1].catalogue[1], 2.5, TOL);
         CHECK_NEAR(t, v[1].catalogue[2], 4.0, TOL);
     }
-    CHECK_NEAR(t, v[1].scale, 3.0, TOL);
+    CHECK_NEAR(t, v[1].range, 3.0, TOL);
     CHECK_NEAR(t, v[1].weight, 1.0, TOL);
     CHECK(t, !MT_HAS(v[1].tolerance_percent));
     CHECK_NEAR(t, v[2].upper, 0.17453292519943295, TOL);
@@ -239,7 +239,7 @@ static void study__bounds_below_zero_are_fine(mt_test *t)
         t, ", \"variables\": [{\"parameter\": \"k1\", \"lower\": -1, \"upper\": 4}]", NULL);
     if (s != NULL) {
         CHECK_NEAR(t, s->variables[0].lower, -1.0, TOL);
-        CHECK_NEAR(t, s->variables[0].scale, 5.0, TOL);
+        CHECK_NEAR(t, s->variables[0].range, 5.0, TOL);
     }
     mt_study_delete(s);
 }

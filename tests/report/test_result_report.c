@@ -21,8 +21,8 @@ static mt_result *make(mt_test *t)
     if (!CHECK(t, mt_result_new(&r, NULL) == MT_OK)) {
         return NULL;
     }
-    parameters[0] = (mt_result_parameter){"k<1>", "N/m", 50.0, 92.942, 85.884, NULL};
-    parameters[1] = (mt_result_parameter){"m", NULL, 1.0, 0.5, -50.0, "lower"};
+    parameters[0] = (mt_result_parameter){"k<1>", "N/m", 50.0, 92.942, 85.884, NULL, 0.0, 0.05};
+    parameters[1] = (mt_result_parameter){"m", NULL, 1.0, 0.5, -50.0, "lower", 2.0, 0.0};
     for (int i = 0; i < 2; i++) {
         frequencies[i] = mt_result_frequency_default();
         frequencies[i].configuration = "held";
@@ -71,6 +71,8 @@ static void summary__says_status_numbers_and_reasons(mt_test *t)
         "A <study>\nSolved.\n",
         "  k<1>       N/m   50.0000   92.9420         +85.9  -\n",
         "  m          -      1.00000   0.500000       -50.0  lower\n",
+        "  The change of k<1> counts as ln(new/original), below 0.0500000 N/m linearly.\n",
+        "  The change of m counts linearly, 2.00000 as 1.\n",
         /* clang-format off */
         "  held              1  -        0.750000     1.00000           1.00000          0    -\n",
         /* clang-format on */

@@ -101,8 +101,8 @@ static void original_outside_its_bounds__is_described_where_it_is(mt_test *t)
     study_free(&c);
 }
 
-/* Bounds at or below zero: the change is (new - original)/scale, the scale the range where none is given. */
-static void bounds_at_and_below_zero__are_linear(mt_test *t)
+/* Bounds below zero: the change is (new - original)/scale, the scale the range where none is given; a bound of zero keeps the logarithm. */
+static void bounds_at_and_below_zero__set_the_measure(mt_test *t)
 {
     static const struct {
         const char *parameters;
@@ -110,12 +110,13 @@ static void bounds_at_and_below_zero__are_linear(mt_test *t)
         double want; /* of x, where k1 = 2 */
         double change;
     } rows[] = {
-        { "'x': 0.5, 'k1': '1 + x', 'k2': 1, 'm': 1",                "'lower': 0, 'upper': 4",1.0,0.5 / 4.0                                                                                                   },
-        {   "'x': 0, 'k1': '1 + x', 'k2': 1, 'm': 1",             "'lower': -0.5, 'upper': 4", 1.0, 1.0 / 4.5},
+        { "'x': 0.5, 'k1': '1 + x', 'k2': 1, 'm': 1",                "'lower': 0, 'upper': 4",1.0,
+         0.69314718055994529                                                                                              },
+        {   "'x': 0, 'k1': '1 + x', 'k2': 1, 'm': 1",             "'lower': -0.5, 'upper': 4", 1.0,              1.0 / 4.5},
         {"'x': -0.5, 'k1': '3 + x', 'k2': 1, 'm': 1", "'lower': -2, 'upper': 2, 'scale': 0.1",
-         -1.0,       5.0                                                                                     },
+         -1.0,                    5.0                                                                                     },
         { "'x': 0.5, 'k1': '4 - x', 'k2': 1, 'm': 1",   "'lower': 0, 'upper': 2, 'weight': 4", 2.0,
-         1.5                                                                                                 },
+         2.7725887222397811                                                                                               },
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         study_case c;
@@ -164,5 +165,5 @@ MT_TEST_MAIN(MT_TEST(unreachable_target__gives_the_nearest_design_at_its_bound),
              MT_TEST(undetermined_parameter__keeps_its_value_and_is_named),
              MT_TEST(undetermined_direction__is_named_as_a_combination),
              MT_TEST(original_outside_its_bounds__is_described_where_it_is),
-             MT_TEST(bounds_at_and_below_zero__are_linear),
+             MT_TEST(bounds_at_and_below_zero__set_the_measure),
              MT_TEST(lower_bound_zero_of_a_stiffness__is_no_obstacle))
