@@ -6,6 +6,8 @@
  * from the study that timing.json beside the result names, from the result's folder and those above it, from the current folder and its "studies". Only the very bytes
  * that were solved are taken; --model takes a file as it is, with a warning where it has changed.
  */
+#include "modetune/version.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -211,6 +213,13 @@ static mt_status apply(const mt_args *args, const mt_result *result, mt_text *ou
     mt_status rc = find_model(args, result, &file, &model_path, err);
     if (rc == MT_OK) {
         rc = substitute(chosen, &file, model_path, out, err);
+    }
+    const char *const version = result->run.modetune_version;
+    if (rc == MT_OK && (version == NULL || strcmp(version, MT_VERSION_STRING) != 0)) {
+        mt_terminal_warning("%s was written by modetune %s, this is %s: what it says may be "
+                            "judged otherwise today",
+                            path, version == NULL ? "of an unknown version" : version,
+                            MT_VERSION_STRING);
     }
     if (rc == MT_OK && !chosen->feasible) {
         mt_terminal_warning("recommendation %d does not meet all goals", chosen->rank);

@@ -270,9 +270,30 @@ static int for_each_study(const mt_args *args, mt_text *out, use_answer use)
     return code;
 }
 
+/* Studies whose results would go into one folder; the second would silently replace the first. */
+static bool share_a_folder(const mt_args *args)
+{
+    bool any = false;
+    for (int i = 0; i < args->n_operands; i++) {
+        char *const name = name_of_study(args->operands[i]);
+        for (int k = 0; k < i; k++) {
+            char *const other = name_of_study(args->operands[k]);
+            if (name != NULL && other != NULL && strcmp(name, other) == 0) {
+                mt_terminal_error("%s and %s would both be written to \"%s\": run one of them "
+                                  "apart, with another -o",
+                                  args->operands[k], args->operands[i], name);
+                any = true;
+            }
+            free(other);
+        }
+        free(name);
+    }
+    return any;
+}
+
 int mt_cmd_run(const mt_args *args, mt_text *out)
 {
-    return for_each_study(args, out, run_one);
+    return share_a_folder(args) ? MT_EXIT_INPUT : for_each_study(args, out, run_one);
 }
 
 static void json_published(mt_json_writer *w, const mt_result_published *p)

@@ -155,6 +155,7 @@ static void read_root(result_reader *s)
     read_design(s, need(s, MT_JSON_ROOT, "baseline", MT_KEY_OBJECT), &result->baseline);
     read_recommendations(s, need(s, MT_JSON_ROOT, "recommendations", MT_KEY_LIST));
     const mt_addr run = need(s, MT_JSON_ROOT, "run", MT_KEY_OBJECT);
+    s->result->run.modetune_version = text(s, run, "modetune");
     read_inputs(s, need(s, run, "inputs", MT_KEY_LIST));
 }
 

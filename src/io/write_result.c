@@ -103,6 +103,7 @@ static void write_goal(mt_json_writer *w, const mt_result_goal *g)
     mt_json_put_number(w, "violation_percent", g->violation_percent);
     mt_json_put_bool(w, "met", g->met);
     mt_json_put_bool(w, "weighted", g->weighted);
+    mt_json_put_bool(w, "doubtful", g->doubtful);
     mt_json_close(w);
 }
 
@@ -237,6 +238,34 @@ static void write_certificate(mt_json_writer *w, const mt_certificate *c)
     mt_json_close(w);
 }
 
+static void write_relaxation(mt_json_writer *w, const mt_result *result, const mt_relaxation *r)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "kind", r->kind);
+    mt_json_put_string(w, "pointer", r->pointer);
+    mt_json_put_string(w, "what", r->what);
+    mt_json_put_string(w, "unit", r->unit);
+    mt_json_put_number(w, "from", r->from);
+    mt_json_put_number(w, "to", r->to);
+    mt_json_put_number(w, "change_percent", r->change_percent);
+    mt_json_open(w, "design", '{');
+    for (int i = 0; i < result->n_variables; i++) {
+        mt_json_put_number(w, result->variables[i], r->design[i]);
+    }
+    mt_json_close(w);
+    mt_json_put_string(w, "text", r->text);
+    mt_json_close(w);
+}
+
+static void write_relaxations(mt_json_writer *w, const mt_result *result)
+{
+    mt_json_open(w, "relaxations", '[');
+    for (int i = 0; i < result->n_relaxations; i++) {
+        write_relaxation(w, result, &result->relaxations[i]);
+    }
+    mt_json_close(w);
+}
+
 static void write_vary(mt_json_writer *w, const mt_trade_vary *v)
 {
     mt_json_open(w, NULL, '{');
@@ -351,6 +380,7 @@ void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result)
     mt_result_put_uncertainty(w, result);
     WRITE_LIST(w, "certificates", result->n_certificates, result->certificates,
                write_certificate);
+    write_relaxations(w, result);
     write_trade(w, result->trade);
     WRITE_LIST(w, "published", result->n_published, result->published, write_published);
     write_strings(w, "warnings", result->n_warnings, result->warnings);

@@ -110,6 +110,19 @@ static void add_certificates(const mt_result *result, mt_text *out)
     mt_text_add(out, "</ul>\n");
 }
 
+static void add_relaxations(const mt_result *result, mt_text *out)
+{
+    if (result->n_relaxations == 0) {
+        return;
+    }
+    heading("What would let a design exist, one change at a time", out);
+    mt_text_add(out, "<ul>\n");
+    for (int i = 0; i < result->n_relaxations; i++) {
+        add_item(result->relaxations[i].text, out);
+    }
+    mt_text_add(out, "</ul>\n");
+}
+
 static void add_footer(const mt_result_run *run, mt_text *out)
 {
     mt_text_add(out, "<footer>modetune ");
@@ -149,6 +162,7 @@ void mt_report_html(const mt_result *result, mt_text *out)
     add_table(mt_report_trade(result), "Trade study: the best design of each point", out);
     mt_report_svg_trade(result, out);
     add_certificates(result, out);
+    add_relaxations(result, out);
     add_table(mt_report_published(result), "Published against computed", out);
     add_list(result->n_warnings, result->warnings, "Warnings", out);
     add_footer(&result->run, out);

@@ -27,6 +27,16 @@ static void print_list(int n, const char *const *items, const char *title, mt_te
     }
 }
 
+static void print_relaxations(const mt_result *result, mt_text *out)
+{
+    if (result->n_relaxations > 0) {
+        mt_text_add(out, "\nWhat would let a design exist, one change at a time\n");
+    }
+    for (int i = 0; i < result->n_relaxations; i++) {
+        mt_text_addf(out, "  - %s\n", result->relaxations[i].text);
+    }
+}
+
 static void print_best(const mt_recommendation *r, mt_text *out)
 {
     if (r->n_parameters > 0) {
@@ -101,6 +111,7 @@ void mt_report_summary(const mt_result *result, bool with_published, mt_text *ou
         const mt_certificate *const c = &result->certificates[i];
         mt_text_addf(out, "  - %s: %s\n", c->proven ? "proven" : "sampled", c->text);
     }
+    print_relaxations(result, out);
     if (with_published) {
         print_table(mt_report_published(result), "Published against computed", out);
     }

@@ -43,11 +43,14 @@ static mt_status describe_gaps(const mt_gap_result *gaps, mt_result *result, boo
             gaps->n_possible, gaps->boxes);
     }
     if (gaps->proven) {
-        return state(result, "gap_assignments", true, err,
+        MT_TRY(state(result, "gap_assignments", true, err,
                      "Of %.0f gap assignments %d can be met within the bounds; all others are "
-                     "proven infeasible (branch and bound, %ld boxes). That a design is the "
-                     "best of its kind is sampled (%d starts), not proven.",
-                     gaps->n_possible, gaps->n_candidates, gaps->boxes, gaps->starts);
+                     "proven infeasible (branch and bound, %ld boxes).",
+                     gaps->n_possible, gaps->n_candidates, gaps->boxes));
+        return state(result, "optimality", false, err,
+                     "That each design is the best of its gap assignment: %d starts found none "
+                     "better.",
+                     gaps->starts);
     }
     return state(result, "gap_assignments", false, err,
                  "Of %.0f gap assignments %d were searched, those met by samples over the "

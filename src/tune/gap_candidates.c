@@ -101,10 +101,26 @@ static double count_possible(const mt_problem *p)
     return round(all);
 }
 
-static mt_status sample(mt_problem *p, mt_arena *mem, mt_gap_candidates *out, mt_err *err)
+/* Keep the `most` assignments of least violation, in their order; what is not kept is not needed again. */
+static int keep_nearest(const sampled *list, int n, int most, bool *kept)
 {
-    const int wanted = SAMPLES_PER_VARIABLE * (p->n + 1);
-    const int n = wanted < SAMPLES_MOST ? wanted : SAMPLES_MOST;
+    int count = 0;
+    for (int i = 0; i < n; i++) {
+        int ahead = 0;
+        for (int k = 0; k < n; k++) {
+            const bool less = list[k].violation < list[i].violation;
+            ahead += less || (k < i && list[k].violation == list[i].violation) ? 1 : 0;
+        }
+        kept[i] = ahead < most;
+        count += kept[i] ? 1 : 0;
+    }
+    return count;
+}
+
+/* The assignments of n designs spread over the bounds, at most `most` of them. */
+static mt_status sample(mt_problem *p, int n, int most, mt_arena *mem, mt_gap_candidates *out,
+                        mt_err *err)
+{
     mt_nlp nlp = mt_problem_nlp(p);
     mt_nlp_options opt = mt_nlp_options_default();
     mt_nlp_engine e;
@@ -138,13 +154,19 @@ static mt_status sample(mt_problem *p, mt_arena *mem, mt_gap_candidates *out, mt
     if (t == NULL) {
         return mt_fail_memory(err);
     }
+    bool kept[CANDIDATES_MOST] = {false};
+    const int n_found = out->n;
+    out->n = keep_nearest(list, n_found, most, kept);
     out->below = mt_arena_int(mem, (size_t)out->n * (size_t)p->n_bands);
     if (out->below == NULL) {
         return mt_fail_memory(err);
     }
-    for (int i = 0; i < out->n; i++) {
-        memcpy(out->below + ((ptrdiff_t)i * p->n_bands), list[i].below,
-               (size_t)p->n_bands * sizeof *below);
+    int *row = out->below;
+    for (int i = 0; i < n_found; i++) {
+        if (kept[i]) {
+            memcpy(row, list[i].below, (size_t)p->n_bands * sizeof *below);
+            row += p->n_bands;
+        }
     }
     return MT_OK;
 }
@@ -178,6 +200,7 @@ static mt_status keep_proven(const mt_problem *p, const mt_certify_search *found
     out->n_proven = found->n_found;
     out->proven = found->proven;
     out->boxes = found->boxes;
+    out->all = !found->more && !found->stopped;
     out->reason = found->proven ? NULL : "the budget of boxes ended";
     return MT_OK;
 }
@@ -196,8 +219,18 @@ mt_status mt_gap_candidates_find(mt_problem *p, mt_arena *mem, mt_gap_candidates
     const bool by_samples = !proof.possible || (!out->proven && out->n == 0);
     if (rc == MT_OK && by_samples) {
         out->reason = mt_arena_strdup(mem, proof.reason);
-        rc = out->reason == NULL ? mt_fail_memory(err) : sample(p, mem, out, err);
+        const int wanted = SAMPLES_PER_VARIABLE * (p->n + 1);
+        const int n = wanted < SAMPLES_MOST ? wanted : SAMPLES_MOST;
+        rc = out->reason == NULL ? mt_fail_memory(err)
+                                 : sample(p, n, CANDIDATES_MOST, mem, out, err);
     }
     mt_proof_free(&proof, p);
     return rc;
+}
+
+mt_status mt_gap_candidates_near(mt_problem *p, int most, mt_arena *mem, mt_gap_candidates *out,
+                                 mt_err *err)
+{
+    *out = (mt_gap_candidates){.possible = count_possible(p)};
+    return sample(p, MT_GAP_SAMPLES_NEAR, most, mem, out, err);
 }

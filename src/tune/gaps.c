@@ -22,7 +22,7 @@ typedef struct job {
     const int *hint_below; /* [n_bands] assignment of p->hint; NULL: none */
 } job;
 
-enum { STARTS_PER_CANDIDATE = 24, SOLUTIONS_PER_CANDIDATE = 4 };
+enum { STARTS_PER_CANDIDATE = 24, SOLUTIONS_PER_CANDIDATE = 4, NEAREST = 6 };
 
 /* The caller's design where it is of this kind, else the one that the candidate comes with; NULL: none. */
 static const double *hint_of(const job *j, int k)
@@ -80,6 +80,7 @@ static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
                                  j->candidates->below + ((ptrdiff_t)k * j->p->n_bands), &p,
                                  err));
     p->stop = j->p->stop;
+    p->starts = j->options.starts;
     mt_nlp nlp = mt_problem_nlp(p);
     double *const hint = mt_arena_f64(&s->mem, (size_t)p->n_t, 1);
     const double *const from = hint_of(j, k);
@@ -209,6 +210,17 @@ static mt_status collect(const mt_problem *p, const job *j, mt_arena *mem, mt_ga
     return MT_OK;
 }
 
+/* Where the budget of boxes ended but left a list of open assignments, and the search met them all, nothing is open any more. */
+static bool is_settled(const job *j)
+{
+    bool met = j->candidates->all;
+    for (int k = 0; k < j->candidates->n && met; k++) {
+        const mt_nlp_result *const found = &j->slots[k].found;
+        met = found->n_solutions > 0 && found->solutions[0].feasible;
+    }
+    return met;
+}
+
 mt_status mt_gaps_solve(mt_problem *p, int workers, mt_arena *mem, mt_gap_result *out,
                         mt_err *err)
 {
@@ -218,6 +230,11 @@ mt_status mt_gaps_solve(mt_problem *p, int workers, mt_arena *mem, mt_gap_result
     out->n_candidates = candidates.n;
     out->n_possible = candidates.possible;
     out->proven = candidates.proven;
+    if (candidates.proven && candidates.n == 0) { /* then the nearest designs are wanted */
+        const long boxes = candidates.boxes;
+        MT_TRY(mt_gap_candidates_near(p, NEAREST, mem, &candidates, err));
+        candidates.boxes = boxes;
+    }
     for (int i = 0; i < p->n_clears; i++) {
         out->driven = out->driven || p->views[p->clears[i].view].analysis->sys->driven;
     }
@@ -245,6 +262,7 @@ mt_status mt_gaps_solve(mt_problem *p, int workers, mt_arena *mem, mt_gap_result
     }
     mt_status rc = mt_workers_run(workers, candidates.n, search_candidate, &j, err);
     rc = rc == MT_OK ? collect(p, &j, mem, out, err) : rc;
+    out->proven = out->proven || is_settled(&j);
     for (int k = 0; k < candidates.n; k++) {
         mt_arena_free(&j.slots[k].mem);
     }

@@ -22,8 +22,8 @@ typedef struct mt_gap_result {
     int n_solutions; /* feasible ones by objective; else compromises by violation */
     mt_gap_solution *solutions;
     bool compromise;
-    int n_candidates;  /* assignments that were searched */
-    int n_feasible;    /* of them with a design that meets all goals */
+    int n_candidates; /* assignments that may have a design; 0: proven that none has, the solutions are the nearest misses */
+    int n_feasible;   /* of them with a design that meets all goals */
     double n_possible; /* all monotone assignments there are */
     bool
         driven; /* a configuration is a driven position: what lies between the positions is not searched */
@@ -47,6 +47,7 @@ mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *resu
 mt_status mt_describe_limit_certificates(mt_problem *p, mt_arena *mem, mt_result *result,
                                          bool *infeasible, mt_err *err);
 
+enum { MT_GAP_SAMPLES_NEAR = 512 };
 /* gap_candidates.c: the assignments worth searching, n rows of n_bands. */
 typedef struct mt_gap_candidates {
     int n;
@@ -54,7 +55,8 @@ typedef struct mt_gap_candidates {
     double *at;   /* n rows of p->n: a design t to start from; NULL: none */
     int n_proven; /* the first ones: a design that has them is known */
     double possible;
-    bool proven;
+    bool proven; /* all assignments that are not listed are proven infeasible */
+    bool all;    /* likewise, but which of those listed can be met is open */
     const char *reason;
     long boxes;
     long evals;
@@ -63,6 +65,9 @@ typedef struct mt_gap_candidates {
 bool mt_gap_assignment(mt_problem *p, const double *t, int *below, double *violation,
                        mt_err *err);
 mt_status mt_gap_candidates_find(mt_problem *p, mt_arena *mem, mt_gap_candidates *out,
+                                 mt_err *err);
+/* The (at most) `most` assignments that samples over the bounds come nearest to. */
+mt_status mt_gap_candidates_near(mt_problem *p, int most, mt_arena *mem, mt_gap_candidates *out,
                                  mt_err *err);
 
 #endif

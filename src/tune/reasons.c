@@ -279,10 +279,8 @@ static void say_rank(mt_sentences *s, const mt_nlp_result *search)
         return;
     }
     if (search->compromise) {
-        mt_say(s,
-               "No design within the bounds meets all goals exactly (%d starts, sampled, not "
-               "proven); this one %s.",
-               search->starts,
+        mt_say(s, "None of the designs that %d start%s found meets all goals; this one %s.",
+               search->starts, search->starts == 1 ? "" : "s",
                s->rec->rank == 1 ? "comes nearest"
                                  : "is a place from which only worse ones are near");
     } else if (s->design->gaps != NULL) {

@@ -171,6 +171,20 @@ typedef struct mt_certificate {
     double reachable_upper_hz;
 } mt_certificate;
 
+/* One number of the question that, moved so far with everything else as it is, lets a design meet all goals. */
+typedef struct mt_relaxation {
+    const char *kind;    /* "bound" | "band" | "goal" */
+    const char *pointer; /* what it belongs to: "/variables/0", "/goals/2" */
+    const char *what;    /* "upper bound of k1", "lower edge of 4P of UH-60 in "installed"" */
+    const char *unit;    /* may be NULL */
+    double from;
+    double to;
+    double change_percent; /* of |from|; NaN where that is 0 */
+    double *
+        design; /* [n_variables] values of the variables of a design that then meets all goals */
+    const char *text; /* as a sentence */
+} mt_relaxation;
+
 /* One study of a trade study, with its best design. */
 typedef struct mt_trade_point {
     double *values; /* [n_vary] */
@@ -227,6 +241,8 @@ typedef struct mt_result {
     const char **variables;
     int n_certificates;
     mt_certificate *certificates;
+    int n_relaxations; /* least first; only where no design meets all goals */
+    mt_relaxation *relaxations;
     mt_trade_result *trade; /* NULL: the study has none */
     int n_published;
     mt_result_published *published;

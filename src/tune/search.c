@@ -16,7 +16,7 @@ static mt_nlp_options options_of(const mt_problem *p)
 {
     mt_nlp_options opt = mt_nlp_options_default();
     opt.seed = p->study->search.seed;
-    opt.starts = p->study->search.starts;
+    opt.starts = p->study->search.starts > 0 ? p->study->search.starts : p->starts;
     opt.max_evals = p->study->search.max_evaluations;
     opt.least_change = p->aims[p->stage].type == MT_OBJECTIVE_CHANGE;
     return opt;

@@ -4,6 +4,7 @@
 #include "tune/describe.h"
 #include "tune/discrete.h"
 #include "tune/gaps.h"
+#include "tune/relax.h"
 #include "tune/search.h"
 #include "tune/trade.h"
 
@@ -28,7 +29,8 @@ typedef struct answer {
     int stage;                   /* of found */
     mt_err why;                  /* no start of the search had a value */
     bool searched;
-    bool infeasible; /* proven */
+    bool infeasible; /* proven, and no compromise is asked for */
+    bool impossible; /* proven that no design meets all goals */
 } answer;
 
 static mt_status describe_solutions(answer *a, mt_err *err)
@@ -135,8 +137,12 @@ static const char *status_text(const answer *a, const mt_recommendation *best)
                               : "The original design does not meet all goals.";
     }
     if (a->infeasible) {
-        return "Infeasible: no design within the bounds meets all goals, which is proven (see "
-               "the certificates).";
+        return mt_arena_printf(mem,
+                               "Infeasible: no design within the bounds meets all goals, which "
+                               "is proven (see the certificates).%s%s",
+                               a->result->n_relaxations > 0 ? " " : "",
+                               a->result->n_relaxations > 0 ? a->result->relaxations[0].text
+                                                            : "");
     }
     if (n == 0) {
         return a->why.code != MT_OK ? "No design that was tried could be evaluated."
@@ -161,9 +167,12 @@ static const char *status_text(const answer *a, const mt_recommendation *best)
                "are cannot be told there (see the goals).";
     }
     return mt_arena_printf(mem,
-                           "Compromise: no design found within the bounds meets all goals; the "
-                           "nearest misses by %.3g %% at most (sampled, not proven).",
-                           best->violation_percent);
+                           "Compromise: no design %swithin the bounds meets all goals%s; the "
+                           "nearest %smisses by %.3g %% at most.",
+                           a->impossible ? "" : "found ",
+                           a->impossible ? ", which is proven (see the certificates)"
+                                         : " (sampled, not proven)",
+                           a->impossible ? "that was found " : "", best->violation_percent);
 }
 
 static mt_status set_status(const answer *a, mt_err *err)
@@ -229,9 +238,35 @@ static mt_status certify(answer *a, mt_err *err)
         return MT_OK;
     }
     MT_TRY(mt_describe_limit_certificates(a->p, &a->mem, a->result, &a->infeasible, err));
+    a->impossible = a->infeasible;
     /* exact targets are answered by the nearest design, also where it is proven that they cannot be met */
     a->infeasible = a->infeasible && a->p->n_eq == 0;
     return MT_OK;
+}
+
+/* What would let a design exist, where none was found. */
+static mt_status relax(answer *a, mt_err *err)
+{
+    mt_moves moves = {0};
+    const bool none = a->infeasible || a->impossible || a->found.compromise;
+    if (!a->searched || !none || a->found.stop == MT_STOP_USER ||
+        mt_study_is_discrete(a->study)) {
+        return MT_OK;
+    }
+    MT_TRY(mt_relax(a->p, a->n_workers, &a->found, &a->mem, &moves, err));
+    a->found.evals += moves.evals;
+    a->found.starts += moves.starts;
+    if (moves.short_of_budget && a->found.stop != MT_STOP_MAX_EVALS) {
+        return mt_describe_warn(a->result, err,
+                                "\"max_evaluations\" left nothing to find out which single "
+                                "change would let a design exist");
+    }
+    if (moves.stopped) {
+        return mt_describe_warn(a->result, err,
+                                "interrupted before it was known which single change would "
+                                "let a design exist");
+    }
+    return mt_describe_relaxations(a->p, &moves, a->result, err);
 }
 
 /* The caller's design as one more start of every search. */
@@ -282,6 +317,7 @@ static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
         }
     }
     MT_TRY(certify(a, err));
+    MT_TRY(relax(a, err));
     MT_TRY(warn(a, err));
     result->run.evaluations = a->found.evals;
     result->run.starts = a->found.starts;

@@ -72,6 +72,14 @@ class Run(CliTest):
         self.assertEqual(len(self.json_of("run", good, bad, code=1)), 2)
         self.assertEqual(self.json_of("run", good)["status"], "solved")
 
+    def test_two_studies_of_one_name_are_refused_before_anything_runs(self):
+        (self.folder / "other").mkdir()
+        first = self.write("studies/two.json", study())
+        second = self.write("other/two.json", study())
+        done = self.expect(2, "run", first, second)
+        self.assertIn("would both be written to", done.stderr)
+        self.assertFalse((self.folder / "results").exists())
+
     def test_verify_prints_the_published_table(self):
         path = self.write("studies/two.json", study(extra=HOLDS))
         text = self.expect(0, "run", path, "--verify").stdout
@@ -147,6 +155,12 @@ class Apply(CliTest):
         done = self.applied("--model", "problems/model.json")
         self.assertIn("modetune: warning: problems/model.json is not what was solved", done.stderr)
         self.assertTrue(done.stdout.endswith("}\n\n"))
+
+    def test_a_result_of_another_version_says_so(self):
+        path = self.folder / "results/two/result.json"
+        text = path.read_text(encoding="utf-8")
+        path.write_text(re.sub('"modetune": "[^"]*"', '"modetune": "0.0.1"', text), encoding="utf-8")
+        self.assertIn("was written by modetune 0.0.1", self.applied().stderr)
 
     def test_the_model_is_found_without_timing_and_from_elsewhere(self):
         (self.folder / "results/two/timing.json").unlink()

@@ -54,7 +54,7 @@ def six_masses(folder):
     changes = [r["change"] for r in result["recommendations"]]
     wanted = [0.4142, 0.6874, 0.7445, 0.8327, 1.0478, 1.2400, 1.4724]
     check(len(changes) == len(wanted) and all(abs(a - b) <= 1e-4 for a, b in zip(changes, wanted)), f"seven designs: {changes}")
-    check(all(c["proven"] for c in result["certificates"]), "all other assignments are proven infeasible")
+    check(all(c["proven"] for c in result["certificates"] if c["kind"] != "optimality"), "all other assignments are proven infeasible")
     none = json.loads((Path(folder) / "six_masses_infeasible" / "result.json").read_text())
     check(none["status"] == "infeasible" and any(c["proven"] for c in none["certificates"]), "within 5 %: proven infeasible")
 

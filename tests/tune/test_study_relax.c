@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where no design exists: the nearest one, and which single number would let one exist. One mass on a spring, m (2 pi f)^2 = k, and the row of two masses, both in closed form. */
+#include "study_fixture.h"
+
+static const double TOL = 1e-5;
+
+#define ONE_MASS                                                                             \
+    "{'format': 'modetune-model/1', 'dimension': 2, 'parameters': {'k': 1000},"              \
+    "'bodies': [{'name': 'm1', 'mass_kg': 1, 'centre': [1, 0]}],"                            \
+    "'joints': [{'name': 'r1', 'type': 'pin-in-slot', 'bodies': ['ground', 'm1'], 'at': "    \
+    "[1, 0], 'axis': [1, 0]}],"                                                              \
+    "'springs': [{'name': 's1', 'type': 'axial', 'bodies': ['ground', 'm1'], 'at': [[0, 0]," \
+    " [1, 0]], 'stiffness_n_per_m': 'k'}]}"
+#define RANGE "'variables': [{'parameter': 'k', 'lower': 800, 'upper': 1200}],"
+
+static double stiffness(double hz)
+{
+    return 4.0 * STUDY_PI * STUDY_PI * hz * hz;
+}
+
+static double frequency(double k)
+{
+    return study_hz(k);
+}
+
+static const mt_relaxation *relaxation(const study_case *c, const char *what)
+{
+    for (int i = 0; c->result != NULL && i < c->result->n_relaxations; i++) {
+        if (strstr(c->result->relaxations[i].what, what) != NULL) {
+            return &c->result->relaxations[i];
+        }
+    }
+    return NULL;
+}
+
+/* A move that is there, to this value, with this stiffness. */
+static void check_move(mt_test *t, const study_case *c, const char *what, double to, double k)
+{
+    const mt_relaxation *const r = relaxation(c, what);
+    if (CHECK(t, r != NULL)) {
+        CHECK_NEAR(t, r->to, to, TOL);
+        CHECK_NEAR(t, r->design[0], k, TOL);
+        CHECK_NEAR(t, r->change_percent, 100.0 * (r->to - r->from) / fabs(r->from), TOL);
+        CHECK(t, strstr(r->text, r->what) != NULL);
+    } else {
+        study_print(c);
+    }
+}
+
+static void one_mass__every_kind_of_move_is_exact(mt_test *t)
+{
+    const double low = frequency(800.0);
+    const double high = frequency(1200.0);
+    static const double HZ = 6.0;
+    static const double LOW_HZ = 4.0;
+    const struct {
+        const char *name;
+        const char *goals;
+        const char *what[3];
+        double to[3];
+        double k[3];
+        int n; /* moves there are */
+    } rows[] = {
+        {"at least",
+         "{'type': 'frequency', 'mode': 1, 'at_least_hz': 6}",              {"at_least_hz", "upper bound of k"},
+         {high, stiffness(HZ)},
+         {1200.0, stiffness(HZ)},
+         2},
+        { "at most",
+         "{'type': 'frequency', 'mode': 1, 'at_most_hz': 4}",               {"at_most_hz", "lower bound of k"},
+         {low, stiffness(LOW_HZ)},
+         {800.0, stiffness(LOW_HZ)},
+         2},
+        {  "target",
+         "{'type': 'frequency', 'mode': 1, 'target_hz': 6}",                {"target_hz", "upper bound of k"},
+         {high, stiffness(HZ)},
+         {1200.0, stiffness(HZ)},
+         2},
+        {    "band",
+         "{'type': 'avoid', 'bands_hz': [[4, 6]]}", {"upper edge", "lower edge", "upper bound of k"},
+         {high, low, stiffness(HZ)},
+         {1200.0, 800.0, stiffness(HZ)},
+         4},
+        {   "limit",
+         "{'type': 'limit', 'expression': '2*k', 'at_most': 1500}", {"at_most of goal /goals/0", "lower bound of k"},
+         {1600.0, 750.0},
+         {800.0, 750.0},
+         2},
+        {  "equals",
+         "{'type': 'limit', 'expression': '2*k', 'equals': 1500}",  {"equals of goal /goals/0", "lower bound of k"},
+         {1600.0, 750.0},
+         {800.0, 750.0},
+         2},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        study_case c;
+        char members[1024];
+        mt_test_row(t, "%s", rows[i].name);
+        (void)snprintf(members, sizeof members, RANGE "'goals': [%s]", rows[i].goals);
+        if (study_solve(t, ONE_MASS, members, &c)) {
+            CHECK(t, c.result->status == MT_RESULT_INFEASIBLE ||
+                         c.result->status == MT_RESULT_COMPROMISE);
+            CHECK_INT(t, c.result->n_relaxations, rows[i].n);
+            for (int m = 0; m < 3 && rows[i].what[m] != NULL; m++) {
+                check_move(t, &c, rows[i].what[m], rows[i].to[m], rows[i].k[m]);
+            }
+            /* the nearest design comes with the proof */
+            CHECK(t, c.result->n_recommendations > 0);
+        }
+        study_free(&c);
+    }
+}
+
+static void solved__has_no_move(mt_test *t)
+{
+    study_case c;
+    if (study_solve(t, ONE_MASS,
+                    RANGE "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 5}]",
+                    &c)) {
+        CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
+        CHECK_INT(t, c.result->n_relaxations, 0);
+    }
+    study_free(&c);
+}
+
+/* Two goals that ask for the opposite: no bound helps, either goal does. */
+static void contradiction__only_a_goal_can_move(mt_test *t)
+{
+    study_case c;
+    if (study_solve(t, ONE_MASS,
+                    RANGE "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 5.2},"
+                          "{'type': 'frequency', 'mode': 1, 'at_most_hz': 4.8}]",
+                    &c)) {
+        CHECK_INT(t, c.result->status, MT_RESULT_INFEASIBLE);
+        CHECK_INT(t, c.result->n_relaxations, 2);
+        check_move(t, &c, "at_least_hz of goal /goals/0", 4.8, stiffness(4.8));
+        check_move(t, &c, "at_most_hz of goal /goals/1", 5.2, stiffness(5.2));
+        CHECK(t, strstr(c.result->status_text, c.result->relaxations[0].text) != NULL);
+    }
+    study_free(&c);
+}
+
+/* Both stiffnesses raise it. */
+static double f1(double k1, double k2)
+{
+    return study_hz(study_two_lambda(k1, k2, 1.0, -1));
+}
+
+/* Random boxes and limits of mode 1, which rises with both stiffnesses: the moves follow by bisection of the closed form. */
+static void two_masses__moves_of_random_studies_are_least(mt_test *t)
+{
+    enum { STUDIES = 60 };
+    unsigned long state = 12345;
+    for (int i = 0; i < STUDIES; i++) {
+        double u[4];
+        char members[1024];
+        study_case c;
+        for (int k = 0; k < 4; k++) {
+            state = (state * 1103515245UL + 12345UL) & 0x7fffffffUL;
+            u[k] = (double)state / (double)0x7fffffffUL;
+        }
+        const double top[2] = {500.0 * (1.0 + u[0]), 500.0 * (1.0 + u[1])};
+        const double most = f1(top[0], top[1]);
+        const double wanted = most * (1.01 + (0.3 * u[2]));
+        mt_test_row(t, "study %d", i);
+        (void)snprintf(members, sizeof members,
+                       "'variables': [{'parameter': 'k1', 'lower': 100, 'upper': %.17g},"
+                       "{'parameter': 'k2', 'lower': 100, 'upper': %.17g}],"
+                       "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': %.17g}]",
+                       top[0], top[1], wanted);
+        if (study_solve(t, STUDY_TWO_MASSES("'k1': 300, 'k2': 300, 'm': 1", ""), members, &c)) {
+            const mt_relaxation *const goal = relaxation(&c, "at_least_hz");
+            CHECK_INT(t, c.result->status, MT_RESULT_INFEASIBLE);
+            CHECK(t, goal != NULL && fabs(goal->to - most) <= TOL * most);
+            for (int k = 0; k < 2; k++) {
+                double low = top[k];
+                double high = 10.0 * top[k];
+                const bool can = f1(k == 0 ? high : top[0], k == 0 ? top[1] : high) >= wanted;
+                for (int b = 0; b < 80; b++) {
+                    const double middle = 0.5 * (low + high);
+                    const bool enough =
+                        f1(k == 0 ? middle : top[0], k == 0 ? top[1] : middle) >= wanted;
+                    *(enough ? &high : &low) = middle;
+                }
+                const mt_relaxation *const r =
+                    relaxation(&c, k == 0 ? "upper bound of k1" : "upper bound of k2");
+                CHECK_INT(t, r != NULL, can);
+                CHECK(t, r == NULL || fabs(r->to - high) <= TOL * high);
+            }
+        }
+        study_free(&c);
+    }
+}
+
+MT_TEST_MAIN(MT_TEST(one_mass__every_kind_of_move_is_exact), MT_TEST(solved__has_no_move),
+             MT_TEST(contradiction__only_a_goal_can_move),
+             MT_TEST(two_masses__moves_of_random_studies_are_least))
