@@ -26,6 +26,8 @@ static const double STEP_H = 1e-6;
 static const double STEP_MOST = 0.3;
 /* A shorter one is rounding of t. */
 static const double STEP_LEAST = 16 * DBL_EPSILON;
+/* A variable this near to its bound, relative to the width, is on it. */
+static const double ON_BOUND = 1e-8;
 /* KKT residual and violation that cannot be improved in double precision. */
 static const double KKT_DONE = 1e-13;
 static const double VIOLATION_DONE = 1e-6;
@@ -209,7 +211,8 @@ static bool normal_step(polish *w)
 }
 
 /* Size of the step (largest entry), after variables at an active bound were put on it, and the whole
- * shortened to STEP_MOST and to the first bound met. */
+ * shortened to STEP_MOST and to the first bound met. A variable that stands on a bound and would cross it stays: its multiplier is
+ * about zero, and a step shortened to nothing would end the iteration. */
 static double take_step(polish *w)
 {
     const mt_nlp *const q = w->e->nlp;
@@ -220,16 +223,30 @@ static double take_step(polish *w)
     double part = size > STEP_MOST ? STEP_MOST / size : 1;
     for (int j = 0; j < w->e->n; j++) {
         const double room = (w->step[j] < 0 ? q->lower[j] : q->upper[j]) - w->cur->t[j];
-        if (w->a.side[j] == 0 && fabs(w->step[j]) * part > fabs(room)) {
+        const double near = ON_BOUND * (q->upper[j] - q->lower[j]);
+        if (w->a.side[j] == 0 && fabs(w->step[j]) * part > fabs(room) && fabs(room) > near) {
             part = fabs(room) / fabs(w->step[j]);
         }
     }
     for (int j = 0; j < w->e->n; j++) {
         w->t[j] = w->a.side[j] < 0   ? q->lower[j]
                   : w->a.side[j] > 0 ? q->upper[j]
-                                     : w->cur->t[j] + part * w->step[j];
+                                     : mt_nlp_clamp(w->e, j, w->cur->t[j] + part * w->step[j]);
     }
     return size;
+}
+
+/* The objective may rise where p profits from the tolerances: by the multipliers times them. */
+static double rise_allowed(const polish *w, const mt_nlp_point *p)
+{
+    const mt_nlp *const q = w->e->nlp;
+    double rise = F_ROUNDING * fabs(p->f);
+    for (int i = 0; i < w->a.k; i++) {
+        const int row = w->a.row[i];
+        const double tol = row < q->n_eq ? q->eq_tol[row] : q->in_tol[row - q->n_eq];
+        rise += 2 * fabs(w->a.lambda[i]) * fmax(tol, fabs(w->a.c[i]));
+    }
+    return rise;
 }
 
 /* Keep cur as the best where it is: feasible (or the aim has no constraints), not above the limit,
@@ -247,7 +264,11 @@ static void keep(polish *w)
     }
     const double mine = constrained ? fmax(p->kkt, p->violation * STATIONARY) : p->kkt;
     const double theirs = constrained ? fmax(b->kkt, b->violation * STATIONARY) : b->kkt;
-    if (mine < theirs || (constrained && mt_nlp_feasible(p) && !mt_nlp_feasible(b))) {
+    const bool first = constrained && mt_nlp_feasible(p) && !mt_nlp_feasible(b);
+    if (first) { /* from outside, the demands cost what they cost: the limit counts from here */
+        w->limit = fmax(w->limit, p->f + rise_allowed(w, p));
+    }
+    if (mine < theirs || first) {
         mt_nlp_point_copy(w->e, w->best, p);
     }
 }
@@ -340,19 +361,6 @@ static void iterate(polish *w, double *saddle)
         w->trial->start = w->cur->start;
         mt_nlp_point_swap(&w->cur, &w->trial);
     }
-}
-
-/* The objective may rise where p profits from the tolerances: by the multipliers times them. */
-static double rise_allowed(const polish *w, const mt_nlp_point *p)
-{
-    const mt_nlp *const q = w->e->nlp;
-    double rise = F_ROUNDING * fabs(p->f);
-    for (int i = 0; i < w->a.k; i++) {
-        const int row = w->a.row[i];
-        const double tol = row < q->n_eq ? q->eq_tol[row] : q->in_tol[row - q->n_eq];
-        rise += 2 * fabs(w->a.lambda[i]) * fmax(tol, fabs(w->a.c[i]));
-    }
-    return rise;
 }
 
 void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p, double *saddle)

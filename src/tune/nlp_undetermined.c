@@ -4,8 +4,13 @@
  * solution, rows divided by tolerances, columns multiplied by the widths of the bounds, so that an
  * entry is the change, in tolerances, of crossing the bounds: first single variables (an engineer
  * reads those), then the small right singular vectors of the remaining columns. A Jacobian is a statement
- * about one point, so every candidate is confirmed by evaluating across the bounds, from the origin and from the
- * solution: a double root, whose Jacobian is singular too, fails there.
+ * about one point, so every candidate d is confirmed by evaluating across the bounds: a double root, whose Jacobian is
+ * singular too, fails there. The longest way across the box along d is
+ *
+ *     L = min_j (upper_j - lower_j) / |d_j|,
+ *
+ * and through a corner there may be none at all: nothing would change because nothing moves. So d is followed from points with
+ * room, at least L/4 either way: from the solution, the origin and the middle, each moved that far inside.
  */
 #include "tune/nlp_priv.h"
 
@@ -26,8 +31,14 @@ static const double NEW_PART = 0.1;
 static const double ENTRY_NOISE = 1e-9;
 /* Marks from one end of the crossing to the other, ends included. */
 enum { MARKS = 3 };
+/* Points to cross from: the solution, the origin, the middle of the bounds. */
+enum { BASES = 3 };
+/* Room either way that a crossing needs, in units of the longest way across the box. */
+static const double ROOM = 0.25;
 /* Violation, in tolerances, that needs no correction. */
 static const double RESTORED = 1e-3;
+/* KKT residuals below this belong to a local solution (as in the search). */
+static const double STATIONARY = 1e-6;
 
 typedef struct crossing {
     mt_nlp_engine *e;
@@ -37,6 +48,7 @@ typedef struct crossing {
     mt_nlp_point *from;
     mt_nlp_point *at;
     double *t;
+    double *base;
 } crossing;
 
 static double row_tol(const crossing *x, int i)
@@ -88,21 +100,45 @@ static void weigh_objective(crossing *x, const mt_nlp_point *p)
     x->m = q->n_res + q->n_eq + q->n_in + x->use_f;
 }
 
-/* Greatest change, in tolerances, along from + s d over all s within the bounds; infinity where a
- * point has no value. */
-static double effect(crossing *x, const double *d)
+/* The s for which from + s d is within the bounds: s[0] <= 0 <= s[1]. */
+static void range_along(const mt_nlp_engine *e, const double *from, const double *d,
+                        double s[2])
 {
-    mt_nlp_engine *const e = x->e;
-    double s[2] = {-HUGE_VAL, HUGE_VAL};
+    s[0] = -HUGE_VAL;
+    s[1] = HUGE_VAL;
     for (int j = 0; j < e->n; j++) {
         if (fabs(d[j]) <= ENTRY_NOISE) {
             continue;
         }
-        const double a = (e->nlp->lower[j] - x->from->t[j]) / d[j];
-        const double b = (e->nlp->upper[j] - x->from->t[j]) / d[j];
+        const double a = (e->nlp->lower[j] - from[j]) / d[j];
+        const double b = (e->nlp->upper[j] - from[j]) / d[j];
         s[0] = fmax(s[0], fmin(a, b));
         s[1] = fmin(s[1], fmax(a, b));
     }
+}
+
+/* t := base moved inside, so that d has its room either way. */
+static void make_room(const mt_nlp_engine *e, const double *base, const double *d, double *t)
+{
+    double longest = HUGE_VAL;
+    for (int j = 0; j < e->n; j++) {
+        if (fabs(d[j]) > ENTRY_NOISE) {
+            longest = fmin(longest, (e->nlp->upper[j] - e->nlp->lower[j]) / fabs(d[j]));
+        }
+    }
+    for (int j = 0; j < e->n; j++) {
+        const double room = fabs(d[j]) > ENTRY_NOISE ? ROOM * longest * fabs(d[j]) : 0;
+        t[j] = fmin(fmax(base[j], e->nlp->lower[j] + room), e->nlp->upper[j] - room);
+    }
+}
+
+/* Greatest change, in tolerances, along x->from + s d over all s within the bounds; infinity where a
+ * point has no value. */
+static double effect(crossing *x, const double *d)
+{
+    mt_nlp_engine *const e = x->e;
+    double s[2];
+    range_along(e, x->from->t, d, s);
     double most = 0;
     for (int k = 0; k < MARKS; k++) {
         const double sk = s[0] + (s[1] - s[0]) * k / (MARKS - 1);
@@ -148,27 +184,36 @@ static bool make_new(const mt_nlp_engine *e, const mt_nlp_result *out, double *d
     return true;
 }
 
-/* Try the direction in column n_undetermined of out: confirmed at the solution and at the origin. */
-static void confirm(crossing *x, const mt_nlp_point *solution, const mt_nlp_point *origin,
-                    mt_nlp_result *out)
+/* Try the direction in column n_undetermined of out: confirmed from all bases. */
+static void confirm(crossing *x, const mt_nlp_point *solution, mt_nlp_result *out)
 {
-    double *const d = out->undetermined + (ptrdiff_t)out->n_undetermined * x->e->n;
-    if (!make_new(x->e, out, d)) {
+    mt_nlp_engine *const e = x->e;
+    double *const d = out->undetermined + (ptrdiff_t)out->n_undetermined * e->n;
+    if (!make_new(e, out, d)) {
         return;
     }
     double most = 0;
-    for (int k = 0; k < 2 && most < 1; k++) {
-        mt_nlp_point_copy(x->e, x->from, k == 0 ? solution : origin);
-        most = fmax(most, effect(x, d));
+    for (int k = 0; k < BASES && most < 1; k++) {
+        for (int j = 0; j < e->n; j++) {
+            x->base[j] = k == 0   ? solution->t[j]
+                         : k == 1 ? e->origin[j]
+                                  : 0.5 * (e->nlp->lower[j] + e->nlp->upper[j]);
+        }
+        make_room(e, x->base, d, x->t);
+        if (mt_nlp_evaluate(e, x->t, false, x->from)) {
+            most = fmax(most, effect(x, d));
+        } else if (k == 0) { /* elsewhere the problem may have no value: the solution alone */
+            most = HUGE_VAL;
+        }
     }
-    if (most < 1) {
+    if (most < 1 && !e->ended) {
         out->undetermined_effect[out->n_undetermined++] = most;
     }
 }
 
 /* Scaled Jacobian of the columns that are not yet undetermined; single variables are tried here. */
-static int single_variables(crossing *x, const mt_nlp_point *p, const mt_nlp_point *origin,
-                            mt_nlp_result *out, double *A, int *column)
+static int single_variables(crossing *x, const mt_nlp_point *p, mt_nlp_result *out, double *A,
+                            int *column)
 {
     const mt_nlp *const q = x->e->nlp;
     const int rows = x->m > x->e->n ? x->m : x->e->n;
@@ -189,7 +234,7 @@ static int single_variables(crossing *x, const mt_nlp_point *p, const mt_nlp_poi
             double *const d = out->undetermined + (ptrdiff_t)before * x->e->n;
             memset(d, 0, (size_t)x->e->n * sizeof *d);
             d[j] = 1;
-            confirm(x, p, origin, out);
+            confirm(x, p, out);
         }
         if (out->n_undetermined == before) {
             column[k++] = j;
@@ -199,8 +244,8 @@ static int single_variables(crossing *x, const mt_nlp_point *p, const mt_nlp_poi
 }
 
 /* Small right singular vectors of A (columns of `column`), weakest first. */
-static mt_status combinations(crossing *x, const mt_nlp_point *p, const mt_nlp_point *origin,
-                              mt_nlp_result *out, double *A, const int *column, int k)
+static mt_status combinations(crossing *x, const mt_nlp_point *p, mt_nlp_result *out, double *A,
+                              const int *column, int k)
 {
     mt_nlp_engine *const e = x->e;
     const int rows = x->m > e->n ? x->m : e->n;
@@ -221,7 +266,7 @@ static mt_status combinations(crossing *x, const mt_nlp_point *p, const mt_nlp_p
             const int j = column[i];
             d[j] = vt[c + (ptrdiff_t)i * k] * (e->nlp->upper[j] - e->nlp->lower[j]);
         }
-        confirm(x, p, origin, out);
+        confirm(x, p, out);
     }
     return MT_OK;
 }
@@ -234,20 +279,16 @@ static bool find(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_result *out)
     const int rows = x.m > e->n ? x.m : e->n;
     double *const A = mt_arena_f64(mem, (size_t)rows, (size_t)e->n);
     int *const column = mt_arena_int(mem, (size_t)e->n);
-    mt_nlp_point *const origin = mt_nlp_point_new(e, mem);
     x.from = mt_nlp_point_new(e, mem);
     x.at = mt_nlp_point_new(e, mem);
     x.t = mt_arena_f64(mem, (size_t)e->n, 1);
-    if (!A || !column || !origin || !x.from || !x.at || !x.t) {
+    x.base = mt_arena_f64(mem, (size_t)e->n, 1);
+    if (!A || !column || !x.from || !x.at || !x.t || !x.base) {
         mt_nlp_end(e, mt_fail_memory(e->err));
         return false;
     }
-    if (!mt_nlp_evaluate(e, e->origin, true, origin)) {
-        mt_nlp_point_copy(e, origin,
-                          p); /* the original design has no value: the solution alone */
-    }
-    const int k = single_variables(&x, p, origin, out, A, column);
-    const mt_status rc = k > 0 ? combinations(&x, p, origin, out, A, column, k) : MT_OK;
+    const int k = single_variables(&x, p, out, A, column);
+    const mt_status rc = k > 0 ? combinations(&x, p, out, A, column, k) : MT_OK;
     if (rc != MT_OK) {
         mt_nlp_end(e, rc);
     }
@@ -284,19 +325,24 @@ static bool is_single(const mt_nlp_engine *e, const mt_nlp_result *u, int j)
     return false;
 }
 
-/* Is a point as good as before: still within the tolerances, or, for a compromise, no farther from the demands than the tolerances
- * together? That much the undetermined directions may do by what they are. */
+/* Is a point as good as before? Nothing may be paid for an undetermined direction: not the demands, not the objective beyond
+ * what counts as unchanged, not that the point is a local solution. A compromise may be farther from the demands by the tolerances
+ * together: that much the directions may do by what they are. */
 static bool as_good(const mt_nlp_engine *e, const mt_nlp_point *after,
                     const mt_nlp_point *before)
 {
     const mt_nlp *const q = e->nlp;
-    const double tol =
-        hypot(mt_norm2(q->n_eq, q->eq_tol), q->n_in > 0 ? mt_norm2(q->n_in, q->in_tol) : 0.0);
-    return mt_nlp_feasible(before) ? mt_nlp_feasible(after)
-                                   : sqrt(after->squares) <= sqrt(before->squares) + tol;
+    if (!mt_nlp_feasible(before)) {
+        const double tol = hypot(mt_norm2(q->n_eq, q->eq_tol), mt_norm2(q->n_in, q->in_tol));
+        return sqrt(after->squares) <= sqrt(before->squares) + tol;
+    }
+    const double f_most = before->f + F_TOL_REL * fabs(before->f);
+    const bool stationary = after->kkt <= fmax(before->kkt, STATIONARY);
+    return mt_nlp_feasible(after) && after->f <= f_most && stationary;
 }
 
-/* t := p pulled back to the origin along the directions; single variables exactly. True: it differs. */
+/* t := p pulled back to the origin along the directions, as far as the bounds let it; single variables exactly. True: it
+ * differs. */
 static bool pulled(const mt_nlp_engine *e, const mt_nlp_result *u, const mt_nlp_point *p,
                    double *off, double *t)
 {
@@ -306,7 +352,9 @@ static bool pulled(const mt_nlp_engine *e, const mt_nlp_result *u, const mt_nlp_
     }
     for (int k = 0; k < u->n_undetermined; k++) {
         const double *const uk = u->undetermined + (ptrdiff_t)k * e->n;
-        mt_axpy(e->n, -mt_dot(e->n, uk, off), uk, t);
+        double s[2];
+        range_along(e, t, uk, s);
+        mt_axpy(e->n, fmin(fmax(-mt_dot(e->n, uk, off), fmin(s[0], 0)), fmax(s[1], 0)), uk, t);
     }
     bool moves = false;
     for (int j = 0; j < e->n; j++) {
@@ -316,10 +364,12 @@ static bool pulled(const mt_nlp_engine *e, const mt_nlp_result *u, const mt_nlp_
     return moves;
 }
 
-/* The effects, each below a tolerance, may add up: meet the equalities exactly again, the single
+/* The effects, each below a tolerance, may add up: meet the demands exactly again, at least objective, the single
  * variables standing still. */
-static void restore(mt_nlp_engine *e, const mt_nlp_result *u, mt_nlp_point *p)
+static void restore(mt_nlp_engine *e, const mt_nlp_result *u, bool feasible, mt_nlp_point *p)
 {
+    const bool isolated =
+        feasible && !(p->kkt < HUGE_VAL); /* a root: no freedom to minimise in */
     bool *const held = mt_arena_alloc(&e->scratch, (size_t)e->n, sizeof *held);
     if (held == NULL) {
         mt_nlp_end(e, mt_fail_memory(e->err));
@@ -329,7 +379,13 @@ static void restore(mt_nlp_engine *e, const mt_nlp_result *u, mt_nlp_point *p)
     for (int j = 0; j < e->n; j++) {
         e->held[j] = held[j] || is_single(e, u, j);
     }
-    mt_nlp_least_squares(e, MT_NLP_SQUARES, p);
+    if (p->violation > RESTORED) {
+        mt_nlp_least_squares(e, MT_NLP_SQUARES, p);
+    }
+    if (!isolated && mt_nlp_feasible(p) == feasible) {
+        const mt_nlp_aim aim = feasible ? MT_NLP_OBJECTIVE : MT_NLP_SQUARES;
+        mt_nlp_polish(e, aim, p, NULL);
+    }
     memcpy(e->held, held, (size_t)e->n * sizeof *held);
 }
 
@@ -342,10 +398,8 @@ void mt_nlp_pull_back(mt_nlp_engine *e, const mt_nlp_result *undetermined, mt_nl
     if (to != NULL && t != NULL && off != NULL && pulled(e, undetermined, p, off, t) &&
         mt_nlp_evaluate(e, t, true, to)) {
         to->start = p->start;
-        if (to->violation > RESTORED) {
-            restore(e, undetermined, to);
-        }
         to->kkt = p->kkt;
+        restore(e, undetermined, mt_nlp_feasible(p), to);
         if (as_good(e, to, p)) {
             mt_nlp_point_copy(e, p, to);
         }

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Two masses, two springs, one target; the original design in each corner of the bounds. No direction is free of influence. */
+#include "study_fixture.h"
+
+enum { CORNERS = 8, STEPS = 40, ZOOMS = 8, TEXT = 1024 };
+static const double LOWER[3] = {1.0, 0.6, 0.5}; /* k1, k2, m */
+static const double UPPER[3] = {4.0, 2.4, 2.0};
+
+/* Least change from `original` with the lower mode at lambda: for any k1, k2 the mass follows, lambda being 1/m of that at m = 1. */
+static double least_change(const double *original, double lambda)
+{
+    double low[2] = {log(LOWER[0]), log(LOWER[1])};
+    double high[2] = {log(UPPER[0]), log(UPPER[1])};
+    double best = HUGE_VAL;
+    for (int zoom = 0; zoom < ZOOMS; zoom++) {
+        double at[2] = {low[0], low[1]};
+        for (int i = 0; i <= STEPS; i++) {
+            for (int j = 0; j <= STEPS; j++) {
+                const double t[2] = {low[0] + ((high[0] - low[0]) * i / STEPS),
+                                     low[1] + ((high[1] - low[1]) * j / STEPS)};
+                const double m = study_two_lambda(exp(t[0]), exp(t[1]), 1.0, -1) / lambda;
+                const double d[3] = {t[0] - log(original[0]), t[1] - log(original[1]),
+                                     log(m / original[2])};
+                const double change = sqrt((d[0] * d[0]) + (d[1] * d[1]) + (d[2] * d[2]));
+                if (m >= LOWER[2] && m <= UPPER[2] && change < best) {
+                    best = change;
+                    at[0] = t[0];
+                    at[1] = t[1];
+                }
+            }
+        }
+        const double reach = (high[0] - low[0]) / 8.0;
+        for (int k = 0; k < 2; k++) {
+            low[k] = fmax(log(LOWER[k]), at[k] - reach);
+            high[k] = fmin(log(UPPER[k]), at[k] + reach);
+        }
+    }
+    return best;
+}
+
+static void study_undetermined__an_original_in_a_corner_gets_the_least_change(mt_test *t)
+{
+    static const double LAMBDA = 0.45;
+    for (int corner = 0; corner < CORNERS; corner++) {
+        double x[3];
+        mt_text model = {0};
+        char members[TEXT];
+        study_case c = {.rc = MT_OK};
+        for (int i = 0; i < 3; i++) {
+            x[i] = (corner >> i) % 2 == 0 ? LOWER[i] : UPPER[i];
+        }
+        mt_text_addf(&model,
+                     "{'format': 'modetune-model/1', 'dimension': 2, 'parameters': "
+                     "{'k1': %.17g, 'k2': %.17g, 'm': %.17g}," STUDY_TWO_MASSES_ROW "}",
+                     x[0], x[1], x[2]);
+        (void)snprintf(members, sizeof members,
+                       "'variables': [{'parameter': 'k1', 'lower': %.17g, 'upper': %.17g},"
+                       "{'parameter': 'k2', 'lower': %.17g, 'upper': %.17g},"
+                       "{'parameter': 'm', 'lower': %.17g, 'upper': %.17g}],"
+                       "'goals': [{'type': 'frequency', 'mode': 1, 'target_hz': %.17g}]",
+                       LOWER[0], UPPER[0], LOWER[1], UPPER[1], LOWER[2], UPPER[2],
+                       study_hz(LAMBDA));
+        mt_test_row(t, "corner %d", corner);
+        if (CHECK(t, !model.failed) && study_solve(t, model.s, members, &c)) {
+            CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
+            CHECK_INT(t, c.result->n_undetermined, 0);
+            CHECK_NEAR(t, c.result->recommendations[0].change, least_change(x, LAMBDA), 1e-5);
+        }
+        study_free(&c);
+        mt_text_free(&model);
+    }
+}
+
+MT_TEST_MAIN(MT_TEST(study_undetermined__an_original_in_a_corner_gets_the_least_change))
