@@ -300,7 +300,6 @@ mt_status mt_build_bodies(mt_builder *b)
             .point = { -1, -1 },
             .dir = { -1, -1,  -1},
             .length = MT_NO_NODE,
-            .gyration2 = MT_NO_NODE,
             .item = item
         };
         mt_build_inertia(b, &def);

@@ -59,10 +59,28 @@ static mt_node rectangle_torsion(mt_builder *b, mt_node w, mt_node h)
     return mt_program_mul(p, mt_program_mul(p, a, power(b, c, 3)), factor);
 }
 
-static section_nodes section_of(mt_builder *b, const mt_section *s)
+/*
+ * d^2 - i^2 and d^4 - i^4 by their factors (d - i)(d + i)(d^2 + i^2): nothing cancels in a thin wall, and bounds over intervals stay positive. Where
+ * i is written as d - x, d - i is x.
+ */
+static void ring(mt_builder *b, mt_node d, mt_node inner, section_nodes *out)
 {
     mt_program *const p = &b->sys->program;
     const double pi = 3.14159265358979323846;
+    const mt_program_node *const n = inner == MT_NO_NODE ? NULL : &p->nodes[inner];
+    const bool by_wall = n != NULL && n->op == MT_OP_SUB && n->a == d;
+    const mt_node walls = by_wall ? n->b : mt_program_sub(p, d, inner);
+    const mt_node ring2 = mt_program_mul(p, walls, mt_program_add(p, d, inner));
+    const mt_node squares = mt_program_add(p, power(b, d, 2), power(b, inner, 2));
+    out->area = times(b, pi / 4.0, ring2);
+    out->i3 = times(b, pi / 64.0, mt_program_mul(p, ring2, squares));
+    out->i2 = out->i3;
+    out->torsion = times(b, 2.0, out->i3);
+}
+
+static section_nodes section_of(mt_builder *b, const mt_section *s)
+{
+    mt_program *const p = &b->sys->program;
     section_nodes out = {MT_NO_NODE, MT_NO_NODE, MT_NO_NODE, MT_NO_NODE};
     switch (s->shape) {
     case MT_SECTION_NONE:
@@ -81,10 +99,7 @@ static section_nodes section_of(mt_builder *b, const mt_section *s)
         const mt_node d = mt_build_num(b, s->diameter);
         const mt_node inner =
             s->shape == MT_SECTION_TUBE ? mt_build_num(b, s->inner_diameter) : b->zero;
-        out.area = times(b, pi / 4.0, mt_program_sub(p, power(b, d, 2), power(b, inner, 2)));
-        out.i3 = times(b, pi / 64.0, mt_program_sub(p, power(b, d, 4), power(b, inner, 4)));
-        out.i2 = out.i3;
-        out.torsion = times(b, 2.0, out.i3);
+        ring(b, d, inner, &out);
         break;
     }
     case MT_SECTION_GENERAL:
@@ -143,7 +158,16 @@ static void point_along(mt_builder *b, const link_geometry *g, mt_node s, mt_nod
     }
 }
 
-/* Mass of the whole link: given, or density x section x span. */
+/* Density x quantity of the section x span. */
+static mt_node by_density(mt_builder *b, const mt_link *link, const link_geometry *g,
+                          mt_node quantity)
+{
+    mt_program *const p = &b->sys->program;
+    return mt_program_mul(p, mt_program_mul(p, mt_build_num(b, link->density), quantity),
+                          g->span);
+}
+
+/* Mass of the whole link: given, or by its density. */
 static mt_node link_mass(mt_builder *b, const mt_link *link, const link_geometry *g,
                          const section_nodes *s)
 {
@@ -151,11 +175,21 @@ static mt_node link_mass(mt_builder *b, const mt_link *link, const link_geometry
         return mt_build_num(b, link->mass);
     }
     if (link->density != MT_ABSENT && s->area != MT_NO_NODE) {
-        mt_program *const p = &b->sys->program;
-        return mt_program_mul(p, mt_program_mul(p, mt_build_num(b, link->density), s->area),
-                              g->span);
+        return by_density(b, link, g, s->area);
     }
     return b->zero;
+}
+
+/* Polar moment of inertia of the whole beam: mass x polar second moment / area. */
+static mt_node link_polar(mt_builder *b, const mt_link *link, const link_geometry *g,
+                          const section_nodes *s, mt_node mass)
+{
+    mt_program *const p = &b->sys->program;
+    const mt_node polar = mt_program_add(p, s->i2, s->i3);
+    if (link->mass != MT_ABSENT || link->density == MT_ABSENT) {
+        return mt_program_mul(p, mass, mt_program_div(p, polar, s->area));
+    }
+    return by_density(b, link, g, polar);
 }
 
 static mt_inertia_def inertia_default(mt_inertia_kind kind, int body_a, int body_b,
@@ -168,7 +202,6 @@ static mt_inertia_def inertia_default(mt_inertia_kind kind, int body_a, int body
         .point = { -1,     -1     },
         .dir = { -1,     -1,          -1},
         .length = MT_NO_NODE,
-        .gyration2 = MT_NO_NODE,
         .item = item
     };
     return def;
@@ -340,8 +373,10 @@ static void beam_gravity(mt_builder *b, const link_geometry *g, const int elemen
     }
 }
 
+/* inertia: mass and polar moment of inertia of the element. */
 static void build_beam_element(mt_builder *b, const mt_link *link, const link_geometry *g,
-                               const section_nodes *s, const int element[3], mt_node mass)
+                               const section_nodes *s, const int element[3],
+                               const mt_node inertia[2])
 {
     mt_program *const p = &b->sys->program;
     const mt_node length =
@@ -353,12 +388,13 @@ static void build_beam_element(mt_builder *b, const mt_link *link, const link_ge
                 mt_program_div(p, mt_program_mul(p, young, s->area), length));
     beam_bending(b, link, g, element, 2,
                  (const mt_node[2]){mt_program_mul(p, young, s->i3), length});
-    mt_inertia_def inertia =
-        inertia_default(MT_INERTIA_BEAM, element[1], element[2], mass, b->sys->n_items - 1);
-    inertia.length = length;
+    mt_inertia_def def = inertia_default(MT_INERTIA_BEAM, element[1], element[2], inertia[0],
+                                         b->sys->n_items - 1);
+    def.length = length;
     for (int i = 0; i < 3; i++) {
-        inertia.dir[i] = g->triad[i];
+        def.dir[i] = g->triad[i];
     }
+    mt_build_inertia(b, &def);
     if (b->sys->dimension == 3) {
         beam_bending(b, link, g, element, 1,
                      (const mt_node[2]){mt_program_mul(p, young, s->i2), length});
@@ -370,10 +406,12 @@ static void build_beam_element(mt_builder *b, const mt_link *link, const link_ge
         const mt_node gj = mt_program_mul(p, mt_build_num_or(b, link->shear_modulus, b->zero),
                                           s->torsion == MT_NO_NODE ? b->zero : s->torsion);
         beam_spring(b, link, element[0], &twist, mt_program_div(p, gj, length));
-        inertia.gyration2 = mt_program_div(p, mt_program_add(p, s->i2, s->i3), s->area);
+        def.kind = MT_INERTIA_BEAM_TWIST;
+        def.coefficient = inertia[1];
+        def.length = MT_NO_NODE;
+        mt_build_inertia(b, &def);
     }
-    mt_build_inertia(b, &inertia);
-    beam_gravity(b, g, element, times(b, 0.5, mass), length);
+    beam_gravity(b, g, element, times(b, 0.5, inertia[0]), length);
 }
 
 static mt_status build_beam(mt_builder *b, const mt_link *link, const link_geometry *g,
@@ -388,6 +426,10 @@ static mt_status build_beam(mt_builder *b, const mt_link *link, const link_geome
     }
     const mt_node total = link_mass(b, link, g, s);
     const mt_node count = mt_program_const(p, (double)link->elements);
+    const mt_node inertia[2] = {
+        mt_program_div(p, total, count),
+        b->sys->dimension == 2 ? b->zero
+                               : mt_program_div(p, link_polar(b, link, g, s, total), count)};
     (void)mt_build_item(b, link->name.s, total);
     for (int i = 0; i <= link->elements; i++) {
         mt_node at[3];
@@ -397,8 +439,7 @@ static mt_status build_beam(mt_builder *b, const mt_link *link, const link_geome
         const int body =
             mt_build_body(b, mt_build_name(b, "%s.node%d", link->name.s, i), at, false);
         if (i > 0) {
-            build_beam_element(b, link, g, s, (const int[3]){i, body - 1, body},
-                               mt_program_div(p, total, count));
+            build_beam_element(b, link, g, s, (const int[3]){i, body - 1, body}, inertia);
         }
     }
     return MT_OK;

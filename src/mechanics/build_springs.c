@@ -144,7 +144,6 @@ static mt_status build_bar(mt_builder *b, const mt_spring *spring)
         .point = { e.arm[0],  e.arm[1]        },
         .dir = { -1,        -1,                -1},
         .length = MT_NO_NODE,
-        .gyration2 = MT_NO_NODE,
         .item = item
     };
     mt_build_inertia(b, &inertia);

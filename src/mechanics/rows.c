@@ -21,8 +21,9 @@ static int inertia_rows(const mt_system *sys, const mt_inertia_def *def)
     case MT_INERTIA_BAR:
         return BAR_ROWS * sys->dimension;
     case MT_INERTIA_BEAM:
-        return sys->dimension == 2 ? BAR_ROWS + BENDING_ROWS
-                                   : (2 * BAR_ROWS) + (2 * BENDING_ROWS);
+        return BAR_ROWS + ((sys->dimension - 1) * BENDING_ROWS);
+    case MT_INERTIA_BEAM_TWIST:
+        return BAR_ROWS;
     }
     return 0;
 }
@@ -192,14 +193,19 @@ static void beam_rows(const mt_data *d, const mt_inertia_def *def, const mt_pose
     add_point(rows + MT_LOCAL, 1, zero, e[0], 0.5);
     bending_rows(e[1], e[2], 1.0, length, rows + ((ptrdiff_t)BAR_ROWS * MT_LOCAL));
     if (d->sys->dimension == 3) {
-        const mt_cx gyration = cx_sqrt(mt_data_scalar(d, def->gyration2, 0.0));
-        mt_cx *const twist = rows + ((ptrdiff_t)(BAR_ROWS + (2 * BENDING_ROWS)) * MT_LOCAL);
         bending_rows(e[2], e[1], -1.0, length,
                      rows + ((ptrdiff_t)(BAR_ROWS + BENDING_ROWS) * MT_LOCAL));
-        add_turn(twist, 0, e[0], ONE_THIRD_ROOT * gyration);
-        add_turn(twist, 1, e[0], 0.5 * ONE_THIRD_ROOT * gyration);
-        add_turn(twist + MT_LOCAL, 1, e[0], 0.5 * gyration);
     }
+}
+
+static void twist_rows(const mt_data *d, const mt_inertia_def *def, const mt_pose *poses,
+                       mt_cx *rows)
+{
+    mt_cx e[3];
+    cx_rotate3(mt_pose_of(poses, def->body[0])->r, d->vec[def->dir[0]], e);
+    add_turn(rows, 0, e, ONE_THIRD_ROOT);
+    add_turn(rows, 1, e, 0.5 * ONE_THIRD_ROOT);
+    add_turn(rows + MT_LOCAL, 1, e, 0.5);
 }
 
 static void inertia_eval(const mt_data *d, const mt_inertia_def *def, const mt_pose *poses,
@@ -226,6 +232,9 @@ static void inertia_eval(const mt_data *d, const mt_inertia_def *def, const mt_p
         break;
     case MT_INERTIA_BEAM:
         beam_rows(d, def, poses, rows);
+        break;
+    case MT_INERTIA_BEAM_TWIST:
+        twist_rows(d, def, poses, rows);
         break;
     }
 }

@@ -68,8 +68,7 @@ static bool geometry_is_fixed(const mt_system *sys)
                 node_fixed(p, c->coefficient[1]);
     }
     for (int i = 0; i < sys->n_inertias && fixed; i++) {
-        fixed =
-            node_fixed(p, sys->inertias[i].length) && node_fixed(p, sys->inertias[i].gyration2);
+        fixed = node_fixed(p, sys->inertias[i].length);
     }
     for (int i = 0; i < sys->n_channels && fixed; i++) {
         fixed =

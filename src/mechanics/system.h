@@ -83,17 +83,17 @@ typedef enum mt_inertia_kind {
     MT_INERTIA_TRANSLATION, /* m |v|^2 of a centre */
     MT_INERTIA_ROTATION,    /* J_ab (omega . dir0)(omega . dir1) */
     MT_INERTIA_BAR,         /* bar with consistent mass between two points */
-    MT_INERTIA_BEAM         /* consistent mass of a beam element between two node bodies */
+    MT_INERTIA_BEAM,        /* consistent mass of a beam element between two node bodies */
+    MT_INERTIA_BEAM_TWIST   /* its polar moment of inertia about its axis, 3-D */
 } mt_inertia_kind;
 
 typedef struct mt_inertia_def {
     mt_inertia_kind kind;
-    mt_node coefficient; /* kg, kg m^2, or kg of the whole element */
+    mt_node coefficient; /* kg, kg m^2, or kg (TWIST: kg m^2) of the whole element */
     int body[2];
     int point[2];
-    int dir[3];        /* BEAM: triad; ROTATION: dir[0], dir[1], unit vectors of the body */
-    mt_node length;    /* BEAM */
-    mt_node gyration2; /* BEAM, 3-D: polar second moment / area; MT_NO_NODE */
+    int dir[3];     /* BEAM: triad; ROTATION: dir[0], dir[1], unit vectors of the body */
+    mt_node length; /* BEAM */
     int item;
 } mt_inertia_def;
 

@@ -73,23 +73,43 @@ mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *resu
                  "between them is sampled by these, not proven.");
 }
 
+/* In words: what one limit's mode can reach. */
+static mt_status say_reach(const mt_demand *d, const char *configuration,
+                           const mt_certify_reach *r, mt_result *result, mt_err *err)
+{
+    const bool impossible = r->verdict == MT_VERDICT_IMPOSSIBLE;
+    if (isnan(r->low_hz)) {
+        return state(result, impossible ? "infeasible" : "range", impossible, err,
+                     impossible
+                         ? "Goal /goals/%d cannot be met: %s has no mode %d at any design."
+                         : "Goal /goals/%d: nothing is known of the range of %s mode %d.",
+                     d->goal_index, configuration, d->mode);
+    }
+    if (impossible) {
+        return state(result, "infeasible", true, err,
+                     "Goal /goals/%d cannot be met within the bounds: %s mode %d stays between "
+                     "%.6g and %.6g Hz (two eigensolves and %ld boxes).",
+                     d->goal_index, configuration, d->mode, r->low_hz, r->high_hz, r->boxes);
+    }
+    return state(result, "range", true, err,
+                 "%s mode %d stays between %.6g and %.6g Hz within the bounds.", configuration,
+                 d->mode, r->low_hz, r->high_hz);
+}
+
 static mt_status reach(mt_problem *p, const mt_proof *proof, int limit, mt_arena *mem,
                        mt_result *result, bool *infeasible, mt_err *err)
 {
     mt_certify_reach r = {0};
     const mt_demand *const d = &p->demands[proof->limit_demand[limit]];
-    const char *const configuration = mt_analysis_configuration(p->views[d->view].analysis);
     MT_TRY(mt_certify_reach_of(&proof->question, limit, mem, &r, err));
-    if (r.verdict == MT_VERDICT_IMPOSSIBLE) {
-        *infeasible = true;
-        return state(result, "infeasible", true, err,
-                     "Goal /goals/%d cannot be met within the bounds: %s mode %d stays between "
-                     "%.6g and %.6g Hz (two eigensolves and %ld boxes).",
-                     d->goal_index, configuration, d->mode, r.low_hz, r.high_hz, r.boxes);
-    }
-    return state(result, "range", true, err,
-                 "%s mode %d stays between %.6g and %.6g Hz within the bounds.", configuration,
-                 d->mode, r.low_hz, r.high_hz);
+    *infeasible = *infeasible || r.verdict == MT_VERDICT_IMPOSSIBLE;
+    MT_TRY(
+        say_reach(d, mt_analysis_configuration(p->views[d->view].analysis), &r, result, err));
+    mt_certificate *const c = &result->certificates[result->n_certificates - 1];
+    c->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
+    c->reachable_lower_hz = r.low_hz;
+    c->reachable_upper_hz = r.high_hz;
+    return c->pointer == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
 static mt_status jointly(const mt_proof *proof, mt_arena *mem, mt_result *result,

@@ -75,10 +75,8 @@ const char *mt_discrete_rank_text(const mt_discrete_report *report, const mt_nlp
                                report->judged, report->combinations, how,
                                rank == 1 ? "nearest" : "behind those that rank before it");
     }
-    return mt_arena_printf(
-        mem,
-        "Of the combinations of catalogue values it ranks %d by %s %s (%d of "
-        "%.6g judged, %s).",
-        rank, objective[0] == 'c' && objective[1] == 'l' ? "greatest" : "least", objective,
-        report->judged, report->combinations, how);
+    return mt_arena_printf(mem,
+                           "Of the combinations of catalogue values it ranks %d by %s (%d of "
+                           "%.6g judged, %s).",
+                           rank, objective, report->judged, report->combinations, how);
 }

@@ -40,6 +40,7 @@ typedef struct mt_enclosure_coefficient {
         *sign;     /* [n_inputs] of the derivative over the bounds; 0: none, or it changes */
     bool monotone; /* in all its inputs over the bounds */
     double least;  /* over the bounds */
+    double most;
     mt_enclosure_part part[MT_MATRICES];
 } mt_enclosure_coefficient;
 
@@ -56,6 +57,7 @@ typedef struct mt_enclosure {
     int n_coefficients;
     mt_node *sources; /* [n_coefficients] their nodes in the system's program */
     mt_enclosure_coefficient *coefficients;
+    bool bounded; /* least and most are known: they hold in every box within the bounds */
     bool mass_varies;
     bool squares;               /* K0 and M0 are sums of squares: boxes may leave the bounds */
     double *fixed[MT_MATRICES]; /* n x n, lower */

@@ -31,7 +31,7 @@ static void keep(const mt_system *sys, mt_node node, int *found)
     *found = *found >= 0 ? *found : input_of(sys, node);
 }
 
-/* An input that shapes the geometry; -1 where none is found. */
+/* An input that shapes the geometry of stiffness and mass; -1 where none does (where a sensor stands moves no mode). */
 static int shaping_input(const mt_system *sys)
 {
     int found = -1;
@@ -51,11 +51,6 @@ static int shaping_input(const mt_system *sys)
     }
     for (int i = 0; i < sys->n_inertias; i++) {
         keep(sys, sys->inertias[i].length, &found);
-        keep(sys, sys->inertias[i].gyration2, &found);
-    }
-    for (int i = 0; i < sys->n_channels; i++) {
-        keep(sys, sys->channels[i].length, &found);
-        keep(sys, sys->channels[i].fraction, &found);
     }
     return found;
 }
@@ -92,10 +87,9 @@ bool mt_enclosure_admits(const mt_analysis *a, char *reason)
                        "a driven joint or an equilibrium places the mechanism");
         return false;
     }
-    if (!sys->geometry_fixed) {
-        const int i = shaping_input(sys);
-        return refuse(reason, "parameter", i < 0 ? "?" : input_name(sys, i),
-                      "shapes the geometry");
+    const int shaping = shaping_input(sys);
+    if (shaping >= 0) {
+        return refuse(reason, "parameter", input_name(sys, shaping), "shapes the geometry");
     }
     static const mt_term_kind kinds[MT_MATRICES] = {MT_TERM_STIFFNESS, MT_TERM_MASS};
     for (int m = 0; m < MT_MATRICES; m++) {

@@ -273,9 +273,11 @@ static void say_rank(mt_sentences *s, const mt_nlp_result *search)
 {
     const char *const first = aim_text(&s->p->aims[0]);
     if (s->design->discrete != NULL) {
-        const char *const text = mt_discrete_rank_text(s->design->discrete, search,
-                                                       s->rec->rank, first, &s->result->mem);
-        mt_say(s, "%s", text == NULL ? "" : text);
+        mt_arena *const mem = &s->result->mem;
+        const char *const by = mt_arena_printf(mem, "%s %s", best_of(&s->p->aims[0]), first);
+        const char *const text =
+            mt_discrete_rank_text(s->design->discrete, search, s->rec->rank, by, mem);
+        mt_say(s, "%s", text == NULL || by == NULL ? "" : text);
         return;
     }
     if (search->compromise) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Catalogues against brute force: every combination judged by the modes alone. */
 #include "six.h"
+#include "study_fixture.h"
 #include "tune/discrete.h"
 
 /* The change is the same sum in another order; ln of k exp(x) is x to rounding. */
@@ -196,6 +197,21 @@ static void discrete__too_many_combinations_are_a_labelled_heuristic(mt_test *t)
     six_end(&s);
 }
 
+/* What is made least or greatest follows from the objective's kind, not from its name. */
+static void discrete__the_rank_says_least_of_what_begins_like_clearance(mt_test *t)
+{
+    study_case c;
+    if (study_solve(t, STUDY_TWO_MASSES("'k1': 2, 'k2': 1, 'm': 1, 'clamp_mass': 'k1*0.1'", ""),
+                    "'variables': [{'parameter': 'k1', 'catalogue': [1, 2, 3]}],"
+                    "'objective': {'minimise': 'clamp_mass'},"
+                    "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.09}]",
+                    &c)) {
+        CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
+        CHECK(t, study_reasons(&c, 1, "ranks 1 by least clamp_mass"));
+    }
+    study_free(&c);
+}
+
 static void discrete__a_budget_is_kept(mt_test *t)
 {
     six s;
@@ -220,4 +236,5 @@ MT_TEST_MAIN(MT_TEST(discrete__enumeration_agrees_with_brute_force),
              MT_TEST(discrete__that_no_combination_works_is_proven),
              MT_TEST(discrete__mixed_agrees_with_every_value_on_its_own),
              MT_TEST(discrete__too_many_combinations_are_a_labelled_heuristic),
+             MT_TEST(discrete__the_rank_says_least_of_what_begins_like_clearance),
              MT_TEST(discrete__a_budget_is_kept))

@@ -24,6 +24,14 @@ static void unreachable_target__gives_the_nearest_design_at_its_bound(mt_test *t
         CHECK_NEAR(t, r->violation_percent, 100.0 * log(1.0 / nearest), TOL);
         CHECK(t, !r->goals[0].met);
         CHECK(t, study_reasons(&c, 1, "k1 stands at its upper bound"));
+        const mt_certificate *const proof = &c.result->certificates[0];
+        CHECK_INT(t, c.result->n_certificates, 1);
+        CHECK(t, proof->proven);
+        CHECK_STR(t, proof->kind, "infeasible");
+        CHECK_STR(t, proof->pointer, "/goals/0");
+        CHECK_NEAR(t, proof->reachable_upper_hz, nearest, TOL);
+        CHECK_NEAR(t, proof->reachable_lower_hz,
+                   study_hz(study_two_lambda(1.0, 100.0, 1.0, -1)), TOL);
         CHECK(t, study_reasons(&c, 1, "Goal /goals/0 (default mode 1 at 1 Hz) is missed by"));
     }
     study_free(&c);
