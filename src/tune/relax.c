@@ -238,24 +238,6 @@ static mt_status search_move(void *context, int worker, int k, mt_err *err)
                               : search_in_gap(j, &study, NULL, m, out, err);
 }
 
-/* Found ones only, least first; stable. */
-static void rank(mt_moves *moves)
-{
-    int kept = 0;
-    for (int i = 0; i < moves->n; i++) {
-        const mt_move m = moves->items[i];
-        if (!m.found) {
-            continue;
-        }
-        int at = kept++;
-        for (; at > 0 && m.size < moves->items[at - 1].size; at--) {
-            moves->items[at] = moves->items[at - 1];
-        }
-        moves->items[at] = m;
-    }
-    moves->n = kept;
-}
-
 /* Of the study's budget, if it sets one, an equal share of what is left. */
 static long budget_of(const mt_problem *p, long spent, int n_moves)
 {
@@ -289,6 +271,6 @@ mt_status mt_relax(mt_problem *p, int workers, const mt_nlp_result *search, mt_a
         out->stopped = out->stopped || j.results[k].stopped;
         mt_arena_free(&j.results[k].mem);
     }
-    rank(out);
+    mt_relax_rank(out);
     return rc;
 }

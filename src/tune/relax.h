@@ -48,6 +48,11 @@ typedef struct mt_moves {
 mt_status mt_relax(mt_problem *p, int workers, const mt_nlp_result *search, mt_arena *mem,
                    mt_moves *out, mt_err *err);
 
+/* relax_discrete.c: the same for a study with catalogues; problems[n_workers] of it. Without continuous variables all combinations are looked at (short_of_budget where those are too many). */
+mt_status mt_relax_discrete(mt_problem *const *problems, int n_workers,
+                            const mt_nlp_result *search, mt_arena *mem, mt_moves *out,
+                            mt_err *err);
+
 /* relax_moves.c: all moves that the study offers, none tried yet. Fails: MT_E_MEMORY. */
 mt_status mt_relax_moves(const mt_problem *p, mt_arena *mem, mt_moves *out, mt_err *err);
 /* The study in which the move's bound is moved away (others: only the objective is replaced, by the change); borrows the rest of `study`. False in *useful where there is no room to move. */
@@ -55,6 +60,12 @@ mt_status mt_relax_study(const mt_study *study, const mt_move *m, mt_arena *mem,
                          bool *useful, mt_err *err);
 /* The value that the move's number must have for the rows of q, just evaluated into v, to hold; NaN where other rows do not. */
 double mt_relax_value(const mt_problem *q, const mt_move *m, const mt_nlp_values *v);
+/* By how much that is a move, |s|; NaN where it is none, is in the wrong direction, or is too far to be of help. */
+double mt_relax_size(const mt_problem *q, const mt_move *m, double to);
+/* Found moves of `from` into `to`, which lists all, where they are less; n: variables. */
+void mt_relax_merge(mt_moves *to, const mt_moves *from, int n);
+/* Found ones only, least first; stable. */
+void mt_relax_rank(mt_moves *moves);
 /* Is this row of `in` (of the equalities, where eq) the move's? */
 bool mt_relax_is_row(const mt_problem *q, const mt_move *m, bool eq, int row);
 

@@ -176,3 +176,58 @@ double mt_relax_value(const mt_problem *q, const mt_move *m, const mt_nlp_values
     }
     return moved(q, m, worst);
 }
+
+/* A move by more than a factor of ten, or than the limit itself where it has no logarithm, is no help. */
+static const double MOST = 2.302585092994046;
+
+double mt_relax_size(const mt_problem *q, const mt_move *m, double to)
+{
+    const bool goal = m->kind == MT_MOVE_GOAL;
+    const mt_goal_type type = goal ? q->demands[m->demand].goal->type : MT_GOAL_FREQUENCY;
+    const double unit = type == MT_GOAL_LIMIT && fabs(m->from) > 0.0 ? fabs(m->from) : 1.0;
+    const double s = type == MT_GOAL_FREQUENCY ? log(to / m->from) : (to - m->from) / unit;
+    /* a lower limit gives way downwards, an upper edge too */
+    const bool down = goal ? !m->upper : m->upper;
+    const bool right = m->target ? fabs(s) > 0.0 : (down ? -s : s) > 0.0;
+    return right && fabs(s) <= MOST ? fabs(s) : nan("");
+}
+
+static bool is_same(const mt_move *a, const mt_move *b)
+{
+    return a->kind == b->kind && a->upper == b->upper && a->variable == b->variable &&
+           a->clear == b->clear && a->band == b->band && a->demand == b->demand &&
+           a->target == b->target;
+}
+
+void mt_relax_merge(mt_moves *to, const mt_moves *from, int n)
+{
+    for (int i = 0; i < from->n; i++) {
+        const mt_move *const m = &from->items[i];
+        for (int k = 0; k < to->n && m->found; k++) {
+            mt_move *const own = &to->items[k];
+            if (is_same(own, m) && (!own->found || m->size < own->size)) {
+                double *const x = own->x;
+                memcpy(x, m->x, (size_t)n * sizeof *x);
+                *own = *m;
+                own->x = x;
+            }
+        }
+    }
+}
+
+void mt_relax_rank(mt_moves *moves)
+{
+    int kept = 0;
+    for (int i = 0; i < moves->n; i++) {
+        const mt_move m = moves->items[i];
+        if (!m.found) {
+            continue;
+        }
+        int at = kept++;
+        for (; at > 0 && m.size < moves->items[at - 1].size; at--) {
+            moves->items[at] = moves->items[at - 1];
+        }
+        moves->items[at] = m;
+    }
+    moves->n = kept;
+}

@@ -249,17 +249,19 @@ static mt_status relax(answer *a, mt_err *err)
 {
     mt_moves moves = {0};
     const bool none = a->infeasible || a->impossible || a->found.compromise;
-    if (!a->searched || !none || a->found.stop == MT_STOP_USER ||
-        mt_study_is_discrete(a->study)) {
+    if (!a->searched || !none || a->found.stop == MT_STOP_USER) {
         return MT_OK;
     }
-    MT_TRY(mt_relax(a->p, a->n_workers, &a->found, &a->mem, &moves, err));
+    MT_TRY(mt_study_is_discrete(a->study)
+               ? mt_relax_discrete(a->workers, a->n_workers, &a->found, &a->mem, &moves, err)
+               : mt_relax(a->p, a->n_workers, &a->found, &a->mem, &moves, err));
     a->found.evals += moves.evals;
     a->found.starts += moves.starts;
     if (moves.short_of_budget && a->found.stop != MT_STOP_MAX_EVALS) {
         return mt_describe_warn(a->result, err,
-                                "\"max_evaluations\" left nothing to find out which single "
-                                "change would let a design exist");
+                                "which single change would let a design exist is not known: "
+                                "there are too many combinations, or \"max_evaluations\" left "
+                                "nothing for it");
     }
     if (moves.stopped) {
         return mt_describe_warn(a->result, err,

@@ -111,6 +111,61 @@ static void one_mass__every_kind_of_move_is_exact(mt_test *t)
     }
 }
 
+/* From a catalogue every combination is looked at: exact, and no bound to move. */
+static void catalogue__goals_and_edges_can_move(mt_test *t)
+{
+    static const struct {
+        const char *name;
+        const char *goals;
+        const char *what;
+        double k; /* of the design that is next */
+    } rows[] = {
+        {  "at least", "{'type': 'frequency', 'mode': 1, 'at_least_hz': 6}", "at_least_hz",
+         1200.0                                                                                   },
+        {    "target", "{'type': 'frequency', 'mode': 1, 'target_hz': 5.1}",   "target_hz", 1000.0},
+        {"upper edge",            "{'type': 'avoid', 'bands_hz': [[4, 6]]}",  "upper edge", 1200.0},
+        {"lower edge",            "{'type': 'avoid', 'bands_hz': [[4, 6]]}",  "lower edge",  800.0},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        study_case c;
+        char members[1024];
+        mt_test_row(t, "%s", rows[i].name);
+        (void)snprintf(
+            members, sizeof members,
+            "'variables': [{'parameter': 'k', 'catalogue': [800, 1000, 1200]}], 'goals': [%s]",
+            rows[i].goals);
+        if (study_solve(t, ONE_MASS, members, &c)) {
+            check_move(t, &c, rows[i].what, frequency(rows[i].k), rows[i].k);
+            CHECK(t, relaxation(&c, "bound") == NULL);
+        }
+        study_free(&c);
+    }
+}
+
+/* One stiffness from a catalogue, one continuous: the greatest of both counts. */
+static void catalogue_and_continuous__both_kinds_of_move(mt_test *t)
+{
+    study_case c;
+    const double wanted = 1.1 * study_hz(study_two_lambda(400.0, 500.0, 1.0, -1));
+    char members[1024];
+    (void)snprintf(members, sizeof members,
+                   "'variables': [{'parameter': 'k1', 'catalogue': [200, 300, 400]},"
+                   "{'parameter': 'k2', 'lower': 100, 'upper': 500}],"
+                   "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': %.17g}]",
+                   wanted);
+    if (study_solve(t, STUDY_TWO_MASSES("'k1': 300, 'k2': 300, 'm': 1", ""), members, &c)) {
+        const mt_relaxation *const goal = relaxation(&c, "at_least_hz");
+        const mt_relaxation *const bound = relaxation(&c, "upper bound of k2");
+        CHECK(t, relaxation(&c, "k1") == NULL);
+        if (CHECK(t, goal != NULL && bound != NULL)) {
+            CHECK_NEAR(t, goal->to, wanted / 1.1, TOL);
+            CHECK_NEAR(t, goal->design[0], 400.0, 0.0);
+            CHECK_NEAR(t, study_hz(study_two_lambda(400.0, bound->to, 1.0, -1)), wanted, TOL);
+        }
+    }
+    study_free(&c);
+}
+
 static void solved__has_no_move(mt_test *t)
 {
     study_case c;
@@ -194,4 +249,6 @@ static void two_masses__moves_of_random_studies_are_least(mt_test *t)
 
 MT_TEST_MAIN(MT_TEST(one_mass__every_kind_of_move_is_exact), MT_TEST(solved__has_no_move),
              MT_TEST(contradiction__only_a_goal_can_move),
+             MT_TEST(catalogue__goals_and_edges_can_move),
+             MT_TEST(catalogue_and_continuous__both_kinds_of_move),
              MT_TEST(two_masses__moves_of_random_studies_are_least))
