@@ -168,6 +168,7 @@ static mt_status run(const mt_args *args, const mt_subject *s, int c, job *j, mt
     if (args->given[MT_OPT_MODES]) {
         MT_TRY(mt_analysis_new_driven(s->model, c, &r->drive, s->n_inputs, s->inputs, at, &j->a,
                                       err));
+        j->a->recount = true; /* a spring may get hold of a direction on the way */
         MT_TRY(prepare_modes(j, args->count > 0 ? args->count : DEFAULT_MODES, err));
         j->sys = j->a->sys;
         j->lin = j->a->lin;

@@ -36,13 +36,15 @@ static mt_mode_kind kind_of(double lambda, double noise, bool decide)
     return decide && lambda <= noise ? MT_MODE_RIGID_BODY : MT_MODE_FLEXIBLE;
 }
 
-void mt_modal_classify(mt_modes *modes, int n_rigid)
+double mt_modal_classify(mt_modes *modes, int n_rigid)
 {
     const double noise = modes->error_bound;
+    double rigid_most = 0.0;
     const bool decide = n_rigid < 0;
     const int rigid = decide || n_rigid <= modes->count ? n_rigid : modes->count;
     const int first = decide ? modes->count : first_rigid(modes, rigid);
     modes->n_rigid = 0;
+    modes->n_held = 0;
     modes->n_unstable = modes->n_unstable_condensed;
     for (int i = 0; i < modes->count; i++) {
         const bool given = !decide && i >= first && i < first + rigid;
@@ -50,12 +52,17 @@ void mt_modal_classify(mt_modes *modes, int n_rigid)
             given ? MT_MODE_RIGID_BODY : kind_of(modes->lambda[i], noise, decide);
         modes->kind[i] = kind;
         modes->n_rigid += kind == MT_MODE_RIGID_BODY ? 1 : 0;
+        if (given) {
+            rigid_most = fmax(rigid_most, fabs(modes->lambda[i]));
+            modes->n_held += fabs(modes->lambda[i]) > noise ? 1 : 0;
+        }
         modes->n_unstable += kind == MT_MODE_UNSTABLE ? 1 : 0;
         if (kind == MT_MODE_RIGID_BODY ||
             (kind == MT_MODE_FLEXIBLE && modes->lambda[i] < 0.0)) {
             modes->lambda[i] = 0.0;
         }
     }
+    return rigid_most;
 }
 
 void mt_modal_find_clusters(mt_modes *modes)

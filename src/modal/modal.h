@@ -19,10 +19,11 @@
  *
  * Kinds (never take the absolute value of an eigenvalue): with the stiffness scale s and noise
  * = 16 n eps s (see modal_priv.h), |lambda| <= noise is a rigid-body mode (lambda set to
- * exactly 0), below minus that unstable, above flexible. Where n_rigid >= 0 is given (fixed at
- * the original design) exactly the n_rigid eigenvalues of smallest magnitude are rigid-body
+ * exactly 0), below minus that unstable, above flexible. Where n_rigid >= 0 is given (fixed for
+ * a family of designs) exactly the n_rigid eigenvalues of smallest magnitude are rigid-body
  * modes; of the others those below -noise are unstable, and those in [-noise, 0) are flexible
- * with lambda = 0.
+ * with lambda = 0: a vibration of 0 Hz, as a spring lets go whose stiffness reaches 0. Where
+ * stiffness holds some of the n_rigid, n_held says how many: the number given is wrong there.
  */
 typedef enum mt_mode_kind {
     MT_MODE_FLEXIBLE,
@@ -79,6 +80,7 @@ typedef struct mt_modes {
     int count;       /* modes: n - n_condensed */
     int n_condensed; /* directions without mass */
     int n_rigid;
+    int n_held; /* of an n_rigid that was given: those that are no null directions of K */
     int n_unstable;
     int n_unstable_condensed; /* directions without mass and with negative stiffness: unstable,
                                  though no entry of lambda shows it */

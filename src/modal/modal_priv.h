@@ -36,8 +36,9 @@ mt_status mt_modal_by_factor(const mt_stiffness_factor *factor, const mt_mass_fa
 /* Y := T1 Q: from the coordinates in which M is the identity back to the caller's. q, y n x n,
  * may be the same only where mass->t is NULL. Regular M only. */
 void mt_modal_back(const mt_mass_factor *mass, const double *q, double *y);
-/* Kinds, n_rigid, n_unstable, lambda of rigid-body modes; n_rigid < 0: decide. */
-void mt_modal_classify(mt_modes *modes, int n_rigid);
+/* Kinds, n_rigid, n_unstable, lambda of rigid-body modes; n_rigid < 0: decide. n_held: announced
+ * ones above the noise. The greatest |lambda| of an announced rigid-body mode. */
+double mt_modal_classify(mt_modes *modes, int n_rigid);
 /* Clusters; after the kinds. */
 void mt_modal_find_clusters(mt_modes *modes);
 /* residual and orthogonality. */

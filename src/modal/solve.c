@@ -49,28 +49,49 @@ static mt_status claim(const mt_mass_factor *mass, const mt_modal_options *opt, 
 }
 
 /* Is the plain result good enough? Signs and ranks are in doubt where a factor (K semidefinite
- * by construction) shows instability, or rigid-body modes that nobody announced. */
+ * by construction) shows instability, rigid-body modes that nobody announced, or announced ones
+ * that stiffness seems to hold. */
 static bool needs_factor(const mt_modes *modes, const mt_modal_options *opt)
 {
-    if (modes->n_unstable > 0 || (opt->n_rigid < 0 && modes->n_rigid > 0)) {
+    if (modes->n_unstable > 0 || modes->n_held > 0 ||
+        (opt->n_rigid < 0 && modes->n_rigid > 0)) {
         return true;
     }
     const int lowest = mt_modal_flexible(modes, 1);
     return lowest >= 0 && DBL_EPSILON * modes->scale > FACTOR_SWITCH * modes->lambda[lowest];
 }
 
+/*
+ * Without a factor, an announced rigid-body mode counts as held above HELD times the noise: what
+ * an equilibrium found by iteration leaves on a null direction stays below (forces of 1e4 times
+ * the rounding of the positions count as none in the mechanics room).
+ */
+static const double HELD = 1e4;
+
+/* n_held as the classification left it counts what is above the noise; say it for sure. */
+static void judge_held(mt_modes *modes, const mt_modal_options *opt, double rigid_most,
+                       int null_count)
+{
+    if (null_count >= 0) {
+        modes->n_held = opt->n_rigid > null_count ? opt->n_rigid - null_count : 0;
+    } else if (!(rigid_most > HELD * modes->error_bound)) {
+        modes->n_held = 0;
+    }
+}
+
 static mt_status compute(const double *k, const mt_mass_factor *mass,
                          const mt_stiffness_factor *factor, const mt_modal_options *opt,
                          mt_arena *scratch, mt_modes *out, mt_err *err)
 {
+    int null_count = -1;
     MT_TRY(mt_modal_plain(k, mass, scratch, out, err));
-    mt_modal_classify(out, opt->n_rigid);
+    const double rigid_most = mt_modal_classify(out, opt->n_rigid);
     const bool usable = factor != NULL && opt->need_accuracy && mass->rank == mass->n;
     if (usable && needs_factor(out, opt)) {
-        int null_count = 0;
         MT_TRY(mt_modal_by_factor(factor, mass, scratch, out, &null_count, err));
-        mt_modal_classify(out, opt->n_rigid < 0 ? null_count : opt->n_rigid);
+        (void)mt_modal_classify(out, opt->n_rigid < 0 ? null_count : opt->n_rigid);
     }
+    judge_held(out, opt, rigid_most, null_count);
     mt_modal_find_clusters(out);
     if (opt->vectors) {
         mt_modal_fix_sign(out->n, out->count, out->y);

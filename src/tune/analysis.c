@@ -60,6 +60,7 @@ mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
                          model->configurations[configuration].name.s);
     }
     a->n_rigid = a->modes.n_rigid;
+    a->n_null = a->modes.n_rigid;
     *out = a;
     return MT_OK;
 }
@@ -94,8 +95,13 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
     options.vectors = opt->vectors || opt->gradient;
     options.need_accuracy = opt->accuracy && lin->has_factor;
     options.check = opt->check;
-    const mt_status rc = mt_modal_solve_factored(
-        lin->k, &a->mass, lin->has_factor ? &factor : NULL, &options, &a->mem, &a->modes, err);
+    const mt_stiffness_factor *const use = lin->has_factor ? &factor : NULL;
+    mt_status rc =
+        mt_modal_solve_factored(lin->k, &a->mass, use, &options, &a->mem, &a->modes, err);
+    if (rc == MT_OK && a->modes.n_held > 0 && a->recount) {
+        options.n_rigid = -1;
+        rc = mt_modal_solve_factored(lin->k, &a->mass, use, &options, &a->mem, &a->modes, err);
+    }
     if (rc == MT_E_MASSLESS && a->modes.massless != NULL) {
         char text[DIRECTION_TEXT];
         mt_linear_name_direction(lin, a->modes.massless, text, sizeof text);
@@ -104,6 +110,12 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
             "neither mass nor stiffness holds %s: give it a mass, a spring, or a joint", text);
     }
     MT_TRY(rc);
+    if (a->modes.n_held > 0) {
+        return mt_fail(err, MT_E_DOMAIN,
+                       "stiffness holds %d of the %d directions that are counted as rigid-body "
+                       "modes: the count of vibration modes does not hold at this design",
+                       a->modes.n_held, a->n_rigid);
+    }
     a->with_gradient = opt->gradient;
     if (opt->gradient) {
         const size_t n = (size_t)lin->n;

@@ -179,14 +179,20 @@ static bool limit_possible(const mt_certify *c, const mt_certify_limit *l)
                e, mt_enclosure_lambda(l->at_least_hz * (1.0 - l->tolerance))) < l->mode;
 }
 
+/* Modes that may lie below a band, or on its lower edge; below one that begins at 0 there are none, a mode of 0 Hz is in it. */
+static int most_under(mt_enclosure *e, const mt_certify_band *b)
+{
+    const double lambda = mt_enclosure_lambda(b->lower_hz * (1.0 + b->tolerance));
+    return b->lower_hz > 0.0 ? mt_enclosure_most_below(e, lambda) : 0;
+}
+
 /* Assignments of one band in the box that is set, into least, most; false: none. */
 static bool band_possible(search *s, int i)
 {
     const mt_certify_band *const b = &s->c->bands[i];
     mt_enclosure *const e = s->c->views[b->view];
     const int *const only = s->only == NULL ? NULL : s->only + i;
-    s->most[i] =
-        mt_enclosure_most_below(e, mt_enclosure_lambda(b->lower_hz * (1.0 + b->tolerance)));
+    s->most[i] = most_under(e, b);
     if (only != NULL && s->most[i] < *only) {
         return false;
     }

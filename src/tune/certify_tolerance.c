@@ -32,10 +32,20 @@ static double unit_of(const mt_tolerance_question *q, int i)
     return q->unit == NULL ? fabs(q->x[i]) : fabs(q->unit[i]);
 }
 
+/* Is every stiffness of the design still there all over the box that is set? */
+static bool keeps_held(const mt_certify *c)
+{
+    bool keeps = true;
+    for (int v = 0; v < c->n_views; v++) {
+        keeps = keeps && mt_enclosure_keeps_held(c->views[v]);
+    }
+    return keeps;
+}
+
 /* Is the box set and every edge kept over it? Notes why not. */
 static bool box_holds(tolerance *t, const double *lo, const double *hi)
 {
-    if (!mt_certify_set(t->c, lo, hi)) {
+    if (!mt_certify_set(t->c, lo, hi) || !keeps_held(t->c)) {
         t->end = MT_TOLERANCE_DOMAIN;
         return false;
     }
@@ -122,6 +132,11 @@ static mt_status run(const mt_certify *c, const mt_tolerance_question *q, mt_are
     MT_TRY(mt_boxes_init(&t.boxes, c, true, scratch, err));
     for (int i = 0; i < c->n; i++) {
         t.loose = t.loose || t.boxes.active[i];
+    }
+    if (mt_certify_set(c, q->x, q->x)) {
+        for (int v = 0; v < c->n_views; v++) {
+            mt_enclosure_note_held(c->views[v]);
+        }
     }
     *all = search(&t, -1);
     for (int i = 0; i < c->n && each != NULL; i++) {

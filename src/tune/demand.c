@@ -10,20 +10,34 @@
 #include <math.h>
 #include <string.h>
 
+#include "tune/enclosure.h"
 #include "tune/problem.h"
 
-mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, double *out,
-                                   mt_err *err)
+double mt_problem_ln_ratio(const mt_modes *modes, int pos, double edge_hz, double floor_hz)
+{
+    const double hz = mt_modal_hz(modes, pos);
+    const double part = hz / floor_hz;
+    return part < 1.0 ? log(floor_hz / edge_hz) + (0.5 * ((part * part) - 1.0))
+                      : log(hz / edge_hz);
+}
+
+mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, double floor_hz,
+                                   double *out, mt_err *err)
 {
     int size = 1;
-    const int first = mt_modal_cluster(&a->modes, pos, &size);
+    int vibrating = 0;
+    const mt_modes *const modes = &a->modes;
+    const int first = mt_modal_cluster(modes, pos, &size);
+    const double lambda = fmax(modes->lambda[pos], mt_enclosure_lambda(floor_hz));
     memset(out, 0, (size_t)p->n * sizeof *out);
     for (int k = first; k < first + size; k++) {
         MT_TRY(mt_analysis_dlambda_raw(a, k, p->work, err));
-        mt_axpy(p->n, 1.0 / (double)size, p->work, out);
+        mt_axpy(p->n, 1.0, p->work, out);
+        /* vibrations of 0 Hz share their cluster with rigid-body modes, which have no slope and add nothing to the sum */
+        vibrating += modes->kind[k] == MT_MODE_FLEXIBLE ? 1 : 0;
     }
     for (int i = 0; i < p->n; i++) {
-        out[i] *= mt_problem_stretch(p, i) / (2.0 * a->modes.lambda[pos]);
+        out[i] *= mt_problem_stretch(p, i) / (2.0 * lambda * (double)vibrating);
     }
     return MT_OK;
 }
@@ -83,18 +97,20 @@ static mt_status frequency_demand(mt_problem *p, const mt_demand *d, int pos,
                                   bool with_gradient, mt_nlp_values *out, mt_err *err)
 {
     mt_analysis *const a = p->views[d->view].analysis;
-    const double hz = mt_modal_hz(&a->modes, pos);
+    const mt_goal *const g = d->goal;
+    const double edge = fmin(fmin(d->target_hz, g->at_least), g->at_most); /* of those given */
+    const double floor = MT_FREQUENCY_FLOOR * edge;
     double *const gradient = with_gradient ? p->dshape : NULL; /* n numbers of it */
-    if (!(hz > 0.0)) {
+    if (!(mt_modal_hz(&a->modes, pos) >= 0.0)) {
         return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\": the mode has no frequency",
                        mt_analysis_configuration(a));
     }
     if (with_gradient) {
-        MT_TRY(mt_problem_dln_frequency(p, a, pos, gradient, err));
+        MT_TRY(mt_problem_dln_frequency(p, a, pos, floor, gradient, err));
     }
-    const scalar v = {.to_target = log(hz / d->target_hz),
-                      .above = log(hz / d->goal->at_least),
-                      .below = log(d->goal->at_most / hz),
+    const scalar v = {.to_target = mt_problem_ln_ratio(&a->modes, pos, d->target_hz, floor),
+                      .above = mt_problem_ln_ratio(&a->modes, pos, g->at_least, floor),
+                      .below = -mt_problem_ln_ratio(&a->modes, pos, g->at_most, floor),
                       .target_slope = 1.0,
                       .above_slope = 1.0,
                       .below_slope = -1.0};

@@ -113,6 +113,21 @@ static mt_status compare(const mt_problem *fresh, const mt_design *design, mt_re
                             design->rank, had, f);
 }
 
+/* A design at which a fresh analysis disagrees meets nothing: see describe_verify.c. */
+static mt_status doubt(const mt_design *design, mt_result *result, mt_recommendation *rec,
+                       mt_err *err)
+{
+    if (rec->disagreement == NULL) {
+        return MT_OK;
+    }
+    rec->feasible = false;
+    return design->found == NULL
+               ? mt_describe_warn(result, err, "the original design is not verified: %s",
+                                  rec->disagreement)
+               : mt_describe_warn(result, err, "recommendation %d is not verified: %s",
+                                  design->rank, rec->disagreement);
+}
+
 static mt_status describe(mt_problem *fresh, const mt_design *design,
                           const mt_recommendation *baseline, mt_result *result,
                           mt_recommendation *rec, mt_err *err)
@@ -122,9 +137,12 @@ static mt_status describe(mt_problem *fresh, const mt_design *design,
     MT_TRY(mt_describe_goals(fresh, design, result, rec, err));
     MT_TRY(describe_parameters(fresh, fresh->x, design->t, result, rec, err));
     MT_TRY(mt_describe_frequencies(fresh, design, baseline, result, rec, err));
+    MT_TRY(doubt(design, result, rec, err));
     MT_TRY(mt_describe_clearances(fresh, result, rec, err));
     describe_score(fresh, rec);
-    rec->grade = rec->feasible ? "feasible" : "compromise";
+    rec->grade = rec->disagreement != NULL ? "not verified"
+                 : rec->feasible           ? "feasible"
+                                           : "compromise";
     if (design->found == NULL) {
         return MT_OK;
     }

@@ -51,6 +51,15 @@ bool mt_describe_is_told(const mt_view *view, const mt_demand *d);
 mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
                                   const mt_recommendation *baseline, mt_result *result,
                                   mt_recommendation *rec, mt_err *err);
+/*
+ * describe_verify.c: how a study's reading of a configuration at one design differs from that of a fresh analysis of it (solved with its own number of rigid-body modes), beyond the error bounds of both:
+ * a sentence; "": they agree. NULL: memory.
+ */
+const char *mt_describe_disagreement(const mt_modes *study, const mt_modes *fresh,
+                                     const char *configuration, mt_arena *mem);
+/* Does a fresh analysis disagree at any design of the result? Then its certificates and tolerance boxes are withdrawn, and such a design is graded "not verified". */
+bool mt_describe_is_doubted(const mt_result *result);
+mt_status mt_describe_withdraw(mt_result *result, mt_err *err);
 /* tolerance_box.c: inertia counts confirm the bands of a feasible design; its tolerance box, where the modes can be enclosed. After the clearances. */
 mt_status mt_describe_tolerance(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
                                 mt_err *err);

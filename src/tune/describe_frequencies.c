@@ -6,9 +6,7 @@
 #include "tune/describe.h"
 
 /* Modes listed of a configuration beyond those that goals name. */
-enum { LISTED_MODES = 4 };
-/* Frequencies of the search and of the fresh analysis that differ by more than this (relative) are worth a warning; both are good to about n eps. */
-static const double RECOMPUTED_AGREES = 1e-9;
+enum { LISTED_MODES = 4, SLACK_TEXT = 200 };
 static const double PI = 3.14159265358979323846;
 
 /* One configuration while its modes are listed. */
@@ -52,19 +50,6 @@ static mt_status put_name(const listing *l, mt_result_frequency *f, mt_err *err)
     return MT_OK;
 }
 
-static mt_status compare(const listing *l, const mt_result_frequency *f, mt_err *err)
-{
-    const mt_modes *const had = &l->view->analysis->modes;
-    const int pos = l->view->solved ? mt_modal_flexible(had, f->mode) : -1;
-    const double hz = pos >= 0 ? mt_modal_hz(had, pos) : nan("");
-    if (fabs(hz - f->recommended_hz) <= RECOMPUTED_AGREES * f->recommended_hz) {
-        return MT_OK;
-    }
-    return mt_describe_warn(
-        l->result, err, "%s mode %d: the search had %.12g Hz, a fresh analysis gives %.12g Hz",
-        f->configuration, f->mode, hz, f->recommended_hz);
-}
-
 static mt_status describe_mode(const listing *l, int index, mt_result_frequency *f, mt_err *err)
 {
     mt_analysis *const a = l->scratch;
@@ -87,11 +72,17 @@ static mt_status describe_mode(const listing *l, int index, mt_result_frequency 
     f->residual = a->modes.residual[pos];
     f->orthogonality = a->modes.orthogonality[pos];
     MT_TRY(mt_analysis_dlambda(a, pos, f->sensitivity, &f->repeated, err));
-    for (int i = 0; i < n; i++) { /* d Hz = d lambda / (8 pi^2 Hz) */
-        f->sensitivity[i] /= 8.0 * PI * PI * f->recommended_hz;
+    for (int i = 0; i < n; i++) { /* d Hz = d lambda / (8 pi^2 Hz): none at 0 Hz */
+        f->sensitivity[i] = f->recommended_hz > 0.0
+                                ? f->sensitivity[i] / (8.0 * PI * PI * f->recommended_hz)
+                                : nan("");
     }
-    MT_TRY(put_name(l, f, err));
-    return compare(l, f, err);
+    char slack[SLACK_TEXT];
+    if (mt_analysis_slack(a, pos, slack, sizeof slack)) {
+        f->slack = mt_arena_strdup(&l->result->mem, slack);
+        MT_TRY(f->slack == NULL ? mt_fail_memory(err) : MT_OK);
+    }
+    return put_name(l, f, err);
 }
 
 static void attach_frequency(const mt_demand *d, mt_result_frequency *f)
@@ -105,7 +96,8 @@ static void attach_frequency(const mt_demand *d, mt_result_frequency *f)
         return;
     }
     double over = f->recommended_hz - f->recommended_hz; /* 0, or NaN with the frequency */
-    over = f->recommended_hz < f->at_least_hz ? f->at_least_hz / f->recommended_hz - 1.0 : over;
+    const double hz = fmax(f->recommended_hz, MT_FREQUENCY_FLOOR * f->at_least_hz);
+    over = f->recommended_hz < f->at_least_hz ? f->at_least_hz / hz - 1.0 : over;
     over = f->recommended_hz > f->at_most_hz ? f->recommended_hz / f->at_most_hz - 1.0 : over;
     f->error_percent = 100.0 * over;
 }
@@ -194,11 +186,29 @@ static double original_hz(const mt_recommendation *baseline, const mt_result_fre
     return baseline == NULL ? f->recommended_hz : nan("");
 }
 
+/* The analysis has just been made here, with its own count: does it agree? From now on it counts as the study does, as far as it can. */
+static mt_status verify(listing *l, mt_err *err)
+{
+    const mt_analysis *const had = l->view->analysis;
+    const char *const text = mt_describe_disagreement(
+        &had->modes, &l->scratch->modes, mt_analysis_configuration(had), &l->result->mem);
+    if (text == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (text[0] != '\0' && l->rec->disagreement == NULL) {
+        l->rec->disagreement = text;
+    }
+    l->scratch->n_rigid = had->n_rigid;
+    l->scratch->recount = true;
+    return MT_OK;
+}
+
 static mt_status list_view(listing *l, int v, int count, mt_err *err)
 {
     mt_problem *const fresh = l->fresh;
     mt_analysis_options opt = mt_analysis_options_default();
     opt.gradient = true;
+    MT_TRY(verify(l, err));
     MT_TRY(mt_analysis_solve(l->scratch, fresh->x, &opt, err));
     for (int k = 1; k <= count; k++) {
         MT_TRY(describe_mode(l, k, &l->rec->frequencies[l->rec->n_frequencies], err));

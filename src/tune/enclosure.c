@@ -55,6 +55,35 @@ static mt_status note_inputs(mt_enclosure *e, mt_err *err)
     return MT_OK;
 }
 
+/* Does the analysis count a direction as free that some design of the bounds holds? A term can hold wherever its coefficient can be positive. */
+static mt_status check_count(mt_enclosure *e, const mt_analysis *a, bool *ok, char *reason,
+                             mt_err *err)
+{
+    const mt_term_list *const list = &a->lin->list[MT_TERM_STIFFNESS];
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    bool *const holds = mt_arena_alloc(&e->scratch, (size_t)list->n_terms, sizeof *holds);
+    int free_directions = 0;
+    if (holds == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int t = 0; t < list->n_terms; t++) {
+        const mt_node c = list->terms[t].coefficient;
+        holds[t] = list->terms[t].varies ? e->coefficients[mt_enclosure_find(e, c)].most > 0.0
+                                         : a->lin->value[c] != 0.0;
+    }
+    const mt_status rc = mt_analysis_free_directions(a->lin, &a->mass, holds, &e->scratch,
+                                                     &free_directions, err);
+    mt_arena_rewind(&e->scratch, mark);
+    if (rc == MT_OK && free_directions < a->n_rigid) {
+        *ok = false;
+        (void)snprintf(
+            reason, MT_REASON_SIZE,
+            "%d of its %d rigid-body modes may be held by a spring within the bounds",
+            a->n_rigid - free_directions, a->n_rigid);
+    }
+    return rc;
+}
+
 static mt_status build(mt_enclosure *e, const mt_analysis *a, const double *lower,
                        const double *upper, bool *ok, char *reason, mt_err *err)
 {
@@ -72,6 +101,9 @@ static mt_status build(mt_enclosure *e, const mt_analysis *a, const double *lowe
     e->n_rigid = a->n_rigid;
     MT_TRY(keep_bounds(e, lower, upper, err));
     MT_TRY(mt_enclosure_collect(e, a->lin, ok, reason, err));
+    if (*ok && a->n_rigid > 0) {
+        MT_TRY(check_count(e, a, ok, reason, err));
+    }
     if (*ok) {
         MT_TRY(mt_enclosure_reduce(e, a->lin, ok, reason, err));
     }

@@ -39,8 +39,11 @@ typedef struct mt_enclosure_coefficient {
     signed char
         *sign;     /* [n_inputs] of the derivative over the bounds; 0: none, or it changes */
     bool monotone; /* in all its inputs over the bounds */
-    double least;  /* over the bounds */
-    double most;
+    bool
+        held; /* a stiffness that was positive over the box that mt_enclosure_note_held noted */
+    double least; /* over the bounds */
+    double
+        most; /* likewise; where that is 0, a box in which it is not may have fewer rigid-body modes */
     mt_enclosure_part part[MT_MATRICES];
 } mt_enclosure_coefficient;
 
@@ -51,8 +54,8 @@ typedef struct mt_enclosure {
     double *lower; /* [n_inputs] bounds that the conditions were checked for */
     double *upper;
     int n; /* order of the matrices below, in which M at the bounds' low end is the identity */
-    int n_rigid;        /* rigid-body modes, fixed at the original design */
-    int n_modes;        /* vibration modes: n - n_rigid */
+    int n_rigid; /* rigid-body modes that the analysis counts: every design of the bounds has as many null directions at least */
+    int n_modes; /* vibration modes: n - n_rigid */
     mt_program program; /* of the coefficients alone */
     int n_coefficients;
     mt_node *sources; /* [n_coefficients] their nodes in the system's program */
@@ -88,6 +91,10 @@ void mt_enclosure_delete(mt_enclosure *e);
 
 /* Set the box lo <= x <= hi; it may leave the bounds. False where nothing is known over it: a coefficient may be negative or is not enclosed. No heap. */
 bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi);
+/* Note which stiffnesses are positive all over the box that is set; and are they so all over the one that is set later? Where one is not, a design of that box may have one more
+ * rigid-body mode. */
+void mt_enclosure_note_held(mt_enclosure *e);
+bool mt_enclosure_keeps_held(const mt_enclosure *e);
 /* The most and the fewest vibration modes below lambda [rad^2/s^2] that a design of the box may have: at no design are there more with eigenvalue <= lambda than
  * most, at every design there are at least `least` with eigenvalue < lambda (lambda counted up or down by the slack of rounding). In doubt: n_modes and 0. No heap
  * after the first calls; O(n^3 / 3), O(n) for chains. */

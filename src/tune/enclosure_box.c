@@ -73,7 +73,8 @@ bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi)
     double m_scale = 0.0;
     mt_enclosure_bounds(e, lo, hi);
     for (int i = 0; i < e->n_coefficients; i++) {
-        if (!(e->value[MT_LOW][i] >= 0.0) || !isfinite(e->value[MT_HIGH][i])) {
+        const bool freed = e->coefficients[i].most == 0.0 && e->value[MT_HIGH][i] > 0.0;
+        if (!(e->value[MT_LOW][i] >= 0.0) || !isfinite(e->value[MT_HIGH][i]) || freed) {
             return false;
         }
         k_scale += e->value[MT_HIGH][i] * e->coefficients[i].part[MT_STIFFNESS].trace;
@@ -97,6 +98,23 @@ bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi)
     e->slack_k = e->roundoff * k_scale / mu;
     e->slack_m = e->roundoff * (e->mass_varies ? m_scale : 1.0) / mu;
     return true;
+}
+
+void mt_enclosure_note_held(mt_enclosure *e)
+{
+    for (int i = 0; i < e->n_coefficients; i++) {
+        e->coefficients[i].held =
+            e->coefficients[i].part[MT_STIFFNESS].count > 0 && e->value[MT_LOW][i] > 0.0;
+    }
+}
+
+bool mt_enclosure_keeps_held(const mt_enclosure *e)
+{
+    bool keeps = true;
+    for (int i = 0; i < e->n_coefficients; i++) {
+        keeps = keeps && (!e->coefficients[i].held || e->value[MT_LOW][i] > 0.0);
+    }
+    return keeps;
 }
 
 /* w (lower) := A - sigma M. */

@@ -171,6 +171,12 @@ mt_status mt_view_solve(mt_problem *p, mt_view *view, bool with_gradient, mt_err
 mt_status mt_problem_values_init(const mt_problem *p, mt_arena *mem, mt_nlp_values *out,
                                  mt_err *err);
 
+/* An analysis of a configuration at x[n], counted as the study counts (study->counted). *out is the caller's. Fails as mt_analysis_new. */
+mt_status mt_problem_analyse(const mt_problem *p, int configuration, const double *x,
+                             mt_analysis **out, mt_err *err);
+/* The same for the configuration of a view, with the view's count (cheaper). */
+mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const double *x,
+                          mt_analysis **out, mt_err *err);
 /* View of a configuration, -1. */
 int mt_problem_view(const mt_problem *p, int configuration);
 /* The same, made where it is not there yet. */
@@ -211,10 +217,20 @@ mt_status mt_problem_init_demands(mt_problem *p, mt_err *err);
 double mt_problem_tolerance(const mt_goal *g);
 /* Once all rows are counted: tolerances and work space. */
 mt_status mt_problem_init_rows(mt_problem *p, mt_err *err);
-/* demand.c: lambda'/(2 lambda) of the mode at pos for all variables, chained to t: out[n]. A repeated mode: the mean of its cluster, which is smooth where the single modes are
- * not. */
-mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, double *out,
-                                   mt_err *err);
+/*
+ * demand.c: rows in ln f. A spring that starts from 0 has f = 0 and df/dk infinite there, while d(f^2)/dk is finite: below floor_hz, MT_FREQUENCY_FLOOR of what a mode is compared with, ln f
+ * goes on as its tangent in f^2,
+ *     ln f_0 + (f^2 / f_0^2 - 1) / 2,
+ * which has a value and a slope at 0 Hz, the same sign, and the same derivative at f_0. No goal is met down there, whatever its tolerance.
+ */
+#define MT_FREQUENCY_FLOOR 1e-3
+/* A mode at 0 Hz is inside a band that begins there by this much, a factor of 1000 of its upper edge: ln(1 / MT_FREQUENCY_FLOOR). */
+#define MT_MOST_INSIDE 7.0
+/* ln(f / edge_hz) of the mode at pos, so continued. */
+double mt_problem_ln_ratio(const mt_modes *modes, int pos, double edge_hz, double floor_hz);
+/* Its slope lambda'/(2 lambda) for all variables, chained to t: out[n]. A repeated mode: the mean of its cluster, which is smooth where the single modes are not. */
+mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, double floor_hz,
+                                   double *out, mt_err *err);
 /* Values (and gradients, unless NULL where out holds none) of one demand after its view has been solved; rows as numbered. */
 mt_status mt_demand_eval(mt_problem *p, const mt_demand *d, bool with_gradient,
                          mt_nlp_values *out, mt_err *err);

@@ -138,16 +138,16 @@ static mt_status put_row(mt_problem *p, mt_analysis *a, const edge_row *e, const
     const double sign = e->sign;
     const double z = p->clearance ? t[p->n] : 0.0;
     const int pos = mt_modal_flexible(&a->modes, index);
-    const double hz = pos >= 0 ? mt_modal_hz(&a->modes, pos) : nan("");
-    if (!(hz > 0.0)) {
+    const double floor = MT_FREQUENCY_FLOOR * e->edge_hz;
+    if (pos < 0 || !(e->edge_hz > 0.0)) {
         return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\" has no vibration mode %d here",
                        mt_analysis_configuration(a), index);
     }
-    out->in[row] = (sign * log(hz / e->edge_hz)) - z;
+    out->in[row] = (sign * mt_problem_ln_ratio(&a->modes, pos, e->edge_hz, floor)) - z;
     if (!with_gradient) {
         return MT_OK;
     }
-    MT_TRY(mt_problem_dln_frequency(p, a, pos, p->dshape, err));
+    MT_TRY(mt_problem_dln_frequency(p, a, pos, floor, p->dshape, err));
     for (int i = 0; i < p->n; i++) {
         out->din[row + ((ptrdiff_t)i * mt_problem_rows_in(p))] = sign * p->dshape[i];
     }
@@ -198,13 +198,18 @@ double mt_clear_violation(const mt_clear *c, const mt_modes *modes, int *below, 
     double violation = modes->n_unstable > 0 ? nan("") : 0.0;
     for (int b = 0; b < c->bands.n; b++) {
         const mt_band *const band = &c->bands.items[b];
+        const bool from_zero = !(band->lower_hz > 0.0); /* 0 Hz is inside: nothing is below */
         const double middle = sqrt(fmax(band->lower_hz, 0.0) * band->upper_hz);
         int count = 0;
         for (int i = 0; i < modes->count; i++) {
-            const double hz =
-                modes->kind[i] == MT_MODE_FLEXIBLE ? mt_modal_hz(modes, i) : nan("");
-            const double inside = fmin(log(hz / band->lower_hz), log(band->upper_hz / hz));
-            count += hz <= middle ? 1 : 0;
+            const double hz = mt_modal_hz(modes, i);
+            if (modes->kind[i] != MT_MODE_FLEXIBLE) {
+                continue;
+            }
+            const double over = from_zero ? HUGE_VAL : log(hz / band->lower_hz);
+            const double under = fmin(log(band->upper_hz / hz), MT_MOST_INSIDE);
+            const double inside = fmin(over, under);
+            count += hz <= middle && !from_zero ? 1 : 0;
             if (inside > violation) {
                 violation = inside;
                 if (worst != NULL) {
@@ -265,7 +270,8 @@ double mt_clear_room(const mt_problem *p, const mt_clear *c)
                 const double hz = mt_modal_hz(modes, i);
                 const double below =
                     band->lower_hz > 0.0 ? log(band->lower_hz / hz) : -HUGE_VAL;
-                room = fmin(room, fmax(below, log(hz / band->upper_hz)));
+                const double above = fmax(log(hz / band->upper_hz), -MT_MOST_INSIDE);
+                room = fmin(room, fmax(below, above));
             }
         }
     }

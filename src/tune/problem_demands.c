@@ -17,7 +17,50 @@ int mt_problem_view(const mt_problem *p, int configuration)
     return -1;
 }
 
-/* Shape of each named mode of the configuration at the original design; of those that are there. */
+/* Solve again where the count has changed since. */
+static mt_status solve_counted(mt_analysis *a, int counted, const double *x, mt_err *err)
+{
+    const mt_analysis_options opt = mt_analysis_options_default();
+    return a->n_rigid == counted
+               ? MT_OK
+               : mt_err_in(err, mt_analysis_solve(a, x, &opt, err), "configuration \"%s\"",
+                           mt_analysis_configuration(a));
+}
+
+mt_status mt_problem_analyse(const mt_problem *p, int configuration, const double *x,
+                             mt_analysis **out, mt_err *err)
+{
+    mt_analysis *a = NULL;
+    *out = NULL;
+    MT_TRY(mt_analysis_new(p->study->model, configuration, p->n, p->inputs, x, &a, err));
+    mt_status rc = mt_analysis_count(a, &p->study->counted, NULL, 0.0, err);
+    rc = rc == MT_OK ? solve_counted(a, a->n_null, x, err) : rc;
+    if (rc != MT_OK) {
+        mt_analysis_delete(a);
+        return rc;
+    }
+    *out = a;
+    return MT_OK;
+}
+
+mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const double *x,
+                          mt_analysis **out, mt_err *err)
+{
+    mt_analysis *a = NULL;
+    *out = NULL;
+    MT_TRY(mt_analysis_new(p->study->model, view->configuration, p->n, p->inputs, x, &a, err));
+    a->n_rigid = view->analysis->n_rigid;
+    const mt_status rc = solve_counted(a, a->n_null, x, err);
+    if (rc != MT_OK) {
+        mt_analysis_delete(a);
+        return rc;
+    }
+    *out = a;
+    return MT_OK;
+}
+
+/* Shape of each named mode of the configuration at the original design; of those that are there. The model names a mode by its index at its own design: vibrations of 0 Hz, which only
+ * the study counts, have none there. */
 static mt_status name_modes(mt_problem *p, mt_view *view, mt_err *err)
 {
     const mt_model *const model = p->study->model;
@@ -30,7 +73,8 @@ static mt_status name_modes(mt_problem *p, mt_view *view, mt_err *err)
         return mt_fail_memory(err);
     }
     for (int i = 0; i < model->n_modes; i++) {
-        const int pos = mt_modal_flexible(&a->modes, model->modes[i].index);
+        const int pos =
+            mt_modal_flexible(&a->modes, model->modes[i].index + a->n_null - a->n_rigid);
         if (model->modes[i].configuration != view->configuration || pos < 0) {
             continue;
         }
@@ -53,8 +97,7 @@ mt_status mt_problem_add_view(mt_problem *p, int configuration, int *out, mt_err
     }
     mt_view *const view = &p->views[p->n_views];
     *view = (mt_view){.configuration = configuration, .solved = true};
-    MT_TRY(mt_analysis_new(p->study->model, configuration, p->n, p->inputs, p->original,
-                           &view->analysis, err));
+    MT_TRY(mt_problem_analyse(p, configuration, p->original, &view->analysis, err));
     *out = p->n_views++;
     return name_modes(p, view, err);
 }

@@ -25,8 +25,7 @@ static mt_status solve_at(void *context, double s, mt_analysis **out, mt_err *er
     }
     mt_problem_x(p, w->t, w->x);
     if (w->view->scout == NULL) {
-        MT_TRY(mt_analysis_new(p->study->model, w->view->configuration, p->n, p->inputs,
-                               p->original, &w->view->scout, err));
+        MT_TRY(mt_view_analyse(p, w->view, p->original, &w->view->scout, err));
     }
     *out = w->view->scout;
     return mt_analysis_solve(w->view->scout, w->x, &opt, err);

@@ -21,8 +21,7 @@ static mt_status analysis_at(judge *j, int configuration, int design, mt_analysi
 {
     mt_analysis **const slot = &j->analysis[(DESIGNS * configuration) + design];
     if (*slot == NULL) {
-        MT_TRY(mt_analysis_new(j->p->study->model, configuration, j->p->n, j->p->inputs,
-                               j->x[design], slot, err));
+        MT_TRY(mt_problem_analyse(j->p, configuration, j->x[design], slot, err));
     }
     *out = *slot;
     return MT_OK;
@@ -74,7 +73,8 @@ static mt_status named_at(judge *j, const mt_published *pub, mt_analysis *a, int
         return mt_fail_memory(err);
     }
     for (int i = 0; i < model->n_modes; i++) {
-        const int there = mt_modal_flexible(&first->modes, model->modes[i].index);
+        const int there = mt_modal_flexible(&first->modes, model->modes[i].index +
+                                                               first->n_null - first->n_rigid);
         if (model->modes[i].configuration != pub->configuration || there < 0) {
             continue;
         }
@@ -99,7 +99,9 @@ static mt_status mode_at(judge *j, const mt_published *pub, mt_analysis *a, int 
 {
     const bool by_index = pub->mode.index > 0;
     *index = by_index ? pub->mode.index : j->p->study->model->modes[pub->mode.named].index;
-    *pos = mt_modal_flexible(&a->modes, *index);
+    /* the model names a mode by its index at its own design, without vibrations of 0 Hz that only the study counts */
+    const int loose = by_index ? 0 : a->n_null - a->n_rigid;
+    *pos = mt_modal_flexible(&a->modes, *index + loose);
     if (by_index || pub->original) {
         return MT_OK;
     }

@@ -132,7 +132,10 @@ static void limit_text(const mt_result_frequency *f, char *text)
         MT_HAS(f->at_most_hz) ? log(f->at_most_hz / f->recommended_hz) : HUGE_VAL;
     const char *const side = low < high ? "lower" : "upper";
     const double limit = low < high ? f->at_least_hz : f->at_most_hz;
-    if (fabs(fmin(low, high)) <= 0.01 * WORTH_SAYING_PERCENT) {
+    if (!(f->recommended_hz > 0.0) && MT_HAS(f->at_least_hz)) {
+        (void)snprintf(text, DEMAND_SIZE, "far below its lower limit of %.6g Hz",
+                       f->at_least_hz);
+    } else if (fabs(fmin(low, high)) <= 0.01 * WORTH_SAYING_PERCENT) {
         (void)snprintf(text, DEMAND_SIZE, "at its %s limit", side);
     } else if (f->error_percent > WORTH_SAYING_PERCENT) {
         (void)snprintf(text, DEMAND_SIZE, "%.3g %% %s its %s limit of %.6g Hz",
@@ -188,6 +191,27 @@ static void say_frequency(mt_sentences *s, const mt_result_frequency *f)
     }
     if (f->repeated) {
         mt_say(s, "It is a repeated mode and has no sensitivity of its own.");
+    }
+}
+
+static void say_doubt(mt_sentences *s)
+{
+    if (s->rec->disagreement != NULL) {
+        mt_say(s, "NOT VERIFIED, do not use: %s.", s->rec->disagreement);
+    }
+}
+
+/* Vibrations of 0 Hz. */
+static void say_slack(mt_sentences *s)
+{
+    for (int i = 0; i < s->rec->n_frequencies; i++) {
+        const mt_result_frequency *const f = &s->rec->frequencies[i];
+        const bool some = f->slack != NULL && f->slack[0] != '\0';
+        if (f->slack != NULL) {
+            mt_say(s, "%s mode %d is at 0 Hz: nothing holds it at this design%s%s%s.",
+                   f->configuration, f->mode, some ? " (the stiffness of " : "",
+                   some ? f->slack : "", some ? " is 0)" : "");
+        }
     }
 }
 
@@ -309,6 +333,8 @@ mt_status mt_describe_baseline_reasons(const mt_problem *p, mt_result *result, m
 {
     const mt_design original = {.t = p->origin_t};
     mt_sentences s = {.p = p, .design = &original, .result = result, .rec = &result->baseline};
+    say_doubt(&s);
+    say_slack(&s);
     say_violations(&s);
     mt_say_bands(&s);
     return s.failed ? mt_fail_memory(err) : MT_OK;
@@ -319,7 +345,9 @@ mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
                               mt_recommendation *rec, mt_err *err)
 {
     mt_sentences s = {.p = p, .design = design, .result = result, .rec = rec};
+    say_doubt(&s);
     say_changes(&s);
+    say_slack(&s);
     say_frequencies(&s);
     say_violations(&s);
     mt_say_bands(&s);

@@ -42,6 +42,8 @@ typedef struct mt_result_frequency {
     /* [n_parameters] Hz per unit of each variable; NaN at a repeated mode; NULL: not computed */
     double *sensitivity;
     bool repeated;
+    const char *
+        slack; /* of a vibration of 0 Hz (not written: reasons tell): the springs of zero stiffness that would hold it, "" where none would; NULL: it is held */
 } mt_result_frequency;
 
 /* A goal judged at a design. */
@@ -97,8 +99,11 @@ typedef struct mt_tolerance_box {
 typedef struct mt_recommendation {
     int rank;
     bool feasible;
-    const char *grade; /* "feasible and proven" | "feasible" | "compromise" | "infeasible" */
-    double score;      /* first objective's value in its unit; NaN where infeasible */
+    /* "feasible and proven" | "feasible" | "compromise" | "infeasible" | "not verified" */
+    const char *grade;
+    const char *
+        disagreement; /* of a fresh analysis with what the search read, in words (not written: warnings and reasons tell); NULL: none */
+    double score;     /* first objective's value in its unit; NaN where infeasible */
     const char *score_unit;
     double change; /* size of the redesign */
     double misfit; /* NaN: no weighted goals */

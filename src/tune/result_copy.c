@@ -45,6 +45,7 @@ static void copy_frequencies(copier *c, mt_recommendation *r)
         f->configuration = text(c, f->configuration);
         f->name = text(c, f->name);
         f->reference = text(c, f->reference);
+        f->slack = text(c, f->slack);
         if (f->sensitivity != NULL) {
             f->sensitivity = list(c, f->sensitivity, r->n_parameters, sizeof(double));
         }
@@ -88,6 +89,7 @@ static void copy_tolerances(copier *c, mt_recommendation *r)
 static void copy_words(copier *c, mt_recommendation *r)
 {
     r->grade = text(c, r->grade);
+    r->disagreement = text(c, r->disagreement);
     r->score_unit = text(c, r->score_unit);
     r->goals = list(c, r->goals, r->n_goals, sizeof *r->goals);
     for (int i = 0; i < r->n_goals && !c->failed; i++) {

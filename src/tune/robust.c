@@ -66,8 +66,7 @@ static mt_status make_corner(mt_problem *p, int view, const double *lower, const
     if (!matters) {
         return MT_OK;
     }
-    return mt_analysis_new(p->study->model, p->views[view].configuration, p->n, p->inputs,
-                           p->original, &out->analysis, err);
+    return mt_view_analyse(p, &p->views[view], p->original, &out->analysis, err);
 }
 
 static mt_status corners_of(mt_problem *p, mt_enclosure *e, int view, double *const *room,

@@ -62,20 +62,21 @@ static mt_status put_mode(mt_problem *p, const edge *e, bool with_gradient, mt_n
         return MT_OK; /* the row of the design itself stands */
     }
     const int pos = mt_modal_flexible(&c->analysis->modes, e->mode);
-    const double hz = pos >= 0 ? mt_modal_hz(&c->analysis->modes, pos) : nan("");
-    if (!(hz > 0.0)) {
+    const double floor = MT_FREQUENCY_FLOOR * e->hz;
+    if (pos < 0) {
         return mt_fail(err, MT_E_DOMAIN,
                        "configuration \"%s\" has no vibration mode %d at a corner of the "
                        "tolerances",
                        mt_analysis_configuration(c->analysis), e->mode);
     }
     if (with_gradient) {
-        MT_TRY(mt_problem_dln_frequency(p, c->analysis, pos, slope, err));
+        MT_TRY(mt_problem_dln_frequency(p, c->analysis, pos, floor, slope, err));
         for (int i = 0; i < p->n; i++) {
             slope[i] *= c->factor[i];
         }
     }
-    put(p, e->row, (sign * log(hz / e->hz)) - e->z, sign, with_gradient ? slope : NULL, out);
+    const double ratio = mt_problem_ln_ratio(&c->analysis->modes, pos, e->hz, floor);
+    put(p, e->row, (sign * ratio) - e->z, sign, with_gradient ? slope : NULL, out);
     return MT_OK;
 }
 
@@ -179,7 +180,8 @@ double mt_robust_room(const mt_problem *p, const mt_clear *c)
         for (int b = 0; b < c->bands.n; b++) {
             const mt_band *const band = &c->bands.items[b];
             const double below = band->lower_hz > 0.0 ? log(band->lower_hz / high) : -HUGE_VAL;
-            room = fmin(room, fmax(below, log(low / band->upper_hz)));
+            const double above = fmax(log(low / band->upper_hz), -MT_MOST_INSIDE);
+            room = fmin(room, fmax(below, above));
         }
     }
     return room;

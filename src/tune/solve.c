@@ -101,6 +101,9 @@ static mt_result_status status_of(const answer *a, const mt_recommendation *best
     if (a->found.stop == MT_STOP_USER) {
         return MT_RESULT_INTERRUPTED;
     }
+    if (mt_describe_is_doubted(a->result)) {
+        return MT_RESULT_COMPROMISE;
+    }
     if (a->infeasible) {
         return MT_RESULT_INFEASIBLE;
     }
@@ -128,6 +131,12 @@ static const char *status_text(const answer *a, const mt_recommendation *best)
     if (a->found.stop == MT_STOP_USER) {
         return n > 0 ? "Interrupted: the best designs found so far."
                      : "Interrupted before any design was found.";
+    }
+    if (mt_describe_is_doubted(a->result)) {
+        return "Not verified: a fresh analysis disagrees with what the search read, so that "
+               "nothing here is proven and designs graded \"not verified\" must not be used "
+               "(see "
+               "the warnings).";
     }
     if (best->n_goals == 0) {
         return "No goals: the model as it is, against published values.";
@@ -319,6 +328,9 @@ static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
         }
     }
     MT_TRY(certify(a, err));
+    if (mt_describe_is_doubted(result)) {
+        MT_TRY(mt_describe_withdraw(result, err));
+    }
     MT_TRY(relax(a, err));
     MT_TRY(warn(a, err));
     result->run.evaluations = a->found.evals;

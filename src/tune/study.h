@@ -7,6 +7,7 @@
 #include "model/model.h"
 #include "tune/aircraft.h"
 #include "tune/bands.h"
+#include "tune/count_box.h"
 
 /*
  * A question asked of a model: variables, goals, objective, references, published values. Filled by a reader (io), checked by
@@ -265,6 +266,9 @@ typedef struct mt_study {
     MT_LIST_OF(mt_objective, objectives);
     MT_LIST_OF(mt_published, published);
     mt_trade trade;
+    /* the designs that are counted alike (analysis.h): variables within their bounds or catalogues, with their tolerances and the original values, and what a trade study varies; by
+     * finish. Studies made from this one (points of a trade study, one combination of a catalogue) keep it. */
+    mt_count_box counted;
     mt_name aircraft_path; /* of the catalogue read, or unreadable (noted); s NULL: none */
     mt_aircraft_list aircraft;
     /* for the result: what a reader of it must know (values that nobody confirmed, bands that were merged); by finish */

@@ -20,7 +20,8 @@ void mt_study_check_avoid(mt_study_check *c, mt_goal *goal); /* study_avoid.c; b
 void mt_study_check_overrides(mt_study_check *c);  /* study_variables.c; after the goals */
 void mt_study_check_objectives(mt_study_check *c); /* study_objectives.c; after the goals */
 void mt_study_check_published(mt_study_check *c);  /* study_published.c */
-void mt_study_check_trade(mt_study_check *c);      /* study_trade.c; last */
+void mt_study_check_trade(mt_study_check *c);      /* study_trade.c; last of the checks */
+void mt_study_fill_counted(mt_study_check *c);     /* study_counted.c; after all of them */
 
 /* Shared: names to indices, with "did you mean". An absent name gives MT_ABSENT without a message. */
 int mt_check_parameter(mt_study_check *c, mt_name name);

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * A fresh analysis decides. Search, proofs and readings of a study rest on analyses that were opened at the original design and count their modes as the whole study does. A design that is
+ * reported is analysed once more from nothing: a new system made there, no bounds, its own number of rigid-body modes. Mode by mode the two must agree, where
+ *     a vibration of 0 Hz of the study is a rigid-body mode of the fresh analysis,
+ * else nothing that the study says of the design is trusted.
+ */
+#include <math.h>
+
+#include "tune/describe.h"
+
+/* Frequencies that differ by more than this (relative) beyond their error bounds disagree: both are good to about n eps. */
+static const double RECOMPUTED_AGREES = 1e-9;
+/* The bound of a relative error is taken at its word up to here; where the mass is singular or nearly so it says nothing. */
+static const double MOST_RELATIVE = 1e-6;
+
+static double bound(const mt_modes *modes, double lambda)
+{
+    return modes->error_bound + (fmin(modes->error_relative, MOST_RELATIVE) * fabs(lambda));
+}
+
+static double hz_of(double lambda)
+{
+    static const double TWO_PI = 6.283185307179586476925;
+    return sqrt(fmax(lambda, 0.0)) / TWO_PI;
+}
+
+const char *mt_describe_disagreement(const mt_modes *study, const mt_modes *fresh,
+                                     const char *configuration, mt_arena *mem)
+{
+    if (study->count != fresh->count || study->n_unstable != fresh->n_unstable) {
+        return mt_arena_printf(
+            mem,
+            "\"%s\" has %d modes, %d of them unstable; a fresh analysis finds "
+            "%d and %d",
+            configuration, study->count, study->n_unstable, fresh->count, fresh->n_unstable);
+    }
+    if (fresh->n_rigid < study->n_rigid) {
+        return mt_arena_printf(mem,
+                               "\"%s\" was taken to have %d rigid-body modes; a fresh analysis "
+                               "finds %d",
+                               configuration, study->n_rigid, fresh->n_rigid);
+    }
+    for (int i = 0; i < study->count && study->n_unstable == 0; i++) {
+        const double a = study->lambda[i];
+        const double b = fresh->lambda[i];
+        const double agrees = 2.0 * RECOMPUTED_AGREES * fmax(fabs(a), fabs(b));
+        if (!(fabs(a - b) <= agrees + bound(study, a) + bound(fresh, b))) {
+            return mt_arena_printf(mem,
+                                   "mode %d of \"%s\" was taken to be at %.12g Hz; a fresh "
+                                   "analysis gives %.12g Hz",
+                                   i + 1 - study->n_rigid, configuration, hz_of(a), hz_of(b));
+        }
+    }
+    return "";
+}
+
+static bool doubted(const mt_recommendation *rec)
+{
+    return rec->disagreement != NULL;
+}
+
+bool mt_describe_is_doubted(const mt_result *result)
+{
+    bool any = doubted(&result->baseline);
+    for (int i = 0; i < result->n_recommendations; i++) {
+        any = any || doubted(&result->recommendations[i]);
+    }
+    return any;
+}
+
+/* What was proven rests on the readings that are not trusted: of any design of the study. */
+static void disgrade(mt_recommendation *rec)
+{
+    rec->tolerance_box = NULL;
+    rec->grade = doubted(rec) ? "not verified" : rec->feasible ? "feasible" : "compromise";
+}
+
+mt_status mt_describe_withdraw(mt_result *result, mt_err *err)
+{
+    disgrade(&result->baseline);
+    for (int i = 0; i < result->n_recommendations; i++) {
+        disgrade(&result->recommendations[i]);
+    }
+    for (int i = 0; i < result->n_certificates; i++) {
+        mt_certificate *const c = &result->certificates[i];
+        c->proven = false;
+        c->text =
+            mt_arena_printf(&result->mem,
+                            "Withdrawn, since a fresh analysis disagrees with the readings "
+                            "that it rests on: %s",
+                            c->text);
+        if (c->text == NULL) {
+            return mt_fail_memory(err);
+        }
+    }
+    return MT_OK;
+}
