@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Claims about all designs: that rank 1 is the best, that no design exists, ranges, assignments, tolerance boxes."""
+import itertools
+import math
+import re
+
+import numpy as np
+
+import search
+from check_numbers import design_of, near
+
+BETTER = 1e-4      # a design is better that much, relative (of at least FLOOR)
+FLOOR = 2e-2
+SAMPLES = 1500
+STARTS = 2
+ENUMERATED = 20000  # combinations at most that are all judged
+
+
+def _best(run):
+    feasible = [r for r in run.result["recommendations"] if r["feasible"]]
+    return feasible[0] if feasible else None
+
+
+def _counterexamples(run):
+    """Feasible designs found by brute force, with their cost: of the samples, and ends of local searches."""
+    if run.found is None:
+        q = run.question
+        if all(v.values is not None for v in q.variables) and math.prod(len(v.values) for v in q.variables) <= ENUMERATED:
+            x = search.combinations(q)
+            missed = q.missed_robustly(x)
+            run.found = x[missed <= 1.0], q.cost(x[missed <= 1.0])
+        else:
+            x = search.samples(q, SAMPLES)
+            starts, good, _ = search.least_missed(q, x, STARTS)
+            own = [design_of(q, r)[0] for r in run.result["recommendations"][:2]]
+            ends, missed, cost = search.descend(q, own + list(starts))
+            keep = missed <= 1.0
+            run.found = np.concatenate([ends[keep], x[good]]), np.concatenate([cost[keep], q.cost(x[good])])
+    return run.found
+
+
+def optimum(run):
+    """Nothing feasible is better than rank 1; where something is feasible, the study is solved."""
+    q, result = run.question, run.result
+    if not q.goals or q.n == 0:
+        return
+    with np.errstate(all="ignore"):
+        x, cost = _counterexamples(run)
+    if len(x) == 0:
+        return
+    at = int(np.nanargmin(cost))
+    best = _best(run)
+    if best is None:
+        yield f"{result['status']}, but {x[at].tolist()} meets all goals"
+        return
+    own = float(q.cost(design_of(q, best))[0])
+    if cost[at] < own - BETTER * max(abs(own), FLOOR):
+        yield f"rank 1 has {q.objectives[0]} {own}, but {x[at].tolist()} has {cost[at]} (kkt {best['kkt_residual']})"
+
+
+def enumerated(run):
+    """Counts of an enumeration."""
+    q = run.question
+    for c in run.result["certificates"]:
+        found = re.match(r"Enumerated: all (\d+) combinations of catalogue values were judged, (\d+) of them meet", c["text"])
+        if found and all(v.values is not None for v in q.variables):
+            x = search.combinations(q)
+            good = int(np.sum(q.missed_robustly(x) <= 1.0))
+            if (len(x), good) != (int(found[1]), int(found[2])):
+                yield f"\"{c['text']}\": {good} of {len(x)}"
+        if c["text"].startswith("None of the") and len(_counterexamples(run)[0]) and c["proven"]:
+            yield f"\"{c['text']}\": {_counterexamples(run)[0][0].tolist()} does"
+
+
+def certificates(run):
+    """Proven: no sample, and no end of a local search, contradicts."""
+    q, result = run.question, run.result
+    proven = [c for c in result["certificates"] if c["proven"]]
+    if not proven:
+        return
+    x = search.samples(q, SAMPLES)
+    for c in proven:
+        reach = re.search(r"(\S+) mode (\d+) stays between ([-\d.e+]+) and ([-\d.e+]+|inf) Hz", c["text"])
+        if reach:
+            hz = q.frequencies(x, reach[1])[:, int(reach[2]) - 1]
+            low, high = float(reach[3]), float(reach[4])
+            if c["reachable_lower_hz"] is not None:
+                low, high = c["reachable_lower_hz"], c["reachable_upper_hz"]
+            hz = hz[np.isfinite(hz)]
+            if len(hz) and (hz.min() < low * (1 - 1e-5) or hz.max() > high * (1 + 1e-5)):
+                yield f"\"{c['text']}\": samples reach from {hz.min()} to {hz.max()}"
+        elif c["kind"] == "infeasible":
+            good = _counterexamples(run)[0]
+            if len(good):
+                yield f"\"{c['text']}\": {good[0].tolist()} meets all goals"
+        elif c["kind"] == "gap_assignments":
+            yield from _assignments(run, c, x)
+
+
+def _assignments(run, certificate, x):
+    q = run.question
+    good, _ = _counterexamples(run)
+    feasible = np.concatenate([x[q.missed(x) <= 1.0], good]) if len(good) else x[q.missed(x) <= 1.0]
+    found = re.match(r"Of (\d+) gap assignments (\d+) can be met", certificate["text"])
+    listed = {tuple(g["modes_below"] for g in r["gap_assignment"]) for r in run.result["recommendations"]
+              if r["feasible"] and r["gap_assignment"] is not None}
+    if found and int(found[2]) < run.study.get("recommendations", 5) and len(listed) != int(found[2]):
+        yield f"\"{certificate['text']}\": {len(listed)} kinds are listed"
+    for design, kind in zip(feasible, q.kind(feasible)):
+        if found and kind not in listed and len(listed) < run.study.get("recommendations", 5):
+            yield f"\"{certificate['text']}\": {design.tolist()} has {kind}"
+            return
+
+
+def tolerance_boxes(run):
+    """Within the box no mode enters a band (without its margin): corners and samples."""
+    q = run.question
+    for rec in run.result["recommendations"]:
+        box = rec["tolerance_box"]
+        if box is None or not rec["feasible"] or not box["proven"]:
+            continue
+        x = design_of(q, rec)[0]
+        boxes = [(np.full(q.n, box["all_percent"] or 0.0), "all variables")]
+        for i, item in enumerate(box["per_variable"]):
+            if item["percent"] is not None:
+                boxes.append((np.where(np.arange(q.n) == i, item["percent"], 0.0), item["name"]))
+        for percent, what in boxes:
+            part = np.minimum(percent / 100.0 * (1.0 - 1e-9), 0.999)
+            signs = np.array(list(itertools.product((-1.0, 1.0), repeat=q.n))) if q.n <= 8 else np.zeros((0, q.n))
+            inside = 2.0 * search._halton(60, q.n) - 1.0
+            points = x * (1.0 + np.concatenate([signs, inside]) * part)
+            with np.errstate(all="ignore"):
+                hz = q.all_frequencies(points)
+            for c in q.configurations:
+                for band in q.bands[c]:
+                    deep = np.max(band.inside(hz[c], base=True), axis=1)
+                    if np.nanmax(deep) > 1e-7:
+                        at = int(np.nanargmax(deep))
+                        yield (f"rank {rec['rank']}: {what} may change by {percent.max()} % (proven), but at {points[at].tolist()} "
+                               f"a mode is in the band {band.base}")
+
+
+CHECKS = {"optimum": optimum, "enumerated": enumerated, "certificates": certificates, "tolerance_boxes": tolerance_boxes}

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is said beside the numbers: prices, undetermined directions, sentences; and that nothing contradicts anything else."""
+import copy
+import re
+
+import numpy as np
+
+import search
+from check_numbers import design_of, near
+from question import Question
+
+NUMBER = r"([-+]?\d[\d.]*(?:e[-+]?\d+)?)"
+PRICE = 0.03     # of a price: three digits, and the curve within the step that measures it
+STEP = 1e-3      # of what a demand gives way by, in percent of itself
+
+
+def _best(run):
+    feasible = [r for r in run.result["recommendations"] if r["feasible"]]
+    return feasible[0] if feasible else None
+
+
+def _cost_with(run, study, start):
+    """Cost of the best design near `start` for a changed study; None where the search finds nothing feasible."""
+    question = Question(run.model, study)
+    x = search.Local(question, np.clip(start, question.lower, question.upper)).run()
+    cost, missed = float(question.cost(x[None, :])[0]), float(question.missed_robustly(x[None, :])[0])
+    return cost if missed <= 1.0 else None
+
+
+def _slope(run, change, start):
+    """How much is saved per 1 % that a demand gives way: change(study, fraction) moves it."""
+    costs = []
+    for fraction in (STEP, -STEP):
+        study = copy.deepcopy(run.study)
+        change(study, fraction)
+        costs.append(_cost_with(run, study, start))
+    if None in costs:
+        return None
+    here = _cost_with(run, run.study, start)
+    own = float(run.question.cost(start[None, :])[0])
+    if here is None or abs(here - own) > 1e-5 * max(abs(own), 1e-3):
+        return None  # the design is no optimum: "optimum" says so
+    up, down = (here - costs[0]) / (100.0 * STEP), (costs[1] - here) / (100.0 * STEP)
+    if abs(up - down) > 0.1 * max(abs(up), abs(down)):
+        return None  # a kink: another constraint takes over
+    return 0.5 * (up + down)
+
+
+def _goal_mover(index, text, sense):
+    def change(study, fraction):
+        goal = study["goals"][index]
+        members = [m for m in ("target_hz", "equals", "at_least_hz", "at_least", "at_most_hz", "at_most") if m in goal]
+        member = members[0]
+        if member in ("target_hz", "equals"):
+            goal[member] *= np.exp(-sense * fraction) if member == "target_hz" else 1.0 - sense * fraction * np.sign(goal[member])
+        else:
+            goal[member] += (-1.0 if "least" in member else 1.0) * fraction * (abs(goal[member]) or 1.0)
+    return change
+
+
+def _bound_mover(index, bound, amount):
+    def change(study, fraction):
+        study["variables"][index][bound] += (1.0 if bound == "upper" else -1.0) * amount * 100.0 * fraction * 0.1
+    return change
+
+
+def prices(run):
+    """By solving again with what has a price moved a little."""
+    best, q = _best(run), run.question
+    if best is None or run.study.get("trade") or any(v.values is not None for v in q.variables) or len(q.objectives) > 1 or q.robust:
+        return
+    start = design_of(q, best)[0]
+    for reason in best["reasons"]:
+        goal = re.match(r"Goal /goals/(\d+) \(.*\) has a price: (?:giving way by|asking for) 1 % ?(less|more|)\s?would (?:save|gain) " + NUMBER, reason)
+        bound = re.match(NUMBER + r" ?(.*) (more|less) allowed on (\w+) would (?:save|gain) " + NUMBER, reason)
+        if goal:
+            two = [m for m in run.study["goals"][int(goal[1])] if m.startswith("at_")]
+            if len(two) > 1 or q.demands[[d[0] for d in q.demands].index(int(goal[1]))][1]["type"] == "avoid":
+                continue
+            if len(run.study["goals"][int(goal[1])].get("configurations", [1])) > 1:
+                continue
+            told = float(goal[3])
+            slope = _slope(run, _goal_mover(int(goal[1]), reason, -1.0 if goal[2] == "more" else 1.0), start)
+        elif bound:
+            index = [v.name for v in q.variables].index(bound[4])
+            told = float(bound[5])
+            slope = _slope(run, _bound_mover(index, "upper" if bound[3] == "more" else "lower", float(bound[1])), start)
+            slope = None if slope is None else 10.0 * slope
+        else:
+            continue
+        if slope is not None and abs(told - slope) > PRICE * max(abs(told), abs(slope)) + 1e-7 * max(abs(best["score"] or 1.0), 1.0):
+            yield f"\"{reason}\": solved again it is {slope}"
+
+
+def undetermined(run):
+    """Crossing the bounds along the direction changes every goal by less than its tolerance, and by no more than told."""
+    best, q = _best(run), run.question
+    if best is None:
+        return
+    start = q.t(design_of(q, best))[0]
+    lower, upper = q.t(q.lower[None, :])[0], q.t(q.upper[None, :])[0]
+    for item in run.result["undetermined"]:
+        d = np.array([item["components"][v.name] for v in q.variables], float)
+        if not near(float(np.linalg.norm(d)), 1.0, 1e-6):
+            yield f"{item['direction']}: the components are no unit vector: {d.tolist()}"
+        moving = np.abs(d) > 1e-12
+        with np.errstate(divide="ignore", invalid="ignore"):
+            room = [np.where(d > 0, upper - start, start - lower)[moving] / np.abs(d[moving]),
+                    np.where(d > 0, start - lower, upper - start)[moving] / np.abs(d[moving])]
+        reach = [max(float(r.min()), 0.0) for r in room]
+        if not all(np.isfinite(reach)):
+            continue
+        if sum(reach) <= 1e-9 * float(np.abs(upper - lower).max()):
+            yield f"{item['direction']} is called undetermined and has no room within the bounds"
+            continue
+        steps = np.linspace(-reach[1], reach[0], 21)[:, None]
+        x = q.x(start + steps * d)
+        rows, here = q.rows(x), q.rows(q.x(start[None, :]))
+        for (index, _, kind, value), own in zip(rows, here):
+            if kind == "band":
+                continue
+            moved, tolerance = float(np.nanmax(np.abs(value - own[3]))), q.tolerance_of(q.goals[index])
+            if moved > 1.05 * tolerance:
+                yield f"{item['direction']} is called undetermined, but moves goal {index} by {100.0 * moved} %"
+            elif item["effect_percent"] is not None and 100.0 * moved > 1.1 * item["effect_percent"] + 1e-9:
+                yield f"{item['direction']}: effect {item['effect_percent']} %, but goal {index} moves by {100.0 * moved} %"
+        if "weight" not in str(run.study["goals"]) and float(q.missed(x).max()) > 1.0 + 1.05:
+            yield f"{item['direction']} is called undetermined, but goals are missed along it"
+
+
+def reasons(run):
+    """Percentages of sentences against the numbers of the same design."""
+    for rec in [run.result["baseline"]] + run.result["recommendations"]:
+        by_name = {p["name"]: p for p in rec["parameters"]}
+        goals = {g["pointer"]: [h for h in rec["goals"] if h["pointer"] == g["pointer"]] for g in rec["goals"]}
+        for reason in rec["reasons"]:
+            moved = re.match(r"(\w+) (rises|falls) by " + NUMBER + " %", reason)
+            if moved and moved[1] in by_name:
+                change = by_name[moved[1]]["change_percent"]
+                if not near(abs(change), float(moved[3]), 6e-3) or (change > 0) != (moved[2] == "rises"):
+                    yield f"rank {rec['rank']}: \"{reason}\", but it changes by {change} %"
+            missed = re.match(r"Goal (/goals/\d+) \(.*\) is missed by " + NUMBER + " %", reason)
+            if missed and not any(near(abs(g["violation_percent"]), float(missed[2]), 6e-3, 1e-9) for g in goals[missed[1]]
+                                  if g["violation_percent"] is not None):
+                yield f"rank {rec['rank']}: \"{reason}\", but goals say {goals[missed[1]]}"
+            keeps = re.match(r"(\S+) mode (\d+) \(.* Hz\) keeps (?:only )?" + NUMBER + r" % (below|above) band", reason)
+            if keeps and not any(c["configuration"] == keeps[1] and c["mode"] == int(keeps[2]) and c["side"] == keeps[4] and
+                                 near(c["percent"], float(keeps[3]), 6e-3, 1e-9) for c in rec["clearances"]):
+                yield f"rank {rec['rank']}: \"{reason}\" is in no clearance"
+            stands = re.match(r"(\S+) mode (\d+) (?:moves|stays|comes).* Hz, " + NUMBER + r" % (below|above) its (target|lower|upper)", reason)
+            if stands:
+                f = [f for f in rec["frequencies"] if f["configuration"] == stands[1] and f["mode"] == int(stands[2])]
+                limits = [{"target": g["target_hz"], "lower": g["at_least_hz"], "upper": g["at_most_hz"]}[stands[5]] for g in f]
+                away = [100.0 * (g["recommended_hz"] / limit - 1.0) for g, limit in zip(f, limits) if limit]
+                if not any(near(abs(a), float(stands[3]), 6e-3, 1e-9) and (a > 0) == (stands[4] == "above") for a in away):
+                    yield f"rank {rec['rank']}: \"{reason}\", but it is {away} % away"
+
+
+def consistent(run):
+    """Status, grades, certificates and texts do not contradict each other."""
+    result = run.result
+    impossible = [c for c in result["certificates"] if c["kind"] == "infeasible" and c["proven"]]
+    feasible = [r for r in result["recommendations"] if r["feasible"]]
+    status, text = result["status"], result["status_text"] or ""
+    if status == "solved" and run.question.n and not feasible:
+        yield "solved, but nothing recommended is feasible"
+    if status != "solved" and feasible:
+        yield f"{status}, but rank {feasible[0]['rank']} is feasible"
+    if impossible and feasible:
+        yield f"\"{impossible[0]['text']}\", but rank {feasible[0]['rank']} is feasible"
+    if impossible and status != "infeasible":
+        yield f"\"{impossible[0]['text']}\" (proven), but the status is {status}: {text}"
+    if status == "infeasible" and not impossible and not any(
+            c["proven"] and ("one of the" in c["text"] or "None of" in c["text"]) for c in result["certificates"]):
+        yield f"infeasible without a certificate: {[c['text'] for c in result['certificates']]}"
+    words = [text] + [s for r in result["recommendations"] for s in r["reasons"]] + [c["text"] for c in result["certificates"] if not c["proven"]]
+    for sentence in words:
+        if status == "infeasible" and re.search(r"sampled, not proven|others may exist", sentence):
+            yield f"infeasible is proven, but \"{sentence}\""
+        if re.search(r"\b(nan|inf|-nan)\b", sentence):
+            yield f"\"{sentence}\""
+    for rec in result["recommendations"]:
+        if (rec["grade"] or "").startswith("feasible") != rec["feasible"]:
+            yield f"rank {rec['rank']}: feasible {rec['feasible']}, grade \"{rec['grade']}\""
+        if impossible and rec["grade"] == "compromise" and any("proven" in s and "not proven" in s for s in rec["reasons"]):
+            yield f"rank {rec['rank']}: {rec['reasons'][-1]}"
+    found = re.match(r"Solved: (\d+) ", text)
+    if found and int(found[1]) < len(feasible):
+        yield f"\"{text}\", but {len(feasible)} designs are listed"
+
+
+CHECKS = {"prices": prices, "undetermined": undetermined, "reasons": reasons, "consistent": consistent}

@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a study asks, as arrays over many designs: rows of X are designs, columns the variables."""
+import math
+
+import numpy as np
+
+from dense import Plant
+from expressions import evaluate, parameters
+
+TOLERANCE_PERCENT = 1e-4  # of a goal that gives none
+FLOOR_PART = 1e-3         # of the original: the change of a parameter that may become 0 is linear below
+
+
+class Band:
+    def __init__(self, base_lower, base_upper, margin):
+        self.base = (base_lower, base_upper)
+        self.lower, self.upper = base_lower * (1.0 - margin / 100.0), base_upper * (1.0 + margin / 100.0)
+
+    def inside(self, hz, base=False):
+        """ln of the way out, positive inside."""
+        lower, upper = self.base if base else (self.lower, self.upper)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            low = np.log(hz / lower) if lower > 0.0 else np.inf
+            return np.where(np.isinf(hz), -np.inf, np.minimum(low, np.log(upper / hz)))
+
+    def below(self, hz):
+        """How many modes lie below the middle; rows of hz are designs."""
+        return np.sum(hz <= math.sqrt(max(self.lower, 0.0) * self.upper), axis=1)
+
+    def clearance_percent(self, hz):
+        """Of the nearest edge without margin; negative inside."""
+        low, high = self.base
+        if hz >= high:
+            return 100.0 * (hz - high) / high
+        if low > 0.0 and hz <= low:
+            return 100.0 * (low - hz) / low
+        out = 100.0 * (hz - high) / high
+        return max(out, 100.0 * (low - hz) / low) if low > 0.0 else out
+
+
+def merged(bands, up_to=math.inf):
+    """Bands that overlap with their margins are one; all are cut off at up_to."""
+    kept = []
+    for band in sorted((b for b in bands if b.lower < up_to), key=lambda b: (b.lower, b.upper)):
+        if kept and band.lower <= kept[-1].upper:
+            last = kept[-1]
+            last.base = (min(last.base[0], band.base[0]), max(last.base[1], band.base[1]))
+            last.upper = max(last.upper, band.upper)
+        else:
+            kept.append(band)
+    for band in kept:
+        band.upper = min(band.upper, up_to)
+        band.base = tuple(min(b, up_to) for b in band.base)
+    return kept
+
+
+class Variable:
+    def __init__(self, item, original):
+        self.item, self.name, self.original = item, item["parameter"], original
+        self.weight = item.get("weight", 1.0)
+        self.tolerance = item.get("tolerance_percent", 0.0) / 100.0
+        if "catalogue" in item:
+            given = item["catalogue"]
+            self.values = np.array(sorted(set(given)) if isinstance(given, list) else
+                                   np.arange(given["lower"], given["upper"] * (1 + 1e-12), given["step"]), float)
+            self.lower, self.upper = self.values[0], self.values[-1]
+        else:
+            self.values, self.lower, self.upper = None, float(item["lower"]), float(item["upper"])
+        # ln x; below the floor its tangent; linear where a scale is given or x may be negative
+        self.log = self.lower >= 0.0 and original > 0.0 and "scale" not in item
+        self.floor = FLOOR_PART * original if self.log and self.lower == 0.0 else 0.0
+        self.scale = item.get("scale", (self.upper - self.lower) or 1.0)
+
+    def t(self, x):
+        if not self.log:
+            return x / self.scale
+        if self.floor == 0.0:
+            return np.log(x)
+        return np.where(x < self.floor, math.log(self.floor) + (x - self.floor) / self.floor, np.log(np.maximum(x, self.floor)))
+
+    def x(self, t):
+        if not self.log:
+            return t * self.scale
+        if self.floor == 0.0:
+            return np.exp(t)
+        return np.where(t < math.log(self.floor), self.floor * (1.0 + t - math.log(self.floor)), np.exp(t))
+
+
+class Question:
+    def __init__(self, model, study):
+        self.model, self.study, self.plant = model, study, Plant(model)
+        self.variables = [Variable(v, self.plant.original[v["parameter"]]) for v in study.get("variables", [])]
+        self.n = len(self.variables)
+        self.lower = np.array([v.lower for v in self.variables])
+        self.upper = np.array([v.upper for v in self.variables])
+        self.origin = np.array([v.original for v in self.variables])
+        self.tolerance = np.array([v.tolerance for v in self.variables])
+        self.robust = bool(np.any(self.tolerance > 0.0))
+        self.goals = study.get("goals", [])
+        self.objectives = study.get("objective", {"minimise": "change"})
+        self.objectives = self.objectives if isinstance(self.objectives, list) else [self.objectives]
+        self.demands = [(i, g, c) for i, g in enumerate(self.goals) for c in self._configurations(g)]
+        self.configurations = list(dict.fromkeys(c for _, g, c in self.demands if c is not None))
+        self.bands = {c: self._bands(c) for c in self.configurations}
+        self.exact = [v for v in self.goals if "target_hz" in v or "equals" in v]
+        self.weighted = [g for g in self.goals if "weight" in g]
+
+    def _configurations(self, goal):
+        if goal["type"] == "limit":
+            return [None]
+        return goal.get("configurations") or [goal.get("configuration", self.plant.names[0])]
+
+    def goal_bands(self, goal):
+        margin = goal.get("margin_percent", 0.0)
+        return merged([Band(low, high, margin) for low, high in goal["bands_hz"]], goal.get("up_to_hz", math.inf))
+
+    def _bands(self, configuration):
+        goals = [g for _, g, c in self.demands if g["type"] == "avoid" and c == configuration]
+        return merged([b for g in goals for b in self.goal_bands(g)])
+
+    def tolerance_of(self, goal):
+        return goal.get("tolerance_percent", TOLERANCE_PERCENT) / 100.0
+
+    # designs
+    def design(self, x):
+        return {v.name: x[:, i] for i, v in enumerate(self.variables)}
+
+    def t(self, x):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.stack([v.t(x[..., i]) for i, v in enumerate(self.variables)], axis=-1)
+
+    def x(self, t):
+        x = np.stack([v.x(t[..., i]) for i, v in enumerate(self.variables)], axis=-1)
+        return np.clip(x, self.lower, self.upper)
+
+    def frequencies(self, x, configuration):
+        return self.plant.assembly(configuration).frequencies(self.design(x), len(x))
+
+    def all_frequencies(self, x):
+        return {c: self.frequencies(x, c) for c in self.configurations}
+
+    # goals
+    def rows(self, x, hz=None):
+        """[(goal index, configuration, kind, [B] violation)]: relative, positive where missed; kind "=" or "<" or "band"."""
+        hz = self.all_frequencies(x) if hz is None else hz
+        return [row for i, goal, c in self.demands for row in self._demand(i, goal, c, x, hz)]
+
+    def _demand(self, index, goal, configuration, x, hz):
+        if goal["type"] == "limit":
+            values = parameters(self.model, self.design(x))
+            value = np.broadcast_to(np.asarray(evaluate(goal["expression"], values), float), (len(x),))
+            for member, sign in (("at_least", -1.0), ("at_most", 1.0), ("equals", 0.0)):
+                if member in goal:
+                    unit = abs(goal[member]) or 1.0
+                    yield index, None, "<" if sign else "=", (sign or 1.0) * (value - goal[member]) / unit
+            return
+        modes = hz[configuration]
+        if goal["type"] == "avoid":
+            inside = np.full(len(x), -np.inf)
+            for band in self.goal_bands(goal):
+                inside = np.maximum(inside, np.max(band.inside(modes), axis=1))
+            yield index, configuration, "band", np.where(np.isnan(modes[:, 0]), np.nan, inside)
+            return
+        mode = modes[:, goal["mode"] - 1] if goal["mode"] <= modes.shape[1] else np.full(len(x), np.nan)
+        mode = np.where(np.isinf(mode), np.nan, mode)
+        if "target_hz" in goal:
+            yield index, configuration, "=", np.log(mode / goal["target_hz"])
+        if "at_least_hz" in goal:
+            yield index, configuration, "<", -np.log(mode / goal["at_least_hz"])
+        if "at_most_hz" in goal:
+            yield index, configuration, "<", np.log(mode / goal["at_most_hz"])
+
+    def missed(self, x):
+        """[B] greatest violation of a constraint divided by its tolerance; at most 1 is feasible. Unstable: infinite."""
+        worst = np.zeros(len(x))
+        for index, _, kind, value in self.rows(x):
+            if "weight" not in self.goals[index]:
+                value = np.abs(value) if kind == "=" else value
+                worst = np.maximum(worst, np.where(np.isnan(value), np.inf, value) / self.tolerance_of(self.goals[index]))
+        return worst
+
+    def corners(self, x):
+        """All corners of the tolerances about one design x[n], and the design itself last."""
+        which = np.flatnonzero(self.tolerance > 0.0)
+        signs = np.array(np.meshgrid(*[[-1.0, 1.0]] * len(which))).reshape(len(which), -1).T if len(which) else np.zeros((0, 0))
+        out = np.tile(x, (len(signs) + 1, 1))
+        if len(which):
+            out[:-1, which] *= 1.0 + signs * self.tolerance[which]
+        return out
+
+    def missed_robustly(self, x):
+        """As missed, of the worst corner."""
+        if not self.robust:
+            return self.missed(x)
+        corners = [self.corners(row) for row in x]
+        size = len(corners[0])
+        return self.missed(np.concatenate(corners)).reshape(-1, size).max(axis=1)
+
+    def kind(self, x, hz=None):
+        """[B] tuples: the gap assignment of each design, bands of all configurations in order."""
+        hz = self.all_frequencies(x) if hz is None else hz
+        counts = [band.below(hz[c]) for c in self.configurations for band in self.bands[c]]
+        return [tuple(int(c[i]) for c in counts) for i in range(len(x))]
+
+    # objectives
+    def change(self, x):
+        d = self.t(x) - self.t(self.origin[None, :])
+        return np.sqrt(np.sum(np.array([v.weight for v in self.variables]) * d * d, axis=1))
+
+    def misfit(self, x):
+        total = np.zeros(len(x))
+        for index, _, kind, value in self.rows(x):
+            if "weight" in self.goals[index]:
+                total = total + self.goals[index]["weight"] * value * value
+        return np.sqrt(total)
+
+    def clearance(self, x):
+        """Score of the objective: percent of the least ratio to an edge with margin."""
+        least = np.full(len(x), np.inf)
+        hz = self.all_frequencies(x)
+        for c in self.configurations:
+            for band in self.bands[c]:
+                least = np.minimum(least, np.min(-band.inside(hz[c]), axis=1))
+        return 100.0 * np.expm1(least)
+
+    def objective(self, x, k=0):
+        """[B] score of objective k as results show it; less is better, but a clearance."""
+        item = self.objectives[k]
+        what = item.get("minimise", item.get("maximise"))
+        if what == "change":
+            return self.change(x)
+        if what == "mass":
+            return np.broadcast_to(self.plant.total_mass(self.design(x), len(x), item.get("of")), (len(x),))
+        if what == "misfit":
+            return self.misfit(x)
+        if what == "clearance":
+            return self.clearance(x)
+        return np.broadcast_to(np.asarray(evaluate(what, parameters(self.model, self.design(x))), float), (len(x),))
+
+    def cost(self, x, k=0):
+        """Less is better, always."""
+        return -self.objective(x, k) if "maximise" in self.objectives[k] else self.objective(x, k)

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Brute force: samples over the bounds, and local searches (SLSQP) from the best of them and from given designs."""
+import itertools
+import warnings
+
+import numpy as np
+from scipy.optimize import minimize
+
+warnings.filterwarnings("ignore", message="Values in x were outside bounds")
+
+STEP = 3e-6  # of central differences, in the coordinates t
+HALTON = (2, 3, 5, 7, 11, 13, 17, 19)
+
+
+def _halton(count, n):
+    out = np.zeros((count, n))
+    for column, base in enumerate(HALTON[:n]):
+        index, scale = np.arange(1, count + 1), 1.0 / base
+        while index.any():
+            out[:, column] += scale * (index % base)
+            index, scale = index // base, scale / base
+    return out
+
+
+def samples(question, count):
+    """[count, n] designs: evenly over t, and all corners of the bounds where they are few."""
+    lower, upper = question.t(question.lower[None, :])[0], question.t(question.upper[None, :])[0]
+    points = lower + _halton(count, question.n) * (upper - lower)
+    if question.n <= 8:
+        points = np.concatenate([np.array(list(itertools.product(*zip(lower, upper)))), points])
+    x = question.x(points)
+    for i, variable in enumerate(question.variables):
+        if variable.values is not None:
+            x[:, i] = variable.values[np.abs(variable.values[None, :] - x[:, [i]]).argmin(axis=1)]
+    return x
+
+
+def combinations(question):
+    """All designs of catalogues alone."""
+    return np.array(list(itertools.product(*[v.values for v in question.variables])), dtype=float)
+
+
+class Local:
+    """The rows of one local search: goals as they are, bands as the side that each mode has at the start."""
+
+    def __init__(self, question, start, held=None, ease=None):
+        self.q, self.free = question, [i for i, v in enumerate(question.variables) if v.values is None]
+        self.base, self.held = start.copy(), held or []
+        self.ease = ease or {}  # row number: what the demand gives way by (relative)
+        self.lower, self.upper = (question.t(b[None, :])[0][self.free] for b in (question.lower, question.upper))
+        self.below = question.kind(start[None, :])[0] if question.configurations else ()
+        self._at = {}
+
+    def designs(self, t):
+        x = np.tile(self.base, (len(t), 1))
+        x[:, self.free] = self.q.x(self._all(t))[:, self.free]
+        return x
+
+    def _all(self, t):
+        whole = np.tile(self.q.t(self.base[None, :]), (len(t), 1))
+        whole[:, self.free] = t
+        return whole
+
+    def _values(self, t):
+        """[B, 1 + equalities + inequalities], inequalities at least 0."""
+        x = self.designs(t)
+        q, equal, least = self.q, [], []
+        corners = [x] if not q.robust else [np.array([q.corners(row)[k] for row in x]) for k in range(len(q.corners(x[0])))]
+        for place in corners:
+            hz = q.all_frequencies(place)
+            for index, _, kind, value in q.rows(place, hz):
+                if "weight" in q.goals[index]:
+                    continue
+                if kind == "=":
+                    equal.append(value)
+                elif kind == "<":
+                    least.append(-value)
+            position = 0
+            for c in q.configurations:
+                for band in q.bands[c]:
+                    count, position = self.below[position], position + 1
+                    with np.errstate(divide="ignore"):
+                        if count > 0:
+                            least.append(np.log(band.lower / hz[c][:, count - 1]))
+                        if count < hz[c].shape[1] and np.isfinite(hz[c][:, count]).all():
+                            least.append(np.log(hz[c][:, count] / band.upper))
+        for k, limit in self.held:
+            least.append(limit - q.cost(x, k))
+        return self.cost(x), np.array(equal).reshape(len(equal), len(x)).T, np.array(least).reshape(len(least), len(x)).T
+
+    def cost(self, x):
+        what = self.q.objectives[len(self.held)]
+        value = self.q.cost(x, len(self.held))
+        return 0.5 * value * value if what.get("minimise") in ("change", "misfit") else value
+
+    def at(self, t):
+        """Values and their slopes at t, remembered."""
+        key = t.tobytes()
+        if key not in self._at:
+            n = len(t)
+            points = np.concatenate([t[None, :], t + STEP * np.eye(n), t - STEP * np.eye(n)])
+            cost, equal, least = self._values(np.clip(points, self.lower, self.upper))
+            width = (np.clip(points[1:n + 1], self.lower, self.upper) - np.clip(points[n + 1:], self.lower, self.upper)).max(axis=1)
+            slope = lambda v: (v[1:n + 1] - v[n + 1:]).T / width
+            self._at = {key: (cost[0], slope(cost), equal[0], slope(equal).reshape(-1, n), least[0], slope(least).reshape(-1, n))}
+        return self._at[key]
+
+    def run(self, iterations=60):
+        """The design that SLSQP ends at."""
+        start = np.clip(self.q.t(self.base[None, :])[0][self.free], self.lower, self.upper)
+        if len(start) == 0:
+            return self.base
+        scale = max(abs(self.at(start)[0]), 1e-3)
+        constraints = []
+        if self.at(start)[2].size:
+            constraints.append({"type": "eq", "fun": lambda t: self.at(t)[2], "jac": lambda t: self.at(t)[3]})
+        if self.at(start)[4].size:
+            constraints.append({"type": "ineq", "fun": lambda t: self.at(t)[4], "jac": lambda t: self.at(t)[5]})
+        try:
+            found = minimize(lambda t: self.at(t)[0] / scale, start, jac=lambda t: self.at(t)[1] / scale, method="SLSQP",
+                             bounds=list(zip(self.lower, self.upper)), constraints=constraints,
+                             options={"maxiter": iterations, "ftol": 1e-13})
+        except (ValueError, np.linalg.LinAlgError):  # no value on the way
+            return self.base
+        t = np.clip(found.x, self.lower, self.upper) if np.all(np.isfinite(found.x)) else start
+        return self.designs(self._repaired(t)[None, :])[0]
+
+    def _repaired(self, t):
+        """Newton steps of least norm onto the rows that are missed, within the bounds."""
+        for _ in range(6):
+            _, _, equal, d_equal, least, d_least = self.at(t)
+            # rows that almost hold are kept from falling, too
+            rows = np.concatenate([equal, least[least < 1e-9] - 1e-10])
+            slopes = np.concatenate([d_equal, d_least[least < 1e-9]])
+            if rows.size == 0 or not np.all(np.isfinite(rows)) or np.abs(rows).max() < 2e-10:
+                break
+            open_ = (t > self.lower) & (t < self.upper)
+            step = np.zeros_like(t)
+            if open_.any():
+                step[open_] = -np.linalg.lstsq(slopes[:, open_], rows, rcond=1e-10)[0]
+            t = np.clip(t + step, self.lower, self.upper)
+        return t
+
+
+def least_missed(question, designs, count):
+    """The best `count` of designs: feasible ones by objective, and those that miss least."""
+    missed = question.missed_robustly(designs)
+    cost = question.cost(designs)
+    feasible = missed <= 1.0
+    good = np.flatnonzero(feasible)[np.argsort(cost[feasible], kind="stable")]
+    near = np.argsort(np.where(feasible, np.inf, missed), kind="stable")
+    return designs[np.concatenate([good[:count], near[:count]])], good, missed
+
+
+def descend(question, starts):
+    """Ends of local searches from each start, with what they miss."""
+    ends = [Local(question, start).run() for start in starts]
+    x = np.array(ends)
+    return x, question.missed_robustly(x), question.cost(x)
