@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The hunt in the suite: saved cases, faults that must be found, and some hundred studies of a fixed seed."""
+import copy
+import itertools
+import json
+import os
+import unittest
+from pathlib import Path
+
+import run
+import numpy as np
+from faults import FAULTS
+from known import reason
+
+SEED = "1"
+COUNT = 3 if os.environ.get("MT_INSTRUMENTED") else 25  # of each kind
+CASES = Path(__file__).resolve().parent / "cases"
+
+
+class Cases(unittest.TestCase):
+    """What the hunt once found. A case is one file {"holds": why it is here, "model": ..., "study": ...}."""
+
+    def test_cases(self):
+        for path in sorted(CASES.glob("*.json")):
+            case = json.loads(path.read_text())
+            with self.subTest(case=path.stem):
+                wrong = [f for f in run.findings(path.stem, case["model"], case["study"], run.again(case["model"], [case["study"]])[0])
+                         if not reason(f[0], case.get("kind"))]
+                self.assertEqual(wrong, [], case["holds"])
+
+
+class Faults(unittest.TestCase):
+    def test_faults_are_found(self):
+        for plant, kinds, check in FAULTS:
+            with self.subTest(fault=plant.__name__, check=check):
+                self.assertTrue(self._find(plant, kinds, check))
+
+    def _find(self, plant, kinds, check, tries=40):
+        """Does the check tell a sound result from the same with the fault?"""
+        for index, kind in itertools.product(range(tries), kinds):
+            model, study = run.make("faults", kind, index)
+            if kind != "trade":
+                study.pop("trade", None)
+            _, words, result = run.again(model, [study])[0]
+            if result is None:
+                continue
+            sound, faulty = (run.Run("fault", model, study, copy.deepcopy(result), words) for _ in range(2))
+            if not plant(faulty) or self._check(sound, check):
+                continue
+            self.assertTrue(self._check(faulty, check), f"{kind} {index}")
+            return True
+        return False
+
+    def _check(self, run_, check):
+        with np.errstate(all="ignore"):
+            if check == "trade":
+                return list(itertools.islice(run.check_again.trade(run_, run.again), 1))
+            return list(itertools.islice(run.CHECKS[check](run_), 1))
+
+
+class Hunt(unittest.TestCase):
+    def test_random_studies(self):
+        tally = {"studies": 0, "refused": 0}
+        for kind, index, check, text in run.hunt(SEED, list(run.studies.KINDS), range(COUNT), tally):
+            if reason(check, kind) is None:
+                with self.subTest(check=check):
+                    self.fail(f"{text}\n    tests/hunt/run.py --seed {SEED} --only {kind} --index {index}")
+        self.assertLess(tally["refused"], tally["studies"] // 8)
+
+
+if __name__ == "__main__":
+    unittest.main()
