@@ -11,6 +11,7 @@ from question import Question
 
 NUMBER = r"([-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?)"
 PRICE = 0.03     # of a price: three digits, and the curve within the step that measures it
+PRICES = 2       # of one design that are looked at
 STEP = 1e-3      # of what a demand gives way by, in percent of itself
 
 
@@ -36,7 +37,8 @@ def _slope(run, change, start):
         costs.append(_cost_with(run, study, start))
     if None in costs:
         return None
-    here = _cost_with(run, run.study, start)
+    run.here = _cost_with(run, run.study, start) if run.here is None else run.here
+    here = run.here
     own = float(run.question.cost(start[None, :])[0])
     if here is None or abs(here - own) > 1e-5 * max(abs(own), 1e-3):
         return None  # the design is no optimum: "optimum" says so
@@ -69,8 +71,10 @@ def prices(run):
     best, q = _best(run), run.question
     if best is None or run.study.get("trade") or any(v.values is not None for v in q.variables) or len(q.objectives) > 1 or q.robust:
         return
-    start = design_of(q, best)[0]
+    start, told_of = design_of(q, best)[0], 0
     for reason in best["reasons"]:
+        if told_of == PRICES:
+            return
         goal = re.match(r"Goal /goals/(\d+) \(.*\) has a price: (?:giving way by|asking for) 1 % ?(less|more|)\s?would (?:save|gain) " + NUMBER, reason)
         bound = re.match(NUMBER + r" ?(.*) (more|less) allowed on (\w+) would (?:save|gain) " + NUMBER, reason)
         if goal:
@@ -88,6 +92,7 @@ def prices(run):
             slope = None if slope is None else 10.0 * slope
         else:
             continue
+        told_of += 1
         if slope is not None and abs(told - slope) > PRICE * max(abs(told), abs(slope)) + 1e-7 * max(abs(best["score"] or 1.0), 1.0):
             yield f"\"{reason}\": solved again it is {slope}"
 

@@ -57,9 +57,10 @@ class Assembly:
             if self._here(spring):
                 self._spring(spring)
         basis = self._free(np.array(self.rows).reshape(-1, size))
-        self.stiffness = [(s, basis.T @ b @ basis) for s, b in self.stiffness]
-        self.mass = [(s, basis.T @ b @ basis) for s, b in self.mass]
         self.n = basis.shape[1]
+        self.stiffness, self.mass = (
+            ([s for s, _ in terms], np.array([basis.T @ b @ basis for _, b in terms]).reshape(len(terms), -1))
+            for terms in (self.stiffness, self.mass))
 
     def _here(self, item):
         return "in" not in item or self.name in item["in"]
@@ -167,10 +168,10 @@ class Assembly:
         return vt[int(np.sum(s > 1e-9 * s[0])):].T
 
     def _sum(self, terms, values, count):
-        total = np.zeros((count, self.n, self.n))
-        for scale, matrix in terms:
-            total += np.broadcast_to(np.asarray(evaluate(scale, values), float), (count,))[:, None, None] * matrix
-        return total
+        scales = np.empty((len(terms[0]), count))
+        for i, scale in enumerate(terms[0]):
+            scales[i] = evaluate(scale, values)
+        return (scales.T @ terms[1]).reshape(count, self.n, self.n)
 
     def matrices(self, design, count):
         """K, M [count, n, n] of designs {parameter: array[count]}; an override wins over a variable."""
@@ -180,18 +181,24 @@ class Assembly:
     def frequencies(self, design, count):
         """[count, n] Hz of the vibration modes, ascending; rigid-body modes follow as infinity. NaN: no positive mass or unstable."""
         stiffness, mass = self.matrices(design, count)
-        out = np.full((count, self.n), np.nan)
-        good = np.all(np.isfinite(stiffness), axis=(1, 2)) & np.all(np.isfinite(mass), axis=(1, 2))
-        good[good] = np.linalg.eigvalsh(mass[good])[:, 0] > 0.0
-        if not good.any():
+        try:
+            return self._solved(stiffness, mass)
+        except (np.linalg.LinAlgError, ValueError):  # one of them has no solution: which?
+            out = np.full((count, self.n), np.nan)
+            for i in range(count):
+                try:
+                    out[i] = self._solved(stiffness[i:i + 1], mass[i:i + 1])[0]
+                except (np.linalg.LinAlgError, ValueError):
+                    pass
             return out
-        root = np.linalg.inv(np.linalg.cholesky(mass[good]))
-        squares = np.linalg.eigvalsh(root @ stiffness[good] @ np.swapaxes(root, 1, 2))
+
+    def _solved(self, stiffness, mass):
+        root = np.linalg.inv(np.linalg.cholesky(mass))
+        squares = np.linalg.eigvalsh(root @ stiffness @ np.swapaxes(root, 1, 2))
         floor = RIGID * np.abs(squares).max(axis=1)[:, None]
-        hz = np.sqrt(np.where(squares > floor, squares, np.inf)) / TWO_PI
-        hz[np.any(squares < -floor, axis=1)] = np.nan
-        out[good] = np.sort(hz, axis=1)
-        return out
+        hz = np.where(squares > floor, np.sqrt(np.abs(squares)) / TWO_PI, np.inf)
+        hz[np.any(~(squares >= -floor), axis=1)] = np.nan
+        return np.sort(hz, axis=1)
 
 
 class Plant:

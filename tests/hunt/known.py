@@ -2,11 +2,8 @@
 """Findings that wait for their mending: (check or None: all, kind of study or None: all, reason). Empty where all is well."""
 
 KNOWN = [
-    ("optimum", None, "a direction called undetermined is pulled back at a cost"),
-    ("undetermined", None, "a direction without room is called undetermined"),
     ("reasons", None, "logarithms are printed as per cent"),
     (None, "zero", "the number of rigid-body modes is that of the original design"),
-    ("certificates", "driven", "between positions nothing is counted"),
 ]
 
 

@@ -143,13 +143,13 @@ class Local:
 
 
 def least_missed(question, designs, count):
-    """The best `count` of designs: feasible ones by objective, and those that miss least."""
+    """The best `count` of designs: feasible ones by objective, else those that miss least."""
     missed = question.missed_robustly(designs)
     cost = question.cost(designs)
     feasible = missed <= 1.0
     good = np.flatnonzero(feasible)[np.argsort(cost[feasible], kind="stable")]
     near = np.argsort(np.where(feasible, np.inf, missed), kind="stable")
-    return designs[np.concatenate([good[:count], near[:count]])], good, missed
+    return designs[(good if len(good) else near)[:count]], good, missed
 
 
 def descend(question, starts):
