@@ -6,7 +6,6 @@ import warnings
 import numpy as np
 from scipy.optimize import minimize
 
-warnings.filterwarnings("ignore", message="Values in x were outside bounds")
 
 STEP = 3e-6  # of central differences, in the coordinates t
 HALTON = (2, 3, 5, 7, 11, 13, 17, 19)
@@ -117,6 +116,7 @@ class Local:
         if self.at(start)[4].size:
             constraints.append({"type": "ineq", "fun": lambda t: self.at(t)[4], "jac": lambda t: self.at(t)[5]})
         try:
+            warnings.simplefilter("ignore", RuntimeWarning)  # SLSQP steps outside the bounds by rounding
             found = minimize(lambda t: self.at(t)[0] / scale, start, jac=lambda t: self.at(t)[1] / scale, method="SLSQP",
                              bounds=list(zip(self.lower, self.upper)), constraints=constraints,
                              options={"maxiter": iterations, "ftol": 1e-13})
