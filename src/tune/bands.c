@@ -164,9 +164,16 @@ static bool cut_off(mt_band *band, double up_to_hz)
 
 static void note_merger(parts *p, const mt_band *band, mt_bands *out)
 {
-    const char *const note =
-        mt_arena_printf(p->mem, "%s overlap: merged into one band, %.6g to %.6g Hz",
-                        band->label == NULL ? "" : band->label, band->lower_hz, band->upper_hz);
+    const char *const label = band->label == NULL ? "" : band->label;
+    const bool margin =
+        band->lower_hz < band->base_lower_hz || band->upper_hz > band->base_upper_hz;
+    const char *note =
+        mt_arena_printf(p->mem, "%s overlap: merged into one band, %.6g to %.6g Hz", label,
+                        band->base_lower_hz, band->base_upper_hz);
+    if (margin && note != NULL) {
+        note = mt_arena_printf(p->mem, "%s, with its margin %.6g to %.6g Hz", note,
+                               band->lower_hz, band->upper_hz);
+    }
     p->out_of_memory = p->out_of_memory || note == NULL;
     out->notes[out->n_notes++] = note;
 }

@@ -84,6 +84,15 @@ static void tightest(const mt_bands *bands, const mt_modes *modes, mt_result_goa
     }
 }
 
+/* By how many percent of a band's edge the tightest clearance falls short of its margin. At a worst corner only the logarithm over the edge with its margin is known. */
+static double short_of(const mt_problem *fresh, double violation, const mt_result_goal *g)
+{
+    if (!(violation > 0.0)) {
+        return violation; /* 0, or NaN */
+    }
+    return fresh->robust != NULL ? PERCENT * expm1(violation) : fmax(g->demand - g->value, 0.0);
+}
+
 static mt_status judge(mt_problem *fresh, int goal, int configuration, mt_result *result,
                        mt_result_goal *out, mt_err *err)
 {
@@ -103,7 +112,7 @@ static mt_status judge(mt_problem *fresh, int goal, int configuration, mt_result
     }
     out->text = avoid_text(g, mt_analysis_configuration(view->analysis), &result->mem);
     out->pointer = mt_arena_printf(&result->mem, "/goals/%d", goal);
-    out->violation_percent = PERCENT * violation;
+    out->violation_percent = short_of(fresh, violation, out);
     out->met = violation <= mt_problem_tolerance(g) * (1.0 + MET_SLACK);
     return out->text == NULL || out->pointer == NULL ? mt_fail_memory(err) : MT_OK;
 }

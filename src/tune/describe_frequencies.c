@@ -96,8 +96,7 @@ static void attach_frequency(const mt_demand *d, mt_result_frequency *f)
         return;
     }
     double over = f->recommended_hz - f->recommended_hz; /* 0, or NaN with the frequency */
-    const double hz = fmax(f->recommended_hz, MT_FREQUENCY_FLOOR * f->at_least_hz);
-    over = f->recommended_hz < f->at_least_hz ? f->at_least_hz / hz - 1.0 : over;
+    over = f->recommended_hz < f->at_least_hz ? 1.0 - f->recommended_hz / f->at_least_hz : over;
     over = f->recommended_hz > f->at_most_hz ? f->recommended_hz / f->at_most_hz - 1.0 : over;
     f->error_percent = 100.0 * over;
 }

@@ -7,6 +7,7 @@
 
 /* Rounding of ln and of the eigenvalues may push a goal that is met exactly on its tolerance over it. */
 static const double MET_SLACK = 1e-6;
+static const double PERCENT = 100.0;
 
 /* "from a to b Hz", "at least a Hz", "at most b Hz"; *number: the limit meant. */
 static const char *range_text(const char *what, const mt_goal *g, const char *unit,
@@ -104,7 +105,13 @@ static mt_status demand_value(mt_problem *fresh, const mt_demand *d, double *val
     return mt_reference_mac(view->analysis, pos, &d->shape, value, err);
 }
 
-/* Relative violation of a demand that has been evaluated; of a shape its distance. */
+/* Of two parts of a violation the greater; NaN is the greatest. */
+static double greater(double a, double b)
+{
+    return b <= a ? a : b;
+}
+
+/* Relative violation of a demand that has been evaluated, that of a frequency a logarithm; of a shape its distance. */
 static double demand_violation(const mt_problem *fresh, const mt_demand *d,
                                const mt_nlp_values *v)
 {
@@ -117,10 +124,36 @@ static double demand_violation(const mt_problem *fresh, const mt_demand *d,
     }
     double worst = 0.0;
     for (int k = 0; k < d->n_in; k++) {
-        const double below = -v->in[d->row_in + k];
-        worst = below <= worst ? worst : below; /* NaN is the worst */
+        worst = greater(worst, -v->in[d->row_in + k]);
     }
     return worst;
+}
+
+/*
+ * The violation in percent of what is asked for. That of a frequency is a logarithm, d = |ln(f/limit)|:
+ *     below its limit  (limit - f)/limit = 1 - e^-d,    above it  (f - limit)/limit = e^d - 1
+ */
+static double violation_percent(const mt_problem *fresh, const mt_demand *d,
+                                const mt_nlp_values *v, double violation)
+{
+    const mt_goal *const g = d->goal;
+    if (g->type != MT_GOAL_FREQUENCY) {
+        return PERCENT * violation;
+    }
+    if (d->row_res >= 0 || d->row_eq >= 0) {
+        const double to_target =
+            d->row_res >= 0 ? fresh->r[d->row_res] / sqrt(d->weight) : v->eq[d->row_eq];
+        return PERCENT * fabs(expm1(to_target));
+    }
+    int row = d->row_in;
+    double worst = 0.0;
+    if (MT_HAS(g->at_least)) {
+        worst = greater(worst, -expm1(v->in[row++]));
+    }
+    if (MT_HAS(g->at_most)) {
+        worst = greater(worst, expm1(-v->in[row]));
+    }
+    return PERCENT * worst;
 }
 
 static bool ends(mt_status rc)
@@ -166,6 +199,7 @@ static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
 {
     mt_err own = {0};
     double violation = nan("");
+    double percent = nan("");
     mt_status rc = mt_demand_eval(fresh, d, false, v, &own);
     rc = rc == MT_OK ? mt_robust_demand(fresh, d, false, v, &own) : rc;
     if (ends(rc)) {
@@ -173,6 +207,7 @@ static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
     }
     if (rc == MT_OK) {
         violation = demand_violation(fresh, d, v);
+        percent = violation_percent(fresh, d, v, violation);
         MT_TRY(demand_value(fresh, d, &g->value, err));
     } else {
         g->value = nan("");
@@ -181,7 +216,7 @@ static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
     g->weighted = d->row_res >= 0;
     g->text = demand_text(fresh, d, &result->mem, &g->demand);
     g->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
-    g->violation_percent = 100.0 * violation;
+    g->violation_percent = percent;
     g->met = violation <= d->tolerance * (1.0 + MET_SLACK);
     if (g->text == NULL || g->pointer == NULL) {
         return mt_fail_memory(err);

@@ -239,17 +239,21 @@ static void say_violations(mt_sentences *s)
     }
 }
 
-/* Root mean square of the weighted goals' errors, each weighted as in the study: |r| / sqrt(sum w), in percent. */
+/* Root mean square of what the weighted goals are off by in percent, each weighted as in the study. */
 static void say_misfit(mt_sentences *s)
 {
     int weighted = 0;
-    for (int i = 0; i < s->rec->n_goals; i++) {
-        weighted += s->rec->goals[i].weighted ? 1 : 0;
+    double sum = 0.0;
+    for (int i = 0; i < s->p->n_demands; i++) {
+        const mt_result_goal *const g = &s->rec->goals[i];
+        if (g->weighted) {
+            weighted++;
+            sum += s->p->demands[i].weight * g->violation_percent * g->violation_percent;
+        }
     }
     if (weighted > 0 && MT_HAS(s->rec->misfit)) {
-        mt_say(s, "The misfit is %.3g %% rms over %d weighted goal%s.",
-               100.0 * s->rec->misfit / sqrt(s->p->weights), weighted,
-               weighted == 1 ? "" : "s");
+        mt_say(s, "The %d weighted goal%s off by %.3g %% rms.", weighted,
+               weighted == 1 ? " is" : "s are", sqrt(sum / s->p->weights));
     }
 }
 

@@ -32,7 +32,9 @@ static const char *price(mt_sentences *s, double df)
         text = mt_arena_printf(mem, "%.3g of the size of the redesign", df / s->rec->change);
         break;
     case MT_OBJECTIVE_CLEARANCE:
-        text = mt_arena_printf(mem, "%.3g %% of the least clearance", PERCENT * df);
+        /* f = -ln(1 + clearance) */
+        text = mt_arena_printf(mem, "%.3g percentage points of the least clearance",
+                               (PERCENT + s->rec->score) * df);
         break;
     case MT_OBJECTIVE_MISFIT:
     case MT_OBJECTIVE_NONE:

@@ -174,9 +174,11 @@ static void check_warnings(mt_test *t, const mt_study *s)
     static const char *const want[] = {
         "Dragonfly: the tail rotor's speed (20 Hz) is not confirmed by a public document "
         "(hearsay)",
-        "/goals/0: nP + 1T of the dragon overlap: merged into one band, 16.2 to 24.2 Hz",
-        "/goals/0: nT of the dragon + 40 to 50 Hz overlap: merged into one band, 32.4 to "
-        "52.5 Hz",
+        "/goals/0: nP + 1T of the dragon overlap: merged into one band, 18 to 22 Hz, with its "
+        "margin "
+        "16.2 to 24.2 Hz",
+        "/goals/0: nT of the dragon + 40 to 50 Hz overlap: merged into one band, 36 to 50 "
+        "Hz, with its margin 32.4 to 52.5 Hz",
     };
     mt_test_row(t, "warnings");
     if (CHECK_INT(t, s->n_warnings, MT_COUNT(want))) {

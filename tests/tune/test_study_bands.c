@@ -26,7 +26,7 @@ static void bands__are_goals_with_clearance_and_margin(mt_test *t)
     /* mode 2 inside the second band: to its upper edge it is 2.9 %, and 5 % more are asked */
     CHECK_NEAR(t, r->goals[0].value, 100.0 * (f2 - 0.34) / 0.34, 1e-9);
     CHECK_NEAR(t, r->goals[0].demand, 5.0, 1e-9);
-    CHECK_NEAR(t, r->goals[0].violation_percent, 100.0 * log(0.34 * 1.05 / f2), 1e-9);
+    CHECK_NEAR(t, r->goals[0].violation_percent, 100.0 * (0.34 * 1.05 - f2) / 0.34, 1e-9);
     CHECK_NEAR(t, r->clearance_percent, 100.0 * (f2 - 0.34) / 0.34, 1e-9);
     CHECK_STR(t, r->clearances[0].side, "above");
     CHECK_NEAR(t, r->clearances[0].percent, 100.0 * (f1 - 0.13) / 0.13, 1e-9);
@@ -107,6 +107,46 @@ static void bands__greatest_clearance_is_the_middle(mt_test *t)
     study_free(&c);
 }
 
+static double middle_score(mt_test *t, const char *upper_edge, double *price)
+{
+    char members[512];
+    study_case c;
+    double score = nan("");
+    (void)snprintf(members, sizeof members,
+                   "'name': 'middle', 'variables': [{'parameter': 'm', 'lower': 0.5,"
+                   " 'upper': 2}], 'objective': {'maximise': 'clearance'},"
+                   "'goals': [{'type': 'avoid', 'bands_hz': [[0.2, 0.25], ['%s', 0.7]]}]",
+                   upper_edge);
+    if (study_solve(t, ROW, members, &c) && CHECK(t, c.result->n_recommendations > 0)) {
+        const mt_recommendation *const r = &c.result->recommendations[0];
+        const char *const s = reason_with(r, "which holds default mode 2, has a price");
+        score = r->score;
+        if (price != NULL && CHECK(t, s != NULL && strstr(s, "percentage points") != NULL)) {
+            *price = strtod(strstr(s, "would gain") + strlen("would gain"), NULL);
+        }
+    }
+    study_free(&c);
+    return score;
+}
+
+/* The clearance is a ratio, its price is in points of its percentage: the difference between two studies, wherever the optimum lies. */
+static void bands__clearance_costs_what_its_price_says(mt_test *t)
+{
+    static const double edges[] = {0.3, 0.35, 0.42, 0.47};
+    for (size_t i = 0; i < sizeof edges / sizeof edges[0]; i++) {
+        char text[3][32];
+        double price = nan("");
+        (void)snprintf(text[0], sizeof text[0], "%g", edges[i]);
+        (void)snprintf(text[1], sizeof text[1], "%g*1.005", edges[i]);
+        (void)snprintf(text[2], sizeof text[2], "%g/1.005", edges[i]);
+        mt_test_row(t, "edge at %s Hz", text[0]);
+        const double score = middle_score(t, text[0], &price);
+        const double gain = middle_score(t, text[1], NULL) - middle_score(t, text[2], NULL);
+        CHECK_NEAR(t, price, gain, 0.01); /* three digits, third order of the step */
+        CHECK(t, score > 0.0);
+    }
+}
+
 /* A missed target at an active bound: what more room would buy, to first order. */
 static void bounds__say_what_more_room_buys(mt_test *t)
 {
@@ -131,4 +171,5 @@ static void bounds__say_what_more_room_buys(mt_test *t)
 MT_TEST_MAIN(MT_TEST(bands__are_goals_with_clearance_and_margin),
              MT_TEST(bands__edge_costs_what_its_price_says),
              MT_TEST(bands__greatest_clearance_is_the_middle),
+             MT_TEST(bands__clearance_costs_what_its_price_says),
              MT_TEST(bounds__say_what_more_room_buys))

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The sentences that an engineer pastes into a report, word for word. */
+#include "mt_random.h"
 #include "study_fixture.h"
 
 static void check_reason(mt_test *t, const study_case *c, int rank, const char *text)
@@ -77,7 +78,7 @@ static void limits__are_at_clear_or_between(mt_test *t)
         {                    "'at_most_hz': 0.5", "stays at 0.31831 Hz, clear of its upper limit of 0.5 Hz;"},
         {"'at_least_hz': 0.3, 'at_most_hz': 0.4",
          "stays at 0.31831 Hz, between its limits of 0.3 and 0.4 Hz;"                                       },
-        {            "'at_least_hz': '5/(2*pi)'",               "25 % below its lower limit of 0.795775 Hz;"},
+        {            "'at_least_hz': '5/(2*pi)'",               "20 % below its lower limit of 0.795775 Hz;"},
         {           "'at_most_hz': '0.5/(2*pi)'",             "100 % above its upper limit of 0.0795775 Hz;"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
@@ -88,6 +89,62 @@ static void limits__are_at_clear_or_between(mt_test *t)
                        rows[i].goal);
         if (study_solve(t, ONE_MASS, members, &c)) {
             check_reason(t, &c, 1, rows[i].text);
+        }
+        study_free(&c);
+    }
+}
+
+/* The number before "% below" or "% above" and the one behind "of" of a sentence with `part`; false where there is none. */
+static bool told(const study_case *c, const char *part, double *percent, double *limit_hz)
+{
+    const mt_recommendation *const r = &c->result->recommendations[0];
+    for (int i = 0; i < r->n_reasons; i++) {
+        const char *const at = strstr(r->reasons[i], part);
+        const char *number = at;
+        while (number != NULL && number > r->reasons[i] && number[-1] != ',') {
+            number--;
+        }
+        if (number != NULL) {
+            const char *const of = strstr(at, " of ");
+            *percent = strtod(number, NULL);
+            *limit_hz = of == NULL ? nan("") : strtod(of + strlen(" of "), NULL);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Whatever is asked, however far away: percentages in sentences, of goals and of frequencies are those of the frequency and the limit that stand beside them. */
+static void percentages__are_those_of_the_numbers_beside_them(mt_test *t)
+{
+    static const char *const kinds[] = {"target_hz", "at_least_hz", "at_most_hz"};
+    mt_random random = mt_random_seed(668);
+    for (int i = 0; i < 60; i++) {
+        const char *const kind = kinds[i % 3];
+        const double asked = exp(mt_random_in(&random, log(0.01), log(10.0)));
+        study_case c;
+        char members[512];
+        (void)snprintf(members, sizeof members,
+                       "%s'goals': [{'type': 'frequency', 'mode': 1, '%s': %.9g}]", STIFFNESS,
+                       kind, asked);
+        mt_test_row(t, "%s %.9g", kind, asked);
+        if (study_solve(t, ONE_MASS, members, &c)) {
+            const mt_recommendation *const r = &c.result->recommendations[0];
+            const double hz = study_frequency(&c, 1, "default", 1);
+            const double off = 100.0 * ((hz / asked) - 1.0);
+            const bool below = off < 0.0;
+            const double miss = r->goals[0].met ? 0.0 : fabs(off);
+            double percent = nan("");
+            double limit = nan("");
+            CHECK_NEAR_ABS(t, r->goals[0].violation_percent, miss, 2e-4 + (1e-9 * miss));
+            CHECK_NEAR_ABS(t, fabs(r->frequencies[0].error_percent), miss,
+                           2e-4 + (1e-9 * miss));
+            CHECK_NEAR_ABS(t, r->violation_percent, r->goals[0].violation_percent, 0.0);
+            if (!r->goals[0].met &&
+                CHECK(t, told(&c, below ? " % below its" : " % above its", &percent, &limit))) {
+                CHECK_NEAR(t, limit, asked, 1e-5);
+                CHECK_NEAR(t, percent, miss, 5e-3);
+            }
         }
         study_free(&c);
     }
@@ -113,4 +170,5 @@ MT_TEST_MAIN(MT_TEST(target_that_is_reached__is_said_plainly),
              MT_TEST(target_that_is_met_already__stays),
              MT_TEST(target_out_of_reach__is_told_from_which_side),
              MT_TEST(limits__are_at_clear_or_between),
+             MT_TEST(percentages__are_those_of_the_numbers_beside_them),
              MT_TEST(parameters_that_stay__are_listed))
