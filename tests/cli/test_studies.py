@@ -222,20 +222,28 @@ class Output(CliTest):
 
 
 class Interrupt(CliTest):
-    def test_the_best_so_far_is_written_and_130(self):
-        self.write("problems/beam.json", BEAM)
-        path = self.write("studies/long.json", LONG)
+    def interrupted_after(self, path, seconds):
         with subprocess.Popen([PROGRAM, "run", path], cwd=self.folder, stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, encoding="utf-8") as running:
-            time.sleep(20.0 if "MT_TEST_LAUNCHED" in os.environ else 1.0)
+            time.sleep(seconds)
             self.assertIsNone(running.poll(), "the study is too short for this test")
             running.send_signal(signal.SIGINT)
             stdout, stderr = running.communicate(timeout=300)
         self.assertEqual(running.returncode, 130, stderr)
+        self.assertIn("Interrupted", stdout)
         result = json.loads((self.folder / "results/long/result.json").read_text(encoding="utf-8"))
         self.assertEqual(result["status"], "interrupted")
-        self.assertGreaterEqual(len(result["recommendations"]), 1)
-        self.assertIn("Interrupted", stdout)
+        return result
+
+    def test_the_best_so_far_is_written_and_130(self):
+        self.write("problems/beam.json", BEAM)
+        path = self.write("studies/long.json", LONG)
+        found = 0
+        for seconds in (1.0, 4.0, 20.0):  # how long the first of many searches takes is up to the machine
+            found = found or len(self.interrupted_after(path, seconds)["recommendations"])
+            if found:
+                break
+        self.assertGreaterEqual(found, 1)
 
 
 # A search far longer than any test waits: a long beam and many starts.
