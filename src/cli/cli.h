@@ -65,6 +65,8 @@ int mt_modes_index(const mt_modes *modes, int pos);
 const char *mt_mode_kind_name(mt_mode_kind kind);
 /* How many positions to show where `count` vibration modes are wanted (0: all): rigid-body and unstable ones come on top. */
 int mt_modes_shown(const mt_modes *modes, int count);
+/* Doubts and facts of a configuration, one line each, before its table. */
+void mt_cli_print_doubts(const mt_doubt_list *list, mt_text *out);
 /* Names within a text of quoted ones ("\"a\", \"b\""), as items of an open JSON list. */
 void mt_cli_json_names(mt_json_writer *w, const char *quoted);
 /* The name that the model gives to vibration mode `index` of configuration c; NULL. Only at the original design. */

@@ -4,7 +4,9 @@
 
 #include "cli/cli.h"
 #include "io/file.h"
+#include "report/summary.h"
 #include "report/table.h"
+#include "tune/doubts.h"
 
 typedef enum file_kind {
     KIND_MODEL,
@@ -70,8 +72,47 @@ static mt_status find_kind(const char *path, const mt_io_options *opt, int *kind
     return rc;
 }
 
+/* Every configuration as it stands. */
+static mt_status examine_model(const mt_model *model, mt_doubt_list *found, mt_err *err)
+{
+    for (int c = 0; c < model->n_configurations; c++) {
+        mt_analysis *a = NULL;
+        mt_status rc = mt_analysis_new(model, c, 0, NULL, NULL, &a, err);
+        rc = rc == MT_OK ? mt_doubts_of_analysis(a, 0, NULL, NULL, found, err) : rc;
+        mt_analysis_delete(a);
+        MT_TRY(rc);
+    }
+    return MT_OK;
+}
+
+/* What the analysis says besides the diagnostics of loading, which hold the doubts about single numbers already. */
+static void add_messages(const mt_doubt_list *found, const char *path, mt_text *messages)
+{
+    mt_text text = {.s = NULL};
+    for (int i = 0; i < found->n; i++) {
+        mt_doubt d = found->items[i];
+        text.length = 0;
+        d.file = d.file == NULL ? path : d.file;
+        mt_report_doubt(&d, false, &text);
+        if (text.s == NULL || (messages->s != NULL && strstr(messages->s, d.text) != NULL)) {
+            continue;
+        }
+        mt_text_add(messages, d.file);
+        if (d.line > 0) {
+            mt_text_addf(messages, ":%d:%d", d.line, d.column);
+        }
+        mt_text_addf(messages, ": %s: ", d.level == MT_LEVEL_DOUBT ? "warning" : "note");
+        if (d.pointer != NULL && d.pointer[0] != '\0') {
+            mt_text_addf(messages, "%s: ", d.pointer);
+        }
+        mt_text_addf(messages, "%s\n", text.s);
+    }
+    messages->failed = messages->failed || text.failed;
+    mt_text_free(&text);
+}
+
 static mt_status load(int kind, const char *path, const mt_io_options *opt, mt_text *messages,
-                      mt_err *err)
+                      mt_doubt_list *found, mt_err *err)
 {
     mt_model *model = NULL;
     mt_study *study = NULL;
@@ -82,9 +123,11 @@ static mt_status load(int kind, const char *path, const mt_io_options *opt, mt_t
     switch ((file_kind)kind) {
     case KIND_MODEL:
         rc = mt_model_load(path, opt, &model, messages, err);
+        rc = rc == MT_OK ? examine_model(model, found, err) : rc;
         break;
     case KIND_STUDY:
         rc = mt_study_load(path, opt, &study, messages, err);
+        rc = rc == MT_OK ? mt_study_examine(study, found, err) : rc;
         break;
     case KIND_RESULT:
         rc = mt_result_load(path, opt, &result, messages, err);
@@ -96,6 +139,7 @@ static mt_status load(int kind, const char *path, const mt_io_options *opt, mt_t
     case KIND_COUNT:
         break;
     }
+    add_messages(found, path, messages);
     mt_arena_free(&mem);
     mt_model_delete(model);
     mt_study_delete(study);
@@ -110,9 +154,12 @@ static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_ta
     mt_text messages = {.s = NULL};
     mt_err err = {.code = MT_OK};
     int kind = KIND_COUNT;
+    mt_arena mem = {.first = NULL};
+    mt_doubt_list found = mt_doubt_list_default(&mem);
     mt_status rc = find_kind(path, &opt, &kind, &messages, &err);
+    rc = rc == MT_OK ? mt_arena_init(&mem, 0, &err) : rc;
     if (rc == MT_OK) {
-        rc = load(kind, path, &opt, &messages, &err);
+        rc = load(kind, path, &opt, &messages, &found, &err);
     }
     const char *const name = kind == KIND_COUNT ? NULL : kinds[kind];
     const char *problems = rc == MT_OK ? "" : err.text;
@@ -125,6 +172,8 @@ static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_ta
         mt_json_put_string(w, "kind", name);
         mt_json_put_bool(w, "ok", rc == MT_OK);
         mt_json_put_string(w, "problems", problems);
+        mt_json_put_doubts(w, "doubts", &found, MT_LEVEL_DOUBT);
+        mt_json_put_doubts(w, "facts", &found, MT_LEVEL_FACT);
         mt_json_close(w);
     } else if (args->format == MT_FORMAT_CSV) {
         mt_table_text(t, path);
@@ -133,6 +182,7 @@ static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_ta
     } else if (rc == MT_OK) {
         mt_text_addf(out, "%s: ok (%s)\n", path, name);
     }
+    mt_arena_free(&mem);
     return mt_cli_loaded(rc, &messages, &err);
 }
 

@@ -7,6 +7,7 @@
 #include "mechanics/info.h"
 #include "report/number.h"
 #include "report/table.h"
+#include "tune/doubts.h"
 
 enum { DIGITS = 6, SPATIAL = 6 };
 
@@ -17,6 +18,8 @@ typedef struct view {
     int c;
     mt_analysis *a;
     mt_info info;
+    mt_arena mem;
+    mt_doubt_list doubts;
 } view;
 
 static mt_status write_json(mt_json_writer *w, const view *v, mt_err *err)
@@ -25,6 +28,8 @@ static mt_status write_json(mt_json_writer *w, const view *v, mt_err *err)
     const bool planar = v->s->model->dimension == 2;
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
+    mt_json_put_doubts(w, "doubts", &v->doubts, MT_LEVEL_DOUBT);
+    mt_json_put_doubts(w, "facts", &v->doubts, MT_LEVEL_FACT);
     mt_json_put_number(w, "mass_kg", i->mass_kg);
     mt_json_open_flat(w, "centre_m", '[');
     for (int k = 0; k < v->s->model->dimension; k++) {
@@ -65,12 +70,13 @@ static const char *point_text(const double *x, int n, char *text, size_t size)
     return text;
 }
 
-static mt_status write_text(mt_text *out, const view *v, mt_err *err)
+static void write_text(mt_text *out, const view *v)
 {
     const mt_info *const i = &v->info;
     const int n = v->s->model->dimension;
     char a[3 * MT_NUMBER_TEXT + 8];
     mt_text_addf(out, "%s\n", mt_subject_configuration(v->s, v->c));
+    mt_cli_print_doubts(&v->doubts, out);
     mt_text_addf(out, "  mass        %s kg\n", mt_report_number(i->mass_kg, DIGITS, a));
     mt_text_addf(out, "  centre      (%s) m\n", point_text(i->centre_m, n, a, sizeof a));
     if (n == 2) {
@@ -86,17 +92,11 @@ static mt_status write_text(mt_text *out, const view *v, mt_err *err)
     mt_text_addf(out,
                  "  mobility    %d freedoms = %d states - %d independent of %d equations\n",
                  i->freedoms, i->states, i->equations - i->redundant, i->equations);
-    for (int k = 0; k < i->redundant; k++) {
-        const char *text = NULL;
-        MT_TRY(mt_linear_redundant_set(v->a->lin, k, &text, err));
-        mt_text_addf(out, "  redundant   one equation of %s\n", text);
-    }
     if (v->a->lin->position.equilibrium.active) {
         mt_text_addf(out, "  equilibrium residual %.1e, largest gap of a joint %.1e m\n",
                      i->residual, i->gap_m);
     }
     mt_text_add(out, "\n");
-    return MT_OK;
 }
 
 static mt_table table_new(void)
@@ -141,6 +141,10 @@ static mt_status one(const mt_args *args, view *v, mt_json_writer *w, mt_table *
 {
     MT_TRY(mt_subject_analyse(v->s, v->c, &v->a, err));
     MT_TRY(mt_info_fill(v->a->lin, &v->info, err));
+    MT_TRY(mt_arena_init(&v->mem, 0, err));
+    v->doubts = mt_doubt_list_default(&v->mem);
+    MT_TRY(
+        mt_doubts_of_analysis(v->a, v->s->n_inputs, v->s->inputs, v->s->at, &v->doubts, err));
     switch (args->format) {
     case MT_FORMAT_JSON:
         return write_json(w, v, err);
@@ -148,9 +152,10 @@ static mt_status one(const mt_args *args, view *v, mt_json_writer *w, mt_table *
         fill_table(t, v);
         return MT_OK;
     case MT_FORMAT_TEXT:
+        write_text(out, v);
         break;
     }
-    return write_text(out, v, err);
+    return MT_OK;
 }
 
 int mt_cmd_info(const mt_args *args, mt_text *out)
@@ -182,6 +187,7 @@ int mt_cmd_info(const mt_args *args, mt_text *out)
             mt_json_close(&w);
         }
         mt_analysis_delete(v.a);
+        mt_arena_free(&v.mem);
     }
     if (list) {
         mt_json_close(&w);

@@ -8,6 +8,7 @@
 #include "cli/damped.h"
 #include "cli/shapes.h"
 #include "report/table.h"
+#include "tune/doubts.h"
 
 enum { HZ_DIGITS = 6, RATIO_DIGITS = 2 };
 
@@ -21,6 +22,7 @@ typedef struct view {
     int count;        /* --count */
     bool with_damping;
     mt_damped_modes damped;
+    mt_doubt_list doubts;
 } view;
 
 static void json_mode(mt_json_writer *w, const view *v, int i)
@@ -73,6 +75,8 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     const mt_linear *const lin = v->a->lin;
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
+    mt_json_put_doubts(w, "doubts", &v->doubts, MT_LEVEL_DOUBT);
+    mt_json_put_doubts(w, "facts", &v->doubts, MT_LEVEL_FACT);
     mt_json_put_integer(w, "freedoms", lin->n);
     mt_json_put_integer(w, "rigid_body_modes", m->n_rigid);
     mt_json_put_integer(w, "unstable_modes", m->n_unstable + m->n_unstable_condensed);
@@ -185,22 +189,13 @@ static void tell_clusters(const mt_modes *m, int shown, mt_text *out)
     }
 }
 
-static mt_status tell(const view *v, mt_text *out, mt_err *err)
+static void tell(const view *v, mt_text *out)
 {
     const mt_modes *const m = &v->a->modes;
-    mt_linear *const lin = v->a->lin;
-    const int unstable = m->n_unstable + m->n_unstable_condensed;
+    const mt_linear *const lin = v->a->lin;
     if (lin->position.equilibrium.active) {
         mt_text_addf(out, "  Equilibrium found in %d iterations, residual %.1e.\n",
                      lin->position.iterations, lin->position.residual);
-    }
-    if (m->n_rigid > 0) {
-        mt_text_addf(out, "  %d rigid-body mode%s: it can move freely.\n", m->n_rigid,
-                     m->n_rigid == 1 ? "" : "s");
-    }
-    if (unstable > 0) {
-        mt_text_addf(out, "  UNSTABLE in %d direction%s: this position does not hold.\n",
-                     unstable, unstable == 1 ? "" : "s");
     }
     if (m->n_condensed > 0) {
         mt_text_addf(out, "  %d direction%s without mass follow%s statically.\n",
@@ -208,22 +203,17 @@ static mt_status tell(const view *v, mt_text *out, mt_err *err)
                      m->n_condensed == 1 ? "s" : "");
     }
     tell_clusters(m, v->shown, out);
-    for (int k = 0; k < mt_linear_redundant(lin); k++) {
-        const char *text = NULL;
-        MT_TRY(mt_linear_redundant_set(lin, k, &text, err));
-        mt_text_addf(out, "  Redundant: one equation of %s changes nothing.\n", text);
-    }
-    return MT_OK;
 }
 
-static mt_status text_view(const view *v, mt_text *out, mt_err *err)
+static void text_view(const view *v, mt_text *out)
 {
     mt_table t = table_new(false, 0, NULL);
     fill_table(&t, v, false);
     mt_text_addf(out, "%s\n", mt_subject_configuration(v->s, v->c));
+    mt_cli_print_doubts(&v->doubts, out);
     mt_table_print(&t, 2, out);
     mt_table_free(&t);
-    MT_TRY(tell(v, out, err));
+    tell(v, out);
     if (v->shapes.n > 0) {
         print_shapes(v, out);
     }
@@ -231,7 +221,6 @@ static mt_status text_view(const view *v, mt_text *out, mt_err *err)
         mt_damped_print(&v->damped, v->count, out);
     }
     mt_text_add(out, "\n");
-    return MT_OK;
 }
 
 typedef struct sink {
@@ -270,6 +259,11 @@ static mt_status one(sink *to, const mt_subject *s, int c, mt_err *err)
     if (rc != MT_OK) {
         goto done;
     }
+    v.doubts = mt_doubt_list_default(&mem);
+    rc = mt_doubts_of_analysis(v.a, s->n_inputs, s->inputs, s->at, &v.doubts, err);
+    if (rc != MT_OK) {
+        goto done;
+    }
     v.shown = mt_modes_shown(&v.a->modes, to->args->count);
     if (to->args->given[MT_OPT_SHAPES]) {
         rc = mt_shapes_of(v.a, v.shown, &mem, &v.shapes, err);
@@ -294,7 +288,7 @@ static mt_status one(sink *to, const mt_subject *s, int c, mt_err *err)
         }
         break;
     case MT_FORMAT_TEXT:
-        rc = text_view(&v, to->out, err);
+        text_view(&v, to->out);
         break;
     }
 done:

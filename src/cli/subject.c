@@ -277,6 +277,15 @@ int mt_modes_shown(const mt_modes *modes, int count)
     return modes->count;
 }
 
+void mt_cli_print_doubts(const mt_doubt_list *list, mt_text *out)
+{
+    for (int i = 0; i < list->n; i++) {
+        const mt_doubt *const d = &list->items[i];
+        mt_text_addf(out, "  %s: %s\n", d->level == MT_LEVEL_DOUBT ? "doubtful" : "note",
+                     d->text);
+    }
+}
+
 void mt_cli_json_names(mt_json_writer *w, const char *quoted)
 {
     mt_text name = {.s = NULL};

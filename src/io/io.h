@@ -53,6 +53,9 @@ mt_status mt_aircraft_load(const char *path, const mt_io_options *opt, mt_arena 
 mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err);
 /* The same as a value within a larger document (name NULL: in a list, or the whole). */
 void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result);
+/* The items of one level as a list of objects. */
+void mt_json_put_doubts(mt_json_writer *w, const char *name, const mt_doubt_list *list,
+                        mt_doubt_level level);
 /* Of it, the members "undetermined" and "spread", into an object that is open. */
 void mt_result_put_uncertainty(mt_json_writer *w, const mt_result *result);
 

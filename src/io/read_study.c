@@ -226,6 +226,50 @@ static void read_spread(mt_study_reader *s, mt_addr value)
     }
 }
 
+/* Studies of more items than this keep no places: pointers cost a walk along their list. */
+enum { MOST_PLACED = 1000 };
+
+static void note_place(mt_study_reader *s, mt_addr addr)
+{
+    mt_study *const study = s->study;
+    mt_study_place *const places = mt_arena_grow(&study->mem, study->places, study->n_places,
+                                                 &study->cap_places, sizeof *places);
+    mt_text pointer = {.s = NULL};
+    if (places == NULL) {
+        s->r.out_of_memory = true;
+        return;
+    }
+    mt_json_pointer(s->r.doc, addr, &pointer);
+    mt_study_place *const p = &places[study->n_places++];
+    *p = (mt_study_place){.addr = addr};
+    mt_json_place(s->r.doc, addr, &p->line, &p->column);
+    p->pointer = mt_arena_strdup(&study->mem, pointer.s == NULL ? "" : pointer.s);
+    s->r.out_of_memory = s->r.out_of_memory || pointer.failed || p->pointer == NULL;
+    mt_text_free(&pointer);
+    study->places = places;
+}
+
+/* The document is gone when the study is held against its model. */
+static void note_places(mt_study_reader *s)
+{
+    mt_study *const study = s->study;
+    for (int i = 0; i < study->n_goals && i < MOST_PLACED; i++) {
+        const mt_goal *const g = &study->goals[i];
+        note_place(s, g->addr);
+        note_place(s, g->target_addr);
+        note_place(s, g->at_least_addr);
+        note_place(s, g->at_most_addr);
+    }
+    for (int i = 0; i < study->doubts.n && i < MOST_PLACED; i++) {
+        note_place(s, study->doubts.items[i].addr);
+    }
+    for (int i = 0; i < study->n_variables && i < MOST_PLACED; i++) {
+        note_place(s, study->variables[i].addr);
+        note_place(s, study->variables[i].lower_addr);
+        note_place(s, study->variables[i].upper_addr);
+    }
+}
+
 /* A file of another kind or version gets one message, not one per member. */
 static bool check_format(mt_study_reader *s)
 {
@@ -297,6 +341,10 @@ static mt_status read_document(mt_study_reader *s, mt_err *err)
         const mt_status rc = mt_study_finish(s->study, s->r.diags, err);
         if (rc != MT_OK && rc != MT_E_INPUT) {
             return rc;
+        }
+        note_places(s);
+        if (s->r.out_of_memory) {
+            return mt_fail_memory(err);
         }
     }
     const mt_status rc = mt_reader_status(&s->r, s->study->path, err);

@@ -325,6 +325,33 @@ static void write_published(mt_json_writer *w, const mt_result_published *p)
     mt_json_close(w);
 }
 
+void mt_json_put_doubts(mt_json_writer *w, const char *name, const mt_doubt_list *list,
+                        mt_doubt_level level)
+{
+    mt_json_open(w, name, '[');
+    for (int i = 0; i < list->n; i++) {
+        const mt_doubt *const d = &list->items[i];
+        if (d->level != level) {
+            continue;
+        }
+        mt_json_open(w, NULL, '{');
+        mt_json_put_string(w, "kind", d->kind);
+        mt_json_put_string(w, "text", d->text);
+        mt_json_put_string(w, "configuration", d->configuration);
+        mt_json_put_string(w, "file", d->file);
+        if (d->line > 0) {
+            mt_json_put_integer(w, "line", d->line);
+            mt_json_put_integer(w, "column", d->column);
+        } else {
+            mt_json_put_null(w, "line");
+            mt_json_put_null(w, "column");
+        }
+        mt_json_put_string(w, "pointer", d->pointer);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+}
+
 static void write_run(mt_json_writer *w, const mt_result_run *run)
 {
     mt_json_open(w, "run", '{');
@@ -373,6 +400,8 @@ void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result)
     write_named_file(w, "model", result->model_name, result->model_file);
     mt_json_put_string(w, "status", mt_result_status_name(result->status));
     mt_json_put_string(w, "status_text", result->status_text);
+    mt_json_put_doubts(w, "doubts", &result->doubts, MT_LEVEL_DOUBT);
+    mt_json_put_doubts(w, "facts", &result->doubts, MT_LEVEL_FACT);
     write_strings(w, "variables", result->n_variables, result->variables);
     write_design(w, "baseline", &result->baseline);
     WRITE_LIST(w, "recommendations", result->n_recommendations, result->recommendations,

@@ -7,6 +7,7 @@
 
 #include "mechanics/build.h"
 #include "mechanics/data.h"
+#include "model/values.h"
 
 /* Give a list its first entry: where memory ends later, index 0 stands for what could not be made and may be read until the shortage is reported. */
 #define RESERVE(sys, name)                                                  \

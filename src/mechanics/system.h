@@ -180,10 +180,6 @@ mt_status mt_system_new_driven(const mt_model *model, int configuration,
                                const double *at, mt_system **out, mt_err *err);
 void mt_system_delete(mt_system *sys);
 
-/* Emit all parameters of the configuration into a program; is_input[p] >= 0: parameter p is that input. nodes[n_parameters]. The model has been checked for cycles. */
-mt_status mt_emit_parameters(const mt_model *model, int configuration, const int *is_input,
-                             mt_program *program, mt_node *nodes, mt_arena *mem, mt_err *err);
-
 int mt_system_find_channel(const mt_system *sys, const char *name);
 int mt_system_find_joint(const mt_system *sys, const char *name);
 

@@ -175,7 +175,7 @@ mt_status mt_model_finish(mt_model *model, mt_diags *diags, mt_err *err)
     static void (*const stages[])(mt_finish *) = {
         ensure_configuration, mt_finish_names,  mt_finish_configurations, mt_finish_presence,
         mt_finish_bodies,     mt_finish_links,  mt_finish_joints,         mt_finish_springs,
-        mt_finish_sensors,    mt_finish_drives, mt_finish_cycles,
+        mt_finish_sensors,    mt_finish_drives, mt_finish_cycles,         mt_finish_values,
     };
     mt_finish f = {.m = model, .d = diags, .out_of_memory = model->out_of_memory};
     for (int i = 0; i < MT_COUNT(stages) && !f.out_of_memory; i++) {

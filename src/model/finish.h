@@ -45,5 +45,7 @@ void mt_finish_springs(mt_finish *f);
 void mt_finish_sensors(mt_finish *f);
 void mt_finish_drives(mt_finish *f);
 void mt_finish_cycles(mt_finish *f);
+/* Only where nothing is wrong so far. */
+void mt_finish_values(mt_finish *f);
 
 #endif

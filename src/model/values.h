@@ -2,6 +2,8 @@
 #ifndef MODEL_VALUES_H
 #define MODEL_VALUES_H
 
+#include "base/doubt.h"
+#include "expr/program.h"
 #include "model/model.h"
 
 /*
@@ -25,5 +27,28 @@ mt_status mt_model_original_values(const mt_model *model, mt_arena *mem, double 
  */
 mt_status mt_model_expr_value(const mt_model *model, const double *values, const mt_expr *e,
                               mt_arena *mem, double *out, mt_err *err);
+
+/* Emit all parameters of a configuration (MT_ABSENT: of the file) into a program; is_input[p] >= 0: parameter p is that input (NULL: none is; an override wins over an
+ * input). nodes[n_parameters]. The model has been checked for cycles. Fails: MT_E_MEMORY, MT_E_INTERNAL (a cycle). */
+mt_status mt_emit_parameters(const mt_model *model, int configuration, const int *is_input,
+                             mt_program *program, mt_node *nodes, mt_arena *mem, mt_err *err);
+
+/**
+ * The numbers of all items that a configuration contains, where some parameters are inputs.
+ * @param[in]  inputs  [n_inputs] parameters; at[n_inputs] their values
+ * @param[out] value   [n_nums]; NaN where a number belongs to no such item, or has no finite value (or stands behind one that has none)
+ * Scratch from mem, given back. O(total length of the expressions). Fails: MT_E_MEMORY, MT_E_INTERNAL.
+ */
+mt_status mt_model_numbers(const mt_model *model, int configuration, int n_inputs,
+                           const int *inputs, const double *at, mt_arena *mem, double *value,
+                           mt_err *err);
+
+/**
+ * Judge the numbers of a configuration: faults (masses and stiffnesses below 0, sections without area) and doubts (a modulus that no material has, a drive
+ * beyond a turn). Each names item and member, carries its JSON pointer and, where the model was read from a file, its place.
+ * @param[in]  value  [n_nums] as mt_model_numbers gives them
+ */
+void mt_model_judge(const mt_model *model, int configuration, const double *value,
+                    mt_doubt_list *out);
 
 #endif

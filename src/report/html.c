@@ -10,7 +10,7 @@ static const char STYLE[] =
     "h1{font-size:1.5em;margin-bottom:.2em}h2{font-size:1.1em;margin:1.6em 0 .4em}"
     ".status{padding:.5em .8em;border-left:5px solid #888;background:#f4f4f4}"
     ".solved{border-color:#1b7837}.compromise,.interrupted{border-color:#b8860b}"
-    ".infeasible{border-color:#b2182b}"
+    ".infeasible{border-color:#b2182b}.doubts{padding:.5em 2em;background:#fff3cd}"
     "table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:.4em 0}"
     "th,td{padding:.2em .7em;text-align:left;border-bottom:1px solid #ddd}"
     "th{border-bottom:2px solid #888}.n{text-align:right}"
@@ -99,11 +99,12 @@ static void add_certificates(const mt_result *result, mt_text *out)
     if (result->n_certificates == 0) {
         return;
     }
+    const bool doubtful = mt_report_doubtful(result);
     heading("Certificates", out);
     mt_text_add(out, "<ul>\n");
     for (int i = 0; i < result->n_certificates; i++) {
         const mt_certificate *const c = &result->certificates[i];
-        mt_text_addf(out, "<li><b>%s</b>: ", c->proven ? "proven" : "sampled");
+        mt_text_addf(out, "<li><b>%s</b>: ", mt_report_surety(c->proven, doubtful));
         mt_html_escape(c->text, out);
         mt_text_add(out, "</li>\n");
     }
@@ -119,6 +120,26 @@ static void add_relaxations(const mt_result *result, mt_text *out)
     mt_text_add(out, "<ul>\n");
     for (int i = 0; i < result->n_relaxations; i++) {
         add_item(result->relaxations[i].text, out);
+    }
+    mt_text_add(out, "</ul>\n");
+}
+
+static void add_doubts(const mt_doubt_list *list, mt_doubt_level level, const char *title,
+                       mt_text *out)
+{
+    if (mt_doubt_count(list->n, list->items, level) == 0) {
+        return;
+    }
+    heading(title, out);
+    mt_text_addf(out, "<ul%s>\n", level == MT_LEVEL_DOUBT ? " class=\"doubts\"" : "");
+    for (int i = 0; i < list->n; i++) {
+        mt_text text = {.s = NULL};
+        if (list->items[i].level == level) {
+            mt_report_doubt(&list->items[i], level == MT_LEVEL_DOUBT, &text);
+            add_item(text.s == NULL ? "" : text.s, out);
+        }
+        out->failed = out->failed || text.failed;
+        mt_text_free(&text);
     }
     mt_text_add(out, "</ul>\n");
 }
@@ -152,6 +173,8 @@ void mt_report_html(const mt_result *result, mt_text *out)
     mt_text_addf(out, "</h1>\n<p class=\"status %s\"><b>%s</b>. ", status, status);
     mt_html_escape(result->status_text == NULL ? "" : result->status_text, out);
     mt_text_add(out, "</p>\n");
+    add_doubts(&result->doubts, MT_LEVEL_DOUBT, "Doubts", out);
+    add_doubts(&result->doubts, MT_LEVEL_FACT, "Facts of the model", out);
     add_best(result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline,
              out);
     if (result->n_recommendations > 1) {

@@ -37,6 +37,62 @@ static void print_relaxations(const mt_result *result, mt_text *out)
     }
 }
 
+/* "stick.json:12:9: " as far as it is known. */
+static void print_place(const mt_doubt *d, mt_text *out)
+{
+    if (d->file != NULL) {
+        mt_text_add(out, d->file);
+        if (d->line > 0) {
+            mt_text_addf(out, ":%d:%d", d->line, d->column);
+        }
+        mt_text_add(out, ": ");
+    }
+    if (d->pointer != NULL && d->pointer[0] != '\0') {
+        mt_text_addf(out, "%s: ", d->pointer);
+    }
+}
+
+void mt_report_doubt(const mt_doubt *d, bool with_place, mt_text *out)
+{
+    if (with_place) {
+        print_place(d, out);
+    }
+    if (d->configuration != NULL) {
+        mt_text_addf(out, "%s: ", d->configuration);
+    }
+    mt_text_add(out, d->text);
+}
+
+bool mt_report_doubtful(const mt_result *result)
+{
+    return mt_doubt_count(result->doubts.n, result->doubts.items, MT_LEVEL_DOUBT) > 0;
+}
+
+const char *mt_report_surety(bool proven, bool doubtful)
+{
+    if (!proven) {
+        return "sampled";
+    }
+    return doubtful ? "proven of the question as it stands, which is doubtful" : "proven";
+}
+
+void mt_report_doubts(const mt_doubt_list *list, mt_text *out)
+{
+    static const char *const titles[] = {"Facts of the model", "Doubts"};
+    for (int level = MT_LEVEL_DOUBT; level >= MT_LEVEL_FACT; level--) {
+        bool any = false;
+        for (int i = 0; i < list->n; i++) {
+            if ((int)list->items[i].level == level) {
+                mt_text_addf(out, "%s%s%s  - ", any ? "" : "\n", any ? "" : titles[level],
+                             any ? "" : "\n");
+                mt_report_doubt(&list->items[i], level == MT_LEVEL_DOUBT, out);
+                mt_text_add(out, "\n");
+                any = true;
+            }
+        }
+    }
+}
+
 static void print_best(const mt_recommendation *r, mt_text *out)
 {
     if (r->n_parameters > 0) {
@@ -91,6 +147,8 @@ void mt_report_summary(const mt_result *result, bool with_published, mt_text *ou
     mt_text_addf(out, "%s\n%s\n", name == NULL ? "study" : name,
                  result->status_text == NULL ? mt_result_status_name(result->status)
                                              : result->status_text);
+    mt_report_doubts(&result->doubts, out);
+    const bool doubtful = mt_report_doubtful(result);
     if (result->n_recommendations > 0) {
         print_best(&result->recommendations[0], out);
     } else {
@@ -109,7 +167,7 @@ void mt_report_summary(const mt_result *result, bool with_published, mt_text *ou
     }
     for (int i = 0; i < result->n_certificates; i++) {
         const mt_certificate *const c = &result->certificates[i];
-        mt_text_addf(out, "  - %s: %s\n", c->proven ? "proven" : "sampled", c->text);
+        mt_text_addf(out, "  - %s: %s\n", mt_report_surety(c->proven, doubtful), c->text);
     }
     print_relaxations(result, out);
     if (with_published) {

@@ -10,6 +10,7 @@
 #include <math.h>
 
 #include "base/text.h"
+#include "model/values.h"
 #include "tune/problem.h"
 
 /* An objective is held within this part of its value (of 1 kg or one unit of the expression where it is below that). */

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 
 #include "base/arena.h"
+#include "base/doubt.h"
 
 /* What a study answers: plain records, no computation. All texts live in the result's arena. NaN: not applicable (written as null). */
 
@@ -253,6 +254,8 @@ typedef struct mt_result {
     mt_result_published *published;
     int n_warnings;
     const char **warnings;
+    mt_doubt_list
+        doubts; /* facts of the model and doubts about the question, said before anything else */
     mt_result_run run;
 } mt_result;
 

@@ -3,6 +3,7 @@
 
 #include "tune/describe.h"
 #include "tune/discrete.h"
+#include "tune/doubts.h"
 #include "tune/gaps.h"
 #include "tune/relax.h"
 #include "tune/search.h"
@@ -184,6 +185,30 @@ static const char *status_text(const answer *a, const mt_recommendation *best)
                            a->impossible ? "that was found " : "", best->violation_percent);
 }
 
+/* Nothing is proven of a question that is hardly the one that was meant: the doubts come first, and no design is graded beyond "feasible". */
+static mt_status qualify(mt_result *result, mt_err *err)
+{
+    const mt_doubt_list *const list = &result->doubts;
+    const int n = mt_doubt_count(list->n, list->items, MT_LEVEL_DOUBT);
+    const char *first = "";
+    for (int i = list->n - 1; i >= 0; i--) {
+        first = list->items[i].level == MT_LEVEL_DOUBT ? list->items[i].text : first;
+    }
+    if (n == 0) {
+        return MT_OK;
+    }
+    for (int i = 0; i < result->n_recommendations; i++) {
+        mt_recommendation *const r = &result->recommendations[i];
+        r->grade = r->feasible ? "feasible" : r->grade;
+    }
+    result->status_text =
+        n == 1 ? mt_arena_printf(&result->mem, "Doubtful question (%s). %s", first,
+                                 result->status_text)
+               : mt_arena_printf(&result->mem, "Doubtful question (%s; and %d more). %s", first,
+                                 n - 1, result->status_text);
+    return result->status_text == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
 static mt_status set_status(const answer *a, mt_err *err)
 {
     mt_result *const result = a->result;
@@ -195,7 +220,7 @@ static mt_status set_status(const answer *a, mt_err *err)
         result->status = MT_RESULT_COMPROMISE; /* the baseline is no answer of the search */
     }
     result->status_text = status_text(a, best);
-    return result->status_text == NULL ? mt_fail_memory(err) : MT_OK;
+    return result->status_text == NULL ? mt_fail_memory(err) : qualify(result, err);
 }
 
 /* The search over gap assignments, its solutions in the form of any other search. */
@@ -316,6 +341,10 @@ static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
         MT_TRY(take_hint(a, opt->hint, err));
     }
     MT_TRY(mt_describe_run(a->study, result, err));
+    result->doubts = mt_doubt_list_default(&result->mem);
+    if (!a->study->examined) {
+        MT_TRY(mt_study_examine(a->study, &result->doubts, err));
+    }
     MT_TRY(mt_describe_design(p, &original, NULL, result, &result->baseline, err));
     MT_TRY(mt_describe_baseline_reasons(p, result, err));
     if (a->searched) {

@@ -61,6 +61,18 @@ int mt_study_find_reference(const mt_study *study, const char *name)
     return MT_ABSENT;
 }
 
+void mt_study_place_doubt(const mt_study *study, mt_doubt *doubt)
+{
+    for (int i = 0; i < study->n_places && doubt->line == 0; i++) {
+        const mt_study_place *const p = &study->places[i];
+        if (p->addr == doubt->addr) {
+            doubt->line = p->line;
+            doubt->column = p->column;
+            doubt->pointer = p->pointer;
+        }
+    }
+}
+
 static mt_mode_ref no_mode(mt_addr addr)
 {
     return (mt_mode_ref){.named = MT_ABSENT, .addr = addr};

@@ -4,6 +4,7 @@
 
 #include "modetune/study.h"
 
+#include "base/doubt.h"
 #include "model/model.h"
 #include "tune/aircraft.h"
 #include "tune/bands.h"
@@ -251,6 +252,14 @@ typedef struct mt_input_file {
     const char *sha256; /* hex */
 } mt_input_file;
 
+/* Where an address of the study's file stands, kept for what is found later. */
+typedef struct mt_study_place {
+    mt_addr addr;
+    int line; /* from 1 */
+    int column;
+    const char *pointer;
+} mt_study_place;
+
 typedef struct mt_study {
     mt_arena mem; /* owns everything but the models' own memory */
     const char *path;
@@ -273,6 +282,11 @@ typedef struct mt_study {
     mt_aircraft_list aircraft;
     /* for the result: what a reader of it must know (values that nobody confirmed, bands that were merged); by finish */
     MT_LIST_OF(const char *, warnings);
+    mt_doubt_list
+        doubts; /* of the study's own numbers; by finish, their places by the reader */
+    MT_LIST_OF(mt_study_place,
+               places);  /* of goals, variables and their numbers; by the reader */
+    bool examined;       /* doubts have been told already: a point of a trade study */
     int recommendations; /* how many to report; default 5 */
     mt_addr recommendations_addr;
     mt_search search;
@@ -301,6 +315,8 @@ mt_published mt_published_default(mt_published_kind kind, mt_addr addr);
 mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err);
 /* MT_ABSENT where there is none. */
 int mt_study_find_reference(const mt_study *study, const char *name);
+/* Fill in where a doubt's address stands, if that is known. */
+void mt_study_place_doubt(const mt_study *study, mt_doubt *doubt);
 /* The names that files use: "frequency", "verifies", "parameter". */
 const char *mt_goal_type_name(mt_goal_type type);
 const char *mt_role_name(mt_role role);

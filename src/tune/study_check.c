@@ -224,6 +224,9 @@ mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err)
         mt_diag_error(diags, study->recommendations_addr,
                       "recommendations (%d) must be above 0", study->recommendations);
     }
+    if (diags->errors == 0 && !c.out_of_memory) {
+        mt_study_check_doubts(&c);
+    }
     if (c.out_of_memory || diags->out_of_memory) {
         return mt_fail_memory(err);
     }

@@ -22,6 +22,8 @@ void mt_study_check_objectives(mt_study_check *c); /* study_objectives.c; after 
 void mt_study_check_published(mt_study_check *c);  /* study_published.c */
 void mt_study_check_trade(mt_study_check *c);      /* study_trade.c; last of the checks */
 void mt_study_fill_counted(mt_study_check *c);     /* study_counted.c; after all of them */
+void mt_study_check_doubts(
+    mt_study_check *c); /* study_doubts.c; last, where nothing is wrong */
 
 /* Shared: names to indices, with "did you mean". An absent name gives MT_ABSENT without a message. */
 int mt_check_parameter(mt_study_check *c, mt_name name);

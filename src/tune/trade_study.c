@@ -96,6 +96,7 @@ mt_status mt_trade_study(const mt_study *study, const double *values, mt_arena *
     out->trade.n_vary = 0;
     out->n_published = 0;
     out->n_warnings = 0;
+    out->examined = true;
     out->spread.factor = nan("");
     out->recommendations = 1;
     out->variables =

@@ -82,8 +82,8 @@ class Modes(CliTest):
         self.assertIn("  mode  kind      frequency [Hz]  name   residual  orthogonality\n"
                       "  ----  --------  --------------  -----  --------  -------------\n"
                       "     1  flexible        0.132894  first ", text)
-        self.assertIn("  1 rigid-body mode: it can move freely.\n", text)
-        self.assertIn('  Redundant: one equation of "rb", "rc" changes nothing.\n', text)
+        self.assertIn('free\n  note: 1 free motion: is a joint missing? Free to move: "a" (along x), "b" (along x)\n  mode ', text)
+        self.assertIn('twice\n  note: redundant: 2 equations of "rb", "rc" change nothing\n  mode ', text)
         self.assertFalse([line for line in text.splitlines() if line.endswith(" ")])
 
     def test_a_numerical_failure_is_3_and_names_its_place(self):
@@ -206,10 +206,15 @@ class Info(CliTest):
         self.assertEqual([r["mass_kg"] for r in rows], ["2", "2", "2", "8"])
 
 
+# What there is to know of the model before any number.
+FACTS = ('problems/model.json: note: twice: redundant: 2 equations of "rb", "rc" change nothing\n'
+         'problems/model.json: note: free: 1 free motion: is a joint missing? Free to move: "a" (along x), "b" (along x)\n')
+
+
 class Check(CliTest):
     def test_good_files_are_ok(self):
         done = self.expect(0, "check", self.model)
-        self.assertEqual((done.stdout, done.stderr), (f"{self.model}: ok (model)\n", ""))
+        self.assertEqual((done.stdout, done.stderr), (f"{self.model}: ok (model)\n", FACTS))
 
     def test_every_problem_of_every_file_is_told(self):
         bad = self.write("bad.json", '{ "format": "modetune-modl/1" }\n')
@@ -220,8 +225,9 @@ class Check(CliTest):
         lines = done.stderr.splitlines()
         self.assertEqual(lines[0], 'bad.json:1:13: error: /format: must be one of "modetune-model/1", "modetune-study/1", '
                                    '"modetune-result/1", "modetune-aircraft/1"; did you mean "modetune-model/1"?')
-        self.assertEqual(lines[1], 'none.json:1:1: error: must be an object with a member "format"')
-        self.assertTrue(lines[2].startswith("broken.json:1:13: error: "), lines[2])
+        self.assertEqual("\n".join(lines[1:3]) + "\n", FACTS)
+        self.assertEqual(lines[3], 'none.json:1:1: error: must be an object with a member "format"')
+        self.assertTrue(lines[4].startswith("broken.json:1:13: error: "), lines[4])
 
     def test_a_missing_file_is_4_and_the_worst_counts(self):
         bad = self.write("bad.json", "{}")

@@ -3,7 +3,7 @@
  * Parameters into program nodes. Which definition counts: an override of the configuration, else an input of the caller, else the parameter's own expression. Emission
  * follows the dependences depth first with an explicit stack, so a long chain cannot overflow the C stack; the model was checked for cycles.
  */
-#include "mechanics/system.h"
+#include "model/values.h"
 
 typedef struct source {
     bool input;

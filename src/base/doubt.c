@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/doubt.h"
+
+#include <stdarg.h>
+#include <stddef.h>
+
+mt_doubt_list mt_doubt_list_default(mt_arena *mem)
+{
+    return (mt_doubt_list){.mem = mem};
+}
+
+static mt_doubt *add(mt_doubt_list *list, const mt_doubt *item)
+{
+    mt_doubt *const items = item->text == NULL ? NULL
+                                               : mt_arena_grow(list->mem, list->items, list->n,
+                                                               &list->capacity, sizeof *items);
+    if (items == NULL) {
+        list->out_of_memory = true;
+        return NULL;
+    }
+    list->items = items;
+    items[list->n] = *item;
+    return &items[list->n++];
+}
+
+mt_doubt *mt_doubt_add(mt_doubt_list *list, mt_doubt_level level, const char *kind,
+                       const char *fmt, ...)
+{
+    mt_doubt item = {.level = level, .kind = kind, .addr = MT_NO_ADDR};
+    va_list args;
+    va_start(args, fmt);
+    item.text = mt_arena_vprintf(list->mem, fmt, args);
+    va_end(args);
+    return add(list, &item);
+}
+
+void mt_doubt_sort(mt_doubt_list *list, int first)
+{
+    for (int i = first + 1; i < list->n; i++) {
+        const mt_doubt moved = list->items[i];
+        int k = i;
+        for (; k > first && list->items[k - 1].size < moved.size; k--) {
+            list->items[k] = list->items[k - 1];
+        }
+        list->items[k] = moved;
+    }
+}
+
+static const char *text(mt_doubt_list *list, const char *s)
+{
+    const char *const copy = s == NULL ? NULL : mt_arena_strdup(list->mem, s);
+    list->out_of_memory = list->out_of_memory || (s != NULL && copy == NULL);
+    return copy;
+}
+
+void mt_doubt_copy(mt_doubt_list *list, const mt_doubt *item)
+{
+    mt_doubt copy = *item;
+    copy.kind = text(list, item->kind);
+    copy.text = text(list, item->text);
+    copy.configuration = text(list, item->configuration);
+    copy.pointer = text(list, item->pointer);
+    copy.file = text(list, item->file);
+    (void)add(list, &copy);
+}
+
+int mt_doubt_count(int n, const mt_doubt *items, mt_doubt_level level)
+{
+    int count = 0;
+    for (int i = 0; i < n; i++) {
+        count += items[i].level == level ? 1 : 0;
+    }
+    return count;
+}
+
+const char *mt_doubt_level_name(mt_doubt_level level)
+{
+#define MT_DOUBT_LEVEL_NAME(id, name) name,
+    static const char *const names[] = {MT_DOUBT_LEVEL_LIST(MT_DOUBT_LEVEL_NAME)};
+#undef MT_DOUBT_LEVEL_NAME
+    return names[level];
+}

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The last stage: what the numbers are, in every configuration. Faults are errors, doubts warnings; what several configurations share is said once. */
+#include <stddef.h>
+#include <string.h>
+
+#include "model/finish.h"
+#include "model/values.h"
+
+static bool is_told(const mt_doubt_list *list, int n, const mt_doubt *d)
+{
+    for (int i = 0; i < n; i++) {
+        const mt_doubt *const other = &list->items[i];
+        if (other->addr == d->addr && strcmp(other->text, d->text) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A value that an override made is told with its configuration. */
+static void tell(mt_finish *f, const mt_doubt *d, const mt_configuration *c)
+{
+    const bool own = c->n_overrides > 0;
+    const char *const in = own ? " in configuration \"" : "";
+    if (d->level == MT_LEVEL_FAULT) {
+        mt_diag_error(f->d, d->addr, "%s%s%s%s", d->text, in, own ? c->name.s : "",
+                      own ? "\"" : "");
+    } else if (d->level == MT_LEVEL_DOUBT) {
+        mt_diag_warning(f->d, d->addr, "%s%s%s%s", d->text, in, own ? c->name.s : "",
+                        own ? "\"" : "");
+    }
+}
+
+void mt_finish_values(mt_finish *f)
+{
+    mt_model *const m = f->m;
+    mt_arena texts = {.first = NULL};
+    mt_doubt_list list = mt_doubt_list_default(&texts);
+    const bool sound = f->d->errors == 0;
+    bool ok = mt_arena_init(&texts, 0, NULL) == MT_OK;
+    double *const value = ok ? mt_arena_f64(&texts, (size_t)m->n_nums, 1) : NULL;
+    ok = value != NULL;
+    for (int pass = 0; pass < 2 && sound && ok; pass++) {
+        for (int c = 0; c < m->n_configurations && ok; c++) {
+            const bool own = m->configurations[c].n_overrides > 0;
+            const int first = list.n;
+            if (own != (pass == 1)) {
+                continue; /* the file's own values first */
+            }
+            ok = mt_model_numbers(m, c, 0, NULL, NULL, &texts, value, NULL) == MT_OK;
+            if (ok) {
+                mt_model_judge(m, c, value, &list);
+            }
+            for (int i = first; i < list.n && ok; i++) {
+                if (!is_told(&list, i, &list.items[i])) {
+                    tell(f, &list.items[i], &m->configurations[c]);
+                }
+            }
+        }
+    }
+    f->out_of_memory = f->out_of_memory || !ok || list.out_of_memory;
+    mt_arena_free(&texts);
+}

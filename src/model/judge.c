@@ -1,0 +1,284 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * What the numbers of a configuration can be, and what they hardly are. A fault is what no mechanism has (a mass below 0); a doubt is what is allowed, but
+ * what a slip of units makes: millimetres for metres, MPa for Pa, t/mm^3 for kg/m^3. Limits are wide on purpose: a good model is not warned of.
+ */
+#include "model/judge.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+
+/* Pa. Silicone rubber has some 1e6, steel 2e11, diamond 1.2e12; steel in MPa is 2.1e5, aluminium in psi 1e7 (not seen), steel in GPa 210. */
+static const double LEAST_MODULUS_PA = 1e6;
+static const double MOST_MODULUS_PA = 1e13;
+/* kg/m^3. Air has 1.2, foams 20 and more, osmium 22 590; steel in t/mm^3 is 7.85e-9, in g/cm^3 7.85 (not seen), in kg/mm^3 7.85e-6. */
+static const double LEAST_DENSITY = 1.0;
+static const double MOST_DENSITY = 3e4;
+/* m: a section wider than the trunk of a giant tree, or than the finest wire is thick, was written in other units. */
+static const double MOST_SECTION_M = 10.0;
+static const double LEAST_SECTION_M = 1e-6;
+/* rad: more than one turn from the reference position is degrees, or a motor's shaft. */
+static const double ONE_TURN = 6.283185307179586;
+
+static const char TOO_SOFT[] =
+    "below %.0e Pa, less than any solid has: is it meant in MPa or GPa?";
+
+static double value_of(const mt_judge *j, mt_num num)
+{
+    return num == MT_ABSENT ? nan("") : j->value[num];
+}
+
+mt_doubt *mt_judge_place(mt_judge *j, mt_doubt *doubt, mt_addr addr, const char *pointer)
+{
+    if (doubt == NULL) {
+        return NULL;
+    }
+    doubt->addr = addr;
+    doubt->pointer = pointer;
+    doubt->file = j->model->path;
+    doubt->configuration = j->model->configurations[j->configuration].name.s;
+    if (!mt_model_place(j->model, addr, &doubt->line, &doubt->column)) {
+        doubt->line = 0;
+        doubt->column = 0;
+    }
+    return doubt;
+}
+
+static void place(mt_judge *j, mt_doubt *doubt, const mt_item *item, mt_num num,
+                  const char *member)
+{
+    const char *const pointer =
+        mt_arena_printf(j->out->mem, "/%s/%d/%s", item->list, item->index, member);
+    (void)mt_judge_place(j, doubt, j->model->nums[num].addr, pointer);
+}
+
+static void fault(mt_judge *j, const mt_item *item, mt_num num, const char *member,
+                  const char *why)
+{
+    place(j,
+          mt_doubt_add(j->out, MT_LEVEL_FAULT, "value", "%s \"%s\": %s (%g) %s", item->what,
+                       item->name, member, j->value[num], why),
+          item, num, member);
+}
+
+/* Not below 0, where `zero` is allowed; else above 0. */
+static void sign(mt_judge *j, const mt_item *item, mt_num num, const char *member, bool zero)
+{
+    const double v = value_of(j, num);
+    if (zero ? v < 0.0 : v <= 0.0) {
+        fault(j, item, num, member, zero ? "must not be negative" : "must be above 0");
+    }
+}
+
+static void range(mt_judge *j, const mt_item *item, mt_num num, const char *member,
+                  const char *kind, const char *why)
+{
+    place(j,
+          mt_doubt_add(j->out, MT_LEVEL_DOUBT, kind, "%s \"%s\": %s (%g) is %s", item->what,
+                       item->name, member, j->value[num], why),
+          item, num, member);
+}
+
+static void modulus(mt_judge *j, const mt_item *item, mt_num num, const char *member)
+{
+    const double v = value_of(j, num);
+    sign(j, item, num, member, false);
+    if (v > 0.0 && v < LEAST_MODULUS_PA) {
+        range(j, item, num, member, "modulus",
+              mt_arena_printf(j->out->mem, TOO_SOFT, LEAST_MODULUS_PA));
+    } else if (v > MOST_MODULUS_PA) {
+        range(j, item, num, member, "modulus",
+              mt_arena_printf(j->out->mem,
+                              "above %.0e Pa, more than any solid has: is the unit Pa?",
+                              MOST_MODULUS_PA));
+    }
+}
+
+static void density(mt_judge *j, const mt_item *item, mt_num num)
+{
+    static const char member[] = "density_kg_per_m3";
+    const double v = value_of(j, num);
+    sign(j, item, num, member, false);
+    if (v > 0.0 && v < LEAST_DENSITY) {
+        range(j, item, num, member, "density",
+              "below 1 kg/m^3, lighter than air: is it meant in t/mm^3 or kg/mm^3?");
+    } else if (v > MOST_DENSITY) {
+        range(j, item, num, member, "density",
+              "above 30000 kg/m^3, more than any solid has: is the unit kg/m^3?");
+    }
+}
+
+/* A width, a height, a diameter. */
+static void thickness(mt_judge *j, const mt_item *item, mt_num num, const char *member)
+{
+    const double v = value_of(j, num);
+    sign(j, item, num, member, false);
+    if (v > MOST_SECTION_M) {
+        range(j, item, num, member, "section",
+              "thicker than 10 m: is it meant in millimetres?");
+    } else if (v > 0.0 && v < LEAST_SECTION_M) {
+        range(j, item, num, member, "section", "thinner than a micrometre: is the unit m?");
+    }
+}
+
+/* The tensor, positive semidefinite up to rounding of its own entries: leading and other principal minors. */
+static void inertia(mt_judge *j, const mt_item *item, const mt_body *b)
+{
+    static const char *const members[] = {"inertia_kg_m2/0", "inertia_kg_m2/1",
+                                          "inertia_kg_m2/2"};
+    static const double ROUNDING = 1e-12; /* of the product of the diagonal */
+    const bool plane = j->model->dimension == 2;
+    double v[6];
+    for (int k = 0; k < (plane ? 1 : 3); k++) {
+        sign(j, item, b->inertia[k], plane ? "inertia_kg_m2" : members[k], true);
+    }
+    for (int k = 0; k < 6 && !plane; k++) {
+        v[k] = b->inertia[k] == MT_ABSENT ? 0.0 : j->value[b->inertia[k]];
+    }
+    if (plane || !(v[0] >= 0.0 && v[1] >= 0.0 && v[2] >= 0.0)) {
+        return;
+    }
+    const double pairs[3] = {(v[0] * v[1]) - (v[3] * v[3]), (v[0] * v[2]) - (v[4] * v[4]),
+                             (v[1] * v[2]) - (v[5] * v[5])};
+    const double least[3] = {v[0] * v[1], v[0] * v[2], v[1] * v[2]};
+    const double det = (v[0] * pairs[2]) - (v[3] * ((v[3] * v[2]) - (v[5] * v[4]))) +
+                       (v[4] * ((v[3] * v[5]) - (v[1] * v[4])));
+    bool bad = det < -ROUNDING * v[0] * v[1] * v[2];
+    for (int k = 0; k < 3; k++) {
+        bad = bad || pairs[k] < -ROUNDING * least[k];
+    }
+    if (bad) {
+        fault(j, item, b->inertia[0], "inertia_kg_m2/0",
+              "belongs to a tensor with a negative principal moment: its products of inertia "
+              "are too large");
+    }
+}
+
+static void judge_bodies(mt_judge *j)
+{
+    for (int i = 0; i < j->model->n_bodies; i++) {
+        const mt_body *const b = &j->model->bodies[i];
+        const mt_item item = {"body", "bodies", i, b->name.s};
+        if (mt_model_present(&b->in, j->configuration)) {
+            sign(j, &item, b->mass, "mass_kg", true);
+            if (!b->point_mass) {
+                inertia(j, &item, b);
+            }
+        }
+    }
+}
+
+static void listed(mt_judge *j, const mt_item *item, int n, const mt_num *list,
+                   const char *member, bool zero)
+{
+    for (int k = 0; k < n; k++) {
+        char entry[64]; /* a list of one may be written as a number */
+        (void)snprintf(entry, sizeof entry, n > 1 ? "%s/%d" : "%s", member, k);
+        sign(j, item, list[k], entry, zero);
+    }
+}
+
+static void judge_section(mt_judge *j, const mt_item *item, const mt_section *s)
+{
+    const bool tube = s->shape == MT_SECTION_TUBE;
+    const char *const outer = tube ? "section/outer_diameter_m" : "section/diameter_m";
+    thickness(j, item, s->width, "section/width_m");
+    thickness(j, item, s->height, "section/height_m");
+    thickness(j, item, s->diameter, outer);
+    sign(j, item, s->inner_diameter, "section/inner_diameter_m", true);
+    if (tube && value_of(j, s->inner_diameter) >= value_of(j, s->diameter)) {
+        fault(j, item, s->inner_diameter, "section/inner_diameter_m",
+              mt_arena_printf(j->out->mem,
+                              "must be below outer_diameter_m (%g): the wall has no thickness",
+                              value_of(j, s->diameter)));
+    }
+    sign(j, item, s->area, "section/area_m2", false);
+    sign(j, item, s->second_moment, "section/second_moment_m4", false);
+    sign(j, item, s->second_moment_other, "section/second_moment_other_m4", false);
+    sign(j, item, s->torsion_constant, "section/torsion_constant_m4", true);
+}
+
+static void judge_links(mt_judge *j)
+{
+    for (int i = 0; i < j->model->n_links; i++) {
+        const mt_link *const l = &j->model->links[i];
+        const mt_item item = {"link", "links", i, l->name.s};
+        if (!mt_model_present(&l->in, j->configuration)) {
+            continue;
+        }
+        sign(j, &item, l->mass, "mass_kg", true);
+        density(j, &item, l->density);
+        modulus(j, &item, l->youngs_modulus, "youngs_modulus_pa");
+        modulus(j, &item, l->shear_modulus, "shear_modulus_pa");
+        judge_section(j, &item, &l->section);
+        listed(j, &item, l->n_stiffness, l->stiffness, "stiffness_n_m_per_rad", true);
+        listed(j, &item, l->n_element_length, l->element_length, "element_length_m", false);
+        listed(j, &item, l->n_element_mass, l->element_mass, "element_mass_kg", true);
+        listed(j, &item, l->n_element_inertia, l->element_inertia, "element_inertia_kg_m2",
+               true);
+        sign(j, &item, l->radius_of_gyration, "radius_of_gyration_m", true);
+    }
+}
+
+/* A constant of a spring may be negative (a spring over its dead centre, a magnet, a load that buckles); a bar is a piece of material. */
+static void judge_springs(mt_judge *j)
+{
+    int dampers = 0;
+    for (int i = 0; i < j->model->n_springs; i++) {
+        const mt_spring *const s = &j->model->springs[i];
+        const mt_item item = {s->damper ? "damper" : "spring",
+                              s->damper ? "dampers" : "springs", s->damper ? dampers++ : i,
+                              s->name.s};
+        if (!mt_model_present(&s->in, j->configuration)) {
+            continue;
+        }
+        modulus(j, &item, s->youngs_modulus, "youngs_modulus_pa");
+        sign(j, &item, s->area, "area_m2", true); /* 0: a bar that may be added */
+        density(j, &item, s->density);
+        sign(j, &item, s->free_length, "free_length_m", true);
+    }
+}
+
+static void judge_joints(mt_judge *j)
+{
+    for (int i = 0; i < j->model->n_joints; i++) {
+        const mt_joint *const joint = &j->model->joints[i];
+        const mt_item item = {"joint", "joints", i, joint->name.s};
+        if (mt_model_present(&joint->in, j->configuration)) {
+            sign(j, &item, joint->length, "length_m", false);
+        }
+    }
+}
+
+static void judge_drive(mt_judge *j)
+{
+    const mt_configuration *const c = &j->model->configurations[j->configuration];
+    const double v = c->drive.given ? fabs(value_of(j, c->drive.position)) : 0.0;
+    if (!c->drive.position_is_angle || !(v > ONE_TURN) || c->drive.inherited) {
+        return;
+    }
+    const char *const joint =
+        c->drive.joint_name.s == NULL ? "its joint" : c->drive.joint_name.s;
+    (void)mt_judge_place(
+        j,
+        mt_doubt_add(j->out, MT_LEVEL_DOUBT, "drive",
+                     "\"%s\" drives \"%s\" by %g rad, more than a turn: degrees are written "
+                     "\"%g*deg\"",
+                     c->name.s, joint, value_of(j, c->drive.position),
+                     value_of(j, c->drive.position)),
+        j->model->nums[c->drive.position].addr,
+        mt_arena_printf(j->out->mem, "/configurations/%s/drive/position_rad", c->name.s));
+}
+
+void mt_model_judge(const mt_model *model, int configuration, const double *value,
+                    mt_doubt_list *out)
+{
+    mt_judge j = {.model = model, .configuration = configuration, .value = value, .out = out};
+    judge_bodies(&j);
+    judge_links(&j);
+    judge_springs(&j);
+    judge_joints(&j);
+    judge_drive(&j);
+    mt_judge_geometry(&j);
+}

@@ -1,0 +1,448 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The drawing of a configuration, judged: joints and springs off what they hold, pairs of points that only closing brings together, sizes. With a segment P + s d, 0 <= s <= 1,
+ * the distance of a point X is |X - P - clamp(d . (X - P) / d . d) d|.
+ */
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include "model/judge.h"
+
+/* A joint this part of a link's length away from it is told: less is a drawing's rounding. */
+static const double TOLD_OFF = 0.01;
+/* A joint farther from its link than the link is long, or from its body than all else is wide, is hardly meant to hold it. */
+static const double DOUBTED_OFF = 1.0;
+/* A pair of points so far apart, in parts of the drawing's size, is told; so far, doubted, or a metre. */
+static const double TOLD_GAP = 1e-3;
+static const double DOUBTED_GAP = 0.1;
+static const double DOUBTED_GAP_M = 1.0;
+/* m: the box around a mechanism. A wind turbine's rotor has 200 m, and a stick of half a metre in millimetres 500; the smallest micromachines have some 1e-6. */
+static const double MOST_SIZE_M = 300.0;
+static const double LEAST_SIZE_M = 1e-6;
+/* A section so many times thicker than its link is long is written in millimetres. */
+static const double MOST_STOUT = 10.0;
+/* Radius of gyration of a body in sizes of the drawing: kg mm^2 for kg m^2 makes it a thousand times too large; inertias that a gear multiplies stay below. */
+static const double MOST_GYRATION = 30.0;
+
+typedef struct box {
+    double low[3];
+    double high[3];
+    int n;
+} box;
+
+typedef struct segment {
+    double a[3];
+    double b[3];
+    double whole; /* length of the link that it is a part of */
+    bool known;
+} segment;
+
+static double distance(const double a[3], const double b[3])
+{
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+static bool place_of(const mt_judge *j, const mt_position *p, double x[3])
+{
+    const mt_num *const own = p->point >= 0 ? j->model->points[p->point].x : p->x;
+    bool known = true;
+    for (int k = 0; k < 3; k++) {
+        x[k] = own[k] == MT_ABSENT ? 0.0 : j->value[own[k]];
+        known = known && isfinite(x[k]);
+    }
+    return known && own[0] != MT_ABSENT;
+}
+
+/* The number that stands first in a position, for the place of a message. */
+static mt_addr addr_of(const mt_position *p)
+{
+    return p->addr;
+}
+
+static void include(const mt_judge *j, box *b, const mt_position *p)
+{
+    double x[3];
+    if (!place_of(j, p, x)) {
+        return;
+    }
+    for (int k = 0; k < 3; k++) {
+        b->low[k] = b->n == 0 ? x[k] : fmin(b->low[k], x[k]);
+        b->high[k] = b->n == 0 ? x[k] : fmax(b->high[k], x[k]);
+    }
+    b->n++;
+}
+
+/* The box around everything that is drawn, but for one joint and one spring (NULL: nothing is left out). */
+static box box_without(const mt_judge *j, const mt_joint *joint, const mt_spring *spring)
+{
+    const mt_model *const m = j->model;
+    box all = {.n = 0};
+    for (int i = 0; i < m->n_bodies; i++) {
+        if (mt_model_present(&m->bodies[i].in, j->configuration)) {
+            include(j, &all, &m->bodies[i].centre);
+        }
+    }
+    for (int i = 0; i < m->n_links; i++) {
+        if (mt_model_present(&m->links[i].in, j->configuration)) {
+            include(j, &all, &m->links[i].from);
+            include(j, &all, &m->links[i].to);
+        }
+    }
+    for (int i = 0; i < m->n_joints; i++) {
+        const mt_joint *const at = &m->joints[i];
+        for (int k = 0; at != joint && k < at->n_at; k++) {
+            if (mt_model_present(&at->in, j->configuration)) {
+                include(j, &all, &at->at[k]);
+            }
+        }
+    }
+    for (int i = 0; i < m->n_springs; i++) {
+        const mt_spring *const at = &m->springs[i];
+        for (int k = 0; at != spring && k < at->n_at; k++) {
+            if (mt_model_present(&at->in, j->configuration)) {
+                include(j, &all, &at->at[k]);
+            }
+        }
+    }
+    return all;
+}
+
+static double size_of(const box *b)
+{
+    return b->n == 0 ? 0.0 : distance(b->low, b->high);
+}
+
+static void along(const double from[3], const double to[3], double part, double out[3])
+{
+    for (int k = 0; k < 3; k++) {
+        out[k] = from[k] + (part * (to[k] - from[k]));
+    }
+}
+
+/* What an attachment to a link means: a rigid element, or a node of a beam. */
+static segment segment_of(const mt_judge *j, const mt_attach *a)
+{
+    const mt_link *const l = &j->model->links[a->index];
+    double from[3];
+    double to[3];
+    segment s = {.known = place_of(j, &l->from, from) && place_of(j, &l->to, to)};
+    if (!s.known || l->elements < 1) {
+        s.known = false;
+        return s;
+    }
+    const double n = (double)l->elements;
+    const bool end = a->kind == MT_ATTACH_LINK_END;
+    const int element = a->kind == MT_ATTACH_LINK_ELEMENT ? a->element
+                        : end                             ? l->elements - 1
+                                                          : 0;
+    double before = 0.0; /* in parts of the whole */
+    double length = 1.0 / n;
+    s.whole = distance(from, to);
+    for (int i = 0; i <= element && l->n_element_length > 0 && s.whole > 0.0; i++) {
+        before += i > 0 ? length : 0.0;
+        length = j->value[l->element_length[l->n_element_length == 1 ? 0 : i]] / s.whole;
+    }
+    before = l->n_element_length > 0 ? before : (double)element / n;
+    if (l->kind == MT_LINK_BEAM) {
+        before = end ? 1.0 : 0.0;
+        length = 0.0;
+    }
+    along(from, to, before, s.a);
+    along(from, to, before + length, s.b);
+    return s;
+}
+
+static double distance_to(const segment *s, const double x[3])
+{
+    double dd = 0.0;
+    double dx = 0.0;
+    double nearest[3];
+    for (int k = 0; k < 3; k++) {
+        const double d = s->b[k] - s->a[k];
+        dd += d * d;
+        dx += d * (x[k] - s->a[k]);
+    }
+    along(s->a, s->b, dd > 0.0 ? fmin(fmax(dx / dd, 0.0), 1.0) : 0.0, nearest);
+    return distance(nearest, x);
+}
+
+static bool is_on(const mt_attach *a, int body)
+{
+    return a->name.s != NULL && a->kind == MT_ATTACH_BODY && a->index == body;
+}
+
+static double nearer(const mt_judge *j, const mt_position *p, const double x[3], double least)
+{
+    double other[3];
+    return place_of(j, p, other) ? fmin(least, distance(other, x)) : least;
+}
+
+/* The point of `at` that is body `side`'s. */
+static const mt_position *side_at(int n_at, const mt_position *at, int side)
+{
+    return &at[n_at == 2 ? side : 0];
+}
+
+/* How far x is from all else that body has: centre, other joints, springs, sensors. Infinite: there is nothing else. */
+static double distance_to_body(const mt_judge *j, int body, const mt_joint *joint,
+                               const mt_spring *spring, const double x[3])
+{
+    const mt_model *const m = j->model;
+    double least = nearer(j, &m->bodies[body].centre, x, HUGE_VAL);
+    for (int i = 0; i < m->n_joints; i++) {
+        const mt_joint *const o = &m->joints[i];
+        for (int side = 0; side < 2 && o != joint && o->n_at > 0; side++) {
+            if (is_on(&o->bodies[side], body)) {
+                least = nearer(j, side_at(o->n_at, o->at, side), x, least);
+            }
+        }
+    }
+    for (int i = 0; i < m->n_springs; i++) {
+        const mt_spring *const o = &m->springs[i];
+        for (int side = 0; side < 2 && o != spring && o->n_at > 0; side++) {
+            if (is_on(&o->bodies[side], body)) {
+                least = nearer(j, side_at(o->n_at, o->at, side), x, least);
+            }
+        }
+    }
+    for (int i = 0; i < m->n_sensors; i++) {
+        const mt_sensor *const o = &m->sensors[i];
+        if (o->on_kind == MT_ATTACH_BODY && o->on == body && o->at.given) {
+            least = nearer(j, &o->at, x, least);
+        }
+    }
+    return least;
+}
+
+typedef struct holder {
+    mt_item item;
+    const mt_attach *bodies;
+    int n_at;
+    const mt_position *at;
+    const mt_joint *joint; /* one of them */
+    const mt_spring *spring;
+} holder;
+
+/* What stands before and after the name of the body. */
+typedef struct phrase_around {
+    const char *before;
+    const char *after;
+} phrase_around;
+
+static void say_off(mt_judge *j, const holder *h, int side, mt_doubt_level level, double off,
+                    phrase_around phrase)
+{
+    const mt_position *const p = side_at(h->n_at, h->at, side);
+    mt_doubt *const doubt =
+        mt_doubt_add(j->out, level, "off", "%s \"%s\" lies %.4g m off %s\"%s\"%s", h->item.what,
+                     h->item.name, off, phrase.before, h->bodies[side].name.s,
+                     phrase.after == NULL ? "" : phrase.after);
+    const char *const pointer =
+        h->n_at == 2
+            ? mt_arena_printf(j->out->mem, "/%s/%d/at/%d", h->item.list, h->item.index, side)
+            : mt_arena_printf(j->out->mem, "/%s/%d/at", h->item.list, h->item.index);
+    if (mt_judge_place(j, doubt, addr_of(p), pointer) != NULL) {
+        doubt->size = off;
+    }
+}
+
+static void judge_side(mt_judge *j, const holder *h, int side)
+{
+    const mt_attach *const a = &h->bodies[side];
+    double x[3];
+    if (a->name.s == NULL || a->kind == MT_ATTACH_GROUND || h->n_at == 0 ||
+        !place_of(j, side_at(h->n_at, h->at, side), x)) {
+        return;
+    }
+    if (a->kind == MT_ATTACH_BODY) {
+        const box others = box_without(j, h->joint, h->spring);
+        const double off = distance_to_body(j, a->index, h->joint, h->spring, x);
+        const double size = size_of(&others);
+        if (size > 0.0 && off > DOUBTED_OFF * size && isfinite(off)) {
+            say_off(j, h, side, MT_LEVEL_DOUBT, off,
+                    (phrase_around){"everything else of ",
+                                    ", farther than the rest of the drawing is wide"});
+        }
+        return;
+    }
+    const segment s = segment_of(j, a);
+    const double off = s.known ? distance_to(&s, x) : 0.0;
+    if (off > DOUBTED_OFF * s.whole) {
+        const char *const after =
+            mt_arena_printf(j->out->mem, "; the whole link is %.4g m long", s.whole);
+        say_off(j, h, side, MT_LEVEL_DOUBT, off, (phrase_around){"", after});
+    } else if (off > TOLD_OFF * s.whole && h->joint != NULL) {
+        say_off(j, h, side, MT_LEVEL_FACT, off, (phrase_around){"", ""});
+    }
+}
+
+/* What closing has to bring to nothing, as drawn; NaN: nothing of the kind. */
+static double gap_of(const mt_judge *j, const mt_joint *joint)
+{
+    double a[3];
+    double b[3];
+    double d[3];
+    double axis[3];
+    double dot = 0.0;
+    double norm = 0.0;
+    if (joint->n_at != 2 || !place_of(j, &joint->at[0], a) || !place_of(j, &joint->at[1], b)) {
+        return nan("");
+    }
+    if (joint->type == MT_JOINT_DISTANCE) {
+        return joint->length == MT_ABSENT ? nan("")
+                                          : fabs(distance(a, b) - j->value[joint->length]);
+    }
+    if (!joint->has_axis || joint->type == MT_JOINT_REVOLUTE ||
+        joint->type == MT_JOINT_UNIVERSAL) {
+        return distance(a, b);
+    }
+    for (int k = 0; k < 3; k++) {
+        d[k] = b[k] - a[k];
+        axis[k] = joint->axis[k] == MT_ABSENT ? 0.0 : j->value[joint->axis[k]];
+        dot += d[k] * axis[k];
+        norm += axis[k] * axis[k];
+    }
+    if (!(norm > 0.0)) {
+        return nan("");
+    }
+    if (joint->type == MT_JOINT_PLANAR) {
+        return fabs(dot) / sqrt(norm);
+    }
+    for (int k = 0; k < 3; k++) { /* free along the axis */
+        d[k] -= dot / norm * axis[k];
+    }
+    return hypot(hypot(d[0], d[1]), d[2]);
+}
+
+static void judge_gap(mt_judge *j, const mt_item *item, const mt_joint *joint, double size)
+{
+    const double gap = gap_of(j, joint);
+    if (!(gap > TOLD_GAP * size)) {
+        return;
+    }
+    const bool far = gap > DOUBTED_GAP * size || gap > DOUBTED_GAP_M;
+    mt_doubt *const doubt = mt_doubt_add(
+        j->out, far ? MT_LEVEL_DOUBT : MT_LEVEL_FACT, "gap",
+        "joint \"%s\": its two points are drawn %.4g m apart; the bodies are moved until it "
+        "closes",
+        item->name, gap);
+    if (mt_judge_place(j, doubt, addr_of(&joint->at[1]),
+                       mt_arena_printf(j->out->mem, "/joints/%d/at/1", item->index)) != NULL) {
+        doubt->size = gap;
+    }
+}
+
+static void judge_size(mt_judge *j, double size)
+{
+    const bool large = size > MOST_SIZE_M;
+    if (size == 0.0 || (!large && size >= LEAST_SIZE_M)) {
+        return;
+    }
+    (void)mt_judge_place(j,
+                         mt_doubt_add(j->out, MT_LEVEL_DOUBT, "size",
+                                      "the drawing is %.4g m wide: %s", size,
+                                      large ? "are its coordinates millimetres?"
+                                            : "are its coordinates metres?"),
+                         MT_NO_ADDR, "/points");
+}
+
+/* A link's thickest direction against its length. */
+static void judge_stout(mt_judge *j, const mt_item *item, const mt_link *l)
+{
+    static const char *const members[] = {"width_m", "height_m", "diameter_m"};
+    const mt_num numbers[] = {l->section.width, l->section.height, l->section.diameter};
+    double from[3];
+    double to[3];
+    if (!place_of(j, &l->from, from) || !place_of(j, &l->to, to) ||
+        l->section.shape == MT_SECTION_NONE || l->section.shape == MT_SECTION_GENERAL) {
+        return;
+    }
+    const double length = distance(from, to);
+    for (int k = 0; k < MT_COUNT(numbers); k++) {
+        const bool tube = k == 2 && l->section.shape == MT_SECTION_TUBE;
+        const char *const member = tube ? "outer_diameter_m" : members[k];
+        if (numbers[k] == MT_ABSENT || !(j->value[numbers[k]] > MOST_STOUT * length)) {
+            continue;
+        }
+        (void)mt_judge_place(
+            j,
+            mt_doubt_add(j->out, MT_LEVEL_DOUBT, "section",
+                         "link \"%s\": section/%s (%g) is more than %g times its length (%.4g "
+                         "m): is it meant in millimetres?",
+                         item->name, member, j->value[numbers[k]], MOST_STOUT, length),
+            j->model->nums[numbers[k]].addr,
+            mt_arena_printf(j->out->mem, "/links/%d/section/%s", item->index, member));
+    }
+}
+
+static void judge_gyration(mt_judge *j, const mt_item *item, const mt_body *b, double size)
+{
+    const double mass = b->mass == MT_ABSENT ? 0.0 : j->value[b->mass];
+    double most = 0.0;
+    for (int k = 0; k < (j->model->dimension == 2 ? 1 : 3) && !b->point_mass; k++) {
+        most = fmax(most, b->inertia[k] == MT_ABSENT ? 0.0 : j->value[b->inertia[k]]);
+    }
+    const double radius = mass > 0.0 ? sqrt(most / mass) : 0.0;
+    if (size > 0.0 && radius > MOST_GYRATION * size) {
+        (void)mt_judge_place(
+            j,
+            mt_doubt_add(j->out, MT_LEVEL_DOUBT, "inertia",
+                         "body \"%s\": inertia_kg_m2 (%g) and mass_kg (%g) give a radius of "
+                         "gyration of %.4g m in a drawing %.4g m wide: is it meant in kg mm^2?",
+                         item->name, most, mass, radius, size),
+            j->model->nums[b->inertia[0]].addr,
+            mt_arena_printf(j->out->mem, "/bodies/%d/inertia_kg_m2", item->index));
+    }
+}
+
+void mt_judge_geometry(mt_judge *j)
+{
+    const mt_model *const m = j->model;
+    const box all = box_without(j, NULL, NULL);
+    const double size = size_of(&all);
+    const int first = j->out->n;
+    int dampers = 0;
+    for (int i = 0; i < m->n_joints; i++) {
+        const mt_joint *const o = &m->joints[i];
+        const holder h = {
+            {"joint", "joints", i, o->name.s},
+            o->bodies, o->n_at, o->at, o, NULL
+        };
+        for (int side = 0; side < 2 && mt_model_present(&o->in, j->configuration); side++) {
+            judge_side(j, &h, side);
+        }
+        if (mt_model_present(&o->in, j->configuration)) {
+            judge_gap(j, &h.item, o, size);
+        }
+    }
+    for (int i = 0; i < m->n_springs; i++) {
+        const mt_spring *const o = &m->springs[i];
+        const holder h = {
+            {o->damper ? "damper" : "spring", o->damper ? "dampers" : "springs",
+             o->damper ? dampers++ : i, o->name.s},
+            o->bodies,
+            o->n_at,
+            o->at,
+            NULL,
+            o
+        };
+        for (int side = 0; side < 2 && mt_model_present(&o->in, j->configuration); side++) {
+            judge_side(j, &h, side);
+        }
+    }
+    mt_doubt_sort(j->out, first);
+    for (int i = 0; i < m->n_bodies; i++) {
+        if (mt_model_present(&m->bodies[i].in, j->configuration)) {
+            const mt_item item = {"body", "bodies", i, m->bodies[i].name.s};
+            judge_gyration(j, &item, &m->bodies[i], size);
+        }
+    }
+    for (int i = 0; i < m->n_links; i++) {
+        if (mt_model_present(&m->links[i].in, j->configuration)) {
+            const mt_item item = {"link", "links", i, m->links[i].name.s};
+            judge_stout(j, &item, &m->links[i]);
+        }
+    }
+    judge_size(j, size);
+}

@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tune/doubts.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "mechanics/info.h"
+#include "model/values.h"
+
+enum { NAME_SIZE = 400, NAMED = 3, STATES_2D = 3, STATES_3D = 6 };
+
+/* kg: a large ship's rudder gear has 1e6, a micromirror 1e-9; steel in t/mm^3 with metres makes 1e-9 of a mass, millimetres with kg/m^3 1e9 of it. */
+static const double MOST_MASS_KG = 1e6;
+static const double LEAST_MASS_KG = 1e-9;
+/* Hz of the lowest mode: a quartz crystal has 3e4, a microresonator 1e6; a period of three hours is no vibration of a mechanism. */
+static const double MOST_LOWEST_HZ = 1e6;
+static const double LEAST_LOWEST_HZ = 1e-4;
+
+static bool is_grounded(const mt_model *m, int c)
+{
+    for (int i = 0; i < m->n_joints; i++) {
+        for (int side = 0; side < 2 && mt_model_present(&m->joints[i].in, c); side++) {
+            const mt_attach *const a = &m->joints[i].bodies[side];
+            if (a->name.s != NULL && a->kind == MT_ATTACH_GROUND) {
+                return true;
+            }
+        }
+    }
+    for (int i = 0; i < m->n_springs; i++) {
+        const mt_spring *const s = &m->springs[i];
+        const bool there = mt_model_present(&s->in, c) && !s->damper;
+        for (int side = 0; side < 2 && there; side++) {
+            if (s->bodies[side].name.s != NULL && s->bodies[side].kind == MT_ATTACH_GROUND) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static const char MORE[] = ", ...";
+
+/* The list "a", "b", "c", "d" is cut after the third name: a whole beam may turn. */
+static void cut(char *text)
+{
+    int names = 0;
+    for (char *s = strchr(text, ','); s != NULL; s = strchr(s + 1, ',')) {
+        if (++names == NAMED) {
+            memcpy(s, MORE, sizeof MORE); /* fits: one more quoted name stood there */
+            return;
+        }
+    }
+}
+
+/* The first mode of a kind, in words: "rod" (rotation). */
+static void name_motion(const mt_analysis *a, mt_mode_kind kind, char *text)
+{
+    text[0] = '\0';
+    for (int i = 0; i < a->modes.count && text[0] == '\0'; i++) {
+        if (a->modes.kind[i] == kind && a->modes.y != NULL) {
+            mt_linear_name_direction(a->lin, a->modes.y + ((ptrdiff_t)i * a->lin->n), text,
+                                     NAME_SIZE);
+        }
+    }
+    cut(text);
+}
+
+static void say_free(const mt_analysis *a, mt_doubt_list *out)
+{
+    const mt_model *const m = a->sys->model;
+    const int n = a->modes.n_rigid;
+    const int floating = m->dimension == 2 ? STATES_2D : STATES_3D;
+    const char *const s = n == 1 ? "" : "s";
+    char name[NAME_SIZE];
+    if (n == 0) {
+        return;
+    }
+    name_motion(a, MT_MODE_RIGID_BODY, name);
+    if (!is_grounded(m, a->sys->configuration)) {
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion",
+                           n == floating
+                               ? "%d free motion%s: nothing holds it to the ground"
+                               : "%d free motion%s: nothing holds it to the ground, and "
+                                 "its parts are not all held to each other",
+                           n, s);
+        return;
+    }
+    (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion",
+                       "%d free motion%s: is a joint missing? Free to move: %s", n, s, name);
+}
+
+/* Sets of the same joints are told together. */
+static mt_status say_redundant(mt_linear *lin, mt_doubt_list *out, mt_err *err)
+{
+    const int n = mt_linear_redundant(lin);
+    const char *last = "";
+    int same = 0;
+    for (int k = 0; k <= n; k++) {
+        const char *text = "";
+        if (k < n) {
+            MT_TRY(mt_linear_redundant_set(lin, k, &text, err));
+        }
+        if (same > 0 && strcmp(text, last) != 0) {
+            (void)mt_doubt_add(out, MT_LEVEL_FACT, "redundant",
+                               same == 1 ? "redundant: %d equation of %s changes nothing"
+                                         : "redundant: %d equations of %s change nothing",
+                               same, last);
+            same = 0;
+        }
+        last = text;
+        same++;
+    }
+    return MT_OK;
+}
+
+static mt_status say_freedoms(const mt_analysis *a, mt_doubt_list *out, mt_err *err)
+{
+    const int unstable = a->modes.n_unstable + a->modes.n_unstable_condensed;
+    char name[NAME_SIZE];
+    say_free(a, out);
+    if (unstable > 0) {
+        name_motion(a, MT_MODE_UNSTABLE, name);
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "unstable",
+                           "unstable in %d direction%s: it falls over from here%s%s", unstable,
+                           unstable == 1 ? "" : "s", name[0] == '\0' ? "" : ", moving ", name);
+    }
+    return say_redundant(a->lin, out, err);
+}
+
+static mt_status doubt_scale(const mt_analysis *a, mt_doubt_list *out, mt_err *err)
+{
+    mt_info info;
+    MT_TRY(mt_info_fill(a->lin, &info, err));
+    if (info.mass_kg > MOST_MASS_KG || (info.mass_kg > 0.0 && info.mass_kg < LEAST_MASS_KG)) {
+        (void)mt_doubt_add(out, MT_LEVEL_DOUBT, "mass",
+                           "its mass is %.3g kg, which no mechanism has: is a length in "
+                           "millimetres, a mass in grams, or a density in t/mm^3?",
+                           info.mass_kg);
+    }
+    for (int i = 0; i < a->modes.count; i++) {
+        const double hz = mt_modal_hz(&a->modes, i);
+        if (a->modes.kind[i] != MT_MODE_FLEXIBLE) {
+            continue;
+        }
+        if (hz > MOST_LOWEST_HZ || hz < LEAST_LOWEST_HZ) {
+            (void)mt_doubt_add(out, MT_LEVEL_DOUBT, "frequency",
+                               "its lowest frequency is %.3g Hz, which no mechanism has: is a "
+                               "length in millimetres, a mass in grams, or a modulus in MPa?",
+                               hz);
+        }
+        break;
+    }
+    return MT_OK;
+}
+
+/* The distance after closing, beside that before. */
+static void add_what_is_left(const mt_analysis *a, mt_doubt_list *list)
+{
+    for (int i = 0; i < list->n; i++) {
+        mt_doubt *const d = &list->items[i];
+        if (strcmp(d->kind, "gap") == 0) {
+            d->text =
+                mt_arena_printf(list->mem, "%s (to %.1e m)", d->text, a->lin->position.gap_m);
+            list->out_of_memory = list->out_of_memory || d->text == NULL;
+        }
+    }
+}
+
+/* Into `out`; what is there already, of another configuration, belongs to no single one. */
+static void merge(mt_doubt_list *out, const mt_doubt *d)
+{
+    for (int i = 0; i < out->n; i++) {
+        mt_doubt *const other = &out->items[i];
+        if (other->addr == d->addr && d->pointer != NULL && other->pointer != NULL &&
+            strcmp(other->text, d->text) == 0 && strcmp(other->pointer, d->pointer) == 0) {
+            other->configuration = NULL;
+            return;
+        }
+    }
+    mt_doubt_copy(out, d);
+}
+
+static mt_status gather(mt_analysis *a, int n_inputs, const int *inputs, const double *at,
+                        mt_doubt_list *list, mt_err *err)
+{
+    const mt_model *const m = a->sys->model;
+    const int c = a->sys->configuration;
+    double *const value = mt_arena_f64(list->mem, (size_t)m->n_nums, 1);
+    if (value == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_model_numbers(m, c, n_inputs, inputs, at, list->mem, value, err));
+    MT_TRY(doubt_scale(a, list, err));
+    MT_TRY(say_freedoms(a, list, err));
+    for (int i = 0; i < list->n; i++) {
+        list->items[i].configuration = m->configurations[c].name.s;
+        list->items[i].file = m->path;
+    }
+    mt_model_judge(m, c, value, list);
+    add_what_is_left(a, list);
+    for (int i = 0; i < list->n; i++) {
+        if (list->items[i].level == MT_LEVEL_FAULT) {
+            return mt_fail(err, MT_E_INPUT, "%s", list->items[i].text);
+        }
+    }
+    return list->out_of_memory ? mt_fail_memory(err) : MT_OK;
+}
+
+mt_status mt_doubts_of_analysis(mt_analysis *a, int n_inputs, const int *inputs,
+                                const double *at, mt_doubt_list *out, mt_err *err)
+{
+    mt_arena mem;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    mt_doubt_list list = mt_doubt_list_default(&mem);
+    const mt_status rc = gather(a, n_inputs, inputs, at, &list, err);
+    for (int level = MT_LEVEL_DOUBT; rc == MT_OK && level >= MT_LEVEL_FACT; level--) {
+        for (int i = 0; i < list.n; i++) {
+            if ((int)list.items[i].level == level) {
+                merge(out, &list.items[i]);
+            }
+        }
+    }
+    mt_arena_free(&mem);
+    return rc == MT_OK && out->out_of_memory ? mt_fail_memory(err) : rc;
+}

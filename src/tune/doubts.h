@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef TUNE_DOUBTS_H
+#define TUNE_DOUBTS_H
+
+#include "base/doubt.h"
+#include "tune/analysis.h"
+#include "tune/study.h"
+
+/**
+ * What is to be said of a configuration before any number: of its numbers and its drawing (mt_model_judge), of its freedoms (free motions, unstable
+ * directions, redundant joints), of its mass and its lowest frequency.
+ * @param[in]  a    solved, with vectors
+ * @param[in]  inputs, at  parameters that have other values than in the file [n_inputs]
+ * A list that several configurations are added to has what they share once, without a configuration. Facts and doubts, the greatest distance first.
+ * Fails: MT_E_INPUT (a fault: a mass below 0 by an input), MT_E_MEMORY, as mt_linear_redundant_set.
+ */
+mt_status mt_doubts_of_analysis(mt_analysis *a, int n_inputs, const int *inputs,
+                                const double *at, mt_doubt_list *out, mt_err *err);
+
+/**
+ * The same of a study at its original design: its own numbers (study->doubts), every configuration that a goal names, targets far from the original
+ * frequencies, bands that no mode comes near. Names of files are those that the study knows (no folders). One analysis per configuration, and 2 n + 3 where
+ * bands are to be avoided. Fails: as mt_analysis_new.
+ */
+mt_status mt_study_examine(const mt_study *study, mt_doubt_list *out, mt_err *err);
+
+#endif

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * A study held against its model: is what it asks for anywhere near what the model does? Frequencies f_k(x) are looked at where x is the original design and where one variable, or all,
+ * stand at a bound; a band that no f_k comes within a factor of there has no part in the answer.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "tune/doubts.h"
+
+/* A target a hundred times away from where the mode is, is in another unit (rad/s, rpm and kHz are 6, 60 and 1000 away), or of another mode. */
+static const double FAR_TARGET = 100.0;
+/* No mode comes within this factor of any band: rpm for Hz makes 60. */
+static const double FAR_BAND = 10.0;
+
+typedef struct reach {
+    const mt_goal *goal;
+    double nearest; /* least factor between a mode and a band, >= 1 */
+} reach;
+
+static double factor_to(const mt_band *band, double hz)
+{
+    if (hz < band->lower_hz) {
+        return band->lower_hz / hz;
+    }
+    return hz > band->upper_hz ? hz / band->upper_hz : 1.0;
+}
+
+static void look(reach *r, const mt_modes *modes)
+{
+    for (int i = 0; i < modes->count; i++) {
+        const double hz = mt_modal_hz(modes, i);
+        for (int k = 0; k < r->goal->avoid->bands.n && modes->kind[i] == MT_MODE_FLEXIBLE;
+             k++) {
+            r->nearest = fmin(r->nearest, factor_to(&r->goal->avoid->bands.items[k], hz));
+        }
+    }
+}
+
+/* Design `which` of the 2 n + 3: the original, each variable at a bound, all at their lower and their upper ones. */
+static void set_design(const mt_study *s, int which, double *x)
+{
+    const int n = s->n_variables;
+    for (int i = 0; i < n; i++) {
+        const mt_variable *const v = &s->variables[i];
+        x[i] = v->original;
+        if (which == (2 * i) + 1 || which == (2 * n) + 1) {
+            x[i] = v->lower;
+        } else if (which == (2 * i) + 2 || which == (2 * n) + 2) {
+            x[i] = v->upper;
+        }
+    }
+}
+
+static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, mt_err *err)
+{
+    const int n = s->n_variables;
+    int *const inputs = mt_arena_int(mem, (size_t)n);
+    double *const x = mt_arena_f64(mem, (size_t)n, 1);
+    mt_analysis_options opt = mt_analysis_options_default();
+    mt_analysis *a = NULL;
+    if (inputs == NULL || x == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < n; i++) {
+        inputs[i] = s->variables[i].parameter;
+    }
+    opt.vectors = false;
+    opt.check = false;
+    set_design(s, 0, x);
+    mt_status rc = mt_analysis_new(s->model, c, n, inputs, x, &a, err);
+    for (int k = 0; rc == MT_OK && k < (2 * n) + 3 && r->nearest > FAR_BAND; k++) {
+        mt_err ignored = {.code = MT_OK}; /* a design that has no modes has none in a band */
+        set_design(s, k, x);
+        const mt_status solved = mt_analysis_solve(a, x, &opt, &ignored);
+        if (solved == MT_OK) {
+            look(r, &a->modes);
+        }
+        rc = solved == MT_E_MEMORY ? mt_fail_memory(err) : MT_OK;
+    }
+    mt_analysis_delete(a);
+    return rc;
+}
+
+static mt_status examine_bands(const mt_study *s, int g, mt_doubt_list *out, mt_err *err)
+{
+    const mt_goal *const goal = &s->goals[g];
+    reach r = {.goal = goal, .nearest = HUGE_VAL};
+    mt_arena mem;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    mt_status rc = MT_OK;
+    for (int i = 0; rc == MT_OK && i < goal->n_configurations; i++) {
+        rc = look_around(s, goal->configurations[i], &r, &mem, err);
+    }
+    mt_arena_free(&mem);
+    const mt_bands *const bands = &goal->avoid->bands;
+    if (rc == MT_OK && r.nearest > FAR_BAND && bands->n > 0) {
+        mt_doubt *const d = mt_doubt_add(out, MT_LEVEL_DOUBT, "no_effect",
+                                         "its bands, %.4g to %.4g Hz, have no effect: within "
+                                         "the bounds no mode comes nearer "
+                                         "than a factor of %.3g (sampled); are they in Hz?",
+                                         bands->items[0].lower_hz,
+                                         bands->items[bands->n - 1].upper_hz, r.nearest);
+        if (d != NULL) {
+            d->addr = goal->addr;
+        }
+    }
+    return rc;
+}
+
+/* Frequency of the mode that a goal names, in a solved configuration; NaN where there is none. */
+static double original_hz(const mt_study *s, const mt_goal *goal, const mt_analysis *a)
+{
+    int index = goal->mode.index;
+    int seen = 0;
+    if (goal->mode.named != MT_ABSENT) {
+        const mt_named_mode *const m = &s->model->modes[goal->mode.named];
+        index = m->configuration == a->sys->configuration ? m->index : 0;
+    }
+    for (int i = 0; i < a->modes.count; i++) {
+        if (a->modes.kind[i] == MT_MODE_FLEXIBLE && ++seen == index) {
+            return mt_modal_hz(&a->modes, i);
+        }
+    }
+    return nan("");
+}
+
+static void doubt_target(mt_doubt_list *out, const char *member, double asked, mt_addr addr,
+                         double hz, bool above, bool below)
+{
+    const double ratio = asked / hz;
+    if (!((above && ratio >= FAR_TARGET) || (below && ratio <= 1.0 / FAR_TARGET))) {
+        return;
+    }
+    mt_doubt *const d = mt_doubt_add(
+        out, MT_LEVEL_DOUBT, "target",
+        "%s %.6g Hz is %.3g times %s the original frequency, %.6g Hz: is the unit Hz?", member,
+        asked, ratio >= 1.0 ? ratio : 1.0 / ratio, ratio >= 1.0 ? "above" : "below", hz);
+    if (d != NULL) {
+        d->addr = addr;
+    }
+}
+
+static mt_status examine_configuration(const mt_study *s, int c, mt_doubt_list *of_study,
+                                       mt_doubt_list *of_model, mt_err *err)
+{
+    mt_analysis *a = NULL;
+    mt_status rc = mt_analysis_new(s->model, c, 0, NULL, NULL, &a, err);
+    rc = rc == MT_OK ? mt_doubts_of_analysis(a, 0, NULL, NULL, of_model, err) : rc;
+    for (int g = 0; rc == MT_OK && g < s->n_goals; g++) {
+        const mt_goal *const goal = &s->goals[g];
+        for (int k = 0; k < goal->n_configurations && goal->type == MT_GOAL_FREQUENCY; k++) {
+            if (goal->configurations[k] != c) {
+                continue;
+            }
+            const double hz = original_hz(s, goal, a);
+            doubt_target(of_study, "target_hz", goal->target_hz, goal->target_addr, hz, true,
+                         true);
+            doubt_target(of_study, "at_least_hz", goal->at_least, goal->at_least_addr, hz, true,
+                         false);
+            doubt_target(of_study, "at_most_hz", goal->at_most, goal->at_most_addr, hz, false,
+                         true);
+        }
+    }
+    mt_analysis_delete(a);
+    return rc;
+}
+
+static bool names(const mt_study *s, int c)
+{
+    for (int g = 0; g < s->n_goals; g++) {
+        for (int k = 0; k < s->goals[g].n_configurations; k++) {
+            if (s->goals[g].configurations[k] == c) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static const char *base_name(const char *path)
+{
+    const char *const slash = path == NULL ? NULL : strrchr(path, '/');
+    return slash == NULL ? path : slash + 1;
+}
+
+mt_status mt_study_examine(const mt_study *study, mt_doubt_list *out, mt_err *err)
+{
+    const int first = out->n;
+    for (int i = 0; i < study->doubts.n; i++) {
+        mt_doubt_copy(out, &study->doubts.items[i]);
+    }
+    mt_doubt_list of_model = mt_doubt_list_default(out->mem);
+    for (int c = 0; c < study->model->n_configurations; c++) {
+        if (names(study, c)) {
+            MT_TRY(examine_configuration(study, c, out, &of_model, err));
+        }
+    }
+    for (int g = 0; g < study->n_goals; g++) {
+        if (study->goals[g].type == MT_GOAL_AVOID && study->goals[g].avoid != NULL) {
+            MT_TRY(examine_bands(study, g, out, err));
+        }
+    }
+    for (int i = first; i < out->n; i++) {
+        mt_doubt *const d = &out->items[i];
+        d->file = base_name(study->path);
+        mt_study_place_doubt(study, d);
+    }
+    for (int i = 0; i < of_model.n; i++) {
+        of_model.items[i].file = study->model_path.s;
+        mt_doubt_copy(out, &of_model.items[i]);
+    }
+    return out->out_of_memory || of_model.out_of_memory ? mt_fail_memory(err) : MT_OK;
+}

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Doubts about values that are hardly meant, and facts that surprise: each fires, each has a near miss that stays silent, and no
+shipped file is doubted."""
+import copy
+import json
+import re
+
+from common_cli import SOURCE, CliTest, main
+
+# A beam of steel that stands on a hinge with a spring, and a mass on its tip. Lowest mode some 5 Hz.
+MODEL = {
+    "format": "modetune-model/1", "dimension": 2,
+    "parameters": {"k": {"value": 2000, "unit": "N m/rad"}, "m": {"value": 1, "unit": "kg"}},
+    "links": [{"name": "rod", "kind": "beam", "from": [0, 0], "to": [0, 1], "elements": 4, "density_kg_per_m3": 7850,
+               "youngs_modulus_pa": 2.1e11, "section": {"shape": "circle", "diameter_m": 0.02}}],
+    "bodies": [{"name": "tip", "mass_kg": "m", "inertia_kg_m2": 0.01, "centre": [0, 1]}],
+    "joints": [{"name": "foot", "type": "revolute", "bodies": ["ground", "rod.start"], "at": [0, 0]},
+               {"name": "weld", "type": "fixed", "bodies": ["rod.end", "tip"], "at": [0, 1]}],
+    "springs": [{"name": "hold", "type": "torsion", "joint": "foot", "stiffness_n_m_per_rad": "k"}],
+}
+ROTOR = {"speed_hz": 10, "harmonics": ["1P"], "speed_range": [0.95, 1.05], "margin_percent": 10}
+STUDY = {
+    "format": "modetune-study/1", "model": "../problems/m.json",
+    "variables": [{"parameter": "k", "lower": 200, "upper": 20000}, {"parameter": "m", "lower": 0.5, "upper": 2}],
+    "goals": [{"type": "avoid", "rotor": ROTOR}],
+}
+
+
+def changed(base, path, value):
+    """A copy with the member at the path replaced; None takes it away."""
+    out = copy.deepcopy(base)
+    at = out
+    for key in path[:-1]:
+        at = at[key]
+    if value is None:
+        del at[path[-1]]
+    else:
+        at[path[-1]] = value
+    return out
+
+
+class Doubts(CliTest):
+    def write_json(self, name, data):
+        return self.write(name, json.dumps(data))
+
+    def found(self, path, code=0):
+        """Kinds of doubts and facts that `check` tells."""
+        done = self.expect(code, "check", path, "--format", "json")
+        got = json.loads(done.stdout)[0]
+        for doubt in got["doubts"]:
+            self.assertIn(doubt["text"], done.stderr)
+            self.assertRegex(done.stderr, "(?m)^[^ ]*: warning: ")
+        return got["doubts"], got["facts"]
+
+    def put_model(self, path=None, value=None, base=MODEL):
+        return self.write_json("problems/m.json", changed(base, path, value) if path else base)
+
+    def put_study(self, path=None, value=None, base=STUDY):
+        return self.write_json("studies/s.json", changed(base, path, value) if path else base)
+
+    def test_shipped_files_are_not_doubted(self):
+        files = [p for p in (SOURCE / "problems").glob("*.json") if p.name != "aircraft.json"] + list((SOURCE / "studies").glob("*.json"))
+        self.assertGreater(len(files), 25)
+        got = self.json_of("check", *sorted(map(str, files)))
+        self.assertEqual({g["file"]: g["doubts"] for g in got}, {str(p): [] for p in files})
+
+    def test_the_models_here_are_not_doubted(self):
+        self.assertEqual(self.found(self.put_model()), ([], []))
+        self.assertEqual(self.found(self.put_study()), ([], []))
+
+    def test_values_of_a_study(self):
+        self.put_model()
+        goal = ("goals", 0)
+        rotor = (*goal, "rotor")
+        frequency = {"type": "frequency", "mode": 1}
+        rows = [  # path, doubted, kind, pointer, near miss
+            ((*rotor, "speed_range"), [95, 105], "speed_range", "/goals/0/rotor/speed_range", [0.5, 2]),
+            ((*rotor, "speed_range"), [0.9, 2.1], "speed_range", "/goals/0/rotor/speed_range", [0.9, 2]),
+            ((*rotor, "speed_range"), [0.49, 1], "speed_range", "/goals/0/rotor/speed_range", [0.5, 1]),
+            ((*rotor, "margin_percent"), 0.1, "margin", "/goals/0/rotor/margin_percent", 1),
+            (goal, {"type": "avoid", "bands_hz": [[9, 11]], "margin_percent": 0.5}, "margin", "/goals/0/margin_percent",
+             {"type": "avoid", "bands_hz": [[9, 11]], "margin_percent": 0}),
+            (goal, {"type": "avoid", "bands_hz": [[9, 9.001]]}, "band", "/goals/0/bands_hz",
+             {"type": "avoid", "bands_hz": [[9, 9.01]]}),
+            (goal, {"type": "avoid", "bands_hz": [[9, 11]], "up_to_hz": 9.001}, "band", "/goals/0/up_to_hz",
+             {"type": "avoid", "bands_hz": [[9, 11]], "up_to_hz": 9.1}),
+            (goal, {"type": "avoid", "bands_hz": [[1e6, 1.1e6]]}, "no_effect", "/goals/0",
+             {"type": "avoid", "bands_hz": [[1e6, 1.1e6], [9, 11]]}),
+            (goal, dict(frequency, target_hz=2000), "target", "/goals/0/target_hz", dict(frequency, target_hz=200)),
+            (goal, dict(frequency, target_hz=0.01), "target", "/goals/0/target_hz", dict(frequency, target_hz=0.1)),
+            (goal, dict(frequency, at_least_hz=2000), "target", "/goals/0/at_least_hz", dict(frequency, at_least_hz=0.001)),
+            (goal, dict(frequency, at_most_hz=0.001), "target", "/goals/0/at_most_hz", dict(frequency, at_most_hz=9000)),
+            (goal, dict(frequency, target_hz=9, tolerance_percent=50), "tolerance", "/goals/0/tolerance_percent",
+             dict(frequency, target_hz=9, tolerance_percent=40)),
+            (("variables", 0), {"parameter": "k", "lower": 1e-3, "upper": 2e5}, "bounds", "/variables/0",
+             {"parameter": "k", "lower": 1e-3, "upper": 9e4}),
+            (("variables", 0), {"parameter": "k", "lower": 0.1, "upper": 1.9}, "bounds", "/variables/0",
+             {"parameter": "k", "lower": 0.1, "upper": 2.1}),
+            (("variables", 0), {"parameter": "k", "lower": 3e6, "upper": 4e6}, "bounds", "/variables/0",
+             {"parameter": "k", "lower": 1.9e6, "upper": 4e6}),
+        ]
+        for path, wrong, kind, pointer, right in rows:
+            with self.subTest(kind=kind, wrong=wrong):
+                doubts, _ = self.found(self.put_study(path, wrong))
+                self.assertIn((kind, pointer), [(d["kind"], d["pointer"]) for d in doubts])
+                for d in doubts:
+                    self.assertEqual((d["file"], d["line"]), ("s.json", 1))
+                    self.assertGreater(d["column"], 1)
+                self.assertEqual(self.found(self.put_study(path, right))[0], [])
+
+    def test_values_of_a_trade(self):
+        self.put_model()
+        for margin, want in ((0.1, ["margin"]), (5, [])):
+            vary = [{"goal": 0, "member": "margin_percent", "values": [margin, 10]}]
+            doubts, _ = self.found(self.put_study(("trade",), {"vary": vary}))
+            self.assertEqual([d["kind"] for d in doubts], want)
+
+    def test_values_of_a_model(self):
+        section = ("links", 0, "section", "diameter_m")
+        drive = {"x": {"drive": {"joint": "foot", "position_rad": 20}}}
+        turned = {"x": {"drive": {"joint": "foot", "position_rad": "20*deg"}}}
+        rows = [  # path, doubted, kind, near miss
+            (("links", 0, "youngs_modulus_pa"), 2.1e5, "modulus", 2e6),
+            (("links", 0, "youngs_modulus_pa"), 2.1e14, "modulus", 9e12),
+            (("links", 0, "density_kg_per_m3"), 7.85e-9, "density", 1.2),
+            (("links", 0, "density_kg_per_m3"), 7.85e6, "density", 2.2e4),
+            (section, 20, "section", 0.2),
+            (section, 2e-7, "section", 2e-3),
+            (("bodies", 0, "inertia_kg_m2"), 1e4, "inertia", 100),
+            (("bodies", 0, "mass_kg"), 2e6, "mass", 9e5),
+            (("springs", 0, "stiffness_n_m_per_rad"), 1e-11, "frequency", 1e-3),
+            (("links", 0, "to"), [0, 500], "size", [0, 1]),
+            (("joints", 0, "at"), [[0, 0], [0.5, 0]], "gap", [[0, 0], [0.05, 0]]),
+            (("joints", 0, "at"), [1.5, 0], "off", [0.4, 0]),
+            (("configurations",), drive, "drive", turned),
+        ]
+        for path, wrong, kind, right in rows:
+            with self.subTest(kind=kind, wrong=wrong):
+                self.assertIn(kind, [d["kind"] for d in self.found(self.put_model(path, wrong))[0]])
+                self.assertEqual(self.found(self.put_model(path, right))[0], [])
+
+    def test_joints_off_what_they_hold(self):
+        _, facts = self.found(self.put_model(("joints", 0, "at"), [0.4, 0]))
+        self.assertEqual([(f["kind"], f["text"], f["pointer"]) for f in facts],
+                         [("off", 'joint "foot" lies 0.4 m off "rod.start"', "/joints/0/at")])
+        doubts, _ = self.found(self.put_model(("joints", 0, "at"), [1.5, 0]))
+        self.assertEqual([d["text"] for d in doubts], ['joint "foot" lies 1.5 m off "rod.start"; the whole link is 1 m long'])
+        lumped = changed(MODEL, ("links", 0), {"name": "rod", "from": [0, 0], "to": [0, 1], "elements": 2, "mass_kg": 1,
+                                               "stiffness_n_m_per_rad": 1e4, "element_length_m": [0.25, 0.75]})
+        for at, want in (([0, 0.2], []), ([0, 0.5], ['joint "foot" lies 0.25 m off "rod.start"'])):
+            _, facts = self.found(self.put_model(("joints", 0, "at"), at, lumped))
+            self.assertEqual([f["text"] for f in facts], want)
+
+    def test_the_farthest_is_said_first_and_gaps_with_both_distances(self):
+        two = changed(MODEL, ("joints", 0, "at"), [0.3, 0])
+        two = changed(two, ("joints", 1, "at"), [0.5, 1])
+        _, facts = self.found(self.put_model(base=two))
+        self.assertEqual([f["text"][:24] for f in facts], ['joint "weld" lies 0.5 m ', 'joint "foot" lies 0.3 m '])
+        doubts, _ = self.found(self.put_model(("joints", 0, "at"), [[0, 0], [0.5, 0]]))
+        gap = [d["text"] for d in doubts if d["kind"] == "gap"]
+        self.assertRegex(gap[0], r'^joint "foot": its two points are drawn 0.5 m apart; .* \(to \d\.\de[-+]\d\d m\)$')
+
+    def test_freedoms_come_first_and_in_words(self):
+        loose = changed(MODEL, ("springs",), None)
+        floating = changed(loose, ("joints", 0), {"name": "foot", "type": "fixed", "bodies": ["rod.end", "tip"], "at": [0, 1]})
+        falling = changed(dict(MODEL, gravity_m_per_s2=[0, -9.81]), ("springs", 0, "stiffness_n_m_per_rad"), 1)
+        held_twice = changed(MODEL, ("joints",), MODEL["joints"] + [dict(MODEL["joints"][0], name="again")])
+        rows = [("loose", loose, "free_motion", "1 free motion: is a joint missing? Free to move: "),
+                ("floating", floating, "free_motion", "3 free motions: nothing holds it to the ground"),
+                ("falling", falling, "unstable", "unstable in 1 direction: it falls over from here, moving "),
+                ("twice", held_twice, "redundant", 'redundant: 2 equations of "foot", "again" change nothing')]
+        for name, base, kind, words in rows:
+            with self.subTest(name):
+                path = self.put_model(base=base)
+                doubts, facts = self.found(path)
+                self.assertEqual(doubts, [])
+                mine = [f for f in facts if f["kind"] == kind]
+                self.assertEqual(len(mine), 1, facts)
+                self.assertTrue(mine[0]["text"].startswith(words), mine[0]["text"])
+                self.assertEqual(mine[0]["configuration"], "default")
+                for command in ("info", "modes"):
+                    lines = self.expect(0, command, path).stdout.splitlines()
+                    self.assertIn(f"  note: {mine[0]['text']}", lines[1:3])
+                    self.assertIn(mine[0]["text"], [f["text"] for f in self.json_of(command, path)[0]["facts"]])
+
+    def test_run_says_the_doubt_first_and_proves_nothing(self):
+        self.put_model()
+        asked = changed(STUDY, ("goals", 0, "rotor", "speed_range"), [95, 105])
+        done = self.run_program("run", self.put_study(base=asked))
+        lines = done.stdout.splitlines()
+        self.assertTrue(lines[1].startswith("Doubtful question (speed_range [95, 105] says 95 to 105 times the rotor's speed: "), lines[1])
+        self.assertEqual(lines[3], "Doubts")
+        self.assertRegex(lines[4], r"^  - s\.json:1:\d+: /goals/0/rotor/speed_range: speed_range \[95, 105\] .*\[0\.95, 1\.05\] is meant\?$")
+        self.assertNotIn("feasible and proven", done.stdout)
+        self.assertEqual(re.findall(r"(?m)^  - proven: ", done.stdout), [])
+        self.assertRegex(done.stderr, r"studies/s\.json:1:\d+: warning: /goals/0/rotor/speed_range: ")
+        result = json.loads((self.folder / "results/s/result.json").read_text(encoding="utf-8"))
+        self.assertTrue(result["status_text"].startswith("Doubtful question ("))
+        self.assertEqual([d["kind"] for d in result["doubts"]][0], "speed_range")
+        self.assertNotIn("feasible and proven", [r["grade"] for r in result["recommendations"]])
+        page = (self.folder / "results/s/report.html").read_text(encoding="utf-8")
+        self.assertLess(page.index("<h2>Doubts</h2>"), page.index("<h2>Parameters</h2>"))
+        good = self.expect(0, "run", self.put_study())
+        self.assertIn("feasible and proven", good.stdout)
+        self.assertNotIn("oubt", good.stdout)
+
+    def test_facts_of_the_model_stand_at_the_top_of_run(self):
+        self.put_model(("joints", 0, "at"), [0.4, 0])
+        lines = self.expect(0, "run", self.put_study()).stdout.splitlines()
+        self.assertEqual(lines[3:5], ["Facts of the model", '  - default: joint "foot" lies 0.4 m off "rod.start"'])
+
+    def test_a_band_that_is_cut_off_whole_is_an_error(self):
+        self.put_model()
+        done = self.expect(2, "run", self.put_study(("goals", 0), {"type": "avoid", "bands_hz": [[9, 11]], "up_to_hz": 5}))
+        self.assertIn("/goals/0/up_to_hz: no band lies below up_to_hz (5)", done.stderr)
+
+
+if __name__ == "__main__":
+    main()
