@@ -352,6 +352,12 @@ void mt_json_put_doubts(mt_json_writer *w, const char *name, const mt_doubt_list
     mt_json_close(w);
 }
 
+/* A count, null where it does not apply (negative). */
+static void put_count(mt_json_writer *w, const char *name, int count)
+{
+    mt_json_put_number(w, name, count < 0 ? nan("") : (double)count);
+}
+
 static void write_run(mt_json_writer *w, const mt_result_run *run)
 {
     mt_json_open(w, "run", '{');
@@ -361,6 +367,9 @@ static void write_run(mt_json_writer *w, const mt_result_run *run)
     mt_json_put_string(w, "gsl", run->gsl_version);
     mt_json_put_integer(w, "seed", (long long)run->seed);
     mt_json_put_integer(w, "starts", run->starts);
+    put_count(w, "distinct_designs", run->distinct_designs);
+    put_count(w, "found_once", run->found_once);
+    mt_json_put_number(w, "estimated_missing", run->estimated_missing);
     mt_json_put_integer(w, "evaluations", run->evaluations);
     mt_json_open(w, "inputs", '[');
     for (int i = 0; i < run->n_inputs; i++) {

@@ -7,6 +7,9 @@
 /* The objective as the search had it and as it is recomputed may differ by this much, relatively: both are good to about n eps. Roots of squares, so that an
  * exact identification (f of 1e-24) is not judged by its rounding. */
 static const double SAME_OBJECTIVE = 1e-8;
+/* A KKT residual (relative to the objective's gradient) above this is told. Along the way that is left, of at most a few in ln x, it
+ * costs less than a thousandth of the objective; Newton's iteration reaches 1e-9 wherever the modes are simple. */
+static const double KKT_TOLD = 1e-4;
 
 mt_status mt_describe_warn(mt_result *result, mt_err *err, const char *fmt, ...)
 {
@@ -161,4 +164,10 @@ mt_status mt_describe_design(mt_problem *p, const mt_design *design,
     const mt_status rc = describe(fresh, design, baseline, result, rec, err);
     mt_problem_delete(fresh);
     return rc;
+}
+
+bool mt_describe_is_optimum(const mt_recommendation *rec)
+{
+    return !(rec->kkt_residual >
+             KKT_TOLD); /* NaN: nothing is free, or the search was over a catalogue */
 }

@@ -89,4 +89,7 @@ mt_status mt_describe_own(const mt_study *study, mt_result *result, mt_err *err)
 mt_status mt_describe_warn(mt_result *result, mt_err *err, const char *fmt, ...)
     MT_PRINTF(3, 4);
 
+/* Is the design stationary for its objective, as far as that was asked? A residual above this is told. */
+bool mt_describe_is_optimum(const mt_recommendation *rec);
+
 #endif

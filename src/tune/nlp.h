@@ -57,8 +57,9 @@ typedef struct mt_nlp {
 
 typedef struct mt_nlp_options {
     unsigned long seed; /* turns the sequence of starts; 0 and 1: as it is */
-    int starts; /* local solves from the origin and Sobol points (reverse Halton beyond 40 variables); 0: 8 + 4 n, at most 64 */
-    long max_evals;    /* over all starts, never exceeded; 0: 2000 * starts */
+    int starts; /* local solves from the origin and Sobol points (reverse Halton beyond 40 variables); 0: 8 + 4 n, at most 64,
+                   and where roots are sought up to twelve times as many, until every root was met twice */
+    long max_evals;    /* over all starts, never exceeded; 0: 2000 * the first starts */
     int max_solutions; /* how many distinct ones to keep; 0: 16 */
     bool
         least_change; /* f is the change: it does not count when undetermined directions are sought (without residuals) */
@@ -79,6 +80,7 @@ typedef struct mt_nlp_solution {
     double
         kkt; /* ||grad of the Lagrangian projected on the free variables|| relative; NaN for isolated roots (no freedom left) */
     int start;          /* which start found it first */
+    int hits;           /* how many starts ended at it */
     int *bound;         /* [n] -1 at lower, +1 at upper, 0 free */
     double *mult_eq;    /* [n_eq] multipliers, NaN where undetermined */
     double *mult_in;    /* [n_in] */
@@ -92,6 +94,11 @@ typedef struct mt_nlp_result {
         compromise; /* none is feasible: these minimise the sum of squares of the violations relative to the demands */
     long evals;
     int starts;
+    int n_found; /* distinct ones, those beyond max_solutions among them */
+    int n_once;  /* of them, met by one start only */
+    double
+        missing; /* where the equalities leave isolated roots: how many more are to be expected at least, by what was met once and
+                       twice (Chao 1984); 0 when all were met twice; else NaN */
     mt_stop stop;
     int n_undetermined; /* at the best solution: orthonormal directions of t-space along which crossing the whole bounds changes every residual and constraint by less than its tolerance */
     double *undetermined; /* n x n_undetermined */

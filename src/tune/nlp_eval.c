@@ -73,6 +73,7 @@ mt_status mt_nlp_engine_init(mt_nlp_engine *e, const mt_nlp *nlp, const mt_nlp_o
     for (int i = 0; i < nlp->n_eq; i++) {
         e->eq_tol = fmax(e->eq_tol, nlp->eq_tol[i]);
     }
+    e->open_starts = opt->starts <= 0;
     fill_defaults(e);
     return MT_OK;
 }
@@ -140,6 +141,7 @@ void mt_nlp_point_copy(const mt_nlp_engine *e, mt_nlp_point *to, const mt_nlp_po
     to->squares = from->squares;
     to->kkt = from->kkt;
     to->start = from->start;
+    to->curve = from->curve;
 }
 
 void mt_nlp_point_swap(mt_nlp_point **a, mt_nlp_point **b)
@@ -199,6 +201,7 @@ static void derive(const mt_nlp_engine *e, mt_nlp_point *p, bool with_gradient)
         p->squares += below * below;
     }
     p->kkt = HUGE_VAL;
+    p->curve = false;
 }
 
 /* Constraints relative to what a compromise reaches. */

@@ -26,6 +26,7 @@ typedef struct mt_nlp_point {
     double squares;   /* sum of squares of eq and of the negative part of in */
     double kkt;       /* last known relative KKT residual, infinity where unknown */
     int start;
+    bool curve; /* solutions form a curve here: no isolated root */
 } mt_nlp_point;
 
 typedef struct mt_nlp_engine {
@@ -43,6 +44,7 @@ typedef struct mt_nlp_engine {
     double df_scale; /* largest gradient of the objective at a start */
     long evals;
     atomic_int *abort; /* set when one worker must end the search for all; may be NULL */
+    bool open_starts;  /* the caller leaves their number to the search */
     bool ended;        /* budget spent, interrupted or fatal: no evaluation happens any more */
     mt_stop stop;
     mt_status fatal;   /* status that must be returned */
@@ -51,6 +53,19 @@ typedef struct mt_nlp_engine {
     mt_err *err;
     mt_arena scratch;
 } mt_nlp_engine;
+
+/* Where local solves ended. */
+typedef struct mt_nlp_end_point {
+    mt_nlp_point *p;
+    bool merged; /* another root was merged into it */
+    int hits;    /* how many starts ended here */
+} mt_nlp_end_point;
+
+typedef struct mt_nlp_ends {
+    mt_nlp_end_point *at; /* [count], and room for those of mt_nlp_ends_grow */
+    int count;
+    int starts; /* made so far */
+} mt_nlp_ends;
 
 /* What a local method minimises: the objective under the constraints, the residuals r, or the
  * squares of the violations (both of the latter under the bounds only). */
@@ -93,6 +108,17 @@ bool mt_nlp_feasible(const mt_nlp_point *p);
 double mt_nlp_distance(const mt_nlp_engine *e, const mt_nlp_point *a, const mt_nlp_point *b);
 /* Gradient of what `aim` minimises (squares and residuals with the factor 1/2), g[n]. */
 void mt_nlp_gradient(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim, double *g);
+
+/* nlp.c: objective under the constraints from p, the equalities reduced to rows. p: where it ends. Again from there while it is
+ * no minimum, and never for the worse. */
+void mt_nlp_minimise(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p);
+
+/* nlp_judge.c: room for n ends more; false: out of memory. */
+bool mt_nlp_ends_grow(mt_nlp_engine *e, mt_nlp_ends *all, int n);
+/* Isolated roots, *once: those that one start only ended at; 0 where the problem has none, or a curve of solutions. */
+int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_ends *all, int *once);
+/* The ends as a ranked result in mem. */
+void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_result *out);
 
 /* nlp_starts.c: start k (0: the origin) of `starts`; t column-major n x starts in mem, NULL where
  * memory is out. */

@@ -297,6 +297,32 @@ static void say_kind_rank(mt_sentences *s, const char *first)
     }
 }
 
+/* One design came out: where it is isolated, the only one found; else designs beside it meet the goals, too, and it is the best near it. */
+static void say_only(mt_sentences *s, const mt_nlp_result *search, const char *first)
+{
+    const char *const many = search->starts == 1 ? "" : "s";
+    if (MT_HAS(s->rec->kkt_residual)) {
+        mt_say(s,
+               "It is the only local optimum, by %s %s, that %d start%s found (sampled, not "
+               "proven).",
+               best_of(&s->p->aims[0]), first, search->starts, many);
+    } else {
+        mt_say(s, "It is the only design that %d start%s found (sampled, not proven).",
+               search->starts, many);
+    }
+}
+
+static void say_optimality(mt_sentences *s)
+{
+    if (s->rec->feasible && !mt_describe_is_optimum(s->rec)) {
+        mt_say(
+            s,
+            "It is not shown to be a local optimum: its KKT residual is %.2g, where an optimum "
+            "has 0; a design near it may be better.",
+            s->rec->kkt_residual);
+    }
+}
+
 static void say_rank(mt_sentences *s, const mt_nlp_result *search)
 {
     const char *const first = aim_text(&s->p->aims[0]);
@@ -316,8 +342,7 @@ static void say_rank(mt_sentences *s, const mt_nlp_result *search)
     } else if (s->design->gaps != NULL) {
         say_kind_rank(s, first);
     } else if (search->n_solutions == 1) {
-        mt_say(s, "It is the only design that %d start%s found (sampled, not proven).",
-               search->starts, search->starts == 1 ? "" : "s");
+        say_only(s, search, first);
     } else {
         mt_say(s, "It ranks %d of %d distinct designs found from %d starts, by %s %s.",
                s->rec->rank, search->n_solutions, search->starts, best_of(&s->p->aims[0]),
@@ -358,5 +383,6 @@ mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
     mt_say_prices(&s);
     say_misfit(&s);
     say_rank(&s, search);
+    say_optimality(&s);
     return s.failed ? mt_fail_memory(err) : MT_OK;
 }

@@ -18,6 +18,9 @@ mt_status mt_result_new(mt_result **out, mt_err *err)
     }
     result->status = MT_RESULT_INTERRUPTED;
     result->baseline = mt_recommendation_default();
+    result->run.distinct_designs = -1;
+    result->run.found_once = -1;
+    result->run.estimated_missing = nan("");
     *out = result;
     return MT_OK;
 }

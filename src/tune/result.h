@@ -223,6 +223,10 @@ typedef struct mt_result_run {
     unsigned long seed;
     long evaluations;
     int starts;
+    /* of a search from starts; -1, NaN: not applicable */
+    int distinct_designs;
+    int found_once;           /* of them, by one start only */
+    double estimated_missing; /* isolated designs that no start met, at least */
     int n_inputs;
     const char **input_names;
     const char **input_sha256;

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tune/solve.h"
 
+#include <stdio.h>
+
 #include "tune/describe.h"
 #include "tune/discrete.h"
 #include "tune/doubts.h"
@@ -70,6 +72,26 @@ static mt_status describe_solutions(answer *a, mt_err *err)
     return MT_OK;
 }
 
+/* Isolated designs that no start met are to be expected where some were met once only. */
+static mt_status warn_of_missing(const answer *a, mt_err *err)
+{
+    const mt_nlp_result *const f = &a->found;
+    if (!MT_HAS(a->result->run.estimated_missing) || f->n_once == 0) {
+        return MT_OK;
+    }
+    const bool some = f->missing >= 1.0;
+    char more[48] = "there may be more";
+    if (some) {
+        (void)snprintf(more, sizeof more, "about %.0f more, at least, are to be expected",
+                       f->missing);
+    }
+    return mt_describe_warn(a->result, err,
+                            "%d of the %d designs found %s met by one of %d starts only: %s; "
+                            "more \"starts\" or \"max_evaluations\" may find them",
+                            f->n_once, f->n_found, f->n_once == 1 ? "was" : "were", f->starts,
+                            more);
+}
+
 /* What the engineer should know of the search besides its answers. */
 static mt_status warn(const answer *a, mt_err *err)
 {
@@ -91,6 +113,7 @@ static mt_status warn(const answer *a, mt_err *err)
                                 "\"max_evaluations\" may find more",
                                 a->found.evals));
     }
+    MT_TRY(warn_of_missing(a, err));
     if (a->why.code != MT_OK) {
         MT_TRY(mt_describe_warn(a->result, err, "%s", a->why.text));
     }
@@ -123,6 +146,17 @@ static bool is_doubtful(const mt_recommendation *best)
         doubtful = doubtful || g->doubtful;
     }
     return doubtful;
+}
+
+/* Is a design of the search a local optimum, as far as its gradients tell? "" where it is. */
+static const char *doubt_text(const mt_recommendation *best, mt_arena *mem)
+{
+    return !mt_describe_is_optimum(best)
+               ? mt_arena_printf(mem,
+                                 " The best is not shown to be a local optimum (KKT residual "
+                                 "%.2g).",
+                                 best->kkt_residual)
+               : "";
 }
 
 static const char *status_text(const answer *a, const mt_recommendation *best)
@@ -158,18 +192,22 @@ static const char *status_text(const answer *a, const mt_recommendation *best)
         return a->why.code != MT_OK ? "No design that was tried could be evaluated."
                                     : "The budget ended before any design was found.";
     }
+    const char *const doubt = doubt_text(best, mem);
+    if (doubt == NULL) {
+        return NULL;
+    }
     if (best->feasible && a->gaps.n_solutions > 0) {
         return mt_arena_printf(
             mem,
             "Solved: %d kind%s of design keep%s clear of the bands and meet%s all goals (of "
             "%.0f "
-            "gap assignments, %s).",
+            "gap assignments, %s).%s",
             n, n == 1 ? "" : "s", n == 1 ? "s" : "", n == 1 ? "s" : "", a->gaps.n_possible,
-            a->gaps.proven ? "the others proven infeasible" : "sampled, not proven");
+            a->gaps.proven ? "the others proven infeasible" : "sampled, not proven", doubt);
     }
     if (best->feasible) {
-        return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.", n,
-                               n == 1 ? " meets" : "s meet");
+        return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.%s", n,
+                               n == 1 ? " meets" : "s meet", doubt);
     }
     if (is_doubtful(best)) {
         return "Compromise: by their numbers all goals can be met, but which modes the named "
@@ -251,9 +289,15 @@ static mt_status search(answer *a, mt_err *err)
         return mt_discrete_solve(a->workers, a->n_workers, &a->mem, &a->found, &a->discrete,
                                  err);
     }
-    return a->p->n_clears > 0 ? search_gaps(a, err)
-                              : mt_search_designs(a->workers, a->n_workers, &a->mem, &a->found,
-                                                  &a->stage, &a->why, err);
+    if (a->p->n_clears > 0) {
+        return search_gaps(a, err);
+    }
+    MT_TRY(mt_search_designs(a->workers, a->n_workers, &a->mem, &a->found, &a->stage, &a->why,
+                             err));
+    a->result->run.distinct_designs = a->found.compromise ? 0 : a->found.n_found;
+    a->result->run.found_once = a->found.compromise ? 0 : a->found.n_once;
+    a->result->run.estimated_missing = a->found.missing;
+    return MT_OK;
 }
 
 static mt_status certify(answer *a, mt_err *err)

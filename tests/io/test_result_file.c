@@ -185,8 +185,9 @@ static bool make_sample(sample *s)
     r->published = s->published;
     r->n_warnings = 1;
     r->warnings = REASONS;
-    r->run = (mt_result_run){"0.1.0", "OpenBLAS 0.3.21", "2.7.1",      "2.7.1", 1, 1234, 16,
-                             1,       INPUT_NAMES,       INPUT_DIGESTS};
+    r->run = (mt_result_run){
+        "0.1.0", "OpenBLAS 0.3.21", "2.7.1",      "2.7.1", 1, 1234, 16, 9, 3, 1.5,
+        1,       INPUT_NAMES,       INPUT_DIGESTS};
     return true;
 }
 

@@ -5,7 +5,7 @@
  */
 #include "nlp_problem.h"
 
-enum { SPRINGS = 3, PROBLEMS = 400, GRID = 33, ZOOMS = 7, BISECTIONS = 45 };
+enum { SPRINGS = 3, PROBLEMS = 300, GRID = 21, ZOOMS = 8, BISECTIONS = 42 };
 
 /* xorshift64* (Vigna 2016): a number in [0, 1). */
 static double draw(uint64_t *state)
