@@ -34,8 +34,15 @@ typedef struct mt_certify_bound {
     double at_most;
 } mt_certify_bound;
 
+/* Only designs whose objective may be less than `below` are asked about. least: no value of the objective in lo <= x <= hi is below it. */
+typedef struct mt_certify_cap {
+    double (*least)(void *context, const double *lo, const double *hi);
+    void *context;
+    double below;
+} mt_certify_cap;
+
 /*
- * What is asked of the designs lower <= x <= upper. An assignment is int[n_bands]: for each band, how many vibration modes lie below it (or on its lower edge). The views
+ * What is asked of the designs lower <= x <= upper, in which inputs with a catalogue take values of it only. An assignment is int[n_bands]: for each band, how many vibration modes lie below it (or on its lower edge). The views
  * share the inputs.
  */
 typedef struct mt_certify {
@@ -51,6 +58,9 @@ typedef struct mt_certify {
     int n; /* inputs */
     const double *lower;
     const double *upper;
+    const int *n_catalogue;         /* [n] 0: continuous; NULL: all are */
+    const double *const *catalogue; /* [n] ascending values */
+    const mt_certify_cap *cap;      /* NULL: any value of the objective */
     const double
         *scale; /* [n] NaN: bisected in ln x, else linearly; NULL: in ln x where lower > 0 */
     long max_boxes; /* 0: MT_CERTIFY_BOXES */
@@ -129,7 +139,7 @@ typedef struct mt_tolerance {
 /*
  * Tolerance boxes about x[n]: |x_i' - x_i| <= percent / 100 * unit_i, for all inputs together (*all) and for each alone (each[n], may be NULL). unit NULL: |x_i|. They may
  * leave the bounds of the enclosures. Tolerances of bands and limits are not granted here: a design on an edge (to 5e-10 of it) has 0 percent and the edge. Where an
- * input enters K and M, up to boxes_per_test sub-boxes (0: 64) tighten each of the some 30 tests of a box. assignment[n_bands] is that of x. c->lower, upper and bounds are not used.
+ * input enters K and M, up to boxes_per_test sub-boxes (0: 64) tighten each of the some 30 tests of a box. assignment[n_bands] is that of x. c->lower, upper, bounds, catalogues and cap are not used.
  */
 typedef struct mt_tolerance_question {
     const double *x;

@@ -31,16 +31,20 @@ static mt_status claim(mt_boxes *b, mt_arena *mem, mt_err *err)
     b->now_hi = mt_arena_f64(mem, n, 1);
     b->now_depth = mt_arena_alloc(mem, n, sizeof(signed char));
     b->middle = mt_arena_f64(mem, n, 1);
+    b->beyond = mt_arena_f64(mem, n, 1);
     const bool ok = b->lo != NULL && b->hi != NULL && b->depth != NULL && b->active != NULL &&
                     b->logarithmic != NULL && b->now_lo != NULL && b->now_hi != NULL &&
-                    b->now_depth != NULL && b->middle != NULL;
+                    b->now_depth != NULL && b->middle != NULL && b->beyond != NULL;
     return ok ? MT_OK : mt_fail_memory(err);
 }
 
 mt_status mt_boxes_init(mt_boxes *b, const mt_certify *c, bool loose_only, mt_arena *mem,
                         mt_err *err)
 {
-    *b = (mt_boxes){.n = c->n, .capacity = (MOST_DEPTH * c->n) + 2};
+    *b = (mt_boxes){.n = c->n,
+                    .capacity = (MOST_DEPTH * c->n) + 2,
+                    .n_catalogue = loose_only ? NULL : c->n_catalogue,
+                    .catalogue = c->catalogue};
     MT_TRY(claim(b, mem, err));
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     bool *const bound = mt_arena_alloc(mem, (size_t)c->n, sizeof *bound);
@@ -55,11 +59,33 @@ mt_status mt_boxes_init(mt_boxes *b, const mt_certify *c, bool loose_only, mt_ar
         }
     }
     for (int i = 0; i < c->n; i++) {
-        b->active[i] = depends(c, i, loose_only, bound);
+        b->active[i] = (c->cap != NULL && !loose_only) || depends(c, i, loose_only, bound);
         b->logarithmic[i] = c->scale == NULL || isnan(c->scale[i]);
     }
     mt_arena_rewind(mem, mark);
     return MT_OK;
+}
+
+static bool is_discrete(const mt_boxes *b, int i)
+{
+    return b->n_catalogue != NULL && b->n_catalogue[i] > 0;
+}
+
+/* How many values of input i's catalogue are below x (all: or equal to it). */
+static int rank_of(const mt_boxes *b, int i, double x, bool or_equal)
+{
+    const double *const v = b->catalogue[i];
+    int low = 0;
+    int high = b->n_catalogue[i];
+    while (low < high) {
+        const int middle = low + ((high - low) / 2);
+        if (v[middle] < x || (or_equal && v[middle] == x)) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
 }
 
 void mt_boxes_start(mt_boxes *b, const double *lower, const double *upper)
@@ -69,6 +95,13 @@ void mt_boxes_start(mt_boxes *b, const double *lower, const double *upper)
         b->lo[i] = lower[i];
         b->hi[i] = upper[i];
         b->depth[i] = 0;
+        if (is_discrete(b, i)) {
+            const int first = rank_of(b, i, lower[i], false);
+            const int end = rank_of(b, i, upper[i], true);
+            b->count = first < end ? b->count : 0;
+            b->lo[i] = first < end ? b->catalogue[i][first] : lower[i];
+            b->hi[i] = first < end ? b->catalogue[i][end - 1] : upper[i];
+        }
     }
 }
 
@@ -78,6 +111,22 @@ static double middle_of(bool logarithmic, double lo, double hi)
         return sqrt(lo) * sqrt(hi);
     }
     return lo + (0.5 * (hi - lo));
+}
+
+/* Where the box that was popped is halved. */
+static void find_middle(mt_boxes *b, int i)
+{
+    if (is_discrete(b, i)) {
+        const int first = rank_of(b, i, b->now_lo[i], false);
+        const int last = rank_of(b, i, b->now_hi[i], false);
+        const int middle = first + ((last - first) / 2);
+        b->middle[i] = b->catalogue[i][middle];
+        b->beyond[i] = middle < last ? b->catalogue[i][middle + 1] : b->middle[i];
+        return;
+    }
+    const double m = middle_of(b->logarithmic[i], b->now_lo[i], b->now_hi[i]);
+    b->middle[i] = fmin(fmax(m, b->now_lo[i]), b->now_hi[i]);
+    b->beyond[i] = b->middle[i];
 }
 
 bool mt_boxes_pop(mt_boxes *b)
@@ -94,9 +143,8 @@ bool mt_boxes_pop(mt_boxes *b)
     memcpy(b->now_lo, b->lo + at, n * sizeof *b->lo);
     memcpy(b->now_hi, b->hi + at, n * sizeof *b->hi);
     memcpy(b->now_depth, b->depth + at, n);
-    for (size_t i = 0; i < n; i++) {
-        const double m = middle_of(b->logarithmic[i], b->now_lo[i], b->now_hi[i]);
-        b->middle[i] = fmin(fmax(m, b->now_lo[i]), b->now_hi[i]);
+    for (int i = 0; i < b->n; i++) {
+        find_middle(b, i);
     }
     return true;
 }
@@ -108,7 +156,11 @@ static void push(mt_boxes *b, int split, bool upper_half)
     memcpy(b->lo + at, b->now_lo, n * sizeof *b->lo);
     memcpy(b->hi + at, b->now_hi, n * sizeof *b->hi);
     memcpy(b->depth + at, b->now_depth, n);
-    (upper_half ? b->lo : b->hi)[at + (size_t)split] = b->middle[split];
+    if (upper_half) {
+        b->lo[at + (size_t)split] = b->beyond[split];
+    } else {
+        b->hi[at + (size_t)split] = b->middle[split];
+    }
     b->depth[at + (size_t)split]++;
     b->count++;
 }
@@ -117,8 +169,9 @@ bool mt_boxes_split(mt_boxes *b)
 {
     int widest = -1;
     for (int i = 0; i < b->n; i++) {
-        const bool can = b->active[i] && b->now_depth[i] < MOST_DEPTH &&
-                         b->now_lo[i] < b->middle[i] && b->middle[i] < b->now_hi[i];
+        const bool inside = b->now_lo[i] < b->middle[i] && b->middle[i] < b->now_hi[i];
+        const bool values = is_discrete(b, i) && b->now_lo[i] < b->now_hi[i];
+        const bool can = b->active[i] && b->now_depth[i] < MOST_DEPTH && (values || inside);
         if (can && (widest < 0 || b->now_depth[i] < b->now_depth[widest])) {
             widest = i;
         }

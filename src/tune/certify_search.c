@@ -3,7 +3,8 @@
  * Branch and bound over assignments. For a box and a band [a, b], the number j of modes below the band at any design that keeps it lies in
  *     least_below(b) <= j <= most_below(a),
  * so the box is done with where for some band (or limit, or bound) nothing is left, or where all assignments that are left are known. Else the box is halved. Where a
- * single unknown assignment is left, or a pass ends, the middle of the box is tried: a design that meets everything makes its assignment known.
+ * single unknown assignment is left, or a pass ends, the middle of the box is tried: a design that meets everything makes its assignment known. Catalogues only thin the boxes out, and a
+ * cap cuts off those whose designs are all too costly: with the objective of a known design as cap, "nothing found, nothing open" proves that none is better.
  *
  * Passes go deeper and deeper (iterative deepening). Depth first at once would dive into the first surface on which two assignments touch, where boxes stay undecided down
  * to rounding, before it meets the designs next to it that settle the matter. What earlier passes cost is a fraction of the last one.
@@ -207,12 +208,19 @@ static bool band_possible(search *s, int i)
     return s->least[i] <= s->most[i];
 }
 
+/* May a design of the box have an objective below the cap? */
+static bool below_cap(const mt_certify *c, const double *lo, const double *hi)
+{
+    return c->cap == NULL || c->cap->least(c->cap->context, lo, hi) < c->cap->below;
+}
+
 /* What is left in the box: unknown assignments (0, 1, 2 for more). Where nothing is known of the box, everything is left. */
 static int examine(search *s)
 {
     const mt_certify *const c = s->c;
     const mt_boxes *const b = &s->boxes;
-    bool possible = bounds_met(s, b->now_lo, b->now_hi, false);
+    bool possible =
+        below_cap(c, b->now_lo, b->now_hi) && bounds_met(s, b->now_lo, b->now_hi, false);
     if (!possible) {
         return 0;
     }
@@ -236,7 +244,7 @@ static int examine(search *s)
 static bool witnessed(search *s)
 {
     const mt_boxes *const b = &s->boxes;
-    if (!bounds_met(s, b->middle, b->middle, true) ||
+    if (!below_cap(s->c, b->middle, b->middle) || !bounds_met(s, b->middle, b->middle, true) ||
         !mt_certify_set(s->c, b->middle, b->middle)) {
         return false;
     }

@@ -144,8 +144,8 @@ typedef struct ranking {
     mt_combination **best; /* [most] */
 } ranking;
 
-static mt_status enumerate(mt_discrete *d, int n, ranking *r, mt_discrete_report *report,
-                           mt_err *err)
+static mt_status enumerate(mt_discrete *d, int n, mt_combination **out, ranking *r,
+                           mt_discrete_report *report, mt_err *err)
 {
     mt_combination *list = NULL;
     const int batch = d->mixed ? BATCH_MIXED : BATCH;
@@ -156,6 +156,7 @@ static mt_status enumerate(mt_discrete *d, int n, ranking *r, mt_discrete_report
         return mt_fail_memory(err);
     }
     qsort(list, (size_t)n, sizeof *list, by_change);
+    *out = list;
     report->all = true;
     for (int first = 0; first < n; first += batch) {
         const int size = n - first < batch ? n - first : batch;
@@ -170,8 +171,6 @@ static mt_status enumerate(mt_discrete *d, int n, ranking *r, mt_discrete_report
         MT_TRY(mt_discrete_judge(d, size, list + first, budget, err));
         for (int i = 0; i < size; i++) {
             pointers[i] = &list[first + i];
-            report->judged += list[first + i].judged ? 1 : 0;
-            report->feasible += list[first + i].feasible ? 1 : 0;
         }
         rank(d, pointers, size, r->most, r->best, &r->n);
     }
@@ -179,16 +178,23 @@ static mt_status enumerate(mt_discrete *d, int n, ranking *r, mt_discrete_report
     return MT_OK;
 }
 
-static mt_status approach(mt_discrete *d, ranking *r, mt_discrete_report *report, mt_err *err)
+/* The combinations that were looked at, all[n]. */
+static mt_status look(mt_discrete *d, double combinations, ranking *r,
+                      mt_discrete_report *report, mt_combination ***all, int *n, mt_err *err)
 {
-    mt_combination **list = NULL;
-    int n = 0;
-    MT_TRY(mt_discrete_near(d, &list, &n, err));
-    for (int i = 0; i < n; i++) {
-        report->judged += list[i]->judged ? 1 : 0;
-        report->feasible += list[i]->feasible ? 1 : 0;
+    mt_combination *list = NULL;
+    if (combinations > (double)(d->mixed ? MT_DISCRETE_MOST_MIXED : MT_DISCRETE_MOST)) {
+        return mt_discrete_near(d, all, n, err);
     }
-    rank(d, list, n, r->most, r->best, &r->n);
+    *n = (int)combinations;
+    MT_TRY(enumerate(d, *n, &list, r, report, err));
+    *all = mt_arena_alloc(d->mem, (size_t)*n, sizeof(mt_combination *));
+    if (*all == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < *n; i++) {
+        (*all)[i] = &list[i];
+    }
     return MT_OK;
 }
 
@@ -258,11 +264,18 @@ mt_status mt_discrete_solve(mt_problem *const *problems, int n_workers, mt_arena
         return mt_fail_memory(err);
     }
     const double n = count_combinations(&d);
-    *report = (mt_discrete_report){.mixed = d.mixed, .combinations = n};
-    if (n <= (double)(d.mixed ? MT_DISCRETE_MOST_MIXED : MT_DISCRETE_MOST)) {
-        MT_TRY(enumerate(&d, (int)n, &r, report, err));
-    } else {
-        MT_TRY(approach(&d, &r, report, err));
+    mt_combination **all = NULL;
+    int n_all = 0;
+    *report = (mt_discrete_report){.mixed = d.mixed, .combinations = n, .best_within = nan("")};
+    MT_TRY(look(&d, n, &r, report, &all, &n_all, err));
+    if ((d.mixed || !report->all) && d.stop != MT_STOP_USER) {
+        MT_TRY(mt_discrete_prove(&d, &all, &n_all, report, err));
     }
+    for (int i = 0; i < n_all; i++) {
+        report->judged += all[i]->judged ? 1 : 0;
+        report->feasible += all[i]->feasible ? 1 : 0;
+    }
+    r.n = 0;
+    rank(&d, all, n_all, r.most, r.best, &r.n);
     return collect(&d, &r, out, err);
 }

@@ -11,7 +11,8 @@
  *
  * Few combinations are enumerated, all of them, in the order of the change that they cannot do without; with the objective "change" the enumeration ends where no later one can rank among
  * those that are kept. Beyond MT_DISCRETE_MOST combinations (MT_DISCRETE_MOST_MIXED where continuous variables remain) the search is a heuristic: the relaxed
- * problem (every catalogue as the interval that it spans), roundings of its designs, then steps to neighbouring values while these help.
+ * problem (every catalogue as the interval that it spans), roundings of its designs, then steps to neighbouring values while these help. What neither settles, branch and bound does where the
+ * modes can be enclosed (discrete_prove.c): which gap assignments some combination has, that none meets all goals, that none is better than the best found.
  */
 enum { MT_DISCRETE_MOST = 200000, MT_DISCRETE_MOST_MIXED = 400 };
 
@@ -21,15 +22,26 @@ typedef struct mt_discrete_report {
     double combinations; /* how many there are */
     int judged;
     int feasible; /* of those judged: combinations with a design that meets all goals */
+    /* branch and bound */
+    bool asked;        /* it was tried */
+    bool settled;      /* every gap assignment but n_kinds is proven impossible */
+    int n_kinds;       /* assignments that a combination has */
+    double n_possible; /* monotone assignments there are; 1 without bands */
+    bool complete;     /* no goal was left out of the question */
+    double
+        best_within; /* proven: no design's objective is less by more than this share of the best one's; NaN: not proven */
+    long boxes;
+    const char *reason; /* why there is no proof; NULL */
 } mt_discrete_report;
 
 /* One combination judged. */
 typedef struct mt_combination {
-    int *pick;        /* [n_discrete] index in each catalogue */
-    double *t;        /* [n + 1] the design; its coordinates of catalogues are those of pick */
-    double *f;        /* [n_aims] objectives there */
-    double least;     /* half of the squared change that pick alone makes */
-    double violation; /* as in mt_nlp_solution; NaN: it has no value */
+    int *pick; /* [n_discrete] index in each catalogue */
+    double *t; /* [n + 1] the design; its coordinates of catalogues are those of pick */
+    double *f; /* [n_aims] objectives there */
+    const double *from; /* [n + 1] a design t to start from; NULL: none */
+    double least;       /* half of the squared change that pick alone makes */
+    double violation;   /* as in mt_nlp_solution; NaN: it has no value */
     double squares;
     double kkt;
     bool judged;
@@ -80,6 +92,9 @@ bool mt_discrete_before(const mt_discrete *d, const mt_combination *a, const mt_
 mt_status mt_discrete_alloc(const mt_discrete *d, int n, mt_combination **out, mt_err *err);
 /* Coordinates and unavoidable change of c from its pick. */
 void mt_discrete_set(const mt_discrete *d, mt_combination *c);
+/* discrete_prove.c: what branch and bound can settle, into the report; combinations that it finds join (*all)[*n], judged. */
+mt_status mt_discrete_prove(mt_discrete *d, mt_combination ***all, int *n,
+                            mt_discrete_report *report, mt_err *err);
 /* discrete_near.c: the heuristic. (*list)[*n] are the combinations that it has judged. */
 mt_status mt_discrete_near(mt_discrete *d, mt_combination ***list, int *n, mt_err *err);
 

@@ -243,6 +243,7 @@ static mt_status judge_mixed(void *context, int worker, int task, mt_err *err)
     rc = rc == MT_OK ? mt_problem_new(&closed, whole->references, &p, err) : rc;
     if (rc == MT_OK) {
         p->stop = whole->stop;
+        p->hint = c->from;
         rc = search_closed(p, &mem, c, err);
     }
     mt_problem_delete(p);

@@ -76,6 +76,8 @@ static void list_limits(mt_proof *proof, const mt_problem *p)
     for (int i = 0; i < p->n_demands; i++) {
         const mt_demand *const d = &p->demands[i];
         const bool constraint = d->row_res < 0;
+        proof->covers = proof->covers && (!constraint || d->goal->type == MT_GOAL_LIMIT ||
+                                          (d->goal->type == MT_GOAL_FREQUENCY && d->mode > 0));
         if (constraint && d->goal->type == MT_GOAL_FREQUENCY && d->mode > 0) {
             proof->limit_demand[q->n_limits] = i;
             proof->limits[q->n_limits++] = frequency_limit(d);
@@ -119,7 +121,25 @@ mt_status mt_proof_init(mt_proof *proof, mt_problem *p, mt_arena *mem, mt_err *e
                                    .upper = proof->upper,
                                    .scale = p->scale,
                                    .stop = p->stop};
+    proof->covers = true;
     list_bands(proof, p);
     list_limits(proof, p);
+    return MT_OK;
+}
+
+mt_status mt_proof_use_catalogues(mt_proof *proof, const mt_problem *p, mt_arena *mem,
+                                  mt_err *err)
+{
+    int *const count = mt_arena_int(mem, (size_t)p->n);
+    const double **const values = mt_arena_alloc(mem, (size_t)p->n, sizeof(double *));
+    if (count == NULL || values == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n; i++) {
+        count[i] = p->study->variables[i].n_catalogue;
+        values[i] = p->study->variables[i].catalogue;
+    }
+    proof->question.n_catalogue = count;
+    proof->question.catalogue = values;
     return MT_OK;
 }

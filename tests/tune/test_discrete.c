@@ -36,14 +36,25 @@ static int brute_force(six *s, double change[ALL])
     return n;
 }
 
-static const mt_certificate *enumeration(const mt_result *r)
+static const mt_certificate *certificate(const mt_result *r, const char *kind)
 {
     for (int i = 0; i < r->n_certificates; i++) {
-        if (strcmp(r->certificates[i].kind, "enumeration") == 0) {
+        if (strcmp(r->certificates[i].kind, kind) == 0) {
             return &r->certificates[i];
         }
     }
     return NULL;
+}
+
+static const mt_certificate *enumeration(const mt_result *r)
+{
+    return certificate(r, "enumeration");
+}
+
+static bool proves(const mt_result *r, const char *kind)
+{
+    const mt_certificate *const c = certificate(r, kind);
+    return c != NULL && c->proven;
 }
 
 static void check_members(mt_test *t, const six *s, const mt_recommendation *r)
@@ -162,12 +173,103 @@ static void discrete__mixed_agrees_with_every_value_on_its_own(mt_test *t)
         CHECK_NEAR(t, r->recommendations[0].change, want, SAME_OPTIMUM);
         check_members(t, &s, &r->recommendations[0]);
         CHECK(t, c != NULL && !c->proven);
+        CHECK(t, proves(r, "gap_assignments")); /* and that within 1 % none is better */
+        CHECK(t, proves(r, "optimal"));
+        CHECK(t, certificate(r, "infeasible") == NULL);
     }
     mt_result_delete(r);
     six_end(&s);
 }
 
-static void discrete__too_many_combinations_are_a_labelled_heuristic(mt_test *t)
+/* Springs within 5 %, three of them in steps: the bands stay occupied, whatever the others do. */
+static void discrete__that_no_combination_with_others_beside_works_is_proven(mt_test *t)
+{
+    static const double near[] = {-0.05, -0.02, 0.0, 0.03, 0.05};
+    six s;
+    REQUIRE(t, six_begin(t, &s));
+    for (int i = 0; i < SIX; i++) {
+        if (i < 3) {
+            six_catalogue(&s, i, MT_COUNT(near), near);
+        } else {
+            s.study->variables[i].lower = 0.95 * s.k[i];
+            s.study->variables[i].upper = 1.05 * s.k[i];
+        }
+    }
+    mt_result *const r = six_solve(t, s.study, 1);
+    if (r != NULL) {
+        CHECK_INT(t, r->status, MT_RESULT_INFEASIBLE);
+        CHECK(t, proves(r, "infeasible"));
+        CHECK(t, r->n_recommendations > 0 && !r->recommendations[0].feasible);
+    }
+    mt_result_delete(r);
+    six_same_bytes(t, s.study);
+    six_end(&s);
+}
+
+/* 27^6 combinations within 7 %: not one is enumerated, all are excluded. */
+static void discrete__that_none_of_too_many_combinations_works_is_proven(mt_test *t)
+{
+    double fine[27];
+    six s;
+    REQUIRE(t, six_begin(t, &s));
+    for (int k = 0; k < 27; k++) {
+        fine[k] = 0.005 * (k - 13);
+    }
+    for (int i = 0; i < SIX; i++) {
+        six_catalogue(&s, i, MT_COUNT(fine), fine);
+    }
+    mt_result *const r = six_solve(t, s.study, 1);
+    if (r != NULL) {
+        CHECK_INT(t, r->status, MT_RESULT_INFEASIBLE);
+        CHECK(t, proves(r, "infeasible"));
+        CHECK(t, !proves(r, "enumeration"));
+    }
+    mt_result_delete(r);
+    six_end(&s);
+}
+
+/* An expression, and a mass, as the objective beside a continuous variable: k1 of a list, k2 free; mode 1 at least at f. The least k2 lies at the greatest k1, in closed form:
+ * lambda^2 - (k1 + 2 k2) lambda + k1 k2 = 0 with m = 1 gives k2 = lambda (k1 - lambda) / (k1 - 2 lambda). */
+static void discrete__the_best_of_an_expression_is_proven_within_one_per_cent(mt_test *t)
+{
+    study_case c;
+    const double lambda = 4.0 * STUDY_PI * STUDY_PI * 0.1 * 0.1;
+    if (study_solve(t, STUDY_TWO_MASSES("'k1': 2, 'k2': 1, 'm': 1", ""),
+                    "'variables': [{'parameter': 'k1', 'catalogue': [1.2, 2, 3]},"
+                    " {'parameter': 'k2', 'lower': 0.2, 'upper': 5}],"
+                    "'objective': {'minimise': 'k2'},"
+                    "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.1}]",
+                    &c)) {
+        CHECK_NEAR(t, study_value(&c, 1, "k2"), lambda * (3.0 - lambda) / (3.0 - 2.0 * lambda),
+                   1e-5);
+        CHECK_NEAR_ABS(t, study_value(&c, 1, "k1"), 3.0, 0.0);
+        CHECK(t, proves(c.result, "optimal"));
+        CHECK(t, study_reasons(&c, 1, "none is better by more than 1 %"));
+    }
+    study_free(&c);
+}
+
+/* Nothing is claimed where the modes cannot be enclosed, and it is said why. */
+static void discrete__without_an_enclosure_nothing_is_proven(mt_test *t)
+{
+    study_case c;
+    if (study_solve(t,
+                    "{'format': 'modetune-model/1', 'name': 'loaded', 'dimension': 2,"
+                    "'parameters': {'k1': 2, 'k2': 1, 'm': 1}, "
+                    "'gravity_m_per_s2': [-9.81, 0]," STUDY_TWO_MASSES_ROW "}",
+                    "'variables': [{'parameter': 'k1', 'catalogue': [1, 2, 3]},"
+                    " {'parameter': 'k2', 'lower': 0.2, 'upper': 5}],"
+                    "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 1}]",
+                    &c)) {
+        CHECK_INT(t, c.result->status, MT_RESULT_COMPROMISE);
+        const mt_certificate *const proof = certificate(c.result, "infeasible");
+        CHECK(t, proof != NULL && !proof->proven);
+        CHECK(t, proof != NULL && strstr(proof->text, "gravity loads the mechanism") != NULL);
+    }
+    study_free(&c);
+}
+
+static void discrete__of_too_many_combinations_the_best_is_proven(mt_test *t)
 {
     double fine[27];
     six s;
@@ -189,8 +291,10 @@ static void discrete__too_many_combinations_are_a_labelled_heuristic(mt_test *t)
         CHECK(t, c != NULL && !c->proven);
         CHECK(t, six_clear(&s, x, 0.0));
         check_members(t, &s, best);
-        /* no better than without catalogues (0.4142), and a step of 0.05 in each of six at most cost sqrt(6) 0.05 more */
-        CHECK(t, best->change > 0.4142 && best->change < 0.4143 + (sqrt(6.0) * 0.05));
+        /* the only one of the 2.3 million combinations or so within this change that keeps clear, by another program's enumeration of them: steps -4, 6, 0, 2, -2, -4 */
+        CHECK_NEAR(t, best->change, 0.05 * sqrt(76.0), ROUNDING);
+        CHECK(t, proves(r, "gap_assignments"));
+        CHECK(t, proves(r, "optimal"));
     }
     mt_result_delete(r);
     six_same_bytes(t, s.study);
@@ -235,6 +339,10 @@ MT_TEST_MAIN(MT_TEST(discrete__enumeration_agrees_with_brute_force),
              MT_TEST(discrete__no_combination_is_listed_twice),
              MT_TEST(discrete__that_no_combination_works_is_proven),
              MT_TEST(discrete__mixed_agrees_with_every_value_on_its_own),
-             MT_TEST(discrete__too_many_combinations_are_a_labelled_heuristic),
+             MT_TEST(discrete__that_no_combination_with_others_beside_works_is_proven),
+             MT_TEST(discrete__that_none_of_too_many_combinations_works_is_proven),
+             MT_TEST(discrete__the_best_of_an_expression_is_proven_within_one_per_cent),
+             MT_TEST(discrete__without_an_enclosure_nothing_is_proven),
+             MT_TEST(discrete__of_too_many_combinations_the_best_is_proven),
              MT_TEST(discrete__the_rank_says_least_of_what_begins_like_clearance),
              MT_TEST(discrete__a_budget_is_kept))
