@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 NEAR = 1e-7       # relative: frequencies of well-conditioned models of a few masses
+FEW = 0.1         # of the greatest frequency: what a mode near 0 is compared at (the root of rounding)
 SLACK = 1e-5      # relative, of what has a tolerance of its own
 SLOPE = 1e-4      # of a slope by differences, of the greatest slope of the mode
 
@@ -51,7 +52,7 @@ def frequencies(run):
             if f["recommended_hz"] is None:
                 if math.isfinite(own):
                     yield f"rank {rec['rank']}: {f['configuration']} mode {f['mode']} has {own} Hz, not none"
-            elif not near(f["recommended_hz"], own):
+            elif not near(f["recommended_hz"], own, scale=FEW * hz.max()):
                 yield f"rank {rec['rank']}: {f['configuration']} mode {f['mode']}: {f['recommended_hz']} Hz, dense solve {own}"
 
 
@@ -68,9 +69,9 @@ def clearances(run):
         if q.bands and math.isfinite(least) and told is not None and not near(told, least, SLACK, 1.0):
             yield f"rank {rec['rank']}: clearance {told} %, recomputed {least} %"
         for item in rec["clearances"]:
-            own = hz[item["configuration"]]
-            own = own[item["mode"] - 1] if item["mode"] <= len(own) else math.nan
-            if not near(item["hz"], own):
+            modes = hz[item["configuration"]]
+            own = modes[item["mode"] - 1] if item["mode"] <= len(modes) else math.nan
+            if not near(item["hz"], own, scale=FEW * modes.max()):
                 yield f"rank {rec['rank']}: mode {item['mode']} beside {item['band']}: {item['hz']} Hz, dense solve {own}"
             percents = [band.clearance_percent(own) for band in q.bands[item["configuration"]]]
             if not any(near(item["percent"], p, SLACK, 1.0) for p in percents):
@@ -100,12 +101,14 @@ def goals(run):
             own = [r for r in rows if r[0] == index and r[1] == (c if goal["type"] != "limit" else None)]
             values = [np.abs(r[3]) if r[2] == "=" else np.maximum(r[3], 0.0) for r in own]
             violation = float(np.max([np.max(np.where(np.isnan(v), np.inf, v)) for v in values])) if values else 0.0
+            percent = max([float(np.max(q.percent(index, r[2], r[3], q.frequencies(x, c) if c else None))) for r in own], default=0.0)
             told = [g for g in rec["goals"] if g["pointer"] == f"/goals/{index}" and (c is None or c in g["goal"].split())]
             told = told or [g for g in rec["goals"] if g["pointer"] == f"/goals/{index}"]
-            if len(told) == 1 and math.isfinite(violation) and told[0]["violation_percent"] is not None:
-                if not near(told[0]["violation_percent"], 100.0 * violation, 1e-4, 1e-4):
-                    yield f"rank {rec['rank']}: goal {index} ({told[0]['goal']}) is missed by {100 * violation} %, not {told[0]['violation_percent']}"
             limit = q.tolerance_of(goal)
+            if len(told) == 1 and math.isfinite(violation) and told[0]["violation_percent"] is not None:
+                deep = q.robust and goal["type"] == "avoid" and violation > limit  # an enclosure may say more than the corners
+                if not near(told[0]["violation_percent"], percent, 1e-4, 1e-4) and len(own) == 1 and not deep:
+                    yield f"rank {rec['rank']}: goal {index} ({told[0]['goal']}) is missed by {percent} %, not {told[0]['violation_percent']}"
             if abs(violation - limit) > 1e-3 * limit:
                 for g in told[:1]:
                     if len(told) == 1 and g["met"] != (violation <= limit):

@@ -127,7 +127,7 @@ def undetermined(run):
             moved, tolerance = float(np.nanmax(np.abs(value - own[3]))), q.tolerance_of(q.goals[index])
             if moved > 1.05 * tolerance:
                 yield f"{item['direction']} is called undetermined, but moves goal {index} by {100.0 * moved} %"
-            elif item["effect_percent"] is not None and 100.0 * moved > 1.1 * item["effect_percent"] + 1e-6:
+            elif item["effect_percent"] is not None and 100.0 * moved > 2.0 * item["effect_percent"] + 1e-6:
                 yield f"{item['direction']}: effect {item['effect_percent']} %, but goal {index} moves by {100.0 * moved} %"
         if "weight" not in str(run.study["goals"]) and float(q.missed(x).max()) > 1.0 + 1.05:
             yield f"{item['direction']} is called undetermined, but goals are missed along it"

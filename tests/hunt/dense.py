@@ -179,7 +179,7 @@ class Assembly:
         return self._sum(self.stiffness, values, count), self._sum(self.mass, values, count)
 
     def frequencies(self, design, count):
-        """[count, n] Hz of the vibration modes, ascending; rigid-body modes follow as infinity. NaN: no positive mass or unstable."""
+        """[count, n] Hz of all modes, ascending; those without stiffness have 0. NaN: no positive mass, or unstable."""
         stiffness, mass = self.matrices(design, count)
         try:
             return self._solved(stiffness, mass)
@@ -196,9 +196,9 @@ class Assembly:
         root = np.linalg.inv(np.linalg.cholesky(mass))
         squares = np.linalg.eigvalsh(root @ stiffness @ np.swapaxes(root, 1, 2))
         floor = RIGID * np.abs(squares).max(axis=1)[:, None]
-        hz = np.where(squares > floor, np.sqrt(np.abs(squares)) / TWO_PI, np.inf)
+        hz = np.where(squares > floor, np.sqrt(np.abs(squares)) / TWO_PI, 0.0)
         hz[np.any(~(squares >= -floor), axis=1)] = np.nan
-        return np.sort(hz, axis=1)
+        return hz
 
 
 class Plant:

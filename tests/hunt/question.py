@@ -21,11 +21,18 @@ class Band:
         lower, upper = self.base if base else (self.lower, self.upper)
         with np.errstate(divide="ignore", invalid="ignore"):
             low = np.log(hz / lower) if lower > 0.0 else np.inf
-            return np.where(np.isinf(hz), -np.inf, np.minimum(low, np.log(upper / hz)))
+            return np.minimum(low, np.log(upper / hz))
 
     def below(self, hz):
-        """How many modes lie below the middle; rows of hz are designs."""
-        return np.sum(hz <= math.sqrt(max(self.lower, 0.0) * self.upper), axis=1)
+        """How many modes lie below the middle; rows of hz are designs. Below a band that begins at 0 there is none."""
+        return np.zeros(len(hz), int) if self.lower <= 0.0 else np.sum(hz <= math.sqrt(self.lower * self.upper), axis=1)
+
+    def margin_percent(self, hz):
+        """What is asked for at the edge that clearance_percent is of."""
+        low, high = self.base
+        if low > 0.0 and (low - hz) / low >= (hz - high) / high:
+            return 100.0 * (low - self.lower) / low
+        return 100.0 * (self.upper - high) / high
 
     def clearance_percent(self, hz):
         """Of the nearest edge without margin; negative inside."""
@@ -102,8 +109,7 @@ class Question:
         self.demands = [(i, g, c) for i, g in enumerate(self.goals) for c in self._configurations(g)]
         self.configurations = list(dict.fromkeys(c for _, g, c in self.demands if c is not None))
         self.bands = {c: self._bands(c) for c in self.configurations}
-        self.exact = [v for v in self.goals if "target_hz" in v or "equals" in v]
-        self.weighted = [g for g in self.goals if "weight" in g]
+        self._rigid = {}
 
     def _configurations(self, goal):
         if goal["type"] == "limit":
@@ -134,14 +140,19 @@ class Question:
         return np.clip(x, self.lower, self.upper)
 
     def frequencies(self, x, configuration):
-        return self.plant.assembly(configuration).frequencies(self.design(x), len(x))
+        """[B, modes] of vibration. All designs are counted alike: rigid are the modes that no design within the bounds gives a stiffness."""
+        if configuration not in self._rigid:
+            inside = self.lower + np.array([[0.53], [0.41]]) * (self.upper - self.lower)
+            here = self.plant.assembly(configuration).frequencies(self.design(inside), 2)
+            self._rigid[configuration] = int(np.sum(here == 0.0, axis=1).min())
+        return self.plant.assembly(configuration).frequencies(self.design(x), len(x))[:, self._rigid[configuration]:]
 
     def all_frequencies(self, x):
         return {c: self.frequencies(x, c) for c in self.configurations}
 
     # goals
     def rows(self, x, hz=None):
-        """[(goal index, configuration, kind, [B] violation)]: relative, positive where missed; kind "=" or "<" or "band"."""
+        """[(goal index, configuration, kind, [B] violation)]: relative (of frequencies a logarithm), positive where missed; kind "=", "<" or "band"."""
         hz = self.all_frequencies(x) if hz is None else hz
         return [row for i, goal, c in self.demands for row in self._demand(i, goal, c, x, hz)]
 
@@ -162,13 +173,27 @@ class Question:
             yield index, configuration, "band", np.where(np.isnan(modes[:, 0]), np.nan, inside)
             return
         mode = modes[:, goal["mode"] - 1] if goal["mode"] <= modes.shape[1] else np.full(len(x), np.nan)
-        mode = np.where(np.isinf(mode), np.nan, mode)
         if "target_hz" in goal:
             yield index, configuration, "=", np.log(mode / goal["target_hz"])
         if "at_least_hz" in goal:
             yield index, configuration, "<", -np.log(mode / goal["at_least_hz"])
         if "at_most_hz" in goal:
             yield index, configuration, "<", np.log(mode / goal["at_most_hz"])
+
+    def percent(self, index, kind, value, modes=None):
+        """A violation in percent of what is asked for; of a band how far the clearances of modes[B] fall short of their margins."""
+        goal = self.goals[index]
+        if goal["type"] == "limit":
+            return 100.0 * (np.abs(value) if kind == "=" else np.maximum(value, 0.0))
+        if kind == "band" and not self.robust:
+            worst = np.zeros(len(value))
+            for band in self.goal_bands(goal):
+                for i in np.flatnonzero(value > 0.0):
+                    worst[i] = max(worst[i], max(band.margin_percent(f) - band.clearance_percent(f) for f in modes[i]))
+            return worst
+        if "at_least_hz" in goal and kind == "<" and "at_most_hz" not in goal:
+            return -100.0 * np.expm1(-np.maximum(value, 0.0))
+        return 100.0 * np.abs(np.expm1(value)) if kind == "=" else 100.0 * np.expm1(np.maximum(value, 0.0))
 
     def missed(self, x):
         """[B] greatest violation of a constraint divided by its tolerance; at most 1 is feasible. Unstable: infinite."""

@@ -26,6 +26,7 @@ import numpy as np  # noqa: E402
 import check_again  # noqa: E402
 import check_claims  # noqa: E402
 import check_numbers  # noqa: E402
+import check_relaxed  # noqa: E402
 import check_words  # noqa: E402
 import studies  # noqa: E402
 from known import reason  # noqa: E402
@@ -33,7 +34,7 @@ from question import Question  # noqa: E402
 
 SOURCE = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
-CHECKS = {**check_numbers.CHECKS, **check_claims.CHECKS, **check_words.CHECKS}
+CHECKS = {**check_numbers.CHECKS, **check_claims.CHECKS, **check_words.CHECKS, **check_relaxed.CHECKS}
 BATCH = 20
 WORKERS_EVERY = 4  # batches: one of so many is run with two workers, too
 

@@ -64,7 +64,7 @@ def _named(goal, model, configuration):
 
 def _modes(probe, x, configuration):
     hz = probe.frequencies(x, configuration)[0]
-    return hz[np.isfinite(hz)]
+    return hz[np.isfinite(hz) & (hz > 0.0)]
 
 
 def _objective(rng, model, variables):
@@ -114,7 +114,7 @@ def _bands(rng, model, variables, count=None):
     probe = _probe(model, variables, configuration)
     sample = np.concatenate([_inner(rng, probe) for _ in range(20)])
     hz = probe.frequencies(sample, configuration)
-    hz = hz[np.isfinite(hz)]
+    hz = hz[np.isfinite(hz) & (hz > 0.0)]
     bands = []
     for _ in range(count or rng.randint(1, 3)):
         middle, wide = rng.choice(list(hz)), rng.choice([0.02, 0.05, 0.1, 0.2])
