@@ -49,16 +49,17 @@ static void write_parameter(mt_json_writer *w, const mt_result_parameter *p)
     mt_json_close(w);
 }
 
-static void write_sensitivity(mt_json_writer *w, const mt_result_frequency *f,
-                              const mt_recommendation *r)
+/* One number for each variable, by its name. */
+static void write_values(mt_json_writer *w, const char *name, const double *values,
+                         const mt_recommendation *r)
 {
-    if (f->sensitivity == NULL) {
-        mt_json_put_null(w, "sensitivity");
+    if (values == NULL) {
+        mt_json_put_null(w, name);
         return;
     }
-    mt_json_open(w, "sensitivity", '{');
+    mt_json_open(w, name, '{');
     for (int i = 0; i < r->n_parameters; i++) {
-        mt_json_put_number(w, r->parameters[i].name, f->sensitivity[i]);
+        mt_json_put_number(w, r->parameters[i].name, values[i]);
     }
     mt_json_close(w);
 }
@@ -84,22 +85,26 @@ static void write_frequency(mt_json_writer *w, const mt_result_frequency *f,
     mt_json_put_number(w, "at_least_hz", f->at_least_hz);
     mt_json_put_number(w, "at_most_hz", f->at_most_hz);
     mt_json_put_number(w, "error_percent", f->error_percent);
+    mt_json_put_number(w, "lowest_hz", f->lowest_hz);
+    mt_json_put_number(w, "highest_hz", f->highest_hz);
     mt_json_put_string(w, "reference", f->reference);
     mt_json_put_number(w, "mac", f->mac);
     mt_json_put_bool(w, "repeated", f->repeated);
-    write_sensitivity(w, f, r);
+    write_values(w, "sensitivity", f->sensitivity, r);
     mt_json_put_number(w, "residual", f->residual);
     mt_json_put_number(w, "orthogonality", f->orthogonality);
     mt_json_close(w);
 }
 
-static void write_goal(mt_json_writer *w, const mt_result_goal *g)
+static void write_goal(mt_json_writer *w, const mt_result_goal *g, const mt_recommendation *r)
 {
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "goal", g->text);
     mt_json_put_string(w, "pointer", g->pointer);
     mt_json_put_number(w, "value", g->value);
     mt_json_put_number(w, "demand", g->demand);
+    mt_json_put_number(w, "worst", g->worst);
+    write_values(w, "worst_at", g->worst_at, r);
     mt_json_put_number(w, "violation_percent", g->violation_percent);
     mt_json_put_bool(w, "met", g->met);
     mt_json_put_bool(w, "weighted", g->weighted);
@@ -116,6 +121,8 @@ static void write_clearance(mt_json_writer *w, const mt_result_clearance *c)
     mt_json_put_number(w, "hz", c->hz);
     mt_json_put_number(w, "percent", c->percent);
     mt_json_put_number(w, "margin_percent", c->margin_percent);
+    mt_json_put_number(w, "worst_hz", c->worst_hz);
+    mt_json_put_number(w, "worst_percent", c->worst_percent);
     mt_json_put_string(w, "side", c->side);
     mt_json_close(w);
 }
@@ -177,6 +184,7 @@ static void write_design(mt_json_writer *w, const char *name, const mt_recommend
     mt_json_put_number(w, "violation_percent", r->violation_percent);
     mt_json_put_number(w, "clearance_percent", r->clearance_percent);
     mt_json_put_number(w, "kkt_residual", r->kkt_residual);
+    mt_json_put_string(w, "worst_case", r->worst_case);
     mt_json_put_bool(w, "singular", r->singular);
     WRITE_LIST(w, "parameters", r->n_parameters, r->parameters, write_parameter);
     mt_json_open(w, "frequencies", '[');
@@ -185,7 +193,11 @@ static void write_design(mt_json_writer *w, const char *name, const mt_recommend
     }
     mt_json_close(w);
     write_bands(w, r);
-    WRITE_LIST(w, "goals", r->n_goals, r->goals, write_goal);
+    mt_json_open(w, "goals", '[');
+    for (int i = 0; i < r->n_goals; i++) {
+        write_goal(w, &r->goals[i], r);
+    }
+    mt_json_close(w);
     write_strings(w, "reasons", r->n_reasons, r->reasons);
     mt_json_close(w);
 }

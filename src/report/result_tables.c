@@ -54,11 +54,16 @@ static void name_cell(mt_table *t, const mt_result_frequency *f)
 mt_table mt_report_frequencies(const mt_recommendation *r)
 {
     mt_table t = mt_table_default();
+    const bool ranges = r->worst_case != NULL;
     mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
     mt_table_column(&t, "mode", "mode", MT_ALIGN_RIGHT);
     mt_table_column(&t, "name", "name", MT_ALIGN_LEFT);
     mt_table_column(&t, "before [Hz]", "original_hz", MT_ALIGN_POINT);
     mt_table_column(&t, "after [Hz]", "recommended_hz", MT_ALIGN_POINT);
+    if (ranges) {
+        mt_table_column(&t, "lowest [Hz]", "lowest_hz", MT_ALIGN_POINT);
+        mt_table_column(&t, "highest [Hz]", "highest_hz", MT_ALIGN_POINT);
+    }
     mt_table_column(&t, "asked [Hz]", "asked_hz", MT_ALIGN_RIGHT);
     mt_table_column(&t, "error [%]", "error_percent", MT_ALIGN_POINT);
     mt_table_column(&t, "MAC", "mac", MT_ALIGN_POINT);
@@ -70,6 +75,10 @@ mt_table mt_report_frequencies(const mt_recommendation *r)
         name_cell(&t, f);
         mt_table_number(&t, f->original_hz, HZ_DIGITS);
         mt_table_number(&t, f->recommended_hz, HZ_DIGITS);
+        if (ranges) {
+            mt_table_number(&t, f->lowest_hz, HZ_DIGITS);
+            mt_table_number(&t, f->highest_hz, HZ_DIGITS);
+        }
         mt_table_text(&t, demand_of(f, demand, sizeof demand));
         mt_table_percent(&t, f->error_percent, PERCENT_DIGITS);
         mt_table_number(&t, f->mac, MAC_DIGITS);
@@ -122,6 +131,9 @@ mt_table mt_report_goals(const mt_recommendation *r)
     mt_table t = mt_table_default();
     mt_table_column(&t, "goal", "goal", MT_ALIGN_LEFT);
     mt_table_column(&t, "value", "value", MT_ALIGN_POINT);
+    if (r->worst_case != NULL) {
+        mt_table_column(&t, "at worst", "worst", MT_ALIGN_POINT);
+    }
     mt_table_column(&t, "asked", "demand", MT_ALIGN_POINT);
     mt_table_column(&t, "off by [%]", "violation_percent", MT_ALIGN_POINT);
     mt_table_column(&t, "verdict", "verdict", MT_ALIGN_LEFT);
@@ -129,6 +141,9 @@ mt_table mt_report_goals(const mt_recommendation *r)
         const mt_result_goal *const g = &r->goals[i];
         mt_table_text(&t, g->text);
         mt_table_number(&t, g->value, VALUE_DIGITS);
+        if (r->worst_case != NULL) {
+            mt_table_number(&t, g->worst, VALUE_DIGITS);
+        }
         mt_table_number(&t, g->demand, VALUE_DIGITS);
         mt_table_percent(&t, g->violation_percent, PERCENT_DIGITS);
         mt_table_text(&t, g->weighted ? "weighted" : g->met ? "met" : "not met");
@@ -142,16 +157,31 @@ static bool same_mode(const mt_result_clearance *a, const mt_result_clearance *b
     return a->mode == b->mode && strcmp(a->configuration, b->configuration) == 0;
 }
 
+static void percent_cells(mt_table *t, const mt_recommendation *r, const mt_result_clearance *c)
+{
+    mt_table_number(t, c != NULL ? c->percent : nan(""), PERCENT_DIGITS);
+    if (r->worst_case != NULL) {
+        mt_table_number(t, c != NULL ? c->worst_percent : nan(""), PERCENT_DIGITS);
+    }
+}
+
 mt_table mt_report_clearances(const mt_recommendation *r)
 {
     mt_table t = mt_table_default();
+    const bool worst = r->worst_case != NULL;
     mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
     mt_table_column(&t, "mode", "mode", MT_ALIGN_RIGHT);
     mt_table_column(&t, "[Hz]", "hz", MT_ALIGN_POINT);
     mt_table_column(&t, "above band", "above_band", MT_ALIGN_LEFT);
     mt_table_column(&t, "by [%]", "above_percent", MT_ALIGN_POINT);
+    if (worst) {
+        mt_table_column(&t, "at worst [%]", "above_worst_percent", MT_ALIGN_POINT);
+    }
     mt_table_column(&t, "below band", "below_band", MT_ALIGN_LEFT);
     mt_table_column(&t, "by [%]", "below_percent", MT_ALIGN_POINT);
+    if (worst) {
+        mt_table_column(&t, "at worst [%]", "below_worst_percent", MT_ALIGN_POINT);
+    }
     for (int i = 0; i < r->n_clearances; i++) {
         const mt_result_clearance *const c = &r->clearances[i];
         const mt_result_clearance *above = strcmp(c->side, "above") == 0 ? c : NULL;
@@ -172,13 +202,9 @@ mt_table mt_report_clearances(const mt_recommendation *r)
         } else {
             mt_table_text(&t, above != NULL ? above->band : NULL);
         }
-        mt_table_number(&t,
-                        inside          ? c->percent
-                        : above != NULL ? above->percent
-                                        : nan(""),
-                        PERCENT_DIGITS);
+        percent_cells(&t, r, inside ? c : above);
         mt_table_text(&t, below != NULL ? below->band : NULL);
-        mt_table_number(&t, below != NULL ? below->percent : nan(""), PERCENT_DIGITS);
+        percent_cells(&t, r, below);
     }
     return t;
 }

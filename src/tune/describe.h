@@ -41,6 +41,14 @@ mt_status mt_describe_clearances(mt_problem *fresh, mt_result *result, mt_recomm
 int mt_describe_modes_in_reach(const mt_problem *p, int view);
 /* The margin that the edge of the band nearest to hz has, in percent of the edge. */
 double mt_describe_margin_percent(const mt_band *band, double hz);
+/* describe_robust.c, nothing without tolerances: what modes and expressions do over the tolerances of fresh's design, once its views are solved. */
+mt_status mt_describe_ranges(mt_problem *fresh, mt_err *err);
+/* Judge a demand by its worst value, which goes into g; *violation (relative) and *percent (of what is asked), of the design itself before, become those of the worst. */
+mt_status mt_describe_worst(mt_problem *fresh, const mt_demand *d, mt_result *result,
+                            mt_result_goal *g, double *violation, double *percent, mt_err *err);
+/* How near a mode that is at hz comes to a band, or how deep inside it; *at: [n] where. NaN and NULL without tolerances. */
+double mt_describe_worst_hz(const mt_problem *fresh, int view, int mode, const mt_band *band,
+                            double hz, const double **at);
 /* describe_track.c: vibration index of the mode at pos; 0 for -1. */
 int mt_describe_index(const mt_modes *modes, int pos);
 /* "ambiguous between modes 2 and 3", "lost: ..."; "" where the named mode is told. NULL: memory. */

@@ -84,13 +84,45 @@ static void tightest(const mt_bands *bands, const mt_modes *modes, mt_result_goa
     }
 }
 
-/* By how many percent of a band's edge the tightest clearance falls short of its margin. At a worst corner only the logarithm over the edge with its margin is known. */
-static double short_of(const mt_problem *fresh, double violation, const mt_result_goal *g)
+/* The same over the tolerances of the variables; *room: what it leaves of its margin, in percent of the edge. */
+static mt_status tightest_worst(const mt_problem *fresh, int view, const mt_bands *bands,
+                                mt_result *result, mt_result_goal *g, double *room, mt_err *err)
 {
-    if (!(violation > 0.0)) {
-        return violation; /* 0, or NaN */
+    const mt_modes *const modes = &fresh->views[view].analysis->modes;
+    const double *where = NULL;
+    double least = HUGE_VAL;
+    for (int b = 0; b < bands->n && fresh->robust != NULL; b++) {
+        for (int k = 1; mt_modal_flexible(modes, k) >= 0; k++) {
+            mt_band_side side = MT_INSIDE_BAND;
+            const double *at = NULL;
+            const double hz =
+                mt_describe_worst_hz(fresh, view, k, &bands->items[b],
+                                     mt_modal_hz(modes, mt_modal_flexible(modes, k)), &at);
+            const double has = clearance(&bands->items[b], hz, &side);
+            const double asked = mt_describe_margin_percent(&bands->items[b], hz);
+            if (has - asked < least) {
+                least = has - asked;
+                g->worst = has;
+                where = at;
+            }
+        }
     }
-    return fresh->robust != NULL ? PERCENT * expm1(violation) : fmax(g->demand - g->value, 0.0);
+    if (where == NULL) {
+        return MT_OK;
+    }
+    *room = least;
+    g->worst_at = mt_arena_f64(&result->mem, (size_t)fresh->n, 1);
+    if (g->worst_at == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(g->worst_at, where, (size_t)fresh->n * sizeof *where);
+    return MT_OK;
+}
+
+/* By how many percent of a band's edge the tightest clearance falls short of its margin. */
+static double short_of(double violation, double room)
+{
+    return violation > 0.0 ? fmax(-room, 0.0) : violation; /* 0, or NaN */
 }
 
 static mt_status judge(mt_problem *fresh, int goal, int configuration, mt_result *result,
@@ -103,16 +135,19 @@ static mt_status judge(mt_problem *fresh, int goal, int configuration, mt_result
                           .bands = g->avoid->bands};
     double violation = view->solved ? mt_clear_violation(&own, modes, NULL, NULL) : nan("");
     if (MT_HAS(violation) && fresh->robust != NULL) {
-        const double room = mt_robust_room(fresh, &own);
-        violation = MT_HAS(room) ? fmax(-room, 0.0) : room;
+        const double worst = mt_robust_room(fresh, &own);
+        violation = MT_HAS(worst) ? fmax(-worst, 0.0) : worst;
     }
-    *out = (mt_result_goal){.value = nan(""), .demand = nan("")};
+    double room = nan("");
+    *out = (mt_result_goal){.value = nan(""), .demand = nan(""), .worst = nan("")};
     if (MT_HAS(violation)) {
         tightest(&g->avoid->bands, modes, out);
+        room = out->value - out->demand;
+        MT_TRY(tightest_worst(fresh, own.view, &g->avoid->bands, result, out, &room, err));
     }
     out->text = avoid_text(g, mt_analysis_configuration(view->analysis), &result->mem);
     out->pointer = mt_arena_printf(&result->mem, "/goals/%d", goal);
-    out->violation_percent = short_of(fresh, violation, out);
+    out->violation_percent = short_of(violation, room);
     out->met = violation <= mt_problem_tolerance(g) * (1.0 + MET_SLACK);
     return out->text == NULL || out->pointer == NULL ? mt_fail_memory(err) : MT_OK;
 }
@@ -152,6 +187,8 @@ int mt_describe_modes_in_reach(const mt_problem *p, int view)
 }
 
 typedef struct listing {
+    const mt_problem *fresh;
+    int view;
     mt_result *result;
     mt_recommendation *rec;
     const char *configuration;
@@ -163,7 +200,10 @@ static mt_status add_clearance(const listing *l, int band, int mode, double hz, 
     const mt_band *const b = &l->bands->items[band];
     mt_result_clearance *const c = &l->rec->clearances[l->rec->n_clearances];
     mt_band_side side = MT_INSIDE_BAND;
+    const double *at = NULL;
     *c = (mt_result_clearance){.configuration = l->configuration, .mode = mode, .hz = hz};
+    c->worst_hz = mt_describe_worst_hz(l->fresh, l->view, mode, b, hz, &at);
+    c->worst_percent = MT_HAS(c->worst_hz) ? clearance(b, c->worst_hz, &side) : nan("");
     c->percent = clearance(b, hz, &side);
     c->margin_percent = mt_describe_margin_percent(b, hz);
     c->side = mt_band_side_name(side);
@@ -218,7 +258,9 @@ static mt_status list_clear(mt_problem *fresh, const mt_clear *c, int *below, mt
     const mt_view *const view = &fresh->views[c->view];
     const mt_modes *const modes = &view->analysis->modes;
     const int count = mt_describe_modes_in_reach(fresh, c->view);
-    const listing l = {.result = result,
+    const listing l = {.fresh = fresh,
+                       .view = c->view,
+                       .result = result,
                        .rec = rec,
                        .configuration = mt_analysis_configuration(view->analysis),
                        .bands = &c->bands};

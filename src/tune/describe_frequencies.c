@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "tune/describe.h"
+#include "tune/robust.h"
 
 /* Modes listed of a configuration beyond those that goals name. */
 enum { LISTED_MODES = 4, SLACK_TEXT = 200 };
@@ -69,6 +70,10 @@ static mt_status describe_mode(const listing *l, int index, mt_result_frequency 
         return MT_OK;
     }
     f->recommended_hz = mt_modal_hz(&a->modes, pos);
+    const mt_robust_range *const range =
+        mt_robust_hz(l->fresh, (int)(l->view - l->fresh->views), index);
+    f->lowest_hz = range != NULL ? range->value[MT_LOWEST] : nan("");
+    f->highest_hz = range != NULL ? range->value[MT_HIGHEST] : nan("");
     f->residual = a->modes.residual[pos];
     f->orthogonality = a->modes.orthogonality[pos];
     MT_TRY(mt_analysis_dlambda(a, pos, f->sensitivity, &f->repeated, err));

@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "tune/describe.h"
-#include "tune/robust.h"
 
 /* Rounding of ln and of the eigenvalues may push a goal that is met exactly on its tolerance over it. */
 static const double MET_SLACK = 1e-6;
@@ -177,7 +176,7 @@ static mt_status solve_views(mt_problem *fresh, mt_err *why, mt_err *err)
         }
     }
     mt_err own = {0};
-    const mt_status rc = why->code == MT_OK ? mt_robust_solve(fresh, false, &own) : MT_OK;
+    const mt_status rc = why->code == MT_OK ? mt_describe_ranges(fresh, &own) : MT_OK;
     *why = rc != MT_OK ? own : *why;
     return ends(rc) ? mt_fail(err, rc, "%s", own.text) : MT_OK;
 }
@@ -200,8 +199,8 @@ static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
     mt_err own = {0};
     double violation = nan("");
     double percent = nan("");
-    mt_status rc = mt_demand_eval(fresh, d, false, v, &own);
-    rc = rc == MT_OK ? mt_robust_demand(fresh, d, false, v, &own) : rc;
+    g->worst = nan("");
+    const mt_status rc = mt_demand_eval(fresh, d, false, v, &own);
     if (ends(rc)) {
         return mt_fail(err, rc, "%s", own.text);
     }
@@ -209,6 +208,7 @@ static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
         violation = demand_violation(fresh, d, v);
         percent = violation_percent(fresh, d, v, violation);
         MT_TRY(demand_value(fresh, d, &g->value, err));
+        MT_TRY(mt_describe_worst(fresh, d, result, g, &violation, &percent, err));
     } else {
         g->value = nan("");
         *why = why->code == MT_OK ? own : *why;

@@ -73,6 +73,7 @@ bool mt_describe_is_doubted(const mt_result *result)
 static void disgrade(mt_recommendation *rec)
 {
     rec->tolerance_box = NULL;
+    rec->worst_case = rec->worst_case == NULL ? NULL : "sampled";
     rec->grade = doubted(rec) ? "not verified" : rec->feasible ? "feasible" : "compromise";
 }
 

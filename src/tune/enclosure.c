@@ -139,9 +139,7 @@ bool mt_enclosure_depends(const mt_enclosure *e, int i)
     return e->in[MT_STIFFNESS][i] || e->in[MT_MASS][i];
 }
 
-enum { STIFFENS = 1, SOFTENS = 2 };
-
-/* What raising input k does over the box whose gradient is in dnode: bits of STIFFENS, SOFTENS. */
+/* What raising input k does over the box whose gradient is in dnode. */
 static int effect(const mt_enclosure *e, int k)
 {
     int bits = 0;
@@ -151,24 +149,37 @@ static int effect(const mt_enclosure *e, int k)
         const bool rises = e->dnode[MT_HIGH][at] > 0.0;
         const bool falls = e->dnode[MT_LOW][at] < 0.0;
         if (c->part[MT_STIFFNESS].count > 0) {
-            bits |= (rises ? STIFFENS : 0) | (falls ? SOFTENS : 0);
+            bits |= (rises ? MT_STIFFENS : 0) | (falls ? MT_SOFTENS : 0);
         }
         if (c->part[MT_MASS].count > 0) {
-            bits |= (rises ? SOFTENS : 0) | (falls ? STIFFENS : 0);
+            bits |= (rises ? MT_SOFTENS : 0) | (falls ? MT_STIFFENS : 0);
         }
     }
     return bits;
+}
+
+static void enclose_slopes(mt_enclosure *e, const double *lo, const double *hi)
+{
+    mt_program_interval_gradient(&e->program, lo, hi, e->node[MT_LOW], e->node[MT_HIGH],
+                                 e->dnode[MT_LOW], e->dnode[MT_HIGH]);
+}
+
+void mt_enclosure_effects(mt_enclosure *e, const double *lo, const double *hi, int *effects)
+{
+    enclose_slopes(e, lo, hi);
+    for (int k = 0; k < e->n_inputs; k++) {
+        effects[k] = effect(e, k);
+    }
 }
 
 bool mt_enclosure_corners(mt_enclosure *e, const mt_model *model, const int *inputs,
                           const double *lo, const double *hi, double *soft, double *stiff,
                           char *reason)
 {
-    mt_program_interval_gradient(&e->program, lo, hi, e->node[MT_LOW], e->node[MT_HIGH],
-                                 e->dnode[MT_LOW], e->dnode[MT_HIGH]);
+    enclose_slopes(e, lo, hi);
     for (int k = 0; k < e->n_inputs; k++) {
         const int bits = effect(e, k);
-        if (bits == (STIFFENS | SOFTENS) && lo[k] < hi[k]) {
+        if (bits == (MT_STIFFENS | MT_SOFTENS) && lo[k] < hi[k]) {
             (void)snprintf(reason, MT_REASON_SIZE, "parameter \"%s\" %s",
                            model->parameters[inputs[k]].name.s,
                            mt_enclosure_loose(e, k)
@@ -177,8 +188,8 @@ bool mt_enclosure_corners(mt_enclosure *e, const mt_model *model, const int *inp
             return false;
         }
         const double middle = 0.5 * (lo[k] + hi[k]);
-        soft[k] = bits == 0 ? middle : (bits == SOFTENS ? hi[k] : lo[k]);
-        stiff[k] = bits == 0 ? middle : (bits == SOFTENS ? lo[k] : hi[k]);
+        soft[k] = bits == 0 ? middle : (bits == MT_SOFTENS ? hi[k] : lo[k]);
+        stiff[k] = bits == 0 ? middle : (bits == MT_SOFTENS ? lo[k] : hi[k]);
     }
     return true;
 }

@@ -112,6 +112,12 @@ mt_status mt_enclosure_ranges(mt_enclosure *e, double *low, double *high, mt_err
 bool mt_enclosure_corners(mt_enclosure *e, const mt_model *model, const int *inputs,
                           const double *lo, const double *hi, double *soft, double *stiff,
                           char *reason);
+/*
+ * What raising each input does to the modes over the box lo <= x <= hi, whatever the other inputs are in it: effects[n_inputs]. MT_STIFFENS alone: no frequency falls; MT_SOFTENS alone:
+ * none rises; both: neither is shown; 0: no influence. The derivative of every coefficient is enclosed over the whole box.
+ */
+enum { MT_STIFFENS = 1, MT_SOFTENS = 2 };
+void mt_enclosure_effects(mt_enclosure *e, const double *lo, const double *hi, int *effects);
 /* Does input i enter both K and M (then only smaller boxes make the enclosure tight)? And does it enter at all? */
 bool mt_enclosure_loose(const mt_enclosure *e, int i);
 bool mt_enclosure_depends(const mt_enclosure *e, int i);

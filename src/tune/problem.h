@@ -107,7 +107,8 @@ typedef struct mt_problem {
         clearance; /* t has one more entry, the least clearance ln(...) that is made greatest */
     int n_t;       /* n, or n + 1 */
     int n_eq;
-    int n_in; /* of the goals; held objectives follow */
+    int n_in;          /* of the goals, their corners last; held objectives follow */
+    int n_corner_rows; /* of them at corners of the tolerances, where these are samples (robust.h) */
     int n_res;
     double *eq_tol;     /* [n_eq + n_res] */
     double *in_tol;     /* [n_in + n_aims] */

@@ -66,10 +66,9 @@ mt_status mt_problem_eval(void *context, const double *t, bool with_gradient,
     for (int i = 0; i < p->n_demands; i++) {
         MT_TRY(mt_err_in(err, mt_demand_eval(p, &p->demands[i], with_gradient, out, err),
                          "/goals/%d", p->demands[i].goal_index));
-        MT_TRY(mt_robust_demand(p, &p->demands[i], with_gradient, out, err));
     }
     MT_TRY(mt_clear_eval(p, t, with_gradient, out, err));
-    MT_TRY(mt_robust_clears(p, t, with_gradient, out, err));
+    MT_TRY(mt_robust_rows(p, t, with_gradient, out, err));
     if (p->aims[p->stage].type == MT_OBJECTIVE_MISFIT) {
         memcpy(out->r, p->r, (size_t)p->n_res * sizeof *p->r);
         if (with_gradient) {

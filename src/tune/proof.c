@@ -14,11 +14,7 @@ void mt_proof_free(mt_proof *proof, const mt_problem *p)
 
 static mt_status enclose(mt_proof *proof, mt_problem *p, mt_err *err)
 {
-    proof->possible = p->n_views > 0 && p->n > 0 && p->robust == NULL;
-    if (p->robust != NULL) {
-        (void)snprintf(proof->reason, sizeof proof->reason,
-                       "enclosures do not know the tolerances of the variables");
-    }
+    proof->possible = p->n_views > 0 && p->n > 0;
     for (int i = 0; i < p->n_views && proof->possible; i++) {
         char why[MT_REASON_SIZE] = "";
         MT_TRY(mt_enclosure_new(p->views[i].analysis, proof->lower, proof->upper,

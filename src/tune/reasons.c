@@ -121,15 +121,16 @@ static const char *lever_text(mt_sentences *s, const mt_result_frequency *f)
     return text == NULL ? "" : text;
 }
 
-/* How the frequency stands to the limit that is nearer: "at its lower limit", "2 % below its lower limit of 7 Hz". */
+/* How the frequency (over the tolerances: its worst) stands to the limit that is nearer: "at its lower limit", "2 % below its lower limit of 7 Hz". */
 static void limit_text(const mt_result_frequency *f, char *text)
 {
     const bool both = MT_HAS(f->at_least_hz) && MT_HAS(f->at_most_hz);
-    const bool over = f->recommended_hz > f->at_most_hz;
-    const double low =
-        MT_HAS(f->at_least_hz) ? log(f->recommended_hz / f->at_least_hz) : HUGE_VAL;
-    const double high =
-        MT_HAS(f->at_most_hz) ? log(f->at_most_hz / f->recommended_hz) : HUGE_VAL;
+    const bool range = MT_HAS(f->lowest_hz) && MT_HAS(f->highest_hz);
+    const double lowest = range ? f->lowest_hz : f->recommended_hz;
+    const double highest = range ? f->highest_hz : f->recommended_hz;
+    const double low = MT_HAS(f->at_least_hz) ? log(lowest / f->at_least_hz) : HUGE_VAL;
+    const double high = MT_HAS(f->at_most_hz) ? log(f->at_most_hz / highest) : HUGE_VAL;
+    const double error = 100.0 * (low < high ? -expm1(low) : expm1(-high));
     const char *const side = low < high ? "lower" : "upper";
     const double limit = low < high ? f->at_least_hz : f->at_most_hz;
     if (!(f->recommended_hz > 0.0) && MT_HAS(f->at_least_hz)) {
@@ -137,15 +138,27 @@ static void limit_text(const mt_result_frequency *f, char *text)
                        f->at_least_hz);
     } else if (fabs(fmin(low, high)) <= 0.01 * WORTH_SAYING_PERCENT) {
         (void)snprintf(text, DEMAND_SIZE, "at its %s limit", side);
-    } else if (f->error_percent > WORTH_SAYING_PERCENT) {
-        (void)snprintf(text, DEMAND_SIZE, "%.3g %% %s its %s limit of %.6g Hz",
-                       f->error_percent, over ? "above" : "below", side, limit);
+    } else if (error > WORTH_SAYING_PERCENT) {
+        (void)snprintf(text, DEMAND_SIZE, "%.3g %% %s its %s limit of %.6g Hz", error,
+                       low < high ? "below" : "above", side, limit);
     } else if (both) {
         (void)snprintf(text, DEMAND_SIZE, "between its limits of %.6g and %.6g Hz",
                        f->at_least_hz, f->at_most_hz);
     } else {
         (void)snprintf(text, DEMAND_SIZE, "clear of its %s limit of %.6g Hz", side, limit);
     }
+}
+
+/* ", over the tolerances 7.9 to 8.1 Hz"; "" without tolerances. */
+static const char *range_text(mt_sentences *s, const mt_result_frequency *f)
+{
+    if (!MT_HAS(f->lowest_hz) || !MT_HAS(f->highest_hz)) {
+        return "";
+    }
+    const char *const text = mt_arena_printf(
+        &s->result->mem, ", over the tolerances %.6g to %.6g Hz", f->lowest_hz, f->highest_hz);
+    s->failed = s->failed || text == NULL;
+    return text == NULL ? "" : text;
 }
 
 static void demand_text(const mt_result_frequency *f, char *text)
@@ -176,18 +189,19 @@ static void say_frequency(mt_sentences *s, const mt_result_frequency *f)
         return;
     }
     demand_text(f, demand);
+    const char *const range = range_text(s, f);
     (void)snprintf(from, sizeof from, "%.6g", f->original_hz);
     (void)snprintf(to, sizeof to, "%.6g", f->recommended_hz);
     const char *const lever = lever_text(s, f);
     if (!MT_HAS(f->original_hz)) {
-        mt_say(s, "%s mode %d%s%s%s comes to %s Hz, %s%s.", f->configuration, f->mode, open,
-               name, close, to, demand, lever);
+        mt_say(s, "%s mode %d%s%s%s comes to %s Hz%s, %s%s.", f->configuration, f->mode, open,
+               name, close, to, range, demand, lever);
     } else if (strcmp(from, to) == 0) {
-        mt_say(s, "%s mode %d%s%s%s stays at %s Hz, %s%s.", f->configuration, f->mode, open,
-               name, close, to, demand, lever);
+        mt_say(s, "%s mode %d%s%s%s stays at %s Hz%s, %s%s.", f->configuration, f->mode, open,
+               name, close, to, range, demand, lever);
     } else {
-        mt_say(s, "%s mode %d%s%s%s moves from %s to %s Hz, %s%s.", f->configuration, f->mode,
-               open, name, close, from, to, demand, lever);
+        mt_say(s, "%s mode %d%s%s%s moves from %s to %s Hz%s, %s%s.", f->configuration, f->mode,
+               open, name, close, from, to, range, demand, lever);
     }
     if (f->repeated) {
         mt_say(s, "It is a repeated mode and has no sensitivity of its own.");
@@ -378,6 +392,7 @@ mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
     say_changes(&s);
     say_slack(&s);
     say_frequencies(&s);
+    mt_say_worst(&s);
     say_violations(&s);
     mt_say_bands(&s);
     mt_say_prices(&s);

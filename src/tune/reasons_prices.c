@@ -83,7 +83,7 @@ static void say_edges(mt_sentences *s)
                     mt_clear_row_at(s->p, s->design->below, i, &row);
          i++) {
         const mt_clear *const c = &s->p->clears[row.clear];
-        const double mult = found->mult_in[s->p->n_in + i];
+        const double mult = found->mult_in[s->p->n_in - s->p->n_corner_rows + i];
         const char *const saved = mult > 0.0 ? price(s, mult / PERCENT) : NULL;
         if (saved != NULL) {
             mt_say(s,

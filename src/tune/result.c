@@ -54,6 +54,8 @@ mt_result_frequency mt_result_frequency_default(void)
         .at_least_hz = nan(""),
         .at_most_hz = nan(""),
         .error_percent = nan(""),
+        .lowest_hz = nan(""),
+        .highest_hz = nan(""),
         .mac = nan(""),
         .share = nan(""),
         .rival_share = nan(""),

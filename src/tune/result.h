@@ -38,7 +38,9 @@ typedef struct mt_result_frequency {
     double error_percent;  /* to the target, or beyond the limit; 0 inside limits */
     double mac;            /* NaN: no reference shape asked for */
     const char *reference; /* NULL */
-    double residual;       /* LAPACK-style ratio of this mode */
+    double lowest_hz;      /* over the tolerances of the variables; NaN: they have none */
+    double highest_hz;
+    double residual; /* LAPACK-style ratio of this mode */
     double orthogonality;
     /* [n_parameters] Hz per unit of each variable; NaN at a repeated mode; NULL: not computed */
     double *sensitivity;
@@ -57,6 +59,9 @@ typedef struct mt_result_goal {
     bool met;
     bool weighted; /* part of the misfit: does not decide status */
     bool doubtful; /* its named mode is ambiguous or lost: not met, whatever the number */
+    /* the worst value over the tolerances of the variables, which the goal is judged by; NaN: none */
+    double worst;
+    double *worst_at; /* [n_parameters] where that is; NULL: none */
 } mt_result_goal;
 
 /* A mode beside a band. */
@@ -68,6 +73,9 @@ typedef struct mt_result_clearance {
     double percent; /* of the nearest edge of the band without its margin; negative inside */
     double margin_percent; /* what was asked for at that edge */
     const char *side;      /* where the mode lies: "below", "inside", "above" */
+    /* over the tolerances of the variables: nearest to the band, or deepest inside; NaN: none */
+    double worst_hz;
+    double worst_percent;
 } mt_result_clearance;
 
 /* How many modes lie below a band: the kind of a design. */
@@ -111,6 +119,8 @@ typedef struct mt_recommendation {
     double violation_percent;
     double clearance_percent; /* least of all clearances; NaN: no bands */
     double kkt_residual;      /* relative; NaN where not an optimum */
+    /* how the worst over the tolerances of the variables is known: "proven", "sampled"; NULL: they have none */
+    const char *worst_case;
     bool singular; /* a double solution: the Jacobian of the goals is singular here */
     int n_parameters;
     mt_result_parameter *parameters;

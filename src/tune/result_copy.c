@@ -91,10 +91,15 @@ static void copy_words(copier *c, mt_recommendation *r)
     r->grade = text(c, r->grade);
     r->disagreement = text(c, r->disagreement);
     r->score_unit = text(c, r->score_unit);
+    r->worst_case = text(c, r->worst_case);
     r->goals = list(c, r->goals, r->n_goals, sizeof *r->goals);
     for (int i = 0; i < r->n_goals && !c->failed; i++) {
         r->goals[i].text = text(c, r->goals[i].text);
         r->goals[i].pointer = text(c, r->goals[i].pointer);
+        if (r->goals[i].worst_at != NULL) {
+            r->goals[i].worst_at =
+                list(c, r->goals[i].worst_at, r->n_parameters, sizeof(double));
+        }
     }
     r->reasons = list(c, r->reasons, r->n_reasons, sizeof *r->reasons);
     for (int i = 0; i < r->n_reasons && !c->failed; i++) {

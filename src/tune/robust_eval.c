@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Goals at the worst corners: rows as demand.c and problem_clear.c make them, with the corner's modes and its factors in the gradient. */
+/* Rows at the corners: as demand.c and problem_clear.c make them, with the corner's modes and its factors in the gradient. */
 #include <math.h>
 
 #include "tune/robust.h"
-
-static const mt_corner *corner_of(const mt_problem *p, int view, int corner)
-{
-    return &p->robust->views[view][corner];
-}
 
 static void move(const mt_problem *p, const double *factor)
 {
@@ -16,173 +11,190 @@ static void move(const mt_problem *p, const double *factor)
     }
 }
 
-mt_status mt_robust_solve(mt_problem *p, bool with_gradient, mt_err *err)
+static mt_status solve_view(mt_problem *p, const mt_corner_set *set, bool with_gradient,
+                            mt_err *err)
 {
     const mt_analysis_options opt = {
         .gradient = with_gradient, .vectors = with_gradient, .accuracy = true};
-    for (int i = 0; p->robust != NULL && i < MT_CORNERS * p->robust->n_views; i++) {
-        const mt_corner *const c = corner_of(p, i / MT_CORNERS, i % MT_CORNERS);
-        if (c->analysis != NULL) {
-            move(p, c->factor);
-            MT_TRY(mt_err_in(err, mt_analysis_solve(c->analysis, p->robust->x, &opt, err),
-                             "configuration \"%s\" at a corner of the tolerances",
-                             mt_analysis_configuration(c->analysis)));
-        }
+    for (int c = 0; c < set->n; c++) {
+        mt_analysis *const a = set->corners[c].analysis;
+        move(p, set->corners[c].factor);
+        MT_TRY(mt_err_in(err, mt_analysis_solve(a, p->robust->x, &opt, err),
+                         "configuration \"%s\" at a corner of the tolerances",
+                         mt_analysis_configuration(a)));
     }
     return MT_OK;
 }
 
-static void put(const mt_problem *p, int row, double value, double sign, const double *slope,
-                mt_nlp_values *out)
+mt_status mt_robust_solve(mt_problem *p, bool with_gradient, mt_err *err)
 {
-    const ptrdiff_t rows = mt_problem_rows_in(p);
-    out->in[row] = value;
-    for (int i = 0; i < p->n && slope != NULL; i++) {
-        out->din[row + (i * rows)] = sign * slope[i];
+    for (int i = 0; p->robust != NULL && i < p->robust->n_views; i++) {
+        MT_TRY(solve_view(p, &p->robust->views[i], with_gradient, err));
     }
+    return MT_OK;
 }
 
-/* in = sign ln(f / edge) - z of a vibration mode at a corner. */
-typedef struct edge {
-    int view;
-    int corner;
-    int mode;
-    double hz;
-    double z;
-    int row;
-} edge;
+/* in = sign (q - edge) - z: q = ln(f / limit) and edge 0, or an expression and its limit over their unit. */
+typedef struct quantity {
+    double value;
+    double edge;
+    double z; /* least clearance that is asked for */
+} quantity;
 
-static mt_status put_mode(mt_problem *p, const edge *e, bool with_gradient, mt_nlp_values *out,
-                          mt_err *err)
+/* ln(f / edge_hz) at the corner, its slopes over t into robust->slope. */
+static mt_status frequency(mt_problem *p, const mt_corner *c, int mode, double edge_hz,
+                           bool with_gradient, double *value, mt_err *err)
 {
-    const mt_corner *const c = corner_of(p, e->view, e->corner);
-    const double sign = e->corner == MT_SOFT ? 1.0 : -1.0;
-    double *const slope = p->robust->slope;
-    if (c->analysis == NULL) {
-        return MT_OK; /* the row of the design itself stands */
-    }
-    const int pos = mt_modal_flexible(&c->analysis->modes, e->mode);
-    const double floor = MT_FREQUENCY_FLOOR * e->hz;
+    mt_analysis *const a = c->analysis;
+    const int pos = mt_modal_flexible(&a->modes, mode);
+    const double floor_hz = MT_FREQUENCY_FLOOR * edge_hz;
     if (pos < 0) {
         return mt_fail(err, MT_E_DOMAIN,
                        "configuration \"%s\" has no vibration mode %d at a corner of the "
                        "tolerances",
-                       mt_analysis_configuration(c->analysis), e->mode);
+                       mt_analysis_configuration(a), mode);
     }
+    *value = mt_problem_ln_ratio(&a->modes, pos, edge_hz, floor_hz);
     if (with_gradient) {
-        MT_TRY(mt_problem_dln_frequency(p, c->analysis, pos, floor, slope, err));
+        MT_TRY(mt_problem_dln_frequency(p, a, pos, floor_hz, p->robust->slope, err));
         for (int i = 0; i < p->n; i++) {
-            slope[i] *= c->factor[i];
+            p->robust->slope[i] *= c->factor[i];
         }
     }
-    const double ratio = mt_problem_ln_ratio(&c->analysis->modes, pos, e->hz, floor);
-    put(p, e->row, (sign * ratio) - e->z, sign, with_gradient ? slope : NULL, out);
     return MT_OK;
 }
 
-/* Value of a limit's expression at its least (0) or greatest (1) corner, slopes into robust->slope. */
-static mt_status limit_value(mt_problem *p, int demand, int side, bool with_gradient,
-                             double *value, mt_err *err)
+static mt_status expression(mt_problem *p, const mt_corner *c, mt_node node, double unit,
+                            bool with_gradient, double *value, mt_err *err)
 {
     mt_robust *const r = p->robust;
-    const double *const factor = r->limits[side][demand];
-    const mt_node node = p->demands[demand].node;
-    move(p, factor);
-    MT_TRY(with_gradient ? mt_program_gradient(&p->program, r->x, r->value, r->grad, NULL, err)
-                         : mt_program_eval(&p->program, r->x, r->value, NULL, err));
-    *value = r->value[node];
+    mt_node bad = MT_NO_NODE;
+    mt_err own = {0};
+    move(p, c->factor);
+    const mt_status rc =
+        with_gradient ? mt_program_gradient(&p->program, r->x, r->value, r->grad, &bad, &own)
+                      : mt_program_eval(&p->program, r->x, r->value, &bad, &own);
+    if (rc != MT_OK && !(rc == MT_E_DOMAIN && bad >= p->n_searched)) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    *value = r->value[node] / unit;
     for (int i = 0; i < p->n && with_gradient; i++) {
-        r->slope[i] =
-            mt_problem_stretch(p, i) * factor[i] * r->grad[((ptrdiff_t)node * p->n) + i];
+        r->slope[i] = mt_problem_stretch(p, i) * c->factor[i] *
+                      r->grad[((ptrdiff_t)node * p->n) + i] / unit;
     }
     return MT_OK;
 }
 
-static mt_status put_limit(mt_problem *p, int demand, int side, int row, bool with_gradient,
-                           mt_nlp_values *out, mt_err *err)
+static double unit_of(double limit)
 {
-    const mt_goal *const g = p->demands[demand].goal;
-    const double limit = side == 0 ? g->at_least : g->at_most;
-    const double unit = fabs(limit) > 0.0 ? fabs(limit) : 1.0;
-    const double sign = side == 0 ? 1.0 / unit : -1.0 / unit;
-    double value = 0.0;
-    MT_TRY(limit_value(p, demand, side, with_gradient, &value, err));
-    put(p, row, sign * (value - limit), sign, with_gradient ? p->robust->slope : NULL, out);
-    return MT_OK;
+    return fabs(limit) > 0.0 ? fabs(limit) : 1.0;
 }
 
-mt_status mt_robust_demand(mt_problem *p, const mt_demand *d, bool with_gradient,
-                           mt_nlp_values *out, mt_err *err)
+/* The limit that a row keeps, of a target with its tolerance. */
+static double limit_of(const mt_problem *p, const mt_robust_row *row)
 {
-    if (p->robust == NULL || d->row_in < 0) {
-        return MT_OK;
+    const mt_demand *const d = &p->demands[row->demand];
+    const bool low = row->side == MT_LOWEST;
+    const double give = low ? -d->tolerance : d->tolerance;
+    if (!mt_robust_holds_target(p, d)) {
+        return low ? d->goal->at_least : d->goal->at_most;
     }
-    const bool limit = d->goal->type == MT_GOAL_LIMIT;
-    const int demand = (int)(d - p->demands);
-    const double ends[2] = {d->goal->at_least, d->goal->at_most};
-    int row = d->row_in;
-    if (limit && p->robust->limits[0][demand] == NULL) {
-        return MT_OK;
+    return d->view >= 0 ? d->target_hz * (1.0 + give)
+                        : d->goal->equals + (give * unit_of(d->goal->equals));
+}
+
+static mt_status demand_value(mt_problem *p, const mt_robust_row *row, bool with_gradient,
+                              quantity *q, mt_err *err)
+{
+    const mt_demand *const d = &p->demands[row->demand];
+    const double limit = limit_of(p, row);
+    if (d->view >= 0) {
+        return frequency(p, &p->robust->views[d->view].corners[row->corner], d->mode, limit,
+                         with_gradient, &q->value, err);
     }
-    for (int side = 0; side < 2; side++) {
-        if (!MT_HAS(ends[side])) {
-            continue;
+    q->edge = limit / unit_of(limit);
+    return expression(p, &p->robust->limits[row->demand].corners[row->corner], d->node,
+                      unit_of(limit), with_gradient, &q->value, err);
+}
+
+static mt_status band_value(mt_problem *p, const mt_robust_row *row, const double *t,
+                            bool with_gradient, quantity *q, mt_err *err)
+{
+    const mt_clear *const c = &p->clears[row->at.clear];
+    const mt_band *const band = &c->bands.items[row->at.band];
+    q->z = p->clearance ? t[p->n] : 0.0;
+    return frequency(p, &p->robust->views[c->view].corners[row->corner], row->at.mode,
+                     row->at.above ? band->upper_hz : band->lower_hz, with_gradient, &q->value,
+                     err);
+}
+
+mt_status mt_robust_rows(mt_problem *p, const double *t, bool with_gradient, mt_nlp_values *out,
+                         mt_err *err)
+{
+    const ptrdiff_t rows = mt_problem_rows_in(p);
+    for (int k = 0; p->robust != NULL && k < p->robust->n_rows; k++) {
+        const mt_robust_row *const row = &p->robust->rows[k];
+        const double sign = row->side == MT_LOWEST ? 1.0 : -1.0;
+        quantity q = {.z = 0.0};
+        MT_TRY(row->demand >= 0 ? demand_value(p, row, with_gradient, &q, err)
+                                : band_value(p, row, t, with_gradient, &q, err));
+        out->in[row->row] = (sign * (q.value - q.edge)) - q.z;
+        for (int i = 0; i < p->n && with_gradient; i++) {
+            out->din[row->row + (i * rows)] = sign * p->robust->slope[i];
         }
-        const edge e = {.view = d->view,
-                        .corner = side == 0 ? MT_SOFT : MT_STIFF,
-                        .mode = d->mode,
-                        .hz = ends[side],
-                        .row = row};
-        MT_TRY(limit ? put_limit(p, demand, side, row, with_gradient, out, err)
-                     : put_mode(p, &e, with_gradient, out, err));
-        row++;
+        if (with_gradient && p->n_t > p->n) {
+            out->din[row->row + (p->n * rows)] = row->demand >= 0 ? 0.0 : -1.0;
+        }
     }
     return MT_OK;
 }
 
-mt_status mt_robust_clears(mt_problem *p, const double *t, bool with_gradient,
-                           mt_nlp_values *out, mt_err *err)
+/* Lowest and highest frequency of vibration mode k of a view: its range where that is known, else of the design itself and its corners; false: there is no such mode. */
+static bool span_of(const mt_problem *p, int view, int k, double *low, double *high)
 {
-    mt_clear_row at;
-    if (p->robust == NULL || p->below == NULL || p->n_clears == 0) {
-        return MT_OK;
+    const mt_corner_set *const set = &p->robust->views[view];
+    const mt_robust_range *const range = mt_robust_hz(p, view, k);
+    if (range != NULL) {
+        *low = range->value[MT_LOWEST];
+        *high = range->value[MT_HIGHEST];
+        return true;
     }
-    const double z = p->clearance ? t[p->n] : 0.0;
-    for (int k = 0; mt_clear_row_at(p, p->below, k, &at); k++) {
-        const mt_clear *const c = &p->clears[at.clear];
-        const mt_band *const band = &c->bands.items[at.band];
-        const edge e = {.view = c->view,
-                        .corner = at.above ? MT_SOFT : MT_STIFF,
-                        .mode = at.mode,
-                        .hz = at.above ? band->upper_hz : band->lower_hz,
-                        .z = z,
-                        .row = p->clears[0].row_in + k};
-        MT_TRY(put_mode(p, &e, with_gradient, out, err));
+    if (p->robust->n_ranges[view] > 0) {
+        return false;
     }
-    return MT_OK;
-}
-
-const mt_modes *mt_robust_modes(const mt_problem *p, int view, int corner)
-{
-    const mt_corner *const c = p->robust == NULL ? NULL : corner_of(p, view, corner);
-    return c == NULL || c->analysis == NULL ? &p->views[view].analysis->modes
-                                            : &c->analysis->modes;
+    *low = HUGE_VAL;
+    *high = 0.0;
+    for (int c = -1; c < set->n; c++) {
+        const mt_modes *const modes =
+            c < 0 ? &p->views[view].analysis->modes : &set->corners[c].analysis->modes;
+        const int pos = mt_modal_flexible(modes, k);
+        if (pos < 0) {
+            return false;
+        }
+        *low = fmin(*low, mt_modal_hz(modes, pos));
+        *high = fmax(*high, mt_modal_hz(modes, pos));
+    }
+    return true;
 }
 
 double mt_robust_room(const mt_problem *p, const mt_clear *c)
 {
-    const mt_modes *const soft = mt_robust_modes(p, c->view, MT_SOFT);
-    const mt_modes *const stiff = mt_robust_modes(p, c->view, MT_STIFF);
-    double room = soft->n_unstable + stiff->n_unstable > 0 ? nan("") : HUGE_VAL;
-    for (int k = 1; mt_modal_flexible(soft, k) >= 0 && MT_HAS(room); k++) {
-        const double low = mt_modal_hz(soft, mt_modal_flexible(soft, k));
-        const double high = mt_modal_hz(stiff, mt_modal_flexible(stiff, k));
+    const mt_modes *const modes = &p->views[c->view].analysis->modes;
+    const mt_corner_set *const set = &p->robust->views[c->view];
+    double low = 0.0;
+    double high = 0.0;
+    int unstable = modes->n_unstable;
+    for (int k = 0; k < set->n; k++) {
+        unstable += set->corners[k].analysis->modes.n_unstable;
+    }
+    double room = unstable > 0 ? nan("") : HUGE_VAL;
+    for (int k = 1; MT_HAS(room) && span_of(p, c->view, k, &low, &high); k++) {
         for (int b = 0; b < c->bands.n; b++) {
             const mt_band *const band = &c->bands.items[b];
             const double below = band->lower_hz > 0.0 ? log(band->lower_hz / high) : -HUGE_VAL;
-            const double above = fmax(log(low / band->upper_hz), -MT_MOST_INSIDE);
-            room = fmin(room, fmax(below, above));
+            const double here = fmax(below, fmax(log(low / band->upper_hz), -MT_MOST_INSIDE));
+            room = fmin(room, MT_HAS(low + high) ? here : -HUGE_VAL);
         }
     }
-    return room;
+    return room > -HUGE_VAL ? room : nan("");
 }

@@ -7,6 +7,7 @@
 
 #include "tune/describe.h"
 #include "tune/proof.h"
+#include "tune/robust.h"
 
 /* Tolerances beyond this are not asked about. */
 static const double MOST_PERCENT = 100.0;
@@ -30,14 +31,40 @@ static mt_status count_band(mt_problem *fresh, const mt_clear *c, const mt_band 
         mt_analysis_configuration(a), count.inside, count.inside == 1 ? "" : "s", band->label);
 }
 
-/* Every band of every clear, by inertia. */
+/* Every band of a clear, by inertia, at the design that its analysis has been solved at. */
+static mt_status confirm_here(mt_problem *fresh, const mt_clear *c, mt_result *result,
+                              bool *confirmed, mt_err *err)
+{
+    for (int b = 0; b < c->bands.n; b++) {
+        MT_TRY(count_band(fresh, c, &c->bands.items[b], result, confirmed, err));
+    }
+    return MT_OK;
+}
+
+/* At the two corners of the tolerances between which all modes stay: the same counts there are those of every design between. */
+static mt_status confirm_corners(mt_problem *fresh, const mt_clear *c, mt_result *result,
+                                 bool *confirmed, mt_err *err)
+{
+    mt_analysis *const a = fresh->views[c->view].analysis;
+    const mt_analysis_options opt = mt_analysis_options_default();
+    const mt_robust_range *const range = mt_robust_hz(fresh, c->view, 1);
+    *confirmed = *confirmed && range != NULL && mt_robust_proven(fresh);
+    for (int side = 0; side < MT_ROBUST_SIDES && *confirmed; side++) {
+        MT_TRY(mt_analysis_solve(a, range->at[side], &opt, err));
+        MT_TRY(confirm_here(fresh, c, result, confirmed, err));
+    }
+    return mt_analysis_solve(a, fresh->x, &opt, err);
+}
+
+/* Every band of every clear. */
 static mt_status confirm(mt_problem *fresh, mt_result *result, bool *confirmed, mt_err *err)
 {
     *confirmed = fresh->n_bands > 0;
     for (int i = 0; i < fresh->n_clears; i++) {
         const mt_clear *const c = &fresh->clears[i];
-        for (int b = 0; b < c->bands.n; b++) {
-            MT_TRY(count_band(fresh, c, &c->bands.items[b], result, confirmed, err));
+        MT_TRY(confirm_here(fresh, c, result, confirmed, err));
+        if (fresh->robust != NULL) {
+            MT_TRY(confirm_corners(fresh, c, result, confirmed, err));
         }
     }
     return MT_OK;

@@ -27,7 +27,8 @@ static mt_result_goal GOALS[] = {
      .pointer = "/goals/0",
      .value = 18.0,
      .demand = 18.0,
-     .met = true}
+     .met = true,
+     .worst = 17.5}
 };
 static const char *REASONS[] = {"K_T1 rises by 1.5 %."};
 static const char *VARIABLES[] = {"K_T1", "M_SAU"};
