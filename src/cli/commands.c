@@ -118,8 +118,12 @@ const mt_command mt_commands[MT_CMD_IDS] = {
             "stays as it is. The model is found from the result's folder, and must "
             "be the one that\n"
             "was solved (same SHA-256) unless --model names it."),
-    COMMAND(MT_CMD_CHECK, "check", "FILE...", 1, -1,
-            "validate model, study, result and aircraft files",
-            "Reads each file as its \"format\" says, and prints every problem found as\n"
-            "file:line:column: error: /json/pointer: message."),
+    COMMAND(
+        MT_CMD_CHECK, "check", "FILE...", 1, -1,
+        "validate model, study, result and aircraft files",
+        "Reads each file as its \"format\" says, and prints every problem found as\n"
+        "file:line:column: error: /json/pointer: message.\n"
+        "Then says what is hardly meant (warning: values that look like other units,\n"
+        "joints off their links) and what to know of every configuration, or of those that\n"
+        "a study names (note: free motions, unstable directions, redundant joints)."),
 };

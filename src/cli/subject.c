@@ -116,34 +116,26 @@ static mt_status read_set(mt_subject *s, const char *text, const char *const *na
     return MT_OK;
 }
 
-/* Values of all parameters where some are inputs. */
-static mt_status follow(mt_subject *s, mt_err *err)
+/* What --set makes of the model must be a mechanism still. */
+static mt_status judge(mt_subject *s, mt_err *err)
 {
-    const int n = s->model->n_parameters;
-    int *const is_input = mt_arena_int(&s->mem, (size_t)n);
-    mt_node *const nodes = mt_arena_int(&s->mem, (size_t)n);
-    mt_program program;
-    if (is_input == NULL || nodes == NULL) {
+    double *const value = mt_arena_f64(&s->mem, (size_t)s->model->n_nums, 1);
+    mt_doubt_list list = mt_doubt_list_default(&s->mem);
+    if (value == NULL) {
         return mt_fail_memory(err);
     }
-    for (int i = 0; i < n; i++) {
-        is_input[i] = MT_ABSENT;
+    for (int i = 0; i < s->n_configurations && s->n_inputs > 0; i++) {
+        const int c = s->configurations[i];
+        MT_TRY(
+            mt_model_numbers(s->model, c, s->n_inputs, s->inputs, s->at, &s->mem, value, err));
+        mt_model_judge(s->model, c, value, &list);
     }
-    for (int i = 0; i < s->n_inputs; i++) {
-        is_input[s->inputs[i]] = i;
+    for (int i = 0; i < list.n; i++) {
+        if (list.items[i].level == MT_LEVEL_FAULT) {
+            return mt_fail(err, MT_E_USAGE, "--set: %s", list.items[i].text);
+        }
     }
-    MT_TRY(mt_program_init(&program, s->n_inputs, &s->mem, err));
-    MT_TRY(mt_emit_parameters(s->model, MT_ABSENT, is_input, &program, nodes, &s->mem, err));
-    MT_TRY(mt_program_finish(&program, err));
-    double *const all = mt_arena_f64(&s->mem, (size_t)program.count, 1);
-    if (all == NULL) {
-        return mt_fail_memory(err);
-    }
-    MT_TRY(mt_program_eval(&program, s->at, all, NULL, err));
-    for (int i = 0; i < n; i++) {
-        s->values[i] = all[nodes[i]];
-    }
-    return MT_OK;
+    return list.out_of_memory ? mt_fail_memory(err) : MT_OK;
 }
 
 static mt_status choose(const mt_args *args, const char *configuration, mt_subject *s,
@@ -175,7 +167,10 @@ static mt_status choose(const mt_args *args, const char *configuration, mt_subje
             return mt_err_in(err, rc, "--set");
         }
     }
-    return rc == MT_OK ? follow(s, err) : rc;
+    rc = rc == MT_OK ? mt_model_parameters(s->model, s->n_inputs, s->inputs, s->at, &s->mem,
+                                           s->values, err)
+                     : rc;
+    return rc == MT_OK ? judge(s, err) : rc;
 }
 
 int mt_subject_load(const mt_args *args, const char *path, const char *configuration,

@@ -34,9 +34,17 @@ mt_status mt_emit_parameters(const mt_model *model, int configuration, const int
                              mt_program *program, mt_node *nodes, mt_arena *mem, mt_err *err);
 
 /**
- * The numbers of all items that a configuration contains, where some parameters are inputs.
+ * Values of all parameters where some are inputs, those made of others following; no configuration's overrides.
+ * @param[out] value  [n_parameters]
+ * Scratch from mem, given back. Fails: MT_E_DOMAIN, MT_E_MEMORY, MT_E_INTERNAL.
+ */
+mt_status mt_model_parameters(const mt_model *model, int n_inputs, const int *inputs,
+                              const double *at, mt_arena *mem, double *value, mt_err *err);
+
+/**
+ * All numbers of the model as they are in a configuration, where some parameters are inputs.
  * @param[in]  inputs  [n_inputs] parameters; at[n_inputs] their values
- * @param[out] value   [n_nums]; NaN where a number belongs to no such item, or has no finite value (or stands behind one that has none)
+ * @param[out] value   [n_nums]; NaN where a number has no finite value (or stands behind one that has none)
  * Scratch from mem, given back. O(total length of the expressions). Fails: MT_E_MEMORY, MT_E_INTERNAL.
  */
 mt_status mt_model_numbers(const mt_model *model, int configuration, int n_inputs,

@@ -183,6 +183,50 @@ class Doubts(CliTest):
                     self.assertIn(f"  note: {mine[0]['text']}", lines[1:3])
                     self.assertIn(mine[0]["text"], [f["text"] for f in self.json_of(command, path)[0]["facts"]])
 
+    def bounds(self, lower, upper, limit=None, model=None):
+        """What `check` says of a tube whose diameters are variables."""
+        tube = {"shape": "tube", "outer_diameter_m": "outer", "inner_diameter_m": "inner"}
+        base = changed(model or MODEL, ("links", 0, "section"), tube)
+        base["parameters"].update(outer=0.03, inner=0.02)
+        self.put_model(base=base)
+        goals = [{"type": "frequency", "mode": 1, "at_least_hz": 1}]
+        goals += [{"type": "limit", "expression": "outer-inner", "at_least": limit}] if limit else []
+        return self.put_study(base=dict(STUDY, goals=goals, variables=[{"parameter": "outer", "lower": lower[0], "upper": upper[0]},
+                                                                      {"parameter": "inner", "lower": lower[1], "upper": upper[1]}]))
+
+    def test_bounds_at_which_nothing_can_be_built(self):
+        done = self.expect(2, "check", self.bounds((0, 0.01), (0.04, 0.021)))
+        self.assertRegex(done.stderr, r'studies/s\.json:1:\d+: error: /variables/0/lower: with outer at 0, link "rod": '
+                                      r'section/outer_diameter_m \(0\) must be above 0\n')
+        done = self.expect(2, "check", self.bounds((0.025, 0.01), (0.04, 0.031)))
+        self.assertRegex(done.stderr, r'error: /variables/1/upper: with inner at 0\.031, link "rod": section/inner_diameter_m \(0\.031\) '
+                                      r'must be below outer_diameter_m \(0\.03\)')
+        # only both together are impossible: a warning, which a limit takes away
+        done = self.expect(0, "check", self.bounds((0.022, 0.01), (0.04, 0.028)))
+        self.assertRegex(done.stderr, r'warning: /variables/0: with outer at 0\.022 and inner at 0\.028, link "rod": .* a goal of type "limit"')
+        self.assertEqual(self.expect(0, "check", self.bounds((0.022, 0.01), (0.04, 0.028), limit=0.002)).stderr, "")
+        self.assertEqual(self.expect(0, "check", self.bounds((0.025, 0.01), (0.04, 0.0249))).stderr, "")
+        # an override that takes the place of the variable, in all that the study asks of
+        held = dict(MODEL, configurations={"a": {"parameters": {"outer": 0.05}}, "b": {}})
+        both = self.bounds((0, 0.01), (0.04, 0.021), model=held)
+        for name, code in (("a", 0), ("b", 2)):
+            study = json.loads((self.folder / both).read_text(encoding="utf-8"))
+            study["goals"][0]["configuration"] = name
+            study["variables"] = [study["variables"][0], {"parameter": "k", "lower": 1000, "upper": 3000}]
+            study["goals"].append({"type": "limit", "expression": "outer", "at_most": 1})
+            self.expect(code, "check", self.put_study(base=study))
+
+    def test_set_makes_no_impossible_model(self):
+        path = self.put_model()
+        for command in ("info", "modes", "sensitivity"):
+            done = self.expect(2, command, path, "--set", "m=-1")
+            self.assertEqual(done.stderr, 'modetune: error: --set: body "tip": mass_kg (-1) must not be negative\n')
+            self.expect(0, command, path, "--set", "m=0.1")
+
+    def test_a_negative_spring_is_allowed(self):
+        doubts, facts = self.found(self.put_model(("springs", 0, "stiffness_n_m_per_rad"), -5))
+        self.assertEqual((doubts, [f["kind"] for f in facts]), ([], ["unstable"]))
+
     def test_run_says_the_doubt_first_and_proves_nothing(self):
         self.put_model()
         asked = changed(STUDY, ("goals", 0, "rotor", "speed_range"), [95, 105])
