@@ -11,6 +11,9 @@ mt_doubt_list mt_doubt_list_default(mt_arena *mem)
 
 static mt_doubt *add(mt_doubt_list *list, const mt_doubt *item)
 {
+    if (list->n >= MT_DOUBT_LIMIT) {
+        return NULL;
+    }
     mt_doubt *const items = item->text == NULL ? NULL
                                                : mt_arena_grow(list->mem, list->items, list->n,
                                                                &list->capacity, sizeof *items);
@@ -27,6 +30,9 @@ mt_doubt *mt_doubt_add(mt_doubt_list *list, mt_doubt_level level, const char *ki
                        const char *fmt, ...)
 {
     mt_doubt item = {.level = level, .kind = kind, .addr = MT_NO_ADDR};
+    if (list->n >= MT_DOUBT_LIMIT) {
+        return NULL;
+    }
     va_list args;
     va_start(args, fmt);
     item.text = mt_arena_vprintf(list->mem, fmt, args);

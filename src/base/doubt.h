@@ -34,6 +34,8 @@ typedef struct mt_doubt {
     double size;  /* how far, in a unit of the kind: the largest is said first */
 } mt_doubt;
 
+enum { MT_DOUBT_LIMIT = 1000 };
+
 typedef struct mt_doubt_list {
     mt_arena *mem; /* not owned */
     mt_doubt *items;
@@ -44,7 +46,7 @@ typedef struct mt_doubt_list {
 
 /* Empty list whose texts live in mem. */
 mt_doubt_list mt_doubt_list_default(mt_arena *mem);
-/* Add one with a formatted text; returns it (until the next), NULL when out of memory (noted). */
+/* Add one with a formatted text; returns it (until the next), NULL when out of memory (noted) and beyond MT_DOUBT_LIMIT, where none is added. */
 mt_doubt *mt_doubt_add(mt_doubt_list *list, mt_doubt_level level, const char *kind,
                        const char *fmt, ...) MT_PRINTF(4, 5);
 /* Items first .. n - 1 in the order of falling size; equal ones keep their order. */

@@ -326,6 +326,7 @@ static void print_comparison(const job *j, mt_json_writer *w, mt_text *out)
         mt_json_open(w, NULL, '{');
         mt_json_put_string(w, "study", r->study_file);
         mt_json_put_string(w, "status", mt_result_status_name(r->status));
+        mt_json_put_doubts(w, "doubts", &r->doubts, MT_LEVEL_DOUBT);
         mt_json_put_bool(w, "holds", mt_report_verified(r, NULL));
         mt_json_open(w, "published", '[');
         for (int i = 0; i < r->n_published; i++) {
@@ -341,6 +342,10 @@ static void print_comparison(const job *j, mt_json_writer *w, mt_text *out)
     case MT_FORMAT_TEXT:
         mt_text_addf(out, "%s: %s\n", r->study_name == NULL ? j->path : r->study_name,
                      mt_result_status_name(r->status));
+        if (mt_report_doubtful(r)) {
+            mt_report_doubts(&r->doubts, out);
+            mt_text_add(out, "\n");
+        }
         mt_table_print(&t, 2, out);
         mt_report_uncertainty(r, out);
         mt_text_add(out, "\n");

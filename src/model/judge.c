@@ -58,7 +58,7 @@ static void fault(mt_judge *j, const mt_item *item, mt_num num, const char *memb
 {
     place(j,
           mt_doubt_add(j->out, MT_LEVEL_FAULT, "value", "%s \"%s\": %s (%g) %s", item->what,
-                       item->name, member, j->value[num], why),
+                       item->name, member, j->value[num], why == NULL ? "" : why),
           item, num, member);
 }
 
@@ -76,7 +76,7 @@ static void range(mt_judge *j, const mt_item *item, mt_num num, const char *memb
 {
     place(j,
           mt_doubt_add(j->out, MT_LEVEL_DOUBT, kind, "%s \"%s\": %s (%g) is %s", item->what,
-                       item->name, member, j->value[num], why),
+                       item->name, member, j->value[num], why == NULL ? "" : why),
           item, num, member);
 }
 
@@ -253,20 +253,20 @@ static void judge_joints(mt_judge *j)
 
 static void judge_drive(mt_judge *j)
 {
-    const mt_configuration *const c = &j->model->configurations[j->configuration];
-    const double v = c->drive.given ? fabs(value_of(j, c->drive.position)) : 0.0;
-    if (!c->drive.position_is_angle || !(v > ONE_TURN) || c->drive.inherited) {
+    const mt_configuration *c = &j->model->configurations[j->configuration];
+    const double v = c->drive.given ? value_of(j, c->drive.position) : 0.0;
+    if (!c->drive.position_is_angle || !(fabs(v) > ONE_TURN)) {
         return;
     }
-    const char *const joint =
-        c->drive.joint_name.s == NULL ? "its joint" : c->drive.joint_name.s;
+    while (c->drive.inherited && c->like != MT_ABSENT) {
+        c = &j->model->configurations[c->like];
+    }
     (void)mt_judge_place(
         j,
         mt_doubt_add(j->out, MT_LEVEL_DOUBT, "drive",
-                     "\"%s\" drives \"%s\" by %g rad, more than a turn: degrees are written "
+                     "\"%s\" is driven by %g rad, more than a turn: degrees are written "
                      "\"%g*deg\"",
-                     c->name.s, joint, value_of(j, c->drive.position),
-                     value_of(j, c->drive.position)),
+                     c->drive.joint_name.s == NULL ? "" : c->drive.joint_name.s, v, v),
         j->model->nums[c->drive.position].addr,
         mt_arena_printf(j->out->mem, "/configurations/%s/drive/position_rad", c->name.s));
 }

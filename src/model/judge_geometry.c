@@ -24,6 +24,8 @@ static const double LEAST_SIZE_M = 1e-6;
 static const double MOST_STOUT = 10.0;
 /* Radius of gyration of a body in sizes of the drawing: kg mm^2 for kg m^2 makes it a thousand times too large; inertias that a gear multiplies stay below. */
 static const double MOST_GYRATION = 30.0;
+/* Points of bodies are compared with all others: in models of more joints and springs that would cost more than it tells. */
+enum { MOST_COMPARED = 2000 };
 
 typedef struct box {
     double low[3];
@@ -253,6 +255,9 @@ static void judge_side(mt_judge *j, const holder *h, int side)
     double x[3];
     if (a->name.s == NULL || a->kind == MT_ATTACH_GROUND || h->n_at == 0 ||
         !place_of(j, side_at(h->n_at, h->at, side), x)) {
+        return;
+    }
+    if (a->kind == MT_ATTACH_BODY && j->model->n_joints + j->model->n_springs > MOST_COMPARED) {
         return;
     }
     if (a->kind == MT_ATTACH_BODY) {

@@ -2,6 +2,7 @@
 #include "tune/solve.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #include "tune/describe.h"
 #include "tune/discrete.h"
@@ -223,6 +224,23 @@ static const char *status_text(const answer *a, const mt_recommendation *best)
                            a->impossible ? "that was found " : "", best->violation_percent);
 }
 
+static void lower_grade(mt_recommendation *r)
+{
+    if (r->grade != NULL && strcmp(r->grade, "feasible and proven") == 0) {
+        r->grade = "feasible";
+    }
+}
+
+/* The points of a trade study are answers to the same question. */
+static void qualify_trade(mt_result *result)
+{
+    const mt_doubt_list *const list = &result->doubts;
+    const bool doubtful = mt_doubt_count(list->n, list->items, MT_LEVEL_DOUBT) > 0;
+    for (int i = 0; doubtful && result->trade != NULL && i < result->trade->n_points; i++) {
+        lower_grade(&result->trade->points[i].best);
+    }
+}
+
 /* Nothing is proven of a question that is hardly the one that was meant: the doubts come first, and no design is graded beyond "feasible". */
 static mt_status qualify(mt_result *result, mt_err *err)
 {
@@ -236,8 +254,7 @@ static mt_status qualify(mt_result *result, mt_err *err)
         return MT_OK;
     }
     for (int i = 0; i < result->n_recommendations; i++) {
-        mt_recommendation *const r = &result->recommendations[i];
-        r->grade = r->feasible ? "feasible" : r->grade;
+        lower_grade(&result->recommendations[i]);
     }
     result->status_text =
         n == 1 ? mt_arena_printf(&result->mem, "Doubtful question (%s). %s", first,
@@ -447,6 +464,7 @@ mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_
     rc = rc == MT_OK ? fill(&a, use, err) : rc;
     if (rc == MT_OK && a.result->status != MT_RESULT_INTERRUPTED) {
         rc = mt_trade_solve(study, use, a.result, err);
+        qualify_trade(a.result);
     }
     for (int i = 0; i < a.n_workers; i++) {
         mt_problem_delete(a.workers[i]);

@@ -223,6 +223,32 @@ class Doubts(CliTest):
             self.assertEqual(done.stderr, 'modetune: error: --set: body "tip": mass_kg (-1) must not be negative\n')
             self.expect(0, command, path, "--set", "m=0.1")
 
+    def test_a_drive_that_is_inherited_is_doubted_once(self):
+        there = {"joint": "foot", "position_rad": 20}
+        base = dict(MODEL, configurations={"plain": {}, "up": {"drive": there}, "light": {"like": "up", "parameters": {"m": 0.5}}})
+        doubts, _ = self.found(self.put_model(base=base))
+        self.assertEqual([(d["text"], d["pointer"]) for d in doubts if d["kind"] == "drive"],
+                         [('"foot" is driven by 20 rad, more than a turn: degrees are written "20*deg"',
+                           "/configurations/up/drive/position_rad")])
+        goals = [{"type": "frequency", "configuration": "light", "mode": 1, "at_least_hz": 1}]
+        self.assertIn("drive", [d["kind"] for d in self.found(self.put_study(base=dict(STUDY, goals=goals, variables=STUDY["variables"][:1])))[0]])
+
+    def test_compare_says_doubts_too(self):
+        self.put_model()
+        asked = dict(changed(STUDY, ("goals", 0, "rotor", "margin_percent"), 0.1), published=[{"status": "solved"}])
+        lines = self.expect(0, "compare", self.put_study(base=asked)).stdout.splitlines()
+        self.assertEqual(lines[2], "Doubts")
+        self.assertEqual([d["kind"] for d in self.json_of("compare", "studies/s.json")["doubts"]], ["margin"])
+
+    def test_points_of_a_trade_are_not_proven_either(self):
+        self.put_model()
+        trade = {"vary": [{"goal": 0, "member": "margin_percent", "values": [5, 10]}]}
+        for margin, proven in ((10, True), (0.1, False)):
+            study = dict(changed(STUDY, ("goals", 0, "rotor", "margin_percent"), margin), trade=trade)
+            result = self.json_of("run", self.put_study(base=study))
+            grades = {p["best"]["grade"] for p in result["trade"]["points"]}
+            self.assertEqual("feasible and proven" in grades, proven)
+
     def test_a_negative_spring_is_allowed(self):
         doubts, facts = self.found(self.put_model(("springs", 0, "stiffness_n_m_per_rad"), -5))
         self.assertEqual((doubts, [f["kind"] for f in facts]), ([], ["unstable"]))
