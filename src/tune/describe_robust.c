@@ -41,7 +41,8 @@ static double beyond(const mt_robust_range *r, mt_robust_side side, double limit
     const double value = r->value[side];
     const double sign = side == MT_LOWEST ? 1.0 : -1.0;
     const double unit = fabs(limit) > 0.0 ? fabs(limit) : 1.0;
-    return sign * (ratio ? fmin(log(limit / value), MT_MOST_INSIDE) : (limit - value) / unit);
+    const double far = sign * (ratio ? log(limit / value) : (limit - value) / unit);
+    return ratio && far > MT_MOST_INSIDE ? MT_MOST_INSIDE : far; /* NaN stays */
 }
 
 /* The side that a goal is judged by, and how far it is missed there (at most 0: it is met). */

@@ -117,7 +117,8 @@ mt_status mt_proof_init(mt_proof *proof, mt_problem *p, mt_arena *mem, mt_err *e
                                    .upper = proof->upper,
                                    .scale = p->scale,
                                    .stop = p->stop};
-    proof->covers = true;
+    proof->covers =
+        p->robust == NULL; /* what is possible for a design may not be over its tolerances */
     list_bands(proof, p);
     list_limits(proof, p);
     return MT_OK;

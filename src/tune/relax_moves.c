@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "tune/relax.h"
+#include "tune/robust.h"
 
 static bool is_constraint(const mt_demand *d)
 {
@@ -122,9 +123,23 @@ mt_status mt_relax_study(const mt_study *study, const mt_move *m, mt_arena *mem,
     return MT_OK;
 }
 
+/* A row on top of the design's own, at a corner of the tolerances. */
+static bool is_corner_row(const mt_move *m, const mt_robust_row *row)
+{
+    if (m->kind == MT_MOVE_GOAL) {
+        return !m->target && row->demand == m->demand && (row->side == MT_HIGHEST) == m->upper;
+    }
+    return m->kind == MT_MOVE_EDGE && row->demand < 0 && row->at.clear == m->clear &&
+           row->at.band == m->band && row->at.above == m->upper;
+}
+
 bool mt_relax_is_row(const mt_problem *q, const mt_move *m, bool eq, int row)
 {
     mt_clear_row at;
+    const mt_robust_row *const corner = eq ? NULL : mt_robust_corner_row(q, row);
+    if (corner != NULL) {
+        return is_corner_row(m, corner);
+    }
     if (m->kind == MT_MOVE_GOAL) {
         const mt_demand *const d = &q->demands[m->demand];
         const int second = m->upper && MT_HAS(d->goal->at_least) ? 1 : 0;

@@ -344,6 +344,17 @@ mt_status mt_robust_init(mt_problem *p, mt_err *err)
     return init_rows(p, err);
 }
 
+const mt_robust_row *mt_robust_corner_row(const mt_problem *p, int row)
+{
+    for (int k = 0;
+         p->robust != NULL && row >= p->n_in - p->n_corner_rows && k < p->robust->n_rows; k++) {
+        if (p->robust->rows[k].row == row) {
+            return &p->robust->rows[k];
+        }
+    }
+    return NULL;
+}
+
 void mt_robust_free(mt_robust *r)
 {
     for (int i = 0; r != NULL && i < r->n_views; i++) {

@@ -85,6 +85,8 @@ mt_status mt_robust_solve(mt_problem *p, bool with_gradient, mt_err *err);
 /* Fill the rows of all corners. After mt_robust_solve and the rows of the design itself, some of which they replace. */
 mt_status mt_robust_rows(mt_problem *p, const double *t, bool with_gradient, mt_nlp_values *out,
                          mt_err *err);
+/* The row of `in` that stands on top of the design's own ones; NULL where it is none of these. */
+const mt_robust_row *mt_robust_corner_row(const mt_problem *p, int row);
 /* mt_clear_room over all corners, or over the ranges where they are known: modes are paired by their index. */
 double mt_robust_room(const mt_problem *p, const mt_clear *c);
 /*
