@@ -67,6 +67,8 @@ const mt_key_table *const *mt_study_key_tables(int *n)
         &mt_study_avoid_keys,
         &mt_study_rotor_keys,
         &mt_study_tail_keys,
+        &mt_study_machine_keys,
+        &mt_study_gear_keys,
         &mt_study_catalogue_keys,
         &mt_study_trade_keys,
         &mt_study_vary_keys,

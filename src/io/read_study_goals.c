@@ -58,6 +58,8 @@ const mt_key_table mt_study_limit_keys = {"goal_limit", LIMIT, LIMIT_COUNT};
     X(AVOID_BANDS, "bands_hz", MT_KEY_LIST, false)          \
     X(AVOID_ROTOR, "rotor", MT_KEY_OBJECT, false)           \
     X(AVOID_ROTORS, "rotors", MT_KEY_LIST, false)           \
+    X(AVOID_MACHINE, "machine", MT_KEY_OBJECT, false)       \
+    X(AVOID_MACHINES, "machines", MT_KEY_LIST, false)       \
     X(AVOID_MARGIN, "margin_percent", MT_KEY_NUMBER, false) \
     X(AVOID_UP_TO, "up_to_hz", MT_KEY_NUMBER, false)        \
     X(AVOID_CLUSTER, "cluster", MT_KEY_COUNT, false)
@@ -176,6 +178,33 @@ static void read_rotors(mt_study_reader *s, const mt_study_object *o, mt_bands_s
     }
 }
 
+static void read_machines(mt_study_reader *s, const mt_study_object *o, mt_bands_source *source)
+{
+    const mt_addr list = o->found[AVOID_MACHINES];
+    if (mt_read_study_has(s, o, AVOID_MACHINE) && mt_read_study_has(s, o, AVOID_MACHINES)) {
+        (void)mt_read_study_one_of(s, o, AVOID_MACHINE, 2);
+    }
+    if (list == MT_NO_ADDR) {
+        source->machines = mt_arena_alloc(&s->study->mem, 1, sizeof *source->machines);
+        s->r.out_of_memory = s->r.out_of_memory || source->machines == NULL;
+        if (source->machines != NULL && o->found[AVOID_MACHINE] != MT_NO_ADDR) {
+            mt_read_study_machine(s, o->found[AVOID_MACHINE],
+                                  &source->machines[source->n_machines++]);
+        }
+        return;
+    }
+    source->machines = mt_read_study_list(s, list, sizeof *source->machines);
+    if (mt_json_count(s->r.doc, list) == 0) {
+        mt_diag_structure(s->r.diags, list, "the list of machines is empty");
+    }
+    for (mt_addr at = mt_json_first(s->r.doc, list);
+         at != MT_NO_ADDR && source->machines != NULL; at = mt_json_next(s->r.doc, at)) {
+        if (mt_reader_type(&s->r, at, MT_KEY_OBJECT)) {
+            mt_read_study_machine(s, at, &source->machines[source->n_machines++]);
+        }
+    }
+}
+
 static void read_avoid(mt_study_reader *s, const mt_study_object *o, mt_goal *goal)
 {
     mt_avoid *const avoid = mt_arena_alloc(&s->study->mem, 1, sizeof *avoid);
@@ -185,13 +214,17 @@ static void read_avoid(mt_study_reader *s, const mt_study_object *o, mt_goal *go
     }
     *avoid = mt_avoid_default(goal->addr);
     goal->avoid = avoid;
-    if (!mt_read_study_has(s, o, AVOID_BANDS) && !mt_read_study_has(s, o, AVOID_ROTOR) &&
-        !mt_read_study_has(s, o, AVOID_ROTORS)) {
-        (void)mt_read_study_one_of(s, o, AVOID_BANDS, 3);
+    bool any = false;
+    for (int key = AVOID_BANDS; key < AVOID_MARGIN; key++) {
+        any = any || mt_read_study_has(s, o, key);
+    }
+    if (!any) {
+        (void)mt_read_study_one_of(s, o, AVOID_BANDS, AVOID_MARGIN - AVOID_BANDS);
     }
     avoid->bands_addr = mt_read_study_place(s, o, AVOID_BANDS);
     read_bands(s, o->found[AVOID_BANDS], &avoid->source);
     read_rotors(s, o, &avoid->source);
+    read_machines(s, o, &avoid->source);
     avoid->source.margin_percent =
         mt_read_study_member(s, o, AVOID_MARGIN, &avoid->margin_addr);
     avoid->source.up_to_hz = mt_read_study_member(s, o, AVOID_UP_TO, &avoid->up_to_addr);

@@ -69,6 +69,7 @@ void mt_read_study_variables(mt_study_reader *s, mt_addr list);
 void mt_read_study_references(mt_study_reader *s, mt_addr object);
 void mt_read_study_goals(mt_study_reader *s, mt_addr list);
 void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor);
+void mt_read_study_machine(mt_study_reader *s, mt_addr value, mt_machine *machine);
 /* The catalogue of aircraft: the one named, else, where a goal needs one, the one beside the model. After the goals. */
 void mt_read_study_aircraft(mt_study_reader *s, mt_addr value);
 /* After variables and goals; goals: the list of goals, whose indices it uses. */
@@ -93,6 +94,8 @@ extern const mt_key_table mt_study_limit_keys;
 extern const mt_key_table mt_study_avoid_keys;
 extern const mt_key_table mt_study_rotor_keys;
 extern const mt_key_table mt_study_tail_keys;
+extern const mt_key_table mt_study_machine_keys;
+extern const mt_key_table mt_study_gear_keys;
 extern const mt_key_table mt_study_objective_keys;
 extern const mt_key_table mt_study_published_keys;
 extern const mt_key_table mt_study_published_frequency_keys;

@@ -315,6 +315,27 @@ static void write_trade(mt_json_writer *w, const mt_trade_result *trade)
     mt_json_close(w);
 }
 
+static void write_order(mt_json_writer *w, const mt_result_order *o)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "label", o->label);
+    mt_json_put_number(w, "order", o->order);
+    mt_json_close(w);
+}
+
+static void write_excitation(mt_json_writer *w, const mt_result_excitation *e)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "name", e->name);
+    mt_json_put_string(w, "pointer", e->pointer);
+    mt_json_put_number(w, "speed_lower_hz", e->speed_lower_hz);
+    mt_json_put_number(w, "speed_upper_hz", e->speed_upper_hz);
+    mt_json_put_number(w, "margin_percent", e->margin_percent);
+    write_strings(w, "configurations", e->n_configurations, e->configurations);
+    WRITE_LIST(w, "orders", e->n_orders, e->orders, write_order);
+    mt_json_close(w);
+}
+
 static void write_published(mt_json_writer *w, const mt_result_published *p)
 {
     mt_json_open(w, NULL, '{');
@@ -431,6 +452,7 @@ void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result)
     WRITE_LIST(w, "certificates", result->n_certificates, result->certificates,
                write_certificate);
     write_relaxations(w, result);
+    WRITE_LIST(w, "excitations", result->n_excitations, result->excitations, write_excitation);
     write_trade(w, result->trade);
     WRITE_LIST(w, "published", result->n_published, result->published, write_published);
     write_strings(w, "warnings", result->n_warnings, result->warnings);

@@ -177,6 +177,7 @@ void mt_report_html(const mt_result *result, mt_text *out)
     add_doubts(&result->doubts, MT_LEVEL_FACT, "Facts of the model", out);
     add_best(result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline,
              out);
+    mt_report_svg_campbell(result, out);
     if (result->n_recommendations > 1) {
         add_table(mt_report_alternatives(result), "All recommendations", out);
     }

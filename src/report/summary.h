@@ -25,5 +25,7 @@ void mt_report_html(const mt_result *result, mt_text *out);
 void mt_report_svg_trade(const mt_result *result, mt_text *out);
 void mt_report_svg_frequencies(const mt_recommendation *r, mt_text *out);
 void mt_report_svg_changes(const mt_recommendation *r, mt_text *out);
+/* A Campbell diagram with its heading for each rotor and machine that the study avoids (campbell.c). */
+void mt_report_svg_campbell(const mt_result *result, mt_text *out);
 
 #endif

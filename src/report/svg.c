@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The figures of the report: one row per frequency or parameter, drawn to a common linear scale. */
+#include "report/svg.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -38,10 +40,9 @@ static void widen(scale *s, double x)
     }
 }
 
-/* 1, 2 or 5 times a power of ten: about six marks. */
-static double step_of(const scale *s)
+double mt_svg_step(double length)
 {
-    const double raw = (s->high - s->low) / 6.0;
+    const double raw = length / 6.0;
     const double power = pow(10.0, floor(log10(raw)));
     const double lead = raw / power;
     return power * (lead <= 1.0 ? 1.0 : lead <= 2.0 ? 2.0 : lead <= 5.0 ? 5.0 : 10.0);
@@ -58,7 +59,7 @@ static void begin(int rows, const char *title, mt_text *out)
 
 static void axis(const scale *s, int rows, const char *unit, mt_text *out)
 {
-    const double step = step_of(s);
+    const double step = mt_svg_step(s->high - s->low);
     const int bottom = TOP + (rows * ROW);
     const long first = (long)ceil(s->low / step);
     const long last = (long)floor(s->high / step);

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 
 static const double PERCENT = 100.0;
+/* A merged band lists so many names. */
+enum { LISTED_MOST = 6 };
 
 bool mt_harmonic_parse(const char *text, mt_harmonic *out)
 {
@@ -107,6 +109,29 @@ static void add_rotor(parts *p, const mt_rotor *rotor, double margin_percent)
     }
 }
 
+double mt_bands_margin(const mt_bands_source *source, double own)
+{
+    return first_given(own, source->margin_percent, 0.0);
+}
+
+/* Each order over the range of speeds. */
+static mt_status add_machine(parts *p, const mt_machine *machine, double margin_percent,
+                             mt_err *err)
+{
+    const int n = mt_machine_line_count(machine);
+    mt_order_line *const lines = mt_arena_alloc(p->mem, (size_t)n, sizeof *lines);
+    if (lines == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_machine_lines(machine, p->mem, lines, err));
+    for (int i = 0; i < n; i++) {
+        add_part(p, lines[i].order * mt_machine_speed_hz(machine, 0),
+                 lines[i].order * mt_machine_speed_hz(machine, 1), margin_percent,
+                 lines[i].what, lines[i].of);
+    }
+    return MT_OK;
+}
+
 static int by_frequency(const void *a, const void *b)
 {
     const part *const x = a;
@@ -120,10 +145,26 @@ static int by_frequency(const void *a, const void *b)
     return x->order - y->order;
 }
 
+/* "0.5E of engine to 1G of pinion (12 bands)" */
+static const char *short_label(parts *p, int first, int last)
+{
+    const part *const a = &p->items[first];
+    const part *const b = &p->items[last];
+    const bool named = a->of != NULL && a->of != b->of;
+    return mt_arena_printf(p->mem, "%s%s%s to %s%s%s (%d bands)", a->what, named ? " of " : "",
+                           named ? a->of : "", b->what, b->of != NULL ? " of " : "",
+                           b->of != NULL ? b->of : "", last - first + 1);
+}
+
 /* "8P + 1T of UH-60 + 1P of Lynx": an owner is named behind the last of its neighbours in the list. */
 static const char *label_of(parts *p, int first, int last)
 {
-    const char *label = "";
+    const bool many = last - first >= LISTED_MOST;
+    const char *label = many ? short_label(p, first, last) : "";
+    if (many) {
+        p->out_of_memory = p->out_of_memory || label == NULL;
+        return label;
+    }
     for (int i = first; i <= last && label != NULL; i++) {
         const part *const a = &p->items[i];
         const bool named = a->of != NULL && (i == last || p->items[i + 1].of != a->of);
@@ -211,6 +252,9 @@ mt_status mt_bands_make(const mt_bands_source *source, double margin_percent, mt
     for (int i = 0; i < source->n_rotors; i++) {
         most += (size_t)source->rotors[i].n_harmonics;
     }
+    for (int i = 0; i < source->n_machines; i++) {
+        most += (size_t)mt_machine_line_count(&source->machines[i]);
+    }
     parts p = {.mem = mem, .items = mt_arena_alloc(mem, most, sizeof *p.items)};
     if (p.items == NULL) {
         return mt_fail_memory(err);
@@ -223,9 +267,16 @@ mt_status mt_bands_make(const mt_bands_source *source, double margin_percent, mt
     }
     for (int i = 0; i < source->n_rotors; i++) {
         const mt_rotor *const rotor = &source->rotors[i];
-        add_rotor(&p, rotor,
-                  first_given(margin_percent, rotor->margin_percent,
-                              first_given(source->margin_percent, 0.0, 0.0)));
+        add_rotor(
+            &p, rotor,
+            first_given(margin_percent, mt_bands_margin(source, rotor->margin_percent), 0.0));
+    }
+    for (int i = 0; i < source->n_machines; i++) {
+        const mt_machine *const machine = &source->machines[i];
+        MT_TRY(add_machine(
+            &p, machine,
+            first_given(margin_percent, mt_bands_margin(source, machine->margin_percent), 0.0),
+            err));
     }
     return merge_all(&p, first_given(source->up_to_hz, HUGE_VAL, HUGE_VAL), out, err);
 }

@@ -3,9 +3,10 @@
 #define TUNE_BANDS_H
 
 #include "model/model.h"
+#include "tune/machine.h"
 
 /*
- * Forbidden frequency bands: from lists in Hz and from the harmonics of rotors. A rotor that turns at f [Hz], within r1 f to r2 f,
+ * Forbidden frequency bands: from lists in Hz, from the harmonics of rotors and from the orders of machines (machine.h). A rotor that turns at f [Hz], within r1 f to r2 f,
  * forbids for its harmonic m
  *     base    [m f r1, m f r2]
  *     margin  [m f r1 (1 - p/100), m f r2 (1 + p/100)]      p: separation margin in percent
@@ -92,13 +93,18 @@ typedef struct mt_bands_source {
     mt_band_hz *intervals; /* given in Hz */
     int n_rotors;
     mt_rotor *rotors;
-    double margin_percent; /* of the intervals, and of rotors that give none; NaN: 0 */
+    int n_machines;
+    mt_machine *machines;
+    double margin_percent; /* of the intervals, and of rotors and machines without; NaN: 0 */
     double up_to_hz;       /* bands are cut off there; NaN: not at all */
 } mt_bands_source;
 
+/* The margin of what gives `own`, or of the list where that is NaN [%]. */
+double mt_bands_margin(const mt_bands_source *source, double own);
+
 /**
  * The bands of a source, merged, sorted, cut off at up_to_hz (a base that lies above it becomes the point up_to_hz).
- * @param[in]  margin_percent  replaces every margin of the source, of all rotors too; NaN: margins as given
+ * @param[in]  margin_percent  replaces every margin of the source, of all rotors and machines too; NaN: margins as given
  * @param[out] out             lists and texts in mem
  * Harmonics whose frequency is not known and intervals with NaN are left out: the checks of a study have noted them. O(n log n) bands.
  * Fails: MT_E_MEMORY.

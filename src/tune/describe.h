@@ -91,6 +91,8 @@ mt_status mt_describe_published(mt_problem *p, const double *x_original,
                                 const double *x_recommended, mt_result *result, mt_err *err);
 /* Versions, seed, inputs, names of the variables (describe_run.c). */
 mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err);
+/* Rotors and machines of the avoid goals (describe_excitations.c). */
+mt_status mt_describe_excitations(const mt_study *study, mt_result *result, mt_err *err);
 /* Copy every text that study and problem lent into the result, which may outlive them (describe_run.c). */
 mt_status mt_describe_own(const mt_study *study, mt_result *result, mt_err *err);
 /* Add a warning (formatted) to the result. */

@@ -128,31 +128,16 @@ static double demand_violation(const mt_problem *fresh, const mt_demand *d,
     return worst;
 }
 
-/*
- * The violation in percent of what is asked for. That of a frequency is a logarithm, d = |ln(f/limit)|:
- *     below its limit  (limit - f)/limit = 1 - e^-d,    above it  (f - limit)/limit = e^d - 1
- */
-static double violation_percent(const mt_problem *fresh, const mt_demand *d,
-                                const mt_nlp_values *v, double violation)
+/* What a frequency goal is off by, of 1: (limit - f)/limit below its limit, (f - limit)/limit above. */
+static double off_by(const mt_demand *d, double hz)
 {
     const mt_goal *const g = d->goal;
-    if (g->type != MT_GOAL_FREQUENCY) {
-        return PERCENT * violation;
-    }
-    if (d->row_res >= 0 || d->row_eq >= 0) {
-        const double to_target =
-            d->row_res >= 0 ? fresh->r[d->row_res] / sqrt(d->weight) : v->eq[d->row_eq];
-        return PERCENT * fabs(expm1(to_target));
-    }
-    int row = d->row_in;
     double worst = 0.0;
-    if (MT_HAS(g->at_least)) {
-        worst = greater(worst, -expm1(v->in[row++]));
+    if (MT_HAS(d->target_hz)) {
+        return fabs(hz / d->target_hz - 1.0);
     }
-    if (MT_HAS(g->at_most)) {
-        worst = greater(worst, expm1(-v->in[row]));
-    }
-    return PERCENT * worst;
+    worst = MT_HAS(g->at_least) ? greater(worst, 1.0 - hz / g->at_least) : worst;
+    return MT_HAS(g->at_most) ? greater(worst, hz / g->at_most - 1.0) : worst;
 }
 
 static bool ends(mt_status rc)
@@ -206,8 +191,9 @@ static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
     }
     if (rc == MT_OK) {
         violation = demand_violation(fresh, d, v);
-        percent = violation_percent(fresh, d, v, violation);
         MT_TRY(demand_value(fresh, d, &g->value, err));
+        percent =
+            PERCENT * (d->goal->type == MT_GOAL_FREQUENCY ? off_by(d, g->value) : violation);
         MT_TRY(mt_describe_worst(fresh, d, result, g, &violation, &percent, err));
     } else {
         g->value = nan("");

@@ -225,6 +225,25 @@ typedef struct mt_trade_result {
     mt_trade_point *points; /* in the order of the values; the last quantity varies fastest */
 } mt_trade_result;
 
+/* A line of a Campbell diagram: frequency = order * speed. */
+typedef struct mt_result_order {
+    const char *label; /* "1.5E", "1G of pinion", "4P" */
+    double order;
+} mt_result_order;
+
+/* A rotor or a machine of an avoid goal. */
+typedef struct mt_result_excitation {
+    const char *pointer; /* of the goal */
+    const char *name;
+    double speed_lower_hz; /* range of its speed [1/s] */
+    double speed_upper_hz;
+    double margin_percent;
+    int n_configurations; /* that are kept clear of it */
+    const char **configurations;
+    int n_orders;
+    mt_result_order *orders;
+} mt_result_excitation;
+
 typedef struct mt_result_run {
     const char *modetune_version;
     const char *blas;
@@ -263,6 +282,8 @@ typedef struct mt_result {
     mt_certificate *certificates;
     int n_relaxations; /* least first; only where no design meets all goals */
     mt_relaxation *relaxations;
+    int n_excitations;
+    mt_result_excitation *excitations;
     mt_trade_result *trade; /* NULL: the study has none */
     int n_published;
     mt_result_published *published;

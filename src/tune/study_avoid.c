@@ -148,6 +148,68 @@ static void name_rotors(mt_study_check *c, const mt_bands_source *source)
     }
 }
 
+static void check_orders(mt_study_check *c, const mt_order *orders, int n)
+{
+    for (int i = 1; i < n; i++) {
+        for (int k = 0; k < i; k++) {
+            if (orders[k].thousandths == orders[i].thousandths) {
+                mt_diag_error(c->diags, orders[i].addr, "order \"%s\" is given twice",
+                              orders[i].text);
+                break;
+            }
+        }
+    }
+}
+
+static void check_gear(mt_study_check *c, const mt_gear *gear)
+{
+    double least = 1.0;
+    mt_check_positive(c, gear->ratio, gear->ratio_addr, "the ratio");
+    check_orders(c, gear->orders, gear->n_orders);
+    for (int i = 0; i < gear->n_orders; i++) {
+        const double times = (double)gear->orders[i].thousandths / 1000.0;
+        least = i == 0 ? times : fmin(least, times);
+    }
+    if (gear->teeth > 0 && !(least * gear->teeth > gear->sidebands)) {
+        mt_diag_error(c->diags, gear->sidebands_addr,
+                      "sideband %d of a mesh of %g per turn does not lie above 0 Hz",
+                      gear->sidebands, least * gear->teeth);
+    }
+}
+
+static void check_machine(mt_study_check *c, const mt_avoid *avoid, const mt_machine *machine)
+{
+    const double lower = mt_machine_speed_hz(machine, 0);
+    const double upper = mt_machine_speed_hz(machine, 1);
+    mt_check_positive(c, machine->speed_hz, machine->speed_addr, "the machine's speed");
+    if (!(machine->speed_hz <= 0.0) && (lower <= 0.0 || lower > upper)) {
+        mt_diag_error(c->diags, machine->range_addr,
+                      "the range of speeds (%g to %g Hz) must be above 0 and ascending", lower,
+                      upper);
+    }
+    check_margin(c, machine->margin_percent, machine->margin_addr);
+    check_orders(c, machine->orders, machine->n_orders);
+    for (int i = 0; i < machine->n_gears; i++) {
+        check_gear(c, &machine->gears[i]);
+    }
+    if (lower == upper && !(mt_bands_margin(&avoid->source, machine->margin_percent) > 0.0)) {
+        mt_diag_error(c->diags, machine->addr,
+                      "the bands have no width: give a range of speeds or \"margin_percent\"");
+    }
+}
+
+/* Machines without a name are told apart by number. */
+static void name_machines(mt_study_check *c, const mt_bands_source *source)
+{
+    for (int i = 0; i < source->n_machines && source->n_machines > 1; i++) {
+        mt_machine *const machine = &source->machines[i];
+        if (machine->name == NULL) {
+            machine->name = mt_arena_printf(&c->study->mem, "machine %d", i + 1);
+            c->out_of_memory = c->out_of_memory || machine->name == NULL;
+        }
+    }
+}
+
 /* A catalogue that could not be read (noted) leaves rotors without a speed. */
 static bool is_known(const mt_bands_source *source)
 {
@@ -190,6 +252,10 @@ void mt_study_check_avoid(mt_study_check *c, mt_goal *goal)
     name_rotors(c, &avoid->source);
     for (int i = 0; i < avoid->source.n_rotors; i++) {
         check_rotor(c, avoid, &avoid->source.rotors[i]);
+    }
+    name_machines(c, &avoid->source);
+    for (int i = 0; i < avoid->source.n_machines; i++) {
+        check_machine(c, avoid, &avoid->source.machines[i]);
     }
     if (c->diags->errors == 0 && is_known(&avoid->source)) {
         make_bands(c, goal);

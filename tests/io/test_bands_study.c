@@ -124,6 +124,50 @@ static void check_rotors(mt_test *t, const mt_study *s)
     }
 }
 
+/* An engine of 10 to 11 turns per second with two gears, 10 %; and one without a name, 2 % of the list. */
+static void check_machines(mt_test *t, const mt_study *s)
+{
+    static const struct {
+        double lower; /* base */
+        double upper;
+        double margin; /* of 1 */
+        const char *label;
+    } rows[] = {
+        {   5.0,    5.5,  0.1,                       "0.5E of engine"},
+        {  22.5,   27.5,  0.1, "0.125G-1 of pinion + 2.50E of engine"},
+        {  37.5,  41.25,  0.1,                     "0.125G of pinion"},
+        {  52.5,  57.75,  0.1,                   "0.125G+1 of pinion"},
+        { 285.0,  346.5,  0.1,           "1G-1 + 1G + 1G+1 of pinion"},
+        {1010.0, 1111.0,  0.1,                         "1G of engine"},
+        {2000.0, 2000.0, 0.02,                      "1E of machine 2"},
+    };
+    const mt_avoid *const avoid = s->goals[2].avoid;
+    const mt_avoid *const other = s->goals[3].avoid;
+    mt_test_row(t, "machines");
+    if (!CHECK(t, avoid != NULL && other != NULL) ||
+        !CHECK_INT(t, avoid->bands.n, MT_COUNT(rows)) || !CHECK_INT(t, other->bands.n, 1)) {
+        return;
+    }
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        check_band(t, &avoid->bands.items[i],
+                   (const double[]){rows[i].lower * (1.0 - rows[i].margin), rows[i].lower,
+                                    rows[i].upper, rows[i].upper * (1.0 + rows[i].margin)},
+                   rows[i].label);
+    }
+    check_band(t, &other->bands.items[0], (const double[]){2e3, 2e3, 5e3, 5e3},
+               "2E of machine");
+    const mt_machine *const m = &avoid->source.machines[0];
+    mt_test_row(t, "machine");
+    CHECK_NEAR(t, m->lower_hz, 10.0, TOL);
+    CHECK_NEAR(t, m->upper_hz, 11.0, TOL);
+    CHECK_INT(t, m->n_orders, 2);
+    CHECK_INT(t, m->orders[1].thousandths, 2500);
+    CHECK_INT(t, m->gears[0].sidebands, 1);
+    CHECK_NEAR(t, m->gears[0].ratio, 1.5, TOL);
+    CHECK_INT(t, m->gears[1].teeth, 101);
+    CHECK_INT(t, m->gears[1].n_orders, 0);
+}
+
 static void check_catalogues(mt_test *t, const mt_study *s)
 {
     static const double springs[] = {0.56, 0.68, 0.82, 1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3};
@@ -179,6 +223,10 @@ static void check_warnings(mt_test *t, const mt_study *s)
         "16.2 to 24.2 Hz",
         "/goals/0: nT of the dragon + 40 to 50 Hz overlap: merged into one band, 36 to 50 "
         "Hz, with its margin 32.4 to 52.5 Hz",
+        "/goals/2: 0.125G-1 of pinion + 2.50E of engine overlap: merged into one band, 22.5 to "
+        "27.5 Hz, with its margin 20.25 to 30.25 Hz",
+        "/goals/2: 1G-1 + 1G + 1G+1 of pinion overlap: merged into one band, 285 to 346.5 Hz, "
+        "with its margin 256.5 to 381.15 Hz",
     };
     mt_test_row(t, "warnings");
     if (CHECK_INT(t, s->n_warnings, MT_COUNT(want))) {
@@ -198,9 +246,10 @@ static void bands_study__every_member_arrives(mt_test *t)
                  strstr(messages.s, "warning: /goals/0/rotor/aircraft: Dragonfly: the tail "
                                     "rotor's speed (20 Hz) is not confirmed by a public "
                                     "document\n") != NULL);
-    if (CHECK_INT(t, s->n_goals, 3)) {
+    if (CHECK_INT(t, s->n_goals, 5)) {
         check_avoid(t, s);
         check_rotors(t, s);
+        check_machines(t, s);
         check_catalogues(t, s);
         check_trade(t, s);
         check_warnings(t, s);

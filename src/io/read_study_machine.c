@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Machines whose orders and gear meshes are to be avoided. */
+#include "io/read_study_priv.h"
+
+#define MACHINE_KEYS(X)                                       \
+    X(MACHINE_SPEED, "speed_hz", MT_KEY_NUMBER, false)        \
+    X(MACHINE_SPEEDS, "speed_range_hz", MT_KEY_LIST, false)   \
+    X(MACHINE_RANGE, "speed_range", MT_KEY_LIST, false)       \
+    X(MACHINE_NAME, "name", MT_KEY_TEXT, false)               \
+    X(MACHINE_ORDERS, "orders", MT_KEY_LIST, false)           \
+    X(MACHINE_GEARS, "gears", MT_KEY_LIST, false)             \
+    X(MACHINE_MARGIN, "margin_percent", MT_KEY_NUMBER, false) \
+    X(MACHINE_DESCRIPTION, "description", MT_KEY_TEXT, false) \
+    X(MACHINE_SOURCE, "source", MT_KEY_TEXT, false)
+enum { MACHINE_KEYS(MT_STUDY_KEY_ENUM) MACHINE_KEY_COUNT };
+static const mt_key MACHINE[] = {MACHINE_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_machine_keys = {"machine", MACHINE, MACHINE_KEY_COUNT};
+
+#define GEAR_KEYS(X)                                       \
+    X(GEAR_TEETH, "teeth", MT_KEY_COUNT, true)             \
+    X(GEAR_RATIO, "ratio", MT_KEY_NUMBER, false)           \
+    X(GEAR_ORDERS, "orders", MT_KEY_LIST, false)           \
+    X(GEAR_SIDEBANDS, "sidebands", MT_KEY_COUNT, false)    \
+    X(GEAR_NAME, "name", MT_KEY_TEXT, false)               \
+    X(GEAR_DESCRIPTION, "description", MT_KEY_TEXT, false) \
+    X(GEAR_SOURCE, "source", MT_KEY_TEXT, false)
+enum { GEAR_KEYS(MT_STUDY_KEY_ENUM) GEAR_KEY_COUNT };
+static const mt_key GEAR[] = {GEAR_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_gear_keys = {"gear", GEAR, GEAR_KEY_COUNT};
+
+static mt_order *read_orders(mt_study_reader *s, mt_addr list, char letter, int *n)
+{
+    mt_order *const orders = mt_read_study_list(s, list, sizeof *orders);
+    if (list == MT_NO_ADDR || orders == NULL) {
+        return orders;
+    }
+    if (mt_json_count(s->r.doc, list) == 0) {
+        mt_diag_structure(s->r.diags, list, "the list of orders is empty");
+    }
+    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
+         at = mt_json_next(s->r.doc, at)) {
+        const char *const text = mt_reader_text(&s->r, at);
+        if (text != NULL && mt_order_parse(text, letter, &orders[*n])) {
+            orders[(*n)++].addr = at;
+        } else if (text != NULL) {
+            mt_diag_structure(s->r.diags, at,
+                              "\"%s\" is no order: a number above 0 and below 1000 with at "
+                              "most three decimals, then %c (%s)",
+                              text, letter,
+                              letter == 'E' ? "times per turn" : "multiples of the gear mesh");
+        }
+    }
+    return orders;
+}
+
+static void read_gear(mt_study_reader *s, mt_addr value, mt_gear *gear)
+{
+    mt_study_object o;
+    *gear = mt_gear_default(value);
+    if (!mt_read_study_object(s, value, &mt_study_gear_keys, &o)) {
+        return;
+    }
+    gear->name = mt_reader_text(&s->r, o.found[GEAR_NAME]);
+    gear->teeth = mt_reader_count(&s->r, o.found[GEAR_TEETH], 1, MT_MAX_TEETH, 0);
+    if (o.found[GEAR_RATIO] != MT_NO_ADDR) {
+        gear->ratio = mt_read_study_member(s, &o, GEAR_RATIO, &gear->ratio_addr);
+    }
+    gear->sidebands = mt_reader_count(&s->r, o.found[GEAR_SIDEBANDS], 0, MT_MAX_SIDEBANDS, 0);
+    gear->sidebands_addr = mt_read_study_place(s, &o, GEAR_SIDEBANDS);
+    gear->orders = read_orders(s, o.found[GEAR_ORDERS], 'G', &gear->n_orders);
+}
+
+static void read_gears(mt_study_reader *s, mt_addr list, mt_machine *machine)
+{
+    machine->gears = mt_read_study_list(s, list, sizeof *machine->gears);
+    if (list == MT_NO_ADDR || machine->gears == NULL) {
+        return;
+    }
+    if (mt_json_count(s->r.doc, list) == 0) {
+        mt_diag_structure(s->r.diags, list, "the list of gears is empty");
+    }
+    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
+         at = mt_json_next(s->r.doc, at)) {
+        if (mt_reader_type(&s->r, at, MT_KEY_OBJECT)) {
+            read_gear(s, at, &machine->gears[machine->n_gears++]);
+        }
+    }
+}
+
+/* A nominal speed with factors, or the two speeds themselves. */
+static void read_speeds(mt_study_reader *s, const mt_study_object *o, mt_machine *machine)
+{
+    double range[2];
+    (void)mt_read_study_one_of(s, o, MACHINE_SPEED, 2);
+    machine->speed_hz = mt_read_study_member(s, o, MACHINE_SPEED, &machine->speed_addr);
+    if (o->found[MACHINE_SPEEDS] != MT_NO_ADDR) {
+        machine->range_addr = mt_read_study_place(s, o, MACHINE_SPEEDS);
+        if (mt_read_study_pair(s, o->found[MACHINE_SPEEDS], range)) {
+            machine->lower_hz = range[0];
+            machine->upper_hz = range[1];
+        }
+    }
+    if (!mt_read_study_has(s, o, MACHINE_RANGE)) {
+        return;
+    }
+    machine->range_addr = mt_read_study_place(s, o, MACHINE_RANGE);
+    if (!mt_read_study_has(s, o, MACHINE_SPEED)) {
+        mt_diag_structure(s->r.diags, machine->range_addr,
+                          "\"speed_range\" multiplies \"speed_hz\", which is missing");
+    }
+    if (o->found[MACHINE_RANGE] != MT_NO_ADDR &&
+        mt_read_study_pair(s, o->found[MACHINE_RANGE], range)) {
+        machine->range_lower = range[0];
+        machine->range_upper = range[1];
+    }
+}
+
+void mt_read_study_machine(mt_study_reader *s, mt_addr value, mt_machine *machine)
+{
+    mt_study_object o;
+    *machine = mt_machine_default(value);
+    if (!mt_read_study_object(s, value, &mt_study_machine_keys, &o)) {
+        return;
+    }
+    machine->name = mt_reader_text(&s->r, o.found[MACHINE_NAME]);
+    read_speeds(s, &o, machine);
+    if (!mt_read_study_has(s, &o, MACHINE_ORDERS) && !mt_read_study_has(s, &o, MACHINE_GEARS)) {
+        (void)mt_read_study_one_of(s, &o, MACHINE_ORDERS, 2);
+    }
+    machine->orders = read_orders(s, o.found[MACHINE_ORDERS], 'E', &machine->n_orders);
+    read_gears(s, o.found[MACHINE_GEARS], machine);
+    machine->margin_percent =
+        mt_read_study_member(s, &o, MACHINE_MARGIN, &machine->margin_addr);
+}
