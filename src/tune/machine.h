@@ -14,9 +14,9 @@
 
 /* An order as written, in thousandths: exact, and a product with it is rounded once. */
 typedef struct mt_order {
-    int thousandths;
     const char *text;
     mt_addr addr;
+    int thousandths;
 } mt_order;
 
 enum { MT_MAX_ORDER_THOUSANDTHS = 999999, MT_MAX_TEETH = 9999, MT_MAX_SIDEBANDS = 99 };

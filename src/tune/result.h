@@ -282,9 +282,9 @@ typedef struct mt_result {
     mt_certificate *certificates;
     int n_relaxations; /* least first; only where no design meets all goals */
     mt_relaxation *relaxations;
-    int n_excitations;
     mt_result_excitation *excitations;
     mt_trade_result *trade; /* NULL: the study has none */
+    int n_excitations;
     int n_published;
     mt_result_published *published;
     int n_warnings;

@@ -10,6 +10,10 @@
 /* A rotor turns at 0.9 to 1.1 of its nominal speed, between idle and overspeed at 0.5 to 1.3; [95, 105] is per cent. */
 static const double LEAST_SPEED = 0.5;
 static const double MOST_SPEED = 2.0;
+/* An engine idles at a tenth of its nominal speed, and turns at less than 30 000 per minute. */
+static const double LEAST_MACHINE = 0.05;
+static const double MOST_SPEED_HZ = 500.0;
+static const double SECONDS = 60.0;
 /* A separation margin is 5 to 20 per cent; 0.1 is the factor that 10 per cent are. */
 static const double LEAST_MARGIN_PERCENT = 1.0;
 /* A band narrower than a thousandth of its frequency forbids less than a model is exact to. */
@@ -28,26 +32,49 @@ static void at(mt_doubt *doubt, mt_addr addr)
     }
 }
 
-static void doubt_range(mt_doubt_list *out, const mt_rotor *rotor)
+/* Factors a to b of the speed of a rotor or a machine. */
+typedef struct factors {
+    double a;
+    double b;
+    double least; /* a slower speed is hardly meant */
+    const char *whose;
+    mt_addr addr;
+} factors;
+
+static void doubt_range(mt_doubt_list *out, const factors *range)
 {
-    const double a = rotor->range_lower;
-    const double b = rotor->range_upper;
-    if (a >= LEAST_SPEED && b <= MOST_SPEED) {
+    const double a = range->a;
+    const double b = range->b;
+    if (a >= range->least && b <= MOST_SPEED) {
         return;
     }
     if (b > MOST_SPEED && b >= PERCENT * LEAST_SPEED) {
         at(mt_doubt_add(out, MT_LEVEL_DOUBT, "speed_range",
-                        "speed_range [%g, %g] says %g to %g times the rotor's speed: it takes "
+                        "speed_range [%g, %g] says %g to %g times the %s speed: it takes "
                         "factors, and these look like per cent; [%g, %g] is meant?",
-                        a, b, a, b, a / PERCENT, b / PERCENT),
-           rotor->range_addr);
+                        a, b, a, b, range->whose, a / PERCENT, b / PERCENT),
+           range->addr);
         return;
     }
     at(mt_doubt_add(out, MT_LEVEL_DOUBT, "speed_range",
-                    "speed_range [%g, %g] says %g to %g times the rotor's speed: is such a "
+                    "speed_range [%g, %g] says %g to %g times the %s speed: is such a "
                     "range meant?",
-                    a, b, a, b),
-       rotor->range_addr);
+                    a, b, a, b, range->whose),
+       range->addr);
+}
+
+/* Speeds are in turns per second; what is meant for turns per minute is sixty times too fast. */
+static void doubt_speed(mt_doubt_list *out, const mt_machine *machine)
+{
+    const double lower = mt_machine_speed_hz(machine, 0);
+    const double upper = mt_machine_speed_hz(machine, 1);
+    if (upper > MOST_SPEED_HZ) {
+        at(mt_doubt_add(out, MT_LEVEL_DOUBT, "speed",
+                        "the machine turns at %g to %g Hz, which is %g to %g per minute: if "
+                        "turns per minute are meant, write \"%g*rpm\"",
+                        lower, upper, SECONDS * lower, SECONDS * upper, upper),
+           MT_HAS(machine->lower_hz) ? machine->range_addr : machine->speed_addr);
+    }
 }
 
 static void doubt_margin(mt_doubt_list *out, double margin, mt_addr addr)
@@ -66,8 +93,16 @@ static void doubt_avoid(mt_doubt_list *out, const mt_goal *goal)
     doubt_margin(out, avoid->source.margin_percent, avoid->margin_addr);
     for (int i = 0; i < avoid->source.n_rotors; i++) {
         const mt_rotor *const rotor = &avoid->source.rotors[i];
-        doubt_range(out, rotor);
+        doubt_range(out, &(factors){rotor->range_lower, rotor->range_upper, LEAST_SPEED,
+                                    "rotor's", rotor->range_addr});
         doubt_margin(out, rotor->margin_percent, rotor->margin_addr);
+    }
+    for (int i = 0; i < avoid->source.n_machines; i++) {
+        const mt_machine *const machine = &avoid->source.machines[i];
+        doubt_range(out, &(factors){machine->range_lower, machine->range_upper, LEAST_MACHINE,
+                                    "machine's", machine->range_addr});
+        doubt_speed(out, machine);
+        doubt_margin(out, machine->margin_percent, machine->margin_addr);
     }
     for (int i = 0; i < avoid->bands.n; i++) {
         const mt_band *const band = &avoid->bands.items[i];

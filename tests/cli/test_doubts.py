@@ -39,6 +39,10 @@ def changed(base, path, value):
     return out
 
 
+def machine(**members):
+    return {"type": "avoid", "margin_percent": 10, "machine": dict({"orders": ["1E"]}, **members)}
+
+
 class Doubts(CliTest):
     def write_json(self, name, data):
         return self.write(name, json.dumps(data))
@@ -78,6 +82,14 @@ class Doubts(CliTest):
             ((*rotor, "speed_range"), [0.9, 2.1], "speed_range", "/goals/0/rotor/speed_range", [0.9, 2]),
             ((*rotor, "speed_range"), [0.49, 1], "speed_range", "/goals/0/rotor/speed_range", [0.5, 1]),
             ((*rotor, "margin_percent"), 0.1, "margin", "/goals/0/rotor/margin_percent", 1),
+            (goal, machine(speed_hz=10, speed_range=[20, 110]), "speed_range", "/goals/0/machine/speed_range",
+             machine(speed_hz=10, speed_range=[0.2, 1.1])),
+            (goal, machine(speed_range_hz=[7, 3000]), "speed", "/goals/0/machine/speed_range_hz",
+             machine(speed_range_hz=[7, "3000*rpm"])),
+            (goal, machine(speed_hz=1500, orders=["0.01E"]), "speed", "/goals/0/machine/speed_hz",
+             machine(speed_hz=480, orders=["0.02E"])),
+            (goal, machine(speed_hz=10, margin_percent=0.1), "margin", "/goals/0/machine/margin_percent",
+             machine(speed_hz=10, margin_percent=2)),
             (goal, {"type": "avoid", "bands_hz": [[9, 11]], "margin_percent": 0.5}, "margin", "/goals/0/margin_percent",
              {"type": "avoid", "bands_hz": [[9, 11]], "margin_percent": 0}),
             (goal, {"type": "avoid", "bands_hz": [[9, 9.001]]}, "band", "/goals/0/bands_hz",

@@ -152,10 +152,10 @@ static void bands__cover_every_order_at_every_speed(mt_test *t)
         int bands;
         const char *label; /* of the last */
     } rows[] = {
-        {        49.0, 50.0,  0.0, 8,                    "4E of engine"},
+        {        49.0, 50.0,  0.0, 8,                         "4E of engine"},
         {        30.0, 31.0, 10.0, 4, "2E + 2.5E + 3E + 3.5E + 4E of engine"},
-        {700.0 / 60.0, 50.0,  5.0, 1,  "0.5E to 4E of engine (8 bands)"},
-        {        25.0, 25.0,  1.0, 8,                    "4E of engine"},
+        {700.0 / 60.0, 50.0,  5.0, 1,       "0.5E to 4E of engine (8 bands)"},
+        {        25.0, 25.0,  1.0, 8,                         "4E of engine"},
     };
     static const char *const texts[ORDERS] = {"0.5E", "1E", "1.5E", "2E",
                                               "2.5E", "3E", "3.5E", "4E"};
