@@ -61,6 +61,7 @@ mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
     }
     a->n_rigid = a->modes.n_rigid;
     a->n_null = a->modes.n_rigid;
+    a->n_most = a->modes.count;
     *out = a;
     return MT_OK;
 }

@@ -23,6 +23,7 @@ typedef struct mt_analysis {
     mt_modes modes;
     int n_rigid; /* rigid-body modes that are counted: those at the first design, unless mt_analysis_count said otherwise; -1 before */
     int n_null;  /* null directions at the first design itself */
+    int n_most; /* modes that a design has at most, rigid-body ones included: a direction whose mass reaches 0 loses its mode, the highest, to infinity */
     bool
         recount; /* where fewer directions are free than n_rigid says, count that design by itself; else that is MT_E_DOMAIN */
     bool with_gradient;
@@ -59,6 +60,8 @@ mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
  */
 mt_status mt_analysis_count(mt_analysis *a, const mt_count_box *box,
                             const mt_system_drive *drive, double position, mt_err *err);
+/* Has the family more vibration modes than the last solve's design, and this index one of those that are missing there (a mass is 0)? It is at infinity. */
+bool mt_analysis_is_infinite(const mt_analysis *a, int index);
 /* Directions that remain free where only the terms of K with holds[t] (one for each of lin->list[MT_TERM_STIFFNESS]) resist: the null directions of their sum, whatever their sizes. Geometry and mass are those of the
  * last update. Not where the mechanism is loaded (lin->kg). O(n^3). */
 mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor *mass,

@@ -92,6 +92,41 @@ static mt_status count_terms(family *f, mt_arena *mem, int *n_rigid, mt_err *err
     return mt_analysis_free_directions(lin, &f->a->mass, holds, mem, n_rigid, err);
 }
 
+/* Directions that have mass at almost all designs of the box: the rank of M with every coefficient that can be positive. Products of inertia stay as they are. */
+static mt_status count_masses(const family *f, mt_arena *mem, int *n_most, mt_err *err)
+{
+    const mt_linear *const lin = f->a->lin;
+    const mt_program *const p = &lin->sys->program;
+    const mt_term_list *const list = &lin->list[MT_TERM_MASS];
+    const ptrdiff_t n = lin->n;
+    double *const lo = mt_arena_f64(mem, (size_t)p->count, 1);
+    double *const hi = mt_arena_f64(mem, (size_t)p->count, 1);
+    double *const m = mt_arena_f64(mem, (size_t)n, (size_t)n);
+    mt_mass_factor factor;
+    if (lo == NULL || hi == NULL || m == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_program_interval(p, f->lower, f->upper, lo, hi);
+    memcpy(m, lin->m_r, (size_t)(n * n) * sizeof *m);
+    for (int t = 0; t < list->n_terms; t++) {
+        const mt_term *const term = &list->terms[t];
+        const mt_node c = term->coefficient;
+        if (term->pair || lin->value[c] != 0.0 || !(hi[c] > DBL_MIN)) {
+            continue;
+        }
+        const double size = isfinite(hi[c]) ? hi[c] : 1.0;
+        for (int r = 0; r < term->count; r++) {
+            const double *const row = lin->reduced[MT_TERM_MASS] + ((term->first + r) * n);
+            for (ptrdiff_t j = 0; j < n; j++) {
+                mt_axpy((int)n, size * row[j], row, m + (j * n));
+            }
+        }
+    }
+    MT_TRY(mt_modal_factor_mass((int)n, m, mem, &factor, err));
+    *n_most = factor.rank > *n_most ? factor.rank : *n_most;
+    return MT_OK;
+}
+
 /* Design number k: 0 and 1 corners, 2 the middle, then spread. */
 static void place(const family *f, int k)
 {
@@ -146,17 +181,31 @@ static mt_status open_family(const mt_analysis *a, const mt_count_box *box,
                                   box->parameter, f->at, &f->a, err);
 }
 
-static mt_status count(const mt_analysis *a, const mt_count_box *box,
-                       const mt_system_drive *drive, double position, mt_arena *mem,
-                       int *n_rigid, mt_err *err)
+/* Is the rank of K a matter of which coefficients vanish? Couplings that vary may cancel what they couple. */
+static bool is_structural(const mt_linear *lin)
+{
+    const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];
+    bool structural = lin->sys->geometry_fixed && !lin->sys->loaded && lin->kg == NULL;
+    for (int t = 0; t < list->n_terms; t++) {
+        structural = structural && !(list->terms[t].pair && list->terms[t].varies);
+    }
+    return structural;
+}
+
+static mt_status count(mt_analysis *a, const mt_count_box *box, const mt_system_drive *drive,
+                       double position, mt_arena *mem, mt_err *err)
 {
     family f = {.a = NULL};
+    int n_rigid = a->n_null;
     mt_status rc = open_family(a, box, drive, position, mem, &f, err);
-    if (rc == MT_OK) {
-        const mt_system *const sys = f.a->sys;
-        const bool fixed = sys->geometry_fixed && !sys->loaded && f.a->lin->kg == NULL;
-        *n_rigid = f.a->n_rigid < *n_rigid ? f.a->n_rigid : *n_rigid;
-        rc = fixed ? count_terms(&f, mem, n_rigid, err) : count_designs(&f, n_rigid, err);
+    if (rc == MT_OK && a->modes.n_condensed > 0) {
+        rc = count_masses(&f, mem, &a->n_most, err);
+    }
+    if (rc == MT_OK && n_rigid > 0) {
+        n_rigid = f.a->n_rigid < n_rigid ? f.a->n_rigid : n_rigid;
+        rc = is_structural(f.a->lin) ? count_terms(&f, mem, &n_rigid, err)
+                                     : count_designs(&f, &n_rigid, err);
+        a->n_rigid = n_rigid;
     }
     mt_analysis_delete(f.a);
     return rc;
@@ -166,17 +215,19 @@ mt_status mt_analysis_count(mt_analysis *a, const mt_count_box *box,
                             const mt_system_drive *drive, double position, mt_err *err)
 {
     mt_arena mem;
-    int n_rigid = a->n_null;
-    if (box == NULL || box->n == 0 || n_rigid == 0) {
+    if (box == NULL || box->n == 0 || (a->n_null == 0 && a->modes.n_condensed == 0)) {
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&mem, 0, err));
-    const mt_status rc = count(a, box, drive, position, &mem, &n_rigid, err);
-    if (rc == MT_OK) {
-        a->n_rigid = n_rigid;
-    }
+    const mt_status rc = count(a, box, drive, position, &mem, err);
     mt_arena_free(&mem);
     return rc;
+}
+
+bool mt_analysis_is_infinite(const mt_analysis *a, int index)
+{
+    return a->modes.n_unstable == 0 && index > a->modes.count - a->modes.n_rigid &&
+           index <= a->n_most - a->n_rigid;
 }
 
 /* Does row . y differ from 0 by more than rounding for a vector of the cluster? */

@@ -15,6 +15,9 @@
 
 double mt_problem_ln_ratio(const mt_modes *modes, int pos, double edge_hz, double floor_hz)
 {
+    if (pos < 0) {
+        return MT_MOST_INSIDE;
+    }
     const double hz = mt_modal_hz(modes, pos);
     const double part = hz / floor_hz;
     return part < 1.0 ? log(floor_hz / edge_hz) + (0.5 * ((part * part) - 1.0))
@@ -27,9 +30,12 @@ mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, doubl
     int size = 1;
     int vibrating = 0;
     const mt_modes *const modes = &a->modes;
+    memset(out, 0, (size_t)p->n * sizeof *out);
+    if (pos < 0) {
+        return MT_OK;
+    }
     const int first = mt_modal_cluster(modes, pos, &size);
     const double lambda = fmax(modes->lambda[pos], mt_enclosure_lambda(floor_hz));
-    memset(out, 0, (size_t)p->n * sizeof *out);
     for (int k = first; k < first + size; k++) {
         MT_TRY(mt_analysis_dlambda_raw(a, k, p->work, err));
         mt_axpy(p->n, 1.0, p->work, out);
@@ -101,7 +107,7 @@ static mt_status frequency_demand(mt_problem *p, const mt_demand *d, int pos,
     const double edge = fmin(fmin(d->target_hz, g->at_least), g->at_most); /* of those given */
     const double floor = MT_FREQUENCY_FLOOR * edge;
     double *const gradient = with_gradient ? p->dshape : NULL; /* n numbers of it */
-    if (!(mt_modal_hz(&a->modes, pos) >= 0.0)) {
+    if (pos >= 0 && !(mt_modal_hz(&a->modes, pos) >= 0.0)) {
         return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\": the mode has no frequency",
                        mt_analysis_configuration(a));
     }
@@ -222,7 +228,10 @@ mt_status mt_demand_eval(mt_problem *p, const mt_demand *d, bool with_gradient,
         return MT_OK;
     }
     MT_TRY(mt_view_position(p, &p->views[d->view], d->mode, d->named, &pos, err));
-    if (pos < 0) {
+    const mt_view *const view = &p->views[d->view];
+    const bool infinite = d->goal->type == MT_GOAL_FREQUENCY && view->solved &&
+                          mt_analysis_is_infinite(view->analysis, d->mode);
+    if (pos < 0 && !infinite) {
         return no_mode(p, d, err);
     }
     switch (d->goal->type) {

@@ -73,7 +73,7 @@ bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi)
     double m_scale = 0.0;
     mt_enclosure_bounds(e, lo, hi);
     for (int i = 0; i < e->n_coefficients; i++) {
-        const bool freed = e->coefficients[i].most == 0.0 && e->value[MT_HIGH][i] > 0.0;
+        const bool freed = e->coefficients[i].most <= DBL_MIN && e->value[MT_HIGH][i] > DBL_MIN;
         if (!(e->value[MT_LOW][i] >= 0.0) || !isfinite(e->value[MT_HIGH][i]) || freed) {
             return false;
         }

@@ -88,12 +88,8 @@ static double count_possible(const mt_problem *p)
 {
     double all = 1.0;
     for (int i = 0; i < p->n_clears; i++) {
-        const mt_modes *const modes = &p->views[p->clears[i].view].analysis->modes;
+        const int n = mt_view_vibrations(&p->views[p->clears[i].view]);
         const int m = p->clears[i].bands.n;
-        int n = 0;
-        for (int k = 0; k < modes->count; k++) {
-            n += modes->kind[k] == MT_MODE_FLEXIBLE ? 1 : 0;
-        }
         for (int k = 1; k <= m; k++) {
             all *= (double)(n + k) / (double)k;
         }

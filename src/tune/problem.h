@@ -185,6 +185,8 @@ mt_status mt_problem_add_view(mt_problem *p, int configuration, int *out, mt_err
 /* *pos: position of a mode (by index, or by place in the view's list of named ones where mode is 0) in the view's modes; -1: there is none, or the configuration is unstable. */
 mt_status mt_view_position(mt_problem *p, mt_view *view, int mode, int named, int *pos,
                            mt_err *err);
+/* Vibration modes of a view: as many as any design of the study has. */
+int mt_view_vibrations(const mt_view *view);
 /* Where all named modes are at the last solve, which was at p->x (problem_track.c). */
 mt_status mt_view_track(mt_problem *p, mt_view *view, mt_err *err);
 
@@ -227,7 +229,7 @@ mt_status mt_problem_init_rows(mt_problem *p, mt_err *err);
 #define MT_FREQUENCY_FLOOR 1e-3
 /* A mode at 0 Hz is inside a band that begins there by this much, a factor of 1000 of its upper edge: ln(1 / MT_FREQUENCY_FLOOR). */
 #define MT_MOST_INSIDE 7.0
-/* ln(f / edge_hz) of the mode at pos, so continued. */
+/* ln(f / edge_hz) of the mode at pos, so continued; pos -1: a mode at infinity, MT_MOST_INSIDE above anything and without a slope. */
 double mt_problem_ln_ratio(const mt_modes *modes, int pos, double edge_hz, double floor_hz);
 /* Its slope lambda'/(2 lambda) for all variables, chained to t: out[n]. A repeated mode: the mean of its cluster, which is smooth where the single modes are not. */
 mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, double floor_hz,

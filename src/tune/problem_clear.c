@@ -14,12 +14,6 @@
 static const double CLEARANCE_LOWER = -3.0;
 static const double CLEARANCE_UPPER = 3.0;
 
-/* Modes that are vibrations wherever the configuration is stable: what is rigid is fixed at the original design. */
-static int flexible_count(const mt_modes *modes)
-{
-    return modes->count - modes->n_rigid;
-}
-
 /* Rows of one band: modes k, k-1, ... below and k+1, k+2, ... above, as many as there are and at most the cluster. */
 static int rows_below(const mt_clear *c, int below)
 {
@@ -78,7 +72,7 @@ static mt_status add_clear(mt_problem *p, int goal_index, int view, mt_err *err)
 
 static void number_rows(mt_problem *p, mt_clear *c)
 {
-    const int flexible = flexible_count(&p->views[c->view].analysis->modes);
+    const int flexible = mt_view_vibrations(&p->views[c->view]);
     c->row_in = p->n_in;
     for (int b = 0; b < c->bands.n; b++) {
         const int below = p->below[c->first + b];
@@ -130,16 +124,17 @@ typedef struct edge_row {
     double sign;
 } edge_row;
 
-static mt_status put_row(mt_problem *p, mt_analysis *a, const edge_row *e, const double *t,
+static mt_status put_row(mt_problem *p, const mt_view *view, const edge_row *e, const double *t,
                          bool with_gradient, mt_nlp_values *out, mt_err *err)
 {
+    mt_analysis *const a = view->analysis;
     const int index = e->index;
     const int row = e->row;
     const double sign = e->sign;
     const double z = p->clearance ? t[p->n] : 0.0;
     const int pos = mt_modal_flexible(&a->modes, index);
     const double floor = MT_FREQUENCY_FLOOR * e->edge_hz;
-    if (pos < 0 || !(e->edge_hz > 0.0)) {
+    if ((pos < 0 && !mt_analysis_is_infinite(a, index)) || !(e->edge_hz > 0.0)) {
         return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\" has no vibration mode %d here",
                        mt_analysis_configuration(a), index);
     }
@@ -161,25 +156,25 @@ static mt_status put_row(mt_problem *p, mt_analysis *a, const edge_row *e, const
 static mt_status put_rows(mt_problem *p, const mt_clear *c, const double *t, bool with_gradient,
                           mt_nlp_values *out, mt_err *err)
 {
-    mt_analysis *const a = p->views[c->view].analysis;
-    const int flexible = flexible_count(&a->modes);
+    const mt_view *const view = &p->views[c->view];
+    const int flexible = mt_view_vibrations(view);
     int row = c->row_in;
     for (int b = 0; b < c->bands.n; b++) {
         const mt_band *const band = &c->bands.items[b];
         const int below = p->below[c->first + b];
         for (int k = 0; k < rows_below(c, below); k++) {
             const edge_row e = {row++, below - k, band->lower_hz, -1.0};
-            MT_TRY(put_row(p, a, &e, t, with_gradient, out, err));
+            MT_TRY(put_row(p, view, &e, t, with_gradient, out, err));
         }
         for (int k = 0; k < rows_above(c, below, flexible); k++) {
             const edge_row e = {row++, below + 1 + k, band->upper_hz, 1.0};
-            MT_TRY(put_row(p, a, &e, t, with_gradient, out, err));
+            MT_TRY(put_row(p, view, &e, t, with_gradient, out, err));
         }
     }
     if (row != c->row_in + c->n_rows) {
         return mt_fail(err, MT_E_DOMAIN,
                        "configuration \"%s\" has another number of modes here",
-                       mt_analysis_configuration(a));
+                       mt_analysis_configuration(view->analysis));
     }
     return MT_OK;
 }
@@ -239,7 +234,7 @@ bool mt_clear_row_at(const mt_problem *p, const int *below, int row, mt_clear_ro
     int left = row;
     for (int i = 0; i < p->n_clears; i++) {
         const mt_clear *const c = &p->clears[i];
-        const int flexible = flexible_count(&p->views[c->view].analysis->modes);
+        const int flexible = mt_view_vibrations(&p->views[c->view]);
         for (int b = 0; b < c->bands.n; b++) {
             const int k = below[c->first + b];
             const int under = rows_below(c, k);

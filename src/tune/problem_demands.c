@@ -50,6 +50,7 @@ mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const double
     *out = NULL;
     MT_TRY(mt_analysis_new(p->study->model, view->configuration, p->n, p->inputs, x, &a, err));
     a->n_rigid = view->analysis->n_rigid;
+    a->n_most = view->analysis->n_most;
     const mt_status rc = solve_counted(a, a->n_null, x, err);
     if (rc != MT_OK) {
         mt_analysis_delete(a);
@@ -118,6 +119,11 @@ mt_status mt_view_position(mt_problem *p, mt_view *view, int mode, int named, in
     return MT_OK;
 }
 
+int mt_view_vibrations(const mt_view *view)
+{
+    return view->analysis->n_most - view->analysis->n_rigid;
+}
+
 static const char *instability(const mt_view *view)
 {
     return view->analysis->modes.n_unstable > 0 ? " (it is unstable there)" : "";
@@ -149,11 +155,10 @@ static mt_status resolve_name(const mt_problem *p, const mt_view *view, mt_deman
                    mt_analysis_configuration(view->analysis), instability(view));
 }
 
-/* An index must be there at the original design; where that is unstable nothing has an index, and it is enough that there are as many freedoms. */
+/* An index must be there at some design; where the original one is unstable nothing has an index, and it is enough that there are as many freedoms. */
 static mt_status resolve_index(const mt_view *view, const mt_demand *d, mt_err *err)
 {
-    const mt_modes *const modes = &view->analysis->modes;
-    const int most = modes->count - modes->n_rigid;
+    const int most = mt_view_vibrations(view);
     if (d->mode <= most) {
         return MT_OK;
     }

@@ -48,7 +48,7 @@ static mt_status frequency(mt_problem *p, const mt_corner *c, int mode, double e
     mt_analysis *const a = c->analysis;
     const int pos = mt_modal_flexible(&a->modes, mode);
     const double floor_hz = MT_FREQUENCY_FLOOR * edge_hz;
-    if (pos < 0) {
+    if (pos < 0 && !mt_analysis_is_infinite(a, mode)) {
         return mt_fail(err, MT_E_DOMAIN,
                        "configuration \"%s\" has no vibration mode %d at a corner of the "
                        "tolerances",

@@ -207,6 +207,54 @@ static void rank__a_named_mode_is_the_models(mt_test *t)
     study_free(&c);
 }
 
+/* A mass that is 0 in the original: its mode comes down from infinity. With k1 = 500, k2 = 1000, m1 = 1 and lambda given, m2 lambda (K11 - lambda) = det K - k2 lambda. */
+static void rank__an_added_mass_is_sized_from_zero(mt_test *t)
+{
+    static const char *const model =
+        "{'format': 'modetune-model/1', 'name': 'two masses', 'dimension': 2, 'parameters': "
+        "{'m': 1, "
+        "'m2': 0, 'k1': 500, 'k2': 1000}, 'bodies': [{'name': 'm1', 'mass_kg': 'm', 'centre': "
+        "[1, 0]}, {'name': 'm2', 'mass_kg': 'm2', 'centre': [2, 0]}], 'joints': ["
+        "{'name': 'r1', 'type': 'pin-in-slot', 'bodies': ['ground', 'm1'], 'at': [1, 0], "
+        "'axis': "
+        "[1, 0]}, {'name': 'r2', 'type': 'pin-in-slot', 'bodies': ['ground', 'm2'], 'at': [2, "
+        "0], 'axis': [1, 0]}], 'springs': [{'name': 's1', 'type': 'axial', 'bodies': "
+        "['ground', "
+        "'m1'], 'at': [[0, 0], [1, 0]], 'stiffness_n_per_m': 'k1'}, {'name': 's2', 'type': "
+        "'axial', 'bodies': ['m1', 'm2'], 'at': [[1, 0], [2, 0]], 'stiffness_n_per_m': 'k2'}]}";
+    static const struct {
+        const char *name;
+        const char *goal;
+        double hz; /* of the mode that decides */
+    } rows[] = {
+        {             "mode 1",   "{'type': 'frequency', 'mode': 1, 'target_hz': 3}", 3.0},
+        { "mode 2 by a target",   "{'type': 'frequency', 'mode': 2, 'target_hz': 8}", 8.0},
+        {  "mode 2 by a limit",  "{'type': 'frequency', 'mode': 2, 'at_most_hz': 8}", 8.0},
+        {   "mode 1 by a band",            "{'type': 'avoid', 'bands_hz': [[3, 6]]}", 3.0},
+        {"mode 2 is far above", "{'type': 'frequency', 'mode': 2, 'at_least_hz': 8}", 0.0},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        const double lambda = 4.0 * STUDY_PI * STUDY_PI * rows[i].hz * rows[i].hz;
+        const double k1 = 500.0;
+        const double want = rows[i].hz > 0.0
+                                ? ((k1 * K2) - (K2 * lambda)) / (lambda * (k1 + K2 - lambda))
+                                : 0.0;
+        char members[STUDY_PATH];
+        study_case c;
+        mt_test_row(t, "%s", rows[i].name);
+        (void)snprintf(
+            members, sizeof members,
+            "'variables': [{'parameter': 'm2', 'lower': 0, 'upper': 3}], 'goals': [%s]",
+            rows[i].goal);
+        if (study_solve(t, model, members, &c)) {
+            CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
+            CHECK_NEAR(t, study_value(&c, 1, "m2"), want, 1e-5);
+            CHECK_INT(t, c.result->n_warnings, 0);
+        }
+        study_free(&c);
+    }
+}
+
 typedef struct opened {
     study_case c;
     mt_reference_cache references;
@@ -412,6 +460,7 @@ MT_TEST_MAIN(MT_TEST(rank__an_added_spring_is_sized_from_zero),
              MT_TEST(rank__corners_of_tolerances_count_alike),
              MT_TEST(rank__points_of_a_trade_study_count_alike),
              MT_TEST(rank__a_named_mode_is_the_models),
+             MT_TEST(rank__an_added_mass_is_sized_from_zero),
              MT_TEST(rank__the_count_is_the_least_of_the_box),
              MT_TEST(rank__loaded_configurations_are_counted_over_designs),
              MT_TEST(rank__a_count_that_does_not_hold_is_noticed),
