@@ -277,5 +277,7 @@ mt_status mt_discrete_solve(mt_problem *const *problems, int n_workers, mt_arena
     }
     r.n = 0;
     rank(&d, all, n_all, r.most, r.best, &r.n);
-    return collect(&d, &r, out, err);
+    MT_TRY(collect(&d, &r, out, err));
+    const bool known = r.n > 0 && r.best[0]->feasible && d.stop != MT_STOP_USER;
+    return known ? mt_discrete_undetermined(&d, r.best[0], out, err) : MT_OK;
 }

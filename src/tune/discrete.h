@@ -86,6 +86,13 @@ const char *mt_discrete_rank_text(const mt_discrete_report *report, const mt_nlp
 /* discrete_judge.c: judge list[n], on workers; at most budget evaluations for each where it is mixed (0: no limit). Adds to the search's counters. */
 mt_status mt_discrete_judge(mt_discrete *d, int n, mt_combination *list, long budget,
                             mt_err *err);
+/* discrete_undetermined.c: directions that the goals do not settle at the best combination, into out: single catalogues any of whose values does, and those of the continuous variables with the
+ * catalogues as they are. Searches that combination once more where it is mixed. */
+mt_status mt_discrete_undetermined(mt_discrete *d, const mt_combination *best,
+                                   mt_nlp_result *out, mt_err *err);
+/* discrete_judge.c: search the continuous variables of c once more, for those directions (nothing of c is changed); memory of out->undetermined is mem's. */
+mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_arena *mem,
+                                 mt_nlp_result *out, mt_err *err);
 /* Is a ahead of b? Feasible ones first, by the objectives; the others by squares. */
 bool mt_discrete_before(const mt_discrete *d, const mt_combination *a, const mt_combination *b);
 /* Room for n combinations. */

@@ -229,6 +229,32 @@ static mt_status search_closed(mt_problem *p, mt_arena *mem, mt_combination *c, 
     return ends(rc) ? mt_fail(err, rc, "%s", why.text) : MT_OK;
 }
 
+mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_arena *mem,
+                                 mt_nlp_result *out, mt_err *err)
+{
+    const judging j = {.d = d};
+    mt_study closed;
+    mt_problem *p = NULL;
+    mt_gap_result gaps = {0};
+    mt_err why = {0};
+    int stage = 0;
+    *out = (mt_nlp_result){.n_undetermined = 0};
+    MT_TRY(close_study(&j, c, mem, &closed, err));
+    MT_TRY(mt_problem_new(&closed, d->p->references, &p, err));
+    p->stop = d->p->stop;
+    const bool bands = p->n_clears > 0;
+    const mt_status rc = bands ? mt_gaps_solve(p, 1, mem, &gaps, err)
+                               : mt_search_designs(&p, 1, mem, out, &stage, &why, err);
+    if (bands) {
+        *out = (mt_nlp_result){.evals = gaps.evals,
+                               .n_undetermined = gaps.n_undetermined,
+                               .undetermined = gaps.undetermined,
+                               .undetermined_effect = gaps.undetermined_effect};
+    }
+    mt_problem_delete(p);
+    return rc;
+}
+
 static mt_status judge_mixed(void *context, int worker, int task, mt_err *err)
 {
     const judging *const j = context;

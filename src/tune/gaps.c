@@ -10,6 +10,7 @@
 typedef struct slot {
     mt_arena mem;
     mt_nlp_result found;
+    int n_t;
     double *aims; /* [n_aims] of the best solution, where there is one and several objectives */
     mt_status rc;
 } slot;
@@ -81,6 +82,7 @@ static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
                                  err));
     p->stop = j->p->stop;
     p->starts = j->options.starts;
+    s->n_t = p->n_t;
     mt_nlp nlp = mt_problem_nlp(p);
     double *const hint = mt_arena_f64(&s->mem, (size_t)p->n_t, 1);
     const double *const from = hint_of(j, k);
@@ -120,6 +122,7 @@ static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem
                 out->solutions[out->n_solutions++] = (mt_gap_solution){
                     .found = &found->solutions[i],
                     .below = j->candidates->below + ((ptrdiff_t)k * p->n_bands),
+                    .candidate = k,
                     .aims = j->slots[k].aims,
                     .n_aims = j->slots[k].aims == NULL ? 0 : p->n_aims};
             }
@@ -190,11 +193,33 @@ static mt_status copy_solution(const mt_problem *p, const int *below,
     return MT_OK;
 }
 
+/* Of the best solution's search; without the coordinate for the clearance, which no goal leaves free. */
+static mt_status keep_undetermined(const mt_problem *p, const slot *s, mt_arena *mem,
+                                   mt_gap_result *out, mt_err *err)
+{
+    const size_t count = (size_t)s->found.n_undetermined;
+    out->undetermined = mt_arena_f64(mem, (size_t)p->n, count);
+    out->undetermined_effect = mt_arena_f64(mem, count, 1);
+    if (out->undetermined == NULL || out->undetermined_effect == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (size_t k = 0; k < count; k++) {
+        memcpy(out->undetermined + (k * (size_t)p->n),
+               s->found.undetermined + (k * (size_t)s->n_t), (size_t)p->n * sizeof(double));
+        out->undetermined_effect[k] = s->found.undetermined_effect[k];
+    }
+    out->n_undetermined = (int)count;
+    return MT_OK;
+}
+
 static mt_status collect(const mt_problem *p, const job *j, mt_arena *mem, mt_gap_result *out,
                          mt_err *err)
 {
     MT_TRY(keep_solutions(p, j, mem, out, err));
     rank(out);
+    if (out->n_solutions > 0) {
+        MT_TRY(keep_undetermined(p, &j->slots[out->solutions[0].candidate], mem, out, err));
+    }
     for (int i = 0; i < out->n_solutions; i++) {
         MT_TRY(copy_solution(p, out->solutions[i].below, out->solutions[i].found, mem,
                              &out->solutions[i].found, err));

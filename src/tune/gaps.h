@@ -16,6 +16,7 @@ typedef struct mt_gap_solution {
     const int *below;   /* [n_bands] its assignment */
     const double *aims; /* [n_aims] its objectives, while they are ranked */
     int n_aims;
+    int candidate;
 } mt_gap_solution;
 
 typedef struct mt_gap_result {
@@ -29,7 +30,10 @@ typedef struct mt_gap_result {
         driven; /* a configuration is a driven position: what lies between the positions is not searched */
     bool proven;        /* every assignment that was not searched is proven infeasible */
     const char *reason; /* why not, where not proven */
-    long boxes;         /* of the proof */
+    int n_undetermined; /* directions that the goals do not settle at the best solution (mt_nlp_result) */
+    double *undetermined; /* n x n_undetermined */
+    double *undetermined_effect;
+    long boxes; /* of the proof */
     long evals;
     int starts;
     int stage; /* the objective that the solutions' f belongs to */

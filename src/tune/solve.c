@@ -293,6 +293,9 @@ static mt_status search_gaps(answer *a, mt_err *err)
     }
     a->found.n_solutions = g->n_solutions;
     a->found.compromise = g->compromise;
+    a->found.n_undetermined = g->n_undetermined;
+    a->found.undetermined = g->undetermined;
+    a->found.undetermined_effect = g->undetermined_effect;
     a->stage = g->stage;
     a->found.evals = g->evals;
     a->found.starts = g->starts;

@@ -71,4 +71,59 @@ static void study_undetermined__an_original_in_a_corner_gets_the_least_change(mt
     }
 }
 
-MT_TEST_MAIN(MT_TEST(study_undetermined__an_original_in_a_corner_gets_the_least_change))
+/* p touches nothing but its own limit, which is wide; whatever is searched, it is named and stays where it was. */
+static void study_undetermined__is_told_of_bands_and_catalogues(mt_test *t)
+{
+    static const struct {
+        const char *name;
+        const char *variables;
+        const char *rest;
+        const char *text; /* the direction; NULL: none */
+        double p;
+    } rows[] = {
+        {                   "bands",
+         "{'parameter': 'k1', 'lower': 500, 'upper': 4000}, {'parameter': 'p', 'lower': 1, "
+         "'upper': 9}",         "'goals': [{'type': 'avoid', 'bands_hz': [[2, 3.5]]}]",  "p", 3.0              },
+        {               "clearance",
+         "{'parameter': 'k1', 'lower': 500, 'upper': 4000}, {'parameter': 'p', 'lower': 1, "
+         "'upper': 9}",                                         "'goals': [{'type': 'avoid', 'bands_hz': [[2, 3.5]]}], 'objective': {'maximise': "
+                                         "'clearance'}",  "p", 3.0                      },
+        {     "objectives in order",
+         "{'parameter': 'k1', 'lower': 500, 'upper': 4000}, {'parameter': 'p', 'lower': 1, "
+         "'upper': 9}",                "'goals': [{'type': 'avoid', 'bands_hz': [[2, 3.5]]}], 'objective': [{'maximise': "
+                "'clearance'}, {'minimise': 'change'}]",  "p", 3.0                      },
+        {             "a catalogue",
+         "{'parameter': 'k1', 'catalogue': [500, 1000, 4000]}, {'parameter': 'p', "
+         "'catalogue': [1, 4, 9]}", "'goals': [{'type': 'frequency', 'mode': 1, 'at_most_hz': 3}]",  "p", 4.0  },
+        {"a catalogue that matters",
+         "{'parameter': 'k1', 'catalogue': [500, 1000, 4000]}, {'parameter': 'k2', "
+         "'catalogue': [500, 1000]}", "'goals': [{'type': 'frequency', 'mode': 1, 'at_most_hz': 3}]", NULL, 3.0},
+        {      "beside a catalogue",
+         "{'parameter': 'k1', 'catalogue': [500, 1000, 4000]}, {'parameter': 'p', 'lower': "
+         "1, 'upper': 9}", "'goals': [{'type': 'frequency', 'mode': 1, 'at_most_hz': 3}]",  "p", 3.0           },
+        {"bands beside a catalogue",
+         "{'parameter': 'k1', 'catalogue': [500, 1000, 4000]}, {'parameter': 'p', 'lower': "
+         "1, 'upper': 9}",         "'goals': [{'type': 'avoid', 'bands_hz': [[2, 3.5]]}]",  "p", 3.0           },
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        char members[TEXT];
+        study_case c;
+        mt_test_row(t, "%s", rows[i].name);
+        (void)snprintf(members, sizeof members, "'variables': [%s], %s", rows[i].variables,
+                       rows[i].rest);
+        if (study_solve(t, STUDY_TWO_MASSES("'m': 1, 'k1': 1000, 'k2': 1000, 'p': 3", ""),
+                        members, &c)) {
+            CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
+            CHECK_INT(t, c.result->n_undetermined, rows[i].text != NULL ? 1 : 0);
+            if (c.result->n_undetermined == 1 && rows[i].text != NULL) {
+                CHECK_STR(t, c.result->undetermined[0].text, rows[i].text);
+                CHECK_NEAR(t, study_value(&c, 1, "p"), rows[i].p, 0.0);
+                CHECK(t, study_reasons(&c, 1, "do not settle p"));
+            }
+        }
+        study_free(&c);
+    }
+}
+
+MT_TEST_MAIN(MT_TEST(study_undetermined__an_original_in_a_corner_gets_the_least_change),
+             MT_TEST(study_undetermined__is_told_of_bands_and_catalogues))
