@@ -69,6 +69,9 @@ static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, 
     opt.check = false;
     set_design(s, 0, x);
     mt_status rc = mt_analysis_new(s->model, c, n, inputs, x, &a, err);
+    if (rc == MT_OK) {
+        a->recount = true; /* a mode of 0 Hz is as far from a band as no mode */
+    }
     for (int k = 0; rc == MT_OK && k < (2 * n) + 3 && r->nearest > FAR_BAND; k++) {
         mt_err ignored = {.code = MT_OK}; /* a design that has no modes has none in a band */
         set_design(s, k, x);
@@ -115,7 +118,8 @@ static double original_hz(const mt_study *s, const mt_goal *goal, const mt_analy
     int seen = 0;
     if (goal->mode.named != MT_ABSENT) {
         const mt_named_mode *const m = &s->model->modes[goal->mode.named];
-        index = m->configuration == a->sys->configuration ? m->index : 0;
+        const bool here = m->configuration == a->sys->configuration;
+        index = here ? m->index + a->n_null - a->n_rigid : 0; /* as the model counts */
     }
     for (int i = 0; i < a->modes.count; i++) {
         if (a->modes.kind[i] == MT_MODE_FLEXIBLE && ++seen == index) {
@@ -129,7 +133,8 @@ static void doubt_target(mt_doubt_list *out, const char *member, double asked, m
                          double hz, bool above, bool below)
 {
     const double ratio = asked / hz;
-    if (!((above && ratio >= FAR_TARGET) || (below && ratio <= 1.0 / FAR_TARGET))) {
+    if (!(hz > 0.0) ||
+        !((above && ratio >= FAR_TARGET) || (below && ratio <= 1.0 / FAR_TARGET))) {
         return;
     }
     mt_doubt *const d = mt_doubt_add(
@@ -141,12 +146,21 @@ static void doubt_target(mt_doubt_list *out, const char *member, double asked, m
     }
 }
 
+/* Modes of the original design, counted as the study does. */
+static mt_status count_modes(const mt_study *s, mt_analysis *a, mt_err *err)
+{
+    const mt_analysis_options opt = mt_analysis_options_default();
+    MT_TRY(mt_analysis_count(a, &s->counted, NULL, 0.0, err));
+    return a->n_rigid == a->n_null ? MT_OK : mt_analysis_solve(a, NULL, &opt, err);
+}
+
 static mt_status examine_configuration(const mt_study *s, int c, mt_doubt_list *of_study,
                                        mt_doubt_list *of_model, mt_err *err)
 {
     mt_analysis *a = NULL;
     mt_status rc = mt_analysis_new(s->model, c, 0, NULL, NULL, &a, err);
     rc = rc == MT_OK ? mt_doubts_of_analysis(a, 0, NULL, NULL, of_model, err) : rc;
+    rc = rc == MT_OK ? count_modes(s, a, err) : rc;
     for (int g = 0; rc == MT_OK && g < s->n_goals; g++) {
         const mt_goal *const goal = &s->goals[g];
         for (int k = 0; k < goal->n_configurations && goal->type == MT_GOAL_FREQUENCY; k++) {
