@@ -149,6 +149,31 @@ static void write_tolerance(mt_json_writer *w, const mt_result_tolerance *t)
     mt_json_close(w);
 }
 
+static void write_motion(mt_json_writer *w, const mt_result_motion *m)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "goal", m->pointer);
+    mt_json_put_string(w, "drive", m->drive);
+    mt_json_put_string(w, "unit", m->unit);
+    mt_json_put_number(w, "from", m->from);
+    mt_json_put_number(w, "to", m->to);
+    mt_json_put_integer(w, "positions", m->positions);
+    mt_json_put_number(w, "least_clearance_percent", m->least_clearance_percent);
+    mt_json_put_number(w, "margin_percent", m->margin_percent);
+    mt_json_put_number(w, "at", m->at);
+    mt_json_put_number(w, "hz", m->hz);
+    if (m->mode > 0) {
+        mt_json_put_integer(w, "mode", m->mode);
+    } else {
+        mt_json_put_null(w, "mode");
+    }
+    mt_json_put_string(w, "band", m->band);
+    mt_json_put_bool(w, "crosses", m->crosses);
+    mt_json_put_string(w, "grade", m->grade);
+    mt_json_put_string(w, "text", m->text);
+    mt_json_close(w);
+}
+
 /* What a design keeps clear of, how, and how surely. */
 static void write_bands(mt_json_writer *w, const mt_recommendation *r)
 {
@@ -159,6 +184,7 @@ static void write_bands(mt_json_writer *w, const mt_recommendation *r)
     } else {
         mt_json_put_null(w, "gap_assignment");
     }
+    WRITE_LIST(w, "motion", r->n_motions, r->motions, write_motion);
     if (box == NULL) {
         mt_json_put_null(w, "tolerance_box");
         return;

@@ -86,7 +86,9 @@ mt_status mt_build_drive(mt_builder *b)
         const request r = {
             .who = "drive",
             .joint = b->drive->joint,
-            .position = mt_program_input(&sys->program, sys->n_inputs - 1, MT_NO_ADDR),
+            .position = b->drive->fixed
+                            ? mt_program_const(&sys->program, b->drive->position)
+                            : mt_program_input(&sys->program, sys->n_inputs - 1, MT_NO_ADDR),
             .spring = b->drive->spring,
         };
         return drive(b, &r);

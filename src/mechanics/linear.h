@@ -30,6 +30,7 @@ typedef struct mt_linear {
     bool
         follow; /* a driven joint begins where the last update left it, instead of at the reference position: for sweeps */
     mt_drive_start last;
+    int first_input;  /* derivatives are asked for from this input on; 0: of all of them */
     mt_elimination e; /* at the final position, constraints of the linearised system */
     int m;            /* constraints in force */
     double *a;        /* m x nq */

@@ -234,7 +234,7 @@ mt_status mt_system_new_driven(const mt_model *model, int configuration,
         sys->model = model;
         sys->configuration = configuration;
         sys->dimension = model->dimension;
-        sys->n_inputs = n_inputs + (drive != NULL ? 1 : 0);
+        sys->n_inputs = n_inputs + (drive != NULL && !drive->fixed ? 1 : 0);
         sys->drive = MT_NO_NODE;
         sys->inputs = mt_arena_int(&sys->mem, (size_t)n_inputs + 1);
         rc = sys->inputs == NULL ? mt_fail_memory(err) : MT_OK;

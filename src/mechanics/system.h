@@ -172,13 +172,21 @@ mt_status mt_system_new(const mt_model *model, int configuration, int n_inputs,
 typedef struct mt_system_drive {
     const char *joint;  /* a joint with a coordinate, or a link's hinge ("beam.h3") */
     const char *spring; /* re-trimmed to hold it; NULL: locked */
+    bool fixed;         /* the joint stands at `position`, which is then no input */
+    double position;    /* where fixed [rad or m from the reference position] */
 } mt_system_drive;
 /* The same with a drive whose position [rad or m from the reference position] is one more input, the last: at[n_inputs + 1], and the system has n_inputs + 1 inputs.
- * drive NULL: mt_system_new. Fails also MT_E_INPUT: no such joint or spring. */
+ * A drive that is fixed adds no input. drive NULL: mt_system_new. Fails also MT_E_INPUT: no such joint or spring. */
 mt_status mt_system_new_driven(const mt_model *model, int configuration,
                                const mt_system_drive *drive, int n_inputs, const int *inputs,
                                const double *at, mt_system **out, mt_err *err);
 void mt_system_delete(mt_system *sys);
+/*
+ * Are two configurations of one model the same mechanism but for the position of one driven joint? *same: bodies, joints, springs, inertias and loads are the same, number by number as
+ * expressions of the same inputs (system_same.c); both drive the same joint and hold it alike, or one of them has no drive, nothing loads it, and a trimmed spring holds the other: it then is that
+ * mechanism in its reference position. Two configurations without a drive are not. Fails: MT_E_MEMORY.
+ */
+mt_status mt_system_same_drive(const mt_system *a, const mt_system *b, bool *same, mt_err *err);
 
 int mt_system_find_channel(const mt_system *sys, const char *name);
 int mt_system_find_joint(const mt_system *sys, const char *name);

@@ -89,7 +89,7 @@ mt_status mt_tangent_update(mt_linear *lin, mt_err *err)
     if (lin->tangent == NULL || poses == NULL) {
         return mt_fail_memory(err);
     }
-    for (int p = 0; p < sys->n_inputs; p++) {
+    for (int p = lin->first_input; p < sys->n_inputs; p++) {
         lin->dual.input = p;
         MT_TRY(mt_position_tangent(&lin->position, &lin->dual, &lin->scratch, err));
         mt_position_complex(sys, lin->position.pose, lin->position.d_pose, poses);

@@ -77,6 +77,7 @@ static void add_best(const mt_recommendation *r, mt_text *out)
     }
     add_table(mt_report_gaps(r), "Bands", out);
     add_table(mt_report_clearances(r), "Clearances from bands", out);
+    add_table(mt_report_motions(r), "Over the range of motion", out);
     add_table(mt_report_goals(r), "Goals", out);
     add_list(r->n_reasons, r->reasons, "Why", out);
 }

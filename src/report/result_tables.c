@@ -165,6 +165,41 @@ static void percent_cells(mt_table *t, const mt_recommendation *r, const mt_resu
     }
 }
 
+mt_table mt_report_motions(const mt_recommendation *r)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "drive", "drive", MT_ALIGN_LEFT);
+    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_column(&t, "from", "from", MT_ALIGN_POINT);
+    mt_table_column(&t, "to", "to", MT_ALIGN_POINT);
+    mt_table_column(&t, "positions", "positions", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "mode", "mode", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "band", "band", MT_ALIGN_LEFT);
+    mt_table_column(&t, "at", "at", MT_ALIGN_POINT);
+    mt_table_column(&t, "[Hz]", "hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "clearance [%]", "clearance_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "grade", "grade", MT_ALIGN_LEFT);
+    for (int i = 0; i < r->n_motions; i++) {
+        const mt_result_motion *const m = &r->motions[i];
+        mt_table_text(&t, m->drive);
+        mt_table_text(&t, m->unit);
+        mt_table_number(&t, m->from, VALUE_DIGITS);
+        mt_table_number(&t, m->to, VALUE_DIGITS);
+        mt_table_integer(&t, m->positions);
+        if (m->mode > 0) {
+            mt_table_integer(&t, m->mode);
+        } else {
+            mt_table_text(&t, NULL);
+        }
+        mt_table_text(&t, m->band);
+        mt_table_number(&t, m->at, VALUE_DIGITS);
+        mt_table_number(&t, m->hz, HZ_DIGITS);
+        mt_table_number(&t, m->least_clearance_percent, PERCENT_DIGITS);
+        mt_table_text(&t, m->crosses ? "crosses a band" : m->grade);
+    }
+    return t;
+}
+
 mt_table mt_report_clearances(const mt_recommendation *r)
 {
     mt_table t = mt_table_default();

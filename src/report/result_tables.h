@@ -17,6 +17,8 @@ bool mt_report_measure(const mt_result_parameter *p, mt_text *out);
 mt_table mt_report_goals(const mt_recommendation *r);
 /* Each mode beside its neighbouring bands, one line per mode: the band below it and the band above it with the distance to each. */
 mt_table mt_report_clearances(const mt_recommendation *r);
+/* One row for each drive with several positions: where the motion between them comes nearest to a band. */
+mt_table mt_report_motions(const mt_recommendation *r);
 /* Bands and how many modes lie below each. */
 mt_table mt_report_gaps(const mt_recommendation *r);
 /* One line per recommendation. */

@@ -113,6 +113,7 @@ static void print_best(const mt_recommendation *r, mt_text *out)
     }
     print_table(mt_report_frequencies(r), "Frequencies", out);
     print_table(mt_report_clearances(r), "Clearances from bands", out);
+    print_table(mt_report_motions(r), "Over the range of motion", out);
     print_table(mt_report_goals(r), "Goals", out);
     print_list(r->n_reasons, r->reasons, "Why", out);
 }

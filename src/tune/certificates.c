@@ -68,9 +68,14 @@ mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *resu
     if (!gaps->driven) {
         return MT_OK;
     }
-    return state(result, "positions", false, err,
-                 "What is said of driven positions holds at the positions named; the motion "
-                 "between them is sampled by these, not proven.");
+    return gaps->motion
+               ? state(result, "positions", false, err,
+                       "Positions of one drive have one number of modes below each band, as a "
+                       "mode would cross it between two that differ. Between the positions the "
+                       "motion of each recommendation is sampled, not proven.")
+               : state(result, "positions", false, err,
+                       "What is said of driven positions holds at the positions named; what "
+                       "lies between is not searched.");
 }
 
 /* In words: what one limit's mode can reach. */

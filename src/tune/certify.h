@@ -42,14 +42,17 @@ typedef struct mt_certify_cap {
 } mt_certify_cap;
 
 /*
- * What is asked of the designs lower <= x <= upper, in which inputs with a catalogue take values of it only. An assignment is int[n_bands]: for each band, how many vibration modes lie below it (or on its lower edge). The views
- * share the inputs.
+ * What is asked of the designs lower <= x <= upper, in which inputs with a catalogue take values of it only. An assignment is int[n_bands]: for each band, how many vibration modes lie below it (or on its lower
+ * edge); designs whose bands break `same_as` do not meet what is asked. The views share the inputs.
  */
 typedef struct mt_certify {
     int n_views;
     mt_enclosure *const *views; /* made for bounds that hold this box */
     int n_bands;
     const mt_certify_band *bands;
+    /* [n_bands] the first band (itself, or an earlier one) that must have the same number of modes below it (positions of one drive: between different numbers a mode would cross); NULL: all
+     * bands are free */
+    const int *same_as;
     int n_limits;
     const mt_certify_limit *limits;
     const mt_program *program; /* of the bounds; NULL where there are none */

@@ -6,6 +6,8 @@
  * single unknown assignment is left, or a pass ends, the middle of the box is tried: a design that meets everything makes its assignment known. Catalogues only thin the boxes out, and a
  * cap cuts off those whose designs are all too costly: with the objective of a known design as cap, "nothing found, nothing open" proves that none is better.
  *
+ * Assignments have to be in order within a view, and equal where bands are the same (same_as). Both are narrowed in before anything is listed: j(i) >= j(before i), j(i) = j(same as i).
+ *
  * Passes go deeper and deeper (iterative deepening). Depth first at once would dive into the first surface on which two assignments touch, where boxes stay undecided down
  * to rounding, before it meets the designs next to it that settle the matter. What earlier passes cost is a fraction of the last one.
  */
@@ -106,30 +108,92 @@ static bool note_known(search *s, const int *tuple)
     return true;
 }
 
-/* The next consistent assignment in lexicographic order: bands from `from` on as low as they go. */
+/* The earlier band that band i has to equal; -1: none. */
+static int same_of(const search *s, int i)
+{
+    return s->c->same_as != NULL && s->c->same_as[i] < i ? s->c->same_as[i] : -1;
+}
+
+/* Band i at its least value that suits those before it; false: there is none. */
+static bool place(search *s, int i)
+{
+    const int same = same_of(s, i);
+    const int before = s->previous[i] < 0 ? 0 : s->tuple[s->previous[i]];
+    const int low = before > s->least[i] ? before : s->least[i];
+    s->tuple[i] = same < 0 ? low : s->tuple[same];
+    return s->tuple[i] >= low && s->tuple[i] <= s->most[i];
+}
+
+/* The first consistent assignment that keeps the bands before `from`, or follows them in lexicographic order: bands as low as they go. */
 static bool fill(search *s, int from)
 {
-    for (int i = from; i < s->c->n_bands; i++) {
-        const int before = s->previous[i] < 0 ? 0 : s->tuple[s->previous[i]];
-        s->tuple[i] = before > s->least[i] ? before : s->least[i];
-        if (s->tuple[i] > s->most[i]) {
-            return false;
+    int i = from;
+    while (i >= 0 && i < s->c->n_bands) {
+        if (place(s, i)) {
+            i++;
+            continue;
+        }
+        do { /* back to the last one that can be raised */
+            i--;
+        } while (i >= 0 && (same_of(s, i) >= 0 || s->tuple[i] >= s->most[i]));
+        if (i >= 0) {
+            s->tuple[i]++;
+            i++;
         }
     }
-    return true;
+    return i >= 0;
 }
 
 static bool next(search *s)
 {
-    for (int i = s->c->n_bands - 1; i >= 0; i--) {
-        if (s->tuple[i] < s->most[i]) {
-            s->tuple[i]++;
-            if (fill(s, i + 1)) {
-                return true;
+    int i = s->c->n_bands - 1;
+    while (i >= 0 && (same_of(s, i) >= 0 || s->tuple[i] >= s->most[i])) {
+        i--;
+    }
+    if (i < 0) {
+        return false;
+    }
+    s->tuple[i]++;
+    return fill(s, i + 1);
+}
+
+static void raise_to(int *low, int other, bool *changed)
+{
+    *changed = *changed || other > *low;
+    *low = other > *low ? other : *low;
+}
+
+static void lower_to(int *high, int other, bool *changed)
+{
+    *changed = *changed || other < *high;
+    *high = other < *high ? other : *high;
+}
+
+/* Ranges of the bands that order and equality leave: false where one is empty. */
+static bool narrow(search *s)
+{
+    bool changed = true;
+    while (changed) {
+        changed = false;
+        for (int i = 0; i < s->c->n_bands; i++) {
+            const int before = s->previous[i];
+            const int same = same_of(s, i);
+            if (before >= 0) {
+                raise_to(&s->least[i], s->least[before], &changed);
+                lower_to(&s->most[before], s->most[i], &changed);
+            }
+            if (same >= 0) {
+                raise_to(&s->least[i], s->least[same], &changed);
+                raise_to(&s->least[same], s->least[i], &changed);
+                lower_to(&s->most[i], s->most[same], &changed);
+                lower_to(&s->most[same], s->most[i], &changed);
+            }
+            if (s->least[i] > s->most[i]) {
+                return false;
             }
         }
     }
-    return false;
+    return true;
 }
 
 /* How many assignments of the box are not known: 0, 1 (then it is in single), or 2 for more. */
@@ -229,7 +293,7 @@ static int examine(search *s)
             s->least[i] = s->only == NULL ? 0 : s->only[i];
             s->most[i] = s->only == NULL ? c->views[c->bands[i].view]->n_modes : s->only[i];
         }
-        return unknown(s);
+        return narrow(s) ? unknown(s) : 0;
     }
     for (int i = 0; i < c->n_limits && possible; i++) {
         possible = limit_possible(c, &c->limits[i]);
@@ -237,7 +301,18 @@ static int examine(search *s)
     for (int i = 0; i < c->n_bands && possible; i++) {
         possible = band_possible(s, i);
     }
-    return possible ? unknown(s) : 0;
+    return possible && narrow(s) ? unknown(s) : 0;
+}
+
+static bool same_counts(const search *s, const int *tuple)
+{
+    for (int i = 0; i < s->c->n_bands; i++) {
+        const int same = same_of(s, i);
+        if (same >= 0 && tuple[i] != tuple[same]) {
+            return false;
+        }
+    }
+    return true;
 }
 
 /* Does the middle of the box meet everything? Its assignment goes to `single` (in a search for one: it must have that). */
@@ -255,7 +330,7 @@ static bool witnessed(search *s)
                            ? s->only[i]
                            : mt_enclosure_least_below(s->c->views[band->view], lambda);
     }
-    if (listed(s, s->known, s->n_known, s->single)) {
+    if (!same_counts(s, s->single) || listed(s, s->known, s->n_known, s->single)) {
         return false;
     }
     const int n = mt_certify_edges(s->c, s->single, true, s->edges);

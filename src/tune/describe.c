@@ -86,6 +86,7 @@ static double aim_value(const mt_problem *fresh, int k)
     for (int i = 0; i < fresh->n_clears; i++) {
         least = fmin(least, mt_clear_room(fresh, &fresh->clears[i]));
     }
+    least = fmin(least, fresh->motion_room);
     return -least;
 }
 

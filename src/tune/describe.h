@@ -34,6 +34,11 @@ mt_status mt_describe_goals(mt_problem *fresh, const mt_design *design, mt_resul
 int mt_describe_avoid_count(const mt_problem *p);
 mt_status mt_describe_avoid_goals(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
                                   mt_err *err);
+/* describe_motion.c: how many families of positions of one drive keep clear of bands; each judged over its motion as one more goal, and as a row of rec->motions. After the views of fresh
+ * have been solved; sets fresh->motion_room. */
+int mt_describe_motion_count(const mt_problem *p);
+mt_status mt_describe_motions(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+                              mt_err *err);
 /* Clearance of each mode from its neighbouring bands, modes below each band, the least clearance. Nothing of an unstable configuration. */
 mt_status mt_describe_clearances(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
                                  mt_err *err);

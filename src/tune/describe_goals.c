@@ -223,7 +223,8 @@ mt_status mt_describe_goals(mt_problem *fresh, const mt_design *design, mt_resul
 {
     mt_nlp_values v;
     mt_err why = {.code = MT_OK};
-    const size_t most = (size_t)fresh->n_demands + (size_t)mt_describe_avoid_count(fresh);
+    const size_t most = (size_t)fresh->n_demands + (size_t)mt_describe_avoid_count(fresh) +
+                        (size_t)mt_describe_motion_count(fresh);
     rec->goals = mt_arena_alloc(&result->mem, most, sizeof *rec->goals);
     rec->feasible = true;
     rec->violation_percent = 0.0;
@@ -238,6 +239,7 @@ mt_status mt_describe_goals(mt_problem *fresh, const mt_design *design, mt_resul
         rec->n_goals++;
     }
     MT_TRY(mt_describe_avoid_goals(fresh, result, rec, err));
+    MT_TRY(mt_describe_motions(fresh, result, rec, err));
     for (int i = 0; i < rec->n_goals; i++) {
         const mt_result_goal *const g = &rec->goals[i];
         if (!g->weighted) {

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tune/family.h"
+
 /* Combinations between two looks at what is left to do: enough for any number of workers, few enough to stop in time. Fixed, so that results do not depend on the workers. */
 enum { BATCH = 4096, BATCH_MIXED = 16 };
 /* Designs that are kept for alternatives, where the study does not ask for more. */
@@ -99,11 +101,14 @@ static int kept_at_most(const mt_discrete *d)
     return asked > KEPT ? asked : KEPT;
 }
 
-/* The best `most` of list[n], ranked, into best[*n_best]: insertion, so that equal ones keep their order. */
-static void rank(const mt_discrete *d, mt_combination *const *list, int n, int most,
-                 mt_combination **best, int *n_best)
+/* The best `most` of list[n], ranked, into best[*n_best]: insertion, so that equal ones keep their order. What would be among them is followed over its motion first. */
+static mt_status rank(mt_discrete *d, mt_combination *const *list, int n, int most,
+                      mt_combination **best, int *n_best, mt_err *err)
 {
     for (int i = 0; i < n; i++) {
+        if (*n_best < most || mt_discrete_before(d, list[i], best[*n_best - 1])) {
+            MT_TRY(mt_discrete_follow(d, list[i], err));
+        }
         if (!list[i]->judged || !MT_HAS(list[i]->violation)) {
             continue;
         }
@@ -117,6 +122,7 @@ static void rank(const mt_discrete *d, mt_combination *const *list, int n, int m
             best[at] = list[i];
         }
     }
+    return MT_OK;
 }
 
 /* Can no combination from here on rank among the best? All of them change more than the last of these. */
@@ -172,7 +178,7 @@ static mt_status enumerate(mt_discrete *d, int n, mt_combination **out, ranking 
         for (int i = 0; i < size; i++) {
             pointers[i] = &list[first + i];
         }
-        rank(d, pointers, size, r->most, r->best, &r->n);
+        MT_TRY(rank(d, pointers, size, r->most, r->best, &r->n, err));
     }
     report->all = d->stop == MT_STOP_DONE;
     return MT_OK;
@@ -271,12 +277,14 @@ mt_status mt_discrete_solve(mt_problem *const *problems, int n_workers, mt_arena
     if ((d.mixed || !report->all) && d.stop != MT_STOP_USER) {
         MT_TRY(mt_discrete_prove(&d, &all, &n_all, report, err));
     }
+    r.n = 0;
+    MT_TRY(rank(&d, all, n_all, r.most, r.best, &r.n, err));
     for (int i = 0; i < n_all; i++) {
         report->judged += all[i]->judged ? 1 : 0;
         report->feasible += all[i]->feasible ? 1 : 0;
+        report->followed += all[i]->followed && all[i]->feasible ? 1 : 0;
     }
-    r.n = 0;
-    rank(&d, all, n_all, r.most, r.best, &r.n);
+    report->driven = mt_family_any(d.p) && !d.mixed;
     MT_TRY(collect(&d, &r, out, err));
     const bool known = r.n > 0 && r.best[0]->feasible && d.stop != MT_STOP_USER;
     return known ? mt_discrete_undetermined(&d, r.best[0], out, err) : MT_OK;

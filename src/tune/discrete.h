@@ -21,6 +21,9 @@ typedef struct mt_discrete_report {
     bool all;            /* every combination was judged, or shown not to rank */
     double combinations; /* how many there are */
     int judged;
+    bool
+        driven; /* several positions of one drive: only combinations that might rank were followed between them */
+    int followed; /* of the feasible ones */
     int feasible; /* of those judged: combinations with a design that meets all goals */
     /* branch and bound */
     bool asked;        /* it was tried */
@@ -47,6 +50,7 @@ typedef struct mt_combination {
     bool judged;
     bool feasible;
     bool singular;
+    bool followed; /* from position to position of its drives, and judged by that too */
     long evals;
     int starts;
     mt_stop stop;
@@ -93,6 +97,8 @@ mt_status mt_discrete_undetermined(mt_discrete *d, const mt_combination *best,
 /* discrete_judge.c: search the continuous variables of c once more, for those directions (nothing of c is changed); memory of out->undetermined is mem's. */
 mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_arena *mem,
                                  mt_nlp_result *out, mt_err *err);
+/* Judge a feasible combination over the range of motion (motion.h), once; nothing where it is mixed (its own search has done so). It may be feasible no more. */
+mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err);
 /* Is a ahead of b? Feasible ones first, by the objectives; the others by squares. */
 bool mt_discrete_before(const mt_discrete *d, const mt_combination *a, const mt_combination *b);
 /* Room for n combinations. */

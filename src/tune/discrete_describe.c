@@ -46,10 +46,21 @@ static const char *certificate_text(const mt_discrete_report *r, const mt_nlp_re
                                "more than every design listed.%s",
                                r->combinations, r->judged, rest);
     }
-    return mt_arena_printf(mem,
-                           "Enumerated: all %.0f combinations of catalogue values were judged, "
-                           "%d of them meet%s all goals.%s",
-                           r->combinations, r->feasible, r->feasible == 1 ? "s" : "", rest);
+    const char *const between =
+        r->driven && r->followed < r->feasible
+            ? mt_arena_printf(
+                  mem,
+                  " at the named positions (%d of these were followed between them, "
+                  "those that rank)",
+                  r->followed)
+            : "";
+    return between == NULL
+               ? NULL
+               : mt_arena_printf(mem,
+                                 "Enumerated: all %.0f combinations of catalogue values were "
+                                 "judged, %d of them meet%s all goals%s.%s",
+                                 r->combinations, r->feasible, r->feasible == 1 ? "s" : "",
+                                 between, rest);
 }
 
 static mt_status state(mt_result *result, const char *kind, bool proven, const char *text,

@@ -9,6 +9,7 @@
 #include "base/workers.h"
 #include "tune/discrete.h"
 #include "tune/gaps.h"
+#include "tune/motion.h"
 #include "tune/search.h"
 
 /* Combinations in one task: long enough to pay for its start, short enough to share out well. */
@@ -94,11 +95,23 @@ static void demand_more(mt_combination *c, double short_of, double tolerance)
 static void judge_bands(const mt_problem *p, mt_combination *c)
 {
     double room = HUGE_VAL;
+    double tied = HUGE_VAL;
     for (int i = 0; i < p->n_clears; i++) {
         const mt_clear *const clear = &p->clears[i];
         const double here = mt_clear_room(p, clear);
         demand_more(c, MT_HAS(here) ? fmax(-here, 0.0) : here, clear->tolerance);
         room = fmin(room, here);
+    }
+    for (int i = 0; i < p->n_bands; i++) { /* one drive, one number of modes below a band */
+        int below = 0;
+        if (p->tie[i] == i) {
+            const double here = mt_tie_room(p, i, &below);
+            tied = !(here >= tied) ? here : tied;
+        }
+    }
+    if (mt_family_any(p) && !(tied >= room)) {
+        demand_more(c, MT_HAS(tied) ? fmax(-tied, 0.0) : tied, p->clears[0].tolerance);
+        room = tied;
     }
     for (int k = 0; k < p->n_aims; k++) {
         if (p->aims[k].type == MT_OBJECTIVE_CLEARANCE) {
@@ -139,6 +152,59 @@ static mt_status judge_design(const mt_discrete *d, int worker, mt_combination *
     judge_bands(p, c);
     c->feasible = c->violation <= 1.0;
     return MT_OK;
+}
+
+/* Motions of the design at c, whose views have been solved with the first worker's problem. */
+static mt_status follow(mt_problem *p, mt_combination *c, mt_arena *mem, mt_err *err)
+{
+    int *const below = mt_arena_int(mem, (size_t)p->n_bands);
+    if (below == NULL) {
+        return mt_fail_memory(err);
+    }
+    double room = mt_ties_room(p, below);
+    for (int i = 0; i < p->n_families; i++) {
+        mt_motion m = {.room = 0.0};
+        if (!p->families[i].banded) {
+            continue;
+        }
+        MT_TRY(mt_motion_follow(p, i, below, mem, &m, err));
+        c->evals += m.positions;
+        if (m.end == MT_MOTION_UNSTABLE || m.room < -m.tolerance) {
+            demand_more(c, m.end == MT_MOTION_UNSTABLE ? nan("") : -m.room, m.tolerance);
+            c->feasible = false;
+        }
+        room = fmin(room, m.room);
+    }
+    for (int k = 0; k < p->n_aims; k++) {
+        if (p->aims[k].type == MT_OBJECTIVE_CLEARANCE) {
+            c->f[k] = fmax(c->f[k], -room);
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err)
+{
+    mt_problem *const p = d->p;
+    mt_arena mem;
+    mt_err own = {0};
+    if (d->mixed || !c->feasible || c->followed || !mt_family_any(p)) {
+        return MT_OK;
+    }
+    c->followed = true;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    mt_status rc = mt_problem_eval(p, c->t, false, &d->values[0], &own);
+    rc = rc == MT_OK ? follow(p, c, &mem, &own) : rc;
+    mt_arena_free(&mem);
+    if (rc == MT_E_INTERRUPTED) {
+        d->stop = MT_STOP_USER;
+        c->feasible = false; /* not known */
+        c->judged = false;
+        return MT_OK;
+    }
+    d->evals += c->evals - 1;
+    c->feasible = c->feasible && rc == MT_OK;
+    return ends(rc) ? mt_fail(err, rc, "%s", own.text) : MT_OK;
 }
 
 static mt_status judge_designs(void *context, int worker, int task, mt_err *err)

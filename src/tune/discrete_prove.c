@@ -9,6 +9,8 @@
 #include <string.h>
 
 #include "tune/discrete.h"
+#include "tune/family.h"
+#include "tune/gaps.h"
 #include "tune/proof.h"
 
 enum {
@@ -33,16 +35,25 @@ typedef struct prover {
     int capacity;
 } prover;
 
-static const mt_combination *best_of(const prover *v)
+/* The best so far, over its range of motion too; NULL: none is feasible. */
+static mt_status best_of(const prover *v, const mt_combination **out, mt_err *err)
 {
-    const mt_combination *best = NULL;
-    for (int i = 0; i < v->n; i++) {
-        const mt_combination *const c = v->all[i];
-        if (c->judged && c->feasible && (best == NULL || mt_discrete_before(v->d, c, best))) {
-            best = c;
+    mt_combination *best = NULL;
+    do {
+        best = NULL;
+        for (int i = 0; i < v->n; i++) {
+            mt_combination *const c = v->all[i];
+            if (c->judged && c->feasible &&
+                (best == NULL || mt_discrete_before(v->d, c, best))) {
+                best = c;
+            }
         }
-    }
-    return best;
+        if (best != NULL) {
+            MT_TRY(mt_discrete_follow(v->d, best, err));
+        }
+    } while (best != NULL && !best->feasible);
+    *out = best;
+    return MT_OK;
 }
 
 static int index_of(const mt_variable *v, double x)
@@ -131,7 +142,11 @@ static double cap_of(const mt_problem *p, double f, double share)
 static mt_status improve(prover *v, double share, mt_err *err)
 {
     for (int round = 0; round < ROUNDS; round++) {
-        const mt_combination *const best = best_of(v);
+        const mt_combination *best = NULL;
+        MT_TRY(best_of(v, &best, err));
+        if (best == NULL) { /* interrupted on the way from position to position */
+            return MT_OK;
+        }
         const double f = best->f[0];
         mt_certify_search found = {0};
         v->cap.cap.below = cap_of(v->d->p, f, share);
@@ -141,24 +156,12 @@ static mt_status improve(prover *v, double share, mt_err *err)
             v->report->best_within = share;
             return MT_OK;
         }
-        if (!(best_of(v)->f[0] < f) || v->d->stop == MT_STOP_USER) {
+        MT_TRY(best_of(v, &best, err));
+        if (best == NULL || !(best->f[0] < f) || v->d->stop == MT_STOP_USER) {
             return MT_OK;
         }
     }
     return MT_OK;
-}
-
-static double count_possible(const prover *v)
-{
-    const mt_problem *const p = v->d->p;
-    double all = 1.0;
-    for (int i = 0; i < p->n_clears; i++) {
-        const mt_clear *const c = &p->clears[i];
-        for (int k = 1; k <= c->bands.n; k++) {
-            all *= (double)(v->proof.views[c->view]->n_modes + k) / (double)k;
-        }
-    }
-    return round(all);
 }
 
 static long budget(const prover *v)
@@ -180,9 +183,10 @@ static mt_status prove(prover *v, mt_err *err)
     MT_TRY(mt_proof_cap_init(&v->cap, d->p, d->mem, err));
     v->proof.question.max_boxes = budget(v);
     MT_TRY(ask(v, &found, err));
-    const mt_combination *const best = best_of(v);
-    report->complete = v->proof.covers;
-    report->n_possible = count_possible(v);
+    const mt_combination *best = NULL;
+    MT_TRY(best_of(v, &best, err));
+    report->complete = v->proof.covers && !mt_family_any(d->p);
+    report->n_possible = mt_gap_count_possible(d->p);
     report->n_kinds = found.n_found;
     report->settled = found.proven && (found.n_found > 0 || best == NULL);
     if (best == NULL || !v->cap.known) {

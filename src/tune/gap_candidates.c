@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tune/family.h"
 #include "tune/gaps.h"
 #include "tune/proof.h"
 
@@ -83,13 +84,39 @@ static void insert(const mt_problem *p, sampled *list, int *n, const int *below,
     memcpy(list[at].below, below, (size_t)p->n_bands * sizeof *below);
 }
 
-/* Monotone assignments of m bands to n modes: C(n + m, m), over all configurations. */
-static double count_possible(const mt_problem *p)
+/* Is clear i tied to an earlier one? */
+static bool tied_before(const mt_problem *p, int i)
+{
+    for (int b = 0; b < p->clears[i].bands.n; b++) {
+        if (p->tie[p->clears[i].first + b] < p->clears[i].first) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Bands of clear i and of those tied to it, each set of tied ones once. */
+static int count_ties(const mt_problem *p, int i)
+{
+    const int family = mt_family_of(p, p->clears[i].view);
+    int m = 0;
+    for (int c = i; c < p->n_clears; c++) {
+        const bool own = c == i || (family >= 0 && tied_before(p, c) &&
+                                    mt_family_of(p, p->clears[c].view) == family);
+        for (int b = 0; own && b < p->clears[c].bands.n; b++) {
+            const int band = p->clears[c].first + b;
+            m += p->tie[band] == band ? 1 : 0;
+        }
+    }
+    return m;
+}
+
+double mt_gap_count_possible(const mt_problem *p)
 {
     double all = 1.0;
     for (int i = 0; i < p->n_clears; i++) {
         const int n = mt_view_vibrations(&p->views[p->clears[i].view]);
-        const int m = p->clears[i].bands.n;
+        const int m = tied_before(p, i) ? 0 : count_ties(p, i);
         for (int k = 1; k <= m; k++) {
             all *= (double)(n + k) / (double)k;
         }
@@ -113,6 +140,22 @@ static int keep_nearest(const sampled *list, int n, int most, bool *kept)
     return count;
 }
 
+/* A sample whose numbers differ between two positions of one drive is no kind of design; the kinds next to it have the least and the greatest of them everywhere. */
+static void insert_agreeing(const mt_problem *p, sampled *list, int *n, const int *below,
+                            double violation, int *work)
+{
+    const size_t size = (size_t)p->n_bands * sizeof *below;
+    if (mt_ties_agree(p, below)) {
+        insert(p, list, n, below, violation);
+        return;
+    }
+    for (int most = 0; most < 2; most++) {
+        memcpy(work, below, size);
+        mt_ties_settle(p, most == 1, work);
+        insert(p, list, n, work, mt_ties_violation(p, work));
+    }
+}
+
 /* The assignments of n designs spread over the bounds, at most `most` of them. */
 static mt_status sample(mt_problem *p, int n, int most, mt_arena *mem, mt_gap_candidates *out,
                         mt_err *err)
@@ -124,7 +167,8 @@ static mt_status sample(mt_problem *p, int n, int most, mt_arena *mem, mt_gap_ca
     opt.seed = p->study->search.seed;
     sampled *const list = mt_arena_alloc(mem, CANDIDATES_MOST, sizeof *list);
     int *const below = mt_arena_int(mem, (size_t)p->n_bands);
-    if (list == NULL || below == NULL) {
+    int *const work = mt_arena_int(mem, (size_t)p->n_bands);
+    if (list == NULL || below == NULL || work == NULL) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < CANDIDATES_MOST; i++) {
@@ -142,7 +186,7 @@ static mt_status sample(mt_problem *p, int n, int most, mt_arena *mem, mt_gap_ca
             break;
         }
         if (mt_gap_assignment(p, t + ((ptrdiff_t)k * p->n), below, &violation, &ignored)) {
-            insert(p, list, &out->n, below, violation);
+            insert_agreeing(p, list, &out->n, below, violation, work);
         }
         out->evals++;
     }
@@ -206,7 +250,7 @@ mt_status mt_gap_candidates_find(mt_problem *p, mt_arena *mem, mt_gap_candidates
 {
     mt_proof proof;
     mt_certify_search found = {0};
-    *out = (mt_gap_candidates){.possible = count_possible(p)};
+    *out = (mt_gap_candidates){.possible = mt_gap_count_possible(p)};
     mt_status rc = mt_proof_init(&proof, p, mem, err);
     if (rc == MT_OK && proof.possible) {
         rc = mt_certify_assignments(&proof.question, 0, NULL, mem, &found, err);
@@ -227,6 +271,6 @@ mt_status mt_gap_candidates_find(mt_problem *p, mt_arena *mem, mt_gap_candidates
 mt_status mt_gap_candidates_near(mt_problem *p, int most, mt_arena *mem, mt_gap_candidates *out,
                                  mt_err *err)
 {
-    *out = (mt_gap_candidates){.possible = count_possible(p)};
+    *out = (mt_gap_candidates){.possible = mt_gap_count_possible(p)};
     return sample(p, MT_GAP_SAMPLES_NEAR, most, mem, out, err);
 }

@@ -1,9 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Every gap assignment is a search of its own. Where configurations are positions of one drive, the best design of an assignment is followed from position to position (motion.h); where a mode
+ * crosses an edge on the way, the position of the worst crossing becomes one more configuration that has to keep the assignment, and the search begins again from there (a cutting plane: what it
+ * removes crosses). A few rounds end it, as each begins next to its answer; a design that still crosses then is no design of that assignment.
+ */
 #include "tune/gaps.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/workers.h"
+#include "tune/motion.h"
 #include "tune/search.h"
 
 /* What the search of one candidate left behind, in its own memory. */
@@ -13,6 +20,10 @@ typedef struct slot {
     int n_t;
     double *aims; /* [n_aims] of the best solution, where there is one and several objectives */
     mt_status rc;
+    long evals; /* of all rounds */
+    int starts;
+    int n_cuts;
+    mt_cut *cuts; /* [CUTS_MOST] */
 } slot;
 
 typedef struct job {
@@ -24,6 +35,8 @@ typedef struct job {
 } job;
 
 enum { STARTS_PER_CANDIDATE = 24, SOLUTIONS_PER_CANDIDATE = 4, NEAREST = 6 };
+/* Rounds of cuts, and starts of the later ones, which begin next to their answer. */
+enum { CUT_ROUNDS = 8, CUTS_MOST = 32, CUT_STARTS = 6 };
 
 /* The caller's design where it is of this kind, else the one that the candidate comes with; NULL: none. */
 static const double *hint_of(const job *j, int k)
@@ -68,31 +81,115 @@ static mt_status search_in_order(mt_problem *p, const double *hint, slot *s, mt_
     return MT_OK;
 }
 
+/* Where the motion of a family comes nearer than `room`, one more cut for each way between two positions. */
+static int add_cuts(slot *s, const mt_problem *p, int family, const mt_motion *m, double room)
+{
+    int added = 0;
+    for (int i = 0; i < m->n_ways && p->families[family].fixed; i++) {
+        if (m->way_room[i] < room - m->tolerance && MT_HAS(m->way_at[i]) &&
+            s->n_cuts < CUTS_MOST) {
+            s->cuts[s->n_cuts++] = (mt_cut){.family = family, .position = m->way_at[i]};
+            added++;
+        }
+    }
+    return added;
+}
+
+static void refuse(mt_nlp_solution *best, double short_of, double tolerance)
+{
+    best->feasible = false;
+    best->squares += short_of * short_of;
+    best->violation = fmax(best->violation, short_of / tolerance);
+}
+
+/* Follow the best design over the range of motion. *added: cuts to search again with; with none a design that crosses is refused. */
+static mt_status follow_best(slot *s, mt_problem *p, bool last, int *added, mt_err *err)
+{
+    mt_nlp_values v;
+    mt_nlp_solution *const best = &s->found.solutions[0];
+    const double wanted = p->clearance ? best->t[p->n] : 0.0;
+    double short_of = 0.0;
+    double tolerance = 1.0;
+    *added = 0;
+    p->stage = 0;
+    MT_TRY(mt_problem_values_init(p, &s->mem, &v, err));
+    MT_TRY(mt_problem_eval(p, best->t, false, &v, err));
+    for (int i = 0; i < p->n_families; i++) {
+        mt_motion m = {.room = 0.0};
+        if (!p->families[i].banded) {
+            continue;
+        }
+        MT_TRY(mt_motion_follow(p, i, p->below, &s->mem, &m, err));
+        s->evals += m.positions;
+        *added += last ? 0 : add_cuts(s, p, i, &m, wanted);
+        if (m.end == MT_MOTION_UNSTABLE || m.room < -m.tolerance) {
+            const double here = m.end == MT_MOTION_UNSTABLE ? 1.0 : -m.room;
+            tolerance = here > short_of && m.tolerance > 0.0 ? m.tolerance : tolerance;
+            short_of = fmax(short_of, here);
+        }
+    }
+    if (*added == 0 && short_of > 0.0) {
+        refuse(best, short_of, tolerance);
+    }
+    return MT_OK;
+}
+
+/* One search of candidate k with the cuts so far, from `from` (NULL: no hint). *again: a cut was added. */
+static mt_status search_round(const job *j, slot *s, int k, int round, const double *from,
+                              bool *again, mt_err *why)
+{
+    mt_problem *p = NULL;
+    mt_nlp_options options = j->options;
+    int added = 0;
+    MT_TRY(mt_problem_new_cut(j->p->study, j->p->references,
+                              j->candidates->below + ((ptrdiff_t)k * j->p->n_bands), s->n_cuts,
+                              s->cuts, &p, why));
+    p->stop = j->p->stop;
+    options.starts =
+        round > 1 && options.starts > CUT_STARTS ? (int)CUT_STARTS : options.starts;
+    p->starts = options.starts;
+    s->n_t = p->n_t;
+    mt_nlp nlp = mt_problem_nlp(p);
+    double *const hint = mt_arena_f64(&s->mem, (size_t)p->n_t, 1);
+    if (hint != NULL && from != NULL) {
+        memcpy(hint, from, (size_t)p->n * sizeof *hint);
+        nlp.hint = hint;
+    }
+    mt_status rc = p->n_aims > 1 ? search_in_order(p, nlp.hint, s, why)
+                                 : mt_nlp_solve(&nlp, &options, &s->mem, &s->found, why);
+    s->evals += s->found.evals;
+    s->starts += s->found.starts;
+    if (rc == MT_OK && s->found.n_solutions > 0 && s->found.solutions[0].feasible &&
+        s->found.stop != MT_STOP_USER && mt_family_any(p)) {
+        rc = follow_best(s, p, round + 1 == CUT_ROUNDS, &added, why);
+    }
+    *again = added > 0;
+    mt_problem_delete(p);
+    return rc;
+}
+
 /* A candidate that cannot even be evaluated anywhere is no failure of the study: it has no solution. */
 static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
 {
     job *const j = context;
     slot *const s = &j->slots[k];
-    mt_problem *p = NULL;
     mt_err why = {0};
+    bool again = true;
     (void)worker;
     MT_TRY(mt_arena_init(&s->mem, 0, err));
-    MT_TRY(mt_problem_new_in_gap(j->p->study, j->p->references,
-                                 j->candidates->below + ((ptrdiff_t)k * j->p->n_bands), &p,
-                                 err));
-    p->stop = j->p->stop;
-    p->starts = j->options.starts;
-    s->n_t = p->n_t;
-    mt_nlp nlp = mt_problem_nlp(p);
-    double *const hint = mt_arena_f64(&s->mem, (size_t)p->n_t, 1);
-    const double *const from = hint_of(j, k);
-    if (hint != NULL && from != NULL) {
-        memcpy(hint, from, (size_t)p->n * sizeof *hint);
-        nlp.hint = hint;
+    s->cuts = mt_arena_alloc(&s->mem, CUTS_MOST, sizeof *s->cuts);
+    if (s->cuts == NULL) {
+        return mt_fail_memory(err);
     }
-    s->rc = p->n_aims > 1 ? search_in_order(p, nlp.hint, s, &why)
-                          : mt_nlp_solve(&nlp, &j->options, &s->mem, &s->found, &why);
-    mt_problem_delete(p);
+    for (int round = 0; again && round < CUT_ROUNDS; round++) {
+        const bool known = round > 0 && s->found.n_solutions > 0;
+        s->rc = search_round(j, s, k, round, known ? s->found.solutions[0].t : hint_of(j, k),
+                             &again, &why);
+    }
+    if (s->rc != MT_OK) { /* perhaps on the way from position to position: nothing is known */
+        s->found.n_solutions = 0;
+        s->found.stop = s->rc == MT_E_INTERRUPTED ? MT_STOP_USER : s->found.stop;
+    }
     const bool fatal = s->rc == MT_E_MEMORY || s->rc == MT_E_INTERNAL;
     return fatal ? mt_fail(err, s->rc, "%s", why.text) : MT_OK;
 }
@@ -228,8 +325,8 @@ static mt_status collect(const mt_problem *p, const job *j, mt_arena *mem, mt_ga
     }
     for (int k = 0; k < j->candidates->n; k++) {
         const mt_nlp_result *const found = &j->slots[k].found;
-        out->evals += found->evals;
-        out->starts += found->starts;
+        out->evals += j->slots[k].evals;
+        out->starts += j->slots[k].starts;
         out->stop = found->stop > out->stop ? found->stop : out->stop;
     }
     return MT_OK;
@@ -263,6 +360,7 @@ mt_status mt_gaps_solve(mt_problem *p, int workers, mt_arena *mem, mt_gap_result
     for (int i = 0; i < p->n_clears; i++) {
         out->driven = out->driven || p->views[p->clears[i].view].analysis->sys->driven;
     }
+    out->motion = mt_family_any(p);
     out->reason = candidates.reason;
     out->boxes = candidates.boxes;
     out->evals = candidates.evals;

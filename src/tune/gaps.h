@@ -28,6 +28,8 @@ typedef struct mt_gap_result {
     double n_possible; /* all monotone assignments there are */
     bool
         driven; /* a configuration is a driven position: what lies between the positions is not searched */
+    bool
+        motion; /* some are positions of one drive: designs were followed between them (motion.h) */
     bool proven;        /* every assignment that was not searched is proven infeasible */
     const char *reason; /* why not, where not proven */
     int n_undetermined; /* directions that the goals do not settle at the best solution (mt_nlp_result) */
@@ -65,6 +67,8 @@ typedef struct mt_gap_candidates {
     long boxes;
     long evals;
 } mt_gap_candidates;
+/* Monotone assignments of m bands to n modes, C(n + m, m), over all configurations; positions of one drive have one between them. */
+double mt_gap_count_possible(const mt_problem *p);
 /* Assignment below[n_bands] of the design at t[n], and its worst violation; false where it cannot be evaluated. */
 bool mt_gap_assignment(mt_problem *p, const double *t, int *below, double *violation,
                        mt_err *err);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "tune/family.h"
 #include "tune/robust.h"
 
 void mt_problem_delete(mt_problem *p)
@@ -13,6 +14,7 @@ void mt_problem_delete(mt_problem *p)
             mt_analysis_delete(p->views[i].analysis);
             mt_analysis_delete(p->views[i].scout);
         }
+        mt_families_free(p);
         mt_robust_free(p->robust);
         mt_arena_free(&p->mem);
         free(p);
@@ -139,15 +141,23 @@ mt_status mt_problem_new(const mt_study *study, mt_reference_cache *references,
     return mt_problem_new_in_gap(study, references, NULL, out, err);
 }
 
-static mt_status init_demands(mt_problem *p, const int *below, mt_err *err)
+mt_status mt_problem_new_in_gap(const mt_study *study, mt_reference_cache *references,
+                                const int *below, mt_problem **out, mt_err *err)
 {
-    MT_TRY(mt_problem_init_demands(p, err));
-    MT_TRY(mt_clear_init(p, below, err));
+    return mt_problem_new_cut(study, references, below, 0, NULL, out, err);
+}
+
+static mt_status init_demands(mt_problem *p, const int *below, int n_cuts, const mt_cut *cuts,
+                              mt_err *err)
+{
+    MT_TRY(mt_problem_init_demands(p, n_cuts, err));
+    MT_TRY(mt_clear_init(p, below, n_cuts, cuts, err));
     return mt_problem_init_rows(p, err);
 }
 
-mt_status mt_problem_new_in_gap(const mt_study *study, mt_reference_cache *references,
-                                const int *below, mt_problem **out, mt_err *err)
+mt_status mt_problem_new_cut(const mt_study *study, mt_reference_cache *references,
+                             const int *below, int n_cuts, const mt_cut *cuts, mt_problem **out,
+                             mt_err *err)
 {
     *out = NULL;
     mt_problem *const p = calloc(1, sizeof *p);
@@ -157,12 +167,13 @@ mt_status mt_problem_new_in_gap(const mt_study *study, mt_reference_cache *refer
     p->study = study;
     p->references = references;
     p->n = study->n_variables;
+    p->motion_room = HUGE_VAL;
     p->clearance = below != NULL && study->n_objectives > 0 &&
                    study->objectives[0].type == MT_OBJECTIVE_CLEARANCE;
     p->n_t = p->n + (p->clearance ? 1 : 0);
     mt_status rc = mt_arena_init(&p->mem, 0, err);
     rc = rc == MT_OK ? init_variables(p, err) : rc;
-    rc = rc == MT_OK ? init_demands(p, below, err) : rc;
+    rc = rc == MT_OK ? init_demands(p, below, n_cuts, cuts, err) : rc;
     rc = rc == MT_OK ? mt_problem_init_aims(p, err) : rc;
     rc = rc == MT_OK ? mt_robust_init(p, err) : rc;
     if (rc != MT_OK) {

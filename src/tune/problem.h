@@ -38,7 +38,11 @@ typedef struct mt_view {
     bool needs_vectors;   /* a goal needs shapes even where no gradient is asked for */
     bool tracked;         /* track belongs to the last solve */
     bool solved;          /* the last solve succeeded */
+    const struct mt_cut
+        *cut; /* NULL: as the configuration says; else at this position (family.h) */
 } mt_view;
+
+typedef struct mt_family mt_family; /* positions of one drive (family.h) */
 
 typedef struct mt_demand {
     const mt_goal *goal;
@@ -103,6 +107,12 @@ typedef struct mt_problem {
     mt_clear *clears;
     int n_bands; /* of all clears: length of a gap assignment */
     int *below;  /* [n_bands] the assignment that is searched; NULL: none */
+    int n_families;
+    mt_family *families;
+    int *
+        tie; /* [n_bands] the first of the bands that have the same number of modes below them (family.h); but for cuts */
+    double
+        motion_room; /* of a design that is described: the least between the positions of its drives; HUGE_VAL: none */
     bool
         clearance; /* t has one more entry, the least clearance ln(...) that is made greatest */
     int n_t;       /* n, or n + 1 */
@@ -148,6 +158,10 @@ mt_status mt_problem_new(const mt_study *study, mt_reference_cache *references,
 /* The same with a gap assignment below[n_bands] (of the problem without one). */
 mt_status mt_problem_new_in_gap(const mt_study *study, mt_reference_cache *references,
                                 const int *below, mt_problem **out, mt_err *err);
+/* The same with cuts[n_cuts] (family.h), behind all other rows of the bands. */
+mt_status mt_problem_new_cut(const mt_study *study, mt_reference_cache *references,
+                             const int *below, int n_cuts, const struct mt_cut *cuts,
+                             mt_problem **out, mt_err *err);
 void mt_problem_delete(mt_problem *p);
 /* Parameter values x[n] of coordinates t[n]: a bound, a value of a catalogue, and the original value come back to the last bit. */
 void mt_problem_x(const mt_problem *p, const double *t, double *x);
@@ -191,7 +205,8 @@ int mt_view_vibrations(const mt_view *view);
 mt_status mt_view_track(mt_problem *p, mt_view *view, mt_err *err);
 
 /* problem_clear.c */
-mt_status mt_clear_init(mt_problem *p, const int *below, mt_err *err);
+mt_status mt_clear_init(mt_problem *p, const int *below, int n_cuts, const struct mt_cut *cuts,
+                        mt_err *err);
 /* Fill the rows of all clears, after their views have been solved. */
 mt_status mt_clear_eval(mt_problem *p, const double *t, bool with_gradient, mt_nlp_values *out,
                         mt_err *err);
@@ -215,7 +230,7 @@ double mt_clear_room(const mt_problem *p, const mt_clear *c);
 double mt_clear_least_percent(const mt_clear *c, const mt_modes *modes, int *band, int *pos);
 
 /* problem_demands.c: views, demands and their rows. */
-mt_status mt_problem_init_demands(mt_problem *p, mt_err *err);
+mt_status mt_problem_init_demands(mt_problem *p, int n_cuts, mt_err *err);
 /* Relative tolerance of a goal. */
 double mt_problem_tolerance(const mt_goal *g);
 /* Once all rows are counted: tolerances and work space. */

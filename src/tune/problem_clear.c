@@ -7,7 +7,9 @@
  * modes; they only tell the search what comes next). With the objective "clearance" every row has to exceed the extra coordinate z, which is made as great as it can be.
  */
 #include <math.h>
+#include <string.h>
 
+#include "tune/family.h"
 #include "tune/robust.h"
 
 /* Range of the extra coordinate: a clearance of -95 % to +2000 %. */
@@ -81,11 +83,60 @@ static void number_rows(mt_problem *p, mt_clear *c)
     p->n_in += c->n_rows;
 }
 
-mt_status mt_clear_init(mt_problem *p, const int *below, mt_err *err)
+static mt_status add_cut(mt_problem *p, const mt_cut *cut, mt_clear *c, mt_err *err)
+{
+    mt_view *const view = &p->views[p->n_views];
+    const mt_family *const f = &p->families[cut->family];
+    *view = (mt_view){.configuration = f->configuration, .solved = true, .cut = cut};
+    MT_TRY(mt_view_analyse(p, view, p->original, &view->analysis, err));
+    c->view = p->n_views++;
+    c->first = p->n_bands;
+    p->n_clears++;
+    return MT_OK;
+}
+
+mt_status mt_clear_cut(mt_problem *p, const mt_cut *cut, mt_err *err)
+{
+    mt_way_band *way = NULL;
+    int n = 0;
+    const mt_family *const f = &p->families[cut->family];
+    mt_clear *const c = &p->clears[p->n_clears];
+    *c = (mt_clear){.row_in = -1, .cluster = 1, .tolerance = HUGE_VAL};
+    MT_TRY(mt_family_bands(p, f, cut->position, cut->position, &p->mem, &way, &n, err));
+    c->bands.items = mt_arena_alloc(&p->mem, (size_t)n, sizeof *c->bands.items);
+    int *const tie = mt_arena_int(&p->mem, (size_t)p->n_bands + (size_t)n);
+    int *const below = mt_arena_int(&p->mem, (size_t)p->n_bands + (size_t)n);
+    if (c->bands.items == NULL || tie == NULL || below == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = p->n_clears - 1; i >= 0; i--) {
+        const mt_clear *const own = &p->clears[i];
+        if (mt_family_of(p, own->view) == cut->family) {
+            c->goal_index = own->goal_index;
+            c->cluster = own->cluster > c->cluster ? own->cluster : c->cluster;
+        }
+    }
+    MT_TRY(add_cut(p, cut, c, err));
+    memcpy(tie, p->tie, (size_t)p->n_bands * sizeof *tie);
+    memcpy(below, p->below, (size_t)p->n_bands * sizeof *below);
+    for (int i = 0; i < n; i++) {
+        c->bands.items[i] = way[i].band;
+        c->tolerance = fmin(c->tolerance, way[i].tolerance);
+        tie[p->n_bands] = way[i].tie;
+        below[p->n_bands++] = p->below[way[i].tie];
+    }
+    c->bands.n = n;
+    p->tie = tie;
+    p->below = below;
+    return MT_OK;
+}
+
+mt_status mt_clear_init(mt_problem *p, const int *below, int n_cuts, const struct mt_cut *cuts,
+                        mt_err *err)
 {
     const mt_study *const s = p->study;
-    p->clears =
-        mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations + 1, sizeof *p->clears);
+    p->clears = mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations + (size_t)n_cuts + 1,
+                               sizeof *p->clears);
     if (p->clears == NULL) {
         return mt_fail_memory(err);
     }
@@ -95,6 +146,7 @@ mt_status mt_clear_init(mt_problem *p, const int *below, mt_err *err)
             MT_TRY(add_clear(p, i, mt_problem_view(p, g->configurations[k]), err));
         }
     }
+    MT_TRY(mt_families_init(p, err));
     if (below == NULL || p->n_bands == 0) {
         return MT_OK;
     }
@@ -104,6 +156,9 @@ mt_status mt_clear_init(mt_problem *p, const int *below, mt_err *err)
     }
     for (int i = 0; i < p->n_bands; i++) {
         p->below[i] = below[i];
+    }
+    for (int i = 0; i < n_cuts; i++) {
+        MT_TRY(mt_clear_cut(p, &cuts[i], err));
     }
     for (int i = 0; i < p->n_clears; i++) {
         number_rows(p, &p->clears[i]);

@@ -2,7 +2,7 @@
 /* From goals to demands: one per goal and configuration, each with a view, a mode, a reference and its rows. */
 #include <math.h>
 
-#include "tune/problem.h"
+#include "tune/family.h"
 
 /* Default tolerance of a goal in percent (the format's documentation says so too). */
 static const double DEFAULT_TOLERANCE_PERCENT = 1e-4;
@@ -47,10 +47,21 @@ mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const double
                           mt_analysis **out, mt_err *err)
 {
     mt_analysis *a = NULL;
+    mt_system_drive drive = {.fixed = true};
+    const mt_view *like = view;
     *out = NULL;
-    MT_TRY(mt_analysis_new(p->study->model, view->configuration, p->n, p->inputs, x, &a, err));
-    a->n_rigid = view->analysis->n_rigid;
-    a->n_most = view->analysis->n_most;
+    if (view->cut != NULL) {
+        const mt_family *const f = &p->families[view->cut->family];
+        drive.joint = f->joint;
+        drive.spring = f->spring;
+        drive.position = view->cut->position;
+        like = view->analysis != NULL ? view : &p->views[f->view[0]];
+    }
+    MT_TRY(mt_analysis_new_driven(p->study->model, view->configuration,
+                                  view->cut != NULL ? &drive : NULL, p->n, p->inputs, x, &a,
+                                  err));
+    a->n_rigid = like->analysis->n_rigid;
+    a->n_most = like->analysis->n_most;
     const mt_status rc = solve_counted(a, a->n_null, x, err);
     if (rc != MT_OK) {
         mt_analysis_delete(a);
@@ -276,7 +287,7 @@ mt_status mt_problem_init_rows(mt_problem *p, mt_err *err)
     return MT_OK;
 }
 
-mt_status mt_problem_init_demands(mt_problem *p, mt_err *err)
+mt_status mt_problem_init_demands(mt_problem *p, int n_cuts, mt_err *err)
 {
     const mt_study *const s = p->study;
     size_t most = 0;
@@ -284,7 +295,8 @@ mt_status mt_problem_init_demands(mt_problem *p, mt_err *err)
         most += (size_t)s->goals[i].n_configurations + 1;
     }
     p->demands = mt_arena_alloc(&p->mem, most, sizeof *p->demands);
-    p->views = mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations, sizeof *p->views);
+    p->views = mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations + (size_t)n_cuts,
+                              sizeof *p->views);
     if (p->demands == NULL || p->views == NULL) {
         return mt_fail_memory(err);
     }

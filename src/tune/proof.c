@@ -44,6 +44,7 @@ static void list_bands(mt_proof *proof, const mt_problem *p)
     }
     proof->question.n_bands = at;
     proof->question.bands = proof->bands;
+    proof->question.same_as = p->tie;
 }
 
 static mt_certify_limit frequency_limit(const mt_demand *d)

@@ -126,4 +126,7 @@ void mt_say_bands(mt_sentences *s)
 {
     say_kinds(s);
     say_clearances(s);
+    for (int i = 0; i < s->rec->n_motions; i++) {
+        mt_say(s, "Over the motion: %s.", s->rec->motions[i].text);
+    }
 }

@@ -84,6 +84,16 @@ mt_tolerance_box mt_tolerance_box_default(void)
     return (mt_tolerance_box){.all_percent = nan("")};
 }
 
+mt_result_motion mt_result_motion_default(void)
+{
+    return (mt_result_motion){.from = nan(""),
+                              .to = nan(""),
+                              .least_clearance_percent = nan(""),
+                              .margin_percent = nan(""),
+                              .at = nan(""),
+                              .hz = nan("")};
+}
+
 #define NAME_CASE(id, name) \
     case id:                \
         return name;

@@ -89,6 +89,28 @@ typedef struct mt_result_gap {
     int modes_below;
 } mt_result_gap;
 
+/* A design between the named positions of one drive. */
+typedef struct mt_result_motion {
+    const char *pointer; /* of the first goal that keeps these positions clear of bands */
+    const char *drive;   /* the joint */
+    const char *unit;    /* "rad" | "m": of from, to, at */
+    double from;         /* first and last named position */
+    double to;
+    int positions; /* that were looked at; 0: none */
+    double
+        least_clearance_percent; /* of an edge of a band without its margin, negative beyond it; NaN: not followed */
+    double margin_percent; /* asked for there */
+    double at;             /* where it is */
+    double hz;
+    int mode;         /* whose it is, or which crosses; 0: none */
+    const char *band; /* NULL: none */
+    bool
+        crosses; /* a mode is nearer to a band than its margin, or inside, between the positions */
+    const char *
+        grade; /* "sampled" | "sampled coarsely" | "incomplete" | "unstable" | "not followed" */
+    const char *text; /* in words, without a full stop */
+} mt_result_motion;
+
 typedef struct mt_result_tolerance {
     const char *name; /* of the variable */
     double percent;   /* it alone may change so much either way; NaN: not known */
@@ -130,6 +152,8 @@ typedef struct mt_recommendation {
     mt_result_clearance *clearances;
     int n_gaps; /* 0: no bands */
     mt_result_gap *gaps;
+    int n_motions; /* one for each drive with several positions that keep clear of bands */
+    mt_result_motion *motions;
     mt_tolerance_box *tolerance_box; /* NULL: not computed */
     int n_goals;
     mt_result_goal *goals;
@@ -302,5 +326,6 @@ mt_result_frequency mt_result_frequency_default(void);
 mt_result_published mt_result_published_default(void);
 mt_certificate mt_certificate_default(void);
 mt_tolerance_box mt_tolerance_box_default(void);
+mt_result_motion mt_result_motion_default(void);
 
 #endif

@@ -68,6 +68,20 @@ static void copy_bands(copier *c, mt_recommendation *r)
     }
 }
 
+static void copy_motions(copier *c, mt_recommendation *r)
+{
+    r->motions = list(c, r->motions, r->n_motions, sizeof *r->motions);
+    for (int i = 0; i < r->n_motions && !c->failed; i++) {
+        mt_result_motion *const m = &r->motions[i];
+        m->pointer = text(c, m->pointer);
+        m->drive = text(c, m->drive);
+        m->unit = text(c, m->unit);
+        m->band = text(c, m->band);
+        m->grade = text(c, m->grade);
+        m->text = text(c, m->text);
+    }
+}
+
 static void copy_tolerances(copier *c, mt_recommendation *r)
 {
     if (r->tolerance_box == NULL) {
@@ -115,6 +129,7 @@ mt_status mt_recommendation_copy(const mt_recommendation *from, mt_arena *mem,
     copy_parameters(&c, out);
     copy_frequencies(&c, out);
     copy_bands(&c, out);
+    copy_motions(&c, out);
     copy_tolerances(&c, out);
     copy_words(&c, out);
     return c.failed ? mt_fail_memory(err) : MT_OK;

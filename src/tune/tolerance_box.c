@@ -145,7 +145,8 @@ mt_status mt_describe_tolerance(mt_problem *fresh, mt_result *result, mt_recomme
         return MT_OK;
     }
     MT_TRY(confirm(fresh, result, &confirmed, err));
-    rec->grade = confirmed ? "feasible and proven" : rec->grade;
+    /* between the positions of a drive there are samples and no proof */
+    rec->grade = confirmed && rec->n_motions == 0 ? "feasible and proven" : rec->grade;
     if (!worth_a_box(fresh) || rec->n_gaps != fresh->n_bands) {
         return MT_OK;
     }

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "tune/discrete.h"
+#include "tune/family.h"
 #include "tune/trade.h"
 
 /* Less than this, relatively, is the same objective: two searches of one optimum end so near. */
@@ -55,6 +56,9 @@ static mt_status open_gap(warm *w, const double *t, mt_err *err)
     for (int i = 0; i < p->n_clears; i++) {
         const mt_clear *const c = &p->clears[i];
         (void)mt_clear_violation(c, &p->views[c->view].analysis->modes, below + c->first, NULL);
+    }
+    if (!mt_ties_agree(p, below)) {
+        return mt_fail(err, MT_E_DOMAIN, "a mode crosses a band between two positions");
     }
     return mt_problem_new_in_gap(w->study, &w->references, below, &w->in_gap, err);
 }

@@ -87,6 +87,22 @@ static mt_result_clearance CLEARANCES[] = {
 static mt_result_gap GAPS[] = {
     {.configuration = "installed", .band = "4P of UH-60", .modes_below = 1},
 };
+static mt_result_motion MOTIONS[] = {
+    {.pointer = "/goals/0",
+     .drive = "pivot",
+     .unit = "rad",
+     .from = -0.25,
+     .to = 0.5,
+     .positions = 40,
+     .least_clearance_percent = 10.5,
+     .margin_percent = 10.0,
+     .at = 0.125,
+     .hz = 14.5,
+     .mode = 1,
+     .band = "4P of UH-60",
+     .grade = "sampled",
+     .text = "mode 1 comes nearest"},
+};
 static mt_result_tolerance TOLERANCES[] = {
     { "K_T1",      4.5, "mode 1 at 4P of UH-60"},
     {"M_SAU", HUGE_VAL,                    NULL},
@@ -113,6 +129,8 @@ static void fill_bands(sample *s)
     r->clearances = CLEARANCES;
     r->n_gaps = MT_COUNT(GAPS);
     r->gaps = GAPS;
+    r->n_motions = MT_COUNT(MOTIONS);
+    r->motions = MOTIONS;
     r->tolerance_box = &s->box;
     s->point = (mt_trade_point){.values = TRADE_VALUES,
                                 .status = MT_RESULT_SOLVED,
@@ -292,6 +310,9 @@ static void result_file__holds_what_the_design_promises(mt_test *t)
         "\"K_T1\": 0.00125",
         "\"clearances\": []",
         "\"gap_assignment\": null",
+        "\"motion\": []",
+        "\"motion\": [",
+        "\"least_clearance_percent\": 10.5",
         "\"tolerance_box\": null",
         "\"clearance_percent\": null",
         "\"clearance_percent\": 12.5",

@@ -145,7 +145,7 @@ static void sweep__ratio_is_the_slope_of_the_coordinate(mt_test *t)
     const mt_system_drive drives[] = {
         {.joint = "jA"},
         { .joint = "jD"            },
-        { "jA",            "servo"}
+        { .joint = "jA",            .spring = "servo"}
     };
     const double h = 1e-4;
     for (int k = 0; k < MT_COUNT(drives); k++) {
@@ -348,8 +348,8 @@ static void sweep__servo_moves_the_stick_in_space(mt_test *t)
 {
     static const char *const configurations[] = {"still", "heavy"};
     const mt_system_drive drives[] = {
-        {.joint = "shaft"},
-        { "shaft",         "servo"}
+        {.joint = "shaft" },
+        { .joint = "shaft",.spring = "servo"}
     };
     for (int k = 0; k < MT_COUNT(drives); k++) {
         run r;
@@ -375,8 +375,8 @@ static void sweep__a_locked_rod_is_held_by_its_moment(mt_test *t)
 {
     /* V = k a^2/2 - (m/2 + m_d) g L cos a, wound up twice */
     const mt_system_drive drives[] = {
-        {.joint = "pivot"},
-        { "pivot",         "servo"}
+        {.joint = "pivot" },
+        { .joint = "pivot",.spring = "servo"}
     };
     for (int k = 0; k < MT_COUNT(drives); k++) {
         run r;
@@ -399,8 +399,8 @@ static void sweep__a_locked_rod_is_held_by_its_moment(mt_test *t)
 static void sweep__meets_the_configuration_that_drives_the_same(mt_test *t)
 {
     const mt_system_drive drives[] = {
-        {.joint = "pivot"},
-        { "pivot",         "servo"}
+        {.joint = "pivot" },
+        { .joint = "pivot",.spring = "servo"}
     };
     static const char *const configurations[] = {"locked", "trimmed"};
     mt_model *const model = mech_load(t, "driven_rod");
@@ -434,14 +434,14 @@ static void sweep__refuses_in_words(mt_test *t)
         const char *text;
     } rows[] = {
         {"driven_rod",
-         "sprung",    {"pivat", NULL},
+         "sprung",    {.joint = "pivat", .spring = NULL},
          "drive: there is no joint \"pivat\" in configuration \"sprung\"; did you mean "
          "\"pivot\"?"                                                                },
         {"driven_rod",
-         "sprung", {"pivot", "serve"},
+         "sprung", {.joint = "pivot", .spring = "serve"},
          "drive: there is no spring \"serve\" to hold it in configuration \"sprung\""},
         {"space_body",
-         "ball",     {"ball", NULL},
+         "ball",     {.joint = "ball", .spring = NULL},
          "drive: joint \"ball\" (spherical) has no coordinate to drive"              },
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
@@ -483,7 +483,7 @@ static void sweep__a_joint_that_others_hold_is_named(mt_test *t)
 
 static void sweep__failing_allocations_are_errors(mt_test *t)
 {
-    const mt_system_drive drive = {"shaft", "servo"};
+    const mt_system_drive drive = {.joint = "shaft", .spring = "servo"};
     mt_model *const model = mech_parse(t, SERVO_STICK);
     CHECK(t, model != NULL);
     for (long nth = 0; model != NULL && mt_alloc_works(); nth++) {
