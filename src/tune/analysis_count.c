@@ -20,6 +20,23 @@ enum { FIRST_DESIGNS = 3, SPREAD_DESIGNS = 8 };
 /* A part of a spring's row along the mode below this, relative to both, is rounding. */
 static const double NO_PART = 1e-6;
 
+/* k (n x n, lower) += size (a b^T + b a^T)/2. */
+static void add_pair(ptrdiff_t n, double size, const double *a, const double *b, double *k)
+{
+    for (ptrdiff_t j = 0; j < n; j++) {
+        for (ptrdiff_t i = j; i < n; i++) {
+            k[i + (j * n)] += 0.5 * size * ((a[i] * b[j]) + (a[j] * b[i]));
+        }
+    }
+}
+
+/* A term that holds counts with its own size, or 1 where that is 0: any size will do. */
+static double size_of(const mt_linear *lin, const mt_term *term)
+{
+    const double now = lin->value[term->coefficient];
+    return now != 0.0 && isfinite(now) ? (term->pair ? now : fabs(now)) : 1.0;
+}
+
 mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor *mass,
                                       const bool *holds, mt_arena *scratch, int *n, mt_err *err)
 {
@@ -28,7 +45,7 @@ mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     double *const k = mt_arena_f64(scratch, (size_t)order, (size_t)order);
     double *const c = mt_arena_f64(scratch, (size_t)list->n_rows, 1);
-    mt_stiffness_factor factor = {.rows = list->n_rows, .b = lin->factor_b, .c = c};
+    const mt_stiffness_factor factor = {.rows = list->n_rows, .b = lin->factor_b, .c = c};
     mt_modal_options opt = mt_modal_options_default();
     mt_modes modes;
     bool squares = lin->kg == NULL;
@@ -37,20 +54,14 @@ mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor
     }
     for (int t = 0; t < list->n_terms; t++) {
         const mt_term *const term = &list->terms[t];
-        const double now = fabs(lin->value[term->coefficient]);
-        const double size = !holds[t] ? 0.0 : now > 0.0 && isfinite(now) ? now : 1.0;
+        if (!holds[t]) {
+            continue;
+        }
+        const double size = size_of(lin, term);
         const double *const a = lin->reduced[MT_TERM_STIFFNESS] + (term->first * order);
-        const double *const b = term->pair ? a + order : a;
-        const double sign = lin->value[term->coefficient] < 0.0 && term->pair ? -1.0 : 1.0;
-        squares = squares && !(term->pair && holds[t]);
-        for (int r = 0; r < term->count; r++) {
-            c[term->first + r] = term->pair ? 0.0 : size;
-        }
-        for (ptrdiff_t j = 0; j < order && size > 0.0; j++) {
-            for (ptrdiff_t i = j; i < order; i++) {
-                k[i + (j * order)] += sign * 0.5 * size * ((a[i] * b[j]) + (a[j] * b[i]));
-            }
-        }
+        squares = squares && !term->pair;
+        c[term->first] = term->pair ? 0.0 : size;
+        add_pair(order, size, a, term->pair ? a + order : a, k);
     }
     opt.vectors = false;
     opt.need_accuracy = true;
@@ -133,7 +144,8 @@ static void place(const family *f, int k)
     static const double PRIMES[] = {2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0};
     for (int i = 0; i < f->n; i++) {
         const double root = sqrt(PRIMES[i % MT_COUNT(PRIMES)]);
-        const double turn = (double)(k - 2) * root * (1.0 + (double)(i / MT_COUNT(PRIMES)));
+        const int round = i / MT_COUNT(PRIMES);
+        const double turn = (double)(k - 2) * root * (double)(1 + round);
         const double part = k < 2 ? (double)k : k == 2 ? 0.5 : turn - floor(turn);
         f->x[i] = f->lower[i] + (part * (f->upper[i] - f->lower[i]));
     }
@@ -198,10 +210,10 @@ static mt_status count(mt_analysis *a, const mt_count_box *box, const mt_system_
     family f = {.a = NULL};
     int n_rigid = a->n_null;
     mt_status rc = open_family(a, box, drive, position, mem, &f, err);
-    if (rc == MT_OK && a->modes.n_condensed > 0) {
+    if (rc == MT_OK && f.a != NULL && a->modes.n_condensed > 0) {
         rc = count_masses(&f, mem, &a->n_most, err);
     }
-    if (rc == MT_OK && n_rigid > 0) {
+    if (rc == MT_OK && f.a != NULL && n_rigid > 0) {
         n_rigid = f.a->n_rigid < n_rigid ? f.a->n_rigid : n_rigid;
         rc = is_structural(f.a->lin) ? count_terms(&f, mem, &n_rigid, err)
                                      : count_designs(&f, &n_rigid, err);

@@ -70,7 +70,7 @@ mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
  */
 const char *mt_describe_disagreement(const mt_modes *study, const mt_modes *fresh,
                                      const char *configuration, mt_arena *mem);
-/* Does a fresh analysis disagree at any design of the result? Then its certificates and tolerance boxes are withdrawn, and such a design is graded "not verified". */
+/* describe_withdraw.c: does a fresh analysis disagree at any design of the result? Then its certificates and tolerance boxes are withdrawn, and such a design is graded "not verified". */
 bool mt_describe_is_doubted(const mt_result *result);
 mt_status mt_describe_withdraw(mt_result *result, mt_err *err);
 /* tolerance_box.c: inertia counts confirm the bands of a feasible design; its tolerance box, where the modes can be enclosed. After the clearances. */

@@ -160,19 +160,17 @@ static const char *doubt_text(const mt_recommendation *best, mt_arena *mem)
                : "";
 }
 
-static const char *status_text(const answer *a, const mt_recommendation *best)
+/* Answers that do not depend on a search's success; NULL: it does. */
+static const char *early_text(const answer *a, const mt_recommendation *best)
 {
-    mt_arena *const mem = &a->result->mem;
-    const int n = a->found.n_solutions;
     if (a->found.stop == MT_STOP_USER) {
-        return n > 0 ? "Interrupted: the best designs found so far."
-                     : "Interrupted before any design was found.";
+        return a->found.n_solutions > 0 ? "Interrupted: the best designs found so far."
+                                        : "Interrupted before any design was found.";
     }
     if (mt_describe_is_doubted(a->result)) {
         return "Not verified: a fresh analysis disagrees with what the search read, so that "
                "nothing here is proven and designs graded \"not verified\" must not be used "
-               "(see "
-               "the warnings).";
+               "(see the warnings).";
     }
     if (best->n_goals == 0) {
         return "No goals: the model as it is, against published values.";
@@ -180,6 +178,17 @@ static const char *status_text(const answer *a, const mt_recommendation *best)
     if (!a->searched) {
         return best->feasible ? "The original design meets all goals."
                               : "The original design does not meet all goals.";
+    }
+    return NULL;
+}
+
+static const char *status_text(const answer *a, const mt_recommendation *best)
+{
+    mt_arena *const mem = &a->result->mem;
+    const int n = a->found.n_solutions;
+    const char *const early = early_text(a, best);
+    if (early != NULL) {
+        return early;
     }
     if (a->infeasible) {
         return mt_arena_printf(mem,

@@ -315,6 +315,63 @@ static void rank__the_count_is_the_least_of_the_box(mt_test *t)
     }
 }
 
+/* A coordinate that is held by nothing but what is 0 in the original: a spring of any kind. k rises to 50. */
+static void rank__every_kind_of_spring_counts(mt_test *t)
+{
+#define PLANE \
+    "{'format': 'modetune-model/1', 'name': 'kinds', 'dimension': 2, 'parameters': {'k': 0}, "
+#define WHEEL                                                                           \
+    "'bodies': [{'name': 'w', 'mass_kg': 1, 'inertia_kg_m2': 0.5, 'centre': [0, 0]}], " \
+    "'joints': [{'name': 'p', 'type': 'revolute', 'bodies': ['ground', 'w'], 'at': [0, 0]}], "
+#define BLOCK \
+    "'bodies': [{'name': 'w', 'mass_kg': 2, 'inertia_kg_m2': 0.5, 'centre': [0, 0]}], "
+    static const struct {
+        const char *name;
+        const char *model;
+        int held;  /* directions that k holds */
+        double hz; /* of mode 1 at k = 50 */
+    } rows[] = {
+        {        "torsion",
+         PLANE WHEEL "'springs': [{'name': 's', 'type': 'torsion', 'joint': 'p', "
+         "'stiffness_n_m_per_rad': 'k'}]}", 1, 1.5915494309189535                                     },
+        {        "bushing",
+         PLANE BLOCK "'springs': [{'name': 's', 'type': 'bushing', 'bodies': "
+         "['ground', 'w'], 'at': [0, 0], 'stiffness_n_per_m': ['2*k', "
+         "'8*k'], 'stiffness_n_m_per_rad': '2*k'}]}", 3, 1.1253953951963827                           },
+ /* E A / l = 50 of a bar of length 1 without mass; 'k' is its area */
+        {            "bar",
+         PLANE "'bodies': [{'name': 'w', 'mass_kg': 0.5, 'centre': [1, 0]}], 'joints': "
+         "[{'name': 'r', 'type': 'pin-in-slot', 'bodies': ['ground', 'w'], 'at': "
+         "[1, 0], 'axis': [1, 0]}], 'springs': [{'name': 's', 'type': 'bar', "
+         "'bodies': ['ground', 'w'], 'at': [[0, 0], [1, 0]], "
+         "'youngs_modulus_pa': 1, 'area_m2': 'k', 'density_kg_per_m3': 0.03}]}", 1, 1.1253953951963827},
+        {"hinge of a link",
+         PLANE "'points': {'a': [0, 0], 'b': [2, 0]}, 'links': [{'name': 'l', "
+         "'from': 'a', 'to': 'b', 'elements': 2, 'mass_kg': 6, "
+         "'stiffness_n_m_per_rad': ['k']}], 'joints': [{'name': 'f', "
+         "'type': 'fixed', 'bodies': ['ground', 'l.start'], 'at': "
+         "'a'}]}", 1, 1.1253953951963827                                                              },
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        opened o;
+        mt_err err = {0};
+        const double most = 50.0;
+        const mt_analysis_options opt = mt_analysis_options_default();
+        mt_test_row(t, "%s", rows[i].name);
+        if (open_problem(t, rows[i].model,
+                         "'variables': [{'parameter': 'k', 'lower': 0, 'upper': 50}], 'goals': "
+                         "[{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.1}]",
+                         &o)) {
+            mt_analysis *const a = o.p->views[0].analysis;
+            CHECK_INT(t, a->n_null, rows[i].held);
+            CHECK_INT(t, a->n_rigid, 0);
+            CHECK_INT(t, mt_analysis_solve(a, &most, &opt, &err), MT_OK);
+            CHECK_NEAR(t, mt_modal_hz(&a->modes, 0), rows[i].hz, 1e-9);
+        }
+        close_problem(&o);
+    }
+}
+
 /* Gravity loads the pendulum, so that designs are sampled: without its mass nothing brings it back. */
 static void rank__loaded_configurations_are_counted_over_designs(mt_test *t)
 {
@@ -462,6 +519,7 @@ MT_TEST_MAIN(MT_TEST(rank__an_added_spring_is_sized_from_zero),
              MT_TEST(rank__a_named_mode_is_the_models),
              MT_TEST(rank__an_added_mass_is_sized_from_zero),
              MT_TEST(rank__the_count_is_the_least_of_the_box),
+             MT_TEST(rank__every_kind_of_spring_counts),
              MT_TEST(rank__loaded_configurations_are_counted_over_designs),
              MT_TEST(rank__a_count_that_does_not_hold_is_noticed),
              MT_TEST(rank__a_tolerance_box_ends_where_a_spring_lets_go),
