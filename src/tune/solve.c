@@ -182,6 +182,22 @@ static const char *early_text(const answer *a, const mt_recommendation *best)
     return NULL;
 }
 
+static const char *solved_text(const answer *a, const char *doubt, mt_arena *mem)
+{
+    const int n = a->found.n_solutions;
+    if (a->gaps.n_solutions > 0) {
+        return mt_arena_printf(
+            mem,
+            "Solved: %d kind%s of design keep%s clear of the bands and meet%s all goals (of "
+            "%.0f "
+            "gap assignments, %s).%s",
+            n, n == 1 ? "" : "s", n == 1 ? "s" : "", n == 1 ? "s" : "", a->gaps.n_possible,
+            a->gaps.proven ? "the others proven infeasible" : "sampled, not proven", doubt);
+    }
+    return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.%s", n,
+                           n == 1 ? " meets" : "s meet", doubt);
+}
+
 static const char *status_text(const answer *a, const mt_recommendation *best)
 {
     mt_arena *const mem = &a->result->mem;
@@ -206,18 +222,8 @@ static const char *status_text(const answer *a, const mt_recommendation *best)
     if (doubt == NULL) {
         return NULL;
     }
-    if (best->feasible && a->gaps.n_solutions > 0) {
-        return mt_arena_printf(
-            mem,
-            "Solved: %d kind%s of design keep%s clear of the bands and meet%s all goals (of "
-            "%.0f "
-            "gap assignments, %s).%s",
-            n, n == 1 ? "" : "s", n == 1 ? "s" : "", n == 1 ? "s" : "", a->gaps.n_possible,
-            a->gaps.proven ? "the others proven infeasible" : "sampled, not proven", doubt);
-    }
     if (best->feasible) {
-        return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.%s", n,
-                               n == 1 ? " meets" : "s meet", doubt);
+        return solved_text(a, doubt, mem);
     }
     if (is_doubtful(best)) {
         return "Compromise: by their numbers all goals can be met, but which modes the named "
