@@ -98,18 +98,25 @@ def certificates(run):
 
 
 def _assignments(run, certificate, x):
+    """Every kind of a feasible design that brute force finds is among those that can be met; alone, they are all listed."""
     q = run.question
     good, _ = _counterexamples(run)
-    feasible = np.concatenate([x[q.missed(x) <= 1.0], good]) if len(good) else x[q.missed(x) <= 1.0]
-    found = re.match(r"Of (\d+) gap assignments (\d+) can be met", certificate["text"])
+    feasible = np.concatenate([x[q.missed_robustly(x) <= 1.0], good]) if len(good) else x[q.missed_robustly(x) <= 1.0]
+    found = re.match(r"Of (\d+) gap assignments (\d+) can be met (within the bounds|by catalogue values)?", certificate["text"])
+    if not found:
+        return
+    kinds = {kind: design for design, kind in zip(feasible, q.kind(feasible))}
+    if len(kinds) > int(found[2]):
+        yield f"\"{certificate['text']}\": {len(kinds)} kinds are found, {list(kinds.items())[:9]}"
     listed = {tuple(g["modes_below"] for g in r["gap_assignment"]) for r in run.result["recommendations"]
               if r["feasible"] and r["gap_assignment"] is not None}
-    if found and int(found[2]) < run.study.get("recommendations", 5) and len(listed) != int(found[2]):
+    if found[3] != "within the bounds" or int(found[2]) > run.study.get("recommendations", 5):
+        return
+    if len(listed) != int(found[2]):
         yield f"\"{certificate['text']}\": {len(listed)} kinds are listed"
-    for design, kind in zip(feasible, q.kind(feasible)):
-        if found and kind not in listed and len(listed) < run.study.get("recommendations", 5):
+    for kind, design in kinds.items():
+        if kind not in listed:
             yield f"\"{certificate['text']}\": {design.tolist()} has {kind}"
-            return
 
 
 def tolerance_boxes(run):
@@ -125,6 +132,8 @@ def tolerance_boxes(run):
             if item["percent"] is not None:
                 boxes.append((np.where(np.arange(q.n) == i, item["percent"], 0.0), item["name"]))
         for percent, what in boxes:
+            if not percent.any():  # on an edge: the goal's tolerance counts
+                continue
             part = np.minimum(percent / 100.0 * (1.0 - 1e-9), 0.999)
             signs = np.array(list(itertools.product((-1.0, 1.0), repeat=q.n))) if q.n <= 8 else np.zeros((0, q.n))
             inside = 2.0 * search._halton(60, q.n) - 1.0

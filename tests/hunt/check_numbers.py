@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 NEAR = 1e-7       # relative: frequencies of well-conditioned models of a few masses
-FEW = 0.1         # of the greatest frequency: what a mode near 0 is compared at (the root of rounding)
+FEW = 1.0         # of the greatest frequency: what a mode near 0 is compared at (the root of rounding)
 SLACK = 1e-5      # relative, of what has a tolerance of its own
 SLOPE = 1e-4      # of a slope by differences, of the greatest slope of the mode
 
