@@ -11,6 +11,7 @@ from check_numbers import design_of, near
 
 BETTER = 1e-4      # a design is better that much, relative (of at least FLOOR)
 FLOOR = 2e-2
+SURE = 0.05        # of the tolerance: what a counterexample may miss
 SAMPLES = 1500
 STARTS = 2
 ENUMERATED = 20000  # combinations at most that are all judged
@@ -28,13 +29,14 @@ def _counterexamples(run):
         if all(v.values is not None for v in q.variables) and math.prod(len(v.values) for v in q.variables) <= ENUMERATED:
             x = search.combinations(q)
             missed = q.missed_robustly(x)
-            run.found = x[missed <= 1.0], q.cost(x[missed <= 1.0])
+            run.found = x[missed <= SURE], q.cost(x[missed <= SURE])
         else:
             x = search.samples(q, SAMPLES)
-            starts, good, _ = search.least_missed(q, x, STARTS)
+            starts, good, missed_there = search.least_missed(q, x, STARTS)
             own = [design_of(q, r)[0] for r in run.result["recommendations"][:2]]
+            good = good[missed_there[good] <= SURE]
             ends, missed, cost = search.descend(q, own + list(starts))
-            keep = missed <= 1.0
+            keep = missed <= SURE
             run.found = np.concatenate([ends[keep], x[good]]), np.concatenate([cost[keep], q.cost(x[good])])
     return run.found
 
@@ -101,7 +103,7 @@ def _assignments(run, certificate, x):
     """Every kind of a feasible design that brute force finds is among those that can be met; alone, they are all listed."""
     q = run.question
     good, _ = _counterexamples(run)
-    feasible = np.concatenate([x[q.missed_robustly(x) <= 1.0], good]) if len(good) else x[q.missed_robustly(x) <= 1.0]
+    feasible = np.concatenate([x[q.missed_robustly(x) <= SURE], good]) if len(good) else x[q.missed_robustly(x) <= SURE]
     found = re.match(r"Of (\d+) gap assignments (\d+) can be met (within the bounds|by catalogue values)?", certificate["text"])
     if not found:
         return

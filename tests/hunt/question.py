@@ -205,9 +205,10 @@ class Question:
         return worst
 
     def corners(self, x):
-        """All corners of the tolerances about one design x[n], and the design itself last."""
+        """Where the worst of the tolerances about one design x[n] is looked for: corners and points between; the design itself last."""
         which = np.flatnonzero(self.tolerance > 0.0)
-        signs = np.array(np.meshgrid(*[[-1.0, 1.0]] * len(which))).reshape(len(which), -1).T if len(which) else np.zeros((0, 0))
+        steps = [-1.0, 0.0, 1.0] if len(which) <= 3 else [-1.0, 1.0]
+        signs = np.array(np.meshgrid(*[steps] * len(which))).reshape(len(which), -1).T if len(which) else np.zeros((0, 0))
         out = np.tile(x, (len(signs) + 1, 1))
         if len(which):
             out[:-1, which] *= 1.0 + signs * self.tolerance[which]
