@@ -131,7 +131,7 @@ bool mt_search_before(int n, const double *a, const double *b)
     return false;
 }
 
-static bool same(int n, const double *a, const double *b)
+bool mt_search_same(int n, const double *a, const double *b)
 {
     double most = 0.0;
     for (int i = 0; i < n; i++) {
@@ -151,7 +151,7 @@ static void rank(stages *s)
         double *const f = s->f + ((ptrdiff_t)i * n_aims);
         bool twin = false;
         for (int k = 0; k < kept; k++) {
-            twin = twin || same(s->p->n, all[k].t, one.t);
+            twin = twin || mt_search_same(s->p->n, all[k].t, one.t);
         }
         if (twin) {
             continue;
@@ -218,6 +218,7 @@ mt_status mt_search_designs(mt_problem *const *problems, int n_workers, mt_arena
         *why = own;
         return MT_OK;
     }
+    MT_TRY(mt_search_repeated(p, mem, out, err));
     if (p->n_aims == 1 || out->compromise || out->n_solutions == 0 ||
         out->stop != MT_STOP_DONE) {
         return MT_OK;

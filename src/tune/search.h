@@ -15,6 +15,13 @@
 mt_status mt_search_designs(mt_problem *const *problems, int n_workers, mt_arena *mem,
                             mt_nlp_result *out, int *stage, mt_err *why, mt_err *err);
 
+/* Are designs at a[n] and b[n] one, as in the search itself? */
+bool mt_search_same(int n, const double *a, const double *b);
+
+/* search_repeated.c: improve ends where modes repeat, judge whether they are optima, rank, and drop what is one and what is not shown to be optimal behind a
+ * better design. In the present stage; solutions and their multipliers in place. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_USAGE. */
+mt_status mt_search_repeated(mt_problem *p, mt_arena *mem, mt_nlp_result *out, mt_err *err);
+
 /* Is a design with objectives a[n] before one with b[n]? By the objectives in order; values that a held objective may differ by count as equal. */
 bool mt_search_before(int n, const double *a, const double *b);
 

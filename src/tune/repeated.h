@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef TUNE_REPEATED_H
+#define TUNE_REPEATED_H
+
+#include "tune/cone.h"
+#include "tune/problem.h"
+
+/*
+ * Limits on modes that (nearly) coincide. A single mode has no slope there, its cluster has: with Y the modes of the cluster at a design t0, C = M Y
+ * there and Y(t), L(t) the modes and eigenvalues elsewhere near it, all of the cluster at or above the limit s (at or below: sign -1) is
+ *
+ *     B(t) = sign W^T (L - s) W / (2 s) positive semidefinite,   W = Y(t)^T C,
+ *
+ * a smooth function of t (Y W is the projection of Y(t0) on the invariant subspace, whatever the basis), whose slope where B = 0 is
+ * sign W^T Y^T (dK - s dM) Y W / (2 s). Where the best design keeps the modes together, B = 0 (Overton 1992).
+ */
+typedef struct mt_repeated_block {
+    int view;
+    int index; /* vibration index of the lowest mode */
+    int r;     /* modes */
+    double limit_hz;
+    double sign; /* +1 at least, -1 at most */
+    int row_most; /* the row of `in` that asks it of the mode which the others follow, -1: several do */
+    double *c;  /* n x r, n the freedoms of the view */
+    double *b;  /* r x r, at the last mt_repeated_eval */
+    double *g;  /* p->n matrices r x r: dB/dt_j there */
+    int n_rows; /* independent entries of B, at t0 */
+    int *entry; /* [n_rows] k + l r */
+    int first;  /* its first equality */
+} mt_repeated_block;
+
+typedef struct mt_repeated {
+    mt_problem *p;
+    int n_blocks;
+    mt_repeated_block *blocks;
+    bool *replaced;       /* [n_in] rows of `in` that the blocks stand for */
+    int n_rows;           /* entries of all blocks */
+    double *eq_tol;       /* [n_eq + n_rows] */
+    mt_nlp_values values; /* of the problem itself */
+} mt_repeated;
+
+/*
+ * The blocks at t: modes within `near` (relative) of an upper or lower limit that is asked of one of them, two or more at a time. Everything in
+ * mem. After the problem could be evaluated at t with gradient (done here); fails as mt_problem_eval.
+ */
+mt_status mt_repeated_find(mt_problem *p, const double *t, double near, mt_arena *mem,
+                           mt_repeated *out, mt_err *err);
+/* b and g of every block at the problem's last evaluation, which had gradients; turn: in the basis of t0, else in that of the modes. */
+mt_status mt_repeated_matrices(mt_repeated *m, bool turn, mt_arena *scratch, mt_err *err);
+/* The problem with B = 0 in place of the rows replaced: context of the search is m. */
+mt_nlp mt_repeated_nlp(mt_repeated *m);
+
+#endif
