@@ -9,6 +9,7 @@
 
 /* Modes of a configuration that the frequency table lists beyond those that goals name. */
 enum { LISTED_MODES = 4 };
+static const double PERCENT = 100.0;
 
 mt_status mt_describe_ranges(mt_problem *fresh, mt_err *err)
 {
@@ -45,40 +46,49 @@ static double beyond(const mt_robust_range *r, mt_robust_side side, double limit
     return ratio && far > MT_MOST_INSIDE ? MT_MOST_INSIDE : far; /* NaN stays */
 }
 
-/* The side that a goal is judged by, and how far it is missed there (at most 0: it is met). */
-static mt_robust_side worst_side(const mt_demand *d, const mt_robust_range *r,
-                                 double *violation)
-{
-    const mt_goal *const g = d->goal;
-    const bool ratio = d->view >= 0;
-    const double target = ratio ? d->target_hz : g->equals;
-    const bool equal = MT_HAS(target);
-    const double low = beyond(r, MT_LOWEST, equal ? target : g->at_least, ratio);
-    const double high = beyond(r, MT_HIGHEST, equal ? target : g->at_most, ratio);
-    const bool missing = !MT_HAS(r->value[MT_LOWEST]) || !MT_HAS(r->value[MT_HIGHEST]);
-    const mt_robust_side side = low >= high || !MT_HAS(high) ? MT_LOWEST : MT_HIGHEST;
-    *violation = missing ? nan("") : fmax(side == MT_LOWEST ? low : high, 0.0);
-    if (equal && ratio && !missing) { /* within the tolerance as a part of the target */
-        *violation =
-            fmax(1.0 - (r->value[MT_LOWEST] / target), (r->value[MT_HIGHEST] / target) - 1.0);
-    }
-    return side;
-}
-
-/* A violation in percent of what is asked for: that of a frequency's limit is a logarithm. */
+/* A violation in percent of what is asked for: that of a frequency is a logarithm. */
 static double percent_of(const mt_demand *d, mt_robust_side side, double violation)
 {
-    const bool logarithm = d->view >= 0 && !MT_HAS(d->target_hz);
-    const double below = logarithm ? -expm1(-violation) : violation;
-    const double above = logarithm ? expm1(violation) : violation;
-    return 100.0 * (side == MT_LOWEST ? below : above);
+    const double below = d->view >= 0 ? -expm1(-violation) : violation;
+    const double above = d->view >= 0 ? expm1(violation) : violation;
+    return PERCENT * (side == MT_LOWEST ? below : above);
+}
+
+typedef struct verdict {
+    mt_robust_side side; /* that the goal is judged by */
+    double violation;    /* at most 0: it is met */
+    double percent;
+} verdict;
+
+static verdict judge(const mt_demand *d, const mt_robust_range *r)
+{
+    const bool ratio = d->view >= 0;
+    const double target = ratio ? d->target_hz : d->goal->equals;
+    const bool equal = MT_HAS(target);
+    const double limit[MT_ROBUST_SIDES] = {equal ? target : d->goal->at_least,
+                                           equal ? target : d->goal->at_most};
+    verdict v = {.side = MT_LOWEST, .violation = -HUGE_VAL, .percent = -HUGE_VAL};
+    for (int k = 0; k < MT_ROBUST_SIDES; k++) {
+        const mt_robust_side side = (mt_robust_side)k;
+        if (!MT_HAS(limit[k]) || !MT_HAS(v.percent)) {
+            continue;
+        }
+        const double far = beyond(r, side, limit[k], ratio);
+        const double percent = percent_of(d, side, far);
+        v.side = percent > v.percent || !MT_HAS(percent) ? side : v.side;
+        v.violation = far > v.violation || !MT_HAS(far) ? far : v.violation;
+        v.percent = percent > v.percent || !MT_HAS(percent) ? percent : v.percent;
+    }
+    if (equal && ratio) { /* within the tolerance as a part of the target */
+        v.violation = v.percent / PERCENT;
+    }
+    return v;
 }
 
 mt_status mt_describe_worst(mt_problem *fresh, const mt_demand *d, mt_result *result,
                             mt_result_goal *g, double *violation, double *percent, mt_err *err)
 {
     const mt_robust *const robust = fresh->robust;
-    double over = 0.0;
     if (robust == NULL || d->row_res >= 0) {
         return MT_OK;
     }
@@ -87,18 +97,18 @@ mt_status mt_describe_worst(mt_problem *fresh, const mt_demand *d, mt_result *re
     if (r == NULL || r->at[MT_LOWEST] == NULL) {
         return MT_OK; /* the design itself could not be evaluated */
     }
-    const mt_robust_side side = worst_side(d, r, &over);
+    const verdict v = judge(d, r);
     if (d->row_eq < 0 || mt_robust_holds_target(fresh, d)) {
-        const bool worse = over > *violation || !MT_HAS(over);
-        *violation = worse ? over : *violation;
-        *percent = worse ? percent_of(d, side, over) : *percent;
+        *violation =
+            v.violation > *violation || !MT_HAS(v.violation) ? v.violation : *violation;
+        *percent = v.percent > *percent || !MT_HAS(v.percent) ? v.percent : *percent;
     }
-    g->worst = r->value[side];
+    g->worst = r->value[v.side];
     g->worst_at = mt_arena_f64(&result->mem, (size_t)fresh->n, 1);
     if (g->worst_at == NULL) {
         return mt_fail_memory(err);
     }
-    memcpy(g->worst_at, r->at[side], (size_t)fresh->n * sizeof *g->worst_at);
+    memcpy(g->worst_at, r->at[v.side], (size_t)fresh->n * sizeof *g->worst_at);
     return MT_OK;
 }
 
@@ -123,7 +133,7 @@ static const char *tolerances_text(const mt_problem *p, mt_arena *mem)
 {
     const char *text = "";
     for (int i = 0; i < p->n && text != NULL; i++) {
-        const double percent = 100.0 * mt_robust_tolerance(p, i);
+        const double percent = PERCENT * mt_robust_tolerance(p, i);
         if (percent > 0.0) {
             text = mt_arena_printf(mem, "%s%s%s %.6g %%", text, text[0] == '\0' ? "" : ", ",
                                    p->study->variables[i].parameter_name.s, percent);

@@ -45,55 +45,76 @@ class Row:
         self.mass = [m for _, m in pairs]
         self.names = sorted(set(re.findall(r"\b[abc]\b", " ".join(self.stiffness + self.mass)))) or ["a"]
         self.value = {name: round(rng.uniform(0.6, 1.8), 3) for name in self.names}
+        self.loads = {"default": 0.0} if rng.random() < 0.7 else {"empty": 0.0, "loaded": 0.6}
 
     def json(self):
         n = len(self.mass)
         return {
-            "format": "modetune-model/1", "name": "Row", "dimension": 2, "parameters": self.value,
+            "format": "modetune-model/1", "name": "Row", "dimension": 2, "parameters": dict(self.value, load=0),
+            "configurations": {name: {"parameters": {"load": load}} for name, load in self.loads.items()},
             "points": {f"p{i}": [i, 0] for i in range(n + 1)},
-            "bodies": [{"name": f"m{i + 1}", "mass_kg": self.mass[i], "centre": f"p{i + 1}"} for i in range(n)],
+            "bodies": [{"name": f"m{i + 1}", "mass_kg": self.mass[i] + (" + load" if i == n - 1 else ""), "centre": f"p{i + 1}"} for i in range(n)],
             "joints": [{"name": f"g{i + 1}", "type": "pin-in-slot", "bodies": ["ground", f"m{i + 1}"], "at": f"p{i + 1}", "axis": [1, 0]}
                        for i in range(n)],
             "springs": [{"name": f"s{i + 1}", "type": "axial", "bodies": ["ground" if i == 0 else f"m{i}", f"m{i + 1}"],
                          "at": [f"p{i}", f"p{i + 1}"], "stiffness_n_per_m": self.stiffness[i]} for i in range(n)],
         }
 
-    def hz(self, x):
+    def hz(self, x, configuration):
+        """Natural frequencies by scipy."""
         k = [value(e, x) for e in self.stiffness] + [0.0]
         n = len(self.mass)
         stiffness = numpy.diag([k[i] + k[i + 1] for i in range(n)]) - numpy.diag(k[1:n], 1) - numpy.diag(k[1:n], -1)
-        lam = eigh(stiffness, numpy.diag([value(e, x) for e in self.mass]), eigvals_only=True)
+        mass = [value(e, x) for e in self.mass]
+        mass[-1] += self.loads[configuration]
+        lam = eigh(stiffness, numpy.diag(mass), eigvals_only=True)
         return numpy.sqrt(lam) / (2 * math.pi)
 
 
 def make_goals(rng, row):
     """Goals near what the original design has, so that many studies have a design and many do not."""
     goals = []
-    hz = row.hz(row.value)
     for _ in range(rng.randint(1, 2)):
+        configuration = rng.choice(list(row.loads))
+        hz = row.hz(row.value, configuration)
         kind = rng.choice(["least", "most", "both", "avoid", "limit", "target"])
         mode = rng.randint(1, len(hz))
         near = float(hz[mode - 1]) * rng.uniform(0.85, 1.2)
         if kind == "avoid":
-            goals.append({"type": "avoid", "bands_hz": [[near * 0.96, near * 1.04]]})
+            goals.append({"type": "avoid", "configuration": configuration, "bands_hz": [[near * 0.96, near * 1.04]]})
         elif kind == "limit":
             text = rng.choice([e for e in LIMITS if set(re.findall(r"\b[abc]\b", e)) <= set(row.names)] or [row.names[0]])
             goals.append({"type": "limit", "expression": text, rng.choice(["at_least", "at_most"]): value(text, row.value) + rng.uniform(-0.1, 0.1)})
         elif kind == "target":
-            goals.append({"type": "frequency", "mode": mode, "target_hz": near, "tolerance_percent": rng.choice([4, 10])})
+            goals.append({"type": "frequency", "configuration": configuration, "mode": mode, "target_hz": near, "tolerance_percent": rng.choice([4, 10])})
         else:
-            goals.append({"type": "frequency", "mode": mode, **({"at_least_hz": near} if kind == "least" else {"at_most_hz": near} if kind == "most" else
+            goals.append({"type": "frequency", "configuration": configuration, "mode": mode, **({"at_least_hz": near} if kind == "least" else {"at_most_hz": near} if kind == "most" else
                                                                {"at_least_hz": near * 0.9, "at_most_hz": near * 1.1})})
     if sum("target_hz" in g for g in goals) > 1:
         goals.pop()
     return goals
 
 
+def make_study(seed):
+    rng = random.Random(seed)
+    row = Row(rng)
+    variables = [{"parameter": name, "lower": 0.5, "upper": 2, **({"tolerance_percent": rng.choice([1, 3, 8])} if rng.random() < 0.75 else {})}
+                 for name in row.names]
+    if not any("tolerance_percent" in v for v in variables):
+        variables[0]["tolerance_percent"] = 5
+    lists = rng.choice([0, 0, 1, 3])  # catalogues: none, one, all
+    for v in variables[:lists]:
+        del v["lower"], v["upper"]
+        v["catalogue"] = sorted({0.5, 2} | {round(rng.uniform(0.5, 2), 2) for _ in range(3)})
+    goals = make_goals(rng, row)
+    return rng, row, variables, goals
+
+
 def shortfall(row, goals, x, exact):
     """Relative amount by which the worst goal is missed at x; exact: targets are meant as ranges."""
-    hz = row.hz(x)
     worst = 0.0
     for g in goals:
+        hz = row.hz(x, g.get("configuration", next(iter(row.loads))))
         if g["type"] == "avoid":
             low, high = g["bands_hz"][0]
             inside = [min(math.log(f / low), math.log(high / f)) for f in hz]
@@ -111,6 +132,10 @@ def shortfall(row, goals, x, exact):
     return worst
 
 
+def anywhere(rng, variables):
+    return {v["parameter"]: rng.choice(v["catalogue"]) if "catalogue" in v else rng.uniform(v["lower"], v["upper"]) for v in variables}
+
+
 class Tolerances(CliTest):
     def around(self, rng, variables, x, n):
         """Every corner of the tolerances, and n points within."""
@@ -125,9 +150,8 @@ class Tolerances(CliTest):
         self.assertIn(r["worst_case"], ("proven", "sampled"))
         listed = r["frequencies"]
         for y in self.around(rng, variables, x, 300):
-            hz = row.hz(y)
             for f in listed:
-                at = hz[f["mode"] - 1]
+                at = row.hz(y, f["configuration"])[f["mode"] - 1]
                 self.assertGreaterEqual(at, f["lowest_hz"] * (1 - (ROUNDING if r["worst_case"] == "proven" else MET)), (y, f))
                 self.assertLessEqual(at, f["highest_hz"] * (1 + (ROUNDING if r["worst_case"] == "proven" else MET)), (y, f))
             if r["feasible"]:
@@ -136,7 +160,7 @@ class Tolerances(CliTest):
             asked = goals[int(g["pointer"].rsplit("/", 1)[1])]
             if g["worst"] is not None and asked["type"] != "avoid":
                 y = g["worst_at"]
-                there = row.hz(y)[asked["mode"] - 1] if asked["type"] == "frequency" else value(asked["expression"], y)
+                there = row.hz(y, asked["configuration"])[asked["mode"] - 1] if asked["type"] == "frequency" else value(asked["expression"], y)
                 self.assertAlmostEqual(g["worst"], there, delta=ROUNDING * (1 + abs(there)))
         # nominal and worst values never contradict each other
         for f in listed:
@@ -151,7 +175,7 @@ class Tolerances(CliTest):
 
     def check_infeasible(self, rng, row, goals, variables):
         for _ in range(400):
-            x = {v["parameter"]: rng.uniform(v["lower"], v["upper"]) for v in variables}
+            x = anywhere(rng, variables)
             met = all(shortfall(row, goals, y, True) <= -MET for y in self.around(rng, variables, x, 0))
             self.assertFalse(met, x)
 
@@ -164,17 +188,11 @@ class Tolerances(CliTest):
             self.assertLessEqual(most, r["violation_percent"] / 100 + MET)
         if r["worst_case"] == "proven":
             for _ in range(100):
-                x = {v["parameter"]: rng.uniform(v["lower"], v["upper"]) for v in variables}
+                x = anywhere(rng, variables)
                 self.assertGreater(max(shortfall(row, goals, y, True) for y in self.around(rng, variables, x, 0)), -1e-4, x)
 
     def one(self, seed):
-        rng = random.Random(seed)
-        row = Row(rng)
-        variables = [{"parameter": name, "lower": 0.5, "upper": 2, **({"tolerance_percent": rng.choice([1, 3, 8])} if rng.random() < 0.75 else {})}
-                     for name in row.names]
-        if not any("tolerance_percent" in v for v in variables):
-            variables[0]["tolerance_percent"] = 5
-        goals = make_goals(rng, row)
+        rng, row, variables, goals = make_study(seed)
         self.write("problems/row.json", json.dumps(row.json()))
         self.write("studies/row.json", json.dumps({"format": "modetune-study/1", "name": "Row", "model": "../problems/row.json", "variables": variables,
                                                    "goals": goals}))
@@ -195,7 +213,7 @@ class Tolerances(CliTest):
     def solve(self, stiffness, mass, values, variables, goals):
         """One mass on one spring."""
         row = Row.__new__(Row)
-        row.stiffness, row.mass, row.names, row.value = [stiffness], [mass], sorted(values), values
+        row.stiffness, row.mass, row.names, row.value, row.loads = [stiffness], [mass], sorted(values), values, {"default": 0.0}
         self.write("problems/row.json", json.dumps(row.json()))
         self.write("studies/row.json", json.dumps({"format": "modetune-study/1", "name": "Row", "model": "../problems/row.json",
                                                    "variables": variables, "goals": goals}))
@@ -215,7 +233,7 @@ class Tolerances(CliTest):
         self.assertEqual(result["status"], "solved")
         r = result["recommendations"][0]
         x = {p["name"]: p["recommended"] for p in r["parameters"]}
-        ends = sorted(row.hz(dict(x, c=x["c"] * f))[0] for f in (0.9, 1.1))
+        ends = sorted(row.hz(dict(x, c=x["c"] * f), "default")[0] for f in (0.9, 1.1))
         self.assertEqual(r["worst_case"], "proven")  # at this design a < b everywhere
         self.assertAlmostEqual(r["frequencies"][0]["lowest_hz"], ends[0], delta=1e-12)
         self.assertAlmostEqual(r["frequencies"][0]["highest_hz"], ends[1], delta=1e-12)
