@@ -98,7 +98,7 @@ mt_status mt_describe_worst(mt_problem *fresh, const mt_demand *d, mt_result *re
         return MT_OK; /* the design itself could not be evaluated */
     }
     const verdict v = judge(d, r);
-    if (d->row_eq < 0 || mt_robust_holds_target(fresh, d)) {
+    if (d->row_eq < 0) {
         *violation =
             v.violation > *violation || !MT_HAS(v.violation) ? v.violation : *violation;
         *percent = v.percent > *percent || !MT_HAS(v.percent) ? v.percent : *percent;

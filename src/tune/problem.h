@@ -53,11 +53,12 @@ typedef struct mt_demand {
     mt_node node;             /* limit: node of the expressions' program */
     mt_reference_shape shape; /* shape, mac; frequency: without the shape */
     double target_hz;         /* frequency; NaN: limits only */
-    double weight;    /* the goal's, unless changed to see what it does; NaN: a constraint */
-    int row_eq;       /* its row in eq, -1 none */
-    int row_in;       /* first row in in, -1 none */
-    int n_in;         /* 2 where at_least and at_most are both given */
-    int row_res;      /* first residual, -1 none */
+    double weight; /* the goal's, unless changed to see what it does; NaN: a constraint */
+    bool ranged; /* a target that is a range over the tolerances of the variables (robust.h) */
+    int row_eq;  /* its row in eq, -1 none */
+    int row_in;  /* first row in in, -1 none */
+    int n_in;    /* 2 where at_least and at_most are both given */
+    int row_res; /* first residual, -1 none */
     double tolerance; /* relative */
 } mt_demand;
 

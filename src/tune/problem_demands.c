@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "tune/family.h"
+#include "tune/robust.h"
 
 /* Default tolerance of a goal in percent (the format's documentation says so too). */
 static const double DEFAULT_TOLERANCE_PERCENT = 1e-4;
@@ -212,6 +213,8 @@ static void number_rows(mt_problem *p, mt_demand *d)
         d->row_res = p->n_res;
         p->n_res += g->type == MT_GOAL_SHAPE ? d->shape.ns : 1;
         p->weights += g->weight;
+    } else if (mt_robust_is_range(p, d)) {
+        d->ranged = true; /* its rows are those of the corners */
     } else if (MT_HAS(g->equals) || MT_HAS(d->target_hz)) {
         d->row_eq = p->n_eq++;
     } else {

@@ -22,11 +22,6 @@ double mt_robust_tolerance(const mt_problem *p, int i)
     return MT_HAS(percent) ? percent / 100.0 : 0.0;
 }
 
-bool mt_robust_holds_target(const mt_problem *p, const mt_demand *d)
-{
-    return p->robust != NULL && d->row_eq >= 0 && d->goal->tolerance_addr != d->goal->addr;
-}
-
 static bool any_tolerance(const mt_problem *p)
 {
     for (int i = 0; i < p->n; i++) {
@@ -35,6 +30,12 @@ static bool any_tolerance(const mt_problem *p)
         }
     }
     return false;
+}
+
+bool mt_robust_is_range(const mt_problem *p, const mt_demand *d)
+{
+    return any_tolerance(p) && (MT_HAS(d->goal->equals) || MT_HAS(d->target_hz)) &&
+           d->goal->tolerance_addr != d->goal->addr;
 }
 
 /* The bounds, wider by the tolerances. */
@@ -64,8 +65,9 @@ static bool is_high(int c, int j, int n)
     return c < 2 ? c == 1 : ((c & 1) != 0) != (j == (c - 2) / 2);
 }
 
-/* The corners that signs[n] leave, without analyses. */
-static mt_status make_corners(mt_problem *p, const int *signs, mt_corner_set *out, mt_err *err)
+/* The corners that signs[n] leave, without analyses; at least the design itself, where a range has no other rows. */
+static mt_status make_corners(mt_problem *p, const int *signs, bool ranged, mt_corner_set *out,
+                              mt_err *err)
 {
     int known = 0;
     int unknown = 0;
@@ -74,7 +76,7 @@ static mt_status make_corners(mt_problem *p, const int *signs, mt_corner_set *ou
         unknown += signs[i] == UNKNOWN ? 1 : 0;
     }
     *out = (mt_corner_set){.exact = unknown == 0};
-    if (known + unknown == 0) {
+    if (known + unknown == 0 && !ranged) {
         return MT_OK;
     }
     const int sides = known > 0 ? MT_ROBUST_SIDES : 1;
@@ -133,6 +135,15 @@ static mt_status signs_of_view(mt_problem *p, int view, int *signs, mt_err *err)
     return MT_OK;
 }
 
+static bool has_range(const mt_problem *p, int view)
+{
+    bool any = false;
+    for (int i = 0; i < p->n_demands; i++) {
+        any = any || (p->demands[i].view == view && p->demands[i].ranged);
+    }
+    return any;
+}
+
 static mt_status init_view(mt_problem *p, int view, mt_err *err)
 {
     mt_corner_set *const set = &p->robust->views[view];
@@ -141,7 +152,7 @@ static mt_status init_view(mt_problem *p, int view, mt_err *err)
         return mt_fail_memory(err);
     }
     MT_TRY(signs_of_view(p, view, signs, err));
-    MT_TRY(make_corners(p, signs, set, err));
+    MT_TRY(make_corners(p, signs, has_range(p, view), set, err));
     for (int c = 0; c < set->n; c++) {
         MT_TRY(
             mt_view_analyse(p, &p->views[view], p->original, &set->corners[c].analysis, err));
@@ -178,7 +189,7 @@ static mt_status init_views(mt_problem *p, mt_err *err)
         const mt_demand *const d = &p->demands[i];
         if (d->view >= 0) {
             MT_TRY(check_demand(d, err));
-            const bool held = d->row_in >= 0 || mt_robust_holds_target(p, d);
+            const bool held = d->row_in >= 0 || d->ranged;
             wanted[d->view] = wanted[d->view] || held;
         }
     }
@@ -210,7 +221,7 @@ static mt_status init_limits(mt_problem *p, mt_err *err)
                                  dhi);
     for (int k = 0; k < p->n_demands; k++) {
         const mt_demand *const d = &p->demands[k];
-        const bool held = d->row_in >= 0 || mt_robust_holds_target(p, d);
+        const bool held = d->row_in >= 0 || d->ranged;
         if (d->goal->type != MT_GOAL_LIMIT || !held) {
             continue;
         }
@@ -218,7 +229,7 @@ static mt_status init_limits(mt_problem *p, mt_err *err)
         for (int i = 0; i < p->n; i++) {
             signs[i] = sign_of(p, i, dhi[row + (size_t)i] > 0.0, dlo[row + (size_t)i] < 0.0);
         }
-        MT_TRY(make_corners(p, signs, &p->robust->limits[k], err));
+        MT_TRY(make_corners(p, signs, d->ranged, &p->robust->limits[k], err));
     }
     return MT_OK;
 }
@@ -247,7 +258,7 @@ static void list_demand(mt_problem *p, int demand, mt_robust_row *rows)
     const mt_demand *const d = &p->demands[demand];
     const mt_corner_set *const set =
         d->view >= 0 ? &p->robust->views[d->view] : &p->robust->limits[demand];
-    const bool target = mt_robust_holds_target(p, d);
+    const bool target = d->ranged;
     const bool asked[MT_ROBUST_SIDES] = {MT_HAS(d->goal->at_least), MT_HAS(d->goal->at_most)};
     int own = d->row_in;
     for (int side = 0; side < MT_ROBUST_SIDES; side++) {

@@ -18,8 +18,8 @@
  *
  * What is reported of a design is found anew there (mt_robust_ranges): over its own tolerances alone more signs are proven, and where they are not, the worst is searched within.
  *
- * The misfit and the objectives are those of the design itself, but the clearance. A target (or "equals") is met by the design itself; with a "tolerance_percent" of its own also everywhere
- * over the tolerances, within that.
+ * The misfit and the objectives are those of the design itself, but the clearance. A target (or "equals") is met by the design itself; with a "tolerance_percent" of its own it is a range,
+ * in which the design stays everywhere over the tolerances.
  */
 typedef enum mt_robust_side { MT_LOWEST, MT_HIGHEST, MT_ROBUST_SIDES } mt_robust_side;
 
@@ -78,8 +78,8 @@ mt_status mt_robust_init(mt_problem *p, mt_err *err);
 void mt_robust_free(mt_robust *r);
 /* Half the width of variable i's tolerance, as a part of its value. */
 double mt_robust_tolerance(const mt_problem *p, int i);
-/* Must a target or "equals" hold over the tolerances too? */
-bool mt_robust_holds_target(const mt_problem *p, const mt_demand *d);
+/* Is a demand for a target (or "equals") one for a range over the tolerances? Asked before its rows are numbered; then demand->ranged. */
+bool mt_robust_is_range(const mt_problem *p, const mt_demand *d);
 /* robust_eval.c: modes of all corners of the design at p->x. Nothing where p has no tolerances, likewise below. */
 mt_status mt_robust_solve(mt_problem *p, bool with_gradient, mt_err *err);
 /* Fill the rows of all corners. After mt_robust_solve and the rows of the design itself, some of which they replace. */

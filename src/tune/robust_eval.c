@@ -96,7 +96,7 @@ static double limit_of(const mt_problem *p, const mt_robust_row *row)
     const mt_demand *const d = &p->demands[row->demand];
     const bool low = row->side == MT_LOWEST;
     const double give = low ? -d->tolerance : d->tolerance;
-    if (!mt_robust_holds_target(p, d)) {
+    if (!d->ranged) {
         return low ? d->goal->at_least : d->goal->at_most;
     }
     return d->view >= 0 ? d->target_hz * (1.0 + give)
