@@ -65,6 +65,29 @@ static bool is_high(int c, int j, int n)
     return c < 2 ? c == 1 : ((c & 1) != 0) != (j == (c - 2) / 2);
 }
 
+/* Corner c of sides * combinations: which side, and which combination of the variables of unknown sign. */
+static mt_status make_corner(mt_problem *p, const int *signs, int sides, int unknown, int c,
+                             mt_corner *out, mt_err *err)
+{
+    const int side = c % sides;
+    int j = 0;
+    *out = (mt_corner){
+        .factor = mt_arena_f64(&p->mem, (size_t)p->n, 1),
+        .may = {sides == 1 || side == MT_LOWEST, sides == 1 || side == MT_HIGHEST}
+    };
+    if (out->factor == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n; i++) {
+        int at = side == MT_LOWEST ? -signs[i] : signs[i];
+        if (signs[i] == UNKNOWN) {
+            at = is_high(c / sides, j++, unknown) ? 1 : -1;
+        }
+        out->factor[i] = factor_of(p, i, at);
+    }
+    return MT_OK;
+}
+
 /* The corners that signs[n] leave, without analyses; at least the design itself, where a range has no other rows. */
 static mt_status make_corners(mt_problem *p, const int *signs, bool ranged, mt_corner_set *out,
                               mt_err *err)
@@ -80,28 +103,13 @@ static mt_status make_corners(mt_problem *p, const int *signs, bool ranged, mt_c
         return MT_OK;
     }
     const int sides = known > 0 ? MT_ROBUST_SIDES : 1;
-    const int most = unknown <= COMBINED_MOST ? 1 << unknown : 2 * (unknown + 1);
-    out->corners = mt_arena_alloc(&p->mem, (size_t)(sides * most), sizeof *out->corners);
+    const int n = sides * (unknown <= COMBINED_MOST ? 1 << unknown : 2 * (unknown + 1));
+    out->corners = mt_arena_alloc(&p->mem, (size_t)n, sizeof *out->corners);
     if (out->corners == NULL) {
         return mt_fail_memory(err);
     }
-    for (int c = 0; c < sides * most; c++) {
-        const int side = c % sides;
-        int j = 0;
-        mt_corner *const corner = &out->corners[c];
-        *corner = (mt_corner){
-            .factor = mt_arena_f64(&p->mem, (size_t)p->n, 1),
-            .may = {sides == 1 || side == MT_LOWEST, sides == 1 || side == MT_HIGHEST}
-        };
-        if (corner->factor == NULL) {
-            return mt_fail_memory(err);
-        }
-        for (int i = 0; i < p->n; i++) {
-            const int at = signs[i] == UNKNOWN ? (is_high(c / sides, j++, unknown) ? 1 : -1)
-                                               : (side == MT_LOWEST ? -signs[i] : signs[i]);
-            corner->factor[i] = factor_of(p, i, at);
-        }
-        out->n++;
+    for (; out->n < n; out->n++) {
+        MT_TRY(make_corner(p, signs, sides, unknown, out->n, &out->corners[out->n], err));
     }
     return MT_OK;
 }
@@ -329,7 +337,7 @@ static mt_status claim(mt_problem *p, mt_robust *r, mt_err *err)
                      .value = mt_arena_f64(&p->mem, count, 1),
                      .grad = mt_arena_f64(&p->mem, count, n),
                      .n_ranges = mt_arena_int(&p->mem, views),
-                     .hz = mt_arena_alloc(&p->mem, views, sizeof *r->hz),
+                     .hz = mt_arena_alloc(&p->mem, views, sizeof(mt_robust_range *)),
                      .number = mt_arena_alloc(&p->mem, demands, sizeof *r->number)};
     const bool bad = r->views == NULL || r->limits == NULL || r->lower == NULL ||
                      r->upper == NULL || r->x == NULL || r->slope == NULL || r->value == NULL ||

@@ -18,13 +18,12 @@ enum {
     ROUNDS_MOST = 3,
     MOVES_MOST = 4,
     AROUND_PER_INPUT = 8,
+    HALVINGS = 9,    /* of the boxes about the best so far: to a thousandth */
     ROOT_TURNS = 64, /* each more than halves the error of the root */
     SECTIONS = 14    /* of a line: to some thousandth of its length */
 };
 /* A step that gains less, relatively, has arrived. */
 static const double GAIN = 1e-9;
-/* Boxes about the best so far end at this part of the whole. */
-static const double NEAR = 1e-3;
 
 mt_status mt_robust_range_init(int n, mt_arena *mem, mt_robust_range *out, mt_err *err)
 {
@@ -198,7 +197,9 @@ static mt_status step(sampler *s, int k, mt_robust_side side, mt_err *err)
 static mt_status step_around(sampler *s, int k, mt_robust_side side, mt_err *err)
 {
     const mt_robust_probe *const q = s->q;
-    for (double part = 0.5; part > NEAR; part *= 0.5) {
+    double part = 1.0;
+    for (int turn = 0; turn < HALVINGS; turn++) {
+        part *= 0.5;
         memcpy(s->from, s->out[k].at[side], (size_t)q->n * sizeof *s->from);
         for (int c = 1; c <= AROUND_PER_INPUT * s->n_free; c++) {
             spread(s, c, s->to);
@@ -230,23 +231,30 @@ static mt_status step_along_inputs(sampler *s, int k, mt_robust_side side, mt_er
 
 typedef mt_status (*move)(sampler *s, int k, mt_robust_side side, mt_err *err);
 
-/* Each kind of move while it gains; then the next, until none does. */
+/* One kind of move while it gains. */
+static mt_status repeat(sampler *s, move step_of, int k, mt_robust_side side, mt_err *err)
+{
+    const double *const best = &s->out[k].value[side];
+    double gain = HUGE_VAL;
+    for (int n = 0; n < MOVES_MOST && gain > GAIN * fabs(*best); n++) {
+        const double before = *best;
+        MT_TRY(step_of(s, k, side, err));
+        gain = fabs(*best - before);
+    }
+    return MT_OK;
+}
+
+/* All kinds of moves, until none gains. */
 static mt_status descend(sampler *s, int k, mt_robust_side side, mt_err *err)
 {
-    static const move moves[] = {step, step_along_inputs, step_around};
-    for (int turn = 0; turn < ROUNDS_MOST; turn++) {
-        const double start = s->out[k].value[side];
-        for (int i = 0; i < MT_COUNT(moves); i++) {
-            double gain = HUGE_VAL;
-            for (int n = 0; n < MOVES_MOST && gain > GAIN * fabs(start); n++) {
-                const double before = s->out[k].value[side];
-                MT_TRY(moves[i](s, k, side, err));
-                gain = fabs(s->out[k].value[side] - before);
-            }
-        }
-        if (!(fabs(s->out[k].value[side] - start) > GAIN * fabs(start))) {
-            break;
-        }
+    const double *const best = &s->out[k].value[side];
+    double gain = HUGE_VAL;
+    for (int turn = 0; turn < ROUNDS_MOST && gain > GAIN * fabs(*best); turn++) {
+        const double before = *best;
+        MT_TRY(repeat(s, step, k, side, err));
+        MT_TRY(repeat(s, step_along_inputs, k, side, err));
+        MT_TRY(repeat(s, step_around, k, side, err));
+        gain = fabs(*best - before);
     }
     return MT_OK;
 }
@@ -274,12 +282,11 @@ mt_status mt_robust_sample(const mt_robust_probe *q, mt_arena *mem, mt_robust_ra
     }
     MT_TRY(visit_corners(&s, err));
     MT_TRY(visit_spread(&s, err));
-    for (int k = 0; k < q->m && k < q->n_descend; k++) {
-        for (int side = 0; side < MT_ROBUST_SIDES; side++) {
-            if (MT_HAS(out[k].value[side])) {
-                MT_TRY(descend(&s, k, (mt_robust_side)side, err));
-            }
-        }
+    const int n_descend = q->m < q->n_descend ? q->m : q->n_descend;
+    for (int i = 0; i < MT_ROBUST_SIDES * n_descend; i++) {
+        const mt_robust_side side = (mt_robust_side)(i % MT_ROBUST_SIDES);
+        const int k = i / MT_ROBUST_SIDES;
+        MT_TRY(MT_HAS(out[k].value[side]) ? descend(&s, k, side, err) : MT_OK);
     }
     return MT_OK;
 }
