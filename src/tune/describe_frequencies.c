@@ -207,6 +207,19 @@ static mt_status verify(listing *l, mt_err *err)
     return MT_OK;
 }
 
+/* A design that the study could read, and a fresh analysis cannot. */
+static mt_status note_failure(const listing *l, const mt_err *why, mt_err *err)
+{
+    if (why->code == MT_E_MEMORY || why->code == MT_E_INTERNAL) {
+        return mt_fail(err, why->code, "%s", why->text);
+    }
+    if (l->rec->disagreement == NULL) {
+        l->rec->disagreement =
+            mt_arena_printf(&l->result->mem, "a fresh analysis fails: %s", why->text);
+    }
+    return l->rec->disagreement == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
 static mt_status list_view(listing *l, int v, int count, mt_err *err)
 {
     mt_problem *const fresh = l->fresh;
@@ -250,9 +263,10 @@ mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
         if (count == 0) {
             continue;
         }
+        mt_err why = {.code = MT_OK};
         mt_status rc = mt_analysis_new(fresh->study->model, l.view->configuration, fresh->n,
-                                       fresh->inputs, fresh->x, &l.scratch, err);
-        rc = rc == MT_OK ? list_view(&l, v, count, err) : rc;
+                                       fresh->inputs, fresh->x, &l.scratch, &why);
+        rc = rc == MT_OK ? list_view(&l, v, count, err) : note_failure(&l, &why, err);
         mt_analysis_delete(l.scratch);
         MT_TRY(rc);
     }
