@@ -25,8 +25,7 @@ static bool same_node(pair *p, mt_node a, mt_node b)
     }
     const mt_program_node *const x = &p->a->program.nodes[a];
     const mt_program_node *const y = &p->b->program.nodes[b];
-    const bool same = x->op == y->op && x->input == y->input &&
-                      memcmp(&x->value, &y->value, sizeof x->value) == 0 &&
+    const bool same = x->op == y->op && x->input == y->input && x->value == y->value &&
                       same_node(p, x->a, y->a) && same_node(p, x->b, y->b);
     p->map[a] = same ? b : MT_NO_NODE;
     return same;

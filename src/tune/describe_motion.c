@@ -38,30 +38,32 @@ static const char *configuration_of(const described *d, const mt_clear *c)
     return mt_analysis_configuration(d->p->views[c->view].analysis);
 }
 
-/* Two views whose tied bands have different numbers of modes below their middles. below[n_bands] by the modes. */
+/* Tied bands of two clears that have different numbers of modes below their middles. below[n_bands] by the modes. */
+static void find_between(described *d, const mt_clear *a, const mt_clear *b, const int *below)
+{
+    for (int x = 0; x < a->bands.n; x++) {
+        for (int y = 0; y < b->bands.n && d->cross.mode == 0; y++) {
+            const int here = below[a->first + x];
+            const int there = below[b->first + y];
+            if (here != there && d->p->tie[a->first + x] == d->p->tie[b->first + y]) {
+                d->cross = (crossing){(here < there ? here : there) + 1,
+                                      a->bands.items[x].label,
+                                      configuration_of(d, a),
+                                      configuration_of(d, b),
+                                      here,
+                                      there};
+            }
+        }
+    }
+}
+
 static void find_crossing(described *d, const int *below)
 {
     const mt_problem *const p = d->p;
+    const int family = (int)(d->family - p->families);
     for (int i = 0; i < p->n_clears; i++) {
-        for (int k = 0; k < i; k++) {
-            const mt_clear *const a = &p->clears[k];
-            const mt_clear *const b = &p->clears[i];
-            for (int x = 0; x < a->bands.n; x++) {
-                for (int y = 0; y < b->bands.n; y++) {
-                    const int here = below[a->first + x];
-                    const int there = below[b->first + y];
-                    if (d->cross.mode == 0 && here != there &&
-                        p->tie[a->first + x] == p->tie[b->first + y] &&
-                        mt_family_of(p, a->view) == (int)(d->family - p->families)) {
-                        d->cross = (crossing){(here < there ? here : there) + 1,
-                                              a->bands.items[x].label,
-                                              configuration_of(d, a),
-                                              configuration_of(d, b),
-                                              here,
-                                              there};
-                    }
-                }
-            }
+        for (int k = 0; k < i && mt_family_of(p, p->clears[i].view) == family; k++) {
+            find_between(d, &p->clears[k], &p->clears[i], below);
         }
     }
 }

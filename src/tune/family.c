@@ -315,10 +315,22 @@ static const mt_clear *clear_of(const mt_problem *p, int view)
     return NULL;
 }
 
+/* Pairs of tied bands: what intersect may put down at most. */
+static size_t count_tied(const mt_problem *p)
+{
+    size_t n = 0;
+    for (int i = 0; i < p->n_bands; i++) {
+        for (int k = 0; k < p->n_bands; k++) {
+            n += p->tie[i] == p->tie[k] ? 1 : 0;
+        }
+    }
+    return n;
+}
+
 mt_status mt_family_bands(const mt_problem *p, const mt_family *f, double left, double right,
                           mt_arena *mem, mt_way_band **list, int *n, mt_err *err)
 {
-    const size_t most = (size_t)p->n_bands * (size_t)p->n_bands;
+    const size_t most = count_tied(p);
     *n = 0;
     *list = mt_arena_alloc(mem, most, sizeof **list);
     if (*list == NULL) {

@@ -361,6 +361,55 @@ static void enclosure__no_sample_has_what_is_excluded(mt_test *t)
     CHECK(t, launched() || n.feasible_samples > systems());
 }
 
+static bool agrees(const mt_certify *c, const int *same_as, const int *below)
+{
+    for (int i = 0; i < c->n_bands; i++) {
+        if (below[i] != below[same_as[i]]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Of two proven answers the one with tied bands has the assignments of the free one in which they agree, and no other. */
+static void enclosure__tied_bands_leave_what_agrees(mt_test *t)
+{
+    static const int same_as[BANDS] = {
+        0, 1, 0}; /* over two views, another band between them in the order */
+    int kept = 0;
+    int dropped = 0;
+    for (int seed = 0; seed < systems(); seed++) {
+        rig g;
+        mt_certify_search bound;
+        mt_certify_search out;
+        mt_err err = {.text = ""};
+        mt_test_row(t, "system %d", seed);
+        const bool ok =
+            begin(t, seed, &g) && g.c.n_bands == BANDS &&
+            CHECK(t, mt_certify_assignments(&g.c, 0, NULL, &g.mem, &out, &err) == MT_OK);
+        g.c.same_as = same_as;
+        if (ok &&
+            CHECK(t, mt_certify_assignments(&g.c, 0, NULL, &g.mem, &bound, &err) == MT_OK) &&
+            out.proven) {
+            CHECK(t, bound.proven && bound.boxes <= out.boxes);
+            for (int i = 0; i < out.n_found; i++) {
+                const int *const below = out.found + ((ptrdiff_t)i * BANDS);
+                const bool both = agrees(&g.c, same_as, below);
+                CHECK(t, among(BANDS, bound.found, bound.n_found, below) == both);
+                kept += both ? 1 : 0;
+                dropped += both ? 0 : 1;
+            }
+            for (int i = 0; i < bound.n_found; i++) {
+                CHECK(t, among(BANDS, out.found, out.n_found,
+                               bound.found + ((ptrdiff_t)i * BANDS)));
+            }
+        }
+        end(&g);
+    }
+    (void)printf("%d assignments kept, %d dropped\n", kept, dropped);
+    CHECK(t, launched() || (kept > 10 && dropped > 10));
+}
+
 /* Frequencies of one view at x against the ranges, and counts at exactly these frequencies. */
 static void check_view(mt_test *t, rig *g, int v, const double *low, const double *high)
 {
@@ -506,5 +555,6 @@ static void enclosure__no_design_in_a_tolerance_box_fails(mt_test *t)
 }
 
 MT_TEST_MAIN(MT_TEST(enclosure__no_sample_has_what_is_excluded),
+             MT_TEST(enclosure__tied_bands_leave_what_agrees),
              MT_TEST(enclosure__every_sample_lies_in_the_ranges),
              MT_TEST(enclosure__no_design_in_a_tolerance_box_fails))
