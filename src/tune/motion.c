@@ -21,6 +21,8 @@ static const double AWAY =
     0.05; /* a new position keeps this part of the interval from its ends */
 static const double STEP = 0.05;  /* longest interval at first [rad, model lengths] */
 static const double SAME = 1e-12; /* positions nearer than this [rad, model lengths] are one */
+/* A clearance of less, in percent, is none: rounding. */
+static const double ON_EDGE_PERCENT = 1e-9;
 enum { INTERVALS_AT_FIRST = 8, INTERVALS_MOST_AT_FIRST = 64, POSITIONS_MOST = 2000 };
 
 typedef struct edge {
@@ -128,6 +130,7 @@ static void keep_least(walk *w, const edge *e, double at, double room)
     out->band = *band;
     out->hz = exp(e->log_hz + (e->sign * room));
     out->percent = e->sign * 100.0 * (out->hz - edge_hz) / edge_hz;
+    out->percent = fabs(out->percent) <= ON_EDGE_PERCENT ? 0.0 : out->percent;
     out->margin_percent = e->sign * 100.0 * (exp(e->log_hz) - edge_hz) / edge_hz;
 }
 
@@ -316,7 +319,9 @@ static mt_status go(walk *w, double left, double right, mt_err *err)
     MT_TRY(look(w, right, -1, err));
     for (int i = 1; i < pieces; i++) {
         const double u = (double)i / (double)pieces;
-        MT_TRY(look(w, ((1.0 - u) * left) + (u * right), i + 1 < pieces ? w->n + 1 : 1, err));
+        const double at = ((1.0 - u) * left) + (u * right);
+        const bool zero = fabs(at) <= SAME * w->unit; /* the drawing itself */
+        MT_TRY(look(w, zero ? 0.0 : at, i + 1 < pieces ? w->n + 1 : 1, err));
     }
     return refine(w, err);
 }
@@ -404,4 +409,18 @@ mt_status mt_motion_follow(mt_problem *p, int family, const int *below, mt_arena
     }
     memcpy(w.inputs, p->x, (size_t)p->n * sizeof *w.inputs);
     return follow(&w, f, below, err);
+}
+
+mt_status mt_motion_kept(mt_problem *p, const int *below, mt_arena *mem, bool *kept,
+                         mt_err *err)
+{
+    *kept = true;
+    for (int i = 0; i < p->n_families && *kept; i++) {
+        mt_motion m = {.room = 0.0};
+        if (p->families[i].banded) {
+            MT_TRY(mt_motion_follow(p, i, below, mem, &m, err));
+            *kept = m.end != MT_MOTION_UNSTABLE && m.room >= -m.tolerance;
+        }
+    }
+    return MT_OK;
 }

@@ -50,4 +50,8 @@ typedef struct mt_motion {
 mt_status mt_motion_follow(mt_problem *p, int family, const int *below, mt_arena *mem,
                            mt_motion *out, mt_err *err);
 
+/* *kept: all families keep their bands over the motion, within their tolerance, and are stable. As above. */
+mt_status mt_motion_kept(mt_problem *p, const int *below, mt_arena *mem, bool *kept,
+                         mt_err *err);
+
 #endif

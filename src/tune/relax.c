@@ -12,6 +12,7 @@
 
 #include "base/workers.h"
 #include "tune/gaps.h"
+#include "tune/motion.h"
 
 /* Local searches of one move in one assignment, and what each of them may cost. */
 enum { STARTS = 6, EVALUATIONS = 200, ASSIGNMENTS = 6 };
@@ -99,6 +100,19 @@ static mt_status evaluate(void *context, const double *t, bool with_gradient,
     return MT_OK;
 }
 
+/* Does the design of q hold between the positions of its drives, too? An edge is moved in one position only, which says nothing of the others. */
+static mt_status hold_motion(mt_problem *q, const mt_move *m, mt_arena *mem, double *value,
+                             mt_err *err)
+{
+    bool kept = true;
+    if (mt_family_any(q) && q->below != NULL) {
+        kept = m->kind != MT_MOVE_EDGE;
+        MT_TRY(kept ? mt_motion_kept(q, q->below, mem, &kept, err) : MT_OK);
+    }
+    *value = kept ? *value : nan("");
+    return MT_OK;
+}
+
 /* The number that the move needs at the design t, by a problem made anew; NaN where that does not do. */
 static mt_status confirm(const mt_study *study, const job *j, const int *below,
                          const mt_move *m, const double *t, mt_arena *mem, double *x,
@@ -113,6 +127,7 @@ static mt_status confirm(const mt_study *study, const job *j, const int *below,
     if (rc == MT_OK && mt_problem_eval(q, t, false, &v, &ignored) == MT_OK) {
         *value = mt_relax_value(q, m, &v);
         memcpy(x, q->x, (size_t)q->n * sizeof *x);
+        rc = hold_motion(q, m, mem, value, err);
     }
     mt_problem_delete(q);
     return rc;

@@ -198,6 +198,16 @@ class Motion(unittest.TestCase):
         self.assertFalse(result["baseline"]["feasible"])
         self.assertTrue(all(r["feasible"] for r in result["recommendations"]))
 
+    def test_what_would_let_a_design_exist_holds_over_the_motion(self):
+        k1 = k1_for(12.0, 0.0)
+        variables = [{"parameter": "k1", "lower": 0.95 * k1, "upper": 1.05 * k1}]
+        result = self.answer(arm({"down": -1.1, "up": 0.9}, k1), study([avoid(["down", "up"], [[11, 12.5]])], variables), 1)
+        bounds = [r for r in result["relaxations"] if r["pointer"].startswith("/variables")]
+        self.assertTrue(bounds)
+        for r in bounds:  # the lower one would need k1_for(11, 0.0), not what the ends alone ask for
+            wanted = k1_for(12.5, 1.1) if r["to"] > k1 else k1_for(11, 0.0)
+            self.assertAlmostEqual(r["to"] / wanted, 1, delta=1e-4)
+
     def test_workers_do_not_matter(self):
         model = arm({"down": -1.1, "up": 0.9}, k1_for(12.0, 0.0))
         with tempfile.TemporaryDirectory() as folder:
