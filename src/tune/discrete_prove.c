@@ -101,6 +101,9 @@ static mt_status judge(prover *v, const double *x, mt_err *err)
     const long most = d->p->study->search.max_evaluations;
     const long left = most - d->evals;
     MT_TRY(combination_at(v, x, &c, err));
+    if (c == NULL) {
+        return mt_fail_memory(err);
+    }
     if (c->judged && (c->feasible || !d->mixed)) {
         return MT_OK;
     }

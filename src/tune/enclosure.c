@@ -67,9 +67,9 @@ static mt_status check_count(mt_enclosure *e, const mt_analysis *a, bool *ok, ch
         return mt_fail_memory(err);
     }
     for (int t = 0; t < list->n_terms; t++) {
-        const mt_node c = list->terms[t].coefficient;
-        holds[t] = list->terms[t].varies ? e->coefficients[mt_enclosure_find(e, c)].most > 0.0
-                                         : a->lin->value[c] != 0.0;
+        const int at = e->of_term[MT_STIFFNESS][t];
+        holds[t] = at < 0 ? a->lin->value[list->terms[t].coefficient] != 0.0
+                          : e->coefficients[at].most > 0.0 || e->coefficients[at].least < 0.0;
     }
     const mt_status rc = mt_analysis_free_directions(a->lin, &a->mass, holds, &e->scratch,
                                                      &free_directions, err);

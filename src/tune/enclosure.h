@@ -32,10 +32,15 @@ typedef struct mt_enclosure_part {
     double trace;
 } mt_enclosure_part;
 
+/* Is a coefficient required to be positive over the bounds? A coupling of two rows has two of either sign: its own, and minus that (enclosure_terms.c). */
+typedef enum mt_sign { MT_SIGN_POSITIVE, MT_SIGN_ANY, MT_SIGN_NEGATED } mt_sign;
+
 typedef struct mt_enclosure_coefficient {
     mt_node node;     /* of the enclosure's program */
     const char *name; /* "spring \"k1\"", "mass of \"bob\"" */
-    bool dependent;   /* an input occurs twice in it: its interval alone is not tight */
+    bool mass;        /* first seen in the mass matrix */
+    mt_sign required;
+    bool dependent; /* an input occurs twice in it: its interval alone is not tight */
     signed char
         *sign;     /* [n_inputs] of the derivative over the bounds; 0: none, or it changes */
     bool monotone; /* in all its inputs over the bounds */
@@ -46,6 +51,22 @@ typedef struct mt_enclosure_coefficient {
         most; /* likewise; where that is 0, a box in which it is not may have fewer rigid-body modes */
     mt_enclosure_part part[MT_MATRICES];
 } mt_enclosure_coefficient;
+
+/* What a term of the system adds to the parts of a coefficient: with its rows r, or a and b, and its factor */
+typedef enum mt_enclosure_form {
+    MT_FORM_ROWS,      /* factor sum r r^T */
+    MT_FORM_PAIR,      /* factor (a b^T + b a^T) / 2 */
+    MT_FORM_SUM,       /* v v^T / 4, v = factor a + b / factor */
+    MT_FORM_DIFFERENCE /* v v^T / 4, v = factor a - b / factor */
+} mt_enclosure_form;
+
+typedef struct mt_enclosure_piece {
+    mt_matrix matrix;
+    int term;
+    int coefficient;
+    mt_enclosure_form form;
+    double factor;
+} mt_enclosure_piece;
 
 typedef struct mt_enclosure {
     mt_arena mem;
@@ -59,6 +80,12 @@ typedef struct mt_enclosure {
     mt_program program; /* of the coefficients alone */
     int n_coefficients;
     mt_node *sources; /* [n_coefficients] their nodes in the system's program */
+    int n_pieces;
+    mt_enclosure_piece *pieces;
+    int *of_term[MT_MATRICES]; /* coefficient of each term; -1: it does not vary */
+    const char
+        *coupled; /* name of a spring or body whose coupling is of either sign; NULL: none */
+    bool coupled_mass;
     mt_enclosure_coefficient *coefficients;
     bool bounded; /* least and most are known: they hold in every box within the bounds */
     bool mass_varies;

@@ -42,26 +42,64 @@ static mt_status room(mt_arena *mem, size_t m, size_t n, double **out, mt_err *e
     return MT_OK;
 }
 
+/* out (r) = W^T row; without a basis the row itself. */
+static void to_basis(const basis *b, int n, const double *row, double *out)
+{
+    if (b == NULL || b->l != NULL) {
+        memcpy(out, row, (size_t)n * sizeof *out);
+    }
+    if (b != NULL && b->l != NULL) {
+        mt_tri_solve(false, n, 1, b->l, out, n);
+    } else if (b != NULL) {
+        mt_gemv(true, n, b->r, 1.0, b->y, n, row, 0.0, out);
+    }
+}
+
+/* dense (r x r, lower) += weight x piece, in the basis b (NULL: as the rows are). work: 4 n. */
+static void add_piece(const mt_linear *lin, const basis *b, const mt_enclosure_piece *p,
+                      double weight, double *work, double *dense)
+{
+    const int n = lin->n;
+    const ptrdiff_t r = b == NULL ? n : b->r;
+    const mt_term *const t = &lin->list[KINDS[p->matrix]].terms[p->term];
+    const double *const rows = lin->reduced[KINDS[p->matrix]] + ((ptrdiff_t)t->first * n);
+    const bool whole = p->form == MT_FORM_SUM || p->form == MT_FORM_DIFFERENCE;
+    const double c = whole ? 0.25 * weight : p->factor * weight;
+    double *const v = work + (2 * (ptrdiff_t)n);
+    double *const second = work + n;
+    for (int k = 0; k < n && whole; k++) {
+        const double other = rows[n + k] / p->factor;
+        v[k] = (p->factor * rows[k]) + (p->form == MT_FORM_SUM ? other : -other);
+    }
+    if (p->form == MT_FORM_PAIR) {
+        to_basis(b, n, rows + n, second);
+    }
+    for (int i = 0; i < (p->form == MT_FORM_ROWS ? t->count : 1); i++) {
+        to_basis(b, n, whole ? v : rows + ((ptrdiff_t)i * n), work);
+        const double *const other = p->form == MT_FORM_PAIR ? second : work;
+        for (ptrdiff_t j = 0; j < r; j++) {
+            for (ptrdiff_t k = j; k < r; k++) {
+                dense[k + (j * r)] +=
+                    0.5 * ((c * work[k] * other[j]) + (c * other[k] * work[j]));
+            }
+        }
+    }
+}
+
 /* fixed + sum of the varying terms with their coefficients at the low end of the bounds. */
 static mt_status low_matrix(const mt_enclosure *e, const mt_linear *lin, mt_matrix which,
                             mt_arena *mem, double **out, mt_err *err)
 {
     const ptrdiff_t n = lin->n;
-    const mt_term_list *const list = &lin->list[KINDS[which]];
+    double *work = NULL;
+    MT_TRY(room(mem, (size_t)n, 4, &work, err));
     MT_TRY(room(mem, (size_t)n, (size_t)n, out, err));
     memcpy(*out, which == MT_STIFFNESS ? lin->k_fixed : lin->m_fixed,
            (size_t)(n * n) * sizeof **out);
-    for (int i = 0; i < list->n_rows; i++) {
-        const mt_term *const t = &list->terms[list->row_term[i]];
-        const double *const row = lin->reduced[KINDS[which]] + (i * n);
-        if (!t->varies) {
-            continue;
-        }
-        const double c = e->value[MT_LOW][mt_enclosure_find(e, t->coefficient)];
-        for (ptrdiff_t j = 0; j < n; j++) {
-            for (ptrdiff_t k = j; k < n; k++) {
-                (*out)[k + (j * n)] += c * row[k] * row[j];
-            }
+    for (int i = 0; i < e->n_pieces; i++) {
+        if (e->pieces[i].matrix == which) {
+            add_piece(lin, NULL, &e->pieces[i], e->value[MT_LOW][e->pieces[i].coefficient],
+                      work, *out);
         }
     }
     mt_symmetrise_lower((int)n, *out);
@@ -122,6 +160,21 @@ static mt_status check_massless(const mt_enclosure *e, const basis *b, mt_arena 
     return MT_OK;
 }
 
+/* Why K low or M low is not positive: the model may be so, or the bounds of couplings are too loose to tell. */
+static void say_lost(const mt_enclosure *e, bool unstable, char *reason)
+{
+    if (e->coupled != NULL) {
+        (void)snprintf(reason, MT_REASON_SIZE, "%s \"%s\" %s",
+                       e->coupled_mass ? "body" : "spring", e->coupled,
+                       e->coupled_mass ? "has a product of inertia that varies"
+                                       : "couples two directions with a stiffness that varies");
+        return;
+    }
+    (void)snprintf(reason, MT_REASON_SIZE, "%s",
+                   unstable ? "the mechanism may be unstable within the bounds"
+                            : "a freedom may lose its mass or its stiffness within the bounds");
+}
+
 /* Modes of (K low, M low) show an instability; and they are the basis where M is singular. */
 static mt_status choose(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_err *err)
 {
@@ -136,10 +189,7 @@ static mt_status choose(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_er
              : rc;
     *ok = rc == MT_OK && modes.n_unstable == 0;
     if (rc == MT_E_NOT_SPD || rc == MT_E_MASSLESS || (rc == MT_OK && !*ok)) {
-        (void)snprintf(reason, MT_REASON_SIZE, "%s",
-                       rc == MT_OK ? "the mechanism may be unstable within the bounds"
-                                   : "a freedom may lose its mass or its stiffness within the "
-                                     "bounds");
+        say_lost(e, rc == MT_OK, reason);
         return MT_OK;
     }
     MT_TRY(rc);
@@ -156,17 +206,6 @@ static mt_status choose(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_er
     b->y = modes.y;
     b->condition = condition_of(b);
     return b->r == b->n ? MT_OK : check_massless(e, b, &e->scratch, ok, reason, err);
-}
-
-/* out (r) = W^T row. */
-static void to_basis(const basis *b, const double *row, double *out)
-{
-    if (b->l != NULL) {
-        memcpy(out, row, (size_t)b->n * sizeof *out);
-        mt_tri_solve(false, b->n, 1, b->l, out, b->n);
-    } else {
-        mt_gemv(true, b->n, b->r, 1.0, b->y, b->n, row, 0.0, out);
-    }
 }
 
 /* W^T A W of a fixed matrix (lower triangle given), full. */
@@ -189,25 +228,17 @@ static mt_status to_basis_matrix(const basis *b, const double *a, mt_arena *scra
     return MT_OK;
 }
 
-/* dense (r x r, lower) += row row^T in the basis, for all rows of the coefficient's terms; returns whether there were any. */
-static bool add_rows(const basis *b, mt_matrix which, mt_node source, double *row,
-                     double *dense)
+/* dense (r x r, lower): the sum of a coefficient's pieces in the basis; returns whether there are any. */
+static bool add_pieces(const mt_enclosure *e, const basis *b, mt_matrix which, int coefficient,
+                       double *work, double *dense)
 {
-    const mt_term_list *const list = &b->lin->list[KINDS[which]];
-    const ptrdiff_t r = b->r;
     bool any = false;
-    memset(dense, 0, (size_t)(r * r) * sizeof *dense);
-    for (int i = 0; i < list->n_rows; i++) {
-        const mt_term *const t = &list->terms[list->row_term[i]];
-        if (!t->varies || t->coefficient != source) {
-            continue;
-        }
-        any = true;
-        to_basis(b, b->lin->reduced[KINDS[which]] + ((ptrdiff_t)i * b->n), row);
-        for (ptrdiff_t j = 0; j < r; j++) {
-            for (ptrdiff_t k = j; k < r; k++) {
-                dense[k + (j * r)] += row[k] * row[j];
-            }
+    memset(dense, 0, (size_t)b->r * (size_t)b->r * sizeof *dense);
+    for (int i = 0; i < e->n_pieces; i++) {
+        const mt_enclosure_piece *const p = &e->pieces[i];
+        if (p->matrix == which && p->coefficient == coefficient) {
+            any = true;
+            add_piece(b->lin, b, p, 1.0, work, dense);
         }
     }
     return any;
@@ -238,14 +269,14 @@ static mt_status make_part(const double *dense, ptrdiff_t r, mt_arena *mem,
     return MT_OK;
 }
 
-/* The parts of coefficient i in both matrices. row, dense: work. */
-static mt_status parts_of(mt_enclosure *e, const basis *b, int i, double *row, double *dense,
+/* The parts of coefficient i in both matrices. */
+static mt_status parts_of(mt_enclosure *e, const basis *b, int i, double *work, double *dense,
                           mt_err *err)
 {
     for (mt_matrix m = MT_STIFFNESS; m < MT_MATRICES; m++) {
         mt_enclosure_part *const part = &e->coefficients[i].part[m];
         part->count = 0;
-        if (add_rows(b, m, e->sources[i], row, dense)) {
+        if (add_pieces(e, b, m, i, work, dense)) {
             MT_TRY(make_part(dense, b->r, &e->mem, part, err));
         }
         e->mass_varies = e->mass_varies || (m == MT_MASS && part->count > 0);
@@ -256,23 +287,21 @@ static mt_status parts_of(mt_enclosure *e, const basis *b, int i, double *row, d
 static mt_status make_parts(mt_enclosure *e, const basis *b, mt_err *err)
 {
     double *dense = NULL;
-    double *row = NULL;
+    double *work = NULL;
     MT_TRY(room(&e->scratch, (size_t)b->r, (size_t)b->r, &dense, err));
-    MT_TRY(room(&e->scratch, (size_t)b->n, 1, &row, err));
+    MT_TRY(room(&e->scratch, (size_t)b->n, 4, &work, err));
     for (int i = 0; i < e->n_coefficients; i++) {
-        MT_TRY(parts_of(e, b, i, row, dense, err));
+        MT_TRY(parts_of(e, b, i, work, dense, err));
     }
     return MT_OK;
 }
 
 /* Mark coefficients of masses by a part of -1 entries, until make_parts fills them. */
-static void find_kinds(mt_enclosure *e, const mt_linear *lin)
+static void find_kinds(mt_enclosure *e)
 {
-    const mt_term_list *const list = &lin->list[MT_TERM_MASS];
-    for (int i = 0; i < list->n_terms; i++) {
-        if (list->terms[i].varies) {
-            const int at = mt_enclosure_find(e, list->terms[i].coefficient);
-            e->coefficients[at].part[MT_MASS].count = -1;
+    for (int i = 0; i < e->n_pieces; i++) {
+        if (e->pieces[i].matrix == MT_MASS) {
+            e->coefficients[e->pieces[i].coefficient].part[MT_MASS].count = -1;
         }
     }
 }
@@ -300,7 +329,7 @@ static const double ROUNDING_ULPS = 16.0;
 static mt_status reduce(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_err *err)
 {
     const mt_linear *const lin = b->lin;
-    find_kinds(e, lin);
+    find_kinds(e);
     MT_TRY(low_matrix(e, lin, MT_STIFFNESS, &e->scratch, &b->k_low, err));
     MT_TRY(low_matrix(e, lin, MT_MASS, &e->scratch, &b->m_low, err));
     MT_TRY(choose(e, b, ok, reason, err));
@@ -321,7 +350,7 @@ static mt_status reduce(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_er
     }
     MT_TRY(room(&e->mem, r, r, &e->work, err));
     e->fixed_norm = mt_norm2((int)(r * r), e->fixed[MT_STIFFNESS]);
-    e->squares = all_squares(lin);
+    e->squares = all_squares(lin) && e->coupled == NULL;
     e->roundoff =
         ROUNDING_ULPS *
         (double)(e->n + lin->list[MT_TERM_STIFFNESS].n_rows + lin->list[MT_TERM_MASS].n_rows) *

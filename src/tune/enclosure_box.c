@@ -73,11 +73,14 @@ bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi)
     double m_scale = 0.0;
     mt_enclosure_bounds(e, lo, hi);
     for (int i = 0; i < e->n_coefficients; i++) {
+        const bool either = e->coefficients[i].required != MT_SIGN_POSITIVE;
         const bool freed = e->coefficients[i].most <= DBL_MIN && e->value[MT_HIGH][i] > DBL_MIN;
-        if (!(e->value[MT_LOW][i] >= 0.0) || !isfinite(e->value[MT_HIGH][i]) || freed) {
+        if (!(either ? isfinite(e->value[MT_LOW][i]) : e->value[MT_LOW][i] >= 0.0) ||
+            !isfinite(e->value[MT_HIGH][i]) || (freed && !either)) {
             return false;
         }
-        k_scale += e->value[MT_HIGH][i] * e->coefficients[i].part[MT_STIFFNESS].trace;
+        k_scale += fmax(fabs(e->value[MT_LOW][i]), fabs(e->value[MT_HIGH][i])) *
+                   e->coefficients[i].part[MT_STIFFNESS].trace;
     }
     if (!e->squares && !within_bounds(e)) {
         return false;

@@ -91,20 +91,5 @@ bool mt_enclosure_admits(const mt_analysis *a, char *reason)
     if (shaping >= 0) {
         return refuse(reason, "parameter", input_name(sys, shaping), "shapes the geometry");
     }
-    static const mt_term_kind kinds[MT_MATRICES] = {MT_TERM_STIFFNESS, MT_TERM_MASS};
-    for (int m = 0; m < MT_MATRICES; m++) {
-        const mt_term_list *const list = &a->lin->list[kinds[m]];
-        for (int i = 0; i < list->n_terms; i++) {
-            const mt_term *const t = &list->terms[i];
-            if (!t->pair || !t->varies) {
-                continue;
-            }
-            return m == MT_STIFFNESS
-                       ? refuse(reason, "spring", sys->springs[t->source].name,
-                                "couples two directions with a stiffness that varies")
-                       : refuse(reason, "body", sys->items[sys->inertias[t->source].item].name,
-                                "has a product of inertia that varies");
-        }
-    }
     return true;
 }

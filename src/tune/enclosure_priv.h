@@ -11,8 +11,8 @@ bool mt_enclosure_admits(const mt_analysis *a, char *reason);
  * false with the reason where one may be negative there. */
 mt_status mt_enclosure_collect(mt_enclosure *e, const mt_linear *lin, bool *ok, char *reason,
                                mt_err *err);
-/* Position of the coefficient that is this node of the system's program; -1. */
-int mt_enclosure_find(const mt_enclosure *e, mt_node source);
+/* enclosure_terms.c: coefficients (without their nodes) and pieces of all terms that vary. */
+mt_status mt_enclosure_list_terms(mt_enclosure *e, const mt_linear *lin, mt_err *err);
 /* Bounds of all coefficients over the box into value[2]. */
 void mt_enclosure_bounds(mt_enclosure *e, const double *lo, const double *hi);
 

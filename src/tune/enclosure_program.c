@@ -15,32 +15,6 @@
 
 #include "expr/interval.h"
 
-int mt_enclosure_find(const mt_enclosure *e, mt_node source)
-{
-    for (int i = 0; i < e->n_coefficients; i++) {
-        if (e->sources[i] == source) {
-            return i;
-        }
-    }
-    return -1;
-}
-
-/* List the coefficients of the varying terms of one kind. */
-static void list_terms(mt_enclosure *e, const mt_linear *lin, mt_term_kind kind)
-{
-    const mt_system *const sys = lin->sys;
-    for (int i = 0; i < lin->list[kind].n_terms; i++) {
-        const mt_term *const t = &lin->list[kind].terms[i];
-        if (!t->varies || mt_enclosure_find(e, t->coefficient) >= 0) {
-            continue;
-        }
-        e->sources[e->n_coefficients] = t->coefficient;
-        e->coefficients[e->n_coefficients++].name =
-            kind == MT_TERM_STIFFNESS ? sys->springs[t->source].name
-                                      : sys->items[sys->inertias[t->source].item].name;
-    }
-}
-
 /* Copy what the coefficients need of the system's program. */
 static mt_status extract(mt_enclosure *e, const mt_program *from, mt_err *err)
 {
@@ -78,7 +52,11 @@ static mt_status extract(mt_enclosure *e, const mt_program *from, mt_err *err)
         }
     }
     for (int i = 0; i < e->n_coefficients; i++) {
-        e->coefficients[i].node = map[e->sources[i]];
+        mt_enclosure_coefficient *const c = &e->coefficients[i];
+        c->node = map[e->sources[i]];
+        if (c->required == MT_SIGN_NEGATED) {
+            c->node = mt_program_unary(&e->program, MT_OP_NEG, c->node, MT_NO_ADDR);
+        }
     }
     mt_arena_rewind(&e->scratch, mark);
     return mt_program_finish(&e->program, err);
@@ -133,15 +111,6 @@ static void set_signs(mt_enclosure *e)
             c->monotone = c->monotone && (lo >= 0.0 || hi <= 0.0);
         }
     }
-}
-
-static mt_status claim(mt_enclosure *e, const mt_linear *lin, mt_err *err)
-{
-    const size_t most = (size_t)lin->list[MT_TERM_STIFFNESS].n_terms +
-                        (size_t)lin->list[MT_TERM_MASS].n_terms + 1;
-    e->sources = mt_arena_int(&e->mem, most);
-    e->coefficients = mt_arena_alloc(&e->mem, most, sizeof *e->coefficients);
-    return e->sources == NULL || e->coefficients == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
 static mt_status claim_work(mt_enclosure *e, mt_err *err)
@@ -231,8 +200,7 @@ static mt_status refine(mt_enclosure *e, int i, mt_err *err)
     return MT_OK;
 }
 
-static mt_status check_positive(mt_enclosure *e, int n_stiffness, bool *ok, char *reason,
-                                mt_err *err)
+static mt_status check_positive(mt_enclosure *e, bool *ok, char *reason, mt_err *err)
 {
     mt_enclosure_bounds(e, e->lower, e->upper);
     for (int i = 0; i < e->n_coefficients; i++) {
@@ -245,11 +213,12 @@ static mt_status check_positive(mt_enclosure *e, int n_stiffness, bool *ok, char
         if (c->dependent && !(c->least >= 0.0 && isfinite(c->most))) {
             MT_TRY(refine(e, i, err));
         }
-        *ok = c->least >= 0.0 && isfinite(c->most);
+        const bool either = c->required != MT_SIGN_POSITIVE;
+        *ok = (either ? isfinite(c->least) : c->least >= 0.0) && isfinite(c->most);
         if (!*ok) {
             (void)snprintf(reason, MT_REASON_SIZE, "%s of \"%s\" may be %s within the bounds",
-                           i < n_stiffness ? "stiffness" : "mass", c->name,
-                           c->least < 0.0 ? "negative" : "without limit");
+                           c->mass ? "mass" : "stiffness", c->name,
+                           c->least < 0.0 && !either ? "negative" : "without limit");
         }
     }
     e->bounded = *ok;
@@ -260,16 +229,13 @@ static mt_status check_positive(mt_enclosure *e, int n_stiffness, bool *ok, char
 mt_status mt_enclosure_collect(mt_enclosure *e, const mt_linear *lin, bool *ok, char *reason,
                                mt_err *err)
 {
-    MT_TRY(claim(e, lin, err));
-    list_terms(e, lin, MT_TERM_STIFFNESS);
-    const int n_stiffness = e->n_coefficients;
-    list_terms(e, lin, MT_TERM_MASS);
+    MT_TRY(mt_enclosure_list_terms(e, lin, err));
     MT_TRY(extract(e, &lin->sys->program, err));
     MT_TRY(claim_work(e, err));
     MT_TRY(find_dependent(e, err));
     set_signs(e);
     *ok = true;
-    return check_positive(e, n_stiffness, ok, reason, err);
+    return check_positive(e, ok, reason, err);
 }
 
 /* The inputs at which a coefficient is least (side MT_LOW) or greatest: the end that its derivative's sign says, the whole interval where it has none. */

@@ -175,8 +175,8 @@ static double cost(void *context, const double *lo, const double *hi)
     const rig *const g = context;
     double f = 0.0;
     for (int i = 0; i < g->c.n; i++) {
-        const double above = lo[i] / g->s.at[i] - 1.0;
-        const double below = 1.0 - hi[i] / g->s.at[i];
+        const double above = (lo[i] / g->s.at[i]) - 1.0;
+        const double below = 1.0 - (hi[i] / g->s.at[i]);
         const double d = fmax(fmax(above, below), 0.0);
         f += d * d;
     }
