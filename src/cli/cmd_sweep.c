@@ -238,6 +238,23 @@ static mt_status add_csv(sink *to, const mt_sweep_view *v, mt_err *err)
     return MT_OK;
 }
 
+/* A range beyond a turn is in degrees, or of a motor's shaft: said before its table. */
+static void warn_range(const job *j)
+{
+    static const double ONE_TURN = 6.283185307179586;
+    const mt_sweep_request *const r = j->v.request;
+    double most = 0.0;
+    for (int i = 0; i < r->n; i++) {
+        most = fabs(r->positions[i]) > fabs(most) ? r->positions[i] : most;
+    }
+    if (j->sys->drive_joint >= 0 && j->sys->joints[j->sys->drive_joint].angle &&
+        fabs(most) > ONE_TURN) {
+        mt_terminal_warning("--drive: %s goes to %g rad, more than a turn: degrees are written "
+                            "\"%g*deg\"",
+                            r->drive.joint, most, most);
+    }
+}
+
 static int one(sink *to, const mt_subject *s, int c, const mt_sweep_request *request)
 {
     job j = {.a = NULL};
@@ -248,6 +265,7 @@ static int one(sink *to, const mt_subject *s, int c, const mt_sweep_request *req
     mt_subject_warn_overridden(s, c);
     mt_status rc = run(to->args, s, c, &j, &err);
     if (rc == MT_OK) {
+        warn_range(&j);
         code = tell_missing(s, &j.v);
         switch (to->args->format) {
         case MT_FORMAT_JSON:

@@ -251,15 +251,21 @@ static void judge_joints(mt_judge *j)
     }
 }
 
-static void judge_drive(mt_judge *j)
+const char *mt_judge_drive_pointer(const mt_judge *j, const char *member)
 {
     const mt_configuration *c = &j->model->configurations[j->configuration];
+    while (c->drive.inherited && c->like != MT_ABSENT) {
+        c = &j->model->configurations[c->like];
+    }
+    return mt_arena_printf(j->out->mem, "/configurations/%s/drive/%s", c->name.s, member);
+}
+
+static void judge_drive(mt_judge *j)
+{
+    const mt_configuration *const c = &j->model->configurations[j->configuration];
     const double v = c->drive.given ? value_of(j, c->drive.position) : 0.0;
     if (!c->drive.position_is_angle || !(fabs(v) > ONE_TURN)) {
         return;
-    }
-    while (c->drive.inherited && c->like != MT_ABSENT) {
-        c = &j->model->configurations[c->like];
     }
     (void)mt_judge_place(
         j,
@@ -267,8 +273,7 @@ static void judge_drive(mt_judge *j)
                      "\"%s\" is driven by %g rad, more than a turn: degrees are written "
                      "\"%g*deg\"",
                      c->drive.joint_name.s == NULL ? "" : c->drive.joint_name.s, v, v),
-        j->model->nums[c->drive.position].addr,
-        mt_arena_printf(j->out->mem, "/configurations/%s/drive/position_rad", c->name.s));
+        j->model->nums[c->drive.position].addr, mt_judge_drive_pointer(j, "position_rad"));
 }
 
 void mt_model_judge(const mt_model *model, int configuration, const double *value,

@@ -24,6 +24,8 @@ static const double LEAST_SIZE_M = 1e-6;
 static const double MOST_STOUT = 10.0;
 /* Radius of gyration of a body in sizes of the drawing: kg mm^2 for kg m^2 makes it a thousand times too large; inertias that a gear multiplies stay below. */
 static const double MOST_GYRATION = 30.0;
+/* A drive along a line, in sizes of the drawing: a stroke is a part of the mechanism. */
+static const double MOST_STROKE = 3.0;
 /* Points of bodies are compared with all others: in models of more joints and springs that would cost more than it tells. */
 enum { MOST_COMPARED = 2000 };
 
@@ -401,6 +403,23 @@ static void judge_gyration(mt_judge *j, const mt_item *item, const mt_body *b, d
     }
 }
 
+static void judge_stroke(mt_judge *j, double size)
+{
+    const mt_drive *const d = &j->model->configurations[j->configuration].drive;
+    if (!d->given || d->position_is_angle || d->position == MT_ABSENT || size == 0.0 ||
+        !(fabs(j->value[d->position]) > MOST_STROKE * size)) {
+        return;
+    }
+    (void)mt_judge_place(
+        j,
+        mt_doubt_add(j->out, MT_LEVEL_DOUBT, "drive",
+                     "\"%s\" is driven by %g m in a drawing %.4g m wide: is it meant in "
+                     "millimetres?",
+                     d->joint_name.s == NULL ? "" : d->joint_name.s, j->value[d->position],
+                     size),
+        j->model->nums[d->position].addr, mt_judge_drive_pointer(j, "position_m"));
+}
+
 void mt_judge_geometry(mt_judge *j)
 {
     const mt_model *const m = j->model;
@@ -450,4 +469,5 @@ void mt_judge_geometry(mt_judge *j)
         }
     }
     judge_size(j, size);
+    judge_stroke(j, size);
 }

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "model/values.h"
 #include "tune/doubts.h"
 
 /* A target a hundred times away from where the mode is, is in another unit (rad/s, rpm and kHz are 6, 60 and 1000 away), or of another mode. */
@@ -154,13 +155,64 @@ static mt_status count_modes(const mt_study *s, mt_analysis *a, mt_err *err)
     return a->n_rigid == a->n_null ? MT_OK : mt_analysis_solve(a, NULL, &opt, err);
 }
 
+/* Goals ask for modes of a position that does not hold: said with them. */
+static void add_goals(const mt_study *s, int c, mt_doubt_list *of_model, int first)
+{
+    const char *const name = s->model->configurations[c].name.s;
+    for (int i = first; i < of_model->n; i++) {
+        mt_doubt *const d = &of_model->items[i];
+        if (strcmp(d->kind, "unstable") == 0 && d->configuration != NULL &&
+            strcmp(d->configuration, name) == 0) {
+            d->text = mt_arena_printf(of_model->mem,
+                                      "%s; goals name it, and none of them is met by a design "
+                                      "that does so",
+                                      d->text);
+            of_model->out_of_memory = of_model->out_of_memory || d->text == NULL;
+        }
+    }
+}
+
+/* The numbers of a reference's model, where it is another one: what it gives as a target is as doubtful as they are. */
+static mt_status examine_reference(const mt_study *s, const mt_reference *r, mt_doubt_list *out,
+                                   mt_err *err)
+{
+    if (r->model == NULL || r->model == s->model || r->configuration < 0) {
+        return MT_OK;
+    }
+    mt_arena mem;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    mt_doubt_list list = mt_doubt_list_default(&mem);
+    double *const value = mt_arena_f64(&mem, (size_t)r->model->n_nums, 1);
+    mt_status rc = value == NULL ? mt_fail_memory(err)
+                                 : mt_model_numbers(r->model, r->configuration, 0, NULL, NULL,
+                                                    &mem, value, err);
+    if (rc == MT_OK) {
+        mt_model_judge(r->model, r->configuration, value, &list);
+    }
+    for (int i = 0; rc == MT_OK && i < list.n; i++) {
+        if (list.items[i].level == MT_LEVEL_DOUBT) {
+            list.items[i].file = r->model_path.s;
+            mt_doubt_copy(out, &list.items[i]);
+        }
+    }
+    rc = rc == MT_OK && list.out_of_memory ? mt_fail_memory(err) : rc;
+    mt_arena_free(&mem);
+    return rc;
+}
+
 static mt_status examine_configuration(const mt_study *s, int c, mt_doubt_list *of_study,
                                        mt_doubt_list *of_model, mt_err *err)
 {
     mt_analysis *a = NULL;
+    const int first = of_model->n;
     mt_status rc = mt_analysis_new(s->model, c, 0, NULL, NULL, &a, err);
     rc = rc == MT_OK ? mt_doubts_of_analysis(a, 0, NULL, NULL, of_model, err) : rc;
     rc = rc == MT_OK ? count_modes(s, a, err) : rc;
+}
+
+    if (rc == MT_OK) {
+        add_goals(s, c, of_model, first);
+    }
     for (int g = 0; rc == MT_OK && g < s->n_goals; g++) {
         const mt_goal *const goal = &s->goals[g];
         for (int k = 0; k < goal->n_configurations && goal->type == MT_GOAL_FREQUENCY; k++) {
@@ -223,6 +275,9 @@ mt_status mt_study_examine(const mt_study *study, mt_doubt_list *out, mt_err *er
     for (int i = 0; i < of_model.n; i++) {
         of_model.items[i].file = study->model_path.s;
         mt_doubt_copy(out, &of_model.items[i]);
+    }
+    for (int i = 0; i < study->n_references; i++) {
+        MT_TRY(examine_reference(study, &study->references[i], out, err));
     }
     return out->out_of_memory || of_model.out_of_memory ? mt_fail_memory(err) : MT_OK;
 }

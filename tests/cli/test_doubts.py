@@ -261,6 +261,34 @@ class Doubts(CliTest):
             grades = {p["best"]["grade"] for p in result["trade"]["points"]}
             self.assertEqual("feasible and proven" in grades, proven)
 
+    def test_a_stroke_longer_than_the_drawing(self):
+        slide = {"name": "foot", "type": "prismatic", "bodies": ["ground", "rod.start"], "at": [0, 0], "axis": [1, 0]}
+        spring = {"name": "hold", "type": "axial", "bodies": ["ground", "rod.start"], "at": [[-1, 0], [0, 0]], "stiffness_n_per_m": "k"}
+        base = dict(MODEL, joints=[slide, MODEL["joints"][1]], springs=[spring])
+        for position, want in ((20, ["drive"]), (0.02, [])):
+            base["configurations"] = {"out": {"drive": {"joint": "foot", "position_m": position}}}
+            self.assertEqual([d["kind"] for d in self.found(self.put_model(base=base))[0]], want)
+
+    def test_a_sweep_beyond_a_turn_warns(self):
+        path = self.put_model()
+        warning = 'modetune: warning: --drive: foot goes to 10 rad, more than a turn: degrees are written "10*deg"\n'
+        self.assertEqual(self.expect(0, "sweep", path, "--drive", "foot=-1:10:3").stderr, warning)
+        self.assertEqual(self.expect(0, "sweep", path, "--drive", "foot=-10*deg:6:3").stderr, "")
+
+    def test_an_unstable_configuration_is_told_with_its_goals(self):
+        self.put_model(("springs", 0, "stiffness_n_m_per_rad"), -5)
+        _, facts = self.found(self.put_study())
+        self.assertEqual([f["kind"] for f in facts], ["unstable"])
+        self.assertTrue(facts[0]["text"].endswith("; goals name it, and none of them is met by a design that does so"))
+
+    def test_the_model_of_a_reference_is_judged(self):
+        self.put_model()
+        goals = [{"type": "frequency", "mode": 1, "reference": "fe"}]
+        study = dict(STUDY, goals=goals, references={"fe": {"model": "../problems/fe.json", "configuration": "default"}})
+        for modulus, want in ((2.1e5, [("modulus", "../problems/fe.json")]), (2.1e11, [])):
+            self.write_json("problems/fe.json", changed(MODEL, ("links", 0, "youngs_modulus_pa"), modulus))
+            self.assertEqual([(d["kind"], d["file"]) for d in self.found(self.put_study(base=study))[0]], want)
+
     def test_a_negative_spring_is_allowed(self):
         doubts, facts = self.found(self.put_model(("springs", 0, "stiffness_n_m_per_rad"), -5))
         self.assertEqual((doubts, [f["kind"] for f in facts]), ([], ["unstable"]))
