@@ -71,7 +71,7 @@ static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, 
     set_design(s, 0, x);
     mt_status rc = mt_analysis_new(s->model, c, n, inputs, x, &a, err);
     if (rc == MT_OK) {
-        a->recount = true; /* a mode of 0 Hz is as far from a band as no mode */
+        a->recount = true; /* a spring that is 0 in the original has modes elsewhere */
     }
     for (int k = 0; rc == MT_OK && k < (2 * n) + 3 && r->nearest > FAR_BAND; k++) {
         mt_err ignored = {.code = MT_OK}; /* a design that has no modes has none in a band */
@@ -99,12 +99,19 @@ static mt_status examine_bands(const mt_study *s, int g, mt_doubt_list *out, mt_
     mt_arena_free(&mem);
     const mt_bands *const bands = &goal->avoid->bands;
     if (rc == MT_OK && r.nearest > FAR_BAND && bands->n > 0) {
-        mt_doubt *const d = mt_doubt_add(out, MT_LEVEL_DOUBT, "no_effect",
-                                         "its bands, %.4g to %.4g Hz, have no effect: within "
-                                         "the bounds no mode comes nearer "
-                                         "than a factor of %.3g (sampled); are they in Hz?",
-                                         bands->items[0].lower_hz,
-                                         bands->items[bands->n - 1].upper_hz, r.nearest);
+        const char *const which =
+            mt_arena_printf(out->mem, "its bands, %.4g to %.4g Hz, have no effect",
+                            bands->items[0].lower_hz, bands->items[bands->n - 1].upper_hz);
+        mt_doubt *const d =
+            isfinite(r.nearest)
+                ? mt_doubt_add(out, MT_LEVEL_DOUBT, "no_effect",
+                               "%s: within the bounds no mode comes nearer than a factor of "
+                               "%.3g (sampled); are they in Hz?",
+                               which == NULL ? "" : which, r.nearest)
+                : mt_doubt_add(out, MT_LEVEL_DOUBT, "no_effect",
+                               "%s: within the bounds there is no vibration mode at all "
+                               "(sampled)",
+                               which == NULL ? "" : which);
         if (d != NULL) {
             d->addr = goal->addr;
         }
@@ -208,8 +215,6 @@ static mt_status examine_configuration(const mt_study *s, int c, mt_doubt_list *
     mt_status rc = mt_analysis_new(s->model, c, 0, NULL, NULL, &a, err);
     rc = rc == MT_OK ? mt_doubts_of_analysis(a, 0, NULL, NULL, of_model, err) : rc;
     rc = rc == MT_OK ? count_modes(s, a, err) : rc;
-}
-
     if (rc == MT_OK) {
         add_goals(s, c, of_model, first);
     }

@@ -281,6 +281,22 @@ class Doubts(CliTest):
         self.assertEqual([f["kind"] for f in facts], ["unstable"])
         self.assertTrue(facts[0]["text"].endswith("; goals name it, and none of them is met by a design that does so"))
 
+    def test_bands_of_what_cannot_vibrate(self):
+        rigid = changed(MODEL, ("springs",), None)
+        rigid["links"] = [dict(MODEL["links"][0], kind="rigid_elements", elements=1)]
+        rigid["joints"] = [MODEL["joints"][0], dict(MODEL["joints"][1])]
+        self.put_model(base=rigid)
+        study = dict(STUDY, variables=STUDY["variables"][1:])
+        doubts, facts = self.found(self.put_study(base=study))
+        self.assertEqual([d["kind"] for d in doubts], ["no_effect"])
+        self.assertIn("there is no vibration mode at all", doubts[0]["text"])
+        self.assertEqual([f["kind"] for f in facts], ["free_motion"])
+        # a spring that is 0 in the original gives it one, the bands have an effect
+        held = dict(MODEL, links=rigid["links"], parameters=dict(MODEL["parameters"], k=0))
+        self.put_model(base=held)
+        study = dict(STUDY, variables=[{"parameter": "k", "lower": 0, "upper": 20000, "scale": 1000}])
+        self.assertEqual(self.found(self.put_study(base=study))[0], [])
+
     def test_the_model_of_a_reference_is_judged(self):
         self.put_model()
         goals = [{"type": "frequency", "mode": 1, "reference": "fe"}]

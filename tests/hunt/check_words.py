@@ -199,4 +199,10 @@ def consistent(run):
         yield f"\"{text}\", but {len(feasible)} designs are listed"
 
 
-CHECKS = {"prices": prices, "undetermined": undetermined, "reasons": reasons, "consistent": consistent}
+def undoubted(run):
+    """The studies here ask good questions of good models: none is doubted."""
+    for doubt in run.result["doubts"]:
+        yield f"doubted: {doubt['kind']}: {doubt['text']}"
+
+
+CHECKS = {"undoubted": undoubted, "prices": prices, "undetermined": undetermined, "reasons": reasons, "consistent": consistent}

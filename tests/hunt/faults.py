@@ -214,7 +214,13 @@ def _point(run):
 
 
 # (fault, kinds of studies to look in, the check that must find it)
+def _doubt(run):
+    run.result["doubts"].append({"kind": "margin", "text": "margin_percent 5 is next to nothing"})
+    return True
+
+
 FAULTS = [
+    (_doubt, ["limits"], "undoubted"),
     (_frequency, ["limits", "bands"], "frequencies"), (_clearance, ["bands"], "clearances"), (_gap, ["bands"], "clearances"),
     (_least_clearance, ["bands"], "clearances"), (_violation, ["infeasible", "limits"], "goals"),
     (_called_feasible, ["infeasible", "limits"], "goals"), (_called_feasible, ["infeasible", "limits"], "consistent"),
