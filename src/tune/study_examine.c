@@ -22,7 +22,7 @@ typedef struct reach {
 static double factor_to(const mt_band *band, double hz)
 {
     if (hz < band->lower_hz) {
-        return band->lower_hz / hz;
+        return hz > 0.0 ? band->lower_hz / hz : HUGE_VAL;
     }
     return hz > band->upper_hz ? hz / band->upper_hz : 1.0;
 }
