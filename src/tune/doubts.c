@@ -195,10 +195,6 @@ static mt_status gather(mt_analysis *a, int n_inputs, const int *inputs, const d
     for (int i = 0; i < list->n; i++) {
         list->items[i].configuration = m->configurations[c].name.s;
         list->items[i].file = m->path;
-        list->items[i].pointer =
-            m->configurations[c].name.addr == MT_NO_ADDR
-                ? ""
-                : mt_arena_printf(list->mem, "/configurations/%s", m->configurations[c].name.s);
     }
     mt_model_judge(m, c, value, list);
     add_what_is_left(a, list);
