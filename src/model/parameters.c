@@ -68,6 +68,9 @@ mt_status mt_emit_parameters(const mt_model *model, int configuration, const int
                 nodes[p] =
                     s.input ? mt_program_input(program, is_input[p], s.number->addr)
                             : mt_program_expr(program, &s.number->expr, nodes, s.number->addr);
+                if (nodes[p] == MT_NO_NODE) { /* those that wait for it would wait for ever */
+                    return mt_fail_memory(err);
+                }
             }
             depth--;
         }

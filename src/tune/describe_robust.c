@@ -13,10 +13,10 @@ static const double PERCENT = 100.0;
 
 mt_status mt_describe_ranges(mt_problem *fresh, mt_err *err)
 {
-    int *const modes = mt_arena_int(&fresh->mem, (size_t)fresh->n_views + 1);
     if (fresh->robust == NULL) {
         return MT_OK;
     }
+    int *const modes = mt_arena_int(&fresh->mem, (size_t)fresh->n_views + 1);
     if (modes == NULL) {
         return mt_fail_memory(err);
     }

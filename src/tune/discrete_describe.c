@@ -180,6 +180,9 @@ const char *mt_discrete_rank_text(const mt_discrete_report *report, const mt_nlp
                                   int rank, const char *objective, mt_arena *mem)
 {
     const char *const how = excluded(report) ? "proven for all" : certainty(report, mem);
+    if (how == NULL) {
+        return NULL;
+    }
     if (found->compromise) {
         return mt_arena_printf(mem,
                                "No combination of catalogue values that was judged meets all "

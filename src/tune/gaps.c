@@ -141,6 +141,7 @@ static mt_status search_round(const job *j, slot *s, int k, int round, const dou
     mt_problem *p = NULL;
     mt_nlp_options options = j->options;
     int added = 0;
+    *again = false;
     MT_TRY(mt_problem_new_cut(j->p->study, j->p->references,
                               j->candidates->below + ((ptrdiff_t)k * j->p->n_bands), s->n_cuts,
                               s->cuts, &p, why));
@@ -155,8 +156,9 @@ static mt_status search_round(const job *j, slot *s, int k, int round, const dou
         memcpy(hint, from, (size_t)p->n * sizeof *hint);
         nlp.hint = hint;
     }
-    mt_status rc = p->n_aims > 1 ? search_in_order(p, nlp.hint, s, why)
-                                 : mt_nlp_solve(&nlp, &options, &s->mem, &s->found, why);
+    mt_status rc = hint == NULL    ? mt_fail_memory(why)
+                   : p->n_aims > 1 ? search_in_order(p, nlp.hint, s, why)
+                                   : mt_nlp_solve(&nlp, &options, &s->mem, &s->found, why);
     s->evals += s->found.evals;
     s->starts += s->found.starts;
     if (rc == MT_OK && s->found.n_solutions > 0 && s->found.solutions[0].feasible &&
@@ -375,8 +377,10 @@ mt_status mt_gaps_solve(mt_problem *p, int workers, mt_arena *mem, mt_gap_result
         int *const below = mt_arena_int(mem, (size_t)p->n_bands);
         double violation = 0.0;
         mt_err ignored = {0};
-        const bool known =
-            below != NULL && mt_gap_assignment(p, p->hint, below, &violation, &ignored);
+        if (below == NULL) {
+            return mt_fail_memory(err);
+        }
+        const bool known = mt_gap_assignment(p, p->hint, below, &violation, &ignored);
         j.hint_below = known ? below : NULL;
     }
     j.slots = mt_arena_alloc(mem, (size_t)candidates.n, sizeof *j.slots);

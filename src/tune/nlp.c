@@ -139,7 +139,7 @@ static void descend(mt_nlp_engine *e, const int *all_rows, mt_nlp_point *p)
 static void local_search(mt_nlp_engine *e, const int *all_rows, mt_nlp_point *p)
 {
     mt_nlp_point *const before = mt_nlp_point_new(e, &e->scratch);
-    double *const saddle = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
+    double *const saddle = mt_nlp_f64(e, &e->scratch, (size_t)e->n, 1);
     for (int round = 0; before != NULL && saddle != NULL && round < ROUNDS; round++) {
         descend(e, all_rows, p);
         if (!mt_nlp_feasible(p)) {

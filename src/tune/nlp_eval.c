@@ -91,6 +91,15 @@ void mt_nlp_end(mt_nlp_engine *e, mt_status rc)
     }
 }
 
+double *mt_nlp_f64(mt_nlp_engine *e, mt_arena *mem, size_t m, size_t n)
+{
+    double *const room = mt_arena_f64(mem, m, n);
+    if (room == NULL) {
+        mt_nlp_end(e, mt_fail_memory(e->err));
+    }
+    return room;
+}
+
 mt_nlp_point *mt_nlp_point_new(mt_nlp_engine *e, mt_arena *mem)
 {
     const mt_nlp *const q = e->nlp;

@@ -368,9 +368,9 @@ void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p, double *sa
     polish w = {.e = e, .aim = aim};
     mt_arena *const mem = &e->scratch;
     const mt_arena_mark mark = mt_arena_get_mark(mem);
-    w.gl = mt_arena_f64(mem, (size_t)e->n, 1);
-    w.step = mt_arena_f64(mem, (size_t)e->n, 1);
-    w.t = mt_arena_f64(mem, (size_t)e->n, 1);
+    w.gl = mt_nlp_f64(e, mem, (size_t)e->n, 1);
+    w.step = mt_nlp_f64(e, mem, (size_t)e->n, 1);
+    w.t = mt_nlp_f64(e, mem, (size_t)e->n, 1);
     w.cur = mt_nlp_point_new(e, mem);
     w.trial = mt_nlp_point_new(e, mem);
     w.best = mt_nlp_point_new(e, mem);

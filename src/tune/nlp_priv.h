@@ -93,6 +93,8 @@ mt_status mt_nlp_engine_init(mt_nlp_engine *e, const mt_nlp *nlp, const mt_nlp_o
 void mt_nlp_engine_free(mt_nlp_engine *e);
 /* End the search with a failure that mt_nlp_solve returns (memory, linear algebra). */
 void mt_nlp_end(mt_nlp_engine *e, mt_status rc);
+/* m x n doubles in mem, zeroed; NULL where memory is out (the engine is ended then). */
+double *mt_nlp_f64(mt_nlp_engine *e, mt_arena *mem, size_t m, size_t n);
 /* A point in mem with room for everything; NULL where memory is out (the engine is ended then). */
 mt_nlp_point *mt_nlp_point_new(mt_nlp_engine *e, mt_arena *mem);
 void mt_nlp_point_copy(const mt_nlp_engine *e, mt_nlp_point *to, const mt_nlp_point *from);

@@ -80,7 +80,7 @@ static void probe(mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_active *
     }
     const double h = fmin(PROBE_STEPS * sqrt(tol), PROBE_MOST);
     mt_nlp_point *const x = mt_nlp_point_new(e, &e->scratch);
-    double *const t = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
+    double *const t = mt_nlp_f64(e, &e->scratch, (size_t)e->n, 1);
     if (x == NULL || t == NULL) {
         return;
     }
@@ -162,7 +162,7 @@ bool mt_nlp_weakness_at(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem,
         return true;
     }
     double *const vt = right_vectors(e, p, &a, &e->scratch);
-    double *const v = mt_arena_f64(&e->scratch, (size_t)a.n_free, (size_t)a.n_free);
+    double *const v = mt_nlp_f64(e, &e->scratch, (size_t)a.n_free, (size_t)a.n_free);
     if (vt == NULL || v == NULL) {
         return false;
     }

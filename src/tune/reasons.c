@@ -345,7 +345,8 @@ static void say_rank(mt_sentences *s, const mt_nlp_result *search)
         const char *const by = mt_arena_printf(mem, "%s %s", best_of(&s->p->aims[0]), first);
         const char *const text =
             mt_discrete_rank_text(s->design->discrete, search, s->rec->rank, by, mem);
-        mt_say(s, "%s", text == NULL || by == NULL ? "" : text);
+        s->failed = s->failed || text == NULL || by == NULL;
+        mt_say(s, "%s", s->failed ? "" : text);
         return;
     }
     if (search->compromise) {

@@ -70,24 +70,23 @@ static mt_status confirm(mt_problem *fresh, mt_result *result, bool *confirmed, 
     return MT_OK;
 }
 
-static const char *edge_text(const mt_problem *p, const mt_recommendation *rec,
-                             const mt_tolerance *t, mt_arena *mem)
+static mt_status edge_text(const mt_problem *p, const mt_recommendation *rec,
+                           const mt_tolerance *t, mt_arena *mem, const char **text, mt_err *err)
 {
-    if (t->end == MT_TOLERANCE_DOMAIN) {
-        return "a stiffness or a mass would no longer be positive";
-    }
+    *text = t->end == MT_TOLERANCE_DOMAIN ? "a stiffness or a mass would no longer be positive"
+                                          : NULL;
     if (t->end != MT_TOLERANCE_EDGE) {
-        return NULL;
+        return MT_OK;
     }
     const mt_certify_edge *const e = &t->edge;
     const char *const configuration = mt_analysis_configuration(p->views[e->view].analysis);
-    if (e->band >= 0) {
-        return mt_arena_printf(mem, "mode %d of \"%s\" at the %s edge of %s, %.6g Hz", e->mode,
-                               configuration, e->above ? "upper" : "lower",
-                               rec->gaps[e->band].band, e->hz);
-    }
-    return mt_arena_printf(mem, "mode %d of \"%s\" at its limit of %.6g Hz", e->mode,
-                           configuration, e->hz);
+    *text = e->band >= 0
+                ? mt_arena_printf(mem, "mode %d of \"%s\" at the %s edge of %s, %.6g Hz",
+                                  e->mode, configuration, e->above ? "upper" : "lower",
+                                  rec->gaps[e->band].band, e->hz)
+                : mt_arena_printf(mem, "mode %d of \"%s\" at its limit of %.6g Hz", e->mode,
+                                  configuration, e->hz);
+    return *text == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
 static mt_status fill_box(mt_problem *p, mt_proof *proof, const mt_recommendation *rec,
@@ -113,13 +112,13 @@ static mt_status fill_box(mt_problem *p, mt_proof *proof, const mt_recommendatio
     MT_TRY(mt_certify_tolerance(&q, &question, &p->mem, &all, each, err));
     box->proven = true;
     box->all_percent = all.percent;
-    box->edge = edge_text(p, rec, &all, &result->mem);
+    MT_TRY(edge_text(p, rec, &all, &result->mem, &box->edge, err));
     box->n_variables = p->n;
     for (int i = 0; i < p->n; i++) {
-        box->variables[i] =
-            (mt_result_tolerance){.name = rec->parameters[i].name,
-                                  .percent = each[i].percent,
-                                  .edge = edge_text(p, rec, &each[i], &result->mem)};
+        mt_result_tolerance *const own = &box->variables[i];
+        *own =
+            (mt_result_tolerance){.name = rec->parameters[i].name, .percent = each[i].percent};
+        MT_TRY(edge_text(p, rec, &each[i], &result->mem, &own->edge, err));
     }
     return MT_OK;
 }

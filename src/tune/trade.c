@@ -122,7 +122,11 @@ static mt_status try_neighbours(const trade *t, int k, const mt_study *study, mt
 {
     point *const p = &t->points[k];
     const mt_recommendation *const best = best_of(p->first);
-    const double *best_x = best != NULL && best->feasible ? values_of(best, mem) : NULL;
+    const bool known = best != NULL && best->feasible;
+    const double *best_x = known ? values_of(best, mem) : NULL;
+    if (known && best_x == NULL) {
+        return mt_fail_memory(err);
+    }
     for (int way = 0; way < 4; way++) {
         const int other = neighbour(t, k, way);
         const mt_recommendation *const near =
@@ -147,6 +151,9 @@ static mt_status try_neighbours(const trade *t, int k, const mt_study *study, mt
             p->again = fresh;
             const mt_recommendation *const now = best_of(fresh);
             best_x = now == NULL ? NULL : values_of(now, mem);
+            if (now != NULL && best_x == NULL) {
+                return mt_fail_memory(err);
+            }
         } else {
             mt_result_delete(fresh);
         }

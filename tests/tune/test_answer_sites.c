@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Every place from loading a study to its answer that asks for memory is refused once: that is a failure with its name, and nothing is lost or left. */
+#include "mt_alloc.h"
+#include "mt_sites.h"
+#include "study_fixture.h"
+#include "tune/prepare.h"
+
+/* Under valgrind every tenth place. */
+static int stride(void)
+{
+    return getenv("MT_TEST_LAUNCHED") != NULL ? 10 : 1;
+}
+
+#define ROW(rest) \
+    STUDY_TWO_MASSES("'k1': {'value': 3, 'unit': 'N/m'}, 'k2': 1, 'm': 1, 'n': '2*m'", rest)
+#define TWO                                                                             \
+    "'variables': [{'parameter': 'k1', 'lower': 0.5, 'upper': 5}, {'parameter': 'k2', " \
+    "'lower': 0.2, 'upper': 5}],"
+#define QUICK "'search': {'starts': 2, 'max_evaluations': 300},"
+
+static const struct {
+    const char *name;
+    const char *model;
+    const char *members;
+} studies[] = {
+    {      "targets, published of every kind",
+     ROW(", 'modes': {'first': {'configuration': 'default', 'index': 1}}"),
+     TWO QUICK
+     "'references': {'test': {'modes': [{'frequency_hz': 0.13, 'shape': {'p1.x': 0.3, 'p2.x': "
+     "1}}]},"
+     " 'own': {'model': 'model.json', 'configuration': 'default'}},"
+     "'goals': [{'type': 'frequency', 'mode': 'first', 'target_hz': 0.12},"
+     "{'type': 'frequency', 'mode': 2, 'target_hz': 0.33},"
+     "{'type': 'mac', 'mode': 1, 'reference': 'test', 'at_least': 0.5},"
+     "{'type': 'limit', 'expression': 'k1 + k2', 'at_most': 50}],"
+     "'published': [{'parameter': 'k1', 'value': 2, 'tolerance_percent': 1, 'source': 's'},"
+     "{'quantity': 'k1/k2', 'value': 2, 'tolerance_percent': 1, 'label': 'ratio'},"
+     "{'frequency': {'mode': 1}, 'value': 0.1, 'tolerance': 1},"
+     "{'mac': {'mode': 1, 'reference': 'test'}, 'at_least': 0.9},"
+     "{'mac': {'mode': 2, 'reference': 'own'}, 'at_least': 0.9}, {'status': 'solved'}]"},
+    {            "misfit with shapes, spread",                     ROW(""),
+     TWO QUICK "'references': {'test': {'modes': [{'frequency_hz': 0.13, 'shape': {'p1.x': "
+     "0.3, 'p2.x': 1}}]}},"
+     "'goals': [{'type': 'frequency', 'mode': 1, 'target_hz': 0.12, 'weight': 1},"
+     "{'type': 'shape', 'mode': 1, 'reference': 'test', 'weight': 0.5},"
+     "{'type': 'frequency', 'mode': 2, 'target_hz': 0.4, 'weight': 1}],"
+     "'objective': {'minimise': 'misfit'}, 'spread': {'factor': 3}"                    },
+    {            "bands, objectives in order",                     ROW(""),
+     TWO QUICK "'goals': [{'type': 'avoid', 'bands_hz': [[0.1, 0.14], [0.3, 0.36]], "
+     "'margin_percent': 1}],"
+     "'objective': [{'minimise': 'change'}, {'minimise': 'k1 + k2'}]"                  },
+    {                             "clearance",                     ROW(""),
+     TWO QUICK "'goals': [{'type': 'avoid', 'bands_hz': [[0.1, 0.14]]}], 'objective': "
+     "{'maximise': 'clearance'}"                                                       },
+    {                 "no design keeps clear",                     ROW(""),
+     "'variables': [{'parameter': 'k1', 'lower': 2.9, 'upper': 3.1}]," QUICK
+     "'goals': [{'type': 'avoid', 'bands_hz': [[0.1, 0.2]]}, {'type': 'frequency', 'mode': 2, "
+     "'at_least_hz': 1}]"                                                              },
+    {                            "tolerances",                     ROW(""),
+     "'variables': [{'parameter': 'k1', 'lower': 0.5, 'upper': 5, 'tolerance_percent': 2}, "
+     "{'parameter': 'k2', 'lower': 0.2, 'upper': 5}]," QUICK
+     "'goals': [{'type': 'avoid', 'bands_hz': [[0.1, 0.14]]}, {'type': 'frequency', 'mode': 2, "
+     "'at_least_hz': 0.2},"
+     "{'type': 'limit', 'expression': 'k1*k2', 'at_most': 30}]"                        },
+    {                            "catalogues",                     ROW(""),
+     "'variables': [{'parameter': 'k1', 'catalogue': [1, 2, 3, 4]}, {'parameter': 'k2', "
+     "'catalogue': {'series': 'E3', 'lower': 0.5, 'upper': 5}}]," QUICK
+     "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.1}]"                 },
+    {"catalogue beside a continuous variable",                     ROW(""),
+     "'variables': [{'parameter': 'k1', 'catalogue': [1, 2, 3, 4]}, {'parameter': 'k2', "
+     "'lower': 0.2, 'upper': 5}]," QUICK
+     "'goals': [{'type': 'frequency', 'mode': 1, 'target_hz': 0.11}, {'type': 'avoid', "
+     "'bands_hz': [[0.2, 0.24]]}]"                                                     },
+    {         "no combination meets the goal",                     ROW(""),
+     "'variables': [{'parameter': 'k1', 'catalogue': [1, 2, 3]}, {'parameter': 'k2', 'lower': "
+     "0.2, 'upper': 5}]," QUICK
+     "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 1}]"                   },
+    {       "trade over a bound and a target",                     ROW(""),
+     TWO QUICK "'goals': [{'type': 'frequency', 'mode': 1, 'target_hz': 0.12}],"
+     "'trade': {'vary': [{'variable': 'k1', 'bound': 'upper', 'values': [4, 5]},"
+     "{'goal': 0, 'member': 'target_hz', 'values': [0.11, 0.12]}]}"                    },
+    {   "trade over a margin and a parameter",                     ROW(""),
+     TWO QUICK
+     "'goals': [{'type': 'avoid', 'bands_hz': [[0.1, 0.14]], 'margin_percent': 1}],"
+     "'trade': {'vary': [{'goal': 0, 'member': 'margin_percent', 'values': [1, 2]},"
+     "{'parameter': 'm', 'values': [1, 1.1]}], 'objectives': ['change', 'clearance']}" },
+    {           "driven positions in gravity",                "driven_rod",
+     "'variables': [{'parameter': 'k', 'lower': 20, 'upper': 80}]," QUICK
+     "'goals': [{'type': 'avoid', 'configurations': ['sprung', 'trimmed'], 'bands_hz': [[1.5, "
+     "1.6]]}]"                                                                         },
+};
+
+static mt_status answer(const mt_study *study, mt_result **result, mt_err *err)
+{
+    *result = NULL;
+    return mt_study_solve(study, NULL, result, err);
+}
+
+static void places__each_is_refused_once(mt_test *t)
+{
+    mt_tune_prepare_process(); /* the search library would end the process otherwise */
+    for (int i = 0; i < MT_COUNT(studies); i++) {
+        study_case c;
+        mt_err err = {.text = ""};
+        mt_test_row(t, "%s", studies[i].name);
+        if (!study_load(t, studies[i].model, studies[i].members, &c)) {
+            study_free(&c);
+            continue;
+        }
+        mt_sites_record();
+        CHECK_INT(t, answer(c.study, &c.result, &err), MT_OK);
+        const int n = mt_sites_stop();
+        CHECK(t, n > 0 && n < MT_SITES_MOST);
+        for (int k = 0; k < n; k += stride()) {
+            mt_result *result = NULL;
+            const long before = mt_alloc_live();
+            mt_test_row(t, "%s: place %d of %d", studies[i].name, k, n);
+            mt_sites_fail(k);
+            err.text[0] = '\0';
+            const mt_status rc = answer(c.study, &result, &err);
+            CHECK(t, mt_sites_failed());
+            (void)mt_sites_stop();
+            CHECK_INT(t, rc, MT_E_MEMORY);
+            CHECK(t, result == NULL && err.text[0] != '\0');
+            mt_result_delete(result);
+            CHECK(t, !mt_alloc_works() || mt_alloc_live() == before);
+        }
+        study_free(&c);
+    }
+}
+
+MT_TEST_MAIN(MT_TEST(places__each_is_refused_once))
