@@ -192,9 +192,8 @@ static mt_status block_matrices(mt_repeated *m, mt_repeated_block *b, bool turn,
     return MT_OK;
 }
 
-mt_status mt_repeated_matrices(mt_repeated *m, bool turn, mt_arena *scratch, mt_err *err)
+mt_status mt_repeated_matrices(mt_repeated *m, bool turn, mt_err *err)
 {
-    (void)scratch;
     for (int b = 0; b < m->n_blocks; b++) {
         MT_TRY(block_matrices(m, &m->blocks[b], turn, err));
     }
@@ -244,7 +243,7 @@ mt_status mt_repeated_find(mt_problem *p, const double *t, double near, mt_arena
     MT_TRY(mt_problem_eval(p, t, true, &out->values, err));
     MT_TRY(find_blocks(out, near, mem, err));
     MT_TRY(find_rows(out, err));
-    MT_TRY(mt_repeated_matrices(out, false, mem, err));
+    MT_TRY(mt_repeated_matrices(out, false, err));
     const int n_eq = mt_problem_rows_eq(p);
     for (int b = 0; b < out->n_blocks; b++) {
         MT_TRY(choose_entries(out, &out->blocks[b], mem, err));
@@ -276,7 +275,7 @@ static mt_status evaluate(void *context, const double *t, bool with_gradient,
     const int rows = n_eq + m->n_rows;
     (void)with_gradient; /* the matrices need the vectors anyhow */
     MT_TRY(mt_problem_eval(p, t, true, &m->values, err));
-    MT_TRY(mt_repeated_matrices(m, true, NULL, err));
+    MT_TRY(mt_repeated_matrices(m, true, err));
     out->f = v->f;
     memcpy(out->df, v->df, (size_t)p->n * sizeof *v->df);
     for (int i = 0; i < n_in; i++) {

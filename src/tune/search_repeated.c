@@ -215,8 +215,8 @@ static mt_status judge(refine *w, const double *t, double *kkt, double *z, mt_nl
                  .free_sign = free_sign,
                  .n_blocks = m.n_blocks,
                  .blocks = blocks,
-                 .x = mt_arena_f64(w->mem, most, 1),
-                 .z = z};
+                 .x = mt_arena_f64(w->mem, most, 1)};
+    c.z = z;
     if (!rows || !free_sign || !which || !blocks || !c.x) {
         return mt_fail_memory(err);
     }
