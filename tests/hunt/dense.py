@@ -34,8 +34,8 @@ class Body:
 class Assembly:
     """One configuration: terms of K and M, reduced to the coordinates that the joints leave."""
 
-    def __init__(self, model, name):
-        settings = model.get("configurations", {}).get(name, {})
+    def __init__(self, model, name, settings=None):
+        settings = model.get("configurations", {}).get(name, {}) if settings is None else settings
         self.model, self.name = model, name
         self.overrides = settings.get("parameters", {})
         values = parameters(model, self.overrides)
@@ -209,6 +209,11 @@ class Plant:
         self.original = parameters(model, {})
         self.names = list(model.get("configurations", {})) or ["default"]
         self._made = {}
+
+    def add(self, name, settings):
+        """A configuration that the model does not have."""
+        if name not in self._made:
+            self._made[name] = Assembly(self.model, name, settings)
 
     def assembly(self, name):
         if name not in self._made:

@@ -8,6 +8,7 @@ from dense import Plant
 from expressions import evaluate, parameters
 
 TOLERANCE_PERCENT = 1e-4  # of a goal that gives none
+POSITIONS = 13            # of a drive, between the first and the last that is named
 FLOOR_PART = 1e-3         # of the original: the change of a parameter that may become 0 is linear below
 
 
@@ -110,6 +111,7 @@ class Question:
         self.configurations = list(dict.fromkeys(c for _, g, c in self.demands if c is not None))
         self.bands = {c: self._bands(c) for c in self.configurations}
         self._rigid = {}
+        self.moving = any("drive" in model.get("configurations", {}).get(c, {}) for c in self.configurations)
 
     def _configurations(self, goal):
         if goal["type"] == "limit":
@@ -195,9 +197,41 @@ class Question:
             return -100.0 * np.expm1(-np.maximum(value, 0.0))
         return 100.0 * np.abs(np.expm1(value)) if kind == "=" else 100.0 * np.expm1(np.maximum(value, 0.0))
 
+    def _motion(self, goal):
+        """Names of configurations all the way between the named positions of a drive, for each drive of a goal."""
+        drives = {}
+        for name in self._configurations(goal):
+            drive = self.model.get("configurations", {}).get(name, {}).get("drive")
+            if drive is not None:
+                angle = float(evaluate(drive["position_rad"], self.plant.original))
+                drives.setdefault(drive["joint"], []).append((angle, {**self.model["configurations"][name]}))
+        for joint, places in drives.items():
+            if len(places) < 2:
+                continue
+            names = []
+            for k, angle in enumerate(np.linspace(min(a for a, _ in places), max(a for a, _ in places), POSITIONS)):
+                names.append(f"{joint} {k}")
+                settings = {**places[0][1], "drive": {**places[0][1]["drive"], "position_rad": float(angle)}}
+                self.plant.add(names[-1], settings)
+            yield names
+
+    def _missed_between(self, goal, x):
+        """As missed, over the motion: one drive has one number of modes below a band, and keeps it all the way."""
+        worst = np.zeros(len(x))
+        for names in self._motion(goal):
+            for band in self.goal_bands(goal):
+                hz = [self.frequencies(x, name) for name in names]
+                counts = np.array([band.below(h) for h in hz])
+                inside = np.max([np.max(band.inside(h), axis=1) for h in hz], axis=0)
+                worst = np.maximum(worst, np.where(np.ptp(counts, axis=0) > 0, np.inf, inside / self.tolerance_of(goal)))
+        return worst
+
     def missed(self, x):
         """[B] greatest violation of a constraint divided by its tolerance; at most 1 is feasible. Unstable: infinite."""
         worst = np.zeros(len(x))
+        for goal in self.goals:
+            if goal["type"] == "avoid" and len(self._configurations(goal)) > 1:
+                worst = np.maximum(worst, self._missed_between(goal, x))
         for index, _, kind, value in self.rows(x):
             if "weight" not in self.goals[index]:
                 value = np.abs(value) if kind == "=" else value
@@ -213,6 +247,11 @@ class Question:
         if len(which):
             out[:-1, which] *= 1.0 + signs * self.tolerance[which]
         return out
+
+    def within_tolerances(self, x, count=150):
+        """The corners, and points all over the tolerances: between two corners a mode may cross a band."""
+        rng = np.random.default_rng(1)
+        return np.concatenate([x * (1.0 + rng.uniform(-1.0, 1.0, (count, self.n)) * self.tolerance), self.corners(x)])
 
     def missed_robustly(self, x):
         """As missed, of the worst corner."""
