@@ -43,10 +43,17 @@ static mt_status describe_gaps(const mt_gap_result *gaps, mt_result *result, boo
             gaps->n_possible, gaps->boxes);
     }
     if (gaps->proven) {
-        MT_TRY(state(result, "gap_assignments", true, err,
-                     "Of %.0f gap assignments %d can be met within the bounds; all others are "
-                     "proven infeasible (branch and bound, %ld boxes).",
-                     gaps->n_possible, gaps->n_candidates, gaps->boxes));
+        const int open = gaps->n_candidates - gaps->n_feasible;
+        MT_TRY(open == 0
+                   ? state(result, "gap_assignments", true, err,
+                           "Of %.0f gap assignments %d can be met within the bounds; all "
+                           "others are proven infeasible (branch and bound, %ld boxes).",
+                           gaps->n_possible, gaps->n_candidates, gaps->boxes)
+                   : state(result, "gap_assignments", true, err,
+                           "Of %.0f gap assignments all but %d are proven infeasible (branch "
+                           "and bound, %ld boxes); in %d of these no design was found that "
+                           "meets all goals, which is sampled.",
+                           gaps->n_possible, gaps->n_candidates, gaps->boxes, open));
         return state(result, "optimality", false, err,
                      "That each design is the best of its gap assignment: %d starts found none "
                      "better.",
@@ -58,6 +65,20 @@ static mt_status describe_gaps(const mt_gap_result *gaps, mt_result *result, boo
                  gaps->n_possible, gaps->n_candidates,
                  gaps->reason != NULL && gaps->reason[0] != '\0' ? gaps->reason
                                                                  : "not asked for");
+}
+
+const char *mt_describe_gaps_left(const mt_gap_result *gaps, mt_arena *mem)
+{
+    const int open = gaps->n_candidates - gaps->n_feasible;
+    if (!gaps->proven) {
+        return "sampled, not proven";
+    }
+    return open == 0
+               ? "the others proven infeasible"
+               : mt_arena_printf(mem,
+                                 "the others proven infeasible, but %d in which no design "
+                                 "was found",
+                                 open);
 }
 
 mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *result,

@@ -13,11 +13,34 @@ static const double PERCENT = 100.0;
 /* Nearer to an edge than this, in percent of it, is on it: frequencies carry relative rounding of about 1e-14. */
 static const double ON_EDGE_PERCENT = 1e-9;
 
-/* Is the lower edge the one that a mode at hz would leave the band by? */
+/* The ways out of a band with its margin, in percent of the edges without it. */
+static double way_down(const mt_band *band, double hz)
+{
+    return band->lower_hz > 0.0 ? PERCENT * (hz - band->lower_hz) / band->base_lower_hz
+                                : HUGE_VAL;
+}
+
+static double way_up(const mt_band *band, double hz)
+{
+    return PERCENT * (band->upper_hz - hz) / band->base_upper_hz;
+}
+
+/* Is the lower edge the one that a mode at hz is judged by? It is the nearer one; where a band has been cut off to a point, the one that is left sooner. */
 static bool by_lower_edge(const mt_band *band, double hz)
 {
-    return band->base_lower_hz > 0.0 && (band->base_lower_hz - hz) / band->base_lower_hz >=
-                                            (hz - band->base_upper_hz) / band->base_upper_hz;
+    const double below = PERCENT * (band->base_lower_hz - hz) / band->base_lower_hz;
+    const double above = PERCENT * (hz - band->base_upper_hz) / band->base_upper_hz;
+    if (!(band->base_lower_hz > 0.0)) {
+        return false;
+    }
+    return fabs(below - above) > ON_EDGE_PERCENT ? below >= above
+                                                 : way_down(band, hz) <= way_up(band, hz);
+}
+
+/* What a mode at hz is short of being clear of the band with its margin, by the shorter way; 0 where it is. */
+static double missing_percent(const mt_band *band, double hz)
+{
+    return fmax(fmin(way_down(band, hz), way_up(band, hz)), 0.0);
 }
 
 /* As mt_band_clearance_percent, without rounding on the edges. */
@@ -62,10 +85,11 @@ static const char *avoid_text(const mt_goal *g, const char *configuration, mt_ar
                                                              : up_to);
 }
 
-/* The clearance that comes nearest to its margin, or falls short of it most; and that margin. NaN without bands or modes. */
-static void tightest(const mt_bands *bands, const mt_modes *modes, mt_result_goal *g)
+/* The clearance that comes nearest to its margin, or falls short of it most; and that margin. NaN without bands or modes. Returns by how much bands are missed. */
+static double tightest(const mt_bands *bands, const mt_modes *modes, mt_result_goal *g)
 {
     double least = HUGE_VAL;
+    double missing = 0.0;
     for (int b = 0; b < bands->n; b++) {
         for (int i = 0; i < modes->count; i++) {
             if (modes->kind[i] != MT_MODE_FLEXIBLE) {
@@ -75,6 +99,7 @@ static void tightest(const mt_bands *bands, const mt_modes *modes, mt_result_goa
             mt_band_side side = MT_INSIDE_BAND;
             const double has = clearance(&bands->items[b], hz, &side);
             const double asked = mt_describe_margin_percent(&bands->items[b], hz);
+            missing = fmax(missing, missing_percent(&bands->items[b], hz));
             if (has - asked < least) {
                 least = has - asked;
                 g->value = has;
@@ -82,11 +107,13 @@ static void tightest(const mt_bands *bands, const mt_modes *modes, mt_result_goa
             }
         }
     }
+    return missing;
 }
 
-/* The same over the tolerances of the variables; *room: what it leaves of its margin, in percent of the edge. */
+/* The same over the tolerances of the variables; *missing stays where there are none. */
 static mt_status tightest_worst(const mt_problem *fresh, int view, const mt_bands *bands,
-                                mt_result *result, mt_result_goal *g, double *room, mt_err *err)
+                                mt_result *result, mt_result_goal *g, double *missing,
+                                mt_err *err)
 {
     const mt_modes *const modes = &fresh->views[view].analysis->modes;
     const double *where = NULL;
@@ -100,6 +127,7 @@ static mt_status tightest_worst(const mt_problem *fresh, int view, const mt_band
                                      mt_modal_hz(modes, mt_modal_flexible(modes, k)), &at);
             const double has = clearance(&bands->items[b], hz, &side);
             const double asked = mt_describe_margin_percent(&bands->items[b], hz);
+            *missing = fmax(*missing, missing_percent(&bands->items[b], hz));
             if (has - asked < least) {
                 least = has - asked;
                 g->worst = has;
@@ -110,19 +138,12 @@ static mt_status tightest_worst(const mt_problem *fresh, int view, const mt_band
     if (where == NULL) {
         return MT_OK;
     }
-    *room = least;
     g->worst_at = mt_arena_f64(&result->mem, (size_t)fresh->n, 1);
     if (g->worst_at == NULL) {
         return mt_fail_memory(err);
     }
     memcpy(g->worst_at, where, (size_t)fresh->n * sizeof *where);
     return MT_OK;
-}
-
-/* By how many percent of a band's edge the tightest clearance falls short of its margin. */
-static double short_of(double violation, double room)
-{
-    return violation > 0.0 ? fmax(-room, 0.0) : violation; /* 0, or NaN */
 }
 
 static mt_status judge(mt_problem *fresh, int goal, int configuration, mt_result *result,
@@ -138,16 +159,15 @@ static mt_status judge(mt_problem *fresh, int goal, int configuration, mt_result
         const double worst = mt_robust_room(fresh, &own);
         violation = MT_HAS(worst) ? fmax(-worst, 0.0) : worst;
     }
-    double room = nan("");
+    double missing = nan("");
     *out = (mt_result_goal){.value = nan(""), .demand = nan(""), .worst = nan("")};
     if (MT_HAS(violation)) {
-        tightest(&g->avoid->bands, modes, out);
-        room = out->value - out->demand;
-        MT_TRY(tightest_worst(fresh, own.view, &g->avoid->bands, result, out, &room, err));
+        missing = tightest(&g->avoid->bands, modes, out);
+        MT_TRY(tightest_worst(fresh, own.view, &g->avoid->bands, result, out, &missing, err));
     }
     out->text = avoid_text(g, mt_analysis_configuration(view->analysis), &result->mem);
     out->pointer = mt_arena_printf(&result->mem, "/goals/%d", goal);
-    out->violation_percent = short_of(violation, room);
+    out->violation_percent = violation > 0.0 ? missing : violation; /* 0, or NaN */
     out->met = violation <= mt_problem_tolerance(g) * (1.0 + MET_SLACK);
     return out->text == NULL || out->pointer == NULL ? mt_fail_memory(err) : MT_OK;
 }

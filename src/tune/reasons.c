@@ -299,8 +299,11 @@ static const char *best_of(const mt_aim *a)
 static void say_kind_rank(mt_sentences *s, const char *first)
 {
     const mt_gap_result *const g = s->design->gaps;
-    const char *const sure =
-        g->proven ? "the other assignments are proven infeasible" : "sampled, not proven";
+    const char *const sure = mt_describe_gaps_left(g, &s->result->mem);
+    s->failed = s->failed || sure == NULL;
+    if (s->failed) {
+        return;
+    }
     if (g->n_solutions == 1) {
         mt_say(s, "It is the only kind of design among %.0f gap assignments (%s).",
                g->n_possible, sure);

@@ -186,13 +186,14 @@ static const char *solved_text(const answer *a, const char *doubt, mt_arena *mem
 {
     const int n = a->found.n_solutions;
     if (a->gaps.n_solutions > 0) {
-        return mt_arena_printf(
-            mem,
-            "Solved: %d kind%s of design keep%s clear of the bands and meet%s all goals (of "
-            "%.0f "
-            "gap assignments, %s).%s",
-            n, n == 1 ? "" : "s", n == 1 ? "s" : "", n == 1 ? "s" : "", a->gaps.n_possible,
-            a->gaps.proven ? "the others proven infeasible" : "sampled, not proven", doubt);
+        const char *const left = mt_describe_gaps_left(&a->gaps, mem);
+        return left == NULL ? NULL
+                            : mt_arena_printf(
+                                  mem,
+                                  "Solved: %d kind%s of design keep%s clear of the bands and "
+                                  "meet%s all goals (of %.0f gap assignments, %s).%s",
+                                  n, n == 1 ? "" : "s", n == 1 ? "s" : "", n == 1 ? "s" : "",
+                                  a->gaps.n_possible, left, doubt);
     }
     return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.%s", n,
                            n == 1 ? " meets" : "s meet", doubt);
