@@ -274,11 +274,11 @@ mt_status mt_discrete_solve(mt_problem *const *problems, int n_workers, mt_arena
     int n_all = 0;
     *report = (mt_discrete_report){.mixed = d.mixed, .combinations = n, .best_within = nan("")};
     MT_TRY(look(&d, n, &r, report, &all, &n_all, err));
-    if (all == NULL) {
-        return mt_fail_memory(err);
-    }
     if ((d.mixed || !report->all) && d.stop != MT_STOP_USER) {
         MT_TRY(mt_discrete_prove(&d, &all, &n_all, report, err));
+    }
+    if (all == NULL) {
+        return mt_fail_memory(err);
     }
     r.n = 0;
     MT_TRY(rank(&d, all, n_all, r.most, r.best, &r.n, err));
