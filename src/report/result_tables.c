@@ -426,8 +426,9 @@ mt_table mt_report_published(const mt_result *result)
     return t;
 }
 
-/* Frequency of the same mode, by index, at another design; NaN: it is not listed there. */
-static double hz_of(const mt_recommendation *r, const mt_result_frequency *f)
+/* The same mode, by index, at another design; NULL: it is not listed there. */
+static const mt_result_frequency *same_frequency(const mt_recommendation *r,
+                                                 const mt_result_frequency *f)
 {
     for (int i = 0; i < r->n_frequencies; i++) {
         const mt_result_frequency *const g = &r->frequencies[i];
@@ -435,10 +436,10 @@ static double hz_of(const mt_recommendation *r, const mt_result_frequency *f)
                           (g->configuration != NULL && f->configuration != NULL &&
                            strcmp(g->configuration, f->configuration) == 0);
         if (same && g->mode == f->mode) {
-            return g->recommended_hz;
+            return g;
         }
     }
-    return nan("");
+    return NULL;
 }
 
 static void design_row(mt_table *t, const mt_result *result, const mt_recommendation *r)
@@ -467,7 +468,12 @@ static void design_row(mt_table *t, const mt_result *result, const mt_recommenda
                         VALUE_DIGITS);
     }
     for (int k = 0; k < baseline->n_frequencies; k++) {
-        mt_table_number(t, hz_of(r, &baseline->frequencies[k]), HZ_DIGITS);
+        const mt_result_frequency *const f = same_frequency(r, &baseline->frequencies[k]);
+        mt_table_number(t, f == NULL ? nan("") : f->recommended_hz, HZ_DIGITS);
+        if (baseline->worst_case != NULL) {
+            mt_table_number(t, f == NULL ? nan("") : f->lowest_hz, HZ_DIGITS);
+            mt_table_number(t, f == NULL ? nan("") : f->highest_hz, HZ_DIGITS);
+        }
     }
 }
 
@@ -476,6 +482,7 @@ mt_table mt_report_designs(const mt_result *result)
     static const char *const fixed[] = {"rank",   "feasible",         "grade",
                                         "score",  "score_unit",       "change",
                                         "misfit", "violation_percent"};
+    static const char *const ends[] = {"hz", "lowest_hz", "highest_hz"};
     mt_table t = mt_table_default();
     for (int i = 0; i < MT_COUNT(fixed); i++) {
         mt_table_column(&t, fixed[i], fixed[i], MT_ALIGN_RIGHT);
@@ -487,11 +494,13 @@ mt_table mt_report_designs(const mt_result *result)
     for (int k = 0; k < result->n_variables; k++) {
         mt_table_column(&t, result->variables[k], result->variables[k], MT_ALIGN_RIGHT);
     }
-    for (int k = 0; k < result->baseline.n_frequencies; k++) {
-        const mt_result_frequency *const f = &result->baseline.frequencies[k];
+    const int ranged = result->baseline.worst_case == NULL ? 1 : MT_COUNT(ends);
+    for (int k = 0; k < ranged * result->baseline.n_frequencies; k++) {
+        const mt_result_frequency *const f = &result->baseline.frequencies[k / ranged];
         char name[DEMAND_TEXT];
-        (void)snprintf(name, sizeof name, "%.80s.mode_%d_hz",
-                       f->configuration == NULL ? "" : f->configuration, f->mode);
+        (void)snprintf(name, sizeof name, "%.80s.mode_%d_%s",
+                       f->configuration == NULL ? "" : f->configuration, f->mode,
+                       ends[k % ranged]);
         mt_table_column(&t, name, name, MT_ALIGN_RIGHT);
     }
     design_row(&t, result, &result->baseline);

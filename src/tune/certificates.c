@@ -51,9 +51,11 @@ static mt_status describe_gaps(const mt_gap_result *gaps, mt_result *result, boo
                            gaps->n_possible, gaps->n_candidates, gaps->boxes)
                    : state(result, "gap_assignments", true, err,
                            "Of %.0f gap assignments all but %d are proven infeasible (branch "
-                           "and bound, %ld boxes); in %d of these no design was found that "
+                           "and bound, %ld boxes%s); in %d of these no design was found that "
                            "meets all goals, which is sampled.",
-                           gaps->n_possible, gaps->n_candidates, gaps->boxes, open));
+                           gaps->n_possible, gaps->n_candidates, gaps->boxes,
+                           gaps->tolerances ? ", the tolerances of the variables left out" : "",
+                           open));
         return state(result, "optimality", false, err,
                      "That each design is the best of its gap assignment: %d starts found none "
                      "better.",

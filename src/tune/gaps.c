@@ -354,6 +354,7 @@ mt_status mt_gaps_solve(mt_problem *p, int workers, mt_arena *mem, mt_gap_result
     out->n_candidates = candidates.n;
     out->n_possible = candidates.possible;
     out->proven = candidates.proven;
+    out->tolerances = p->robust != NULL;
     if (candidates.proven && candidates.n == 0) { /* then the nearest designs are wanted */
         const long boxes = candidates.boxes;
         MT_TRY(mt_gap_candidates_near(p, NEAREST, mem, &candidates, err));

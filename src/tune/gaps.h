@@ -30,6 +30,7 @@ typedef struct mt_gap_result {
         driven; /* a configuration is a driven position: what lies between the positions is not searched */
     bool
         motion; /* some are positions of one drive: designs were followed between them (motion.h) */
+    bool tolerances;    /* variables have some, which the proof leaves out */
     bool proven;        /* every assignment that was not searched is proven infeasible */
     const char *reason; /* why not, where not proven */
     int n_undetermined; /* directions that the goals do not settle at the best solution (mt_nlp_result) */

@@ -242,6 +242,8 @@ class Tolerances(CliTest):
         self.assertAlmostEqual(r["goals"][0]["worst"], ends[0], delta=1e-12)
         # the page shows both, and the sentence too
         self.assertRegex(text, r"at worst")
+        header = (self.folder / "results/row/recommendations.csv").read_text(encoding="utf-8").splitlines()[0]
+        self.assertTrue(header.endswith("default.mode_1_hz,default.mode_1_lowest_hz,default.mode_1_highest_hz"), header)
         self.assertIn(f"over the tolerances {ends[0]:.6g} to {ends[1]:.6g} Hz, at its lower limit", text)
 
     def test_a_worst_case_may_lie_within(self):
@@ -291,6 +293,14 @@ class Tolerances(CliTest):
                                   [{"type": "frequency", "mode": 1, "at_least_hz": 15 / (2 * math.pi)}])
         self.assertEqual(result["status"], "infeasible")
         self.assertTrue(any(c["kind"] == "infeasible" and c["proven"] for c in result["certificates"]))
+
+    def test_assignments_are_proven_without_the_tolerances_only(self):
+        """A kind of design that exists without tolerances and not with them is neither met nor proven infeasible: f = 1 to 1.1 Hz, 15 % of k is 7.8 % of f."""
+        band = {"type": "avoid", "bands_hz": [[0.5, 1.05], [1.12, 9]]}
+        lower, upper = ((2 * math.pi * f) ** 2 for f in (1.0, 1.1))
+        _, result, text = self.solve("a", "1", {"a": lower}, [{"parameter": "a", "lower": lower, "upper": upper, "tolerance_percent": 15}], [band])
+        self.assertEqual(result["status"], "compromise")
+        self.assertIn("the tolerances of the variables left out", text)
 
     def test_random_studies_hold_over_their_tolerances(self):
         seen = {}
