@@ -320,13 +320,13 @@ static void add_modes(plot *p)
 /* "2 modes lie higher" */
 static void add_hidden(const plot *p)
 {
-    char text[TEXT_SIZE];
     int n = 0;
     for (int i = 0; i < p->rec->n_frequencies; i++) {
         const mt_result_frequency *const f = &p->rec->frequencies[i];
         n += concerns(p, f) && f->recommended_hz > p->y_most ? 1 : 0;
     }
     if (n > 0) {
+        char text[TEXT_SIZE];
         (void)snprintf(text, sizeof text, "%d mode%s higher", n, n == 1 ? " lies" : "s lie");
         add_text(p, LEFT + 8, TOP + 15, "start", "#2166ac", text);
     }

@@ -116,9 +116,9 @@ static mt_status say_redundant(mt_linear *lin, mt_doubt_list *out, mt_err *err)
 static mt_status say_freedoms(const mt_analysis *a, mt_doubt_list *out, mt_err *err)
 {
     const int unstable = a->modes.n_unstable + a->modes.n_unstable_condensed;
-    char name[NAME_SIZE];
     say_free(a, out);
     if (unstable > 0) {
+        char name[NAME_SIZE];
         name_motion(a, MT_MODE_UNSTABLE, name);
         (void)mt_doubt_add(out, MT_LEVEL_FACT, "unstable",
                            "unstable in %d direction%s: it falls over from here%s%s", unstable,

@@ -113,30 +113,27 @@ static mt_status hold_motion(mt_problem *q, const mt_move *m, mt_arena *mem, dou
     return MT_OK;
 }
 
-/* The number that the move needs at the design t, by a problem made anew; NaN where that does not do. */
-static mt_status confirm(const mt_study *study, const job *j, const int *below,
-                         const mt_move *m, const double *t, mt_arena *mem, double *x,
-                         double *value, mt_err *err)
+/* The number that the move needs at the design t of q, and its inputs x; NaN where that does not do. */
+static mt_status confirm(mt_problem *q, const mt_move *m, const double *t, mt_arena *mem,
+                         double *x, double *value, mt_err *err)
 {
-    mt_problem *q = NULL;
     mt_nlp_values v;
     mt_err ignored = {0};
     *value = nan("");
-    MT_TRY(mt_problem_new_in_gap(study, j->p->references, below, &q, err));
-    mt_status rc = mt_problem_values_init(q, mem, &v, err);
-    if (rc == MT_OK && mt_problem_eval(q, t, false, &v, &ignored) == MT_OK) {
-        *value = mt_relax_value(q, m, &v);
-        memcpy(x, q->x, (size_t)q->n * sizeof *x);
-        rc = hold_motion(q, m, mem, value, err);
+    MT_TRY(mt_problem_values_init(q, mem, &v, err));
+    if (mt_problem_eval(q, t, false, &v, &ignored) != MT_OK) {
+        return MT_OK;
     }
-    mt_problem_delete(q);
-    return rc;
+    *value = mt_relax_value(q, m, &v);
+    memcpy(x, q->x, (size_t)q->n * sizeof *x);
+    return hold_motion(q, m, mem, value, err);
 }
 
-/* Keep what was found where it is the least move so far. */
+/* Keep what was found where it is the least move so far, and a problem made anew confirms it. */
 static mt_status keep(const job *j, const mt_study *study, const int *below, mt_move *m,
                       const mt_nlp_solution *found, mt_arena *mem, mt_err *err)
 {
+    mt_problem *q = NULL;
     double *const x = mt_arena_f64(mem, (size_t)j->p->n, 1);
     double to = nan("");
     if (x == NULL) {
@@ -146,7 +143,10 @@ static mt_status keep(const job *j, const mt_study *study, const int *below, mt_
     if (!found->feasible || !(size > LEAST) || (m->found && size >= m->size)) {
         return MT_OK;
     }
-    MT_TRY(confirm(study, j, below, m, found->t, mem, x, &to, err));
+    MT_TRY(mt_problem_new_in_gap(study, j->p->references, below, &q, err));
+    const mt_status rc = confirm(q, m, found->t, mem, x, &to, err);
+    mt_problem_delete(q);
+    MT_TRY(rc);
     if (MT_HAS(to)) {
         m->found = true;
         m->to = to;
@@ -202,18 +202,19 @@ static mt_status search_in_gap(const job *j, const mt_study *study, const int *b
     opt.max_solutions = 1;
     opt.least_change = false;
     double *const hint = mt_arena_f64(&out->mem, (size_t)r.q->n + 1, 1);
-    mt_status rc = hint == NULL ? mt_fail_memory(err) : MT_OK;
-    if (rc == MT_OK) {
-        const mt_nlp nlp = nlp_of(&r, j->near, hint);
-        const mt_status own = mt_nlp_solve(&nlp, &opt, &out->mem, &found, &why);
-        const bool fatal = own == MT_E_MEMORY || own == MT_E_INTERNAL;
-        rc = fatal ? mt_fail(err, own, "%s", why.text) : MT_OK;
-        out->evals += found.evals;
-        out->starts += found.starts;
-        out->stopped = out->stopped || found.stop == MT_STOP_USER;
-        if (own == MT_OK && found.n_solutions > 0) {
-            rc = keep(j, study, below, m, &found.solutions[0], &out->mem, err);
-        }
+    if (hint == NULL) {
+        mt_problem_delete(r.q);
+        return mt_fail_memory(err);
+    }
+    const mt_nlp nlp = nlp_of(&r, j->near, hint);
+    const mt_status own = mt_nlp_solve(&nlp, &opt, &out->mem, &found, &why);
+    const bool fatal = own == MT_E_MEMORY || own == MT_E_INTERNAL;
+    mt_status rc = fatal ? mt_fail(err, own, "%s", why.text) : MT_OK;
+    out->evals += found.evals;
+    out->starts += found.starts;
+    out->stopped = out->stopped || found.stop == MT_STOP_USER;
+    if (own == MT_OK && found.n_solutions > 0) {
+        rc = keep(j, study, below, m, &found.solutions[0], &out->mem, err);
     }
     mt_problem_delete(r.q);
     return rc;

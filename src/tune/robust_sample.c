@@ -151,15 +151,17 @@ static mt_status search_line(sampler *s, int k, mt_robust_side side, mt_err *err
     double b = 1.0;
     double value[2];
     double at[2] = {1.0 - golden, golden};
-    for (int turn = -2; turn < SECTIONS; turn++) {
-        const int which = turn < 0 ? turn + 2 : (value[0] < value[1] ? 0 : 1);
-        if (turn >= 0) {
-            a = which == 0 ? a : at[0];
-            b = which == 0 ? at[1] : b;
-            at[1 - which] = at[which];
-            value[1 - which] = value[which];
-            at[which] = which == 0 ? b - (golden * (b - a)) : a + (golden * (b - a));
-        }
+    for (int i = 0; i < 2; i++) {
+        MT_TRY(visit_between(s, at[i], err));
+        value[i] = sign * s->value[k];
+    }
+    for (int turn = 0; turn < SECTIONS; turn++) {
+        const int which = value[0] < value[1] ? 0 : 1;
+        a = which == 0 ? a : at[0];
+        b = which == 0 ? at[1] : b;
+        at[1 - which] = at[which];
+        value[1 - which] = value[which];
+        at[which] = which == 0 ? b - (golden * (b - a)) : a + (golden * (b - a));
         MT_TRY(visit_between(s, at[which], err));
         value[which] = sign * s->value[k];
     }

@@ -197,7 +197,7 @@ static truth brute_force(mt_test *t, rig *g, int values)
     int pick[MECH_INPUTS] = {0};
     do {
         for (int k = 0; k < values; k++) {
-            double x[MECH_INPUTS];
+            double x[MECH_INPUTS] = {0};
             place(g, pick, x);
             const int kind = kind_of(t, g, x, 0.0);
             if (kind < 0) {
