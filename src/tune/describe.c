@@ -112,7 +112,9 @@ static mt_status compare(const mt_problem *fresh, const mt_design *design, mt_re
     const double had = shown(fresh, design->stage, design->found->f);
     const bool searched_within = fresh->robust != NULL && !mt_robust_proven(fresh) &&
                                  fresh->aims[design->stage].type == MT_OBJECTIVE_CLEARANCE;
-    if (fabs(f - had) <= SAME_OBJECTIVE * fmax(fabs(f), 1.0) || searched_within) {
+    const bool other_kind = /* a clearance that is missed is that of the kind searched */
+        fresh->aims[design->stage].type == MT_OBJECTIVE_CLEARANCE && !design->found->feasible;
+    if (other_kind || fabs(f - had) <= SAME_OBJECTIVE * fmax(fabs(f), 1.0) || searched_within) {
         return MT_OK; /* within the tolerances more was found than at the corners of the search */
     }
     return mt_describe_warn(result, err,

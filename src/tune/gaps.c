@@ -134,6 +134,28 @@ static mt_status follow_best(slot *s, mt_problem *p, bool last, int *added, mt_e
     return MT_OK;
 }
 
+/*
+ * The least clearance z is free to be negative, so that a search can start anywhere; a design that ends with z < 0 has a mode on the wrong side of an edge: it is not of this kind, and misses the
+ * bands by -z.
+ */
+static void judge_clearance(const mt_problem *p, mt_nlp_result *found)
+{
+    double tolerance = HUGE_VAL;
+    for (int i = 0; i < p->n_clears; i++) {
+        tolerance = fmin(tolerance, p->clears[i].tolerance);
+    }
+    for (int i = 0; i < found->n_solutions && p->clearance; i++) {
+        mt_nlp_solution *const s = &found->solutions[i];
+        const double z = s->t[p->n];
+        if (z < -tolerance) {
+            s->feasible = false;
+            s->squares += z * z;
+            s->violation = fmax(s->violation, -z / tolerance);
+        }
+    }
+    found->compromise = found->n_solutions > 0 && !found->solutions[0].feasible;
+}
+
 /* One search of candidate k with the cuts so far, from `from` (NULL: no hint). *again: a cut was added. */
 static mt_status search_round(const job *j, slot *s, int k, int round, const double *from,
                               bool *again, mt_err *why)
@@ -159,6 +181,9 @@ static mt_status search_round(const job *j, slot *s, int k, int round, const dou
     mt_status rc = hint == NULL    ? mt_fail_memory(why)
                    : p->n_aims > 1 ? search_in_order(p, nlp.hint, s, why)
                                    : mt_nlp_solve(&nlp, &options, &s->mem, &s->found, why);
+    if (rc == MT_OK) {
+        judge_clearance(p, &s->found);
+    }
     s->evals += s->found.evals;
     s->starts += s->found.starts;
     if (rc == MT_OK && s->found.n_solutions > 0 && s->found.solutions[0].feasible &&
