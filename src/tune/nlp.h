@@ -76,6 +76,8 @@ typedef struct mt_nlp_solution {
         squares; /* sum of squares of eq and of the negative part of in: what a compromise minimises */
     bool feasible;
     bool
+        continuum; /* it stands for a continuum of solutions that are as good (set by mt_search_join_continua only) */
+    bool
         singular; /* Jacobian of the active constraints (or of r) rank deficient at t: a double root */
     double
         kkt; /* ||grad of the Lagrangian projected on the free variables|| relative; NaN for isolated roots (no freedom left) */

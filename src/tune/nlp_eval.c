@@ -8,6 +8,8 @@
 
 enum { STARTS_BASE = 8, STARTS_PER_VARIABLE = 4, STARTS_MOST = 64, EVALS_PER_START = 2000 };
 enum { SOLUTIONS_KEPT = 16 };
+/* What differs from a bound by less, relative to the bounds, differs by rounding: a few operations on t. */
+static const double ON_IT = 64 * DBL_EPSILON;
 
 mt_nlp_options mt_nlp_options_default(void)
 {
@@ -162,7 +164,17 @@ void mt_nlp_point_swap(mt_nlp_point **a, mt_nlp_point **b)
 
 double mt_nlp_clamp(const mt_nlp_engine *e, int j, double t)
 {
-    return fmin(fmax(t, e->nlp->lower[j]), e->nlp->upper[j]);
+    const double lower = e->nlp->lower[j];
+    const double upper = e->nlp->upper[j];
+    const double origin = e->nlp->origin[j];
+    const double near = ON_IT * fmax(fabs(lower), fabs(upper));
+    if (fabs(t - origin) <= near && origin >= lower && origin <= upper) {
+        return origin;
+    }
+    if (t <= lower + near) {
+        return lower;
+    }
+    return t >= upper - near ? upper : t;
 }
 
 static bool all_finite(ptrdiff_t n, const double *x)

@@ -267,6 +267,9 @@ void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_resu
         merge(e, all);
         rank_equals(all);
     }
+    if (all->count > 0) {
+        mt_nlp_drop_roomless(e, all->at[0].p, out);
+    }
     count_roots(e, all, out);
     const int count = all->count < e->opt.max_solutions ? all->count : e->opt.max_solutions;
     out->solutions = mt_arena_alloc(mem, (size_t)count, sizeof *out->solutions);

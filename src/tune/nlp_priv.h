@@ -102,6 +102,7 @@ void mt_nlp_point_swap(mt_nlp_point **a, mt_nlp_point **b);
 /* Evaluate at t (clamped to the bounds; may be p->t). False: no finite value here, or the search
  * has ended (e->ended); p is then unusable. One call of the callback, no heap. */
 bool mt_nlp_evaluate(mt_nlp_engine *e, const double *t, bool with_gradient, mt_nlp_point *p);
+/* t within the bounds; what is on a bound or at the origin to rounding is put on it. */
 double mt_nlp_clamp(const mt_nlp_engine *e, int j, double t);
 /* Feasible before infeasible; then by objective; infeasible ones by squares. */
 bool mt_nlp_better(const mt_nlp_point *a, const mt_nlp_point *b);
@@ -160,6 +161,8 @@ void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p, double *sa
 /* nlp_undetermined.c */
 bool mt_nlp_undetermined(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem,
                          mt_nlp_result *out);
+/* Forget those along which p, the solution that they are told of, has no room. */
+void mt_nlp_drop_roomless(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_result *out);
 /* Put p back to the origin along the undetermined directions, where that costs nothing. */
 void mt_nlp_pull_back(mt_nlp_engine *e, const mt_nlp_result *undetermined, mt_nlp_point *p);
 

@@ -9,8 +9,9 @@
  *
  *     L = min_j (upper_j - lower_j) / |d_j|,
  *
- * and through a corner there may be none at all: nothing would change because nothing moves. So d is followed from points with
- * room, at least L/4 either way: from the solution, the origin and the middle, each moved that far inside.
+ * and through a corner there may be none at all: nothing would change because nothing moves. A solution without room along d (a
+ * millionth of L; rounding is no room) stands where it does by its bounds, and d is none. Else d is followed from the solution and, since
+ * its room may be short, from points with at least L/4 either way: the solution, the origin and the middle, each moved that far inside.
  */
 #include "tune/nlp_priv.h"
 
@@ -31,10 +32,12 @@ static const double NEW_PART = 0.1;
 static const double ENTRY_NOISE = 1e-9;
 /* Marks from one end of the crossing to the other, ends included. */
 enum { MARKS = 3 };
-/* Points to cross from: the solution, the origin, the middle of the bounds. */
-enum { BASES = 3 };
+/* Points to cross from: the solution where it stands; it, the origin and the middle of the bounds, moved inside. */
+enum { BASES = 4 };
 /* Room either way that a crossing needs, in units of the longest way across the box. */
 static const double ROOM = 0.25;
+/* ... and that the solution itself must have, both ways together. */
+static const double ROOM_LEAST = 1e-6;
 /* Violation, in tolerances, that needs no correction. */
 static const double RESTORED = 1e-3;
 /* KKT residuals below this belong to a local solution (as in the search). */
@@ -117,8 +120,8 @@ static void range_along(const mt_nlp_engine *e, const double *from, const double
     }
 }
 
-/* t := base moved inside, so that d has its room either way. */
-static void make_room(const mt_nlp_engine *e, const double *base, const double *d, double *t)
+/* The longest way across the bounds along d. */
+static double longest_way(const mt_nlp_engine *e, const double *d)
 {
     double longest = HUGE_VAL;
     for (int j = 0; j < e->n; j++) {
@@ -126,6 +129,20 @@ static void make_room(const mt_nlp_engine *e, const double *base, const double *
             longest = fmin(longest, (e->nlp->upper[j] - e->nlp->lower[j]) / fabs(d[j]));
         }
     }
+    return longest;
+}
+
+static bool has_room(const mt_nlp_engine *e, const double *t, const double *d)
+{
+    double s[2];
+    range_along(e, t, d, s);
+    return s[1] - s[0] > ROOM_LEAST * longest_way(e, d);
+}
+
+/* t := base moved inside, so that d has its room either way. */
+static void make_room(const mt_nlp_engine *e, const double *base, const double *d, double *t)
+{
+    const double longest = longest_way(e, d);
     for (int j = 0; j < e->n; j++) {
         const double room = fabs(d[j]) > ENTRY_NOISE ? ROOM * longest * fabs(d[j]) : 0;
         t[j] = fmin(fmax(base[j], e->nlp->lower[j] + room), e->nlp->upper[j] - room);
@@ -189,20 +206,24 @@ static void confirm(crossing *x, const mt_nlp_point *solution, mt_nlp_result *ou
 {
     mt_nlp_engine *const e = x->e;
     double *const d = out->undetermined + (ptrdiff_t)out->n_undetermined * e->n;
-    if (!make_new(e, out, d)) {
+    if (!make_new(e, out, d) || !has_room(e, solution->t, d)) {
         return;
     }
     double most = 0;
     for (int k = 0; k < BASES && most < 1; k++) {
         for (int j = 0; j < e->n; j++) {
-            x->base[j] = k == 0   ? solution->t[j]
-                         : k == 1 ? e->origin[j]
+            x->base[j] = k < 2    ? solution->t[j]
+                         : k == 2 ? e->origin[j]
                                   : 0.5 * (e->nlp->lower[j] + e->nlp->upper[j]);
         }
-        make_room(e, x->base, d, x->t);
+        if (k == 0) {
+            memcpy(x->t, x->base, (size_t)e->n * sizeof *x->t);
+        } else {
+            make_room(e, x->base, d, x->t);
+        }
         if (mt_nlp_evaluate(e, x->t, false, x->from)) {
             most = fmax(most, effect(x, d));
-        } else if (k == 0) { /* elsewhere the problem may have no value: the solution alone */
+        } else if (k < 2) { /* elsewhere the problem may have no value: the solution alone */
             most = HUGE_VAL;
         }
     }
@@ -312,6 +333,20 @@ bool mt_nlp_undetermined(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem,
     const bool ok = find(e, p, out);
     mt_arena_rewind(&e->scratch, mark);
     return ok;
+}
+
+void mt_nlp_drop_roomless(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_result *out)
+{
+    const size_t n = (size_t)e->n;
+    int kept = 0;
+    for (int k = 0; k < out->n_undetermined; k++) {
+        const double *const d = out->undetermined + (size_t)k * n;
+        if (has_room(e, p->t, d)) {
+            memmove(out->undetermined + (size_t)kept * n, d, n * sizeof *d);
+            out->undetermined_effect[kept++] = out->undetermined_effect[k];
+        }
+    }
+    out->n_undetermined = kept;
 }
 
 /* Is variable j one of the directions by itself? */

@@ -359,11 +359,20 @@ static void say_rank(mt_sentences *s, const mt_nlp_result *search)
                                  : "is a place from which only worse ones are near");
     } else if (s->design->gaps != NULL) {
         say_kind_rank(s, first);
+    } else if (search->n_solutions == 1 && s->design->found->continuum) {
+        mt_say(s, "It is one of a continuum of equally good designs that %d start%s found.",
+               search->starts, search->starts == 1 ? "" : "s");
     } else if (search->n_solutions == 1) {
         say_only(s, search, first);
     } else {
         mt_say(s, "It ranks %d of %d distinct designs found from %d starts, by %s %s.",
                s->rec->rank, search->n_solutions, search->starts, best_of(&s->p->aims[0]),
+               first);
+    }
+    if (s->design->found->continuum && !search->compromise) {
+        mt_say(s,
+               "A continuum of designs is as good as this one: those between it and others "
+               "that were found meet all goals, too, and have the same %s.",
                first);
     }
     for (int k = 1; k <= s->design->stage; k++) {

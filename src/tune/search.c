@@ -221,7 +221,7 @@ mt_status mt_search_designs(mt_problem *const *problems, int n_workers, mt_arena
     MT_TRY(mt_search_repeated(p, mem, out, err));
     if (p->n_aims == 1 || out->compromise || out->n_solutions == 0 ||
         out->stop != MT_STOP_DONE) {
-        return MT_OK;
+        return mt_search_join_continua(p, mem, out, err);
     }
     stages s = {.p = p, .mem = mem, .out = out};
     const mt_status later = later_stages(&s, stage, err);
@@ -230,5 +230,5 @@ mt_status mt_search_designs(mt_problem *const *problems, int n_workers, mt_arena
         out->stop = MT_STOP_USER;
         return MT_OK;
     }
-    return later;
+    return later == MT_OK ? mt_search_join_continua(p, mem, out, err) : later;
 }

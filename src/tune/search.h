@@ -22,6 +22,11 @@ bool mt_search_same(int n, const double *a, const double *b);
  * better design. In the present stage; solutions and their multipliers in place. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_USAGE. */
 mt_status mt_search_repeated(mt_problem *p, mt_arena *mem, mt_nlp_result *out, mt_err *err);
 
+/* search_continuum.c: of solutions between which all designs are feasible and have their objectives, one is kept (solution->continuum); n_found and n_once likewise. At most 3 evaluations
+ * for each pair with equal objectives. In place; compromises stay as they are. Fails: MT_E_MEMORY. */
+mt_status mt_search_join_continua(mt_problem *p, mt_arena *mem, mt_nlp_result *out,
+                                  mt_err *err);
+
 /* Is a design with objectives a[n] before one with b[n]? By the objectives in order; values that a held objective may differ by count as equal. */
 bool mt_search_before(int n, const double *a, const double *b);
 

@@ -93,6 +93,20 @@ static mt_status warn_of_missing(const answer *a, mt_err *err)
                             more);
 }
 
+static mt_status warn_of_continua(const answer *a, mt_err *err)
+{
+    for (int i = 0; i < a->result->n_recommendations; i++) {
+        if (a->found.solutions[i].continuum) {
+            MT_TRY(mt_describe_warn(a->result, err,
+                                    "recommendation %d: a continuum of designs is as good as "
+                                    "this one; a second objective, or one more goal, would "
+                                    "choose among them",
+                                    i + 1));
+        }
+    }
+    return MT_OK;
+}
+
 /* What the engineer should know of the search besides its answers. */
 static mt_status warn(const answer *a, mt_err *err)
 {
@@ -115,6 +129,7 @@ static mt_status warn(const answer *a, mt_err *err)
                                 a->found.evals));
     }
     MT_TRY(warn_of_missing(a, err));
+    MT_TRY(warn_of_continua(a, err));
     if (a->why.code != MT_OK) {
         MT_TRY(mt_describe_warn(a->result, err, "%s", a->why.text));
     }
@@ -194,6 +209,20 @@ static const char *solved_text(const answer *a, const char *doubt, mt_arena *mem
                                   "meet%s all goals (of %.0f gap assignments, %s).%s",
                                   n, n == 1 ? "" : "s", n == 1 ? "s" : "", n == 1 ? "s" : "",
                                   a->gaps.n_possible, left, doubt);
+    }
+    bool continuum = false;
+    for (int i = 0; i < n; i++) {
+        continuum = continuum || a->found.solutions[i].continuum;
+    }
+    if (continuum) {
+        return n == 1 ? mt_arena_printf(mem,
+                                        "Solved: a continuum of equally good designs meets all "
+                                        "goals; one of it is recommended.%s",
+                                        doubt)
+                      : mt_arena_printf(mem,
+                                        "Solved: %d distinct designs, or continua of equally "
+                                        "good designs, meet all goals.%s",
+                                        n, doubt);
     }
     return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.%s", n,
                            n == 1 ? " meets" : "s meet", doubt);

@@ -5,8 +5,6 @@ KNOWN = [
     ("certificates", "tolerance", "kinds are counted without tolerances, and found with them"),
     ("goals", "cut_off", "a mode on the edge where the band is cut off is told to miss the margin of the other edge"),
     ("certificates", "cut_off", "as above, over tolerances"),
-    ("distinct", None, "a continuum of solutions is listed as some of them"),
-    ("undetermined", None, "a room of rounding counts as room"),
 ]
 
 

@@ -234,5 +234,61 @@ static void nlp_undetermined__a_combination_through_a_corner_is_still_found(mt_t
     mt_arena_free(&c.mem);
 }
 
+/* At (1, 0), the only point with t0 - t1 = 1, nothing can move along (1, 1); rounding of a bound is no room. */
+static void nlp_undetermined__no_room_at_the_solution_is_no_direction(mt_test *t)
+{
+    static const double SHORT[] = {0, 1e-15, 1e-12, 1e-4};
+    for (int k = 0; k < MT_COUNT(SHORT); k++) {
+        nlp_case c = {0};
+        case_begin(&c, 2, difference, 0, 1);
+        c.nlp.n_eq = 1;
+        c.eq_tol[0] = 1e-9;
+        c.target[0] = 1 - SHORT[k];
+        mt_test_row(t, "%g short of the corner", SHORT[k]);
+        const mt_nlp_options opt = mt_nlp_options_default();
+        REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+        REQUIRE(t, c.result.n_solutions == 1);
+        CHECK_INT(t, c.result.n_undetermined, SHORT[k] > 1e-6);
+        mt_arena_free(&c.mem);
+    }
+}
+
+/* t0 is asked to be what a bound or the origin is to a few units of rounding. */
+static mt_status value_asked(void *context, const double *t, bool with_gradient,
+                             mt_nlp_values *out, mt_err *err)
+{
+    const nlp_case *const c = context;
+    (void)with_gradient;
+    (void)err;
+    change(c, t, out);
+    out->eq[0] = t[0] - c->target[0];
+    out->deq[0] = 1;
+    out->deq[1] = 0;
+    return MT_OK;
+}
+
+static void nlp_undetermined__what_is_on_a_bound_to_rounding_is_put_on_it(mt_test *t)
+{
+    static const double AT[] = {0.1, 0.9, 0.3}; /* lower, upper, origin */
+    for (int k = 0; k < MT_COUNT(AT); k++) {
+        for (int off = -4; off <= 4; off++) {
+            nlp_case c = {0};
+            case_begin(&c, 2, value_asked, AT[0], AT[1]);
+            c.origin[0] = AT[2];
+            c.origin[1] = AT[2];
+            c.nlp.n_eq = 1;
+            c.target[0] = AT[k] + off * 0x1p-53;
+            mt_test_row(t, "%g and %d", AT[k], off);
+            const mt_nlp_options opt = mt_nlp_options_default();
+            REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+            REQUIRE(t, c.result.n_solutions == 1);
+            CHECK(t, c.result.solutions[0].t[0] == AT[k]);
+            mt_arena_free(&c.mem);
+        }
+    }
+}
+
 MT_TEST_MAIN(MT_TEST(nlp_undetermined__originals_on_bounds_do_not_spoil_optima),
-             MT_TEST(nlp_undetermined__a_combination_through_a_corner_is_still_found))
+             MT_TEST(nlp_undetermined__a_combination_through_a_corner_is_still_found),
+             MT_TEST(nlp_undetermined__no_room_at_the_solution_is_no_direction),
+             MT_TEST(nlp_undetermined__what_is_on_a_bound_to_rounding_is_put_on_it))

@@ -166,9 +166,59 @@ static void parameters_that_stay__are_listed(mt_test *t)
     study_free(&c);
 }
 
+/* s enters only a limit, which an interval of it meets; k the misfit, as `k`. */
+#define CONTINUUM(k)                                                               \
+    "{'format': 'modetune-model/1', 'dimension': 2,"                               \
+    "'parameters': {'k': {'value': 4, 'unit': 'N/m'}, 's': 1},"                    \
+    "'bodies': [{'name': 'm1', 'mass_kg': 1, 'centre': [1, 0]}],"                  \
+    "'joints': [{'name': 'r1', 'type': 'pin-in-slot', 'bodies': ['ground', 'm1']," \
+    " 'at': [1, 0], 'axis': [1, 0]}],"                                             \
+    "'springs': [{'name': 's1', 'type': 'axial', 'bodies': ['ground', 'm1'],"      \
+    " 'at': [[0, 0], [1, 0]], 'stiffness_n_per_m': '" k "'}]}"
+
+static int count_said(const study_case *c, const char *text)
+{
+    int n = 0;
+    for (int i = 0; i < c->result->n_recommendations; i++) {
+        const mt_recommendation *const rec = &c->result->recommendations[i];
+        for (int k = 0; k < rec->n_reasons; k++) {
+            n += strstr(rec->reasons[k], text) != NULL;
+        }
+    }
+    for (int i = 0; i < c->result->n_warnings; i++) {
+        n += strstr(c->result->warnings[i], text) != NULL;
+    }
+    return n;
+}
+
+static void a_continuum_of_designs__is_one_and_said_to_be(mt_test *t)
+{
+    static const char *const STUDY =
+        "'variables': [{'parameter': 'k', 'lower': 1, 'upper': 16},"
+        " {'parameter': 's', 'lower': 0.5, 'upper': 4}],"
+        "'goals': [{'type': 'frequency', 'mode': 1, 'target_hz': '3/(2*pi)', 'weight': 1},"
+        " {'type': 'limit', 'expression': 's', 'at_most': 3}],"
+        "'objective': {'minimise': 'misfit'}, 'recommendations': 16";
+    study_case c;
+    if (study_solve(t, CONTINUUM("k"), STUDY, &c)) { /* k = 9, s anything below 3 */
+        CHECK_INT(t, c.result->n_recommendations, 1);
+        CHECK_INT(t, c.result->run.distinct_designs, 1);
+        CHECK(t, strstr(c.result->status_text, "a continuum of equally good designs") != NULL);
+        CHECK_INT(t, count_said(&c, "continuum of designs is as good as this one"), 2);
+        CHECK_INT(t, count_said(&c, "only"), 0);
+    }
+    study_free(&c);
+    if (study_solve(t, CONTINUUM("9 + 0.5*(k - 3)*(k - 12)"), STUDY, &c)) { /* two of them */
+        CHECK_INT(t, c.result->n_recommendations, 2);
+        CHECK_INT(t, count_said(&c, "continuum of designs is as good as this one"), 4);
+    }
+    study_free(&c);
+}
+
 MT_TEST_MAIN(MT_TEST(target_that_is_reached__is_said_plainly),
              MT_TEST(target_that_is_met_already__stays),
              MT_TEST(target_out_of_reach__is_told_from_which_side),
              MT_TEST(limits__are_at_clear_or_between),
              MT_TEST(percentages__are_those_of_the_numbers_beside_them),
-             MT_TEST(parameters_that_stay__are_listed))
+             MT_TEST(parameters_that_stay__are_listed),
+             MT_TEST(a_continuum_of_designs__is_one_and_said_to_be))
