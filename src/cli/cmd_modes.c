@@ -233,15 +233,18 @@ typedef struct sink {
 static mt_status csv_view(sink *to, const view *v)
 {
     if (v->with_damping) { /* a table of its own kind: the damped modes alone */
-        if (to->table.n_columns == 0) {
+        if (to->table.n_columns == 0 && !to->table.failed) {
             to->table = mt_table_default();
             mt_damped_columns(&to->table, true);
         }
         mt_damped_rows(&to->table, &v->damped, v->count, mt_subject_configuration(v->s, v->c));
         return MT_OK;
     }
-    if (to->table.n_columns == 0) {
+    if (to->table.n_columns == 0 && !to->table.failed) {
         to->table = table_new(true, v->shapes.n, &v->shapes);
+    }
+    if (to->table.failed) {
+        return MT_OK; /* the output that the table goes into tells */
     }
     if (to->table.n_columns != 8 + v->shapes.n) {
         return MT_E_USAGE;

@@ -222,6 +222,11 @@ static mt_status add_csv(sink *to, const mt_sweep_view *v, mt_err *err)
 {
     mt_table columns = mt_table_default();
     mt_sweep_csv_columns(v, &columns);
+    if (columns.failed || to->table.failed) {
+        to->table.failed = true; /* the output that the table goes into tells */
+        mt_table_free(&columns);
+        return MT_OK;
+    }
     if (to->table.n_columns == 0) {
         to->table = columns;
         mt_sweep_csv_rows(v, &to->table);
@@ -317,7 +322,7 @@ int mt_cmd_sweep(const mt_args *args, mt_text *out)
     if (json) {
         code = mt_exit_worse(code, mt_cli_json_done(&to.w));
     }
-    if (args->format == MT_FORMAT_CSV && to.table.n_columns > 0) {
+    if (args->format == MT_FORMAT_CSV && (to.table.n_columns > 0 || to.table.failed)) {
         mt_table_csv(&to.table, out);
     }
 done:
