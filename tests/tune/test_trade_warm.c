@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Better starts than a point has of its own: a hint of the caller's, and the designs of the neighbours in a trade study. */
+#include "study_fixture.h"
+
+#define MODEL STUDY_TWO_MASSES("'k1': {'value': 0.9, 'unit': 'N/m'}, 'k2': 1, 'm': 1", "")
+/* Minima of -cos(20 k1) - k1/10 at k1 = (2 pi j + asin(1/200)) / 20, each deeper than the one before: a single start stays in the valley that it begins in. */
+#define VALLEYS                                                         \
+    "'search': {'starts': 2, 'max_evaluations': 400},"                  \
+    "'goals': [{'type': 'frequency', 'mode': 2, 'at_least_hz': 0.01}]," \
+    "'objective': {'minimise': '-cos(20*k1) - k1/10'}"
+
+static double valley(int j)
+{
+    return ((2.0 * STUDY_PI * j) + asin(1.0 / 200.0)) / 20.0;
+}
+
+static double depth(double k1)
+{
+    return -cos(20.0 * k1) - (k1 / 10.0);
+}
+
+static void hint__is_one_more_start(mt_test *t)
+{
+    study_case c;
+    if (!study_load(t, MODEL,
+                    "'variables': [{'parameter': 'k1', 'lower': 0.5, 'upper': 5}]," VALLEYS,
+                    &c)) {
+        study_free(&c);
+        return;
+    }
+    for (int j = 2; j <= 15;
+         j++) { /* the valleys between the bounds, but for the bounds' own */
+        const double hint = valley(j) + 0.02;
+        const mt_solve_options opt = {.threads = 1, .hint = &hint};
+        mt_test_row(t, "valley %d", j);
+        if (!CHECK_INT(t, mt_study_solve(c.study, &opt, &c.result, &c.err), MT_OK)) {
+            break;
+        }
+        /* the other start is the original design, in valley 3 */
+        CHECK_NEAR(t, study_value(&c, 1, "k1"), valley(j > 3 ? j : 3), 1e-4);
+        mt_result_delete(c.result);
+        c.result = NULL;
+    }
+    study_free(&c);
+}
+
+static void trade__a_neighbour_improves_a_point(mt_test *t)
+{
+    study_case c;
+    if (!study_solve(t, MODEL,
+                     "'variables': [{'parameter': 'k1', 'lower': 0.5, 'upper': 5}],"
+                     "'trade': {'vary': [{'variable': 'k1', 'bound': 'lower', 'values': [0.5, "
+                     "4.6]}]}," VALLEYS,
+                     &c)) {
+        study_free(&c);
+        return;
+    }
+    const mt_trade_result *const trade = c.result->trade;
+    if (CHECK(t, trade != NULL) && CHECK_INT(t, trade->n_points, 2)) {
+        const double narrow = trade->points[1].best.parameters[0].recommended;
+        const double wide = trade->points[0].best.parameters[0].recommended;
+        /* the deepest valley of all is the only one of the narrow range; the wide one has it, too, and does not begin in it */
+        CHECK_NEAR(t, narrow, valley(15), 1e-4);
+        CHECK_NEAR(t, wide, valley(15), 1e-4);
+        CHECK_NEAR(t, trade->points[0].best.score, depth(valley(15)), 1e-6);
+    }
+    study_free(&c);
+    /* by itself it ends in another */
+    if (study_solve(t, MODEL,
+                    "'variables': [{'parameter': 'k1', 'lower': 0.5, 'upper': 5}]," VALLEYS,
+                    &c)) {
+        CHECK(t, study_value(&c, 1, "k1") < valley(14));
+    }
+    study_free(&c);
+}
+
+MT_TEST_MAIN(MT_TEST(hint__is_one_more_start), MT_TEST(trade__a_neighbour_improves_a_point))
