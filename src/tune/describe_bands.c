@@ -61,6 +61,19 @@ double mt_describe_margin_percent(const mt_band *band, double hz)
     return by_lower_edge(band, hz) ? below : above;
 }
 
+/* How a mode at hz stands to the edge that a goal judges it by: inside a band with its margin the one that is left sooner, else the nearer one. Negative within the base. */
+static double standing(const mt_band *band, double hz, double *asked)
+{
+    const bool inside = missing_percent(band, hz) > 0.0;
+    const bool lower =
+        inside ? way_down(band, hz) <= way_up(band, hz) : by_lower_edge(band, hz);
+    const double has = lower ? PERCENT * (band->base_lower_hz - hz) / band->base_lower_hz
+                             : PERCENT * (hz - band->base_upper_hz) / band->base_upper_hz;
+    *asked = lower ? PERCENT * (band->base_lower_hz - band->lower_hz) / band->base_lower_hz
+                   : PERCENT * (band->upper_hz - band->base_upper_hz) / band->base_upper_hz;
+    return fabs(has) <= ON_EDGE_PERCENT ? 0.0 : has;
+}
+
 int mt_describe_avoid_count(const mt_problem *p)
 {
     int n = 0;
@@ -96,9 +109,8 @@ static double tightest(const mt_bands *bands, const mt_modes *modes, mt_result_g
                 continue;
             }
             const double hz = mt_modal_hz(modes, i);
-            mt_band_side side = MT_INSIDE_BAND;
-            const double has = clearance(&bands->items[b], hz, &side);
-            const double asked = mt_describe_margin_percent(&bands->items[b], hz);
+            double asked = 0.0;
+            const double has = standing(&bands->items[b], hz, &asked);
             missing = fmax(missing, missing_percent(&bands->items[b], hz));
             if (has - asked < least) {
                 least = has - asked;
@@ -120,13 +132,12 @@ static mt_status tightest_worst(const mt_problem *fresh, int view, const mt_band
     double least = HUGE_VAL;
     for (int b = 0; b < bands->n && fresh->robust != NULL; b++) {
         for (int k = 1; mt_modal_flexible(modes, k) >= 0; k++) {
-            mt_band_side side = MT_INSIDE_BAND;
             const double *at = NULL;
+            double asked = 0.0;
             const double hz =
                 mt_describe_worst_hz(fresh, view, k, &bands->items[b],
                                      mt_modal_hz(modes, mt_modal_flexible(modes, k)), &at);
-            const double has = clearance(&bands->items[b], hz, &side);
-            const double asked = mt_describe_margin_percent(&bands->items[b], hz);
+            const double has = standing(&bands->items[b], hz, &asked);
             *missing = fmax(*missing, missing_percent(&bands->items[b], hz));
             if (has - asked < least) {
                 least = has - asked;

@@ -28,12 +28,11 @@ class Band:
         """How many modes lie below the middle; rows of hz are designs. Below a band that begins at 0 there is none."""
         return np.zeros(len(hz), int) if self.lower <= 0.0 else np.sum(hz <= math.sqrt(self.lower * self.upper), axis=1)
 
-    def margin_percent(self, hz):
-        """What is asked for at the edge that clearance_percent is of."""
-        low, high = self.base
-        if low > 0.0 and (low - hz) / low >= (hz - high) / high:
-            return 100.0 * (low - self.lower) / low
-        return 100.0 * (self.upper - high) / high
+    def missing_percent(self, hz):
+        """The shorter way out of the band with its margin, in percent of the edge without it; 0 outside."""
+        up = 100.0 * (self.upper - hz) / self.base[1]
+        down = 100.0 * (hz - self.lower) / self.base[0] if self.base[0] > 0.0 else math.inf
+        return max(0.0, min(up, down))
 
     def clearance_percent(self, hz):
         """Of the nearest edge without margin; negative inside."""
@@ -191,7 +190,7 @@ class Question:
             worst = np.zeros(len(value))
             for band in self.goal_bands(goal):
                 for i in np.flatnonzero(value > 0.0):
-                    worst[i] = max(worst[i], max(band.margin_percent(f) - band.clearance_percent(f) for f in modes[i]))
+                    worst[i] = max(worst[i], max(band.missing_percent(f) for f in modes[i]))
             return worst
         if "at_least_hz" in goal and kind == "<" and "at_most_hz" not in goal:
             return -100.0 * np.expm1(-np.maximum(value, 0.0))
