@@ -91,13 +91,23 @@ static int neighbour(const trade *t, int k, int way)
     return at + step >= 0 && at + step < t->size[axis] ? k + (step * stride) : -1;
 }
 
-static double *values_of(const mt_recommendation *r, mt_arena *mem)
+/* The recommended values of a design, in mem; NULL without one. */
+static mt_status values_of(const mt_recommendation *r, mt_arena *mem, const double **x,
+                           mt_err *err)
 {
-    double *const x = mt_arena_f64(mem, (size_t)r->n_parameters, 1);
-    for (int i = 0; x != NULL && i < r->n_parameters; i++) {
-        x[i] = r->parameters[i].recommended;
+    *x = NULL;
+    if (r == NULL) {
+        return MT_OK;
     }
-    return x;
+    double *const values = mt_arena_f64(mem, (size_t)r->n_parameters, 1);
+    if (values == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < r->n_parameters; i++) {
+        values[i] = r->parameters[i].recommended;
+    }
+    *x = values;
+    return MT_OK;
 }
 
 /* Is a the better answer of one point? The first objective's score decides among designs that meet all goals. */
@@ -122,23 +132,18 @@ static mt_status try_neighbours(const trade *t, int k, const mt_study *study, mt
 {
     point *const p = &t->points[k];
     const mt_recommendation *const best = best_of(p->first);
-    const bool known = best != NULL && best->feasible;
-    const double *best_x = known ? values_of(best, mem) : NULL;
-    if (known && best_x == NULL) {
-        return mt_fail_memory(err);
-    }
+    const double *best_x = NULL;
+    MT_TRY(values_of(best != NULL && best->feasible ? best : NULL, mem, &best_x, err));
     for (int way = 0; way < 4; way++) {
         const int other = neighbour(t, k, way);
         const mt_recommendation *const near =
             other < 0 ? NULL : best_of(t->points[other].first);
+        const double *x = NULL;
         bool gain = false;
         if (near == NULL || !near->feasible || stopped(t)) {
             continue;
         }
-        double *const x = values_of(near, mem);
-        if (x == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(values_of(near, mem, &x, err));
         MT_TRY(mt_trade_improves(study, t->opt->stop, x, best_x, &gain, &p->evaluations, err));
         if (!gain) {
             continue;
@@ -149,11 +154,7 @@ static mt_status try_neighbours(const trade *t, int k, const mt_study *study, mt
         if (better(study, fresh, answer_of(p))) {
             mt_result_delete(p->again);
             p->again = fresh;
-            const mt_recommendation *const now = best_of(fresh);
-            best_x = now == NULL ? NULL : values_of(now, mem);
-            if (now != NULL && best_x == NULL) {
-                return mt_fail_memory(err);
-            }
+            MT_TRY(values_of(best_of(fresh), mem, &best_x, err));
         } else {
             mt_result_delete(fresh);
         }

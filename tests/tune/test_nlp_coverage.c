@@ -116,11 +116,10 @@ static mt_status diagonal(void *context, const double *t, bool with_gradient,
     (void)err;
     out->f = 0;
     for (int j = 0; j < 2; j++) {
-        const double sign = j == 0 ? 1 : -1;
         out->df[j] = 0;
         out->eq[j] = t[0] - t[1];
-        out->deq[2 * j] = sign;
-        out->deq[1 + 2 * j] = sign;
+        out->deq[j] = 1;
+        out->deq[2 + j] = -1;
     }
     return MT_OK;
 }

@@ -153,9 +153,10 @@ static double on_grids(const springs_case *s)
     for (int zoom = 0; zoom < ZOOMS; zoom++) {
         double at[2] = {low[0], low[1]};
         for (int i = 0; i < GRID * GRID; i++) {
-            double t[SPRINGS] = {low[0] + (high[0] - low[0]) * (double)(i % GRID) / (GRID - 1),
-                                 low[1] + (high[1] - low[1]) * (double)(i / GRID) / (GRID - 1),
-                                 0};
+            const int row = i / GRID;
+            const int column = i % GRID;
+            double t[SPRINGS] = {low[0] + (high[0] - low[0]) * (double)column / (GRID - 1),
+                                 low[1] + (high[1] - low[1]) * (double)row / (GRID - 1), 0};
             const double f = best_third(s, t);
             if (f <= best) {
                 best = f;
