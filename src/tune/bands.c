@@ -315,6 +315,11 @@ const char *mt_band_side_name(mt_band_side side)
     return "above";
 }
 
+double mt_log_ratio(double a_hz, double b_hz)
+{
+    return b_hz <= 0.0 ? HUGE_VAL : log(a_hz / b_hz);
+}
+
 double mt_band_clearance_percent(const mt_band *band, double hz, mt_band_side *side)
 {
     const double lower = band->base_lower_hz;

@@ -124,4 +124,7 @@ const char *mt_band_side_name(mt_band_side side);
  */
 double mt_band_clearance_percent(const mt_band *band, double hz, mt_band_side *side);
 
+/** ln(a/b) of frequencies or edges, a >= 0; HUGE_VAL where b is not above 0: a mode that vanishes, a band that begins at 0. */
+double mt_log_ratio(double a_hz, double b_hz);
+
 #endif

@@ -28,11 +28,11 @@ static double way_up(const mt_band *band, double hz)
 /* Is the lower edge the one that a mode at hz is judged by? It is the nearer one; where a band has been cut off to a point, the one that is left sooner. */
 static bool by_lower_edge(const mt_band *band, double hz)
 {
-    const double below = PERCENT * (band->base_lower_hz - hz) / band->base_lower_hz;
-    const double above = PERCENT * (hz - band->base_upper_hz) / band->base_upper_hz;
     if (!(band->base_lower_hz > 0.0)) {
         return false;
     }
+    const double below = PERCENT * (band->base_lower_hz - hz) / band->base_lower_hz;
+    const double above = PERCENT * (hz - band->base_upper_hz) / band->base_upper_hz;
     return fabs(below - above) > ON_EDGE_PERCENT ? below >= above
                                                  : way_down(band, hz) <= way_up(band, hz);
 }
@@ -56,9 +56,9 @@ static double clearance(const mt_band *band, double hz, mt_band_side *side)
 
 double mt_describe_margin_percent(const mt_band *band, double hz)
 {
-    const double below = PERCENT * (band->base_lower_hz - band->lower_hz) / band->base_lower_hz;
-    const double above = PERCENT * (band->upper_hz - band->base_upper_hz) / band->base_upper_hz;
-    return by_lower_edge(band, hz) ? below : above;
+    return by_lower_edge(band, hz)
+               ? PERCENT * (band->base_lower_hz - band->lower_hz) / band->base_lower_hz
+               : PERCENT * (band->upper_hz - band->base_upper_hz) / band->base_upper_hz;
 }
 
 /* How a mode at hz stands to the edge that a goal judges it by: inside a band with its margin the one that is left sooner, else the nearer one. Negative within the base. */

@@ -180,8 +180,8 @@ static double room_with(const mt_modes *modes, const mt_band *band, int k)
     const int over = mt_modal_flexible(modes, k + 1);
     double room = HUGE_VAL;
     if (under >= 0) {
-        room =
-            band->lower_hz > 0.0 ? log(band->lower_hz / mt_modal_hz(modes, under)) : -HUGE_VAL;
+        room = band->lower_hz > 0.0 ? mt_log_ratio(band->lower_hz, mt_modal_hz(modes, under))
+                                    : -HUGE_VAL;
     }
     return over >= 0 ? fmin(room, log(mt_modal_hz(modes, over) / band->upper_hz)) : room;
 }

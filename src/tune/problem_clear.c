@@ -256,8 +256,8 @@ double mt_clear_violation(const mt_clear *c, const mt_modes *modes, int *below, 
             if (modes->kind[i] != MT_MODE_FLEXIBLE) {
                 continue;
             }
-            const double over = from_zero ? HUGE_VAL : log(hz / band->lower_hz);
-            const double under = fmin(log(band->upper_hz / hz), MT_MOST_INSIDE);
+            const double over = mt_log_ratio(hz, band->lower_hz);
+            const double under = fmin(mt_log_ratio(band->upper_hz, hz), MT_MOST_INSIDE);
             const double inside = fmin(over, under);
             count += hz <= middle && !from_zero ? 1 : 0;
             if (inside > violation) {
@@ -319,7 +319,7 @@ double mt_clear_room(const mt_problem *p, const mt_clear *c)
             if (modes->kind[i] == MT_MODE_FLEXIBLE && MT_HAS(room)) {
                 const double hz = mt_modal_hz(modes, i);
                 const double below =
-                    band->lower_hz > 0.0 ? log(band->lower_hz / hz) : -HUGE_VAL;
+                    band->lower_hz > 0.0 ? mt_log_ratio(band->lower_hz, hz) : -HUGE_VAL;
                 const double above = fmax(log(hz / band->upper_hz), -MT_MOST_INSIDE);
                 room = fmin(room, fmax(below, above));
             }

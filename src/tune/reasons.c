@@ -129,7 +129,7 @@ static void limit_text(const mt_result_frequency *f, char *text)
     const double lowest = range ? f->lowest_hz : f->recommended_hz;
     const double highest = range ? f->highest_hz : f->recommended_hz;
     const double low = MT_HAS(f->at_least_hz) ? log(lowest / f->at_least_hz) : HUGE_VAL;
-    const double high = MT_HAS(f->at_most_hz) ? log(f->at_most_hz / highest) : HUGE_VAL;
+    const double high = MT_HAS(f->at_most_hz) ? mt_log_ratio(f->at_most_hz, highest) : HUGE_VAL;
     const double error = 100.0 * (low < high ? -expm1(low) : expm1(-high));
     const char *const side = low < high ? "lower" : "upper";
     const double limit = low < high ? f->at_least_hz : f->at_most_hz;

@@ -63,7 +63,7 @@ static bool other_bands_hold(const mt_problem *p, const mt_move *m)
             const mt_band *const band = &c->bands.items[b];
             const double f = own ? 0.0 : let_through(band, modes_of(p, i), false);
             const double inside =
-                f > 0.0 ? fmin(log(f / band->lower_hz), log(band->upper_hz / f)) : 0.0;
+                f > 0.0 ? fmin(mt_log_ratio(f, band->lower_hz), log(band->upper_hz / f)) : 0.0;
             if (!(f >= 0.0) || inside > c->tolerance) {
                 return false;
             }

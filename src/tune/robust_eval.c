@@ -191,7 +191,8 @@ double mt_robust_room(const mt_problem *p, const mt_clear *c)
     for (int k = 1; MT_HAS(room) && span_of(p, c->view, k, &low, &high); k++) {
         for (int b = 0; b < c->bands.n; b++) {
             const mt_band *const band = &c->bands.items[b];
-            const double below = band->lower_hz > 0.0 ? log(band->lower_hz / high) : -HUGE_VAL;
+            const double below =
+                band->lower_hz > 0.0 ? mt_log_ratio(band->lower_hz, high) : -HUGE_VAL;
             const double here = fmax(below, fmax(log(low / band->upper_hz), -MT_MOST_INSIDE));
             room = fmin(room, MT_HAS(low + high) ? here : -HUGE_VAL);
         }

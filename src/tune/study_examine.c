@@ -140,9 +140,8 @@ static double original_hz(const mt_study *s, const mt_goal *goal, const mt_analy
 static void doubt_target(mt_doubt_list *out, const char *member, double asked, mt_addr addr,
                          double hz, bool above, bool below)
 {
-    const double ratio = asked / hz;
-    if (!(hz > 0.0) ||
-        !((above && ratio >= FAR_TARGET) || (below && ratio <= 1.0 / FAR_TARGET))) {
+    const double ratio = hz > 0.0 ? asked / hz : nan("");
+    if (!((above && ratio >= FAR_TARGET) || (below && ratio <= 1.0 / FAR_TARGET))) {
         return;
     }
     mt_doubt *const d = mt_doubt_add(

@@ -95,7 +95,7 @@ static void choose_variables(rig *g, int continuous)
 
 static bool begin(mt_test *t, int seed, int continuous, rig *g)
 {
-    char text[2 * TEXT];
+    char text[4 * TEXT];
     char reason[MT_REASON_SIZE] = "";
     mt_err err = {.text = ""};
     *g = (rig){.r = mt_random_seed((uint64_t)seed + 5)};
