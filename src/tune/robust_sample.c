@@ -147,8 +147,7 @@ static mt_status search_line(sampler *s, int k, mt_robust_side side, mt_err *err
 {
     const double golden = 0.5 * (sqrt(5.0) - 1.0);
     const double sign = side == MT_LOWEST ? 1.0 : -1.0;
-    double a = 0.0;
-    double b = 1.0;
+    double end[2] = {0.0, 1.0};
     double value[2];
     double at[2] = {1.0 - golden, golden};
     for (int i = 0; i < 2; i++) {
@@ -157,11 +156,12 @@ static mt_status search_line(sampler *s, int k, mt_robust_side side, mt_err *err
     }
     for (int turn = 0; turn < SECTIONS; turn++) {
         const int which = value[0] < value[1] ? 0 : 1;
-        a = which == 0 ? a : at[0];
-        b = which == 0 ? at[1] : b;
-        at[1 - which] = at[which];
-        value[1 - which] = value[which];
-        at[which] = which == 0 ? b - (golden * (b - a)) : a + (golden * (b - a));
+        const int other = 1 - which;
+        end[other] = at[other];
+        at[other] = at[which];
+        value[other] = value[which];
+        const double part = golden * (end[1] - end[0]);
+        at[which] = which == 0 ? end[1] - part : end[0] + part;
         MT_TRY(visit_between(s, at[which], err));
         value[which] = sign * s->value[k];
     }
