@@ -8,6 +8,7 @@ the mass in the global x. The potential is quadratic in the mass's place r on th
 """
 import json
 import math
+import os
 import random
 import subprocess
 import tempfile
@@ -267,7 +268,7 @@ class Random(unittest.TestCase):
 
     def test_what_is_recommended_stays_clear_all_the_way(self):
         seen = 0
-        for seed in range(10):
+        for seed in range(2 if "MT_INSTRUMENTED" in os.environ else 10):
             rng = random.Random(seed)
             model = self.model(rng)
             with tempfile.TemporaryDirectory() as folder, self.subTest(seed=seed):

@@ -16,7 +16,7 @@ from scipy.linalg import eigh
 
 from common_cli import CliTest, main
 
-STUDIES = int(os.environ.get("MT_TOLERANCE_STUDIES", "40"))
+STUDIES = int(os.environ.get("MT_TOLERANCE_STUDIES", "8" if "MT_INSTRUMENTED" in os.environ else "40"))
 SEED = int(os.environ.get("MT_TOLERANCE_SEED", "1"))
 # A goal counts as met within 1e-6, relatively; two eigensolvers agree to some n eps.
 MET = 3e-6
