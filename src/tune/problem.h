@@ -141,6 +141,7 @@ typedef struct mt_problem {
     double *shape;  /* [max ns] */
     double *dshape; /* max ns x n */
     long evaluations;
+    long proof_boxes; /* budget of a proof; 0: as certify.h has it */
     int starts; /* local solves of a search where the study does not say; 0: by the number of variables */
     struct mt_robust *robust; /* variables with a tolerance (robust.h); NULL: none */
     const double *hint; /* [n + 1] coordinates of one more design to start from; NULL: none */

@@ -127,7 +127,41 @@ static void change_as_first_objective__is_held_at_the_original(mt_test *t)
     study_free(&c);
 }
 
-MT_TEST_MAIN(MT_TEST(exact_misfit__leaves_the_rest_to_the_next_objective),
+/* Two pairs of stiffnesses give both frequencies, (3, 1) and (2, 1.5), and one product, 3: the second objective alone decides their order. */
+static void equal_first_objective__the_second_decides_the_order(mt_test *t)
+{
+    static const struct {
+        const char *second;
+        double k1[2]; /* by rank */
+    } rows[] = {
+        { "k1", {2.0, 3.0}},
+        {"-k1", {3.0, 2.0}},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        study_case c;
+        char members[1024];
+        (void)snprintf(members, sizeof members,
+                       "'variables': [{'parameter': 'k1', 'lower': 0.5, 'upper': 10},"
+                       " {'parameter': 'k2', 'lower': 0.5, 'upper': 10}],"
+                       "'goals': [{'type': 'frequency', 'mode': 1,"
+                       " 'target_hz': 'sqrt((5 - sqrt(13))/2)/(2*pi)'},"
+                       "{'type': 'frequency', 'mode': 2,"
+                       " 'target_hz': 'sqrt((5 + sqrt(13))/2)/(2*pi)'}],"
+                       "'objective': [{'minimise': 'k1*k2'}, {'minimise': '%s'}]",
+                       rows[i].second);
+        mt_test_row(t, "%s", rows[i].second);
+        if (study_solve(t, STUDY_TWO_MASSES("'k1': 2.4, 'k2': 1.3, 'm': 1", ""), members, &c)) {
+            CHECK_INT(t, c.result->n_recommendations, 2);
+            CHECK_NEAR(t, study_value(&c, 1, "k1"), rows[i].k1[0], TOL);
+            CHECK_NEAR(t, study_value(&c, 2, "k1"), rows[i].k1[1], TOL);
+            CHECK_NEAR(t, c.result->recommendations[1].score, 3.0, TOL);
+        }
+        study_free(&c);
+    }
+}
+
+MT_TEST_MAIN(MT_TEST(equal_first_objective__the_second_decides_the_order),
+             MT_TEST(exact_misfit__leaves_the_rest_to_the_next_objective),
              MT_TEST(flat_optimum__is_settled_by_the_next_objective),
              MT_TEST(inexact_misfit__is_held),
              MT_TEST(misfit_as_second_objective__follows_the_first),

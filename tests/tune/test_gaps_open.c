@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where a proof's budget of boxes ends, what it left open is searched; only where a design was found for all of that is the question settled. The row of six masses with springs within a factor of two. */
+#include "study_fixture.h"
+#include "tune/gaps.h"
+
+#define SPRINGS                                                                            \
+    "'variables': [{'parameter': 'x1', 'lower': -0.7, 'upper': 0.7}, {'parameter': 'x2', " \
+    "'lower': -0.7, 'upper': 0.7}, {'parameter': 'x3', 'lower': -0.7, 'upper': 0.7}],"     \
+    "'search': {'starts': 4},"
+
+/* Gap assignments of the study with so many boxes for the proof; 0: all it needs. */
+static void solve(mt_test *t, const char *bands, long boxes, mt_gap_result *out)
+{
+    study_case c;
+    char members[1024];
+    mt_arena mem;
+    mt_reference_cache references = {0};
+    mt_problem *p = NULL;
+    *out = (mt_gap_result){0};
+    (void)snprintf(members, sizeof members,
+                   SPRINGS "'goals': [{'type': 'avoid', 'bands_hz': %s}]", bands);
+    CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK);
+    if (study_load(t, "six_masses", members, &c) &&
+        CHECK_INT(t, mt_reference_cache_init(&references, c.study, &mem, &c.err), MT_OK) &&
+        CHECK_INT(t, mt_problem_new(c.study, &references, &p, &c.err), MT_OK)) {
+        p->proof_boxes = boxes;
+        CHECK_INT(t, mt_gaps_solve(p, 1, &mem, out, &c.err), MT_OK);
+        CHECK(t, out->boxes > 0);
+    }
+    out->solutions = NULL; /* the arena goes */
+    mt_problem_delete(p);
+    mt_reference_cache_free(&references);
+    mt_arena_free(&mem);
+    study_free(&c);
+}
+
+/* One band about mode 2: one box leaves both its sides open, and each has designs. */
+static void open_assignments__that_are_all_met_settle_the_question(mt_test *t)
+{
+    mt_gap_result all;
+    mt_gap_result few;
+    static const char bands[] = "[[16.2, 16.6]]";
+    solve(t, bands, 0, &all);
+    CHECK(t, all.proven && all.n_candidates > 0);
+    CHECK_INT(t, all.n_candidates, all.n_feasible);
+    solve(t, bands, 1, &few);
+    CHECK(t, few.boxes < all.boxes && few.reason != NULL); /* the budget ended */
+    CHECK(t, few.proven);
+    CHECK_INT(t, few.n_candidates, few.n_feasible);
+    CHECK_INT(t, few.n_feasible, all.n_feasible);
+}
+
+/* Four bands: few boxes leave assignments open that have no design. */
+static void open_assignments__without_a_design_stay_open(mt_test *t)
+{
+    mt_gap_result all;
+    mt_gap_result few;
+    static const char bands[] = "[[3.87, 4.73], [7.74, 9.46], [15.48, 18.92], [30.96, 37.84]]";
+    solve(t, bands, 0, &all);
+    CHECK(t, all.proven);
+    CHECK_INT(t, all.n_candidates, all.n_feasible);
+    solve(t, bands, 2, &few);
+    CHECK(t, few.n_candidates > few.n_feasible);
+    CHECK(t, few.boxes < all.boxes && !few.proven && few.reason != NULL);
+    CHECK_INT(t, few.n_feasible, all.n_feasible); /* the search finds the same kinds */
+}
+
+MT_TEST_MAIN(MT_TEST(open_assignments__that_are_all_met_settle_the_question),
+             MT_TEST(open_assignments__without_a_design_stay_open))
