@@ -20,9 +20,11 @@ static void slopes(double *g)
 
 static mt_status solve(const double *w, const double *g, double *u, double *z, double *kkt)
 {
-    const mt_cone_block block = {.r = 2, .g = g, .u = u};
-    mt_cone c = {.n = SPRINGS, .gradient = w, .n_blocks = 1, .blocks = &block, .z = z};
+    mt_cone_block block = {.r = 2, .g = g};
+    mt_cone c = {.n = SPRINGS, .gradient = w, .n_blocks = 1, .blocks = &block};
     mt_arena mem;
+    block.u = u;
+    c.z = z;
     mt_status rc = mt_arena_init(&mem, 0, NULL);
     if (rc == MT_OK) {
         rc = mt_cone_residual(&c, &mem, NULL);
