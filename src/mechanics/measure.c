@@ -146,6 +146,19 @@ static void jet_chain(const chain2 *c, const mt_jet *p, const mt_jet *q, mt_jet 
     }
 }
 
+/* A distance of 0 has no direction: its value, without derivatives. */
+static void distance_none(double value, bool second, mt_jet *out)
+{
+    const mt_cx none = cx_pair(nan(""), nan(""));
+    out->value = cx_pair(value, nan(""));
+    for (int i = 0; i < MT_LOCAL; i++) {
+        out->g[i] = none;
+    }
+    for (int i = 0; second && i < MT_LOCAL * MT_LOCAL; i++) {
+        out->h[i] = none;
+    }
+}
+
 /* |r| with r = Q - P: first q = r . r (exact Hessian 2 J^T J + 2 r . d2r), then the square root. */
 static void distance_jet(const mt_cx *s, const mt_cx *t, const mt_cx *d, bool second,
                          mt_jet *out)
@@ -157,7 +170,12 @@ static void distance_jet(const mt_cx *s, const mt_cx *t, const mt_cx *d, bool se
     for (int i = 0; i < 3; i++) {
         r[i] = d[i] + t[i] - s[i];
     }
-    const mt_cx length = cx_sqrt(cx_dot3(r, r));
+    const mt_cx square = cx_dot3(r, r);
+    if (!(creal(square) > 0.0)) {
+        distance_none(sqrt(creal(square)), second, out);
+        return;
+    }
+    const mt_cx length = cx_sqrt(square);
     for (int i = 0; i < 3; i++) {
         u[i] = cx_div(r[i], length);
     }

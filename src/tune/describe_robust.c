@@ -42,7 +42,7 @@ static double beyond(const mt_robust_range *r, mt_robust_side side, double limit
     const double value = r->value[side];
     const double sign = side == MT_LOWEST ? 1.0 : -1.0;
     const double unit = fabs(limit) > 0.0 ? fabs(limit) : 1.0;
-    const double far = sign * (ratio ? log(limit / value) : (limit - value) / unit);
+    const double far = sign * (ratio ? mt_log_ratio(limit, value) : (limit - value) / unit);
     return ratio && far > MT_MOST_INSIDE ? MT_MOST_INSIDE : far; /* NaN stays */
 }
 
