@@ -96,8 +96,8 @@ static inline bool study_load(mt_test *t, const char *model, const char *members
     if (inside) {
         (void)snprintf(model_path, sizeof model_path, "%s/model.json", folder);
     } else {
-        const int length = snprintf(model_path, sizeof model_path, "%s/tests/models/%s.json",
-                                    MT_TEST_SOURCE_DIR, model);
+        const int length = snprintf(model_path, sizeof model_path,
+                                    "%s/tests/models/%.100s.json", MT_TEST_SOURCE_DIR, model);
         CHECK(t, length > 0 && length < STUDY_PATH);
     }
     (void)snprintf(text, sizeof text, "{'format': 'modetune-study/1', 'model': '%s', ",
