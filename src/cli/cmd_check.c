@@ -111,39 +111,47 @@ static void add_messages(const mt_doubt_list *found, const char *path, mt_text *
     mt_text_free(&text);
 }
 
-static mt_status load(int kind, const char *path, const mt_io_options *opt, mt_text *messages,
-                      mt_doubt_list *found, mt_err *err)
+/* What was read: doubts borrow its texts. */
+typedef struct subject {
+    mt_model *model;
+    mt_study *study;
+    mt_result *result;
+    mt_arena mem; /* of a catalogue of aircraft */
+} subject;
+
+static void forget(subject *s)
 {
-    mt_model *model = NULL;
-    mt_study *study = NULL;
-    mt_result *result = NULL;
+    mt_arena_free(&s->mem);
+    mt_model_delete(s->model);
+    mt_study_delete(s->study);
+    mt_result_delete(s->result);
+}
+
+static mt_status load(int kind, const char *path, const mt_io_options *opt, subject *s,
+                      mt_text *messages, mt_doubt_list *found, mt_err *err)
+{
     mt_aircraft_list aircraft = {0};
-    mt_arena mem = {0};
     mt_status rc = MT_OK;
     switch ((file_kind)kind) {
     case KIND_MODEL:
-        rc = mt_model_load(path, opt, &model, messages, err);
-        rc = rc == MT_OK ? examine_model(model, found, err) : rc;
+        rc = mt_model_load(path, opt, &s->model, messages, err);
+        rc = rc == MT_OK ? examine_model(s->model, found, err) : rc;
         break;
     case KIND_STUDY:
-        rc = mt_study_load(path, opt, &study, messages, err);
-        rc = rc == MT_OK ? mt_study_examine(study, found, err) : rc;
+        rc = mt_study_load(path, opt, &s->study, messages, err);
+        rc = rc == MT_OK ? mt_study_examine(s->study, found, err) : rc;
         break;
     case KIND_RESULT:
-        rc = mt_result_load(path, opt, &result, messages, err);
+        rc = mt_result_load(path, opt, &s->result, messages, err);
         break;
     case KIND_AIRCRAFT:
-        rc = mt_arena_init(&mem, 0, err);
-        rc = rc == MT_OK ? mt_aircraft_load(path, opt, &mem, &aircraft, messages, err) : rc;
+        rc = mt_arena_init(&s->mem, 0, err);
+        rc = rc == MT_OK ? mt_aircraft_load(path, opt, &s->mem, &aircraft, messages, err) : rc;
         break;
     case KIND_COUNT:
         break;
     }
     add_messages(found, path, messages);
-    mt_arena_free(&mem);
-    mt_model_delete(model);
-    mt_study_delete(study);
-    mt_result_delete(result);
     return rc;
 }
 
@@ -156,10 +164,11 @@ static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_ta
     int kind = KIND_COUNT;
     mt_arena mem = {.first = NULL};
     mt_doubt_list found = mt_doubt_list_default(&mem);
+    subject read = {.model = NULL};
     mt_status rc = find_kind(path, &opt, &kind, &messages, &err);
     rc = rc == MT_OK ? mt_arena_init(&mem, 0, &err) : rc;
     if (rc == MT_OK) {
-        rc = load(kind, path, &opt, &messages, &found, &err);
+        rc = load(kind, path, &opt, &read, &messages, &found, &err);
     }
     const char *const name = kind == KIND_COUNT ? NULL : kinds[kind];
     const char *problems = rc == MT_OK ? "" : err.text;
@@ -182,6 +191,7 @@ static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_ta
     } else if (rc == MT_OK) {
         mt_text_addf(out, "%s: ok (%s)\n", path, name);
     }
+    forget(&read);
     mt_arena_free(&mem);
     return mt_cli_loaded(rc, &messages, &err);
 }

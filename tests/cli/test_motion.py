@@ -268,7 +268,8 @@ class Random(unittest.TestCase):
 
     def test_what_is_recommended_stays_clear_all_the_way(self):
         seen = 0
-        for seed in range(2 if "MT_INSTRUMENTED" in os.environ else 10):
+        arms = 2 if "MT_INSTRUMENTED" in os.environ else 10
+        for seed in range(arms):
             rng = random.Random(seed)
             model = self.model(rng)
             with tempfile.TemporaryDirectory() as folder, self.subTest(seed=seed):
@@ -296,7 +297,7 @@ class Random(unittest.TestCase):
                 result = json.loads((here / "out/study/result.json").read_text())
                 for design in [result["baseline"]] + result["recommendations"]:
                     seen += self.judge(folder, model, design)
-        self.assertGreater(seen, 8)
+        self.assertGreater(seen, 0.8 * arms)
 
     def judge(self, folder, model, design):
         """1: a design that is called clear was found clear."""
