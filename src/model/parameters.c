@@ -36,6 +36,48 @@ static int missing_operand(const mt_expr *e, const mt_node *nodes)
     return -1;
 }
 
+/* What emission reads and fills. */
+typedef struct emission {
+    const mt_model *model;
+    int configuration;
+    const int *is_input;
+    mt_program *program;
+    mt_node *nodes;
+    int *stack; /* model->n_parameters + 1 places */
+} emission;
+
+/* One parameter and all that it waits for, deepest first. */
+static mt_status emit(const emission *x, int parameter, mt_err *err)
+{
+    mt_node *const nodes = x->nodes;
+    int depth = 0;
+    x->stack[0] = parameter;
+    while (depth >= 0) {
+        const int p = x->stack[depth];
+        if (nodes[p] != MT_NO_NODE) {
+            depth--;
+            continue;
+        }
+        const source s = source_of(x->model, x->configuration, x->is_input, p);
+        const int waits_for = s.input ? -1 : missing_operand(&s.number->expr, nodes);
+        if (waits_for >= 0) {
+            if (depth >= x->model->n_parameters) {
+                return mt_fail(err, MT_E_INTERNAL, "parameter \"%s\" depends on itself",
+                               x->model->parameters[p].name.s);
+            }
+            x->stack[++depth] = waits_for;
+            continue;
+        }
+        nodes[p] = s.input
+                       ? mt_program_input(x->program, x->is_input[p], s.number->addr)
+                       : mt_program_expr(x->program, &s.number->expr, nodes, s.number->addr);
+        if (nodes[p] == MT_NO_NODE) { /* those that wait for it would wait for ever */
+            return mt_fail_memory(err);
+        }
+    }
+    return MT_OK;
+}
+
 mt_status mt_emit_parameters(const mt_model *model, int configuration, const int *is_input,
                              mt_program *program, mt_node *nodes, mt_arena *mem, mt_err *err)
 {
@@ -47,33 +89,9 @@ mt_status mt_emit_parameters(const mt_model *model, int configuration, const int
     for (int i = 0; i < n; i++) {
         nodes[i] = MT_NO_NODE;
     }
+    const emission x = {model, configuration, is_input, program, nodes, stack};
     for (int i = 0; i < n; i++) {
-        int depth = 0;
-        stack[0] = i;
-        while (depth >= 0) {
-            const int p = stack[depth];
-            const source s = source_of(model, configuration, is_input, p);
-            const int waits_for = nodes[p] != MT_NO_NODE || s.input
-                                      ? -1
-                                      : missing_operand(&s.number->expr, nodes);
-            if (waits_for >= 0) {
-                if (depth >= n) {
-                    return mt_fail(err, MT_E_INTERNAL, "parameter \"%s\" depends on itself",
-                                   model->parameters[p].name.s);
-                }
-                stack[++depth] = waits_for;
-                continue;
-            }
-            if (nodes[p] == MT_NO_NODE) {
-                nodes[p] =
-                    s.input ? mt_program_input(program, is_input[p], s.number->addr)
-                            : mt_program_expr(program, &s.number->expr, nodes, s.number->addr);
-                if (nodes[p] == MT_NO_NODE) { /* those that wait for it would wait for ever */
-                    return mt_fail_memory(err);
-                }
-            }
-            depth--;
-        }
+        MT_TRY(emit(&x, i, err));
     }
     return MT_OK;
 }
