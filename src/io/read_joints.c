@@ -2,18 +2,19 @@
 /* Joints, springs and dampers. */
 #include "io/read_model.h"
 
-#define JOINT_KEYS(X)                                \
-    X(JOINT_NAME, "name", TEXT, true)                \
-    X(JOINT_TYPE, "type", TEXT, true)                \
-    X(JOINT_BODIES, "bodies", LIST, false)           \
-    X(JOINT_AT, "at", TEXT_OR_LIST, false)           \
-    X(JOINT_AXIS, "axis", LIST, false)               \
-    X(JOINT_AXIS_B, "axis_b", LIST, false)           \
-    X(JOINT_LENGTH, "length_m", NUMBER, false)       \
-    X(JOINT_JOINTS, "joints", LIST, false)           \
-    X(JOINT_RATIO, "ratio", NUMBER, false)           \
-    X(JOINT_IN, "in", LIST, false)                   \
-    X(JOINT_DESCRIPTION, "description", TEXT, false) \
+#define JOINT_KEYS(X)                                  \
+    X(JOINT_NAME, "name", TEXT, true)                  \
+    X(JOINT_TYPE, "type", TEXT, true)                  \
+    X(JOINT_BODIES, "bodies", LIST, false)             \
+    X(JOINT_AT, "at", TEXT_OR_LIST, false)             \
+    X(JOINT_AXIS, "axis", LIST, false)                 \
+    X(JOINT_AXIS_B, "axis_b", LIST, false)             \
+    X(JOINT_LENGTH, "length_m", NUMBER, false)         \
+    X(JOINT_JOINTS, "joints", LIST, false)             \
+    X(JOINT_RATIO, "ratio", NUMBER, false)             \
+    X(JOINT_RATIO_M, "ratio_m_per_rad", NUMBER, false) \
+    X(JOINT_IN, "in", LIST, false)                     \
+    X(JOINT_DESCRIPTION, "description", TEXT, false)   \
     X(JOINT_SOURCE, "source", TEXT, false)
 enum { JOINT_KEYS(MT_READ_ENUM) JOINT_COUNT };
 MT_READ_TABLE(mt_joint_keys, "joint", JOINT_KEYS);
@@ -89,6 +90,7 @@ static void read_joint(mt_model_reader *mr, mt_addr value, mt_joint *j)
     j->length = mt_read_num(mr, at[JOINT_LENGTH]);
     read_gear(mr, at[JOINT_JOINTS], j);
     j->ratio = mt_read_num(mr, at[JOINT_RATIO]);
+    j->ratio_m_per_rad = mt_read_num(mr, at[JOINT_RATIO_M]);
     j->in = mt_read_presence(mr, at[JOINT_IN]);
     if (mr->r.diags->errors > before) {
         j->type = MT_JOINT_TYPE_COUNT;

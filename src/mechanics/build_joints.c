@@ -4,7 +4,8 @@
  *   point      (Q - P) = 0 along all axes                    parallel   b_a . a_b = c_a . a_b = 0
  *   on line    b_a . (Q - P) = c_a . (Q - P) = 0             no twist   b_a . c_b = 0
  * revolute = point + parallel; cylindrical = on line + parallel; prismatic = cylindrical + no twist; spherical = point; universal = point + a_a . a'_b as drawn;
- * planar = a_a . (Q - P) = 0 + parallel; fixed = point + no rotation; distance |Q - P| = length. In two dimensions what lies out of the plane is left out.
+ * planar = a_a . (Q - P) = 0 + parallel; fixed = point + no rotation; distance |Q - P| = length; on plane a_a . (Q - P) = 0; orientation = no rotation. A gear or
+ * rack couples the coordinates of two joints: s_1 - ratio s_0 as drawn. In two dimensions what lies out of the plane is left out.
  */
 #include "mechanics/build.h"
 
@@ -109,7 +110,14 @@ void mt_build_joint_equations(mt_builder *b, mt_joint_type type, const int body[
         plane(b, body, arm, axis[0]);
         parallel(b, body, axis[0]);
         break;
+    case MT_JOINT_POINT_ON_PLANE:
+        plane(b, body, arm, axis[0]);
+        break;
+    case MT_JOINT_ORIENTATION:
+        no_rotation(b, body);
+        break;
     case MT_JOINT_GEAR:
+    case MT_JOINT_RACK:
     case MT_JOINT_TYPE_COUNT:
         break;
     }
@@ -189,8 +197,10 @@ static mt_status build_gear(mt_builder *b, const mt_joint *joint)
         c->terms = 2;
         c->measure[1] = sys->joints[first].coordinate;
         c->coefficient[0] = b->one;
-        c->coefficient[1] = mt_program_unary(
-            &sys->program, MT_OP_NEG, mt_build_num_or(b, joint->ratio, b->one), MT_NO_ADDR);
+        const mt_num ratio =
+            joint->type == MT_JOINT_RACK ? joint->ratio_m_per_rad : joint->ratio;
+        c->coefficient[1] = mt_program_unary(&sys->program, MT_OP_NEG,
+                                             mt_build_num_or(b, ratio, b->one), MT_NO_ADDR);
         made->count = 1;
     }
     return MT_OK;
@@ -227,7 +237,8 @@ static mt_status build_joint(mt_builder *b, const mt_joint *joint)
                        joint->name.s);
     }
     joint_arms(b, joint, body, arm);
-    if (joint->n_at != 1 || joint->length != MT_ABSENT) {
+    const bool closed = joint->n_at == 1 || joint->type == MT_JOINT_ORIENTATION;
+    if (!closed || joint->length != MT_ABSENT) {
         b->sys->drawn_closed = false;
     }
     if (joint->has_axis) {
@@ -258,8 +269,8 @@ mt_status mt_build_joints(mt_builder *b)
     for (int pass = 0; pass < 2; pass++) { /* gears need the joints that they couple */
         for (int i = 0; i < b->model->n_joints; i++) {
             const mt_joint *const joint = &b->model->joints[i];
-            if ((joint->type == MT_JOINT_GEAR) != (pass == 1) ||
-                !mt_model_present(&joint->in, b->sys->configuration)) {
+            const bool gear = joint->type == MT_JOINT_GEAR || joint->type == MT_JOINT_RACK;
+            if (gear != (pass == 1) || !mt_model_present(&joint->in, b->sys->configuration)) {
                 continue;
             }
             MT_TRY(pass == 1 ? build_gear(b, joint) : build_joint(b, joint));

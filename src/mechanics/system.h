@@ -47,9 +47,9 @@ typedef struct mt_state_body {
 } mt_state_body;
 
 typedef struct mt_constraint_def {
-    int terms; /* 1, or 2 for a gear */
+    int terms; /* 1, or 2 for a gear or rack */
     int measure[2];
-    mt_node coefficient[2]; /* gear only; else MT_NO_NODE (1) */
+    mt_node coefficient[2]; /* gear, rack; else MT_NO_NODE (1) */
     mt_node target;         /* MT_NO_NODE: the value as drawn where `drawn`, else 0 */
     bool drawn;
     int joint; /* of the system's joints */

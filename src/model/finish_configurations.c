@@ -261,7 +261,8 @@ static void check_drive_unit(mt_finish *f, const mt_drive *drive)
     }
     const char coordinate = coordinates[joint->type];
     if (coordinate == '-') {
-        mt_diag_error(f->d, drive->joint_name.addr, "a %s joint cannot be driven",
+        mt_diag_error(f->d, drive->joint_name.addr, "%s %s joint cannot be driven",
+                      joint->type == MT_JOINT_ORIENTATION ? "an" : "a",
                       mt_joint_type_name(joint->type));
     } else if (drive->position != MT_ABSENT &&
                drive->position_is_angle != (coordinate == 'a')) {

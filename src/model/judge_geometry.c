@@ -317,7 +317,7 @@ static double gap_of(const mt_judge *j, const mt_joint *joint)
     if (!(norm > 0.0)) {
         return nan("");
     }
-    if (joint->type == MT_JOINT_PLANAR) {
+    if (joint->type == MT_JOINT_PLANAR || joint->type == MT_JOINT_POINT_ON_PLANE) {
         return fabs(dot) / sqrt(norm);
     }
     for (int k = 0; k < 3; k++) { /* free along the axis */

@@ -152,18 +152,21 @@ typedef struct mt_link {
 } mt_link;
 
 /* type, JSON name, in 2-D, in 3-D, coordinate: 'a' angle, 'd' displacement, '-' none (what `drive` may move) */
-#define MT_JOINT_LIST(X)                                         \
-    X(MT_JOINT_FIXED, "fixed", true, true, '-')                  \
-    X(MT_JOINT_REVOLUTE, "revolute", true, true, 'a')            \
-    X(MT_JOINT_PRISMATIC, "prismatic", true, true, 'd')          \
-    X(MT_JOINT_PIN_IN_SLOT, "pin-in-slot", true, false, 'd')     \
-    X(MT_JOINT_DISTANCE, "distance", true, true, '-')            \
-    X(MT_JOINT_CYLINDRICAL, "cylindrical", false, true, 'a')     \
-    X(MT_JOINT_SPHERICAL, "spherical", false, true, '-')         \
-    X(MT_JOINT_UNIVERSAL, "universal", false, true, '-')         \
-    X(MT_JOINT_PLANAR, "planar", false, true, '-')               \
-    X(MT_JOINT_POINT_ON_LINE, "point-on-line", false, true, 'd') \
-    X(MT_JOINT_GEAR, "gear", false, true, '-')
+#define MT_JOINT_LIST(X)                                           \
+    X(MT_JOINT_FIXED, "fixed", true, true, '-')                    \
+    X(MT_JOINT_REVOLUTE, "revolute", true, true, 'a')              \
+    X(MT_JOINT_PRISMATIC, "prismatic", true, true, 'd')            \
+    X(MT_JOINT_PIN_IN_SLOT, "pin-in-slot", true, false, 'd')       \
+    X(MT_JOINT_DISTANCE, "distance", true, true, '-')              \
+    X(MT_JOINT_CYLINDRICAL, "cylindrical", false, true, 'a')       \
+    X(MT_JOINT_SPHERICAL, "spherical", false, true, '-')           \
+    X(MT_JOINT_UNIVERSAL, "universal", false, true, '-')           \
+    X(MT_JOINT_PLANAR, "planar", false, true, '-')                 \
+    X(MT_JOINT_POINT_ON_LINE, "point-on-line", false, true, 'd')   \
+    X(MT_JOINT_POINT_ON_PLANE, "point-on-plane", false, true, '-') \
+    X(MT_JOINT_ORIENTATION, "orientation", true, true, '-')        \
+    X(MT_JOINT_GEAR, "gear", true, true, '-')                      \
+    X(MT_JOINT_RACK, "rack", true, true, '-')
 #define MT_JOINT_ENUM(id, name, in2, in3, coordinate) id,
 typedef enum mt_joint_type { MT_JOINT_LIST(MT_JOINT_ENUM) MT_JOINT_TYPE_COUNT } mt_joint_type;
 #undef MT_JOINT_ENUM
@@ -176,13 +179,14 @@ typedef struct mt_joint {
     mt_position at[2]; /* one point, or the point on each body as drawn */
     bool has_axis;
     mt_num axis
-        [3]; /* revolute, cylindrical, planar: axis / normal; prismatic, slot, line: direction. Fixed to bodies[0] (drawn on both). Not normalised */
+        [3]; /* revolute, cylindrical, planar, plane: axis / normal; prismatic, slot, line: direction. Fixed to bodies[0] (drawn on both). Not normalised */
     bool has_axis_b;
     mt_num axis_b[3];       /* universal: second axis, on bodies[1] */
     mt_num length;          /* distance: m; absent: as drawn */
-    mt_name gear_joints[2]; /* gear: angle of [1] = ratio * angle of [0] */
+    mt_name gear_joints[2]; /* gear, rack: coordinate of [1] = ratio * angle of [0] */
     int gear_joint[2];
-    mt_num ratio;
+    mt_num ratio;           /* gear: 1 */
+    mt_num ratio_m_per_rad; /* rack */
     mt_presence in;
 } mt_joint;
 

@@ -170,6 +170,11 @@ static const struct {
     {    "space_stick",      "geared",     "k tilt l m kb ratio", 4},
     {    "space_frame",      "loaded",              "h x E mass", 3},
     {    "space_frame",  "weightless",              "h x E mass", 3},
+    {      "couplings",      "planet",             "g N r k l m", 3},
+    {      "couplings",      "coiled",                 "N r k l", 4},
+    {      "couplings",      "driven",          "g N r k l m to", 3},
+    {"space_couplings",      "loaded",            "tilt k m r h", 4},
+    {"space_couplings",  "weightless",                "tilt r h", 4},
 };
 
 static void derivatives__agree_with_slopes_in_every_mechanism(mt_test *t)

@@ -188,6 +188,8 @@ static const struct {
     { "space_four_bar",        NULL, false},
     {    "space_stick",        NULL, false},
     {    "space_frame",        NULL, false},
+    {      "couplings",        NULL, false},
+    {"space_couplings",        NULL, false},
 };
 
 static void oracle__udwadia_kalaba_agrees_on_every_model(mt_test *t)
