@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mechanics/drive.h"
+#include "mechanics/reduce.h"
 #include "mechanics/tangent.h"
 
 void mt_linear_delete(mt_linear *lin)
@@ -60,32 +61,6 @@ mt_status mt_linear_new(const mt_system *sys, mt_linear **out, mt_err *err)
     return MT_OK;
 }
 
-/* r = Z^T row for all rows of one kind. */
-static mt_status reduce_rows(mt_linear *lin, int kind, mt_err *err)
-{
-    const mt_term_list *const list = &lin->list[kind];
-    const ptrdiff_t nq = lin->sys->nq;
-    lin->reduced[kind] = mt_arena_f64(&lin->geometry, (size_t)lin->n, (size_t)list->n_rows);
-    if (lin->reduced[kind] == NULL) {
-        return mt_fail_memory(err);
-    }
-    for (int i = 0; i < list->n_rows; i++) {
-        const mt_term *const t = &list->terms[list->row_term[i]];
-        const double *const row = lin->rows[kind] + ((ptrdiff_t)i * MT_LOCAL);
-        double *const out = lin->reduced[kind] + ((ptrdiff_t)i * lin->n);
-        for (int k = 0; k < MT_LOCAL; k++) {
-            const int dof = mt_local_dof(lin->sys, t->body, k);
-            if (dof < 0 || row[k] == 0.0) {
-                continue;
-            }
-            for (int c = 0; c < lin->n; c++) {
-                out[c] += row[k] * lin->e.z[dof + (c * nq)];
-            }
-        }
-    }
-    return MT_OK;
-}
-
 static mt_status evaluate_rows(mt_linear *lin, mt_err *err)
 {
     for (int kind = 0; kind < MT_TERM_KINDS; kind++) {
@@ -102,11 +77,8 @@ static mt_status evaluate_rows(mt_linear *lin, mt_err *err)
             lin->rows[kind][i] = creal(rows[i]);
         }
         mt_arena_rewind(&lin->scratch, mark);
-        if (kind != MT_TERM_CHANNEL) {
-            MT_TRY(reduce_rows(lin, kind, err));
-        }
     }
-    return MT_OK;
+    return mt_reduce_rows(lin, err);
 }
 
 /* Forces below this many times the rounding of the positions are none: what Newton leaves of a spring that nothing stretches. */
@@ -196,8 +168,9 @@ static mt_status fixed_parts(mt_linear *lin, mt_err *err)
     const size_t rows = (size_t)lin->list[MT_TERM_STIFFNESS].n_rows;
     lin->factor_b = mt_arena_f64(&lin->geometry, rows, n);
     lin->factor_c = mt_arena_f64(&lin->geometry, rows, 1);
+    lin->factor_noise = mt_arena_f64(&lin->geometry, rows, n);
     if (lin->k == NULL || lin->m_r == NULL || lin->k_fixed == NULL || lin->m_fixed == NULL ||
-        lin->factor_b == NULL || lin->factor_c == NULL) {
+        lin->factor_b == NULL || lin->factor_c == NULL || lin->factor_noise == NULL) {
         return mt_fail_memory(err);
     }
     if (lin->kg != NULL) {
@@ -217,6 +190,7 @@ static mt_status fixed_parts(mt_linear *lin, mt_err *err)
     for (size_t r = 0; r < rows; r++) {
         for (size_t c = 0; c < n; c++) {
             lin->factor_b[r + (c * rows)] = lin->reduced[MT_TERM_STIFFNESS][c + (r * n)];
+            lin->factor_noise[r + (c * rows)] = lin->noise[c + (r * n)];
         }
     }
     return MT_OK;

@@ -36,14 +36,17 @@ typedef struct mt_linear {
     double *a;        /* m x nq */
     int n;            /* freedoms */
     double *rows[MT_TERM_KINDS];    /* 12 x n_rows, local freedoms */
-    double *reduced[MT_TERM_KINDS]; /* n x n_rows: Z^T row; channels: not used */
-    double *kg;                     /* nq x nq geometric stiffness; NULL where nothing loads */
-    double *k;                      /* n x n */
-    double *m_r;                    /* n x n */
-    double *k_fixed;                /* part of K_r from terms without inputs (and Kg) */
+    double *reduced[MT_TERM_KINDS]; /* n x n_rows: Z^T row, rounding made 0 (reduce.h) */
+    bool *blocked[MT_TERM_KINDS];   /* [n_rows]: the joints block it, the reduced row is 0 */
+    double *noise;   /* n x n_rows: bounds of the errors of reduced[MT_TERM_STIFFNESS] */
+    double *kg;      /* nq x nq geometric stiffness; NULL where nothing loads */
+    double *k;       /* n x n */
+    double *m_r;     /* n x n */
+    double *k_fixed; /* part of K_r from terms without inputs (and Kg) */
     double *m_fixed;
     double *factor_b; /* list[STIFFNESS].n_rows x n: K_r = B^T diag(c) B, where has_factor */
     double *factor_c;
+    double *factor_noise; /* bounds of the errors of factor_b's entries */
     bool has_factor; /* no geometric stiffness, no coupling terms, no negative coefficient */
     unsigned long mass_version; /* changes when M_r does */
     unsigned long geometry_version;

@@ -122,12 +122,21 @@ static void row_axpy(const mt_system *sys, const mt_term *t, double alpha, const
     }
 }
 
+/* A row that the joints block, r = Z^T f = 0, has no part in a derivative: (r r^T)' = r' r^T + r r'^T = 0. */
+static bool is_blocked(const mt_linear *lin, int kind, int row, const mt_term *t)
+{
+    return lin->blocked[kind][row] && !t->pair;
+}
+
 /* out += K phi (kind STIFFNESS) or M phi (MASS), full coordinates, without the geometric part. */
 static void full_product(const mt_linear *lin, int kind, const double *phi, double *out)
 {
     const mt_term_list *const list = &lin->list[kind];
     for (int i = 0; i < list->n_rows; i++) {
         const mt_term *const t = &list->terms[list->row_term[i]];
+        if (is_blocked(lin, kind, i, t)) {
+            continue;
+        }
         const int other = t->pair ? (2 * t->first) + 1 - i : i; /* the partner of a pair */
         const double c = lin->value[t->coefficient] * (t->pair ? 0.5 : 1.0);
         const double s =
@@ -144,6 +153,9 @@ static void full_product_derivative(const mt_linear *lin, int kind, int p, const
     const mt_linear_tangent *const tangent = &lin->tangent[p];
     for (int i = 0; i < list->n_rows; i++) {
         const mt_term *const t = &list->terms[list->row_term[i]];
+        if (is_blocked(lin, kind, i, t)) {
+            continue;
+        }
         const int other = t->pair ? (2 * t->first) + 1 - i : i;
         const double half = t->pair ? 0.5 : 1.0;
         const double c = lin->value[t->coefficient] * half;
@@ -285,9 +297,10 @@ mt_status mt_linear_sense(mt_linear *lin, int ns, const int *channel, int cols, 
         mt_eliminate_expand(&lin->e, y + ((ptrdiff_t)c * lin->n), phi);
         for (int i = 0; i < ns; i++) {
             const mt_term *const t = &list->terms[channel[i]];
-            s[i + ((ptrdiff_t)c * ns)] =
-                row_dot(lin->sys, t,
-                        lin->rows[MT_TERM_CHANNEL] + ((ptrdiff_t)t->first * MT_LOCAL), phi);
+            const double *const row =
+                lin->rows[MT_TERM_CHANNEL] + ((ptrdiff_t)t->first * MT_LOCAL);
+            const bool still = lin->blocked[MT_TERM_CHANNEL][t->first];
+            s[i + ((ptrdiff_t)c * ns)] = still ? 0.0 : row_dot(lin->sys, t, row, phi);
         }
     }
     mt_arena_rewind(&lin->scratch, mark);

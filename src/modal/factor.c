@@ -9,7 +9,7 @@
  *
  * C may be rank deficient (rigid-body modes; more springs than freedoms). Its null space does
  * not depend on D, so it is split off first: rows of C are scaled to unit norm (the norms join
- * D), C^T P = Q R with column pivoting has Q = [Q1 Q2], Q2 the null space. Then
+ * D; rows that are known less well are made shorter, see weigh), C^T P = Q R with column pivoting has Q = [Q1 Q2], Q2 the null space. Then
  *     D C Q1 = D P R^T   (rows of R^T put into C's order)
  * is of full column rank, and every row of R^T keeps its own relative error, so that D, which
  * scales rows, does no harm. lambda: zero for Q2, sigma^2 for Q1 V.
@@ -25,8 +25,9 @@
 typedef struct graded {
     int n;
     int rows;   /* rows of B with c > 0 and some entry */
-    double *ct; /* n x rows: columns are unit rows of C */
-    double *d;  /* [rows] sqrt(c) times the norm of the row */
+    double tol; /* relative rounding of the best rows of C, at least 16 n eps */
+    double *ct; /* n x rows: columns are rows of C, of length one or (noisy ones) less */
+    double *d;  /* [rows] sqrt(c) times the row's length, over that in ct */
     mt_qr qr;   /* of ct */
     double *f;  /* rows x rank: D P R^T */
     double *s;  /* [rank] descending */
@@ -47,8 +48,21 @@ static void transform(const mt_stiffness_factor *b, const mt_mass_factor *mass, 
     }
 }
 
-/* Unit columns, empty ones squeezed out. */
-static mt_status normalise(const mt_stiffness_factor *b, graded *g, mt_err *err)
+/* What the errors of row j of B make of row j of C, relative to its length: |dC_j|^2 = db^T M^-1 db, of which the diagonal is what independent errors leave. */
+static double relative_noise(const mt_stiffness_factor *b, const mt_mass_factor *mass, int j,
+                             double norm)
+{
+    double sum = 0.0;
+    for (int i = 0; i < mass->n && b->noise != NULL; i++) {
+        const double e = b->noise[j + (ptrdiff_t)i * b->rows];
+        sum += e * e * mass->w[i];
+    }
+    return sqrt(sum) / norm;
+}
+
+/* Columns of length one, empty ones squeezed out; rho: their relative noise. */
+static mt_status normalise(const mt_stiffness_factor *b, const mt_mass_factor *mass, graded *g,
+                           double *rho, mt_err *err)
 {
     for (int j = 0; j < b->rows; j++) {
         const double *const from = g->ct + (ptrdiff_t)j * g->n;
@@ -63,10 +77,31 @@ static mt_status normalise(const mt_stiffness_factor *b, graded *g, mt_err *err)
                 to[i] = from[i] / norm;
             }
             g->d[g->rows] = sqrt(b->c[j]) * norm;
+            rho[g->rows] = relative_noise(b, mass, j, norm);
             g->rows++;
         }
     }
     return MT_OK;
+}
+
+/* Rows are shortened until the noise of none exceeds that of the best: then one tolerance decides the rank, and precise rows are chosen before noisy ones. D takes it back. */
+static void weigh(graded *g, const double *rho)
+{
+    double best = HUGE_VAL;
+    for (int j = 0; j < g->rows; j++) {
+        best = fmin(best, rho[j]);
+    }
+    g->tol = mt_modal_tolerance(g->n > g->rows ? g->n : g->rows);
+    g->tol = g->rows > 0 ? fmax(g->tol, best) : g->tol;
+    for (int j = 0; j < g->rows; j++) {
+        if (rho[j] > g->tol) {
+            const double weight = g->tol / rho[j];
+            for (int i = 0; i < g->n; i++) {
+                g->ct[i + (ptrdiff_t)j * g->n] *= weight;
+            }
+            g->d[j] /= weight;
+        }
+    }
 }
 
 static mt_status prepare(const mt_stiffness_factor *b, const mt_mass_factor *mass, graded *g,
@@ -75,19 +110,19 @@ static mt_status prepare(const mt_stiffness_factor *b, const mt_mass_factor *mas
     const size_t rows = (size_t)b->rows;
     const size_t n = (size_t)g->n;
     double *const bt = mass->t != NULL ? mt_arena_f64(scratch, n, rows) : NULL;
+    double *const rho = mt_arena_f64(scratch, rows, 1);
     g->ct = mt_arena_f64(scratch, n, rows);
     g->d = mt_arena_f64(scratch, rows, 1);
-    if (g->ct == NULL || g->d == NULL || (mass->t != NULL && bt == NULL)) {
+    if (g->ct == NULL || g->d == NULL || rho == NULL || (mass->t != NULL && bt == NULL)) {
         return mt_fail_memory(err);
     }
     if (!mt_all_finite((ptrdiff_t)b->rows * g->n, b->b)) {
         return mt_fail(err, MT_E_DOMAIN, "stiffness factor: an entry is not a finite number");
     }
     transform(b, mass, bt, g->ct);
-    MT_TRY(normalise(b, g, err));
-    const int larger = g->n > g->rows ? g->n : g->rows;
-    return mt_qr_factor(g->n, g->rows, g->ct, g->n, mt_modal_tolerance(larger), scratch, &g->qr,
-                        err);
+    MT_TRY(normalise(b, mass, g, rho, err));
+    weigh(g, rho);
+    return mt_qr_factor(g->n, g->rows, g->ct, g->n, g->tol, scratch, &g->qr, err);
 }
 
 static mt_status singular_values(graded *g, mt_arena *scratch, mt_err *err)
@@ -146,6 +181,7 @@ mt_status mt_modal_by_factor(const mt_stiffness_factor *factor, const mt_mass_fa
     }
     out->from_factor = true;
     out->error_bound = 0.0;
-    out->error_relative = mt_modal_tolerance(g.n) * (mass->condition + 1.0 / g.qr.kept);
+    out->error_relative =
+        fmax(g.tol, mt_modal_tolerance(g.n)) * (mass->condition + 1.0 / g.qr.kept);
     return MT_OK;
 }

@@ -63,6 +63,9 @@ typedef struct mt_stiffness_factor {
     int rows;
     const double *b; /* rows x n */
     const double *c; /* [rows], >= 0 */
+    const double
+        *noise; /* rows x n: bounds of the entries' errors, for rows that are small differences
+                   of large terms; NULL: roundings of the entries themselves */
 } mt_stiffness_factor;
 
 typedef struct mt_modal_options {

@@ -89,8 +89,10 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
     MT_TRY(mt_linear_update(a->lin, inputs, opt->gradient, err));
     MT_TRY(refresh_mass(a, err));
     const mt_linear *const lin = a->lin;
-    const mt_stiffness_factor factor = {
-        .rows = lin->list[MT_TERM_STIFFNESS].n_rows, .b = lin->factor_b, .c = lin->factor_c};
+    const mt_stiffness_factor factor = {.rows = lin->list[MT_TERM_STIFFNESS].n_rows,
+                                        .b = lin->factor_b,
+                                        .c = lin->factor_c,
+                                        .noise = lin->factor_noise};
     mt_modal_options options = mt_modal_options_default();
     options.n_rigid = a->n_rigid;
     options.vectors = opt->vectors || opt->gradient;
