@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Random mechanisms against an independent mechanics in eighty digits.
+
+    run.py [--seed S] [--count N] [--seconds T] [--only KIND] [--index I] [--keep DIR]
+
+Mechanism I of kind KIND with seed S is the same on every machine; a finding says how to see it again.
+"""
+import argparse
+import json
+import os
+import random
+import subprocess
+import sys
+import tempfile
+import time
+from decimal import Decimal
+from pathlib import Path
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+sys.dont_write_bytecode = True
+
+import statics  # noqa: E402
+from changes import CHANGES  # noqa: E402
+from exact import number  # noqa: E402
+from known import reason  # noqa: E402
+from makers import KINDS  # noqa: E402
+from oracle import Refused  # noqa: E402
+
+SOURCE = Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
+ACCURACY = Decimal("1e-9")  # of frequencies
+SLOPES = Decimal("1e-6")    # of derivatives, in frequency per parameter
+STEP = Decimal("1e-20")     # relative, of a parameter; the oracle has eighty digits
+APART = Decimal("1e-4")     # relative; closer frequencies have no derivative of their own
+
+
+class Answer:
+    """What the program says of one configuration."""
+
+    def __init__(self, folder, name, model, command="modes", *more):
+        path = folder / f"{name}.json"
+        path.write_text(json.dumps(model, indent=1))
+        done = subprocess.run([PROGRAM, command, str(path), "--format", "json", "--quiet", *more], capture_output=True, encoding="utf-8", timeout=120)
+        self.code, self.words = done.returncode, done.stderr
+        answer = json.loads(done.stdout) if done.returncode == 0 else None
+        self.said = answer[0] if isinstance(answer, list) else answer
+
+    def crashed(self):
+        return self.code not in (0, 2, 3) or "runtime error" in self.words or "Sanitizer" in self.words
+
+    def counts(self):
+        return {"freedoms": self.said["freedoms"], "rigid": self.said["rigid_body_modes"], "unstable": self.said["unstable_modes"],
+                "redundant": len(self.said["redundant_constraints"])}
+
+    def hz(self):
+        return [number(m["frequency_hz"]) for m in self.said["modes"] if m["kind"] == "flexible"]
+
+
+class Case:
+    def __init__(self, folder, kind, rng, model):
+        self.folder, self.kind, self.rng, self.model = folder, kind, rng, model
+        self.modes = statics.modes(model)
+        self.expected = {**self.modes.counts(), "redundant": self.modes.redundant}
+        self.hz = self.modes.hz()
+
+    def agree(self, answer, factor=1):
+        """Sentences on what an answer of the program has wrong."""
+        if answer.crashed():
+            yield "exit", f"exit code {answer.code}: {answer.words[-1000:]}"
+        elif answer.code:
+            yield "refused", f"refused: {answer.words.strip()[-300:]}"
+        elif answer.counts() != self.expected:
+            yield "counts", f"counts {answer.counts()}, exact {self.expected}"
+        else:
+            worst = max(((abs(a / (b * factor) - 1), i) for i, (a, b) in enumerate(zip(answer.hz(), self.hz))), default=(Decimal(0), 0))
+            if worst[0] > ACCURACY:
+                i = worst[1]
+                yield "frequencies", f"mode {i + 1} is {answer.hz()[i]} Hz, exact {self.hz[i] * factor:.17g} Hz, {worst[0]:.1e} off"
+
+    def slopes(self):
+        """One parameter's derivatives against differences of the oracle."""
+        if not self.model.get("parameters") or not self.hz:
+            return
+        name = self.rng.choice(sorted(self.model["parameters"]))
+        answer = Answer(self.folder, "slopes", self.model, "sensitivity", "--parameters", name)
+        if answer.code:
+            yield "exit", f"sensitivity to {name}: exit code {answer.code}: {answer.words[-300:]}"
+            return
+        value = number(self.model["parameters"][name]["value"])
+        step = STEP * (abs(value) if value else 1)
+        near = [self.modes.shifted({name: value + s * step}) for s in (-1, 1)]
+        if any(m.counts() != self.modes.counts() for m in near):
+            return  # the mechanism changes with the parameter: there is no derivative
+        low, high = (m.hz() for m in near)
+        for i, mode in enumerate(answer.said["modes"]):
+            f = self.hz[i]
+            if any(abs(g / f - 1) < APART for j, g in enumerate(self.hz) if j != i):
+                continue
+            exact = (high[i] - low[i]) / (2 * step)
+            given = next(s for s in mode["sensitivities"] if s["parameter"] == name)["hz_per_unit"]
+            size = f / abs(value) if value else f
+            if given is None or abs(number(given) - exact) > SLOPES * max(abs(exact), size):
+                yield "slopes", f"mode {i + 1} ({f:.6g} Hz) to {name}: {given} Hz per unit, exact {exact:.12g}"
+                return
+
+    def findings(self):
+        """(check, sentence)."""
+        found = list(self.agree(Answer(self.folder, "as_made", self.model)))
+        yield from found
+        if found:
+            return
+        for name, change in CHANGES.items():
+            changed = change(self.rng, self.model)
+            if changed is not None:
+                for check, text in self.agree(Answer(self.folder, name, changed[0]), changed[1]):
+                    yield name if check in ("counts", "frequencies", "refused") else check, text
+        yield from self.slopes()
+
+
+def hunt(seed, kinds, indices, tally, seconds=None, keep=None):
+    """Yields (kind, index, check, text, why it is expected or None); counts in tally what was done."""
+    started = time.monotonic()
+    with tempfile.TemporaryDirectory() as scratch:
+        for index in indices:
+            for kind in kinds:
+                if seconds is not None and time.monotonic() - started > seconds:
+                    return
+                folder = Path(keep or scratch) / f"{kind}_{index}"
+                folder.mkdir(parents=True, exist_ok=True)
+                rng = random.Random(f"{seed}:{kind}:{index}")
+                model = KINDS[kind](rng)
+                tally["mechanisms"] += 1
+                try:
+                    case = Case(folder, kind, rng, model)
+                except Refused as why:
+                    tally["left out"] += 1
+                    tally[str(why)] = tally.get(str(why), 0) + 1
+                    continue
+                for check, text in case.findings():
+                    yield kind, index, check, text, reason(check, case)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seed", default="1")
+    parser.add_argument("--count", type=int, default=20, help="mechanisms of each kind")
+    parser.add_argument("--seconds", type=float)
+    parser.add_argument("--only", choices=list(KINDS), action="append")
+    parser.add_argument("--index", type=int)
+    parser.add_argument("--rare", type=float, default=0.0, help="findings per mechanism up to which the exit status is 0")
+    parser.add_argument("--known", action="store_true", help="show findings that wait for their mending, too")
+    parser.add_argument("--keep", help="write models here")
+    args = parser.parse_args()
+    indices = range(args.count) if args.index is None else [args.index]
+    bad, waiting, tally = 0, 0, {"mechanisms": 0, "left out": 0}
+    for kind, index, check, text, why in hunt(args.seed, args.only or list(KINDS), indices, tally, args.seconds, args.keep):
+        bad, waiting = bad + (why is None), waiting + (why is not None)
+        if why is None or args.known or args.index is not None:
+            print(f"{check}: {text}{f' (known: {why})' if why else ''}\n"
+                  f"    tests/mechanisms/run.py --seed {args.seed} --only {kind} --index {index}", flush=True)
+    left = ", ".join(f"{k}: {v}" for k, v in tally.items() if k != "mechanisms")
+    print(f"{tally['mechanisms']} mechanisms of seed {args.seed} ({left}): {bad} findings, {waiting} known")
+    return 1 if bad > args.rare * tally["mechanisms"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Random mechanisms in the suite: saved cases, faults that must be found, and some hundred of a fixed seed."""
+import copy
+import json
+import os
+import random
+import tempfile
+import unittest
+from decimal import Decimal
+from pathlib import Path
+
+import exact
+import run
+import statics
+from faults import FAULTS
+from known import reason
+
+SEED = "1"
+COUNT = 2 if os.environ.get("MT_INSTRUMENTED") or os.environ.get("MT_TEST_LAUNCHED") else 25  # of each kind
+CASES = Path(__file__).resolve().parent / "cases"
+G = 9.81
+
+
+class Oracle(unittest.TestCase):
+    """What the oracle finds where the answer is known."""
+
+    def _hz(self, model):
+        return [float(x) for x in statics.modes({"format": "modetune-model/1", **model}).hz()]
+
+    def test_arithmetic(self):
+        s, c = exact.sine_cosine(exact.PI / 6)
+        self.assertLess(abs(s - Decimal("0.5")), Decimal("1e-76"))
+        self.assertLess(abs(exact.angle(s, c) - exact.PI / 6), Decimal("1e-70"))
+        f, first, second = exact.angle_over_sine(c)
+        self.assertLess(abs(f - exact.PI / 3), Decimal("1e-70"))
+        near = [exact.angle_over_sine(c + h * Decimal("1e-25"))[0] for h in (-1, 0, 1)]
+        self.assertLess(abs((near[2] - near[0]) / Decimal("2e-25") - first), Decimal("1e-45"))
+        self.assertLess(abs((near[2] - 2 * near[1] + near[0]) / Decimal("1e-50") - second), Decimal("1e-20"))
+
+    def test_hanging_rod(self):
+        rod = {"dimension": 2, "gravity_m_per_s2": [0, -G], "bodies": [{"name": "b", "mass_kg": 2, "inertia_kg_m2": 0.5, "centre": [0.6, -0.8]}],
+               "joints": [{"name": "j", "type": "revolute", "bodies": ["ground", "b"], "at": [0, 0]}]}
+        self.assertAlmostEqual(self._hz(rod)[0], (2 * G * 1 / (0.5 + 2)) ** 0.5 / (2 * float(exact.PI)), places=14)
+
+    def test_tensioned_bead(self):
+        """Across a string: 2 T/l; along it 2 k."""
+        bead = {"dimension": 3, "bodies": [{"name": "b", "mass_kg": 0.1, "centre": [0, 0, 0]}],
+                "springs": [{"name": f"s{x}", "type": "axial", "bodies": ["ground", "b"], "at": [[x, 0, 0], [0, 0, 0]], "stiffness_n_per_m": 500,
+                             "preload_n": 8} for x in (-2, 2)]}
+        expected = [(k / 0.1) ** 0.5 / (2 * float(exact.PI)) for k in (8, 8, 1000)]
+        for a, b in zip(self._hz(bead), expected):
+            self.assertAlmostEqual(a, b, places=13)
+
+    def test_spinning_freedoms(self):
+        """A body in space on a ball joint and a bushing that only turns: three vibrations, nothing else; without it three free motions."""
+        body = {"dimension": 3, "bodies": [{"name": "b", "mass_kg": 1, "inertia_kg_m2": [0.2, 0.3, 0.4], "centre": [0, 0, 0]}],
+                "joints": [{"name": "j", "type": "spherical", "bodies": ["ground", "b"], "at": [0, 0, 0]}]}
+        self.assertEqual(statics.modes(body).counts(), {"freedoms": 3, "rigid": 3, "unstable": 0})
+        body["springs"] = [{"name": "s", "type": "bushing", "bodies": ["ground", "b"], "at": [0, 0, 0], "stiffness_n_per_m": [1, 1, 1],
+                            "stiffness_n_m_per_rad": [20, 90, 40]}]
+        for a, k in zip(self._hz(body), (100, 100, 300)):
+            self.assertAlmostEqual(a, k ** 0.5 / (2 * float(exact.PI)), places=13)
+
+
+class Cases(unittest.TestCase):
+    """What was once found. A case is one file {"holds": why it is here, "model": ...}."""
+
+    def test_cases(self):
+        for path in sorted(CASES.glob("*.json")):
+            case = json.loads(path.read_text())
+            with self.subTest(case=path.stem), tempfile.TemporaryDirectory() as folder:
+                found = run.Case(Path(folder), None, random.Random(path.stem), case["model"])
+                wrong = [f for f in found.findings() if not reason(f[0], found)]
+                self.assertEqual(wrong, [], case["holds"])
+
+
+class Faults(unittest.TestCase):
+    def test_faults_are_found(self):
+        for plant, kinds, least in FAULTS:
+            with self.subTest(fault=plant.__name__), tempfile.TemporaryDirectory() as folder:
+                self.assertGreaterEqual(self._found(Path(folder), plant, kinds), least)
+
+    def _found(self, folder, plant, kinds, of=10):
+        tried = found = index = 0
+        while tried < of:
+            self.assertLess(index, 100, "the fault has no place in these mechanisms")
+            rng = random.Random(f"faults:{index}")
+            model = run.KINDS[kinds[index % len(kinds)]](rng)
+            index += 1
+            faulty = copy.deepcopy(model)
+            if not plant(faulty):
+                continue
+            case = run.Case(folder, None, rng, model)
+            if list(case.agree(run.Answer(folder, "sound", model))):
+                continue
+            tried += 1
+            found += bool(list(case.agree(run.Answer(folder, "faulty", faulty))))
+        return found
+
+
+class Mechanisms(unittest.TestCase):
+    def test_random_mechanisms(self):
+        tally = {"mechanisms": 0, "left out": 0}
+        for kind, index, check, text, why in run.hunt(SEED, list(run.KINDS), range(COUNT), tally):
+            if why is None:
+                with self.subTest(check=check):
+                    self.fail(f"{text}\n    tests/mechanisms/run.py --seed {SEED} --only {kind} --index {index}")
+        self.assertLess(tally["left out"], max(2, tally["mechanisms"] // 20))
+
+
+if __name__ == "__main__":
+    unittest.main()
