@@ -30,6 +30,7 @@ extern const mt_key_table mt_section_keys;
 extern const mt_key_table mt_joint_keys;
 extern const mt_key_table mt_spring_keys;
 extern const mt_key_table mt_damper_keys;
+extern const mt_key_table mt_load_keys;
 extern const mt_key_table mt_sensor_keys;
 extern const mt_key_table mt_mode_keys;
 extern const mt_key_table mt_configuration_keys;
@@ -57,6 +58,7 @@ void *mt_read_grow(mt_model_reader *mr, void *items, int count, int *capacity, s
 void mt_read_links(mt_model_reader *mr, mt_addr list);
 void mt_read_joints(mt_model_reader *mr, mt_addr list);
 void mt_read_springs(mt_model_reader *mr, mt_addr springs, mt_addr dampers);
+void mt_read_loads(mt_model_reader *mr, mt_addr list);
 void mt_read_sensors(mt_model_reader *mr, mt_addr list);
 void mt_read_modes(mt_model_reader *mr, mt_addr object);
 void mt_read_configurations(mt_model_reader *mr, mt_addr object);

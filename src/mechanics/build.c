@@ -215,29 +215,34 @@ void mt_build_inertia(mt_builder *b, const mt_inertia_def *def)
     sys->inertias[sys->n_inertias++] = *def;
 }
 
-void mt_build_gravity_at(mt_builder *b, int body, int point, mt_node mass)
+void mt_build_load(mt_builder *b, const mt_load_def *def)
 {
     mt_system *const sys = b->sys;
-    const mt_configuration *const c = &b->model->configurations[sys->configuration];
-    bool any = false;
-    mt_load_def load = {.body = body, .point = point};
-    for (int i = 0; i < 3; i++) {
-        const mt_node g =
-            mt_build_num_or(b, c->has_gravity ? c->gravity[i] : MT_ABSENT, b->zero);
-        load.force[i] = mt_program_mul(&sys->program, mass, g);
-        any = any || load.force[i] != b->zero;
-    }
-    if (!any) {
-        return;
-    }
     mt_load_def *const grown = GROW(b, loads);
     if (grown == NULL) {
         sys->program.out_of_memory = true;
         return;
     }
     sys->loads = grown;
-    sys->loads[sys->n_loads++] = load;
+    sys->loads[sys->n_loads++] = *def;
     sys->loaded = true;
+}
+
+void mt_build_gravity_at(mt_builder *b, int body, int point, mt_node mass)
+{
+    mt_system *const sys = b->sys;
+    const mt_configuration *const c = &b->model->configurations[sys->configuration];
+    bool any = false;
+    mt_load_def load = {.measure = -1, .body = body, .point = point, .size = MT_NO_NODE};
+    for (int i = 0; i < 3; i++) {
+        const mt_node g =
+            mt_build_num_or(b, c->has_gravity ? c->gravity[i] : MT_ABSENT, b->zero);
+        load.force[i] = mt_program_mul(&sys->program, mass, g);
+        any = any || load.force[i] != b->zero;
+    }
+    if (any) {
+        mt_build_load(b, &load);
+    }
 }
 
 int mt_build_item(mt_builder *b, const char *name, mt_node mass)

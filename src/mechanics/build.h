@@ -31,12 +31,15 @@ int mt_build_body(mt_builder *b, const char *name, const mt_node centre[3], bool
 int mt_build_measure(mt_builder *b, const mt_measure_def *def);
 void mt_build_constraint(mt_builder *b, int measure, mt_node target, bool drawn);
 void mt_build_inertia(mt_builder *b, const mt_inertia_def *def);
+void mt_build_load(mt_builder *b, const mt_load_def *def);
 void mt_build_gravity_at(mt_builder *b, int body, int point, mt_node mass);
 int mt_build_item(mt_builder *b, const char *name, mt_node mass);
 const char *mt_build_name(mt_builder *b, const char *fmt, ...) MT_PRINTF(2, 3);
 /* State body that an attachment means; false where it is absent in this configuration. MT_GROUND for the ground. */
 bool mt_build_attach(mt_builder *b, const mt_attach *a, int *body);
 mt_measure_def mt_measure_def_default(mt_measure_kind kind, int body_a, int body_b);
+/* Coordinate of the joint, or of the hinge of a link, that stands in the model under these indices (MT_ABSENT: not that); -1: it is not in this configuration or has none. */
+int mt_build_find_coordinate(const mt_builder *b, int joint, int link, int hinge, bool angle);
 /* ANGLE measure about a UNIT axis vector. In two dimensions axis is the global z. */
 int mt_build_angle(mt_builder *b, int body_a, int body_b, int axis);
 
@@ -44,6 +47,7 @@ mt_status mt_build_bodies(mt_builder *b);
 mt_status mt_build_links(mt_builder *b);
 mt_status mt_build_joints(mt_builder *b);
 mt_status mt_build_springs(mt_builder *b);
+mt_status mt_build_loads(mt_builder *b);
 mt_status mt_build_sensors(mt_builder *b, const double *original);
 mt_status mt_build_drive(mt_builder *b);
 /* Equations of one joint between bodies at arms; used by joints and hinges. */

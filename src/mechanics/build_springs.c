@@ -76,18 +76,26 @@ static int axial_measure(mt_builder *b, const ends *e)
     return mt_build_measure(b, &def);
 }
 
+int mt_build_find_coordinate(const mt_builder *b, int joint, int link, int hinge, bool angle)
+{
+    for (int i = 0; i < b->sys->n_joints; i++) {
+        const mt_system_joint *const j = &b->sys->joints[i];
+        const bool same =
+            joint != MT_ABSENT ? j->model_joint == joint : j->link == link && j->hinge == hinge;
+        if (same && j->angle == angle) {
+            return j->coordinate;
+        }
+    }
+    return -1;
+}
+
 static mt_status build_torsion(mt_builder *b, const mt_spring *spring)
 {
     mt_system *const sys = b->sys;
     int measure = -1;
     if (spring->joint != MT_ABSENT || spring->joint_link != MT_ABSENT) {
-        for (int i = 0; i < sys->n_joints && measure < 0; i++) {
-            const mt_system_joint *const j = &sys->joints[i];
-            const bool same = spring->joint != MT_ABSENT ? j->model_joint == spring->joint
-                                                         : j->link == spring->joint_link &&
-                                                               j->hinge == spring->joint_hinge;
-            measure = same && j->angle ? j->coordinate : -1;
-        }
+        measure = mt_build_find_coordinate(b, spring->joint, spring->joint_link,
+                                           spring->joint_hinge, true);
         if (measure < 0) {
             return mt_fail(
                 b->err, MT_E_INPUT,

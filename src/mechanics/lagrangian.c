@@ -169,23 +169,44 @@ static void add_springs(const mt_data *d, const mt_pose *poses, mt_curvature cur
     }
 }
 
+/* Jet of what a load does work along: F . x, or its measure; *size: what that is multiplied with. */
+static void load_jet(const mt_data *d, const mt_load_def *load, const mt_pose *poses,
+                     bool hessian, int body[2], mt_cx *size, mt_jet *jet)
+{
+    const mt_system *const sys = d->sys;
+    if (load->measure >= 0) {
+        const mt_measure_def *const def = &sys->measures[load->measure];
+        const mt_measure_data m = mt_data_measure(d, def);
+        body[0] = def->body[0];
+        body[1] = def->body[1];
+        *size = mt_data_scalar(d, load->size, 0.0);
+        mt_measure_eval(&m, mt_pose_of(poses, body[0]), mt_pose_of(poses, body[1]), hessian,
+                        jet);
+        return;
+    }
+    mt_cx f[3];
+    for (int k = 0; k < 3; k++) {
+        f[k] = mt_data_scalar(d, load->force[k], 0.0);
+    }
+    body[0] = load->body;
+    body[1] = MT_GROUND;
+    *size = 1.0;
+    mt_measure_point(load->point < 0 ? NULL : d->vec[load->point], f, &poses[load->body],
+                     hessian, jet);
+}
+
 static void add_loads(const mt_data *d, const mt_pose *poses, bool hessian, mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
     mt_jet jet;
     for (int i = 0; i < sys->n_loads; i++) {
-        const mt_load_def *const load = &sys->loads[i];
-        const int body[2] = {load->body, MT_GROUND};
-        mt_cx f[3];
-        for (int k = 0; k < 3; k++) {
-            f[k] = mt_data_scalar(d, load->force[k], 0.0);
-        }
-        mt_measure_point(load->point < 0 ? NULL : d->vec[load->point], f, &poses[load->body],
-                         hessian, &jet);
-        add_gradient(sys, body, jet.g, -1.0, out->g);
-        note_force(sys, out, &jet, 1.0);
+        int body[2];
+        mt_cx size = 0.0;
+        load_jet(d, &sys->loads[i], poses, hessian, body, &size, &jet);
+        add_gradient(sys, body, jet.g, -size, out->g);
+        note_force(sys, out, &jet, size);
         if (hessian) {
-            add_hessian(sys, body, &jet, -1.0, 0.0, NULL, out->h);
+            add_hessian(sys, body, &jet, -size, 0.0, NULL, out->h);
         }
     }
 }
@@ -315,15 +336,11 @@ double mt_energy_value(const mt_data *d, const mt_pose *poses, double trim_force
         v += creal(mt_data_scalar(d, s->preload, 0.0)) * stretch[0];
     }
     for (int i = 0; i < sys->n_loads; i++) {
-        const mt_load_def *const load = &sys->loads[i];
         mt_jet jet;
-        mt_cx f[3];
-        for (int k = 0; k < 3; k++) {
-            f[k] = mt_data_scalar(d, load->force[k], 0.0);
-        }
-        mt_measure_point(load->point < 0 ? NULL : d->vec[load->point], f, &poses[load->body],
-                         false, &jet);
-        v -= creal(jet.value);
+        int body[2];
+        mt_cx size = 0.0;
+        load_jet(d, &sys->loads[i], poses, false, body, &size, &jet);
+        v -= creal(size) * creal(jet.value);
     }
     return v;
 }

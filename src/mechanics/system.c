@@ -89,9 +89,26 @@ static int helper_axis(const mt_system *sys, const double v[3])
     return best;
 }
 
-static double length_of(const mt_cx *x)
+static double length_of_vec(const mt_vec_def *def, const double *v)
 {
-    return hypot(hypot(creal(x[0]), creal(x[1])), creal(x[2]));
+    return hypot(hypot(v[def->node[0]], v[def->node[1]]), v[def->node[2]]);
+}
+
+/* A point mass is held, and loaded, at its centre. */
+static mt_status check_arm(const mt_system *sys, int arm, int body, const double *v,
+                           mt_err *err)
+{
+    const mt_vec_def *const def = &sys->vecs[arm];
+    const mt_state_body *const on = &sys->bodies[body];
+    const double n = length_of_vec(def, v);
+    if (on->dof[5] < 0 && n > 0.0) {
+        return mt_fail(
+            err, MT_E_INPUT,
+            "%s lies %g m from the centre of \"%s\", which has no inertia_kg_m2 and is "
+            "therefore a point mass; hold it at its centre or give it an inertia",
+            def->what != NULL ? def->what : "a joint or spring", n, on->name);
+    }
+    return MT_OK;
 }
 
 /* Hinge axes drawn further than this (cosine) from a right angle to their link are refused. */
@@ -154,18 +171,14 @@ static mt_status settle(mt_system *sys, const double *at, mt_err *err)
             if (m->point[side] < 0 || m->body[side] == MT_GROUND) {
                 continue;
             }
-            const mt_vec_def *const arm = &sys->vecs[m->point[side]];
-            const mt_cx at_arm[3] = {v[arm->node[0]], v[arm->node[1]], v[arm->node[2]]};
-            const double n = length_of(at_arm);
-            reach = fmax(reach, n);
-            const mt_state_body *const body = &sys->bodies[m->body[side]];
-            if (body->dof[5] < 0 && n > 0.0) {
-                return mt_fail(
-                    err, MT_E_INPUT,
-                    "%s lies %g m from the centre of \"%s\", which has no inertia_kg_m2 and is "
-                    "therefore a point mass; hold it at its centre or give it an inertia",
-                    arm->what != NULL ? arm->what : "a joint or spring", n, body->name);
-            }
+            reach = fmax(reach, length_of_vec(&sys->vecs[m->point[side]], v));
+            MT_TRY(check_arm(sys, m->point[side], m->body[side], v, err));
+        }
+    }
+    for (int i = 0; i < sys->n_loads; i++) {
+        const mt_load_def *const load = &sys->loads[i];
+        if (load->point >= 0) {
+            MT_TRY(check_arm(sys, load->point, load->body, v, err));
         }
     }
     double diagonal = 0.0;
@@ -183,6 +196,7 @@ static mt_status build_parts(mt_builder *b, const double *at)
     MT_TRY(mt_build_links(b));
     MT_TRY(mt_build_joints(b));
     MT_TRY(mt_build_springs(b));
+    MT_TRY(mt_build_loads(b));
     MT_TRY(mt_build_drive(b));
     return mt_build_sensors(b, at);
 }

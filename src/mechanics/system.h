@@ -97,10 +97,13 @@ typedef struct mt_inertia_def {
     int item;
 } mt_inertia_def;
 
-typedef struct mt_load_def { /* dead force at a point of a body */
+typedef struct mt_load_def { /* V = -F . x of a point of a body, or V = -size * measure */
+    const char *name;        /* NULL: gravity */
+    int measure;             /* -1: a force */
     int body;
     int point;
     mt_node force[3];
+    mt_node size; /* of a measure */
 } mt_load_def;
 
 typedef enum mt_channel_kind {

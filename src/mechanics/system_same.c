@@ -143,8 +143,8 @@ static bool same_loads(pair *p)
     for (int i = 0; i < p->a->n_loads; i++) {
         const mt_load_def *const x = &p->a->loads[i];
         const mt_load_def *const y = &p->b->loads[i];
-        if (x->body != y->body || x->point != y->point ||
-            !same_nodes(p, 3, x->force, y->force)) {
+        if (x->measure != y->measure || x->body != y->body || x->point != y->point ||
+            !same_nodes(p, 3, x->force, y->force) || !same_node(p, x->size, y->size)) {
             return false;
         }
     }

@@ -128,6 +128,7 @@ void mt_finish_names(mt_finish *f)
     }
     ENTER_ALL(f, joints, joints, "joint")
     ENTER_ALL(f, springs, springs, "spring or damper")
+    ENTER_ALL(f, loads, loads, "load")
     ENTER_ALL(f, sensors, sensors, "sensor")
     ENTER_ALL(f, modes, modes, "mode")
     ENTER_ALL(f, configurations, configurations, "configuration")
@@ -173,9 +174,10 @@ static void ensure_configuration(mt_finish *f)
 mt_status mt_model_finish(mt_model *model, mt_diags *diags, mt_err *err)
 {
     static void (*const stages[])(mt_finish *) = {
-        ensure_configuration, mt_finish_names,  mt_finish_configurations, mt_finish_presence,
-        mt_finish_bodies,     mt_finish_links,  mt_finish_joints,         mt_finish_springs,
-        mt_finish_sensors,    mt_finish_drives, mt_finish_cycles,         mt_finish_values,
+        ensure_configuration, mt_finish_names,   mt_finish_configurations, mt_finish_presence,
+        mt_finish_bodies,     mt_finish_links,   mt_finish_joints,         mt_finish_springs,
+        mt_finish_loads,      mt_finish_sensors, mt_finish_drives,         mt_finish_cycles,
+        mt_finish_values,
     };
     mt_finish f = {.m = model, .d = diags, .out_of_memory = model->out_of_memory};
     for (int i = 0; i < MT_COUNT(stages) && !f.out_of_memory; i++) {

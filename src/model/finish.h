@@ -31,6 +31,8 @@ void mt_finish_needs(mt_finish *f, mt_name item, const char *what, const mt_pres
                      const mt_presence *part, const char *part_what, const char *part_name);
 void mt_finish_needs_attach(mt_finish *f, mt_name item, const char *what, const mt_presence *in,
                             const mt_attach *part);
+/* "beam.h3": hinge 3 of link "beam", *link and its 0-based *hinge; a hinge that the link has not is noted and leaves them MT_ABSENT. False where the name has no such form. */
+bool mt_finish_hinge(mt_finish *f, mt_name name, int *link, int *hinge);
 /* The address of a number; MT_NO_ADDR where it is absent. */
 mt_addr mt_finish_addr(const mt_model *m, mt_num num);
 
@@ -42,6 +44,7 @@ void mt_finish_bodies(mt_finish *f);
 void mt_finish_links(mt_finish *f);
 void mt_finish_joints(mt_finish *f);
 void mt_finish_springs(mt_finish *f);
+void mt_finish_loads(mt_finish *f);
 void mt_finish_sensors(mt_finish *f);
 void mt_finish_drives(mt_finish *f);
 void mt_finish_cycles(mt_finish *f);

@@ -199,6 +199,9 @@ void mt_finish_presence(mt_finish *f)
     for (int i = 0; i < m->n_springs; i++) {
         resolve_presence(f, &m->springs[i].in);
     }
+    for (int i = 0; i < m->n_loads; i++) {
+        resolve_presence(f, &m->loads[i].in);
+    }
 }
 
 void mt_finish_needs(mt_finish *f, mt_name item, const char *what, const mt_presence *in,

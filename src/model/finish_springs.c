@@ -19,16 +19,14 @@ static void check_member(mt_finish *f, const mt_spring *s, bool given, need want
     }
 }
 
-/* "beam.h3": hinge 3 of link "beam". False where the name has no such form. */
-static bool resolve_hinge(mt_finish *f, mt_spring *s)
+bool mt_finish_hinge(mt_finish *f, mt_name name, int *at, int *number)
 {
-    const char *const dot = strchr(s->joint_name.s, '.');
+    const char *const dot = strchr(name.s, '.');
     bool found = false;
     if (dot == NULL || dot[1] != 'h') {
         return false;
     }
-    const int i = mt_names_find(&f->m->tables->bodies, s->joint_name.s,
-                                (size_t)(dot - s->joint_name.s), &found);
+    const int i = mt_names_find(&f->m->tables->bodies, name.s, (size_t)(dot - name.s), &found);
     if (!found || i >= 0) {
         return false;
     }
@@ -40,12 +38,12 @@ static bool resolve_hinge(mt_finish *f, mt_spring *s)
     }
     const int hinges = link->kind == MT_LINK_BEAM ? 0 : link->elements - 1;
     if (*c != '\0' || dot[2] == '0' || hinge < 1 || hinge > hinges) {
-        mt_diag_error(f->d, s->joint_name.addr, "\"%s\": link \"%s\" has %d hinges",
-                      s->joint_name.s, link->name.s, hinges < 0 ? 0 : hinges);
+        mt_diag_error(f->d, name.addr, "\"%s\": link \"%s\" has %d hinges", name.s,
+                      link->name.s, hinges < 0 ? 0 : hinges);
         return true;
     }
-    s->joint_link = -1 - i;
-    s->joint_hinge = hinge - 1;
+    *at = -1 - i;
+    *number = hinge - 1;
     return true;
 }
 
@@ -217,7 +215,8 @@ void mt_finish_springs(mt_finish *f)
         for (int k = 0; k < s->n_at; k++) {
             mt_finish_position(f, &s->at[k]);
         }
-        if (s->joint_name.s != NULL && !resolve_hinge(f, s)) {
+        if (s->joint_name.s != NULL &&
+            !mt_finish_hinge(f, s->joint_name, &s->joint_link, &s->joint_hinge)) {
             s->joint = mt_finish_find(f, s->joint_name, &f->m->tables->joints, "joint");
         }
         if (s->type == MT_SPRING_TYPE_COUNT || f->m->dimension == 0) {

@@ -459,6 +459,16 @@ void mt_judge_geometry(mt_judge *j)
             judge_side(j, &h, side);
         }
     }
+    for (int i = 0; i < m->n_loads; i++) {
+        const mt_load *const o = &m->loads[i];
+        const holder h = {
+            {"load", "loads", i, o->name.s},
+            &o->on, o->at.given ? 1 : 0, &o->at, NULL, NULL
+        };
+        if (o->on.name.s != NULL && mt_model_present(&o->in, j->configuration)) {
+            judge_side(j, &h, 0);
+        }
+    }
     mt_doubt_sort(j->out, first);
     for (int i = 0; i < m->n_bodies; i++) {
         if (mt_model_present(&m->bodies[i].in, j->configuration)) {

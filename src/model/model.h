@@ -227,6 +227,32 @@ typedef struct mt_spring {
     mt_presence in;
 } mt_spring;
 
+/*
+ * A dead load: constant in size, and in direction as far as it has one. On a body: a force at one of its points, along global directions whatever the body does; in two
+ * dimensions also a moment. On a joint: a force along its displacement or a moment about its angle, on the second body, with the reaction on the first. Each has a potential. A
+ * moment that keeps its direction in space has none where its body can turn about other axes (the work depends on the order of turns): finish refuses it.
+ */
+typedef struct mt_load {
+    mt_name name;
+    mt_attach on;
+    mt_name joint_name;
+    int joint; /* resolved: joint, or hinge joint_hinge (0-based) of link joint_link; MT_ABSENT */
+    int joint_link;
+    int joint_hinge;
+    mt_position
+        at; /* default: the centre of the body, the end of a link, the middle of its element */
+    bool has_force;  /* a vector, or */
+    bool one_number; /* a number */
+    mt_num force[3]; /* N */
+    bool has_moment;
+    bool moment_vector;
+    mt_num moment; /* N m */
+    mt_addr force_addr;
+    mt_addr moment_addr;
+    bool unread; /* its faults are in diags already */
+    mt_presence in;
+} mt_load;
+
 /* Directions of a sensor: bits 0..5 = x y z rx ry rz; in 2-D x, y and rz ("r" for short). */
 typedef struct mt_sensor {
     mt_name name;
@@ -307,6 +333,7 @@ typedef struct mt_model {
     MT_LIST_OF(mt_link, links);
     MT_LIST_OF(mt_joint, joints);
     MT_LIST_OF(mt_spring, springs); /* springs, then dampers */
+    MT_LIST_OF(mt_load, loads);
     MT_LIST_OF(mt_sensor, sensors);
     MT_LIST_OF(mt_named_mode, modes);
     MT_LIST_OF(

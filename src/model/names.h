@@ -19,6 +19,7 @@ typedef struct mt_model_names {
     mt_names bodies; /* body i: i; link i: -1 - i */
     mt_names joints;
     mt_names springs;
+    mt_names loads;
     mt_names sensors;
     mt_names modes;
     mt_names configurations;

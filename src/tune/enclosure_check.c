@@ -72,6 +72,11 @@ static bool loads_refused(const mt_system *sys, char *reason)
             return refuse(reason, "spring", s->name, "is preloaded");
         }
     }
+    for (int i = 0; i < sys->n_loads; i++) {
+        if (sys->loads[i].name != NULL) {
+            return refuse(reason, "load", sys->loads[i].name, "acts on the mechanism");
+        }
+    }
     (void)snprintf(reason, MT_REASON_SIZE, "gravity loads the mechanism");
     return false;
 }

@@ -175,6 +175,9 @@ static const struct {
     {      "couplings",      "driven",          "g N r k l m to", 3},
     {"space_couplings",      "loaded",            "tilt k m r h", 4},
     {"space_couplings",  "weightless",                "tilt r h", 4},
+    {          "loads",        "dead",         "g F M T P h k l", 3},
+    {          "loads",     "trimmed",            "F M T P h to", 3},
+    {    "space_loads",      "loaded",               "F T P a k", 4},
 };
 
 static void derivatives__agree_with_slopes_in_every_mechanism(mt_test *t)

@@ -190,6 +190,8 @@ static const struct {
     {    "space_frame",        NULL, false},
     {      "couplings",        NULL, false},
     {"space_couplings",        NULL, false},
+    {          "loads",        NULL, false},
+    {    "space_loads",        NULL, false},
 };
 
 static void oracle__udwadia_kalaba_agrees_on_every_model(mt_test *t)
