@@ -82,18 +82,23 @@ static void note_force(const mt_system *sys, mt_lagrangian *out, const mt_jet *j
     out->force_scale = fmax(out->force_scale, size);
 }
 
-/* Positions are known to eps of the coordinates that they are the difference of, angles to eps. */
+/* Positions are known to eps of the coordinates that they are the difference of, angles to eps, the slope of a beam element's chord to eps of the coordinates over its length. */
 static void note_noise(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
                        const mt_jet *jet, double stiffness, mt_lagrangian *out)
 {
+    const bool strain = def->kind == MT_MEASURE_BEAM && def->component != MT_BEAM_STRETCH;
+    const bool chord = strain && def->component >= MT_BEAM_SWAY_2;
     const bool angle = def->kind == MT_MEASURE_ANGLE || def->kind == MT_MEASURE_ROTATION ||
-                       def->kind == MT_MEASURE_DOT;
+                       def->kind == MT_MEASURE_DOT || (strain && !chord);
     double extent = angle ? 1.0 : d->sys->length_m;
     for (int side = 0; side < 2 && !angle; side++) {
         const mt_pose *const pose = mt_pose_of(poses, def->body[side]);
         for (int k = 0; k < 3; k++) {
             extent = fmax(extent, fabs(creal(pose->x[k])));
         }
+    }
+    if (chord) {
+        extent /= creal(mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0));
     }
     const double noise = DBL_EPSILON * extent * fabs(stiffness) * largest_push(d->sys, jet);
     out->force_noise = fmax(out->force_noise, noise);
