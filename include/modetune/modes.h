@@ -32,7 +32,7 @@ typedef struct mt_mode_count {
  * @param[out] frequency_hz   [capacity] of the vibration modes, ascending [Hz]; as many as there are and fit; none where a mode is unstable
  * @param[out] count          how many modes there are, whatever the capacity
  * The model is not changed and may be shared by threads. Allocates, and gives everything back. O(n^3) in the number of freedoms.
- * Fails: MT_E_USAGE (no such configuration or parameter, a negative number, a missing array), MT_E_ASSEMBLY, MT_E_EQUILIBRIUM, MT_E_MASSLESS, MT_E_DOMAIN, MT_E_INPUT,
+ * Fails: MT_E_USAGE (no such configuration or parameter, a negative number, a missing array), MT_E_ASSEMBLY, MT_E_EQUILIBRIUM, MT_E_DEAD_CENTRE, MT_E_MASSLESS, MT_E_DOMAIN, MT_E_INPUT,
  * MT_E_MEMORY: err tells which joint, number or body.
  */
 MT_API mt_status mt_model_frequencies(const mt_model *model, const char *configuration,

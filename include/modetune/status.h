@@ -26,7 +26,8 @@ extern "C" {
     X(MT_E_SYSTEM, "the operating system refused (file, disk)")             \
     X(MT_E_MEMORY, "out of memory")                                         \
     X(MT_E_INTERRUPTED, "interrupted")                                      \
-    X(MT_E_INTERNAL, "internal error, please report")
+    X(MT_E_INTERNAL, "internal error, please report")                       \
+    X(MT_E_DEAD_CENTRE, "joints depend on each other in this very position")
 
 #define MT_STATUS_ENUM(name, text) name,
 typedef enum mt_status { MT_STATUS_LIST(MT_STATUS_ENUM) MT_STATUS_COUNT } mt_status;

@@ -69,6 +69,8 @@ int mt_modes_shown(const mt_modes *modes, int count);
 void mt_cli_print_doubts(const mt_doubt_list *list, mt_text *out);
 /* Names within a text of quoted ones ("\"a\", \"b\""), as items of an open JSON list. */
 void mt_cli_json_names(mt_json_writer *w, const char *quoted);
+/* Member "dead_centre" of an open object: null, or how far away one is and whose equations depend on each other there. */
+void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness);
 /* The name that the model gives to vibration mode `index` of configuration c; NULL. Only at the original design. */
 const char *mt_mode_name(const mt_subject *s, int c, int index);
 

@@ -18,6 +18,7 @@ typedef struct view {
     int c;
     mt_analysis *a;
     mt_info info;
+    mt_nearness nearness;
     mt_arena mem;
     mt_doubt_list doubts;
 } view;
@@ -56,6 +57,7 @@ static mt_status write_json(mt_json_writer *w, const view *v, mt_err *err)
     mt_json_close(w);
     mt_json_put_number(w, "equilibrium_residual", i->residual);
     mt_json_put_number(w, "gap_m", i->gap_m);
+    mt_cli_json_dead_centre(w, &v->nearness);
     mt_json_close(w);
     return MT_OK;
 }
@@ -141,6 +143,7 @@ static mt_status one(const mt_args *args, view *v, mt_json_writer *w, mt_table *
 {
     MT_TRY(mt_subject_analyse(v->s, v->c, &v->a, err));
     MT_TRY(mt_info_fill(v->a->lin, &v->info, err));
+    MT_TRY(mt_linear_nearness(v->a->lin, &v->nearness, err));
     MT_TRY(mt_arena_init(&v->mem, 0, err));
     v->doubts = mt_doubt_list_default(&v->mem);
     MT_TRY(

@@ -281,6 +281,21 @@ void mt_cli_print_doubts(const mt_doubt_list *list, mt_text *out)
     }
 }
 
+void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness)
+{
+    if (!nearness->near) {
+        mt_json_put_null(w, "dead_centre");
+        return;
+    }
+    mt_json_open(w, "dead_centre", '{');
+    mt_json_put_number(w, "distance", nearness->distance);
+    mt_json_put_number(w, "independence", nearness->independence);
+    mt_json_open_flat(w, "joints", '[');
+    mt_cli_json_names(w, nearness->joints);
+    mt_json_close(w);
+    mt_json_close(w);
+}
+
 void mt_cli_json_names(mt_json_writer *w, const char *quoted)
 {
     mt_text name = {.s = NULL};

@@ -113,6 +113,26 @@ static void tell_modes(const mt_sweep_view *v, mt_text *out)
     }
 }
 
+/* Where the range comes nearest to a dead centre. */
+static void tell_dead_centre(const mt_sweep_view *v, mt_text *out)
+{
+    const mt_sweep_point *nearest = NULL;
+    for (int i = 0; i < v->sweep.n_points; i++) {
+        const mt_sweep_point *const p = &v->sweep.points[i];
+        if (p->status == MT_OK && p->near->near &&
+            (nearest == NULL || p->near->distance < nearest->near->distance)) {
+            nearest = p;
+        }
+    }
+    if (nearest != NULL) {
+        mt_text_addf(out,
+                     "  Near a dead centre at %.6g %s: about %.2g rad (or model lengths) on, "
+                     "joints %s depend on each other.\n",
+                     nearest->drive, unit_of(driven(v)->angle), nearest->near->distance,
+                     nearest->near->joints);
+    }
+}
+
 void mt_sweep_print(const mt_sweep_view *v, mt_text *out)
 {
     mt_table t = mt_table_default();
@@ -128,6 +148,7 @@ void mt_sweep_print(const mt_sweep_view *v, mt_text *out)
     if (v->sweep.n_reached > 0) {
         mt_table_print(&t, 2, out);
         mt_text_addf(out, "  Largest gap of a joint %.1e m.\n", gap);
+        tell_dead_centre(v, out);
     }
     if (v->sweep.n_reached < v->sweep.n_points) {
         mt_text_addf(out, "  %d of %d positions reached.\n", v->sweep.n_reached,
@@ -165,6 +186,7 @@ static void json_point(const mt_sweep_view *v, int point, mt_json_writer *w)
     mt_json_put_number(w, hold_is_moment(v) ? "hold_n_m" : "hold_n", p->hold);
     mt_json_put_number(w, "equilibrium_residual", p->residual);
     mt_json_put_number(w, "gap_m", p->gap_m);
+    mt_cli_json_dead_centre(w, p->near);
     if (v->rigid != NULL) {
         mt_json_open_flat(w, "frequencies_hz", '[');
         for (int i = 0; i < v->modes; i++) {

@@ -33,6 +33,7 @@ int mt_exit_of(mt_status status)
     case MT_E_SINGULAR:
     case MT_E_ASSEMBLY:
     case MT_E_EQUILIBRIUM:
+    case MT_E_DEAD_CENTRE:
     case MT_E_MASSLESS:
     case MT_E_NO_CONVERGENCE:
     case MT_E_DOMAIN:

@@ -14,6 +14,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "mechanics/singular.h"
+
 /* Longest step of the driven joint's coordinate [rad or model lengths], and of any body. */
 static const double DRIVE_STEP = 0.1;
 static const double BODY_STEP = 0.3;
@@ -250,6 +252,27 @@ static mt_status refuse(walk *w, mt_err *err)
                        : "singular position, from which several ways lead on");
 }
 
+/* From a dead centre of the other joints several ways lead on. */
+static mt_status refuse_dead_centre(walk *w, mt_err *err)
+{
+    const mt_system *const sys = w->p->sys;
+    const mt_arena_mark mark = mt_arena_get_mark(w->mem);
+    const mt_newton_problem problem = {.data = w->data,
+                                       .energy = MT_ENERGY_ANCHOR,
+                                       .drawn = w->p->pose,
+                                       .m = sys->n_constraints - 1,
+                                       .trim = false};
+    mt_newton_work work;
+    mt_elimination e;
+    MT_TRY(mt_newton_work_init(&work, &problem, w->mem, err));
+    mt_newton_evaluate(&work, w->p->pose, false);
+    MT_TRY(mt_eliminate(sys, problem.m, work.a, w->mem, &e, err));
+    const mt_status rc = mt_singular_refuse(w->data, w->p->pose, &e, w->mem, err);
+    MT_TRY(mt_err_in(err, rc, "the position that it is driven from"));
+    mt_arena_rewind(w->mem, mark);
+    return MT_OK;
+}
+
 mt_status mt_drive_solve(mt_state *p, mt_data *data, const mt_drive_start *start, mt_arena *mem,
                          mt_err *err)
 {
@@ -260,6 +283,9 @@ mt_status mt_drive_solve(mt_state *p, mt_data *data, const mt_drive_start *start
         w.at = start->position;
         memcpy(p->pose, start->pose, (size_t)sys->n_bodies * sizeof *p->pose);
         memcpy(data->turn, start->turn, (size_t)sys->n_measures * sizeof *data->turn);
+    }
+    if (w.at != w.goal && w.at == 0.0) {
+        MT_TRY(refuse_dead_centre(&w, err));
     }
     double h = DRIVE_STEP * w.unit;
     while (w.at != w.goal && h > 0.0) {

@@ -103,7 +103,12 @@ void mt_eliminate_expand(const mt_elimination *e, const double *y, double *out)
 mt_status mt_eliminate_left_null(const mt_elimination *e, int k, double *w, mt_arena *scratch,
                                  mt_err *err)
 {
-    const int rank = e->qr.rank;
+    return mt_eliminate_left_vector(e, e->qr.rank, k, w, scratch, err);
+}
+
+mt_status mt_eliminate_left_vector(const mt_elimination *e, int rank, int k, double *w,
+                                   mt_arena *scratch, mt_err *err)
+{
     const double *const r = e->qr.qr;
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     double *const x = mt_arena_f64(scratch, (size_t)rank, 1);

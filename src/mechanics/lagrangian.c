@@ -274,6 +274,16 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
     }
 }
 
+/* An angle is known up to whole turns: take the turn nearest to the target; of a gear's two angles the one without a ratio (term 0) may turn on, the other stays within
+ * half a turn. */
+static double surplus_turns(const mt_data *d, int i, double value)
+{
+    const double turn = 6.283185307179586477;
+    const mt_constraint_def *const c = &d->sys->constraints[i];
+    const bool angle = d->sys->measures[c->measure[0]].kind == MT_MEASURE_ANGLE;
+    return angle ? turn * round(value / turn) : 0.0;
+}
+
 static void add_constraints(const mt_data *d, const mt_pose *poses, int m, const mt_cx *lambda,
                             bool hessian, mt_lagrangian *out)
 {
@@ -300,13 +310,52 @@ static void add_constraints(const mt_data *d, const mt_pose *poses, int m, const
                 add_hessian(sys, def->body, &jet, cx_mul(factor, lambda[i]), 0.0, NULL, out->h);
             }
         }
-        if (sys->measures[c->measure[0]].kind == MT_MEASURE_ANGLE) {
-            /* an angle is known up to whole turns: take the turn nearest to the target; of a gear's
-             * two angles the one without a ratio (term 0) may turn on, the other stays within half a turn */
-            const double turn = 6.283185307179586477;
-            out->c[i] -= turn * round(creal(out->c[i]) / turn);
+        out->c[i] -= surplus_turns(d, i, creal(out->c[i]));
+    }
+}
+
+void mt_constraint_values(const mt_data *d, const mt_pose *poses, int m, double *c)
+{
+    const mt_system *const sys = d->sys;
+    for (int i = 0; i < m; i++) {
+        const mt_constraint_def *const def = &sys->constraints[i];
+        c[i] = -creal(d->target[i]);
+        for (int t = 0; t < def->terms; t++) {
+            const mt_measure_def *const measure = &sys->measures[def->measure[t]];
+            const mt_measure_data data = mt_data_measure(d, measure);
+            c[i] += creal(mt_data_scalar(d, def->coefficient[t], 1.0)) *
+                    creal(mt_measure_value(&data, mt_pose_of(poses, measure->body[0]),
+                                           mt_pose_of(poses, measure->body[1])));
+        }
+        c[i] -= surplus_turns(d, i, c[i]);
+    }
+}
+
+double mt_constraint_curve(const mt_data *d, const mt_pose *poses, int i, int t,
+                           const double *phi, const double *scale, double b[MT_LOCAL])
+{
+    const mt_system *const sys = d->sys;
+    const mt_constraint_def *const c = &sys->constraints[i];
+    const mt_measure_def *const def = &sys->measures[c->measure[t]];
+    const mt_measure_data measure = mt_data_measure(d, def);
+    const double factor = creal(mt_data_scalar(d, c->coefficient[t], 1.0));
+    double squares = 0.0;
+    mt_jet jet;
+    mt_measure_eval(&measure, mt_pose_of(poses, def->body[0]), mt_pose_of(poses, def->body[1]),
+                    true, &jet);
+    for (int r = 0; r < MT_LOCAL; r++) {
+        const int row = mt_local_dof(sys, def->body, r);
+        b[r] = 0.0;
+        for (int k = 0; k < MT_LOCAL && row >= 0; k++) {
+            const int dof = mt_local_dof(sys, def->body, k);
+            if (dof >= 0) {
+                const double h = factor * creal(jet.h[r + (MT_LOCAL * k)]);
+                b[r] += h * phi[dof];
+                squares += scale[row] * h * scale[dof] * scale[row] * h * scale[dof];
+            }
         }
     }
+    return sqrt(squares);
 }
 
 void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,

@@ -38,6 +38,12 @@ typedef struct mt_lagrangian {
 void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,
                         const mt_pose *poses, int m, const mt_cx *lambda,
                         mt_curvature curvature, mt_lagrangian *out);
+/* c[m]: the constraints' values alone. */
+void mt_constraint_values(const mt_data *d, const mt_pose *poses, int m, double *c);
+/* Term t of constraint i along the motion phi[nq]: b[12] = c'' phi over the local freedoms of the term's bodies. Returns the Frobenius norm of c'' with rows and columns
+ * weighed by scale[nq]. */
+double mt_constraint_curve(const mt_data *d, const mt_pose *poses, int i, int t,
+                           const double *phi, const double *scale, double b[MT_LOCAL]);
 /* hessian: will h be asked for? Without, it has no memory and curvature is MT_CURVATURE_NONE. */
 mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessian,
                              mt_arena *mem, mt_err *err);

@@ -128,7 +128,7 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     mt_arena_rewind(&lin->scratch, mark);
     MT_TRY(mt_eliminate(sys, lin->m, lin->a, &lin->geometry, &lin->e, err));
     lin->n = lin->e.n;
-    return MT_OK;
+    return mt_singular_refuse(&lin->data, lin->position.pose, &lin->e, &lin->scratch, err);
 }
 
 /* out (n x n) += sum of the terms' contributions, lower triangle; which: 0 terms without inputs, 1 terms with, 2 all. */
@@ -234,10 +234,10 @@ static mt_status rebuild(mt_linear *lin, mt_err *err)
     mt_data_vecs(&lin->data);
     MT_TRY(mt_position_solve(lin->sys, &lin->data, lin->follow ? &lin->last : NULL,
                              &lin->geometry, &lin->position, err));
-    if (lin->sys->driven) {
+    MT_TRY(constrain(lin, err));
+    if (lin->sys->driven) { /* not from a dead centre: which way led on would be open */
         mt_drive_keep(&lin->position, &lin->data, &lin->last);
     }
-    MT_TRY(constrain(lin, err));
     MT_TRY(evaluate_rows(lin, err));
     MT_TRY(fixed_parts(lin, err));
     lin->geometry_version++;

@@ -4,6 +4,7 @@
 
 #include "mechanics/position.h"
 #include "mechanics/rows.h"
+#include "mechanics/singular.h"
 
 /*
  * A system linearised at one design: positions, reduced stiffness and mass, exact derivatives with respect to the inputs. All that moves is here, one per worker;
@@ -58,7 +59,7 @@ typedef struct mt_linear {
 
 mt_status mt_linear_new(const mt_system *sys, mt_linear **out, mt_err *err);
 void mt_linear_delete(mt_linear *lin);
-/* Evaluate at inputs[n_inputs]. Fails as mt_state_solve, MT_E_DOMAIN (names the number by its address in the text). No heap after the first calls. */
+/* Evaluate at inputs[n_inputs]. Fails as mt_position_solve, MT_E_DEAD_CENTRE, MT_E_DOMAIN (names the number by its address in the text). No heap after the first calls. */
 mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradient,
                            mt_err *err);
 /* phi = Z y: y n x cols, phi nq x cols. */
@@ -77,6 +78,8 @@ mt_status mt_linear_sense_derivative(mt_linear *lin, int p, int ns, const int *c
 /* Number of redundant equations (m - rank) and, for set k, its joints' names: text "\"a\", \"b\"" (in the geometry arena, valid until the next update). */
 int mt_linear_redundant(const mt_linear *lin);
 mt_status mt_linear_redundant_set(mt_linear *lin, int k, const char **text, mt_err *err);
+/* How near the position is to one where equations depend on each other there only (singular.h). After an update. */
+mt_status mt_linear_nearness(mt_linear *lin, mt_nearness *out, mt_err *err);
 /* Names of the bodies and directions that dominate a direction y in the freedoms: "bob (rotation)", for messages. Buffer of size bytes. */
 void mt_linear_name_direction(const mt_linear *lin, const double *y, char *text, size_t size);
 /* w = M Z y over all states, nq (mass-weighted shape, for correlation with shapes at other designs). */

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "mechanics/singular.h"
+
 enum { NEWTON_LIMIT = 60, WHERE_SIZE = 300 };
 /* Rounding of the largest single spring force, summed over many springs and projected, stays below this many times itself. */
 static const double NOISE_ROOM = 32.0;
@@ -52,6 +54,10 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
         double *inverse = NULL;
         const double tau = w->tau;
         MT_TRY(mt_newton_linearise(w, poses, mem, &e, &inverse, err));
+        if (it == 0 && w->p->energy == MT_ENERGY_PHYSICAL && w->gap <= MT_STEP_DONE) {
+            MT_TRY(
+                mt_singular_refuse(w->p->data, poses, &e, mem, err)); /* several ways lead on */
+        }
         report->iterations++;
         /* stop where the step is rounding: small, and no longer shrinking or negligible */
         const bool small = w->moved <= MT_STEP_DONE &&

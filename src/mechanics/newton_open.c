@@ -3,33 +3,10 @@
 #include "mechanics/newton_priv.h"
 
 #include <math.h>
-#include <stdio.h>
 
 enum { NAMES_SIZE = 400 };
 /* Entries of a left null vector (largest 1) above this belong to the dependent set. */
 static const double IN_THE_SET = 1e-6;
-
-/* "a", "b", ...: joints with an entry in the null vector, each once, cut where the text is full. */
-static void join_names(const mt_system *sys, int m, const double *null, char names[NAMES_SIZE])
-{
-    size_t used = 0;
-    int last = -1;
-    names[0] = '\0';
-    for (int i = 0; i < m; i++) {
-        const int joint = sys->constraints[i].joint;
-        if (!(fabs(null[i]) > IN_THE_SET) || joint == last || joint < 0) {
-            continue;
-        }
-        const int n = snprintf(names + used, NAMES_SIZE - used, "%s\"%s\"",
-                               used == 0 ? "" : ", ", sys->joints[joint].name);
-        if (n < 0 || (size_t)n >= NAMES_SIZE - used) {
-            names[used] = '\0';
-            return;
-        }
-        used += (size_t)n;
-        last = joint;
-    }
-}
 
 /* Which joints to name: those in the left null vectors of A that the gap lies along (they contradict each other), else the one furthest open. */
 mt_status mt_newton_open_loop(const mt_newton_problem *problem, const mt_pose *poses,
@@ -58,7 +35,7 @@ mt_status mt_newton_open_loop(const mt_newton_problem *problem, const mt_pose *p
     for (int k = 0; k < e->m - e->qr.rank; k++) {
         MT_TRY(mt_eliminate_left_null(e, k, null, scratch, err));
         if (fabs(null[worst]) > IN_THE_SET) {
-            join_names(w.sys, problem->m, null, names);
+            mt_joint_names(w.sys, problem->m, null, names, sizeof names);
             return mt_fail(err, MT_E_ASSEMBLY,
                            "joints %s contradict each other: a gap of %.6g %s is left", names,
                            gap, unit);

@@ -57,7 +57,8 @@ typedef struct mt_state {
 } mt_state;
 
 /* data holds values (input -1) with vectors loaded; targets, rest values and turns are filled here. Results and work in mem. start: NULL, or where a driven joint begins.
- * Fails: MT_E_ASSEMBLY (a gap, named with its joint; contradictory joints), MT_E_EQUILIBRIUM (does not converge, or free to move under load). */
+ * Fails: MT_E_ASSEMBLY (a gap, named with its joint; contradictory joints), MT_E_EQUILIBRIUM (does not converge, or free to move under load),
+ * MT_E_DEAD_CENTRE (singular.h: where it begins). */
 mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_drive_start *start,
                             mt_arena *mem, mt_state *out, mt_err *err);
 /* Derivative with respect to data->input (vectors, targets loaded with derivatives here). Fills d_*, and data's rest values with their derivative. */

@@ -9,6 +9,36 @@
 /* Entries of a left null vector (largest 1) above this belong to the dependent set. */
 static const double IN_THE_SET = 1e-6;
 
+/* Is equation i the first of its joint in the combination? */
+static bool names_a_joint(const mt_system *sys, const double *w, double least, int i)
+{
+    const int joint = sys->constraints[i].joint;
+    bool first = joint >= 0 && fabs(w[i]) > least;
+    for (int k = 0; k < i && first; k++) {
+        first = sys->constraints[k].joint != joint || !(fabs(w[k]) > least);
+    }
+    return first;
+}
+
+void mt_joint_names(const mt_system *sys, int m, const double *w, char *text, size_t size)
+{
+    const double least = IN_THE_SET * mt_max_abs(m, w);
+    size_t used = 0;
+    text[0] = '\0';
+    for (int i = 0; i < m; i++) {
+        if (!names_a_joint(sys, w, least, i)) {
+            continue;
+        }
+        const int n = snprintf(text + used, size - used, "%s\"%s\"", used == 0 ? "" : ", ",
+                               sys->joints[sys->constraints[i].joint].name);
+        if (n < 0 || (size_t)n >= size - used) {
+            text[used] = '\0';
+            return;
+        }
+        used += (size_t)n;
+    }
+}
+
 int mt_linear_redundant(const mt_linear *lin)
 {
     return lin->m - lin->e.qr.rank;
@@ -20,22 +50,25 @@ mt_status mt_linear_redundant_set(mt_linear *lin, int k, const char **text, mt_e
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     double *const null = mt_arena_f64(&lin->scratch, (size_t)lin->m, 1);
     char *out = mt_arena_strdup(&lin->geometry, "");
-    int last = -1;
     if (null == NULL || out == NULL) {
         return mt_fail_memory(err);
     }
     MT_TRY(mt_eliminate_left_null(&lin->e, k, null, &lin->scratch, err));
     for (int i = 0; i < lin->m && out != NULL; i++) {
-        const int joint = sys->constraints[i].joint;
-        if (fabs(null[i]) > IN_THE_SET && joint != last && joint >= 0) {
+        if (names_a_joint(sys, null, IN_THE_SET, i)) {
             out = mt_arena_printf(&lin->geometry, "%s%s\"%s\"", out, out[0] == '\0' ? "" : ", ",
-                                  sys->joints[joint].name);
-            last = joint;
+                                  sys->joints[sys->constraints[i].joint].name);
         }
     }
     mt_arena_rewind(&lin->scratch, mark);
     *text = out;
     return out == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+mt_status mt_linear_nearness(mt_linear *lin, mt_nearness *out, mt_err *err)
+{
+    return mt_singular_nearness(&lin->data, lin->position.pose, &lin->e, &lin->scratch, out,
+                                err);
 }
 
 /* Freedoms that move more than this fraction of the largest motion are named. */

@@ -29,6 +29,14 @@ static double value_at(const mt_data *data, int measure, const mt_pose *poses, b
         mt_measure_value(&m, mt_pose_of(poses, def->body[0]), mt_pose_of(poses, def->body[1])));
 }
 
+static mt_status record_nearness(mt_linear *lin, mt_sweep_point *point, mt_arena *mem,
+                                 mt_err *err)
+{
+    mt_nearness *const near = mt_arena_alloc(mem, 1, sizeof *near);
+    point->near = near;
+    return near == NULL ? mt_fail_memory(err) : mt_linear_nearness(lin, near, err);
+}
+
 static mt_status record(mt_linear *lin, mt_sweep_point *point, mt_err *err)
 {
     const mt_system *const sys = lin->sys;
@@ -84,6 +92,7 @@ static mt_status solve_point(const sweeper *s, int i, mt_err *err)
     MT_TRY(s->visitor != NULL ? s->visitor->visit(s->visitor->context, i, s->inputs, err)
                               : mt_linear_update(s->lin, s->inputs, true, err));
     MT_TRY(record(s->lin, point, err));
+    MT_TRY(record_nearness(s->lin, point, s->mem, err));
     s->out->n_reached++;
     return MT_OK;
 }
@@ -107,6 +116,12 @@ static mt_status walk(const sweeper *s, int first, int step, mt_err *err)
         if (point->status == MT_E_MEMORY || point->status == MT_E_INTERNAL ||
             point->status == MT_E_INTERRUPTED) {
             return mt_fail(err, point->status, "%s", why.text);
+        }
+        if (point->status ==
+            MT_E_DEAD_CENTRE) { /* of this point alone; the next ones go on from the last */
+            const mt_system_joint *const joint = &s->lin->sys->joints[s->lin->sys->drive_joint];
+            (void)mt_err_in(&why, point->status, "joint \"%s\" at %.6g %s", joint->name,
+                            point->drive, joint->angle ? "rad" : "m");
         }
         point->why = mt_arena_strdup(s->mem, why.text);
         if (point->why == NULL) {

@@ -19,6 +19,8 @@ typedef struct mt_sweep_point {
         hold; /* what holds the joint: the moment or force of the lock along its coordinate, or the force of the trimmed spring [N m, N] */
     double residual; /* of the equilibrium, relative to the forces at work */
     double gap_m;    /* largest violation of a constraint */
+    const mt_nearness
+        *near; /* how near a dead centre is; NULL where nothing is at this point */
 } mt_sweep_point;
 
 typedef struct mt_sweep {
@@ -44,7 +46,7 @@ void mt_sweep_range(double from, double to, int steps, double *positions);
  * @param positions  [n] of the driven joint
  * @param visitor    NULL: mt_linear_update alone
  * @param mem        holds the result
- * A point beyond a limit position has MT_E_ASSEMBLY and the text that names the limit; so have all points further that way. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INTERRUPTED.
+ * A point in a dead centre has MT_E_DEAD_CENTRE; the next ones go on from the point before it. A point beyond a limit position has MT_E_ASSEMBLY and the text that names the limit; so have all points further that way. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INTERRUPTED.
  */
 mt_status mt_sweep_run(mt_linear *lin, const double *inputs, int n, const double *positions,
                        const mt_sweep_visitor *visitor, mt_arena *mem, mt_sweep *out,

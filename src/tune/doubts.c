@@ -113,6 +113,20 @@ static mt_status say_redundant(mt_linear *lin, mt_doubt_list *out, mt_err *err)
     return MT_OK;
 }
 
+/* The linearisation holds within a part of the distance only. */
+static mt_status say_dead_centre(mt_linear *lin, mt_doubt_list *out, mt_err *err)
+{
+    mt_nearness near;
+    MT_TRY(mt_linear_nearness(lin, &near, err));
+    if (near.near) {
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "dead_centre",
+                           "near a dead centre: about %.2g rad (or model lengths) on, joints "
+                           "%s depend on each other; motions must stay far below that",
+                           near.distance, near.joints);
+    }
+    return MT_OK;
+}
+
 static mt_status say_freedoms(const mt_analysis *a, mt_doubt_list *out, mt_err *err)
 {
     const int unstable = a->modes.n_unstable + a->modes.n_unstable_condensed;
@@ -124,6 +138,7 @@ static mt_status say_freedoms(const mt_analysis *a, mt_doubt_list *out, mt_err *
                            "unstable in %d direction%s: it falls over from here%s%s", unstable,
                            unstable == 1 ? "" : "s", name[0] == '\0' ? "" : ", moving ", name);
     }
+    MT_TRY(say_dead_centre(a->lin, out, err));
     return say_redundant(a->lin, out, err);
 }
 
