@@ -214,7 +214,8 @@ static mt_status run_start(void *context, int worker, int k, mt_err *err)
         slot->stop = MT_STOP_MAX_EVALS;
         return MT_OK;
     }
-    MT_TRY(mt_nlp_engine_init(&e, &nlp, &opt, &slot->fatal_err));
+    MT_TRY(mt_nlp_engine_init(&e, &nlp, &opt, err));
+    e.err = &slot->fatal_err;
     e.evals = slot->evals;
     e.abort = &job->abort;
     e.df_scale = all->df_scale;
@@ -235,7 +236,6 @@ static mt_status run_start(void *context, int worker, int k, mt_err *err)
         atomic_store(&job->abort, 1);
     }
     mt_nlp_engine_free(&e);
-    (void)err;
     return MT_OK;
 }
 

@@ -142,8 +142,12 @@ static bool gauss_newton(polish *w)
 {
     const mt_nlp *const q = w->e->nlp;
     const int nf = w->a.n_free;
+    if (q->n_res == 0 || w->aim == MT_NLP_SQUARES) {
+        return false;
+    }
     double *const jz = mt_arena_f64(&w->e->scratch, (size_t)q->n_res, (size_t)w->nz);
-    if (jz == NULL || q->n_res == 0 || w->aim == MT_NLP_SQUARES) {
+    if (jz == NULL) {
+        mt_nlp_end(w->e, mt_fail_memory(w->e->err));
         return false;
     }
     for (int c = 0; c < w->nz; c++) {

@@ -430,8 +430,9 @@ void mt_nlp_pull_back(mt_nlp_engine *e, const mt_nlp_result *undetermined, mt_nl
     mt_nlp_point *const to = mt_nlp_point_new(e, &e->scratch);
     double *const t = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
     double *const off = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
-    if (to != NULL && t != NULL && off != NULL && pulled(e, undetermined, p, off, t) &&
-        mt_nlp_evaluate(e, t, true, to)) {
+    if (to == NULL || t == NULL || off == NULL) {
+        mt_nlp_end(e, mt_fail_memory(e->err));
+    } else if (pulled(e, undetermined, p, off, t) && mt_nlp_evaluate(e, t, true, to)) {
         to->start = p->start;
         to->kkt = p->kkt;
         restore(e, undetermined, mt_nlp_feasible(p), to);

@@ -2,28 +2,64 @@
 #include "mt_sites.h"
 
 #include <stdarg.h>
+#include <string.h>
 
 #include "base/arena.h"
 
+/* Calls by which a place is known: its own and that many above it. */
+#ifndef MT_SITES_CALLERS
+#    define MT_SITES_CALLERS 0
+#endif
+enum { MOST_KNOWN = 16384 };
+
+typedef struct place {
+    const void *call[MT_SITES_CALLERS + 1];
+} place;
+
 static struct {
-    const void *place[MT_SITES_MOST];
+    place place[MT_SITES_MOST];
     int n;
     bool recording;
     int failing; /* -1: none */
     bool failed;
+    place known[MOST_KNOWN]; /* refused in an earlier run */
+    int n_known;
+    const char *top; /* of the stack, as far as frames are walked */
 } sites = {.failing = -1};
+
+static bool is_same(const place *a, const place *b)
+{
+    return memcmp(a, b, sizeof *a) == 0;
+}
+
+static bool is_among(const place *p, int n, const place *list)
+{
+    for (int i = 0; i < n; i++) {
+        if (is_same(p, &list[i])) {
+            return true;
+        }
+    }
+    return false;
+}
 
 void mt_sites_record(void)
 {
     sites.n = 0;
     sites.recording = true;
     sites.failing = -1;
+    sites.top = __builtin_frame_address(0);
+}
+
+bool mt_sites_known(int i)
+{
+    return MT_SITES_CALLERS > 0 && is_among(&sites.place[i], sites.n_known, sites.known);
 }
 
 void mt_sites_fail(int i)
 {
     sites.failing = i;
     sites.failed = false;
+    sites.top = __builtin_frame_address(0);
 }
 
 int mt_sites_stop(void)
@@ -38,23 +74,44 @@ bool mt_sites_failed(void)
     return sites.failed;
 }
 
-static bool refuses(const void *place)
+/* A frame begins with the address of its caller's frame and its return address. What is no frame (a foreign library keeps none) ends the walk. */
+static place place_of(const char *frame)
 {
+    place p;
+    memset(&p, 0, sizeof p);
+    for (int i = 0; i <= MT_SITES_CALLERS; i++) {
+        const char *above;
+        memcpy(&p.call[i], frame + sizeof(void *), sizeof(void *));
+        memcpy(&above, frame, sizeof(void *));
+        if (above <= frame || above >= sites.top) {
+            break;
+        }
+        frame = above;
+    }
+    return p;
+}
+
+static bool refuses(const void *call, const char *frame)
+{
+    if (sites.failing < 0 && !sites.recording) {
+        return false;
+    }
+    const place p = MT_SITES_CALLERS > 0 ? place_of(frame) : (place){{call}};
     if (sites.failing >= 0) {
-        const bool now = !sites.failed && sites.place[sites.failing] == place;
+        const bool now = !sites.failed && is_same(&sites.place[sites.failing], &p);
+        if (now && sites.n_known < MOST_KNOWN) {
+            sites.known[sites.n_known++] = p;
+        }
         sites.failed = sites.failed || now;
         return now;
     }
-    for (int i = 0; i < sites.n && sites.recording; i++) {
-        if (sites.place[i] == place) {
-            return false;
-        }
-    }
-    if (sites.recording && sites.n < MT_SITES_MOST) {
-        sites.place[sites.n++] = place;
+    if (sites.n < MT_SITES_MOST && !is_among(&p, sites.n, sites.place)) {
+        sites.place[sites.n++] = p;
     }
     return false;
 }
+
+#define REFUSED() refuses(__builtin_return_address(0), __builtin_frame_address(0))
 
 /* The linker's names for what it replaces, and for what was there. */
 /* NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp) */
@@ -79,39 +136,38 @@ void *__wrap_mt_arena_grow(mt_arena *a, void *items, int count, int *capacity, s
 mt_status __wrap_mt_arena_init(mt_arena *a, size_t block_size, mt_err *err)
 {
     *a = (mt_arena){0};
-    return refuses(__builtin_return_address(0)) ? mt_fail_memory(err)
-                                                : __real_mt_arena_init(a, block_size, err);
+    return REFUSED() ? mt_fail_memory(err) : __real_mt_arena_init(a, block_size, err);
 }
 
 void *__wrap_mt_arena_alloc(mt_arena *a, size_t count, size_t size)
 {
-    return refuses(__builtin_return_address(0)) ? NULL : __real_mt_arena_alloc(a, count, size);
+    return REFUSED() ? NULL : __real_mt_arena_alloc(a, count, size);
 }
 
 double *__wrap_mt_arena_f64(mt_arena *a, size_t m, size_t n)
 {
-    return refuses(__builtin_return_address(0)) ? NULL : __real_mt_arena_f64(a, m, n);
+    return REFUSED() ? NULL : __real_mt_arena_f64(a, m, n);
 }
 
 int *__wrap_mt_arena_int(mt_arena *a, size_t n)
 {
-    return refuses(__builtin_return_address(0)) ? NULL : __real_mt_arena_int(a, n);
+    return REFUSED() ? NULL : __real_mt_arena_int(a, n);
 }
 
 char *__wrap_mt_arena_strdup(mt_arena *a, const char *s)
 {
-    return refuses(__builtin_return_address(0)) ? NULL : __real_mt_arena_strdup(a, s);
+    return REFUSED() ? NULL : __real_mt_arena_strdup(a, s);
 }
 
 char *__wrap_mt_arena_strndup(mt_arena *a, const char *s, size_t length)
 {
-    return refuses(__builtin_return_address(0)) ? NULL : __real_mt_arena_strndup(a, s, length);
+    return REFUSED() ? NULL : __real_mt_arena_strndup(a, s, length);
 }
 
 char *__wrap_mt_arena_printf(mt_arena *a, const char *fmt, ...)
 {
     va_list args;
-    if (refuses(__builtin_return_address(0))) {
+    if (REFUSED()) {
         return NULL;
     }
     va_start(args, fmt);
@@ -122,13 +178,11 @@ char *__wrap_mt_arena_printf(mt_arena *a, const char *fmt, ...)
 
 char *__wrap_mt_arena_vprintf(mt_arena *a, const char *fmt, va_list args)
 {
-    return refuses(__builtin_return_address(0)) ? NULL : __real_mt_arena_vprintf(a, fmt, args);
+    return REFUSED() ? NULL : __real_mt_arena_vprintf(a, fmt, args);
 }
 
 void *__wrap_mt_arena_grow(mt_arena *a, void *items, int count, int *capacity, size_t size)
 {
-    return refuses(__builtin_return_address(0))
-               ? NULL
-               : __real_mt_arena_grow(a, items, count, capacity, size);
+    return REFUSED() ? NULL : __real_mt_arena_grow(a, items, count, capacity, size);
 }
 /* NOLINTEND(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp) */
