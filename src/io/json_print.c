@@ -125,7 +125,8 @@ void mt_json_pointer(const mt_json *doc, mt_addr addr, mt_text *out)
     }
     const bool outer = name || node->type == 0;
     mt_addr at = outer ? node->parent : (mt_addr)(node - doc->nodes);
-    for (; at > MT_JSON_ROOT && depth <= MT_JSON_MAX_DEPTH; at = doc->nodes[at].parent) {
+    /* problems before the text's value come first among the nodes: the root is what has no parent */
+    for (; at >= 0 && doc->nodes[at].parent != MT_NO_ADDR; at = doc->nodes[at].parent) {
         path[depth++] = at;
     }
     while (depth > 0) {

@@ -441,9 +441,6 @@ static bool scan_quoted_wrongly(scan *sc)
 
 static bool scan_value(scan *sc, size_t name)
 {
-    if (!skip_space(sc)) {
-        return false;
-    }
     if (sc->doc->count >= MT_JSON_MAX_VALUES) {
         (void)wrong(sc, sc->i, "more than %d values", MT_JSON_MAX_VALUES);
         return false;
