@@ -105,6 +105,45 @@ class Sweep(CliTest):
         wrong('drive: there is no spring "motor" to hold it in configuration "sprung"', "--drive", "pivot=0:1:2",
               "--hold", "motor")
 
+        for n in ("", "0", "-3", "3x", "100002", "9" * 30):
+            wrong(f'--drive: the number of positions, "{n}", is not a whole number from 2 to 100001', "--drive", f"pivot=0:1:{n}")
+        wrong('--drive: bogus: at character 1: unknown name "bogus"', "--drive", "pivot=0:bogus:2")
+        wrong('--drive: 1/: at character 3: the expression ends where a number, a name or "(" is expected', "--drive", "pivot=1/:1:2")
+
+    def test_csv_holds_every_configuration_with_the_same_joints(self):
+        args = ("sweep", self.rod, "--drive", "pivot=0:0.5:2", "--modes")
+        rows = list(csv.DictReader(io.StringIO(self.expect(0, *args, "--format", "csv").stdout)))
+        want = self.json_of(*args)
+        self.assertEqual([r["configuration"] for r in rows], ["sprung"] * 2 + ["locked"] * 2 + ["trimmed"] * 2)
+        points = [p for c in want for p in c["points"]]
+        for row, point in zip(rows, points, strict=True):
+            self.assertEqual(float(row["position_rad"]), point["position_rad"])
+            self.assertEqual(float(row["hold_n_m"]), point["hold_n_m"])
+            self.assertEqual(float(row["mode_1_hz"]), point["frequencies_hz"][0])
+
+    def test_csv_with_other_joints_is_refused(self):
+        two = DAMPED.replace('"centre": [2, 0] }', '"centre": [2, 0], "in": ["two"] }').replace(
+            '"at": [2, 0], "axis": [1, 0] } ],', '"at": [2, 0], "axis": [1, 0], "in": ["two"] } ],\n'
+            '  "configurations": { "one": {}, "two": {} },')
+        model = self.write("problems/two.json", two)
+        done = self.expect(2, "sweep", model, "--drive", "ja=0:0.1:2", "--format", "csv")
+        self.assertIn("configurations with different joints do not fit into one CSV table: choose one with -c", done.stderr)
+        one = self.expect(0, "sweep", model, "--drive", "ja=0:0.1:2", "--format", "csv", "-c", "two").stdout
+        self.assertEqual(one.splitlines()[0], "configuration,position_m,jb_m,jb_ratio,hold_n,equilibrium_residual,gap_m")
+        text = self.expect(0, "sweep", model, "--drive", "ja=0:0.1:2").stdout
+        self.assertRegex(text, r"one\n +ja \[m\] +lock \[N\]\n")
+        self.assertRegex(text, r"two\n +ja \[m\] +jb \[m\] +per ja +lock \[N\]\n")
+
+    def test_free_and_unstable_positions_are_said(self):
+        free = self.write("problems/free.json", DAMPED)
+        text = self.expect(0, "sweep", free, "--drive", "ja=0:0.1:2", "--modes").stdout
+        self.assertIn("  1 rigid-body mode: it can move freely.\n", text)
+        rod = ("sweep", self.rod, "-c", "sprung", "--modes", "--set", "k_d=-1", "--drive")
+        self.assertIn("  UNSTABLE at 3 positions: they do not hold.\n", self.expect(0, *rod, "pivot=0:0.5:3").stdout)
+        self.assertIn("  UNSTABLE at 1 position: it does not hold.\n", self.expect(0, *rod, "pivot=0:0:1").stdout)
+        rows = list(csv.DictReader(io.StringIO(self.expect(0, *rod, "pivot=0:0.5:3", "--format", "csv").stdout)))
+        self.assertEqual([r["mode_1_hz"] for r in rows], ["", "", ""])
+
     def test_one_point_is_a_range(self):
         got = self.json_of("sweep", self.slider, "-c", "default", "--drive", "shaft=0.5:0.5:1")
         self.assertEqual([p["position_rad"] for p in got["points"]], [0.5])
@@ -139,6 +178,25 @@ class Damped(CliTest):
         self.assertAlmostEqual(float(rows[1]["decay_per_s"]), 2.5, delta=TOL)
         self.assertAlmostEqual(float(rows[2]["decay_per_s"]), 10, delta=TOL)
         self.assertEqual(rows[1]["damped_frequency_hz"], "")
+
+    def test_count_counts_oscillating_modes(self):
+        # a second spring makes two oscillating modes, k/m = 25 and 100: --count 1 keeps the first, and what has no index
+        model = self.write("problems/two_springs.json", DAMPED.replace('"springs": [ ', '"springs": [ { "name": "t", "type": "axial", '
+                           '"bodies": ["ground", "b"], "at": [[0, 0], [2, 0]], "stiffness_n_per_m": 100 }, '))
+        for form in ("json", "csv", "text"):
+            with self.subTest(form):
+                one, two = (self.expect(0, "modes", model, "--damped", "--format", form, *more).stdout
+                            for more in (("--count", "1"), ("--count", "2")))
+                if form == "json":
+                    one, two = (json.loads(text)[0]["damped_modes"] for text in (one, two))
+                    self.assertEqual([m["index"] for m in one], [1])
+                    self.assertEqual([m["index"] for m in two], [1, 2])
+                    self.assertAlmostEqual(two[1]["natural_frequency_hz"], 10 / (2 * math.pi), delta=TOL)
+                elif form == "csv":
+                    one, two = ([r["index"] for r in csv.DictReader(io.StringIO(text))] for text in (one, two))
+                    self.assertEqual((one, two), (["1"], ["1", "2"]))
+                else:
+                    self.assertEqual([text.count("oscillating") for text in (one, two)], [1, 2])
 
 
 if __name__ == "__main__":
