@@ -90,6 +90,13 @@ class WrongUse(CliTest):
         self.wrong('--count needs a value: N', "modes", self.model, "--count")
         self.wrong('--count: "0" is not a whole number from 1 to 2147483647', "modes", self.model, "--count", "0")
         self.wrong('--count: "2x" is not a whole number from 1 to 2147483647', "modes", self.model, "--count=2x")
+        self.wrong('--count: "4294967297" is not a whole number from 1 to 2147483647', "modes", self.model, "--count=4294967297")
+        self.wrong(f'--count: "{"9" * 30}" is not a whole number from 1 to 2147483647', "modes", self.model, "--count", "9" * 30)
+        self.wrong('--count: "a" is not a whole number from 1 to 2147483647', "modes", self.model, "--count", "a")
+        self.wrong('--threads: "1025" is not a whole number from 1 to 1024', "run", "x", "--threads", "1025")
+        self.wrong('-h takes no value', "run", "x", "-hx")
+        self.wrong('unknown option "--xyzzy"', "modes", self.model, "--xyzzy")
+        self.wrong('unknown option "--"', "modes", self.model, "--=3")
         self.wrong('--threads: "-1" is not a whole number from 1 to 1024', "run", "x", "--threads", "-1")
         self.wrong('--shapes takes no value', "modes", self.model, "--shapes=yes")
         self.wrong('--format is given twice', "modes", self.model, "--format", "csv", "--format=json")
@@ -101,6 +108,11 @@ class WrongUse(CliTest):
         self.wrong('--set: parameter "k1" is set twice', "modes", self.model, "--set", "k1=1", "--set", "k1=2")
         self.wrong('--parameters: unknown parameter "k9"; did you mean "k1"?', "sensitivity", self.model,
                    "--parameters", "m,k9")
+        self.wrong('--parameters: unknown parameter "xyzzy"', "sensitivity", self.model, "--parameters", "xyzzy")
+        self.wrong('--parameters: "k1" is given twice', "sensitivity", self.model, "--parameters", "k1,m,k1")
+        self.wrong('--set: "=1" is not NAME=VALUE', "modes", self.model, "--set", "=1")
+        self.wrong('--set: unknown parameter "xyzzy"', "modes", self.model, "--set", "xyzzy=1")
+        self.wrong('unknown configuration "xyzzy"', "modes", self.model, "-c", "xyzzy")
         self.wrong('"problems/model.json" has 4 configurations: name one, as problems/model.json:held', "mac",
                    self.model, f"{self.model}:held")
 

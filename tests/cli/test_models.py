@@ -162,6 +162,10 @@ class Sensitivity(CliTest):
         self.assertEqual(with_both[0]["k1"], alone[0]["k1"])
         self.assertEqual(with_both[0]["both"]["hz_per_unit"], 0)
 
+    def test_without_parameters_there_is_nothing_to_vary(self):
+        model = self.write("problems/fixed.json", REPEATED.replace('"parameters": { "kx": 100, "ky": 100 },', "").replace('"kx"', "100").replace('"ky"', "100"))
+        self.assertIn("there are no parameters to vary", self.expect(2, "sensitivity", model).stderr)
+
     def test_overridden_parameters_have_no_influence(self):
         got = self.json_of("sensitivity", self.model, "-c", "heavy", "--parameters", "m")
         self.assertEqual(got["modes"][0]["sensitivities"][0]["value"], 4)
@@ -241,6 +245,19 @@ class Check(CliTest):
         self.assertEqual([(g["file"], g["kind"], g["ok"]) for g in got],
                          [(self.model, "model", True), (bad, None, False)])
         self.assertIn("bad.json:1:1: error: ", got[1]["problems"])
+
+    def test_csv_says_the_same(self):
+        bad = self.write("bad.json", "{}")
+        done = self.expect(2, "check", self.model, bad, "--format", "csv")
+        self.assertEqual(list(csv.reader(io.StringIO(done.stdout))),
+                         [["file", "kind", "ok"], [self.model, "model", "true"], [bad, "", "false"]])
+
+    def test_a_format_that_is_none_is_told(self):
+        for name, said in (("other.json", '{ "format": "xyzzy" }'), ("number.json", '{ "format": 1 }')):
+            with self.subTest(name):
+                done = self.expect(2, "check", self.write(name, said))
+                self.assertEqual(done.stderr, f'{name}:1:13: error: /format: must be one of "modetune-model/1", "modetune-study/1", '
+                                 '"modetune-result/1", "modetune-aircraft/1"\n')
 
 
 if __name__ == "__main__":

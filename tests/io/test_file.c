@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <dirent.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -117,6 +119,35 @@ static void file__is_written_whole_or_not_at_all(mt_test *t)
     CHECK(t, remove("a.txt") == 0 && rmdir("d") == 0 && rmdir(folder) == 0);
 }
 
+/* A limit of the system in the middle of a file: it says so, what stood there stays, and nothing is left. */
+static void file__that_cannot_be_finished_changes_nothing(mt_test *t)
+{
+    enum { ALLOWED = 4096, WANTED = 3 * ALLOWED };
+    static char bytes[WANTED];
+    char folder[] = "/tmp/modetune_test_XXXXXX";
+    struct rlimit before;
+    mt_file f = {0};
+    mt_err err = {MT_OK, ""};
+    REQUIRE(t, enter(folder));
+    memset(bytes, 'x', sizeof bytes);
+    CHECK_INT(t, mt_file_write("a", "old", 3, NULL), MT_OK);
+    if (CHECK(t, getrlimit(RLIMIT_FSIZE, &before) == 0)) {
+        const struct rlimit small = {ALLOWED, before.rlim_max};
+        void (*const handler)(int) = signal(SIGXFSZ, SIG_IGN);
+        CHECK(t, setrlimit(RLIMIT_FSIZE, &small) == 0);
+        const mt_status rc = mt_file_write("a", bytes, sizeof bytes, &err);
+        CHECK(t, setrlimit(RLIMIT_FSIZE, &before) == 0);
+        (void)signal(SIGXFSZ, handler);
+        CHECK_INT(t, rc, MT_E_SYSTEM);
+        CHECK_STR(t, err.text, "a: File too large");
+    }
+    CHECK_INT(t, entries("."), 1);
+    CHECK_INT(t, mt_file_read("a", NULL, LIMIT, &f, NULL), MT_OK);
+    CHECK_STR(t, f.bytes, "old");
+    mt_file_free(&f);
+    CHECK(t, remove("a") == 0 && rmdir(folder) == 0);
+}
+
 static void file__only_regular_files_beneath_the_root_are_read(mt_test *t)
 {
     char folder[] = "/tmp/modetune_test_XXXXXX";
@@ -194,5 +225,6 @@ static void file__every_failing_allocation_is_survived(mt_test *t)
 MT_TEST_MAIN(MT_TEST(file__sha256_matches_the_standard),
              MT_TEST(file__paths_are_joined_to_the_naming_file),
              MT_TEST(file__is_written_whole_or_not_at_all),
+             MT_TEST(file__that_cannot_be_finished_changes_nothing),
              MT_TEST(file__only_regular_files_beneath_the_root_are_read),
              MT_TEST(file__every_failing_allocation_is_survived))
