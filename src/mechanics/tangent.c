@@ -28,14 +28,18 @@ static mt_status tangent_rows(mt_linear *lin, const mt_pose *poses, mt_linear_ta
         const mt_term_list *const list = &lin->list[kind];
         const size_t size = (size_t)list->n_rows * MT_LOCAL;
         t->rows[kind] = mt_arena_f64(&lin->geometry, size, 1);
+        t->still[kind] = mt_arena_alloc(&lin->geometry, (size_t)list->n_rows, sizeof(bool));
         const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
         mt_cx *const rows = mt_arena_alloc(&lin->scratch, size, sizeof *rows);
-        if (t->rows[kind] == NULL || rows == NULL) {
+        if (t->rows[kind] == NULL || t->still[kind] == NULL || rows == NULL) {
             return mt_fail_memory(err);
         }
         mt_rows_eval(&lin->dual, (mt_term_kind)kind, list, poses, rows);
         for (size_t i = 0; i < size; i++) {
             t->rows[kind][i] = cx_derivative(rows[i]);
+        }
+        for (int i = 0; i < list->n_rows; i++) {
+            t->still[kind][i] = all_zero(MT_LOCAL, t->rows[kind] + ((ptrdiff_t)i * MT_LOCAL));
         }
         t->moves = t->moves || !all_zero(size, t->rows[kind]);
         mt_arena_rewind(&lin->scratch, mark);
@@ -161,6 +165,9 @@ static void full_product_derivative(const mt_linear *lin, int kind, int p, const
         const double c = lin->value[t->coefficient] * half;
         const double dc =
             lin->grad[((ptrdiff_t)t->coefficient * lin->sys->n_inputs) + p] * half;
+        if (dc == 0.0 && tangent->still[kind][i] && tangent->still[kind][other]) {
+            continue;
+        }
         const double *const row = lin->rows[kind] + ((ptrdiff_t)i * MT_LOCAL);
         const double *const row_o = lin->rows[kind] + ((ptrdiff_t)other * MT_LOCAL);
         const double s = row_dot(lin->sys, t, row_o, phi);
@@ -241,18 +248,22 @@ static mt_status moving_product(mt_linear *lin, int kind, int p, moving *v, doub
     const int nq = lin->sys->nq;
     const mt_linear_tangent *const t = &lin->tangent[p];
     const bool geometric = kind == MT_TERM_STIFFNESS && lin->kg != NULL;
-    memset(v->kphi, 0, (size_t)nq * sizeof *v->kphi);
     memset(v->w, 0, (size_t)nq * sizeof *v->w);
-    full_product(lin, kind, v->phi, v->kphi);
-    full_product(lin, kind, v->z, v->w);
     full_product_derivative(lin, kind, p, v->phi, v->w);
     if (geometric) {
-        mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->phi, 1.0, v->kphi);
-        mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->z, 1.0, v->w);
         mt_gemv(false, nq, nq, 1.0, t->kg, nq, v->phi, 1.0, v->w);
     }
-    MT_TRY(mt_eliminate_multipliers(&lin->e, v->kphi, v->lambda, &lin->scratch, err));
-    mt_gemv(true, lin->m, nq, -1.0, t->a, lin->m, v->lambda, 1.0, v->w);
+    if (lin->m > 0) { /* without constraints the basis stands still */
+        memset(v->kphi, 0, (size_t)nq * sizeof *v->kphi);
+        full_product(lin, kind, v->phi, v->kphi);
+        full_product(lin, kind, v->z, v->w);
+        if (geometric) {
+            mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->phi, 1.0, v->kphi);
+            mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->z, 1.0, v->w);
+        }
+        MT_TRY(mt_eliminate_multipliers(&lin->e, v->kphi, v->lambda, &lin->scratch, err));
+        mt_gemv(true, lin->m, nq, -1.0, t->a, lin->m, v->lambda, 1.0, v->w);
+    }
     mt_eliminate_project(&lin->e, v->w, out);
     return MT_OK;
 }

@@ -8,6 +8,7 @@
 struct mt_linear_tangent {
     bool moves;                  /* anything below non-zero? */
     double *rows[MT_TERM_KINDS]; /* derivative of lin->rows */
+    bool *still[MT_TERM_KINDS];  /* which of them are 0 */
     double *a;                   /* m x nq, derivative of the constraint Jacobian */
     double *kg;                  /* nq x nq; NULL where nothing loads */
 };

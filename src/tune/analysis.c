@@ -86,6 +86,7 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
     const mt_arena_mark start = {a->mem.first, 0, 0};
     mt_arena_rewind(&a->mem, start);
     a->solves++;
+    a->with_gradient = false;
     MT_TRY(mt_linear_update(a->lin, inputs, opt->gradient, err));
     MT_TRY(refresh_mass(a, err));
     const mt_linear *const lin = a->lin;
@@ -124,15 +125,16 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
         const size_t n = (size_t)lin->n;
         a->dky = mt_arena_f64(&a->mem, n, (size_t)a->sys->n_inputs);
         a->dmy = mt_arena_f64(&a->mem, n, (size_t)a->sys->n_inputs);
-        if (a->dky == NULL || a->dmy == NULL) {
+        a->slopes = mt_arena_f64(&a->mem, (size_t)a->modes.count, (size_t)a->sys->n_inputs);
+        a->sloped = mt_arena_alloc(&a->mem, (size_t)a->modes.count, sizeof *a->sloped);
+        if (a->dky == NULL || a->dmy == NULL || a->slopes == NULL || a->sloped == NULL) {
             return mt_fail_memory(err);
         }
     }
     return MT_OK;
 }
 
-/* Products of all inputs with the mode at pos, into dky, dmy. */
-static mt_status products(mt_analysis *a, int pos, mt_err *err)
+mt_status mt_analysis_products(mt_analysis *a, int pos, mt_err *err)
 {
     const ptrdiff_t n = a->lin->n;
     if (!a->with_gradient) {
@@ -150,11 +152,18 @@ mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_e
 {
     const ptrdiff_t n = a->lin->n;
     const double *const y = a->modes.y + (pos * n);
-    MT_TRY(products(a, pos, err));
-    for (int p = 0; p < a->sys->n_inputs; p++) {
-        dlambda[p] = mt_dot((int)n, y, a->dky + (p * n)) -
-                     (a->modes.lambda[pos] * mt_dot((int)n, y, a->dmy + (p * n)));
+    const size_t np = (size_t)a->sys->n_inputs;
+    const bool known = a->with_gradient && a->sloped[pos];
+    if (!known) {
+        MT_TRY(mt_analysis_products(a, pos, err));
     }
+    double *const slope = a->slopes + ((size_t)pos * np);
+    for (int p = 0; p < a->sys->n_inputs && !known; p++) {
+        slope[p] = mt_dot((int)n, y, a->dky + (p * n)) -
+                   (a->modes.lambda[pos] * mt_dot((int)n, y, a->dmy + (p * n)));
+    }
+    a->sloped[pos] = true;
+    memcpy(dlambda, slope, np * sizeof *dlambda);
     return MT_OK;
 }
 
@@ -163,7 +172,7 @@ mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *re
 {
     const ptrdiff_t n = a->lin->n;
     bool any = false;
-    MT_TRY(products(a, pos, err));
+    MT_TRY(mt_analysis_products(a, pos, err));
     for (int p = 0; p < a->sys->n_inputs; p++) {
         bool one = false;
         mt_modal_dlambda(&a->modes, 1, &pos, a->dky + (p * n), a->dmy + (p * n), &dlambda[p],
@@ -191,7 +200,7 @@ mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel,
     if (dy == NULL) {
         return mt_fail_memory(err);
     }
-    MT_TRY(products(a, pos, err));
+    MT_TRY(mt_analysis_products(a, pos, err));
     const mt_directions given = {.np = np, .dky = a->dky, .dmy = a->dmy};
     const mt_pencil pencil = {.n = (int)n, .k = a->lin->k, .m = a->lin->m_r};
     if (a->modes.n_condensed == 0) {

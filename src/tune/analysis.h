@@ -29,6 +29,9 @@ typedef struct mt_analysis {
     bool with_gradient;
     double *dky; /* work, n x n_inputs, after a solve with gradient */
     double *dmy;
+    double *
+        slopes; /* n_inputs x modes: derivatives of the eigenvalues that were asked for since that solve */
+    bool *sloped; /* [modes] which of them were */
     long solves;
 } mt_analysis;
 
@@ -83,6 +86,8 @@ mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *re
                               mt_err *err);
 /* y^T (dK - lambda dM) y whatever its neighbours: not a derivative where the mode is repeated, but its mean over a cluster is that of the mean. */
 mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_err *err);
+/* After a solve with gradient: a->dky, a->dmy := dK y, dM y for every input, y the mode at pos. */
+mt_status mt_analysis_products(mt_analysis *a, int pos, mt_err *err);
 /*
  * Shape of the mode at position pos at channels channel[ns] of the system: s[ns] [a length or an angle, mass-normalised: per sqrt(kg) of modal mass]. ds (may be NULL): ns x n_inputs, its derivatives with the sign
  * held, after a solve with gradient. Fails: MT_E_SINGULAR (ds of a repeated mode), MT_E_MEMORY, MT_E_INTERNAL.

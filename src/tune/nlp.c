@@ -92,7 +92,7 @@ void mt_nlp_minimise(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point
     }
     for (int round = 0; round < ROUNDS && !e->ended; round++) {
         minimise_once(e, n_rows, rows, p, saddle);
-        if (round > 0 && mt_nlp_better(before, p)) {
+        if (round > 0 && !mt_nlp_better(p, before)) { /* the same again would end there again */
             mt_nlp_point_copy(e, p, before);
             return;
         }

@@ -23,9 +23,11 @@ typedef struct mt_nlp_values {
     double *dr; /* n_res x n column-major */
     double *
         eq; /* [n_eq] relative to the demand (ln of a ratio), so that a compromise weighs them fairly */
-    double *deq; /* n_eq x n column-major */
-    double *in;  /* [n_in] >= 0 feasible */
-    double *din; /* n_in x n column-major */
+    double *deq;   /* n_eq x n column-major */
+    double *in;    /* [n_in] >= 0 feasible */
+    double *din;   /* n_in x n column-major */
+    double *next;  /* [n_next], see mt_nlp; NULL: they are not asked for */
+    double *dnext; /* n_next x n column-major */
 } mt_nlp_values;
 
 /*
@@ -48,6 +50,9 @@ typedef struct mt_nlp {
     int n_in;
     const double *eq_tol; /* [n_eq] > 0 */
     const double *in_tol; /* [n_in] > 0 */
+    int n_next; /* rows that follow from those of `in`: next >= 0 wherever in[next_of] >= 0. They add nothing to a violation, but where rows
+                   change places (modes that cross) they tell what comes next: local solvers and KKT conditions know them; their multipliers count for in[next_of] */
+    const int *next_of; /* [n_next] */
     mt_nlp_eval eval;
     void *context;
     int n_workers; /* starts run on so many threads; 0 or 1: the caller's own */

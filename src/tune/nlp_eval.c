@@ -72,6 +72,12 @@ mt_status mt_nlp_engine_init(mt_nlp_engine *e, const mt_nlp *nlp, const mt_nlp_o
         e->n_free += !e->held[j];
         e->origin[j] = mt_nlp_clamp(e, j, nlp->origin[j]);
     }
+    for (int i = 0; i < nlp->n_next; i++) {
+        if (nlp->next_of[i] < 0 || nlp->next_of[i] >= nlp->n_in) {
+            mt_arena_free(&e->scratch);
+            return mt_fail(err, MT_E_USAGE, "search: row %d follows from none", i);
+        }
+    }
     for (int i = 0; i < nlp->n_eq; i++) {
         e->eq_tol = fmax(e->eq_tol, nlp->eq_tol[i]);
     }
@@ -111,7 +117,8 @@ mt_nlp_point *mt_nlp_point_new(mt_nlp_engine *e, mt_arena *mem)
         mt_nlp_end(e, mt_fail_memory(e->err));
         return NULL;
     }
-    double **const arrays[] = {&p->t, &p->df, &p->r, &p->dr, &p->eq, &p->deq, &p->in, &p->din};
+    double **const arrays[] = {&p->t,   &p->df, &p->r,   &p->dr,   &p->eq,
+                               &p->deq, &p->in, &p->din, &p->next, &p->dnext};
     const size_t rows[] = {1,
                            1,
                            (size_t)q->n_res,
@@ -119,8 +126,10 @@ mt_nlp_point *mt_nlp_point_new(mt_nlp_engine *e, mt_arena *mem)
                            (size_t)q->n_eq,
                            (size_t)q->n_eq,
                            (size_t)q->n_in,
-                           (size_t)q->n_in};
-    const size_t columns[] = {n, n, 1, n, 1, n, 1, n};
+                           (size_t)q->n_in,
+                           (size_t)q->n_next,
+                           (size_t)q->n_next};
+    const size_t columns[] = {n, n, 1, n, 1, n, 1, n, 1, n};
     for (int k = 0; k < MT_COUNT(arrays); k++) {
         *arrays[k] = mt_arena_f64(mem, rows[k], columns[k]);
         if (*arrays[k] == NULL) {
@@ -136,11 +145,12 @@ void mt_nlp_point_copy(const mt_nlp_engine *e, mt_nlp_point *to, const mt_nlp_po
 {
     const mt_nlp *const q = e->nlp;
     const size_t n = (size_t)e->n;
-    const size_t rows[] = {(size_t)q->n_res, (size_t)q->n_eq, (size_t)q->n_in};
-    double *const v[] = {to->r, to->eq, to->in};
-    double *const d[] = {to->dr, to->deq, to->din};
-    const double *const v0[] = {from->r, from->eq, from->in};
-    const double *const d0[] = {from->dr, from->deq, from->din};
+    const size_t rows[] = {(size_t)q->n_res, (size_t)q->n_eq, (size_t)q->n_in,
+                           (size_t)q->n_next};
+    double *const v[] = {to->r, to->eq, to->in, to->next};
+    double *const d[] = {to->dr, to->deq, to->din, to->dnext};
+    const double *const v0[] = {from->r, from->eq, from->in, from->next};
+    const double *const d0[] = {from->dr, from->deq, from->din, from->dnext};
     memcpy(to->t, from->t, n * sizeof *to->t);
     memcpy(to->df, from->df, n * sizeof *to->df);
     for (int k = 0; k < MT_COUNT(rows); k++) {
@@ -192,12 +202,13 @@ static bool point_finite(const mt_nlp_engine *e, const mt_nlp_point *p, bool wit
     const mt_nlp *const q = e->nlp;
     const ptrdiff_t n = e->n;
     if (!isfinite(p->f) || !all_finite(q->n_res, p->r) || !all_finite(q->n_eq, p->eq) ||
-        !all_finite(q->n_in, p->in)) {
+        !all_finite(q->n_in, p->in) || !all_finite(q->n_next, p->next)) {
         return false;
     }
     return !with_gradient ||
            (all_finite(n, p->df) && all_finite(q->n_res * n, p->dr) &&
-            all_finite(q->n_eq * n, p->deq) && all_finite(q->n_in * n, p->din));
+            all_finite(q->n_eq * n, p->deq) && all_finite(q->n_in * n, p->din) &&
+            all_finite(q->n_next * n, p->dnext));
 }
 
 /* What follows from the values: objective of a misfit, violation, squares. */
@@ -233,6 +244,9 @@ static void shift(const mt_nlp_engine *e, mt_nlp_point *p)
     }
     for (int i = 0; i < e->nlp->n_in; i++) {
         p->in[i] -= e->in_shift[i];
+    }
+    for (int i = 0; i < e->nlp->n_next; i++) {
+        p->next[i] -= e->in_shift[e->nlp->next_of[i]];
     }
 }
 
@@ -287,7 +301,9 @@ bool mt_nlp_evaluate(mt_nlp_engine *e, const double *t, bool with_gradient, mt_n
                        .eq = p->eq,
                        .deq = p->deq,
                        .in = p->in,
-                       .din = p->din};
+                       .din = p->din,
+                       .next = e->nlp->n_next > 0 ? p->next : NULL,
+                       .dnext = p->dnext};
     mt_err here;
     here.code = MT_OK;
     here.text[0] = '\0';

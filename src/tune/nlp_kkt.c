@@ -23,6 +23,8 @@ static const double IN_NEAR = 1e-6;
 static const double IN_NEAR_TOLS = 10;
 /* Rank of the unit columns: double precision halves its digits where the Jacobian turns singular. */
 static const double RANK_TOL = 1e-8;
+/* Slopes that differ by less, relatively, are the same. */
+static const double TWIN = 1e-9;
 /* A wrong sign below this part of the gradient is rounding. */
 static const double SIGN_TOL = 1e-9;
 /* Gradients below this part of the largest one met are not told from zero by their direction. */
@@ -31,14 +33,32 @@ static const double GRADIENT_FLOOR = 1e-3;
 double mt_nlp_row_slope(const mt_nlp_engine *e, const mt_nlp_point *p, int i, int j)
 {
     const mt_nlp *const q = e->nlp;
-    return i < q->n_eq ? p->deq[i + (ptrdiff_t)j * q->n_eq]
-                       : p->din[i - q->n_eq + (ptrdiff_t)j * q->n_in];
+    const int in = i - q->n_eq;
+    return in < 0         ? p->deq[i + (ptrdiff_t)j * q->n_eq]
+           : in < q->n_in ? p->din[in + (ptrdiff_t)j * q->n_in]
+                          : p->dnext[in - q->n_in + (ptrdiff_t)j * q->n_next];
+}
+
+double mt_nlp_row_value(const mt_nlp_engine *e, const mt_nlp_point *p, int i)
+{
+    const mt_nlp *const q = e->nlp;
+    const int in = i - q->n_eq;
+    return in < 0 ? p->eq[i] : in < q->n_in ? p->in[in] : p->next[in - q->n_in];
+}
+
+double mt_nlp_row_tol(const mt_nlp_engine *e, int i)
+{
+    const mt_nlp *const q = e->nlp;
+    const int in = i - q->n_eq;
+    return in < 0         ? q->eq_tol[i]
+           : in < q->n_in ? q->in_tol[in]
+                          : q->in_tol[q->next_of[in - q->n_in]];
 }
 
 static bool allocate(mt_nlp_engine *e, mt_arena *mem, mt_nlp_active *a)
 {
     const size_t n = (size_t)e->n;
-    const size_t k = (size_t)e->nlp->n_eq + (size_t)e->nlp->n_in;
+    const size_t k = (size_t)e->nlp->n_eq + (size_t)e->nlp->n_in + (size_t)e->nlp->n_next;
     *a = (mt_nlp_active){.free = mt_arena_int(mem, n),
                          .side = mt_arena_int(mem, n),
                          .row = mt_arena_int(mem, k),
@@ -51,6 +71,25 @@ static bool allocate(mt_nlp_engine *e, mt_arena *mem, mt_nlp_active *a)
         return false;
     }
     return true;
+}
+
+/* Has a row among those before it the same slopes? Of modes that stay together by symmetry one is enough. */
+static bool is_twin(const mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_active *a,
+                    int row)
+{
+    for (int i = 0; i < a->k; i++) {
+        double apart = 0;
+        double size = 0;
+        for (int j = 0; j < e->n && a->row[i] >= e->nlp->n_eq; j++) {
+            const double own = mt_nlp_row_slope(e, p, row, j);
+            apart = fmax(apart, fabs(own - mt_nlp_row_slope(e, p, a->row[i], j)));
+            size = fmax(size, fabs(own));
+        }
+        if (a->row[i] >= e->nlp->n_eq && apart <= TWIN * size) {
+            return true;
+        }
+    }
+    return false;
 }
 
 static void candidates(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim,
@@ -68,9 +107,11 @@ static void candidates(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim
     for (int i = 0; i < q->n_eq && aim == MT_NLP_OBJECTIVE; i++) {
         a->row[a->k++] = i;
     }
-    for (int i = 0; i < q->n_in && aim == MT_NLP_OBJECTIVE; i++) {
-        if (p->in[i] <= fmax(IN_NEAR, IN_NEAR_TOLS * q->in_tol[i])) {
-            a->row[a->k++] = q->n_eq + i;
+    for (int i = q->n_eq; i < q->n_eq + q->n_in + q->n_next && aim == MT_NLP_OBJECTIVE; i++) {
+        const double near = fmax(IN_NEAR, IN_NEAR_TOLS * mt_nlp_row_tol(e, i));
+        if (mt_nlp_row_value(e, p, i) <= near &&
+            (i < q->n_eq + q->n_in || !is_twin(e, p, a, i))) {
+            a->row[a->k++] = i;
         }
     }
 }
@@ -79,7 +120,6 @@ static void candidates(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim
 static mt_status multipliers(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim,
                              mt_arena *mem, mt_nlp_active *a)
 {
-    const int n_eq = e->nlp->n_eq;
     a->n_free = 0;
     for (int j = 0; j < e->n; j++) {
         if (!e->held[j] && a->side[j] == 0) {
@@ -102,7 +142,7 @@ static mt_status multipliers(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim
         for (int j = 0; j < nf; j++) {
             col[j] /= a->scale[i];
         }
-        a->c[i] = a->row[i] < n_eq ? p->eq[a->row[i]] : p->in[a->row[i] - n_eq];
+        a->c[i] = mt_nlp_row_value(e, p, a->row[i]);
     }
     mt_nlp_gradient(e, p, aim, a->z);
     for (int j = 0; j < nf; j++) {

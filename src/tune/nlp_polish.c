@@ -243,11 +243,9 @@ static double take_step(polish *w)
 /* The objective may rise where p profits from the tolerances: by the multipliers times them. */
 static double rise_allowed(const polish *w, const mt_nlp_point *p)
 {
-    const mt_nlp *const q = w->e->nlp;
     double rise = F_ROUNDING * fabs(p->f);
     for (int i = 0; i < w->a.k; i++) {
-        const int row = w->a.row[i];
-        const double tol = row < q->n_eq ? q->eq_tol[row] : q->in_tol[row - q->n_eq];
+        const double tol = mt_nlp_row_tol(w->e, w->a.row[i]);
         rise += 2 * fabs(w->a.lambda[i]) * fmax(tol, fabs(w->a.c[i]));
     }
     return rise;

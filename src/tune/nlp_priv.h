@@ -22,6 +22,8 @@ typedef struct mt_nlp_point {
     double *deq;
     double *in;
     double *din;
+    double *next;
+    double *dnext;
     double violation; /* max |violation| / tolerance; <= 1 is feasible */
     double squares;   /* sum of squares of eq and of the negative part of in */
     double kkt;       /* last known relative KKT residual, infinity where unknown */
@@ -78,7 +80,8 @@ typedef struct mt_nlp_active {
     int *free; /* [n_free] variables neither held nor at an active bound */
     int *side; /* [n] -1 lower, +1 upper bound active, 0 not (held variables: 0) */
     int k;
-    int *row;       /* [k] i < n_eq: equality i, else inequality i - n_eq */
+    int *
+        row; /* [k] i < n_eq: equality i, else inequality i - n_eq, the `next` ones behind the others */
     double *scale;  /* [k] norm of the row on the free variables (1 for a zero row) */
     double *lambda; /* [k] */
     double *z;      /* [n] aim's gradient minus sum lambda_i grad c_i, all variables */
@@ -140,6 +143,9 @@ bool mt_nlp_active_set(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim, 
                        mt_nlp_active *a);
 /* Derivative of constraint row i (as in mt_nlp_active.row) with respect to variable j. */
 double mt_nlp_row_slope(const mt_nlp_engine *e, const mt_nlp_point *p, int i, int j);
+/* Its value, and its tolerance. */
+double mt_nlp_row_value(const mt_nlp_engine *e, const mt_nlp_point *p, int i);
+double mt_nlp_row_tol(const mt_nlp_engine *e, int i);
 /* Singularity of the active constraints at p. free_direction: there are further feasible points
  * along a weak direction (a curve of solutions); rows/n_rows: independent equalities. */
 typedef struct mt_nlp_weakness {

@@ -53,12 +53,13 @@ static mt_status mark_dependent(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_
 static void put_multipliers(const mt_nlp_engine *e, const mt_nlp_active *a,
                             mt_nlp_solution *out)
 {
-    const int n_eq = e->nlp->n_eq;
+    const mt_nlp *const q = e->nlp;
     for (int i = 0; i < a->k; i++) {
-        if (a->row[i] < n_eq) {
+        const int in = a->row[i] - q->n_eq;
+        if (in < 0) {
             out->mult_eq[a->row[i]] = a->lambda[i];
         } else {
-            out->mult_in[a->row[i] - n_eq] = a->lambda[i];
+            out->mult_in[in < q->n_in ? in : q->next_of[in - q->n_in]] += a->lambda[i];
         }
     }
     for (int j = 0; j < e->n; j++) {

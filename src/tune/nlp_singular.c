@@ -21,12 +21,6 @@ static const double GROWTH = 3;        /* of |C v| along v that means quadratic 
 static const double ROWS_RANK_TOL =
     1e-6; /* gradients of two equalities are one below this angle */
 
-static double tolerance(const mt_nlp_engine *e, int row)
-{
-    const mt_nlp *const q = e->nlp;
-    return row < q->n_eq ? q->eq_tol[row] : q->in_tol[row - q->n_eq];
-}
-
 /* max over the active rows of |C_i v| / sqrt(tol_i) at p. */
 static double slope_along(const mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_active *a,
                           const double *v)
@@ -37,7 +31,7 @@ static double slope_along(const mt_nlp_engine *e, const mt_nlp_point *p, const m
         for (int j = 0; j < a->n_free; j++) {
             s += mt_nlp_row_slope(e, p, a->row[i], a->free[j]) * v[j];
         }
-        most = fmax(most, fabs(s) / sqrt(tolerance(e, a->row[i])));
+        most = fmax(most, fabs(s) / sqrt(mt_nlp_row_tol(e, a->row[i])));
     }
     return most;
 }
@@ -59,7 +53,7 @@ static double *right_vectors(mt_nlp_engine *e, const mt_nlp_point *p, const mt_n
     for (int j = 0; j < nf; j++) {
         for (int i = 0; i < a->k; i++) {
             c[i + (ptrdiff_t)j * m] =
-                mt_nlp_row_slope(e, p, a->row[i], a->free[j]) / sqrt(tolerance(e, a->row[i]));
+                mt_nlp_row_slope(e, p, a->row[i], a->free[j]) / sqrt(mt_nlp_row_tol(e, a->row[i]));
         }
     }
     const mt_status rc = mt_svd(m, nf, c, s, u, vt, mem, e->err);
@@ -76,7 +70,7 @@ static void probe(mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_active *
 {
     double tol = 0;
     for (int i = 0; i < a->k; i++) {
-        tol = fmax(tol, tolerance(e, a->row[i]));
+        tol = fmax(tol, mt_nlp_row_tol(e, a->row[i]));
     }
     const double h = fmin(PROBE_STEPS * sqrt(tol), PROBE_MOST);
     mt_nlp_point *const x = mt_nlp_point_new(e, &e->scratch);

@@ -35,6 +35,7 @@ typedef struct slsqp {
     double *upper;
     double *x;
     double *tol;
+    double *tol_in;   /* [n_in + n_next] */
     double *t;        /* [engine n] */
     double *t_failed; /* [engine n] */
     mt_nlp_point *cur;
@@ -100,9 +101,10 @@ static void inequalities(unsigned int m, double *c, unsigned int n, const double
     slsqp *const w = data;
     visit(w, x);
     for (unsigned int i = 0; i < m; i++) {
-        c[i] = -w->cur->in[i];
+        const int row = w->e->nlp->n_eq + (int)i;
+        c[i] = -mt_nlp_row_value(w->e, w->cur, row);
         for (unsigned int j = 0; grad != NULL && j < n; j++) {
-            grad[(size_t)i * n + j] = -w->cur->din[i + (ptrdiff_t)w->free[j] * w->e->nlp->n_in];
+            grad[(size_t)i * n + j] = -mt_nlp_row_slope(w->e, w->cur, row, w->free[j]);
         }
     }
 }
@@ -111,18 +113,21 @@ static bool set_up(slsqp *w)
 {
     const mt_nlp *const q = w->e->nlp;
     const unsigned int n_eq = (unsigned int)w->n_rows;
-    const unsigned int n_in = (unsigned int)q->n_in;
+    const unsigned int n_in = (unsigned int)(q->n_in + q->n_next);
     const long left = w->e->opt.max_evals - w->e->evals;
     const int most = EVALS_BASE + EVALS_PER_VARIABLE * w->n;
     for (int i = 0; i < w->n_rows; i++) {
         w->tol[i] = q->eq_tol[w->rows[i]];
+    }
+    for (int i = 0; i < q->n_in + q->n_next; i++) {
+        w->tol_in[i] = mt_nlp_row_tol(w->e, q->n_eq + i);
     }
     w->opt = nlopt_create(NLOPT_LD_SLSQP, (unsigned int)w->n);
     return w->opt != NULL && nlopt_set_min_objective(w->opt, objective, w) > 0 &&
            (n_eq == 0 ||
             nlopt_add_equality_mconstraint(w->opt, n_eq, equalities, w, w->tol) > 0) &&
            (n_in == 0 ||
-            nlopt_add_inequality_mconstraint(w->opt, n_in, inequalities, w, q->in_tol) > 0) &&
+            nlopt_add_inequality_mconstraint(w->opt, n_in, inequalities, w, w->tol_in) > 0) &&
            nlopt_set_lower_bounds(w->opt, w->lower) > 0 &&
            nlopt_set_upper_bounds(w->opt, w->upper) > 0 &&
            nlopt_set_ftol_rel(w->opt, F_TOL_REL) > 0 &&
@@ -205,11 +210,12 @@ static bool allocate(slsqp *w)
     w->t = mt_arena_f64(mem, n, 1);
     w->t_failed = mt_arena_f64(mem, n, 1);
     w->tol = mt_arena_f64(mem, (size_t)w->n_rows, 1);
+    w->tol_in = mt_arena_f64(mem, (size_t)e->nlp->n_in + (size_t)e->nlp->n_next, 1);
     w->cur = mt_nlp_point_new(e, mem);
     w->trial = mt_nlp_point_new(e, mem);
     w->best = mt_nlp_point_new(e, mem);
-    if (!w->free || !w->lower || !w->upper || !w->x || !w->t || !w->t_failed || !w->tol ||
-        !w->cur || !w->trial || !w->best) {
+    if (!w->tol_in || !w->free || !w->lower || !w->upper || !w->x || !w->t || !w->t_failed ||
+        !w->tol || !w->cur || !w->trial || !w->best) {
         mt_nlp_end(e, mt_fail_memory(e->err));
         return false;
     }

@@ -176,6 +176,7 @@ mt_status mt_problem_new_cut(const mt_study *study, mt_reference_cache *referenc
     rc = rc == MT_OK ? init_demands(p, below, n_cuts, cuts, err) : rc;
     rc = rc == MT_OK ? mt_problem_init_aims(p, err) : rc;
     rc = rc == MT_OK ? mt_robust_init(p, err) : rc;
+    rc = rc == MT_OK ? mt_next_init(p, err) : rc;
     if (rc != MT_OK) {
         mt_problem_delete(p);
         return rc;
@@ -222,6 +223,8 @@ mt_nlp mt_problem_nlp(mt_problem *p)
                         .n_in = mt_problem_rows_in(p),
                         .eq_tol = p->eq_tol,
                         .in_tol = p->in_tol,
+                        .n_next = p->n_next,
+                        .next_of = p->next_of,
                         .eval = mt_problem_eval,
                         .context = p};
     return nlp;

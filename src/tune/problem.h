@@ -118,7 +118,10 @@ typedef struct mt_problem {
         clearance; /* t has one more entry, the least clearance ln(...) that is made greatest */
     int n_t;       /* n, or n + 1 */
     int n_eq;
-    int n_in;          /* of the goals, their corners last; held objectives follow */
+    int n_in;   /* of the goals, their corners last; held objectives follow */
+    int n_next; /* rows that follow from those of limits (problem_next.c) */
+    struct mt_next *next;
+    int *next_of;      /* [n_next] */
     int n_corner_rows; /* of them at corners of the tolerances, where these are samples (robust.h) */
     int n_res;
     double *eq_tol;     /* [n_eq + n_res] */
@@ -254,6 +257,10 @@ mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, doubl
 /* Values (and gradients, unless NULL where out holds none) of one demand after its view has been solved; rows as numbered. */
 mt_status mt_demand_eval(mt_problem *p, const mt_demand *d, bool with_gradient,
                          mt_nlp_values *out, mt_err *err);
+/* problem_next.c: a limit on a mode holds for all that lie beyond it; where modes cross, those tell the search what comes next. After everything else of the problem. */
+mt_status mt_next_init(mt_problem *p, mt_err *err);
+/* Fill out->next (and out->dnext), unless NULL, after the views and corners have been solved. */
+mt_status mt_next_eval(mt_problem *p, bool with_gradient, mt_nlp_values *out, mt_err *err);
 /* problem_aims.c: the program of expressions, and the objectives. After the demands. */
 mt_status mt_problem_init_aims(mt_problem *p, mt_err *err);
 /* f of objective k at the last evaluation, gradient[n_t] (may be NULL) likewise. */

@@ -69,6 +69,7 @@ mt_status mt_problem_eval(void *context, const double *t, bool with_gradient,
     }
     MT_TRY(mt_clear_eval(p, t, with_gradient, out, err));
     MT_TRY(mt_robust_rows(p, t, with_gradient, out, err));
+    MT_TRY(mt_next_eval(p, with_gradient, out, err));
     if (p->aims[p->stage].type == MT_OBJECTIVE_MISFIT) {
         memcpy(out->r, p->r, (size_t)p->n_res * sizeof *p->r);
         if (with_gradient) {

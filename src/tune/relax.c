@@ -161,6 +161,7 @@ static mt_nlp nlp_of(relaxed *r, const double *near, double *hint)
     mt_problem *const q = r->q;
     mt_nlp nlp = mt_problem_nlp(q);
     nlp.eval = evaluate;
+    nlp.n_next = 0; /* they follow from rows that may be moved */
     nlp.context = r;
     if (near != NULL) {
         memcpy(hint, near, (size_t)q->n * sizeof *hint);

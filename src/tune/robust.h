@@ -87,6 +87,10 @@ mt_status mt_robust_rows(mt_problem *p, const double *t, bool with_gradient, mt_
                          mt_err *err);
 /* The row of `in` that stands on top of the design's own ones; NULL where it is none of these. */
 const mt_robust_row *mt_robust_corner_row(const mt_problem *p, int row);
+/* Is row i of `in` judged at a corner (in place of the design itself, or on top)? */
+bool mt_robust_at_corner(const mt_problem *p, int i);
+/* The limit [Hz] that a row sets a frequency, of a band without the clearance; NaN: it is one on an expression. */
+double mt_robust_limit_hz(const mt_problem *p, const mt_robust_row *row);
 /* mt_clear_room over all corners, or over the ranges where they are known: modes are paired by their index. */
 double mt_robust_room(const mt_problem *p, const mt_clear *c);
 /*

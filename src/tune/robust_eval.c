@@ -103,6 +103,30 @@ static double limit_of(const mt_problem *p, const mt_robust_row *row)
                         : d->goal->equals + (give * unit_of(d->goal->equals));
 }
 
+static double edge_of(const mt_problem *p, const mt_robust_row *row)
+{
+    const mt_band *const band = &p->clears[row->at.clear].bands.items[row->at.band];
+    return row->at.above ? band->upper_hz : band->lower_hz;
+}
+
+bool mt_robust_at_corner(const mt_problem *p, int i)
+{
+    for (int k = 0; p->robust != NULL && k < p->robust->n_rows; k++) {
+        if (p->robust->rows[k].row == i) {
+            return true;
+        }
+    }
+    return false;
+}
+
+double mt_robust_limit_hz(const mt_problem *p, const mt_robust_row *row)
+{
+    if (row->demand < 0) {
+        return edge_of(p, row);
+    }
+    return p->demands[row->demand].view >= 0 ? limit_of(p, row) : nan("");
+}
+
 static mt_status demand_value(mt_problem *p, const mt_robust_row *row, bool with_gradient,
                               quantity *q, mt_err *err)
 {
@@ -121,11 +145,9 @@ static mt_status band_value(mt_problem *p, const mt_robust_row *row, const doubl
                             bool with_gradient, quantity *q, mt_err *err)
 {
     const mt_clear *const c = &p->clears[row->at.clear];
-    const mt_band *const band = &c->bands.items[row->at.band];
     q->z = p->clearance ? t[p->n] : 0.0;
     return frequency(p, &p->robust->views[c->view].corners[row->corner], row->at.mode,
-                     row->at.above ? band->upper_hz : band->lower_hz, with_gradient, &q->value,
-                     err);
+                     edge_of(p, row), with_gradient, &q->value, err);
 }
 
 mt_status mt_robust_rows(mt_problem *p, const double *t, bool with_gradient, mt_nlp_values *out,

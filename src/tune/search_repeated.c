@@ -60,8 +60,8 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
 {
     mt_problem *const p = w->p;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
-    double *const lower = mt_arena_f64(w->mem, (size_t)p->n, 1);
-    double *const upper = mt_arena_f64(w->mem, (size_t)p->n, 1);
+    double *const lower = mt_arena_f64(w->mem, (size_t)p->n_t, 1);
+    double *const upper = mt_arena_f64(w->mem, (size_t)p->n_t, 1);
     mt_nlp_options opt = mt_nlp_options_default();
     mt_nlp_result found = {0};
     mt_nlp_values v;
@@ -74,7 +74,7 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
     if (left <= 0) {
         return MT_OK;
     }
-    for (int j = 0; j < p->n; j++) {
+    for (int j = 0; j < p->n_t; j++) {
         lower[j] = fmax(p->lower_t[j], t[j] - box);
         upper[j] = fmin(p->upper_t[j], t[j] + box);
     }
@@ -93,7 +93,7 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
         mt_problem_eval(p, found.solutions[0].t, false, &v, &own) == MT_OK) {
         w->evals++;
         if (violation(p, &v) <= 1.0 && v.f < *f - w->gain * fabs(*f)) {
-            memcpy(t, found.solutions[0].t, (size_t)p->n * sizeof *t);
+            memcpy(t, found.solutions[0].t, (size_t)p->n_t * sizeof *t);
             *f = v.f;
             *better = true;
         }
@@ -127,14 +127,14 @@ static int balance_rows(const mt_repeated *m, const double *t, double *rows, boo
 {
     const mt_problem *const p = m->p;
     const mt_nlp_values *const v = &m->values;
-    const int n = p->n;
+    const int n = p->n_t;
     const int n_eq = mt_problem_rows_eq(p);
     const int n_in = mt_problem_rows_in(p);
     int k = 0;
     for (int i = 0; i < n_eq + n_in; i++) {
         const int in = i - n_eq;
-        const bool active = in < 0 || (!m->replaced[in] &&
-                                       v->in[in] <= fmax(ACTIVE, ACTIVE_TOLS * p->in_tol[in]));
+        const bool active = !m->replaced[i] &&
+                            (in < 0 || v->in[in] <= fmax(ACTIVE, ACTIVE_TOLS * p->in_tol[in]));
         for (int j = 0; j < n && active; j++) {
             rows[j + ((ptrdiff_t)k * n)] =
                 in < 0 ? v->deq[i + ((ptrdiff_t)j * n_eq)] : v->din[in + ((ptrdiff_t)j * n_in)];
@@ -163,14 +163,14 @@ static int balance_rows(const mt_repeated *m, const double *t, double *rows, boo
 /* Multipliers of the balance into the record. Of modes held together only the one that the others follow has its own: all may give way with
  * it, which saves the trace of U; where several are asked for they have none. */
 static void put_multipliers(const mt_repeated *m, const mt_cone *c, const int *which,
-                            const mt_cone_block *blocks, mt_nlp_solution *s)
+                            mt_nlp_solution *s)
 {
     const int n_eq = mt_problem_rows_eq(m->p);
     const int n_in = mt_problem_rows_in(m->p);
-    memset(s->mult_eq, 0, (size_t)n_eq * sizeof *s->mult_eq);
-    memset(s->mult_bound, 0, (size_t)m->p->n * sizeof *s->mult_bound);
-    for (int i = 0; i < n_in; i++) {
-        s->mult_in[i] = m->replaced[i] ? nan("") : 0.0;
+    memset(s->mult_bound, 0, (size_t)m->p->n_t * sizeof *s->mult_bound);
+    for (int i = 0; i < n_eq + n_in; i++) {
+        double *const mult = i < n_eq ? &s->mult_eq[i] : &s->mult_in[i - n_eq];
+        *mult = m->replaced[i] ? nan("") : 0.0;
     }
     for (int k = 0; k < c->n_rows; k++) {
         const int i = which[k];
@@ -180,18 +180,50 @@ static void put_multipliers(const mt_repeated *m, const mt_cone *c, const int *w
             s->mult_in[i - n_eq] = c->x[k];
         } else {
             const int j = i - n_eq - n_in;
-            s->mult_bound[j] = c->x[k] * c->rows[j + ((ptrdiff_t)k * m->p->n)];
+            s->mult_bound[j] = c->x[k] * c->rows[j + ((ptrdiff_t)k * m->p->n_t)];
         }
     }
-    for (int b = 0; b < m->n_blocks; b++) {
+    int at = 0; /* in the cone, which has two blocks where both sides hold */
+    for (int b = 0; b < m->n_blocks && at < c->n_blocks; b++) {
+        const mt_repeated_block *const block = &m->blocks[b];
+        const double *const u = c->blocks[at].u;
+        const int row = block->row_most;
         double trace = 0.0;
-        for (int k = 0; k < m->blocks[b].r; k++) {
-            trace += blocks[b].u[k + (k * m->blocks[b].r)];
+        for (int k = 0; k < block->r; k++) {
+            trace += u[k + (k * block->r)];
         }
-        if (m->blocks[b].row_most >= 0) {
-            s->mult_in[m->blocks[b].row_most] = trace;
+        at += block->both ? 2 : 1;
+        if (row >= n_eq) {
+            s->mult_in[row - n_eq] = trace;
+        } else if (row >= 0) {
+            s->mult_eq[row] = trace * block->side.sign;
         }
     }
+}
+
+/* The clusters' matrices; where both sides hold, once more with the other sign. */
+static mt_status cone_blocks(const mt_repeated *m, mt_arena *mem, mt_cone_block **out, int *n,
+                             mt_err *err)
+{
+    mt_cone_block *const list =
+        mt_arena_alloc(mem, 2 * (size_t)m->n_blocks, sizeof(mt_cone_block));
+    *n = 0;
+    for (int b = 0; b < m->n_blocks && list != NULL; b++) {
+        const mt_repeated_block *const block = &m->blocks[b];
+        const size_t r = (size_t)block->r;
+        const int size = block->r * block->r * m->p->n_t;
+        for (int side = 0; side < (block->both ? 2 : 1); side++) {
+            double *const g = mt_arena_f64(mem, (size_t)size, 1);
+            double *const u = mt_arena_f64(mem, r, r);
+            if (g == NULL || u == NULL) {
+                return mt_fail_memory(err);
+            }
+            mt_axpy(size, side == 0 ? 1.0 : -1.0, block->g, g);
+            list[(*n)++] = (mt_cone_block){.r = block->r, .g = g, .u = u};
+        }
+    }
+    *out = list;
+    return list == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
 /* Stationarity at t as a statement about clusters: *kkt, z[n], and the multipliers (s may be NULL). */
@@ -203,36 +235,28 @@ static mt_status judge(refine *w, const double *t, double *kkt, double *z, mt_nl
     mt_repeated m;
     MT_TRY(mt_repeated_find(p, t, TOGETHER, w->mem, &m, err));
     w->evals++;
-    const size_t n = (size_t)p->n;
+    const size_t n = (size_t)p->n_t;
     const size_t most = (size_t)mt_problem_rows_eq(p) + (size_t)mt_problem_rows_in(p) + n;
     double *const rows = mt_arena_f64(w->mem, n, most);
     bool *const free_sign = mt_arena_alloc(w->mem, most, sizeof *free_sign);
     int *const which = mt_arena_int(w->mem, most);
-    mt_cone_block *const blocks = mt_arena_alloc(w->mem, (size_t)m.n_blocks, sizeof *blocks);
-    mt_cone c = {.n = p->n,
+    mt_cone_block *blocks = NULL;
+    mt_cone c = {.n = p->n_t,
                  .gradient = m.values.df,
                  .rows = rows,
                  .free_sign = free_sign,
-                 .n_blocks = m.n_blocks,
-                 .blocks = blocks,
                  .x = mt_arena_f64(w->mem, most, 1)};
     c.z = z;
-    if (!rows || !free_sign || !which || !blocks || !c.x) {
+    if (!rows || !free_sign || !which || !c.x) {
         return mt_fail_memory(err);
     }
-    for (int b = 0; b < m.n_blocks; b++) {
-        const size_t r = (size_t)m.blocks[b].r;
-        blocks[b] = (mt_cone_block){
-            .r = m.blocks[b].r, .g = m.blocks[b].g, .u = mt_arena_f64(w->mem, r, r)};
-        if (blocks[b].u == NULL) {
-            return mt_fail_memory(err);
-        }
-    }
+    MT_TRY(cone_blocks(&m, w->mem, &blocks, &c.n_blocks, err));
+    c.blocks = blocks;
     c.n_rows = balance_rows(&m, t, rows, free_sign, which);
     MT_TRY(mt_cone_residual(&c, w->mem, err));
     *kkt = c.kkt;
     if (s != NULL) {
-        put_multipliers(&m, &c, which, blocks, s);
+        put_multipliers(&m, &c, which, s);
     }
     mt_arena_rewind(w->mem, mark);
     return MT_OK;
@@ -243,18 +267,18 @@ static mt_status step_down(refine *w, const double *z, double *t, double *f, boo
                            mt_err *err)
 {
     mt_problem *const p = w->p;
-    double *const from = mt_arena_f64(w->mem, (size_t)p->n, 1);
+    double *const from = mt_arena_f64(w->mem, (size_t)p->n_t, 1);
     double size = 0.0;
     *better = false;
     if (from == NULL) {
         return mt_fail_memory(err);
     }
-    for (int j = 0; j < p->n; j++) {
+    for (int j = 0; j < p->n_t; j++) {
         size = fmax(size, fabs(z[j]));
     }
     double step = STEP;
     for (int k = 0; k < STEPS && !*better && size > 0.0 && w->stop == MT_STOP_DONE; k++) {
-        for (int j = 0; j < p->n; j++) {
+        for (int j = 0; j < p->n_t; j++) {
             const double to = t[j] - (step * z[j] / size);
             from[j] = fmin(fmax(to, p->lower_t[j]), p->upper_t[j]);
         }
@@ -264,7 +288,7 @@ static mt_status step_down(refine *w, const double *z, double *t, double *f, boo
         step *= SHORTER;
     }
     if (*better) {
-        memcpy(t, from, (size_t)p->n * sizeof *t);
+        memcpy(t, from, (size_t)p->n_t * sizeof *t);
     }
     return MT_OK;
 }
@@ -273,7 +297,7 @@ static mt_status step_down(refine *w, const double *z, double *t, double *f, boo
 static mt_status settle(refine *w, double near, double *kkt, double *z, mt_nlp_solution *s,
                         mt_err *err)
 {
-    const size_t n = (size_t)w->p->n;
+    const size_t n = (size_t)w->p->n_t;
     double *const t = mt_arena_f64(w->mem, n, 1);
     double *const z_after = mt_arena_f64(w->mem, n, 1);
     double f = s->f;
@@ -303,7 +327,7 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
 {
     mt_problem *const p = w->p;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
-    double *const z = mt_arena_f64(w->mem, (size_t)p->n, 1);
+    double *const z = mt_arena_f64(w->mem, (size_t)p->n_t, 1);
     double kkt = s->kkt;
     if (z == NULL) {
         return mt_fail_memory(err);
@@ -330,7 +354,7 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
     }
     MT_TRY(judge(w, s->t, &kkt, z, s, err));
     s->kkt = kkt;
-    for (int j = 0; j < p->n; j++) {
+    for (int j = 0; j < p->n_t; j++) {
         const double near = ON_BOUND * (p->upper_t[j] - p->lower_t[j]);
         s->bound[j] = s->t[j] <= p->lower_t[j] + near ? -1 : s->t[j] >= p->upper_t[j] - near;
     }
@@ -369,9 +393,8 @@ mt_status mt_search_repeated(mt_problem *p, mt_arena *mem, mt_nlp_result *out, m
     const long budget = p->study->search.max_evaluations;
     refine w = {.p = p, .mem = mem, .evals = out->evals, .stop = MT_STOP_DONE, .gain = GAIN};
     bool any = false;
-    const bool smooth = out->compromise || p->robust != NULL || p->n_t != p->n ||
-                        p->aims[p->stage].type == MT_OBJECTIVE_MISFIT ||
-                        out->stop == MT_STOP_USER || p->n_demands == 0;
+    const bool smooth = out->compromise || out->stop == MT_STOP_USER ||
+                        p->aims[p->stage].type == MT_OBJECTIVE_MISFIT;
     w.most = budget > 0 ? budget : out->evals + (long)ROUNDS * SOLVE_EVALUATIONS * 8;
     for (int i = 0; i < out->n_solutions && !smooth; i++) {
         if (out->solutions[i].kkt > STATIONARY && out->solutions[i].feasible) {
