@@ -52,8 +52,8 @@ static double *right_vectors(mt_nlp_engine *e, const mt_nlp_point *p, const mt_n
     }
     for (int j = 0; j < nf; j++) {
         for (int i = 0; i < a->k; i++) {
-            c[i + (ptrdiff_t)j * m] =
-                mt_nlp_row_slope(e, p, a->row[i], a->free[j]) / sqrt(mt_nlp_row_tol(e, a->row[i]));
+            c[i + (ptrdiff_t)j * m] = mt_nlp_row_slope(e, p, a->row[i], a->free[j]) /
+                                      sqrt(mt_nlp_row_tol(e, a->row[i]));
         }
     }
     const mt_status rc = mt_svd(m, nf, c, s, u, vt, mem, e->err);
