@@ -7,12 +7,13 @@ from exact import number
 from makers import PYTHAGOREAN
 
 UNITS = {"m": (1, 0, 0), "m^2": (2, 0, 0), "kg": (0, 1, 0), "kg m^2": (2, 1, 0), "N/m": (0, 1, -2), "N m/rad": (2, 1, -2), "N": (1, 1, -2),
-         "N m": (2, 1, -2), "m/s^2": (1, 0, -2), "rad": (0, 0, 0), "1": (0, 0, 0)}  # powers of length, mass, time
+         "N m": (2, 1, -2), "m/s^2": (1, 0, -2), "rad": (0, 0, 0), "1": (0, 0, 0), "Pa": (-1, 1, -2)}  # powers of length, mass, time
 MEMBERS = {"mass_kg": "kg", "inertia_kg_m2": "kg m^2", "centre": "m", "at": "m", "from": "m", "to": "m", "length_m": "m", "free_length_m": "m",
            "stiffness_n_per_m": "N/m", "stiffness_n_m_per_rad": "N m/rad", "area_m2": "m^2", "preload_n": "N", "preload_n_m": "N m",
-           "gravity_m_per_s2": "m/s^2", "position_m": "m", "radius_of_gyration_m": "m"}
-OTHERS = {"youngs_modulus_pa": (-1, 1, -2), "density_kg_per_m3": (-3, 1, 0)}
-TURNABLE = ("fixed", "revolute", "cylindrical", "spherical", "universal", "planar", "prismatic", "distance")
+           "gravity_m_per_s2": "m/s^2", "position_m": "m", "radius_of_gyration_m": "m", "ratio_m_per_rad": "m", "force_n": "N", "moment_n_m": "N m"}
+OTHERS = {"youngs_modulus_pa": (-1, 1, -2), "shear_modulus_pa": (-1, 1, -2), "density_kg_per_m3": (-3, 1, 0), "second_moment_m4": (4, 0, 0),
+          "second_moment_other_m4": (4, 0, 0), "torsion_constant_m4": (4, 0, 0)}
+TURNABLE = ("fixed", "revolute", "cylindrical", "spherical", "universal", "planar", "prismatic", "distance", "orientation")
 
 
 def short(x):
@@ -32,44 +33,71 @@ def each(value, change):
 
 def items(model):
     yield model
-    for name in ("bodies", "links", "joints", "springs"):
+    for name in ("bodies", "links", "joints", "springs", "loads"):
         yield from model.get(name, [])
     for configuration in (model.get("configurations") or {}).values():
         yield configuration
         if "drive" in configuration:
             yield configuration["drive"]
+    for link in model.get("links", []):
+        yield link.get("section", {})
 
 
 def order(rng, model):
     model = copy.deepcopy(model)
-    for name in ("bodies", "joints", "springs"):
+    for name in ("bodies", "joints", "springs", "loads"):
         if name in model:
             rng.shuffle(model[name])
     return model, 1
 
 
-def _negate(model, value):
+def _negate(value):
     """The negative of a number or of the expression that it is."""
     return f"-({value})" if isinstance(value, str) else -value
+
+
+def _ends(rng, model):
+    """Links drawn from the other end: what held the start holds the end."""
+    swap = {}
+    for link in model.get("links", []):
+        if rng.random() < 0.6:
+            link["from"], link["to"] = link["to"], link["from"]
+            if isinstance(link.get("stiffness_n_m_per_rad"), list):
+                link["stiffness_n_m_per_rad"].reverse()
+            n, name = link["elements"], link["name"]
+            swap.update({f"{name}.start": f"{name}.end", f"{name}.end": f"{name}.start"})
+            swap.update({f"{name}.{i}": f"{name}.{n + 1 - i}" for i in range(1, n + 1)})
+    for item in model.get("joints", []) + model.get("springs", []):
+        if "bodies" in item:
+            item["bodies"] = [swap.get(b, b) for b in item["bodies"]]
+    for load in model.get("loads", []):
+        if "on" in load:
+            load["on"] = swap.get(load["on"], load["on"])
 
 
 def direction(rng, model):
     """Joints and springs that hold the same two bodies the other way round; links drawn from the other end."""
     model = copy.deepcopy(model)
-    loaded = "gravity_m_per_s2" in model or "configurations" in model or any(m in s for s in model.get("springs", [])
+    loaded = "gravity_m_per_s2" in model or "loads" in model or "configurations" in model or any(m in s for s in model.get("springs", [])
                                                                             for m in ("preload_n", "preload_n_m", "free_angle_rad", "free_length_m"))
+    _ends(rng, model)
     turned = set()
     for joint in model.get("joints", []):
         if joint["type"] in TURNABLE and rng.random() < 0.6:
             joint["bodies"].reverse()
             turned.add(joint["name"])
-            if joint["type"] == "distance" or isinstance(joint["at"][0], list):
-                joint["at"] = joint["at"][::-1]
+            if joint["type"] == "distance":
+                joint["at"].reverse()
             if joint["type"] == "universal":
                 joint["axis"], joint["axis_b"] = joint["axis_b"], joint["axis"]
     for joint in model.get("joints", []):
-        if joint["type"] == "gear" and len(turned & set(joint["joints"])) == 1:
-            joint["ratio"] = _negate(model, joint.get("ratio", 1))
+        for member in ("ratio", "ratio_m_per_rad"):
+            if member in joint and len(turned & set(joint["joints"])) == 1:
+                joint[member] = _negate(joint[member])
+    for load in model.get("loads", []):
+        for member in ("force_n", "moment_n_m"):
+            if load.get("joint") in turned and member in load:
+                load[member] = _negate(load[member])
     for spring in model.get("springs", []):
         back = spring.get("joint") in turned
         if "bodies" in spring and (spring["type"] != "bushing" or not loaded) and rng.random() < 0.6:
@@ -79,12 +107,12 @@ def direction(rng, model):
             back = spring["type"] == "torsion"
         for member in ("preload_n_m", "free_angle_rad"):
             if back and member in spring:
-                spring[member] = _negate(model, spring[member])
+                spring[member] = _negate(spring[member])
     for configuration in (model.get("configurations") or {}).values():
         drive = configuration.get("drive", {})
         for member in ("position_rad", "position_m"):
             if drive.get("joint") in turned and member in drive:
-                drive[member] = _negate(model, drive[member])
+                drive[member] = _negate(drive[member])
     return model, 1
 
 
@@ -130,7 +158,7 @@ def _rotation(rng, dim, quarter):
 def place(rng, model):
     """Elsewhere and turned. Not where a coordinate is a parameter: it would become an expression of all three."""
     dim = model["dimension"]
-    if any(isinstance(x, str) for item in items(model) for m in ("at", "centre", "from", "to", "gravity_m_per_s2", "axis", "axis_b", "inertia_kg_m2")
+    if any(isinstance(x, str) for item in items(model) for m in ("at", "centre", "from", "to", "gravity_m_per_s2", "axis", "axis_b", "inertia_kg_m2", "force_n")
            for x in flat(item.get(m, [])) if dim == 3 or m != "inertia_kg_m2"):
         return None
     uneven = any(s["type"] == "bushing" and s["stiffness_n_per_m"][0] != s["stiffness_n_per_m"][1] for s in model.get("springs", []) if dim == 2)
@@ -144,8 +172,8 @@ def place(rng, model):
         for member in ("at", "centre", "from", "to"):
             if member in item:
                 item[member] = both(item[member])
-        for member in ("axis", "axis_b", "hinge_axis", "gravity_m_per_s2"):
-            if member in item:
+        for member in ("axis", "axis_b", "hinge_axis", "gravity_m_per_s2", "force_n"):
+            if isinstance(item.get(member), list):
                 item[member] = turn(item[member])
         if dim == 3 and "inertia_kg_m2" in item:
             item["inertia_kg_m2"] = _inertia(q, item["inertia_kg_m2"])
@@ -188,4 +216,14 @@ def _bushing(q, item):
     item["stiffness_matrix"] = out
 
 
-CHANGES = {"order": order, "direction": direction, "units": units, "place": place}
+def where_exact(change):
+    """None where the numbers would have too many digits to be those of a file."""
+    def tried(rng, model):
+        try:
+            return change(rng, model)
+        except ArithmeticError:
+            return None
+    return tried
+
+
+CHANGES = {"order": order, "direction": direction, "units": where_exact(units), "place": where_exact(place)}

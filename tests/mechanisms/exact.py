@@ -74,33 +74,30 @@ def angle_over_sine(c):
     return f, first, (f + 3 * c * first) / (1 - c * c)
 
 
-def eliminate(rows, width, zero):
-    """Reduced row echelon form by complete pivoting: (rows of rank, their pivot columns, the free columns, pivots' rows in the input).
+def eliminate(rows, width, zero, terms=None):
+    """Reduced row echelon form, each row by its largest entry: (rows of rank, their pivot columns, the free columns, those rows' places in the input).
 
-    A pivot at most `zero` of the row's first size is none."""
+    A pivot at most `zero` of the row's first size, or of `terms`, is none."""
     rows = [list(r) for r in rows]
-    size = [max((abs(x) for x in r[:width]), default=0) for r in rows]
-    left, columns, done, chosen = list(range(len(rows))), list(range(width)), [], []
-    while left and columns:
-        best, i, j = max((abs(rows[i][j]) / size[i] if size[i] else 0, -i, -j) for i in left for j in columns)
-        i, j = -i, -j
-        if not best > zero:
-            break
-        pivot = rows[i][j]
-        rows[i] = [x / pivot for x in rows[i]]
-        support = [c for c, x in enumerate(rows[i]) if x]
-        for k in range(len(rows)):
-            factor = rows[k][j]
+    size = [max((abs(x) for x in r[:width]), default=0) if terms is None else terms for r in rows]
+    columns, chosen = [], []
+    for i, row in enumerate(rows):
+        j = max(range(width), key=lambda c: abs(row[c]), default=None)
+        if j is None or not abs(row[j]) > zero * size[i]:
+            continue
+        pivot = row[j]
+        rows[i] = row = [x / pivot if x else x for x in row]
+        support = [(c, x) for c, x in enumerate(row) if x]
+        for k, other in enumerate(rows):
+            factor = other[j]
             if k != i and factor:
-                row = rows[k]
-                for c in support:
-                    row[c] -= factor * rows[i][c]
-                row[j] = factor * 0
-        left.remove(i)
-        columns.remove(j)
-        done.append((i, j))
+                for c, x in support:
+                    other[c] -= factor * x
+                other[j] = factor * 0
+        columns.append(j)
         chosen.append(i)
-    return [rows[i] for i, _ in done], [j for _, j in done], columns, chosen
+    taken = set(columns)
+    return [rows[i] for i in chosen], columns, [c for c in range(width) if c not in taken], chosen
 
 
 def null_space(rows, width, one, zero):

@@ -3,8 +3,9 @@
 import copy
 from decimal import Decimal
 
-JOINTS = {2: ["revolute", "revolute", "prismatic", "pin-in-slot", "distance", "fixed"],
-          3: ["revolute", "revolute", "spherical", "prismatic", "cylindrical", "universal", "planar", "point-on-line", "distance", "fixed"]}
+JOINTS = {2: ["revolute", "revolute", "prismatic", "pin-in-slot", "distance", "fixed", "orientation"],
+          3: ["revolute", "revolute", "spherical", "prismatic", "cylindrical", "universal", "planar", "point-on-line", "distance", "fixed",
+              "point-on-plane", "orientation"]}
 ANGLED, SLIDING = ("revolute", "cylindrical"), ("prismatic", "pin-in-slot", "point-on-line")
 PYTHAGOREAN = [(0.6, 0.8), (0.8, 0.6), (0.28, 0.96), (0.96, 0.28), (0.352, 0.936), (0.5376, 0.8432)]
 
@@ -90,9 +91,9 @@ class Maker:
         item = {"name": name, "type": kind, "bodies": [a, b]}
         if kind == "distance":
             item["at"] = self.two_places(a, b)
-        else:
+        elif kind != "orientation":
             item["at"] = at or self.place(a, b)
-        if kind in ("prismatic", "pin-in-slot") or (self.dim == 3 and kind not in ("fixed", "spherical", "distance")):
+        if kind in ("prismatic", "pin-in-slot") or (self.dim == 3 and kind not in ("fixed", "spherical", "distance", "orientation")):
             item["axis"] = self.axis()
         if kind == "universal":
             while True:
@@ -264,11 +265,35 @@ class Maker:
 
     def gears(self, count):
         for _ in range(count):
-            turning = [j["name"] for j in self.model["joints"] if j["type"] in ANGLED]
-            if len(turning) < 2:
-                return
-            self.model["joints"].append({"name": f"j{len(self.model['joints'])}", "type": "gear", "joints": self.rng.sample(turning, 2),
-                                         "ratio": self.parameter("r", self.rng.choice([-3, -2.5, -1, -0.5, 0.4, 1, 2, 4]), "1")})
+            turning = [j["name"] for j in self.model["joints"] if j["type"] == "revolute"]
+            sliding = [j["name"] for j in self.model["joints"] if j["type"] in SLIDING]
+            name, ratio = f"j{len(self.model['joints'])}", self.rng.choice([-3, -2.5, -1, -0.5, 0.4, 1, 2, 4])
+            if turning and sliding and self.chance(0.5):
+                self.model["joints"].append({"name": name, "type": "rack", "joints": [self.rng.choice(turning), self.rng.choice(sliding)],
+                                             "ratio_m_per_rad": self.parameter("r", ratio / 8, "m")})
+            elif len(turning) > 1:
+                self.model["joints"].append({"name": name, "type": "gear", "joints": self.rng.sample(turning, 2), "ratio": self.parameter("r", ratio, "1")})
+
+    def pulls(self, count):
+        """Dead loads."""
+        loads = []
+        for i in range(count):
+            body = self.rng.choice(self.model["bodies"])
+            joints = [j for j in self.model["joints"] if j["type"] in ANGLED + SLIDING]
+            item = {"name": f"p{i}"}
+            if joints and self.chance(0.3):
+                joint = self.rng.choice(joints)
+                item["joint"] = joint["name"]
+                item["moment_n_m" if joint["type"] in ANGLED else "force_n"] = self.parameter("F", self.size(0.3, 3), "N m" if joint["type"] in ANGLED else "N")
+            else:
+                item.update(on=body["name"], force_n=[self.size(0.3, 30) * self.rng.choice([1, -1, 0]) for _ in range(self.dim)])
+                if self.turns(body["name"]) and self.chance(0.7):
+                    item["at"] = self.point(body["centre"], 0.5)
+                if self.turns(body["name"]) and self.dim == 2 and self.chance(0.3):
+                    item["moment_n_m"] = self.parameter("F", self.size(0.1, 1), "N m")
+            loads.append(item)
+        if loads:
+            self.model["loads"] = loads
 
     def done(self):
         self.model = copy.deepcopy(self.model)  # nothing is shared
@@ -286,7 +311,7 @@ def _unloaded(rng, dim):
     m.springs(rng.randint(1, 5))
     if m.chance(0.3):
         m.loops(rng.randint(1, 2))
-    if dim == 3 and m.chance(0.3):
+    if m.chance(0.3):
         m.gears(1)
     return m.done()
 
@@ -309,8 +334,10 @@ def _loaded(rng, dim):
         m.loops(1)
     if m.chance(0.2) and m.model["joints"]:
         m.doubled(1)
-    if dim == 3 and m.chance(0.2):
+    if m.chance(0.2):
         m.gears(1)
+    if m.chance(0.4):
+        m.pulls(rng.randint(1, 2))
     if m.chance(0.8):
         m.gravity()
     m.preloads()
@@ -333,7 +360,7 @@ def _blocked(rng, dim):
     m.tree(rng.randint(1, 4 if dim == 2 else 3), tied=1.0, masses=0.0)
     for joint in list(m.model["joints"]):
         if m.chance(0.8):
-            at = joint["at"] if joint["type"] != "distance" else joint["at"][1]
+            at = joint["at"][1] if joint["type"] == "distance" else joint.get("at") or m.point()
             m.spring(*joint["bodies"], "bushing", at=at)
         if m.chance(0.4):
             m.spring(*joint["bodies"])

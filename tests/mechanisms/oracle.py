@@ -13,6 +13,7 @@ from decimal import Decimal
 import exact
 from exact import number
 
+COUPLINGS = {"gear": "ratio", "rack": "ratio_m_per_rad"}
 CONSTANT = -1  # index of what multiplies nothing
 
 
@@ -155,10 +156,12 @@ class Oracle:
             self._parameter(name)
         self.bodies, self.size = {}, 0
         self.constraints, self.owner, self.coordinate = [], [], {}
-        self.springs, self.mass, self.weights = [], {}, []
+        self.springs, self.mass, self.weights, self.forces = [], {}, [], []
+        self.beams = False
         self._bodies()
         self._joints()
         self._springs()
+        self._loads()
         self._drive()
 
     # numbers ------------------------------------------------------------------------------------------------------------------------------------
@@ -265,9 +268,94 @@ class Oracle:
             if self.here(link):
                 self._link(link)
 
+    def _add_quadratic(self, forms, matrix):
+        """v' matrix v of linear forms v of velocities."""
+        for r, a in enumerate(forms):
+            for c, b in enumerate(forms):
+                for i, x in a.items():
+                    for j, y in b.items():
+                        if i <= j and matrix[r][c]:
+                            self.mass[i, j] = self.mass.get((i, j), 0) + matrix[r][c] * x * y
+
+    def _spin(self, name, u):
+        """Rate of turning about u of a body as drawn: a linear form of velocities, at the drawing only."""
+        first = self.bodies[name].first
+        if self.dim == 2:
+            return {first + 3: Decimal(1)}
+        entry = lambda i, k: first + 3 + 3 * i + k
+        out = {}
+        for k in range(3):
+            i, j = (k + 1) % 3, (k + 2) % 3
+            out[entry(j, i)], out[entry(i, j)] = u[k] / 2, -u[k] / 2
+        return out
+
+    def _beam(self, link):
+        """Euler-Bernoulli elements between nodes: of the second node seen from the first, the tip stiffness of a cantilever; consistent mass."""
+        n, start, end = link["elements"], self.v(link["from"]), self.v(link["to"])
+        span = [(b - a) / n for a, b in zip(start, end)]
+        length, section = exact.root(sum(x * x for x in span)), link["section"]
+        area, young = self.n(section["area_m2"]), self.n(link["youngs_modulus_pa"])
+        mass = self.n(link["mass_kg"]) / n if "mass_kg" in link else self.n(link["density_kg_per_m3"]) * area * length
+        second = [self.n(section[m]) for m in ["second_moment_m4"] + ["second_moment_other_m4"] * (self.dim == 3)]
+        along = unit(span)
+        triad = [along, [-along[1], along[0]]]
+        if self.dim == 3:
+            axis = unit(self.v(link["hinge_axis"]))
+            triad = [along, cross(axis, along), axis]
+        self.beams = True
+        nodes = [f"{link['name']}.node{i}" for i in range(n + 1)]
+        for i, node in enumerate(nodes):
+            self._body(node, [a + i * x for a, x in zip(start, span)], Decimal(0), Decimal(0) if self.dim == 2 else [[Decimal(0)] * 3] * 3)
+        for a, b in zip(nodes, nodes[1:]):
+            self._weight(a, self.bodies[a].centre, mass / 2)
+            self._weight(b, self.bodies[b].centre, mass / 2)
+            apart = self._apart([a, b], [self.bodies[a].centre, self.bodies[b].centre])
+            shifts = [plain(product(self.direction(a, u), apart)) for u in triad]
+            turns = self._turns([a, b], triad)
+            k = [[Decimal(0)] * (len(shifts) + len(turns)) for _ in range(len(shifts) + len(turns))]
+            k[0][0] = young * area / length
+            for plane, ei in enumerate(young * x for x in second):  # deflection along e2 turns about e3, along e3 about -e2
+                w, t, sign = (1, len(k) - 1, -1) if plane == 0 else (2, 4, 1)
+                k[w][w], k[t][t] = 12 * ei / length**3, 4 * ei / length
+                k[w][t] = k[t][w] = sign * 6 * ei / length**2
+            if self.dim == 3:
+                k[3][3] = self.n(link["shear_modulus_pa"]) * self.n(section["torsion_constant_m4"]) / length
+            self.springs.append(Spring(link["name"], shifts + turns, k, [None] * len(k), [0] * len(k)))
+            self._beam_mass([a, b], triad, mass, length, mass * sum(second) / area)
+        for alias, node in (("start", nodes[0]), ("end", nodes[-1])):
+            self.bodies[f"{link['name']}.{alias}"] = self.bodies[node]
+
+    def _beam_mass(self, nodes, triad, mass, length, polar):
+        moved = lambda name, u: {self.bodies[name].first + i: x for i, x in enumerate(u) if x}
+        simple = [[Decimal(2) / 6, Decimal(1) / 6], [Decimal(1) / 6, Decimal(2) / 6]]
+        self._add_quadratic([moved(b, triad[0]) for b in nodes], [[mass * x for x in row] for row in simple])
+        cubic = [[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]
+        for plane in range(self.dim - 1):
+            across, about, sign = (1, triad[-1], 1) if plane == 0 else (2, triad[1], -1)
+            forms = []
+            for b in nodes:
+                forms += [moved(b, triad[across]), {i: sign * length * x for i, x in self._spin(b, about).items()}]
+            self._add_quadratic(forms, [[mass * x / 420 for x in row] for row in cubic])
+        if self.dim == 3:
+            self._add_quadratic([self._spin(b, triad[0]) for b in nodes], [[polar * x for x in row] for row in simple])
+
+    def _turns(self, bodies, triad):
+        """Measures of the rotation of the second body against the first: the angle, or the rotation vector in the triad of the first."""
+        if self.dim == 2:
+            return [self.angle_between(bodies, None)]
+        fixed, moved = ([self.direction(b, u) for u in triad] for b in bodies)
+        half = Decimal("0.5")
+        trace = Quad(add(*[product(fixed[i], moved[i]).times(half) for i in range(3)], {(CONSTANT, CONSTANT): -half}))
+        out = []
+        for k in range(3):
+            i, j = (k + 1) % 3, (k + 2) % 3
+            out.append(rotation(Quad(add(product(fixed[j], moved[i]).times(half), product(fixed[i], moved[j]).times(-half))), trace))
+        return out
+
     def _link(self, link):
         if link.get("kind") == "beam":
-            raise Refused("beam")
+            self._beam(link)
+            return
         n, start, end = link["elements"], self.v(link["from"]), self.v(link["to"])
         span = [b - a for a, b in zip(start, end)]
         length, mass = exact.root(sum(x * x for x in span)) / n, self.n(link["mass_kg"]) / n
@@ -331,14 +419,14 @@ class Oracle:
         if kind in ("prismatic", "pin-in-slot", "point-on-line", "cylindrical"):
             for u in across:
                 self._hold(name, along(u), Decimal(0))
-        if kind == "planar":
+        if kind in ("planar", "point-on-plane"):
             self._hold(name, along(axis), Decimal(0))
         if self.dim == 3 and kind in ("revolute", "prismatic", "cylindrical", "planar"):
             for u in across:
                 self._hold(name, dots(u, axis), Decimal(0))
             if kind == "prismatic":
                 self._hold(name, dots(*across), Decimal(0))
-        if kind == "fixed" or (kind == "prismatic" and self.dim == 2):
+        if kind in ("fixed", "orientation") or (kind == "prismatic" and self.dim == 2):
             for i in range(1 if self.dim == 2 else 3):
                 self._hold(name, dots(axes[i], axes[(i + 1) % self.dim]), Decimal(0))
         if kind == "universal":
@@ -352,16 +440,16 @@ class Oracle:
 
     def _joints(self):
         for joint in self.model.get("joints", []):
-            if self.here(joint) and joint["type"] != "gear":
-                at = joint["at"]
+            if self.here(joint) and joint["type"] not in COUPLINGS:
+                at = joint.get("at", [Decimal(0)] * self.dim)  # of no account where it is absent
                 if isinstance(at, str) or not isinstance(at[0], (list, str)) or self._is_point(at):
                     at = [at, at]
                 self._joint(joint["name"], joint["type"], joint["bodies"], [self.v(p) for p in at], self.v(joint["axis"]) if "axis" in joint else None,
                             self.v(joint["axis_b"]) if "axis_b" in joint else None, self.n(joint["length_m"]) if "length_m" in joint else None)
         for joint in self.model.get("joints", []):
-            if self.here(joint) and joint["type"] == "gear":
+            if self.here(joint) and joint["type"] in COUPLINGS:
                 a, b = (self.coordinate[j] for j in joint["joints"])
-                self._hold(joint["name"], geared(a, b, self.n(joint.get("ratio", 1))))
+                self._hold(joint["name"], geared(a, b, self.n(joint[COUPLINGS[joint["type"]]])))
 
     def _is_point(self, at):
         """A list of coordinates, some of which are expressions, and not of two names of points."""
@@ -427,17 +515,8 @@ class Oracle:
         apart = self._apart(bodies, at)
         axes = [[Decimal(int(i == j)) for j in range(self.dim)] for i in range(self.dim)]
         measures = [plain(product(self.direction(bodies[0], u), apart)) for u in axes]
-        turns = "stiffness_n_m_per_rad" in item or "stiffness_matrix" in item
-        if turns and self.dim == 2:
-            measures.append(self.angle_between(bodies, None))
-        if turns and self.dim == 3:
-            fixed, moved = ([self.direction(b, u) for u in axes] for b in bodies)
-            half = Decimal("0.5")
-            trace = Quad(add(*[product(fixed[i], moved[i]).times(half) for i in range(3)], {(CONSTANT, CONSTANT): -half}))
-            for k in range(3):
-                i, j = (k + 1) % 3, (k + 2) % 3
-                skew = Quad(add(product(fixed[j], moved[i]).times(half), product(fixed[i], moved[j]).times(-half)))
-                measures.append(rotation(skew, trace))
+        if "stiffness_n_m_per_rad" in item or "stiffness_matrix" in item:
+            measures += self._turns(bodies, axes)
         n = len(measures)
         if "stiffness_matrix" in item:
             rows = item["stiffness_matrix"]
@@ -448,6 +527,23 @@ class Oracle:
             diagonal += listed("stiffness_n_m_per_rad")
             k = [[diagonal[i] if i == j else 0 for j in range(n)] for i in range(n)]
         self.springs.append(Spring(item["name"], measures, k, [None] * n, [0] * n))
+
+    def _loads(self):
+        """Dead: V = -F . P, or minus moment times angle."""
+        for load in self.model.get("loads", []):
+            if not self.here(load):
+                continue
+            if "joint" in load:
+                self._pull(load, self.coordinate[load["joint"]], load.get("moment_n_m", load.get("force_n")))
+                continue
+            if "force_n" in load:
+                at = self.v(load["at"]) if "at" in load else self.bodies[load["on"]].centre
+                self.forces.append((self.point(load["on"], at), self.v(load["force_n"])))
+            if "moment_n_m" in load:
+                self._pull(load, self.angle_between(["ground", load["on"]], None), load["moment_n_m"])
+
+    def _pull(self, load, measure, size):
+        self.springs.append(Spring(load["name"], [measure], [[Decimal(0)]], [None], [-self.n(size)]))
 
     # coordinates --------------------------------------------------------------------------------------------------------------------------------
     def drawn(self):

@@ -25,7 +25,7 @@ import statics  # noqa: E402
 from changes import CHANGES  # noqa: E402
 from exact import number  # noqa: E402
 from known import reason  # noqa: E402
-from makers import KINDS  # noqa: E402
+from families import KINDS  # noqa: E402
 from oracle import Refused  # noqa: E402
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -69,15 +69,27 @@ class Case:
         """Sentences on what an answer of the program has wrong."""
         if answer.crashed():
             yield "exit", f"exit code {answer.code}: {answer.words[-1000:]}"
+        elif self.modes.dead_centre:
+            if not answer.code:
+                yield "dead", "joints depend on each other at this very position, and it is not said"
         elif answer.code:
             yield "refused", f"refused: {answer.words.strip()[-300:]}"
         elif answer.counts() != self.expected:
             yield "counts", f"counts {answer.counts()}, exact {self.expected}"
         else:
-            worst = max(((abs(a / (b * factor) - 1), i) for i, (a, b) in enumerate(zip(answer.hz(), self.hz))), default=(Decimal(0), 0))
-            if worst[0] > ACCURACY:
-                i = worst[1]
-                yield "frequencies", f"mode {i + 1} is {answer.hz()[i]} Hz, exact {self.hz[i] * factor:.17g} Hz, {worst[0]:.1e} off"
+            yield from self._numbers(answer, factor)
+
+    def _numbers(self, answer, factor):
+        given = answer.hz()
+        worst = max(((abs(a / (b * factor) - 1), i) for i, (a, b) in enumerate(zip(given, self.hz))), default=(Decimal(0), 0))
+        if worst[0] > ACCURACY:
+            i = worst[1]
+            yield "frequencies", f"mode {i + 1} is {given[i]} Hz, exact {self.hz[i] * factor:.17g} Hz, {worst[0]:.1e} off"
+        for mode, x in zip(answer.said["modes"], sorted(self.modes.values)):
+            x, bound = x * factor**2, mode.get("omega_squared_error")
+            if bound is not None and mode["kind"] != "rigid body" and abs(number(mode["omega_squared"]) - x) > number(bound):
+                yield "bounds", f"omega^2 is {mode['omega_squared']} within {bound}, exact {x:.17g}"
+                return
 
     def slopes(self):
         """One parameter's derivatives against differences of the oracle."""
@@ -90,7 +102,10 @@ class Case:
             return
         value = number(self.model["parameters"][name]["value"])
         step = STEP * (abs(value) if value else 1)
-        near = [self.modes.shifted({name: value + s * step}) for s in (-1, 1)]
+        try:
+            near = [self.modes.shifted({name: value + s * step}) for s in (-1, 1)]
+        except Refused:
+            return  # nor is there rest beside this value
         if any(m.counts() != self.modes.counts() for m in near):
             return  # the mechanism changes with the parameter: there is no derivative
         low, high = (m.hz() for m in near)
@@ -116,7 +131,8 @@ class Case:
             if changed is not None:
                 for check, text in self.agree(Answer(self.folder, name, changed[0]), changed[1]):
                     yield name if check in ("counts", "frequencies", "refused") else check, text
-        yield from self.slopes()
+        if not self.modes.dead_centre:
+            yield from self.slopes()
 
 
 def hunt(seed, kinds, indices, tally, seconds=None, keep=None):

@@ -24,15 +24,13 @@ class State:
         self.gradient = [zero] * n
         self.parts = []     # (size, [(factor, quad)], [(factor, g, g)]) of the springs
         self.forces = []    # gradients of the springs' and the weights' shares: what cancels in equilibrium
-        self.energy = zero
         self.trim_slope = None
-        for form, mass, pull in problem.weights(self.cast):
+        for form, vector in problem.forces(self.cast):
             share = {}
-            for f, g in zip(form, pull):
-                for i, x in f.items():
+            for f, x in zip(form, vector):
+                for i, y in f.items():
                     if i >= 0:
-                        share[i] = share.get(i, zero) - mass * g * x
-                    self.energy -= mass * g * x * (q[i] if i >= 0 else 1)
+                        share[i] = share.get(i, zero) - x * y
             self._push(share)
         for spring in oracle.springs:
             self._spring(spring, force)
@@ -58,7 +56,6 @@ class State:
             self.trim_slope = found[0][1]
         else:
             pull = [cast(t) + sum(x * y for x, y in zip(row, d)) for t, row in zip(spring.tension, k)]
-            self.energy += sum((p + cast(t)) * y / 2 for p, t, y in zip(pull, spring.tension, d))
         share, bent, outer = {}, [], []
         for p, (_, slope, b, o) in zip(pull, found):
             for i, x in slope.items():
@@ -135,15 +132,15 @@ class Problem:
             spring.rest = [m.at(self.drawn)[0] if r is None else r for m, r in zip(spring.measures, spring.rest)]
         self.targets = [m.at(self.drawn)[0] if t is None else t for m, t in oracle.constraints]
         self.pull = oracle.v(oracle.settings["gravity_m_per_s2"]) if oracle.settings["gravity_m_per_s2"] else None
-        self._weights = {}
+        self._forces = {}
 
-    def weights(self, cast):
-        if self.pull is None:
-            return []
-        if cast not in self._weights:
-            self._weights[cast] = [([{i: cast(x) for i, x in f.items()} for f in form], cast(m), [cast(g) for g in self.pull])
-                                   for form, m in self.oracle.weights]
-        return self._weights[cast]
+    def forces(self, cast):
+        """Weights and dead forces: (point, force)."""
+        if cast not in self._forces:
+            weights = [(form, [m * g for g in self.pull]) for form, m in self.oracle.weights] if self.pull else []
+            self._forces[cast] = [([{i: cast(x) for i, x in f.items()} for f in form], [cast(x) for x in force])
+                                  for form, force in weights + self.oracle.forces]
+        return self._forces[cast]
 
     def rows(self, drive):
         """(measure, target) of all constraints; drive None: that of the driven joint is left out."""
@@ -158,6 +155,10 @@ class Problem:
     # equilibrium --------------------------------------------------------------------------------------------------------------------------------
     def search(self):
         """Floats: q, force of the trimmed spring, near rest."""
+        with np.errstate(all="ignore"):
+            return self._searched()
+
+    def _searched(self):
         q, force = np.array([float(x) for x in self.drawn]), 0.0
         if self.oracle.driven is None:
             return self._descend(q, force, None)
@@ -167,7 +168,7 @@ class Problem:
 
     def _descend(self, q, force, drive, enough=1e-13):
         trim = self.oracle.trim is not None
-        for _ in range(STEPS):
+        for k in range(STEPS):
             s = self.state(q.tolist(), force, drive)
             a, g, c = np.array(s.rows).reshape(-1, len(q)), np.array(s.gradient), np.array(s.gaps)
             z, fit = _float_null(a)
@@ -180,19 +181,22 @@ class Problem:
                 if trim:
                     change, dforce = self._trim_step(s, z, a, h, g, close)
                 else:
-                    k, r = z.T @ h @ z, -z.T @ (g + h @ close)
-                    w, v = np.linalg.eigh(k)
-                    top = np.abs(w).max(initial=0.0)
-                    keep = np.abs(w) > 1e-11 * top
-                    change = z @ (v[:, keep] @ ((v[:, keep].T @ r) / np.abs(w[keep])))
+                    r = -z.T @ (g + h @ close)
+                    w, v = np.linalg.eigh(z.T @ h @ z)
+                    top = max(np.abs(h).max(), sum(f for _, _, e in s.parts for f, _, _ in e if f > 0))
+                    pull, push = v.T @ r, max((abs(x) for share in s.forces for x in share.values()), default=0.0)
+                    keep = (np.abs(w) > 1e-11 * top) | (np.abs(pull) > 1e-9 * push)  # a force without stiffness is followed, too
+                    change = z @ (v[:, keep] @ (pull[keep] / np.maximum(np.abs(w[keep]), 1e-6 * (top + push))))
             step = close + change
+            if not np.all(np.isfinite(step)):
+                break
             size = np.abs(step).max(initial=0.0)
             short = min(1.0, LARGEST_STEP / size) if size else 1.0
             q, force = q + short * step, force + short * dforce
             if size < enough:
                 return q, force
-        if size < 1e-9:
-            return q, force
+            if size < 1e-9 and k > 50:
+                return q, force
         raise Refused("no equilibrium found")
 
     def _trim_step(self, s, z, a, h, g, close):
@@ -221,7 +225,8 @@ class Problem:
                 m = [[dot(a, hb) for hb in [times(h, b) for b in f.z]] for a in f.z]
                 pushed = [x + w for x, w in zip(s.gradient, times(h, close))]
                 r = [-dot(a, pushed) for a in f.z]
-            x, left = _consistent(m, r)
+            size = max((abs(x) for row in h for x in row), default=Decimal(0)) + sum(f for _, _, e in s.parts for f, _, _ in e if f > 0)
+            x, left = _consistent(m, r, size)
             dforce = x[-1] if trim and x else Decimal(0)
             dq = [c + sum((w * z[i] for w, z in zip(x, f.z)), Decimal(0)) for i, c in enumerate(close)]
             q = [a + b for a, b in zip(q, dq)]
@@ -235,7 +240,7 @@ class Problem:
 
     def loaded(self):
         """Is there anything that could move it out of its drawing?"""
-        return (self.pull is not None and any(self.pull)) or self.oracle.driven is not None \
+        return any(any(force) for _, force in self.forces(Decimal)) or self.oracle.driven is not None \
             or any(any(s.tension) or any(r != m.at(self.drawn)[0] for m, r in zip(s.measures, s.rest)) for s in self.oracle.springs)
 
 
@@ -256,12 +261,12 @@ def _float_null(a):
     return vt[rank:].T, (vt[:rank].T / s[:rank]) @ u[:, :rank].T
 
 
-def _consistent(m, r):
-    """A solution of m x = r with zero where x is free, and what no x can reach."""
+def _consistent(m, r, size):
+    """A solution of m x = r with zero where x is free, and what no x can reach; m is made of terms of this size."""
     if not m:
         return [], Decimal(0)
     n = len(m[0])
-    rows, pivots, _, chosen = exact.eliminate([list(a) + [b] for a, b in zip(m, r)], n, exact.ZERO)
+    rows, pivots, _, _ = exact.eliminate([list(a) + [b] for a, b in zip(m, r)], n, exact.ZERO, size)
     x = [Decimal(0)] * n
     for row, p in zip(rows, pivots):
         x[p] = row[n]
@@ -329,6 +334,8 @@ class Modes:
 
     def __init__(self, problem, state=None):
         self.problem, self.loaded = problem, problem.loaded()
+        if self.loaded and problem.oracle.beams:
+            raise Refused("loaded beam")
         self.state = state or (problem.polish(*problem.search()) if self.loaded else problem.state(problem.drawn))
         self.frame = Frame(self.state)
         self.freedoms, self.redundant = len(self.frame.z), self.frame.redundant
@@ -341,15 +348,18 @@ class Modes:
             m[i][j] = x
             m[j][i] = x
         k, mm = ([[dot(a, w) for w in [times(matrix, b) for b in z]] for a in z] for matrix in (h, m))
-        low = exact.cholesky(mm)
+        self.massless = 0
+        low, back = exact.cholesky(mm), None
         if low is None:
-            raise Refused("massless")
-        half = [exact.forward(low, [k[i][j] for i in range(len(z))]) for j in range(len(z))]  # columns of L^-1 K
-        c = [exact.forward(low, [half[j][i] for j in range(len(z))]) for i in range(len(z))]
-        self.values, vectors = exact.jacobi(c)
+            k, mm, back = self._condensed(k, mm)
+            low = exact.cholesky(mm)
+        n = len(k)
+        half = [exact.forward(low, [k[i][j] for i in range(n)]) for j in range(n)]  # columns of L^-1 K
+        self.values, vectors = exact.jacobi([exact.forward(low, [half[j][i] for j in range(n)]) for i in range(n)])
         self.shapes = []
         for v in vectors:
             x = exact.backward(low, v)
+            x = x if back is None else back(x)
             self.shapes.append([sum((w * b[i] for w, b in zip(x, z)), Decimal(0)) for i in range(self.frame.n)])
         self.sizes, reach = [], Decimal(0)
         for u in self.shapes:
@@ -362,6 +372,27 @@ class Modes:
     def hz(self):
         """Of the modes that vibrate, ascending."""
         return [x.sqrt() / (2 * exact.PI) for x, zero in zip(self.values, self.zero) if x > 0 and not zero]
+
+    def _condensed(self, k, m):
+        """Directions without mass follow the others statically: K11 - K10 K00^-1 K01, M11, and the way back."""
+        sizes, t = exact.jacobi(m)
+        nothing = exact.NOTHING * max(sizes, default=Decimal(0))
+        t = [v for x, v in sorted(zip(sizes, t), key=lambda p: p[0])]
+        self.massless = sum(x <= nothing for x in sizes)
+        k, m = ([[dot(a, b) for b in [times(matrix, v) for v in t]] for a in t] for matrix in (k, m))
+        p = self.massless
+        k00 = [row[:p] for row in k[:p]]
+        size = max((abs(x) for row in k for x in row), default=Decimal(0))
+        least = min((abs(x) for x in exact.jacobi(k00)[0]), default=Decimal(0))
+        if least <= exact.ZERO * size:
+            raise Refused("massless")
+        x = exact.solve(k00, [[k[i][j] for i in range(p)] for j in range(p, len(k))])  # columns K00^-1 K01
+        reduced = [[k[i][j] - dot(k[i][:p], x[j - p]) for j in range(p, len(k))] for i in range(p, len(k))]
+
+        def back(v):
+            full = [-sum((w * x[j][i] for j, w in enumerate(v)), Decimal(0)) for i in range(p)] + list(v)
+            return [sum((w * b[i] for w, b in zip(full, t)), Decimal(0)) for i in range(len(k))]
+        return reduced, [row[p:] for row in m[p:]], back
 
     def shifted(self, values):
         """The same with other values of parameters, at rest next to here."""
