@@ -78,6 +78,7 @@ static mt_status evaluate_rows(mt_linear *lin, mt_err *err)
         }
         mt_arena_rewind(&lin->scratch, mark);
     }
+    MT_TRY(mt_reduce_basis(lin, err));
     return mt_reduce_rows(lin, err);
 }
 

@@ -33,6 +33,7 @@ typedef struct mt_linear {
     mt_drive_start last;
     int first_input;  /* derivatives are asked for from this input on; 0: of all of them */
     mt_elimination e; /* at the final position, constraints of the linearised system */
+    double *z_error;  /* nq x n: bounds of the errors of e.z */
     int m;            /* constraints in force */
     double *a;        /* m x nq */
     int n;            /* freedoms */

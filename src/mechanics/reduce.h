@@ -4,8 +4,10 @@
 
 #include "mechanics/linear.h"
 
-/* reduced = Z^T row for all rows of all kinds at the present position, entries that are rounding made exactly 0, and blocked where nothing is left. After the elimination and the rows; the memory is
- * that of the geometry. O(rows n), and a solve with the factored constraints for each row that only its reactions can judge. */
+/* Replace the basis of the elimination by one local to the bodies (local.h), with bounds of its errors. After the elimination and the rows. */
+mt_status mt_reduce_basis(mt_linear *lin, mt_err *err);
+/* reduced = Z^T row for all rows of all kinds at the present position, entries that are rounding made exactly 0, and blocked where nothing is left. After the basis; the memory is that of the
+ * geometry. O(rows n). */
 mt_status mt_reduce_rows(mt_linear *lin, mt_err *err);
 
 #endif

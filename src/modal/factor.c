@@ -27,6 +27,7 @@ typedef struct graded {
     int rows;   /* rows of B with c > 0 and some entry */
     double tol; /* relative rounding of the best rows of C, at least 16 n eps */
     double *ct; /* n x rows: columns are rows of C, of length one or (noisy ones) less */
+    int *place; /* [n] coordinate that stands in each row of ct */
     double *d;  /* [rows] sqrt(c) times the row's length, over that in ct */
     mt_qr qr;   /* of ct */
     double *f;  /* rows x rank: D P R^T */
@@ -104,6 +105,38 @@ static void weigh(graded *g, const double *rho)
     }
 }
 
+/*
+ * Coordinates in descending order of their largest entry. With that and column pivoting Householder's method is stable row by row and column by column (Cox and Higham 1998; Higham 2000), so
+ * that small entries of C, those of a heavy body beside a light one, keep digits of their own: two springs from a light body to heavy ones are parallel but for them.
+ */
+static mt_status sort_coordinates(graded *g, mt_arena *scratch, mt_err *err)
+{
+    const ptrdiff_t n = g->n;
+    g->place = mt_arena_int(scratch, (size_t)n);
+    double *const size = mt_arena_f64(scratch, (size_t)n, 1);
+    double *const column = mt_arena_f64(scratch, (size_t)n, 1);
+    if (g->place == NULL || size == NULL || column == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (ptrdiff_t i = 0; i < n; i++) {
+        for (ptrdiff_t j = 0; j < g->rows; j++) {
+            size[i] = fmax(size[i], fabs(g->ct[i + j * n]));
+        }
+        ptrdiff_t at = i; /* insertion: the order of equals stays */
+        for (; at > 0 && size[g->place[at - 1]] < size[i]; at--) {
+            g->place[at] = g->place[at - 1];
+        }
+        g->place[at] = (int)i;
+    }
+    for (ptrdiff_t j = 0; j < g->rows; j++) {
+        memcpy(column, g->ct + j * n, (size_t)n * sizeof *column);
+        for (ptrdiff_t i = 0; i < n; i++) {
+            g->ct[i + j * n] = column[g->place[i]];
+        }
+    }
+    return MT_OK;
+}
+
 static mt_status prepare(const mt_stiffness_factor *b, const mt_mass_factor *mass, graded *g,
                          mt_arena *scratch, mt_err *err)
 {
@@ -122,6 +155,7 @@ static mt_status prepare(const mt_stiffness_factor *b, const mt_mass_factor *mas
     transform(b, mass, bt, g->ct);
     MT_TRY(normalise(b, mass, g, rho, err));
     weigh(g, rho);
+    MT_TRY(sort_coordinates(g, scratch, err));
     return mt_qr_factor(g->n, g->rows, g->ct, g->n, g->tol, scratch, &g->qr, err);
 }
 
@@ -150,7 +184,8 @@ static mt_status vectors(const graded *g, const mt_mass_factor *mass, mt_arena *
     const int n = g->n;
     const int r = g->qr.rank;
     double *const q = mt_arena_f64(scratch, (size_t)n, (size_t)n);
-    if (q == NULL) {
+    double *const column = mt_arena_f64(scratch, (size_t)n, 1);
+    if (q == NULL || column == NULL) {
         return mt_fail_memory(err);
     }
     for (int j = 0; j < n - r; j++) {
@@ -160,6 +195,12 @@ static mt_status vectors(const graded *g, const mt_mass_factor *mass, mt_arena *
         memcpy(q + (ptrdiff_t)(n - 1 - j) * n, g->v + (ptrdiff_t)j * r, (size_t)r * sizeof *q);
     }
     MT_TRY(mt_qr_apply_q(&g->qr, false, n, q, scratch, err));
+    for (ptrdiff_t j = 0; j < n; j++) {
+        memcpy(column, q + j * n, (size_t)n * sizeof *column);
+        for (ptrdiff_t i = 0; i < n; i++) {
+            q[g->place[i] + j * n] = column[i];
+        }
+    }
     mt_modal_back(mass, q, y);
     return MT_OK;
 }

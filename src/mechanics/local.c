@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * A basis of the freedoms that stays with the bodies. An orthonormal basis of A dq = 0 mixes all of them: what stands still moves by a rounding of what moves most, and a mass or spring
+ * that is 1e16 times the others makes that rounding the answer. Instead some coordinates f are chosen as free, the others d follow,
+ *     dq_d = -A_d^-1 A_f dq_f,        Z = [-A_d^-1 A_f; I],
+ * by Gaussian elimination that touches only what is coupled, so that what does not move with a free coordinate has an entry of exactly 0. Three things decide the pivots:
+ *   - of the coordinates of an equation the light ones follow the heavy ones: pivots are the largest of |A_ij| / sqrt(m_j), as in complete pivoting of A M^-1/2. The entries of
+ *     M^1/2 Z M_f^-1/2 are then of size one, and Z^T M Z, scaled to unit diagonal, stays well conditioned whatever the masses are;
+ *   - no pivot is small in its own equation, whatever the masses;
+ *   - what is left of a difference is 0 where it is within the rounding of its terms, which are carried along (running error analysis).
+ * See Golub and Van Loan, Matrix Computations, 3.4 (complete pivoting); Demmel et al., Linear Algebra Appl. 299 (1999) (elimination of graded matrices keeps relative accuracy).
+ */
+#include "mechanics/local.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* A pivot is at least this part of the largest entry of its equation: errors grow by no more than its inverse. */
+static const double SMALLEST_PIVOT = 0.1;
+/* Rounding of an entry of A, and of one operation. */
+static const double ENTRY_ULPS = 4.0;
+/* A coordinate without mass counts as this part of the heaviest one: it follows whenever it can. */
+static const double MASSLESS = 1e-60;
+
+typedef struct work {
+    int rank;
+    int nq;
+    double *g;      /* rank x nq, row-major: the independent equations, equilibrated */
+    double *e;      /* bounds of the errors of g */
+    double *weight; /* [nq] 1 / sqrt(mass) */
+    int *pivot;     /* [rank] column of the equation's pivot; -1: to come */
+    int *order;     /* [rank] equations in the order of elimination */
+    bool *follows;  /* [nq] chosen as a pivot */
+    int *best;      /* [rank] column of the best pivot in sight */
+    double *score;  /* [rank] its size */
+    int *list;      /* [nq] columns of one row */
+} work;
+
+static mt_status claim(work *w, mt_arena *mem, mt_err *err)
+{
+    const size_t rank = (size_t)w->rank;
+    const size_t nq = (size_t)w->nq;
+    w->g = mt_arena_f64(mem, rank, nq);
+    w->e = mt_arena_f64(mem, rank, nq);
+    w->weight = mt_arena_f64(mem, nq, 1);
+    w->pivot = mt_arena_int(mem, rank);
+    w->order = mt_arena_int(mem, rank);
+    w->follows = mt_arena_alloc(mem, nq, sizeof *w->follows);
+    w->best = mt_arena_int(mem, rank);
+    w->score = mt_arena_f64(mem, rank, 1);
+    w->list = mt_arena_int(mem, nq);
+    const bool bad = w->g == NULL || w->e == NULL || w->weight == NULL || w->pivot == NULL ||
+                     w->order == NULL || w->follows == NULL || w->best == NULL ||
+                     w->score == NULL || w->list == NULL;
+    return bad ? mt_fail_memory(err) : MT_OK;
+}
+
+/* mass[nq]: diagonal of M; weights in the elimination's coordinates. */
+static void weigh(work *w, const mt_elimination *e, const double *mass)
+{
+    double most = 0.0;
+    for (int j = 0; j < w->nq; j++) {
+        most = fmax(most, mass[j] * e->dc[j] * e->dc[j]);
+    }
+    for (int j = 0; j < w->nq; j++) {
+        const double m = mass[j] * e->dc[j] * e->dc[j];
+        w->weight[j] = most > 0.0 ? 1.0 / sqrt(fmax(m / most, MASSLESS)) : 1.0;
+    }
+}
+
+/* The best pivot of equation i. */
+static void look(work *w, int i)
+{
+    const double *const g = w->g + ((ptrdiff_t)i * w->nq);
+    double most = 0.0;
+    w->best[i] = -1;
+    w->score[i] = 0.0;
+    for (int j = 0; j < w->nq; j++) {
+        most = fmax(most, w->follows[j] ? 0.0 : fabs(g[j]));
+    }
+    for (int j = 0; j < w->nq; j++) {
+        const double size = fabs(g[j]);
+        if (!w->follows[j] && size > 0.0 && size >= SMALLEST_PIVOT * most &&
+            size * w->weight[j] > w->score[i]) {
+            w->score[i] = size * w->weight[j];
+            w->best[i] = j;
+        }
+    }
+}
+
+static void load(work *w, const mt_elimination *e, const double *a, double extent)
+{
+    for (int i = 0; i < w->rank; i++) {
+        const int row = e->qr.perm[i];
+        for (ptrdiff_t j = 0; j < w->nq; j++) {
+            const ptrdiff_t at = j + ((ptrdiff_t)i * w->nq);
+            w->g[at] = e->dr[row] * a[row + (j * e->m)] * e->dc[j];
+            const double arm = e->dc[j] == 1.0 ? 0.0 : e->dr[row] * extent * e->dc[j];
+            w->e[at] =
+                w->g[at] == 0.0 ? 0.0 : ENTRY_ULPS * DBL_EPSILON * (fabs(w->g[at]) + arm);
+            if (fabs(w->g[at]) <= w->e[at]) {
+                w->g[at] = 0.0;
+            }
+        }
+        w->pivot[i] = -1;
+        look(w, i);
+    }
+}
+
+/* to -= factor * from at the n columns listed. */
+static void subtract(const work *w, int n, double factor, double factor_error, int from, int to)
+{
+    const double *const g = w->g + ((ptrdiff_t)from * w->nq);
+    const double *const e = w->e + ((ptrdiff_t)from * w->nq);
+    double *const gt = w->g + ((ptrdiff_t)to * w->nq);
+    double *const et = w->e + ((ptrdiff_t)to * w->nq);
+    for (int k = 0; k < n; k++) {
+        const int j = w->list[k];
+        const double part = factor * g[j];
+        et[j] += (fabs(factor) * e[j]) + (factor_error * fabs(g[j])) +
+                 (DBL_EPSILON * (fabs(gt[j]) + fabs(part)));
+        gt[j] -= part;
+        if (fabs(gt[j]) <= et[j]) {
+            gt[j] = 0.0;
+        }
+    }
+}
+
+/* Columns with an entry in equation i that are no pivots yet, into list; how many. */
+static int list_open(work *w, int i)
+{
+    const double *const g = w->g + ((ptrdiff_t)i * w->nq);
+    const double *const e = w->e + ((ptrdiff_t)i * w->nq);
+    int n = 0;
+    for (int j = 0; j < w->nq; j++) {
+        if (!w->follows[j] && (g[j] != 0.0 || e[j] != 0.0)) {
+            w->list[n++] = j;
+        }
+    }
+    return n;
+}
+
+/* The open equation with the best pivot in sight. */
+static int next_equation(const work *w)
+{
+    int row = -1;
+    for (int i = 0; i < w->rank; i++) {
+        if (w->pivot[i] < 0 && (row < 0 || w->score[i] > w->score[row])) {
+            row = i;
+        }
+    }
+    return row;
+}
+
+/* Forward elimination; false where an equation has nothing left that is more than rounding. */
+static bool eliminate(work *w)
+{
+    const ptrdiff_t nq = w->nq;
+    for (int step = 0; step < w->rank; step++) {
+        const int row = next_equation(w);
+        const int column = w->best[row];
+        if (column < 0) {
+            return false;
+        }
+        w->pivot[row] = column;
+        w->order[step] = row;
+        w->follows[column] = true;
+        const int n = list_open(w, row);
+        const double p = w->g[column + (row * nq)];
+        const double dp = w->e[column + (row * nq)] / fabs(p);
+        for (int i = 0; i < w->rank; i++) {
+            const double x = w->g[column + (i * nq)];
+            if (w->pivot[i] >= 0 || (x == 0.0 && w->e[column + (i * nq)] == 0.0)) {
+                continue;
+            }
+            const double factor = x / p;
+            const double error = (w->e[column + (i * nq)] / fabs(p)) + (fabs(factor) * dp);
+            w->g[column + (i * nq)] = 0.0;
+            w->e[column + (i * nq)] = 0.0;
+            if (x != 0.0) {
+                subtract(w, n, factor, error, row, i);
+            }
+            look(w, i);
+        }
+        for (int i = 0; i < w->rank; i++) { /* a pivot in sight is taken */
+            if (w->pivot[i] < 0 && w->best[i] == column) {
+                look(w, i);
+            }
+        }
+    }
+    return true;
+}
+
+/* Back substitution: each equation in its pivot and free columns alone. */
+static void substitute(work *w)
+{
+    const ptrdiff_t nq = w->nq;
+    for (int step = w->rank - 1; step >= 0; step--) {
+        const int i = w->order[step];
+        for (int later = step + 1; later < w->rank; later++) {
+            const int from = w->order[later];
+            const int column = w->pivot[from];
+            const double x = w->g[column + (i * nq)];
+            if (x != 0.0) {
+                const double error = w->e[column + (i * nq)];
+                w->g[column + (i * nq)] = 0.0;
+                subtract(w, list_open(w, from), x, error, from, i);
+            }
+        }
+        const double p = w->g[w->pivot[i] + (i * nq)];
+        const double dp = w->e[w->pivot[i] + (i * nq)] / fabs(p);
+        const int n = list_open(w, i);
+        for (int k = 0; k < n; k++) {
+            double *const x = &w->g[w->list[k] + (i * nq)];
+            double *const ex = &w->e[w->list[k] + (i * nq)];
+            *x /= p;
+            *ex = (*ex / fabs(p)) + (fabs(*x) * (dp + DBL_EPSILON));
+        }
+        w->g[w->pivot[i] + (i * nq)] = 1.0;
+    }
+}
+
+/* z := [-X; I], error: bounds. */
+static void fill(const work *w, mt_elimination *e, double *error)
+{
+    const ptrdiff_t nq = w->nq;
+    int c = 0;
+    for (ptrdiff_t j = 0; j < nq; j++) {
+        if (w->follows[j]) {
+            continue;
+        }
+        double *const z = e->z + (c * nq);
+        double *const dz = error + (c * nq);
+        for (ptrdiff_t k = 0; k < nq; k++) {
+            z[k] = 0.0;
+            dz[k] = 0.0;
+        }
+        z[j] = e->dc[j];
+        for (int i = 0; i < w->rank; i++) {
+            const int k = w->pivot[i];
+            z[k] = -w->g[j + (i * nq)] * e->dc[k];
+            dz[k] = w->e[j + (i * nq)] * e->dc[k];
+        }
+        c++;
+    }
+}
+
+/* The orthonormal basis is known to about nq eps / kept, all its columns alike. */
+static void bound_orthonormal(const mt_elimination *e, double extent, double *error)
+{
+    const double unit = ENTRY_ULPS * (double)e->nq * DBL_EPSILON / e->qr.kept;
+    for (ptrdiff_t c = 0; c < e->n; c++) {
+        for (ptrdiff_t j = 0; j < e->nq; j++) {
+            const double far = e->dc[j] == 1.0 ? 1.0 : extent * e->dc[j];
+            error[j + (c * e->nq)] = unit * fmax(far, 1.0) * e->dc[j];
+        }
+    }
+}
+
+mt_status mt_eliminate_local(const double *a, const double *mass, double extent, mt_arena *mem,
+                             mt_elimination *e, double *error, mt_err *err)
+{
+    work w = {.rank = e->qr.rank, .nq = e->nq};
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    MT_TRY(claim(&w, mem, err));
+    weigh(&w, e, mass);
+    load(&w, e, a, extent);
+    if (eliminate(&w)) {
+        substitute(&w);
+        fill(&w, e, error);
+    } else {
+        bound_orthonormal(e, extent, error);
+    }
+    mt_arena_rewind(mem, mark);
+    return MT_OK;
+}
