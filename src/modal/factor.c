@@ -11,8 +11,9 @@
  * not depend on D, so it is split off first: rows of C are scaled to unit norm (the norms join
  * D; rows that are known less well are made shorter, see weigh), C^T P = Q R with column pivoting has Q = [Q1 Q2], Q2 the null space. Then
  *     D C Q1 = D P R^T   (rows of R^T put into C's order)
- * is of full column rank, and every row of R^T keeps its own relative error, so that D, which
- * scales rows, does no harm. lambda: zero for Q2, sigma^2 for Q1 V.
+ * is of full column rank, and every row of R^T keeps its own relative error. Where D spreads far
+ * that is not enough: springs beyond the number of freedoms hold each other, and what is exactly
+ * 0 in a stiff row must not become eps; then C is eliminated instead (graded.c). lambda: zero for Q2, sigma^2 for Q1 V.
  */
 #include "modal/modal_priv.h"
 
@@ -24,15 +25,16 @@
 
 typedef struct graded {
     int n;
-    int rows;   /* rows of B with c > 0 and some entry */
-    double tol; /* relative rounding of the best rows of C, at least 16 n eps */
-    double *ct; /* n x rows: columns are rows of C, of length one or (noisy ones) less */
-    int *place; /* [n] coordinate that stands in each row of ct */
-    double *d;  /* [rows] sqrt(c) times the row's length, over that in ct */
-    mt_qr qr;   /* of ct */
-    double *f;  /* rows x rank: D P R^T */
-    double *s;  /* [rank] descending */
-    double *v;  /* rank x rank */
+    int rows;    /* rows of B with c > 0 and some entry */
+    double tol;  /* relative rounding of the best rows of C, at least 16 n eps */
+    double *ct;  /* n x rows: columns are rows of C, of length one or (noisy ones) less */
+    int *place;  /* [n] coordinate that stands in each row of ct */
+    double *d;   /* [rows] sqrt(c) times the row's length, over that in ct */
+    mt_qr qr;    /* of ct; of L where elimination takes over */
+    double kept; /* smallest diagonal entry of R that counts, of the largest */
+    double *f;   /* rows x rank: D P R^T */
+    double *s;   /* [rank] descending */
+    double *v;   /* rank x rank */
 } graded;
 
 /* ct := (T or L^-1) B^T, all rows of B. */
@@ -159,6 +161,23 @@ static mt_status prepare(const mt_stiffness_factor *b, const mt_mass_factor *mas
     return mt_qr_factor(g->n, g->rows, g->ct, g->n, g->tol, scratch, &g->qr, err);
 }
 
+/*
+ * Householder's method leaves eps in every row of C. That is eps / kept of the singular values of C, and as there may be more rows than freedoms, eps times the spread of D of those of D C.
+ * Where less than this part of the digits would be left of either, elimination takes over; it costs as much again.
+ */
+static const double GRADED = 1e-4;
+
+static bool is_graded(const graded *g)
+{
+    double least = HUGE_VAL;
+    double most = 0.0;
+    for (int j = 0; j < g->rows; j++) {
+        least = fmin(least, g->d[j]);
+        most = fmax(most, g->d[j]);
+    }
+    return g->qr.rank > 0 && g->kept * least < GRADED * most;
+}
+
 static mt_status singular_values(graded *g, mt_arena *scratch, mt_err *err)
 {
     const int r = g->qr.rank;
@@ -167,6 +186,19 @@ static mt_status singular_values(graded *g, mt_arena *scratch, mt_err *err)
     g->v = mt_arena_f64(scratch, (size_t)r, (size_t)r);
     if (g->f == NULL || g->s == NULL || g->v == NULL) {
         return mt_fail_memory(err);
+    }
+    g->kept = g->qr.kept;
+    if (is_graded(g)) {
+        mt_graded e = {.n = g->n,
+                       .rows = g->rows,
+                       .rank = r,
+                       .d = g->d,
+                       .ct = g->ct,
+                       .place = g->place,
+                       .w = g->f};
+        MT_TRY(mt_modal_graded(&e, scratch, err));
+        g->qr = e.q;
+        return mt_svd_jacobi(r, r, g->f, g->s, g->v, scratch, err);
     }
     for (int j = 0; j < g->rows; j++) {
         const int row = g->qr.perm[j];
@@ -223,6 +255,6 @@ mt_status mt_modal_by_factor(const mt_stiffness_factor *factor, const mt_mass_fa
     out->from_factor = true;
     out->error_bound = 0.0;
     out->error_relative =
-        fmax(g.tol, mt_modal_tolerance(g.n)) * (mass->condition + 1.0 / g.qr.kept);
+        fmax(g.tol, mt_modal_tolerance(g.n)) * (mass->condition + 1.0 / g.kept);
     return MT_OK;
 }

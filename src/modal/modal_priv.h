@@ -2,6 +2,7 @@
 #ifndef MODAL_MODAL_PRIV_H
 #define MODAL_MODAL_PRIV_H
 
+#include "linalg/dense.h"
 #include "modal/damped.h"
 
 /*
@@ -33,6 +34,18 @@ mt_status mt_modal_plain(const double *k, const mt_mass_factor *mass, mt_arena *
 /* The same with K = B^T diag(c) B and regular M: null_count eigenvalues are exactly zero. */
 mt_status mt_modal_by_factor(const mt_stiffness_factor *factor, const mt_mass_factor *mass,
                              mt_arena *scratch, mt_modes *out, int *null_count, mt_err *err);
+/* D C of rank >= 1 with C^T in ct (n x rows, destroyed), D = diag(d), is made U w Q1^T: U orthonormal, Q1 the first rank columns of q, its row i at coordinate place[i]. */
+typedef struct mt_graded {
+    int n;
+    int rows;
+    int rank;
+    const double *d; /* [rows] */
+    double *ct;
+    int *place; /* [n] in: coordinate in each row of ct; out: see above */
+    mt_qr q;    /* out */
+    double *w;  /* out: rank x rank, zero on entry */
+} mt_graded;
+mt_status mt_modal_graded(mt_graded *g, mt_arena *mem, mt_err *err);
 /* Y := T1 Q: from the coordinates in which M is the identity back to the caller's. q, y n x n,
  * may be the same only where mass->t is NULL. Regular M only. */
 void mt_modal_back(const mt_mass_factor *mass, const double *q, double *y);
