@@ -95,6 +95,8 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     mt_json_put_integer(w, "iterations", lin->position.iterations);
     mt_json_put_number(w, "residual", lin->position.residual);
     mt_json_put_number(w, "gap_m", lin->position.gap_m);
+    mt_json_put_number(w, "largest_motion_m", lin->position.moved_m);
+    mt_json_put_number(w, "largest_turn_rad", lin->position.turned_rad);
     mt_json_close(w);
     mt_json_close(w);
     return MT_OK;

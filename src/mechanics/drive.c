@@ -127,20 +127,6 @@ static mt_status find_rate(walk *w, double *size, mt_err *err)
     return MT_OK;
 }
 
-/* Largest difference of two positions: model lengths, and entries of the rotations. */
-static double distance(const mt_system *sys, const mt_pose *a, const mt_pose *b)
-{
-    double most = 0.0;
-    for (int i = 0; i < sys->n_bodies; i++) {
-        for (int k = 0; k < 9; k++) {
-            const double x = k < 3 ? fabs(creal(a[i].x[k] - b[i].x[k])) / sys->length_m : 0.0;
-            const double d = fmax(x, fabs(creal(a[i].r[k] - b[i].r[k])));
-            most = !(d <= most) ? d : most; /* NaN is kept */
-        }
-    }
-    return most;
-}
-
 /* Close the mechanism with the joint at `to`, from the guess; *good: closed, and still on the branch. */
 static mt_status try_step(walk *w, double to, double length, bool *good, mt_err *err)
 {
@@ -159,7 +145,7 @@ static mt_status try_step(walk *w, double to, double length, bool *good, mt_err 
     if (rc == MT_E_MEMORY || rc == MT_E_INTERNAL) {
         return mt_fail(err, rc, "%s", w->why.text);
     }
-    *good = rc == MT_OK && distance(sys, w->trial, w->guess) <= CORRECTION * length;
+    *good = rc == MT_OK && mt_newton_distance(sys, w->trial, w->guess) <= CORRECTION * length;
     return MT_OK;
 }
 
@@ -296,11 +282,11 @@ mt_status mt_drive_solve(mt_state *p, mt_data *data, const mt_drive_start *start
     return w.at == w.goal ? MT_OK : refuse(&w, err);
 }
 
-void mt_drive_keep(const mt_state *p, const mt_data *data, mt_drive_start *start)
+void mt_drive_keep(const mt_state *p, mt_drive_start *start)
 {
     const mt_system *const sys = p->sys;
     memcpy(start->pose, p->driven_pose, (size_t)sys->n_bodies * sizeof *start->pose);
-    memcpy(start->turn, data->turn, (size_t)sys->n_measures * sizeof *start->turn);
+    memcpy(start->turn, p->driven_turn, (size_t)sys->n_measures * sizeof *start->turn);
     start->position = p->reached;
     start->valid = true;
 }

@@ -13,7 +13,7 @@ mt_status mt_drive_solve(mt_state *p, mt_data *data, const mt_drive_start *start
                          mt_err *err);
 
 /* Keep where the walk ended, for the next one. */
-void mt_drive_keep(const mt_state *p, const mt_data *data, mt_drive_start *start);
+void mt_drive_keep(const mt_state *p, mt_drive_start *start);
 /* d(measure)/ds along the motion rate[nq] at poses. */
 double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses,
                      const double *rate);

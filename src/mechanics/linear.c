@@ -237,7 +237,7 @@ static mt_status rebuild(mt_linear *lin, mt_err *err)
                              &lin->geometry, &lin->position, err));
     MT_TRY(constrain(lin, err));
     if (lin->sys->driven) { /* not from a dead centre: which way led on would be open */
-        mt_drive_keep(&lin->position, &lin->data, &lin->last);
+        mt_drive_keep(&lin->position, &lin->last);
     }
     MT_TRY(evaluate_rows(lin, err));
     MT_TRY(fixed_parts(lin, err));

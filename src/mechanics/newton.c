@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One stage of the position analysis from start to verdict: plain Newton (newton_step.c); where that does not converge under the physical energy, descent first. */
+/*
+ * One stage of the position analysis from start to verdict. Plain Newton (newton_step.c) finds any stationary point of the energy, a saddle as well as a minimum. What is drawn in
+ * equilibrium stays there, stable or not. Else it settles: where Newton does not converge, ends uphill, or in a saddle that the drawing lies beside (its distance has a part along directions
+ * of negative curvature), the energy is followed downhill from the drawing and out of such saddles, and Newton finishes. A saddle that the drawing lies straight above (a column beyond its
+ * buckling load, compressed along its axis) is an equilibrium that does not say which way it falls: it stands, and is told as unstable.
+ */
 #include "mechanics/newton_priv.h"
 
 #include <float.h>
@@ -9,8 +14,10 @@
 #include "mechanics/singular.h"
 
 enum { NEWTON_LIMIT = 60, WHERE_SIZE = 300 };
-/* Rounding of the largest single spring force, summed over many springs and projected, stays below this many times itself. */
-static const double NOISE_ROOM = 32.0;
+/* Saddles that the way downhill may lead into. */
+enum { SADDLES = 12 };
+/* Energies differ by rounding below this part of them. */
+static const double ENERGY_ROUNDING = 1e-12;
 
 static mt_status keep(const mt_newton_work *w, const mt_elimination *e, double *inverse,
                       mt_arena *mem, mt_state *report, mt_stage *stage, mt_err *err)
@@ -59,11 +66,19 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
                 mt_singular_refuse(w->p->data, poses, &e, mem, err)); /* several ways lead on */
         }
         report->iterations++;
+        if (it == 0 && w->watch && w->gap <= MT_STEP_DONE && w->moved > MT_DRAWN &&
+            w->residual > MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise)) {
+            bool falls = false;
+            MT_TRY(mt_newton_falls(w, &e, w->step, &falls, mem, err));
+            if (falls) {
+                return MT_OK;
+            }
+        }
         /* stop where the step is rounding: small, and no longer shrinking or negligible */
         const bool small = w->moved <= MT_STEP_DONE &&
                            (w->moved >= 0.25 * previous || w->moved <= 8.0 * DBL_EPSILON);
         if (small && w->gap <= MT_STEP_DONE) {
-            if (w->residual <= MT_FORCE_DONE + (NOISE_ROOM * w->noise)) {
+            if (w->residual <= MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise)) {
                 w->tau = tau;
                 *done = true;
                 return keep(w, &e, inverse, mem, report, stage, err);
@@ -75,6 +90,7 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
         previous = w->moved;
         unbalanced = w->residual;
         mt_newton_take_step(w, poses, MT_STEP_LIMIT);
+        mt_newton_follow(w, poses);
         mt_arena_rewind(mem, mark);
         if (!(w->moved < HUGE_VAL)) {
             return MT_OK;
@@ -91,7 +107,8 @@ static mt_status attempt(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
     return rc == MT_E_DOMAIN || rc == MT_E_NO_CONVERGENCE ? MT_OK : rc;
 }
 
-static mt_status refuse(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
+/* poses: where the search ended; closed, where the stage began closed. */
+static mt_status refuse(mt_newton_work *w, const mt_pose *poses, bool closed, mt_arena *mem,
                         const mt_state *report, mt_err *err)
 {
     mt_elimination e;
@@ -99,7 +116,7 @@ static mt_status refuse(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
     memset(w->lambda, 0, (size_t)w->p->m * sizeof *w->lambda);
     mt_newton_evaluate(w, poses, false);
     MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &e, err));
-    if (!(mt_newton_gap_of(w) <= MT_STEP_DONE)) {
+    if (!closed && !(mt_newton_gap_of(w) <= MT_STEP_DONE)) {
         return mt_newton_open_loop(w->p, poses, &e, mem, err);
     }
     MT_TRY(mt_newton_linearise(w, poses, mem, &e, &inverse, err));
@@ -112,26 +129,165 @@ static mt_status refuse(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
                    report->iterations, w->residual, where);
 }
 
+/* Is the stationary point that was last evaluated a saddle, with the drive held, that the way from the start leads down from? That direction goes into w->step. */
+static mt_status find_saddle(mt_newton_work *w, const mt_pose *start, const mt_pose *poses,
+                             const mt_stage *stage, bool *saddle, mt_arena *mem, mt_err *err)
+{
+    mt_elimination held;
+    const mt_elimination *e = &stage->e;
+    double *const way = mt_arena_f64(mem, (size_t)w->sys->nq, 1);
+    if (way == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (w->p->trim) {
+        MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &held, err));
+        e = &held;
+    }
+    mt_newton_way(w->sys, start, poses, way);
+    return mt_newton_falls(w, e, way, saddle, mem, err);
+}
+
+/* What is kept of the better of two ends. */
+typedef struct ending {
+    bool done;
+    bool saddle;
+    double energy;
+    double before; /* the energy where the stage began */
+} ending;
+
+static mt_status judge(mt_newton_work *w, const mt_pose *start, const mt_pose *poses,
+                       const mt_stage *stage, ending *end, mt_arena *mem, mt_err *err)
+{
+    end->saddle = false;
+    if (end->done) {
+        MT_TRY(find_saddle(w, start, poses, stage, &end->saddle, mem, err));
+        end->energy = mt_energy_value(w->p->data, poses, w->tau);
+    }
+    return MT_OK;
+}
+
+/* Downhill from poses, and out of every saddle on the way. */
+static mt_status settle(mt_newton_work *w, const mt_pose *start, mt_pose *poses, mt_arena *mem,
+                        mt_state *report, mt_stage *stage, ending *end, mt_err *err)
+{
+    const size_t size = (size_t)w->sys->n_bodies * sizeof *poses;
+    mt_pose *const low = mt_arena_alloc(mem, (size_t)w->sys->n_bodies, sizeof *low);
+    if (low == NULL) {
+        return mt_fail_memory(err);
+    }
+    bool on = true;
+    for (int i = 0; i < SADDLES && on; i++) {
+        MT_TRY(mt_newton_descend(w, poses, mem, err));
+        memcpy(low, poses, size);
+        MT_TRY(attempt(w, poses, mem, report, stage, &end->done, err));
+        MT_TRY(judge(w, start, poses, stage, end, mem, err));
+        on = end->saddle;
+        if (on) {
+            MT_TRY(mt_newton_leave_saddle(w, poses, &on, mem, err));
+        }
+    }
+    if (!end->done) {
+        memcpy(poses, low, size);
+    }
+    return MT_OK;
+}
+
+/* With trim: the stationary point with the joint locked is where the trimmed one begins. */
+static mt_status lock_first(const mt_newton_problem *problem, mt_pose *poses, mt_arena *mem,
+                            mt_state *report, mt_err *err)
+{
+    mt_newton_problem locked = *problem;
+    mt_stage stage = {.active = false};
+    mt_state other = *report;
+    locked.trim = false;
+    mt_pose *const held = mt_arena_alloc(mem, (size_t)other.sys->n_bodies, sizeof *held);
+    if (held == NULL) {
+        return mt_fail_memory(err);
+    }
+    double *const turn = mt_arena_f64(mem, (size_t)other.sys->n_measures, 1);
+    if (turn == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(turn, problem->data->turn, (size_t)other.sys->n_measures * sizeof *turn);
+    memcpy(held, poses, (size_t)other.sys->n_bodies * sizeof *held);
+    const mt_status rc = mt_newton_solve(&locked, held, mem, &other, &stage, NULL);
+    report->iterations = other.iterations;
+    if (rc == MT_OK) {
+        memcpy(poses, held, (size_t)other.sys->n_bodies * sizeof *held);
+    } else {
+        memcpy(problem->data->turn, turn, (size_t)other.sys->n_measures * sizeof *turn);
+    }
+    return rc == MT_E_MEMORY ? mt_fail_memory(err) : MT_OK;
+}
+
+/* A physical stage whose plain Newton ended as `end` says: downhill from the start, unless it may stay. */
+static mt_status go_on(mt_newton_work *w, const mt_pose *start, const double *turn,
+                       mt_pose *poses, mt_arena *mem, mt_state *report, mt_stage *stage,
+                       ending *end, mt_err *err)
+{
+    const size_t size = (size_t)w->sys->n_bodies * sizeof *poses;
+    MT_TRY(judge(w, start, poses, stage, end, mem, err));
+    const double rounding = ENERGY_ROUNDING * (fabs(end->before) + fabs(end->energy));
+    const bool uphill = !w->p->trim && end->done && end->energy > end->before + rounding;
+    if (end->done &&
+        ((!end->saddle && !uphill) || mt_newton_distance(w->sys, start, poses) <= MT_DRAWN)) {
+        return MT_OK;
+    }
+    const mt_stage first_stage = *stage;
+    const mt_state first_report = *report;
+    const bool found = end->done;
+    const size_t turns = (size_t)w->sys->n_measures;
+    mt_pose *const first = mt_arena_alloc(mem, (size_t)w->sys->n_bodies, sizeof *first);
+    double *const first_turn = mt_arena_f64(mem, turns, 1);
+    if (first == NULL || first_turn == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(first, poses, size);
+    memcpy(first_turn, w->p->data->turn, turns * sizeof *first_turn);
+    w->watch = false;
+    memcpy(poses, start, size);
+    memcpy(w->p->data->turn, turn, turns * sizeof *turn);
+    w->tau = 0.0;
+    if (w->p->trim && found) {
+        MT_TRY(lock_first(w->p, poses, mem, report, err));
+        MT_TRY(attempt(w, poses, mem, report, stage, &end->done, err));
+    } else {
+        MT_TRY(settle(w, start, poses, mem, report, stage, end, err));
+    }
+    if (!end->done &&
+        found) { /* nothing lower holds it: the saddle stands, and is told as unstable */
+        end->done = true;
+        *stage = first_stage;
+        *report = first_report;
+        memcpy(poses, first, size);
+        memcpy(w->p->data->turn, first_turn, turns * sizeof *first_turn);
+    }
+    return MT_OK;
+}
+
 mt_status mt_newton_solve(const mt_newton_problem *problem, mt_pose *poses, mt_arena *mem,
                           mt_state *report, mt_stage *stage, mt_err *err)
 {
     mt_newton_work w;
-    bool done = false;
+    ending end = {.done = false};
     const size_t n = (size_t)problem->data->sys->n_bodies;
     MT_TRY(mt_newton_work_init(&w, problem, mem, err));
     mt_pose *const start = mt_arena_alloc(mem, n, sizeof *start);
-    if (start == NULL) {
+    double *const turn = mt_arena_f64(mem, (size_t)w.sys->n_measures, 1);
+    if (start == NULL || turn == NULL) {
         return mt_fail_memory(err);
     }
     memcpy(start, poses, n * sizeof *start);
-    MT_TRY(attempt(&w, poses, mem, report, stage, &done, err));
-    if (!done && problem->energy == MT_ENERGY_PHYSICAL) {
-        memcpy(poses, start, n * sizeof *start);
-        w.tau = 0.0;
-        MT_TRY(mt_newton_descend(&w, poses, mem, err));
-        MT_TRY(attempt(&w, poses, mem, report, stage, &done, err));
+    memcpy(turn, problem->data->turn, (size_t)w.sys->n_measures * sizeof *turn);
+    mt_newton_evaluate(&w, poses, false);
+    const bool closed = mt_newton_gap_of(&w) <= MT_STEP_DONE;
+    end.before = mt_energy_value(problem->data, poses, 0.0);
+    w.watch = problem->energy == MT_ENERGY_PHYSICAL && !problem->trim;
+    MT_TRY(attempt(&w, poses, mem, report, stage, &end.done, err));
+    if (problem->energy == MT_ENERGY_PHYSICAL) {
+        MT_TRY(go_on(&w, start, turn, poses, mem, report, stage, &end, err));
     }
-    return done ? MT_OK : refuse(&w, poses, mem, report, err);
+    return end.done ? MT_OK : refuse(&w, poses, closed, mem, report, err);
 }
 
 mt_status mt_newton_gap(const mt_newton_problem *problem, const mt_pose *poses, mt_arena *mem,

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Descent on the energy along the constraints: the reduced Hessian with the signs of its eigenvalues made positive gives a direction that leads downhill, the step is
- * halved until the energy, evaluated back on the constraints, is lower. Used where Newton does not converge from the drawing; it ends near a stable equilibrium, and Newton
- * finishes.
+ * halved until the energy, evaluated back on the constraints, is lower. It ends near a stable equilibrium, or in a saddle where symmetry leads into it; Newton finishes.
  */
 #include "mechanics/newton_priv.h"
 
@@ -10,8 +9,8 @@
 #include <string.h>
 
 enum { DESCENT_LIMIT = 400, HALVINGS = 30, RESTORE_LIMIT = 20 };
-/* Descent hands over to Newton at an unbalanced force of this many times the one that counts as done: well within its basin. */
-static const double HAND_OVER = 1e3;
+/* First step out of a saddle [model lengths, rad]. */
+static const double OUT = 0.1;
 
 /* Back to the constraints by least-norm steps. */
 static mt_status restore(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_err *err)
@@ -94,8 +93,33 @@ static mt_status search_line(mt_newton_work *w, mt_pose *poses, double *energy, 
         }
         length *= 0.5;
     }
-    if (!*lower) {
+    if (*lower) {
+        mt_newton_follow(w, poses);
+    } else {
         memcpy(poses, kept, n * sizeof *kept);
+    }
+    return MT_OK;
+}
+
+mt_status mt_newton_leave_saddle(mt_newton_work *w, mt_pose *poses, bool *lower, mt_arena *mem,
+                                 mt_err *err)
+{
+    const int nq = w->sys->nq;
+    double *const out = mt_arena_f64(mem, (size_t)nq, 1);
+    double energy = mt_energy_value(w->p->data, poses, w->tau);
+    *lower = false;
+    if (out == NULL) {
+        return mt_fail_memory(err);
+    }
+    const double size = mt_newton_scaled_norm(w, w->step);
+    mt_axpy(nq, size > 0.0 ? OUT / size : 0.0, w->step, out);
+    for (int side = 0; side < 2 && !*lower; side++) {
+        memcpy(w->step, out, (size_t)nq * sizeof *out);
+        w->moved = OUT;
+        MT_TRY(search_line(w, poses, &energy, lower, mem, err));
+        for (int j = 0; j < nq; j++) {
+            out[j] = -out[j];
+        }
     }
     return MT_OK;
 }
@@ -112,7 +136,7 @@ mt_status mt_newton_descend(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt
         double *inverse = NULL;
         MT_TRY(mt_newton_linearise(w, poses, mem, &e, &inverse, err));
         w->tau = tau; /* the force of the trimmed spring stands while the energy is compared */
-        lower = w->residual > HAND_OVER * MT_FORCE_DONE;
+        lower = w->residual > MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise);
         if (lower) { /* not lower: as low as rounding lets us see, Newton decides */
             MT_TRY(direction_of(w, &e, mem, err));
             MT_TRY(search_line(w, poses, &energy, &lower, mem, err));

@@ -108,6 +108,19 @@ double mt_newton_scaled_norm(const mt_newton_work *w, const double *dq)
     return s;
 }
 
+double mt_newton_distance(const mt_system *sys, const mt_pose *a, const mt_pose *b)
+{
+    double most = 0.0;
+    for (int i = 0; i < sys->n_bodies; i++) {
+        for (int k = 0; k < 9; k++) {
+            const double x = k < 3 ? fabs(creal(a[i].x[k] - b[i].x[k])) / sys->length_m : 0.0;
+            const double d = fmax(x, fabs(creal(a[i].r[k] - b[i].r[k])));
+            most = !(d <= most) ? d : most; /* NaN is kept */
+        }
+    }
+    return most;
+}
+
 double mt_newton_gap_of(const mt_newton_work *w)
 {
     double gap = 0.0;
@@ -193,6 +206,65 @@ mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena 
     return MT_OK;
 }
 
+void mt_newton_way(const mt_system *sys, const mt_pose *from, const mt_pose *to, double *way)
+{
+    for (int b = 0; b < sys->n_bodies; b++) {
+        double r[3][3]; /* R1 R0^T */
+        for (int i = 0; i < 3; i++) {
+            for (int k = 0; k < 3; k++) {
+                r[i][k] = 0.0;
+                for (int j = 0; j < 3; j++) {
+                    r[i][k] += creal(to[b].r[i + (3 * j)]) * creal(from[b].r[k + (3 * j)]);
+                }
+            }
+        }
+        double turn[3] = {r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]};
+        const double sine = mt_norm2(3, turn);
+        const double angle = atan2(sine, r[0][0] + r[1][1] + r[2][2] - 1.0);
+        for (int k = 0; k < 3; k++) {
+            const int *const dof = sys->bodies[b].dof;
+            if (dof[k] >= 0) {
+                way[dof[k]] = creal(to[b].x[k]) - creal(from[b].x[k]);
+            }
+            if (dof[3 + k] >= 0) {
+                way[dof[3 + k]] = sine > 0.0 ? angle / sine * turn[k] : 0.0;
+            }
+        }
+    }
+}
+
+/* Z has orthonormal columns in the elimination's coordinates. */
+mt_status mt_newton_falls(mt_newton_work *w, const mt_elimination *e, const double *way,
+                          bool *falls, mt_arena *mem, mt_err *err)
+{
+    const int n = e->n;
+    double *const k = mt_arena_f64(mem, (size_t)n, (size_t)n);
+    double *const values = mt_arena_f64(mem, (size_t)n, 1);
+    double *const scaled = mt_arena_f64(mem, (size_t)e->nq, 1);
+    double *const y = mt_arena_f64(mem, (size_t)n, 1);
+    double *const down = mt_arena_f64(mem, (size_t)n, 1);
+    *falls = false;
+    if (k == NULL || values == NULL || scaled == NULL || y == NULL || down == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_newton_reduce_hessian(w, e, k, n, mem, err));
+    MT_TRY(mt_eig_sym(n, k, values, true, mem, err));
+    for (int j = 0; j < e->nq; j++) {
+        scaled[j] = way[j] / (e->dc[j] * e->dc[j]);
+    }
+    mt_eliminate_project(e, scaled, y);
+    const double noise = NO_STIFFNESS * stiffness_scale(w, e);
+    for (int i = 0; i < n && values[i] < -noise; i++) {
+        const double *const v = k + ((ptrdiff_t)i * n);
+        mt_axpy(n, -mt_dot(n, v, y), v, down);
+    }
+    *falls = mt_norm2(n, down) > MT_DRAWN * w->sys->length_m;
+    if (*falls) {
+        mt_eliminate_expand(e, down, w->step);
+    }
+    return MT_OK;
+}
+
 /* Multipliers, then gradient, Hessian and residual with them. */
 static mt_status balance(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
                          mt_elimination *e, mt_err *err)
@@ -252,6 +324,13 @@ mt_status mt_newton_linearise(mt_newton_work *w, const mt_pose *poses, mt_arena 
         w->tau += eta[e->n];
     }
     return MT_OK;
+}
+
+void mt_newton_follow(const mt_newton_work *w, const mt_pose *poses)
+{
+    if (w->p->energy == MT_ENERGY_PHYSICAL) {
+        mt_data_turns(w->p->data, poses);
+    }
 }
 
 void mt_newton_take_step(mt_newton_work *w, mt_pose *poses, double limit)

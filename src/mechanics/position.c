@@ -95,6 +95,13 @@ static mt_status anchor_loose_freedoms(mt_state *p, mt_data *data, mt_arena *mem
     if (other.pose == NULL) {
         return mt_fail_memory(err);
     }
+    const size_t turns = (size_t)p->sys->n_measures;
+    double *const turn = mt_arena_f64(mem, turns, 1);
+    if (turn == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(turn, data->turn, turns * sizeof *turn);
+    memcpy(data->turn, p->driven_turn, turns * sizeof *turn);
     memcpy(other.pose, p->driven_pose, n * sizeof *other.pose);
     mt_status rc = mt_newton_solve(&problem, other.pose, mem, &other, &other.driven, NULL);
     if (rc == MT_OK) {
@@ -102,8 +109,49 @@ static mt_status anchor_loose_freedoms(mt_state *p, mt_data *data, mt_arena *mem
     }
     if (rc == MT_OK) {
         *p = other;
+    } else {
+        memcpy(data->turn, turn, turns * sizeof *turn);
     }
     return rc == MT_E_MEMORY ? mt_fail_memory(err) : MT_OK;
+}
+
+/* Angle of R0^T R: sin from its skew part, cos from its trace. */
+static double turn_between(const mt_pose *from, const mt_pose *to)
+{
+    double r[3][3];
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            r[i][k] = 0.0;
+            for (int j = 0; j < 3; j++) {
+                r[i][k] += creal(from->r[j + (3 * i)]) * creal(to->r[j + (3 * k)]);
+            }
+        }
+    }
+    const double axis[3] = {r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]};
+    return atan2(mt_norm2(3, axis), r[0][0] + r[1][1] + r[2][2] - 1.0);
+}
+
+static void measure_motion(mt_state *p)
+{
+    const mt_pose *const from = p->sys->driven ? p->driven_pose : p->drawn;
+    p->moved_body = -1;
+    p->turned_body = -1;
+    for (int i = 0; i < p->sys->n_bodies; i++) {
+        double way[3];
+        for (int k = 0; k < 3; k++) {
+            way[k] = creal(p->pose[i].x[k]) - creal(from[i].x[k]);
+        }
+        const double moved = mt_norm2(3, way);
+        const double turned = turn_between(&from[i], &p->pose[i]);
+        if (moved > p->moved_m) {
+            p->moved_m = moved;
+            p->moved_body = i;
+        }
+        if (turned > p->turned_rad) {
+            p->turned_rad = turned;
+            p->turned_body = i;
+        }
+    }
 }
 
 mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_drive_start *start,
@@ -119,9 +167,10 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_drive_
     out->d_reference = mt_arena_f64(mem, nq, 1);
     out->d_pose = mt_arena_f64(mem, nq, 1);
     out->d_lambda = mt_arena_f64(mem, (size_t)sys->n_constraints, 1);
+    out->driven_turn = mt_arena_f64(mem, (size_t)sys->n_measures, 1);
     if (out->drawn == NULL || out->reference == NULL || out->driven_pose == NULL ||
         out->pose == NULL || out->d_reference == NULL || out->d_pose == NULL ||
-        out->d_lambda == NULL) {
+        out->d_lambda == NULL || out->driven_turn == NULL) {
         return mt_fail_memory(err);
     }
     memset(data->turn, 0, (size_t)sys->n_measures * sizeof *data->turn);
@@ -133,6 +182,7 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_drive_
     if (sys->driven) {
         MT_TRY(mt_drive_solve(out, data, start, mem, err));
         memcpy(out->driven_pose, out->pose, n * sizeof *out->pose);
+        memcpy(out->driven_turn, data->turn, (size_t)sys->n_measures * sizeof *data->turn);
     }
     if (sys->loaded || sys->driven) {
         MT_TRY(balance(out, data, mem, err));
@@ -140,6 +190,7 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_drive_
     if (sys->driven && out->equilibrium.null_freedoms > 0) {
         MT_TRY(anchor_loose_freedoms(out, data, mem, err));
     }
+    measure_motion(out);
     if (sys->drawn_closed && !sys->driven && !sys->loaded) {
         return MT_OK; /* nothing was moved: no gap */
     }

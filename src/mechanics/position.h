@@ -39,6 +39,7 @@ typedef struct mt_state {
     mt_pose *drawn;
     mt_pose *reference;
     mt_pose *driven_pose; /* after the driven stage */
+    double *driven_turn;  /* [measures] mt_data.turn there */
     mt_pose *pose;        /* where the system is linearised */
     mt_stage closure;
     mt_stage driven;
@@ -49,6 +50,11 @@ typedef struct mt_state {
     double
         residual; /* equilibrium: largest unbalanced force / largest force; 0 where skipped */
     double gap_m; /* largest violation of a constraint at the final position */
+    /* how far the bodies went from the drawing, or from where the drive brought them, to `pose` */
+    double moved_m;    /* furthest centre */
+    double turned_rad; /* furthest turn, at most half a turn */
+    int moved_body;    /* whose centre and whose turn; -1: none */
+    int turned_body;
     /* derivatives with respect to one input (mt_position_tangent) */
     double *d_reference; /* [nq] */
     double *d_pose;      /* [nq] */

@@ -113,6 +113,34 @@ static mt_status say_redundant(mt_linear *lin, mt_doubt_list *out, mt_err *err)
     return MT_OK;
 }
 
+/* One degree, one per cent: more than what a drawing leaves open. */
+static const double MUCH_RAD = 0.017453292519943295;
+static const double MUCH_OF_LENGTH = 0.01;
+
+static void say_motion(const mt_linear *lin, mt_doubt_list *out)
+{
+    const mt_state *const p = &lin->position;
+    const mt_system *const sys = lin->sys;
+    const char *const from = sys->driven ? "where it is driven to" : "the drawing";
+    const bool turns = p->turned_body >= 0 && p->turned_rad > MUCH_RAD;
+    const bool moves = p->moved_body >= 0 && p->moved_m > MUCH_OF_LENGTH * sys->length_m;
+    if (!p->equilibrium.active) {
+        return;
+    }
+    if (turns) {
+        (void)mt_doubt_add(
+            out, MT_LEVEL_FACT, "settles",
+            "it settles away from %s: \"%s\" turns by %.3g degrees, \"%s\" moves by "
+            "%.3g m",
+            from, sys->bodies[p->turned_body].name, p->turned_rad / MUCH_RAD,
+            sys->bodies[p->moved_body < 0 ? p->turned_body : p->moved_body].name, p->moved_m);
+    } else if (moves) {
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "settles",
+                           "it settles away from %s: \"%s\" moves by %.3g m", from,
+                           sys->bodies[p->moved_body].name, p->moved_m);
+    }
+}
+
 /* The linearisation holds within a part of the distance only. */
 static mt_status say_dead_centre(mt_linear *lin, mt_doubt_list *out, mt_err *err)
 {
@@ -130,6 +158,7 @@ static mt_status say_dead_centre(mt_linear *lin, mt_doubt_list *out, mt_err *err
 static mt_status say_freedoms(const mt_analysis *a, mt_doubt_list *out, mt_err *err)
 {
     const int unstable = a->modes.n_unstable + a->modes.n_unstable_condensed;
+    say_motion(a->lin, out);
     say_free(a, out);
     if (unstable > 0) {
         char name[NAME_SIZE];
