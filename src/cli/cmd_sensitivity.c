@@ -17,6 +17,36 @@ static const char *name_of(const mt_survey *v, int k)
     return v->s->model->parameters[v->parameter[k]].name.s;
 }
 
+static const char *why_not(const mt_survey *v, int k)
+{
+    return v->independence[k].opens
+               ? "could not stay closed at any other value"
+               : "are redundant at this value only and block a motion at any other";
+}
+
+static bool has_none(const mt_survey *v, int k)
+{
+    return v->independence[k].opens || v->independence[k].blocks;
+}
+
+static void json_no_derivatives(mt_json_writer *w, const mt_survey *v)
+{
+    mt_json_open(w, "no_derivatives", '[');
+    for (int k = 0; k < v->n; k++) {
+        if (has_none(v, k)) {
+            mt_json_open(w, NULL, '{');
+            mt_json_put_string(w, "parameter", name_of(v, k));
+            mt_json_put_string(w, "reason",
+                               v->independence[k].opens ? "opens_joints" : "blocks_motion");
+            mt_json_open_flat(w, "joints", '[');
+            mt_cli_json_names(w, v->independence[k].joints);
+            mt_json_close(w);
+            mt_json_close(w);
+        }
+    }
+    mt_json_close(w);
+}
+
 static void write_json(mt_json_writer *w, const mt_survey *v)
 {
     mt_json_open(w, NULL, '{');
@@ -41,6 +71,7 @@ static void write_json(mt_json_writer *w, const mt_survey *v)
         mt_json_close(w);
     }
     mt_json_close(w);
+    json_no_derivatives(w, v);
     mt_json_close(w);
 }
 
@@ -107,6 +138,12 @@ static void write_text(mt_text *out, const mt_survey *v)
                     "  * Repeated modes: none of them has a derivative of its own; these are "
                     "the values along\n    the directions into which each parameter splits "
                     "them, lowest first.\n");
+    }
+    for (int k = 0; k < v->n; k++) {
+        if (has_none(v, k)) {
+            mt_text_addf(out, "  No derivative by %s: joints %s %s.\n", name_of(v, k),
+                         v->independence[k].joints, why_not(v, k));
+        }
     }
     if (overridden) {
         mt_text_add(out,

@@ -2,6 +2,8 @@
 /*
  *     dlambda/dp = y^T (dK - lambda dM) y,   f = sqrt(lambda) / (2 pi),   df/dp = (dlambda/dp) / (8 pi^2 f).
  *
+ * Where joints are redundant at the present value of a parameter only, frequencies jump there: no derivative (mt_linear_independence).
+ *
  * A parameter that is made of others ("EI": "E*I") must not be an input together with them, or it would no longer follow: it gets an analysis of its own.
  */
 #include "cli/survey.h"
@@ -152,6 +154,24 @@ static mt_status differentiate(mt_survey *v, mt_analysis *a, int p, int k, mt_er
     return MT_OK;
 }
 
+/* No derivative where the position has none; else from the first mode on that is blocked: those above it are counted anew. */
+static mt_status leave_out(mt_survey *v, mt_analysis *a, int p, int k, mt_err *err)
+{
+    double *const out = v->per_unit + ((ptrdiff_t)k * v->room);
+    MT_TRY(mt_linear_independence(a->lin, p, &v->independence[k], err));
+    bool gone = v->independence[k].opens;
+    for (int i = 0; i < v->modes && (gone || v->independence[k].blocks); i++) {
+        int size = 1;
+        const int first = mt_modal_cluster(&a->modes, v->position[i], &size);
+        for (int j = first; j < first + size && !gone; j++) {
+            MT_TRY(mt_linear_blocked(a->lin, p, 1, a->modes.y + ((size_t)j * (size_t)a->lin->n),
+                                     &gone, err));
+        }
+        out[i] = gone ? nan("") : out[i];
+    }
+    return MT_OK;
+}
+
 /* One analysis with the inputs of --set and the parameters entry[n] of the survey. */
 static mt_status analyse(mt_survey *v, int n, const int *entry, int wanted, mt_err *err)
 {
@@ -187,6 +207,7 @@ static mt_status analyse(mt_survey *v, int n, const int *entry, int wanted, mt_e
     rc = rc == MT_OK ? choose_modes(v, &a->modes, wanted, err) : rc;
     for (int i = 0; rc == MT_OK && i < n; i++) {
         rc = differentiate(v, a, slot[i], entry[i], err);
+        rc = rc == MT_OK ? leave_out(v, a, slot[i], entry[i], err) : rc;
     }
     mt_analysis_delete(a);
     return rc;
@@ -198,7 +219,8 @@ static mt_status find_values(mt_survey *v, mt_err *err)
     mt_analysis *a = NULL;
     v->value = mt_arena_f64(&v->mem, (size_t)v->n, 1);
     v->overridden = mt_arena_alloc(&v->mem, (size_t)v->n, sizeof *v->overridden);
-    if (v->value == NULL || v->overridden == NULL) {
+    v->independence = mt_arena_alloc(&v->mem, (size_t)v->n, sizeof *v->independence);
+    if (v->independence == NULL || v->value == NULL || v->overridden == NULL) {
         return mt_fail_memory(err);
     }
     MT_TRY(mt_subject_analyse(v->s, v->c, &a, err));

@@ -22,7 +22,9 @@ typedef struct mt_survey {
     double *hz;       /* [modes] */
     bool *repeated;   /* [modes] */
     int room;         /* leading dimension of per_unit */
-    double *per_unit; /* room x n: Hz per unit of the parameter */
+    double
+        *per_unit; /* room x n: Hz per unit of the parameter; NaN where it has no derivative */
+    mt_independence *independence; /* [n] why not */
 } mt_survey;
 
 /* `parameters`: "A,B", or NULL for all that are not made of others. v zeroed before; mt_survey_free in any case. */

@@ -63,6 +63,21 @@ void mt_linear_delete(mt_linear *lin);
 /* Evaluate at inputs[n_inputs]. Fails as mt_position_solve, MT_E_DEAD_CENTRE, MT_E_DOMAIN (names the number by its address in the text). No heap after the first calls. */
 mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradient,
                            mt_err *err);
+/*
+ * Equations of joints that are redundant here need not be so at other values of input p. With w a left null vector of A, a dot the derivative along p and the motion that it causes,
+ *     w^T c. != 0         the joints do not stay closed: the position has no derivative
+ *     w^T A. Z y != 0     the motion y, free here, is blocked at any other value of p: so is the number of freedoms, and the mode y has no derivative.
+ */
+typedef struct mt_independence {
+    bool opens;                     /* the first */
+    bool blocks;                    /* the second, for some motion */
+    char joints[MT_SINGULAR_NAMES]; /* whose equations they are */
+} mt_independence;
+/* After an update with gradients. Costs nothing where no equation is redundant or p moves nothing. */
+mt_status mt_linear_independence(mt_linear *lin, int p, mt_independence *out, mt_err *err);
+/* blocked[cols]: which of the motions y (n x cols) are. */
+mt_status mt_linear_blocked(mt_linear *lin, int p, int cols, const double *y, bool *blocked,
+                            mt_err *err);
 /* phi = Z y: y n x cols, phi nq x cols. */
 void mt_linear_expand(const mt_linear *lin, int cols, const double *y, double *phi);
 /* dky = (dK_r/dp) y and dmy = (dM_r/dp) y for input p, with all that depends on it (geometry, constraints, equilibrium); n x cols. dm_zero (may be NULL): dmy is zero.

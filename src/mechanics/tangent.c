@@ -47,6 +47,23 @@ static mt_status tangent_rows(mt_linear *lin, const mt_pose *poses, mt_linear_ta
     return MT_OK;
 }
 
+/* c' of the input itself and of the motion d that it causes: c' = (c' - A d) + A d. */
+static void closing(const mt_linear *lin, const mt_lagrangian *l, mt_linear_tangent *t)
+{
+    t->terms = 0.0;
+    for (ptrdiff_t i = 0; i < lin->m; i++) {
+        double moved = 0.0;
+        double sizes = 0.0;
+        for (ptrdiff_t j = 0; j < lin->sys->nq; j++) {
+            const double term = lin->a[i + (j * lin->m)] * lin->position.d_pose[j];
+            moved += term;
+            sizes += fabs(term);
+        }
+        t->c[i] = cx_derivative(l->c[i]);
+        t->terms = fmax(t->terms, lin->e.dr[i] * (sizes + fabs(t->c[i] - moved)));
+    }
+}
+
 static mt_status tangent_constraints(mt_linear *lin, const mt_pose *poses, mt_linear_tangent *t,
                                      mt_err *err)
 {
@@ -59,8 +76,9 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_pose *poses, mt_li
     MT_TRY(mt_lagrangian_init(&l, sys, loaded, &lin->scratch, err));
     mt_cx *const lambda = mt_arena_alloc(&lin->scratch, (size_t)all, sizeof *lambda);
     t->a = mt_arena_f64(&lin->geometry, (size_t)lin->m, (size_t)nq);
+    t->c = mt_arena_f64(&lin->geometry, (size_t)lin->m, 1);
     t->kg = loaded ? mt_arena_f64(&lin->geometry, (size_t)nq, (size_t)nq) : NULL;
-    if (lambda == NULL || t->a == NULL || (loaded && t->kg == NULL)) {
+    if (lambda == NULL || t->a == NULL || t->c == NULL || (loaded && t->kg == NULL)) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < all && loaded; i++) {
@@ -76,6 +94,7 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_pose *poses, mt_li
             t->a[i + (j * lin->m)] = cx_derivative(l.a[i + (j * all)]);
         }
     }
+    closing(lin, &l, t);
     t->moves = t->moves || !all_zero((size_t)lin->m * (size_t)nq, t->a);
     for (ptrdiff_t i = 0; loaded && i < nq * nq; i++) {
         t->kg[i] = cx_derivative(l.h[i]);

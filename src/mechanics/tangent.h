@@ -10,7 +10,10 @@ struct mt_linear_tangent {
     double *rows[MT_TERM_KINDS]; /* derivative of lin->rows */
     bool *still[MT_TERM_KINDS];  /* which of them are 0 */
     double *a;                   /* m x nq, derivative of the constraint Jacobian */
-    double *kg;                  /* nq x nq; NULL where nothing loads */
+    double *
+        c; /* [m] derivative of the constraints along the motion of the position: 0 where it stays closed */
+    double terms; /* largest sum of the terms of an entry of c, in rows of unit length */
+    double *kg;   /* nq x nq; NULL where nothing loads */
 };
 
 /* Fill lin->tangent for all inputs. */

@@ -228,6 +228,9 @@ mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err)
         mt_study_check_doubts(&c);
         mt_study_check_bounds(&c);
     }
+    if (diags->errors == 0 && !c.out_of_memory) {
+        mt_study_check_redundant(&c);
+    }
     if (c.out_of_memory || diags->out_of_memory) {
         return mt_fail_memory(err);
     }

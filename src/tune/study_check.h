@@ -23,6 +23,7 @@ void mt_study_check_published(mt_study_check *c);  /* study_published.c */
 void mt_study_check_trade(mt_study_check *c);      /* study_trade.c; last of the checks */
 void mt_study_fill_counted(mt_study_check *c);     /* study_counted.c; after all of them */
 void mt_study_check_bounds(mt_study_check *c);     /* study_bounds.c; where nothing is wrong */
+void mt_study_check_redundant(mt_study_check *c);  /* study_redundant.c; after them, likewise */
 void mt_study_check_doubts(
     mt_study_check *c); /* study_doubts.c; last, where nothing is wrong */
 

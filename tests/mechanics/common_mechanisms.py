@@ -126,8 +126,11 @@ class MechanismTest(unittest.TestCase):
     def run_on(self, model, command, *args):
         path = Path(self._folder.name) / "model.json"
         path.write_text(json.dumps(model), encoding="utf-8")
-        return subprocess.run([PROGRAM, command, str(path), *args], capture_output=True, encoding="utf-8", timeout=600,
-                              check=False)
+        return self.run_program(command, str(path), *args)
+
+    @staticmethod
+    def run_program(*args):
+        return subprocess.run([PROGRAM, *args], capture_output=True, encoding="utf-8", timeout=600, check=False)
 
     def answer(self, model, command, *args, code=0):
         done = self.run_on(model, command, "--format", "json", *args)

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Do redundant equations stay redundant as an input moves? The derivatives of rows of unit length are judged against the sum of their own terms: what should vanish is rounding of them, also
+ * through the position's derivative; what does not is of their size.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "mechanics/linear.h"
+#include "mechanics/tangent.h"
+
+static const double VANISHES = 1e-8;
+
+/* row[nq] = sum_j w_j dr_j A._j; returns the sum of the lengths of its terms in scaled coordinates. */
+static double combine(const mt_linear *lin, const mt_linear_tangent *t, const double *w,
+                      double *row)
+{
+    const mt_elimination *const e = &lin->e;
+    double terms = 0.0;
+    memset(row, 0, (size_t)e->nq * sizeof *row);
+    for (int j = 0; j < e->m; j++) {
+        const double factor = w[j] * e->dr[j];
+        double squares = 0.0;
+        for (ptrdiff_t k = 0; k < e->nq && factor != 0.0; k++) {
+            const double entry = factor * t->a[j + (k * e->m)];
+            row[k] += entry;
+            squares += entry * e->dc[k] * entry * e->dc[k];
+        }
+        terms += sqrt(squares);
+    }
+    return terms;
+}
+
+typedef struct left {
+    double *w;   /* [m] */
+    double *row; /* [nq] */
+    double *out; /* [n] */
+} left;
+
+static mt_status left_init(left *l, const mt_linear *lin, mt_arena *mem, mt_err *err)
+{
+    l->w = mt_arena_f64(mem, (size_t)lin->m, 1);
+    l->row = mt_arena_f64(mem, (size_t)lin->sys->nq, 1);
+    l->out = mt_arena_f64(mem, (size_t)lin->n, 1);
+    return l->w == NULL || l->row == NULL || l->out == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+static bool can_change(const mt_linear *lin, int p)
+{
+    return mt_linear_redundant(lin) > 0 && lin->tangent != NULL && lin->tangent[p].moves;
+}
+
+static bool opens(const mt_linear *lin, const mt_linear_tangent *t, const double *w)
+{
+    for (int i = 0; i < lin->m; i++) {
+        const double part = fabs(w[i] * lin->e.dr[i] * t->c[i]);
+        if (part > VANISHES * t->terms) {
+            return true;
+        }
+    }
+    return false;
+}
+
+mt_status mt_linear_independence(mt_linear *lin, int p, mt_independence *out, mt_err *err)
+{
+    *out = (mt_independence){.opens = false};
+    if (!can_change(lin, p)) {
+        return MT_OK;
+    }
+    const mt_linear_tangent *const t = &lin->tangent[p];
+    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    left l;
+    MT_TRY(left_init(&l, lin, &lin->scratch, err));
+    for (int k = 0; k < mt_linear_redundant(lin) && !out->opens; k++) {
+        MT_TRY(mt_eliminate_left_null(&lin->e, k, l.w, &lin->scratch, err));
+        const double terms = combine(lin, t, l.w, l.row);
+        mt_eliminate_project(&lin->e, l.row, l.out);
+        const bool blocks = mt_norm2(lin->n, l.out) > VANISHES * terms;
+        out->opens = opens(lin, t, l.w);
+        if (out->opens || (blocks && !out->blocks)) {
+            mt_joint_names(lin->sys, lin->m, l.w, out->joints, sizeof out->joints);
+        }
+        out->blocks = out->blocks || blocks;
+    }
+    mt_arena_rewind(&lin->scratch, mark);
+    return MT_OK;
+}
+
+mt_status mt_linear_blocked(mt_linear *lin, int p, int cols, const double *y, bool *blocked,
+                            mt_err *err)
+{
+    memset(blocked, 0, (size_t)cols * sizeof *blocked);
+    if (!can_change(lin, p)) {
+        return MT_OK;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    left l;
+    MT_TRY(left_init(&l, lin, &lin->scratch, err));
+    for (int k = 0; k < mt_linear_redundant(lin); k++) {
+        MT_TRY(mt_eliminate_left_null(&lin->e, k, l.w, &lin->scratch, err));
+        const double terms = combine(lin, &lin->tangent[p], l.w, l.row);
+        mt_eliminate_project(&lin->e, l.row, l.out);
+        for (int c = 0; c < cols; c++) {
+            const double *const motion = y + ((ptrdiff_t)c * lin->n);
+            const double part = fabs(mt_dot(lin->n, l.out, motion));
+            blocked[c] = blocked[c] || part > VANISHES * terms * mt_norm2(lin->n, motion);
+        }
+    }
+    mt_arena_rewind(&lin->scratch, mark);
+    return MT_OK;
+}
