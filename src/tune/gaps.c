@@ -182,7 +182,7 @@ static mt_status search_round(const job *j, slot *s, int k, int round, const dou
                    : p->n_aims > 1 ? search_in_order(p, nlp.hint, s, why)
                                    : mt_nlp_solve(&nlp, &options, &s->mem, &s->found, why);
     if (rc == MT_OK && p->n_aims == 1) {
-        rc = mt_search_repeated(p, &s->mem, &s->found, why);
+        rc = mt_search_repeated(p, options.max_evals, &s->mem, &s->found, why);
     }
     if (rc == MT_OK) {
         judge_clearance(p, &s->found);

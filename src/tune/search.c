@@ -8,6 +8,9 @@
 static const double SAME = 1e-3;
 /* Values of a held objective that differ by less, relatively, rank by the next objective. */
 static const double EQUAL = 4e-6;
+/* KKT residuals of local optima, and of what is none. */
+static const double SHOWN = 1e-6;
+static const double NOT_SHOWN = 1e-4;
 /* Evaluations of one stage from one design where the study sets no budget. */
 enum { STAGE_EVALUATIONS = 2000 };
 
@@ -48,7 +51,9 @@ static mt_status later_stage(mt_problem *p, const double *from, long budget, mt_
     opt.starts = 1;
     opt.max_evals = budget;
     nlp.origin = from;
-    return mt_nlp_solve(&nlp, &opt, mem, out, err);
+    MT_TRY(mt_nlp_solve(&nlp, &opt, mem, out, err));
+    return mt_search_repeated(p, p->study->search.max_evaluations > 0 ? budget : 0, mem, out,
+                              err);
 }
 
 /* Objectives of one design: f[n_aims]. */
@@ -140,6 +145,19 @@ bool mt_search_same(int n, const double *a, const double *b)
     return most <= SAME;
 }
 
+/* Behind a design that is shown to be a local optimum those that are not are ends of failed searches. */
+static void drop_failed(mt_nlp_result *out)
+{
+    int kept = 0;
+    for (int i = 0; i < out->n_solutions; i++) {
+        if (i == 0 || !(out->solutions[0].kkt <= SHOWN) ||
+            !(out->solutions[i].kkt > NOT_SHOWN)) {
+            out->solutions[kept++] = out->solutions[i];
+        }
+    }
+    out->n_solutions = kept;
+}
+
 /* Drop what has become one, then rank (insertion, stable). */
 static void rank(stages *s)
 {
@@ -173,6 +191,7 @@ static void rank(stages *s)
         }
     }
     s->out->n_solutions = kept;
+    drop_failed(s->out);
 }
 
 static mt_status later_stages(stages *s, int *stage, mt_err *err)
@@ -218,7 +237,7 @@ mt_status mt_search_designs(mt_problem *const *problems, int n_workers, mt_arena
         *why = own;
         return MT_OK;
     }
-    MT_TRY(mt_search_repeated(p, mem, out, err));
+    MT_TRY(mt_search_repeated(p, p->study->search.max_evaluations, mem, out, err));
     if (p->n_aims == 1 || out->compromise || out->n_solutions == 0 ||
         out->stop != MT_STOP_DONE) {
         return mt_search_join_continua(p, mem, out, err);

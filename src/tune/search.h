@@ -19,8 +19,9 @@ mt_status mt_search_designs(mt_problem *const *problems, int n_workers, mt_arena
 bool mt_search_same(int n, const double *a, const double *b);
 
 /* search_repeated.c: improve ends where modes repeat, judge whether they are optima, rank, and drop what is one and what is not shown to be optimal behind a
- * better design. In the present stage; solutions and their multipliers in place. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_USAGE. */
-mt_status mt_search_repeated(mt_problem *p, mt_arena *mem, mt_nlp_result *out, mt_err *err);
+ * better design. In the present stage; solutions and their multipliers in place. out->evals may grow to `most` (0: some thousands more). Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_USAGE. */
+mt_status mt_search_repeated(mt_problem *p, long most, mt_arena *mem, mt_nlp_result *out,
+                             mt_err *err);
 
 /* search_continuum.c: of solutions between which all designs are feasible and have their objectives, one is kept (solution->continuum); n_found and n_once likewise. At most 3 evaluations
  * for each pair with equal objectives. In place; compromises stay as they are. Fails: MT_E_MEMORY. */

@@ -10,6 +10,8 @@
 #include "tune/repeated.h"
 #include "tune/search.h"
 
+/* Evaluations kept for the values of what a solve finds, and for the last judgement. */
+enum { RESERVED = 2 };
 enum { ROUNDS = 10, SOLVE_EVALUATIONS = 600, STEPS = 5 };
 /* Modes within this of a limit are tried as one cluster, the widest first. */
 static const double NEAR[] = {2e-2, 3e-3, 3e-4};
@@ -42,6 +44,12 @@ typedef struct refine {
         gain; /* a design counts as better from this gain on, relative; below 0: it may lose so much */
 } refine;
 
+/* Would `more` evaluations be too many? */
+static bool spent(const refine *w, long more)
+{
+    return w->evals + more > w->most;
+}
+
 static double violation(const mt_problem *p, const mt_nlp_values *v)
 {
     double most = 0.0;
@@ -66,7 +74,7 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
     mt_nlp_result found = {0};
     mt_nlp_values v;
     mt_err own = {0};
-    const long left = w->most - w->evals;
+    const long left = w->most - w->evals - RESERVED;
     *better = false;
     if (lower == NULL || upper == NULL) {
         return mt_fail_memory(err);
@@ -110,6 +118,9 @@ static mt_status keep_together(refine *w, double near, double *t, double *f, boo
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
     mt_repeated m;
     *better = false;
+    if (spent(w, 1 + RESERVED)) {
+        return MT_OK;
+    }
     MT_TRY(mt_repeated_find(w->p, t, near, w->mem, &m, err));
     w->evals++;
     if (m.n_blocks > 0 && m.n_rows > 0) {
@@ -311,6 +322,7 @@ static mt_status settle(refine *w, double near, double *kkt, double *z, mt_nlp_s
     const mt_status rc = keep_together(w, near, t, &f, &found, err);
     w->gain = GAIN;
     MT_TRY(rc);
+    found = found && !spent(w, RESERVED);
     if (found) {
         MT_TRY(judge(w, t, &after, z_after, NULL, err));
     }
@@ -325,6 +337,9 @@ static mt_status settle(refine *w, double near, double *kkt, double *z, mt_nlp_s
 
 static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
 {
+    if (spent(w, 1)) {
+        return MT_OK;
+    }
     mt_problem *const p = w->p;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
     double *const z = mt_arena_f64(w->mem, (size_t)p->n_t, 1);
@@ -332,7 +347,8 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
     if (z == NULL) {
         return mt_fail_memory(err);
     }
-    for (int round = 0; round < ROUNDS && w->stop == MT_STOP_DONE; round++) {
+    for (int round = 0; round < ROUNDS && w->stop == MT_STOP_DONE && !spent(w, RESERVED);
+         round++) {
         bool better = false;
         MT_TRY(judge(w, s->t, &kkt, z, NULL, err));
         if (kkt <= STATIONARY) {
@@ -388,14 +404,14 @@ static void rank(const mt_problem *p, mt_nlp_result *out)
     out->n_solutions = kept;
 }
 
-mt_status mt_search_repeated(mt_problem *p, mt_arena *mem, mt_nlp_result *out, mt_err *err)
+mt_status mt_search_repeated(mt_problem *p, long most, mt_arena *mem, mt_nlp_result *out,
+                             mt_err *err)
 {
-    const long budget = p->study->search.max_evaluations;
     refine w = {.p = p, .mem = mem, .evals = out->evals, .stop = MT_STOP_DONE, .gain = GAIN};
     bool any = false;
     const bool smooth = out->compromise || out->stop == MT_STOP_USER ||
                         p->aims[p->stage].type == MT_OBJECTIVE_MISFIT;
-    w.most = budget > 0 ? budget : out->evals + (long)ROUNDS * SOLVE_EVALUATIONS * 8;
+    w.most = most > 0 ? most : out->evals + (long)ROUNDS * SOLVE_EVALUATIONS * 8;
     for (int i = 0; i < out->n_solutions && !smooth; i++) {
         if (out->solutions[i].kkt > STATIONARY && out->solutions[i].feasible) {
             any = true;

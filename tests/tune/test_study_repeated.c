@@ -199,6 +199,24 @@ static void repeated__each_value_of_a_catalogue_has_one_design(mt_test *t)
     study_free(&c);
 }
 
+/* Every mixture of both crosses has the same sum of springs: the second objective chooses among them, and what it leaves where the search stalls is no design. */
+static void repeated__a_second_objective_comes_to_one_design(mt_test *t)
+{
+    study_case c;
+    if (study_solve(
+            t, CROSSES,
+            "'variables': [" VARIABLE("a") "," VARIABLE("b") "," VARIABLE("c") "," VARIABLE(
+                "d") "]," GOAL "'objective': [{'minimise': 'ka + kb + kc + kd'},"
+                     " {'minimise': '1.2*ka + kb + 1.1*kc + 1.3*kd'}],"
+                     "'recommendations': 9",
+            &c)) {
+        shown(t, &c);
+        CHECK_NEAR(t, study_value(&c, 1, "ka"), 0.99, 1e-5);
+        CHECK_NEAR(t, study_value(&c, 1, "kc"), 0.01, 1e-5);
+    }
+    study_free(&c);
+}
+
 MT_TEST_MAIN(MT_TEST(repeated__three_springs_come_to_the_one_design),
              MT_TEST(repeated__the_cheaper_cross_wins),
              MT_TEST(repeated__a_band_is_kept_by_a_cluster),
@@ -206,4 +224,5 @@ MT_TEST_MAIN(MT_TEST(repeated__three_springs_come_to_the_one_design),
              MT_TEST(repeated__the_worst_corner_is_a_clusters),
              MT_TEST(repeated__a_target_is_kept_by_the_cluster_beyond_it),
              MT_TEST(repeated__two_targets_are_three_equations),
+             MT_TEST(repeated__a_second_objective_comes_to_one_design),
              MT_TEST(repeated__each_value_of_a_catalogue_has_one_design))
