@@ -143,15 +143,16 @@ int mt_build_body(mt_builder *b, const char *name, const mt_node centre[3], bool
 
 mt_measure_def mt_measure_def_default(mt_measure_kind kind, int body_a, int body_b)
 {
-    const mt_measure_def def = {
+    mt_measure_def def = {
         .kind = kind,
         .component = 0,
         .body = {body_a, body_b},
         .point = { -1,     -1     },
         .dir = { -1,     -1,          -1},
-        .plane = -1,
-        .weight = MT_NO_NODE
     };
+    for (int i = 0; i < MT_BEAM_NUMBERS; i++) {
+        def.beam[i] = MT_NO_NODE;
+    }
     return def;
 }
 
@@ -301,10 +302,10 @@ mt_status mt_build_bodies(mt_builder *b)
         mt_inertia_def def = {
             .kind = MT_INERTIA_TRANSLATION,
             .coefficient = mass,
-            .body = {at, at},
-            .point = { -1, -1 },
-            .dir = { -1, -1,  -1},
-            .length = MT_NO_NODE,
+            .body = {        at,         at},
+            .point = {        -1,         -1},
+            .dir = {        -1,         -1,-1},
+            .shape = {MT_NO_NODE, MT_NO_NODE          },
             .item = item
         };
         mt_build_inertia(b, &def);

@@ -3,13 +3,8 @@
  * Links. Lumped: n rigid elements of length l_i, hinged, with a torsional spring in each hinge (paper, Fig. 4); default stiffness EI over the distance of the two
  * element centres (EI/L_e for equal elements).
  *
- * Beam element between nodes A and B a distance l apart, e1 along it: with the deformation of B measured in A's frame, d = R_A^T (x_B - x_A) and the rotation
- * vector phi = log(R_A^T R_B), the cantilever's tip stiffness splits into independent generalised springs
- *     V = 1/2 EA/l (d1 - l)^2 + 1/2 GJ/l phi1^2
- *       + 1/2 12 EI3/l^3 (d2 - l/2 phi3)^2 + 1/2 EI3/l phi3^2      (bending in the plane e1 e2)
- *       + 1/2 12 EI2/l^3 (d3 + l/2 phi2)^2 + 1/2 EI2/l phi2^2      (bending in the plane e1 e3).
- * Linearised, this is the Euler-Bernoulli element stiffness exactly (both have rank 6 and the rigid-body motions as null space), and V does not change under
- * any rigid-body motion, however large.
+ * Beam element: the springs of its six generalised strains (measure_beam.c), EA/l, GJ/l, EI/l and 3 EI/l; about the straight element that is the Euler-Bernoulli stiffness exactly, and its
+ * springs' forces make the consistent geometric stiffness.
  */
 #include "mechanics/build.h"
 
@@ -198,10 +193,10 @@ static mt_inertia_def inertia_default(mt_inertia_kind kind, int body_a, int body
     const mt_inertia_def def = {
         .kind = kind,
         .coefficient = coefficient,
-        .body = {body_a, body_b},
-        .point = { -1,     -1     },
-        .dir = { -1,     -1,          -1},
-        .length = MT_NO_NODE,
+        .body = {    body_a,     body_b},
+        .point = {        -1,         -1},
+        .dir = {        -1,         -1,-1},
+        .shape = {MT_NO_NODE, MT_NO_NODE          },
         .item = item
     };
     return def;
@@ -338,22 +333,37 @@ static void beam_spring(mt_builder *b, const mt_link *link, int element,
     };
 }
 
-/* Springs of the bending about e_k (k = 2: about e3, deflection along e2; k = 1: about e2, deflection along e3). */
-static void beam_bending(mt_builder *b, const mt_link *link, const link_geometry *g,
-                         const int element[3], int k, const mt_node ei_l[2])
+/* Springs of the six strains. */
+static void beam_springs(mt_builder *b, const mt_link *link, const link_geometry *g,
+                         const section_nodes *s, const int element[3], mt_node length)
 {
     mt_program *const p = &b->sys->program;
-    mt_measure_def def = mt_measure_def_default(MT_MEASURE_ROTATION, element[1], element[2]);
+    const mt_node young = mt_build_num(b, link->youngs_modulus);
+    const mt_node ei[2] = {s->i2 == MT_NO_NODE ? b->zero : mt_program_mul(p, young, s->i2),
+                           mt_program_mul(p, young, s->i3)};
+    mt_measure_def def = mt_measure_def_default(MT_MEASURE_BEAM, element[1], element[2]);
     for (int i = 0; i < 3; i++) {
         def.dir[i] = g->triad[i];
     }
-    def.component = k;
-    beam_spring(b, link, element[0], &def, mt_program_div(p, ei_l[0], ei_l[1]));
-    def.kind = MT_MEASURE_BEND;
-    def.plane = g->triad[k == 2 ? 1 : 2];
-    def.weight = times(b, k == 2 ? -0.5 : 0.5, ei_l[1]);
+    def.beam[MT_BEAM_LENGTH] = length;
+    if (b->sys->dimension == 3) {
+        def.beam[MT_BEAM_POLAR] = mt_program_div(p, mt_program_add(p, s->i2, s->i3), s->area);
+    }
+    for (int k = b->sys->dimension == 3 ? 0 : 1; k < 2; k++) {
+        def.component = MT_BEAM_BEND_2 + k;
+        beam_spring(b, link, element[0], &def, mt_program_div(p, ei[k], length));
+        def.component = MT_BEAM_SWAY_2 + k;
+        beam_spring(b, link, element[0], &def, mt_program_div(p, times(b, 3.0, ei[k]), length));
+    }
+    def.component = MT_BEAM_STRETCH;
     beam_spring(b, link, element[0], &def,
-                mt_program_div(p, times(b, 12.0, ei_l[0]), power(b, ei_l[1], 3)));
+                mt_program_div(p, mt_program_mul(p, young, s->area), length));
+    if (b->sys->dimension == 3) {
+        const mt_node gj = mt_program_mul(p, mt_build_num_or(b, link->shear_modulus, b->zero),
+                                          s->torsion == MT_NO_NODE ? b->zero : s->torsion);
+        def.component = MT_BEAM_TWIST;
+        beam_spring(b, link, element[0], &def, mt_program_div(p, gj, length));
+    }
 }
 
 static void beam_gravity(mt_builder *b, const link_geometry *g, const int element[3],
@@ -381,34 +391,16 @@ static void build_beam_element(mt_builder *b, const mt_link *link, const link_ge
     mt_program *const p = &b->sys->program;
     const mt_node length =
         mt_program_div(p, g->span, mt_program_const(p, (double)link->elements));
-    const mt_node young = mt_build_num(b, link->youngs_modulus);
-    mt_measure_def axial = mt_measure_def_default(MT_MEASURE_PLANE, element[1], element[2]);
-    axial.dir[0] = g->triad[0];
-    beam_spring(b, link, element[0], &axial,
-                mt_program_div(p, mt_program_mul(p, young, s->area), length));
-    beam_bending(b, link, g, element, 2,
-                 (const mt_node[2]){mt_program_mul(p, young, s->i3), length});
+    beam_springs(b, link, g, s, element, length);
     mt_inertia_def def = inertia_default(MT_INERTIA_BEAM, element[1], element[2], inertia[0],
                                          b->sys->n_items - 1);
-    def.length = length;
     for (int i = 0; i < 3; i++) {
         def.dir[i] = g->triad[i];
     }
     mt_build_inertia(b, &def);
     if (b->sys->dimension == 3) {
-        beam_bending(b, link, g, element, 1,
-                     (const mt_node[2]){mt_program_mul(p, young, s->i2), length});
-        mt_measure_def twist =
-            mt_measure_def_default(MT_MEASURE_ROTATION, element[1], element[2]);
-        for (int i = 0; i < 3; i++) {
-            twist.dir[i] = g->triad[i];
-        }
-        const mt_node gj = mt_program_mul(p, mt_build_num_or(b, link->shear_modulus, b->zero),
-                                          s->torsion == MT_NO_NODE ? b->zero : s->torsion);
-        beam_spring(b, link, element[0], &twist, mt_program_div(p, gj, length));
         def.kind = MT_INERTIA_BEAM_TWIST;
         def.coefficient = inertia[1];
-        def.length = MT_NO_NODE;
         mt_build_inertia(b, &def);
     }
     beam_gravity(b, g, element, times(b, 0.5, inertia[0]), length);

@@ -105,10 +105,10 @@ static mt_status sensor_on_link(mt_builder *b, const mt_sensor *sensor, const do
                        sensor->name.s, f);
     }
     mt_channel_def def = {
-        .body = {rigid, MT_GROUND},
+        .body = {     rigid,  MT_GROUND},
         .point = -1,
-        .dir = { -1,        -1,   -1},
-        .length = MT_NO_NODE,
+        .dir = {        -1,         -1,-1},
+        .shape = {MT_NO_NODE, MT_NO_NODE          },
         .fraction = MT_NO_NODE
     };
     if (rigid >= 0) {
@@ -124,22 +124,17 @@ static mt_status sensor_on_link(mt_builder *b, const mt_sensor *sensor, const do
     const mt_node scaled =
         mt_program_mul(p, fraction, mt_program_const(p, (double)link->elements));
     def.fraction = mt_program_sub(p, scaled, mt_program_const(p, (double)element));
-    /* triad and length of the element: those of its inertia or of any of its springs */
     for (int i = 0; i < b->sys->n_measures && def.dir[0] < 0; i++) {
         const mt_measure_def *const m = &b->sys->measures[i];
-        if (m->kind == MT_MEASURE_ROTATION && m->body[0] == def.body[0] &&
+        if (m->kind == MT_MEASURE_BEAM && m->body[0] == def.body[0] &&
             m->body[1] == def.body[1]) {
             for (int k = 0; k < 3; k++) {
                 def.dir[k] = m->dir[k];
             }
+            def.shape[0] = m->beam[MT_BEAM_SHAPE_2];
+            def.shape[1] = m->beam[MT_BEAM_SHAPE_3];
         }
     }
-    mt_node from[3];
-    mt_node to[3];
-    mt_build_position(b, &link->from, from);
-    mt_build_position(b, &link->to, to);
-    def.length = mt_program_div(p, mt_build_length(b, from, to),
-                                mt_program_const(p, (double)link->elements));
     add_channels(b, sensor, def, true);
     return MT_OK;
 }
@@ -147,10 +142,10 @@ static mt_status sensor_on_link(mt_builder *b, const mt_sensor *sensor, const do
 static void sensor_on_body(mt_builder *b, const mt_sensor *sensor, int body)
 {
     mt_channel_def def = {
-        .body = {body, MT_GROUND},
+        .body = {      body,  MT_GROUND},
         .point = -1,
-        .dir = { -1,        -1,  -1},
-        .length = MT_NO_NODE,
+        .dir = {        -1,         -1,-1},
+        .shape = {MT_NO_NODE, MT_NO_NODE          },
         .fraction = MT_NO_NODE
     };
     if (sensor->at.given) {

@@ -148,10 +148,10 @@ static mt_status build_bar(mt_builder *b, const mt_spring *spring)
     const mt_inertia_def inertia = {
         .kind = MT_INERTIA_BAR,
         .coefficient = mass,
-        .body = {e.body[0], e.body[1]},
-        .point = { e.arm[0],  e.arm[1]        },
-        .dir = { -1,        -1,                -1},
-        .length = MT_NO_NODE,
+        .body = { e.body[0],  e.body[1]},
+        .point = {  e.arm[0],   e.arm[1]},
+        .dir = {        -1,         -1,-1},
+        .shape = {MT_NO_NODE, MT_NO_NODE          },
         .item = item
     };
     mt_build_inertia(b, &inertia);

@@ -94,15 +94,20 @@ static const mt_cx *vec_or_null(const mt_data *d, int i)
 
 mt_measure_data mt_data_measure(const mt_data *d, const mt_measure_def *def)
 {
-    const mt_measure_data m = {
+    mt_measure_data m = {
         .kind = def->kind,
         .component = def->component,
         .point = {vec_or_null(d, def->point[0]), vec_or_null(d, def->point[1])},
         .dir = { vec_or_null(d, def->dir[0]), vec_or_null(d,   def->dir[1]),  vec_or_null(d, def->dir[2])},
-        .plane = vec_or_null(d, def->plane),
-        .weight = mt_data_scalar(d, def->weight, 0.0),
         .near = d->turn[def - d->sys->measures],
     };
+    if (def->kind == MT_MEASURE_BEAM) {
+        m.beam.length = mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0);
+        m.beam.polar = mt_data_scalar(d, def->beam[MT_BEAM_POLAR], 0.0);
+        m.beam.shape[0] = mt_data_scalar(d, def->beam[MT_BEAM_SHAPE_2], 1.0);
+        m.beam.shape[1] = mt_data_scalar(d, def->beam[MT_BEAM_SHAPE_3], 1.0);
+        m.beam.plane = d->sys->dimension == 2;
+    }
     return m;
 }
 

@@ -82,18 +82,23 @@ static void note_force(const mt_system *sys, mt_lagrangian *out, const mt_jet *j
     out->force_scale = fmax(out->force_scale, size);
 }
 
-/* Positions are known to eps of the coordinates that they are the difference of, angles to eps. */
+/* Positions are known to eps of the coordinates that they are the difference of, angles to eps, the slope of a beam element's chord to eps of the coordinates over its length. */
 static void note_noise(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
                        const mt_jet *jet, double stiffness, mt_lagrangian *out)
 {
+    const bool strain = def->kind == MT_MEASURE_BEAM && def->component != MT_BEAM_STRETCH;
+    const bool chord = strain && def->component >= MT_BEAM_SWAY_2;
     const bool angle = def->kind == MT_MEASURE_ANGLE || def->kind == MT_MEASURE_ROTATION ||
-                       def->kind == MT_MEASURE_DOT;
+                       def->kind == MT_MEASURE_DOT || (strain && !chord);
     double extent = angle ? 1.0 : d->sys->length_m;
     for (int side = 0; side < 2 && !angle; side++) {
         const mt_pose *const pose = mt_pose_of(poses, def->body[side]);
         for (int k = 0; k < 3; k++) {
             extent = fmax(extent, fabs(creal(pose->x[k])));
         }
+    }
+    if (chord) {
+        extent /= creal(mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0));
     }
     const double noise = DBL_EPSILON * extent * fabs(stiffness) * largest_push(d->sys, jet);
     out->force_noise = fmax(out->force_noise, noise);
@@ -212,20 +217,36 @@ static void add_loads(const mt_data *d, const mt_pose *poses, bool hessian, mt_l
 }
 
 /*
- * Length that weighs a rotation against a displacement in the anchor: the power of ten nearest to the model's size. The size itself is that of the original design; with it, where a loop
- * closes would depend on which design was called original, and a model with the recommended values put in would not be the design that was recommended.
+ * l^2, which weighs a rotation against a displacement in the anchor: the mean square of the arms by which joints hold their bodies, so that a rotation counts as what it moves them
+ * by. It scales with the drawing, and is a function of the present design alone, with a derivative: with the size of the original design (length_m), where a loop closes would depend on which
+ * design was called original, and a model with the recommended values put in would not be the design that was recommended. Where no joint has an arm rotations close nothing, and any length will do.
  */
-static double anchor_length(const mt_system *sys)
+static mt_cx anchor_square(const mt_data *d)
 {
-    return pow(10.0, round(log10(sys->length_m)));
+    const mt_system *const sys = d->sys;
+    const int count = sys->n_constraints - (sys->driven ? 1 : 0); /* a drive is no joint */
+    mt_cx sum = 0.0;
+    int arms = 0;
+    for (int i = 0; i < count; i++) {
+        for (int t = 0; t < sys->constraints[i].terms; t++) {
+            const mt_measure_def *const m = &sys->measures[sys->constraints[i].measure[t]];
+            for (int side = 0; side < 2; side++) {
+                if (m->body[side] != MT_GROUND && m->point[side] >= 0) {
+                    const mt_cx *const arm = d->vec[m->point[side]];
+                    sum += cx_dot3(arm, arm);
+                    arms++;
+                }
+            }
+        }
+    }
+    return creal(sum) > 0.0 ? sum / (double)arms : sys->length_m * sys->length_m;
 }
 
 static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *poses,
                        bool hessian, mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
-    const double l = anchor_length(sys);
-    const double l2 = l * l;
+    const mt_cx l2 = anchor_square(d);
     mt_jet jet;
     for (int i = 0; i < sys->n_bodies; i++) {
         const int body[2] = {MT_GROUND, i};

@@ -7,7 +7,7 @@
 /*
  * L = V + sum lambda_i c_i at given positions: gradient of V, constraints with their Jacobian, Hessian of L, all in the left exponential chart at those positions.
  * V is the physical energy (springs, preloads, dead loads), or the anchor 1/2 sum |x - x0|^2 + 1/2 l^2 |R - R0|^2/2 that pulls every body to its drawn position
- * (l: model length, to the nearest power of ten; |R - R0|_F^2/2 = 3 - tr(R0^T R), about theta^2): closing a loop is minimising the anchor under the constraints.
+ * (l: of the joints' arms; |R - R0|_F^2/2 = 3 - tr(R0^T R), about theta^2): closing a loop is minimising the anchor under the constraints.
  */
 typedef enum mt_energy { MT_ENERGY_PHYSICAL, MT_ENERGY_ANCHOR } mt_energy;
 

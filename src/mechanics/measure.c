@@ -9,7 +9,7 @@
  *     d2(w . v)  mixed: (theta_a x w) . (theta_b x v) = theta_a^T [ (w . v) I - v w^T ] theta_b.
  * Everything below is these three lines and the chain rule.
  */
-#include "mechanics/measure.h"
+#include "mechanics/measure_priv.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -17,7 +17,7 @@
 static const double TURN = 6.283185307179586477; /* 2 pi */
 static const mt_cx ZERO3[3] = {0.0, 0.0, 0.0};
 
-static void jet_clear(mt_jet *j, bool second)
+void mt_jet_clear(mt_jet *j, bool second)
 {
     j->value = 0.0;
     memset(j->g, 0, sizeof j->g);
@@ -46,7 +46,7 @@ static void add_block(mt_jet *j, const int at[2], mt_cx alpha, mt_cx beta, const
 }
 
 /* Diagonal block of scale n . w: scale [1/2 (n w^T + w n^T) - (n . w) I]. */
-static void add_rotation_block(mt_jet *j, int at, mt_cx scale, const mt_cx *n, const mt_cx *w)
+void mt_jet_add_rotation_block(mt_jet *j, int at, mt_cx scale, const mt_cx *n, const mt_cx *w)
 {
     const int block[2] = {at, at};
     add_block(j, block, cx_mul(-scale, cx_dot3(n, w)), 0.5 * scale, n, w);
@@ -54,7 +54,7 @@ static void add_rotation_block(mt_jet *j, int at, mt_cx scale, const mt_cx *n, c
 }
 
 /* Block (theta at p, dx at q) of scale (theta x u) . dx = scale theta . (u x dx): scale [u]x, and its transpose. */
-static void add_cross_block(mt_jet *j, int p, int q, mt_cx scale, const mt_cx *u)
+void mt_jet_add_cross_block(mt_jet *j, int p, int q, mt_cx scale, const mt_cx *u)
 {
     const mt_cx m[9] = {0.0, u[2], -u[1], -u[2], 0.0, u[0], u[1], -u[0], 0.0};
     for (int c = 0; c < 3; c++) {
@@ -66,7 +66,7 @@ static void add_cross_block(mt_jet *j, int p, int q, mt_cx scale, const mt_cx *u
     }
 }
 
-static void add_vec(mt_cx *g, mt_cx scale, const mt_cx *v)
+void mt_jet_add_vec(mt_cx *g, mt_cx scale, const mt_cx *v)
 {
     for (int i = 0; i < 3; i++) {
         g[i] += cx_mul(scale, v[i]);
@@ -79,12 +79,12 @@ static void add_dot(mt_jet *j, mt_cx scale, const mt_cx *u, const mt_cx *v)
     mt_cx n[3];
     j->value += cx_mul(scale, cx_dot3(u, v));
     cx_cross3(u, v, n);
-    add_vec(j->g + 3, scale, n);
-    add_vec(j->g + 9, -scale, n);
+    mt_jet_add_vec(j->g + 3, scale, n);
+    mt_jet_add_vec(j->g + 9, -scale, n);
     if (j->second) {
         const int mixed[2] = {3, 9};
-        add_rotation_block(j, 3, scale, u, v);
-        add_rotation_block(j, 9, scale, u, v);
+        mt_jet_add_rotation_block(j, 3, scale, u, v);
+        mt_jet_add_rotation_block(j, 9, scale, u, v);
         add_block(j, mixed, cx_mul(scale, cx_dot3(u, v)), -scale, v, u);
     }
 }
@@ -99,33 +99,23 @@ static void add_plane(mt_jet *j, mt_cx scale, const mt_cx *u, const mt_cx *s, co
         w[i] = d[i] + t[i];
     }
     j->value += cx_mul(scale, cx_dot3(u, w) - cx_dot3(u, s));
-    add_vec(j->g, -scale, u);
-    add_vec(j->g + 6, scale, u);
+    mt_jet_add_vec(j->g, -scale, u);
+    mt_jet_add_vec(j->g + 6, scale, u);
     cx_cross3(u, w, n);
-    add_vec(j->g + 3, scale, n);
+    mt_jet_add_vec(j->g + 3, scale, n);
     cx_cross3(t, u, n);
-    add_vec(j->g + 9, scale, n);
+    mt_jet_add_vec(j->g + 9, scale, n);
     if (j->second) {
         const int mixed[2] = {3, 9};
-        add_rotation_block(j, 3, scale, u, w);
-        add_cross_block(j, 3, 0, -scale, u);
-        add_cross_block(j, 3, 6, scale, u);
+        mt_jet_add_rotation_block(j, 3, scale, u, w);
+        mt_jet_add_cross_block(j, 3, 0, -scale, u);
+        mt_jet_add_cross_block(j, 3, 6, scale, u);
         add_block(j, mixed, cx_mul(scale, cx_dot3(u, t)), -scale, t, u);
-        add_rotation_block(j, 9, scale, u, t);
+        mt_jet_add_rotation_block(j, 9, scale, u, t);
     }
 }
 
-/* out = f(p, q) for jets p, q with the partial derivatives of f. */
-typedef struct chain2 {
-    mt_cx f;
-    mt_cx fp;
-    mt_cx fq;
-    mt_cx fpp;
-    mt_cx fpq;
-    mt_cx fqq;
-} chain2;
-
-static void jet_chain(const chain2 *c, const mt_jet *p, const mt_jet *q, mt_jet *out)
+void mt_jet_chain(const mt_chain2 *c, const mt_jet *p, const mt_jet *q, mt_jet *out)
 {
     out->value = c->f;
     out->second = p->second;
@@ -160,13 +150,12 @@ static void distance_none(double value, bool second, mt_jet *out)
 }
 
 /* |r| with r = Q - P: first q = r . r (exact Hessian 2 J^T J + 2 r . d2r), then the square root. */
-static void distance_jet(const mt_cx *s, const mt_cx *t, const mt_cx *d, bool second,
-                         mt_jet *out)
+void mt_jet_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, bool second, mt_jet *out)
 {
     mt_cx r[3];
     mt_cx u[3];
     mt_cx n[3];
-    jet_clear(out, second);
+    mt_jet_clear(out, second);
     for (int i = 0; i < 3; i++) {
         r[i] = d[i] + t[i] - s[i];
     }
@@ -180,12 +169,12 @@ static void distance_jet(const mt_cx *s, const mt_cx *t, const mt_cx *d, bool se
         u[i] = cx_div(r[i], length);
     }
     out->value = length;
-    add_vec(out->g, -1.0, u);
-    add_vec(out->g + 6, 1.0, u);
+    mt_jet_add_vec(out->g, -1.0, u);
+    mt_jet_add_vec(out->g + 6, 1.0, u);
     cx_cross3(s, u, n);
-    add_vec(out->g + 3, -1.0, n);
+    mt_jet_add_vec(out->g + 3, -1.0, n);
     cx_cross3(t, u, n);
-    add_vec(out->g + 9, 1.0, n);
+    mt_jet_add_vec(out->g + 9, 1.0, n);
     if (!second) {
         return;
     }
@@ -207,33 +196,53 @@ static void distance_jet(const mt_cx *s, const mt_cx *t, const mt_cx *d, bool se
             out->h[i + (MT_LOCAL * k)] = cx_div(v, length);
         }
     }
-    add_rotation_block(out, 3, -1.0, u, s);
-    add_rotation_block(out, 9, 1.0, u, t);
+    mt_jet_add_rotation_block(out, 3, -1.0, u, s);
+    mt_jet_add_rotation_block(out, 9, 1.0, u, t);
 }
 
-/* atan2(p, q), p = c_a . b_b, q = b_a . b_b. */
+/* atan2(p, q). */
+static void atan2_jet(const mt_jet *p, const mt_jet *q, mt_jet *out)
+{
+    const mt_cx rr = cx_mul(p->value, p->value) + cx_mul(q->value, q->value);
+    const mt_cx r4 = cx_mul(rr, rr);
+    const mt_cx pq2 = 2.0 * cx_mul(p->value, q->value);
+    const mt_cx diff = cx_mul(p->value, p->value) - cx_mul(q->value, q->value);
+    const mt_chain2 c = {
+        .f = cx_atan2(p->value, q->value),
+        .fp = cx_div(q->value, rr),
+        .fq = -cx_div(p->value, rr),
+        .fpp = -cx_div(pq2, r4),
+        .fpq = cx_div(diff, r4),
+        .fqq = cx_div(pq2, r4),
+    };
+    mt_jet_chain(&c, p, q, out);
+}
+
+/* p = c_a . b_b, q = b_a . b_b. */
 static void angle_jet(const mt_cx *b_a, const mt_cx *c_a, const mt_cx *b_b, bool second,
                       mt_jet *out)
 {
     mt_jet p;
     mt_jet q;
-    jet_clear(&p, second);
-    jet_clear(&q, second);
+    mt_jet_clear(&p, second);
+    mt_jet_clear(&q, second);
     add_dot(&p, 1.0, c_a, b_b);
     add_dot(&q, 1.0, b_a, b_b);
-    const mt_cx rr = cx_mul(p.value, p.value) + cx_mul(q.value, q.value);
-    const mt_cx r4 = cx_mul(rr, rr);
-    const mt_cx pq2 = 2.0 * cx_mul(p.value, q.value);
-    const mt_cx diff = cx_mul(p.value, p.value) - cx_mul(q.value, q.value);
-    const chain2 c = {
-        .f = cx_atan2(p.value, q.value),
-        .fp = cx_div(q.value, rr),
-        .fq = -cx_div(p.value, rr),
-        .fpp = -cx_div(pq2, r4),
-        .fpq = cx_div(diff, r4),
-        .fqq = cx_div(pq2, r4),
-    };
-    jet_chain(&c, &p, &q, out);
+    atan2_jet(&p, &q, out);
+}
+
+/* p = e3 . f2 - e2 . f3, q = e2 . f2 + e3 . f3: of the quaternion of the turn from e to f, p = 4 q0 q1, q = 2 (q0^2 - q1^2). */
+void mt_jet_twist(mt_cx (*e)[3], mt_cx (*f)[3], bool second, mt_jet *out)
+{
+    mt_jet p;
+    mt_jet q;
+    mt_jet_clear(&p, second);
+    mt_jet_clear(&q, second);
+    add_dot(&p, 1.0, e[2], f[1]);
+    add_dot(&p, -1.0, e[1], f[2]);
+    add_dot(&q, 1.0, e[1], f[1]);
+    add_dot(&q, 1.0, e[2], f[2]);
+    atan2_jet(&p, &q, out);
 }
 
 /* Below this 1 - cos the closed forms of g = angle/sin lose digits to cancellation and a series is used; its next term is of order x^8 < 1e-17 there. */
@@ -243,7 +252,7 @@ static const double SERIES_BELOW = 0.01;
  * g(c) = acos(c)/sqrt(1 - c^2) satisfies (1 - c^2) g' = c g - 1, so all its derivatives follow from g; near c = 1 with x = 1 - c:
  *     g = sum a_n x^n,  a_0 = 1,  a_n = a_(n-1) n/(2n + 1)      (from the same equation).
  */
-static void angle_over_sine(mt_cx c, mt_cx g[3])
+void mt_angle_over_sine(mt_cx c, mt_cx g[3])
 {
     const mt_cx x = 1.0 - c;
     if (creal(x) < SERIES_BELOW) {
@@ -270,23 +279,23 @@ static void angle_over_sine(mt_cx c, mt_cx g[3])
 }
 
 /* xi_k = g(cos) psi_k with psi_k = sin * axis_k from the skew part of Q_ij = e_i(a) . e_j(b), cos from its trace. */
-static void rotation_jet(mt_cx (*e)[3], mt_cx (*f)[3], int k, bool second, mt_jet *out)
+void mt_jet_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, bool second, mt_jet *out)
 {
     mt_jet psi;
     mt_jet cosine;
     mt_cx g[3];
     const int k1 = (k + 1) % 3;
     const int k2 = (k + 2) % 3;
-    jet_clear(&psi, second);
-    jet_clear(&cosine, second);
+    mt_jet_clear(&psi, second);
+    mt_jet_clear(&cosine, second);
     add_dot(&psi, 0.5, e[k2], f[k1]);
     add_dot(&psi, -0.5, e[k1], f[k2]);
     for (int i = 0; i < 3; i++) {
         add_dot(&cosine, 0.5, e[i], f[i]);
     }
     cosine.value -= 0.5;
-    angle_over_sine(cosine.value, g);
-    const chain2 c = {
+    mt_angle_over_sine(cosine.value, g);
+    const mt_chain2 c = {
         .f = cx_mul(g[0], psi.value),
         .fp = g[0],
         .fq = cx_mul(g[1], psi.value),
@@ -294,30 +303,13 @@ static void rotation_jet(mt_cx (*e)[3], mt_cx (*f)[3], int k, bool second, mt_je
         .fpq = g[1],
         .fqq = cx_mul(g[2], psi.value),
     };
-    jet_chain(&c, &psi, &cosine, out);
-}
-
-static void bend_jet(const mt_measure_data *m, mt_cx (*p)[3], mt_cx (*e)[3], mt_cx (*f)[3],
-                     mt_jet *out)
-{
-    mt_jet rotation;
-    rotation_jet(e, f, m->component, out->second, &rotation);
-    add_plane(out, 1.0, p[0], p[1], p[2], p[3]);
-    out->value += cx_mul(m->weight, rotation.value);
-    for (int i = 0; i < MT_LOCAL; i++) {
-        out->g[i] += cx_mul(m->weight, rotation.g[i]);
-    }
-    if (out->second) {
-        for (int i = 0; i < MT_LOCAL * MT_LOCAL; i++) {
-            out->h[i] += cx_mul(m->weight, rotation.h[i]);
-        }
-    }
+    mt_jet_chain(&c, &psi, &cosine, out);
 }
 
 void mt_measure_eval(const mt_measure_data *m, const mt_pose *a, const mt_pose *b, bool second,
                      mt_jet *out)
 {
-    mt_cx p[4][3]; /* u, s, t, d */
+    mt_cx p[4][3]; /* -, s, t, d */
     mt_cx e[3][3];
     mt_cx f[3][3];
     cx_rotate3(a->r, m->point[0] != NULL ? m->point[0] : ZERO3, p[1]);
@@ -329,10 +321,7 @@ void mt_measure_eval(const mt_measure_data *m, const mt_pose *a, const mt_pose *
             cx_rotate3(b->r, m->dir[i], f[i]);
         }
     }
-    if (m->plane != NULL) {
-        cx_rotate3(a->r, m->plane, p[0]);
-    }
-    jet_clear(out, second);
+    mt_jet_clear(out, second);
     switch (m->kind) {
     case MT_MEASURE_PLANE:
         add_plane(out, 1.0, e[0], p[1], p[2], p[3]);
@@ -341,17 +330,17 @@ void mt_measure_eval(const mt_measure_data *m, const mt_pose *a, const mt_pose *
         add_dot(out, 1.0, e[0], f[1]);
         break;
     case MT_MEASURE_DISTANCE:
-        distance_jet(p[1], p[2], p[3], second, out);
+        mt_jet_distance(p[1], p[2], p[3], second, out);
         break;
     case MT_MEASURE_ANGLE:
         angle_jet(e[0], e[1], f[0], second, out);
         out->value += TURN * rint((m->near - creal(out->value)) / TURN);
         break;
     case MT_MEASURE_ROTATION:
-        rotation_jet(e, f, m->component, second, out);
+        mt_jet_rotation(e, f, m->component, second, out);
         break;
-    case MT_MEASURE_BEND:
-        bend_jet(m, p, e, f, out);
+    case MT_MEASURE_BEAM:
+        mt_jet_beam(m, e, f, p[3], second, out);
         break;
     }
 }
@@ -368,14 +357,14 @@ void mt_measure_point(const mt_cx *s, const mt_cx *f, const mt_pose *a, bool sec
 {
     mt_cx w[3];
     mt_cx n[3];
-    jet_clear(out, second);
+    mt_jet_clear(out, second);
     cx_rotate3(a->r, s != NULL ? s : ZERO3, w);
     out->value = cx_dot3(f, a->x) + cx_dot3(f, w);
-    add_vec(out->g, 1.0, f);
+    mt_jet_add_vec(out->g, 1.0, f);
     cx_cross3(w, f, n);
-    add_vec(out->g + 3, 1.0, n);
+    mt_jet_add_vec(out->g + 3, 1.0, n);
     if (second) {
-        add_rotation_block(out, 3, 1.0, f, w);
+        mt_jet_add_rotation_block(out, 3, 1.0, f, w);
     }
 }
 

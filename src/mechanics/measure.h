@@ -19,7 +19,7 @@
  *   DISTANCE  |Q_b - P_a|
  *   ANGLE     atan2(c_a . b_b, b_a . b_b): rotation of b against a about the axis b x c, plus the whole turns that bring it next to `near`
  *   ROTATION  component k of the rotation vector that takes the triad of a to that of b, in the triad of a
- *   BEND      PLANE + weight * ROTATION (the two generalised strains of a bent beam element)
+ *   BEAM      one of the generalised strains of a beam element (measure_beam.c)
  */
 typedef enum mt_measure_kind {
     MT_MEASURE_PLANE,
@@ -27,8 +27,27 @@ typedef enum mt_measure_kind {
     MT_MEASURE_DISTANCE,
     MT_MEASURE_ANGLE,
     MT_MEASURE_ROTATION,
-    MT_MEASURE_BEND
+    MT_MEASURE_BEAM
 } mt_measure_kind;
+
+/* Components of BEAM. In two dimensions STRETCH, BEND_3 and SWAY_3 alone. */
+typedef enum mt_beam_strain {
+    MT_BEAM_STRETCH, /* elongation [m] */
+    MT_BEAM_TWIST,   /* twist [rad] */
+    MT_BEAM_BEND_2, /* rotation of one end against the other about e2, e3 [rad]: even bending */
+    MT_BEAM_BEND_3,
+    MT_BEAM_SWAY_2, /* sum of the ends' rotations against the chord [rad]: bending that changes its sign */
+    MT_BEAM_SWAY_3,
+    MT_BEAM_STRAINS
+} mt_beam_strain;
+
+/* Numbers of BEAM beside its triad. */
+typedef struct mt_beam_numbers {
+    mt_cx length;
+    mt_cx polar;    /* (I2 + I3)/A [m^2]; 0 in two dimensions */
+    mt_cx shape[2]; /* 1/(1 + Phi) for bending about e2, e3; 1 without shear */
+    bool plane;     /* two dimensions */
+} mt_beam_numbers;
 
 enum { MT_LOCAL = 12 };
 
@@ -41,13 +60,12 @@ typedef struct mt_pose {
 /* Vectors in the drawn position. */
 typedef struct mt_measure_data {
     mt_measure_kind kind;
-    int component;         /* ROTATION, BEND: 0, 1, 2 */
+    int component;         /* ROTATION: 0, 1, 2; BEAM: mt_beam_strain */
     const mt_cx *point[2]; /* P - centre of a, Q - centre of b; NULL: the centre */
     const mt_cx *dir
-        [3]; /* PLANE: u; DOT: u (a), v (b); ANGLE: b, c; ROTATION: triad e1 e2 e3; unit vectors */
-    const mt_cx *plane; /* BEND: u */
-    mt_cx weight;       /* BEND */
-    double near;        /* ANGLE: of all whole turns the value nearest to this is meant [rad] */
+        [3]; /* PLANE: u; DOT: u (a), v (b); ANGLE: b, c; ROTATION, BEAM: triad e1 e2 e3; unit vectors */
+    mt_beam_numbers beam;
+    double near; /* ANGLE: of all whole turns the value nearest to this is meant [rad] */
 } mt_measure_data;
 
 /* Value, gradient and (when asked for) Hessian of a scalar function of the twelve local freedoms. */

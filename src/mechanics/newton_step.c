@@ -147,8 +147,19 @@ mt_status mt_newton_reduce_hessian(const mt_newton_work *w, const mt_elimination
     return MT_OK;
 }
 
-/* Row and column of the drive, times `scale`. */
-static void border(const mt_newton_work *w, const mt_elimination *e, double scale, double *k)
+/* Length of a row in the elimination's coordinates, in which angles and displacements weigh alike; 1 where it is empty. */
+static double row_length(const mt_elimination *e, const double *row, ptrdiff_t step)
+{
+    double length = 0.0;
+    for (ptrdiff_t j = 0; j < e->nq; j++) {
+        length = hypot(length, row[j * step] * e->dc[j]);
+    }
+    return length > 0.0 ? length : 1.0;
+}
+
+/* Row and column of the drive, times scale[0] and scale[1]. */
+static void border(const mt_newton_work *w, const mt_elimination *e, const double scale[2],
+                   double *k)
 {
     const int n = e->n;
     const ptrdiff_t order = n + 1;
@@ -158,8 +169,8 @@ static void border(const mt_newton_work *w, const mt_elimination *e, double scal
         for (int j = 0; j < e->nq; j++) {
             row += w->a[(w->p->m - 1) + ((ptrdiff_t)j * w->p->m)] * zc[j];
         }
-        k[n + (c * order)] = scale * row;
-        k[c + (n * order)] = scale * mt_dot(e->nq, zc, w->trim);
+        k[n + (c * order)] = scale[0] * row;
+        k[c + (n * order)] = scale[1] * mt_dot(e->nq, zc, w->trim);
     }
     k[n + (n * order)] = 0.0;
 }
@@ -181,7 +192,7 @@ mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena 
 {
     const int order = e->n + (w->p->trim ? 1 : 0);
     int rank = 0;
-    double scale = 1.0;
+    double scale[2] = {1.0, 1.0}; /* of the border: row, column */
     double *const k = mt_arena_f64(mem, (size_t)order, (size_t)order);
     *inverse = mt_arena_f64(mem, (size_t)order, (size_t)order);
     if (k == NULL || *inverse == NULL) {
@@ -189,19 +200,21 @@ mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena 
     }
     MT_TRY(mt_newton_reduce_hessian(w, e, k, order, mem, err));
     const double noise = NO_STIFFNESS * stiffness_scale(w, e);
-    if (w->p->trim) { /* a force unit that keeps the border of the size of the rest */
-        const double stiffness = mt_max_abs((ptrdiff_t)order * order, k);
-        scale = stiffness > 0.0 ? stiffness : 1.0;
+    if (w->p->trim) { /* units that keep the border of the size of the rest */
+        const double most = mt_max_abs((ptrdiff_t)order * order, k);
+        const double stiffness = most > 0.0 ? most : 1.0;
+        scale[0] = stiffness / row_length(e, w->a + (w->p->m - 1), w->p->m);
+        scale[1] = stiffness / row_length(e, w->trim, 1);
         border(w, e, scale, k);
     }
     const double most = mt_max_abs((ptrdiff_t)order * order, k);
     const double tolerance = fmax(NO_STIFFNESS, most > 0.0 ? noise / most : 0.0);
     MT_TRY(mt_pinv(order, order, k, tolerance, *inverse, &rank, mem, err));
     w->null_freedoms = order - rank;
-    for (int c = 0; c < order && w->p->trim;
-         c++) { /* undo the scale on the last row and column */
-        (*inverse)[e->n + ((ptrdiff_t)c * order)] *= scale;
-        (*inverse)[c + ((ptrdiff_t)e->n * order)] *= scale;
+    for (int c = 0; c < order && w->p->trim; c++) { /* undone: the inverse's rows belong to the
+                                                       columns of what was inverted */
+        (*inverse)[e->n + ((ptrdiff_t)c * order)] *= scale[1];
+        (*inverse)[c + ((ptrdiff_t)e->n * order)] *= scale[0];
     }
     return MT_OK;
 }

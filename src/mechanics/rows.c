@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Consistent masses are factored once, M = C C^T, so that they too are sums of squares of rows (C^T v):
- *   bar            [1/3 1/6; 1/6 1/3] per direction on (v_a, v_b)
- *   beam, bending  1/420 [156 22 54 -13; 22 4 13 -3; 54 13 156 -22; -13 -3 -22 4] on (w_a, l w'_a, w_b, l w'_b)
- * (Przemieniecki, Theory of Matrix Structural Analysis, 1968, sec. 11.3 and 11.7), both times the mass of the element. Displacement of a point s from the centre: dx + theta x s.
+ * Consistent masses are factored once, M = C C^T, so that they too are sums of squares of rows (C^T v): a bar's is [1/3 1/6; 1/6 1/3] per direction on (v_a, v_b), times its mass;
+ * a beam's stands in rows_beam.c. Displacement of a point s from the centre: dx + theta x s.
  */
-#include "mechanics/rows.h"
+#include "mechanics/rows_priv.h"
 
 #include <string.h>
-
-enum { BAR_ROWS = 2, BENDING_ROWS = 4 };
 
 static int inertia_rows(const mt_system *sys, const mt_inertia_def *def)
 {
@@ -19,11 +15,11 @@ static int inertia_rows(const mt_system *sys, const mt_inertia_def *def)
     case MT_INERTIA_ROTATION:
         return def->dir[0] == def->dir[1] ? 1 : 2;
     case MT_INERTIA_BAR:
-        return BAR_ROWS * sys->dimension;
+        return MT_BAR_ROWS * sys->dimension;
     case MT_INERTIA_BEAM:
-        return BAR_ROWS + ((sys->dimension - 1) * BENDING_ROWS);
+        return MT_BAR_ROWS + ((sys->dimension - 1) * MT_DEFLECTION_ROWS);
     case MT_INERTIA_BEAM_TWIST:
-        return BAR_ROWS;
+        return MT_BAR_ROWS;
     }
     return 0;
 }
@@ -88,8 +84,7 @@ mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists,
     return MT_OK;
 }
 
-/* row += scale * (displacement of the point along unit vector e), local freedoms of side 0 or 1. */
-static void add_point(mt_cx *row, int side, const mt_cx *s, const mt_cx *e, mt_cx scale)
+void mt_row_add_point(mt_cx *row, int side, const mt_cx *s, const mt_cx *e, mt_cx scale)
 {
     mt_cx n[3];
     cx_cross3(s, e, n);
@@ -99,7 +94,7 @@ static void add_point(mt_cx *row, int side, const mt_cx *s, const mt_cx *e, mt_c
     }
 }
 
-static void add_turn(mt_cx *row, int side, const mt_cx *e, mt_cx scale)
+void mt_row_add_turn(mt_cx *row, int side, const mt_cx *e, mt_cx scale)
 {
     for (int k = 0; k < 3; k++) {
         row[(6 * side) + 3 + k] += cx_mul(scale, e[k]);
@@ -136,76 +131,35 @@ static void bar_rows(const mt_data *d, const mt_inertia_def *def, const mt_pose 
         mt_cx e[3] = {0.0, 0.0, 0.0};
         mt_cx *const first = rows + ((ptrdiff_t)(2 * k) * MT_LOCAL);
         e[k] = 1.0;
-        add_point(first, 0, s[0], e, ONE_THIRD_ROOT);
-        add_point(first, 1, s[1], e, 0.5 * ONE_THIRD_ROOT);
-        add_point(first + MT_LOCAL, 1, s[1], e, 0.5);
+        mt_row_add_point(first, 0, s[0], e, ONE_THIRD_ROOT);
+        mt_row_add_point(first, 1, s[1], e, 0.5 * ONE_THIRD_ROOT);
+        mt_row_add_point(first + MT_LOCAL, 1, s[1], e, 0.5);
     }
 }
 
-/* Lower Cholesky factor of the bending mass matrix. */
-static void bending_factor(double c[BENDING_ROWS][BENDING_ROWS])
+static void shape_of(const mt_data *d, const mt_node shape[2], mt_beam_geometry *g)
 {
-    static const double m[BENDING_ROWS][BENDING_ROWS] = {
-        {156.0, 22.0,  54.0, -13.0},
-        { 22.0,  4.0,  13.0,  -3.0},
-        { 54.0, 13.0, 156.0, -22.0},
-        {-13.0, -3.0, -22.0,   4.0}
-    };
-    for (int j = 0; j < BENDING_ROWS; j++) {
-        for (int i = 0; i < BENDING_ROWS; i++) {
-            double s = m[i][j] / 420.0;
-            for (int k = 0; k < j; k++) {
-                s -= c[i][k] * c[j][k];
-            }
-            c[i][j] = i < j ? 0.0 : (i == j ? sqrt(s) : s / c[j][j]);
-        }
-    }
-}
-
-/* Deflection along u, rotation about t with slope sign. */
-static void bending_rows(const mt_cx *u, const mt_cx *t, double sign, mt_cx length, mt_cx *rows)
-{
-    double c[BENDING_ROWS][BENDING_ROWS];
-    static const mt_cx zero[3] = {0.0, 0.0, 0.0};
-    bending_factor(c);
-    for (int i = 0; i < BENDING_ROWS; i++) {
-        mt_cx *const row = rows + ((ptrdiff_t)i * MT_LOCAL);
-        for (int side = 0; side < 2; side++) {
-            const double *const deflection = c[side == 0 ? 0 : 2];
-            const double *const slope = c[side == 0 ? 1 : 3];
-            add_point(row, side, zero, u, deflection[i]);
-            add_turn(row, side, t, sign * slope[i] * length);
-        }
+    for (int k = 0; k < 2; k++) {
+        g->shape[k] = mt_data_scalar(d, shape[k], 1.0);
     }
 }
 
 static void beam_rows(const mt_data *d, const mt_inertia_def *def, const mt_pose *poses,
                       mt_cx *rows)
 {
-    mt_cx e[3][3];
-    static const mt_cx zero[3] = {0.0, 0.0, 0.0};
-    const mt_cx length = mt_data_scalar(d, def->length, 0.0);
-    for (int k = 0; k < 3; k++) {
-        cx_rotate3(mt_pose_of(poses, def->body[0])->r, d->vec[def->dir[k]], e[k]);
+    mt_beam_geometry g;
+    mt_beam_frame(d, def->body, def->dir, poses, &g);
+    shape_of(d, def->shape, &g);
+    if (def->kind == MT_INERTIA_BEAM_TWIST) {
+        mt_beam_bar_rows(&g, true, rows);
+        return;
     }
-    add_point(rows, 0, zero, e[0], ONE_THIRD_ROOT);
-    add_point(rows, 1, zero, e[0], 0.5 * ONE_THIRD_ROOT);
-    add_point(rows + MT_LOCAL, 1, zero, e[0], 0.5);
-    bending_rows(e[1], e[2], 1.0, length, rows + ((ptrdiff_t)BAR_ROWS * MT_LOCAL));
-    if (d->sys->dimension == 3) {
-        bending_rows(e[2], e[1], -1.0, length,
-                     rows + ((ptrdiff_t)(BAR_ROWS + BENDING_ROWS) * MT_LOCAL));
+    mt_beam_bar_rows(&g, false, rows);
+    mt_cx *at = rows + ((ptrdiff_t)MT_BAR_ROWS * MT_LOCAL);
+    for (int k = d->sys->dimension == 3 ? 0 : 1; k < 2; k++) {
+        mt_beam_deflection_rows(&g, k, at);
+        at += (ptrdiff_t)MT_DEFLECTION_ROWS * MT_LOCAL;
     }
-}
-
-static void twist_rows(const mt_data *d, const mt_inertia_def *def, const mt_pose *poses,
-                       mt_cx *rows)
-{
-    mt_cx e[3];
-    cx_rotate3(mt_pose_of(poses, def->body[0])->r, d->vec[def->dir[0]], e);
-    add_turn(rows, 0, e, ONE_THIRD_ROOT);
-    add_turn(rows, 1, e, 0.5 * ONE_THIRD_ROOT);
-    add_turn(rows + MT_LOCAL, 1, e, 0.5);
 }
 
 static void inertia_eval(const mt_data *d, const mt_inertia_def *def, const mt_pose *poses,
@@ -218,81 +172,48 @@ static void inertia_eval(const mt_data *d, const mt_inertia_def *def, const mt_p
         for (int k = 0; k < d->sys->dimension; k++) {
             memset(e, 0, sizeof e);
             e[k] = 1.0;
-            add_point(rows + ((ptrdiff_t)k * MT_LOCAL), 0, zero, e, 1.0);
+            mt_row_add_point(rows + ((ptrdiff_t)k * MT_LOCAL), 0, zero, e, 1.0);
         }
         break;
     case MT_INERTIA_ROTATION:
         for (int k = 0; k < (def->dir[0] == def->dir[1] ? 1 : 2); k++) {
             cx_rotate3(poses[def->body[0]].r, d->vec[def->dir[k]], e);
-            add_turn(rows + ((ptrdiff_t)k * MT_LOCAL), 0, e, 1.0);
+            mt_row_add_turn(rows + ((ptrdiff_t)k * MT_LOCAL), 0, e, 1.0);
         }
         break;
     case MT_INERTIA_BAR:
         bar_rows(d, def, poses, rows);
         break;
     case MT_INERTIA_BEAM:
+    case MT_INERTIA_BEAM_TWIST:
         beam_rows(d, def, poses, rows);
         break;
-    case MT_INERTIA_BEAM_TWIST:
-        twist_rows(d, def, poses, rows);
-        break;
-    }
-}
-
-/* Hermite shape functions (order 0: deflection, order 1: slope) at x in [0, 1] for (w_a, l w'_a, w_b, l w'_b); slopes are per l. */
-static void hermite(mt_cx x, int order, mt_cx n[4])
-{
-    const mt_cx x2 = cx_mul(x, x);
-    const mt_cx x3 = cx_mul(x2, x);
-    if (order == 0) {
-        n[0] = 1.0 - (3.0 * x2) + (2.0 * x3);
-        n[1] = x - (2.0 * x2) + x3;
-        n[2] = (3.0 * x2) - (2.0 * x3);
-        n[3] = x3 - x2;
-        return;
-    }
-    n[0] = (6.0 * x2) - (6.0 * x);
-    n[1] = 1.0 - (4.0 * x) + (3.0 * x2);
-    n[2] = -n[0];
-    n[3] = (3.0 * x2) - (2.0 * x);
-}
-
-/* row += weight * (bending deflection or slope * l) for deflection along u, rotation about t. */
-static void add_bending_channel(mt_cx *row, const mt_cx n[4], const mt_cx *u, const mt_cx *t,
-                                double sign, mt_cx length, mt_cx weight)
-{
-    static const mt_cx zero[3] = {0.0, 0.0, 0.0};
-    for (int side = 0; side < 2; side++) {
-        const mt_cx *const own = n + (side == 0 ? 0 : 2);
-        add_point(row, side, zero, u, cx_mul(weight, own[0]));
-        add_turn(row, side, t, sign * cx_mul(weight, cx_mul(length, own[1])));
     }
 }
 
 static void beam_channel(const mt_data *d, const mt_channel_def *c, const mt_pose *poses,
                          mt_cx *row)
 {
-    mt_cx e[3][3];
-    mt_cx n[4];
     static const mt_cx zero[3] = {0.0, 0.0, 0.0};
     const mt_cx x = mt_data_scalar(d, c->fraction, 0.0);
-    const mt_cx length = mt_data_scalar(d, c->length, 1.0);
-    for (int k = 0; k < 3; k++) {
-        cx_rotate3(mt_pose_of(poses, c->body[0])->r, d->vec[c->dir[k]], e[k]);
+    mt_beam_geometry g;
+    mt_beam_frame(d, c->body, c->dir, poses, &g);
+    shape_of(d, c->shape, &g);
+    for (int side = 0; side < 2; side++) {
+        const mt_cx share = cx_mul(side == 0 ? 1.0 - x : x, g.e[0][c->axis]);
+        if (c->kind == MT_CHANNEL_BEAM_POINT) {
+            mt_row_add_point(row, side, zero, g.e[0], share);
+        } else {
+            mt_row_add_turn(row, side, g.e[0], share);
+        }
     }
     if (c->kind == MT_CHANNEL_BEAM_POINT) {
-        hermite(x, 0, n);
-        add_point(row, 0, zero, e[0], cx_mul(1.0 - x, e[0][c->axis]));
-        add_point(row, 1, zero, e[0], cx_mul(x, e[0][c->axis]));
-        add_bending_channel(row, n, e[1], e[2], 1.0, length, e[1][c->axis]);
-        add_bending_channel(row, n, e[2], e[1], -1.0, length, e[2][c->axis]);
-        return;
+        mt_beam_deflection_at(&g, 1, x, g.e[1][c->axis], row);
+        mt_beam_deflection_at(&g, 0, x, g.e[2][c->axis], row);
+    } else {
+        mt_beam_slope_at(&g, 1, x, g.e[2][c->axis], row);
+        mt_beam_slope_at(&g, 0, x, -g.e[1][c->axis], row);
     }
-    hermite(x, 1, n); /* theta3 = w2', theta2 = -w3' */
-    add_turn(row, 0, e[0], cx_mul(1.0 - x, e[0][c->axis]));
-    add_turn(row, 1, e[0], cx_mul(x, e[0][c->axis]));
-    add_bending_channel(row, n, e[1], e[2], 1.0, length, cx_div(e[2][c->axis], length));
-    add_bending_channel(row, n, e[2], e[1], -1.0, length, -cx_div(e[1][c->axis], length));
 }
 
 static void channel_eval(const mt_data *d, const mt_channel_def *c, const mt_pose *poses,
@@ -305,10 +226,10 @@ static void channel_eval(const mt_data *d, const mt_channel_def *c, const mt_pos
     switch (c->kind) {
     case MT_CHANNEL_POINT:
         cx_rotate3(mt_pose_of(poses, c->body[0])->r, c->point < 0 ? zero : d->vec[c->point], s);
-        add_point(row, 0, s, e, 1.0);
+        mt_row_add_point(row, 0, s, e, 1.0);
         break;
     case MT_CHANNEL_ROTATION:
-        add_turn(row, 0, e, 1.0);
+        mt_row_add_turn(row, 0, e, 1.0);
         break;
     case MT_CHANNEL_BEAM_POINT:
     case MT_CHANNEL_BEAM_ROTATION:

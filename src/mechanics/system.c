@@ -60,8 +60,10 @@ static bool geometry_is_fixed(const mt_system *sys)
             fixed = fixed && node_fixed(p, sys->vecs[i].node[k]);
         }
     }
-    for (int i = 0; i < sys->n_measures && fixed; i++) {
-        fixed = node_fixed(p, sys->measures[i].weight);
+    for (int i = 0; i < sys->n_measures && fixed && mt_system_beams_shape(sys); i++) {
+        for (int k = 0; k < MT_BEAM_NUMBERS; k++) {
+            fixed = fixed && node_fixed(p, sys->measures[i].beam[k]);
+        }
     }
     for (int i = 0; i < sys->n_constraints && fixed; i++) {
         const mt_constraint_def *const c = &sys->constraints[i];
@@ -69,11 +71,13 @@ static bool geometry_is_fixed(const mt_system *sys)
                 node_fixed(p, c->coefficient[1]);
     }
     for (int i = 0; i < sys->n_inertias && fixed; i++) {
-        fixed = node_fixed(p, sys->inertias[i].length);
+        fixed = node_fixed(p, sys->inertias[i].shape[0]) &&
+                node_fixed(p, sys->inertias[i].shape[1]);
     }
     for (int i = 0; i < sys->n_channels && fixed; i++) {
-        fixed =
-            node_fixed(p, sys->channels[i].length) && node_fixed(p, sys->channels[i].fraction);
+        fixed = node_fixed(p, sys->channels[i].shape[0]) &&
+                node_fixed(p, sys->channels[i].shape[1]) &&
+                node_fixed(p, sys->channels[i].fraction);
     }
     return fixed;
 }
@@ -280,6 +284,12 @@ void mt_system_delete(mt_system *sys)
         mt_arena_free(&sys->mem);
         free(sys);
     }
+}
+
+/* An equilibrium is found anew for every design anyway; loops that are closed by force may leave a beam bent in its reference position. */
+bool mt_system_beams_shape(const mt_system *sys)
+{
+    return sys->loaded || !sys->drawn_closed;
 }
 
 int mt_system_find_channel(const mt_system *sys, const char *name)

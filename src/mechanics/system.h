@@ -30,14 +30,22 @@ typedef struct mt_vec_def {
     const char *what; /* for messages: "axis of joint \"pivot\"" */
 } mt_vec_def;
 
+/* Numbers of a beam element's strains (measure.h: mt_beam_numbers). MT_NO_NODE: polar 0, shape 1. */
+typedef enum mt_beam_number {
+    MT_BEAM_LENGTH,
+    MT_BEAM_POLAR,
+    MT_BEAM_SHAPE_2,
+    MT_BEAM_SHAPE_3,
+    MT_BEAM_NUMBERS
+} mt_beam_number;
+
 typedef struct mt_measure_def {
     mt_measure_kind kind;
     int component;
     int body[2];  /* index of a state body; MT_GROUND */
     int point[2]; /* vectors; -1: the centre */
     int dir[3];
-    int plane;
-    mt_node weight;
+    mt_node beam[MT_BEAM_NUMBERS]; /* BEAM; else MT_NO_NODE */
 } mt_measure_def;
 
 typedef struct mt_state_body {
@@ -92,8 +100,8 @@ typedef struct mt_inertia_def {
     mt_node coefficient; /* kg, kg m^2, or kg (TWIST: kg m^2) of the whole element */
     int body[2];
     int point[2];
-    int dir[3];     /* BEAM: triad; ROTATION: dir[0], dir[1], unit vectors of the body */
-    mt_node length; /* BEAM */
+    int dir[3];       /* BEAM: triad; ROTATION: dir[0], dir[1], unit vectors of the body */
+    mt_node shape[2]; /* BEAM: 1/(1 + Phi) for bending about e2, e3; MT_NO_NODE: 1 */
     int item;
 } mt_inertia_def;
 
@@ -119,8 +127,8 @@ typedef struct mt_channel_def {
     int axis; /* global 0..2 */
     int body[2];
     int point;        /* POINT */
-    int dir[3];       /* BEAM: triad; ROTATION: dir[0], dir[1], unit vectors of the body */
-    mt_node length;   /* BEAM */
+    int dir[3];       /* BEAM: triad */
+    mt_node shape[2]; /* BEAM, as mt_inertia_def */
     mt_node fraction; /* BEAM: 0..1 within the element */
 } mt_channel_def;
 
@@ -159,7 +167,7 @@ typedef struct mt_system {
     bool
         trim; /* hold by a spring: the drive's constraint is absent from the linearised system */
     int trim_spring;     /* of springs; -1 */
-    bool geometry_fixed; /* no vector, weight or target depends on an input */
+    bool geometry_fixed; /* no vector, target or shape of a mass depends on an input */
     bool
         drawn_closed; /* the joints are closed as drawn, whatever the inputs: each has one point and no length of its own */
 } mt_system;
@@ -190,6 +198,9 @@ void mt_system_delete(mt_system *sys);
  * mechanism in its reference position. Two configurations without a drive are not. Fails: MT_E_MEMORY.
  */
 mt_status mt_system_same_drive(const mt_system *a, const mt_system *b, bool *same, mt_err *err);
+
+/* Do the numbers of the beams' strains shape the stiffness of the unloaded system? Straight, without force, a beam's strains change with none of them. */
+bool mt_system_beams_shape(const mt_system *sys);
 
 int mt_system_find_channel(const mt_system *sys, const char *name);
 int mt_system_find_joint(const mt_system *sys, const char *name);

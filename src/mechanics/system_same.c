@@ -65,9 +65,10 @@ static bool same_measures(pair *p)
     for (int i = 0; i < p->a->n_measures; i++) {
         const mt_measure_def *const x = &p->a->measures[i];
         const mt_measure_def *const y = &p->b->measures[i];
-        if (x->kind != y->kind || x->component != y->component || x->plane != y->plane ||
+        if (x->kind != y->kind || x->component != y->component ||
             !same_ints(2, x->body, y->body) || !same_ints(2, x->point, y->point) ||
-            !same_ints(3, x->dir, y->dir) || !same_node(p, x->weight, y->weight)) {
+            !same_ints(3, x->dir, y->dir) ||
+            !same_nodes(p, MT_BEAM_NUMBERS, x->beam, y->beam)) {
             return false;
         }
     }
@@ -131,7 +132,7 @@ static bool same_inertias(pair *p)
         if (x->kind != y->kind || !same_ints(2, x->body, y->body) ||
             !same_ints(2, x->point, y->point) || !same_ints(3, x->dir, y->dir) ||
             !same_node(p, x->coefficient, y->coefficient) ||
-            !same_node(p, x->length, y->length)) {
+            !same_nodes(p, 2, x->shape, y->shape)) {
             return false;
         }
     }

@@ -41,8 +41,10 @@ static int shaping_input(const mt_system *sys)
             keep(sys, sys->vecs[i].node[k], &found);
         }
     }
-    for (int i = 0; i < sys->n_measures; i++) {
-        keep(sys, sys->measures[i].weight, &found);
+    for (int i = 0; i < sys->n_measures && mt_system_beams_shape(sys); i++) {
+        for (int k = 0; k < MT_BEAM_NUMBERS; k++) {
+            keep(sys, sys->measures[i].beam[k], &found);
+        }
     }
     for (int i = 0; i < sys->n_constraints; i++) {
         keep(sys, sys->constraints[i].target, &found);
@@ -50,7 +52,8 @@ static int shaping_input(const mt_system *sys)
         keep(sys, sys->constraints[i].coefficient[1], &found);
     }
     for (int i = 0; i < sys->n_inertias; i++) {
-        keep(sys, sys->inertias[i].length, &found);
+        keep(sys, sys->inertias[i].shape[0], &found);
+        keep(sys, sys->inertias[i].shape[1], &found);
     }
     return found;
 }

@@ -168,6 +168,8 @@ static const struct {
     {    "space_stick",       "plain",           "k tilt l m kb", 4},
     {    "space_stick",  "weightless",           "k tilt l m kb", 4},
     {    "space_stick",      "geared",     "k tilt l m kb ratio", 4},
+    {   "loaded_frame",      "loaded",           "E h x P g rho", 3},
+    {   "loaded_frame",  "weightless",                 "E h x P", 2},
     {    "space_frame",      "loaded",              "h x E mass", 3},
     {    "space_frame",  "weightless",              "h x E mass", 3},
     {      "couplings",      "planet",             "g N r k l m", 3},

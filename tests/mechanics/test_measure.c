@@ -14,13 +14,31 @@ static const double STEP = 1e-2; /* the kernels bend on the scale of 1 */
 static const double NOISE = 1e-15;
 static const double PI = 3.14159265358979323846;
 
-enum { KINDS = 6, VECTORS = 7 };
-static const char *const NAMES[KINDS] = {"plane", "dot",      "distance",
-                                         "angle", "rotation", "bend"};
+/* each strain of a beam in space, and those of one in the plane, counts as a kind */
+static const mt_beam_strain IN_PLANE[] = {MT_BEAM_STRETCH, MT_BEAM_BEND_3, MT_BEAM_SWAY_3};
+enum {
+    IN_SPACE = MT_MEASURE_BEAM + MT_BEAM_STRAINS,
+    KINDS = IN_SPACE + MT_COUNT(IN_PLANE),
+    VECTORS = 7
+};
+static const char *const NAMES[KINDS] = {"plane",
+                                         "dot",
+                                         "distance",
+                                         "angle",
+                                         "rotation",
+                                         "stretch",
+                                         "twist",
+                                         "bend 2",
+                                         "bend 3",
+                                         "sway 2",
+                                         "sway 3",
+                                         "stretch in the plane",
+                                         "bend in the plane",
+                                         "sway in the plane"};
 
 typedef struct scene {
     mt_measure_data m;
-    mt_cx v[VECTORS][3]; /* points 2, directions 3, plane 1, weight */
+    mt_cx v[VECTORS][3]; /* points 2, directions 3, numbers of a beam 2 */
     mt_pose pose[2];
     int entry; /* of the gradient, in slopes of it */
 } scene;
@@ -62,6 +80,20 @@ static void cross(const double *a, const double *b, double *c)
     c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+/* The measure sees the vectors of its scene. */
+static void point_at_own(scene *s)
+{
+    for (int i = 0; i < 2; i++) {
+        s->m.point[i] = s->v[i];
+        s->m.beam.shape[i] = s->v[6][i];
+    }
+    for (int i = 0; i < 3; i++) {
+        s->m.dir[i] = s->v[2 + i];
+    }
+    s->m.beam.length = s->v[5][0];
+    s->m.beam.polar = s->v[5][1];
+}
+
 /* A random measure of the kind; body b turned by `angle` against body a. */
 static void make(mt_random *r, int kind, double angle, scene *s)
 {
@@ -89,14 +121,15 @@ static void make(mt_random *r, int kind, double angle, scene *s)
         cx_rotate3(other.r, s->pose[0].r + (ptrdiff_t)3 * c, s->pose[1].r + (ptrdiff_t)3 * c);
         s->pose[1].x[c] = other.x[c] + 2.0;
     }
-    s->m = (mt_measure_data){
-        .kind = (mt_measure_kind)kind,
-        .component = mt_random_int(r, 3),
-        .point = {s->v[0], s->v[1]},
-        .dir = { s->v[2], s->v[3],s->v[4]},
-        .plane = s->v[5],
-        .weight = s->v[6][0]
-    };
+    s->v[5][0] = 1.0 + (0.5 * s->v[5][0]);
+    s->m = (mt_measure_data){.kind = (mt_measure_kind)kind, .component = mt_random_int(r, 3)};
+    if (kind >= MT_MEASURE_BEAM) {
+        s->m.kind = MT_MEASURE_BEAM;
+        s->m.beam.plane = kind >= IN_SPACE;
+        s->m.component =
+            kind >= IN_SPACE ? (int)IN_PLANE[kind - IN_SPACE] : kind - MT_MEASURE_BEAM;
+    }
+    point_at_own(s);
 }
 
 /* Poses moved by x[12] in the exponential chart. */
@@ -245,14 +278,7 @@ static double along(const void *ctx, int n, const double *x)
             s.v[k][i] = l->s.v[k][i] + x[0] * l->v[k][i];
         }
     }
-    for (int i = 0; i < 2; i++) {
-        s.m.point[i] = s.v[i];
-    }
-    for (int i = 0; i < 3; i++) {
-        s.m.dir[i] = s.v[2 + i];
-    }
-    s.m.plane = s.v[5];
-    s.m.weight = s.v[6][0];
+    point_at_own(&s);
     for (int i = 0; i < MT_LOCAL; i++) {
         q[i] = x[0] * l->q[i];
     }
@@ -270,7 +296,7 @@ static void measure__complex_step_carries_derivatives(mt_test *t)
         make(&r, kind, 0.15, &l.s);
         mt_random_fill(&r, 3 * VECTORS, &l.v[0][0]);
         mt_random_fill(&r, MT_LOCAL, l.q);
-        if (kind == MT_MEASURE_ROTATION || kind == MT_MEASURE_BEND) {
+        if (kind >= MT_MEASURE_ROTATION) {
             memset(l.v[2], 0, 9 * sizeof(double)); /* a triad stays one */
         }
         line c = l;
@@ -280,15 +306,10 @@ static void measure__complex_step_carries_derivatives(mt_test *t)
             }
         }
         for (int i = 0; i < 2; i++) {
-            c.s.m.point[i] = c.s.v[i];
             p[i] = l.s.pose[i];
             mt_pose_tangent(&p[i], l.q + (ptrdiff_t)6 * i, l.q + (ptrdiff_t)6 * i + 3);
         }
-        for (int i = 0; i < 3; i++) {
-            c.s.m.dir[i] = c.s.v[2 + i];
-        }
-        c.s.m.plane = c.s.v[5];
-        c.s.m.weight = c.s.v[6][0];
+        point_at_own(&c.s);
         const mt_cx value = mt_measure_value(&c.s.m, &p[0], &p[1]);
         mt_test_row(t, "%s", NAMES[kind]);
         CHECK(t, mt_slope_agrees(along, &l, 1, x, 0, cx_derivative(value), STEP, NOISE));
