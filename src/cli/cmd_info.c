@@ -45,6 +45,7 @@ static mt_status write_json(mt_json_writer *w, const view *v, mt_err *err)
     mt_json_put_integer(w, "states", i->states);
     mt_json_put_integer(w, "equations", i->equations);
     mt_json_put_integer(w, "freedoms", i->freedoms);
+    mt_json_put_integer(w, "idle_spins", i->idle);
     mt_json_put_integer(w, "redundant_equations", i->redundant);
     mt_json_open(w, "redundant_constraints", '[');
     for (int k = 0; k < i->redundant; k++) {
@@ -91,9 +92,12 @@ static void write_text(mt_text *out, const view *v)
                      point_text(i->inertia_kg_m2, 3, a, sizeof a),
                      point_text(i->inertia_kg_m2 + 3, 3, b, sizeof b));
     }
-    mt_text_addf(out,
-                 "  mobility    %d freedoms = %d states - %d independent of %d equations\n",
+    mt_text_addf(out, "  mobility    %d freedoms = %d states - %d independent of %d equations",
                  i->freedoms, i->states, i->equations - i->redundant, i->equations);
+    if (i->idle > 0) {
+        mt_text_addf(out, " - %d idle spin%s", i->idle, i->idle == 1 ? "" : "s");
+    }
+    mt_text_add(out, "\n");
     if (v->a->lin->position.equilibrium.active) {
         mt_text_addf(out, "  equilibrium residual %.1e, largest gap of a joint %.1e m\n",
                      i->residual, i->gap_m);

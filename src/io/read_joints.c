@@ -10,6 +10,7 @@
     X(JOINT_AXIS, "axis", LIST, false)                 \
     X(JOINT_AXIS_B, "axis_b", LIST, false)             \
     X(JOINT_LENGTH, "length_m", NUMBER, false)         \
+    X(JOINT_MASS, "mass_kg", NUMBER, false)            \
     X(JOINT_JOINTS, "joints", LIST, false)             \
     X(JOINT_RATIO, "ratio", NUMBER, false)             \
     X(JOINT_RATIO_M, "ratio_m_per_rad", NUMBER, false) \
@@ -88,6 +89,7 @@ static void read_joint(mt_model_reader *mr, mt_addr value, mt_joint *j)
     j->has_axis = mt_read_vector(mr, at[JOINT_AXIS], j->axis);
     j->has_axis_b = mt_read_vector(mr, at[JOINT_AXIS_B], j->axis_b);
     j->length = mt_read_num(mr, at[JOINT_LENGTH]);
+    j->mass = mt_read_num(mr, at[JOINT_MASS]);
     read_gear(mr, at[JOINT_JOINTS], j);
     j->ratio = mt_read_num(mr, at[JOINT_RATIO]);
     j->ratio_m_per_rad = mt_read_num(mr, at[JOINT_RATIO_M]);

@@ -33,6 +33,8 @@ void mt_build_constraint(mt_builder *b, int measure, mt_node target, bool drawn)
 void mt_build_inertia(mt_builder *b, const mt_inertia_def *def);
 void mt_build_load(mt_builder *b, const mt_load_def *def);
 void mt_build_gravity_at(mt_builder *b, int body, int point, mt_node mass);
+/* A uniform thin rod between two points: its velocity is linear along it, so that the consistent mass m/6 [2 I, I; I, 2 I] is exact, stretched or rigid, and half its weight at each end too. */
+void mt_build_rod(mt_builder *b, const int body[2], const int arm[2], mt_node mass, int item);
 int mt_build_item(mt_builder *b, const char *name, mt_node mass);
 const char *mt_build_name(mt_builder *b, const char *fmt, ...) MT_PRINTF(2, 3);
 /* State body that an attachment means; false where it is absent in this configuration. MT_GROUND for the ground. */

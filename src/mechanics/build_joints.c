@@ -258,6 +258,10 @@ static mt_status build_joint(mt_builder *b, const mt_joint *joint)
         return MT_OK;
     }
     mt_build_joint_equations(b, joint->type, body, arm, axis, mt_build_num(b, joint->length));
+    if (joint->mass != MT_ABSENT) {
+        const mt_node mass = mt_build_num(b, joint->mass);
+        mt_build_rod(b, body, arm, mass, mt_build_item(b, joint->name.s, mass));
+    }
     made->count = b->sys->n_constraints - made->first;
     made->coordinate = coordinate_of(b, joint->type, body, arm, axis[0]);
     made->angle = joint->type == MT_JOINT_REVOLUTE || joint->type == MT_JOINT_CYLINDRICAL;

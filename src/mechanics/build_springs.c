@@ -128,6 +128,27 @@ static mt_status build_axial(mt_builder *b, const mt_spring *spring)
     return MT_OK;
 }
 
+void mt_build_rod(mt_builder *b, const int body[2], const int arm[2], mt_node mass, int item)
+{
+    mt_program *const p = &b->sys->program;
+    const mt_inertia_def inertia = {
+        .kind = MT_INERTIA_BAR,
+        .coefficient = mass,
+        .body = {   body[0],    body[1]},
+        .point = {    arm[0],     arm[1]},
+        .dir = {        -1,         -1,-1},
+        .shape = {MT_NO_NODE, MT_NO_NODE          },
+        .item = item
+    };
+    mt_build_inertia(b, &inertia);
+    for (int side = 0; side < 2; side++) {
+        if (body[side] != MT_GROUND) {
+            mt_build_gravity_at(b, body[side], arm[side],
+                                mt_program_mul(p, mt_program_const(p, 0.5), mass));
+        }
+    }
+}
+
 /* Bar: EA/L along its line, consistent mass rho A L / 6 [2 I, I; I, 2 I]; L is its length as drawn. */
 static mt_status build_bar(mt_builder *b, const mt_spring *spring)
 {
@@ -145,22 +166,7 @@ static mt_status build_bar(mt_builder *b, const mt_spring *spring)
         spring_default(b, spring, axial_measure(b, &e), mt_program_div(p, ea, length));
     def.preload = mt_build_num(b, spring->preload);
     add_spring(b, &def);
-    const mt_inertia_def inertia = {
-        .kind = MT_INERTIA_BAR,
-        .coefficient = mass,
-        .body = { e.body[0],  e.body[1]},
-        .point = {  e.arm[0],   e.arm[1]},
-        .dir = {        -1,         -1,-1},
-        .shape = {MT_NO_NODE, MT_NO_NODE          },
-        .item = item
-    };
-    mt_build_inertia(b, &inertia);
-    for (int side = 0; side < 2; side++) {
-        if (e.body[side] != MT_GROUND) {
-            mt_build_gravity_at(b, e.body[side], e.arm[side],
-                                mt_program_mul(p, mt_program_const(p, 0.5), mass));
-        }
-    }
+    mt_build_rod(b, e.body, e.arm, mass, item);
     return MT_OK;
 }
 

@@ -92,6 +92,7 @@ mt_status mt_info_fill(const mt_linear *lin, mt_info *out, mt_err *err)
     *out = (mt_info){.states = lin->sys->nq,
                      .equations = lin->m,
                      .freedoms = lin->n,
+                     .idle = lin->n_idle,
                      .redundant = mt_linear_redundant(lin),
                      .residual = lin->position.residual,
                      .gap_m = lin->position.gap_m};

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mechanics/drive.h"
+#include "mechanics/idle.h"
 #include "mechanics/reduce.h"
 #include "mechanics/tangent.h"
 
@@ -79,6 +80,7 @@ static mt_status evaluate_rows(mt_linear *lin, mt_err *err)
         mt_arena_rewind(&lin->scratch, mark);
     }
     MT_TRY(mt_reduce_basis(lin, err));
+    MT_TRY(mt_idle_remove(lin, err));
     return mt_reduce_rows(lin, err);
 }
 
@@ -269,8 +271,8 @@ mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradi
     if (rc != MT_OK) {
         return where_in_model(lin, bad, rc, err);
     }
-    const bool kept =
-        lin->built && sys->geometry_fixed && !sys->loaded && (!sys->driven || lin->unstressed);
+    const bool kept = lin->built && sys->geometry_fixed && !sys->loaded && !lin->idle_varies &&
+                      (!sys->driven || lin->unstressed);
     if (!kept) {
         MT_TRY(rebuild(lin, err));
     }

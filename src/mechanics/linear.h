@@ -37,6 +37,8 @@ typedef struct mt_linear {
     int m;            /* constraints in force */
     double *a;        /* m x nq */
     int n;            /* freedoms */
+    int n_idle; /* spins without mass, stiffness or joint, left out of the freedoms (idle.h) */
+    bool *idle; /* [bodies] takes part in one */
     double *rows[MT_TERM_KINDS];    /* 12 x n_rows, local freedoms */
     double *reduced[MT_TERM_KINDS]; /* n x n_rows: Z^T row, rounding made 0 (reduce.h) */
     bool *blocked[MT_TERM_KINDS];   /* [n_rows]: the joints block it, the reduced row is 0 */
@@ -52,7 +54,8 @@ typedef struct mt_linear {
     bool has_factor; /* no geometric stiffness, no coupling terms, no negative coefficient */
     unsigned long mass_version; /* changes when M_r does */
     unsigned long geometry_version;
-    bool unstressed; /* driven to its place with no spring stretched: as good as unloaded */
+    bool unstressed;  /* driven to its place with no spring stretched: as good as unloaded */
+    bool idle_varies; /* whether there are idle spins depends on inputs */
     bool built;
     bool with_gradient;
     mt_linear_tangent *tangent; /* [n_inputs], where geometry or position depend on inputs */

@@ -166,6 +166,11 @@ static void check_members(mt_finish *f, const mt_joint *j)
         mt_diag_error(f->d, mt_finish_addr(f->m, j->length), "%s %s joint has no \"length_m\"",
                       article(j->type), type);
     }
+    if (j->mass != MT_ABSENT && j->type != MT_JOINT_DISTANCE) {
+        mt_diag_error(f->d, mt_finish_addr(f->m, j->mass),
+                      "%s %s joint has no \"mass_kg\": a distance, which may be a rod, has",
+                      article(j->type), type);
+    }
     if (!is_geared(j->type) && (j->gear_joints[0].s != NULL || j->ratio != MT_ABSENT)) {
         mt_diag_error(f->d, j->name.addr,
                       "%s %s joint has no \"joints\" and \"ratio\": a gear has",

@@ -10,6 +10,15 @@
 static const char COORDINATE[] = {MT_JOINT_LIST(COORDINATE_OF)};
 #undef COORDINATE_OF
 
+/* 'a' angle, 'd' displacement, '-' none; NULL: a link's hinge. */
+static char coordinate_of(const mt_joint *joint)
+{
+    if (joint == NULL) {
+        return 'a';
+    }
+    return COORDINATE[joint->type];
+}
+
 static void check_joint(mt_finish *f, const mt_load *l)
 {
     if (l->joint_link != MT_ABSENT) {
@@ -27,7 +36,7 @@ static void check_joint(mt_finish *f, const mt_load *l)
         return;
     }
     const mt_joint *const joint = l->joint == MT_ABSENT ? NULL : &f->m->joints[l->joint];
-    const char coordinate = joint == NULL ? 'a' : COORDINATE[joint->type];
+    const char coordinate = coordinate_of(joint);
     if (coordinate == '-') {
         mt_diag_error(f->d, l->joint_name.addr, "\"%s\" is %s, which has no coordinate to load",
                       joint->name.s, mt_joint_type_name(joint->type));

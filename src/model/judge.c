@@ -247,6 +247,7 @@ static void judge_joints(mt_judge *j)
         const mt_item item = {"joint", "joints", i, joint->name.s};
         if (mt_model_present(&joint->in, j->configuration)) {
             sign(j, &item, joint->length, "length_m", false);
+            sign(j, &item, joint->mass, "mass_kg", true);
         }
     }
 }

@@ -424,6 +424,21 @@ static void judge_stroke(mt_judge *j, double size)
         j->model->nums[d->position].addr, mt_judge_drive_pointer(j, "position_m"));
 }
 
+static void judge_loads(mt_judge *j)
+{
+    const mt_model *const m = j->model;
+    for (int i = 0; i < m->n_loads; i++) {
+        const mt_load *const o = &m->loads[i];
+        const holder h = {
+            {"load", "loads", i, o->name.s},
+            &o->on, o->at.given ? 1 : 0, &o->at, NULL, NULL
+        };
+        if (o->on.name.s != NULL && mt_model_present(&o->in, j->configuration)) {
+            judge_side(j, &h, 0);
+        }
+    }
+}
+
 void mt_judge_geometry(mt_judge *j)
 {
     const mt_model *const m = j->model;
@@ -459,16 +474,7 @@ void mt_judge_geometry(mt_judge *j)
             judge_side(j, &h, side);
         }
     }
-    for (int i = 0; i < m->n_loads; i++) {
-        const mt_load *const o = &m->loads[i];
-        const holder h = {
-            {"load", "loads", i, o->name.s},
-            &o->on, o->at.given ? 1 : 0, &o->at, NULL, NULL
-        };
-        if (o->on.name.s != NULL && mt_model_present(&o->in, j->configuration)) {
-            judge_side(j, &h, 0);
-        }
-    }
+    judge_loads(j);
     mt_doubt_sort(j->out, first);
     for (int i = 0; i < m->n_bodies; i++) {
         if (mt_model_present(&m->bodies[i].in, j->configuration)) {

@@ -181,8 +181,9 @@ typedef struct mt_joint {
     mt_num axis
         [3]; /* revolute, cylindrical, planar, plane: axis / normal; prismatic, slot, line: direction. Fixed to bodies[0] (drawn on both). Not normalised */
     bool has_axis_b;
-    mt_num axis_b[3];       /* universal: second axis, on bodies[1] */
-    mt_num length;          /* distance: m; absent: as drawn */
+    mt_num axis_b[3]; /* universal: second axis, on bodies[1] */
+    mt_num length;    /* distance: m; absent: as drawn */
+    mt_num mass;      /* distance: kg of a uniform thin rod between the points; absent: none */
     mt_name gear_joints[2]; /* gear, rack: coordinate of [1] = ratio * angle of [0] */
     int gear_joint[2];
     mt_num ratio;           /* gear: 1 */

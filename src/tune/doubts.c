@@ -2,6 +2,7 @@
 #include "tune/doubts.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "mechanics/info.h"
@@ -155,11 +156,32 @@ static mt_status say_dead_centre(mt_linear *lin, mt_doubt_list *out, mt_err *err
     return MT_OK;
 }
 
+/* Rods that may turn about themselves. */
+static void say_idle(const mt_linear *lin, mt_doubt_list *out)
+{
+    char name[NAME_SIZE] = "";
+    int n = 0;
+    for (int b = 0; b < lin->sys->n_bodies && lin->n_idle > 0; b++) {
+        if (lin->idle[b] && n++ < NAMED) {
+            const size_t used = strlen(name);
+            (void)snprintf(name + used, sizeof name - used, "%s\"%s\"", n == 1 ? "" : ", ",
+                           lin->sys->bodies[b].name);
+        }
+    }
+    if (lin->n_idle > 0) {
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "idle_spin",
+                           "%d idle spin%s, without inertia and stiffness, left out: %s%s",
+                           lin->n_idle, lin->n_idle == 1 ? "" : "s", name,
+                           n > NAMED ? ", ..." : "");
+    }
+}
+
 static mt_status say_freedoms(const mt_analysis *a, mt_doubt_list *out, mt_err *err)
 {
     const int unstable = a->modes.n_unstable + a->modes.n_unstable_condensed;
     say_motion(a->lin, out);
     say_free(a, out);
+    say_idle(a->lin, out);
     if (unstable > 0) {
         char name[NAME_SIZE];
         name_motion(a, MT_MODE_UNSTABLE, name);

@@ -20,6 +20,11 @@ static bool matches_item(const mt_model *m, const char *pattern)
             return true;
         }
     }
+    for (int i = 0; i < m->n_joints; i++) {
+        if (m->joints[i].mass != MT_ABSENT && mt_text_matches(pattern, m->joints[i].name.s)) {
+            return true;
+        }
+    }
     return false;
 }
 
@@ -35,8 +40,8 @@ static void check_objective(mt_study_check *c, int which)
     }
     for (int i = 0; i < o->of.count; i++) {
         if (!matches_item(c->model, o->of.items[i].s)) {
-            mt_diag_error(c->diags, o->of.items[i].addr, "no body, link or bar matches \"%s\"",
-                          o->of.items[i].s);
+            mt_diag_error(c->diags, o->of.items[i].addr,
+                          "no body, link, bar or rod matches \"%s\"", o->of.items[i].s);
         }
     }
 }

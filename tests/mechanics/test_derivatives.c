@@ -180,6 +180,8 @@ static const struct {
     {          "loads",        "dead",         "g F M T P h k l", 3},
     {          "loads",     "trimmed",            "F M T P h to", 3},
     {    "space_loads",      "loaded",               "F T P a k", 4},
+    {           "rods",      "bodies",             "g m h x k P", 3},
+    {           "rods",   "distances",             "g m h x k P", 3},
 };
 
 static void derivatives__agree_with_slopes_in_every_mechanism(mt_test *t)

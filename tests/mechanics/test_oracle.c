@@ -192,6 +192,7 @@ static const struct {
     {"space_couplings",        NULL, false},
     {          "loads",        NULL, false},
     {    "space_loads",        NULL, false},
+    {           "rods", "distances", false},
 };
 
 static void oracle__udwadia_kalaba_agrees_on_every_model(mt_test *t)
