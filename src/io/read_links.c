@@ -14,6 +14,8 @@
     X(LINK_DENSITY, "density_kg_per_m3", NUMBER, false)               \
     X(LINK_YOUNG, "youngs_modulus_pa", NUMBER, false)                 \
     X(LINK_SHEAR, "shear_modulus_pa", NUMBER, false)                  \
+    X(LINK_SHEAR_DATA, "shear", OBJECT, false)                        \
+    X(LINK_ROTARY, "rotary_inertia", BOOL, false)                     \
     X(LINK_SECTION, "section", OBJECT, false)                         \
     X(LINK_STIFFNESS, "stiffness_n_m_per_rad", NUMBER_OR_LIST, false) \
     X(LINK_LENGTH, "element_length_m", NUMBER_OR_LIST, false)         \
@@ -42,6 +44,26 @@ MT_READ_TABLE(mt_link_keys, "link", LINK_KEYS);
     X(SECTION_SOURCE, "source", TEXT, false)
 enum { SECTION_KEYS(MT_READ_ENUM) SECTION_COUNT };
 MT_READ_TABLE(mt_section_keys, "section", SECTION_KEYS);
+
+#define SHEAR_KEYS(X)                                  \
+    X(SHEAR_COEFFICIENT, "coefficient", NUMBER, true)  \
+    X(SHEAR_OTHER, "coefficient_other", NUMBER, false) \
+    X(SHEAR_POISSON, "poissons_ratio", NUMBER, false)  \
+    X(SHEAR_DESCRIPTION, "description", TEXT, false)   \
+    X(SHEAR_SOURCE, "source", TEXT, false)
+enum { SHEAR_KEYS(MT_READ_ENUM) SHEAR_COUNT };
+MT_READ_TABLE(mt_shear_keys, "shear", SHEAR_KEYS);
+
+static mt_shear read_shear(mt_model_reader *mr, mt_addr value)
+{
+    mt_addr at[SHEAR_COUNT];
+    (void)mt_reader_object(&mr->r, value, &mt_shear_keys, at);
+    return (mt_shear){.given = value != MT_NO_ADDR,
+                      .coefficient = mt_read_num(mr, at[SHEAR_COEFFICIENT]),
+                      .coefficient_other = mt_read_num(mr, at[SHEAR_OTHER]),
+                      .poissons_ratio = mt_read_num(mr, at[SHEAR_POISSON]),
+                      .addr = value};
+}
 
 static mt_section read_section(mt_model_reader *mr, mt_addr value)
 {
@@ -104,6 +126,11 @@ static void read_link(mt_model_reader *mr, mt_addr value, mt_link *l)
     l->youngs_modulus = mt_read_num(mr, at[LINK_YOUNG]);
     l->shear_modulus = mt_read_num(mr, at[LINK_SHEAR]);
     l->section = read_section(mr, at[LINK_SECTION]);
+    l->shear = read_shear(mr, at[LINK_SHEAR_DATA]);
+    l->rotary_addr = at[LINK_ROTARY];
+    l->rotary_inertia = at[LINK_ROTARY] == MT_NO_ADDR
+                            ? l->shear.given
+                            : mt_reader_flag(&mr->r, at[LINK_ROTARY], false);
     read_lists(mr, at, l);
     l->has_hinge_axis = mt_read_vector(mr, at[LINK_HINGE_AXIS], l->hinge_axis);
     l->radius_of_gyration = mt_read_num(mr, at[LINK_GYRATION]);

@@ -57,10 +57,10 @@ MT_READ_TABLE(mt_body_keys, "body", BODY_KEYS);
 const mt_key_table *const *mt_model_key_tables(int *n)
 {
     static const mt_key_table *const tables[] = {
-        &mt_model_keys,   &mt_parameter_keys, &mt_body_keys,          &mt_link_keys,
-        &mt_section_keys, &mt_joint_keys,     &mt_spring_keys,        &mt_damper_keys,
-        &mt_sensor_keys,  &mt_mode_keys,      &mt_configuration_keys, &mt_drive_keys,
-        &mt_hold_keys,    &mt_load_keys,
+        &mt_model_keys,   &mt_parameter_keys, &mt_body_keys,  &mt_link_keys,
+        &mt_section_keys, &mt_shear_keys,     &mt_joint_keys, &mt_spring_keys,
+        &mt_damper_keys,  &mt_sensor_keys,    &mt_mode_keys,  &mt_configuration_keys,
+        &mt_drive_keys,   &mt_hold_keys,      &mt_load_keys,
     };
     *n = MT_COUNT(tables);
     return tables;

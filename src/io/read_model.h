@@ -27,6 +27,7 @@ extern const mt_key_table mt_parameter_keys;
 extern const mt_key_table mt_body_keys;
 extern const mt_key_table mt_link_keys;
 extern const mt_key_table mt_section_keys;
+extern const mt_key_table mt_shear_keys;
 extern const mt_key_table mt_joint_keys;
 extern const mt_key_table mt_spring_keys;
 extern const mt_key_table mt_damper_keys;

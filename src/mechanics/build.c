@@ -261,9 +261,6 @@ int mt_build_item(mt_builder *b, const char *name, mt_node mass)
 
 bool mt_build_attach(mt_builder *b, const mt_attach *a, int *body)
 {
-    const int elements = a->kind == MT_ATTACH_GROUND || a->kind == MT_ATTACH_BODY
-                             ? 0
-                             : b->model->links[a->index].elements;
     switch (a->kind) {
     case MT_ATTACH_GROUND:
         *body = MT_GROUND;
@@ -272,14 +269,10 @@ bool mt_build_attach(mt_builder *b, const mt_attach *a, int *body)
         *body = b->body_of[a->index];
         return *body >= 0;
     case MT_ATTACH_LINK_START:
-        *body = b->link_first[a->index];
-        return *body >= 0;
     case MT_ATTACH_LINK_END:
-        *body = b->link_first[a->index] +
-                (b->model->links[a->index].kind == MT_LINK_BEAM ? elements : elements - 1);
-        return b->link_first[a->index] >= 0;
     case MT_ATTACH_LINK_ELEMENT:
-        *body = b->link_first[a->index] + a->element;
+    case MT_ATTACH_LINK_NODE:
+        *body = b->link_first[a->index] + a->part;
         return b->link_first[a->index] >= 0;
     }
     return false;

@@ -47,6 +47,8 @@ int mt_build_angle(mt_builder *b, int body_a, int body_b, int axis);
 
 mt_status mt_build_bodies(mt_builder *b);
 mt_status mt_build_links(mt_builder *b);
+/* Where node `node` of a link lies. */
+void mt_build_link_node(mt_builder *b, int link, int node, mt_node out[3]);
 mt_status mt_build_joints(mt_builder *b);
 mt_status mt_build_springs(mt_builder *b);
 mt_status mt_build_loads(mt_builder *b);

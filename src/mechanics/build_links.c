@@ -3,7 +3,7 @@
  * Links. Lumped: n rigid elements of length l_i, hinged, with a torsional spring in each hinge (paper, Fig. 4); default stiffness EI over the distance of the two
  * element centres (EI/L_e for equal elements).
  *
- * Beam element: the springs of its six generalised strains (measure_beam.c), EA/l, GJ/l, EI/l and 3 EI/l; about the straight element that is the Euler-Bernoulli stiffness exactly, and its
+ * Beam element: the springs of its six generalised strains (measure_beam.c), EA/l, GJ/l, EI/l and 3 EI/(l (1 + Phi)); about the straight element that is the Euler-Bernoulli or Timoshenko stiffness exactly, and its
  * springs' forces make the consistent geometric stiffness.
  */
 #include "mechanics/build.h"
@@ -175,16 +175,15 @@ static mt_node link_mass(mt_builder *b, const mt_link *link, const link_geometry
     return b->zero;
 }
 
-/* Polar moment of inertia of the whole beam: mass x polar second moment / area. */
-static mt_node link_polar(mt_builder *b, const mt_link *link, const link_geometry *g,
-                          const section_nodes *s, mt_node mass)
+/* Moment of inertia of the whole beam's sections: mass x second moment / area. */
+static mt_node link_rotary(mt_builder *b, const mt_link *link, const link_geometry *g,
+                           const section_nodes *s, mt_node mass, mt_node second_moment)
 {
     mt_program *const p = &b->sys->program;
-    const mt_node polar = mt_program_add(p, s->i2, s->i3);
     if (link->mass != MT_ABSENT || link->density == MT_ABSENT) {
-        return mt_program_mul(p, mass, mt_program_div(p, polar, s->area));
+        return mt_program_mul(p, mass, mt_program_div(p, second_moment, s->area));
     }
-    return by_density(b, link, g, polar);
+    return by_density(b, link, g, second_moment);
 }
 
 static mt_inertia_def inertia_default(mt_inertia_kind kind, int body_a, int body_b,
@@ -333,36 +332,116 @@ static void beam_spring(mt_builder *b, const mt_link *link, int element,
     };
 }
 
+/* What all elements of a beam have in common. [2]: bending about e2, e3. */
+typedef struct beam_nodes {
+    mt_node length;
+    mt_node mass;
+    mt_node
+        twist; /* moments of inertia: about the axis, of the sections' rotation in bending */
+    mt_node rotary[2];
+    mt_node ei[2];
+    mt_node gj;
+    mt_node shape[2]; /* 1/(1 + Phi); MT_NO_NODE without shear */
+} beam_nodes;
+
+static mt_node shear_modulus(mt_builder *b, const mt_link *link)
+{
+    mt_program *const p = &b->sys->program;
+    if (link->shear.poissons_ratio == MT_ABSENT) {
+        return mt_build_num_or(b, link->shear_modulus, b->zero);
+    }
+    const mt_node nu = mt_build_num(b, link->shear.poissons_ratio);
+    return mt_program_div(p, mt_build_num(b, link->youngs_modulus),
+                          times(b, 2.0, mt_program_add(p, b->one, nu)));
+}
+
+/* 1/(1 + Phi) = k A G l^2/(k A G l^2 + 12 E I), over E where Poisson's ratio is known: then it depends on no modulus. */
+static mt_node shear_shape(mt_builder *b, const mt_link *link, const section_nodes *s,
+                           mt_node second_moment, mt_num coefficient, mt_node length)
+{
+    mt_program *const p = &b->sys->program;
+    mt_node bent = times(b, 12.0, second_moment);
+    mt_node area = mt_program_mul(p, mt_build_num(b, coefficient), s->area);
+    if (link->shear.poissons_ratio == MT_ABSENT) {
+        bent = mt_program_mul(p, bent, mt_build_num(b, link->youngs_modulus));
+        area = mt_program_mul(p, area, mt_build_num(b, link->shear_modulus));
+    } else {
+        const mt_node nu = mt_build_num(b, link->shear.poissons_ratio);
+        bent = mt_program_mul(p, bent, times(b, 2.0, mt_program_add(p, b->one, nu)));
+    }
+    const mt_node sheared = mt_program_mul(p, area, power(b, length, 2));
+    return mt_program_div(p, sheared, mt_program_add(p, sheared, bent));
+}
+
+static beam_nodes beam_of(mt_builder *b, const mt_link *link, const link_geometry *g,
+                          const section_nodes *s, mt_node total)
+{
+    mt_program *const p = &b->sys->program;
+    const bool space = b->sys->dimension == 3;
+    const mt_node count = mt_program_const(p, (double)link->elements);
+    const mt_node young = mt_build_num(b, link->youngs_modulus);
+    const mt_node second[2] = {s->i2, s->i3};
+    const mt_num other = link->shear.coefficient_other;
+    const mt_num coefficient[2] = {other == MT_ABSENT ? link->shear.coefficient : other,
+                                   link->shear.coefficient};
+    beam_nodes n = {.length = mt_program_div(p, g->span, count),
+                    .mass = mt_program_div(p, total, count),
+                    .twist = b->zero,
+                    .gj = b->zero};
+    for (int k = 0; k < 2; k++) {
+        const bool there = space || k == 1;
+        n.ei[k] = there ? mt_program_mul(p, young, second[k]) : b->zero;
+        n.rotary[k] = b->zero;
+        n.shape[k] = MT_NO_NODE;
+        if (there && link->shear.given) {
+            n.shape[k] = shear_shape(b, link, s, second[k], coefficient[k], n.length);
+        }
+        if (there && link->rotary_inertia) {
+            n.rotary[k] =
+                mt_program_div(p, link_rotary(b, link, g, s, total, second[k]), count);
+        }
+    }
+    if (space) {
+        const mt_node polar = mt_program_add(p, s->i2, s->i3);
+        n.twist = mt_program_div(p, link_rotary(b, link, g, s, total, polar), count);
+        n.gj = mt_program_mul(p, shear_modulus(b, link),
+                              s->torsion == MT_NO_NODE ? b->zero : s->torsion);
+    }
+    return n;
+}
+
 /* Springs of the six strains. */
 static void beam_springs(mt_builder *b, const mt_link *link, const link_geometry *g,
-                         const section_nodes *s, const int element[3], mt_node length)
+                         const section_nodes *s, const int element[3], const beam_nodes *n)
 {
     mt_program *const p = &b->sys->program;
     const mt_node young = mt_build_num(b, link->youngs_modulus);
-    const mt_node ei[2] = {s->i2 == MT_NO_NODE ? b->zero : mt_program_mul(p, young, s->i2),
-                           mt_program_mul(p, young, s->i3)};
     mt_measure_def def = mt_measure_def_default(MT_MEASURE_BEAM, element[1], element[2]);
     for (int i = 0; i < 3; i++) {
         def.dir[i] = g->triad[i];
     }
-    def.beam[MT_BEAM_LENGTH] = length;
+    def.beam[MT_BEAM_LENGTH] = n->length;
+    def.beam[MT_BEAM_SHAPE_2] = n->shape[0];
+    def.beam[MT_BEAM_SHAPE_3] = n->shape[1];
     if (b->sys->dimension == 3) {
         def.beam[MT_BEAM_POLAR] = mt_program_div(p, mt_program_add(p, s->i2, s->i3), s->area);
     }
     for (int k = b->sys->dimension == 3 ? 0 : 1; k < 2; k++) {
+        mt_node sway = times(b, 3.0, n->ei[k]);
+        if (n->shape[k] != MT_NO_NODE) {
+            sway = mt_program_mul(p, sway, n->shape[k]);
+        }
         def.component = MT_BEAM_BEND_2 + k;
-        beam_spring(b, link, element[0], &def, mt_program_div(p, ei[k], length));
+        beam_spring(b, link, element[0], &def, mt_program_div(p, n->ei[k], n->length));
         def.component = MT_BEAM_SWAY_2 + k;
-        beam_spring(b, link, element[0], &def, mt_program_div(p, times(b, 3.0, ei[k]), length));
+        beam_spring(b, link, element[0], &def, mt_program_div(p, sway, n->length));
     }
     def.component = MT_BEAM_STRETCH;
     beam_spring(b, link, element[0], &def,
-                mt_program_div(p, mt_program_mul(p, young, s->area), length));
+                mt_program_div(p, mt_program_mul(p, young, s->area), n->length));
     if (b->sys->dimension == 3) {
-        const mt_node gj = mt_program_mul(p, mt_build_num_or(b, link->shear_modulus, b->zero),
-                                          s->torsion == MT_NO_NODE ? b->zero : s->torsion);
         def.component = MT_BEAM_TWIST;
-        beam_spring(b, link, element[0], &def, mt_program_div(p, gj, length));
+        beam_spring(b, link, element[0], &def, mt_program_div(p, n->gj, n->length));
     }
 }
 
@@ -383,27 +462,28 @@ static void beam_gravity(mt_builder *b, const link_geometry *g, const int elemen
     }
 }
 
-/* inertia: mass and polar moment of inertia of the element. */
 static void build_beam_element(mt_builder *b, const mt_link *link, const link_geometry *g,
                                const section_nodes *s, const int element[3],
-                               const mt_node inertia[2])
+                               const beam_nodes *n)
 {
-    mt_program *const p = &b->sys->program;
-    const mt_node length =
-        mt_program_div(p, g->span, mt_program_const(p, (double)link->elements));
-    beam_springs(b, link, g, s, element, length);
-    mt_inertia_def def = inertia_default(MT_INERTIA_BEAM, element[1], element[2], inertia[0],
-                                         b->sys->n_items - 1);
+    beam_springs(b, link, g, s, element, n);
+    mt_inertia_def def =
+        inertia_default(MT_INERTIA_BEAM, element[1], element[2], n->mass, b->sys->n_items - 1);
     for (int i = 0; i < 3; i++) {
         def.dir[i] = g->triad[i];
     }
+    def.shape[0] = n->shape[0];
+    def.shape[1] = n->shape[1];
     mt_build_inertia(b, &def);
-    if (b->sys->dimension == 3) {
-        def.kind = MT_INERTIA_BEAM_TWIST;
-        def.coefficient = inertia[1];
+    def.kind = MT_INERTIA_BEAM_TWIST;
+    def.coefficient = n->twist;
+    mt_build_inertia(b, &def);
+    def.kind = MT_INERTIA_BEAM_ROTARY;
+    for (def.bending = 0; def.bending < 2; def.bending++) {
+        def.coefficient = n->rotary[def.bending];
         mt_build_inertia(b, &def);
     }
-    beam_gravity(b, g, element, times(b, 0.5, inertia[0]), length);
+    beam_gravity(b, g, element, times(b, 0.5, n->mass), n->length);
 }
 
 static mt_status build_beam(mt_builder *b, const mt_link *link, const link_geometry *g,
@@ -417,11 +497,7 @@ static mt_status build_beam(mt_builder *b, const mt_link *link, const link_geome
                        link->name.s);
     }
     const mt_node total = link_mass(b, link, g, s);
-    const mt_node count = mt_program_const(p, (double)link->elements);
-    const mt_node inertia[2] = {
-        mt_program_div(p, total, count),
-        b->sys->dimension == 2 ? b->zero
-                               : mt_program_div(p, link_polar(b, link, g, s, total), count)};
+    const beam_nodes n = beam_of(b, link, g, s, total);
     (void)mt_build_item(b, link->name.s, total);
     for (int i = 0; i <= link->elements; i++) {
         mt_node at[3];
@@ -431,10 +507,29 @@ static mt_status build_beam(mt_builder *b, const mt_link *link, const link_geome
         const int body =
             mt_build_body(b, mt_build_name(b, "%s.node%d", link->name.s, i), at, false);
         if (i > 0) {
-            build_beam_element(b, link, g, s, (const int[3]){i, body - 1, body}, inertia);
+            build_beam_element(b, link, g, s, (const int[3]){i, body - 1, body}, &n);
         }
     }
     return MT_OK;
+}
+
+void mt_build_link_node(mt_builder *b, int link, int node, mt_node out[3])
+{
+    mt_program *const p = &b->sys->program;
+    const mt_link *const l = &b->model->links[link];
+    link_geometry g;
+    mt_build_position(b, &l->from, g.from);
+    mt_build_position(b, &l->to, g.to);
+    g.span = mt_build_length(b, g.from, g.to);
+    mt_node s = times(b, (double)node / (double)l->elements, g.span);
+    if (l->n_element_length > 0) {
+        s = b->zero;
+        for (int i = 0; i < node; i++) {
+            s = mt_program_add(
+                p, s, listed(b, l->element_length, l->n_element_length, i, MT_NO_NODE));
+        }
+    }
+    point_along(b, &g, s, out);
 }
 
 mt_status mt_build_links(mt_builder *b)

@@ -12,7 +12,7 @@ static mt_status absent(mt_builder *b, const mt_load *load)
                    b->model->configurations[b->sys->configuration].name.s);
 }
 
-/* Where it acts: as given, at the end of a link, or at the centre (-1). */
+/* Where it acts: as given, at the end or node of a link, or at the centre (-1). */
 static int point_of(mt_builder *b, const mt_load *load, int body)
 {
     mt_node at[3];
@@ -22,6 +22,8 @@ static int point_of(mt_builder *b, const mt_load *load, int body)
     } else if (start || load->on.kind == MT_ATTACH_LINK_END) {
         const mt_link *const link = &b->model->links[load->on.index];
         mt_build_position(b, start ? &link->from : &link->to, at);
+    } else if (load->on.kind == MT_ATTACH_LINK_NODE) {
+        mt_build_link_node(b, load->on.index, load->on.element, at);
     } else {
         return -1;
     }

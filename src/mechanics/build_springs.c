@@ -37,6 +37,10 @@ static mt_status spring_ends(mt_builder *b, const mt_spring *spring, ends *e)
         if (spring->n_at > 0) {
             mt_build_position(b, &spring->at[spring->n_at == 2 ? side : 0], e->at[side]);
             e->arm[side] = mt_build_arm(b, e->body[side], e->at[side], what);
+        } else if (spring->bodies[side].kind == MT_ATTACH_LINK_NODE) {
+            mt_build_link_node(b, spring->bodies[side].index, spring->bodies[side].element,
+                               e->at[side]);
+            e->arm[side] = mt_build_arm(b, e->body[side], e->at[side], what);
         } else {
             for (int i = 0; i < 3; i++) {
                 e->at[side][i] =

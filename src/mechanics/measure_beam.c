@@ -15,6 +15,7 @@
  *     TWIST    phi1 + (mu2 s2 phi3 - mu3 s3 phi2)/2 - phi1 (mu3 phi2^2 + mu2 phi3^2)/4
  *     BEND_3   phi3 - mu2 phi1 s2/2          BEND_2  phi2 + mu3 phi1 s3/2
  *     SWAY_3   s3 + phi1 phi2/3              SWAY_2  s2 - phi1 phi3/3.
+ * (With shear N acts along the slope w' of the axis, not of the sections: Engesser's column, P = P_E/(1 + P_E/(k A G)).)
  * Bernoulli's term of STRETCH is 1/2 of the integral of w'^2, l (2 a^2 - a b + 2 b^2)/30: under a normal force N it makes the consistent geometric stiffness N/(30 l) [36 3l -36 3l; ...]. The last
  * term of STRETCH is Wagner's (an outer fibre of a twisted bar is longer); that of third order in TWIST turns s, which is measured in the ends' own triads, into the triad halfway; the second orders of the others carry torque and bending moments into the stiffness (a shaft that buckles under
  * torque, a blade that trips sideways). The energy

@@ -20,6 +20,8 @@ static int inertia_rows(const mt_system *sys, const mt_inertia_def *def)
         return MT_BAR_ROWS + ((sys->dimension - 1) * MT_DEFLECTION_ROWS);
     case MT_INERTIA_BEAM_TWIST:
         return MT_BAR_ROWS;
+    case MT_INERTIA_BEAM_ROTARY:
+        return MT_ROTARY_ROWS;
     }
     return 0;
 }
@@ -154,6 +156,10 @@ static void beam_rows(const mt_data *d, const mt_inertia_def *def, const mt_pose
         mt_beam_bar_rows(&g, true, rows);
         return;
     }
+    if (def->kind == MT_INERTIA_BEAM_ROTARY) {
+        mt_beam_rotary_rows(&g, def->bending, rows);
+        return;
+    }
     mt_beam_bar_rows(&g, false, rows);
     mt_cx *at = rows + ((ptrdiff_t)MT_BAR_ROWS * MT_LOCAL);
     for (int k = d->sys->dimension == 3 ? 0 : 1; k < 2; k++) {
@@ -186,6 +192,7 @@ static void inertia_eval(const mt_data *d, const mt_inertia_def *def, const mt_p
         break;
     case MT_INERTIA_BEAM:
     case MT_INERTIA_BEAM_TWIST:
+    case MT_INERTIA_BEAM_ROTARY:
         beam_rows(d, def, poses, rows);
         break;
     }

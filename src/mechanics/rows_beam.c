@@ -54,8 +54,9 @@ static void add_plane(mt_cx *row, const mt_beam_geometry *g, int k, const mt_cx 
     const mt_cx *const t = g->e[1 + k];
     const double sign = k == 0 ? -1.0 : 1.0;
     for (int side = 0; side < 2; side++) {
-        mt_row_add_point(row, side, CENTRE, u, by[2 * side]);
-        mt_row_add_turn(row, side, t, sign * cx_mul(g->length, by[(2 * side) + 1]));
+        const mt_cx *const own = side == 0 ? by : by + 2;
+        mt_row_add_point(row, side, CENTRE, u, own[0]);
+        mt_row_add_turn(row, side, t, sign * cx_mul(g->length, own[1]));
     }
 }
 
@@ -88,6 +89,23 @@ void mt_beam_deflection_rows(const mt_beam_geometry *g, int k, mt_cx *rows)
     for (int i = 0; i < MT_DEFLECTION_ROWS; i++) {
         for (int j = 0; j < 4; j++) {
             by[i][j] /= sqrt((2.0 * i) + 1.0);
+        }
+        add_plane(rows + ((ptrdiff_t)i * MT_LOCAL), g, k, by[i]);
+    }
+}
+
+void mt_beam_rotary_rows(const mt_beam_geometry *g, int k, mt_cx *rows)
+{
+    const mt_cx mu = g->shape[k];
+    mt_cx by[MT_ROTARY_ROWS][4] = {
+        {-1.0, 0.0, 1.0, 0.0}
+    };
+    add_sway(by[0], 0.5 * (1.0 - mu));
+    add_kappa(by[1], 0.5);
+    add_sway(by[2], 0.5 * mu);
+    for (int i = 0; i < MT_ROTARY_ROWS; i++) {
+        for (int j = 0; j < 4; j++) {
+            by[i][j] = cx_div(by[i][j], g->length) / sqrt((2.0 * i) + 1.0);
         }
         add_plane(rows + ((ptrdiff_t)i * MT_LOCAL), g, k, by[i]);
     }

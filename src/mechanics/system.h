@@ -92,16 +92,18 @@ typedef enum mt_inertia_kind {
     MT_INERTIA_ROTATION,    /* J_ab (omega . dir0)(omega . dir1) */
     MT_INERTIA_BAR,         /* bar with consistent mass between two points */
     MT_INERTIA_BEAM,        /* consistent mass of a beam element between two node bodies */
-    MT_INERTIA_BEAM_TWIST   /* its polar moment of inertia about its axis, 3-D */
+    MT_INERTIA_BEAM_TWIST,  /* its polar moment of inertia about its axis, 3-D */
+    MT_INERTIA_BEAM_ROTARY  /* rotary inertia of its sections in one plane of bending */
 } mt_inertia_kind;
 
 typedef struct mt_inertia_def {
     mt_inertia_kind kind;
-    mt_node coefficient; /* kg, kg m^2, or kg (TWIST: kg m^2) of the whole element */
+    mt_node coefficient; /* kg, kg m^2, or kg (TWIST, ROTARY: kg m^2) of the whole element */
     int body[2];
     int point[2];
     int dir[3];       /* BEAM: triad; ROTATION: dir[0], dir[1], unit vectors of the body */
     mt_node shape[2]; /* BEAM: 1/(1 + Phi) for bending about e2, e3; MT_NO_NODE: 1 */
+    int bending;      /* BEAM_ROTARY: 0 about e2, 1 about e3 */
     int item;
 } mt_inertia_def;
 

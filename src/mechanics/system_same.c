@@ -129,7 +129,7 @@ static bool same_inertias(pair *p)
     for (int i = 0; i < p->a->n_inertias; i++) {
         const mt_inertia_def *const x = &p->a->inertias[i];
         const mt_inertia_def *const y = &p->b->inertias[i];
-        if (x->kind != y->kind || !same_ints(2, x->body, y->body) ||
+        if (x->kind != y->kind || x->bending != y->bending || !same_ints(2, x->body, y->body) ||
             !same_ints(2, x->point, y->point) || !same_ints(3, x->dir, y->dir) ||
             !same_node(p, x->coefficient, y->coefficient) ||
             !same_nodes(p, 2, x->shape, y->shape)) {

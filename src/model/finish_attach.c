@@ -1,24 +1,53 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What joints, springs and sensors hold on to: "ground", a body, "link.start", "link.end", "link.3". */
+/* What joints, springs and sensors hold on to: "ground", a body, "link.start", "link.end", "link.node3", "link.3". */
 #include <limits.h>
 #include <string.h>
 
 #include "model/finish.h"
 
-/* The number that s is, 1 or more without leading zeros; 0 where it is none. */
+/* The number that s is, 0 or more without leading zeros; -1 where it is none. */
 static int whole_number(const char *s)
 {
     int n = 0;
-    if (*s == '0') {
-        return 0;
+    if (*s == '\0' || (s[0] == '0' && s[1] != '\0')) {
+        return -1;
     }
     for (; *s != '\0'; s++) {
         if (*s < '0' || *s > '9' || n > (INT_MAX - 9) / 10) {
-            return 0;
+            return -1;
         }
         n = 10 * n + (*s - '0');
     }
     return n;
+}
+
+/* "start", "end", "3", "node3"; false where the part is none of them. Elements count from 1, nodes from 0. */
+static bool read_part(mt_attach *a, const mt_link *l, const char *part)
+{
+    static const char node[] = "node";
+    const bool beam = l->kind == MT_LINK_BEAM;
+    const int last = beam ? l->elements : l->elements - 1;
+    if (strcmp(part, "start") == 0) {
+        a->kind = MT_ATTACH_LINK_START;
+        a->part = 0;
+        return true;
+    }
+    if (strcmp(part, "end") == 0) {
+        a->kind = MT_ATTACH_LINK_END;
+        a->part = last;
+        return true;
+    }
+    if (strncmp(part, node, sizeof node - 1) == 0) {
+        a->kind = MT_ATTACH_LINK_NODE;
+        a->element = whole_number(part + sizeof node - 1);
+        a->part = beam || a->element == 0 ? a->element
+                                          : a->element - 1; /* the element that ends there */
+        return a->element >= 0 && a->element <= l->elements;
+    }
+    a->kind = MT_ATTACH_LINK_ELEMENT;
+    a->element = whole_number(part) - 1;
+    a->part = a->element;
+    return !beam && a->element >= 0 && a->element <= last;
 }
 
 /* Part of a link behind the dot. */
@@ -26,28 +55,20 @@ static void attach_link(mt_finish *f, mt_attach *a, int link, const char *part)
 {
     const mt_link *const l = &f->m->links[link];
     a->index = link;
-    if (strcmp(part, "start") == 0) {
-        a->kind = MT_ATTACH_LINK_START;
-        return;
-    }
-    if (strcmp(part, "end") == 0) {
-        a->kind = MT_ATTACH_LINK_END;
-        return;
-    }
-    const int element = whole_number(part);
-    a->kind = MT_ATTACH_LINK_ELEMENT;
-    a->element = element - 1;
-    if (l->elements == 0) {
-        return; /* the link could not be read */
+    if (read_part(a, l, part) || l->elements == 0) {
+        return; /* or the link could not be read */
     }
     if (l->kind == MT_LINK_BEAM) {
         mt_diag_error(f->d, a->name.addr,
-                      "\"%s\": a beam link is held at \"%s.start\" or \"%s.end\" only",
-                      a->name.s, l->name.s, l->name.s);
-    } else if (element < 1 || element > l->elements) {
-        mt_diag_error(f->d, a->name.addr,
-                      "\"%s\": link \"%s\" has \"start\", \"end\" and the elements 1 to %d",
+                      "\"%s\": beam link \"%s\" has \"start\", \"end\" and the nodes node0 to "
+                      "node%d",
                       a->name.s, l->name.s, l->elements);
+    } else {
+        mt_diag_error(
+            f->d, a->name.addr,
+            "\"%s\": link \"%s\" has \"start\", \"end\", the elements 1 to %d and the "
+            "nodes node0 to node%d",
+            a->name.s, l->name.s, l->elements, l->elements);
     }
 }
 
@@ -58,6 +79,7 @@ void mt_finish_attach(mt_finish *f, mt_attach *a)
     a->kind = MT_ATTACH_GROUND;
     a->index = MT_GROUND;
     a->element = MT_ABSENT;
+    a->part = 0;
     if (s == NULL || strcmp(s, "ground") == 0) {
         return;
     }
@@ -84,8 +106,8 @@ void mt_finish_attach(mt_finish *f, mt_attach *a)
                       s);
     } else if (dot == NULL) {
         mt_diag_error(f->d, a->name.addr,
-                      "\"%s\" is a link: write \"%s.start\", \"%s.end\" or one of its elements",
-                      s, s, s);
+                      "\"%s\" is a link: write \"%s.start\", \"%s.end\" or one of its %s", s, s,
+                      s, f->m->links[-1 - i].kind == MT_LINK_BEAM ? "nodes" : "elements");
     } else {
         attach_link(f, a, -1 - i, dot + 1);
     }
@@ -99,7 +121,9 @@ bool mt_finish_same_attach(const mt_attach *a, const mt_attach *b)
     if (a->kind == MT_ATTACH_GROUND || b->kind == MT_ATTACH_GROUND) {
         return strcmp(a->name.s, b->name.s) == 0; /* an unknown name counts as ground as well */
     }
-    return a->kind == b->kind && a->index == b->index && a->element == b->element;
+    /* "l.start" and "l.1" are one rigid element */
+    return (a->kind == MT_ATTACH_BODY) == (b->kind == MT_ATTACH_BODY) && a->index == b->index &&
+           a->part == b->part;
 }
 
 bool mt_finish_is_point_mass(const mt_finish *f, const mt_attach *a)
@@ -120,6 +144,7 @@ void mt_finish_needs_attach(mt_finish *f, mt_name item, const char *what, const 
     case MT_ATTACH_LINK_START:
     case MT_ATTACH_LINK_END:
     case MT_ATTACH_LINK_ELEMENT:
+    case MT_ATTACH_LINK_NODE:
         mt_finish_needs(f, item, what, in, &f->m->links[part->index].in, "link",
                         f->m->links[part->index].name.s);
         return;

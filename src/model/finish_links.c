@@ -85,6 +85,29 @@ static void check_mass(mt_finish *f, const mt_link *l)
     }
 }
 
+/* The shear modulus: in space of every beam, in the plane of one with shear, and in one way. */
+static void check_shear(mt_finish *f, const mt_link *l)
+{
+    const bool ratio = l->shear.poissons_ratio != MT_ABSENT;
+    const bool modulus = l->shear_modulus != MT_ABSENT;
+    if (l->shear.given && ratio == modulus) {
+        mt_diag_error(
+            f->d, l->shear.addr,
+            "link \"%s\": give its shear modulus in one way: \"shear_modulus_pa\", or "
+            "\"poissons_ratio\" in \"shear\"",
+            l->name.s);
+    } else if (!l->shear.given && f->m->dimension == 3) {
+        wants(f, l, modulus, true, "shear_modulus_pa", "a beam in three dimensions");
+    } else if (!l->shear.given) {
+        wants(f, l, modulus, false, "shear_modulus_pa",
+              "a link in two dimensions without \"shear\"");
+    }
+    if (f->m->dimension == 2) {
+        wants(f, l, l->shear.coefficient_other != MT_ABSENT, false, "shear/coefficient_other",
+              "a link in two dimensions");
+    }
+}
+
 static void check_beam(mt_finish *f, const mt_link *l)
 {
     static const char beam[] = "a link of kind \"beam\"";
@@ -95,9 +118,8 @@ static void check_beam(mt_finish *f, const mt_link *l)
     wants(f, l, l->n_element_mass > 0, false, "element_mass_kg", beam);
     wants(f, l, l->n_element_inertia > 0, false, "element_inertia_kg_m2", beam);
     wants(f, l, l->radius_of_gyration != MT_ABSENT, false, "radius_of_gyration_m", beam);
+    check_shear(f, l);
     if (f->m->dimension == 3) {
-        wants(f, l, l->shear_modulus != MT_ABSENT, true, "shear_modulus_pa",
-              "a beam in three dimensions");
         const bool round =
             l->section.shape == MT_SECTION_CIRCLE || l->section.shape == MT_SECTION_TUBE;
         if (!round) {
@@ -109,7 +131,14 @@ static void check_beam(mt_finish *f, const mt_link *l)
 
 static void check_lumped(mt_finish *f, const mt_link *l)
 {
+    static const char rigid[] = "a link of rigid elements";
     const int n = l->elements;
+    wants(f, l, l->shear.given, false, "shear", rigid);
+    wants(f, l, l->rotary_addr != MT_NO_ADDR, false, "rotary_inertia", rigid);
+    if (f->m->dimension == 2) {
+        wants(f, l, l->shear_modulus != MT_ABSENT, false, "shear_modulus_pa",
+              "a link in two dimensions");
+    }
     check_list(f, l, l->n_stiffness, n - 1, l->stiffness, "stiffness_n_m_per_rad", "hinge");
     check_list(f, l, l->n_element_length, n, l->element_length, "element_length_m", "element");
     check_list(f, l, l->n_element_mass, n, l->element_mass, "element_mass_kg", "element");
@@ -154,7 +183,6 @@ void mt_finish_links(mt_finish *f)
         if (f->m->dimension == 2) {
             static const char plane[] = "a link in two dimensions";
             wants(f, l, l->has_hinge_axis, false, "hinge_axis", plane);
-            wants(f, l, l->shear_modulus != MT_ABSENT, false, "shear_modulus_pa", plane);
             wants(f, l, l->radius_of_gyration != MT_ABSENT && l->kind == MT_LINK_LUMPED, false,
                   "radius_of_gyration_m", plane);
         }

@@ -199,6 +199,19 @@ static void judge_section(mt_judge *j, const mt_item *item, const mt_section *s)
     sign(j, item, s->torsion_constant, "section/torsion_constant_m4", true);
 }
 
+static void judge_shear(mt_judge *j, const mt_item *item, const mt_shear *s)
+{
+    sign(j, item, s->coefficient, "shear/coefficient", false);
+    sign(j, item, s->coefficient_other, "shear/coefficient_other", false);
+    if (s->poissons_ratio != MT_ABSENT) {
+        const double nu = j->value[s->poissons_ratio];
+        if (!(nu > -1.0 && nu <= 0.5)) {
+            fault(j, item, s->poissons_ratio, "shear/poissons_ratio",
+                  "must be above -1 and not above 0.5");
+        }
+    }
+}
+
 static void judge_links(mt_judge *j)
 {
     for (int i = 0; i < j->model->n_links; i++) {
@@ -212,6 +225,7 @@ static void judge_links(mt_judge *j)
         modulus(j, &item, l->youngs_modulus, "youngs_modulus_pa");
         modulus(j, &item, l->shear_modulus, "shear_modulus_pa");
         judge_section(j, &item, &l->section);
+        judge_shear(j, &item, &l->shear);
         listed(j, &item, l->n_stiffness, l->stiffness, "stiffness_n_m_per_rad", true);
         listed(j, &item, l->n_element_length, l->element_length, "element_length_m", false);
         listed(j, &item, l->n_element_mass, l->element_mass, "element_mass_kg", true);

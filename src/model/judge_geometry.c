@@ -124,7 +124,17 @@ static void along(const double from[3], const double to[3], double part, double 
     }
 }
 
-/* What an attachment to a link means: a rigid element, or a node of a beam. */
+/* Length of a link's first `count` elements, in parts of the whole. */
+static double part_of_whole(const mt_judge *j, const mt_link *l, int count, double whole)
+{
+    double sum = 0.0;
+    for (int i = 0; i < count && l->n_element_length > 0 && whole > 0.0; i++) {
+        sum += j->value[l->element_length[l->n_element_length == 1 ? 0 : i]] / whole;
+    }
+    return l->n_element_length > 0 ? sum : (double)count / (double)l->elements;
+}
+
+/* What an attachment to a link means: a rigid element, or a node. */
 static segment segment_of(const mt_judge *j, const mt_attach *a)
 {
     const mt_link *const l = &j->model->links[a->index];
@@ -135,25 +145,12 @@ static segment segment_of(const mt_judge *j, const mt_attach *a)
         s.known = false;
         return s;
     }
-    const double n = (double)l->elements;
-    const bool end = a->kind == MT_ATTACH_LINK_END;
-    const int element = a->kind == MT_ATTACH_LINK_ELEMENT ? a->element
-                        : end                             ? l->elements - 1
-                                                          : 0;
-    double before = 0.0; /* in parts of the whole */
-    double length = 1.0 / n;
+    const bool node = a->kind == MT_ATTACH_LINK_NODE;
+    const int first = node ? a->element : a->part;
     s.whole = distance(from, to);
-    for (int i = 0; i <= element && l->n_element_length > 0 && s.whole > 0.0; i++) {
-        before += i > 0 ? length : 0.0;
-        length = j->value[l->element_length[l->n_element_length == 1 ? 0 : i]] / s.whole;
-    }
-    before = l->n_element_length > 0 ? before : (double)element / n;
-    if (l->kind == MT_LINK_BEAM) {
-        before = end ? 1.0 : 0.0;
-        length = 0.0;
-    }
-    along(from, to, before, s.a);
-    along(from, to, before + length, s.b);
+    along(from, to, part_of_whole(j, l, first, s.whole), s.a);
+    along(from, to,
+          part_of_whole(j, l, first + (node || l->kind == MT_LINK_BEAM ? 0 : 1), s.whole), s.b);
     return s;
 }
 

@@ -72,19 +72,21 @@ typedef struct mt_point {
     mt_num x[3];
 } mt_point;
 
-/* What a joint, spring or sensor holds on to. Written "ground", "crank", "beam.start", "beam.end", "beam.3" (rigid element, 1-based). */
+/* What a joint, spring or sensor holds on to. Written "ground", "crank", "beam.start", "beam.end", "beam.3" (rigid element, 1-based), "beam.node3" (node, 0-based: of a beam, or where rigid elements meet). */
 typedef enum mt_attach_kind {
     MT_ATTACH_GROUND,
     MT_ATTACH_BODY,
     MT_ATTACH_LINK_START,
     MT_ATTACH_LINK_END,
-    MT_ATTACH_LINK_ELEMENT
+    MT_ATTACH_LINK_ELEMENT,
+    MT_ATTACH_LINK_NODE
 } mt_attach_kind;
 typedef struct mt_attach {
     mt_name name;
     mt_attach_kind kind;
     int index;   /* body or link */
-    int element; /* MT_ATTACH_LINK_ELEMENT: 0-based */
+    int element; /* MT_ATTACH_LINK_ELEMENT, MT_ATTACH_LINK_NODE: 0-based */
+    int part;    /* of a link: how many of its bodies come before the one that is meant */
 } mt_attach;
 
 /* A rigid body; without `inertia_kg_m2` a point mass (no rotation of its own, 2 or 3 states). */
@@ -120,10 +122,19 @@ typedef struct mt_section {
     mt_addr addr;
 } mt_section;
 
+/* Timoshenko's beam: shear area = coefficient x area, for bending about the hinge axis and about the other. */
+typedef struct mt_shear {
+    bool given;
+    mt_num coefficient;
+    mt_num coefficient_other; /* 3-D; absent: the same */
+    mt_num poissons_ratio;    /* instead of the link's shear_modulus: G = E/(2 (1 + nu)) */
+    mt_addr addr;
+} mt_shear;
+
 typedef enum mt_link_kind { MT_LINK_LUMPED, MT_LINK_BEAM } mt_link_kind;
 
 /* A flexible link from one point to another. Lumped (`"kind": "rigid_elements"`, default): n rigid elements L.1..n, hinges L.h1..h(n-1), torsional springs L.k1..k(n-1).
- * Beam: n Euler-Bernoulli elements, n + 1 nodes. Lists have one entry (uniform) or one per element (stiffness: one per hinge). */
+ * Beam: n Euler-Bernoulli elements, or Timoshenko's with `shear`, n + 1 nodes. Lists have one entry (uniform) or one per element (stiffness: one per hinge). */
 typedef struct mt_link {
     mt_name name;
     mt_link_kind kind;
@@ -133,7 +144,10 @@ typedef struct mt_link {
     mt_num mass;           /* kg, whole link; or density x section; or element_mass */
     mt_num density;        /* kg/m^3 */
     mt_num youngs_modulus; /* Pa */
-    mt_num shear_modulus;  /* Pa, 3-D beams (torsion) */
+    mt_num shear_modulus;  /* Pa, beams: torsion in 3-D, shear */
+    mt_shear shear;        /* beams */
+    bool rotary_inertia;   /* beams: of the section's rotation in bending */
+    mt_addr rotary_addr;
     mt_section section;
     int n_stiffness;        /* 0, 1 or elements - 1 */
     mt_num *stiffness;      /* N m/rad */

@@ -74,8 +74,9 @@ static void model__what_is_held_is_resolved(mt_test *t)
     CHECK_INT(t, slot->n_at, 2); /* two names of points are a pair */
     CHECK_INT(t, slot->at[1].point, 1);
     const mt_joint *const rod = &m->joints[mt_model_find_joint(m, "rod")];
-    CHECK_INT(t, rod->bodies[1].kind, MT_ATTACH_LINK_ELEMENT);
-    CHECK_INT(t, rod->bodies[1].element, 1);
+    CHECK_INT(t, rod->bodies[1].kind, MT_ATTACH_LINK_NODE);
+    CHECK_INT(t, rod->bodies[1].element, 2);
+    CHECK_INT(t, rod->bodies[1].part, 1); /* the element that ends there */
     const mt_spring *const hinge = &m->springs[mt_model_find_spring(m, "hinge")];
     CHECK_INT(t, hinge->joint, MT_ABSENT);
     CHECK_INT(t, hinge->joint_link, 0);
