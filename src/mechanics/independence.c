@@ -10,8 +10,21 @@
 #include "mechanics/tangent.h"
 
 static const double VANISHES = 1e-8;
+/* Rounding, of what is made of terms of size 1: an entry of w (largest 1) below this does not tell an equation that takes part from one that does not. */
+static const double TAKES_PART = 1e-13;
 
-/* row[nq] = sum_j w_j dr_j A._j; returns the sum of the lengths of its terms in scaled coordinates. */
+/* Length of row j of A. in scaled coordinates, the row of A being of unit length. */
+static double row_length(const mt_elimination *e, const mt_linear_tangent *t, int j)
+{
+    double squares = 0.0;
+    for (ptrdiff_t k = 0; k < e->nq; k++) {
+        const double entry = e->dr[j] * t->a[j + (k * e->m)] * e->dc[k];
+        squares += entry * entry;
+    }
+    return sqrt(squares);
+}
+
+/* row[nq] = sum_j w_j dr_j A._j; returns the sum of the lengths of its terms in scaled coordinates, none shorter than what rounding of w makes of it. */
 static double combine(const mt_linear *lin, const mt_linear_tangent *t, const double *w,
                       double *row)
 {
@@ -19,14 +32,10 @@ static double combine(const mt_linear *lin, const mt_linear_tangent *t, const do
     double terms = 0.0;
     memset(row, 0, (size_t)e->nq * sizeof *row);
     for (int j = 0; j < e->m; j++) {
-        const double factor = w[j] * e->dr[j];
-        double squares = 0.0;
-        for (ptrdiff_t k = 0; k < e->nq && factor != 0.0; k++) {
-            const double entry = factor * t->a[j + (k * e->m)];
-            row[k] += entry;
-            squares += entry * e->dc[k] * entry * e->dc[k];
+        for (ptrdiff_t k = 0; k < e->nq; k++) {
+            row[k] += w[j] * e->dr[j] * t->a[j + (k * e->m)];
         }
-        terms += sqrt(squares);
+        terms += fmax(fabs(w[j]), TAKES_PART / VANISHES) * row_length(e, t, j);
     }
     return terms;
 }
@@ -50,11 +59,20 @@ static bool can_change(const mt_linear *lin, int p)
     return mt_linear_redundant(lin) > 0 && lin->tangent != NULL && lin->tangent[p].moves;
 }
 
+/*
+ * A gap's derivative is a sum of motions of points that the input moves; those that cancel at once (both bodies' point is drawn elsewhere) are not among its terms, but in A.,
+ * which turns with the arms: arms grow by up to |A.| model lengths.
+ */
 static bool opens(const mt_linear *lin, const mt_linear_tangent *t, const double *w)
 {
+    double terms = t->terms;
+    for (int j = 0; j < lin->m; j++) {
+        const double arms = lin->sys->length_m * row_length(&lin->e, t, j);
+        terms = fmax(terms, TAKES_PART / VANISHES * arms);
+    }
     for (int i = 0; i < lin->m; i++) {
         const double part = fabs(w[i] * lin->e.dr[i] * t->c[i]);
-        if (part > VANISHES * t->terms) {
+        if (part > VANISHES * terms) {
             return true;
         }
     }
