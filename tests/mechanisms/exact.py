@@ -17,6 +17,11 @@ def number(value):
     return Decimal(repr(value)) if isinstance(value, float) else Decimal(value)
 
 
+def binary(value):
+    """A number of a file as the double that the program reads."""
+    return Decimal(float(value))
+
+
 def root(x):
     return x.sqrt() if isinstance(x, Decimal) else math.sqrt(x)
 

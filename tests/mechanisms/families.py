@@ -136,6 +136,48 @@ def _load_none(m, joints):
             m.torsion(joint)
 
 
+def tilted(rng, dim):
+    """Closed loops and doubled hinges whose axes are parameters: where a tilt jams them, there is no derivative."""
+    m = Maker(rng, dim, name="Tilted hinges")
+    if m.chance(0.5):
+        a, b, c = (rng.choice(PAIRS) for _ in range(3))
+        one = _add([0.0, 0.0], a)
+        two = _add(one, b)
+        joints = _loop(m, [[0.0, 0.0], one, two, _add(two, [c[0], -c[1]])])
+    else:
+        joints = [m.joint("ground", m.body(m.point()), "revolute")]
+        m.tree(rng.randint(0, 1), tied=1.0, masses=0.0)
+        if m.chance(0.7):
+            m.doubled(1)
+    for joint in joints:
+        m.torsion(joint, stiffness_n_m_per_rad=m.parameter("c", m.size(1e3, 1e5), "N m/rad"))
+    joint = rng.choice(m.model["joints"])
+    m.model["parameters"] = {k: v for k, v in m.model["parameters"].items() if k[0] != "t"}
+    if "axis" in joint:
+        k = rng.randrange(3)
+        m.model["parameters"]["tilt"] = {"value": joint["axis"][k], "unit": "1"}
+        joint["axis"] = [("tilt" if i == k else x) for i, x in enumerate(joint["axis"])]
+    if m.chance(0.4) and len(joints) == len(m.model["joints"]):
+        m.gravity()
+    return m.done()
+
+
+def taut(rng, dim):
+    """Beads on strings in one line, in tension; some strings under pressure beside them."""
+    m = Maker(rng, dim, name="Beads on strings")
+    n, k = rng.randint(1, 8), m.size(1e3, 1e9)
+    span = [[s * x for x in (1.0, 0.0, 0.0)[:dim]] for s in range(n + 2)]
+    tension = m.parameter("T", m.size(5, 500), "N")
+    for at in span[1:-1]:
+        m.body(at, point_mass=True)
+    name = lambda i: f"b{i - 1}" if 0 < i < n + 1 else "ground"
+    for i in range(n + 1):
+        m.model["springs"].append({"name": f"s{i}", "type": "axial", "bodies": [name(i), name(i + 1)], "at": [span[i], span[i + 1]], "stiffness_n_per_m": k, "preload_n": tension})
+    if m.chance(0.5):  # some of it pushed, less than all is pulled
+        m.model["springs"].append({"name": "push", "type": "axial", "bodies": ["ground", name(n)], "at": [span[0], span[n]], "stiffness_n_per_m": m.size(1e2, 1e5)})
+    return _turned(rng, m.done())
+
+
 def neutral(rng, dim):
     """Loads that balance in every position: what is left after cancellation is nothing."""
     m = Maker(rng, dim, name="Balanced")
@@ -312,6 +354,6 @@ def _of(maker, dim):
 
 
 for _name, _maker, _dims in (("four_bar", four_bar, (2, 3)), ("cranks", parallel_cranks, (2, 3)), ("dead", dead, (2, 3)), ("neutral", neutral, (2, 3)), ("trusses", trusses, (2, 3)),
-                             ("frames", frames, (2, 3)), ("negative", negative, (2, 3)), ("massless", massless, (2, 3)), ("far", far, (2,)), ("beams", beams, (2, 3))):
+                             ("frames", frames, (2, 3)), ("negative", negative, (2, 3)), ("massless", massless, (2, 3)), ("far", far, (2,)), ("tilted", tilted, (3,)), ("taut", taut, (2, 3)), ("beams", beams, (2, 3))):
     for _dim in _dims:
         KINDS[f"{_name}{_dim}"] = _of(_maker, _dim)

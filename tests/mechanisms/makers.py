@@ -11,17 +11,17 @@ PYTHAGOREAN = [(0.6, 0.8), (0.8, 0.6), (0.28, 0.96), (0.96, 0.28), (0.352, 0.936
 
 
 class Maker:
-    def __init__(self, rng, dim, decades=1.0, name=""):
-        self.rng, self.dim, self.decades = rng, dim, decades
+    def __init__(self, rng, dim, decades=1.0, name="", masses=None):
+        self.rng, self.dim, self.decades, self.masses = rng, dim, decades, masses or decades
         self.step = rng.choice([16, 16, 100])  # points on a grid of 1/16 m, exact in binary, or of 1 cm
         self.scale = 1.0
         self.model = {"format": "modetune-model/1", "name": name, "dimension": dim, "parameters": {}, "bodies": [], "joints": [], "springs": []}
         self.points = {}
 
     # numbers ------------------------------------------------------------------------------------------------------------------------------------
-    def size(self, low, high):
+    def size(self, low, high, decades=None):
         """Evenly over the decades, three digits; `decades` stretches the range about its middle."""
-        middle, reach = (low * high) ** 0.5, (high / low) ** (0.5 * self.decades)
+        middle, reach = (low * high) ** 0.5, (high / low) ** (0.5 * (decades or self.decades))
         return float(f"{middle * reach ** self.rng.uniform(-1, 1):.3g}")
 
     def grid(self, reach=1.0):
@@ -47,7 +47,7 @@ class Maker:
 
     def parameter(self, prefix, value, unit):
         """A name for a number, most of the time."""
-        if not self.chance(0.7):
+        if isinstance(value, str) or not self.chance(0.7):
             return value
         name = f"{prefix}_{len(self.model['parameters']) + 1}"
         self.model["parameters"][name] = {"value": value, "unit": unit}
@@ -56,11 +56,11 @@ class Maker:
     # items --------------------------------------------------------------------------------------------------------------------------------------
     def body(self, centre, point_mass=False):
         name = f"b{len(self.model['bodies'])}"
-        item = {"name": name, "mass_kg": self.parameter("m", self.size(0.1, 10), "kg"), "centre": centre}
+        item = {"name": name, "mass_kg": self.parameter("m", self.size(0.1, 10, self.masses), "kg"), "centre": centre}
         if not point_mass and self.dim == 2:
-            item["inertia_kg_m2"] = self.parameter("J", self.size(0.01, 1), "kg m^2")
+            item["inertia_kg_m2"] = self.parameter("J", self.size(0.01, 1, self.masses), "kg m^2")
         elif not point_mass:
-            a, b, c = (self.size(0.01, 1) for _ in range(3))  # second moments: any three are those of a body
+            a, b, c = (self.size(0.01, 1, self.masses) for _ in range(3))  # second moments: any three are those of a body
             item["inertia_kg_m2"] = [round(x, 12) for x in (b + c, a + c, a + b)]
             if self.chance(0.4):
                 small = float(f"{0.3 * min(a, b, c):.2g}")
@@ -208,7 +208,7 @@ class Maker:
         for item in self.model["bodies"]:
             mass = item["mass_kg"]
             mass = self.model["parameters"][mass]["value"] if isinstance(mass, str) else mass
-            soft = lambda: float(f"{mass * 9.81 / self.size(0.003, 0.05):.3g}")
+            soft = lambda: float(f"{mass * 9.81 / self.size(0.003, 0.05, 1.0):.3g}")
             name, at = item["name"], item["centre"]
             if "inertia_kg_m2" in item:
                 self.model["springs"].append({"name": f"f{name}", "type": "bushing", "bodies": ["ground", name], "at": at,
@@ -260,6 +260,11 @@ class Maker:
                     at = self.rng.choice(value) if isinstance(value[0], list) else value
                     k = self.rng.randrange(self.dim)
                     at[k] = self.parameter("x", at[k], "m")
+            if "axis" in item and self.dim == 3 and self.chance(0.3 * p):
+                axis = list(item["axis"])
+                k = self.rng.randrange(3)
+                axis[k] = self.parameter("t", axis[k], "1")
+                item["axis"] = axis
         if "gravity_m_per_s2" in self.model and self.chance(p):
             self.model["gravity_m_per_s2"] = [self.parameter("g", x, "m/s^2") if x else 0 for x in self.model["gravity_m_per_s2"]]
 
@@ -351,6 +356,20 @@ def _decades(rng, dim):
     m.springs(rng.randint(1, 5))
     if m.chance(0.3):
         m.loops(1)
+    return m.done()
+
+
+def _stiff(rng, dim):
+    """Springs of any stiffness beside soft feet, a little load: what is soft must not drown in what is stiff."""
+    m = Maker(rng, dim, decades=rng.choice([2, 3, 4]), name="Stiff springs under load", masses=1.0)
+    m.tree(rng.randint(1, 4 if dim == 2 else 3))
+    m.springs(rng.randint(1, 5))
+    m.stand()
+    if m.chance(0.7):
+        m.gravity()
+    for spring in m.model["springs"]:
+        if spring["type"] in ("axial", "bar") and m.chance(0.4):
+            spring["preload_n"] = m.parameter("p", float(f"{rng.uniform(-2, 8):.3g}"), "N")
     return m.done()
 
 
@@ -452,7 +471,7 @@ def _of(maker, dim):
 
 
 KINDS = {}
-for _name, _maker in (("free", _unloaded), ("redundant", _redundant), ("loaded", _loaded), ("decades", _decades), ("blocked", _blocked), ("driven", _driven)):
+for _name, _maker in (("free", _unloaded), ("redundant", _redundant), ("loaded", _loaded), ("decades", _decades), ("stiff", _stiff), ("blocked", _blocked), ("driven", _driven)):
     KINDS[f"{_name}2"] = _of(_maker, 2)
     KINDS[f"{_name}3"] = _of(_maker, 3)
 KINDS["hanging"] = hanging

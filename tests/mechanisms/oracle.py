@@ -147,8 +147,8 @@ class Spring:
 class Oracle:
     """One configuration of a model as read from its file, with other values of parameters."""
 
-    def __init__(self, model, configuration=None, values=None):
-        self.model, self.dim = model, model["dimension"]
+    def __init__(self, model, configuration=None, values=None, read=number):
+        self.model, self.dim, self.read = model, model["dimension"], read
         self.name = configuration or next(iter(model.get("configurations") or {"default": {}}))
         self.settings = self._settings(self.name)
         self.values, self.given = {}, {**self.settings["parameters"], **(values or {})}
@@ -180,11 +180,11 @@ class Oracle:
     def n(self, value):
         """A number or an expression of names, numbers, + - * /."""
         if not isinstance(value, str):
-            return number(value)
+            return value if isinstance(value, Decimal) else self.read(value)
         if value in self.model.get("parameters", {}):
             return self._parameter(value)
-        text = re.sub(r"(?<![\w.])(\d+\.?\d*(?:[eE][+-]?\d+)?)", r"D('\1')", value).replace("^", "**")
-        return eval(text, {"D": Decimal, "__builtins__": {}}, _Names(self))  # noqa: S307: our own models
+        text = re.sub(r"(?<![\w.])(\d+\.?\d*(?:[eE][+-]?\d+)?)", r"D(\1)", value).replace("^", "**")
+        return eval(text, {"D": self.read, "__builtins__": {}}, _Names(self))  # noqa: S307: our own models
 
     def v(self, value):
         """A point or vector."""

@@ -89,12 +89,8 @@ class State:
 
     def reach(self, u):
         """What the springs could store if no joint were in their way: sum of |k| |g|^2 |u|^2."""
-        total = self.cast(0)
-        for _, _, elastic in self.parts:
-            for f, g, h in elastic:
-                live = set(g) | set(h)
-                total += abs(f) * max(sum(x * x for x in g.values()), sum(x * x for x in h.values())) * sum(u[i] * u[i] for i in live)
-        return total
+        springs = sum((abs(f) * max(sum(x * x for x in g.values()), sum(x * x for x in h.values())) for _, _, e in self.parts for f, g, h in e), self.cast(0))
+        return springs * sum(x * x for x in u)
 
     def terms(self, y, u):
         """What u' H u is a sum of, spring by spring: (elastic, geometric)."""
@@ -397,16 +393,37 @@ class Modes:
     def shifted(self, values):
         """The same with other values of parameters, at rest next to here."""
         o = self.problem.oracle
-        near = Problem(Oracle(o.model, o.name, values))
+        near = Problem(Oracle(o.model, o.name, values, o.read))
         return Modes(near, near.polish(self.state.q, self.state.force) if self.loaded else None)
 
     def blocked(self):
         """Is there a spring that no motion stretches?"""
         return any(all(abs(along(g, z)) <= exact.ZERO for z in self.frame.z) for _, _, elastic in self.state.parts for f, g, _ in elastic if f)
 
+    def motion(self, i):
+        """Mode i at the bodies' centres: {"b0.x": ..., "b0.rz": ...}; turning by the rotation vector."""
+        q, u, dim, out = self.state.q, self.shapes[i], self.problem.oracle.dim, {}
+        for name, body in self.problem.oracle.bodies.items():
+            at = body.first
+            out.update({f"{name}.{'xyz'[k]}": u[at + k] for k in range(dim)})
+            if body.turns and dim == 2:
+                out[f"{name}.rz"] = q[at + 2] * u[at + 3] - q[at + 3] * u[at + 2]
+            elif body.turns:
+                row = lambda v, k, at=at: v[at + 3 + 3 * k:at + 6 + 3 * k]
+                for k in range(3):  # R' = w^ R
+                    out[f"{name}.r{'xyz'[k]}"] = dot(row(u, (k + 2) % 3), row(q, (k + 1) % 3))
+        return out
+
+    def centre(self):
+        """Of all masses, at rest."""
+        q, weights = self.state.q, self.problem.oracle.weights
+        total = sum(m for _, m in weights)
+        return [sum(m * sum(x * (q[i] if i >= 0 else 1) for i, x in form[k].items()) for form, m in weights) / total for k in range(self.problem.oracle.dim)] if total else None
+
     def counts(self):
         return {"freedoms": self.freedoms, "rigid": sum(self.zero), "unstable": sum(x < 0 and not z for x, z in zip(self.values, self.zero))}
 
 
-def modes(model, configuration=None, values=None):
-    return Modes(Problem(Oracle(model, configuration, values)))
+def modes(model, read=exact.number):
+    """Of the model's first configuration."""
+    return Modes(Problem(Oracle(model, read=read)))
