@@ -170,6 +170,73 @@ static void beams__hang_under_their_weight(mt_test *t)
     mech_free(&s);
 }
 
+/* A cantilever of L = E I = 1 that hardly stretches, with a dead load at its end; drawn from its end to its root where `flip`. */
+static mt_model *cantilever(mt_test *t, int elements, bool flip, const char *load)
+{
+    char text[TEXT];
+    const char *const a = flip ? "[1, 0]" : "[0, 0]";
+    const char *const b = flip ? "[0, 0]" : "[1, 0]";
+    (void)snprintf(
+        text, sizeof text,
+        "{\"format\": \"modetune-model/1\", \"dimension\": 2,"
+        "\"links\": [{\"name\": \"beam\", \"kind\": \"beam\", \"from\": %s, \"to\": %s, "
+        "\"elements\": %d, \"youngs_modulus_pa\": 1, \"mass_kg\": 1,"
+        "\"section\": {\"shape\": \"general\", \"area_m2\": 1e6, \"second_moment_m4\": 1}}],"
+        "\"joints\": [{\"name\": \"c\", \"type\": \"fixed\", \"bodies\": [\"ground\", "
+        "\"beam.%s\"], \"at\": [0, 0]}],"
+        "\"loads\": [{\"name\": \"tip\", \"on\": \"beam.%s\", %s}]}",
+        a, b, elements, flip ? "end" : "start", flip ? "start" : "end", load);
+    return mech_parse(t, text);
+}
+
+/* The elastica: u and w of the end under P L^2/(EI) across (K. Mattiasson, Int. J. Num. Meth. Eng. 17 (1981) 145-153, elliptic integrals). */
+static void beams__bend_to_the_elastica(mt_test *t)
+{
+    static const struct {
+        const char *load;
+        double u;
+        double w;
+    } rows[] = {
+        { "\"force_n\": [0, 1]", 0.05643, 0.30172},
+        { "\"force_n\": [0, 2]", 0.16064, 0.49346},
+        { "\"force_n\": [0, 5]", 0.38763, 0.71379},
+        {"\"force_n\": [0, 10]", 0.55500, 0.81061}
+    };
+    for (int i = 0; i < 2 * MT_COUNT(rows); i++) {
+        const bool flip = i % 2 == 1;
+        mech s;
+        mt_test_row(t, "%s%s", rows[i / 2].load, flip ? ", drawn from its end" : "");
+        if (mech_must(t, cantilever(t, 16, flip, rows[i / 2].load), NULL, "", &s)) {
+            const mt_pose *const tip = &s.a->lin->position.pose[flip ? 0 : 16];
+            CHECK_NEAR_ABS(t, 1.0 - creal(tip->x[0]), rows[i / 2].u, 3e-5);
+            CHECK_NEAR_ABS(t, creal(tip->x[1]), rows[i / 2].w, 3e-5);
+        }
+        mech_free(&s);
+    }
+}
+
+/* A moment of pi E I/L at its end bends it to a half circle: the end turns by pi exactly, and lies a diameter 2 L/pi above the root. */
+static void beams__bend_to_a_half_circle(mt_test *t)
+{
+    double error[2] = {nan(""), nan("")};
+    for (int i = 0; i < 2; i++) {
+        const int n = 8 << i;
+        mech s;
+        mt_test_row(t, "%d elements", n);
+        if (mech_must(t, cantilever(t, n, false, "\"moment_n_m\": \"pi\""), NULL, "", &s)) {
+            const mt_pose *const tip = &s.a->lin->position.pose[n];
+            CHECK_NEAR_ABS(t, creal(tip->r[0]), -1.0, 1e-9);
+            CHECK_NEAR_ABS(t, creal(tip->r[1]), 0.0, 1e-9);
+            CHECK_NEAR_ABS(t, creal(tip->x[0]), 0.0, 1e-9);
+            error[i] = creal(tip->x[1]) - 2.0 / MECH_PI;
+        }
+        mech_free(&s);
+    }
+    CHECK(t, fabs(error[1]) < 2e-6);
+    CHECK_NEAR_ABS(t, log2(error[0] / error[1]), 4.0, 0.2);
+}
+
 MT_TEST_MAIN(MT_TEST(beams__converge_with_fourth_order),
              MT_TEST(beams__axial_mode_of_a_clamped_beam),
-             MT_TEST(beams__hang_under_their_weight))
+             MT_TEST(beams__hang_under_their_weight), MT_TEST(beams__bend_to_the_elastica),
+             MT_TEST(beams__bend_to_a_half_circle))

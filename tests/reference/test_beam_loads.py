@@ -320,6 +320,22 @@ class Space(unittest.TestCase):
                     self.assertAlmostEqual(zero(square, 0.9, 1.1), 1, delta=2e-5)
 
 
+    def test_tension_stiffens_twist(self):
+        """Wagner: G J + N (I2 + I3)/A, which matters for strips; the lowest mode of this one twists."""
+        for flip, strain in itertools.product((False, True), (1e-3, -5e-4)):
+            place = Place(self.rng, 3)
+            section = {"shape": "general", "area_m2": 1e4, "second_moment_m4": 1, "second_moment_other_m4": 1.7, "torsion_constant_m4": 0.01}
+            first, last = ends("beam", flip)
+            model = {"format": "modetune-model/1", "dimension": 3, "links": [link(place, "beam", (0,), (1,), 6, flip, section=section)],
+                     "joints": [{"name": "a", "type": "fixed", "bodies": ["ground", first], "at": place.point(0)},
+                                {"name": "b", "type": "cylindrical", "bodies": ["ground", last], "at": place.point(1), "axis": place.axis(1)}],
+                     "springs": [{"name": "pull", "type": "axial", "bodies": [last, "ground"], "at": [place.point(1), place.point(2)],
+                                  "stiffness_n_per_m": 1e-9, "preload_n": strain * 1e4}]}
+            slack = dict(model, springs=[])
+            with self.subTest(flip=flip, strain=strain):
+                self.assertAlmostEqual(squares(model)[0] / squares(slack)[0], 1 + strain * 2.7 / (0.4 * 0.01), delta=1e-7)
+
+
 class Frames(unittest.TestCase):
     """Whichever end of a beam is drawn first, a frame is the same frame."""
 
@@ -339,6 +355,8 @@ class Frames(unittest.TestCase):
                 more = {"hinge_axis": place.axis(*(across / np.linalg.norm(across)))} if dimension == 3 else {}
                 out["links"].append(link(place, f"l{i}", tuple(a), tuple(b), numbers[i][0], flip, mass_kg=numbers[i][1], **more))
                 out["links"][-1]["section"] = dict(out["links"][-1]["section"], area_m2=1e3)
+                if i == 1:  # Timoshenko's, Phi about 10
+                    out["links"][-1].update(shear={"coefficient": 0.02}, shear_modulus_pa=0.4)
             for i, (one, two) in enumerate(((("", "ground"), parts[0]), (parts[0], parts[1]), (parts[1], parts[2]), (parts[2], ("ground", "")))):
                 out["joints"].append({"name": f"j{i}", "type": "fixed", "bodies": [one[1], two[0]], "at": place.point(*corners[i])})
             return out
