@@ -60,7 +60,7 @@ void mt_subject_warn_overridden(const mt_subject *s, int c);
 const char *mt_subject_configuration(const mt_subject *s, int c);
 
 /* Facts about the modes that several commands tell. */
-/* 1-based index of the vibration mode at position pos; 0 for rigid-body and unstable modes. */
+/* 1-based index of the vibration mode at position pos; 0 for rigid-body, unstable and undecided modes, and beside an undecided one. */
 int mt_modes_index(const mt_modes *modes, int pos);
 const char *mt_mode_kind_name(mt_mode_kind kind);
 /* How many positions to show where `count` vibration modes are wanted (0: all): rigid-body and unstable ones come on top. */

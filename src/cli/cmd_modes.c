@@ -11,6 +11,8 @@
 #include "tune/doubts.h"
 
 enum { HZ_DIGITS = 6, RATIO_DIGITS = 2 };
+/* A table on paper tells the error of a frequency from this part of it on: the digits that it prints. */
+static const double TOLD_ERROR = 1e-6;
 
 /* One configuration, ready to be written. */
 typedef struct view {
@@ -39,8 +41,10 @@ static void json_mode(mt_json_writer *w, const view *v, int i)
     }
     mt_json_put_string(w, "name", mt_mode_name(v->s, v->c, index));
     mt_json_put_number(w, "frequency_hz", mt_modal_hz(m, i));
+    mt_json_put_number(w, "frequency_error_hz", mt_modal_error_hz(m, i));
     mt_json_put_string(w, "kind", mt_mode_kind_name(m->kind[i]));
     mt_json_put_number(w, "omega_squared", m->lambda[i]);
+    mt_json_put_number(w, "omega_squared_error", m->error[i]);
     mt_json_put_integer(w, "repeated", size);
     mt_json_put_number(w, "residual", m->residual[i]);
     mt_json_put_number(w, "orthogonality", m->orthogonality[i]);
@@ -80,6 +84,7 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     mt_json_put_integer(w, "freedoms", lin->n);
     mt_json_put_integer(w, "rigid_body_modes", m->n_rigid);
     mt_json_put_integer(w, "unstable_modes", m->n_unstable + m->n_unstable_condensed);
+    mt_json_put_integer(w, "undecided_modes", m->n_undecided);
     mt_json_put_integer(w, "massless_directions", m->n_condensed);
     mt_json_open(w, "modes", '[');
     for (int i = 0; i < v->shown; i++) {
@@ -102,7 +107,24 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     return MT_OK;
 }
 
-static mt_table table_new(bool with_configuration, int n_shapes, const mt_shapes *shapes)
+/* Is the error of this mode's frequency worth a word? */
+static bool is_rough(const mt_modes *m, int i)
+{
+    return m->kind[i] == MT_MODE_FLEXIBLE &&
+           mt_modal_error_hz(m, i) > TOLD_ERROR * mt_modal_hz(m, i);
+}
+
+static bool any_rough(const view *v)
+{
+    bool rough = false;
+    for (int i = 0; i < v->shown; i++) {
+        rough = rough || is_rough(&v->a->modes, i);
+    }
+    return rough;
+}
+
+static mt_table table_new(bool with_configuration, bool with_error, int n_shapes,
+                          const mt_shapes *shapes)
 {
     mt_table t = mt_table_default();
     if (with_configuration) {
@@ -111,6 +133,9 @@ static mt_table table_new(bool with_configuration, int n_shapes, const mt_shapes
     mt_table_column(&t, "mode", "index", MT_ALIGN_RIGHT);
     mt_table_column(&t, "kind", "kind", MT_ALIGN_LEFT);
     mt_table_column(&t, "frequency [Hz]", "frequency_hz", MT_ALIGN_POINT);
+    if (with_error) {
+        mt_table_column(&t, "error [Hz]", "frequency_error_hz", MT_ALIGN_POINT);
+    }
     mt_table_column(&t, "name", "name", MT_ALIGN_LEFT);
     mt_table_column(&t, "residual", "residual", MT_ALIGN_POINT);
     mt_table_column(&t, "orthogonality", "orthogonality", MT_ALIGN_POINT);
@@ -126,6 +151,7 @@ static mt_table table_new(bool with_configuration, int n_shapes, const mt_shapes
 static void fill_table(mt_table *t, const view *v, bool csv)
 {
     const mt_modes *const m = &v->a->modes;
+    const bool with_error = csv || any_rough(v);
     for (int i = 0; i < v->shown; i++) {
         const int index = mt_modes_index(m, i);
         char text[24];
@@ -139,6 +165,11 @@ static void fill_table(mt_table *t, const view *v, bool csv)
                           : (m->kind[i] == MT_MODE_RIGID_BODY ? "rigid body"
                                                               : mt_mode_kind_name(m->kind[i])));
         mt_table_number(t, mt_modal_hz(m, i), HZ_DIGITS);
+        if (with_error && (csv || is_rough(m, i))) {
+            mt_table_number(t, mt_modal_error_hz(m, i), RATIO_DIGITS);
+        } else if (with_error) {
+            mt_table_text(t, NULL);
+        }
         mt_table_text(t, mt_mode_name(v->s, v->c, index));
         mt_table_number(t, m->residual[i], RATIO_DIGITS);
         mt_table_number(t, m->orthogonality[i], RATIO_DIGITS);
@@ -170,8 +201,8 @@ static void print_shapes(const view *v, mt_text *out)
             mt_table_number(&t, v->shapes.value[k + ((ptrdiff_t)i * v->shapes.n)], 4);
         }
     }
-    mt_text_add(out, "\n  Mass-normalised shapes (numbers in parentheses: rigid-body or "
-                     "unstable modes, by position) [1/sqrt(kg) and rad/(m sqrt(kg))]\n");
+    mt_text_add(out, "\n  Mass-normalised shapes (numbers in parentheses: modes without "
+                     "an index, by position) [1/sqrt(kg) and rad/(m sqrt(kg))]\n");
     mt_table_print(&t, 2, out);
     mt_table_free(&t);
 }
@@ -209,7 +240,7 @@ static void tell(const view *v, mt_text *out)
 
 static void text_view(const view *v, mt_text *out)
 {
-    mt_table t = table_new(false, 0, NULL);
+    mt_table t = table_new(false, any_rough(v), 0, NULL);
     fill_table(&t, v, false);
     mt_text_addf(out, "%s\n", mt_subject_configuration(v->s, v->c));
     mt_cli_print_doubts(&v->doubts, out);
@@ -243,12 +274,12 @@ static mt_status csv_view(sink *to, const view *v)
         return MT_OK;
     }
     if (to->table.n_columns == 0 && !to->table.failed) {
-        to->table = table_new(true, v->shapes.n, &v->shapes);
+        to->table = table_new(true, true, v->shapes.n, &v->shapes);
     }
     if (to->table.failed) {
         return MT_OK; /* the output that the table goes into tells */
     }
-    if (to->table.n_columns != 8 + v->shapes.n) {
+    if (to->table.n_columns != 9 + v->shapes.n) {
         return MT_E_USAGE;
     }
     fill_table(&to->table, v, true);

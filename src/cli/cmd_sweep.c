@@ -120,6 +120,7 @@ static mt_status visit(void *context, int point, const double *inputs, mt_err *e
     }
     j->v.rigid[point] = m->n_rigid;
     j->v.unstable[point] = m->n_unstable + m->n_unstable_condensed;
+    j->v.undecided[point] = m->n_undecided;
     return MT_OK;
 }
 
@@ -132,7 +133,9 @@ static mt_status prepare_modes(job *j, int wanted, mt_err *err)
     j->v.hz = mt_arena_f64(&j->mem, (size_t)j->v.modes, n);
     j->v.rigid = mt_arena_int(&j->mem, n);
     j->v.unstable = mt_arena_int(&j->mem, n);
-    if (j->v.hz == NULL || j->v.rigid == NULL || j->v.unstable == NULL) {
+    j->v.undecided = mt_arena_int(&j->mem, n);
+    if (j->v.hz == NULL || j->v.rigid == NULL || j->v.unstable == NULL ||
+        j->v.undecided == NULL) {
         return mt_fail_memory(err);
     }
     for (size_t i = 0; i < n * (size_t)j->v.modes; i++) {

@@ -77,14 +77,14 @@ const mt_command mt_commands[MT_CMD_IDS] = {
             "ones, with\n"
             "differences, roles and sources. Writes no files. Exit status 0 when "
             "all hold, else 1."),
-    COMMAND(MT_CMD_MODES, "modes", "MODEL", 1, 1, "natural frequencies and mode shapes",
-            "Prints the modes of each configuration: rigid-body, flexible and "
-            "unstable ones, the\n"
-            "residual and orthogonality ratios of each (about 1 is perfect), "
-            "redundant joints, and\n"
-            "how the equilibrium was found. Shapes are mass-normalised. Names that "
-            "the model gives\n"
-            "to modes are shown where nothing is changed by --set."),
+    COMMAND(
+        MT_CMD_MODES, "modes", "MODEL", 1, 1, "natural frequencies and mode shapes",
+        "Prints the modes of each configuration: rigid-body, flexible, unstable and\n"
+        "undecided ones (rounding hides whether they are stable), what a frequency may be\n"
+        "wrong by (in JSON and CSV; in the table where that exceeds 1e-6 of it), the\n"
+        "residual and orthogonality ratios of each (about 1 is perfect), redundant joints,\n"
+        "and how the equilibrium was found. Shapes are mass-normalised. Names that the model\n"
+        "gives to modes are shown where nothing is changed by --set."),
     COMMAND(MT_CMD_MAC, "mac", "MODEL:CONFIGURATION MODEL:CONFIGURATION", 2, 2,
             "pair and correlate two sets of modes",
             "Compares shapes at the sensors that both models have, pairs the modes "

@@ -228,7 +228,7 @@ void mt_subject_warn_overridden(const mt_subject *s, int c)
 int mt_modes_index(const mt_modes *modes, int pos)
 {
     int index = 0;
-    if (modes->kind[pos] != MT_MODE_FLEXIBLE) {
+    if (modes->kind[pos] != MT_MODE_FLEXIBLE || modes->n_undecided > 0) {
         return 0;
     }
     for (int i = 0; i <= pos; i++) {
@@ -244,6 +244,8 @@ const char *mt_mode_kind_name(mt_mode_kind kind)
         return "flexible";
     case MT_MODE_RIGID_BODY:
         return "rigid_body";
+    case MT_MODE_UNDECIDED:
+        return "undecided";
     case MT_MODE_UNSTABLE:
         break;
     }

@@ -19,10 +19,11 @@ typedef struct mt_sweep_view {
     const mt_sweep_request *request;
     const mt_system *sys;
     mt_sweep sweep;
-    int modes;     /* frequencies per point; 0: not asked for */
-    double *hz;    /* modes x n points; NaN: no such mode */
-    int *rigid;    /* [n] rigid-body modes */
-    int *unstable; /* [n] */
+    int modes;      /* frequencies per point; 0: not asked for */
+    double *hz;     /* modes x n points; NaN: no such mode */
+    int *rigid;     /* [n] rigid-body modes */
+    int *unstable;  /* [n] */
+    int *undecided; /* [n] */
 } mt_sweep_view;
 
 /* "JOINT=FROM:TO:N" with expressions of the subject's values, into mem. Fails: MT_E_USAGE, MT_E_MEMORY. */

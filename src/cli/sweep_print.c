@@ -89,6 +89,21 @@ static void text_row(const mt_sweep_view *v, int point, mt_table *t)
     }
 }
 
+static void tell_undecided(const mt_sweep_view *v, mt_text *out)
+{
+    int n = 0;
+    for (int i = 0; i < v->sweep.n_points && v->rigid != NULL; i++) {
+        n += v->sweep.points[i].status == MT_OK && v->undecided[i] > 0 ? 1 : 0;
+    }
+    if (n > 0) {
+        mt_text_addf(
+            out,
+            "  UNDECIDED at %d position%s: springs and loads cancel, and rounding hides "
+            "whether it holds.\n",
+            n, n == 1 ? "" : "s");
+    }
+}
+
 static void tell_modes(const mt_sweep_view *v, mt_text *out)
 {
     int unstable = 0;
@@ -111,6 +126,7 @@ static void tell_modes(const mt_sweep_view *v, mt_text *out)
         mt_text_addf(out, "  UNSTABLE at %d position%s: %s not hold.\n", unstable,
                      unstable == 1 ? "" : "s", unstable == 1 ? "it does" : "they do");
     }
+    tell_undecided(v, out);
 }
 
 /* Where the range comes nearest to a dead centre. */
@@ -195,6 +211,7 @@ static void json_point(const mt_sweep_view *v, int point, mt_json_writer *w)
         mt_json_close(w);
         mt_json_put_integer(w, "rigid_body_modes", v->rigid[point]);
         mt_json_put_integer(w, "unstable_modes", v->unstable[point]);
+        mt_json_put_integer(w, "undecided_modes", v->undecided[point]);
     }
     mt_json_close(w);
 }

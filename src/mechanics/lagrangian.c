@@ -21,6 +21,17 @@ mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessia
     return bad ? mt_fail_memory(err) : MT_OK;
 }
 
+mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
+                                   mt_err *err)
+{
+    l->terms = mt_arena_f64(mem, (size_t)sys->nq, (size_t)sys->nq);
+    l->push = mt_arena_f64(mem, (size_t)sys->n_bodies, 1);
+    const size_t most = 2 * ((size_t)sys->n_springs + (size_t)sys->n_constraints);
+    l->pieces = mt_arena_alloc(mem, most + (size_t)sys->n_loads, sizeof *l->pieces);
+    return l->terms == NULL || l->push == NULL || l->pieces == NULL ? mt_fail_memory(err)
+                                                                    : MT_OK;
+}
+
 static void local_dofs(const mt_system *sys, const int body[2], int dof[MT_LOCAL])
 {
     for (int k = 0; k < MT_LOCAL; k++) {
@@ -65,6 +76,61 @@ static void add_hessian(const mt_system *sys, const int body[2], const mt_jet *j
     }
 }
 
+/* The slope of a beam element's chord: coordinates over its length. */
+static bool is_chord(const mt_measure_def *def)
+{
+    return def->kind == MT_MEASURE_BEAM && def->component >= MT_BEAM_SWAY_2;
+}
+
+static bool is_angle(const mt_measure_def *def)
+{
+    return def->kind == MT_MEASURE_ANGLE || def->kind == MT_MEASURE_ROTATION ||
+           def->kind == MT_MEASURE_DOT ||
+           (def->kind == MT_MEASURE_BEAM && def->component != MT_BEAM_STRETCH &&
+            !is_chord(def));
+}
+
+/* Largest coordinate of the two bodies: what rounding of their positions is relative to. */
+static double extent_of(const mt_pose *poses, const int body[2])
+{
+    double extent = 0.0;
+    for (int side = 0; side < 2; side++) {
+        const mt_pose *const pose = mt_pose_of(poses, body[side]);
+        for (int k = 0; k < 3; k++) {
+            extent = fmax(extent, fabs(creal(pose->x[k])));
+        }
+    }
+    return extent;
+}
+
+/* terms += size |jet.h|, and force times the coordinates' size: two lengths that cancel in an entry between rotations have been the difference of coordinates. */
+static void note_terms(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
+                       const mt_jet *jet, double size, double force, mt_lagrangian *out)
+{
+    int dof[MT_LOCAL];
+    if (out->terms == NULL || size == 0.0) {
+        return;
+    }
+    local_dofs(d->sys, def->body, dof);
+    mt_piece *const piece = &out->pieces[out->n_pieces++];
+    memcpy(piece->dof, dof, sizeof dof);
+    double extent = is_angle(def) ? 0.0 : extent_of(poses, def->body);
+    if (is_chord(def)) {
+        extent /= creal(mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0));
+    }
+    for (int c = 0; c < MT_LOCAL; c++) {
+        for (int r = 0; r < MT_LOCAL; r++) {
+            piece->h[r + (MT_LOCAL * c)] = size * creal(jet->h[r + (MT_LOCAL * c)]);
+            if (dof[r] >= 0 && dof[c] >= 0) {
+                const bool turns = r % 6 >= 3 && c % 6 >= 3;
+                const double entry = fabs(creal(jet->h[r + (MT_LOCAL * c)]));
+                out->terms[dof[r] + ((ptrdiff_t)dof[c] * d->sys->nq)] +=
+                    (size * entry) + (turns ? force * extent : 0.0);
+            }
+        }
+    }
+}
+
 /* Torques count as forces at the model length. */
 static double largest_push(const mt_system *sys, const mt_jet *jet)
 {
@@ -76,20 +142,38 @@ static double largest_push(const mt_system *sys, const mt_jet *jet)
     return push;
 }
 
-static void note_force(const mt_system *sys, mt_lagrangian *out, const mt_jet *jet, mt_cx force)
+static void note_push(const int body[2], double size, mt_lagrangian *out)
+{
+    for (int side = 0; side < 2 && out->push != NULL; side++) {
+        if (body[side] != MT_GROUND) {
+            out->push[body[side]] += size;
+        }
+    }
+}
+
+static void note_force(const mt_system *sys, mt_lagrangian *out, const int body[2],
+                       const mt_jet *jet, mt_cx force)
 {
     const double size = fabs(creal(force)) * largest_push(sys, jet);
     out->force_scale = fmax(out->force_scale, size);
+    note_push(body, size, out);
+}
+
+/* Forces that meet in a body are known to eps of the largest of them: so is a joint's force, however small it is itself. */
+static double joint_push(const mt_lagrangian *l, const int body[2])
+{
+    double push = 0.0;
+    for (int side = 0; side < 2; side++) {
+        push = body[side] == MT_GROUND ? push : fmax(push, l->push[body[side]]);
+    }
+    return push;
 }
 
 /* Positions are known to eps of the coordinates that they are the difference of, angles to eps, the slope of a beam element's chord to eps of the coordinates over its length. */
 static void note_noise(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
                        const mt_jet *jet, double stiffness, mt_lagrangian *out)
 {
-    const bool strain = def->kind == MT_MEASURE_BEAM && def->component != MT_BEAM_STRETCH;
-    const bool chord = strain && def->component >= MT_BEAM_SWAY_2;
-    const bool angle = def->kind == MT_MEASURE_ANGLE || def->kind == MT_MEASURE_ROTATION ||
-                       def->kind == MT_MEASURE_DOT || (strain && !chord);
+    const bool angle = is_angle(def);
     double extent = angle ? 1.0 : d->sys->length_m;
     for (int side = 0; side < 2 && !angle; side++) {
         const mt_pose *const pose = mt_pose_of(poses, def->body[side]);
@@ -97,7 +181,7 @@ static void note_noise(const mt_data *d, const mt_measure_def *def, const mt_pos
             extent = fmax(extent, fabs(creal(pose->x[k])));
         }
     }
-    if (chord) {
+    if (is_chord(def)) {
         extent /= creal(mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0));
     }
     const double noise = DBL_EPSILON * extent * fabs(stiffness) * largest_push(d->sys, jet);
@@ -112,7 +196,7 @@ static void add_coupling(const mt_system *sys, const int body[2], mt_cx k,
     for (int side = 0; side < 2; side++) {
         const mt_cx force = 0.5 * cx_mul(k, stretch[1 - side]);
         add_gradient(sys, body, jet[side].g, force, out->g);
-        note_force(sys, out, &jet[side], force);
+        note_force(sys, out, body, &jet[side], force);
         if (curvature != MT_CURVATURE_NONE) {
             add_hessian(sys, body, &jet[side], curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
                         curvature == MT_CURVATURE_GEOMETRIC ? 0.0 : 0.5 * k, &jet[1 - side],
@@ -121,8 +205,9 @@ static void add_coupling(const mt_system *sys, const int body[2], mt_cx k,
     }
 }
 
-static void add_spring(const mt_data *d, int i, mt_cx k, mt_cx stretch, const mt_jet *jet,
-                       mt_curvature curvature, mt_lagrangian *out)
+/* Returns the spring's force. */
+static mt_cx add_spring(const mt_data *d, int i, mt_cx k, mt_cx stretch, const mt_jet *jet,
+                        mt_curvature curvature, mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
     const mt_spring_def *const s = &sys->springs[i];
@@ -134,13 +219,14 @@ static void add_spring(const mt_data *d, int i, mt_cx k, mt_cx stretch, const mt
         add_gradient(sys, body, jet->g, 1.0, out->trim);
     }
     add_gradient(sys, body, jet->g, force, out->g);
-    note_force(sys, out, jet, force);
+    note_force(sys, out, body, jet, force);
     if (curvature != MT_CURVATURE_NONE) {
         /* while the force of the trimmed spring is an unknown its stiffness does not act; in the linearised system it does, there as a row (rows.h) */
         const bool geometric = curvature == MT_CURVATURE_GEOMETRIC || trimmed;
         add_hessian(sys, body, jet, curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
                     geometric ? 0.0 : k, jet, out->h);
     }
+    return force;
 }
 
 static void add_springs(const mt_data *d, const mt_pose *poses, mt_curvature curvature,
@@ -168,8 +254,15 @@ static void add_springs(const mt_data *d, const mt_pose *poses, mt_curvature cur
         note_noise(d, first, poses, &jet[0], creal(k), out);
         if (coupling) {
             add_coupling(sys, first->body, k, stretch, jet, curvature, out);
+            for (int side = 0; side < 2; side++) {
+                const double force = 0.5 * fabs(creal(cx_mul(k, stretch[1 - side])));
+                note_terms(d, &sys->measures[s->measure[side]], poses, &jet[side], force, force,
+                           out);
+            }
         } else {
-            add_spring(d, i, k, stretch[0], jet, curvature, out);
+            const double force =
+                fabs(creal(add_spring(d, i, k, stretch[0], jet, curvature, out)));
+            note_terms(d, first, poses, &jet[0], force, force, out);
         }
     }
 }
@@ -200,6 +293,21 @@ static void load_jet(const mt_data *d, const mt_load_def *load, const mt_pose *p
                      hessian, jet);
 }
 
+/* A force at the centre of a body has no arm, and its energy no curvature. */
+static void note_load(const mt_data *d, const mt_load_def *load, const mt_pose *poses,
+                      const mt_jet *jet, mt_cx size, mt_lagrangian *out)
+{
+    const mt_measure_def point = {
+        .kind = MT_MEASURE_PLANE, .body = {load->body, MT_GROUND}
+    };
+    if (load->measure >= 0) {
+        const double force = fabs(creal(size));
+        note_terms(d, &d->sys->measures[load->measure], poses, jet, force, force, out);
+    } else if (load->point >= 0) { /* the jet has the force in it */
+        note_terms(d, &point, poses, jet, 1.0, largest_push(d->sys, jet), out);
+    }
+}
+
 static void add_loads(const mt_data *d, const mt_pose *poses, bool hessian, mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
@@ -209,9 +317,10 @@ static void add_loads(const mt_data *d, const mt_pose *poses, bool hessian, mt_l
         mt_cx size = 0.0;
         load_jet(d, &sys->loads[i], poses, hessian, body, &size, &jet);
         add_gradient(sys, body, jet.g, -size, out->g);
-        note_force(sys, out, &jet, size);
+        note_force(sys, out, body, &jet, size);
         if (hessian) {
             add_hessian(sys, body, &jet, -size, 0.0, NULL, out->h);
+            note_load(d, &sys->loads[i], poses, &jet, size, out);
         }
     }
 }
@@ -284,11 +393,36 @@ static double surplus_turns(const mt_data *d, int i, double value)
     return angle ? turn * round(value / turn) : 0.0;
 }
 
+/* All multipliers, before the first of them is used. */
+static void push_joints(const mt_data *d, int m, const mt_cx *lambda, mt_lagrangian *out)
+{
+    const mt_system *const sys = d->sys;
+    for (int i = 0; i < m && lambda != NULL && out->push != NULL; i++) {
+        for (int t = 0; t < sys->constraints[i].terms; t++) {
+            const mt_measure_def *const def = &sys->measures[sys->constraints[i].measure[t]];
+            const mt_cx factor = mt_data_scalar(d, sys->constraints[i].coefficient[t], 1.0);
+            const double arm = is_angle(def) ? sys->length_m : 1.0;
+            note_push(def->body, fabs(creal(factor) * creal(lambda[i])) / arm, out);
+        }
+    }
+}
+
+static void note_joint(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
+                       const mt_jet *jet, mt_cx force, mt_lagrangian *out)
+{
+    if (out->terms != NULL) {
+        const double arm = is_angle(def) ? d->sys->length_m : 1.0;
+        const double size = fabs(creal(force)) + (arm * joint_push(out, def->body));
+        note_terms(d, def, poses, jet, size, size, out);
+    }
+}
+
 static void add_constraints(const mt_data *d, const mt_pose *poses, int m, const mt_cx *lambda,
                             bool hessian, mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
     mt_jet jet;
+    push_joints(d, m, lambda, out);
     for (int i = 0; i < m; i++) {
         const mt_constraint_def *const c = &sys->constraints[i];
         const bool curved = hessian && lambda != NULL;
@@ -307,7 +441,9 @@ static void add_constraints(const mt_data *d, const mt_pose *poses, int m, const
                 }
             }
             if (curved) {
-                add_hessian(sys, def->body, &jet, cx_mul(factor, lambda[i]), 0.0, NULL, out->h);
+                const mt_cx force = cx_mul(factor, lambda[i]);
+                add_hessian(sys, def->body, &jet, force, 0.0, NULL, out->h);
+                note_joint(d, def, poses, &jet, force, out);
             }
         }
         out->c[i] -= surplus_turns(d, i, creal(out->c[i]));
@@ -371,6 +507,7 @@ void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn
         memset(out->h, 0, nq * nq * sizeof *out->h);
     }
     out->force_scale = 0.0;
+    out->n_pieces = 0;
     out->force_noise = 0.0;
     if (energy == MT_ENERGY_PHYSICAL) {
         add_springs(d, poses, curvature, out);

@@ -20,6 +20,12 @@ typedef enum mt_curvature {
     MT_CURVATURE_ELASTIC
 } mt_curvature;
 
+/* The curvature of one force: its size times the Hessian of its measure, over the freedoms dof (-1: none). */
+typedef struct mt_piece {
+    int dof[MT_LOCAL];
+    double h[MT_LOCAL * MT_LOCAL];
+} mt_piece;
+
 typedef struct mt_lagrangian {
     mt_cx *g;    /* [nq] gradient of V (without lambda) */
     mt_cx *c;    /* [m] */
@@ -30,6 +36,13 @@ typedef struct mt_lagrangian {
         force_scale; /* sum over all loads and springs of |contribution to g|, largest entry; 0 where nothing loads */
     double
         force_noise; /* what rounding of the positions may make of the stiffest spring's force, unit as force_scale */
+    double *
+        terms; /* nq x nq, or NULL where nobody asks: magnitudes of the terms whose sum the geometric part of h is; rounding of the positions and of the multipliers counts by them */
+    mt_piece *
+        pieces; /* [n_pieces], with terms: the geometric part of h, force by force, without signs */
+    int n_pieces;
+    double *
+        push; /* [bodies], with terms: sum of the magnitudes of all forces on a body, torques as forces at the model length */
     double trim_force; /* force of the trimmed spring, in; its own stiffness acts in h only */
     double trim_force_derivative;
 } mt_lagrangian;
@@ -47,6 +60,9 @@ double mt_constraint_curve(const mt_data *d, const mt_pose *poses, int i, int t,
 /* hessian: will h be asked for? Without, it has no memory and curvature is MT_CURVATURE_NONE. */
 mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessian,
                              mt_arena *mem, mt_err *err);
+/* Have terms (and what comes with them) filled too, with the next evaluation. */
+mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
+                                   mt_err *err);
 /* Column of q for local freedom k (0..11) of a pair of bodies; -1: none. */
 static inline int mt_local_dof(const mt_system *sys, const int body[2], int k)
 {

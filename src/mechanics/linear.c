@@ -107,6 +107,9 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
         lambda[i] = lin->position.equilibrium.lambda[i];
     }
     l.trim_force = lin->position.trim_force;
+    if (loaded) {
+        MT_TRY(mt_lagrangian_want_terms(&l, sys, &lin->geometry, err));
+    }
     mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, lin->position.pose,
                        all, loaded ? lambda : NULL,
                        loaded ? MT_CURVATURE_GEOMETRIC : MT_CURVATURE_NONE, &l);
@@ -119,6 +122,9 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     lin->unstressed = loaded && sys->geometry_fixed && !sys->loaded &&
                       l.force_scale <= NO_FORCE * l.force_noise;
     lin->kg = NULL;
+    lin->kg_terms = l.terms;
+    lin->pieces = l.pieces;
+    lin->n_pieces = l.n_pieces;
     if (loaded && !lin->unstressed) {
         lin->kg = mt_arena_f64(&lin->geometry, (size_t)nq, (size_t)nq);
         if (lin->kg == NULL) {
@@ -134,28 +140,33 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     return mt_singular_refuse(&lin->data, lin->position.pose, &lin->e, &lin->scratch, err);
 }
 
+/* out (n x n) += c times the term's rows, lower triangle. */
+static void add_term(const mt_linear *lin, int kind, const mt_term *t, double c, double *out)
+{
+    const int n = lin->n;
+    for (int r = 0; r < (t->pair ? 1 : t->count); r++) {
+        const double *const a = lin->reduced[kind] + ((ptrdiff_t)(t->first + r) * n);
+        const double *const b = t->pair ? a + n : a;
+        for (int col = 0; col < n; col++) {
+            double *const out_col = out + ((ptrdiff_t)col * n);
+            const double ca = 0.5 * c * a[col];
+            const double cb = 0.5 * c * b[col];
+            for (int row = col; row < n; row++) {
+                out_col[row] += (b[row] * ca) + (a[row] * cb);
+            }
+        }
+    }
+}
+
 /* out (n x n) += sum of the terms' contributions, lower triangle; which: 0 terms without inputs, 1 terms with, 2 all. */
 static void add_terms(const mt_linear *lin, int kind, int which, double *out)
 {
     const mt_term_list *const list = &lin->list[kind];
-    const int n = lin->n;
     for (int i = 0; i < list->n_terms; i++) {
         const mt_term *const t = &list->terms[i];
         const double c = lin->value[t->coefficient];
-        if ((which != 2 && t->varies != (which == 1)) || c == 0.0) {
-            continue;
-        }
-        for (int r = 0; r < (t->pair ? 1 : t->count); r++) {
-            const double *const a = lin->reduced[kind] + ((ptrdiff_t)(t->first + r) * n);
-            const double *const b = t->pair ? a + n : a;
-            for (int col = 0; col < n; col++) {
-                double *const out_col = out + ((ptrdiff_t)col * n);
-                const double ca = 0.5 * c * a[col];
-                const double cb = 0.5 * c * b[col];
-                for (int row = col; row < n; row++) {
-                    out_col[row] += (b[row] * ca) + (a[row] * cb);
-                }
-            }
+        if ((which == 2 || t->varies == (which == 1)) && c != 0.0) {
+            add_term(lin, kind, t, c, out);
         }
     }
 }
@@ -172,8 +183,11 @@ static mt_status fixed_parts(mt_linear *lin, mt_err *err)
     lin->factor_b = mt_arena_f64(&lin->geometry, rows, n);
     lin->factor_c = mt_arena_f64(&lin->geometry, rows, 1);
     lin->factor_noise = mt_arena_f64(&lin->geometry, rows, n);
+    lin->factor_g = mt_arena_f64(&lin->geometry, n, n);
+    lin->g_fixed = mt_arena_f64(&lin->geometry, n, n);
     if (lin->k == NULL || lin->m_r == NULL || lin->k_fixed == NULL || lin->m_fixed == NULL ||
-        lin->factor_b == NULL || lin->factor_c == NULL || lin->factor_noise == NULL) {
+        lin->factor_b == NULL || lin->factor_c == NULL || lin->factor_noise == NULL ||
+        lin->factor_g == NULL || lin->g_fixed == NULL) {
         return mt_fail_memory(err);
     }
     if (lin->kg != NULL) {
@@ -185,7 +199,8 @@ static mt_status fixed_parts(mt_linear *lin, mt_err *err)
         mt_gemm(false, false, (int)nq, lin->n, (int)nq, 1.0, lin->kg, (int)nq, lin->e.z,
                 (int)nq, 0.0, kz, (int)nq);
         mt_gemm(true, false, lin->n, lin->n, (int)nq, 1.0, lin->e.z, (int)nq, kz, (int)nq, 0.0,
-                lin->k_fixed, lin->n);
+                lin->g_fixed, lin->n);
+        memcpy(lin->k_fixed, lin->g_fixed, n * n * sizeof *lin->k_fixed);
         mt_arena_rewind(&lin->scratch, mark);
     }
     add_terms(lin, MT_TERM_STIFFNESS, 0, lin->k_fixed);
@@ -218,13 +233,18 @@ static void assemble(mt_linear *lin, bool geometry_new)
         mt_symmetrise_lower(n, lin->m_r);
         lin->mass_version++;
     }
-    lin->has_factor = lin->kg == NULL;
+    memcpy(lin->factor_g, lin->g_fixed, size);
+    lin->has_factor_g = lin->kg != NULL;
     for (int i = 0; i < stiffness->n_terms; i++) {
         const mt_term *const t = &stiffness->terms[i];
         const double c = lin->value[t->coefficient];
-        lin->has_factor = lin->has_factor && !t->pair && c >= 0.0;
+        const bool square = !t->pair && c >= 0.0;
         for (int r = 0; r < t->count; r++) {
-            lin->factor_c[t->first + r] = c;
+            lin->factor_c[t->first + r] = square ? c : 0.0;
+        }
+        if (!square) {
+            add_term(lin, MT_TERM_STIFFNESS, t, c, lin->factor_g);
+            lin->has_factor_g = true;
         }
     }
 }

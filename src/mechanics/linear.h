@@ -39,19 +39,25 @@ typedef struct mt_linear {
     int n;            /* freedoms */
     int n_idle; /* spins without mass, stiffness or joint, left out of the freedoms (idle.h) */
     bool *idle; /* [bodies] takes part in one */
+    int n_pieces;                   /* of pieces */
     double *rows[MT_TERM_KINDS];    /* 12 x n_rows, local freedoms */
     double *reduced[MT_TERM_KINDS]; /* n x n_rows: Z^T row, rounding made 0 (reduce.h) */
     bool *blocked[MT_TERM_KINDS];   /* [n_rows]: the joints block it, the reduced row is 0 */
-    double *noise;   /* n x n_rows: bounds of the errors of reduced[MT_TERM_STIFFNESS] */
-    double *kg;      /* nq x nq geometric stiffness; NULL where nothing loads */
-    double *k;       /* n x n */
-    double *m_r;     /* n x n */
-    double *k_fixed; /* part of K_r from terms without inputs (and Kg) */
+    double *noise;    /* n x n_rows: bounds of the errors of reduced[MT_TERM_STIFFNESS] */
+    double *kg;       /* nq x nq geometric stiffness; NULL where nothing loads */
+    mt_piece *pieces; /* [n_pieces] of the forces that make kg */
+    double *kg_terms; /* nq x nq: magnitudes of the terms that kg is the sum of */
+    double *k;        /* n x n */
+    double *m_r;      /* n x n */
+    double *k_fixed;  /* part of K_r from terms without inputs (and Kg) */
     double *m_fixed;
-    double *factor_b; /* list[STIFFNESS].n_rows x n: K_r = B^T diag(c) B, where has_factor */
+    double *g_fixed;  /* part of factor_g from Kg */
+    double *factor_b; /* list[STIFFNESS].n_rows x n: B */
     double *factor_c;
     double *factor_noise; /* bounds of the errors of factor_b's entries */
-    bool has_factor; /* no geometric stiffness, no coupling terms, no negative coefficient */
+    double *
+        factor_g; /* n x n: what is no sum of squares: geometric stiffness, coupling terms, negative coefficients; K_r = B^T diag(c) B + G */
+    bool has_factor_g;          /* is there such a part? */
     unsigned long mass_version; /* changes when M_r does */
     unsigned long geometry_version;
     bool unstressed;  /* driven to its place with no spring stretched: as good as unloaded */

@@ -28,35 +28,42 @@ static int first_rigid(const mt_modes *modes, int n_rigid)
     return first;
 }
 
-static mt_mode_kind kind_of(double lambda, double noise, bool decide)
+static mt_mode_kind kind_of(double lambda, double noise, bool strained, bool decide)
 {
     if (lambda < -noise) {
         return MT_MODE_UNSTABLE;
     }
+    if (lambda <= noise && strained) {
+        return MT_MODE_UNDECIDED;
+    }
     return decide && lambda <= noise ? MT_MODE_RIGID_BODY : MT_MODE_FLEXIBLE;
 }
 
-double mt_modal_classify(mt_modes *modes, int n_rigid)
+double mt_modal_classify(mt_modes *modes, int n_rigid, const double *noise,
+                         const bool *strained)
 {
-    const double noise = modes->error_bound;
     double rigid_most = 0.0;
     const bool decide = n_rigid < 0;
     const int rigid = decide || n_rigid <= modes->count ? n_rigid : modes->count;
     const int first = decide ? modes->count : first_rigid(modes, rigid);
     modes->n_rigid = 0;
     modes->n_held = 0;
+    modes->n_undecided = 0;
     modes->n_unstable = modes->n_unstable_condensed;
     for (int i = 0; i < modes->count; i++) {
+        const double zero = noise == NULL ? modes->error_bound : noise[i];
+        const bool moves = strained != NULL && strained[i];
         const bool given = !decide && i >= first && i < first + rigid;
         const mt_mode_kind kind =
-            given ? MT_MODE_RIGID_BODY : kind_of(modes->lambda[i], noise, decide);
+            given ? MT_MODE_RIGID_BODY : kind_of(modes->lambda[i], zero, moves, decide);
         modes->kind[i] = kind;
         modes->n_rigid += kind == MT_MODE_RIGID_BODY ? 1 : 0;
         if (given) {
             rigid_most = fmax(rigid_most, fabs(modes->lambda[i]));
-            modes->n_held += fabs(modes->lambda[i]) > noise ? 1 : 0;
+            modes->n_held += fabs(modes->lambda[i]) > zero ? 1 : 0;
         }
         modes->n_unstable += kind == MT_MODE_UNSTABLE ? 1 : 0;
+        modes->n_undecided += kind == MT_MODE_UNDECIDED ? 1 : 0;
         if (kind == MT_MODE_RIGID_BODY ||
             (kind == MT_MODE_FLEXIBLE && modes->lambda[i] < 0.0)) {
             modes->lambda[i] = 0.0;
@@ -72,7 +79,9 @@ void mt_modal_find_clusters(mt_modes *modes)
         if (i > 0) {
             const double a = modes->lambda[i - 1];
             const double b = modes->lambda[i];
-            const double tol = CLUSTER_GAP * fmax(fabs(a), fabs(b)) + modes->error_bound;
+            const double noise =
+                fmin(modes->error_bound, fmax(modes->error[i - 1], modes->error[i]));
+            const double tol = CLUSTER_GAP * fmax(fabs(a), fabs(b)) + noise;
             number += b - a <= tol ? 0 : 1;
         }
         modes->cluster[i] = number;
@@ -96,15 +105,32 @@ int mt_modal_cluster(const mt_modes *modes, int i, int *size)
 double mt_modal_hz(const mt_modes *modes, int i)
 {
     static const double TWO_PI = 6.283185307179586476925;
-    if (modes->kind[i] == MT_MODE_UNSTABLE) {
+    if (modes->kind[i] == MT_MODE_UNSTABLE || modes->kind[i] == MT_MODE_UNDECIDED) {
         return nan("");
     }
     return modes->kind[i] == MT_MODE_RIGID_BODY ? 0.0 : sqrt(modes->lambda[i]) / TWO_PI;
 }
 
+double mt_modal_error_hz(const mt_modes *modes, int i)
+{
+    static const double TWO_PI = 6.283185307179586476925;
+    const double e = modes->error[i];
+    const double lambda = modes->lambda[i];
+    if (isnan(mt_modal_hz(modes, i))) {
+        return nan("");
+    }
+    /* sqrt(lambda) - sqrt(lambda - e), without cancellation */
+    return e < lambda ? e / (sqrt(lambda) + sqrt(lambda - e)) / TWO_PI : sqrt(e) / TWO_PI;
+}
+
+bool mt_modal_indexed(const mt_modes *modes)
+{
+    return modes->n_unstable == 0 && modes->n_undecided == 0;
+}
+
 int mt_modal_flexible(const mt_modes *modes, int index)
 {
-    if (modes->n_unstable > 0 || index < 1) {
+    if (!mt_modal_indexed(modes) || index < 1) {
         return -1;
     }
     int seen = 0;

@@ -170,13 +170,14 @@ static mt_status by_split(mt_mass_factor *f, double *t, double *w, mt_arena *scr
     memset(w, 0, (size_t)n * sizeof *w);
     fill_basis(f, v, e, t, w);
     f->condition = massless > 0 ? HUGE_VAL : 1.0 / e[0];
+    f->kept = massless < n ? 1.0 / e[massless] : 1.0;
     return MT_OK;
 }
 
 mt_status mt_modal_factor_mass(int n, const double *m, mt_arena *mem, mt_mass_factor *out,
                                mt_err *err)
 {
-    *out = (mt_mass_factor){.n = n, .rank = n, .m = m, .condition = 1.0};
+    *out = (mt_mass_factor){.n = n, .rank = n, .m = m, .condition = 1.0, .kept = 1.0};
     double *const l = mt_arena_f64(mem, (size_t)n, (size_t)n);
     double *const d = mt_arena_f64(mem, (size_t)n, 1);
     double *const w = mt_arena_f64(mem, (size_t)n, 1);
@@ -198,6 +199,7 @@ mt_status mt_modal_factor_mass(int n, const double *m, mt_arena *mem, mt_mass_fa
     }
     if (regular) {
         out->l = l;
+        out->kept = out->condition;
         return MT_OK;
     }
     MT_TRY(check_coupling(n, m, d, err));
@@ -210,7 +212,7 @@ mt_status mt_modal_factor_mass(int n, const double *m, mt_arena *mem, mt_mass_fa
 
 mt_status mt_modal_identity_mass(int n, mt_arena *mem, mt_mass_factor *out, mt_err *err)
 {
-    *out = (mt_mass_factor){.n = n, .rank = n, .condition = 1.0};
+    *out = (mt_mass_factor){.n = n, .rank = n, .condition = 1.0, .kept = 1.0};
     double *const ones = mt_arena_f64(mem, (size_t)n, 1);
     if (ones == NULL) {
         return mt_fail_memory(err);

@@ -24,11 +24,16 @@
  * modes; of the others those below -noise are unstable, and those in [-noise, 0) are flexible
  * with lambda = 0: a vibration of 0 Hz, as a spring lets go whose stiffness reaches 0. Where
  * stiffness holds some of the n_rigid, n_held says how many: the number given is wrong there.
+ * Matrices alone cannot tell a rigid-body mode from one whose stiffness drowned in rounding:
+ * that takes the terms of K (mt_modal_judge), and a mode that even they leave open, |lambda| at
+ * most its error while springs do move, is undecided. No mode has an index beside an unstable
+ * or an undecided one.
  */
 typedef enum mt_mode_kind {
     MT_MODE_FLEXIBLE,
     MT_MODE_RIGID_BODY,
-    MT_MODE_UNSTABLE
+    MT_MODE_UNSTABLE,
+    MT_MODE_UNDECIDED /* rounding hides the sign of lambda */
 } mt_mode_kind;
 
 /* A mass matrix made ready for many solves. Lives in the arena that it was made in; fields are
@@ -45,6 +50,7 @@ typedef struct mt_mass_factor {
     const double *w;  /* [n] diagonal of M^-1 (of T1 T1^T) */
     double condition; /* max m_ii (M^-1)_ii, >= 1: how oblique the coordinates are to M;
                          infinite where singular */
+    double kept;      /* the same of the directions that have mass */
 } mt_mass_factor;
 
 /* Factor M. O(n^3), 2 us for n = 11. A direction has no mass where the eigenvalue of the mass
@@ -55,10 +61,11 @@ mt_status mt_modal_factor_mass(int n, const double *m, mt_arena *mem, mt_mass_fa
 /* M = I. Costs nothing and makes each solve cheaper. */
 mt_status mt_modal_identity_mass(int n, mt_arena *mem, mt_mass_factor *out, mt_err *err);
 
-/* Optional exact-rank form of K: K = B^T diag(c) B with c >= 0, rows x n (column-major, ld
+/* Optional exact-rank form of K: K = B^T diag(c) B + G with c >= 0, rows x n (column-major, ld
  * rows). With it the lowest modes keep their relative accuracy however far the stiffnesses c
- * lie apart, and rigid-body modes are found as the null space of B, whatever c is. Ignored
- * where M is singular. */
+ * lie apart; without G, rigid-body modes are found as the null space of B, whatever c is. G is
+ * the part that is no sum of squares, as the geometric stiffness of loads: accuracy is then
+ * that of G, but no stiffness c costs any of it (loaded.c). Ignored where M is singular. */
 typedef struct mt_stiffness_factor {
     int rows;
     const double *b; /* rows x n */
@@ -66,6 +73,7 @@ typedef struct mt_stiffness_factor {
     const double
         *noise; /* rows x n: bounds of the entries' errors, for rows that are small differences
                    of large terms; NULL: roundings of the entries themselves */
+    const double *g; /* n x n symmetric, lower read; NULL: none */
 } mt_stiffness_factor;
 
 typedef struct mt_modal_options {
@@ -85,6 +93,7 @@ typedef struct mt_modes {
     int n_rigid;
     int n_held; /* of an n_rigid that was given: those that are no null directions of K */
     int n_unstable;
+    int n_undecided;
     int n_unstable_condensed; /* directions without mass and with negative stiffness: unstable,
                                  though no entry of lambda shows it */
     double *lambda;           /* [count] ascending [rad^2/s^2] */
@@ -96,6 +105,8 @@ typedef struct mt_modes {
                        * in coordinates scaled to m_ii = 1: O(1) is perfect; NULL without
                        * vectors and check */
     double *orthogonality; /* [count] max_j |y_i^T M y_j - delta_ij| / (n eps); NULL likewise */
+    double *error;         /* [count] |error of lambda_i| <= error_i: backward error, generously
+                           counted, or what mt_modal_judge made of it */
     double error_bound; /* |error of lambda_i| <= error_bound + error_relative * |lambda_i|, for
                            certificates: backward error, generously counted */
     double error_relative;
@@ -120,10 +131,42 @@ mt_status mt_modal_solve_factored(const double *k, const mt_mass_factor *mass,
                                   const mt_modal_options *opt, mt_arena *mem, mt_modes *out,
                                   mt_err *err);
 
-/* lambda -> Hz: sqrt(lambda)/(2 pi); 0 for rigid-body modes; NaN for unstable modes. */
+/*
+ * What the terms that K and M are sums of say of the shapes y, each term evaluated by itself:
+ * spring by spring c (f . y)^2, and so on. Where stiff springs hardly take part in a mode, their
+ * terms are tiny, and the sum is accurate where an entry of the assembled K is not.
+ */
+typedef struct mt_mode_energies {
+    double *stiffness;       /* [count] y^T K y */
+    double *mass;            /* [count] y^T M y */
+    double *stiffness_noise; /* [count] what rounding may have made of it, counted by terms */
+    double *mass_noise;      /* [count] */
+    double *load_noise; /* [count] the part of stiffness_noise that is in K as it is given, and
+                           that no solution of K can be without */
+    bool *strained; /* [count] does any spring move by more than the rounding of its terms? */
+} mt_mode_energies;
+/*
+ * Replace each lambda_i by the quotient of its energies where that is the surer one, and decide
+ * the kinds anew, mode by mode: n_rigid as in the options of the solve that gave `modes` (with
+ * vectors). Now a rigid-body mode is one within its error in which no spring is strained, and
+ * one that is strained is undecided. A shape whose error is at most r in the norm of the
+ * residual changes the quotient by r min(1, r/gap) at most, gap: distance to the next lambda
+ * (Parlett, The Symmetric Eigenvalue Problem, sec. 10-5 and 11-7). Overwrites e.
+ */
+void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes);
+
+/* Is that worth its while: could a kind be wrong, or is an error above 1e-9 of its lambda? */
+bool mt_modal_in_doubt(const mt_modes *modes);
+
+/* Has each flexible mode an index: is no mode unstable or undecided? */
+bool mt_modal_indexed(const mt_modes *modes);
+/* lambda -> Hz: sqrt(lambda)/(2 pi); 0 for rigid-body modes; NaN for unstable and undecided
+ * ones. */
 double mt_modal_hz(const mt_modes *modes, int i);
+/* |error of mt_modal_hz| <= this [Hz], by error_i; NaN where the frequency is. */
+double mt_modal_error_hz(const mt_modes *modes, int i);
 /* Position in lambda of vibration mode `index` (1-based, flexible modes ascending); -1 where
- * there are fewer, or where any mode is unstable. */
+ * there are fewer, or where any mode is unstable or undecided. */
 int mt_modal_flexible(const mt_modes *modes, int index);
 /* The cluster that mode i belongs to: its first position; its size in *size. Size 1: a simple
  * mode. */

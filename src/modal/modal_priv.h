@@ -49,9 +49,20 @@ mt_status mt_modal_graded(mt_graded *g, mt_arena *mem, mt_err *err);
 /* Y := T1 Q: from the coordinates in which M is the identity back to the caller's. q, y n x n,
  * may be the same only where mass->t is NULL. Regular M only. */
 void mt_modal_back(const mt_mass_factor *mass, const double *q, double *y);
+/* After mt_modal_by_factor with y: the modes of B^T diag(c) B + G from those without G, n x n
+ * symmetric G, lower read. */
+mt_status mt_modal_add_load(const double *g, const mt_mass_factor *mass, mt_arena *scratch,
+                            mt_modes *out, mt_err *err);
 /* Kinds, n_rigid, n_unstable, lambda of rigid-body modes; n_rigid < 0: decide. n_held: announced
- * ones above the noise. The greatest |lambda| of an announced rigid-body mode. */
-double mt_modal_classify(mt_modes *modes, int n_rigid);
+ * ones above the noise. The greatest |lambda| of an announced rigid-body mode. noise[count]: at
+ * most that is 0 (NULL: error_bound); strained[count]: not where springs move (NULL: nobody
+ * knows). */
+double mt_modal_classify(mt_modes *modes, int n_rigid, const double *noise,
+                         const bool *strained);
+/* Without a factor, an announced rigid-body mode counts as held above HELD times the noise: what
+ * an equilibrium found by iteration leaves on a null direction stays below (forces of 1e4 times
+ * the rounding of the positions count as none in the mechanics room). */
+static const double MT_MODAL_HELD = 1e4;
 /* Clusters; after the kinds. */
 void mt_modal_find_clusters(mt_modes *modes);
 /* residual and orthogonality. */

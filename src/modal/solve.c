@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * One solve:
- *   take results from mem; mark; plain path; kinds; perhaps the factor path and kinds again;
- *   clusters; signs; checks; rewind to the mark.
+ *   take results from mem; mark; plain path; kinds; perhaps the factor path (and the load's part
+ *   on top of it) and kinds again; clusters; signs; checks; rewind to the mark.
  */
 #include "modal/modal_priv.h"
 
@@ -31,7 +31,9 @@ static mt_status claim(const mt_mass_factor *mass, const mt_modal_options *opt, 
     out->lambda = mt_arena_f64(mem, c, 1);
     out->kind = mt_arena_alloc(mem, c, sizeof *out->kind);
     out->cluster = mt_arena_int(mem, c);
-    bool ok = out->lambda != NULL && out->kind != NULL && out->cluster != NULL;
+    out->error = mt_arena_f64(mem, c, 1);
+    bool ok =
+        out->lambda != NULL && out->kind != NULL && out->cluster != NULL && out->error != NULL;
     if (opt->vectors) {
         out->y = mt_arena_f64(mem, (size_t)mass->n, c);
         ok = ok && out->y != NULL;
@@ -61,22 +63,52 @@ static bool needs_factor(const mt_modes *modes, const mt_modal_options *opt)
     return lowest >= 0 && DBL_EPSILON * modes->scale > FACTOR_SWITCH * modes->lambda[lowest];
 }
 
-/*
- * Without a factor, an announced rigid-body mode counts as held above HELD times the noise: what
- * an equilibrium found by iteration leaves on a null direction stays below (forces of 1e4 times
- * the rounding of the positions count as none in the mechanics room).
- */
-static const double HELD = 1e4;
-
 /* n_held as the classification left it counts what is above the noise; say it for sure. */
 static void judge_held(mt_modes *modes, const mt_modal_options *opt, double rigid_most,
                        int null_count)
 {
     if (null_count >= 0) {
         modes->n_held = opt->n_rigid > null_count ? opt->n_rigid - null_count : 0;
-    } else if (!(rigid_most > HELD * modes->error_bound)) {
+    } else if (!(rigid_most > MT_MODAL_HELD * modes->error_bound)) {
         modes->n_held = 0;
     }
+}
+
+/* The factor, and on top of it what is no sum of squares: then the rank of B says nothing of the
+ * null directions of K (null_count -1). */
+static mt_status by_factor(const mt_stiffness_factor *factor, const mt_mass_factor *mass,
+                           mt_arena *scratch, mt_modes *out, int *null_count, mt_err *err)
+{
+    double *const wanted = out->y;
+    if (factor->g != NULL && out->y == NULL) {
+        out->y = mt_arena_f64(scratch, (size_t)out->n, (size_t)out->n);
+        if (out->y == NULL) {
+            return mt_fail_memory(err);
+        }
+    }
+    mt_status rc = mt_modal_by_factor(factor, mass, scratch, out, null_count, err);
+    if (rc == MT_OK && factor->g != NULL) {
+        rc = mt_modal_add_load(factor->g, mass, scratch, out, err);
+        *null_count = -1;
+    }
+    out->y = wanted;
+    return rc;
+}
+
+/* Kinds and errors; whether an eigenvalue is zero is a question to the absolute bound, and where
+ * the answer was yes, what it was is part of the error. */
+static double kinds(mt_modes *out, int n_rigid)
+{
+    for (int i = 0; i < out->count; i++) {
+        out->error[i] = out->lambda[i];
+    }
+    const double most = mt_modal_classify(out, n_rigid, NULL, NULL);
+    for (int i = 0; i < out->count; i++) {
+        const double was = out->error[i];
+        const double part = out->lambda[i] == was ? out->error_relative : 1.0;
+        out->error[i] = out->error_bound + (part * fabs(was));
+    }
+    return most;
 }
 
 static mt_status compute(const double *k, const mt_mass_factor *mass,
@@ -85,11 +117,12 @@ static mt_status compute(const double *k, const mt_mass_factor *mass,
 {
     int null_count = -1;
     MT_TRY(mt_modal_plain(k, mass, scratch, out, err));
-    const double rigid_most = mt_modal_classify(out, opt->n_rigid);
+    double rigid_most = kinds(out, opt->n_rigid);
     const bool usable = factor != NULL && opt->need_accuracy && mass->rank == mass->n;
     if (usable && needs_factor(out, opt)) {
-        MT_TRY(mt_modal_by_factor(factor, mass, scratch, out, &null_count, err));
-        (void)mt_modal_classify(out, opt->n_rigid < 0 ? null_count : opt->n_rigid);
+        MT_TRY(by_factor(factor, mass, scratch, out, &null_count, err));
+        const bool exact = opt->n_rigid < 0 && null_count >= 0;
+        rigid_most = kinds(out, exact ? null_count : opt->n_rigid);
     }
     judge_held(out, opt, rigid_most, null_count);
     mt_modal_find_clusters(out);

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mechanics/energy.h"
+
 enum { DIRECTION_TEXT = 300 };
 
 mt_analysis_options mt_analysis_options_default(void)
@@ -80,6 +82,39 @@ static mt_status refresh_mass(mt_analysis *a, mt_err *err)
     return MT_OK;
 }
 
+static mt_status solve_and_judge(mt_analysis *a, const mt_stiffness_factor *factor,
+                                 const mt_modal_options *options, mt_err *err)
+{
+    MT_TRY(
+        mt_modal_solve_factored(a->lin->k, &a->mass, factor, options, &a->mem, &a->modes, err));
+    const bool asked = a->lin->kg != NULL || mt_modal_in_doubt(&a->modes);
+    if (a->modes.y == NULL || !asked) {
+        return MT_OK;
+    }
+    const size_t count = (size_t)a->modes.count;
+    const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
+    mt_mode_energies e = {.stiffness = mt_arena_f64(&a->mem, count, 1),
+                          .mass = mt_arena_f64(&a->mem, count, 1),
+                          .stiffness_noise = mt_arena_f64(&a->mem, count, 1),
+                          .mass_noise = mt_arena_f64(&a->mem, count, 1),
+                          .load_noise = mt_arena_f64(&a->mem, count, 1),
+                          .strained = mt_arena_alloc(&a->mem, count, sizeof(bool))};
+    if (e.stiffness == NULL || e.mass == NULL || e.stiffness_noise == NULL ||
+        e.mass_noise == NULL || e.load_noise == NULL || e.strained == NULL) {
+        return mt_fail_memory(err);
+    }
+    const mt_energies out = {.stiffness = e.stiffness,
+                             .mass = e.mass,
+                             .stiffness_noise = e.stiffness_noise,
+                             .mass_noise = e.mass_noise,
+                             .load_noise = e.load_noise,
+                             .strained = e.strained};
+    MT_TRY(mt_linear_energies(a->lin, a->modes.count, a->modes.y, &out, err));
+    mt_modal_judge(&e, options->n_rigid, &a->modes);
+    mt_arena_rewind(&a->mem, mark);
+    return MT_OK;
+}
+
 mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
                             const mt_analysis_options *opt, mt_err *err)
 {
@@ -93,18 +128,18 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
     const mt_stiffness_factor factor = {.rows = lin->list[MT_TERM_STIFFNESS].n_rows,
                                         .b = lin->factor_b,
                                         .c = lin->factor_c,
-                                        .noise = lin->factor_noise};
+                                        .noise = lin->factor_noise,
+                                        .g = lin->has_factor_g ? lin->factor_g : NULL};
     mt_modal_options options = mt_modal_options_default();
     options.n_rigid = a->n_rigid;
-    options.vectors = opt->vectors || opt->gradient;
-    options.need_accuracy = opt->accuracy && lin->has_factor;
+    /* where K is no sum of squares, shapes say what rounding leaves of its sign */
+    options.vectors = opt->vectors || opt->gradient || lin->has_factor_g;
+    options.need_accuracy = opt->accuracy;
     options.check = opt->check;
-    const mt_stiffness_factor *const use = lin->has_factor ? &factor : NULL;
-    mt_status rc =
-        mt_modal_solve_factored(lin->k, &a->mass, use, &options, &a->mem, &a->modes, err);
+    mt_status rc = solve_and_judge(a, &factor, &options, err);
     if (rc == MT_OK && a->modes.n_held > 0 && a->recount) {
         options.n_rigid = -1;
-        rc = mt_modal_solve_factored(lin->k, &a->mass, use, &options, &a->mem, &a->modes, err);
+        rc = solve_and_judge(a, &factor, &options, err);
     }
     if (rc == MT_E_MASSLESS && a->modes.massless != NULL) {
         char text[DIRECTION_TEXT];

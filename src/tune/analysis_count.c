@@ -164,7 +164,7 @@ static mt_status count_designs(family *f, int *n_rigid, mt_err *err)
             return mt_fail(err, rc, "%s", ignored.text);
         }
         /* what cannot be analysed, or is unstable, says nothing of the others */
-        if (rc == MT_OK && f->a->modes.n_unstable == 0 && f->a->modes.n_rigid < *n_rigid) {
+        if (rc == MT_OK && mt_modal_indexed(&f->a->modes) && f->a->modes.n_rigid < *n_rigid) {
             *n_rigid = f->a->modes.n_rigid;
         }
     }
@@ -239,7 +239,7 @@ mt_status mt_analysis_count(mt_analysis *a, const mt_count_box *box,
 
 bool mt_analysis_is_infinite(const mt_analysis *a, int index)
 {
-    return a->modes.n_unstable == 0 && index > a->modes.count - a->modes.n_rigid &&
+    return mt_modal_indexed(&a->modes) && index > a->modes.count - a->modes.n_rigid &&
            index <= a->n_most - a->n_rigid;
 }
 
@@ -270,7 +270,7 @@ bool mt_analysis_slack(const mt_analysis *a, int pos, char *text, size_t size)
     const char *last = NULL;
     text[0] = '\0';
     if (a->modes.y == NULL || a->modes.kind[pos] != MT_MODE_FLEXIBLE ||
-        a->modes.lambda[pos] > a->modes.error_bound) {
+        a->modes.lambda[pos] > a->modes.error[pos]) {
         return false;
     }
     int cluster = 1;

@@ -214,9 +214,14 @@ static void limit_demand(mt_problem *p, const mt_demand *d, bool with_gradient,
 static mt_status no_mode(const mt_problem *p, const mt_demand *d, mt_err *err)
 {
     const mt_analysis *const a = p->views[d->view].analysis;
+    const char *const why =
+        a->modes.n_unstable > 0 ? "is unstable, so that its modes have no index"
+        : a->modes.n_undecided > 0
+            ? "has a mode of which rounding hides whether it is stable, so that its modes have "
+              "no index"
+            : "has no such vibration mode here";
     return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\" %s", mt_analysis_configuration(a),
-                   a->modes.n_unstable > 0 ? "is unstable, so that its modes have no index"
-                                           : "has no such vibration mode here");
+                   why);
 }
 
 mt_status mt_demand_eval(mt_problem *p, const mt_demand *d, bool with_gradient,

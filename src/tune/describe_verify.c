@@ -11,14 +11,6 @@
 
 /* Frequencies that differ by more than this (relative) beyond their error bounds disagree: both are good to about n eps. */
 static const double RECOMPUTED_AGREES = 1e-9;
-/* The bound of a relative error is taken at its word up to here; where the mass is singular or nearly so it says nothing. */
-static const double MOST_RELATIVE = 1e-6;
-
-static double bound(const mt_modes *modes, double lambda)
-{
-    return modes->error_bound + (fmin(modes->error_relative, MOST_RELATIVE) * fabs(lambda));
-}
-
 static double hz_of(double lambda)
 {
     static const double TWO_PI = 6.283185307179586476925;
@@ -28,12 +20,14 @@ static double hz_of(double lambda)
 const char *mt_describe_disagreement(const mt_modes *study, const mt_modes *fresh,
                                      const char *configuration, mt_arena *mem)
 {
-    if (study->count != fresh->count || study->n_unstable != fresh->n_unstable) {
+    if (study->count != fresh->count || study->n_unstable != fresh->n_unstable ||
+        study->n_undecided != fresh->n_undecided) {
         return mt_arena_printf(
             mem,
-            "\"%s\" has %d modes, %d of them unstable; a fresh analysis finds "
+            "\"%s\" has %d modes, %d of them unstable or undecided; a fresh analysis finds "
             "%d and %d",
-            configuration, study->count, study->n_unstable, fresh->count, fresh->n_unstable);
+            configuration, study->count, study->n_unstable + study->n_undecided, fresh->count,
+            fresh->n_unstable + fresh->n_undecided);
     }
     if (fresh->n_rigid < study->n_rigid) {
         return mt_arena_printf(mem,
@@ -41,11 +35,11 @@ const char *mt_describe_disagreement(const mt_modes *study, const mt_modes *fres
                                "finds %d",
                                configuration, study->n_rigid, fresh->n_rigid);
     }
-    for (int i = 0; i < study->count && study->n_unstable == 0; i++) {
+    for (int i = 0; i < study->count && mt_modal_indexed(study); i++) {
         const double a = study->lambda[i];
         const double b = fresh->lambda[i];
         const double agrees = 2.0 * RECOMPUTED_AGREES * fmax(fabs(a), fabs(b));
-        if (!(fabs(a - b) <= agrees + bound(study, a) + bound(fresh, b))) {
+        if (!(fabs(a - b) <= agrees + study->error[i] + fresh->error[i])) {
             return mt_arena_printf(mem,
                                    "mode %d of \"%s\" was taken to be at %.12g Hz; a fresh "
                                    "analysis gives %.12g Hz",

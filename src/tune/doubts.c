@@ -189,6 +189,15 @@ static mt_status say_freedoms(const mt_analysis *a, mt_doubt_list *out, mt_err *
                            "unstable in %d direction%s: it falls over from here%s%s", unstable,
                            unstable == 1 ? "" : "s", name[0] == '\0' ? "" : ", moving ", name);
     }
+    if (a->modes.n_undecided > 0) {
+        char name[NAME_SIZE];
+        const int n = a->modes.n_undecided;
+        name_motion(a, MT_MODE_UNDECIDED, name);
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "undecided",
+                           "undecided in %d direction%s: springs and loads cancel to the last "
+                           "digit, and rounding hides whether it holds%s%s",
+                           n, n == 1 ? "" : "s", name[0] == '\0' ? "" : ", moving ", name);
+    }
     MT_TRY(say_dead_centre(a->lin, out, err));
     return say_redundant(a->lin, out, err);
 }

@@ -95,6 +95,11 @@ static mt_status build(mt_enclosure *e, const mt_analysis *a, const double *lowe
         (void)snprintf(reason, MT_REASON_SIZE, "the mechanism is unstable");
         return MT_OK;
     }
+    if (a->modes.n_undecided > 0) {
+        (void)snprintf(reason, MT_REASON_SIZE,
+                       "rounding hides whether the mechanism is stable");
+        return MT_OK;
+    }
     MT_TRY(mt_arena_init(&e->mem, 0, err));
     MT_TRY(mt_arena_init(&e->scratch, 0, err));
     e->n_inputs = a->sys->n_inputs;

@@ -187,7 +187,7 @@ static mt_status choose(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_er
     rc = rc == MT_OK
              ? mt_modal_solve_factored(b->k_low, &mass, NULL, &opt, &e->scratch, &modes, err)
              : rc;
-    *ok = rc == MT_OK && modes.n_unstable == 0;
+    *ok = rc == MT_OK && mt_modal_indexed(&modes);
     if (rc == MT_E_NOT_SPD || rc == MT_E_MASSLESS || (rc == MT_OK && !*ok)) {
         say_lost(e, rc == MT_OK, reason);
         return MT_OK;

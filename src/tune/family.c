@@ -203,7 +203,7 @@ static double tie_room_with(const mt_problem *p, int tie, int k, bool *stable, i
                 continue;
             }
             const int flexible = modes->count - modes->n_rigid;
-            *stable = *stable && modes->n_unstable == 0;
+            *stable = *stable && mt_modal_indexed(modes);
             *most = flexible > *most ? flexible : *most;
             room = fmin(room, room_with(modes, &c->bands.items[b], k));
         }
@@ -235,7 +235,7 @@ double mt_ties_violation(const mt_problem *p, const int *below)
         const mt_modes *const modes = modes_of(p, c);
         for (int b = 0; b < c->bands.n; b++) {
             const double room = room_with(modes, &c->bands.items[b], below[c->first + b]);
-            worst = fmax(worst, modes->n_unstable > 0 ? nan("") : -room);
+            worst = fmax(worst, mt_modal_indexed(modes) ? -room : nan(""));
         }
     }
     return worst;

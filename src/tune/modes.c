@@ -53,12 +53,14 @@ static mt_status find_parameter(const mt_model *model, const char *name, mt_aren
 static void copy_modes(const mt_modes *modes, int capacity, double *frequency_hz,
                        mt_mode_count *count)
 {
-    *count = (mt_mode_count){.rigid_body = modes->n_rigid, .unstable = modes->n_unstable};
+    *count = (mt_mode_count){.rigid_body = modes->n_rigid,
+                             .unstable = modes->n_unstable,
+                             .undecided = modes->n_undecided};
     for (int i = 0; i < modes->count; i++) {
         if (modes->kind[i] != MT_MODE_FLEXIBLE) {
             continue;
         }
-        if (modes->n_unstable == 0 && count->vibration < capacity) {
+        if (mt_modal_indexed(modes) && count->vibration < capacity) {
             frequency_hz[count->vibration] = mt_modal_hz(modes, i);
         }
         count->vibration++;

@@ -183,6 +183,10 @@ static mt_status look(walk *w, double at, int next, mt_err *err)
     if (rc == MT_OK && w->a->modes.n_unstable > 0) {
         return note_break(w, at, MT_MOTION_UNSTABLE, "it is unstable there", err);
     }
+    if (rc == MT_OK && w->a->modes.n_undecided > 0) {
+        return note_break(w, at, MT_MOTION_BROKEN, "rounding hides whether it is stable there",
+                          err);
+    }
     rc = rc == MT_OK ? measure(w, s, &why) : rc;
     if (rc != MT_OK) {
         return ends(rc) ? mt_fail(err, rc, "%s", why.text)

@@ -245,7 +245,7 @@ mt_status mt_clear_eval(mt_problem *p, const double *t, bool with_gradient, mt_n
 
 double mt_clear_violation(const mt_clear *c, const mt_modes *modes, int *below, int *worst)
 {
-    double violation = modes->n_unstable > 0 ? nan("") : 0.0;
+    double violation = mt_modal_indexed(modes) ? 0.0 : nan("");
     for (int b = 0; b < c->bands.n; b++) {
         const mt_band *const band = &c->bands.items[b];
         const bool from_zero = !(band->lower_hz > 0.0); /* 0 Hz is inside: nothing is below */
@@ -312,7 +312,7 @@ double mt_clear_room(const mt_problem *p, const mt_clear *c)
     if (p->robust != NULL) {
         return mt_robust_room(p, c);
     }
-    double room = modes->n_unstable > 0 ? nan("") : HUGE_VAL;
+    double room = mt_modal_indexed(modes) ? HUGE_VAL : nan("");
     for (int b = 0; b < c->bands.n; b++) {
         const mt_band *const band = &c->bands.items[b];
         for (int i = 0; i < modes->count; i++) {

@@ -138,7 +138,10 @@ int mt_view_vibrations(const mt_view *view)
 
 static const char *instability(const mt_view *view)
 {
-    return view->analysis->modes.n_unstable > 0 ? " (it is unstable there)" : "";
+    const mt_modes *const modes = &view->analysis->modes;
+    return modes->n_unstable > 0    ? " (it is unstable there)"
+           : modes->n_undecided > 0 ? " (rounding hides whether it is stable there)"
+                                    : "";
 }
 
 /* Resolve a mode given by name: its place in the view's list. */

@@ -34,10 +34,10 @@ static void set_combination(const mt_problem *p, int k, double *t)
     }
 }
 
-/* How far the edge of a band has to give way for the modes inside it: the frequency that it must let through; 0 where none is inside. NaN: unstable. */
+/* How far the edge of a band has to give way for the modes inside it: the frequency that it must let through; 0 where none is inside. NaN: unstable, or undecided. */
 static double let_through(const mt_band *band, const mt_modes *modes, bool upper)
 {
-    double hz = modes->n_unstable > 0 ? nan("") : 0.0;
+    double hz = mt_modal_indexed(modes) ? 0.0 : nan("");
     for (int i = 0; i < modes->count; i++) {
         const double f = modes->kind[i] == MT_MODE_FLEXIBLE ? mt_modal_hz(modes, i) : 0.0;
         if (f > band->lower_hz && f < band->upper_hz && MT_HAS(hz)) {

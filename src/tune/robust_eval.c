@@ -205,11 +205,11 @@ double mt_robust_room(const mt_problem *p, const mt_clear *c)
     const mt_corner_set *const set = &p->robust->views[c->view];
     double low = 0.0;
     double high = 0.0;
-    int unstable = modes->n_unstable;
+    bool indexed = mt_modal_indexed(modes);
     for (int k = 0; k < set->n; k++) {
-        unstable += set->corners[k].analysis->modes.n_unstable;
+        indexed = indexed && mt_modal_indexed(&set->corners[k].analysis->modes);
     }
-    double room = unstable > 0 ? nan("") : HUGE_VAL;
+    double room = indexed ? HUGE_VAL : nan("");
     for (int k = 1; MT_HAS(room) && span_of(p, c->view, k, &low, &high); k++) {
         for (int b = 0; b < c->bands.n; b++) {
             const mt_band *const band = &c->bands.items[b];

@@ -66,7 +66,7 @@ mt_status mt_track_match(mt_analysis *a, int n, const double *const *w, mt_track
     for (int r = 0; r < n; r++) {
         tracks[r] = (mt_track){.pos = -1, .rival = -1, .state = MT_TRACK_LOST_STATE};
     }
-    if (a->modes.n_unstable > 0 || n == 0) {
+    if (!mt_modal_indexed(&a->modes) || n == 0) {
         return MT_OK;
     }
     if (a->modes.y == NULL) {

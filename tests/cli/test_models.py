@@ -11,6 +11,14 @@ HZ = [math.sqrt(x) / (2 * math.pi) for x in (LOW, HIGH)]
 TOL = 1e-12  # two unknowns, condition 6: a few units in the last place
 
 
+STANDING = '''{"format": "modetune-model/1", "dimension": 2, "gravity_m_per_s2": [0, -8], "parameters": {"k": %.17g},
+"bodies": [{"name": "rod", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [0, 1]}],
+"joints": [{"name": "pin", "type": "revolute", "bodies": ["ground", "rod"], "at": [0, 0]}],
+"springs": [{"name": "k", "type": "torsion", "joint": "pin", "stiffness_n_m_per_rad": "k"}]}'''
+STANDING_STUDY = '''{"format": "modetune-study/1", "model": "../problems/standing.json", "variables": [{"parameter": "k", "lower": 4, "upper": 8}],
+"goals": [{"type": "frequency", "mode": 1, "target_hz": 0.2}]}'''
+
+
 class Modes(CliTest):
     def test_json_of_one_configuration_is_an_object(self):
         got = self.json_of("modes", self.model, "-c", "held")
@@ -49,6 +57,39 @@ class Modes(CliTest):
         done = self.expect(0, "modes", self.model, "-c", "heavy", "--set", "m=2")
         self.assertEqual(done.stderr, 'modetune: warning: configuration "heavy" has its own value of "m": --set '
                                       'changes nothing there\n')
+
+    def test_every_mode_carries_its_error(self):
+        for configuration in self.json_of("modes", self.model):
+            self.assertEqual(configuration["undecided_modes"], 0)
+            for mode in configuration["modes"]:
+                self.assertLess(mode["omega_squared_error"], 1e-12)
+                self.assertLess(mode["frequency_error_hz"], 1e-6 if mode["kind"] == "rigid_body" else 1e-12)
+        self.assertNotIn("error [Hz]", self.expect(0, "modes", self.model).stdout)
+
+    def test_an_error_that_shows_is_printed(self):
+        # a pendulum that stands on a spring just stiffer than its weight: what is left after cancellation is known less well
+        path = self.write("problems/standing.json", STANDING % (8 * (1 + 1e-9)))
+        mode = self.json_of("modes", path)[0]["modes"][0]
+        self.assertLess(abs(mode["omega_squared"] / 4e-9 - 1), 1e-5)
+        self.assertLess(abs(mode["omega_squared"] - 4e-9), mode["omega_squared_error"])
+        text = self.expect(0, "modes", path).stdout
+        self.assertIn("frequency [Hz]  error [Hz]", text)
+
+    def test_a_buckling_load_is_undecided(self):
+        path = self.write("problems/standing.json", STANDING % 8)
+        got = self.json_of("modes", path)[0]
+        self.assertEqual((got["undecided_modes"], got["rigid_body_modes"], got["unstable_modes"]), (1, 0, 0))
+        mode = got["modes"][0]
+        self.assertEqual((mode["kind"], mode["index"], mode["frequency_hz"]), ("undecided", None, None))
+        self.assertIn("undecided in 1 direction: springs and loads cancel", self.expect(0, "modes", path).stdout)
+        sweep = self.json_of("sweep", path, "--drive", "pin=0:0.1:2", "--hold", "k", "--modes")
+        points = (sweep[0] if isinstance(sweep, list) else sweep)["points"]
+        self.assertEqual([p["undecided_modes"] for p in points], [1, 0])
+        study = self.write("studies/standing.json", STANDING_STUDY)
+        done = self.run_program("run", study)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("has a mode of which rounding hides whether it is stable, so that its modes have no index", done.stdout)
+        self.assertIn("not met", done.stdout)
 
     def test_count_counts_vibration_modes(self):
         got = self.json_of("modes", self.model, "-c", "free", "--count", "1")["modes"]

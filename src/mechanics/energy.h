@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_ENERGY_H
+#define MECHANICS_ENERGY_H
+
+#include "mechanics/linear.h"
+
+/*
+ * Energies of shapes, summed term by term over the rows as they are before the constraints are eliminated, phi = Z y:
+ *     y^T K y = sum_t c_t (f_t . phi)^2 + phi^T Kg phi,   y^T M y = sum_t m_t sum_i (f_ti . phi)^2.
+ * Where a spring hardly takes part in a mode, its elongation f . phi is small before it is squared: no stiff spring costs the soft ones their digits, as it does where both are
+ * entries of one matrix.
+ *
+ * Noise. An entry of phi is known to p eps (|phi_j| + what is typical of phi), w_j below, whence
+ *     p eps (sum_t 2 c_t |f_t . phi| |f_t| . w + 2 |phi|^T (terms of |Kg|) w):
+ * terms count with their magnitudes, before they cancel. Forces that hold an equilibrium are known to its residual besides, each with its whole
+ * share of phi^T Kg phi. A spring is strained where its energy is more than
+ * 16 nq eps c (|f| . w)^2, the rounding of its own terms.
+ */
+typedef struct mt_energies {
+    double *stiffness;       /* [cols] */
+    double *mass;            /* [cols] */
+    double *stiffness_noise; /* [cols] */
+    double *mass_noise;      /* [cols] */
+    double *load_noise;      /* [cols] the part of stiffness_noise that comes with Kg */
+    bool *strained;          /* [cols] by any spring */
+} mt_energies;
+
+/* y n x cols. O(cols (rows + entries of Kg + nq n)). Fails MT_E_MEMORY. */
+mt_status mt_linear_energies(mt_linear *lin, int cols, const double *y, const mt_energies *out,
+                             mt_err *err);
+
+#endif
