@@ -166,6 +166,33 @@ static mt_status judge(mt_newton_work *w, const mt_pose *start, const mt_pose *p
     return MT_OK;
 }
 
+/* A position with its whole turns. */
+typedef struct place {
+    mt_pose *pose;
+    double *turn;
+} place;
+
+static mt_status note(const mt_newton_work *w, const mt_pose *poses, place *out, mt_arena *mem,
+                      mt_err *err)
+{
+    const size_t n = (size_t)w->sys->n_bodies;
+    const size_t turns = (size_t)w->sys->n_measures;
+    out->pose = mt_arena_alloc(mem, n, sizeof *out->pose);
+    out->turn = mt_arena_f64(mem, turns, 1);
+    if (out->pose == NULL || out->turn == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(out->pose, poses, n * sizeof *poses);
+    memcpy(out->turn, w->p->data->turn, turns * sizeof *out->turn);
+    return MT_OK;
+}
+
+static void go_back(const mt_newton_work *w, const place *to, mt_pose *poses)
+{
+    memcpy(poses, to->pose, (size_t)w->sys->n_bodies * sizeof *poses);
+    memcpy(w->p->data->turn, to->turn, (size_t)w->sys->n_measures * sizeof *to->turn);
+}
+
 /* Downhill from poses, and out of every saddle on the way. */
 static mt_status settle(mt_newton_work *w, const mt_pose *start, mt_pose *poses, mt_arena *mem,
                         mt_state *report, mt_stage *stage, ending *end, mt_err *err)
@@ -193,74 +220,53 @@ static mt_status settle(mt_newton_work *w, const mt_pose *start, mt_pose *poses,
 }
 
 /* With trim: the stationary point with the joint locked is where the trimmed one begins. */
-static mt_status lock_first(const mt_newton_problem *problem, mt_pose *poses, mt_arena *mem,
+static mt_status lock_first(const mt_newton_work *w, mt_pose *poses, mt_arena *mem,
                             mt_state *report, mt_err *err)
 {
-    mt_newton_problem locked = *problem;
+    mt_newton_problem locked = *w->p;
     mt_stage stage = {.active = false};
     mt_state other = *report;
+    place before;
     locked.trim = false;
-    mt_pose *const held = mt_arena_alloc(mem, (size_t)other.sys->n_bodies, sizeof *held);
-    if (held == NULL) {
-        return mt_fail_memory(err);
-    }
-    double *const turn = mt_arena_f64(mem, (size_t)other.sys->n_measures, 1);
-    if (turn == NULL) {
-        return mt_fail_memory(err);
-    }
-    memcpy(turn, problem->data->turn, (size_t)other.sys->n_measures * sizeof *turn);
-    memcpy(held, poses, (size_t)other.sys->n_bodies * sizeof *held);
-    const mt_status rc = mt_newton_solve(&locked, held, mem, &other, &stage, NULL);
+    MT_TRY(note(w, poses, &before, mem, err));
+    const mt_status rc = mt_newton_solve(&locked, poses, mem, &other, &stage, NULL);
     report->iterations = other.iterations;
-    if (rc == MT_OK) {
-        memcpy(poses, held, (size_t)other.sys->n_bodies * sizeof *held);
-    } else {
-        memcpy(problem->data->turn, turn, (size_t)other.sys->n_measures * sizeof *turn);
+    if (rc != MT_OK) {
+        go_back(w, &before, poses);
     }
     return rc == MT_E_MEMORY ? mt_fail_memory(err) : MT_OK;
 }
 
 /* A physical stage whose plain Newton ended as `end` says: downhill from the start, unless it may stay. */
-static mt_status go_on(mt_newton_work *w, const mt_pose *start, const double *turn,
-                       mt_pose *poses, mt_arena *mem, mt_state *report, mt_stage *stage,
-                       ending *end, mt_err *err)
+static mt_status go_on(mt_newton_work *w, const place *start, mt_pose *poses, mt_arena *mem,
+                       mt_state *report, mt_stage *stage, ending *end, mt_err *err)
 {
-    const size_t size = (size_t)w->sys->n_bodies * sizeof *poses;
-    MT_TRY(judge(w, start, poses, stage, end, mem, err));
+    MT_TRY(judge(w, start->pose, poses, stage, end, mem, err));
     const double rounding = ENERGY_ROUNDING * (fabs(end->before) + fabs(end->energy));
     const bool uphill = !w->p->trim && end->done && end->energy > end->before + rounding;
-    if (end->done &&
-        ((!end->saddle && !uphill) || mt_newton_distance(w->sys, start, poses) <= MT_DRAWN)) {
+    const bool settled = !end->saddle && !uphill;
+    if (end->done && (settled || mt_newton_distance(w->sys, start->pose, poses) <= MT_DRAWN)) {
         return MT_OK;
     }
     const mt_stage first_stage = *stage;
     const mt_state first_report = *report;
     const bool found = end->done;
-    const size_t turns = (size_t)w->sys->n_measures;
-    mt_pose *const first = mt_arena_alloc(mem, (size_t)w->sys->n_bodies, sizeof *first);
-    double *const first_turn = mt_arena_f64(mem, turns, 1);
-    if (first == NULL || first_turn == NULL) {
-        return mt_fail_memory(err);
-    }
-    memcpy(first, poses, size);
-    memcpy(first_turn, w->p->data->turn, turns * sizeof *first_turn);
+    place first;
+    MT_TRY(note(w, poses, &first, mem, err));
     w->watch = false;
-    memcpy(poses, start, size);
-    memcpy(w->p->data->turn, turn, turns * sizeof *turn);
+    go_back(w, start, poses);
     w->tau = 0.0;
     if (w->p->trim && found) {
-        MT_TRY(lock_first(w->p, poses, mem, report, err));
+        MT_TRY(lock_first(w, poses, mem, report, err));
         MT_TRY(attempt(w, poses, mem, report, stage, &end->done, err));
     } else {
-        MT_TRY(settle(w, start, poses, mem, report, stage, end, err));
+        MT_TRY(settle(w, start->pose, poses, mem, report, stage, end, err));
     }
-    if (!end->done &&
-        found) { /* nothing lower holds it: the saddle stands, and is told as unstable */
+    if (found && !end->done) { /* nothing lower holds it: the saddle stands, told as unstable */
         end->done = true;
         *stage = first_stage;
         *report = first_report;
-        memcpy(poses, first, size);
-        memcpy(w->p->data->turn, first_turn, turns * sizeof *first_turn);
+        go_back(w, &first, poses);
     }
     return MT_OK;
 }
@@ -270,22 +276,16 @@ mt_status mt_newton_solve(const mt_newton_problem *problem, mt_pose *poses, mt_a
 {
     mt_newton_work w;
     ending end = {.done = false};
-    const size_t n = (size_t)problem->data->sys->n_bodies;
+    place start;
     MT_TRY(mt_newton_work_init(&w, problem, mem, err));
-    mt_pose *const start = mt_arena_alloc(mem, n, sizeof *start);
-    double *const turn = mt_arena_f64(mem, (size_t)w.sys->n_measures, 1);
-    if (start == NULL || turn == NULL) {
-        return mt_fail_memory(err);
-    }
-    memcpy(start, poses, n * sizeof *start);
-    memcpy(turn, problem->data->turn, (size_t)w.sys->n_measures * sizeof *turn);
+    MT_TRY(note(&w, poses, &start, mem, err));
     mt_newton_evaluate(&w, poses, false);
     const bool closed = mt_newton_gap_of(&w) <= MT_STEP_DONE;
     end.before = mt_energy_value(problem->data, poses, 0.0);
     w.watch = problem->energy == MT_ENERGY_PHYSICAL && !problem->trim;
     MT_TRY(attempt(&w, poses, mem, report, stage, &end.done, err));
     if (problem->energy == MT_ENERGY_PHYSICAL) {
-        MT_TRY(go_on(&w, start, turn, poses, mem, report, stage, &end, err));
+        MT_TRY(go_on(&w, &start, poses, mem, report, stage, &end, err));
     }
     return end.done ? MT_OK : refuse(&w, poses, closed, mem, report, err);
 }
