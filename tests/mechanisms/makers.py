@@ -470,9 +470,26 @@ def _of(maker, dim):
     return lambda rng: maker(rng, dim)
 
 
+def _rods(rng, dim):
+    """Thin rods with mass between bodies on soft feet, all in gravity."""
+    m = Maker(rng, dim, name="Rods with mass")
+    m.tree(rng.randint(1, 3), tied=0.3, masses=0.4)
+    for _ in range(rng.randint(1, 3)):
+        b = rng.choice(m.model["bodies"])["name"]
+        m.joint(m.other(b), b, "distance")
+    for joint in m.model["joints"]:
+        if joint["type"] == "distance":
+            joint["mass_kg"] = m.parameter("m", m.size(0.05, 2), "kg")
+    m.stand()
+    m.gravity()
+    return m.done()
+
+
 KINDS = {}
 for _name, _maker in (("free", _unloaded), ("redundant", _redundant), ("loaded", _loaded), ("decades", _decades), ("stiff", _stiff), ("blocked", _blocked), ("driven", _driven)):
     KINDS[f"{_name}2"] = _of(_maker, 2)
     KINDS[f"{_name}3"] = _of(_maker, 3)
+KINDS["rods2"] = _of(_rods, 2)
+KINDS["rods3"] = _of(_rods, 3)
 KINDS["hanging"] = hanging
 KINDS["chains"] = chains

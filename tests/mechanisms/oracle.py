@@ -447,6 +447,9 @@ class Oracle:
                 self._joint(joint["name"], joint["type"], joint["bodies"], [self.v(p) for p in at], self.v(joint["axis"]) if "axis" in joint else None,
                             self.v(joint["axis_b"]) if "axis_b" in joint else None, self.n(joint["length_m"]) if "length_m" in joint else None)
         for joint in self.model.get("joints", []):
+            if self.here(joint) and "mass_kg" in joint:
+                self._rod(joint["bodies"], [self.v(p) for p in joint["at"]], self.n(joint["mass_kg"]))
+        for joint in self.model.get("joints", []):
             if self.here(joint) and joint["type"] in COUPLINGS:
                 a, b = (self.coordinate[j] for j in joint["joints"])
                 self._hold(joint["name"], geared(a, b, self.n(joint[COUPLINGS[joint["type"]]])))
@@ -503,7 +506,10 @@ class Oracle:
         length = exact.root(sum((b - a) ** 2 for a, b in zip(*at)))
         area = self.n(item["area_m2"])
         self._one(item, distance(product(apart, apart)), self.n(item["youngs_modulus_pa"]) * area / length, "", "preload_n")
-        mass = self.n(item.get("density_kg_per_m3", 0)) * area * length
+        self._rod(bodies, at, self.n(item.get("density_kg_per_m3", 0)) * area * length)
+
+    def _rod(self, bodies, at, mass):
+        """Uniform and thin, from point to point."""
         ends = [self.point(b, p) for b, p in zip(bodies, at)]
         for end, b, p in zip(ends, bodies, at):  # 1/3 (a a + a b + b b) = 1/6 (a a + b b + (a + b)(a + b))
             self._add_mass(end, mass / 6)
