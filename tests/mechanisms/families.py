@@ -199,18 +199,18 @@ def neutral(rng, dim):
     elif kind == "counterweight":
         arm, ratio = m.body(on(length)), rng.choice([0.5, 2, 3, 0.4, 7])
         mass = m.size(0.1, 10)
-        m.model["bodies"][-1]["mass_kg"] = mass
+        m.model["bodies"][-1]["mass_kg"] = short(number(mass) * number(ratio))
         other = m.body(on(short(-number(length) * number(ratio))))
-        m.model["bodies"][-1]["mass_kg"] = f"{mass}/{ratio}"
+        m.model["bodies"][-1]["mass_kg"] = mass
         pin(arm)
         m.model["joints"].append({"name": "j1", "type": "fixed", "bodies": [arm, other], "at": on(0.0)})
     else:  # a spring without free length, above the pin: k a b = m g l
-        above, out, mass = rng.randint(1, 8) / 8, rng.randint(1, 8) / 8, m.size(0.1, 10)
+        above, out, mass = 2.0 ** rng.randint(-3, 1), 2.0 ** rng.randint(-3, 1), m.size(0.1, 10)
         arm = m.body(on(length))
         m.model["bodies"][-1]["mass_kg"] = mass
         pin(arm)
         m.model["springs"].append({"name": "s0", "type": "axial", "bodies": ["ground", arm], "at": [lift([0.0, above]), on(out)], "free_length_m": 0,
-                                   "stiffness_n_per_m": f"{mass}*{g}*{length}/({above}*{out})"})
+                                   "stiffness_n_per_m": short(number(mass) * number(g) * number(length) / (number(above) * number(out)))})
     if m.chance(0.4):  # something that vibrates beside it
         other = m.body(m.point())
         m.joint("ground", other, "revolute")

@@ -151,8 +151,11 @@ class Problem:
     # equilibrium --------------------------------------------------------------------------------------------------------------------------------
     def search(self):
         """Floats: q, force of the trimmed spring, near rest."""
-        with np.errstate(all="ignore"):
-            return self._searched()
+        try:
+            with np.errstate(all="ignore"):
+                return self._searched()
+        except ZeroDivisionError as error:
+            raise Refused("a spring without length") from error
 
     def _searched(self):
         q, force = np.array([float(x) for x in self.drawn]), 0.0
