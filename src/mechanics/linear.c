@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mechanics/couplings.h"
 #include "mechanics/drive.h"
 #include "mechanics/idle.h"
 #include "mechanics/reduce.h"
@@ -43,7 +44,15 @@ static mt_status init(mt_linear *lin, const mt_system *sys, mt_err *err)
     if (lin->last.pose == NULL || lin->last.turn == NULL) {
         return mt_fail_memory(err);
     }
-    return mt_terms_new(sys, &lin->base, lin->list, err);
+    MT_TRY(mt_terms_new(sys, &lin->base, lin->list, err));
+    const size_t terms = (size_t)lin->list[MT_TERM_STIFFNESS].n_terms;
+    lin->coupling = mt_arena_alloc(&lin->base, terms, sizeof *lin->coupling);
+    lin->squared = mt_arena_alloc(&lin->base, terms, sizeof *lin->squared);
+    if (lin->coupling == NULL || lin->squared == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_couplings_find(lin, lin->coupling);
+    return MT_OK;
 }
 
 mt_status mt_linear_new(const mt_system *sys, mt_linear **out, mt_err *err)
@@ -158,15 +167,44 @@ static void add_term(const mt_linear *lin, int kind, const mt_term *t, double c,
     }
 }
 
-/* out (n x n) += sum of the terms' contributions, lower triangle; which: 0 terms without inputs, 1 terms with, 2 all. */
+/* out (n x n) += sum of the terms' contributions, lower triangle; which: 0 terms without inputs, 1 terms with, 2 all. Springs with couplings that depend on no input are added as a whole (add_couplings). */
 static void add_terms(const mt_linear *lin, int kind, int which, double *out)
 {
     const mt_term_list *const list = &lin->list[kind];
     for (int i = 0; i < list->n_terms; i++) {
         const mt_term *const t = &list->terms[i];
         const double c = lin->value[t->coefficient];
-        if ((which == 2 || t->varies == (which == 1)) && c != 0.0) {
+        const bool apart = kind == MT_TERM_STIFFNESS && lin->coupling[i] == MT_COUPLING_WHOLE;
+        if ((which == 2 || t->varies == (which == 1)) && c != 0.0 && !apart) {
             add_term(lin, kind, t, c, out);
+        }
+    }
+}
+
+/* The springs with couplings of one kind as sums of squares, where they are some. */
+static void square_couplings(mt_linear *lin, mt_coupling kind)
+{
+    const int n = lin->list[MT_TERM_STIFFNESS].n_terms;
+    for (int first = 0, end = 0; first < n; first = end) {
+        end = lin->coupling[first] == kind ? mt_couplings_end(lin, first) : first + 1;
+        const bool square =
+            lin->coupling[first] == kind && mt_couplings_square(lin, first, end);
+        for (int i = first; i < end && lin->coupling[i] == kind; i++) {
+            lin->squared[i] = square;
+        }
+    }
+}
+
+/* k += the springs with couplings that depend on no input, by their squares where they have some: what cancels there is 0. */
+static void add_couplings(const mt_linear *lin, double *k)
+{
+    const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];
+    for (int i = 0; i < list->n_terms; i++) {
+        const mt_term *const t = &list->terms[i];
+        if (lin->coupling[i] == MT_COUPLING_WHOLE && lin->squared[i]) {
+            mt_couplings_add(lin, t, k);
+        } else if (lin->coupling[i] == MT_COUPLING_WHOLE) {
+            add_term(lin, MT_TERM_STIFFNESS, t, lin->value[t->coefficient], k);
         }
     }
 }
@@ -211,6 +249,8 @@ static mt_status fixed_parts(mt_linear *lin, mt_err *err)
             lin->factor_noise[r + (c * rows)] = lin->noise[c + (r * n)];
         }
     }
+    square_couplings(lin, MT_COUPLING_WHOLE);
+    add_couplings(lin, lin->k_fixed);
     return MT_OK;
 }
 
@@ -233,12 +273,16 @@ static void assemble(mt_linear *lin, bool geometry_new)
         mt_symmetrise_lower(n, lin->m_r);
         lin->mass_version++;
     }
+    square_couplings(lin, MT_COUPLING_VARIES);
     memcpy(lin->factor_g, lin->g_fixed, size);
     lin->has_factor_g = lin->kg != NULL;
     for (int i = 0; i < stiffness->n_terms; i++) {
         const mt_term *const t = &stiffness->terms[i];
         const double c = lin->value[t->coefficient];
         const bool square = !t->pair && c >= 0.0;
+        if (lin->squared[i]) {
+            continue; /* the rows of its spring stand there already */
+        }
         for (int r = 0; r < t->count; r++) {
             lin->factor_c[t->first + r] = square ? c : 0.0;
         }

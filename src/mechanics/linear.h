@@ -17,6 +17,13 @@
  */
 typedef struct mt_linear_tangent mt_linear_tangent;
 
+/* Does the spring that a term of K comes from couple its measures (a bushing's matrix), and does any of its terms depend on an input? */
+typedef enum mt_coupling {
+    MT_COUPLING_NONE,
+    MT_COUPLING_WHOLE,
+    MT_COUPLING_VARIES
+} mt_coupling;
+
 typedef struct mt_linear {
     const mt_system *sys;
     mt_arena base;     /* lives as long as this */
@@ -25,8 +32,10 @@ typedef struct mt_linear {
     double *value; /* [program.count] */
     double *grad;  /* [program.count x n_inputs], after an update with gradients */
     mt_term_list list[MT_TERM_KINDS];
-    mt_data data; /* real */
-    mt_data dual; /* with derivative */
+    mt_coupling *coupling; /* of the terms of K (couplings.h) */
+    bool *squared; /* of the terms of K: their spring with couplings is a sum of squares */
+    mt_data data;  /* real */
+    mt_data dual;  /* with derivative */
     mt_state position;
     bool
         follow; /* a driven joint begins where the last update left it, instead of at the reference position: for sweeps */
@@ -56,7 +65,7 @@ typedef struct mt_linear {
     double *factor_c;
     double *factor_noise; /* bounds of the errors of factor_b's entries */
     double *
-        factor_g; /* n x n: what is no sum of squares: geometric stiffness, coupling terms, negative coefficients; K_r = B^T diag(c) B + G */
+        factor_g; /* n x n: what is no sum of squares: geometric stiffness, indefinite couplings, negative coefficients; K_r = B^T diag(c) B + G */
     bool has_factor_g;          /* is there such a part? */
     unsigned long mass_version; /* changes when M_r does */
     unsigned long geometry_version;

@@ -199,10 +199,19 @@ class Mechanism:
             length = math.sqrt(sum(x * x for x in about))
             self.springs.append(({"type": "torsion", "joint": f"j{index}"}, [], [(k, self.about(a, b, about), length)]))
             return
-        form = rng.choice(["axial", "bushing", "bar", "torsion"] if self.dimension == 2 else ["axial", "bushing", "bar"])
+        form = rng.choice(["axial", "bushing", "bar", "torsion"] if self.dimension == 2 else ["axial", "bushing", "bar", "matrix"])
         if form == "torsion":
             k = self.stiffness()
             self.springs.append(({"type": form, "bodies": [a, b]}, [], [(k, self.about(a, b, [0, 0, 1]), 1)]))
+        elif form == "matrix":  # a bushing that is soft or stiff along the axes of the drawing, however that is turned
+            point = at[0] if rng.random() < 0.5 else self.point()
+            e = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+            rows = []
+            sizes = [self.stiffness() if rng.random() < 0.5 else 0.0 for _ in range(6)]
+            for k, size in enumerate(sizes):
+                if size:
+                    rows.append((size, self.along(a, b, point, point, e[k]) if k < 3 else self.about(a, b, e[k - 3]), 1))
+            self.springs.append(({"type": "bushing", "bodies": [a, b], "sizes": sizes}, [point], rows))
         elif form == "bushing":
             sides = [rng.random() < 0.7, rng.random() < 0.7]
             force, torque = self.stiffness(), self.stiffness()
@@ -262,6 +271,11 @@ class Mechanism:
                 spring["stiffness_n_per_m"] = k
             elif head["type"] == "bar":
                 spring.update(youngs_modulus_pa=k * rows[0][2] * l, area_m2=1)
+            elif "sizes" in head:
+                size = numpy.diag(spring.pop("sizes"))
+                force, torque = r @ size[:3, :3] @ r.T, r @ size[3:, 3:] @ r.T * l * l
+                matrix = numpy.block([[force, numpy.zeros((3, 3))], [numpy.zeros((3, 3)), torque]])
+                spring["stiffness_matrix"] = ((matrix + matrix.T) / 2).tolist()
             else:
                 sides = spring.pop("sides")
                 turns = [x for x, row, _ in rows if not any(row[6 * j + c] for j in range(8) for c in range(3))]
@@ -372,6 +386,31 @@ class BlockedSprings(CliTest):
             shape = json.loads(done.stdout)[0]["modes"][0]["shape"]
             self.assertAlmostEqual(abs(shape["c.x"]), 1.0, 14, f"MT_SEED={SEED} index {index}")
             self.assertEqual([shape["c.y"], shape["c.r"]], [0, 0], f"MT_SEED={SEED} index {index}")
+
+    def test_slopes_do_not_see_blocked_springs(self):
+        """Nor do derivatives by the geometry, however stiff a bushing across a hinge is."""
+        rng = random.Random(SEED)
+        for index in range(10):
+            where = f"MT_SEED={SEED} index {index}"
+            tilt, soft, stiff = rng.uniform(0.2, 1.4), rng.uniform(1, 30), 10.0 ** rng.uniform(3, 13)
+            tip = [f"L*cos({tilt})", f"L*sin({tilt})"]
+            model = {"format": "modetune-model/1", "dimension": 2, "parameters": {"L": rng.uniform(1, 2), "d": 0.4, "k": 50.0},
+                     "bodies": [{"name": "a", "mass_kg": 2, "inertia_kg_m2": 0.3, "centre": [f"{x}/2" for x in tip]},
+                                {"name": "b", "mass_kg": 1, "inertia_kg_m2": 0.2, "centre": [f"{tip[0]}+d", tip[1]]}],
+                     "joints": [{"name": "p", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0]},
+                                {"name": "q", "type": "revolute", "bodies": ["a", "b"], "at": tip}],
+                     "springs": [{"name": "t", "type": "torsion", "joint": "p", "stiffness_n_m_per_rad": "k"},
+                                 {"name": "u", "type": "torsion", "joint": "q", "stiffness_n_m_per_rad": soft}]}
+            slopes = []
+            for _ in range(2):
+                self.write("slope.json", json.dumps(model))
+                done = self.run_program("sensitivity", "slope.json", "--format", "json", "--quiet")
+                self.assertEqual(done.returncode, 0, f"{where}: {done.stderr}")
+                slopes.append([x["hz_per_percent"] for m in json.loads(done.stdout)[0]["modes"] for x in m["sensitivities"]])
+                model["springs"].append({"name": "x", "type": "bushing", "bodies": ["a", "b"], "at": tip,
+                                         "stiffness_n_per_m": [stiff, 2 * stiff], "stiffness_n_m_per_rad": 0})
+            for x, y in zip(*slopes):
+                self.assertAlmostEqual(x, y, 13, where)
 
 
 if __name__ == "__main__":
