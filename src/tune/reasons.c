@@ -246,6 +246,9 @@ static void say_violations(mt_sentences *s)
         if (g->doubtful && !g->weighted) {
             mt_say(s, "Goal %s (%s) does not count as met: it is not certain which mode it is.",
                    g->pointer, g->text);
+        } else if (!g->weighted && !g->met && !MT_HAS(g->violation_percent)) {
+            mt_say(s, "Goal %s (%s) has no value here and does not count as met.", g->pointer,
+                   g->text);
         } else if (!g->weighted && !g->met) {
             mt_say(s, "Goal %s (%s) is missed by %.3g %%.", g->pointer, g->text,
                    g->violation_percent);

@@ -90,6 +90,7 @@ class Modes(CliTest):
         self.assertEqual(done.returncode, 1)
         self.assertIn("has a mode of which rounding hides whether it is stable, so that its modes have no index", done.stdout)
         self.assertIn("not met", done.stdout)
+        self.assertIn("Goal /goals/0 (default mode 1 at 0.2 Hz) has no value here and does not count as met.", done.stdout)
 
     def test_count_counts_vibration_modes(self):
         got = self.json_of("modes", self.model, "-c", "free", "--count", "1")["modes"]
