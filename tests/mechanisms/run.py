@@ -127,12 +127,10 @@ class Case:
             near = [self.modes.shifted({name: value + s * step}) for s in (-1, 1)]
         except Refused:
             return  # nor is there rest beside this value
-        if any(m.counts() != self.modes.counts() for m in near):  # the mechanism changes with the parameter: there is no derivative
-            given = [s["hz_per_unit"] for mode in answer.said["modes"] for s in mode["sensitivities"] if s["parameter"] == name]
-            if any(x is not None for x in given):
-                yield "no_slope", f"{name} changes which motions are free, and its derivatives are {given}"
-            return
         low, high = (m.hz() for m in near)
+        if any(m.counts() != self.modes.counts() for m in near):
+            yield from self._jammed(name, answer, low, high)
+            return
         for i, mode in enumerate(answer.said["modes"]):
             f = self.hz[i]
             if any(abs(g / f - 1) < APART for j, g in enumerate(self.hz) if j != i):
@@ -143,6 +141,18 @@ class Case:
             if given is None or abs(number(given) - exact) > SLOPES * max(abs(exact), size):
                 yield "slopes", f"mode {i + 1} ({f:.6g} Hz) to {name}: {given} Hz per unit, exact {exact:.12g}"
                 return
+
+    def _jammed(self, name, answer, low, high):
+        """Motions are blocked, or held, as soon as the parameter moves: from the first mode that jumps on there is no derivative."""
+        if all(len(hz) == len(self.hz) for hz in (low, high)):
+            return
+        for i, mode in enumerate(answer.said["modes"]):
+            if all(i < len(hz) and abs(hz[i] / self.hz[i] - 1) < ACCURACY for hz in (low, high)):
+                continue
+            given = next(s for s in mode["sensitivities"] if s["parameter"] == name)["hz_per_unit"]
+            if given is not None and len(low) < len(self.hz):
+                yield "no_slope", f"{name} jams mode {i + 1} ({self.hz[i]:.6g} Hz), and its derivative is {given}"
+            return
 
     def shapes(self):
         """Mass-normalised, of modes that stand alone."""
