@@ -8,8 +8,9 @@
 static const double SHAPE_ULPS = 16.0;
 /* An energy is nothing below 16 nq eps of its own terms, as in any matrix of these rooms. */
 static const double ENERGY_ULPS = 16.0;
-/* Forces of an equilibrium are known to a few times its residual. */
-static const double RESIDUALS = 4.0;
+/* Forces of an equilibrium are known to a few times its residual, and so is its place, which the springs' rows depend on: what an unbalanced force r moves, r/K, changes them
+ * by as much as r changes Kg, with a moderate factor. */
+static const double RESIDUALS = 32.0;
 
 typedef struct entry {
     int row;
