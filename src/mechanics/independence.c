@@ -61,11 +61,11 @@ static bool can_change(const mt_linear *lin, int p)
 
 /*
  * A gap's derivative is a sum of motions of points that the input moves; those that cancel at once (both bodies' point is drawn elsewhere) are not among its terms, but in A.,
- * which turns with the arms: arms grow by up to |A.| model lengths.
+ * which turns with the arms: arms grow by up to |A.| model lengths. Nor is the motion itself known beyond its rounding, in whatever direction it is not.
  */
 static bool opens(const mt_linear *lin, const mt_linear_tangent *t, const double *w)
 {
-    double terms = t->terms;
+    double terms = fmax(t->terms, TAKES_PART / VANISHES * t->motion);
     for (int j = 0; j < lin->m; j++) {
         const double arms = lin->sys->length_m * row_length(&lin->e, t, j);
         terms = fmax(terms, TAKES_PART / VANISHES * arms);

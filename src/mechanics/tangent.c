@@ -50,6 +50,12 @@ static mt_status tangent_rows(mt_linear *lin, const mt_pose *poses, mt_linear_ta
 /* c' of the input itself and of the motion d that it causes: c' = (c' - A d) + A d. */
 static void closing(const mt_linear *lin, const mt_lagrangian *l, mt_linear_tangent *t)
 {
+    double squares = 0.0;
+    for (int j = 0; j < lin->sys->nq; j++) {
+        const double part = lin->position.d_pose[j] / lin->e.dc[j];
+        squares += part * part;
+    }
+    t->motion = sqrt(squares);
     t->terms = 0.0;
     for (ptrdiff_t i = 0; i < lin->m; i++) {
         double moved = 0.0;

@@ -12,8 +12,9 @@ struct mt_linear_tangent {
     double *a;                   /* m x nq, derivative of the constraint Jacobian */
     double *
         c; /* [m] derivative of the constraints along the motion of the position: 0 where it stays closed */
-    double terms; /* largest sum of the terms of an entry of c, in rows of unit length */
-    double *kg;   /* nq x nq; NULL where nothing loads */
+    double terms;  /* largest sum of the terms of an entry of c, in rows of unit length */
+    double motion; /* length of the motion that the input causes, in scaled coordinates */
+    double *kg;    /* nq x nq; NULL where nothing loads */
 };
 
 /* Fill lin->tangent for all inputs. */
