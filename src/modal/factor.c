@@ -255,6 +255,6 @@ mt_status mt_modal_by_factor(const mt_stiffness_factor *factor, const mt_mass_fa
     out->from_factor = true;
     out->error_bound = 0.0;
     out->error_relative =
-        fmax(g.tol, mt_modal_tolerance(g.n)) * (mass->condition + 1.0 / g.kept);
+        fmax(g.tol, mt_modal_relative(g.n)) * (mass->condition + 1.0 / g.kept);
     return MT_OK;
 }

@@ -21,9 +21,17 @@
 
 #include "linalg/dense.h"
 
+/* See mt_modal_relative: twice what was met. */
+static const double ASSEMBLY_ULPS = 64.0;
+
 double mt_modal_tolerance(int n)
 {
     return MT_MODAL_NOISE_ULPS * (double)n * DBL_EPSILON;
+}
+
+double mt_modal_relative(int n)
+{
+    return mt_modal_tolerance(n) + ASSEMBLY_ULPS * DBL_EPSILON;
 }
 
 /* d_i = 1/sqrt(m_ii), 0 for coordinates without mass. False where there are such. Fails on a

@@ -26,6 +26,10 @@ static const double MT_MODAL_NOISE_ULPS = 16.0;
 
 /* 16 n eps. */
 double mt_modal_tolerance(int n);
+/* The relative error of an eigenvalue that comes with the matrices: an entry of K or M is a sum of
+ * rounded products (a spring's elongation through a loop of joints has a few dozen roundings),
+ * whatever n is. Measured: 33 eps, a four-bar of one freedom, among 1500 random mechanisms. */
+double mt_modal_relative(int n);
 
 /* Fill lambda, y (when there), n_condensed..., scale from K restricted to what has mass. Kinds,
  * clusters, sign and checks come later. */

@@ -87,6 +87,6 @@ mt_status mt_modal_plain(const double *k, const mt_mass_factor *mass, mt_arena *
     }
     out->scale = stiffness_scale(k, mass, out);
     out->error_bound = mt_modal_tolerance(n) * out->scale;
-    out->error_relative = mt_modal_tolerance(n) * fmin(mass->kept, 1.0 / DBL_EPSILON);
+    out->error_relative = mt_modal_relative(n) * fmin(mass->kept, 1.0 / DBL_EPSILON);
     return MT_OK;
 }
