@@ -149,7 +149,9 @@ static void shape_of(const mt_data *d, const mt_node shape[2], mt_beam_geometry 
 static void beam_rows(const mt_data *d, const mt_inertia_def *def, const mt_pose *poses,
                       mt_cx *rows)
 {
-    mt_beam_geometry g;
+    mt_beam_geometry g = {
+        .shape = {1.0, 1.0}
+    };
     mt_beam_frame(d, def->body, def->dir, poses, &g);
     shape_of(d, def->shape, &g);
     if (def->kind == MT_INERTIA_BEAM_TWIST) {
@@ -203,7 +205,9 @@ static void beam_channel(const mt_data *d, const mt_channel_def *c, const mt_pos
 {
     static const mt_cx zero[3] = {0.0, 0.0, 0.0};
     const mt_cx x = mt_data_scalar(d, c->fraction, 0.0);
-    mt_beam_geometry g;
+    mt_beam_geometry g = {
+        .shape = {1.0, 1.0}
+    };
     mt_beam_frame(d, c->body, c->dir, poses, &g);
     shape_of(d, c->shape, &g);
     for (int side = 0; side < 2; side++) {

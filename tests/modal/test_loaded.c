@@ -145,17 +145,15 @@ static void loaded__strained_zero_is_undecided(mt_test *t)
     for (int strained = 0; strained < 2; strained++) {
         double zero[2] = {0.0, 1e12};
         double one[2] = {1.0, 1.0};
-        double noise[3][2] = {
-            {1e-15, 1e-3},
-            {  0.0,  0.0},
-            {1e-15,  0.0}
-        };
+        double stiffness_noise[2] = {1e-15, 1e-3};
+        double mass_noise[2] = {0.0, 0.0};
+        double load_noise[2] = {1e-15, 0.0};
         bool moves[2] = {strained == 1, true};
         mt_mode_energies e = {.stiffness = zero,
                               .mass = one,
-                              .stiffness_noise = noise[0],
-                              .mass_noise = noise[1],
-                              .load_noise = noise[2],
+                              .stiffness_noise = stiffness_noise,
+                              .mass_noise = mass_noise,
+                              .load_noise = load_noise,
                               .strained = moves};
         const double k[4] = {0.0, 0.0, nan(""), 1e12};
         mt_modes modes;

@@ -77,12 +77,13 @@ bool mt_sites_failed(void)
 /* A frame begins with the address of its caller's frame and its return address. What is no frame (a foreign library keeps none) ends the walk. */
 static place place_of(const char *frame)
 {
+    enum { WORD = sizeof(void *) };
     place p;
     memset(&p, 0, sizeof p);
     for (int i = 0; i <= MT_SITES_CALLERS; i++) {
         const char *above;
-        memcpy(&p.call[i], frame + sizeof(void *), sizeof(void *));
-        memcpy(&above, frame, sizeof(void *));
+        memcpy(&p.call[i], frame + WORD, WORD);
+        memcpy(&above, frame, WORD);
         if (above <= frame || above >= sites.top) {
             break;
         }
