@@ -99,21 +99,34 @@ static mt_status relax(walk *w, mt_newton_work *work, const mt_elimination *e, m
     return MT_OK;
 }
 
+/* The first m equations where the walk stands. */
+static mt_newton_problem problem_here(const walk *w, int m)
+{
+    return (mt_newton_problem){.data = w->data,
+                               .energy = MT_ENERGY_ANCHOR,
+                               .drawn = w->p->pose,
+                               .m = m,
+                               .trim = false};
+}
+
+/* work and e live in w->mem, work as long as the problem. */
+static mt_status eliminate_here(const walk *w, const mt_newton_problem *problem,
+                                mt_newton_work *work, mt_elimination *e, mt_err *err)
+{
+    MT_TRY(mt_newton_work_init(work, problem, w->mem, err));
+    mt_newton_evaluate(work, w->p->pose, false);
+    return mt_eliminate(w->p->sys, problem->m, work->a, w->mem, e, err);
+}
+
 /* dq/ds where the walk stands, and its size in model lengths per unit of the coordinate. Held: the old rate stays. */
 static mt_status find_rate(walk *w, double *size, mt_err *err)
 {
     const mt_system *const sys = w->p->sys;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
-    const mt_newton_problem problem = {.data = w->data,
-                                       .energy = MT_ENERGY_ANCHOR,
-                                       .drawn = w->p->pose,
-                                       .m = sys->n_constraints,
-                                       .trim = false};
+    const mt_newton_problem problem = problem_here(w, sys->n_constraints);
     mt_newton_work work;
     mt_elimination e;
-    MT_TRY(mt_newton_work_init(&work, &problem, w->mem, err));
-    mt_newton_evaluate(&work, w->p->pose, false);
-    MT_TRY(mt_eliminate(sys, problem.m, work.a, w->mem, &e, err));
+    MT_TRY(eliminate_here(w, &problem, &work, &e, err));
     memset(work.c, 0, (size_t)problem.m * sizeof *work.c);
     work.c[w->row] = 1.0;
     MT_TRY(mt_eliminate_particular(&e, work.c, work.v, w->mem, err));
@@ -243,16 +256,10 @@ static mt_status refuse_dead_centre(walk *w, mt_err *err)
 {
     const mt_system *const sys = w->p->sys;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
-    const mt_newton_problem problem = {.data = w->data,
-                                       .energy = MT_ENERGY_ANCHOR,
-                                       .drawn = w->p->pose,
-                                       .m = sys->n_constraints - 1,
-                                       .trim = false};
+    const mt_newton_problem problem = problem_here(w, sys->n_constraints - 1);
     mt_newton_work work;
     mt_elimination e;
-    MT_TRY(mt_newton_work_init(&work, &problem, w->mem, err));
-    mt_newton_evaluate(&work, w->p->pose, false);
-    MT_TRY(mt_eliminate(sys, problem.m, work.a, w->mem, &e, err));
+    MT_TRY(eliminate_here(w, &problem, &work, &e, err));
     const mt_status rc = mt_singular_refuse(w->data, w->p->pose, &e, w->mem, err);
     MT_TRY(mt_err_in(err, rc, "the position that it is driven from"));
     mt_arena_rewind(w->mem, mark);
