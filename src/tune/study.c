@@ -51,6 +51,18 @@ void mt_study_delete(mt_study *study)
     free(study);
 }
 
+bool mt_study_asks(const mt_study *study, int configuration)
+{
+    for (int g = 0; g < study->n_goals; g++) {
+        for (int k = 0; k < study->goals[g].n_configurations; k++) {
+            if (study->goals[g].configurations[k] == configuration) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 int mt_study_find_reference(const mt_study *study, const char *name)
 {
     for (int i = 0; i < study->n_references; i++) {

@@ -315,6 +315,8 @@ mt_published mt_published_default(mt_published_kind kind, mt_addr addr);
 mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err);
 /* MT_ABSENT where there is none. */
 int mt_study_find_reference(const mt_study *study, const char *name);
+/* Does a goal ask for this configuration? */
+bool mt_study_asks(const mt_study *study, int configuration);
 /* Fill in where a doubt's address stands, if that is known. */
 void mt_study_place_doubt(const mt_study *study, mt_doubt *doubt);
 /* The names that files use: "frequency", "verifies", "parameter". */

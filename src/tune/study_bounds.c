@@ -51,14 +51,9 @@ static bool is_asked(const mt_study *s, int c)
 {
     bool any = false;
     for (int g = 0; g < s->n_goals; g++) {
-        for (int i = 0; i < s->goals[g].n_configurations; i++) {
-            any = true;
-            if (s->goals[g].configurations[i] == c) {
-                return true;
-            }
-        }
+        any = any || s->goals[g].n_configurations > 0;
     }
-    return !any;
+    return !any || mt_study_asks(s, c);
 }
 
 /* All that is said of the design x, of every configuration that counts. */

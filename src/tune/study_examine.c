@@ -236,18 +236,6 @@ static mt_status examine_configuration(const mt_study *s, int c, mt_doubt_list *
     return rc;
 }
 
-static bool names(const mt_study *s, int c)
-{
-    for (int g = 0; g < s->n_goals; g++) {
-        for (int k = 0; k < s->goals[g].n_configurations; k++) {
-            if (s->goals[g].configurations[k] == c) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
 static const char *base_name(const char *path)
 {
     const char *const slash = path == NULL ? NULL : strrchr(path, '/');
@@ -262,7 +250,7 @@ mt_status mt_study_examine(const mt_study *study, mt_doubt_list *out, mt_err *er
     }
     mt_doubt_list of_model = mt_doubt_list_default(out->mem);
     for (int c = 0; c < study->model->n_configurations; c++) {
-        if (names(study, c)) {
+        if (mt_study_asks(study, c)) {
             MT_TRY(examine_configuration(study, c, out, &of_model, err));
         }
     }

@@ -6,18 +6,6 @@
 #include "mechanics/linear.h"
 #include "tune/study_check.h"
 
-static bool is_asked_for(const mt_study *s, int c)
-{
-    for (int g = 0; g < s->n_goals; g++) {
-        for (int k = 0; k < s->goals[g].n_configurations; k++) {
-            if (s->goals[g].configurations[k] == c) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
 /* Names configuration c's variables that break a redundancy; each variable once over all configurations. */
 static mt_status judge(mt_study_check *c, mt_linear *lin, bool *told, mt_err *err)
 {
@@ -88,7 +76,7 @@ void mt_study_check_redundant(mt_study_check *c)
         at[i] = s->variables[i].original;
     }
     for (int i = 0; i < c->model->n_configurations && !c->out_of_memory; i++) {
-        if (is_asked_for(s, i)) {
+        if (mt_study_asks(s, i)) {
             c->out_of_memory = look_at(c, i, inputs, at, told, NULL) == MT_E_MEMORY;
         }
     }
