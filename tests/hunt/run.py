@@ -98,10 +98,13 @@ def findings(name, model, study, answer):
     if code not in (0, 1) or "runtime error" in words or "Sanitizer" in words:
         out.append(("exit", f"exit code {code}: {words[-2000:]}"))
     run = Run(name, model, study, result, words)
+    checks = {**CHECKS, "trade": lambda r: check_again.trade(r, again)}
     with np.errstate(all="ignore"):
-        for check, function in CHECKS.items():
-            out += [(check, text) for text in itertools.islice(function(run), 1)]
-        out += [("trade", text) for text in itertools.islice(check_again.trade(run, again), 1)]
+        for check, function in checks.items():
+            try:
+                out += [(check, text) for text in itertools.islice(function(run), 1)]
+            except Exception as fault:  # a fault of this reference ends one check, never the hunt
+                out.append(("reference", f"{check}: {fault!r}"))
     return out
 
 

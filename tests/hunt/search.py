@@ -132,7 +132,7 @@ class Local:
             # rows that almost hold are kept from falling, too
             rows = np.concatenate([equal, least[least < 1e-9] - 1e-10])
             slopes = np.concatenate([d_equal, d_least[least < 1e-9]])
-            if rows.size == 0 or not np.all(np.isfinite(rows)) or np.abs(rows).max() < 2e-10:
+            if rows.size == 0 or not np.all(np.isfinite(rows)) or np.abs(rows).max() < 2e-10 or not np.all(np.isfinite(slopes)):
                 break
             open_ = (t > self.lower) & (t < self.upper)
             step = np.zeros_like(t)

@@ -5,6 +5,8 @@ import numpy as np
 import models
 from question import Question
 
+SLIVER = 1.002  # a band of less than a thousandth is no question
+
 
 def _round(value, digits=5):
     return float(f"{value:.{digits}g}")
@@ -126,8 +128,8 @@ def _bands(rng, model, variables, count=None):
         goal["margin_percent"] = rng.choice([2, 5, 10])
     if rng.random() < 0.15:
         goal["up_to_hz"] = _round(max(b[1] for b in bands) * rng.uniform(0.7, 1.2))
-        margin = 1.0 - goal.get("margin_percent", 0) / 100.0  # a band cut off below its base: cases/cut_off_within_a_margin.json
-        if all(b[0] * margin >= goal["up_to_hz"] for b in bands) or any(b[0] * margin < goal["up_to_hz"] <= b[0] for b in bands):
+        margin = 1.0 - goal.get("margin_percent", 0) / 100.0  # a band cut off below its base: cases/cut_off_within_a_margin.json; a sliver is doubted
+        if all(b[0] * margin >= goal["up_to_hz"] for b in bands) or any(b[0] * margin < goal["up_to_hz"] <= b[0] * SLIVER for b in bands):
             del goal["up_to_hz"]
     if "configurations" in model and rng.random() < 0.4:
         del goal["configuration"]

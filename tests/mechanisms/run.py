@@ -223,8 +223,11 @@ def hunt(seed, kinds, indices, tally, seconds=None, keep=None):
                     tally["left out"] += 1
                     tally[str(why)] = tally.get(str(why), 0) + 1
                     continue
-                for check, text in case.findings():
-                    yield kind, index, check, text, reason(check, case)
+                try:
+                    for check, text in case.findings():
+                        yield kind, index, check, text, reason(check, case)
+                except Exception as fault:  # a fault of this reference ends one case, never the hunt
+                    yield kind, index, "reference", repr(fault), None
 
 
 def main():
