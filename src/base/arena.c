@@ -23,9 +23,9 @@
 #    define UNPOISON(p, n) ((void)(p), (void)(n))
 #endif
 
-enum { DEFAULT_BLOCK_SIZE = 64 * 1024 };
+enum { DEFAULT_BLOCK_SIZE = 64 * 1024, LARGEST_ZONE = 4096 };
 
-/* data points behind the header, at the first multiple of MT_ALIGN. */
+/* data points behind the header, at the first multiple of MT_ALIGN that leaves room for a zone. */
 struct mt_arena_block {
     mt_arena_block *next;
     unsigned char *data;
@@ -33,22 +33,36 @@ struct mt_arena_block {
     size_t used; /* a multiple of MT_ALIGN */
 };
 
+/* Bytes between the end of what is handed out and what comes next, which nobody may touch: under AddressSanitizer as many as one item
+ * has, so that an item too many falls into them. */
+static size_t zone(size_t size)
+{
+#ifdef ARENA_ASAN
+    const size_t kept = size > LARGEST_ZONE ? LARGEST_ZONE : size;
+    return kept == 0 ? MT_ALIGN : (kept + MT_ALIGN - 1) / MT_ALIGN * MT_ALIGN;
+#else
+    (void)size;
+    return 0;
+#endif
+}
+
 static mt_arena_block *block_new(size_t size)
 {
-    if (size > SIZE_MAX - sizeof(mt_arena_block) - MT_ALIGN) {
+    const size_t before = MT_ALIGN + zone(0);
+    if (size > SIZE_MAX - sizeof(mt_arena_block) - before) {
         return NULL;
     }
-    mt_arena_block *const b = malloc(sizeof *b + MT_ALIGN + size);
+    mt_arena_block *const b = malloc(sizeof *b + before + size);
     if (b == NULL) {
         return NULL;
     }
-    unsigned char *const after = (unsigned char *)(b + 1);
+    unsigned char *const after = (unsigned char *)(b + 1) + zone(0);
     const size_t skew = (size_t)((uintptr_t)after % MT_ALIGN);
     b->next = NULL;
     b->data = after + (skew == 0 ? 0 : MT_ALIGN - skew);
     b->size = size;
     b->used = 0;
-    POISON(b->data, size);
+    POISON(b + 1, before + size);
     return b;
 }
 
@@ -76,7 +90,7 @@ void mt_arena_free(mt_arena *a)
     mt_arena_block *b = a->first;
     while (b != NULL) {
         mt_arena_block *const next = b->next;
-        UNPOISON(b->data, b->size);
+        UNPOISON(b + 1, MT_ALIGN + zone(0) + b->size);
         free(b);
         b = next;
     }
@@ -112,11 +126,11 @@ static bool make_room(mt_arena *a, size_t bytes)
 void *mt_arena_alloc(mt_arena *a, size_t count, size_t size)
 {
     const size_t bytes = rounded(count, size);
-    if (bytes == 0 || !make_room(a, bytes)) {
+    if (bytes == 0 || bytes > SIZE_MAX - zone(size) || !make_room(a, bytes + zone(size))) {
         return NULL;
     }
     unsigned char *const p = a->current->data + a->current->used;
-    a->current->used += bytes;
+    a->current->used += bytes + zone(size);
     a->used += bytes;
     a->peak = a->used > a->peak ? a->used : a->peak;
     UNPOISON(p, count * size);
@@ -189,6 +203,7 @@ void *mt_arena_grow(mt_arena *a, void *items, int count, int *capacity, size_t s
     }
     if (count > 0) {
         memcpy(grown, items, (size_t)count * size);
+        POISON(items, (size_t)count * size); /* who still looks there is seen */
     }
     *capacity = room;
     return grown;

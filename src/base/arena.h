@@ -12,7 +12,8 @@
 /*
  * Growing arena: memory that lives and dies together. Blocks are chained (a pointer handed out never moves), every
  * allocation is 64-byte aligned and zeroed, products are checked for overflow. `mark`/`rewind` give scratch back without
- * freeing blocks, so a loop that has run once allocates nothing more. Free parts are poisoned under AddressSanitizer.
+ * freeing blocks, so a loop that has run once allocates nothing more. Under AddressSanitizer all but the bytes that were asked for is
+ * poisoned: what is free, at least 64 bytes and one item behind every allocation, and what mt_arena_grow leaves behind.
  * Not thread safe: one arena, one worker.
  */
 enum { MT_ALIGN = 64 };

@@ -146,22 +146,11 @@ static void read_one(mt_reader *r, mt_addr value, mt_aircraft_list *list)
 
 static void read_list(mt_reader *r, mt_addr value, mt_aircraft_list *list)
 {
-    const int n = value == MT_NO_ADDR ? 0 : mt_json_count(r->doc, value);
-    if (value == MT_NO_ADDR) {
-        return;
-    }
-    if (n == 0) {
-        mt_diag_structure(r->diags, value, "the list of aircraft is empty");
-    }
-    list->items = mt_arena_alloc(r->mem, (size_t)n, sizeof *list->items);
-    if (list->items == NULL) {
-        r->out_of_memory = true;
-        return;
-    }
-    for (mt_addr at = mt_json_first(r->doc, value); at != MT_NO_ADDR;
-         at = mt_json_next(r->doc, at)) {
-        if (mt_reader_type(r, at, MT_KEY_OBJECT)) {
-            read_one(r, at, list);
+    mt_items items = mt_reader_some_items(r, value, "the list of aircraft");
+    list->items = mt_reader_room(r, &items, sizeof *list->items);
+    while (mt_items_next(&items)) {
+        if (mt_reader_type(r, items.at, MT_KEY_OBJECT)) {
+            read_one(r, items.at, list);
         }
     }
 }

@@ -102,15 +102,14 @@ static void read_joint(mt_model_reader *mr, mt_addr value, mt_joint *j)
 void mt_read_joints(mt_model_reader *mr, mt_addr list)
 {
     mt_model *const m = mr->m;
-    for (mt_addr i = list == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(mr->r.doc, list);
-         i != MT_NO_ADDR; i = mt_json_next(mr->r.doc, i)) {
+    for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
         mt_joint *const grown =
             mt_read_grow(mr, m->joints, m->n_joints, &m->cap_joints, sizeof *grown);
         if (grown == NULL) {
             return;
         }
         m->joints = grown;
-        read_joint(mr, i, &m->joints[m->n_joints++]);
+        read_joint(mr, i.at, &m->joints[m->n_joints++]);
     }
 }
 
@@ -193,20 +192,17 @@ static mt_num *read_matrix(mt_model_reader *mr, mt_addr value)
         mr->r.out_of_memory = true;
         return NULL;
     }
-    if (mt_json_count(mr->r.doc, value) != ORDER) {
-        mt_diag_structure(mr->r.diags, value, "must have %d rows, not %d", ORDER,
-                          mt_json_count(mr->r.doc, value));
+    mt_items rows = mt_reader_items(&mr->r, value);
+    if (rows.count != ORDER) {
+        mt_diag_structure(mr->r.diags, value, "must have %d rows, not %d", ORDER, rows.count);
         return matrix;
     }
-    int i = 0;
-    for (mt_addr at = mt_json_first(mr->r.doc, value); at != MT_NO_ADDR;
-         at = mt_json_next(mr->r.doc, at)) {
+    for (int i = 0; mt_items_next(&rows); i++) {
         int n = 0;
-        const mt_num *const nums = mt_read_nums(mr, at, false, ORDER, ORDER, &n);
+        const mt_num *const nums = mt_read_nums(mr, rows.at, false, ORDER, ORDER, &n);
         for (int k = 0; k < n; k++) {
             matrix[ORDER * i + k] = nums[k];
         }
-        i++;
     }
     return matrix;
 }
@@ -281,16 +277,14 @@ void mt_read_springs(mt_model_reader *mr, mt_addr springs, mt_addr dampers)
     mt_model *const m = mr->m;
     const mt_addr lists[] = {springs, dampers};
     for (int k = 0; k < 2; k++) {
-        for (mt_addr i = lists[k] == MT_NO_ADDR ? MT_NO_ADDR
-                                                : mt_json_first(mr->r.doc, lists[k]);
-             i != MT_NO_ADDR; i = mt_json_next(mr->r.doc, i)) {
+        for (mt_items i = mt_reader_items(&mr->r, lists[k]); mt_items_next(&i);) {
             mt_spring *const grown =
                 mt_read_grow(mr, m->springs, m->n_springs, &m->cap_springs, sizeof *grown);
             if (grown == NULL) {
                 return;
             }
             m->springs = grown;
-            read_spring(mr, i, k == 1, &m->springs[m->n_springs++]);
+            read_spring(mr, i.at, k == 1, &m->springs[m->n_springs++]);
         }
     }
 }

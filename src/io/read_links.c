@@ -143,14 +143,13 @@ static void read_link(mt_model_reader *mr, mt_addr value, mt_link *l)
 void mt_read_links(mt_model_reader *mr, mt_addr list)
 {
     mt_model *const m = mr->m;
-    for (mt_addr i = list == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(mr->r.doc, list);
-         i != MT_NO_ADDR; i = mt_json_next(mr->r.doc, i)) {
+    for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
         mt_link *const grown =
             mt_read_grow(mr, m->links, m->n_links, &m->cap_links, sizeof *grown);
         if (grown == NULL) {
             return;
         }
         m->links = grown;
-        read_link(mr, i, &m->links[m->n_links++]);
+        read_link(mr, i.at, &m->links[m->n_links++]);
     }
 }

@@ -59,14 +59,13 @@ static void read_load(mt_model_reader *mr, mt_addr value, mt_load *l)
 void mt_read_loads(mt_model_reader *mr, mt_addr list)
 {
     mt_model *const m = mr->m;
-    for (mt_addr i = list == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(mr->r.doc, list);
-         i != MT_NO_ADDR; i = mt_json_next(mr->r.doc, i)) {
+    for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
         mt_load *const grown =
             mt_read_grow(mr, m->loads, m->n_loads, &m->cap_loads, sizeof *grown);
         if (grown == NULL) {
             return;
         }
         m->loads = grown;
-        read_load(mr, i, &m->loads[m->n_loads++]);
+        read_load(mr, i.at, &m->loads[m->n_loads++]);
     }
 }

@@ -77,22 +77,22 @@ static mt_origin read_origin(mt_model_reader *mr, mt_addr value)
 static void read_parameter_names(mt_model_reader *mr, mt_addr object)
 {
     mt_model *const m = mr->m;
-    const int n = object == MT_NO_ADDR ? 0 : mt_json_count(mr->r.doc, object);
+    mt_items items = mt_reader_items(&mr->r, object);
+    const int n = items.count;
     int n_more = 0;
     const char *const *const more = mt_expr_names(&n_more);
     const char **const names =
         mt_arena_alloc(&m->mem, (size_t)n + (size_t)n_more, sizeof *names);
-    m->parameters = mt_arena_alloc(&m->mem, (size_t)n, sizeof *m->parameters);
+    m->parameters = mt_reader_room(&mr->r, &items, sizeof *m->parameters);
     if (names == NULL || m->parameters == NULL) {
         mr->r.out_of_memory = true;
         return;
     }
     m->cap_parameters = n;
     int n_names = 0;
-    for (mt_addr i = n == 0 ? MT_NO_ADDR : mt_json_first(mr->r.doc, object); i != MT_NO_ADDR;
-         i = mt_json_next(mr->r.doc, i)) {
+    while (mt_items_next(&items)) {
         mt_parameter *const p = &m->parameters[m->n_parameters++];
-        p->name = mt_reader_member_name(&mr->r, i, MT_NAME_PARAMETER);
+        p->name = mt_reader_member_name(&mr->r, items.at, MT_NAME_PARAMETER);
         p->value = MT_ABSENT;
         if (p->name.s != NULL) {
             names[n_names++] = p->name.s;
@@ -132,18 +132,16 @@ static void read_parameter(mt_model_reader *mr, mt_addr value, mt_parameter *p)
 static void read_parameters(mt_model_reader *mr, mt_addr object)
 {
     read_parameter_names(mr, object);
-    int k = 0;
-    for (mt_addr i = object == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(mr->r.doc, object);
-         i != MT_NO_ADDR && !mr->r.out_of_memory; i = mt_json_next(mr->r.doc, i)) {
-        read_parameter(mr, i, &mr->m->parameters[k++]);
+    mt_items items = mt_reader_items(&mr->r, object);
+    for (int k = 0; !mr->r.out_of_memory && mt_items_next(&items); k++) {
+        read_parameter(mr, items.at, &mr->m->parameters[k]);
     }
 }
 
 static void read_points(mt_model_reader *mr, mt_addr object)
 {
     mt_model *const m = mr->m;
-    for (mt_addr i = object == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(mr->r.doc, object);
-         i != MT_NO_ADDR; i = mt_json_next(mr->r.doc, i)) {
+    for (mt_items i = mt_reader_items(&mr->r, object); mt_items_next(&i);) {
         mt_point *const grown =
             mt_read_grow(mr, m->points, m->n_points, &m->cap_points, sizeof *grown);
         if (grown == NULL) {
@@ -151,8 +149,8 @@ static void read_points(mt_model_reader *mr, mt_addr object)
         }
         m->points = grown;
         mt_point *const p = &m->points[m->n_points++];
-        p->name = mt_reader_member_name(&mr->r, i, MT_NAME_ITEM);
-        (void)mt_read_vector(mr, i, p->x);
+        p->name = mt_reader_member_name(&mr->r, i.at, MT_NAME_ITEM);
+        (void)mt_read_vector(mr, i.at, p->x);
     }
 }
 
@@ -183,8 +181,7 @@ static void read_inertia(mt_model_reader *mr, mt_addr value, mt_body *b)
 static void read_bodies(mt_model_reader *mr, mt_addr list)
 {
     mt_model *const m = mr->m;
-    for (mt_addr i = list == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(mr->r.doc, list);
-         i != MT_NO_ADDR; i = mt_json_next(mr->r.doc, i)) {
+    for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
         mt_body *const grown =
             mt_read_grow(mr, m->bodies, m->n_bodies, &m->cap_bodies, sizeof *grown);
         if (grown == NULL) {
@@ -193,7 +190,7 @@ static void read_bodies(mt_model_reader *mr, mt_addr list)
         m->bodies = grown;
         mt_body *const b = &m->bodies[m->n_bodies++];
         mt_addr at[BODY_COUNT];
-        (void)mt_reader_object(&mr->r, i, &mt_body_keys, at);
+        (void)mt_reader_object(&mr->r, i.at, &mt_body_keys, at);
         b->name = mt_reader_name(&mr->r, at[BODY_NAME]);
         b->mass = mt_read_num(mr, at[BODY_MASS]);
         read_inertia(mr, at[BODY_INERTIA], b);

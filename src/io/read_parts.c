@@ -11,16 +11,15 @@ mt_num mt_read_num(mt_model_reader *mr, mt_addr value)
                                                 : MT_ABSENT;
 }
 
-static void wrong_length(mt_model_reader *mr, mt_addr value, int least, int most)
+static void wrong_length(mt_model_reader *mr, mt_addr value, int count, int least, int most)
 {
     if (least == most) {
-        mt_diag_structure(mr->r.diags, value, "must have %d entries, not %d", least,
-                          mt_json_count(mr->r.doc, value));
-    } else if (mt_json_count(mr->r.doc, value) < least && least == 1) {
+        mt_diag_structure(mr->r.diags, value, "must have %d entries, not %d", least, count);
+    } else if (count < least && least == 1) {
         mt_diag_structure(mr->r.diags, value, "must not be empty");
     } else {
         mt_diag_structure(mr->r.diags, value, "must have %d to %d entries, not %d", least, most,
-                          mt_json_count(mr->r.doc, value));
+                          count);
     }
 }
 
@@ -32,24 +31,14 @@ mt_num *mt_read_nums(mt_model_reader *mr, mt_addr value, bool single, int least,
         return NULL;
     }
     const bool is_list = mt_json_type_of(mr->r.doc, value) == MT_JSON_ARRAY;
-    const int count = is_list ? mt_json_count(mr->r.doc, value) : 1;
-    if (is_list && (count < least || count > most)) {
-        wrong_length(mr, value, least, most);
+    mt_items items = mt_reader_one_or_items(&mr->r, value);
+    if (is_list && (items.count < least || items.count > most)) {
+        wrong_length(mr, value, items.count, least, most);
         return NULL;
     }
-    mt_num *const nums = mt_arena_alloc(&mr->m->mem, (size_t)count, sizeof *nums);
-    if (nums == NULL) {
-        mr->r.out_of_memory = true;
-        return NULL;
-    }
-    if (!is_list) {
-        nums[0] = mt_read_num(mr, value);
-        *n = 1;
-        return nums;
-    }
-    for (mt_addr i = mt_json_first(mr->r.doc, value); i != MT_NO_ADDR;
-         i = mt_json_next(mr->r.doc, i)) {
-        nums[(*n)++] = mt_read_num(mr, i);
+    mt_num *const nums = mt_reader_room(&mr->r, &items, sizeof *nums);
+    while (mt_items_next(&items)) {
+        nums[(*n)++] = mt_read_num(mr, items.at);
     }
     return nums;
 }
@@ -111,8 +100,9 @@ static bool is_point(const mt_model_reader *mr, mt_addr value)
 /* A list of two strings: two points, or two expressions? In three dimensions only points can be meant. */
 static bool names_two_points(mt_model_reader *mr, mt_addr list)
 {
-    const mt_addr a = mt_json_first(mr->r.doc, list);
-    const mt_addr b = mt_json_next(mr->r.doc, a);
+    mt_addr a;
+    mt_addr b;
+    (void)mt_reader_pair(&mr->r, list, &a, &b);
     const bool strings = mt_json_type_of(mr->r.doc, a) == MT_JSON_STRING &&
                          mt_json_type_of(mr->r.doc, b) == MT_JSON_STRING;
     if (!strings || mr->m->dimension == 3) {
@@ -140,11 +130,11 @@ int mt_read_at(mt_model_reader *mr, mt_addr value, mt_position at[2])
     }
     bool pair = false;
     if (mt_json_type_of(mr->r.doc, value) == MT_JSON_ARRAY) {
-        for (mt_addr i = mt_json_first(mr->r.doc, value); i != MT_NO_ADDR;
-             i = mt_json_next(mr->r.doc, i)) {
-            pair = pair || mt_json_type_of(mr->r.doc, i) == MT_JSON_ARRAY;
+        mt_items items = mt_reader_items(&mr->r, value);
+        const int count = items.count;
+        while (mt_items_next(&items)) {
+            pair = pair || mt_json_type_of(mr->r.doc, items.at) == MT_JSON_ARRAY;
         }
-        const int count = mt_json_count(mr->r.doc, value);
         if (pair && count != 2) {
             mt_diag_structure(mr->r.diags, value, "must be a pair of positions, not %d", count);
             return 0;
@@ -155,9 +145,10 @@ int mt_read_at(mt_model_reader *mr, mt_addr value, mt_position at[2])
         at[0] = mt_read_position(mr, value);
         return at[0].given ? 1 : 0;
     }
-    const mt_addr first = mt_json_first(mr->r.doc, value);
-    at[0] = mt_read_position(mr, first);
-    at[1] = mt_read_position(mr, mt_json_next(mr->r.doc, first));
+    mt_addr ends[2];
+    (void)mt_reader_pair(&mr->r, value, &ends[0], &ends[1]);
+    at[0] = mt_read_position(mr, ends[0]);
+    at[1] = mt_read_position(mr, ends[1]);
     return at[0].given && at[1].given ? 2 : 0;
 }
 
@@ -172,13 +163,14 @@ void mt_read_bodies(mt_model_reader *mr, mt_addr value, mt_attach bodies[2])
     if (!mt_reader_type(&mr->r, value, MT_KEY_LIST)) {
         return;
     }
-    if (mt_json_count(mr->r.doc, value) != 2) {
-        wrong_length(mr, value, 2, 2);
+    mt_addr ends[2];
+    const int count = mt_reader_pair(&mr->r, value, &ends[0], &ends[1]);
+    if (count != 2) {
+        wrong_length(mr, value, count, 2, 2);
         return;
     }
-    const mt_addr first = mt_json_first(mr->r.doc, value);
-    bodies[0].name = mt_reader_ref(&mr->r, first);
-    bodies[1].name = mt_reader_ref(&mr->r, mt_json_next(mr->r.doc, first));
+    bodies[0].name = mt_reader_ref(&mr->r, ends[0]);
+    bodies[1].name = mt_reader_ref(&mr->r, ends[1]);
 }
 
 mt_presence mt_read_presence(mt_model_reader *mr, mt_addr value)

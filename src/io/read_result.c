@@ -47,19 +47,6 @@ static const char *text(result_reader *s, mt_addr object, const char *name)
     return mt_reader_text(&s->r, value);
 }
 
-static void *list_room(result_reader *s, mt_addr list, size_t size)
-{
-    const int n = list == MT_NO_ADDR ? 0 : mt_json_count(s->r.doc, list);
-    void *const items = mt_arena_alloc(s->r.mem, (size_t)n, size);
-    s->r.out_of_memory = s->r.out_of_memory || items == NULL;
-    return items;
-}
-
-static mt_addr first_of(const result_reader *s, mt_addr list)
-{
-    return list == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(s->r.doc, list);
-}
-
 static void read_parameter(result_reader *s, mt_addr value, mt_result_parameter *p)
 {
     if (!mt_reader_type(&s->r, value, MT_KEY_OBJECT)) {
@@ -88,40 +75,35 @@ static void read_design(result_reader *s, mt_addr value, mt_recommendation *out)
     out->misfit = number(s, value, "misfit");
     out->violation_percent = number(s, value, "violation_percent");
     const mt_addr list = need(s, value, "parameters", MT_KEY_LIST);
-    out->parameters = list_room(s, list, sizeof *out->parameters);
-    if (out->parameters == NULL) {
-        return;
-    }
-    for (mt_addr at = first_of(s, list); at != MT_NO_ADDR; at = mt_json_next(s->r.doc, at)) {
-        read_parameter(s, at, &out->parameters[out->n_parameters++]);
+    mt_items items = mt_reader_items(&s->r, list);
+    out->parameters = mt_reader_room(&s->r, &items, sizeof *out->parameters);
+    while (mt_items_next(&items)) {
+        read_parameter(s, items.at, &out->parameters[out->n_parameters++]);
     }
 }
 
 static void read_recommendations(result_reader *s, mt_addr list)
 {
     mt_result *const result = s->result;
-    result->recommendations = list_room(s, list, sizeof *result->recommendations);
-    if (result->recommendations == NULL) {
-        return;
-    }
-    for (mt_addr at = first_of(s, list); at != MT_NO_ADDR; at = mt_json_next(s->r.doc, at)) {
-        read_design(s, at, &result->recommendations[result->n_recommendations++]);
+    mt_items items = mt_reader_items(&s->r, list);
+    result->recommendations = mt_reader_room(&s->r, &items, sizeof *result->recommendations);
+    while (mt_items_next(&items)) {
+        read_design(s, items.at, &result->recommendations[result->n_recommendations++]);
     }
 }
 
 static void read_inputs(result_reader *s, mt_addr list)
 {
     mt_result_run *const run = &s->result->run;
-    run->input_names = list_room(s, list, sizeof *run->input_names);
-    run->input_sha256 = list_room(s, list, sizeof *run->input_sha256);
-    if (run->input_names == NULL || run->input_sha256 == NULL) {
-        return;
-    }
-    for (mt_addr at = first_of(s, list); at != MT_NO_ADDR; at = mt_json_next(s->r.doc, at)) {
-        if (mt_reader_type(&s->r, at, MT_KEY_OBJECT)) {
+    mt_items items = mt_reader_items(&s->r, list);
+    run->input_names = mt_reader_room(&s->r, &items, sizeof *run->input_names);
+    run->input_sha256 = mt_reader_room(&s->r, &items, sizeof *run->input_sha256);
+    while (mt_items_next(&items)) {
+        if (mt_reader_type(&s->r, items.at, MT_KEY_OBJECT)) {
             const int i = run->n_inputs++;
-            run->input_names[i] = mt_reader_text(&s->r, need(s, at, "file", MT_KEY_TEXT));
-            run->input_sha256[i] = mt_reader_text(&s->r, need(s, at, "sha256", MT_KEY_TEXT));
+            run->input_names[i] = mt_reader_text(&s->r, need(s, items.at, "file", MT_KEY_TEXT));
+            run->input_sha256[i] =
+                mt_reader_text(&s->r, need(s, items.at, "sha256", MT_KEY_TEXT));
         }
     }
 }

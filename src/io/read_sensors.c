@@ -59,17 +59,18 @@ static unsigned read_directions(mt_model_reader *mr, mt_addr value)
         return mr->m->dimension == 2 ? PLANAR_TRANSLATIONS : TRANSLATIONS;
     }
     unsigned directions = 0;
-    if (mt_json_count(mr->r.doc, value) == 0) {
+    mt_items items = mt_reader_items(&mr->r, value);
+    if (items.count == 0) {
         mt_diag_structure(mr->r.diags, value, "must not be empty");
     }
-    for (mt_addr i = mt_json_first(mr->r.doc, value); i != MT_NO_ADDR;
-         i = mt_json_next(mr->r.doc, i)) {
-        const int k = mt_reader_choice(&mr->r, i, "direction", names, MT_COUNT(names));
+    while (mt_items_next(&items)) {
+        const int k = mt_reader_choice(&mr->r, items.at, "direction", names, MT_COUNT(names));
         if (k == MT_ABSENT) {
             continue;
         }
         if (k == SHORT_R && mr->m->dimension == 3) {
-            mt_diag_error(mr->r.diags, i, "\"r\" is for two dimensions: name rx, ry or rz");
+            mt_diag_error(mr->r.diags, items.at,
+                          "\"r\" is for two dimensions: name rx, ry or rz");
         }
         directions |= 1U << (k == SHORT_R ? BIT_RZ : k);
     }
@@ -96,23 +97,21 @@ static void read_sensor(mt_model_reader *mr, mt_addr value, mt_sensor *s)
 void mt_read_sensors(mt_model_reader *mr, mt_addr list)
 {
     mt_model *const m = mr->m;
-    for (mt_addr i = list == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(mr->r.doc, list);
-         i != MT_NO_ADDR; i = mt_json_next(mr->r.doc, i)) {
+    for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
         mt_sensor *const grown =
             mt_read_grow(mr, m->sensors, m->n_sensors, &m->cap_sensors, sizeof *grown);
         if (grown == NULL) {
             return;
         }
         m->sensors = grown;
-        read_sensor(mr, i, &m->sensors[m->n_sensors++]);
+        read_sensor(mr, i.at, &m->sensors[m->n_sensors++]);
     }
 }
 
 void mt_read_modes(mt_model_reader *mr, mt_addr object)
 {
     mt_model *const m = mr->m;
-    for (mt_addr i = object == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(mr->r.doc, object);
-         i != MT_NO_ADDR; i = mt_json_next(mr->r.doc, i)) {
+    for (mt_items i = mt_reader_items(&mr->r, object); mt_items_next(&i);) {
         mt_named_mode *const grown =
             mt_read_grow(mr, m->modes, m->n_modes, &m->cap_modes, sizeof *grown);
         if (grown == NULL) {
@@ -121,9 +120,9 @@ void mt_read_modes(mt_model_reader *mr, mt_addr object)
         m->modes = grown;
         mt_named_mode *const mode = &m->modes[m->n_modes++];
         mt_addr at[MODE_COUNT];
-        (void)mt_reader_object(&mr->r, i, &mt_mode_keys, at);
+        (void)mt_reader_object(&mr->r, i.at, &mt_mode_keys, at);
         *mode = (mt_named_mode){.configuration = MT_ABSENT, .index_addr = at[MODE_INDEX]};
-        mode->name = mt_reader_member_name(&mr->r, i, MT_NAME_TITLE);
+        mode->name = mt_reader_member_name(&mr->r, i.at, MT_NAME_TITLE);
         mode->configuration_name = mt_reader_ref(&mr->r, at[MODE_CONFIGURATION]);
         mode->index = mt_reader_count(&mr->r, at[MODE_INDEX], 1, INT_MAX, 0);
     }
@@ -162,26 +161,20 @@ static mt_drive read_drive(mt_model_reader *mr, mt_addr value)
 /* name -> number of the parameters that this configuration overrides. */
 static void read_overrides(mt_model_reader *mr, mt_addr object, mt_configuration *c)
 {
-    const int n = object == MT_NO_ADDR ? 0 : mt_json_count(mr->r.doc, object);
-    c->overrides = mt_arena_alloc(&mr->m->mem, (size_t)n, sizeof *c->overrides);
-    if (c->overrides == NULL) {
-        mr->r.out_of_memory = true;
-        return;
-    }
-    for (mt_addr i = n == 0 ? MT_NO_ADDR : mt_json_first(mr->r.doc, object); i != MT_NO_ADDR;
-         i = mt_json_next(mr->r.doc, i)) {
+    mt_items items = mt_reader_items(&mr->r, object);
+    c->overrides = mt_reader_room(&mr->r, &items, sizeof *c->overrides);
+    while (mt_items_next(&items)) {
         mt_override *const o = &c->overrides[c->n_overrides++];
-        o->parameter_name = mt_reader_member_name(&mr->r, i, MT_NAME_PARAMETER);
+        o->parameter_name = mt_reader_member_name(&mr->r, items.at, MT_NAME_PARAMETER);
         o->parameter = MT_ABSENT;
-        o->value = mt_read_num(mr, i);
+        o->value = mt_read_num(mr, items.at);
     }
 }
 
 void mt_read_configurations(mt_model_reader *mr, mt_addr object)
 {
     mt_model *const m = mr->m;
-    for (mt_addr i = object == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(mr->r.doc, object);
-         i != MT_NO_ADDR; i = mt_json_next(mr->r.doc, i)) {
+    for (mt_items i = mt_reader_items(&mr->r, object); mt_items_next(&i);) {
         mt_configuration *const grown = mt_read_grow(mr, m->configurations, m->n_configurations,
                                                      &m->cap_configurations, sizeof *grown);
         if (grown == NULL) {
@@ -190,9 +183,9 @@ void mt_read_configurations(mt_model_reader *mr, mt_addr object)
         m->configurations = grown;
         mt_configuration *const c = &m->configurations[m->n_configurations++];
         mt_addr at[CONFIGURATION_COUNT];
-        (void)mt_reader_object(&mr->r, i, &mt_configuration_keys, at);
+        (void)mt_reader_object(&mr->r, i.at, &mt_configuration_keys, at);
         *c = (mt_configuration){.like = MT_ABSENT};
-        c->name = mt_reader_member_name(&mr->r, i, MT_NAME_ITEM);
+        c->name = mt_reader_member_name(&mr->r, i.at, MT_NAME_ITEM);
         c->like_name = mt_reader_ref(&mr->r, at[CONFIGURATION_LIKE]);
         read_overrides(mr, at[CONFIGURATION_PARAMETERS], c);
         c->has_gravity = mt_read_vector(mr, at[CONFIGURATION_GRAVITY], c->gravity);

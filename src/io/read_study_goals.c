@@ -79,10 +79,8 @@ static void read_configurations(mt_study_reader *s, const mt_study_object *o, mt
     }
     const mt_addr list = o->found[GOAL_CONFIGURATIONS];
     if (list != MT_NO_ADDR) {
+        (void)mt_reader_some_items(&s->r, list, "the list of configurations");
         goal->configuration_names = mt_reader_refs(&s->r, list);
-        if (mt_json_count(s->r.doc, list) == 0) {
-            mt_diag_structure(s->r.diags, list, "the list of configurations is empty");
-        }
         return;
     }
     const mt_name name = mt_reader_ref(&s->r, o->found[GOAL_CONFIGURATION]);
@@ -136,71 +134,49 @@ static void read_limit(mt_study_reader *s, const mt_study_object *o, mt_goal *go
 
 static void read_bands(mt_study_reader *s, mt_addr list, mt_bands_source *source)
 {
-    source->intervals = mt_read_study_list(s, list, sizeof *source->intervals);
-    if (list == MT_NO_ADDR || source->intervals == NULL) {
-        return;
-    }
-    if (mt_json_count(s->r.doc, list) == 0) {
-        mt_diag_structure(s->r.diags, list, "the list of bands is empty");
-    }
-    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
-         at = mt_json_next(s->r.doc, at)) {
+    mt_items items = mt_reader_some_items(&s->r, list, "the list of bands");
+    source->intervals = mt_reader_room(&s->r, &items, sizeof *source->intervals);
+    while (mt_items_next(&items)) {
         double edges[2];
-        if (mt_read_study_pair(s, at, edges)) {
-            source->intervals[source->n_intervals++] = (mt_band_hz){edges[0], edges[1], at};
+        if (mt_read_study_pair(s, items.at, edges)) {
+            source->intervals[source->n_intervals++] =
+                (mt_band_hz){edges[0], edges[1], items.at};
         }
     }
 }
 
 static void read_rotors(mt_study_reader *s, const mt_study_object *o, mt_bands_source *source)
 {
+    const mt_addr one = o->found[AVOID_ROTOR];
     const mt_addr list = o->found[AVOID_ROTORS];
     if (mt_read_study_has(s, o, AVOID_ROTOR) && mt_read_study_has(s, o, AVOID_ROTORS)) {
         (void)mt_read_study_one_of(s, o, AVOID_ROTOR, 2);
     }
-    if (list == MT_NO_ADDR) {
-        source->rotors = mt_arena_alloc(&s->study->mem, 1, sizeof *source->rotors);
-        s->r.out_of_memory = s->r.out_of_memory || source->rotors == NULL;
-        if (source->rotors != NULL && o->found[AVOID_ROTOR] != MT_NO_ADDR) {
-            mt_read_study_rotor(s, o->found[AVOID_ROTOR], &source->rotors[source->n_rotors++]);
-        }
-        return;
-    }
-    source->rotors = mt_read_study_list(s, list, sizeof *source->rotors);
-    if (mt_json_count(s->r.doc, list) == 0) {
-        mt_diag_structure(s->r.diags, list, "the list of rotors is empty");
-    }
-    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR && source->rotors != NULL;
-         at = mt_json_next(s->r.doc, at)) {
-        if (mt_reader_type(&s->r, at, MT_KEY_OBJECT)) {
-            mt_read_study_rotor(s, at, &source->rotors[source->n_rotors++]);
+    mt_items items = list == MT_NO_ADDR
+                         ? mt_reader_one_or_items(&s->r, one)
+                         : mt_reader_some_items(&s->r, list, "the list of rotors");
+    source->rotors = mt_reader_room(&s->r, &items, sizeof *source->rotors);
+    while (mt_items_next(&items)) {
+        if (mt_reader_type(&s->r, items.at, MT_KEY_OBJECT)) {
+            mt_read_study_rotor(s, items.at, &source->rotors[source->n_rotors++]);
         }
     }
 }
 
 static void read_machines(mt_study_reader *s, const mt_study_object *o, mt_bands_source *source)
 {
+    const mt_addr one = o->found[AVOID_MACHINE];
     const mt_addr list = o->found[AVOID_MACHINES];
     if (mt_read_study_has(s, o, AVOID_MACHINE) && mt_read_study_has(s, o, AVOID_MACHINES)) {
         (void)mt_read_study_one_of(s, o, AVOID_MACHINE, 2);
     }
-    if (list == MT_NO_ADDR) {
-        source->machines = mt_arena_alloc(&s->study->mem, 1, sizeof *source->machines);
-        s->r.out_of_memory = s->r.out_of_memory || source->machines == NULL;
-        if (source->machines != NULL && o->found[AVOID_MACHINE] != MT_NO_ADDR) {
-            mt_read_study_machine(s, o->found[AVOID_MACHINE],
-                                  &source->machines[source->n_machines++]);
-        }
-        return;
-    }
-    source->machines = mt_read_study_list(s, list, sizeof *source->machines);
-    if (mt_json_count(s->r.doc, list) == 0) {
-        mt_diag_structure(s->r.diags, list, "the list of machines is empty");
-    }
-    for (mt_addr at = mt_json_first(s->r.doc, list);
-         at != MT_NO_ADDR && source->machines != NULL; at = mt_json_next(s->r.doc, at)) {
-        if (mt_reader_type(&s->r, at, MT_KEY_OBJECT)) {
-            mt_read_study_machine(s, at, &source->machines[source->n_machines++]);
+    mt_items items = list == MT_NO_ADDR
+                         ? mt_reader_one_or_items(&s->r, one)
+                         : mt_reader_some_items(&s->r, list, "the list of machines");
+    source->machines = mt_reader_room(&s->r, &items, sizeof *source->machines);
+    while (mt_items_next(&items)) {
+        if (mt_reader_type(&s->r, items.at, MT_KEY_OBJECT)) {
+            mt_read_study_machine(s, items.at, &source->machines[source->n_machines++]);
         }
     }
 }
@@ -286,12 +262,9 @@ static bool read_goal(mt_study_reader *s, mt_addr value, mt_goal *goal)
 void mt_read_study_goals(mt_study_reader *s, mt_addr list)
 {
     mt_study *const study = s->study;
-    study->goals = mt_read_study_list(s, list, sizeof *study->goals);
-    if (list == MT_NO_ADDR || study->goals == NULL) {
-        return;
-    }
-    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
-         at = mt_json_next(s->r.doc, at)) {
-        study->n_goals += read_goal(s, at, &study->goals[study->n_goals]) ? 1 : 0;
+    mt_items items = mt_reader_items(&s->r, list);
+    study->goals = mt_reader_room(&s->r, &items, sizeof *study->goals);
+    while (mt_items_next(&items)) {
+        study->n_goals += read_goal(s, items.at, &study->goals[study->n_goals]) ? 1 : 0;
     }
 }

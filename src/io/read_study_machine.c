@@ -30,20 +30,14 @@ const mt_key_table mt_study_gear_keys = {"gear", GEAR, GEAR_KEY_COUNT};
 
 static mt_order *read_orders(mt_study_reader *s, mt_addr list, char letter, int *n)
 {
-    mt_order *const orders = mt_read_study_list(s, list, sizeof *orders);
-    if (list == MT_NO_ADDR || orders == NULL) {
-        return orders;
-    }
-    if (mt_json_count(s->r.doc, list) == 0) {
-        mt_diag_structure(s->r.diags, list, "the list of orders is empty");
-    }
-    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
-         at = mt_json_next(s->r.doc, at)) {
-        const char *const text = mt_reader_text(&s->r, at);
+    mt_items items = mt_reader_some_items(&s->r, list, "the list of orders");
+    mt_order *const orders = mt_reader_room(&s->r, &items, sizeof *orders);
+    while (mt_items_next(&items)) {
+        const char *const text = mt_reader_text(&s->r, items.at);
         if (text != NULL && mt_order_parse(text, letter, &orders[*n])) {
-            orders[(*n)++].addr = at;
+            orders[(*n)++].addr = items.at;
         } else if (text != NULL) {
-            mt_diag_structure(s->r.diags, at,
+            mt_diag_structure(s->r.diags, items.at,
                               "\"%s\" is no order: a number above 0 and below 1000 with at "
                               "most three decimals, then %c (%s)",
                               text, letter,
@@ -72,17 +66,11 @@ static void read_gear(mt_study_reader *s, mt_addr value, mt_gear *gear)
 
 static void read_gears(mt_study_reader *s, mt_addr list, mt_machine *machine)
 {
-    machine->gears = mt_read_study_list(s, list, sizeof *machine->gears);
-    if (list == MT_NO_ADDR || machine->gears == NULL) {
-        return;
-    }
-    if (mt_json_count(s->r.doc, list) == 0) {
-        mt_diag_structure(s->r.diags, list, "the list of gears is empty");
-    }
-    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
-         at = mt_json_next(s->r.doc, at)) {
-        if (mt_reader_type(&s->r, at, MT_KEY_OBJECT)) {
-            read_gear(s, at, &machine->gears[machine->n_gears++]);
+    mt_items items = mt_reader_some_items(&s->r, list, "the list of gears");
+    machine->gears = mt_reader_room(&s->r, &items, sizeof *machine->gears);
+    while (mt_items_next(&items)) {
+        if (mt_reader_type(&s->r, items.at, MT_KEY_OBJECT)) {
+            read_gear(s, items.at, &machine->gears[machine->n_gears++]);
         }
     }
 }

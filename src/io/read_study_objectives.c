@@ -70,17 +70,13 @@ static bool read_objective(mt_study_reader *s, mt_addr value, mt_objective *obje
 void mt_read_study_objectives(mt_study_reader *s, mt_addr value)
 {
     mt_study *const study = s->study;
-    const bool list = value != MT_NO_ADDR && mt_json_type_of(s->r.doc, value) == MT_JSON_ARRAY;
-    study->objectives = mt_read_study_list(s, value, sizeof *study->objectives);
-    if (value == MT_NO_ADDR || study->objectives == NULL) {
-        return;
-    }
-    if (list && mt_json_count(s->r.doc, value) == 0) {
+    mt_items items = mt_reader_one_or_items(&s->r, value);
+    if (value != MT_NO_ADDR && items.count == 0) {
         mt_diag_structure(s->r.diags, value, "the list of objectives is empty");
     }
-    mt_addr at = list ? mt_json_first(s->r.doc, value) : value;
-    while (at != MT_NO_ADDR) {
-        study->n_objectives += read_objective(s, at, &study->objectives[study->n_objectives]);
-        at = list ? mt_json_next(s->r.doc, at) : MT_NO_ADDR;
+    study->objectives = mt_reader_room(&s->r, &items, sizeof *study->objectives);
+    while (mt_items_next(&items)) {
+        mt_objective *const o = &study->objectives[study->n_objectives];
+        study->n_objectives += read_objective(s, items.at, o) ? 1 : 0;
     }
 }

@@ -107,13 +107,13 @@ bool mt_read_study_pair(mt_study_reader *s, mt_addr value, double out[2])
     if (!mt_reader_type(&s->r, value, MT_KEY_LIST)) {
         return false;
     }
-    if (mt_json_count(s->r.doc, value) != 2) {
+    mt_addr ends[2];
+    if (mt_reader_pair(&s->r, value, &ends[0], &ends[1]) != 2) {
         mt_diag_structure(s->r.diags, value, "must be two numbers: [lower, upper]");
         return false;
     }
-    const mt_addr first = mt_json_first(s->r.doc, value);
-    out[0] = mt_read_study_number(s, first);
-    out[1] = mt_read_study_number(s, mt_json_next(s->r.doc, first));
+    out[0] = mt_read_study_number(s, ends[0]);
+    out[1] = mt_read_study_number(s, ends[1]);
     return true;
 }
 
@@ -144,14 +144,4 @@ mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_study_object *o, int
         mode.index = mt_read_study_index(s, value);
     }
     return mode;
-}
-
-void *mt_read_study_list(mt_study_reader *s, mt_addr value, size_t size)
-{
-    const int n = value == MT_NO_ADDR ? 0 : mt_json_count(s->r.doc, value);
-    void *const items = mt_arena_alloc(&s->study->mem, (size_t)n, size);
-    if (items == NULL) {
-        s->r.out_of_memory = true;
-    }
-    return items;
 }

@@ -62,8 +62,6 @@ void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *
 /* A file was refused: its own diagnostics tell (`told`), or, where there are none, the address of `path` in the study does. */
 void mt_read_study_note_failure(mt_study_reader *s, mt_name path, mt_status rc,
                                 const mt_err *why, bool told);
-/* Room for as many records as a list has items or an object members, zeroed; NULL (noted) when out of memory. */
-void *mt_read_study_list(mt_study_reader *s, mt_addr value, size_t size);
 
 void mt_read_study_variables(mt_study_reader *s, mt_addr list);
 void mt_read_study_references(mt_study_reader *s, mt_addr object);

@@ -108,13 +108,10 @@ static bool read_published(mt_study_reader *s, mt_addr value, mt_published *p)
 void mt_read_study_published(mt_study_reader *s, mt_addr list)
 {
     mt_study *const study = s->study;
-    study->published = mt_read_study_list(s, list, sizeof *study->published);
-    if (list == MT_NO_ADDR || study->published == NULL) {
-        return;
-    }
-    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
-         at = mt_json_next(s->r.doc, at)) {
-        study->n_published +=
-            read_published(s, at, &study->published[study->n_published]) ? 1 : 0;
+    mt_items items = mt_reader_items(&s->r, list);
+    study->published = mt_reader_room(&s->r, &items, sizeof *study->published);
+    while (mt_items_next(&items)) {
+        mt_published *const p = &study->published[study->n_published];
+        study->n_published += read_published(s, items.at, p) ? 1 : 0;
     }
 }

@@ -44,19 +44,13 @@ static void read_shape(mt_study_reader *s, mt_addr object, mt_measured_mode *mod
     if (object == MT_NO_ADDR) {
         return;
     }
-    if (mt_json_count(s->r.doc, object) == 0) {
-        mt_diag_structure(s->r.diags, object, "the shape is empty");
-    }
-    mode->channels = mt_read_study_list(s, object, sizeof *mode->channels);
-    mode->values = mt_read_study_list(s, object, sizeof *mode->values);
-    if (mode->channels == NULL || mode->values == NULL) {
-        return;
-    }
+    mt_items items = mt_reader_some_items(&s->r, object, "the shape");
+    mode->channels = mt_reader_room(&s->r, &items, sizeof *mode->channels);
+    mode->values = mt_reader_room(&s->r, &items, sizeof *mode->values);
     bool zero = true;
-    for (mt_addr at = mt_json_first(s->r.doc, object); at != MT_NO_ADDR;
-         at = mt_json_next(s->r.doc, at)) {
-        const mt_name channel = mt_reader_member_name(&s->r, at, MT_NAME_TITLE);
-        const double value = mt_read_study_number(s, at);
+    while (mt_items_next(&items)) {
+        const mt_name channel = mt_reader_member_name(&s->r, items.at, MT_NAME_TITLE);
+        const double value = mt_read_study_number(s, items.at);
         if (channel.s != NULL && *channel.s != '\0' && !is_channel(channel.s)) {
             mt_diag_structure(s->r.diags, channel.addr,
                               "\"%s\" is no sensor and direction (\"c1.y\")", channel.s);
@@ -96,17 +90,10 @@ static void read_modes(mt_study_reader *s, mt_addr list, mt_reference *r)
     if (list == MT_NO_ADDR) {
         return;
     }
-    if (mt_json_count(s->r.doc, list) == 0) {
-        mt_diag_structure(s->r.diags, list, "the list of modes is empty");
-    }
-    r->modes = mt_read_study_list(s, list, sizeof *r->modes);
-    if (r->modes == NULL) {
-        return;
-    }
-    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
-         at = mt_json_next(s->r.doc, at)) {
-        read_measured(
-            s, at, &r->modes[r->n_modes++]); /* a wrong one still counts: modes are numbered */
+    mt_items items = mt_reader_some_items(&s->r, list, "the list of modes");
+    r->modes = mt_reader_room(&s->r, &items, sizeof *r->modes);
+    while (mt_items_next(&items)) { /* a wrong one still counts: modes are numbered */
+        read_measured(s, items.at, &r->modes[r->n_modes++]);
     }
 }
 
@@ -134,17 +121,14 @@ static void read_reference(mt_study_reader *s, mt_addr value, mt_reference *r)
 void mt_read_study_references(mt_study_reader *s, mt_addr object)
 {
     mt_study *const study = s->study;
-    study->references = mt_read_study_list(s, object, sizeof *study->references);
-    if (object == MT_NO_ADDR || study->references == NULL) {
-        return;
-    }
-    for (mt_addr at = mt_json_first(s->r.doc, object); at != MT_NO_ADDR;
-         at = mt_json_next(s->r.doc, at)) {
-        const mt_name name = mt_reader_member_name(&s->r, at, MT_NAME_ITEM);
+    mt_items items = mt_reader_items(&s->r, object);
+    study->references = mt_reader_room(&s->r, &items, sizeof *study->references);
+    while (mt_items_next(&items)) {
+        const mt_name name = mt_reader_member_name(&s->r, items.at, MT_NAME_ITEM);
         if (name.s != NULL) {
             mt_reference *const r = &study->references[study->n_references++];
             r->name = name;
-            read_reference(s, at, r);
+            read_reference(s, items.at, r);
         }
     }
 }

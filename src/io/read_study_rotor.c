@@ -78,16 +78,10 @@ static void read_harmonic(mt_study_reader *s, mt_addr at, mt_rotor *rotor)
 
 static void read_harmonics(mt_study_reader *s, mt_addr list, mt_rotor *rotor)
 {
-    rotor->harmonics = mt_read_study_list(s, list, sizeof *rotor->harmonics);
-    if (list == MT_NO_ADDR || rotor->harmonics == NULL) {
-        return;
-    }
-    if (mt_json_count(s->r.doc, list) == 0) {
-        mt_diag_structure(s->r.diags, list, "the list of harmonics is empty");
-    }
-    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
-         at = mt_json_next(s->r.doc, at)) {
-        read_harmonic(s, at, rotor);
+    mt_items items = mt_reader_some_items(&s->r, list, "the list of harmonics");
+    rotor->harmonics = mt_reader_room(&s->r, &items, sizeof *rotor->harmonics);
+    while (mt_items_next(&items)) {
+        read_harmonic(s, items.at, rotor);
     }
 }
 

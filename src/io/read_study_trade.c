@@ -65,13 +65,10 @@ static void read_values(mt_study_reader *s, mt_addr value, mt_vary *v)
         read_span(s, value, v);
         return;
     }
-    if (mt_json_count(s->r.doc, value) == 0) {
-        mt_diag_structure(s->r.diags, value, "the list of values is empty");
-    }
-    v->values = mt_read_study_list(s, value, sizeof *v->values);
-    for (mt_addr at = mt_json_first(s->r.doc, value); at != MT_NO_ADDR && v->values != NULL;
-         at = mt_json_next(s->r.doc, at)) {
-        const double number = mt_read_study_number(s, at);
+    mt_items items = mt_reader_some_items(&s->r, value, "the list of values");
+    v->values = mt_reader_room(&s->r, &items, sizeof *v->values);
+    while (mt_items_next(&items)) {
+        const double number = mt_read_study_number(s, items.at);
         if (MT_HAS(number)) {
             v->values[v->n_values++] = number;
         }
@@ -96,15 +93,16 @@ static int goal_of(mt_study_reader *s, mt_addr value, mt_addr goals)
     if (index == MT_ABSENT) {
         return MT_ABSENT;
     }
-    mt_addr at = goals == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(s->r.doc, goals);
-    for (int i = 0; i < index && at != MT_NO_ADDR; i++) {
-        at = mt_json_next(s->r.doc, at);
-    }
-    if (at == MT_NO_ADDR) {
+    mt_items items = mt_reader_items(&s->r, goals);
+    if (index >= items.count) {
         mt_diag_error(s->r.diags, value, "there is no goal %d (the first is 0)", index);
+        return MT_ABSENT;
+    }
+    for (int i = 0; i <= index; i++) {
+        (void)mt_items_next(&items);
     }
     for (int i = 0; i < s->study->n_goals; i++) {
-        if (s->study->goals[i].addr == at && at != MT_NO_ADDR) {
+        if (s->study->goals[i].addr == items.at) {
             return i;
         }
     }
@@ -152,13 +150,14 @@ static void read_front(mt_study_reader *s, mt_addr list, mt_trade *trade)
     for (int i = 0; i < MT_COUNT(types); i++) {
         names[i] = mt_objective_type_name(types[i]);
     }
-    if (mt_json_count(s->r.doc, list) != 2) {
+    mt_items items = mt_reader_items(&s->r, list);
+    if (items.count != MT_COUNT(trade->objectives)) {
         mt_diag_structure(s->r.diags, list, "a front is between two objectives");
         return;
     }
-    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
-         at = mt_json_next(s->r.doc, at)) {
-        const int which = mt_reader_choice(&s->r, at, "objective", names, MT_COUNT(types));
+    while (mt_items_next(&items)) {
+        const int which =
+            mt_reader_choice(&s->r, items.at, "objective", names, MT_COUNT(types));
         if (which != MT_ABSENT) {
             trade->objectives[trade->n_objectives++] = types[which];
         }
@@ -176,15 +175,15 @@ void mt_read_study_trade(mt_study_reader *s, mt_addr value, mt_addr goals)
     trade->objectives_addr = mt_read_study_place(s, &o, TRADE_OBJECTIVES);
     read_front(s, o.found[TRADE_OBJECTIVES], trade);
     const mt_addr list = o.found[TRADE_VARY];
-    const int n = list == MT_NO_ADDR ? 1 : mt_json_count(s->r.doc, list);
-    if (n < 1 || n > MT_MAX_VARY) {
-        mt_diag_structure(s->r.diags, list, "one or two quantities can vary, not %d", n);
+    mt_items items = mt_reader_items(&s->r, list);
+    if (list != MT_NO_ADDR && (items.count < 1 || items.count > MT_MAX_VARY)) {
+        mt_diag_structure(s->r.diags, list, "one or two quantities can vary, not %d",
+                          items.count);
         return;
     }
-    for (mt_addr at = list == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(s->r.doc, list);
-         at != MT_NO_ADDR; at = mt_json_next(s->r.doc, at)) {
-        if (mt_reader_type(&s->r, at, MT_KEY_OBJECT)) {
-            read_vary(s, at, goals, &trade->vary[trade->n_vary++]);
+    while (mt_items_next(&items)) {
+        if (mt_reader_type(&s->r, items.at, MT_KEY_OBJECT)) {
+            read_vary(s, items.at, goals, &trade->vary[trade->n_vary++]);
         }
     }
 }

@@ -103,16 +103,10 @@ static void read_catalogue(mt_study_reader *s, mt_addr list, mt_variable *v)
         read_rule(s, list, v);
         return;
     }
-    if (mt_json_count(s->r.doc, list) == 0) {
-        mt_diag_structure(s->r.diags, list, "the catalogue is empty");
-    }
-    v->catalogue = mt_read_study_list(s, list, sizeof *v->catalogue);
-    if (v->catalogue == NULL) {
-        return;
-    }
-    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
-         at = mt_json_next(s->r.doc, at)) {
-        const double value = mt_read_study_number(s, at);
+    mt_items items = mt_reader_some_items(&s->r, list, "the catalogue");
+    v->catalogue = mt_reader_room(&s->r, &items, sizeof *v->catalogue);
+    while (mt_items_next(&items)) {
+        const double value = mt_read_study_number(s, items.at);
         if (MT_HAS(value)) {
             v->catalogue[v->n_catalogue++] = value;
         }
@@ -140,14 +134,11 @@ static void read_variable(mt_study_reader *s, mt_addr value, mt_variable *v)
 void mt_read_study_variables(mt_study_reader *s, mt_addr list)
 {
     mt_study *const study = s->study;
-    study->variables = mt_read_study_list(s, list, sizeof *study->variables);
-    if (list == MT_NO_ADDR || study->variables == NULL) {
-        return;
-    }
-    for (mt_addr at = mt_json_first(s->r.doc, list); at != MT_NO_ADDR;
-         at = mt_json_next(s->r.doc, at)) {
-        if (mt_reader_type(&s->r, at, MT_KEY_OBJECT)) {
-            read_variable(s, at, &study->variables[study->n_variables++]);
+    mt_items items = mt_reader_items(&s->r, list);
+    study->variables = mt_reader_room(&s->r, &items, sizeof *study->variables);
+    while (mt_items_next(&items)) {
+        if (mt_reader_type(&s->r, items.at, MT_KEY_OBJECT)) {
+            read_variable(s, items.at, &study->variables[study->n_variables++]);
         }
     }
 }

@@ -79,14 +79,13 @@ bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt
     if (!mt_reader_type(r, value, MT_KEY_OBJECT)) {
         return false;
     }
-    for (mt_addr m = mt_json_first(r->doc, value); m != MT_NO_ADDR;
-         m = mt_json_next(r->doc, m)) {
-        const int k = find_key(table, mt_json_name(r->doc, m));
+    for (mt_items m = mt_reader_items(r, value); mt_items_next(&m);) {
+        const int k = find_key(table, mt_json_name(r->doc, m.at));
         if (k == MT_ABSENT) {
-            unknown_member(r, m, table);
+            unknown_member(r, m.at, table);
         } else if (!seen[k]) { /* a second one has been noted as given twice */
             seen[k] = true;
-            found[k] = mt_reader_type(r, m, table->keys[k].type) ? m : MT_NO_ADDR;
+            found[k] = mt_reader_type(r, m.at, table->keys[k].type) ? m.at : MT_NO_ADDR;
         }
     }
     for (int i = 0; i < table->n; i++) {
@@ -95,6 +94,74 @@ bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt
         }
     }
     return true;
+}
+
+static mt_items no_items(const mt_reader *r)
+{
+    return (mt_items){.doc = r->doc, .at = MT_NO_ADDR, .next = MT_NO_ADDR};
+}
+
+mt_items mt_reader_items(const mt_reader *r, mt_addr value)
+{
+    mt_items items = no_items(r);
+    if (value != MT_NO_ADDR) {
+        items.count = mt_json_count(r->doc, value);
+        items.left = items.count;
+        items.next = mt_json_first(r->doc, value);
+    }
+    return items;
+}
+
+mt_items mt_reader_one_or_items(const mt_reader *r, mt_addr value)
+{
+    if (value == MT_NO_ADDR || mt_json_type_of(r->doc, value) == MT_JSON_ARRAY) {
+        return mt_reader_items(r, value);
+    }
+    mt_items items = no_items(r);
+    items.count = 1;
+    items.left = 1;
+    items.next = value;
+    return items;
+}
+
+mt_items mt_reader_some_items(mt_reader *r, mt_addr value, const char *what)
+{
+    const mt_items items = mt_reader_items(r, value);
+    if (value != MT_NO_ADDR && items.count == 0) {
+        mt_diag_structure(r->diags, value, "%s is empty", what);
+    }
+    return items;
+}
+
+bool mt_items_next(mt_items *items)
+{
+    items->at = items->left > 0 ? items->next : MT_NO_ADDR;
+    if (items->at == MT_NO_ADDR) {
+        return false;
+    }
+    items->left--;
+    items->next = items->left > 0 ? mt_json_next(items->doc, items->at) : MT_NO_ADDR;
+    return true;
+}
+
+int mt_reader_pair(const mt_reader *r, mt_addr value, mt_addr *first, mt_addr *second)
+{
+    mt_items items = mt_reader_items(r, value);
+    (void)mt_items_next(&items);
+    *first = items.at;
+    (void)mt_items_next(&items);
+    *second = items.at;
+    return items.count;
+}
+
+void *mt_reader_room(mt_reader *r, mt_items *items, size_t size)
+{
+    void *const room = mt_arena_alloc(r->mem, (size_t)items->count, size);
+    if (room == NULL) {
+        r->out_of_memory = true;
+        items->left = 0;
+    }
+    return room;
 }
 
 const char *mt_reader_text(mt_reader *r, mt_addr value)
@@ -180,15 +247,10 @@ mt_name_list mt_reader_refs(mt_reader *r, mt_addr value)
     if (!mt_reader_type(r, value, MT_KEY_LIST)) {
         return list;
     }
-    const int n = mt_json_count(r->doc, value);
-    list.items = mt_arena_alloc(r->mem, (size_t)n, sizeof *list.items);
-    if (list.items == NULL) {
-        r->out_of_memory = true;
-        return list;
-    }
-    for (mt_addr m = mt_json_first(r->doc, value); m != MT_NO_ADDR;
-         m = mt_json_next(r->doc, m)) {
-        const mt_name name = mt_reader_ref(r, m);
+    mt_items walk = mt_reader_items(r, value);
+    list.items = mt_reader_room(r, &walk, sizeof *list.items);
+    while (mt_items_next(&walk)) {
+        const mt_name name = mt_reader_ref(r, walk.at);
         if (name.s != NULL) {
             list.items[list.count++] = name;
         }

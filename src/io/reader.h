@@ -72,6 +72,33 @@ bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt
 /* Is the value of this type? Notes it where not ("must be a number or an expression, not a list"). */
 bool mt_reader_type(mt_reader *r, mt_addr value, mt_key_type type);
 
+/*
+ * The items of a list or the members of an object, in order:
+ *     for (mt_items i = mt_reader_items(r, value); mt_items_next(&i);) { ... i.at ... }
+ * Whoever fills an array takes its room (mt_reader_room) from the walk that fills it: what is counted is what is walked, and no item
+ * comes beyond the room. Nobody else walks or counts values (a test looks).
+ */
+typedef struct mt_items {
+    const mt_json *doc;
+    mt_addr at;   /* the present item; MT_NO_ADDR before the first and after the last */
+    mt_addr next; /* the one after it */
+    int count;    /* of the whole walk */
+    int left;     /* still to come */
+} mt_items;
+
+/* None where value is MT_NO_ADDR, or neither list nor object. */
+mt_items mt_reader_items(const mt_reader *r, mt_addr value);
+/* Where a list of one may be written without the list: anything but a list is its own only item. */
+mt_items mt_reader_one_or_items(const mt_reader *r, mt_addr value);
+/* The items of what must have some; noted ("the list of bands is empty") where given and without any. what: "the list of bands". */
+mt_items mt_reader_some_items(mt_reader *r, mt_addr value, const char *what);
+/* The first two items, MT_NO_ADDR where there are fewer, and how many there are. */
+int mt_reader_pair(const mt_reader *r, mt_addr value, mt_addr *first, mt_addr *second);
+/* Go on to the next item; false where there is none. */
+bool mt_items_next(mt_items *items);
+/* Zeroed room in r->mem for all items of a walk; out of memory (noted) gives NULL and ends the walk. */
+void *mt_reader_room(mt_reader *r, mt_items *items, size_t size);
+
 /* Copy of a string into r->mem; NULL where absent or not a string (noted). */
 const char *mt_reader_text(mt_reader *r, mt_addr value);
 /* A string that refers to something, unchecked; s == NULL where absent or wrong. */

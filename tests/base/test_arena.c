@@ -5,6 +5,20 @@
 #include "base/arena.h"
 #include "support/mt_test.h"
 
+#if defined(__SANITIZE_ADDRESS__)
+#    define WITH_ASAN 1
+#elif defined(__has_feature)
+#    if __has_feature(address_sanitizer)
+#        define WITH_ASAN 1
+#    endif
+#endif
+#ifdef WITH_ASAN
+#    include <sanitizer/asan_interface.h>
+#    define POISONED(p) (__asan_address_is_poisoned(p) != 0)
+#else
+#    define POISONED(p) ((void)(p), true) /* seen by nobody: nothing to test */
+#endif
+
 static bool all_zero(const void *p, size_t n)
 {
     const unsigned char *const byte = p;
@@ -150,10 +164,69 @@ static void arena__grow_doubles_and_keeps_the_items(mt_test *t)
     mt_arena_free(&a);
 }
 
+/* All bytes from p on that belong to nobody: those behind an allocation, in its zone. */
+static bool poisoned(const void *p, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        if (!POISONED((const unsigned char *)p + i)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void arena__bytes_that_nobody_asked_for_are_poisoned(mt_test *t)
+{
+    enum { LEAST = 64 };
+    static const size_t sizes[][2] = {
+        {  0, 120},
+        {  1,   1},
+        {  7,   1},
+        {  1,  64},
+        {  3,  24},
+        {  5, 200},
+        {900,   8},
+        {  1, 999}
+    };
+    mt_arena a;
+    REQUIRE(t, mt_arena_init(&a, 1024, NULL) == MT_OK);
+    const mt_arena_mark mark = mt_arena_get_mark(&a);
+    for (int i = 0; i < MT_COUNT(sizes); i++) {
+        mt_test_row(t, "%zu items of %zu bytes", sizes[i][0], sizes[i][1]);
+        const size_t bytes = sizes[i][0] * sizes[i][1];
+        const unsigned char *const p = mt_arena_alloc(&a, sizes[i][0], sizes[i][1]);
+        REQUIRE(t, p != NULL);
+        CHECK(t, mt_arena_alloc(&a, 64, 1) != NULL); /* the next one is not reached */
+        CHECK(t, bytes == 0 || all_zero(p, bytes));
+        CHECK(t, poisoned(p + bytes, sizes[i][1] > LEAST ? sizes[i][1] : LEAST));
+        CHECK(t, poisoned(p - LEAST, LEAST));
+        mt_arena_rewind(&a, mark);
+        CHECK(t, poisoned(p, bytes + sizes[i][1]));
+    }
+    mt_arena_free(&a);
+}
+
+static void arena__what_has_grown_away_is_poisoned(mt_test *t)
+{
+    mt_arena a;
+    REQUIRE(t, mt_arena_init(&a, 0, NULL) == MT_OK);
+    int capacity = 0;
+    int *const few = mt_arena_grow(&a, NULL, 0, &capacity, sizeof *few);
+    REQUIRE(t, few != NULL);
+    const int n = capacity;
+    int *const more = mt_arena_grow(&a, few, n, &capacity, sizeof *more);
+    REQUIRE(t, more != NULL && more != few);
+    CHECK(t, poisoned(few, (size_t)n * sizeof *few));
+    CHECK_INT(t, more[n], 0);
+    mt_arena_free(&a);
+}
+
 MT_TEST_MAIN(MT_TEST(arena__memory_is_aligned_zeroed_and_apart),
              MT_TEST(arena__products_that_wrap_give_null),
              MT_TEST(arena__zero_products_give_pointers_of_their_own),
              MT_TEST(arena__rewind_gives_the_same_memory_again_zeroed),
              MT_TEST(arena__works_from_all_zero_and_frees_twice),
              MT_TEST(arena__text_is_copied_and_formatted),
-             MT_TEST(arena__grow_doubles_and_keeps_the_items))
+             MT_TEST(arena__grow_doubles_and_keeps_the_items),
+             MT_TEST(arena__bytes_that_nobody_asked_for_are_poisoned),
+             MT_TEST(arena__what_has_grown_away_is_poisoned))
