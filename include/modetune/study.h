@@ -39,7 +39,7 @@ typedef enum mt_result_status {
 #undef MT_RESULT_STATUS_ENUM
 
 typedef struct mt_solve_options {
-    int threads;        /* workers; the result does not depend on it */
+    int threads;        /* workers, at most 64 are used; the result does not depend on it */
     const double *hint; /* [variables of the study] one more design to start from; NULL: none */
     /* NULL, or set non-zero (by a signal handler, by another thread): the search ends with what it has */
     const volatile int *stop;

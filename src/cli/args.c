@@ -6,6 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/workers.h"
+#include "cli/limits.h"
+
 enum { SUGGESTION_TEXT = 64, MAX_THREADS = 1024 };
 
 /* "; did you mean "x"?" or nothing */
@@ -118,7 +121,11 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
     case MT_OPT_RANK:
         return read_count(value, o->name, INT_MAX, &args->rank, err);
     case MT_OPT_THREADS:
-        return read_count(value, o->name, MAX_THREADS, &args->threads, err);
+        MT_TRY(read_count(value, o->name, MAX_THREADS, &args->threads, err));
+        args->threads = args->threads < MT_WORKERS_MOST ? args->threads : MT_WORKERS_MOST;
+        return MT_OK;
+    case MT_OPT_MAX_MEMORY:
+        return mt_limits_read_size(value, &args->max_memory, err);
     case MT_OPT_FORMAT:
         return read_format(value, &args->format, err);
     default:

@@ -3,6 +3,7 @@
 #define CLI_ARGS_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "base/text.h"
 
@@ -23,6 +24,7 @@ typedef enum mt_option_id {
     MT_OPT_OUTPUT,
     MT_OPT_VERIFY,
     MT_OPT_THREADS,
+    MT_OPT_MAX_MEMORY,
     MT_OPT_RANK,
     MT_OPT_MODEL,
     MT_OPT_ROOT,
@@ -77,7 +79,8 @@ typedef struct mt_args {
     const char *value[MT_OPT_IDS]; /* of the last one */
     int count;                     /* --count, 0: not given */
     int rank;                      /* --rank, default 1 */
-    int threads;                   /* --threads, default 1 */
+    int threads;                   /* --threads, default 1, at most MT_WORKERS_MOST */
+    uint64_t max_memory;           /* --max-memory in bytes, 0: not given */
     int n_sets;
     const char **sets; /* --set, in order; [argc] */
     int n_operands;

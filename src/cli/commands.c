@@ -42,7 +42,12 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_VERIFY, '\0', "verify", NULL, BIT(MT_CMD_RUN),
            "judge the study's published values; they alone decide the exit status"),
     OPTION(MT_OPT_THREADS, '\0', "threads", "N", ON_STUDIES,
-           "number of workers of the search; the result does not depend on it"),
+           "number of workers of the search, of which at most 64 are used; the result does not "
+           "depend on it"),
+    OPTION(
+        MT_OPT_MAX_MEMORY, '\0', "max-memory", "SIZE", EVERYWHERE,
+        "most memory that files may make the program use (\"500M\", \"8G\"); default: half of "
+        "the machine's"),
     OPTION(MT_OPT_RANK, '\0', "rank", "N", BIT(MT_CMD_APPLY),
            "which recommendation (default: 1, the best)"),
     OPTION(MT_OPT_MODEL, '\0', "model", "MODEL", BIT(MT_CMD_APPLY),

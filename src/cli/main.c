@@ -1,7 +1,39 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <string.h>
+
 #include "cli/cli.h"
 #include "linalg/blas.h"
 #include "tune/prepare.h"
+
+extern char **environ;
+
+/*
+ * OpenBLAS starts its threads when it is loaded, as many as there are processors, each of which asks for a buffer until it has one: with little
+ * address space for ever. Only OPENBLAS_NUM_THREADS prevents that. What stands in .preinit_array runs before the constructors of all
+ * libraries: there it is loaded with an environment that says so, and has its own other settings (OPENBLAS_CORETYPE).
+ */
+static void load_blas(int argc, char *argv[], char *envp[])
+{
+    enum { MOST = 32 };
+    static char one_thread[] = "OPENBLAS_NUM_THREADS=1";
+    static char *settings[MOST + 1] = {one_thread, NULL};
+    int n = 1;
+    (void)argc;
+    (void)argv;
+    for (char *const *e = envp; *e != NULL && n < MOST; e++) {
+        if (strncmp(*e, "OPENBLAS_", strlen("OPENBLAS_")) == 0) {
+            settings[n++] = *e; /* the first of a name counts */
+        }
+    }
+    char **const before = environ;
+    environ = settings;
+    mt_blas_load();
+    environ = before;
+}
+
+typedef void (*before_constructors)(int argc, char *argv[], char *envp[]);
+__attribute__((section(".preinit_array"), used)) static const before_constructors preinit =
+    load_blas;
 
 /* What belongs to the whole process is set here, and nowhere below. */
 int main(int argc, char *argv[])

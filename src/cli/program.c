@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "modetune/version.h"
 
-#include "cli/cli.h"
+#include "cli/limits.h"
 
 typedef int (*command_function)(const mt_args *args, mt_text *out);
 
@@ -38,9 +38,13 @@ int mt_cli_main(int argc, char *const argv[])
     } else if (args.given[MT_OPT_HELP]) {
         mt_help(args.command, &out);
     } else {
-        code = functions[args.command](&args, &out);
+        const mt_status room = mt_limits_set(&args, &err);
+        code = room == MT_OK ? functions[args.command](&args, &out) : mt_cli_failed(room, &err);
     }
     code = mt_exit_worse(code, mt_terminal_put(&out));
+    if (mt_exit_without_memory()) {
+        mt_limits_explain();
+    }
     mt_args_free(&args);
     return code;
 }

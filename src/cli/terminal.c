@@ -16,6 +16,13 @@ static const char PLAIN[] = "\033[0m";
 
 static volatile sig_atomic_t stop_requested = 0;
 
+static bool without_memory = false;
+
+bool mt_exit_without_memory(void)
+{
+    return without_memory;
+}
+
 int mt_exit_of(mt_status status)
 {
     switch (status) {
@@ -25,7 +32,9 @@ int mt_exit_of(mt_status status)
     case MT_E_INPUT:
         return MT_EXIT_INPUT;
     case MT_E_SYSTEM:
+        return MT_EXIT_SYSTEM;
     case MT_E_MEMORY:
+        without_memory = true;
         return MT_EXIT_SYSTEM;
     case MT_E_INTERRUPTED:
         return MT_EXIT_INTERRUPTED;
@@ -62,6 +71,7 @@ int mt_terminal_put(mt_text *out)
     bool ok = !out->failed;
     if (!ok) {
         mt_terminal_error("out of memory");
+        without_memory = true;
     } else if (out->length > 0) {
         errno = 0;
         ok = fwrite(out->s, 1, out->length, stdout) == out->length && fflush(stdout) == 0;

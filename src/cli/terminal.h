@@ -17,6 +17,8 @@ enum {
     MT_EXIT_INTERRUPTED = 130
 };
 int mt_exit_of(mt_status status);
+/* Has anything ended as MT_E_MEMORY so far? */
+bool mt_exit_without_memory(void);
 /* The worse of two: 130, then 4, 3, 2, 1, 0. */
 int mt_exit_worse(int a, int b);
 

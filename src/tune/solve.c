@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/workers.h"
 #include "tune/describe.h"
 #include "tune/discrete.h"
 #include "tune/doubts.h"
@@ -486,7 +487,8 @@ static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
 /* One problem for each worker; references are analysed with the first and only read afterwards. */
 static mt_status open_problems(answer *a, int threads, mt_err *err)
 {
-    const int n = a->study->n_variables > 0 && threads > 1 ? threads : 1;
+    const int most = threads < MT_WORKERS_MOST ? threads : MT_WORKERS_MOST;
+    const int n = a->study->n_variables > 0 && most > 1 ? most : 1;
     a->workers = mt_arena_alloc(&a->mem, (size_t)n, sizeof(mt_problem *));
     if (a->workers == NULL) {
         return mt_fail_memory(err);

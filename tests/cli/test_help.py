@@ -6,7 +6,7 @@ import subprocess
 from common_cli import COMMANDS, SOURCE, CliTest, main, options_in
 
 # Which options each command has: written down once more, so that a change is a decision.
-EVERYWHERE = {"root", "format", "quiet", "help"}
+EVERYWHERE = {"max-memory", "root", "format", "quiet", "help"}
 OPTIONS = {
     "run": {"output", "verify", "threads"},
     "compare": {"threads"},

@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * How much memory the program may have. The system counts (RLIMIT_DATA: private writable memory, whoever asks for it), so that nothing is missed; a request beyond
+ * is refused and ends as MT_E_MEMORY. What is there already does not count: the buffers of OpenBLAS are address space above all.
+ */
+#include "cli/limits.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "linalg/blas.h"
+
+/* The runtimes of sanitizers claim more than any limit. */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#    define WITH_SANITIZER 1
+#elif defined(__has_feature)
+#    if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#        define WITH_SANITIZER 1
+#    endif
+#endif
+
+static const uint64_t KIB = 1024;
+
+mt_status mt_limits_read_size(const char *text, uint64_t *bytes, mt_err *err)
+{
+    static const char units[] = "kMGT";
+    const uint64_t least = KIB * KIB;
+    const uint64_t most = (uint64_t)1 << 50U;
+    uint64_t size = 0;
+    const char *s = text;
+    for (; *s >= '0' && *s <= '9' && size <= most; s++) {
+        size = 10 * size + (uint64_t)(*s - '0');
+    }
+    const char *const unit = s == text || *s == '\0' ? NULL : strchr(units, *s);
+    for (const char *u = units; unit != NULL && u <= unit && size <= most; u++) {
+        size *= KIB;
+    }
+    s += unit == NULL ? 0 : 1;
+    if (*s != '\0' || size < least || size > most) {
+        return mt_fail(err, MT_E_USAGE,
+                       "--max-memory: \"%s\" is not a size from 1M to 1024T (\"500M\", \"8G\")",
+                       text);
+    }
+    *bytes = size;
+    return MT_OK;
+}
+
+static uint64_t granted =
+    0; /* what the limit that was set leaves to the program; 0: none was */
+
+#ifndef WITH_SANITIZER
+/* The number in a file of one number; 0 where there is none. */
+static uint64_t number_in(const char *path, int place)
+{
+    char text[256];
+    FILE *const file = fopen(path, "re");
+    const char *const line = file == NULL ? NULL : fgets(text, sizeof text, file);
+    if (file != NULL) {
+        (void)fclose(file);
+    }
+    const char *at = line;
+    char *end = NULL;
+    uint64_t number = 0;
+    for (int i = 0; i <= place && at != NULL; i++) {
+        number = strtoumax(at, &end, 10);
+        at = end == at ? NULL : end;
+    }
+    return at == NULL ? 0 : number;
+}
+
+/* Half of what the machine has, or the container. */
+static uint64_t share_of_machine(void)
+{
+    static const char *const containers[] = {"/sys/fs/cgroup/memory.max",
+                                             "/sys/fs/cgroup/memory/memory.limit_in_bytes"};
+    const long pages = sysconf(_SC_PHYS_PAGES);
+    const long page = sysconf(_SC_PAGESIZE);
+    uint64_t all = pages > 0 && page > 0 ? (uint64_t)pages * (uint64_t)page : UINT64_MAX;
+    for (int i = 0; i < MT_COUNT(containers); i++) {
+        const uint64_t most = number_in(containers[i], 0);
+        all = most > 0 && most < all ? most : all;
+    }
+    return all / 2;
+}
+
+/* Bytes that the process has now, as RLIMIT_DATA counts; and the stacks of workers that are to come. */
+static uint64_t have_already(int workers)
+{
+    enum { DATA_PAGES = 5 }; /* the sixth number of statm */
+    const uint64_t stack = 8 * KIB * KIB;
+    const long page = sysconf(_SC_PAGESIZE);
+    const uint64_t data = number_in("/proc/self/statm", DATA_PAGES) * (uint64_t)page;
+    const uint64_t known = data > 0 ? data : (uint64_t)workers * MT_BLAS_BUFFER;
+    return known + (uint64_t)(workers - 1) * stack;
+}
+
+/* Lower the soft limit; false where the system's own is as low. */
+static bool lower_limit(uint64_t bytes)
+{
+    struct rlimit now;
+    if (getrlimit(RLIMIT_DATA, &now) != 0 || (rlim_t)bytes >= now.rlim_cur) {
+        return false;
+    }
+    now.rlim_cur = (rlim_t)bytes;
+    return setrlimit(RLIMIT_DATA, &now) == 0;
+}
+#endif
+
+mt_status mt_limits_set(const mt_args *args, mt_err *err)
+{
+    MT_TRY(mt_blas_claim(args->threads, err));
+#ifndef WITH_SANITIZER
+    const uint64_t share = args->max_memory > 0 ? args->max_memory : share_of_machine();
+    granted = lower_limit(have_already(args->threads) + share) ? share : 0;
+#endif
+    return MT_OK;
+}
+
+void mt_limits_explain(void)
+{
+    static const char *const units[] = {"MB", "GB", "TB"};
+    double size = (double)granted / (double)(KIB * KIB);
+    int unit = 0;
+    while (size >= (double)KIB && unit + 1 < MT_COUNT(units)) {
+        size /= (double)KIB;
+        unit++;
+    }
+    if (granted > 0) {
+        mt_terminal_talk(false, "The program may use %.3g %s (--max-memory).", size,
+                         units[unit]);
+    }
+}

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Too little memory ends every command at once with exit status 4 and a sentence: never a hang, never a crash, never a wrong answer."""
+import os
+import resource
+import subprocess
+import unittest
+
+from common_cli import PROGRAM, SOURCE, CliTest, main
+
+MB = 1 << 20
+SECONDS = 5  # of the processor; every command takes a fraction of one
+COMMANDS = [
+    ("check", "problems/inceptor.json"),
+    ("modes", "problems/truss_72bar.json", "--shapes"),
+    ("info", "problems/stick_reference.json"),
+    ("sensitivity", "problems/truss_10bar.json"),
+    ("sweep", "problems/inceptor.json", "-c", "installed", "--drive", "pivot=-0.1:0.1:3", "--modes"),
+    ("mac", "problems/beam_reference.json", "problems/beam_lumped.json"),
+    ("compare", "studies/engine_orders.json", "--threads", "3"),
+    ("run", "studies/engine_orders.json", "-o", "@"),
+]
+
+
+@unittest.skipIf("MT_INSTRUMENTED" in os.environ or "MT_TEST_LAUNCHED" in os.environ, "a sanitizer needs address space")
+class Limits(CliTest):
+    def under(self, words, **limits):
+        """Run a command of the source tree under limits of the system; its exit status, output and errors."""
+        def limit():
+            for name, size in limits.items():
+                resource.setrlimit(getattr(resource, name), (size, size))
+            resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
+        words = [str(self.folder / "out") if w == "@" else w for w in words]
+        done = subprocess.run([PROGRAM, *words], cwd=SOURCE, preexec_fn=limit, capture_output=True, encoding="utf-8",
+                              timeout=120)
+        return done.returncode, done.stdout, done.stderr
+
+    def test_little_address_space(self):
+        ends = {}
+        for words in COMMANDS:
+            whole, text, _ = self.under(words)
+            for size in (60, 100, 150, 185, 188, 192, 196, 200, 210, 250, 400):
+                with self.subTest(f"{words[0]} in {size} MB"):
+                    code, said, problems = self.under(words, RLIMIT_AS=size * MB)
+                    self.assertIn(code, (4, whole), problems)
+                    if code == 4:
+                        self.assertIn("out of memory", problems)
+                    else:
+                        self.assertEqual(said, text)
+                    ends.setdefault(code == 4, []).append(size)
+        self.assertIn(100, ends[True])
+        self.assertIn(400, ends[False])
+
+    def test_little_data(self):
+        for words in COMMANDS:
+            whole, text, _ = self.under(words)
+            for size in (20, 120, 135, 140, 200, 500):
+                with self.subTest(f"{words[0]} with {size} MB of data"):
+                    code, said, problems = self.under(words, RLIMIT_DATA=size * MB)
+                    self.assertIn(code, (4, whole), problems)
+                    self.assertTrue("out of memory" in problems if code == 4 else said == text, problems)
+
+    def test_a_limit_of_our_own_is_named(self):
+        points = ", ".join(f'"p{i}": [{i}, 0]' for i in range(20000))
+        model = self.write("many.json", '{"format": "modetune-model/1", "dimension": 2, "points": {%s}, '
+                           '"bodies": [{"name": "a", "mass_kg": 1, "inertia_kg_m2": 1, "centre": "p1"}]}' % points)
+        done = self.expect(4, "modes", model, "--max-memory", "4M")
+        self.assertEqual(done.stdout, "")
+        self.assertRegex(done.stderr, r"out of memory\nThe program may use 4 MB \(--max-memory\)\.\n$")
+        enough = self.expect(0, "modes", model, "--max-memory", "1G")
+        self.assertEqual(enough.stdout, self.expect(0, "modes", model).stdout)
+
+    def test_sizes(self):
+        for size in ("1M", "1048576", "1024k", "2000G", "1024T"):
+            self.assertNotIn("max-memory", self.run_program("check", self.model, "--max-memory", size).stderr)
+        for size in ("0", "1k", "1048575", "1025T", "99999999999999999999", "-1M", "1.5G", "1MB", "M", " 1M", "1 M", "nan", "1e9"):
+            done = self.expect(2, "check", self.model, "--max-memory", size)
+            self.assertIn(f'--max-memory: "{size}" is not a size from 1M to 1024T ("500M", "8G")', done.stderr)
+
+    def test_more_workers_than_are_used(self):
+        one = self.under(("compare", "studies/engine_orders.json"))
+        self.assertEqual(self.under(("compare", "studies/engine_orders.json", "--threads", "1024", "--max-memory", "1G")), one)
+
+
+if __name__ == "__main__":
+    main()
