@@ -2,9 +2,10 @@
 #include "base/arena.h"
 
 #include <limits.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/format.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 #    define ARENA_ASAN 1
@@ -169,10 +170,10 @@ char *mt_arena_vprintf(mt_arena *a, const char *fmt, va_list args)
 {
     va_list again;
     va_copy(again, args);
-    const int n = vsnprintf(NULL, 0, fmt, args);
+    const int n = mt_vsnprintf(NULL, 0, fmt, args);
     char *const s = n < 0 ? NULL : mt_arena_alloc(a, (size_t)n + 1, 1);
     if (s != NULL) {
-        (void)vsnprintf(s, (size_t)n + 1, fmt, again);
+        (void)mt_vsnprintf(s, (size_t)n + 1, fmt, again);
     }
     va_end(again);
     return s;

@@ -2,8 +2,9 @@
 #include "modetune/status.h"
 
 #include <stdbool.h>
-#include <stdio.h>
 #include <string.h>
+
+#include "base/format.h"
 
 #define TEXT_CASE(name, text) \
     case name:                \
@@ -63,7 +64,7 @@ mt_status mt_fail(mt_err *err, mt_status code, const char *fmt, ...)
     char text[BUFFER_SIZE];
     va_list args;
     va_start(args, fmt);
-    if (vsnprintf(text, sizeof text, fmt, args) < 0) {
+    if (mt_vsnprintf(text, sizeof text, fmt, args) < 0) {
         text[0] = '\0';
     }
     va_end(args);
@@ -80,13 +81,13 @@ mt_status mt_err_in(mt_err *err, mt_status rc, const char *fmt, ...)
     char text[BUFFER_SIZE];
     va_list args;
     va_start(args, fmt);
-    int n = vsnprintf(text, sizeof text, fmt, args);
+    int n = mt_vsnprintf(text, sizeof text, fmt, args);
     va_end(args);
     if (n < 0) {
         return rc;
     }
     if (n < BUFFER_SIZE - 1) {
-        (void)snprintf(text + n, sizeof text - (size_t)n, ": %s", err->text);
+        (void)mt_snprintf(text + n, sizeof text - (size_t)n, ": %s", err->text);
     }
     copy_cut(err->text, text);
     return rc;

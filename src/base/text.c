@@ -3,9 +3,11 @@
 
 #include <stdarg.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/format.h"
+#include "base/visible.h"
 
 void mt_text_free(mt_text *t)
 {
@@ -58,11 +60,11 @@ void mt_text_addf(mt_text *t, const char *fmt, ...)
     va_start(args, fmt);
     va_list again;
     va_copy(again, args);
-    const int n = vsnprintf(NULL, 0, fmt, args);
+    const int n = mt_vsnprintf(NULL, 0, fmt, args);
     if (n < 0) {
         t->failed = true;
     } else if (reserve(t, (size_t)n)) {
-        (void)vsnprintf(t->s + t->length, (size_t)n + 1, fmt, again);
+        (void)mt_vsnprintf(t->s + t->length, (size_t)n + 1, fmt, again);
         t->length += (size_t)n;
     }
     va_end(again);
@@ -153,12 +155,53 @@ bool mt_text_matches(const char *pattern, const char *name)
     return *pattern == '\0';
 }
 
+/* Columns of a character, after Unicode's East Asian Width and general categories Mn and Me: the ranges that matter most. */
+static int columns(unsigned code)
+{
+    static const struct {
+        unsigned first, last;
+        int width;
+    } ranges[] = {
+        {  0x300U,   0x36FU, 0}, /* combining marks */
+        {  0x483U,   0x489U, 0},
+        {  0x591U,   0x5BDU, 0},
+        {  0x610U,   0x61AU, 0},
+        {  0x64BU,   0x65FU, 0},
+        { 0x1100U,  0x115FU, 2}, /* Hangul */
+        { 0x1AB0U,  0x1AFFU, 0},
+        { 0x1DC0U,  0x1DFFU, 0},
+        { 0x20D0U,  0x20FFU, 0},
+        { 0x2E80U,  0x303EU, 2}, /* Chinese, Japanese, Korean */
+        { 0x3041U,  0xA4CFU, 2},
+        { 0xAC00U,  0xD7A3U, 2},
+        { 0xF900U,  0xFAFFU, 2},
+        { 0xFE00U,  0xFE0FU, 0}, /* variation selectors */
+        { 0xFE20U,  0xFE2FU, 0},
+        { 0xFE30U,  0xFE6FU, 2},
+        { 0xFF00U,  0xFF60U, 2}, /* full width */
+        { 0xFFE0U,  0xFFE6U, 2},
+        {0x1F300U, 0x1F64FU, 2}, /* pictures */
+        {0x1F680U, 0x1F6FFU, 2},
+        {0x1F900U, 0x1F9FFU, 2},
+        {0x20000U, 0x3FFFDU, 2},
+    };
+    for (int i = 0; code >= ranges[0].first && i < MT_COUNT(ranges); i++) {
+        if (code >= ranges[i].first && code <= ranges[i].last) {
+            return ranges[i].width;
+        }
+    }
+    return 1;
+}
+
 int mt_text_width(const char *s)
 {
     int width = 0;
-    for (; *s != '\0'; s++) {
-        /* bytes 10xxxxxx continue a code point */
-        width += ((unsigned char)*s & 0xC0U) != 0x80U;
+    size_t left = strlen(s);
+    while (left > 0) {
+        const size_t length = mt_utf8_length(s, left);
+        width += length == 0 ? 1 : columns(mt_utf8_code(s, length));
+        s += length == 0 ? 1 : length;
+        left -= length == 0 ? 1 : length;
     }
     return width;
 }

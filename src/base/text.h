@@ -18,6 +18,7 @@ typedef struct mt_text {
 void mt_text_free(mt_text *t);
 void mt_text_add(mt_text *t, const char *s);
 void mt_text_add_n(mt_text *t, const char *s, size_t n);
+/* Formatted, see base/format.h: %s arguments are made visible, so a path is put together with mt_text_add. */
 void mt_text_addf(mt_text *t, const char *fmt, ...) MT_PRINTF(2, 3);
 
 /* Names longer than this (bytes) are compared for equality only. */
@@ -30,7 +31,7 @@ int mt_text_distance(const char *a, const char *b, int most);
 const char *mt_text_nearest(const char *name, const char *const *names, int n);
 /* Does `name` match `pattern`, where * stands for any run of characters and ? for one? (Bytes: names are ASCII.) */
 bool mt_text_matches(const char *pattern, const char *name);
-/* Display width in terminal columns of UTF-8 text (code points; no East Asian width). */
+/* Display width in terminal columns of UTF-8 text: marks that combine take none, ideographs two. */
 int mt_text_width(const char *s);
 
 #endif

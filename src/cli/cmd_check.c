@@ -97,7 +97,7 @@ static void add_messages(const mt_doubt_list *found, const char *path, mt_text *
         if (text.s == NULL || (messages->s != NULL && strstr(messages->s, d.text) != NULL)) {
             continue;
         }
-        mt_text_add(messages, d.file);
+        mt_text_addf(messages, "%s", d.file);
         if (d.line > 0) {
             mt_text_addf(messages, ":%d:%d", d.line, d.column);
         }

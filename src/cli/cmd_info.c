@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune info: what each configuration weighs and how it can move. */
 #include <math.h>
-#include <stdio.h>
 
+#include "base/format.h"
 #include "cli/cli.h"
 #include "mechanics/info.h"
 #include "report/number.h"
@@ -69,7 +69,7 @@ static const char *point_text(const double *x, int n, char *text, size_t size)
     for (int k = 0; k < 3; k++) {
         (void)mt_report_number(k < n ? x[k] : nan(""), DIGITS, s[k]);
     }
-    (void)snprintf(text, size, n == 3 ? "%s, %s, %s" : "%s, %s", s[0], s[1], s[2]);
+    (void)mt_snprintf(text, size, n == 3 ? "%s, %s, %s" : "%s, %s", s[0], s[1], s[2]);
     return text;
 }
 
@@ -115,7 +115,7 @@ static mt_table table_new(void)
     mt_table_column(&t, "z [m]", "centre_z_m", MT_ALIGN_POINT);
     for (int k = 0; k < SPATIAL; k++) {
         char member[32];
-        (void)snprintf(member, sizeof member, "inertia_%s_kg_m2", inertia_member[k]);
+        (void)mt_snprintf(member, sizeof member, "inertia_%s_kg_m2", inertia_member[k]);
         mt_table_column(&t, member, member, MT_ALIGN_POINT);
     }
     mt_table_column(&t, "states", "states", MT_ALIGN_RIGHT);

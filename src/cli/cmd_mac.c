@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune mac: pair and correlate two sets of modes at the sensors that both models have. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "cli/cli.h"
 #include "cli/shapes.h"
 #include "report/table.h"
@@ -139,9 +139,10 @@ static mt_status note_alike(comparison *c, const side *x, emit_note emit, void *
             const double mac = own[i + ((ptrdiff_t)j * n)];
             if (mac > LOOKS_THE_SAME) {
                 char text[NOTE_TEXT];
-                (void)snprintf(text, sizeof text,
-                               "modes %d and %d of %s look the same at the sensors (MAC %.4f)",
-                               i + 1, j + 1, x->letter, mac);
+                (void)mt_snprintf(
+                    text, sizeof text,
+                    "modes %d and %d of %s look the same at the sensors (MAC %.4f)", i + 1,
+                    j + 1, x->letter, mac);
                 emit(context, text);
             }
         }
@@ -154,10 +155,11 @@ static mt_status notes(comparison *c, emit_note emit, void *context, mt_err *err
     const int most = c->a.n > c->b.n ? c->a.n : c->b.n;
     if (most > c->ns) {
         char text[NOTE_TEXT];
-        (void)snprintf(text, sizeof text,
-                       "%d sensor channels cannot tell %d modes apart: shapes beyond %d depend "
-                       "on each other there",
-                       c->ns, most, c->ns);
+        (void)mt_snprintf(
+            text, sizeof text,
+            "%d sensor channels cannot tell %d modes apart: shapes beyond %d depend "
+            "on each other there",
+            c->ns, most, c->ns);
         emit(context, text);
     }
     MT_TRY(note_alike(c, &c->a, emit, context, err));
@@ -305,14 +307,14 @@ static void text_matrix(const comparison *c, mt_text *out)
     char heading[PAIR_TEXT];
     mt_table_column(&t, "A \\ B", "a", MT_ALIGN_RIGHT);
     for (int j = 0; j < c->b.n; j++) {
-        (void)snprintf(heading, sizeof heading, "%d", j + 1);
+        (void)mt_snprintf(heading, sizeof heading, "%d", j + 1);
         mt_table_column(&t, heading, heading, MT_ALIGN_RIGHT);
     }
     for (int i = 0; i < c->a.n; i++) {
         mt_table_integer(&t, i + 1);
         for (int j = 0; j < c->b.n; j++) {
             const double mac = c->mac[i + ((ptrdiff_t)j * c->a.n)];
-            (void)snprintf(heading, sizeof heading, "%.3f", mac);
+            (void)mt_snprintf(heading, sizeof heading, "%.3f", mac);
             mt_table_text(&t, isfinite(mac) ? heading : NULL);
         }
     }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune modes: natural frequencies and shapes of one configuration, or of all. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "cli/cli.h"
 #include "cli/damped.h"
 #include "cli/shapes.h"
@@ -155,7 +155,7 @@ static void fill_table(mt_table *t, const view *v, bool csv)
     for (int i = 0; i < v->shown; i++) {
         const int index = mt_modes_index(m, i);
         char text[24];
-        (void)snprintf(text, sizeof text, "%d", index);
+        (void)mt_snprintf(text, sizeof text, "%d", index);
         if (csv) {
             mt_table_text(t, mt_subject_configuration(v->s, v->c));
         }
@@ -191,8 +191,8 @@ static void print_shapes(const view *v, mt_text *out)
     for (int i = 0; i < v->shown; i++) {
         char heading[40];
         const int index = mt_modes_index(&v->a->modes, i);
-        (void)snprintf(heading, sizeof heading, index > 0 ? "mode %d" : "(%d)",
-                       index > 0 ? index : i + 1);
+        (void)mt_snprintf(heading, sizeof heading, index > 0 ? "mode %d" : "(%d)",
+                          index > 0 ? index : i + 1);
         mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
     }
     for (int k = 0; k < v->shapes.n; k++) {

@@ -158,7 +158,9 @@ static mt_status write_files(const job *j, const char *folder, mt_err *err)
         if (i == TRADE && j->result->trade == NULL) {
             continue;
         }
-        mt_text_addf(&path, "%s/%s", folder, names[i]);
+        mt_text_add(&path, folder);
+        mt_text_add(&path, "/");
+        mt_text_add(&path, names[i]);
         rc = path.failed ? mt_fail_memory(err)
                          : mt_file_write(path.s, texts[i].s, texts[i].length, err);
         mt_text_free(&path);
@@ -176,7 +178,9 @@ static int save(const job *j)
     char *const name = name_of_study(j->path);
     mt_text folder = {.s = NULL};
     mt_err err = {.code = MT_OK};
-    mt_text_addf(&folder, "%s/%s", base, name == NULL ? "" : name);
+    mt_text_add(&folder, base);
+    mt_text_add(&folder, "/");
+    mt_text_add(&folder, name == NULL ? "" : name);
     mt_status rc =
         name == NULL || folder.failed ? mt_fail_memory(&err) : write_files(j, folder.s, &err);
     if (rc == MT_OK) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune sensitivity: how far one per cent more of a parameter moves each frequency. */
-#include <stdio.h>
 
+#include "base/format.h"
 #include "cli/survey.h"
 #include "report/table.h"
 
@@ -115,8 +115,8 @@ static void write_text(mt_text *out, const mt_survey *v)
     mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
     for (int i = 0; i < v->modes; i++) {
         char heading[HEADING_TEXT];
-        (void)snprintf(heading, sizeof heading, "%d%s (%.5g Hz)", i + 1,
-                       v->repeated[i] ? "*" : "", v->hz[i]);
+        (void)mt_snprintf(heading, sizeof heading, "%d%s (%.5g Hz)", i + 1,
+                          v->repeated[i] ? "*" : "", v->hz[i]);
         mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
         repeated = repeated || v->repeated[i];
     }

@@ -3,7 +3,8 @@
 #include "cli/damped.h"
 
 #include <math.h>
-#include <stdio.h>
+
+#include "base/format.h"
 
 enum { DIGITS = 6, RATIO_DIGITS = 2 };
 
@@ -78,7 +79,7 @@ void mt_damped_rows(mt_table *t, const mt_damped_modes *d, int count, const char
         if (!shown(d, i, count)) {
             continue;
         }
-        (void)snprintf(text, sizeof text, "%d", index);
+        (void)mt_snprintf(text, sizeof text, "%d", index);
         if (configuration != NULL) {
             mt_table_text(t, configuration);
         }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* --help, from the tables. */
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "cli/args.h"
 
 enum { OPTION_COLUMN = 31, LINE_WIDTH = 92, FORM_TEXT = 64 };
@@ -40,9 +40,9 @@ static void help_option(const mt_option *o, mt_text *out)
 {
     char form[FORM_TEXT];
     const int n =
-        snprintf(form, sizeof form, "  %c%c%s--%s%s%s", o->letter == '\0' ? ' ' : '-',
-                 o->letter == '\0' ? ' ' : o->letter, o->letter == '\0' ? "  " : ", ", o->name,
-                 o->value == NULL ? "" : " ", o->value == NULL ? "" : o->value);
+        mt_snprintf(form, sizeof form, "  %c%c%s--%s%s%s", o->letter == '\0' ? ' ' : '-',
+                    o->letter == '\0' ? ' ' : o->letter, o->letter == '\0' ? "  " : ", ",
+                    o->name, o->value == NULL ? "" : " ", o->value == NULL ? "" : o->value);
     mt_text_add(out, form);
     if (n + 2 > OPTION_COLUMN) {
         mt_text_add(out, "\n");
@@ -63,7 +63,9 @@ static void help_command(int command, mt_text *out)
 {
     mt_text_add(out, "Usage: ");
     mt_help_usage(command, out);
-    mt_text_addf(out, "\n\n%s\n\nOptions:\n", mt_commands[command].details);
+    mt_text_add(out, "\n\n");
+    mt_text_add(out, mt_commands[command].details); /* lines */
+    mt_text_add(out, "\n\nOptions:\n");
     for (int i = 0; i < MT_OPT_IDS; i++) {
         if ((mt_options[i].commands & (1U << (unsigned)command)) != 0U) {
             help_option(&mt_options[i], out);

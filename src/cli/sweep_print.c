@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A sweep as text, JSON and CSV. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "cli/sweep.h"
 
 enum { DIGITS = 6, HOLD_DIGITS = 4, HEADING = 300 };
@@ -47,28 +47,28 @@ static void text_columns(const mt_sweep_view *v, mt_table *t)
 {
     char s[HEADING];
     const mt_system_joint *const d = driven(v);
-    (void)snprintf(s, sizeof s, "%s [%s]", d->name, unit_of(d->angle));
+    (void)mt_snprintf(s, sizeof s, "%s [%s]", d->name, unit_of(d->angle));
     mt_table_column(t, s, "position", MT_ALIGN_POINT);
     for (int i = 0; i < v->sys->n_joints; i++) {
         const mt_system_joint *const joint = &v->sys->joints[i];
         if (!told(v, i)) {
             continue;
         }
-        (void)snprintf(s, sizeof s, "%s [%s]", joint->name, unit_of(joint->angle));
+        (void)mt_snprintf(s, sizeof s, "%s [%s]", joint->name, unit_of(joint->angle));
         mt_table_column(t, s, joint->name, MT_ALIGN_POINT);
         if (joint->angle == d->angle) {
-            (void)snprintf(s, sizeof s, "per %s", d->name);
+            (void)mt_snprintf(s, sizeof s, "per %s", d->name);
         } else {
-            (void)snprintf(s, sizeof s, "per %s [%s/%s]", d->name, unit_of(joint->angle),
-                           unit_of(d->angle));
+            (void)mt_snprintf(s, sizeof s, "per %s [%s/%s]", d->name, unit_of(joint->angle),
+                              unit_of(d->angle));
         }
         mt_table_column(t, s, "ratio", MT_ALIGN_POINT);
     }
-    (void)snprintf(s, sizeof s, "%s [%s]", v->sys->trim ? v->request->drive.spring : "lock",
-                   hold_is_moment(v) ? "N m" : "N");
+    (void)mt_snprintf(s, sizeof s, "%s [%s]", v->sys->trim ? v->request->drive.spring : "lock",
+                      hold_is_moment(v) ? "N m" : "N");
     mt_table_column(t, s, "hold", MT_ALIGN_POINT);
     for (int i = 0; i < v->modes; i++) {
-        (void)snprintf(s, sizeof s, "mode %d [Hz]", i + 1);
+        (void)mt_snprintf(s, sizeof s, "mode %d [Hz]", i + 1);
         mt_table_column(t, s, "mode", MT_ALIGN_POINT);
     }
 }
@@ -235,23 +235,23 @@ void mt_sweep_csv_columns(const mt_sweep_view *v, mt_table *t)
 {
     char s[HEADING];
     mt_table_column(t, "configuration", "configuration", MT_ALIGN_LEFT);
-    (void)snprintf(s, sizeof s, "position_%s", unit_of(driven(v)->angle));
+    (void)mt_snprintf(s, sizeof s, "position_%s", unit_of(driven(v)->angle));
     mt_table_column(t, s, s, MT_ALIGN_POINT);
     for (int i = 0; i < v->sys->n_joints; i++) {
         if (told(v, i)) {
             const mt_system_joint *const joint = &v->sys->joints[i];
-            (void)snprintf(s, sizeof s, "%s_%s", joint->name, unit_of(joint->angle));
+            (void)mt_snprintf(s, sizeof s, "%s_%s", joint->name, unit_of(joint->angle));
             mt_table_column(t, s, s, MT_ALIGN_POINT);
-            (void)snprintf(s, sizeof s, "%s_ratio", joint->name);
+            (void)mt_snprintf(s, sizeof s, "%s_ratio", joint->name);
             mt_table_column(t, s, s, MT_ALIGN_POINT);
         }
     }
-    (void)snprintf(s, sizeof s, "%s", hold_is_moment(v) ? "hold_n_m" : "hold_n");
+    (void)mt_snprintf(s, sizeof s, "%s", hold_is_moment(v) ? "hold_n_m" : "hold_n");
     mt_table_column(t, s, s, MT_ALIGN_POINT);
     mt_table_column(t, "residual", "equilibrium_residual", MT_ALIGN_POINT);
     mt_table_column(t, "gap", "gap_m", MT_ALIGN_POINT);
     for (int i = 0; i < v->modes; i++) {
-        (void)snprintf(s, sizeof s, "mode_%d_hz", i + 1);
+        (void)mt_snprintf(s, sizeof s, "mode_%d_hz", i + 1);
         mt_table_column(t, s, s, MT_ALIGN_POINT);
     }
 }

@@ -10,6 +10,14 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/format.h"
+#include "base/visible.h"
+
+enum {
+    LINE_SIZE = 8192, /* longer lines of talk are cut */
+    PROGRESS_SIZE = 101
+};
+
 static const char RED[] = "\033[1;31m";
 static const char YELLOW[] = "\033[1;33m";
 static const char PLAIN[] = "\033[0m";
@@ -66,6 +74,26 @@ bool mt_terminal_colour(int descriptor)
            terminal != NULL && strcmp(terminal, "dumb") != 0;
 }
 
+/* The one way out: what a terminal would obey is made visible. `lines`: the text has lines of its own. */
+static bool show(FILE *to, const char *s, size_t n, bool lines)
+{
+    bool ok = true;
+    while (ok && n > 0) {
+        const size_t run = mt_visible_run(s, n, lines);
+        ok = run == 0 || fwrite(s, 1, run, to) == run;
+        s += run;
+        n -= run;
+        if (ok && n > 0) {
+            char escape[MT_VISIBLE_SIZE];
+            const size_t used = mt_visible_escape(s, n, escape);
+            ok = fputs(escape, to) >= 0;
+            s += used;
+            n -= used;
+        }
+    }
+    return ok;
+}
+
 int mt_terminal_put(mt_text *out)
 {
     bool ok = !out->failed;
@@ -74,7 +102,7 @@ int mt_terminal_put(mt_text *out)
         without_memory = true;
     } else if (out->length > 0) {
         errno = 0;
-        ok = fwrite(out->s, 1, out->length, stdout) == out->length && fflush(stdout) == 0;
+        ok = show(stdout, out->s, out->length, true) && fflush(stdout) == 0;
         if (!ok && errno != EPIPE) {
             mt_terminal_error("standard output: %s", strerror(errno));
         }
@@ -83,14 +111,25 @@ int mt_terminal_put(mt_text *out)
     return ok ? MT_EXIT_DONE : MT_EXIT_SYSTEM;
 }
 
+/* One line of talk to standard error. */
+MT_PRINTF(1, 0)
+static void line(const char *fmt, va_list args)
+{
+    char text[LINE_SIZE];
+    if (mt_vsnprintf(text, sizeof text, fmt, args) < 0) {
+        text[0] = '\0';
+    }
+    (void)show(stderr, text, strlen(text), false);
+    (void)fputc('\n', stderr);
+}
+
 MT_PRINTF(3, 0)
 static void say(const char *kind, const char *colour, const char *fmt, va_list args)
 {
     const bool coloured = mt_terminal_colour(STDERR_FILENO);
     (void)fprintf(stderr, "modetune: %s%s:%s ", coloured ? colour : "", kind,
                   coloured ? PLAIN : "");
-    (void)vfprintf(stderr, fmt, args);
-    (void)fputc('\n', stderr);
+    line(fmt, args);
 }
 
 void mt_terminal_error(const char *fmt, ...)
@@ -109,7 +148,7 @@ void mt_terminal_warning(const char *fmt, ...)
     va_end(args);
 }
 
-static void diagnostic(const char *line, size_t length)
+static void diagnostic(const char *text, size_t length)
 {
     static const struct {
         const char *word;
@@ -118,26 +157,26 @@ static void diagnostic(const char *line, size_t length)
         {  " error: ",    RED},
         {" warning: ", YELLOW},
     };
-    for (int i = 0; i < MT_COUNT(words); i++) {
-        const char *const at = strstr(line, words[i].word);
-        if (at != NULL && at < line + length) {
-            const size_t before = (size_t)(at - line) + 1;
+    const bool coloured = mt_terminal_colour(STDERR_FILENO);
+    size_t done = 0;
+    for (int i = 0; coloured && done == 0 && i < MT_COUNT(words); i++) {
+        const char *const at = strstr(text, words[i].word);
+        if (at != NULL && at < text + length) {
+            const size_t before = (size_t)(at - text) + 1;
             const size_t word = strlen(words[i].word) - 2;
-            (void)fprintf(stderr, "%.*s%s%.*s%s%.*s\n", (int)before, line, words[i].colour,
-                          (int)word, line + before, PLAIN, (int)(length - before - word),
-                          line + before + word);
-            return;
+            (void)show(stderr, text, before, false);
+            (void)fputs(words[i].colour, stderr);
+            (void)show(stderr, text + before, word, false);
+            (void)fputs(PLAIN, stderr);
+            done = before + word;
         }
     }
-    (void)fprintf(stderr, "%.*s\n", (int)length, line);
+    (void)show(stderr, text + done, length - done, false);
+    (void)fputc('\n', stderr);
 }
 
 void mt_terminal_diagnostics(const char *lines)
 {
-    if (!mt_terminal_colour(STDERR_FILENO)) {
-        (void)fputs(lines, stderr);
-        return;
-    }
     while (*lines != '\0') {
         const size_t length = strcspn(lines, "\n");
         diagnostic(lines, length);
@@ -150,16 +189,18 @@ void mt_terminal_talk(bool quiet, const char *fmt, ...)
     if (!quiet) {
         va_list args;
         va_start(args, fmt);
-        (void)vfprintf(stderr, fmt, args);
+        line(fmt, args);
         va_end(args);
-        (void)fputc('\n', stderr);
     }
 }
 
 void mt_terminal_progress(bool quiet, const char *text)
 {
     if (!quiet && isatty(STDERR_FILENO) == 1) {
-        (void)fprintf(stderr, "\r\033[K%.100s", text == NULL ? "" : text);
+        char shown[PROGRESS_SIZE];
+        (void)mt_snprintf(shown, sizeof shown, "%s", text == NULL ? "" : text);
+        (void)fputs("\r\033[K", stderr);
+        (void)show(stderr, shown, strlen(shown), false);
         (void)fflush(stderr);
     }
 }

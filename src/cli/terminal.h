@@ -22,6 +22,11 @@ bool mt_exit_without_memory(void);
 /* The worse of two: 130, then 4, 3, 2, 1, 0. */
 int mt_exit_worse(int a, int b);
 
+/*
+ * Whatever leaves the program by standard output or error leaves through here, and what a terminal would obey (control characters, marks of direction) is made
+ * visible, see base/visible.h: the colours and the wiping of the line of progress are the only ones.
+ */
+
 /* Everything that is written to standard output is collected in a text and leaves through here; the text is empty afterwards. A reader that has gone
  * (EPIPE) is not complained about, but is a failure, too. Returns MT_EXIT_DONE or MT_EXIT_SYSTEM. */
 int mt_terminal_put(mt_text *out);

@@ -6,10 +6,10 @@
  * characters (code points), from 1.
  */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "base/text.h"
 #include "expr/expr.h"
 #include "expr/names.h"
@@ -130,9 +130,9 @@ static mt_status parse_close(parser *p, size_t open)
 {
     if (peek(p) != ')') {
         char what[64];
-        (void)snprintf(what, sizeof what,
-                       "an operator or the \")\" for the \"(\" at character %d",
-                       character(p, open));
+        (void)mt_snprintf(what, sizeof what,
+                          "an operator or the \")\" for the \"(\" at character %d",
+                          character(p, open));
         return expected(p, what);
     }
     p->at++;
@@ -273,7 +273,7 @@ static mt_status parse_number(parser *p)
     if (is_name_part(s[p->at]) || s[p->at] == '.') {
         return bad_number(p, from, "is not a number; a product needs \"*\"");
     }
-    (void)snprintf(digits + n, sizeof digits - n, "e%d", exponent);
+    (void)mt_snprintf(digits + n, sizeof digits - n, "e%d", exponent);
     const double value = strtod(digits, NULL);
     if (!isfinite(value)) {
         return bad_number(p, from, "is too large for a number");

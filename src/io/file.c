@@ -14,12 +14,13 @@
 #include <unistd.h>
 
 #include "base/arena.h"
+#include "base/format.h"
 
 static mt_status system_error(mt_err *err, const char *path, int code)
 {
     char text[128];
     if (strerror_r(code, text, sizeof text) != 0) {
-        (void)snprintf(text, sizeof text, "error %d", code);
+        (void)mt_snprintf(text, sizeof text, "error %d", code);
     }
     return code == ENOMEM ? mt_fail_memory(err)
                           : mt_fail(err, MT_E_SYSTEM, "%s: %s", path, text);

@@ -156,39 +156,18 @@ static int compare_entries(const void *a, const void *b)
     return (x->index > y->index) - (x->index < y->index);
 }
 
-/* Text with control characters (C0, DEL, C1) made visible, cut at a character boundary. */
+/* Text made visible, cut at a character boundary. */
 static void add_visible(const char *text, mt_text *out)
 {
-    const size_t length = strlen(text);
-    size_t end = length;
-    if (length > LINE_MAX_BYTES) {
-        end = LINE_MAX_BYTES;
-        while (end > 0 && ((unsigned char)text[end] & 0xC0U) == 0x80U) {
-            end--;
-        }
-    }
-    for (size_t i = 0; i < end; i++) {
-        const unsigned char c = (unsigned char)text[i];
-        const unsigned char second = (unsigned char)text[i + 1];
-        if (c < ' ' || c == 0x7FU) {
-            mt_text_addf(out, "\\u%04x", (unsigned)c);
-        } else if (c == 0xC2U && second >= 0x80U && second < 0xA0U) {
-            mt_text_addf(out, "\\u%04x", (unsigned)second);
-            i++;
-        } else {
-            mt_text_add_n(out, text + i, 1);
-        }
-    }
-    if (end < length) {
-        mt_text_add(out, "...");
-    }
+    mt_text_addf(out, "%.*s%s", LINE_MAX_BYTES, text,
+                 strlen(text) > LINE_MAX_BYTES ? "..." : "");
 }
 
 static void print_one(const mt_json *doc, const char *file, const mt_diag *diag, cursor *at,
                       mt_text *out)
 {
     mt_text pointer = {0};
-    mt_text_add(out, file);
+    mt_text_addf(out, "%s", file);
     if (diag->addr != MT_NO_ADDR) {
         advance(doc, at, offset_of(doc, diag->addr));
         mt_text_addf(out, ":%d:%d", at->line, at->column);

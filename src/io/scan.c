@@ -7,8 +7,9 @@
 
 #include <limits.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
+
+#include "base/format.h"
 
 enum {
     MESSAGE_SIZE = 256,
@@ -47,7 +48,7 @@ static bool MT_PRINTF(3, 4) wrong(scan *sc, size_t at, const char *fmt, ...)
     char text[MESSAGE_SIZE];
     va_list args;
     va_start(args, fmt);
-    (void)vsnprintf(text, sizeof text, fmt, args);
+    (void)mt_vsnprintf(text, sizeof text, fmt, args);
     va_end(args);
     const mt_addr mark = add_node(sc, at, 0);
     if (mark == MT_NO_ADDR) {

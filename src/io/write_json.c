@@ -5,6 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/visible.h"
+
+enum { LONGEST_CHARACTER = 4 }; /* in bytes of UTF-8 */
+
 mt_json_writer mt_json_writer_default(mt_text *out)
 {
     return (mt_json_writer){.out = out};
@@ -37,31 +41,8 @@ const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE]
     return buffer;
 }
 
-/* Length of the well-formed UTF-8 sequence at s (Unicode 15, table 3-7), 0 where there is none. Stops at the terminator. */
-static int sequence_length(const unsigned char *s)
-{
-    if (s[0] < 0x80U) {
-        return 1;
-    }
-    if (s[0] < 0xC2U || s[0] > 0xF4U) {
-        return 0;
-    }
-    const int n = s[0] < 0xE0U ? 2 : s[0] < 0xF0U ? 3 : 4;
-    const unsigned low = s[0] == 0xE0U ? 0xA0U : s[0] == 0xF0U ? 0x90U : 0x80U;
-    const unsigned high = s[0] == 0xEDU ? 0x9FU : s[0] == 0xF4U ? 0x8FU : 0xBFU;
-    if (s[1] < low || s[1] > high) {
-        return 0;
-    }
-    for (int i = 2; i < n; i++) {
-        if ((s[i] & 0xC0U) != 0x80U) {
-            return 0;
-        }
-    }
-    return n;
-}
-
-/* One character at s as JSON text; returns how many bytes of s it took. */
-static int put_character(mt_text *out, const char *s)
+/* One character at s as JSON text; returns how many bytes of s it took. What cannot be seen is escaped, too. */
+static size_t put_character(mt_text *out, const char *s)
 {
     static const char SHORT[] = "\"\"\\\\\bb\ff\nn\rr\tt"; /* character, letter of its escape */
     for (const char *pair = SHORT; *pair != '\0'; pair += 2) {
@@ -70,16 +51,19 @@ static int put_character(mt_text *out, const char *s)
             return 1;
         }
     }
-    if ((unsigned char)*s < 0x20U || *s == 0x7F) {
-        mt_text_addf(out, "\\u%04x", (unsigned)(unsigned char)*s);
-        return 1;
-    }
-    const int n = sequence_length((const unsigned char *)s);
+    const size_t left = strnlen(s, LONGEST_CHARACTER);
+    const size_t n = mt_utf8_length(s, left);
     if (n == 0) {
         mt_text_add(out, "\xEF\xBF\xBD");
         return 1;
     }
-    mt_text_add_n(out, s, (size_t)n);
+    if (mt_visible_run(s, n, false) == 0) {
+        char escape[MT_VISIBLE_SIZE];
+        (void)mt_visible_escape(s, n, escape);
+        mt_text_add(out, escape);
+        return n;
+    }
+    mt_text_add_n(out, s, n);
     return n;
 }
 

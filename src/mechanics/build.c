@@ -3,7 +3,8 @@
 #include "mechanics/build.h"
 
 #include <stdarg.h>
-#include <stdio.h>
+
+#include "base/format.h"
 
 /* Room for one more entry in list `name` of the system; NULL notes that memory is out. */
 #define GROW(b, name)                                                                        \
@@ -41,7 +42,7 @@ const char *mt_build_name(mt_builder *b, const char *fmt, ...)
     char text[256];
     va_list args;
     va_start(args, fmt);
-    (void)vsnprintf(text, sizeof text, fmt, args);
+    (void)mt_vsnprintf(text, sizeof text, fmt, args);
     va_end(args);
     const char *const s = mt_arena_strdup(&b->sys->mem, text);
     if (s == NULL) {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the elimination found, in the user's words: redundant joints, directions named by body. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "mechanics/linear.h"
 
 /* Entries of a left null vector (largest 1) above this belong to the dependent set. */
@@ -29,8 +29,8 @@ void mt_joint_names(const mt_system *sys, int m, const double *w, char *text, si
         if (!names_a_joint(sys, w, least, i)) {
             continue;
         }
-        const int n = snprintf(text + used, size - used, "%s\"%s\"", used == 0 ? "" : ", ",
-                               sys->joints[sys->constraints[i].joint].name);
+        const int n = mt_snprintf(text + used, size - used, "%s\"%s\"", used == 0 ? "" : ", ",
+                                  sys->joints[sys->constraints[i].joint].name);
         if (n < 0 || (size_t)n >= size - used) {
             text[used] = '\0';
             return;
@@ -96,8 +96,8 @@ void mt_position_name_motion(const mt_system *sys, const mt_elimination *e, cons
             largest = fmax(largest, s);
         } else if (s > NAMED * largest && used < size) {
             const char *const motion = sys->dimension == 2 && k == 5 ? "rotation" : MOTION[k];
-            const int n = snprintf(text + used, size - used, "%s\"%s\" (%s)",
-                                   used == 0 ? "" : ", ", sys->bodies[b].name, motion);
+            const int n = mt_snprintf(text + used, size - used, "%s\"%s\" (%s)",
+                                      used == 0 ? "" : ", ", sys->bodies[b].name, motion);
             used += n > 0 ? (size_t)n : 0;
         }
     }

@@ -7,7 +7,8 @@
 
 #include <math.h>
 #include <stddef.h>
-#include <stdio.h>
+
+#include "base/format.h"
 
 /* Pa. Silicone rubber has some 1e6, steel 2e11, diamond 1.2e12; steel in MPa is 2.1e5, aluminium in psi 1e7 (not seen), steel in GPa 210. */
 static const double LEAST_MODULUS_PA = 1e6;
@@ -174,7 +175,7 @@ static void listed(mt_judge *j, const mt_item *item, int n, const mt_num *list,
 {
     for (int k = 0; k < n; k++) {
         char entry[64]; /* a list of one may be written as a number */
-        (void)snprintf(entry, sizeof entry, n > 1 ? "%s/%d" : "%s", member, k);
+        (void)mt_snprintf(entry, sizeof entry, n > 1 ? "%s/%d" : "%s", member, k);
         sign(j, item, list[k], entry, zero);
     }
 }

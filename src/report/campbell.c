@@ -4,9 +4,9 @@
  * mode is excited. One diagram for each rotor and machine that the study avoids.
  */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "report/summary.h"
 #include "report/svg.h"
 #include "report/table.h"
@@ -267,9 +267,9 @@ static void name_mode(plot *p, const mt_result_frequency *f, double hz, bool aft
     if (!isfinite(hz) || hz > p->y_most || !take_label(p, y)) {
         return;
     }
-    (void)snprintf(text, sizeof text, "%.40s%smode %d, %.4g Hz",
-                   p->e->n_configurations > 1 ? f->configuration : "",
-                   p->e->n_configurations > 1 ? " " : "", f->mode, hz);
+    (void)mt_snprintf(text, sizeof text, "%.40s%smode %d, %.4g Hz",
+                      p->e->n_configurations > 1 ? f->configuration : "",
+                      p->e->n_configurations > 1 ? " " : "", f->mode, hz);
     add_text(p, left ? from + 6.0 : from - 6.0, y, left ? "start" : "end",
              after ? "#2166ac" : "#555", text);
 }
@@ -327,7 +327,7 @@ static void add_hidden(const plot *p)
     }
     if (n > 0) {
         char text[TEXT_SIZE];
-        (void)snprintf(text, sizeof text, "%d mode%s higher", n, n == 1 ? " lies" : "s lie");
+        (void)mt_snprintf(text, sizeof text, "%d mode%s higher", n, n == 1 ? " lies" : "s lie");
         add_text(p, LEFT + 8, TOP + 15, "start", "#2166ac", text);
     }
 }

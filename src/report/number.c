@@ -3,8 +3,9 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <stdio.h>
 #include <string.h>
+
+#include "base/format.h"
 
 /* "2.10000e+11" says no more than "2.1e+11", and "100000." no more than "100000". */
 static void trim(char *s)
@@ -24,13 +25,11 @@ static void trim(char *s)
 static const char *format(double x, int digits, bool sign, char *buffer)
 {
     if (isnan(x)) {
-        (void)snprintf(buffer, MT_NUMBER_TEXT, "-");
-    } else if (x == 0.0) {
-        (void)snprintf(buffer, MT_NUMBER_TEXT, "0");
-    } else if (isinf(x)) {
-        (void)snprintf(buffer, MT_NUMBER_TEXT, x < 0.0 ? "-inf" : "inf");
+        (void)mt_snprintf(buffer, MT_NUMBER_TEXT, "-");
+    } else if (x == 0.0 || isinf(x)) {
+        (void)mt_snprintf(buffer, MT_NUMBER_TEXT, "%g", x); /* 0, or the word */
     } else {
-        (void)snprintf(buffer, MT_NUMBER_TEXT, sign ? "%+#.*g" : "%#.*g", digits, x);
+        (void)mt_snprintf(buffer, MT_NUMBER_TEXT, sign ? "%+#.*g" : "%#.*g", digits, x);
         trim(buffer);
     }
     return buffer;
@@ -48,10 +47,10 @@ const char *mt_report_change(double x, int digits, char buffer[MT_NUMBER_TEXT])
 
 const char *mt_report_exact(double x, char buffer[MT_NUMBER_TEXT])
 {
-    if (isnan(x)) {
-        buffer[0] = '\0';
+    if (isfinite(x)) {
+        (void)mt_snprintf(buffer, MT_NUMBER_TEXT, "%.17g", x);
     } else {
-        (void)snprintf(buffer, MT_NUMBER_TEXT, "%.17g", x);
+        buffer[0] = '\0';
     }
     return buffer;
 }

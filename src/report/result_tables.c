@@ -2,9 +2,9 @@
 #include "report/result_tables.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "report/number.h"
 
 /* Frequencies to 6 digits show changes of 1e-5; percentages and sizes of changes need no more than 3; parameters 6, as a drawing would. */
@@ -28,11 +28,11 @@ static const char *demand_of(const mt_result_frequency *f, char *s, size_t size)
         return mt_report_number(f->target_hz, HZ_DIGITS, s);
     }
     if (!isnan(f->at_least_hz) && !isnan(f->at_most_hz)) {
-        (void)snprintf(s, size, "%s to %s", a, b);
+        (void)mt_snprintf(s, size, "%s to %s", a, b);
     } else if (!isnan(f->at_least_hz)) {
-        (void)snprintf(s, size, "at least %s", a);
+        (void)mt_snprintf(s, size, "at least %s", a);
     } else if (!isnan(f->at_most_hz)) {
-        (void)snprintf(s, size, "at most %s", b);
+        (void)mt_snprintf(s, size, "at most %s", b);
     } else {
         return NULL;
     }
@@ -47,7 +47,7 @@ static void name_cell(mt_table *t, const mt_result_frequency *f)
         mt_table_text(t, f->name);
         return;
     }
-    (void)snprintf(text, sizeof text, "%.90s (%s)", f->name, f->identity);
+    (void)mt_snprintf(text, sizeof text, "%.90s (%s)", f->name, f->identity);
     mt_table_text(t, text);
 }
 
@@ -232,7 +232,7 @@ mt_table mt_report_clearances(const mt_recommendation *r)
         mt_table_number(&t, c->hz, HZ_DIGITS);
         if (inside) {
             char text[DEMAND_TEXT];
-            (void)snprintf(text, sizeof text, "inside %.100s", c->band);
+            (void)mt_snprintf(text, sizeof text, "inside %.100s", c->band);
             mt_table_text(&t, text);
         } else {
             mt_table_text(&t, above != NULL ? above->band : NULL);
@@ -272,8 +272,8 @@ static const char *assignment(const mt_recommendation *r, char *s, size_t size)
 {
     size_t used = 0;
     for (int i = 0; i < r->n_gaps; i++) {
-        const int n =
-            snprintf(s + used, size - used, "%s%d", i == 0 ? "" : " ", r->gaps[i].modes_below);
+        const int n = mt_snprintf(s + used, size - used, "%s%d", i == 0 ? "" : " ",
+                                  r->gaps[i].modes_below);
         if (n < 0 || (size_t)n >= size - used) {
             break; /* more bands than a cell holds: cut */
         }
@@ -290,7 +290,7 @@ mt_table mt_report_alternatives(const mt_result *result)
         const char *const unit = result->recommendations[0].score_unit;
         if (unit != NULL && unit[0] != '\0' &&
             strlen(unit) < sizeof heading - sizeof "score []") {
-            (void)snprintf(heading, sizeof heading, "score [%s]", unit);
+            (void)mt_snprintf(heading, sizeof heading, "score [%s]", unit);
         }
     }
     mt_table_column(&t, "rank", "rank", MT_ALIGN_RIGHT);
@@ -362,7 +362,7 @@ static void weight_cell(mt_table *t, const mt_result *result, const char *goal, 
         words = g->pointer != NULL && strcmp(g->pointer, goal) == 0 ? g->text : words;
     }
     if (words != NULL) {
-        (void)snprintf(text, sizeof text, "%g x %s", factor, words);
+        (void)mt_snprintf(text, sizeof text, "%g x %s", factor, words);
     }
     mt_table_text(t, words == NULL ? NULL : text);
 }
@@ -498,9 +498,9 @@ mt_table mt_report_designs(const mt_result *result)
     for (int k = 0; k < ranged * result->baseline.n_frequencies; k++) {
         const mt_result_frequency *const f = &result->baseline.frequencies[k / ranged];
         char name[DEMAND_TEXT];
-        (void)snprintf(name, sizeof name, "%.80s.mode_%d_%s",
-                       f->configuration == NULL ? "" : f->configuration, f->mode,
-                       ends[k % ranged]);
+        (void)mt_snprintf(name, sizeof name, "%.80s.mode_%d_%s",
+                          f->configuration == NULL ? "" : f->configuration, f->mode,
+                          ends[k % ranged]);
         mt_table_column(&t, name, name, MT_ALIGN_RIGHT);
     }
     design_row(&t, result, &result->baseline);

@@ -41,7 +41,7 @@ static void print_relaxations(const mt_result *result, mt_text *out)
 static void print_place(const mt_doubt *d, mt_text *out)
 {
     if (d->file != NULL) {
-        mt_text_add(out, d->file);
+        mt_text_addf(out, "%s", d->file);
         if (d->line > 0) {
             mt_text_addf(out, ":%d:%d", d->line, d->column);
         }
@@ -60,7 +60,7 @@ void mt_report_doubt(const mt_doubt *d, bool with_place, mt_text *out)
     if (d->configuration != NULL) {
         mt_text_addf(out, "%s: ", d->configuration);
     }
-    mt_text_add(out, d->text);
+    mt_text_addf(out, "%s", d->text);
 }
 
 bool mt_report_doubtful(const mt_result *result)
@@ -83,8 +83,10 @@ void mt_report_doubts(const mt_doubt_list *list, mt_text *out)
         bool any = false;
         for (int i = 0; i < list->n; i++) {
             if ((int)list->items[i].level == level) {
-                mt_text_addf(out, "%s%s%s  - ", any ? "" : "\n", any ? "" : titles[level],
-                             any ? "" : "\n");
+                if (!any) {
+                    mt_text_addf(out, "\n%s\n", titles[level]);
+                }
+                mt_text_add(out, "  - ");
                 mt_report_doubt(&list->items[i], level == MT_LEVEL_DOUBT, out);
                 mt_text_add(out, "\n");
                 any = true;

@@ -3,9 +3,9 @@
 #include "report/svg.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "report/number.h"
 #include "report/summary.h"
 #include "report/table.h"
@@ -152,8 +152,8 @@ void mt_report_svg_frequencies(const mt_recommendation *r, mt_text *out)
         const mt_result_frequency *const f = &r->frequencies[i];
         const int y = TOP + (i * ROW) + (ROW / 2);
         char label[LABEL_TEXT];
-        (void)snprintf(label, sizeof label, "%.24s, mode %d",
-                       f->configuration == NULL ? "" : f->configuration, f->mode);
+        (void)mt_snprintf(label, sizeof label, "%.24s, mode %d",
+                          f->configuration == NULL ? "" : f->configuration, f->mode);
         row_label(i, label, out);
         demand(&s, f, y, out);
         if (isfinite(f->original_hz)) {

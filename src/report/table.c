@@ -2,9 +2,10 @@
 #include "report/table.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
+#include "base/visible.h"
 #include "report/number.h"
 
 enum { INTEGER_TEXT = 24 };
@@ -29,9 +30,17 @@ static const char *copy(mt_table *t, const char *s)
     return kept;
 }
 
+/* A text for people, in one line. */
+static const char *copy_visible(mt_table *t, const char *s)
+{
+    const char *const kept = t->failed ? NULL : mt_arena_printf(&t->mem, "%s", s);
+    t->failed = t->failed || kept == NULL;
+    return kept;
+}
+
 void mt_table_column(mt_table *t, const char *heading, const char *member, mt_align align)
 {
-    const mt_column column = {copy(t, heading), copy(t, member), align};
+    const mt_column column = {copy_visible(t, heading), copy(t, member), align};
     if (t->failed) {
         return;
     }
@@ -47,7 +56,7 @@ void mt_table_column(mt_table *t, const char *heading, const char *member, mt_al
 
 static void add_cell(mt_table *t, const char *text, const char *exact)
 {
-    const mt_cell cell = {copy(t, text), copy(t, exact)};
+    const mt_cell cell = {copy_visible(t, text), copy(t, exact)};
     if (t->failed) {
         return;
     }
@@ -69,7 +78,7 @@ void mt_table_text(mt_table *t, const char *text)
 void mt_table_integer(mt_table *t, long long value)
 {
     char s[INTEGER_TEXT];
-    (void)snprintf(s, sizeof s, "%lld", value);
+    (void)mt_snprintf(s, sizeof s, "%lld", value);
     add_cell(t, s, s);
 }
 
@@ -91,7 +100,7 @@ void mt_table_quoted(mt_table *t, double value)
 {
     char text[MT_NUMBER_TEXT];
     char exact[MT_NUMBER_TEXT];
-    (void)snprintf(text, sizeof text, "%.10g", value);
+    (void)mt_snprintf(text, sizeof text, "%.10g", value);
     add_cell(t, isfinite(value) ? text : mt_report_number(value, 1, text),
              mt_report_exact(value, exact));
 }
@@ -112,10 +121,10 @@ int mt_table_rows(const mt_table *t)
     return t->n_columns == 0 ? 0 : t->n_cells / t->n_columns;
 }
 
-/* Characters up to the decimal point, or where it would stand. */
+/* Columns up to the decimal point, or where it would stand. */
 static int before_point(const char *s)
 {
-    return (int)strcspn(s, ".e");
+    return mt_text_width(s) - mt_text_width(s + strcspn(s, ".e"));
 }
 
 typedef struct layout {
@@ -137,7 +146,7 @@ static layout measure(const mt_table *t, int column)
         const char *const s = t->cells[i].text;
         if (point) {
             l.before = larger(l.before, before_point(s));
-            after = larger(after, (int)strlen(s) - before_point(s));
+            after = larger(after, mt_text_width(s) - before_point(s));
         } else {
             l.width = larger(l.width, mt_text_width(s));
         }
@@ -227,17 +236,56 @@ void mt_table_print(const mt_table *t, int indent, mt_text *out)
     mt_arena_free(&scratch);
 }
 
+/* A number as this program and others write it: [+-] digits [. digits] [e [+-] digits]. */
+static bool is_number(const char *s)
+{
+    static const char digits[] = "0123456789";
+    s += *s == '-' || *s == '+' ? 1 : 0;
+    const size_t whole = strspn(s, digits);
+    s += whole;
+    const size_t point = *s == '.' ? 1 : 0;
+    const size_t part = strspn(s + point, digits);
+    s += point == 1 ? point + part : 0;
+    if (whole + (point == 1 ? part : 0) > 0 && (*s == 'e' || *s == 'E')) {
+        s += s[1] == '-' || s[1] == '+' ? 2 : 1;
+        const size_t exponent = strspn(s, digits);
+        return exponent > 0 && s[exponent] == '\0';
+    }
+    return whole + part > 0 && *s == '\0';
+}
+
+/*
+ * Would a spreadsheet take the cell for a formula? They do where it begins with = + - @ (tabs and line ends are escaped before), some with their full-width
+ * forms, some after blanks. A cell that has an apostrophe there already is counted in, so that taking one away always gives the text back.
+ */
+static bool is_formula(const char *s)
+{
+    static const char *const wide[] = {"\xEF\xBC\x9D", "\xEF\xBC\x8B", "\xEF\xBC\x8D",
+                                       "\xEF\xBC\xA0"}; /* U+FF1D, FF0B, FF0D, FF20 */
+    const char *const at = s + strspn(s, " '");
+    bool starts = *at != '\0' && strchr("=+-@", *at) != NULL;
+    for (int i = 0; i < MT_COUNT(wide); i++) {
+        starts = starts || strncmp(at, wide[i], strlen(wide[i])) == 0;
+    }
+    return starts && !is_number(s);
+}
+
 void mt_csv_field(const char *s, mt_text *out)
 {
-    if (strpbrk(s, ",\"\r\n") == NULL) {
-        mt_text_add(out, s);
-        return;
+    mt_text shown = {.s = NULL};
+    mt_text_add(&shown, is_formula(s) ? "'" : "");
+    mt_text_add_visible(&shown, s);
+    out->failed = out->failed || shown.failed;
+    if (out->failed || strpbrk(shown.s, ",\"") == NULL) {
+        mt_text_add(out, shown.failed ? "" : shown.s);
+    } else {
+        mt_text_add(out, "\"");
+        for (const char *at = shown.s; *at != '\0'; at++) {
+            mt_text_add_n(out, *at == '"' ? "\"\"" : at, *at == '"' ? 2 : 1);
+        }
+        mt_text_add(out, "\"");
     }
-    mt_text_add(out, "\"");
-    for (; *s != '\0'; s++) {
-        mt_text_add_n(out, *s == '"' ? "\"\"" : s, *s == '"' ? 2 : 1);
-    }
-    mt_text_add(out, "\"");
+    mt_text_free(&shown);
 }
 
 void mt_table_csv(const mt_table *t, mt_text *out)
@@ -254,20 +302,32 @@ void mt_table_csv(const mt_table *t, mt_text *out)
     }
 }
 
+static size_t smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
 void mt_html_escape(const char *s, mt_text *out)
 {
     static const char special[] = "&<>\"'";
     static const char *const reference[] = {"&amp;", "&lt;", "&gt;", "&quot;", "&#39;"};
-    for (; *s != '\0'; s++) {
+    size_t left = strlen(s);
+    while (left > 0) {
         const char *const found = strchr(special, *s);
-        const unsigned char c = (unsigned char)*s;
+        const bool blank = *s == '\t' || *s == '\n';
+        size_t used = found != NULL || blank ? 1 : mt_visible_run(s, left, false);
         if (found != NULL) {
             mt_text_add(out, reference[found - special]);
-        } else if ((c < ' ' && c != '\t' && c != '\n') || c == 0x7F) {
-            mt_text_add(out, "\xEF\xBF\xBD"); /* U+FFFD */
+        } else if (used == 0) {
+            char escape[MT_VISIBLE_SIZE];
+            used = mt_visible_escape(s, left, escape);
+            mt_text_add(out, escape);
         } else {
-            mt_text_add_n(out, s, 1);
+            used = blank ? used : smaller(used, strcspn(s, special));
+            mt_text_add_n(out, s, used);
         }
+        s += used;
+        left -= used;
     }
 }
 

@@ -60,9 +60,10 @@ void mt_table_csv(const mt_table *t, mt_text *out);
 /* <table>...</table>, every text escaped. */
 void mt_table_html(const mt_table *t, mt_text *out);
 
-/* One CSV field, quoted where RFC 4180 asks for it. */
+/* One CSV field, quoted where RFC 4180 asks for it, in one line: control characters are made visible (base/visible.h). Text that a spreadsheet would take for a
+ * formula (it begins with = + - @) gets an apostrophe in front; a number does not. */
 void mt_csv_field(const char *s, mt_text *out);
-/* Text within HTML or a quoted attribute: & < > " ' become references, other control characters than tab and line feed U+FFFD. */
+/* Text within HTML or a quoted attribute: & < > " ' become references, control characters but tab and line feed are made visible. */
 void mt_html_escape(const char *s, mt_text *out);
 
 #endif

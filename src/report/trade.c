@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trade studies: one line per point, and the curve of the best score over what varies. */
 #include <math.h>
-#include <stdio.h>
 
+#include "base/format.h"
 #include "report/number.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
@@ -27,9 +27,9 @@ static void vary_columns(mt_table *t, const mt_trade_result *trade)
     for (int i = 0; i < trade->n_vary; i++) {
         const mt_trade_vary *const v = &trade->vary[i];
         char heading[HEADING_TEXT];
-        (void)snprintf(heading, sizeof heading, "%.120s%s%.20s%s", v->text,
-                       v->unit != NULL ? " [" : "", v->unit != NULL ? v->unit : "",
-                       v->unit != NULL ? "]" : "");
+        (void)mt_snprintf(heading, sizeof heading, "%.120s%s%.20s%s", v->text,
+                          v->unit != NULL ? " [" : "", v->unit != NULL ? v->unit : "",
+                          v->unit != NULL ? "]" : "");
         mt_table_column(t, heading, v->text, MT_ALIGN_POINT);
     }
 }

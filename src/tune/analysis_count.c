@@ -10,9 +10,9 @@
  */
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "tune/analysis.h"
 
 /* Designs in general position besides corners and middle; their coordinates are fractions of i times roots of primes, equally spread (Weyl). */
@@ -284,7 +284,7 @@ bool mt_analysis_slack(const mt_analysis *a, int pos, char *text, size_t size)
         if (!told && term->varies && lin->value[term->coefficient] == 0.0 &&
             acts_on(a, row, first, cluster)) {
             const int wrote =
-                snprintf(text + used, size - used, "%s\"%s\"", used > 0 ? ", " : "", name);
+                mt_snprintf(text + used, size - used, "%s\"%s\"", used > 0 ? ", " : "", name);
             used += wrote > 0 ? (size_t)wrote : 0;
             last = name;
         }

@@ -2,9 +2,9 @@
 #include "tune/doubts.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "mechanics/info.h"
 #include "model/values.h"
 
@@ -164,8 +164,8 @@ static void say_idle(const mt_linear *lin, mt_doubt_list *out)
     for (int b = 0; b < lin->sys->n_bodies && lin->n_idle > 0; b++) {
         if (lin->idle[b] && n++ < NAMED) {
             const size_t used = strlen(name);
-            (void)snprintf(name + used, sizeof name - used, "%s\"%s\"", n == 1 ? "" : ", ",
-                           lin->sys->bodies[b].name);
+            (void)mt_snprintf(name + used, sizeof name - used, "%s\"%s\"", n == 1 ? "" : ", ",
+                              lin->sys->bodies[b].name);
         }
     }
     if (lin->n_idle > 0) {

@@ -5,9 +5,10 @@
 #include "tune/enclosure_priv.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/format.h"
 
 void mt_enclosure_delete(mt_enclosure *e)
 {
@@ -76,7 +77,7 @@ static mt_status check_count(mt_enclosure *e, const mt_analysis *a, bool *ok, ch
     mt_arena_rewind(&e->scratch, mark);
     if (rc == MT_OK && free_directions < a->n_rigid) {
         *ok = false;
-        (void)snprintf(
+        (void)mt_snprintf(
             reason, MT_REASON_SIZE,
             "%d of its %d rigid-body modes may be held by a spring within the bounds",
             a->n_rigid - free_directions, a->n_rigid);
@@ -92,12 +93,12 @@ static mt_status build(mt_enclosure *e, const mt_analysis *a, const double *lowe
         return MT_OK;
     }
     if (a->modes.n_unstable > 0) {
-        (void)snprintf(reason, MT_REASON_SIZE, "the mechanism is unstable");
+        (void)mt_snprintf(reason, MT_REASON_SIZE, "the mechanism is unstable");
         return MT_OK;
     }
     if (a->modes.n_undecided > 0) {
-        (void)snprintf(reason, MT_REASON_SIZE,
-                       "rounding hides whether the mechanism is stable");
+        (void)mt_snprintf(reason, MT_REASON_SIZE,
+                          "rounding hides whether the mechanism is stable");
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&e->mem, 0, err));
@@ -185,11 +186,11 @@ bool mt_enclosure_corners(mt_enclosure *e, const mt_model *model, const int *inp
     for (int k = 0; k < e->n_inputs; k++) {
         const int bits = effect(e, k);
         if (bits == (MT_STIFFENS | MT_SOFTENS) && lo[k] < hi[k]) {
-            (void)snprintf(reason, MT_REASON_SIZE, "parameter \"%s\" %s",
-                           model->parameters[inputs[k]].name.s,
-                           mt_enclosure_loose(e, k)
-                               ? "enters both stiffness and mass"
-                               : "stiffens in one place and softens in another");
+            (void)mt_snprintf(reason, MT_REASON_SIZE, "parameter \"%s\" %s",
+                              model->parameters[inputs[k]].name.s,
+                              mt_enclosure_loose(e, k)
+                                  ? "enters both stiffness and mass"
+                                  : "stiffens in one place and softens in another");
             return false;
         }
         const double middle = 0.5 * (lo[k] + hi[k]);

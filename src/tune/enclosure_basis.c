@@ -10,9 +10,9 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "linalg/dense.h"
 #include "modal/modal.h"
 
@@ -144,8 +144,9 @@ static mt_status check_massless(const mt_enclosure *e, const basis *b, mt_arena 
         mt_gemv(true, b->n, (int)z, 1.0, t0, b->n, row, 0.0, part);
         if (t->varies && mt_norm2((int)z, part) > MASSLESS_SHARE * mt_norm2(b->n, row)) {
             *ok = false;
-            (void)snprintf(reason, MT_REASON_SIZE, "spring \"%s\" acts on a massless freedom",
-                           lin->sys->springs[t->source].name);
+            (void)mt_snprintf(reason, MT_REASON_SIZE,
+                              "spring \"%s\" acts on a massless freedom",
+                              lin->sys->springs[t->source].name);
         }
     }
     for (int i = 0; i < e->n_coefficients && *ok; i++) {
@@ -153,8 +154,8 @@ static mt_status check_massless(const mt_enclosure *e, const basis *b, mt_arena 
         const bool mass = c->part[MT_MASS].count < 0; /* marked by find_kinds */
         if (mass && !(c->least > 0.0)) {
             *ok = false;
-            (void)snprintf(reason, MT_REASON_SIZE,
-                           "mass of \"%s\" may vanish within the bounds", c->name);
+            (void)mt_snprintf(reason, MT_REASON_SIZE,
+                              "mass of \"%s\" may vanish within the bounds", c->name);
         }
     }
     return MT_OK;
@@ -164,15 +165,17 @@ static mt_status check_massless(const mt_enclosure *e, const basis *b, mt_arena 
 static void say_lost(const mt_enclosure *e, bool unstable, char *reason)
 {
     if (e->coupled != NULL) {
-        (void)snprintf(reason, MT_REASON_SIZE, "%s \"%s\" %s",
-                       e->coupled_mass ? "body" : "spring", e->coupled,
-                       e->coupled_mass ? "has a product of inertia that varies"
-                                       : "couples two directions with a stiffness that varies");
+        (void)mt_snprintf(reason, MT_REASON_SIZE, "%s \"%s\" %s",
+                          e->coupled_mass ? "body" : "spring", e->coupled,
+                          e->coupled_mass
+                              ? "has a product of inertia that varies"
+                              : "couples two directions with a stiffness that varies");
         return;
     }
-    (void)snprintf(reason, MT_REASON_SIZE, "%s",
-                   unstable ? "the mechanism may be unstable within the bounds"
-                            : "a freedom may lose its mass or its stiffness within the bounds");
+    (void)mt_snprintf(reason, MT_REASON_SIZE, "%s",
+                      unstable
+                          ? "the mechanism may be unstable within the bounds"
+                          : "a freedom may lose its mass or its stiffness within the bounds");
 }
 
 /* Modes of (K low, M low) show an instability; and they are the basis where M is singular. */

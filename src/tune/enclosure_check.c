@@ -2,7 +2,7 @@
 /* Conditions under which bounds of the coefficients bound the modes, as far as the system's structure shows them. */
 #include "tune/enclosure_priv.h"
 
-#include <stdio.h>
+#include "base/format.h"
 
 static const char *input_name(const mt_system *sys, int i)
 {
@@ -60,7 +60,7 @@ static int shaping_input(const mt_system *sys)
 
 static bool refuse(char *reason, const char *what, const char *name, const char *does)
 {
-    (void)snprintf(reason, MT_REASON_SIZE, "%s \"%s\" %s", what, name, does);
+    (void)mt_snprintf(reason, MT_REASON_SIZE, "%s \"%s\" %s", what, name, does);
     return false;
 }
 
@@ -80,7 +80,7 @@ static bool loads_refused(const mt_system *sys, char *reason)
             return refuse(reason, "load", sys->loads[i].name, "acts on the mechanism");
         }
     }
-    (void)snprintf(reason, MT_REASON_SIZE, "gravity loads the mechanism");
+    (void)mt_snprintf(reason, MT_REASON_SIZE, "gravity loads the mechanism");
     return false;
 }
 
@@ -91,8 +91,8 @@ bool mt_enclosure_admits(const mt_analysis *a, char *reason)
         return false;
     }
     if (a->lin->position.equilibrium.active && !a->lin->unstressed) {
-        (void)snprintf(reason, MT_REASON_SIZE,
-                       "a driven joint or an equilibrium places the mechanism");
+        (void)mt_snprintf(reason, MT_REASON_SIZE,
+                          "a driven joint or an equilibrium places the mechanism");
         return false;
     }
     const int shaping = shaping_input(sys);

@@ -10,9 +10,9 @@
 #include "tune/enclosure_priv.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "expr/interval.h"
 
 /* Copy what the coefficients need of the system's program. */
@@ -216,9 +216,10 @@ static mt_status check_positive(mt_enclosure *e, bool *ok, char *reason, mt_err 
         const bool either = c->required != MT_SIGN_POSITIVE;
         *ok = (either ? isfinite(c->least) : c->least >= 0.0) && isfinite(c->most);
         if (!*ok) {
-            (void)snprintf(reason, MT_REASON_SIZE, "%s of \"%s\" may be %s within the bounds",
-                           c->mass ? "mass" : "stiffness", c->name,
-                           c->least < 0.0 && !either ? "negative" : "without limit");
+            (void)mt_snprintf(reason, MT_REASON_SIZE,
+                              "%s of \"%s\" may be %s within the bounds",
+                              c->mass ? "mass" : "stiffness", c->name,
+                              c->least < 0.0 && !either ? "negative" : "without limit");
         }
     }
     e->bounded = *ok;

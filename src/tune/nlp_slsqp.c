@@ -12,9 +12,9 @@
 
 #include <limits.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "tune/libraries.h"
 
 enum { EVALS_BASE = 200, EVALS_PER_VARIABLE = 20, RESTARTS = 12 };
@@ -250,5 +250,5 @@ void mt_nlopt_version(char text[16])
 {
     int v[3];
     nlopt_version(&v[0], &v[1], &v[2]);
-    (void)snprintf(text, 16, "%d.%d.%d", v[0], v[1], v[2]);
+    (void)mt_snprintf(text, 16, "%d.%d.%d", v[0], v[1], v[2]);
 }

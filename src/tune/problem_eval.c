@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One evaluation: parameters, expressions, the modes of every view, every demand, the objective and those that are held. */
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "tune/problem.h"
 #include "tune/robust.h"
 
@@ -43,8 +43,8 @@ static void say_progress(const mt_problem *p)
 {
     if (p->progress != NULL && p->evaluations % PROGRESS_EVERY == 0) {
         char text[PROGRESS_TEXT];
-        (void)snprintf(text, sizeof text, "searching: more than %ld designs evaluated",
-                       p->evaluations);
+        (void)mt_snprintf(text, sizeof text, "searching: more than %ld designs evaluated",
+                          p->evaluations);
         p->progress(p->progress_context, text);
     }
 }

@@ -2,7 +2,8 @@
 #include "tune/proof.h"
 
 #include <math.h>
-#include <stdio.h>
+
+#include "base/format.h"
 
 void mt_proof_free(mt_proof *proof, const mt_problem *p)
 {
@@ -21,9 +22,9 @@ static mt_status enclose(mt_proof *proof, mt_problem *p, mt_err *err)
                                 &proof->views[i], why, err));
         if (proof->views[i] == NULL) {
             proof->possible = false;
-            (void)snprintf(proof->reason, sizeof proof->reason,
-                           "configuration \"%.50s\": %.150s",
-                           mt_analysis_configuration(p->views[i].analysis), why);
+            (void)mt_snprintf(proof->reason, sizeof proof->reason,
+                              "configuration \"%.50s\": %.150s",
+                              mt_analysis_configuration(p->views[i].analysis), why);
         }
     }
     return MT_OK;

@@ -4,9 +4,9 @@
 
 #include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "tune/discrete.h"
 #include "tune/gaps.h"
 
@@ -134,18 +134,18 @@ static void limit_text(const mt_result_frequency *f, char *text)
     const char *const side = low < high ? "lower" : "upper";
     const double limit = low < high ? f->at_least_hz : f->at_most_hz;
     if (!(f->recommended_hz > 0.0) && MT_HAS(f->at_least_hz)) {
-        (void)snprintf(text, DEMAND_SIZE, "far below its lower limit of %.6g Hz",
-                       f->at_least_hz);
+        (void)mt_snprintf(text, DEMAND_SIZE, "far below its lower limit of %.6g Hz",
+                          f->at_least_hz);
     } else if (fabs(fmin(low, high)) <= 0.01 * WORTH_SAYING_PERCENT) {
-        (void)snprintf(text, DEMAND_SIZE, "at its %s limit", side);
+        (void)mt_snprintf(text, DEMAND_SIZE, "at its %s limit", side);
     } else if (error > WORTH_SAYING_PERCENT) {
-        (void)snprintf(text, DEMAND_SIZE, "%.3g %% %s its %s limit of %.6g Hz", error,
-                       low < high ? "below" : "above", side, limit);
+        (void)mt_snprintf(text, DEMAND_SIZE, "%.3g %% %s its %s limit of %.6g Hz", error,
+                          low < high ? "below" : "above", side, limit);
     } else if (both) {
-        (void)snprintf(text, DEMAND_SIZE, "between its limits of %.6g and %.6g Hz",
-                       f->at_least_hz, f->at_most_hz);
+        (void)mt_snprintf(text, DEMAND_SIZE, "between its limits of %.6g and %.6g Hz",
+                          f->at_least_hz, f->at_most_hz);
     } else {
-        (void)snprintf(text, DEMAND_SIZE, "clear of its %s limit of %.6g Hz", side, limit);
+        (void)mt_snprintf(text, DEMAND_SIZE, "clear of its %s limit of %.6g Hz", side, limit);
     }
 }
 
@@ -166,11 +166,11 @@ static void demand_text(const mt_result_frequency *f, char *text)
     if (!MT_HAS(f->target_hz)) {
         limit_text(f, text);
     } else if (fabs(f->error_percent) <= WORTH_SAYING_PERCENT) {
-        (void)snprintf(text, DEMAND_SIZE, "its target");
+        (void)mt_snprintf(text, DEMAND_SIZE, "its target");
     } else {
-        (void)snprintf(text, DEMAND_SIZE, "%.3g %% %s its target of %.6g Hz",
-                       fabs(f->error_percent), f->error_percent > 0.0 ? "above" : "below",
-                       f->target_hz);
+        (void)mt_snprintf(text, DEMAND_SIZE, "%.3g %% %s its target of %.6g Hz",
+                          fabs(f->error_percent), f->error_percent > 0.0 ? "above" : "below",
+                          f->target_hz);
     }
 }
 
@@ -190,8 +190,8 @@ static void say_frequency(mt_sentences *s, const mt_result_frequency *f)
     }
     demand_text(f, demand);
     const char *const range = range_text(s, f);
-    (void)snprintf(from, sizeof from, "%.6g", f->original_hz);
-    (void)snprintf(to, sizeof to, "%.6g", f->recommended_hz);
+    (void)mt_snprintf(from, sizeof from, "%.6g", f->original_hz);
+    (void)mt_snprintf(to, sizeof to, "%.6g", f->recommended_hz);
     const char *const lever = lever_text(s, f);
     if (!MT_HAS(f->original_hz)) {
         mt_say(s, "%s mode %d%s%s%s comes to %s Hz%s, %s%s.", f->configuration, f->mode, open,

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tune/solve.h"
 
-#include <stdio.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "base/workers.h"
 #include "tune/describe.h"
 #include "tune/discrete.h"
@@ -84,8 +84,8 @@ static mt_status warn_of_missing(const answer *a, mt_err *err)
     const bool some = f->missing >= 1.0;
     char more[48] = "there may be more";
     if (some) {
-        (void)snprintf(more, sizeof more, "about %.0f more, at least, are to be expected",
-                       f->missing);
+        (void)mt_snprintf(more, sizeof more, "about %.0f more, at least, are to be expected",
+                          f->missing);
     }
     return mt_describe_warn(a->result, err,
                             "%d of the %d designs found %s met by one of %d starts only: %s; "

@@ -31,6 +31,9 @@ static void number__shows_significant_digits(mt_test *t)
     CHECK_STR(t, mt_report_change(nan(""), 3, s), "-");
     CHECK_STR(t, mt_report_exact(0.1, s), "0.10000000000000001");
     CHECK_STR(t, mt_report_exact(nan(""), s), "");
+    CHECK_STR(t, mt_report_number(HUGE_VAL, 6, s), "infinite");
+    CHECK_STR(t, mt_report_change(-HUGE_VAL, 3, s), "-infinite");
+    CHECK_STR(t, mt_report_exact(HUGE_VAL, s), "");
 }
 
 /* name, value */
@@ -64,6 +67,27 @@ static void table__aligns_decimal_points_and_counts_characters_not_bytes(mt_test
     mt_table_free(&table);
 }
 
+static void table__keeps_rows_in_lines_and_counts_columns_of_the_terminal(mt_test *t)
+{
+    mt_table table = two_columns();
+    mt_text out = {.s = NULL};
+    mt_table_text(&table, "a\nb\033[2J");
+    mt_table_number(&table, 1.0, 2);
+    mt_table_text(&table, "\xE6\xA2\x81"); /* an ideograph: two columns */
+    mt_table_number(&table, 2.0, 2);
+    mt_table_text(&table, "e\xCC\x81"); /* e and an accent: one */
+    mt_table_number(&table, 3.0, 2);
+    mt_table_print(&table, 0, &out);
+    CHECK_STR(t, out.s,
+              "name               f [Hz]\n"
+              "-----------------  ------\n"
+              "a\\u000ab\\u001b[2J     1.0\n"
+              "\xE6\xA2\x81                    2.0\n"
+              "e\xCC\x81                     3.0\n");
+    mt_text_free(&out);
+    mt_table_free(&table);
+}
+
 static void table__puts_numbers_below_the_end_of_a_wide_heading(mt_test *t)
 {
     mt_table table = mt_table_default();
@@ -90,8 +114,8 @@ static void csv__quotes_what_rfc_4180_asks_for(mt_test *t)
         {     "plain",              "plain"},
         {       "a,b",            "\"a,b\""},
         {"say \"no\"", "\"say \"\"no\"\"\""},
-        {      "a\nb",           "\"a\nb\""},
-        {      "a\rb",           "\"a\rb\""},
+        {      "a\nb",          "a\\u000ab"}, /* a row is a line */
+        {      "a\rb",          "a\\u000db"},
         {          "",                   ""},
         {   "größe",            "größe"},
     };
@@ -100,6 +124,45 @@ static void csv__quotes_what_rfc_4180_asks_for(mt_test *t)
         mt_test_row(t, "%s", rows[i].field);
         mt_csv_field(rows[i].field, &out);
         CHECK_STR(t, out.s == NULL ? "" : out.s, rows[i].want);
+        mt_text_free(&out);
+    }
+}
+
+/* What a spreadsheet would take for a formula has an apostrophe in front; taking it away gives the text back. */
+static void csv__protects_formulas_and_leaves_numbers(mt_test *t)
+{
+    static const struct {
+        const char *field;
+        const char *want;
+    } rows[] = {
+        {                   "=1+1",                   "'=1+1"},
+        {               "@SUM(A1)",               "'@SUM(A1)"},
+        {               "+cmd|x!A",               "'+cmd|x!A"},
+        {                   "-2+3",                   "'-2+3"},
+        {                   "  =1",                   "'  =1"},
+        {                    "'=1",                    "''=1"},
+        {                      "-",                      "'-"},
+        {                    "-e5",                    "'-e5"},
+        {                 "-1.5.2",                 "'-1.5.2"},
+        {                    "-1e",                    "'-1e"},
+        {                   "=a,b",               "\"'=a,b\""},
+        {             "\xEF\xBC\x9D"
+             "1",               "'\xEF\xBC\x9D"
+               "1"                 },
+        {                   "-1.5",                    "-1.5"},
+        {                     "+3",                      "+3"},
+        {                 "-.5e-3",                  "-.5e-3"},
+        {                "-1.E+10",                 "-1.E+10"},
+        {"-3.2999999999999998e-14", "-3.2999999999999998e-14"},
+        {                    "a=b",                     "a=b"},
+        {                   "it's",                    "it's"},
+        {               "'quoted'",                "'quoted'"},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        mt_text out = {.s = NULL};
+        mt_test_row(t, "%s", rows[i].field);
+        mt_csv_field(rows[i].field, &out);
+        CHECK_STR(t, out.s, rows[i].want);
         mt_text_free(&out);
     }
 }
@@ -125,7 +188,7 @@ static void html__escapes_every_special_character(mt_test *t)
 {
     mt_text out = {.s = NULL};
     mt_html_escape("<b a=\"1\">&'\x01\xC3\xA9</b>", &out);
-    CHECK_STR(t, out.s, "&lt;b a=&quot;1&quot;&gt;&amp;&#39;\xEF\xBF\xBD\xC3\xA9&lt;/b&gt;");
+    CHECK_STR(t, out.s, "&lt;b a=&quot;1&quot;&gt;&amp;&#39;\\u0001\xC3\xA9&lt;/b&gt;");
     mt_text_free(&out);
     mt_table table = two_columns();
     mt_table_text(&table, "<script>");
@@ -141,7 +204,9 @@ static void html__escapes_every_special_character(mt_test *t)
 
 MT_TEST_MAIN(MT_TEST(number__shows_significant_digits),
              MT_TEST(table__aligns_decimal_points_and_counts_characters_not_bytes),
+             MT_TEST(table__keeps_rows_in_lines_and_counts_columns_of_the_terminal),
              MT_TEST(table__puts_numbers_below_the_end_of_a_wide_heading),
              MT_TEST(csv__quotes_what_rfc_4180_asks_for),
+             MT_TEST(csv__protects_formulas_and_leaves_numbers),
              MT_TEST(csv__has_members_exact_numbers_and_crlf),
              MT_TEST(html__escapes_every_special_character))

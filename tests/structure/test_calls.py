@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Below src/cli nothing prints, exits, reads the clock or the environment, or keeps global state."""
+"""Below src/cli nothing prints, exits, reads the clock or the environment, or keeps global state; text has one door."""
 import os
 import re
 import subprocess
@@ -16,6 +16,26 @@ FORBIDDEN = re.compile(r"(?<![\w.>])(?:(" + "|".join(CALLS) + r")\s*\(|(stdout|s
 WALKS = re.compile(r"\bmt_json_(?:count|first|next)\s*\(")  # whoever counts one way and fills another way writes past the end
 WALKERS = ("json.h", "json.c", "json_print.c", "reader.c")
 MUTABLE = re.compile(r" O (\.data(?!\.rel\.ro)|\.bss|\.tdata|\.tbss|\*COM\*)\S*\s+\S+\s+(?:\.hidden )?(\S+)$")
+# Formatted text is made by base/format.c, which knows words for what is not finite and makes arguments visible; two readers and writers of numbers need the C library's
+# own. The terminal has its door in cli/terminal.c.
+FORMATS = re.compile(r"(?<![\w.>])(v?sn?printf)\s*\(")
+FORMATTERS = {"base/format.c", "base/visible.c", "io/json.c", "io/write_json.c"}
+STREAMS = re.compile(r"(?<![\w.>])(v?f?printf|f?puts|f?putc|putchar|fwrite|perror|stdout|stderr)\b")
+TERMINAL = {"cli/terminal.c"}
+CONVERSION = re.compile(r"%(?:%|[-+#0]*(?:\*|\d+)?(?:\.(?:\*|\d+))?(hh?|ll?|[jztLq])?([a-zA-Z]))")
+LITERAL = re.compile(r'"(?:[^"\\\n]|\\.)*"')
+
+
+def check_doors(name, text):
+    """name: relative to src."""
+    code = code_only(text)
+    for pattern, doors in ((FORMATS, FORMATTERS), (STREAMS, TERMINAL)):
+        for match in pattern.finditer(code) if name not in doors else []:
+            yield f"{name}:{code.count(chr(10), 0, match.start()) + 1}: {match.group(1)} is for {', '.join(sorted(doors))} alone"
+    for literal in LITERAL.findall(text) if name not in FORMATTERS else []:
+        for length, conversion in CONVERSION.findall(literal):
+            if conversion and (conversion not in "diuxXcsefg" or length not in ("", "l", "ll", "z")):
+                yield f"{name}: base/format.h does not know %{length}{conversion} of {literal}"
 
 
 def check_text(name, text):
@@ -48,6 +68,11 @@ def self_test():
             "fprintf(f, x);", "double time;"]
     problems = [f"self-test: {line} passed" for line in bad if not list(check_text("x", line))]
     problems += [f"self-test: {line} was refused" for line in good if list(check_text("x", line))]
+    for line in ("(void)snprintf(b, n, f);", "fputs(s, stderr);", 'mt_text_addf(t, "%5hd", x);', 'mt_text_addf(t, "%p", x);'):
+        if not list(check_doors("tune/x.c", line)):
+            problems.append(f"self-test: {line} passed the doors")
+    for line in ('mt_text_addf(t, "100 %% of %ld, %-3.*s", x);', "mt_snprintf(b, n, f);"):
+        problems += [f"self-test: {fault}" for fault in check_doors("tune/x.c", line)]
     source = """static int counter; int next(void); int next(void) { return ++counter; }
         const char *const names[]; const char *const names[] = {"a"};
         int filled[2] = {1, 2}; int once(void); int once(void) { static int seen = 3; return seen++; }"""
@@ -68,6 +93,8 @@ def self_test():
 if __name__ == "__main__":
     sources = [p for p in c_files(ROOT / "src") if p.relative_to(ROOT / "src").parts[0] != "cli"]
     faults = [f for p in sources for f in check_text(p, p.read_text(encoding="utf-8"))]
+    for path in c_files(ROOT / "src"):
+        faults += check_doors(str(path.relative_to(ROOT / "src")), path.read_text(encoding="utf-8"))
     library = Path(os.environ.get("BUILD_DIR", ROOT / "build/release"), "libmodetune.a")
     if os.environ.get("MT_INSTRUMENTED", "0") != "1":  # sanitizers and counters add their own data
         faults += check_object(library)
