@@ -273,7 +273,7 @@ class Hunt:
             self.files(path.name, folders, twins, name)
             self.both(path.name, folders, twins, ["check", given], next(forms))
             if "published" in documents[path.relative_to(SOURCE)]:
-                self.both(path.name, folders, twins, ["compare", given], next(forms))
+                self.both(path.name, folders, twins, ["compare", given], "csv")
             result = f"results/{name}/result.json"
             if (folders[0] / result).exists() and (folders[1] / result).exists():
                 self.both(path.name, folders, twins, ["check", result], next(forms))
@@ -363,7 +363,7 @@ class Hunt:
                 kept = os.path.join(out, name, b"result.json")
                 if not os.path.exists(kept):
                     self.say(name, f"is not there: {kept} ({done.stderr})")
-                csv_out = self.program(top, "check", "--format", "csv", os.path.join(folder, name + b".json")).stdout
+                csv_out = self.program(folder, "check", "--format", "csv", name + b".json").stdout
                 for problem in list(raw_characters(csv_out, crlf=True)) + list(cells(csv_out.decode())):
                     self.say(name, problem)
                 for data in (done.stdout, done.stderr, self.program(top, "check", kept).stdout, self.program(top, "check", folder + b"/none").stderr):
