@@ -21,8 +21,8 @@ extern "C" {
  * @param[in]  m    number of constraint equations A xdd = b, 0 allowed
  * @param[in]  mass n x n, column-major, symmetric positive definite, lower triangle read [kg, kg m^2]
  * @param[in]  q    [n] impressed generalised forces [N, N m]
- * @param[in]  a    m x n, column-major, constraint matrix
- * @param[in]  b    [m]
+ * @param[in]  a    m x n, column-major, constraint matrix; NULL with m 0
+ * @param[in]  b    [m]; NULL with m 0
  * @param[out] xdd  [n] accelerations [m/s^2, rad/s^2]
  * No aliasing, inputs unchanged. O(n^3 + n m^2), allocates.
  * Source: Udwadia and Kalaba, Analytical Dynamics: A New Approach, 1996, ch. 3; Eq. 1 of the paper.

@@ -39,8 +39,9 @@ typedef enum mt_result_status {
 #undef MT_RESULT_STATUS_ENUM
 
 typedef struct mt_solve_options {
-    int threads;        /* workers, at most 64 are used; the result does not depend on it */
-    const double *hint; /* [variables of the study] one more design to start from; NULL: none */
+    int threads; /* workers, fewer than 1 count as 1, at most 64 are used; the result does not depend on it */
+    /* [variables of the study] one more design to start from, finite; what lies outside of its bounds is moved to them. NULL: none */
+    const double *hint;
     /* NULL, or set non-zero (by a signal handler, by another thread): the search ends with what it has */
     const volatile int *stop;
     /* NULL, or called now and then from the caller's thread with one line of text */
@@ -64,15 +65,17 @@ MT_API mt_solve_options mt_solve_options_default(void);
  * @param[in]  opt  NULL: defaults
  * @param[out] out  the result, owned by the caller, valid without the study; NULL on failure
  * Deterministic: the same study, binary and machine give the same result. The study is not changed and may be shared by threads.
- * Fails: MT_E_INPUT (what only numbers can tell: a mode that does not exist at the original design, ...), numerical failures at the original design, MT_E_MEMORY.
+ * Fails: MT_E_INPUT (what only numbers can tell: a mode that does not exist at the original design, ...), numerical failures at the original design, MT_E_USAGE (a hint that is not
+ * finite), MT_E_MEMORY.
  */
 MT_API mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt,
                                 mt_result **out, mt_err *err);
 
 /* Accepts NULL. */
 MT_API void mt_result_delete(mt_result *result);
+/* MT_RESULT_STATUS_COUNT where there is no result. */
 MT_API mt_result_status mt_result_outcome(const mt_result *result);
-/* "solved" ...; never NULL. */
+/* "solved" ...; "unknown" for what is no status; never NULL. */
 MT_API const char *mt_result_status_name(mt_result_status status);
 /* One sentence about the outcome; lives as long as the result, like all texts below. */
 MT_API const char *mt_result_summary(const mt_result *result);

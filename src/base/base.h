@@ -4,6 +4,7 @@
 
 #include "modetune/status.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* Return the status of a failing call at once. Banned once a function owns a resource (use goto done). */
@@ -14,6 +15,18 @@
             return mt_try_rc;               \
         }                                   \
     } while (0)
+
+/* Of a public function: MT_E_USAGE with its name and the argument's where that is NULL. */
+mt_status mt_check_argument(const void *argument, const char *function, const char *name,
+                            mt_err *err);
+#define MT_NOT_NULL(argument, err) \
+    MT_TRY(mt_check_argument((argument), __func__, #argument, (err)))
+
+/* Does this failure end the work, instead of telling something about what was tried (a design without an equilibrium)? Memory that is out must never be taken for an answer. */
+static inline bool mt_is_final(mt_status rc)
+{
+    return rc == MT_E_MEMORY || rc == MT_E_INTERNAL;
+}
 
 #define MT_COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "modetune/status.h"
-
 #include <stdbool.h>
 #include <string.h>
 
+#include "base/base.h"
 #include "base/format.h"
 
 #define TEXT_CASE(name, text) \
@@ -64,18 +63,18 @@ mt_status mt_fail(mt_err *err, mt_status code, const char *fmt, ...)
     char text[BUFFER_SIZE];
     va_list args;
     va_start(args, fmt);
-    if (mt_vsnprintf(text, sizeof text, fmt, args) < 0) {
+    if (fmt == NULL || mt_vsnprintf(text, sizeof text, fmt, args) < 0) {
         text[0] = '\0';
     }
     va_end(args);
     err->code = code;
-    copy_cut(err->text, text);
+    copy_cut(err->text, fmt == NULL ? mt_status_text(code) : text);
     return code;
 }
 
 mt_status mt_err_in(mt_err *err, mt_status rc, const char *fmt, ...)
 {
-    if (err == NULL || rc == MT_OK) {
+    if (err == NULL || rc == MT_OK || fmt == NULL) {
         return rc;
     }
     char text[BUFFER_SIZE];
@@ -91,4 +90,11 @@ mt_status mt_err_in(mt_err *err, mt_status rc, const char *fmt, ...)
     }
     copy_cut(err->text, text);
     return rc;
+}
+
+mt_status mt_check_argument(const void *argument, const char *function, const char *name,
+                            mt_err *err)
+{
+    return argument != NULL ? MT_OK
+                            : mt_fail(err, MT_E_USAGE, "%s: %s is NULL", function, name);
 }

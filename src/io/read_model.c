@@ -351,5 +351,8 @@ mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **o
 
 mt_status mt_model_read(const char *path, mt_model **out, mt_err *err)
 {
+    MT_NOT_NULL(out, err);
+    *out = NULL;
+    MT_NOT_NULL(path, err);
     return mt_model_load(path, NULL, out, NULL, err);
 }

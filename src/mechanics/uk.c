@@ -12,12 +12,6 @@ static const double DEPENDENT = 1e-9;
 /* Singular values of [(I - A^+ A) M; A] below this fraction of the largest: accelerations not determined. Masses and cosines stand side by side, so it is near rounding. */
 static const double UNDETERMINED = 1e-13;
 
-static mt_status check_sizes(int n, int m, mt_err *err)
-{
-    return n < 1 || m < 0 ? mt_fail(err, MT_E_USAGE, "%d coordinates, %d constraints", n, m)
-                          : MT_OK;
-}
-
 /* root = M^-1/2 = V diag(w^-1/2) V^T. */
 static mt_status inverse_root(int n, const double *mass, double *root, mt_arena *mem,
                               mt_err *err)
@@ -52,6 +46,21 @@ typedef struct problem {
     const double *a;
     const double *b;
 } problem;
+
+static mt_status check(const char *function, const problem *p, const double *xdd, mt_err *err)
+{
+    if (p->n < 1 || p->m < 0) {
+        return mt_fail(err, MT_E_USAGE, "%s: %d coordinates, %d constraints", function, p->n,
+                       p->m);
+    }
+    MT_TRY(mt_check_argument(p->mass, function, "mass", err));
+    MT_TRY(mt_check_argument(p->q, function, "q", err));
+    if (p->m > 0) {
+        MT_TRY(mt_check_argument(p->a, function, "a", err));
+        MT_TRY(mt_check_argument(p->b, function, "b", err));
+    }
+    return mt_check_argument(xdd, function, "xdd", err);
+}
 
 static mt_status kalaba(const problem *p, double *xdd, mt_arena *mem, mt_err *err)
 {
@@ -130,7 +139,7 @@ mt_status mt_udwadia_kalaba(int n, int m, const double *mass, const double *q, c
 {
     const problem p = {n, m, mass, q, a, b};
     mt_arena mem = {0};
-    MT_TRY(check_sizes(n, m, err));
+    MT_TRY(check(__func__, &p, xdd, err));
     mt_status rc = mt_arena_init(&mem, 0, err);
     if (rc == MT_OK) {
         rc = kalaba(&p, xdd, &mem, err);
@@ -144,7 +153,7 @@ mt_status mt_udwadia_phohomsiri(int n, int m, const double *mass, const double *
 {
     const problem p = {n, m, mass, q, a, b};
     mt_arena mem = {0};
-    MT_TRY(check_sizes(n, m, err));
+    MT_TRY(check(__func__, &p, xdd, err));
     mt_status rc = mt_arena_init(&mem, 0, err);
     if (rc == MT_OK) {
         rc = phohomsiri(&p, xdd, &mem, err);

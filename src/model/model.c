@@ -189,34 +189,34 @@ const char *const *mt_model_units(int *n)
 
 const char *mt_model_title(const mt_model *model)
 {
-    return model->name;
+    return model == NULL ? NULL : model->name;
 }
 
 int mt_model_dimension(const mt_model *model)
 {
-    return model->dimension;
+    return model == NULL ? 0 : model->dimension;
 }
 
 int mt_model_parameter_count(const mt_model *model)
 {
-    return model->n_parameters;
+    return model == NULL ? 0 : model->n_parameters;
 }
 
 const char *mt_model_parameter_name(const mt_model *model, int parameter)
 {
-    return parameter >= 0 && parameter < model->n_parameters
+    return model != NULL && parameter >= 0 && parameter < model->n_parameters
                ? model->parameters[parameter].name.s
                : NULL;
 }
 
 int mt_model_configuration_count(const mt_model *model)
 {
-    return model->n_configurations;
+    return model == NULL ? 0 : model->n_configurations;
 }
 
 const char *mt_model_configuration_name(const mt_model *model, int configuration)
 {
-    return configuration >= 0 && configuration < model->n_configurations
+    return model != NULL && configuration >= 0 && configuration < model->n_configurations
                ? model->configurations[configuration].name.s
                : NULL;
 }

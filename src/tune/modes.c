@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "modetune/modes.h"
 
+#include <math.h>
+
 #include "base/text.h"
 #include "tune/analysis.h"
 
@@ -97,11 +99,25 @@ mt_status mt_model_frequencies(const mt_model *model, const char *configuration,
 {
     mt_arena mem;
     mt_analysis *a = NULL;
-    if (model == NULL || count == NULL || n_settings < 0 || capacity < 0 ||
-        (n_settings > 0 && settings == NULL) || (capacity > 0 && frequency_hz == NULL)) {
-        return mt_fail(err, MT_E_USAGE, "mt_model_frequencies: a wrong argument");
-    }
+    MT_NOT_NULL(count, err);
     *count = (mt_mode_count){0};
+    MT_NOT_NULL(model, err);
+    if (n_settings < 0 || capacity < 0) {
+        return mt_fail(err, MT_E_USAGE, "mt_model_frequencies: %s is negative",
+                       n_settings < 0 ? "n_settings" : "capacity");
+    }
+    if (n_settings > 0) {
+        MT_NOT_NULL(settings, err);
+    }
+    if (capacity > 0) {
+        MT_NOT_NULL(frequency_hz, err);
+    }
+    for (int i = 0; i < n_settings; i++) {
+        if (settings[i].parameter == NULL || !isfinite(settings[i].value)) {
+            return mt_fail(err, MT_E_USAGE, "mt_model_frequencies: settings[%d] has %s", i,
+                           settings[i].parameter == NULL ? "no name" : "no finite value");
+        }
+    }
     MT_TRY(mt_arena_init(&mem, 0, err));
     const mt_status rc = analyse(model, configuration, n_settings, settings, &mem, &a, err);
     if (rc == MT_OK && a != NULL) {

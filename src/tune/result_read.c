@@ -8,25 +8,29 @@
 static const mt_recommendation *design(const mt_result *result, int rank)
 {
     if (rank == 0) {
-        return &result->baseline;
+        return result == NULL ? NULL : &result->baseline;
     }
-    return rank > 0 && rank <= result->n_recommendations ? &result->recommendations[rank - 1]
-                                                         : NULL;
+    return result != NULL && rank > 0 && rank <= result->n_recommendations
+               ? &result->recommendations[rank - 1]
+               : NULL;
 }
 
 mt_result_status mt_result_outcome(const mt_result *result)
 {
-    return result->status;
+    return result == NULL ? MT_RESULT_STATUS_COUNT : result->status;
 }
 
 const char *mt_result_summary(const mt_result *result)
 {
+    if (result == NULL) {
+        return NULL;
+    }
     return result->status_text == NULL ? "" : result->status_text;
 }
 
 int mt_result_recommendations(const mt_result *result)
 {
-    return result->n_recommendations;
+    return result == NULL ? 0 : result->n_recommendations;
 }
 
 int mt_result_feasible(const mt_result *result, int rank)
@@ -38,7 +42,7 @@ int mt_result_feasible(const mt_result *result, int rank)
 double mt_result_value(const mt_result *result, int rank, const char *parameter)
 {
     const mt_recommendation *const r = design(result, rank);
-    for (int i = 0; r != NULL && i < r->n_parameters; i++) {
+    for (int i = 0; r != NULL && parameter != NULL && i < r->n_parameters; i++) {
         if (strcmp(r->parameters[i].name, parameter) == 0) {
             return r->parameters[i].recommended;
         }
@@ -49,7 +53,7 @@ double mt_result_value(const mt_result *result, int rank, const char *parameter)
 double mt_result_hz(const mt_result *result, int rank, const char *configuration, int mode)
 {
     const mt_recommendation *const r = design(result, rank);
-    for (int i = 0; r != NULL && i < r->n_frequencies; i++) {
+    for (int i = 0; r != NULL && configuration != NULL && i < r->n_frequencies; i++) {
         const mt_result_frequency *const f = &r->frequencies[i];
         if (f->mode == mode && strcmp(f->configuration, configuration) == 0) {
             return f->recommended_hz;

@@ -507,7 +507,14 @@ mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_
     const mt_solve_options defaults = mt_solve_options_default();
     const mt_solve_options *const use = opt != NULL ? opt : &defaults;
     answer a = {.study = study};
+    MT_NOT_NULL(out, err);
     *out = NULL;
+    MT_NOT_NULL(study, err);
+    for (int i = 0; use->hint != NULL && i < study->n_variables; i++) {
+        if (!isfinite(use->hint[i])) {
+            return mt_fail(err, MT_E_USAGE, "mt_study_solve: hint[%d] is not finite", i);
+        }
+    }
     mt_status rc = mt_arena_init(&a.mem, 0, err);
     rc = rc == MT_OK ? mt_result_new(&a.result, err) : rc;
     rc = rc == MT_OK ? mt_reference_cache_init(&a.references, study, &a.mem, err) : rc;
