@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "base/workers.h"
 #include "cli/limits.h"
 
@@ -16,15 +17,10 @@ static const char *did_you_mean(const char *name, const char *const *names, int 
                                 const char *dashes, char text[SUGGESTION_TEXT])
 {
     const char *const nearest = mt_text_nearest(name, names, n);
-    mt_text t = {.s = NULL};
     text[0] = '\0';
     if (nearest != NULL) {
-        mt_text_addf(&t, "; did you mean \"%s%s\"?", dashes, nearest);
-        if (!t.failed && t.length < SUGGESTION_TEXT) {
-            memcpy(text, t.s, t.length + 1);
-        }
+        (void)mt_snprintf(text, SUGGESTION_TEXT, "; did you mean \"%s%s\"?", dashes, nearest);
     }
-    mt_text_free(&t);
     return text;
 }
 

@@ -32,65 +32,68 @@ static const char *hash_of_model(const mt_result *result)
     return NULL;
 }
 
-/* Read `name` as meant by the file `naming`; true where it holds what was solved. */
-static bool try_from(const char *naming, const mt_result *result, const char *root,
-                     mt_file *file, char **found)
+/* Read the model as meant by the file `naming`; *found becomes its path (heap) where it holds what was solved, and stays NULL where not: a file that cannot be read is not what is
+ * looked for. Fails: MT_E_MEMORY. */
+static mt_status try_from(const char *naming, const mt_result *result, const char *root,
+                          mt_file *file, char **found)
 {
     const char *const hash = hash_of_model(result);
-    char *const path = mt_file_join(naming, result->model_file);
-    bool ok = path != NULL && hash != NULL &&
-              mt_file_read(path, root, MT_JSON_MAX_BYTES, file, NULL) == MT_OK;
-    if (ok && strcmp(file->sha256, hash) != 0) {
-        mt_file_free(file);
-        ok = false;
+    char *const path = naming == NULL ? NULL : mt_file_join(naming, result->model_file);
+    if (path == NULL) {
+        return MT_E_MEMORY;
     }
-    if (ok) {
+    const mt_status rc = mt_file_read(path, root, MT_JSON_MAX_BYTES, file, NULL);
+    if (rc == MT_OK && hash != NULL && strcmp(file->sha256, hash) == 0) {
         *found = path;
-    } else {
-        free(path);
+        return MT_OK;
     }
-    return ok;
+    mt_file_free(file);
+    free(path);
+    return rc == MT_E_MEMORY ? rc : MT_OK;
 }
 
-/* The study's path that `run` left in timing.json beside the result; heap or NULL. */
-static char *study_of(const char *result_path)
+/* The study's path that `run` left in timing.json beside the result; empty where there is none. Fails: MT_E_MEMORY. */
+static mt_status study_of(const char *result_path, mt_text *study)
 {
     char *const path = mt_file_join(result_path, "timing.json");
     mt_file file = {.bytes = NULL};
     mt_json *doc = NULL;
-    mt_text study = {.s = NULL};
-    if (path != NULL && mt_file_read(path, NULL, MT_JSON_MAX_BYTES, &file, NULL) == MT_OK &&
-        mt_json_parse(file.bytes, file.length, &doc, NULL) == MT_OK) {
+    mt_status rc =
+        path == NULL ? MT_E_MEMORY : mt_file_read(path, NULL, MT_JSON_MAX_BYTES, &file, NULL);
+    rc = rc == MT_OK ? mt_json_parse(file.bytes, file.length, &doc, NULL) : rc;
+    if (rc == MT_OK) {
         const mt_addr member = mt_json_member(doc, MT_JSON_ROOT, "study_path");
         if (member != MT_NO_ADDR && mt_json_type_of(doc, member) == MT_JSON_STRING) {
-            mt_text_add(&study, mt_json_string(doc, member));
+            mt_text_add(study, mt_json_string(doc, member));
         }
     }
     mt_json_delete(doc);
     mt_file_free(&file);
     free(path);
-    return study.s;
+    return rc == MT_E_MEMORY || study->failed ? MT_E_MEMORY : MT_OK;
 }
 
-static bool search(const char *result_path, const mt_result *result, const char *root,
-                   mt_file *file, char **found)
+static mt_status search(const char *result_path, const mt_result *result, const char *root,
+                        mt_file *file, char **found)
 {
     static const char *const beside[] = {"x", "../x", "../../x", "../studies/x",
                                          "../../studies/x"};
     static const char *const here[] = {"x", "studies/x"};
-    bool ok = false;
-    char *const study = study_of(result_path);
-    ok = study != NULL && try_from(study, result, root, file, found);
-    free(study);
-    for (int i = 0; !ok && i < MT_COUNT(beside); i++) {
+    mt_text study = {.s = NULL};
+    mt_status rc = study_of(result_path, &study);
+    if (rc == MT_OK && study.s != NULL) {
+        rc = try_from(study.s, result, root, file, found);
+    }
+    mt_text_free(&study);
+    for (int i = 0; rc == MT_OK && *found == NULL && i < MT_COUNT(beside); i++) {
         char *const naming = mt_file_join(result_path, beside[i]);
-        ok = naming != NULL && try_from(naming, result, root, file, found);
+        rc = try_from(naming, result, root, file, found);
         free(naming);
     }
-    for (int i = 0; !ok && i < MT_COUNT(here); i++) {
-        ok = try_from(here[i], result, root, file, found);
+    for (int i = 0; rc == MT_OK && *found == NULL && i < MT_COUNT(here); i++) {
+        rc = try_from(here[i], result, root, file, found);
     }
-    return ok;
+    return rc;
 }
 
 static mt_status find_model(const mt_args *args, const mt_result *result, mt_file *file,
@@ -99,7 +102,10 @@ static mt_status find_model(const mt_args *args, const mt_result *result, mt_fil
     const char *const given = args->value[MT_OPT_MODEL];
     const char *const root = args->value[MT_OPT_ROOT];
     if (given == NULL) {
-        return search(args->operands[0], result, root, file, path)
+        if (search(args->operands[0], result, root, file, path) != MT_OK) {
+            return mt_fail_memory(err);
+        }
+        return *path != NULL
                    ? MT_OK
                    : mt_fail(err, MT_E_INPUT,
                              "%s: the model \"%s\" is not found as it was when the study was "

@@ -135,11 +135,12 @@ static mt_status load(int kind, const char *path, const mt_io_options *opt, subj
     switch ((file_kind)kind) {
     case KIND_MODEL:
         rc = mt_model_load(path, opt, &s->model, messages, err);
-        rc = rc == MT_OK ? examine_model(s->model, found, err) : rc;
+        rc = rc == MT_OK ? mt_err_in(err, examine_model(s->model, found, err), "%s", path) : rc;
         break;
     case KIND_STUDY:
         rc = mt_study_load(path, opt, &s->study, messages, err);
-        rc = rc == MT_OK ? mt_study_examine(s->study, found, err) : rc;
+        rc = rc == MT_OK ? mt_err_in(err, mt_study_examine(s->study, found, err), "%s", path)
+                         : rc;
         break;
     case KIND_RESULT:
         rc = mt_result_load(path, opt, &s->result, messages, err);

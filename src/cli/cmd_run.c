@@ -100,6 +100,9 @@ static mt_status write_timing(const job *j, mt_text *out, mt_err *err)
 {
     mt_json_writer w = mt_json_writer_default(out);
     char *const absolute = realpath(j->path, NULL);
+    if (absolute == NULL && errno == ENOMEM) {
+        return mt_fail_memory(err);
+    }
     mt_json_open(&w, NULL, '{');
     mt_json_put_string(&w, "format", "modetune-timing/1");
     mt_json_put_string(&w, "study_path", absolute);
@@ -274,30 +277,34 @@ static int for_each_study(const mt_args *args, mt_text *out, use_answer use)
     return code;
 }
 
-/* Studies whose results would go into one folder; the second would silently replace the first. */
-static bool share_a_folder(const mt_args *args)
+/* Studies whose results would go into one folder; the second would silently replace the first. Returns an exit status, everything said. */
+static int refuse_shared_folder(const mt_args *args)
 {
-    bool any = false;
+    int code = MT_EXIT_DONE;
     for (int i = 0; i < args->n_operands; i++) {
         char *const name = name_of_study(args->operands[i]);
         for (int k = 0; k < i; k++) {
             char *const other = name_of_study(args->operands[k]);
-            if (name != NULL && other != NULL && strcmp(name, other) == 0) {
+            if (name == NULL || other == NULL) {
+                mt_err err;
+                code = mt_cli_failed(mt_fail_memory(&err), &err);
+            } else if (strcmp(name, other) == 0) {
                 mt_terminal_error("%s and %s would both be written to \"%s\": run one of them "
                                   "apart, with another -o",
                                   args->operands[k], args->operands[i], name);
-                any = true;
+                code = mt_exit_worse(code, MT_EXIT_INPUT);
             }
             free(other);
         }
         free(name);
     }
-    return any;
+    return code;
 }
 
 int mt_cmd_run(const mt_args *args, mt_text *out)
 {
-    return share_a_folder(args) ? MT_EXIT_INPUT : for_each_study(args, out, run_one);
+    const int code = refuse_shared_folder(args);
+    return code == MT_EXIT_DONE ? for_each_study(args, out, run_one) : code;
 }
 
 static void json_published(mt_json_writer *w, const mt_result_published *p)

@@ -10,12 +10,20 @@
 int mt_cli_failed(mt_status rc, const mt_err *err)
 {
     mt_terminal_error("%s", err->text);
+    if (rc == MT_E_MEMORY) {
+        mt_terminal_drop();
+    }
     return mt_exit_of(rc);
 }
 
 int mt_cli_loaded(mt_status rc, mt_text *messages, const mt_err *err)
 {
     const bool told = messages->s != NULL && strstr(messages->s, "error: ") != NULL;
+    mt_err shortage = {.code = MT_OK};
+    if (messages->failed && rc != MT_E_MEMORY) { /* some of them are missing */
+        rc = mt_fail_memory(&shortage);
+        err = &shortage;
+    }
     if (messages->s != NULL) {
         mt_terminal_diagnostics(messages->s);
     }
@@ -37,8 +45,11 @@ int mt_cli_json_done(mt_json_writer *w)
     if (mt_json_done(w)) {
         return MT_EXIT_DONE;
     }
+    if (!w->misused) {
+        return MT_EXIT_SYSTEM; /* mt_terminal_put tells */
+    }
     mt_terminal_error("the output cannot be written as JSON");
-    return w->misused ? MT_EXIT_NUMERICAL : MT_EXIT_SYSTEM;
+    return MT_EXIT_NUMERICAL;
 }
 
 static mt_status unknown(const char *what, const char *name, const char *const *names, int n,
@@ -303,8 +314,11 @@ void mt_cli_json_names(mt_json_writer *w, const char *quoted)
     mt_text name = {.s = NULL};
     for (const char *at = strchr(quoted, '"'); at != NULL; at = strchr(at, '"')) {
         const size_t length = strcspn(at + 1, "\"");
-        mt_text_free(&name);
+        name.length = 0;
         mt_text_add_n(&name, at + 1, length);
+        if (name.failed) {
+            break;
+        }
         mt_json_put_string(w, NULL, name.s);
         at += length + (at[length + 1] == '"' ? 2 : 1);
     }

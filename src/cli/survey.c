@@ -40,11 +40,13 @@ static mt_status add_parameter(mt_survey *v, const char *name, mt_err *err)
     if (found == MT_ABSENT) {
         const char **const names =
             mt_arena_alloc(&v->mem, (size_t)model->n_parameters, sizeof *names);
-        for (int i = 0; names != NULL && i < model->n_parameters; i++) {
+        if (names == NULL) {
+            return mt_fail_memory(err);
+        }
+        for (int i = 0; i < model->n_parameters; i++) {
             names[i] = model->parameters[i].name.s;
         }
-        const char *const nearest =
-            names == NULL ? NULL : mt_text_nearest(name, names, model->n_parameters);
+        const char *const nearest = mt_text_nearest(name, names, model->n_parameters);
         return mt_fail(err, MT_E_USAGE, "--parameters: unknown parameter \"%s\"%s%s%s", name,
                        nearest == NULL ? "" : "; did you mean \"",
                        nearest == NULL ? "" : nearest, nearest == NULL ? "" : "\"?");

@@ -23,6 +23,7 @@ static const char YELLOW[] = "\033[1;33m";
 static const char PLAIN[] = "\033[0m";
 
 static volatile sig_atomic_t stop_requested = 0;
+static bool dropped = false; /* what is being collected */
 
 static bool without_memory = false;
 
@@ -94,10 +95,17 @@ static bool show(FILE *to, const char *s, size_t n, bool lines)
     return ok;
 }
 
+void mt_terminal_drop(void)
+{
+    dropped = true;
+}
+
 int mt_terminal_put(mt_text *out)
 {
-    bool ok = !out->failed;
-    if (!ok) {
+    bool ok = !out->failed && !dropped;
+    if (dropped) {
+        dropped = false; /* why has been said */
+    } else if (!ok) {
         mt_terminal_error("out of memory");
         without_memory = true;
     } else if (out->length > 0) {

@@ -30,6 +30,8 @@ int mt_exit_worse(int a, int b);
 /* Everything that is written to standard output is collected in a text and leaves through here; the text is empty afterwards. A reader that has gone
  * (EPIPE) is not complained about, but is a failure, too. Returns MT_EXIT_DONE or MT_EXIT_SYSTEM. */
 int mt_terminal_put(mt_text *out);
+/* What is being collected is not whole, memory being out: the next mt_terminal_put throws it away. */
+void mt_terminal_drop(void);
 /* To standard error: "modetune: error: ..." */
 void mt_terminal_error(const char *fmt, ...) MT_PRINTF(1, 2);
 void mt_terminal_warning(const char *fmt, ...) MT_PRINTF(1, 2);

@@ -17,8 +17,10 @@ typedef struct crossing {
     int rows;
     double *at; /* [rows] rows in tolerances at the best combination */
     double *now;
-    int *below; /* [2 x bands] assignments at both */
-    double *t;  /* [n + 1] */
+    int *below;   /* [2 x bands] assignments at both */
+    double *t;    /* [n + 1] */
+    mt_status rc; /* what ends the comparison */
+    mt_err err;
 } crossing;
 
 static mt_status claim(crossing *x, mt_err *err)
@@ -40,9 +42,13 @@ static mt_status claim(crossing *x, mt_err *err)
 static bool measure(crossing *x, double *rows, int *below)
 {
     mt_problem *const p = x->d->p;
-    mt_err ignored = {0};
     int n = 0;
-    bool known = mt_problem_eval(p, x->t, false, &x->v, &ignored) == MT_OK;
+    if (x->rc != MT_OK) {
+        return false;
+    }
+    const mt_status rc = mt_problem_eval(p, x->t, false, &x->v, &x->err);
+    bool known = rc == MT_OK;
+    x->rc = mt_is_final(rc) ? rc : MT_OK;
     x->d->evals++;
     for (int i = 0; i < p->n_eq && known; i++) {
         rows[n++] = x->v.eq[i] / p->eq_tol[i];
@@ -118,6 +124,9 @@ static mt_status cross(crossing *x, const mt_nlp_result *continuous, mt_nlp_resu
             out->undetermined_effect[out->n_undetermined] = effect;
             out->undetermined[((size_t)out->n_undetermined++ * n) + (size_t)i] = 1.0;
         }
+    }
+    if (x->rc != MT_OK) {
+        return mt_fail(err, x->rc, "%s", x->err.text);
     }
     for (int k = 0; k < continuous->n_undetermined; k++) {
         memcpy(out->undetermined + ((size_t)out->n_undetermined * n),

@@ -31,8 +31,8 @@ static int compare_below(const int *a, const int *b, int n)
     return 0;
 }
 
-bool mt_gap_assignment(mt_problem *p, const double *t, int *below, double *violation,
-                       mt_err *err)
+mt_status mt_gap_assignment(mt_problem *p, const double *t, int *below, double *violation,
+                            mt_err *err)
 {
     mt_problem_x(p, t, p->x);
     *violation = 0.0;
@@ -40,13 +40,16 @@ bool mt_gap_assignment(mt_problem *p, const double *t, int *below, double *viola
         const mt_clear *const c = &p->clears[i];
         mt_analysis *const a = p->views[c->view].analysis;
         const mt_analysis_options opt = {.accuracy = false};
-        if (mt_analysis_solve(a, p->x, &opt, err) != MT_OK) {
-            return false;
+        mt_err own = {0};
+        const mt_status rc = mt_analysis_solve(a, p->x, &opt, &own);
+        if (rc != MT_OK) {
+            *violation = nan("");
+            return mt_is_final(rc) ? mt_fail(err, rc, "%s", own.text) : MT_OK;
         }
         const double v = mt_clear_violation(c, &a->modes, below + c->first, NULL);
         *violation = !(v <= *violation) ? v : *violation;
     }
-    return *violation == *violation;
+    return MT_OK;
 }
 
 /* Insert into the sorted list, keeping the least violation of equal ones. */
@@ -179,21 +182,20 @@ static mt_status sample(mt_problem *p, int n, int most, mt_arena *mem, mt_gap_ca
     }
     MT_TRY(mt_nlp_engine_init(&e, &nlp, &opt, err));
     const double *const t = mt_nlp_starts(&e, n, mem);
-    for (int k = 0; t != NULL && k < n; k++) {
+    mt_status rc = t == NULL ? mt_fail_memory(err) : MT_OK;
+    for (int k = 0; rc == MT_OK && k < n; k++) {
         double violation = 0.0;
-        mt_err ignored = {0};
         if (p->stop != NULL && *p->stop != 0) {
             break;
         }
-        if (mt_gap_assignment(p, t + ((ptrdiff_t)k * p->n), below, &violation, &ignored)) {
+        rc = mt_gap_assignment(p, t + ((ptrdiff_t)k * p->n), below, &violation, err);
+        if (rc == MT_OK && MT_HAS(violation)) {
             insert_agreeing(p, list, &out->n, below, violation, work);
         }
         out->evals++;
     }
     mt_nlp_engine_free(&e);
-    if (t == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(rc);
     bool kept[CANDIDATES_MOST] = {false};
     const int n_found = out->n;
     out->n = keep_nearest(list, n_found, most, kept);

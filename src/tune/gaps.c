@@ -405,12 +405,11 @@ mt_status mt_gaps_solve(mt_problem *p, int workers, mt_arena *mem, mt_gap_result
     if (p->hint != NULL) {
         int *const below = mt_arena_int(mem, (size_t)p->n_bands);
         double violation = 0.0;
-        mt_err ignored = {0};
         if (below == NULL) {
             return mt_fail_memory(err);
         }
-        const bool known = mt_gap_assignment(p, p->hint, below, &violation, &ignored);
-        j.hint_below = known ? below : NULL;
+        MT_TRY(mt_gap_assignment(p, p->hint, below, &violation, err));
+        j.hint_below = MT_HAS(violation) ? below : NULL;
     }
     j.slots = mt_arena_alloc(mem, (size_t)candidates.n, sizeof *j.slots);
     if (j.slots == NULL) {

@@ -72,9 +72,9 @@ typedef struct mt_gap_candidates {
 } mt_gap_candidates;
 /* Monotone assignments of m bands to n modes, C(n + m, m), over all configurations; positions of one drive have one between them. */
 double mt_gap_count_possible(const mt_problem *p);
-/* Assignment below[n_bands] of the design at t[n], and its worst violation; false where it cannot be evaluated. */
-bool mt_gap_assignment(mt_problem *p, const double *t, int *below, double *violation,
-                       mt_err *err);
+/* Assignment below[n_bands] of the design at t[n], and its worst violation; NaN where it cannot be evaluated. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
+mt_status mt_gap_assignment(mt_problem *p, const double *t, int *below, double *violation,
+                            mt_err *err);
 mt_status mt_gap_candidates_find(mt_problem *p, mt_arena *mem, mt_gap_candidates *out,
                                  mt_err *err);
 /* The (at most) `most` assignments that samples over the bounds come nearest to. */

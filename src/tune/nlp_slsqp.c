@@ -109,7 +109,32 @@ static void inequalities(unsigned int m, double *c, unsigned int n, const double
     }
 }
 
-static bool set_up(slsqp *w)
+/* What its verdicts mean to us. Where it came to rest, or gave up in its own arithmetic (NLOPT_ROUNDOFF_LIMITED: a singular subproblem; NLOPT_FAILURE: linearised constraints that
+ * contradict each other), the best point it has shown counts, which is judged elsewhere. */
+static mt_status status_of(nlopt_result verdict)
+{
+    switch (verdict) {
+    case NLOPT_OUT_OF_MEMORY:
+        return MT_E_MEMORY;
+    case NLOPT_INVALID_ARGS:
+        return MT_E_INTERNAL;
+    case NLOPT_SUCCESS:
+    case NLOPT_STOPVAL_REACHED:
+    case NLOPT_FTOL_REACHED:
+    case NLOPT_XTOL_REACHED:
+    case NLOPT_MAXEVAL_REACHED:
+    case NLOPT_MAXTIME_REACHED:
+    case NLOPT_FORCED_STOP: /* by visit() */
+    case NLOPT_ROUNDOFF_LIMITED:
+    case NLOPT_FAILURE:
+    case NLOPT_NUM_RESULTS:
+    case NLOPT_NUM_FAILURES:
+        break;
+    }
+    return MT_OK;
+}
+
+static mt_status set_up(slsqp *w)
 {
     const mt_nlp *const q = w->e->nlp;
     const unsigned int n_eq = (unsigned int)w->n_rows;
@@ -123,17 +148,23 @@ static bool set_up(slsqp *w)
         w->tol_in[i] = mt_nlp_row_tol(w->e, q->n_eq + i);
     }
     w->opt = nlopt_create(NLOPT_LD_SLSQP, (unsigned int)w->n);
-    return w->opt != NULL && nlopt_set_min_objective(w->opt, objective, w) > 0 &&
-           (n_eq == 0 ||
-            nlopt_add_equality_mconstraint(w->opt, n_eq, equalities, w, w->tol) > 0) &&
-           (n_in == 0 ||
-            nlopt_add_inequality_mconstraint(w->opt, n_in, inequalities, w, w->tol_in) > 0) &&
-           nlopt_set_lower_bounds(w->opt, w->lower) > 0 &&
-           nlopt_set_upper_bounds(w->opt, w->upper) > 0 &&
-           nlopt_set_ftol_rel(w->opt, F_TOL_REL) > 0 &&
-           nlopt_set_xtol_abs1(w->opt, T_TOL_ABS) > 0 &&
-           /* one more than we allow: our own budget, not NLopt's, ends the search */
-           nlopt_set_maxeval(w->opt, left < most ? (int)left + 1 : most) > 0;
+    if (w->opt == NULL) {
+        return MT_E_MEMORY;
+    }
+    MT_TRY(status_of(nlopt_set_min_objective(w->opt, objective, w)));
+    if (n_eq > 0) {
+        MT_TRY(status_of(nlopt_add_equality_mconstraint(w->opt, n_eq, equalities, w, w->tol)));
+    }
+    if (n_in > 0) {
+        MT_TRY(status_of(
+            nlopt_add_inequality_mconstraint(w->opt, n_in, inequalities, w, w->tol_in)));
+    }
+    MT_TRY(status_of(nlopt_set_lower_bounds(w->opt, w->lower)));
+    MT_TRY(status_of(nlopt_set_upper_bounds(w->opt, w->upper)));
+    MT_TRY(status_of(nlopt_set_ftol_rel(w->opt, F_TOL_REL)));
+    MT_TRY(status_of(nlopt_set_xtol_abs1(w->opt, T_TOL_ABS)));
+    /* one more than we allow: our own budget, not NLopt's, ends the search */
+    return status_of(nlopt_set_maxeval(w->opt, left < most ? (int)left + 1 : most));
 }
 
 /* One run from cur in the box [centre - radius, centre + radius] within the bounds. False: it met
@@ -149,14 +180,16 @@ static bool run_once(slsqp *w, double radius)
     }
     w->failed = false;
     double f = 0;
-    if (set_up(w)) {
+    mt_status rc = set_up(w);
+    if (rc == MT_OK) {
         nlopt_srand(w->e->opt.seed);
-        (void)nlopt_optimize(w->opt, w->x, &f); /* its verdict decides nothing */
-    } else {
-        mt_nlp_end(w->e, mt_fail_memory(w->e->err));
+        rc = status_of(nlopt_optimize(w->opt, w->x, &f));
     }
     nlopt_destroy(w->opt);
     w->opt = NULL;
+    if (rc != MT_OK && !w->e->ended) {
+        mt_nlp_end(w->e, mt_fail(w->e->err, rc, "SLSQP: %s", mt_status_text(rc)));
+    }
     return !w->failed && !w->e->ended;
 }
 

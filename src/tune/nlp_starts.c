@@ -24,6 +24,7 @@ static double next_uniform(uint64_t *state)
     return (double)(z >> 11) * 0x1p-53;
 }
 
+/* NULL where there is none for so many dimensions, or memory is out. */
 static gsl_qrng *sequence(int d)
 {
     if (d < 1 || d > HALTON_MOST) {
@@ -60,6 +61,9 @@ double *mt_nlp_starts(const mt_nlp_engine *e, int starts, mt_arena *mem)
         shift[j] = next_uniform(&state);
     }
     gsl_qrng *const q = sequence(d);
+    if (q == NULL && d >= 1 && d <= HALTON_MOST) {
+        return NULL;
+    }
     for (int k = 0; k < starts; k++) {
         double *const tk = t + (ptrdiff_t)k * e->n;
         memcpy(tk, e->origin, (size_t)e->n * sizeof *tk);

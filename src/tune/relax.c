@@ -118,11 +118,12 @@ static mt_status confirm(mt_problem *q, const mt_move *m, const double *t, mt_ar
                          double *x, double *value, mt_err *err)
 {
     mt_nlp_values v;
-    mt_err ignored = {0};
+    mt_err own = {0};
     *value = nan("");
     MT_TRY(mt_problem_values_init(q, mem, &v, err));
-    if (mt_problem_eval(q, t, false, &v, &ignored) != MT_OK) {
-        return MT_OK;
+    const mt_status rc = mt_problem_eval(q, t, false, &v, &own);
+    if (rc != MT_OK) {
+        return mt_is_final(rc) ? mt_fail(err, rc, "%s", own.text) : MT_OK;
     }
     *value = mt_relax_value(q, m, &v);
     memcpy(x, q->x, (size_t)q->n * sizeof *x);

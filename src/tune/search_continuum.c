@@ -27,19 +27,22 @@ typedef struct continua {
     double *aims; /* n_aims of each solution */
     double *at;   /* [n_aims] between two of them */
     double *t;    /* [n_t] */
+    mt_status rc; /* what ends the comparison */
+    mt_err err;
 } continua;
 
 /* The objectives at t, half squares as roots; false where it has none, or misses a goal. */
 static bool measure(continua *c, const double *t, double *aims)
 {
     mt_problem *const p = c->p;
-    mt_err ignored = {0};
     const long most = p->study->search.max_evaluations;
-    if (most > 0 && c->out->evals >= most) {
+    if (c->rc != MT_OK || (most > 0 && c->out->evals >= most)) {
         return false;
     }
     c->out->evals++;
-    bool good = mt_problem_eval(p, t, false, &c->v, &ignored) == MT_OK;
+    const mt_status rc = mt_problem_eval(p, t, false, &c->v, &c->err);
+    bool good = rc == MT_OK;
+    c->rc = mt_is_final(rc) ? rc : MT_OK;
     for (int i = 0; i < p->n_eq && good; i++) {
         good = fabs(c->v.eq[i]) <= p->eq_tol[i] * FEASIBLE;
     }
@@ -183,6 +186,11 @@ mt_status mt_search_join_continua(mt_problem *p, mt_arena *mem, mt_nlp_result *o
     }
     if (rc == MT_OK) {
         find_groups(&c, group);
+    }
+    if (rc == MT_OK && c.rc != MT_OK) {
+        rc = mt_fail(err, c.rc, "%s", c.err.text);
+    }
+    if (rc == MT_OK) {
         join_all(&c, group);
         count(out, n);
     }

@@ -97,8 +97,9 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
     w->evals += found.evals;
     w->stop = found.stop == MT_STOP_USER ? MT_STOP_USER : w->stop;
     const bool is = rc == MT_OK && found.n_solutions > 0 && !found.compromise;
-    if (is && mt_problem_values_init(p, w->mem, &v, err) == MT_OK &&
-        mt_problem_eval(p, found.solutions[0].t, false, &v, &own) == MT_OK) {
+    rc = is ? mt_problem_values_init(p, w->mem, &v, &own) : rc;
+    rc = is && rc == MT_OK ? mt_problem_eval(p, found.solutions[0].t, false, &v, &own) : rc;
+    if (is && rc == MT_OK) {
         w->evals++;
         if (violation(p, &v) <= 1.0 && v.f < *f - w->gain * fabs(*f)) {
             memcpy(t, found.solutions[0].t, (size_t)p->n_t * sizeof *t);

@@ -80,7 +80,7 @@ static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, 
         if (solved == MT_OK) {
             look(r, &a->modes);
         }
-        rc = solved == MT_E_MEMORY ? mt_fail_memory(err) : MT_OK;
+        rc = mt_is_final(solved) ? mt_fail(err, solved, "%s", ignored.text) : MT_OK;
     }
     mt_analysis_delete(a);
     return rc;

@@ -5,6 +5,7 @@
 #include "mt_alloc.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <link.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -12,24 +13,56 @@
 #include <string.h>
 
 #if defined(__SANITIZE_ADDRESS__)
-#    define REPLACE 0
+#    define SANITIZED 1
 #elif defined(__has_feature)
 #    if __has_feature(address_sanitizer)
-#        define REPLACE 0
+#        define SANITIZED 1
 #    endif
 #endif
-#ifndef REPLACE
+/* clang links its sanitizer into the program, where two of a name are one too many. */
+#if defined(SANITIZED) && defined(__clang__)
+#    define REPLACE 0
+#else
 #    define REPLACE 1
 #endif
 
 /* Atomic: libraries may allocate from threads of their own. */
-static _Atomic long allowed = -1; /* allocations left before failure; negative: no limit */
+static _Atomic long asked;           /* allocations asked for */
+static _Atomic long from = LONG_MAX; /* those numbered from .. to are refused */
+static _Atomic long to = LONG_MAX;
 static _Atomic long count;
 static _Atomic long live;
+static void (*_Atomic watch)(const void *caller, size_t size);
+#ifdef SANITIZED
+static _Atomic bool used; /* told to look beside a sanitizer */
+#else
+static const bool used = true;
+#endif
 
 void mt_alloc_fail_after(long nth)
 {
-    allowed = nth;
+    from = LONG_MAX;
+    to = LONG_MAX;
+    from = nth < 0 ? LONG_MAX : asked + nth;
+}
+
+void mt_alloc_fail_only(long nth)
+{
+    from = LONG_MAX;
+    to = asked + nth;
+    from = asked + nth;
+}
+
+void mt_alloc_watch(void (*seen)(const void *caller, size_t size))
+{
+    watch = seen;
+}
+
+void mt_alloc_use_beside_sanitizer(void)
+{
+#ifdef SANITIZED
+    used = true;
+#endif
 }
 
 long mt_alloc_count(void)
@@ -56,18 +89,26 @@ bool mt_alloc_works(void)
 /* NOLINTBEGIN(cert-dcl37-c,cert-dcl51-cpp,readability-inconsistent-declaration-parameter-name):
  * these names are the C library's, and meant to be */
 
-void *__libc_malloc(size_t size);
-void *__libc_calloc(size_t n, size_t size);
-void *__libc_realloc(void *old, size_t size);
-void *__libc_memalign(size_t alignment, size_t size);
-void __libc_free(void *block);
+#    ifdef SANITIZED
+/* what the sanitizer puts in place of the C library's; it may be called before a sanitizer is ready, so that what calls it is not instrumented */
+#        define REAL(name) __interceptor_##name
+#        define PLAIN      __attribute__((no_sanitize("address", "undefined")))
+#    else
+#        define REAL(name) __libc_##name
+#        define PLAIN
+#    endif
+void *REAL(malloc)(size_t size);
+void *REAL(calloc)(size_t n, size_t size);
+void *REAL(realloc)(void *old, size_t size);
+void *REAL(memalign)(size_t alignment, size_t size);
+void REAL(free)(void *block);
 
 /* Code of OpenBLAS. For some orders its product of small matrices asks malloc for a buffer and writes to it unseen (0.3.21, dgemm_small_kernel): nobody's
  * test can let that fail, and it is no allocation of ours. */
 static _Atomic uintptr_t blas_from;
 static _Atomic uintptr_t blas_to; /* 0: not looked for yet */
 
-static int find_blas(struct dl_phdr_info *info, size_t size, void *unused)
+PLAIN static int find_blas(struct dl_phdr_info *info, size_t size, void *unused)
 {
     (void)size;
     (void)unused;
@@ -81,7 +122,7 @@ static int find_blas(struct dl_phdr_info *info, size_t size, void *unused)
     return 0;
 }
 
-static bool from_blas(const void *caller)
+PLAIN static bool from_blas(const void *caller)
 {
     static _Atomic bool looking;
     if (blas_to == 0) {
@@ -96,52 +137,59 @@ static bool from_blas(const void *caller)
     return (uintptr_t)caller >= blas_from && (uintptr_t)caller < blas_to;
 }
 
-/* Is the next allocation to fail? */
-static bool refused(void)
+/* Is this allocation to fail? */
+PLAIN bool mt_alloc_refuses(const void *caller, size_t size)
 {
-    if (allowed < 0) {
+    if (!used) {
         return false;
     }
-    if (allowed == 0) {
-        errno = ENOMEM;
-        return true;
+    void (*const seen)(const void *, size_t) = watch;
+    if (seen != NULL) {
+        seen(caller, size);
     }
-    allowed--;
-    return false;
+    const long number = asked++;
+    if (number < from || number > to) {
+        return false;
+    }
+    errno = ENOMEM;
+    return true;
 }
 
-static void *counted(void *block)
+PLAIN static void *counted(void *block)
 {
-    if (block != NULL) {
+    if (block != NULL && used) {
         count++;
         live++;
     }
     return block;
 }
 
-void *malloc(size_t size)
+#    define CALLER() __builtin_return_address(0)
+
+PLAIN void *malloc(size_t size)
 {
-    if (from_blas(__builtin_return_address(0))) {
-        void *const block = __libc_malloc(size);
+    if (used && from_blas(CALLER())) {
+        void *const block = REAL(malloc)(size);
         live += block != NULL ? 1 : 0; /* free cannot tell whose it is */
         return block;
     }
-    return refused() ? NULL : counted(__libc_malloc(size));
+    return mt_alloc_refuses(CALLER(), size) ? NULL : counted(REAL(malloc)(size));
 }
 
-void *calloc(size_t n, size_t size)
+PLAIN void *calloc(size_t n, size_t size)
 {
-    return refused() ? NULL : counted(__libc_calloc(n, size));
+    return mt_alloc_refuses(CALLER(), n * size) ? NULL : counted(REAL(calloc)(n, size));
 }
 
-void *aligned_alloc(size_t alignment, size_t size)
+PLAIN void *aligned_alloc(size_t alignment, size_t size)
 {
-    return refused() ? NULL : counted(__libc_memalign(alignment, size));
+    return mt_alloc_refuses(CALLER(), size) ? NULL : counted(REAL(memalign)(alignment, size));
 }
 
-int posix_memalign(void **block, size_t alignment, size_t size)
+PLAIN int posix_memalign(void **block, size_t alignment, size_t size)
 {
-    void *const got = aligned_alloc(alignment, size);
+    void *const got =
+        mt_alloc_refuses(CALLER(), size) ? NULL : counted(REAL(memalign)(alignment, size));
     if (got == NULL) {
         return ENOMEM;
     }
@@ -149,15 +197,15 @@ int posix_memalign(void **block, size_t alignment, size_t size)
     return 0;
 }
 
-void *realloc(void *old, size_t size)
+PLAIN void *realloc(void *old, size_t size)
 {
-    if (refused()) {
+    if (mt_alloc_refuses(CALLER(), size)) {
         return NULL;
     }
     if (old == NULL) {
-        return counted(__libc_malloc(size));
+        return counted(REAL(malloc)(size));
     }
-    void *const block = __libc_realloc(old, size);
+    void *const block = REAL(realloc)(old, size);
     if (block != NULL) {
         count++;
     } else if (size == 0) { /* glibc has freed it */
@@ -166,14 +214,23 @@ void *realloc(void *old, size_t size)
     return block;
 }
 
-void free(void *block)
+PLAIN void free(void *block)
 {
     if (block != NULL) {
         live--;
-        __libc_free(block);
+        REAL(free)(block);
     }
 }
 
 /* NOLINTEND(cert-dcl37-c,cert-dcl51-cpp,readability-inconsistent-declaration-parameter-name) */
+
+#else
+
+bool mt_alloc_refuses(const void *caller, size_t size)
+{
+    (void)caller;
+    (void)size;
+    return false;
+}
 
 #endif

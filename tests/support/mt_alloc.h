@@ -17,12 +17,25 @@
 #define MT_ALLOC_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 /* True where allocations are seen and can be failed. */
 bool mt_alloc_works(void);
 
 /* Let the next nth allocations succeed and every later one return NULL; nth < 0: none fails. */
 void mt_alloc_fail_after(long nth);
+
+/* Let the nth allocation from here (0: the next) return NULL, and it alone. */
+void mt_alloc_fail_only(long nth);
+
+/* Count and fail beside gcc's AddressSanitizer, too, from here on. */
+void mt_alloc_use_beside_sanitizer(void);
+
+/* Have every allocation told before it is made or refused, with the address that it returns to; NULL: none. It must not allocate. */
+void mt_alloc_watch(void (*seen)(const void *caller, size_t size));
+
+/* Number a request of another allocator (an arena's) as if it were one of these, and tell whether it is to fail. */
+bool mt_alloc_refuses(const void *caller, size_t size);
 
 /* Successful allocations since the program started. */
 long mt_alloc_count(void);

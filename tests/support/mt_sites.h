@@ -21,9 +21,12 @@
 #define MT_SITES_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 enum { MT_SITES_MOST = 4096 };
 
+/* Ask this about every request from here on, instead of all below; NULL: no more. */
+void mt_sites_ask(bool (*refuses)(const void *caller, size_t size));
 /* Forget all places and note those that ask from now on. One thread only. */
 void mt_sites_record(void);
 /* True where places are known by their callers, and this one has been refused before. */
