@@ -12,6 +12,9 @@ static const double ENERGY_ULPS = 16.0;
  * by as much as r changes Kg, with a moderate factor. */
 static const double RESIDUALS = 32.0;
 
+/* A step that is left is known to a few parts of itself: the residual that it comes from is mostly rounding, the rounding of what was evaluated there. */
+static const double STEPS = 4.0;
+
 typedef struct entry {
     int row;
     int col;
@@ -26,6 +29,7 @@ typedef struct worker {
     entry *load; /* lower triangle of Kg where it is not empty */
     int n_load;
     double unbalanced; /* relative error of the forces */
+    double shape;      /* p eps of the header */
 } worker;
 
 static mt_status list_entries(worker *k, mt_arena *mem, mt_err *err)
@@ -136,12 +140,12 @@ static void sum_terms(const worker *k, int kind, const double *phi, double *ener
     }
 }
 
-/* sum |phi^T h phi| over the forces: an error of a force scales its whole energy. */
+/* What is open of phi^T Kg phi by the forces: an error of a force scales its whole energy. */
 static double force_energies(const worker *k, const double *phi)
 {
     const mt_linear *const lin = k->lin;
     double sum = 0.0;
-    for (int i = 0; i < lin->n_pieces && lin->kg != NULL && k->unbalanced > DBL_EPSILON; i++) {
+    for (int i = 0; i < lin->n_pieces && lin->kg != NULL; i++) {
         const mt_piece *const p = &lin->pieces[i];
         double energy = 0.0;
         for (int c = 0; c < MT_LOCAL; c++) {
@@ -151,7 +155,7 @@ static double force_energies(const worker *k, const double *phi)
             }
             energy += p->dof[c] >= 0 ? part * phi[p->dof[c]] : 0.0;
         }
-        sum += fabs(energy);
+        sum += ((k->unbalanced * p->size) + (STEPS * p->open)) * fabs(energy);
     }
     return sum;
 }
@@ -180,10 +184,9 @@ static void one(const worker *k, int col, const double *y, const mt_energies *ou
     }
     out->stiffness[col] = energy[0];
     out->mass[col] = energy[1];
-    out->load_noise[col] =
-        (SHAPE_ULPS * DBL_EPSILON * load) + (k->unbalanced * force_energies(k, phi));
-    out->stiffness_noise[col] = (SHAPE_ULPS * DBL_EPSILON * noise[0]) + out->load_noise[col];
-    out->mass_noise[col] = SHAPE_ULPS * DBL_EPSILON * noise[1];
+    out->load_noise[col] = (k->shape * load) + force_energies(k, phi);
+    out->stiffness_noise[col] = (k->shape * noise[0]) + out->load_noise[col];
+    out->mass_noise[col] = k->shape * noise[1];
     out->strained[col] = strained;
 }
 
@@ -194,6 +197,7 @@ mt_status mt_linear_energies(mt_linear *lin, int cols, const double *y, const mt
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     worker k = {.lin = lin};
     k.unbalanced = RESIDUALS * lin->position.residual;
+    k.shape = SHAPE_ULPS * DBL_EPSILON / lin->e.qr.kept;
     k.phi = mt_arena_f64(&lin->scratch, nq, (size_t)cols);
     k.w = mt_arena_f64(&lin->scratch, nq, 1);
     mt_status rc = k.phi == NULL || k.w == NULL ? mt_fail_memory(err) : MT_OK;

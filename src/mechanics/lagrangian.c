@@ -105,22 +105,25 @@ static double extent_of(const mt_pose *poses, const int body[2])
 
 /* terms += size |jet.h|, and force times the coordinates' size: two lengths that cancel in an entry between rotations have been the difference of coordinates. */
 static void note_terms(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
-                       const mt_jet *jet, double size, double force, mt_lagrangian *out)
+                       const mt_jet *jet, double size, double force, double open,
+                       mt_lagrangian *out)
 {
     int dof[MT_LOCAL];
-    if (out->terms == NULL || size == 0.0) {
+    if (out->terms == NULL || (size == 0.0 && open == 0.0)) {
         return;
     }
     local_dofs(d->sys, def->body, dof);
     mt_piece *const piece = &out->pieces[out->n_pieces++];
     memcpy(piece->dof, dof, sizeof dof);
+    piece->size = size;
+    piece->open = open;
     double extent = is_angle(def) ? 0.0 : extent_of(poses, def->body);
     if (is_chord(def)) {
         extent /= creal(mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0));
     }
     for (int c = 0; c < MT_LOCAL; c++) {
         for (int r = 0; r < MT_LOCAL; r++) {
-            piece->h[r + (MT_LOCAL * c)] = size * creal(jet->h[r + (MT_LOCAL * c)]);
+            piece->h[r + (MT_LOCAL * c)] = creal(jet->h[r + (MT_LOCAL * c)]);
             if (dof[r] >= 0 && dof[c] >= 0) {
                 const bool turns = r % 6 >= 3 && c % 6 >= 3;
                 const double entry = fabs(creal(jet->h[r + (MT_LOCAL * c)]));
@@ -229,6 +232,18 @@ static mt_cx add_spring(const mt_data *d, int i, mt_cx k, mt_cx stretch, const m
     return force;
 }
 
+/* What the step that is left makes of a measure. */
+static double left_open(const mt_lagrangian *l, const mt_system *sys, const int body[2],
+                        const mt_jet *jet)
+{
+    double way = 0.0;
+    for (int k = 0; k < MT_LOCAL && l->left.q != NULL; k++) {
+        const int dof = mt_local_dof(sys, body, k);
+        way += dof >= 0 ? creal(jet->g[k]) * l->left.q[dof] : 0.0;
+    }
+    return fabs(way);
+}
+
 static void add_springs(const mt_data *d, const mt_pose *poses, mt_curvature curvature,
                         mt_lagrangian *out)
 {
@@ -256,13 +271,17 @@ static void add_springs(const mt_data *d, const mt_pose *poses, mt_curvature cur
             add_coupling(sys, first->body, k, stretch, jet, curvature, out);
             for (int side = 0; side < 2; side++) {
                 const double force = 0.5 * fabs(creal(cx_mul(k, stretch[1 - side])));
+                const double way = left_open(out, sys, first->body, &jet[1 - side]);
                 note_terms(d, &sys->measures[s->measure[side]], poses, &jet[side], force, force,
-                           out);
+                           0.5 * fabs(creal(k)) * way, out);
             }
         } else {
             const double force =
                 fabs(creal(add_spring(d, i, k, stretch[0], jet, curvature, out)));
-            note_terms(d, first, poses, &jet[0], force, force, out);
+            const double way = left_open(out, sys, first->body, &jet[0]);
+            note_terms(d, first, poses, &jet[0], force, force,
+                       i == sys->trim_spring ? fabs(out->left.trim) : fabs(creal(k)) * way,
+                       out);
         }
     }
 }
@@ -302,9 +321,9 @@ static void note_load(const mt_data *d, const mt_load_def *load, const mt_pose *
     };
     if (load->measure >= 0) {
         const double force = fabs(creal(size));
-        note_terms(d, &d->sys->measures[load->measure], poses, jet, force, force, out);
+        note_terms(d, &d->sys->measures[load->measure], poses, jet, force, force, 0.0, out);
     } else if (load->point >= 0) { /* the jet has the force in it */
-        note_terms(d, &point, poses, jet, 1.0, largest_push(d->sys, jet), out);
+        note_terms(d, &point, poses, jet, 1.0, largest_push(d->sys, jet), 0.0, out);
     }
 }
 
@@ -408,12 +427,12 @@ static void push_joints(const mt_data *d, int m, const mt_cx *lambda, mt_lagrang
 }
 
 static void note_joint(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
-                       const mt_jet *jet, mt_cx force, mt_lagrangian *out)
+                       const mt_jet *jet, mt_cx force, double open, mt_lagrangian *out)
 {
     if (out->terms != NULL) {
         const double arm = is_angle(def) ? d->sys->length_m : 1.0;
         const double size = fabs(creal(force)) + (arm * joint_push(out, def->body));
-        note_terms(d, def, poses, jet, size, size, out);
+        note_terms(d, def, poses, jet, size, size, open, out);
     }
 }
 
@@ -443,7 +462,8 @@ static void add_constraints(const mt_data *d, const mt_pose *poses, int m, const
             if (curved) {
                 const mt_cx force = cx_mul(factor, lambda[i]);
                 add_hessian(sys, def->body, &jet, force, 0.0, NULL, out->h);
-                note_joint(d, def, poses, &jet, force, out);
+                const double left = out->left.lambda != NULL ? out->left.lambda[i] : 0.0;
+                note_joint(d, def, poses, &jet, force, fabs(creal(factor) * left), out);
             }
         }
         out->c[i] -= surplus_turns(d, i, creal(out->c[i]));

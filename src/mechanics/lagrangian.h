@@ -20,11 +20,20 @@ typedef enum mt_curvature {
     MT_CURVATURE_ELASTIC
 } mt_curvature;
 
-/* The curvature of one force: its size times the Hessian of its measure, over the freedoms dof (-1: none). */
+/* The curvature of one force: the Hessian of its measure over the freedoms dof (-1: none). */
 typedef struct mt_piece {
     int dof[MT_LOCAL];
     double h[MT_LOCAL * MT_LOCAL];
+    double size; /* of the force */
+    double open; /* what the step that is left makes of it */
 } mt_piece;
+
+/* The last step of Newton's method, too small to be taken: from the position, which is rounded, to where the forces balance. By it a spring of stiffness k and gradient g is wrong by k g . q. */
+typedef struct mt_step_left {
+    double *q;      /* [nq]; NULL: none */
+    double *lambda; /* [m] */
+    double trim;    /* of the trimmed spring's force */
+} mt_step_left;
 
 typedef struct mt_lagrangian {
     mt_cx *g;    /* [nq] gradient of V (without lambda) */
@@ -40,6 +49,7 @@ typedef struct mt_lagrangian {
         terms; /* nq x nq, or NULL where nobody asks: magnitudes of the terms whose sum the geometric part of h is; rounding of the positions and of the multipliers counts by them */
     mt_piece *
         pieces; /* [n_pieces], with terms: the geometric part of h, force by force, without signs */
+    mt_step_left left; /* in, with terms */
     int n_pieces;
     double *
         push; /* [bodies], with terms: sum of the magnitudes of all forces on a body, torques as forces at the model length */

@@ -118,6 +118,7 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     l.trim_force = lin->position.trim_force;
     if (loaded) {
         MT_TRY(mt_lagrangian_want_terms(&l, sys, &lin->geometry, err));
+        l.left = lin->position.equilibrium.left;
     }
     mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, lin->position.pose,
                        all, loaded ? lambda : NULL,

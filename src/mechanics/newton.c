@@ -19,6 +19,27 @@ enum { SADDLES = 12 };
 /* Energies differ by rounding below this part of them. */
 static const double ENERGY_ROUNDING = 1e-12;
 
+/* What the step last found, w->step and trim, would change: with r = g + A^T lambda + t trim + H step unbalanced, A^T lambda' = -r. */
+static mt_status keep_step(const mt_newton_work *w, const mt_elimination *e, double trim,
+                           mt_arena *mem, mt_step_left *left, mt_err *err)
+{
+    const int nq = w->sys->nq;
+    const int m = w->p->m;
+    left->trim = w->p->trim ? trim : 0.0;
+    left->q = mt_arena_f64(mem, (size_t)nq, 1);
+    left->lambda = mt_arena_f64(mem, (size_t)m, 1);
+    double *const r = mt_arena_f64(mem, (size_t)nq, 1);
+    if (left->q == NULL || left->lambda == NULL || r == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(left->q, w->step, (size_t)nq * sizeof *left->q);
+    for (ptrdiff_t j = 0; j < nq; j++) {
+        r[j] = -w->g[j] - (left->trim * w->trim[j]) - mt_dot(m, w->a + (j * m), w->lambda);
+    }
+    mt_gemv(false, nq, nq, -1.0, w->h, nq, w->step, 1.0, r);
+    return mt_eliminate_multipliers(e, r, left->lambda, mem, err);
+}
+
 static mt_status keep(const mt_newton_work *w, const mt_elimination *e, double *inverse,
                       mt_arena *mem, mt_state *report, mt_stage *stage, mt_err *err)
 {
@@ -79,8 +100,10 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
                            (w->moved >= 0.25 * previous || w->moved <= 8.0 * DBL_EPSILON);
         if (small && w->gap <= MT_STEP_DONE) {
             if (w->residual <= MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise)) {
+                const double trim = w->tau - tau;
                 w->tau = tau;
                 *done = true;
+                MT_TRY(keep_step(w, &e, trim, mem, &stage->left, err));
                 return keep(w, &e, inverse, mem, report, stage, err);
             }
             if (!w->p->trim || w->residual >= 0.25 * unbalanced) {

@@ -23,6 +23,7 @@ typedef struct mt_stage {
     int order;         /* n (+1 with trim) */
     double *inverse;   /* order x order pseudo-inverse of the (bordered) reduced Hessian */
     double *trim;      /* [nq] gradient of the trimmed spring's measure */
+    mt_step_left left; /* with the physical energy */
     int null_freedoms; /* freedoms without stiffness at the solution */
 } mt_stage;
 
