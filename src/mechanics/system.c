@@ -158,16 +158,6 @@ static mt_status settle(mt_system *sys, const double *at, mt_err *err)
         return mt_fail_memory(err);
     }
     MT_TRY(mt_program_eval(&sys->program, at, v, &bad, err));
-    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
-    double high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    for (int i = 0; i < sys->n_bodies; i++) {
-        for (int k = 0; k < 3; k++) {
-            const double x = v[sys->vecs[sys->bodies[i].centre].node[k]];
-            low[k] = fmin(low[k], x);
-            high[k] = fmax(high[k], x);
-        }
-    }
-    double reach = 0.0; /* longest arm from a centre */
     MT_TRY(choose_helpers(sys, v, err));
     for (int i = 0; i < sys->n_measures; i++) {
         for (int side = 0; side < 2; side++) {
@@ -175,7 +165,6 @@ static mt_status settle(mt_system *sys, const double *at, mt_err *err)
             if (m->point[side] < 0 || m->body[side] == MT_GROUND) {
                 continue;
             }
-            reach = fmax(reach, length_of_vec(&sys->vecs[m->point[side]], v));
             MT_TRY(check_arm(sys, m->point[side], m->body[side], v, err));
         }
     }
@@ -185,11 +174,7 @@ static mt_status settle(mt_system *sys, const double *at, mt_err *err)
             MT_TRY(check_arm(sys, load->point, load->body, v, err));
         }
     }
-    double diagonal = 0.0;
-    for (int k = 0; k < 3 && sys->n_bodies > 0; k++) {
-        diagonal = hypot(diagonal, high[k] - low[k]);
-    }
-    sys->length_m = fmax(diagonal, reach) > 0.0 ? fmax(diagonal, reach) : 1.0;
+    sys->length_m = mt_system_length(sys, v);
     mt_arena_rewind(&sys->mem, mark);
     return MT_OK;
 }

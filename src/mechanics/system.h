@@ -148,9 +148,8 @@ typedef struct mt_system {
     int *inputs; /* parameter of each input; MT_ABSENT for the position of a caller's drive */
     mt_node *parameters; /* [model parameters] node of each parameter in this configuration */
     mt_program program;
-    int nq; /* states */
-    double
-        length_m; /* model length: diagonal of the box around all centres and points at the original design (1 where that is zero); scales rotations */
+    int nq;          /* states */
+    double length_m; /* model length at the original design (length.c); scales rotations */
     MT_LIST_OF(mt_vec_def, vecs);
     MT_LIST_OF(mt_measure_def, measures);
     MT_LIST_OF(mt_state_body, bodies);
@@ -203,6 +202,9 @@ mt_status mt_system_same_drive(const mt_system *a, const mt_system *b, bool *sam
 
 /* Do the numbers of the beams' strains shape the stiffness of the unloaded system? Straight, without force, a beam's strains change with none of them. */
 bool mt_system_beams_shape(const mt_system *sys);
+
+/* What a displacement is compared with (length.c), of the values v of all nodes; above 0. */
+double mt_system_length(const mt_system *sys, const double *v);
 
 int mt_system_find_channel(const mt_system *sys, const char *name);
 int mt_system_find_joint(const mt_system *sys, const char *name);

@@ -204,6 +204,28 @@ class Equilibria(MechanismTest):
                     self.assertEqual([x["kind"] for x in got["modes"]], ["flexible", "flexible"])
                     self.assertAlmostEqual(got["modes"][0]["frequency_hz"] / PENDULUM, 1, delta=1e-12)
 
+    def test_a_body_without_an_extent_settles_in_every_unit(self):
+        """What is far is said by a length of the model: between the ends of springs, a radius of gyration, or what the load moves it by."""
+        for kind in ("ends", "gyration", "load"):
+            for unit in (1e-8, 1e-4, 1.0, 1e4, 1e8):  # of lengths
+                with self.subTest(kind=kind, unit=unit):
+                    at = [0.9 * unit, 0.25 * unit]
+                    body = {"name": "b", "mass_kg": 2.0, "centre": at}
+                    model = {"format": "modetune-model/1", "dimension": 2, "gravity_m_per_s2": [0, -G * unit], "bodies": [body],
+                             "springs": [{"name": "foot", "type": "bushing", "bodies": ["ground", "b"], "at": at, "stiffness_n_per_m": [200, 800],
+                                          "stiffness_n_m_per_rad": 30 * unit**2 if kind == "gyration" else 0}]}
+                    if kind == "gyration":
+                        body["inertia_kg_m2"] = 0.3 * unit**2
+                    if kind == "ends":
+                        model["springs"].append({"name": "rope", "type": "axial", "bodies": ["ground", "b"], "at": [[at[0], at[1] + 2 * unit], at],
+                                                 "stiffness_n_per_m": 100})
+                    got = [m["omega_squared"] for m in self.answer(model, "modes")["modes"]]
+                    down = 2 * G / (900 if kind == "ends" else 800)
+                    across = 200 + (100 * down / (2 + down) if kind == "ends" else 0)  # N/m, with the rope's tension over its length
+                    exact = sorted([across / 2, (900 if kind == "ends" else 800) / 2] + ([100.0] if kind == "gyration" else []))
+                    for a, b in zip(got, exact, strict=True):
+                        self.assertAlmostEqual(a / b, 1, delta=1e-12)
+
     def test_a_closed_loop_without_equilibrium_is_not_called_open(self):
         for i in range(6):
             r = seeded("falls", i)
