@@ -4,6 +4,76 @@
 
 #include "tune/study_check.h"
 
+static bool is_least(mt_goal_member member)
+{
+    return member == MT_MEMBER_AT_LEAST || member == MT_MEMBER_AT_LEAST_HZ;
+}
+
+static bool is_most(mt_goal_member member)
+{
+    return member == MT_MEMBER_AT_MOST || member == MT_MEMBER_AT_MOST_HZ;
+}
+
+/* Do two that vary limit one number from its two sides? */
+static bool opposite(const mt_vary *a, const mt_vary *b)
+{
+    if (a->kind != b->kind || a == b) {
+        return false;
+    }
+    switch (a->kind) {
+    case MT_VARY_BOUND:
+        return a->upper != b->upper && a->name.s != NULL && b->name.s != NULL &&
+               strcmp(a->name.s, b->name.s) == 0;
+    case MT_VARY_GOAL:
+        return a->goal == b->goal && ((is_least(a->member) && is_most(b->member)) ||
+                                      (is_most(a->member) && is_least(b->member)));
+    case MT_VARY_PARAMETER:
+        break;
+    }
+    return false;
+}
+
+/* What varies on the other side; NULL: that side is as the study says. */
+static const mt_vary *other_side(const mt_study_check *c, const mt_vary *v)
+{
+    const mt_trade *const trade = &c->study->trade;
+    for (int i = 0; i < trade->n_vary; i++) {
+        if (opposite(v, &trade->vary[i])) {
+            return &trade->vary[i];
+        }
+    }
+    return NULL;
+}
+
+static const char *side_name(const mt_vary *v)
+{
+    return v->kind == MT_VARY_GOAL ? mt_goal_member_name(v->member)
+                                   : (v->upper ? "upper bound" : "lower bound");
+}
+
+/* Where both sides vary every value of the one has to leave room to every value of the other. */
+static void check_sides(mt_study_check *c, const mt_vary *v)
+{
+    const mt_vary *const other = other_side(c, v);
+    if (other == NULL || other > v) {
+        return; /* told at the second of them */
+    }
+    const bool lower = v->kind == MT_VARY_GOAL ? is_least(v->member) : !v->upper;
+    for (int i = 0; i < v->n_values; i++) {
+        for (int k = 0; k < other->n_values; k++) {
+            const double low = lower ? v->values[i] : other->values[k];
+            const double high = lower ? other->values[k] : v->values[i];
+            if (!(low < high)) {
+                mt_diag_error(c->diags, v->values_addr,
+                              "%s %g is not %s %s %g, which varies, too", side_name(v),
+                              v->values[i], lower ? "below" : "above", side_name(other),
+                              other->values[k]);
+                return;
+            }
+        }
+    }
+}
+
 static void vary_bound(mt_study_check *c, mt_vary *v)
 {
     mt_study *const s = c->study;
@@ -26,7 +96,7 @@ static void vary_bound(mt_study_check *c, mt_vary *v)
         return;
     }
     const double other = v->upper ? variable->lower : variable->upper;
-    for (int i = 0; i < v->n_values; i++) {
+    for (int i = 0; i < v->n_values && other_side(c, v) == NULL; i++) {
         if (v->upper ? v->values[i] <= other : v->values[i] >= other) {
             mt_diag_error(c->diags, v->values_addr, "%s bound %g is not %s %s bound (%g)",
                           v->upper ? "upper" : "lower", v->values[i],
@@ -81,12 +151,11 @@ static bool allowed(mt_goal_member member, const mt_goal *goal, double value)
     return true;
 }
 
-/* Limits on both sides must leave room, whichever of them varies. */
+/* Limits on both sides must leave room, whichever of them varies; both: check_sides. */
 static bool leaves_room(mt_goal_member member, const mt_goal *goal, double value)
 {
-    const bool least = member == MT_MEMBER_AT_LEAST || member == MT_MEMBER_AT_LEAST_HZ;
-    const bool most = member == MT_MEMBER_AT_MOST || member == MT_MEMBER_AT_MOST_HZ;
-    return !(least && value >= goal->at_most) && !(most && value <= goal->at_least);
+    return !(is_least(member) && value >= goal->at_most) &&
+           !(is_most(member) && value <= goal->at_least);
 }
 
 static void vary_goal(mt_study_check *c, const mt_vary *v)
@@ -103,7 +172,7 @@ static void vary_goal(mt_study_check *c, const mt_vary *v)
     }
     for (int i = 0; i < v->n_values; i++) {
         if (!allowed(v->member, goal, v->values[i]) ||
-            !leaves_room(v->member, goal, v->values[i])) {
+            (other_side(c, v) == NULL && !leaves_room(v->member, goal, v->values[i]))) {
             mt_diag_error(c->diags, v->values_addr, "%s cannot be %g",
                           mt_goal_member_name(v->member), v->values[i]);
         }
@@ -137,6 +206,7 @@ static void check_vary(mt_study_check *c, mt_vary *v)
 {
     mt_arena *const mem = &c->study->mem;
     check_values(c, v);
+    check_sides(c, v);
     switch (v->kind) {
     case MT_VARY_BOUND:
         vary_bound(c, v);
