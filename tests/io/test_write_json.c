@@ -140,7 +140,7 @@ static void write_json__strings_are_escaped(mt_test *t)
     }
 }
 
-/* Write a number, read the text with our own reader, compare the bits. */
+/* Write a number, read the text with our own reader, compare the bits; -0 is written as 0. */
 static void check_round_trip(mt_test *t, double x)
 {
     char buffer[MT_JSON_NUMBER_SIZE];
@@ -149,7 +149,7 @@ static void check_round_trip(mt_test *t, double x)
     const mt_status rc = mt_json_parse(text, strlen(text), &doc, NULL);
     if (CHECK_INT(t, rc, MT_OK) &&
         CHECK_INT(t, mt_json_type_of(doc, MT_JSON_ROOT), MT_JSON_NUMBER)) {
-        CHECK(t, bits_of(mt_json_number(doc, MT_JSON_ROOT)) == bits_of(x));
+        CHECK(t, bits_of(mt_json_number(doc, MT_JSON_ROOT)) == bits_of(x == 0.0 ? 0.0 : x));
     }
     mt_json_delete(doc);
 }
