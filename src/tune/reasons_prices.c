@@ -10,7 +10,7 @@
 
 static const double PERCENT = 100.0;
 
-/* Of the objective, what a change df of its value f is called: "0.12 kg". NULL: not worth a sentence, or out of memory. */
+/* Of the objective, what a change df of its value f is called: "0.12 kg". NULL: not worth a sentence, more than there is (a slope says nothing that far), or out of memory. */
 static const char *price(mt_sentences *s, double df)
 {
     mt_arena *const mem = &s->result->mem;
@@ -20,13 +20,16 @@ static const char *price(mt_sentences *s, double df)
     }
     switch (s->p->aims[s->design->stage].type) {
     case MT_OBJECTIVE_MASS:
+        if (s->design->stage == 0 && fabs(df) > s->rec->score) {
+            return NULL;
+        }
         text = mt_arena_printf(mem, "%.3g kg", df);
         break;
     case MT_OBJECTIVE_EXPRESSION:
         text = mt_arena_printf(mem, "%.3g", df);
         break;
     case MT_OBJECTIVE_CHANGE:
-        if (!(s->rec->change > 0.0)) {
+        if (!(s->rec->change > 0.0) || fabs(df) > s->rec->change * s->rec->change) {
             return NULL;
         }
         text = mt_arena_printf(mem, "%.3g of the size of the redesign", df / s->rec->change);
@@ -70,6 +73,14 @@ static void say_demands(mt_sentences *s)
         if (cost != NULL) {
             mt_say(s, "Goal %s (%s) has a price: asking for 1 %% %s would %s %s.", g->pointer,
                    g->text, slope > 0.0 ? "less" : "more", win(s), cost);
+            continue;
+        }
+        const char *const left = price(s, fabs(slope) * d->tolerance);
+        if (left != NULL) {
+            mt_say(s,
+                   "Goal %s (%s) hardly depends on the variables here: what its tolerance of "
+                   "%.3g %% leaves open is worth %s.",
+                   g->pointer, g->text, PERCENT * d->tolerance, left);
         }
     }
 }

@@ -10,7 +10,7 @@ from check_numbers import design_of, near
 from question import Question
 
 NUMBER = r"([-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?)"
-PRICE = 0.03     # of a price: three digits, and the curve within the step that measures it
+PRICE = 0.03     # of a price: three digits, beside what the curve within the step leaves open
 PRICES = 2       # of one design that are looked at
 STEP = 1e-3      # of what a demand gives way by, in percent of itself
 
@@ -28,8 +28,8 @@ def _cost_with(run, study, start):
     return cost if missed <= 1.0 else None
 
 
-def _slope(run, change, start):
-    """How much is saved per 1 % that a demand gives way: change(study, fraction) moves it."""
+def _slopes(run, change, start):
+    """How much is saved per 1 % that a demand gives way, measured to both sides: change(study, fraction) moves it. The slope of a curve, also where a bound lets go, lies between."""
     costs = []
     for fraction in (STEP, -STEP):
         study = copy.deepcopy(run.study)
@@ -45,7 +45,7 @@ def _slope(run, change, start):
     up, down = (here - costs[0]) / (100.0 * STEP), (costs[1] - here) / (100.0 * STEP)
     if abs(up - down) > 0.1 * max(abs(up), abs(down)):
         return None  # a kink: another constraint takes over
-    return 0.5 * (up + down)
+    return np.array(sorted((up, down)))
 
 
 def _goal_mover(index, text, sense):
@@ -60,8 +60,10 @@ def _goal_mover(index, text, sense):
     return change
 
 
-def _bound_mover(index, bound, amount):
+def _bound_mover(variable, index, bound, amount):
     def change(study, fraction):
+        if not variable.log:  # changes are measured as they were, not by the wider bounds
+            study["variables"][index]["scale"] = variable.scale
         study["variables"][index][bound] += (1.0 if bound == "upper" else -1.0) * amount * 100.0 * fraction * 0.1
     return change
 
@@ -84,17 +86,20 @@ def prices(run):
             if len(run.study["goals"][int(goal[1])].get("configurations", [1])) > 1:
                 continue
             told = float(goal[3])
-            slope = _slope(run, _goal_mover(int(goal[1]), reason, -1.0 if goal[2] == "more" else 1.0), start)
+            slopes = _slopes(run, _goal_mover(int(goal[1]), reason, -1.0 if goal[2] == "more" else 1.0), start)
         elif bound:
             index = [v.name for v in q.variables].index(bound[4])
             told = float(bound[5])
-            slope = _slope(run, _bound_mover(index, "upper" if bound[3] == "more" else "lower", float(bound[1])), start)
-            slope = None if slope is None else 10.0 * slope
+            slopes = _slopes(run, _bound_mover(q.variables[index], index, "upper" if bound[3] == "more" else "lower", float(bound[1])), start)
+            slopes = None if slopes is None else 10.0 * slopes
         else:
             continue
         told_of += 1
-        if slope is not None and abs(told - slope) > PRICE * max(abs(told), abs(slope)) + 1e-7 * max(abs(best["score"] or 1.0), 1.0):
-            yield f"\"{reason}\": solved again it is {slope}"
+        if slopes is None:
+            continue
+        room = PRICE * max(abs(told), *abs(slopes)) + 1e-7 * max(abs(best["score"] or 1.0), 1.0)
+        if not slopes[0] - room <= told <= slopes[1] + room:
+            yield f"\"{reason}\": solved again it is {slopes[0]} to {slopes[1]}"
 
 
 def undetermined(run):
