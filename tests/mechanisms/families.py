@@ -73,7 +73,7 @@ def four_bar(rng, dim):
             if kind == "universal":
                 joint["axis"], joint["axis_b"] = [0, 0, 1], [1, 0, 0]
     _load(m, joints)
-    limit = b[1] * abs(c[0]) == -abs(c[1]) * abs(b[0])  # coupler and rocker in one line: the crank stands still
+    limit = abs(b[1] * abs(c[0]) + abs(c[1]) * abs(b[0])) < 1e-9  # coupler and rocker in one line: the crank stands still
     if m.chance(0.3) and joints[0]["type"] in ANGLED and not limit:
         drive = {"joint": joints[0]["name"], "position_rad": m.parameter("q", rng.randint(-20, 20) / 100, "rad")}
         servo = next((s for s in m.model["springs"] if s.get("joint") in [j["name"] for j in joints]), None)
