@@ -59,7 +59,7 @@ static void swap(double *a, double *b)
     *b = keep;
 }
 
-/* Quotients of neighbours may pass each other. */
+/* Quotients of neighbours may pass each other, and so may a mode that becomes a rigid body's, at 0, and one before it that is undecided. */
 static void sort(mt_modes *modes, bool *strained)
 {
     for (int i = 1; i < modes->count; i++) {
@@ -67,6 +67,9 @@ static void sort(mt_modes *modes, bool *strained)
             const bool keep = strained[k];
             strained[k] = strained[k - 1];
             strained[k - 1] = keep;
+            const mt_mode_kind kind = modes->kind[k];
+            modes->kind[k] = modes->kind[k - 1];
+            modes->kind[k - 1] = kind;
             swap(&modes->lambda[k], &modes->lambda[k - 1]);
             swap(&modes->error[k], &modes->error[k - 1]);
             if (modes->residual != NULL) {
@@ -126,5 +129,6 @@ void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes)
         modes->n_held += rigid && e->mass[i] > MT_MODAL_HELD * modes->error[i] ? 1 : 0;
     }
     modes->n_held = exact ? held : modes->n_held;
+    sort(modes, e->strained);
     mt_modal_find_clusters(modes);
 }

@@ -8,11 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/base.h"
+#include "common/fuzz.h"
 #include "expr/interval.h"
 #include "expr/program.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 enum { N_PARAMS = 4 };
 static const char *const names[N_PARAMS] = {"x", "y", "z", "k_1"};
@@ -28,14 +26,6 @@ static int find(const void *context, const char *name, size_t length)
     return -1;
 }
 
-/* A broken promise stops the fuzzer, in every build type. */
-static void demand(int holds)
-{
-    if (!holds) {
-        abort();
-    }
-}
-
 static void demand_enclosed(const mt_program *p, mt_arena *mem)
 {
     static const double at[N_PARAMS] = {0.75, -2.0, 3.0, 1e3};
@@ -44,38 +34,38 @@ static void demand_enclosed(const mt_program *p, mt_arena *mem)
     const size_t n = (size_t)p->count;
     double *const value = mt_arena_f64(mem, n, 3);
     double *const grad = mt_arena_f64(mem, n * N_PARAMS, 3);
-    demand(value != NULL && grad != NULL);
+    DEMAND(value != NULL && grad != NULL);
     double *const lo = value + n;
     double *const dlo = grad + n * N_PARAMS;
     mt_program_interval_gradient(p, lower, upper, lo, lo + n, dlo, dlo + n * N_PARAMS);
     mt_node bad = p->count;
     mt_err err;
     if (mt_program_gradient(p, at, value, grad, &bad, &err) != MT_OK) {
-        demand(err.text[0] != '\0' && bad >= 0 && bad < p->count);
+        DEMAND(err.text[0] != '\0' && bad >= 0 && bad < p->count);
         return;
     }
     for (size_t i = 0; i < n; i++) {
-        demand(lo[i] <= value[i] && value[i] <= lo[n + i]);
+        DEMAND(lo[i] <= value[i] && value[i] <= lo[n + i]);
     }
     for (size_t i = 0; i < n * N_PARAMS; i++) {
-        demand(dlo[i] <= grad[i] && grad[i] <= dlo[n * N_PARAMS + i]);
+        DEMAND(dlo[i] <= grad[i] && grad[i] <= dlo[n * N_PARAMS + i]);
     }
 }
 
 static void use(const mt_expr *e, mt_arena *mem)
 {
     mt_program p;
-    demand(e->length > 0 && e->length <= MT_EXPR_MAX_CODE);
-    demand(mt_program_init(&p, N_PARAMS, mem, NULL) == MT_OK);
+    DEMAND(e->length > 0 && e->length <= MT_EXPR_MAX_CODE);
+    DEMAND(mt_program_init(&p, N_PARAMS, mem, NULL) == MT_OK);
     mt_node inputs[N_PARAMS];
     for (int i = 0; i < N_PARAMS; i++) {
         inputs[i] = mt_program_input(&p, i, i);
     }
     const mt_node root = mt_program_expr(&p, e, inputs, N_PARAMS);
-    demand(root >= 0 && mt_program_finish(&p, NULL) == MT_OK);
+    DEMAND(root >= 0 && mt_program_finish(&p, NULL) == MT_OK);
     double value = 0.0;
     if (mt_expr_is_constant(e, &value)) {
-        demand(mt_program_is_constant(&p, root));
+        DEMAND(mt_program_is_constant(&p, root));
     }
     demand_enclosed(&p, mem);
 }
@@ -84,7 +74,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char *const text = malloc(size + 1); /* exact size: reading past the end is seen */
     mt_arena mem;
-    demand(text != NULL && mt_arena_init(&mem, 0, NULL) == MT_OK);
+    DEMAND(text != NULL && mt_arena_init(&mem, 0, NULL) == MT_OK);
     if (size > 0) {
         memcpy(text, data, size);
     }
@@ -95,7 +85,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (rc == MT_OK) {
         use(&e, &mem);
     } else {
-        demand(rc == MT_E_INPUT && err.text[0] != '\0');
+        DEMAND(rc == MT_E_INPUT && err.text[0] != '\0');
     }
     mt_arena_free(&mem);
     free(text);

@@ -3,29 +3,8 @@
  * Any bytes as a model file: they are refused with messages that have a place, or become a model. Whatever happens, the messages are
  * lines of visible text.
  */
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "common/fuzz.h"
 #include "io/io.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-/* A broken promise stops the fuzzer, in every build type. */
-static void demand(int holds)
-{
-    if (!holds) {
-        abort();
-    }
-}
-
-static void demand_visible(const mt_text *said)
-{
-    for (size_t i = 0; i < said->length; i++) {
-        const unsigned char c = (unsigned char)said->s[i];
-        demand(c >= ' ' ? c != 0x7F : c == '\n');
-    }
-}
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
@@ -33,15 +12,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     mt_model *model = NULL;
     mt_text said = {0};
     mt_status rc = mt_json_parse((const char *)data, size, &doc, NULL);
-    demand(rc == MT_OK || rc == MT_E_INPUT);
+    DEMAND(rc == MT_OK || rc == MT_E_INPUT);
     if (rc == MT_OK) {
         rc = mt_model_from_json(doc, "f", &model, NULL);
-        demand(rc == MT_OK || rc == MT_E_INPUT);
+        DEMAND(rc == MT_OK || rc == MT_E_INPUT);
     }
     mt_json_print(doc, "f", &said);
-    demand((rc == MT_OK) == (mt_json_diags(doc)->errors == 0));
-    demand(rc == MT_OK || said.length > 0);
-    demand_visible(&said);
+    DEMAND((rc == MT_OK) == (mt_json_diags(doc)->errors == 0));
+    DEMAND(rc == MT_OK || said.length > 0);
+    DEMAND(mt_hostile_visible(said.s, said.length));
     mt_text_free(&said);
     mt_model_delete(model);
     mt_json_delete(doc);

@@ -1,15 +1,27 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs a fuzz target over a corpus where libFuzzer is not linked: every file of the folder given,
- * in the order of their names, and always the empty input. No file is an error, not a pass. */
+/*
+ * Runs a fuzz target where libFuzzer is not linked: every file of the corpus folder, every seed of a list, the empty input, and then mutants of all of them:
+ *     fuzz_model CORPUS [SEEDS [RUNS [SEED]]]
+ * SEEDS: a file with names between commas. No file is an error, not a pass. What a mutant breaks is left in the file TARGET.broken in the current folder (the target's input as it is).
+ */
 #include <dirent.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+#include "common/fuzz.h"
 
-enum { MAX_PATH_LENGTH = 4096 };
+enum { MAX_PATH_LENGTH = 4096, MAX_INPUTS = 2000, MAX_SIZE = 32768, LIST_SIZE = 1 << 16 };
+
+typedef struct input {
+    uint8_t *data;
+    size_t size;
+} input;
+
+static input inputs[MAX_INPUTS];
+static int n_inputs;
 
 /* The whole file in memory of its exact size, so that a read past the end is seen; NULL on error. */
 static uint8_t *read_all(const char *path, size_t *size)
@@ -32,46 +44,103 @@ static uint8_t *read_all(const char *path, size_t *size)
     return data;
 }
 
-/* 0: fed to the target, or a hidden name; 1: cannot be read. */
-static int run_file(const char *folder, const char *name, int *files)
+/* 0: fed to the target and kept; 1: cannot be read. */
+static int run_file(const char *path)
 {
-    char path[MAX_PATH_LENGTH];
-    if (name[0] == '.') {
-        return 0;
-    }
-    const int length = snprintf(path, sizeof path, "%s/%s", folder, name);
-    if (length < 0 || length >= MAX_PATH_LENGTH) {
-        return 1;
-    }
     size_t size = 0;
     uint8_t *const data = read_all(path, &size);
-    if (data == NULL) {
+    if (data == NULL || n_inputs == MAX_INPUTS) {
         (void)fprintf(stderr, "%s: cannot be read\n", path);
+        free(data);
         return 1;
     }
     (void)LLVMFuzzerTestOneInput(data, size);
-    free(data);
-    ++*files;
+    inputs[n_inputs++] = (input){data, size};
     return 0;
+}
+
+static int run_folder(const char *folder)
+{
+    struct dirent **entries = NULL;
+    int failed = 0;
+    const int n = scandir(folder, &entries, NULL, alphasort);
+    for (int i = 0; i < n; i++) {
+        char path[MAX_PATH_LENGTH];
+        const int length = snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
+        if (entries[i]->d_name[0] != '.') {
+            failed |= length < 0 || length >= MAX_PATH_LENGTH ? 1 : run_file(path);
+        }
+        free(entries[i]);
+    }
+    free(entries);
+    return failed;
+}
+
+static int run_list(const char *list)
+{
+    size_t size = 0;
+    int failed = 0;
+    char names[LIST_SIZE] = "";
+    uint8_t *const data = read_all(list, &size);
+    if (data == NULL || size >= sizeof names) {
+        free(data);
+        return 1;
+    }
+    memcpy(names, data, size);
+    free(data);
+    for (char *name = names; name != NULL && *name != '\0';) {
+        char *const comma = strchr(name, ',');
+        if (comma != NULL) {
+            *comma = '\0';
+        }
+        failed |= run_file(name);
+        name = comma == NULL ? NULL : comma + 1;
+    }
+    return failed;
+}
+
+static void run_mutants(const char *program, long runs, uint64_t seed)
+{
+    char path[MAX_PATH_LENGTH];
+    const char *const slash = strrchr(program, '/');
+    uint8_t *const data = malloc(MAX_SIZE);
+    (void)snprintf(path, sizeof path, "%s.broken", slash == NULL ? program : slash + 1);
+    fuzz_random r = fuzz_random_seed(seed);
+    for (long i = 0; i < runs && data != NULL && n_inputs > 0; i++) {
+        const input *const from = &inputs[fuzz_below(&r, (size_t)n_inputs)];
+        const input *const other = &inputs[fuzz_below(&r, (size_t)n_inputs)];
+        size_t size = from->size < MAX_SIZE ? from->size : MAX_SIZE;
+        memcpy(data, from->data, size);
+        size = fuzz_mutate(&r, data, size, MAX_SIZE, other->data, other->size);
+        uint8_t *const exact = malloc(size > 0 ? size : 1);
+        FILE *const f = fopen(path, "wb");
+        if (exact != NULL && f != NULL && fwrite(data, 1, size, f) == size && fclose(f) == 0) {
+            memcpy(exact, data, size);
+            (void)LLVMFuzzerTestOneInput(exact, size);
+        }
+        free(exact);
+    }
+    (void)unlink(path);
+    free(data);
 }
 
 int main(int argc, char **argv)
 {
-    struct dirent **entries = NULL;
-    int files = 0;
-    int failed = 0;
-    if (argc != 2) {
-        (void)fprintf(stderr, "usage: %s CORPUS\n", argv[0]);
+    if (argc < 2) {
+        (void)fprintf(stderr, "usage: %s CORPUS [SEEDS [RUNS [SEED]]]\n", argv[0]);
         return 2;
     }
-    const int n = scandir(argv[1], &entries, NULL, alphasort);
-    for (int i = 0; i < n; i++) {
-        failed |= run_file(argv[1], entries[i]->d_name, &files);
-        free(entries[i]);
-    }
-    free(entries);
+    int failed = run_folder(argv[1]);
+    failed |= argc > 2 ? run_list(argv[2]) : 0;
     const uint8_t nothing = 0;
     (void)LLVMFuzzerTestOneInput(&nothing, 0);
-    printf("%d inputs from %s\n", files, argv[1]);
-    return failed != 0 || files == 0;
+    const long runs = argc > 3 ? strtol(argv[3], NULL, 10) : 0;
+    const uint64_t seed = argc > 4 ? strtoull(argv[4], NULL, 10) : 1;
+    printf("%d inputs, %ld mutants, seed %llu\n", n_inputs, runs, (unsigned long long)seed);
+    (void)fflush(stdout);
+    run_mutants(argv[0], runs, seed);
+    for (int i = 0; i < n_inputs; i++) {
+        free(inputs[i].data);
+    }
+    return failed != 0 || n_inputs == 0;
 }

@@ -417,6 +417,29 @@ static void modal__every_failing_allocation_is_reported(mt_test *t)
     CHECK_INT(t, rc, MT_OK);
 }
 
+/* Two masses of 1 kg on springs of 50 and 90 N/m, the first uncertain by 60 and strained, the second by 100 and not: undecided, and a rigid body's, which is at 0 and comes first. */
+static void modal__judged_modes_ascend(mt_test *t)
+{
+    const double k[] = {50.0, 0.0, 0.0, 90.0};
+    const double m[] = {1.0, 0.0, 0.0, 1.0};
+    double stiffness[] = {50.0, 90.0};
+    double mass[] = {1.0, 1.0};
+    double stiffness_noise[] = {60.0, 100.0};
+    double mass_noise[] = {0.0, 0.0};
+    double load_noise[] = {60.0, 100.0};
+    bool strained[] = {true, false};
+    mt_mode_energies e = {stiffness, mass, stiffness_noise, mass_noise, load_noise, strained};
+    mt_modes modes;
+    REQUIRE(t, mt_modal_solve(2, k, m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
+    mt_modal_judge(&e, -1, &modes);
+    CHECK_INT(t, modes.kind[0], MT_MODE_RIGID_BODY);
+    CHECK_INT(t, modes.kind[1], MT_MODE_UNDECIDED);
+    CHECK_NEAR_ABS(t, modes.lambda[0], 0.0, 0.0);
+    CHECK_NEAR(t, modes.lambda[1], 50.0, TOL);
+    CHECK_NEAR_ABS(t, fabs(modes.y[0]), 0.0, TOL);
+    CHECK_NEAR_ABS(t, fabs(modes.y[1]), 1.0, TOL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -430,6 +453,7 @@ int main(void)
         MT_TEST(modal__rigid_body_modes_stay_rigid_in_oblique_coordinates),
         MT_TEST(modal__factored_and_identity_masses_give_the_same),
         MT_TEST(modal__sign_rule_is_stable_under_rounding),
+        MT_TEST(modal__judged_modes_ascend),
         MT_TEST(modal__bad_matrices_are_errors),
         MT_TEST(modal__repeated_solves_do_not_touch_the_heap),
         MT_TEST(modal__every_failing_allocation_is_reported),

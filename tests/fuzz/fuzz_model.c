@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Any bytes as a model, the whole way: file, positions, modes, slopes, damped modes, doubts. Whatever happens is a status with a text; numbers that come out are finite, ordered and
+ * accounted for.
+ */
+#include <math.h>
+
+#include "common/fuzz.h"
+#include "io/io.h"
+#include "linalg/blas.h"
+#include "mechanics/info.h"
+#include "modal/damped.h"
+#include "model/values.h"
+#include "tune/analysis.h"
+#include "tune/doubts.h"
+
+/* Small enough for hundreds of models in a second. */
+enum { MOST_PARTS = 24, MOST_ELEMENTS = 16, MOST_CONFIGURATIONS = 2, MOST_INPUTS = 3 };
+
+static bool is_small(const mt_model *m)
+{
+    int elements = 0;
+    for (int i = 0; i < m->n_links; i++) {
+        elements += m->links[i].elements < MOST_ELEMENTS ? m->links[i].elements : MOST_ELEMENTS;
+    }
+    return m->n_bodies + m->n_springs + m->n_joints <= 3 * MOST_PARTS &&
+           m->n_bodies <= MOST_PARTS && elements < MOST_ELEMENTS;
+}
+
+static void demand_failed(mt_status rc, const mt_err *err)
+{
+    DEMAND(fuzz_is_refusal(rc));
+    DEMAND(err->code == rc && err->text[0] != '\0');
+}
+
+static void demand_modes(const mt_modes *m)
+{
+    DEMAND(m->count == m->n - m->n_condensed && m->count >= 0);
+    for (int i = 0; i < m->count; i++) {
+        DEMAND(isfinite(m->lambda[i]));
+        DEMAND(i == 0 || m->lambda[i] >= m->lambda[i - 1]);
+        DEMAND(m->error[i] >= 0.0);
+        if (m->kind[i] == MT_MODE_FLEXIBLE) {
+            DEMAND(m->lambda[i] >= 0.0);
+        }
+        for (int k = 0; k < m->n; k++) {
+            DEMAND(isfinite(m->y[k + ((ptrdiff_t)i * m->n)]));
+        }
+    }
+}
+
+static void use_slopes(mt_analysis *a, int n, const double *at)
+{
+    mt_analysis_options opt = mt_analysis_options_default();
+    mt_err err = {.code = MT_OK};
+    opt.gradient = true;
+    mt_status rc = mt_analysis_solve(a, at, &opt, &err);
+    if (rc != MT_OK) {
+        demand_failed(rc, &err);
+        return;
+    }
+    demand_modes(&a->modes);
+    for (int i = 0; i < a->modes.count; i++) {
+        double slope[MOST_INPUTS] = {0.0};
+        bool repeated = false;
+        rc = mt_analysis_dlambda(a, i, slope, &repeated, &err);
+        if (rc != MT_OK) {
+            demand_failed(rc, &err);
+            continue;
+        }
+        for (int k = 0; k < n; k++) {
+            DEMAND(repeated || isfinite(slope[k]));
+        }
+    }
+}
+
+static void use_doubts(mt_analysis *a, mt_arena *mem, const uint8_t *data, size_t size)
+{
+    mt_doubt_list doubts = mt_doubt_list_default(mem);
+    mt_err err = {.code = MT_OK};
+    mt_info info;
+    const mt_status rc = mt_doubts_of_analysis(a, 0, NULL, NULL, &doubts, &err);
+    if (rc != MT_OK) {
+        demand_failed(rc, &err);
+        return;
+    }
+    mt_text said = {0};
+    for (int i = 0; i < doubts.n; i++) {
+        DEMAND(doubts.items[i].text != NULL);
+        mt_text_addf(&said, "%s\n", doubts.items[i].text);
+    }
+    fuzz_demand_finite_words(&said, data, size);
+    mt_text_free(&said);
+    DEMAND(mt_info_fill(a->lin, &info, &err) == MT_OK);
+    DEMAND(info.freedoms >= 0 && info.redundant >= 0 && info.mass_kg >= 0.0);
+}
+
+static void use_configuration(const mt_model *m, int c, const double *original,
+                              const uint8_t *data, size_t size)
+{
+    int inputs[MOST_INPUTS];
+    double at[MOST_INPUTS];
+    int n = 0;
+    mt_err err = {.code = MT_OK};
+    mt_analysis *a = NULL;
+    mt_arena mem = {0};
+    for (int i = 0; i < m->n_parameters && n < MOST_INPUTS; i++) {
+        inputs[n] = i;
+        at[n++] = original[i];
+    }
+    const mt_status rc = mt_analysis_new(m, c, n, inputs, at, &a, &err);
+    if (rc != MT_OK) {
+        demand_failed(rc, &err);
+        DEMAND(a == NULL);
+        return;
+    }
+    demand_modes(&a->modes);
+    use_doubts(a, &mem, data, size);
+    use_slopes(a, n, at);
+    mt_analysis_delete(a);
+    mt_arena_free(&mem);
+}
+
+static void use(const mt_model *m, const uint8_t *data, size_t size)
+{
+    mt_arena mem = {0};
+    mt_err err = {.code = MT_OK};
+    double *const original = mt_arena_f64(&mem, (size_t)m->n_parameters, 1);
+    const mt_status rc = mt_model_original_values(m, &mem, original, NULL, &err);
+    if (rc != MT_OK) {
+        demand_failed(rc, &err);
+    }
+    for (int c = 0; rc == MT_OK && c < m->n_configurations && c < MOST_CONFIGURATIONS; c++) {
+        use_configuration(m, c, original, data, size);
+    }
+    mt_arena_free(&mem);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    mt_json *doc = NULL;
+    mt_model *model = NULL;
+    mt_text said = {0};
+    mt_status rc = mt_json_parse((const char *)data, size, &doc, NULL);
+    mt_blas_set_threads(1);
+    if (rc == MT_OK) {
+        rc = mt_model_from_json(doc, "f", &model, NULL);
+    }
+    DEMAND(rc == MT_OK || rc == MT_E_INPUT);
+    mt_json_print(doc, "f", &said);
+    if (rc != MT_OK) {
+        DEMAND(mt_hostile_diagnosed(said.s, said.length));
+    } else if (is_small(model)) {
+        use(model, data, size);
+    }
+    mt_text_free(&said);
+    mt_model_delete(model);
+    mt_json_delete(doc);
+    return 0;
+}
