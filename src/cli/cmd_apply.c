@@ -32,24 +32,40 @@ static const char *hash_of_model(const mt_result *result)
     return NULL;
 }
 
-/* Read the model as meant by the file `naming`; *found becomes its path (heap) where it holds what was solved, and stays NULL where not: a file that cannot be read is not what is
- * looked for. Fails: MT_E_MEMORY. */
-static mt_status try_from(const char *naming, const mt_result *result, const char *root,
-                          mt_file *file, char **found)
+/* A search for the model: `file` and `path` once it is found. */
+typedef struct quest {
+    const mt_result *result;
+    const char *root;
+    mt_file file;
+    char *path; /* heap; NULL: not found yet */
+    mt_status
+        failed; /* memory is out, or what may be it could not be read: the first such failure */
+    mt_err why;
+} quest;
+
+/* Read the model as meant by the file `naming`; found where it holds what was solved. */
+static void try_from(quest *q, const char *naming)
 {
-    const char *const hash = hash_of_model(result);
-    char *const path = naming == NULL ? NULL : mt_file_join(naming, result->model_file);
-    if (path == NULL) {
-        return MT_E_MEMORY;
+    const char *const hash = hash_of_model(q->result);
+    mt_err why = {.code = MT_OK};
+    if (q->path != NULL || q->failed == MT_E_MEMORY) {
+        return;
     }
-    const mt_status rc = mt_file_read(path, root, MT_JSON_MAX_BYTES, file, NULL);
-    if (rc == MT_OK && hash != NULL && strcmp(file->sha256, hash) == 0) {
-        *found = path;
-        return MT_OK;
+    char *const path = naming == NULL ? NULL : mt_file_join(naming, q->result->model_file);
+    const mt_status rc = path == NULL
+                             ? mt_fail_memory(&why)
+                             : mt_file_read(path, q->root, MT_JSON_MAX_BYTES, &q->file, &why);
+    if (rc == MT_OK && hash != NULL && strcmp(q->file.sha256, hash) == 0) {
+        q->path = path;
+        return;
     }
-    mt_file_free(file);
+    if (rc == MT_E_MEMORY ||
+        (rc == MT_E_SYSTEM && q->failed == MT_OK && !mt_file_absent(path))) {
+        q->failed = rc;
+        q->why = why;
+    }
+    mt_file_free(&q->file);
     free(path);
-    return rc == MT_E_MEMORY ? rc : MT_OK;
 }
 
 /* The study's path that `run` left in timing.json beside the result; empty where there is none. Fails: MT_E_MEMORY. */
@@ -73,27 +89,37 @@ static mt_status study_of(const char *result_path, mt_text *study)
     return rc == MT_E_MEMORY || study->failed ? MT_E_MEMORY : MT_OK;
 }
 
-static mt_status search(const char *result_path, const mt_result *result, const char *root,
-                        mt_file *file, char **found)
+static mt_status search(const char *result_path, quest *q, mt_err *err)
 {
     static const char *const beside[] = {"x", "../x", "../../x", "../studies/x",
                                          "../../studies/x"};
     static const char *const here[] = {"x", "studies/x"};
     mt_text study = {.s = NULL};
-    mt_status rc = study_of(result_path, &study);
-    if (rc == MT_OK && study.s != NULL) {
-        rc = try_from(study.s, result, root, file, found);
+    if (study_of(result_path, &study) == MT_E_MEMORY) {
+        q->failed = mt_fail_memory(&q->why);
+    } else if (study.s != NULL) {
+        try_from(q, study.s);
     }
     mt_text_free(&study);
-    for (int i = 0; rc == MT_OK && *found == NULL && i < MT_COUNT(beside); i++) {
+    for (int i = 0; i < MT_COUNT(beside); i++) {
         char *const naming = mt_file_join(result_path, beside[i]);
-        rc = try_from(naming, result, root, file, found);
+        try_from(q, naming);
         free(naming);
     }
-    for (int i = 0; rc == MT_OK && *found == NULL && i < MT_COUNT(here); i++) {
-        rc = try_from(here[i], result, root, file, found);
+    for (int i = 0; i < MT_COUNT(here); i++) {
+        try_from(q, here[i]);
     }
-    return rc;
+    if (q->path != NULL) {
+        return MT_OK;
+    }
+    if (q->failed != MT_OK) {
+        return mt_fail(err, q->failed, "%s", q->why.text);
+    }
+    return mt_fail(
+        err, MT_E_INPUT,
+        "%s: the model \"%s\" is not found as it was when the study was solved: name "
+        "it with --model",
+        result_path, q->result->model_file);
 }
 
 static mt_status find_model(const mt_args *args, const mt_result *result, mt_file *file,
@@ -102,15 +128,11 @@ static mt_status find_model(const mt_args *args, const mt_result *result, mt_fil
     const char *const given = args->value[MT_OPT_MODEL];
     const char *const root = args->value[MT_OPT_ROOT];
     if (given == NULL) {
-        if (search(args->operands[0], result, root, file, path) != MT_OK) {
-            return mt_fail_memory(err);
-        }
-        return *path != NULL
-                   ? MT_OK
-                   : mt_fail(err, MT_E_INPUT,
-                             "%s: the model \"%s\" is not found as it was when the study was "
-                             "solved: name it with --model",
-                             args->operands[0], result->model_file);
+        quest q = {.result = result, .root = root};
+        const mt_status rc = search(args->operands[0], &q, err);
+        *file = q.file;
+        *path = q.path;
+        return rc;
     }
     MT_TRY(mt_file_read(given, root, MT_JSON_MAX_BYTES, file, err));
     const char *const hash = hash_of_model(result);

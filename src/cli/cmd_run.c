@@ -1,20 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune run and compare: answer studies, write what was found, judge published values. */
-/* realpath is in POSIX.1-2008, but the C library shows it only with X/Open: asked for before any header. */
-#define _XOPEN_SOURCE 700 /* NOLINT(cert-dcl37-c,cert-dcl51-cpp): for the system, not ours */
-
-#include <errno.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-
 #include "cli/cli.h"
-#include "io/file.h"
+#include "cli/save.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
 #include "tune/solve.h"
-
-static const char DEFAULT_FOLDER[] = "results";
 
 /* One study on its way. */
 typedef struct job {
@@ -62,138 +52,6 @@ static void finish(job *j)
     mt_study_delete(j->study);
     j->result = NULL;
     j->study = NULL;
-}
-
-/* The study's file name without ".json"; heap. */
-static char *name_of_study(const char *path)
-{
-    const char *const slash = strrchr(path, '/');
-    const char *const name = slash == NULL ? path : slash + 1;
-    const size_t length = strlen(name);
-    mt_text t = {.s = NULL};
-    mt_text_add_n(&t, name,
-                  length > 5 && strcmp(name + length - 5, ".json") == 0 ? length - 5 : length);
-    return t.s;
-}
-
-/* Make a folder and those above it. */
-static mt_status make_folders(const char *path, mt_err *err)
-{
-    mt_text t = {.s = NULL};
-    mt_status rc = MT_OK;
-    for (size_t i = 1; rc == MT_OK && i <= strlen(path); i++) {
-        if (path[i] == '/' || path[i] == '\0') {
-            t.length = 0;
-            mt_text_add_n(&t, path, i);
-            if (t.failed) {
-                rc = mt_fail_memory(err);
-            } else if (mkdir(t.s, 0777) != 0 && errno != EEXIST) {
-                rc = mt_fail(err, MT_E_SYSTEM, "%s: %s", t.s, strerror(errno));
-            }
-        }
-    }
-    mt_text_free(&t);
-    return rc;
-}
-
-static mt_status write_timing(const job *j, mt_text *out, mt_err *err)
-{
-    mt_json_writer w = mt_json_writer_default(out);
-    char *const absolute = realpath(j->path, NULL);
-    if (absolute == NULL && errno == ENOMEM) {
-        return mt_fail_memory(err);
-    }
-    mt_json_open(&w, NULL, '{');
-    mt_json_put_string(&w, "format", "modetune-timing/1");
-    mt_json_put_string(&w, "study_path", absolute);
-    mt_json_put_number(&w, "solve_s", j->seconds);
-    mt_json_put_integer(&w, "evaluations", j->result->run.evaluations);
-    mt_json_put_integer(&w, "threads", j->args->threads);
-    mt_json_close(&w);
-    free(absolute);
-    return mt_json_done(&w) ? MT_OK : mt_fail_memory(err);
-}
-
-typedef enum output_file { RESULT, DESIGNS, TRADE, REPORT, TIMING, OUTPUT_COUNT } output_file;
-
-static mt_status make_text(const job *j, output_file which, mt_text *out, mt_err *err)
-{
-    mt_table designs;
-    switch (which) {
-    case RESULT:
-        return mt_result_write(j->result, out, err);
-    case DESIGNS:
-        designs = mt_report_designs(j->result);
-        mt_table_csv(&designs, out);
-        mt_table_free(&designs);
-        break;
-    case TRADE: /* empty where there is none: then no file is written */
-        designs = mt_report_trade(j->result);
-        if (j->result->trade != NULL) {
-            mt_table_csv(&designs, out);
-        }
-        mt_table_free(&designs);
-        break;
-    case REPORT:
-        mt_report_html(j->result, out);
-        break;
-    case TIMING:
-        return write_timing(j, out, err);
-    case OUTPUT_COUNT:
-        break;
-    }
-    return out->failed ? mt_fail_memory(err) : MT_OK;
-}
-
-/* All texts are made before the first file is written, each file whole or not at all. */
-static mt_status write_files(const job *j, const char *folder, mt_err *err)
-{
-    static const char *const names[OUTPUT_COUNT] = {"result.json", "recommendations.csv",
-                                                    "trade.csv", "report.html", "timing.json"};
-    mt_text texts[OUTPUT_COUNT] = {{.s = NULL}};
-    mt_status rc = MT_OK;
-    for (int i = 0; rc == MT_OK && i < OUTPUT_COUNT; i++) {
-        rc = make_text(j, (output_file)i, &texts[i], err);
-    }
-    rc = rc == MT_OK ? make_folders(folder, err) : rc;
-    for (int i = 0; rc == MT_OK && i < OUTPUT_COUNT; i++) {
-        mt_text path = {.s = NULL};
-        if (i == TRADE && j->result->trade == NULL) {
-            continue;
-        }
-        mt_text_add(&path, folder);
-        mt_text_add(&path, "/");
-        mt_text_add(&path, names[i]);
-        rc = path.failed ? mt_fail_memory(err)
-                         : mt_file_write(path.s, texts[i].s, texts[i].length, err);
-        mt_text_free(&path);
-    }
-    for (int i = 0; i < OUTPUT_COUNT; i++) {
-        mt_text_free(&texts[i]);
-    }
-    return rc;
-}
-
-static int save(const job *j)
-{
-    const char *const base =
-        j->args->given[MT_OPT_OUTPUT] ? j->args->value[MT_OPT_OUTPUT] : DEFAULT_FOLDER;
-    char *const name = name_of_study(j->path);
-    mt_text folder = {.s = NULL};
-    mt_err err = {.code = MT_OK};
-    mt_text_add(&folder, base);
-    mt_text_add(&folder, "/");
-    mt_text_add(&folder, name == NULL ? "" : name);
-    mt_status rc =
-        name == NULL || folder.failed ? mt_fail_memory(&err) : write_files(j, folder.s, &err);
-    if (rc == MT_OK) {
-        mt_terminal_talk(j->args->given[MT_OPT_QUIET],
-                         "%s: %.3g s, %ld evaluations; written to %s/", j->path, j->seconds,
-                         j->result->run.evaluations, folder.s);
-    }
-    mt_text_free(&folder);
-    free(name);
-    return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
 }
 
 /* Nothing to judge must not look like a success. */
@@ -245,7 +103,7 @@ static int run_one(const job *j, mt_json_writer *w, mt_text *out)
 {
     const bool verify = j->args->given[MT_OPT_VERIFY];
     print_result(j, verify, w, out);
-    return mt_exit_worse(outcome(j, verify), save(j));
+    return mt_exit_worse(outcome(j, verify), mt_save(j->args, j->path, j->result, j->seconds));
 }
 
 /* All studies in turn. Text leaves as it comes; JSON is one document (a list where several studies are given). */
@@ -277,33 +135,9 @@ static int for_each_study(const mt_args *args, mt_text *out, use_answer use)
     return code;
 }
 
-/* Studies whose results would go into one folder; the second would silently replace the first. Returns an exit status, everything said. */
-static int refuse_shared_folder(const mt_args *args)
-{
-    int code = MT_EXIT_DONE;
-    for (int i = 0; i < args->n_operands; i++) {
-        char *const name = name_of_study(args->operands[i]);
-        for (int k = 0; k < i; k++) {
-            char *const other = name_of_study(args->operands[k]);
-            if (name == NULL || other == NULL) {
-                mt_err err;
-                code = mt_cli_failed(mt_fail_memory(&err), &err);
-            } else if (strcmp(name, other) == 0) {
-                mt_terminal_error("%s and %s would both be written to \"%s\": run one of them "
-                                  "apart, with another -o",
-                                  args->operands[k], args->operands[i], name);
-                code = mt_exit_worse(code, MT_EXIT_INPUT);
-            }
-            free(other);
-        }
-        free(name);
-    }
-    return code;
-}
-
 int mt_cmd_run(const mt_args *args, mt_text *out)
 {
-    const int code = refuse_shared_folder(args);
+    const int code = mt_save_plan(args);
     return code == MT_EXIT_DONE ? for_each_study(args, out, run_one) : code;
 }
 

@@ -75,7 +75,7 @@ const mt_command mt_commands[MT_CMD_IDS] = {
     COMMAND(MT_CMD_RUN, "run", "STUDY...", 1, -1, "solve studies and write what was found",
             "Solves each study and writes result.json, recommendations.csv, report.html,\n"
             "trade.csv (of a trade study) and timing.json into DIR/<study file name\n"
-            "without .json>/. Prints a summary.\n"
+            "without .json>/, replaced as one. Prints a summary.\n"
             "An interrupt (Ctrl-C) ends the search; the best design so far is written."),
     COMMAND(MT_CMD_COMPARE, "compare", "STUDY...", 1, -1, "published against computed values",
             "Solves each study and prints its published values beside the computed "
@@ -122,7 +122,9 @@ const mt_command mt_commands[MT_CMD_IDS] = {
             "else of its text\n"
             "stays as it is. The model is found from the result's folder, and must "
             "be the one that\n"
-            "was solved (same SHA-256) unless --model names it."),
+            "was solved (same SHA-256) unless --model names it. A result.json is refused where "
+            "the\n"
+            "files beside it are of another run."),
     COMMAND(
         MT_CMD_CHECK, "check", "FILE...", 1, -1,
         "validate model, study, result and aircraft files",

@@ -38,8 +38,10 @@ __attribute__((section(".preinit_array"), used)) static const before_constructor
 /* What belongs to the whole process is set here, and nowhere below. */
 int main(int argc, char *argv[])
 {
+    mt_terminal_open();
     mt_terminal_catch_signals();
     mt_tune_prepare_process();
     mt_blas_set_threads(1);
-    return mt_cli_main(argc, argv);
+    const int code = mt_cli_main(argc, argv);
+    return mt_exit_worse(code, mt_terminal_close());
 }

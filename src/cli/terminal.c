@@ -3,6 +3,8 @@
 #include "cli/terminal.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -75,24 +77,55 @@ bool mt_terminal_colour(int descriptor)
            terminal != NULL && strcmp(terminal, "dumb") != 0;
 }
 
+/* All bytes, at the pace of whoever takes them; false with errno. */
+static bool write_out(const char *bytes, size_t length)
+{
+    size_t done = 0;
+    while (done < length) {
+        const ssize_t n = write(STDOUT_FILENO, bytes + done, length - done);
+        if (n >= 0) {
+            done += (size_t)n;
+        } else if (errno == EAGAIN) { /* somebody else made it non-blocking */
+            struct pollfd reader = {.fd = STDOUT_FILENO, .events = POLLOUT};
+            (void)poll(&reader, 1, -1);
+        } else if (errno != EINTR) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool put(FILE *to, const char *s, size_t n)
+{
+    return to == stdout ? write_out(s, n) : fwrite(s, 1, n, to) == n;
+}
+
 /* The one way out: what a terminal would obey is made visible. `lines`: the text has lines of its own. */
 static bool show(FILE *to, const char *s, size_t n, bool lines)
 {
     bool ok = true;
     while (ok && n > 0) {
         const size_t run = mt_visible_run(s, n, lines);
-        ok = run == 0 || fwrite(s, 1, run, to) == run;
+        ok = run == 0 || put(to, s, run);
         s += run;
         n -= run;
         if (ok && n > 0) {
             char escape[MT_VISIBLE_SIZE];
             const size_t used = mt_visible_escape(s, n, escape);
-            ok = fputs(escape, to) >= 0;
+            ok = put(to, escape, strlen(escape));
             s += used;
             n -= used;
         }
     }
     return ok;
+}
+
+static int output_failed(void)
+{
+    if (errno != EPIPE) {
+        mt_terminal_error("standard output: %s", strerror(errno));
+    }
+    return MT_EXIT_SYSTEM;
 }
 
 void mt_terminal_drop(void)
@@ -109,14 +142,28 @@ int mt_terminal_put(mt_text *out)
         mt_terminal_error("out of memory");
         without_memory = true;
     } else if (out->length > 0) {
-        errno = 0;
-        ok = show(stdout, out->s, out->length, true) && fflush(stdout) == 0;
-        if (!ok && errno != EPIPE) {
-            mt_terminal_error("standard output: %s", strerror(errno));
+        ok = show(stdout, out->s, out->length, true);
+        if (!ok) {
+            (void)output_failed();
         }
     }
     mt_text_free(out);
     return ok ? MT_EXIT_DONE : MT_EXIT_SYSTEM;
+}
+
+int mt_terminal_close(void)
+{
+    return close(STDOUT_FILENO) == 0 || errno == EBADF || errno == EINTR ? MT_EXIT_DONE
+                                                                         : output_failed();
+}
+
+void mt_terminal_open(void)
+{
+    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++) {
+        if (fcntl(fd, F_GETFD) < 0 && errno == EBADF) {
+            (void)open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+        }
+    }
 }
 
 /* One line of talk to standard error. */
@@ -231,6 +278,7 @@ void mt_terminal_catch_signals(void)
     (void)sigaction(SIGINT, &stop, NULL);
     (void)sigaction(SIGTERM, &stop, NULL);
     (void)sigaction(SIGPIPE, &ignore, NULL);
+    (void)sigaction(SIGXFSZ, &ignore, NULL);
 }
 
 const volatile sig_atomic_t *mt_terminal_stop(void)

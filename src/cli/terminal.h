@@ -32,6 +32,10 @@ int mt_exit_worse(int a, int b);
 int mt_terminal_put(mt_text *out);
 /* What is being collected is not whole, memory being out: the next mt_terminal_put throws it away. */
 void mt_terminal_drop(void);
+/* The last word of standard output: a network disk may refuse what was written only now. As mt_terminal_put. */
+int mt_terminal_close(void);
+/* At the start: a descriptor of 0 to 2 that is closed must not become one of a file, which messages would then go into. It is opened so that using it fails. */
+void mt_terminal_open(void);
 /* To standard error: "modetune: error: ..." */
 void mt_terminal_error(const char *fmt, ...) MT_PRINTF(1, 2);
 void mt_terminal_warning(const char *fmt, ...) MT_PRINTF(1, 2);
@@ -44,7 +48,7 @@ void mt_terminal_progress(bool quiet, const char *text);
 /* Is standard output (descriptor 1) or error (2) a terminal where colour is welcome? */
 bool mt_terminal_colour(int descriptor);
 
-/* SIGINT and SIGTERM set a flag (the second one ends the program), SIGPIPE becomes an error of writing. */
+/* SIGINT and SIGTERM set a flag (the second one ends the program), SIGPIPE and SIGXFSZ become errors of writing. */
 void mt_terminal_catch_signals(void);
 const volatile sig_atomic_t *mt_terminal_stop(void);
 /* Seconds of a clock that only runs forward. */

@@ -16,7 +16,7 @@
 #include "base/arena.h"
 #include "base/format.h"
 
-static mt_status system_error(mt_err *err, const char *path, int code)
+mt_status mt_file_failed(const char *path, int code, mt_err *err)
 {
     char text[128];
     if (strerror_r(code, text, sizeof text) != 0) {
@@ -24,6 +24,12 @@ static mt_status system_error(mt_err *err, const char *path, int code)
     }
     return code == ENOMEM ? mt_fail_memory(err)
                           : mt_fail(err, MT_E_SYSTEM, "%s: %s", path, text);
+}
+
+/* Errors that say of a name that it leads to nothing. */
+static bool is_absence(int code)
+{
+    return code == ENOENT || code == ENOTDIR || code == ELOOP || code == ENAMETOOLONG;
 }
 
 /* Does the resolved path lie beneath the resolved folder? */
@@ -41,7 +47,7 @@ static char *resolve(const char *path, const char *root, mt_status *rc, mt_err *
 {
     char *const real = realpath(path, NULL);
     if (real == NULL) {
-        *rc = system_error(err, path, errno);
+        *rc = mt_file_failed(path, errno, err);
         return NULL;
     }
     *rc = MT_OK;
@@ -50,7 +56,8 @@ static char *resolve(const char *path, const char *root, mt_status *rc, mt_err *
     }
     char *const folder = realpath(root, NULL);
     if (folder == NULL) {
-        *rc = system_error(err, root, errno);
+        *rc = is_absence(errno) ? mt_fail(err, MT_E_INPUT, "%s: there is no such folder", root)
+                                : mt_file_failed(root, errno, err);
     } else if (!beneath(real, folder)) {
         *rc = mt_fail(err, MT_E_INPUT, "%s: lies outside the root folder %s", path, root);
     }
@@ -67,7 +74,7 @@ static mt_status read_all(int fd, const char *path, size_t limit, mt_file *out, 
 {
     struct stat st;
     if (fstat(fd, &st) != 0) {
-        return system_error(err, path, errno);
+        return mt_file_failed(path, errno, err);
     }
     if (!S_ISREG(st.st_mode)) {
         return mt_fail(err, MT_E_INPUT, "%s: is not a regular file", path);
@@ -83,7 +90,7 @@ static mt_status read_all(int fd, const char *path, size_t limit, mt_file *out, 
     while (out->length < size) {
         const ssize_t n = read(fd, out->bytes + out->length, size - out->length);
         if (n < 0 && errno != EINTR) {
-            return system_error(err, path, errno);
+            return mt_file_failed(path, errno, err);
         }
         if (n == 0) {
             break;
@@ -104,11 +111,14 @@ mt_status mt_file_read(const char *path, const char *root, size_t limit, mt_file
         return rc;
     }
     /* the last part is no link any more; without O_NONBLOCK a pipe would block the open */
-    const int fd = open(real, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    int fd = -1;
+    do {
+        fd = open(real, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    } while (fd < 0 && errno == EINTR);
     const int code = errno;
     free(real);
     if (fd < 0) {
-        return system_error(err, path, code);
+        return mt_file_failed(path, code, err);
     }
     rc = read_all(fd, path, limit, out, err);
     (void)close(fd);
@@ -126,9 +136,10 @@ void mt_file_free(mt_file *f)
     *f = (mt_file){0};
 }
 
-bool mt_file_exists(const char *path)
+bool mt_file_absent(const char *path)
 {
-    return access(path, F_OK) == 0;
+    struct stat st;
+    return stat(path, &st) != 0 && is_absence(errno);
 }
 
 /* a, the first n bytes of it, and b; heap. */
@@ -164,74 +175,4 @@ char *mt_file_folder(const char *path)
 char *mt_file_default_root(const char *study_path)
 {
     return concatenated(study_path, folder_length(study_path), "..");
-}
-
-static bool write_all(int fd, const char *bytes, size_t length)
-{
-    size_t done = 0;
-    while (done < length) {
-        const ssize_t n = write(fd, bytes + done, length - done);
-        if (n < 0 && errno != EINTR) {
-            return false;
-        }
-        done += n > 0 ? (size_t)n : 0;
-    }
-    return true;
-}
-
-/* Permissions of the file that stands there, else what the process gives to new files: 0666 without the umask. The umask can
- * only be read by setting it, which other threads would see: a new file gets 0644. */
-static mode_t wanted_mode(const char *path)
-{
-    struct stat st;
-    enum { NEW_FILE = 0644, PERMISSIONS = 0777 };
-    return stat(path, &st) == 0 && S_ISREG(st.st_mode) ? st.st_mode & PERMISSIONS : NEW_FILE;
-}
-
-/* Make the new name durable: the folder is flushed too. */
-static bool flush_folder(const char *path)
-{
-    char *const folder = mt_file_folder(path);
-    const int fd = folder == NULL ? -1 : open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    free(folder);
-    if (fd < 0) {
-        return false;
-    }
-    const bool ok = fsync(fd) == 0 || errno == EINVAL; /* some file systems cannot */
-    (void)close(fd);
-    return ok;
-}
-
-mt_status mt_file_write(const char *path, const char *bytes, size_t length, mt_err *err)
-{
-    char *const temporary = concatenated(path, strlen(path), ".XXXXXX");
-    if (temporary == NULL) {
-        return mt_fail_memory(err);
-    }
-    const int fd = mkstemp(temporary);
-    int code = errno;
-    bool ok = fd >= 0;
-    if (ok) {
-        ok = write_all(fd, bytes, length) && fchmod(fd, wanted_mode(path)) == 0 &&
-             fsync(fd) == 0;
-        code = errno;
-        if (close(fd) != 0 && ok) {
-            ok = false;
-            code = errno;
-        }
-        if (ok && rename(temporary, path) != 0) {
-            ok = false;
-            code = errno;
-        }
-        if (!ok) {
-            (void)unlink(temporary);
-        }
-    }
-    free(temporary);
-    if (!ok) {
-        return system_error(err, path, code);
-    }
-    /* the file is whole already: a folder that cannot be flushed is no failure of ours */
-    (void)flush_folder(path);
-    return MT_OK;
 }

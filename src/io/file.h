@@ -24,8 +24,10 @@ typedef struct mt_file {
 mt_status mt_file_read(const char *path, const char *root, size_t limit, mt_file *out,
                        mt_err *err);
 void mt_file_free(mt_file *f);
-/* Is there anything of that name, readable or not? */
-bool mt_file_exists(const char *path);
+/* Is it sure that the name leads to nothing? False for what is there, and for what cannot be told. */
+bool mt_file_absent(const char *path);
+/* The system's error number as a failure of the path: MT_E_SYSTEM, or MT_E_MEMORY. */
+mt_status mt_file_failed(const char *path, int code, mt_err *err);
 
 /* The path of `name` as meant by the file `naming`: relative names start in the folder of `naming`. Heap, to be freed by the
  * caller; NULL when out of memory. Only joins: nothing is looked up. */
@@ -34,10 +36,6 @@ char *mt_file_join(const char *naming, const char *name);
 char *mt_file_folder(const char *path);
 /* The folder that the files named by a study must lie in by default: the parent of its folder ("folder/.."). Heap. */
 char *mt_file_default_root(const char *study_path);
-
-/* Write a file whole or not at all: a temporary file in the same folder, fsync, rename. An existing file is replaced and keeps its
- * permissions. Fails: MT_E_SYSTEM (nothing is left behind), MT_E_MEMORY. */
-mt_status mt_file_write(const char *path, const char *bytes, size_t length, mt_err *err);
 
 /* SHA-256 (FIPS 180-4) of the bytes, in lower-case hexadecimal digits. */
 void mt_sha256(const void *bytes, size_t length, char out[MT_SHA256_TEXT]);

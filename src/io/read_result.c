@@ -1,10 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A result read back: what `apply` needs. Members that are not looked at may be anything, so that later versions can add some. */
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "io/file.h"
+#include "io/folder.h"
 #include "io/io.h"
 #include "io/reader.h"
+
+enum { READER_PATIENCE_MS = 10000 };
 
 typedef struct result_reader {
     mt_reader r;
@@ -92,20 +97,36 @@ static void read_recommendations(result_reader *s, mt_addr list)
     }
 }
 
-static void read_inputs(result_reader *s, mt_addr list)
+/* Files and their digests; returns how many. */
+static int read_digests(result_reader *s, mt_addr list, const char ***names,
+                        const char ***sha256)
 {
-    mt_result_run *const run = &s->result->run;
+    int n = 0;
     mt_items items = mt_reader_items(&s->r, list);
-    run->input_names = mt_reader_room(&s->r, &items, sizeof *run->input_names);
-    run->input_sha256 = mt_reader_room(&s->r, &items, sizeof *run->input_sha256);
+    *names = mt_reader_room(&s->r, &items, sizeof **names);
+    *sha256 = mt_reader_room(&s->r, &items, sizeof **sha256);
     while (mt_items_next(&items)) {
         if (mt_reader_type(&s->r, items.at, MT_KEY_OBJECT)) {
-            const int i = run->n_inputs++;
-            run->input_names[i] = mt_reader_text(&s->r, need(s, items.at, "file", MT_KEY_TEXT));
-            run->input_sha256[i] =
-                mt_reader_text(&s->r, need(s, items.at, "sha256", MT_KEY_TEXT));
+            (*names)[n] = mt_reader_text(&s->r, need(s, items.at, "file", MT_KEY_TEXT));
+            (*sha256)[n] = mt_reader_text(&s->r, need(s, items.at, "sha256", MT_KEY_TEXT));
+            n++;
         }
     }
+    return n;
+}
+
+static void read_run(result_reader *s, mt_addr value)
+{
+    mt_result_run *const run = &s->result->run;
+    run->modetune_version = text(s, value, "modetune");
+    run->n_inputs = read_digests(s, need(s, value, "inputs", MT_KEY_LIST), &run->input_names,
+                                 &run->input_sha256);
+    /* results of version 0.1.0 and before name no outputs */
+    const bool has =
+        value != MT_NO_ADDR && mt_json_member(s->r.doc, value, "outputs") != MT_NO_ADDR;
+    run->n_outputs = !has ? 0
+                          : read_digests(s, need(s, value, "outputs", MT_KEY_LIST),
+                                         &run->output_names, &run->output_sha256);
 }
 
 static void read_named_file(result_reader *s, const char *member, const char **name,
@@ -136,9 +157,7 @@ static void read_root(result_reader *s)
     result->status_text = text(s, MT_JSON_ROOT, "status_text");
     read_design(s, need(s, MT_JSON_ROOT, "baseline", MT_KEY_OBJECT), &result->baseline);
     read_recommendations(s, need(s, MT_JSON_ROOT, "recommendations", MT_KEY_LIST));
-    const mt_addr run = need(s, MT_JSON_ROOT, "run", MT_KEY_OBJECT);
-    s->result->run.modetune_version = text(s, run, "modetune");
-    read_inputs(s, need(s, run, "inputs", MT_KEY_LIST));
+    read_run(s, need(s, MT_JSON_ROOT, "run", MT_KEY_OBJECT));
 }
 
 static mt_status read_text(result_reader *s, const char *path, const mt_file *file,
@@ -164,8 +183,9 @@ static mt_status read_text(result_reader *s, const char *path, const mt_file *fi
     return rc;
 }
 
-mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result **out,
-                         mt_text *messages, mt_err *err)
+/* The file by itself; sha256 of its bytes. */
+static mt_status load_alone(const char *path, const mt_io_options *opt, mt_result **out,
+                            char sha256[MT_SHA256_TEXT], mt_text *messages, mt_err *err)
 {
     const size_t limit =
         opt == NULL || opt->max_bytes == 0 ? MT_JSON_MAX_BYTES : opt->max_bytes;
@@ -177,6 +197,7 @@ mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result *
         rc = mt_file_read(path, NULL, limit, &file, err);
     }
     if (rc == MT_OK) {
+        memcpy(sha256, file.sha256, MT_SHA256_TEXT);
         rc = read_text(&s, path, &file, messages, err);
     }
     mt_file_free(&file);
@@ -186,4 +207,44 @@ mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result *
     }
     *out = s.result;
     return MT_OK;
+}
+
+/* Read once more while no run writes: what did not fit together may have been half replaced. */
+static mt_status load_locked(const char *path, const mt_io_options *opt, mt_result **out,
+                             mt_text *messages, mt_err *err)
+{
+    char sha256[MT_SHA256_TEXT];
+    char *const folder = mt_file_folder(path);
+    if (folder == NULL) {
+        return mt_fail_memory(err);
+    }
+    int lock = -1;
+    mt_status rc = mt_folder_lock(folder, true, READER_PATIENCE_MS, &lock, err);
+    free(folder);
+    rc = rc == MT_OK ? load_alone(path, opt, out, sha256, messages, err) : rc;
+    if (rc == MT_OK && mt_result_has_folder(path, *out)) {
+        rc = mt_result_check_folder(path, sha256, *out, err);
+    }
+    mt_folder_unlock(lock);
+    return rc;
+}
+
+mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result **out,
+                         mt_text *messages, mt_err *err)
+{
+    char sha256[MT_SHA256_TEXT];
+    mt_status rc = load_alone(path, opt, out, sha256, messages, err);
+    if (rc == MT_OK && mt_result_has_folder(path, *out)) {
+        rc = mt_result_check_folder(path, sha256, *out, err);
+        if (rc == MT_E_INPUT) {
+            mt_result_delete(*out);
+            *out = NULL;
+            rc = load_locked(path, opt, out, messages, err);
+        }
+    }
+    if (rc != MT_OK) {
+        mt_result_delete(*out);
+        *out = NULL;
+    }
+    return rc;
 }

@@ -102,10 +102,11 @@ void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *
     study->n_inputs++;
 }
 
-void mt_read_study_note_failure(mt_study_reader *s, mt_name path, mt_status rc,
-                                const mt_err *why, bool told)
+void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *file,
+                                mt_status rc, const mt_err *why, bool told)
 {
-    if (rc == MT_E_MEMORY || rc == MT_E_INTERNAL) {
+    if (rc == MT_E_MEMORY || rc == MT_E_INTERNAL ||
+        (rc == MT_E_SYSTEM && !mt_file_absent(file))) {
         s->failed = rc;
         s->why = *why;
         return;
@@ -133,7 +134,7 @@ static mt_model *load_model(mt_study_reader *s, mt_name path)
     if (rc == MT_OK) {
         mt_read_study_note_input(s, path.s, model->sha256);
     } else {
-        mt_read_study_note_failure(s, path, rc, &why, messages.length > 0);
+        mt_read_study_note_failure(s, path, joined, rc, &why, messages.length > 0);
     }
     if (messages.length > 0) {
         mt_text_add(s->model_messages, messages.s);

@@ -149,7 +149,7 @@ static void load(mt_study_reader *s, mt_name path, const char *file)
         mt_read_study_note_input(s, path.s, study->aircraft.sha256);
     } else {
         study->aircraft = (mt_aircraft_list){0};
-        mt_read_study_note_failure(s, path, rc, &why, messages.length > 0);
+        mt_read_study_note_failure(s, path, file, rc, &why, messages.length > 0);
     }
     if (messages.length > 0) {
         mt_text_add(s->model_messages, messages.s);
@@ -180,7 +180,7 @@ void mt_read_study_aircraft(mt_study_reader *s, mt_addr value)
     char *const file = path.s == NULL ? NULL : mt_file_join(s->study->path, path.s);
     if (path.s != NULL && file == NULL) {
         s->r.out_of_memory = true;
-    } else if (file != NULL && (named || mt_file_exists(file))) {
+    } else if (file != NULL && (named || !mt_file_absent(file))) {
         load(s, path, file);
     }
     free(file);

@@ -417,6 +417,19 @@ static void put_count(mt_json_writer *w, const char *name, int count)
     mt_json_put_number(w, name, count < 0 ? nan("") : (double)count);
 }
 
+static void write_digests(mt_json_writer *w, const char *member, int n,
+                          const char *const *names, const char *const *sha256)
+{
+    mt_json_open(w, member, '[');
+    for (int i = 0; i < n; i++) {
+        mt_json_open(w, NULL, '{');
+        mt_json_put_string(w, "file", names[i]);
+        mt_json_put_string(w, "sha256", sha256[i]);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+}
+
 static void write_run(mt_json_writer *w, const mt_result_run *run)
 {
     mt_json_open(w, "run", '{');
@@ -430,14 +443,8 @@ static void write_run(mt_json_writer *w, const mt_result_run *run)
     put_count(w, "found_once", run->found_once);
     mt_json_put_number(w, "estimated_missing", run->estimated_missing);
     mt_json_put_integer(w, "evaluations", run->evaluations);
-    mt_json_open(w, "inputs", '[');
-    for (int i = 0; i < run->n_inputs; i++) {
-        mt_json_open(w, NULL, '{');
-        mt_json_put_string(w, "file", run->input_names[i]);
-        mt_json_put_string(w, "sha256", run->input_sha256[i]);
-        mt_json_close(w);
-    }
-    mt_json_close(w);
+    write_digests(w, "inputs", run->n_inputs, run->input_names, run->input_sha256);
+    write_digests(w, "outputs", run->n_outputs, run->output_names, run->output_sha256);
     mt_json_close(w);
 }
 

@@ -283,6 +283,9 @@ typedef struct mt_result_run {
     int n_inputs;
     const char **input_names;
     const char **input_sha256;
+    int n_outputs; /* files written beside the result; 0: it is written alone */
+    const char **output_names;
+    const char **output_sha256;
 } mt_result_run;
 
 typedef struct mt_result {

@@ -159,8 +159,8 @@ class Apply(CliTest):
     def test_a_result_of_another_version_says_so(self):
         path = self.folder / "results/two/result.json"
         text = path.read_text(encoding="utf-8")
-        path.write_text(re.sub('"modetune": "[^"]*"', '"modetune": "0.0.1"', text), encoding="utf-8")
-        self.assertIn("was written by modetune 0.0.1", self.applied().stderr)
+        self.write("other.json", re.sub('"modetune": "[^"]*"', '"modetune": "0.0.1"', text))
+        self.assertIn("was written by modetune 0.0.1", self.expect(0, "apply", "other.json").stderr)
 
     def test_the_model_is_found_without_timing_and_from_elsewhere(self):
         (self.folder / "results/two/timing.json").unlink()
@@ -179,8 +179,8 @@ class Apply(CliTest):
                                ('"recommended": 3', '"recommended": null, "x": 3', 'recommends no value of "k1"')):
             with self.subTest(new):
                 self.assertIn(old, text)
-                path.write_text(text.replace(old, new), encoding="utf-8")
-                self.assertIn(want, self.applied(code=2).stderr)
+                self.write("other.json", text.replace(old, new))
+                self.assertIn(want, self.expect(2, "apply", "other.json").stderr)
 
     def test_check_knows_results_and_studies(self):
         self.assertEqual(self.expect(0, "check", "results/two/result.json", self.study).stdout,

@@ -34,6 +34,7 @@ static const char *REASONS[] = {"K_T1 rises by 1.5 %."};
 static const char *VARIABLES[] = {"K_T1", "M_SAU"};
 static double DIRECTION[] = {0.0, 1.0};
 static const char *INPUT_NAMES[] = {"study.json"};
+static const char *OUTPUT_NAMES[] = {"report.html"};
 static const char *INPUT_DIGESTS[] = {
     "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"};
 
@@ -204,9 +205,22 @@ static bool make_sample(sample *s)
     r->published = s->published;
     r->n_warnings = 1;
     r->warnings = REASONS;
-    r->run = (mt_result_run){
-        "0.1.0", "OpenBLAS 0.3.21", "2.7.1",      "2.7.1", 1, 1234, 16, 9, 3, 1.5,
-        1,       INPUT_NAMES,       INPUT_DIGESTS};
+    r->run = (mt_result_run){"0.1.0",
+                             "OpenBLAS 0.3.21",
+                             "2.7.1",
+                             "2.7.1",
+                             1,
+                             1234,
+                             16,
+                             9,
+                             3,
+                             1.5,
+                             1,
+                             INPUT_NAMES,
+                             INPUT_DIGESTS,
+                             1,
+                             OUTPUT_NAMES,
+                             INPUT_DIGESTS};
     return true;
 }
 
@@ -290,6 +304,10 @@ static void result_file__comes_back(mt_test *t)
         if (CHECK_INT(t, r->run.n_inputs, 1)) {
             CHECK_STR(t, r->run.input_names[0], "study.json");
             CHECK_STR(t, r->run.input_sha256[0], INPUT_DIGESTS[0]);
+        }
+        if (CHECK_INT(t, r->run.n_outputs, 1)) {
+            CHECK_STR(t, r->run.output_names[0], OUTPUT_NAMES[0]);
+            CHECK_STR(t, r->run.output_sha256[0], INPUT_DIGESTS[0]);
         }
     }
     mt_result_delete(r);
