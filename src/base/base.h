@@ -28,6 +28,13 @@ static inline bool mt_is_final(mt_status rc)
     return rc == MT_E_MEMORY || rc == MT_E_INTERNAL;
 }
 
+/* A function whose divisions by zero are meant as IEEE 754 has them (x / 0 is infinite, 0 / 0 NaN), because those who use the quotient look whether it is finite. */
+#if defined(__GNUC__) || defined(__clang__)
+#    define MT_DIVIDES_BY_ZERO __attribute__((no_sanitize("float-divide-by-zero")))
+#else
+#    define MT_DIVIDES_BY_ZERO
+#endif
+
 #define MT_COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 
 #endif

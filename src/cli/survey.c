@@ -149,7 +149,8 @@ static mt_status differentiate(mt_survey *v, mt_analysis *a, int p, int k, mt_er
         const int first = mt_modal_cluster(&a->modes, v->position[i], &size);
         MT_TRY(cluster_values(a, p, first, size, values, err));
         for (int j = 0; j < size && i < v->modes; j++) {
-            out[i] = values[j] / (8.0 * PI * PI * v->hz[i]);
+            /* f^2 has a slope where f is 0, f has none */
+            out[i] = v->hz[i] > 0.0 ? values[j] / (8.0 * PI * PI * v->hz[i]) : nan("");
             i++;
         }
     }

@@ -5,6 +5,8 @@
 #include <complex.h>
 #include <math.h>
 
+#include "base/base.h"
+
 /*
  * Complex-step arithmetic. All geometry kernels are written once, analytically, in complex numbers: a real number x travels as x, a number with a
  * derivative x' (with respect to whatever is being differentiated) as x + i h x' with h = 2^-300. Then the real part of a result is its value and imag/h its derivative,
@@ -44,13 +46,18 @@ static inline mt_cx cx_mul(mt_cx a, mt_cx b)
                    (creal(a) * cimag(b)) + (cimag(a) * creal(b)));
 }
 
+/* Where geometry degenerates (a hinge without a direction, the angle of nothing) a kernel has no value and no derivative: infinite and NaN say so, and equations and
+ * derivatives are looked at before anybody counts on them. */
+
 /* The imaginary part of a divisor is h times its derivative, so |b|^2 = (re b)^2 to the last bit. */
+MT_DIVIDES_BY_ZERO
 static inline mt_cx cx_div(mt_cx a, mt_cx b)
 {
     const double value = creal(a) / creal(b);
     return cx_pair(value, (cimag(a) - (value * cimag(b))) / creal(b));
 }
 
+MT_DIVIDES_BY_ZERO
 static inline mt_cx cx_sqrt(mt_cx a)
 {
     const double root = sqrt(creal(a));
@@ -58,6 +65,7 @@ static inline mt_cx cx_sqrt(mt_cx a)
 }
 
 /* atan2(s, c): d = (c ds - s dc) / (s^2 + c^2). */
+MT_DIVIDES_BY_ZERO
 static inline mt_cx cx_atan2(mt_cx s, mt_cx c)
 {
     const double q = (creal(s) * creal(s)) + (creal(c) * creal(c));
@@ -78,6 +86,47 @@ static inline void cx_cross3(const mt_cx *a, const mt_cx *b, mt_cx *out)
     out[0] = x;
     out[1] = y;
     out[2] = z;
+}
+
+/* Squares of components between 2^-400 and 2^400 and their sums neither vanish nor overflow, nor do derivatives. */
+#define MT_CX_SAFE 0x1p400
+
+/* The power of two by which the components of v are divided before they are squared: 1 unless they are very small or very great. */
+static inline int cx_exponent3(const mt_cx *v)
+{
+    const double largest = fmax(fmax(fabs(creal(v[0])), fabs(creal(v[1]))), fabs(creal(v[2])));
+    int exponent = 0;
+    if (isfinite(largest) && !(largest > 1.0 / MT_CX_SAFE && largest < MT_CX_SAFE)) {
+        (void)frexp(largest, &exponent);
+    }
+    return exponent;
+}
+
+/* a 2^exponent, exactly. */
+static inline mt_cx cx_scale(mt_cx a, int exponent)
+{
+    return exponent == 0 ? a : cx_pair(ldexp(creal(a), exponent), ldexp(cimag(a), exponent));
+}
+
+/* |v|; no component is too small or too great for it. */
+static inline mt_cx cx_norm3(const mt_cx *v)
+{
+    const int e = cx_exponent3(v);
+    const mt_cx w[3] = {cx_scale(v[0], -e), cx_scale(v[1], -e), cx_scale(v[2], -e)};
+    return cx_scale(cx_sqrt(cx_dot3(w, w)), e);
+}
+
+/* v /= |v|, likewise; NaN where |v| is 0. */
+static inline void cx_unit3(mt_cx *v)
+{
+    const int e = cx_exponent3(v);
+    for (int k = 0; k < 3; k++) {
+        v[k] = cx_scale(v[k], -e);
+    }
+    const mt_cx length = cx_sqrt(cx_dot3(v, v));
+    for (int k = 0; k < 3; k++) {
+        v[k] = cx_div(v[k], length);
+    }
 }
 
 /* out = R v, R 3 x 3 column-major. out may not alias v. */

@@ -41,14 +41,6 @@ mt_cx mt_data_scalar(const mt_data *d, mt_node node, double otherwise)
     return cx_make(d->value[node], d->grad[((ptrdiff_t)node * d->sys->n_inputs) + d->input]);
 }
 
-static void normalise(mt_cx *v)
-{
-    const mt_cx n = cx_sqrt(cx_dot3(v, v));
-    for (int k = 0; k < 3; k++) {
-        v[k] = cx_div(v[k], n);
-    }
-}
-
 void mt_data_vec(mt_data *d, int i)
 {
     const mt_vec_def *const def = &d->sys->vecs[i];
@@ -61,21 +53,21 @@ void mt_data_vec(mt_data *d, int i)
             v[k] = mt_data_scalar(d, def->node[k], 0.0);
         }
         if (def->kind == MT_VEC_UNIT) {
-            normalise(v);
+            cx_unit3(v);
         }
         return;
     case MT_VEC_PERP1:
     case MT_VEC_PERP2:
         e[def->helper] = 1.0;
         cx_cross3(d->vec[def->axis], e, v);
-        normalise(v);
+        cx_unit3(v);
         if (def->kind == MT_VEC_PERP2) {
             cx_cross3(d->vec[def->axis], v, v);
         }
         return;
     case MT_VEC_CROSS:
         cx_cross3(d->vec[def->axis], d->vec[def->helper], v);
-        normalise(v);
+        cx_unit3(v);
         return;
     }
 }

@@ -65,10 +65,9 @@ static void from_energy(const double g[MOTIONS][MOTIONS], int dimension, mt_info
         {1, 2}
     };
     const double m = g[0][0];
-    const double per_m = m > 0.0 ? 1.0 / m : 0.0;
     /* a rotation about axis a has the momentum m e_a x c */
-    const double c[3] = {per_m * g[5][1], -per_m * g[5][0],
-                         dimension == 3 ? per_m * g[4][0] : 0.0};
+    const double c[3] = {m > 0.0 ? g[5][1] / m : 0.0, m > 0.0 ? -g[5][0] / m : 0.0,
+                         m > 0.0 && dimension == 3 ? g[4][0] / m : 0.0};
     out->mass_kg = m;
     const double cc = (c[0] * c[0]) + (c[1] * c[1]) + (c[2] * c[2]);
     for (int k = 0; k < 6; k++) {

@@ -149,7 +149,7 @@ static void distance_none(double value, bool second, mt_jet *out)
     }
 }
 
-/* |r| with r = Q - P: first q = r . r (exact Hessian 2 J^T J + 2 r . d2r), then the square root. */
+/* |r| with r = Q - P, u = r / |r|: gradient u^T J, Hessian (J^T J - g g^T) / |r| + u . d2r. */
 void mt_jet_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, bool second, mt_jet *out)
 {
     mt_cx r[3];
@@ -159,12 +159,11 @@ void mt_jet_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, bool second
     for (int i = 0; i < 3; i++) {
         r[i] = d[i] + t[i] - s[i];
     }
-    const mt_cx square = cx_dot3(r, r);
-    if (!(creal(square) > 0.0)) {
-        distance_none(sqrt(creal(square)), second, out);
+    const mt_cx length = cx_norm3(r);
+    if (!(creal(length) > 0.0)) {
+        distance_none(creal(length), second, out);
         return;
     }
-    const mt_cx length = cx_sqrt(square);
     for (int i = 0; i < 3; i++) {
         u[i] = cx_div(r[i], length);
     }

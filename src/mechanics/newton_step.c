@@ -263,7 +263,7 @@ mt_status mt_newton_falls(mt_newton_work *w, const mt_elimination *e, const doub
     MT_TRY(mt_newton_reduce_hessian(w, e, k, n, mem, err));
     MT_TRY(mt_eig_sym(n, k, values, true, mem, err));
     for (int j = 0; j < e->nq; j++) {
-        scaled[j] = way[j] / (e->dc[j] * e->dc[j]);
+        scaled[j] = way[j] / e->dc[j] / e->dc[j]; /* the square may leave the range */
     }
     mt_eliminate_project(e, scaled, y);
     const double noise = NO_STIFFNESS * stiffness_scale(w, e);

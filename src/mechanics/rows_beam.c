@@ -29,18 +29,13 @@ void mt_beam_frame(const mt_data *d, const int body[2], const int dir[3], const 
         e1[i] = b->x[i] - a->x[i];
         e2[i] = half[0][i] + half[1][i];
     }
-    out->length = cx_sqrt(cx_dot3(e1, e1));
-    for (int i = 0; i < 3; i++) {
-        e1[i] = cx_div(e1[i], out->length);
-    }
+    out->length = cx_norm3(e1);
+    cx_unit3(e1);
     const mt_cx along = cx_dot3(e1, e2);
     for (int i = 0; i < 3; i++) {
         e2[i] -= cx_mul(along, e1[i]);
     }
-    const mt_cx size = cx_sqrt(cx_dot3(e2, e2));
-    for (int i = 0; i < 3; i++) {
-        e2[i] = cx_div(e2[i], size);
-    }
+    cx_unit3(e2);
     cx_cross3(e1, e2, out->e[2]);
     for (int k = 0; k < 2; k++) {
         out->shape[k] = 1.0;

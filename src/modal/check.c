@@ -54,7 +54,10 @@ static double residual(const checker *c, const mt_modes *modes, int i)
     }
     const double unit =
         (c->k_norm + fabs(lambda) * c->m_norm) * sqrt(size) * c->n * DBL_EPSILON;
-    return force > 0.0 ? sqrt(force) / unit : 0.0 * unit;
+    if (!(force > 0.0)) {
+        return 0.0 * unit; /* NaN stays NaN */
+    }
+    return unit > 0.0 ? sqrt(force) / unit : HUGE_VAL;
 }
 
 static void orthogonality(const checker *c, double *gram, mt_modes *modes)
@@ -84,7 +87,7 @@ mt_status mt_modal_check(const double *k, const mt_mass_factor *mass, mt_arena *
     for (int i = 0; i < n; i++) {
         const double kii = fabs(k[i + (ptrdiff_t)i * n]);
         const double virtual_d =
-            kii > 0.0 && modes->scale > 0.0 ? sqrt(modes->scale / kii) : 1.0;
+            kii > 0.0 && modes->scale > 0.0 ? fmax(sqrt(modes->scale / kii), DBL_MIN) : 1.0;
         c.d[i] = mass->d[i] > 0.0 ? mass->d[i] : virtual_d;
     }
     c.k_norm = scaled_norm(n, k, c.d);

@@ -77,7 +77,8 @@ static double residual(const checker *c, const mt_damped_modes *out, int i, doub
         motion = hypot(motion, hypot(y[0][j], y[1][j]) / c->d[j]);
     }
     const double terms = c->norm[0] + (size * c->norm[1]) + (size * size * c->norm[2]);
-    return force > 0.0 ? force / (terms * motion * n * DBL_EPSILON) : 0.0;
+    const double unit = terms * motion * n * DBL_EPSILON;
+    return !(force > 0.0) ? 0.0 : unit > 0.0 ? force / unit : HUGE_VAL;
 }
 
 /* CMPLX of C11, which clang's view of the C library does not offer. */
@@ -115,6 +116,9 @@ static double complex nearest_root(double complex a, double complex b, double co
     const double complex plus = -0.5 * (b + root);
     const double complex minus = -0.5 * (b - root);
     const double complex q = cabs(plus) >= cabs(minus) ? plus : minus;
+    if (cabs(q) == 0.0 || cabs(a) == 0.0) { /* both roots are 0, or one is: no better than s */
+        return cabs(q) == 0.0 ? s : k / q;
+    }
     const double complex s1 = q / a;
     const double complex s2 = k / q;
     return cabs(s1 - s) <= cabs(s2 - s) ? s1 : s2;
@@ -157,7 +161,7 @@ mt_status mt_damped_check(const mt_damped_problem *p, mt_damped_modes *out, mt_a
          i++) { /* as check.c: without mass, what the stiffness scale would give it */
         const double kii = fabs(p->k[i + (i * n)]);
         const double scale = p->modes->scale;
-        const double other = kii > 0.0 && scale > 0.0 ? sqrt(scale / kii) : 1.0;
+        const double other = kii > 0.0 && scale > 0.0 ? fmax(sqrt(scale / kii), DBL_MIN) : 1.0;
         c.d[i] = p->mass->d[i] > 0.0 ? p->mass->d[i] : other;
     }
     for (int k = 0; k < 3; k++) {

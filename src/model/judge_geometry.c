@@ -293,7 +293,6 @@ static double gap_of(const mt_judge *j, const mt_joint *joint)
     double d[3];
     double axis[3];
     double dot = 0.0;
-    double norm = 0.0;
     if (joint->n_at != 2 || !place_of(j, &joint->at[0], a) || !place_of(j, &joint->at[1], b)) {
         return nan("");
     }
@@ -308,17 +307,21 @@ static double gap_of(const mt_judge *j, const mt_joint *joint)
     for (int k = 0; k < 3; k++) {
         d[k] = b[k] - a[k];
         axis[k] = joint->axis[k] == MT_ABSENT ? 0.0 : j->value[joint->axis[k]];
-        dot += d[k] * axis[k];
-        norm += axis[k] * axis[k];
     }
-    if (!(norm > 0.0)) {
+    const double largest = fmax(fmax(fabs(axis[0]), fabs(axis[1])), fabs(axis[2]));
+    if (!(largest > 0.0) || !isfinite(largest)) {
         return nan("");
     }
+    const double length = hypot(hypot(axis[0] / largest, axis[1] / largest), axis[2] / largest);
+    for (int k = 0; k < 3; k++) {
+        axis[k] = axis[k] / largest / length; /* an axis may have any length */
+        dot += d[k] * axis[k];
+    }
     if (joint->type == MT_JOINT_PLANAR || joint->type == MT_JOINT_POINT_ON_PLANE) {
-        return fabs(dot) / sqrt(norm);
+        return fabs(dot);
     }
     for (int k = 0; k < 3; k++) { /* free along the axis */
-        d[k] -= dot / norm * axis[k];
+        d[k] -= dot * axis[k];
     }
     return hypot(hypot(d[0], d[1]), d[2]);
 }
@@ -391,7 +394,7 @@ static void judge_gyration(mt_judge *j, const mt_item *item, const mt_body *b, d
     for (int k = 0; k < (j->model->dimension == 2 ? 1 : 3) && !b->point_mass; k++) {
         most = fmax(most, b->inertia[k] == MT_ABSENT ? 0.0 : j->value[b->inertia[k]]);
     }
-    const double radius = mass > 0.0 ? sqrt(most / mass) : 0.0;
+    const double radius = mass > 0.0 ? sqrt(most) / sqrt(mass) : 0.0;
     if (size > 0.0 && radius > MOST_GYRATION * size) {
         (void)mt_judge_place(
             j,

@@ -13,14 +13,18 @@
 #include "tune/enclosure.h"
 #include "tune/problem.h"
 
+/* No floor lies lower: the square of an angular frequency would leave the range of a double. */
+static const double LEAST_FLOOR_HZ = 1e-150;
+
 double mt_problem_ln_ratio(const mt_modes *modes, int pos, double edge_hz, double floor_hz)
 {
     if (pos < 0) {
         return MT_MOST_INSIDE;
     }
     const double hz = mt_modal_hz(modes, pos);
-    const double part = hz / floor_hz;
-    return part < 1.0 ? log(floor_hz / edge_hz) + (0.5 * ((part * part) - 1.0))
+    const double floor = fmax(floor_hz, LEAST_FLOOR_HZ);
+    const double part = hz / floor;
+    return part < 1.0 ? log(floor / edge_hz) + (0.5 * ((part * part) - 1.0))
                       : log(hz / edge_hz);
 }
 
@@ -35,14 +39,15 @@ mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, doubl
         return MT_OK;
     }
     const int first = mt_modal_cluster(modes, pos, &size);
-    const double lambda = fmax(modes->lambda[pos], mt_enclosure_lambda(floor_hz));
+    const double lambda =
+        fmax(modes->lambda[pos], mt_enclosure_lambda(fmax(floor_hz, LEAST_FLOOR_HZ)));
     for (int k = first; k < first + size; k++) {
         MT_TRY(mt_analysis_dlambda_raw(a, k, p->work, err));
         mt_axpy(p->n, 1.0, p->work, out);
         /* vibrations of 0 Hz share their cluster with rigid-body modes, which have no slope and add nothing to the sum */
         vibrating += modes->kind[k] == MT_MODE_FLEXIBLE ? 1 : 0;
     }
-    for (int i = 0; i < p->n; i++) {
+    for (int i = 0; i < p->n && vibrating > 0; i++) {
         out[i] *= mt_problem_stretch(p, i) / (2.0 * lambda * (double)vibrating);
     }
     return MT_OK;

@@ -320,7 +320,7 @@ double mt_clear_room(const mt_problem *p, const mt_clear *c)
                 const double hz = mt_modal_hz(modes, i);
                 const double below =
                     band->lower_hz > 0.0 ? mt_log_ratio(band->lower_hz, hz) : -HUGE_VAL;
-                const double above = fmax(log(hz / band->upper_hz), -MT_MOST_INSIDE);
+                const double above = fmax(mt_log_ratio(hz, band->upper_hz), -MT_MOST_INSIDE);
                 room = fmin(room, fmax(below, above));
             }
         }

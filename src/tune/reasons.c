@@ -39,7 +39,7 @@ static void say_change(mt_sentences *s, const mt_result_parameter *p)
 {
     const char *const unit = p->unit != NULL ? p->unit : "";
     const char *const space = p->unit != NULL ? " " : "";
-    if (MT_HAS(p->change_percent)) {
+    if (isfinite(p->change_percent)) { /* not of what was 0, or next to it */
         mt_say(s, "%s %s by %.3g %%, from %.6g to %.6g%s%s.", p->name,
                p->recommended > p->original ? "rises" : "falls", fabs(p->change_percent),
                p->original, p->recommended, space, unit);
@@ -106,7 +106,7 @@ static const char *lever_text(mt_sentences *s, const mt_result_frequency *f)
     int lever = -1;
     for (int i = 0; i < s->rec->n_parameters && f->sensitivity != NULL && !f->repeated; i++) {
         const double one = 0.01 * f->sensitivity[i] * fabs(s->rec->parameters[i].recommended);
-        if (fabs(one) > fabs(most)) {
+        if (isfinite(one) && fabs(one) > fabs(most)) {
             most = one;
             lever = i;
         }
@@ -138,6 +138,9 @@ static void limit_text(const mt_result_frequency *f, char *text)
                           f->at_least_hz);
     } else if (fabs(fmin(low, high)) <= 0.01 * WORTH_SAYING_PERCENT) {
         (void)mt_snprintf(text, DEMAND_SIZE, "at its %s limit", side);
+    } else if (isinf(error)) {
+        (void)mt_snprintf(text, DEMAND_SIZE, "far %s its %s limit of %.6g Hz",
+                          low < high ? "below" : "above", side, limit);
     } else if (error > WORTH_SAYING_PERCENT) {
         (void)mt_snprintf(text, DEMAND_SIZE, "%.3g %% %s its %s limit of %.6g Hz", error,
                           low < high ? "below" : "above", side, limit);
@@ -167,6 +170,9 @@ static void demand_text(const mt_result_frequency *f, char *text)
         limit_text(f, text);
     } else if (fabs(f->error_percent) <= WORTH_SAYING_PERCENT) {
         (void)mt_snprintf(text, DEMAND_SIZE, "its target");
+    } else if (!isfinite(f->error_percent)) {
+        (void)mt_snprintf(text, DEMAND_SIZE, "far %s its target of %.6g Hz",
+                          f->error_percent > 0.0 ? "above" : "below", f->target_hz);
     } else {
         (void)mt_snprintf(text, DEMAND_SIZE, "%.3g %% %s its target of %.6g Hz",
                           fabs(f->error_percent), f->error_percent > 0.0 ? "above" : "below",
@@ -249,9 +255,11 @@ static void say_violations(mt_sentences *s)
         } else if (!g->weighted && !g->met && !MT_HAS(g->violation_percent)) {
             mt_say(s, "Goal %s (%s) has no value here and does not count as met.", g->pointer,
                    g->text);
-        } else if (!g->weighted && !g->met) {
+        } else if (!g->weighted && !g->met && isfinite(g->violation_percent)) {
             mt_say(s, "Goal %s (%s) is missed by %.3g %%.", g->pointer, g->text,
                    g->violation_percent);
+        } else if (!g->weighted && !g->met) {
+            mt_say(s, "Goal %s (%s) is missed by far.", g->pointer, g->text);
         }
     }
 }
@@ -268,7 +276,7 @@ static void say_misfit(mt_sentences *s)
             sum += s->p->demands[i].weight * g->violation_percent * g->violation_percent;
         }
     }
-    if (weighted > 0 && MT_HAS(s->rec->misfit)) {
+    if (weighted > 0 && MT_HAS(s->rec->misfit) && isfinite(sum)) {
         mt_say(s, "The %d weighted goal%s off by %.3g %% rms.", weighted,
                weighted == 1 ? " is" : "s are", sqrt(sum / s->p->weights));
     }

@@ -215,7 +215,8 @@ double mt_robust_room(const mt_problem *p, const mt_clear *c)
             const mt_band *const band = &c->bands.items[b];
             const double below =
                 band->lower_hz > 0.0 ? mt_log_ratio(band->lower_hz, high) : -HUGE_VAL;
-            const double here = fmax(below, fmax(log(low / band->upper_hz), -MT_MOST_INSIDE));
+            const double here =
+                fmax(below, fmax(mt_log_ratio(low, band->upper_hz), -MT_MOST_INSIDE));
             room = fmin(room, MT_HAS(low + high) ? here : -HUGE_VAL);
         }
     }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tune/solve.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/format.h"
@@ -261,13 +262,19 @@ static const char *status_text(const answer *a, const mt_recommendation *best)
                "ones "
                "are cannot be told there (see the goals).";
     }
-    return mt_arena_printf(mem,
-                           "Compromise: no design %swithin the bounds meets all goals%s; the "
-                           "nearest %smisses by %.3g %% at most.",
-                           a->impossible ? "" : "found ",
-                           a->impossible ? ", which is proven (see the certificates)"
-                                         : " (sampled, not proven)",
-                           a->impossible ? "that was found " : "", best->violation_percent);
+    const char *const nearest =
+        isfinite(best->violation_percent)
+            ? mt_arena_printf(mem, "the nearest %smisses by %.3g %% at most",
+                              a->impossible ? "that was found " : "", best->violation_percent)
+            : "at the nearest not every goal has a value";
+    return nearest == NULL
+               ? NULL
+               : mt_arena_printf(
+                     mem, "Compromise: no design %swithin the bounds meets all goals%s; %s.",
+                     a->impossible ? "" : "found ",
+                     a->impossible ? ", which is proven (see the certificates)"
+                                   : " (sampled, not proven)",
+                     nearest);
 }
 
 static void lower_grade(mt_recommendation *r)

@@ -130,6 +130,12 @@ static void doubt_goal(mt_doubt_list *out, const mt_goal *goal)
     }
 }
 
+static double decades(double lower, double upper)
+{
+    const double ratio = upper / lower;
+    return isfinite(ratio) ? log10(ratio) : log10(upper) - log10(lower);
+}
+
 static void doubt_variable(mt_doubt_list *out, const mt_variable *v)
 {
     const char *const name = v->parameter_name.s;
@@ -137,7 +143,7 @@ static void doubt_variable(mt_doubt_list *out, const mt_variable *v)
         at(mt_doubt_add(
                out, MT_LEVEL_DOUBT, "bounds",
                "the bounds of %s, %g to %g, span %.0f decades: is a power of ten wrong?", name,
-               v->lower, v->upper, floor(log10(v->upper / v->lower))),
+               v->lower, v->upper, floor(decades(v->lower, v->upper))),
            v->addr);
     }
     const bool below =

@@ -6,8 +6,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "model/values.h"
 #include "tune/doubts.h"
+
+enum { TIMES_SIZE = 32 };
 
 /* A target a hundred times away from where the mode is, is in another unit (rad/s, rpm and kHz are 6, 60 and 1000 away), or of another mode. */
 static const double FAR_TARGET = 100.0;
@@ -144,10 +147,15 @@ static void doubt_target(mt_doubt_list *out, const char *member, double asked, m
     if (!((above && ratio >= FAR_TARGET) || (below && ratio <= 1.0 / FAR_TARGET))) {
         return;
     }
-    mt_doubt *const d = mt_doubt_add(
-        out, MT_LEVEL_DOUBT, "target",
-        "%s %.6g Hz is %.3g times %s the original frequency, %.6g Hz: is the unit Hz?", member,
-        asked, ratio >= 1.0 ? ratio : 1.0 / ratio, ratio >= 1.0 ? "above" : "below", hz);
+    char times[TIMES_SIZE] = "far";
+    const double factor = ratio >= 1.0 ? ratio : hz / asked;
+    if (isfinite(factor)) {
+        (void)mt_snprintf(times, sizeof times, "%.3g times", factor);
+    }
+    mt_doubt *const d =
+        mt_doubt_add(out, MT_LEVEL_DOUBT, "target",
+                     "%s %.6g Hz is %s %s the original frequency, %.6g Hz: is the unit Hz?",
+                     member, asked, times, ratio >= 1.0 ? "above" : "below", hz);
     if (d != NULL) {
         d->addr = addr;
     }

@@ -2,10 +2,14 @@
 """What is said beside the numbers: prices, undetermined directions, sentences; and that nothing contradicts anything else."""
 import copy
 import re
+import sys
+from pathlib import Path
 
 import numpy as np
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "cli"))  # where outputs are looked at
 import search
+from common_words import problems_of
 from check_numbers import design_of, near
 from question import Question
 
@@ -211,4 +215,11 @@ def undoubted(run):
         yield f"doubted: {doubt['kind']}: {doubt['text']}"
 
 
-CHECKS = {"undoubted": undoubted, "prices": prices, "undetermined": undetermined, "reasons": reasons, "consistent": consistent}
+def numbers(run):
+    """Everything that was written: what has no number has a word, an empty cell or null."""
+    for name, text in {"standard error": str(run.words), **run.words.texts}.items():
+        for problem in problems_of(text, name.rpartition(".")[2]):
+            yield f"{name}: {problem}"
+
+
+CHECKS = {"numbers": numbers, "undoubted": undoubted, "prices": prices, "undetermined": undetermined, "reasons": reasons, "consistent": consistent}

@@ -219,7 +219,19 @@ def _doubt(run):
     return True
 
 
+def _word(run):
+    run.words.texts["result.json"] = run.words.texts["result.json"].replace("null", "nan", 1)
+    return "nan" in run.words.texts["result.json"]
+
+
+def _figure(run):
+    page = run.words.texts["report.html"]
+    run.words.texts["report.html"] = page.replace('cx="', 'cx="-1e9', 1)
+    return 'cx="' in page
+
+
 FAULTS = [
+    (_word, ["limits"], "numbers"), (_figure, ["limits"], "numbers"),
     (_doubt, ["limits"], "undoubted"),
     (_frequency, ["limits", "bands"], "frequencies"), (_clearance, ["bands"], "clearances"), (_gap, ["bands"], "clearances"),
     (_least_clearance, ["bands"], "clearances"), (_violation, ["infeasible", "limits"], "goals"),

@@ -39,6 +39,15 @@ BATCH = 20
 WORKERS_EVERY = 4  # batches: one of so many is run with two workers, too
 
 
+class Said(str):
+    """Standard error; with it in `texts`, by name, what else was written."""
+
+    def __new__(cls, text, texts):
+        said = super().__new__(cls, text)
+        said.texts = texts
+        return said
+
+
 class Run:
     """One study and its result."""
 
@@ -68,7 +77,9 @@ def solve(folder, names, threads=1, out="out"):
     answers = {}
     for name in names:
         path = folder / out / name / "result.json"
-        answers[name] = (done.returncode, done.stderr, json.loads(path.read_text()) if path.exists() else None)
+        texts = {p.name: p.read_text(encoding="utf-8") for p in sorted(path.parent.glob("*")) if p.suffix in (".json", ".csv", ".html")}
+        said = Said(done.stderr, {"standard output": done.stdout, **texts})
+        answers[name] = (done.returncode, said, json.loads(texts["result.json"]) if path.exists() else None)
     if len(names) > 1 and (done.returncode not in (0, 1) or any(a[2] is None for a in answers.values())):
         for name in names:  # who was it?
             answers.update(solve(folder, [name], threads, out))
