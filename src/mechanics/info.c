@@ -78,7 +78,7 @@ static void from_energy(const double g[MOTIONS][MOTIONS], int dimension, mt_info
         out->inertia_kg_m2[k] = there ? g[3 + i][3 + j] - (m * steiner) : 0.0;
     }
     for (int k = 0; k < 3; k++) {
-        out->centre_m[k] = m > 0.0 ? c[k] : nan("");
+        out->centre_m[k] = m > 0.0 && isfinite(c[k]) ? c[k] : nan("");
     }
 }
 

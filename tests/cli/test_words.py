@@ -137,7 +137,7 @@ class Hunt:
             self.problems += [f"{where}: {' '.join(args)}: {p}" for p in list(problems_of(text, kind))[:3]]
         return done
 
-    def answer(self, where, model, question):
+    def answer(self, where, model, question, rng):
         with tempfile.TemporaryDirectory() as top:
             top = Path(top)
             (top / "model.json").write_text(json.dumps(model), encoding="utf-8")
@@ -148,13 +148,13 @@ class Hunt:
             for path in sorted((top / "results/study").glob("*")) if (top / "results/study").exists() else []:
                 text = path.read_text(encoding="utf-8")
                 self.problems += [f"{where}: {path.name}: {p}" for p in list(problems_of(text, path.suffix[1:]))[:3]]
-            self.program(top, where, "run", "study.json", "--format", "csv", "-o", "again")
-            self.program(top, where, "compare", "study.json")
-            self.look(where, top, "model.json")
+            self.program(top, where, *rng.choice([("run", "study.json", "--format", "csv", "-o", "again"), ("compare", "study.json")]))
+            self.look(where, top, "model.json", rng, 2)
 
-    def look(self, where, folder, model):
-        for args in (["modes", model], ["modes", model, "--format", "csv"], ["sensitivity", model], ["sensitivity", model, "--format", "json"], ["info", model],
-                     ["modes", model, "--damped"], ["modes", model, "--damped", "--format", "json"]):
+    def look(self, where, folder, model, rng, count):
+        """A few of the commands that look at a model."""
+        for args in rng.sample((["modes", model], ["modes", model, "--format", "csv"], ["sensitivity", model], ["sensitivity", model, "--format", "json"], ["info", model],
+                     ["modes", model, "--damped"], ["modes", model, "--damped", "--format", "json"]), count):
             self.program(folder, where, *args)
 
     def directions(self, rng):
@@ -190,13 +190,13 @@ def main():
         rng = random.Random(seed)
         hunt.directions(rng)
         for name, model, question in generated(rng):
-            hunt.answer(f"seed {seed}: {name}", model, question)
+            hunt.answer(f"seed {seed}: {name}", model, question, rng)
         for path in rng.sample(files, 4):
             document = json.loads(path.read_text(encoding="utf-8"))
             spoilt(rng, document)
             with tempfile.TemporaryDirectory() as top:
                 (Path(top) / "model.json").write_text(json.dumps(document), encoding="utf-8")
-                hunt.look(f"seed {seed}: {path.name} spoilt", top, "model.json")
+                hunt.look(f"seed {seed}: {path.name} spoilt", top, "model.json", rng, 7)
     for problem in hunt.problems[:1000 if given.verbose else 40]:
         print(problem[:700], file=sys.stderr)
     print(f"words: {hunt.runs} runs, {len(hunt.problems)} problem(s), exit statuses {dict(sorted(hunt.codes.items()))}, seeds {given.seed} to {given.seed + given.count - 1}")
