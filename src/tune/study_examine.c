@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * A study held against its model: is what it asks for anywhere near what the model does? Frequencies f_k(x) are looked at where x is the original design and where one variable, or all,
- * stand at a bound; a band that no f_k comes within a factor of there has no part in the answer.
+ * stand at a bound; a band that no f_k comes within a factor of there has no part in the answer. Where two of these designs differ in how many modes lie above a band, one comes through it in
+ * between: frequencies are continuous. Above, since modes that rest at 0 Hz at one design (a spring that may be 0) are no vibrations there.
  */
 #include <math.h>
 #include <string.h>
@@ -19,6 +20,7 @@ static const double FAR_BAND = 10.0;
 
 typedef struct reach {
     const mt_goal *goal;
+    int *above;     /* [bands] modes above each, at the first design looked at; -1: none yet */
     double nearest; /* least factor between a mode and a band, >= 1 */
 } reach;
 
@@ -30,8 +32,25 @@ static double factor_to(const mt_band *band, double hz)
     return hz > band->upper_hz ? hz / band->upper_hz : 1.0;
 }
 
+static int count_above(const mt_modes *modes, const mt_band *band)
+{
+    int n = 0;
+    for (int i = 0; i < modes->count; i++) {
+        n += modes->kind[i] == MT_MODE_FLEXIBLE && mt_modal_hz(modes, i) > band->upper_hz ? 1
+                                                                                          : 0;
+    }
+    return n;
+}
+
 static void look(reach *r, const mt_modes *modes)
 {
+    for (int k = 0; k < r->goal->avoid->bands.n; k++) {
+        const int above = count_above(modes, &r->goal->avoid->bands.items[k]);
+        if (r->above[k] >= 0 && above != r->above[k]) {
+            r->nearest = 1.0;
+        }
+        r->above[k] = above;
+    }
     for (int i = 0; i < modes->count; i++) {
         const double hz = mt_modal_hz(modes, i);
         for (int k = 0; k < r->goal->avoid->bands.n && modes->kind[i] == MT_MODE_FLEXIBLE;
@@ -71,6 +90,9 @@ static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, 
     }
     opt.vectors = false;
     opt.check = false;
+    for (int k = 0; k < r->goal->avoid->bands.n; k++) {
+        r->above[k] = -1;
+    }
     set_design(s, 0, x);
     mt_status rc = mt_analysis_new(s->model, c, n, inputs, x, &a, err);
     if (rc == MT_OK) {
@@ -95,7 +117,8 @@ static mt_status examine_bands(const mt_study *s, int g, mt_doubt_list *out, mt_
     reach r = {.goal = goal, .nearest = HUGE_VAL};
     mt_arena mem;
     MT_TRY(mt_arena_init(&mem, 0, err));
-    mt_status rc = MT_OK;
+    r.above = mt_arena_int(&mem, (size_t)goal->avoid->bands.n);
+    mt_status rc = r.above == NULL ? mt_fail_memory(err) : MT_OK;
     for (int i = 0; rc == MT_OK && i < goal->n_configurations; i++) {
         rc = look_around(s, goal->configurations[i], &r, &mem, err);
     }

@@ -220,10 +220,10 @@ class Plant:
             self._made[name] = Assembly(self.model, name)
         return self._made[name]
 
-    def total_mass(self, design, count, of=None):
-        """Of bodies and bars of the model (all of them), [count] kg."""
+    def total_mass(self, design, count, configuration, of=None):
+        """Of bodies and bars (all of them), with the overrides of a configuration, [count] kg."""
         from fnmatch import fnmatchcase
-        values = parameters(self.model, design)
+        values = parameters(self.model, {**design, **self.assembly(configuration).overrides})
         total = np.zeros(count)
         for item in self.model["bodies"] + [s for s in self.model.get("springs", []) if s["type"] == "bar"]:
             if of is not None and not any(fnmatchcase(item["name"], p) for p in of):

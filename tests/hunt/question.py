@@ -294,7 +294,8 @@ class Question:
         if what == "change":
             return self.change(x)
         if what == "mass":
-            return np.broadcast_to(self.plant.total_mass(self.design(x), len(x), item.get("of")), (len(x),))
+            first = self.configurations[0] if self.configurations else self.plant.names[0]
+            return np.broadcast_to(self.plant.total_mass(self.design(x), len(x), first, item.get("of")), (len(x),))
         if what == "misfit":
             return self.misfit(x)
         if what == "clearance":
