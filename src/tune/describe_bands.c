@@ -25,14 +25,27 @@ static double way_up(const mt_band *band, double hz)
     return PERCENT * (band->upper_hz - hz) / band->base_upper_hz;
 }
 
+/* How a mode at hz stands to one edge without margin; negative where that is crossed. */
+static double beyond(const mt_band *band, bool lower, double hz)
+{
+    return lower ? PERCENT * (band->base_lower_hz - hz) / band->base_lower_hz
+                 : PERCENT * (hz - band->base_upper_hz) / band->base_upper_hz;
+}
+
+/* What an edge is moved out by. */
+static double margin(const mt_band *band, bool lower)
+{
+    return beyond(band, lower, lower ? band->lower_hz : band->upper_hz);
+}
+
 /* Is the lower edge the one that a mode at hz is judged by? It is the nearer one; where a band has been cut off to a point, the one that is left sooner. */
 static bool by_lower_edge(const mt_band *band, double hz)
 {
     if (!(band->base_lower_hz > 0.0)) {
         return false;
     }
-    const double below = PERCENT * (band->base_lower_hz - hz) / band->base_lower_hz;
-    const double above = PERCENT * (hz - band->base_upper_hz) / band->base_upper_hz;
+    const double below = beyond(band, true, hz);
+    const double above = beyond(band, false, hz);
     return fabs(below - above) > ON_EDGE_PERCENT ? below >= above
                                                  : way_down(band, hz) <= way_up(band, hz);
 }
@@ -56,9 +69,7 @@ static double clearance(const mt_band *band, double hz, mt_band_side *side)
 
 double mt_describe_margin_percent(const mt_band *band, double hz)
 {
-    return by_lower_edge(band, hz)
-               ? PERCENT * (band->base_lower_hz - band->lower_hz) / band->base_lower_hz
-               : PERCENT * (band->upper_hz - band->base_upper_hz) / band->base_upper_hz;
+    return margin(band, by_lower_edge(band, hz));
 }
 
 /* How a mode at hz stands to the edge that a goal judges it by: inside a band with its margin the one that is left sooner, else the nearer one. Negative within the base. */
@@ -67,10 +78,8 @@ static double standing(const mt_band *band, double hz, double *asked)
     const bool inside = missing_percent(band, hz) > 0.0;
     const bool lower =
         inside ? way_down(band, hz) <= way_up(band, hz) : by_lower_edge(band, hz);
-    const double has = lower ? PERCENT * (band->base_lower_hz - hz) / band->base_lower_hz
-                             : PERCENT * (hz - band->base_upper_hz) / band->base_upper_hz;
-    *asked = lower ? PERCENT * (band->base_lower_hz - band->lower_hz) / band->base_lower_hz
-                   : PERCENT * (band->upper_hz - band->base_upper_hz) / band->base_upper_hz;
+    const double has = beyond(band, lower, hz);
+    *asked = margin(band, lower);
     return fabs(has) <= ON_EDGE_PERCENT ? 0.0 : has;
 }
 

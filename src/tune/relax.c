@@ -18,8 +18,6 @@
 enum { STARTS = 6, EVALUATIONS = 200, ASSIGNMENTS = 6 };
 /* Where the study sets a budget: what a search of one move needs at least of it. */
 enum { BUDGET_LEAST = 2 * EVALUATIONS };
-/* A move by more than a factor of ten is no help. */
-static const double MOST = 2.302585092994046;
 /* A move smaller than this is none: then a design exists without it, and the search has missed it. */
 static const double LEAST = 1e-9;
 
@@ -175,10 +173,10 @@ static mt_nlp nlp_of(relaxed *r, const double *near, double *hint)
     }
     /* problem.c keeps room for one more coordinate */
     nlp.n = q->n + 1;
-    q->lower_t[q->n] = r->move->target ? -MOST : 0.0;
-    q->upper_t[q->n] = MOST;
+    q->lower_t[q->n] = r->move->target ? -MT_RELAX_MOST : 0.0;
+    q->upper_t[q->n] = MT_RELAX_MOST;
     q->origin_t[q->n] = 0.0;
-    hint[q->n] = 0.5 * MOST;
+    hint[q->n] = 0.5 * MT_RELAX_MOST;
     return nlp;
 }
 

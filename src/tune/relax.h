@@ -60,6 +60,8 @@ mt_status mt_relax_study(const mt_study *study, const mt_move *m, mt_arena *mem,
                          bool *useful, mt_err *err);
 /* The value that the move's number must have for the rows of q, just evaluated into v, to hold; NaN where other rows do not. */
 double mt_relax_value(const mt_problem *q, const mt_move *m, const mt_nlp_values *v);
+/* A move by more than a factor of ten (ln 10), or than 2.3 times the limit itself where it has no logarithm, is no help. */
+static const double MT_RELAX_MOST = 2.302585092994046;
 /* By how much that is a move, |s|; NaN where it is none, is in the wrong direction, or is too far to be of help. */
 double mt_relax_size(const mt_problem *q, const mt_move *m, double to);
 /* Found moves of `from` into `to`, which lists all, where they are less; n: variables. */

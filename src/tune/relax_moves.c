@@ -192,9 +192,6 @@ double mt_relax_value(const mt_problem *q, const mt_move *m, const mt_nlp_values
     return moved(q, m, worst);
 }
 
-/* A move by more than a factor of ten, or than the limit itself where it has no logarithm, is no help. */
-static const double MOST = 2.302585092994046;
-
 double mt_relax_size(const mt_problem *q, const mt_move *m, double to)
 {
     const bool goal = m->kind == MT_MOVE_GOAL;
@@ -204,7 +201,7 @@ double mt_relax_size(const mt_problem *q, const mt_move *m, double to)
     /* a lower limit gives way downwards, an upper edge too */
     const bool down = goal ? !m->upper : m->upper;
     const bool right = m->target ? fabs(s) > 0.0 : (down ? -s : s) > 0.0;
-    return right && fabs(s) <= MOST ? fabs(s) : nan("");
+    return right && fabs(s) <= MT_RELAX_MOST ? fabs(s) : nan("");
 }
 
 static bool is_same(const mt_move *a, const mt_move *b)

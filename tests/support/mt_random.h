@@ -35,6 +35,18 @@ static inline int mt_random_int(mt_random *r, int n)
     return (int)(mt_random_bits(r) % (uint64_t)n);
 }
 
+/* Uniform in a box, or, once in `corners` times, at a corner of it. */
+static inline void mt_random_in_box(mt_random *r, int corners, int n, const double *lower,
+                                    const double *upper, double *x)
+{
+    const int corner = mt_random_int(r, corners) == 0;
+    for (int i = 0; i < n; i++) {
+        x[i] = !corner                    ? mt_random_in(r, lower[i], upper[i])
+               : mt_random_int(r, 2) == 0 ? lower[i]
+                                          : upper[i];
+    }
+}
+
 static inline void mt_random_fill(mt_random *r, int n, double *x)
 {
     for (int i = 0; i < n; i++) {

@@ -262,16 +262,6 @@ static bool begin(mt_test *t, int seed, rig *g)
     return true;
 }
 
-/* Uniform in the box, or now and then at a corner of it. */
-static void sample(mt_random *r, int n, const double *lo, const double *hi, double *x)
-{
-    const bool corner = mt_random_int(r, 4) == 0;
-    for (int i = 0; i < n; i++) {
-        x[i] =
-            corner ? (mt_random_int(r, 2) == 0 ? lo[i] : hi[i]) : mt_random_in(r, lo[i], hi[i]);
-    }
-}
-
 /* Modes in both views at x; how many lie below each band. False where one lies in a band by more than `tolerance`. */
 static bool feasible(mt_test *t, rig *g, const double *x, double tolerance, int *below)
 {
@@ -344,7 +334,7 @@ static void enclosure__no_sample_has_what_is_excluded(mt_test *t)
                                 (size_t)g.c.n_bands * sizeof *below) == 0);
             }
             for (int i = 0; i < SAMPLES; i++) {
-                sample(&g.w.r, g.c.n, g.lower, g.upper, x);
+                mt_random_in_box(&g.w.r, 4, g.c.n, g.lower, g.upper, x);
                 if (feasible(t, &g, x, 0.0, below)) {
                     n.feasible_samples++;
                     CHECK(t, out.more || among(g.c.n_bands, out.found, out.n_found, below) ||
@@ -433,7 +423,7 @@ static void check_ranges(mt_test *t, rig *g, const double *lo, const double *hi)
         CHECK(t, mt_enclosure_set(g->e[v], lo, hi));
         CHECK(t, mt_enclosure_ranges(g->e[v], low, high, &err) == MT_OK);
         for (int i = 0; i < 40; i++) {
-            sample(&g->w.r, g->c.n, lo, hi, x);
+            mt_random_in_box(&g->w.r, 4, g->c.n, lo, hi, x);
             (void)feasible(t, g, x, 0.0, below);
             check_view(t, g, v, low, high);
         }
@@ -475,7 +465,7 @@ static void check_inside(mt_test *t, rig *g, const double *x, double percent, in
         hi[i] = x[i] + half;
     }
     for (int k = 0; k < INSIDE; k++) {
-        sample(&g->w.r, g->c.n, lo, hi, y);
+        mt_random_in_box(&g->w.r, 4, g->c.n, lo, hi, y);
         CHECK(t, feasible(t, g, y, 0.0, below));
         CHECK(t, memcmp(below, assignment, (size_t)g->c.n_bands * sizeof *below) == 0);
     }
@@ -541,7 +531,7 @@ static void enclosure__no_design_in_a_tolerance_box_fails(mt_test *t)
         mt_test_row(t, "system %d", seed);
         const bool ok = begin(t, seed, &g);
         for (int i = 0; ok && i < SAMPLES && !found; i++) {
-            sample(&g.w.r, g.c.n, g.lower, g.upper, x);
+            mt_random_in_box(&g.w.r, 4, g.c.n, g.lower, g.upper, x);
             found = feasible(t, &g, x, 0.0, below);
         }
         if (found) {

@@ -370,15 +370,6 @@ static double hz(const rig *g, int mode)
     return at < 0 ? nan("") : mt_modal_hz(&g->a->modes, at);
 }
 
-static void sample(mt_random *r, int n, const double *lo, const double *hi, double *x)
-{
-    const bool corner = mt_random_int(r, 3) == 0;
-    for (int i = 0; i < n; i++) {
-        x[i] =
-            corner ? (mt_random_int(r, 2) == 0 ? lo[i] : hi[i]) : mt_random_in(r, lo[i], hi[i]);
-    }
-}
-
 static bool analyse(mt_test *t, rig *g, const double *x)
 {
     const mt_analysis_options opt = mt_analysis_options_default();
@@ -419,7 +410,7 @@ static void sizing__every_sample_lies_in_the_ranges(mt_test *t)
             CHECK(t, mt_enclosure_set(g.e, lo, hi));
             CHECK(t, mt_enclosure_ranges(g.e, low, high, &err) == MT_OK);
             for (int i = 0; i < SAMPLES; i++) {
-                sample(&g.w.r, g.w.n, lo, hi, x);
+                mt_random_in_box(&g.w.r, 3, g.w.n, lo, hi, x);
                 for (int k = 0; analyse(t, &g, x) && k < g.e->n_modes; k++) {
                     const double f = hz(&g, k + 1);
                     const double lambda = mt_enclosure_lambda(f);
@@ -490,7 +481,7 @@ static void check_band(mt_test *t, rig *g, tally *n)
     n->proven += out.proven ? 1 : 0;
     n->infeasible += out.proven && out.n_found == 0 ? 1 : 0;
     for (int i = 0; i < SAMPLES; i++) {
-        sample(&g->w.r, g->w.n, g->lower, g->upper, x);
+        mt_random_in_box(&g->w.r, 3, g->w.n, g->lower, g->upper, x);
         const int below = analyse(t, g, x) ? modes_below(g, &band) : -1;
         if (below >= 0) {
             n->feasible++;
@@ -514,7 +505,7 @@ static void check_band(mt_test *t, rig *g, tally *n)
             lo[k] = design[k] * (1.0 - all.percent / 100.0);
             hi[k] = design[k] * (1.0 + all.percent / 100.0);
         }
-        sample(&g->w.r, g->w.n, lo, hi, x);
+        mt_random_in_box(&g->w.r, 3, g->w.n, lo, hi, x);
         CHECK(t, analyse(t, g, x) && modes_below(g, &band) == assignment);
     }
 }
