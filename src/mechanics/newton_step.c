@@ -299,6 +299,32 @@ static mt_status balance(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
     return MT_OK;
 }
 
+/*
+ * A step that is too long is shortened in the eigenvectors of Z^T H Z, each by itself: what has next to no stiffness (a rod's spin between ball joints, which has none at an equilibrium, but off
+ * it some, as large as what is unbalanced) goes as far as a step may, and the rest where it has to go. Shortened as a whole such a step would get nowhere.
+ */
+static mt_status shorten(mt_newton_work *w, const mt_elimination *e, double *eta, mt_arena *mem,
+                         mt_err *err)
+{
+    const ptrdiff_t n = e->n;
+    const double most = MT_STEP_LIMIT * w->sys->length_m; /* Z is orthonormal in lengths */
+    double *const k = mt_arena_f64(mem, (size_t)n, (size_t)n);
+    double *const values = mt_arena_f64(mem, (size_t)n, 1);
+    double *const kept = mt_arena_f64(mem, (size_t)n, 1);
+    if (k == NULL || values == NULL || kept == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_newton_reduce_hessian(w, e, k, e->n, mem, err));
+    MT_TRY(mt_eig_sym(e->n, k, values, true, mem, err));
+    for (ptrdiff_t i = 0; i < n; i++) {
+        const double *const v = k + (i * n);
+        const double part = mt_dot(e->n, v, eta);
+        mt_axpy(e->n, fmax(fmin(part, most), -most), v, kept);
+    }
+    memcpy(eta, kept, (size_t)n * sizeof *eta);
+    return MT_OK;
+}
+
 mt_status mt_newton_linearise(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
                               mt_elimination *e, double **inverse, mt_err *err)
 {
@@ -333,6 +359,12 @@ mt_status mt_newton_linearise(mt_newton_work *w, const mt_pose *poses, mt_arena 
     mt_eliminate_expand(e, eta, w->step);
     mt_axpy(nq, 1.0, w->v, w->step);
     w->moved = mt_newton_scaled_norm(w, w->step);
+    if (!w->p->trim && w->moved > MT_STEP_LIMIT && w->moved < HUGE_VAL) {
+        MT_TRY(shorten(w, e, eta, mem, err));
+        mt_eliminate_expand(e, eta, w->step);
+        mt_axpy(nq, 1.0, w->v, w->step);
+        w->moved = mt_newton_scaled_norm(w, w->step);
+    }
     if (w->p->trim) {
         w->tau += eta[e->n];
     }

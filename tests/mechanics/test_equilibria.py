@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Equilibrium: what is drawn out of it settles downhill, what is drawn in it stays; against minimisers of their own."""
 import math
+import random
 import unittest
 
 import numpy
@@ -225,6 +226,29 @@ class Equilibria(MechanismTest):
                     exact = sorted([across / 2, (900 if kind == "ends" else 800) / 2] + ([100.0] if kind == "gyration" else []))
                     for a, b in zip(got, exact, strict=True):
                         self.assertAlmostEqual(a / b, 1, delta=1e-12)
+
+    def test_the_spins_of_rods_do_not_shorten_the_steps(self):
+        """Off the equilibrium a rod's spin between ball joints has some stiffness: the step along it is long, and no other has to wait for it."""
+        for seed in range(16):
+            with self.subTest(seed=seed):
+                r = random.Random(seed)
+                tip = [r.uniform(0.5, 1) for _ in range(3)]
+                model = {"format": "modetune-model/1", "dimension": 3, "gravity_m_per_s2": [-G, 0, 0], "joints": [], "springs": [],
+                         "bodies": [{"name": "tip", "mass_kg": 1, "centre": tip}]}
+                for i in range(2):
+                    foot = [r.uniform(-0.3, 0.3) for _ in range(3)]
+                    way = numpy.subtract(tip, foot)
+                    spin = 0.5 * (way @ way * numpy.eye(3) - numpy.outer(way, way)) / 12
+                    model["bodies"].append({"name": f"rod{i}", "mass_kg": 0.5, "centre": [(a + b) / 2 for a, b in zip(tip, foot)],
+                                            "inertia_kg_m2": [*spin.diagonal().tolist(), spin[0, 1], spin[0, 2], spin[1, 2]]})
+                    model["joints"] += [{"name": f"foot{i}", "type": "spherical", "bodies": ["ground", f"rod{i}"], "at": foot},
+                                        {"name": f"tip{i}", "type": "spherical", "bodies": [f"rod{i}", "tip"], "at": tip}]
+                for k, stiffness in enumerate((100, 500, 200)):
+                    far = [x + (1 if i == k else 0) for i, x in enumerate(tip)]
+                    model["springs"].append({"name": f"s{k}", "type": "axial", "bodies": ["ground", "tip"], "at": [far, tip],
+                                             "stiffness_n_per_m": stiffness})
+                got = self.answer(model, "modes")
+                self.assertLessEqual(got["equilibrium"]["iterations"], 10)
 
     def test_a_closed_loop_without_equilibrium_is_not_called_open(self):
         for i in range(6):
