@@ -35,7 +35,7 @@ mt_status mt_blas_claim(int callers, mt_err *err)
     const int n = callers < 1 ? 1 : callers > MOST ? MOST : callers;
     int have = 0;
     while (have < n && blas_memory_alloc != NULL && blas_memory_free != NULL) {
-        void *const room = malloc(MT_BLAS_BUFFER);
+        void *volatile const room = malloc(MT_BLAS_BUFFER); /* not to be optimised away */
         if (room == NULL) {
             break;
         }

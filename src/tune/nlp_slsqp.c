@@ -12,11 +12,14 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/format.h"
 #include "tune/libraries.h"
 
+/* NLopt (2.7.1, nlopt_vsprintf) ends the process where it has no memory for the sentence that goes with NLOPT_FAILURE: that there is some is known when a run begins. */
+enum { MESSAGE_ROOM = 1024 };
 enum { EVALS_BASE = 200, EVALS_PER_VARIABLE = 20, RESTARTS = 12 };
 /* Where SLSQP may stop: what is left, our Newton iteration does in a few steps. */
 static const double F_TOL_REL = 1e-10;
@@ -180,7 +183,9 @@ static bool run_once(slsqp *w, double radius)
     }
     w->failed = false;
     double f = 0;
-    mt_status rc = set_up(w);
+    void *volatile const room = malloc(MESSAGE_ROOM); /* or a compiler may know better */
+    mt_status rc = room == NULL ? MT_E_MEMORY : set_up(w);
+    free(room);
     if (rc == MT_OK) {
         nlopt_srand(w->e->opt.seed);
         rc = status_of(nlopt_optimize(w->opt, w->x, &f));

@@ -8,7 +8,8 @@
  *     test_allocation_sites                            a sample, of a seed that is printed; places that ask for memory come first
  *     test_allocation_sites --seed S --count N         N of each command
  *     test_allocation_sites --all                      every k of every command, both ways: hours
- *     test_allocation_sites --only 7 --at 42 [--on]    one of them again (--on: all from the 42nd on), with what it says
+ *     test_allocation_sites --line 1 "run -o @ FILE" ...    of this command line, which ends with 1 where nothing is refused
+ *     test_allocation_sites --only 7 --at 42 [--on]    one of them again (--on: all from the 42nd on); with MT_ALLOCATIONS_TALK=1 it says who asked
  */
 #define _GNU_SOURCE /* memmem, MAP_ANONYMOUS; NOLINT(cert-dcl37-c,cert-dcl51-cpp) */
 #include <execinfo.h>
@@ -39,7 +40,7 @@ enum { FULL = 100, SOME = 25, FEW = 10 };
 
 #define MODELS "tests/models/"
 #define WRONG  "tests/io/wrong/"
-static const struct {
+static struct {
     const char *
         words; /* separated by blanks; @: a folder for results, empty before each run; %: one with a result */
     int code;
@@ -187,8 +188,11 @@ static bool same_text(const text *a, const text *b, bool timed)
 {
     const char *p = a->s;
     const char *q = b->s;
-    if (!timed || p == NULL || q == NULL) {
-        return a->n == b->n && (a->n == 0 || memcmp(p, q, a->n) == 0);
+    if (p == NULL || q == NULL) {
+        return a->n == b->n;
+    }
+    if (!timed) {
+        return a->n == b->n && memcmp(p, q, a->n) == 0;
     }
     while (*p != '\0' && *q != '\0') {
         const size_t n = strcspn(p, "\n");
@@ -384,6 +388,10 @@ static bool read_arguments(int argc, char *argv[], sampling *s)
             s->count = strtol(argv[++i], NULL, 10);
         } else if (strcmp(argv[i], "--only") == 0 && more) {
             s->only = (int)strtol(argv[++i], NULL, 10);
+        } else if (strcmp(argv[i], "--line") == 0 && i + 2 < argc) {
+            s->only = 0;
+            commands[0].code = (int)strtol(argv[++i], NULL, 10);
+            commands[0].words = argv[++i];
         } else if (strcmp(argv[i], "--at") == 0 && more) {
             s->at = strtol(argv[++i], NULL, 10);
         } else {
@@ -397,7 +405,7 @@ static bool read_arguments(int argc, char *argv[], sampling *s)
 int main(int argc, char *argv[])
 {
     mt_test t = mt_test_begin();
-    sampling s = {.seed = 1, .count = 24, .only = -1, .at = -1};
+    sampling s = {.seed = 1, .count = 20, .only = -1, .at = -1};
     if (!read_arguments(argc, argv, &s)) {
         return 2;
     }
