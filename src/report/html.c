@@ -62,7 +62,7 @@ static void add_best(const mt_recommendation *r, mt_text *out)
         mt_text line = {0};
         if (mt_report_measure(&r->parameters[i], &line)) {
             mt_text_add(out, "<p>");
-            mt_html_escape(line.s, out);
+            mt_html_escape(line.s == NULL ? "" : line.s, out);
             mt_text_add(out, "</p>\n");
         }
         out->failed = out->failed || line.failed;

@@ -108,7 +108,7 @@ static void print_best(const mt_recommendation *r, mt_text *out)
     for (int i = 0; i < r->n_parameters; i++) {
         mt_text line = {0};
         if (mt_report_measure(&r->parameters[i], &line)) {
-            mt_text_addf(out, "  %s\n", line.s);
+            mt_text_addf(out, "  %s\n", line.s == NULL ? "" : line.s);
         }
         out->failed = out->failed || line.failed;
         mt_text_free(&line);
