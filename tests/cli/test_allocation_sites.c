@@ -252,6 +252,13 @@ static bool output_is_whole(const left *got, const left *want, const char *line)
                : same_text(&got->out, &want->out, false);
 }
 
+/* A result's folder is new as a whole, or not at all. */
+static bool folder_is_whole(const left *got, const left *want, const char *line)
+{
+    return strstr(line, ".json studies/") != NULL || got->n_files == 0 ||
+           got->n_files == want->n_files;
+}
+
 static bool says_so(const left *got)
 {
     return got->err.s != NULL && strstr(got->err.s, "memory") != NULL;
@@ -269,6 +276,7 @@ static bool bears(mt_test *t, int i, refusal r, const left *want)
         CHECK(t, got.code != MT_EXIT_SYSTEM || says_so(&got));
         CHECK(t, got.code != MT_EXIT_SYSTEM || output_is_whole(&got, want, commands[i].words));
         CHECK(t, files_are_right(&got, want));
+        CHECK(t, folder_is_whole(&got, want, commands[i].words));
     }
     const bool ok = t->failures == failures;
     if (!ok) {
