@@ -3,14 +3,23 @@
 
 #include <stdarg.h>
 
+#include "base/format.h"
+
 mt_diags mt_diags_default(mt_arena *mem)
 {
     return (mt_diags){.mem = mem};
 }
 
+/* Names may be as long as the file: what goes beyond a line is not kept. */
+enum { TEXT_SIZE = 2048 };
+
+MT_PRINTF(5, 0)
 static void add(mt_diags *d, mt_addr addr, mt_severity severity, bool structural,
-                const char *text)
+                const char *fmt, va_list args)
 {
+    char line[TEXT_SIZE];
+    const bool written = mt_vsnprintf(line, sizeof line, fmt, args) >= 0;
+    const char *const text = written ? mt_arena_strdup(d->mem, line) : NULL;
     mt_diag *const items =
         text == NULL ? NULL
                      : mt_arena_grow(d->mem, d->items, d->count, &d->capacity, sizeof *items);
@@ -24,6 +33,16 @@ static void add(mt_diags *d, mt_addr addr, mt_severity severity, bool structural
     d->count++;
 }
 
+bool mt_diag_has_room(const mt_diags *d)
+{
+    return d->count < MT_DIAG_LIMIT;
+}
+
+bool mt_diag_may_suggest(const mt_diags *d)
+{
+    return d->errors < MT_DIAG_SUGGESTIONS;
+}
+
 void mt_diag_error(mt_diags *d, mt_addr addr, const char *fmt, ...)
 {
     d->errors++;
@@ -32,7 +51,7 @@ void mt_diag_error(mt_diags *d, mt_addr addr, const char *fmt, ...)
     }
     va_list args;
     va_start(args, fmt);
-    add(d, addr, MT_SEV_ERROR, false, mt_arena_vprintf(d->mem, fmt, args));
+    add(d, addr, MT_SEV_ERROR, false, fmt, args);
     va_end(args);
 }
 
@@ -45,7 +64,7 @@ void mt_diag_structure(mt_diags *d, mt_addr addr, const char *fmt, ...)
     }
     va_list args;
     va_start(args, fmt);
-    add(d, addr, MT_SEV_ERROR, true, mt_arena_vprintf(d->mem, fmt, args));
+    add(d, addr, MT_SEV_ERROR, true, fmt, args);
     va_end(args);
 }
 
@@ -57,6 +76,6 @@ void mt_diag_warning(mt_diags *d, mt_addr addr, const char *fmt, ...)
     }
     va_list args;
     va_start(args, fmt);
-    add(d, addr, MT_SEV_WARNING, false, mt_arena_vprintf(d->mem, fmt, args));
+    add(d, addr, MT_SEV_WARNING, false, fmt, args);
     va_end(args);
 }

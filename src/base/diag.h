@@ -10,7 +10,8 @@
  * JSON pointer. MT_NO_ADDR: the problem belongs to no place (a model built in memory).
  */
 typedef int mt_addr;
-enum { MT_NO_ADDR = -1, MT_DIAG_LIMIT = 200 };
+/* So many problems are kept; so many of them, the first, say what may have been meant: to look for it takes a walk through all names. */
+enum { MT_NO_ADDR = -1, MT_DIAG_LIMIT = 200, MT_DIAG_SUGGESTIONS = 50 };
 
 typedef enum mt_severity { MT_SEV_ERROR, MT_SEV_WARNING } mt_severity;
 
@@ -38,6 +39,10 @@ mt_diags mt_diags_default(mt_arena *mem);
 void mt_diag_error(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
 /* An error of structure: a schema (types, names of members, choices) sees it as well. */
 void mt_diag_structure(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
+/* Will another problem be kept? */
+bool mt_diag_has_room(const mt_diags *d);
+/* Is a suggestion ("did you mean") still worth its search? For the first MT_DIAG_SUGGESTIONS errors. */
+bool mt_diag_may_suggest(const mt_diags *d);
 void mt_diag_warning(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
 
 #endif

@@ -9,9 +9,14 @@ mt_doubt_list mt_doubt_list_default(mt_arena *mem)
     return (mt_doubt_list){.mem = mem};
 }
 
+static bool is_full(const mt_doubt_list *list, mt_doubt_level level)
+{
+    return list->n >= (level == MT_LEVEL_FAULT ? 2 : 1) * MT_DOUBT_LIMIT;
+}
+
 static mt_doubt *add(mt_doubt_list *list, const mt_doubt *item)
 {
-    if (list->n >= MT_DOUBT_LIMIT) {
+    if (is_full(list, item->level)) {
         return NULL;
     }
     mt_doubt *const items = item->text == NULL ? NULL
@@ -30,7 +35,7 @@ mt_doubt *mt_doubt_add(mt_doubt_list *list, mt_doubt_level level, const char *ki
                        const char *fmt, ...)
 {
     mt_doubt item = {.level = level, .kind = kind, .addr = MT_NO_ADDR};
-    if (list->n >= MT_DOUBT_LIMIT) {
+    if (is_full(list, level)) {
         return NULL;
     }
     va_list args;

@@ -34,6 +34,7 @@ typedef struct mt_doubt {
     double size;  /* how far, in a unit of the kind: the largest is said first */
 } mt_doubt;
 
+/* So many are kept, and as many faults besides: no doubt hides one. */
 enum { MT_DOUBT_LIMIT = 1000 };
 
 typedef struct mt_doubt_list {

@@ -78,7 +78,7 @@ static int least(int a, int b)
 
 /* Optimal string alignment by rows: d(i, j) edits turn the first i bytes of a into the first j of b,
  *   d(i, j) = min( d(i-1, j) + 1, d(i, j-1) + 1, d(i-1, j-1) + [a_i != b_j], d(i-2, j-2) + 1 if two neighbours are swapped ).
- * Only the last three rows are kept. */
+ * Only the last three rows are kept, and of them the cells |i - j| <= most: the others are above `most`, like all rows behind two that are. */
 int mt_text_distance(const char *a, const char *b, int most)
 {
     const size_t la = strlen(a);
@@ -92,7 +92,8 @@ int mt_text_distance(const char *a, const char *b, int most)
     }
     const int m = (int)la;
     const int n = (int)lb;
-    int rows[3][MT_TEXT_DISTANCE_MAX + 1];
+    int rows[3][MT_TEXT_DISTANCE_MAX + 2];
+    bool far = false; /* the whole last row is */
     for (int j = 0; j <= n; j++) {
         rows[0][j] = j;
     }
@@ -100,14 +101,23 @@ int mt_text_distance(const char *a, const char *b, int most)
         const int *const before = rows[(i + 1) % 3];
         const int *const last = rows[(i + 2) % 3];
         int *const row = rows[i % 3];
-        row[0] = i;
-        for (int j = 1; j <= n; j++) {
-            const int replaced = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-            row[j] = least(replaced, least(last[j], row[j - 1]) + 1);
+        const int first = i > most ? i - most : 0;
+        const int end = least(n, i + most);
+        int nearest = most + 1;
+        for (int j = first; j <= end; j++) {
+            int d = j == 0 ? i : last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            d = j > first ? least(d, row[j - 1] + 1) : d;
+            d = j < i + most ? least(d, last[j] + 1) : d;
             if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-                row[j] = least(row[j], before[j - 2] + 1);
+                d = least(d, before[j - 2] + 1);
             }
+            row[j] = d;
+            nearest = least(nearest, d);
         }
+        if (far && nearest > most) {
+            return most + 1;
+        }
+        far = nearest > most;
     }
     return least(rows[m % 3][n], most + 1);
 }

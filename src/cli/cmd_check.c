@@ -72,15 +72,26 @@ static mt_status find_kind(const char *path, const mt_io_options *opt, int *kind
     return rc;
 }
 
-/* Every configuration as it stands. */
+/* Every configuration as it stands, as long as that does not take too long. */
 static mt_status examine_model(const mt_model *model, mt_doubt_list *found, mt_err *err)
 {
+    double work = 0.0;
+    int left = 0;
     for (int c = 0; c < model->n_configurations; c++) {
         mt_analysis *a = NULL;
+        const double takes = mt_doubts_work(model, c);
+        if (work + takes > MT_DOUBTS_WORK) {
+            left++;
+            continue;
+        }
+        work += takes;
         mt_status rc = mt_analysis_new(model, c, 0, NULL, NULL, &a, err);
         rc = rc == MT_OK ? mt_doubts_of_analysis(a, 0, NULL, NULL, found, err) : rc;
         mt_analysis_delete(a);
         MT_TRY(rc);
+    }
+    if (left > 0) {
+        mt_doubts_left_out(left, found);
     }
     return MT_OK;
 }
@@ -139,8 +150,10 @@ static mt_status load(int kind, const char *path, const mt_io_options *opt, subj
         break;
     case KIND_STUDY:
         rc = mt_study_load(path, opt, &s->study, messages, err);
-        rc = rc == MT_OK ? mt_err_in(err, mt_study_examine(s->study, found, err), "%s", path)
-                         : rc;
+        rc = rc == MT_OK
+                 ? mt_err_in(err, mt_study_examine(s->study, MT_DOUBTS_WORK, found, err), "%s",
+                             path)
+                 : rc;
         break;
     case KIND_RESULT:
         rc = mt_result_load(path, opt, &s->result, messages, err);

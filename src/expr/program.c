@@ -37,11 +37,14 @@ static uint64_t value_bits(double value)
     return bits;
 }
 
-/* Multiply and rotate; any odd multiplier with well mixed bits does, this one is 2^64 / golden ratio. */
+/* All bits of the word into all bits of the hash, also those of small whole numbers, which as doubles end in forty zeros: D. Stafford's variant 13 of the
+ * finaliser of MurmurHash3, http://zimbry.blogspot.com/2011/09/better-bit-mixing-improving-on.html. */
 static uint64_t mix(uint64_t hash, uint64_t word)
 {
-    hash = (hash ^ word) * UINT64_C(0x9E3779B97F4A7C15);
-    return hash ^ (hash >> 29);
+    hash += word + UINT64_C(0x9E3779B97F4A7C15); /* 2^64 / golden ratio: 0 does not stay 0 */
+    hash = (hash ^ (hash >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
+    hash = (hash ^ (hash >> 27)) * UINT64_C(0x94D049BB133111EB);
+    return hash ^ (hash >> 31);
 }
 
 static uint64_t node_hash(const mt_program_node *n)

@@ -132,13 +132,16 @@ static int compare_members(const void *a, const void *b)
 
 static void note_duplicate(mt_json *doc, const member *first, const member *again)
 {
-    int line = 0;
-    int column = 0;
-    if (doc->diags.errors < MT_DIAG_LIMIT) { /* finding a line takes a walk through the text */
+    const mt_addr at = mt_json_name_addr(doc, again->value);
+    if (mt_diag_may_suggest(&doc->diags)) { /* finding a line takes a walk through the text */
+        int line = 0;
+        int column = 0;
         mt_json_place(doc, mt_json_name_addr(doc, first->value), &line, &column);
+        mt_diag_error(&doc->diags, at, "member \"%s\" is given twice, first in line %d",
+                      again->name, line);
+    } else {
+        mt_diag_error(&doc->diags, at, "member \"%s\" is given twice", again->name);
     }
-    mt_diag_error(&doc->diags, mt_json_name_addr(doc, again->value),
-                  "member \"%s\" is given twice, first in line %d", again->name, line);
 }
 
 /* Note names that an object has twice: all members sorted by object, name, place. */

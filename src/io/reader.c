@@ -50,7 +50,8 @@ static void unknown_member(mt_reader *r, mt_addr member, const mt_key_table *tab
         names[i] = table->keys[i].name;
     }
     const char *const name = mt_json_name(r->doc, member);
-    const char *const near = nearest_key(name, names, table->n);
+    const char *const near =
+        mt_diag_may_suggest(r->diags) ? nearest_key(name, names, table->n) : NULL;
     const mt_addr at = mt_json_name_addr(r->doc, member);
     if (near != NULL) {
         mt_diag_structure(r->diags, at, "unknown member \"%s\"; did you mean \"%s\"?", name,
@@ -281,7 +282,8 @@ int mt_reader_choice(mt_reader *r, mt_addr value, const char *what, const char *
             return i;
         }
     }
-    const char *const near = mt_text_nearest(s, names, n);
+    const char *const near =
+        mt_diag_may_suggest(r->diags) ? mt_text_nearest(s, names, n) : NULL;
     if (near != NULL) {
         mt_diag_structure(r->diags, value, "unknown %s \"%s\"; did you mean \"%s\"?", what, s,
                           near);
@@ -319,8 +321,9 @@ bool mt_reader_flag(mt_reader *r, mt_addr value, bool fallback)
 bool mt_reader_expr_text(mt_reader *r, mt_addr addr, const char *text, mt_expr *out)
 {
     mt_err err = {MT_OK, ""};
+    const int n_names = mt_diag_may_suggest(r->diags) ? r->n_names : 0;
     const mt_status rc =
-        mt_expr_parse(text, r->lookup, r->context, r->names, r->n_names, r->mem, out, &err);
+        mt_expr_parse(text, r->lookup, r->context, r->names, n_names, r->mem, out, &err);
     if (rc == MT_OK) {
         return true;
     }

@@ -15,6 +15,10 @@ mt_addr mt_finish_addr(const mt_model *m, mt_num num)
 void mt_finish_unknown(mt_finish *f, mt_name name, const mt_names *table, const char *what,
                        const char *const *more, int n_more)
 {
+    if (!mt_diag_may_suggest(f->d)) {
+        mt_diag_error(f->d, name.addr, "unknown %s \"%s\"", what, name.s);
+        return;
+    }
     const mt_arena_mark mark = mt_arena_get_mark(&f->m->mem);
     const char **const names =
         mt_arena_alloc(&f->m->mem, (size_t)table->count + (size_t)n_more, sizeof *names);
@@ -171,6 +175,21 @@ static void ensure_configuration(mt_finish *f)
     }
 }
 
+/* What every configuration costs, all together. Without room for it nothing more is looked at. */
+static bool fits(const mt_model *m, mt_diags *diags)
+{
+    const double parts = (double)m->n_nums + m->n_bodies + m->n_links + m->n_joints +
+                         m->n_springs + m->n_loads + m->n_sensors;
+    if (m->n_configurations < 2 || (double)m->n_configurations * parts <= MT_MAX_CONFIGURED) {
+        return true;
+    }
+    mt_diag_error(diags, m->configurations[0].name.addr,
+                  "%d configurations of %.0f numbers and items are too many: at most %d as the "
+                  "product",
+                  m->n_configurations, parts, (int)MT_MAX_CONFIGURED);
+    return false;
+}
+
 mt_status mt_model_finish(mt_model *model, mt_diags *diags, mt_err *err)
 {
     static void (*const stages[])(mt_finish *) = {
@@ -180,7 +199,8 @@ mt_status mt_model_finish(mt_model *model, mt_diags *diags, mt_err *err)
         mt_finish_values,
     };
     mt_finish f = {.m = model, .d = diags, .out_of_memory = model->out_of_memory};
-    for (int i = 0; i < MT_COUNT(stages) && !f.out_of_memory; i++) {
+    const int n_stages = fits(model, diags) ? MT_COUNT(stages) : 0;
+    for (int i = 0; i < n_stages && !f.out_of_memory; i++) {
         stages[i](&f);
     }
     if (f.out_of_memory || diags->out_of_memory) {

@@ -8,6 +8,7 @@
 typedef struct mt_finish {
     mt_model *m;
     mt_diags *d;
+    int *order; /* [n_configurations] those that others are like first */
     bool out_of_memory;
 } mt_finish;
 
@@ -33,6 +34,18 @@ void mt_finish_needs_attach(mt_finish *f, mt_name item, const char *what, const 
                             const mt_attach *part);
 /* "beam.h3": hinge 3 of link "beam", *link and its 0-based *hinge; a hinge that the link has not is noted and leaves them MT_ABSENT. False where the name has no such form. */
 bool mt_finish_hinge(mt_finish *f, mt_name name, int *link, int *hinge);
+/* "a -> b -> c -> a" in words that a line can hold: of a long circle the first names and the last. Begins with .first, and the others are added in order. */
+enum { MT_RING_NAME = 48, MT_RING_FIRST = 8, MT_RING_LAST = 4, MT_RING_TEXT = 1024 };
+typedef struct mt_finish_ring {
+    const char *first;
+    int count;                        /* of those added */
+    const char *start[MT_RING_FIRST]; /* the first of them */
+    const char *last[MT_RING_LAST];   /* the last of them: number i at i % MT_RING_LAST */
+    char text[MT_RING_TEXT];
+} mt_finish_ring;
+void mt_finish_ring_add(mt_finish_ring *ring, const char *name);
+/* Write ring->text. */
+void mt_finish_ring_end(mt_finish_ring *ring);
 /* The address of a number; MT_NO_ADDR where it is absent. */
 mt_addr mt_finish_addr(const mt_model *m, mt_num num);
 

@@ -10,18 +10,13 @@ enum { UNSEEN, ON_PATH, DONE };
 static void note_like_cycle(mt_finish *f, int c)
 {
     const mt_configuration *const all = f->m->configurations;
-    const char *path = all[c].name.s;
-    int at = c;
-    do {
-        at = all[at].like;
-        path = mt_arena_printf(&f->m->mem, "%s -> %s", path, all[at].name.s);
-    } while (path != NULL && at != c);
-    if (path == NULL) {
-        f->out_of_memory = true;
-        return;
+    mt_finish_ring ring = {.first = all[c].name.s};
+    for (int at = all[c].like; at != c; at = all[at].like) {
+        mt_finish_ring_add(&ring, all[at].name.s);
     }
+    mt_finish_ring_end(&ring);
     mt_diag_error(f->d, all[c].like_name.addr,
-                  "configurations are like each other in a circle: %s", path);
+                  "configurations are like each other in a circle: %s", ring.text);
 }
 
 /* Walk along `like` from c; a walk that meets itself is cut there. state [n_configurations]. */
@@ -69,18 +64,8 @@ static int *inheritance_order(mt_finish *f)
     return order;
 }
 
-static bool overrides_parameter(const mt_configuration *c, int n, int parameter)
-{
-    for (int i = 0; i < n; i++) {
-        if (c->overrides[i].parameter == parameter) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* Own overrides first, then those inherited that are not given again. */
-static void inherit_overrides(mt_finish *f, mt_configuration *c)
+/* Own overrides first, then those inherited that are not given again. overridden [n_parameters] is false before and after. */
+static void inherit_overrides(mt_finish *f, mt_configuration *c, bool *overridden)
 {
     const mt_configuration *const parent = &f->m->configurations[c->like];
     const int own = c->n_overrides;
@@ -97,15 +82,26 @@ static void inherit_overrides(mt_finish *f, mt_configuration *c)
         memcpy(all, c->overrides, (size_t)own * sizeof *all);
     }
     c->overrides = all;
+    for (int i = 0; i < own; i++) {
+        if (all[i].parameter != MT_ABSENT) {
+            overridden[all[i].parameter] = true;
+        }
+    }
     for (int i = 0; i < parent->n_overrides; i++) {
-        if (!overrides_parameter(c, own, parent->overrides[i].parameter)) {
+        const int parameter = parent->overrides[i].parameter;
+        if (parameter == MT_ABSENT || !overridden[parameter]) {
             all[c->n_overrides++] = parent->overrides[i];
+        }
+    }
+    for (int i = 0; i < own; i++) {
+        if (all[i].parameter != MT_ABSENT) {
+            overridden[all[i].parameter] = false;
         }
     }
 }
 
 /* Settings in force: own, else those of the configuration it is like, else the model's. */
-static void inherit(mt_finish *f, mt_configuration *c)
+static void inherit(mt_finish *f, mt_configuration *c, bool *overridden)
 {
     const mt_configuration *const parent =
         c->like == MT_ABSENT ? NULL : &f->m->configurations[c->like];
@@ -115,7 +111,7 @@ static void inherit(mt_finish *f, mt_configuration *c)
             mt_finish_find(f, o->parameter_name, &f->m->tables->parameters, "parameter");
     }
     if (parent != NULL) {
-        inherit_overrides(f, c);
+        inherit_overrides(f, c, overridden);
     }
     const bool model_has = parent == NULL && f->m->has_gravity;
     if (!c->has_gravity && (model_has || (parent != NULL && parent->has_gravity))) {
@@ -132,7 +128,9 @@ void mt_finish_configurations(mt_finish *f)
 {
     mt_model *const m = f->m;
     int *const state = mt_arena_int(&m->mem, (size_t)m->n_configurations);
-    if (state == NULL) {
+    bool *const overridden =
+        mt_arena_alloc(&m->mem, (size_t)m->n_parameters, sizeof *overridden);
+    if (state == NULL || overridden == NULL) {
         f->out_of_memory = true;
         return;
     }
@@ -144,9 +142,9 @@ void mt_finish_configurations(mt_finish *f)
     for (int c = 0; c < m->n_configurations && !f->out_of_memory; c++) {
         check_like(f, c, state);
     }
-    const int *const order = f->out_of_memory ? NULL : inheritance_order(f);
-    for (int i = 0; order != NULL && i < m->n_configurations; i++) {
-        inherit(f, &m->configurations[order[i]]);
+    f->order = f->out_of_memory ? NULL : inheritance_order(f);
+    for (int i = 0; f->order != NULL && i < m->n_configurations; i++) {
+        inherit(f, &m->configurations[f->order[i]], overridden);
     }
     for (int i = 0; i < m->n_modes; i++) {
         mt_named_mode *const mode = &m->modes[i];
@@ -174,12 +172,10 @@ static void resolve_presence(mt_finish *f, mt_presence *in)
             present[c] = true;
         }
     }
-    for (int c = 0; c < m->n_configurations; c++) {
-        int at = c; /* `like` has no circles any more */
-        while (at != MT_ABSENT && !present[at]) {
-            at = m->configurations[at].like;
-        }
-        present[c] = at != MT_ABSENT;
+    for (int i = 0; i < m->n_configurations; i++) {
+        const int c = f->order[i];
+        const int like = m->configurations[c].like;
+        present[c] = present[c] || (like != MT_ABSENT && present[like]);
     }
     in->present = present;
 }

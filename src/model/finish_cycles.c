@@ -4,6 +4,10 @@
  * circles are searched in every configuration with overrides. Depth-first with an explicit stack: a chain of parameters may be as long as the
  * file allows.
  */
+#include <stdarg.h>
+#include <string.h>
+
+#include "base/format.h"
 #include "model/finish.h"
 
 enum { UNSEEN, ON_PATH, DONE };
@@ -18,6 +22,52 @@ typedef struct search {
     const char *configuration; /* NULL: the model as it stands */
 } search;
 
+void mt_finish_ring_add(mt_finish_ring *ring, const char *name)
+{
+    if (ring->count < MT_RING_FIRST) {
+        ring->start[ring->count] = name;
+    } else {
+        ring->last[ring->count % MT_RING_LAST] = name;
+    }
+    ring->count++;
+}
+
+MT_PRINTF(3, 4)
+static void ring_write(mt_finish_ring *ring, size_t *length, const char *fmt, ...)
+{
+    const size_t left = sizeof ring->text - *length;
+    va_list args;
+    va_start(args, fmt);
+    const int n = mt_vsnprintf(ring->text + *length, left, fmt, args);
+    va_end(args);
+    *length += n < 0 ? 0 : (size_t)n < left ? (size_t)n : left - 1;
+}
+
+static void ring_name(mt_finish_ring *ring, size_t *length, const char *arrow, const char *name)
+{
+    ring_write(ring, length, "%s%.*s%s", arrow, (int)MT_RING_NAME, name,
+               strlen(name) > MT_RING_NAME ? "..." : "");
+}
+
+void mt_finish_ring_end(mt_finish_ring *ring)
+{
+    static const char arrow[] = " -> ";
+    const int end = MT_RING_FIRST + MT_RING_LAST;
+    size_t length = 0;
+    ring_name(ring, &length, "", ring->first);
+    for (int i = 0; i < ring->count && i < MT_RING_FIRST; i++) {
+        ring_name(ring, &length, arrow, ring->start[i]);
+    }
+    if (ring->count > end) {
+        ring_write(ring, &length, "%s(%d more)", arrow, ring->count - end);
+    }
+    for (int i = ring->count > end ? ring->count - MT_RING_LAST : MT_RING_FIRST;
+         i < ring->count; i++) {
+        ring_name(ring, &length, arrow, ring->last[i % MT_RING_LAST]);
+    }
+    ring_name(ring, &length, arrow, ring->first);
+}
+
 static void note_cycle(const search *s, int again)
 {
     const mt_model *const m = s->f->m;
@@ -25,22 +75,19 @@ static void note_cycle(const search *s, int again)
     while (s->stack[from] != again) {
         from--;
     }
-    const char *path = m->parameters[again].name.s;
-    for (int i = from + 1; i <= s->depth && path != NULL; i++) {
-        const int p = i == s->depth ? again : s->stack[i];
-        path = mt_arena_printf(&s->f->m->mem, "%s -> %s", path, m->parameters[p].name.s);
+    mt_finish_ring ring = {.first = m->parameters[again].name.s};
+    for (int i = from + 1; i < s->depth; i++) {
+        mt_finish_ring_add(&ring, m->parameters[s->stack[i]].name.s);
     }
-    if (path == NULL) {
-        s->f->out_of_memory = true;
-        return;
-    }
+    mt_finish_ring_end(&ring);
     const mt_addr addr = mt_finish_addr(m, s->value[again]);
     if (s->configuration == NULL) {
-        mt_diag_error(s->f->d, addr, "parameters refer to each other in a circle: %s", path);
+        mt_diag_error(s->f->d, addr, "parameters refer to each other in a circle: %s",
+                      ring.text);
     } else {
         mt_diag_error(s->f->d, addr,
                       "in configuration \"%s\" parameters refer to each other in a circle: %s",
-                      s->configuration, path);
+                      s->configuration, ring.text);
     }
 }
 

@@ -15,6 +15,8 @@
  * Geometry: the reference position, global coordinates [m]; angles [rad].
  */
 enum { MT_ABSENT = -1, MT_GROUND = -1, MT_MAX_LIST = 100000 };
+/* Configurations times (numbers and items) of a model at most: every configuration is checked with all its numbers. */
+enum { MT_MAX_CONFIGURED = 10000000 };
 
 /* Index into mt_model.nums; MT_ABSENT where the member was not given. */
 typedef int mt_num;

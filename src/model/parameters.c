@@ -10,16 +10,11 @@ typedef struct source {
     const mt_number *number;
 } source;
 
-static source source_of(const mt_model *model, int configuration, const int *is_input,
+static source source_of(const mt_model *model, const mt_num *override, const int *is_input,
                         int parameter)
 {
-    if (configuration >= 0) {
-        const mt_configuration *const c = &model->configurations[configuration];
-        for (int i = 0; i < c->n_overrides; i++) {
-            if (c->overrides[i].parameter == parameter) {
-                return (source){false, &model->nums[c->overrides[i].value]};
-            }
-        }
+    if (override[parameter] != MT_ABSENT) {
+        return (source){false, &model->nums[override[parameter]]};
     }
     const mt_number *const own = &model->nums[model->parameters[parameter].value];
     return (source){is_input != NULL && is_input[parameter] >= 0, own};
@@ -39,7 +34,7 @@ static int missing_operand(const mt_expr *e, const mt_node *nodes)
 /* What emission reads and fills. */
 typedef struct emission {
     const mt_model *model;
-    int configuration;
+    const mt_num *override; /* [n_parameters] the configuration's number, MT_ABSENT: none */
     const int *is_input;
     mt_program *program;
     mt_node *nodes;
@@ -58,7 +53,7 @@ static mt_status emit(const emission *x, int parameter, mt_err *err)
             depth--;
             continue;
         }
-        const source s = source_of(x->model, x->configuration, x->is_input, p);
+        const source s = source_of(x->model, x->override, x->is_input, p);
         const int waits_for = s.input ? -1 : missing_operand(&s.number->expr, nodes);
         if (waits_for >= 0) {
             if (depth >= x->model->n_parameters) {
@@ -83,13 +78,20 @@ mt_status mt_emit_parameters(const mt_model *model, int configuration, const int
 {
     const int n = model->n_parameters;
     int *const stack = mt_arena_int(mem, (size_t)n + 1);
-    if (stack == NULL) {
+    mt_num *const override = mt_arena_alloc(mem, (size_t)n, sizeof *override);
+    if (stack == NULL || override == NULL) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < n; i++) {
         nodes[i] = MT_NO_NODE;
+        override[i] = MT_ABSENT;
     }
-    const emission x = {model, configuration, is_input, program, nodes, stack};
+    const mt_configuration *const c =
+        configuration < 0 ? NULL : &model->configurations[configuration];
+    for (int i = c == NULL ? -1 : c->n_overrides - 1; i >= 0; i--) { /* the first one counts */
+        override[c->overrides[i].parameter] = c->overrides[i].value;
+    }
+    const emission x = {model, override, is_input, program, nodes, stack};
     for (int i = 0; i < n; i++) {
         MT_TRY(emit(&x, i, err));
     }

@@ -17,6 +17,39 @@ static const double LEAST_MASS_KG = 1e-9;
 static const double MOST_LOWEST_HZ = 1e6;
 static const double LEAST_LOWEST_HZ = 1e-4;
 
+double mt_doubts_work(const mt_model *model, int configuration)
+{
+    /* measured, in units of a multiplication in a matrix product: eigenvalues, all that fills matrices, building */
+    static const double PER_CUBE = 0.5;
+    static const double PER_SQUARE = 700.0;
+    static const double PER_NUMBER = 3000.0;
+    const double states = model->dimension == 2 ? STATES_2D : STATES_3D;
+    double bodies = 0.0;
+    double joints = 0.0;
+    for (int i = 0; i < model->n_bodies; i++) {
+        bodies += mt_model_present(&model->bodies[i].in, configuration) ? 1.0 : 0.0;
+    }
+    for (int i = 0; i < model->n_links; i++) {
+        const mt_link *const l = &model->links[i];
+        bodies += mt_model_present(&l->in, configuration) ? (double)l->elements + 1.0 : 0.0;
+    }
+    for (int i = 0; i < model->n_joints; i++) {
+        joints += mt_model_present(&model->joints[i].in, configuration) ? 1.0 : 0.0;
+    }
+    const double size = states * (bodies + joints);
+    const double parts = (double)model->n_nums + model->n_springs + model->n_sensors;
+    return (((PER_CUBE * size) + PER_SQUARE) * size * size) + (PER_NUMBER * parts);
+}
+
+void mt_doubts_left_out(int left, mt_doubt_list *out)
+{
+    (void)mt_doubt_add(
+        out, MT_LEVEL_FACT, "left_out",
+        "%d configuration%s not looked at for free motions and redundant joints: "
+        "too large, or too many",
+        left, left == 1 ? " is" : "s are");
+}
+
 static bool is_grounded(const mt_model *m, int c)
 {
     for (int i = 0; i < m->n_joints; i++) {

@@ -17,11 +17,19 @@
 mt_status mt_doubts_of_analysis(mt_analysis *a, int n_inputs, const int *inputs,
                                 const double *at, mt_doubt_list *out, mt_err *err);
 
+/* What looking at configurations may cost where nobody asked for an analysis (`check`), in operations: some three seconds. */
+#define MT_DOUBTS_WORK 2e9
+/* About what the analysis of a configuration takes: the cube and the square of its coordinates and equations, and every number of the model. */
+double mt_doubts_work(const mt_model *model, int configuration);
+/* Tell that `left` configurations were not looked at, since that takes too long. */
+void mt_doubts_left_out(int left, mt_doubt_list *out);
+
 /**
  * The same of a study at its original design: its own numbers (study->doubts), every configuration that a goal names, targets far from the original
  * frequencies, bands that no mode comes near. Names of files are those that the study knows (no folders). One analysis per configuration, and 2 n + 3 where
- * bands are to be avoided. Fails: as mt_analysis_new.
+ * bands are to be avoided; none, and a fact that tells, where that would take more than most_work (as mt_doubts_work counts). Fails: as mt_analysis_new.
  */
-mt_status mt_study_examine(const mt_study *study, mt_doubt_list *out, mt_err *err);
+mt_status mt_study_examine(const mt_study *study, double most_work, mt_doubt_list *out,
+                           mt_err *err);
 
 #endif

@@ -461,7 +461,7 @@ static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
     MT_TRY(mt_describe_excitations(a->study, result, err));
     result->doubts = mt_doubt_list_default(&result->mem);
     if (!a->study->examined) {
-        MT_TRY(mt_study_examine(a->study, &result->doubts, err));
+        MT_TRY(mt_study_examine(a->study, HUGE_VAL, &result->doubts, err));
     }
     MT_TRY(mt_describe_design(p, &original, NULL, result, &result->baseline, err));
     MT_TRY(mt_describe_baseline_reasons(p, result, err));

@@ -89,8 +89,22 @@ static void use_aircraft(mt_study_check *c, mt_rotor *rotor, const mt_aircraft *
     }
 }
 
+/* Each is compared with all others. */
+enum { MOST_ORDERS = 1000 };
+
+static bool too_many(mt_study_check *c, int n, mt_addr addr, const char *what)
+{
+    if (n > MOST_ORDERS) {
+        mt_diag_error(c->diags, addr, "more than %d %s", (int)MOST_ORDERS, what);
+    }
+    return n > MOST_ORDERS;
+}
+
 static void check_harmonics(mt_study_check *c, const mt_rotor *rotor, bool has_tail)
 {
+    if (too_many(c, rotor->n_harmonics, rotor->addr, "harmonics")) {
+        return;
+    }
     for (int i = 0; i < rotor->n_harmonics; i++) {
         const mt_harmonic *const h = &rotor->harmonics[i];
         for (int k = 0; k < i; k++) {
@@ -150,6 +164,9 @@ static void name_rotors(mt_study_check *c, const mt_bands_source *source)
 
 static void check_orders(mt_study_check *c, const mt_order *orders, int n)
 {
+    if (n > 0 && too_many(c, n, orders[0].addr, "orders")) {
+        return;
+    }
     for (int i = 1; i < n; i++) {
         for (int k = 0; k < i; k++) {
             if (orders[k].thousandths == orders[i].thousandths) {

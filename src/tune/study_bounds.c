@@ -11,6 +11,8 @@
 #include "tune/study_check.h"
 
 enum { MOST_ENUMERATED = 6 };
+/* A search takes far longer than to look at a hundred million numbers: what asks for more is no study. */
+static const double MOST_WORK = 1e8;
 
 typedef struct corners {
     mt_study_check *c;
@@ -161,13 +163,29 @@ static void one_corner(corners *k, unsigned which)
     if (is_allowed(k)) {
         judge(k, &list);
     }
-    for (int d = 0; d < list.n && k->rc == MT_OK; d++) {
+    for (int d = 0; d < list.n && k->rc == MT_OK && mt_diag_has_room(k->c->diags); d++) {
         if (list.items[d].level == MT_LEVEL_FAULT &&
             fault_at(&k->told, list.items[d].addr) == NULL) {
             go_to_corner(k, which);
             tell_corner(k, &list.items[d]);
         }
     }
+}
+
+/* Operations of all designs: numbers of every configuration that counts, parameters for every limit. */
+static double count_work(const corners *k)
+{
+    const mt_study *const s = k->c->study;
+    const mt_model *const m = k->c->model;
+    const double designs = (2.0 * k->n) + (double)(1U << MOST_ENUMERATED);
+    double each = m->n_parameters;
+    for (int c = 0; c < m->n_configurations; c++) {
+        each += is_asked(s, c) ? (double)m->n_nums : 0.0;
+    }
+    for (int g = 0; g < s->n_goals; g++) {
+        each += s->goals[g].type == MT_GOAL_LIMIT ? (double)m->n_parameters : 0.0;
+    }
+    return designs * each;
 }
 
 static void look_at_all(corners *k)
@@ -198,6 +216,14 @@ void mt_study_check_bounds(mt_study_check *c)
     }
     if (mt_arena_init(&k.mem, 0, NULL) != MT_OK) {
         c->out_of_memory = true;
+        return;
+    }
+    if (count_work(&k) > MOST_WORK) {
+        mt_diag_error(c->diags, c->study->variables[0].addr,
+                      "%d variables are too many for a model of %d numbers in so many "
+                      "configurations and limits: every bound is checked with all of them",
+                      k.n, m->n_nums);
+        mt_arena_free(&k.mem);
         return;
     }
     k.told = mt_doubt_list_default(&k.mem);

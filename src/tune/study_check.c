@@ -11,6 +11,9 @@
 static const char *nearest(mt_study_check *c, const char *name, const void *records, int n,
                            size_t size)
 {
+    if (!mt_diag_may_suggest(c->diags)) {
+        return NULL;
+    }
     const mt_arena_mark mark = mt_arena_get_mark(&c->study->mem);
     const char **const names = mt_arena_alloc(&c->study->mem, (size_t)n, sizeof *names);
     const char *found = NULL;

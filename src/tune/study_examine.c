@@ -273,19 +273,46 @@ static const char *base_name(const char *path)
     return slash == NULL ? path : slash + 1;
 }
 
-mt_status mt_study_examine(const mt_study *study, mt_doubt_list *out, mt_err *err)
+/* How many configurations the study asks about, and what looking at them takes: with bands once for every bound, too. */
+static int count_asked(const mt_study *study, double *work)
+{
+    int asked = 0;
+    double around = 0.0; /* the analyses of bands, of all goals in all their configurations */
+    double most = 0.0;
+    for (int g = 0; g < study->n_goals; g++) {
+        const mt_goal *const goal = &study->goals[g];
+        around += goal->type == MT_GOAL_AVOID ? (double)goal->n_configurations : 0.0;
+    }
+    around *= (2.0 * study->n_variables) + 3.0;
+    for (int c = 0; c < study->model->n_configurations; c++) {
+        if (mt_study_asks(study, c)) {
+            const double takes = mt_doubts_work(study->model, c);
+            *work += takes;
+            most = fmax(most, takes);
+            asked++;
+        }
+    }
+    *work += around * most;
+    return asked;
+}
+
+mt_status mt_study_examine(const mt_study *study, double most_work, mt_doubt_list *out,
+                           mt_err *err)
 {
     const int first = out->n;
+    double work = 0.0;
+    const int asked = count_asked(study, &work);
+    const bool look = work <= most_work;
     for (int i = 0; i < study->doubts.n; i++) {
         mt_doubt_copy(out, &study->doubts.items[i]);
     }
     mt_doubt_list of_model = mt_doubt_list_default(out->mem);
-    for (int c = 0; c < study->model->n_configurations; c++) {
+    for (int c = 0; c < study->model->n_configurations && look; c++) {
         if (mt_study_asks(study, c)) {
             MT_TRY(examine_configuration(study, c, out, &of_model, err));
         }
     }
-    for (int g = 0; g < study->n_goals; g++) {
+    for (int g = 0; g < study->n_goals && look; g++) {
         if (study->goals[g].type == MT_GOAL_AVOID && study->goals[g].avoid != NULL) {
             MT_TRY(examine_bands(study, g, out, err));
         }
@@ -298,6 +325,9 @@ mt_status mt_study_examine(const mt_study *study, mt_doubt_list *out, mt_err *er
     for (int i = 0; i < of_model.n; i++) {
         of_model.items[i].file = study->model_path.s;
         mt_doubt_copy(out, &of_model.items[i]);
+    }
+    if (!look) {
+        mt_doubts_left_out(asked, out);
     }
     for (int i = 0; i < study->n_references; i++) {
         MT_TRY(examine_reference(study, &study->references[i], out, err));

@@ -58,6 +58,55 @@ static void text__distance_counts_edits_and_swaps(mt_test *t)
     }
 }
 
+/* The definition, all cells of it. */
+static int distance_by_definition(const char *a, const char *b)
+{
+    int d[8][8];
+    const int m = (int)strlen(a);
+    const int n = (int)strlen(b);
+    for (int i = 0; i <= m; i++) {
+        for (int j = 0; j <= n; j++) {
+            d[i][j] = i + j;
+            if (i == 0 || j == 0) {
+                continue;
+            }
+            const int replaced = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            const int longer = (d[i - 1][j] < d[i][j - 1] ? d[i - 1][j] : d[i][j - 1]) + 1;
+            d[i][j] = replaced < longer ? replaced : longer;
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
+                d[i - 2][j - 2] + 1 < d[i][j]) {
+                d[i][j] = d[i - 2][j - 2] + 1;
+            }
+        }
+    }
+    return d[m][n];
+}
+
+/* All words of up to five letters of two, against all, with every cut. */
+static void text__distance_is_that_of_the_definition_wherever_it_is_cut(mt_test *t)
+{
+    char words[63][6];
+    int n = 0;
+    for (int length = 0; length <= 5; length++) {
+        for (unsigned bits = 0; bits < 1U << (unsigned)length; bits++) {
+            for (int k = 0; k < length; k++) {
+                words[n][k] = (bits >> (unsigned)k & 1U) != 0U ? 'b' : 'a';
+            }
+            words[n++][length] = '\0';
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            const int whole = distance_by_definition(words[i], words[j]);
+            for (int most = 0; most <= 6; most++) {
+                mt_test_row(t, "%s / %s, cut at %d", words[i], words[j], most);
+                CHECK_INT(t, mt_text_distance(words[i], words[j], most),
+                          whole < most + 1 ? whole : most + 1);
+            }
+        }
+    }
+}
+
 static void text__very_long_names_are_only_compared(mt_test *t)
 {
     char a[600];
@@ -135,6 +184,7 @@ static void text__width_counts_code_points(mt_test *t)
 MT_TEST_MAIN(MT_TEST(text__grows_and_formats),
              MT_TEST(text__impossible_lengths_set_failed_and_keep_the_text),
              MT_TEST(text__distance_counts_edits_and_swaps),
+             MT_TEST(text__distance_is_that_of_the_definition_wherever_it_is_cut),
              MT_TEST(text__very_long_names_are_only_compared),
              MT_TEST(text__nearest_name_is_offered_only_when_near),
              MT_TEST(text__patterns_match_whole_names), MT_TEST(text__width_counts_code_points))

@@ -16,7 +16,7 @@ static mt_status examine(const char *name, int *found)
     rc = rc == MT_OK ? mt_arena_init(&mem, 0, &err) : rc;
     if (rc == MT_OK) {
         mt_doubt_list list = mt_doubt_list_default(&mem);
-        rc = mt_study_examine(study, &list, &err);
+        rc = mt_study_examine(study, HUGE_VAL, &list, &err);
         *found = list.n;
     }
     mt_arena_free(&mem);
