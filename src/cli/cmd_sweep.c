@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/sweep.h"
+#include "mechanics/drive.h"
 #include "model/values.h"
 
 enum { DEFAULT_MODES = 6, MOST_POINTS = 100001 };
@@ -154,6 +155,22 @@ static double nearest_position(const mt_sweep_request *r)
     return best;
 }
 
+/* The range of the command line lies within reach of the joint. */
+static mt_status check_reach(const mt_system *sys, const mt_sweep_request *r, mt_err *err)
+{
+    const double reach = mt_drive_reach(sys);
+    const char *const unit = sys->joints[sys->drive_joint].angle ? "rad" : "m";
+    for (int i = 0; i < r->n; i++) {
+        if (!(fabs(r->positions[i]) <= reach)) {
+            return mt_fail(err, MT_E_USAGE,
+                           "--drive: %s goes to %g %s, and at most to %g %s from the reference "
+                           "position",
+                           r->drive.joint, r->positions[i], unit, reach, unit);
+        }
+    }
+    return MT_OK;
+}
+
 static mt_status run(const mt_args *args, const mt_subject *s, int c, job *j, mt_err *err)
 {
     const mt_sweep_request *const r = j->v.request;
@@ -168,7 +185,12 @@ static mt_status run(const mt_args *args, const mt_subject *s, int c, job *j, mt
         at[i] = s->at[i];
     }
     at[n] = nearest_position(r);
+    MT_TRY(
+        mt_system_new_driven(s->model, c, &r->drive, s->n_inputs, s->inputs, at, &j->sys, err));
+    MT_TRY(check_reach(j->sys, r, err));
     if (args->given[MT_OPT_MODES]) {
+        mt_system_delete(j->sys);
+        j->sys = NULL;
         MT_TRY(mt_analysis_new_driven(s->model, c, &r->drive, s->n_inputs, s->inputs, at, &j->a,
                                       err));
         j->a->recount = true; /* a spring may get hold of a direction on the way */
@@ -176,8 +198,6 @@ static mt_status run(const mt_args *args, const mt_subject *s, int c, job *j, mt
         j->sys = j->a->sys;
         j->lin = j->a->lin;
     } else {
-        MT_TRY(mt_system_new_driven(s->model, c, &r->drive, s->n_inputs, s->inputs, at, &j->sys,
-                                    err));
         MT_TRY(mt_linear_new(j->sys, &j->lin, err));
     }
     j->v.sys = j->sys;

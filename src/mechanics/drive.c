@@ -28,6 +28,9 @@ static const double HELD = 1e-6;
 /* Bodies that move this many times further than the driven joint (model lengths, rad): a limit position is near. */
 static const double LIMIT_RATIO = 100.0;
 
+/* Steps of one walk: MT_DRIVE_REACH takes half of them, where no body moves three times as far as the joint. */
+enum { MOST_STEPS = 20000 };
+
 typedef struct walk {
     mt_state *p;
     mt_data *data;
@@ -266,12 +269,43 @@ static mt_status refuse_dead_centre(walk *w, mt_err *err)
     return MT_OK;
 }
 
+double mt_drive_reach(const mt_system *sys)
+{
+    return MT_DRIVE_REACH * (sys->joints[sys->drive_joint].angle ? 1.0 : sys->length_m);
+}
+
+/* Bodies that move much further than the joint make steps short. */
+static mt_status refuse_steps(const walk *w, mt_err *err)
+{
+    const mt_system *const sys = w->p->sys;
+    const mt_system_joint *const joint = &sys->joints[sys->drive_joint];
+    return mt_fail(err, MT_E_ASSEMBLY,
+                   "joint \"%s\" came to %g %s in %d steps, and not to %g %s: other parts move "
+                   "too far for that",
+                   joint->name, w->at, joint->angle ? "rad" : "m", (int)MOST_STEPS, w->goal,
+                   joint->angle ? "rad" : "m");
+}
+
+static mt_status refuse_far(const walk *w, mt_err *err)
+{
+    const mt_system *const sys = w->p->sys;
+    const mt_system_joint *const joint = &sys->joints[sys->drive_joint];
+    return mt_fail(err, MT_E_ASSEMBLY,
+                   "joint \"%s\" cannot be driven to %g %s: at most %g %s from the reference "
+                   "position",
+                   joint->name, w->goal, joint->angle ? "rad" : "m", mt_drive_reach(sys),
+                   joint->angle ? "rad" : "m");
+}
+
 mt_status mt_drive_solve(mt_state *p, mt_data *data, const mt_drive_start *start, mt_arena *mem,
                          mt_err *err)
 {
     const mt_system *const sys = p->sys;
     walk w = {.p = p, .data = data, .mem = mem};
     MT_TRY(walk_init(&w, err));
+    if (!(fabs(w.goal) <= mt_drive_reach(sys))) {
+        return refuse_far(&w, err);
+    }
     if (start != NULL && start->valid) {
         w.at = start->position;
         memcpy(p->pose, start->pose, (size_t)sys->n_bodies * sizeof *p->pose);
@@ -281,12 +315,13 @@ mt_status mt_drive_solve(mt_state *p, mt_data *data, const mt_drive_start *start
         MT_TRY(refuse_dead_centre(&w, err));
     }
     double h = DRIVE_STEP * w.unit;
-    while (w.at != w.goal && h > 0.0) {
+    int steps = 0;
+    for (; w.at != w.goal && h > 0.0 && steps < MOST_STEPS; steps++) {
         MT_TRY(advance(&w, &h, err));
     }
     p->reached = w.at;
     data->target[w.row] = w.target;
-    return w.at == w.goal ? MT_OK : refuse(&w, err);
+    return w.at == w.goal ? MT_OK : h > 0.0 ? refuse_steps(&w, err) : refuse(&w, err);
 }
 
 void mt_drive_keep(const mt_state *p, mt_drive_start *start)

@@ -283,6 +283,16 @@ static void judge_drive(mt_judge *j)
     if (!c->drive.position_is_angle || !(fabs(v) > ONE_TURN)) {
         return;
     }
+    if (fabs(v) > MT_DRIVE_REACH) {
+        (void)mt_judge_place(
+            j,
+            mt_doubt_add(j->out, MT_LEVEL_FAULT, "drive",
+                         "\"%s\" is driven by %g rad: at most %d rad can be",
+                         c->drive.joint_name.s == NULL ? "" : c->drive.joint_name.s, v,
+                         (int)MT_DRIVE_REACH),
+            j->model->nums[c->drive.position].addr, mt_judge_drive_pointer(j, "position_rad"));
+        return;
+    }
     (void)mt_judge_place(
         j,
         mt_doubt_add(j->out, MT_LEVEL_DOUBT, "drive",

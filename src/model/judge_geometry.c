@@ -414,6 +414,17 @@ static void judge_stroke(mt_judge *j, double size)
         !(fabs(j->value[d->position]) > MOST_STROKE * size)) {
         return;
     }
+    if (fabs(j->value[d->position]) > MT_DRIVE_REACH * size) {
+        (void)mt_judge_place(
+            j,
+            mt_doubt_add(j->out, MT_LEVEL_FAULT, "drive",
+                         "\"%s\" is driven by %g m in a drawing %.4g m wide: at most %d times "
+                         "that can be",
+                         d->joint_name.s == NULL ? "" : d->joint_name.s, j->value[d->position],
+                         size, (int)MT_DRIVE_REACH),
+            j->model->nums[d->position].addr, mt_judge_drive_pointer(j, "position_m"));
+        return;
+    }
     (void)mt_judge_place(
         j,
         mt_doubt_add(j->out, MT_LEVEL_DOUBT, "drive",

@@ -15,6 +15,8 @@
  * Geometry: the reference position, global coordinates [m]; angles [rad].
  */
 enum { MT_ABSENT = -1, MT_GROUND = -1, MT_MAX_LIST = 100000 };
+/* A drive goes so far at most from the reference position: rad (159 turns), or lengths of the mechanism. The way there is walked in steps of a tenth at most. */
+enum { MT_DRIVE_REACH = 1000 };
 /* Configurations times (numbers and items) of a model at most: every configuration is checked with all its numbers. */
 enum { MT_MAX_CONFIGURED = 10000000 };
 

@@ -53,6 +53,25 @@ class Sweep(CliTest):
         self.assertEqual(got["points"][0]["position_rad"], -math.pi)
         self.assertEqual(got["points"][-1]["position_rad"], 2 * math.pi)
 
+    def test_positions_end_at_a_thousand_radians_or_lengths(self):
+        for words, said in ((("shaft=0:1e12:3",), r"shaft goes to 5e\+11 rad, and at most to 1000 rad"),
+                            (("shaft=-1e308:1e308:3", "--modes"), r"shaft goes to -1e\+308 rad, and at most to 1000 rad"),
+                            (("bore=1e6:1e7:2",), r"bore goes to 1e\+06 m, and at most to \d+(\.\d+)? m")):
+            done = self.expect(2, "sweep", self.slider, "--drive", *words)
+            self.assertRegex(done.stderr, f"error: --drive: {said} from the reference position\n$")
+        far = self.json_of("sweep", self.slider, "--drive", "shaft=0:100*2*pi:2")[0]["points"][1]
+        bore = {j["name"]: j for j in far["joints"]}["bore"]["coordinate_m"]
+        self.assertAlmostEqual(bore, 0.0, delta=1e-10)  # after a hundred turns it is where it was
+
+    def test_a_walk_of_too_many_steps_ends(self):
+        fast = SLIDER_CRANK[:SLIDER_CRANK.index('"bodies"')] + """
+          "bodies": [ { "name": "slow", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [0, 0] }, { "name": "fast", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [1, 0] } ],
+          "joints": [ { "name": "a", "type": "revolute", "bodies": ["ground", "slow"], "at": [0, 0] },
+                      { "name": "b", "type": "revolute", "bodies": ["ground", "fast"], "at": [1, 0] },
+                      { "name": "g", "type": "gear", "joints": ["a", "b"], "ratio": 1e7 } ] }"""
+        done = self.expect(3, "sweep", self.write("problems/fast.json", fast), "--drive", "a=0:1:2")
+        self.assertRegex(done.stderr, r'joint "a" came to 0\.\d+ rad in 20000 steps, and not to 1 rad: other parts move too far')
+
     def test_a_limit_position_is_named_and_the_rest_printed(self):
         args = ("sweep", self.slider, "-c", "default", "--drive", "bore=-0.1:0.1:21")
         done = self.expect(3, *args)
