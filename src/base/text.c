@@ -78,7 +78,31 @@ static int least(int a, int b)
 
 /* Optimal string alignment by rows: d(i, j) edits turn the first i bytes of a into the first j of b,
  *   d(i, j) = min( d(i-1, j) + 1, d(i, j-1) + 1, d(i-1, j-1) + [a_i != b_j], d(i-2, j-2) + 1 if two neighbours are swapped ).
- * Only the last three rows are kept, and of them the cells |i - j| <= most: the others are above `most`, like all rows behind two that are. */
+ * Only the last three rows are kept, and of them the cells |i - j| <= most: the others are above `most`, which the cells beside these say; and so are all rows
+ * behind two that are.
+ * Row i of them; returns its least cell. */
+static int fill_row(const char *a, const char *b, int i, int n, int most,
+                    int rows[3][MT_TEXT_DISTANCE_MAX + 2])
+{
+    const int *const before = rows[(i + 1) % 3];
+    const int *const last = rows[(i + 2) % 3];
+    int *const row = rows[i % 3];
+    const int first = i > most ? i - most : 1;
+    const int end = least(n, i + most);
+    int nearest = least(i, most + 1);
+    row[first - 1] = nearest;
+    for (int j = first; j <= end; j++) {
+        const int replaced = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+        row[j] = least(replaced, least(last[j], row[j - 1]) + 1);
+        if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+            row[j] = least(row[j], before[j - 2] + 1);
+        }
+        nearest = least(nearest, row[j]);
+    }
+    row[end + 1] = most + 1;
+    return nearest;
+}
+
 int mt_text_distance(const char *a, const char *b, int most)
 {
     const size_t la = strlen(a);
@@ -92,32 +116,17 @@ int mt_text_distance(const char *a, const char *b, int most)
     }
     const int m = (int)la;
     const int n = (int)lb;
-    int rows[3][MT_TEXT_DISTANCE_MAX + 2];
+    int rows[3][MT_TEXT_DISTANCE_MAX + 2] = {{0}};
     bool far = false; /* the whole last row is */
     for (int j = 0; j <= n; j++) {
         rows[0][j] = j;
     }
     for (int i = 1; i <= m; i++) {
-        const int *const before = rows[(i + 1) % 3];
-        const int *const last = rows[(i + 2) % 3];
-        int *const row = rows[i % 3];
-        const int first = i > most ? i - most : 0;
-        const int end = least(n, i + most);
-        int nearest = most + 1;
-        for (int j = first; j <= end; j++) {
-            int d = j == 0 ? i : last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-            d = j > first ? least(d, row[j - 1] + 1) : d;
-            d = j < i + most ? least(d, last[j] + 1) : d;
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-                d = least(d, before[j - 2] + 1);
-            }
-            row[j] = d;
-            nearest = least(nearest, d);
-        }
-        if (far && nearest > most) {
+        const bool beyond = fill_row(a, b, i, n, most, rows) > most;
+        if (far && beyond) {
             return most + 1;
         }
-        far = nearest > most;
+        far = beyond;
     }
     return least(rows[m % 3][n], most + 1);
 }
