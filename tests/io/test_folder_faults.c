@@ -38,8 +38,8 @@ static long knob(const char *name, long otherwise)
 /* A result that calls itself `version`, and its files; without a trade study its folder has no trade.csv. */
 typedef struct unit {
     const char *version;
-    bool trade;
     mt_text texts[MT_RESULT_FILE_COUNT];
+    bool trade;
     bool ok;
 } unit;
 
@@ -249,10 +249,11 @@ typedef struct variant {
 
 static unit units[4];
 
-/* Is the i-th of n faults tried at call k? */
+/* Is the i-th of n faults tried at call k? Instrumented builds, where a child is dear, try a fifth of the calls. */
 static bool is_turn(long k, int i, int n)
 {
-    return knob("MT_FAULTS_EVERY", 0) != 0 || k % n == i;
+    const long stride = getenv("MT_INSTRUMENTED") != NULL ? 5 : 1;
+    return knob("MT_FAULTS_EVERY", 0) != 0 || (k % n == i && k / n % stride == 0);
 }
 
 static const variant *variants(void)
@@ -356,7 +357,7 @@ static void folder_faults__a_killed_run_is_noticed_and_mended(mt_test *t)
         }
     }
     mt_test_row(t, "some of them are broken");
-    CHECK(t, broken > 10);
+    CHECK(t, broken > 3);
 }
 
 /* A disk that goes on failing: even then no reader is deceived, and the next run that can mends it. */
@@ -389,7 +390,7 @@ static void folder_faults__of_pairs_one_result_remains(mt_test *t)
                                       MT_FAULT_EVER};
     mt_random random = mt_random_seed((uint64_t)knob("MT_FAULTS_SEED", 1));
     REQUIRE(t, prepare(t));
-    for (long pair = knob("MT_FAULTS_PAIRS", 50); pair > 0; pair--) {
+    for (long pair = knob("MT_FAULTS_PAIRS", 30); pair > 0; pair--) {
         const variant *const v = &variants()[mt_random_int(&random, VARIANTS)];
         const long first = mt_random_int(&random, 110);
         const long second = mt_random_int(&random, 140);

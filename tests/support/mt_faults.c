@@ -217,20 +217,21 @@ WRAP(char *, realpath, (const char *restrict path, char *restrict resolved))
 /* Before main, so that the program needs to know nothing. */
 __attribute__((constructor)) static void take_orders(void)
 {
-    static const char *const actions[] = {"none", "fail", "ever", "kill", "tear"};
+    static const char *const actions[] = {":none", ":fail", ":ever", ":kill", ":tear"};
     const char *const order = getenv("MT_FAULT");
     const char *const log = getenv("MT_FAULT_LOG");
-    char action[8];
-    long k = 0;
-    int error = EIO;
     if (log != NULL) {
         faults.log = __real_open(log, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     }
-    if (order == NULL || sscanf(order, "%ld:%7[a-z]:%d", &k, action, &error) < 2) {
+    if (order == NULL) {
         return;
     }
+    char *action = NULL;
+    const long k = strtol(order, &action, 10);
+    const size_t length = action[0] == ':' ? strcspn(action + 1, ":") + 1 : 0;
+    const int error = action[length] == ':' ? (int)strtol(action + length + 1, NULL, 10) : EIO;
     for (int i = 0; i < (int)(sizeof actions / sizeof actions[0]); i++) {
-        if (strcmp(action, actions[i]) == 0) {
+        if (strncmp(action, actions[i], length) == 0 && length == strlen(actions[i])) {
             mt_faults_at(k, (mt_fault)i, error);
         }
     }
