@@ -61,7 +61,8 @@ def places(value, path=()):
             yield from places(inner, path + (i,))
 
 
-OTHER_TYPES = [None, True, 7, 0, 2.5, -1, "x", "", [], {}, [1], ["x", "y"], {"x": 1}, [[0, 0], "x"]]
+OTHER_TYPES = [None, True, 7, 0, 2.5, -1, "x", "", [], {}, [1], ["x", "y"], {"x": 1}, [[0, 0], "x"], -0.0, 1e308, 1e-320, 2147483648, 2 ** 64, "0 * 1",
+               "x" * 300, "\u001b", [[]], [None], [{}], [[0, 1], [1, 2]], [0] * 40, {"": 1}, {"x": {}}, {"x": []}]
 
 
 def mutants(document):
