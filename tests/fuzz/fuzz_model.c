@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Any bytes as a model, the whole way: file, positions, modes, slopes, damped modes, doubts. Whatever happens is a status with a text; numbers that come out are finite, ordered and
+ * Any bytes as a model, the whole way: file, positions, modes, slopes, damped modes, doubts, a sweep. Whatever happens is a status with a text; numbers that come out are finite, ordered and
  * accounted for.
  */
 #include <math.h>
 
+#include "cli/damped.h"
 #include "common/fuzz.h"
 #include "io/io.h"
 #include "linalg/blas.h"
 #include "mechanics/info.h"
-#include "modal/damped.h"
+#include "mechanics/sweep.h"
 #include "model/values.h"
 #include "tune/analysis.h"
 #include "tune/doubts.h"
@@ -95,6 +96,52 @@ static void use_doubts(mt_analysis *a, mt_arena *mem, const uint8_t *data, size_
     DEMAND(info.freedoms >= 0 && info.redundant >= 0 && info.mass_kg >= 0.0);
 }
 
+static void use_damping(mt_analysis *a, const double *at, mt_arena *mem)
+{
+    const mt_analysis_options opt = mt_analysis_options_default();
+    mt_damped_modes d;
+    mt_err err = {.code = MT_OK};
+    mt_status rc = mt_analysis_solve(a, at, &opt, &err);
+    rc = rc == MT_OK ? mt_damped_of(a, mem, &d, &err) : rc;
+    if (rc != MT_OK) {
+        demand_failed(rc, &err);
+        return;
+    }
+    for (int i = 0; i < d.count; i++) {
+        DEMAND(isfinite(d.re[i]) && isfinite(d.im[i]) && d.im[i] >= 0.0);
+        DEMAND(d.kind[i] != MT_DAMPED_OSCILLATING || d.im[i] > 0.0);
+    }
+}
+
+/* The first joint is taken a little to either side. */
+static void use_sweep(const mt_model *m, int c, mt_arena *mem)
+{
+    const double positions[] = {-0.1, 0.05, 0.2};
+    mt_system *sys = NULL;
+    mt_linear *lin = NULL;
+    mt_sweep sweep;
+    mt_err err = {.code = MT_OK};
+    if (m->n_joints == 0) {
+        return;
+    }
+    const mt_system_drive drive = {.joint = m->joints[0].name.s};
+    mt_status rc = mt_system_new_driven(m, c, &drive, 0, NULL, &positions[1], &sys, &err);
+    rc = rc == MT_OK ? mt_linear_new(sys, &lin, &err) : rc;
+    rc = rc == MT_OK ? mt_sweep_run(lin, &positions[1], MT_COUNT(positions), positions, NULL,
+                                    mem, &sweep, &err)
+                     : rc;
+    if (rc != MT_OK) {
+        demand_failed(rc, &err);
+    }
+    for (int i = 0; rc == MT_OK && i < sweep.n_points; i++) {
+        const mt_sweep_point *const p = &sweep.points[i];
+        DEMAND(p->status == MT_OK || (p->why != NULL && p->why[0] != '\0'));
+        DEMAND(p->status != MT_OK || (isfinite(p->hold) && isfinite(p->gap_m)));
+    }
+    mt_linear_delete(lin);
+    mt_system_delete(sys);
+}
+
 static void use_configuration(const mt_model *m, int c, const double *original,
                               const uint8_t *data, size_t size)
 {
@@ -117,6 +164,8 @@ static void use_configuration(const mt_model *m, int c, const double *original,
     demand_modes(&a->modes);
     use_doubts(a, &mem, data, size);
     use_slopes(a, n, at);
+    use_damping(a, at, &mem);
+    use_sweep(m, c, &mem);
     mt_analysis_delete(a);
     mt_arena_free(&mem);
 }

@@ -5,6 +5,8 @@
  * SEEDS: a file with names between commas. No file is an error, not a pass. What a mutant breaks is left in the file TARGET.broken in the current folder (the target's input as it is).
  */
 #include <dirent.h>
+#include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +14,17 @@
 #include <unistd.h>
 
 #include "common/fuzz.h"
+
+#if defined(__SANITIZE_ADDRESS__)
+#    define WITH_SANITIZER 1
+#elif defined(__has_feature)
+#    if __has_feature(address_sanitizer)
+#        define WITH_SANITIZER 1
+#    endif
+#endif
+#ifdef WITH_SANITIZER
+#    include <sanitizer/common_interface_defs.h>
+#endif
 
 enum { MAX_PATH_LENGTH = 4096, MAX_INPUTS = 2000, MAX_SIZE = 32768, LIST_SIZE = 1 << 16 };
 
@@ -99,13 +112,47 @@ static int run_list(const char *list)
     return failed;
 }
 
+static char broken[MAX_PATH_LENGTH];
+static const uint8_t *present; /* the mutant that is being tried */
+static size_t present_size;
+
+/* The last act of a process that dies: nothing but system calls. */
+static void keep_broken(void)
+{
+    const int file = present == NULL ? -1 : open(broken, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    if (file >= 0) {
+        (void)!write(file, present, present_size);
+        (void)close(file);
+    }
+    present = NULL;
+}
+
+static void die(int signal_number)
+{
+    keep_broken();
+    (void)signal(signal_number, SIG_DFL);
+    (void)raise(signal_number);
+}
+
+static void expect_death(const char *program)
+{
+    const char *const slash = strrchr(program, '/');
+    (void)snprintf(broken, sizeof broken, "%s.broken", slash == NULL ? program : slash + 1);
+    (void)signal(SIGABRT, die);
+#ifdef WITH_SANITIZER
+    __sanitizer_set_death_callback(keep_broken);
+#else
+    (void)signal(SIGSEGV, die);
+    (void)signal(SIGBUS, die);
+    (void)signal(SIGFPE, die);
+#endif
+}
+
 static void run_mutants(const char *program, long runs, uint64_t seed)
 {
-    char path[MAX_PATH_LENGTH];
-    const char *const slash = strrchr(program, '/');
     uint8_t *const data = malloc(MAX_SIZE);
-    (void)snprintf(path, sizeof path, "%s.broken", slash == NULL ? program : slash + 1);
     fuzz_random r = fuzz_random_seed(seed);
+    expect_death(program);
     for (long i = 0; i < runs && data != NULL && n_inputs > 0; i++) {
         const input *const from = &inputs[fuzz_below(&r, (size_t)n_inputs)];
         const input *const other = &inputs[fuzz_below(&r, (size_t)n_inputs)];
@@ -113,14 +160,15 @@ static void run_mutants(const char *program, long runs, uint64_t seed)
         memcpy(data, from->data, size);
         size = fuzz_mutate(&r, data, size, MAX_SIZE, other->data, other->size);
         uint8_t *const exact = malloc(size > 0 ? size : 1);
-        FILE *const f = fopen(path, "wb");
-        if (exact != NULL && f != NULL && fwrite(data, 1, size, f) == size && fclose(f) == 0) {
+        if (exact != NULL) {
             memcpy(exact, data, size);
+            present = exact;
+            present_size = size;
             (void)LLVMFuzzerTestOneInput(exact, size);
+            present = NULL;
         }
         free(exact);
     }
-    (void)unlink(path);
     free(data);
 }
 
