@@ -23,6 +23,10 @@ static const double NOT_STATIONARY = 1e-3;
  * rounding, about 1e-12); a smaller objective decides where it is smaller by more than rounding. */
 static const double EQUAL_SQUARES = 1e-8;
 static const double SETTLED_GAIN = 1e-6;
+/* A variable nearer to a mark than this, in widths of its bounds, stands there but for rounding of the search. */
+static const double ON_MARK = 1e-12;
+/* Violation, in tolerances, that a goal is met with as well as by 0. */
+static const double STILL_MET = 1e-4;
 
 bool mt_nlp_ends_grow(mt_nlp_engine *e, mt_nlp_ends *all, int n)
 {
@@ -234,6 +238,37 @@ static void settle_all(mt_nlp_engine *e, mt_nlp_ends *all)
     }
 }
 
+/* Variables within rounding of a mark (the original, a bound) are put on it: "0", not "1.1e-08". */
+static void put_on_marks(mt_nlp_engine *e, mt_nlp_point *p)
+{
+    const mt_nlp *const q = e->nlp;
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    mt_nlp_point *const to = mt_nlp_point_new(e, &e->scratch);
+    bool moved = false;
+    if (to == NULL) {
+        return;
+    }
+    mt_nlp_point_copy(e, to, p);
+    for (int j = 0; j < e->n; j++) {
+        const double marks[] = {e->origin[j], q->lower[j], q->upper[j]};
+        for (int k = 0; k < MT_COUNT(marks); k++) {
+            const double off = fabs(to->t[j] - marks[k]);
+            if (off > 0.0 && off <= ON_MARK * (q->upper[j] - q->lower[j])) {
+                to->t[j] = marks[k];
+                moved = true;
+            }
+        }
+    }
+    if (moved && mt_nlp_evaluate(e, to->t, true, to) &&
+        to->violation <= fmax(p->violation, STILL_MET)) {
+        to->kkt = p->kkt;
+        to->start = p->start;
+        to->curve = p->curve;
+        mt_nlp_point_copy(e, p, to);
+    }
+    mt_arena_rewind(&e->scratch, mark);
+}
+
 /* A double root; of two roots that were merged the Jacobian changes its sign in between. */
 static bool is_singular(mt_nlp_engine *e, const mt_nlp_point *p, bool merged)
 {
@@ -269,6 +304,9 @@ void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_resu
     }
     if (all->count > 0) {
         mt_nlp_drop_roomless(e, all->at[0].p, out);
+    }
+    for (int i = 0; i < all->count && !e->ended; i++) {
+        put_on_marks(e, all->at[i].p);
     }
     count_roots(e, all, out);
     const int count = all->count < e->opt.max_solutions ? all->count : e->opt.max_solutions;

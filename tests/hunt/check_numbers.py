@@ -9,6 +9,7 @@ from dense import RIGID
 NEAR = 1e-7       # relative: frequencies of well-conditioned models of a few masses
 FEW = 1.0         # of the greatest frequency: what a mode near 0 is compared at (the root of rounding)
 SLACK = 1e-5      # relative, of what has a tolerance of its own
+MARK = 3e-13      # of the bounds: nearer to the original value than this is rounding of a search
 SLOPE = 1e-4      # of a slope by differences, of the greatest slope of the mode
 
 
@@ -181,4 +182,19 @@ def _kinked(q, x):
     return any("min(" in str(i) or "max(" in str(i) for i in (q.model["bodies"], q.model["springs"] if "springs" in q.model else []))
 
 
-CHECKS = {"bounds": bounds, "frequencies": frequencies, "clearances": clearances, "goals": goals, "scores": scores, "slopes": slopes}
+def marks(run):
+    """What stands within rounding of its original value or of a bound stands there."""
+    q = run.question
+    if q.n == 0:
+        return
+    originals, width = q.t(q.origin[None, :])[0], q.t(q.upper[None, :])[0] - q.t(q.lower[None, :])[0]
+    for rec in run.result["recommendations"]:
+        x = design_of(q, rec)
+        t = q.t(x)[0]
+        for i, variable in enumerate(q.variables):
+            off = abs(t[i] - originals[i])
+            if variable.values is None and x[0, i] != variable.original and off <= MARK * width[i]:
+                yield f"rank {rec['rank']}: {variable.name} is {x[0, i]!r}, {off / width[i]:.1e} of its bounds beside its original {variable.original!r}"
+
+
+CHECKS = {"bounds": bounds, "marks": marks, "frequencies": frequencies, "clearances": clearances, "goals": goals, "scores": scores, "slopes": slopes}

@@ -235,13 +235,22 @@ def _figure(run):
     return _written(run, "report.html", 'cx="', 'cx="-1e9')
 
 
+def _beside_mark(run):
+    for rec in run.result["recommendations"]:
+        for p, variable in zip(rec["parameters"], run.question.variables):
+            if rec["feasible"] and variable.values is None and variable.log and p["recommended"] == variable.original != 0.0:
+                p["recommended"] *= 1.0 + 1e-14
+                return True
+    return False
+
+
 FAULTS = [
     (_word, ["limits"], "numbers"), (_figure, ["limits"], "numbers"),
     (_doubt, ["limits"], "undoubted"),
     (_frequency, ["limits", "bands"], "frequencies"), (_clearance, ["bands"], "clearances"), (_gap, ["bands"], "clearances"),
     (_least_clearance, ["bands"], "clearances"), (_violation, ["infeasible", "limits"], "goals"),
     (_called_feasible, ["infeasible", "limits"], "goals"), (_called_feasible, ["infeasible", "limits"], "consistent"),
-    (_score, ["limits", "bands"], "scores"), (_ranks, ["bands"], "scores"), (_bound, ["limits", "bands"], "bounds"),
+    (_score, ["limits", "bands"], "scores"), (_ranks, ["bands"], "scores"), (_bound, ["limits", "bands"], "bounds"), (_beside_mark, ["bands", "limits"], "marks"),
     (_catalogue, ["catalogue"], "bounds"), (_slope, ["limits"], "slopes"), (_second_best, ["bands"], "optimum"),
     (_not_found, ["limits", "bands", "catalogue"], "optimum"), (_false_proof, ["limits", "bands"], "certificates"),
     (_false_proof, ["limits"], "consistent"), (_range, ["limits", "targets", "infeasible"], "certificates"),
