@@ -40,9 +40,12 @@ static mt_status keep_step(const mt_newton_work *w, const mt_elimination *e, dou
     return mt_eliminate_multipliers(e, r, left->lambda, mem, err);
 }
 
-static mt_status keep(const mt_newton_work *w, const mt_elimination *e, double *inverse,
+/* tau: of the trimmed spring, before the last step. */
+static mt_status keep(mt_newton_work *w, const mt_elimination *e, double *inverse, double tau,
                       mt_arena *mem, mt_state *report, mt_stage *stage, mt_err *err)
 {
+    MT_TRY(keep_step(w, e, w->tau - tau, mem, &stage->left, err));
+    w->tau = tau;
     const size_t nq = (size_t)w->sys->nq;
     const size_t m = (size_t)w->p->m;
     stage->active = true;
@@ -100,11 +103,8 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
                            (w->moved >= 0.25 * previous || w->moved <= 8.0 * DBL_EPSILON);
         if (small && w->gap <= MT_STEP_DONE) {
             if (w->residual <= MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise)) {
-                const double trim = w->tau - tau;
-                w->tau = tau;
                 *done = true;
-                MT_TRY(keep_step(w, &e, trim, mem, &stage->left, err));
-                return keep(w, &e, inverse, mem, report, stage, err);
+                return keep(w, &e, inverse, tau, mem, report, stage, err);
             }
             if (!w->p->trim || w->residual >= 0.25 * unbalanced) {
                 return MT_OK; /* something pushes along a freedom without stiffness */

@@ -79,10 +79,12 @@ static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, 
 {
     const int n = s->n_variables;
     int *const inputs = mt_arena_int(mem, (size_t)n);
+    const size_t n_bands = (size_t)r->goal->avoid->bands.n;
+    r->above = mt_arena_int(mem, n_bands);
     double *const x = mt_arena_f64(mem, (size_t)n, 1);
     mt_analysis_options opt = mt_analysis_options_default();
     mt_analysis *a = NULL;
-    if (inputs == NULL || x == NULL) {
+    if (inputs == NULL || x == NULL || r->above == NULL) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < n; i++) {
@@ -90,7 +92,7 @@ static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, 
     }
     opt.vectors = false;
     opt.check = false;
-    for (int k = 0; k < r->goal->avoid->bands.n; k++) {
+    for (size_t k = 0; k < n_bands; k++) {
         r->above[k] = -1;
     }
     set_design(s, 0, x);
@@ -117,8 +119,7 @@ static mt_status examine_bands(const mt_study *s, int g, mt_doubt_list *out, mt_
     reach r = {.goal = goal, .nearest = HUGE_VAL};
     mt_arena mem;
     MT_TRY(mt_arena_init(&mem, 0, err));
-    r.above = mt_arena_int(&mem, (size_t)goal->avoid->bands.n);
-    mt_status rc = r.above == NULL ? mt_fail_memory(err) : MT_OK;
+    mt_status rc = MT_OK;
     for (int i = 0; rc == MT_OK && i < goal->n_configurations; i++) {
         rc = look_around(s, goal->configurations[i], &r, &mem, err);
     }
