@@ -248,7 +248,9 @@ static const char *status_text(const answer *a, const mt_recommendation *best)
     }
     if (n == 0) {
         return a->why.code != MT_OK ? "No design that was tried could be evaluated."
-                                    : "The budget ended before any design was found.";
+               : a->found.stop == MT_STOP_MAX_EVALS
+                   ? "The budget ended before any design was found."
+                   : "No design was found within the bounds (sampled, not proven).";
     }
     const char *const doubt = doubt_text(best, mem);
     if (doubt == NULL) {
