@@ -42,6 +42,13 @@ extern "C" {
 typedef enum mt_status { MT_STATUS_LIST(MT_STATUS_ENUM) MT_STATUS_COUNT } mt_status;
 #undef MT_STATUS_ENUM
 
+/* What a caller wants of long work that is under way (mt_solve_options). */
+typedef enum mt_wish {
+    MT_WISH_NONE,   /* go on */
+    MT_WISH_FINISH, /* end the search, make what was found ready */
+    MT_WISH_END     /* at once, also where what was found is being made ready */
+} mt_wish;
+
 enum { MT_ERR_TEXT_SIZE = 1024 };
 
 /* The caller's record of a failure: fixed size, no heap, NULL allowed wherever a `mt_err *` is asked for. */

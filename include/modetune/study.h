@@ -42,8 +42,9 @@ typedef struct mt_solve_options {
     int threads; /* workers, fewer than 1 count as 1, at most 64 are used; the result does not depend on it */
     /* [variables of the study] one more design to start from, finite; what lies outside of its bounds is moved to them. NULL: none */
     const double *hint;
-    /* NULL, or set non-zero (by a signal handler, by another thread): the search ends with what it has */
-    const volatile int *stop;
+    /* NULL, or asked for an mt_wish before every small piece of work, by all workers at once; what it said once it need not say again */
+    int (*stop)(void *context);
+    void *stop_context;
     /* NULL, or called now and then from the caller's thread with one line of text */
     void (*progress)(void *context, const char *text);
     void *progress_context;
@@ -66,7 +67,8 @@ MT_API mt_solve_options mt_solve_options_default(void);
  * @param[out] out  the result, owned by the caller, valid without the study; NULL on failure
  * Deterministic: the same study, binary and machine give the same result. The study is not changed and may be shared by threads.
  * Fails: MT_E_INPUT (what only numbers can tell: a mode that does not exist at the original design, ...), numerical failures at the original design, MT_E_USAGE (a hint that is not
- * finite), MT_E_MEMORY.
+ * finite), MT_E_INTERRUPTED (stopped before the original design was analysed: there is nothing to tell), MT_E_MEMORY. A solve that is stopped later has a result with status
+ * interrupted that says which of its parts are not complete; what it does tell holds.
  */
 MT_API mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt,
                                 mt_result **out, mt_err *err);

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune run and compare: answer studies, write what was found, judge published values. */
+#include <stdlib.h>
+
 #include "cli/cli.h"
 #include "cli/save.h"
 #include "report/result_tables.h"
@@ -13,6 +15,7 @@ typedef struct job {
     mt_study *study;
     mt_result *result;
     double seconds;
+    bool stops; /* a signal ends the search, not the program */
 } job;
 
 static void progress(void *context, const char *text)
@@ -35,10 +38,13 @@ static int answer(job *j)
     mt_solve_options opt = mt_solve_options_default();
     mt_args progress_args = *j->args;
     opt.threads = j->args->threads;
-    opt.stop = mt_terminal_stop();
+    opt.stop = j->stops ? mt_terminal_wish : NULL;
     opt.progress = progress;
     opt.progress_context = &progress_args;
     const double start = mt_terminal_seconds();
+    if (j->stops) {
+        mt_terminal_hold_signals();
+    }
     rc = mt_study_solve(j->study, &opt, &j->result, &err);
     j->seconds = mt_terminal_seconds() - start;
     mt_terminal_progress(j->args->given[MT_OPT_QUIET], NULL);
@@ -106,25 +112,55 @@ static int run_one(const job *j, mt_json_writer *w, mt_text *out)
     return mt_exit_worse(outcome(j, verify), mt_save(j->args, j->path, j->result, j->seconds));
 }
 
+/* Which studies an interrupt leaves out from number `first` on, as an error; heap. NULL: out of memory, which is said. */
+static char *words_about(const mt_args *args, int first)
+{
+    mt_text t = {.s = NULL};
+    mt_text_add(&t, "modetune: error: interrupted; not answered:");
+    for (int i = first; i < args->n_operands; i++) {
+        mt_text_addf(&t, " %s", args->operands[i]);
+    }
+    if (t.failed) {
+        mt_err err;
+        (void)mt_cli_failed(mt_fail_memory(&err), &err);
+    }
+    return t.s;
+}
+
+/* One study: read (a signal then ends the program), solved and used (where it may, a signal ends the search), told. */
+static int one_study(const mt_args *args, int i, bool stops, mt_json_writer *w, mt_text *out,
+                     use_answer use)
+{
+    const bool json = args->format == MT_FORMAT_JSON;
+    job j = {.args = args, .path = args->operands[i], .stops = stops};
+    char *const words = words_about(args, i);
+    if (words == NULL) {
+        return MT_EXIT_SYSTEM;
+    }
+    mt_terminal_last_words(words);
+    int code = answer(&j);
+    if (code == MT_EXIT_DONE) {
+        code = use(&j, w, out);
+    }
+    mt_terminal_release_signals();
+    free(words);
+    finish(&j);
+    return mt_exit_worse(code, json ? MT_EXIT_DONE : mt_terminal_put(out));
+}
+
 /* All studies in turn. Text leaves as it comes; JSON is one document (a list where several studies are given). */
-static int for_each_study(const mt_args *args, mt_text *out, use_answer use)
+static int for_each_study(const mt_args *args, mt_text *out, bool stops, use_answer use)
 {
     const bool json = args->format == MT_FORMAT_JSON;
     const bool list = json && args->n_operands > 1;
     mt_json_writer w = mt_json_writer_default(out);
     int code = MT_EXIT_DONE;
+    int i = 0;
     if (list) {
         mt_json_open(&w, NULL, '[');
     }
-    for (int i = 0; i < args->n_operands && code != MT_EXIT_INTERRUPTED; i++) {
-        job j = {.args = args, .path = args->operands[i]};
-        int one = answer(&j);
-        if (one == MT_EXIT_DONE) {
-            one = use(&j, &w, out);
-        }
-        finish(&j);
-        code = mt_exit_worse(code, one);
-        code = mt_exit_worse(code, json ? MT_EXIT_DONE : mt_terminal_put(out));
+    for (; i < args->n_operands && !mt_terminal_is_stopped(); i++) {
+        code = mt_exit_worse(code, one_study(args, i, stops, &w, out, use));
     }
     if (list) {
         mt_json_close(&w);
@@ -132,13 +168,19 @@ static int for_each_study(const mt_args *args, mt_text *out, use_answer use)
     if (json && out->length > 0) {
         code = mt_exit_worse(code, mt_cli_json_done(&w));
     }
+    if (i < args->n_operands) {
+        char *const words = words_about(args, i);
+        mt_terminal_talk(false, "%s", words == NULL ? "" : words);
+        code = mt_exit_worse(code, words == NULL ? MT_EXIT_SYSTEM : MT_EXIT_INTERRUPTED);
+        free(words);
+    }
     return code;
 }
 
 int mt_cmd_run(const mt_args *args, mt_text *out)
 {
     const int code = mt_save_plan(args);
-    return code == MT_EXIT_DONE ? for_each_study(args, out, run_one) : code;
+    return code == MT_EXIT_DONE ? for_each_study(args, out, true, run_one) : code;
 }
 
 static void json_published(mt_json_writer *w, const mt_result_published *p)
@@ -207,5 +249,5 @@ static int compare_one(const job *j, mt_json_writer *w, mt_text *out)
 
 int mt_cmd_compare(const mt_args *args, mt_text *out)
 {
-    return for_each_study(args, out, compare_one);
+    return for_each_study(args, out, false, compare_one);
 }

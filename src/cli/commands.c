@@ -76,7 +76,8 @@ const mt_command mt_commands[MT_CMD_IDS] = {
             "Solves each study and writes result.json, recommendations.csv, report.html,\n"
             "trade.csv (of a trade study) and timing.json into DIR/<study file name\n"
             "without .json>/, replaced as one. Prints a summary.\n"
-            "An interrupt (Ctrl-C) ends the search; the best design so far is written."),
+            "An interrupt (Ctrl-C) ends the search; the best design so far is written, and\n"
+            "which parts of the answer are missing. A second one ends the program."),
     COMMAND(MT_CMD_COMPARE, "compare", "STUDY...", 1, -1, "published against computed values",
             "Solves each study and prints its published values beside the computed "
             "ones, with\n"

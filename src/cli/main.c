@@ -39,7 +39,7 @@ __attribute__((section(".preinit_array"), used)) static const before_constructor
 int main(int argc, char *argv[])
 {
     mt_terminal_open();
-    mt_terminal_catch_signals();
+    mt_terminal_ignore_signals();
     mt_tune_prepare_process();
     mt_blas_set_threads(1);
     const int code = mt_cli_main(argc, argv);

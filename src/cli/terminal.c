@@ -5,7 +5,9 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <signal.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,14 +19,21 @@
 
 enum {
     LINE_SIZE = 8192, /* longer lines of talk are cut */
-    PROGRESS_SIZE = 101
+    PROGRESS_SIZE = 101,
+    LAST_WORDS_SIZE = 512
 };
 
 static const char RED[] = "\033[1;31m";
 static const char YELLOW[] = "\033[1;33m";
 static const char PLAIN[] = "\033[0m";
 
-static volatile sig_atomic_t stop_requested = 0;
+#define NS_PER_S 1000000000LL
+/* How long what was found may be made ready after the signal; a user waits half a second at most. */
+#define MAKE_READY_NS (NS_PER_S / 4)
+
+static atomic_llong stop_ns; /* when the first signal was noted; 0: none */
+static char last_words[LAST_WORDS_SIZE];
+static size_t last_words_length = 0;
 static bool dropped = false; /* what is being collected */
 
 static bool without_memory = false;
@@ -66,7 +75,8 @@ int mt_exit_of(mt_status status)
 
 int mt_exit_worse(int a, int b)
 {
-    return a > b ? a : b;
+    const bool lost = a == MT_EXIT_SYSTEM || b == MT_EXIT_SYSTEM;
+    return lost ? MT_EXIT_SYSTEM : a > b ? a : b;
 }
 
 bool mt_terminal_colour(int descriptor)
@@ -260,30 +270,95 @@ void mt_terminal_progress(bool quiet, const char *text)
     }
 }
 
-static void on_stop(int number)
+static long long now_ns(void)
 {
-    (void)number;
-    stop_requested = 1;
+    struct timespec now = {0};
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return ((long long)now.tv_sec * NS_PER_S) + (long long)now.tv_nsec;
 }
 
-void mt_terminal_catch_signals(void)
+/* These call only what a signal handler may. SA_RESETHAND: a signal raised in them is the system's to answer, once they return. */
+static void note(int number)
 {
-    struct sigaction stop;
+    long long none = 0;
+    if (!atomic_compare_exchange_strong(&stop_ns, &none, now_ns())) {
+        (void)raise(number); /* the second one */
+    }
+}
+
+static void say_and_end(int number)
+{
+    const ssize_t said = write(STDERR_FILENO, last_words, last_words_length);
+    (void)said;
+    (void)raise(number);
+}
+
+/* Where the caller of the program had the signal ignored (a job in the background), it stays ignored. */
+static void set_action(int number, void (*to)(int number))
+{
+    struct sigaction old;
+    struct sigaction action;
+    memset(&old, 0, sizeof old);
+    memset(&action, 0, sizeof action);
+    action.sa_handler = to;
+    action.sa_flags = (int)SA_RESETHAND;
+    if (sigaction(number, NULL, &old) == 0 && old.sa_handler != SIG_IGN) {
+        (void)sigaction(number, &action, NULL);
+    }
+}
+
+static void set_actions(void (*to)(int number))
+{
+    set_action(SIGINT, to);
+    set_action(SIGTERM, to);
+}
+
+void mt_terminal_ignore_signals(void)
+{
     struct sigaction ignore;
-    memset(&stop, 0, sizeof stop);
     memset(&ignore, 0, sizeof ignore);
-    stop.sa_handler = on_stop;
-    stop.sa_flags = (int)SA_RESETHAND;
     ignore.sa_handler = SIG_IGN;
-    (void)sigaction(SIGINT, &stop, NULL);
-    (void)sigaction(SIGTERM, &stop, NULL);
     (void)sigaction(SIGPIPE, &ignore, NULL);
     (void)sigaction(SIGXFSZ, &ignore, NULL);
 }
 
-const volatile sig_atomic_t *mt_terminal_stop(void)
+void mt_terminal_hold_signals(void)
 {
-    return &stop_requested;
+    set_actions(note);
+}
+
+void mt_terminal_release_signals(void)
+{
+    set_actions(SIG_DFL);
+}
+
+bool mt_terminal_is_stopped(void)
+{
+    return atomic_load(&stop_ns) != 0;
+}
+
+int mt_terminal_wish(void *unused)
+{
+    const long long since = atomic_load(&stop_ns);
+    (void)unused;
+    if (since == 0) {
+        return MT_WISH_NONE;
+    }
+    return now_ns() - since < MAKE_READY_NS ? MT_WISH_FINISH : MT_WISH_END;
+}
+
+void mt_terminal_last_words(const char *text)
+{
+    set_actions(SIG_DFL);
+    if (text == NULL) {
+        return;
+    }
+    const size_t most = sizeof last_words - 1;
+    const size_t length = strlen(text);
+    last_words_length = length < most ? length : most;
+    memcpy(last_words, text, last_words_length);
+    last_words[last_words_length++] = '\n';
+    set_actions(say_and_end);
 }
 
 double mt_terminal_seconds(void)

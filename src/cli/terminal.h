@@ -2,7 +2,6 @@
 #ifndef CLI_TERMINAL_H
 #define CLI_TERMINAL_H
 
-#include <signal.h>
 #include <stdbool.h>
 
 #include "base/text.h"
@@ -19,7 +18,7 @@ enum {
 int mt_exit_of(mt_status status);
 /* Has anything ended as MT_E_MEMORY so far? */
 bool mt_exit_without_memory(void);
-/* The worse of two: 130, then 4, 3, 2, 1, 0. */
+/* The worse of two: 4 (something is lost), then 130, 3, 2, 1, 0. */
 int mt_exit_worse(int a, int b);
 
 /*
@@ -48,9 +47,20 @@ void mt_terminal_progress(bool quiet, const char *text);
 /* Is standard output (descriptor 1) or error (2) a terminal where colour is welcome? */
 bool mt_terminal_colour(int descriptor);
 
-/* SIGINT and SIGTERM set a flag (the second one ends the program), SIGPIPE and SIGXFSZ become errors of writing. */
-void mt_terminal_catch_signals(void);
-const volatile sig_atomic_t *mt_terminal_stop(void);
+/* SIGPIPE and SIGXFSZ become errors of writing. SIGINT and SIGTERM stay as the system has them, and end the program, but while they are held. */
+void mt_terminal_ignore_signals(void);
+/*
+ * From here to the release the first SIGINT or SIGTERM is only noted, for work that ends well by itself (mt_terminal_wish) or that must not be left half done; the second ends the program. Where the program was started
+ * with one of them ignored, it stays so.
+ */
+void mt_terminal_hold_signals(void);
+void mt_terminal_release_signals(void);
+/* Has one been noted since the program began? */
+bool mt_terminal_is_stopped(void);
+/* An mt_wish, the stop of a solve: to finish, and, a moment after the signal, to end. Any thread. */
+int mt_terminal_wish(void *unused);
+/* One line (cut where it is too long) that is written to standard error when a signal ends the program from now on; NULL: none any more. Not while signals are held. */
+void mt_terminal_last_words(const char *text);
 /* Seconds of a clock that only runs forward. */
 double mt_terminal_seconds(void);
 

@@ -443,6 +443,11 @@ static void write_run(mt_json_writer *w, const mt_result_run *run)
     put_count(w, "found_once", run->found_once);
     mt_json_put_number(w, "estimated_missing", run->estimated_missing);
     mt_json_put_integer(w, "evaluations", run->evaluations);
+    mt_json_open(w, "incomplete", '[');
+    for (int i = 0; i < run->n_incomplete; i++) {
+        mt_json_put_string(w, NULL, run->incomplete[i]);
+    }
+    mt_json_close(w);
     write_digests(w, "inputs", run->n_inputs, run->input_names, run->input_sha256);
     write_digests(w, "outputs", run->n_outputs, run->output_names, run->output_sha256);
     mt_json_close(w);

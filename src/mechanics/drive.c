@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/interrupt.h"
 #include "mechanics/singular.h"
 
 /* Longest step of the driven joint's coordinate [rad or model lengths], and of any body. */
@@ -317,6 +318,7 @@ mt_status mt_drive_solve(mt_state *p, mt_data *data, const mt_drive_start *start
     double h = DRIVE_STEP * w.unit;
     int steps = 0;
     for (; w.at != w.goal && h > 0.0 && steps < MOST_STEPS; steps++) {
+        MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
         MT_TRY(advance(&w, &h, err));
     }
     p->reached = w.at;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/interrupt.h"
 #include "mechanics/couplings.h"
 #include "mechanics/drive.h"
 #include "mechanics/idle.h"
@@ -329,6 +330,7 @@ mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradi
 {
     const mt_system *const sys = lin->sys;
     mt_node bad = MT_NO_NODE;
+    MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
     const mt_status rc =
         with_gradient
             ? mt_program_gradient(&sys->program, inputs, lin->value, lin->grad, &bad, err)

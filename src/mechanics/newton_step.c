@@ -16,6 +16,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/interrupt.h"
+
 /* Singular values of the reduced Hessian below this fraction of the largest stiffness, be it one that the joints hold, belong to freedoms without stiffness: rounding leaves about n eps ~ 1e-14 of them, and a real
  * stiffness may be 1e12 times softer than its neighbour. */
 static const double NO_STIFFNESS = 1e-13;
@@ -329,6 +331,7 @@ mt_status mt_newton_linearise(mt_newton_work *w, const mt_pose *poses, mt_arena 
                               mt_elimination *e, double **inverse, mt_err *err)
 {
     const int nq = w->sys->nq;
+    MT_TRY(mt_interrupt_check(w->sys->model->interrupt, err));
     MT_TRY(balance(w, poses, mem, e, err));
     MT_TRY(mt_newton_invert(w, e, mem, inverse, err));
     double *const minus_c = mt_arena_f64(mem, (size_t)w->p->m, 1);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/interrupt.h"
 #include "mechanics/energy.h"
 
 enum { DIRECTION_TEXT = 300 };
@@ -123,6 +124,7 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
     a->solves++;
     a->with_gradient = false;
     MT_TRY(mt_linear_update(a->lin, inputs, opt->gradient, err));
+    MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
     MT_TRY(refresh_mass(a, err));
     const mt_linear *const lin = a->lin;
     const mt_stiffness_factor factor = {.rows = lin->list[MT_TERM_STIFFNESS].n_rows,
@@ -176,6 +178,7 @@ mt_status mt_analysis_products(mt_analysis *a, int pos, mt_err *err)
         return mt_fail(err, MT_E_INTERNAL,
                        "derivatives asked for after a solve without gradient");
     }
+    MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
     for (int p = 0; p < a->sys->n_inputs; p++) {
         MT_TRY(mt_linear_products(a->lin, p, 1, a->modes.y + (pos * n), a->dky + (p * n),
                                   a->dmy + (p * n), NULL, err));

@@ -2,6 +2,7 @@
 #ifndef TUNE_CERTIFY_H
 #define TUNE_CERTIFY_H
 
+#include "base/interrupt.h"
 #include "tune/enclosure.h"
 
 /*
@@ -66,9 +67,8 @@ typedef struct mt_certify {
     const mt_certify_cap *cap;      /* NULL: any value of the objective */
     const double
         *scale; /* [n] NaN: bisected in ln x, else linearly; NULL: in ln x where lower > 0 */
-    long max_boxes; /* 0: MT_CERTIFY_BOXES */
-    const volatile int
-        *stop; /* NULL, or non-zero ends the search as an exhausted budget does */
+    long max_boxes;          /* 0: MT_CERTIFY_BOXES */
+    mt_interrupt *interrupt; /* ends the search as an exhausted budget does; NULL: never */
 } mt_certify;
 
 enum { MT_CERTIFY_BOXES = 1000000, MT_CERTIFY_OPEN_MOST = 256 };

@@ -414,9 +414,9 @@ static mt_status visit(search *s, bool *deeper)
 {
     mt_certify_search *const out = s->out;
     const long most = s->c->max_boxes > 0 ? s->c->max_boxes : MT_CERTIFY_BOXES;
+    out->stopped = out->stopped || mt_interrupted(s->c->interrupt);
     const int left = examine(s);
     out->boxes++;
-    out->stopped = out->stopped || (s->c->stop != NULL && *s->c->stop != 0);
     if (left == 0) {
         return MT_OK;
     }

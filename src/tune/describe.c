@@ -159,9 +159,12 @@ static mt_status describe(mt_problem *fresh, const mt_design *design,
     if (design->found == NULL) {
         return MT_OK;
     }
+    MT_TRY(mt_describe_tolerance(fresh, result, rec, err));
+    if (design->cut) {
+        return MT_OK;
+    }
     rec->kkt_residual = design->found->kkt;
     rec->singular = design->found->singular;
-    MT_TRY(mt_describe_tolerance(fresh, result, rec, err));
     return compare(fresh, design, result, err);
 }
 

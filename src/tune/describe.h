@@ -16,6 +16,8 @@ typedef struct mt_design {
     const mt_nlp_solution *found; /* NULL: the original design */
     int stage;                    /* the objective that found->f belongs to */
     int rank;
+    bool
+        cut; /* the search was interrupted: what it knew of the design is not used, and a better one may be near */
     const struct mt_discrete_report *discrete; /* NULL: no catalogue was searched */
     const struct mt_gap_result *gaps;          /* NULL: no gap assignments were searched */
     const int *below;                          /* its assignment; NULL likewise */
@@ -89,6 +91,8 @@ mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
  * How the best design moves when the weight of one goal at a time is multiplied or divided by the study's factor, the misfit minimised again from the best design (spread.c). Nothing where
  * the study does not ask for it. p's weights are changed meanwhile and put back. Evaluations are added to *evaluations. Cost: one local search for each weighted goal and side.
  */
+/* Does the study ask for it? */
+bool mt_describe_has_spread(const mt_problem *p);
 mt_status mt_describe_spread(mt_problem *p, const mt_nlp_solution *best, mt_arena *mem,
                              long *evaluations, mt_result *result, mt_err *err);
 /* Judge the published list: x_recommended NULL where there is none (then the original design stands in). Fails with the entry's address in the text (published.c). */

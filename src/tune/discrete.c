@@ -258,6 +258,13 @@ static mt_status collect(const mt_discrete *d, const ranking *r, mt_nlp_result *
     return MT_OK;
 }
 
+/* An interrupt ends a part of the search, and what was found before it stands. */
+static mt_status unless_interrupted(mt_discrete *d, mt_status rc)
+{
+    d->stop = rc == MT_E_INTERRUPTED ? MT_STOP_USER : d->stop;
+    return rc == MT_E_INTERRUPTED ? MT_OK : rc;
+}
+
 mt_status mt_discrete_solve(mt_problem *const *problems, int n_workers, mt_arena *mem,
                             mt_nlp_result *out, mt_discrete_report *report, mt_err *err)
 {
@@ -275,7 +282,7 @@ mt_status mt_discrete_solve(mt_problem *const *problems, int n_workers, mt_arena
     *report = (mt_discrete_report){.mixed = d.mixed, .combinations = n, .best_within = nan("")};
     MT_TRY(look(&d, n, &r, report, &all, &n_all, err));
     if ((d.mixed || !report->all) && d.stop != MT_STOP_USER) {
-        MT_TRY(mt_discrete_prove(&d, &all, &n_all, report, err));
+        MT_TRY(unless_interrupted(&d, mt_discrete_prove(&d, &all, &n_all, report, err)));
     }
     if (all == NULL) {
         return mt_fail_memory(err);
@@ -290,5 +297,6 @@ mt_status mt_discrete_solve(mt_problem *const *problems, int n_workers, mt_arena
     report->driven = mt_family_any(d.p) && !d.mixed;
     MT_TRY(collect(&d, &r, out, err));
     const bool known = r.n > 0 && r.best[0]->feasible && d.stop != MT_STOP_USER;
-    return known ? mt_discrete_undetermined(&d, r.best[0], out, err) : MT_OK;
+    return known ? unless_interrupted(&d, mt_discrete_undetermined(&d, r.best[0], out, err))
+                 : MT_OK;
 }

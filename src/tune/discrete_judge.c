@@ -307,7 +307,6 @@ mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_are
     *out = (mt_nlp_result){.n_undetermined = 0};
     MT_TRY(close_study(&j, c, mem, &closed, err));
     MT_TRY(mt_problem_new(&closed, d->p->references, &p, err));
-    p->stop = d->p->stop;
     const bool bands = p->n_clears > 0;
     const mt_status rc = bands ? mt_gaps_solve(p, 1, mem, &gaps, err)
                                : mt_search_designs(&p, 1, mem, out, &stage, &why, err);
@@ -334,12 +333,16 @@ static mt_status judge_mixed(void *context, int worker, int task, mt_err *err)
     mt_status rc = close_study(j, c, &mem, &closed, err);
     rc = rc == MT_OK ? mt_problem_new(&closed, whole->references, &p, err) : rc;
     if (rc == MT_OK) {
-        p->stop = whole->stop;
         p->hint = c->from;
         rc = search_closed(p, &mem, c, err);
     }
     mt_problem_delete(p);
     mt_arena_free(&mem);
+    if (rc == MT_E_INTERRUPTED) {
+        c->stop = MT_STOP_USER;
+        c->judged = false;
+        return MT_OK;
+    }
     return rc;
 }
 

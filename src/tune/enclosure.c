@@ -104,6 +104,8 @@ static mt_status build(mt_enclosure *e, const mt_analysis *a, const double *lowe
     MT_TRY(mt_arena_init(&e->mem, 0, err));
     MT_TRY(mt_arena_init(&e->scratch, 0, err));
     e->n_inputs = a->sys->n_inputs;
+    e->interrupt = a->sys->model->interrupt;
+    MT_TRY(mt_interrupt_check(e->interrupt, err));
     e->n_rigid = a->n_rigid;
     MT_TRY(keep_bounds(e, lower, upper, err));
     MT_TRY(mt_enclosure_collect(e, a->lin, ok, reason, err));

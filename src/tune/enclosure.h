@@ -2,6 +2,7 @@
 #ifndef TUNE_ENCLOSURE_H
 #define TUNE_ENCLOSURE_H
 
+#include "base/interrupt.h"
 #include "tune/analysis.h"
 
 /*
@@ -103,8 +104,9 @@ typedef struct mt_enclosure {
     double *work;               /* n x n */
     double slack_k;             /* slack of an eigenvalue: slack_k + slack_m lambda */
     double slack_m;
-    long counts;    /* inertia counts so far */
-    long fallbacks; /* of them by pivoting */
+    long counts;             /* inertia counts so far */
+    long fallbacks;          /* of them by pivoting */
+    mt_interrupt *interrupt; /* of the analysis' model */
 } mt_enclosure;
 
 /*
@@ -116,7 +118,7 @@ mt_status mt_enclosure_new(const mt_analysis *a, const double *lower, const doub
                            mt_enclosure **out, char *reason, mt_err *err);
 void mt_enclosure_delete(mt_enclosure *e);
 
-/* Set the box lo <= x <= hi; it may leave the bounds. False where nothing is known over it: a coefficient may be negative or is not enclosed. No heap. */
+/* Set the box lo <= x <= hi; it may leave the bounds. False where nothing is known over it: a coefficient may be negative or is not enclosed, or the work is interrupted. No heap. */
 bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi);
 /* Note which stiffnesses are positive all over the box that is set; and are they so all over the one that is set later? Where one is not, a design of that box may have one more
  * rigid-body mode. */

@@ -71,6 +71,9 @@ bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi)
 {
     double k_scale = e->fixed_norm;
     double m_scale = 0.0;
+    if (mt_interrupted(e->interrupt)) {
+        return false;
+    }
     mt_enclosure_bounds(e, lo, hi);
     for (int i = 0; i < e->n_coefficients; i++) {
         const bool either = e->coefficients[i].required != MT_SIGN_POSITIVE;

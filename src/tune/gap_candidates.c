@@ -185,7 +185,7 @@ static mt_status sample(mt_problem *p, int n, int most, mt_arena *mem, mt_gap_ca
     mt_status rc = t == NULL ? mt_fail_memory(err) : MT_OK;
     for (int k = 0; rc == MT_OK && k < n; k++) {
         double violation = 0.0;
-        if (p->stop != NULL && *p->stop != 0) {
+        if (mt_interrupted(p->study->model->interrupt)) {
             break;
         }
         rc = mt_gap_assignment(p, t + ((ptrdiff_t)k * p->n), below, &violation, err);

@@ -167,7 +167,6 @@ static mt_status search_round(const job *j, slot *s, int k, int round, const dou
     MT_TRY(mt_problem_new_cut(j->p->study, j->p->references,
                               j->candidates->below + ((ptrdiff_t)k * j->p->n_bands), s->n_cuts,
                               s->cuts, &p, why));
-    p->stop = j->p->stop;
     options.starts =
         round > 1 && options.starts > CUT_STARTS ? (int)CUT_STARTS : options.starts;
     p->starts = options.starts;

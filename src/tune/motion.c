@@ -167,9 +167,6 @@ static mt_status look(walk *w, double at, int next, mt_err *err)
     const mt_analysis_options opt = {.gradient = true, .vectors = true, .accuracy = true};
     sample *const s = &w->samples[w->n++];
     mt_err why = {.code = MT_OK};
-    if (w->p->stop != NULL && *w->p->stop != 0) {
-        return mt_fail(err, MT_E_INTERRUPTED, "interrupted");
-    }
     *s = (sample){.at = at,
                   .next = next,
                   .room = mt_arena_f64(w->mem, (size_t)w->n_edges, 1),

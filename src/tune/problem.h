@@ -148,7 +148,6 @@ typedef struct mt_problem {
     int starts; /* local solves of a search where the study does not say; 0: by the number of variables */
     struct mt_robust *robust; /* variables with a tolerance (robust.h); NULL: none */
     const double *hint; /* [n + 1] coordinates of one more design to start from; NULL: none */
-    const volatile int *stop; /* NULL, or the search ends where it is set */
     void (*progress)(void *context, const char *text); /* NULL, or called now and then */
     void *progress_context;
 } mt_problem;

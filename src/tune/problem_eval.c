@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/format.h"
+#include "base/interrupt.h"
 #include "tune/problem.h"
 #include "tune/robust.h"
 
@@ -53,9 +54,7 @@ mt_status mt_problem_eval(void *context, const double *t, bool with_gradient,
                           mt_nlp_values *out, mt_err *err)
 {
     mt_problem *const p = context;
-    if (p->stop != NULL && *p->stop != 0) {
-        return mt_fail(err, MT_E_INTERRUPTED, "interrupted");
-    }
+    MT_TRY(mt_interrupt_check(p->study->model->interrupt, err));
     p->evaluations++;
     say_progress(p);
     MT_TRY(mt_problem_place(p, t, with_gradient, err));

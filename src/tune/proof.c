@@ -119,7 +119,7 @@ mt_status mt_proof_init(mt_proof *proof, mt_problem *p, mt_arena *mem, mt_err *e
                                    .upper = proof->upper,
                                    .scale = p->scale,
                                    .max_boxes = p->proof_boxes,
-                                   .stop = p->stop};
+                                   .interrupt = p->study->model->interrupt};
     proof->covers =
         p->robust == NULL; /* what is possible for a design may not be over its tolerances */
     list_bands(proof, p);

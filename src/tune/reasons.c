@@ -419,6 +419,10 @@ mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
     mt_say_worst(&s);
     say_violations(&s);
     mt_say_bands(&s);
+    if (design->cut) {
+        mt_say(&s, "The search was interrupted: better designs may exist.");
+        return s.failed ? mt_fail_memory(err) : MT_OK;
+    }
     mt_say_prices(&s);
     say_misfit(&s);
     say_rank(&s, search);

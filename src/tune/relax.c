@@ -188,7 +188,6 @@ static mt_status search_in_gap(const job *j, const mt_study *study, const int *b
     mt_err why = {0};
     mt_nlp_options opt = mt_nlp_options_default();
     MT_TRY(mt_problem_new_in_gap(study, j->p->references, below, &r.q, err));
-    r.q->stop = j->p->stop;
     opt.seed = study->search.seed;
     opt.starts = STARTS;
     opt.max_evals = (long)STARTS * EVALUATIONS;
@@ -227,7 +226,6 @@ static mt_status search_gaps(const job *j, const mt_study *study, mt_move *m, ta
     mt_problem *plain = NULL;
     mt_gap_candidates near = {0};
     MT_TRY(mt_problem_new(study, j->p->references, &plain, err));
-    plain->stop = j->p->stop;
     mt_status rc = mt_gap_candidates_near(plain, ASSIGNMENTS, &out->mem, &near, err);
     out->evals += near.evals;
     for (int k = 0; k < near.n && rc == MT_OK && !out->stopped; k++) {

@@ -201,7 +201,6 @@ static mt_status relax_near(mt_problem *p, int n_workers, const mt_nlp_solution 
     const mt_nlp_result from = {.n_solutions = 1, .solutions = &near, .evals = spent};
     MT_TRY(close_on(p, s->t, mem, &closed, err));
     MT_TRY(mt_problem_new(&closed, p->references, &q, err));
-    q->stop = p->stop;
     const mt_status rc = mt_relax(q, n_workers, &from, mem, &found, err);
     mt_problem_delete(q);
     if (rc == MT_OK) {

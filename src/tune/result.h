@@ -286,6 +286,8 @@ typedef struct mt_result_run {
     int n_outputs; /* files written beside the result; 0: it is written alone */
     const char **output_names;
     const char **output_sha256;
+    int n_incomplete; /* phases that an interrupt cut, or that were not begun because of it, by the names of what they write ("search", "spread", ...) */
+    const char **incomplete;
 } mt_result_run;
 
 typedef struct mt_result {
@@ -323,6 +325,17 @@ typedef struct mt_result {
 
 /* An empty result (status interrupted: nothing is known yet). Fails: MT_E_MEMORY. */
 mt_status mt_result_new(mt_result **out, mt_err *err);
+/* How far the lists are filled that phases add to; and back to there. */
+typedef struct mt_result_mark {
+    int n_undetermined;
+    int n_spread;
+    int n_certificates;
+    int n_relaxations;
+    int n_published;
+    int n_warnings;
+} mt_result_mark;
+mt_result_mark mt_result_get_mark(const mt_result *result);
+void mt_result_take_back(mt_result *result, const mt_result_mark *mark);
 /* A recommendation whose numbers are all "not applicable". */
 mt_recommendation mt_recommendation_default(void);
 mt_result_frequency mt_result_frequency_default(void);

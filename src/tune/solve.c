@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tune/solve.h"
+/*
+ * A study answered in phases. Each may be cut by the caller's wish to stop. Which ones were is told by the interrupt itself, which every unit of work passes (base/interrupt.h): no phase hands
+ * it up, so none can forget to. What a phase that was cut has written is taken back, and those that need what it would have found are not begun.
+ */
+#include "tune/solve_priv.h"
 
 #include <math.h>
-#include <string.h>
 
-#include "base/format.h"
 #include "base/workers.h"
 #include "tune/describe.h"
-#include "tune/discrete.h"
 #include "tune/doubts.h"
-#include "tune/gaps.h"
 #include "tune/relax.h"
 #include "tune/search.h"
 #include "tune/trade.h"
@@ -20,26 +20,7 @@ mt_solve_options mt_solve_options_default(void)
     return opt;
 }
 
-/* One study being answered. */
-typedef struct answer {
-    const mt_study *study;
-    mt_problem *p;        /* workers[0] */
-    mt_problem **workers; /* [n_workers] owned */
-    int n_workers;
-    mt_result *result;
-    mt_arena mem;
-    mt_reference_cache references;
-    mt_nlp_result found;
-    mt_gap_result gaps;          /* where there are bands: found is made from it */
-    mt_discrete_report discrete; /* where there are catalogues: what the search did */
-    int stage;                   /* of found */
-    mt_err why;                  /* no start of the search had a value */
-    bool searched;
-    bool infeasible; /* proven, and no compromise is asked for */
-    bool impossible; /* proven that no design meets all goals */
-} answer;
-
-static mt_status describe_solutions(answer *a, mt_err *err)
+static mt_status describe_solutions(mt_answer *a, mt_err *err)
 {
     const mt_nlp_result *const found = &a->found;
     mt_result *const result = a->result;
@@ -54,18 +35,24 @@ static mt_status describe_solutions(answer *a, mt_err *err)
     }
     MT_TRY(mt_describe_undetermined(a->p, found, result, err));
     for (int i = 0; i < n; i++) {
+        a->mark = mt_result_get_mark(result);
         const mt_design design = {.t = found->solutions[i].t,
                                   .found = &found->solutions[i],
                                   .stage = a->stage,
                                   .rank = i + 1,
+                                  .cut = mt_interrupt_is_cut(&a->interrupt, MT_PHASE_SEARCH),
                                   .discrete = discrete ? &a->discrete : NULL,
                                   .gaps = kinds ? &a->gaps : NULL,
                                   .below = kinds ? a->gaps.solutions[i].below : NULL};
         mt_recommendation *const rec = &result->recommendations[i];
         MT_TRY(mt_describe_design(a->p, &design, &result->baseline, result, rec, err));
         MT_TRY(mt_describe_reasons(a->p, &design, found, result, rec, err));
+        if (mt_interrupt_is_cut(&a->interrupt, MT_PHASE_RECOMMENDATIONS)) {
+            return MT_OK;
+        }
         result->n_recommendations++;
     }
+    a->mark = mt_result_get_mark(result);
     if (found->n_solutions > n) {
         MT_TRY(mt_describe_warn(result, err,
                                 "%d more distinct designs were found; \"recommendations\" in "
@@ -75,266 +62,8 @@ static mt_status describe_solutions(answer *a, mt_err *err)
     return MT_OK;
 }
 
-/* Isolated designs that no start met are to be expected where some were met once only. */
-static mt_status warn_of_missing(const answer *a, mt_err *err)
-{
-    const mt_nlp_result *const f = &a->found;
-    if (!MT_HAS(a->result->run.estimated_missing) || f->n_once == 0) {
-        return MT_OK;
-    }
-    const bool some = f->missing >= 1.0;
-    char more[48] = "there may be more";
-    if (some) {
-        (void)mt_snprintf(more, sizeof more, "about %.0f more, at least, are to be expected",
-                          f->missing);
-    }
-    return mt_describe_warn(a->result, err,
-                            "%d of the %d designs found %s met by one of %d starts only: %s; "
-                            "more \"starts\" or \"max_evaluations\" may find them",
-                            f->n_once, f->n_found, f->n_once == 1 ? "was" : "were", f->starts,
-                            more);
-}
-
-static mt_status warn_of_continua(const answer *a, mt_err *err)
-{
-    for (int i = 0; i < a->result->n_recommendations; i++) {
-        if (a->found.solutions[i].continuum) {
-            MT_TRY(mt_describe_warn(a->result, err,
-                                    "recommendation %d: a continuum of designs is as good as "
-                                    "this one; a second objective, or one more goal, would "
-                                    "choose among them",
-                                    i + 1));
-        }
-    }
-    return MT_OK;
-}
-
-/* What the engineer should know of the search besides its answers. */
-static mt_status warn(const answer *a, mt_err *err)
-{
-    for (int i = 0; i < a->study->n_warnings; i++) {
-        MT_TRY(mt_describe_warn(a->result, err, "%s", a->study->warnings[i]));
-    }
-    for (int i = 0; i < a->p->n; i++) {
-        const mt_variable *const v = &a->study->variables[i];
-        if (v->original < v->lower || v->original > v->upper) {
-            MT_TRY(mt_describe_warn(a->result, err,
-                                    "the original value of %s, %.6g, lies outside its bounds "
-                                    "(%.6g to %.6g)",
-                                    v->parameter_name.s, v->original, v->lower, v->upper));
-        }
-    }
-    if (a->found.stop == MT_STOP_MAX_EVALS) {
-        MT_TRY(mt_describe_warn(a->result, err,
-                                "the budget of evaluations ran out after %ld: a larger "
-                                "\"max_evaluations\" may find more",
-                                a->found.evals));
-    }
-    MT_TRY(warn_of_missing(a, err));
-    MT_TRY(warn_of_continua(a, err));
-    if (a->why.code != MT_OK) {
-        MT_TRY(mt_describe_warn(a->result, err, "%s", a->why.text));
-    }
-    return MT_OK;
-}
-
-static mt_result_status status_of(const answer *a, const mt_recommendation *best)
-{
-    if (a->found.stop == MT_STOP_USER) {
-        return MT_RESULT_INTERRUPTED;
-    }
-    if (mt_describe_is_doubted(a->result)) {
-        return MT_RESULT_COMPROMISE;
-    }
-    if (a->infeasible) {
-        return MT_RESULT_INFEASIBLE;
-    }
-    return best->feasible ? MT_RESULT_SOLVED : MT_RESULT_COMPROMISE;
-}
-
-/* Is a named mode that cannot be told all that is wrong? */
-static bool is_doubtful(const mt_recommendation *best)
-{
-    bool doubtful = false;
-    for (int i = 0; i < best->n_goals; i++) {
-        const mt_result_goal *const g = &best->goals[i];
-        if (!g->met && !g->weighted && !g->doubtful) {
-            return false;
-        }
-        doubtful = doubtful || g->doubtful;
-    }
-    return doubtful;
-}
-
-/* Is a design of the search a local optimum, as far as its gradients tell? "" where it is. */
-static const char *doubt_text(const mt_recommendation *best, mt_arena *mem)
-{
-    return !mt_describe_is_optimum(best)
-               ? mt_arena_printf(mem,
-                                 " The best is not shown to be a local optimum (KKT residual "
-                                 "%.2g).",
-                                 best->kkt_residual)
-               : "";
-}
-
-/* Answers that do not depend on a search's success; NULL: it does. */
-static const char *early_text(const answer *a, const mt_recommendation *best)
-{
-    if (a->found.stop == MT_STOP_USER) {
-        return a->found.n_solutions > 0 ? "Interrupted: the best designs found so far."
-                                        : "Interrupted before any design was found.";
-    }
-    if (mt_describe_is_doubted(a->result)) {
-        return "Not verified: a fresh analysis disagrees with what the search read, so that "
-               "nothing here is proven and designs graded \"not verified\" must not be used "
-               "(see the warnings).";
-    }
-    if (best->n_goals == 0) {
-        return "No goals: the model as it is, against published values.";
-    }
-    if (!a->searched) {
-        return best->feasible ? "The original design meets all goals."
-                              : "The original design does not meet all goals.";
-    }
-    return NULL;
-}
-
-static const char *solved_text(const answer *a, const char *doubt, mt_arena *mem)
-{
-    const int n = a->found.n_solutions;
-    if (a->gaps.n_solutions > 0) {
-        const char *const left = mt_describe_gaps_left(&a->gaps, mem);
-        return left == NULL ? NULL
-                            : mt_arena_printf(
-                                  mem,
-                                  "Solved: %d kind%s of design keep%s clear of the bands and "
-                                  "meet%s all goals (of %.0f gap assignments, %s).%s",
-                                  n, n == 1 ? "" : "s", n == 1 ? "s" : "", n == 1 ? "s" : "",
-                                  a->gaps.n_possible, left, doubt);
-    }
-    bool continuum = false;
-    for (int i = 0; i < n; i++) {
-        continuum = continuum || a->found.solutions[i].continuum;
-    }
-    if (continuum) {
-        return n == 1 ? mt_arena_printf(mem,
-                                        "Solved: a continuum of equally good designs meets all "
-                                        "goals; one of it is recommended.%s",
-                                        doubt)
-                      : mt_arena_printf(mem,
-                                        "Solved: %d distinct designs, or continua of equally "
-                                        "good designs, meet all goals.%s",
-                                        n, doubt);
-    }
-    return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.%s", n,
-                           n == 1 ? " meets" : "s meet", doubt);
-}
-
-static const char *status_text(const answer *a, const mt_recommendation *best)
-{
-    mt_arena *const mem = &a->result->mem;
-    const int n = a->found.n_solutions;
-    const char *const early = early_text(a, best);
-    if (early != NULL) {
-        return early;
-    }
-    if (a->infeasible) {
-        return mt_arena_printf(mem,
-                               "Infeasible: no design within the bounds meets all goals, which "
-                               "is proven (see the certificates).%s%s",
-                               a->result->n_relaxations > 0 ? " " : "",
-                               a->result->n_relaxations > 0 ? a->result->relaxations[0].text
-                                                            : "");
-    }
-    if (n == 0) {
-        return a->why.code != MT_OK ? "No design that was tried could be evaluated."
-               : a->found.stop == MT_STOP_MAX_EVALS
-                   ? "The budget ended before any design was found."
-                   : "No design was found within the bounds (sampled, not proven).";
-    }
-    const char *const doubt = doubt_text(best, mem);
-    if (doubt == NULL) {
-        return NULL;
-    }
-    if (best->feasible) {
-        return solved_text(a, doubt, mem);
-    }
-    if (is_doubtful(best)) {
-        return "Compromise: by their numbers all goals can be met, but which modes the named "
-               "ones "
-               "are cannot be told there (see the goals).";
-    }
-    const char *const nearest =
-        isfinite(best->violation_percent)
-            ? mt_arena_printf(mem, "the nearest %smisses by %.3g %% at most",
-                              a->impossible ? "that was found " : "", best->violation_percent)
-            : "at the nearest not every goal has a value";
-    return nearest == NULL
-               ? NULL
-               : mt_arena_printf(
-                     mem, "Compromise: no design %swithin the bounds meets all goals%s; %s.",
-                     a->impossible ? "" : "found ",
-                     a->impossible ? ", which is proven (see the certificates)"
-                                   : " (sampled, not proven)",
-                     nearest);
-}
-
-static void lower_grade(mt_recommendation *r)
-{
-    if (r->grade != NULL && strcmp(r->grade, "feasible and proven") == 0) {
-        r->grade = "feasible";
-    }
-}
-
-/* The points of a trade study are answers to the same question. */
-static void qualify_trade(mt_result *result)
-{
-    const mt_doubt_list *const list = &result->doubts;
-    const bool doubtful = mt_doubt_count(list->n, list->items, MT_LEVEL_DOUBT) > 0;
-    for (int i = 0; doubtful && result->trade != NULL && i < result->trade->n_points; i++) {
-        lower_grade(&result->trade->points[i].best);
-    }
-}
-
-/* Nothing is proven of a question that is hardly the one that was meant: the doubts come first, and no design is graded beyond "feasible". */
-static mt_status qualify(mt_result *result, mt_err *err)
-{
-    const mt_doubt_list *const list = &result->doubts;
-    const int n = mt_doubt_count(list->n, list->items, MT_LEVEL_DOUBT);
-    const char *first = "";
-    for (int i = list->n - 1; i >= 0; i--) {
-        first = list->items[i].level == MT_LEVEL_DOUBT ? list->items[i].text : first;
-    }
-    if (n == 0) {
-        return MT_OK;
-    }
-    for (int i = 0; i < result->n_recommendations; i++) {
-        lower_grade(&result->recommendations[i]);
-    }
-    result->status_text =
-        n == 1 ? mt_arena_printf(&result->mem, "Doubtful question (%s). %s", first,
-                                 result->status_text)
-               : mt_arena_printf(&result->mem, "Doubtful question (%s; and %d more). %s", first,
-                                 n - 1, result->status_text);
-    return result->status_text == NULL ? mt_fail_memory(err) : MT_OK;
-}
-
-static mt_status set_status(const answer *a, mt_err *err)
-{
-    mt_result *const result = a->result;
-    const mt_recommendation *const best =
-        result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline;
-    const bool nothing = a->searched && result->n_recommendations == 0;
-    result->status = status_of(a, best);
-    if (nothing && result->status == MT_RESULT_SOLVED) {
-        result->status = MT_RESULT_COMPROMISE; /* the baseline is no answer of the search */
-    }
-    result->status_text = status_text(a, best);
-    return result->status_text == NULL ? mt_fail_memory(err) : qualify(result, err);
-}
-
 /* The search over gap assignments, its solutions in the form of any other search. */
-static mt_status search_gaps(answer *a, mt_err *err)
+static mt_status search_gaps(mt_answer *a, mt_err *err)
 {
     mt_gap_result *const g = &a->gaps;
     MT_TRY(mt_gaps_solve(a->p, a->n_workers, &a->mem, g, err));
@@ -358,7 +87,7 @@ static mt_status search_gaps(answer *a, mt_err *err)
     return MT_OK;
 }
 
-static mt_status search(answer *a, mt_err *err)
+static mt_status search(mt_answer *a, mt_err *err)
 {
     if (mt_study_is_discrete(a->study)) {
         return mt_discrete_solve(a->workers, a->n_workers, &a->mem, &a->found, &a->discrete,
@@ -375,11 +104,29 @@ static mt_status search(answer *a, mt_err *err)
     return MT_OK;
 }
 
-static mt_status certify(answer *a, mt_err *err)
+/* Of a search that was cut nothing counts but the designs that it met: they are judged anew. */
+static void keep_designs_alone(mt_answer *a)
 {
-    if (!a->searched || a->found.stop == MT_STOP_USER) {
-        return MT_OK;
-    }
+    a->found.stop = MT_STOP_USER;
+    a->found.n_undetermined = 0;
+    a->found.n_once = 0;
+    a->found.missing = nan("");
+    a->why = (mt_err){.code = MT_OK};
+    a->result->run.distinct_designs = -1;
+    a->result->run.found_once = -1;
+    a->result->run.estimated_missing = nan("");
+}
+
+static mt_status spread(mt_answer *a, mt_err *err)
+{
+    return a->result->n_recommendations == 0
+               ? MT_OK
+               : mt_describe_spread(a->p, &a->found.solutions[0], &a->mem, &a->found.evals,
+                                    a->result, err);
+}
+
+static mt_status certify(mt_answer *a, mt_err *err)
+{
     if (mt_study_is_discrete(a->study)) {
         return mt_describe_discrete_certificate(&a->discrete, &a->found, a->result,
                                                 &a->infeasible, err);
@@ -398,11 +145,10 @@ static mt_status certify(answer *a, mt_err *err)
 }
 
 /* What would let a design exist, where none was found. */
-static mt_status relax(answer *a, mt_err *err)
+static mt_status relax(mt_answer *a, mt_err *err)
 {
     mt_moves moves = {0};
-    const bool none = a->infeasible || a->impossible || a->found.compromise;
-    if (!a->searched || !none || a->found.stop == MT_STOP_USER) {
+    if (!a->infeasible && !a->impossible && !a->found.compromise) {
         return MT_OK;
     }
     MT_TRY(mt_study_is_discrete(a->study)
@@ -416,16 +162,106 @@ static mt_status relax(answer *a, mt_err *err)
                                 "there are too many combinations, or \"max_evaluations\" left "
                                 "nothing for it");
     }
-    if (moves.stopped) {
-        return mt_describe_warn(a->result, err,
-                                "interrupted before it was known which single change would "
-                                "let a design exist");
-    }
     return mt_describe_relaxations(a->p, &moves, a->result, err);
 }
 
+static mt_status publish(mt_answer *a, mt_err *err)
+{
+    double *const x = mt_arena_f64(&a->mem, (size_t)a->p->n, 1);
+    const bool recommended = a->result->n_recommendations > 0;
+    if (x == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (recommended) {
+        mt_problem_x(a->p, a->found.solutions[0].t, x);
+    }
+    return mt_describe_published(a->p, a->p->original, recommended ? x : NULL, a->result, err);
+}
+
+/* Does the study ask for what this phase writes? */
+static bool is_asked(const mt_answer *a, mt_phase which)
+{
+    switch (which) {
+    case MT_PHASE_SPREAD:
+        return a->searched && mt_describe_has_spread(a->p);
+    case MT_PHASE_PUBLISHED:
+        return a->study->n_published > 0;
+    case MT_PHASE_TRADE:
+        return a->study->trade.n_vary > 0;
+    case MT_PHASE_SEARCH:
+    case MT_PHASE_RECOMMENDATIONS:
+    case MT_PHASE_CERTIFICATES:
+    case MT_PHASE_RELAXATIONS:
+        return a->searched;
+    case MT_PHASE_BASELINE:
+    case MT_PHASE_COUNT:
+        break;
+    }
+    return true;
+}
+
+/* Would the phase speak of what is not known: of a search that was cut, or of a recommendation that it did not find? */
+static bool is_groundless(const mt_answer *a, mt_phase which)
+{
+    const mt_interrupt *const i = &a->interrupt;
+    const bool cut = mt_interrupt_is_cut(i, MT_PHASE_SEARCH) ||
+                     mt_interrupt_is_cut(i, MT_PHASE_RECOMMENDATIONS);
+    if (which == MT_PHASE_RECOMMENDATIONS) {
+        return false;
+    }
+    if (which == MT_PHASE_PUBLISHED) {
+        return cut && a->result->n_recommendations == 0;
+    }
+    return cut || (which == MT_PHASE_TRADE && mt_interrupt_any(i));
+}
+
+/* An error that an interrupt is the reason of is none; shortage of memory and our own errors are. */
+static bool is_due_to_cut(mt_status rc)
+{
+    return rc != MT_E_MEMORY && rc != MT_E_INTERNAL;
+}
+
+typedef mt_status (*phase_work)(mt_answer *a, mt_err *err);
+
+static mt_status phase(mt_answer *a, mt_phase which, phase_work work, mt_err *err)
+{
+#define MT_PHASE_READY(id, name, makes_ready) makes_ready,
+    static const bool makes_ready[] = {MT_PHASE_LIST(MT_PHASE_READY)};
+#undef MT_PHASE_READY
+    mt_err own = {.code = MT_OK};
+    if (!is_asked(a, which)) {
+        return MT_OK;
+    }
+    if (is_groundless(a, which)) {
+        mt_interrupt_cut(&a->interrupt, (int)which);
+        return MT_OK;
+    }
+    a->mark = mt_result_get_mark(a->result);
+    mt_interrupt_enter(&a->interrupt, (int)which, makes_ready[which]);
+    const mt_status rc = work(a, &own);
+    const bool cut = mt_interrupt_is_cut(&a->interrupt, (int)which);
+    if (rc != MT_OK && !(cut && is_due_to_cut(rc))) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    if (cut) {
+        mt_result_take_back(a->result, &a->mark);
+    }
+    return MT_OK;
+}
+
+/* What of the proofs is left where they were cut: nothing. */
+static mt_status certify_whole(mt_answer *a, mt_err *err)
+{
+    MT_TRY(phase(a, MT_PHASE_CERTIFICATES, certify, err));
+    if (mt_interrupt_is_cut(&a->interrupt, MT_PHASE_CERTIFICATES)) {
+        a->infeasible = false;
+        a->impossible = false;
+    }
+    return mt_describe_is_doubted(a->result) ? mt_describe_withdraw(a->result, err) : MT_OK;
+}
+
 /* The caller's design as one more start of every search. */
-static mt_status take_hint(answer *a, const double *hint, mt_err *err)
+static mt_status take_hint(mt_answer *a, const double *hint, mt_err *err)
 {
     const mt_problem *const p = a->p;
     double *const t = mt_arena_f64(&a->mem, (size_t)p->n + 1, 1);
@@ -441,24 +277,38 @@ static mt_status take_hint(answer *a, const double *hint, mt_err *err)
     return MT_OK;
 }
 
-static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
+static mt_status fill(mt_answer *a, const mt_solve_options *opt, mt_err *err)
+{
+    mt_problem *const p = a->p;
+    mt_result *const result = a->result;
+    p->progress = opt->progress; /* the first worker's: one line at a time */
+    p->progress_context = opt->progress_context;
+    a->searched = p->n > 0 && (p->n_demands > 0 || p->n_clears > 0);
+    if (opt->hint != NULL) {
+        MT_TRY(take_hint(a, opt->hint, err));
+    }
+    MT_TRY(phase(a, MT_PHASE_SEARCH, search, err));
+    if (mt_interrupt_is_cut(&a->interrupt, MT_PHASE_SEARCH)) {
+        keep_designs_alone(a);
+    }
+    MT_TRY(phase(a, MT_PHASE_RECOMMENDATIONS, describe_solutions, err));
+    MT_TRY(phase(a, MT_PHASE_SPREAD, spread, err));
+    MT_TRY(certify_whole(a, err));
+    MT_TRY(phase(a, MT_PHASE_RELAXATIONS, relax, err));
+    MT_TRY(mt_answer_warn(a, err));
+    result->run.evaluations = a->found.evals;
+    result->run.starts = a->found.starts;
+    MT_TRY(mt_answer_set_status(a, err));
+    MT_TRY(phase(a, MT_PHASE_PUBLISHED, publish, err));
+    return mt_describe_own(a->study, result, err);
+}
+
+/* The original design, without which there is nothing to tell. */
+static mt_status describe_baseline(mt_answer *a, mt_err *err)
 {
     mt_problem *const p = a->p;
     mt_result *const result = a->result;
     const mt_design original = {.t = p->origin_t};
-    double *const x = mt_arena_f64(&a->mem, (size_t)p->n, 1);
-    for (int i = 0; i < a->n_workers; i++) {
-        a->workers[i]->stop = opt->stop;
-    }
-    p->progress = opt->progress; /* the first worker's: one line at a time */
-    p->progress_context = opt->progress_context;
-    a->searched = p->n > 0 && (p->n_demands > 0 || p->n_clears > 0);
-    if (x == NULL) {
-        return mt_fail_memory(err);
-    }
-    if (opt->hint != NULL) {
-        MT_TRY(take_hint(a, opt->hint, err));
-    }
     MT_TRY(mt_describe_run(a->study, result, err));
     MT_TRY(mt_describe_excitations(a->study, result, err));
     result->doubts = mt_doubt_list_default(&result->mem);
@@ -466,37 +316,13 @@ static mt_status fill(answer *a, const mt_solve_options *opt, mt_err *err)
         MT_TRY(mt_study_examine(a->study, HUGE_VAL, &result->doubts, err));
     }
     MT_TRY(mt_describe_design(p, &original, NULL, result, &result->baseline, err));
-    MT_TRY(mt_describe_baseline_reasons(p, result, err));
-    if (a->searched) {
-        MT_TRY(search(a, err));
-        MT_TRY(describe_solutions(a, err));
-        if (a->found.n_solutions > 0 && a->found.stop != MT_STOP_USER &&
-            !mt_study_is_discrete(a->study)) {
-            MT_TRY(mt_describe_spread(p, &a->found.solutions[0], &a->mem, &a->found.evals,
-                                      result, err));
-        }
-    }
-    MT_TRY(certify(a, err));
-    if (mt_describe_is_doubted(result)) {
-        MT_TRY(mt_describe_withdraw(result, err));
-    }
-    MT_TRY(relax(a, err));
-    MT_TRY(warn(a, err));
-    result->run.evaluations = a->found.evals;
-    result->run.starts = a->found.starts;
-    MT_TRY(set_status(a, err));
-    const bool recommended = a->found.n_solutions > 0;
-    if (recommended) {
-        mt_problem_x(p, a->found.solutions[0].t, x);
-    }
-    MT_TRY(mt_describe_published(p, p->original, recommended ? x : NULL, result, err));
-    return mt_describe_own(a->study, result, err);
+    return mt_describe_baseline_reasons(p, result, err);
 }
 
 /* One problem for each worker; references are analysed with the first and only read afterwards. */
-static mt_status open_problems(answer *a, int threads, mt_err *err)
+static mt_status open_problems(mt_answer *a, mt_err *err)
 {
-    const int most = threads < MT_WORKERS_MOST ? threads : MT_WORKERS_MOST;
+    const int most = a->threads < MT_WORKERS_MOST ? a->threads : MT_WORKERS_MOST;
     const int n = a->study->n_variables > 0 && most > 1 ? most : 1;
     a->workers = mt_arena_alloc(&a->mem, (size_t)n, sizeof(mt_problem *));
     if (a->workers == NULL) {
@@ -510,12 +336,55 @@ static mt_status open_problems(answer *a, int threads, mt_err *err)
     return MT_OK;
 }
 
+static mt_status begin(mt_answer *a, mt_err *err)
+{
+    mt_err own = {.code = MT_OK};
+    mt_interrupt_enter(&a->interrupt, MT_PHASE_BASELINE, true);
+    mt_status rc = open_problems(a, &own);
+    rc = rc == MT_OK ? describe_baseline(a, &own) : rc;
+    if (mt_interrupt_is_cut(&a->interrupt, MT_PHASE_BASELINE) && is_due_to_cut(rc)) {
+        return mt_fail(err, MT_E_INTERRUPTED,
+                       "interrupted before the original design was analysed");
+    }
+    return rc == MT_OK ? MT_OK : mt_fail(err, rc, "%s", own.text);
+}
+
+/* The question, asked of a model that knows the interrupt. */
+static mt_status ask(mt_answer *a, const mt_study *study, const mt_solve_options *opt,
+                     mt_err *err)
+{
+    const size_t n = (size_t)study->n_references;
+    mt_interrupt_init(&a->interrupt, opt->stop, opt->stop_context, study->model->interrupt);
+    a->own_model = *study->model;
+    a->own_model.interrupt = &a->interrupt;
+    a->own_study = *study;
+    a->own_study.model = &a->own_model;
+    a->own_study.references = mt_arena_alloc(&a->mem, n, sizeof *study->references);
+    a->study = &a->own_study;
+    if (a->own_study.references == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (size_t i = 0; i < n; i++) {
+        mt_reference *const r = &a->own_study.references[i];
+        *r = study->references[i];
+        r->model = r->model == study->model ? &a->own_model : r->model;
+    }
+    return MT_OK;
+}
+
+static mt_status trade(mt_answer *a, mt_err *err)
+{
+    MT_TRY(mt_trade_solve(a->study, a->threads, a->result, err));
+    mt_answer_qualify_trade(a->result);
+    return MT_OK;
+}
+
 mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_result **out,
                          mt_err *err)
 {
     const mt_solve_options defaults = mt_solve_options_default();
     const mt_solve_options *const use = opt != NULL ? opt : &defaults;
-    answer a = {.study = study};
+    mt_answer a = {.threads = use->threads};
     MT_NOT_NULL(out, err);
     *out = NULL;
     MT_NOT_NULL(study, err);
@@ -526,13 +395,12 @@ mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_
     }
     mt_status rc = mt_arena_init(&a.mem, 0, err);
     rc = rc == MT_OK ? mt_result_new(&a.result, err) : rc;
-    rc = rc == MT_OK ? mt_reference_cache_init(&a.references, study, &a.mem, err) : rc;
-    rc = rc == MT_OK ? open_problems(&a, use->threads, err) : rc;
+    rc = rc == MT_OK ? ask(&a, study, use, err) : rc;
+    rc = rc == MT_OK ? mt_reference_cache_init(&a.references, a.study, &a.mem, err) : rc;
+    rc = rc == MT_OK ? begin(&a, err) : rc;
     rc = rc == MT_OK ? fill(&a, use, err) : rc;
-    if (rc == MT_OK && a.result->status != MT_RESULT_INTERRUPTED) {
-        rc = mt_trade_solve(study, use, a.result, err);
-        qualify_trade(a.result);
-    }
+    rc = rc == MT_OK ? phase(&a, MT_PHASE_TRADE, trade, err) : rc;
+    rc = rc == MT_OK ? mt_answer_note_cuts(&a, err) : rc;
     for (int i = 0; i < a.n_workers; i++) {
         mt_problem_delete(a.workers[i]);
     }

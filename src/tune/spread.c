@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "tune/describe.h"
+#include "tune/discrete.h"
 
 typedef struct spread {
     mt_problem *p;
@@ -95,12 +96,10 @@ static mt_status search_again(spread *s, int goal, double factor, mt_arena *mem,
         return rc;
     }
     if (found.n_solutions == 0 || found.compromise || found.stop != MT_STOP_DONE) {
-        return found.stop == MT_STOP_USER
-                   ? MT_OK
-                   : mt_describe_warn(s->result, err,
-                                      "spread: with the weight of /goals/%d times %g no design "
-                                      "was found; its part is missing",
-                                      goal, factor);
+        return mt_describe_warn(s->result, err,
+                                "spread: with the weight of /goals/%d times %g no design "
+                                "was found; its part is missing",
+                                goal, factor);
     }
     return note(s, found.solutions[0].t, goal, factor, err);
 }
@@ -128,11 +127,17 @@ static mt_status search_all(spread *s, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
+bool mt_describe_has_spread(const mt_problem *p)
+{
+    return MT_HAS(p->study->spread.factor) && p->aims[0].type == MT_OBJECTIVE_MISFIT &&
+           !mt_study_is_discrete(p->study);
+}
+
 mt_status mt_describe_spread(mt_problem *p, const mt_nlp_solution *best, mt_arena *mem,
                              long *evaluations, mt_result *result, mt_err *err)
 {
     spread s = {.p = p, .result = result, .best = best};
-    if (!MT_HAS(p->study->spread.factor) || p->aims[0].type != MT_OBJECTIVE_MISFIT) {
+    if (!mt_describe_has_spread(p)) {
         return MT_OK;
     }
     MT_TRY(start(&s, err));

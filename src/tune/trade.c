@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/interrupt.h"
 #include "base/workers.h"
 #include "tune/discrete.h"
 
@@ -20,7 +21,6 @@ typedef struct point {
 
 typedef struct trade {
     const mt_study *study;
-    const mt_solve_options *opt;
     int n;
     int size[MT_MAX_VARY]; /* values of each quantity; 1 where there is none */
     point *points;
@@ -28,7 +28,7 @@ typedef struct trade {
 
 static bool stopped(const trade *t)
 {
-    return t->opt->stop != NULL && *t->opt->stop != 0;
+    return mt_interrupted(t->study->model->interrupt);
 }
 
 static const mt_recommendation *best_of(const mt_result *r)
@@ -58,15 +58,15 @@ static mt_status answer(const trade *t, int k, const double *hint, mt_result **o
     mt_arena mem;
     mt_study study;
     MT_TRY(mt_arena_init(&mem, 0, err));
-    mt_solve_options opt = {.threads = 1, .stop = t->opt->stop, .hint = hint};
+    const mt_solve_options opt = {.threads = 1, .hint = hint};
     mt_status rc = mt_trade_study(t->study, t->points[k].values, &mem, &study, err);
     rc = rc == MT_OK ? mt_study_solve(&study, &opt, out, err) : rc;
-    if (rc != MT_OK) {
+    if (rc != MT_OK && rc != MT_E_INTERRUPTED) {
         const char *const where = point_text(t, k, &mem);
         rc = mt_err_in(err, rc, "/trade: %s", where == NULL ? "?" : where);
     }
     mt_arena_free(&mem);
-    return rc;
+    return rc == MT_E_INTERRUPTED ? MT_OK : rc; /* the interrupt knows */
 }
 
 static mt_status solve_cold(void *context, int worker, int k, mt_err *err)
@@ -77,7 +77,8 @@ static mt_status solve_cold(void *context, int worker, int k, mt_err *err)
         return MT_OK;
     }
     MT_TRY(answer(t, k, NULL, &t->points[k].first, err));
-    t->points[k].evaluations = t->points[k].first->run.evaluations;
+    const mt_result *const first = t->points[k].first;
+    t->points[k].evaluations = first != NULL ? first->run.evaluations : 0;
     return MT_OK;
 }
 
@@ -144,7 +145,7 @@ static mt_status try_neighbours(const trade *t, int k, const mt_study *study, mt
             continue;
         }
         MT_TRY(values_of(near, mem, &x, err));
-        MT_TRY(mt_trade_improves(study, t->opt->stop, x, best_x, &gain, &p->evaluations, err));
+        MT_TRY(mt_trade_improves(study, x, best_x, &gain, &p->evaluations, err));
         if (!gain) {
             continue;
         }
@@ -333,17 +334,13 @@ static mt_status describe(const trade *t, mt_result *result, mt_err *err)
         result->run.evaluations += t->points[k].evaluations;
     }
     mark_front(t, out);
-    if (stopped(t)) {
-        result->status = MT_RESULT_INTERRUPTED;
-    }
     result->trade = out;
     return MT_OK;
 }
 
-mt_status mt_trade_solve(const mt_study *study, const mt_solve_options *opt, mt_result *result,
-                         mt_err *err)
+mt_status mt_trade_solve(const mt_study *study, int threads, mt_result *result, mt_err *err)
 {
-    trade t = {.study = study, .opt = opt};
+    trade t = {.study = study};
     mt_arena mem;
     if (study->trade.n_vary == 0) {
         return MT_OK;
@@ -352,8 +349,8 @@ mt_status mt_trade_solve(const mt_study *study, const mt_solve_options *opt, mt_
     mt_status rc = begin(&t, &mem, err);
     /* a combination of catalogue values is reached from any start: no second pass */
     const bool warm = study->n_objectives > 0 && !mt_study_is_discrete(study);
-    rc = rc == MT_OK ? mt_workers_run(opt->threads, t.n, solve_cold, &t, err) : rc;
-    rc = rc == MT_OK && warm ? mt_workers_run(opt->threads, t.n, solve_warm, &t, err) : rc;
+    rc = rc == MT_OK ? mt_workers_run(threads, t.n, solve_cold, &t, err) : rc;
+    rc = rc == MT_OK && warm ? mt_workers_run(threads, t.n, solve_warm, &t, err) : rc;
     rc = rc == MT_OK ? describe(&t, result, err) : rc;
     for (int k = 0; k < t.n && t.points != NULL; k++) {
         mt_result_delete(t.points[k].first);

@@ -63,8 +63,8 @@ static mt_status open_gap(warm *w, const double *t, mt_err *err)
     return mt_problem_new_in_gap(w->study, &w->references, below, &w->in_gap, err);
 }
 
-static mt_status compare(warm *w, const volatile int *stop, const double *x,
-                         const double *best_x, bool *better, long *evaluations, mt_err *err)
+static mt_status compare(warm *w, const double *x, const double *best_x, bool *better,
+                         long *evaluations, mt_err *err)
 {
     double *const t = mt_arena_f64(&w->mem, (size_t)w->p->n + 1, 1);
     double *const best_t = mt_arena_f64(&w->mem, (size_t)w->p->n + 1, 1);
@@ -74,7 +74,6 @@ static mt_status compare(warm *w, const volatile int *stop, const double *x,
     if (t == NULL || best_t == NULL) {
         return mt_fail_memory(err);
     }
-    w->p->stop = stop;
     to_t(w->p, x, t);
     if (best_x != NULL) {
         to_t(w->p, best_x, best_t);
@@ -82,7 +81,6 @@ static mt_status compare(warm *w, const volatile int *stop, const double *x,
     }
     if (w->p->n_clears > 0) {
         MT_TRY(open_gap(w, t, err));
-        w->in_gap->stop = stop;
     }
     mt_nlp nlp = mt_problem_nlp(w->in_gap != NULL ? w->in_gap : w->p);
     nlp.origin = t; /* its last entry, where there is a clearance, is 0: on the edges */
@@ -97,8 +95,8 @@ static mt_status compare(warm *w, const volatile int *stop, const double *x,
     return MT_OK;
 }
 
-mt_status mt_trade_improves(const mt_study *study, const volatile int *stop, const double *x,
-                            const double *best_x, bool *better, long *evaluations, mt_err *err)
+mt_status mt_trade_improves(const mt_study *study, const double *x, const double *best_x,
+                            bool *better, long *evaluations, mt_err *err)
 {
     warm w = {.study = study};
     mt_err why = {0};
@@ -106,7 +104,7 @@ mt_status mt_trade_improves(const mt_study *study, const volatile int *stop, con
     mt_status rc = mt_arena_init(&w.mem, 0, &why);
     rc = rc == MT_OK ? mt_reference_cache_init(&w.references, study, &w.mem, &why) : rc;
     rc = rc == MT_OK ? mt_problem_new(study, &w.references, &w.p, &why) : rc;
-    rc = rc == MT_OK ? compare(&w, stop, x, best_x, better, evaluations, &why) : rc;
+    rc = rc == MT_OK ? compare(&w, x, best_x, better, evaluations, &why) : rc;
     mt_problem_delete(w.in_gap);
     mt_problem_delete(w.p);
     mt_reference_cache_free(&w.references);

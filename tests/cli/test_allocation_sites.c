@@ -162,7 +162,7 @@ static void begin(void *context)
         mt_alloc_fail_only(r.k);
     }
     mt_sites_ask(mt_alloc_refuses);
-    mt_terminal_catch_signals();
+    mt_terminal_ignore_signals();
     mt_tune_prepare_process();
     mt_blas_set_threads(1);
 }

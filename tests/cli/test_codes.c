@@ -80,7 +80,6 @@ static const struct {
     {                                           "compare %/ghost_study.json",   MT_EXIT_NUMERICAL, AS_IT_IS},
     {                                    "compare studies/beam_table_3.json",      MT_EXIT_SYSTEM,    SHORT},
     {                                    "compare studies/beam_table_3.json",      MT_EXIT_SYSTEM,     FULL},
-    {                              "compare studies/inceptor_catalogue.json", MT_EXIT_INTERRUPTED,  STOPPED},
 
     {                                            "modes " MODELS "ring.json",        MT_EXIT_DONE, AS_IT_IS},
     {                                 "modes -c nowhere " MODELS "ring.json",       MT_EXIT_INPUT, AS_IT_IS},
@@ -138,7 +137,7 @@ static const struct {
     bool can[MT_COUNT(CODES)];
 } able[MT_CMD_IDS] = {
     [MT_CMD_RUN] = {        "run",    {true, true, true, true, true, true}},
-    [MT_CMD_COMPARE] = {    "compare",    {true, true, true, true, true, true}},
+    [MT_CMD_COMPARE] = {    "compare",   {true, true, true, true, true, false}},
     [MT_CMD_MODES] = {      "modes",  {true, false, true, true, true, false}},
     [MT_CMD_MAC] = {        "mac",  {true, false, true, true, true, false}},
     [MT_CMD_SWEEP] = {      "sweep",  {true, false, true, true, true, false}},
@@ -151,10 +150,11 @@ static const struct {
 static void begin(void *context)
 {
     const how way = *(const how *)context;
-    mt_terminal_catch_signals();
+    mt_terminal_ignore_signals();
     mt_tune_prepare_process();
     mt_blas_set_threads(1);
     if (way == STOPPED) {
+        mt_terminal_hold_signals();
         (void)raise(SIGINT);
     } else if (way == SHORT) {
         mt_alloc_fail_after(2); /* the arguments are read */

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""run, compare and apply: files, exit status, interruption, and what happens when nothing can be written."""
+"""run, compare and apply: files, exit status, and what happens when nothing can be written."""
 import csv
 import json
 import math
 import os
 import pty
 import re
-import signal
 import subprocess
-import time
 
 from common_cli import MODEL, PROGRAM, CliTest, main, study
 
@@ -220,43 +218,6 @@ class Output(CliTest):
         self.assertNotIn(b"\033", self.on_terminal(TERM="dumb"))
         self.assertNotIn("\033", self.expect(2, "check", "bad.json", env={"TERM": "xterm"}).stderr)
 
-
-class Interrupt(CliTest):
-    def interrupted_after(self, path, seconds):
-        with subprocess.Popen([PROGRAM, "run", path], cwd=self.folder, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, encoding="utf-8") as running:
-            time.sleep(seconds)
-            self.assertIsNone(running.poll(), "the study is too short for this test")
-            running.send_signal(signal.SIGINT)
-            stdout, stderr = running.communicate(timeout=300)
-        self.assertEqual(running.returncode, 130, stderr)
-        self.assertIn("Interrupted", stdout)
-        result = json.loads((self.folder / "results/long/result.json").read_text(encoding="utf-8"))
-        self.assertEqual(result["status"], "interrupted")
-        return result
-
-    def test_the_best_so_far_is_written_and_130(self):
-        self.write("problems/beam.json", BEAM)
-        path = self.write("studies/long.json", LONG)
-        found = 0
-        for seconds in (1.0, 4.0, 20.0):  # how long the first of many searches takes is up to the machine
-            found = found or len(self.interrupted_after(path, seconds)["recommendations"])
-            if found:
-                break
-        self.assertGreaterEqual(found, 1)
-
-
-# A search far longer than any test waits: a long beam and many starts.
-BEAM = """{ "format": "modetune-model/1", "dimension": 2, "parameters": { "E": 1e9, "m": 1 },
-  "points": { "a": [0, 0], "b": [1, 0] },
-  "links": [ { "name": "beam", "kind": "beam", "from": "a", "to": "b", "elements": 40, "youngs_modulus_pa": "E",
-               "density_kg_per_m3": "m/1e-4", "section": { "shape": "rectangle", "width_m": 0.01, "height_m": 0.01 } } ] }
-"""
-LONG = """{ "format": "modetune-study/1", "model": "../problems/beam.json",
-  "variables": [ { "parameter": "E", "lower": 1e8, "upper": 1e10 }, { "parameter": "m", "lower": 0.1, "upper": 10 } ],
-  "goals": [ { "type": "frequency", "mode": 1, "target_hz": 5 } ],
-  "search": { "starts": 100000, "max_evaluations": 1000000000 } }
-"""
 
 if __name__ == "__main__":
     main()

@@ -28,6 +28,12 @@ enum {
 
 static volatile sig_atomic_t stop;
 
+static int wish(void *unused)
+{
+    (void)unused;
+    return stop != 0 ? MT_WISH_FINISH : MT_WISH_NONE;
+}
+
 static void tell_to_stop(int signal_number)
 {
     (void)signal_number;
@@ -154,7 +160,7 @@ static void answer(mt_study *study, const uint8_t *data, size_t size)
     mt_result *result = NULL;
     mt_err err = {.code = MT_OK};
     mt_solve_options opt = mt_solve_options_default();
-    opt.stop = &stop;
+    opt.stop = wish;
     opt.progress = hear_progress;
     study->search.starts = 1;
     study->search.max_evaluations = EVALUATIONS;

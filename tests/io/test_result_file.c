@@ -34,6 +34,7 @@ static const char *REASONS[] = {"K_T1 rises by 1.5 %."};
 static const char *VARIABLES[] = {"K_T1", "M_SAU"};
 static double DIRECTION[] = {0.0, 1.0};
 static const char *INPUT_NAMES[] = {"study.json"};
+static const char *INCOMPLETE[] = {"trade"};
 static const char *OUTPUT_NAMES[] = {"report.html"};
 static const char *INPUT_DIGESTS[] = {
     "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"};
@@ -220,7 +221,9 @@ static bool make_sample(sample *s)
                              INPUT_DIGESTS,
                              1,
                              OUTPUT_NAMES,
-                             INPUT_DIGESTS};
+                             INPUT_DIGESTS,
+                             1,
+                             INCOMPLETE};
     return true;
 }
 

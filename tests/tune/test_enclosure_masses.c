@@ -170,6 +170,12 @@ static void enclosure__six_masses_within_five_percent_are_infeasible(mt_test *t)
     end(&r);
 }
 
+static int at_once(void *context)
+{
+    (void)context;
+    return MT_WISH_FINISH;
+}
+
 static void enclosure__a_spent_budget_says_what_is_open(mt_test *t)
 {
     rig r;
@@ -182,9 +188,10 @@ static void enclosure__a_spent_budget_says_what_is_open(mt_test *t)
         CHECK(t, !out.proven);
         CHECK(t, out.n_open > 0);
         CHECK(t, out.boxes < 400); /* what is on the stack is still looked at */
-        volatile int stop = 1;
+        mt_interrupt interrupt;
+        mt_interrupt_init(&interrupt, at_once, NULL, NULL);
         r.c.max_boxes = 0;
-        r.c.stop = &stop;
+        r.c.interrupt = &interrupt;
         CHECK(t, mt_certify_assignments(&r.c, 0, NULL, &r.mem, &out, &err) == MT_OK);
         CHECK(t, !out.proven && out.stopped);
         CHECK(t, out.boxes == 1);

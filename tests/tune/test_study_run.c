@@ -73,15 +73,20 @@ static void spent_budget__ends_the_list_of_objectives(mt_test *t)
 }
 
 typedef struct interruption {
-    volatile int stop;
+    int wish;
     int calls;
 } interruption;
+
+static int wish_of(void *context)
+{
+    return ((interruption *)context)->wish;
+}
 
 static void interrupt(void *context, const char *text)
 {
     interruption *const i = context;
     i->calls++;
-    i->stop = text[0] != '\0';
+    i->wish = text[0] != '\0' ? MT_WISH_FINISH : MT_WISH_NONE;
 }
 
 /* The progress line comes in the middle of the search, and stops it there. */
@@ -91,7 +96,8 @@ static void interruption__keeps_what_was_found(mt_test *t)
     interruption i = {0, 0};
     if (study_load(t, MODEL, SPRINGS TARGETS ", 'search': {'starts': 300}", &c)) {
         mt_solve_options opt = mt_solve_options_default();
-        opt.stop = &i.stop;
+        opt.stop = wish_of;
+        opt.stop_context = &i;
         opt.progress = interrupt;
         opt.progress_context = &i;
         if (CHECK_INT(t, mt_study_solve(c.study, &opt, &c.result, NULL), MT_OK)) {
@@ -108,15 +114,21 @@ static void interruption__keeps_what_was_found(mt_test *t)
 static void stop_before_the_first_design__is_an_answer_too(mt_test *t)
 {
     study_case c;
-    const volatile int stop = 1;
+    interruption i = {MT_WISH_FINISH, 0};
+    mt_err err = {.text = ""};
     if (study_load(t, MODEL, SPRINGS TARGETS, &c)) {
         mt_solve_options opt = mt_solve_options_default();
-        opt.stop = &stop;
+        opt.stop = wish_of;
+        opt.stop_context = &i;
         if (CHECK_INT(t, mt_study_solve(c.study, &opt, &c.result, NULL), MT_OK)) {
             CHECK_INT(t, c.result->status, MT_RESULT_INTERRUPTED);
             CHECK_INT(t, c.result->n_recommendations, 0);
             CHECK_NEAR(t, study_value(&c, 0, "k1"), 2.9, 0.0); /* the baseline is there */
         }
+        mt_result *none = NULL;
+        i.wish = MT_WISH_END; /* and where it is not, there is no answer */
+        CHECK_INT(t, mt_study_solve(c.study, &opt, &none, &err), MT_E_INTERRUPTED);
+        CHECK(t, none == NULL && strstr(err.text, "before the original design") != NULL);
     }
     study_free(&c);
 }

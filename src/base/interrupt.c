@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/interrupt.h"
+
+void mt_interrupt_init(mt_interrupt *i, int (*wish)(void *context), void *context,
+                       mt_interrupt *whole)
+{
+    i->wish = wish;
+    i->context = context;
+    i->whole = whole;
+    i->phase = 0;
+    i->makes_ready = false;
+    atomic_init(&i->level, MT_WISH_NONE);
+    atomic_init(&i->cut, 0U);
+}
+
+void mt_interrupt_enter(mt_interrupt *i, int phase, bool makes_ready)
+{
+    i->phase = phase;
+    i->makes_ready = makes_ready;
+}
+
+static void raise_level(mt_interrupt *i, int to)
+{
+    int had = atomic_load(&i->level);
+    while (had < to && !atomic_compare_exchange_weak(&i->level, &had, to)) {
+    }
+}
+
+/* The strongest wish so far: asked anew until there can be no stronger one. */
+static int level_of(mt_interrupt *i)
+{
+    if (i->wish != NULL && atomic_load(&i->level) < MT_WISH_END) {
+        raise_level(i, i->wish(i->context));
+    }
+    return atomic_load(&i->level);
+}
+
+/* Parts have no wish of their own: that of the outermost work counts for all. */
+static int wish_for(mt_interrupt *i)
+{
+    mt_interrupt *whole = i;
+    while (whole->whole != NULL) {
+        whole = whole->whole;
+    }
+    return level_of(whole);
+}
+
+bool mt_interrupted(mt_interrupt *i)
+{
+    if (i == NULL || wish_for(i) < (i->makes_ready ? MT_WISH_END : MT_WISH_FINISH)) {
+        return false;
+    }
+    mt_interrupt_cut(i, i->phase);
+    return true;
+}
+
+mt_status mt_interrupt_check(mt_interrupt *i, mt_err *err)
+{
+    return mt_interrupted(i) ? mt_fail(err, MT_E_INTERRUPTED, "interrupted") : MT_OK;
+}
+
+void mt_interrupt_cut(mt_interrupt *i, int phase)
+{
+    (void)atomic_fetch_or(&i->cut, 1U << (unsigned)phase);
+    if (i->whole != NULL) {
+        mt_interrupt_cut(i->whole, i->whole->phase);
+    }
+}
+
+bool mt_interrupt_is_cut(const mt_interrupt *i, int phase)
+{
+    return (atomic_load(&i->cut) & (1U << (unsigned)phase)) != 0U;
+}
+
+bool mt_interrupt_any(const mt_interrupt *i)
+{
+    return atomic_load(&i->cut) != 0U;
+}

@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""SIGINT and SIGTERM: run ends with the best so far, every other command ends by the signal. Signals are sent when the program is seen to be at work, never after a time."""
+import json
+import os
+import pty
+import signal
+import subprocess
+import unittest
+from pathlib import Path
+
+from common_cli import PROGRAM, CliTest, main
+
+# A beam whose modes take the longer the more elements it has, and a search among them that no test waits for.
+BEAM = """{ "format": "modetune-model/1", "dimension": 2, "parameters": { "E": 1e9, "m": 1 },
+  "points": { "a": [0, 0], "b": [1, 0] },
+  "links": [ { "name": "beam", "kind": "beam", "from": "a", "to": "b", "elements": %d, "youngs_modulus_pa": "E",
+               "density_kg_per_m3": "m/1e-4", "section": { "shape": "rectangle", "width_m": 0.01, "height_m": 0.01 } } ] }
+"""
+LONG = """{ "format": "modetune-study/1", "model": "../problems/beam.json",
+  "variables": [ { "parameter": "E", "lower": 1e8, "upper": 1e10 }, { "parameter": "m", "lower": 0.1, "upper": 10 } ],
+  "goals": [ { "type": "frequency", "mode": 1, "target_hz": 5 } ],
+  "search": { "starts": 5000, "max_evaluations": 1000000000 } }
+"""
+# A driven arm, for a sweep of as many positions as a test likes.
+ARM = """{ "format": "modetune-model/1", "dimension": 2,
+  "bodies": [ { "name": "arm", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [1, 0] } ],
+  "joints": [ { "name": "hinge", "type": "revolute", "bodies": ["ground", "arm"], "at": [0, 0] } ] }
+"""
+ENDS = (-signal.SIGINT, -signal.SIGTERM)
+# A file with so many blanks behind it is more than all that a program reads to be loaded.
+BLANKS = " " * (1 << 17)
+
+
+def at_default():
+    """A test in the background of a shell has SIGINT ignored, and would hand that on."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def ignoring():
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+class Running:
+    """A run of the program whose standard error is a terminal, where it tells how far it is."""
+
+    def __init__(self, folder, *args, before=at_default):
+        self.master, slave = pty.openpty()
+        self.process = subprocess.Popen([PROGRAM, *args], cwd=folder, stdout=subprocess.PIPE, stderr=slave,
+                                        encoding="utf-8", preexec_fn=before)
+        os.close(slave)
+        self.said = ""
+
+    def read(self):
+        try:
+            more = os.read(self.master, 4096).decode("utf-8", "replace")
+        except OSError:  # the other end is closed
+            more = ""
+        self.said += more
+        return more
+
+    def wait_for(self, text):
+        """Until it is said once more than so far; False where the program ends before."""
+        count = self.said.count(text)
+        while self.said.count(text) == count:
+            if not self.read():
+                return False
+        return True
+
+    def send(self, *numbers):
+        for number in numbers:
+            self.process.send_signal(number)
+
+    def end(self):
+        """Status and standard output, all that is said read meanwhile."""
+        while self.read():
+            pass
+        out, _ = self.process.communicate(timeout=300)
+        os.close(self.master)
+        return self.process.returncode, out
+
+
+class Run(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("problems/beam.json", BEAM % 2)
+        self.long = self.write("studies/long.json", LONG)
+        self.other = self.write("studies/other.json", LONG)
+
+    def result(self, name="long"):
+        return json.loads((self.folder / f"results/{name}/result.json").read_text(encoding="utf-8"))
+
+    def at_work(self, *args, **options):
+        running = Running(self.folder, "run", *args, **options)
+        self.assertTrue(running.wait_for("searching: more than 6000 "), running.said)  # the starts, and searches from some
+        return running
+
+    def test_the_best_so_far_is_written_and_130(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(number):
+                running = self.at_work(self.long)
+                running.send(number)
+                code, out = running.end()
+                self.assertEqual(code, 130, running.said)
+                self.assertIn("Interrupted (not complete: search, certificates and relaxations)", out)
+                result = self.result()
+                self.assertEqual(result["status"], "interrupted")
+                self.assertEqual(result["run"]["incomplete"], ["search", "certificates", "relaxations"])
+                self.assertEqual((result["certificates"], result["undetermined"]), ([], []))
+                self.assertGreaterEqual(len(result["recommendations"]), 1)
+                best = result["recommendations"][0]
+                self.assertTrue(best["feasible"])
+                self.assertAlmostEqual(best["frequencies"][0]["recommended_hz"], 5, delta=1e-4)
+                self.assertIn("The search was interrupted: better designs may exist.", best["reasons"])
+
+    def test_what_was_not_begun_is_said(self):
+        running = self.at_work(self.long, self.other, "--format", "json")
+        running.send(signal.SIGINT)
+        code, out = running.end()
+        self.assertEqual(code, 130)
+        self.assertIn("interrupted; not answered: studies/other.json\r\n", running.said)
+        self.assertEqual([r["status"] for r in json.loads(out)], ["interrupted"])
+        self.assertEqual(sorted(p.name for p in (self.folder / "results").iterdir()), ["long"])
+
+    def test_what_cannot_be_written_is_4(self):
+        running = self.at_work(self.long, "-o", self.write("taken", ""))
+        running.send(signal.SIGINT)
+        code, _ = running.end()
+        self.assertEqual(code, 4, running.said)
+
+    def test_the_second_signal_ends_the_program(self):
+        running = self.at_work(self.long)
+        running.send(signal.SIGSTOP, signal.SIGINT, signal.SIGTERM, signal.SIGCONT)  # both are due when it goes on
+        code, out = running.end()
+        self.assertIn(code, ENDS, running.said)
+        self.assertEqual(out, "")
+        self.assertFalse((self.folder / "results").exists())
+
+    def test_what_the_caller_ignores_is_ignored(self):
+        running = self.at_work(self.long, before=ignoring)
+        running.send(signal.SIGINT)
+        for _ in range(3):
+            self.assertTrue(running.wait_for("searching: more than"), running.said)
+        running.send(signal.SIGTERM)
+        self.assertEqual(running.end()[0], 130)
+
+
+@unittest.skipUnless(Path("/proc/self/io").exists() and "MT_TEST_LAUNCHED" not in os.environ,
+                     "what a program has read is told by Linux alone, and of itself only")
+class Commands(CliTest):
+    """The program has read its files and is at work on them."""
+
+    def ended(self, due, number, *args):
+        """Send the signal when so many bytes have been read; the exit status."""
+        before = sorted(p for p in self.folder.rglob("*"))
+        with subprocess.Popen([PROGRAM, *args], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              encoding="utf-8", preexec_fn=at_default) as process:
+            read = 0
+            while process.poll() is None and read < due:
+                try:
+                    read = int(Path(f"/proc/{process.pid}/io").read_text(encoding="ascii").split("rchar: ")[1].split()[0])
+                except (OSError, IndexError):  # it has just ended
+                    break
+            process.send_signal(number)
+            _, self.said = process.communicate(timeout=300)
+        self.assertEqual(sorted(p for p in self.folder.rglob("*")), before)  # nothing is left behind
+        return process.returncode
+
+    def expect_end(self, files, *args):
+        """Each signal ends the command, once it is given enough to do: the size of its work doubles while it is done before the signal comes."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            code = 0
+            for size in (50, 100, 200, 400):
+                self.write("problems/beam.json", BEAM % size + BLANKS)
+                self.write("studies/long.json", LONG + BLANKS)
+                self.write("arm.json", ARM + BLANKS)
+                due = sum((self.folder / name).stat().st_size for name in files)
+                code = self.ended(due, number, *[a.replace("STEPS", str(50 * size)) for a in args])
+                if code != 0:
+                    break
+            self.assertEqual(code, -number, (args, self.said))
+
+    def test_each_ends_by_the_signal(self):
+        beam = "problems/beam.json"
+        for files, args in (([beam], ["modes", beam]), ([beam], ["sensitivity", beam]), ([beam], ["check", beam]),
+                            ([beam], ["info", beam]), ([beam], ["mac", f"{beam}:default", f"{beam}:default"]),
+                            (["arm.json"], ["sweep", "arm.json", "--drive", "hinge=0:1:STEPS"]),
+                            ([beam, "studies/long.json"], ["compare", "studies/long.json"])):
+            with self.subTest(args[0]):
+                self.expect_end(files, *args)
+
+    def test_a_run_that_reads_ends_by_the_signal_and_says_what_it_leaves(self):
+        self.write("problems/beam.json", BEAM % 2)
+        for size in (1 << 20, 1 << 22, 1 << 24):  # blanks take time to read; no study comes of them
+            self.write("studies/wide.json", " " * size)
+            self.write("studies/long.json", LONG)
+            code = self.ended(len(BLANKS), signal.SIGINT, "run", "studies/wide.json", "studies/long.json")
+            if code == -signal.SIGINT:
+                break
+        self.assertEqual((code, self.said), (-signal.SIGINT,
+                                             "modetune: error: interrupted; not answered: studies/wide.json studies/long.json\n"))
+
+
+if __name__ == "__main__":
+    main()
