@@ -14,6 +14,8 @@
  * it was given in: what was cut is known without anybody handing it up, whatever the functions in between make of a unit that is missing. And where no answer was yes, nothing is missing. Once yes, it stays so.
  */
 enum { MT_INTERRUPT_PHASES = 16 };
+/* From matrices of this order on, one of the steps that a decomposition of ours consists of is a unit of work; smaller ones are done before anybody waits. */
+enum { MT_INTERRUPT_ORDER = 128 };
 
 typedef struct mt_interrupt {
     int (*wish)(void *context); /* an mt_wish; called by all workers; NULL: none ever */

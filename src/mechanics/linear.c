@@ -169,6 +169,12 @@ static void add_term(const mt_linear *lin, int kind, const mt_term *t, double c,
     }
 }
 
+/* Is what is summed to be left as it is? Who sums asks again. */
+static bool is_left(const mt_linear *lin)
+{
+    return lin->n >= MT_INTERRUPT_ORDER && mt_interrupted(lin->sys->model->interrupt);
+}
+
 /* out (n x n) += sum of the terms' contributions, lower triangle; which: 0 terms without inputs, 1 terms with, 2 all. Springs with couplings that depend on no input are added as a whole (add_couplings). */
 static void add_terms(const mt_linear *lin, int kind, int which, double *out)
 {
@@ -177,6 +183,9 @@ static void add_terms(const mt_linear *lin, int kind, int which, double *out)
         const mt_term *const t = &list->terms[i];
         const double c = lin->value[t->coefficient];
         const bool apart = kind == MT_TERM_STIFFNESS && lin->coupling[i] == MT_COUPLING_WHOLE;
+        if (is_left(lin)) {
+            return;
+        }
         if ((which == 2 || t->varies == (which == 1)) && c != 0.0 && !apart) {
             add_term(lin, kind, t, c, out);
         }
@@ -307,8 +316,11 @@ static mt_status rebuild(mt_linear *lin, mt_err *err)
     if (lin->sys->driven) { /* not from a dead centre: which way led on would be open */
         mt_drive_keep(&lin->position, &lin->last);
     }
+    MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
     MT_TRY(evaluate_rows(lin, err));
+    MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
     MT_TRY(fixed_parts(lin, err));
+    MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
     lin->geometry_version++;
     lin->built = true;
     return MT_OK;
@@ -344,6 +356,10 @@ mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradi
         MT_TRY(rebuild(lin, err));
     }
     assemble(lin, !kept);
+    if (is_left(lin)) {
+        lin->built = false;
+        return mt_fail(err, MT_E_INTERRUPTED, "interrupted");
+    }
     lin->with_gradient = with_gradient;
     const bool still = !lin->position.equilibrium.active || lin->unstressed;
     if (with_gradient && !(sys->geometry_fixed && still)) {

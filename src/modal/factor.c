@@ -35,6 +35,7 @@ typedef struct graded {
     double *f;   /* rows x rank: D P R^T */
     double *s;   /* [rank] descending */
     double *v;   /* rank x rank */
+    mt_interrupt *interrupt;
 } graded;
 
 /* ct := (T or L^-1) B^T, all rows of B. */
@@ -195,9 +196,11 @@ static mt_status singular_values(graded *g, mt_arena *scratch, mt_err *err)
                        .d = g->d,
                        .ct = g->ct,
                        .place = g->place,
-                       .w = g->f};
+                       .w = g->f,
+                       .interrupt = g->interrupt};
         MT_TRY(mt_modal_graded(&e, scratch, err));
         g->qr = e.q;
+        MT_TRY(mt_interrupt_check(g->interrupt, err));
         return mt_svd_jacobi(r, r, g->f, g->s, g->v, scratch, err);
     }
     for (int j = 0; j < g->rows; j++) {
@@ -240,9 +243,12 @@ static mt_status vectors(const graded *g, const mt_mass_factor *mass, mt_arena *
 mt_status mt_modal_by_factor(const mt_stiffness_factor *factor, const mt_mass_factor *mass,
                              mt_arena *scratch, mt_modes *out, int *null_count, mt_err *err)
 {
-    graded g = {.n = mass->n};
+    graded g = {.n = mass->n, .interrupt = factor->interrupt};
+    MT_TRY(mt_interrupt_check(g.interrupt, err));
     MT_TRY(prepare(factor, mass, &g, scratch, err));
+    MT_TRY(mt_interrupt_check(g.interrupt, err));
     MT_TRY(singular_values(&g, scratch, err));
+    MT_TRY(mt_interrupt_check(g.interrupt, err));
     const int r = g.qr.rank;
     *null_count = g.n - r;
     for (int i = 0; i < g.n; i++) {

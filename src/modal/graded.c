@@ -39,10 +39,17 @@ static void swap_places(int a, int b, int *place)
     place[b] = kept;
 }
 
-/* x (n x columns) := L below the diagonal, U above it, for `rank` steps. */
-static void eliminate(int n, int columns, int rank, double *x, int *row, int *column)
+/* x (n x columns) := L below the diagonal, U above it, for `rank` steps; fewer where the work is interrupted. */
+static void eliminate(const mt_graded *g, int *column)
 {
-    for (ptrdiff_t k = 0; k < rank; k++) {
+    const int n = g->n;
+    const int columns = g->rows;
+    double *const x = g->ct;
+    int *const row = g->place;
+    for (ptrdiff_t k = 0; k < g->rank; k++) {
+        if (n >= MT_INTERRUPT_ORDER && mt_interrupted(g->interrupt)) {
+            return;
+        }
         ptrdiff_t at = k + k * n;
         for (ptrdiff_t j = k; j < columns; j++) {
             for (ptrdiff_t i = k; i < n; i++) {
@@ -115,7 +122,8 @@ mt_status mt_modal_graded(mt_graded *g, mt_arena *mem, mt_err *err)
     for (int j = 0; j < rows; j++) {
         column[j] = j;
     }
-    eliminate(g->n, g->rows, g->rank, g->ct, g->place, column);
+    eliminate(g, column);
+    MT_TRY(mt_interrupt_check(g->interrupt, err));
     for (ptrdiff_t k = 0; k < g->rank; k++) {
         l[k + k * n] = 1.0;
         for (ptrdiff_t i = k + 1; i < n; i++) {

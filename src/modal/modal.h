@@ -5,6 +5,7 @@
 #include <stdbool.h>
 
 #include "base/arena.h"
+#include "base/interrupt.h"
 
 /*
  * Undamped natural modes of the reduced system
@@ -73,7 +74,8 @@ typedef struct mt_stiffness_factor {
     const double
         *noise; /* rows x n: bounds of the entries' errors, for rows that are small differences
                    of large terms; NULL: roundings of the entries themselves */
-    const double *g; /* n x n symmetric, lower read; NULL: none */
+    const double *g;         /* n x n symmetric, lower read; NULL: none */
+    mt_interrupt *interrupt; /* NULL, or asked between the steps: then MT_E_INTERRUPTED */
 } mt_stiffness_factor;
 
 typedef struct mt_modal_options {

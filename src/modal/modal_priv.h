@@ -48,6 +48,7 @@ typedef struct mt_graded {
     int *place; /* [n] in: coordinate in each row of ct; out: see above */
     mt_qr q;    /* out */
     double *w;  /* out: rank x rank, zero on entry */
+    mt_interrupt *interrupt;
 } mt_graded;
 mt_status mt_modal_graded(mt_graded *g, mt_arena *mem, mt_err *err);
 /* Y := T1 Q: from the coordinates in which M is the identity back to the caller's. q, y n x n,

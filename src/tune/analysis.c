@@ -131,7 +131,8 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
                                         .b = lin->factor_b,
                                         .c = lin->factor_c,
                                         .noise = lin->factor_noise,
-                                        .g = lin->has_factor_g ? lin->factor_g : NULL};
+                                        .g = lin->has_factor_g ? lin->factor_g : NULL,
+                                        .interrupt = a->sys->model->interrupt};
     mt_modal_options options = mt_modal_options_default();
     options.n_rigid = a->n_rigid;
     /* where K is no sum of squares, shapes say what rounding leaves of its sign */

@@ -45,8 +45,11 @@ mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     double *const k = mt_arena_f64(scratch, (size_t)order, (size_t)order);
     double *const c = mt_arena_f64(scratch, (size_t)list->n_rows, 1);
-    const mt_stiffness_factor factor = {
-        .rows = list->n_rows, .b = lin->factor_b, .c = c, .noise = lin->factor_noise};
+    const mt_stiffness_factor factor = {.rows = list->n_rows,
+                                        .b = lin->factor_b,
+                                        .c = c,
+                                        .noise = lin->factor_noise,
+                                        .interrupt = lin->sys->model->interrupt};
     mt_modal_options opt = mt_modal_options_default();
     mt_modes modes;
     bool squares = lin->kg == NULL;

@@ -62,6 +62,32 @@ static mt_status describe_solutions(mt_answer *a, mt_err *err)
     return MT_OK;
 }
 
+/* The values of designs that there was no time to analyse anew: hours of search may be in them. */
+static mt_status tell_undescribed(const mt_answer *a, mt_err *err)
+{
+    mt_arena *const mem = &a->result->mem;
+    const mt_problem *const p = a->p;
+    double *const x = mt_arena_f64(mem, (size_t)p->n, 1);
+    if (x == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = a->result->n_recommendations;
+         i < a->found.n_solutions && i < a->study->recommendations; i++) {
+        const char *text = "";
+        mt_problem_x(p, a->found.solutions[i].t, x);
+        for (int k = 0; k < p->n && text != NULL; k++) {
+            text = mt_arena_printf(mem, "%s%s%s = %.17g", text, k > 0 ? ", " : "",
+                                   p->study->variables[k].parameter_name.s, x[k]);
+        }
+        MT_TRY(text == NULL ? mt_fail_memory(err)
+                            : mt_describe_warn(a->result, err,
+                                               "interrupted before design %d of the search was "
+                                               "analysed anew, nothing is verified of it: %s",
+                                               i + 1, text));
+    }
+    return MT_OK;
+}
+
 /* The search over gap assignments, its solutions in the form of any other search. */
 static mt_status search_gaps(mt_answer *a, mt_err *err)
 {
@@ -292,6 +318,9 @@ static mt_status fill(mt_answer *a, const mt_solve_options *opt, mt_err *err)
         keep_designs_alone(a);
     }
     MT_TRY(phase(a, MT_PHASE_RECOMMENDATIONS, describe_solutions, err));
+    if (mt_interrupt_is_cut(&a->interrupt, MT_PHASE_RECOMMENDATIONS)) {
+        MT_TRY(tell_undescribed(a, err));
+    }
     MT_TRY(phase(a, MT_PHASE_SPREAD, spread, err));
     MT_TRY(certify_whole(a, err));
     MT_TRY(phase(a, MT_PHASE_RELAXATIONS, relax, err));

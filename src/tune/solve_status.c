@@ -110,6 +110,10 @@ static const char *doubt_text(const mt_recommendation *best, mt_arena *mem)
 /* Answers that do not depend on a search's success; NULL: it does. */
 static const char *early_text(const mt_answer *a, const mt_recommendation *best)
 {
+    const bool cut = mt_interrupt_is_cut(&a->interrupt, MT_PHASE_RECOMMENDATIONS);
+    if (cut && a->result->n_recommendations == 0 && a->found.n_solutions > 0) {
+        return "Designs were found, but none was analysed anew (see the warnings).";
+    }
     if (a->found.stop == MT_STOP_USER) {
         return a->found.n_solutions > 0 ? "The best designs found so far."
                                         : "No design was found so far.";
