@@ -24,6 +24,7 @@ static void spend(double weight, int m, int n, int k)
     order = m > order ? m : order;
 }
 
+/* NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,readability-function-size): names are the linker's, parameters the kernels' */
 #define WRAP(type, name, parameters, arguments, weight, m, n, k) \
     type __real_##name parameters;                               \
     type __wrap_##name parameters;                               \
@@ -62,6 +63,8 @@ void __wrap_mt_gemm(bool ta, bool tb, int m, int n, int k, double alpha, const d
     spend(1, m, n, k);
     __real_mt_gemm(ta, tb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc);
 }
+
+/* NOLINTEND(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,readability-function-size) */
 
 static int ask(void *context)
 {

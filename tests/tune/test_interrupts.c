@@ -208,7 +208,7 @@ static int places_wanted(void)
 static int places_of(long questions)
 {
     const int wanted = places_wanted();
-    const long n = questions > 0 ? 2 * QUESTIONS / questions : 0;
+    const long n = questions > 0 ? 2L * QUESTIONS / questions : 0;
     if (wanted > 0) {
         return questions < wanted ? (int)questions : wanted;
     }
