@@ -34,6 +34,9 @@ typedef struct search {
     int n_known;
     int cap_known;
     int *known; /* known, found */
+    int cap_order;
+    int *
+        order; /* [n_known] their places in the list, sorted by memcmp: every box looks for some */
     int cap_found;
     int cap_open;
     int limit; /* bisections of a box in this pass */
@@ -97,12 +100,45 @@ static bool listed(const search *s, const int *list, int count, const int *tuple
     return false;
 }
 
+/* How many known assignments come before the tuple in s->order; *there: the next one is it. */
+static int place_of(const search *s, const int *tuple, bool *there)
+{
+    const size_t n = (size_t)s->c->n_bands;
+    int low = 0;
+    int high = s->n_known;
+    *there = false;
+    while (low < high && !*there) {
+        const int middle = low + ((high - low) / 2);
+        const int *const known = s->known + ((size_t)s->order[middle] * n);
+        const int before = memcmp(known, tuple, n * sizeof *tuple);
+        *there = before == 0;
+        low = before < 0 ? middle + 1 : before == 0 ? middle : low;
+        high = before > 0 ? middle : high;
+    }
+    return low;
+}
+
+static bool is_known(const search *s, const int *tuple)
+{
+    bool there = false;
+    (void)place_of(s, tuple, &there);
+    return there;
+}
+
 static bool note_known(search *s, const int *tuple)
 {
     int *const place = append(s, &s->known, s->n_known, &s->cap_known);
-    if (place == NULL) {
+    int *const order =
+        mt_arena_grow(s->mem, s->order, s->n_known, &s->cap_order, sizeof *order);
+    if (place == NULL || order == NULL) {
+        (void)mt_fail_memory(s->err);
         return false;
     }
+    bool there = false;
+    const int at = place_of(s, tuple, &there);
+    s->order = order;
+    memmove(order + at + 1, order + at, (size_t)(s->n_known - at) * sizeof *order);
+    order[at] = s->n_known;
     copy(s, place, tuple);
     s->n_known++;
     return true;
@@ -201,7 +237,7 @@ static int unknown(search *s)
 {
     int count = 0;
     for (bool more = fill(s, 0); more && count < 2; more = next(s)) {
-        if (!listed(s, s->known, s->n_known, s->tuple)) {
+        if (!is_known(s, s->tuple)) {
             copy(s, s->single, s->tuple);
             count++;
         }
@@ -330,7 +366,7 @@ static bool witnessed(search *s)
                            ? s->only[i]
                            : mt_enclosure_least_below(s->c->views[band->view], lambda);
     }
-    if (!same_counts(s, s->single) || listed(s, s->known, s->n_known, s->single)) {
+    if (!same_counts(s, s->single) || is_known(s, s->single)) {
         return false;
     }
     const int n = mt_certify_edges(s->c, s->single, true, s->edges);
@@ -363,8 +399,7 @@ static mt_status note_open(search *s)
     mt_certify_search *const out = s->out;
     out->proven = false;
     for (bool more = fill(s, 0); more && !out->more; more = next(s)) {
-        if (listed(s, s->known, s->n_known, s->tuple) ||
-            listed(s, out->open, out->n_open, s->tuple)) {
+        if (is_known(s, s->tuple) || listed(s, out->open, out->n_open, s->tuple)) {
             continue;
         }
         out->more = out->n_open == MT_CERTIFY_OPEN_MOST; /* there is one more */
@@ -388,7 +423,7 @@ static void drop_found(search *s)
     const ptrdiff_t n = s->c->n_bands;
     int kept = 0;
     for (int i = 0; i < out->n_open; i++) {
-        if (!listed(s, s->known, s->n_known, out->open + (i * n))) {
+        if (!is_known(s, out->open + (i * n))) {
             memmove(out->open + (kept * n), out->open + (i * n), (size_t)n * sizeof(int));
             kept++;
         }

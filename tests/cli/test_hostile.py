@@ -18,7 +18,8 @@ import common_hostile as hostile
 from common_cli import PROGRAM, SOURCE, CliTest
 
 INSTRUMENTED = "MT_INSTRUMENTED" in os.environ or "MT_TEST_LAUNCHED" in os.environ
-SECONDS = 60 if INSTRUMENTED else 3  # of the processor; no file of the default size takes one
+BASE = 5000  # size that the seconds are for
+SECONDS = 60 if INSTRUMENTED else 3  # of the processor; no file of that size takes one
 MEMORY = "1G"
 TALK = 400_000  # bytes of messages: at most 200 lines
 STATES = {0, 1, 2, 3, 4}
@@ -26,20 +27,30 @@ FILES = ["tests/schema/plane.json", "tests/schema/space.json", "tests/io/good/st
          "tests/io/good/aircraft.json", "problems/inceptor.json", "studies/engine_orders.json", "studies/inceptor_trade.json",
          "studies/six_masses_bands.json", "tests/models/space_couplings.json"]
 COMMANDS = {"model": [("modes",), ("info",), ("sensitivity", "--count", "2")], "study": [("run", "-o", "out", "--quiet")]}
-knobs = argparse.Namespace(size=5000, count=20, seed=20261122)
+knobs = argparse.Namespace(size=500 if INSTRUMENTED else BASE, count=6 if INSTRUMENTED else 20, seed=20261122)
 
 
-def limit():
-    resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
+def seconds():
+    """In proportion to the size."""
+    return -(-SECONDS * max(knobs.size, BASE) // BASE)
+
+
+# A search may take long where bounds are 1e308; only that it ends is asked of it.
+SEARCH_SECONDS = 300
+
+
+def limit(most):
+    resource.setrlimit(resource.RLIMIT_CPU, (most, most))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 class Hostile(CliTest):
     def ends(self, what, folder, *words):
         """Problems with how a command ended: a list of texts."""
+        most = SEARCH_SECONDS if words[0] == "run" else seconds()
         try:
-            done = subprocess.run([PROGRAM, *words, "--max-memory", MEMORY], cwd=folder, preexec_fn=limit,
-                                  capture_output=True, timeout=20 * SECONDS)
+            done = subprocess.run([PROGRAM, *words, "--max-memory", MEMORY], cwd=folder, preexec_fn=lambda: limit(most),
+                                  capture_output=True, timeout=20 * most)
         except subprocess.TimeoutExpired:
             return [f"{what}: {words[0]} still waits"]
         found = []
