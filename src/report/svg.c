@@ -44,6 +44,9 @@ double mt_svg_step(double length)
 {
     const double raw = length / 6.0;
     const double power = pow(10.0, floor(log10(raw)));
+    if (!(power > 0.0)) {
+        return length; /* next to nothing: one mark */
+    }
     const double lead = raw / power;
     return power * (lead <= 1.0 ? 1.0 : lead <= 2.0 ? 2.0 : lead <= 5.0 ? 5.0 : 10.0);
 }
@@ -138,6 +141,9 @@ void mt_report_svg_frequencies(const mt_recommendation *r, mt_text *out)
         widen(&s, f->at_most_hz);
     }
     s.high = s.high > 0.0 ? s.high * 1.05 : 1.0;
+    if (!isfinite(s.high - s.low)) {
+        return; /* no scale holds them */
+    }
     begin(r->n_frequencies,
           r->n_gaps > 0
               ? "Frequencies: open circles before, full after, green what is asked, red "
@@ -176,8 +182,8 @@ void mt_report_svg_changes(const mt_recommendation *r, mt_text *out)
     for (int i = 0; i < r->n_parameters; i++) {
         widen(&s, r->parameters[i].change_percent);
     }
-    if (!(s.high - s.low > 0.0)) {
-        return; /* nothing changes */
+    if (!(s.high - s.low > 0.0) || !isfinite(s.high - s.low)) {
+        return; /* nothing changes, or beyond any scale */
     }
     begin(r->n_parameters, "Change of each parameter in per cent", out);
     axis(&s, r->n_parameters, "%", out);

@@ -77,6 +77,9 @@ mt_table mt_report_trade(const mt_result *result)
     return t;
 }
 
+/* Half the stretch around a single great value, of that value. */
+static const double SHARE_OF_ONE = 1e-6;
+
 typedef struct frame {
     double low[2]; /* x, y */
     double high[2];
@@ -103,8 +106,9 @@ static frame frame_of(const mt_trade_result *trade)
     }
     for (int k = 0; k < 2; k++) {
         if (!(f.high[k] > f.low[k])) { /* one value: a stretch around it */
-            f.low[k] -= 0.5;
-            f.high[k] += 0.5;
+            const double half = fmax(0.5, SHARE_OF_ONE * fabs(f.high[k]));
+            f.low[k] -= half;
+            f.high[k] += half;
         }
     }
     return f;
@@ -190,8 +194,8 @@ void mt_report_svg_trade(const mt_result *result, mt_text *out)
         }
     }
     const frame f = frame_of(trade);
-    if (!isfinite(f.low[1])) {
-        return; /* no point has a design that meets its goals */
+    if (!isfinite(f.high[0] - f.low[0]) || !isfinite(f.high[1] - f.low[1])) {
+        return; /* no point has a design that meets its goals, or no scale holds them */
     }
     mt_text_addf(
         out,

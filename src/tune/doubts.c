@@ -8,7 +8,7 @@
 #include "mechanics/info.h"
 #include "model/values.h"
 
-enum { NAME_SIZE = 400, NAMED = 3, STATES_2D = 3, STATES_3D = 6 };
+enum { NAME_SIZE = 400, NUMBER_SIZE = 32, NAMED = 3, STATES_2D = 3, STATES_3D = 6 };
 
 /* kg: a large ship's rudder gear has 1e6, a micromirror 1e-9; steel in t/mm^3 with metres makes 1e-9 of a mass, millimetres with kg/m^3 1e9 of it. */
 static const double MOST_MASS_KG = 1e6;
@@ -240,10 +240,14 @@ static mt_status doubt_scale(const mt_analysis *a, mt_doubt_list *out, mt_err *e
     mt_info info;
     MT_TRY(mt_info_fill(a->lin, &info, err));
     if (info.mass_kg > MOST_MASS_KG || (info.mass_kg > 0.0 && info.mass_kg < LEAST_MASS_KG)) {
+        char mass[NUMBER_SIZE] = "beyond 1.8e308"; /* masses that no double adds up */
+        if (isfinite(info.mass_kg)) {
+            (void)mt_snprintf(mass, sizeof mass, "%.3g", info.mass_kg);
+        }
         (void)mt_doubt_add(out, MT_LEVEL_DOUBT, "mass",
-                           "its mass is %.3g kg, which no mechanism has: is a length in "
+                           "its mass is %s kg, which no mechanism has: is a length in "
                            "millimetres, a mass in grams, or a density in t/mm^3?",
-                           info.mass_kg);
+                           mass);
     }
     for (int i = 0; i < a->modes.count; i++) {
         const double hz = mt_modal_hz(&a->modes, i);

@@ -59,6 +59,10 @@ def generated(rng):
     yield "target zero", two_springs(rng), study([frequency(target_hz=rng.choice([5e-324, 1e-300, 1e-30]))])
     yield "limits of zero", two_springs(rng), study([frequency(at_most_hz=rng.choice([1e-30, 1e-300])), frequency(at_least_hz=rng.choice([5e-324, 1e300]))])
     yield "unreachable target", two_springs(rng), study([frequency(target_hz=huge)])
+    yield "changes of all sizes", two_springs(rng, k1=tiny, k2=huge), study([frequency(at_least_hz=0.1)], [{"parameter": "k1", "lower": 0, "upper": 1e9},
+                                                                                                    {"parameter": "k2", "lower": 1, "upper": 2 * huge}])
+    yield "trade over all sizes", two_springs(rng), study(trade={"vary": [{"parameter": "m", "values": [tiny, huge]}]})
+    yield "one great point", two_springs(rng), study([frequency(at_least_hz=1e-9)], trade={"vary": [{"parameter": "m", "values": [1e9]}]})
     yield "unreachable bands", two_springs(rng), study([{**avoid, "bands_hz": [[0, huge]], "margin_percent": rng.choice([0, 5, 99])}])
     yield "bands from zero", two_springs(rng), study([{**avoid, "bands_hz": [[0, 0.01], [huge, 2 * huge]], "margin_percent": 5}], objective={"maximise": "clearance"})
     yield "clearance of nothing", two_springs(rng), study([{**avoid, "bands_hz": [[tiny, 2 * tiny + 1e-9]], "margin_percent": 0}], objective={"maximise": "clearance"})

@@ -124,6 +124,8 @@ static void write_json__strings_are_escaped(mt_test *t)
         {              "slash stays",                                  "a/b",                                  "\"a/b\"\n"},
         {"two, three and four bytes", "\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80",
          "\"\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80\"\n"                                                                     },
+        {          "C1, turns, tags", "\xC2\x9B\xE2\x80\xAE\xF3\xA0\x81\x81",
+         "\"\\u009b\\u202e\\udb40\\udc41\"\n"                                                                             },
         {        "lone continuation",                               "a\x80z",                       "\"a\xEF\xBF\xBDz\"\n"},
         {                 "overlong",                             "\xC0\xAF",             "\"\xEF\xBF\xBD\xEF\xBF\xBD\"\n"},
         {                "surrogate",                         "\xED\xA0\x80", "\"\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD\"\n"},
