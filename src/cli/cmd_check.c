@@ -7,6 +7,7 @@
 #include "report/summary.h"
 #include "report/table.h"
 #include "tune/doubts.h"
+#include "tune/problem.h"
 
 typedef enum file_kind {
     KIND_MODEL,
@@ -138,6 +139,30 @@ static void forget(subject *s)
     mt_result_delete(s->result);
 }
 
+/* More goals or variables are not compiled by who only looks: each costs some derivatives. */
+enum { MOST_TRIED = 200 };
+
+/* What reads well is held against mechanics: each configuration, and each goal of a study. */
+static mt_status examine(const subject *s, const char *path, mt_text *messages,
+                         mt_doubt_list *found, mt_err *err)
+{
+    mt_status rc = MT_OK;
+    if (s->model != NULL) {
+        rc = examine_model(s->model, found, err);
+        return mt_err_in(err, rc, "%s", path);
+    }
+    if (s->study != NULL) {
+        rc = mt_study_examine(s->study, MT_DOUBTS_WORK, found, err);
+        if (rc == MT_OK && s->study->n_goals <= MOST_TRIED &&
+            s->study->n_variables <= MOST_TRIED &&
+            !mt_study_takes_more(s->study, MT_DOUBTS_WORK)) {
+            rc = mt_problem_try(s->study, err);
+        }
+        mt_cli_place(s->study, path, rc, err, messages);
+    }
+    return rc;
+}
+
 static mt_status load(int kind, const char *path, const mt_io_options *opt, subject *s,
                       mt_text *messages, mt_doubt_list *found, mt_err *err)
 {
@@ -146,14 +171,9 @@ static mt_status load(int kind, const char *path, const mt_io_options *opt, subj
     switch ((file_kind)kind) {
     case KIND_MODEL:
         rc = mt_model_load(path, opt, &s->model, messages, err);
-        rc = rc == MT_OK ? mt_err_in(err, examine_model(s->model, found, err), "%s", path) : rc;
         break;
     case KIND_STUDY:
         rc = mt_study_load(path, opt, &s->study, messages, err);
-        rc = rc == MT_OK
-                 ? mt_err_in(err, mt_study_examine(s->study, MT_DOUBTS_WORK, found, err), "%s",
-                             path)
-                 : rc;
         break;
     case KIND_RESULT:
         rc = mt_result_load(path, opt, &s->result, messages, err);
@@ -165,6 +185,7 @@ static mt_status load(int kind, const char *path, const mt_io_options *opt, subj
     case KIND_COUNT:
         break;
     }
+    rc = rc == MT_OK ? examine(s, path, messages, found, err) : rc;
     add_messages(found, path, messages);
     return rc;
 }

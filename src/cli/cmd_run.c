@@ -48,8 +48,9 @@ static int answer(job *j)
     rc = mt_study_solve(j->study, &opt, &j->result, &err);
     j->seconds = mt_terminal_seconds() - start;
     mt_terminal_progress(j->args->given[MT_OPT_QUIET], NULL);
-    return rc == MT_OK ? MT_EXIT_DONE
-                       : mt_cli_failed(rc, (mt_err_in(&err, rc, "%s", j->path), &err));
+    messages = (mt_text){.s = NULL};
+    mt_cli_place(j->study, j->path, rc, &err, &messages);
+    return mt_cli_loaded(rc, &messages, &err);
 }
 
 static void finish(job *j)
@@ -208,13 +209,15 @@ static void print_comparison(const job *j, mt_json_writer *w, mt_text *out)
 {
     const mt_result *const r = j->result;
     mt_table t = mt_report_published(r);
+    int judged = 0;
+    const bool holds = mt_report_verified(r, &judged);
     switch (j->args->format) {
     case MT_FORMAT_JSON:
         mt_json_open(w, NULL, '{');
         mt_json_put_string(w, "study", r->study_file);
         mt_json_put_string(w, "status", mt_result_status_name(r->status));
         mt_json_put_doubts(w, "doubts", &r->doubts, MT_LEVEL_DOUBT);
-        mt_json_put_bool(w, "holds", mt_report_verified(r, NULL));
+        mt_json_put_bool(w, "holds", holds && judged > 0);
         mt_json_open(w, "published", '[');
         for (int i = 0; i < r->n_published; i++) {
             json_published(w, &r->published[i]);

@@ -201,8 +201,10 @@ static mt_status run(const mt_args *args, const mt_subject *s, int c, job *j, mt
         MT_TRY(mt_linear_new(j->sys, &j->lin, err));
     }
     j->v.sys = j->sys;
-    return mt_sweep_run(j->lin, at, r->n, r->positions,
-                        args->given[MT_OPT_MODES] ? &visitor : NULL, &j->mem, &j->v.sweep, err);
+    const mt_status rc =
+        mt_sweep_run(j->lin, at, r->n, r->positions,
+                     args->given[MT_OPT_MODES] ? &visitor : NULL, &j->mem, &j->v.sweep, err);
+    return mt_err_in(err, rc, "configuration \"%s\"", j->v.configuration);
 }
 
 /* Each reason why points are missing, once. */
@@ -292,6 +294,9 @@ static int one(sink *to, const mt_subject *s, int c, const mt_sweep_request *req
     j.v.request = request;
     mt_subject_warn_overridden(s, c);
     mt_status rc = run(to->args, s, c, &j, &err);
+    if (rc != MT_E_USAGE) {
+        (void)mt_err_in(&err, rc, "%s", s->path);
+    }
     if (rc == MT_OK) {
         warn_range(&j);
         code = tell_missing(s, &j.v);

@@ -34,6 +34,19 @@ int mt_cli_loaded(mt_status rc, mt_text *messages, const mt_err *err)
     return mt_exit_of(rc);
 }
 
+void mt_cli_place(const mt_study *study, const char *path, mt_status rc, mt_err *err,
+                  mt_text *messages)
+{
+    const mt_study_place *const place =
+        rc == MT_E_INPUT ? mt_study_find_place(study, err->text) : NULL;
+    if (place == NULL) {
+        (void)mt_err_in(err, rc, "%s", path);
+        return;
+    }
+    mt_text_addf(messages, "%s:%d:%d: error: %s\n", path, place->line, place->column,
+                 err->text);
+}
+
 mt_io_options mt_cli_io(const mt_args *args)
 {
     const mt_io_options opt = {.root = args->value[MT_OPT_ROOT]};

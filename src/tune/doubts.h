@@ -21,6 +21,8 @@ mt_status mt_doubts_of_analysis(mt_analysis *a, int n_inputs, const int *inputs,
 #define MT_DOUBTS_WORK 2e9
 /* About what the analysis of a configuration takes: the cube and the square of its coordinates and equations, and every number of the model. */
 double mt_doubts_work(const mt_model *model, int configuration);
+/* Does looking at what a study asks about take more? */
+bool mt_study_takes_more(const mt_study *study, double most_work);
 /* Tell that `left` configurations were not looked at, since that takes too long. */
 void mt_doubts_left_out(int left, mt_doubt_list *out);
 

@@ -251,3 +251,17 @@ mt_status mt_problem_values_init(const mt_problem *p, mt_arena *mem, mt_nlp_valu
                      out->deq == NULL || out->in == NULL || out->din == NULL;
     return bad ? mt_fail_memory(err) : MT_OK;
 }
+
+mt_status mt_problem_try(const mt_study *study, mt_err *err)
+{
+    mt_arena mem;
+    mt_reference_cache references = {.study = NULL};
+    mt_problem *p = NULL;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    mt_status rc = mt_reference_cache_init(&references, study, &mem, err);
+    rc = rc == MT_OK ? mt_problem_new(study, &references, &p, err) : rc;
+    mt_problem_delete(p);
+    mt_reference_cache_free(&references);
+    mt_arena_free(&mem);
+    return rc;
+}

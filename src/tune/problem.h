@@ -167,6 +167,8 @@ mt_status mt_problem_new_cut(const mt_study *study, mt_reference_cache *referenc
                              const int *below, int n_cuts, const struct mt_cut *cuts,
                              mt_problem **out, mt_err *err);
 void mt_problem_delete(mt_problem *p);
+/* Compile and forget: can the study be asked? Fails as mt_problem_new. */
+mt_status mt_problem_try(const mt_study *study, mt_err *err);
 /* Parameter values x[n] of coordinates t[n]: a bound, a value of a catalogue, and the original value come back to the last bit. */
 void mt_problem_x(const mt_problem *p, const double *t, double *x);
 /* The coordinate of value x of variable i. */

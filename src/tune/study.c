@@ -85,6 +85,18 @@ void mt_study_place_doubt(const mt_study *study, mt_doubt *doubt)
     }
 }
 
+const mt_study_place *mt_study_find_place(const mt_study *study, const char *text)
+{
+    const size_t length = strcspn(text, ":");
+    for (int i = 0; i < study->n_places; i++) {
+        const char *const pointer = study->places[i].pointer;
+        if (length > 0 && strlen(pointer) == length && strncmp(pointer, text, length) == 0) {
+            return &study->places[i];
+        }
+    }
+    return NULL;
+}
+
 static mt_mode_ref no_mode(mt_addr addr)
 {
     return (mt_mode_ref){.named = MT_ABSENT, .addr = addr};

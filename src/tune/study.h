@@ -319,6 +319,8 @@ int mt_study_find_reference(const mt_study *study, const char *name);
 bool mt_study_asks(const mt_study *study, int configuration);
 /* Fill in where a doubt's address stands, if that is known. */
 void mt_study_place_doubt(const mt_study *study, mt_doubt *doubt);
+/* Where what the text's leading JSON pointer names ("/goals/2: ...") stands; NULL: it begins with none, or the place was not kept. */
+const mt_study_place *mt_study_find_place(const mt_study *study, const char *text);
 /* The names that files use: "frequency", "verifies", "parameter". */
 const char *mt_goal_type_name(mt_goal_type type);
 const char *mt_role_name(mt_role role);

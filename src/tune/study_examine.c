@@ -297,6 +297,13 @@ static int count_asked(const mt_study *study, double *work)
     return asked;
 }
 
+bool mt_study_takes_more(const mt_study *study, double most_work)
+{
+    double work = 0.0;
+    (void)count_asked(study, &work);
+    return work > most_work;
+}
+
 mt_status mt_study_examine(const mt_study *study, double most_work, mt_doubt_list *out,
                            mt_err *err)
 {

@@ -75,7 +75,7 @@ static struct {
      FULL                                                                                                          },
     {                    "check --format json tests/schema/space.json tests/schema/plane.json",  MT_EXIT_DONE, FULL},
     {  "check tests/io/good/study_full.json problems/aircraft.json studies/engine_orders.json",
-     MT_EXIT_DONE, FULL                                                                                            },
+     MT_EXIT_INPUT, FULL                                                                                           },
     {             "check --format csv " WRONG "dampers.json " WRONG "study_unknown_names.json",
      MT_EXIT_INPUT, FULL                                                                                           },
     {         "check " WRONG "study_model_wrong.json " WRONG "links.json " WRONG "circle.json",

@@ -48,7 +48,7 @@ static const struct {
     {                     "sweep --drive pivot=-0.1:0.1:3 --modes " MODELS "driven_rod.json",  MT_EXIT_DONE},
     {                  "check --format json tests/schema/space.json tests/schema/plane.json",  MT_EXIT_DONE},
     {"check tests/io/good/study_full.json problems/aircraft.json studies/engine_orders.json",
-     MT_EXIT_DONE                                                                                          },
+     MT_EXIT_INPUT                                                                                         },
     {                                                    "check tests/io/wrong/dampers.json", MT_EXIT_INPUT},
     {                                          "run -o @ --quiet studies/engine_orders.json",  MT_EXIT_DONE},
     {                                      "run -o @ --quiet studies/inceptor_tuning_2.json",  MT_EXIT_DONE},

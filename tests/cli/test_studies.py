@@ -208,8 +208,12 @@ class Output(CliTest):
         subprocess.run([PROGRAM, "check", self.write("bad.json", "{}"), "none.json"], cwd=self.folder,
                        stdout=slave, stderr=slave, env=dict(env, **environment), check=False)
         os.close(slave)
-        text = os.read(master, 65536)
-        os.close(master)
+        text = b""
+        try:
+            while True:  # a terminal hands on what was written in parts of its own
+                text += os.read(master, 65536)
+        except OSError:  # the other end is closed, and all has been read
+            os.close(master)
         return text
 
     def test_colour_on_a_terminal_only_and_never_under_no_color(self):

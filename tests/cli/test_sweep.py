@@ -120,8 +120,8 @@ class Sweep(CliTest):
             wrong(f'--drive: "{text}" is not JOINT=FROM:TO:N', "--drive", text)
         wrong('--drive: the number of positions, "1", is not a whole number from 2 to 100001', "--drive", "pivot=0:1:1")
         wrong('--drive: the number of positions, "x", is not a whole number from 2 to 100001', "--drive", "pivot=0:1:x")
-        wrong('drive: there is no joint "pivo" in configuration "sprung"; did you mean "pivot"?', "--drive", "pivo=0:1:2")
-        wrong('drive: there is no spring "motor" to hold it in configuration "sprung"', "--drive", "pivot=0:1:2",
+        wrong('problems/rod.json: drive: there is no joint "pivo" in configuration "sprung"; did you mean "pivot"?', "--drive", "pivo=0:1:2")
+        wrong('problems/rod.json: drive: there is no spring "motor" to hold it in configuration "sprung"', "--drive", "pivot=0:1:2",
               "--hold", "motor")
 
         for n in ("", "0", "-3", "3x", "100002", "9" * 30):
