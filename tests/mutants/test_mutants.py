@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The mutants in the suite: saved cases, faults that must be found, and some of a fixed seed."""
+import json
+import os
+import random
+import tempfile
+import unittest
+from pathlib import Path
+
+import document
+import run
+from commands import Answer, Program
+from corpus import Case, Corpus
+from known import reason
+
+SEED = "5"
+COUNT = 6 if os.environ.get("MT_INSTRUMENTED") or os.environ.get("MT_TEST_LAUNCHED") else 20
+CASES = Path(__file__).resolve().parent / "cases"
+
+# Programs that are wrong in one way: a shell script around the sound one, "$@" what it was asked.
+FAULTS = {
+    "crash": 'kill -SEGV $$',
+    "crash of a sanitizer": '"$SOUND" "$@"; code=$?; echo "SUMMARY: AddressSanitizer: heap-buffer-overflow" >&2; exit $code',
+    "stuck": 'while :; do :; done',
+    "silent": '"$SOUND" "$@" >/dev/null 2>&1; exit 2',
+    "internal": 'echo "modetune: error: internal error, please report" >&2; exit 3',
+    "words": '"$SOUND" "$@"; code=$?; echo "is missed by nan %" >&2; exit $code',
+    "words of a file": '"$SOUND" "$@"; code=$?; [ "$1" != run ] || echo "1,-inf" >>out/changed/recommendations.csv; exit $code',
+    "form": '"$SOUND" "$@" | head -c 20; exit 0',
+    "place": 'echo "modetune: error: something is wrong" >&2; exit 2',
+    "place outside": 'echo "$2:99999:1: error: /name: something is wrong" >&2; exit 2',
+    "place of nothing": 'echo "$2:1:1: error: /nothing/here: something is wrong" >&2; exit 2',
+    "left": '"$SOUND" "$@"; code=$?; [ "$1" = run ] || touch .temporary; exit $code',
+    "left out": '"$SOUND" "$@"; code=$?; [ "$1" != run ] || rm -f out/changed/report.html; exit $code',
+    "system": 'echo "modetune: error: Too many open files" >&2; exit 4',
+    "back": 'case "$*" in *out/changed/result.json*) echo "modetune: error: x.json: \\"x\\"" >&2; exit 2; esac; exec "$SOUND" "$@"',
+    "agree": 'case "$1" in check) echo "$2:1:1: error: no" >&2; exit 2; esac; exec "$SOUND" "$@"',
+    "harmless": '"$SOUND" "$@"; code=$?; ! grep -q zq_ studies/changed.json || sed -i s/7/8/ out/changed/result.json; exit $code',
+}
+
+
+class Cases(unittest.TestCase):
+    """What was once found. A case is one file {"holds": why it is here, "kind": ..., "files": {place: text}}, of which one is the kind's."""
+
+    def test_cases(self):
+        program = Program(run.PROGRAM)
+        for path in sorted(CASES.glob("*.json")):
+            saved = json.loads(path.read_text(encoding="utf-8"))
+            case = Case(saved["kind"], path.stem, document.Object(), {})
+            case.files = {place: text if isinstance(text, str) else json.dumps(text) for place, text in saved["files"].items()}
+            case.original = document.read(case.files[case.target])
+            for draw in range(3):
+                with self.subTest(case=path.stem, draw=draw), tempfile.TemporaryDirectory() as folder:
+                    case.write(Path(folder))
+                    found = list(Answer(program, Path(folder), case, {"commands": 0}).findings(random.Random(draw)))
+                    self.assertEqual([f for f in found if not reason(*f)], [], saved["holds"])
+
+
+class Faults(unittest.TestCase):
+    def test_faults_are_found(self):
+        corpus = Corpus(run.PROGRAM)
+        for fault, script in FAULTS.items():
+            with self.subTest(fault=fault), tempfile.TemporaryDirectory() as folder:
+                self.assertIn(fault.split(" ")[0], self._found(Path(folder), corpus, fault, script))
+
+    def _found(self, folder, corpus, fault, script):
+        path = folder / "modetune"
+        path.write_text(f"#!/bin/bash\nSOUND={os.path.abspath(run.PROGRAM)}\n{script}\n", encoding="utf-8")
+        path.chmod(0o755)
+        program = Program(path, patience=(1, 1) if fault == "stuck" else None)
+        if fault == "harmless":
+            study = corpus.study("studies/inceptor_tuning_1.json")
+            return {check for check, _ in run.harmless.compare(program, random.Random(1), study, "rename", folder, {"commands": 0})}
+        case = corpus.study("studies/inceptor_tuning_1.json")
+        if fault in ("silent", "place", "place outside", "place of nothing"):
+            case.files[case.target] = case.files[case.target].replace('"goals"', '"gaols"')
+        (folder / "case").mkdir()
+        case.write(folder / "case")
+        found = (check for draw in range(4) for check, _ in Answer(program, folder / "case", case, {"commands": 0}).findings(random.Random(draw)))
+        return {next((check for check in found if check == fault.split(" ")[0]), None)}
+
+
+class Mutants(unittest.TestCase):
+    def test_random_mutants(self):
+        tally = {"mutants": 0, "commands": 0}
+        for kind, index, check, text in run.hunt(Program(run.PROGRAM), SEED, run.rounds(run.KINDS, COUNT), tally):
+            if reason(check, text) is None:
+                with self.subTest(check=check):
+                    self.fail(f"{text}\n    tests/mutants/run.py --seed {SEED} --only {kind} --index {index}")
+        self.assertGreater(tally["good"], tally["mutants"] // 8)  # not all are refused at the door
+
+
+if __name__ == "__main__":
+    unittest.main()
