@@ -65,6 +65,44 @@ static void read_parameter(result_reader *s, mt_addr value, mt_result_parameter 
     p->at_bound = text(s, value, "at_bound");
 }
 
+static int by_name(const void *a, const void *b)
+{
+    const mt_name *const x = a;
+    const mt_name *const y = b;
+    const int order = strcmp(x->s, y->s);
+    return order != 0 ? order : (x->addr > y->addr) - (x->addr < y->addr);
+}
+
+/* A design gives a parameter one value. */
+static void refuse_twice(result_reader *s, mt_addr list, int most)
+{
+    if (most < 2) {
+        return;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(&s->result->mem);
+    mt_name *const names = mt_arena_alloc(&s->result->mem, (size_t)most, sizeof *names);
+    int n = 0;
+    s->r.out_of_memory = s->r.out_of_memory || names == NULL;
+    for (mt_items i = mt_reader_items(&s->r, list); names != NULL && mt_items_next(&i);) {
+        const mt_addr name = mt_json_type_of(s->r.doc, i.at) == MT_JSON_OBJECT
+                                 ? mt_json_member(s->r.doc, i.at, "name")
+                                 : MT_NO_ADDR;
+        if (n < most && name != MT_NO_ADDR &&
+            mt_json_type_of(s->r.doc, name) == MT_JSON_STRING) {
+            names[n++] = (mt_name){.s = mt_json_string(s->r.doc, name), .addr = name};
+        }
+    }
+    if (n > 0) {
+        qsort(names, (size_t)n, sizeof *names, by_name);
+    }
+    for (int i = 1; i < n; i++) {
+        if (strcmp(names[i].s, names[i - 1].s) == 0) {
+            mt_diag_error(s->r.diags, names[i].addr, "\"%s\" is listed twice", names[i].s);
+        }
+    }
+    mt_arena_rewind(&s->result->mem, mark);
+}
+
 static void read_design(result_reader *s, mt_addr value, mt_recommendation *out)
 {
     *out = mt_recommendation_default();
@@ -85,6 +123,7 @@ static void read_design(result_reader *s, mt_addr value, mt_recommendation *out)
     while (mt_items_next(&items)) {
         read_parameter(s, items.at, &out->parameters[out->n_parameters++]);
     }
+    refuse_twice(s, list, out->n_parameters);
 }
 
 static void read_recommendations(result_reader *s, mt_addr list)

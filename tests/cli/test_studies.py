@@ -172,7 +172,7 @@ class Apply(CliTest):
     def test_a_result_that_was_tampered_with_is_refused(self):
         path = self.folder / "results/two/result.json"
         text = path.read_text(encoding="utf-8")
-        for old, new, want in (('"name": "k2"', '"name": "k1"', "the result names a parameter twice"),
+        for old, new, want in (('"name": "k2"', '"name": "k1"', "\"k1\" is listed twice"),
                                ('"name": "k2"', '"name": "k9"', 'there is no parameter "k9"'),
                                ('"recommended": 3', '"recommended": null, "x": 3', 'recommends no value of "k1"')):
             with self.subTest(new):
