@@ -18,9 +18,11 @@ PLACES = ("sha256", "line", "column", "pointer", "file")
 
 
 def tame(tree, kind):
-    """A mutated study keeps a budget that ends: that a search may be long is no finding."""
-    for _, key, value in document.nodes(tree) if kind == "study" else []:
-        if key == "search" and isinstance(value, Object):
+    """A mutated study keeps a budget that ends, a link few elements: that a search may be long and a matrix large is no finding."""
+    for path, key, value in list(document.nodes(tree)):
+        if key == "elements" and isinstance(value, Number) and 30 < float(value) <= 100_000:
+            document.put(tree, path, Number("30"))
+        if kind == "study" and key == "search" and isinstance(value, Object):
             for pair in value:
                 if pair[0] in ("starts", "max_evaluations") and isinstance(pair[1], Number) and abs(float(pair[1])) > 1000:
                     pair[1] = Number("1000")
