@@ -103,8 +103,9 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
                            (w->moved >= 0.25 * previous || w->moved <= 8.0 * DBL_EPSILON);
         if (small && w->gap <= MT_STEP_DONE) {
             if (w->residual <= MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise)) {
+                MT_TRY(keep(w, &e, inverse, tau, mem, report, stage, err));
                 *done = true;
-                return keep(w, &e, inverse, tau, mem, report, stage, err);
+                return MT_OK;
             }
             if (!w->p->trim || w->residual >= 0.25 * unbalanced) {
                 return MT_OK; /* something pushes along a freedom without stiffness */
