@@ -413,7 +413,9 @@ static bool read_arguments(int argc, char *argv[], sampling *s)
 int main(int argc, char *argv[])
 {
     mt_test t = mt_test_begin();
-    sampling s = {.seed = 1, .count = 20, .only = -1, .at = -1};
+    /* the end of a process takes longest where it tells of leaks, or what was covered */
+    const bool slow = getenv("MT_INSTRUMENTED") != NULL;
+    sampling s = {.seed = 1, .count = slow ? 6 : 20, .only = -1, .at = -1};
     if (!read_arguments(argc, argv, &s)) {
         return 2;
     }
@@ -428,7 +430,9 @@ int main(int argc, char *argv[])
         return 1;
     }
     for (int i = 0; i < MT_COUNT(commands); i++) {
-        if (s.only < 0 || s.only == i) {
+        /* a sanitizer that is refused memory for a new thread ends the process */
+        const bool bearable = !slow || strstr(commands[i].words, "--threads") == NULL;
+        if ((s.only < 0 && bearable) || s.only == i) {
             try_command(&t, i, &s);
         }
     }
