@@ -101,16 +101,15 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
         /* stop where the step is rounding: small, and no longer shrinking or negligible */
         const bool small = w->moved <= MT_STEP_DONE &&
                            (w->moved >= 0.25 * previous || w->moved <= 8.0 * DBL_EPSILON);
-        if (small && w->gap <= MT_STEP_DONE) {
-            if (w->residual <= MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise)) {
-                MT_TRY(keep(w, &e, inverse, tau, mem, report, stage, err));
-                *done = true;
-                return MT_OK;
-            }
-            if (!w->p->trim || w->residual >= 0.25 * unbalanced) {
-                return MT_OK; /* something pushes along a freedom without stiffness */
-            }                 /* else the force of the trimmed spring is still settling */
+        const bool rests = small && w->gap <= MT_STEP_DONE;
+        if (rests && w->residual <= MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise)) {
+            const mt_status rc = keep(w, &e, inverse, tau, mem, report, stage, err);
+            *done = rc == MT_OK;
+            return rc;
         }
+        if (rests && (!w->p->trim || w->residual >= 0.25 * unbalanced)) {
+            return MT_OK; /* something pushes along a freedom without stiffness */
+        }                 /* else the force of the trimmed spring is still settling */
         previous = w->moved;
         unbalanced = w->residual;
         mt_newton_take_step(w, poses, MT_STEP_LIMIT);
