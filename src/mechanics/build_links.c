@@ -235,13 +235,13 @@ static void build_hinge(mt_builder *b, const mt_link *link, const link_geometry 
                         mt_build_arm(b, body[1], at, link->name.s)};
     mt_system_joint *const joints =
         mt_arena_grow(&sys->mem, sys->joints, sys->n_joints, &sys->cap_joints, sizeof *joints);
+    sys->joints = joints == NULL ? sys->joints : joints; /* what has grown has moved */
     mt_spring_def *const springs = mt_arena_grow(&sys->mem, sys->springs, sys->n_springs,
                                                  &sys->cap_springs, sizeof *springs);
     if (joints == NULL || springs == NULL) {
         sys->program.out_of_memory = true;
         return;
     }
-    sys->joints = joints;
     sys->springs = springs;
     mt_system_joint *const joint = &sys->joints[sys->n_joints++];
     *joint = (mt_system_joint){

@@ -123,6 +123,7 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
     mt_arena_rewind(&a->mem, start);
     a->solves++;
     a->with_gradient = false;
+    a->modes = (mt_modes){0}; /* where this fails there are none: not those of another design */
     MT_TRY(mt_linear_update(a->lin, inputs, opt->gradient, err));
     MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
     MT_TRY(refresh_mass(a, err));

@@ -135,8 +135,8 @@ static bool note_known(search *s, const int *tuple)
         return false;
     }
     bool there = false;
-    const int at = place_of(s, tuple, &there);
     s->order = order;
+    const int at = place_of(s, tuple, &there);
     memmove(order + at + 1, order + at, (size_t)(s->n_known - at) * sizeof *order);
     order[at] = s->n_known;
     copy(s, place, tuple);

@@ -17,12 +17,14 @@ enum { NUMBER_SIZE = 32, DEMAND_SIZE = 128 };
 void mt_say(mt_sentences *s, const char *fmt, ...)
 {
     va_list args;
-    const char **const grown = mt_arena_grow(&s->result->mem, s->rec->reasons,
-                                             s->rec->n_reasons, &s->capacity, sizeof *grown);
     va_start(args, fmt);
     const char *const text = mt_arena_vprintf(&s->result->mem, fmt, args);
     va_end(args);
-    if (grown == NULL || text == NULL) {
+    const char **const grown =
+        text == NULL ? NULL
+                     : mt_arena_grow(&s->result->mem, s->rec->reasons, s->rec->n_reasons,
+                                     &s->capacity, sizeof *grown);
+    if (grown == NULL) {
         s->failed = true;
         return;
     }

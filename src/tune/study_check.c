@@ -108,9 +108,11 @@ const mt_aircraft *mt_check_aircraft(mt_study_check *c, mt_name name)
 void mt_check_warn_result(mt_study_check *c, const char *text)
 {
     mt_study *const s = c->study;
-    const char **const list = mt_arena_grow(&s->mem, (void *)s->warnings, s->n_warnings,
-                                            &s->cap_warnings, sizeof *list);
-    if (text == NULL || list == NULL) {
+    const char **const list = text == NULL
+                                  ? NULL
+                                  : mt_arena_grow(&s->mem, (void *)s->warnings, s->n_warnings,
+                                                  &s->cap_warnings, sizeof *list);
+    if (list == NULL) {
         c->out_of_memory = true;
         return;
     }

@@ -101,16 +101,21 @@ class Run(CliTest):
                 running.send(number)
                 code, out = running.end()
                 self.assertEqual(code, 130, running.said)
-                self.assertIn("Interrupted (not complete: search, certificates and relaxations)", out)
                 result = self.result()
                 self.assertEqual(result["status"], "interrupted")
-                self.assertEqual(result["run"]["incomplete"], ["search", "certificates", "relaxations"])
                 self.assertEqual((result["certificates"], result["undetermined"]), ([], []))
-                self.assertGreaterEqual(len(result["recommendations"]), 1)
-                best = result["recommendations"][0]
-                self.assertTrue(best["feasible"])
-                self.assertAlmostEqual(best["frequencies"][0]["recommended_hz"], 5, delta=1e-4)
-                self.assertIn("The search was interrupted: better designs may exist.", best["reasons"])
+                # a slow machine has not analysed all designs anew when the quarter of a second for it is over
+                late = "recommendations" in result["run"]["incomplete"]
+                parts = ["search", *(["recommendations"] if late else []), "certificates", "relaxations"]
+                self.assertEqual(result["run"]["incomplete"], parts)
+                self.assertIn(f"Interrupted (not complete: {', '.join(parts[:-1])} and {parts[-1]})", out)
+                told = [w for w in result["warnings"] if w.startswith("interrupted before design ")]
+                self.assertEqual(bool(told), late)
+                self.assertGreaterEqual(len(result["recommendations"]) + len(told), 1)
+                for best in result["recommendations"][:1]:
+                    self.assertTrue(best["feasible"])
+                    self.assertAlmostEqual(best["frequencies"][0]["recommended_hz"], 5, delta=1e-4)
+                    self.assertIn("The search was interrupted: better designs may exist.", best["reasons"])
 
     def test_what_was_not_begun_is_said(self):
         running = self.at_work(self.long, self.other, "--format", "json")

@@ -34,7 +34,9 @@ static void demand_enclosed(const mt_program *p, mt_arena *mem)
     const size_t n = (size_t)p->count;
     double *const value = mt_arena_f64(mem, n, 3);
     double *const grad = mt_arena_f64(mem, n * N_PARAMS, 3);
-    DEMAND(value != NULL && grad != NULL);
+    if (value == NULL || grad == NULL) {
+        abort();
+    }
     double *const lo = value + n;
     double *const dlo = grad + n * N_PARAMS;
     mt_program_interval_gradient(p, lower, upper, lo, lo + n, dlo, dlo + n * N_PARAMS);

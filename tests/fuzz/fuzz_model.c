@@ -122,7 +122,7 @@ static void use_sweep(const mt_model *m, int c, mt_arena *mem)
     const double positions[] = {-0.1, 0.05, 0.2};
     mt_system *sys = NULL;
     mt_linear *lin = NULL;
-    mt_sweep sweep;
+    mt_sweep sweep = {0};
     mt_err err = {.code = MT_OK};
     if (m->n_joints == 0) {
         return;

@@ -260,7 +260,9 @@ size_t fuzz_mutate(fuzz_random *r, uint8_t *data, size_t size, size_t max, const
     scan *const sc = malloc(sizeof *sc);
     scan *const from = malloc(sizeof *from);
     const size_t rounds = 1 + (fuzz_below(r, 3) == 0 ? fuzz_below(r, 4) : 0);
-    DEMAND(sc != NULL && from != NULL);
+    if (sc == NULL || from == NULL) {
+        abort();
+    }
     find_nodes(from, other, other == NULL ? 0 : other_size);
     for (size_t i = 0; i < rounds; i++) {
         find_nodes(sc, data, size);
