@@ -185,12 +185,12 @@ static mt_status write_texts(const mt_args *args, const char *study_path, mt_res
 int mt_save(const mt_args *args, const char *study_path, mt_result *result, double seconds)
 {
     mt_text texts[MT_RESULT_FILE_COUNT] = {{.s = NULL}};
-    mt_folder_file files[MT_RESULT_FILE_COUNT];
     mt_err err = {.code = MT_OK};
     char *const folder = folder_of(args, study_path);
     mt_status rc = folder == NULL ? mt_fail_memory(&err)
                                   : write_texts(args, study_path, result, seconds, texts, &err);
     if (rc == MT_OK) {
+        mt_folder_file files[MT_RESULT_FILE_COUNT];
         for (int i = 0; i < MT_RESULT_FILE_COUNT; i++) {
             files[i] = (mt_folder_file){mt_result_file_name((mt_result_file)i), texts[i].s,
                                         texts[i].length};

@@ -314,7 +314,7 @@ void mt_html_escape(const char *s, mt_text *out)
     size_t left = strlen(s);
     while (left > 0) {
         const char *const found = strchr(special, *s);
-        const bool blank = *s == '\t' || *s == '\n';
+        const bool blank = *s == '\n';
         size_t used = found != NULL || blank ? 1 : mt_visible_run(s, left, false);
         if (found != NULL) {
             mt_text_add(out, reference[found - special]);

@@ -351,8 +351,8 @@ static mt_status describe_baseline(mt_answer *a, mt_err *err)
 /* One problem for each worker; references are analysed with the first and only read afterwards. */
 static mt_status open_problems(mt_answer *a, mt_err *err)
 {
-    const int most = a->threads < MT_WORKERS_MOST ? a->threads : MT_WORKERS_MOST;
-    const int n = a->study->n_variables > 0 && most > 1 ? most : 1;
+    const bool alone = a->threads < 1 || a->study->n_variables == 0;
+    const int n = alone ? 1 : a->threads < MT_WORKERS_MOST ? a->threads : MT_WORKERS_MOST;
     a->workers = mt_arena_alloc(&a->mem, (size_t)n, sizeof(mt_problem *));
     if (a->workers == NULL) {
         return mt_fail_memory(err);
