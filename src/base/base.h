@@ -27,6 +27,11 @@ static inline bool mt_is_final(mt_status rc)
 {
     return rc == MT_E_MEMORY || rc == MT_E_INTERNAL;
 }
+/* What the end of one try, with its own text, means for the work: the failure where it is final, else MT_OK. */
+static inline mt_status mt_pass_final(mt_status rc, const mt_err *own, mt_err *err)
+{
+    return mt_is_final(rc) ? mt_fail(err, rc, "%s", own->text) : MT_OK;
+}
 
 /* A function whose divisions by zero are meant as IEEE 754 has them (x / 0 is infinite, 0 / 0 NaN), because those who use the quotient look whether it is finite. */
 #if defined(__GNUC__) || defined(__clang__)

@@ -105,8 +105,7 @@ void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *
 void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *file,
                                 mt_status rc, const mt_err *why, bool told)
 {
-    if (rc == MT_E_MEMORY || rc == MT_E_INTERNAL ||
-        (rc == MT_E_SYSTEM && !mt_file_absent(file))) {
+    if (mt_is_final(rc) || (rc == MT_E_SYSTEM && !mt_file_absent(file))) {
         s->failed = rc;
         s->why = *why;
         return;

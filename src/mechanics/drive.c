@@ -159,7 +159,7 @@ static mt_status try_step(walk *w, double to, double length, bool *good, mt_err 
                                        .trim = false};
     const mt_status rc = mt_newton_solve(&problem, w->trial, w->mem, w->p, &stage, &w->why);
     mt_arena_rewind(w->mem, mark);
-    if (rc == MT_E_MEMORY || rc == MT_E_INTERNAL) {
+    if (mt_is_final(rc)) {
         return mt_fail(err, rc, "%s", w->why.text);
     }
     *good = rc == MT_OK && mt_newton_distance(sys, w->trial, w->guess) <= CORRECTION * length;

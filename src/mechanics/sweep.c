@@ -113,8 +113,7 @@ static mt_status walk(const sweeper *s, int first, int step, mt_err *err)
         if (point->status == MT_OK) {
             continue;
         }
-        if (point->status == MT_E_MEMORY || point->status == MT_E_INTERNAL ||
-            point->status == MT_E_INTERRUPTED) {
+        if (mt_is_final(point->status) || point->status == MT_E_INTERRUPTED) {
             return mt_fail(err, point->status, "%s", why.text);
         }
         if (point->status ==

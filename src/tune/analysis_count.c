@@ -163,7 +163,7 @@ static mt_status count_designs(family *f, int *n_rigid, mt_err *err)
         place(f, k);
         f->a->n_rigid = -1;
         const mt_status rc = mt_analysis_solve(f->a, f->x, &opt, &ignored);
-        if (rc == MT_E_MEMORY || rc == MT_E_INTERNAL) {
+        if (mt_is_final(rc)) {
             return mt_fail(err, rc, "%s", ignored.text);
         }
         /* what cannot be analysed, or is unstable, says nothing of the others */

@@ -210,7 +210,7 @@ static mt_status verify(listing *l, mt_err *err)
 /* A design that the study could read, and a fresh analysis cannot. */
 static mt_status note_failure(const listing *l, const mt_err *why, mt_err *err)
 {
-    if (why->code == MT_E_MEMORY || why->code == MT_E_INTERNAL) {
+    if (mt_is_final(why->code)) {
         return mt_fail(err, why->code, "%s", why->text);
     }
     if (l->rec->disagreement == NULL) {

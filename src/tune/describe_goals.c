@@ -140,11 +140,6 @@ static double off_by(const mt_demand *d, double hz)
     return MT_HAS(g->at_most) ? greater(worst, hz / g->at_most - 1.0) : worst;
 }
 
-static bool ends(mt_status rc)
-{
-    return rc == MT_E_MEMORY || rc == MT_E_INTERNAL;
-}
-
 /* Solve all views; the first that fails otherwise than by memory is told in `why`. */
 static mt_status solve_views(mt_problem *fresh, mt_err *why, mt_err *err)
 {
@@ -153,7 +148,7 @@ static mt_status solve_views(mt_problem *fresh, mt_err *why, mt_err *err)
         mt_err own = {0};
         view->needs_vectors = view->needs_vectors || view->n_named > 0;
         const mt_status rc = mt_view_solve(fresh, view, false, &own);
-        if (ends(rc)) {
+        if (mt_is_final(rc)) {
             return mt_fail(err, rc, "%s", own.text);
         }
         if (rc != MT_OK && why->code == MT_OK) {
@@ -163,7 +158,7 @@ static mt_status solve_views(mt_problem *fresh, mt_err *why, mt_err *err)
     mt_err own = {0};
     const mt_status rc = why->code == MT_OK ? mt_describe_ranges(fresh, &own) : MT_OK;
     *why = rc != MT_OK ? own : *why;
-    return ends(rc) ? mt_fail(err, rc, "%s", own.text) : MT_OK;
+    return mt_pass_final(rc, &own, err);
 }
 
 /* Nobody can tell which mode is meant: the goal is not met, whatever its number. */
@@ -186,7 +181,7 @@ static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
     double percent = nan("");
     g->worst = nan("");
     const mt_status rc = mt_demand_eval(fresh, d, false, v, &own);
-    if (ends(rc)) {
+    if (mt_is_final(rc)) {
         return mt_fail(err, rc, "%s", own.text);
     }
     if (rc == MT_OK) {

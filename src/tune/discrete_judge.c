@@ -120,11 +120,6 @@ static void judge_bands(const mt_problem *p, mt_combination *c)
     }
 }
 
-static bool ends(mt_status rc)
-{
-    return rc == MT_E_MEMORY || rc == MT_E_INTERNAL;
-}
-
 static mt_status judge_design(const mt_discrete *d, int worker, mt_combination *c, mt_err *err)
 {
     mt_problem *const p = d->problems[worker];
@@ -135,7 +130,7 @@ static mt_status judge_design(const mt_discrete *d, int worker, mt_combination *
     if (rc != MT_OK) {
         c->stop = rc == MT_E_INTERRUPTED ? MT_STOP_USER : MT_STOP_DONE;
         c->judged = rc != MT_E_INTERRUPTED;
-        return ends(rc) ? mt_fail(err, rc, "%s", own.text) : MT_OK;
+        return mt_pass_final(rc, &own, err);
     }
     c->judged = true;
     c->violation = 0.0;
@@ -204,7 +199,7 @@ mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err)
     }
     d->evals += c->evals - 1;
     c->feasible = c->feasible && rc == MT_OK;
-    return ends(rc) ? mt_fail(err, rc, "%s", own.text) : MT_OK;
+    return mt_pass_final(rc, &own, err);
 }
 
 static mt_status judge_designs(void *context, int worker, int task, mt_err *err)
@@ -292,7 +287,7 @@ static mt_status search_closed(mt_problem *p, mt_arena *mem, mt_combination *c, 
         c->feasible = false;
         c->squares = HUGE_VAL;
     }
-    return ends(rc) ? mt_fail(err, rc, "%s", why.text) : MT_OK;
+    return mt_pass_final(rc, &why, err);
 }
 
 mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_arena *mem,

@@ -44,7 +44,7 @@ mt_status mt_gap_assignment(mt_problem *p, const double *t, int *below, double *
         const mt_status rc = mt_analysis_solve(a, p->x, &opt, &own);
         if (rc != MT_OK) {
             *violation = nan("");
-            return mt_is_final(rc) ? mt_fail(err, rc, "%s", own.text) : MT_OK;
+            return mt_pass_final(rc, &own, err);
         }
         const double v = mt_clear_violation(c, &a->modes, below + c->first, NULL);
         *violation = !(v <= *violation) ? v : *violation;

@@ -219,7 +219,7 @@ static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
         s->found.n_solutions = 0;
         s->found.stop = s->rc == MT_E_INTERRUPTED ? MT_STOP_USER : s->found.stop;
     }
-    const bool fatal = s->rc == MT_E_MEMORY || s->rc == MT_E_INTERNAL;
+    const bool fatal = mt_is_final(s->rc);
     return fatal ? mt_fail(err, s->rc, "%s", why.text) : MT_OK;
 }
 

@@ -59,7 +59,7 @@ typedef struct walk {
 
 static bool ends(mt_status rc)
 {
-    return rc == MT_E_MEMORY || rc == MT_E_INTERNAL || rc == MT_E_INTERRUPTED;
+    return mt_is_final(rc) || rc == MT_E_INTERRUPTED;
 }
 
 /* The family's mechanism with the position as its last input, made at the original design. */

@@ -258,7 +258,7 @@ static bool is_final(mt_nlp_engine *e, mt_status rc, const mt_err *here)
         e->stop = MT_STOP_USER;
         return true;
     }
-    if (rc == MT_E_MEMORY || rc == MT_E_INTERNAL) {
+    if (mt_is_final(rc)) {
         mt_nlp_end(e, mt_fail(e->err, rc, "%s", here->text));
         return true;
     }

@@ -121,7 +121,7 @@ static mt_status confirm(mt_problem *q, const mt_move *m, const double *t, mt_ar
     MT_TRY(mt_problem_values_init(q, mem, &v, err));
     const mt_status rc = mt_problem_eval(q, t, false, &v, &own);
     if (rc != MT_OK) {
-        return mt_is_final(rc) ? mt_fail(err, rc, "%s", own.text) : MT_OK;
+        return mt_pass_final(rc, &own, err);
     }
     *value = mt_relax_value(q, m, &v);
     memcpy(x, q->x, (size_t)q->n * sizeof *x);
@@ -207,8 +207,7 @@ static mt_status search_in_gap(const job *j, const mt_study *study, const int *b
     }
     const mt_nlp nlp = nlp_of(&r, j->near, hint);
     const mt_status own = mt_nlp_solve(&nlp, &opt, &out->mem, &found, &why);
-    const bool fatal = own == MT_E_MEMORY || own == MT_E_INTERNAL;
-    mt_status rc = fatal ? mt_fail(err, own, "%s", why.text) : MT_OK;
+    mt_status rc = mt_pass_final(own, &why, err);
     out->evals += found.evals;
     out->starts += found.starts;
     out->stopped = out->stopped || found.stop == MT_STOP_USER;

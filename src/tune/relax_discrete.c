@@ -115,7 +115,7 @@ static mt_status look_at_some(void *context, int worker, int task, mt_err *err)
         mt_err own = {0};
         set_combination(p, k, p->work);
         const mt_status rc = mt_problem_eval(p, p->work, false, v, &own);
-        if (rc == MT_E_MEMORY || rc == MT_E_INTERNAL) {
+        if (mt_is_final(rc)) {
             return mt_fail(err, rc, "%s", own.text);
         }
         e->stopped[task] = rc == MT_E_INTERRUPTED;

@@ -67,17 +67,12 @@ typedef struct sampler {
     double root; /* of the spread */
 } sampler;
 
-static bool ends(mt_status rc)
-{
-    return rc == MT_E_MEMORY || rc == MT_E_INTERNAL;
-}
-
 /* Values at x, noted; NaN where there are none. */
 static mt_status visit(sampler *s, const double *x, bool with_gradient, mt_err *err)
 {
     mt_err own = {0};
     const mt_status rc = s->q->eval(s->q->context, x, with_gradient, s->value, &own);
-    if (ends(rc)) {
+    if (mt_is_final(rc)) {
         return mt_fail(err, rc, "%s", own.text);
     }
     for (int k = 0; k < s->q->m && rc != MT_OK; k++) {
@@ -182,7 +177,7 @@ static mt_status step(sampler *s, int k, mt_robust_side side, mt_err *err)
     mt_err own = {0};
     const mt_status rc = q->slope(q->context, k, s->slope, &own);
     if (rc != MT_OK) {
-        return ends(rc) ? mt_fail(err, rc, "%s", own.text) : MT_OK;
+        return mt_pass_final(rc, &own, err);
     }
     for (int i = 0; i < q->n; i++) {
         const bool down = (s->slope[i] > 0.0) == (side == MT_LOWEST);

@@ -229,7 +229,7 @@ mt_status mt_search_designs(mt_problem *const *problems, int n_workers, mt_arena
     mt_err own = {.code = MT_OK};
     *stage = 0;
     const mt_status rc = first_stage(problems, n_workers, mem, out, &own);
-    if (rc == MT_E_MEMORY || rc == MT_E_INTERNAL || rc == MT_E_USAGE) {
+    if (mt_is_final(rc) || rc == MT_E_USAGE) {
         return mt_fail(err, rc, "%s", own.text);
     }
     if (rc != MT_OK) {

@@ -108,7 +108,7 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
         }
     }
     mt_arena_rewind(w->mem, mark);
-    const bool fatal = rc == MT_E_MEMORY || rc == MT_E_INTERNAL || rc == MT_E_USAGE;
+    const bool fatal = mt_is_final(rc) || rc == MT_E_USAGE;
     return fatal ? mt_fail(err, rc, "%s", own.text) : MT_OK;
 }
 
@@ -417,7 +417,7 @@ mt_status mt_search_repeated(mt_problem *p, long most, mt_arena *mem, mt_nlp_res
         if (out->solutions[i].kkt > STATIONARY && out->solutions[i].feasible) {
             any = true;
             const mt_status rc = refine_one(&w, &out->solutions[i], err);
-            if (rc == MT_E_MEMORY || rc == MT_E_INTERNAL || rc == MT_E_USAGE) {
+            if (mt_is_final(rc) || rc == MT_E_USAGE) {
                 return rc;
             }
         }

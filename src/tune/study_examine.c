@@ -107,7 +107,7 @@ static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, 
         if (solved == MT_OK) {
             look(r, &a->modes);
         }
-        rc = mt_is_final(solved) ? mt_fail(err, solved, "%s", ignored.text) : MT_OK;
+        rc = mt_pass_final(solved, &ignored, err);
     }
     mt_analysis_delete(a);
     return rc;

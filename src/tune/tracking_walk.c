@@ -19,11 +19,6 @@ typedef struct walk {
     double s;
 } walk;
 
-static bool fatal(mt_status rc)
-{
-    return rc == MT_E_MEMORY || rc == MT_E_INTERNAL;
-}
-
 /* Has the shape dissolved among several modes? */
 static bool dissolved(const mt_track *k)
 {
@@ -51,7 +46,7 @@ static mt_status try_at(walk *k, double s, bool *told, mt_err *err)
     *told = false;
     const mt_status rc = s < 1.0 ? k->way->solve(k->way->context, s, &a, &own) : MT_OK;
     if (rc != MT_OK) {
-        return fatal(rc) ? mt_fail(err, rc, "%s", own.text) : MT_OK;
+        return mt_pass_final(rc, &own, err);
     }
     MT_TRY(mt_track_match(a, k->n, k->w, k->tracks, err));
     *told = settled(k);

@@ -110,6 +110,6 @@ mt_status mt_trade_improves(const mt_study *study, const double *x, const double
     mt_reference_cache_free(&w.references);
     mt_arena_free(&w.mem);
     /* a start without a value is no better start, and no failure */
-    const bool ends = rc == MT_E_MEMORY || rc == MT_E_INTERNAL;
+    const bool ends = mt_is_final(rc);
     return ends ? mt_fail(err, rc, "%s", why.text) : MT_OK;
 }
