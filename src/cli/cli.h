@@ -2,12 +2,12 @@
 #ifndef CLI_CLI_H
 #define CLI_CLI_H
 
+#include "analysis/analysis.h"
 #include "cli/args.h"
 #include "cli/terminal.h"
 #include "io/io.h"
 #include "io/write_json.h"
-#include "tune/analysis.h"
-#include "tune/study.h"
+#include "study/study.h"
 
 /*
  * The commands. Each appends what goes to standard output to `out`, writes talk and problems to standard error itself, and returns the exit status.

@@ -2,12 +2,12 @@
 /* modetune check: every problem of model, study, result and aircraft files. */
 #include <string.h>
 
+#include "answer/doubts.h"
 #include "cli/cli.h"
 #include "io/file.h"
+#include "problem/problem.h"
 #include "report/summary.h"
 #include "report/table.h"
-#include "tune/doubts.h"
-#include "tune/problem.h"
 
 typedef enum file_kind {
     KIND_MODEL,

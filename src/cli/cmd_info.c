@@ -2,12 +2,12 @@
 /* modetune info: what each configuration weighs and how it can move. */
 #include <math.h>
 
+#include "answer/doubts.h"
 #include "base/format.h"
 #include "cli/cli.h"
 #include "mechanics/info.h"
 #include "report/number.h"
 #include "report/table.h"
-#include "tune/doubts.h"
 
 enum { DIGITS = 6, SPATIAL = 6 };
 

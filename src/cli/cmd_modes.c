@@ -3,12 +3,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "answer/doubts.h"
 #include "base/format.h"
 #include "cli/cli.h"
 #include "cli/damped.h"
 #include "cli/shapes.h"
 #include "report/table.h"
-#include "tune/doubts.h"
 
 enum { HZ_DIGITS = 6, RATIO_DIGITS = 2 };
 /* A table on paper tells the error of a frequency from this part of it on: the digits that it prints. */

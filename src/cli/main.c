@@ -3,7 +3,7 @@
 
 #include "cli/cli.h"
 #include "linalg/blas.h"
-#include "tune/prepare.h"
+#include "nlp/prepare.h"
 
 extern char **environ;
 

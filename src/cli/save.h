@@ -3,7 +3,7 @@
 #define CLI_SAVE_H
 
 #include "cli/args.h"
-#include "tune/result.h"
+#include "result/result.h"
 
 /* Before anything is run: has every study a folder of its own? Returns MT_EXIT_DONE, or the exit status, everything said. */
 int mt_save_plan(const mt_args *args);

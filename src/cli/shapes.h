@@ -2,7 +2,7 @@
 #ifndef CLI_SHAPES_H
 #define CLI_SHAPES_H
 
-#include "tune/analysis.h"
+#include "analysis/analysis.h"
 
 /* Shapes of modes where they can be seen: at the sensors, or, without any, as motions of the bodies. */
 typedef struct mt_shapes {

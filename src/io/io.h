@@ -6,9 +6,9 @@
 #include "io/json.h"
 #include "io/write_json.h"
 #include "model/model.h"
-#include "tune/aircraft.h"
-#include "tune/result.h"
-#include "tune/study.h"
+#include "result/result.h"
+#include "study/aircraft.h"
+#include "study/study.h"
 
 typedef struct mt_io_options {
     /* folder that files named by other files must lie in; NULL: for a study the parent of its folder, for a model no limit */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "io/file.h"
-#include "tune/bands.h"
+#include "study/bands.h"
 
 #define KEY_ENUM(id, name, type, required) id,
 #define KEY(id, name, type, required)      {name, type, required},

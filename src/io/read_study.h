@@ -4,7 +4,7 @@
 
 #include "io/io.h"
 #include "io/reader.h"
-#include "tune/study.h"
+#include "study/study.h"
 
 /* The tables of keys of a study file, for the test that holds them to the JSON Schema; *n their number. `what` is the name of the
  * schema's definition, "" the root. */

@@ -4,7 +4,7 @@
 
 #include "io/io.h"
 #include "io/reader.h"
-#include "tune/study.h"
+#include "study/study.h"
 
 /* A model file that has been asked for. */
 typedef struct mt_study_file {

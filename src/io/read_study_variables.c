@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/read_study_priv.h"
 
-#include "tune/catalogue.h"
+#include "study/catalogue.h"
 
 #define VARIABLE_KEYS(X)                                             \
     X(VARIABLE_PARAMETER, "parameter", MT_KEY_TEXT, true)            \

@@ -3,7 +3,7 @@
 #define REPORT_RESULT_TABLES_H
 
 #include "report/table.h"
-#include "tune/result.h"
+#include "result/result.h"
 
 /* Tables of a result; the caller frees them. Frequencies have 6 significant digits, changes 3. */
 

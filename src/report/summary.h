@@ -3,7 +3,7 @@
 #define REPORT_SUMMARY_H
 
 #include "base/text.h"
-#include "tune/result.h"
+#include "result/result.h"
 
 /* What a result says, as text for a terminal: status, goals, frequencies, parameters, reasons, alternatives, what stays undetermined, certificates and,
  * where asked for, published against computed. Memory running out shows in out->failed. */

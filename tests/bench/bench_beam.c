@@ -12,10 +12,10 @@
 #include <string.h>
 #include <time.h>
 
+#include "analysis/analysis.h"
+#include "answer/solve.h"
 #include "exact_beam.h"
 #include "io/io.h"
-#include "tune/analysis.h"
-#include "tune/solve.h"
 
 enum { ROUNDS = 15, CALLS = 400, SOLVES = 9, FULL_SOLVES = 3 };
 

@@ -28,7 +28,7 @@
 #include "mt_random.h"
 #include "mt_sites.h"
 #include "mt_test.h"
-#include "tune/prepare.h"
+#include "nlp/prepare.h"
 
 enum {
     MOST_ASKED = 1 << 20,

@@ -12,7 +12,7 @@
 #include "mt_alloc.h"
 #include "mt_child.h"
 #include "mt_test.h"
-#include "tune/prepare.h"
+#include "nlp/prepare.h"
 
 /* A body without mass that nothing holds. */
 static const char GHOST[] =

@@ -13,7 +13,7 @@
 #include "mt_alloc.h"
 #include "mt_sites.h"
 #include "mt_test.h"
-#include "tune/prepare.h"
+#include "nlp/prepare.h"
 
 enum { MOST_WORDS = 16, ALLOCATIONS_TRIED = 60 };
 

@@ -5,6 +5,8 @@
  */
 #include <math.h>
 
+#include "analysis/analysis.h"
+#include "answer/doubts.h"
 #include "cli/damped.h"
 #include "common/fuzz.h"
 #include "io/io.h"
@@ -12,8 +14,6 @@
 #include "mechanics/info.h"
 #include "mechanics/sweep.h"
 #include "model/values.h"
-#include "tune/analysis.h"
-#include "tune/doubts.h"
 
 /* Stiffness over mass [rad^2/s^2] beyond which slopes, products of two such numbers, may be no doubles. */
 static const double SLOPED_SCALE = 1e150;

@@ -8,13 +8,13 @@
 #include <string.h>
 #include <sys/time.h>
 
+#include "answer/solve.h"
 #include "common/fuzz.h"
 #include "io/io.h"
 #include "linalg/blas.h"
+#include "problem/problem.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
-#include "tune/problem.h"
-#include "tune/solve.h"
 
 enum {
     MOST_VARIABLES = 6,

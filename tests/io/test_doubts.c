@@ -2,10 +2,10 @@
 /* Doubts are found under the same promise as everything else: no leak, no crash, whichever allocation fails. What they say is tested by tests/cli/test_doubts.py. */
 #include <unistd.h>
 
+#include "answer/doubts.h"
 #include "io/io.h"
 #include "mt_alloc.h"
 #include "mt_test.h"
-#include "tune/doubts.h"
 
 static mt_status examine(const char *name, int *found)
 {

@@ -13,11 +13,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "answer/solve.h"
 #include "io/file.h"
 #include "io/io.h"
 #include "mt_hostile.h"
 #include "mt_test.h"
-#include "tune/solve.h"
 
 enum {
     MAX_NODES = 8192,

@@ -7,9 +7,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/analysis.h"
 #include "io/io.h"
 #include "support/mt_test.h"
-#include "tune/analysis.h"
 
 enum { MECH_PATH = 512, MECH_INPUTS = 16 };
 

@@ -10,11 +10,11 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "analysis/analysis.h"
+#include "answer/solve.h"
 #include "io/io.h"
 #include "mt_test.h"
 #include "report/result_tables.h"
-#include "tune/analysis.h"
-#include "tune/solve.h"
 
 #define PROBLEMS MT_TEST_SOURCE_DIR "/problems/"
 #define STUDIES  MT_TEST_SOURCE_DIR "/studies/"

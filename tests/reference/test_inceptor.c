@@ -7,11 +7,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/analysis.h"
+#include "answer/solve.h"
 #include "io/io.h"
 #include "model/values.h"
 #include "mt_test.h"
-#include "tune/analysis.h"
-#include "tune/solve.h"
 
 #define PROBLEMS MT_TEST_SOURCE_DIR "/problems/"
 #define STUDIES  MT_TEST_SOURCE_DIR "/studies/"

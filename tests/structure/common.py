@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 ROOT = Path(os.environ.get("SOURCE_DIR", Path(__file__).resolve().parents[2]))
-ROOMS = ("base", "linalg", "expr", "model", "mechanics", "modal", "tune", "io", "report", "cli")
+ROOMS = ("base", "linalg", "expr", "model", "mechanics", "modal", "analysis", "nlp", "study",
+         "result", "prove", "problem", "search", "describe", "answer", "io", "report", "cli")
 
 _TOKENS = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', re.S)
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "mt_test.h"
-#include "tune/nlp.h"
+#include "nlp/nlp.h"
 
 enum { N_MOST = 48, M_MOST = 48 };
 

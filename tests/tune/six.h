@@ -8,11 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/analysis.h"
+#include "answer/solve.h"
 #include "base/text.h"
 #include "io/io.h"
 #include "mt_test.h"
-#include "tune/analysis.h"
-#include "tune/solve.h"
 
 enum { SIX = 6, SIX_BANDS = 4, SIX_MOST = 32 };
 

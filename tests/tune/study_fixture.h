@@ -12,9 +12,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "answer/solve.h"
 #include "io/io.h"
 #include "support/mt_test.h"
-#include "tune/solve.h"
 
 enum { STUDY_PATH = 512 };
 

@@ -2,8 +2,8 @@
 /* Every place from loading a study to its answer that asks for memory is refused once: that is a failure with its name, and nothing is lost or left. */
 #include "mt_alloc.h"
 #include "mt_sites.h"
+#include "nlp/prepare.h"
 #include "study_kinds.h"
-#include "tune/prepare.h"
 
 /* Under valgrind every tenth place. */
 static int stride(void)

@@ -4,7 +4,7 @@
 
 #include "mt_alloc.h"
 #include "mt_test.h"
-#include "tune/bands.h"
+#include "study/bands.h"
 
 /* edges are products of three or four numbers */
 static const double TOL = 1e-14;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "mt_test.h"
-#include "tune/catalogue.h"
+#include "study/catalogue.h"
 
 enum { ROOM = MT_MAX_CATALOGUE };
 

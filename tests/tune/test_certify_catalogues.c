@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 #include "mechanics/mech.h"
+#include "prove/certify.h"
 #include "support/mt_random.h"
-#include "tune/certify.h"
 
 enum { TEXT = 4096, SYSTEMS = 60, MASSES = 3, VALUES = 7, SAMPLES = 400 };
 

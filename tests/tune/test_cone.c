@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "mt_test.h"
-#include "tune/cone.h"
+#include "nlp/cone.h"
 
 enum { SPRINGS = 3 };
 static const double THIRD = 1.0471975511965976; /* pi/3 */

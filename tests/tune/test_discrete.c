@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Catalogues against brute force: every combination judged by the modes alone. */
+#include "search/discrete.h"
 #include "six.h"
 #include "study_fixture.h"
-#include "tune/discrete.h"
 
 /* The change is the same sum in another order; ln of k exp(x) is x to rounding. */
 static const double ROUNDING = 1e-12;

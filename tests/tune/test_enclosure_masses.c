@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Row of six masses: m = (2, 1.5, 1, 1, 0.8, 0.5) kg, k = (4, 3, 2, 2, 1.5, 1)e4 exp(x) N/m, four bands. All 210 monotone assignments are settled. */
 #include "mechanics/mech.h"
+#include "prove/certify.h"
 #include "support/mt_alloc.h"
-#include "tune/certify.h"
 
 enum { N = 6, BANDS = 4 };
 

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 
 #include "mechanics/mech.h"
+#include "prove/certify.h"
 #include "support/mt_random.h"
-#include "tune/certify.h"
 
 enum {
     TEXT = 8192,

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 #include "mechanics/mech.h"
+#include "prove/certify.h"
 #include "support/mt_random.h"
-#include "tune/certify.h"
 
 enum { TEXT = 16384, SYSTEMS = 40, SAMPLES = 60, MODES = 96, FAMILIES = 5 };
 

@@ -4,8 +4,8 @@
  * starts or boxes there are. The linker leads every call of a kernel through here (tests/CMakeLists.txt), where its multiplications are counted.
  */
 #include "linalg/dense.h"
+#include "nlp/prepare.h"
 #include "study_kinds.h"
-#include "tune/prepare.h"
 
 /*
  * In n^3, n the states of the largest configuration: a few decompositions (about 10 n^3 each) are one unit of work; two units are more. What is counted for matrices of one or two rows is their

@@ -7,9 +7,9 @@
  */
 #include <glob.h>
 
+#include "describe/describe.h"
+#include "nlp/prepare.h"
 #include "study_kinds.h"
-#include "tune/describe.h"
-#include "tune/prepare.h"
 
 enum { PLACES = 50, PATH_SIZE = 600 };
 /* Questions of one study that the short form goes through on its way to all its places together, and the places that each has at least. Of the tree, a study that asks more than LONG is

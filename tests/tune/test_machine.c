@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "mt_test.h"
-#include "tune/bands.h"
+#include "study/bands.h"
 
 static const double TOL = 1e-15;
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How the change of a variable counts: ln(new/original), smoothly down to 0 where 0 is allowed; what else it is, is told. */
 #include "mt_random.h"
+#include "problem/problem.h"
 #include "study_fixture.h"
-#include "tune/problem.h"
 
 /* Kept equations hold to 1e-6 relative; an optimum of a smooth change is then good to about that. */
 static const double SAME = 1e-9;

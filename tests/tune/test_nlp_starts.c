@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Starting points: the origin, then a sequence that fills the bounds in any dimension. */
-#include "tune/nlp_priv.h"
+#include "nlp/nlp_priv.h"
 
 #include "nlp_problem.h"
 

@@ -6,8 +6,8 @@
  *     k1 = k2^2 / (k2 - lambda m) - k2 + lambda m,
  * and at k1 = 0 lambda = 0, 2 k2 / m.
  */
-#include "tune/describe.h"
-#include "tune/enclosure.h"
+#include "describe/describe.h"
+#include "prove/enclosure.h"
 #include "tune/study_fixture.h"
 
 static const double K2 = 1000.0;

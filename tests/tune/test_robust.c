@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tolerances against brute force: every corner of the box, and random designs within it. */
 #include "mt_random.h"
+#include "problem/problem.h"
 #include "six.h"
-#include "tune/problem.h"
 
 static const double TOLERANCE = 0.02;
 /* A goal counts as met within 1e-6. */

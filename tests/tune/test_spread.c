@@ -9,9 +9,9 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "answer/solve.h"
 #include "io/io.h"
 #include "mt_test.h"
-#include "tune/solve.h"
 
 static const char MODEL[] =
     "{\"format\": \"modetune-model/1\", \"dimension\": 2,"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The whole callback of the search against central differences: every row of every kind of goal, every objective, every coordinate. */
 #include "mt_slope.h"
+#include "problem/problem.h"
 #include "study_fixture.h"
-#include "tune/problem.h"
 
 /* One evaluation is good to some n eps of the eigenvalues, more where shapes enter. */
 static const double NOISE = 1e-13;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* As many target frequencies as variables: all designs that have them, ranked by change. */
+#include "analysis/analysis.h"
 #include "study_fixture.h"
-#include "tune/analysis.h"
 
 /* Targets are met to 1e-6 relative (the default tolerance), roots are polished far beyond. */
 static const double ROOT_TOL = 1e-9;

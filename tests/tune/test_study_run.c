@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How a study runs: the same bytes every time and for any number of workers, budgets, interruption, shortage of memory, and the comparison with a fresh analysis. */
+#include "describe/describe.h"
 #include "mt_alloc.h"
+#include "nlp/prepare.h"
 #include "study_fixture.h"
-#include "tune/describe.h"
-#include "tune/prepare.h"
 
 #define MODEL STUDY_TWO_MASSES("'k1': 2.9, 'k2': 1.05, 'm': 1", "")
 #define SPRINGS                                                     \

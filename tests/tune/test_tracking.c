@@ -4,9 +4,9 @@
  *     K = [k1 + c, -c; -c, k2 + c],   tan 2 theta = -2 c / (k2 - k1),
  * where theta is the angle of the modes to the masses. A name that was given at theta_0 has the share cos^2(theta - theta_0) of the mode that turned with it: everything below is that closed form.
  */
+#include "problem/problem.h"
 #include "study_fixture.h"
 #include "support/mt_random.h"
-#include "tune/problem.h"
 
 #define TWO_OSCILLATORS                                                                   \
     "{'format': 'modetune-model/1', 'name': 'two oscillators', 'dimension': 2,"           \

@@ -3,7 +3,7 @@
  * Fresh analyses that disagree, through a whole answer. No study is known for which they do, so it is planted: this program has its own mt_describe_disagreement in place of the one in
  * describe_verify.c (which test_rank.c tests).
  */
-#include "tune/describe.h"
+#include "describe/describe.h"
 #include "tune/study_fixture.h"
 
 static double planted_above_hz; /* mode 1 above it: disagree */

@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "analysis/analysis.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/interrupt.h"
+#include "mechanics/energy.h"
+
+enum { DIRECTION_TEXT = 300 };
+
+mt_analysis_options mt_analysis_options_default(void)
+{
+    const mt_analysis_options opt = {
+        .gradient = false, .vectors = true, .accuracy = true, .check = true};
+    return opt;
+}
+
+const char *mt_analysis_configuration(const mt_analysis *a)
+{
+    return a->sys->model->configurations[a->sys->configuration].name.s;
+}
+
+void mt_analysis_delete(mt_analysis *a)
+{
+    if (a != NULL) {
+        mt_arena_free(&a->mass_mem);
+        mt_arena_free(&a->mem);
+        mt_linear_delete(a->lin);
+        mt_system_delete(a->sys);
+        free(a);
+    }
+}
+
+mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs,
+                          const int *inputs, const double *at, mt_analysis **out, mt_err *err)
+{
+    return mt_analysis_new_driven(model, configuration, NULL, n_inputs, inputs, at, out, err);
+}
+
+mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
+                                 const mt_system_drive *drive, int n_inputs, const int *inputs,
+                                 const double *at, mt_analysis **out, mt_err *err)
+{
+    mt_analysis *const a = calloc(1, sizeof *a);
+    const mt_analysis_options opt = mt_analysis_options_default();
+    *out = NULL;
+    if (a == NULL) {
+        return mt_fail_memory(err);
+    }
+    a->n_rigid = -1;
+    mt_status rc =
+        mt_system_new_driven(model, configuration, drive, n_inputs, inputs, at, &a->sys, err);
+    if (rc == MT_OK) {
+        rc = mt_linear_new(a->sys, &a->lin, err);
+    }
+    if (rc == MT_OK) {
+        rc = mt_analysis_solve(a, at, &opt, err);
+    }
+    if (rc != MT_OK) {
+        mt_analysis_delete(a);
+        return mt_err_in(err, rc, "configuration \"%s\"",
+                         model->configurations[configuration].name.s);
+    }
+    a->n_rigid = a->modes.n_rigid;
+    a->n_null = a->modes.n_rigid;
+    a->n_most = a->modes.count;
+    *out = a;
+    return MT_OK;
+}
+
+/* Factor the reduced mass again where it has changed. */
+static mt_status refresh_mass(mt_analysis *a, mt_err *err)
+{
+    if (a->mass_version == a->lin->mass_version) {
+        return MT_OK;
+    }
+    const mt_arena_mark start = {a->mass_mem.first, 0, 0};
+    mt_arena_rewind(&a->mass_mem, start);
+    a->mass_version = 0;
+    MT_TRY(mt_modal_factor_mass(a->lin->n, a->lin->m_r, &a->mass_mem, &a->mass, err));
+    a->mass_version = a->lin->mass_version;
+    return MT_OK;
+}
+
+static mt_status solve_and_judge(mt_analysis *a, const mt_stiffness_factor *factor,
+                                 const mt_modal_options *options, mt_err *err)
+{
+    MT_TRY(
+        mt_modal_solve_factored(a->lin->k, &a->mass, factor, options, &a->mem, &a->modes, err));
+    const bool asked = a->lin->kg != NULL || mt_modal_in_doubt(&a->modes);
+    if (a->modes.y == NULL || !asked) {
+        return MT_OK;
+    }
+    const size_t count = (size_t)a->modes.count;
+    const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
+    mt_mode_energies e = {.stiffness = mt_arena_f64(&a->mem, count, 1),
+                          .mass = mt_arena_f64(&a->mem, count, 1),
+                          .stiffness_noise = mt_arena_f64(&a->mem, count, 1),
+                          .mass_noise = mt_arena_f64(&a->mem, count, 1),
+                          .load_noise = mt_arena_f64(&a->mem, count, 1),
+                          .strained = mt_arena_alloc(&a->mem, count, sizeof(bool))};
+    if (e.stiffness == NULL || e.mass == NULL || e.stiffness_noise == NULL ||
+        e.mass_noise == NULL || e.load_noise == NULL || e.strained == NULL) {
+        return mt_fail_memory(err);
+    }
+    const mt_energies out = {.stiffness = e.stiffness,
+                             .mass = e.mass,
+                             .stiffness_noise = e.stiffness_noise,
+                             .mass_noise = e.mass_noise,
+                             .load_noise = e.load_noise,
+                             .strained = e.strained};
+    MT_TRY(mt_linear_energies(a->lin, a->modes.count, a->modes.y, &out, err));
+    mt_modal_judge(&e, options->n_rigid, &a->modes);
+    mt_arena_rewind(&a->mem, mark);
+    return MT_OK;
+}
+
+mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
+                            const mt_analysis_options *opt, mt_err *err)
+{
+    const mt_arena_mark start = {a->mem.first, 0, 0};
+    mt_arena_rewind(&a->mem, start);
+    a->solves++;
+    a->with_gradient = false;
+    a->modes = (mt_modes){0}; /* where this fails there are none: not those of another design */
+    MT_TRY(mt_linear_update(a->lin, inputs, opt->gradient, err));
+    MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
+    MT_TRY(refresh_mass(a, err));
+    const mt_linear *const lin = a->lin;
+    const mt_stiffness_factor factor = {.rows = lin->list[MT_TERM_STIFFNESS].n_rows,
+                                        .b = lin->factor_b,
+                                        .c = lin->factor_c,
+                                        .noise = lin->factor_noise,
+                                        .g = lin->has_factor_g ? lin->factor_g : NULL,
+                                        .interrupt = a->sys->model->interrupt};
+    mt_modal_options options = mt_modal_options_default();
+    options.n_rigid = a->n_rigid;
+    /* where K is no sum of squares, shapes say what rounding leaves of its sign */
+    options.vectors = opt->vectors || opt->gradient || lin->has_factor_g;
+    options.need_accuracy = opt->accuracy;
+    options.check = opt->check;
+    mt_status rc = solve_and_judge(a, &factor, &options, err);
+    if (rc == MT_OK && a->modes.n_held > 0 && a->recount) {
+        options.n_rigid = -1;
+        rc = solve_and_judge(a, &factor, &options, err);
+    }
+    if (rc == MT_E_MASSLESS && a->modes.massless != NULL) {
+        char text[DIRECTION_TEXT];
+        mt_linear_name_direction(lin, a->modes.massless, text, sizeof text);
+        return mt_fail(
+            err, rc,
+            "neither mass nor stiffness holds %s: give it a mass, a spring, or a joint", text);
+    }
+    MT_TRY(rc);
+    if (a->modes.n_held > 0) {
+        return mt_fail(err, MT_E_DOMAIN,
+                       "stiffness holds %d of the %d directions that are counted as rigid-body "
+                       "modes: the count of vibration modes does not hold at this design",
+                       a->modes.n_held, a->n_rigid);
+    }
+    a->with_gradient = opt->gradient;
+    if (opt->gradient) {
+        const size_t n = (size_t)lin->n;
+        a->dky = mt_arena_f64(&a->mem, n, (size_t)a->sys->n_inputs);
+        a->dmy = mt_arena_f64(&a->mem, n, (size_t)a->sys->n_inputs);
+        a->slopes = mt_arena_f64(&a->mem, (size_t)a->modes.count, (size_t)a->sys->n_inputs);
+        a->sloped = mt_arena_alloc(&a->mem, (size_t)a->modes.count, sizeof *a->sloped);
+        if (a->dky == NULL || a->dmy == NULL || a->slopes == NULL || a->sloped == NULL) {
+            return mt_fail_memory(err);
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_analysis_products(mt_analysis *a, int pos, mt_err *err)
+{
+    const ptrdiff_t n = a->lin->n;
+    if (!a->with_gradient) {
+        return mt_fail(err, MT_E_INTERNAL,
+                       "derivatives asked for after a solve without gradient");
+    }
+    MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
+    for (int p = 0; p < a->sys->n_inputs; p++) {
+        MT_TRY(mt_linear_products(a->lin, p, 1, a->modes.y + (pos * n), a->dky + (p * n),
+                                  a->dmy + (p * n), NULL, err));
+    }
+    return MT_OK;
+}
+
+mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_err *err)
+{
+    const ptrdiff_t n = a->lin->n;
+    const double *const y = a->modes.y + (pos * n);
+    const size_t np = (size_t)a->sys->n_inputs;
+    const bool known = a->with_gradient && a->sloped[pos];
+    if (!known) {
+        MT_TRY(mt_analysis_products(a, pos, err));
+    }
+    double *const slope = a->slopes + ((size_t)pos * np);
+    for (int p = 0; p < a->sys->n_inputs && !known; p++) {
+        slope[p] = mt_dot((int)n, y, a->dky + (p * n)) -
+                   (a->modes.lambda[pos] * mt_dot((int)n, y, a->dmy + (p * n)));
+    }
+    a->sloped[pos] = true;
+    memcpy(dlambda, slope, np * sizeof *dlambda);
+    return MT_OK;
+}
+
+mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *repeated,
+                              mt_err *err)
+{
+    const ptrdiff_t n = a->lin->n;
+    bool any = false;
+    MT_TRY(mt_analysis_products(a, pos, err));
+    for (int p = 0; p < a->sys->n_inputs; p++) {
+        bool one = false;
+        mt_modal_dlambda(&a->modes, 1, &pos, a->dky + (p * n), a->dmy + (p * n), &dlambda[p],
+                         &one);
+        any = any || one;
+    }
+    if (repeated != NULL) {
+        *repeated = any;
+    }
+    return MT_OK;
+}
+
+mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel, double *s,
+                            double *ds, mt_err *err)
+{
+    const ptrdiff_t n = a->lin->n;
+    const int np = a->sys->n_inputs;
+    const double *const y = a->modes.y + (pos * n);
+    MT_TRY(mt_linear_sense(a->lin, ns, channel, 1, y, s, err));
+    if (ds == NULL || np == 0) {
+        return MT_OK;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
+    double *const dy = mt_arena_f64(&a->mem, (size_t)n, (size_t)np);
+    if (dy == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_analysis_products(a, pos, err));
+    const mt_directions given = {.np = np, .dky = a->dky, .dmy = a->dmy};
+    const mt_pencil pencil = {.n = (int)n, .k = a->lin->k, .m = a->lin->m_r};
+    if (a->modes.n_condensed == 0) {
+        MT_TRY(mt_modal_dvector_by_modes(&a->modes, pos, &given, dy, NULL, &a->mem, err));
+    } else {
+        MT_TRY(
+            mt_modal_dvector(&pencil, a->modes.lambda[pos], y, &given, dy, NULL, &a->mem, err));
+    }
+    for (int p = 0; p < np; p++) {
+        MT_TRY(mt_linear_sense_derivative(a->lin, p, ns, channel, 1, y, dy + (p * n),
+                                          ds + ((ptrdiff_t)p * ns), err));
+    }
+    mt_arena_rewind(&a->mem, mark);
+    return MT_OK;
+}

@@ -1,0 +1,337 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "answer/doubts.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/format.h"
+#include "mechanics/info.h"
+#include "model/values.h"
+
+enum { NAME_SIZE = 400, NUMBER_SIZE = 32, NAMED = 3, STATES_2D = 3, STATES_3D = 6 };
+
+/* kg: a large ship's rudder gear has 1e6, a micromirror 1e-9; steel in t/mm^3 with metres makes 1e-9 of a mass, millimetres with kg/m^3 1e9 of it. */
+static const double MOST_MASS_KG = 1e6;
+static const double LEAST_MASS_KG = 1e-9;
+/* Hz of the lowest mode: a quartz crystal has 3e4, a microresonator 1e6; a period of three hours is no vibration of a mechanism. */
+static const double MOST_LOWEST_HZ = 1e6;
+static const double LEAST_LOWEST_HZ = 1e-4;
+
+double mt_doubts_work(const mt_model *model, int configuration)
+{
+    /* measured, in units of a multiplication in a matrix product: eigenvalues, all that fills matrices, building */
+    static const double PER_CUBE = 0.5;
+    static const double PER_SQUARE = 700.0;
+    static const double PER_NUMBER = 3000.0;
+    const double states = model->dimension == 2 ? STATES_2D : STATES_3D;
+    double bodies = 0.0;
+    double joints = 0.0;
+    for (int i = 0; i < model->n_bodies; i++) {
+        bodies += mt_model_present(&model->bodies[i].in, configuration) ? 1.0 : 0.0;
+    }
+    for (int i = 0; i < model->n_links; i++) {
+        const mt_link *const l = &model->links[i];
+        bodies += mt_model_present(&l->in, configuration) ? (double)l->elements + 1.0 : 0.0;
+    }
+    for (int i = 0; i < model->n_joints; i++) {
+        joints += mt_model_present(&model->joints[i].in, configuration) ? 1.0 : 0.0;
+    }
+    const double size = states * (bodies + joints);
+    const double parts = (double)model->n_nums + model->n_springs + model->n_sensors;
+    return (((PER_CUBE * size) + PER_SQUARE) * size * size) + (PER_NUMBER * parts);
+}
+
+void mt_doubts_left_out(int left, mt_doubt_list *out)
+{
+    (void)mt_doubt_add(
+        out, MT_LEVEL_FACT, "left_out",
+        "%d configuration%s not looked at for free motions and redundant joints: "
+        "too large, or too many",
+        left, left == 1 ? " is" : "s are");
+}
+
+static bool is_grounded(const mt_model *m, int c)
+{
+    for (int i = 0; i < m->n_joints; i++) {
+        for (int side = 0; side < 2 && mt_model_present(&m->joints[i].in, c); side++) {
+            const mt_attach *const a = &m->joints[i].bodies[side];
+            if (a->name.s != NULL && a->kind == MT_ATTACH_GROUND) {
+                return true;
+            }
+        }
+    }
+    for (int i = 0; i < m->n_springs; i++) {
+        const mt_spring *const s = &m->springs[i];
+        const bool there = mt_model_present(&s->in, c) && !s->damper;
+        for (int side = 0; side < 2 && there; side++) {
+            if (s->bodies[side].name.s != NULL && s->bodies[side].kind == MT_ATTACH_GROUND) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static const char MORE[] = ", ...";
+
+/* The list "a", "b", "c", "d" is cut after the third name: a whole beam may turn. */
+static void cut(char *text)
+{
+    int names = 0;
+    for (char *s = strchr(text, ','); s != NULL; s = strchr(s + 1, ',')) {
+        if (++names == NAMED) {
+            memcpy(s, MORE, sizeof MORE); /* fits: one more quoted name stood there */
+            return;
+        }
+    }
+}
+
+/* The first mode of a kind, in words: "rod" (rotation). */
+static void name_motion(const mt_analysis *a, mt_mode_kind kind, char *text)
+{
+    text[0] = '\0';
+    for (int i = 0; i < a->modes.count && text[0] == '\0'; i++) {
+        if (a->modes.kind[i] == kind && a->modes.y != NULL) {
+            mt_linear_name_direction(a->lin, a->modes.y + ((ptrdiff_t)i * a->lin->n), text,
+                                     NAME_SIZE);
+        }
+    }
+    cut(text);
+}
+
+static void say_free(const mt_analysis *a, mt_doubt_list *out)
+{
+    const mt_model *const m = a->sys->model;
+    const int n = a->modes.n_rigid;
+    const int floating = m->dimension == 2 ? STATES_2D : STATES_3D;
+    const char *const s = n == 1 ? "" : "s";
+    char name[NAME_SIZE];
+    if (n == 0) {
+        return;
+    }
+    name_motion(a, MT_MODE_RIGID_BODY, name);
+    if (!is_grounded(m, a->sys->configuration)) {
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion",
+                           n == floating
+                               ? "%d free motion%s: nothing holds it to the ground"
+                               : "%d free motion%s: nothing holds it to the ground, and "
+                                 "its parts are not all held to each other",
+                           n, s);
+        return;
+    }
+    (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion",
+                       "%d free motion%s: is a joint missing? Free to move: %s", n, s, name);
+}
+
+/* Sets of the same joints are told together. */
+static mt_status say_redundant(mt_linear *lin, mt_doubt_list *out, mt_err *err)
+{
+    const int n = mt_linear_redundant(lin);
+    const char *last = "";
+    int same = 0;
+    for (int k = 0; k <= n; k++) {
+        const char *text = "";
+        if (k < n) {
+            MT_TRY(mt_linear_redundant_set(lin, k, &text, err));
+        }
+        if (same > 0 && strcmp(text, last) != 0) {
+            (void)mt_doubt_add(out, MT_LEVEL_FACT, "redundant",
+                               same == 1 ? "redundant: %d equation of %s changes nothing"
+                                         : "redundant: %d equations of %s change nothing",
+                               same, last);
+            same = 0;
+        }
+        last = text;
+        same++;
+    }
+    return MT_OK;
+}
+
+/* One degree, one per cent: more than what a drawing leaves open. */
+static const double MUCH_RAD = 0.017453292519943295;
+static const double MUCH_OF_LENGTH = 0.01;
+
+static void say_motion(const mt_linear *lin, mt_doubt_list *out)
+{
+    const mt_state *const p = &lin->position;
+    const mt_system *const sys = lin->sys;
+    const char *const from = sys->driven ? "where it is driven to" : "the drawing";
+    const bool turns = p->turned_body >= 0 && p->turned_rad > MUCH_RAD;
+    const bool moves = p->moved_body >= 0 && p->moved_m > MUCH_OF_LENGTH * sys->length_m;
+    if (!p->equilibrium.active) {
+        return;
+    }
+    if (turns) {
+        (void)mt_doubt_add(
+            out, MT_LEVEL_FACT, "settles",
+            "it settles away from %s: \"%s\" turns by %.3g degrees, \"%s\" moves by "
+            "%.3g m",
+            from, sys->bodies[p->turned_body].name, p->turned_rad / MUCH_RAD,
+            sys->bodies[p->moved_body < 0 ? p->turned_body : p->moved_body].name, p->moved_m);
+    } else if (moves) {
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "settles",
+                           "it settles away from %s: \"%s\" moves by %.3g m", from,
+                           sys->bodies[p->moved_body].name, p->moved_m);
+    }
+}
+
+/* The linearisation holds within a part of the distance only. */
+static mt_status say_dead_centre(mt_linear *lin, mt_doubt_list *out, mt_err *err)
+{
+    mt_nearness near;
+    MT_TRY(mt_linear_nearness(lin, &near, err));
+    if (near.near) {
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "dead_centre",
+                           "near a dead centre: about %.2g rad (or model lengths) on, joints "
+                           "%s depend on each other; motions must stay far below that",
+                           near.distance, near.joints);
+    }
+    return MT_OK;
+}
+
+/* Rods that may turn about themselves. */
+static void say_idle(const mt_linear *lin, mt_doubt_list *out)
+{
+    char name[NAME_SIZE] = "";
+    int n = 0;
+    for (int b = 0; b < lin->sys->n_bodies && lin->n_idle > 0; b++) {
+        if (lin->idle[b] && n++ < NAMED) {
+            const size_t used = strlen(name);
+            (void)mt_snprintf(name + used, sizeof name - used, "%s\"%s\"", n == 1 ? "" : ", ",
+                              lin->sys->bodies[b].name);
+        }
+    }
+    if (lin->n_idle > 0) {
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "idle_spin",
+                           "%d idle spin%s, without inertia and stiffness, left out: %s%s",
+                           lin->n_idle, lin->n_idle == 1 ? "" : "s", name,
+                           n > NAMED ? ", ..." : "");
+    }
+}
+
+static mt_status say_freedoms(const mt_analysis *a, mt_doubt_list *out, mt_err *err)
+{
+    const int unstable = a->modes.n_unstable + a->modes.n_unstable_condensed;
+    say_motion(a->lin, out);
+    say_free(a, out);
+    say_idle(a->lin, out);
+    if (unstable > 0) {
+        char name[NAME_SIZE];
+        name_motion(a, MT_MODE_UNSTABLE, name);
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "unstable",
+                           "unstable in %d direction%s: it falls over from here%s%s", unstable,
+                           unstable == 1 ? "" : "s", name[0] == '\0' ? "" : ", moving ", name);
+    }
+    if (a->modes.n_undecided > 0) {
+        char name[NAME_SIZE];
+        const int n = a->modes.n_undecided;
+        name_motion(a, MT_MODE_UNDECIDED, name);
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "undecided",
+                           "undecided in %d direction%s: springs and loads cancel to the last "
+                           "digit, and rounding hides whether it holds%s%s",
+                           n, n == 1 ? "" : "s", name[0] == '\0' ? "" : ", moving ", name);
+    }
+    MT_TRY(say_dead_centre(a->lin, out, err));
+    return say_redundant(a->lin, out, err);
+}
+
+static mt_status doubt_scale(const mt_analysis *a, mt_doubt_list *out, mt_err *err)
+{
+    mt_info info;
+    MT_TRY(mt_info_fill(a->lin, &info, err));
+    if (info.mass_kg > MOST_MASS_KG || (info.mass_kg > 0.0 && info.mass_kg < LEAST_MASS_KG)) {
+        char mass[NUMBER_SIZE] = "beyond 1.8e308"; /* masses that no double adds up */
+        if (isfinite(info.mass_kg)) {
+            (void)mt_snprintf(mass, sizeof mass, "%.3g", info.mass_kg);
+        }
+        (void)mt_doubt_add(out, MT_LEVEL_DOUBT, "mass",
+                           "its mass is %s kg, which no mechanism has: is a length in "
+                           "millimetres, a mass in grams, or a density in t/mm^3?",
+                           mass);
+    }
+    for (int i = 0; i < a->modes.count; i++) {
+        const double hz = mt_modal_hz(&a->modes, i);
+        if (a->modes.kind[i] != MT_MODE_FLEXIBLE) {
+            continue;
+        }
+        if (hz > MOST_LOWEST_HZ || hz < LEAST_LOWEST_HZ) {
+            (void)mt_doubt_add(out, MT_LEVEL_DOUBT, "frequency",
+                               "its lowest frequency is %.3g Hz, which no mechanism has: is a "
+                               "length in millimetres, a mass in grams, or a modulus in MPa?",
+                               hz);
+        }
+        break;
+    }
+    return MT_OK;
+}
+
+/* The distance after closing, beside that before. */
+static void add_what_is_left(const mt_analysis *a, mt_doubt_list *list)
+{
+    for (int i = 0; i < list->n; i++) {
+        mt_doubt *const d = &list->items[i];
+        if (strcmp(d->kind, "gap") == 0) {
+            d->text =
+                mt_arena_printf(list->mem, "%s (to %.1e m)", d->text, a->lin->position.gap_m);
+            list->out_of_memory = list->out_of_memory || d->text == NULL;
+        }
+    }
+}
+
+/* Into `out`; what is there already, of another configuration, belongs to no single one. */
+static void merge(mt_doubt_list *out, const mt_doubt *d)
+{
+    for (int i = 0; i < out->n; i++) {
+        mt_doubt *const other = &out->items[i];
+        if (other->addr == d->addr && d->pointer != NULL && other->pointer != NULL &&
+            strcmp(other->text, d->text) == 0 && strcmp(other->pointer, d->pointer) == 0) {
+            other->configuration = NULL;
+            return;
+        }
+    }
+    mt_doubt_copy(out, d);
+}
+
+static mt_status gather(mt_analysis *a, int n_inputs, const int *inputs, const double *at,
+                        mt_doubt_list *list, mt_err *err)
+{
+    const mt_model *const m = a->sys->model;
+    const int c = a->sys->configuration;
+    double *const value = mt_arena_f64(list->mem, (size_t)m->n_nums, 1);
+    if (value == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_model_numbers(m, c, n_inputs, inputs, at, list->mem, value, err));
+    MT_TRY(doubt_scale(a, list, err));
+    MT_TRY(say_freedoms(a, list, err));
+    for (int i = 0; i < list->n; i++) {
+        list->items[i].configuration = m->configurations[c].name.s;
+        list->items[i].file = m->path;
+    }
+    mt_model_judge(m, c, value, list);
+    add_what_is_left(a, list);
+    for (int i = 0; i < list->n; i++) {
+        if (list->items[i].level == MT_LEVEL_FAULT) {
+            return mt_fail(err, MT_E_INPUT, "%s", list->items[i].text);
+        }
+    }
+    return list->out_of_memory ? mt_fail_memory(err) : MT_OK;
+}
+
+mt_status mt_doubts_of_analysis(mt_analysis *a, int n_inputs, const int *inputs,
+                                const double *at, mt_doubt_list *out, mt_err *err)
+{
+    mt_arena mem;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    mt_doubt_list list = mt_doubt_list_default(&mem);
+    const mt_status rc = gather(a, n_inputs, inputs, at, &list, err);
+    for (int level = MT_LEVEL_DOUBT; rc == MT_OK && level >= MT_LEVEL_FACT; level--) {
+        for (int i = 0; i < list.n; i++) {
+            if ((int)list.items[i].level == level) {
+                merge(out, &list.items[i]);
+            }
+        }
+    }
+    mt_arena_free(&mem);
+    return rc == MT_OK && out->out_of_memory ? mt_fail_memory(err) : rc;
+}

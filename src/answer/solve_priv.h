@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef ANSWER_SOLVE_PRIV_H
+#define ANSWER_SOLVE_PRIV_H
+
+#include "answer/solve.h"
+#include "base/interrupt.h"
+#include "search/discrete.h"
+#include "search/gaps.h"
+
+/*
+ * The phases of an answer, in their order, under the names of what they write in a result. Those that make ready (the last column) bring what is known into its form, and go on unless
+ * they must end at once.
+ */
+#define MT_PHASE_LIST(X)                                 \
+    X(MT_PHASE_BASELINE, "baseline", true)               \
+    X(MT_PHASE_SEARCH, "search", false)                  \
+    X(MT_PHASE_RECOMMENDATIONS, "recommendations", true) \
+    X(MT_PHASE_SPREAD, "spread", false)                  \
+    X(MT_PHASE_CERTIFICATES, "certificates", false)      \
+    X(MT_PHASE_RELAXATIONS, "relaxations", false)        \
+    X(MT_PHASE_PUBLISHED, "published", true)             \
+    X(MT_PHASE_TRADE, "trade", false)
+#define MT_PHASE_ENUM(id, name, makes_ready) id,
+typedef enum mt_phase { MT_PHASE_LIST(MT_PHASE_ENUM) MT_PHASE_COUNT } mt_phase;
+#undef MT_PHASE_ENUM
+
+/* One study being answered. */
+typedef struct mt_answer {
+    const mt_study *study; /* own_study */
+    mt_study
+        own_study; /* what was asked, of a model that knows the interrupt; everything else is the caller's */
+    mt_model own_model;
+    mt_interrupt interrupt;
+    mt_result_mark mark; /* of the result: what is complete */
+    int threads;
+    mt_problem *p;        /* workers[0] */
+    mt_problem **workers; /* [n_workers] owned */
+    int n_workers;
+    mt_result *result;
+    mt_arena mem;
+    mt_reference_cache references;
+    mt_nlp_result found;
+    mt_gap_result gaps;          /* where there are bands: found is made from it */
+    mt_discrete_report discrete; /* where there are catalogues: what the search did */
+    int stage;                   /* of found */
+    mt_err why;                  /* no start of the search had a value */
+    bool searched;
+    bool infeasible; /* proven, and no compromise is asked for */
+    bool impossible; /* proven that no design meets all goals */
+} mt_answer;
+
+/* solve_status.c: warnings about the search, then status and its sentence. */
+mt_status mt_answer_warn(const mt_answer *a, mt_err *err);
+mt_status mt_answer_set_status(const mt_answer *a, mt_err *err);
+/* After everything: where something was cut the status says so, and the result what. */
+mt_status mt_answer_note_cuts(const mt_answer *a, mt_err *err);
+/* Doubts about the question concern the points of its trade study, too. */
+void mt_answer_qualify_trade(mt_result *result);
+
+#endif

@@ -1,0 +1,308 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How a search ended, in one sentence, and what the engineer should know of it besides its answers. */
+#include "answer/solve_priv.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/format.h"
+#include "describe/certificates.h"
+#include "describe/describe.h"
+
+/* Isolated designs that no start met are to be expected where some were met once only. */
+static mt_status warn_of_missing(const mt_answer *a, mt_err *err)
+{
+    const mt_nlp_result *const f = &a->found;
+    if (!MT_HAS(a->result->run.estimated_missing) || f->n_once == 0) {
+        return MT_OK;
+    }
+    const bool some = f->missing >= 1.0;
+    char more[48] = "there may be more";
+    if (some) {
+        (void)mt_snprintf(more, sizeof more, "about %.0f more, at least, are to be expected",
+                          f->missing);
+    }
+    return mt_describe_warn(a->result, err,
+                            "%d of the %d designs found %s met by one of %d starts only: %s; "
+                            "more \"starts\" or \"max_evaluations\" may find them",
+                            f->n_once, f->n_found, f->n_once == 1 ? "was" : "were", f->starts,
+                            more);
+}
+
+static mt_status warn_of_continua(const mt_answer *a, mt_err *err)
+{
+    for (int i = 0; i < a->result->n_recommendations; i++) {
+        if (a->found.solutions[i].continuum) {
+            MT_TRY(mt_describe_warn(a->result, err,
+                                    "recommendation %d: a continuum of designs is as good as "
+                                    "this one; a second objective, or one more goal, would "
+                                    "choose among them",
+                                    i + 1));
+        }
+    }
+    return MT_OK;
+}
+
+/* What the engineer should know of the search besides its answers. */
+mt_status mt_answer_warn(const mt_answer *a, mt_err *err)
+{
+    for (int i = 0; i < a->study->n_warnings; i++) {
+        MT_TRY(mt_describe_warn(a->result, err, "%s", a->study->warnings[i]));
+    }
+    for (int i = 0; i < a->p->n; i++) {
+        const mt_variable *const v = &a->study->variables[i];
+        if (v->original < v->lower || v->original > v->upper) {
+            MT_TRY(mt_describe_warn(a->result, err,
+                                    "the original value of %s, %.6g, lies outside its bounds "
+                                    "(%.6g to %.6g)",
+                                    v->parameter_name.s, v->original, v->lower, v->upper));
+        }
+    }
+    if (a->found.stop == MT_STOP_MAX_EVALS) {
+        MT_TRY(mt_describe_warn(a->result, err,
+                                "the budget of evaluations ran out after %ld: a larger "
+                                "\"max_evaluations\" may find more",
+                                a->found.evals));
+    }
+    MT_TRY(warn_of_missing(a, err));
+    MT_TRY(warn_of_continua(a, err));
+    if (a->why.code != MT_OK) {
+        MT_TRY(mt_describe_warn(a->result, err, "%s", a->why.text));
+    }
+    return MT_OK;
+}
+
+static mt_result_status status_of(const mt_answer *a, const mt_recommendation *best)
+{
+    if (mt_describe_is_doubted(a->result)) {
+        return MT_RESULT_COMPROMISE;
+    }
+    if (a->infeasible) {
+        return MT_RESULT_INFEASIBLE;
+    }
+    return best->feasible ? MT_RESULT_SOLVED : MT_RESULT_COMPROMISE;
+}
+
+/* Is a named mode that cannot be told all that is wrong? */
+static bool is_doubtful(const mt_recommendation *best)
+{
+    bool doubtful = false;
+    for (int i = 0; i < best->n_goals; i++) {
+        const mt_result_goal *const g = &best->goals[i];
+        if (!g->met && !g->weighted && !g->doubtful) {
+            return false;
+        }
+        doubtful = doubtful || g->doubtful;
+    }
+    return doubtful;
+}
+
+/* Is a design of the search a local optimum, as far as its gradients tell? "" where it is. */
+static const char *doubt_text(const mt_recommendation *best, mt_arena *mem)
+{
+    return !mt_describe_is_optimum(best)
+               ? mt_arena_printf(mem,
+                                 " The best is not shown to be a local optimum (KKT residual "
+                                 "%.2g).",
+                                 best->kkt_residual)
+               : "";
+}
+
+/* Answers that do not depend on a search's success; NULL: it does. */
+static const char *early_text(const mt_answer *a, const mt_recommendation *best)
+{
+    const bool cut = mt_interrupt_is_cut(&a->interrupt, MT_PHASE_RECOMMENDATIONS);
+    if (cut && a->result->n_recommendations == 0 && a->found.n_solutions > 0) {
+        return "Designs were found, but none was analysed anew (see the warnings).";
+    }
+    if (a->found.stop == MT_STOP_USER) {
+        return a->found.n_solutions > 0 ? "The best designs found so far."
+                                        : "No design was found so far.";
+    }
+    if (mt_describe_is_doubted(a->result)) {
+        return "Not verified: a fresh analysis disagrees with what the search read, so that "
+               "nothing here is proven and designs graded \"not verified\" must not be used "
+               "(see the warnings).";
+    }
+    if (best->n_goals == 0) {
+        return "No goals: the model as it is, against published values.";
+    }
+    if (!a->searched) {
+        return best->feasible ? "The original design meets all goals."
+                              : "The original design does not meet all goals.";
+    }
+    return NULL;
+}
+
+static const char *solved_text(const mt_answer *a, const char *doubt, mt_arena *mem)
+{
+    const int n = a->found.n_solutions;
+    if (a->gaps.n_solutions > 0) {
+        const char *const left = mt_describe_gaps_left(&a->gaps, mem);
+        return left == NULL ? NULL
+                            : mt_arena_printf(
+                                  mem,
+                                  "Solved: %d kind%s of design keep%s clear of the bands and "
+                                  "meet%s all goals (of %.0f gap assignments, %s).%s",
+                                  n, n == 1 ? "" : "s", n == 1 ? "s" : "", n == 1 ? "s" : "",
+                                  a->gaps.n_possible, left, doubt);
+    }
+    bool continuum = false;
+    for (int i = 0; i < n; i++) {
+        continuum = continuum || a->found.solutions[i].continuum;
+    }
+    if (continuum) {
+        return n == 1 ? mt_arena_printf(mem,
+                                        "Solved: a continuum of equally good designs meets all "
+                                        "goals; one of it is recommended.%s",
+                                        doubt)
+                      : mt_arena_printf(mem,
+                                        "Solved: %d distinct designs, or continua of equally "
+                                        "good designs, meet all goals.%s",
+                                        n, doubt);
+    }
+    return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.%s", n,
+                           n == 1 ? " meets" : "s meet", doubt);
+}
+
+static const char *status_text(const mt_answer *a, const mt_recommendation *best)
+{
+    mt_arena *const mem = &a->result->mem;
+    const int n = a->found.n_solutions;
+    const char *const early = early_text(a, best);
+    if (early != NULL) {
+        return early;
+    }
+    if (a->infeasible) {
+        return mt_arena_printf(mem,
+                               "Infeasible: no design within the bounds meets all goals, which "
+                               "is proven (see the certificates).%s%s",
+                               a->result->n_relaxations > 0 ? " " : "",
+                               a->result->n_relaxations > 0 ? a->result->relaxations[0].text
+                                                            : "");
+    }
+    if (n == 0) {
+        return a->why.code != MT_OK ? "No design that was tried could be evaluated."
+               : a->found.stop == MT_STOP_MAX_EVALS
+                   ? "The budget ended before any design was found."
+                   : "No design was found within the bounds (sampled, not proven).";
+    }
+    const char *const doubt = doubt_text(best, mem);
+    if (doubt == NULL) {
+        return NULL;
+    }
+    if (best->feasible) {
+        return solved_text(a, doubt, mem);
+    }
+    if (is_doubtful(best)) {
+        return "Compromise: by their numbers all goals can be met, but which modes the named "
+               "ones "
+               "are cannot be told there (see the goals).";
+    }
+    const char *const nearest =
+        isfinite(best->violation_percent)
+            ? mt_arena_printf(mem, "the nearest %smisses by %.3g %% at most",
+                              a->impossible ? "that was found " : "", best->violation_percent)
+            : "at the nearest not every goal has a value";
+    return nearest == NULL
+               ? NULL
+               : mt_arena_printf(
+                     mem, "Compromise: no design %swithin the bounds meets all goals%s; %s.",
+                     a->impossible ? "" : "found ",
+                     a->impossible ? ", which is proven (see the certificates)"
+                                   : " (sampled, not proven)",
+                     nearest);
+}
+
+static void lower_grade(mt_recommendation *r)
+{
+    if (r->grade != NULL && strcmp(r->grade, "feasible and proven") == 0) {
+        r->grade = "feasible";
+    }
+}
+
+/* The points of a trade study are answers to the same question. */
+void mt_answer_qualify_trade(mt_result *result)
+{
+    const mt_doubt_list *const list = &result->doubts;
+    const bool doubtful = mt_doubt_count(list->n, list->items, MT_LEVEL_DOUBT) > 0;
+    for (int i = 0; doubtful && result->trade != NULL && i < result->trade->n_points; i++) {
+        lower_grade(&result->trade->points[i].best);
+    }
+}
+
+/* Nothing is proven of a question that is hardly the one that was meant: the doubts come first, and no design is graded beyond "feasible". */
+static mt_status qualify(mt_result *result, mt_err *err)
+{
+    const mt_doubt_list *const list = &result->doubts;
+    const int n = mt_doubt_count(list->n, list->items, MT_LEVEL_DOUBT);
+    const char *first = "";
+    for (int i = list->n - 1; i >= 0; i--) {
+        first = list->items[i].level == MT_LEVEL_DOUBT ? list->items[i].text : first;
+    }
+    if (n == 0) {
+        return MT_OK;
+    }
+    for (int i = 0; i < result->n_recommendations; i++) {
+        lower_grade(&result->recommendations[i]);
+    }
+    result->status_text =
+        n == 1 ? mt_arena_printf(&result->mem, "Doubtful question (%s). %s", first,
+                                 result->status_text)
+               : mt_arena_printf(&result->mem, "Doubtful question (%s; and %d more). %s", first,
+                                 n - 1, result->status_text);
+    return result->status_text == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+mt_status mt_answer_set_status(const mt_answer *a, mt_err *err)
+{
+    mt_result *const result = a->result;
+    const mt_recommendation *const best =
+        result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline;
+    const bool nothing = a->searched && result->n_recommendations == 0;
+    result->status = status_of(a, best);
+    if (nothing && result->status == MT_RESULT_SOLVED) {
+        result->status = MT_RESULT_COMPROMISE; /* the baseline is no answer of the search */
+    }
+    result->status_text = status_text(a, best);
+    return result->status_text == NULL ? mt_fail_memory(err) : qualify(result, err);
+}
+
+/* "search, certificates and trade" */
+static const char *list_text(const mt_result_run *run, mt_arena *mem)
+{
+    const char *text = run->incomplete[0];
+    for (int i = 1; i < run->n_incomplete && text != NULL; i++) {
+        const char *const link = i + 1 < run->n_incomplete ? ", " : " and ";
+        text = mt_arena_printf(mem, "%s%s%s", text, link, run->incomplete[i]);
+    }
+    return text;
+}
+
+mt_status mt_answer_note_cuts(const mt_answer *a, mt_err *err)
+{
+#define MT_PHASE_NAME(id, name, makes_ready) name,
+    static const char *const names[] = {MT_PHASE_LIST(MT_PHASE_NAME)};
+#undef MT_PHASE_NAME
+    mt_result *const result = a->result;
+    mt_result_run *const run = &result->run;
+    if (!mt_interrupt_any(&a->interrupt)) {
+        return MT_OK;
+    }
+    run->incomplete = mt_arena_alloc(&result->mem, MT_PHASE_COUNT, sizeof *run->incomplete);
+    if (run->incomplete == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int k = 0; k < MT_PHASE_COUNT; k++) {
+        if (mt_interrupt_is_cut(&a->interrupt, k)) {
+            run->incomplete[run->n_incomplete++] = names[k];
+        }
+    }
+    const char *const list = list_text(run, &result->mem);
+    result->status = MT_RESULT_INTERRUPTED;
+    result->status_text =
+        list == NULL ? NULL
+                     : mt_arena_printf(&result->mem, "Interrupted (not complete: %s). %s", list,
+                                       result->status_text);
+    return result->status_text == NULL ? mt_fail_memory(err) : MT_OK;
+}

@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The spread of a misfit's answer under other weights. With residuals r_g of the goals and their weights w_g the best design minimises
+ *     sum_g w_g |r_g|^2    under the constraints;
+ * each weight is multiplied and divided by the study's factor in turn and the minimum found again, from the best design. Data that agree leave the design where it is; data that
+ * contradict each other pull it about, and how far is what nobody can know better than from them. The given weights are one opinion among these.
+ */
+#include "answer/spread.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "search/discrete.h"
+
+typedef struct spread {
+    mt_problem *p;
+    mt_result *result;
+    const mt_nlp_solution *best;
+    double *x; /* [n] */
+    long evaluations;
+} spread;
+
+static mt_status start(spread *s, mt_err *err)
+{
+    mt_result *const r = s->result;
+    const size_t n = (size_t)s->p->n;
+    s->x = mt_arena_f64(&r->mem, n, 1);
+    r->spread = mt_arena_alloc(&r->mem, n, sizeof *r->spread);
+    if (s->x == NULL || r->spread == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_problem_x(s->p, s->best->t, s->x);
+    for (int i = 0; i < s->p->n; i++) {
+        const mt_parameter *const parameter = &s->p->study->model->parameters[s->p->inputs[i]];
+        r->spread[i] = (mt_result_spread){
+            .parameter = mt_arena_strdup(&r->mem, parameter->name.s),
+            .unit = parameter->unit == NULL ? NULL : mt_arena_strdup(&r->mem, parameter->unit),
+            .value = s->x[i],
+            .low = s->x[i],
+            .high = s->x[i],
+            .low_factor = nan(""),
+            .high_factor = nan(""),
+        };
+        if (r->spread[i].parameter == NULL ||
+            (parameter->unit != NULL && r->spread[i].unit == NULL)) {
+            return mt_fail_memory(err);
+        }
+    }
+    r->n_spread = s->p->n;
+    return MT_OK;
+}
+
+static void scale_weight(mt_problem *p, int goal, double factor)
+{
+    for (int i = 0; i < p->n_demands; i++) {
+        if (p->demands[i].goal_index == goal) {
+            p->demands[i].weight = p->study->goals[goal].weight * factor;
+        }
+    }
+}
+
+static mt_status note(spread *s, const double *t, int goal, double factor, mt_err *err)
+{
+    const char *const pointer = mt_arena_printf(&s->result->mem, "/goals/%d", goal);
+    if (pointer == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_problem_x(s->p, t, s->x);
+    for (int i = 0; i < s->p->n; i++) {
+        mt_result_spread *const r = &s->result->spread[i];
+        if (s->x[i] < r->low) {
+            r->low = s->x[i];
+            r->low_goal = pointer;
+            r->low_factor = factor;
+        } else if (s->x[i] > r->high) {
+            r->high = s->x[i];
+            r->high_goal = pointer;
+            r->high_factor = factor;
+        }
+    }
+    return MT_OK;
+}
+
+/* Solve again with one weight changed, from the best design, which is also what undetermined directions are kept at. */
+static mt_status search_again(spread *s, int goal, double factor, mt_arena *mem, mt_err *err)
+{
+    mt_nlp nlp = mt_problem_nlp(s->p);
+    mt_nlp_options options = mt_nlp_options_default();
+    mt_nlp_result found = {0};
+    nlp.origin = s->best->t;
+    options.starts = 1;
+    scale_weight(s->p, goal, factor);
+    const mt_status rc = mt_nlp_solve(&nlp, &options, mem, &found, err);
+    scale_weight(s->p, goal, 1.0);
+    s->evaluations += found.evals;
+    if (rc != MT_OK) {
+        return rc;
+    }
+    if (found.n_solutions == 0 || found.compromise || found.stop != MT_STOP_DONE) {
+        return mt_describe_warn(s->result, err,
+                                "spread: with the weight of /goals/%d times %g no design "
+                                "was found; its part is missing",
+                                goal, factor);
+    }
+    return note(s, found.solutions[0].t, goal, factor, err);
+}
+
+static mt_status search_all(spread *s, mt_arena *mem, mt_err *err)
+{
+    const mt_study *const study = s->p->study;
+    for (int g = 0; g < study->n_goals; g++) {
+        const double factor = study->spread.factor;
+        if (!MT_HAS(study->goals[g].weight)) {
+            continue;
+        }
+        for (int side = 0; side < 2; side++) {
+            const mt_arena_mark mark = mt_arena_get_mark(mem);
+            MT_TRY(search_again(s, g, side == 0 ? factor : 1.0 / factor, mem, err));
+            mt_arena_rewind(mem, mark);
+        }
+    }
+    for (int i = 0; i < s->result->n_spread; i++) {
+        mt_result_spread *const r = &s->result->spread[i];
+        const double per_cent = r->value != 0.0 ? 100.0 / fabs(r->value) : nan("");
+        r->low_percent = per_cent * (r->low - r->value);
+        r->high_percent = per_cent * (r->high - r->value);
+    }
+    return MT_OK;
+}
+
+bool mt_spread_is_asked(const mt_problem *p)
+{
+    return MT_HAS(p->study->spread.factor) && p->aims[0].type == MT_OBJECTIVE_MISFIT &&
+           !mt_study_is_discrete(p->study);
+}
+
+mt_status mt_spread_solve(mt_problem *p, const mt_nlp_solution *best, mt_arena *mem,
+                          long *evaluations, mt_result *result, mt_err *err)
+{
+    spread s = {.p = p, .result = result, .best = best};
+    if (!mt_spread_is_asked(p)) {
+        return MT_OK;
+    }
+    MT_TRY(start(&s, err));
+    const int stage = p->stage;
+    p->stage = 0; /* the misfit alone: objectives after it decide between its equals */
+    const mt_status rc = search_all(&s, mem, err);
+    p->stage = stage;
+    *evaluations += s.evaluations;
+    return rc;
+}

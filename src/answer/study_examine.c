@@ -1,0 +1,344 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * A study held against its model: is what it asks for anywhere near what the model does? Frequencies f_k(x) are looked at where x is the original design and where one variable, or all,
+ * stand at a bound; a band that no f_k comes within a factor of there has no part in the answer. Where two of these designs differ in how many modes lie above a band, one comes through it in
+ * between: frequencies are continuous. Above, since modes that rest at 0 Hz at one design (a spring that may be 0) are no vibrations there.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "answer/doubts.h"
+#include "base/format.h"
+#include "model/values.h"
+
+enum { TIMES_SIZE = 32 };
+
+/* A target a hundred times away from where the mode is, is in another unit (rad/s, rpm and kHz are 6, 60 and 1000 away), or of another mode. */
+static const double FAR_TARGET = 100.0;
+/* No mode comes within this factor of any band: rpm for Hz makes 60. */
+static const double FAR_BAND = 10.0;
+
+typedef struct reach {
+    const mt_goal *goal;
+    int *above;     /* [bands] modes above each, at the first design looked at; -1: none yet */
+    double nearest; /* least factor between a mode and a band, >= 1 */
+} reach;
+
+static double factor_to(const mt_band *band, double hz)
+{
+    if (hz < band->lower_hz) {
+        return hz > 0.0 ? band->lower_hz / hz : HUGE_VAL;
+    }
+    return hz > band->upper_hz ? hz / band->upper_hz : 1.0;
+}
+
+static int count_above(const mt_modes *modes, const mt_band *band)
+{
+    int n = 0;
+    for (int i = 0; i < modes->count; i++) {
+        n += modes->kind[i] == MT_MODE_FLEXIBLE && mt_modal_hz(modes, i) > band->upper_hz ? 1
+                                                                                          : 0;
+    }
+    return n;
+}
+
+static void look(reach *r, const mt_modes *modes)
+{
+    for (int k = 0; k < r->goal->avoid->bands.n; k++) {
+        const int above = count_above(modes, &r->goal->avoid->bands.items[k]);
+        if (r->above[k] >= 0 && above != r->above[k]) {
+            r->nearest = 1.0;
+        }
+        r->above[k] = above;
+    }
+    for (int i = 0; i < modes->count; i++) {
+        const double hz = mt_modal_hz(modes, i);
+        for (int k = 0; k < r->goal->avoid->bands.n && modes->kind[i] == MT_MODE_FLEXIBLE;
+             k++) {
+            r->nearest = fmin(r->nearest, factor_to(&r->goal->avoid->bands.items[k], hz));
+        }
+    }
+}
+
+/* Design `which` of the 2 n + 3: the original, each variable at a bound, all at their lower and their upper ones. */
+static void set_design(const mt_study *s, int which, double *x)
+{
+    const int n = s->n_variables;
+    for (int i = 0; i < n; i++) {
+        const mt_variable *const v = &s->variables[i];
+        x[i] = v->original;
+        if (which == (2 * i) + 1 || which == (2 * n) + 1) {
+            x[i] = v->lower;
+        } else if (which == (2 * i) + 2 || which == (2 * n) + 2) {
+            x[i] = v->upper;
+        }
+    }
+}
+
+static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, mt_err *err)
+{
+    const int n = s->n_variables;
+    int *const inputs = mt_arena_int(mem, (size_t)n);
+    const size_t n_bands = (size_t)r->goal->avoid->bands.n;
+    r->above = mt_arena_int(mem, n_bands);
+    double *const x = mt_arena_f64(mem, (size_t)n, 1);
+    mt_analysis_options opt = mt_analysis_options_default();
+    mt_analysis *a = NULL;
+    if (inputs == NULL || x == NULL || r->above == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < n; i++) {
+        inputs[i] = s->variables[i].parameter;
+    }
+    opt.vectors = false;
+    opt.check = false;
+    for (size_t k = 0; k < n_bands; k++) {
+        r->above[k] = -1;
+    }
+    set_design(s, 0, x);
+    mt_status rc = mt_analysis_new(s->model, c, n, inputs, x, &a, err);
+    if (rc == MT_OK) {
+        a->recount = true; /* a spring that is 0 in the original has modes elsewhere */
+    }
+    for (int k = 0; rc == MT_OK && k < (2 * n) + 3 && r->nearest > FAR_BAND; k++) {
+        mt_err ignored = {.code = MT_OK}; /* a design that has no modes has none in a band */
+        set_design(s, k, x);
+        const mt_status solved = mt_analysis_solve(a, x, &opt, &ignored);
+        if (solved == MT_OK) {
+            look(r, &a->modes);
+        }
+        rc = mt_pass_final(solved, &ignored, err);
+    }
+    mt_analysis_delete(a);
+    return rc;
+}
+
+static mt_status examine_bands(const mt_study *s, int g, mt_doubt_list *out, mt_err *err)
+{
+    const mt_goal *const goal = &s->goals[g];
+    reach r = {.goal = goal, .nearest = HUGE_VAL};
+    mt_arena mem;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    mt_status rc = MT_OK;
+    for (int i = 0; rc == MT_OK && i < goal->n_configurations; i++) {
+        rc = look_around(s, goal->configurations[i], &r, &mem, err);
+    }
+    mt_arena_free(&mem);
+    const mt_bands *const bands = &goal->avoid->bands;
+    if (rc == MT_OK && r.nearest > FAR_BAND && bands->n > 0) {
+        const char *const which =
+            mt_arena_printf(out->mem, "its bands, %.4g to %.4g Hz, have no effect",
+                            bands->items[0].lower_hz, bands->items[bands->n - 1].upper_hz);
+        mt_doubt *const d =
+            isfinite(r.nearest)
+                ? mt_doubt_add(out, MT_LEVEL_DOUBT, "no_effect",
+                               "%s: within the bounds no mode comes nearer than a factor of "
+                               "%.3g (sampled); are they in Hz?",
+                               which == NULL ? "" : which, r.nearest)
+                : mt_doubt_add(out, MT_LEVEL_DOUBT, "no_effect",
+                               "%s: within the bounds there is no vibration mode at all "
+                               "(sampled)",
+                               which == NULL ? "" : which);
+        if (d != NULL) {
+            d->addr = goal->addr;
+        }
+    }
+    return rc;
+}
+
+/* Frequency of the mode that a goal names, in a solved configuration; NaN where there is none. */
+static double original_hz(const mt_study *s, const mt_goal *goal, const mt_analysis *a)
+{
+    int index = goal->mode.index;
+    int seen = 0;
+    if (goal->mode.named != MT_ABSENT) {
+        const mt_named_mode *const m = &s->model->modes[goal->mode.named];
+        const bool here = m->configuration == a->sys->configuration;
+        index = here ? m->index + a->n_null - a->n_rigid : 0; /* as the model counts */
+    }
+    for (int i = 0; i < a->modes.count; i++) {
+        if (a->modes.kind[i] == MT_MODE_FLEXIBLE && ++seen == index) {
+            return mt_modal_hz(&a->modes, i);
+        }
+    }
+    return nan("");
+}
+
+static void doubt_target(mt_doubt_list *out, const char *member, double asked, mt_addr addr,
+                         double hz, bool above, bool below)
+{
+    const double ratio = hz > 0.0 ? asked / hz : nan("");
+    if (!((above && ratio >= FAR_TARGET) || (below && ratio <= 1.0 / FAR_TARGET))) {
+        return;
+    }
+    char times[TIMES_SIZE] = "far";
+    const double factor = ratio >= 1.0 ? ratio : hz / asked;
+    if (isfinite(factor)) {
+        (void)mt_snprintf(times, sizeof times, "%.3g times", factor);
+    }
+    mt_doubt *const d =
+        mt_doubt_add(out, MT_LEVEL_DOUBT, "target",
+                     "%s %.6g Hz is %s %s the original frequency, %.6g Hz: is the unit Hz?",
+                     member, asked, times, ratio >= 1.0 ? "above" : "below", hz);
+    if (d != NULL) {
+        d->addr = addr;
+    }
+}
+
+/* Modes of the original design, counted as the study does. */
+static mt_status count_modes(const mt_study *s, mt_analysis *a, mt_err *err)
+{
+    const mt_analysis_options opt = mt_analysis_options_default();
+    MT_TRY(mt_analysis_count(a, &s->counted, NULL, 0.0, err));
+    return a->n_rigid == a->n_null ? MT_OK : mt_analysis_solve(a, NULL, &opt, err);
+}
+
+/* Goals ask for modes of a position that does not hold: said with them. */
+static void add_goals(const mt_study *s, int c, mt_doubt_list *of_model, int first)
+{
+    const char *const name = s->model->configurations[c].name.s;
+    for (int i = first; i < of_model->n; i++) {
+        mt_doubt *const d = &of_model->items[i];
+        if (strcmp(d->kind, "unstable") == 0 && d->configuration != NULL &&
+            strcmp(d->configuration, name) == 0) {
+            d->text = mt_arena_printf(of_model->mem,
+                                      "%s; goals name it, and none of them is met by a design "
+                                      "that does so",
+                                      d->text);
+            of_model->out_of_memory = of_model->out_of_memory || d->text == NULL;
+        }
+    }
+}
+
+/* The numbers of a reference's model, where it is another one: what it gives as a target is as doubtful as they are. */
+static mt_status examine_reference(const mt_study *s, const mt_reference *r, mt_doubt_list *out,
+                                   mt_err *err)
+{
+    if (r->model == NULL || r->model == s->model || r->configuration < 0) {
+        return MT_OK;
+    }
+    mt_arena mem;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    mt_doubt_list list = mt_doubt_list_default(&mem);
+    double *const value = mt_arena_f64(&mem, (size_t)r->model->n_nums, 1);
+    mt_status rc = value == NULL ? mt_fail_memory(err)
+                                 : mt_model_numbers(r->model, r->configuration, 0, NULL, NULL,
+                                                    &mem, value, err);
+    if (rc == MT_OK) {
+        mt_model_judge(r->model, r->configuration, value, &list);
+    }
+    for (int i = 0; rc == MT_OK && i < list.n; i++) {
+        if (list.items[i].level == MT_LEVEL_DOUBT) {
+            list.items[i].file = r->model_path.s;
+            mt_doubt_copy(out, &list.items[i]);
+        }
+    }
+    rc = rc == MT_OK && list.out_of_memory ? mt_fail_memory(err) : rc;
+    mt_arena_free(&mem);
+    return rc;
+}
+
+static mt_status examine_configuration(const mt_study *s, int c, mt_doubt_list *of_study,
+                                       mt_doubt_list *of_model, mt_err *err)
+{
+    mt_analysis *a = NULL;
+    const int first = of_model->n;
+    mt_status rc = mt_analysis_new(s->model, c, 0, NULL, NULL, &a, err);
+    rc = rc == MT_OK ? mt_doubts_of_analysis(a, 0, NULL, NULL, of_model, err) : rc;
+    rc = rc == MT_OK ? count_modes(s, a, err) : rc;
+    if (rc == MT_OK) {
+        add_goals(s, c, of_model, first);
+    }
+    for (int g = 0; rc == MT_OK && g < s->n_goals; g++) {
+        const mt_goal *const goal = &s->goals[g];
+        for (int k = 0; k < goal->n_configurations && goal->type == MT_GOAL_FREQUENCY; k++) {
+            if (goal->configurations[k] != c) {
+                continue;
+            }
+            const double hz = original_hz(s, goal, a);
+            doubt_target(of_study, "target_hz", goal->target_hz, goal->target_addr, hz, true,
+                         true);
+            doubt_target(of_study, "at_least_hz", goal->at_least, goal->at_least_addr, hz, true,
+                         false);
+            doubt_target(of_study, "at_most_hz", goal->at_most, goal->at_most_addr, hz, false,
+                         true);
+        }
+    }
+    mt_analysis_delete(a);
+    return rc;
+}
+
+static const char *base_name(const char *path)
+{
+    const char *const slash = path == NULL ? NULL : strrchr(path, '/');
+    return slash == NULL ? path : slash + 1;
+}
+
+/* How many configurations the study asks about, and what looking at them takes: with bands once for every bound, too. */
+static int count_asked(const mt_study *study, double *work)
+{
+    int asked = 0;
+    double around = 0.0; /* the analyses of bands, of all goals in all their configurations */
+    double most = 0.0;
+    for (int g = 0; g < study->n_goals; g++) {
+        const mt_goal *const goal = &study->goals[g];
+        around += goal->type == MT_GOAL_AVOID ? (double)goal->n_configurations : 0.0;
+    }
+    around *= (2.0 * study->n_variables) + 3.0;
+    for (int c = 0; c < study->model->n_configurations; c++) {
+        if (mt_study_asks(study, c)) {
+            const double takes = mt_doubts_work(study->model, c);
+            *work += takes;
+            most = fmax(most, takes);
+            asked++;
+        }
+    }
+    *work += around * most;
+    return asked;
+}
+
+bool mt_study_takes_more(const mt_study *study, double most_work)
+{
+    double work = 0.0;
+    (void)count_asked(study, &work);
+    return work > most_work;
+}
+
+mt_status mt_study_examine(const mt_study *study, double most_work, mt_doubt_list *out,
+                           mt_err *err)
+{
+    const int first = out->n;
+    double work = 0.0;
+    const int asked = count_asked(study, &work);
+    const bool look = work <= most_work;
+    for (int i = 0; i < study->doubts.n; i++) {
+        mt_doubt_copy(out, &study->doubts.items[i]);
+    }
+    mt_doubt_list of_model = mt_doubt_list_default(out->mem);
+    for (int c = 0; c < study->model->n_configurations && look; c++) {
+        if (mt_study_asks(study, c)) {
+            MT_TRY(examine_configuration(study, c, out, &of_model, err));
+        }
+    }
+    for (int g = 0; g < study->n_goals && look; g++) {
+        if (study->goals[g].type == MT_GOAL_AVOID && study->goals[g].avoid != NULL) {
+            MT_TRY(examine_bands(study, g, out, err));
+        }
+    }
+    for (int i = first; i < out->n; i++) {
+        mt_doubt *const d = &out->items[i];
+        d->file = base_name(study->path);
+        mt_study_place_doubt(study, d);
+    }
+    for (int i = 0; i < of_model.n; i++) {
+        of_model.items[i].file = study->model_path.s;
+        mt_doubt_copy(out, &of_model.items[i]);
+    }
+    if (!look) {
+        mt_doubts_left_out(asked, out);
+    }
+    for (int i = 0; i < study->n_references; i++) {
+        MT_TRY(examine_reference(study, &study->references[i], out, err));
+    }
+    return out->out_of_memory || of_model.out_of_memory ? mt_fail_memory(err) : MT_OK;
+}

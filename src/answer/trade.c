@@ -1,0 +1,361 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "answer/trade.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/interrupt.h"
+#include "base/workers.h"
+#include "search/discrete.h"
+
+/* Objectives that differ by less, relatively, are the same: searches of one optimum end so near. */
+static const double SAME = 1e-6;
+
+typedef struct point {
+    double values[MT_MAX_VARY];
+    mt_result *first; /* of the first pass; owned */
+    mt_result *again; /* of the second, where a neighbour knew better; owned, or NULL */
+    double front[2];  /* what the front compares, less is better; NaN: does not take part */
+    long evaluations;
+} point;
+
+typedef struct trade {
+    const mt_study *study;
+    int n;
+    int size[MT_MAX_VARY]; /* values of each quantity; 1 where there is none */
+    point *points;
+} trade;
+
+static bool stopped(const trade *t)
+{
+    return mt_interrupted(t->study->model->interrupt);
+}
+
+static const mt_recommendation *best_of(const mt_result *r)
+{
+    return r != NULL && r->n_recommendations > 0 ? &r->recommendations[0] : NULL;
+}
+
+static const mt_result *answer_of(const point *p)
+{
+    return p->again != NULL ? p->again : p->first;
+}
+
+static const char *point_text(const trade *t, int k, mt_arena *mem)
+{
+    const char *const first =
+        mt_arena_printf(mem, "%s = %.6g", t->study->trade.vary[0].text, t->points[k].values[0]);
+    if (t->study->trade.n_vary == 1 || first == NULL) {
+        return first;
+    }
+    return mt_arena_printf(mem, "%s, %s = %.6g", first, t->study->trade.vary[1].text,
+                           t->points[k].values[1]);
+}
+
+/* Answer point k, from hint[n_variables] too where that is not NULL. */
+static mt_status answer(const trade *t, int k, const double *hint, mt_result **out, mt_err *err)
+{
+    mt_arena mem;
+    mt_study study;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    const mt_solve_options opt = {.threads = 1, .hint = hint};
+    mt_status rc = mt_trade_study(t->study, t->points[k].values, &mem, &study, err);
+    rc = rc == MT_OK ? mt_study_solve(&study, &opt, out, err) : rc;
+    if (rc != MT_OK && rc != MT_E_INTERRUPTED) {
+        const char *const where = point_text(t, k, &mem);
+        rc = mt_err_in(err, rc, "/trade: %s", where == NULL ? "?" : where);
+    }
+    mt_arena_free(&mem);
+    return rc == MT_E_INTERRUPTED ? MT_OK : rc; /* the interrupt knows */
+}
+
+static mt_status solve_cold(void *context, int worker, int k, mt_err *err)
+{
+    const trade *const t = context;
+    (void)worker;
+    if (stopped(t)) {
+        return MT_OK;
+    }
+    MT_TRY(answer(t, k, NULL, &t->points[k].first, err));
+    const mt_result *const first = t->points[k].first;
+    t->points[k].evaluations = first != NULL ? first->run.evaluations : 0;
+    return MT_OK;
+}
+
+/* Neighbour `way` (0 to 3) of point k on the grid, -1 where there is none. */
+static int neighbour(const trade *t, int k, int way)
+{
+    const int axis = way / 2;
+    const int step = way % 2 == 0 ? -1 : 1;
+    const int stride = axis == 0 ? t->size[1] : 1;
+    const int at = axis == 0 ? k / t->size[1] : k % t->size[1];
+    return at + step >= 0 && at + step < t->size[axis] ? k + (step * stride) : -1;
+}
+
+/* The recommended values of a design, in mem; NULL without one. */
+static mt_status values_of(const mt_recommendation *r, mt_arena *mem, const double **x,
+                           mt_err *err)
+{
+    *x = NULL;
+    if (r == NULL) {
+        return MT_OK;
+    }
+    double *const values = mt_arena_f64(mem, (size_t)r->n_parameters, 1);
+    if (values == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < r->n_parameters; i++) {
+        values[i] = r->parameters[i].recommended;
+    }
+    *x = values;
+    return MT_OK;
+}
+
+/* Is a the better answer of one point? The first objective's score decides among designs that meet all goals. */
+static bool better(const mt_study *study, const mt_result *a, const mt_result *b)
+{
+    const mt_recommendation *const x = best_of(a);
+    const mt_recommendation *const y = best_of(b);
+    if (x == NULL || y == NULL) {
+        return y == NULL && x != NULL;
+    }
+    if (x->feasible != y->feasible) {
+        return x->feasible;
+    }
+    const bool most =
+        study->n_objectives > 0 && study->objectives[0].type == MT_OBJECTIVE_CLEARANCE;
+    return x->feasible && (most ? x->score > y->score : x->score < y->score);
+}
+
+/* From the neighbours' designs of the first pass, which are no longer changed: any order gives the same. */
+static mt_status try_neighbours(const trade *t, int k, const mt_study *study, mt_arena *mem,
+                                mt_err *err)
+{
+    point *const p = &t->points[k];
+    const mt_recommendation *const best = best_of(p->first);
+    const double *best_x = NULL;
+    MT_TRY(values_of(best != NULL && best->feasible ? best : NULL, mem, &best_x, err));
+    for (int way = 0; way < 4; way++) {
+        const int other = neighbour(t, k, way);
+        const mt_recommendation *const near =
+            other < 0 ? NULL : best_of(t->points[other].first);
+        const double *x = NULL;
+        bool gain = false;
+        if (near == NULL || !near->feasible || stopped(t)) {
+            continue;
+        }
+        MT_TRY(values_of(near, mem, &x, err));
+        MT_TRY(mt_trade_improves(study, x, best_x, &gain, &p->evaluations, err));
+        if (!gain) {
+            continue;
+        }
+        mt_result *fresh = NULL;
+        MT_TRY(answer(t, k, x, &fresh, err));
+        p->evaluations += fresh != NULL ? fresh->run.evaluations : 0;
+        if (better(study, fresh, answer_of(p))) {
+            mt_result_delete(p->again);
+            p->again = fresh;
+            MT_TRY(values_of(best_of(fresh), mem, &best_x, err));
+        } else {
+            mt_result_delete(fresh);
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status solve_warm(void *context, int worker, int k, mt_err *err)
+{
+    const trade *const t = context;
+    mt_arena mem;
+    mt_study study;
+    (void)worker;
+    if (stopped(t)) {
+        return MT_OK;
+    }
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    mt_status rc = mt_trade_study(t->study, t->points[k].values, &mem, &study, err);
+    rc = rc == MT_OK ? try_neighbours(t, k, &study, &mem, err) : rc;
+    mt_arena_free(&mem);
+    return rc;
+}
+
+static mt_status begin(trade *t, mt_arena *mem, mt_err *err)
+{
+    const mt_trade *const asked = &t->study->trade;
+    t->n = 1;
+    for (int i = 0; i < MT_MAX_VARY; i++) {
+        t->size[i] = i < asked->n_vary ? asked->vary[i].n_values : 1;
+        t->n *= t->size[i];
+    }
+    t->points = mt_arena_alloc(mem, (size_t)t->n, sizeof *t->points);
+    if (t->points == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int k = 0; k < t->n; k++) {
+        const int at[MT_MAX_VARY] = {k / t->size[1], k % t->size[1]};
+        t->points[k] = (point){.first = NULL};
+        for (int i = 0; i < asked->n_vary && i < MT_MAX_VARY; i++) {
+            t->points[k].values[i] = asked->vary[i].values[at[i]];
+        }
+    }
+    return MT_OK;
+}
+
+/* An objective of a design, signed so that less is better; NaN where the design does not meet the goals. */
+static double front_value(const mt_study *study, mt_objective_type type,
+                          const mt_recommendation *r)
+{
+    if (r == NULL || !r->feasible) {
+        return nan("");
+    }
+    const bool is_first = study->n_objectives > 0 && study->objectives[0].type == type;
+    switch (type) {
+    case MT_OBJECTIVE_CHANGE:
+        return r->change;
+    case MT_OBJECTIVE_CLEARANCE:
+        return -r->clearance_percent;
+    case MT_OBJECTIVE_MISFIT:
+        return r->misfit;
+    case MT_OBJECTIVE_MASS:
+    case MT_OBJECTIVE_EXPRESSION:
+        return is_first ? r->score : nan("");
+    case MT_OBJECTIVE_NONE:
+        break;
+    }
+    return nan("");
+}
+
+/* Is a as good as b in both and better in one, by more than the searches' rounding? */
+static bool dominates(const double *a, const double *b)
+{
+    bool gain = false;
+    for (int i = 0; i < 2; i++) {
+        const double slack = SAME * fmax(fabs(b[i]), SAME);
+        if (!(a[i] <= b[i] + slack)) {
+            return false;
+        }
+        gain = gain || a[i] < b[i] - slack;
+    }
+    return gain;
+}
+
+static void mark_front(const trade *t, mt_trade_result *out)
+{
+    const mt_trade *const asked = &t->study->trade;
+    for (int k = 0; k < t->n; k++) {
+        for (int i = 0; i < asked->n_objectives; i++) {
+            t->points[k].front[i] =
+                front_value(t->study, asked->objectives[i], best_of(answer_of(&t->points[k])));
+        }
+    }
+    for (int k = 0; k < t->n && asked->n_objectives == 2; k++) {
+        const double *const own = t->points[k].front;
+        bool beaten = !MT_HAS(own[0]) || !MT_HAS(own[1]);
+        for (int i = 0; i < t->n; i++) {
+            beaten = beaten || dominates(t->points[i].front, own);
+        }
+        out->points[k].pareto = !beaten;
+    }
+}
+
+/* The unit of what varies: Hz and percent by the member's name, else the parameter's own. */
+static const char *unit_of(const mt_study *study, const mt_vary *v)
+{
+    if (v->kind == MT_VARY_PARAMETER) {
+        return study->model->parameters[v->parameter].unit;
+    }
+    if (v->kind == MT_VARY_BOUND) {
+        return study->model->parameters[study->variables[v->variable].parameter].unit;
+    }
+    const char *const name = mt_goal_member_name(v->member);
+    const bool percent = v->member == MT_MEMBER_MARGIN;
+    return percent ? "%" : strstr(name, "_hz") != NULL ? "Hz" : NULL;
+}
+
+static mt_status describe_what(const trade *t, mt_arena *mem, mt_trade_result *out, mt_err *err)
+{
+    const mt_trade *const asked = &t->study->trade;
+    out->n_vary = asked->n_vary;
+    out->vary = mt_arena_alloc(mem, (size_t)asked->n_vary, sizeof *out->vary);
+    out->n_objectives = asked->n_objectives;
+    out->objectives = mt_arena_alloc(mem, (size_t)asked->n_objectives + 1, sizeof(char *));
+    if (out->vary == NULL || out->objectives == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < asked->n_vary; i++) {
+        const char *const unit = unit_of(t->study, &asked->vary[i]);
+        out->vary[i] =
+            (mt_trade_vary){.text = mt_arena_strdup(mem, asked->vary[i].text),
+                            .pointer = mt_arena_printf(mem, "/trade/vary/%d", i),
+                            .unit = unit == NULL ? NULL : mt_arena_strdup(mem, unit)};
+        if (out->vary[i].text == NULL || out->vary[i].pointer == NULL ||
+            (unit != NULL && out->vary[i].unit == NULL)) {
+            return mt_fail_memory(err);
+        }
+    }
+    for (int i = 0; i < asked->n_objectives; i++) {
+        out->objectives[i] = mt_objective_type_name(asked->objectives[i]);
+    }
+    return MT_OK;
+}
+
+static mt_status describe_point(const trade *t, int k, mt_arena *mem, mt_trade_point *out,
+                                mt_err *err)
+{
+    const mt_result *const r = answer_of(&t->points[k]);
+    const mt_recommendation *const best = best_of(r);
+    *out = (mt_trade_point){.values = mt_arena_f64(mem, MT_MAX_VARY, 1),
+                            .status = r != NULL ? r->status : MT_RESULT_INTERRUPTED,
+                            .best = mt_recommendation_default()};
+    out->status_text = mt_arena_strdup(mem, r != NULL && r->status_text != NULL
+                                                ? r->status_text
+                                                : "Interrupted before it was answered.");
+    if (out->values == NULL || out->status_text == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(out->values, t->points[k].values, sizeof t->points[k].values);
+    return best == NULL ? MT_OK : mt_recommendation_copy(best, mem, &out->best, err);
+}
+
+static mt_status describe(const trade *t, mt_result *result, mt_err *err)
+{
+    mt_trade_result *const out = mt_arena_alloc(&result->mem, 1, sizeof *out);
+    if (out == NULL) {
+        return mt_fail_memory(err);
+    }
+    *out = (mt_trade_result){.n_points = t->n};
+    MT_TRY(describe_what(t, &result->mem, out, err));
+    out->points = mt_arena_alloc(&result->mem, (size_t)t->n, sizeof *out->points);
+    if (out->points == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int k = 0; k < t->n; k++) {
+        MT_TRY(describe_point(t, k, &result->mem, &out->points[k], err));
+        result->run.evaluations += t->points[k].evaluations;
+    }
+    mark_front(t, out);
+    result->trade = out;
+    return MT_OK;
+}
+
+mt_status mt_trade_solve(const mt_study *study, int threads, mt_result *result, mt_err *err)
+{
+    trade t = {.study = study};
+    mt_arena mem;
+    if (study->trade.n_vary == 0) {
+        return MT_OK;
+    }
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    mt_status rc = begin(&t, &mem, err);
+    /* a combination of catalogue values is reached from any start: no second pass */
+    const bool warm = study->n_objectives > 0 && !mt_study_is_discrete(study);
+    rc = rc == MT_OK ? mt_workers_run(threads, t.n, solve_cold, &t, err) : rc;
+    rc = rc == MT_OK && warm ? mt_workers_run(threads, t.n, solve_warm, &t, err) : rc;
+    rc = rc == MT_OK ? describe(&t, result, err) : rc;
+    for (int k = 0; k < t.n && t.points != NULL; k++) {
+        mt_result_delete(t.points[k].first);
+        mt_result_delete(t.points[k].again);
+    }
+    mt_arena_free(&mem);
+    return rc;
+}

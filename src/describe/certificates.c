@@ -1,0 +1,180 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a study's answer may claim as proven, in sentences; and whether it is a proof that no design exists. */
+#include "describe/certificates.h"
+
+#include <math.h>
+#include <stdarg.h>
+
+#include "describe/describe.h"
+#include "search/proof.h"
+
+static mt_status state(mt_result *result, const char *kind, bool proven, mt_err *err,
+                       const char *fmt, ...) MT_PRINTF(5, 6);
+
+static mt_status state(mt_result *result, const char *kind, bool proven, mt_err *err,
+                       const char *fmt, ...)
+{
+    va_list args;
+    int capacity = result->n_certificates;
+    mt_certificate *const grown = mt_arena_grow(
+        &result->mem, result->certificates, result->n_certificates, &capacity, sizeof *grown);
+    va_start(args, fmt);
+    const char *const text = mt_arena_vprintf(&result->mem, fmt, args);
+    va_end(args);
+    if (grown == NULL || text == NULL) {
+        return mt_fail_memory(err);
+    }
+    result->certificates = grown;
+    mt_certificate *const c = &result->certificates[result->n_certificates++];
+    *c = mt_certificate_default();
+    c->kind = kind;
+    c->text = text;
+    c->proven = proven;
+    return MT_OK;
+}
+
+static mt_status describe_gaps(const mt_gap_result *gaps, mt_result *result, bool infeasible,
+                               mt_err *err)
+{
+    if (infeasible) {
+        return state(
+            result, "infeasible", true, err,
+            "No design within the bounds keeps clear of the bands and meets the other limits: "
+            "all %.0f gap assignments are proven infeasible (branch and bound, %ld boxes).",
+            gaps->n_possible, gaps->boxes);
+    }
+    if (gaps->proven) {
+        const int open = gaps->n_candidates - gaps->n_feasible;
+        MT_TRY(open == 0
+                   ? state(result, "gap_assignments", true, err,
+                           "Of %.0f gap assignments %d can be met within the bounds; all "
+                           "others are proven infeasible (branch and bound, %ld boxes).",
+                           gaps->n_possible, gaps->n_candidates, gaps->boxes)
+                   : state(result, "gap_assignments", true, err,
+                           "Of %.0f gap assignments all but %d are proven infeasible (branch "
+                           "and bound, %ld boxes%s); in %d of these no design was found that "
+                           "meets all goals, which is sampled.",
+                           gaps->n_possible, gaps->n_candidates, gaps->boxes,
+                           gaps->tolerances ? ", the tolerances of the variables left out" : "",
+                           open));
+        return state(result, "optimality", false, err,
+                     "That each design is the best of its gap assignment: %d starts found none "
+                     "better.",
+                     gaps->starts);
+    }
+    return state(result, "gap_assignments", false, err,
+                 "Of %.0f gap assignments %d were searched, those met by samples over the "
+                 "bounds: others may exist (no proof: %s).",
+                 gaps->n_possible, gaps->n_candidates,
+                 gaps->reason != NULL && gaps->reason[0] != '\0' ? gaps->reason
+                                                                 : "not asked for");
+}
+
+const char *mt_describe_gaps_left(const mt_gap_result *gaps, mt_arena *mem)
+{
+    const int open = gaps->n_candidates - gaps->n_feasible;
+    if (!gaps->proven) {
+        return "sampled, not proven";
+    }
+    return open == 0
+               ? "the others proven infeasible"
+               : mt_arena_printf(mem,
+                                 "the others proven infeasible, but %d in which no design "
+                                 "was found",
+                                 open);
+}
+
+mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *result,
+                                      bool *infeasible, mt_err *err)
+{
+    *infeasible = gaps->proven && gaps->n_candidates == 0;
+    MT_TRY(describe_gaps(gaps, result, *infeasible, err));
+    if (!gaps->driven) {
+        return MT_OK;
+    }
+    return gaps->motion
+               ? state(result, "positions", false, err,
+                       "Positions of one drive have one number of modes below each band, as a "
+                       "mode would cross it between two that differ. Between the positions the "
+                       "motion of each recommendation is sampled, not proven.")
+               : state(result, "positions", false, err,
+                       "What is said of driven positions holds at the positions named; what "
+                       "lies between is not searched.");
+}
+
+/* In words: what one limit's mode can reach. */
+static mt_status say_reach(const mt_demand *d, const char *configuration,
+                           const mt_certify_reach *r, mt_result *result, mt_err *err)
+{
+    const bool impossible = r->verdict == MT_VERDICT_IMPOSSIBLE;
+    if (isnan(r->low_hz)) {
+        return state(result, impossible ? "infeasible" : "range", impossible, err,
+                     impossible
+                         ? "Goal /goals/%d cannot be met: %s has no mode %d at any design."
+                         : "Goal /goals/%d: nothing is known of the range of %s mode %d.",
+                     d->goal_index, configuration, d->mode);
+    }
+    if (impossible) {
+        return state(result, "infeasible", true, err,
+                     "Goal /goals/%d cannot be met within the bounds: %s mode %d stays between "
+                     "%.6g and %.6g Hz (two eigensolves and %ld boxes).",
+                     d->goal_index, configuration, d->mode, r->low_hz, r->high_hz, r->boxes);
+    }
+    return state(result, "range", true, err,
+                 "%s mode %d stays between %.6g and %.6g Hz within the bounds.", configuration,
+                 d->mode, r->low_hz, r->high_hz);
+}
+
+static mt_status reach(mt_problem *p, const mt_proof *proof, int limit, mt_arena *mem,
+                       mt_result *result, bool *infeasible, mt_err *err)
+{
+    mt_certify_reach r = {0};
+    const mt_demand *const d = &p->demands[proof->limit_demand[limit]];
+    MT_TRY(mt_certify_reach_of(&proof->question, limit, mem, &r, err));
+    *infeasible = *infeasible || r.verdict == MT_VERDICT_IMPOSSIBLE;
+    MT_TRY(
+        say_reach(d, mt_analysis_configuration(p->views[d->view].analysis), &r, result, err));
+    mt_certificate *const c = &result->certificates[result->n_certificates - 1];
+    c->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
+    c->reachable_lower_hz = r.low_hz;
+    c->reachable_upper_hz = r.high_hz;
+    return c->pointer == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+static mt_status jointly(const mt_proof *proof, mt_arena *mem, mt_result *result,
+                         bool *infeasible, mt_err *err)
+{
+    mt_certify q = proof->question;
+    mt_certify_search found = {0};
+    q.n_bands = 0;
+    MT_TRY(mt_certify_assignments(&q, 0, NULL, mem, &found, err));
+    if (!found.proven || found.n_found > 0) {
+        return MT_OK;
+    }
+    *infeasible = true;
+    return state(result, "infeasible", true, err,
+                 "No design within the bounds meets all limits together: proven by branch and "
+                 "bound (%ld boxes).",
+                 found.boxes);
+}
+
+mt_status mt_describe_limit_certificates(mt_problem *p, mt_arena *mem, mt_result *result,
+                                         bool *infeasible, mt_err *err)
+{
+    mt_proof proof;
+    *infeasible = false;
+    mt_status rc = mt_proof_init(&proof, p, mem, err);
+    if (rc == MT_OK && !proof.possible && proof.reason[0] != '\0') {
+        rc = state(result, "infeasible", false, err,
+                   "That no design meets all goals is sampled, not proven: no certificate, %s.",
+                   proof.reason);
+    }
+    for (int i = 0; rc == MT_OK && proof.possible && i < proof.question.n_limits; i++) {
+        rc = reach(p, &proof, i, mem, result, infeasible, err);
+    }
+    if (rc == MT_OK && proof.possible && !*infeasible && proof.question.n_limits > 0) {
+        rc = jointly(&proof, mem, result, infeasible, err);
+    }
+    mt_proof_free(&proof, p);
+    return rc;
+}

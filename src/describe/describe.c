@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "describe/describe.h"
+
+#include <math.h>
+#include <stdarg.h>
+
+#include "problem/robust.h"
+
+/* The objective as the search had it and as it is recomputed may differ by this much, relatively: both are good to about n eps. Roots of squares, so that an
+ * exact identification (f of 1e-24) is not judged by its rounding. */
+static const double SAME_OBJECTIVE = 1e-8;
+/* A KKT residual (relative to the objective's gradient) above this is told. Along the way that is left, of at most a few in ln x, it
+ * costs less than a thousandth of the objective; Newton's iteration reaches 1e-9 wherever the modes are simple. */
+static const double KKT_TOLD = 1e-4;
+
+mt_status mt_describe_warn(mt_result *result, mt_err *err, const char *fmt, ...)
+{
+    va_list args;
+    int capacity = result->n_warnings;
+    const char **const grown = mt_arena_grow(&result->mem, result->warnings, result->n_warnings,
+                                             &capacity, sizeof *grown);
+    va_start(args, fmt);
+    const char *const text = mt_arena_vprintf(&result->mem, fmt, args);
+    va_end(args);
+    if (grown == NULL || text == NULL) {
+        return mt_fail_memory(err);
+    }
+    result->warnings = grown;
+    result->warnings[result->n_warnings++] = text;
+    return MT_OK;
+}
+
+static const char *bound_of(const mt_variable *v, double x)
+{
+    if (x == v->lower) {
+        return "lower";
+    }
+    return x == v->upper ? "upper" : NULL;
+}
+
+static mt_status describe_parameters(const mt_problem *p, const double *x, const double *t,
+                                     mt_result *result, mt_recommendation *rec, mt_err *err)
+{
+    rec->n_parameters = p->n;
+    rec->parameters = mt_arena_alloc(&result->mem, (size_t)p->n, sizeof *rec->parameters);
+    if (rec->parameters == NULL) {
+        return mt_fail_memory(err);
+    }
+    double change = 0.0;
+    for (int i = 0; i < p->n; i++) {
+        const mt_variable *const v = &p->study->variables[i];
+        const mt_parameter *const parameter = &p->study->model->parameters[v->parameter];
+        const double original = p->original[i];
+        const double d = t[i] - p->origin_t[i];
+        change += v->weight * d * d;
+        rec->parameters[i] = (mt_result_parameter){
+            .name = parameter->name.s,
+            .unit = parameter->unit,
+            .original = original,
+            .recommended = x[i],
+            .change_percent =
+                original != 0.0 ? 100.0 * (x[i] - original) / fabs(original) : nan(""),
+            .at_bound = bound_of(v, x[i]),
+            .measure_scale = MT_HAS(p->scale[i]) ? p->scale[i] : 0.0,
+            .measure_floor = p->floor[i],
+        };
+    }
+    rec->change = sqrt(change);
+    return MT_OK;
+}
+
+/* A half square as its root: what results show of changes and misfits. */
+static double shown(const mt_problem *p, int k, double f)
+{
+    const mt_objective_type type = p->aims[k].type;
+    return type == MT_OBJECTIVE_CHANGE || type == MT_OBJECTIVE_MISFIT ? sqrt(2.0 * f) : f;
+}
+
+/* The objective at this design. The fresh problem has no coordinate for the least clearance: it is looked up among the modes. */
+static double aim_value(const mt_problem *fresh, int k)
+{
+    double least = HUGE_VAL;
+    if (fresh->aims[k].type != MT_OBJECTIVE_CLEARANCE) {
+        return mt_aim_value(fresh, k, NULL);
+    }
+    for (int i = 0; i < fresh->n_clears; i++) {
+        least = fmin(least, mt_clear_room(fresh, &fresh->clears[i]));
+    }
+    least = fmin(least, fresh->motion_room);
+    return -least;
+}
+
+static void describe_score(const mt_problem *fresh, mt_recommendation *rec)
+{
+    const bool none = fresh->aims[0].type == MT_OBJECTIVE_NONE || !rec->feasible;
+    if (fresh->n_res > 0) {
+        rec->misfit = mt_norm2(fresh->n_res, fresh->r);
+    }
+    const bool clearance = fresh->aims[0].type == MT_OBJECTIVE_CLEARANCE;
+    const double f =
+        aim_value(fresh, 0); /* of a clearance -ln of a ratio: shown in percent of it */
+    const double score = clearance ? 100.0 * expm1(-f) : shown(fresh, 0, f);
+    rec->score = none ? nan("") : score;
+    rec->score_unit = fresh->aims[0].type == MT_OBJECTIVE_MASS ? "kg" : clearance ? "%" : "";
+}
+
+/* Does the fresh objective agree with the one that the search ended with? */
+static mt_status compare(const mt_problem *fresh, const mt_design *design, mt_result *result,
+                         mt_err *err)
+{
+    const double f = shown(fresh, design->stage, aim_value(fresh, design->stage));
+    const double had = shown(fresh, design->stage, design->found->f);
+    const bool searched_within = fresh->robust != NULL && !mt_robust_proven(fresh) &&
+                                 fresh->aims[design->stage].type == MT_OBJECTIVE_CLEARANCE;
+    const bool other_kind = /* a clearance that is missed is that of the kind searched */
+        fresh->aims[design->stage].type == MT_OBJECTIVE_CLEARANCE && !design->found->feasible;
+    if (other_kind || fabs(f - had) <= SAME_OBJECTIVE * fmax(fabs(f), 1.0) || searched_within) {
+        return MT_OK; /* within the tolerances more was found than at the corners of the search */
+    }
+    return mt_describe_warn(result, err,
+                            "recommendation %d: the search ended with an objective of %.12g, "
+                            "recomputed it is %.12g",
+                            design->rank, had, f);
+}
+
+/* A design at which a fresh analysis disagrees meets nothing: see describe_verify.c. */
+static mt_status doubt(const mt_design *design, mt_result *result, mt_recommendation *rec,
+                       mt_err *err)
+{
+    if (rec->disagreement == NULL) {
+        return MT_OK;
+    }
+    rec->feasible = false;
+    return design->found == NULL
+               ? mt_describe_warn(result, err, "the original design is not verified: %s",
+                                  rec->disagreement)
+               : mt_describe_warn(result, err, "recommendation %d is not verified: %s",
+                                  design->rank, rec->disagreement);
+}
+
+static mt_status describe(mt_problem *fresh, const mt_design *design,
+                          const mt_recommendation *baseline, mt_result *result,
+                          mt_recommendation *rec, mt_err *err)
+{
+    *rec = mt_recommendation_default();
+    rec->rank = design->rank;
+    MT_TRY(mt_describe_goals(fresh, design, result, rec, err));
+    MT_TRY(describe_parameters(fresh, fresh->x, design->t, result, rec, err));
+    MT_TRY(mt_describe_frequencies(fresh, design, baseline, result, rec, err));
+    MT_TRY(doubt(design, result, rec, err));
+    MT_TRY(mt_describe_clearances(fresh, result, rec, err));
+    describe_score(fresh, rec);
+    if (fresh->robust != NULL) {
+        rec->worst_case = mt_robust_proven(fresh) ? "proven" : "sampled";
+    }
+    rec->grade = rec->disagreement != NULL ? "not verified"
+                 : rec->feasible           ? "feasible"
+                                           : "compromise";
+    if (design->found == NULL) {
+        return MT_OK;
+    }
+    MT_TRY(mt_describe_tolerance(fresh, result, rec, err));
+    if (design->cut) {
+        return MT_OK;
+    }
+    rec->kkt_residual = design->found->kkt;
+    rec->singular = design->found->singular;
+    return compare(fresh, design, result, err);
+}
+
+mt_status mt_describe_design(mt_problem *p, const mt_design *design,
+                             const mt_recommendation *baseline, mt_result *result,
+                             mt_recommendation *rec, mt_err *err)
+{
+    mt_problem *fresh = NULL;
+    MT_TRY(mt_problem_new(p->study, p->references, &fresh, err));
+    const mt_status rc = describe(fresh, design, baseline, result, rec, err);
+    mt_problem_delete(fresh);
+    return rc;
+}
+
+bool mt_describe_is_optimum(const mt_recommendation *rec)
+{
+    return !(rec->kkt_residual >
+             KKT_TOLD); /* NaN: nothing is free, or the search was over a catalogue */
+}

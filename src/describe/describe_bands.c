@@ -1,0 +1,341 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bands in results: every avoid goal judged, the kind of the design, and how far each mode stays from its neighbouring bands. */
+#include <math.h>
+#include <string.h>
+
+#include "describe/describe.h"
+#include "problem/robust.h"
+
+/* Rounding of ln and of the eigenvalues may push a mode that stands on an edge over it. */
+static const double MET_SLACK = 1e-6;
+static const double PERCENT = 100.0;
+
+/* Nearer to an edge than this, in percent of it, is on it: frequencies carry relative rounding of about 1e-14. */
+static const double ON_EDGE_PERCENT = 1e-9;
+
+/* The ways out of a band with its margin, in percent of the edges without it. */
+static double way_down(const mt_band *band, double hz)
+{
+    return band->lower_hz > 0.0 ? PERCENT * (hz - band->lower_hz) / band->base_lower_hz
+                                : HUGE_VAL;
+}
+
+static double way_up(const mt_band *band, double hz)
+{
+    return PERCENT * (band->upper_hz - hz) / band->base_upper_hz;
+}
+
+/* How a mode at hz stands to one edge without margin; negative where that is crossed. */
+static double beyond(const mt_band *band, bool lower, double hz)
+{
+    return lower ? PERCENT * (band->base_lower_hz - hz) / band->base_lower_hz
+                 : PERCENT * (hz - band->base_upper_hz) / band->base_upper_hz;
+}
+
+/* What an edge is moved out by. */
+static double margin(const mt_band *band, bool lower)
+{
+    return beyond(band, lower, lower ? band->lower_hz : band->upper_hz);
+}
+
+/* Is the lower edge the one that a mode at hz is judged by? It is the nearer one; where a band has been cut off to a point, the one that is left sooner. */
+static bool by_lower_edge(const mt_band *band, double hz)
+{
+    if (!(band->base_lower_hz > 0.0)) {
+        return false;
+    }
+    const double below = beyond(band, true, hz);
+    const double above = beyond(band, false, hz);
+    return fabs(below - above) > ON_EDGE_PERCENT ? below >= above
+                                                 : way_down(band, hz) <= way_up(band, hz);
+}
+
+/* What a mode at hz is short of being clear of the band with its margin, by the shorter way; 0 where it is. */
+static double missing_percent(const mt_band *band, double hz)
+{
+    return fmax(fmin(way_down(band, hz), way_up(band, hz)), 0.0);
+}
+
+/* As mt_band_clearance_percent, without rounding on the edges. */
+static double clearance(const mt_band *band, double hz, mt_band_side *side)
+{
+    const double percent = mt_band_clearance_percent(band, hz, side);
+    if (fabs(percent) <= ON_EDGE_PERCENT) {
+        *side = by_lower_edge(band, hz) ? MT_BELOW_BAND : MT_ABOVE_BAND;
+        return 0.0;
+    }
+    return percent;
+}
+
+double mt_describe_margin_percent(const mt_band *band, double hz)
+{
+    return margin(band, by_lower_edge(band, hz));
+}
+
+/* How a mode at hz stands to the edge that a goal judges it by: inside a band with its margin the one that is left sooner, else the nearer one. Negative within the base. */
+static double standing(const mt_band *band, double hz, double *asked)
+{
+    const bool inside = missing_percent(band, hz) > 0.0;
+    const bool lower =
+        inside ? way_down(band, hz) <= way_up(band, hz) : by_lower_edge(band, hz);
+    const double has = beyond(band, lower, hz);
+    *asked = margin(band, lower);
+    return fabs(has) <= ON_EDGE_PERCENT ? 0.0 : has;
+}
+
+int mt_describe_avoid_count(const mt_problem *p)
+{
+    int n = 0;
+    for (int i = 0; i < p->study->n_goals; i++) {
+        const mt_goal *const g = &p->study->goals[i];
+        n += g->type == MT_GOAL_AVOID ? g->n_configurations : 0;
+    }
+    return n;
+}
+
+/* "installed clear of 4 bands up to 200 Hz" */
+static const char *avoid_text(const mt_goal *g, const char *configuration, mt_arena *mem)
+{
+    const mt_bands *const bands = &g->avoid->bands;
+    if (bands->n == 1) {
+        return mt_arena_printf(mem, "%s clear of %s", configuration, bands->items[0].label);
+    }
+    const double up_to =
+        bands->n > 0 ? bands->items[bands->n - 1].base_upper_hz : g->avoid->source.up_to_hz;
+    return mt_arena_printf(mem, "%s clear of %d bands up to %.6g Hz", configuration, bands->n,
+                           MT_HAS(g->avoid->source.up_to_hz) ? g->avoid->source.up_to_hz
+                                                             : up_to);
+}
+
+/* The clearance that comes nearest to its margin, or falls short of it most; and that margin. NaN without bands or modes. Returns by how much bands are missed. */
+static double tightest(const mt_bands *bands, const mt_modes *modes, mt_result_goal *g)
+{
+    double least = HUGE_VAL;
+    double missing = 0.0;
+    for (int b = 0; b < bands->n; b++) {
+        for (int i = 0; i < modes->count; i++) {
+            if (modes->kind[i] != MT_MODE_FLEXIBLE) {
+                continue;
+            }
+            const double hz = mt_modal_hz(modes, i);
+            double asked = 0.0;
+            const double has = standing(&bands->items[b], hz, &asked);
+            missing = fmax(missing, missing_percent(&bands->items[b], hz));
+            if (has - asked < least) {
+                least = has - asked;
+                g->value = has;
+                g->demand = asked;
+            }
+        }
+    }
+    return missing;
+}
+
+/* The same over the tolerances of the variables; *missing stays where there are none. */
+static mt_status tightest_worst(const mt_problem *fresh, int view, const mt_bands *bands,
+                                mt_result *result, mt_result_goal *g, double *missing,
+                                mt_err *err)
+{
+    const mt_modes *const modes = &fresh->views[view].analysis->modes;
+    const double *where = NULL;
+    double least = HUGE_VAL;
+    for (int b = 0; b < bands->n && fresh->robust != NULL; b++) {
+        for (int k = 1; mt_modal_flexible(modes, k) >= 0; k++) {
+            const double *at = NULL;
+            double asked = 0.0;
+            const double hz =
+                mt_describe_worst_hz(fresh, view, k, &bands->items[b],
+                                     mt_modal_hz(modes, mt_modal_flexible(modes, k)), &at);
+            const double has = standing(&bands->items[b], hz, &asked);
+            *missing = fmax(*missing, missing_percent(&bands->items[b], hz));
+            if (has - asked < least) {
+                least = has - asked;
+                g->worst = has;
+                where = at;
+            }
+        }
+    }
+    if (where == NULL) {
+        return MT_OK;
+    }
+    g->worst_at = mt_arena_f64(&result->mem, (size_t)fresh->n, 1);
+    if (g->worst_at == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(g->worst_at, where, (size_t)fresh->n * sizeof *where);
+    return MT_OK;
+}
+
+static mt_status judge(mt_problem *fresh, int goal, int configuration, mt_result *result,
+                       mt_result_goal *out, mt_err *err)
+{
+    const mt_goal *const g = &fresh->study->goals[goal];
+    const mt_view *const view = &fresh->views[mt_problem_view(fresh, configuration)];
+    const mt_modes *const modes = &view->analysis->modes;
+    const mt_clear own = {.view = mt_problem_view(fresh, configuration),
+                          .bands = g->avoid->bands};
+    double violation = view->solved ? mt_clear_violation(&own, modes, NULL, NULL) : nan("");
+    if (MT_HAS(violation) && fresh->robust != NULL) {
+        const double worst = mt_robust_room(fresh, &own);
+        violation = MT_HAS(worst) ? fmax(-worst, 0.0) : worst;
+    }
+    double missing = nan("");
+    *out = (mt_result_goal){.value = nan(""), .demand = nan(""), .worst = nan("")};
+    if (MT_HAS(violation)) {
+        missing = tightest(&g->avoid->bands, modes, out);
+        MT_TRY(tightest_worst(fresh, own.view, &g->avoid->bands, result, out, &missing, err));
+    }
+    out->text = avoid_text(g, mt_analysis_configuration(view->analysis), &result->mem);
+    out->pointer = mt_arena_printf(&result->mem, "/goals/%d", goal);
+    out->violation_percent = violation > 0.0 ? missing : violation; /* 0, or NaN */
+    out->met = violation <= mt_problem_tolerance(g) * (1.0 + MET_SLACK);
+    return out->text == NULL || out->pointer == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+mt_status mt_describe_avoid_goals(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+                                  mt_err *err)
+{
+    for (int i = 0; i < fresh->study->n_goals; i++) {
+        const mt_goal *const g = &fresh->study->goals[i];
+        for (int k = 0; g->type == MT_GOAL_AVOID && k < g->n_configurations; k++) {
+            MT_TRY(
+                judge(fresh, i, g->configurations[k], result, &rec->goals[rec->n_goals], err));
+            rec->n_goals++;
+        }
+    }
+    return MT_OK;
+}
+
+int mt_describe_modes_in_reach(const mt_problem *p, int view)
+{
+    const mt_modes *const modes = &p->views[view].analysis->modes;
+    int n = 0;
+    for (int c = 0; c < p->n_clears; c++) {
+        const mt_bands *const bands = &p->clears[c].bands;
+        if (p->clears[c].view != view || bands->n == 0) {
+            continue;
+        }
+        const double top = bands->items[bands->n - 1].upper_hz;
+        for (int i = 0; i < modes->count; i++) {
+            n += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
+            if (modes->kind[i] == MT_MODE_FLEXIBLE && mt_modal_hz(modes, i) > top) {
+                break; /* the first above all bands still says how far it stays away */
+            }
+        }
+    }
+    return n;
+}
+
+typedef struct listing {
+    const mt_problem *fresh;
+    int view;
+    mt_result *result;
+    mt_recommendation *rec;
+    const char *configuration;
+    const mt_bands *bands;
+} listing;
+
+static mt_status add_clearance(const listing *l, int band, int mode, double hz, mt_err *err)
+{
+    const mt_band *const b = &l->bands->items[band];
+    mt_result_clearance *const c = &l->rec->clearances[l->rec->n_clearances];
+    mt_band_side side = MT_INSIDE_BAND;
+    const double *at = NULL;
+    *c = (mt_result_clearance){.configuration = l->configuration, .mode = mode, .hz = hz};
+    c->worst_hz = mt_describe_worst_hz(l->fresh, l->view, mode, b, hz, &at);
+    c->worst_percent = MT_HAS(c->worst_hz) ? clearance(b, c->worst_hz, &side) : nan("");
+    c->percent = clearance(b, hz, &side);
+    c->margin_percent = mt_describe_margin_percent(b, hz);
+    c->side = mt_band_side_name(side);
+    c->band = mt_arena_strdup(&l->result->mem, b->label);
+    l->rec->n_clearances++;
+    if (!(c->percent >= l->rec->clearance_percent)) {
+        l->rec->clearance_percent = c->percent;
+    }
+    return c->band == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+/* The band that the mode is in, or its neighbours on both sides. */
+static mt_status list_mode(const listing *l, int mode, double hz, mt_err *err)
+{
+    mt_band_side side = MT_ABOVE_BAND;
+    int next = 0; /* first band that the mode is not above */
+    for (; next < l->bands->n; next++) {
+        (void)clearance(&l->bands->items[next], hz, &side);
+        if (side != MT_ABOVE_BAND) {
+            break;
+        }
+    }
+    if (next > 0 && side != MT_INSIDE_BAND) {
+        MT_TRY(add_clearance(l, next - 1, mode, hz, err));
+    }
+    return next < l->bands->n ? add_clearance(l, next, mode, hz, err) : MT_OK;
+}
+
+static mt_status list_gaps(const listing *l, const int *below, mt_err *err)
+{
+    for (int b = 0; b < l->bands->n; b++) {
+        const mt_band *const band = &l->bands->items[b];
+        l->rec->gaps[l->rec->n_gaps] = (mt_result_gap){
+            .configuration = l->configuration,
+            .band = mt_arena_strdup(&l->result->mem, band->label),
+            .lower_hz = band->base_lower_hz,
+            .upper_hz = band->base_upper_hz,
+            .margin_lower_hz = band->lower_hz,
+            .margin_upper_hz = band->upper_hz,
+            .modes_below = below[b],
+        };
+        if (l->rec->gaps[l->rec->n_gaps++].band == NULL) {
+            return mt_fail_memory(err);
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status list_clear(mt_problem *fresh, const mt_clear *c, int *below, mt_result *result,
+                            mt_recommendation *rec, mt_err *err)
+{
+    const mt_view *const view = &fresh->views[c->view];
+    const mt_modes *const modes = &view->analysis->modes;
+    const int count = mt_describe_modes_in_reach(fresh, c->view);
+    const listing l = {.fresh = fresh,
+                       .view = c->view,
+                       .result = result,
+                       .rec = rec,
+                       .configuration = mt_analysis_configuration(view->analysis),
+                       .bands = &c->bands};
+    if (!view->solved || !MT_HAS(mt_clear_violation(c, modes, below, NULL))) {
+        return MT_OK; /* unstable: no mode has an index here */
+    }
+    MT_TRY(list_gaps(&l, below, err));
+    for (int k = 1; k <= count; k++) {
+        const int pos = mt_modal_flexible(modes, k);
+        MT_TRY(list_mode(&l, k, mt_modal_hz(modes, pos), err));
+    }
+    return MT_OK;
+}
+
+mt_status mt_describe_clearances(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+                                 mt_err *err)
+{
+    size_t most = 0;
+    size_t bands = 0;
+    for (int i = 0; i < fresh->n_clears; i++) {
+        most += 2 * (size_t)mt_describe_modes_in_reach(fresh, fresh->clears[i].view);
+        bands += (size_t)fresh->clears[i].bands.n;
+    }
+    int *const below = mt_arena_int(&fresh->mem, bands);
+    rec->clearances = mt_arena_alloc(&result->mem, most, sizeof *rec->clearances);
+    rec->gaps = mt_arena_alloc(&result->mem, bands, sizeof *rec->gaps);
+    if (below == NULL || rec->clearances == NULL || rec->gaps == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < fresh->n_clears; i++) {
+        MT_TRY(list_clear(fresh, &fresh->clears[i], below, result, rec, err));
+    }
+    for (int i = 0; i < rec->n_motions; i++) {
+        rec->clearance_percent =
+            fmin(rec->clearance_percent, rec->motions[i].least_clearance_percent);
+    }
+    return MT_OK;
+}

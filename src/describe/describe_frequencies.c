@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The table of frequencies of a design: for each view the modes that goals name, those between bands, and the first few besides, from an analysis made anew at that design. */
+#include <math.h>
+#include <string.h>
+
+#include "describe/describe.h"
+#include "problem/robust.h"
+
+/* Modes listed of a configuration beyond those that goals name. */
+enum { LISTED_MODES = 4, SLACK_TEXT = 200 };
+static const double PI = 3.14159265358979323846;
+
+/* One configuration while its modes are listed. */
+typedef struct listing {
+    mt_problem *fresh;
+    const mt_design *design;
+    mt_result *result;
+    mt_recommendation *rec;
+    mt_view *
+        view; /* its analysis was opened at the original design and solved here, as in the search */
+    mt_analysis *scratch; /* opened here */
+    int first;            /* its first row of rec->frequencies */
+} listing;
+
+/* Vibration index of a demand's mode at this design; 0: it has none. */
+static mt_status index_of_demand(mt_problem *p, mt_view *view, const mt_demand *d, int *index,
+                                 mt_err *err)
+{
+    int pos = -1;
+    MT_TRY(mt_view_position(p, view, d->mode, d->named, &pos, err));
+    *index = mt_describe_index(&view->analysis->modes, pos);
+    return MT_OK;
+}
+
+/* The name of the mode with this index, in the model's words, and how surely it is that mode. */
+static mt_status put_name(const listing *l, mt_result_frequency *f, mt_err *err)
+{
+    const mt_modes *const modes = &l->view->analysis->modes;
+    for (int i = 0; i < l->view->n_named; i++) {
+        int pos = -1;
+        MT_TRY(mt_view_position(l->fresh, l->view, 0, i, &pos, err));
+        if (pos >= 0 && mt_describe_index(modes, pos) == f->mode) {
+            const mt_track *const k = &l->view->track[i];
+            f->name = l->fresh->study->model->modes[l->view->named[i]].name.s;
+            f->identity = mt_track_state_name(k->state);
+            f->share = k->share;
+            f->rival_mode = mt_describe_index(modes, k->rival);
+            f->rival_share = k->rival_share;
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status describe_mode(const listing *l, int index, mt_result_frequency *f, mt_err *err)
+{
+    mt_analysis *const a = l->scratch;
+    const int n = l->fresh->n;
+    const int pos = mt_modal_flexible(&a->modes, index);
+    *f = mt_result_frequency_default();
+    f->configuration = mt_analysis_configuration(a);
+    f->mode = index;
+    f->sensitivity = mt_arena_f64(&l->result->mem, (size_t)n, 1);
+    if (f->sensitivity == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (pos < 0) { /* unstable here */
+        for (int i = 0; i < n; i++) {
+            f->sensitivity[i] = nan("");
+        }
+        return MT_OK;
+    }
+    f->recommended_hz = mt_modal_hz(&a->modes, pos);
+    const mt_robust_range *const range =
+        mt_robust_hz(l->fresh, (int)(l->view - l->fresh->views), index);
+    f->lowest_hz = range != NULL ? range->value[MT_LOWEST] : nan("");
+    f->highest_hz = range != NULL ? range->value[MT_HIGHEST] : nan("");
+    f->residual = a->modes.residual[pos];
+    f->orthogonality = a->modes.orthogonality[pos];
+    MT_TRY(mt_analysis_dlambda(a, pos, f->sensitivity, &f->repeated, err));
+    for (int i = 0; i < n; i++) { /* d Hz = d lambda / (8 pi^2 Hz): none at 0 Hz */
+        f->sensitivity[i] = f->recommended_hz > 0.0
+                                ? f->sensitivity[i] / (8.0 * PI * PI * f->recommended_hz)
+                                : nan("");
+    }
+    char slack[SLACK_TEXT];
+    if (mt_analysis_slack(a, pos, slack, sizeof slack)) {
+        f->slack = mt_arena_strdup(&l->result->mem, slack);
+        MT_TRY(f->slack == NULL ? mt_fail_memory(err) : MT_OK);
+    }
+    return put_name(l, f, err);
+}
+
+static void attach_frequency(const mt_demand *d, mt_result_frequency *f)
+{
+    const mt_goal *const g = d->goal;
+    f->target_hz = MT_HAS(d->target_hz) ? d->target_hz : f->target_hz;
+    f->at_least_hz = MT_HAS(g->at_least) ? g->at_least : f->at_least_hz;
+    f->at_most_hz = MT_HAS(g->at_most) ? g->at_most : f->at_most_hz;
+    if (MT_HAS(f->target_hz)) {
+        f->error_percent = 100.0 * ((f->recommended_hz / f->target_hz) - 1.0);
+        return;
+    }
+    double over = f->recommended_hz - f->recommended_hz; /* 0, or NaN with the frequency */
+    over = f->recommended_hz < f->at_least_hz ? 1.0 - f->recommended_hz / f->at_least_hz : over;
+    over = f->recommended_hz > f->at_most_hz ? f->recommended_hz / f->at_most_hz - 1.0 : over;
+    f->error_percent = 100.0 * over;
+}
+
+/* What the demand wants of its mode, into the row of that mode. */
+static mt_status attach(const listing *l, const mt_demand *d, mt_err *err)
+{
+    int index = 0;
+    MT_TRY(index_of_demand(l->fresh, l->view, d, &index, err));
+    index = index == 0 ? d->mode : index; /* unstable: the rows stand without frequency */
+    for (int k = l->first; k < l->rec->n_frequencies; k++) {
+        mt_result_frequency *const f = &l->rec->frequencies[k];
+        const int pos = mt_modal_flexible(&l->scratch->modes, index);
+        if (f->mode != index) {
+            continue;
+        }
+        if (d->goal->type == MT_GOAL_FREQUENCY) {
+            attach_frequency(d, f);
+        } else if (pos >= 0) {
+            f->reference = d->shape.reference;
+            MT_TRY(mt_reference_mac(l->scratch, pos, &d->shape, &f->mac, err));
+        }
+    }
+    return MT_OK;
+}
+
+/* Named modes that goals speak of and that can no longer be told for sure. */
+static mt_status warn_lost(const listing *l, const mt_demand *d, mt_err *err)
+{
+    int index = 0;
+    if (d->named < 0 || l->design->found == NULL || !l->view->solved) {
+        return MT_OK;
+    }
+    MT_TRY(index_of_demand(l->fresh, l->view, d, &index, err));
+    const char *const why = mt_describe_identity(l->view, d->named, &l->result->mem);
+    if (why == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (index == 0 || why[0] == '\0') {
+        return MT_OK;
+    }
+    return mt_describe_warn(
+        l->result, err, "recommendation %d: mode \"%s\" of configuration \"%s\" is %s",
+        l->design->rank, d->goal->mode.mode_name.s, mt_analysis_configuration(l->scratch), why);
+}
+
+static mt_status count_modes(mt_problem *fresh, int v, int *count, mt_err *err)
+{
+    mt_view *const view = &fresh->views[v];
+    const mt_modes *const modes = &view->analysis->modes;
+    int flexible = 0;
+    int wanted = LISTED_MODES;
+    *count = 0;
+    if (!view->solved) {
+        return MT_OK;
+    }
+    for (int i = 0; i < modes->count; i++) {
+        flexible += modes->kind[i] == MT_MODE_RIGID_BODY ? 0 : 1;
+    }
+    for (int i = 0; i < fresh->n_demands; i++) {
+        int index = 0;
+        if (fresh->demands[i].view == v) {
+            MT_TRY(index_of_demand(fresh, view, &fresh->demands[i], &index, err));
+            index = index == 0 ? fresh->demands[i].mode : index;
+        }
+        wanted = index > wanted ? index : wanted;
+    }
+    const int in_reach = mt_describe_modes_in_reach(fresh, v);
+    wanted = in_reach > wanted ? in_reach : wanted;
+    *count = wanted < flexible ? wanted : flexible;
+    return MT_OK;
+}
+
+/* The frequency that the same mode has in the baseline: the same name, else the same index. */
+static double original_hz(const mt_recommendation *baseline, const mt_result_frequency *f)
+{
+    for (int i = 0; baseline != NULL && i < baseline->n_frequencies; i++) {
+        const mt_result_frequency *const b = &baseline->frequencies[i];
+        const bool same_name =
+            f->name != NULL && b->name != NULL && strcmp(f->name, b->name) == 0;
+        if (strcmp(f->configuration, b->configuration) == 0 &&
+            (f->name != NULL ? same_name : f->mode == b->mode)) {
+            return b->recommended_hz;
+        }
+    }
+    return baseline == NULL ? f->recommended_hz : nan("");
+}
+
+/* The analysis has just been made here, with its own count: does it agree? From now on it counts as the study does, as far as it can. */
+static mt_status verify(listing *l, mt_err *err)
+{
+    const mt_analysis *const had = l->view->analysis;
+    const char *const text = mt_describe_disagreement(
+        &had->modes, &l->scratch->modes, mt_analysis_configuration(had), &l->result->mem);
+    if (text == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (text[0] != '\0' && l->rec->disagreement == NULL) {
+        l->rec->disagreement = text;
+    }
+    l->scratch->n_rigid = had->n_rigid;
+    l->scratch->recount = true;
+    return MT_OK;
+}
+
+/* A design that the study could read, and a fresh analysis cannot. */
+static mt_status note_failure(const listing *l, const mt_err *why, mt_err *err)
+{
+    if (mt_is_final(why->code)) {
+        return mt_fail(err, why->code, "%s", why->text);
+    }
+    if (l->rec->disagreement == NULL) {
+        l->rec->disagreement =
+            mt_arena_printf(&l->result->mem, "a fresh analysis fails: %s", why->text);
+    }
+    return l->rec->disagreement == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+static mt_status list_view(listing *l, int v, int count, mt_err *err)
+{
+    mt_problem *const fresh = l->fresh;
+    mt_analysis_options opt = mt_analysis_options_default();
+    opt.gradient = true;
+    MT_TRY(verify(l, err));
+    MT_TRY(mt_analysis_solve(l->scratch, fresh->x, &opt, err));
+    for (int k = 1; k <= count; k++) {
+        MT_TRY(describe_mode(l, k, &l->rec->frequencies[l->rec->n_frequencies], err));
+        l->rec->n_frequencies++;
+    }
+    for (int i = 0; i < fresh->n_demands; i++) {
+        if (fresh->demands[i].view == v) {
+            MT_TRY(attach(l, &fresh->demands[i], err));
+            MT_TRY(warn_lost(l, &fresh->demands[i], err));
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
+                                  const mt_recommendation *baseline, mt_result *result,
+                                  mt_recommendation *rec, mt_err *err)
+{
+    size_t most = 0;
+    for (int v = 0; v < fresh->n_views; v++) {
+        int count = 0;
+        MT_TRY(count_modes(fresh, v, &count, err));
+        most += (size_t)count;
+    }
+    rec->frequencies = mt_arena_alloc(&result->mem, most, sizeof *rec->frequencies);
+    if (rec->frequencies == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int v = 0; v < fresh->n_views; v++) {
+        int count = 0;
+        listing l = {.fresh = fresh, .design = design, .result = result, .rec = rec};
+        l.view = &fresh->views[v];
+        l.first = rec->n_frequencies;
+        MT_TRY(count_modes(fresh, v, &count, err));
+        if (count == 0) {
+            continue;
+        }
+        mt_err why = {.code = MT_OK};
+        mt_status rc = mt_analysis_new(fresh->study->model, l.view->configuration, fresh->n,
+                                       fresh->inputs, fresh->x, &l.scratch, &why);
+        rc = rc == MT_OK ? list_view(&l, v, count, err) : note_failure(&l, &why, err);
+        mt_analysis_delete(l.scratch);
+        MT_TRY(rc);
+    }
+    for (int k = 0; k < rec->n_frequencies; k++) {
+        rec->frequencies[k].original_hz = original_hz(baseline, &rec->frequencies[k]);
+    }
+    return MT_OK;
+}

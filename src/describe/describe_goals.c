@@ -1,0 +1,256 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Every goal as text, with its value, what it asks for, and whether it is met. */
+#include <math.h>
+
+#include "describe/describe.h"
+
+/* Rounding of ln and of the eigenvalues may push a goal that is met exactly on its tolerance over it. */
+static const double MET_SLACK = 1e-6;
+static const double PERCENT = 100.0;
+
+/* "from a to b Hz", "at least a Hz", "at most b Hz"; *number: the limit meant. */
+static const char *range_text(const char *what, const mt_goal *g, const char *unit,
+                              mt_arena *mem, double *number)
+{
+    const bool least = MT_HAS(g->at_least);
+    *number = least ? g->at_least : g->at_most;
+    if (least && MT_HAS(g->at_most)) {
+        return mt_arena_printf(mem, "%s from %.10g to %.10g%s", what, g->at_least, g->at_most,
+                               unit);
+    }
+    return mt_arena_printf(mem, "%s at %s %.10g%s", what, least ? "least" : "most", *number,
+                           unit);
+}
+
+static const char *mode_text(const mt_problem *p, const mt_demand *d, mt_arena *mem)
+{
+    const char *const configuration = mt_analysis_configuration(p->views[d->view].analysis);
+    if (d->mode > 0) {
+        return mt_arena_printf(mem, "%s mode %d", configuration, d->mode);
+    }
+    return mt_arena_printf(mem, "%s \"%s\"", configuration, d->goal->mode.mode_name.s);
+}
+
+static const char *frequency_text(const mt_demand *d, const char *mode, mt_arena *mem,
+                                  double *number)
+{
+    if (!MT_HAS(d->target_hz)) {
+        return range_text(mode, d->goal, " Hz", mem, number);
+    }
+    *number = d->target_hz;
+    if (d->shape.reference == NULL) {
+        return mt_arena_printf(mem, "%s at %.10g Hz", mode, d->target_hz);
+    }
+    return mt_arena_printf(mem, "%s at %.10g Hz as mode %d of \"%s\"", mode, d->target_hz,
+                           d->shape.mode, d->shape.reference);
+}
+
+/* What a demand asks for, as text, and the number that it asks for. NULL where memory is out. */
+static const char *demand_text(const mt_problem *p, const mt_demand *d, mt_arena *mem,
+                               double *number)
+{
+    const mt_goal *const g = d->goal;
+    const char *const what = d->view >= 0 ? mode_text(p, d, mem) : g->expression_text;
+    *number = 0.0;
+    if (what == NULL) {
+        return NULL;
+    }
+    switch (g->type) {
+    case MT_GOAL_FREQUENCY:
+        return frequency_text(d, what, mem, number);
+    case MT_GOAL_SHAPE:
+        return mt_arena_printf(mem, "%s shaped as mode %d of \"%s\"", what, d->shape.mode,
+                               d->shape.reference);
+    case MT_GOAL_MAC: {
+        const char *const mac = mt_arena_printf(mem, "%s: MAC with mode %d of \"%s\"", what,
+                                                d->shape.mode, d->shape.reference);
+        return mac == NULL ? NULL : range_text(mac, g, "", mem, number);
+    }
+    case MT_GOAL_LIMIT:
+        if (MT_HAS(g->equals)) {
+            *number = g->equals;
+            return mt_arena_printf(mem, "%s equal to %.10g", what, g->equals);
+        }
+        return range_text(what, g, "", mem, number);
+    case MT_GOAL_AVOID:
+    case MT_GOAL_TYPE_COUNT:
+        break;
+    }
+    return "";
+}
+
+/* The demand's quantity: Hz, distance of unit shapes, MAC, value of an expression; NaN where there is none. */
+static mt_status demand_value(mt_problem *fresh, const mt_demand *d, double *value, mt_err *err)
+{
+    int pos = -1;
+    *value = nan("");
+    if (d->goal->type == MT_GOAL_LIMIT) {
+        *value = fresh->value[d->node];
+        return MT_OK;
+    }
+    mt_view *const view = &fresh->views[d->view];
+    MT_TRY(mt_view_position(fresh, view, d->mode, d->named, &pos, err));
+    if (pos < 0) {
+        return MT_OK;
+    }
+    if (d->goal->type == MT_GOAL_FREQUENCY) {
+        *value = mt_modal_hz(&view->analysis->modes, pos);
+        return MT_OK;
+    }
+    if (d->goal->type == MT_GOAL_SHAPE) {
+        *value = mt_norm2(d->shape.ns, fresh->r + d->row_res) / sqrt(d->weight);
+        return MT_OK;
+    }
+    return mt_reference_mac(view->analysis, pos, &d->shape, value, err);
+}
+
+/* Of two parts of a violation the greater; NaN is the greatest. */
+static double greater(double a, double b)
+{
+    return b <= a ? a : b;
+}
+
+/* Relative violation of a demand that has been evaluated, that of a frequency a logarithm; of a shape its distance. */
+static double demand_violation(const mt_problem *fresh, const mt_demand *d,
+                               const mt_nlp_values *v)
+{
+    if (d->row_res >= 0) {
+        const int rows = d->goal->type == MT_GOAL_SHAPE ? d->shape.ns : 1;
+        return mt_norm2(rows, fresh->r + d->row_res) / sqrt(d->weight);
+    }
+    if (d->row_eq >= 0) {
+        return fabs(v->eq[d->row_eq]);
+    }
+    double worst = 0.0;
+    for (int k = 0; k < d->n_in; k++) {
+        worst = greater(worst, -v->in[d->row_in + k]);
+    }
+    return worst;
+}
+
+/* What a frequency goal is off by, of 1: (limit - f)/limit below its limit, (f - limit)/limit above. */
+static double off_by(const mt_demand *d, double hz)
+{
+    const mt_goal *const g = d->goal;
+    double worst = 0.0;
+    if (MT_HAS(d->target_hz)) {
+        return fabs(hz / d->target_hz - 1.0);
+    }
+    worst = MT_HAS(g->at_least) ? greater(worst, 1.0 - hz / g->at_least) : worst;
+    return MT_HAS(g->at_most) ? greater(worst, hz / g->at_most - 1.0) : worst;
+}
+
+/* Solve all views; the first that fails otherwise than by memory is told in `why`. */
+static mt_status solve_views(mt_problem *fresh, mt_err *why, mt_err *err)
+{
+    for (int i = 0; i < fresh->n_views; i++) {
+        mt_view *const view = &fresh->views[i];
+        mt_err own = {0};
+        view->needs_vectors = view->needs_vectors || view->n_named > 0;
+        const mt_status rc = mt_view_solve(fresh, view, false, &own);
+        if (mt_is_final(rc)) {
+            return mt_fail(err, rc, "%s", own.text);
+        }
+        if (rc != MT_OK && why->code == MT_OK) {
+            *why = own;
+        }
+    }
+    mt_err own = {0};
+    const mt_status rc = why->code == MT_OK ? mt_describe_ranges(fresh, &own) : MT_OK;
+    *why = rc != MT_OK ? own : *why;
+    return mt_pass_final(rc, &own, err);
+}
+
+/* Nobody can tell which mode is meant: the goal is not met, whatever its number. */
+static mt_status doubt(const mt_problem *fresh, const mt_demand *d, mt_result *result,
+                       mt_result_goal *g, mt_err *err)
+{
+    const char *const why =
+        mt_describe_identity(&fresh->views[d->view], d->named, &result->mem);
+    g->met = false;
+    g->text = why == NULL ? NULL : mt_arena_printf(&result->mem, "%s, %s", g->text, why);
+    g->doubtful = true;
+    return g->text == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
+                       mt_result *result, mt_result_goal *g, mt_err *why, mt_err *err)
+{
+    mt_err own = {0};
+    double violation = nan("");
+    double percent = nan("");
+    g->worst = nan("");
+    const mt_status rc = mt_demand_eval(fresh, d, false, v, &own);
+    if (mt_is_final(rc)) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    if (rc == MT_OK) {
+        violation = demand_violation(fresh, d, v);
+        MT_TRY(demand_value(fresh, d, &g->value, err));
+        percent =
+            PERCENT * (d->goal->type == MT_GOAL_FREQUENCY ? off_by(d, g->value) : violation);
+        MT_TRY(mt_describe_worst(fresh, d, result, g, &violation, &percent, err));
+    } else {
+        g->value = nan("");
+        *why = why->code == MT_OK ? own : *why;
+    }
+    g->weighted = d->row_res >= 0;
+    g->text = demand_text(fresh, d, &result->mem, &g->demand);
+    g->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
+    g->violation_percent = percent;
+    g->met = violation <= d->tolerance * (1.0 + MET_SLACK);
+    if (g->text == NULL || g->pointer == NULL) {
+        return mt_fail_memory(err);
+    }
+    return d->view < 0 || mt_describe_is_told(&fresh->views[d->view], d)
+               ? MT_OK
+               : doubt(fresh, d, result, g, err);
+}
+
+static const char *design_text(const mt_design *design, mt_arena *mem)
+{
+    return design->found == NULL ? "the original design"
+                                 : mt_arena_printf(mem, "recommendation %d", design->rank);
+}
+
+mt_status mt_describe_goals(mt_problem *fresh, const mt_design *design, mt_result *result,
+                            mt_recommendation *rec, mt_err *err)
+{
+    mt_nlp_values v;
+    mt_err why = {.code = MT_OK};
+    const size_t most = (size_t)fresh->n_demands + (size_t)mt_describe_avoid_count(fresh) +
+                        (size_t)mt_describe_motion_count(fresh);
+    rec->goals = mt_arena_alloc(&result->mem, most, sizeof *rec->goals);
+    rec->feasible = true;
+    rec->violation_percent = 0.0;
+    if (rec->goals == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(mt_problem_values_init(fresh, &fresh->mem, &v, err));
+    MT_TRY(mt_problem_place(fresh, design->t, false, err));
+    MT_TRY(solve_views(fresh, &why, err));
+    for (int i = 0; i < fresh->n_demands; i++) {
+        MT_TRY(judge(fresh, &fresh->demands[i], &v, result, &rec->goals[i], &why, err));
+        rec->n_goals++;
+    }
+    MT_TRY(mt_describe_avoid_goals(fresh, result, rec, err));
+    MT_TRY(mt_describe_motions(fresh, result, rec, err));
+    for (int i = 0; i < rec->n_goals; i++) {
+        const mt_result_goal *const g = &rec->goals[i];
+        if (!g->weighted) {
+            const bool worse = !(g->violation_percent <= rec->violation_percent);
+            rec->feasible = rec->feasible && g->met;
+            rec->violation_percent = worse ? g->violation_percent : rec->violation_percent;
+        } else if (!(g->violation_percent >= 0.0)) {
+            rec->feasible = false; /* a residual without a value: the misfit has none */
+        }
+    }
+    if (why.code == MT_OK) {
+        return MT_OK;
+    }
+    rec->violation_percent = nan("");
+    const char *const where = design_text(design, &result->mem);
+    return where == NULL ? mt_fail_memory(err)
+                         : mt_describe_warn(result, err, "not all goals have a value at %s: %s",
+                                            where, why.text);
+}

@@ -1,0 +1,311 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A design between the named positions of a drive: one more goal for each family of positions, the row of the result, and its sentence. */
+#include <math.h>
+
+#include "describe/describe.h"
+#include "search/motion.h"
+
+/* As for the goals themselves: rounding of ln and of the eigenvalues. */
+static const double MET_SLACK = 1e-6;
+/* Less than this (ln) beyond an edge is on it: a driven position is closed, and its modes are solved for, to about 1e-12. */
+static const double ON_EDGE = 1e-9;
+static const double PERCENT = 100.0;
+
+/* The mode that has to cross a band because two positions differ in the number of modes below it. */
+typedef struct crossing {
+    int mode; /* 0: none */
+    const char *band;
+    const char *from; /* configurations */
+    const char *to;
+    int from_below;
+    int to_below;
+} crossing;
+
+typedef struct described {
+    mt_problem *p; /* fresh, views solved */
+    mt_result *result;
+    const mt_family *family;
+    double tolerance;
+    int goal_index;
+    crossing cross;
+    mt_motion motion;
+    bool followed;
+    double violation; /* ln; NaN: no value */
+} described;
+
+static const char *configuration_of(const described *d, const mt_clear *c)
+{
+    return mt_analysis_configuration(d->p->views[c->view].analysis);
+}
+
+/* Tied bands of two clears that have different numbers of modes below their middles. below[n_bands] by the modes. */
+static void find_between(described *d, const mt_clear *a, const mt_clear *b, const int *below)
+{
+    for (int x = 0; x < a->bands.n; x++) {
+        for (int y = 0; y < b->bands.n && d->cross.mode == 0; y++) {
+            const int here = below[a->first + x];
+            const int there = below[b->first + y];
+            if (here != there && d->p->tie[a->first + x] == d->p->tie[b->first + y]) {
+                d->cross = (crossing){(here < there ? here : there) + 1,
+                                      a->bands.items[x].label,
+                                      configuration_of(d, a),
+                                      configuration_of(d, b),
+                                      here,
+                                      there};
+            }
+        }
+    }
+}
+
+static void find_crossing(described *d, const int *below)
+{
+    const mt_problem *const p = d->p;
+    const int family = (int)(d->family - p->families);
+    for (int i = 0; i < p->n_clears; i++) {
+        for (int k = 0; k < i && mt_family_of(p, p->clears[i].view) == family; k++) {
+            find_between(d, &p->clears[k], &p->clears[i], below);
+        }
+    }
+}
+
+/* Do the named positions keep their bands with one number of modes below each? If so the motion is followed. */
+static mt_status examine(described *d, mt_err *err)
+{
+    mt_problem *const p = d->p;
+    const int family = (int)(d->family - p->families);
+    int *const below = mt_arena_int(&p->mem, (size_t)p->n_bands);
+    int *const best = mt_arena_int(&p->mem, (size_t)p->n_bands);
+    double room = HUGE_VAL;
+    if (below == NULL || best == NULL) {
+        return mt_fail_memory(err);
+    }
+    d->tolerance = HUGE_VAL;
+    for (int i = p->n_clears - 1; i >= 0; i--) {
+        const mt_clear *const c = &p->clears[i];
+        const mt_view *const view = &p->views[c->view];
+        const bool known = view->solved && MT_HAS(mt_clear_violation(c, &view->analysis->modes,
+                                                                     below + c->first, NULL));
+        if (mt_family_of(p, c->view) != family) {
+            continue;
+        }
+        d->tolerance = fmin(d->tolerance, c->tolerance);
+        d->goal_index = c->goal_index;
+        room = known ? room : nan("");
+    }
+    d->violation = nan("");
+    if (!MT_HAS(room)) {
+        return MT_OK; /* a position has no modes, or is unstable: its own goals say so */
+    }
+    find_crossing(d, below);
+    for (int i = 0; i < p->n_clears; i++) {
+        const mt_clear *const c = &p->clears[i];
+        const bool own = mt_family_of(p, c->view) == family;
+        for (int b = c->first; own && b < c->first + c->bands.n; b++) {
+            if (p->tie[b] == b) {
+                room = fmin(room, mt_tie_room(p, b, &best[b]));
+            }
+            best[b] = best[p->tie[b]];
+        }
+    }
+    d->violation = room >= -ON_EDGE ? 0.0 : -room;
+    if (d->violation <= d->tolerance * (1.0 + MET_SLACK)) {
+        d->followed = true;
+        MT_TRY(mt_motion_follow(p, family, best, &p->mem, &d->motion, err));
+        d->violation = d->motion.end == MT_MOTION_UNSTABLE ? nan("")
+                       : d->motion.room >= -ON_EDGE        ? d->violation
+                                                    : fmax(d->violation, -d->motion.room);
+        p->motion_room = fmin(p->motion_room, d->motion.room);
+    }
+    return MT_OK;
+}
+
+/* "pivot from -0.5 to 0.5 rad" */
+static const char *range_text(const described *d, double from, double to)
+{
+    return mt_arena_printf(&d->result->mem, "%s from %.6g to %.6g %s", d->family->joint, from,
+                           to, d->family->angle ? "rad" : "m");
+}
+
+static const char *grade_of(const described *d)
+{
+    if (!d->followed) {
+        return "not followed";
+    }
+    switch (d->motion.end) {
+    case MT_MOTION_WHOLE:
+    case MT_MOTION_NONE:
+        return "sampled";
+    case MT_MOTION_CAPPED:
+        return "sampled coarsely";
+    case MT_MOTION_BROKEN:
+        return "incomplete";
+    case MT_MOTION_UNSTABLE:
+        return "unstable";
+    }
+    return "";
+}
+
+/* What the samples say of the mode that comes nearest. */
+static const char *nearest_text(const described *d, const char *range)
+{
+    const mt_motion *const m = &d->motion;
+    mt_arena *const mem = &d->result->mem;
+    const char *const unit = d->family->angle ? "rad" : "m";
+    const char *const side = m->above ? "above" : "below";
+    if (m->mode == 0) {
+        return mt_arena_printf(mem, "%s (%d positions sampled): no mode beside a band", range,
+                               m->positions);
+    }
+    if (m->room >= -d->tolerance * (1.0 + MET_SLACK)) {
+        return mt_arena_printf(
+            mem,
+            "%s (%d positions sampled): mode %d comes nearest, at %.4g %s (%.6g Hz), %.3g %% "
+            "%s band %s",
+            range, m->positions, m->mode, m->at, unit, m->hz, m->percent, side, m->band.label);
+    }
+    const bool inside = m->percent < 0.0;
+    return mt_arena_printf(
+        mem, "%s (%d positions sampled): mode %d %s band %s, worst at %.4g %s (%.6g Hz)", range,
+        m->positions, m->mode, inside ? "crosses the edge of" : "comes too near to",
+        m->band.label, m->at, unit, m->hz);
+}
+
+static const char *end_text(const described *d)
+{
+    const mt_motion *const m = &d->motion;
+    mt_arena *const mem = &d->result->mem;
+    const char *const unit = d->family->angle ? "rad" : "m";
+    switch (d->followed ? m->end : MT_MOTION_WHOLE) {
+    case MT_MOTION_CAPPED:
+        return "; the steps that the slopes ask for are shorter than these positions allow";
+    case MT_MOTION_BROKEN:
+        return mt_arena_printf(mem, "; nothing is known at %.6g %s: %s", m->broken_at, unit,
+                               m->why);
+    case MT_MOTION_UNSTABLE:
+        return mt_arena_printf(mem, "; unstable at %.6g %s", m->broken_at, unit);
+    case MT_MOTION_WHOLE:
+    case MT_MOTION_NONE:
+        break;
+    }
+    return d->p->robust != NULL ? "; tolerances are judged at the named positions alone" : "";
+}
+
+static const char *sentence(const described *d, const char *range)
+{
+    const crossing *const c = &d->cross;
+    mt_arena *const mem = &d->result->mem;
+    if (!d->followed && c->mode > 0) {
+        return mt_arena_printf(
+            mem,
+            "mode %d crosses %s between \"%s\" and \"%s\", which have %d and "
+            "%d modes below it",
+            c->mode, c->band, c->from, c->to, c->from_below, c->to_below);
+    }
+    if (!d->followed) {
+        return mt_arena_printf(mem, "%s is not followed: a named position misses its bands",
+                               range);
+    }
+    const char *const nearest = nearest_text(d, range);
+    const char *const end = end_text(d);
+    return nearest == NULL || end == NULL ? NULL : mt_arena_printf(mem, "%s%s", nearest, end);
+}
+
+static mt_status put_goal(const described *d, const char *range, mt_recommendation *rec,
+                          mt_err *err)
+{
+    mt_result_goal *const g = &rec->goals[rec->n_goals++];
+    mt_arena *const mem = &d->result->mem;
+    const crossing *const c = &d->cross;
+    *g = (mt_result_goal){.value = d->followed ? d->motion.percent : nan(""),
+                          .demand = d->followed ? d->motion.margin_percent : nan(""),
+                          .violation_percent = PERCENT * d->violation,
+                          .met = d->violation <= d->tolerance * (1.0 + MET_SLACK)};
+    g->text = c->mode > 0 && !d->followed
+                  ? mt_arena_printf(mem,
+                                    "%s clear of its bands: mode %d crosses %s between "
+                                    "\"%s\" and \"%s\"",
+                                    range, c->mode, c->band, c->from, c->to)
+                  : mt_arena_printf(mem, "%s clear of its bands between the positions", range);
+    g->pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index);
+    return g->text == NULL || g->pointer == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+static mt_status put_row(const described *d, const char *range, double from, double to,
+                         mt_recommendation *rec, mt_err *err)
+{
+    mt_arena *const mem = &d->result->mem;
+    const mt_motion *const m = &d->motion;
+    const crossing *const c = &d->cross;
+    mt_result_motion *const row = &rec->motions[rec->n_motions++];
+    const char *const band = d->followed ? m->band.label : c->band;
+    *row = mt_result_motion_default();
+    row->pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index);
+    row->drive = mt_arena_strdup(mem, d->family->joint);
+    row->unit = d->family->angle ? "rad" : "m";
+    row->from = from;
+    row->to = to;
+    row->grade = grade_of(d);
+    row->mode = d->followed ? m->mode : c->mode;
+    row->band = band == NULL ? NULL : mt_arena_strdup(mem, band);
+    row->crosses =
+        d->violation > d->tolerance * (1.0 + MET_SLACK) && (d->followed || c->mode > 0);
+    if (d->followed) {
+        row->positions = m->positions;
+        row->least_clearance_percent = m->percent;
+        row->margin_percent = m->margin_percent;
+        row->at = m->at;
+        row->hz = m->hz;
+    }
+    row->text = sentence(d, range);
+    const bool bad = row->drive == NULL || row->pointer == NULL ||
+                     (band != NULL && row->band == NULL) || row->text == NULL;
+    return bad ? mt_fail_memory(err) : MT_OK;
+}
+
+static mt_status describe_family(mt_problem *fresh, const mt_family *f, mt_result *result,
+                                 mt_recommendation *rec, mt_err *err)
+{
+    described d = {.p = fresh, .result = result, .family = f};
+    double from = HUGE_VAL;
+    double to = -HUGE_VAL;
+    d.motion.percent = nan("");
+    MT_TRY(examine(&d, err));
+    for (int k = 0; k < f->n; k++) {
+        from = fmin(from, mt_family_position(fresh, f, k));
+        to = fmax(to, mt_family_position(fresh, f, k));
+    }
+    if (d.followed && d.motion.end == MT_MOTION_NONE) {
+        return MT_OK; /* no band is asked for on both sides of a motion */
+    }
+    const char *const range = range_text(&d, from, to);
+    if (range == NULL) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(put_goal(&d, range, rec, err));
+    return put_row(&d, range, from, to, rec, err);
+}
+
+int mt_describe_motion_count(const mt_problem *p)
+{
+    int n = 0;
+    for (int i = 0; i < p->n_families; i++) {
+        n += p->families[i].banded ? 1 : 0;
+    }
+    return n;
+}
+
+mt_status mt_describe_motions(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+                              mt_err *err)
+{
+    const int most = mt_describe_motion_count(fresh);
+    rec->motions = mt_arena_alloc(&result->mem, (size_t)most, sizeof *rec->motions);
+    if (rec->motions == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < fresh->n_families; i++) {
+        if (fresh->families[i].banded) {
+            MT_TRY(describe_family(fresh, &fresh->families[i], result, rec, err));
+        }
+    }
+    return MT_OK;
+}

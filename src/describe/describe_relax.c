@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Moves that let a design exist, as records and sentences. */
+#include "describe/describe_relax.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double PERCENT = 100.0;
+/* Sentences of more moves than that do not help. */
+enum { MOST = 8 };
+
+static const char *goal_member(const mt_goal *g, const mt_move *m)
+{
+    const bool hz = g->type == MT_GOAL_FREQUENCY;
+    if (m->target) {
+        return hz ? "target_hz" : "equals";
+    }
+    if (m->upper) {
+        return hz ? "at_most_hz" : "at_most";
+    }
+    return hz ? "at_least_hz" : "at_least";
+}
+
+static void name_goal(const mt_problem *p, const mt_move *m, mt_arena *mem, mt_relaxation *out)
+{
+    const mt_demand *const d = &p->demands[m->demand];
+    const char *const member = goal_member(d->goal, m);
+    out->kind = "goal";
+    out->pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index);
+    out->unit = d->goal->type == MT_GOAL_FREQUENCY ? "Hz" : NULL;
+    out->what = d->view < 0
+                    ? mt_arena_printf(mem, "%s of goal %s", member, out->pointer)
+                    : mt_arena_printf(mem, "%s of goal %s (\"%s\")", member, out->pointer,
+                                      mt_analysis_configuration(p->views[d->view].analysis));
+}
+
+static void name_edge(const mt_problem *p, const mt_move *m, mt_arena *mem, mt_relaxation *out)
+{
+    const mt_clear *const c = &p->clears[m->clear];
+    const mt_band *const band = &c->bands.items[m->band];
+    const bool margin =
+        band->lower_hz != band->base_lower_hz || band->upper_hz != band->base_upper_hz;
+    out->kind = "band";
+    out->pointer = mt_arena_printf(mem, "/goals/%d", c->goal_index);
+    out->unit = "Hz";
+    out->what = mt_arena_printf(mem, "%s edge of the band \"%s\"%s in \"%s\"",
+                                m->upper ? "upper" : "lower", band->label,
+                                margin ? " (with its margin)" : "",
+                                mt_analysis_configuration(p->views[c->view].analysis));
+}
+
+static void name_bound(const mt_problem *p, const mt_move *m, mt_arena *mem, mt_relaxation *out)
+{
+    const mt_variable *const v = &p->study->variables[m->variable];
+    out->kind = "bound";
+    out->pointer = mt_arena_printf(mem, "/variables/%d", m->variable);
+    out->unit = p->study->model->parameters[v->parameter].unit;
+    out->what = mt_arena_printf(mem, "%s bound of %s", m->upper ? "upper" : "lower",
+                                v->parameter_name.s);
+}
+
+/* "k1 = 12.3, k2 = 4" */
+static const char *design_text(const mt_problem *p, const double *x, mt_arena *mem)
+{
+    const char *text = "";
+    for (int i = 0; i < p->n && text != NULL; i++) {
+        text = mt_arena_printf(mem, "%s%s%s = %.6g", text, i > 0 ? ", " : "",
+                               p->study->variables[i].parameter_name.s, x[i]);
+    }
+    return text;
+}
+
+static mt_status describe(const mt_problem *p, const mt_move *m, mt_arena *mem,
+                          mt_relaxation *out, mt_err *err)
+{
+    *out = (mt_relaxation){.from = m->from, .to = m->to};
+    out->change_percent =
+        fabs(m->from) > 0.0 ? PERCENT * (m->to - m->from) / fabs(m->from) : nan("");
+    switch (m->kind) {
+    case MT_MOVE_BOUND:
+        name_bound(p, m, mem, out);
+        break;
+    case MT_MOVE_EDGE:
+        name_edge(p, m, mem, out);
+        break;
+    case MT_MOVE_GOAL:
+        name_goal(p, m, mem, out);
+        break;
+    }
+    out->design = mt_arena_f64(mem, (size_t)p->n, 1);
+    const char *const design = design_text(p, m->x, mem);
+    if (out->pointer == NULL || out->what == NULL || out->design == NULL || design == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(out->design, m->x, (size_t)p->n * sizeof *out->design);
+    const char *const percent =
+        fabs(m->from) > 0.0 ? mt_arena_printf(mem, " (%+.3g %%)", out->change_percent) : "";
+    out->text =
+        percent == NULL
+            ? NULL
+            : mt_arena_printf(mem,
+                              "With the %s at %.6g%s%s instead of %.6g%s and nothing "
+                              "else changed, a design meets all goals: %s.",
+                              out->what, m->to, out->unit != NULL ? " " : "",
+                              out->unit != NULL ? out->unit : "", m->from, percent, design);
+    return out->text == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+mt_status mt_describe_relaxations(const mt_problem *p, const mt_moves *moves, mt_result *result,
+                                  mt_err *err)
+{
+    const int n = moves->n < MOST ? moves->n : MOST;
+    result->relaxations = mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->relaxations);
+    if (result->relaxations == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < n; i++) {
+        MT_TRY(describe(p, &moves->items[i], &result->mem, &result->relaxations[i], err));
+        result->n_relaxations = i + 1;
+    }
+    return MT_OK;
+}

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Goals over the tolerances of the variables: nominal and worst values beside each other. */
+#include "describe/reasons_priv.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "problem/robust.h"
+
+/* Modes of a configuration that the frequency table lists beyond those that goals name. */
+enum { LISTED_MODES = 4 };
+static const double PERCENT = 100.0;
+
+mt_status mt_describe_ranges(mt_problem *fresh, mt_err *err)
+{
+    if (fresh->robust == NULL) {
+        return MT_OK;
+    }
+    int *const modes = mt_arena_int(&fresh->mem, (size_t)fresh->n_views + 1);
+    if (modes == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < fresh->n_demands; i++) {
+        const mt_demand *const d = &fresh->demands[i];
+        if (d->view >= 0) {
+            const int most = d->mode > LISTED_MODES ? d->mode : LISTED_MODES;
+            modes[d->view] = most > modes[d->view] ? most : modes[d->view];
+        }
+    }
+    for (int i = 0; i < fresh->n_clears; i++) {
+        const int view = fresh->clears[i].view;
+        const int reach = mt_describe_modes_in_reach(fresh, view) + 1;
+        const int most = reach > LISTED_MODES ? reach : LISTED_MODES;
+        modes[view] = most > modes[view] ? most : modes[view];
+    }
+    return mt_robust_ranges(fresh, modes, err);
+}
+
+/* How far a range falls short of a limit, relatively; negative: room is left. NaN where there is no value somewhere. */
+static double beyond(const mt_robust_range *r, mt_robust_side side, double limit, bool ratio)
+{
+    const double value = r->value[side];
+    const double sign = side == MT_LOWEST ? 1.0 : -1.0;
+    const double unit = fabs(limit) > 0.0 ? fabs(limit) : 1.0;
+    const double far = sign * (ratio ? mt_log_ratio(limit, value) : (limit - value) / unit);
+    return ratio && far > MT_MOST_INSIDE ? MT_MOST_INSIDE : far; /* NaN stays */
+}
+
+/* A violation in percent of what is asked for: that of a frequency is a logarithm. */
+static double percent_of(const mt_demand *d, mt_robust_side side, double violation)
+{
+    const double below = d->view >= 0 ? -expm1(-violation) : violation;
+    const double above = d->view >= 0 ? expm1(violation) : violation;
+    return PERCENT * (side == MT_LOWEST ? below : above);
+}
+
+typedef struct verdict {
+    mt_robust_side side; /* that the goal is judged by */
+    double violation;    /* at most 0: it is met */
+    double percent;
+} verdict;
+
+static verdict judge(const mt_demand *d, const mt_robust_range *r)
+{
+    const bool ratio = d->view >= 0;
+    const double target = ratio ? d->target_hz : d->goal->equals;
+    const bool equal = MT_HAS(target);
+    const double limit[MT_ROBUST_SIDES] = {equal ? target : d->goal->at_least,
+                                           equal ? target : d->goal->at_most};
+    verdict v = {.side = MT_LOWEST, .violation = -HUGE_VAL, .percent = -HUGE_VAL};
+    for (int k = 0; k < MT_ROBUST_SIDES; k++) {
+        const mt_robust_side side = (mt_robust_side)k;
+        if (!MT_HAS(limit[k]) || !MT_HAS(v.percent)) {
+            continue;
+        }
+        const double far = beyond(r, side, limit[k], ratio);
+        const double percent = percent_of(d, side, far);
+        v.side = percent > v.percent || !MT_HAS(percent) ? side : v.side;
+        v.violation = far > v.violation || !MT_HAS(far) ? far : v.violation;
+        v.percent = percent > v.percent || !MT_HAS(percent) ? percent : v.percent;
+    }
+    if (equal && ratio) { /* within the tolerance as a part of the target */
+        v.violation = v.percent / PERCENT;
+    }
+    return v;
+}
+
+mt_status mt_describe_worst(mt_problem *fresh, const mt_demand *d, mt_result *result,
+                            mt_result_goal *g, double *violation, double *percent, mt_err *err)
+{
+    const mt_robust *const robust = fresh->robust;
+    if (robust == NULL || d->row_res >= 0) {
+        return MT_OK;
+    }
+    const mt_robust_range *const r = d->view >= 0 ? mt_robust_hz(fresh, d->view, d->mode)
+                                                  : &robust->number[d - fresh->demands];
+    if (r == NULL || r->at[MT_LOWEST] == NULL) {
+        return MT_OK; /* the design itself could not be evaluated */
+    }
+    const verdict v = judge(d, r);
+    if (d->row_eq < 0) {
+        *violation =
+            v.violation > *violation || !MT_HAS(v.violation) ? v.violation : *violation;
+        *percent = v.percent > *percent || !MT_HAS(v.percent) ? v.percent : *percent;
+    }
+    g->worst = r->value[v.side];
+    g->worst_at = mt_arena_f64(&result->mem, (size_t)fresh->n, 1);
+    if (g->worst_at == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(g->worst_at, r->at[v.side], (size_t)fresh->n * sizeof *g->worst_at);
+    return MT_OK;
+}
+
+double mt_describe_worst_hz(const mt_problem *fresh, int view, int mode, const mt_band *band,
+                            double hz, const double **at)
+{
+    const mt_robust_range *const r = mt_robust_hz(fresh, view, mode);
+    const double middle = sqrt(fmax(band->lower_hz, 0.0) * band->upper_hz);
+    *at = NULL;
+    if (r == NULL) {
+        return nan("");
+    }
+    const mt_robust_side side = hz > middle ? MT_LOWEST : MT_HIGHEST;
+    const double end = r->value[side];
+    *at = r->at[side];
+    /* one that crosses the band from one side to the other is in its middle on the way */
+    return side == MT_LOWEST ? fmax(end, fmin(middle, hz)) : fmin(end, fmax(middle, hz));
+}
+
+/* "k1 2 %, k2 5 %" */
+static const char *tolerances_text(const mt_problem *p, mt_arena *mem)
+{
+    const char *text = "";
+    for (int i = 0; i < p->n && text != NULL; i++) {
+        const double percent = PERCENT * mt_robust_tolerance(p, i);
+        if (percent > 0.0) {
+            text = mt_arena_printf(mem, "%s%s%s %.6g %%", text, text[0] == '\0' ? "" : ", ",
+                                   p->study->variables[i].parameter_name.s, percent);
+        }
+    }
+    return text;
+}
+
+void mt_say_worst(mt_sentences *s)
+{
+    if (s->rec->worst_case == NULL) {
+        return;
+    }
+    const char *const text = tolerances_text(s->p, &s->result->mem);
+    s->failed = s->failed || text == NULL;
+    if (text != NULL && strcmp(s->rec->worst_case, "proven") == 0) {
+        mt_say(s,
+               "Over the tolerances (%s) goals are judged at their worst corner, which is "
+               "proven to be that.",
+               text);
+    } else if (text != NULL) {
+        mt_say(s,
+               "Over the tolerances (%s) goals are judged by the worst that corners and "
+               "samples within found: sampled, not proven.",
+               text);
+    }
+}

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How surely a named mode is told at a design. */
+#include "describe/describe.h"
+
+static const double PERCENT = 100.0;
+
+int mt_describe_index(const mt_modes *modes, int pos)
+{
+    int index = 0;
+    for (int i = 0; i <= pos; i++) {
+        index += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
+    }
+    return index;
+}
+
+const char *mt_describe_identity(const mt_view *view, int named, mt_arena *mem)
+{
+    const mt_track *const k = &view->track[named];
+    const mt_modes *const modes = &view->analysis->modes;
+    const int own = mt_describe_index(modes, k->pos);
+    const int rival = mt_describe_index(modes, k->rival);
+    int size = 1;
+    if (k->pos < 0 || k->state == MT_TRACKED) {
+        return "";
+    }
+    if (k->state == MT_TRACK_LOST_STATE || rival == 0) {
+        return mt_arena_printf(mem, "lost: mode %d, the nearest, carries %.0f %% of its shape",
+                               own, PERCENT * k->share);
+    }
+    (void)mt_modal_cluster(modes, k->pos, &size);
+    const int low = own < rival ? own : rival;
+    const int high = own < rival ? rival : own;
+    if (size > 1) {
+        return mt_arena_printf(mem, "ambiguous between modes %d and %d of equal frequency", low,
+                               high);
+    }
+    return mt_arena_printf(mem, "ambiguous between modes %d and %d", low, high);
+}
+
+bool mt_describe_is_told(const mt_view *view, const mt_demand *d)
+{
+    int size = 1;
+    if (d->named < 0 || !view->solved || !view->tracked) {
+        return true;
+    }
+    const mt_track *const k = &view->track[d->named];
+    if (k->pos < 0 || k->state == MT_TRACKED) {
+        return true; /* where there is no mode, that is the trouble */
+    }
+    const int first = mt_modal_cluster(&view->analysis->modes, k->pos, &size);
+    const bool same_hz = k->rival >= first && k->rival < first + size;
+    return d->goal->type == MT_GOAL_FREQUENCY && k->state == MT_TRACK_AMBIGUOUS && same_hz;
+}

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a fresh analysis that disagrees (describe_verify.c) makes of a result. */
+#include "describe/describe.h"
+
+static bool doubted(const mt_recommendation *rec)
+{
+    return rec->disagreement != NULL;
+}
+
+bool mt_describe_is_doubted(const mt_result *result)
+{
+    bool any = doubted(&result->baseline);
+    for (int i = 0; i < result->n_recommendations; i++) {
+        any = any || doubted(&result->recommendations[i]);
+    }
+    return any;
+}
+
+/* What was proven rests on the readings that are not trusted: of any design of the study. */
+static void disgrade(mt_recommendation *rec)
+{
+    rec->tolerance_box = NULL;
+    rec->worst_case = rec->worst_case == NULL ? NULL : "sampled";
+    rec->grade = doubted(rec) ? "not verified" : rec->feasible ? "feasible" : "compromise";
+}
+
+mt_status mt_describe_withdraw(mt_result *result, mt_err *err)
+{
+    disgrade(&result->baseline);
+    for (int i = 0; i < result->n_recommendations; i++) {
+        disgrade(&result->recommendations[i]);
+    }
+    for (int i = 0; i < result->n_certificates; i++) {
+        mt_certificate *const c = &result->certificates[i];
+        c->proven = false;
+        c->text =
+            mt_arena_printf(&result->mem,
+                            "Withdrawn, since a fresh analysis disagrees with the readings "
+                            "that it rests on: %s",
+                            c->text);
+        if (c->text == NULL) {
+            return mt_fail_memory(err);
+        }
+    }
+    return MT_OK;
+}

@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Published values against computed ones, from analyses of their own. A value that could not be computed (NaN) never holds; one that is not comparable holds where it has a value. */
+#include <math.h>
+#include <string.h>
+
+#include "describe/describe.h"
+
+enum { ORIGINAL, RECOMMENDED, DESIGNS };
+
+typedef struct judge {
+    mt_problem *p;
+    mt_result *result;
+    mt_arena mem;             /* work */
+    const double *x[DESIGNS]; /* parameters */
+    mt_analysis **analysis;   /* [DESIGNS * configurations] owned, made when first asked for */
+    double *value[DESIGNS];   /* program values at both designs */
+} judge;
+
+static mt_status analysis_at(judge *j, int configuration, int design, mt_analysis **out,
+                             mt_err *err)
+{
+    mt_analysis **const slot = &j->analysis[(DESIGNS * configuration) + design];
+    if (*slot == NULL) {
+        MT_TRY(mt_problem_analyse(j->p, configuration, j->x[design], slot, err));
+    }
+    *out = *slot;
+    return MT_OK;
+}
+
+/* The same by the view that the goals use, which follows shapes where they dissolve; *found: there is one. */
+static mt_status viewed_at(judge *j, const mt_published *pub, const mt_analysis *a, int *pos,
+                           bool *found, mt_err *err)
+{
+    mt_problem *const p = j->p;
+    const int v = mt_problem_view(p, pub->configuration);
+    double *const t = mt_arena_f64(&j->mem, (size_t)p->n_t, 1);
+    *found = false;
+    if (t == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n; i++) {
+        t[i] = mt_problem_t(p, i, j->x[RECOMMENDED][i]);
+    }
+    for (int i = 0; v >= 0 && i < p->views[v].n_named; i++) {
+        mt_view *const view = &p->views[v];
+        if (view->named[i] != pub->mode.named) {
+            continue;
+        }
+        view->needs_vectors = true;
+        MT_TRY(mt_problem_place(p, t, false, err));
+        MT_TRY(mt_view_solve(p, view, false, err));
+        MT_TRY(mt_view_position(p, view, 0, i, pos, err));
+        *pos = mt_modal_flexible(&a->modes, mt_describe_index(&view->analysis->modes, *pos));
+        *found = true;
+    }
+    return MT_OK;
+}
+
+/* Position of a named mode at the recommended design: its configuration's named modes of the original design, paired one to one. */
+static mt_status named_at(judge *j, const mt_published *pub, mt_analysis *a, int *pos,
+                          mt_err *err)
+{
+    const mt_model *const model = j->p->study->model;
+    const size_t most = (size_t)model->n_modes;
+    mt_analysis *first = NULL;
+    int n = 0;
+    int wanted = -1;
+    MT_TRY(analysis_at(j, pub->configuration, ORIGINAL, &first, err));
+    const double **const w = mt_arena_alloc(&j->mem, most, sizeof *w);
+    mt_track *const track = mt_arena_alloc(&j->mem, most, sizeof *track);
+    *pos = -1;
+    if (w == NULL || track == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < model->n_modes; i++) {
+        const int there = mt_modal_flexible(&first->modes, model->modes[i].index +
+                                                               first->n_null - first->n_rigid);
+        if (model->modes[i].configuration != pub->configuration || there < 0) {
+            continue;
+        }
+        double *const shape = mt_arena_f64(&j->mem, (size_t)first->sys->nq, 1);
+        if (shape == NULL) {
+            return mt_fail_memory(err);
+        }
+        MT_TRY(mt_track_weigh(first, there, shape, err));
+        wanted = i == pub->mode.named ? n : wanted;
+        w[n++] = shape;
+    }
+    if (wanted >= 0) {
+        MT_TRY(mt_track_match(a, n, w, track, err));
+        *pos = track[wanted].pos;
+    }
+    return MT_OK;
+}
+
+/* Position of the mode meant and its index at the original design. */
+static mt_status mode_at(judge *j, const mt_published *pub, mt_analysis *a, int *pos,
+                         int *index, mt_err *err)
+{
+    const bool by_index = pub->mode.index > 0;
+    *index = by_index ? pub->mode.index : j->p->study->model->modes[pub->mode.named].index;
+    /* the model names a mode by its index at its own design, without vibrations of 0 Hz that only the study counts */
+    const int loose = by_index ? 0 : a->n_null - a->n_rigid;
+    *pos = mt_modal_flexible(&a->modes, *index + loose);
+    if (by_index || pub->original) {
+        return MT_OK;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(&j->mem);
+    bool found = false;
+    mt_status rc = viewed_at(j, pub, a, pos, &found, err);
+    rc = rc == MT_OK && !found ? named_at(j, pub, a, pos, err) : rc;
+    mt_arena_rewind(&j->mem, mark);
+    return rc;
+}
+
+static mt_status compute_mode(judge *j, const mt_published *pub, double *value, mt_err *err)
+{
+    mt_analysis *a = NULL;
+    int pos = -1;
+    int index = 0;
+    MT_TRY(analysis_at(j, pub->configuration, pub->original ? ORIGINAL : RECOMMENDED, &a, err));
+    MT_TRY(mode_at(j, pub, a, &pos, &index, err));
+    if (pos < 0) {
+        return MT_OK;
+    }
+    if (pub->kind == MT_PUBLISHED_FREQUENCY) {
+        *value = mt_modal_hz(&a->modes, pos);
+        return MT_OK;
+    }
+    mt_reference_shape shape;
+    const mt_arena_mark mark = mt_arena_get_mark(&j->mem);
+    mt_status rc = mt_reference_shape_init(
+        j->p->references, pub->reference, pub->reference_mode > 0 ? pub->reference_mode : index,
+        a->sys, &j->mem, &shape, err);
+    rc = rc == MT_OK ? mt_reference_mac(a, pos, &shape, value, err) : rc;
+    mt_arena_rewind(&j->mem, mark);
+    return rc;
+}
+
+static mt_status compute(judge *j, int i, double *value, mt_err *err)
+{
+    const mt_published *const pub = &j->p->study->published[i];
+    *value = nan("");
+    switch (pub->kind) {
+    case MT_PUBLISHED_PARAMETER:
+    case MT_PUBLISHED_QUANTITY:
+        *value = j->value[pub->original ? ORIGINAL : RECOMMENDED][j->p->published[i]];
+        return MT_OK;
+    case MT_PUBLISHED_FREQUENCY:
+    case MT_PUBLISHED_MAC:
+        return compute_mode(j, pub, value, err);
+    case MT_PUBLISHED_STATUS:
+    case MT_PUBLISHED_KIND_COUNT:
+        break;
+    }
+    return MT_OK;
+}
+
+static const char *label_of(const mt_problem *p, const mt_published *pub, mt_arena *mem)
+{
+    const mt_model *const model = p->study->model;
+    if (pub->label != NULL) {
+        return pub->label;
+    }
+    switch (pub->kind) {
+    case MT_PUBLISHED_PARAMETER:
+        return pub->parameter_name.s;
+    case MT_PUBLISHED_QUANTITY:
+        return pub->quantity_text;
+    case MT_PUBLISHED_FREQUENCY:
+    case MT_PUBLISHED_MAC: {
+        const char *const what = pub->kind == MT_PUBLISHED_MAC ? "MAC of " : "";
+        const char *const unit = pub->kind == MT_PUBLISHED_MAC ? "" : " [Hz]";
+        const char *const configuration = model->configurations[pub->configuration].name.s;
+        return pub->mode.index > 0 ? mt_arena_printf(mem, "%s%s mode %d%s", what, configuration,
+                                                     pub->mode.index, unit)
+                                   : mt_arena_printf(mem, "%s%s \"%s\"%s", what, configuration,
+                                                     pub->mode.mode_name.s, unit);
+    }
+    case MT_PUBLISHED_STATUS:
+        return "status";
+    case MT_PUBLISHED_KIND_COUNT:
+        break;
+    }
+    return "";
+}
+
+/* A limit beside a published value is told; alone it stands in the value's place. */
+static const char *limit_text(const mt_published *pub, mt_arena *mem)
+{
+    const bool shown = MT_HAS(pub->value);
+    if (MT_HAS(pub->at_least) && MT_HAS(pub->at_most)) {
+        return mt_arena_printf(mem, "from %.10g to %.10g", pub->at_least, pub->at_most);
+    }
+    if (MT_HAS(pub->at_least)) {
+        return shown ? mt_arena_printf(mem, "at least %.10g", pub->at_least) : "at least";
+    }
+    return shown ? mt_arena_printf(mem, "at most %.10g", pub->at_most) : "at most";
+}
+
+static const char *demand_of(const mt_published *pub, mt_arena *mem)
+{
+    if (MT_HAS(pub->tolerance)) {
+        return mt_arena_printf(mem, "within %g", pub->tolerance);
+    }
+    if (MT_HAS(pub->tolerance_percent)) {
+        return mt_arena_printf(mem, "within %g %%", pub->tolerance_percent);
+    }
+    if (MT_HAS(pub->at_least) || MT_HAS(pub->at_most)) {
+        return limit_text(pub, mem);
+    }
+    return "reported";
+}
+
+static bool holds(const mt_published *pub, double computed)
+{
+    bool ok = MT_HAS(computed);
+    if (MT_HAS(pub->value) && MT_HAS(pub->tolerance)) {
+        ok = ok && fabs(computed - pub->value) <= pub->tolerance;
+    }
+    if (MT_HAS(pub->value) && MT_HAS(pub->tolerance_percent)) {
+        ok = ok &&
+             fabs(computed - pub->value) <= 0.01 * pub->tolerance_percent * fabs(pub->value);
+    }
+    if (MT_HAS(pub->at_least)) {
+        ok = ok && computed >= pub->at_least;
+    }
+    if (MT_HAS(pub->at_most)) {
+        ok = ok && computed <= pub->at_most;
+    }
+    return ok;
+}
+
+static mt_status judge_one(judge *j, int i, mt_result_published *out, mt_err *err)
+{
+    const mt_published *const pub = &j->p->study->published[i];
+    mt_arena *const mem = &j->result->mem;
+    *out = mt_result_published_default();
+    out->label = label_of(j->p, pub, mem);
+    out->pointer = mt_arena_printf(mem, "/published/%d", i);
+    out->role = mt_role_name(pub->role);
+    out->kind = mt_published_kind_name(pub->kind);
+    out->source = pub->source;
+    out->demand = demand_of(pub, mem);
+    if (out->label == NULL || out->pointer == NULL || out->demand == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (pub->kind == MT_PUBLISHED_STATUS) {
+        out->published_text = pub->status;
+        out->computed_text = mt_result_status_name(j->result->status);
+        out->demand = "equal";
+        out->holds = strcmp(pub->status, out->computed_text) == 0;
+        return MT_OK;
+    }
+    MT_TRY(mt_err_in(err, compute(j, i, &out->computed, err), "/published/%d", i));
+    out->published = MT_HAS(pub->value)
+                         ? pub->value
+                         : (MT_HAS(pub->at_least) ? pub->at_least : pub->at_most);
+    out->difference = out->computed - out->published;
+    out->difference_percent =
+        out->published != 0.0 ? 100.0 * out->difference / fabs(out->published) : nan("");
+    out->holds =
+        pub->role == MT_ROLE_NOT_COMPARABLE ? MT_HAS(out->computed) : holds(pub, out->computed);
+    return MT_OK;
+}
+
+static mt_status judge_all(judge *j, mt_err *err)
+{
+    mt_result *const result = j->result;
+    const int n = j->p->study->n_published;
+    result->published = mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->published);
+    if (result->published == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int d = 0; d < DESIGNS; d++) {
+        j->value[d] = mt_arena_f64(&j->mem, (size_t)j->p->program.count, 1);
+        if (j->value[d] == NULL) {
+            return mt_fail_memory(err);
+        }
+        MT_TRY(mt_program_eval(&j->p->program, j->x[d], j->value[d], NULL, err));
+    }
+    for (int i = 0; i < n; i++) {
+        MT_TRY(judge_one(j, i, &result->published[i], err));
+        result->n_published++;
+    }
+    return MT_OK;
+}
+
+mt_status mt_describe_published(mt_problem *p, const double *x_original,
+                                const double *x_recommended, mt_result *result, mt_err *err)
+{
+    const int n_analyses = DESIGNS * p->study->model->n_configurations;
+    judge j = {
+        .p = p,
+        .result = result,
+        .x = {x_original, x_recommended != NULL ? x_recommended : x_original}
+    };
+    MT_TRY(mt_arena_init(&j.mem, 0, err));
+    j.analysis = mt_arena_alloc(&j.mem, (size_t)n_analyses, sizeof(mt_analysis *));
+    const mt_status rc = j.analysis == NULL ? mt_fail_memory(err) : judge_all(&j, err);
+    for (int i = 0; j.analysis != NULL && i < n_analyses; i++) {
+        mt_analysis_delete(j.analysis[i]);
+    }
+    mt_arena_free(&j.mem);
+    return rc;
+}

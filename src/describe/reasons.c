@@ -1,0 +1,433 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sentences an engineer can paste into a report: what changes, what that does, what is missed, what a demand costs, and how sure the answer is. */
+#include "describe/reasons_priv.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include "base/format.h"
+#include "describe/certificates.h"
+#include "describe/describe_discrete.h"
+
+/* Changes of a parameter below this many percent, and errors of a frequency, are not worth a number. */
+static const double WORTH_SAYING_PERCENT = 1e-4;
+enum { NUMBER_SIZE = 32, DEMAND_SIZE = 128 };
+
+void mt_say(mt_sentences *s, const char *fmt, ...)
+{
+    va_list args;
+    va_start(args, fmt);
+    const char *const text = mt_arena_vprintf(&s->result->mem, fmt, args);
+    va_end(args);
+    const char **const grown =
+        text == NULL ? NULL
+                     : mt_arena_grow(&s->result->mem, s->rec->reasons, s->rec->n_reasons,
+                                     &s->capacity, sizeof *grown);
+    if (grown == NULL) {
+        s->failed = true;
+        return;
+    }
+    s->rec->reasons = grown;
+    s->rec->reasons[s->rec->n_reasons++] = text;
+}
+
+static bool unchanged(const mt_result_parameter *p)
+{
+    return fabs(p->change_percent) <= WORTH_SAYING_PERCENT || p->recommended == p->original;
+}
+
+static void say_change(mt_sentences *s, const mt_result_parameter *p)
+{
+    const char *const unit = p->unit != NULL ? p->unit : "";
+    const char *const space = p->unit != NULL ? " " : "";
+    if (isfinite(p->change_percent)) { /* not of what was 0, or next to it */
+        mt_say(s, "%s %s by %.3g %%, from %.6g to %.6g%s%s.", p->name,
+               p->recommended > p->original ? "rises" : "falls", fabs(p->change_percent),
+               p->original, p->recommended, space, unit);
+    } else {
+        mt_say(s, "%s goes from %.6g to %.6g%s%s.", p->name, p->original, p->recommended, space,
+               unit);
+    }
+    if (p->at_bound != NULL) {
+        mt_say(s, "%s stands at its %s bound: a wider bound may give a better design.", p->name,
+               p->at_bound);
+    }
+}
+
+/* Parameters that stay, in one sentence: "a, b and c keep their original values." */
+static void say_kept(mt_sentences *s, int kept)
+{
+    const char *text = "";
+    int left = kept;
+    for (int i = 0; i < s->rec->n_parameters && text != NULL; i++) {
+        const mt_result_parameter *const p = &s->rec->parameters[i];
+        if (!unchanged(p)) {
+            continue;
+        }
+        const char *const after = left == 2 ? " and " : ", ";
+        text =
+            mt_arena_printf(&s->result->mem, "%s%s%s", text, p->name, left == 1 ? "" : after);
+        left--;
+    }
+    if (text == NULL) {
+        s->failed = true;
+    } else if (kept > 0 && kept == s->rec->n_parameters) {
+        mt_say(s, "The original design stays as it is.");
+    } else if (kept > 0) {
+        mt_say(s, "%s keep%s original value%s.", text, kept == 1 ? "s its" : " their",
+               kept == 1 ? "" : "s");
+    }
+}
+
+static void say_changes(mt_sentences *s)
+{
+    int kept = 0;
+    for (int i = 0; i < s->rec->n_parameters; i++) {
+        if (unchanged(&s->rec->parameters[i])) {
+            kept++;
+        } else {
+            say_change(s, &s->rec->parameters[i]);
+        }
+    }
+    say_kept(s, kept);
+    for (int i = 0; i < s->result->n_undetermined; i++) {
+        mt_say(
+            s,
+            "The goals do not settle %s: they change by at most %.2g %% across its bounds, so "
+            "the "
+            "design keeps what it had there.",
+            s->result->undetermined[i].text, s->result->undetermined[i].effect_percent);
+    }
+}
+
+/* The variable that moves this frequency most, per percent of its value: "; M_SAU moves it most, -0.0494 Hz for 1 % more". "": none does, or it has no slope of its own. */
+static const char *lever_text(mt_sentences *s, const mt_result_frequency *f)
+{
+    double most = 0.0;
+    int lever = -1;
+    for (int i = 0; i < s->rec->n_parameters && f->sensitivity != NULL && !f->repeated; i++) {
+        const double one = 0.01 * f->sensitivity[i] * fabs(s->rec->parameters[i].recommended);
+        if (isfinite(one) && fabs(one) > fabs(most)) {
+            most = one;
+            lever = i;
+        }
+    }
+    if (lever < 0) {
+        return "";
+    }
+    const char *const text =
+        mt_arena_printf(&s->result->mem, "; %s moves it most, %+.3g Hz for 1 %% more",
+                        s->rec->parameters[lever].name, most);
+    s->failed = s->failed || text == NULL;
+    return text == NULL ? "" : text;
+}
+
+/* How the frequency (over the tolerances: its worst) stands to the limit that is nearer: "at its lower limit", "2 % below its lower limit of 7 Hz". */
+static void limit_text(const mt_result_frequency *f, char *text)
+{
+    const bool both = MT_HAS(f->at_least_hz) && MT_HAS(f->at_most_hz);
+    const bool range = MT_HAS(f->lowest_hz) && MT_HAS(f->highest_hz);
+    const double lowest = range ? f->lowest_hz : f->recommended_hz;
+    const double highest = range ? f->highest_hz : f->recommended_hz;
+    const double low = MT_HAS(f->at_least_hz) ? log(lowest / f->at_least_hz) : HUGE_VAL;
+    const double high = MT_HAS(f->at_most_hz) ? mt_log_ratio(f->at_most_hz, highest) : HUGE_VAL;
+    const double error = 100.0 * (low < high ? -expm1(low) : expm1(-high));
+    const char *const side = low < high ? "lower" : "upper";
+    const double limit = low < high ? f->at_least_hz : f->at_most_hz;
+    if (!(f->recommended_hz > 0.0) && MT_HAS(f->at_least_hz)) {
+        (void)mt_snprintf(text, DEMAND_SIZE, "far below its lower limit of %.6g Hz",
+                          f->at_least_hz);
+    } else if (fabs(fmin(low, high)) <= 0.01 * WORTH_SAYING_PERCENT) {
+        (void)mt_snprintf(text, DEMAND_SIZE, "at its %s limit", side);
+    } else if (isinf(error)) {
+        (void)mt_snprintf(text, DEMAND_SIZE, "far %s its %s limit of %.6g Hz",
+                          low < high ? "below" : "above", side, limit);
+    } else if (error > WORTH_SAYING_PERCENT) {
+        (void)mt_snprintf(text, DEMAND_SIZE, "%.3g %% %s its %s limit of %.6g Hz", error,
+                          low < high ? "below" : "above", side, limit);
+    } else if (both) {
+        (void)mt_snprintf(text, DEMAND_SIZE, "between its limits of %.6g and %.6g Hz",
+                          f->at_least_hz, f->at_most_hz);
+    } else {
+        (void)mt_snprintf(text, DEMAND_SIZE, "clear of its %s limit of %.6g Hz", side, limit);
+    }
+}
+
+/* ", over the tolerances 7.9 to 8.1 Hz"; "" without tolerances. */
+static const char *range_text(mt_sentences *s, const mt_result_frequency *f)
+{
+    if (!MT_HAS(f->lowest_hz) || !MT_HAS(f->highest_hz)) {
+        return "";
+    }
+    const char *const text = mt_arena_printf(
+        &s->result->mem, ", over the tolerances %.6g to %.6g Hz", f->lowest_hz, f->highest_hz);
+    s->failed = s->failed || text == NULL;
+    return text == NULL ? "" : text;
+}
+
+static void demand_text(const mt_result_frequency *f, char *text)
+{
+    if (!MT_HAS(f->target_hz)) {
+        limit_text(f, text);
+    } else if (fabs(f->error_percent) <= WORTH_SAYING_PERCENT) {
+        (void)mt_snprintf(text, DEMAND_SIZE, "its target");
+    } else if (!isfinite(f->error_percent)) {
+        (void)mt_snprintf(text, DEMAND_SIZE, "far %s its target of %.6g Hz",
+                          f->error_percent > 0.0 ? "above" : "below", f->target_hz);
+    } else {
+        (void)mt_snprintf(text, DEMAND_SIZE, "%.3g %% %s its target of %.6g Hz",
+                          fabs(f->error_percent), f->error_percent > 0.0 ? "above" : "below",
+                          f->target_hz);
+    }
+}
+
+/* Where a goal's frequency goes, what becomes of the demand, and what moves it. */
+static void say_frequency(mt_sentences *s, const mt_result_frequency *f)
+{
+    char from[NUMBER_SIZE];
+    char to[NUMBER_SIZE];
+    char demand[DEMAND_SIZE];
+    const char *const name = f->name != NULL ? f->name : "";
+    const char *const open = f->name != NULL ? " (" : "";
+    const char *const close = f->name != NULL ? ")" : "";
+    if (!MT_HAS(f->recommended_hz)) {
+        mt_say(s, "%s mode %d%s%s%s has no frequency here.", f->configuration, f->mode, open,
+               name, close);
+        return;
+    }
+    demand_text(f, demand);
+    const char *const range = range_text(s, f);
+    (void)mt_snprintf(from, sizeof from, "%.6g", f->original_hz);
+    (void)mt_snprintf(to, sizeof to, "%.6g", f->recommended_hz);
+    const char *const lever = lever_text(s, f);
+    if (!MT_HAS(f->original_hz)) {
+        mt_say(s, "%s mode %d%s%s%s comes to %s Hz%s, %s%s.", f->configuration, f->mode, open,
+               name, close, to, range, demand, lever);
+    } else if (strcmp(from, to) == 0) {
+        mt_say(s, "%s mode %d%s%s%s stays at %s Hz%s, %s%s.", f->configuration, f->mode, open,
+               name, close, to, range, demand, lever);
+    } else {
+        mt_say(s, "%s mode %d%s%s%s moves from %s to %s Hz%s, %s%s.", f->configuration, f->mode,
+               open, name, close, from, to, range, demand, lever);
+    }
+    if (f->repeated) {
+        mt_say(s, "It is a repeated mode and has no sensitivity of its own.");
+    }
+}
+
+static void say_doubt(mt_sentences *s)
+{
+    if (s->rec->disagreement != NULL) {
+        mt_say(s, "NOT VERIFIED, do not use: %s.", s->rec->disagreement);
+    }
+}
+
+/* Vibrations of 0 Hz. */
+static void say_slack(mt_sentences *s)
+{
+    for (int i = 0; i < s->rec->n_frequencies; i++) {
+        const mt_result_frequency *const f = &s->rec->frequencies[i];
+        const bool some = f->slack != NULL && f->slack[0] != '\0';
+        if (f->slack != NULL) {
+            mt_say(s, "%s mode %d is at 0 Hz: nothing holds it at this design%s%s%s.",
+                   f->configuration, f->mode, some ? " (the stiffness of " : "",
+                   some ? f->slack : "", some ? " is 0)" : "");
+        }
+    }
+}
+
+static void say_frequencies(mt_sentences *s)
+{
+    for (int i = 0; i < s->rec->n_frequencies; i++) {
+        const mt_result_frequency *const f = &s->rec->frequencies[i];
+        if (MT_HAS(f->target_hz) || MT_HAS(f->at_least_hz) || MT_HAS(f->at_most_hz)) {
+            say_frequency(s, f);
+        }
+    }
+}
+
+static void say_violations(mt_sentences *s)
+{
+    for (int i = 0; i < s->rec->n_goals; i++) {
+        const mt_result_goal *const g = &s->rec->goals[i];
+        if (g->doubtful && !g->weighted) {
+            mt_say(s, "Goal %s (%s) does not count as met: it is not certain which mode it is.",
+                   g->pointer, g->text);
+        } else if (!g->weighted && !g->met && !MT_HAS(g->violation_percent)) {
+            mt_say(s, "Goal %s (%s) has no value here and does not count as met.", g->pointer,
+                   g->text);
+        } else if (!g->weighted && !g->met && isfinite(g->violation_percent)) {
+            mt_say(s, "Goal %s (%s) is missed by %.3g %%.", g->pointer, g->text,
+                   g->violation_percent);
+        } else if (!g->weighted && !g->met) {
+            mt_say(s, "Goal %s (%s) is missed by far.", g->pointer, g->text);
+        }
+    }
+}
+
+/* Root mean square of what the weighted goals are off by in percent, each weighted as in the study. */
+static void say_misfit(mt_sentences *s)
+{
+    int weighted = 0;
+    double sum = 0.0;
+    for (int i = 0; i < s->p->n_demands; i++) {
+        const mt_result_goal *const g = &s->rec->goals[i];
+        if (g->weighted) {
+            weighted++;
+            sum += s->p->demands[i].weight * g->violation_percent * g->violation_percent;
+        }
+    }
+    if (weighted > 0 && MT_HAS(s->rec->misfit) && isfinite(sum)) {
+        mt_say(s, "The %d weighted goal%s off by %.3g %% rms.", weighted,
+               weighted == 1 ? " is" : "s are", sqrt(sum / s->p->weights));
+    }
+}
+
+static const char *aim_text(const mt_aim *a)
+{
+    switch (a->type) {
+    case MT_OBJECTIVE_CHANGE:
+        return "change";
+    case MT_OBJECTIVE_MASS:
+        return "mass";
+    case MT_OBJECTIVE_EXPRESSION:
+        return a->objective->expression_text;
+    case MT_OBJECTIVE_MISFIT:
+        return "misfit";
+    case MT_OBJECTIVE_CLEARANCE:
+        return "clearance";
+    case MT_OBJECTIVE_NONE:
+        break;
+    }
+    return "objective";
+}
+
+static const char *best_of(const mt_aim *a)
+{
+    return a->type == MT_OBJECTIVE_CLEARANCE ? "greatest" : "least";
+}
+
+/* Among the kinds of design that keep clear of the bands. */
+static void say_kind_rank(mt_sentences *s, const char *first)
+{
+    const mt_gap_result *const g = s->design->gaps;
+    const char *const sure = mt_describe_gaps_left(g, &s->result->mem);
+    s->failed = s->failed || sure == NULL;
+    if (s->failed) {
+        return;
+    }
+    if (g->n_solutions == 1) {
+        mt_say(s, "It is the only kind of design among %.0f gap assignments (%s).",
+               g->n_possible, sure);
+    } else {
+        mt_say(
+            s, "It ranks %d of %d kinds of design among %.0f gap assignments, by %s %s (%s).",
+            s->rec->rank, g->n_solutions, g->n_possible, best_of(&s->p->aims[0]), first, sure);
+    }
+}
+
+/* One design came out: where it is isolated, the only one found; else designs beside it meet the goals, too, and it is the best near it. */
+static void say_only(mt_sentences *s, const mt_nlp_result *search, const char *first)
+{
+    const char *const many = search->starts == 1 ? "" : "s";
+    if (MT_HAS(s->rec->kkt_residual)) {
+        mt_say(s,
+               "It is the only local optimum, by %s %s, that %d start%s found (sampled, not "
+               "proven).",
+               best_of(&s->p->aims[0]), first, search->starts, many);
+    } else {
+        mt_say(s, "It is the only design that %d start%s found (sampled, not proven).",
+               search->starts, many);
+    }
+}
+
+static void say_optimality(mt_sentences *s)
+{
+    if (s->rec->feasible && !mt_describe_is_optimum(s->rec)) {
+        mt_say(
+            s,
+            "It is not shown to be a local optimum: its KKT residual is %.2g, where an optimum "
+            "has 0; a design near it may be better.",
+            s->rec->kkt_residual);
+    }
+}
+
+static void say_rank(mt_sentences *s, const mt_nlp_result *search)
+{
+    const char *const first = aim_text(&s->p->aims[0]);
+    if (s->design->discrete != NULL) {
+        mt_arena *const mem = &s->result->mem;
+        const char *const by = mt_arena_printf(mem, "%s %s", best_of(&s->p->aims[0]), first);
+        const char *const text =
+            mt_discrete_rank_text(s->design->discrete, search, s->rec->rank, by, mem);
+        s->failed = s->failed || text == NULL || by == NULL;
+        mt_say(s, "%s", s->failed ? "" : text);
+        return;
+    }
+    if (search->compromise) {
+        mt_say(s, "None of the designs that %d start%s found meets all goals; this one %s.",
+               search->starts, search->starts == 1 ? "" : "s",
+               s->rec->rank == 1 ? "comes nearest"
+                                 : "is a place from which only worse ones are near");
+    } else if (s->design->gaps != NULL) {
+        say_kind_rank(s, first);
+    } else if (search->n_solutions == 1 && s->design->found->continuum) {
+        mt_say(s, "It is one of a continuum of equally good designs that %d start%s found.",
+               search->starts, search->starts == 1 ? "" : "s");
+    } else if (search->n_solutions == 1) {
+        say_only(s, search, first);
+    } else {
+        mt_say(s, "It ranks %d of %d distinct designs found from %d starts, by %s %s.",
+               s->rec->rank, search->n_solutions, search->starts, best_of(&s->p->aims[0]),
+               first);
+    }
+    if (s->design->found->continuum && !search->compromise) {
+        mt_say(s,
+               "A continuum of designs is as good as this one: those between it and others "
+               "that were found meet all goals, too, and have the same %s.",
+               first);
+    }
+    for (int k = 1; k <= s->design->stage; k++) {
+        mt_say(s, "With the %s %s held, it has the %s %s near it.", best_of(&s->p->aims[0]),
+               first, best_of(&s->p->aims[k]), aim_text(&s->p->aims[k]));
+    }
+    if (s->rec->singular) {
+        mt_say(s, "It is a double solution: two designs that meet the goals coincide here, so "
+                  "small errors in the targets move it far.");
+    }
+}
+
+mt_status mt_describe_baseline_reasons(const mt_problem *p, mt_result *result, mt_err *err)
+{
+    const mt_design original = {.t = p->origin_t};
+    mt_sentences s = {.p = p, .design = &original, .result = result, .rec = &result->baseline};
+    say_doubt(&s);
+    say_slack(&s);
+    say_violations(&s);
+    mt_say_bands(&s);
+    return s.failed ? mt_fail_memory(err) : MT_OK;
+}
+
+mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
+                              const mt_nlp_result *search, mt_result *result,
+                              mt_recommendation *rec, mt_err *err)
+{
+    mt_sentences s = {.p = p, .design = design, .result = result, .rec = rec};
+    say_doubt(&s);
+    say_changes(&s);
+    say_slack(&s);
+    say_frequencies(&s);
+    mt_say_worst(&s);
+    say_violations(&s);
+    mt_say_bands(&s);
+    if (design->cut) {
+        mt_say(&s, "The search was interrupted: better designs may exist.");
+        return s.failed ? mt_fail_memory(err) : MT_OK;
+    }
+    mt_say_prices(&s);
+    say_misfit(&s);
+    say_rank(&s, search);
+    say_optimality(&s);
+    return s.failed ? mt_fail_memory(err) : MT_OK;
+}

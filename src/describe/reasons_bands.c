@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sentences about bands: the kind of the design, modes on edges and inside, and the least of the other clearances. */
+#include "describe/reasons_priv.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A clearance that equals its margin within this, in percent of the edge, is active: ten times the tolerance that a goal has by default. */
+static const double ACTIVE_PERCENT = 1e-3;
+
+static const mt_result_gap *gap_of(const mt_recommendation *rec, const mt_result_clearance *c)
+{
+    for (int i = 0; i < rec->n_gaps; i++) {
+        if (strcmp(rec->gaps[i].configuration, c->configuration) == 0 &&
+            strcmp(rec->gaps[i].band, c->band) == 0) {
+            return &rec->gaps[i];
+        }
+    }
+    return NULL;
+}
+
+/* "15.5 to 18.9 Hz (4P of UH-60)"; the numbers alone where they are the band's label. */
+static const char *band_text(mt_sentences *s, const mt_result_clearance *c)
+{
+    const mt_result_gap *const g = gap_of(s->rec, c);
+    if (g == NULL) {
+        return c->band;
+    }
+    const char *const numbers =
+        mt_arena_printf(&s->result->mem, "%.6g to %.6g Hz", g->lower_hz, g->upper_hz);
+    if (numbers == NULL || strcmp(numbers, c->band) == 0) {
+        s->failed = s->failed || numbers == NULL;
+        return c->band;
+    }
+    const char *const text = mt_arena_printf(&s->result->mem, "%s (%s)", numbers, c->band);
+    s->failed = s->failed || text == NULL;
+    return text == NULL ? c->band : text;
+}
+
+/* "installed keeps 0, 1, 2 and 4 modes below its bands." */
+static void say_kind(mt_sentences *s, int first, int n)
+{
+    const mt_result_gap *const g = &s->rec->gaps[first];
+    const char *text = "";
+    for (int i = 0; i < n && text != NULL; i++) {
+        const char *const before = i == 0 ? "" : i == n - 1 ? " and " : ", ";
+        text = mt_arena_printf(&s->result->mem, "%s%s%d", text, before, g[i].modes_below);
+    }
+    if (text == NULL) {
+        s->failed = true;
+    } else if (n == 1) {
+        mt_say(s, "%s has %s mode%s below the band %s.", g->configuration, text,
+               g->modes_below == 1 ? "" : "s", g->band);
+    } else {
+        mt_say(s, "%s has %s modes below its %d bands, in their order.", g->configuration, text,
+               n);
+    }
+}
+
+static void say_kinds(mt_sentences *s)
+{
+    for (int first = 0, n = 0; first < s->rec->n_gaps; first += n) {
+        const char *const configuration = s->rec->gaps[first].configuration;
+        n = 1;
+        while (first + n < s->rec->n_gaps &&
+               strcmp(s->rec->gaps[first + n].configuration, configuration) == 0) {
+            n++;
+        }
+        say_kind(s, first, n);
+    }
+}
+
+static bool active(const mt_result_clearance *c)
+{
+    return fabs(c->percent - c->margin_percent) <= ACTIVE_PERCENT;
+}
+
+static void say_active(mt_sentences *s, const mt_result_clearance *c)
+{
+    const char *const edge = strcmp(c->side, "above") == 0 ? "upper" : "lower";
+    if (c->margin_percent > 0.0) {
+        mt_say(s, "%s mode %d (%.6g Hz) keeps just the %.3g %% asked for %s band %s.",
+               c->configuration, c->mode, c->hz, c->margin_percent, c->side, band_text(s, c));
+    } else {
+        mt_say(s, "%s mode %d stands on the %s edge (%.6g Hz) of band %s.", c->configuration,
+               c->mode, edge, c->hz, band_text(s, c));
+    }
+}
+
+static void say_short(mt_sentences *s, const mt_result_clearance *c)
+{
+    if (c->percent < 0.0) {
+        mt_say(s, "%s mode %d (%.6g Hz) lies inside band %s, %.3g %% from its nearest edge.",
+               c->configuration, c->mode, c->hz, band_text(s, c), -c->percent);
+    } else {
+        mt_say(s, "%s mode %d (%.6g Hz) keeps only %.3g %% %s band %s, of %.3g %% asked.",
+               c->configuration, c->mode, c->hz, c->percent, c->side, band_text(s, c),
+               c->margin_percent);
+    }
+}
+
+/* What is active or missed, each; of the rest the least. */
+static void say_clearances(mt_sentences *s)
+{
+    const mt_result_clearance *least = NULL;
+    for (int i = 0; i < s->rec->n_clearances; i++) {
+        const mt_result_clearance *const c = &s->rec->clearances[i];
+        if (active(c)) {
+            say_active(s, c);
+        } else if (c->percent < c->margin_percent) {
+            say_short(s, c);
+        } else if (least == NULL || c->percent < least->percent) {
+            least = c;
+        }
+    }
+    if (least != NULL) {
+        const bool others = s->rec->n_clearances > 1;
+        mt_say(s, "%s mode %d (%.6g Hz) keeps %.3g %% %s band %s%s.", least->configuration,
+               least->mode, least->hz, least->percent, least->side, band_text(s, least),
+               others ? "; nothing else comes nearer" : "");
+    }
+}
+
+void mt_say_bands(mt_sentences *s)
+{
+    say_kinds(s);
+    say_clearances(s);
+    for (int i = 0; i < s->rec->n_motions; i++) {
+        mt_say(s, "Over the motion: %s.", s->rec->motions[i].text);
+    }
+}

@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Prices. At an optimum the multiplier of an active constraint is the slope of the objective over its limit; limits are relative (a ratio's logarithm), bounds are in t, which is chained to
+ * the parameter here. The change enters the search as half its square: dc = df / c.
+ */
+#include "describe/reasons_priv.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double PERCENT = 100.0;
+
+/* Of the objective, what a change df of its value f is called: "0.12 kg". NULL: not worth a sentence, more than there is (a slope says nothing that far), or out of memory. */
+static const char *price(mt_sentences *s, double df)
+{
+    mt_arena *const mem = &s->result->mem;
+    const char *text = "";
+    if (!(fabs(df) > 0.0) || !s->rec->feasible) {
+        return NULL;
+    }
+    switch (s->p->aims[s->design->stage].type) {
+    case MT_OBJECTIVE_MASS:
+        if (s->design->stage == 0 && fabs(df) > s->rec->score) {
+            return NULL;
+        }
+        text = mt_arena_printf(mem, "%.3g kg", df);
+        break;
+    case MT_OBJECTIVE_EXPRESSION:
+        text = mt_arena_printf(mem, "%.3g", df);
+        break;
+    case MT_OBJECTIVE_CHANGE:
+        if (!(s->rec->change > 0.0) || fabs(df) > s->rec->change * s->rec->change) {
+            return NULL;
+        }
+        text = mt_arena_printf(mem, "%.3g of the size of the redesign", df / s->rec->change);
+        break;
+    case MT_OBJECTIVE_CLEARANCE:
+        /* f = -ln(1 + clearance) */
+        text = mt_arena_printf(mem, "%.3g percentage points of the least clearance",
+                               (PERCENT + s->rec->score) * df);
+        break;
+    case MT_OBJECTIVE_MISFIT:
+    case MT_OBJECTIVE_NONE:
+        return NULL;
+    }
+    s->failed = s->failed || text == NULL;
+    return text;
+}
+
+static const char *win(const mt_sentences *s)
+{
+    return s->p->aims[s->design->stage].type == MT_OBJECTIVE_CLEARANCE ? "gain" : "save";
+}
+
+/* What one percent less of each demand would save. */
+static void say_demands(mt_sentences *s)
+{
+    const mt_nlp_solution *const found = s->design->found;
+    for (int i = 0; i < s->p->n_demands; i++) {
+        const mt_demand *const d = &s->p->demands[i];
+        const mt_result_goal *const g = &s->rec->goals[i];
+        for (int k = 0; k < d->n_in && found->mult_in != NULL; k++) {
+            const double mult = found->mult_in[d->row_in + k];
+            const char *const saved = mult > 0.0 ? price(s, mult / PERCENT) : NULL;
+            if (saved != NULL) {
+                mt_say(s, "Goal %s (%s) has a price: giving way by 1 %% would %s %s.",
+                       g->pointer, g->text, win(s), saved);
+            }
+        }
+        const double slope =
+            d->row_eq >= 0 && found->mult_eq != NULL ? found->mult_eq[d->row_eq] : nan("");
+        const char *const cost = price(s, fabs(slope) / PERCENT);
+        if (cost != NULL) {
+            mt_say(s, "Goal %s (%s) has a price: asking for 1 %% %s would %s %s.", g->pointer,
+                   g->text, slope > 0.0 ? "less" : "more", win(s), cost);
+            continue;
+        }
+        const char *const left = price(s, fabs(slope) * d->tolerance);
+        if (left != NULL) {
+            mt_say(s,
+                   "Goal %s (%s) hardly depends on the variables here: what its tolerance of "
+                   "%.3g %% leaves open is worth %s.",
+                   g->pointer, g->text, PERCENT * d->tolerance, left);
+        }
+    }
+}
+
+/* Edges of bands that hold modes. */
+static void say_edges(mt_sentences *s)
+{
+    const mt_nlp_solution *const found = s->design->found;
+    mt_clear_row row;
+    for (int i = 0; s->design->below != NULL && found->mult_in != NULL &&
+                    mt_clear_row_at(s->p, s->design->below, i, &row);
+         i++) {
+        const mt_clear *const c = &s->p->clears[row.clear];
+        const double mult = found->mult_in[s->p->n_in - s->p->n_corner_rows + i];
+        const char *const saved = mult > 0.0 ? price(s, mult / PERCENT) : NULL;
+        if (saved != NULL) {
+            mt_say(s,
+                   "The %s edge of %s, which holds %s mode %d, has a price: giving way by "
+                   "1 %% would %s %s.",
+                   row.above ? "upper" : "lower", c->bands.items[row.band].label,
+                   mt_analysis_configuration(s->p->views[c->view].analysis), row.mode, win(s),
+                   saved);
+        }
+    }
+}
+
+/* A round amount of a parameter: the power of ten from 1 to 10 % of its value. */
+static double amount_of(const mt_result_parameter *p)
+{
+    return pow(10.0, floor(log10(0.1 * fabs(p->recommended))));
+}
+
+/* "0.1 kg more allowed on M_SAU" */
+static const char *room_text(mt_sentences *s, const mt_result_parameter *p, double amount)
+{
+    const char *const text =
+        mt_arena_printf(&s->result->mem, "%.6g%s%s %s allowed on %s", amount,
+                        p->unit != NULL ? " " : "", p->unit != NULL ? p->unit : "",
+                        strcmp(p->at_bound, "upper") == 0 ? "more" : "less", p->name);
+    s->failed = s->failed || text == NULL;
+    return text == NULL ? "" : text;
+}
+
+/* Where the objective tells: the multiplier, chained to the parameter. */
+static void say_bound_price(mt_sentences *s, int i, double amount)
+{
+    const mt_nlp_solution *const found = s->design->found;
+    const mt_result_parameter *const p = &s->rec->parameters[i];
+    const double dt = amount / mt_problem_stretch_at(s->p, i, p->recommended);
+    const char *const saved = found->mult_bound != NULL && found->bound[i] != 0
+                                  ? price(s, fabs(found->mult_bound[i]) * dt)
+                                  : NULL;
+    if (saved != NULL) {
+        mt_say(s, "%s would %s %s.", room_text(s, p, amount), win(s), saved);
+    }
+}
+
+/* Where a frequency is missed: what the bound keeps it from. */
+static void say_bound_frequency(mt_sentences *s, int i, double amount,
+                                const mt_result_frequency *f)
+{
+    const mt_result_parameter *const p = &s->rec->parameters[i];
+    if (f->sensitivity == NULL || f->repeated) {
+        return;
+    }
+    const double outwards = strcmp(p->at_bound, "upper") == 0 ? 1.0 : -1.0;
+    const double hz = amount * outwards * f->sensitivity[i];
+    const bool raise = f->recommended_hz < f->target_hz || f->recommended_hz < f->at_least_hz;
+    const bool lower = f->recommended_hz > f->target_hz || f->recommended_hz > f->at_most_hz;
+    if ((raise && hz > 0.0) || (lower && hz < 0.0)) {
+        mt_say(s, "%s buys %.3g Hz of %s mode %d.", room_text(s, p, amount), fabs(hz),
+               f->configuration, f->mode);
+    }
+}
+
+static void say_bounds(mt_sentences *s)
+{
+    for (int i = 0; i < s->rec->n_parameters; i++) {
+        const mt_result_parameter *const p = &s->rec->parameters[i];
+        const double amount = amount_of(p);
+        if (p->at_bound == NULL || !(amount > 0.0) || !isfinite(amount)) {
+            continue;
+        }
+        say_bound_price(s, i, amount);
+        for (int k = 0; k < s->rec->n_frequencies && !s->rec->feasible; k++) {
+            say_bound_frequency(s, i, amount, &s->rec->frequencies[k]);
+        }
+    }
+}
+
+void mt_say_prices(mt_sentences *s)
+{
+    say_demands(s);
+    say_edges(s);
+    say_bounds(s);
+}

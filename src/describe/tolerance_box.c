@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * What is proven of one design: an inertia count at its own matrices confirms that every band is empty (no eigenvalue is involved), and, where the modes can be enclosed, the
+ * tolerance box says how far its variables may stray with the bands, without their margin, and the frequency limits still kept.
+ */
+#include <math.h>
+
+#include "describe/describe.h"
+#include "problem/robust.h"
+#include "search/proof.h"
+
+/* Tolerances beyond this are not asked about. */
+static const double MOST_PERCENT = 100.0;
+/* Sub-boxes of one test where an input enters both matrices: fewer for many variables, whose boxes cost more and gain less. */
+enum { BOXES_FEW_VARIABLES = 64, BOXES_MANY_VARIABLES = 8, FEW_VARIABLES = 8 };
+
+static mt_status count_band(mt_problem *fresh, const mt_clear *c, const mt_band *band,
+                            mt_result *result, bool *confirmed, mt_err *err)
+{
+    const mt_analysis *const a = fresh->views[c->view].analysis;
+    mt_band_count count = {0};
+    MT_TRY(mt_certify_count(a->lin, a->modes.n_rigid, band->lower_hz, band->upper_hz,
+                            c->tolerance, &fresh->mem, &count, err));
+    *confirmed = *confirmed && count.sure && count.inside == 0;
+    if (count.inside == 0) {
+        return MT_OK;
+    }
+    return mt_describe_warn(
+        result, err,
+        "%s: an inertia count finds %d mode%s inside the band %s of a recommended design",
+        mt_analysis_configuration(a), count.inside, count.inside == 1 ? "" : "s", band->label);
+}
+
+/* Every band of a clear, by inertia, at the design that its analysis has been solved at. */
+static mt_status confirm_here(mt_problem *fresh, const mt_clear *c, mt_result *result,
+                              bool *confirmed, mt_err *err)
+{
+    for (int b = 0; b < c->bands.n; b++) {
+        MT_TRY(count_band(fresh, c, &c->bands.items[b], result, confirmed, err));
+    }
+    return MT_OK;
+}
+
+/* At the two corners of the tolerances between which all modes stay: the same counts there are those of every design between. */
+static mt_status confirm_corners(mt_problem *fresh, const mt_clear *c, mt_result *result,
+                                 bool *confirmed, mt_err *err)
+{
+    mt_analysis *const a = fresh->views[c->view].analysis;
+    const mt_analysis_options opt = mt_analysis_options_default();
+    const mt_robust_range *const range = mt_robust_hz(fresh, c->view, 1);
+    *confirmed = *confirmed && range != NULL && mt_robust_proven(fresh);
+    for (int side = 0; side < MT_ROBUST_SIDES && *confirmed; side++) {
+        MT_TRY(mt_analysis_solve(a, range->at[side], &opt, err));
+        MT_TRY(confirm_here(fresh, c, result, confirmed, err));
+    }
+    return mt_analysis_solve(a, fresh->x, &opt, err);
+}
+
+/* Every band of every clear. */
+static mt_status confirm(mt_problem *fresh, mt_result *result, bool *confirmed, mt_err *err)
+{
+    *confirmed = fresh->n_bands > 0;
+    for (int i = 0; i < fresh->n_clears; i++) {
+        const mt_clear *const c = &fresh->clears[i];
+        MT_TRY(confirm_here(fresh, c, result, confirmed, err));
+        if (fresh->robust != NULL) {
+            MT_TRY(confirm_corners(fresh, c, result, confirmed, err));
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status edge_text(const mt_problem *p, const mt_recommendation *rec,
+                           const mt_tolerance *t, mt_arena *mem, const char **text, mt_err *err)
+{
+    *text = t->end == MT_TOLERANCE_DOMAIN ? "a stiffness or a mass would no longer be positive"
+                                          : NULL;
+    if (t->end != MT_TOLERANCE_EDGE) {
+        return MT_OK;
+    }
+    const mt_certify_edge *const e = &t->edge;
+    const char *const configuration = mt_analysis_configuration(p->views[e->view].analysis);
+    *text = e->band >= 0
+                ? mt_arena_printf(mem, "mode %d of \"%s\" at the %s edge of %s, %.6g Hz",
+                                  e->mode, configuration, e->above ? "upper" : "lower",
+                                  rec->gaps[e->band].band, e->hz)
+                : mt_arena_printf(mem, "mode %d of \"%s\" at its limit of %.6g Hz", e->mode,
+                                  configuration, e->hz);
+    return *text == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+static mt_status fill_box(mt_problem *p, mt_proof *proof, const mt_recommendation *rec,
+                          mt_result *result, mt_tolerance_box *box, mt_err *err)
+{
+    mt_certify q = proof->question;
+    mt_tolerance all = {0};
+    mt_tolerance *const each = mt_arena_alloc(&p->mem, (size_t)p->n, sizeof *each);
+    int *const assignment = mt_arena_int(&p->mem, (size_t)p->n_bands);
+    box->variables = mt_arena_alloc(&result->mem, (size_t)p->n, sizeof *box->variables);
+    if (each == NULL || assignment == NULL || box->variables == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n_bands; i++) {
+        assignment[i] = rec->gaps[i].modes_below;
+    }
+    q.bands = proof->bases;
+    const mt_tolerance_question question = {
+        .x = p->x,
+        .assignment = assignment,
+        .most_percent = MOST_PERCENT,
+        .boxes_per_test = p->n <= FEW_VARIABLES ? BOXES_FEW_VARIABLES : BOXES_MANY_VARIABLES};
+    MT_TRY(mt_certify_tolerance(&q, &question, &p->mem, &all, each, err));
+    box->proven = true;
+    box->all_percent = all.percent;
+    MT_TRY(edge_text(p, rec, &all, &result->mem, &box->edge, err));
+    box->n_variables = p->n;
+    for (int i = 0; i < p->n; i++) {
+        mt_result_tolerance *const own = &box->variables[i];
+        *own =
+            (mt_result_tolerance){.name = rec->parameters[i].name, .percent = each[i].percent};
+        MT_TRY(edge_text(p, rec, &each[i], &result->mem, &own->edge, err));
+    }
+    return MT_OK;
+}
+
+/* Boxes speak of bands and limits; a study with exact targets has none to speak of. */
+static bool worth_a_box(const mt_problem *p)
+{
+    bool limits = false;
+    for (int i = 0; i < p->n_demands; i++) {
+        const mt_goal *const g = p->demands[i].goal;
+        limits = limits || (g->type == MT_GOAL_FREQUENCY && p->demands[i].n_in > 0 &&
+                            p->demands[i].mode > 0);
+    }
+    return p->n > 0 && p->n_eq == 0 && (p->n_bands > 0 || limits);
+}
+
+mt_status mt_describe_tolerance(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+                                mt_err *err)
+{
+    mt_proof proof;
+    bool confirmed = false;
+    if (!rec->feasible) {
+        return MT_OK;
+    }
+    MT_TRY(confirm(fresh, result, &confirmed, err));
+    /* between the positions of a drive there are samples and no proof */
+    rec->grade = confirmed && rec->n_motions == 0 ? "feasible and proven" : rec->grade;
+    if (!worth_a_box(fresh) || rec->n_gaps != fresh->n_bands) {
+        return MT_OK;
+    }
+    mt_status rc = mt_proof_init(&proof, fresh, &fresh->mem, err);
+    if (rc == MT_OK && proof.possible) {
+        mt_tolerance_box *const box = mt_arena_alloc(&result->mem, 1, sizeof *box);
+        if (box == NULL) {
+            rc = mt_fail_memory(err);
+        } else {
+            *box = mt_tolerance_box_default();
+            rc = fill_box(fresh, &proof, rec, result, box, err);
+            rec->tolerance_box = box;
+        }
+    }
+    mt_proof_free(&proof, fresh);
+    return rc;
+}

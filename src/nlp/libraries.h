@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NLP_LIBRARIES_H
+#define NLP_LIBRARIES_H
+
+/* Versions of the search libraries in use, for `run` of a result. Static texts. */
+/* Writes "2.7.1" into text. */
+void mt_nlopt_version(char text[16]);
+const char *mt_gsl_version(void);
+
+#endif

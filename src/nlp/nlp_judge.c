@@ -1,0 +1,323 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * What the ends of the local solves are worth:
+ *
+ *     feasible ones only, if any; undetermined directions at the best, all ends pulled back along them; equal ones merged; ranked;
+ *     multipliers, KKT residual, singularity. Compromises are settled: the least objective among equally good ones.
+ */
+#include "nlp/nlp_priv.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Ends nearer than this are one (0.1 percent in a parameter: the same design to an engineer), and nearer than the
+ * root of the tolerance, which a double root smears; that is capped where tolerances are wide. */
+static const double SAME = 1e-3;
+static const double SAME_MOST = 1e-2;
+/* Ends nearer than this are one and the same to rounding; merged ones farther apart were two roots. */
+static const double IDENTICAL = 1e-5;
+/* A feasible end with a KKT residual above this is no local solution, if there are better ones. */
+static const double STATIONARY = 1e-6;
+static const double NOT_STATIONARY = 1e-3;
+/* Compromises whose squares differ by less, relatively, are equally good (their minima are known to
+ * rounding, about 1e-12); a smaller objective decides where it is smaller by more than rounding. */
+static const double EQUAL_SQUARES = 1e-8;
+static const double SETTLED_GAIN = 1e-6;
+/* A variable nearer to a mark than this, in widths of its bounds, stands there but for rounding of the search. */
+static const double ON_MARK = 1e-12;
+/* Violation, in tolerances, that a goal is met with as well as by 0. */
+static const double STILL_MET = 1e-4;
+
+bool mt_nlp_ends_grow(mt_nlp_engine *e, mt_nlp_ends *all, int n)
+{
+    const size_t wanted = (size_t)all->count + (size_t)n;
+    mt_nlp_end_point *const at = mt_arena_alloc(&e->scratch, wanted, sizeof *at);
+    if (at == NULL) {
+        return false;
+    }
+    for (int i = 0; i < all->count; i++) {
+        at[i] = all->at[i];
+    }
+    all->at = at;
+    return true;
+}
+
+static void swap(mt_nlp_ends *all, int i, int k)
+{
+    const mt_nlp_end_point one = all->at[i];
+    all->at[i] = all->at[k];
+    all->at[k] = one;
+}
+
+/* Ends nearer than this are one. */
+static double same_distance(const mt_nlp_engine *e)
+{
+    return fmax(SAME, fmin(sqrt(e->eq_tol), SAME_MOST));
+}
+
+static bool seeks_roots(const mt_nlp_engine *e)
+{
+    return e->nlp->n_eq >= e->n_free && e->n_free > 0;
+}
+
+int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_ends *all, int *once)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    int *const twin =
+        mt_arena_int(&e->scratch, (size_t)all->count); /* a later end is the same */
+    int roots = 0;
+    *once = 0;
+    if (twin == NULL) {
+        mt_nlp_end(e, mt_fail_memory(e->err));
+        return 0;
+    }
+    for (int i = 0; i < all->count && seeks_roots(e); i++) {
+        const mt_nlp_point *const p = all->at[i].p;
+        if (mt_nlp_feasible(p) && p->curve) {
+            roots = 0;
+            *once = 0;
+            break;
+        }
+        if (!mt_nlp_feasible(p) || twin[i] != 0) {
+            continue;
+        }
+        int hits = 1;
+        for (int k = i + 1; k < all->count; k++) {
+            if (mt_nlp_feasible(all->at[k].p) &&
+                mt_nlp_distance(e, p, all->at[k].p) <= same_distance(e)) {
+                twin[k] = 1;
+                hits++;
+            }
+        }
+        roots++;
+        *once += hits == 1;
+    }
+    mt_arena_rewind(&e->scratch, mark);
+    return roots;
+}
+
+/*
+ * How many roots no start ended at, from f1 that one start met and f2 that two met, by Chao (1984) in the form that does not divide
+ * by zero: f1 (f1 - 1) / (2 (f2 + 1)), a lower bound of the expectation.
+ */
+static void count_roots(const mt_nlp_engine *e, const mt_nlp_ends *all, mt_nlp_result *out)
+{
+    int f2 = 0;
+    bool isolated = seeks_roots(e) && all->count > 0 && !out->compromise;
+    for (int i = 0; i < all->count; i++) {
+        out->n_once += all->at[i].hits == 1;
+        f2 += all->at[i].hits == 2;
+        isolated = isolated && !all->at[i].p->curve;
+    }
+    out->n_found = all->count;
+    out->missing = isolated ? 0.5 * out->n_once * (out->n_once - 1) / (f2 + 1.0) : nan("");
+}
+
+/* Insertion sort, stable: what is equal keeps the order of the starts. */
+static void rank(mt_nlp_ends *all)
+{
+    for (int i = 1; i < all->count; i++) {
+        const mt_nlp_end_point end = all->at[i];
+        int k = i;
+        for (; k > 0 && mt_nlp_better(end.p, all->at[k - 1].p); k--) {
+            all->at[k] = all->at[k - 1];
+        }
+        all->at[k] = end;
+    }
+}
+
+/* Ranked compromises: among equally good ones the objective decides. */
+static void rank_equals(mt_nlp_ends *all)
+{
+    for (int first = 0; first < all->count;) {
+        const double most = all->at[first].p->squares * (1 + EQUAL_SQUARES);
+        int i = first + 1;
+        for (; i < all->count && all->at[i].p->squares <= most; i++) {
+            for (int k = i; k > first && all->at[k].p->f < all->at[k - 1].p->f; k--) {
+                swap(all, k, k - 1);
+            }
+        }
+        first = i;
+    }
+}
+
+/* Drop infeasible ends where one is feasible, and those that are no local minima. Ranked. */
+static void drop_useless(mt_nlp_ends *all)
+{
+    const bool any = all->count > 0 && mt_nlp_feasible(all->at[0].p);
+    bool stationary = false;
+    for (int i = 0; i < all->count; i++) {
+        const bool counts = any == mt_nlp_feasible(all->at[i].p);
+        stationary = stationary || (counts && all->at[i].p->kkt <= STATIONARY);
+    }
+    int kept = 0;
+    for (int i = 0; i < all->count; i++) {
+        mt_nlp_point *const p = all->at[i].p;
+        const bool useless =
+            any && (!mt_nlp_feasible(p) || (i > 0 && stationary && p->kkt > NOT_STATIONARY &&
+                                            p->kkt < HUGE_VAL)); /* roots have no residual */
+        if (!useless) {
+            swap(all, kept++, i);
+        }
+    }
+    all->count = kept;
+}
+
+/* Merge equal ends into the better one. Ranked. */
+static void merge(const mt_nlp_engine *e, mt_nlp_ends *all)
+{
+    const double same = same_distance(e);
+    int kept = 0;
+    for (int i = 0; i < all->count; i++) {
+        int twin = -1;
+        for (int k = 0; k < kept && twin < 0; k++) {
+            twin = mt_nlp_distance(e, all->at[k].p, all->at[i].p) <= same ? k : -1;
+        }
+        if (twin < 0) {
+            swap(all, kept++, i);
+            continue;
+        }
+        mt_nlp_end_point *const one = &all->at[twin];
+        const mt_nlp_point *const p = all->at[i].p;
+        one->merged = one->merged || mt_nlp_distance(e, one->p, p) > IDENTICAL;
+        one->hits += all->at[i].hits;
+        one->p->start = p->start < one->p->start ? p->start : one->p->start;
+    }
+    all->count = kept;
+}
+
+/*
+ * Many designs may be equally far from the demands: then the one of least objective is wanted. With
+ * the constraints moved to what the compromise reaches, that is a feasible problem.
+ */
+static void settle(mt_nlp_engine *e, mt_nlp_point *p)
+{
+    const mt_nlp *const q = e->nlp;
+    mt_arena *const mem = &e->scratch;
+    mt_nlp_point *const to = mt_nlp_point_new(e, mem);
+    double *const eq = mt_arena_f64(mem, (size_t)q->n_eq, 1);
+    double *const in = mt_arena_f64(mem, (size_t)q->n_in, 1);
+    if (to == NULL || eq == NULL || in == NULL) {
+        mt_nlp_end(e, mt_fail_memory(e->err));
+        return;
+    }
+    memcpy(eq, p->eq, (size_t)q->n_eq * sizeof *eq);
+    for (int i = 0; i < q->n_in; i++) {
+        in[i] = fmin(p->in[i], 0);
+    }
+    e->eq_shift = eq;
+    e->in_shift = in;
+    mt_nlp_weakness w;
+    const bool minimised = mt_nlp_evaluate(e, p->t, true, to) &&
+                           mt_nlp_weakness_at(e, to, mem, &w) && w.curve &&
+                           w.n_rows < e->n_free;
+    if (minimised) {
+        mt_nlp_minimise(e, w.n_rows, w.rows, to);
+    }
+    e->eq_shift = NULL;
+    e->in_shift = NULL;
+    if (!minimised || !mt_nlp_evaluate(e, to->t, true, to)) {
+        return;
+    }
+    if (!(to->f < p->f - SETTLED_GAIN * fabs(p->f))) {
+        return;
+    }
+    to->start = p->start;
+    mt_nlp_polish(e, MT_NLP_SQUARES, to, NULL); /* back from within the tolerances */
+    if (to->squares <= p->squares * (1 + EQUAL_SQUARES)) {
+        mt_nlp_point_copy(e, p, to);
+    }
+}
+
+static void settle_all(mt_nlp_engine *e, mt_nlp_ends *all)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    for (int i = 0; i < all->count && !e->ended; i++) {
+        settle(e, all->at[i].p);
+        mt_arena_rewind(&e->scratch, mark);
+    }
+}
+
+/* Variables within rounding of a mark (the original, a bound) are put on it: "0", not "1.1e-08". */
+static void put_on_marks(mt_nlp_engine *e, mt_nlp_point *p)
+{
+    const mt_nlp *const q = e->nlp;
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    mt_nlp_point *const to = mt_nlp_point_new(e, &e->scratch);
+    bool moved = false;
+    if (to == NULL) {
+        return;
+    }
+    mt_nlp_point_copy(e, to, p);
+    for (int j = 0; j < e->n; j++) {
+        const double marks[] = {e->origin[j], q->lower[j], q->upper[j]};
+        for (int k = 0; k < MT_COUNT(marks); k++) {
+            const double off = fabs(to->t[j] - marks[k]);
+            if (off > 0.0 && off <= ON_MARK * (q->upper[j] - q->lower[j])) {
+                to->t[j] = marks[k];
+                moved = true;
+            }
+        }
+    }
+    if (moved && mt_nlp_evaluate(e, to->t, true, to) &&
+        to->violation <= fmax(p->violation, STILL_MET)) {
+        to->kkt = p->kkt;
+        to->start = p->start;
+        to->curve = p->curve;
+        mt_nlp_point_copy(e, p, to);
+    }
+    mt_arena_rewind(&e->scratch, mark);
+}
+
+/* A double root; of two roots that were merged the Jacobian changes its sign in between. */
+static bool is_singular(mt_nlp_engine *e, const mt_nlp_point *p, bool merged)
+{
+    const bool roots = e->nlp->n_eq >= e->n_free && e->n_free > 0;
+    if (!mt_nlp_feasible(p) || e->ended || (merged && roots)) {
+        return mt_nlp_feasible(p) && merged && roots;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    mt_nlp_weakness w = {0};
+    (void)mt_nlp_weakness_at(e, p, &e->scratch, &w);
+    mt_arena_rewind(&e->scratch, mark);
+    return w.singular;
+}
+
+void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_result *out)
+{
+    rank(all);
+    drop_useless(all);
+    out->compromise = all->count > 0 && !mt_nlp_feasible(all->at[0].p);
+    if (all->count > 0 && !mt_nlp_undetermined(e, all->at[0].p, mem, out)) {
+        return;
+    }
+    for (int i = 0; i < all->count && out->n_undetermined > 0; i++) {
+        mt_nlp_pull_back(e, out, all->at[i].p);
+    }
+    rank(all);
+    merge(e, all);
+    if (out->compromise && e->n_free > 0) {
+        settle_all(e, all);
+        rank(all);
+        merge(e, all);
+        rank_equals(all);
+    }
+    if (all->count > 0) {
+        mt_nlp_drop_roomless(e, all->at[0].p, out);
+    }
+    for (int i = 0; i < all->count && !e->ended; i++) {
+        put_on_marks(e, all->at[i].p);
+    }
+    count_roots(e, all, out);
+    const int count = all->count < e->opt.max_solutions ? all->count : e->opt.max_solutions;
+    out->solutions = mt_arena_alloc(mem, (size_t)count, sizeof *out->solutions);
+    if (out->solutions == NULL) {
+        mt_nlp_end(e, mt_fail_memory(e->err));
+        return;
+    }
+    for (int i = 0; i < count && mt_nlp_report(e, all->at[i].p, mem, &out->solutions[i]); i++) {
+        out->solutions[i].singular = is_singular(e, all->at[i].p, all->at[i].merged);
+        out->solutions[i].hits = all->at[i].hits;
+        out->n_solutions = i + 1;
+    }
+}

@@ -1,0 +1,393 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * From nearly there to full accuracy: Newton's method on the KKT conditions in the null space of the
+ * active constraints (Nocedal and Wright, Numerical Optimization, 2006, section 18.3).
+ *
+ *     C p_y = -c              least norm, from the QR of C^T
+ *     Z^T H Z p_z = -Z^T g    Z an orthonormal basis of the null space of C (on the free variables)
+ *     t := t + p_y + Z p_z
+ *
+ * H is the Hessian of the Lagrangian. Gradients are exact, so Z^T H Z comes from one further gradient
+ * per column of Z (forward difference; its error of about 1e-6 costs one digit in six per step, and
+ * the fixed point, where Z^T g = 0 and c = 0, does not depend on it). A negative eigenvalue of
+ * Z^T H Z at a converged point tells a saddle from a minimum. Where the Hessian is too expensive or a
+ * point refuses a value, the step is Gauss-Newton's or there is none: the best point stands.
+ */
+#include "nlp/nlp_priv.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { ITERATIONS = 14, HESSIAN_MOST = 64 };
+/* Difference step in t: near the square root of the rounding of a gradient. */
+static const double STEP_H = 1e-6;
+/* A Newton step longer than this is not a polish: shortened. */
+static const double STEP_MOST = 0.3;
+/* A shorter one is rounding of t. */
+static const double STEP_LEAST = 16 * DBL_EPSILON;
+/* A variable this near to its bound, relative to the width, is on it. */
+static const double ON_BOUND = 1e-8;
+/* KKT residual and violation that cannot be improved in double precision. */
+static const double KKT_DONE = 1e-13;
+static const double VIOLATION_DONE = 1e-6;
+/* Eigenvalues of the reduced Hessian below this part of the largest are noise of the differences: no step along
+ * them; below minus SADDLE of it they are negative. */
+static const double CURVATURE_NOISE = 1e-7;
+static const double SADDLE = 1e-4;
+/* KKT residuals below this are stationary points. */
+static const double STATIONARY = 1e-6;
+/* A step must not be longer than this part of the one before, or the iteration is not converging. */
+static const double CONTRACTION = 0.7;
+/* Relative rounding allowed in the objective of the better of two points. */
+static const double F_ROUNDING = 1e-9;
+
+typedef struct polish {
+    mt_nlp_engine *e;
+    mt_nlp_aim aim;
+    mt_nlp_active a;
+    int nz;
+    double *Z;    /* n_free x nz */
+    double *H;    /* nz x nz, then its eigenvectors */
+    double *w;    /* [nz] eigenvalues */
+    double *gl;   /* [n] gradient of the Lagrangian elsewhere */
+    double *step; /* [n] */
+    double *t;    /* [n] */
+    mt_nlp_point *cur;
+    mt_nlp_point *trial;
+    mt_nlp_point *best;
+    double limit; /* the objective must not end above this */
+} polish;
+
+static bool prepare(polish *w)
+{
+    mt_nlp_engine *const e = w->e;
+    mt_arena *const mem = &e->scratch;
+    const size_t nf = (size_t)w->a.n_free;
+    w->nz = w->a.n_free - w->a.qr.rank;
+    w->Z = mt_arena_f64(mem, nf, (size_t)w->nz);
+    w->H = mt_arena_f64(mem, (size_t)w->nz, (size_t)w->nz);
+    w->w = mt_arena_f64(mem, (size_t)w->nz, 1);
+    if (!w->Z || !w->H || !w->w) {
+        mt_nlp_end(e, mt_fail_memory(e->err));
+        return false;
+    }
+    const mt_status rc = w->nz > 0 ? mt_qr_q(&w->a.qr, w->a.qr.rank, w->Z, mem, e->err) : MT_OK;
+    if (rc != MT_OK) {
+        mt_nlp_end(e, rc);
+    }
+    return rc == MT_OK;
+}
+
+/* Gradient of the Lagrangian with the present multipliers at a point. */
+static void lagrangian(const polish *w, const mt_nlp_point *p, double *gl)
+{
+    mt_nlp_gradient(w->e, p, w->aim, gl);
+    for (int i = 0; i < w->a.k; i++) {
+        for (int j = 0; j < w->e->n; j++) {
+            gl[j] -= w->a.lambda[i] * mt_nlp_row_slope(w->e, p, w->a.row[i], j);
+        }
+    }
+}
+
+/* t := cur + h v on the free variables, backwards where that would leave the bounds; the signed h. */
+static double offset(polish *w, const double *v)
+{
+    const mt_nlp *const q = w->e->nlp;
+    double h = STEP_H;
+    for (int i = 0; i < w->a.n_free; i++) {
+        const double x = w->cur->t[w->a.free[i]] + h * v[i];
+        if (x < q->lower[w->a.free[i]] || x > q->upper[w->a.free[i]]) {
+            h = -STEP_H;
+            break;
+        }
+    }
+    memcpy(w->t, w->cur->t, (size_t)w->e->n * sizeof *w->t);
+    for (int i = 0; i < w->a.n_free; i++) {
+        w->t[w->a.free[i]] += h * v[i];
+    }
+    return h;
+}
+
+/* H := Z^T (Hessian of the Lagrangian) Z, symmetrised. */
+static bool reduced_hessian(polish *w)
+{
+    const int nf = w->a.n_free;
+    for (int c = 0; c < w->nz; c++) {
+        const double h = offset(w, w->Z + (ptrdiff_t)c * nf);
+        if (!mt_nlp_evaluate(w->e, w->t, true, w->trial)) {
+            return false;
+        }
+        lagrangian(w, w->trial, w->gl);
+        for (int r = 0; r < w->nz; r++) {
+            double sum = 0;
+            for (int i = 0; i < nf; i++) {
+                const int j = w->a.free[i];
+                sum += w->Z[i + (ptrdiff_t)r * nf] * (w->gl[j] - w->a.z[j]);
+            }
+            w->H[r + (ptrdiff_t)c * w->nz] = sum / h;
+        }
+    }
+    for (int c = 0; c < w->nz; c++) {
+        for (int r = c + 1; r < w->nz; r++) {
+            double *const lower = w->H + r + (ptrdiff_t)c * w->nz;
+            *lower = 0.5 * (*lower + w->H[c + (ptrdiff_t)r * w->nz]);
+        }
+    }
+    return true;
+}
+
+/* Gauss-Newton's Z^T J^T J Z for residuals: no evaluation. */
+static bool gauss_newton(polish *w)
+{
+    const mt_nlp *const q = w->e->nlp;
+    const int nf = w->a.n_free;
+    if (q->n_res == 0 || w->aim == MT_NLP_SQUARES) {
+        return false;
+    }
+    double *const jz = mt_arena_f64(&w->e->scratch, (size_t)q->n_res, (size_t)w->nz);
+    if (jz == NULL) {
+        mt_nlp_end(w->e, mt_fail_memory(w->e->err));
+        return false;
+    }
+    for (int c = 0; c < w->nz; c++) {
+        for (int i = 0; i < nf; i++) {
+            mt_axpy(q->n_res, w->Z[i + (ptrdiff_t)c * nf],
+                    w->cur->dr + (ptrdiff_t)w->a.free[i] * q->n_res,
+                    jz + (ptrdiff_t)c * q->n_res);
+        }
+    }
+    mt_gemm(true, false, w->nz, w->nz, q->n_res, 1.0, jz, q->n_res, jz, q->n_res, 0.0, w->H,
+            w->nz);
+    return true;
+}
+
+/* step += Z p_z, from the eigenvalues of H; negative curvature is used by its size. */
+static void reduced_step(polish *w)
+{
+    const int nf = w->a.n_free;
+    double largest = 0;
+    for (int c = 0; c < w->nz; c++) {
+        largest = fmax(largest, fabs(w->w[c]));
+    }
+    for (int c = 0; c < w->nz; c++) {
+        if (fabs(w->w[c]) <= CURVATURE_NOISE * largest) {
+            continue;
+        }
+        double *const v = w->gl; /* eigenvector on the free variables */
+        memset(v, 0, (size_t)w->e->n * sizeof *v);
+        for (int r = 0; r < w->nz; r++) {
+            mt_axpy(nf, w->H[r + (ptrdiff_t)c * w->nz], w->Z + (ptrdiff_t)r * nf, v);
+        }
+        double slope = 0;
+        for (int i = 0; i < nf; i++) {
+            slope += v[i] * w->a.z[w->a.free[i]];
+        }
+        for (int i = 0; i < nf; i++) {
+            w->step[w->a.free[i]] -= v[i] * slope / fabs(w->w[c]);
+        }
+    }
+}
+
+/* step := p_y, the least-norm correction of the active constraints. */
+static bool normal_step(polish *w)
+{
+    mt_arena *const mem = &w->e->scratch;
+    memset(w->step, 0, (size_t)w->e->n * sizeof *w->step);
+    double *const rhs = mt_arena_f64(mem, (size_t)w->a.k, 1);
+    double *const y = mt_arena_f64(mem, (size_t)w->a.n_free, 1);
+    if (rhs == NULL || y == NULL) {
+        mt_nlp_end(w->e, mt_fail_memory(w->e->err));
+        return false;
+    }
+    for (int i = 0; i < w->a.k; i++) {
+        rhs[i] = -w->a.c[i] / w->a.scale[i];
+    }
+    const mt_status rc = mt_qr_solve_transposed(&w->a.qr, 1, rhs, y, mem, w->e->err);
+    if (rc != MT_OK) {
+        mt_nlp_end(w->e, rc);
+        return false;
+    }
+    for (int i = 0; i < w->a.n_free; i++) {
+        w->step[w->a.free[i]] = y[i];
+    }
+    return true;
+}
+
+/* Size of the step (largest entry), after variables at an active bound were put on it, and the whole
+ * shortened to STEP_MOST and to the first bound met. A variable that stands on a bound and would cross it stays: its multiplier is
+ * about zero, and a step shortened to nothing would end the iteration. */
+static double take_step(polish *w)
+{
+    const mt_nlp *const q = w->e->nlp;
+    double size = 0;
+    for (int j = 0; j < w->e->n; j++) {
+        size = fmax(size, fabs(w->step[j]));
+    }
+    double part = size > STEP_MOST ? STEP_MOST / size : 1;
+    for (int j = 0; j < w->e->n; j++) {
+        const double room = (w->step[j] < 0 ? q->lower[j] : q->upper[j]) - w->cur->t[j];
+        const double near = ON_BOUND * (q->upper[j] - q->lower[j]);
+        if (w->a.side[j] == 0 && fabs(w->step[j]) * part > fabs(room) && fabs(room) > near) {
+            part = fabs(room) / fabs(w->step[j]);
+        }
+    }
+    for (int j = 0; j < w->e->n; j++) {
+        w->t[j] = w->a.side[j] < 0   ? q->lower[j]
+                  : w->a.side[j] > 0 ? q->upper[j]
+                                     : mt_nlp_clamp(w->e, j, w->cur->t[j] + part * w->step[j]);
+    }
+    return size;
+}
+
+/* The objective may rise where p profits from the tolerances: by the multipliers times them. */
+static double rise_allowed(const polish *w, const mt_nlp_point *p)
+{
+    double rise = F_ROUNDING * fabs(p->f);
+    for (int i = 0; i < w->a.k; i++) {
+        const double tol = mt_nlp_row_tol(w->e, w->a.row[i]);
+        rise += 2 * fabs(w->a.lambda[i]) * fmax(tol, fabs(w->a.c[i]));
+    }
+    return rise;
+}
+
+/* Keep cur as the best where it is: feasible (or the aim has no constraints), not above the limit,
+ * and nearer to a KKT point or, equally near, to the constraints. */
+static void keep(polish *w)
+{
+    mt_nlp_point *const p = w->cur;
+    const mt_nlp_point *const b = w->best;
+    const bool constrained = w->aim == MT_NLP_OBJECTIVE;
+    p->kkt = w->a.kkt;
+    const double value = w->aim == MT_NLP_SQUARES ? p->squares : p->f;
+    if ((constrained && mt_nlp_feasible(b) && !mt_nlp_feasible(p)) ||
+        (value > w->limit && (!constrained || mt_nlp_feasible(b)))) {
+        return;
+    }
+    const double mine = constrained ? fmax(p->kkt, p->violation * STATIONARY) : p->kkt;
+    const double theirs = constrained ? fmax(b->kkt, b->violation * STATIONARY) : b->kkt;
+    const bool first = constrained && mt_nlp_feasible(p) && !mt_nlp_feasible(b);
+    if (first) { /* from outside, the demands cost what they cost: the limit counts from here */
+        w->limit = fmax(w->limit, p->f + rise_allowed(w, p));
+    }
+    if (mine < theirs || first) {
+        mt_nlp_point_copy(w->e, w->best, p);
+    }
+}
+
+/* Where Z^T H Z has a negative eigenvalue: its eigenvector, largest entry positive. */
+static void find_saddle(const polish *w, double *saddle)
+{
+    memset(saddle, 0, (size_t)w->e->n * sizeof *saddle);
+    const double largest = w->nz > 0 ? fmax(fabs(w->w[0]), fabs(w->w[w->nz - 1])) : 0;
+    if (w->nz == 0 || !(w->w[0] < -SADDLE * largest)) {
+        return;
+    }
+    double sign = 0;
+    double most = 0;
+    for (int i = 0; i < w->a.n_free; i++) {
+        const int j = w->a.free[i];
+        for (int r = 0; r < w->nz; r++) {
+            saddle[j] += w->Z[i + (ptrdiff_t)r * w->a.n_free] * w->H[r];
+        }
+        if (fabs(saddle[j]) > most) {
+            most = fabs(saddle[j]);
+            sign = saddle[j] > 0 ? 1 : -1;
+        }
+    }
+    for (int j = 0; j < w->e->n; j++) {
+        saddle[j] *= sign;
+    }
+}
+
+/* Reduced Hessian and its eigenvectors; false where there is none (the normal step alone remains). */
+static bool curvature(polish *w)
+{
+    if (w->nz == 0) {
+        return false;
+    }
+    const long left = w->e->opt.max_evals - w->e->evals;
+    const bool affordable = w->nz <= HESSIAN_MOST && left > 2 * (long)w->nz;
+    if (!(affordable && reduced_hessian(w)) && !gauss_newton(w)) {
+        return false;
+    }
+    const mt_status rc = mt_eig_sym(w->nz, w->H, w->w, true, &w->e->scratch, w->e->err);
+    if (rc != MT_OK) {
+        mt_nlp_end(w->e, rc);
+    }
+    return rc == MT_OK;
+}
+
+/* One Newton step from cur. False: done, or no further. size: of this step. */
+static bool newton_step(polish *w, double *size, double *saddle)
+{
+    mt_nlp_engine *const e = w->e;
+    if (!mt_nlp_active_set(e, w->cur, w->aim, &e->scratch, &w->a)) {
+        return false;
+    }
+    keep(w);
+    const double c = w->aim == MT_NLP_OBJECTIVE ? w->cur->violation : 0;
+    if (e->ended || !prepare(w)) {
+        return false;
+    }
+    const bool done = w->a.kkt <= KKT_DONE && c <= VIOLATION_DONE;
+    if ((done && saddle == NULL) || !normal_step(w)) {
+        return false;
+    }
+    if (curvature(w)) {
+        if (saddle != NULL && w->a.kkt <= STATIONARY) {
+            find_saddle(w, saddle);
+        }
+        reduced_step(w);
+    }
+    if (done || e->ended) {
+        return false;
+    }
+    *size = take_step(w);
+    return *size > STEP_LEAST && mt_nlp_evaluate(e, w->t, true, w->trial);
+}
+
+static void iterate(polish *w, double *saddle)
+{
+    mt_arena *const mem = &w->e->scratch;
+    double previous = HUGE_VAL;
+    for (int it = 0; it < ITERATIONS; it++) {
+        const mt_arena_mark mark = mt_arena_get_mark(mem);
+        double size = 0;
+        const bool moved = newton_step(w, &size, saddle);
+        mt_arena_rewind(mem, mark);
+        if (!moved || (it > 3 && size > CONTRACTION * previous)) {
+            return;
+        }
+        previous = size;
+        w->trial->start = w->cur->start;
+        mt_nlp_point_swap(&w->cur, &w->trial);
+    }
+}
+
+void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p, double *saddle)
+{
+    polish w = {.e = e, .aim = aim};
+    mt_arena *const mem = &e->scratch;
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    w.gl = mt_nlp_f64(e, mem, (size_t)e->n, 1);
+    w.step = mt_nlp_f64(e, mem, (size_t)e->n, 1);
+    w.t = mt_nlp_f64(e, mem, (size_t)e->n, 1);
+    w.cur = mt_nlp_point_new(e, mem);
+    w.trial = mt_nlp_point_new(e, mem);
+    w.best = mt_nlp_point_new(e, mem);
+    if (saddle != NULL) {
+        memset(saddle, 0, (size_t)e->n * sizeof *saddle);
+    }
+    if (w.gl && w.step && w.t && w.cur && w.trial && w.best &&
+        mt_nlp_active_set(e, p, aim, mem, &w.a)) {
+        w.limit =
+            aim == MT_NLP_SQUARES ? p->squares * (1 + F_ROUNDING) : p->f + rise_allowed(&w, p);
+        p->kkt = w.a.kkt;
+        mt_nlp_point_copy(e, w.cur, p);
+        mt_nlp_point_copy(e, w.best, p);
+        iterate(&w, saddle);
+        mt_nlp_point_copy(e, p, w.best);
+    }
+    mt_arena_rewind(mem, mark);
+}

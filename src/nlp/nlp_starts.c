@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Where the local searches begin: the original design, then a low-discrepancy sequence over the
+ * bounds, turned by a shift modulo 1 that depends on the seed (Cranley and Patterson 1976; seed 0 and 1: the
+ * sequence as it is). GSL's Sobol generator knows 40 dimensions and is silent beyond; its reverse
+ * Halton knows 1229; past that, pseudo-random numbers are as good.
+ */
+#include "nlp/nlp_priv.h"
+
+#include <gsl/gsl_qrng.h>
+#include <math.h>
+#include <string.h>
+
+enum { SOBOL_MOST = 40, HALTON_MOST = 1229 };
+
+/* splitmix64 (Steele, Lea, Flood 2014): one step, a number in [0, 1). */
+static double next_uniform(uint64_t *state)
+{
+    *state += UINT64_C(0x9E3779B97F4A7C15);
+    uint64_t z = *state;
+    z = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
+    z ^= z >> 31;
+    return (double)(z >> 11) * 0x1p-53;
+}
+
+/* NULL where there is none for so many dimensions, or memory is out. */
+static gsl_qrng *sequence(int d)
+{
+    if (d < 1 || d > HALTON_MOST) {
+        return NULL;
+    }
+    return gsl_qrng_alloc(d <= SOBOL_MOST ? gsl_qrng_sobol : gsl_qrng_reversehalton,
+                          (unsigned int)d);
+}
+
+/* The next point u[d] of the unit cube. */
+static void next_point(gsl_qrng *q, uint64_t *state, int d, const double *shift, double *u)
+{
+    if (q != NULL) {
+        (void)gsl_qrng_get(q, u);
+    }
+    for (int j = 0; j < d; j++) {
+        const double x = q != NULL ? u[j] : next_uniform(state);
+        u[j] = x + shift[j] - floor(x + shift[j]);
+    }
+}
+
+double *mt_nlp_starts(const mt_nlp_engine *e, int starts, mt_arena *mem)
+{
+    const int d = e->n_free;
+    const mt_nlp *const p = e->nlp;
+    double *const t = mt_arena_f64(mem, (size_t)e->n, (size_t)starts);
+    double *const shift = mt_arena_f64(mem, (size_t)d, 1);
+    double *const u = mt_arena_f64(mem, (size_t)d, 1);
+    if (t == NULL || shift == NULL || u == NULL) {
+        return NULL;
+    }
+    uint64_t state = e->opt.seed;
+    for (int j = 0; j < d && e->opt.seed > 1; j++) {
+        shift[j] = next_uniform(&state);
+    }
+    gsl_qrng *const q = sequence(d);
+    if (q == NULL && d >= 1 && d <= HALTON_MOST) {
+        return NULL;
+    }
+    for (int k = 0; k < starts; k++) {
+        double *const tk = t + (ptrdiff_t)k * e->n;
+        memcpy(tk, e->origin, (size_t)e->n * sizeof *tk);
+        if (k == 0) {
+            continue;
+        }
+        if (k == 1 && p->hint != NULL) {
+            for (int j = 0; j < e->n; j++) {
+                tk[j] = mt_nlp_clamp(e, j, p->hint[j]);
+            }
+            continue;
+        }
+        next_point(q, &state, d, shift, u);
+        for (int j = 0, i = 0; j < e->n; j++) {
+            if (!e->held[j]) {
+                tk[j] = mt_nlp_clamp(e, j, p->lower[j] + u[i++] * (p->upper[j] - p->lower[j]));
+            }
+        }
+    }
+    gsl_qrng_free(q);
+    return t;
+}

@@ -1,0 +1,350 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "problem/family.h"
+
+#include <math.h>
+#include <string.h>
+
+static const mt_system *system_of(const mt_problem *p, int view)
+{
+    return p->views[view].analysis->sys;
+}
+
+double mt_family_position(const mt_problem *p, const mt_family *f, int k)
+{
+    const mt_analysis *const a = p->views[f->view[k]].analysis;
+    return a->sys->drive == MT_NO_NODE ? 0.0 : a->lin->value[a->sys->drive];
+}
+
+bool mt_family_any(const mt_problem *p)
+{
+    for (int i = 0; i < p->n_families; i++) {
+        if (p->families[i].banded) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int mt_family_of(const mt_problem *p, int view)
+{
+    for (int i = 0; i < p->n_families; i++) {
+        for (int k = 0; k < p->families[i].n; k++) {
+            if (p->families[i].view[k] == view) {
+                return i;
+            }
+        }
+    }
+    return -1;
+}
+
+/* What drives the family: from a view that has a drive. */
+static void name_drive(const mt_problem *p, mt_family *f)
+{
+    f->fixed = true;
+    for (int k = 0; k < f->n; k++) {
+        const mt_system *const sys = system_of(p, f->view[k]);
+        if (sys->driven) {
+            f->configuration = p->views[f->view[k]].configuration;
+            f->joint = sys->joints[sys->drive_joint].name;
+            f->spring = sys->trim ? sys->springs[sys->trim_spring].name : NULL;
+            f->angle = sys->joints[sys->drive_joint].angle;
+            f->fixed = f->fixed && mt_program_is_constant(&sys->program, sys->drive);
+        }
+    }
+}
+
+/* Views that are the same mechanism as `first`, which is in no family yet. A view without a drive belongs to the family of the first driven one that it is like. */
+static mt_status gather(mt_problem *p, int first, mt_family *f, mt_err *err)
+{
+    f->view = mt_arena_int(&p->mem, (size_t)p->n_views);
+    if (f->view == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n_views; i++) {
+        bool same = i == first;
+        if (mt_family_of(p, i) < 0 && !same) {
+            MT_TRY(mt_system_same_drive(system_of(p, first), system_of(p, i), &same, err));
+        }
+        if (same) {
+            f->view[f->n++] = i;
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status tie(mt_problem *p, mt_err *err);
+
+mt_status mt_families_init(mt_problem *p, mt_err *err)
+{
+    p->families = mt_arena_alloc(&p->mem, (size_t)p->n_views, sizeof *p->families);
+    if (p->families == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n_views; i++) {
+        mt_family f = {.n = 0};
+        if (!system_of(p, i)->driven || mt_family_of(p, i) >= 0) {
+            continue;
+        }
+        MT_TRY(gather(p, i, &f, err));
+        if (f.n > 1) {
+            name_drive(p, &f);
+            p->families[p->n_families++] = f;
+        }
+    }
+    return tie(p, err);
+}
+
+void mt_families_free(mt_problem *p)
+{
+    for (int i = 0; i < p->n_families; i++) {
+        mt_analysis_delete(p->families[i].driven);
+        p->families[i].driven = NULL;
+    }
+}
+
+/* Common frequencies, of the bases and, over more than a point, with the margins. */
+static bool overlap(const mt_band *a, const mt_band *b)
+{
+    return fmax(a->base_lower_hz, b->base_lower_hz) <=
+               fmin(a->base_upper_hz, b->base_upper_hz) &&
+           fmax(a->lower_hz, b->lower_hz) < fmin(a->upper_hz, b->upper_hz);
+}
+
+static void join(mt_problem *p, int a, int b)
+{
+    const int low = p->tie[a] < p->tie[b] ? p->tie[a] : p->tie[b];
+    const int high = p->tie[a] < p->tie[b] ? p->tie[b] : p->tie[a];
+    for (int i = 0; i < p->n_bands; i++) {
+        p->tie[i] = p->tie[i] == high ? low : p->tie[i];
+    }
+}
+
+static void tie_clears(mt_problem *p, const mt_clear *a, const mt_clear *b)
+{
+    for (int i = 0; i < a->bands.n; i++) {
+        for (int k = 0; k < b->bands.n; k++) {
+            if (overlap(&a->bands.items[i], &b->bands.items[k])) {
+                join(p, a->first + i, b->first + k);
+            }
+        }
+    }
+}
+
+static mt_status tie(mt_problem *p, mt_err *err)
+{
+    p->tie = mt_arena_int(&p->mem, (size_t)p->n_bands);
+    if (p->tie == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n_bands; i++) {
+        p->tie[i] = i;
+    }
+    for (int i = 0; i < p->n_clears; i++) {
+        const int family = mt_family_of(p, p->clears[i].view);
+        for (int k = 0; k < i && family >= 0; k++) {
+            if (mt_family_of(p, p->clears[k].view) == family) {
+                p->families[family].banded = true;
+                tie_clears(p, &p->clears[k], &p->clears[i]);
+            }
+        }
+    }
+    return MT_OK;
+}
+
+bool mt_ties_agree(const mt_problem *p, const int *below)
+{
+    for (int i = 0; i < p->n_bands; i++) {
+        if (below[i] != below[p->tie[i]]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void mt_ties_settle(const mt_problem *p, bool most, int *below)
+{
+    for (int i = 0; i < p->n_bands; i++) {
+        const int first = p->tie[i];
+        const bool better = most ? below[i] > below[first] : below[i] < below[first];
+        below[first] = better ? below[i] : below[first];
+    }
+    for (int i = 0; i < p->n_bands; i++) {
+        below[i] = below[p->tie[i]];
+    }
+}
+
+/* Of one view: the room where k modes have to lie below the band. */
+static double room_with(const mt_modes *modes, const mt_band *band, int k)
+{
+    const int under = k > 0 ? mt_modal_flexible(modes, k) : -1;
+    const int over = mt_modal_flexible(modes, k + 1);
+    double room = HUGE_VAL;
+    if (under >= 0) {
+        room = band->lower_hz > 0.0 ? mt_log_ratio(band->lower_hz, mt_modal_hz(modes, under))
+                                    : -HUGE_VAL;
+    }
+    return over >= 0 ? fmin(room, log(mt_modal_hz(modes, over) / band->upper_hz)) : room;
+}
+
+static const mt_modes *modes_of(const mt_problem *p, const mt_clear *c)
+{
+    return &p->views[c->view].analysis->modes;
+}
+
+/* The least room of all bands tied to `tie` with k modes below. */
+static double tie_room_with(const mt_problem *p, int tie, int k, bool *stable, int *most)
+{
+    double room = HUGE_VAL;
+    for (int i = 0; i < p->n_clears; i++) {
+        const mt_clear *const c = &p->clears[i];
+        const mt_modes *const modes = modes_of(p, c);
+        for (int b = 0; b < c->bands.n; b++) {
+            if (p->tie[c->first + b] != tie) {
+                continue;
+            }
+            const int flexible = modes->count - modes->n_rigid;
+            *stable = *stable && mt_modal_indexed(modes);
+            *most = flexible > *most ? flexible : *most;
+            room = fmin(room, room_with(modes, &c->bands.items[b], k));
+        }
+    }
+    return room;
+}
+
+double mt_tie_room(const mt_problem *p, int tie, int *below)
+{
+    bool stable = true;
+    int most = 0;
+    double best = tie_room_with(p, tie, 0, &stable, &most);
+    *below = 0;
+    for (int k = 1; k <= most; k++) {
+        const double room = tie_room_with(p, tie, k, &stable, &most);
+        if (room > best) {
+            best = room;
+            *below = k;
+        }
+    }
+    return stable ? best : nan("");
+}
+
+double mt_ties_violation(const mt_problem *p, const int *below)
+{
+    double worst = 0.0;
+    for (int i = 0; i < p->n_clears; i++) {
+        const mt_clear *const c = &p->clears[i];
+        const mt_modes *const modes = modes_of(p, c);
+        for (int b = 0; b < c->bands.n; b++) {
+            const double room = room_with(modes, &c->bands.items[b], below[c->first + b]);
+            worst = fmax(worst, mt_modal_indexed(modes) ? -room : nan(""));
+        }
+    }
+    return worst;
+}
+
+double mt_ties_room(const mt_problem *p, int *below)
+{
+    double least = HUGE_VAL;
+    for (int i = 0; i < p->n_bands; i++) {
+        int k = 0;
+        if (p->tie[i] == i) {
+            const double room = mt_tie_room(p, i, &k);
+            least = !(room >= least) ? room : least;
+        }
+        if (below != NULL) {
+            below[i] = p->tie[i] == i ? k : below[p->tie[i]];
+        }
+    }
+    return least;
+}
+
+/* Add a band unless one that is there holds it; those that it holds go. */
+static void put(mt_way_band *list, int *n, const mt_way_band *fresh)
+{
+    int kept = 0;
+    for (int i = 0; i < *n; i++) {
+        const mt_band *const has = &list[i].band;
+        if (has->lower_hz <= fresh->band.lower_hz && has->upper_hz >= fresh->band.upper_hz) {
+            return; /* nothing has been dropped: what it holds would be held by that too */
+        }
+    }
+    for (int i = 0; i < *n; i++) {
+        const mt_band *const has = &list[i].band;
+        if (!(has->lower_hz >= fresh->band.lower_hz && has->upper_hz <= fresh->band.upper_hz)) {
+            list[kept++] = list[i];
+        }
+    }
+    int at = kept;
+    for (; at > 0 && list[at - 1].band.lower_hz > fresh->band.lower_hz; at--) {
+        list[at] = list[at - 1];
+    }
+    list[at] = *fresh;
+    *n = kept + 1;
+}
+
+static void intersect(const mt_problem *p, const mt_clear *a, const mt_clear *b,
+                      mt_way_band *list, int *n)
+{
+    for (int i = 0; i < a->bands.n; i++) {
+        for (int k = 0; k < b->bands.n; k++) {
+            const mt_band *const x = &a->bands.items[i];
+            const mt_band *const y = &b->bands.items[k];
+            if (p->tie[a->first + i] != p->tie[b->first + k] || !overlap(x, y)) {
+                continue;
+            }
+            const mt_way_band fresh = {
+                .tie = p->tie[a->first + i],
+                .band = {.base_lower_hz = fmax(x->base_lower_hz, y->base_lower_hz),
+                         .base_upper_hz = fmin(x->base_upper_hz, y->base_upper_hz),
+                         .lower_hz = fmax(x->lower_hz, y->lower_hz),
+                         .upper_hz = fmin(x->upper_hz, y->upper_hz),
+                         .label = x->label},
+                .tolerance = fmin(a->tolerance, b->tolerance)
+            };
+            put(list, n, &fresh);
+        }
+    }
+}
+
+static const mt_clear *clear_of(const mt_problem *p, int view)
+{
+    for (int i = 0; i < p->n_clears; i++) {
+        if (p->clears[i].view == view) {
+            return &p->clears[i];
+        }
+    }
+    return NULL;
+}
+
+/* Pairs of tied bands: what intersect may put down at most. */
+static size_t count_tied(const mt_problem *p)
+{
+    size_t n = 0;
+    for (int i = 0; i < p->n_bands; i++) {
+        for (int k = 0; k < p->n_bands; k++) {
+            n += p->tie[i] == p->tie[k] ? 1 : 0;
+        }
+    }
+    return n;
+}
+
+mt_status mt_family_bands(const mt_problem *p, const mt_family *f, double left, double right,
+                          mt_arena *mem, mt_way_band **list, int *n, mt_err *err)
+{
+    const size_t most = count_tied(p);
+    *n = 0;
+    *list = mt_arena_alloc(mem, most, sizeof **list);
+    if (*list == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < f->n; i++) {
+        const mt_clear *const a = clear_of(p, f->view[i]);
+        for (int k = 0; k < f->n && a != NULL; k++) {
+            const mt_clear *const b = k == i ? NULL : clear_of(p, f->view[k]);
+            if (b != NULL && mt_family_position(p, f, i) <= left &&
+                mt_family_position(p, f, k) >= right) {
+                intersect(p, a, b, *list, n);
+            }
+        }
+    }
+    return MT_OK;
+}

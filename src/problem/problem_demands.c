@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From goals to demands: one per goal and configuration, each with a view, a mode, a reference and its rows. */
+#include <math.h>
+
+#include "problem/family.h"
+#include "problem/robust.h"
+
+/* Default tolerance of a goal in percent (the format's documentation says so too). */
+static const double DEFAULT_TOLERANCE_PERCENT = 1e-4;
+
+int mt_problem_view(const mt_problem *p, int configuration)
+{
+    for (int i = 0; i < p->n_views; i++) {
+        if (p->views[i].configuration == configuration) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+/* Solve again where the count has changed since. */
+static mt_status solve_counted(mt_analysis *a, int counted, const double *x, mt_err *err)
+{
+    const mt_analysis_options opt = mt_analysis_options_default();
+    return a->n_rigid == counted
+               ? MT_OK
+               : mt_err_in(err, mt_analysis_solve(a, x, &opt, err), "configuration \"%s\"",
+                           mt_analysis_configuration(a));
+}
+
+mt_status mt_problem_analyse(const mt_problem *p, int configuration, const double *x,
+                             mt_analysis **out, mt_err *err)
+{
+    mt_analysis *a = NULL;
+    *out = NULL;
+    MT_TRY(mt_analysis_new(p->study->model, configuration, p->n, p->inputs, x, &a, err));
+    mt_status rc = mt_analysis_count(a, &p->study->counted, NULL, 0.0, err);
+    rc = rc == MT_OK ? solve_counted(a, a->n_null, x, err) : rc;
+    if (rc != MT_OK) {
+        mt_analysis_delete(a);
+        return rc;
+    }
+    *out = a;
+    return MT_OK;
+}
+
+mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const double *x,
+                          mt_analysis **out, mt_err *err)
+{
+    mt_analysis *a = NULL;
+    mt_system_drive drive = {.fixed = true};
+    const mt_view *like = view;
+    *out = NULL;
+    if (view->cut != NULL) {
+        const mt_family *const f = &p->families[view->cut->family];
+        drive.joint = f->joint;
+        drive.spring = f->spring;
+        drive.position = view->cut->position;
+        like = view->analysis != NULL ? view : &p->views[f->view[0]];
+    }
+    MT_TRY(mt_analysis_new_driven(p->study->model, view->configuration,
+                                  view->cut != NULL ? &drive : NULL, p->n, p->inputs, x, &a,
+                                  err));
+    a->n_rigid = like->analysis->n_rigid;
+    a->n_most = like->analysis->n_most;
+    const mt_status rc = solve_counted(a, a->n_null, x, err);
+    if (rc != MT_OK) {
+        mt_analysis_delete(a);
+        return rc;
+    }
+    *out = a;
+    return MT_OK;
+}
+
+/* Shape of each named mode of the configuration at the original design; of those that are there. The model names a mode by its index at its own design: vibrations of 0 Hz, which only
+ * the study counts, have none there. */
+static mt_status name_modes(mt_problem *p, mt_view *view, mt_err *err)
+{
+    const mt_model *const model = p->study->model;
+    mt_analysis *const a = view->analysis;
+    const size_t most = (size_t)model->n_modes;
+    view->named = mt_arena_int(&p->mem, most);
+    view->track = mt_arena_alloc(&p->mem, most, sizeof *view->track);
+    view->shape = mt_arena_alloc(&p->mem, most, sizeof *view->shape);
+    if (view->named == NULL || view->track == NULL || view->shape == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < model->n_modes; i++) {
+        const int pos =
+            mt_modal_flexible(&a->modes, model->modes[i].index + a->n_null - a->n_rigid);
+        if (model->modes[i].configuration != view->configuration || pos < 0) {
+            continue;
+        }
+        double *const w = mt_arena_f64(&p->mem, (size_t)a->sys->nq, 1);
+        if (w == NULL) {
+            return mt_fail_memory(err);
+        }
+        MT_TRY(mt_track_weigh(a, pos, w, err));
+        view->named[view->n_named] = i;
+        view->shape[view->n_named++] = w;
+    }
+    return MT_OK;
+}
+
+mt_status mt_problem_add_view(mt_problem *p, int configuration, int *out, mt_err *err)
+{
+    *out = mt_problem_view(p, configuration);
+    if (*out >= 0) {
+        return MT_OK;
+    }
+    mt_view *const view = &p->views[p->n_views];
+    *view = (mt_view){.configuration = configuration, .solved = true};
+    MT_TRY(mt_problem_analyse(p, configuration, p->original, &view->analysis, err));
+    *out = p->n_views++;
+    return name_modes(p, view, err);
+}
+
+mt_status mt_view_position(mt_problem *p, mt_view *view, int mode, int named, int *pos,
+                           mt_err *err)
+{
+    *pos = -1;
+    if (!view->solved) {
+        return MT_OK;
+    }
+    if (mode > 0) {
+        *pos = mt_modal_flexible(&view->analysis->modes, mode);
+        return MT_OK;
+    }
+    MT_TRY(mt_view_track(p, view, err));
+    *pos = view->track[named].pos;
+    return MT_OK;
+}
+
+int mt_view_vibrations(const mt_view *view)
+{
+    return view->analysis->n_most - view->analysis->n_rigid;
+}
+
+static const char *instability(const mt_view *view)
+{
+    const mt_modes *const modes = &view->analysis->modes;
+    return modes->n_unstable > 0    ? " (it is unstable there)"
+           : modes->n_undecided > 0 ? " (rounding hides whether it is stable there)"
+                                    : "";
+}
+
+/* Resolve a mode given by name: its place in the view's list. */
+static mt_status resolve_name(const mt_problem *p, const mt_view *view, mt_demand *d,
+                              mt_err *err)
+{
+    const mt_model *const model = p->study->model;
+    const mt_named_mode *const wanted = &model->modes[d->goal->mode.named];
+    for (int i = 0; i < view->n_named; i++) {
+        if (view->named[i] == d->goal->mode.named) {
+            d->named = i;
+            return MT_OK;
+        }
+    }
+    if (wanted->configuration != view->configuration) {
+        return mt_fail(err, MT_E_INPUT,
+                       "/goals/%d: mode \"%s\" is named in configuration \"%s\", not in \"%s\"",
+                       d->goal_index, wanted->name.s,
+                       model->configurations[wanted->configuration].name.s,
+                       mt_analysis_configuration(view->analysis));
+    }
+    return mt_fail(err, MT_E_INPUT,
+                   "/goals/%d: mode \"%s\" is vibration mode %d of configuration \"%s\", "
+                   "which has none at the original design%s",
+                   d->goal_index, wanted->name.s, wanted->index,
+                   mt_analysis_configuration(view->analysis), instability(view));
+}
+
+/* An index must be there at some design; where the original one is unstable nothing has an index, and it is enough that there are as many freedoms. */
+static mt_status resolve_index(const mt_view *view, const mt_demand *d, mt_err *err)
+{
+    const int most = mt_view_vibrations(view);
+    if (d->mode <= most) {
+        return MT_OK;
+    }
+    return mt_fail(err, MT_E_INPUT,
+                   "/goals/%d: configuration \"%s\" has no vibration mode %d (it has %d)",
+                   d->goal_index, mt_analysis_configuration(view->analysis), d->mode, most);
+}
+
+/* What the goal is compared with: a shape, or a frequency, which is then the target. */
+static mt_status resolve_reference(mt_problem *p, const mt_view *view, mt_demand *d,
+                                   mt_err *err)
+{
+    const mt_goal *const g = d->goal;
+    if (g->reference_name.s == NULL) {
+        return MT_OK;
+    }
+    const int own = d->mode > 0 ? d->mode : p->study->model->modes[g->mode.named].index;
+    const int mode = g->reference_mode > 0 ? g->reference_mode : own;
+    if (g->type == MT_GOAL_FREQUENCY) {
+        MT_TRY(mt_reference_frequency_init(p->references, g->reference, mode, &d->shape, err));
+        d->target_hz = d->shape.frequency_hz;
+        return MT_OK;
+    }
+    return mt_reference_shape_init(p->references, g->reference, mode, view->analysis->sys,
+                                   &p->mem, &d->shape, err);
+}
+
+double mt_problem_tolerance(const mt_goal *g)
+{
+    const double percent =
+        MT_HAS(g->tolerance_percent) ? g->tolerance_percent : DEFAULT_TOLERANCE_PERCENT;
+    return percent / 100.0;
+}
+
+static void number_rows(mt_problem *p, mt_demand *d)
+{
+    const mt_goal *const g = d->goal;
+    d->tolerance = mt_problem_tolerance(g);
+    if (MT_HAS(g->weight)) {
+        d->row_res = p->n_res;
+        p->n_res += g->type == MT_GOAL_SHAPE ? d->shape.ns : 1;
+        p->weights += g->weight;
+    } else if (mt_robust_is_range(p, d)) {
+        d->ranged = true; /* its rows are those of the corners */
+    } else if (MT_HAS(g->equals) || MT_HAS(d->target_hz)) {
+        d->row_eq = p->n_eq++;
+    } else {
+        d->row_in = p->n_in;
+        d->n_in = (MT_HAS(g->at_least) ? 1 : 0) + (MT_HAS(g->at_most) ? 1 : 0);
+        p->n_in += d->n_in;
+    }
+}
+
+static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt_err *err)
+{
+    const mt_goal *const g = &p->study->goals[goal_index];
+    mt_demand *const d = &p->demands[p->n_demands];
+    *d = (mt_demand){.goal = g,
+                     .goal_index = goal_index,
+                     .view = -1,
+                     .mode = g->mode.index,
+                     .named = -1,
+                     .node = MT_NO_NODE,
+                     .row_eq = -1,
+                     .row_in = -1,
+                     .row_res = -1,
+                     .target_hz = g->target_hz,
+                     .weight = g->weight};
+    if (g->type != MT_GOAL_LIMIT) {
+        MT_TRY(mt_err_in(err, mt_problem_add_view(p, configuration, &d->view, err), "/goals/%d",
+                         goal_index));
+        mt_view *const view = &p->views[d->view];
+        MT_TRY(d->mode > 0 ? resolve_index(view, d, err) : resolve_name(p, view, d, err));
+        MT_TRY(mt_err_in(err, resolve_reference(p, view, d, err), "/goals/%d", goal_index));
+        view->needs_vectors =
+            view->needs_vectors || g->type != MT_GOAL_FREQUENCY || d->named >= 0;
+    }
+    number_rows(p, d);
+    p->n_demands++;
+    return MT_OK;
+}
+
+/* Once the rows are counted: tolerances and work space. */
+mt_status mt_problem_init_rows(mt_problem *p, mt_err *err)
+{
+    const size_t n = (size_t)p->n;
+    size_t ns = 1;
+    for (int i = 0; i < p->n_demands; i++) {
+        const size_t own = (size_t)p->demands[i].shape.ns;
+        ns = own > ns ? own : ns;
+    }
+    p->eq_tol = mt_arena_f64(&p->mem, (size_t)p->n_eq + (size_t)p->n_res, 1);
+    p->in_tol = mt_arena_f64(&p->mem, (size_t)p->n_in + (size_t)p->study->n_objectives, 1);
+    p->r = mt_arena_f64(&p->mem, (size_t)p->n_res, 1);
+    p->dr = mt_arena_f64(&p->mem, (size_t)p->n_res, n);
+    p->r_held = mt_arena_f64(&p->mem, (size_t)p->n_res, 1);
+    p->shape = mt_arena_f64(&p->mem, ns, 1);
+    p->dshape = mt_arena_f64(&p->mem, ns, n);
+    if (p->eq_tol == NULL || p->in_tol == NULL || p->r == NULL || p->dr == NULL ||
+        p->r_held == NULL || p->shape == NULL || p->dshape == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n_clears; i++) {
+        for (int k = 0; k < p->clears[i].n_rows; k++) {
+            p->in_tol[p->clears[i].row_in + k] = p->clears[i].tolerance;
+        }
+    }
+    for (int i = 0; i < p->n_demands; i++) {
+        const mt_demand *const d = &p->demands[i];
+        if (d->row_eq >= 0) {
+            p->eq_tol[d->row_eq] = d->tolerance;
+        }
+        for (int k = 0; k < d->n_in; k++) {
+            p->in_tol[d->row_in + k] = d->tolerance;
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_problem_init_demands(mt_problem *p, int n_cuts, mt_err *err)
+{
+    const mt_study *const s = p->study;
+    size_t most = 0;
+    for (int i = 0; i < s->n_goals; i++) {
+        most += (size_t)s->goals[i].n_configurations + 1;
+    }
+    p->demands = mt_arena_alloc(&p->mem, most, sizeof *p->demands);
+    p->views = mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations + (size_t)n_cuts,
+                              sizeof *p->views);
+    if (p->demands == NULL || p->views == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < s->n_goals; i++) {
+        if (s->goals[i].type == MT_GOAL_LIMIT) {
+            MT_TRY(add_demand(p, i, -1, err));
+            continue;
+        }
+        for (int k = 0; k < s->goals[i].n_configurations; k++) {
+            int view = -1;
+            MT_TRY(s->goals[i].type == MT_GOAL_AVOID
+                       ? mt_problem_add_view(p, s->goals[i].configurations[k], &view, err)
+                       : add_demand(p, i, s->goals[i].configurations[k], err));
+        }
+    }
+    return MT_OK;
+}

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Named modes of a view: told directly from the original shapes, else along the straight line of designs in t from the original one (tracking.h). */
+#include <math.h>
+
+#include "problem/problem.h"
+
+/* A walk has at most so many of its shortest steps, however far the design is. */
+static const double MOST_STEPS = 128.0;
+
+typedef struct way {
+    const mt_problem *p;
+    mt_view *view;
+    double *t;  /* [n_t] work */
+    double *x;  /* [n] */
+    double *to; /* [n] the present design */
+} way;
+
+static mt_status solve_at(void *context, double s, mt_analysis **out, mt_err *err)
+{
+    const way *const w = context;
+    const mt_problem *const p = w->p;
+    const mt_analysis_options opt = {.vectors = true, .accuracy = true};
+    for (int i = 0; i < p->n; i++) {
+        w->t[i] = p->origin_t[i] + (s * (w->to[i] - p->origin_t[i]));
+    }
+    mt_problem_x(p, w->t, w->x);
+    if (w->view->scout == NULL) {
+        MT_TRY(mt_view_analyse(p, w->view, p->original, &w->view->scout, err));
+    }
+    *out = w->view->scout;
+    return mt_analysis_solve(w->view->scout, w->x, &opt, err);
+}
+
+static mt_status follow(const mt_problem *p, mt_view *view, mt_arena *mem, mt_err *err)
+{
+    way w = {.p = p,
+             .view = view,
+             .t = mt_arena_f64(mem, (size_t)p->n + 1, 1),
+             .x = mt_arena_f64(mem, (size_t)p->n, 1),
+             .to = mt_arena_f64(mem, (size_t)p->n, 1)};
+    double far = 0.0;
+    if (w.t == NULL || w.x == NULL || w.to == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n; i++) {
+        w.to[i] = mt_problem_t(p, i, p->x[i]);
+        far = fmax(far, fabs(w.to[i] - p->origin_t[i]));
+    }
+    const mt_track_way path = {
+        .solve = solve_at,
+        .context = &w,
+        .resolution = far > 0.0 ? fmax(MT_TRACK_RESOLUTION / far, 1.0 / MOST_STEPS) : 1.0};
+    return mt_track_follow(&path, view->n_named, view->shape, view->analysis, mem, view->track,
+                           err);
+}
+
+mt_status mt_view_track(mt_problem *p, mt_view *view, mt_err *err)
+{
+    if (view->tracked) {
+        return MT_OK;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(&p->mem);
+    const mt_status rc = follow(p, view, &p->mem, err);
+    mt_arena_rewind(&p->mem, mark);
+    view->tracked = rc == MT_OK;
+    return rc;
+}

@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rows at the corners: as demand.c and problem_clear.c make them, with the corner's modes and its factors in the gradient. */
+#include <math.h>
+
+#include "problem/robust.h"
+
+static void move(const mt_problem *p, const double *factor)
+{
+    for (int i = 0; i < p->n; i++) {
+        p->robust->x[i] = p->x[i] * factor[i];
+    }
+}
+
+static mt_status solve_view(mt_problem *p, const mt_corner_set *set, bool with_gradient,
+                            mt_err *err)
+{
+    const mt_analysis_options opt = {
+        .gradient = with_gradient, .vectors = with_gradient, .accuracy = true};
+    for (int c = 0; c < set->n; c++) {
+        mt_analysis *const a = set->corners[c].analysis;
+        move(p, set->corners[c].factor);
+        MT_TRY(mt_err_in(err, mt_analysis_solve(a, p->robust->x, &opt, err),
+                         "configuration \"%s\" at a corner of the tolerances",
+                         mt_analysis_configuration(a)));
+    }
+    return MT_OK;
+}
+
+mt_status mt_robust_solve(mt_problem *p, bool with_gradient, mt_err *err)
+{
+    for (int i = 0; p->robust != NULL && i < p->robust->n_views; i++) {
+        MT_TRY(solve_view(p, &p->robust->views[i], with_gradient, err));
+    }
+    return MT_OK;
+}
+
+/* in = sign (q - edge) - z: q = ln(f / limit) and edge 0, or an expression and its limit over their unit. */
+typedef struct quantity {
+    double value;
+    double edge;
+    double z; /* least clearance that is asked for */
+} quantity;
+
+/* ln(f / edge_hz) at the corner, its slopes over t into robust->slope. */
+static mt_status frequency(mt_problem *p, const mt_corner *c, int mode, double edge_hz,
+                           bool with_gradient, double *value, mt_err *err)
+{
+    mt_analysis *const a = c->analysis;
+    const int pos = mt_modal_flexible(&a->modes, mode);
+    const double floor_hz = MT_FREQUENCY_FLOOR * edge_hz;
+    if (pos < 0 && !mt_analysis_is_infinite(a, mode)) {
+        return mt_fail(err, MT_E_DOMAIN,
+                       "configuration \"%s\" has no vibration mode %d at a corner of the "
+                       "tolerances",
+                       mt_analysis_configuration(a), mode);
+    }
+    *value = mt_problem_ln_ratio(&a->modes, pos, edge_hz, floor_hz);
+    if (with_gradient) {
+        MT_TRY(mt_problem_dln_frequency(p, a, pos, floor_hz, p->robust->slope, err));
+        for (int i = 0; i < p->n; i++) {
+            p->robust->slope[i] *= c->factor[i];
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status expression(mt_problem *p, const mt_corner *c, mt_node node, double unit,
+                            bool with_gradient, double *value, mt_err *err)
+{
+    mt_robust *const r = p->robust;
+    mt_node bad = MT_NO_NODE;
+    mt_err own = {0};
+    move(p, c->factor);
+    const mt_status rc =
+        with_gradient ? mt_program_gradient(&p->program, r->x, r->value, r->grad, &bad, &own)
+                      : mt_program_eval(&p->program, r->x, r->value, &bad, &own);
+    if (rc != MT_OK && !(rc == MT_E_DOMAIN && bad >= p->n_searched)) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    *value = r->value[node] / unit;
+    for (int i = 0; i < p->n && with_gradient; i++) {
+        r->slope[i] = mt_problem_stretch(p, i) * c->factor[i] *
+                      r->grad[((ptrdiff_t)node * p->n) + i] / unit;
+    }
+    return MT_OK;
+}
+
+static double unit_of(double limit)
+{
+    return fabs(limit) > 0.0 ? fabs(limit) : 1.0;
+}
+
+/* The limit that a row keeps, of a target with its tolerance. */
+static double limit_of(const mt_problem *p, const mt_robust_row *row)
+{
+    const mt_demand *const d = &p->demands[row->demand];
+    const bool low = row->side == MT_LOWEST;
+    const double give = low ? -d->tolerance : d->tolerance;
+    if (!d->ranged) {
+        return low ? d->goal->at_least : d->goal->at_most;
+    }
+    return d->view >= 0 ? d->target_hz * (1.0 + give)
+                        : d->goal->equals + (give * unit_of(d->goal->equals));
+}
+
+static double edge_of(const mt_problem *p, const mt_robust_row *row)
+{
+    const mt_band *const band = &p->clears[row->at.clear].bands.items[row->at.band];
+    return row->at.above ? band->upper_hz : band->lower_hz;
+}
+
+bool mt_robust_at_corner(const mt_problem *p, int i)
+{
+    for (int k = 0; p->robust != NULL && k < p->robust->n_rows; k++) {
+        if (p->robust->rows[k].row == i) {
+            return true;
+        }
+    }
+    return false;
+}
+
+double mt_robust_limit_hz(const mt_problem *p, const mt_robust_row *row)
+{
+    if (row->demand < 0) {
+        return edge_of(p, row);
+    }
+    return p->demands[row->demand].view >= 0 ? limit_of(p, row) : nan("");
+}
+
+static mt_status demand_value(mt_problem *p, const mt_robust_row *row, bool with_gradient,
+                              quantity *q, mt_err *err)
+{
+    const mt_demand *const d = &p->demands[row->demand];
+    const double limit = limit_of(p, row);
+    if (d->view >= 0) {
+        return frequency(p, &p->robust->views[d->view].corners[row->corner], d->mode, limit,
+                         with_gradient, &q->value, err);
+    }
+    q->edge = limit / unit_of(limit);
+    return expression(p, &p->robust->limits[row->demand].corners[row->corner], d->node,
+                      unit_of(limit), with_gradient, &q->value, err);
+}
+
+static mt_status band_value(mt_problem *p, const mt_robust_row *row, const double *t,
+                            bool with_gradient, quantity *q, mt_err *err)
+{
+    const mt_clear *const c = &p->clears[row->at.clear];
+    q->z = p->clearance ? t[p->n] : 0.0;
+    return frequency(p, &p->robust->views[c->view].corners[row->corner], row->at.mode,
+                     edge_of(p, row), with_gradient, &q->value, err);
+}
+
+mt_status mt_robust_rows(mt_problem *p, const double *t, bool with_gradient, mt_nlp_values *out,
+                         mt_err *err)
+{
+    const ptrdiff_t rows = mt_problem_rows_in(p);
+    for (int k = 0; p->robust != NULL && k < p->robust->n_rows; k++) {
+        const mt_robust_row *const row = &p->robust->rows[k];
+        const double sign = row->side == MT_LOWEST ? 1.0 : -1.0;
+        quantity q = {.z = 0.0};
+        MT_TRY(row->demand >= 0 ? demand_value(p, row, with_gradient, &q, err)
+                                : band_value(p, row, t, with_gradient, &q, err));
+        out->in[row->row] = (sign * (q.value - q.edge)) - q.z;
+        for (int i = 0; i < p->n && with_gradient; i++) {
+            out->din[row->row + (i * rows)] = sign * p->robust->slope[i];
+        }
+        if (with_gradient && p->n_t > p->n) {
+            out->din[row->row + (p->n * rows)] = row->demand >= 0 ? 0.0 : -1.0;
+        }
+    }
+    return MT_OK;
+}
+
+/* Lowest and highest frequency of vibration mode k of a view: its range where that is known, else of the design itself and its corners; false: there is no such mode. */
+static bool span_of(const mt_problem *p, int view, int k, double *low, double *high)
+{
+    const mt_corner_set *const set = &p->robust->views[view];
+    const mt_robust_range *const range = mt_robust_hz(p, view, k);
+    if (range != NULL) {
+        *low = range->value[MT_LOWEST];
+        *high = range->value[MT_HIGHEST];
+        return true;
+    }
+    if (p->robust->n_ranges[view] > 0) {
+        return false;
+    }
+    *low = HUGE_VAL;
+    *high = 0.0;
+    for (int c = -1; c < set->n; c++) {
+        const mt_modes *const modes =
+            c < 0 ? &p->views[view].analysis->modes : &set->corners[c].analysis->modes;
+        const int pos = mt_modal_flexible(modes, k);
+        if (pos < 0) {
+            return false;
+        }
+        *low = fmin(*low, mt_modal_hz(modes, pos));
+        *high = fmax(*high, mt_modal_hz(modes, pos));
+    }
+    return true;
+}
+
+double mt_robust_room(const mt_problem *p, const mt_clear *c)
+{
+    const mt_modes *const modes = &p->views[c->view].analysis->modes;
+    const mt_corner_set *const set = &p->robust->views[c->view];
+    double low = 0.0;
+    double high = 0.0;
+    bool indexed = mt_modal_indexed(modes);
+    for (int k = 0; k < set->n; k++) {
+        indexed = indexed && mt_modal_indexed(&set->corners[k].analysis->modes);
+    }
+    double room = indexed ? HUGE_VAL : nan("");
+    for (int k = 1; MT_HAS(room) && span_of(p, c->view, k, &low, &high); k++) {
+        for (int b = 0; b < c->bands.n; b++) {
+            const mt_band *const band = &c->bands.items[b];
+            const double below =
+                band->lower_hz > 0.0 ? mt_log_ratio(band->lower_hz, high) : -HUGE_VAL;
+            const double here =
+                fmax(below, fmax(mt_log_ratio(low, band->upper_hz), -MT_MOST_INSIDE));
+            room = fmin(room, MT_HAS(low + high) ? here : -HUGE_VAL);
+        }
+    }
+    return room > -HUGE_VAL ? room : nan("");
+}

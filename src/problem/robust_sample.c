@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The least and greatest of numbers over a box, where nothing is known of them but values and slopes: the corners, points spread over the box, and from the best of these, for each number
+ * and side, steps of Frank and Wolfe: to the corner that the slopes point at, or as far towards it as it helps; where that gains nothing, along one input after the other and to points around. A
+ * monotone
+ * number is settled by the corners, one with its extreme inside by the steps; a number with many extremes may hide one.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "problem/robust.h"
+
+enum {
+    CORNERS_MOST =
+        6, /* inputs of which all corners are tried; of more, the two of all low and all high, and each alone against the others */
+    SPREAD_PER_INPUT = 24,
+    SPREAD_MOST = 192,
+    ROUNDS_MOST = 3,
+    MOVES_MOST = 4,
+    AROUND_PER_INPUT = 8,
+    HALVINGS = 9,    /* of the boxes about the best so far: to a thousandth */
+    ROOT_TURNS = 64, /* each more than halves the error of the root */
+    SECTIONS = 14    /* of a line: to some thousandth of its length */
+};
+/* A step that gains less, relatively, has arrived. */
+static const double GAIN = 1e-9;
+
+mt_status mt_robust_range_init(int n, mt_arena *mem, mt_robust_range *out, mt_err *err)
+{
+    *out = (mt_robust_range){
+        .value = {HUGE_VAL, -HUGE_VAL}
+    };
+    for (int side = 0; side < MT_ROBUST_SIDES; side++) {
+        out->at[side] = mt_arena_f64(mem, (size_t)n, 1);
+        if (out->at[side] == NULL) {
+            return mt_fail_memory(err);
+        }
+    }
+    return MT_OK;
+}
+
+/* What does not exist somewhere is the least and the greatest there is. */
+void mt_robust_note(const mt_robust_probe *q, const double *x, const double *value,
+                    mt_robust_range *out)
+{
+    for (int k = 0; k < q->m; k++) {
+        for (int side = 0; side < MT_ROBUST_SIDES; side++) {
+            double *const best = &out[k].value[side];
+            const bool beyond = side == MT_LOWEST ? value[k] < *best : value[k] > *best;
+            if (MT_HAS(*best) && (beyond || !MT_HAS(value[k]))) {
+                *best = value[k];
+                memcpy(out[k].at[side], x, (size_t)q->n * sizeof *x);
+            }
+        }
+    }
+}
+
+typedef struct sampler {
+    const mt_robust_probe *q;
+    mt_robust_range *out;
+    double *value; /* [m] */
+    double *x;     /* [n] work */
+    double *from;
+    double *to;
+    double *slope;
+    int n_free;  /* inputs whose interval is not a point */
+    double root; /* of the spread */
+} sampler;
+
+/* Values at x, noted; NaN where there are none. */
+static mt_status visit(sampler *s, const double *x, bool with_gradient, mt_err *err)
+{
+    mt_err own = {0};
+    const mt_status rc = s->q->eval(s->q->context, x, with_gradient, s->value, &own);
+    if (mt_is_final(rc)) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    for (int k = 0; k < s->q->m && rc != MT_OK; k++) {
+        s->value[k] = nan("");
+    }
+    mt_robust_note(s->q, x, s->value, s->out);
+    return MT_OK;
+}
+
+static bool is_free(const mt_robust_probe *q, int i)
+{
+    return q->lo[i] < q->hi[i];
+}
+
+static mt_status visit_corners(sampler *s, mt_err *err)
+{
+    const int n_free = s->n_free;
+    const int most = n_free <= CORNERS_MOST ? 1 << n_free : 2 * (n_free + 1);
+    for (int c = 0; c < most; c++) {
+        int j = 0;
+        for (int i = 0; i < s->q->n; i++) {
+            const bool bit = ((c >> (j < CORNERS_MOST ? j : 0)) & 1) != 0;
+            const bool alone = c >= 2 && j == (c - 2) / 2;
+            const bool high = n_free <= CORNERS_MOST ? bit : ((c & 1) != 0) != alone;
+            s->x[i] = high ? s->q->hi[i] : s->q->lo[i];
+            j += is_free(s->q, i) ? 1 : 0;
+        }
+        MT_TRY(visit(s, s->x, false, err));
+    }
+    return MT_OK;
+}
+
+/* Point c of the additive recurrence of the golden ratio's generalisation: x^(n+1) = x + 1, steps 1/x, 1/x^2, ...; point 0 is the middle. */
+static void spread(const sampler *s, int c, double *x)
+{
+    const mt_robust_probe *const q = s->q;
+    double step = 1.0;
+    for (int i = 0; i < q->n; i++) {
+        step /= is_free(q, i) ? s->root : 1.0;
+        const double whole = 0.5 + (step * (double)c);
+        const double part = is_free(q, i) ? whole - floor(whole) : 0.0;
+        x[i] = q->lo[i] + (part * (q->hi[i] - q->lo[i]));
+    }
+}
+
+static mt_status visit_spread(sampler *s, mt_err *err)
+{
+    const int wanted = SPREAD_PER_INPUT * s->n_free;
+    const int most = wanted < SPREAD_MOST ? wanted : SPREAD_MOST;
+    for (int c = 0; c < most; c++) {
+        spread(s, c, s->x);
+        MT_TRY(visit(s, s->x, false, err));
+    }
+    return MT_OK;
+}
+
+static mt_status visit_between(sampler *s, double part, mt_err *err)
+{
+    for (int i = 0; i < s->q->n; i++) {
+        s->x[i] = part < 1.0 ? s->from[i] + (part * (s->to[i] - s->from[i])) : s->to[i];
+    }
+    return visit(s, s->x, false, err);
+}
+
+/* Golden section between from and to, and both. */
+static mt_status search_line(sampler *s, int k, mt_robust_side side, mt_err *err)
+{
+    const double golden = 0.5 * (sqrt(5.0) - 1.0);
+    const double sign = side == MT_LOWEST ? 1.0 : -1.0;
+    double end[2] = {0.0, 1.0};
+    double value[2];
+    double at[2] = {1.0 - golden, golden};
+    for (int i = 0; i < 2; i++) {
+        MT_TRY(visit_between(s, at[i], err));
+        value[i] = sign * s->value[k];
+    }
+    for (int turn = 0; turn < SECTIONS; turn++) {
+        const int which = value[0] < value[1] ? 0 : 1;
+        const int other = 1 - which;
+        end[other] = at[other];
+        at[other] = at[which];
+        value[other] = value[which];
+        const double part = golden * (end[1] - end[0]);
+        at[which] = which == 0 ? end[1] - part : end[0] + part;
+        MT_TRY(visit_between(s, at[which], err));
+        value[which] = sign * s->value[k];
+    }
+    MT_TRY(visit_between(s, 0.0, err));
+    return visit_between(s, 1.0, err);
+}
+
+/* One step from where number k is best so far. */
+static mt_status step(sampler *s, int k, mt_robust_side side, mt_err *err)
+{
+    const mt_robust_probe *const q = s->q;
+    const double before = s->out[k].value[side];
+    memcpy(s->from, s->out[k].at[side], (size_t)q->n * sizeof *s->from);
+    MT_TRY(visit(s, s->from, true, err));
+    if (!MT_HAS(s->value[k])) {
+        return MT_OK;
+    }
+    mt_err own = {0};
+    const mt_status rc = q->slope(q->context, k, s->slope, &own);
+    if (rc != MT_OK) {
+        return mt_pass_final(rc, &own, err);
+    }
+    for (int i = 0; i < q->n; i++) {
+        const bool down = (s->slope[i] > 0.0) == (side == MT_LOWEST);
+        s->to[i] = s->slope[i] == 0.0 ? s->from[i] : down ? q->lo[i] : q->hi[i];
+    }
+    if (memcmp(s->from, s->to, (size_t)q->n * sizeof *s->from) == 0) {
+        return MT_OK;
+    }
+    MT_TRY(visit(s, s->to, false, err));
+    return s->out[k].value[side] == before ? search_line(s, k, side, err) : MT_OK;
+}
+
+/* Points of the same recurrence in boxes about the best of number k, each half as wide as the one before: over ridges, where frequencies meet, no slope and no axis leads on. */
+static mt_status step_around(sampler *s, int k, mt_robust_side side, mt_err *err)
+{
+    const mt_robust_probe *const q = s->q;
+    double part = 1.0;
+    for (int turn = 0; turn < HALVINGS; turn++) {
+        part *= 0.5;
+        memcpy(s->from, s->out[k].at[side], (size_t)q->n * sizeof *s->from);
+        for (int c = 1; c <= AROUND_PER_INPUT * s->n_free; c++) {
+            spread(s, c, s->to);
+            for (int i = 0; i < q->n; i++) {
+                const double x = s->from[i] + (part * (s->to[i] - s->from[i]));
+                s->x[i] = fmin(fmax(x, q->lo[i]), q->hi[i]);
+            }
+            MT_TRY(visit(s, s->x, false, err));
+        }
+    }
+    return MT_OK;
+}
+
+/* Each input alone from one end of its interval to the other. */
+static mt_status step_along_inputs(sampler *s, int k, mt_robust_side side, mt_err *err)
+{
+    const size_t size = (size_t)s->q->n * sizeof *s->from;
+    for (int i = 0; i < s->q->n; i++) {
+        if (is_free(s->q, i)) {
+            memcpy(s->from, s->out[k].at[side], size);
+            memcpy(s->to, s->from, size);
+            s->from[i] = s->q->lo[i];
+            s->to[i] = s->q->hi[i];
+            MT_TRY(search_line(s, k, side, err));
+        }
+    }
+    return MT_OK;
+}
+
+typedef mt_status (*move)(sampler *s, int k, mt_robust_side side, mt_err *err);
+
+/* One kind of move while it gains. */
+static mt_status repeat(sampler *s, move step_of, int k, mt_robust_side side, mt_err *err)
+{
+    const double *const best = &s->out[k].value[side];
+    double gain = HUGE_VAL;
+    for (int n = 0; n < MOVES_MOST && gain > GAIN * fabs(*best); n++) {
+        const double before = *best;
+        MT_TRY(step_of(s, k, side, err));
+        gain = fabs(*best - before);
+    }
+    return MT_OK;
+}
+
+/* All kinds of moves, until none gains. */
+static mt_status descend(sampler *s, int k, mt_robust_side side, mt_err *err)
+{
+    const double *const best = &s->out[k].value[side];
+    double gain = HUGE_VAL;
+    for (int turn = 0; turn < ROUNDS_MOST && gain > GAIN * fabs(*best); turn++) {
+        const double before = *best;
+        MT_TRY(repeat(s, step, k, side, err));
+        MT_TRY(repeat(s, step_along_inputs, k, side, err));
+        MT_TRY(repeat(s, step_around, k, side, err));
+        gain = fabs(*best - before);
+    }
+    return MT_OK;
+}
+
+mt_status mt_robust_sample(const mt_robust_probe *q, mt_arena *mem, mt_robust_range *out,
+                           mt_err *err)
+{
+    const size_t n = (size_t)q->n;
+    sampler s = {.q = q,
+                 .out = out,
+                 .value = mt_arena_f64(mem, (size_t)q->m, 1),
+                 .x = mt_arena_f64(mem, n, 1),
+                 .from = mt_arena_f64(mem, n, 1),
+                 .to = mt_arena_f64(mem, n, 1),
+                 .slope = mt_arena_f64(mem, n, 1)};
+    if (s.value == NULL || s.x == NULL || s.from == NULL || s.to == NULL || s.slope == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < q->n; i++) {
+        s.n_free += is_free(q, i) ? 1 : 0;
+    }
+    s.root = 2.0;
+    for (int k = 0; k < ROOT_TURNS; k++) {
+        s.root = pow(1.0 + s.root, 1.0 / ((double)s.n_free + 1.0));
+    }
+    MT_TRY(visit_corners(&s, err));
+    MT_TRY(visit_spread(&s, err));
+    const int n_descend = q->m < q->n_descend ? q->m : q->n_descend;
+    for (int i = 0; i < MT_ROBUST_SIDES * n_descend; i++) {
+        const mt_robust_side side = (mt_robust_side)(i % MT_ROBUST_SIDES);
+        const int k = i / MT_ROBUST_SIDES;
+        MT_TRY(MT_HAS(out[k].value[side]) ? descend(&s, k, side, err) : MT_OK);
+    }
+    return MT_OK;
+}

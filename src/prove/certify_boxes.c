@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The stack of boxes, and edges tested over one. */
+#include "prove/certify_priv.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A variable is bisected this often at most: 2^-40 of the bounds, far below any tolerance. */
+enum { MOST_DEPTH = 40 };
+
+static bool depends(const mt_certify *c, int i, bool loose_only, const bool *bound)
+{
+    bool any = !loose_only && bound[i];
+    for (int v = 0; v < c->n_views; v++) {
+        any = any || (loose_only ? mt_enclosure_loose(c->views[v], i)
+                                 : mt_enclosure_depends(c->views[v], i));
+    }
+    return any;
+}
+
+static mt_status claim(mt_boxes *b, mt_arena *mem, mt_err *err)
+{
+    const size_t n = (size_t)b->n;
+    const size_t most = (size_t)b->capacity;
+    b->lo = mt_arena_f64(mem, most, n);
+    b->hi = mt_arena_f64(mem, most, n);
+    b->depth = mt_arena_alloc(mem, most, n);
+    b->active = mt_arena_alloc(mem, n, sizeof(bool));
+    b->logarithmic = mt_arena_alloc(mem, n, sizeof(bool));
+    b->now_lo = mt_arena_f64(mem, n, 1);
+    b->now_hi = mt_arena_f64(mem, n, 1);
+    b->now_depth = mt_arena_alloc(mem, n, sizeof(signed char));
+    b->middle = mt_arena_f64(mem, n, 1);
+    b->beyond = mt_arena_f64(mem, n, 1);
+    const bool ok = b->lo != NULL && b->hi != NULL && b->depth != NULL && b->active != NULL &&
+                    b->logarithmic != NULL && b->now_lo != NULL && b->now_hi != NULL &&
+                    b->now_depth != NULL && b->middle != NULL && b->beyond != NULL;
+    return ok ? MT_OK : mt_fail_memory(err);
+}
+
+mt_status mt_boxes_init(mt_boxes *b, const mt_certify *c, bool loose_only, mt_arena *mem,
+                        mt_err *err)
+{
+    *b = (mt_boxes){.n = c->n,
+                    .capacity = (MOST_DEPTH * c->n) + 2,
+                    .n_catalogue = loose_only ? NULL : c->n_catalogue,
+                    .catalogue = c->catalogue};
+    MT_TRY(claim(b, mem, err));
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    bool *const bound = mt_arena_alloc(mem, (size_t)c->n, sizeof *bound);
+    bool *const one = mt_arena_alloc(mem, (size_t)c->n, sizeof *one);
+    if (bound == NULL || one == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int k = 0; k < c->n_bounds; k++) {
+        mt_program_depends(c->program, c->bounds[k].node, one);
+        for (int i = 0; i < c->n; i++) {
+            bound[i] = bound[i] || one[i];
+        }
+    }
+    for (int i = 0; i < c->n; i++) {
+        b->active[i] = (c->cap != NULL && !loose_only) || depends(c, i, loose_only, bound);
+        b->logarithmic[i] = c->scale == NULL || isnan(c->scale[i]);
+    }
+    mt_arena_rewind(mem, mark);
+    return MT_OK;
+}
+
+static bool is_discrete(const mt_boxes *b, int i)
+{
+    return b->n_catalogue != NULL && b->n_catalogue[i] > 0;
+}
+
+/* How many values of input i's catalogue are below x (all: or equal to it). */
+static int rank_of(const mt_boxes *b, int i, double x, bool or_equal)
+{
+    const double *const v = b->catalogue[i];
+    int low = 0;
+    int high = b->n_catalogue[i];
+    while (low < high) {
+        const int middle = low + ((high - low) / 2);
+        if (v[middle] < x || (or_equal && v[middle] == x)) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+void mt_boxes_start(mt_boxes *b, const double *lower, const double *upper)
+{
+    b->count = 1;
+    for (int i = 0; i < b->n; i++) {
+        b->lo[i] = lower[i];
+        b->hi[i] = upper[i];
+        b->depth[i] = 0;
+        if (is_discrete(b, i)) {
+            const int first = rank_of(b, i, lower[i], false);
+            const int end = rank_of(b, i, upper[i], true);
+            b->count = first < end ? b->count : 0;
+            b->lo[i] = first < end ? b->catalogue[i][first] : lower[i];
+            b->hi[i] = first < end ? b->catalogue[i][end - 1] : upper[i];
+        }
+    }
+}
+
+static double middle_of(bool logarithmic, double lo, double hi)
+{
+    if (logarithmic && lo > 0.0) {
+        return sqrt(lo) * sqrt(hi);
+    }
+    return lo + (0.5 * (hi - lo));
+}
+
+/* Where the box that was popped is halved. */
+static void find_middle(mt_boxes *b, int i)
+{
+    if (is_discrete(b, i)) {
+        const int first = rank_of(b, i, b->now_lo[i], false);
+        const int last = rank_of(b, i, b->now_hi[i], false);
+        const int middle = first + ((last - first) / 2);
+        b->middle[i] = b->catalogue[i][middle];
+        b->beyond[i] = middle < last ? b->catalogue[i][middle + 1] : b->middle[i];
+        return;
+    }
+    const double m = middle_of(b->logarithmic[i], b->now_lo[i], b->now_hi[i]);
+    b->middle[i] = fmin(fmax(m, b->now_lo[i]), b->now_hi[i]);
+    b->beyond[i] = b->middle[i];
+}
+
+bool mt_boxes_pop(mt_boxes *b)
+{
+    if (b->count == 0) {
+        return false;
+    }
+    const size_t n = (size_t)b->n;
+    b->count--;
+    const size_t at = (size_t)b->count * n;
+    if (n == 0) {
+        return true;
+    }
+    memcpy(b->now_lo, b->lo + at, n * sizeof *b->lo);
+    memcpy(b->now_hi, b->hi + at, n * sizeof *b->hi);
+    memcpy(b->now_depth, b->depth + at, n);
+    for (int i = 0; i < b->n; i++) {
+        find_middle(b, i);
+    }
+    return true;
+}
+
+static void push(mt_boxes *b, int split, bool upper_half)
+{
+    const size_t n = (size_t)b->n;
+    const size_t at = (size_t)b->count * n;
+    memcpy(b->lo + at, b->now_lo, n * sizeof *b->lo);
+    memcpy(b->hi + at, b->now_hi, n * sizeof *b->hi);
+    memcpy(b->depth + at, b->now_depth, n);
+    if (upper_half) {
+        b->lo[at + (size_t)split] = b->beyond[split];
+    } else {
+        b->hi[at + (size_t)split] = b->middle[split];
+    }
+    b->depth[at + (size_t)split]++;
+    b->count++;
+}
+
+bool mt_boxes_split(mt_boxes *b)
+{
+    int widest = -1;
+    for (int i = 0; i < b->n; i++) {
+        const bool inside = b->now_lo[i] < b->middle[i] && b->middle[i] < b->now_hi[i];
+        const bool values = is_discrete(b, i) && b->now_lo[i] < b->now_hi[i];
+        const bool can = b->active[i] && b->now_depth[i] < MOST_DEPTH && (values || inside);
+        if (can && (widest < 0 || b->now_depth[i] < b->now_depth[widest])) {
+            widest = i;
+        }
+    }
+    if (widest < 0 || b->count + 2 > b->capacity) {
+        return false;
+    }
+    push(b, widest, true);
+    push(b, widest, false);
+    return true;
+}
+
+static void add_edge(mt_certify_edge *out, int *n, const mt_certify_edge *edge)
+{
+    if (edge->mode >= 1 && !isnan(edge->hz)) {
+        out[(*n)++] = *edge;
+    }
+}
+
+int mt_certify_edges(const mt_certify *c, const int *assignment, bool granted,
+                     mt_certify_edge *out)
+{
+    int n = 0;
+    for (int i = 0; i < c->n_bands; i++) {
+        const mt_certify_band *const band = &c->bands[i];
+        const double room = granted ? band->tolerance : 0.0;
+        mt_certify_edge edge = {band->view, i, -1, assignment[i], band->lower_hz * (1.0 + room),
+                                false};
+        add_edge(out, &n, &edge);
+        edge.mode++;
+        edge.hz = band->upper_hz * (1.0 - room);
+        edge.above = true;
+        add_edge(out, &n, &edge);
+    }
+    for (int i = 0; i < c->n_limits; i++) {
+        const mt_certify_limit *const l = &c->limits[i];
+        const double room = granted ? l->tolerance : 0.0;
+        mt_certify_edge edge = {l->view, -1, i, l->mode, l->at_most_hz * (1.0 + room), false};
+        add_edge(out, &n, &edge);
+        edge.hz = l->at_least_hz * (1.0 - room);
+        edge.above = true;
+        add_edge(out, &n, &edge);
+    }
+    return n;
+}
+
+bool mt_certify_set(const mt_certify *c, const double *lo, const double *hi)
+{
+    bool known = true;
+    for (int v = 0; v < c->n_views && known; v++) {
+        known = mt_enclosure_set(c->views[v], lo, hi);
+    }
+    return known;
+}
+
+int mt_certify_first_open(const mt_certify *c, int n_edges, const mt_certify_edge *edges)
+{
+    for (int i = 0; i < n_edges; i++) {
+        const mt_certify_edge *const edge = &edges[i];
+        mt_enclosure *const e = c->views[edge->view];
+        const double lambda = mt_enclosure_lambda(edge->hz);
+        const bool kept = edge->above ? mt_enclosure_most_below(e, lambda) < edge->mode
+                                      : mt_enclosure_least_below(e, lambda) >= edge->mode;
+        if (!kept) {
+            return i;
+        }
+    }
+    return -1;
+}

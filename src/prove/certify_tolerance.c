@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * How far a design may stray: the largest percentage whose box is proven, by bisection. Boxes are nested and enclosures inclusion monotone, so what is proven for a
+ * percentage is proven for all below. Where an input enters K and M, the test may halve its box along such inputs; a half whose very middle fails ends that.
+ */
+#include "prove/certify_priv.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { DEFAULT_BOXES = 64, MOST_STEPS = 40 };
+
+/* Bisection ends when the percentage is known to this share of itself, or is below NEARLY_NOTHING. */
+static const double RESOLUTION = 1e-4;
+static const double NEARLY_NOTHING = 1e-7;
+
+typedef struct tolerance {
+    const mt_certify *c;
+    const mt_tolerance_question *q;
+    int n_edges;
+    mt_certify_edge *edges;
+    double *lo;
+    double *hi;
+    bool loose;
+    mt_boxes boxes;
+    mt_tolerance_end end; /* why the last test failed */
+    int open;             /* the edge that it failed at */
+} tolerance;
+
+static double unit_of(const mt_tolerance_question *q, int i)
+{
+    return q->unit == NULL ? fabs(q->x[i]) : fabs(q->unit[i]);
+}
+
+/* Is every stiffness of the design still there all over the box that is set? */
+static bool keeps_held(const mt_certify *c)
+{
+    bool keeps = true;
+    for (int v = 0; v < c->n_views; v++) {
+        keeps = keeps && mt_enclosure_keeps_held(c->views[v]);
+    }
+    return keeps;
+}
+
+/* Is the box set and every edge kept over it? Notes why not. */
+static bool box_holds(tolerance *t, const double *lo, const double *hi)
+{
+    if (!mt_certify_set(t->c, lo, hi) || !keeps_held(t->c)) {
+        t->end = MT_TOLERANCE_DOMAIN;
+        return false;
+    }
+    t->open = mt_certify_first_open(t->c, t->n_edges, t->edges);
+    t->end = MT_TOLERANCE_EDGE;
+    return t->open < 0;
+}
+
+static bool holds(tolerance *t, double percent, int alone)
+{
+    const mt_tolerance_question *const q = t->q;
+    const long most = q->boxes_per_test > 0 ? q->boxes_per_test : DEFAULT_BOXES;
+    for (int i = 0; i < t->c->n; i++) {
+        const double half = alone >= 0 && alone != i ? 0.0 : percent / 100.0 * unit_of(q, i);
+        t->lo[i] = q->x[i] - half;
+        t->hi[i] = q->x[i] + half;
+    }
+    if (box_holds(t, t->lo, t->hi)) {
+        return true;
+    }
+    if (!t->loose || t->end != MT_TOLERANCE_EDGE) {
+        return false;
+    }
+    mt_boxes_start(&t->boxes, t->lo, t->hi);
+    for (long n = 0; mt_boxes_pop(&t->boxes); n++) {
+        if (box_holds(t, t->boxes.now_lo, t->boxes.now_hi)) {
+            continue;
+        }
+        const int open = t->open;
+        if (n >= most || !box_holds(t, t->boxes.middle, t->boxes.middle)) {
+            return false;
+        }
+        if (!mt_boxes_split(&t->boxes)) {
+            t->open = open;
+            return false;
+        }
+    }
+    return true;
+}
+
+static mt_tolerance search(tolerance *t, int alone)
+{
+    mt_tolerance out = {.percent = t->q->most_percent, .end = MT_TOLERANCE_MOST};
+    if (holds(t, t->q->most_percent, alone)) {
+        return out;
+    }
+    double low = 0.0;
+    double high = t->q->most_percent;
+    out.end = t->end;
+    out.edge = t->end == MT_TOLERANCE_EDGE ? t->edges[t->open] : out.edge;
+    bool at_all = holds(t, 0.0, alone);
+    if (!at_all) {
+        high = 0.0;
+        out.end = t->end;
+        out.edge = t->end == MT_TOLERANCE_EDGE ? t->edges[t->open] : out.edge;
+    }
+    for (int i = 0; i < MOST_STEPS && high - low > RESOLUTION * high && high > NEARLY_NOTHING;
+         i++) {
+        const double middle = 0.5 * (low + high);
+        if (holds(t, middle, alone)) {
+            low = middle;
+            continue;
+        }
+        high = middle;
+        out.end = t->end;
+        out.edge = t->end == MT_TOLERANCE_EDGE ? t->edges[t->open] : out.edge;
+    }
+    out.percent = low;
+    return out;
+}
+
+static mt_status run(const mt_certify *c, const mt_tolerance_question *q, mt_arena *scratch,
+                     mt_tolerance *all, mt_tolerance *each, mt_err *err)
+{
+    tolerance t = {.c = c, .q = q, .open = -1};
+    t.edges = mt_arena_alloc(scratch, 2 * ((size_t)c->n_bands + (size_t)c->n_limits) + 1,
+                             sizeof *t.edges);
+    t.lo = mt_arena_f64(scratch, (size_t)c->n, 1);
+    t.hi = mt_arena_f64(scratch, (size_t)c->n, 1);
+    if (t.edges == NULL || t.lo == NULL || t.hi == NULL) {
+        return mt_fail_memory(err);
+    }
+    t.n_edges = mt_certify_edges(c, q->assignment, false, t.edges);
+    MT_TRY(mt_boxes_init(&t.boxes, c, true, scratch, err));
+    for (int i = 0; i < c->n; i++) {
+        t.loose = t.loose || t.boxes.active[i];
+    }
+    if (mt_certify_set(c, q->x, q->x)) {
+        for (int v = 0; v < c->n_views; v++) {
+            mt_enclosure_note_held(c->views[v]);
+        }
+    }
+    *all = search(&t, -1);
+    for (int i = 0; i < c->n && each != NULL; i++) {
+        each[i] = search(&t, i);
+    }
+    return MT_OK;
+}
+
+mt_status mt_certify_tolerance(const mt_certify *c, const mt_tolerance_question *q,
+                               mt_arena *scratch, mt_tolerance *all, mt_tolerance *each,
+                               mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    const mt_status rc = run(c, q, scratch, all, each, err);
+    mt_arena_rewind(scratch, mark);
+    return rc;
+}

@@ -1,0 +1,350 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RESULT_RESULT_H
+#define RESULT_RESULT_H
+
+#include "modetune/study.h"
+
+#include <stdbool.h>
+
+#include "base/arena.h"
+#include "base/doubt.h"
+
+/* What a study answers: plain records, no computation. All texts live in the result's arena. NaN: not applicable (written as null). */
+
+typedef struct mt_result_parameter {
+    const char *name;
+    const char *unit; /* may be NULL */
+    double original;
+    double recommended;
+    double change_percent; /* NaN where original is 0 */
+    const char *at_bound;  /* NULL, "lower", "upper" */
+    double measure_scale; /* its change counts as (new - original)/scale; 0: ln(new/original) */
+    double measure_floor; /* where the logarithm goes on as its tangent; 0: nowhere */
+} mt_result_parameter;
+
+typedef struct mt_result_frequency {
+    const char *configuration;
+    int mode;             /* vibration index at this design */
+    const char *name;     /* named mode; NULL */
+    const char *identity; /* of a named mode: "tracked", "ambiguous", "lost"; NULL */
+    double share;   /* part of the named shape that this mode carries; NaN without a name */
+    int rival_mode; /* the mode that carries most of the rest; 0: none */
+    double rival_share;
+    double original_hz;
+    double recommended_hz;
+    double target_hz; /* NaN: no target */
+    double at_least_hz;
+    double at_most_hz;
+    double error_percent;  /* to the target, or beyond the limit; 0 inside limits */
+    double mac;            /* NaN: no reference shape asked for */
+    const char *reference; /* NULL */
+    double lowest_hz;      /* over the tolerances of the variables; NaN: they have none */
+    double highest_hz;
+    double residual; /* LAPACK-style ratio of this mode */
+    double orthogonality;
+    /* [n_parameters] Hz per unit of each variable; NaN at a repeated mode; NULL: not computed */
+    double *sensitivity;
+    bool repeated;
+    const char *
+        slack; /* of a vibration of 0 Hz (not written: reasons tell): the springs of zero stiffness that would hold it, "" where none would; NULL: it is held */
+} mt_result_frequency;
+
+/* A goal judged at a design. */
+typedef struct mt_result_goal {
+    const char *text;    /* "installed mode 1 at 18 Hz" */
+    const char *pointer; /* "/goals/0" */
+    double value;
+    double demand; /* target or limit */
+    double violation_percent;
+    bool met;
+    bool weighted; /* part of the misfit: does not decide status */
+    bool doubtful; /* its named mode is ambiguous or lost: not met, whatever the number */
+    /* the worst value over the tolerances of the variables, which the goal is judged by; NaN: none */
+    double worst;
+    double *worst_at; /* [n_parameters] where that is; NULL: none */
+} mt_result_goal;
+
+/* A mode beside a band. */
+typedef struct mt_result_clearance {
+    const char *configuration;
+    const char *band; /* its label: "4P of UH-60" */
+    int mode;         /* vibration index at this design */
+    double hz;
+    double percent; /* of the nearest edge of the band without its margin; negative inside */
+    double margin_percent; /* what was asked for at that edge */
+    const char *side;      /* where the mode lies: "below", "inside", "above" */
+    /* over the tolerances of the variables: nearest to the band, or deepest inside; NaN: none */
+    double worst_hz;
+    double worst_percent;
+} mt_result_clearance;
+
+/* How many modes lie below a band: the kind of a design. */
+typedef struct mt_result_gap {
+    const char *configuration;
+    const char *band;
+    double lower_hz; /* of the band without its margin */
+    double upper_hz;
+    double margin_lower_hz; /* with it */
+    double margin_upper_hz;
+    int modes_below;
+} mt_result_gap;
+
+/* A design between the named positions of one drive. */
+typedef struct mt_result_motion {
+    const char *pointer; /* of the first goal that keeps these positions clear of bands */
+    const char *drive;   /* the joint */
+    const char *unit;    /* "rad" | "m": of from, to, at */
+    double from;         /* first and last named position */
+    double to;
+    int positions; /* that were looked at; 0: none */
+    double
+        least_clearance_percent; /* of an edge of a band without its margin, negative beyond it; NaN: not followed */
+    double margin_percent; /* asked for there */
+    double at;             /* where it is */
+    double hz;
+    int mode;         /* whose it is, or which crosses; 0: none */
+    const char *band; /* NULL: none */
+    bool
+        crosses; /* a mode is nearer to a band than its margin, or inside, between the positions */
+    const char *
+        grade; /* "sampled" | "sampled coarsely" | "incomplete" | "unstable" | "not followed" */
+    const char *text; /* in words, without a full stop */
+} mt_result_motion;
+
+typedef struct mt_result_tolerance {
+    const char *name; /* of the variable */
+    double percent;   /* it alone may change so much either way; NaN: not known */
+    const char *edge; /* what would be met there, in words; NULL */
+} mt_result_tolerance;
+
+/* Inside it the bands, without their margin, are kept. */
+typedef struct mt_tolerance_box {
+    double all_percent; /* all variables together; 0 for a design on an edge */
+    /* what would be met there: "mode 2 of \"installed\" at the lower edge of 4P of UH-60"; NULL */
+    const char *edge;
+    bool proven; /* false: sampled */
+    int n_variables;
+    mt_result_tolerance *variables; /* in the study's order */
+} mt_tolerance_box;
+
+typedef struct mt_recommendation {
+    int rank;
+    bool feasible;
+    /* "feasible and proven" | "feasible" | "compromise" | "infeasible" | "not verified" */
+    const char *grade;
+    const char *
+        disagreement; /* of a fresh analysis with what the search read, in words (not written: warnings and reasons tell); NULL: none */
+    double score;     /* first objective's value in its unit; NaN where infeasible */
+    const char *score_unit;
+    double change; /* size of the redesign */
+    double misfit; /* NaN: no weighted goals */
+    double violation_percent;
+    double clearance_percent; /* least of all clearances; NaN: no bands */
+    double kkt_residual;      /* relative; NaN where not an optimum */
+    /* how the worst over the tolerances of the variables is known: "proven", "sampled"; NULL: they have none */
+    const char *worst_case;
+    bool singular; /* a double solution: the Jacobian of the goals is singular here */
+    int n_parameters;
+    mt_result_parameter *parameters;
+    int n_frequencies;
+    mt_result_frequency *frequencies;
+    int n_clearances;
+    mt_result_clearance *clearances;
+    int n_gaps; /* 0: no bands */
+    mt_result_gap *gaps;
+    int n_motions; /* one for each drive with several positions that keep clear of bands */
+    mt_result_motion *motions;
+    mt_tolerance_box *tolerance_box; /* NULL: not computed */
+    int n_goals;
+    mt_result_goal *goals;
+    int n_reasons;
+    const char **reasons; /* sentences */
+} mt_recommendation;
+
+/* A direction in the space of the variables along which the goals do not change. */
+typedef struct mt_undetermined {
+    int n;             /* number of variables */
+    double *direction; /* unit vector in ln(parameter) (positive ones) or parameter/scale */
+    const char *text;  /* "K_T2" or "0.71 ln a - 0.71 ln b" */
+    /* greatest change of any goal when the bounds are crossed along it */
+    double effect_percent;
+} mt_undetermined;
+
+/* Where a variable of the best design moves when the weight of one goal at a time is changed. */
+typedef struct mt_result_spread {
+    const char *parameter;
+    const char *unit; /* may be NULL */
+    double value;     /* with the weights as given */
+    double low; /* smallest and greatest of all solutions, the given weights' among them */
+    double high;
+    double low_percent; /* of |value|; NaN where that is 0 */
+    double high_percent;
+    const char *low_goal; /* "/goals/3": whose weight; NULL: no change of a weight goes there */
+    const char *high_goal;
+    double low_factor; /* what its weight was multiplied with; NaN without a goal */
+    double high_factor;
+} mt_result_spread;
+
+typedef struct mt_result_published {
+    const char *label;
+    const char *pointer;
+    const char *role;   /* "calibrates" | "verifies" | "not_comparable" */
+    const char *source; /* may be NULL */
+    const char *kind;   /* "parameter" | "quantity" | "frequency" | "mac" | "status" */
+    double published;   /* value or limit; NaN for status */
+    double computed;
+    double difference; /* computed - published */
+    double difference_percent;
+    const char *published_text; /* status */
+    const char *computed_text;
+    const char *demand; /* "within 0.1 %", "at least" */
+    bool holds;
+} mt_result_published;
+
+typedef struct mt_certificate {
+    const char *kind; /* "infeasible", "range", ... */
+    const char *text;
+    bool proven;         /* false: sampled */
+    const char *pointer; /* of the goal that it speaks of, "/goals/0"; NULL: of all */
+    /* range that the goal's mode can reach within the bounds; NaN: not applicable */
+    double reachable_lower_hz;
+    double reachable_upper_hz;
+} mt_certificate;
+
+/* One number of the question that, moved so far with everything else as it is, lets a design meet all goals. */
+typedef struct mt_relaxation {
+    const char *kind;    /* "bound" | "band" | "goal" */
+    const char *pointer; /* what it belongs to: "/variables/0", "/goals/2" */
+    const char *what;    /* "upper bound of k1", "lower edge of 4P of UH-60 in "installed"" */
+    const char *unit;    /* may be NULL */
+    double from;
+    double to;
+    double change_percent; /* of |from|; NaN where that is 0 */
+    double *
+        design; /* [n_variables] values of the variables of a design that then meets all goals */
+    const char *text; /* as a sentence */
+} mt_relaxation;
+
+/* One study of a trade study, with its best design. */
+typedef struct mt_trade_point {
+    double *values; /* [n_vary] */
+    mt_result_status status;
+    const char *status_text;
+    mt_recommendation best;
+    bool pareto; /* no other point is better in one objective and not worse in the other */
+} mt_trade_point;
+
+typedef struct mt_trade_vary {
+    const char *text;    /* "upper bound of M_SAU" */
+    const char *pointer; /* "/trade/vary/0" */
+    const char *unit;    /* may be NULL */
+} mt_trade_vary;
+
+typedef struct mt_trade_result {
+    int n_vary;
+    mt_trade_vary *vary;
+    int n_objectives; /* 0 or 2: of the Pareto front */
+    const char **objectives;
+    int n_points;
+    mt_trade_point *points; /* in the order of the values; the last quantity varies fastest */
+} mt_trade_result;
+
+/* A line of a Campbell diagram: frequency = order * speed. */
+typedef struct mt_result_order {
+    const char *label; /* "1.5E", "1G of pinion", "4P" */
+    double order;
+} mt_result_order;
+
+/* A rotor or a machine of an avoid goal. */
+typedef struct mt_result_excitation {
+    const char *pointer; /* of the goal */
+    const char *name;
+    double speed_lower_hz; /* range of its speed [1/s] */
+    double speed_upper_hz;
+    double margin_percent;
+    int n_configurations; /* that are kept clear of it */
+    const char **configurations;
+    int n_orders;
+    mt_result_order *orders;
+} mt_result_excitation;
+
+typedef struct mt_result_run {
+    const char *modetune_version;
+    const char *blas;
+    const char *nlopt_version;
+    const char *gsl_version;
+    unsigned long seed;
+    long evaluations;
+    int starts;
+    /* of a search from starts; -1, NaN: not applicable */
+    int distinct_designs;
+    int found_once;           /* of them, by one start only */
+    double estimated_missing; /* isolated designs that no start met, at least */
+    int n_inputs;
+    const char **input_names;
+    const char **input_sha256;
+    int n_outputs; /* files written beside the result; 0: it is written alone */
+    const char **output_names;
+    const char **output_sha256;
+    int n_incomplete; /* phases that an interrupt cut, or that were not begun because of it, by the names of what they write ("search", "spread", ...) */
+    const char **incomplete;
+} mt_result_run;
+
+typedef struct mt_result {
+    mt_arena mem;
+    const char *study_name;
+    const char *study_file; /* its file name, without folder */
+    const char *model_name;
+    const char *model_file;  /* as the study writes it, relative to its folder: for `apply` */
+    const char *status_text; /* one sentence */
+    mt_recommendation baseline; /* the original design, rank 0 */
+    mt_result_status status;
+    int n_recommendations;
+    mt_recommendation *recommendations;
+    int n_undetermined;
+    mt_undetermined *undetermined;
+    int n_spread; /* 0, or one per variable */
+    mt_result_spread *spread;
+    int n_variables;
+    const char **variables;
+    int n_certificates;
+    mt_certificate *certificates;
+    int n_relaxations; /* least first; only where no design meets all goals */
+    mt_relaxation *relaxations;
+    mt_result_excitation *excitations;
+    mt_trade_result *trade; /* NULL: the study has none */
+    int n_excitations;
+    int n_published;
+    mt_result_published *published;
+    int n_warnings;
+    const char **warnings;
+    mt_doubt_list
+        doubts; /* facts of the model and doubts about the question, said before anything else */
+    mt_result_run run;
+} mt_result;
+
+/* An empty result (status interrupted: nothing is known yet). Fails: MT_E_MEMORY. */
+mt_status mt_result_new(mt_result **out, mt_err *err);
+/* How far the lists are filled that phases add to; and back to there. */
+typedef struct mt_result_mark {
+    int n_undetermined;
+    int n_spread;
+    int n_certificates;
+    int n_relaxations;
+    int n_published;
+    int n_warnings;
+} mt_result_mark;
+mt_result_mark mt_result_get_mark(const mt_result *result);
+void mt_result_take_back(mt_result *result, const mt_result_mark *mark);
+/* A recommendation whose numbers are all "not applicable". */
+mt_recommendation mt_recommendation_default(void);
+mt_result_frequency mt_result_frequency_default(void);
+mt_result_published mt_result_published_default(void);
+mt_certificate mt_certificate_default(void);
+mt_tolerance_box mt_tolerance_box_default(void);
+mt_result_motion mt_result_motion_default(void);
+/* result_copy.c: with all texts, in mem. */
+mt_status mt_recommendation_copy(const mt_recommendation *from, mt_arena *mem,
+                                 mt_recommendation *out, mt_err *err);
+
+#endif

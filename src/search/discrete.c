@@ -1,0 +1,302 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "search/discrete.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "problem/family.h"
+
+/* Combinations between two looks at what is left to do: enough for any number of workers, few enough to stop in time. Fixed, so that results do not depend on the workers. */
+enum { BATCH = 4096, BATCH_MIXED = 16 };
+/* Designs that are kept for alternatives, where the study does not ask for more. */
+enum { KEPT = 16 };
+/* Of a budget, what each combination of a batch may use at least. */
+enum { LEAST_BUDGET = 20 };
+
+bool mt_study_is_discrete(const mt_study *study)
+{
+    for (int i = 0; i < study->n_variables; i++) {
+        if (study->variables[i].n_catalogue > 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static mt_status begin(mt_discrete *d, mt_err *err)
+{
+    const mt_problem *const p = d->p;
+    d->variable = mt_arena_int(d->mem, (size_t)p->n);
+    d->values = mt_arena_alloc(d->mem, (size_t)d->n_workers, sizeof *d->values);
+    if (d->variable == NULL || d->values == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n; i++) {
+        if (p->study->variables[i].n_catalogue > 0) {
+            d->variable[d->n_discrete++] = i;
+        }
+    }
+    d->mixed = d->n_discrete < p->n;
+    for (int i = 0; i < d->n_workers && !d->mixed; i++) {
+        MT_TRY(mt_problem_values_init(d->problems[i], d->mem, &d->values[i], err));
+    }
+    return MT_OK;
+}
+
+static double count_combinations(const mt_discrete *d)
+{
+    double n = 1.0;
+    for (int k = 0; k < d->n_discrete; k++) {
+        n *= (double)d->p->study->variables[d->variable[k]].n_catalogue;
+    }
+    return n;
+}
+
+void mt_discrete_set(const mt_discrete *d, mt_combination *c)
+{
+    const mt_problem *const p = d->p;
+    double change = 0.0;
+    for (int k = 0; k < d->n_discrete; k++) {
+        const int i = d->variable[k];
+        const mt_variable *const v = &p->study->variables[i];
+        const double t = mt_problem_t(p, i, v->catalogue[c->pick[k]]);
+        const double away = t - p->origin_t[i];
+        c->t[i] = t;
+        change += 0.5 * v->weight * away * away;
+    }
+    c->least = change;
+}
+
+/* All of them, the last variable fastest. */
+static mt_status list_all(const mt_discrete *d, int n, mt_combination **out, mt_err *err)
+{
+    MT_TRY(mt_discrete_alloc(d, n, out, err));
+    for (int i = 0; i < n; i++) {
+        int rest = i;
+        for (int k = d->n_discrete - 1; k >= 0; k--) {
+            const int values = d->p->study->variables[d->variable[k]].n_catalogue;
+            (*out)[i].pick[k] = rest % values;
+            rest /= values;
+        }
+        mt_discrete_set(d, &(*out)[i]);
+    }
+    return MT_OK;
+}
+
+/* By the change that cannot be avoided, then in the order of the list (pick lies in one array in that order). */
+static int by_change(const void *a, const void *b)
+{
+    const mt_combination *const x = a;
+    const mt_combination *const y = b;
+    if (x->least != y->least) {
+        return x->least < y->least ? -1 : 1;
+    }
+    return x->pick < y->pick ? -1 : x->pick > y->pick ? 1 : 0;
+}
+
+static int kept_at_most(const mt_discrete *d)
+{
+    const int asked = d->p->study->recommendations;
+    return asked > KEPT ? asked : KEPT;
+}
+
+/* The best `most` of list[n], ranked, into best[*n_best]: insertion, so that equal ones keep their order. What would be among them is followed over its motion first. */
+static mt_status rank(mt_discrete *d, mt_combination *const *list, int n, int most,
+                      mt_combination **best, int *n_best, mt_err *err)
+{
+    for (int i = 0; i < n; i++) {
+        if (*n_best < most || mt_discrete_before(d, list[i], best[*n_best - 1])) {
+            MT_TRY(mt_discrete_follow(d, list[i], err));
+        }
+        if (!list[i]->judged || !MT_HAS(list[i]->violation)) {
+            continue;
+        }
+        int at = *n_best < most ? (*n_best)++ : most;
+        for (; at > 0 && mt_discrete_before(d, list[i], best[at - 1]); at--) {
+            if (at < most) {
+                best[at] = best[at - 1];
+            }
+        }
+        if (at < most) {
+            best[at] = list[i];
+        }
+    }
+    return MT_OK;
+}
+
+/* Can no combination from here on rank among the best? All of them change more than the last of these. */
+static bool settled(const mt_discrete *d, const mt_combination *next, int most,
+                    mt_combination *const *best, int n_best)
+{
+    return d->p->aims[0].type == MT_OBJECTIVE_CHANGE && n_best == most &&
+           best[most - 1]->feasible && next->least > best[most - 1]->f[0];
+}
+
+/* Evaluations that each combination of the next batch may use; 0: no limit; -1: the budget is spent. */
+static long share_of_budget(const mt_discrete *d, int batch)
+{
+    const long most = d->p->study->search.max_evaluations;
+    const long left = (most - d->evals) / batch;
+    if (most <= 0) {
+        return 0;
+    }
+    return left >= (d->mixed ? LEAST_BUDGET : 1) ? left : -1;
+}
+
+typedef struct ranking {
+    int most;
+    int n;
+    mt_combination **best; /* [most] */
+} ranking;
+
+static mt_status enumerate(mt_discrete *d, int n, mt_combination **out, ranking *r,
+                           mt_discrete_report *report, mt_err *err)
+{
+    mt_combination *list = NULL;
+    const int batch = d->mixed ? BATCH_MIXED : BATCH;
+    mt_combination **const pointers =
+        mt_arena_alloc(d->mem, (size_t)batch, sizeof(mt_combination *));
+    MT_TRY(list_all(d, n, &list, err));
+    if (pointers == NULL) {
+        return mt_fail_memory(err);
+    }
+    qsort(list, (size_t)n, sizeof *list, by_change);
+    *out = list;
+    report->all = true;
+    for (int first = 0; first < n; first += batch) {
+        const int size = n - first < batch ? n - first : batch;
+        const long budget = share_of_budget(d, size);
+        if (settled(d, &list[first], r->most, r->best, r->n)) {
+            break;
+        }
+        if (budget < 0 || d->stop == MT_STOP_USER) {
+            d->stop = d->stop == MT_STOP_USER ? MT_STOP_USER : MT_STOP_MAX_EVALS;
+            break;
+        }
+        MT_TRY(mt_discrete_judge(d, size, list + first, budget, err));
+        for (int i = 0; i < size; i++) {
+            pointers[i] = &list[first + i];
+        }
+        MT_TRY(rank(d, pointers, size, r->most, r->best, &r->n, err));
+    }
+    report->all = d->stop == MT_STOP_DONE;
+    return MT_OK;
+}
+
+/* The combinations that were looked at, all[n]. */
+static mt_status look(mt_discrete *d, double combinations, ranking *r,
+                      mt_discrete_report *report, mt_combination ***all, int *n, mt_err *err)
+{
+    mt_combination *list = NULL;
+    if (combinations > (double)(d->mixed ? MT_DISCRETE_MOST_MIXED : MT_DISCRETE_MOST)) {
+        return mt_discrete_near(d, all, n, err);
+    }
+    *n = (int)combinations;
+    MT_TRY(enumerate(d, *n, &list, r, report, err));
+    *all = mt_arena_alloc(d->mem, (size_t)*n, sizeof(mt_combination *));
+    if (*all == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < *n; i++) {
+        (*all)[i] = &list[i];
+    }
+    return MT_OK;
+}
+
+/* In the form of any other search: no multipliers, a bound only where a continuous variable stands at one. */
+static mt_status to_solution(const mt_discrete *d, const mt_combination *c,
+                             mt_nlp_solution *out, mt_err *err)
+{
+    const mt_problem *const p = d->p;
+    const size_t n = (size_t)p->n + 1;
+    *out = (mt_nlp_solution){.t = c->t,
+                             .f = c->f[0],
+                             .violation = c->violation,
+                             .squares = c->squares,
+                             .feasible = c->feasible,
+                             .singular = c->singular,
+                             .kkt = c->kkt,
+                             .bound = mt_arena_int(d->mem, n),
+                             .mult_eq = mt_arena_f64(d->mem, (size_t)p->n_eq, 1),
+                             .mult_in = mt_arena_f64(d->mem, (size_t)p->n_in + 1, 1),
+                             .mult_bound = mt_arena_f64(d->mem, n, 1)};
+    if (out->bound == NULL || out->mult_eq == NULL || out->mult_in == NULL ||
+        out->mult_bound == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n_eq; i++) {
+        out->mult_eq[i] = nan("");
+    }
+    for (int i = 0; i < p->n_in; i++) {
+        out->mult_in[i] = nan("");
+    }
+    for (int i = 0; i < p->n; i++) {
+        const bool discrete = p->study->variables[i].n_catalogue > 0;
+        out->mult_bound[i] = nan("");
+        out->bound[i] = discrete                   ? 0
+                        : c->t[i] == p->lower_t[i] ? -1
+                        : c->t[i] == p->upper_t[i] ? 1
+                                                   : 0;
+    }
+    return MT_OK;
+}
+
+static mt_status collect(const mt_discrete *d, const ranking *r, mt_nlp_result *out,
+                         mt_err *err)
+{
+    *out = (mt_nlp_result){.evals = d->evals, .starts = d->starts, .stop = d->stop};
+    out->solutions = mt_arena_alloc(d->mem, (size_t)r->n, sizeof *out->solutions);
+    if (out->solutions == NULL) {
+        return mt_fail_memory(err);
+    }
+    out->compromise = r->n > 0 && !r->best[0]->feasible;
+    for (int i = 0; i < r->n && r->best[i]->feasible != out->compromise; i++) {
+        MT_TRY(to_solution(d, r->best[i], &out->solutions[i], err));
+        out->n_solutions++;
+    }
+    return MT_OK;
+}
+
+/* An interrupt ends a part of the search, and what was found before it stands. */
+static mt_status unless_interrupted(mt_discrete *d, mt_status rc)
+{
+    d->stop = rc == MT_E_INTERRUPTED ? MT_STOP_USER : d->stop;
+    return rc == MT_E_INTERRUPTED ? MT_OK : rc;
+}
+
+mt_status mt_discrete_solve(mt_problem *const *problems, int n_workers, mt_arena *mem,
+                            mt_nlp_result *out, mt_discrete_report *report, mt_err *err)
+{
+    mt_discrete d = {
+        .problems = problems, .n_workers = n_workers, .p = problems[0], .mem = mem};
+    MT_TRY(begin(&d, err));
+    ranking r = {.most = kept_at_most(&d)};
+    r.best = mt_arena_alloc(mem, (size_t)r.most, sizeof(mt_combination *));
+    if (r.best == NULL) {
+        return mt_fail_memory(err);
+    }
+    const double n = count_combinations(&d);
+    mt_combination **all = NULL;
+    int n_all = 0;
+    *report = (mt_discrete_report){.mixed = d.mixed, .combinations = n, .best_within = nan("")};
+    MT_TRY(look(&d, n, &r, report, &all, &n_all, err));
+    if ((d.mixed || !report->all) && d.stop != MT_STOP_USER) {
+        MT_TRY(unless_interrupted(&d, mt_discrete_prove(&d, &all, &n_all, report, err)));
+    }
+    if (all == NULL) {
+        return mt_fail_memory(err);
+    }
+    r.n = 0;
+    MT_TRY(rank(&d, all, n_all, r.most, r.best, &r.n, err));
+    for (int i = 0; i < n_all; i++) {
+        report->judged += all[i]->judged ? 1 : 0;
+        report->feasible += all[i]->feasible ? 1 : 0;
+        report->followed += all[i]->followed && all[i]->feasible ? 1 : 0;
+    }
+    report->driven = mt_family_any(d.p) && !d.mixed;
+    MT_TRY(collect(&d, &r, out, err));
+    const bool known = r.n > 0 && r.best[0]->feasible && d.stop != MT_STOP_USER;
+    return known ? unless_interrupted(&d, mt_discrete_undetermined(&d, r.best[0], out, err))
+                 : MT_OK;
+}

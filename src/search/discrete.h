@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SEARCH_DISCRETE_H
+#define SEARCH_DISCRETE_H
+
+#include "problem/problem.h"
+#include "result/result.h"
+
+/*
+ * Search with catalogues. A combination is one value from every catalogue; the other variables, where there are any, are searched continuously for each combination (a search
+ * like any other, over gap assignments where there are bands).
+ *
+ * Few combinations are enumerated, all of them, in the order of the change that they cannot do without; with the objective "change" the enumeration ends where no later one can rank among
+ * those that are kept. Beyond MT_DISCRETE_MOST combinations (MT_DISCRETE_MOST_MIXED where continuous variables remain) the search is a heuristic: the relaxed
+ * problem (every catalogue as the interval that it spans), roundings of its designs, then steps to neighbouring values while these help. What neither settles, branch and bound does where the
+ * modes can be enclosed (discrete_prove.c): which gap assignments some combination has, that none meets all goals, that none is better than the best found.
+ */
+enum { MT_DISCRETE_MOST = 200000, MT_DISCRETE_MOST_MIXED = 400 };
+
+typedef struct mt_discrete_report {
+    bool mixed;          /* continuous variables remain */
+    bool all;            /* every combination was judged, or shown not to rank */
+    double combinations; /* how many there are */
+    int judged;
+    bool
+        driven; /* several positions of one drive: only combinations that might rank were followed between them */
+    int followed; /* of the feasible ones */
+    int feasible; /* of those judged: combinations with a design that meets all goals */
+    /* branch and bound */
+    bool asked;        /* it was tried */
+    bool settled;      /* every gap assignment but n_kinds is proven impossible */
+    int n_kinds;       /* assignments that a combination has */
+    double n_possible; /* monotone assignments there are; 1 without bands */
+    bool complete;     /* no goal was left out of the question */
+    double
+        best_within; /* proven: no design's objective is less by more than this share of the best one's; NaN: not proven */
+    long boxes;
+    const char *reason; /* why there is no proof; NULL */
+} mt_discrete_report;
+
+/* One combination judged. */
+typedef struct mt_combination {
+    int *pick; /* [n_discrete] index in each catalogue */
+    double *t; /* [n + 1] the design; its coordinates of catalogues are those of pick */
+    double *f; /* [n_aims] objectives there */
+    const double *from; /* [n + 1] a design t to start from; NULL: none */
+    double least;       /* half of the squared change that pick alone makes */
+    double violation;   /* as in mt_nlp_solution; NaN: it has no value */
+    double squares;
+    double kkt;
+    bool judged;
+    bool feasible;
+    bool singular;
+    bool followed; /* from position to position of its drives, and judged by that too */
+    long evals;
+    int starts;
+    mt_stop stop;
+} mt_combination;
+
+/* A search under way: what its files share. */
+typedef struct mt_discrete {
+    mt_problem *const *problems; /* [n_workers] the relaxed problem */
+    int n_workers;
+    mt_problem *p; /* problems[0] */
+    mt_arena *mem;
+    int n_discrete;
+    int *variable; /* [n_discrete] */
+    bool mixed;
+    mt_nlp_values *values; /* [n_workers] where not mixed */
+    long evals;
+    int starts;
+    mt_stop stop;
+} mt_discrete;
+
+bool mt_study_is_discrete(const mt_study *study);
+/*
+ * problems[n_workers] as for mt_search_designs. Designs by the objectives in order (equal to 12 digits: in the order of the combinations), each combination once; else, where none is
+ * feasible, by the squares of the violations. out->solutions belong to stage 0. Deterministic for any number of workers. Results in mem. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INPUT.
+ */
+mt_status mt_discrete_solve(mt_problem *const *problems, int n_workers, mt_arena *mem,
+                            mt_nlp_result *out, mt_discrete_report *report, mt_err *err);
+
+/* discrete_judge.c: judge list[n], on workers; at most budget evaluations for each where it is mixed (0: no limit). Adds to the search's counters. */
+mt_status mt_discrete_judge(mt_discrete *d, int n, mt_combination *list, long budget,
+                            mt_err *err);
+/* discrete_undetermined.c: directions that the goals do not settle at the best combination, into out: single catalogues any of whose values does, and those of the continuous variables with the
+ * catalogues as they are. Searches that combination once more where it is mixed. */
+mt_status mt_discrete_undetermined(mt_discrete *d, const mt_combination *best,
+                                   mt_nlp_result *out, mt_err *err);
+/* discrete_judge.c: search the continuous variables of c once more, for those directions (nothing of c is changed); memory of out->undetermined is mem's. */
+mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_arena *mem,
+                                 mt_nlp_result *out, mt_err *err);
+/* Judge a feasible combination over the range of motion (motion.h), once; nothing where it is mixed (its own search has done so). It may be feasible no more. */
+mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err);
+/* Is a ahead of b? Feasible ones first, by the objectives; the others by squares. */
+bool mt_discrete_before(const mt_discrete *d, const mt_combination *a, const mt_combination *b);
+/* Room for n combinations. */
+mt_status mt_discrete_alloc(const mt_discrete *d, int n, mt_combination **out, mt_err *err);
+/* Coordinates and unavoidable change of c from its pick. */
+void mt_discrete_set(const mt_discrete *d, mt_combination *c);
+/* discrete_prove.c: what branch and bound can settle, into the report; combinations that it finds join (*all)[*n], judged. */
+mt_status mt_discrete_prove(mt_discrete *d, mt_combination ***all, int *n,
+                            mt_discrete_report *report, mt_err *err);
+/* discrete_near.c: the heuristic. (*list)[*n] are the combinations that it has judged. */
+mt_status mt_discrete_near(mt_discrete *d, mt_combination ***list, int *n, mt_err *err);
+
+#endif

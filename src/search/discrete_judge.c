@@ -1,0 +1,357 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Judge combinations of catalogue values. Where nothing else varies a combination is a design: one evaluation. Else it is a study of its own, in which
+ * the bounds of the catalogues' variables are closed on their values.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "base/workers.h"
+#include "search/discrete.h"
+#include "search/gaps.h"
+#include "search/motion.h"
+#include "search/search.h"
+
+/* Combinations in one task: long enough to pay for its start, short enough to share out well. */
+enum { PER_TASK = 64 };
+/* Bits of an objective that count in a comparison: 12 decimal digits, as equal designs on different ways agree. */
+enum { BITS = 40 };
+/* Starts of the continuous search of one combination: 4 + 2 n, where the study does not say. */
+enum { STARTS_BASE = 4, STARTS_PER_VARIABLE = 2 };
+
+typedef struct judging {
+    mt_discrete *d;
+    int n;
+    mt_combination *list;
+    long budget;
+} judging;
+
+mt_status mt_discrete_alloc(const mt_discrete *d, int n, mt_combination **out, mt_err *err)
+{
+    const size_t n_t = (size_t)d->p->n + 1;
+    const size_t n_aims = (size_t)d->p->n_aims;
+    const size_t n_pick = (size_t)d->n_discrete;
+    mt_combination *const list = mt_arena_alloc(d->mem, (size_t)n, sizeof *list);
+    int *const pick = mt_arena_int(d->mem, (size_t)n * n_pick);
+    double *const t = mt_arena_f64(d->mem, n_t, (size_t)n);
+    double *const f = mt_arena_f64(d->mem, n_aims, (size_t)n);
+    *out = list;
+    if (list == NULL || pick == NULL || t == NULL || f == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < n; i++) {
+        list[i] = (mt_combination){.pick = pick + ((size_t)i * n_pick),
+                                   .t = t + ((size_t)i * n_t),
+                                   .f = f + ((size_t)i * n_aims),
+                                   .violation = nan(""),
+                                   .squares = HUGE_VAL,
+                                   .kkt = nan("")};
+    }
+    return MT_OK;
+}
+
+static double rounded(double f)
+{
+    int exponent = 0;
+    if (!isfinite(f)) {
+        return f;
+    }
+    const double lead = frexp(f, &exponent);
+    return ldexp(round(ldexp(lead, BITS)), exponent - BITS);
+}
+
+bool mt_discrete_before(const mt_discrete *d, const mt_combination *a, const mt_combination *b)
+{
+    if (a->feasible != b->feasible) {
+        return a->feasible;
+    }
+    const double square_a = rounded(a->squares);
+    const double square_b = rounded(b->squares);
+    if (!a->feasible && square_a != square_b) {
+        return square_a < square_b;
+    }
+    for (int k = 0; k < d->p->n_aims; k++) {
+        const double f_a = rounded(a->f[k]);
+        const double f_b = rounded(b->f[k]);
+        if (f_a != f_b) {
+            return f_a < f_b;
+        }
+    }
+    return false;
+}
+
+static void demand_more(mt_combination *c, double short_of, double tolerance)
+{
+    if (!MT_HAS(short_of) || !MT_HAS(c->violation)) {
+        c->squares = HUGE_VAL;
+        c->violation = nan("");
+        return;
+    }
+    c->squares += short_of * short_of;
+    c->violation = fmax(c->violation, short_of / tolerance);
+}
+
+/* Bands, each mode against each of them; the objective "clearance" is the least room left, negative. */
+static void judge_bands(const mt_problem *p, mt_combination *c)
+{
+    double room = HUGE_VAL;
+    double tied = HUGE_VAL;
+    for (int i = 0; i < p->n_clears; i++) {
+        const mt_clear *const clear = &p->clears[i];
+        const double here = mt_clear_room(p, clear);
+        demand_more(c, MT_HAS(here) ? fmax(-here, 0.0) : here, clear->tolerance);
+        room = fmin(room, here);
+    }
+    for (int i = 0; i < p->n_bands; i++) { /* one drive, one number of modes below a band */
+        int below = 0;
+        if (p->tie[i] == i) {
+            const double here = mt_tie_room(p, i, &below);
+            tied = !(here >= tied) ? here : tied;
+        }
+    }
+    if (mt_family_any(p) && !(tied >= room)) {
+        demand_more(c, MT_HAS(tied) ? fmax(-tied, 0.0) : tied, p->clears[0].tolerance);
+        room = tied;
+    }
+    for (int k = 0; k < p->n_aims; k++) {
+        if (p->aims[k].type == MT_OBJECTIVE_CLEARANCE) {
+            c->f[k] = -room;
+        }
+    }
+}
+
+static mt_status judge_design(const mt_discrete *d, int worker, mt_combination *c, mt_err *err)
+{
+    mt_problem *const p = d->problems[worker];
+    mt_nlp_values *const v = &d->values[worker];
+    mt_err own = {0};
+    c->evals = 1;
+    const mt_status rc = mt_problem_eval(p, c->t, false, v, &own);
+    if (rc != MT_OK) {
+        c->stop = rc == MT_E_INTERRUPTED ? MT_STOP_USER : MT_STOP_DONE;
+        c->judged = rc != MT_E_INTERRUPTED;
+        return mt_pass_final(rc, &own, err);
+    }
+    c->judged = true;
+    c->violation = 0.0;
+    c->squares = 0.0;
+    for (int k = 0; k < p->n_aims; k++) {
+        c->f[k] = mt_aim_value(p, k, NULL);
+    }
+    for (int i = 0; i < p->n_eq; i++) {
+        demand_more(c, fabs(v->eq[i]), p->eq_tol[i]);
+    }
+    for (int i = 0; i < p->n_in; i++) {
+        demand_more(c, MT_HAS(v->in[i]) ? fmax(-v->in[i], 0.0) : v->in[i], p->in_tol[i]);
+    }
+    judge_bands(p, c);
+    c->feasible = c->violation <= 1.0;
+    return MT_OK;
+}
+
+/* Motions of the design at c, whose views have been solved with the first worker's problem. */
+static mt_status follow(mt_problem *p, mt_combination *c, mt_arena *mem, mt_err *err)
+{
+    int *const below = mt_arena_int(mem, (size_t)p->n_bands);
+    if (below == NULL) {
+        return mt_fail_memory(err);
+    }
+    double room = mt_ties_room(p, below);
+    for (int i = 0; i < p->n_families; i++) {
+        mt_motion m = {.room = 0.0};
+        if (!p->families[i].banded) {
+            continue;
+        }
+        MT_TRY(mt_motion_follow(p, i, below, mem, &m, err));
+        c->evals += m.positions;
+        if (m.end == MT_MOTION_UNSTABLE || m.room < -m.tolerance) {
+            demand_more(c, m.end == MT_MOTION_UNSTABLE ? nan("") : -m.room, m.tolerance);
+            c->feasible = false;
+        }
+        room = fmin(room, m.room);
+    }
+    for (int k = 0; k < p->n_aims; k++) {
+        if (p->aims[k].type == MT_OBJECTIVE_CLEARANCE) {
+            c->f[k] = fmax(c->f[k], -room);
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err)
+{
+    mt_problem *const p = d->p;
+    mt_arena mem;
+    mt_err own = {0};
+    if (d->mixed || !c->feasible || c->followed || !mt_family_any(p)) {
+        return MT_OK;
+    }
+    c->followed = true;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    mt_status rc = mt_problem_eval(p, c->t, false, &d->values[0], &own);
+    rc = rc == MT_OK ? follow(p, c, &mem, &own) : rc;
+    mt_arena_free(&mem);
+    if (rc == MT_E_INTERRUPTED) {
+        d->stop = MT_STOP_USER;
+        c->feasible = false; /* not known */
+        c->judged = false;
+        return MT_OK;
+    }
+    d->evals += c->evals - 1;
+    c->feasible = c->feasible && rc == MT_OK;
+    return mt_pass_final(rc, &own, err);
+}
+
+static mt_status judge_designs(void *context, int worker, int task, mt_err *err)
+{
+    const judging *const j = context;
+    const int end = (task + 1) * PER_TASK < j->n ? (task + 1) * PER_TASK : j->n;
+    for (int i = task * PER_TASK; i < end; i++) {
+        MT_TRY(judge_design(j->d, worker, &j->list[i], err));
+    }
+    return MT_OK;
+}
+
+/* The study with the bounds of its catalogues closed on c's values; it borrows everything else. */
+static mt_status close_study(const judging *j, const mt_combination *c, mt_arena *mem,
+                             mt_study *out, mt_err *err)
+{
+    const mt_study *const whole = j->d->p->study;
+    const int n = whole->n_variables;
+    *out = *whole;
+    out->trade.n_vary = 0;
+    out->variables = mt_arena_alloc(mem, (size_t)n, sizeof *out->variables);
+    if (out->variables == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(out->variables, whole->variables, (size_t)n * sizeof *out->variables);
+    for (int k = 0; k < j->d->n_discrete; k++) {
+        mt_variable *const v = &out->variables[j->d->variable[k]];
+        v->lower = v->catalogue[c->pick[k]];
+        v->upper = v->lower;
+    }
+    if (out->search.starts <= 0) {
+        out->search.starts = STARTS_BASE + (STARTS_PER_VARIABLE * (n - j->d->n_discrete));
+    }
+    out->search.max_evaluations = j->budget;
+    return MT_OK;
+}
+
+static void keep(const mt_nlp_solution *s, int n, mt_combination *c)
+{
+    memcpy(c->t, s->t, (size_t)n * sizeof *c->t);
+    c->violation = s->violation;
+    c->squares = s->squares;
+    c->kkt = s->kkt;
+    c->singular = s->singular;
+    c->feasible = s->feasible;
+}
+
+/* All objectives at the design found, by one more evaluation. */
+static mt_status evaluate_aims(mt_problem *p, const mt_nlp_solution *s, bool gaps,
+                               mt_arena *mem, mt_combination *c, mt_err *err)
+{
+    mt_nlp_values v;
+    p->stage = 0;
+    MT_TRY(mt_problem_values_init(p, mem, &v, err));
+    MT_TRY(mt_problem_eval(p, c->t, false, &v, err));
+    c->evals++;
+    for (int k = 0; k < p->n_aims; k++) {
+        const bool clearance = p->aims[k].type == MT_OBJECTIVE_CLEARANCE;
+        c->f[k] = k == 0 && gaps && clearance ? s->f : mt_aim_value(p, k, NULL);
+    }
+    return MT_OK;
+}
+
+static mt_status search_closed(mt_problem *p, mt_arena *mem, mt_combination *c, mt_err *err)
+{
+    mt_nlp_result plain = {0};
+    mt_gap_result gaps = {0};
+    mt_err why = {0};
+    int stage = 0;
+    const bool bands = p->n_clears > 0;
+    MT_TRY(bands ? mt_gaps_solve(p, 1, mem, &gaps, err)
+                 : mt_search_designs(&p, 1, mem, &plain, &stage, &why, err));
+    const int n = bands ? gaps.n_solutions : plain.n_solutions;
+    c->evals = bands ? gaps.evals : plain.evals;
+    c->starts = bands ? gaps.starts : plain.starts;
+    c->stop = bands ? gaps.stop : plain.stop;
+    c->judged = c->stop != MT_STOP_USER;
+    if (n == 0) {
+        return MT_OK;
+    }
+    const mt_nlp_solution *const best = bands ? gaps.solutions[0].found : &plain.solutions[0];
+    keep(best, p->n, c);
+    const mt_status rc = evaluate_aims(p, best, bands, mem, c, &why);
+    if (rc != MT_OK) {
+        c->feasible = false;
+        c->squares = HUGE_VAL;
+    }
+    return mt_pass_final(rc, &why, err);
+}
+
+mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_arena *mem,
+                                 mt_nlp_result *out, mt_err *err)
+{
+    const judging j = {.d = d};
+    mt_study closed;
+    mt_problem *p = NULL;
+    mt_gap_result gaps = {0};
+    mt_err why = {0};
+    int stage = 0;
+    *out = (mt_nlp_result){.n_undetermined = 0};
+    MT_TRY(close_study(&j, c, mem, &closed, err));
+    MT_TRY(mt_problem_new(&closed, d->p->references, &p, err));
+    const bool bands = p->n_clears > 0;
+    const mt_status rc = bands ? mt_gaps_solve(p, 1, mem, &gaps, err)
+                               : mt_search_designs(&p, 1, mem, out, &stage, &why, err);
+    if (bands) {
+        *out = (mt_nlp_result){.evals = gaps.evals,
+                               .n_undetermined = gaps.n_undetermined,
+                               .undetermined = gaps.undetermined,
+                               .undetermined_effect = gaps.undetermined_effect};
+    }
+    mt_problem_delete(p);
+    return rc;
+}
+
+static mt_status judge_mixed(void *context, int worker, int task, mt_err *err)
+{
+    const judging *const j = context;
+    const mt_problem *const whole = j->d->p;
+    mt_combination *const c = &j->list[task];
+    mt_arena mem;
+    mt_study closed;
+    mt_problem *p = NULL;
+    (void)worker;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    mt_status rc = close_study(j, c, &mem, &closed, err);
+    rc = rc == MT_OK ? mt_problem_new(&closed, whole->references, &p, err) : rc;
+    if (rc == MT_OK) {
+        p->hint = c->from;
+        rc = search_closed(p, &mem, c, err);
+    }
+    mt_problem_delete(p);
+    mt_arena_free(&mem);
+    if (rc == MT_E_INTERRUPTED) {
+        c->stop = MT_STOP_USER;
+        c->judged = false;
+        return MT_OK;
+    }
+    return rc;
+}
+
+mt_status mt_discrete_judge(mt_discrete *d, int n, mt_combination *list, long budget,
+                            mt_err *err)
+{
+    judging j = {.d = d, .n = n, .list = list, .budget = budget};
+    const int tasks = d->mixed ? n : (n + PER_TASK - 1) / PER_TASK;
+    MT_TRY(
+        mt_workers_run(d->n_workers, tasks, d->mixed ? judge_mixed : judge_designs, &j, err));
+    for (int i = 0; i < n; i++) {
+        d->evals += list[i].evals;
+        d->starts += list[i].starts;
+        d->stop = list[i].stop > d->stop ? list[i].stop : d->stop;
+    }
+    return MT_OK;
+}

@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Directions that the goals do not settle, where there are catalogues. A catalogue is one where each of its values in turn, all else as it is in the best combination, changes no goal by its
+ * tolerance (and no objective but the change, which always asks for the value nearest to the original).
+ */
+#include <math.h>
+#include <string.h>
+
+#include "search/discrete.h"
+
+/* Residuals and objectives carry no tolerance: relative to their size, as elsewhere (nlp.h). */
+static const double VALUE_TOL = 1e-6;
+
+typedef struct crossing {
+    mt_discrete *d;
+    mt_nlp_values v;
+    int rows;
+    double *at; /* [rows] rows in tolerances at the best combination */
+    double *now;
+    int *below;   /* [2 x bands] assignments at both */
+    double *t;    /* [n + 1] */
+    mt_status rc; /* what ends the comparison */
+    mt_err err;
+} crossing;
+
+static mt_status claim(crossing *x, mt_err *err)
+{
+    const mt_problem *const p = x->d->p;
+    mt_arena *const mem = x->d->mem;
+    x->rows = p->n_eq + p->n_in + p->n_res + p->n_aims + p->n_clears;
+    x->at = mt_arena_f64(mem, (size_t)x->rows, 1);
+    x->now = mt_arena_f64(mem, (size_t)x->rows, 1);
+    x->below = mt_arena_int(mem, 2 * (size_t)p->n_bands + 1);
+    x->t = mt_arena_f64(mem, (size_t)p->n + 1, 1);
+    if (x->at == NULL || x->now == NULL || x->below == NULL || x->t == NULL) {
+        return mt_fail_memory(err);
+    }
+    return mt_problem_values_init(p, mem, &x->v, err);
+}
+
+/* Rows divided by their tolerances at x->t; false where a goal has no value. */
+static bool measure(crossing *x, double *rows, int *below)
+{
+    mt_problem *const p = x->d->p;
+    int n = 0;
+    if (x->rc != MT_OK) {
+        return false;
+    }
+    const mt_status rc = mt_problem_eval(p, x->t, false, &x->v, &x->err);
+    bool known = rc == MT_OK;
+    x->rc = mt_is_final(rc) ? rc : MT_OK;
+    x->d->evals++;
+    for (int i = 0; i < p->n_eq && known; i++) {
+        rows[n++] = x->v.eq[i] / p->eq_tol[i];
+    }
+    for (int i = 0; i < p->n_in && known; i++) {
+        rows[n++] = x->v.in[i] / p->in_tol[i];
+    }
+    for (int i = 0; i < p->n_res && known; i++) {
+        rows[n++] = p->r[i] / VALUE_TOL;
+    }
+    for (int k = 0; k < p->n_aims && known; k++) {
+        const mt_objective_type type = p->aims[k].type;
+        const bool counts = type == MT_OBJECTIVE_MASS || type == MT_OBJECTIVE_EXPRESSION;
+        rows[n++] = counts ? mt_aim_value(p, k, NULL) / VALUE_TOL : 0.0;
+    }
+    for (int i = 0; i < p->n_clears && known; i++) {
+        const mt_clear *const c = &p->clears[i];
+        const mt_modes *const modes = &p->views[c->view].analysis->modes;
+        const double violation = mt_clear_violation(c, modes, below + c->first, NULL);
+        rows[n++] = mt_clear_room(p, c) / c->tolerance;
+        known = violation == violation;
+    }
+    return known;
+}
+
+/* The size that makes an objective's change relative; 1 for the other rows. */
+static double size_of(const crossing *x, int row)
+{
+    const mt_problem *const p = x->d->p;
+    const int first = p->n_eq + p->n_in + p->n_res;
+    const bool aim = row >= first && row < first + p->n_aims;
+    return aim ? fmax(fabs(x->at[row]) * VALUE_TOL, VALUE_TOL) : 1.0;
+}
+
+/* Greatest change of any row, in tolerances, over all values of variable i; infinite where an assignment changes or a value is lost. */
+static double effect_of(crossing *x, int i)
+{
+    const mt_problem *const p = x->d->p;
+    const mt_variable *const v = &p->study->variables[i];
+    const double keep = x->t[i];
+    double most = 0.0;
+    for (int k = 0; k < v->n_catalogue && most < 1.0; k++) {
+        x->t[i] = mt_problem_t(p, i, v->catalogue[k]);
+        if (!measure(x, x->now, x->below + p->n_bands) ||
+            memcmp(x->below, x->below + p->n_bands, (size_t)p->n_bands * sizeof(int)) != 0) {
+            most = HUGE_VAL;
+        }
+        for (int r = 0; r < x->rows && most < 1.0; r++) {
+            most = fmax(most, fabs(x->now[r] - x->at[r]) / size_of(x, r));
+        }
+    }
+    x->t[i] = keep;
+    return most;
+}
+
+static mt_status cross(crossing *x, const mt_nlp_result *continuous, mt_nlp_result *out,
+                       mt_err *err)
+{
+    const mt_problem *const p = x->d->p;
+    const size_t n = (size_t)p->n;
+    const size_t room = (size_t)x->d->n_discrete + (size_t)continuous->n_undetermined;
+    out->undetermined = mt_arena_f64(x->d->mem, n, room);
+    out->undetermined_effect = mt_arena_f64(x->d->mem, room, 1);
+    if (out->undetermined == NULL || out->undetermined_effect == NULL) {
+        return mt_fail_memory(err);
+    }
+    const bool known = measure(x, x->at, x->below);
+    for (int k = 0; k < x->d->n_discrete && known; k++) {
+        const int i = x->d->variable[k];
+        const double effect =
+            p->study->variables[i].n_catalogue > 1 ? effect_of(x, i) : HUGE_VAL;
+        if (effect < 1.0) {
+            out->undetermined_effect[out->n_undetermined] = effect;
+            out->undetermined[((size_t)out->n_undetermined++ * n) + (size_t)i] = 1.0;
+        }
+    }
+    if (x->rc != MT_OK) {
+        return mt_fail(err, x->rc, "%s", x->err.text);
+    }
+    for (int k = 0; k < continuous->n_undetermined; k++) {
+        memcpy(out->undetermined + ((size_t)out->n_undetermined * n),
+               continuous->undetermined + ((size_t)k * n), n * sizeof(double));
+        out->undetermined_effect[out->n_undetermined++] = continuous->undetermined_effect[k];
+    }
+    return MT_OK;
+}
+
+mt_status mt_discrete_undetermined(mt_discrete *d, const mt_combination *best,
+                                   mt_nlp_result *out, mt_err *err)
+{
+    crossing x = {.d = d};
+    mt_nlp_result continuous = {0};
+    d->p->stage = 0;
+    MT_TRY(claim(&x, err));
+    memcpy(x.t, best->t, (size_t)d->p->n * sizeof *x.t);
+    if (d->mixed) {
+        MT_TRY(mt_discrete_directions(d, best, d->mem, &continuous, err));
+        d->evals += continuous.evals;
+    }
+    MT_TRY(cross(&x, &continuous, out, err));
+    out->evals = d->evals;
+    return MT_OK;
+}

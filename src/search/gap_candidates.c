@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Which gap assignments are worth a search. Where the modes can be enclosed (proof.h), branch and bound over the bounds finds every assignment that some design has, with such a design, and proves that
+ * there is no other. Elsewhere, sampled: designs spread over the bounds; each says how many modes lie below the middle of each band, and its assignment becomes a candidate. A design
+ * clear of all bands has the same assignment as the samples around it, so a kind of design is only missed where it is smaller than the samples are apart. That is labelled as sampled.
+ */
+#include "nlp/nlp_priv.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "problem/family.h"
+#include "search/gaps.h"
+#include "search/proof.h"
+
+enum { SAMPLES_PER_VARIABLE = 256, SAMPLES_MOST = 4096, CANDIDATES_MOST = 256 };
+
+typedef struct sampled {
+    int *below;
+    double violation;
+} sampled;
+
+static int compare_below(const int *a, const int *b, int n)
+{
+    for (int i = 0; i < n; i++) {
+        if (a[i] != b[i]) {
+            return a[i] < b[i] ? -1 : 1;
+        }
+    }
+    return 0;
+}
+
+mt_status mt_gap_assignment(mt_problem *p, const double *t, int *below, double *violation,
+                            mt_err *err)
+{
+    mt_problem_x(p, t, p->x);
+    *violation = 0.0;
+    for (int i = 0; i < p->n_clears; i++) {
+        const mt_clear *const c = &p->clears[i];
+        mt_analysis *const a = p->views[c->view].analysis;
+        const mt_analysis_options opt = {.accuracy = false};
+        mt_err own = {0};
+        const mt_status rc = mt_analysis_solve(a, p->x, &opt, &own);
+        if (rc != MT_OK) {
+            *violation = nan("");
+            return mt_pass_final(rc, &own, err);
+        }
+        const double v = mt_clear_violation(c, &a->modes, below + c->first, NULL);
+        *violation = !(v <= *violation) ? v : *violation;
+    }
+    return MT_OK;
+}
+
+/* Insert into the sorted list, keeping the least violation of equal ones. */
+static void insert(const mt_problem *p, sampled *list, int *n, const int *below,
+                   double violation)
+{
+    int at = 0;
+    while (at < *n && compare_below(list[at].below, below, p->n_bands) < 0) {
+        at++;
+    }
+    if (at < *n && compare_below(list[at].below, below, p->n_bands) == 0) {
+        list[at].violation = fmin(list[at].violation, violation);
+        return;
+    }
+    int victim = *n; /* where the list is full, the least promising makes room */
+    if (*n == CANDIDATES_MOST) {
+        victim = 0;
+        for (int i = 1; i < *n; i++) {
+            victim = list[i].violation > list[victim].violation ? i : victim;
+        }
+        if (list[victim].violation <= violation) {
+            return;
+        }
+    } else {
+        (*n)++;
+    }
+    const sampled fresh = {list[victim].below, violation};
+    if (victim < at) {
+        at--;
+        memmove(&list[victim], &list[victim + 1], (size_t)(at - victim) * sizeof *list);
+    } else {
+        memmove(&list[at + 1], &list[at], (size_t)(victim - at) * sizeof *list);
+    }
+    list[at] = fresh;
+    memcpy(list[at].below, below, (size_t)p->n_bands * sizeof *below);
+}
+
+/* Is clear i tied to an earlier one? */
+static bool tied_before(const mt_problem *p, int i)
+{
+    for (int b = 0; b < p->clears[i].bands.n; b++) {
+        if (p->tie[p->clears[i].first + b] < p->clears[i].first) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Bands of clear i and of those tied to it, each set of tied ones once. */
+static int count_ties(const mt_problem *p, int i)
+{
+    const int family = mt_family_of(p, p->clears[i].view);
+    int m = 0;
+    for (int c = i; c < p->n_clears; c++) {
+        const bool own = c == i || (family >= 0 && tied_before(p, c) &&
+                                    mt_family_of(p, p->clears[c].view) == family);
+        for (int b = 0; own && b < p->clears[c].bands.n; b++) {
+            const int band = p->clears[c].first + b;
+            m += p->tie[band] == band ? 1 : 0;
+        }
+    }
+    return m;
+}
+
+double mt_gap_count_possible(const mt_problem *p)
+{
+    double all = 1.0;
+    for (int i = 0; i < p->n_clears; i++) {
+        const int n = mt_view_vibrations(&p->views[p->clears[i].view]);
+        const int m = tied_before(p, i) ? 0 : count_ties(p, i);
+        for (int k = 1; k <= m; k++) {
+            all *= (double)(n + k) / (double)k;
+        }
+    }
+    return round(all);
+}
+
+/* Keep the `most` assignments of least violation, in their order; what is not kept is not needed again. */
+static int keep_nearest(const sampled *list, int n, int most, bool *kept)
+{
+    int count = 0;
+    for (int i = 0; i < n; i++) {
+        int ahead = 0;
+        for (int k = 0; k < n; k++) {
+            const bool less = list[k].violation < list[i].violation;
+            ahead += less || (k < i && list[k].violation == list[i].violation) ? 1 : 0;
+        }
+        kept[i] = ahead < most;
+        count += kept[i] ? 1 : 0;
+    }
+    return count;
+}
+
+/* A sample whose numbers differ between two positions of one drive is no kind of design; the kinds next to it have the least and the greatest of them everywhere. */
+static void insert_agreeing(const mt_problem *p, sampled *list, int *n, const int *below,
+                            double violation, int *work)
+{
+    const size_t size = (size_t)p->n_bands * sizeof *below;
+    if (mt_ties_agree(p, below)) {
+        insert(p, list, n, below, violation);
+        return;
+    }
+    for (int most = 0; most < 2; most++) {
+        memcpy(work, below, size);
+        mt_ties_settle(p, most == 1, work);
+        insert(p, list, n, work, mt_ties_violation(p, work));
+    }
+}
+
+/* The assignments of n designs spread over the bounds, at most `most` of them. */
+static mt_status sample(mt_problem *p, int n, int most, mt_arena *mem, mt_gap_candidates *out,
+                        mt_err *err)
+{
+    mt_nlp nlp = mt_problem_nlp(p);
+    mt_nlp_options opt = mt_nlp_options_default();
+    mt_nlp_engine e;
+    nlp.n = p->n;
+    opt.seed = p->study->search.seed;
+    sampled *const list = mt_arena_alloc(mem, CANDIDATES_MOST, sizeof *list);
+    int *const below = mt_arena_int(mem, (size_t)p->n_bands);
+    int *const work = mt_arena_int(mem, (size_t)p->n_bands);
+    if (list == NULL || below == NULL || work == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < CANDIDATES_MOST; i++) {
+        list[i].below = mt_arena_int(mem, (size_t)p->n_bands);
+        if (list[i].below == NULL) {
+            return mt_fail_memory(err);
+        }
+    }
+    MT_TRY(mt_nlp_engine_init(&e, &nlp, &opt, err));
+    const double *const t = mt_nlp_starts(&e, n, mem);
+    mt_status rc = t == NULL ? mt_fail_memory(err) : MT_OK;
+    for (int k = 0; rc == MT_OK && k < n; k++) {
+        double violation = 0.0;
+        if (mt_interrupted(p->study->model->interrupt)) {
+            break;
+        }
+        rc = mt_gap_assignment(p, t + ((ptrdiff_t)k * p->n), below, &violation, err);
+        if (rc == MT_OK && MT_HAS(violation)) {
+            insert_agreeing(p, list, &out->n, below, violation, work);
+        }
+        out->evals++;
+    }
+    mt_nlp_engine_free(&e);
+    MT_TRY(rc);
+    bool kept[CANDIDATES_MOST] = {false};
+    const int n_found = out->n;
+    out->n = keep_nearest(list, n_found, most, kept);
+    out->below = mt_arena_int(mem, (size_t)out->n * (size_t)p->n_bands);
+    if (out->below == NULL) {
+        return mt_fail_memory(err);
+    }
+    int *row = out->below;
+    for (int i = 0; i < n_found; i++) {
+        if (kept[i]) {
+            memcpy(row, list[i].below, (size_t)p->n_bands * sizeof *below);
+            row += p->n_bands;
+        }
+    }
+    return MT_OK;
+}
+
+/* What branch and bound found feasible, each with a design, and what it left open when its budget ended. */
+static mt_status keep_proven(const mt_problem *p, const mt_certify_search *found, mt_arena *mem,
+                             mt_gap_candidates *out, mt_err *err)
+{
+    const size_t row = (size_t)p->n_bands;
+    const int n = found->n_found + found->n_open;
+    out->below = mt_arena_int(mem, (size_t)n * row);
+    out->at = mt_arena_f64(mem, (size_t)p->n, (size_t)n);
+    if (out->below == NULL || out->at == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (found->n_found > 0) {
+        memcpy(out->below, found->found, (size_t)found->n_found * row * sizeof *out->below);
+    }
+    if (found->n_open > 0) {
+        memcpy(out->below + ((ptrdiff_t)found->n_found * p->n_bands), found->open,
+               (size_t)found->n_open * row * sizeof *out->below);
+    }
+    for (int k = 0; k < n; k++) {
+        for (int i = 0; i < p->n; i++) {
+            const double x =
+                k < found->n_found ? found->at[i + ((ptrdiff_t)k * p->n)] : p->original[i];
+            out->at[i + ((ptrdiff_t)k * p->n)] = mt_problem_t(p, i, x);
+        }
+    }
+    out->n = n;
+    out->n_proven = found->n_found;
+    out->proven = found->proven;
+    out->boxes = found->boxes;
+    out->all = !found->more && !found->stopped;
+    out->reason = found->proven ? NULL : "the budget of boxes ended";
+    return MT_OK;
+}
+
+mt_status mt_gap_candidates_find(mt_problem *p, mt_arena *mem, mt_gap_candidates *out,
+                                 mt_err *err)
+{
+    mt_proof proof;
+    mt_certify_search found = {0};
+    *out = (mt_gap_candidates){.possible = mt_gap_count_possible(p)};
+    mt_status rc = mt_proof_init(&proof, p, mem, err);
+    if (rc == MT_OK && proof.possible) {
+        rc = mt_certify_assignments(&proof.question, 0, NULL, mem, &found, err);
+        rc = rc == MT_OK ? keep_proven(p, &found, mem, out, err) : rc;
+    }
+    const bool by_samples = !proof.possible || (!out->proven && out->n == 0);
+    if (rc == MT_OK && by_samples) {
+        out->reason = mt_arena_strdup(mem, proof.reason);
+        const int wanted = SAMPLES_PER_VARIABLE * (p->n + 1);
+        const int n = wanted < SAMPLES_MOST ? wanted : SAMPLES_MOST;
+        rc = out->reason == NULL ? mt_fail_memory(err)
+                                 : sample(p, n, CANDIDATES_MOST, mem, out, err);
+    }
+    mt_proof_free(&proof, p);
+    return rc;
+}
+
+mt_status mt_gap_candidates_near(mt_problem *p, int most, mt_arena *mem, mt_gap_candidates *out,
+                                 mt_err *err)
+{
+    *out = (mt_gap_candidates){.possible = mt_gap_count_possible(p)};
+    return sample(p, MT_GAP_SAMPLES_NEAR, most, mem, out, err);
+}

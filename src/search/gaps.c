@@ -1,0 +1,424 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Every gap assignment is a search of its own. Where configurations are positions of one drive, the best design of an assignment is followed from position to position (motion.h); where a mode
+ * crosses an edge on the way, the position of the worst crossing becomes one more configuration that has to keep the assignment, and the search begins again from there (a cutting plane: what it
+ * removes crosses). A few rounds end it, as each begins next to its answer; a design that still crosses then is no design of that assignment.
+ */
+#include "search/gaps.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/workers.h"
+#include "search/motion.h"
+#include "search/search.h"
+
+/* What the search of one candidate left behind, in its own memory. */
+typedef struct slot {
+    mt_arena mem;
+    mt_nlp_result found;
+    int n_t;
+    double *aims; /* [n_aims] of the best solution, where there is one and several objectives */
+    mt_status rc;
+    long evals; /* of all rounds */
+    int starts;
+    int n_cuts;
+    mt_cut *cuts; /* [CUTS_MOST] */
+} slot;
+
+typedef struct job {
+    mt_problem *p;
+    const mt_gap_candidates *candidates;
+    slot *slots;
+    mt_nlp_options options;
+    const int *hint_below; /* [n_bands] assignment of p->hint; NULL: none */
+} job;
+
+enum { STARTS_PER_CANDIDATE = 24, SOLUTIONS_PER_CANDIDATE = 4, NEAREST = 6 };
+/* Rounds of cuts, and starts of the later ones, which begin next to their answer. */
+enum { CUT_ROUNDS = 8, CUTS_MOST = 32, CUT_STARTS = 6 };
+
+/* The caller's design where it is of this kind, else the one that the candidate comes with; NULL: none. */
+static const double *hint_of(const job *j, int k)
+{
+    const size_t size = (size_t)j->p->n_bands * sizeof(int);
+    const int *const below = j->candidates->below + ((ptrdiff_t)k * j->p->n_bands);
+    if (j->hint_below != NULL && memcmp(below, j->hint_below, size) == 0) {
+        return j->p->hint;
+    }
+    return j->candidates->at == NULL ? NULL : j->candidates->at + ((ptrdiff_t)k * j->p->n);
+}
+
+/* Values of all objectives at the best solution, by which the candidates are ranked. */
+static mt_status keep_aims(mt_problem *p, slot *s, mt_err *err)
+{
+    mt_nlp_values v;
+    s->aims = mt_arena_f64(&s->mem, (size_t)p->n_aims, 1);
+    if (s->aims == NULL) {
+        return mt_fail_memory(err);
+    }
+    p->stage = 0;
+    MT_TRY(mt_problem_values_init(p, &s->mem, &v, err));
+    MT_TRY(mt_problem_eval(p, s->found.solutions[0].t, false, &v, err));
+    for (int k = 0; k < p->n_aims; k++) {
+        s->aims[k] = mt_aim_value(p, k, NULL);
+    }
+    return MT_OK;
+}
+
+/* The objectives in order, each with those before it held (search.h). */
+static mt_status search_in_order(mt_problem *p, const double *hint, slot *s, mt_err *err)
+{
+    int stage = 0;
+    mt_err why = {0};
+    p->hint = hint;
+    MT_TRY(mt_search_designs(&p, 1, &s->mem, &s->found, &stage, &why, err));
+    if (s->found.n_solutions == 0 || s->found.compromise || s->found.stop == MT_STOP_USER) {
+        return MT_OK;
+    }
+    MT_TRY(keep_aims(p, s, err));
+    s->found.solutions[0].f = s->aims[p->n_aims - 1];
+    return MT_OK;
+}
+
+/* Where the motion of a family comes nearer than `room`, one more cut for each way between two positions. */
+static int add_cuts(slot *s, const mt_problem *p, int family, const mt_motion *m, double room)
+{
+    int added = 0;
+    for (int i = 0; i < m->n_ways && p->families[family].fixed; i++) {
+        if (m->way_room[i] < room - m->tolerance && MT_HAS(m->way_at[i]) &&
+            s->n_cuts < CUTS_MOST) {
+            s->cuts[s->n_cuts++] = (mt_cut){.family = family, .position = m->way_at[i]};
+            added++;
+        }
+    }
+    return added;
+}
+
+static void refuse(mt_nlp_solution *best, double short_of, double tolerance)
+{
+    best->feasible = false;
+    best->squares += short_of * short_of;
+    best->violation = fmax(best->violation, short_of / tolerance);
+}
+
+/* Follow the best design over the range of motion. *added: cuts to search again with; with none a design that crosses is refused. */
+static mt_status follow_best(slot *s, mt_problem *p, bool last, int *added, mt_err *err)
+{
+    mt_nlp_values v;
+    mt_nlp_solution *const best = &s->found.solutions[0];
+    const double wanted = p->clearance ? best->t[p->n] : 0.0;
+    double short_of = 0.0;
+    double tolerance = 1.0;
+    *added = 0;
+    p->stage = 0;
+    MT_TRY(mt_problem_values_init(p, &s->mem, &v, err));
+    MT_TRY(mt_problem_eval(p, best->t, false, &v, err));
+    for (int i = 0; i < p->n_families; i++) {
+        mt_motion m = {.room = 0.0};
+        if (!p->families[i].banded) {
+            continue;
+        }
+        MT_TRY(mt_motion_follow(p, i, p->below, &s->mem, &m, err));
+        s->evals += m.positions;
+        *added += last ? 0 : add_cuts(s, p, i, &m, wanted);
+        if (m.end == MT_MOTION_UNSTABLE || m.room < -m.tolerance) {
+            const double here = m.end == MT_MOTION_UNSTABLE ? 1.0 : -m.room;
+            tolerance = here > short_of && m.tolerance > 0.0 ? m.tolerance : tolerance;
+            short_of = fmax(short_of, here);
+        }
+    }
+    if (*added == 0 && short_of > 0.0) {
+        refuse(best, short_of, tolerance);
+    }
+    return MT_OK;
+}
+
+/*
+ * The least clearance z is free to be negative, so that a search can start anywhere; a design that ends with z < 0 has a mode on the wrong side of an edge: it is not of this kind, and misses the
+ * bands by -z.
+ */
+static void judge_clearance(const mt_problem *p, mt_nlp_result *found)
+{
+    double tolerance = HUGE_VAL;
+    for (int i = 0; i < p->n_clears; i++) {
+        tolerance = fmin(tolerance, p->clears[i].tolerance);
+    }
+    for (int i = 0; i < found->n_solutions && p->clearance; i++) {
+        mt_nlp_solution *const s = &found->solutions[i];
+        const double z = s->t[p->n];
+        if (z < -tolerance) {
+            s->feasible = false;
+            s->squares += z * z;
+            s->violation = fmax(s->violation, -z / tolerance);
+        }
+    }
+    found->compromise = found->n_solutions > 0 && !found->solutions[0].feasible;
+}
+
+/* One search of candidate k with the cuts so far, from `from` (NULL: no hint). *again: a cut was added. */
+static mt_status search_round(const job *j, slot *s, int k, int round, const double *from,
+                              bool *again, mt_err *why)
+{
+    mt_problem *p = NULL;
+    mt_nlp_options options = j->options;
+    int added = 0;
+    *again = false;
+    MT_TRY(mt_problem_new_cut(j->p->study, j->p->references,
+                              j->candidates->below + ((ptrdiff_t)k * j->p->n_bands), s->n_cuts,
+                              s->cuts, &p, why));
+    options.starts =
+        round > 1 && options.starts > CUT_STARTS ? (int)CUT_STARTS : options.starts;
+    p->starts = options.starts;
+    s->n_t = p->n_t;
+    mt_nlp nlp = mt_problem_nlp(p);
+    double *const hint = mt_arena_f64(&s->mem, (size_t)p->n_t, 1);
+    if (hint != NULL && from != NULL) {
+        memcpy(hint, from, (size_t)p->n * sizeof *hint);
+        nlp.hint = hint;
+    }
+    mt_status rc = hint == NULL    ? mt_fail_memory(why)
+                   : p->n_aims > 1 ? search_in_order(p, nlp.hint, s, why)
+                                   : mt_nlp_solve(&nlp, &options, &s->mem, &s->found, why);
+    if (rc == MT_OK && p->n_aims == 1) {
+        rc = mt_search_repeated(p, options.max_evals, &s->mem, &s->found, why);
+    }
+    if (rc == MT_OK) {
+        judge_clearance(p, &s->found);
+    }
+    s->evals += s->found.evals;
+    s->starts += s->found.starts;
+    if (rc == MT_OK && s->found.n_solutions > 0 && s->found.solutions[0].feasible &&
+        s->found.stop != MT_STOP_USER && mt_family_any(p)) {
+        rc = follow_best(s, p, round + 1 == CUT_ROUNDS, &added, why);
+    }
+    *again = added > 0;
+    mt_problem_delete(p);
+    return rc;
+}
+
+/* A candidate that cannot even be evaluated anywhere is no failure of the study: it has no solution. */
+static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
+{
+    job *const j = context;
+    slot *const s = &j->slots[k];
+    mt_err why = {0};
+    bool again = true;
+    (void)worker;
+    MT_TRY(mt_arena_init(&s->mem, 0, err));
+    s->cuts = mt_arena_alloc(&s->mem, CUTS_MOST, sizeof *s->cuts);
+    if (s->cuts == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int round = 0; again && round < CUT_ROUNDS; round++) {
+        const bool known = round > 0 && s->found.n_solutions > 0;
+        s->rc = search_round(j, s, k, round, known ? s->found.solutions[0].t : hint_of(j, k),
+                             &again, &why);
+    }
+    if (s->rc != MT_OK) { /* perhaps on the way from position to position: nothing is known */
+        s->found.n_solutions = 0;
+        s->found.stop = s->rc == MT_E_INTERRUPTED ? MT_STOP_USER : s->found.stop;
+    }
+    const bool fatal = mt_is_final(s->rc);
+    return fatal ? mt_fail(err, s->rc, "%s", why.text) : MT_OK;
+}
+
+/* References that are models are analysed before the workers start: the cache is shared and not locked. */
+static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem,
+                                mt_gap_result *out, mt_err *err)
+{
+    int most = 0;
+    for (int k = 0; k < j->candidates->n; k++) {
+        most += j->slots[k].found.n_solutions;
+    }
+    out->solutions = mt_arena_alloc(mem, (size_t)most, sizeof *out->solutions);
+    if (out->solutions == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int k = 0; k < j->candidates->n; k++) {
+        const mt_nlp_result *const found = &j->slots[k].found;
+        out->n_feasible += found->n_solutions > 0 && found->solutions[0].feasible ? 1 : 0;
+    }
+    out->compromise = out->n_feasible == 0;
+    for (int k = 0; k < j->candidates->n; k++) {
+        const mt_nlp_result *const found = &j->slots[k].found;
+        /* one design for each assignment: its best; further local optima of the same kind come after (see rank) */
+        for (int i = 0; i < found->n_solutions && i < 1; i++) {
+            if (found->solutions[i].feasible != out->compromise) {
+                out->solutions[out->n_solutions++] = (mt_gap_solution){
+                    .found = &found->solutions[i],
+                    .below = j->candidates->below + ((ptrdiff_t)k * p->n_bands),
+                    .candidate = k,
+                    .aims = j->slots[k].aims,
+                    .n_aims = j->slots[k].aims == NULL ? 0 : p->n_aims};
+            }
+        }
+    }
+    return MT_OK;
+}
+
+static bool better(const mt_gap_solution *a, const mt_gap_solution *b, bool compromise)
+{
+    const int n = compromise ? 0 : (a->n_aims < b->n_aims ? a->n_aims : b->n_aims);
+    if (mt_search_before(n, a->aims, b->aims)) {
+        return true;
+    }
+    if (mt_search_before(n, b->aims, a->aims)) {
+        return false;
+    }
+    return compromise ? a->found->squares < b->found->squares : a->found->f < b->found->f;
+}
+
+/* Stable: what is equal keeps the order of the assignments. */
+static void rank(mt_gap_result *r)
+{
+    for (int i = 1; i < r->n_solutions; i++) {
+        const mt_gap_solution s = r->solutions[i];
+        int k = i;
+        for (; k > 0 && better(&s, &r->solutions[k - 1], r->compromise); k--) {
+            r->solutions[k] = r->solutions[k - 1];
+        }
+        r->solutions[k] = s;
+    }
+}
+
+/* Solutions outlive the slots: copy what is kept. */
+static mt_status copy_solution(const mt_problem *p, const int *below,
+                               const mt_nlp_solution *from, mt_arena *mem,
+                               const mt_nlp_solution **out, mt_err *err)
+{
+    const size_t n_eq = (size_t)p->n_eq;
+    const size_t n_in = (size_t)p->n_in + (size_t)mt_clear_row_count(p, below);
+    const size_t n = (size_t)p->n + 1;
+    mt_nlp_solution *const s = mt_arena_alloc(mem, 1, sizeof *s);
+    double *const t = mt_arena_f64(mem, n, 1);
+    int *const bound = mt_arena_int(mem, n);
+    double *const mult = mt_arena_f64(mem, n, 1);
+    double *const mult_eq = mt_arena_f64(mem, n_eq, 1);
+    double *const mult_in = mt_arena_f64(mem, n_in, 1);
+    if (s == NULL || t == NULL || bound == NULL || mult == NULL || mult_eq == NULL ||
+        mult_in == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(t, from->t, (size_t)p->n * sizeof *t);
+    memcpy(bound, from->bound, (size_t)p->n * sizeof *bound);
+    memcpy(mult, from->mult_bound, (size_t)p->n * sizeof *mult);
+    if (n_eq > 0) {
+        memcpy(mult_eq, from->mult_eq, n_eq * sizeof *mult_eq);
+    }
+    if (n_in > 0) {
+        memcpy(mult_in, from->mult_in, n_in * sizeof *mult_in);
+    }
+    *s = *from;
+    s->t = t;
+    s->bound = bound;
+    s->mult_bound = mult;
+    s->mult_eq = mult_eq;
+    s->mult_in = mult_in;
+    *out = s;
+    return MT_OK;
+}
+
+/* Of the best solution's search; without the coordinate for the clearance, which no goal leaves free. */
+static mt_status keep_undetermined(const mt_problem *p, const slot *s, mt_arena *mem,
+                                   mt_gap_result *out, mt_err *err)
+{
+    const size_t count = (size_t)s->found.n_undetermined;
+    out->undetermined = mt_arena_f64(mem, (size_t)p->n, count);
+    out->undetermined_effect = mt_arena_f64(mem, count, 1);
+    if (out->undetermined == NULL || out->undetermined_effect == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (size_t k = 0; k < count; k++) {
+        memcpy(out->undetermined + (k * (size_t)p->n),
+               s->found.undetermined + (k * (size_t)s->n_t), (size_t)p->n * sizeof(double));
+        out->undetermined_effect[k] = s->found.undetermined_effect[k];
+    }
+    out->n_undetermined = (int)count;
+    return MT_OK;
+}
+
+static mt_status collect(const mt_problem *p, const job *j, mt_arena *mem, mt_gap_result *out,
+                         mt_err *err)
+{
+    MT_TRY(keep_solutions(p, j, mem, out, err));
+    rank(out);
+    if (out->n_solutions > 0) {
+        MT_TRY(keep_undetermined(p, &j->slots[out->solutions[0].candidate], mem, out, err));
+    }
+    for (int i = 0; i < out->n_solutions; i++) {
+        MT_TRY(copy_solution(p, out->solutions[i].below, out->solutions[i].found, mem,
+                             &out->solutions[i].found, err));
+        out->solutions[i].aims = NULL; /* the slots' memory goes */
+        out->stage = out->solutions[i].n_aims > 0 ? p->n_aims - 1 : 0;
+    }
+    for (int k = 0; k < j->candidates->n; k++) {
+        const mt_nlp_result *const found = &j->slots[k].found;
+        out->evals += j->slots[k].evals;
+        out->starts += j->slots[k].starts;
+        out->stop = found->stop > out->stop ? found->stop : out->stop;
+    }
+    return MT_OK;
+}
+
+/* Where the budget of boxes ended but left a list of open assignments, and the search met them all, nothing is open any more. */
+static bool is_settled(const job *j)
+{
+    bool met = j->candidates->all;
+    for (int k = 0; k < j->candidates->n && met; k++) {
+        const mt_nlp_result *const found = &j->slots[k].found;
+        met = found->n_solutions > 0 && found->solutions[0].feasible;
+    }
+    return met;
+}
+
+mt_status mt_gaps_solve(mt_problem *p, int workers, mt_arena *mem, mt_gap_result *out,
+                        mt_err *err)
+{
+    mt_gap_candidates candidates = {0};
+    *out = (mt_gap_result){.stop = MT_STOP_DONE};
+    MT_TRY(mt_gap_candidates_find(p, mem, &candidates, err));
+    out->n_candidates = candidates.n;
+    out->n_possible = candidates.possible;
+    out->proven = candidates.proven;
+    out->tolerances = p->robust != NULL;
+    if (candidates.proven && candidates.n == 0) { /* then the nearest designs are wanted */
+        const long boxes = candidates.boxes;
+        MT_TRY(mt_gap_candidates_near(p, NEAREST, mem, &candidates, err));
+        candidates.boxes = boxes;
+    }
+    for (int i = 0; i < p->n_clears; i++) {
+        out->driven = out->driven || p->views[p->clears[i].view].analysis->sys->driven;
+    }
+    out->motion = mt_family_any(p);
+    out->reason = candidates.reason;
+    out->boxes = candidates.boxes;
+    out->evals = candidates.evals;
+    job j = {.p = p, .candidates = &candidates, .options = mt_nlp_options_default()};
+    j.options.seed = p->study->search.seed;
+    j.options.starts =
+        p->study->search.starts > 0 ? p->study->search.starts : STARTS_PER_CANDIDATE + p->n;
+    j.options.max_evals = p->study->search.max_evaluations;
+    j.options.max_solutions = SOLUTIONS_PER_CANDIDATE;
+    j.options.least_change = p->aims[p->stage].type == MT_OBJECTIVE_CHANGE;
+    if (p->hint != NULL) {
+        int *const below = mt_arena_int(mem, (size_t)p->n_bands);
+        double violation = 0.0;
+        if (below == NULL) {
+            return mt_fail_memory(err);
+        }
+        MT_TRY(mt_gap_assignment(p, p->hint, below, &violation, err));
+        j.hint_below = MT_HAS(violation) ? below : NULL;
+    }
+    j.slots = mt_arena_alloc(mem, (size_t)candidates.n, sizeof *j.slots);
+    if (j.slots == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_status rc = mt_workers_run(workers, candidates.n, search_candidate, &j, err);
+    rc = rc == MT_OK ? collect(p, &j, mem, out, err) : rc;
+    out->proven = out->proven || is_settled(&j);
+    for (int k = 0; k < candidates.n; k++) {
+        mt_arena_free(&j.slots[k].mem);
+    }
+    return rc;
+}

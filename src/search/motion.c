@@ -1,0 +1,427 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Room of an edge at frequency f_e with margin, of the mode f that the assignment keeps on one side of it:
+ *     r(s) = ln(f / f_e)  above,   ln(f_e / f)  below,      dr/ds = +- lambda' / (2 lambda),   lambda' = y^T (dK/ds - lambda dM/ds) y.
+ * Modes are sorted, so of each band with k modes below it mode k and mode k + 1 are enough. An interval [a, b] of neighbouring positions is fine where for every edge
+ *     max(|r(b) - r(a)|, (b - a)|r'(a)|, (b - a)|r'(b)|) <= 1/10 max(min(|c(a)|, |c(b)|), 1e-3),
+ * c: the room without the margin; else its middle is looked at. The cubic with these values and slopes has its least value within the interval at a root of a quadratic; where that is below the
+ * least room so far, it is the next position: the least room is then known to the fourth order of the step.
+ */
+#include "search/motion.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double PART = 0.1;     /* of a clearance, between two positions */
+static const double NEAREST = 1e-3; /* clearances (ln) below it count as it */
+static const double CLOSER =
+    1e-8; /* an improvement of the least room (ln) that is not worth a position */
+static const double SHORTEST = 1e-7; /* of the motion: intervals that are not halved */
+static const double AWAY =
+    0.05; /* a new position keeps this part of the interval from its ends */
+static const double STEP = 0.05;  /* longest interval at first [rad, model lengths] */
+static const double SAME = 1e-12; /* positions nearer than this [rad, model lengths] are one */
+/* A clearance of less, in percent, is none: rounding. */
+static const double ON_EDGE_PERCENT = 1e-9;
+enum { INTERVALS_AT_FIRST = 8, INTERVALS_MOST_AT_FIRST = 64, POSITIONS_MOST = 2000 };
+
+typedef struct edge {
+    int mode;
+    bool above;
+    double sign;
+    double log_hz;      /* ln of the edge with margin */
+    double log_base_hz; /* without */
+    const mt_way_band *band;
+} edge;
+
+typedef struct sample {
+    double at;
+    int next;
+    bool good;
+    double *room;  /* [n_edges] */
+    double *slope; /* [n_edges] NaN: a repeated mode, or one of 0 Hz */
+} sample;
+
+typedef struct walk {
+    mt_problem *p;
+    mt_analysis *a;
+    mt_arena *mem;
+    double *inputs; /* [n + 1] */
+    double unit;    /* 1 rad, or the model length */
+    double shortest;
+    int n_edges;
+    edge *edges;
+    sample *samples; /* of one way */
+    int n;
+    mt_motion *out;
+    int way;
+} walk;
+
+static bool ends(mt_status rc)
+{
+    return mt_is_final(rc) || rc == MT_E_INTERRUPTED;
+}
+
+/* The family's mechanism with the position as its last input, made at the original design. */
+static mt_status open_drive(mt_problem *p, mt_family *f, double position, mt_err *err)
+{
+    const mt_system_drive drive = {.joint = f->joint, .spring = f->spring};
+    double *const at = mt_arena_f64(&p->mem, (size_t)p->n + 1, 1);
+    if (f->driven != NULL) {
+        return MT_OK;
+    }
+    if (at == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(at, p->original, (size_t)p->n * sizeof *at);
+    at[p->n] = position;
+    MT_TRY(mt_analysis_new_driven(p->study->model, f->configuration, &drive, p->n, p->inputs,
+                                  at, &f->driven, err));
+    f->driven->n_rigid = p->views[f->view[0]].analysis->n_rigid; /* one count for all designs */
+    f->driven->n_most = p->views[f->view[0]].analysis->n_most;
+    f->driven->lin->first_input = p->n; /* the only slope that is asked for */
+    f->driven->lin->follow = true;
+    return MT_OK;
+}
+
+/* dr/ds of the mode at pos; NaN where it is repeated. */
+static mt_status slope_of(walk *w, const edge *e, int pos, double *slope, mt_err *err)
+{
+    mt_analysis *const a = w->a;
+    const ptrdiff_t n = a->lin->n;
+    const double *const y = a->modes.y + (pos * n);
+    int size = 1;
+    (void)mt_modal_cluster(&a->modes, pos, &size);
+    *slope = nan("");
+    if (size > 1 || !(a->modes.lambda[pos] > 0.0)) {
+        return MT_OK;
+    }
+    MT_TRY(mt_linear_products(a->lin, w->p->n, 1, y, a->dky, a->dmy, NULL, err));
+    const double lambda = a->modes.lambda[pos];
+    const double rate = mt_dot((int)n, y, a->dky) - (lambda * mt_dot((int)n, y, a->dmy));
+    *slope = e->sign * rate / (2.0 * lambda);
+    return MT_OK;
+}
+
+static double base_room(const edge *e, double room)
+{
+    return room + (e->sign * (e->log_hz - e->log_base_hz));
+}
+
+static void keep_least(walk *w, const edge *e, double at, double room)
+{
+    mt_motion *const out = w->out;
+    const bool named = at == w->samples[0].at || at == w->samples[1].at;
+    if (!(room >= out->way_room[w->way])) {
+        out->way_room[w->way] = room;
+        out->way_at[w->way] = named ? nan("") : at;
+    }
+    if (room >= out->room) {
+        return;
+    }
+    const mt_band *const band = &e->band->band;
+    const double edge_hz = exp(e->log_base_hz);
+    out->room = room;
+    out->tolerance = e->band->tolerance;
+    out->at = at;
+    out->mode = e->mode;
+    out->above = e->above;
+    out->tie = e->band->tie;
+    out->band = *band;
+    out->hz = exp(e->log_hz + (e->sign * room));
+    out->percent = e->sign * 100.0 * (out->hz - edge_hz) / edge_hz;
+    out->percent = fabs(out->percent) <= ON_EDGE_PERCENT ? 0.0 : out->percent;
+    out->margin_percent = e->sign * 100.0 * (exp(e->log_hz) - edge_hz) / edge_hz;
+}
+
+static mt_status note_break(walk *w, double at, mt_motion_end end, const char *why, mt_err *err)
+{
+    mt_motion *const out = w->out;
+    if (out->why == NULL) {
+        out->broken_at = at;
+        out->end = end;
+        out->why = mt_arena_strdup(w->mem, why);
+    }
+    return out->why == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+static mt_status measure(walk *w, sample *s, mt_err *err)
+{
+    for (int i = 0; i < w->n_edges; i++) {
+        const edge *const e = &w->edges[i];
+        const int pos = mt_modal_flexible(&w->a->modes, e->mode);
+        s->room[i] = HUGE_VAL; /* there is no such mode: nothing to keep on that side */
+        s->slope[i] = 0.0;
+        if (pos >= 0) {
+            s->room[i] = e->sign * (log(mt_modal_hz(&w->a->modes, pos)) - e->log_hz);
+            MT_TRY(slope_of(w, e, pos, &s->slope[i], err));
+            keep_least(w, e, s->at, s->room[i]);
+        }
+    }
+    return MT_OK;
+}
+
+/* Look at one more position; its place in the samples is w->n - 1. */
+static mt_status look(walk *w, double at, int next, mt_err *err)
+{
+    const mt_analysis_options opt = {.gradient = true, .vectors = true, .accuracy = true};
+    sample *const s = &w->samples[w->n++];
+    mt_err why = {.code = MT_OK};
+    *s = (sample){.at = at,
+                  .next = next,
+                  .room = mt_arena_f64(w->mem, (size_t)w->n_edges, 1),
+                  .slope = mt_arena_f64(w->mem, (size_t)w->n_edges, 1)};
+    if (s->room == NULL || s->slope == NULL) {
+        return mt_fail_memory(err);
+    }
+    w->out->positions++;
+    w->inputs[w->p->n] = at;
+    mt_status rc = mt_analysis_solve(w->a, w->inputs, &opt, &why);
+    if (rc == MT_OK && w->a->modes.n_unstable > 0) {
+        return note_break(w, at, MT_MOTION_UNSTABLE, "it is unstable there", err);
+    }
+    if (rc == MT_OK && w->a->modes.n_undecided > 0) {
+        return note_break(w, at, MT_MOTION_BROKEN, "rounding hides whether it is stable there",
+                          err);
+    }
+    rc = rc == MT_OK ? measure(w, s, &why) : rc;
+    if (rc != MT_OK) {
+        return ends(rc) ? mt_fail(err, rc, "%s", why.text)
+                        : note_break(w, at, MT_MOTION_BROKEN, why.text, err);
+    }
+    s->good = true;
+    return MT_OK;
+}
+
+static double fmax_known(double a, double b)
+{
+    return MT_HAS(b) ? fmax(a, fabs(b)) : a;
+}
+
+/* Least value of the cubic on [0, 1] with values a, b and slopes da, db per unit, strictly inside; *at where. */
+static double cubic_least(double a, double da, double b, double db, double *at)
+{
+    double least = fmin(a, b);
+    const double c3 = (2.0 * (a - b)) + da + db;
+    const double c2 = (3.0 * (b - a)) - (2.0 * da) - db;
+    const double root = (c2 * c2) - (3.0 * c3 * da);
+    *at = -1.0;
+    if (!(root >= 0.0)) {
+        return least;
+    }
+    /* u = (-c2 + sqrt(root)) / (3 c3) is the minimum; written so that nothing cancels */
+    const double q = c2 >= 0.0 ? c2 + sqrt(root) : c2 - sqrt(root);
+    const double u = c2 >= 0.0 ? -da / q : -q / (3.0 * c3);
+    if (u > 0.0 && u < 1.0) {
+        const double value = a + (u * (da + (u * (c2 + (u * c3)))));
+        if (value < least) {
+            least = value;
+            *at = u;
+        }
+    }
+    return least;
+}
+
+/* Does the interval from i to its neighbour need one more position? *at: where. */
+static bool needs_more(const walk *w, int i, double *at)
+{
+    const sample *const a = &w->samples[i];
+    const sample *const b = &w->samples[a->next];
+    const double h = b->at - a->at;
+    double deepest = w->out->room - CLOSER;
+    bool found = false;
+    if (!(h > w->shortest)) {
+        return false;
+    }
+    for (int k = 0; k < w->n_edges; k++) {
+        const edge *const e = &w->edges[k];
+        if (!isfinite(a->room[k]) || !isfinite(b->room[k])) {
+            continue;
+        }
+        const double clear =
+            fmin(fabs(base_room(e, a->room[k])), fabs(base_room(e, b->room[k])));
+        double moved = fabs(b->room[k] - a->room[k]);
+        moved = fmax_known(moved, h * a->slope[k]);
+        moved = fmax_known(moved, h * b->slope[k]);
+        if (moved > PART * fmax(clear, NEAREST)) {
+            *at = 0.5 * (a->at + b->at);
+            return true;
+        }
+        double u = -1.0;
+        const bool known = MT_HAS(a->slope[k]) && MT_HAS(b->slope[k]);
+        const double least =
+            known ? cubic_least(a->room[k], h * a->slope[k], b->room[k], h * b->slope[k], &u)
+                  : HUGE_VAL;
+        if (u > 0.0 && least < deepest) {
+            deepest = least;
+            *at = a->at + (h * fmin(fmax(u, AWAY), 1.0 - AWAY));
+            found = true;
+        }
+    }
+    return found;
+}
+
+static mt_status refine(walk *w, mt_err *err)
+{
+    int i = 0;
+    while (w->samples[i].next >= 0) {
+        const int next = w->samples[i].next;
+        double at = 0.0;
+        const bool good = w->samples[i].good && w->samples[next].good;
+        if (!good || !needs_more(w, i, &at)) {
+            i = next;
+            continue;
+        }
+        if (w->n >= POSITIONS_MOST) {
+            w->out->end = w->out->end == MT_MOTION_WHOLE ? MT_MOTION_CAPPED : w->out->end;
+            return MT_OK;
+        }
+        MT_TRY(look(w, at, next, err));
+        w->samples[i].next = w->n - 1;
+    }
+    return MT_OK;
+}
+
+/* Edges beside the bands: the mode below and the mode above each. */
+static mt_status list_edges(walk *w, const int *below, const mt_way_band *bands, int n,
+                            mt_err *err)
+{
+    w->n_edges = 0;
+    w->edges = mt_arena_alloc(w->mem, 2 * (size_t)n, sizeof *w->edges);
+    if (w->edges == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < n; i++) {
+        const mt_band *const b = &bands[i].band;
+        const int k = below[bands[i].tie];
+        if (k > 0 && b->lower_hz > 0.0) {
+            w->edges[w->n_edges++] =
+                (edge){k, false, -1.0, log(b->lower_hz), log(b->base_lower_hz), &bands[i]};
+        }
+        w->edges[w->n_edges++] =
+            (edge){k + 1, true, 1.0, log(b->upper_hz), log(b->base_upper_hz), &bands[i]};
+    }
+    return MT_OK;
+}
+
+static mt_status go(walk *w, double left, double right, mt_err *err)
+{
+    const double way = right - left;
+    const double wanted = ceil(way / (STEP * w->unit));
+    const int pieces = (int)fmin(fmax(wanted, INTERVALS_AT_FIRST), INTERVALS_MOST_AT_FIRST);
+    w->n = 0;
+    w->samples = mt_arena_alloc(w->mem, POSITIONS_MOST, sizeof *w->samples);
+    if (w->samples == NULL) {
+        return mt_fail_memory(err);
+    }
+    w->samples[1].at = right; /* both ends are known before the first is looked at */
+    w->samples[0].at = left;
+    MT_TRY(look(w, left, pieces > 1 ? 2 : 1, err));
+    MT_TRY(look(w, right, -1, err));
+    for (int i = 1; i < pieces; i++) {
+        const double u = (double)i / (double)pieces;
+        const double at = ((1.0 - u) * left) + (u * right);
+        const bool zero = fabs(at) <= SAME * w->unit; /* the drawing itself */
+        MT_TRY(look(w, zero ? 0.0 : at, i + 1 < pieces ? w->n + 1 : 1, err));
+    }
+    return refine(w, err);
+}
+
+/* Distinct positions of the views with bands, ascending. */
+static int list_positions(const mt_problem *p, const mt_family *f, double unit, double *list)
+{
+    int n = 0;
+    for (int k = 0; k < f->n; k++) {
+        const double at = mt_family_position(p, f, k);
+        bool known = false;
+        for (int i = 0; i < n; i++) {
+            known = known || fabs(list[i] - at) <= SAME * unit;
+        }
+        int to = known ? n : n++;
+        for (; !known && to > 0 && list[to - 1] > at; to--) {
+            list[to] = list[to - 1];
+        }
+        if (!known) {
+            list[to] = at;
+        }
+    }
+    return n;
+}
+
+static mt_status follow(walk *w, const mt_family *f, const int *below, mt_err *err)
+{
+    double *const list = mt_arena_f64(w->mem, (size_t)f->n, 1);
+    if (list == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_motion *const out = w->out;
+    const int n = list_positions(w->p, f, w->unit, list);
+    out->from = list[0];
+    out->to = list[n - 1];
+    out->way_at = mt_arena_f64(w->mem, (size_t)n, 1);
+    out->way_room = mt_arena_f64(w->mem, (size_t)n, 1);
+    if (out->way_at == NULL || out->way_room == NULL) {
+        return mt_fail_memory(err);
+    }
+    w->shortest = SHORTEST * (out->to - out->from);
+    for (int i = 0; i + 1 < n; i++) {
+        mt_way_band *bands = NULL;
+        int n_bands = 0;
+        MT_TRY(mt_family_bands(w->p, f, list[i], list[i + 1], w->mem, &bands, &n_bands, err));
+        w->way = i;
+        out->n_ways = i + 1;
+        out->way_at[i] = nan("");
+        out->way_room[i] = HUGE_VAL;
+        if (n_bands == 0) {
+            continue;
+        }
+        out->end = out->end == MT_MOTION_NONE ? MT_MOTION_WHOLE : out->end;
+        MT_TRY(list_edges(w, below, bands, n_bands, err));
+        MT_TRY(go(w, list[i], list[i + 1], err));
+    }
+    return MT_OK;
+}
+
+mt_status mt_motion_follow(mt_problem *p, int family, const int *below, mt_arena *mem,
+                           mt_motion *out, mt_err *err)
+{
+    mt_family *const f = &p->families[family];
+    mt_err why = {.code = MT_OK};
+    *out = (mt_motion){.end = MT_MOTION_NONE,
+                       .room = HUGE_VAL,
+                       .percent = nan(""),
+                       .margin_percent = nan(""),
+                       .at = nan(""),
+                       .hz = nan(""),
+                       .broken_at = nan("")};
+    walk w = {.p = p, .mem = mem, .out = out};
+    const mt_status rc = open_drive(p, f, mt_family_position(p, f, 0), &why);
+    if (rc != MT_OK) {
+        return ends(rc) ? mt_fail(err, rc, "%s", why.text)
+                        : note_break(&w, mt_family_position(p, f, 0), MT_MOTION_BROKEN,
+                                     why.text, err);
+    }
+    w.a = f->driven;
+    w.a->lin->last.valid = false; /* begin at the reference position */
+    w.unit = f->angle ? 1.0 : w.a->sys->length_m;
+    w.inputs = mt_arena_f64(mem, (size_t)p->n + 1, 1);
+    if (w.inputs == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(w.inputs, p->x, (size_t)p->n * sizeof *w.inputs);
+    return follow(&w, f, below, err);
+}
+
+mt_status mt_motion_kept(mt_problem *p, const int *below, mt_arena *mem, bool *kept,
+                         mt_err *err)
+{
+    *kept = true;
+    for (int i = 0; i < p->n_families && *kept; i++) {
+        mt_motion m = {.room = 0.0};
+        if (p->families[i].banded) {
+            MT_TRY(mt_motion_follow(p, i, below, mem, &m, err));
+            *kept = m.end != MT_MOTION_UNSTABLE && m.room >= -m.tolerance;
+        }
+    }
+    return MT_OK;
+}

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "search/proof.h"
+
+#include <math.h>
+
+#include "base/format.h"
+
+void mt_proof_free(mt_proof *proof, const mt_problem *p)
+{
+    for (int i = 0; proof->views != NULL && i < p->n_views; i++) {
+        mt_enclosure_delete(proof->views[i]);
+        proof->views[i] = NULL;
+    }
+}
+
+static mt_status enclose(mt_proof *proof, mt_problem *p, mt_err *err)
+{
+    proof->possible = p->n_views > 0 && p->n > 0;
+    for (int i = 0; i < p->n_views && proof->possible; i++) {
+        char why[MT_REASON_SIZE] = "";
+        MT_TRY(mt_enclosure_new(p->views[i].analysis, proof->lower, proof->upper,
+                                &proof->views[i], why, err));
+        if (proof->views[i] == NULL) {
+            proof->possible = false;
+            (void)mt_snprintf(proof->reason, sizeof proof->reason,
+                              "configuration \"%.50s\": %.150s",
+                              mt_analysis_configuration(p->views[i].analysis), why);
+        }
+    }
+    return MT_OK;
+}
+
+static void list_bands(mt_proof *proof, const mt_problem *p)
+{
+    int at = 0;
+    for (int i = 0; i < p->n_clears; i++) {
+        const mt_clear *const c = &p->clears[i];
+        for (int b = 0; b < c->bands.n; b++) {
+            const mt_band *const band = &c->bands.items[b];
+            proof->bands[at] =
+                (mt_certify_band){c->view, band->lower_hz, band->upper_hz, c->tolerance};
+            proof->bases[at++] = (mt_certify_band){c->view, band->base_lower_hz,
+                                                   band->base_upper_hz, c->tolerance};
+        }
+    }
+    proof->question.n_bands = at;
+    proof->question.bands = proof->bands;
+    proof->question.same_as = p->tie;
+}
+
+static mt_certify_limit frequency_limit(const mt_demand *d)
+{
+    const bool target = MT_HAS(d->target_hz);
+    return (mt_certify_limit){d->view, d->mode, target ? d->target_hz : d->goal->at_least,
+                              target ? d->target_hz : d->goal->at_most, d->tolerance};
+}
+
+/* A limit on an expression, its relative tolerance granted. */
+static mt_certify_bound expression_bound(const mt_demand *d)
+{
+    const mt_goal *const g = d->goal;
+    const bool equal = MT_HAS(g->equals);
+    const double least = equal ? g->equals : g->at_least;
+    const double most = equal ? g->equals : g->at_most;
+    const double give_least = d->tolerance * (fabs(least) > 0.0 ? fabs(least) : 1.0);
+    const double give_most = d->tolerance * (fabs(most) > 0.0 ? fabs(most) : 1.0);
+    return (mt_certify_bound){d->node, least - give_least, most + give_most};
+}
+
+/* Frequency goals by index that are constraints, and limits on expressions. */
+static void list_limits(mt_proof *proof, const mt_problem *p)
+{
+    mt_certify *const q = &proof->question;
+    for (int i = 0; i < p->n_demands; i++) {
+        const mt_demand *const d = &p->demands[i];
+        const bool constraint = d->row_res < 0;
+        proof->covers = proof->covers && (!constraint || d->goal->type == MT_GOAL_LIMIT ||
+                                          (d->goal->type == MT_GOAL_FREQUENCY && d->mode > 0));
+        if (constraint && d->goal->type == MT_GOAL_FREQUENCY && d->mode > 0) {
+            proof->limit_demand[q->n_limits] = i;
+            proof->limits[q->n_limits++] = frequency_limit(d);
+        } else if (constraint && d->goal->type == MT_GOAL_LIMIT) {
+            proof->bounds[q->n_bounds++] = expression_bound(d);
+        }
+    }
+    q->limits = proof->limits;
+    q->bounds = proof->bounds;
+    q->program = q->n_bounds > 0 ? &p->program : NULL;
+}
+
+mt_status mt_proof_init(mt_proof *proof, mt_problem *p, mt_arena *mem, mt_err *err)
+{
+    const size_t n = (size_t)p->n;
+    const size_t n_demands = (size_t)p->n_demands;
+    const size_t n_bands = (size_t)p->n_bands;
+    *proof = (mt_proof){.possible = false};
+    proof->views = mt_arena_alloc(mem, (size_t)p->n_views, sizeof(mt_enclosure *));
+    proof->bands = mt_arena_alloc(mem, n_bands, sizeof *proof->bands);
+    proof->bases = mt_arena_alloc(mem, n_bands, sizeof *proof->bases);
+    proof->limits = mt_arena_alloc(mem, n_demands, sizeof *proof->limits);
+    proof->bounds = mt_arena_alloc(mem, n_demands, sizeof *proof->bounds);
+    proof->limit_demand = mt_arena_int(mem, n_demands);
+    proof->lower = mt_arena_f64(mem, n, 1);
+    proof->upper = mt_arena_f64(mem, n, 1);
+    if (proof->views == NULL || proof->bands == NULL || proof->bases == NULL ||
+        proof->limits == NULL || proof->bounds == NULL || proof->limit_demand == NULL ||
+        proof->lower == NULL || proof->upper == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n; i++) {
+        proof->lower[i] = p->study->variables[i].lower;
+        proof->upper[i] = p->study->variables[i].upper;
+    }
+    MT_TRY(enclose(proof, p, err));
+    proof->question = (mt_certify){.n_views = p->n_views,
+                                   .views = proof->views,
+                                   .n = p->n,
+                                   .lower = proof->lower,
+                                   .upper = proof->upper,
+                                   .scale = p->scale,
+                                   .max_boxes = p->proof_boxes,
+                                   .interrupt = p->study->model->interrupt};
+    proof->covers =
+        p->robust == NULL; /* what is possible for a design may not be over its tolerances */
+    list_bands(proof, p);
+    list_limits(proof, p);
+    return MT_OK;
+}
+
+mt_status mt_proof_use_catalogues(mt_proof *proof, const mt_problem *p, mt_arena *mem,
+                                  mt_err *err)
+{
+    int *const count = mt_arena_int(mem, (size_t)p->n);
+    const double **const values = mt_arena_alloc(mem, (size_t)p->n, sizeof(double *));
+    if (count == NULL || values == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n; i++) {
+        count[i] = p->study->variables[i].n_catalogue;
+        values[i] = p->study->variables[i].catalogue;
+    }
+    proof->question.n_catalogue = count;
+    proof->question.catalogue = values;
+    return MT_OK;
+}

@@ -1,0 +1,245 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What can be moved, which rows that concerns, and how far it has to go at a design. */
+#include <math.h>
+#include <string.h>
+
+#include "problem/robust.h"
+#include "search/relax.h"
+
+static bool is_constraint(const mt_demand *d)
+{
+    return d->row_eq >= 0 || d->row_in >= 0;
+}
+
+static void add(mt_moves *out, mt_move move)
+{
+    out->items[out->n++] = move;
+}
+
+static void add_goal_moves(const mt_problem *p, mt_moves *out)
+{
+    for (int i = 0; i < p->n_demands; i++) {
+        const mt_demand *const d = &p->demands[i];
+        const mt_goal *const g = d->goal;
+        mt_move m = {.kind = MT_MOVE_GOAL, .demand = i};
+        if (!is_constraint(d)) {
+            continue;
+        }
+        if (d->row_eq >= 0) {
+            m.target = true;
+            m.from = g->type == MT_GOAL_LIMIT ? g->equals : d->target_hz;
+            add(out, m);
+            continue;
+        }
+        if (MT_HAS(g->at_least)) {
+            m.from = g->at_least;
+            add(out, m);
+        }
+        if (MT_HAS(g->at_most)) {
+            m.upper = true;
+            m.from = g->at_most;
+            add(out, m);
+        }
+    }
+}
+
+static void add_edge_moves(const mt_problem *p, mt_moves *out)
+{
+    for (int i = 0; i < p->n_clears; i++) {
+        for (int b = 0; b < p->clears[i].bands.n; b++) {
+            const mt_band *const band = &p->clears[i].bands.items[b];
+            mt_move m = {.kind = MT_MOVE_EDGE, .clear = i, .band = b, .from = band->lower_hz};
+            if (band->lower_hz > 0.0) {
+                add(out, m);
+            }
+            m.upper = true;
+            m.from = band->upper_hz;
+            add(out, m);
+        }
+    }
+}
+
+mt_status mt_relax_moves(const mt_problem *p, mt_arena *mem, mt_moves *out, mt_err *err)
+{
+    const size_t most = 2 * ((size_t)p->n + (size_t)p->n_bands + (size_t)p->n_demands);
+    *out = (mt_moves){.items = mt_arena_alloc(mem, most, sizeof *out->items)};
+    if (out->items == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n; i++) {
+        const mt_variable *const v = &p->study->variables[i];
+        for (int side = 0; side < 2 && v->n_catalogue == 0; side++) {
+            add(out, (mt_move){.kind = MT_MOVE_BOUND,
+                               .variable = i,
+                               .upper = side == 1,
+                               .from = side == 1 ? v->upper : v->lower});
+        }
+    }
+    add_edge_moves(p, out);
+    add_goal_moves(p, out);
+    for (int i = 0; i < out->n; i++) {
+        out->items[i].x = mt_arena_f64(mem, (size_t)p->n, 1);
+        if (out->items[i].x == NULL) {
+            return mt_fail_memory(err);
+        }
+    }
+    return MT_OK;
+}
+
+/* A bound moves by a factor of ten at most, or by the range where it has no sign to keep; a bound of 0 stays, since what is beyond it is another thing. */
+static double far_bound(const mt_variable *v, bool upper)
+{
+    static const double FACTOR = 10.0;
+    const double range = v->upper - v->lower;
+    if (upper) {
+        return v->upper > 0.0 ? FACTOR * v->upper : v->upper < 0.0 ? v->upper + range : 0.0;
+    }
+    return v->lower > 0.0 ? v->lower / FACTOR : v->lower < 0.0 ? v->lower - range : 0.0;
+}
+
+mt_status mt_relax_study(const mt_study *study, const mt_move *m, mt_arena *mem, mt_study *out,
+                         bool *useful, mt_err *err)
+{
+    mt_objective *const change = mt_arena_alloc(mem, 1, sizeof *change);
+    const size_t n = (size_t)study->n_variables;
+    *out = *study;
+    *useful = true;
+    out->variables = mt_arena_alloc(mem, n, sizeof *out->variables);
+    if (change == NULL || out->variables == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(out->variables, study->variables, n * sizeof *out->variables);
+    *change = (mt_objective){.type = MT_OBJECTIVE_CHANGE};
+    out->objectives = change;
+    out->n_objectives = 1;
+    out->n_published = 0;
+    out->trade.n_vary = 0;
+    if (m->kind == MT_MOVE_BOUND) {
+        mt_variable *const v = &out->variables[m->variable];
+        const double to = far_bound(v, m->upper);
+        *useful = m->upper ? to > v->upper : to < v->lower;
+        *(m->upper ? &v->upper : &v->lower) = to;
+    }
+    return MT_OK;
+}
+
+/* A row on top of the design's own, at a corner of the tolerances. */
+static bool is_corner_row(const mt_move *m, const mt_robust_row *row)
+{
+    if (m->kind == MT_MOVE_GOAL) {
+        return !m->target && row->demand == m->demand && (row->side == MT_HIGHEST) == m->upper;
+    }
+    return m->kind == MT_MOVE_EDGE && row->demand < 0 && row->at.clear == m->clear &&
+           row->at.band == m->band && row->at.above == m->upper;
+}
+
+bool mt_relax_is_row(const mt_problem *q, const mt_move *m, bool eq, int row)
+{
+    mt_clear_row at;
+    const mt_robust_row *const corner = eq ? NULL : mt_robust_corner_row(q, row);
+    if (corner != NULL) {
+        return is_corner_row(m, corner);
+    }
+    if (m->kind == MT_MOVE_GOAL) {
+        const mt_demand *const d = &q->demands[m->demand];
+        const int second = m->upper && MT_HAS(d->goal->at_least) ? 1 : 0;
+        return m->target ? eq && row == d->row_eq : !eq && row == d->row_in + second;
+    }
+    if (m->kind != MT_MOVE_EDGE || eq || q->below == NULL || row < q->clears[0].row_in ||
+        !mt_clear_row_at(q, q->below, row - q->clears[0].row_in, &at)) {
+        return false;
+    }
+    /* modes above a band are held by its upper edge */
+    return at.clear == m->clear && at.band == m->band && at.above == m->upper;
+}
+
+/* Where the number must be for a row of value `row` (relaxed: what is missing is made up for) to be 0. */
+static double moved(const mt_problem *q, const mt_move *m, double row)
+{
+    const bool shape =
+        m->kind == MT_MOVE_GOAL && q->demands[m->demand].goal->type != MT_GOAL_FREQUENCY;
+    const bool lower_edge = m->kind == MT_MOVE_EDGE && !m->upper;
+    const bool at_most = m->kind == MT_MOVE_GOAL && m->upper;
+    const double sign = lower_edge || at_most ? -1.0 : 1.0;
+    if (shape) { /* a MAC, or an expression relative to its limit */
+        const bool mac = q->demands[m->demand].goal->type == MT_GOAL_MAC;
+        const double unit = mac || !(fabs(m->from) > 0.0) ? 1.0 : fabs(m->from);
+        return m->from + (sign * row * unit);
+    }
+    return m->from * exp(sign * row);
+}
+
+double mt_relax_value(const mt_problem *q, const mt_move *m, const mt_nlp_values *v)
+{
+    double worst = m->target ? 0.0 : HUGE_VAL;
+    for (int i = 0; i < q->n_eq; i++) {
+        if (mt_relax_is_row(q, m, true, i)) {
+            worst = v->eq[i];
+        } else if (!(fabs(v->eq[i]) <= q->eq_tol[i])) {
+            return nan("");
+        }
+    }
+    for (int i = 0; i < q->n_in; i++) {
+        if (mt_relax_is_row(q, m, false, i)) {
+            worst = fmin(worst, v->in[i]);
+        } else if (!(v->in[i] >= -q->in_tol[i])) {
+            return nan("");
+        }
+    }
+    if (m->kind == MT_MOVE_BOUND) {
+        return q->x[m->variable];
+    }
+    return moved(q, m, worst);
+}
+
+double mt_relax_size(const mt_problem *q, const mt_move *m, double to)
+{
+    const bool goal = m->kind == MT_MOVE_GOAL;
+    const mt_goal_type type = goal ? q->demands[m->demand].goal->type : MT_GOAL_FREQUENCY;
+    const double unit = type == MT_GOAL_LIMIT && fabs(m->from) > 0.0 ? fabs(m->from) : 1.0;
+    const double s = type == MT_GOAL_FREQUENCY ? log(to / m->from) : (to - m->from) / unit;
+    /* a lower limit gives way downwards, an upper edge too */
+    const bool down = goal ? !m->upper : m->upper;
+    const bool right = m->target ? fabs(s) > 0.0 : (down ? -s : s) > 0.0;
+    return right && fabs(s) <= MT_RELAX_MOST ? fabs(s) : nan("");
+}
+
+static bool is_same(const mt_move *a, const mt_move *b)
+{
+    return a->kind == b->kind && a->upper == b->upper && a->variable == b->variable &&
+           a->clear == b->clear && a->band == b->band && a->demand == b->demand &&
+           a->target == b->target;
+}
+
+void mt_relax_merge(mt_moves *to, const mt_moves *from, int n)
+{
+    for (int i = 0; i < from->n; i++) {
+        const mt_move *const m = &from->items[i];
+        for (int k = 0; k < to->n && m->found; k++) {
+            mt_move *const own = &to->items[k];
+            if (is_same(own, m) && (!own->found || m->size < own->size)) {
+                double *const x = own->x;
+                memcpy(x, m->x, (size_t)n * sizeof *x);
+                *own = *m;
+                own->x = x;
+            }
+        }
+    }
+}
+
+void mt_relax_rank(mt_moves *moves)
+{
+    int kept = 0;
+    for (int i = 0; i < moves->n; i++) {
+        const mt_move m = moves->items[i];
+        if (!m.found) {
+            continue;
+        }
+        int at = kept++;
+        for (; at > 0 && m.size < moves->items[at - 1].size; at--) {
+            moves->items[at] = moves->items[at - 1];
+        }
+        moves->items[at] = m;
+    }
+    moves->n = kept;
+}

@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which rows of a problem are limits on single modes: of goals, of bands with their assignment, and of both at corners of the tolerances. */
+#include <math.h>
+
+#include "problem/robust.h"
+#include "search/repeated.h"
+
+typedef struct listing {
+    const mt_problem *p;
+    mt_repeated_side *items;
+    int n;
+} listing;
+
+/* Vibration mode `mode` of the analysis; nothing where there is none, or no limit. */
+static void add(listing *l, const mt_repeated_side *what, int mode)
+{
+    mt_repeated_side s = *what;
+    if (s.analysis->modes.n_unstable == 0 && s.limit_hz > 0.0) {
+        s.pos = mt_modal_flexible(&s.analysis->modes, mode);
+        if (s.pos >= 0) {
+            l->items[l->n++] = s;
+        }
+    }
+}
+
+static void add_demand(listing *l, const mt_demand *d)
+{
+    const mt_problem *const p = l->p;
+    const mt_goal *const g = d->goal;
+    const int n_eq = mt_problem_rows_eq(p);
+    if (g->type != MT_GOAL_FREQUENCY || d->view < 0 || d->mode <= 0) {
+        return;
+    }
+    for (int k = 0; k < 2; k++) {
+        mt_repeated_side s = {.analysis = p->views[d->view].analysis,
+                              .limit_hz = k == 0 ? g->at_least : g->at_most,
+                              .sign = k == 0 ? 1.0 : -1.0};
+        const int in = d->row_in + (k == 1 && MT_HAS(g->at_least) ? 1 : 0);
+        if (d->row_in >= 0 && MT_HAS(s.limit_hz) && !mt_robust_at_corner(p, in)) {
+            s.row = n_eq + in;
+            add(l, &s, d->mode);
+        }
+        if (d->row_eq >= 0 && MT_HAS(d->target_hz)) {
+            s.limit_hz = d->target_hz;
+            s.row = d->row_eq;
+            add(l, &s, d->mode);
+        }
+    }
+}
+
+static void add_bands(listing *l)
+{
+    const mt_problem *const p = l->p;
+    mt_clear_row at;
+    for (int k = 0; p->below != NULL && mt_clear_row_at(p, p->below, k, &at); k++) {
+        const mt_clear *const c = &p->clears[at.clear];
+        const mt_band *const band = &c->bands.items[at.band];
+        const int in = p->clears[0].row_in + k;
+        const mt_repeated_side s = {.analysis = p->views[c->view].analysis,
+                                    .limit_hz = at.above ? band->upper_hz : band->lower_hz,
+                                    .sign = at.above ? 1.0 : -1.0,
+                                    .moves = p->clearance,
+                                    .row = mt_problem_rows_eq(p) + in};
+        if (!mt_robust_at_corner(p, in)) {
+            add(l, &s, at.mode);
+        }
+    }
+}
+
+static void add_corners(listing *l)
+{
+    const mt_problem *const p = l->p;
+    for (int k = 0; p->robust != NULL && k < p->robust->n_rows; k++) {
+        const mt_robust_row *const row = &p->robust->rows[k];
+        const mt_demand *const d = row->demand >= 0 ? &p->demands[row->demand] : NULL;
+        const int view = d != NULL ? d->view : p->clears[row->at.clear].view;
+        if (view >= 0) {
+            const mt_corner *const c = &p->robust->views[view].corners[row->corner];
+            const mt_repeated_side s = {.analysis = c->analysis,
+                                        .factor = c->factor,
+                                        .limit_hz = mt_robust_limit_hz(p, row),
+                                        .sign = row->side == MT_LOWEST ? 1.0 : -1.0,
+                                        .moves = d == NULL && p->clearance,
+                                        .row = mt_problem_rows_eq(p) + row->row};
+            add(l, &s, d != NULL ? d->mode : row->at.mode);
+        }
+    }
+}
+
+mt_status mt_repeated_sides(mt_problem *p, mt_arena *mem, mt_repeated_side **out, int *n,
+                            mt_err *err)
+{
+    const size_t corners = p->robust != NULL ? (size_t)p->robust->n_rows : 0;
+    const size_t most = 4 * (size_t)p->n_demands + (size_t)p->n_in + corners;
+    listing l = {.p = p, .items = mt_arena_alloc(mem, most, sizeof *l.items)};
+    if (l.items == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n_demands; i++) {
+        add_demand(&l, &p->demands[i]);
+    }
+    add_bands(&l);
+    add_corners(&l);
+    *out = l.items;
+    *n = l.n;
+    return MT_OK;
+}
+
+double mt_repeated_room(const mt_problem *p, const mt_repeated_side *s, int pos)
+{
+    const double z = s->moves ? p->t[p->n] : 0.0;
+    return (s->sign * log(mt_modal_hz(&s->analysis->modes, pos) / s->limit_hz)) - z;
+}

@@ -1,0 +1,430 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Ends of a search where modes repeat. Single modes have no slopes there: the search's own methods stall, and its KKT residual says nothing. So every end
+ * with a residual is taken on: the smooth problem that keeps the modes together (repeated.h) is solved from there, and stationarity is that
+ * of the cluster (cone.h). Where it is none, the residual is a way down: a step along it, and the search from there. Until nothing improves.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "search/repeated.h"
+#include "search/search.h"
+
+/* Evaluations kept for the values of what a solve finds, and for the last judgement. */
+enum { RESERVED = 2 };
+enum { ROUNDS = 10, SOLVE_EVALUATIONS = 600, STEPS = 5 };
+/* Modes within this of a limit are tried as one cluster, the widest first. */
+static const double NEAR[] = {2e-2, 3e-3, 3e-4};
+/* ... and within this they are one where stationarity is judged: the search leaves them about so far apart. */
+static const double TOGETHER = 1e-5;
+/* The smooth problem is trusted so far from where its cluster was taken (t is a logarithm). */
+static const double BOX = 0.2;
+/* First step along the residual, and what it is multiplied with where that was too far. */
+static const double STEP = 0.05;
+static const double SHORTER = 0.3;
+/* A smaller gain, relative to the objective, is none. */
+static const double GAIN = 1e-8;
+static const double STATIONARY = 1e-6;
+/* A design that uses the tolerances of its demands (a relative 1e-6) is lighter by about so much than one that meets them exactly. */
+static const double TOLERANCES_BUY = 1e-5;
+/* An end with a residual above this is not shown to be a local optimum, and not listed behind a better one. */
+static const double NOT_SHOWN = 1e-4;
+/* As in the search itself: on a bound; an active row. */
+static const double ON_BOUND = 1e-8;
+static const double ACTIVE = 1e-6;
+static const double ACTIVE_TOLS = 10;
+
+typedef struct refine {
+    mt_problem *p;
+    mt_arena *mem;
+    long evals;
+    long most;
+    mt_stop stop;
+    double
+        gain; /* a design counts as better from this gain on, relative; below 0: it may lose so much */
+} refine;
+
+/* Would `more` evaluations be too many? */
+static bool spent(const refine *w, long more)
+{
+    return w->evals + more > w->most;
+}
+
+static double violation(const mt_problem *p, const mt_nlp_values *v)
+{
+    double most = 0.0;
+    for (int i = 0; i < mt_problem_rows_eq(p); i++) {
+        most = fmax(most, fabs(v->eq[i]) / p->eq_tol[i]);
+    }
+    for (int i = 0; i < mt_problem_rows_in(p); i++) {
+        most = fmax(most, -v->in[i] / p->in_tol[i]);
+    }
+    return most;
+}
+
+/* Solve nlp from t, near it; a feasible design of the study that is better than f: into t, f. */
+static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double *f,
+                           bool *better, mt_err *err)
+{
+    mt_problem *const p = w->p;
+    const mt_arena_mark mark = mt_arena_get_mark(w->mem);
+    double *const lower = mt_arena_f64(w->mem, (size_t)p->n_t, 1);
+    double *const upper = mt_arena_f64(w->mem, (size_t)p->n_t, 1);
+    mt_nlp_options opt = mt_nlp_options_default();
+    mt_nlp_result found = {0};
+    mt_nlp_values v;
+    mt_err own = {0};
+    const long left = w->most - w->evals - RESERVED;
+    *better = false;
+    if (lower == NULL || upper == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (left <= 0) {
+        return MT_OK;
+    }
+    for (int j = 0; j < p->n_t; j++) {
+        lower[j] = fmax(p->lower_t[j], t[j] - box);
+        upper[j] = fmin(p->upper_t[j], t[j] + box);
+    }
+    nlp->lower = lower;
+    nlp->upper = upper;
+    nlp->origin = t;
+    opt.starts = 1;
+    opt.max_solutions = 1;
+    opt.least_change = false;
+    opt.max_evals = left < SOLVE_EVALUATIONS ? left : SOLVE_EVALUATIONS;
+    mt_status rc = mt_nlp_solve(nlp, &opt, w->mem, &found, &own);
+    w->evals += found.evals;
+    w->stop = found.stop == MT_STOP_USER ? MT_STOP_USER : w->stop;
+    const bool is = rc == MT_OK && found.n_solutions > 0 && !found.compromise;
+    rc = is ? mt_problem_values_init(p, w->mem, &v, &own) : rc;
+    rc = is && rc == MT_OK ? mt_problem_eval(p, found.solutions[0].t, false, &v, &own) : rc;
+    if (is && rc == MT_OK) {
+        w->evals++;
+        if (violation(p, &v) <= 1.0 && v.f < *f - w->gain * fabs(*f)) {
+            memcpy(t, found.solutions[0].t, (size_t)p->n_t * sizeof *t);
+            *f = v.f;
+            *better = true;
+        }
+    }
+    mt_arena_rewind(w->mem, mark);
+    const bool fatal = mt_is_final(rc) || rc == MT_E_USAGE;
+    return fatal ? mt_fail(err, rc, "%s", own.text) : MT_OK;
+}
+
+/* The smooth problem of the clusters near t. */
+static mt_status keep_together(refine *w, double near, double *t, double *f, bool *better,
+                               mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(w->mem);
+    mt_repeated m;
+    *better = false;
+    if (spent(w, 1 + RESERVED)) {
+        return MT_OK;
+    }
+    MT_TRY(mt_repeated_find(w->p, t, near, w->mem, &m, err));
+    w->evals++;
+    if (m.n_blocks > 0 && m.n_rows > 0) {
+        mt_nlp nlp = mt_repeated_nlp(&m);
+        MT_TRY(try_solve(w, &nlp, BOX, t, f, better, err));
+    }
+    mt_arena_rewind(w->mem, mark);
+    return MT_OK;
+}
+
+/* Rows of the balance of gradients: equalities, active inequalities that no block stands for, active bounds. which[row]: i < n_eq an equality, then
+ * inequalities, then variables. */
+static int balance_rows(const mt_repeated *m, const double *t, double *rows, bool *free_sign,
+                        int *which)
+{
+    const mt_problem *const p = m->p;
+    const mt_nlp_values *const v = &m->values;
+    const int n = p->n_t;
+    const int n_eq = mt_problem_rows_eq(p);
+    const int n_in = mt_problem_rows_in(p);
+    int k = 0;
+    for (int i = 0; i < n_eq + n_in; i++) {
+        const int in = i - n_eq;
+        const bool active = !m->replaced[i] &&
+                            (in < 0 || v->in[in] <= fmax(ACTIVE, ACTIVE_TOLS * p->in_tol[in]));
+        for (int j = 0; j < n && active; j++) {
+            rows[j + ((ptrdiff_t)k * n)] =
+                in < 0 ? v->deq[i + ((ptrdiff_t)j * n_eq)] : v->din[in + ((ptrdiff_t)j * n_in)];
+        }
+        if (active) {
+            free_sign[k] = in < 0;
+            which[k++] = i;
+        }
+    }
+    for (int j = 0; j < n; j++) {
+        const double near = ON_BOUND * (p->upper_t[j] - p->lower_t[j]);
+        const bool fixed = !(p->lower_t[j] < p->upper_t[j]);
+        const int side = t[j] <= p->lower_t[j] + near   ? 1
+                         : t[j] >= p->upper_t[j] - near ? -1
+                                                        : 0;
+        if (side != 0 || fixed) {
+            memset(rows + ((ptrdiff_t)k * n), 0, (size_t)n * sizeof *rows);
+            rows[j + ((ptrdiff_t)k * n)] = fixed ? 1.0 : side;
+            free_sign[k] = fixed;
+            which[k++] = n_eq + n_in + j;
+        }
+    }
+    return k;
+}
+
+/* Multipliers of the balance into the record. Of modes held together only the one that the others follow has its own: all may give way with
+ * it, which saves the trace of U; where several are asked for they have none. */
+static void put_multipliers(const mt_repeated *m, const mt_cone *c, const int *which,
+                            mt_nlp_solution *s)
+{
+    const int n_eq = mt_problem_rows_eq(m->p);
+    const int n_in = mt_problem_rows_in(m->p);
+    memset(s->mult_bound, 0, (size_t)m->p->n_t * sizeof *s->mult_bound);
+    for (int i = 0; i < n_eq + n_in; i++) {
+        double *const mult = i < n_eq ? &s->mult_eq[i] : &s->mult_in[i - n_eq];
+        *mult = m->replaced[i] ? nan("") : 0.0;
+    }
+    for (int k = 0; k < c->n_rows; k++) {
+        const int i = which[k];
+        if (i < n_eq) {
+            s->mult_eq[i] = c->x[k];
+        } else if (i < n_eq + n_in) {
+            s->mult_in[i - n_eq] = c->x[k];
+        } else {
+            const int j = i - n_eq - n_in;
+            s->mult_bound[j] = c->x[k] * c->rows[j + ((ptrdiff_t)k * m->p->n_t)];
+        }
+    }
+    int at = 0; /* in the cone, which has two blocks where both sides hold */
+    for (int b = 0; b < m->n_blocks && at < c->n_blocks; b++) {
+        const mt_repeated_block *const block = &m->blocks[b];
+        const double *const u = c->blocks[at].u;
+        const int row = block->row_most;
+        double trace = 0.0;
+        for (int k = 0; k < block->r; k++) {
+            trace += u[k + (k * block->r)];
+        }
+        at += block->both ? 2 : 1;
+        if (row >= n_eq) {
+            s->mult_in[row - n_eq] = trace;
+        } else if (row >= 0) {
+            s->mult_eq[row] = trace * block->side.sign;
+        }
+    }
+}
+
+/* The clusters' matrices; where both sides hold, once more with the other sign. */
+static mt_status cone_blocks(const mt_repeated *m, mt_arena *mem, mt_cone_block **out, int *n,
+                             mt_err *err)
+{
+    mt_cone_block *const list =
+        mt_arena_alloc(mem, 2 * (size_t)m->n_blocks, sizeof(mt_cone_block));
+    *n = 0;
+    for (int b = 0; b < m->n_blocks && list != NULL; b++) {
+        const mt_repeated_block *const block = &m->blocks[b];
+        const size_t r = (size_t)block->r;
+        const int size = block->r * block->r * m->p->n_t;
+        for (int side = 0; side < (block->both ? 2 : 1); side++) {
+            double *const g = mt_arena_f64(mem, (size_t)size, 1);
+            double *const u = mt_arena_f64(mem, r, r);
+            if (g == NULL || u == NULL) {
+                return mt_fail_memory(err);
+            }
+            mt_axpy(size, side == 0 ? 1.0 : -1.0, block->g, g);
+            list[(*n)++] = (mt_cone_block){.r = block->r, .g = g, .u = u};
+        }
+    }
+    *out = list;
+    return list == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+/* Stationarity at t as a statement about clusters: *kkt, z[n], and the multipliers (s may be NULL). */
+static mt_status judge(refine *w, const double *t, double *kkt, double *z, mt_nlp_solution *s,
+                       mt_err *err)
+{
+    mt_problem *const p = w->p;
+    const mt_arena_mark mark = mt_arena_get_mark(w->mem);
+    mt_repeated m;
+    MT_TRY(mt_repeated_find(p, t, TOGETHER, w->mem, &m, err));
+    w->evals++;
+    const size_t n = (size_t)p->n_t;
+    const size_t most = (size_t)mt_problem_rows_eq(p) + (size_t)mt_problem_rows_in(p) + n;
+    double *const rows = mt_arena_f64(w->mem, n, most);
+    bool *const free_sign = mt_arena_alloc(w->mem, most, sizeof *free_sign);
+    int *const which = mt_arena_int(w->mem, most);
+    mt_cone_block *blocks = NULL;
+    mt_cone c = {.n = p->n_t,
+                 .gradient = m.values.df,
+                 .rows = rows,
+                 .free_sign = free_sign,
+                 .x = mt_arena_f64(w->mem, most, 1)};
+    c.z = z;
+    if (!rows || !free_sign || !which || !c.x) {
+        return mt_fail_memory(err);
+    }
+    MT_TRY(cone_blocks(&m, w->mem, &blocks, &c.n_blocks, err));
+    c.blocks = blocks;
+    c.n_rows = balance_rows(&m, t, rows, free_sign, which);
+    MT_TRY(mt_cone_residual(&c, w->mem, err));
+    *kkt = c.kkt;
+    if (s != NULL) {
+        put_multipliers(&m, &c, which, s);
+    }
+    mt_arena_rewind(w->mem, mark);
+    return MT_OK;
+}
+
+/* A step down along -z, and the search from there. */
+static mt_status step_down(refine *w, const double *z, double *t, double *f, bool *better,
+                           mt_err *err)
+{
+    mt_problem *const p = w->p;
+    double *const from = mt_arena_f64(w->mem, (size_t)p->n_t, 1);
+    double size = 0.0;
+    *better = false;
+    if (from == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int j = 0; j < p->n_t; j++) {
+        size = fmax(size, fabs(z[j]));
+    }
+    double step = STEP;
+    for (int k = 0; k < STEPS && !*better && size > 0.0 && w->stop == MT_STOP_DONE; k++) {
+        for (int j = 0; j < p->n_t; j++) {
+            const double to = t[j] - (step * z[j] / size);
+            from[j] = fmin(fmax(to, p->lower_t[j]), p->upper_t[j]);
+        }
+        mt_nlp nlp = mt_problem_nlp(p);
+        nlp.hint = NULL;
+        MT_TRY(try_solve(w, &nlp, HUGE_VAL, from, f, better, err));
+        step *= SHORTER;
+    }
+    if (*better) {
+        memcpy(t, from, (size_t)p->n_t * sizeof *t);
+    }
+    return MT_OK;
+}
+
+/* Where nothing is to be gained any more: the same design exactly, if that is nearer to a stationary one. */
+static mt_status settle(refine *w, double near, double *kkt, double *z, mt_nlp_solution *s,
+                        mt_err *err)
+{
+    const size_t n = (size_t)w->p->n_t;
+    double *const t = mt_arena_f64(w->mem, n, 1);
+    double *const z_after = mt_arena_f64(w->mem, n, 1);
+    double f = s->f;
+    double after = *kkt;
+    bool found = false;
+    if (t == NULL || z_after == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(t, s->t, n * sizeof *t);
+    w->gain = -TOLERANCES_BUY;
+    const mt_status rc = keep_together(w, near, t, &f, &found, err);
+    w->gain = GAIN;
+    MT_TRY(rc);
+    found = found && !spent(w, RESERVED);
+    if (found) {
+        MT_TRY(judge(w, t, &after, z_after, NULL, err));
+    }
+    if (found && after < *kkt) {
+        memcpy(s->t, t, n * sizeof *t);
+        memcpy(z, z_after, n * sizeof *z);
+        s->f = f;
+        *kkt = after;
+    }
+    return MT_OK;
+}
+
+static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
+{
+    if (spent(w, 1)) {
+        return MT_OK;
+    }
+    mt_problem *const p = w->p;
+    const mt_arena_mark mark = mt_arena_get_mark(w->mem);
+    double *const z = mt_arena_f64(w->mem, (size_t)p->n_t, 1);
+    double kkt = s->kkt;
+    if (z == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int round = 0; round < ROUNDS && w->stop == MT_STOP_DONE && !spent(w, RESERVED);
+         round++) {
+        bool better = false;
+        MT_TRY(judge(w, s->t, &kkt, z, NULL, err));
+        if (kkt <= STATIONARY) {
+            break;
+        }
+        for (int k = 0; k < MT_COUNT(NEAR) && !better; k++) {
+            MT_TRY(keep_together(w, NEAR[k], s->t, &s->f, &better, err));
+        }
+        /* a local optimum is settled before a step could leave it for another */
+        for (int k = 0; k < MT_COUNT(NEAR) && !better && kkt > STATIONARY; k++) {
+            MT_TRY(settle(w, NEAR[k], &kkt, z, s, err));
+        }
+        if (!better && kkt > STATIONARY) {
+            MT_TRY(step_down(w, z, s->t, &s->f, &better, err));
+        }
+        if (!better) {
+            break;
+        }
+    }
+    MT_TRY(judge(w, s->t, &kkt, z, s, err));
+    s->kkt = kkt;
+    for (int j = 0; j < p->n_t; j++) {
+        const double near = ON_BOUND * (p->upper_t[j] - p->lower_t[j]);
+        s->bound[j] = s->t[j] <= p->lower_t[j] + near ? -1 : s->t[j] >= p->upper_t[j] - near;
+    }
+    mt_arena_rewind(w->mem, mark);
+    return MT_OK;
+}
+
+/* By objective; what is one counts once, and an end that is not shown to be optimal does not stand behind a better design. */
+static void rank(const mt_problem *p, mt_nlp_result *out)
+{
+    int kept = 0;
+    for (int i = 1; i < out->n_solutions; i++) {
+        const mt_nlp_solution s = out->solutions[i];
+        int k = i;
+        for (; k > 0 && s.f < out->solutions[k - 1].f; k--) {
+            out->solutions[k] = out->solutions[k - 1];
+        }
+        out->solutions[k] = s;
+    }
+    for (int i = 0; i < out->n_solutions; i++) {
+        const mt_nlp_solution *const s = &out->solutions[i];
+        bool drop = i > 0 && s->kkt > NOT_SHOWN;
+        for (int k = 0; k < kept && !drop; k++) {
+            drop = mt_search_same(p->n, out->solutions[k].t, s->t);
+        }
+        if (!drop) {
+            out->solutions[kept++] = *s;
+        }
+    }
+    out->n_found -= out->n_solutions - kept;
+    out->n_solutions = kept;
+}
+
+mt_status mt_search_repeated(mt_problem *p, long most, mt_arena *mem, mt_nlp_result *out,
+                             mt_err *err)
+{
+    refine w = {.p = p, .mem = mem, .evals = out->evals, .stop = MT_STOP_DONE, .gain = GAIN};
+    bool any = false;
+    const bool smooth = out->compromise || out->stop == MT_STOP_USER ||
+                        p->aims[p->stage].type == MT_OBJECTIVE_MISFIT;
+    w.most = most > 0 ? most : out->evals + (long)ROUNDS * SOLVE_EVALUATIONS * 8;
+    for (int i = 0; i < out->n_solutions && !smooth; i++) {
+        if (out->solutions[i].kkt > STATIONARY && out->solutions[i].feasible) {
+            any = true;
+            const mt_status rc = refine_one(&w, &out->solutions[i], err);
+            if (mt_is_final(rc) || rc == MT_E_USAGE) {
+                return rc;
+            }
+        }
+    }
+    out->evals = w.evals;
+    if (any) {
+        rank(p, out);
+    }
+    return MT_OK;
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STUDY_AIRCRAFT_H
+#define STUDY_AIRCRAFT_H
+
+#include "model/model.h"
+
+/* A catalogue of rotors: plain records, read by io. Each value says where it comes from and whether anybody has read that. */
+typedef struct mt_aircraft_value {
+    double value;     /* Hz, or the number of blades */
+    const char *text; /* "258 rpm", "4": as the catalogue gives it */
+    bool confirmed;   /* read in a public document: its source */
+    const char *source;
+} mt_aircraft_value;
+
+typedef struct mt_aircraft_rotor {
+    mt_aircraft_value speed;
+    mt_aircraft_value blades;
+} mt_aircraft_rotor;
+
+typedef struct mt_aircraft {
+    mt_name name;
+    mt_aircraft_rotor main_rotor;
+    bool has_tail; /* a tail rotor */
+    mt_aircraft_rotor tail_rotor;
+} mt_aircraft;
+
+typedef struct mt_aircraft_list {
+    int n;
+    mt_aircraft *items;
+    const char *sha256; /* of the file, hexadecimal */
+} mt_aircraft_list;
+
+#endif

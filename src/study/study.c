@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/study.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DEFAULT_RECOMMENDATIONS = 5, DEFAULT_SEED = 1 };
+
+/* A goal is met within this, in percent of the demand: far below what an engineer can build, far above rounding. */
+static const double DEFAULT_TOLERANCE_PERCENT = 1e-4;
+
+mt_status mt_study_new(mt_study **out, mt_err *err)
+{
+    *out = NULL;
+    mt_study *const study = calloc(1, sizeof *study);
+    if (study == NULL) {
+        return mt_fail_memory(err);
+    }
+    const mt_status rc = mt_arena_init(&study->mem, 0, err);
+    if (rc != MT_OK) {
+        free(study);
+        return rc;
+    }
+    study->recommendations = DEFAULT_RECOMMENDATIONS;
+    study->search.seed = DEFAULT_SEED;
+    study->spread = (mt_spread){.factor = nan(""), .factor_addr = MT_NO_ADDR};
+    *out = study;
+    return MT_OK;
+}
+
+void mt_study_delete(mt_study *study)
+{
+    if (study == NULL) {
+        return;
+    }
+    for (int i = 0; i < study->n_references; i++) {
+        mt_model *const model = study->references[i].model;
+        bool shared = model == study->model;
+        for (int j = i + 1; j < study->n_references; j++) {
+            shared = shared || study->references[j].model == model;
+        }
+        if (!shared) {
+            mt_model_delete(model);
+        }
+    }
+    mt_model_delete(study->model);
+    mt_arena_free(&study->mem);
+    free(study);
+}
+
+bool mt_study_asks(const mt_study *study, int configuration)
+{
+    for (int g = 0; g < study->n_goals; g++) {
+        for (int k = 0; k < study->goals[g].n_configurations; k++) {
+            if (study->goals[g].configurations[k] == configuration) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+int mt_study_find_reference(const mt_study *study, const char *name)
+{
+    for (int i = 0; i < study->n_references; i++) {
+        if (strcmp(study->references[i].name.s, name) == 0) {
+            return i;
+        }
+    }
+    return MT_ABSENT;
+}
+
+void mt_study_place_doubt(const mt_study *study, mt_doubt *doubt)
+{
+    for (int i = 0; i < study->n_places && doubt->line == 0; i++) {
+        const mt_study_place *const p = &study->places[i];
+        if (p->addr == doubt->addr) {
+            doubt->line = p->line;
+            doubt->column = p->column;
+            doubt->pointer = p->pointer;
+        }
+    }
+}
+
+const mt_study_place *mt_study_find_place(const mt_study *study, const char *text)
+{
+    const size_t length = strcspn(text, ":");
+    for (int i = 0; i < study->n_places; i++) {
+        const char *const pointer = study->places[i].pointer;
+        if (length > 0 && strlen(pointer) == length && strncmp(pointer, text, length) == 0) {
+            return &study->places[i];
+        }
+    }
+    return NULL;
+}
+
+static mt_mode_ref no_mode(mt_addr addr)
+{
+    return (mt_mode_ref){.named = MT_ABSENT, .addr = addr};
+}
+
+mt_variable mt_variable_default(mt_addr addr)
+{
+    return (mt_variable){
+        .parameter = MT_ABSENT,
+        .lower = nan(""),
+        .upper = nan(""),
+        .weight = 1.0,
+        .scale = nan(""),
+        .range = nan(""),
+        .tolerance_percent = nan(""),
+        .original = nan(""),
+        .addr = addr,
+        .lower_addr = addr,
+        .upper_addr = addr,
+        .catalogue_addr = addr,
+        .weight_addr = addr,
+        .scale_addr = addr,
+        .tolerance_addr = addr,
+    };
+}
+
+mt_goal mt_goal_default(mt_goal_type type, mt_addr addr)
+{
+    return (mt_goal){
+        .type = type,
+        .configurations_addr = addr,
+        .mode = no_mode(addr),
+        .target_hz = nan(""),
+        .at_least = nan(""),
+        .at_most = nan(""),
+        .equals = nan(""),
+        .tolerance_percent = DEFAULT_TOLERANCE_PERCENT,
+        .weight = nan(""),
+        .reference_name = {.addr = addr},
+        .reference = MT_ABSENT,
+        .addr = addr,
+        .target_addr = addr,
+        .at_least_addr = addr,
+        .at_most_addr = addr,
+        .equals_addr = addr,
+        .tolerance_addr = addr,
+        .weight_addr = addr,
+    };
+}
+
+mt_avoid mt_avoid_default(mt_addr addr)
+{
+    return (mt_avoid){
+        .source = {.margin_percent = nan(""), .up_to_hz = nan("")},
+        .cluster = MT_DEFAULT_CLUSTER,
+        .bands_addr = addr,
+        .margin_addr = addr,
+        .up_to_addr = addr,
+    };
+}
+
+mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr)
+{
+    return (mt_vary){
+        .kind = kind,
+        .variable = MT_ABSENT,
+        .parameter = MT_ABSENT,
+        .goal = MT_ABSENT,
+        .addr = addr,
+        .values_addr = addr,
+    };
+}
+
+mt_published mt_published_default(mt_published_kind kind, mt_addr addr)
+{
+    return (mt_published){
+        .kind = kind,
+        .parameter = MT_ABSENT,
+        .configuration = MT_ABSENT,
+        .mode = no_mode(addr),
+        .reference = MT_ABSENT,
+        .value = nan(""),
+        .tolerance = nan(""),
+        .tolerance_percent = nan(""),
+        .at_least = nan(""),
+        .at_most = nan(""),
+        .role = MT_ROLE_VERIFIES,
+        .addr = addr,
+        .status_addr = addr,
+        .value_addr = addr,
+        .tolerance_addr = addr,
+        .tolerance_percent_addr = addr,
+    };
+}
+
+#define NAME_CASE(id, name) \
+    case id:                \
+        return name;
+
+const char *mt_goal_type_name(mt_goal_type type)
+{
+    switch (type) {
+        MT_GOAL_LIST(NAME_CASE)
+    case MT_GOAL_TYPE_COUNT:
+        break;
+    }
+    return "unknown";
+}
+
+const char *mt_role_name(mt_role role)
+{
+    switch (role) {
+        MT_ROLE_LIST(NAME_CASE)
+    case MT_ROLE_COUNT:
+        break;
+    }
+    return "unknown";
+}
+
+const char *mt_published_kind_name(mt_published_kind kind)
+{
+    switch (kind) {
+        MT_PUBLISHED_LIST(NAME_CASE)
+    case MT_PUBLISHED_KIND_COUNT:
+        break;
+    }
+    return "unknown";
+}
+
+const char *mt_goal_member_name(mt_goal_member member)
+{
+    switch (member) {
+        MT_GOAL_MEMBER_LIST(NAME_CASE)
+    case MT_GOAL_MEMBER_COUNT:
+        break;
+    }
+    return "unknown";
+}
+
+const char *mt_objective_type_name(mt_objective_type type)
+{
+    switch (type) {
+    case MT_OBJECTIVE_CHANGE:
+        return "change";
+    case MT_OBJECTIVE_MASS:
+        return "mass";
+    case MT_OBJECTIVE_EXPRESSION:
+        return "expression";
+    case MT_OBJECTIVE_MISFIT:
+        return "misfit";
+    case MT_OBJECTIVE_CLEARANCE:
+        return "clearance";
+    case MT_OBJECTIVE_NONE:
+        break;
+    }
+    return "none";
+}
+
+const char *const *mt_study_statuses(int *n)
+{
+    /* a study that was interrupted says nothing that could be published */
+#define STATUS_NAME(id, name) name,
+    static const char *const names[] = {MT_RESULT_STATUS_LIST(STATUS_NAME)};
+#undef STATUS_NAME
+    *n = MT_RESULT_INTERRUPTED;
+    return names;
+}

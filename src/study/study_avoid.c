@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Goals of type "avoid": rotors looked up in the catalogue, numbers checked, bands made. */
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "study/study_check.h"
+
+static const double GREATEST_PERCENT = 100.0; /* a margin of it would reach down to 0 Hz */
+
+static void check_margin(mt_study_check *c, double margin, mt_addr addr)
+{
+    if (MT_HAS(margin) && !(margin >= 0.0 && margin < GREATEST_PERCENT)) {
+        mt_diag_error(c->diags, addr, "margin_percent (%g) must be at least 0 and below 100",
+                      margin);
+    }
+}
+
+static void check_intervals(mt_study_check *c, const mt_bands_source *source)
+{
+    for (int i = 0; i < source->n_intervals; i++) {
+        const mt_band_hz *const band = &source->intervals[i];
+        if (band->lower_hz < 0.0) {
+            mt_diag_error(c->diags, band->addr, "the band begins below 0 Hz (%g)",
+                          band->lower_hz);
+        } else if (band->lower_hz >= band->upper_hz) {
+            mt_diag_error(c->diags, band->addr, "the band's end (%g Hz) is not above %g Hz",
+                          band->upper_hz, band->lower_hz);
+        }
+    }
+}
+
+typedef struct needs {
+    bool speed;
+    bool blades;
+} needs;
+
+/* What the harmonics ask of the main rotor or of the tail rotor. */
+static needs needs_of(const mt_rotor *rotor, bool tail)
+{
+    needs n = {false, false};
+    for (int i = 0; i < rotor->n_harmonics; i++) {
+        const mt_harmonic *const h = &rotor->harmonics[i];
+        n.speed = n.speed || h->tail == tail;
+        n.blades = n.blades || (h->tail == tail && h->blade_count);
+    }
+    return n;
+}
+
+/* A value that nobody has read in a document is used, and everybody is told. */
+static void warn_unconfirmed(mt_study_check *c, const mt_rotor *rotor, const char *what,
+                             const mt_aircraft_value *value)
+{
+    if (value->confirmed) {
+        return;
+    }
+    mt_diag_warning(c->diags, rotor->aircraft.addr,
+                    "%s: the %s (%s) is not confirmed by a public document", rotor->aircraft.s,
+                    what, value->text);
+    mt_check_warn_result(
+        c, mt_arena_printf(&c->study->mem,
+                           "%s: the %s (%s) is not confirmed by a public document (%s)",
+                           rotor->aircraft.s, what, value->text, value->source));
+}
+
+static void use_aircraft(mt_study_check *c, mt_rotor *rotor, const mt_aircraft *aircraft)
+{
+    const needs main_rotor = needs_of(rotor, false);
+    const needs tail_rotor = needs_of(rotor, true);
+    rotor->speed_hz = aircraft->main_rotor.speed.value;
+    rotor->blades = (int)aircraft->main_rotor.blades.value;
+    if (main_rotor.speed) {
+        warn_unconfirmed(c, rotor, "rotor speed", &aircraft->main_rotor.speed);
+    }
+    if (main_rotor.blades) {
+        warn_unconfirmed(c, rotor, "number of blades", &aircraft->main_rotor.blades);
+    }
+    if (!aircraft->has_tail) {
+        return;
+    }
+    rotor->tail_speed_hz = aircraft->tail_rotor.speed.value;
+    rotor->tail_blades = (int)aircraft->tail_rotor.blades.value;
+    if (tail_rotor.speed) {
+        warn_unconfirmed(c, rotor, "tail rotor's speed", &aircraft->tail_rotor.speed);
+    }
+    if (tail_rotor.blades) {
+        warn_unconfirmed(c, rotor, "tail rotor's number of blades",
+                         &aircraft->tail_rotor.blades);
+    }
+}
+
+/* Each is compared with all others. */
+enum { MOST_ORDERS = 1000 };
+
+static bool too_many(mt_study_check *c, int n, mt_addr addr, const char *what)
+{
+    if (n > MOST_ORDERS) {
+        mt_diag_error(c->diags, addr, "more than %d %s", (int)MOST_ORDERS, what);
+    }
+    return n > MOST_ORDERS;
+}
+
+static void check_harmonics(mt_study_check *c, const mt_rotor *rotor, bool has_tail)
+{
+    if (too_many(c, rotor->n_harmonics, rotor->addr, "harmonics")) {
+        return;
+    }
+    for (int i = 0; i < rotor->n_harmonics; i++) {
+        const mt_harmonic *const h = &rotor->harmonics[i];
+        for (int k = 0; k < i; k++) {
+            if (strcmp(rotor->harmonics[k].text, h->text) == 0) {
+                mt_diag_error(c->diags, h->addr, "\"%s\" is given twice", h->text);
+                break;
+            }
+        }
+        if (h->tail && !has_tail) {
+            mt_diag_error(c->diags, h->addr, "\"%s\" needs a tail rotor, and none is known",
+                          h->text);
+        } else if (h->blade_count && (h->tail ? rotor->tail_blades : rotor->blades) < 1) {
+            mt_diag_error(c->diags, h->addr, "\"%s\" needs the number of blades", h->text);
+        }
+    }
+}
+
+static void check_rotor(mt_study_check *c, const mt_avoid *avoid, mt_rotor *rotor)
+{
+    const mt_aircraft *const aircraft = mt_check_aircraft(c, rotor->aircraft);
+    bool has_tail = rotor->tail_addr != rotor->addr;
+    mt_check_positive(c, rotor->speed_hz, rotor->speed_addr, "the rotor's speed");
+    mt_check_positive(c, rotor->tail_speed_hz, rotor->tail_speed_addr,
+                      "the tail rotor's speed");
+    if (aircraft != NULL) {
+        use_aircraft(c, rotor, aircraft);
+        has_tail = aircraft->has_tail;
+    }
+    if (aircraft != NULL || rotor->aircraft.addr == rotor->addr) {
+        check_harmonics(c, rotor, has_tail); /* else the aircraft is wrong, which says enough */
+    }
+    if (!(rotor->range_lower > 0.0) || rotor->range_lower > rotor->range_upper) {
+        mt_diag_error(c->diags, rotor->range_addr,
+                      "the range of speeds (%g to %g) must be above 0 and ascending",
+                      rotor->range_lower, rotor->range_upper);
+    }
+    check_margin(c, rotor->margin_percent, rotor->margin_addr);
+    const double margin =
+        MT_HAS(rotor->margin_percent) ? rotor->margin_percent : avoid->source.margin_percent;
+    if (rotor->range_lower == rotor->range_upper && !(margin > 0.0)) {
+        mt_diag_error(c->diags, rotor->addr,
+                      "the bands have no width: give \"speed_range\" or \"margin_percent\"");
+    }
+}
+
+/* Rotors without a name are told apart by number. */
+static void name_rotors(mt_study_check *c, const mt_bands_source *source)
+{
+    for (int i = 0; i < source->n_rotors && source->n_rotors > 1; i++) {
+        mt_rotor *const rotor = &source->rotors[i];
+        if (rotor->name == NULL && rotor->aircraft.s == NULL) {
+            rotor->name = mt_arena_printf(&c->study->mem, "rotor %d", i + 1);
+            c->out_of_memory = c->out_of_memory || rotor->name == NULL;
+        }
+    }
+}
+
+static void check_orders(mt_study_check *c, const mt_order *orders, int n)
+{
+    if (n > 0 && too_many(c, n, orders[0].addr, "orders")) {
+        return;
+    }
+    for (int i = 1; i < n; i++) {
+        for (int k = 0; k < i; k++) {
+            if (orders[k].thousandths == orders[i].thousandths) {
+                mt_diag_error(c->diags, orders[i].addr, "order \"%s\" is given twice",
+                              orders[i].text);
+                break;
+            }
+        }
+    }
+}
+
+static void check_gear(mt_study_check *c, const mt_gear *gear)
+{
+    double least = 1.0;
+    mt_check_positive(c, gear->ratio, gear->ratio_addr, "the ratio");
+    check_orders(c, gear->orders, gear->n_orders);
+    for (int i = 0; i < gear->n_orders; i++) {
+        const double times = (double)gear->orders[i].thousandths / 1000.0;
+        least = i == 0 ? times : fmin(least, times);
+    }
+    if (gear->teeth > 0 && !(least * gear->teeth > gear->sidebands)) {
+        mt_diag_error(c->diags, gear->sidebands_addr,
+                      "sideband %d of a mesh of %g per turn does not lie above 0 Hz",
+                      gear->sidebands, least * gear->teeth);
+    }
+}
+
+static void check_machine(mt_study_check *c, const mt_avoid *avoid, const mt_machine *machine)
+{
+    const double lower = mt_machine_speed_hz(machine, 0);
+    const double upper = mt_machine_speed_hz(machine, 1);
+    mt_check_positive(c, machine->speed_hz, machine->speed_addr, "the machine's speed");
+    if (!(machine->speed_hz <= 0.0) && (lower <= 0.0 || lower > upper)) {
+        mt_diag_error(c->diags, machine->range_addr,
+                      "the range of speeds (%g to %g Hz) must be above 0 and ascending", lower,
+                      upper);
+    }
+    check_margin(c, machine->margin_percent, machine->margin_addr);
+    check_orders(c, machine->orders, machine->n_orders);
+    for (int i = 0; i < machine->n_gears; i++) {
+        check_gear(c, &machine->gears[i]);
+    }
+    if (lower == upper && !(mt_bands_margin(&avoid->source, machine->margin_percent) > 0.0)) {
+        mt_diag_error(c->diags, machine->addr,
+                      "the bands have no width: give a range of speeds or \"margin_percent\"");
+    }
+}
+
+/* Machines without a name are told apart by number. */
+static void name_machines(mt_study_check *c, const mt_bands_source *source)
+{
+    for (int i = 0; i < source->n_machines && source->n_machines > 1; i++) {
+        mt_machine *const machine = &source->machines[i];
+        if (machine->name == NULL) {
+            machine->name = mt_arena_printf(&c->study->mem, "machine %d", i + 1);
+            c->out_of_memory = c->out_of_memory || machine->name == NULL;
+        }
+    }
+}
+
+/* A catalogue that could not be read (noted) leaves rotors without a speed. */
+static bool is_known(const mt_bands_source *source)
+{
+    for (int i = 0; i < source->n_rotors; i++) {
+        if (!MT_HAS(source->rotors[i].speed_hz)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void make_bands(mt_study_check *c, const mt_goal *goal)
+{
+    mt_avoid *const avoid = goal->avoid;
+    mt_study *const s = c->study;
+    if (mt_bands_make(&avoid->source, nan(""), &s->mem, &avoid->bands, NULL) != MT_OK) {
+        c->out_of_memory = true;
+        return;
+    }
+    if (avoid->bands.n == 0) {
+        mt_diag_error(c->diags, avoid->up_to_addr, "no band lies below up_to_hz (%g)",
+                      avoid->source.up_to_hz);
+    }
+    for (int i = 0; i < avoid->bands.n_notes; i++) {
+        mt_check_warn_result(c, mt_arena_printf(&s->mem, "/goals/%d: %s",
+                                                (int)(goal - s->goals), avoid->bands.notes[i]));
+    }
+}
+
+void mt_study_check_avoid(mt_study_check *c, mt_goal *goal)
+{
+    mt_avoid *const avoid = goal->avoid;
+    if (avoid == NULL) {
+        mt_diag_error(c->diags, goal->addr, "the goal names no bands");
+        return;
+    }
+    check_margin(c, avoid->source.margin_percent, avoid->margin_addr);
+    mt_check_positive(c, avoid->source.up_to_hz, avoid->up_to_addr, "up_to_hz");
+    check_intervals(c, &avoid->source);
+    name_rotors(c, &avoid->source);
+    for (int i = 0; i < avoid->source.n_rotors; i++) {
+        check_rotor(c, avoid, &avoid->source.rotors[i]);
+    }
+    name_machines(c, &avoid->source);
+    for (int i = 0; i < avoid->source.n_machines; i++) {
+        check_machine(c, avoid, &avoid->source.machines[i]);
+    }
+    if (c->diags->errors == 0 && is_known(&avoid->source)) {
+        make_bands(c, goal);
+    }
+}

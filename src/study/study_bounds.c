@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The numbers of the model where the variables stand at their bounds. A search goes there: a diameter of 0 or a wall of no thickness is found now, and named with its variable, not as a
+ * failure of some evaluation. Looked at are the designs with one variable at a bound and the corners of the box (all 2^n for n <= MOST_ENUMERATED, else the two at which all variables are
+ * least or greatest). Designs that a limit of the study forbids do not count.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "model/values.h"
+#include "study/study_check.h"
+
+enum { MOST_ENUMERATED = 6 };
+/* A search takes far longer than to look at a hundred million numbers: what asks for more is no study. */
+static const double MOST_WORK = 1e8;
+
+typedef struct corners {
+    mt_study_check *c;
+    mt_arena mem;
+    int n;         /* variables */
+    int *inputs;   /* [n] */
+    double *x;     /* [n] */
+    double *value; /* [n_nums] */
+    double *parameter;
+    mt_doubt_list told;
+    mt_status rc; /* memory ran out */
+} corners;
+
+static bool is_met(corners *k, const mt_goal *goal)
+{
+    double v = 0.0;
+    const mt_status rc =
+        mt_model_expr_value(k->c->model, k->parameter, &goal->expression, &k->mem, &v, NULL);
+    k->rc = rc == MT_E_MEMORY ? rc : k->rc;
+    return rc == MT_OK && !(v < goal->at_least) && !(v > goal->at_most);
+}
+
+/* Does every limit of an expression hold at x? Equalities are the search's to find. */
+static bool is_allowed(corners *k)
+{
+    const mt_study *const s = k->c->study;
+    bool allowed = true;
+    const mt_status rc =
+        mt_model_parameters(k->c->model, k->n, k->inputs, k->x, &k->mem, k->parameter, NULL);
+    k->rc = rc == MT_E_MEMORY ? rc : k->rc;
+    for (int i = 0; rc == MT_OK && i < s->n_goals && allowed; i++) {
+        allowed = s->goals[i].type != MT_GOAL_LIMIT || is_met(k, &s->goals[i]);
+    }
+    return rc == MT_OK && allowed;
+}
+
+static bool is_asked(const mt_study *s, int c)
+{
+    bool any = false;
+    for (int g = 0; g < s->n_goals; g++) {
+        any = any || s->goals[g].n_configurations > 0;
+    }
+    return !any || mt_study_asks(s, c);
+}
+
+/* All that is said of the design x, of every configuration that counts. */
+static void judge(corners *k, mt_doubt_list *out)
+{
+    const mt_model *const m = k->c->model;
+    for (int c = 0; c < m->n_configurations && k->rc == MT_OK; c++) {
+        if (is_asked(k->c->study, c)) {
+            k->rc = mt_model_numbers(m, c, k->n, k->inputs, k->x, &k->mem, k->value, NULL);
+            if (k->rc == MT_OK) {
+                mt_model_judge(m, c, k->value, out);
+            }
+        }
+    }
+    k->rc = out->out_of_memory ? MT_E_MEMORY : k->rc;
+}
+
+static const mt_doubt *fault_at(const mt_doubt_list *list, mt_addr addr)
+{
+    for (int i = 0; i < list->n; i++) {
+        if (list->items[i].level == MT_LEVEL_FAULT && list->items[i].addr == addr) {
+            return &list->items[i];
+        }
+    }
+    return NULL;
+}
+
+static void one_variable(corners *k, int i, bool upper)
+{
+    const mt_variable *const v = &k->c->study->variables[i];
+    const mt_addr own = upper ? v->upper_addr : v->lower_addr;
+    mt_doubt_list list = mt_doubt_list_default(&k->mem);
+    k->x[i] = upper ? v->upper : v->lower;
+    if (is_allowed(k)) {
+        judge(k, &list);
+    }
+    for (int d = 0; d < list.n; d++) {
+        if (list.items[d].level == MT_LEVEL_FAULT &&
+            fault_at(&k->told, list.items[d].addr) == NULL) {
+            mt_diag_error(k->c->diags, v->n_catalogue > 0 ? v->catalogue_addr : own,
+                          "with %s at %g, %s", v->parameter_name.s, k->x[i],
+                          list.items[d].text);
+            mt_doubt_copy(&k->told, &list.items[d]);
+        }
+    }
+    k->x[i] = v->original;
+}
+
+/* Variables that the fault does not need go back to their original values. */
+static void reduce(corners *k, mt_addr addr)
+{
+    for (int i = 0; i < k->n && k->rc == MT_OK; i++) {
+        mt_doubt_list list = mt_doubt_list_default(&k->mem);
+        const double had = k->x[i];
+        k->x[i] = k->c->study->variables[i].original;
+        if (is_allowed(k)) {
+            judge(k, &list);
+        }
+        k->x[i] = fault_at(&list, addr) != NULL ? k->x[i] : had;
+    }
+}
+
+static void tell_corner(corners *k, const mt_doubt *fault)
+{
+    const mt_study *const s = k->c->study;
+    const char *where = "";
+    mt_addr addr = MT_NO_ADDR;
+    reduce(k, fault->addr);
+    for (int i = 0; i < k->n && where != NULL; i++) {
+        const mt_variable *const v = &s->variables[i];
+        if (k->x[i] != v->original) {
+            where =
+                mt_arena_printf(&k->mem, "%s%s%s at %g", where, where[0] == '\0' ? "" : " and ",
+                                v->parameter_name.s, k->x[i]);
+            addr = addr == MT_NO_ADDR ? v->addr : addr;
+        }
+    }
+    if (where == NULL) {
+        k->rc = MT_E_MEMORY;
+        return;
+    }
+    const char *const text = mt_arena_printf(
+        &k->c->study->mem,
+        "with %s, %s: a goal of type \"limit\" keeps the search away from there", where,
+        fault->text);
+    mt_check_warn_result(k->c, text);
+    mt_diag_warning(k->c->diags, addr, "%s", text == NULL ? "" : text);
+    mt_doubt_copy(&k->told, fault);
+}
+
+static void go_to_corner(corners *k, unsigned which)
+{
+    const mt_study *const s = k->c->study;
+    for (int i = 0; i < k->n; i++) {
+        const bool upper =
+            k->n <= MOST_ENUMERATED ? (which >> (unsigned)i & 1U) != 0U : which != 0U;
+        k->x[i] = upper ? s->variables[i].upper : s->variables[i].lower;
+    }
+}
+
+static void one_corner(corners *k, unsigned which)
+{
+    mt_doubt_list list = mt_doubt_list_default(&k->mem);
+    go_to_corner(k, which);
+    if (is_allowed(k)) {
+        judge(k, &list);
+    }
+    for (int d = 0; d < list.n && k->rc == MT_OK && mt_diag_has_room(k->c->diags); d++) {
+        if (list.items[d].level == MT_LEVEL_FAULT &&
+            fault_at(&k->told, list.items[d].addr) == NULL) {
+            go_to_corner(k, which);
+            tell_corner(k, &list.items[d]);
+        }
+    }
+}
+
+/* Operations of all designs: numbers of every configuration that counts, parameters for every limit. */
+static double count_work(const corners *k)
+{
+    const mt_study *const s = k->c->study;
+    const mt_model *const m = k->c->model;
+    const double designs = (2.0 * k->n) + (double)(1U << MOST_ENUMERATED);
+    double each = m->n_parameters;
+    for (int c = 0; c < m->n_configurations; c++) {
+        each += is_asked(s, c) ? (double)m->n_nums : 0.0;
+    }
+    for (int g = 0; g < s->n_goals; g++) {
+        each += s->goals[g].type == MT_GOAL_LIMIT ? (double)m->n_parameters : 0.0;
+    }
+    return designs * each;
+}
+
+static void look_at_all(corners *k)
+{
+    const mt_study *const s = k->c->study;
+    const unsigned n_corners = k->n <= MOST_ENUMERATED ? 1U << (unsigned)k->n : 2U;
+    for (int i = 0; i < k->n; i++) {
+        k->inputs[i] = s->variables[i].parameter;
+        k->x[i] = s->variables[i].original;
+    }
+    for (int i = 0; i < k->n && k->rc == MT_OK; i++) {
+        one_variable(k, i, false);
+        one_variable(k, i, true);
+    }
+    for (unsigned w = 0; k->n > 1 && w < n_corners && k->rc == MT_OK; w++) {
+        one_corner(k, w);
+    }
+    k->rc = k->told.out_of_memory ? MT_E_MEMORY : k->rc;
+}
+
+void mt_study_check_bounds(mt_study_check *c)
+{
+    const mt_model *const m = c->model;
+    const size_t n = (size_t)c->study->n_variables;
+    corners k = {.c = c, .n = c->study->n_variables};
+    if (n == 0) {
+        return;
+    }
+    if (mt_arena_init(&k.mem, 0, NULL) != MT_OK) {
+        c->out_of_memory = true;
+        return;
+    }
+    if (count_work(&k) > MOST_WORK) {
+        mt_diag_error(c->diags, c->study->variables[0].addr,
+                      "%d variables are too many for a model of %d numbers in so many "
+                      "configurations and limits: every bound is checked with all of them",
+                      k.n, m->n_nums);
+        mt_arena_free(&k.mem);
+        return;
+    }
+    k.told = mt_doubt_list_default(&k.mem);
+    k.inputs = mt_arena_int(&k.mem, n);
+    k.x = mt_arena_f64(&k.mem, n, 1);
+    k.value = mt_arena_f64(&k.mem, (size_t)m->n_nums, 1);
+    k.parameter = mt_arena_f64(&k.mem, (size_t)m->n_parameters, 1);
+    if (k.inputs == NULL || k.x == NULL || k.value == NULL || k.parameter == NULL) {
+        k.rc = MT_E_MEMORY;
+    } else {
+        look_at_all(&k);
+    }
+    c->out_of_memory = c->out_of_memory || k.rc != MT_OK;
+    mt_arena_free(&k.mem);
+}

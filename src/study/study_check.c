@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/study_check.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "model/values.h"
+
+/* Every record that a name can mean begins with its mt_name: the nearest of n records of `size` bytes, for "did you mean". */
+static const char *nearest(mt_study_check *c, const char *name, const void *records, int n,
+                           size_t size)
+{
+    if (!mt_diag_may_suggest(c->diags)) {
+        return NULL;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(&c->study->mem);
+    const char **const names = mt_arena_alloc(&c->study->mem, (size_t)n, sizeof *names);
+    const char *found = NULL;
+    for (int i = 0; names != NULL && i < n; i++) {
+        const void *const record = (const char *)records + (size_t)i * size;
+        names[i] = ((const mt_name *)record)->s;
+    }
+    if (names == NULL) {
+        c->out_of_memory = true;
+    } else {
+        found = mt_text_nearest(name, names, n);
+    }
+    mt_arena_rewind(&c->study->mem, mark);
+    return found;
+}
+
+static void unknown(mt_study_check *c, mt_name name, const char *what, const char *guess)
+{
+    if (guess == NULL) {
+        mt_diag_error(c->diags, name.addr, "unknown %s \"%s\"", what, name.s);
+    } else {
+        mt_diag_error(c->diags, name.addr, "unknown %s \"%s\"; did you mean \"%s\"?", what,
+                      name.s, guess);
+    }
+}
+
+int mt_check_parameter(mt_study_check *c, mt_name name)
+{
+    const mt_model *const m = c->model;
+    if (name.s == NULL) {
+        return MT_ABSENT;
+    }
+    const int found = mt_model_find_parameter(m, name.s);
+    if (found == MT_ABSENT) {
+        unknown(c, name, "parameter",
+                nearest(c, name.s, m->parameters, m->n_parameters, sizeof *m->parameters));
+    }
+    return found;
+}
+
+int mt_check_configuration(mt_study_check *c, const mt_model *model, mt_name name)
+{
+    if (name.s == NULL) {
+        return MT_ABSENT;
+    }
+    const int found = mt_model_find_configuration(model, name.s);
+    if (found == MT_ABSENT) {
+        unknown(c, name, "configuration",
+                nearest(c, name.s, model->configurations, model->n_configurations,
+                        sizeof *model->configurations));
+    }
+    return found;
+}
+
+int mt_check_reference(mt_study_check *c, mt_name name)
+{
+    const mt_study *const s = c->study;
+    if (name.s == NULL) {
+        return MT_ABSENT;
+    }
+    const int found = mt_study_find_reference(s, name.s);
+    if (found == MT_ABSENT) {
+        unknown(c, name, "reference",
+                nearest(c, name.s, s->references, s->n_references, sizeof *s->references));
+    }
+    return found;
+}
+
+const mt_aircraft *mt_check_aircraft(mt_study_check *c, mt_name name)
+{
+    const mt_aircraft_list *const list = &c->study->aircraft;
+    if (name.s == NULL) {
+        return NULL;
+    }
+    for (int i = 0; i < list->n; i++) {
+        if (strcmp(list->items[i].name.s, name.s) == 0) {
+            return &list->items[i];
+        }
+    }
+    if (list->n > 0) {
+        unknown(c, name, "aircraft",
+                nearest(c, name.s, list->items, list->n, sizeof *list->items));
+    } else if (c->study->aircraft_path.s == NULL) {
+        mt_diag_error(c->diags, name.addr,
+                      "there is no catalogue to look up \"%s\" in: the study names none "
+                      "(\"aircraft\") and no aircraft.json lies beside the model",
+                      name.s);
+    }
+    return NULL;
+}
+
+void mt_check_warn_result(mt_study_check *c, const char *text)
+{
+    mt_study *const s = c->study;
+    const char **const list = text == NULL
+                                  ? NULL
+                                  : mt_arena_grow(&s->mem, (void *)s->warnings, s->n_warnings,
+                                                  &s->cap_warnings, sizeof *list);
+    if (list == NULL) {
+        c->out_of_memory = true;
+        return;
+    }
+    list[s->n_warnings++] = text;
+    s->warnings = list;
+}
+
+int mt_check_only_configuration(mt_study_check *c, const mt_model *model, mt_addr addr)
+{
+    if (model->n_configurations == 1) {
+        return 0;
+    }
+    mt_diag_error(
+        c->diags, addr,
+        "no configuration is named and the model has %d of them (the first is \"%s\")",
+        model->n_configurations, model->configurations[0].name.s);
+    return MT_ABSENT;
+}
+
+int mt_check_mode(mt_study_check *c, mt_mode_ref *mode)
+{
+    const mt_model *const m = c->model;
+    mode->named = MT_ABSENT;
+    if (mode->mode_name.s == NULL) {
+        return mode->index > 0 ? mode->index : 0;
+    }
+    mode->named = mt_model_find_mode(m, mode->mode_name.s);
+    if (mode->named == MT_ABSENT) {
+        unknown(c, mode->mode_name, "mode",
+                nearest(c, mode->mode_name.s, m->modes, m->n_modes, sizeof *m->modes));
+        return 0;
+    }
+    return m->modes[mode->named].index;
+}
+
+void mt_check_reference_mode(mt_study_check *c, int reference, int reference_mode,
+                             int mode_index, bool shape, mt_addr addr)
+{
+    if (reference == MT_ABSENT) {
+        return;
+    }
+    const mt_reference *const r = &c->study->references[reference];
+    const int index = reference_mode > 0 ? reference_mode : mode_index;
+    if (r->model_path.s != NULL || index < 1) {
+        return; /* how many modes a model has is known later */
+    }
+    if (index > r->n_modes) {
+        mt_diag_error(c->diags, addr, "reference \"%s\" has %d mode%s, not %d", r->name.s,
+                      r->n_modes, r->n_modes == 1 ? "" : "s", index);
+        return;
+    }
+    const mt_measured_mode *const m = &r->modes[index - 1];
+    if (shape && m->n_values == 0) {
+        mt_diag_error(c->diags, addr, "mode %d of reference \"%s\" has no shape", index,
+                      r->name.s);
+    } else if (!shape && !mt_check_given(m->frequency_hz, m->frequency_addr, m->addr)) {
+        mt_diag_error(c->diags, addr, "mode %d of reference \"%s\" has no frequency", index,
+                      r->name.s);
+    }
+}
+
+bool mt_check_given(double value, mt_addr value_addr, mt_addr owner)
+{
+    return MT_HAS(value) || value_addr != owner;
+}
+
+void mt_check_positive(mt_study_check *c, double value, mt_addr addr, const char *what)
+{
+    if (MT_HAS(value) && !(value > 0.0)) {
+        mt_diag_error(c->diags, addr, "%s (%g) must be above 0", what, value);
+    }
+}
+
+/* Values at the original design, once: variables start from them. */
+static mt_status evaluate_original(mt_study_check *c, mt_err *err)
+{
+    mt_study *const s = c->study;
+    if (s->original != NULL) {
+        return MT_OK;
+    }
+    double *const values = mt_arena_f64(&s->mem, (size_t)c->model->n_parameters, 1);
+    if (values == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_err why = {.code = MT_OK};
+    const mt_status rc = mt_model_original_values(c->model, &s->mem, values, NULL, &why);
+    if (rc == MT_E_DOMAIN || rc == MT_E_INPUT) {
+        mt_diag_error(c->diags, s->model_path.addr, "%s: %s", s->model_path.s, why.text);
+        return MT_E_INPUT;
+    }
+    s->original = rc == MT_OK ? values : NULL;
+    return rc == MT_OK ? rc : mt_fail(err, rc, "%s", why.text);
+}
+
+mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err)
+{
+    if (study->model == NULL) {
+        return mt_fail(err, MT_E_INTERNAL, "mt_study_finish: the study has no model");
+    }
+    mt_study_check c = {.study = study, .model = study->model, .diags = diags};
+    const mt_status rc = evaluate_original(&c, err);
+    if (rc != MT_OK && rc != MT_E_INPUT) {
+        return rc;
+    }
+    mt_study_check_references(&c);
+    mt_study_check_variables(&c);
+    mt_study_check_goals(&c);
+    mt_study_check_overrides(&c);
+    mt_study_check_objectives(&c);
+    mt_study_check_published(&c);
+    mt_study_check_trade(&c);
+    mt_study_fill_counted(&c);
+    if (study->recommendations < 1) {
+        mt_diag_error(diags, study->recommendations_addr,
+                      "recommendations (%d) must be above 0", study->recommendations);
+    }
+    if (diags->errors == 0 && !c.out_of_memory) {
+        mt_study_check_doubts(&c);
+        mt_study_check_bounds(&c);
+    }
+    if (diags->errors == 0 && !c.out_of_memory) {
+        mt_study_check_redundant(&c);
+    }
+    if (c.out_of_memory || diags->out_of_memory) {
+        return mt_fail_memory(err);
+    }
+    if (diags->errors > 0) {
+        return mt_fail(err, MT_E_INPUT, "%s",
+                       diags->count > 0 ? diags->items[0].text : "the study has errors");
+    }
+    return MT_OK;
+}

@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Numbers of a study that are allowed and hardly meant. What such a question has for an answer may be right, even proven, and is not what the engineer wanted to know: "feasible
+ * and proven" of bands at a hundred times the rotor's speed. Limits are wide: a good study is not warned of.
+ */
+#include <math.h>
+
+#include "study/study_check.h"
+
+/* A rotor turns at 0.9 to 1.1 of its nominal speed, between idle and overspeed at 0.5 to 1.3; [95, 105] is per cent. */
+static const double LEAST_SPEED = 0.5;
+static const double MOST_SPEED = 2.0;
+/* An engine idles at a tenth of its nominal speed, and turns at less than 30 000 per minute. */
+static const double LEAST_MACHINE = 0.05;
+static const double MOST_SPEED_HZ = 500.0;
+static const double SECONDS = 60.0;
+/* A separation margin is 5 to 20 per cent; 0.1 is the factor that 10 per cent are. */
+static const double LEAST_MARGIN_PERCENT = 1.0;
+/* A band narrower than a thousandth of its frequency forbids less than a model is exact to. */
+static const double LEAST_WIDTH = 1e-3;
+/* A goal met within half of what it asks asks for nothing. */
+static const double MOST_TOLERANCE_PERCENT = 50.0;
+/* Bounds that span more than eight decades, or lie three from the original, have a power of ten wrong more often than not. */
+static const double MOST_SPAN = 1e8;
+static const double MOST_SHIFT = 1e3;
+static const double PERCENT = 100.0;
+
+static void at(mt_doubt *doubt, mt_addr addr)
+{
+    if (doubt != NULL) {
+        doubt->addr = addr;
+    }
+}
+
+/* Factors a to b of the speed of a rotor or a machine. */
+typedef struct factors {
+    double a;
+    double b;
+    double least; /* a slower speed is hardly meant */
+    const char *whose;
+    mt_addr addr;
+} factors;
+
+static void doubt_range(mt_doubt_list *out, const factors *range)
+{
+    const double a = range->a;
+    const double b = range->b;
+    if (a >= range->least && b <= MOST_SPEED) {
+        return;
+    }
+    if (b > MOST_SPEED && b >= PERCENT * LEAST_SPEED) {
+        at(mt_doubt_add(out, MT_LEVEL_DOUBT, "speed_range",
+                        "speed_range [%g, %g] says %g to %g times the %s speed: it takes "
+                        "factors, and these look like per cent; [%g, %g] is meant?",
+                        a, b, a, b, range->whose, a / PERCENT, b / PERCENT),
+           range->addr);
+        return;
+    }
+    at(mt_doubt_add(out, MT_LEVEL_DOUBT, "speed_range",
+                    "speed_range [%g, %g] says %g to %g times the %s speed: is such a "
+                    "range meant?",
+                    a, b, a, b, range->whose),
+       range->addr);
+}
+
+/* Speeds are in turns per second; what is meant for turns per minute is sixty times too fast. */
+static void doubt_speed(mt_doubt_list *out, const mt_machine *machine)
+{
+    const double lower = mt_machine_speed_hz(machine, 0);
+    const double upper = mt_machine_speed_hz(machine, 1);
+    if (upper > MOST_SPEED_HZ) {
+        at(mt_doubt_add(out, MT_LEVEL_DOUBT, "speed",
+                        "the machine turns at %g to %g Hz, which is %g to %g per minute: if "
+                        "turns per minute are meant, write \"%g*rpm\"",
+                        lower, upper, SECONDS * lower, SECONDS * upper, upper),
+           MT_HAS(machine->lower_hz) ? machine->range_addr : machine->speed_addr);
+    }
+}
+
+static void doubt_margin(mt_doubt_list *out, double margin, mt_addr addr)
+{
+    if (margin > 0.0 && margin < LEAST_MARGIN_PERCENT) {
+        at(mt_doubt_add(out, MT_LEVEL_DOUBT, "margin",
+                        "margin_percent %g is %g %%, next to nothing: is %g %% meant?", margin,
+                        margin, PERCENT * margin),
+           addr);
+    }
+}
+
+static void doubt_avoid(mt_doubt_list *out, const mt_goal *goal)
+{
+    const mt_avoid *const avoid = goal->avoid;
+    doubt_margin(out, avoid->source.margin_percent, avoid->margin_addr);
+    for (int i = 0; i < avoid->source.n_rotors; i++) {
+        const mt_rotor *const rotor = &avoid->source.rotors[i];
+        doubt_range(out, &(factors){rotor->range_lower, rotor->range_upper, LEAST_SPEED,
+                                    "rotor's", rotor->range_addr});
+        doubt_margin(out, rotor->margin_percent, rotor->margin_addr);
+    }
+    for (int i = 0; i < avoid->source.n_machines; i++) {
+        const mt_machine *const machine = &avoid->source.machines[i];
+        doubt_range(out, &(factors){machine->range_lower, machine->range_upper, LEAST_MACHINE,
+                                    "machine's", machine->range_addr});
+        doubt_speed(out, machine);
+        doubt_margin(out, machine->margin_percent, machine->margin_addr);
+    }
+    for (int i = 0; i < avoid->bands.n; i++) {
+        const mt_band *const band = &avoid->bands.items[i];
+        if (band->upper_hz - band->lower_hz < LEAST_WIDTH * band->upper_hz) {
+            const bool cut = band->upper_hz == avoid->source.up_to_hz;
+            at(mt_doubt_add(out, MT_LEVEL_DOUBT, "band",
+                            "the band %s has no width to speak of, %.6g to %.6g Hz%s",
+                            band->label, band->lower_hz, band->upper_hz,
+                            cut ? ": up_to_hz cuts the rest off" : ""),
+               cut ? avoid->up_to_addr : avoid->bands_addr);
+        }
+    }
+}
+
+static void doubt_goal(mt_doubt_list *out, const mt_goal *goal)
+{
+    if (goal->tolerance_percent >= MOST_TOLERANCE_PERCENT) {
+        at(mt_doubt_add(out, MT_LEVEL_DOUBT, "tolerance",
+                        "tolerance_percent %g: within so much almost anything meets the goal",
+                        goal->tolerance_percent),
+           goal->tolerance_addr);
+    }
+    if (goal->type == MT_GOAL_AVOID && goal->avoid != NULL) {
+        doubt_avoid(out, goal);
+    }
+}
+
+static double decades(double lower, double upper)
+{
+    const double ratio = upper / lower;
+    return isfinite(ratio) ? log10(ratio) : log10(upper) - log10(lower);
+}
+
+static void doubt_variable(mt_doubt_list *out, const mt_variable *v)
+{
+    const char *const name = v->parameter_name.s;
+    if (v->lower > 0.0 && v->upper / v->lower > MOST_SPAN) {
+        at(mt_doubt_add(
+               out, MT_LEVEL_DOUBT, "bounds",
+               "the bounds of %s, %g to %g, span %.0f decades: is a power of ten wrong?", name,
+               v->lower, v->upper, floor(decades(v->lower, v->upper))),
+           v->addr);
+    }
+    const bool below =
+        v->original > 0.0 && v->upper > 0.0 && v->original / v->upper > MOST_SHIFT;
+    const bool above =
+        v->original > 0.0 && v->lower > 0.0 && v->lower / v->original > MOST_SHIFT;
+    if (below || above) {
+        at(mt_doubt_add(
+               out, MT_LEVEL_DOUBT, "bounds",
+               "the bounds of %s, %g to %g, lie far from its original value, %g: is the "
+               "unit the model's?",
+               name, v->lower, v->upper, v->original),
+           v->addr);
+    }
+}
+
+static void doubt_trade(mt_doubt_list *out, const mt_trade *trade)
+{
+    for (int i = 0; i < trade->n_vary; i++) {
+        const mt_vary *const v = &trade->vary[i];
+        for (int k = 0;
+             k < v->n_values && v->kind == MT_VARY_GOAL && v->member == MT_MEMBER_MARGIN; k++) {
+            doubt_margin(out, v->values[k], v->values_addr);
+        }
+    }
+}
+
+void mt_study_check_doubts(mt_study_check *c)
+{
+    mt_study *const s = c->study;
+    mt_doubt_list *const out = &s->doubts;
+    *out = mt_doubt_list_default(&s->mem);
+    for (int i = 0; i < s->n_variables; i++) {
+        doubt_variable(out, &s->variables[i]);
+    }
+    for (int i = 0; i < s->n_goals; i++) {
+        doubt_goal(out, &s->goals[i]);
+    }
+    doubt_trade(out, &s->trade);
+    for (int i = 0; i < out->n; i++) {
+        mt_diag_warning(c->diags, out->items[i].addr, "%s", out->items[i].text);
+    }
+    c->out_of_memory = c->out_of_memory || out->out_of_memory;
+}

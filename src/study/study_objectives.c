@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/text.h"
+#include "study/study_check.h"
+
+static bool matches_item(const mt_model *m, const char *pattern)
+{
+    for (int i = 0; i < m->n_bodies; i++) {
+        if (mt_text_matches(pattern, m->bodies[i].name.s)) {
+            return true;
+        }
+    }
+    for (int i = 0; i < m->n_links; i++) {
+        if (mt_text_matches(pattern, m->links[i].name.s)) {
+            return true;
+        }
+    }
+    for (int i = 0; i < m->n_springs; i++) {
+        if (m->springs[i].type == MT_SPRING_BAR &&
+            mt_text_matches(pattern, m->springs[i].name.s)) {
+            return true;
+        }
+    }
+    for (int i = 0; i < m->n_joints; i++) {
+        if (m->joints[i].mass != MT_ABSENT && mt_text_matches(pattern, m->joints[i].name.s)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void check_objective(mt_study_check *c, int which)
+{
+    const mt_study *const s = c->study;
+    const mt_objective *const o = &s->objectives[which];
+    for (int k = 0; k < which; k++) {
+        if (o->type != MT_OBJECTIVE_EXPRESSION && s->objectives[k].type == o->type) {
+            mt_diag_error(c->diags, o->addr, "this objective is given twice");
+            break;
+        }
+    }
+    for (int i = 0; i < o->of.count; i++) {
+        if (!matches_item(c->model, o->of.items[i].s)) {
+            mt_diag_error(c->diags, o->of.items[i].addr,
+                          "no body, link, bar or rod matches \"%s\"", o->of.items[i].s);
+        }
+    }
+}
+
+static const mt_objective *find(const mt_study *s, mt_objective_type type)
+{
+    for (int i = 0; i < s->n_objectives; i++) {
+        if (s->objectives[i].type == type) {
+            return &s->objectives[i];
+        }
+    }
+    return NULL;
+}
+
+/* Weighted goals are residuals of the misfit: one needs the other. */
+static void check_misfit(mt_study_check *c)
+{
+    const mt_study *const s = c->study;
+    const mt_objective *const misfit = find(s, MT_OBJECTIVE_MISFIT);
+    bool weighted = false;
+    for (int i = 0; i < s->n_goals; i++) {
+        const mt_goal *const goal = &s->goals[i];
+        if (!mt_check_given(goal->weight, goal->weight_addr, goal->addr)) {
+            continue;
+        }
+        weighted = true;
+        if (misfit == NULL && s->n_variables > 0) {
+            mt_diag_error(c->diags, goal->weight_addr,
+                          "a weighted goal needs \"objective\": {\"minimise\": \"misfit\"}");
+        }
+    }
+    if (misfit != NULL && !weighted) {
+        mt_diag_error(c->diags, misfit->addr, "the misfit needs a goal with \"weight\"");
+    }
+}
+
+/* Only a misfit has weights to change, and a factor of 1 changes none. */
+static void check_spread(mt_study_check *c)
+{
+    const mt_spread *const spread = &c->study->spread;
+    if (spread->factor_addr == MT_NO_ADDR) {
+        return;
+    }
+    const bool first =
+        c->study->n_objectives > 0 && c->study->objectives[0].type == MT_OBJECTIVE_MISFIT;
+    if (!first) {
+        mt_diag_error(c->diags, spread->factor_addr,
+                      "a spread needs \"objective\": {\"minimise\": \"misfit\"}");
+    }
+    if (MT_HAS(spread->factor) && !(spread->factor > 1.0)) {
+        mt_diag_error(c->diags, spread->factor_addr, "factor (%g) must be above 1",
+                      spread->factor);
+    }
+}
+
+static void check_clearance(mt_study_check *c)
+{
+    const mt_objective *const clearance = find(c->study, MT_OBJECTIVE_CLEARANCE);
+    for (int i = 0; i < c->study->n_goals; i++) {
+        if (c->study->goals[i].type == MT_GOAL_AVOID) {
+            return;
+        }
+    }
+    if (clearance != NULL) {
+        mt_diag_error(c->diags, clearance->addr,
+                      "the clearance needs a goal of type \"avoid\"");
+    }
+}
+
+void mt_study_check_objectives(mt_study_check *c)
+{
+    mt_study *const s = c->study;
+    for (int i = 0; i < s->n_objectives; i++) {
+        check_objective(c, i);
+    }
+    check_misfit(c);
+    check_spread(c);
+    check_clearance(c);
+    if (s->n_objectives > 0 || s->n_variables == 0) {
+        return;
+    }
+    mt_objective *const list =
+        mt_arena_grow(&s->mem, s->objectives, 0, &s->cap_objectives, sizeof *list);
+    if (list == NULL) {
+        c->out_of_memory = true;
+        return;
+    }
+    list[0] = (mt_objective){.type = MT_OBJECTIVE_CHANGE, .addr = MT_NO_ADDR};
+    s->objectives = list;
+    s->n_objectives = 1;
+}

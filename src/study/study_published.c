@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/study_check.h"
+
+/* What a value is judged by: a tolerance, absolute or relative, or limits; one that is not comparable needs none. Limits do without a
+ * value, too: it is then only shown. */
+static void check_judgement(mt_study_check *c, const mt_published *p)
+{
+    const bool absolute = mt_check_given(p->tolerance, p->tolerance_addr, p->addr);
+    const bool relative =
+        mt_check_given(p->tolerance_percent, p->tolerance_percent_addr, p->addr);
+    const bool value = mt_check_given(p->value, p->value_addr, p->addr);
+    const bool limits = MT_HAS(p->at_least) || MT_HAS(p->at_most);
+    mt_check_positive(c, p->tolerance, p->tolerance_addr, "tolerance");
+    mt_check_positive(c, p->tolerance_percent, p->tolerance_percent_addr, "tolerance_percent");
+    if (!value && !limits) {
+        mt_diag_error(c->diags, p->addr, "give \"value\", \"at_least\" or \"at_most\"");
+    } else if (limits && (absolute || relative)) {
+        mt_diag_error(c->diags, absolute ? p->tolerance_addr : p->tolerance_percent_addr,
+                      "a tolerance excludes limits");
+    } else if (absolute && relative) {
+        mt_diag_error(c->diags, p->tolerance_percent_addr,
+                      "\"tolerance_percent\" excludes \"tolerance\"");
+    } else if (!limits && !absolute && !relative && p->role != MT_ROLE_NOT_COMPARABLE) {
+        mt_diag_error(c->diags, p->value_addr,
+                      "\"value\" needs \"tolerance\", \"tolerance_percent\" or a limit");
+    }
+    if (p->at_least > p->at_most) {
+        mt_diag_error(c->diags, p->addr, "at_most (%g) is below at_least (%g)", p->at_most,
+                      p->at_least);
+    }
+}
+
+static void check_status(mt_study_check *c, const mt_published *p)
+{
+    const bool judged = mt_check_given(p->value, p->value_addr, p->addr) ||
+                        MT_HAS(p->at_least) || MT_HAS(p->at_most) || MT_HAS(p->tolerance) ||
+                        MT_HAS(p->tolerance_percent);
+    if (judged) {
+        mt_diag_error(c->diags, p->addr, "a published status has no value, limit or tolerance");
+    }
+    if (p->original) {
+        mt_diag_error(c->diags, p->addr, "a published status belongs to no design");
+    }
+}
+
+static void check_mode(mt_study_check *c, mt_published *p)
+{
+    p->configuration = p->configuration_name.s != NULL
+                           ? mt_check_configuration(c, c->model, p->configuration_name)
+                           : mt_check_only_configuration(c, c->model, p->addr);
+    const int index = mt_check_mode(c, &p->mode);
+    if (p->kind == MT_PUBLISHED_MAC) {
+        p->reference = mt_check_reference(c, p->reference_name);
+        mt_check_reference_mode(c, p->reference, p->reference_mode, index, true, p->addr);
+        mt_check_common_sensors(c, p->reference, p->reference_name.addr);
+    }
+}
+
+void mt_study_check_published(mt_study_check *c)
+{
+    for (int i = 0; i < c->study->n_published; i++) {
+        mt_published *const p = &c->study->published[i];
+        p->parameter = mt_check_parameter(c, p->parameter_name);
+        if (p->kind == MT_PUBLISHED_FREQUENCY || p->kind == MT_PUBLISHED_MAC) {
+            check_mode(c, p);
+        }
+        if (p->kind == MT_PUBLISHED_STATUS) {
+            check_status(c, p);
+        } else {
+            check_judgement(c, p);
+        }
+    }
+}

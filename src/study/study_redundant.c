@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * A variable that shapes the geometry may take joints out of the redundancy that the mechanism lives on: a tilted hinge of a planar four-bar in space, one crank of a parallelogram with
+ * three. At any other value the mechanism cannot be closed, or has lost a motion: its frequencies are no function that a search could follow. Said where the study is read.
+ */
+#include "mechanics/linear.h"
+#include "study/study_check.h"
+
+/* Names configuration c's variables that break a redundancy; each variable once over all configurations. */
+static mt_status judge(mt_study_check *c, mt_linear *lin, bool *told, mt_err *err)
+{
+    const mt_study *const s = c->study;
+    for (int i = 0; i < s->n_variables; i++) {
+        mt_independence what;
+        if (told[i]) {
+            continue;
+        }
+        MT_TRY(mt_linear_independence(lin, i, &what, err));
+        told[i] = what.opens || what.blocks;
+        if (told[i]) {
+            mt_diag_error(
+                c->diags, s->variables[i].addr,
+                what.opens
+                    ? "\"%s\" cannot vary alone: with any other value than %g, joints %s "
+                      "do not close in configuration \"%s\", where equations of theirs "
+                      "are redundant; make the other lengths depend on it, or give the "
+                      "joints the freedom that they need"
+                    : "\"%s\" cannot vary: only at %g are equations of joints %s "
+                      "redundant in configuration \"%s\"; with any other value they "
+                      "block a motion, and its frequency is gone at once; give the joints "
+                      "the freedom that they need",
+                c->model->parameters[s->variables[i].parameter].name.s,
+                s->variables[i].original, what.joints,
+                c->model->configurations[lin->sys->configuration].name.s);
+        }
+    }
+    return MT_OK;
+}
+
+/* What fails here fails again, with its reason, when the study is answered. */
+static mt_status look_at(mt_study_check *c, int configuration, const int *inputs,
+                         const double *at, bool *told, mt_err *err)
+{
+    mt_system *sys = NULL;
+    mt_linear *lin = NULL;
+    mt_status rc =
+        mt_system_new(c->model, configuration, c->study->n_variables, inputs, at, &sys, err);
+    if (rc == MT_OK && !sys->geometry_fixed) {
+        rc = mt_linear_new(sys, &lin, err);
+        rc = rc == MT_OK ? mt_linear_update(lin, at, false, err) : rc;
+        if (rc == MT_OK && mt_linear_redundant(lin) > 0) {
+            rc = mt_linear_update(lin, at, true, err);
+            rc = rc == MT_OK ? judge(c, lin, told, err) : rc;
+        }
+    }
+    mt_linear_delete(lin);
+    mt_system_delete(sys);
+    return rc;
+}
+
+void mt_study_check_redundant(mt_study_check *c)
+{
+    const mt_study *const s = c->study;
+    const size_t n = (size_t)s->n_variables;
+    mt_arena mem;
+    if (n == 0 || mt_arena_init(&mem, 0, NULL) != MT_OK) {
+        c->out_of_memory = c->out_of_memory || n > 0;
+        return;
+    }
+    int *const inputs = mt_arena_int(&mem, n);
+    double *const at = mt_arena_f64(&mem, n, 1);
+    bool *const told = mt_arena_alloc(&mem, n, sizeof *told);
+    c->out_of_memory = c->out_of_memory || inputs == NULL || at == NULL || told == NULL;
+    for (size_t i = 0; i < n && !c->out_of_memory; i++) {
+        inputs[i] = s->variables[i].parameter;
+        at[i] = s->variables[i].original;
+    }
+    for (int i = 0; i < c->model->n_configurations && !c->out_of_memory; i++) {
+        if (mt_study_asks(s, i)) {
+            c->out_of_memory = look_at(c, i, inputs, at, told, NULL) == MT_E_MEMORY;
+        }
+    }
+    mt_arena_free(&mem);
+}

@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The trade study: what varies, over which values, and the two objectives of its front. */
+#include <string.h>
+
+#include "study/study_check.h"
+
+static bool is_least(mt_goal_member member)
+{
+    return member == MT_MEMBER_AT_LEAST || member == MT_MEMBER_AT_LEAST_HZ;
+}
+
+static bool is_most(mt_goal_member member)
+{
+    return member == MT_MEMBER_AT_MOST || member == MT_MEMBER_AT_MOST_HZ;
+}
+
+/* Do two that vary limit one number from its two sides? */
+static bool opposite(const mt_vary *a, const mt_vary *b)
+{
+    if (a->kind != b->kind || a == b) {
+        return false;
+    }
+    switch (a->kind) {
+    case MT_VARY_BOUND:
+        return a->upper != b->upper && a->name.s != NULL && b->name.s != NULL &&
+               strcmp(a->name.s, b->name.s) == 0;
+    case MT_VARY_GOAL:
+        return a->goal == b->goal && ((is_least(a->member) && is_most(b->member)) ||
+                                      (is_most(a->member) && is_least(b->member)));
+    case MT_VARY_PARAMETER:
+        break;
+    }
+    return false;
+}
+
+/* What varies on the other side; NULL: that side is as the study says. */
+static const mt_vary *other_side(const mt_study_check *c, const mt_vary *v)
+{
+    const mt_trade *const trade = &c->study->trade;
+    for (int i = 0; i < trade->n_vary; i++) {
+        if (opposite(v, &trade->vary[i])) {
+            return &trade->vary[i];
+        }
+    }
+    return NULL;
+}
+
+static const char *side_name(const mt_vary *v)
+{
+    return v->kind == MT_VARY_GOAL ? mt_goal_member_name(v->member)
+                                   : (v->upper ? "upper bound" : "lower bound");
+}
+
+/* Where both sides vary every value of the one has to leave room to every value of the other. */
+static void check_sides(mt_study_check *c, const mt_vary *v)
+{
+    const mt_vary *const other = other_side(c, v);
+    if (other == NULL || other > v) {
+        return; /* told at the second of them */
+    }
+    const bool lower = v->kind == MT_VARY_GOAL ? is_least(v->member) : !v->upper;
+    for (int i = 0; i < v->n_values; i++) {
+        for (int k = 0; k < other->n_values; k++) {
+            const double low = lower ? v->values[i] : other->values[k];
+            const double high = lower ? other->values[k] : v->values[i];
+            if (!(low < high)) {
+                mt_diag_error(c->diags, v->values_addr,
+                              "%s %g is not %s %s %g, which varies, too", side_name(v),
+                              v->values[i], lower ? "below" : "above", side_name(other),
+                              other->values[k]);
+                return;
+            }
+        }
+    }
+}
+
+static void vary_bound(mt_study_check *c, mt_vary *v)
+{
+    mt_study *const s = c->study;
+    for (int i = 0; i < s->n_variables && v->name.s != NULL; i++) {
+        if (s->variables[i].parameter_name.s != NULL &&
+            strcmp(s->variables[i].parameter_name.s, v->name.s) == 0) {
+            v->variable = i;
+        }
+    }
+    if (v->variable == MT_ABSENT) {
+        if (v->name.s != NULL) {
+            mt_diag_error(c->diags, v->name.addr, "\"%s\" is no variable of the study",
+                          v->name.s);
+        }
+        return;
+    }
+    const mt_variable *const variable = &s->variables[v->variable];
+    if (variable->n_catalogue > 0) {
+        mt_diag_error(c->diags, v->name.addr, "\"%s\" has a catalogue, not bounds", v->name.s);
+        return;
+    }
+    const double other = v->upper ? variable->lower : variable->upper;
+    for (int i = 0; i < v->n_values && other_side(c, v) == NULL; i++) {
+        if (v->upper ? v->values[i] <= other : v->values[i] >= other) {
+            mt_diag_error(c->diags, v->values_addr, "%s bound %g is not %s %s bound (%g)",
+                          v->upper ? "upper" : "lower", v->values[i],
+                          v->upper ? "above the" : "below the", v->upper ? "lower" : "upper",
+                          other);
+        }
+    }
+}
+
+/* The number of the goal that varies; NULL where its type has no such member. */
+static const double *number_of(const mt_goal *g, mt_goal_member member)
+{
+    const bool frequency = g->type == MT_GOAL_FREQUENCY;
+    const bool plain = g->type == MT_GOAL_LIMIT || g->type == MT_GOAL_MAC;
+    switch (member) {
+    case MT_MEMBER_TARGET:
+        return frequency ? &g->target_hz : NULL;
+    case MT_MEMBER_AT_LEAST_HZ:
+        return frequency ? &g->at_least : NULL;
+    case MT_MEMBER_AT_MOST_HZ:
+        return frequency ? &g->at_most : NULL;
+    case MT_MEMBER_AT_LEAST:
+        return plain ? &g->at_least : NULL;
+    case MT_MEMBER_AT_MOST:
+        return g->type == MT_GOAL_LIMIT ? &g->at_most : NULL;
+    case MT_MEMBER_EQUALS:
+        return g->type == MT_GOAL_LIMIT ? &g->equals : NULL;
+    case MT_MEMBER_MARGIN:
+        return g->avoid != NULL ? &g->avoid->source.margin_percent : NULL;
+    case MT_GOAL_MEMBER_COUNT:
+        break;
+    }
+    return NULL;
+}
+
+static bool allowed(mt_goal_member member, const mt_goal *goal, double value)
+{
+    switch (member) {
+    case MT_MEMBER_TARGET:
+    case MT_MEMBER_AT_LEAST_HZ:
+    case MT_MEMBER_AT_MOST_HZ:
+        return value > 0.0;
+    case MT_MEMBER_AT_LEAST:
+        return goal->type != MT_GOAL_MAC || (value > 0.0 && value <= 1.0);
+    case MT_MEMBER_MARGIN:
+        return value >= 0.0 && value < 100.0;
+    case MT_MEMBER_AT_MOST:
+    case MT_MEMBER_EQUALS:
+    case MT_GOAL_MEMBER_COUNT:
+        break;
+    }
+    return true;
+}
+
+/* Limits on both sides must leave room, whichever of them varies; both: check_sides. */
+static bool leaves_room(mt_goal_member member, const mt_goal *goal, double value)
+{
+    return !(is_least(member) && value >= goal->at_most) &&
+           !(is_most(member) && value <= goal->at_least);
+}
+
+static void vary_goal(mt_study_check *c, const mt_vary *v)
+{
+    if (v->goal < 0 || v->goal >= c->study->n_goals || v->member == MT_GOAL_MEMBER_COUNT) {
+        return; /* noted by who filled the study */
+    }
+    const mt_goal *const goal = &c->study->goals[v->goal];
+    const double *const number = number_of(goal, v->member);
+    if (number == NULL || (!MT_HAS(*number) && v->member != MT_MEMBER_MARGIN)) {
+        mt_diag_error(c->diags, v->addr, "the goal has no \"%s\" that could vary",
+                      mt_goal_member_name(v->member));
+        return;
+    }
+    for (int i = 0; i < v->n_values; i++) {
+        if (!allowed(v->member, goal, v->values[i]) ||
+            (other_side(c, v) == NULL && !leaves_room(v->member, goal, v->values[i]))) {
+            mt_diag_error(c->diags, v->values_addr, "%s cannot be %g",
+                          mt_goal_member_name(v->member), v->values[i]);
+        }
+    }
+}
+
+static void vary_parameter(mt_study_check *c, mt_vary *v)
+{
+    v->parameter = mt_check_parameter(c, v->name);
+    for (int i = 0; i < c->study->n_variables; i++) {
+        if (v->parameter != MT_ABSENT && c->study->variables[i].parameter == v->parameter) {
+            mt_diag_error(c->diags, v->name.addr,
+                          "\"%s\" is a variable: vary one of its bounds", v->name.s);
+        }
+    }
+}
+
+static void check_values(mt_study_check *c, const mt_vary *v)
+{
+    for (int i = 1; i < v->n_values; i++) {
+        for (int k = 0; k < i; k++) {
+            if (v->values[k] == v->values[i]) {
+                mt_diag_error(c->diags, v->values_addr, "%.17g is listed twice", v->values[i]);
+                return;
+            }
+        }
+    }
+}
+
+static void check_vary(mt_study_check *c, mt_vary *v)
+{
+    mt_arena *const mem = &c->study->mem;
+    check_values(c, v);
+    check_sides(c, v);
+    switch (v->kind) {
+    case MT_VARY_BOUND:
+        vary_bound(c, v);
+        v->text = mt_arena_printf(mem, "%s bound of %s", v->upper ? "upper" : "lower",
+                                  v->name.s == NULL ? "?" : v->name.s);
+        break;
+    case MT_VARY_GOAL:
+        vary_goal(c, v);
+        v->text =
+            mt_arena_printf(mem, "%s of /goals/%d", mt_goal_member_name(v->member), v->goal);
+        break;
+    case MT_VARY_PARAMETER:
+        vary_parameter(c, v);
+        v->text = v->name.s;
+        break;
+    }
+    const bool made =
+        v->kind != MT_VARY_PARAMETER; /* else it is the name, which a wrong file may lack */
+    c->out_of_memory = c->out_of_memory || (made && v->text == NULL);
+}
+
+static bool same(const mt_vary *a, const mt_vary *b)
+{
+    return a->kind == b->kind && a->variable == b->variable && a->upper == b->upper &&
+           a->parameter == b->parameter && a->goal == b->goal && a->member == b->member;
+}
+
+static bool has_objective(const mt_study *s, mt_objective_type type)
+{
+    for (int i = 0; i < s->n_objectives; i++) {
+        if (s->objectives[i].type == type) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool has_goal(const mt_study *s, mt_goal_type type)
+{
+    for (int i = 0; i < s->n_goals; i++) {
+        if (s->goals[i].type == type) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void check_front(mt_study_check *c)
+{
+    const mt_study *const s = c->study;
+    const mt_trade *const trade = &s->trade;
+    for (int i = 0; i < trade->n_objectives; i++) {
+        const mt_objective_type type = trade->objectives[i];
+        if (type == MT_OBJECTIVE_CLEARANCE && !has_goal(s, MT_GOAL_AVOID)) {
+            mt_diag_error(c->diags, trade->objectives_addr,
+                          "the clearance needs a goal of type \"avoid\"");
+        } else if ((type == MT_OBJECTIVE_MASS || type == MT_OBJECTIVE_MISFIT) &&
+                   !has_objective(s, type)) {
+            mt_diag_error(c->diags, trade->objectives_addr,
+                          "\"%s\" is no objective of the study", mt_objective_type_name(type));
+        }
+    }
+    if (trade->n_objectives == 2 && trade->objectives[0] == trade->objectives[1]) {
+        mt_diag_error(c->diags, trade->objectives_addr, "the two objectives are the same");
+    }
+}
+
+void mt_study_check_trade(mt_study_check *c)
+{
+    mt_trade *const trade = &c->study->trade;
+    double points = 1.0;
+    if (trade->n_vary == 0) {
+        return;
+    }
+    if (c->study->n_variables == 0) {
+        mt_diag_error(c->diags, trade->addr, "a trade study needs variables");
+    }
+    for (int i = 0; i < trade->n_vary; i++) {
+        check_vary(c, &trade->vary[i]);
+        points *= (double)trade->vary[i].n_values;
+    }
+    if (trade->n_vary == 2 && same(&trade->vary[0], &trade->vary[1])) {
+        mt_diag_error(c->diags, trade->vary[1].addr, "both vary the same");
+    }
+    if (points > (double)MT_MAX_TRADE_POINTS) {
+        mt_diag_error(c->diags, trade->addr, "%g points are more than %d", points,
+                      MT_MAX_TRADE_POINTS);
+    }
+    check_front(c);
+}

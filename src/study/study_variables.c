@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
+#include <stdlib.h>
+
+#include "study/catalogue.h"
+#include "study/study_check.h"
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void check_catalogue(mt_study_check *c, mt_variable *v)
+{
+    if (v->n_catalogue > MT_MAX_CATALOGUE) {
+        mt_diag_error(c->diags, v->catalogue_addr, "the catalogue has more than %d values",
+                      MT_MAX_CATALOGUE);
+    }
+    qsort(v->catalogue, (size_t)v->n_catalogue, sizeof *v->catalogue, ascending);
+    for (int i = 1; i < v->n_catalogue; i++) {
+        if (v->catalogue[i] <= v->catalogue[i - 1]) {
+            mt_diag_error(c->diags, v->catalogue_addr, "the catalogue lists %.17g twice",
+                          v->catalogue[i]);
+        }
+    }
+    v->lower = v->catalogue[0];
+    v->upper = v->catalogue[v->n_catalogue - 1];
+}
+
+/* Continuous between two bounds, or discrete. */
+static void check_range(mt_study_check *c, mt_variable *v)
+{
+    const bool lower = mt_check_given(v->lower, v->lower_addr, v->addr);
+    const bool upper = mt_check_given(v->upper, v->upper_addr, v->addr);
+    const bool catalogue = v->n_catalogue > 0 || v->catalogue_addr != v->addr;
+    if (catalogue && (lower || upper)) {
+        mt_diag_error(c->diags, v->catalogue_addr,
+                      "a variable has either a catalogue or bounds, not both");
+        return;
+    }
+    if (v->n_catalogue > 0) {
+        check_catalogue(c, v);
+        return;
+    }
+    if (!catalogue && !lower && !upper) {
+        mt_diag_error(c->diags, v->addr,
+                      "a variable needs \"lower\" and \"upper\", or \"catalogue\"");
+    } else if (!catalogue && !(lower && upper)) {
+        mt_diag_error(c->diags, v->addr, "\"%s\" is missing: a variable needs both bounds",
+                      lower ? "upper" : "lower");
+    } else if (v->lower >= v->upper) {
+        mt_diag_error(c->diags, v->upper_addr, "upper (%g) is %s lower (%g)", v->upper,
+                      v->lower > v->upper ? "below" : "equal to", v->lower);
+    }
+}
+
+static void check_weights(mt_study_check *c, mt_variable *v)
+{
+    mt_check_positive(c, v->weight, v->weight_addr, "weight");
+    mt_check_positive(c, v->scale, v->scale_addr, "scale");
+    mt_check_positive(c, v->tolerance_percent, v->tolerance_addr, "tolerance_percent");
+    if (v->tolerance_percent >= 100.0) {
+        mt_diag_error(c->diags, v->tolerance_addr, "tolerance_percent (%g) must be below 100",
+                      v->tolerance_percent);
+    }
+    v->range = v->upper > v->lower ? v->upper - v->lower : 1.0; /* one value: any scale */
+}
+
+static void check_original(mt_study_check *c, mt_variable *v)
+{
+    if (c->study->original == NULL) {
+        return;
+    }
+    v->original = c->study->original[v->parameter];
+    const bool range = v->lower < v->upper || v->n_catalogue > 0;
+    if (!range) {
+        return; /* there is more to say about the bounds */
+    }
+    if (v->original < v->lower || v->original > v->upper) {
+        mt_diag_warning(c->diags, v->addr,
+                        "the original value of \"%s\" (%g) lies outside %g to %g",
+                        v->parameter_name.s, v->original, v->lower, v->upper);
+    }
+}
+
+void mt_study_check_variables(mt_study_check *c)
+{
+    mt_study *const s = c->study;
+    int *const first = mt_arena_int(&s->mem, (size_t)c->model->n_parameters);
+    if (first == NULL) {
+        c->out_of_memory = true;
+        return;
+    }
+    for (int i = 0; i < s->n_variables; i++) {
+        mt_variable *const v = &s->variables[i];
+        v->parameter = mt_check_parameter(c, v->parameter_name);
+        check_range(c, v);
+        check_weights(c, v);
+        if (v->parameter == MT_ABSENT) {
+            continue;
+        }
+        if (first[v->parameter]++ > 0) {
+            mt_diag_error(c->diags, v->parameter_name.addr, "\"%s\" is a variable already",
+                          v->parameter_name.s);
+        }
+        check_original(c, v);
+    }
+}
+
+static bool overrides(const mt_configuration *configuration, int parameter)
+{
+    for (int i = 0; i < configuration->n_overrides; i++) {
+        if (configuration->overrides[i].parameter == parameter) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Does some configuration that a goal names, or a goal without one, follow the parameter? *asked: is there any goal? */
+static bool is_followed(const mt_study *s, int parameter, bool *asked)
+{
+    for (int i = 0; i < s->n_goals; i++) {
+        const mt_goal *const goal = &s->goals[i];
+        if (goal->type == MT_GOAL_LIMIT) {
+            *asked = true;
+            return true;
+        }
+        for (int k = 0; k < goal->n_configurations; k++) {
+            const int configuration = goal->configurations[k];
+            *asked = true;
+            if (configuration == MT_ABSENT ||
+                !overrides(&s->model->configurations[configuration], parameter)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+void mt_study_check_overrides(mt_study_check *c)
+{
+    const mt_study *const s = c->study;
+    for (int i = 0; i < s->n_variables; i++) {
+        const mt_variable *const v = &s->variables[i];
+        bool asked = false;
+        if (v->parameter != MT_ABSENT && !is_followed(s, v->parameter, &asked) && asked) {
+            mt_diag_error(c->diags, v->parameter_name.addr,
+                          "\"%s\" is overridden in every configuration that the goals name: "
+                          "changing it has no effect",
+                          v->parameter_name.s);
+        }
+    }
+}
