@@ -34,12 +34,16 @@ static int find_command(const char *name)
     return MT_CMD_NONE;
 }
 
-static bool takes(int command, int option)
+bool mt_option_is_of(int option, int command)
 {
     const unsigned commands = mt_options[option].commands;
-    return command == MT_CMD_NONE
-               ? commands == 0U || option == MT_OPT_HELP
-               : (commands & (1U << (unsigned)command)) != 0U || option == MT_OPT_VERSION;
+    return command == MT_CMD_NONE ? commands == 0U || option == MT_OPT_HELP
+                                  : (commands & (1U << (unsigned)command)) != 0U;
+}
+
+static bool takes(int command, int option)
+{
+    return mt_option_is_of(option, command) || option == MT_OPT_VERSION;
 }
 
 static mt_status unknown_option(int command, const char *name, size_t length, mt_err *err)
@@ -194,7 +198,7 @@ static mt_status read_command(mt_args *args, const char *name, mt_err *err)
 
 static mt_status check_operands(const mt_args *args, mt_err *err)
 {
-    if (args->given[MT_OPT_HELP] || args->given[MT_OPT_VERSION]) {
+    if (args->given[MT_OPT_HELP] || args->given[MT_OPT_MANUAL] || args->given[MT_OPT_VERSION]) {
         return MT_OK;
     }
     if (args->command == MT_CMD_NONE) {

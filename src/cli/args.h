@@ -8,8 +8,8 @@
 #include "base/text.h"
 
 /*
- * The command line, described once: commands and options in two tables (commands.c), from which come the parser, --help and "did you mean". A test holds the manual
- * page to them.
+ * The command line, described once: commands, options and exit statuses in tables (commands.c),
+ * from which come the parser, --help, the manual page and "did you mean".
  */
 typedef enum mt_option_id {
     MT_OPT_CONFIGURATION,
@@ -31,6 +31,7 @@ typedef enum mt_option_id {
     MT_OPT_FORMAT,
     MT_OPT_QUIET,
     MT_OPT_HELP,
+    MT_OPT_MANUAL,
     MT_OPT_VERSION,
     MT_OPT_IDS
 } mt_option_id;
@@ -49,6 +50,7 @@ typedef enum mt_command_id {
 } mt_command_id;
 
 enum { MT_CMD_NONE = -1, MT_OPT_NONE = -1 };
+#define MT_ALL_COMMANDS ((1U << (unsigned)MT_CMD_IDS) - 1U)
 
 typedef struct mt_option {
     const char *name;  /* without the dashes */
@@ -64,11 +66,21 @@ typedef struct mt_command {
     int least;            /* number of operands */
     int most;             /* -1: any number */
     const char *summary;  /* one line */
-    const char *details;  /* paragraphs of --help */
+    const char *details;  /* paragraphs, one a line */
 } mt_command;
+
+typedef struct mt_exit {
+    int code;
+    const char *meaning;
+} mt_exit;
+enum { MT_EXITS = 6 };
 
 extern const mt_option mt_options[MT_OPT_IDS];
 extern const mt_command mt_commands[MT_CMD_IDS];
+extern const mt_exit mt_exits[MT_EXITS];
+
+/* Does the command take the option, or the program where it is MT_CMD_NONE? */
+bool mt_option_is_of(int option, int command);
 
 typedef enum mt_format { MT_FORMAT_TEXT, MT_FORMAT_JSON, MT_FORMAT_CSV } mt_format;
 
@@ -89,7 +101,8 @@ typedef struct mt_args {
 
 /**
  * Read argv[1..argc-1]. Options may stand anywhere after the command; "--" ends them; "--name=value", "-oDIR" are fine.
- * Fails: MT_E_USAGE (err: the first fault, with "did you mean"), MT_E_MEMORY. mt_args_free in any case. --help and --version win over missing operands.
+ * Fails: MT_E_USAGE (err: the first fault, with "did you mean"), MT_E_MEMORY. mt_args_free in any case. --help, --manual and --version win over
+ * missing operands.
  */
 mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err);
 void mt_args_free(mt_args *args);
@@ -98,5 +111,7 @@ void mt_args_free(mt_args *args);
 void mt_help(int command, mt_text *out);
 /* "modetune modes MODEL [options]" */
 void mt_help_usage(int command, mt_text *out);
+/* The manual page, section 1, in the language of man(7). */
+void mt_manual(mt_text *out);
 
 #endif

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The two tables that describe the command line. */
+/* The tables that describe the command line. */
 #include "cli/args.h"
+#include "cli/terminal.h"
 
 #define BIT(command) (1U << (unsigned)(command))
-#define EVERYWHERE   (BIT(MT_CMD_IDS) - 1U)
 #define ON_MODELS \
     (BIT(MT_CMD_MODES) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY) | BIT(MT_CMD_INFO))
 #define ON_STUDIES (BIT(MT_CMD_RUN) | BIT(MT_CMD_COMPARE))
@@ -26,8 +26,10 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "only the first N vibration modes"),
     OPTION(MT_OPT_SHAPES, '\0', "shapes", NULL, BIT(MT_CMD_MODES),
            "mode shapes at the sensors, or of the bodies where there are none"),
-    OPTION(MT_OPT_DAMPED, '\0', "damped", NULL, BIT(MT_CMD_MODES),
-           "modes with the model's dampers, too: damped frequencies and damping ratios"),
+    OPTION(
+        MT_OPT_DAMPED, '\0', "damped", NULL, BIT(MT_CMD_MODES),
+        "modes with the model's dampers, too: natural and damped frequencies, damping ratios; "
+        "real roots are overdamped (as CSV these modes alone)"),
     OPTION(MT_OPT_DRIVE, '\0', "drive", "JOINT=FROM:TO:N", BIT(MT_CMD_SWEEP),
            "the joint (or a link's hinge) and N positions of it from the reference position, "
            "rad or m; FROM and TO may be expressions (\"pivot=-10*deg:10*deg:21\")"),
@@ -38,28 +40,30 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_PARAMETERS, '\0', "parameters", "A,B", BIT(MT_CMD_SENSITIVITY),
            "parameters to vary (default: all that are not made of others)"),
     OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR", BIT(MT_CMD_RUN),
-           "folder for the results (default: results)"),
+           "folder for the results (default: results, in the current one)"),
     OPTION(MT_OPT_VERIFY, '\0', "verify", NULL, BIT(MT_CMD_RUN),
            "judge the study's published values; they alone decide the exit status"),
     OPTION(MT_OPT_THREADS, '\0', "threads", "N", ON_STUDIES,
            "number of workers of the search, of which at most 64 are used; the result does not "
            "depend on it"),
-    OPTION(
-        MT_OPT_MAX_MEMORY, '\0', "max-memory", "SIZE", EVERYWHERE,
-        "most memory that files may make the program use (\"500M\", \"8G\"); default: half of "
-        "the machine's"),
+    OPTION(MT_OPT_MAX_MEMORY, '\0', "max-memory", "SIZE", MT_ALL_COMMANDS,
+           "most memory that files may make the program use: bytes, or with k, M, G or T (1024 "
+           "each); what asks for more ends with exit status 4 (default: half of the memory of "
+           "the machine or its container)"),
     OPTION(MT_OPT_RANK, '\0', "rank", "N", BIT(MT_CMD_APPLY),
            "which recommendation (default: 1, the best)"),
     OPTION(MT_OPT_MODEL, '\0', "model", "MODEL", BIT(MT_CMD_APPLY),
            "the model file, where it is not found from the result"),
-    OPTION(MT_OPT_ROOT, '\0', "root", "DIR", EVERYWHERE,
+    OPTION(MT_OPT_ROOT, '\0', "root", "DIR", MT_ALL_COMMANDS,
            "files named by other files must lie beneath DIR (default: the parent of the "
            "study's folder)"),
-    OPTION(MT_OPT_FORMAT, '\0', "format", "text|json|csv", EVERYWHERE,
+    OPTION(MT_OPT_FORMAT, '\0', "format", "text|json|csv", MT_ALL_COMMANDS,
            "form of what goes to standard output (default: text)"),
-    OPTION(MT_OPT_QUIET, '\0', "quiet", NULL, EVERYWHERE,
+    OPTION(MT_OPT_QUIET, '\0', "quiet", NULL, MT_ALL_COMMANDS,
            "no talk on standard error; errors and warnings stay"),
-    OPTION(MT_OPT_HELP, 'h', "help", NULL, EVERYWHERE, "print this help"),
+    OPTION(MT_OPT_HELP, 'h', "help", NULL, MT_ALL_COMMANDS,
+           "explain the program, or a command"),
+    OPTION(MT_OPT_MANUAL, '\0', "manual", NULL, 0U, "print the manual page, as man reads it"),
     OPTION(MT_OPT_VERSION, '\0', "version", NULL, 0U, "print the version"),
 };
 
@@ -72,66 +76,75 @@ const mt_option mt_options[MT_OPT_IDS] = {
             .details = (details_)}
 
 const mt_command mt_commands[MT_CMD_IDS] = {
-    COMMAND(MT_CMD_RUN, "run", "STUDY...", 1, -1, "solve studies and write what was found",
-            "Solves each study and writes result.json, recommendations.csv, report.html,\n"
-            "trade.csv (of a trade study) and timing.json into DIR/<study file name\n"
-            "without .json>/, replaced as one. Prints a summary.\n"
-            "An interrupt (Ctrl-C) ends the search; the best design so far is written, and\n"
-            "which parts of the answer are missing. A second one ends the program."),
+    COMMAND(
+        MT_CMD_RUN, "run", "STUDY...", 1, -1, "solve studies and write what was found",
+        "Solves each study, writes result.json, recommendations.csv, report.html, trade.csv "
+        "(of "
+        "a trade study) and timing.json into DIR/<study file name without .json>/, and prints "
+        "a "
+        "summary. The files are replaced as one: result.json names the others with their "
+        "SHA-256, and a run that fails or is killed leaves the old result, or one that the "
+        "next "
+        "run mends.\n"
+        "An interrupt (Ctrl-C) ends the search; the best design so far is written, and which "
+        "parts of the answer are missing. A second one ends the program."),
     COMMAND(MT_CMD_COMPARE, "compare", "STUDY...", 1, -1, "published against computed values",
-            "Solves each study and prints its published values beside the computed "
-            "ones, with\n"
-            "differences, roles and sources. Writes no files. Exit status 0 when "
-            "all hold, else 1."),
+            "Solves each study and prints its published values beside the computed ones, with "
+            "differences, roles and sources. Writes no files. Exit status 0 when all hold, "
+            "else 1."),
     COMMAND(
         MT_CMD_MODES, "modes", "MODEL", 1, 1, "natural frequencies and mode shapes",
-        "Prints the modes of each configuration: rigid-body, flexible, unstable and\n"
-        "undecided ones (rounding hides whether they are stable), what a frequency may be\n"
-        "wrong by (in JSON and CSV; in the table where that exceeds 1e-6 of it), the\n"
-        "residual and orthogonality ratios of each (about 1 is perfect), redundant joints,\n"
-        "and how the equilibrium was found. Shapes are mass-normalised. Names that the model\n"
-        "gives to modes are shown where nothing is changed by --set."),
+        "Prints the modes of each configuration: rigid-body, flexible, unstable and undecided "
+        "ones (rounding hides whether they are stable: no mode has an index there), what a "
+        "frequency may be wrong by (in JSON and CSV; in the table where that exceeds 1e-6 of "
+        "it), the residual and orthogonality ratios of each (about 1 is perfect), redundant "
+        "joints, and how the equilibrium was found. Shapes are mass-normalised. Names that the "
+        "model gives to modes are shown where nothing is changed by --set."),
     COMMAND(MT_CMD_MAC, "mac", "MODEL:CONFIGURATION MODEL:CONFIGURATION", 2, 2,
             "pair and correlate two sets of modes",
-            "Compares shapes at the sensors that both models have, pairs the modes "
-            "one to one, and\n"
-            "compares repeated modes as subspaces. The configuration may be left "
-            "out where a model\n"
-            "has only one. Default number of modes: as many as there are common "
-            "sensor channels."),
+            "Compares shapes at the sensors that both models have, pairs the modes one to one, "
+            "and compares repeated modes as subspaces. The configuration may be left out where "
+            "a model has only one. Default number of modes: as many as there are common sensor "
+            "channels."),
     COMMAND(
         MT_CMD_SWEEP, "sweep", "MODEL", 1, 1,
         "positions and frequencies over a range of motion",
         "Drives a joint through a range (--drive) and prints the coordinate of every joint, "
-        "its\n"
-        "ratio to the driven one (exact derivative), what holds the joint, and, with --modes,\n"
-        "the natural frequencies (default: 6) by index. Where a limit position ends the "
-        "range,\n"
-        "the positions before it are printed, the limit is named, and the exit status is 3."),
+        "its ratio to the driven one (exact derivative), what holds the joint, and, with "
+        "--modes, the natural frequencies (default: 6) by index. Where a limit position ends "
+        "the range, the positions before it are printed, the limit is named, and the exit "
+        "status is 3."),
     COMMAND(MT_CMD_SENSITIVITY, "sensitivity", "MODEL", 1, 1,
             "change of each frequency per per cent of each parameter",
-            "Prints exact derivatives: Hz for one per cent more of a parameter, for the "
-            "first\n"
+            "Prints exact derivatives: Hz for one per cent more of a parameter, for the first "
             "modes (default: 6). Repeated modes have directional values, given as a set."),
     COMMAND(MT_CMD_INFO, "info", "MODEL", 1, 1,
             "masses, mobility and redundancies of each configuration",
-            "Prints the total mass, its centre and inertia, the freedoms, and the "
-            "sets of redundant\n"
-            "joints of each configuration, in the position where it is linearised."),
-    COMMAND(MT_CMD_APPLY, "apply", "RESULT.json", 1, 1, "the model with the recommended values",
-            "Prints the model file with the recommended values put in; everything "
-            "else of its text\n"
-            "stays as it is. The model is found from the result's folder, and must "
-            "be the one that\n"
-            "was solved (same SHA-256) unless --model names it. A result.json is refused where "
-            "the\n"
-            "files beside it are of another run."),
+            "Prints the total mass, its centre and inertia, the freedoms, and the sets of "
+            "redundant joints of each configuration, in the position where it is linearised."),
+    COMMAND(
+        MT_CMD_APPLY, "apply", "RESULT.json", 1, 1, "the model with the recommended values",
+        "Prints the model file with the recommended values put in; everything else of its text "
+        "stays as it is. The model is found from the result's folder, and must be the one that "
+        "was solved (same SHA-256) unless --model names it. A result.json is refused where the "
+        "files beside it are of another run or were changed; a copy that stands alone is "
+        "read."),
     COMMAND(
         MT_CMD_CHECK, "check", "FILE...", 1, -1,
         "validate model, study, result and aircraft files",
-        "Reads each file as its \"format\" says, and prints every problem found as\n"
+        "Reads each file as its \"format\" says, and prints every problem found as "
         "file:line:column: error: /json/pointer: message.\n"
-        "Then says what is hardly meant (warning: values that look like other units,\n"
-        "joints off their links) and what to know of every configuration, or of those that\n"
-        "a study names (note: free motions, unstable directions, redundant joints)."),
+        "Then says what is hardly meant (warning: values that look like other units, joints "
+        "off their links, bands that no mode comes near) and what to know of every "
+        "configuration, or of those that a study names (note: free motions, unstable "
+        "directions, redundant joints)."),
+};
+
+const mt_exit mt_exits[MT_EXITS] = {
+    {       MT_EXIT_DONE, "done, all goals met (with --verify: all published values hold)"},
+    {      MT_EXIT_GOALS,                                            "done, goals not met"},
+    {      MT_EXIT_INPUT,                                             "bad input or usage"},
+    {  MT_EXIT_NUMERICAL,                                              "numerical failure"},
+    {     MT_EXIT_SYSTEM,                             "system failure: file, disk, memory"},
+    {MT_EXIT_INTERRUPTED,                "interrupted; the best design so far was written"},
 };

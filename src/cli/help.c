@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* --help, from the tables. */
+#include <stdbool.h>
 #include <string.h>
 
 #include "base/format.h"
 #include "cli/args.h"
 
-enum { OPTION_COLUMN = 31, LINE_WIDTH = 92, FORM_TEXT = 64 };
+enum { OPTION_COLUMN = 31, EXIT_COLUMN = 7, LINE_WIDTH = 92, FORM_TEXT = 64 };
 
 static void spaces(int n, mt_text *out)
 {
@@ -14,13 +15,14 @@ static void spaces(int n, mt_text *out)
     }
 }
 
-/* Words filled into lines that begin at `column`. */
+/* Paragraphs of words, filled into lines that begin at `column`. */
 static void fill(const char *s, int column, mt_text *out)
 {
     int at = column;
-    while (*s != '\0') {
-        const int word = (int)strcspn(s, " ");
-        if (at > column && at + 1 + word > LINE_WIDTH) {
+    for (const char *word = s; *word != '\0'; word += strspn(word, " \n")) {
+        const int length = (int)strcspn(word, " \n");
+        const bool paragraph = word > s && word[-1] == '\n';
+        if (paragraph || (at > column && at + 1 + length > LINE_WIDTH)) {
             mt_text_add(out, "\n");
             spaces(column, out);
             at = column;
@@ -28,10 +30,9 @@ static void fill(const char *s, int column, mt_text *out)
             mt_text_add(out, " ");
             at++;
         }
-        mt_text_add_n(out, s, (size_t)word);
-        at += word;
-        s += word;
-        s += strspn(s, " ");
+        mt_text_add_n(out, word, (size_t)length);
+        at += length;
+        word += length;
     }
     mt_text_add(out, "\n");
 }
@@ -64,10 +65,10 @@ static void help_command(int command, mt_text *out)
     mt_text_add(out, "Usage: ");
     mt_help_usage(command, out);
     mt_text_add(out, "\n\n");
-    mt_text_add(out, mt_commands[command].details); /* lines */
-    mt_text_add(out, "\n\nOptions:\n");
+    fill(mt_commands[command].details, 0, out);
+    mt_text_add(out, "\nOptions:\n");
     for (int i = 0; i < MT_OPT_IDS; i++) {
-        if ((mt_options[i].commands & (1U << (unsigned)command)) != 0U) {
+        if (mt_option_is_of(i, command)) {
             help_option(&mt_options[i], out);
         }
     }
@@ -88,13 +89,13 @@ void mt_help(int command, mt_text *out)
     }
     mt_text_add(out, "\nOptions of every command:\n");
     for (int i = 0; i < MT_OPT_IDS; i++) {
-        const unsigned all = (1U << (unsigned)MT_CMD_IDS) - 1U;
-        if (mt_options[i].commands == all || mt_options[i].commands == 0U) {
+        if (mt_options[i].commands == MT_ALL_COMMANDS || mt_options[i].commands == 0U) {
             help_option(&mt_options[i], out);
         }
     }
-    mt_text_add(
-        out, "\n\"modetune COMMAND --help\" explains a command.\n"
-             "Exit status: 0 done and all goals met, 1 goals not met, 2 bad input or usage,\n"
-             "3 numerical failure, 4 system failure, 130 interrupted.\n");
+    mt_text_add(out, "\n\"modetune COMMAND --help\" explains a command.\n\nExit status:\n");
+    for (int i = 0; i < MT_EXITS; i++) {
+        mt_text_addf(out, "  %-4d ", mt_exits[i].code);
+        fill(mt_exits[i].meaning, EXIT_COLUMN, out);
+    }
 }

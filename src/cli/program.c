@@ -35,6 +35,8 @@ int mt_cli_main(int argc, char *const argv[])
         code = wrong_use(&args, rc, &err);
     } else if (args.given[MT_OPT_VERSION]) {
         mt_text_addf(&out, "modetune %s\n", mt_version());
+    } else if (args.given[MT_OPT_MANUAL]) {
+        mt_manual(&out);
     } else if (args.given[MT_OPT_HELP]) {
         mt_help(args.command, &out);
     } else {

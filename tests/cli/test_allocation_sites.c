@@ -49,6 +49,7 @@ static struct {
     {                                                                              "--version",MT_EXIT_DONE,FULL                                                                                                              },
     {                                                                                 "--help",  MT_EXIT_DONE, FULL},
     {                                                                             "run --help",  MT_EXIT_DONE, FULL},
+    {                                                                               "--manual",  MT_EXIT_DONE, FULL},
     {                                                                                   "runn", MT_EXIT_INPUT, FULL},
     {                                      "modes --shapes --damped " MODELS "space_body.json",  MT_EXIT_DONE, FULL},
     {                   "modes --shapes --set h=0.11 --format json " MODELS "space_frame.json",  MT_EXIT_DONE,
