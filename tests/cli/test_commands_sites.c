@@ -166,7 +166,7 @@ static void system__refuses_at_any_allocation(mt_test *t)
 {
     for (int i = 0; i < MT_COUNT(commands) && mt_alloc_works(); i++) {
         if (strncmp(commands[i].words, "run ", 4) == 0) {
-            continue; /* the search answers for its own: tests/tune */
+            continue; /* the search answers for its own: tests/answer */
         }
         mt_test_row(t, "%s", commands[i].words);
         const long first = mt_alloc_count();

@@ -46,7 +46,7 @@ for study in studies/*.json tests/models/pendulum_tolerance.json; do
     [[ " ${studies[*]} " == *" $study "* ]] || studies+=("$study")
 done
 printf '%s\0' "${studies[@]}" | xargs -0 -n 1 -P "$(nproc)" bash -c 'one "$1"' _
-for test in base/test_workers tune/test_nlp_coverage tune/test_study_run tune/test_trade_warm; do
+for test in base/test_workers nlp/test_nlp_coverage answer/test_study_run answer/test_trade_warm; do
     "$build/tests/$test" >"$scratch/test.log" 2>&1 || { cat "$scratch/test.log"; echo "$build/tests/$test failed"; exit 1; }
 done
 echo "${#studies[@]} studies with four workers: no race"

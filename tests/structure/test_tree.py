@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The top level holds the agreed names, files are short, C files name their licence."""
+"""The top level holds the agreed names, tests follow the rooms, files are short, C files name their licence."""
 import subprocess
 
-from common import ROOT, c_files, verdict
+from common import ROOMS, ROOT, c_files, verdict
 
 AGREED = {".ci", ".clang-format", ".clang-tidy", ".editorconfig", ".gitignore", "CHANGELOG.md", "CMakeLists.txt",
           "CMakePresets.json", "CONTRIBUTING.md", "LICENSE", "README.md", "bootstrap", "include", "problems",
           "schemas", "src", "studies", "tests"}
+# Folders of tests besides those of the rooms: what judges the whole program, or the tree itself.
+BESIDES = {"bench", "fuzz", "hunt", "install", "mechanisms", "models", "mutants", "races", "reference", "schema", "structure",
+           "support"}
 IGNORED = {".git", "build", "results"}
 MAX_LINES = 600
 LICENCE = "/* SPDX-License-Identifier: GPL-3.0-or-later */"
@@ -26,6 +29,10 @@ def tree_problems(names):
     return [f"{name}: not an agreed name of the top level" for name in sorted(names - AGREED)]
 
 
+def folder_problems(names):
+    return [f"tests/{name}: neither a room of src nor an agreed folder" for name in sorted(names - BESIDES - set(ROOMS))]
+
+
 def file_problems(name, text):
     lines = text.split("\n")
     if len(lines) >= MAX_LINES:
@@ -38,6 +45,8 @@ def self_test():
     problems = []
     if not tree_problems({"README.md", "scratch.txt"}):
         problems.append("self-test: a stray name was accepted")
+    if not folder_problems({"linalg", "kitchen"}):
+        problems.append("self-test: tests of a room that is not there were accepted")
     for text in (LICENCE + "\n" * MAX_LINES, "int x;\n"):
         if not list(file_problems("x.c", text)):
             problems.append("self-test: a bad file was accepted")
@@ -49,6 +58,7 @@ def self_test():
 if __name__ == "__main__":
     files = c_files(ROOT / "src", ROOT / "include", ROOT / "tests")
     faults = tree_problems(top_level())
+    faults += folder_problems({path.relative_to(ROOT / "tests").parts[0] for path in (ROOT / "tests").glob("*/*") if path.is_file()})
     for path in files:
         faults += file_problems(path.relative_to(ROOT), path.read_text(encoding="utf-8"))
     verdict("tree", len(files), faults + self_test())

@@ -8,7 +8,7 @@
  */
 #include "describe/describe.h"
 #include "prove/enclosure.h"
-#include "tune/study_fixture.h"
+#include "study_fixture.h"
 
 static const double K2 = 1000.0;
 static const double UPPER = 400.0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small studies that together pass through every phase of an answer and every kind of search, for tests that disturb them. */
-#ifndef TESTS_TUNE_STUDY_KINDS_H
-#define TESTS_TUNE_STUDY_KINDS_H
+#ifndef TESTS_STUDY_KINDS_H
+#define TESTS_STUDY_KINDS_H
 
 #include "study_fixture.h"
 

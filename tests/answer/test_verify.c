@@ -4,7 +4,7 @@
  * describe_verify.c (which test_rank.c tests).
  */
 #include "describe/describe.h"
-#include "tune/study_fixture.h"
+#include "study_fixture.h"
 
 static double planted_above_hz; /* mode 1 above it: disagree */
 

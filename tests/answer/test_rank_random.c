@@ -5,8 +5,8 @@
  */
 #include <stdarg.h>
 
+#include "study_fixture.h"
 #include "support/mt_random.h"
-#include "tune/study_fixture.h"
 
 enum {
     MOST_MASSES = 4,

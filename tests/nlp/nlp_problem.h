@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef TESTS_TUNE_NLP_PROBLEM_H
-#define TESTS_TUNE_NLP_PROBLEM_H
+#ifndef TESTS_NLP_PROBLEM_H
+#define TESTS_NLP_PROBLEM_H
 
 /* Closed-form problems for the search engine: a callback over plain functions, and its result. */
 #include <math.h>

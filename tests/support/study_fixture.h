@@ -3,8 +3,8 @@
  * Studies for tests: model and study as texts (with ' for ", so that they can be read here), written beside each other into a folder of their own, loaded the way a user's files are,
  * and solved.
  */
-#ifndef TESTS_TUNE_STUDY_FIXTURE_H
-#define TESTS_TUNE_STUDY_FIXTURE_H
+#ifndef TESTS_STUDY_FIXTURE_H
+#define TESTS_STUDY_FIXTURE_H
 
 #include <math.h>
 #include <stdio.h>
