@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A model: the description of one mechanism, read from a file, checked and immutable. It may be shared by threads. */
+/* A model: the description of one mechanism, read from a file, checked and immutable. It may be
+ * shared by threads. */
 #ifndef MODETUNE_MODEL_H
 #define MODETUNE_MODEL_H
 
@@ -15,15 +16,16 @@ typedef struct mt_model mt_model;
 /**
  * Read a model file (format "modetune-model/1").
  * @param[in]  path  regular file of at most 16 MiB
- * @param[out] out   the model, owned by the caller; NULL on failure
- * Fails: MT_E_INPUT (the file is wrong; err tells the first problem with line, column and JSON pointer, and how many more there are),
- * MT_E_SYSTEM (the file cannot be read), MT_E_MEMORY.
+ * @param[out] out the model, owned by the caller; NULL on failure Fails: MT_E_INPUT (the file
+ *   is wrong; err tells the first problem with line, column and JSON pointer, and how many more
+ *   there are), MT_E_SYSTEM (the file cannot be read), MT_E_MEMORY.
  */
 MT_API mt_status mt_model_read(const char *path, mt_model **out, mt_err *err);
 /* Accepts NULL. */
 MT_API void mt_model_delete(mt_model *model);
 
-/* What the model calls itself; NULL where it has no name. Lives as long as the model, like all names below. */
+/* What the model calls itself; NULL where it has no name. Lives as long as the model, like all
+ * names below. */
 MT_API const char *mt_model_title(const mt_model *model);
 /* 2 or 3. */
 MT_API int mt_model_dimension(const mt_model *model);

@@ -11,16 +11,19 @@ extern "C" {
 #endif
 
 /*
- * Arguments, of all functions of the library. A pointer must not be NULL unless its comment says what NULL means; a number must be what its comment says. A call that is given something
+ * Arguments, of all functions of the library. A pointer must not be NULL unless its comment
+ * says what NULL means; a number must be what its comment says. A call that is given something
  * else changes nothing, and
  *   - one that returns a status fails with MT_E_USAGE, err naming the argument;
- *   - one that answers with a text, a number or a count answers as for what is not there: NULL, NaN, 0.
- * Functions that delete accept NULL, and err may be NULL everywhere. A failure leaves NULL in an out argument that would own something. What no call can check is the caller's
- * promise: that an object is alive (deleted once, not used after), and that an array is as long as said.
+ *   - one that answers with a text, a number or a count answers as for what is not there: NULL,
+ *     NaN, 0.
+ * Functions that delete accept NULL, and err may be NULL everywhere. A failure leaves NULL in
+ * an out argument that would own something. What no call can check is the caller's promise:
+ * that an object is alive (deleted once, not used after), and that an array is as long as said.
  */
 
-/* One list makes the enum, its names and its texts. A search that ends without meeting its goals is not
- * a failure: outcomes have their own types. */
+/* One list makes the enum, its names and its texts. A search that ends without meeting its
+ * goals is not a failure: outcomes have their own types. */
 #define MT_STATUS_LIST(X)                                                   \
     X(MT_OK, "success")                                                     \
     X(MT_E_USAGE, "wrong use of the command line or of a function")         \
@@ -51,7 +54,8 @@ typedef enum mt_wish {
 
 enum { MT_ERR_TEXT_SIZE = 1024 };
 
-/* The caller's record of a failure: fixed size, no heap, NULL allowed wherever a `mt_err *` is asked for. */
+/* The caller's record of a failure: fixed size, no heap, NULL allowed wherever a `mt_err *` is
+ * asked for. */
 typedef struct mt_err {
     mt_status code;
     char text[MT_ERR_TEXT_SIZE];
@@ -67,9 +71,11 @@ typedef struct mt_err {
 MT_API const char *mt_status_text(mt_status code);
 /* The name of a status ("MT_E_INPUT"); never NULL. */
 MT_API const char *mt_status_name(mt_status code);
-/* Set err (when not NULL) to code and the formatted text; longer text is cut at a character boundary. fmt NULL: the general text of the code. Returns code. */
+/* Set err (when not NULL) to code and the formatted text; longer text is cut at a character
+ * boundary. fmt NULL: the general text of the code. Returns code. */
 MT_API mt_status mt_fail(mt_err *err, mt_status code, const char *fmt, ...) MT_PRINTF(3, 4);
-/* Put "context: " before the text that is already in err (context formatted); nothing where rc is MT_OK, or fmt NULL. Returns rc unchanged. */
+/* Put "context: " before the text that is already in err (context formatted); nothing where rc
+ * is MT_OK, or fmt NULL. Returns rc unchanged. */
 MT_API mt_status mt_err_in(mt_err *err, mt_status rc, const char *fmt, ...) MT_PRINTF(3, 4);
 
 #ifdef __cplusplus

@@ -10,7 +10,8 @@
  *         k = mt_result_value(result, 1, "K_T1");
  *     }
  *
- * The search uses BLAS: have it use one thread, or the bits of results may differ from run to run. Have GSL's error handler switched off (gsl_set_error_handler_off), or a shortage of
+ * The search uses BLAS: have it use one thread, or the bits of results may differ from run to
+ * run. Have GSL's error handler switched off (gsl_set_error_handler_off), or a shortage of
  * memory in it ends the process.
  */
 #ifndef MODETUNE_STUDY_H
@@ -39,10 +40,14 @@ typedef enum mt_result_status {
 #undef MT_RESULT_STATUS_ENUM
 
 typedef struct mt_solve_options {
-    int threads; /* workers, fewer than 1 count as 1, at most 64 are used; the result does not depend on it */
-    /* [variables of the study] one more design to start from, finite; what lies outside of its bounds is moved to them. NULL: none */
+    /* workers, fewer than 1 count as 1, at most 64 are used; the result does not depend on
+     * it */
+    int threads;
+    /* [variables of the study] one more design to start from, finite; what lies outside of its
+     * bounds is moved to them. NULL: none */
     const double *hint;
-    /* NULL, or asked for an mt_wish before every small piece of work, by all workers at once; what it said once it need not say again */
+    /* NULL, or asked for an mt_wish before every small piece of work, by all workers at once;
+     * what it said once it need not say again */
     int (*stop)(void *context);
     void *stop_context;
     /* NULL, or called now and then from the caller's thread with one line of text */
@@ -51,9 +56,11 @@ typedef struct mt_solve_options {
 } mt_solve_options;
 
 /**
- * Read a study file (format "modetune-study/1") and the models that it names, which must lie beneath the parent of its folder.
- * @param[out] out  the study, owned by the caller; NULL on failure
- * Fails: MT_E_INPUT (err tells the first problem with file, line, column and JSON pointer, and how many more there are), MT_E_SYSTEM, MT_E_MEMORY.
+ * Read a study file (format "modetune-study/1") and the models that it names, which must lie
+ * beneath the parent of its folder.
+ * @param[out] out the study, owned by the caller; NULL on failure Fails: MT_E_INPUT (err tells
+ *   the first problem with file, line, column and JSON pointer, and how many more there are),
+ *   MT_E_SYSTEM, MT_E_MEMORY.
  */
 MT_API mt_status mt_study_read(const char *path, mt_study **out, mt_err *err);
 /* Accepts NULL. */
@@ -62,13 +69,17 @@ MT_API void mt_study_delete(mt_study *study);
 /* One thread, nothing else. */
 MT_API mt_solve_options mt_solve_options_default(void);
 /**
- * Answer a study: the original design described, searched for better ones, each recommendation analysed anew at its design, published values judged.
+ * Answer a study: the original design described, searched for better ones, each recommendation
+ * analysed anew at its design, published values judged.
  * @param[in]  opt  NULL: defaults
- * @param[out] out  the result, owned by the caller, valid without the study; NULL on failure
- * Deterministic: the same study, binary and machine give the same result. The study is not changed and may be shared by threads.
- * Fails: MT_E_INPUT (what only numbers can tell: a mode that does not exist at the original design, ...), numerical failures at the original design, MT_E_USAGE (a hint that is not
- * finite), MT_E_INTERRUPTED (stopped before the original design was analysed: there is nothing to tell), MT_E_MEMORY. A solve that is stopped later has a result with status
- * interrupted that says which of its parts are not complete; what it does tell holds.
+ * @param[out] out the result, owned by the caller, valid without the study; NULL on failure
+ *   Deterministic: the same study, binary and machine give the same result. The study is not
+ *   changed and may be shared by threads. Fails: MT_E_INPUT (what only numbers can tell: a mode
+ *   that does not exist at the original design, ...), numerical failures at the original
+ *   design, MT_E_USAGE (a hint that is not finite), MT_E_INTERRUPTED (stopped before the
+ *   original design was analysed: there is nothing to tell), MT_E_MEMORY. A solve that is
+ *   stopped later has a result with status interrupted that says which of its parts are not
+ *   complete; what it does tell holds.
  */
 MT_API mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt,
                                 mt_result **out, mt_err *err);
@@ -85,13 +96,15 @@ MT_API const char *mt_result_summary(const mt_result *result);
 MT_API int mt_result_recommendations(const mt_result *result);
 
 /*
- * Of the design with this rank (0: the original design). Ranks that do not exist have no values (NaN) and no reasons (0, NULL).
+ * Of the design with this rank (0: the original design). Ranks that do not exist have no values
+ * (NaN) and no reasons (0, NULL).
  */
 /* 1: all goals are met there, 0: not. */
 MT_API int mt_result_feasible(const mt_result *result, int rank);
 /* Value of a variable of the study; NaN where it has no variable of this name. */
 MT_API double mt_result_value(const mt_result *result, int rank, const char *parameter);
-/* Frequency of a vibration mode (from 1) of a configuration that a goal names [Hz]; NaN where it is not listed. */
+/* Frequency of a vibration mode (from 1) of a configuration that a goal names [Hz]; NaN where
+ * it is not listed. */
 MT_API double mt_result_hz(const mt_result *result, int rank, const char *configuration,
                            int mode);
 /* Sentences why it is what it is, and their number. */

@@ -7,11 +7,15 @@
 #include "model/count_box.h"
 
 /*
- * Modes of one configuration as functions of the inputs: mechanics and modal put together, with all memory kept between calls. One analysis, one worker.
+ * Modes of one configuration as functions of the inputs: mechanics and modal put together, with
+ * all memory kept between calls. One analysis, one worker.
  *
- * How vibration modes are counted. A design has as many rigid-body modes as K has null directions, and where a stiffness reaches 0 it may gain one. Were that one left out of the
- * count there, every index, and every number of modes below a frequency, would jump. So a family of designs (those of a study) is counted with ONE number: the least number of null
- * directions that any of them has, which almost all of them have (mt_count_box). The others have vibration modes of 0 Hz. Then indices and counts are continuous over the family.
+ * How vibration modes are counted. A design has as many rigid-body modes as K has null
+ * directions, and where a stiffness reaches 0 it may gain one. Were that one left out of the
+ * count there, every index, and every number of modes below a frequency, would jump. So a
+ * family of designs (those of a study) is counted with ONE number: the least number of null
+ * directions that any of them has, which almost all of them have (mt_count_box). The others
+ * have vibration modes of 0 Hz. Then indices and counts are continuous over the family.
  */
 typedef struct mt_analysis {
     mt_system *sys; /* owned */
@@ -21,16 +25,21 @@ typedef struct mt_analysis {
     mt_mass_factor mass;
     unsigned long mass_version; /* of the factor; 0: none */
     mt_modes modes;
-    int n_rigid; /* rigid-body modes that are counted: those at the first design, unless mt_analysis_count said otherwise; -1 before */
-    int n_null;  /* null directions at the first design itself */
-    int n_most; /* modes that a design has at most, rigid-body ones included: a direction whose mass reaches 0 loses its mode, the highest, to infinity */
-    bool
-        recount; /* where fewer directions are free than n_rigid says, count that design by itself; else that is MT_E_DOMAIN */
+    /* rigid-body modes that are counted: those at the first design, unless mt_analysis_count
+     * said otherwise; -1 before */
+    int n_rigid;
+    int n_null; /* null directions at the first design itself */
+    /* modes that a design has at most, rigid-body ones included: a direction whose mass reaches
+     * 0 loses its mode, the highest, to infinity */
+    int n_most;
+    /* where fewer directions are free than n_rigid says, count that design by itself; else that
+     * is MT_E_DOMAIN */
+    bool recount;
     bool with_gradient;
     double *dky; /* work, n x n_inputs, after a solve with gradient */
     double *dmy;
-    double *
-        slopes; /* n_inputs x modes: derivatives of the eigenvalues that were asked for since that solve */
+    /* n_inputs x modes: derivatives of the eigenvalues that were asked for since that solve */
+    double *slopes;
     bool *sloped; /* [modes] which of them were */
     long solves;
 } mt_analysis;
@@ -45,52 +54,72 @@ typedef struct mt_analysis_options {
 mt_analysis_options mt_analysis_options_default(void);
 
 /*
- * Make the system of a configuration and solve it once, with default options, at the original design at[n_inputs], which fixes the number of rigid-body modes (see mt_analysis_count) and every discrete choice
- * (helper axes, the model's length). The model must outlive the analysis; *out is the caller's. Fails as mt_system_new, mt_linear_update and mt_modal_solve, the text naming the
- * configuration; MT_E_MASSLESS names the bodies that nothing holds. A configuration with unstable modes is no failure.
+ * Make the system of a configuration and solve it once, with default options, at the original
+ * design at[n_inputs], which fixes the number of rigid-body modes (see mt_analysis_count) and
+ * every discrete choice (helper axes, the model's length). The model must outlive the analysis;
+ * *out is the caller's. Fails as mt_system_new, mt_linear_update and mt_modal_solve, the text
+ * naming the configuration; MT_E_MASSLESS names the bodies that nothing holds. A configuration
+ * with unstable modes is no failure.
  */
 mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs,
                           const int *inputs, const double *at, mt_analysis **out, mt_err *err);
-/* The same with a drive whose position is one more input, the last (mt_system_new_driven): at[n_inputs + 1]. drive NULL: mt_analysis_new. */
+/* The same with a drive whose position is one more input, the last (mt_system_new_driven):
+ * at[n_inputs + 1]. drive NULL: mt_analysis_new. */
 mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
                                  const mt_system_drive *drive, int n_inputs, const int *inputs,
                                  const double *at, mt_analysis **out, mt_err *err);
 /*
- * Count the modes as for all designs of the box (NULL or empty: nothing changes) and take n_rigid from there; the modes of the last solve are void where it changed. n_rigid never exceeds what any design of
- * the box has free, as long as geometry is fixed and nothing loads the mechanism: a term of K counts unless interval arithmetic shows its coefficient to be 0 over the whole box. Elsewhere it is the least of
- * a fixed list of designs (the first, corners, middle, eight more), and a solve that meets a design with less freedom fails. Cost: nothing where no direction is free at
- * the first design; else one more system and one eigensolve, or some fifteen solves. Fails as mt_analysis_new_driven.
+ * Count the modes as for all designs of the box (NULL or empty: nothing changes) and take
+ * n_rigid from there; the modes of the last solve are void where it changed. n_rigid never
+ * exceeds what any design of the box has free, as long as geometry is fixed and nothing loads
+ * the mechanism: a term of K counts unless interval arithmetic shows its coefficient to be 0
+ * over the whole box. Elsewhere it is the least of a fixed list of designs (the first, corners,
+ * middle, eight more), and a solve that meets a design with less freedom fails. Cost: nothing
+ * where no direction is free at the first design; else one more system and one eigensolve, or
+ * some fifteen solves. Fails as mt_analysis_new_driven.
  */
 mt_status mt_analysis_count(mt_analysis *a, const mt_count_box *box,
                             const mt_system_drive *drive, double position, mt_err *err);
-/* Has the family more vibration modes than the last solve's design, and this index one of those that are missing there (a mass is 0)? It is at infinity. */
+/* Has the family more vibration modes than the last solve's design, and this index one of those
+ * that are missing there (a mass is 0)? It is at infinity. */
 bool mt_analysis_is_infinite(const mt_analysis *a, int index);
-/* Directions that remain free where only the terms of K with holds[t] (one for each of lin->list[MT_TERM_STIFFNESS]) resist: the null directions of their sum, whatever their sizes. Geometry and mass are those of the
- * last update. Not where the mechanism is loaded (lin->kg). O(n^3). */
+/* Directions that remain free where only the terms of K with holds[t] (one for each of
+ * lin->list[MT_TERM_STIFFNESS]) resist: the null directions of their sum, whatever their sizes.
+ * Geometry and mass are those of the last update. Not where the mechanism is loaded (lin->kg).
+ * O(n^3). */
 mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor *mass,
                                       const bool *holds, mt_arena *scratch, int *n,
                                       mt_err *err);
-/* Is the mode at pos a vibration of 0 Hz (after a solve with vectors)? And the springs of zero stiffness that would hold it: "\"ground\", \"k2\"", perhaps "", in text[size]. */
+/* Is the mode at pos a vibration of 0 Hz (after a solve with vectors)? And the springs of zero
+ * stiffness that would hold it: "\"ground\", \"k2\"", perhaps "", in text[size]. */
 bool mt_analysis_slack(const mt_analysis *a, int pos, char *text, size_t size);
 /* Accepts NULL. */
 void mt_analysis_delete(mt_analysis *a);
-/* Modes at inputs[n_inputs] [the parameters' units] into a->modes, valid until the next call; opt is required. O(n^3); no heap after the first calls. Fails as above and with MT_E_DOMAIN where
- * stiffness holds a direction that is counted as free (unless a->recount); then a->modes is void. */
+/* Modes at inputs[n_inputs] [the parameters' units] into a->modes, valid until the next call;
+ * opt is required. O(n^3); no heap after the first calls. Fails as above and with MT_E_DOMAIN
+ * where stiffness holds a direction that is counted as free (unless a->recount); then a->modes
+ * is void. */
 mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
                             const mt_analysis_options *opt, mt_err *err);
 /*
- * After a solve with gradient, of the mode at position pos of a->modes [rad^2/s^2 per unit of the input], dlambda[n_inputs]:
- * its derivative; NaN, and *repeated (may be NULL), where it belongs to a cluster, which has none for a single mode. Fails: MT_E_INTERNAL (no gradient), as mt_linear_products.
+ * After a solve with gradient, of the mode at position pos of a->modes [rad^2/s^2 per unit of
+ * the input], dlambda[n_inputs]: its derivative; NaN, and *repeated (may be NULL), where it
+ * belongs to a cluster, which has none for a single mode. Fails: MT_E_INTERNAL (no gradient),
+ * as mt_linear_products.
  */
 mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *repeated,
                               mt_err *err);
-/* y^T (dK - lambda dM) y whatever its neighbours: not a derivative where the mode is repeated, but its mean over a cluster is that of the mean. */
+/* y^T (dK - lambda dM) y whatever its neighbours: not a derivative where the mode is repeated,
+ * but its mean over a cluster is that of the mean. */
 mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_err *err);
-/* After a solve with gradient: a->dky, a->dmy := dK y, dM y for every input, y the mode at pos. */
+/* After a solve with gradient: a->dky, a->dmy := dK y, dM y for every input, y the mode at
+ * pos. */
 mt_status mt_analysis_products(mt_analysis *a, int pos, mt_err *err);
 /*
- * Shape of the mode at position pos at channels channel[ns] of the system: s[ns] [a length or an angle, mass-normalised: per sqrt(kg) of modal mass]. ds (may be NULL): ns x n_inputs, its derivatives with the sign
- * held, after a solve with gradient. Fails: MT_E_SINGULAR (ds of a repeated mode), MT_E_MEMORY, MT_E_INTERNAL.
+ * Shape of the mode at position pos at channels channel[ns] of the system: s[ns] [a length or
+ * an angle, mass-normalised: per sqrt(kg) of modal mass]. ds (may be NULL): ns x n_inputs, its
+ * derivatives with the sign held, after a solve with gradient. Fails: MT_E_SINGULAR (ds of a
+ * repeated mode), MT_E_MEMORY, MT_E_INTERNAL.
  */
 mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel, double *s,
                             double *ds, mt_err *err);

@@ -2,11 +2,14 @@
 /*
  * How many rigid-body modes a family of designs has: the least number of null directions of
  *     K(x) = K0 + sum_t c_t(x) R_t R_t^T
- * over its box. At fixed geometry, with K0 >= 0 and c_t >= 0, the null space of K(x) is that of K0 and of all R_t^T with c_t(x) > 0: the least is met wherever every
- * coefficient that can be positive is, and no more is asked of the coefficients than whether they vanish over the whole box (interval arithmetic).
+ * over its box. At fixed geometry, with K0 >= 0 and c_t >= 0, the null space of K(x) is that of
+ * K0 and of all R_t^T with c_t(x) > 0: the least is met wherever every coefficient that can be
+ * positive is, and no more is asked of the coefficients than whether they vanish over the whole
+ * box (interval arithmetic).
  *
- * Where geometry or loads depend on the design, K(x) is still analytic in x but for kinks of the expressions: the rank that one design has, almost all have, and the greatest
- * rank among a few designs in general position is that of the family.
+ * Where geometry or loads depend on the design, K(x) is still analytic in x but for kinks of
+ * the expressions: the rank that one design has, almost all have, and the greatest rank among a
+ * few designs in general position is that of the family.
  */
 #include <float.h>
 #include <math.h>
@@ -15,7 +18,8 @@
 #include "analysis/analysis.h"
 #include "base/format.h"
 
-/* Designs in general position besides corners and middle; their coordinates are fractions of i times roots of primes, equally spread (Weyl). */
+/* Designs in general position besides corners and middle; their coordinates are fractions of i
+ * times roots of primes, equally spread (Weyl). */
 enum { FIRST_DESIGNS = 3, SPREAD_DESIGNS = 8 };
 /* A part of a spring's row along the mode below this, relative to both, is rounding. */
 static const double NO_PART = 1e-6;
@@ -76,7 +80,8 @@ mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor
     return rc;
 }
 
-/* The box of the program's inputs: that of the family, and one position where a caller drives a joint. */
+/* The box of the program's inputs: that of the family, and one position where a caller drives a
+ * joint. */
 typedef struct family {
     mt_analysis *a; /* of its own inputs, owned */
     int n;
@@ -107,7 +112,8 @@ static mt_status count_terms(family *f, mt_arena *mem, int *n_rigid, mt_err *err
     return mt_analysis_free_directions(lin, &f->a->mass, holds, mem, n_rigid, err);
 }
 
-/* Directions that have mass at almost all designs of the box: the rank of M with every coefficient that can be positive. Products of inertia stay as they are. */
+/* Directions that have mass at almost all designs of the box: the rank of M with every
+ * coefficient that can be positive. Products of inertia stay as they are. */
 static mt_status count_masses(const family *f, mt_arena *mem, int *n_most, mt_err *err)
 {
     const mt_linear *const lin = f->a->lin;
@@ -197,7 +203,8 @@ static mt_status open_family(const mt_analysis *a, const mt_count_box *box,
                                   box->parameter, f->at, &f->a, err);
 }
 
-/* Is the rank of K a matter of which coefficients vanish? Couplings that vary may cancel what they couple. */
+/* Is the rank of K a matter of which coefficients vanish? Couplings that vary may cancel what
+ * they couple. */
 static bool is_structural(const mt_linear *lin)
 {
     const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];

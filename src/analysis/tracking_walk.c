@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The walk from the original design to the present one (tracking.h): each step as long as its shapes can be told, a leap where even the shortest cannot. */
+/* The walk from the original design to the present one (tracking.h): each step as long as its
+ * shapes can be told, a leap where even the shortest cannot. */
 #include "analysis/tracking.h"
 
-/* Leaps of up to so many shortest steps over what no step can settle: a crossing, or a veering narrower than that. */
+/* Leaps of up to so many shortest steps over what no step can settle: a crossing, or a veering
+ * narrower than that. */
 enum { LEAPS = 4 };
-/* A step that could be shorter must keep so much of every shape (turn it by less than 18 degrees), lest it leaps over a veering wider than the resolution. */
+/* A step that could be shorter must keep so much of every shape (turn it by less than 18
+ * degrees), lest it leaps over a veering wider than the resolution. */
 static const double STEP_SHARE = 0.9;
 
 typedef struct walk {
@@ -95,7 +98,8 @@ static mt_status go(walk *k, bool *arrived, mt_err *err)
     return MT_OK;
 }
 
-/* What the walk found, for the modes that were not settled without it. Two names for one mode: neither can be told. */
+/* What the walk found, for the modes that were not settled without it. Two names for one mode:
+ * neither can be told. */
 static void merge(int n, const mt_track *walked, mt_track *tracks)
 {
     for (int r = 0; r < n; r++) {

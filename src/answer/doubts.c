@@ -10,16 +10,19 @@
 
 enum { NAME_SIZE = 400, NUMBER_SIZE = 32, NAMED = 3, STATES_2D = 3, STATES_3D = 6 };
 
-/* kg: a large ship's rudder gear has 1e6, a micromirror 1e-9; steel in t/mm^3 with metres makes 1e-9 of a mass, millimetres with kg/m^3 1e9 of it. */
+/* kg: a large ship's rudder gear has 1e6, a micromirror 1e-9; steel in t/mm^3 with metres makes
+ * 1e-9 of a mass, millimetres with kg/m^3 1e9 of it. */
 static const double MOST_MASS_KG = 1e6;
 static const double LEAST_MASS_KG = 1e-9;
-/* Hz of the lowest mode: a quartz crystal has 3e4, a microresonator 1e6; a period of three hours is no vibration of a mechanism. */
+/* Hz of the lowest mode: a quartz crystal has 3e4, a microresonator 1e6; a period of three
+ * hours is no vibration of a mechanism. */
 static const double MOST_LOWEST_HZ = 1e6;
 static const double LEAST_LOWEST_HZ = 1e-4;
 
 double mt_doubts_work(const mt_model *model, int configuration)
 {
-    /* measured, in units of a multiplication in a matrix product: eigenvalues, all that fills matrices, building */
+    /* measured, in units of a multiplication in a matrix product: eigenvalues, all that fills
+     * matrices, building */
     static const double PER_CUBE = 0.5;
     static const double PER_SQUARE = 700.0;
     static const double PER_NUMBER = 3000.0;

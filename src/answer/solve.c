@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * A study answered in phases. Each may be cut by the caller's wish to stop. Which ones were is told by the interrupt itself, which every unit of work passes (base/interrupt.h): no phase hands
- * it up, so none can forget to. What a phase that was cut has written is taken back, and those that need what it would have found are not begun.
+ * A study answered in phases. Each may be cut by the caller's wish to stop. Which ones were is
+ * told by the interrupt itself, which every unit of work passes (base/interrupt.h): no phase
+ * hands it up, so none can forget to. What a phase that was cut has written is taken back, and
+ * those that need what it would have found are not begun.
  */
 #include "answer/solve_priv.h"
 
@@ -64,7 +66,8 @@ static mt_status describe_solutions(mt_answer *a, mt_err *err)
     return MT_OK;
 }
 
-/* The values of designs that there was no time to analyse anew: hours of search may be in them. */
+/* The values of designs that there was no time to analyse anew: hours of search may be in
+ * them. */
 static mt_status tell_undescribed(const mt_answer *a, mt_err *err)
 {
     mt_arena *const mem = &a->result->mem;
@@ -167,7 +170,8 @@ static mt_status certify(mt_answer *a, mt_err *err)
     }
     MT_TRY(mt_describe_limit_certificates(a->p, &a->mem, a->result, &a->infeasible, err));
     a->impossible = a->infeasible;
-    /* exact targets are answered by the nearest design, also where it is proven that they cannot be met */
+    /* exact targets are answered by the nearest design, also where it is proven that they
+     * cannot be met */
     a->infeasible = a->infeasible && a->p->n_eq == 0;
     return MT_OK;
 }
@@ -228,7 +232,8 @@ static bool is_asked(const mt_answer *a, mt_phase which)
     return true;
 }
 
-/* Would the phase speak of what is not known: of a search that was cut, or of a recommendation that it did not find? */
+/* Would the phase speak of what is not known: of a search that was cut, or of a recommendation
+ * that it did not find? */
 static bool is_groundless(const mt_answer *a, mt_phase which)
 {
     const mt_interrupt *const i = &a->interrupt;
@@ -243,7 +248,8 @@ static bool is_groundless(const mt_answer *a, mt_phase which)
     return cut || (which == MT_PHASE_TRADE && mt_interrupt_any(i));
 }
 
-/* An error that an interrupt is the reason of is none; shortage of memory and our own errors are. */
+/* An error that an interrupt is the reason of is none; shortage of memory and our own errors
+ * are. */
 static bool is_due_to_cut(mt_status rc)
 {
     return rc != MT_E_MEMORY && rc != MT_E_INTERNAL;
@@ -350,7 +356,8 @@ static mt_status describe_baseline(mt_answer *a, mt_err *err)
     return mt_describe_baseline_reasons(p, result, err);
 }
 
-/* One problem for each worker; references are analysed with the first and only read afterwards. */
+/* One problem for each worker; references are analysed with the first and only read
+ * afterwards. */
 static mt_status open_problems(mt_answer *a, mt_err *err)
 {
     const bool alone = a->threads < 1 || a->study->n_variables == 0;

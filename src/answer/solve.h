@@ -6,8 +6,9 @@
 #include "study/study.h"
 
 /*
- * Answering a study (solve.c): mt_study_solve and its options are public, see modetune/study.h. Baseline, search, ranked recommendations, each recomputed from scratch at its design, published
- * values judged.
+ * Answering a study (solve.c): mt_study_solve and its options are public, see modetune/study.h.
+ * Baseline, search, ranked recommendations, each recomputed from scratch at its design,
+ * published values judged.
  */
 
 #endif

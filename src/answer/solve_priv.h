@@ -8,7 +8,8 @@
 #include "search/gaps.h"
 
 /*
- * The phases of an answer, in their order, under the names of what they write in a result. Those that make ready (the last column) bring what is known into its form, and go on unless
+ * The phases of an answer, in their order, under the names of what they write in a result.
+ * Those that make ready (the last column) bring what is known into its form, and go on unless
  * they must end at once.
  */
 #define MT_PHASE_LIST(X)                                 \
@@ -27,8 +28,8 @@ typedef enum mt_phase { MT_PHASE_LIST(MT_PHASE_ENUM) MT_PHASE_COUNT } mt_phase;
 /* One study being answered. */
 typedef struct mt_answer {
     const mt_study *study; /* own_study */
-    mt_study
-        own_study; /* what was asked, of a model that knows the interrupt; everything else is the caller's */
+    /* what was asked, of a model that knows the interrupt; everything else is the caller's */
+    mt_study own_study;
     mt_model own_model;
     mt_interrupt interrupt;
     mt_result_mark mark; /* of the result: what is complete */

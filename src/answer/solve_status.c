@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How a search ended, in one sentence, and what the engineer should know of it besides its answers. */
+/* How a search ended, in one sentence, and what the engineer should know of it besides its
+ * answers. */
 #include "answer/solve_priv.h"
 
 #include <math.h>
@@ -231,7 +232,8 @@ void mt_answer_qualify_trade(mt_result *result)
     }
 }
 
-/* Nothing is proven of a question that is hardly the one that was meant: the doubts come first, and no design is graded beyond "feasible". */
+/* Nothing is proven of a question that is hardly the one that was meant: the doubts come first,
+ * and no design is graded beyond "feasible". */
 static mt_status qualify(mt_result *result, mt_err *err)
 {
     const mt_doubt_list *const list = &result->doubts;

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The spread of a misfit's answer under other weights. With residuals r_g of the goals and their weights w_g the best design minimises
+ * The spread of a misfit's answer under other weights. With residuals r_g of the goals and
+ * their weights w_g the best design minimises
  *     sum_g w_g |r_g|^2    under the constraints;
- * each weight is multiplied and divided by the study's factor in turn and the minimum found again, from the best design. Data that agree leave the design where it is; data that
- * contradict each other pull it about, and how far is what nobody can know better than from them. The given weights are one opinion among these.
+ * each weight is multiplied and divided by the study's factor in turn and the minimum found
+ * again, from the best design. Data that agree leave the design where it is; data that
+ * contradict each other pull it about, and how far is what nobody can know better than from
+ * them. The given weights are one opinion among these.
  */
 #include "answer/spread.h"
 
@@ -81,7 +84,8 @@ static mt_status note(spread *s, const double *t, int goal, double factor, mt_er
     return MT_OK;
 }
 
-/* Solve again with one weight changed, from the best design, which is also what undetermined directions are kept at. */
+/* Solve again with one weight changed, from the best design, which is also what undetermined
+ * directions are kept at. */
 static mt_status search_again(spread *s, int goal, double factor, mt_arena *mem, mt_err *err)
 {
     mt_nlp nlp = mt_problem_nlp(s->p);

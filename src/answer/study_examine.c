@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * A study held against its model: is what it asks for anywhere near what the model does? Frequencies f_k(x) are looked at where x is the original design and where one variable, or all,
- * stand at a bound; a band that no f_k comes within a factor of there has no part in the answer. Where two of these designs differ in how many modes lie above a band, one comes through it in
- * between: frequencies are continuous. Above, since modes that rest at 0 Hz at one design (a spring that may be 0) are no vibrations there.
+ * A study held against its model: is what it asks for anywhere near what the model does?
+ * Frequencies f_k(x) are looked at where x is the original design and where one variable, or
+ * all, stand at a bound; a band that no f_k comes within a factor of there has no part in the
+ * answer. Where two of these designs differ in how many modes lie above a band, one comes
+ * through it in between: frequencies are continuous. Above, since modes that rest at 0 Hz at
+ * one design (a spring that may be 0) are no vibrations there.
  */
 #include <math.h>
 #include <string.h>
@@ -13,7 +16,8 @@
 
 enum { TIMES_SIZE = 32 };
 
-/* A target a hundred times away from where the mode is, is in another unit (rad/s, rpm and kHz are 6, 60 and 1000 away), or of another mode. */
+/* A target a hundred times away from where the mode is, is in another unit (rad/s, rpm and kHz
+ * are 6, 60 and 1000 away), or of another mode. */
 static const double FAR_TARGET = 100.0;
 /* No mode comes within this factor of any band: rpm for Hz makes 60. */
 static const double FAR_BAND = 10.0;
@@ -60,7 +64,8 @@ static void look(reach *r, const mt_modes *modes)
     }
 }
 
-/* Design `which` of the 2 n + 3: the original, each variable at a bound, all at their lower and their upper ones. */
+/* Design `which` of the 2 n + 3: the original, each variable at a bound, all at their lower and
+ * their upper ones. */
 static void set_design(const mt_study *s, int which, double *x)
 {
     const int n = s->n_variables;
@@ -146,7 +151,8 @@ static mt_status examine_bands(const mt_study *s, int g, mt_doubt_list *out, mt_
     return rc;
 }
 
-/* Frequency of the mode that a goal names, in a solved configuration; NaN where there is none. */
+/* Frequency of the mode that a goal names, in a solved configuration; NaN where there is
+ * none. */
 static double original_hz(const mt_study *s, const mt_goal *goal, const mt_analysis *a)
 {
     int index = goal->mode.index;
@@ -210,7 +216,8 @@ static void add_goals(const mt_study *s, int c, mt_doubt_list *of_model, int fir
     }
 }
 
-/* The numbers of a reference's model, where it is another one: what it gives as a target is as doubtful as they are. */
+/* The numbers of a reference's model, where it is another one: what it gives as a target is as
+ * doubtful as they are. */
 static mt_status examine_reference(const mt_study *s, const mt_reference *r, mt_doubt_list *out,
                                    mt_err *err)
 {
@@ -274,7 +281,8 @@ static const char *base_name(const char *path)
     return slash == NULL ? path : slash + 1;
 }
 
-/* How many configurations the study asks about, and what looking at them takes: with bands once for every bound, too. */
+/* How many configurations the study asks about, and what looking at them takes: with bands once
+ * for every bound, too. */
 static int count_asked(const mt_study *study, double *work)
 {
     int asked = 0;

@@ -8,7 +8,8 @@
 #include "base/workers.h"
 #include "search/discrete.h"
 
-/* Objectives that differ by less, relatively, are the same: searches of one optimum end so near. */
+/* Objectives that differ by less, relatively, are the same: searches of one optimum end so
+ * near. */
 static const double SAME = 1e-6;
 
 typedef struct point {
@@ -111,7 +112,8 @@ static mt_status values_of(const mt_recommendation *r, mt_arena *mem, const doub
     return MT_OK;
 }
 
-/* Is a the better answer of one point? The first objective's score decides among designs that meet all goals. */
+/* Is a the better answer of one point? The first objective's score decides among designs that
+ * meet all goals. */
 static bool better(const mt_study *study, const mt_result *a, const mt_result *b)
 {
     const mt_recommendation *const x = best_of(a);
@@ -127,7 +129,8 @@ static bool better(const mt_study *study, const mt_result *a, const mt_result *b
     return x->feasible && (most ? x->score > y->score : x->score < y->score);
 }
 
-/* From the neighbours' designs of the first pass, which are no longer changed: any order gives the same. */
+/* From the neighbours' designs of the first pass, which are no longer changed: any order gives
+ * the same. */
 static mt_status try_neighbours(const trade *t, int k, const mt_study *study, mt_arena *mem,
                                 mt_err *err)
 {
@@ -201,7 +204,8 @@ static mt_status begin(trade *t, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
-/* An objective of a design, signed so that less is better; NaN where the design does not meet the goals. */
+/* An objective of a design, signed so that less is better; NaN where the design does not meet
+ * the goals. */
 static double front_value(const mt_study *study, mt_objective_type type,
                           const mt_recommendation *r)
 {

@@ -5,17 +5,24 @@
 #include "answer/solve.h"
 
 /*
- * The trade study of a study: every point is the study with one or two numbers replaced, answered and described like a study of its own (mt_study_solve), on `threads` workers. A second
- * pass searches every point from the best designs of its neighbours as well and keeps what is better: a curve without gaps, and the same for any number of workers.
- * Fills result->trade; adds to its evaluations and warnings. Nothing where the study has no trade part. Cost: that of the study times the number of points.
- * An interrupt of the study's model leaves points without an answer, which say so. Fails: as mt_study_solve; the text names the point.
+ * The trade study of a study: every point is the study with one or two numbers replaced,
+ * answered and described like a study of its own (mt_study_solve), on `threads` workers. A
+ * second pass searches every point from the best designs of its neighbours as well and keeps
+ * what is better: a curve without gaps, and the same for any number of workers. Fills
+ * result->trade; adds to its evaluations and warnings. Nothing where the study has no trade
+ * part. Cost: that of the study times the number of points. An interrupt of the study's model
+ * leaves points without an answer, which say so. Fails: as mt_study_solve; the text names the
+ * point.
  */
 mt_status mt_trade_solve(const mt_study *study, int threads, mt_result *result, mt_err *err);
 
-/* trade_study.c: the study of one point, values[n_vary] put in. It borrows all that is not replaced; what is lives in mem. Fails: MT_E_MEMORY, MT_E_DOMAIN (a parameter without a value). */
+/* trade_study.c: the study of one point, values[n_vary] put in. It borrows all that is not
+ * replaced; what is lives in mem. Fails: MT_E_MEMORY, MT_E_DOMAIN (a parameter without a
+ * value). */
 mt_status mt_trade_study(const mt_study *study, const double *values, mt_arena *mem,
                          mt_study *out, mt_err *err);
-/* trade_warm.c: does a local search from x[n_variables] find a design of this study that is better than best_x (NULL: any that meets all goals)? Adds to *evaluations. */
+/* trade_warm.c: does a local search from x[n_variables] find a design of this study that is
+ * better than best_x (NULL: any that meets all goals)? Adds to *evaluations. */
 mt_status mt_trade_improves(const mt_study *study, const double *x, const double *best_x,
                             bool *better, long *evaluations, mt_err *err);
 #endif

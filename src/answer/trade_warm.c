@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Is a neighbour's best design a better start than all that a point was searched from? One local search tells, at a small part of the cost of the point. */
+/* Is a neighbour's best design a better start than all that a point was searched from? One
+ * local search tells, at a small part of the cost of the point. */
 #include <math.h>
 
 #include "answer/trade.h"
 #include "problem/family.h"
 #include "search/discrete.h"
 
-/* Less than this, relatively, is the same objective: two searches of one optimum end so near. */
+/* Less than this, relatively, is the same objective: two searches of one optimum end so
+ * near. */
 static const double BETTER = 1e-6;
 enum { LOCAL_EVALUATIONS = 500 };
 

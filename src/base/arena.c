@@ -26,7 +26,8 @@
 
 enum { DEFAULT_BLOCK_SIZE = 64 * 1024, LARGEST_ZONE = 4096 };
 
-/* data points behind the header, at the first multiple of MT_ALIGN that leaves room for a zone. */
+/* data points behind the header, at the first multiple of MT_ALIGN that leaves room for a
+ * zone. */
 struct mt_arena_block {
     mt_arena_block *next;
     unsigned char *data;
@@ -34,8 +35,8 @@ struct mt_arena_block {
     size_t used; /* a multiple of MT_ALIGN */
 };
 
-/* Bytes between the end of what is handed out and what comes next, which nobody may touch: under AddressSanitizer as many as one item
- * has, so that an item too many falls into them. */
+/* Bytes between the end of what is handed out and what comes next, which nobody may touch:
+ * under AddressSanitizer as many as one item has, so that an item too many falls into them. */
 static size_t zone(size_t size)
 {
 #ifdef ARENA_ASAN
@@ -103,8 +104,9 @@ static bool fits(const mt_arena_block *b, size_t bytes)
     return b != NULL && bytes <= b->size - b->used;
 }
 
-/* Make `current` a block with room for bytes. Blocks behind the current one are empty, left over by a rewind: the next is used where it
- * is large enough, else a new one is put before it, so that the same sequence of requests finds the same blocks again. */
+/* Make `current` a block with room for bytes. Blocks behind the current one are empty, left
+ * over by a rewind: the next is used where it is large enough, else a new one is put before it,
+ * so that the same sequence of requests finds the same blocks again. */
 static bool make_room(mt_arena *a, size_t bytes)
 {
     if (fits(a->current, bytes)) {

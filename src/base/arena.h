@@ -10,11 +10,12 @@
 #include "base/base.h"
 
 /*
- * Growing arena: memory that lives and dies together. Blocks are chained (a pointer handed out never moves), every
- * allocation is 64-byte aligned and zeroed, products are checked for overflow. `mark`/`rewind` give scratch back without
- * freeing blocks, so a loop that has run once allocates nothing more. Under AddressSanitizer all but the bytes that were asked for is
- * poisoned: what is free, at least 64 bytes and one item behind every allocation, and what mt_arena_grow leaves behind.
- * Not thread safe: one arena, one worker.
+ * Growing arena: memory that lives and dies together. Blocks are chained (a pointer handed out
+ * never moves), every allocation is 64-byte aligned and zeroed, products are checked for
+ * overflow. `mark`/`rewind` give scratch back without freeing blocks, so a loop that has run
+ * once allocates nothing more. Under AddressSanitizer all but the bytes that were asked for is
+ * poisoned: what is free, at least 64 bytes and one item behind every allocation, and what
+ * mt_arena_grow leaves behind. Not thread safe: one arena, one worker.
  */
 enum { MT_ALIGN = 64 };
 
@@ -38,7 +39,8 @@ typedef struct mt_arena_mark {
 mt_status mt_arena_init(mt_arena *a, size_t block_size, mt_err *err);
 /* Accepts a zeroed or already freed arena. */
 void mt_arena_free(mt_arena *a);
-/* count * size bytes, zeroed; NULL where memory is out or the product overflows. A zero product gives a valid pointer. */
+/* count * size bytes, zeroed; NULL where memory is out or the product overflows. A zero product
+ * gives a valid pointer. */
 void *mt_arena_alloc(mt_arena *a, size_t count, size_t size);
 /* m x n doubles, zeroed. */
 double *mt_arena_f64(mt_arena *a, size_t m, size_t n);
@@ -50,10 +52,12 @@ char *mt_arena_strndup(mt_arena *a, const char *s, size_t length);
 /* printf into the arena; NULL when out of memory. */
 char *mt_arena_printf(mt_arena *a, const char *fmt, ...) MT_PRINTF(2, 3);
 char *mt_arena_vprintf(mt_arena *a, const char *fmt, va_list args) MT_PRINTF(2, 0);
-/* Growable array in an arena: returns a pointer to the count items with room for one more (doubling; the old copy is abandoned in the
- * arena); *capacity is the room. NULL when out of memory: then items and *capacity stand unchanged. */
+/* Growable array in an arena: returns a pointer to the count items with room for one more
+ * (doubling; the old copy is abandoned in the arena); *capacity is the room. NULL when out of
+ * memory: then items and *capacity stand unchanged. */
 void *mt_arena_grow(mt_arena *a, void *items, int count, int *capacity, size_t size);
-/* Everything handed out after the mark was taken is void after a rewind to it; marks nest like a stack. */
+/* Everything handed out after the mark was taken is void after a rewind to it; marks nest like
+ * a stack. */
 mt_arena_mark mt_arena_get_mark(const mt_arena *a);
 void mt_arena_rewind(mt_arena *a, mt_arena_mark mark);
 

@@ -7,7 +7,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Return the status of a failing call at once. Banned once a function owns a resource (use goto done). */
+/* Return the status of a failing call at once. Banned once a function owns a resource (use goto
+ * done). */
 #define MT_TRY(call)                        \
     do {                                    \
         const mt_status mt_try_rc = (call); \
@@ -22,18 +23,21 @@ mt_status mt_check_argument(const void *argument, const char *function, const ch
 #define MT_NOT_NULL(argument, err) \
     MT_TRY(mt_check_argument((argument), __func__, #argument, (err)))
 
-/* Does this failure end the work, instead of telling something about what was tried (a design without an equilibrium)? Memory that is out must never be taken for an answer. */
+/* Does this failure end the work, instead of telling something about what was tried (a design
+ * without an equilibrium)? Memory that is out must never be taken for an answer. */
 static inline bool mt_is_final(mt_status rc)
 {
     return rc == MT_E_MEMORY || rc == MT_E_INTERNAL;
 }
-/* What the end of one try, with its own text, means for the work: the failure where it is final, else MT_OK. */
+/* What the end of one try, with its own text, means for the work: the failure where it is
+ * final, else MT_OK. */
 static inline mt_status mt_pass_final(mt_status rc, const mt_err *own, mt_err *err)
 {
     return mt_is_final(rc) ? mt_fail(err, rc, "%s", own->text) : MT_OK;
 }
 
-/* A function whose divisions by zero are meant as IEEE 754 has them (x / 0 is infinite, 0 / 0 NaN), because those who use the quotient look whether it is finite. */
+/* A function whose divisions by zero are meant as IEEE 754 has them (x / 0 is infinite, 0 / 0
+ * NaN), because those who use the quotient look whether it is finite. */
 #if defined(__GNUC__) || defined(__clang__)
 #    define MT_DIVIDES_BY_ZERO __attribute__((no_sanitize("float-divide-by-zero")))
 #else

@@ -5,12 +5,14 @@
 #include "base/arena.h"
 
 /*
- * Problems found in an input, all of them, in the order found. An address is a number that the reader of the file hands
- * out (for JSON: the index of the value in document order); only that reader can turn it into file:line:column and a
- * JSON pointer. MT_NO_ADDR: the problem belongs to no place (a model built in memory).
+ * Problems found in an input, all of them, in the order found. An address is a number that the
+ * reader of the file hands out (for JSON: the index of the value in document order); only that
+ * reader can turn it into file:line:column and a JSON pointer. MT_NO_ADDR: the problem belongs
+ * to no place (a model built in memory).
  */
 typedef int mt_addr;
-/* So many problems are kept; so many of them, the first, say what may have been meant: to look for it takes a walk through all names. */
+/* So many problems are kept; so many of them, the first, say what may have been meant: to look
+ * for it takes a walk through all names. */
 enum { MT_NO_ADDR = -1, MT_DIAG_LIMIT = 200, MT_DIAG_SUGGESTIONS = 50 };
 
 typedef enum mt_severity { MT_SEV_ERROR, MT_SEV_WARNING } mt_severity;
@@ -41,7 +43,8 @@ void mt_diag_error(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3,
 void mt_diag_structure(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
 /* Will another problem be kept? */
 bool mt_diag_has_room(const mt_diags *d);
-/* Is a suggestion ("did you mean") still worth its search? For the first MT_DIAG_SUGGESTIONS errors. */
+/* Is a suggestion ("did you mean") still worth its search? For the first MT_DIAG_SUGGESTIONS
+ * errors. */
 bool mt_diag_may_suggest(const mt_diags *d);
 void mt_diag_warning(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
 

@@ -8,8 +8,9 @@
 #include "base/diag.h"
 
 /*
- * What an engineer should hear before any answer: a fact of the model that surprises where it is not meant ("2 free motions"), a doubt (a value that is
- * allowed and hardly meant: a margin of 0.1 %), or a fault (a value that cannot be: a negative mass).
+ * What an engineer should hear before any answer: a fact of the model that surprises where it
+ * is not meant ("2 free motions"), a doubt (a value that is allowed and hardly meant: a margin
+ * of 0.1 %), or a fault (a value that cannot be: a negative mass).
  */
 #define MT_DOUBT_LEVEL_LIST(X) \
     X(MT_LEVEL_FACT, "fact")   \
@@ -47,7 +48,8 @@ typedef struct mt_doubt_list {
 
 /* Empty list whose texts live in mem. */
 mt_doubt_list mt_doubt_list_default(mt_arena *mem);
-/* Add one with a formatted text; returns it (until the next), NULL when out of memory (noted) and beyond MT_DOUBT_LIMIT, where none is added. */
+/* Add one with a formatted text; returns it (until the next), NULL when out of memory (noted)
+ * and beyond MT_DOUBT_LIMIT, where none is added. */
 mt_doubt *mt_doubt_add(mt_doubt_list *list, mt_doubt_level level, const char *kind,
                        const char *fmt, ...) MT_PRINTF(4, 5);
 /* Items first .. n - 1 in the order of falling size; equal ones keep their order. */

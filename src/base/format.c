@@ -31,7 +31,8 @@ typedef struct spec {
     char conversion;
 } spec;
 
-/* Of the caller; a va_list may be an array, which a function could not be handed the address of. */
+/* Of the caller; a va_list may be an array, which a function could not be handed the address
+ * of. */
 typedef struct arguments {
     va_list list;
 } arguments;

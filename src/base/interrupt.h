@@ -10,19 +10,25 @@
 /*
  * The wish of somebody outside that a long piece of work end, and what of the work it cut.
  *
- * Whoever is about to begin a unit of work (one analysis, one Newton step, one box of a proof) asks mt_interrupted first and leaves the unit undone where the answer is yes. The answer itself notes the phase that
- * it was given in: what was cut is known without anybody handing it up, whatever the functions in between make of a unit that is missing. And where no answer was yes, nothing is missing. Once yes, it stays so.
+ * Whoever is about to begin a unit of work (one analysis, one Newton step, one box of a proof)
+ * asks mt_interrupted first and leaves the unit undone where the answer is yes. The answer
+ * itself notes the phase that it was given in: what was cut is known without anybody handing it
+ * up, whatever the functions in between make of a unit that is missing. And where no answer was
+ * yes, nothing is missing. Once yes, it stays so.
  */
 enum { MT_INTERRUPT_PHASES = 16 };
-/* From matrices of this order on, one of the steps that a decomposition of ours consists of is a unit of work; smaller ones are done before anybody waits. */
+/* From matrices of this order on, one of the steps that a decomposition of ours consists of is
+ * a unit of work; smaller ones are done before anybody waits. */
 enum { MT_INTERRUPT_ORDER = 128 };
 
 typedef struct mt_interrupt {
     int (*wish)(void *context); /* an mt_wish; called by all workers; NULL: none ever */
     void *context;
-    struct mt_interrupt *
-        whole; /* NULL, or of the work that this is a part of: its wish is this one's, and where this is cut it is */
-    int phase; /* that is being worked on, below MT_INTERRUPT_PHASES; changed while no worker runs */
+    /* NULL, or of the work that this is a part of: its wish is this one's, and where this is
+     * cut it is */
+    struct mt_interrupt *whole;
+    /* that is being worked on, below MT_INTERRUPT_PHASES; changed while no worker runs */
+    int phase;
     bool makes_ready; /* this phase goes on until MT_WISH_END */
     atomic_int level; /* the strongest wish so far */
     atomic_uint cut;  /* bit k: phase k is not complete */

@@ -37,7 +37,8 @@ static bool is_continuation(char c)
     return ((unsigned char)c & 0xC0U) == 0x80U;
 }
 
-/* Copy src into dst[MT_ERR_TEXT_SIZE]; text that does not fit ends before a UTF-8 character, not in it. */
+/* Copy src into dst[MT_ERR_TEXT_SIZE]; text that does not fit ends before a UTF-8 character,
+ * not in it. */
 static void copy_cut(char *dst, const char *src)
 {
     size_t n = strlen(src);
@@ -51,8 +52,8 @@ static void copy_cut(char *dst, const char *src)
     dst[n] = '\0';
 }
 
-/* The buffers are longer than err->text by a whole UTF-8 character, so that copy_cut sees where it begins. Formatting
- * goes through them because the arguments may point into err->text. */
+/* The buffers are longer than err->text by a whole UTF-8 character, so that copy_cut sees where
+ * it begins. Formatting goes through them because the arguments may point into err->text. */
 enum { BUFFER_SIZE = MT_ERR_TEXT_SIZE + 4 };
 
 mt_status mt_fail(mt_err *err, mt_status code, const char *fmt, ...)

@@ -76,11 +76,13 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-/* Optimal string alignment by rows: d(i, j) edits turn the first i bytes of a into the first j of b,
- *   d(i, j) = min( d(i-1, j) + 1, d(i, j-1) + 1, d(i-1, j-1) + [a_i != b_j], d(i-2, j-2) + 1 if two neighbours are swapped ).
- * Only the last three rows are kept, and of them the cells |i - j| <= most: the others are above `most`, which the cells beside these say; and so are all rows
- * behind two that are.
- * Row i of them; returns its least cell. */
+/* Optimal string alignment by rows: d(i, j) edits turn the first i bytes of a into the first j
+ * of b,
+ *   d(i, j) = min( d(i-1, j) + 1, d(i, j-1) + 1, d(i-1, j-1) + [a_i != b_j], d(i-2, j-2) + 1 if
+ *   two neighbours are swapped ).
+ * Only the last three rows are kept, and of them the cells |i - j| <= most: the others are
+ * above `most`, which the cells beside these say; and so are all rows behind two that are. Row
+ * i of them; returns its least cell. */
 static int fill_row(const char *a, const char *b, int i, int n, int most,
                     int rows[3][MT_TEXT_DISTANCE_MAX + 2])
 {
@@ -149,7 +151,8 @@ const char *mt_text_nearest(const char *name, const char *const *names, int n)
     return best;
 }
 
-/* Greedy: at a mismatch give the last star one more character and go on behind it. O(length of pattern * length of name). */
+/* Greedy: at a mismatch give the last star one more character and go on behind it. O(length of
+ * pattern * length of name). */
 bool mt_text_matches(const char *pattern, const char *name)
 {
     const char *star = NULL;
@@ -174,34 +177,26 @@ bool mt_text_matches(const char *pattern, const char *name)
     return *pattern == '\0';
 }
 
-/* Columns of a character, after Unicode's East Asian Width and general categories Mn and Me: the ranges that matter most. */
+/* Columns of a character, after Unicode's East Asian Width and general categories Mn and Me:
+ * the ranges that matter most. */
 static int columns(unsigned code)
 {
     static const struct {
         unsigned first, last;
         int width;
     } ranges[] = {
-        {  0x300U,   0x36FU, 0}, /* combining marks */
-        {  0x483U,   0x489U, 0},
-        {  0x591U,   0x5BDU, 0},
-        {  0x610U,   0x61AU, 0},
-        {  0x64BU,   0x65FU, 0},
-        { 0x1100U,  0x115FU, 2}, /* Hangul */
-        { 0x1AB0U,  0x1AFFU, 0},
-        { 0x1DC0U,  0x1DFFU, 0},
-        { 0x20D0U,  0x20FFU, 0},
-        { 0x2E80U,  0x303EU, 2}, /* Chinese, Japanese, Korean */
-        { 0x3041U,  0xA4CFU, 2},
-        { 0xAC00U,  0xD7A3U, 2},
-        { 0xF900U,  0xFAFFU, 2},
-        { 0xFE00U,  0xFE0FU, 0}, /* variation selectors */
-        { 0xFE20U,  0xFE2FU, 0},
-        { 0xFE30U,  0xFE6FU, 2},
-        { 0xFF00U,  0xFF60U, 2}, /* full width */
-        { 0xFFE0U,  0xFFE6U, 2},
-        {0x1F300U, 0x1F64FU, 2}, /* pictures */
-        {0x1F680U, 0x1F6FFU, 2},
-        {0x1F900U, 0x1F9FFU, 2},
+        {0x300U, 0x36FU, 0}, /* combining marks */
+        {0x483U, 0x489U, 0},     {0x591U, 0x5BDU, 0},
+        {0x610U, 0x61AU, 0},     {0x64BU, 0x65FU, 0},
+        {0x1100U, 0x115FU, 2}, /* Hangul */
+        {0x1AB0U, 0x1AFFU, 0},   {0x1DC0U, 0x1DFFU, 0},
+        {0x20D0U, 0x20FFU, 0},   {0x2E80U, 0x303EU, 2}, /* Chinese, Japanese, Korean */
+        {0x3041U, 0xA4CFU, 2},   {0xAC00U, 0xD7A3U, 2},
+        {0xF900U, 0xFAFFU, 2},   {0xFE00U, 0xFE0FU, 0}, /* variation selectors */
+        {0xFE20U, 0xFE2FU, 0},   {0xFE30U, 0xFE6FU, 2},
+        {0xFF00U, 0xFF60U, 2},                            /* full width */
+        {0xFFE0U, 0xFFE6U, 2},   {0x1F300U, 0x1F64FU, 2}, /* pictures */
+        {0x1F680U, 0x1F6FFU, 2}, {0x1F900U, 0x1F9FFU, 2},
         {0x20000U, 0x3FFFDU, 2},
     };
     for (int i = 0; code >= ranges[0].first && i < MT_COUNT(ranges); i++) {

@@ -7,7 +7,8 @@
 
 #include "base/base.h"
 
-/* Growing text (heap, owned by the holder). A failed growth sets `failed` and later writes do nothing: check once at the end. */
+/* Growing text (heap, owned by the holder). A failed growth sets `failed` and later writes do
+ * nothing: check once at the end. */
 typedef struct mt_text {
     char *s; /* NUL-terminated, NULL while empty */
     size_t length;
@@ -18,20 +19,25 @@ typedef struct mt_text {
 void mt_text_free(mt_text *t);
 void mt_text_add(mt_text *t, const char *s);
 void mt_text_add_n(mt_text *t, const char *s, size_t n);
-/* Formatted, see base/format.h: %s arguments are made visible, so a path is put together with mt_text_add. */
+/* Formatted, see base/format.h: %s arguments are made visible, so a path is put together with
+ * mt_text_add. */
 void mt_text_addf(mt_text *t, const char *fmt, ...) MT_PRINTF(2, 3);
 
 /* Names longer than this (bytes) are compared for equality only. */
 enum { MT_TEXT_DISTANCE_MAX = 255 };
 
-/* Optimal string alignment distance in bytes (a swap of neighbours costs one), cut off at `most` + 1. Heap: none. */
+/* Optimal string alignment distance in bytes (a swap of neighbours costs one), cut off at
+ * `most` + 1. Heap: none. */
 int mt_text_distance(const char *a, const char *b, int most);
-/* The nearest of n names to `name` for a "did you mean": NULL where none is near (distance <= 1 + length / 4 and
- * below the length, so that something of the name is left). The first of several equally near. */
+/* The nearest of n names to `name` for a "did you mean": NULL where none is near (distance <= 1
+ * + length / 4 and below the length, so that something of the name is left). The first of
+ * several equally near. */
 const char *mt_text_nearest(const char *name, const char *const *names, int n);
-/* Does `name` match `pattern`, where * stands for any run of characters and ? for one? (Bytes: names are ASCII.) */
+/* Does `name` match `pattern`, where * stands for any run of characters and ? for one? (Bytes:
+ * names are ASCII.) */
 bool mt_text_matches(const char *pattern, const char *name);
-/* Display width in terminal columns of UTF-8 text: marks that combine take none, ideographs two. */
+/* Display width in terminal columns of UTF-8 text: marks that combine take none, ideographs
+ * two. */
 int mt_text_width(const char *s);
 
 #endif

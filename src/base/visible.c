@@ -37,21 +37,16 @@ unsigned mt_utf8_code(const char *s, size_t length)
     return code;
 }
 
-/* Control characters, and format characters (general category Cf, Zl, Zp) that show nothing of themselves. */
+/* Control characters, and format characters (general category Cf, Zl, Zp) that show nothing of
+ * themselves. */
 static bool is_hidden(unsigned code)
 {
     static const unsigned ranges[][2] = {
-        {    0x0U,    0x1FU},
-        {   0x7FU,    0x9FU},
-        {   0xADU,    0xADU},
-        {  0x61CU,   0x61CU},
-        { 0x180EU,  0x180EU},
-        { 0x200BU,  0x200FU}, /* zero-width space to right-to-left mark */
-        { 0x2028U,  0x202EU}, /* separators, embeddings and overrides of direction */
-        { 0x2060U,  0x206FU}, /* word joiner, isolates */
-        { 0xFEFFU,  0xFEFFU},
-        { 0xFFF9U,  0xFFFBU},
-        {0xE0000U, 0xE007FU}, /* tags */
+        {0x0U, 0x1FU},      {0x7FU, 0x9FU},     {0xADU, 0xADU},       {0x61CU, 0x61CU},
+        {0x180EU, 0x180EU}, {0x200BU, 0x200FU}, /* zero-width space to right-to-left mark */
+        {0x2028U, 0x202EU}, /* separators, embeddings and overrides of direction */
+        {0x2060U, 0x206FU}, /* word joiner, isolates */
+        {0xFEFFU, 0xFEFFU}, {0xFFF9U, 0xFFFBU}, {0xE0000U, 0xE007FU}, /* tags */
     };
     for (int i = 0; i < MT_COUNT(ranges); i++) {
         if (code >= ranges[i][0] && code <= ranges[i][1]) {

@@ -133,7 +133,8 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
     }
 }
 
-/* The argument at *at is an option: read it, with its value from the same or the next argument. */
+/* The argument at *at is an option: read it, with its value from the same or the next
+ * argument. */
 static mt_status read_long(mt_args *args, int argc, char *const argv[], int *at, mt_err *err)
 {
     const char *const name = argv[*at] + 2;

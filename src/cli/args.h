@@ -100,8 +100,9 @@ typedef struct mt_args {
 } mt_args;
 
 /**
- * Read argv[1..argc-1]. Options may stand anywhere after the command; "--" ends them; "--name=value", "-oDIR" are fine.
- * Fails: MT_E_USAGE (err: the first fault, with "did you mean"), MT_E_MEMORY. mt_args_free in any case. --help, --manual and --version win over
+ * Read argv[1..argc-1]. Options may stand anywhere after the command; "--" ends them;
+ * "--name=value", "-oDIR" are fine. Fails: MT_E_USAGE (err: the first fault, with "did you
+ * mean"), MT_E_MEMORY. mt_args_free in any case. --help, --manual and --version win over
  * missing operands.
  */
 mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err);

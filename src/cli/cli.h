@@ -10,7 +10,8 @@
 #include "study/study.h"
 
 /*
- * The commands. Each appends what goes to standard output to `out`, writes talk and problems to standard error itself, and returns the exit status.
+ * The commands. Each appends what goes to standard output to `out`, writes talk and problems to
+ * standard error itself, and returns the exit status.
  */
 int mt_cmd_run(const mt_args *args, mt_text *out);
 int mt_cmd_compare(const mt_args *args, mt_text *out);
@@ -25,9 +26,11 @@ int mt_cmd_check(const mt_args *args, mt_text *out);
 /* The whole program but for its process-wide settings: parse, run, print. */
 int mt_cli_main(int argc, char *const argv[]);
 
-/* What loading a file said: diagnostics as they are, else the error itself. Returns the exit status of rc; frees the messages. */
+/* What loading a file said: diagnostics as they are, else the error itself. Returns the exit
+ * status of rc; frees the messages. */
 int mt_cli_loaded(mt_status rc, mt_text *messages, const mt_err *err);
-/* What was found when a study was held against its model: told in messages with its place where the study knows it, else led by the file in err. Nothing where rc is MT_OK. */
+/* What was found when a study was held against its model: told in messages with its place where
+ * the study knows it, else led by the file in err. Nothing where rc is MT_OK. */
 void mt_cli_place(const mt_study *study, const char *path, mt_status rc, mt_err *err,
                   mt_text *messages);
 /* Report err and return the exit status of rc. */
@@ -51,8 +54,9 @@ typedef struct mt_subject {
 } mt_subject;
 
 /**
- * Load the model, apply --set, choose configurations: the named one, or all where the name is NULL.
- * Returns MT_EXIT_DONE or the exit status, everything said. mt_subject_free in any case (subject zeroed before).
+ * Load the model, apply --set, choose configurations: the named one, or all where the name is
+ * NULL. Returns MT_EXIT_DONE or the exit status, everything said. mt_subject_free in any case
+ * (subject zeroed before).
  */
 int mt_subject_load(const mt_args *args, const char *path, const char *configuration,
                     mt_subject *out);
@@ -64,18 +68,22 @@ void mt_subject_warn_overridden(const mt_subject *s, int c);
 const char *mt_subject_configuration(const mt_subject *s, int c);
 
 /* Facts about the modes that several commands tell. */
-/* 1-based index of the vibration mode at position pos; 0 for rigid-body, unstable and undecided modes, and beside an undecided one. */
+/* 1-based index of the vibration mode at position pos; 0 for rigid-body, unstable and undecided
+ * modes, and beside an undecided one. */
 int mt_modes_index(const mt_modes *modes, int pos);
 const char *mt_mode_kind_name(mt_mode_kind kind);
-/* How many positions to show where `count` vibration modes are wanted (0: all): rigid-body and unstable ones come on top. */
+/* How many positions to show where `count` vibration modes are wanted (0: all): rigid-body and
+ * unstable ones come on top. */
 int mt_modes_shown(const mt_modes *modes, int count);
 /* Doubts and facts of a configuration, one line each, before its table. */
 void mt_cli_print_doubts(const mt_doubt_list *list, mt_text *out);
 /* Names within a text of quoted ones ("\"a\", \"b\""), as items of an open JSON list. */
 void mt_cli_json_names(mt_json_writer *w, const char *quoted);
-/* Member "dead_centre" of an open object: null, or how far away one is and whose equations depend on each other there. */
+/* Member "dead_centre" of an open object: null, or how far away one is and whose equations
+ * depend on each other there. */
 void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness);
-/* The name that the model gives to vibration mode `index` of configuration c; NULL. Only at the original design. */
+/* The name that the model gives to vibration mode `index` of configuration c; NULL. Only at the
+ * original design. */
 const char *mt_mode_name(const mt_subject *s, int c, int index);
 
 #endif

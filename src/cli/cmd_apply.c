@@ -2,9 +2,11 @@
 /*
  * modetune apply: the model's own text with the recommended numbers put in.
  *
- * A result names its model relative to the study's folder and holds its SHA-256, but no path of this machine. So the model is looked for where it may be:
- * from the study that timing.json beside the result names, from the result's folder and those above it, from the current folder and its "studies". Only the very bytes
- * that were solved are taken; --model takes a file as it is, with a warning where it has changed.
+ * A result names its model relative to the study's folder and holds its SHA-256, but no path of
+ * this machine. So the model is looked for where it may be: from the study that timing.json
+ * beside the result names, from the result's folder and those above it, from the current folder
+ * and its "studies". Only the very bytes that were solved are taken; --model takes a file as it
+ * is, with a warning where it has changed.
  */
 #include "modetune/version.h"
 
@@ -38,8 +40,8 @@ typedef struct quest {
     const char *root;
     mt_file file;
     char *path; /* heap; NULL: not found yet */
-    mt_status
-        failed; /* memory is out, or what may be it could not be read: the first such failure */
+    /* memory is out, or what may be it could not be read: the first such failure */
+    mt_status failed;
     mt_err why;
 } quest;
 
@@ -68,7 +70,8 @@ static void try_from(quest *q, const char *naming)
     free(path);
 }
 
-/* The study's path that `run` left in timing.json beside the result; empty where there is none. Fails: MT_E_MEMORY. */
+/* The study's path that `run` left in timing.json beside the result; empty where there is none.
+ * Fails: MT_E_MEMORY. */
 static mt_status study_of(const char *result_path, mt_text *study)
 {
     char *const path = mt_file_join(result_path, "timing.json");
@@ -172,7 +175,8 @@ static int by_place(const void *a, const void *b)
     return (x->begin > y->begin) - (x->begin < y->begin);
 }
 
-/* Where each value goes. The result is a file, too: it may name what is not there (that it names nothing twice its reader has seen). */
+/* Where each value goes. The result is a file, too: it may name what is not there (that it
+ * names nothing twice its reader has seen). */
 static mt_status find_places(const mt_recommendation *r, const mt_json *doc, const char *path,
                              replacement *list, mt_err *err)
 {

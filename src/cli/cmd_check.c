@@ -97,7 +97,8 @@ static mt_status examine_model(const mt_model *model, mt_doubt_list *found, mt_e
     return MT_OK;
 }
 
-/* What the analysis says besides the diagnostics of loading, which hold the doubts about single numbers already. */
+/* What the analysis says besides the diagnostics of loading, which hold the doubts about single
+ * numbers already. */
 static void add_messages(const mt_doubt_list *found, const char *path, mt_text *messages)
 {
     mt_text text = {.s = NULL};

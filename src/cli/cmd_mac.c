@@ -8,8 +8,9 @@
 #include "cli/shapes.h"
 #include "report/table.h"
 
-/* Two different modes of one model whose MAC at the sensors is above this look the same there: a correlation with either says little about which. Common practice
- * in modal testing calls 0.9 a correlation (Ewins, Modal Testing, section on MAC). */
+/* Two different modes of one model whose MAC at the sensors is above this look the same there:
+ * a correlation with either says little about which. Common practice in modal testing calls 0.9
+ * a correlation (Ewins, Modal Testing, section on MAC). */
 static const double LOOKS_THE_SAME = 0.9;
 
 enum { DIGITS = 6, MAC_DIGITS = 5, PAIR_TEXT = 32, NOTE_TEXT = 160 };
@@ -122,7 +123,8 @@ static mt_status correlate(comparison *c, int count, mt_err *err)
     return mt_mac_pair(c->a.n, c->b.n, c->mac, c->pair, &c->mem, err);
 }
 
-/* Modes of one side that the sensors cannot tell apart, and other doubts, as sentences; emit writes one. */
+/* Modes of one side that the sensors cannot tell apart, and other doubts, as sentences; emit
+ * writes one. */
 typedef void (*emit_note)(void *context, const char *text);
 
 static mt_status note_alike(comparison *c, const side *x, emit_note emit, void *context,

@@ -11,7 +11,8 @@
 #include "report/table.h"
 
 enum { HZ_DIGITS = 6, RATIO_DIGITS = 2 };
-/* A table on paper tells the error of a frequency from this part of it on: the digits that it prints. */
+/* A table on paper tells the error of a frequency from this part of it on: the digits that it
+ * prints. */
 static const double TOLD_ERROR = 1e-6;
 
 /* One configuration, ready to be written. */
@@ -183,7 +184,8 @@ static void fill_table(mt_table *t, const view *v, bool csv)
     }
 }
 
-/* Rows of channels, columns of modes: a mechanism has more sensors than a page has room beside. */
+/* Rows of channels, columns of modes: a mechanism has more sensors than a page has room
+ * beside. */
 static void print_shapes(const view *v, mt_text *out)
 {
     mt_table t = mt_table_default();

@@ -113,7 +113,8 @@ static int run_one(const job *j, mt_json_writer *w, mt_text *out)
     return mt_exit_worse(outcome(j, verify), mt_save(j->args, j->path, j->result, j->seconds));
 }
 
-/* Which studies an interrupt leaves out from number `first` on, as an error; heap. NULL: out of memory, which is said. */
+/* Which studies an interrupt leaves out from number `first` on, as an error; heap. NULL: out of
+ * memory, which is said. */
 static char *words_about(const mt_args *args, int first)
 {
     mt_text t = {.s = NULL};
@@ -128,7 +129,8 @@ static char *words_about(const mt_args *args, int first)
     return t.s;
 }
 
-/* One study: read (a signal then ends the program), solved and used (where it may, a signal ends the search), told. */
+/* One study: read (a signal then ends the program), solved and used (where it may, a signal
+ * ends the search), told. */
 static int one_study(const mt_args *args, int i, bool stops, mt_json_writer *w, mt_text *out,
                      use_answer use)
 {
@@ -149,7 +151,8 @@ static int one_study(const mt_args *args, int i, bool stops, mt_json_writer *w, 
     return mt_exit_worse(code, json ? MT_EXIT_DONE : mt_terminal_put(out));
 }
 
-/* All studies in turn. Text leaves as it comes; JSON is one document (a list where several studies are given). */
+/* All studies in turn. Text leaves as it comes; JSON is one document (a list where several
+ * studies are given). */
 static int for_each_study(const mt_args *args, mt_text *out, bool stops, use_answer use)
 {
     const bool json = args->format == MT_FORMAT_JSON;

@@ -145,7 +145,8 @@ static mt_status prepare_modes(job *j, int wanted, mt_err *err)
     return MT_OK;
 }
 
-/* Position of the caller's drive that is nearest to the reference position: every system is made there. */
+/* Position of the caller's drive that is nearest to the reference position: every system is
+ * made there. */
 static double nearest_position(const mt_sweep_request *r)
 {
     double best = r->positions[0];

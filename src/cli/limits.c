@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * How much memory the program may have. The system counts (RLIMIT_DATA: private writable memory, whoever asks for it), so that nothing is missed; a request beyond
- * is refused and ends as MT_E_MEMORY. What is there already does not count: the buffers of OpenBLAS are address space above all.
+ * How much memory the program may have. The system counts (RLIMIT_DATA: private writable
+ * memory, whoever asks for it), so that nothing is missed; a request beyond is refused and ends
+ * as MT_E_MEMORY. What is there already does not count: the buffers of OpenBLAS are address
+ * space above all.
  */
 #include "cli/limits.h"
 
@@ -49,8 +51,8 @@ mt_status mt_limits_read_size(const char *text, uint64_t *bytes, mt_err *err)
     return MT_OK;
 }
 
-static uint64_t granted =
-    0; /* what the limit that was set leaves to the program; 0: none was */
+/* what the limit that was set leaves to the program; 0: none was */
+static uint64_t granted = 0;
 
 #ifndef WITH_SANITIZER
 /* The number in a file of one number; 0 where there is none. */
@@ -87,7 +89,8 @@ static uint64_t share_of_machine(void)
     return all / 2;
 }
 
-/* Bytes that the process has now, as RLIMIT_DATA counts; and the stacks of workers that are to come. */
+/* Bytes that the process has now, as RLIMIT_DATA counts; and the stacks of workers that are to
+ * come. */
 static uint64_t have_already(int workers)
 {
     enum { DATA_PAGES = 5 }; /* the sixth number of statm */

@@ -8,9 +8,11 @@
 extern char **environ;
 
 /*
- * OpenBLAS starts its threads when it is loaded, as many as there are processors, each of which asks for a buffer until it has one: with little
- * address space for ever. Only OPENBLAS_NUM_THREADS prevents that. What stands in .preinit_array runs before the constructors of all
- * libraries: there it is loaded with an environment that says so, and has its own other settings (OPENBLAS_CORETYPE).
+ * OpenBLAS starts its threads when it is loaded, as many as there are processors, each of which
+ * asks for a buffer until it has one: with little address space for ever. Only
+ * OPENBLAS_NUM_THREADS prevents that. What stands in .preinit_array runs before the
+ * constructors of all libraries: there it is loaded with an environment that says so, and has
+ * its own other settings (OPENBLAS_CORETYPE).
  */
 static void load_blas(int argc, char *argv[], char *envp[])
 {

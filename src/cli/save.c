@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What `run` leaves behind: a folder per study. */
-/* realpath is in POSIX.1-2008, but the C library shows it only with X/Open: asked for before any header. */
+/* realpath is in POSIX.1-2008, but the C library shows it only with X/Open: asked for before
+ * any header. */
 #define _XOPEN_SOURCE 700 /* NOLINT(cert-dcl37-c,cert-dcl51-cpp): for the system, not ours */
 
 #include "cli/save.h"
@@ -18,7 +19,8 @@
 
 static const char DEFAULT_FOLDER[] = "results";
 
-/* How much of the file name names the folder: all but ".json", unless that would leave no name, or one that leads out of the folder for results. */
+/* How much of the file name names the folder: all but ".json", unless that would leave no name,
+ * or one that leads out of the folder for results. */
 static size_t name_length(const char *name)
 {
     const size_t length = strlen(name);
@@ -56,7 +58,8 @@ static bool is_same_folder(const char *a, const char *b)
                                  x.st_ino == y.st_ino);
 }
 
-/* Names of folders, not files: they cannot be studies, and their results would have no folder of their own. */
+/* Names of folders, not files: they cannot be studies, and their results would have no folder
+ * of their own. */
 static bool is_no_file(const char *path)
 {
     const char *const slash = strrchr(path, '/');

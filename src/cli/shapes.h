@@ -4,7 +4,8 @@
 
 #include "analysis/analysis.h"
 
-/* Shapes of modes where they can be seen: at the sensors, or, without any, as motions of the bodies. */
+/* Shapes of modes where they can be seen: at the sensors, or, without any, as motions of the
+ * bodies. */
 typedef struct mt_shapes {
     bool sensors;
     int n;             /* channels; 0: nothing */

@@ -103,7 +103,8 @@ static mt_status find_configuration(mt_subject *s, const char *name, mt_err *err
     return unknown("configuration", name, names, n, err);
 }
 
-/* "k=1.1*k": the expression is evaluated at the file's own values, so that order does not matter. */
+/* "k=1.1*k": the expression is evaluated at the file's own values, so that order does not
+ * matter. */
 static mt_status read_set(mt_subject *s, const char *text, const char *const *names,
                           mt_err *err)
 {

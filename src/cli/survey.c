@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- *     dlambda/dp = y^T (dK - lambda dM) y,   f = sqrt(lambda) / (2 pi),   df/dp = (dlambda/dp) / (8 pi^2 f).
+ *     dlambda/dp = y^T (dK - lambda dM) y,   f = sqrt(lambda) / (2 pi),
+ *         df/dp = (dlambda/dp) / (8 pi^2 f).
  *
- * Where joints are redundant at the present value of a parameter only, frequencies jump there: no derivative (mt_linear_independence).
+ * Where joints are redundant at the present value of a parameter only, frequencies jump there:
+ * no derivative (mt_linear_independence).
  *
- * A parameter that is made of others ("EI": "E*I") must not be an input together with them, or it would no longer follow: it gets an analysis of its own.
+ * A parameter that is made of others ("EI": "E*I") must not be an input together with them, or
+ * it would no longer follow: it gets an analysis of its own.
  */
 #include "cli/survey.h"
 
@@ -115,7 +118,8 @@ static mt_status choose_modes(mt_survey *v, const mt_modes *m, int wanted, mt_er
     return MT_OK;
 }
 
-/* Derivatives of the cluster that begins at position first with respect to input p: its directional values, ascending. */
+/* Derivatives of the cluster that begins at position first with respect to input p: its
+ * directional values, ascending. */
 static mt_status cluster_values(mt_analysis *a, int p, int first, int size, double *dlambda,
                                 mt_err *err)
 {
@@ -157,7 +161,8 @@ static mt_status differentiate(mt_survey *v, mt_analysis *a, int p, int k, mt_er
     return MT_OK;
 }
 
-/* No derivative where the position has none; else from the first mode on that is blocked: those above it are counted anew. */
+/* No derivative where the position has none; else from the first mode on that is blocked: those
+ * above it are counted anew. */
 static mt_status leave_out(mt_survey *v, mt_analysis *a, int p, int k, mt_err *err)
 {
     double *const out = v->per_unit + ((ptrdiff_t)k * v->room);

@@ -5,8 +5,9 @@
 #include "cli/cli.h"
 
 /*
- * How far parameters move the frequencies of one configuration: exact derivatives of the first vibration modes.
- * At repeated modes no single one has a derivative; there, directional values are given (eigenvalues of Y^T (dK - lambda dM) Y over the cluster), ascending.
+ * How far parameters move the frequencies of one configuration: exact derivatives of the first
+ * vibration modes. At repeated modes no single one has a derivative; there, directional values
+ * are given (eigenvalues of Y^T (dK - lambda dM) Y over the cluster), ascending.
  */
 typedef struct mt_survey {
     const mt_subject *s;
@@ -22,12 +23,13 @@ typedef struct mt_survey {
     double *hz;       /* [modes] */
     bool *repeated;   /* [modes] */
     int room;         /* leading dimension of per_unit */
-    double
-        *per_unit; /* room x n: Hz per unit of the parameter; NaN where it has no derivative */
+    /* room x n: Hz per unit of the parameter; NaN where it has no derivative */
+    double *per_unit;
     mt_independence *independence; /* [n] why not */
 } mt_survey;
 
-/* `parameters`: "A,B", or NULL for all that are not made of others. v zeroed before; mt_survey_free in any case. */
+/* `parameters`: "A,B", or NULL for all that are not made of others. v zeroed before;
+ * mt_survey_free in any case. */
 mt_status mt_survey_take(const mt_subject *s, int c, const char *parameters, int modes,
                          mt_survey *v, mt_err *err);
 void mt_survey_free(mt_survey *v);

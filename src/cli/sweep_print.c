@@ -8,7 +8,8 @@
 
 enum { DIGITS = 6, HOLD_DIGITS = 4, HEADING = 300 };
 
-/* Positions, ratios and forces are rounding below this [rad, m, 1, N, N m]: for people that is 0. */
+/* Positions, ratios and forces are rounding below this [rad, m, 1, N, N m]: for people that is
+ * 0. */
 static const double ROUNDING = 1e-12;
 
 static double tidy(double x)

@@ -28,7 +28,8 @@ static const char YELLOW[] = "\033[1;33m";
 static const char PLAIN[] = "\033[0m";
 
 #define NS_PER_S 1000000000LL
-/* How long what was found may be made ready after the signal; a user waits half a second at most. */
+/* How long what was found may be made ready after the signal; a user waits half a second at
+ * most. */
 #define MAKE_READY_NS (NS_PER_S / 4)
 
 static atomic_llong stop_ns; /* when the first signal was noted; 0: none */
@@ -110,7 +111,8 @@ static bool put(FILE *to, const char *s, size_t n)
     return to == stdout ? write_out(s, n) : fwrite(s, 1, n, to) == n;
 }
 
-/* The one way out: what a terminal would obey is made visible. `lines`: the text has lines of its own. */
+/* The one way out: what a terminal would obey is made visible. `lines`: the text has lines of
+ * its own. */
 static bool show(FILE *to, const char *s, size_t n, bool lines)
 {
     bool ok = true;
@@ -219,7 +221,7 @@ static void diagnostic(const char *text, size_t length)
         const char *word;
         const char *colour;
     } words[] = {
-        {  " error: ",    RED},
+        {" error: ", RED},
         {" warning: ", YELLOW},
     };
     const bool coloured = mt_terminal_colour(STDERR_FILENO);
@@ -277,7 +279,8 @@ static long long now_ns(void)
     return ((long long)now.tv_sec * NS_PER_S) + (long long)now.tv_nsec;
 }
 
-/* These call only what a signal handler may. SA_RESETHAND: a signal raised in them is the system's to answer, once they return. */
+/* These call only what a signal handler may. SA_RESETHAND: a signal raised in them is the
+ * system's to answer, once they return. */
 static void note(int number)
 {
     long long none = 0;
@@ -293,7 +296,8 @@ static void say_and_end(int number)
     (void)raise(number);
 }
 
-/* Where the caller of the program had the signal ignored (a job in the background), it stays ignored. */
+/* Where the caller of the program had the signal ignored (a job in the background), it stays
+ * ignored. */
 static void set_action(int number, void (*to)(int number))
 {
     struct sigaction old;

@@ -22,18 +22,23 @@ bool mt_exit_without_memory(void);
 int mt_exit_worse(int a, int b);
 
 /*
- * Whatever leaves the program by standard output or error leaves through here, and what a terminal would obey (control characters, marks of direction) is made
- * visible, see base/visible.h: the colours and the wiping of the line of progress are the only ones.
+ * Whatever leaves the program by standard output or error leaves through here, and what a
+ * terminal would obey (control characters, marks of direction) is made visible, see
+ * base/visible.h: the colours and the wiping of the line of progress are the only ones.
  */
 
-/* Everything that is written to standard output is collected in a text and leaves through here; the text is empty afterwards. A reader that has gone
- * (EPIPE) is not complained about, but is a failure, too. Returns MT_EXIT_DONE or MT_EXIT_SYSTEM. */
+/* Everything that is written to standard output is collected in a text and leaves through here;
+ * the text is empty afterwards. A reader that has gone (EPIPE) is not complained about, but is
+ * a failure, too. Returns MT_EXIT_DONE or MT_EXIT_SYSTEM. */
 int mt_terminal_put(mt_text *out);
-/* What is being collected is not whole, memory being out: the next mt_terminal_put throws it away. */
+/* What is being collected is not whole, memory being out: the next mt_terminal_put throws it
+ * away. */
 void mt_terminal_drop(void);
-/* The last word of standard output: a network disk may refuse what was written only now. As mt_terminal_put. */
+/* The last word of standard output: a network disk may refuse what was written only now. As
+ * mt_terminal_put. */
 int mt_terminal_close(void);
-/* At the start: a descriptor of 0 to 2 that is closed must not become one of a file, which messages would then go into. It is opened so that using it fails. */
+/* At the start: a descriptor of 0 to 2 that is closed must not become one of a file, which
+ * messages would then go into. It is opened so that using it fails. */
 void mt_terminal_open(void);
 /* To standard error: "modetune: error: ..." */
 void mt_terminal_error(const char *fmt, ...) MT_PRINTF(1, 2);
@@ -47,19 +52,23 @@ void mt_terminal_progress(bool quiet, const char *text);
 /* Is standard output (descriptor 1) or error (2) a terminal where colour is welcome? */
 bool mt_terminal_colour(int descriptor);
 
-/* SIGPIPE and SIGXFSZ become errors of writing. SIGINT and SIGTERM stay as the system has them, and end the program, but while they are held. */
+/* SIGPIPE and SIGXFSZ become errors of writing. SIGINT and SIGTERM stay as the system has them,
+ * and end the program, but while they are held. */
 void mt_terminal_ignore_signals(void);
 /*
- * From here to the release the first SIGINT or SIGTERM is only noted, for work that ends well by itself (mt_terminal_wish) or that must not be left half done; the second ends the program. Where the program was started
- * with one of them ignored, it stays so.
+ * From here to the release the first SIGINT or SIGTERM is only noted, for work that ends well
+ * by itself (mt_terminal_wish) or that must not be left half done; the second ends the program.
+ * Where the program was started with one of them ignored, it stays so.
  */
 void mt_terminal_hold_signals(void);
 void mt_terminal_release_signals(void);
 /* Has one been noted since the program began? */
 bool mt_terminal_is_stopped(void);
-/* An mt_wish, the stop of a solve: to finish, and, a moment after the signal, to end. Any thread. */
+/* An mt_wish, the stop of a solve: to finish, and, a moment after the signal, to end. Any
+ * thread. */
 int mt_terminal_wish(void *unused);
-/* One line (cut where it is too long) that is written to standard error when a signal ends the program from now on; NULL: none any more. Not while signals are held. */
+/* One line (cut where it is too long) that is written to standard error when a signal ends the
+ * program from now on; NULL: none any more. Not while signals are held. */
 void mt_terminal_last_words(const char *text);
 /* Seconds of a clock that only runs forward. */
 double mt_terminal_seconds(void);

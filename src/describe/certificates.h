@@ -7,9 +7,11 @@
 /* What the answer may claim as proven. infeasible: it is a proof that no design exists. */
 mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *result,
                                       bool *infeasible, mt_err *err);
-/* What is known of the assignments that no solution has, to stand in brackets; NULL: no memory. */
+/* What is known of the assignments that no solution has, to stand in brackets; NULL: no
+ * memory. */
 const char *mt_describe_gaps_left(const mt_gap_result *gaps, mt_arena *mem);
-/* After a search without bands that met no goal fully: what each limit can reach, and whether that is a proof. */
+/* After a search without bands that met no goal fully: what each limit can reach, and whether
+ * that is a proof. */
 mt_status mt_describe_limit_certificates(mt_problem *p, mt_arena *mem, mt_result *result,
                                          bool *infeasible, mt_err *err);
 

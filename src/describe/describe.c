@@ -6,11 +6,13 @@
 
 #include "problem/robust.h"
 
-/* The objective as the search had it and as it is recomputed may differ by this much, relatively: both are good to about n eps. Roots of squares, so that an
- * exact identification (f of 1e-24) is not judged by its rounding. */
+/* The objective as the search had it and as it is recomputed may differ by this much,
+ * relatively: both are good to about n eps. Roots of squares, so that an exact identification
+ * (f of 1e-24) is not judged by its rounding. */
 static const double SAME_OBJECTIVE = 1e-8;
-/* A KKT residual (relative to the objective's gradient) above this is told. Along the way that is left, of at most a few in ln x, it
- * costs less than a thousandth of the objective; Newton's iteration reaches 1e-9 wherever the modes are simple. */
+/* A KKT residual (relative to the objective's gradient) above this is told. Along the way that
+ * is left, of at most a few in ln x, it costs less than a thousandth of the objective; Newton's
+ * iteration reaches 1e-9 wherever the modes are simple. */
 static const double KKT_TOLD = 1e-4;
 
 mt_status mt_describe_warn(mt_result *result, mt_err *err, const char *fmt, ...)
@@ -76,7 +78,8 @@ static double shown(const mt_problem *p, int k, double f)
     return type == MT_OBJECTIVE_CHANGE || type == MT_OBJECTIVE_MISFIT ? sqrt(2.0 * f) : f;
 }
 
-/* The objective at this design. The fresh problem has no coordinate for the least clearance: it is looked up among the modes. */
+/* The objective at this design. The fresh problem has no coordinate for the least clearance: it
+ * is looked up among the modes. */
 static double aim_value(const mt_problem *fresh, int k)
 {
     double least = HUGE_VAL;
@@ -97,8 +100,8 @@ static void describe_score(const mt_problem *fresh, mt_recommendation *rec)
         rec->misfit = mt_norm2(fresh->n_res, fresh->r);
     }
     const bool clearance = fresh->aims[0].type == MT_OBJECTIVE_CLEARANCE;
-    const double f =
-        aim_value(fresh, 0); /* of a clearance -ln of a ratio: shown in percent of it */
+    /* of a clearance -ln of a ratio: shown in percent of it */
+    const double f = aim_value(fresh, 0);
     const double score = clearance ? 100.0 * expm1(-f) : shown(fresh, 0, f);
     rec->score = none ? nan("") : score;
     rec->score_unit = fresh->aims[0].type == MT_OBJECTIVE_MASS ? "kg" : clearance ? "%" : "";
@@ -115,7 +118,8 @@ static mt_status compare(const mt_problem *fresh, const mt_design *design, mt_re
     const bool other_kind = /* a clearance that is missed is that of the kind searched */
         fresh->aims[design->stage].type == MT_OBJECTIVE_CLEARANCE && !design->found->feasible;
     if (other_kind || fabs(f - had) <= SAME_OBJECTIVE * fmax(fabs(f), 1.0) || searched_within) {
-        return MT_OK; /* within the tolerances more was found than at the corners of the search */
+        /* within the tolerances more was found than at the corners of the search */
+        return MT_OK;
     }
     return mt_describe_warn(result, err,
                             "recommendation %d: the search ended with an objective of %.12g, "
@@ -181,6 +185,6 @@ mt_status mt_describe_design(mt_problem *p, const mt_design *design,
 
 bool mt_describe_is_optimum(const mt_recommendation *rec)
 {
-    return !(rec->kkt_residual >
-             KKT_TOLD); /* NaN: nothing is free, or the search was over a catalogue */
+    /* NaN: nothing is free, or the search was over a catalogue */
+    return !(rec->kkt_residual > KKT_TOLD);
 }

@@ -6,8 +6,9 @@
 #include "result/result.h"
 
 /*
- * From a design to what is reported of it. Every number is recomputed here from scratch: systems, analyses and memory are new, made at that design, and compared with what the
- * search used (a difference beyond rounding becomes a warning).
+ * From a design to what is reported of it. Every number is recomputed here from scratch:
+ * systems, analyses and memory are new, made at that design, and compared with what the search
+ * used (a difference beyond rounding becomes a warning).
  */
 
 /* What the search knew of a design; zeroed for the original one. */
@@ -16,49 +17,61 @@ typedef struct mt_design {
     const mt_nlp_solution *found; /* NULL: the original design */
     int stage;                    /* the objective that found->f belongs to */
     int rank;
-    bool
-        cut; /* the search was interrupted: what it knew of the design is not used, and a better one may be near */
+    /* the search was interrupted: what it knew of the design is not used, and a better one may
+     * be near */
+    bool cut;
     const struct mt_discrete_report *discrete; /* NULL: no catalogue was searched */
     const struct mt_gap_result *gaps;          /* NULL: no gap assignments were searched */
     const int *below;                          /* its assignment; NULL likewise */
 } mt_design;
 
-/* Fill rec (lists and texts in result->mem; names are the study's until mt_describe_own). baseline: NULL while the baseline itself is described. A design where goals have no
- * value (an unstable configuration) is described as far as it goes, with a warning. Fails: MT_E_MEMORY, MT_E_INTERNAL, failures of the fresh analyses. */
+/* Fill rec (lists and texts in result->mem; names are the study's until mt_describe_own).
+ * baseline: NULL while the baseline itself is described. A design where goals have no value (an
+ * unstable configuration) is described as far as it goes, with a warning. Fails: MT_E_MEMORY,
+ * MT_E_INTERNAL, failures of the fresh analyses. */
 mt_status mt_describe_design(mt_problem *p, const mt_design *design,
                              const mt_recommendation *baseline, mt_result *result,
                              mt_recommendation *rec, mt_err *err);
-/* Parts of it. describe_goals.c: place and solve everything of fresh at t and judge every goal. */
+/* Parts of it. describe_goals.c: place and solve everything of fresh at t and judge every
+ * goal. */
 mt_status mt_describe_goals(mt_problem *fresh, const mt_design *design, mt_result *result,
                             mt_recommendation *rec, mt_err *err);
-/* describe_bands.c: how many goals the avoid goals are, one per configuration; judge them into rec->goals[rec->n_goals...] once the views of fresh are solved. A goal's value is the
- * clearance that comes nearest to its margin (or falls short of it most), in percent of the band's edge, its demand that margin. */
+/* describe_bands.c: how many goals the avoid goals are, one per configuration; judge them into
+ * rec->goals[rec->n_goals...] once the views of fresh are solved. A goal's value is the
+ * clearance that comes nearest to its margin (or falls short of it most), in percent of the
+ * band's edge, its demand that margin. */
 int mt_describe_avoid_count(const mt_problem *p);
 mt_status mt_describe_avoid_goals(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
                                   mt_err *err);
-/* describe_motion.c: how many families of positions of one drive keep clear of bands; each judged over its motion as one more goal, and as a row of rec->motions. After the views of fresh
- * have been solved; sets fresh->motion_room. */
+/* describe_motion.c: how many families of positions of one drive keep clear of bands; each
+ * judged over its motion as one more goal, and as a row of rec->motions. After the views of
+ * fresh have been solved; sets fresh->motion_room. */
 int mt_describe_motion_count(const mt_problem *p);
 mt_status mt_describe_motions(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
                               mt_err *err);
-/* Clearance of each mode from its neighbouring bands, modes below each band, the least clearance. Nothing of an unstable configuration. */
+/* Clearance of each mode from its neighbouring bands, modes below each band, the least
+ * clearance. Nothing of an unstable configuration. */
 mt_status mt_describe_clearances(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
                                  mt_err *err);
 /* Vibration modes of a view up to the first above its highest band; 0 without bands. */
 int mt_describe_modes_in_reach(const mt_problem *p, int view);
 /* The margin that the edge of the band nearest to hz has, in percent of the edge. */
 double mt_describe_margin_percent(const mt_band *band, double hz);
-/* describe_robust.c, nothing without tolerances: what modes and expressions do over the tolerances of fresh's design, once its views are solved. */
+/* describe_robust.c, nothing without tolerances: what modes and expressions do over the
+ * tolerances of fresh's design, once its views are solved. */
 mt_status mt_describe_ranges(mt_problem *fresh, mt_err *err);
-/* Judge a demand by its worst value, which goes into g; *violation (relative) and *percent (of what is asked), of the design itself before, become those of the worst. */
+/* Judge a demand by its worst value, which goes into g; *violation (relative) and *percent (of
+ * what is asked), of the design itself before, become those of the worst. */
 mt_status mt_describe_worst(mt_problem *fresh, const mt_demand *d, mt_result *result,
                             mt_result_goal *g, double *violation, double *percent, mt_err *err);
-/* How near a mode that is at hz comes to a band, or how deep inside it; *at: [n] where. NaN and NULL without tolerances. */
+/* How near a mode that is at hz comes to a band, or how deep inside it; *at: [n] where. NaN and
+ * NULL without tolerances. */
 double mt_describe_worst_hz(const mt_problem *fresh, int view, int mode, const mt_band *band,
                             double hz, const double **at);
 /* describe_track.c: vibration index of the mode at pos; 0 for -1. */
 int mt_describe_index(const mt_modes *modes, int pos);
-/* "ambiguous between modes 2 and 3", "lost: ..."; "" where the named mode is told. NULL: memory. */
+/* "ambiguous between modes 2 and 3", "lost: ..."; "" where the named mode is told. NULL:
+ * memory. */
 const char *mt_describe_identity(const mt_view *view, int named, mt_arena *mem);
 /* Is it certain enough which mode the demand means? A frequency that all candidates have is. */
 bool mt_describe_is_told(const mt_view *view, const mt_demand *d);
@@ -67,15 +80,19 @@ mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
                                   const mt_recommendation *baseline, mt_result *result,
                                   mt_recommendation *rec, mt_err *err);
 /*
- * describe_verify.c: how a study's reading of a configuration at one design differs from that of a fresh analysis of it (solved with its own number of rigid-body modes), beyond the error bounds of both:
- * a sentence; "": they agree. NULL: memory.
+ * describe_verify.c: how a study's reading of a configuration at one design differs from that
+ * of a fresh analysis of it (solved with its own number of rigid-body modes), beyond the error
+ * bounds of both: a sentence; "": they agree. NULL: memory.
  */
 const char *mt_describe_disagreement(const mt_modes *study, const mt_modes *fresh,
                                      const char *configuration, mt_arena *mem);
-/* describe_withdraw.c: does a fresh analysis disagree at any design of the result? Then its certificates and tolerance boxes are withdrawn, and such a design is graded "not verified". */
+/* describe_withdraw.c: does a fresh analysis disagree at any design of the result? Then its
+ * certificates and tolerance boxes are withdrawn, and such a design is graded "not
+ * verified". */
 bool mt_describe_is_doubted(const mt_result *result);
 mt_status mt_describe_withdraw(mt_result *result, mt_err *err);
-/* tolerance_box.c: inertia counts confirm the bands of a feasible design; its tolerance box, where the modes can be enclosed. After the clearances. */
+/* tolerance_box.c: inertia counts confirm the bands of a feasible design; its tolerance box,
+ * where the modes can be enclosed. After the clearances. */
 mt_status mt_describe_tolerance(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
                                 mt_err *err);
 /* describe_undetermined.c: directions that the goals do not settle. */
@@ -87,20 +104,23 @@ mt_status mt_describe_baseline_reasons(const mt_problem *p, mt_result *result, m
 mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
                               const mt_nlp_result *search, mt_result *result,
                               mt_recommendation *rec, mt_err *err);
-/* Judge the published list: x_recommended NULL where there is none (then the original design stands in). Fails with the entry's address in the text (published.c). */
+/* Judge the published list: x_recommended NULL where there is none (then the original design
+ * stands in). Fails with the entry's address in the text (published.c). */
 mt_status mt_describe_published(mt_problem *p, const double *x_original,
                                 const double *x_recommended, mt_result *result, mt_err *err);
 /* Versions, seed, inputs, names of the variables (describe_run.c). */
 mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err);
 /* Rotors and machines of the avoid goals (describe_excitations.c). */
 mt_status mt_describe_excitations(const mt_study *study, mt_result *result, mt_err *err);
-/* Copy every text that study and problem lent into the result, which may outlive them (describe_run.c). */
+/* Copy every text that study and problem lent into the result, which may outlive them
+ * (describe_run.c). */
 mt_status mt_describe_own(const mt_study *study, mt_result *result, mt_err *err);
 /* Add a warning (formatted) to the result. */
 mt_status mt_describe_warn(mt_result *result, mt_err *err, const char *fmt, ...)
     MT_PRINTF(3, 4);
 
-/* Is the design stationary for its objective, as far as that was asked? A residual above this is told. */
+/* Is the design stationary for its objective, as far as that was asked? A residual above this
+ * is told. */
 bool mt_describe_is_optimum(const mt_recommendation *rec);
 
 #endif

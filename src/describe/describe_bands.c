@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bands in results: every avoid goal judged, the kind of the design, and how far each mode stays from its neighbouring bands. */
+/* Bands in results: every avoid goal judged, the kind of the design, and how far each mode
+ * stays from its neighbouring bands. */
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +11,8 @@
 static const double MET_SLACK = 1e-6;
 static const double PERCENT = 100.0;
 
-/* Nearer to an edge than this, in percent of it, is on it: frequencies carry relative rounding of about 1e-14. */
+/* Nearer to an edge than this, in percent of it, is on it: frequencies carry relative rounding
+ * of about 1e-14. */
 static const double ON_EDGE_PERCENT = 1e-9;
 
 /* The ways out of a band with its margin, in percent of the edges without it. */
@@ -38,7 +40,8 @@ static double margin(const mt_band *band, bool lower)
     return beyond(band, lower, lower ? band->lower_hz : band->upper_hz);
 }
 
-/* Is the lower edge the one that a mode at hz is judged by? It is the nearer one; where a band has been cut off to a point, the one that is left sooner. */
+/* Is the lower edge the one that a mode at hz is judged by? It is the nearer one; where a band
+ * has been cut off to a point, the one that is left sooner. */
 static bool by_lower_edge(const mt_band *band, double hz)
 {
     if (!(band->base_lower_hz > 0.0)) {
@@ -50,7 +53,8 @@ static bool by_lower_edge(const mt_band *band, double hz)
                                                  : way_down(band, hz) <= way_up(band, hz);
 }
 
-/* What a mode at hz is short of being clear of the band with its margin, by the shorter way; 0 where it is. */
+/* What a mode at hz is short of being clear of the band with its margin, by the shorter way; 0
+ * where it is. */
 static double missing_percent(const mt_band *band, double hz)
 {
     return fmax(fmin(way_down(band, hz), way_up(band, hz)), 0.0);
@@ -72,7 +76,8 @@ double mt_describe_margin_percent(const mt_band *band, double hz)
     return margin(band, by_lower_edge(band, hz));
 }
 
-/* How a mode at hz stands to the edge that a goal judges it by: inside a band with its margin the one that is left sooner, else the nearer one. Negative within the base. */
+/* How a mode at hz stands to the edge that a goal judges it by: inside a band with its margin
+ * the one that is left sooner, else the nearer one. Negative within the base. */
 static double standing(const mt_band *band, double hz, double *asked)
 {
     const bool inside = missing_percent(band, hz) > 0.0;
@@ -107,7 +112,8 @@ static const char *avoid_text(const mt_goal *g, const char *configuration, mt_ar
                                                              : up_to);
 }
 
-/* The clearance that comes nearest to its margin, or falls short of it most; and that margin. NaN without bands or modes. Returns by how much bands are missed. */
+/* The clearance that comes nearest to its margin, or falls short of it most; and that margin.
+ * NaN without bands or modes. Returns by how much bands are missed. */
 static double tightest(const mt_bands *bands, const mt_modes *modes, mt_result_goal *g)
 {
     double least = HUGE_VAL;

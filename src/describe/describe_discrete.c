@@ -4,7 +4,8 @@
 
 #include <math.h>
 
-/* Pure enumeration proves; a continuous search within each combination is sampled, a heuristic all the more. */
+/* Pure enumeration proves; a continuous search within each combination is sampled, a heuristic
+ * all the more. */
 static bool proves(const mt_discrete_report *report)
 {
     return report->all && !report->mixed;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What turns, and how often per turn it excites: the lines of a Campbell diagram, one per rotor and machine of an avoid goal. */
+/* What turns, and how often per turn it excites: the lines of a Campbell diagram, one per rotor
+ * and machine of an avoid goal. */
 #include <string.h>
 
 #include "describe/describe.h"

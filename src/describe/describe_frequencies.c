@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of frequencies of a design: for each view the modes that goals name, those between bands, and the first few besides, from an analysis made anew at that design. */
+/* The table of frequencies of a design: for each view the modes that goals name, those between
+ * bands, and the first few besides, from an analysis made anew at that design. */
 #include <math.h>
 #include <string.h>
 
@@ -16,8 +17,8 @@ typedef struct listing {
     const mt_design *design;
     mt_result *result;
     mt_recommendation *rec;
-    mt_view *
-        view; /* its analysis was opened at the original design and solved here, as in the search */
+    /* its analysis was opened at the original design and solved here, as in the search */
+    mt_view *view;
     mt_analysis *scratch; /* opened here */
     int first;            /* its first row of rec->frequencies */
 } listing;
@@ -32,7 +33,8 @@ static mt_status index_of_demand(mt_problem *p, mt_view *view, const mt_demand *
     return MT_OK;
 }
 
-/* The name of the mode with this index, in the model's words, and how surely it is that mode. */
+/* The name of the mode with this index, in the model's words, and how surely it is that
+ * mode. */
 static mt_status put_name(const listing *l, mt_result_frequency *f, mt_err *err)
 {
     const mt_modes *const modes = &l->view->analysis->modes;
@@ -190,7 +192,8 @@ static double original_hz(const mt_recommendation *baseline, const mt_result_fre
     return baseline == NULL ? f->recommended_hz : nan("");
 }
 
-/* The analysis has just been made here, with its own count: does it agree? From now on it counts as the study does, as far as it can. */
+/* The analysis has just been made here, with its own count: does it agree? From now on it
+ * counts as the study does, as far as it can. */
 static mt_status verify(listing *l, mt_err *err)
 {
     const mt_analysis *const had = l->view->analysis;

@@ -4,7 +4,8 @@
 
 #include "describe/describe.h"
 
-/* Rounding of ln and of the eigenvalues may push a goal that is met exactly on its tolerance over it. */
+/* Rounding of ln and of the eigenvalues may push a goal that is met exactly on its tolerance
+ * over it. */
 static const double MET_SLACK = 1e-6;
 static const double PERCENT = 100.0;
 
@@ -45,7 +46,8 @@ static const char *frequency_text(const mt_demand *d, const char *mode, mt_arena
                            d->shape.mode, d->shape.reference);
 }
 
-/* What a demand asks for, as text, and the number that it asks for. NULL where memory is out. */
+/* What a demand asks for, as text, and the number that it asks for. NULL where memory is
+ * out. */
 static const char *demand_text(const mt_problem *p, const mt_demand *d, mt_arena *mem,
                                double *number)
 {
@@ -79,7 +81,8 @@ static const char *demand_text(const mt_problem *p, const mt_demand *d, mt_arena
     return "";
 }
 
-/* The demand's quantity: Hz, distance of unit shapes, MAC, value of an expression; NaN where there is none. */
+/* The demand's quantity: Hz, distance of unit shapes, MAC, value of an expression; NaN where
+ * there is none. */
 static mt_status demand_value(mt_problem *fresh, const mt_demand *d, double *value, mt_err *err)
 {
     int pos = -1;
@@ -110,7 +113,8 @@ static double greater(double a, double b)
     return b <= a ? a : b;
 }
 
-/* Relative violation of a demand that has been evaluated, that of a frequency a logarithm; of a shape its distance. */
+/* Relative violation of a demand that has been evaluated, that of a frequency a logarithm; of a
+ * shape its distance. */
 static double demand_violation(const mt_problem *fresh, const mt_demand *d,
                                const mt_nlp_values *v)
 {
@@ -128,7 +132,8 @@ static double demand_violation(const mt_problem *fresh, const mt_demand *d,
     return worst;
 }
 
-/* What a frequency goal is off by, of 1: (limit - f)/limit below its limit, (f - limit)/limit above. */
+/* What a frequency goal is off by, of 1: (limit - f)/limit below its limit, (f - limit)/limit
+ * above. */
 static double off_by(const mt_demand *d, double hz)
 {
     const mt_goal *const g = d->goal;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A design between the named positions of a drive: one more goal for each family of positions, the row of the result, and its sentence. */
+/* A design between the named positions of a drive: one more goal for each family of positions,
+ * the row of the result, and its sentence. */
 #include <math.h>
 
 #include "describe/describe.h"
@@ -7,11 +8,13 @@
 
 /* As for the goals themselves: rounding of ln and of the eigenvalues. */
 static const double MET_SLACK = 1e-6;
-/* Less than this (ln) beyond an edge is on it: a driven position is closed, and its modes are solved for, to about 1e-12. */
+/* Less than this (ln) beyond an edge is on it: a driven position is closed, and its modes are
+ * solved for, to about 1e-12. */
 static const double ON_EDGE = 1e-9;
 static const double PERCENT = 100.0;
 
-/* The mode that has to cross a band because two positions differ in the number of modes below it. */
+/* The mode that has to cross a band because two positions differ in the number of modes below
+ * it. */
 typedef struct crossing {
     int mode; /* 0: none */
     const char *band;
@@ -38,7 +41,8 @@ static const char *configuration_of(const described *d, const mt_clear *c)
     return mt_analysis_configuration(d->p->views[c->view].analysis);
 }
 
-/* Tied bands of two clears that have different numbers of modes below their middles. below[n_bands] by the modes. */
+/* Tied bands of two clears that have different numbers of modes below their middles.
+ * below[n_bands] by the modes. */
 static void find_between(described *d, const mt_clear *a, const mt_clear *b, const int *below)
 {
     for (int x = 0; x < a->bands.n; x++) {
@@ -68,7 +72,8 @@ static void find_crossing(described *d, const int *below)
     }
 }
 
-/* Do the named positions keep their bands with one number of modes below each? If so the motion is followed. */
+/* Do the named positions keep their bands with one number of modes below each? If so the motion
+ * is followed. */
 static mt_status examine(described *d, mt_err *err)
 {
     mt_problem *const p = d->p;

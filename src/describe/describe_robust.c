@@ -36,7 +36,8 @@ mt_status mt_describe_ranges(mt_problem *fresh, mt_err *err)
     return mt_robust_ranges(fresh, modes, err);
 }
 
-/* How far a range falls short of a limit, relatively; negative: room is left. NaN where there is no value somewhere. */
+/* How far a range falls short of a limit, relatively; negative: room is left. NaN where there
+ * is no value somewhere. */
 static double beyond(const mt_robust_range *r, mt_robust_side side, double limit, bool ratio)
 {
     const double value = r->value[side];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a result says of its own making, and the texts that it must own: it may outlive study and problem. */
+/* What a result says of its own making, and the texts that it must own: it may outlive study
+ * and problem. */
 #include "modetune/version.h"
 
 #include <string.h>

@@ -6,7 +6,8 @@
 
 /* Entries of a direction below this part of the largest are rounding. */
 static const double PART_OF_DIRECTION = 1e-3;
-/* The search's own tolerance where no goal sets one: residuals count as unchanged below it (nlp.h). */
+/* The search's own tolerance where no goal sets one: residuals count as unchanged below it
+ * (nlp.h). */
 static const double RESIDUAL_TOLERANCE = 1e-6;
 
 /* "K_T2", or "0.71 ln a - 0.71 ln b". */

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * A fresh analysis decides. Search, proofs and readings of a study rest on analyses that were opened at the original design and count their modes as the whole study does. A design that is
- * reported is analysed once more from nothing: a new system made there, no bounds, its own number of rigid-body modes. Mode by mode the two must agree, where
+ * A fresh analysis decides. Search, proofs and readings of a study rest on analyses that were
+ * opened at the original design and count their modes as the whole study does. A design that is
+ * reported is analysed once more from nothing: a new system made there, no bounds, its own
+ * number of rigid-body modes. Mode by mode the two must agree, where
  *     a vibration of 0 Hz of the study is a rigid-body mode of the fresh analysis,
  * else nothing that the study says of the design is trusted.
  */
@@ -9,7 +11,8 @@
 
 #include "describe/describe.h"
 
-/* Frequencies that differ by more than this (relative) beyond their error bounds disagree: both are good to about n eps. */
+/* Frequencies that differ by more than this (relative) beyond their error bounds disagree: both
+ * are good to about n eps. */
 static const double RECOMPUTED_AGREES = 1e-9;
 static double hz_of(double lambda)
 {

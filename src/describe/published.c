@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Published values against computed ones, from analyses of their own. A value that could not be computed (NaN) never holds; one that is not comparable holds where it has a value. */
+/* Published values against computed ones, from analyses of their own. A value that could not be
+ * computed (NaN) never holds; one that is not comparable holds where it has a value. */
 #include <math.h>
 #include <string.h>
 
@@ -27,7 +28,8 @@ static mt_status analysis_at(judge *j, int configuration, int design, mt_analysi
     return MT_OK;
 }
 
-/* The same by the view that the goals use, which follows shapes where they dissolve; *found: there is one. */
+/* The same by the view that the goals use, which follows shapes where they dissolve; *found:
+ * there is one. */
 static mt_status viewed_at(judge *j, const mt_published *pub, const mt_analysis *a, int *pos,
                            bool *found, mt_err *err)
 {
@@ -56,7 +58,8 @@ static mt_status viewed_at(judge *j, const mt_published *pub, const mt_analysis 
     return MT_OK;
 }
 
-/* Position of a named mode at the recommended design: its configuration's named modes of the original design, paired one to one. */
+/* Position of a named mode at the recommended design: its configuration's named modes of the
+ * original design, paired one to one. */
 static mt_status named_at(judge *j, const mt_published *pub, mt_analysis *a, int *pos,
                           mt_err *err)
 {
@@ -99,7 +102,8 @@ static mt_status mode_at(judge *j, const mt_published *pub, mt_analysis *a, int 
 {
     const bool by_index = pub->mode.index > 0;
     *index = by_index ? pub->mode.index : j->p->study->model->modes[pub->mode.named].index;
-    /* the model names a mode by its index at its own design, without vibrations of 0 Hz that only the study counts */
+    /* the model names a mode by its index at its own design, without vibrations of 0 Hz that
+     * only the study counts */
     const int loose = by_index ? 0 : a->n_null - a->n_rigid;
     *pos = mt_modal_flexible(&a->modes, *index + loose);
     if (by_index || pub->original) {
@@ -290,11 +294,9 @@ mt_status mt_describe_published(mt_problem *p, const double *x_original,
                                 const double *x_recommended, mt_result *result, mt_err *err)
 {
     const int n_analyses = DESIGNS * p->study->model->n_configurations;
-    judge j = {
-        .p = p,
-        .result = result,
-        .x = {x_original, x_recommended != NULL ? x_recommended : x_original}
-    };
+    judge j = {.p = p,
+               .result = result,
+               .x = {x_original, x_recommended != NULL ? x_recommended : x_original}};
     MT_TRY(mt_arena_init(&j.mem, 0, err));
     j.analysis = mt_arena_alloc(&j.mem, (size_t)n_analyses, sizeof(mt_analysis *));
     const mt_status rc = j.analysis == NULL ? mt_fail_memory(err) : judge_all(&j, err);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sentences an engineer can paste into a report: what changes, what that does, what is missed, what a demand costs, and how sure the answer is. */
+/* Sentences an engineer can paste into a report: what changes, what that does, what is missed,
+ * what a demand costs, and how sure the answer is. */
 #include "describe/reasons_priv.h"
 
 #include <math.h>
@@ -10,7 +11,8 @@
 #include "describe/certificates.h"
 #include "describe/describe_discrete.h"
 
-/* Changes of a parameter below this many percent, and errors of a frequency, are not worth a number. */
+/* Changes of a parameter below this many percent, and errors of a frequency, are not worth a
+ * number. */
 static const double WORTH_SAYING_PERCENT = 1e-4;
 enum { NUMBER_SIZE = 32, DEMAND_SIZE = 128 };
 
@@ -101,7 +103,8 @@ static void say_changes(mt_sentences *s)
     }
 }
 
-/* The variable that moves this frequency most, per percent of its value: "; M_SAU moves it most, -0.0494 Hz for 1 % more". "": none does, or it has no slope of its own. */
+/* The variable that moves this frequency most, per percent of its value: "; M_SAU moves it
+ * most, -0.0494 Hz for 1 % more". "": none does, or it has no slope of its own. */
 static const char *lever_text(mt_sentences *s, const mt_result_frequency *f)
 {
     double most = 0.0;
@@ -123,7 +126,8 @@ static const char *lever_text(mt_sentences *s, const mt_result_frequency *f)
     return text == NULL ? "" : text;
 }
 
-/* How the frequency (over the tolerances: its worst) stands to the limit that is nearer: "at its lower limit", "2 % below its lower limit of 7 Hz". */
+/* How the frequency (over the tolerances: its worst) stands to the limit that is nearer: "at
+ * its lower limit", "2 % below its lower limit of 7 Hz". */
 static void limit_text(const mt_result_frequency *f, char *text)
 {
     const bool both = MT_HAS(f->at_least_hz) && MT_HAS(f->at_most_hz);
@@ -266,7 +270,8 @@ static void say_violations(mt_sentences *s)
     }
 }
 
-/* Root mean square of what the weighted goals are off by in percent, each weighted as in the study. */
+/* Root mean square of what the weighted goals are off by in percent, each weighted as in the
+ * study. */
 static void say_misfit(mt_sentences *s)
 {
     int weighted = 0;
@@ -327,7 +332,8 @@ static void say_kind_rank(mt_sentences *s, const char *first)
     }
 }
 
-/* One design came out: where it is isolated, the only one found; else designs beside it meet the goals, too, and it is the best near it. */
+/* One design came out: where it is isolated, the only one found; else designs beside it meet
+ * the goals, too, and it is the best near it. */
 static void say_only(mt_sentences *s, const mt_nlp_result *search, const char *first)
 {
     const char *const many = search->starts == 1 ? "" : "s";

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sentences about bands: the kind of the design, modes on edges and inside, and the least of the other clearances. */
+/* Sentences about bands: the kind of the design, modes on edges and inside, and the least of
+ * the other clearances. */
 #include "describe/reasons_priv.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-/* A clearance that equals its margin within this, in percent of the edge, is active: ten times the tolerance that a goal has by default. */
+/* A clearance that equals its margin within this, in percent of the edge, is active: ten times
+ * the tolerance that a goal has by default. */
 static const double ACTIVE_PERCENT = 1e-3;
 
 static const mt_result_gap *gap_of(const mt_recommendation *rec, const mt_result_clearance *c)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Prices. At an optimum the multiplier of an active constraint is the slope of the objective over its limit; limits are relative (a ratio's logarithm), bounds are in t, which is chained to
- * the parameter here. The change enters the search as half its square: dc = df / c.
+ * Prices. At an optimum the multiplier of an active constraint is the slope of the objective
+ * over its limit; limits are relative (a ratio's logarithm), bounds are in t, which is chained
+ * to the parameter here. The change enters the search as half its square: dc = df / c.
  */
 #include "describe/reasons_priv.h"
 
@@ -10,7 +11,8 @@
 
 static const double PERCENT = 100.0;
 
-/* Of the objective, what a change df of its value f is called: "0.12 kg". NULL: not worth a sentence, more than there is (a slope says nothing that far), or out of memory. */
+/* Of the objective, what a change df of its value f is called: "0.12 kg". NULL: not worth a
+ * sentence, more than there is (a slope says nothing that far), or out of memory. */
 static const char *price(mt_sentences *s, double df)
 {
     mt_arena *const mem = &s->result->mem;

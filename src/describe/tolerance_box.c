@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * What is proven of one design: an inertia count at its own matrices confirms that every band is empty (no eigenvalue is involved), and, where the modes can be enclosed, the
- * tolerance box says how far its variables may stray with the bands, without their margin, and the frequency limits still kept.
+ * What is proven of one design: an inertia count at its own matrices confirms that every band
+ * is empty (no eigenvalue is involved), and, where the modes can be enclosed, the tolerance box
+ * says how far its variables may stray with the bands, without their margin, and the frequency
+ * limits still kept.
  */
 #include <math.h>
 
@@ -11,7 +13,8 @@
 
 /* Tolerances beyond this are not asked about. */
 static const double MOST_PERCENT = 100.0;
-/* Sub-boxes of one test where an input enters both matrices: fewer for many variables, whose boxes cost more and gain less. */
+/* Sub-boxes of one test where an input enters both matrices: fewer for many variables, whose
+ * boxes cost more and gain less. */
 enum { BOXES_FEW_VARIABLES = 64, BOXES_MANY_VARIABLES = 8, FEW_VARIABLES = 8 };
 
 static mt_status count_band(mt_problem *fresh, const mt_clear *c, const mt_band *band,
@@ -41,7 +44,8 @@ static mt_status confirm_here(mt_problem *fresh, const mt_clear *c, mt_result *r
     return MT_OK;
 }
 
-/* At the two corners of the tolerances between which all modes stay: the same counts there are those of every design between. */
+/* At the two corners of the tolerances between which all modes stay: the same counts there are
+ * those of every design between. */
 static mt_status confirm_corners(mt_problem *fresh, const mt_clear *c, mt_result *result,
                                  bool *confirmed, mt_err *err)
 {

@@ -9,20 +9,17 @@
 
 /*
  * Parameter expressions, parsed once into postfix code. Grammar:
- *   sum     = product { ("+" | "-") product }
- *   product = unary { ("*" | "/") unary }
- *   unary   = ("+" | "-") unary | power
- *   power   = atom [ "^" unary ]      right associative; binds tighter than a sign: -2^2 = -4
- *   atom    = number | name | function "(" sum { "," sum } ")" | "(" sum ")"
- *   number  = decimal digits with an optional point and exponent, correctly rounded, the same in
+ *   sum = product { ("+" | "-") product } product = unary { ("*" | "/") unary } unary = ("+" |
+ *   "-") unary | power power = atom [ "^" unary ] right associative; binds tighter than a sign:
+ *   -2^2 = -4 atom = number | name | function "(" sum { "," sum } ")" | "(" sum ")" number =
+ *   decimal digits with an optional point and exponent, correctly rounded, the same in
  *             every locale; no hexadecimal, no inf or nan
- * Functions of one argument: sqrt cbrt exp ln log10 sin cos tan asin acos atan sinh cosh tanh abs;
- * of two: atan2 min max hypot pow. Angles in radians. x^0 = 1 for every x; a negative number has
- * powers with integer exponents only.
- * Constants: pi, deg (pi/180), rpm (1/60: "258*rpm" is a speed in Hz); e is not a constant.
- * A parameter name is [A-Za-z_][A-Za-z0-9_]*; names of functions and constants are reserved.
- * Limits, so that no text can exhaust anything: bytes of text; levels of parentheses, arguments, signs
- * and exponents; parts of the code.
+ * Functions of one argument: sqrt cbrt exp ln log10 sin cos tan asin acos atan sinh cosh tanh
+ * abs; of two: atan2 min max hypot pow. Angles in radians. x^0 = 1 for every x; a negative
+ * number has powers with integer exponents only. Constants: pi, deg (pi/180), rpm (1/60:
+ * "258*rpm" is a speed in Hz); e is not a constant. A parameter name is [A-Za-z_][A-Za-z0-9_]*;
+ * names of functions and constants are reserved. Limits, so that no text can exhaust anything:
+ * bytes of text; levels of parentheses, arguments, signs and exponents; parts of the code.
  */
 enum { MT_EXPR_MAX_LENGTH = 4096, MT_EXPR_MAX_DEPTH = 64, MT_EXPR_MAX_CODE = 1024 };
 
@@ -77,17 +74,19 @@ bool mt_expr_reserved(const char *name);
 /* Names of all functions and constants, for "did you mean"; *n their number. */
 const char *const *mt_expr_names(int *n);
 /*
- * Parse NUL-terminated text into code that lives in mem. lookup (with context) knows the parameters; NULL: there
- * are none. names[n_names] are the candidates for "did you mean" besides functions and constants; may be NULL.
- * Fails: MT_E_INPUT with place (characters from 1) and problem, "at character 7: unknown name \"K_T9\"; did you
- * mean \"K_T8\"?"; MT_E_MEMORY. *out is set on success only. O(length of text).
+ * Parse NUL-terminated text into code that lives in mem. lookup (with context) knows the
+ * parameters; NULL: there are none. names[n_names] are the candidates for "did you mean"
+ * besides functions and constants; may be NULL. Fails: MT_E_INPUT with place (characters from
+ * 1) and problem, "at character 7: unknown name \"K_T9\"; did you mean \"K_T8\"?"; MT_E_MEMORY.
+ * *out is set on success only. O(length of text).
  */
 mt_status mt_expr_parse(const char *text, mt_expr_lookup lookup, const void *context,
                         const char *const *names, int n_names, mt_arena *mem, mt_expr *out,
                         mt_err *err);
 /* The expression that is one number. */
 mt_status mt_expr_number(double value, mt_arena *mem, mt_expr *out, mt_err *err);
-/* Is there no parameter in it? Then *value is its value, which may be infinite or NaN ("1/0"): look. */
+/* Is there no parameter in it? Then *value is its value, which may be infinite or NaN ("1/0"):
+ * look. */
 bool mt_expr_is_constant(const mt_expr *e, double *value);
 
 #endif

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Interval arithmetic by widening: an operation is rounded to nearest, so its exact result lies no
- * further than the neighbouring double (nextafter); where an error-free transformation proves the
- * rounded result exact, it stands as it is. That keeps signs: [0, 1] + [0, 1] begins at 0, not below,
- * and its square root exists.
+ * Interval arithmetic by widening: an operation is rounded to nearest, so its exact result lies
+ * no further than the neighbouring double (nextafter); where an error-free transformation
+ * proves the rounded result exact, it stands as it is. That keeps signs: [0, 1] + [0, 1] begins
+ * at 0, not below, and its square root exists.
  */
 #include "expr/interval.h"
 
@@ -15,7 +15,8 @@ mt_interval mt_interval_all(void)
     return (mt_interval){-HUGE_VAL, HUGE_VAL};
 }
 
-/* Everything that leaves this folder's arithmetic passes here: a NaN in a bound means nothing known. */
+/* Everything that leaves this folder's arithmetic passes here: a NaN in a bound means nothing
+ * known. */
 mt_interval mt_interval_of(double lo, double hi)
 {
     if (!(lo <= hi)) {
@@ -44,14 +45,16 @@ static double up(double x)
     return nextafter(x, HUGE_VAL);
 }
 
-/* Is s = fl(a + b) exact? The rounding error by Knuth's two-sum; NaN after an overflow says no. */
+/* Is s = fl(a + b) exact? The rounding error by Knuth's two-sum; NaN after an overflow says
+ * no. */
 static bool sum_exact(double a, double b, double s)
 {
     const double bb = s - a;
     return (a - (s - bb)) + (b - bb) == 0.0;
 }
 
-/* Below this a product's rounding error may itself underflow, and fma(a, b, -p) prove nothing. */
+/* Below this a product's rounding error may itself underflow, and fma(a, b, -p) prove
+ * nothing. */
 static const double EXACT_ABOVE = DBL_MIN / DBL_EPSILON;
 
 /* Is p = fl(a * b) exact, p /= 0? */
@@ -84,8 +87,8 @@ mt_interval mt_interval_sub(mt_interval a, mt_interval b)
     return mt_interval_add(a, mt_interval_neg(b));
 }
 
-/* Bounds of the exact product of two bounds. Zero times an infinite bound is 0: the factor that the bound
- * stands for is finite. A result that underflows to 0 keeps its sign. */
+/* Bounds of the exact product of two bounds. Zero times an infinite bound is 0: the factor that
+ * the bound stands for is finite. A result that underflows to 0 keeps its sign. */
 static mt_interval product_of(double a, double b)
 {
     if (a == 0.0 || b == 0.0) {
@@ -115,8 +118,8 @@ mt_interval mt_interval_mul(mt_interval a, mt_interval b)
 static mt_interval quotient_of(double a, double b)
 {
     if (a == 0.0 || isinf(b)) {
-        /* a finite number over one that grows without bound tends to 0; inf / inf is settled by the
-         * quotients of the other bounds, between which it must lie with 0 */
+        /* a finite number over one that grows without bound tends to 0; inf / inf is settled by
+         * the quotients of the other bounds, between which it must lie with 0 */
         return (mt_interval){0.0, 0.0};
     }
     const double q = a / b;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Elementary functions of intervals. A monotone function takes its bounds at the ends, computed by the C
- * library and widened by MT_INTERVAL_ULPS neighbours; bounds that the function never passes (|sin| <= 1,
- * exp > 0) cut that off again. The library keeps to those bounds, too.
+ * Elementary functions of intervals. A monotone function takes its bounds at the ends, computed
+ * by the C library and widened by MT_INTERVAL_ULPS neighbours; bounds that the function never
+ * passes (|sin| <= 1, exp > 0) cut that off again. The library keeps to those bounds, too.
  */
 #include <float.h>
 #include <math.h>
@@ -48,9 +48,10 @@ static mt_interval logarithm(double (*f)(double), mt_interval a)
 }
 
 /*
- * Does the interval hold a point (k + phase) * period, k an integer? With t = x / period - phase the
- * question is for an integer between t(lo) and t(hi). The four roundings (period, quotient, product and
- * difference) leave an error below 4 eps (|t| + 1); twice that is allowed for, and "yes" is the safe side.
+ * Does the interval hold a point (k + phase) * period, k an integer? With t = x / period -
+ * phase the question is for an integer between t(lo) and t(hi). The four roundings (period,
+ * quotient, product and difference) leave an error below 4 eps (|t| + 1); twice that is allowed
+ * for, and "yes" is the safe side.
  */
 static bool has_point(mt_interval a, double phase, double period)
 {
@@ -127,14 +128,16 @@ static mt_interval integer_power(mt_interval a, double n)
         const double at_mag = pow(mt_interval_mag(a), n);
         return widen(fmin(at_mig, at_mag), fmax(at_mig, at_mag), 0.0, HUGE_VAL);
     }
-    /* odd: n > 0 increases everywhere, n < 0 decreases on either side of 0; the sign is that of a */
+    /* odd: n > 0 increases everywhere, n < 0 decreases on either side of 0; the sign is that of
+     * a */
     const double at_lo = pow(a.lo, n);
     const double at_hi = pow(a.hi, n);
     return widen(fmin(at_lo, at_hi), fmax(at_lo, at_hi), a.lo >= 0.0 ? 0.0 : -HUGE_VAL,
                  a.hi <= 0.0 ? 0.0 : HUGE_VAL);
 }
 
-/* a^b. For a > 0 it is monotone in a at fixed b, and in b at fixed a: the bounds are at the corners. */
+/* a^b. For a > 0 it is monotone in a at fixed b, and in b at fixed a: the bounds are at the
+ * corners. */
 static mt_interval op_pow(mt_interval a, mt_interval b)
 {
     if (b.lo == b.hi && b.lo == floor(b.lo)) {
@@ -151,8 +154,8 @@ static mt_interval op_pow(mt_interval a, mt_interval b)
                  HUGE_VAL);
 }
 
-/* The angle of the points (x, y) of a rectangle: the bounds are at corners, unless it touches the branch
- * cut y = 0, x <= 0, on whose two sides the angle is pi and -pi. */
+/* The angle of the points (x, y) of a rectangle: the bounds are at corners, unless it touches
+ * the branch cut y = 0, x <= 0, on whose two sides the angle is pi and -pi. */
 static mt_interval op_atan2(mt_interval y, mt_interval x)
 {
     if (x.lo <= 0.0 && mt_interval_has(y, 0.0)) {

@@ -4,7 +4,8 @@
 
 #include "expr/expr.h"
 
-/* The functions and constants of the expression language by name (length bytes); false: no such. */
+/* The functions and constants of the expression language by name (length bytes); false: no
+ * such. */
 bool mt_expr_find_function(const char *name, size_t length, mt_op *op);
 bool mt_expr_find_constant(const char *name, size_t length, double *value);
 

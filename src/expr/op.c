@@ -112,8 +112,8 @@ double mt_op_value(mt_op op, double a, double b)
 
 /*
  * v = a^b. dv/da = b a^(b-1) holds without a logarithm, also for a <= 0 where b is an integer;
- * x^0 = 1 everywhere, so its derivative is 0 even at x = 0. dv/db = v ln a needs a > 0; at a = 0
- * with b > 0 the value stays 0 for every exponent nearby.
+ * x^0 = 1 everywhere, so its derivative is 0 even at x = 0. dv/db = v ln a needs a > 0; at a =
+ * 0 with b > 0 the value stays 0 for every exponent nearby.
  */
 static mt_partials pow_partials(double a, double b, double v)
 {
@@ -129,8 +129,8 @@ static mt_partials pow_partials(double a, double b, double v)
     return d;
 }
 
-/* v = atan2(a, b): dv = (b da - a db) / (a^2 + b^2), written with h = hypot(a, b) so that squares
- * can neither overflow nor underflow. */
+/* v = atan2(a, b): dv = (b da - a db) / (a^2 + b^2), written with h = hypot(a, b) so that
+ * squares can neither overflow nor underflow. */
 static mt_partials atan2_partials(double a, double b)
 {
     const double h = hypot(a, b);

@@ -6,8 +6,8 @@
 
 /*
  * One operation v = op(a, b): name, operands, value and partial derivatives. Conventions where
- * mathematics leaves a choice: pow follows C (x^0 = 1 for every x, 0^0 included; a negative base
- * needs an exponent that is an integer); atan2(0, 0) = 0.
+ * mathematics leaves a choice: pow follows C (x^0 = 1 for every x, 0^0 included; a negative
+ * base needs an exponent that is an integer); atan2(0, 0) = 0.
  */
 
 #define MT_LN_10 2.302585092994045684 /* ln 10, rounded to a double */
@@ -26,7 +26,8 @@ typedef struct mt_partials {
 } mt_partials;
 
 /* Partial derivatives at (a, b) with v = mt_op_value(op, a, b); not finite where there is none.
- * At a kink the side of the first operand: abs'(0) = 1, min(x, x) and max(x, x) go with the first. */
+ * At a kink the side of the first operand: abs'(0) = 1, min(x, x) and max(x, x) go with the
+ * first. */
 mt_partials mt_op_partials(mt_op op, double a, double b, double v);
 
 #endif

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Recursive descent over the grammar of expr.h, one function per rule, to postfix code. Every way to
- * nest (parenthesis, argument, sign, exponent) goes through `deeper`, so the recursion is at most
- * MT_EXPR_MAX_DEPTH * 5 small frames. The first problem ends the parse; its place is counted in
- * characters (code points), from 1.
+ * Recursive descent over the grammar of expr.h, one function per rule, to postfix code. Every
+ * way to nest (parenthesis, argument, sign, exponent) goes through `deeper`, so the recursion
+ * is at most MT_EXPR_MAX_DEPTH * 5 small frames. The first problem ends the parse; its place is
+ * counted in characters (code points), from 1.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -139,7 +139,8 @@ static mt_status parse_close(parser *p, size_t open)
     return MT_OK;
 }
 
-/* The candidate nearest to the name, from the parameters or from functions and constants; NULL: none. */
+/* The candidate nearest to the name, from the parameters or from functions and constants; NULL:
+ * none. */
 static const char *suggestion(const parser *p, const char *name, bool function)
 {
     int n = 0;
@@ -222,7 +223,8 @@ static mt_status parse_name(parser *p)
     return emit(p, MT_OP_PARAM, param, 0.0);
 }
 
-/* What is wrong with the number that begins at `from`: shows it up to the end of what looks like one. */
+/* What is wrong with the number that begins at `from`: shows it up to the end of what looks
+ * like one. */
 static mt_status bad_number(parser *p, size_t from, const char *what)
 {
     size_t end = from;
@@ -234,9 +236,9 @@ static mt_status bad_number(parser *p, size_t from, const char *what)
 }
 
 /*
- * number = (digits [ "." [digits] ] | "." digits) [ ("e"|"E") ["+"|"-"] digits ], correctly rounded.
- * The C library rounds correctly, but reads the decimal point of the process's locale. So it gets none:
- * "12.50e3" is handed over as "1250e1", which means the same in every locale.
+ * number = (digits [ "." [digits] ] | "." digits) [ ("e"|"E") ["+"|"-"] digits ], correctly
+ * rounded. The C library rounds correctly, but reads the decimal point of the process's locale.
+ * So it gets none: "12.50e3" is handed over as "1250e1", which means the same in every locale.
  */
 static mt_status parse_number(parser *p)
 {

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Building a program. A node is known by (op, operands, input, value): the hash table gives the node
- * that is already there. Operations on constants are carried out at once where the result is finite;
- * where it is not, the node stays, so that evaluation reports it with its address.
+ * Building a program. A node is known by (op, operands, input, value): the hash table gives the
+ * node that is already there. Operations on constants are carried out at once where the result
+ * is finite; where it is not, the node stays, so that evaluation reports it with its address.
  *
- * Simplifications keep every value of the program (up to the sign of zero), and since a node that is
- * no longer used is still evaluated, they hide no domain error either:
+ * Simplifications keep every value of the program (up to the sign of zero), and since a node
+ * that is no longer used is still evaluated, they hide no domain error either:
  *   x + 0 = x - 0 = x * 1 = x / 1 = x ^ 1 = x,   x * 0 = x - x = 0,   x ^ 0 = 1,   -(-x) = x
  * Operands of + and * are put in order, so that a + b and b + a are one node.
  */
@@ -37,8 +37,9 @@ static uint64_t value_bits(double value)
     return bits;
 }
 
-/* All bits of the word into all bits of the hash, also those of small whole numbers, which as doubles end in forty zeros: D. Stafford's variant 13 of the
- * finaliser of MurmurHash3, http://zimbry.blogspot.com/2011/09/better-bit-mixing-improving-on.html. */
+/* All bits of the word into all bits of the hash, also those of small whole numbers, which as
+ * doubles end in forty zeros: D. Stafford's variant 13 of the finaliser of MurmurHash3,
+ * http://zimbry.blogspot.com/2011/09/better-bit-mixing-improving-on.html. */
 static uint64_t mix(uint64_t hash, uint64_t word)
 {
     hash += word + UINT64_C(0x9E3779B97F4A7C15); /* 2^64 / golden ratio: 0 does not stay 0 */
@@ -62,7 +63,8 @@ static bool node_equal(const mt_program_node *m, const mt_program_node *n)
            value_bits(m->value) == value_bits(n->value);
 }
 
-/* The place of the node in the table (entries are node + 1, 0 is free): its own or the free one. */
+/* The place of the node in the table (entries are node + 1, 0 is free): its own or the free
+ * one. */
 static int table_slot(const mt_program *p, const mt_program_node *n)
 {
     const uint64_t mask = (uint64_t)p->table_size - 1; /* the size is a power of two */

@@ -7,15 +7,15 @@
 #include "expr/expr.h"
 
 /*
- * A program: many numbers that depend on few inputs, as one list of nodes in order of evaluation
- * (operands before results). While it is built, equal nodes are shared, constants folded (where the
- * result is finite) and neutral operations dropped. Then it is evaluated often, without the heap:
- * values; values with exact first derivatives (forward mode); enclosures of both over a box.
- * A node is evaluated even where nothing uses it, so no domain error can hide behind a factor 0.
- * Building: init, then const/input/unary/binary/expr in any order, then finish. A failed allocation is
- * remembered, every later node is MT_NO_NODE (accepted as an operand), and finish reports it.
- * Building more after finish is possible; finish again then. A finished program is only read by the
- * evaluations: threads may share it.
+ * A program: many numbers that depend on few inputs, as one list of nodes in order of
+ * evaluation (operands before results). While it is built, equal nodes are shared, constants
+ * folded (where the result is finite) and neutral operations dropped. Then it is evaluated
+ * often, without the heap: values; values with exact first derivatives (forward mode);
+ * enclosures of both over a box. A node is evaluated even where nothing uses it, so no domain
+ * error can hide behind a factor 0. Building: init, then const/input/unary/binary/expr in any
+ * order, then finish. A failed allocation is remembered, every later node is MT_NO_NODE
+ * (accepted as an operand), and finish reports it. Building more after finish is possible;
+ * finish again then. A finished program is only read by the evaluations: threads may share it.
  */
 typedef int mt_node; /* index of a node; MT_NO_NODE: absent */
 enum { MT_NO_NODE = -1 };
@@ -65,27 +65,29 @@ bool mt_program_is_constant(const mt_program *p, mt_node node);
 /* depends[i] = does the node depend on input i (structurally); [n_inputs]. */
 void mt_program_depends(const mt_program *p, mt_node node, bool *depends);
 
-/* value[count]: values of all nodes at inputs[n_inputs]. O(count). Fails MT_E_DOMAIN where a value is not
- * finite ("sqrt(-3) has no finite value"); *bad (may be NULL) is then that node, its addr the place in
- * the input file, and the values before it are valid. */
+/* value[count]: values of all nodes at inputs[n_inputs]. O(count). Fails MT_E_DOMAIN where a
+ * value is not finite ("sqrt(-3) has no finite value"); *bad (may be NULL) is then that node,
+ * its addr the place in the input file, and the values before it are valid. */
 mt_status mt_program_eval(const mt_program *p, const double *inputs, double *value,
                           mt_node *bad, mt_err *err);
-/* Values and gradient: grad[node * n_inputs + i] = d value[node] / d inputs[i], [count * n_inputs].
- * At a kink the side of the first operand: abs'(0) = 1, min(x, x) and max(x, x) go with the first. A
- * constant exponent needs no logarithm: x^2 has a derivative for every x. O(count * n_inputs).
- * Fails MT_E_DOMAIN also where a derivative is not finite (sqrt at 0, hypot and atan2 at 0, 0): then all
- * values are valid, and the derivatives of the nodes before *bad. */
+/* Values and gradient: grad[node * n_inputs + i] = d value[node] / d inputs[i], [count *
+ * n_inputs]. At a kink the side of the first operand: abs'(0) = 1, min(x, x) and max(x, x) go
+ * with the first. A constant exponent needs no logarithm: x^2 has a derivative for every x.
+ * O(count * n_inputs). Fails MT_E_DOMAIN also where a derivative is not finite (sqrt at 0,
+ * hypot and atan2 at 0, 0): then all values are valid, and the derivatives of the nodes before
+ * *bad. */
 mt_status mt_program_gradient(const mt_program *p, const double *inputs, double *value,
                               double *grad, mt_node *bad, mt_err *err);
-/* Enclosures: for all inputs within [lower, upper] (each [n_inputs], lower <= upper, infinite allowed), where
- * value[node] exists, lo[node] <= value[node] <= hi[node], lo and hi [count]. That holds for the exact
- * values and for the rounded ones that mt_program_eval gives; what it rests on: interval.h. Where a
- * divisor's enclosure holds zero or an operand may leave the domain: -inf, +inf. */
+/* Enclosures: for all inputs within [lower, upper] (each [n_inputs], lower <= upper, infinite
+ * allowed), where value[node] exists, lo[node] <= value[node] <= hi[node], lo and hi [count].
+ * That holds for the exact values and for the rounded ones that mt_program_eval gives; what it
+ * rests on: interval.h. Where a divisor's enclosure holds zero or an operand may leave the
+ * domain: -inf, +inf. */
 void mt_program_interval(const mt_program *p, const double *lower, const double *upper,
                          double *lo, double *hi);
-/* Enclosures of the derivatives of all nodes over the box as well: dlo, dhi [count * n_inputs], as
- * mt_program_gradient lays them out; exactly [0, 0] where a node does not depend on an input. At a kink
- * both sides are within. */
+/* Enclosures of the derivatives of all nodes over the box as well: dlo, dhi [count * n_inputs],
+ * as mt_program_gradient lays them out; exactly [0, 0] where a node does not depend on an
+ * input. At a kink both sides are within. */
 void mt_program_interval_gradient(const mt_program *p, const double *lower, const double *upper,
                                   double *lo, double *hi, double *dlo, double *dhi);
 

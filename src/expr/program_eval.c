@@ -2,8 +2,8 @@
 /*
  * Values and forward-mode derivatives. With v = op(a, b) and a prime for d/d(input i):
  *   v' = (dv/da) a' + (dv/db) b'
- * An operand that depends on no input has no term, so x^2 needs no ln x, and a derivative that does
- * not exist with respect to a constant operand does no harm.
+ * An operand that depends on no input has no term, so x^2 needs no ln x, and a derivative that
+ * does not exist with respect to a constant operand does no harm.
  */
 #include <math.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Enclosures of a program over a box of inputs: by induction over the nodes, each holds every value that
- * its node takes in the box, exact or rounded (see interval.h). Constants are the doubles they were
- * folded to. Derivatives by the chain rule of program_eval.c in intervals; where min or max may choose
- * either operand, the derivative is one of the two.
+ * Enclosures of a program over a box of inputs: by induction over the nodes, each holds every
+ * value that its node takes in the box, exact or rounded (see interval.h). Constants are the
+ * doubles they were folded to. Derivatives by the chain rule of program_eval.c in intervals;
+ * where min or max may choose either operand, the derivative is one of the two.
  */
 #include <math.h>
 #include <string.h>

@@ -17,24 +17,28 @@ typedef struct mt_file {
 } mt_file;
 
 /**
- * Read a regular file of at most `limit` bytes. Symbolic links are followed; where root is not NULL the file that they lead to must
- * lie beneath that folder (whose links are resolved as well). Fails: MT_E_INPUT (not a regular file, too long, outside root),
- * MT_E_SYSTEM (does not exist, not readable), MT_E_MEMORY. The messages name the path as given.
+ * Read a regular file of at most `limit` bytes. Symbolic links are followed; where root is not
+ * NULL the file that they lead to must lie beneath that folder (whose links are resolved as
+ * well). Fails: MT_E_INPUT (not a regular file, too long, outside root), MT_E_SYSTEM (does not
+ * exist, not readable), MT_E_MEMORY. The messages name the path as given.
  */
 mt_status mt_file_read(const char *path, const char *root, size_t limit, mt_file *out,
                        mt_err *err);
 void mt_file_free(mt_file *f);
-/* Is it sure that the name leads to nothing? False for what is there, and for what cannot be told. */
+/* Is it sure that the name leads to nothing? False for what is there, and for what cannot be
+ * told. */
 bool mt_file_absent(const char *path);
 /* The system's error number as a failure of the path: MT_E_SYSTEM, or MT_E_MEMORY. */
 mt_status mt_file_failed(const char *path, int code, mt_err *err);
 
-/* The path of `name` as meant by the file `naming`: relative names start in the folder of `naming`. Heap, to be freed by the
- * caller; NULL when out of memory. Only joins: nothing is looked up. */
+/* The path of `name` as meant by the file `naming`: relative names start in the folder of
+ * `naming`. Heap, to be freed by the caller; NULL when out of memory. Only joins: nothing is
+ * looked up. */
 char *mt_file_join(const char *naming, const char *name);
 /* The folder of a file ("." where the path has none); heap, NULL when out of memory. */
 char *mt_file_folder(const char *path);
-/* The folder that the files named by a study must lie in by default: the parent of its folder ("folder/.."). Heap. */
+/* The folder that the files named by a study must lie in by default: the parent of its folder
+ * ("folder/.."). Heap. */
 char *mt_file_default_root(const char *study_path);
 
 /* SHA-256 (FIPS 180-4) of the bytes, in lower-case hexadecimal digits. */

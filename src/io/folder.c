@@ -8,13 +8,17 @@
  *
  * In this order, under the folder's lock:
  *     1. all .modetune-new.F, that of the last file L first
- *     2. for each F but L: F becomes .modetune-old.F, or .modetune-none.F is made; .modetune-new.F becomes F
+ *     2. for each F but L: F becomes .modetune-old.F, or .modetune-none.F is made;
+ *       .modetune-new.F becomes F
  *     3. .modetune-new.L becomes L: from here on the new files are the folder's
  *     4. .modetune-old.F and .modetune-none.F are removed
- * While .modetune-new.L is there the old files are what counts, and all of them can be put back by their names alone; without it, what is left over is waste. So a failure and the run
- * after a killed one do the same. The folder is flushed before 3 and after it: what a power failure leaves is one of these states, too.
+ * While .modetune-new.L is there the old files are what counts, and all of them can be put back
+ * by their names alone; without it, what is left over is waste. So a failure and the run after
+ * a killed one do the same. The folder is flushed before 3 and after it: what a power failure
+ * leaves is one of these states, too.
  *
- * Why not exchange whole folders (renameat2), which would be a single step: other files of the user are in there, terminals stand in it, it may be a link or a mount point, and only some
+ * Why not exchange whole folders (renameat2), which would be a single step: other files of the
+ * user are in there, terminals stand in it, it may be a link or a mount point, and only some
  * file systems can.
  */
 #include "io/folder.h"
@@ -178,7 +182,8 @@ static mt_status write_new(const replacement *r, const mt_folder_file *f)
     return closed || rc != MT_OK ? rc : failed(r, f->name);
 }
 
-/* What the new files will stand in the place of. A folder cannot be put aside: its removal would fail. */
+/* What the new files will stand in the place of. A folder cannot be put aside: its removal
+ * would fail. */
 static mt_status look_first(const replacement *r)
 {
     for (int i = 0; i < r->n; i++) {
@@ -264,7 +269,8 @@ static mt_status undo(const replacement *r)
     return MT_OK;
 }
 
-/* Back to the old files, without the new ones. The mark of the last one goes when all is done. */
+/* Back to the old files, without the new ones. The mark of the last one goes when all is
+ * done. */
 static mt_status go_back(const replacement *r)
 {
     MT_TRY(undo(r));
@@ -308,7 +314,8 @@ static mt_status replace_locked(replacement *r)
     return rc;
 }
 
-/* A new folder is durable when the one that holds it is flushed; a file system that will not is not argued with. */
+/* A new folder is durable when the one that holds it is flushed; a file system that will not is
+ * not argued with. */
 static mt_status make_folder(const char *path, mt_err *err)
 {
     if (mkdir(path, 0777) != 0) {

@@ -11,32 +11,38 @@
 #include "study/study.h"
 
 typedef struct mt_io_options {
-    /* folder that files named by other files must lie in; NULL: for a study the parent of its folder, for a model no limit */
+    /* folder that files named by other files must lie in; NULL: for a study the parent of its
+     * folder, for a model no limit */
     const char *root;
     size_t max_bytes; /* of one file; 0: MT_JSON_MAX_BYTES */
-    int *
-        structural; /* [out] number of errors that a JSON Schema of the file sees as well; NULL: not wanted */
+    /* [out] number of errors that a JSON Schema of the file sees as well; NULL: not wanted */
+    int *structural;
 } mt_io_options;
 
 /**
  * Read, resolve and check a model file (format "modetune-model/1").
  * @param[in]  opt       NULL: defaults
  * @param[out] out       the model, owned by the caller (mt_model_delete); NULL on failure
- * @param[out] messages  every diagnostic, warnings included, is appended as text (mt_json_print); may be NULL
- * Fails: MT_E_INPUT (err: the first diagnostic), MT_E_SYSTEM, MT_E_MEMORY.
+ * @param[out] messages every diagnostic, warnings included, is appended as text
+ *   (mt_json_print); may be NULL Fails: MT_E_INPUT (err: the first diagnostic), MT_E_SYSTEM,
+ *   MT_E_MEMORY.
  */
 mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **out,
                         mt_text *messages, mt_err *err);
-/* The same from a document that is parsed already; problems go to its diagnostics. `file` names it in err. */
+/* The same from a document that is parsed already; problems go to its diagnostics. `file` names
+ * it in err. */
 mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_err *err);
 
 /**
- * Read, resolve and check a study file (format "modetune-study/1") with the models that it names.
+ * Read, resolve and check a study file (format "modetune-study/1") with the models that it
+ * names.
  * @param[in]  opt       NULL: defaults; the models must lie beneath root
- * @param[out] out       the study, owned by the caller (mt_study_delete), models included; NULL on failure
- * @param[out] messages  the diagnostics of the study, then those of the models, are appended; may be NULL
- * Every problem is reported, whichever file it is in. Fails: MT_E_INPUT (err: the first; a model that is not there counts as one of the
- * study's problems), MT_E_SYSTEM (a file cannot be read, or the study itself is not there), MT_E_MEMORY.
+ * @param[out] out the study, owned by the caller (mt_study_delete), models included; NULL on
+ *   failure
+ * @param[out] messages the diagnostics of the study, then those of the models, are appended;
+ *   may be NULL Every problem is reported, whichever file it is in. Fails: MT_E_INPUT (err: the
+ *   first; a model that is not there counts as one of the study's problems), MT_E_SYSTEM (a
+ *   file cannot be read, or the study itself is not there), MT_E_MEMORY.
  */
 mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **out,
                         mt_text *messages, mt_err *err);
@@ -49,7 +55,8 @@ mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **o
 mt_status mt_aircraft_load(const char *path, const mt_io_options *opt, mt_arena *mem,
                            mt_aircraft_list *out, mt_text *messages, mt_err *err);
 
-/* Append a result as JSON (format "modetune-result/1"): the same result gives the same bytes. Fails: MT_E_MEMORY. */
+/* Append a result as JSON (format "modetune-result/1"): the same result gives the same bytes.
+ * Fails: MT_E_MEMORY. */
 mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err);
 /* The same as a value within a larger document (name NULL: in a list, or the whole). */
 void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result);
@@ -59,7 +66,8 @@ void mt_json_put_doubts(mt_json_writer *w, const char *name, const mt_doubt_list
 /* Of it, the members "undetermined" and "spread", into an object that is open. */
 void mt_result_put_uncertainty(mt_json_writer *w, const mt_result *result);
 
-/* The files that hold a result in its folder. All are replaced as one (io/folder.h); result.json decides, and names the others with their digests. */
+/* The files that hold a result in its folder. All are replaced as one (io/folder.h);
+ * result.json decides, and names the others with their digests. */
 #define MT_RESULT_FILE_LIST(X)                       \
     X(MT_RESULT_FILE_DESIGNS, "recommendations.csv") \
     X(MT_RESULT_FILE_TRADE, "trade.csv")             \
@@ -72,20 +80,25 @@ typedef enum mt_result_file {
 } mt_result_file;
 #undef MT_RESULT_FILE_ENUM
 const char *mt_result_file_name(mt_result_file which);
-/* Note in result->run the n files that are to stand beside it, with the digests of their texts. Fails: MT_E_MEMORY. */
+/* Note in result->run the n files that are to stand beside it, with the digests of their texts.
+ * Fails: MT_E_MEMORY. */
 mt_status mt_result_note_outputs(mt_result *result, int n, const char *const *names,
                                  const mt_text *texts, mt_err *err);
-/* Is this a result that was written as a folder, and still called so? A copy under another name belongs to nothing. */
+/* Is this a result that was written as a folder, and still called so? A copy under another name
+ * belongs to nothing. */
 bool mt_result_has_folder(const char *path, const mt_result *result);
-/* Do the files beside such a result, as far as they are there, belong to it? sha256: of its own bytes. Fails: MT_E_INPUT where they do not, MT_E_SYSTEM, MT_E_MEMORY. */
+/* Do the files beside such a result, as far as they are there, belong to it? sha256: of its own
+ * bytes. Fails: MT_E_INPUT where they do not, MT_E_SYSTEM, MT_E_MEMORY. */
 mt_status mt_result_check_folder(const char *path, const char *sha256, const mt_result *result,
                                  mt_err *err);
 
 /**
- * Read back from a result file what `apply` needs: status, names and files of study and model, inputs, and of every recommendation
- * rank, feasibility, grade, score, change, violation and parameters. What else the file holds is left alone. A result.json in its folder is read only where the files beside it
- * belong to it; a run that is just replacing them is waited for.
- * Owned by the caller (mt_result_delete). Fails: MT_E_INPUT, MT_E_SYSTEM, MT_E_MEMORY; messages as for mt_study_load.
+ * Read back from a result file what `apply` needs: status, names and files of study and model,
+ * inputs, and of every recommendation rank, feasibility, grade, score, change, violation and
+ * parameters. What else the file holds is left alone. A result.json in its folder is read only
+ * where the files beside it belong to it; a run that is just replacing them is waited for.
+ * Owned by the caller (mt_result_delete). Fails: MT_E_INPUT, MT_E_SYSTEM, MT_E_MEMORY; messages
+ * as for mt_study_load.
  */
 mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result **out,
                          mt_text *messages, mt_err *err);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The document: text, scanned nodes and cJSON's tree side by side. cJSON gets a copy of the text in which every number is 0: it
- * cuts numbers off at 63 characters, so that ours are read from the source, by strtod, with the decimal point of the locale in place
- * of ours (the C library rounds correctly).
+ * The document: text, scanned nodes and cJSON's tree side by side. cJSON gets a copy of the
+ * text in which every number is 0: it cuts numbers off at 63 characters, so that ours are read
+ * from the source, by strtod, with the decimal point of the locale in place of ours (the C
+ * library rounds correctly).
  */
 #include "io/json_priv.h"
 
@@ -75,7 +76,8 @@ static void decimal_point(char *point, size_t size)
     point[length] = '\0';
 }
 
-/* The value of one number; beyond the range of a double it is noted and the largest one stands for it. */
+/* The value of one number; beyond the range of a double it is noted and the largest one stands
+ * for it. */
 static bool read_number(mt_json *doc, mt_addr value, const char *point)
 {
     const mt_json_node *const node = &doc->nodes[value];

@@ -9,14 +9,16 @@
 #include "base/text.h"
 
 /*
- * A JSON text, strictly RFC 8259: scanned first (io/scan.c validates everything and notes where each value stands), then given
- * to cJSON, which builds the values. Beyond the RFC these are refused: a byte order mark, a name given twice in an object,
- * U+0000 in a string, numbers outside the range of a double, nesting deeper than MT_JSON_MAX_DEPTH, more than
+ * A JSON text, strictly RFC 8259: scanned first (io/scan.c validates everything and notes where
+ * each value stands), then given to cJSON, which builds the values. Beyond the RFC these are
+ * refused: a byte order mark, a name given twice in an object, U+0000 in a string, numbers
+ * outside the range of a double, nesting deeper than MT_JSON_MAX_DEPTH, more than
  * MT_JSON_MAX_BYTES bytes or MT_JSON_MAX_VALUES values.
  *
- * A value's address (mt_addr) is its index in document order; MT_JSON_ROOT is the whole. Addresses that mt_json_name_addr
- * makes stand for the member name in front of a value. Both kinds go into diagnostics, so that those point at the place.
- * Lines count from 1 and end at LF, CR or CR LF; columns count UTF-8 code points from 1.
+ * A value's address (mt_addr) is its index in document order; MT_JSON_ROOT is the whole.
+ * Addresses that mt_json_name_addr makes stand for the member name in front of a value. Both
+ * kinds go into diagnostics, so that those point at the place. Lines count from 1 and end at
+ * LF, CR or CR LF; columns count UTF-8 code points from 1.
  */
 enum {
     MT_JSON_ROOT = 0,
@@ -40,40 +42,45 @@ typedef struct mt_json mt_json;
 /**
  * Read a text.
  * @param[in]  text   length bytes, need not be NUL-terminated; not kept
- * @param[out] out    the document, owned by the caller; given for MT_OK and MT_E_INPUT, else NULL
- * Fails: MT_E_INPUT when the text is not JSON (every problem is in mt_json_diags; the document then has no values and serves
- * mt_json_print only), MT_E_MEMORY. A name given twice is a problem in mt_json_diags, but MT_OK: reading can
- * go on, the later members of that name are passed over.
+ * @param[out] out the document, owned by the caller; given for MT_OK and MT_E_INPUT, else NULL
+ *   Fails: MT_E_INPUT when the text is not JSON (every problem is in mt_json_diags; the
+ *   document then has no values and serves mt_json_print only), MT_E_MEMORY. A name given twice
+ *   is a problem in mt_json_diags, but MT_OK: reading can go on, the later members of that name
+ *   are passed over.
  */
 mt_status mt_json_parse(const char *text, size_t length, mt_json **out, mt_err *err);
 void mt_json_delete(mt_json *doc);
 
-/* The problems found in this document, by the parser and by whoever reads it on. Lives as long as the document. */
+/* The problems found in this document, by the parser and by whoever reads it on. Lives as long
+ * as the document. */
 mt_diags *mt_json_diags(mt_json *doc);
 
 mt_json_type mt_json_type_of(const mt_json *doc, mt_addr value);
 /* "null", "true or false", "a number", "a string", "a list", "an object" */
 const char *mt_json_type_text(mt_json_type type);
-/* The value of a string (never NULL), number, true/false; only for values of that type. Numbers are the nearest doubles whatever
- * the locale. Strings live as long as the document. */
+/* The value of a string (never NULL), number, true/false; only for values of that type. Numbers
+ * are the nearest doubles whatever the locale. Strings live as long as the document. */
 const char *mt_json_string(const mt_json *doc, mt_addr value);
 double mt_json_number(const mt_json *doc, mt_addr value);
 bool mt_json_bool(const mt_json *doc, mt_addr value);
-/* Number of items of a list or members of an object, the first of them and, from each, the next; MT_NO_ADDR at the end. */
+/* Number of items of a list or members of an object, the first of them and, from each, the
+ * next; MT_NO_ADDR at the end. */
 int mt_json_count(const mt_json *doc, mt_addr value);
 mt_addr mt_json_first(const mt_json *doc, mt_addr value);
 mt_addr mt_json_next(const mt_json *doc, mt_addr value);
-/* The member of that name (case-sensitive; the first of several); MT_NO_ADDR where there is none or value is no object. O(members). */
+/* The member of that name (case-sensitive; the first of several); MT_NO_ADDR where there is
+ * none or value is no object. O(members). */
 mt_addr mt_json_member(const mt_json *doc, mt_addr value, const char *name);
 /* The name in front of a member's value; NULL for other values. */
 const char *mt_json_name(const mt_json *doc, mt_addr value);
-/* The address of that name, for messages about the member itself: its JSON pointer is the object's. */
+/* The address of that name, for messages about the member itself: its JSON pointer is the
+ * object's. */
 mt_addr mt_json_name_addr(const mt_json *doc, mt_addr value);
 
 /* Where an address stands. */
 void mt_json_place(const mt_json *doc, mt_addr addr, int *line, int *column);
-/* Where the source text of a number or string (quotes included) begins, and one past its end: for whoever replaces it. Offsets in bytes.
- * False for values of other types. */
+/* Where the source text of a number or string (quotes included) begins, and one past its end:
+ * for whoever replaces it. Offsets in bytes. False for values of other types. */
 bool mt_json_span(const mt_json *doc, mt_addr value, size_t *begin, size_t *end);
 /* The same for n addresses of values in ascending order, in one walk through the text. */
 void mt_json_places(const mt_json *doc, int n, const mt_addr *addrs, int *lines, int *columns);
@@ -82,8 +89,9 @@ void mt_json_pointer(const mt_json *doc, mt_addr addr, mt_text *out);
 /**
  * Append all diagnostics as text, sorted by place (those of one place as found), one per line:
  *     file:line:column: error: /json/pointer: message
- * without "/json/pointer: " for the root and without ":line:column" for MT_NO_ADDR. Control characters are made visible, lines
- * are cut at a length. Beyond MT_DIAG_LIMIT a last line says how many more there are.
+ * without "/json/pointer: " for the root and without ":line:column" for MT_NO_ADDR. Control
+ * characters are made visible, lines are cut at a length. Beyond MT_DIAG_LIMIT a last line says
+ * how many more there are.
  */
 void mt_json_print(const mt_json *doc, const char *file, mt_text *out);
 

@@ -82,7 +82,8 @@ void mt_json_places(const mt_json *doc, int n, const mt_addr *addrs, int *lines,
     }
 }
 
-/* A member name as a pointer writes it: decoded where the values stand, else as in the source. */
+/* A member name as a pointer writes it: decoded where the values stand, else as in the
+ * source. */
 static void add_name(const mt_json *doc, const mt_json_node *node, mt_text *out)
 {
     const char *s = node->item == NULL ? doc->text + node->name + 1 : node->item->string;
@@ -125,7 +126,8 @@ void mt_json_pointer(const mt_json *doc, mt_addr addr, mt_text *out)
     }
     const bool outer = name || node->type == 0;
     mt_addr at = outer ? node->parent : (mt_addr)(node - doc->nodes);
-    /* problems before the text's value come first among the nodes: the root is what has no parent */
+    /* problems before the text's value come first among the nodes: the root is what has no
+     * parent */
     for (; at >= 0 && doc->nodes[at].parent != MT_NO_ADDR; at = doc->nodes[at].parent) {
         path[depth++] = at;
     }
@@ -187,9 +189,7 @@ static void print_one(const mt_json *doc, const char *file, const mt_diag *diag,
 void mt_json_print(const mt_json *doc, const char *file, mt_text *out)
 {
     const mt_diags *const diags = &doc->diags;
-    entry order[MT_DIAG_LIMIT] = {
-        {0, 0}
-    };
+    entry order[MT_DIAG_LIMIT] = {{0, 0}};
     int n = 0;
     for (; n < diags->count && n < MT_DIAG_LIMIT; n++) {
         const mt_addr addr = diags->items[n].addr;

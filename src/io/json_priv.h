@@ -6,8 +6,8 @@
 
 #include "io/json.h"
 
-/* One value, in document order: the first child of a list or object is the next node, its siblings follow `next`.
- * A node of type 0 is no value but the place of a syntax error. */
+/* One value, in document order: the first child of a list or object is the next node, its
+ * siblings follow `next`. A node of type 0 is no value but the place of a syntax error. */
 typedef struct mt_json_node {
     unsigned start; /* offset of its first byte */
     unsigned end;   /* one past its last byte; numbers only */
@@ -31,7 +31,8 @@ struct mt_json {
     cJSON *tree;
 };
 
-/* Validate doc->text and fill doc->nodes. Fails: MT_E_INPUT (problems are in doc->diags), MT_E_MEMORY. */
+/* Validate doc->text and fill doc->nodes. Fails: MT_E_INPUT (problems are in doc->diags),
+ * MT_E_MEMORY. */
 mt_status mt_json_scan(mt_json *doc, mt_err *err);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reading and writing for users of the library: the same as for the program, without its options. */
+/* Reading and writing for users of the library: the same as for the program, without its
+ * options. */
 #include "io/io.h"
 
 mt_status mt_study_read(const char *path, mt_study **out, mt_err *err)

@@ -5,7 +5,8 @@
 #include "io/io.h"
 #include "io/reader.h"
 
-/* The tables of keys of a catalogue of aircraft, for the test that holds them to the JSON Schema; *n their number. */
+/* The tables of keys of a catalogue of aircraft, for the test that holds them to the JSON
+ * Schema; *n their number. */
 const mt_key_table *const *mt_aircraft_key_tables(int *n);
 
 #endif

@@ -78,9 +78,7 @@ static void read_joint(mt_model_reader *mr, mt_addr value, mt_joint *j)
     const int before = mr->r.diags->errors;
     mt_addr at[JOINT_COUNT];
     (void)mt_reader_object(&mr->r, value, &mt_joint_keys, at);
-    *j = (mt_joint){
-        .gear_joint = {MT_ABSENT, MT_ABSENT}
-    };
+    *j = (mt_joint){.gear_joint = {MT_ABSENT, MT_ABSENT}};
     j->name = mt_reader_name(&mr->r, at[JOINT_NAME]);
     j->type = (mt_joint_type)mt_reader_choice(&mr->r, at[JOINT_TYPE], "type", JOINT_NAMES,
                                               MT_COUNT(JOINT_NAMES));
@@ -152,7 +150,8 @@ static void set_row(mt_model_reader *mr, const row *r, int wanted, int first, mt
     }
 }
 
-/* Stiffness or damping, in N/m and in N m/rad: a bushing has both, the others one number of one of them, a bar none. */
+/* Stiffness or damping, in N/m and in N m/rad: a bushing has both, the others one number of one
+ * of them, a bar none. */
 static void read_coefficients(mt_model_reader *mr, const mt_addr *at, mt_spring *s)
 {
     const mt_key *const keys = s->damper ? mt_damper_keys.keys : mt_spring_keys.keys;
@@ -209,15 +208,13 @@ static mt_num *read_matrix(mt_model_reader *mr, mt_addr value)
 
 static mt_spring spring_default(bool damper)
 {
-    mt_spring s = {
-        .damper = damper,
-        .joint_name = {NULL, MT_NO_ADDR},
-        .joint = MT_ABSENT,
-        .joint_link = MT_ABSENT,
-        .joint_hinge = MT_ABSENT,
-        .stiffness = MT_ABSENT,
-        .preload = MT_ABSENT
-    };
+    mt_spring s = {.damper = damper,
+                   .joint_name = {NULL, MT_NO_ADDR},
+                   .joint = MT_ABSENT,
+                   .joint_link = MT_ABSENT,
+                   .joint_hinge = MT_ABSENT,
+                   .stiffness = MT_ABSENT,
+                   .preload = MT_ABSENT};
     for (int k = 0; k < 3; k++) {
         s.translation[k] = MT_ABSENT;
         s.rotation[k] = MT_ABSENT;

@@ -154,7 +154,8 @@ static void read_points(mt_model_reader *mr, mt_addr object)
     }
 }
 
-/* In two dimensions one moment; in three three moments, or six with the products; none: a point mass. */
+/* In two dimensions one moment; in three three moments, or six with the products; none: a point
+ * mass. */
 static void read_inertia(mt_model_reader *mr, mt_addr value, mt_body *b)
 {
     enum { MOMENTS = 3, ALL = 6 };
@@ -200,7 +201,8 @@ static void read_bodies(mt_model_reader *mr, mt_addr list)
     }
 }
 
-/* Everything behind the format. Points and parameters come first: positions and expressions refer to them. */
+/* Everything behind the format. Points and parameters come first: positions and expressions
+ * refer to them. */
 static void read_root(mt_model_reader *mr, const mt_addr *at)
 {
     mt_model *const m = mr->m;
@@ -281,14 +283,12 @@ mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_
     mt_model *m = NULL;
     *out = NULL;
     MT_TRY(mt_model_new(&m, err));
-    mt_model_reader mr = {
-        .r = {.doc = doc,
-              .diags = mt_json_diags(doc),
-              .mem = &m->mem,
-              .lookup = mt_model_lookup,
-              .context = m},
-        .m = m
-    };
+    mt_model_reader mr = {.r = {.doc = doc,
+                                .diags = mt_json_diags(doc),
+                                .mem = &m->mem,
+                                .lookup = mt_model_lookup,
+                                .context = m},
+                          .m = m};
     mt_addr at[MODEL_COUNT];
     if (check_format(&mr.r) && mt_reader_object(&mr.r, MT_JSON_ROOT, &mt_model_keys, at)) {
         read_root(&mr, at);

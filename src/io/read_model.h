@@ -19,7 +19,8 @@ typedef struct mt_model_reader {
     static const mt_key table##_keys[] = {KEYS(MT_READ_KEY)}; \
     const mt_key_table table = {(what), table##_keys, MT_COUNT(table##_keys)}
 
-/* All key tables of a model file, `what` being the name of the definition in the schema; *n their number. */
+/* All key tables of a model file, `what` being the name of the definition in the schema; *n
+ * their number. */
 const mt_key_table *const *mt_model_key_tables(int *n);
 
 extern const mt_key_table mt_model_keys;
@@ -40,8 +41,8 @@ extern const mt_key_table mt_hold_keys;
 
 /* A number or expression of the model's parameters; MT_ABSENT where absent or wrong. */
 mt_num mt_read_num(mt_model_reader *mr, mt_addr value);
-/* A list of least..most entries, each a number; *n their number (0 where absent or wrong). A single number gives a list of one where
- * `single` says so. */
+/* A list of least..most entries, each a number; *n their number (0 where absent or wrong). A
+ * single number gives a list of one where `single` says so. */
 mt_num *mt_read_nums(mt_model_reader *mr, mt_addr value, bool single, int least, int most,
                      int *n);
 /* As many numbers as the model has dimensions; false (x all absent) where absent or wrong. */
@@ -53,7 +54,8 @@ int mt_read_at(mt_model_reader *mr, mt_addr value, mt_position at[2]);
 /* Two names of what stands where a body may; names NULL where absent or wrong. */
 void mt_read_bodies(mt_model_reader *mr, mt_addr value, mt_attach bodies[2]);
 mt_presence mt_read_presence(mt_model_reader *mr, mt_addr value);
-/* Room for one more item in a list of the model: the new items pointer, NULL (noted) when out of memory. */
+/* Room for one more item in a list of the model: the new items pointer, NULL (noted) when out
+ * of memory. */
 void *mt_read_grow(mt_model_reader *mr, void *items, int count, int *capacity, size_t size);
 
 void mt_read_links(mt_model_reader *mr, mt_addr list);

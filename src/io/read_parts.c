@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the items of a model are made of: numbers, vectors, positions, names of bodies, presence. */
+/* What the items of a model are made of: numbers, vectors, positions, names of bodies,
+ * presence. */
 #include <string.h>
 
 #include "io/read_model.h"
@@ -69,10 +70,7 @@ bool mt_read_vector(mt_model_reader *mr, mt_addr value, mt_num x[3])
 
 mt_position mt_read_position(mt_model_reader *mr, mt_addr value)
 {
-    mt_position p = {
-        .point_name = {NULL, MT_NO_ADDR},
-          .point = MT_ABSENT, .addr = value
-    };
+    mt_position p = {.point_name = {NULL, MT_NO_ADDR}, .point = MT_ABSENT, .addr = value};
     no_vector(p.x);
     if (!mt_reader_type(&mr->r, value, MT_KEY_TEXT_OR_LIST)) {
         return p;
@@ -97,7 +95,8 @@ static bool is_point(const mt_model_reader *mr, mt_addr value)
     return false;
 }
 
-/* A list of two strings: two points, or two expressions? In three dimensions only points can be meant. */
+/* A list of two strings: two points, or two expressions? In three dimensions only points can be
+ * meant. */
 static bool names_two_points(mt_model_reader *mr, mt_addr list)
 {
     mt_addr a;
@@ -155,10 +154,8 @@ int mt_read_at(mt_model_reader *mr, mt_addr value, mt_position at[2])
 void mt_read_bodies(mt_model_reader *mr, mt_addr value, mt_attach bodies[2])
 {
     for (int side = 0; side < 2; side++) {
-        bodies[side] = (mt_attach){
-            .name = {NULL, MT_NO_ADDR},
-              .index = MT_GROUND, .element = MT_ABSENT
-        };
+        bodies[side] =
+            (mt_attach){.name = {NULL, MT_NO_ADDR}, .index = MT_GROUND, .element = MT_ABSENT};
     }
     if (!mt_reader_type(&mr->r, value, MT_KEY_LIST)) {
         return;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A result read back: what `apply` needs. Members that are not looked at may be anything, so that later versions can add some. */
+/* A result read back: what `apply` needs. Members that are not looked at may be anything, so
+ * that later versions can add some. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

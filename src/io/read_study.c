@@ -184,7 +184,8 @@ static void use_parameters(mt_study_reader *s)
     s->r.n_names = model->n_parameters;
 }
 
-/* The study's own model and its parameters' values, before anything that is measured in them. */
+/* The study's own model and its parameters' values, before anything that is measured in
+ * them. */
 static void read_model(mt_study_reader *s, mt_addr value)
 {
     mt_study *const study = s->study;
@@ -356,7 +357,8 @@ static mt_status read_document(mt_study_reader *s, mt_err *err)
     return rc;
 }
 
-/* Parse and read the study's text; the document's diagnostics go to messages, before those of the models. */
+/* Parse and read the study's text; the document's diagnostics go to messages, before those of
+ * the models. */
 static mt_status read_text(mt_study_reader *s, const mt_file *file, mt_text *messages,
                            mt_err *err)
 {

@@ -6,8 +6,8 @@
 #include "io/reader.h"
 #include "study/study.h"
 
-/* The tables of keys of a study file, for the test that holds them to the JSON Schema; *n their number. `what` is the name of the
- * schema's definition, "" the root. */
+/* The tables of keys of a study file, for the test that holds them to the JSON Schema; *n their
+ * number. `what` is the name of the schema's definition, "" the root. */
 const mt_key_table *const *mt_study_key_tables(int *n);
 
 #endif

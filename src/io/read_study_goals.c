@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-/* Each type of goal has a table of its own, which begins with what all have; limits have no mode, bands none of their own. */
+/* Each type of goal has a table of its own, which begins with what all have; limits have no
+ * mode, bands none of their own. */
 #define GOAL_KEYS(X)                                       \
     X(GOAL_TYPE, "type", MT_KEY_TEXT, true)                \
     X(GOAL_DESCRIPTION, "description", MT_KEY_TEXT, false) \
@@ -214,10 +215,10 @@ static const struct {
     void (*read)(mt_study_reader *s, const mt_study_object *o, mt_goal *goal);
 } TYPES[] = {
     {MT_GOAL_FREQUENCY, &mt_study_frequency_keys, read_frequency},
-    {    MT_GOAL_SHAPE,     &mt_study_shape_keys,     read_shape},
-    {      MT_GOAL_MAC,       &mt_study_mac_keys,       read_mac},
-    {    MT_GOAL_LIMIT,     &mt_study_limit_keys,     read_limit},
-    {    MT_GOAL_AVOID,     &mt_study_avoid_keys,     read_avoid},
+    {MT_GOAL_SHAPE, &mt_study_shape_keys, read_shape},
+    {MT_GOAL_MAC, &mt_study_mac_keys, read_mac},
+    {MT_GOAL_LIMIT, &mt_study_limit_keys, read_limit},
+    {MT_GOAL_AVOID, &mt_study_avoid_keys, read_avoid},
 };
 
 /* Which row of TYPES; MT_ABSENT (noted) where the type is missing or none of them. */

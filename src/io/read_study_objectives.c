@@ -21,7 +21,7 @@ static void read_minimise(mt_study_reader *s, mt_addr value, mt_objective *o)
         mt_objective_type type;
     } words[] = {
         {"change", MT_OBJECTIVE_CHANGE},
-        {  "mass",   MT_OBJECTIVE_MASS},
+        {"mass", MT_OBJECTIVE_MASS},
         {"misfit", MT_OBJECTIVE_MISFIT},
     };
     o->type = MT_OBJECTIVE_EXPRESSION;

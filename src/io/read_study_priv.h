@@ -18,8 +18,8 @@ typedef struct mt_study_reader {
     mt_study *study;
     mt_io_options files;     /* for the models; root is set */
     mt_text *model_messages; /* diagnostics of the model files */
-    mt_status
-        failed; /* MT_OK, or why a model could not be read; only MT_E_INPUT lets reading go on */
+    /* MT_OK, or why a model could not be read; only MT_E_INPUT lets reading go on */
+    mt_status failed;
     mt_err why; /* the first such failure */
     MT_LIST_OF(mt_study_file, read);
 } mt_study_reader;
@@ -28,7 +28,8 @@ typedef struct mt_study_reader {
 #define MT_STUDY_KEY_ENUM(id, name, type, required) id,
 #define MT_STUDY_KEY(id, name, type, required)      {name, type, required},
 
-/* An object matched with its table: the address of every member (MT_NO_ADDR: absent or of a wrong type). */
+/* An object matched with its table: the address of every member (MT_NO_ADDR: absent or of a
+ * wrong type). */
 typedef struct mt_study_object {
     mt_addr addr;
     const mt_key_table *table;
@@ -39,10 +40,12 @@ bool mt_read_study_object(mt_study_reader *s, mt_addr value, const mt_key_table 
 /* Is the member there, be it of a wrong type? Then its address, else the object's. */
 bool mt_read_study_has(const mt_study_reader *s, const mt_study_object *o, int key);
 mt_addr mt_read_study_place(const mt_study_reader *s, const mt_study_object *o, int key);
-/* Which one of n members (neighbours in the table, from `first`) is there? MT_ABSENT where none or several are (noted). */
+/* Which one of n members (neighbours in the table, from `first`) is there? MT_ABSENT where none
+ * or several are (noted). */
 int mt_read_study_one_of(mt_study_reader *s, const mt_study_object *o, int first, int n);
 
-/* A number; expressions are evaluated at the original design. NaN where absent or wrong (noted). */
+/* A number; expressions are evaluated at the original design. NaN where absent or wrong
+ * (noted). */
 double mt_read_study_number(mt_study_reader *s, mt_addr value);
 /* A member that is a number, and its place. */
 double mt_read_study_member(mt_study_reader *s, const mt_study_object *o, int key,
@@ -55,12 +58,14 @@ mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_study_object *o, int
 int mt_read_study_index(mt_study_reader *s, mt_addr value);
 /* Load a model that the study names, once; NULL where it cannot be read (noted). */
 mt_model *mt_read_study_model(mt_study_reader *s, mt_name path);
-/* A list of two numbers, lower and upper; false (noted) where it is anything else. Numbers that are wrong are NaN. */
+/* A list of two numbers, lower and upper; false (noted) where it is anything else. Numbers that
+ * are wrong are NaN. */
 bool mt_read_study_pair(mt_study_reader *s, mt_addr value, double out[2]);
 /* Remember a file that was read, with the digest of its bytes. */
 void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *sha256);
-/* A file was refused: its own diagnostics tell (`told`), or, where there are none, the address of `path` in the study does: also where `file`, the path joined, leads to nothing. What is there
- * and cannot be read is no fault of the study's. */
+/* A file was refused: its own diagnostics tell (`told`), or, where there are none, the address
+ * of `path` in the study does: also where `file`, the path joined, leads to nothing. What is
+ * there and cannot be read is no fault of the study's. */
 void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *file,
                                 mt_status rc, const mt_err *why, bool told);
 
@@ -69,7 +74,8 @@ void mt_read_study_references(mt_study_reader *s, mt_addr object);
 void mt_read_study_goals(mt_study_reader *s, mt_addr list);
 void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor);
 void mt_read_study_machine(mt_study_reader *s, mt_addr value, mt_machine *machine);
-/* The catalogue of aircraft: the one named, else, where a goal needs one, the one beside the model. After the goals. */
+/* The catalogue of aircraft: the one named, else, where a goal needs one, the one beside the
+ * model. After the goals. */
 void mt_read_study_aircraft(mt_study_reader *s, mt_addr value);
 /* After variables and goals; goals: the list of goals, whose indices it uses. */
 void mt_read_study_trade(mt_study_reader *s, mt_addr value, mt_addr goals);

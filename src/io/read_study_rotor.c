@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rotors whose harmonics are to be avoided, and the catalogue of aircraft that they may come from. */
+/* Rotors whose harmonics are to be avoided, and the catalogue of aircraft that they may come
+ * from. */
 #include "io/read_study_priv.h"
 
 #include <stdlib.h>

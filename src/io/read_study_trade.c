@@ -86,7 +86,8 @@ static void pair(mt_study_reader *s, const mt_study_object *o, int first, int se
     }
 }
 
-/* The goal that is item `index` of the file's list, as position in the study's; MT_ABSENT where there is none (noted) or it is wrong. */
+/* The goal that is item `index` of the file's list, as position in the study's; MT_ABSENT where
+ * there is none (noted) or it is wrong. */
 static int goal_of(mt_study_reader *s, mt_addr value, mt_addr goals)
 {
     const int index = mt_reader_count(&s->r, value, 0, MT_MAX_LIST, MT_ABSENT);

@@ -30,7 +30,8 @@ bool mt_reader_type(mt_reader *r, mt_addr value, mt_key_type type)
     return false;
 }
 
-/* The nearest key; else one that only adds a unit or the like to the name ("mass" for "mass_kg"). */
+/* The nearest key; else one that only adds a unit or the like to the name ("mass" for
+ * "mass_kg"). */
 static const char *nearest_key(const char *name, const char *const *names, int n)
 {
     const char *const near = mt_text_nearest(name, names, n);

@@ -7,11 +7,13 @@
 #include "model/model.h"
 
 /*
- * What the readers of models and studies share: objects are checked against tables of keys, values against types; every problem
- * is noted (mt_json_diags) and reading goes on. A problem that a JSON Schema can see as well (unknown or missing member, wrong
- * type, wrong choice, bad form of a name, wrong count where it is fixed) is noted by mt_diag_structure, others by mt_diag_error:
- * schema and reader agree on the former. An address MT_NO_ADDR stands for "not given" and is accepted everywhere: the answer is then
- * the default that each function names, without a message.
+ * What the readers of models and studies share: objects are checked against tables of keys,
+ * values against types; every problem is noted (mt_json_diags) and reading goes on. A problem
+ * that a JSON Schema can see as well (unknown or missing member, wrong type, wrong choice, bad
+ * form of a name, wrong count where it is fixed) is noted by mt_diag_structure, others by
+ * mt_diag_error: schema and reader agree on the former. An address MT_NO_ADDR stands for "not
+ * given" and is accepted everywhere: the answer is then the default that each function names,
+ * without a message.
  */
 typedef struct mt_reader {
     mt_json *doc;
@@ -53,8 +55,9 @@ typedef struct mt_key {
     bool required;
 } mt_key;
 
-/* The members of one kind of object. `what` names it in messages ("unknown member ... of a body" is not said, the pointer tells)
- * and is the name of its definition in the JSON Schema; "" for the root. */
+/* The members of one kind of object. `what` names it in messages ("unknown member ... of a
+ * body" is not said, the pointer tells) and is the name of its definition in the JSON Schema;
+ * "" for the root. */
 typedef struct mt_key_table {
     const char *what;
     const mt_key *keys;
@@ -64,19 +67,23 @@ typedef struct mt_key_table {
 enum { MT_MAX_KEYS = 40 }; /* a table has at most as many */
 
 /**
- * Match an object with a table: members not in it, missing ones and those of a wrong type are noted.
- * @param[out] found  [table->n] address of each member, in the table's order; MT_NO_ADDR where absent or of a wrong type
- * Returns false (all of found MT_NO_ADDR) where value is MT_NO_ADDR or no object; the latter is noted.
+ * Match an object with a table: members not in it, missing ones and those of a wrong type are
+ * noted.
+ * @param[out] found [table->n] address of each member, in the table's order; MT_NO_ADDR where
+ *   absent or of a wrong type Returns false (all of found MT_NO_ADDR) where value is MT_NO_ADDR
+ *   or no object; the latter is noted.
  */
 bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt_addr *found);
-/* Is the value of this type? Notes it where not ("must be a number or an expression, not a list"). */
+/* Is the value of this type? Notes it where not ("must be a number or an expression, not a
+ * list"). */
 bool mt_reader_type(mt_reader *r, mt_addr value, mt_key_type type);
 
 /*
  * The items of a list or the members of an object, in order:
  *     for (mt_items i = mt_reader_items(r, value); mt_items_next(&i);) { ... i.at ... }
- * Whoever fills an array takes its room (mt_reader_room) from the walk that fills it: what is counted is what is walked, and no item
- * comes beyond the room. Nobody else walks or counts values (a test looks).
+ * Whoever fills an array takes its room (mt_reader_room) from the walk that fills it: what is
+ * counted is what is walked, and no item comes beyond the room. Nobody else walks or counts
+ * values (a test looks).
  */
 typedef struct mt_items {
     const mt_json *doc;
@@ -88,15 +95,18 @@ typedef struct mt_items {
 
 /* None where value is MT_NO_ADDR, or neither list nor object. */
 mt_items mt_reader_items(const mt_reader *r, mt_addr value);
-/* Where a list of one may be written without the list: anything but a list is its own only item. */
+/* Where a list of one may be written without the list: anything but a list is its own only
+ * item. */
 mt_items mt_reader_one_or_items(const mt_reader *r, mt_addr value);
-/* The items of what must have some; noted ("the list of bands is empty") where given and without any. what: "the list of bands". */
+/* The items of what must have some; noted ("the list of bands is empty") where given and
+ * without any. what: "the list of bands". */
 mt_items mt_reader_some_items(mt_reader *r, mt_addr value, const char *what);
 /* The first two items, MT_NO_ADDR where there are fewer, and how many there are. */
 int mt_reader_pair(const mt_reader *r, mt_addr value, mt_addr *first, mt_addr *second);
 /* Go on to the next item; false where there is none. */
 bool mt_items_next(mt_items *items);
-/* Zeroed room in r->mem for all items of a walk; out of memory (noted) gives NULL and ends the walk. */
+/* Zeroed room in r->mem for all items of a walk; out of memory (noted) gives NULL and ends the
+ * walk. */
 void *mt_reader_room(mt_reader *r, mt_items *items, size_t size);
 
 /* Copy of a string into r->mem; NULL where absent or not a string (noted). */
@@ -105,24 +115,30 @@ const char *mt_reader_text(mt_reader *r, mt_addr value);
 mt_name mt_reader_ref(mt_reader *r, mt_addr value);
 /* A string that names a new thing: form [A-Za-z_][A-Za-z0-9_+-]*, noted where not. */
 mt_name mt_reader_name(mt_reader *r, mt_addr value);
-/* The forms of member names that name a thing: item (as above), parameter (without + and -), title (any text, not empty). */
+/* The forms of member names that name a thing: item (as above), parameter (without + and -),
+ * title (any text, not empty). */
 typedef enum mt_name_form { MT_NAME_ITEM, MT_NAME_PARAMETER, MT_NAME_TITLE } mt_name_form;
-/* The name of a member of a free object (parameters, points, modes, ...) as the name of a new thing; its addr is the name's. */
+/* The name of a member of a free object (parameters, points, modes, ...) as the name of a new
+ * thing; its addr is the name's. */
 mt_name mt_reader_member_name(mt_reader *r, mt_addr value, mt_name_form form);
 /* A list of strings that refer to something; an absent one gives count 0. */
 mt_name_list mt_reader_refs(mt_reader *r, mt_addr value);
-/* Which of n names the string is; MT_ABSENT where absent or none (noted, with "did you mean" and the known ones). what: "type". */
+/* Which of n names the string is; MT_ABSENT where absent or none (noted, with "did you mean"
+ * and the known ones). what: "type". */
 int mt_reader_choice(mt_reader *r, mt_addr value, const char *what, const char *const *names,
                      int n);
-/* A whole number within least..most; fallback where absent or wrong (noted). 9, 9.0 and 9e0 are whole. */
+/* A whole number within least..most; fallback where absent or wrong (noted). 9, 9.0 and 9e0 are
+ * whole. */
 int mt_reader_count(mt_reader *r, mt_addr value, int least, int most, int fallback);
 bool mt_reader_flag(mt_reader *r, mt_addr value, bool fallback);
-/* A number or an expression; false (out is zeroed) where absent, wrong (noted), or out of memory. */
+/* A number or an expression; false (out is zeroed) where absent, wrong (noted), or out of
+ * memory. */
 bool mt_reader_expr(mt_reader *r, mt_addr value, mt_expr *out);
 /* The same for a text that came from elsewhere than a value of its own. */
 bool mt_reader_expr_text(mt_reader *r, mt_addr addr, const char *text, mt_expr *out);
 
-/* MT_E_MEMORY, MT_E_INPUT where the document has errors, or MT_OK. err: the first diagnostic and how many more there are. */
+/* MT_E_MEMORY, MT_E_INPUT where the document has errors, or MT_OK. err: the first diagnostic
+ * and how many more there are. */
 mt_status mt_reader_status(const mt_reader *r, const char *file, mt_err *err);
 
 #endif

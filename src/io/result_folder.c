@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * What belongs to a result.json. It names the files beside it with their digests (run.outputs) but for timing.json, which differs from run to run where the result does not, and so names
- * the result's digest instead. A file that is not there contradicts nothing, unless the folder is just being replaced; one that is must be the one that is named.
+ * What belongs to a result.json. It names the files beside it with their digests (run.outputs)
+ * but for timing.json, which differs from run to run where the result does not, and so names
+ * the result's digest instead. A file that is not there contradicts nothing, unless the folder
+ * is just being replaced; one that is must be the one that is named.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -70,7 +72,8 @@ static mt_status names_result(const mt_file *timing, const char *sha256, bool *d
     return rc == MT_E_INPUT ? MT_OK : rc;
 }
 
-/* The file of that name beside the result; `sha256` is its own digest, or the result's for timing.json. */
+/* The file of that name beside the result; `sha256` is its own digest, or the result's for
+ * timing.json. */
 static mt_status look_at(const char *path, const char *name, const char *sha256,
                          part_state *state, mt_err *err)
 {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The strict scanner: one pass over the bytes by recursive descent (nesting is limited), RFC 8259 exactly. A problem inside a token,
- * a missing or superfluous comma and a comment are noted and the scan goes on; where the structure is lost it ends.
+ * The strict scanner: one pass over the bytes by recursive descent (nesting is limited), RFC
+ * 8259 exactly. A problem inside a token, a missing or superfluous comma and a comment are
+ * noted and the scan goes on; where the structure is lost it ends.
  */
 #include "io/json_priv.h"
 
@@ -63,7 +64,8 @@ static int peek(const scan *sc)
     return sc->i < sc->n ? sc->s[sc->i] : -1;
 }
 
-/* Length of the well-formed UTF-8 sequence that starts at s (Unicode 15, table 3-7), 0 where there is none. */
+/* Length of the well-formed UTF-8 sequence that starts at s (Unicode 15, table 3-7), 0 where
+ * there is none. */
 static size_t utf8_length(const unsigned char *s, size_t n)
 {
     if (s[0] < 0x80U) {
@@ -238,7 +240,8 @@ static size_t digits(const unsigned char *s, size_t n)
     return k;
 }
 
-/* What is wrong with a number, by the grammar of RFC 8259, 6:  [-] int [ "." digits ] [ e [+-] digits ]; NULL: nothing. */
+/* What is wrong with a number, by the grammar of RFC 8259, 6: [-] int [ "." digits ] [ e [+-]
+ * digits ]; NULL: nothing. */
 static const char *number_fault(const unsigned char *s, size_t n)
 {
     size_t i = s[0] == '-' ? 1 : 0;
@@ -353,7 +356,8 @@ static bool scan_member_name(scan *sc, size_t *name)
     return true;
 }
 
-/* What stands between two items: a comma, or what is to be said about it. *more: another item follows. */
+/* What stands between two items: a comma, or what is to be said about it. *more: another item
+ * follows. */
 static bool scan_separator(scan *sc, char close, bool *more)
 {
     const bool is_list = close == ']';

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * SHA-256, FIPS 180-4 (2015), sections 4.1.2, 5.1.1, 6.2. The round constants are the first 32 bits of the fractional parts of the
- * cube roots of the first 64 primes, the initial hash those of the square roots of the first 8 (4.2.2, 5.3.3); they are
- * computed here, exactly, by integer roots, instead of being typed in.
+ * SHA-256, FIPS 180-4 (2015), sections 4.1.2, 5.1.1, 6.2. The round constants are the first 32
+ * bits of the fractional parts of the cube roots of the first 64 primes, the initial hash those
+ * of the square roots of the first 8 (4.2.2, 5.3.3); they are computed here, exactly, by
+ * integer roots, instead of being typed in.
  */
 #include <stdbool.h>
 #include <stdint.h>

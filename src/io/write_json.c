@@ -19,8 +19,9 @@ static bool is_number_char(char c)
     return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == 'e';
 }
 
-/* printf writes the decimal point of the locale, which may be several bytes: whatever is not a digit, sign or exponent
- * becomes one point. 17 digits identify a double (IEEE 754-2019, 5.12.2). */
+/* printf writes the decimal point of the locale, which may be several bytes: whatever is not a
+ * digit, sign or exponent becomes one point. 17 digits identify a double (IEEE 754-2019,
+ * 5.12.2). */
 const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE])
 {
     if (!isfinite(value)) {
@@ -42,7 +43,8 @@ const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE]
     return buffer;
 }
 
-/* One character at s as JSON text; returns how many bytes of s it took. What cannot be seen is escaped, too. */
+/* One character at s as JSON text; returns how many bytes of s it took. What cannot be seen is
+ * escaped, too. */
 static size_t put_character(mt_text *out, const char *s)
 {
     static const char SHORT[] = "\"\"\\\\\bb\ff\nn\rr\tt"; /* character, letter of its escape */

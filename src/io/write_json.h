@@ -8,8 +8,8 @@
 #include "base/text.h"
 
 /*
- * A streaming JSON writer: RFC 8259 text, two spaces per level, members in the order written, no heap of its own. The same
- * calls give the same bytes, in any locale.
+ * A streaming JSON writer: RFC 8259 text, two spaces per level, members in the order written,
+ * no heap of its own. The same calls give the same bytes, in any locale.
  *
  *     mt_json_writer w = mt_json_writer_default(&text);
  *     mt_json_open(&w, NULL, '{');
@@ -17,8 +17,9 @@
  *     mt_json_close(&w);
  *     if (!mt_json_done(&w)) ...
  *
- * `name` is the member's name inside an object and NULL inside an array or at the top. Misuse (a name in an array, none in an
- * object, a bracket left open, nesting beyond the limit) is our bug: it is remembered, and mt_json_done says so.
+ * `name` is the member's name inside an object and NULL inside an array or at the top. Misuse
+ * (a name in an array, none in an object, a bracket left open, nesting beyond the limit) is our
+ * bug: it is remembered, and mt_json_done says so.
  */
 enum { MT_JSON_WRITER_DEPTH = 32, MT_JSON_NUMBER_SIZE = 32 };
 
@@ -37,7 +38,8 @@ void mt_json_open(mt_json_writer *w, const char *name, char bracket);
 /* The same on one line: for short lists of numbers. What is opened inside is flat as well. */
 void mt_json_open_flat(mt_json_writer *w, const char *name, char bracket);
 void mt_json_close(mt_json_writer *w);
-/* A number with 17 significant digits, so that reading it gives the same double; NaN and infinities become null. */
+/* A number with 17 significant digits, so that reading it gives the same double; NaN and
+ * infinities become null. */
 void mt_json_put_number(mt_json_writer *w, const char *name, double value);
 void mt_json_put_integer(mt_json_writer *w, const char *name, long long value);
 void mt_json_put_bool(mt_json_writer *w, const char *name, bool value);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* result.json: everything that a study answered, and nothing about where, when or with how many workers. */
+/* result.json: everything that a study answered, and nothing about where, when or with how many
+ * workers. */
 #include <math.h>
 
 #include "io/io.h"

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * OpenBLAS claims a work buffer (128 MB of address space, of which small matrices touch little) for every thread that is in it at the same
- * time, keeps it, and where it cannot have one asks for ever. Its own threads, started when it is loaded, do the same before main begins.
- * So a program loads it with one thread, and claims the buffers of its workers while a failure can still be told.
- * (The serial OpenBLAS starts no threads, but without locks: Debian's is not for callers with threads.)
+ * OpenBLAS claims a work buffer (128 MB of address space, of which small matrices touch little)
+ * for every thread that is in it at the same time, keeps it, and where it cannot have one asks
+ * for ever. Its own threads, started when it is loaded, do the same before main begins. So a
+ * program loads it with one thread, and claims the buffers of its workers while a failure can
+ * still be told. (The serial OpenBLAS starts no threads, but without locks: Debian's is not for
+ * callers with threads.)
  */
 #include "linalg/blas.h"
 
@@ -11,7 +13,8 @@
 
 #include <stdlib.h>
 
-/* Exported by every OpenBLAS, though no header declares them: its constructor, which does nothing the second time, and its pool. */
+/* Exported by every OpenBLAS, though no header declares them: its constructor, which does
+ * nothing the second time, and its pool. */
 extern void gotoblas_init(void) __attribute__((weak));
 extern void *blas_memory_alloc(int position) __attribute__((weak));
 extern void blas_memory_free(void *buffer) __attribute__((weak));

@@ -82,11 +82,13 @@ mt_status mt_qr_factor(int m, int n, const double *a, int lda, double tol, mt_ar
     return MT_OK;
 }
 
-/* Up to so many columns the reflectors are applied one by one: the blocked routine first multiplies them together, which costs as much as some ten columns, and wants a
- * workspace of 33 kB. */
+/* Up to so many columns the reflectors are applied one by one: the blocked routine first
+ * multiplies them together, which costs as much as some ten columns, and wants a workspace of
+ * 33 kB. */
 enum { FEW_COLUMNS = 8 };
 
-/* x := H_1 ... H_k x, or H_k ... H_1 x, with H_i = 1 - tau_i v v^T, v = (0, ..., 0, 1, below the diagonal of column i). */
+/* x := H_1 ... H_k x, or H_k ... H_1 x, with H_i = 1 - tau_i v v^T, v = (0, ..., 0, 1, below
+ * the diagonal of column i). */
 static void reflect(const mt_qr *f, bool trans, double *x)
 {
     const int k = least(f->m, f->n);

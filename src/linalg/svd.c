@@ -58,8 +58,8 @@ static mt_status svd(svd_job *j, mt_arena *scratch, mt_err *err)
     if (j->vectors && j->vt == NULL) {
         j->vt = mt_arena_f64(scratch, r, n);
     }
-    double *const copy =
-        mt_arena_f64(scratch, m, n); /* dgesdd destroys A even where it fails */
+    /* dgesdd destroys A even where it fails */
+    double *const copy = mt_arena_f64(scratch, m, n);
     lapack_int *const iwork = mt_arena_alloc(scratch, 8 * r, sizeof *iwork);
     if ((j->vectors && (j->u == NULL || j->vt == NULL)) || copy == NULL || iwork == NULL) {
         return mt_fail_memory(err);
@@ -123,8 +123,8 @@ static mt_status jacobi(int m, int n, double *a, double *s, double *v, mt_arena 
     if (info < 0) {
         return mt_lapack_bug("dgejsv", info, err);
     }
-    const double scale =
-        work[0] / work[1]; /* guards over- and underflow: values are scale * s */
+    /* guards over- and underflow: values are scale * s */
+    const double scale = work[0] / work[1];
     for (int i = 0; i < n; i++) {
         s[i] *= scale;
     }

@@ -74,25 +74,21 @@ static int add_vec(mt_builder *b, const mt_vec_def *def)
 
 int mt_build_vec(mt_builder *b, mt_vec_kind kind, const mt_node node[3], const char *what)
 {
-    const mt_vec_def def = {
-        .kind = kind,
-        .node = {node[0], node[1], node[2]},
-        .axis = -1,
-        .helper = -1,
-        .what = what
-    };
+    const mt_vec_def def = {.kind = kind,
+                            .node = {node[0], node[1], node[2]},
+                            .axis = -1,
+                            .helper = -1,
+                            .what = what};
     return add_vec(b, &def);
 }
 
 int mt_build_perp(mt_builder *b, int axis, int which)
 {
-    const mt_vec_def def = {
-        .kind = which == 1 ? MT_VEC_PERP1 : MT_VEC_PERP2,
-        .node = {MT_NO_NODE, MT_NO_NODE, MT_NO_NODE},
-        .axis = axis,
-        .helper = -1,
-        .what = b->sys->vecs != NULL ? b->sys->vecs[axis].what : NULL
-    };
+    const mt_vec_def def = {.kind = which == 1 ? MT_VEC_PERP1 : MT_VEC_PERP2,
+                            .node = {MT_NO_NODE, MT_NO_NODE, MT_NO_NODE},
+                            .axis = axis,
+                            .helper = -1,
+                            .what = b->sys->vecs != NULL ? b->sys->vecs[axis].what : NULL};
     return add_vec(b, &def);
 }
 
@@ -148,8 +144,8 @@ mt_measure_def mt_measure_def_default(mt_measure_kind kind, int body_a, int body
         .kind = kind,
         .component = 0,
         .body = {body_a, body_b},
-        .point = { -1,     -1     },
-        .dir = { -1,     -1,          -1},
+        .point = {-1, -1},
+        .dir = {-1, -1, -1},
     };
     for (int i = 0; i < MT_BEAM_NUMBERS; i++) {
         def.beam[i] = MT_NO_NODE;
@@ -187,14 +183,12 @@ void mt_build_constraint(mt_builder *b, int measure, mt_node target, bool drawn)
         return;
     }
     sys->constraints = grown;
-    const mt_constraint_def def = {
-        .terms = 1,
-        .measure = {   measure,         -1},
-        .coefficient = {MT_NO_NODE, MT_NO_NODE},
-        .target = target,
-        .drawn = drawn,
-        .joint = sys->n_joints - 1
-    };
+    const mt_constraint_def def = {.terms = 1,
+                                   .measure = {measure, -1},
+                                   .coefficient = {MT_NO_NODE, MT_NO_NODE},
+                                   .target = target,
+                                   .drawn = drawn,
+                                   .joint = sys->n_joints - 1};
     sys->constraints[sys->n_constraints++] = def;
 }
 
@@ -293,36 +287,27 @@ mt_status mt_build_bodies(mt_builder *b)
         const mt_node mass = mt_build_num_or(b, body->mass, b->zero);
         b->body_of[i] = at;
         const int item = mt_build_item(b, body->name.s, mass);
-        mt_inertia_def def = {
-            .kind = MT_INERTIA_TRANSLATION,
-            .coefficient = mass,
-            .body = {        at,         at},
-            .point = {        -1,         -1},
-            .dir = {        -1,         -1,-1},
-            .shape = {MT_NO_NODE, MT_NO_NODE          },
-            .item = item
-        };
+        mt_inertia_def def = {.kind = MT_INERTIA_TRANSLATION,
+                              .coefficient = mass,
+                              .body = {at, at},
+                              .point = {-1, -1},
+                              .dir = {-1, -1, -1},
+                              .shape = {MT_NO_NODE, MT_NO_NODE},
+                              .item = item};
         mt_build_inertia(b, &def);
         mt_build_gravity_at(b, at, -1, mass);
         if (body->point_mass) {
             continue;
         }
-        static const int AXES[6][2] = {
-            {0, 0},
-            {1, 1},
-            {2, 2},
-            {0, 1},
-            {0, 2},
-            {1, 2}
-        };
+        static const int AXES[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
         def.kind = MT_INERTIA_ROTATION;
         for (int k = 0; k < (b->sys->dimension == 2 ? 1 : 6); k++) {
             const int *const axes = b->sys->dimension == 2 ? AXES[2] : AXES[k];
             def.coefficient = mt_build_num_or(b, body->inertia[k], b->zero);
             def.dir[0] = b->axis_vec[axes[0]];
             def.dir[1] = b->axis_vec[axes[1]];
-            if (axes[0] !=
-                axes[1]) { /* J_ab and J_ba; the tensor's off-diagonal entry as it stands in the matrix */
+            /* J_ab and J_ba; the tensor's off-diagonal entry as it stands in the matrix */
+            if (axes[0] != axes[1]) {
                 def.coefficient = mt_program_mul(
                     &b->sys->program, mt_program_const(&b->sys->program, 2.0), def.coefficient);
             }

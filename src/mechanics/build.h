@@ -4,7 +4,8 @@
 
 #include "mechanics/system.h"
 
-/* What the files build_*.c share while a system is made. Out of memory is noted in program.out_of_memory and found at the end. */
+/* What the files build_*.c share while a system is made. Out of memory is noted in
+ * program.out_of_memory and found at the end. */
 typedef struct mt_builder {
     mt_system *sys;
     const mt_model *model;
@@ -33,14 +34,18 @@ void mt_build_constraint(mt_builder *b, int measure, mt_node target, bool drawn)
 void mt_build_inertia(mt_builder *b, const mt_inertia_def *def);
 void mt_build_load(mt_builder *b, const mt_load_def *def);
 void mt_build_gravity_at(mt_builder *b, int body, int point, mt_node mass);
-/* A uniform thin rod between two points: its velocity is linear along it, so that the consistent mass m/6 [2 I, I; I, 2 I] is exact, stretched or rigid, and half its weight at each end too. */
+/* A uniform thin rod between two points: its velocity is linear along it, so that the
+ * consistent mass m/6 [2 I, I; I, 2 I] is exact, stretched or rigid, and half its weight at
+ * each end too. */
 void mt_build_rod(mt_builder *b, const int body[2], const int arm[2], mt_node mass, int item);
 int mt_build_item(mt_builder *b, const char *name, mt_node mass);
 const char *mt_build_name(mt_builder *b, const char *fmt, ...) MT_PRINTF(2, 3);
-/* State body that an attachment means; false where it is absent in this configuration. MT_GROUND for the ground. */
+/* State body that an attachment means; false where it is absent in this configuration.
+ * MT_GROUND for the ground. */
 bool mt_build_attach(mt_builder *b, const mt_attach *a, int *body);
 mt_measure_def mt_measure_def_default(mt_measure_kind kind, int body_a, int body_b);
-/* Coordinate of the joint, or of the hinge of a link, that stands in the model under these indices (MT_ABSENT: not that); -1: it is not in this configuration or has none. */
+/* Coordinate of the joint, or of the hinge of a link, that stands in the model under these
+ * indices (MT_ABSENT: not that); -1: it is not in this configuration or has none. */
 int mt_build_find_coordinate(const mt_builder *b, int joint, int link, int hinge, bool angle);
 /* ANGLE measure about a UNIT axis vector. In two dimensions axis is the global z. */
 int mt_build_angle(mt_builder *b, int body_a, int body_b, int axis);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The driven joint: that of the configuration, or one that the caller names, whose position is then an input. */
+/* The driven joint: that of the configuration, or one that the caller names, whose position is
+ * then an input. */
 #include <string.h>
 
 #include "base/text.h"

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Joints as equations of measures. With P on body a, Q on body b (the joint's point as drawn on each), a the joint's axis and b, c = a x b perpendicular to it:
- *   point      (Q - P) = 0 along all axes                    parallel   b_a . a_b = c_a . a_b = 0
- *   on line    b_a . (Q - P) = c_a . (Q - P) = 0             no twist   b_a . c_b = 0
- * revolute = point + parallel; cylindrical = on line + parallel; prismatic = cylindrical + no twist; spherical = point; universal = point + a_a . a'_b as drawn;
- * planar = a_a . (Q - P) = 0 + parallel; fixed = point + no rotation; distance |Q - P| = length; on plane a_a . (Q - P) = 0; orientation = no rotation. A gear or
- * rack couples the coordinates of two joints: s_1 - ratio s_0 as drawn. In two dimensions what lies out of the plane is left out.
+ * Joints as equations of measures. With P on body a, Q on body b (the joint's point as drawn on
+ * each), a the joint's axis and b, c = a x b perpendicular to it:
+ *   point (Q - P) = 0 along all axes parallel b_a . a_b = c_a . a_b = 0 on line b_a . (Q - P) =
+ *   c_a . (Q - P) = 0 no twist b_a . c_b = 0
+ * revolute = point + parallel; cylindrical = on line + parallel; prismatic = cylindrical + no
+ * twist; spherical = point; universal = point + a_a . a'_b as drawn; planar = a_a . (Q - P) = 0
+ * + parallel; fixed = point + no rotation; distance |Q - P| = length; on plane a_a . (Q - P) =
+ * 0; orientation = no rotation. A gear or rack couples the coordinates of two joints: s_1 -
+ * ratio s_0 as drawn. In two dimensions what lies out of the plane is left out.
  */
 #include "mechanics/build.h"
 
@@ -123,7 +126,8 @@ void mt_build_joint_equations(mt_builder *b, mt_joint_type type, const int body[
     }
 }
 
-/* The joint's coordinate from the reference position: an angle about its axis or a displacement along it; -1: none. */
+/* The joint's coordinate from the reference position: an angle about its axis or a displacement
+ * along it; -1: none. */
 static int coordinate_of(mt_builder *b, mt_joint_type type, const int body[2], const int arm[2],
                          int axis)
 {
@@ -151,16 +155,15 @@ static mt_system_joint *new_joint(mt_builder *b, const mt_joint *joint, const in
         return NULL;
     }
     sys->joints = joints;
-    sys->joints[sys->n_joints] = (mt_system_joint){
-        .name = joint->name.s,
-        .type = joint->type,
-        .first = sys->n_constraints,
-        .coordinate = -1,
-        .body = {body[0], body[1]},
-        .model_joint = (int)(joint - b->model->joints),
-        .link = MT_ABSENT,
-        .hinge = -1
-    };
+    sys->joints[sys->n_joints] =
+        (mt_system_joint){.name = joint->name.s,
+                          .type = joint->type,
+                          .first = sys->n_constraints,
+                          .coordinate = -1,
+                          .body = {body[0], body[1]},
+                          .model_joint = (int)(joint - b->model->joints),
+                          .link = MT_ABSENT,
+                          .hinge = -1};
     return &sys->joints[sys->n_joints++];
 }
 

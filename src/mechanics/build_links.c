@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Links. Lumped: n rigid elements of length l_i, hinged, with a torsional spring in each hinge (paper, Fig. 4); default stiffness EI over the distance of the two
- * element centres (EI/L_e for equal elements).
+ * Links. Lumped: n rigid elements of length l_i, hinged, with a torsional spring in each hinge
+ * (paper, Fig. 4); default stiffness EI over the distance of the two element centres (EI/L_e
+ * for equal elements).
  *
- * Beam element: the springs of its six generalised strains (measure_beam.c), EA/l, GJ/l, EI/l and 3 EI/(l (1 + Phi)); about the straight element that is the Euler-Bernoulli or Timoshenko stiffness exactly, and its
- * springs' forces make the consistent geometric stiffness.
+ * Beam element: the springs of its six generalised strains (measure_beam.c), EA/l, GJ/l, EI/l
+ * and 3 EI/(l (1 + Phi)); about the straight element that is the Euler-Bernoulli or Timoshenko
+ * stiffness exactly, and its springs' forces make the consistent geometric stiffness.
  */
 #include "mechanics/build.h"
 
@@ -41,7 +43,8 @@ typedef struct section_nodes {
     mt_node torsion;
 } section_nodes;
 
-/* Torsion constant of a rectangle a >= c: a c^3 (1/3 - 0.21 c/a (1 - c^4/(12 a^4))), within 0.5 % (Roark's Formulas for Stress and Strain, table 10.1). */
+/* Torsion constant of a rectangle a >= c: a c^3 (1/3 - 0.21 c/a (1 - c^4/(12 a^4))), within 0.5
+ * % (Roark's Formulas for Stress and Strain, table 10.1). */
 static mt_node rectangle_torsion(mt_builder *b, mt_node w, mt_node h)
 {
     mt_program *const p = &b->sys->program;
@@ -55,8 +58,8 @@ static mt_node rectangle_torsion(mt_builder *b, mt_node w, mt_node h)
 }
 
 /*
- * d^2 - i^2 and d^4 - i^4 by their factors (d - i)(d + i)(d^2 + i^2): nothing cancels in a thin wall, and bounds over intervals stay positive. Where
- * i is written as d - x, d - i is x.
+ * d^2 - i^2 and d^4 - i^4 by their factors (d - i)(d + i)(d^2 + i^2): nothing cancels in a thin
+ * wall, and bounds over intervals stay positive. Where i is written as d - x, d - i is x.
  */
 static void ring(mt_builder *b, mt_node d, mt_node inner, section_nodes *out)
 {
@@ -111,8 +114,8 @@ static int cross_vec(mt_builder *b, int a, int c)
 {
     const mt_node none[3] = {MT_NO_NODE, MT_NO_NODE, MT_NO_NODE};
     const int at = mt_build_vec(b, MT_VEC_CROSS, none, b->sys->vecs[a].what);
-    b->sys->vecs[at].axis =
-        a; /* a fresh entry: axis and helper were -1, which no finished CROSS has */
+    /* a fresh entry: axis and helper were -1, which no finished CROSS has */
+    b->sys->vecs[at].axis = a;
     b->sys->vecs[at].helper = c;
     return at;
 }
@@ -189,15 +192,13 @@ static mt_node link_rotary(mt_builder *b, const mt_link *link, const link_geomet
 static mt_inertia_def inertia_default(mt_inertia_kind kind, int body_a, int body_b,
                                       mt_node coefficient, int item)
 {
-    const mt_inertia_def def = {
-        .kind = kind,
-        .coefficient = coefficient,
-        .body = {    body_a,     body_b},
-        .point = {        -1,         -1},
-        .dir = {        -1,         -1,-1},
-        .shape = {MT_NO_NODE, MT_NO_NODE          },
-        .item = item
-    };
+    const mt_inertia_def def = {.kind = kind,
+                                .coefficient = coefficient,
+                                .body = {body_a, body_b},
+                                .point = {-1, -1},
+                                .dir = {-1, -1, -1},
+                                .shape = {MT_NO_NODE, MT_NO_NODE},
+                                .item = item};
     return def;
 }
 
@@ -244,28 +245,25 @@ static void build_hinge(mt_builder *b, const mt_link *link, const link_geometry 
     }
     sys->springs = springs;
     mt_system_joint *const joint = &sys->joints[sys->n_joints++];
-    *joint = (mt_system_joint){
-        .name = mt_build_name(b, "%s.h%d", link->name.s, i),
-        .type = MT_JOINT_REVOLUTE,
-        .first = sys->n_constraints,
-        .angle = true,
-        .body = {body[0], body[1]},
-        .model_joint = MT_ABSENT,
-        .link = (int)(link - b->model->links),
-        .hinge = i - 1
-    };
+    *joint = (mt_system_joint){.name = mt_build_name(b, "%s.h%d", link->name.s, i),
+                               .type = MT_JOINT_REVOLUTE,
+                               .first = sys->n_constraints,
+                               .angle = true,
+                               .body = {body[0], body[1]},
+                               .model_joint = MT_ABSENT,
+                               .link = (int)(link - b->model->links),
+                               .hinge = i - 1};
     const int axis[2] = {sys->dimension == 2 ? b->axis_vec[2] : g->triad[2], -1};
     mt_build_joint_equations(b, MT_JOINT_REVOLUTE, body, arm, axis, MT_NO_NODE);
     joint->count = sys->n_constraints - joint->first;
     joint->coordinate = mt_build_angle(b, body[0], body[1], axis[0]);
-    sys->springs[sys->n_springs++] = (mt_spring_def){
-        .name = mt_build_name(b, "%s.k%d", link->name.s, i),
-        .measure = {joint->coordinate, joint->coordinate},
-        .stiffness = stiffness,
-        .free = MT_NO_NODE,
-        .preload = MT_NO_NODE,
-        .item = sys->n_items - 1
-    };
+    sys->springs[sys->n_springs++] =
+        (mt_spring_def){.name = mt_build_name(b, "%s.k%d", link->name.s, i),
+                        .measure = {joint->coordinate, joint->coordinate},
+                        .stiffness = stiffness,
+                        .free = MT_NO_NODE,
+                        .preload = MT_NO_NODE,
+                        .item = sys->n_items - 1};
 }
 
 static void build_lumped(mt_builder *b, const mt_link *link, const link_geometry *g,
@@ -322,22 +320,21 @@ static void beam_spring(mt_builder *b, const mt_link *link, int element,
     }
     sys->springs = springs;
     const int m = mt_build_measure(b, def);
-    sys->springs[sys->n_springs++] = (mt_spring_def){
-        .name = mt_build_name(b, "%s.e%d", link->name.s, element),
-        .measure = {m, m},
-        .stiffness = stiffness,
-        .free = MT_NO_NODE,
-        .preload = MT_NO_NODE,
-        .item = sys->n_items - 1
-    };
+    sys->springs[sys->n_springs++] =
+        (mt_spring_def){.name = mt_build_name(b, "%s.e%d", link->name.s, element),
+                        .measure = {m, m},
+                        .stiffness = stiffness,
+                        .free = MT_NO_NODE,
+                        .preload = MT_NO_NODE,
+                        .item = sys->n_items - 1};
 }
 
 /* What all elements of a beam have in common. [2]: bending about e2, e3. */
 typedef struct beam_nodes {
     mt_node length;
     mt_node mass;
-    mt_node
-        twist; /* moments of inertia: about the axis, of the sections' rotation in bending */
+    /* moments of inertia: about the axis, of the sections' rotation in bending */
+    mt_node twist;
     mt_node rotary[2];
     mt_node ei[2];
     mt_node gj;
@@ -355,7 +352,8 @@ static mt_node shear_modulus(mt_builder *b, const mt_link *link)
                           times(b, 2.0, mt_program_add(p, b->one, nu)));
 }
 
-/* 1/(1 + Phi) = k A G l^2/(k A G l^2 + 12 E I), over E where Poisson's ratio is known: then it depends on no modulus. */
+/* 1/(1 + Phi) = k A G l^2/(k A G l^2 + 12 E I), over E where Poisson's ratio is known: then it
+ * depends on no modulus. */
 static mt_node shear_shape(mt_builder *b, const mt_link *link, const section_nodes *s,
                            mt_node second_moment, mt_num coefficient, mt_node length)
 {
@@ -448,7 +446,8 @@ static void beam_springs(mt_builder *b, const mt_link *link, const link_geometry
 static void beam_gravity(mt_builder *b, const link_geometry *g, const int element[3],
                          mt_node half, mt_node length)
 {
-    /* the consistent load of the cubic element is half its weight at a distance l/6 inwards of each node */
+    /* the consistent load of the cubic element is half its weight at a distance l/6 inwards of
+     * each node */
     for (int end = 0; end < 2; end++) {
         mt_node arm[3];
         const mt_node offset = mt_program_div(

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Dead loads as potentials: -F . x of a point, -M theta of a plane angle, -F s or -M theta of a joint's coordinate s or theta. Their second derivatives are the geometric stiffness: that of a
- * force at the arm w is (F . w) I - (F w^T + w F^T)/2 on the rotation of its body (measure.c), that of a plane angle is none.
+ * Dead loads as potentials: -F . x of a point, -M theta of a plane angle, -F s or -M theta of a
+ * joint's coordinate s or theta. Their second derivatives are the geometric stiffness: that of
+ * a force at the arm w is (F . w) I - (F w^T + w F^T)/2 on the rotation of its body
+ * (measure.c), that of a plane angle is none.
  */
 #include "mechanics/build.h"
 
@@ -33,14 +35,12 @@ static int point_of(mt_builder *b, const mt_load *load, int body)
 static void build_size(mt_builder *b, const mt_load *load, int measure, mt_node size)
 {
     if (size != b->zero) {
-        const mt_load_def def = {
-            .name = load->name.s,
-            .measure = measure,
-            .body = MT_GROUND,
-            .point = -1,
-            .force = {MT_NO_NODE, MT_NO_NODE, MT_NO_NODE},
-            .size = size
-        };
+        const mt_load_def def = {.name = load->name.s,
+                                 .measure = measure,
+                                 .body = MT_GROUND,
+                                 .point = -1,
+                                 .force = {MT_NO_NODE, MT_NO_NODE, MT_NO_NODE},
+                                 .size = size};
         mt_build_load(b, &def);
     }
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensors: which freedoms each channel reads. The element that a fraction of a link falls into is chosen once, at the original design. */
+/* Sensors: which freedoms each channel reads. The element that a fraction of a link falls into
+ * is chosen once, at the original design. */
 #include <math.h>
 
 #include "expr/op.h"
@@ -62,7 +63,8 @@ static void link_point(mt_builder *b, const mt_link *link, mt_node fraction, mt_
     }
 }
 
-/* Rigid element whose centre is the nearest to the point among those that contain it: the nearest centre measured in half lengths. */
+/* Rigid element whose centre is the nearest to the point among those that contain it: the
+ * nearest centre measured in half lengths. */
 static int element_at(mt_builder *b, int first, int n, const mt_node at[3], const double *v)
 {
     int best = 0;
@@ -104,13 +106,11 @@ static mt_status sensor_on_link(mt_builder *b, const mt_sensor *sensor, const do
         return mt_fail(b->err, MT_E_INPUT, "sensor \"%s\": fraction %g is not between 0 and 1",
                        sensor->name.s, f);
     }
-    mt_channel_def def = {
-        .body = {     rigid,  MT_GROUND},
-        .point = -1,
-        .dir = {        -1,         -1,-1},
-        .shape = {MT_NO_NODE, MT_NO_NODE          },
-        .fraction = MT_NO_NODE
-    };
+    mt_channel_def def = {.body = {rigid, MT_GROUND},
+                          .point = -1,
+                          .dir = {-1, -1, -1},
+                          .shape = {MT_NO_NODE, MT_NO_NODE},
+                          .fraction = MT_NO_NODE};
     if (rigid >= 0) {
         def.point = mt_build_arm(b, rigid, at, sensor->name.s);
         add_channels(b, sensor, def, false);
@@ -141,13 +141,11 @@ static mt_status sensor_on_link(mt_builder *b, const mt_sensor *sensor, const do
 
 static void sensor_on_body(mt_builder *b, const mt_sensor *sensor, int body)
 {
-    mt_channel_def def = {
-        .body = {      body,  MT_GROUND},
-        .point = -1,
-        .dir = {        -1,         -1,-1},
-        .shape = {MT_NO_NODE, MT_NO_NODE          },
-        .fraction = MT_NO_NODE
-    };
+    mt_channel_def def = {.body = {body, MT_GROUND},
+                          .point = -1,
+                          .dir = {-1, -1, -1},
+                          .shape = {MT_NO_NODE, MT_NO_NODE},
+                          .fraction = MT_NO_NODE};
     if (sensor->at.given) {
         mt_node at[3];
         mt_build_position(b, &sensor->at, at);

@@ -60,15 +60,13 @@ static mt_status spring_ends(mt_builder *b, const mt_spring *spring, ends *e)
 static mt_spring_def spring_default(const mt_builder *b, const mt_spring *spring, int measure,
                                     mt_node stiffness)
 {
-    const mt_spring_def def = {
-        .name = spring->name.s,
-        .measure = {measure, measure},
-        .stiffness = stiffness,
-        .free = MT_NO_NODE,
-        .preload = MT_NO_NODE,
-        .damper = spring->damper,
-        .item = b->sys->n_items - 1
-    };
+    const mt_spring_def def = {.name = spring->name.s,
+                               .measure = {measure, measure},
+                               .stiffness = stiffness,
+                               .free = MT_NO_NODE,
+                               .preload = MT_NO_NODE,
+                               .damper = spring->damper,
+                               .item = b->sys->n_items - 1};
     return def;
 }
 
@@ -135,15 +133,13 @@ static mt_status build_axial(mt_builder *b, const mt_spring *spring)
 void mt_build_rod(mt_builder *b, const int body[2], const int arm[2], mt_node mass, int item)
 {
     mt_program *const p = &b->sys->program;
-    const mt_inertia_def inertia = {
-        .kind = MT_INERTIA_BAR,
-        .coefficient = mass,
-        .body = {   body[0],    body[1]},
-        .point = {    arm[0],     arm[1]},
-        .dir = {        -1,         -1,-1},
-        .shape = {MT_NO_NODE, MT_NO_NODE          },
-        .item = item
-    };
+    const mt_inertia_def inertia = {.kind = MT_INERTIA_BAR,
+                                    .coefficient = mass,
+                                    .body = {body[0], body[1]},
+                                    .point = {arm[0], arm[1]},
+                                    .dir = {-1, -1, -1},
+                                    .shape = {MT_NO_NODE, MT_NO_NODE},
+                                    .item = item};
     mt_build_inertia(b, &inertia);
     for (int side = 0; side < 2; side++) {
         if (body[side] != MT_GROUND) {
@@ -153,7 +149,8 @@ void mt_build_rod(mt_builder *b, const int body[2], const int arm[2], mt_node ma
     }
 }
 
-/* Bar: EA/L along its line, consistent mass rho A L / 6 [2 I, I; I, 2 I]; L is its length as drawn. */
+/* Bar: EA/L along its line, consistent mass rho A L / 6 [2 I, I; I, 2 I]; L is its length as
+ * drawn. */
 static mt_status build_bar(mt_builder *b, const mt_spring *spring)
 {
     mt_program *const p = &b->sys->program;
@@ -174,7 +171,8 @@ static mt_status build_bar(mt_builder *b, const mt_spring *spring)
     return MT_OK;
 }
 
-/* Bushing between the two points, in global axes of the drawn position carried by bodies[0]: displacement (3) and rotation vector (3). */
+/* Bushing between the two points, in global axes of the drawn position carried by bodies[0]:
+ * displacement (3) and rotation vector (3). */
 static mt_status build_bushing(mt_builder *b, const mt_spring *spring)
 {
     ends e;

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * A spring with a matrix, V = 1/2 x^T C x over its measures x, as a sum of squares. With the rows f_a of the measures, its part of K is sum_ab C_ab f_a f_b^T: terms that cancel where the
- * joints block a direction, or where C is far softer one way than the other. By Cholesky with diagonal pivoting of the matrix scaled to unit diagonal,
+ * A spring with a matrix, V = 1/2 x^T C x over its measures x, as a sum of squares. With the
+ * rows f_a of the measures, its part of K is sum_ab C_ab f_a f_b^T: terms that cancel where the
+ * joints block a direction, or where C is far softer one way than the other. By Cholesky with
+ * diagonal pivoting of the matrix scaled to unit diagonal,
  *     C = sum_k l_k l_k^T,    K = sum_k b_k b_k^T,    b_k = sum_a l_k(a) f_a,
- * each b_k is a row like that of any other spring: with a length, an error (that of the f_a, and eps / L_kk of L), and exactly 0 where it is rounding.
+ * each b_k is a row like that of any other spring: with a length, an error (that of the f_a,
+ * and eps / L_kk of L), and exactly 0 where it is rounding.
  */
 #include "mechanics/couplings.h"
 
@@ -93,7 +96,8 @@ static bool gather(const mt_linear *lin, int first, int end, group *g)
     return true;
 }
 
-/* C to unit diagonal; false where a diagonal entry is negative or a coupling stands beside one that is 0. */
+/* C to unit diagonal; false where a diagonal entry is negative or a coupling stands beside one
+ * that is 0. */
 static bool scale(group *g)
 {
     for (int a = 0; a < g->n; a++) {

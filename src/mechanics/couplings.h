@@ -7,8 +7,10 @@
 /* coupling[n_terms] of the stiffness terms. */
 void mt_couplings_find(const mt_linear *lin, mt_coupling *coupling);
 /*
- * The terms `first` .. `end` - 1 of one such spring as a sum of squares at the present values: rows of factor_b (with factor_noise) and factor_c from the first row of the spring on, 0 in the
- * rows beyond. False, and the rows are those of the measures, where they are none: an indefinite matrix. O(6 n).
+ * The terms `first` .. `end` - 1 of one such spring as a sum of squares at the present values:
+ * rows of factor_b (with factor_noise) and factor_c from the first row of the spring on, 0 in
+ * the rows beyond. False, and the rows are those of the measures, where they are none: an
+ * indefinite matrix. O(6 n).
  */
 bool mt_couplings_square(mt_linear *lin, int first, int end);
 /* k (n x n, lower) += what stands in the rows of term t after that. */

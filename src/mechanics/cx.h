@@ -8,10 +8,13 @@
 #include "base/base.h"
 
 /*
- * Complex-step arithmetic. All geometry kernels are written once, analytically, in complex numbers: a real number x travels as x, a number with a
- * derivative x' (with respect to whatever is being differentiated) as x + i h x' with h = 2^-300. Then the real part of a result is its value and imag/h its derivative,
- * exact to rounding: the next term of the series is h^2 = 2^-600 smaller and nothing is subtracted (Squire and Trapp, SIAM Review 40 (1998) 110-112). h is a power of two,
- * so scaling by it rounds nothing. Only analytic operations may be used: no cabs, no conj, no comparison of anything but real parts.
+ * Complex-step arithmetic. All geometry kernels are written once, analytically, in complex
+ * numbers: a real number x travels as x, a number with a derivative x' (with respect to
+ * whatever is being differentiated) as x + i h x' with h = 2^-300. Then the real part of a
+ * result is its value and imag/h its derivative, exact to rounding: the next term of the series
+ * is h^2 = 2^-600 smaller and nothing is subtracted (Squire and Trapp, SIAM Review 40 (1998)
+ * 110-112). h is a power of two, so scaling by it rounds nothing. Only analytic operations may
+ * be used: no cabs, no conj, no comparison of anything but real parts.
  */
 typedef double complex mt_cx;
 
@@ -23,9 +26,7 @@ static inline mt_cx cx_pair(double re, double im)
     const union {
         double part[2];
         mt_cx z;
-    } u = {
-        {re, im}
-    };
+    } u = {{re, im}};
     return u.z;
 }
 
@@ -46,10 +47,12 @@ static inline mt_cx cx_mul(mt_cx a, mt_cx b)
                    (creal(a) * cimag(b)) + (cimag(a) * creal(b)));
 }
 
-/* Where geometry degenerates (a hinge without a direction, the angle of nothing) a kernel has no value and no derivative: infinite and NaN say so, and equations and
- * derivatives are looked at before anybody counts on them. */
+/* Where geometry degenerates (a hinge without a direction, the angle of nothing) a kernel has
+ * no value and no derivative: infinite and NaN say so, and equations and derivatives are looked
+ * at before anybody counts on them. */
 
-/* The imaginary part of a divisor is h times its derivative, so |b|^2 = (re b)^2 to the last bit. */
+/* The imaginary part of a divisor is h times its derivative, so |b|^2 = (re b)^2 to the last
+ * bit. */
 MT_DIVIDES_BY_ZERO
 static inline mt_cx cx_div(mt_cx a, mt_cx b)
 {
@@ -88,10 +91,12 @@ static inline void cx_cross3(const mt_cx *a, const mt_cx *b, mt_cx *out)
     out[2] = z;
 }
 
-/* Squares of components between 2^-400 and 2^400 and their sums neither vanish nor overflow, nor do derivatives. */
+/* Squares of components between 2^-400 and 2^400 and their sums neither vanish nor overflow,
+ * nor do derivatives. */
 #define MT_CX_SAFE 0x1p400
 
-/* The power of two by which the components of v are divided before they are squared: 1 unless they are very small or very great. */
+/* The power of two by which the components of v are divided before they are squared: 1 unless
+ * they are very small or very great. */
 static inline int cx_exponent3(const mt_cx *v)
 {
     const double largest = fmax(fmax(fabs(creal(v[0])), fabs(creal(v[1]))), fabs(creal(v[2])));

@@ -3,10 +3,7 @@
 
 #include <stddef.h>
 
-static const mt_pose GROUND = {
-    {0.0, 0.0, 0.0 },
-    { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}
-};
+static const mt_pose GROUND = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}};
 
 mt_pose mt_pose_ground(void)
 {
@@ -90,7 +87,8 @@ mt_measure_data mt_data_measure(const mt_data *d, const mt_measure_def *def)
         .kind = def->kind,
         .component = def->component,
         .point = {vec_or_null(d, def->point[0]), vec_or_null(d, def->point[1])},
-        .dir = { vec_or_null(d, def->dir[0]), vec_or_null(d,   def->dir[1]),  vec_or_null(d, def->dir[2])},
+        .dir = {vec_or_null(d, def->dir[0]), vec_or_null(d, def->dir[1]),
+                vec_or_null(d, def->dir[2])},
         .near = d->turn[def - d->sys->measures],
     };
     if (def->kind == MT_MEASURE_BEAM) {

@@ -5,7 +5,8 @@
 #include "mechanics/system.h"
 
 /*
- * All numbers of a system at one design, as the complex kernels read them: values alone (input < 0), or values with the derivative with respect to one input.
+ * All numbers of a system at one design, as the complex kernels read them: values alone (input
+ * < 0), or values with the derivative with respect to one input.
  */
 typedef struct mt_data {
     const mt_system *sys;
@@ -15,19 +16,22 @@ typedef struct mt_data {
     mt_cx (*vec)[3];     /* [n_vecs] */
     mt_cx (*rest)[2];    /* [n_springs] rest values of the two measures of each spring */
     mt_cx *target;       /* [n_constraints] */
-    double *
-        turn; /* [n_measures] where each angle stands, whole turns counted; 0 in the reference position. An angle is read as the value nearest to this */
+    /* [n_measures] where each angle stands, whole turns counted; 0 in the reference position.
+     * An angle is read as the value nearest to this */
+    double *turn;
 } mt_data;
 
 mt_status mt_data_init(mt_data *d, const mt_system *sys, mt_arena *mem, mt_err *err);
 /* Vector i from the vectors before it and the nodes. */
 void mt_data_vec(mt_data *d, int i);
-/* All vectors, targets at the drawn position, and rest values at `reference` (poses carrying their derivative): see mt_data_rest. */
+/* All vectors, targets at the drawn position, and rest values at `reference` (poses carrying
+ * their derivative): see mt_data_rest. */
 void mt_data_vecs(mt_data *d);
 void mt_data_targets(mt_data *d);
 /* Rest values and the target of the drive, at the reference position. */
 void mt_data_rest(mt_data *d, const mt_pose *reference);
-/* Note where the angles stand at `poses`, which are less than half a turn from the last noted ones. */
+/* Note where the angles stand at `poses`, which are less than half a turn from the last noted
+ * ones. */
 void mt_data_turns(mt_data *d, const mt_pose *poses);
 /* A node as a complex number; MT_NO_NODE gives `otherwise`. */
 mt_cx mt_data_scalar(const mt_data *d, mt_node node, double otherwise);

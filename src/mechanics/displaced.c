@@ -48,7 +48,8 @@ mt_status mt_mass_matrix(mt_linear *lin, const mt_pose *poses, double *m, mt_err
     return MT_OK;
 }
 
-/* The trimmed spring carries its trim force at the linearised position and its stiffness from there. */
+/* The trimmed spring carries its trim force at the linearised position and its stiffness from
+ * there. */
 static double trimmed_force(const mt_linear *lin, const mt_pose *poses)
 {
     const mt_system *const sys = lin->sys;

@@ -5,21 +5,25 @@
 #include "mechanics/linear.h"
 
 /*
- * The equations of motion themselves, M(q) qdd = Q(q) + A(q)^T lambda at rest, over all states and at positions near the linearised one: what the linearisation is the
- * derivative of.
+ * The equations of motion themselves, M(q) qdd = Q(q) + A(q)^T lambda at rest, over all states
+ * and at positions near the linearised one: what the linearisation is the derivative of.
  */
 
-/* Mass matrix over all states at given positions: m nq x nq, both triangles, column-major [kg, kg m^2]. After mt_linear_update. */
+/* Mass matrix over all states at given positions: m nq x nq, both triangles, column-major [kg,
+ * kg m^2]. After mt_linear_update. */
 mt_status mt_mass_matrix(mt_linear *lin, const mt_pose *poses, double *m, mt_err *err);
 
 /**
  * @param[in]  lin   after mt_linear_update; its scratch is used
- * @param[in]  dq    [nq] displacement from the linearised position: each body is moved by dx and turned by exp(theta) [m, rad]; NULL: none
+ * @param[in] dq [nq] displacement from the linearised position: each body is moved by dx and
+ *   turned by exp(theta) [m, rad]; NULL: none
  * @param[out] m     nq x nq mass matrix
- * @param[out] q     [nq] impressed forces of springs and loads, that of the trimmed spring included; no constraint forces [N, N m]
+ * @param[out] q [nq] impressed forces of springs and loads, that of the trimmed spring
+ *   included; no constraint forces [N, N m]
  * @param[out] a     lin->m x nq constraint Jacobian, column-major
- * @param[out] c     [lin->m] by how much each constraint is violated [m, rad, cosine]; may be NULL
- * A x = 0 holds for the velocities that the joints allow; at rest the right-hand side of A xdd = b is zero. Fails: MT_E_MEMORY.
+ * @param[out] c [lin->m] by how much each constraint is violated [m, rad, cosine]; may be NULL
+ *   A x = 0 holds for the velocities that the joints allow; at rest the right-hand side of A
+ *   xdd = b is zero. Fails: MT_E_MEMORY.
  */
 mt_status mt_displaced_eval(mt_linear *lin, const double *dq, double *m, double *q, double *a,
                             double *c, mt_err *err);

@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Continuation in the position s of the driven joint. At a closed position, with A the Jacobian of all constraints and e_d the drive's row,
+ * Continuation in the position s of the driven joint. At a closed position, with A the Jacobian
+ * of all constraints and e_d the drive's row,
  *     v     = A^+ e_d                            the smallest motion that drives the joint
- *     dq/ds = v - Z (Z^T K Z)^+ Z^T K v          the one that strains the springs least (K: their elastic stiffness), so that what hangs on springs comes along;
- * a step h goes to q (+) h dq/ds and is closed again by Newton from there. The correction is of order h^2 on a smooth branch; where it is not small beside the step, or Newton does
- * not close the mechanism, the step is halved, so that the way never leaves its branch. Towards a limit position (a toggle) s -> s*, |dq/ds| grows as (s* - s)^-1/2: no step
- * closes beyond it, and halving closes in on it geometrically.
+ *     dq/ds = v - Z (Z^T K Z)^+ Z^T K v
+ *         the one that strains the springs least
+ *         (K: their elastic stiffness), so that what hangs on springs comes along;
+ * a step h goes to q (+) h dq/ds and is closed again by Newton from there. The correction is of
+ * order h^2 on a smooth branch; where it is not small beside the step, or Newton does not close
+ * the mechanism, the step is halved, so that the way never leaves its branch. Towards a limit
+ * position (a toggle) s -> s*, |dq/ds| grows as (s* - s)^-1/2: no step closes beyond it, and
+ * halving closes in on it geometrically.
  */
 #include "mechanics/drive.h"
 
@@ -20,16 +25,21 @@
 /* Longest step of the driven joint's coordinate [rad or model lengths], and of any body. */
 static const double DRIVE_STEP = 0.1;
 static const double BODY_STEP = 0.3;
-/* A step is taken where the way back to the constraints is at most this part of it: on one branch it is about h |q''| / (2 |q'|) of it. */
+/* A step is taken where the way back to the constraints is at most this part of it: on one
+ * branch it is about h |q''| / (2 |q'|) of it. */
 static const double CORRECTION = 0.3;
-/* Steps shorter than this part of DRIVE_STEP are not tried: the limit is then known to 1e-8 rad. */
+/* Steps shorter than this part of DRIVE_STEP are not tried: the limit is then known to 1e-8
+ * rad. */
 static const double SHORTEST = 1e-7;
-/* Rows of A dq/ds = e_d that fail by more than this say that the other joints hold the driven one; at the shortest step before a limit the ratio is still below 1/this. */
+/* Rows of A dq/ds = e_d that fail by more than this say that the other joints hold the driven
+ * one; at the shortest step before a limit the ratio is still below 1/this. */
 static const double HELD = 1e-6;
-/* Bodies that move this many times further than the driven joint (model lengths, rad): a limit position is near. */
+/* Bodies that move this many times further than the driven joint (model lengths, rad): a limit
+ * position is near. */
 static const double LIMIT_RATIO = 100.0;
 
-/* Steps of one walk: MT_DRIVE_REACH takes half of them, where no body moves three times as far as the joint. */
+/* Steps of one walk: MT_DRIVE_REACH takes half of them, where no body moves three times as far
+ * as the joint. */
 enum { MOST_STEPS = 20000 };
 
 typedef struct walk {
@@ -122,7 +132,8 @@ static mt_status eliminate_here(const walk *w, const mt_newton_problem *problem,
     return mt_eliminate(w->p->sys, problem->m, work->a, w->mem, e, err);
 }
 
-/* dq/ds where the walk stands, and its size in model lengths per unit of the coordinate. Held: the old rate stays. */
+/* dq/ds where the walk stands, and its size in model lengths per unit of the coordinate. Held:
+ * the old rate stays. */
 static mt_status find_rate(walk *w, double *size, mt_err *err)
 {
     const mt_system *const sys = w->p->sys;
@@ -144,7 +155,8 @@ static mt_status find_rate(walk *w, double *size, mt_err *err)
     return MT_OK;
 }
 
-/* Close the mechanism with the joint at `to`, from the guess; *good: closed, and still on the branch. */
+/* Close the mechanism with the joint at `to`, from the guess; *good: closed, and still on the
+ * branch. */
 static mt_status try_step(walk *w, double to, double length, bool *good, mt_err *err)
 {
     const mt_system *const sys = w->p->sys;
@@ -166,7 +178,8 @@ static mt_status try_step(walk *w, double to, double length, bool *good, mt_err 
     return MT_OK;
 }
 
-/* One step of at most *h towards the goal, halved until it holds. *h: what to try next; 0: no step holds. */
+/* One step of at most *h towards the goal, halved until it holds. *h: what to try next; 0: no
+ * step holds. */
 static mt_status advance(walk *w, double *h, mt_err *err)
 {
     const mt_system *const sys = w->p->sys;

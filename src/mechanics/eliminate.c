@@ -3,8 +3,9 @@
 
 #include <math.h>
 
-/* Relative size below which a diagonal entry of R counts as zero: rounding leaves about nq eps ~ 1e-14, real mechanisms next to a singular position 1e-6 and more; the gap is
- * reported (qr.kept, qr.dropped). */
+/* Relative size below which a diagonal entry of R counts as zero: rounding leaves about nq eps
+ * ~ 1e-14, real mechanisms next to a singular position 1e-6 and more; the gap is reported
+ * (qr.kept, qr.dropped). */
 static const double RANK_TOLERANCE = 1e-9;
 
 mt_status mt_eliminate(const mt_system *sys, int m, const double *a, mt_arena *mem,
@@ -99,7 +100,8 @@ void mt_eliminate_expand(const mt_elimination *e, const double *y, double *out)
     mt_gemv(false, e->nq, e->n, 1.0, e->z, e->nq, y, 0.0, out);
 }
 
-/* Column rank + k of A_s^T P is a combination of the first rank columns: R11 x = R12(:, k), so (x, -1) is the null vector. */
+/* Column rank + k of A_s^T P is a combination of the first rank columns: R11 x = R12(:, k), so
+ * (x, -1) is the null vector. */
 mt_status mt_eliminate_left_null(const mt_elimination *e, int k, double *w, mt_arena *scratch,
                                  mt_err *err)
 {

@@ -6,8 +6,10 @@
 #include "mechanics/system.h"
 
 /*
- * Elimination of the constraints A dq = b by pivoted QR of A^T, rows of A equilibrated, rotations scaled by the model length l (a rotation counts as the arc at
- * distance l), so that one relative tolerance decides the rank whatever the units of the model:  A_s = D_r A D_c,  A_s^T P = Q R.
+ * Elimination of the constraints A dq = b by pivoted QR of A^T, rows of A equilibrated,
+ * rotations scaled by the model length l (a rotation counts as the arc at distance l), so that
+ * one relative tolerance decides the rank whatever the units of the model: A_s = D_r A D_c,
+ * A_s^T P = Q R.
  *   Z = D_c Q(:, rank+1..)  spans the freedoms:  A Z = 0;  n = nq - rank.
  */
 typedef struct mt_elimination {
@@ -32,13 +34,16 @@ mt_status mt_eliminate_multipliers(const mt_elimination *e, const double *g, dou
 /* out = Z^T g; out = Z y. */
 void mt_eliminate_project(const mt_elimination *e, const double *g, double *out);
 void mt_eliminate_expand(const mt_elimination *e, const double *y, double *out);
-/* Left null vector k of A (k < m - rank): combination of equations that is empty, w[m], in equilibrated rows, largest entry 1. */
+/* Left null vector k of A (k < m - rank): combination of equations that is empty, w[m], in
+ * equilibrated rows, largest entry 1. */
 mt_status mt_eliminate_left_null(const mt_elimination *e, int k, double *w, mt_arena *scratch,
                                  mt_err *err);
-/* The same where only the first `rank` pivoted equations count as independent: the combination is then as small as the rest of R. */
+/* The same where only the first `rank` pivoted equations count as independent: the combination
+ * is then as small as the rest of R. */
 mt_status mt_eliminate_left_vector(const mt_elimination *e, int rank, int k, double *w,
                                    mt_arena *scratch, mt_err *err);
-/* Joints with an entry in the combination w[m] (largest entry about 1), each once: "\"a\", \"b\"", cut where the text is full. */
+/* Joints with an entry in the combination w[m] (largest entry about 1), each once: "\"a\",
+ * \"b\"", cut where the text is full. */
 void mt_joint_names(const mt_system *sys, int m, const double *w, char *text, size_t size);
 
 #endif

@@ -4,15 +4,18 @@
 #include <float.h>
 #include <math.h>
 
-/* p of the header: what the elimination, the eigensolution and Z y may do to an entry of a shape, in eps of what is typical. */
+/* p of the header: what the elimination, the eigensolution and Z y may do to an entry of a
+ * shape, in eps of what is typical. */
 static const double SHAPE_ULPS = 16.0;
 /* An energy is nothing below 16 nq eps of its own terms, as in any matrix of these rooms. */
 static const double ENERGY_ULPS = 16.0;
-/* Forces of an equilibrium are known to a few times its residual, and so is its place, which the springs' rows depend on: what an unbalanced force r moves, r/K, changes them
- * by as much as r changes Kg, with a moderate factor. */
+/* Forces of an equilibrium are known to a few times its residual, and so is its place, which
+ * the springs' rows depend on: what an unbalanced force r moves, r/K, changes them by as much
+ * as r changes Kg, with a moderate factor. */
 static const double RESIDUALS = 32.0;
 
-/* A step that is left is known to a few parts of itself: the residual that it comes from is mostly rounding, the rounding of what was evaluated there. */
+/* A step that is left is known to a few parts of itself: the residual that it comes from is
+ * mostly rounding, the rounding of what was evaluated there. */
 static const double STEPS = 4.0;
 
 typedef struct entry {
@@ -79,14 +82,16 @@ static int item_of(const mt_linear *lin, int kind, const mt_term *t)
     return kind == MT_TERM_STIFFNESS ? lin->sys->springs[t->source].item : t->source;
 }
 
-/* Sums over terms: energies, noise without eps, sizes of the energies that may have cancelled. */
+/* Sums over terms: energies, noise without eps, sizes of the energies that may have
+ * cancelled. */
 typedef struct sums {
     double energy;
     double noise;
     double size;
 } sums;
 
-/* Returns whether the energy of the term is more than rounding of what its row, without the signs, would have. */
+/* Returns whether the energy of the term is more than rounding of what its row, without the
+ * signs, would have. */
 static bool add_term(const worker *k, int kind, const mt_term *t, const double *phi, sums *out)
 {
     const mt_linear *const lin = k->lin;
@@ -118,7 +123,8 @@ static bool add_term(const worker *k, int kind, const mt_term *t, const double *
     return moves;
 }
 
-/* Energy and noise of all terms of a kind, and whether any spring is strained. A bushing that couples directions is one spring, of which the terms may cancel. */
+/* Energy and noise of all terms of a kind, and whether any spring is strained. A bushing that
+ * couples directions is one spring, of which the terms may cancel. */
 static void sum_terms(const worker *k, int kind, const double *phi, double *energy,
                       double *noise, bool *strained)
 {

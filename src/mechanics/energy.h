@@ -5,19 +5,27 @@
 #include "mechanics/linear.h"
 
 /*
- * Energies of shapes, summed term by term over the rows as they are before the constraints are eliminated, phi = Z y:
- *     y^T K y = sum_t c_t (f_t . phi)^2 + phi^T Kg phi,   y^T M y = sum_t m_t sum_i (f_ti . phi)^2.
- * Where a spring hardly takes part in a mode, its elongation f . phi is small before it is squared: no stiff spring costs the soft ones their digits, as it does where both are
- * entries of one matrix.
+ * Energies of shapes, summed term by term over the rows as they are before the constraints are
+ * eliminated, phi = Z y:
+ *     y^T K y = sum_t c_t (f_t . phi)^2 + phi^T Kg phi,
+ *         y^T M y = sum_t m_t sum_i (f_ti . phi)^2.
+ * Where a spring hardly takes part in a mode, its elongation f . phi is small before it is
+ * squared: no stiff spring costs the soft ones their digits, as it does where both are entries
+ * of one matrix.
  *
- * Noise. An entry of phi is known to p eps (|phi_j| + what is typical of phi), w_j below, whence
+ * Noise. An entry of phi is known to p eps (|phi_j| + what is typical of phi), w_j below,
+ * whence
  *     p eps (sum_t 2 c_t |f_t . phi| |f_t| . w + 2 |phi|^T (terms of |Kg|) w):
- * terms count with their magnitudes, before they cancel. Positions satisfy the constraints to eps; by the least pivot kept of their Jacobian, positions and shapes are known to
- * eps / kept.
- *     At an equilibrium Newton's last step q is too small to be taken, as positions are rounded, but not too small for a stiff spring: by it forces change by k g . q (springs) and
- * lambda' = -(A^T)^+ (r + H q) (joints, r what is unbalanced), each with its own phi^T (Hessian of its measure) phi. However small a force is itself, rounding of the position leaves this
- * of it open. Places are known to the residual besides, each force with its whole share of phi^T Kg phi. A spring is strained where its energy is more than
- * 16 nq eps c (|f| . w)^2, the rounding of its own terms.
+ * terms count with their magnitudes, before they cancel. Positions satisfy the constraints to
+ * eps; by the least pivot kept of their Jacobian, positions and shapes are known to eps / kept.
+ *     At an equilibrium Newton's last step q is too small to be taken, as positions are
+ *         rounded, but not too small for a stiff spring: by it forces change by k g . q
+ *         (springs) and
+ * lambda' = -(A^T)^+ (r + H q) (joints, r what is unbalanced), each with its own phi^T (Hessian
+ * of its measure) phi. However small a force is itself, rounding of the position leaves this of
+ * it open. Places are known to the residual besides, each force with its whole share of phi^T
+ * Kg phi. A spring is strained where its energy is more than 16 nq eps c (|f| . w)^2, the
+ * rounding of its own terms.
  */
 typedef struct mt_energies {
     double *stiffness;       /* [cols] */

@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Idle spins. A thin rod between two ball joints may turn about its own axis, and where it has no inertia about it nothing resists: no mass, no stiffness, no joint. Such a
- * direction y has K y = M y = 0: it belongs to every frequency and to none, and moves no point that anything holds on to. It is taken out of the freedoms; what is left is regular,
- * and all its modes are those of the mechanism. Directions without mass and stiffness that move a centre of mass are not idle: a spring or a joint was forgotten there (MT_E_MASSLESS).
+ * Idle spins. A thin rod between two ball joints may turn about its own axis, and where it has
+ * no inertia about it nothing resists: no mass, no stiffness, no joint. Such a direction y has
+ * K y = M y = 0: it belongs to every frequency and to none, and moves no point that anything
+ * holds on to. It is taken out of the freedoms; what is left is regular, and all its modes are
+ * those of the mechanism. Directions without mass and stiffness that move a centre of mass are
+ * not idle: a spring or a joint was forgotten there (MT_E_MASSLESS).
  *
- * Candidates W: rotations of single bodies about axes without inertia (in scaled coordinates, length 1). Idle are the combinations W s with C W s = 0, C being the rows of
- * joints, springs and dampers, of masses that two bodies share, and Z^T Kg, each relative to its length. They are sought as null vectors of (C W)^T (C W), and C W s itself decides.
+ * Candidates W: rotations of single bodies about axes without inertia (in scaled coordinates,
+ * length 1). Idle are the combinations W s with C W s = 0, C being the rows of joints, springs
+ * and dampers, of masses that two bodies share, and Z^T Kg, each relative to its length. They
+ * are sought as null vectors of (C W)^T (C W), and C W s itself decides.
  */
 #include "mechanics/idle.h"
 
@@ -14,9 +19,11 @@
 
 /* A principal moment below this part of the terms that make it is rounding of theirs. */
 static const double NO_INERTIA = 1e-13;
-/* Entries of C W s below this are none: as the rank of the constraints is decided (eliminate.c). */
+/* Entries of C W s below this are none: as the rank of the constraints is decided
+ * (eliminate.c). */
 static const double NOT_HELD = 1e-9;
-/* Eigenvalues of (C W)^T (C W) worth a closer look: squares, of which rounding leaves some 1e-15. */
+/* Eigenvalues of (C W)^T (C W) worth a closer look: squares, of which rounding leaves some
+ * 1e-15. */
 static const double WORTH_A_LOOK = 1e-12;
 /* Spins are independent, as the columns of Z are: only zero is no rank. */
 static const double NO_RANK = 1e-12;
@@ -112,7 +119,8 @@ static mt_status find_candidates(search *s, mt_err *err)
     return MT_OK;
 }
 
-/* The row s->row [n] of C W: into the Gram matrix, or (second pass) against every eigenvector. */
+/* The row s->row [n] of C W: into the Gram matrix, or (second pass) against every
+ * eigenvector. */
 static void take_row(search *s)
 {
     int n = 0;
@@ -159,7 +167,8 @@ static void take_joints(search *s)
     }
 }
 
-/* Of two bodies: rows of one body's own mass are nothing by the choice of the candidates. A coefficient of 0 that an input may change holds as well. */
+/* Of two bodies: rows of one body's own mass are nothing by the choice of the candidates. A
+ * coefficient of 0 that an input may change holds as well. */
 static void take_terms(search *s, int kind)
 {
     const mt_linear *const lin = s->lin;
@@ -248,8 +257,9 @@ static void keep_column(double *z, ptrdiff_t nq, ptrdiff_t from, ptrdiff_t to)
 }
 
 /*
- * Spins Z y [nq x spins]: K and M do not see them, so that shapes count up to a spin, and a column of Z that has part in one is as good without it. The columns with the largest parts go; the
- * others stay as they are, and with them the entries of K_r and M_r.
+ * Spins Z y [nq x spins]: K and M do not see them, so that shapes count up to a spin, and a
+ * column of Z that has part in one is as good without it. The columns with the largest parts
+ * go; the others stay as they are, and with them the entries of K_r and M_r.
  */
 static mt_status leave_out(mt_linear *lin, int spins, const double *phi, mt_err *err)
 {

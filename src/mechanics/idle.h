@@ -4,8 +4,10 @@
 
 #include "mechanics/linear.h"
 
-/* Take the idle spins out of the basis of the freedoms (lin->e.z, its errors, lin->n) and note how many there are and whose (lin->n_idle, lin->idle, lin->idle_varies). In space, after the rows are evaluated and the basis is chosen, before
- * they are reduced. Costs nothing where every body has inertia about all axes. Fails: MT_E_MEMORY, MT_E_NO_CONVERGENCE. */
+/* Take the idle spins out of the basis of the freedoms (lin->e.z, its errors, lin->n) and note
+ * how many there are and whose (lin->n_idle, lin->idle, lin->idle_varies). In space, after the
+ * rows are evaluated and the basis is chosen, before they are reduced. Costs nothing where
+ * every body has inertia about all axes. Fails: MT_E_MEMORY, MT_E_NO_CONVERGENCE. */
 mt_status mt_idle_remove(mt_linear *lin, mt_err *err);
 
 #endif

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Do redundant equations stay redundant as an input moves? The derivatives of rows of unit length are judged against the sum of their own terms: what should vanish is rounding of them, also
- * through the position's derivative; what does not is of their size.
+ * Do redundant equations stay redundant as an input moves? The derivatives of rows of unit
+ * length are judged against the sum of their own terms: what should vanish is rounding of them,
+ * also through the position's derivative; what does not is of their size.
  */
 #include <math.h>
 #include <string.h>
@@ -10,7 +11,8 @@
 #include "mechanics/tangent.h"
 
 static const double VANISHES = 1e-8;
-/* Rounding, of what is made of terms of size 1: an entry of w (largest 1) below this does not tell an equation that takes part from one that does not. */
+/* Rounding, of what is made of terms of size 1: an entry of w (largest 1) below this does not
+ * tell an equation that takes part from one that does not. */
 static const double TAKES_PART = 1e-13;
 
 /* Length of row j of A. in scaled coordinates, the row of A being of unit length. */
@@ -24,7 +26,8 @@ static double row_length(const mt_elimination *e, const mt_linear_tangent *t, in
     return sqrt(squares);
 }
 
-/* row[nq] = sum_j w_j dr_j A._j; returns the sum of the lengths of its terms in scaled coordinates, none shorter than what rounding of w makes of it. */
+/* row[nq] = sum_j w_j dr_j A._j; returns the sum of the lengths of its terms in scaled
+ * coordinates, none shorter than what rounding of w makes of it. */
 static double combine(const mt_linear *lin, const mt_linear_tangent *t, const double *w,
                       double *row)
 {
@@ -60,8 +63,10 @@ static bool can_change(const mt_linear *lin, int p)
 }
 
 /*
- * A gap's derivative is a sum of motions of points that the input moves; those that cancel at once (both bodies' point is drawn elsewhere) are not among its terms, but in A.,
- * which turns with the arms: arms grow by up to |A.| model lengths. Nor is the motion itself known beyond its rounding, in whatever direction it is not.
+ * A gap's derivative is a sum of motions of points that the input moves; those that cancel at
+ * once (both bodies' point is drawn elsewhere) are not among its terms, but in A., which turns
+ * with the arms: arms grow by up to |A.| model lengths. Nor is the motion itself known beyond
+ * its rounding, in whatever direction it is not.
  */
 static bool opens(const mt_linear *lin, const mt_linear_tangent *t, const double *w)
 {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Mass properties from the kinetic energy of the six rigid-body motions of everything together: with R = [translations, rotations about the origin],
+ * Mass properties from the kinetic energy of the six rigid-body motions of everything together:
+ * with R = [translations, rotations about the origin],
  *     R^T M R = [ m I     -m [c]x          ]        [c]x v = c x v,
  *               [ m [c]x   J - m [c]x [c]x ]
  * which holds for points, bodies, and consistent bars and beams alike.
@@ -12,13 +13,10 @@
 enum { MOTIONS = 6 };
 
 /* The third axis beside two different ones. */
-static const int THIRD[3][3] = {
-    {0, 2, 1},
-    {2, 1, 0},
-    {1, 0, 2}
-};
+static const int THIRD[3][3] = {{0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
 
-/* What a row of a mass term says of motion k of the whole: translation along axis k, or rotation about axis k - 3 through the origin. */
+/* What a row of a mass term says of motion k of the whole: translation along axis k, or
+ * rotation about axis k - 3 through the origin. */
 static double row_of_motion(const mt_linear *lin, const mt_term *t, const double *row, int k)
 {
     double sum = 0.0;
@@ -56,14 +54,7 @@ static void rigid_energy(const mt_linear *lin, double g[MOTIONS][MOTIONS])
 
 static void from_energy(const double g[MOTIONS][MOTIONS], int dimension, mt_info *out)
 {
-    static const int PAIR[6][2] = {
-        {0, 0},
-        {1, 1},
-        {2, 2},
-        {0, 1},
-        {0, 2},
-        {1, 2}
-    };
+    static const int PAIR[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
     const double m = g[0][0];
     /* a rotation about axis a has the momentum m e_a x c */
     const double c[3] = {m > 0.0 ? g[5][1] / m : 0.0, m > 0.0 ? -g[5][0] / m : 0.0,

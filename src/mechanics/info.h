@@ -13,13 +13,15 @@ typedef struct mt_info {
     int redundant;      /* equations less independent ones; names: mt_linear_redundant_set */
     double mass_kg;     /* everything with mass, fixed or moving */
     double centre_m[3]; /* of mass, global; NaN where there is no mass */
-    double inertia_kg_m2
-        [6]; /* about the centre, global axes: xx yy zz xy xz yz as they stand in the tensor (xy = -sum m x y); in two dimensions zz alone, else 0 */
+    /* about the centre, global axes: xx yy zz xy xz yz as they stand in the tensor (xy = -sum m
+     * x y); in two dimensions zz alone, else 0 */
+    double inertia_kg_m2[6];
     double residual; /* of the equilibrium, relative to the forces at work */
     double gap_m;    /* largest violation of a joint */
 } mt_info;
 
-/* After mt_linear_update. Exact for consistent bars and beams as well. Fails: MT_E_INTERNAL before an update. */
+/* After mt_linear_update. Exact for consistent bars and beams as well. Fails: MT_E_INTERNAL
+ * before an update. */
 mt_status mt_info_fill(const mt_linear *lin, mt_info *out, mt_err *err);
 
 #endif

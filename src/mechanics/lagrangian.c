@@ -103,7 +103,8 @@ static double extent_of(const mt_pose *poses, const int body[2])
     return extent;
 }
 
-/* terms += size |jet.h|, and force times the coordinates' size: two lengths that cancel in an entry between rotations have been the difference of coordinates. */
+/* terms += size |jet.h|, and force times the coordinates' size: two lengths that cancel in an
+ * entry between rotations have been the difference of coordinates. */
 static void note_terms(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
                        const mt_jet *jet, double size, double force, double open,
                        mt_lagrangian *out)
@@ -162,7 +163,8 @@ static void note_force(const mt_system *sys, mt_lagrangian *out, const int body[
     note_push(body, size, out);
 }
 
-/* Forces that meet in a body are known to eps of the largest of them: so is a joint's force, however small it is itself. */
+/* Forces that meet in a body are known to eps of the largest of them: so is a joint's force,
+ * however small it is itself. */
 static double joint_push(const mt_lagrangian *l, const int body[2])
 {
     double push = 0.0;
@@ -172,7 +174,8 @@ static double joint_push(const mt_lagrangian *l, const int body[2])
     return push;
 }
 
-/* Positions are known to eps of the coordinates that they are the difference of, angles to eps, the slope of a beam element's chord to eps of the coordinates over its length. */
+/* Positions are known to eps of the coordinates that they are the difference of, angles to eps,
+ * the slope of a beam element's chord to eps of the coordinates over its length. */
 static void note_noise(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
                        const mt_jet *jet, double stiffness, mt_lagrangian *out)
 {
@@ -224,7 +227,8 @@ static mt_cx add_spring(const mt_data *d, int i, mt_cx k, mt_cx stretch, const m
     add_gradient(sys, body, jet->g, force, out->g);
     note_force(sys, out, body, jet, force);
     if (curvature != MT_CURVATURE_NONE) {
-        /* while the force of the trimmed spring is an unknown its stiffness does not act; in the linearised system it does, there as a row (rows.h) */
+        /* while the force of the trimmed spring is an unknown its stiffness does not act; in
+         * the linearised system it does, there as a row (rows.h) */
         const bool geometric = curvature == MT_CURVATURE_GEOMETRIC || trimmed;
         add_hessian(sys, body, jet, curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
                     geometric ? 0.0 : k, jet, out->h);
@@ -286,7 +290,8 @@ static void add_springs(const mt_data *d, const mt_pose *poses, mt_curvature cur
     }
 }
 
-/* Jet of what a load does work along: F . x, or its measure; *size: what that is multiplied with. */
+/* Jet of what a load does work along: F . x, or its measure; *size: what that is multiplied
+ * with. */
 static void load_jet(const mt_data *d, const mt_load_def *load, const mt_pose *poses,
                      bool hessian, int body[2], mt_cx *size, mt_jet *jet)
 {
@@ -316,9 +321,7 @@ static void load_jet(const mt_data *d, const mt_load_def *load, const mt_pose *p
 static void note_load(const mt_data *d, const mt_load_def *load, const mt_pose *poses,
                       const mt_jet *jet, mt_cx size, mt_lagrangian *out)
 {
-    const mt_measure_def point = {
-        .kind = MT_MEASURE_PLANE, .body = {load->body, MT_GROUND}
-    };
+    const mt_measure_def point = {.kind = MT_MEASURE_PLANE, .body = {load->body, MT_GROUND}};
     if (load->measure >= 0) {
         const double force = fabs(creal(size));
         note_terms(d, &d->sys->measures[load->measure], poses, jet, force, force, 0.0, out);
@@ -345,9 +348,13 @@ static void add_loads(const mt_data *d, const mt_pose *poses, bool hessian, mt_l
 }
 
 /*
- * l^2, which weighs a rotation against a displacement in the anchor: the mean square of the arms by which joints hold their bodies, so that a rotation counts as what it moves them
- * by. It scales with the drawing, and is a function of the present design alone, with a derivative: with the size of the original design (length_m), where a loop closes would depend on which
- * design was called original, and a model with the recommended values put in would not be the design that was recommended. Where no joint has an arm rotations close nothing, and any length will do.
+ * l^2, which weighs a rotation against a displacement in the anchor: the mean square of the
+ * arms by which joints hold their bodies, so that a rotation counts as what it moves them by.
+ * It scales with the drawing, and is a function of the present design alone, with a derivative:
+ * with the size of the original design (length_m), where a loop closes would depend on which
+ * design was called original, and a model with the recommended values put in would not be the
+ * design that was recommended. Where no joint has an arm rotations close nothing, and any
+ * length will do.
  */
 static mt_cx anchor_square(const mt_data *d)
 {
@@ -390,9 +397,7 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
             /* -l^2/2 tr(R0^T R) */
             mt_cx e[3] = {0.0, 0.0, 0.0};
             e[k] = 1.0;
-            const mt_measure_data m = {
-                .kind = MT_MEASURE_DOT, .dir = {e, e, NULL}
-            };
+            const mt_measure_data m = {.kind = MT_MEASURE_DOT, .dir = {e, e, NULL}};
             mt_measure_eval(&m, anchor, &poses[i], hessian, &jet);
             add_gradient(sys, body, jet.g, -0.5 * l2, out->g);
             if (hessian) {
@@ -402,8 +407,8 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
     }
 }
 
-/* An angle is known up to whole turns: take the turn nearest to the target; of a gear's two angles the one without a ratio (term 0) may turn on, the other stays within
- * half a turn. */
+/* An angle is known up to whole turns: take the turn nearest to the target; of a gear's two
+ * angles the one without a ratio (term 0) may turn on, the other stays within half a turn. */
 static double surplus_turns(const mt_data *d, int i, double value)
 {
     const double turn = 6.283185307179586477;

@@ -5,14 +5,17 @@
 #include "mechanics/data.h"
 
 /*
- * L = V + sum lambda_i c_i at given positions: gradient of V, constraints with their Jacobian, Hessian of L, all in the left exponential chart at those positions.
- * V is the physical energy (springs, preloads, dead loads), or the anchor 1/2 sum |x - x0|^2 + 1/2 l^2 |R - R0|^2/2 that pulls every body to its drawn position
- * (l: of the joints' arms; |R - R0|_F^2/2 = 3 - tr(R0^T R), about theta^2): closing a loop is minimising the anchor under the constraints.
+ * L = V + sum lambda_i c_i at given positions: gradient of V, constraints with their Jacobian,
+ * Hessian of L, all in the left exponential chart at those positions. V is the physical energy
+ * (springs, preloads, dead loads), or the anchor 1/2 sum |x - x0|^2 + 1/2 l^2 |R - R0|^2/2 that
+ * pulls every body to its drawn position (l: of the joints' arms; |R - R0|_F^2/2 = 3 - tr(R0^T
+ * R), about theta^2): closing a loop is minimising the anchor under the constraints.
  */
 typedef enum mt_energy { MT_ENERGY_PHYSICAL, MT_ENERGY_ANCHOR } mt_energy;
 
-/* What is wanted of the Hessian: nothing, all of it, the geometric part alone (no k grad grad^T of springs), or the rest of it (k grad grad^T alone; that of the trimmed spring
- * is left out, as in all of it). */
+/* What is wanted of the Hessian: nothing, all of it, the geometric part alone (no k grad grad^T
+ * of springs), or the rest of it (k grad grad^T alone; that of the trimmed spring is left out,
+ * as in all of it). */
 typedef enum mt_curvature {
     MT_CURVATURE_NONE,
     MT_CURVATURE_FULL,
@@ -28,7 +31,9 @@ typedef struct mt_piece {
     double open; /* what the step that is left makes of it */
 } mt_piece;
 
-/* The last step of Newton's method, too small to be taken: from the position, which is rounded, to where the forces balance. By it a spring of stiffness k and gradient g is wrong by k g . q. */
+/* The last step of Newton's method, too small to be taken: from the position, which is rounded,
+ * to where the forces balance. By it a spring of stiffness k and gradient g is wrong by k g .
+ * q. */
 typedef struct mt_step_left {
     double *q;      /* [nq]; NULL: none */
     double *lambda; /* [m] */
@@ -41,33 +46,40 @@ typedef struct mt_lagrangian {
     mt_cx *a;    /* m x nq, column-major */
     mt_cx *h;    /* nq x nq, Hessian of V + lambda c */
     mt_cx *trim; /* [nq] gradient of the trimmed spring's measure (where the system has one) */
-    double
-        force_scale; /* sum over all loads and springs of |contribution to g|, largest entry; 0 where nothing loads */
-    double
-        force_noise; /* what rounding of the positions may make of the stiffest spring's force, unit as force_scale */
-    double *
-        terms; /* nq x nq, or NULL where nobody asks: magnitudes of the terms whose sum the geometric part of h is; rounding of the positions and of the multipliers counts by them */
-    mt_piece *
-        pieces; /* [n_pieces], with terms: the geometric part of h, force by force, without signs */
+    /* sum over all loads and springs of |contribution to g|, largest entry; 0 where nothing
+     * loads */
+    double force_scale;
+    /* what rounding of the positions may make of the stiffest spring's force, unit as
+     * force_scale */
+    double force_noise;
+    /* nq x nq, or NULL where nobody asks: magnitudes of the terms whose sum the geometric part
+     * of h is; rounding of the positions and of the multipliers counts by them */
+    double *terms;
+    /* [n_pieces], with terms: the geometric part of h, force by force, without signs */
+    mt_piece *pieces;
     mt_step_left left; /* in, with terms */
     int n_pieces;
-    double *
-        push; /* [bodies], with terms: sum of the magnitudes of all forces on a body, torques as forces at the model length */
+    /* [bodies], with terms: sum of the magnitudes of all forces on a body, torques as forces at
+     * the model length */
+    double *push;
     double trim_force; /* force of the trimmed spring, in; its own stiffness acts in h only */
     double trim_force_derivative;
 } mt_lagrangian;
 
-/* m: how many constraints take part (the drive's is the last of them). lambda may be NULL (0). h is filled as `curvature` says. */
+/* m: how many constraints take part (the drive's is the last of them). lambda may be NULL (0).
+ * h is filled as `curvature` says. */
 void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,
                         const mt_pose *poses, int m, const mt_cx *lambda,
                         mt_curvature curvature, mt_lagrangian *out);
 /* c[m]: the constraints' values alone. */
 void mt_constraint_values(const mt_data *d, const mt_pose *poses, int m, double *c);
-/* Term t of constraint i along the motion phi[nq]: b[12] = c'' phi over the local freedoms of the term's bodies. Returns the Frobenius norm of c'' with rows and columns
- * weighed by scale[nq]. */
+/* Term t of constraint i along the motion phi[nq]: b[12] = c'' phi over the local freedoms of
+ * the term's bodies. Returns the Frobenius norm of c'' with rows and columns weighed by
+ * scale[nq]. */
 double mt_constraint_curve(const mt_data *d, const mt_pose *poses, int i, int t,
                            const double *phi, const double *scale, double b[MT_LOCAL]);
-/* hessian: will h be asked for? Without, it has no memory and curvature is MT_CURVATURE_NONE. */
+/* hessian: will h be asked for? Without, it has no memory and curvature is
+ * MT_CURVATURE_NONE. */
 mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessian,
                              mt_arena *mem, mt_err *err);
 /* Have terms (and what comes with them) filled too, with the next evaluation. */

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The model length: what a displacement is compared with, so that it has to scale as the model does. Where bodies have an extent it is theirs. Else (one body held at its centre) it is, of what
- * is there, the first of
+ * The model length: what a displacement is compared with, so that it has to scale as the model
+ * does. Where bodies have an extent it is theirs. Else (one body held at its centre) it is, of
+ * what is there, the first of
  *     the distance between the ends of springs, joints and links,
  *     a radius of gyration sqrt(J / m),
  *     a static displacement F / k of the largest force and the stiffest spring,
- * each taken of the largest there are. Where there is none of them nothing moves by a length, or nothing says how far, and 1 will do.
+ * each taken of the largest there are. Where there is none of them nothing moves by a length,
+ * or nothing says how far, and 1 will do.
  */
 #include <math.h>
 

@@ -94,10 +94,12 @@ static mt_status evaluate_rows(mt_linear *lin, mt_err *err)
     return mt_reduce_rows(lin, err);
 }
 
-/* Forces below this many times the rounding of the positions are none: what Newton leaves of a spring that nothing stretches. */
+/* Forces below this many times the rounding of the positions are none: what Newton leaves of a
+ * spring that nothing stretches. */
 static const double NO_FORCE = 1e4;
 
-/* Constraints at the final position, and the geometric stiffness where something loads the mechanism. */
+/* Constraints at the final position, and the geometric stiffness where something loads the
+ * mechanism. */
 static mt_status constrain(mt_linear *lin, mt_err *err)
 {
     const mt_system *const sys = lin->sys;
@@ -129,7 +131,8 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
             lin->a[i + (j * lin->m)] = creal(l.a[i + (j * all)]);
         }
     }
-    /* a driven mechanism that nothing else loads often goes to its place without stretching a spring: then the position does not depend on any stiffness */
+    /* a driven mechanism that nothing else loads often goes to its place without stretching a
+     * spring: then the position does not depend on any stiffness */
     lin->unstressed = loaded && sys->geometry_fixed && !sys->loaded &&
                       l.force_scale <= NO_FORCE * l.force_noise;
     lin->kg = NULL;
@@ -175,7 +178,9 @@ static bool is_left(const mt_linear *lin)
     return lin->n >= MT_INTERRUPT_ORDER && mt_interrupted(lin->sys->model->interrupt);
 }
 
-/* out (n x n) += sum of the terms' contributions, lower triangle; which: 0 terms without inputs, 1 terms with, 2 all. Springs with couplings that depend on no input are added as a whole (add_couplings). */
+/* out (n x n) += sum of the terms' contributions, lower triangle; which: 0 terms without
+ * inputs, 1 terms with, 2 all. Springs with couplings that depend on no input are added as a
+ * whole (add_couplings). */
 static void add_terms(const mt_linear *lin, int kind, int which, double *out)
 {
     const mt_term_list *const list = &lin->list[kind];
@@ -206,7 +211,8 @@ static void square_couplings(mt_linear *lin, mt_coupling kind)
     }
 }
 
-/* k += the springs with couplings that depend on no input, by their squares where they have some: what cancels there is 0. */
+/* k += the springs with couplings that depend on no input, by their squares where they have
+ * some: what cancels there is 0. */
 static void add_couplings(const mt_linear *lin, double *k)
 {
     const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];

@@ -1,14 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * A basis of the freedoms that stays with the bodies. An orthonormal basis of A dq = 0 mixes all of them: what stands still moves by a rounding of what moves most, and a mass or spring
- * that is 1e16 times the others makes that rounding the answer. Instead some coordinates f are chosen as free, the others d follow,
+ * A basis of the freedoms that stays with the bodies. An orthonormal basis of A dq = 0 mixes
+ * all of them: what stands still moves by a rounding of what moves most, and a mass or spring
+ * that is 1e16 times the others makes that rounding the answer. Instead some coordinates f are
+ * chosen as free, the others d follow,
  *     dq_d = -A_d^-1 A_f dq_f,        Z = [-A_d^-1 A_f; I],
- * by Gaussian elimination that touches only what is coupled, so that what does not move with a free coordinate has an entry of exactly 0. Three things decide the pivots:
- *   - of the coordinates of an equation the light ones follow the heavy ones: pivots are the largest of |A_ij| / sqrt(m_j), as in complete pivoting of A M^-1/2. The entries of
- *     M^1/2 Z M_f^-1/2 are then of size one, and Z^T M Z, scaled to unit diagonal, stays well conditioned whatever the masses are;
+ * by Gaussian elimination that touches only what is coupled, so that what does not move with a
+ * free coordinate has an entry of exactly 0. Three things decide the pivots:
+ *   - of the coordinates of an equation the light ones follow the heavy ones: pivots are the
+ *     largest of |A_ij| / sqrt(m_j), as in complete pivoting of A M^-1/2. The entries of
+ *     M^1/2 Z M_f^-1/2 are then of size one, and Z^T M Z, scaled to unit diagonal, stays well
+ *         conditioned whatever the masses are;
  *   - no pivot is small in its own equation, whatever the masses;
- *   - what is left of a difference is 0 where it is within the rounding of its terms, which are carried along (running error analysis).
- * See Golub and Van Loan, Matrix Computations, 3.4 (complete pivoting); Demmel et al., Linear Algebra Appl. 299 (1999) (elimination of graded matrices keeps relative accuracy).
+ *   - what is left of a difference is 0 where it is within the rounding of its terms, which are
+ *     carried along (running error analysis).
+ * See Golub and Van Loan, Matrix Computations, 3.4 (complete pivoting); Demmel et al., Linear
+ * Algebra Appl. 299 (1999) (elimination of graded matrices keeps relative accuracy).
  */
 #include "mechanics/local.h"
 
@@ -16,11 +23,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A pivot is at least this part of the largest entry of its equation: errors grow by no more than its inverse. */
+/* A pivot is at least this part of the largest entry of its equation: errors grow by no more
+ * than its inverse. */
 static const double SMALLEST_PIVOT = 0.1;
 /* Rounding of an entry of A, and of one operation. */
 static const double ENTRY_ULPS = 4.0;
-/* A coordinate without mass counts as this part of the heaviest one: it follows whenever it can. */
+/* A coordinate without mass counts as this part of the heaviest one: it follows whenever it
+ * can. */
 static const double MASSLESS = 1e-60;
 
 typedef struct work {

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Derivation. With R -> exp(theta^) R a vector w = R w0 fixed to the body becomes, to second order,
+ * Derivation. With R -> exp(theta^) R a vector w = R w0 fixed to the body becomes, to second
+ * order,
  *     w + theta x w + 1/2 theta x (theta x w).
  * Hence, for a constant n,
  *     d(n . w)   = theta . (w x n)
  *     d2(n . w)  = theta^T [ 1/2 (n w^T + w n^T) - (n . w) I ] theta,
  * and for w on body a, v on body b
- *     d2(w . v)  mixed: (theta_a x w) . (theta_b x v) = theta_a^T [ (w . v) I - v w^T ] theta_b.
+ *     d2(w . v)  mixed: (theta_a x w) . (theta_b x v) = theta_a^T [
+ *         (w . v) I - v w^T ] theta_b.
  * Everything below is these three lines and the chain rule.
  */
 #include "mechanics/measure_priv.h"
@@ -27,7 +29,8 @@ void mt_jet_clear(mt_jet *j, bool second)
     j->second = second;
 }
 
-/* h[block (p, q)] += scale (alpha I + beta s t^T); with `mirror` also its transpose in block (q, p). */
+/* h[block (p, q)] += scale (alpha I + beta s t^T); with `mirror` also its transpose in block
+ * (q, p). */
 static void add_block(mt_jet *j, const int at[2], mt_cx alpha, mt_cx beta, const mt_cx *s,
                       const mt_cx *t)
 {
@@ -53,7 +56,8 @@ void mt_jet_add_rotation_block(mt_jet *j, int at, mt_cx scale, const mt_cx *n, c
     add_block(j, block, 0.0, 0.5 * scale, w, n);
 }
 
-/* Block (theta at p, dx at q) of scale (theta x u) . dx = scale theta . (u x dx): scale [u]x, and its transpose. */
+/* Block (theta at p, dx at q) of scale (theta x u) . dx = scale theta . (u x dx): scale [u]x,
+ * and its transpose. */
 void mt_jet_add_cross_block(mt_jet *j, int p, int q, mt_cx scale, const mt_cx *u)
 {
     const mt_cx m[9] = {0.0, u[2], -u[1], -u[2], 0.0, u[0], u[1], -u[0], 0.0};
@@ -89,7 +93,8 @@ static void add_dot(mt_jet *j, mt_cx scale, const mt_cx *u, const mt_cx *v)
     }
 }
 
-/* j += scale u . (Q - P); s, t: P - x_a and Q - x_b rotated; d = x_b - x_a. P moves with a as u does, so u . s is constant. */
+/* j += scale u . (Q - P); s, t: P - x_a and Q - x_b rotated; d = x_b - x_a. P moves with a as u
+ * does, so u . s is constant. */
 static void add_plane(mt_jet *j, mt_cx scale, const mt_cx *u, const mt_cx *s, const mt_cx *t,
                       const mt_cx *d)
 {
@@ -230,7 +235,8 @@ static void angle_jet(const mt_cx *b_a, const mt_cx *c_a, const mt_cx *b_b, bool
     atan2_jet(&p, &q, out);
 }
 
-/* p = e3 . f2 - e2 . f3, q = e2 . f2 + e3 . f3: of the quaternion of the turn from e to f, p = 4 q0 q1, q = 2 (q0^2 - q1^2). */
+/* p = e3 . f2 - e2 . f3, q = e2 . f2 + e3 . f3: of the quaternion of the turn from e to f, p =
+ * 4 q0 q1, q = 2 (q0^2 - q1^2). */
 void mt_jet_twist(mt_cx (*e)[3], mt_cx (*f)[3], bool second, mt_jet *out)
 {
     mt_jet p;
@@ -244,11 +250,13 @@ void mt_jet_twist(mt_cx (*e)[3], mt_cx (*f)[3], bool second, mt_jet *out)
     atan2_jet(&p, &q, out);
 }
 
-/* Below this 1 - cos the closed forms of g = angle/sin lose digits to cancellation and a series is used; its next term is of order x^8 < 1e-17 there. */
+/* Below this 1 - cos the closed forms of g = angle/sin lose digits to cancellation and a series
+ * is used; its next term is of order x^8 < 1e-17 there. */
 static const double SERIES_BELOW = 0.01;
 
 /*
- * g(c) = acos(c)/sqrt(1 - c^2) satisfies (1 - c^2) g' = c g - 1, so all its derivatives follow from g; near c = 1 with x = 1 - c:
+ * g(c) = acos(c)/sqrt(1 - c^2) satisfies (1 - c^2) g' = c g - 1, so all its derivatives follow
+ * from g; near c = 1 with x = 1 - c:
  *     g = sum a_n x^n,  a_0 = 1,  a_n = a_(n-1) n/(2n + 1)      (from the same equation).
  */
 void mt_angle_over_sine(mt_cx c, mt_cx g[3])
@@ -277,7 +285,8 @@ void mt_angle_over_sine(mt_cx c, mt_cx g[3])
     g[2] = cx_div(g[0] + (3.0 * cx_mul(c, g[1])), ss);
 }
 
-/* xi_k = g(cos) psi_k with psi_k = sin * axis_k from the skew part of Q_ij = e_i(a) . e_j(b), cos from its trace. */
+/* xi_k = g(cos) psi_k with psi_k = sin * axis_k from the skew part of Q_ij = e_i(a) . e_j(b),
+ * cos from its trace. */
 void mt_jet_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, bool second, mt_jet *out)
 {
     mt_jet psi;

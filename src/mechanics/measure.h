@@ -7,19 +7,20 @@
 #include "mechanics/cx.h"
 
 /*
- * Scalar measures of the relative position of two bodies: every joint is a few equations "measure = value", every spring an energy of measures.
- * Each is returned with its exact gradient and Hessian in the twelve local freedoms
- *     (dx_a, theta_a, dx_b, theta_b):  x -> x + dx,  R -> exp(theta^) R     (displacements and rotation vector in global axes),
- * that is, in the left exponential chart at the present position. All bodies are drawn with R = I, so a feature fixed to a body is given by
- * its vector in the drawn position.
+ * Scalar measures of the relative position of two bodies: every joint is a few equations
+ * "measure = value", every spring an energy of measures. Each is returned with its exact
+ * gradient and Hessian in the twelve local freedoms
+ *     (dx_a, theta_a, dx_b, theta_b):  x -> x + dx,  R -> exp(theta^) R
+ *         (displacements and rotation vector in global axes),
+ * that is, in the left exponential chart at the present position. All bodies are drawn with R =
+ * I, so a feature fixed to a body is given by its vector in the drawn position.
  *
- * With u, v directions and P, Q points of bodies a, b (Haug, Computer Aided Kinematics and Dynamics, 1989, ch. 9 uses the same primitives):
- *   PLANE     u_a . (Q_b - P_a)
- *   DOT       u_a . v_b
- *   DISTANCE  |Q_b - P_a|
- *   ANGLE     atan2(c_a . b_b, b_a . b_b): rotation of b against a about the axis b x c, plus the whole turns that bring it next to `near`
- *   ROTATION  component k of the rotation vector that takes the triad of a to that of b, in the triad of a
- *   BEAM      one of the generalised strains of a beam element (measure_beam.c)
+ * With u, v directions and P, Q points of bodies a, b (Haug, Computer Aided Kinematics and
+ * Dynamics, 1989, ch. 9 uses the same primitives):
+ *   PLANE u_a . (Q_b - P_a) DOT u_a . v_b DISTANCE |Q_b - P_a| ANGLE atan2(c_a . b_b, b_a .
+ *   b_b): rotation of b against a about the axis b x c, plus the whole turns that bring it next
+ *   to `near` ROTATION component k of the rotation vector that takes the triad of a to that of
+ *   b, in the triad of a BEAM one of the generalised strains of a beam element (measure_beam.c)
  */
 typedef enum mt_measure_kind {
     MT_MEASURE_PLANE,
@@ -36,7 +37,8 @@ typedef enum mt_beam_strain {
     MT_BEAM_TWIST,   /* twist [rad] */
     MT_BEAM_BEND_2, /* rotation of one end against the other about e2, e3 [rad]: even bending */
     MT_BEAM_BEND_3,
-    MT_BEAM_SWAY_2, /* sum of the ends' rotations against the chord [rad]: bending that changes its sign */
+    /* sum of the ends' rotations against the chord [rad]: bending that changes its sign */
+    MT_BEAM_SWAY_2,
     MT_BEAM_SWAY_3,
     MT_BEAM_STRAINS
 } mt_beam_strain;
@@ -62,13 +64,14 @@ typedef struct mt_measure_data {
     mt_measure_kind kind;
     int component;         /* ROTATION: 0, 1, 2; BEAM: mt_beam_strain */
     const mt_cx *point[2]; /* P - centre of a, Q - centre of b; NULL: the centre */
-    const mt_cx *dir
-        [3]; /* PLANE: u; DOT: u (a), v (b); ANGLE: b, c; ROTATION, BEAM: triad e1 e2 e3; unit vectors */
+    /* PLANE: u; DOT: u (a), v (b); ANGLE: b, c; ROTATION, BEAM: triad e1 e2 e3; unit vectors */
+    const mt_cx *dir[3];
     mt_beam_numbers beam;
     double near; /* ANGLE: of all whole turns the value nearest to this is meant [rad] */
 } mt_measure_data;
 
-/* Value, gradient and (when asked for) Hessian of a scalar function of the twelve local freedoms. */
+/* Value, gradient and (when asked for) Hessian of a scalar function of the twelve local
+ * freedoms. */
 typedef struct mt_jet {
     mt_cx value;
     mt_cx g[MT_LOCAL];
@@ -84,7 +87,8 @@ mt_cx mt_measure_value(const mt_measure_data *m, const mt_pose *a, const mt_pose
 /* Jet of the work potential f . P of a point fixed to body a (local freedoms 0..5). */
 void mt_measure_point(const mt_cx *s, const mt_cx *f, const mt_pose *a, bool second,
                       mt_jet *out);
-/* R -> exp(theta^) R (Rodrigues), x -> x + dx; real increments, the derivative parts of the pose are dropped. */
+/* R -> exp(theta^) R (Rodrigues), x -> x + dx; real increments, the derivative parts of the
+ * pose are dropped. */
 void mt_pose_move(mt_pose *pose, const double *dx, const double *theta);
 /* Put the derivative (dx, theta) on a real pose: x + i h dx, R + i h theta^ R. */
 void mt_pose_tangent(mt_pose *pose, const double *dx, const double *theta);

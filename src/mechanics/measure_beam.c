@@ -1,27 +1,41 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Generalised strains of a beam element between nodes A and B, a distance l apart as drawn. Triads e (of A) and f (of B) were equal then, e1 along the element. With the chord
- * d = x_B - x_A, L = |d|, c = d/L:
- *     a2 = g(e1.c) (e3.c),  a3 = -g(e1.c) (e2.c)     rotation of the end A against the chord, in its own triad, g(x) = acos(x)/sqrt(1 - x^2)
+ * Generalised strains of a beam element between nodes A and B, a distance l apart as drawn.
+ * Triads e (of A) and f (of B) were equal then, e1 along the element. With the chord d = x_B -
+ * x_A, L = |d|, c = d/L:
+ *     a2 = g(e1.c) (e3.c),  a3 = -g(e1.c) (e2.c)
+ *         rotation of the end A against the chord, in its own triad, g(x) = acos(x)/sqrt(1 -
+ *         x^2)
  *     b2, b3                                         the same of the end B with f
- *     phi2, phi3                                     components of log(R_A^T R_B): rotation of one end against the other
- *     phi1                                           twist: what is left about e1 when the shortest turn from e1 to f1 has been taken off
+ *     phi2, phi3
+ *         components of log(R_A^T R_B): rotation of one end against the other
+ *     phi1
+ *         twist: what is left about e1 when the shortest turn from e1 to f1 has been taken off
  *     s2 = a2 + b2,  s3 = a3 + b3.
- * Between the ends, relative to the chord, with y = 2 x/l - 1 and Legendre polynomials P(y), mu = 1/(1 + Phi), Phi = 12 E I/(k A G l^2) (mu = 1: Euler-Bernoulli),
+ * Between the ends, relative to the chord, with y = 2 x/l - 1 and Legendre polynomials P(y), mu
+ * = 1/(1 + Phi), Phi = 12 E I/(k A G l^2) (mu = 1: Euler-Bernoulli),
  *     w2' = phi3 y/2 + mu3 s3/2 P2,   w3' = -(phi2 y/2 + mu2 s2/2 P2),   theta1 = phi1 y/2,
- * the exact static solution under end forces. Put into the strains of a rod to second order (curvatures K = R^T R', elongation u' + w'^2/2, twist of the fibres), each taken in the mean over the
- * element against the force that is conjugate to it, these are
- *     STRETCH  L - l + L/2 [phi3^2/12 + (mu3 s3)^2/20 + phi2^2/12 + (mu2 s2)^2/20] + (I2 + I3)/A phi1^2/(2 l)
+ * the exact static solution under end forces. Put into the strains of a rod to second order
+ * (curvatures K = R^T R', elongation u' + w'^2/2, twist of the fibres), each taken in the mean
+ * over the element against the force that is conjugate to it, these are
+ *     STRETCH  L - l + L/2 [phi3^2/12 + (mu3 s3)^2/20 + phi2^2/12 + (mu2 s2)^2/20] +
+ *         (I2 + I3)/A phi1^2/(2 l)
  *     TWIST    phi1 + (mu2 s2 phi3 - mu3 s3 phi2)/2 - phi1 (mu3 phi2^2 + mu2 phi3^2)/4
  *     BEND_3   phi3 - mu2 phi1 s2/2          BEND_2  phi2 + mu3 phi1 s3/2
  *     SWAY_3   s3 + phi1 phi2/3              SWAY_2  s2 - phi1 phi3/3.
- * (With shear N acts along the slope w' of the axis, not of the sections: Engesser's column, P = P_E/(1 + P_E/(k A G)).)
- * Bernoulli's term of STRETCH is 1/2 of the integral of w'^2, l (2 a^2 - a b + 2 b^2)/30: under a normal force N it makes the consistent geometric stiffness N/(30 l) [36 3l -36 3l; ...]. The last
- * term of STRETCH is Wagner's (an outer fibre of a twisted bar is longer); that of third order in TWIST turns s, which is measured in the ends' own triads, into the triad halfway; the second orders of the others carry torque and bending moments into the stiffness (a shaft that buckles under
- * torque, a blade that trips sideways). The energy
- *     V = 1/2 [EA/l STRETCH^2 + GJ/l TWIST^2 + EI3/l (BEND_3^2 + 3 mu3 SWAY_3^2) + EI2/l (BEND_2^2 + 3 mu2 SWAY_2^2)]
- * does not change under any motion of the whole, however large, nor when A and B change their roles (e1, e2 -> -e1, -e2: BEND_3 and SWAY_2 change their sign). Its linearisation about the straight
- * element is that of Euler-Bernoulli or Timoshenko exactly.
+ * (With shear N acts along the slope w' of the axis, not of the sections: Engesser's column, P
+ * = P_E/(1 + P_E/(k A G)).) Bernoulli's term of STRETCH is 1/2 of the integral of w'^2, l (2
+ * a^2 - a b + 2 b^2)/30: under a normal force N it makes the consistent geometric stiffness
+ * N/(30 l) [36 3l -36 3l; ...]. The last term of STRETCH is Wagner's (an outer fibre of a
+ * twisted bar is longer); that of third order in TWIST turns s, which is measured in the ends'
+ * own triads, into the triad halfway; the second orders of the others carry torque and bending
+ * moments into the stiffness (a shaft that buckles under torque, a blade that trips sideways).
+ * The energy
+ *     V = 1/2 [EA/l STRETCH^2 + GJ/l TWIST^2 + EI3/l (BEND_3^2 + 3 mu3 SWAY_3^2) + EI2/l
+ *         (BEND_2^2 + 3 mu2 SWAY_2^2)]
+ * does not change under any motion of the whole, however large, nor when A and B change their
+ * roles (e1, e2 -> -e1, -e2: BEND_3 and SWAY_2 change their sign). Its linearisation about the
+ * straight element is that of Euler-Bernoulli or Timoshenko exactly.
  */
 #include "mechanics/measure_priv.h"
 
@@ -92,7 +106,8 @@ static void quotient_jet(const mt_jet *p, const mt_jet *q, mt_jet *out)
     mt_jet_chain(&c, p, q, out);
 }
 
-/* s[k] += rotation of one end against the chord, about e2 (k = 0) and e3 (k = 1); in the plane about e3 alone. */
+/* s[k] += rotation of one end against the chord, about e2 (k = 0) and e3 (k = 1); in the plane
+ * about e3 alone. */
 static void add_end(int side, mt_cx (*e)[3], const mt_cx *d, const mt_jet *length, bool plane,
                     mt_jet s[2])
 {

@@ -19,9 +19,11 @@ typedef struct mt_chain2 {
 void mt_jet_clear(mt_jet *j, bool second);
 /* g[0..2] += scale v. */
 void mt_jet_add_vec(mt_cx *g, mt_cx scale, const mt_cx *v);
-/* Diagonal block, theta at `at`, of scale n . w (w turns): scale [1/2 (n w^T + w n^T) - (n . w) I]. */
+/* Diagonal block, theta at `at`, of scale n . w (w turns): scale [1/2 (n w^T + w n^T) - (n . w)
+ * I]. */
 void mt_jet_add_rotation_block(mt_jet *j, int at, mt_cx scale, const mt_cx *n, const mt_cx *w);
-/* Block (theta at p, dx at q) of scale (theta x u) . dx = scale theta . (u x dx): scale [u]x, and its transpose. */
+/* Block (theta at p, dx at q) of scale (theta x u) . dx = scale theta . (u x dx): scale [u]x,
+ * and its transpose. */
 void mt_jet_add_cross_block(mt_jet *j, int p, int q, mt_cx scale, const mt_cx *u);
 /* out = f(p, q); out is neither. */
 void mt_jet_chain(const mt_chain2 *c, const mt_jet *p, const mt_jet *q, mt_jet *out);
@@ -29,7 +31,8 @@ void mt_jet_chain(const mt_chain2 *c, const mt_jet *p, const mt_jet *q, mt_jet *
 void mt_jet_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, bool second, mt_jet *out);
 /* Component k of the rotation vector from triad e (on a) to triad f (on b). */
 void mt_jet_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, bool second, mt_jet *out);
-/* Twist from triad e (on a) to triad f (on b): the turn about e1 that is left when the shortest turn from e1 to f1 has been taken off. */
+/* Twist from triad e (on a) to triad f (on b): the turn about e1 that is left when the shortest
+ * turn from e1 to f1 has been taken off. */
 void mt_jet_twist(mt_cx (*e)[3], mt_cx (*f)[3], bool second, mt_jet *out);
 /* g(c) = acos(c)/sqrt(1 - c^2), g', g''. */
 void mt_angle_over_sine(mt_cx c, mt_cx g[3]);

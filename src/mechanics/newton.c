@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * One stage of the position analysis from start to verdict. Plain Newton (newton_step.c) finds any stationary point of the energy, a saddle as well as a minimum. What is drawn in
- * equilibrium stays there, stable or not. Else it settles: where Newton does not converge, ends uphill, or in a saddle that the drawing lies beside (its distance has a part along directions
- * of negative curvature), the energy is followed downhill from the drawing and out of such saddles, and Newton finishes. A saddle that the drawing lies straight above (a column beyond its
- * buckling load, compressed along its axis) is an equilibrium that does not say which way it falls: it stands, and is told as unstable.
+ * One stage of the position analysis from start to verdict. Plain Newton (newton_step.c) finds
+ * any stationary point of the energy, a saddle as well as a minimum. What is drawn in
+ * equilibrium stays there, stable or not. Else it settles: where Newton does not converge, ends
+ * uphill, or in a saddle that the drawing lies beside (its distance has a part along directions
+ * of negative curvature), the energy is followed downhill from the drawing and out of such
+ * saddles, and Newton finishes. A saddle that the drawing lies straight above (a column beyond
+ * its buckling load, compressed along its axis) is an equilibrium that does not say which way
+ * it falls: it stands, and is told as unstable.
  */
 #include "mechanics/newton_priv.h"
 
@@ -19,7 +23,8 @@ enum { SADDLES = 12 };
 /* Energies differ by rounding below this part of them. */
 static const double ENERGY_ROUNDING = 1e-12;
 
-/* What the step last found, w->step and trim, would change: with r = g + A^T lambda + t trim + H step unbalanced, A^T lambda' = -r. */
+/* What the step last found, w->step and trim, would change: with r = g + A^T lambda + t trim +
+ * H step unbalanced, A^T lambda' = -r. */
 static mt_status keep_step(const mt_newton_work *w, const mt_elimination *e, double trim,
                            mt_arena *mem, mt_step_left *left, mt_err *err)
 {
@@ -86,8 +91,8 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
         const double tau = w->tau;
         MT_TRY(mt_newton_linearise(w, poses, mem, &e, &inverse, err));
         if (it == 0 && w->p->energy == MT_ENERGY_PHYSICAL && w->gap <= MT_STEP_DONE) {
-            MT_TRY(
-                mt_singular_refuse(w->p->data, poses, &e, mem, err)); /* several ways lead on */
+            /* several ways lead on */
+            MT_TRY(mt_singular_refuse(w->p->data, poses, &e, mem, err));
         }
         report->iterations++;
         if (it == 0 && w->watch && w->gap <= MT_STEP_DONE && w->moved > MT_DRAWN &&
@@ -122,7 +127,8 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
     return MT_OK;
 }
 
-/* A position that is not a number ends the iteration, not the analysis: the start may be bad. */
+/* A position that is not a number ends the iteration, not the analysis: the start may be
+ * bad. */
 static mt_status attempt(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_state *report,
                          mt_stage *stage, bool *done, mt_err *err)
 {
@@ -152,7 +158,8 @@ static mt_status refuse(mt_newton_work *w, const mt_pose *poses, bool closed, mt
                    report->iterations, w->residual, where);
 }
 
-/* Is the stationary point that was last evaluated a saddle, with the drive held, that the way from the start leads down from? That direction goes into w->step. */
+/* Is the stationary point that was last evaluated a saddle, with the drive held, that the way
+ * from the start leads down from? That direction goes into w->step. */
 static mt_status find_saddle(mt_newton_work *w, const mt_pose *start, const mt_pose *poses,
                              const mt_stage *stage, bool *saddle, mt_arena *mem, mt_err *err)
 {
@@ -260,7 +267,8 @@ static mt_status lock_first(const mt_newton_work *w, mt_pose *poses, mt_arena *m
     return rc == MT_E_MEMORY ? mt_fail_memory(err) : MT_OK;
 }
 
-/* A physical stage whose plain Newton ended as `end` says: downhill from the start, unless it may stay. */
+/* A physical stage whose plain Newton ended as `end` says: downhill from the start, unless it
+ * may stay. */
 static mt_status go_on(mt_newton_work *w, const place *start, mt_pose *poses, mt_arena *mem,
                        mt_state *report, mt_stage *stage, ending *end, mt_err *err)
 {

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Descent on the energy along the constraints: the reduced Hessian with the signs of its eigenvalues made positive gives a direction that leads downhill, the step is
- * halved until the energy, evaluated back on the constraints, is lower. It ends near a stable equilibrium, or in a saddle where symmetry leads into it; Newton finishes.
+ * Descent on the energy along the constraints: the reduced Hessian with the signs of its
+ * eigenvalues made positive gives a direction that leads downhill, the step is halved until the
+ * energy, evaluated back on the constraints, is lower. It ends near a stable equilibrium, or in
+ * a saddle where symmetry leads into it; Newton finishes.
  */
 #include "mechanics/newton_priv.h"
 
@@ -38,7 +40,8 @@ static mt_status restore(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_er
     return mt_fail(err, MT_E_ASSEMBLY, "the joints do not stay closed");
 }
 
-/* One direction: eigenvalues of the reduced Hessian made positive, freedoms without stiffness given the softest stiffness that keeps the step short. */
+/* One direction: eigenvalues of the reduced Hessian made positive, freedoms without stiffness
+ * given the softest stiffness that keeps the step short. */
 static mt_status direction_of(mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
                               mt_err *err)
 {
@@ -62,7 +65,8 @@ static mt_status direction_of(mt_newton_work *w, const mt_elimination *e, mt_are
     return MT_OK;
 }
 
-/* Halve the step until the energy is lower; *lower tells whether it is, else the poses are back where they were. */
+/* Halve the step until the energy is lower; *lower tells whether it is, else the poses are back
+ * where they were. */
 static mt_status search_line(mt_newton_work *w, mt_pose *poses, double *energy, bool *lower,
                              mt_arena *mem, mt_err *err)
 {

@@ -8,7 +8,8 @@ enum { NAMES_SIZE = 400 };
 /* Entries of a left null vector (largest 1) above this belong to the dependent set. */
 static const double IN_THE_SET = 1e-6;
 
-/* Which joints to name: those in the left null vectors of A that the gap lies along (they contradict each other), else the one furthest open. */
+/* Which joints to name: those in the left null vectors of A that the gap lies along (they
+ * contradict each other), else the one furthest open. */
 mt_status mt_newton_open_loop(const mt_newton_problem *problem, const mt_pose *poses,
                               const mt_elimination *e, mt_arena *scratch, mt_err *err)
 {

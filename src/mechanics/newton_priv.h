@@ -4,7 +4,8 @@
 
 #include "mechanics/newton.h"
 
-/* What the files newton*.c share: one linearisation of a stage at the present position. All arrays live in the arena given to mt_newton_work_init. */
+/* What the files newton*.c share: one linearisation of a stage at the present position. All
+ * arrays live in the arena given to mt_newton_work_init. */
 typedef struct mt_newton_work {
     const mt_newton_problem *p;
     const mt_system *sys;
@@ -25,17 +26,21 @@ typedef struct mt_newton_work {
     double gap;      /* model lengths */
     double moved;    /* model lengths */
     int null_freedoms;
-    bool
-        watch; /* leave plain Newton at once where the Hessian is indefinite and the start no equilibrium */
+    /* leave plain Newton at once where the Hessian is indefinite and the start no
+     * equilibrium */
+    bool watch;
 } mt_newton_work;
 
-/* Converged: the step is below this fraction of the model length (quadratic convergence makes the error its square)... */
+/* Converged: the step is below this fraction of the model length (quadratic convergence makes
+ * the error its square)... */
 static const double MT_STEP_DONE = 1e-10;
-/* ...and the unbalanced force below this fraction of the forces at work (rounding of their sum is ~ n eps). */
+/* ...and the unbalanced force below this fraction of the forces at work (rounding of their sum
+ * is ~ n eps). */
 static const double MT_FORCE_DONE = 1e-11;
 /* A drawing has some six digits: nearer than this is where it is drawn [model lengths, rad]. */
 static const double MT_DRAWN = 1e-6;
-/* Rounding of the largest single spring force, summed over many springs and projected, stays below this many times itself. */
+/* Rounding of the largest single spring force, summed over many springs and projected, stays
+ * below this many times itself. */
 static const double MT_NOISE_ROOM = 32.0;
 /* Largest motion of one step in model lengths: beyond it the quadratic model means nothing. */
 static const double MT_STEP_LIMIT = 0.3;
@@ -44,18 +49,21 @@ mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_
                               mt_err *err);
 /* Lagrangian at poses with w->lambda and w->tau. */
 void mt_newton_evaluate(mt_newton_work *w, const mt_pose *poses, bool hessian);
-/* Everything at poses: multipliers, Hessian, elimination, inverse (of order n, with trim n + 1), and the step v + Z eta (unlimited); tau is advanced. */
+/* Everything at poses: multipliers, Hessian, elimination, inverse (of order n, with trim n +
+ * 1), and the step v + Z eta (unlimited); tau is advanced. */
 mt_status mt_newton_linearise(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
                               mt_elimination *e, double **inverse, mt_err *err);
 /* Z^T H Z, n x n with leading dimension ld. */
 mt_status mt_newton_reduce_hessian(const mt_newton_work *w, const mt_elimination *e, double *k,
                                    int ld, mt_arena *mem, mt_err *err);
-/* Pseudo-inverse (order n, with trim n + 1) of the (bordered) reduced w->h, and the number of freedoms without stiffness into w. */
+/* Pseudo-inverse (order n, with trim n + 1) of the (bordered) reduced w->h, and the number of
+ * freedoms without stiffness into w. */
 mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
                            double **inverse, mt_err *err);
 /* Move the poses along w->step, at most `limit` model lengths. */
 void mt_newton_take_step(mt_newton_work *w, mt_pose *poses, double limit);
-/* Physical energy: note the whole turns of angles after a step (springs wind up); else they stay where the drive left them. */
+/* Physical energy: note the whole turns of angles after a step (springs wind up); else they
+ * stay where the drive left them. */
 void mt_newton_follow(const mt_newton_work *w, const mt_pose *poses);
 /* Largest motion of dq in model lengths, rotations as they are. */
 double mt_newton_scaled_norm(const mt_newton_work *w, const double *dq);
@@ -63,13 +71,15 @@ double mt_newton_scaled_norm(const mt_newton_work *w, const double *dq);
 double mt_newton_distance(const mt_system *sys, const mt_pose *a, const mt_pose *b);
 /* Largest violation of the constraints last evaluated, in model lengths. */
 double mt_newton_gap_of(const mt_newton_work *w);
-/* *falls: has Z^T H Z of the w->h last evaluated eigenvalues below 0 by more than rounding, and the motion `way`[nq] a part along their vectors that is more than the digits of a
- * drawing leave open? That part, reversed, goes into w->step, which else stays. */
+/* *falls: has Z^T H Z of the w->h last evaluated eigenvalues below 0 by more than rounding, and
+ * the motion `way`[nq] a part along their vectors that is more than the digits of a drawing
+ * leave open? That part, reversed, goes into w->step, which else stays. */
 mt_status mt_newton_falls(mt_newton_work *w, const mt_elimination *e, const double *way,
                           bool *falls, mt_arena *mem, mt_err *err);
 /* way[nq]: the motion that takes `from` to `to`. */
 void mt_newton_way(const mt_system *sys, const mt_pose *from, const mt_pose *to, double *way);
-/* Move the poses from a stationary point along w->step, or against it, to a lower energy; *lower: is there one? */
+/* Move the poses from a stationary point along w->step, or against it, to a lower energy;
+ * *lower: is there one? */
 mt_status mt_newton_leave_saddle(mt_newton_work *w, mt_pose *poses, bool *lower, mt_arena *mem,
                                  mt_err *err);
 /* Energy descent along the constraints as far as rounding of the energy lets it. */

@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Newton with multipliers. At a position q with constraints c, Jacobian A, freedoms Z (A Z = 0):
+ * Newton with multipliers. At a position q with constraints c, Jacobian A, freedoms Z (A Z =
+ * 0):
  *     lambda  = least-squares solution of A^T lambda = -g
  *     v       = -A^+ c                                    back to the constraints
  *     H       = Hessian of V + lambda c
  *     Z^T H Z eta = -Z^T (g + H v)                        towards equilibrium
  *     q      <- q (+) (v + Z eta).
- * Freedoms without stiffness (singular values of Z^T H Z below NO_STIFFNESS of H itself in scaled coordinates) take no step; the residual test then decides whether something still
- * pushes along them. With `trim` the force tau of one spring is unknown and the drive's row (a_d, c_d) is its equation:
+ * Freedoms without stiffness (singular values of Z^T H Z below NO_STIFFNESS of H itself in
+ * scaled coordinates) take no step; the residual test then decides whether something still
+ * pushes along them. With `trim` the force tau of one spring is unknown and the drive's row
+ * (a_d, c_d) is its equation:
  *     [Z^T H Z   Z^T t] [eta]   [-Z^T (g + H v)  ]
  *     [a_d Z       0  ] [tau] = [-(c_d + a_d v)  ].
  */
@@ -18,8 +21,9 @@
 
 #include "base/interrupt.h"
 
-/* Singular values of the reduced Hessian below this fraction of the largest stiffness, be it one that the joints hold, belong to freedoms without stiffness: rounding leaves about n eps ~ 1e-14 of them, and a real
- * stiffness may be 1e12 times softer than its neighbour. */
+/* Singular values of the reduced Hessian below this fraction of the largest stiffness, be it
+ * one that the joints hold, belong to freedoms without stiffness: rounding leaves about n eps ~
+ * 1e-14 of them, and a real stiffness may be 1e12 times softer than its neighbour. */
 static const double NO_STIFFNESS = 1e-13;
 
 mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_arena *mem,
@@ -72,8 +76,8 @@ void mt_newton_evaluate(mt_newton_work *w, const mt_pose *poses, bool hessian)
         real_part(nq * nq, w->l.h, w->h);
     }
     if (w->p->energy == MT_ENERGY_ANCHOR) {
-        w->l.force_scale =
-            w->sys->length_m; /* the anchor's own unit: a displacement of one model length */
+        /* the anchor's own unit: a displacement of one model length */
+        w->l.force_scale = w->sys->length_m;
     }
 }
 
@@ -149,7 +153,8 @@ mt_status mt_newton_reduce_hessian(const mt_newton_work *w, const mt_elimination
     return MT_OK;
 }
 
-/* Length of a row in the elimination's coordinates, in which angles and displacements weigh alike; 1 where it is empty. */
+/* Length of a row in the elimination's coordinates, in which angles and displacements weigh
+ * alike; 1 where it is empty. */
 static double row_length(const mt_elimination *e, const double *row, ptrdiff_t step)
 {
     double length = 0.0;
@@ -177,7 +182,8 @@ static void border(const mt_newton_work *w, const mt_elimination *e, const doubl
     k[n + (n * order)] = 0.0;
 }
 
-/* Largest entry of the Hessian in the elimination's coordinates, in which Z has orthonormal columns. */
+/* Largest entry of the Hessian in the elimination's coordinates, in which Z has orthonormal
+ * columns. */
 static double stiffness_scale(const mt_newton_work *w, const mt_elimination *e)
 {
     double most = 0.0;
@@ -302,8 +308,10 @@ static mt_status balance(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
 }
 
 /*
- * A step that is too long is shortened in the eigenvectors of Z^T H Z, each by itself: what has next to no stiffness (a rod's spin between ball joints, which has none at an equilibrium, but off
- * it some, as large as what is unbalanced) goes as far as a step may, and the rest where it has to go. Shortened as a whole such a step would get nowhere.
+ * A step that is too long is shortened in the eigenvectors of Z^T H Z, each by itself: what has
+ * next to no stiffness (a rod's spin between ball joints, which has none at an equilibrium, but
+ * off it some, as large as what is unbalanced) goes as far as a step may, and the rest where it
+ * has to go. Shortened as a whole such a step would get nowhere.
  */
 static mt_status shorten(mt_newton_work *w, const mt_elimination *e, double *eta, mt_arena *mem,
                          mt_err *err)

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Derivative of a stage's solution (q, lambda, tau) with respect to one input, by the implicit function theorem. With d the motion that the input causes already (drawn
- * positions, earlier stages) and a dot the derivative along (input, d) at fixed lambda and tau:
- *     v = -A^+ c.,   K eta = -Z^T ((grad L). + H v),   q' = d + v + Z eta,   A^T lambda' = -(grad L). - H (v + Z eta) - t tau',
- * K the reduced Hessian of newton_step.c with the border of the trimmed spring. The chart moves with the position; that adds nothing, because grad L = 0 there.
+ * Derivative of a stage's solution (q, lambda, tau) with respect to one input, by the implicit
+ * function theorem. With d the motion that the input causes already (drawn positions, earlier
+ * stages) and a dot the derivative along (input, d) at fixed lambda and tau:
+ *     v = -A^+ c.,   K eta = -Z^T ((grad L). + H v),   q' = d + v + Z eta,
+ *         A^T lambda' = -(grad L). - H (v + Z eta) - t tau',
+ * K the reduced Hessian of newton_step.c with the border of the trimmed spring. The chart moves
+ * with the position; that adds nothing, because grad L = 0 there.
  */
 #include "mechanics/newton_priv.h"
 

@@ -45,7 +45,8 @@ static int assembly_constraints(const mt_system *sys)
     return sys->driven ? sys->n_constraints - 1 : sys->n_constraints;
 }
 
-/* Constraint violations at the drawing below this times the model length are rounding of the drawing's own numbers: it closes as it is. */
+/* Constraint violations at the drawing below this times the model length are rounding of the
+ * drawing's own numbers: it closes as it is. */
 static const double DRAWN_CLOSED = 1e-13;
 
 static mt_status close_loops(mt_state *p, mt_data *data, mt_arena *mem, mt_err *err)
@@ -63,7 +64,9 @@ static mt_status close_loops(mt_state *p, mt_data *data, mt_arena *mem, mt_err *
     }
     MT_TRY(mt_newton_gap(&problem, p->reference, mem, &gap, err));
     if (gap <= DRAWN_CLOSED * sys->length_m && sys->geometry_fixed) {
-        return MT_OK; /* where inputs shape the geometry the stage is needed for its derivative, even if nothing moves now */
+        /* where inputs shape the geometry the stage is needed for its derivative, even if
+         * nothing moves now */
+        return MT_OK;
     }
     return mt_newton_solve(&problem, p->reference, mem, p, &p->closure, err);
 }
@@ -79,8 +82,10 @@ static mt_status balance(mt_state *p, mt_data *data, mt_arena *mem, mt_err *err)
 }
 
 /*
- * Nothing but the way that the drive took says where a freedom without stiffness stands. Begin again from the closure next to the drawing: that makes the result a function of
- * the design alone, with a derivative. Where that closure or the equilibrium from there fails (far from the drawing the anchor pulls no longer), what was found stands.
+ * Nothing but the way that the drive took says where a freedom without stiffness stands. Begin
+ * again from the closure next to the drawing: that makes the result a function of the design
+ * alone, with a derivative. Where that closure or the equilibrium from there fails (far from
+ * the drawing the anchor pulls no longer), what was found stands.
  */
 static mt_status anchor_loose_freedoms(mt_state *p, mt_data *data, mt_arena *mem, mt_err *err)
 {
@@ -215,7 +220,8 @@ mt_status mt_position_tangent(mt_state *p, mt_data *data, mt_arena *scratch, mt_
     mt_data_vecs(data);
     mt_data_targets(data);
     mt_data_drawn(data, drawn);
-    /* the drawn centres move with the geometry; where no loop had to be closed that is the whole motion unless the constraints open */
+    /* the drawn centres move with the geometry; where no loop had to be closed that is the
+     * whole motion unless the constraints open */
     for (int i = 0; i < sys->n_bodies; i++) {
         for (int k = 0; k < 3; k++) {
             const int dof = sys->bodies[i].dof[k];

@@ -2,10 +2,13 @@
 /*
  * Reduced rows r = Z^T f, and which of their entries are nothing but rounding.
  *
- * A spring that acts against what the joints block has r = 0. What is computed instead is rounding, and no size of r by itself can tell: a short r may be a real, small lever. The error is
- * known, though: with bounds dz of the basis (carried through its elimination) and df of the row,
+ * A spring that acts against what the joints block has r = 0. What is computed instead is
+ * rounding, and no size of r by itself can tell: a short r may be a real, small lever. The
+ * error is known, though: with bounds dz of the basis (carried through its elimination) and df
+ * of the row,
  *     |dr_c| <= sum_k |f_k| dz_kc + df_k |z_kc|.
- * An entry below that is exactly 0: each is judged against the terms that it is the sum of, before they cancel.
+ * An entry below that is exactly 0: each is judged against the terms that it is the sum of,
+ * before they cancel.
  */
 #include "mechanics/reduce.h"
 
@@ -15,7 +18,8 @@
 
 #include "mechanics/local.h"
 
-/* Relative rounding of an entry of a row; coordinates far from the origin lose as many digits more in the arms. */
+/* Relative rounding of an entry of a row; coordinates far from the origin lose as many digits
+ * more in the arms. */
 static const double ROW_ULPS = 4.0;
 
 /* The largest coordinate, at least the model length [m]. */

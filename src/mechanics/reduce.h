@@ -4,10 +4,12 @@
 
 #include "mechanics/linear.h"
 
-/* Replace the basis of the elimination by one local to the bodies (local.h), with bounds of its errors. After the elimination and the rows. */
+/* Replace the basis of the elimination by one local to the bodies (local.h), with bounds of its
+ * errors. After the elimination and the rows. */
 mt_status mt_reduce_basis(mt_linear *lin, mt_err *err);
-/* reduced = Z^T row for all rows of all kinds at the present position, entries that are rounding made exactly 0, and blocked where nothing is left. After the basis; the memory is that of the
- * geometry. O(rows n). */
+/* reduced = Z^T row for all rows of all kinds at the present position, entries that are
+ * rounding made exactly 0, and blocked where nothing is left. After the basis; the memory is
+ * that of the geometry. O(rows n). */
 mt_status mt_reduce_rows(mt_linear *lin, mt_err *err);
 
 #endif

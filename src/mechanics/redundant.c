@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the elimination found, in the user's words: redundant joints, directions named by body. */
+/* What the elimination found, in the user's words: redundant joints, directions named by
+ * body. */
 #include <math.h>
 #include <string.h>
 

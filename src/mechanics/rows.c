@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Consistent masses are factored once, M = C C^T, so that they too are sums of squares of rows (C^T v): a bar's is [1/3 1/6; 1/6 1/3] per direction on (v_a, v_b), times its mass;
- * a beam's stands in rows_beam.c. Displacement of a point s from the centre: dx + theta x s.
+ * Consistent masses are factored once, M = C C^T, so that they too are sums of squares of rows
+ * (C^T v): a bar's is [1/3 1/6; 1/6 1/3] per direction on (v_a, v_b), times its mass; a beam's
+ * stands in rows_beam.c. Displacement of a point s from the centre: dx + theta x s.
  */
 #include "mechanics/rows_priv.h"
 
@@ -55,33 +56,27 @@ mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists,
         const mt_measure_def *const m = &sys->measures[s->measure[0]];
         const bool pair = s->measure[0] != s->measure[1];
         push(&lists[s->damper ? MT_TERM_DAMPING : MT_TERM_STIFFNESS], p,
-             (mt_term){
-                 .coefficient = s->stiffness,
-                 .count = pair ? 2 : 1,
-                 .pair = pair,
-                 .body = {m->body[0], m->body[1]},
-                 .source = i
-        });
+             (mt_term){.coefficient = s->stiffness,
+                       .count = pair ? 2 : 1,
+                       .pair = pair,
+                       .body = {m->body[0], m->body[1]},
+                       .source = i});
     }
     for (int i = 0; i < sys->n_inertias; i++) {
         const mt_inertia_def *const def = &sys->inertias[i];
         push(&lists[MT_TERM_MASS], p,
-             (mt_term){
-                 .coefficient = def->coefficient,
-                 .count = inertia_rows(sys, def),
-                 .pair = def->kind == MT_INERTIA_ROTATION && def->dir[0] != def->dir[1],
-                 .body = {def->body[0], def->body[1]},
-                 .source = i
-        });
+             (mt_term){.coefficient = def->coefficient,
+                       .count = inertia_rows(sys, def),
+                       .pair = def->kind == MT_INERTIA_ROTATION && def->dir[0] != def->dir[1],
+                       .body = {def->body[0], def->body[1]},
+                       .source = i});
     }
     for (int i = 0; i < sys->n_channels; i++) {
         push(&lists[MT_TERM_CHANNEL], p,
-             (mt_term){
-                 .coefficient = MT_NO_NODE,
-                 .count = 1,
-                 .body = {sys->channels[i].body[0], sys->channels[i].body[1]},
-                 .source = i
-        });
+             (mt_term){.coefficient = MT_NO_NODE,
+                       .count = 1,
+                       .body = {sys->channels[i].body[0], sys->channels[i].body[1]},
+                       .source = i});
     }
     return MT_OK;
 }
@@ -149,9 +144,7 @@ static void shape_of(const mt_data *d, const mt_node shape[2], mt_beam_geometry 
 static void beam_rows(const mt_data *d, const mt_inertia_def *def, const mt_pose *poses,
                       mt_cx *rows)
 {
-    mt_beam_geometry g = {
-        .shape = {1.0, 1.0}
-    };
+    mt_beam_geometry g = {.shape = {1.0, 1.0}};
     mt_beam_frame(d, def->body, def->dir, poses, &g);
     shape_of(d, def->shape, &g);
     if (def->kind == MT_INERTIA_BEAM_TWIST) {
@@ -205,9 +198,7 @@ static void beam_channel(const mt_data *d, const mt_channel_def *c, const mt_pos
 {
     static const mt_cx zero[3] = {0.0, 0.0, 0.0};
     const mt_cx x = mt_data_scalar(d, c->fraction, 0.0);
-    mt_beam_geometry g = {
-        .shape = {1.0, 1.0}
-    };
+    mt_beam_geometry g = {.shape = {1.0, 1.0}};
     mt_beam_frame(d, c->body, c->dir, poses, &g);
     shape_of(d, c->shape, &g);
     for (int side = 0; side < 2; side++) {

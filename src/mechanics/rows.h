@@ -6,9 +6,11 @@
 
 /*
  * Stiffness, damping, mass and sensors as sparse rows over the states of (at most) two bodies:
- *     K = sum_t k_t f_t f_t^T (+ geometric part),   M = sum_t m_t sum_i f_ti f_ti^T,   sensor = f . dq.
- * A term's coefficient is one node of the program, its rows are geometry. That is what makes repeated evaluation at fixed geometry a short sum, gives derivatives and
- * interval bounds of K and M term by term, and keeps the factor of K for badly scaled models.
+ *     K = sum_t k_t f_t f_t^T (+ geometric part),   M = sum_t m_t sum_i f_ti f_ti^T,
+ *         sensor = f . dq.
+ * A term's coefficient is one node of the program, its rows are geometry. That is what makes
+ * repeated evaluation at fixed geometry a short sum, gives derivatives and interval bounds of K
+ * and M term by term, and keeps the factor of K for badly scaled models.
  */
 typedef enum mt_term_kind {
     MT_TERM_STIFFNESS,
@@ -37,7 +39,8 @@ typedef struct mt_term_list {
 
 /* The terms of a system (topology only). lists[MT_TERM_KINDS]. */
 mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists, mt_err *err);
-/* Rows of one kind at given poses: rows[12 * n_rows], entry k of a row belongs to local freedom k of the term's bodies. */
+/* Rows of one kind at given poses: rows[12 * n_rows], entry k of a row belongs to local freedom
+ * k of the term's bodies. */
 void mt_rows_eval(const mt_data *d, mt_term_kind kind, const mt_term_list *list,
                   const mt_pose *poses, mt_cx *rows);
 

@@ -1,13 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * What moves between the nodes of a beam element, in the frame of its chord (length l, as it is now): e1 along the chord, e2 and e3 halfway between those of the two nodes. In one plane of
- * bending, with the nodes' deflections w_A, w_B and the rotations t_A, t_B of their sections, and
- *     psi = (w_B - w_A)/l,   kappa = t_B - t_A,   s = t_A + t_B - 2 psi,   mu = 1/(1 + Phi)  (1: Euler-Bernoulli),
+ * What moves between the nodes of a beam element, in the frame of its chord (length l, as it is
+ * now): e1 along the chord, e2 and e3 halfway between those of the two nodes. In one plane of
+ * bending, with the nodes' deflections w_A, w_B and the rotations t_A, t_B of their sections,
+ * and
+ *     psi = (w_B - w_A)/l,   kappa = t_B - t_A,   s = t_A + t_B - 2 psi,   mu = 1/(1 + Phi)
+ *         (1: Euler-Bernoulli),
  * the static solution is, in Legendre polynomials of y = 2 x/l - 1,
- *     w     = [(w_A + w_B)/2 - l kappa/12] P0 + l [psi/2 - mu s/20] P1 + l kappa/12 P2 + l mu s/20 P3
+ *     w     = [(w_A + w_B)/2 - l kappa/12] P0 + l [psi/2 - mu s/20] P1 + l kappa/12 P2 + l mu
+ *         s/20 P3
  *     theta = [psi + (1 - mu) s/2] P0 + kappa/2 P1 + mu s/2 P2,
- * and because the integral of P_i P_j over the element is l/(2 i + 1) for i = j, else 0, the consistent masses m/l int w^2 and J/l int theta^2 are sums of squares of these brackets over
- * sqrt(2 i + 1). (mu = 1: Archer's 1/420 [156 22 54 -13; ...].) A bar's, linear, is one of two squares.
+ * and because the integral of P_i P_j over the element is l/(2 i + 1) for i = j, else 0, the
+ * consistent masses m/l int w^2 and J/l int theta^2 are sums of squares of these brackets over
+ * sqrt(2 i + 1). (mu = 1: Archer's 1/420 [156 22 54 -13; ...].) A bar's, linear, is one of two
+ * squares.
  */
 #include "mechanics/rows_priv.h"
 
@@ -42,7 +48,8 @@ void mt_beam_frame(const mt_data *d, const int body[2], const int dir[3], const 
     }
 }
 
-/* row += w_A by[0] + l t_A by[1] + w_B by[2] + l t_B by[3], in the plane of bending about e2 (k = 0: deflection along e3, t = -theta2) or e3 (k = 1). */
+/* row += w_A by[0] + l t_A by[1] + w_B by[2] + l t_B by[3], in the plane of bending about e2 (k
+ * = 0: deflection along e3, t = -theta2) or e3 (k = 1). */
 static void add_plane(mt_cx *row, const mt_beam_geometry *g, int k, const mt_cx by[4])
 {
     const mt_cx *const u = g->e[k == 0 ? 2 : 1];
@@ -73,10 +80,7 @@ static void add_sway(mt_cx by[4], mt_cx scale)
 void mt_beam_deflection_rows(const mt_beam_geometry *g, int k, mt_cx *rows)
 {
     const mt_cx mu = g->shape[k];
-    mt_cx by[MT_DEFLECTION_ROWS][4] = {
-        { 0.5, 0.0, 0.5, 0.0},
-        {-0.5, 0.0, 0.5, 0.0}
-    };
+    mt_cx by[MT_DEFLECTION_ROWS][4] = {{0.5, 0.0, 0.5, 0.0}, {-0.5, 0.0, 0.5, 0.0}};
     add_kappa(by[0], -1.0 / 12.0);
     add_sway(by[1], -mu / 20.0);
     add_kappa(by[2], 1.0 / 12.0);
@@ -92,9 +96,7 @@ void mt_beam_deflection_rows(const mt_beam_geometry *g, int k, mt_cx *rows)
 void mt_beam_rotary_rows(const mt_beam_geometry *g, int k, mt_cx *rows)
 {
     const mt_cx mu = g->shape[k];
-    mt_cx by[MT_ROTARY_ROWS][4] = {
-        {-1.0, 0.0, 1.0, 0.0}
-    };
+    mt_cx by[MT_ROTARY_ROWS][4] = {{-1.0, 0.0, 1.0, 0.0}};
     add_sway(by[0], 0.5 * (1.0 - mu));
     add_kappa(by[1], 0.5);
     add_sway(by[2], 0.5 * mu);

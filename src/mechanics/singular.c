@@ -1,18 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Positions where equations of joints are dependent at that very position only. With rows of unit length, rotations as arcs and the model length L as unit, let
- *     A = U diag(s) V^T,   w_i, v_i a left and a right vector of a small singular value s_i,   Z_i the right vectors of all values up to s_i, and of the freedoms.
+ * Positions where equations of joints are dependent at that very position only. With rows of
+ * unit length, rotations as arcs and the model length L as unit, let
+ *     A = U diag(s) V^T,   w_i, v_i a left and a right vector of a small singular value s_i,
+ *         Z_i the right vectors of all values up to s_i, and of the freedoms.
  * What the other equations leave of equation i on the motions Z y is (Lyapunov-Schmidt)
  *     g_i(y) = s_i v_i^T y + 1/2 y^T H_i y + O(y^3),   H_i = Z_i^T (sum_j w_ij c_j'') Z_i,
- * which does not depend on the chart, as w_i^T A vanishes to that order. (Motions that a greater s_j blocks are left out of Z_i: equation j blocks them wherever H_i leads.)
- *     H_i = 0, s_i = 0   the equation holds wherever the others do, as far as the second order tells: redundant everywhere, welcome
+ * which does not depend on the chart, as w_i^T A vanishes to that order. (Motions that a
+ * greater s_j blocks are left out of Z_i: equation j blocks them wherever H_i leads.)
+ *     H_i = 0, s_i = 0
+ *         the equation holds wherever the others do, as far as the second order tells:
+ *         redundant everywhere, welcome
  *     H_i = 0, s_i > 0   almost redundant, yet independent
- *     H_i > 0            the gradient of g_i changes by |H_i| per unit of motion: at a distance of about s_i / |H_i| there is a position where it vanishes; the equations are
- *                        fulfilled there up to s_i^2 / (2 |H_i|). Where that is rounding, this position is that one.
- * |H_i| is taken from its products with a few vectors of independent entries of variance 1: their mean square length is |H_i|_F^2. It counts as 0 below NO_CURVATURE of its own terms.
+ *     H_i > 0
+ *         the gradient of g_i changes by |H_i| per unit of motion: at a distance of about s_i /
+ *         |H_i| there is a position where it vanishes; the equations are
+ *                        fulfilled there up to s_i^2 /
+ *                            (2 |H_i|). Where that is rounding, this position is that one.
+ * |H_i| is taken from its products with a few vectors of independent entries of variance 1:
+ * their mean square length is |H_i|_F^2. It counts as 0 below NO_CURVATURE of its own terms.
  *
- * Where H_i = 0 and s_i = 0 a higher term may be left (a point on a line that touches its path to the third order). So the mechanism is moved, by a finite y: the independent equations are
- * closed again by a chord iteration with the elimination at hand, and the others are looked at. They stay closed where they are redundant everywhere.
+ * Where H_i = 0 and s_i = 0 a higher term may be left (a point on a line that touches its path
+ * to the third order). So the mechanism is moved, by a finite y: the independent equations are
+ * closed again by a chord iteration with the elimination at hand, and the others are looked at.
+ * They stay closed where they are redundant everywhere.
  */
 #include "mechanics/singular.h"
 
@@ -25,7 +36,8 @@
 
 enum { PROBES = 4, WALKS = 2, CHORDS = 60, HALVINGS = 6 };
 
-/* Relative diagonal entries of R below which an equation is looked at: to refuse (at a dead centre they are rounding of positions, 1e-8 at most), and to tell how near one is. */
+/* Relative diagonal entries of R below which an equation is looked at: to refuse (at a dead
+ * centre they are rounding of positions, 1e-8 at most), and to tell how near one is. */
 static const double LOOK = 1e-5;
 static const double LOOK_NEAR = 2e-2;
 /* Of the sum of the norms of its terms: rounding and axes drawn parallel to 1e-9 leave less. */
@@ -34,9 +46,11 @@ static const double NO_CURVATURE = 1e-7;
 static const double CLOSED_ULPS = 64.0;
 /* Of that rounding, s^2 / |H| of a position that is the same as the dead centre. */
 static const double SAME = 0.25;
-/* First finite motion [model lengths, rad]: large enough for terms of the seventh order, small enough for the chord iteration. */
+/* First finite motion [model lengths, rad]: large enough for terms of the seventh order, small
+ * enough for the chord iteration. */
 static const double WALK = 0.03;
-/* Dependent equations open by less than this many times what the iteration leaves of the others, or makes of their own first order. */
+/* Dependent equations open by less than this many times what the iteration leaves of the
+ * others, or makes of their own first order. */
 static const double OPEN_ROOM = 1e3;
 
 typedef struct near {
@@ -76,7 +90,8 @@ static double rounding(const mt_data *d, const mt_pose *poses)
     return CLOSED_ULPS * DBL_EPSILON * extent / d->sys->length_m;
 }
 
-/* S = W^T A Z of the left vectors from the elimination, from the lower right corner of R; W, S := U^T W, diag(s). */
+/* S = W^T A Z of the left vectors from the elimination, from the lower right corner of R; W, S
+ * := U^T W, diag(s). */
 static mt_status decompose(near *v, mt_arena *mem, mt_err *err)
 {
     const mt_elimination *const e = v->e;
@@ -122,7 +137,8 @@ static void leave_out(const near *v, int level, double *y)
     }
 }
 
-/* push := (sum_j w_j c_j'') phi of equation i; returns the norms of the terms, none of them below that of a unit row that turns once per model length. */
+/* push := (sum_j w_j c_j'') phi of equation i; returns the norms of the terms, none of them
+ * below that of a unit row that turns once per model length. */
 static double curve(const near *v, int i, const double *phi, double *push)
 {
     const mt_elimination *const e = v->e;
@@ -146,7 +162,8 @@ static double curve(const near *v, int i, const double *phi, double *push)
     return norms;
 }
 
-/* |H_i| L on the motions that equations 0 .. level - 1 leave, into h[i], and the norms of its terms into sum[i]. */
+/* |H_i| L on the motions that equations 0 .. level - 1 leave, into h[i], and the norms of its
+ * terms into sum[i]. */
 static mt_status curvature(near *v, int i, int level, mt_arena *mem, mt_err *err)
 {
     const mt_elimination *const e = v->e;
@@ -181,7 +198,8 @@ static bool is_curved(const near *v, int i)
     return v->h[i] > NO_CURVATURE * v->sum[i];
 }
 
-/* Equations that are dependent to rounding are looked at together first: a combination with random coefficients has no curvature where none of them has. */
+/* Equations that are dependent to rounding are looked at together first: a combination with
+ * random coefficients has no curvature where none of them has. */
 static mt_status curvatures(near *v, mt_arena *mem, mt_err *err)
 {
     const ptrdiff_t m = v->e->m;

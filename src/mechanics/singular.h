@@ -7,12 +7,14 @@
 
 enum { MT_SINGULAR_NAMES = 400 };
 
-/* How near a position is to one where the equations of joints depend on each other there only. */
+/* How near a position is to one where the equations of joints depend on each other there
+ * only. */
 typedef struct mt_nearness {
     bool near; /* is one within MT_NEAR_DISTANCE? Else nothing below means anything */
-    double
-        independence; /* what is left of the equations' independence: a singular value of the equations in rows of unit length, about 1 far away, 0 there */
-    double distance;  /* about how far it is [rad, model lengths] */
+    /* what is left of the equations' independence: a singular value of the equations in rows of
+     * unit length, about 1 far away, 0 there */
+    double independence;
+    double distance;                /* about how far it is [rad, model lengths] */
     char joints[MT_SINGULAR_NAMES]; /* "\"a\", \"b\"": whose equations they are */
 } mt_nearness;
 
@@ -20,11 +22,14 @@ typedef struct mt_nearness {
 static const double MT_NEAR_DISTANCE = 0.05;
 
 /**
- * Is this a position like any other beside it? It is not where equations of joints depend on each other here only (a dead centre, a folded parallelogram, a rope just taut): then the motions that
- * A allows to first order are not the motions that there are, and the forces of the joints are not determined. Joints that are redundant everywhere are none of this.
+ * Is this a position like any other beside it? It is not where equations of joints depend on
+ * each other here only (a dead centre, a folded parallelogram, a rope just taut): then the
+ * motions that A allows to first order are not the motions that there are, and the forces of
+ * the joints are not determined. Joints that are redundant everywhere are none of this.
  * @param[in] d, poses  closed position (to rounding)
- * @param[in] e         elimination of the first e->m constraints there
- * Fails: MT_E_DEAD_CENTRE with the joints' names, MT_E_MEMORY. Costs nothing where the equations are far from dependent; else a few products with A and O(e->m nq) per freedom.
+ * @param[in] e elimination of the first e->m constraints there Fails: MT_E_DEAD_CENTRE with the
+ *   joints' names, MT_E_MEMORY. Costs nothing where the equations are far from dependent; else
+ *   a few products with A and O(e->m nq) per freedom.
  */
 mt_status mt_singular_refuse(const mt_data *d, const mt_pose *poses, const mt_elimination *e,
                              mt_arena *scratch, mt_err *err);

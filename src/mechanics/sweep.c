@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The ratio of a joint is the derivative of its coordinate with respect to the drive's position s: with q' = dq/ds of the whole position analysis (implicit function theorem,
- * position.h), the coordinate's gradient times q'.
+ * The ratio of a joint is the derivative of its coordinate with respect to the drive's position
+ * s: with q' = dq/ds of the whole position analysis (implicit function theorem, position.h),
+ * the coordinate's gradient times q'.
  */
 #include "mechanics/sweep.h"
 
@@ -97,7 +98,8 @@ static mt_status solve_point(const sweeper *s, int i, mt_err *err)
     return MT_OK;
 }
 
-/* Points first, first + step, ... up to the end of the list; where one cannot be reached the ones behind it cannot either. */
+/* Points first, first + step, ... up to the end of the list; where one cannot be reached the
+ * ones behind it cannot either. */
 static mt_status walk(const sweeper *s, int first, int step, mt_err *err)
 {
     const char *limit = NULL;

@@ -9,7 +9,8 @@
 #include "mechanics/data.h"
 #include "model/values.h"
 
-/* Give a list its first entry: where memory ends later, index 0 stands for what could not be made and may be read until the shortage is reported. */
+/* Give a list its first entry: where memory ends later, index 0 stands for what could not be
+ * made and may be read until the shortage is reported. */
 #define RESERVE(sys, name)                                                  \
     (((sys)->name = mt_arena_grow(&(sys)->mem, NULL, 0, &(sys)->cap_##name, \
                                   sizeof *(sys)->name)) != NULL)
@@ -82,7 +83,8 @@ static bool geometry_is_fixed(const mt_system *sys)
     return fixed;
 }
 
-/* Global axis least along v; in two dimensions z for a direction in the plane, so that the perpendicular lies in the plane too. */
+/* Global axis least along v; in two dimensions z for a direction in the plane, so that the
+ * perpendicular lies in the plane too. */
 static int helper_axis(const mt_system *sys, const double v[3])
 {
     int best = 2;
@@ -118,7 +120,8 @@ static mt_status check_arm(const mt_system *sys, int arm, int body, const double
 /* Hinge axes drawn further than this (cosine) from a right angle to their link are refused. */
 static const double NOT_PERPENDICULAR = 1e-6;
 
-/* Walk through the vectors in order, choosing helper axes and refusing directions of length zero. */
+/* Walk through the vectors in order, choosing helper axes and refusing directions of length
+ * zero. */
 static mt_status choose_helpers(mt_system *sys, const double *v, mt_err *err)
 {
     mt_data d;
@@ -148,7 +151,8 @@ static mt_status choose_helpers(mt_system *sys, const double *v, mt_err *err)
     return MT_OK;
 }
 
-/* Choices that need numbers: helper axes, the model length, and the checks of arms of point masses. */
+/* Choices that need numbers: helper axes, the model length, and the checks of arms of point
+ * masses. */
 static mt_status settle(mt_system *sys, const double *at, mt_err *err)
 {
     mt_node bad = MT_NO_NODE;
@@ -271,7 +275,8 @@ void mt_system_delete(mt_system *sys)
     }
 }
 
-/* An equilibrium is found anew for every design anyway; loops that are closed by force may leave a beam bent in its reference position. */
+/* An equilibrium is found anew for every design anyway; loops that are closed by force may
+ * leave a beam bent in its reference position. */
 bool mt_system_beams_shape(const mt_system *sys)
 {
     return sys->loaded || !sys->drawn_closed;

@@ -7,10 +7,12 @@
 #include "model/model.h"
 
 /*
- * One configuration of a model, flattened: links are elements, joints are equations, springs are energies of measures, every number is a node of one program. A system is
- * immutable once made and may be shared by threads; what moves lives in mt_linear (linear.h).
+ * One configuration of a model, flattened: links are elements, joints are equations, springs
+ * are energies of measures, every number is a node of one program. A system is immutable once
+ * made and may be shared by threads; what moves lives in mt_linear (linear.h).
  *
- * States q: increments of each body, (dx, dy, dtheta) in two dimensions, (dx, dy, dz, theta_x, theta_y, theta_z) in three, translations alone for a point mass.
+ * States q: increments of each body, (dx, dy, dtheta) in two dimensions, (dx, dy, dz, theta_x,
+ * theta_y, theta_z) in three, translations alone for a point mass.
  */
 
 /* A 3-vector of the geometry, in the drawn position. */
@@ -30,7 +32,8 @@ typedef struct mt_vec_def {
     const char *what; /* for messages: "axis of joint \"pivot\"" */
 } mt_vec_def;
 
-/* Numbers of a beam element's strains (measure.h: mt_beam_numbers). MT_NO_NODE: polar 0, shape 1. */
+/* Numbers of a beam element's strains (measure.h: mt_beam_numbers). MT_NO_NODE: polar 0, shape
+ * 1. */
 typedef enum mt_beam_number {
     MT_BEAM_LENGTH,
     MT_BEAM_POLAR,
@@ -68,7 +71,9 @@ typedef struct mt_system_joint {
     mt_joint_type type;
     int first; /* constraints first .. first + count - 1 */
     int count;
-    int coordinate; /* measure of its coordinate (angle or displacement from the reference position); -1: none */
+    /* measure of its coordinate (angle or displacement from the reference position); -1:
+     * none */
+    int coordinate;
     bool angle;
     int body[2];
     int model_joint; /* MT_ABSENT for hinges of links */
@@ -76,7 +81,8 @@ typedef struct mt_system_joint {
     int hinge;
 } mt_system_joint;
 
-/* V = 1/2 k d_a d_b (+ preload d_a), d = measure - rest value, rest value: that of the reference position or `free`. a == b but for couplings of a bushing. */
+/* V = 1/2 k d_a d_b (+ preload d_a), d = measure - rest value, rest value: that of the
+ * reference position or `free`. a == b but for couplings of a bushing. */
 typedef struct mt_spring_def {
     const char *name;
     int measure[2];
@@ -122,7 +128,8 @@ typedef enum mt_channel_kind {
     MT_CHANNEL_BEAM_POINT,
     MT_CHANNEL_BEAM_ROTATION
 } mt_channel_kind;
-/* One scalar output of a sensor: a displacement or rotation along a global axis, per unit of q. */
+/* One scalar output of a sensor: a displacement or rotation along a global axis, per unit of
+ * q. */
 typedef struct mt_channel_def {
     const char *name; /* "c1.y" */
     mt_channel_kind kind;
@@ -165,18 +172,21 @@ typedef struct mt_system {
     mt_node drive;        /* position of the driven joint's coordinate */
     int drive_constraint; /* its constraint; -1 */
     int drive_joint;      /* of joints; -1 */
-    bool
-        trim; /* hold by a spring: the drive's constraint is absent from the linearised system */
+    /* hold by a spring: the drive's constraint is absent from the linearised system */
+    bool trim;
     int trim_spring;     /* of springs; -1 */
     bool geometry_fixed; /* no vector, target or shape of a mass depends on an input */
-    bool
-        drawn_closed; /* the joints are closed as drawn, whatever the inputs: each has one point and no length of its own */
+    /* the joints are closed as drawn, whatever the inputs: each has one point and no length of
+     * its own */
+    bool drawn_closed;
 } mt_system;
 
 /*
- * Flatten configuration `configuration` of the model. inputs: parameters that the caller will vary (an override of the configuration wins over an input; an input wins over the parameter's own
- * definition); at[n_inputs]: their values at the original design, where discrete choices (helper axes, model length) are made.
- * Fails: MT_E_INPUT (a point mass held away from its centre, beam section incomplete, ...), MT_E_DOMAIN, MT_E_MEMORY.
+ * Flatten configuration `configuration` of the model. inputs: parameters that the caller will
+ * vary (an override of the configuration wins over an input; an input wins over the parameter's
+ * own definition); at[n_inputs]: their values at the original design, where discrete choices
+ * (helper axes, model length) are made. Fails: MT_E_INPUT (a point mass held away from its
+ * centre, beam section incomplete, ...), MT_E_DOMAIN, MT_E_MEMORY.
  */
 mt_status mt_system_new(const mt_model *model, int configuration, int n_inputs,
                         const int *inputs, const double *at, mt_system **out, mt_err *err);
@@ -187,20 +197,26 @@ typedef struct mt_system_drive {
     bool fixed;         /* the joint stands at `position`, which is then no input */
     double position;    /* where fixed [rad or m from the reference position] */
 } mt_system_drive;
-/* The same with a drive whose position [rad or m from the reference position] is one more input, the last: at[n_inputs + 1], and the system has n_inputs + 1 inputs.
- * A drive that is fixed adds no input. drive NULL: mt_system_new. Fails also MT_E_INPUT: no such joint or spring. */
+/* The same with a drive whose position [rad or m from the reference position] is one more
+ * input, the last: at[n_inputs + 1], and the system has n_inputs + 1 inputs. A drive that is
+ * fixed adds no input. drive NULL: mt_system_new. Fails also MT_E_INPUT: no such joint or
+ * spring. */
 mt_status mt_system_new_driven(const mt_model *model, int configuration,
                                const mt_system_drive *drive, int n_inputs, const int *inputs,
                                const double *at, mt_system **out, mt_err *err);
 void mt_system_delete(mt_system *sys);
 /*
- * Are two configurations of one model the same mechanism but for the position of one driven joint? *same: bodies, joints, springs, inertias and loads are the same, number by number as
- * expressions of the same inputs (system_same.c); both drive the same joint and hold it alike, or one of them has no drive, nothing loads it, and a trimmed spring holds the other: it then is that
- * mechanism in its reference position. Two configurations without a drive are not. Fails: MT_E_MEMORY.
+ * Are two configurations of one model the same mechanism but for the position of one driven
+ * joint? *same: bodies, joints, springs, inertias and loads are the same, number by number as
+ * expressions of the same inputs (system_same.c); both drive the same joint and hold it alike,
+ * or one of them has no drive, nothing loads it, and a trimmed spring holds the other: it then
+ * is that mechanism in its reference position. Two configurations without a drive are not.
+ * Fails: MT_E_MEMORY.
  */
 mt_status mt_system_same_drive(const mt_system *a, const mt_system *b, bool *same, mt_err *err);
 
-/* Do the numbers of the beams' strains shape the stiffness of the unloaded system? Straight, without force, a beam's strains change with none of them. */
+/* Do the numbers of the beams' strains shape the stiffness of the unloaded system? Straight,
+ * without force, a beam's strains change with none of them. */
 bool mt_system_beams_shape(const mt_system *sys);
 
 /* What a displacement is compared with (length.c), of the values v of all nodes; above 0. */

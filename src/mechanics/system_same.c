@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Two systems of one model, node by node. Both are flattened by the same code from the items in the model's order, so what is the same stands at the same place of every list; two numbers are
- * the same where their expressions are, operation by operation down to inputs and constants. Programs number their nodes differently: `map` remembers which nodes have been found equal.
+ * Two systems of one model, node by node. Both are flattened by the same code from the items in
+ * the model's order, so what is the same stands at the same place of every list; two numbers
+ * are the same where their expressions are, operation by operation down to inputs and
+ * constants. Programs number their nodes differently: `map` remembers which nodes have been
+ * found equal.
  */
 #include <stdlib.h>
 #include <string.h>

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Derivatives of the reduced matrices. Rows, constraint Jacobian A and geometric stiffness carry their derivative in complex arithmetic (cx.h) at the moving position. The
- * basis of the freedoms moves too: A Z = 0 gives, with the choice that Z' has no part along Z,
- *     Z' = -A^+ A' Z,        K_r' y = Z^T (K' phi + K z') + Z'^T K phi,    phi = Z y,  z' = Z' y = -A^+ A' phi,
- * and Z'^T w = -Z^T A'^T (A^+)^T w, where (A^+)^T w are the multipliers that balance w. Only products with vectors are formed.
- * Any other choice of Z' changes y' but no physical result (phi' = Z y' + Z' y).
+ * Derivatives of the reduced matrices. Rows, constraint Jacobian A and geometric stiffness
+ * carry their derivative in complex arithmetic (cx.h) at the moving position. The basis of the
+ * freedoms moves too: A Z = 0 gives, with the choice that Z' has no part along Z,
+ *     Z' = -A^+ A' Z,        K_r' y = Z^T (K' phi + K z') + Z'^T K phi,    phi = Z y,
+ *         z' = Z' y = -A^+ A' phi,
+ * and Z'^T w = -Z^T A'^T (A^+)^T w, where (A^+)^T w are the multipliers that balance w. Only
+ * products with vectors are formed. Any other choice of Z' changes y' but no physical result
+ * (phi' = Z y' + Z' y).
  */
 #include "mechanics/tangent.h"
 
@@ -151,13 +154,15 @@ static void row_axpy(const mt_system *sys, const mt_term *t, double alpha, const
     }
 }
 
-/* A row that the joints block, r = Z^T f = 0, has no part in a derivative: (r r^T)' = r' r^T + r r'^T = 0. */
+/* A row that the joints block, r = Z^T f = 0, has no part in a derivative: (r r^T)' = r' r^T +
+ * r r'^T = 0. */
 static bool is_blocked(const mt_linear *lin, int kind, int row, const mt_term *t)
 {
     return lin->blocked[kind][row] && !t->pair;
 }
 
-/* out += K phi (kind STIFFNESS) or M phi (MASS), full coordinates, without the geometric part. */
+/* out += K phi (kind STIFFNESS) or M phi (MASS), full coordinates, without the geometric
+ * part. */
 static void full_product(const mt_linear *lin, int kind, const double *phi, double *out)
 {
     const mt_term_list *const list = &lin->list[kind];
@@ -203,7 +208,8 @@ static void full_product_derivative(const mt_linear *lin, int kind, int p, const
     }
 }
 
-/* Fixed geometry: the sum over terms whose coefficient depends on p, in reduced coordinates. Returns whether any does. */
+/* Fixed geometry: the sum over terms whose coefficient depends on p, in reduced coordinates.
+ * Returns whether any does. */
 static bool coefficient_products(const mt_linear *lin, int kind, int p, int cols,
                                  const double *y, double *out)
 {
@@ -343,7 +349,8 @@ mt_status mt_linear_sense(mt_linear *lin, int ns, const int *channel, int cols, 
     return MT_OK;
 }
 
-/* NOLINTNEXTLINE(readability-function-size): shapes and their derivative, both as mt_linear_sense takes them */
+/* Shapes and their derivative, both as mt_linear_sense takes them. */
+/* NOLINTNEXTLINE(readability-function-size) */
 mt_status mt_linear_sense_derivative(mt_linear *lin, int p, int ns, const int *channel,
                                      int cols, const double *y, const double *dy, double *ds,
                                      mt_err *err)

@@ -10,8 +10,9 @@ struct mt_linear_tangent {
     double *rows[MT_TERM_KINDS]; /* derivative of lin->rows */
     bool *still[MT_TERM_KINDS];  /* which of them are 0 */
     double *a;                   /* m x nq, derivative of the constraint Jacobian */
-    double *
-        c; /* [m] derivative of the constraints along the motion of the position: 0 where it stays closed */
+    /* [m] derivative of the constraints along the motion of the position: 0 where it stays
+     * closed */
+    double *c;
     double terms;  /* largest sum of the terms of an entry of c, in rows of unit length */
     double motion; /* length of the motion that the input causes, in scaled coordinates */
     double *kg;    /* nq x nq; NULL where nothing loads */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The formulas as they are printed, on purpose without the scaling and elimination that the rest of this room relies on: an oracle must not share its faults. */
+/* The formulas as they are printed, on purpose without the scaling and elimination that the
+ * rest of this room relies on: an oracle must not share its faults. */
 #include "modetune/dynamics.h"
 
 #include <math.h>
@@ -7,9 +8,11 @@
 
 #include "linalg/dense.h"
 
-/* Singular values of A M^-1/2 (of A) below this fraction of the largest belong to redundant constraints. */
+/* Singular values of A M^-1/2 (of A) below this fraction of the largest belong to redundant
+ * constraints. */
 static const double DEPENDENT = 1e-9;
-/* Singular values of [(I - A^+ A) M; A] below this fraction of the largest: accelerations not determined. Masses and cosines stand side by side, so it is near rounding. */
+/* Singular values of [(I - A^+ A) M; A] below this fraction of the largest: accelerations not
+ * determined. Masses and cosines stand side by side, so it is near rounding. */
 static const double UNDETERMINED = 1e-13;
 
 /* root = M^-1/2 = V diag(w^-1/2) V^T. */

@@ -1,16 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * State form in the undamped modes. With all undamped shapes Y (Y^T M Y = I, Y^T K Y = Lambda) and a basis T0 of the directions without mass (M T0 = 0), y = Y a + T0 b splits
- * the stiffness, since Y follows statically there (Y^T K T0 = 0):
+ * State form in the undamped modes. With all undamped shapes Y (Y^T M Y = I, Y^T K Y = Lambda)
+ * and a basis T0 of the directions without mass (M T0 = 0), y = Y a + T0 b splits the
+ * stiffness, since Y follows statically there (Y^T K T0 = 0):
  *     a'' + Caa a' + Cab b' + Lambda a = 0,        Cba a' + Cbb b' + Kbb b = 0.
- * Directions of b without damping follow statically (b_U = -K_UU^-1 K_UD b_D); the others have Cbb = diag(mu):
+ * Directions of b without damping follow statically (b_U = -K_UU^-1 K_UD b_D); the others have
+ * Cbb = diag(mu):
  *     b_D' = -mu^-1 (C_Da a' + K_D b_D),           K_D = K_DD - K_DU K_UU^-1 K_UD.
  * With Omega = |Lambda|^1/2, S = sign Lambda and x = Omega a the states (x, v = a', b_D) obey
  *     x' =  Omega v
  *     v' = -S Omega x - (Caa - C_aD mu^-1 C_Da) v + C_aD mu^-1 K_D b_D
  *     b' = -mu^-1 C_Da v - mu^-1 K_D b_D.
- * Without damping that is skew-symmetric: eigenvalues to n eps of the largest, no defective pair at zero. A rigid-body mode has no x (Omega = 0: its zero eigenvalue is
- * split off exactly), and no v either where nothing damps it. Nothing here is infinite, so that a standard eigenproblem (dgeev, which balances) does.
+ * Without damping that is skew-symmetric: eigenvalues to n eps of the largest, no defective
+ * pair at zero. A rigid-body mode has no x (Omega = 0: its zero eigenvalue is split off
+ * exactly), and no v either where nothing damps it. Nothing here is infinite, so that a
+ * standard eigenproblem (dgeev, which balances) does.
  */
 #include "modal/damped.h"
 
@@ -59,7 +63,8 @@ static mt_status sandwich(const parts *s, const double *b, int ra, const double 
     return MT_OK;
 }
 
-/* Rigid-body modes (repeated, so any basis of them does) turned so that their own damping is diagonal. */
+/* Rigid-body modes (repeated, so any basis of them does) turned so that their own damping is
+ * diagonal. */
 static mt_status turn_rigid(parts *s, mt_err *err)
 {
     const mt_modes *const m = s->p->modes;
@@ -90,7 +95,8 @@ static mt_status turn_rigid(parts *s, mt_err *err)
     return MT_OK;
 }
 
-/* Columns of T0 in the order undamped, damped directions: those are eigenvectors of Cbb, T0 scaled to |Kbb| = 1 on the diagonal. *u: how many are undamped. */
+/* Columns of T0 in the order undamped, damped directions: those are eigenvectors of Cbb, T0
+ * scaled to |Kbb| = 1 on the diagonal. *u: how many are undamped. */
 static mt_status split_massless(parts *s, double *t, double *mu, int *u, mt_err *err)
 {
     const int n = s->n;
@@ -226,7 +232,8 @@ static void assemble(const parts *s, double *a)
     }
 }
 
-/* One eigenvector in the caller's coordinates, s y (velocities): Y v + B s b_D; part 0 real, 1 imaginary, of states u + i w. */
+/* One eigenvector in the caller's coordinates, s y (velocities): Y v + B s b_D; part 0 real, 1
+ * imaginary, of states u + i w. */
 static void shape(const parts *s, const double *u, const double *w, double re, double im,
                   double *y_re, double *y_im)
 {
@@ -265,7 +272,8 @@ static mt_damped_kind kind_of(double re, double im, double noise)
     return im > 0.0 ? MT_DAMPED_OSCILLATING : MT_DAMPED_OVERDAMPED;
 }
 
-/* Eigenvalues by |s|, rigid-body modes before them. perm: positions in wr, those with wi < 0 left out. */
+/* Eigenvalues by |s|, rigid-body modes before them. perm: positions in wr, those with wi < 0
+ * left out. */
 static int order_roots(const double *wr, const double *wi, int order, int *perm)
 {
     int count = 0;

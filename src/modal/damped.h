@@ -7,14 +7,16 @@
 /*
  * Modes with damping:  (s^2 M + s C + K) y = 0,  s = sigma +- i omega_d.
  *   natural frequency |s| / 2 pi, damped frequency Im s / 2 pi, damping ratio -Re s / |s|.
- * One entry for a pair of conjugate s (with Im s > 0), one for each real s: an overdamped motion has two of them, a spring and a
- * damper in a row without mass between them one.
+ * One entry for a pair of conjugate s (with Im s > 0), one for each real s: an overdamped
+ * motion has two of them, a spring and a damper in a row without mass between them one.
  */
 typedef enum mt_damped_kind {
     MT_DAMPED_OSCILLATING, /* Im s > 0, Re s <= 0 (to rounding) */
     MT_DAMPED_OVERDAMPED,  /* s real, <= 0: decays without oscillation */
-    MT_DAMPED_RIGID_BODY, /* s = 0: one entry for each rigid-body mode of the undamped system; where it is damped, its other root is real */
-    MT_DAMPED_UNSTABLE    /* Re s > 0 */
+    /* s = 0: one entry for each rigid-body mode of the undamped system; where it is damped, its
+     * other root is real */
+    MT_DAMPED_RIGID_BODY,
+    MT_DAMPED_UNSTABLE /* Re s > 0 */
 } mt_damped_kind;
 
 typedef struct mt_damped_problem {
@@ -31,16 +33,19 @@ typedef struct mt_damped_modes {
     mt_damped_kind *kind; /* [count] rigid-body modes first, then ascending |s| */
     double *re;           /* [count] Re s [rad/s] */
     double *im;           /* [count] Im s >= 0 [rad/s] */
-    double *
-        residual; /* [count] ||(s^2 M + s C + K) y|| / ((|s|^2 ||M|| + |s| ||C|| + ||K||) ||y|| n eps) in coordinates scaled to m_ii = 1; 0 for rigid-body modes */
-    double *
-        y_re; /* n x count shapes, their largest entry 1; 0 for rigid-body modes (those of the undamped system) */
+    /* [count] ||(s^2 M + s C + K) y|| / ((|s|^2 ||M|| + |s| ||C|| + ||K||) ||y|| n eps) in
+     * coordinates scaled to m_ii = 1; 0 for rigid-body modes */
+    double *residual;
+    /* n x count shapes, their largest entry 1; 0 for rigid-body modes (those of the undamped
+     * system) */
+    double *y_re;
     double *y_im;
 } mt_damped_modes;
 
-/* All damped modes. Results in mem. O(n^3), a general eigenproblem of order up to 2 n.
- * C must be positive semidefinite where there are directions without mass. Fails: MT_E_USAGE (modes without vectors), MT_E_SINGULAR (a direction without mass
- * and damping that no stiffness holds), MT_E_DOMAIN, MT_E_NO_CONVERGENCE, MT_E_MEMORY. */
+/* All damped modes. Results in mem. O(n^3), a general eigenproblem of order up to 2 n. C must
+ * be positive semidefinite where there are directions without mass. Fails: MT_E_USAGE (modes
+ * without vectors), MT_E_SINGULAR (a direction without mass and damping that no stiffness
+ * holds), MT_E_DOMAIN, MT_E_NO_CONVERGENCE, MT_E_MEMORY. */
 mt_status mt_modal_damped(const mt_damped_problem *p, mt_arena *mem, mt_damped_modes *out,
                           mt_err *err);
 

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Residuals of damped modes, as check.c judges undamped ones: in coordinates in which m_ii = 1, in units of n eps. First each s is refined by the Rayleigh functional: the matrices
- * are symmetric, so y is its left eigenvector, too, and the root of
+ * Residuals of damped modes, as check.c judges undamped ones: in coordinates in which m_ii = 1,
+ * in units of n eps. First each s is refined by the Rayleigh functional: the matrices are
+ * symmetric, so y is its left eigenvector, too, and the root of
  *     (y^T M y) s^2 + (y^T C y) s + y^T K y = 0
- * next to s has an error of second order in that of y. That matters for the slow root of a heavily overdamped motion, which the eigensolver knows to n eps of the fast one. What has the
+ * next to s has an error of second order in that of y. That matters for the slow root of a
+ * heavily overdamped motion, which the eigensolver knows to n eps of the fast one. What has the
  * smaller residual stands.
  */
 #include "modal/modal_priv.h"
@@ -53,11 +55,7 @@ static double residual(const checker *c, const mt_damped_modes *out, int i, doub
                        double im)
 {
     const int n = c->p->n;
-    const double factor[3][2] = {
-        {                  1.0,           0.0},
-        {                   re,            im},
-        {(re * re) - (im * im), 2.0 * re * im}
-    };
+    const double factor[3][2] = {{1.0, 0.0}, {re, im}, {(re * re) - (im * im), 2.0 * re * im}};
     const double *const y[2] = {out->y_re + ((ptrdiff_t)i * n), out->y_im + ((ptrdiff_t)i * n)};
     const double size = hypot(re, im);
     double force = 0.0;
@@ -87,9 +85,7 @@ static double complex pair(double re, double im)
     const union {
         double part[2]; /* cppcheck-suppress unusedStructMember */
         double complex z;
-    } u = {
-        {re, im}
-    };
+    } u = {{re, im}};
     return u.z;
 }
 
@@ -147,9 +143,7 @@ mt_status mt_damped_check(const mt_damped_problem *p, mt_damped_modes *out, mt_a
                           mt_err *err)
 {
     const size_t n = (size_t)p->n;
-    checker c = {
-        .p = p, .matrix = {p->k, p->c, p->mass->m}
-    };
+    checker c = {.p = p, .matrix = {p->k, p->c, p->mass->m}};
     c.d = mt_arena_f64(mem, n, 1);
     c.f[0] = mt_arena_f64(mem, n, 1);
     c.f[1] = mt_arena_f64(mem, n, 1);

@@ -9,11 +9,13 @@
  *
  * C may be rank deficient (rigid-body modes; more springs than freedoms). Its null space does
  * not depend on D, so it is split off first: rows of C are scaled to unit norm (the norms join
- * D; rows that are known less well are made shorter, see weigh), C^T P = Q R with column pivoting has Q = [Q1 Q2], Q2 the null space. Then
+ * D; rows that are known less well are made shorter, see weigh), C^T P = Q R with column
+ * pivoting has Q = [Q1 Q2], Q2 the null space. Then
  *     D C Q1 = D P R^T   (rows of R^T put into C's order)
- * is of full column rank, and every row of R^T keeps its own relative error. Where D spreads far
- * that is not enough: springs beyond the number of freedoms hold each other, and what is exactly
- * 0 in a stiff row must not become eps; then C is eliminated instead (graded.c). lambda: zero for Q2, sigma^2 for Q1 V.
+ * is of full column rank, and every row of R^T keeps its own relative error. Where D spreads
+ * far that is not enough: springs beyond the number of freedoms hold each other, and what is
+ * exactly 0 in a stiff row must not become eps; then C is eliminated instead (graded.c).
+ * lambda: zero for Q2, sigma^2 for Q1 V.
  */
 #include "modal/modal_priv.h"
 
@@ -52,7 +54,8 @@ static void transform(const mt_stiffness_factor *b, const mt_mass_factor *mass, 
     }
 }
 
-/* What the errors of row j of B make of row j of C, relative to its length: |dC_j|^2 = db^T M^-1 db, of which the diagonal is what independent errors leave. */
+/* What the errors of row j of B make of row j of C, relative to its length: |dC_j|^2 = db^T
+ * M^-1 db, of which the diagonal is what independent errors leave. */
 static double relative_noise(const mt_stiffness_factor *b, const mt_mass_factor *mass, int j,
                              double norm)
 {
@@ -88,7 +91,8 @@ static mt_status normalise(const mt_stiffness_factor *b, const mt_mass_factor *m
     return MT_OK;
 }
 
-/* Rows are shortened until the noise of none exceeds that of the best: then one tolerance decides the rank, and precise rows are chosen before noisy ones. D takes it back. */
+/* Rows are shortened until the noise of none exceeds that of the best: then one tolerance
+ * decides the rank, and precise rows are chosen before noisy ones. D takes it back. */
 static void weigh(graded *g, const double *rho)
 {
     double best = HUGE_VAL;
@@ -109,8 +113,10 @@ static void weigh(graded *g, const double *rho)
 }
 
 /*
- * Coordinates in descending order of their largest entry. With that and column pivoting Householder's method is stable row by row and column by column (Cox and Higham 1998; Higham 2000), so
- * that small entries of C, those of a heavy body beside a light one, keep digits of their own: two springs from a light body to heavy ones are parallel but for them.
+ * Coordinates in descending order of their largest entry. With that and column pivoting
+ * Householder's method is stable row by row and column by column (Cox and Higham 1998; Higham
+ * 2000), so that small entries of C, those of a heavy body beside a light one, keep digits of
+ * their own: two springs from a light body to heavy ones are parallel but for them.
  */
 static mt_status sort_coordinates(graded *g, mt_arena *scratch, mt_err *err)
 {
@@ -163,8 +169,10 @@ static mt_status prepare(const mt_stiffness_factor *b, const mt_mass_factor *mas
 }
 
 /*
- * Householder's method leaves eps in every row of C. That is eps / kept of the singular values of C, and as there may be more rows than freedoms, eps times the spread of D of those of D C.
- * Where less than this part of the digits would be left of either, elimination takes over; it costs as much again.
+ * Householder's method leaves eps in every row of C. That is eps / kept of the singular values
+ * of C, and as there may be more rows than freedoms, eps times the spread of D of those of D C.
+ * Where less than this part of the digits would be left of either, elimination takes over; it
+ * costs as much again.
  */
 static const double GRADED = 1e-4;
 

@@ -1,12 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Singular values of D C where D spreads far or rows of C are almost parallel. Householder's method leaves eps of its length in every entry of a row, also in those that are 0 or small and have
- * digits of their own: two springs from a light body to heavy ones are parallel but for the small entries of the heavy ones. Gaussian elimination with complete pivoting keeps them (Demmel et al., Linear Algebra Appl. 299 (1999), algorithm 3.1):
+ * Singular values of D C where D spreads far or rows of C are almost parallel. Householder's
+ * method leaves eps of its length in every entry of a row, also in those that are 0 or small
+ * and have digits of their own: two springs from a light body to heavy ones are parallel but
+ * for the small entries of the heavy ones. Gaussian elimination with complete pivoting keeps
+ * them (Demmel et al., Linear Algebra Appl. 299 (1999), algorithm 3.1):
  *     Pr C^T Pc = L U,         L, U up to a scaling of the rows of U well conditioned,
  *     D C = Y L^T Pr,          Y = D Pc U^T,
  *     L = Q1 R1,   Y P2 = Q2 R2   (rows of Y sorted),
  *     D C = Q2 (R2 P2^T R1^T) Q1^T Pr,
- * where the product in parentheses has rows graded by R2 and one-sided Jacobi does the rest. Every factor is found to high relative accuracy for matrices that are well conditioned up to
+ * where the product in parentheses has rows graded by R2 and one-sided Jacobi does the rest.
+ * Every factor is found to high relative accuracy for matrices that are well conditioned up to
  * a scaling of rows and columns; for others the error is no larger than before.
  */
 #include "modal/modal_priv.h"
@@ -39,7 +43,8 @@ static void swap_places(int a, int b, int *place)
     place[b] = kept;
 }
 
-/* x (n x columns) := L below the diagonal, U above it, for `rank` steps; fewer where the work is interrupted. */
+/* x (n x columns) := L below the diagonal, U above it, for `rank` steps; fewer where the work
+ * is interrupted. */
 static void eliminate(const mt_graded *g, int *column)
 {
     const int n = g->n;

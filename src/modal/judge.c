@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Quotients of energies. A solve with matrices returns shapes whose residual is at most r_i (its
- * backward error); the eigenvalue that goes with a shape is then known to r_i, but the quotient
+ * Quotients of energies. A solve with matrices returns shapes whose residual is at most r_i
+ * (its backward error); the eigenvalue that goes with a shape is then known to r_i, but the
+ * quotient
  *     rho_i = y^T K y / y^T M y
  * is known to r_i^2 / gap_i, gap_i being the distance to the other eigenvalues: an error of the
  * shape enters twice. What remains is the rounding of the quotient itself, and that is small
@@ -59,7 +60,8 @@ static void swap(double *a, double *b)
     *b = keep;
 }
 
-/* Quotients of neighbours may pass each other, and so may a mode that becomes a rigid body's, at 0, and one before it that is undecided. */
+/* Quotients of neighbours may pass each other, and so may a mode that becomes a rigid body's,
+ * at 0, and one before it that is undecided. */
 static void sort(mt_modes *modes, bool *strained)
 {
     for (int i = 1; i < modes->count; i++) {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * A load on top of the springs: K = B^T diag(c) B + G, G the part that is no sum of squares.
- * Summed into one matrix, G and the soft springs drown in eps times the stiffest spring. Instead,
- * with the modes Y of the springs alone from the factor (Y^T M Y = I, Y^T B^T diag(c) B Y = D,
- * the entries of D good to a relative error each, null directions first),
+ * Summed into one matrix, G and the soft springs drown in eps times the stiffest spring.
+ * Instead, with the modes Y of the springs alone from the factor (Y^T M Y = I, Y^T B^T diag(c)
+ * B Y = D, the entries of D good to a relative error each, null directions first),
  *     H = Y^T K Y = D + W,   W = Y^T G Y:
  * W is as large as the loads are, whatever the springs, and H is graded: it is S A S with
  * S = diag(H)^1/2 and A well conditioned, since |w_ij| is small beside sqrt(h_ii h_jj) wherever
@@ -12,9 +12,9 @@
  * Matrix Anal. Appl. 13 (1992) 1204-1245): H = F^T F, F = R S, A = R^T R, eigenvalues
  * sigma(F)^2.
  *
- * Where H is not positive definite (something is free, or topples), or A is nearly singular, the
- * same is done with H + tau, tau = 2 ||W||: then A is as good as diagonal, and tau, no larger
- * than the loads, takes no more than n eps tau from any eigenvalue.
+ * Where H is not positive definite (something is free, or topples), or A is nearly singular,
+ * the same is done with H + tau, tau = 2 ||W||: then A is as good as diagonal, and tau, no
+ * larger than the loads, takes no more than n eps tau from any eigenvalue.
  */
 #include "modal/modal_priv.h"
 
@@ -24,7 +24,8 @@
 
 #include "linalg/dense.h"
 
-/* Pivots of A (unit diagonal) below this: its condition would cost more digits than the shift. */
+/* Pivots of A (unit diagonal) below this: its condition would cost more digits than the
+ * shift. */
 static const double LEAST_PIVOT = 1e-6;
 
 typedef struct loaded {

@@ -146,8 +146,8 @@ static void fill_basis(mt_mass_factor *f, const double *v, const double *e, doub
         double *const tj = t + (ptrdiff_t)column * n;
         for (int i = 0; i < n; i++) {
             const double di = f->d[i] > 0.0 ? f->d[i] : 1.0;
-            const double mass_row =
-                f->d[i] > 0.0 ? 1.0 : 0.0; /* a coordinate without mass is no part of T1 */
+            /* a coordinate without mass is no part of T1 */
+            const double mass_row = f->d[i] > 0.0 ? 1.0 : 0.0;
             tj[i] = di * v[i + (ptrdiff_t)j * n] * factor * (has_mass ? mass_row : 1.0);
             w[i] += has_mass ? tj[i] * tj[i] : 0.0;
         }

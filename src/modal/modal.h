@@ -43,8 +43,8 @@ typedef struct mt_mass_factor {
     int n;
     int rank;        /* directions with mass; n - rank have none */
     const double *m; /* n x n, the caller's, must outlive this; NULL: identity */
-    const double
-        *l; /* n x n Cholesky factor of m; NULL where t is used, or m is the identity */
+    /* n x n Cholesky factor of m; NULL where t is used, or m is the identity */
+    const double *l;
     const double *t;  /* n x n basis [T1 T0], T1^T M T1 = I (rank columns), M T0 = 0; NULL where
                          l is used */
     const double *d;  /* [n] 1/sqrt(m_ii), 0 for a coordinate without mass */
@@ -71,9 +71,9 @@ typedef struct mt_stiffness_factor {
     int rows;
     const double *b; /* rows x n */
     const double *c; /* [rows], >= 0 */
-    const double
-        *noise; /* rows x n: bounds of the entries' errors, for rows that are small differences
-                   of large terms; NULL: roundings of the entries themselves */
+    /* rows x n: bounds of the entries' errors, for rows that are small differences of large
+     * terms; NULL: roundings of the entries themselves */
+    const double *noise;
     const double *g;         /* n x n symmetric, lower read; NULL: none */
     mt_interrupt *interrupt; /* NULL, or asked between the steps: then MT_E_INTERRUPTED */
 } mt_stiffness_factor;
@@ -135,8 +135,8 @@ mt_status mt_modal_solve_factored(const double *k, const mt_mass_factor *mass,
 
 /*
  * What the terms that K and M are sums of say of the shapes y, each term evaluated by itself:
- * spring by spring c (f . y)^2, and so on. Where stiff springs hardly take part in a mode, their
- * terms are tiny, and the sum is accurate where an entry of the assembled K is not.
+ * spring by spring c (f . y)^2, and so on. Where stiff springs hardly take part in a mode,
+ * their terms are tiny, and the sum is accurate where an entry of the assembled K is not.
  */
 typedef struct mt_mode_energies {
     double *stiffness;       /* [count] y^T K y */

@@ -26,9 +26,10 @@ static const double MT_MODAL_NOISE_ULPS = 16.0;
 
 /* 16 n eps. */
 double mt_modal_tolerance(int n);
-/* The relative error of an eigenvalue that comes with the matrices: an entry of K or M is a sum of
- * rounded products (a spring's elongation through a loop of joints has a few dozen roundings),
- * whatever n is. Measured: 33 eps, a four-bar of one freedom, among 1500 random mechanisms. */
+/* The relative error of an eigenvalue that comes with the matrices: an entry of K or M is a sum
+ * of rounded products (a spring's elongation through a loop of joints has a few dozen
+ * roundings), whatever n is. Measured: 33 eps, a four-bar of one freedom, among 1500 random
+ * mechanisms. */
 double mt_modal_relative(int n);
 
 /* Fill lambda, y (when there), n_condensed..., scale from K restricted to what has mass. Kinds,
@@ -38,7 +39,8 @@ mt_status mt_modal_plain(const double *k, const mt_mass_factor *mass, mt_arena *
 /* The same with K = B^T diag(c) B and regular M: null_count eigenvalues are exactly zero. */
 mt_status mt_modal_by_factor(const mt_stiffness_factor *factor, const mt_mass_factor *mass,
                              mt_arena *scratch, mt_modes *out, int *null_count, mt_err *err);
-/* D C of rank >= 1 with C^T in ct (n x rows, destroyed), D = diag(d), is made U w Q1^T: U orthonormal, Q1 the first rank columns of q, its row i at coordinate place[i]. */
+/* D C of rank >= 1 with C^T in ct (n x rows, destroyed), D = diag(d), is made U w Q1^T: U
+ * orthonormal, Q1 the first rank columns of q, its row i at coordinate place[i]. */
 typedef struct mt_graded {
     int n;
     int rows;
@@ -58,15 +60,15 @@ void mt_modal_back(const mt_mass_factor *mass, const double *q, double *y);
  * symmetric G, lower read. */
 mt_status mt_modal_add_load(const double *g, const mt_mass_factor *mass, mt_arena *scratch,
                             mt_modes *out, mt_err *err);
-/* Kinds, n_rigid, n_unstable, lambda of rigid-body modes; n_rigid < 0: decide. n_held: announced
- * ones above the noise. The greatest |lambda| of an announced rigid-body mode. noise[count]: at
- * most that is 0 (NULL: error_bound); strained[count]: not where springs move (NULL: nobody
- * knows). */
+/* Kinds, n_rigid, n_unstable, lambda of rigid-body modes; n_rigid < 0: decide. n_held:
+ * announced ones above the noise. The greatest |lambda| of an announced rigid-body mode.
+ * noise[count]: at most that is 0 (NULL: error_bound); strained[count]: not where springs move
+ * (NULL: nobody knows). */
 double mt_modal_classify(mt_modes *modes, int n_rigid, const double *noise,
                          const bool *strained);
-/* Without a factor, an announced rigid-body mode counts as held above HELD times the noise: what
- * an equilibrium found by iteration leaves on a null direction stays below (forces of 1e4 times
- * the rounding of the positions count as none in the mechanics room). */
+/* Without a factor, an announced rigid-body mode counts as held above HELD times the noise:
+ * what an equilibrium found by iteration leaves on a null direction stays below (forces of 1e4
+ * times the rounding of the positions count as none in the mechanics room). */
 static const double MT_MODAL_HELD = 1e4;
 /* Clusters; after the kinds. */
 void mt_modal_find_clusters(mt_modes *modes);

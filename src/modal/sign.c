@@ -4,9 +4,10 @@
  * a search. "The largest entry is positive" alone does not: a symmetrical structure has mirror
  * entries of equal size and, in its antisymmetrical modes, of opposite sign, and rounding picks
  * the larger. Vectors of modes that are not clustered are accurate to about n eps s / gap, far
- * better than 1e-6 unless modes are nearly repeated or the spread is extreme; so entries within TIE of the
- * largest count as equal and their order decides. A structure whose entries differ by just TIE
- * flips; no rule is continuous, and engineers draw equal entries far more often than those.
+ * better than 1e-6 unless modes are nearly repeated or the spread is extreme; so entries within
+ * TIE of the largest count as equal and their order decides. A structure whose entries differ
+ * by just TIE flips; no rule is continuous, and engineers draw equal entries far more often
+ * than those.
  */
 #include <math.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * One solve:
- *   take results from mem; mark; plain path; kinds; perhaps the factor path (and the load's part
- *   on top of it) and kinds again; clusters; signs; checks; rewind to the mark.
+ *   take results from mem; mark; plain path; kinds; perhaps the factor path (and the load's
+ *   part on top of it) and kinds again; clusters; signs; checks; rewind to the mark.
  */
 #include "modal/modal_priv.h"
 
@@ -74,8 +74,8 @@ static void judge_held(mt_modes *modes, const mt_modal_options *opt, double rigi
     }
 }
 
-/* The factor, and on top of it what is no sum of squares: then the rank of B says nothing of the
- * null directions of K (null_count -1). */
+/* The factor, and on top of it what is no sum of squares: then the rank of B says nothing of
+ * the null directions of K (null_count -1). */
 static mt_status by_factor(const mt_stiffness_factor *factor, const mt_mass_factor *mass,
                            mt_arena *scratch, mt_modes *out, int *null_count, mt_err *err)
 {
@@ -95,8 +95,8 @@ static mt_status by_factor(const mt_stiffness_factor *factor, const mt_mass_fact
     return rc;
 }
 
-/* Kinds and errors; whether an eigenvalue is zero is a question to the absolute bound, and where
- * the answer was yes, what it was is part of the error. */
+/* Kinds and errors; whether an eigenvalue is zero is a question to the absolute bound, and
+ * where the answer was yes, what it was is part of the error. */
 static double kinds(mt_modes *out, int n_rigid)
 {
     for (int i = 0; i < out->count; i++) {

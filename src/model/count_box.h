@@ -2,7 +2,8 @@
 #ifndef MODEL_COUNT_BOX_H
 #define MODEL_COUNT_BOX_H
 
-/* A family of designs over which modes are counted alike: these parameters anywhere between lower and upper, the others as the model says. Empty: n = 0. */
+/* A family of designs over which modes are counted alike: these parameters anywhere between
+ * lower and upper, the others as the model says. Empty: n = 0. */
 typedef struct mt_count_box {
     int n;
     int *parameter; /* [n] */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Resolving and checking a model, stage by stage; this file has the name spaces and what the stages share. */
+/* Resolving and checking a model, stage by stage; this file has the name spaces and what the
+ * stages share. */
 #include "model/finish.h"
 
 #include <stdlib.h>
@@ -165,17 +166,16 @@ static void ensure_configuration(mt_finish *f)
     }
     m->n_configurations = 1;
     m->cap_configurations = 1;
-    m->configurations[0] = (mt_configuration){
-        .name = {.s = "default", .addr = MT_NO_ADDR},
-          .like = MT_ABSENT
-    };
+    m->configurations[0] =
+        (mt_configuration){.name = {.s = "default", .addr = MT_NO_ADDR}, .like = MT_ABSENT};
     m->configurations[0].like_name.addr = MT_NO_ADDR;
     for (int k = 0; k < 3; k++) {
         m->configurations[0].gravity[k] = MT_ABSENT;
     }
 }
 
-/* What every configuration costs, all together. Without room for it nothing more is looked at. */
+/* What every configuration costs, all together. Without room for it nothing more is looked
+ * at. */
 static bool fits(const mt_model *m, mt_diags *diags)
 {
     const double parts = (double)m->n_nums + m->n_bodies + m->n_links + m->n_joints +

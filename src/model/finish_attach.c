@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What joints, springs and sensors hold on to: "ground", a body, "link.start", "link.end", "link.node3", "link.3". */
+/* What joints, springs and sensors hold on to: "ground", a body, "link.start", "link.end",
+ * "link.node3", "link.3". */
 #include <limits.h>
 #include <string.h>
 
@@ -21,7 +22,8 @@ static int whole_number(const char *s)
     return n;
 }
 
-/* "start", "end", "3", "node3"; false where the part is none of them. Elements count from 1, nodes from 0. */
+/* "start", "end", "3", "node3"; false where the part is none of them. Elements count from 1,
+ * nodes from 0. */
 static bool read_part(mt_attach *a, const mt_link *l, const char *part)
 {
     static const char node[] = "node";
@@ -40,8 +42,8 @@ static bool read_part(mt_attach *a, const mt_link *l, const char *part)
     if (strncmp(part, node, sizeof node - 1) == 0) {
         a->kind = MT_ATTACH_LINK_NODE;
         a->element = whole_number(part + sizeof node - 1);
-        a->part = beam || a->element == 0 ? a->element
-                                          : a->element - 1; /* the element that ends there */
+        /* the element that ends there */
+        a->part = beam || a->element == 0 ? a->element : a->element - 1;
         return a->element >= 0 && a->element <= l->elements;
     }
     a->kind = MT_ATTACH_LINK_ELEMENT;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Configurations: `like`, what is inherited through it (overrides, gravity, drive), and which items each contains. */
+/* Configurations: `like`, what is inherited through it (overrides, gravity, drive), and which
+ * items each contains. */
 #include <string.h>
 
 #include "model/finish.h"
@@ -38,7 +39,8 @@ static void check_like(mt_finish *f, int c, int *state)
     }
 }
 
-/* All configurations, those that others are like first; [n_configurations]. NULL when out of memory. */
+/* All configurations, those that others are like first; [n_configurations]. NULL when out of
+ * memory. */
 static int *inheritance_order(mt_finish *f)
 {
     const int n = f->m->n_configurations;
@@ -64,7 +66,8 @@ static int *inheritance_order(mt_finish *f)
     return order;
 }
 
-/* Own overrides first, then those inherited that are not given again. overridden [n_parameters] is false before and after. */
+/* Own overrides first, then those inherited that are not given again. overridden [n_parameters]
+ * is false before and after. */
 static void inherit_overrides(mt_finish *f, mt_configuration *c, bool *overridden)
 {
     const mt_configuration *const parent = &f->m->configurations[c->like];
@@ -213,7 +216,8 @@ void mt_finish_needs(mt_finish *f, mt_name item, const char *what, const mt_pres
     }
 }
 
-/* The drive in force names a joint that the configuration contains and can move, and a spring that it contains. */
+/* The drive in force names a joint that the configuration contains and can move, and a spring
+ * that it contains. */
 static void check_drive(mt_finish *f, int index)
 {
     mt_model *const m = f->m;

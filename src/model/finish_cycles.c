@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Parameters that refer to each other in a circle. In a configuration an override stands in place of the parameter's own expression, so
- * circles are searched in every configuration with overrides. Depth-first with an explicit stack: a chain of parameters may be as long as the
+ * Parameters that refer to each other in a circle. In a configuration an override stands in
+ * place of the parameter's own expression, so circles are searched in every configuration with
+ * overrides. Depth-first with an explicit stack: a chain of parameters may be as long as the
  * file allows.
  */
 #include <stdarg.h>

@@ -13,22 +13,21 @@ static const struct {
     int most_at;
     bool axis[2]; /* needed in two and in three dimensions */
     bool axis_b;  /* in three */
-    bool turns
-        [2]
-        [2]; /* [dimension - 2][body]: uses the body's orientation, which a point mass has not */
+    /* [dimension - 2][body]: uses the body's orientation, which a point mass has not */
+    bool turns[2][2];
 } RULES[] = {
-    [MT_JOINT_FIXED] = {0, 2, {false, false}, false,     {{true, true}, {true, true}}},
-    [MT_JOINT_REVOLUTE] = {1, 2,  {false, true}, false,   {{false, false}, {true, true}}},
-    [MT_JOINT_PRISMATIC] = {1, 2,   {true, true}, false,     {{true, true}, {true, true}}},
-    [MT_JOINT_PIN_IN_SLOT] = {1, 2,   {true, true}, false,   {{true, false}, {true, false}}},
+    [MT_JOINT_FIXED] = {0, 2, {false, false}, false, {{true, true}, {true, true}}},
+    [MT_JOINT_REVOLUTE] = {1, 2, {false, true}, false, {{false, false}, {true, true}}},
+    [MT_JOINT_PRISMATIC] = {1, 2, {true, true}, false, {{true, true}, {true, true}}},
+    [MT_JOINT_PIN_IN_SLOT] = {1, 2, {true, true}, false, {{true, false}, {true, false}}},
     [MT_JOINT_DISTANCE] = {2, 2, {false, false}, false, {{false, false}, {false, false}}},
-    [MT_JOINT_CYLINDRICAL] = {1, 2,  {false, true}, false,     {{true, true}, {true, true}}},
+    [MT_JOINT_CYLINDRICAL] = {1, 2, {false, true}, false, {{true, true}, {true, true}}},
     [MT_JOINT_SPHERICAL] = {1, 2, {false, false}, false, {{false, false}, {false, false}}},
-    [MT_JOINT_UNIVERSAL] = {1, 2,  {false, true},  true,     {{true, true}, {true, true}}},
-    [MT_JOINT_PLANAR] = {1, 2,  {false, true}, false,     {{true, true}, {true, true}}},
-    [MT_JOINT_POINT_ON_LINE] = {1, 2,  {false, true}, false,   {{true, false}, {true, false}}},
-    [MT_JOINT_POINT_ON_PLANE] = {1, 2,  {false, true}, false,   {{true, false}, {true, false}}},
-    [MT_JOINT_ORIENTATION] = {0, 0, {false, false}, false,     {{true, true}, {true, true}}},
+    [MT_JOINT_UNIVERSAL] = {1, 2, {false, true}, true, {{true, true}, {true, true}}},
+    [MT_JOINT_PLANAR] = {1, 2, {false, true}, false, {{true, true}, {true, true}}},
+    [MT_JOINT_POINT_ON_LINE] = {1, 2, {false, true}, false, {{true, false}, {true, false}}},
+    [MT_JOINT_POINT_ON_PLANE] = {1, 2, {false, true}, false, {{true, false}, {true, false}}},
+    [MT_JOINT_ORIENTATION] = {0, 0, {false, false}, false, {{true, true}, {true, true}}},
     [MT_JOINT_GEAR] = {0, 0, {false, false}, false, {{false, false}, {false, false}}},
     [MT_JOINT_RACK] = {0, 0, {false, false}, false, {{false, false}, {false, false}}},
 };

@@ -21,15 +21,15 @@ static void check_section(mt_finish *f, const mt_link *l)
         mt_num num;
         unsigned shapes; /* that need it: bits of mt_section_shape */
     } members[] = {
-        {         "width_m",                                              s->width,1U << MT_SECTION_RECTANGLE                                                                                   },
-        {        "height_m",                                             s->height, 1U << MT_SECTION_RECTANGLE},
-        {      "diameter_m", s->shape == MT_SECTION_TUBE ? MT_ABSENT : s->diameter,
-         1U << MT_SECTION_CIRCLE                                                                              },
+        {"width_m", s->width, 1U << MT_SECTION_RECTANGLE},
+        {"height_m", s->height, 1U << MT_SECTION_RECTANGLE},
+        {"diameter_m", s->shape == MT_SECTION_TUBE ? MT_ABSENT : s->diameter,
+         1U << MT_SECTION_CIRCLE},
         {"outer_diameter_m", s->shape == MT_SECTION_TUBE ? s->diameter : MT_ABSENT,
-         1U << MT_SECTION_TUBE                                                                                },
-        {"inner_diameter_m",                                     s->inner_diameter,      1U << MT_SECTION_TUBE},
-        {         "area_m2",                                               s->area,   1U << MT_SECTION_GENERAL},
-        {"second_moment_m4",                                      s->second_moment,   1U << MT_SECTION_GENERAL},
+         1U << MT_SECTION_TUBE},
+        {"inner_diameter_m", s->inner_diameter, 1U << MT_SECTION_TUBE},
+        {"area_m2", s->area, 1U << MT_SECTION_GENERAL},
+        {"second_moment_m4", s->second_moment, 1U << MT_SECTION_GENERAL},
     };
     static const char *const shapes[] = {"none", "rectangle", "circle", "tube", "general"};
     if (s->shape == MT_SECTION_NONE) {
@@ -69,7 +69,8 @@ static void check_list(mt_finish *f, const mt_link *l, int count, int wanted,
     }
 }
 
-/* Where the mass comes from: exactly one of the whole link's, the elements', or density with a section. */
+/* Where the mass comes from: exactly one of the whole link's, the elements', or density with a
+ * section. */
 static void check_mass(mt_finish *f, const mt_link *l)
 {
     const int ways =

@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Dead loads: what they act on. A moment of constant direction in space does the work m . dtheta, which is no differential where a body turns about several axes: turned by a quarter
- * about z, then about x, it does other work than the other way round. Its stiffness would be the skew matrix [m]x/2, and frequencies would not exist as real numbers (Ziegler, Principles of
- * Structural Stability, 1968). So in three dimensions a moment acts on the coordinate of a joint; a pair of forces states any other, with the potential that it has.
+ * Dead loads: what they act on. A moment of constant direction in space does the work m .
+ * dtheta, which is no differential where a body turns about several axes: turned by a quarter
+ * about z, then about x, it does other work than the other way round. Its stiffness would be
+ * the skew matrix [m]x/2, and frequencies would not exist as real numbers (Ziegler, Principles
+ * of Structural Stability, 1968). So in three dimensions a moment acts on the coordinate of a
+ * joint; a pair of forces states any other, with the potential that it has.
  */
 #include "model/finish.h"
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensors: on a body, on a link at a fraction of its length, or at the centre of one rigid element. */
+/* Sensors: on a body, on a link at a fraction of its length, or at the centre of one rigid
+ * element. */
 #include <string.h>
 
 #include "model/finish.h"

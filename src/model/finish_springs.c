@@ -120,7 +120,8 @@ static void check_bodies(mt_finish *f, const mt_spring *s)
     }
 }
 
-/* What a type of spring holds, by mt_spring_type; a damper can only have what its file format has. */
+/* What a type of spring holds, by mt_spring_type; a damper can only have what its file format
+ * has. */
 typedef struct rule {
     need bodies;
     need joint;
@@ -137,12 +138,12 @@ typedef struct rule {
 
 static const rule RULES[] = {
     [MT_SPRING_TORSION] =
-        {  .bodies = MAY, .joint = MAY, .coefficient = NEEDS,  .free_angle = MAY, .preload = MAY},
+        {.bodies = MAY, .joint = MAY, .coefficient = NEEDS, .free_angle = MAY, .preload = MAY},
     [MT_SPRING_AXIAL] =
-        {.bodies = NEEDS,    .at = MAY, .coefficient = NEEDS, .free_length = MAY, .preload = MAY},
+        {.bodies = NEEDS, .at = MAY, .coefficient = NEEDS, .free_length = MAY, .preload = MAY},
     [MT_SPRING_BAR] =
-        {.bodies = NEEDS,    .at = MAY,    .material = NEEDS,     .density = MAY, .preload = MAY},
-    [MT_SPRING_BUSHING] = {.bodies = NEEDS,    .at = MAY,       .lists = NEEDS,      .matrix = MAY               },
+        {.bodies = NEEDS, .at = MAY, .material = NEEDS, .density = MAY, .preload = MAY},
+    [MT_SPRING_BUSHING] = {.bodies = NEEDS, .at = MAY, .lists = NEEDS, .matrix = MAY},
 };
 
 static void check_members(mt_finish *f, const mt_spring *s)
@@ -156,19 +157,19 @@ static void check_members(mt_finish *f, const mt_spring *s)
         need wanted;
         const char *member;
     } members[] = {
-        {   s->bodies[0].name.s != NULL,                          r->bodies,                              "bodies"},
-        {       s->joint_name.s != NULL,                           r->joint,                               "joint"},
-        {                   s->n_at > 0,                              r->at,                                  "at"},
-        {     s->stiffness != MT_ABSENT,                     r->coefficient,              torsion ? torque : force},
-        {s->youngs_modulus != MT_ABSENT,                        r->material,                   "youngs_modulus_pa"},
-        {          s->area != MT_ABSENT,                        r->material,                             "area_m2"},
-        {       s->density != MT_ABSENT,                         r->density,                   "density_kg_per_m3"},
-        {   s->free_length != MT_ABSENT,                     r->free_length,                       "free_length_m"},
-        {    s->free_angle != MT_ABSENT,                      r->free_angle,                      "free_angle_rad"},
-        {       s->preload != MT_ABSENT,                         r->preload, torsion ? "preload_n_m" : "preload_n"},
-        {             s->matrix != NULL,                          r->matrix,                    "stiffness_matrix"},
-        {s->translation[0] != MT_ABSENT, s->matrix == NULL ? r->lists : MAY,                                 force},
-        {   s->rotation[2] != MT_ABSENT, s->matrix == NULL ? r->lists : MAY,                                torque},
+        {s->bodies[0].name.s != NULL, r->bodies, "bodies"},
+        {s->joint_name.s != NULL, r->joint, "joint"},
+        {s->n_at > 0, r->at, "at"},
+        {s->stiffness != MT_ABSENT, r->coefficient, torsion ? torque : force},
+        {s->youngs_modulus != MT_ABSENT, r->material, "youngs_modulus_pa"},
+        {s->area != MT_ABSENT, r->material, "area_m2"},
+        {s->density != MT_ABSENT, r->density, "density_kg_per_m3"},
+        {s->free_length != MT_ABSENT, r->free_length, "free_length_m"},
+        {s->free_angle != MT_ABSENT, r->free_angle, "free_angle_rad"},
+        {s->preload != MT_ABSENT, r->preload, torsion ? "preload_n_m" : "preload_n"},
+        {s->matrix != NULL, r->matrix, "stiffness_matrix"},
+        {s->translation[0] != MT_ABSENT, s->matrix == NULL ? r->lists : MAY, force},
+        {s->rotation[2] != MT_ABSENT, s->matrix == NULL ? r->lists : MAY, torque},
     };
     for (int i = 0; i < MT_COUNT(members); i++) {
         check_member(f, s, members[i].given, members[i].wanted, members[i].member);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The last stage: what the numbers are, in every configuration. Faults are errors, doubts warnings; what several configurations share is said once. */
+/* The last stage: what the numbers are, in every configuration. Faults are errors, doubts
+ * warnings; what several configurations share is said once. */
 #include <stddef.h>
 #include <string.h>
 

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * What the numbers of a configuration can be, and what they hardly are. A fault is what no mechanism has (a mass below 0); a doubt is what is allowed, but
- * what a slip of units makes: millimetres for metres, MPa for Pa, t/mm^3 for kg/m^3. Limits are wide on purpose: a good model is not warned of.
+ * What the numbers of a configuration can be, and what they hardly are. A fault is what no
+ * mechanism has (a mass below 0); a doubt is what is allowed, but what a slip of units makes:
+ * millimetres for metres, MPa for Pa, t/mm^3 for kg/m^3. Limits are wide on purpose: a good
+ * model is not warned of.
  */
 #include "model/judge.h"
 
@@ -10,13 +12,16 @@
 
 #include "base/format.h"
 
-/* Pa. Silicone rubber has some 1e6, steel 2e11, diamond 1.2e12; steel in MPa is 2.1e5, aluminium in psi 1e7 (not seen), steel in GPa 210. */
+/* Pa. Silicone rubber has some 1e6, steel 2e11, diamond 1.2e12; steel in MPa is 2.1e5,
+ * aluminium in psi 1e7 (not seen), steel in GPa 210. */
 static const double LEAST_MODULUS_PA = 1e6;
 static const double MOST_MODULUS_PA = 1e13;
-/* kg/m^3. Air has 1.2, foams 20 and more, osmium 22 590; steel in t/mm^3 is 7.85e-9, in g/cm^3 7.85 (not seen), in kg/mm^3 7.85e-6. */
+/* kg/m^3. Air has 1.2, foams 20 and more, osmium 22 590; steel in t/mm^3 is 7.85e-9, in g/cm^3
+ * 7.85 (not seen), in kg/mm^3 7.85e-6. */
 static const double LEAST_DENSITY = 1.0;
 static const double MOST_DENSITY = 3e4;
-/* m: a section wider than the trunk of a giant tree, or than the finest wire is thick, was written in other units. */
+/* m: a section wider than the trunk of a giant tree, or than the finest wire is thick, was
+ * written in other units. */
 static const double MOST_SECTION_M = 10.0;
 static const double LEAST_SECTION_M = 1e-6;
 /* rad: more than one turn from the reference position is degrees, or a motor's shaft. */
@@ -123,7 +128,8 @@ static void thickness(mt_judge *j, const mt_item *item, mt_num num, const char *
     }
 }
 
-/* The tensor, positive semidefinite up to rounding of its own entries: leading and other principal minors. */
+/* The tensor, positive semidefinite up to rounding of its own entries: leading and other
+ * principal minors. */
 static void inertia(mt_judge *j, const mt_item *item, const mt_body *b)
 {
     static const char *const members[] = {"inertia_kg_m2/0", "inertia_kg_m2/1",
@@ -236,7 +242,8 @@ static void judge_links(mt_judge *j)
     }
 }
 
-/* A constant of a spring may be negative (a spring over its dead centre, a magnet, a load that buckles); a bar is a piece of material. */
+/* A constant of a spring may be negative (a spring over its dead centre, a magnet, a load that
+ * buckles); a bar is a piece of material. */
 static void judge_springs(mt_judge *j)
 {
     int dampers = 0;

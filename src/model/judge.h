@@ -20,11 +20,13 @@ typedef struct mt_item {
     const char *name;
 } mt_item;
 
-/* Say where a doubt (NULL: out of memory) stands: the address of a number, and its pointer. Returns it. */
+/* Say where a doubt (NULL: out of memory) stands: the address of a number, and its pointer.
+ * Returns it. */
 mt_doubt *mt_judge_place(mt_judge *j, mt_doubt *doubt, mt_addr addr, const char *pointer);
 /* The pointer of the drive in force, which a configuration may have taken over. */
 const char *mt_judge_drive_pointer(const mt_judge *j, const char *member);
-/* Joints and springs off what they hold, pairs of points that are apart, sizes (judge_geometry.c). */
+/* Joints and springs off what they hold, pairs of points that are apart, sizes
+ * (judge_geometry.c). */
 void mt_judge_geometry(mt_judge *j);
 
 #endif

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The drawing of a configuration, judged: joints and springs off what they hold, pairs of points that only closing brings together, sizes. With a segment P + s d, 0 <= s <= 1,
- * the distance of a point X is |X - P - clamp(d . (X - P) / d . d) d|.
+ * The drawing of a configuration, judged: joints and springs off what they hold, pairs of
+ * points that only closing brings together, sizes. With a segment P + s d, 0 <= s <= 1, the
+ * distance of a point X is |X - P - clamp(d . (X - P) / d . d) d|.
  */
 #include <math.h>
 #include <stddef.h>
@@ -11,22 +12,27 @@
 
 /* A joint this part of a link's length away from it is told: less is a drawing's rounding. */
 static const double TOLD_OFF = 0.01;
-/* A joint farther from its link than the link is long, or from its body than all else is wide, is hardly meant to hold it. */
+/* A joint farther from its link than the link is long, or from its body than all else is wide,
+ * is hardly meant to hold it. */
 static const double DOUBTED_OFF = 1.0;
-/* A pair of points so far apart, in parts of the drawing's size, is told; so far, doubted, or a metre. */
+/* A pair of points so far apart, in parts of the drawing's size, is told; so far, doubted, or a
+ * metre. */
 static const double TOLD_GAP = 1e-3;
 static const double DOUBTED_GAP = 0.1;
 static const double DOUBTED_GAP_M = 1.0;
-/* m: the box around a mechanism. A wind turbine's rotor has 200 m, and a stick of half a metre in millimetres 500; the smallest micromachines have some 1e-6. */
+/* m: the box around a mechanism. A wind turbine's rotor has 200 m, and a stick of half a metre
+ * in millimetres 500; the smallest micromachines have some 1e-6. */
 static const double MOST_SIZE_M = 300.0;
 static const double LEAST_SIZE_M = 1e-6;
 /* A section so many times thicker than its link is long is written in millimetres. */
 static const double MOST_STOUT = 10.0;
-/* Radius of gyration of a body in sizes of the drawing: kg mm^2 for kg m^2 makes it a thousand times too large; inertias that a gear multiplies stay below. */
+/* Radius of gyration of a body in sizes of the drawing: kg mm^2 for kg m^2 makes it a thousand
+ * times too large; inertias that a gear multiplies stay below. */
 static const double MOST_GYRATION = 30.0;
 /* A drive along a line, in sizes of the drawing: a stroke is a part of the mechanism. */
 static const double MOST_STROKE = 3.0;
-/* Points of bodies are compared with all others: in models of more joints and springs that would cost more than it tells. */
+/* Points of bodies are compared with all others: in models of more joints and springs that
+ * would cost more than it tells. */
 enum { MOST_COMPARED = 2000 };
 
 typedef struct box {
@@ -77,7 +83,8 @@ static void include(const mt_judge *j, box *b, const mt_position *p)
     b->n++;
 }
 
-/* The box around everything that is drawn, but for one joint and one spring (NULL: nothing is left out). */
+/* The box around everything that is drawn, but for one joint and one spring (NULL: nothing is
+ * left out). */
 static box box_without(const mt_judge *j, const mt_joint *joint, const mt_spring *spring)
 {
     const mt_model *const m = j->model;
@@ -185,7 +192,8 @@ static const mt_position *side_at(int n_at, const mt_position *at, int side)
     return &at[n_at == 2 ? side : 0];
 }
 
-/* How far x is from all else that body has: centre, other joints, springs, sensors. Infinite: there is nothing else. */
+/* How far x is from all else that body has: centre, other joints, springs, sensors. Infinite:
+ * there is nothing else. */
 static double distance_to_body(const mt_judge *j, int body, const mt_joint *joint,
                                const mt_spring *spring, const double x[3])
 {
@@ -441,9 +449,7 @@ static void judge_loads(mt_judge *j)
     for (int i = 0; i < m->n_loads; i++) {
         const mt_load *const o = &m->loads[i];
         const holder h = {
-            {"load", "loads", i, o->name.s},
-            &o->on, o->at.given ? 1 : 0, &o->at, NULL, NULL
-        };
+            {"load", "loads", i, o->name.s}, &o->on, o->at.given ? 1 : 0, &o->at, NULL, NULL};
         if (o->on.name.s != NULL && mt_model_present(&o->in, j->configuration)) {
             judge_side(j, &h, 0);
         }
@@ -460,9 +466,7 @@ void mt_judge_geometry(mt_judge *j)
     for (int i = 0; i < m->n_joints; i++) {
         const mt_joint *const o = &m->joints[i];
         const holder h = {
-            {"joint", "joints", i, o->name.s},
-            o->bodies, o->n_at, o->at, o, NULL
-        };
+            {"joint", "joints", i, o->name.s}, o->bodies, o->n_at, o->at, o, NULL};
         for (int side = 0; side < 2 && mt_model_present(&o->in, j->configuration); side++) {
             judge_side(j, &h, side);
         }
@@ -472,15 +476,13 @@ void mt_judge_geometry(mt_judge *j)
     }
     for (int i = 0; i < m->n_springs; i++) {
         const mt_spring *const o = &m->springs[i];
-        const holder h = {
-            {o->damper ? "damper" : "spring", o->damper ? "dampers" : "springs",
-             o->damper ? dampers++ : i, o->name.s},
-            o->bodies,
-            o->n_at,
-            o->at,
-            NULL,
-            o
-        };
+        const holder h = {{o->damper ? "damper" : "spring", o->damper ? "dampers" : "springs",
+                           o->damper ? dampers++ : i, o->name.s},
+                          o->bodies,
+                          o->n_at,
+                          o->at,
+                          NULL,
+                          o};
         for (int side = 0; side < 2 && mt_model_present(&o->in, j->configuration); side++) {
             judge_side(j, &h, side);
         }

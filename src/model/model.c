@@ -92,7 +92,8 @@ int mt_model_find_mode(const mt_model *model, const char *name)
     return find(&model->tables->modes, name);
 }
 
-/* Bodies and links share a table: link i stands there as -1 - i, absent is -1, which would be link 0. */
+/* Bodies and links share a table: link i stands there as -1 - i, absent is -1, which would be
+ * link 0. */
 int mt_model_find_body(const mt_model *model, const char *name)
 {
     bool found = false;

@@ -9,15 +9,18 @@
 #include "expr/expr.h"
 
 /*
- * The description of one mechanism and its configurations. A reader fills the lists (names, numbers, addresses of both), then
- * mt_model_finish resolves names, checks what needs no numbers, and from then on the model is immutable and may be shared by threads.
- * Numbers stay expressions of parameters: values belong to a configuration (mechanics instantiates it).
+ * The description of one mechanism and its configurations. A reader fills the lists (names,
+ * numbers, addresses of both), then mt_model_finish resolves names, checks what needs no
+ * numbers, and from then on the model is immutable and may be shared by threads. Numbers stay
+ * expressions of parameters: values belong to a configuration (mechanics instantiates it).
  * Geometry: the reference position, global coordinates [m]; angles [rad].
  */
 enum { MT_ABSENT = -1, MT_GROUND = -1, MT_MAX_LIST = 100000 };
-/* A drive goes so far at most from the reference position: rad (159 turns), or lengths of the mechanism. The way there is walked in steps of a tenth at most. */
+/* A drive goes so far at most from the reference position: rad (159 turns), or lengths of the
+ * mechanism. The way there is walked in steps of a tenth at most. */
 enum { MT_DRIVE_REACH = 1000 };
-/* Configurations times (numbers and items) of a model at most: every configuration is checked with all its numbers. */
+/* Configurations times (numbers and items) of a model at most: every configuration is checked
+ * with all its numbers. */
 enum { MT_MAX_CONFIGURED = 10000000 };
 
 /* Index into mt_model.nums; MT_ABSENT where the member was not given. */
@@ -76,7 +79,9 @@ typedef struct mt_point {
     mt_num x[3];
 } mt_point;
 
-/* What a joint, spring or sensor holds on to. Written "ground", "crank", "beam.start", "beam.end", "beam.3" (rigid element, 1-based), "beam.node3" (node, 0-based: of a beam, or where rigid elements meet). */
+/* What a joint, spring or sensor holds on to. Written "ground", "crank", "beam.start",
+ * "beam.end", "beam.3" (rigid element, 1-based), "beam.node3" (node, 0-based: of a beam, or
+ * where rigid elements meet). */
 typedef enum mt_attach_kind {
     MT_ATTACH_GROUND,
     MT_ATTACH_BODY,
@@ -93,13 +98,15 @@ typedef struct mt_attach {
     int part;    /* of a link: how many of its bodies come before the one that is meant */
 } mt_attach;
 
-/* A rigid body; without `inertia_kg_m2` a point mass (no rotation of its own, 2 or 3 states). */
+/* A rigid body; without `inertia_kg_m2` a point mass (no rotation of its own, 2 or 3
+ * states). */
 typedef struct mt_body {
     mt_name name;
     mt_num mass; /* kg; absent: 0 */
     bool point_mass;
-    mt_num inertia
-        [6]; /* about the centre of mass, global axes in the reference position [kg m^2]. 2-D: [0]. 3-D: xx yy zz xy xz yz (absent: 0) */
+    /* about the centre of mass, global axes in the reference position [kg m^2]. 2-D: [0]. 3-D:
+     * xx yy zz xy xz yz (absent: 0) */
+    mt_num inertia[6];
     mt_position centre;
     mt_presence in;
 } mt_body;
@@ -111,8 +118,10 @@ typedef enum mt_section_shape {
     MT_SECTION_TUBE,
     MT_SECTION_GENERAL
 } mt_section_shape;
-/* rectangle: width (out of plane, 2-D; along hinge_axis, 3-D), height (in the plane of bending); circle: diameter; tube: outer, inner diameter;
- * general: area_m2, second_moment_m4 (bending about hinge axis / out of plane), in 3-D also second_moment_other_m4, torsion_constant_m4. */
+/* rectangle: width (out of plane, 2-D; along hinge_axis, 3-D), height (in the plane of
+ * bending); circle: diameter; tube: outer, inner diameter; general: area_m2, second_moment_m4
+ * (bending about hinge axis / out of plane), in 3-D also second_moment_other_m4,
+ * torsion_constant_m4. */
 typedef struct mt_section {
     mt_section_shape shape;
     mt_num width;
@@ -126,7 +135,8 @@ typedef struct mt_section {
     mt_addr addr;
 } mt_section;
 
-/* Timoshenko's beam: shear area = coefficient x area, for bending about the hinge axis and about the other. */
+/* Timoshenko's beam: shear area = coefficient x area, for bending about the hinge axis and
+ * about the other. */
 typedef struct mt_shear {
     bool given;
     mt_num coefficient;
@@ -137,8 +147,10 @@ typedef struct mt_shear {
 
 typedef enum mt_link_kind { MT_LINK_LUMPED, MT_LINK_BEAM } mt_link_kind;
 
-/* A flexible link from one point to another. Lumped (`"kind": "rigid_elements"`, default): n rigid elements L.1..n, hinges L.h1..h(n-1), torsional springs L.k1..k(n-1).
- * Beam: n Euler-Bernoulli elements, or Timoshenko's with `shear`, n + 1 nodes. Lists have one entry (uniform) or one per element (stiffness: one per hinge). */
+/* A flexible link from one point to another. Lumped (`"kind": "rigid_elements"`, default): n
+ * rigid elements L.1..n, hinges L.h1..h(n-1), torsional springs L.k1..k(n-1). Beam: n
+ * Euler-Bernoulli elements, or Timoshenko's with `shear`, n + 1 nodes. Lists have one entry
+ * (uniform) or one per element (stiffness: one per hinge). */
 typedef struct mt_link {
     mt_name name;
     mt_link_kind kind;
@@ -169,7 +181,8 @@ typedef struct mt_link {
     mt_addr stiffness_addr;
 } mt_link;
 
-/* type, JSON name, in 2-D, in 3-D, coordinate: 'a' angle, 'd' displacement, '-' none (what `drive` may move) */
+/* type, JSON name, in 2-D, in 3-D, coordinate: 'a' angle, 'd' displacement, '-' none (what
+ * `drive` may move) */
 #define MT_JOINT_LIST(X)                                           \
     X(MT_JOINT_FIXED, "fixed", true, true, '-')                    \
     X(MT_JOINT_REVOLUTE, "revolute", true, true, 'a')              \
@@ -196,8 +209,9 @@ typedef struct mt_joint {
     int n_at;          /* 0, 1 or 2 */
     mt_position at[2]; /* one point, or the point on each body as drawn */
     bool has_axis;
-    mt_num axis
-        [3]; /* revolute, cylindrical, planar, plane: axis / normal; prismatic, slot, line: direction. Fixed to bodies[0] (drawn on both). Not normalised */
+    /* revolute, cylindrical, planar, plane: axis / normal; prismatic, slot, line: direction.
+     * Fixed to bodies[0] (drawn on both). Not normalised */
+    mt_num axis[3];
     bool has_axis_b;
     mt_num axis_b[3]; /* universal: second axis, on bodies[1] */
     mt_num length;    /* distance: m; absent: as drawn */
@@ -220,7 +234,8 @@ typedef enum mt_spring_type {
 } mt_spring_type;
 #undef MT_SPRING_ENUM
 
-/* Also a damper (list `dampers`: torsion, axial, bushing; stiffness members become damping_*). */
+/* Also a damper (list `dampers`: torsion, axial, bushing; stiffness members become
+ * damping_*). */
 typedef struct mt_spring {
     mt_name name;
     mt_spring_type type;
@@ -239,27 +254,31 @@ typedef struct mt_spring {
     mt_num youngs_modulus; /* bar */
     mt_num area;
     mt_num density;
-    mt_num translation
-        [3]; /* bushing N/m in global axes of the reference position, attached to bodies[0] */
+    /* bushing N/m in global axes of the reference position, attached to bodies[0] */
+    mt_num translation[3];
     mt_num rotation[3]; /* bushing N m/rad */
     mt_num *matrix;     /* bushing 6 x 6, row-major, lower triangle used, symmetric; NULL */
     mt_presence in;
 } mt_spring;
 
 /*
- * A dead load: constant in size, and in direction as far as it has one. On a body: a force at one of its points, along global directions whatever the body does; in two
- * dimensions also a moment. On a joint: a force along its displacement or a moment about its angle, on the second body, with the reaction on the first. Each has a potential. A
- * moment that keeps its direction in space has none where its body can turn about other axes (the work depends on the order of turns): finish refuses it.
+ * A dead load: constant in size, and in direction as far as it has one. On a body: a force at
+ * one of its points, along global directions whatever the body does; in two dimensions also a
+ * moment. On a joint: a force along its displacement or a moment about its angle, on the second
+ * body, with the reaction on the first. Each has a potential. A moment that keeps its direction
+ * in space has none where its body can turn about other axes (the work depends on the order of
+ * turns): finish refuses it.
  */
 typedef struct mt_load {
     mt_name name;
     mt_attach on;
     mt_name joint_name;
-    int joint; /* resolved: joint, or hinge joint_hinge (0-based) of link joint_link; MT_ABSENT */
+    /* resolved: joint, or hinge joint_hinge (0-based) of link joint_link; MT_ABSENT */
+    int joint;
     int joint_link;
     int joint_hinge;
-    mt_position
-        at; /* default: the centre of the body, the end of a link, the middle of its element */
+    /* default: the centre of the body, the end of a link, the middle of its element */
+    mt_position at;
     bool has_force;  /* a vector, or */
     bool one_number; /* a number */
     mt_num force[3]; /* N */
@@ -276,9 +295,10 @@ typedef struct mt_load {
 typedef struct mt_sensor {
     mt_name name;
     mt_name on_name;
-    mt_attach_kind
-        on_kind; /* MT_ATTACH_BODY, MT_ATTACH_LINK_ELEMENT, or MT_ATTACH_LINK_START meaning: on a link at `fraction` */
-    int on;      /* body or link */
+    /* MT_ATTACH_BODY, MT_ATTACH_LINK_ELEMENT, or MT_ATTACH_LINK_START meaning: on a link at
+     * `fraction` */
+    mt_attach_kind on_kind;
+    int on; /* body or link */
     int element;
     mt_num fraction; /* on a link: 0 at from, 1 at to */
     mt_position at;  /* on a body: default its centre */
@@ -324,7 +344,8 @@ typedef struct mt_configuration {
     mt_drive drive;    /* after finish: the one in force */
 } mt_configuration;
 
-/* Where an address of the model's file stands, kept for messages about values: lines and columns from 1. */
+/* Where an address of the model's file stands, kept for messages about values: lines and
+ * columns from 1. */
 typedef struct mt_place {
     mt_addr addr;
     int line;
@@ -355,15 +376,15 @@ typedef struct mt_model {
     MT_LIST_OF(mt_load, loads);
     MT_LIST_OF(mt_sensor, sensors);
     MT_LIST_OF(mt_named_mode, modes);
-    MT_LIST_OF(
-        mt_configuration,
-        configurations); /* never empty after finish: "default" is made where none is given */
-    const char *sha256;  /* of the file's bytes, hexadecimal; NULL: not read from a file */
-    int n_places;        /* one per number, sorted by address; 0: not read from a file */
+    /* never empty after finish: "default" is made where none is given */
+    MT_LIST_OF(mt_configuration, configurations);
+    const char *sha256; /* of the file's bytes, hexadecimal; NULL: not read from a file */
+    int n_places;       /* one per number, sorted by address; 0: not read from a file */
     mt_place *places;
     struct mt_model_names *tables; /* private: names to indices */
     bool out_of_memory;            /* while it was filled; mt_model_finish fails then */
-    /* NULL in a model that was made or read. Who answers a question that may be interrupted asks it of a copy of this record that has the interrupt (and borrows everything else):
+    /* NULL in a model that was made or read. Who answers a question that may be interrupted
+     * asks it of a copy of this record that has the interrupt (and borrows everything else):
      * then no work on the model can be begun without passing by it. */
     struct mt_interrupt *interrupt;
 } mt_model;
@@ -371,21 +392,24 @@ typedef struct mt_model {
 /* An empty model (dimension 0). Fails: MT_E_MEMORY. */
 mt_status mt_model_new(mt_model **out, mt_err *err);
 void mt_model_delete(mt_model *model);
-/* Add a number; returns its index, MT_ABSENT when out of memory (noted; mt_model_finish fails then). */
+/* Add a number; returns its index, MT_ABSENT when out of memory (noted; mt_model_finish fails
+ * then). */
 mt_num mt_model_add_num(mt_model *model, mt_expr expr, mt_addr addr);
 /* Lookup function for mt_expr_parse over model->parameters (context: the model). */
 int mt_model_lookup(const void *model, const char *name, size_t length);
 
-/* Resolve and check; every problem goes to diags (duplicate names, unknown names with "did you mean", wrong list lengths, joint types not in this dimension, cycles of `like` and of
- * parameters with their path "a -> b -> a" per configuration, a point mass where an orientation is needed, reserved names, names with a dot, a point named like a parameter where `at` is ambiguous ...).
- * An item that a reader could not read completely (its faults are in diags already) carries a type of ..._TYPE_COUNT (joint, spring), 0 elements
- * (link) or no name in `on` (sensor) and is only checked for its name. The form of names is the reader's to check.
+/* Resolve and check; every problem goes to diags (duplicate names, unknown names with "did you
+ * mean", wrong list lengths, joint types not in this dimension, cycles of `like` and of
+ * parameters with their path "a -> b -> a" per configuration, a point mass where an orientation
+ * is needed, reserved names, names with a dot, a point named like a parameter where `at` is
+ * ambiguous ...). An item that a reader could not read completely (its faults are in diags
+ * already) carries a type of ..._TYPE_COUNT (joint, spring), 0 elements (link) or no name in
+ * `on` (sensor) and is only checked for its name. The form of names is the reader's to check.
  * Returns MT_E_INPUT where diags holds errors, else MT_OK; MT_E_MEMORY. */
 mt_status mt_model_finish(mt_model *model, mt_diags *diags, mt_err *err);
 
-int mt_model_find_parameter(
-    const mt_model *model,
-    const char *name); /* MT_ABSENT where there is none, likewise below */
+/* MT_ABSENT where there is none, likewise below */
+int mt_model_find_parameter(const mt_model *model, const char *name);
 int mt_model_find_configuration(const mt_model *model, const char *name);
 int mt_model_find_mode(const mt_model *model, const char *name);
 int mt_model_find_body(const mt_model *model, const char *name);

@@ -5,7 +5,8 @@
 
 #include "model/values.h"
 
-/* A program with the parameters of a configuration (MT_ABSENT: of the file), some of them inputs; nodes[n_parameters]. */
+/* A program with the parameters of a configuration (MT_ABSENT: of the file), some of them
+ * inputs; nodes[n_parameters]. */
 static mt_status begin(const mt_model *model, int configuration, int n_inputs,
                        const int *inputs, mt_arena *mem, mt_program *program, mt_node **nodes,
                        mt_err *err)

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Parameters into program nodes. Which definition counts: an override of the configuration, else an input of the caller, else the parameter's own expression. Emission
- * follows the dependences depth first with an explicit stack, so a long chain cannot overflow the C stack; the model was checked for cycles.
+ * Parameters into program nodes. Which definition counts: an override of the configuration,
+ * else an input of the caller, else the parameter's own expression. Emission follows the
+ * dependences depth first with an explicit stack, so a long chain cannot overflow the C stack;
+ * the model was checked for cycles.
  */
 #include "model/values.h"
 

@@ -6,15 +6,15 @@
 
 #include "expr/program.h"
 
-/* Emits parameters into a program, operands first: a walk in depth over "needs", with its own stack, because a chain of
- * parameters may be as long as the file allows. */
+/* Emits parameters into a program, operands first: a walk in depth over "needs", with its own
+ * stack, because a chain of parameters may be as long as the file allows. */
 typedef struct order {
     const mt_model *model;
     mt_program program;
     mt_node *nodes; /* [n_parameters] MT_NO_NODE until emitted */
     int *stack;     /* parameters being worked on, innermost last */
-    int *
-        cursor; /* [n_parameters] where the reading of a parameter's code stands; MT_ABSENT: not begun */
+    /* [n_parameters] where the reading of a parameter's code stands; MT_ABSENT: not begun */
+    int *cursor;
     int depth;
 } order;
 
@@ -34,7 +34,8 @@ static mt_status push(order *o, int parameter, mt_err *err)
     return MT_OK;
 }
 
-/* The next parameter that the one on top of the stack needs and that has no node yet; MT_ABSENT: all there. */
+/* The next parameter that the one on top of the stack needs and that has no node yet;
+ * MT_ABSENT: all there. */
 static int missing_operand(order *o)
 {
     const int top = o->stack[o->depth - 1];
@@ -86,7 +87,8 @@ static mt_status evaluate(order *o, mt_arena *mem, double *values, int *bad, mt_
     for (int i = 0; rc == MT_OK && i < n; i++) {
         values[i] = all[o->nodes[i]];
     }
-    /* the node belongs to the first parameter, in order of evaluation, that it spoils: one whose node follows it first */
+    /* the node belongs to the first parameter, in order of evaluation, that it spoils: one
+     * whose node follows it first */
     for (int i = 0; rc == MT_E_DOMAIN && i < n; i++) {
         if (o->nodes[i] >= bad_node && (*bad == MT_ABSENT || o->nodes[i] < o->nodes[*bad])) {
             *bad = i;

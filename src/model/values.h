@@ -7,15 +7,17 @@
 #include "model/model.h"
 
 /*
- * Values at the original design: every parameter at the value that the model's file gives it, no configuration's overrides.
+ * Values at the original design: every parameter at the value that the model's file gives it,
+ * no configuration's overrides.
  */
 
 /**
  * @param[in]  model   finished (no cycles among parameters)
  * @param[out] values  [n_parameters], each in its parameter's unit
- * @param[out] bad     may be NULL: the parameter without a finite value where MT_E_DOMAIN is returned, else MT_ABSENT
- * Scratch comes from mem and goes back. O(total length of the expressions).
- * Fails: MT_E_DOMAIN, the message names the parameter; MT_E_INPUT (a cycle: the model was not checked), MT_E_MEMORY.
+ * @param[out] bad may be NULL: the parameter without a finite value where MT_E_DOMAIN is
+ *   returned, else MT_ABSENT Scratch comes from mem and goes back. O(total length of the
+ *   expressions). Fails: MT_E_DOMAIN, the message names the parameter; MT_E_INPUT (a cycle: the
+ *   model was not checked), MT_E_MEMORY.
  */
 mt_status mt_model_original_values(const mt_model *model, mt_arena *mem, double *values,
                                    int *bad, mt_err *err);
@@ -28,15 +30,18 @@ mt_status mt_model_original_values(const mt_model *model, mt_arena *mem, double 
 mt_status mt_model_expr_value(const mt_model *model, const double *values, const mt_expr *e,
                               mt_arena *mem, double *out, mt_err *err);
 
-/* Emit all parameters of a configuration (MT_ABSENT: of the file) into a program; is_input[p] >= 0: parameter p is that input (NULL: none is; an override wins over an
- * input). nodes[n_parameters]. The model has been checked for cycles. Fails: MT_E_MEMORY, MT_E_INTERNAL (a cycle). */
+/* Emit all parameters of a configuration (MT_ABSENT: of the file) into a program; is_input[p]
+ * >= 0: parameter p is that input (NULL: none is; an override wins over an input).
+ * nodes[n_parameters]. The model has been checked for cycles. Fails: MT_E_MEMORY, MT_E_INTERNAL
+ * (a cycle). */
 mt_status mt_emit_parameters(const mt_model *model, int configuration, const int *is_input,
                              mt_program *program, mt_node *nodes, mt_arena *mem, mt_err *err);
 
 /**
- * Values of all parameters where some are inputs, those made of others following; no configuration's overrides.
+ * Values of all parameters where some are inputs, those made of others following; no
+ * configuration's overrides.
  * @param[out] value  [n_parameters]
- * Scratch from mem, given back. Fails: MT_E_DOMAIN, MT_E_MEMORY, MT_E_INTERNAL.
+ *   Scratch from mem, given back. Fails: MT_E_DOMAIN, MT_E_MEMORY, MT_E_INTERNAL.
  */
 mt_status mt_model_parameters(const mt_model *model, int n_inputs, const int *inputs,
                               const double *at, mt_arena *mem, double *value, mt_err *err);
@@ -44,16 +49,19 @@ mt_status mt_model_parameters(const mt_model *model, int n_inputs, const int *in
 /**
  * All numbers of the model as they are in a configuration, where some parameters are inputs.
  * @param[in]  inputs  [n_inputs] parameters; at[n_inputs] their values
- * @param[out] value   [n_nums]; NaN where a number has no finite value (or stands behind one that has none)
- * Scratch from mem, given back. O(total length of the expressions). Fails: MT_E_MEMORY, MT_E_INTERNAL.
+ * @param[out] value [n_nums]; NaN where a number has no finite value (or stands behind one that
+ *   has none) Scratch from mem, given back. O(total length of the expressions). Fails:
+ *   MT_E_MEMORY, MT_E_INTERNAL.
  */
 mt_status mt_model_numbers(const mt_model *model, int configuration, int n_inputs,
                            const int *inputs, const double *at, mt_arena *mem, double *value,
                            mt_err *err);
 
 /**
- * Judge the numbers of a configuration: faults (masses and stiffnesses below 0, sections without area) and doubts (a modulus that no material has, a drive
- * beyond a turn). Each names item and member, carries its JSON pointer and, where the model was read from a file, its place.
+ * Judge the numbers of a configuration: faults (masses and stiffnesses below 0, sections
+ * without area) and doubts (a modulus that no material has, a drive beyond a turn). Each names
+ * item and member, carries its JSON pointer and, where the model was read from a file, its
+ * place.
  * @param[in]  value  [n_nums] as mt_model_numbers gives them
  */
 void mt_model_judge(const mt_model *model, int configuration, const double *value,

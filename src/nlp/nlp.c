@@ -6,7 +6,8 @@
  *                   least squares, Newton      where there are residuals and bounds only
  *                   SLSQP, restoration, Newton otherwise; a saddle is left along its direction
  *                   an infeasible end is a local minimum of the squares of the violations
- *     all ends:     feasible ones only, if any; undetermined directions at the best, all ends pulled
+ *     all ends:
+ *         feasible ones only, if any; undetermined directions at the best, all ends pulled
  *                   back along them; equal ones merged; ranked; multipliers, KKT, singularity
  *
  * Nothing here depends on time, addresses or the order of memory: equal input, equal bytes.
@@ -25,7 +26,8 @@ enum { ROOT_ROUNDS = 12 };
 static const double STATIONARY = 1e-6;
 /* Length of the first step away from a saddle. */
 static const double SADDLE_STEP = 0.05;
-/* Violation (in tolerances) below which an end is worth a Newton polish before a restoration. */
+/* Violation (in tolerances) below which an end is worth a Newton polish before a
+ * restoration. */
 static const double NEARLY = 1e4;
 
 /* Newton from `last`, where SLSQP ended, if that serves better than from p, the best it met. */
@@ -135,7 +137,8 @@ static void descend(mt_nlp_engine *e, const int *all_rows, mt_nlp_point *p)
     }
 }
 
-/* Local search from p, which has values. An infeasible end that is a saddle of the squares is left. */
+/* Local search from p, which has values. An infeasible end that is a saddle of the squares is
+ * left. */
 static void local_search(mt_nlp_engine *e, const int *all_rows, mt_nlp_point *p)
 {
     mt_nlp_point *const before = mt_nlp_point_new(e, &e->scratch);
@@ -239,7 +242,8 @@ static mt_status run_start(void *context, int worker, int k, mt_err *err)
     return MT_OK;
 }
 
-/* Add up what the starts used, beside what was used before, and how they ended; the first failure in order counts. */
+/* Add up what the starts used, beside what was used before, and how they ended; the first
+ * failure in order counts. */
 static void collect(mt_nlp_engine *e, const start_job *job, long before)
 {
     e->evals = before;
@@ -258,7 +262,8 @@ static void collect(mt_nlp_engine *e, const start_job *job, long before)
     e->ended = e->ended || e->stop == MT_STOP_USER;
 }
 
-/* Evaluate the starts of a job, then search from them; the scale of the objective is the first job's. */
+/* Evaluate the starts of a job, then search from them; the scale of the objective is the first
+ * job's. */
 static void run_job(mt_nlp_engine *e, start_job *job)
 {
     const long before = e->evals;
@@ -276,7 +281,8 @@ static void run_job(mt_nlp_engine *e, start_job *job)
     }
 }
 
-/* Local solves from starts all->starts .. all->starts + n - 1; their ends are added to the list. */
+/* Local solves from starts all->starts .. all->starts + n - 1; their ends are added to the
+ * list. */
 static bool add_starts(mt_nlp_engine *e, mt_nlp_ends *all, int n)
 {
     mt_arena *const mem = &e->scratch;
@@ -312,9 +318,10 @@ static bool add_starts(mt_nlp_engine *e, mt_nlp_ends *all, int n)
 }
 
 /*
- * The starts asked for; where the equalities settle everything and there is more than one root, as many again each time, within the
- * budget, until every root was met twice (what was met once stands for as much that was not met at all: Good and Turing) and
- * the last starts brought no new one.
+ * The starts asked for; where the equalities settle everything and there is more than one root,
+ * as many again each time, within the budget, until every root was met twice (what was met once
+ * stands for as much that was not met at all: Good and Turing) and the last starts brought no
+ * new one.
  */
 static void all_starts(mt_nlp_engine *e, mt_nlp_ends *all, mt_nlp_result *out)
 {

@@ -7,7 +7,8 @@
 #include "base/arena.h"
 
 /*
- * A smooth search problem in scaled variables t (ln of positive parameters, linear otherwise; the caller maps):
+ * A smooth search problem in scaled variables t (ln of positive parameters, linear otherwise;
+ * the caller maps):
  *
  *   minimise f(t)   (or 1/2 |r(t)|^2 where n_res > 0)
  *   subject to  eq_i(t) = 0 within eq_tol_i,  in_i(t) >= -in_tol_i,  lower <= t <= upper.
@@ -15,14 +16,15 @@
  * This file and its .c know no mechanism: tests drive them with closed-form functions.
  */
 typedef struct mt_nlp_values {
-    double
-        f; /* objective; where n_res > 0: ignored, 1/2 |r|^2 is used. Smooth: the square of a change, not its root */
+    /* objective; where n_res > 0: ignored, 1/2 |r|^2 is used. Smooth: the square of a change,
+     * not its root */
+    double f;
     double *df; /* [n] */
-    double *
-        r; /* [n_res] dimensionless: a change below 1e-6 counts as none where directions are judged */
+    /* [n_res] dimensionless: a change below 1e-6 counts as none where directions are judged */
+    double *r;
     double *dr; /* n_res x n column-major */
-    double *
-        eq; /* [n_eq] relative to the demand (ln of a ratio), so that a compromise weighs them fairly */
+    /* [n_eq] relative to the demand (ln of a ratio), so that a compromise weighs them fairly */
+    double *eq;
     double *deq;   /* n_eq x n column-major */
     double *in;    /* [n_in] >= 0 feasible */
     double *din;   /* n_in x n column-major */
@@ -31,10 +33,10 @@ typedef struct mt_nlp_values {
 } mt_nlp_values;
 
 /*
- * Evaluate at t, which is within the bounds. with_gradient false: only values are needed. Called once per point.
- * A status other than MT_OK, or a value that is not finite, means "no value here" (the search steps back), except
- * MT_E_INTERRUPTED, which ends it with what was found (MT_STOP_USER), and MT_E_MEMORY and MT_E_INTERNAL, which
- * mt_nlp_solve returns.
+ * Evaluate at t, which is within the bounds. with_gradient false: only values are needed.
+ * Called once per point. A status other than MT_OK, or a value that is not finite, means "no
+ * value here" (the search steps back), except MT_E_INTERRUPTED, which ends it with what was
+ * found (MT_STOP_USER), and MT_E_MEMORY and MT_E_INTERNAL, which mt_nlp_solve returns.
  */
 typedef mt_status (*mt_nlp_eval)(void *context, const double *t, bool with_gradient,
                                  mt_nlp_values *out, mt_err *err);
@@ -50,24 +52,30 @@ typedef struct mt_nlp {
     int n_in;
     const double *eq_tol; /* [n_eq] > 0 */
     const double *in_tol; /* [n_in] > 0 */
-    int n_next; /* rows that follow from those of `in`: next >= 0 wherever in[next_of] >= 0. They add nothing to a violation, but where rows
-                   change places (modes that cross) they tell what comes next: local solvers and KKT conditions know them; their multipliers count for in[next_of] */
+    /* rows that follow from those of `in`: next >= 0 wherever in[next_of] >= 0. They add
+     * nothing to a violation, but where rows change places (modes that cross) they tell what
+     * comes next: local solvers and KKT conditions know them; their multipliers count for
+     * in[next_of] */
+    int n_next;
     const int *next_of; /* [n_next] */
     mt_nlp_eval eval;
     void *context;
     int n_workers; /* starts run on so many threads; 0 or 1: the caller's own */
-    void *const *
-        contexts; /* [n_workers] a context for each, contexts[0] == context; NULL with one worker */
+    /* [n_workers] a context for each, contexts[0] == context; NULL with one worker */
+    void *const *contexts;
 } mt_nlp;
 
 typedef struct mt_nlp_options {
     unsigned long seed; /* turns the sequence of starts; 0 and 1: as it is */
-    int starts; /* local solves from the origin and Sobol points (reverse Halton beyond 40 variables); 0: 8 + 4 n, at most 64,
-                   and where roots are sought up to twelve times as many, until every root was met twice */
+    /* local solves from the origin and Sobol points (reverse Halton beyond 40 variables); 0: 8
+     * + 4 n, at most 64, and where roots are sought up to twelve times as many, until every
+     * root was met twice */
+    int starts;
     long max_evals;    /* over all starts, never exceeded; 0: 2000 * the first starts */
     int max_solutions; /* how many distinct ones to keep; 0: 16 */
-    bool
-        least_change; /* f is the change: it does not count when undetermined directions are sought (without residuals) */
+    /* f is the change: it does not count when undetermined directions are sought (without
+     * residuals) */
+    bool least_change;
 } mt_nlp_options;
 mt_nlp_options mt_nlp_options_default(void);
 
@@ -77,15 +85,17 @@ typedef struct mt_nlp_solution {
     double *t;
     double f;         /* recomputed at t */
     double violation; /* max over constraints of |violation| / tolerance; <= 1 is feasible */
-    double
-        squares; /* sum of squares of eq and of the negative part of in: what a compromise minimises */
+    /* sum of squares of eq and of the negative part of in: what a compromise minimises */
+    double squares;
     bool feasible;
-    bool
-        continuum; /* it stands for a continuum of solutions that are as good (set by mt_search_join_continua only) */
-    bool
-        singular; /* Jacobian of the active constraints (or of r) rank deficient at t: a double root */
-    double
-        kkt; /* ||grad of the Lagrangian projected on the free variables|| relative; NaN for isolated roots (no freedom left) */
+    /* it stands for a continuum of solutions that are as good (set by mt_search_join_continua
+     * only) */
+    bool continuum;
+    /* Jacobian of the active constraints (or of r) rank deficient at t: a double root */
+    bool singular;
+    /* ||grad of the Lagrangian projected on the free variables|| relative; NaN for isolated
+     * roots (no freedom left) */
+    double kkt;
     int start;          /* which start found it first */
     int hits;           /* how many starts ended at it */
     int *bound;         /* [n] -1 at lower, +1 at upper, 0 free */
@@ -95,33 +105,40 @@ typedef struct mt_nlp_solution {
 } mt_nlp_solution;
 
 typedef struct mt_nlp_result {
-    int n_solutions; /* only feasible ones, by f; else compromises, by squares, equal ones by f */
+    /* only feasible ones, by f; else compromises, by squares, equal ones by f */
+    int n_solutions;
     mt_nlp_solution *solutions;
-    bool
-        compromise; /* none is feasible: these minimise the sum of squares of the violations relative to the demands */
+    /* none is feasible: these minimise the sum of squares of the violations relative to the
+     * demands */
+    bool compromise;
     long evals;
     int starts;
     int n_found; /* distinct ones, those beyond max_solutions among them */
     int n_once;  /* of them, met by one start only */
-    double
-        missing; /* where the equalities leave isolated roots: how many more are to be expected at least, by what was met once and
-                       twice (Chao 1984); 0 when all were met twice; else NaN */
+    /* where the equalities leave isolated roots: how many more are to be expected at least, by
+     * what was met once and twice (Chao 1984); 0 when all were met twice; else NaN */
+    double missing;
     mt_stop stop;
-    int n_undetermined; /* at the best solution: orthonormal directions of t-space along which crossing the whole bounds changes every residual and constraint by less than its tolerance */
+    /* at the best solution: orthonormal directions of t-space along which crossing the whole
+     * bounds changes every residual and constraint by less than its tolerance */
+    int n_undetermined;
     double *undetermined; /* n x n_undetermined */
-    double *
-        undetermined_effect; /* [n_undetermined] greatest change / tolerance found when crossing */
+    /* [n_undetermined] greatest change / tolerance found when crossing */
+    double *undetermined_effect;
 } mt_nlp_result;
 
 /*
- * All distinct local solutions from several starts, ranked. Method: n_eq >= number of free variables: roots by bounded
- * least squares; else SLSQP (exact gradients) with an incumbent of our own, then Newton on the KKT system to full accuracy;
- * residuals under bounds alone: least squares, then Newton. Feasibility and KKT are recomputed here, NLopt's return code
- * decides nothing. Solutions nearer than sqrt(tolerance) (within 0.001 to 0.01 in t) are one. No feasible point: the
- * compromise of least squares and, among equal ones, least f. Undetermined directions are left at the origin.
- * Results in mem. Deterministic for equal seed. Cost: some 20 to 100 evaluations per start; O(n^3) of linear algebra each step.
- * Fails: MT_E_USAGE (sizes, bounds, tolerances), MT_E_MEMORY and MT_E_INTERNAL, and the callback's first status where it had
- * no value at any start. A spent budget and an interruption are outcomes: out->stop, with the best so far (n_solutions may be 0).
+ * All distinct local solutions from several starts, ranked. Method: n_eq >= number of free
+ * variables: roots by bounded least squares; else SLSQP (exact gradients) with an incumbent of
+ * our own, then Newton on the KKT system to full accuracy; residuals under bounds alone: least
+ * squares, then Newton. Feasibility and KKT are recomputed here, NLopt's return code decides
+ * nothing. Solutions nearer than sqrt(tolerance) (within 0.001 to 0.01 in t) are one. No
+ * feasible point: the compromise of least squares and, among equal ones, least f. Undetermined
+ * directions are left at the origin. Results in mem. Deterministic for equal seed. Cost: some
+ * 20 to 100 evaluations per start; O(n^3) of linear algebra each step. Fails: MT_E_USAGE
+ * (sizes, bounds, tolerances), MT_E_MEMORY and MT_E_INTERNAL, and the callback's first status
+ * where it had no value at any start. A spent budget and an interruption are outcomes:
+ * out->stop, with the best so far (n_solutions may be 0).
  */
 mt_status mt_nlp_solve(const mt_nlp *nlp, const mt_nlp_options *opt, mt_arena *mem,
                        mt_nlp_result *out, mt_err *err);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The only caller of the problem's callback: budget, finite values and failures are decided here. */
+/* The only caller of the problem's callback: budget, finite values and failures are decided
+ * here. */
 #include "nlp/nlp_priv.h"
 
 #include <float.h>
@@ -8,7 +9,8 @@
 
 enum { STARTS_BASE = 8, STARTS_PER_VARIABLE = 4, STARTS_MOST = 64, EVALS_PER_START = 2000 };
 enum { SOLUTIONS_KEPT = 16 };
-/* What differs from a bound by less, relative to the bounds, differs by rounding: a few operations on t. */
+/* What differs from a bound by less, relative to the bounds, differs by rounding: a few
+ * operations on t. */
 static const double ON_IT = 64 * DBL_EPSILON;
 
 mt_nlp_options mt_nlp_options_default(void)

@@ -2,28 +2,35 @@
 /*
  * What the ends of the local solves are worth:
  *
- *     feasible ones only, if any; undetermined directions at the best, all ends pulled back along them; equal ones merged; ranked;
- *     multipliers, KKT residual, singularity. Compromises are settled: the least objective among equally good ones.
+ *     feasible ones only, if any; undetermined directions at the best, all ends pulled back
+ *         along them; equal ones merged; ranked;
+ *     multipliers, KKT residual, singularity. Compromises are settled: the least objective
+ *         among equally good ones.
  */
 #include "nlp/nlp_priv.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Ends nearer than this are one (0.1 percent in a parameter: the same design to an engineer), and nearer than the
- * root of the tolerance, which a double root smears; that is capped where tolerances are wide. */
+/* Ends nearer than this are one (0.1 percent in a parameter: the same design to an engineer),
+ * and nearer than the root of the tolerance, which a double root smears; that is capped where
+ * tolerances are wide. */
 static const double SAME = 1e-3;
 static const double SAME_MOST = 1e-2;
-/* Ends nearer than this are one and the same to rounding; merged ones farther apart were two roots. */
+/* Ends nearer than this are one and the same to rounding; merged ones farther apart were two
+ * roots. */
 static const double IDENTICAL = 1e-5;
-/* A feasible end with a KKT residual above this is no local solution, if there are better ones. */
+/* A feasible end with a KKT residual above this is no local solution, if there are better
+ * ones. */
 static const double STATIONARY = 1e-6;
 static const double NOT_STATIONARY = 1e-3;
-/* Compromises whose squares differ by less, relatively, are equally good (their minima are known to
- * rounding, about 1e-12); a smaller objective decides where it is smaller by more than rounding. */
+/* Compromises whose squares differ by less, relatively, are equally good (their minima are
+ * known to rounding, about 1e-12); a smaller objective decides where it is smaller by more than
+ * rounding. */
 static const double EQUAL_SQUARES = 1e-8;
 static const double SETTLED_GAIN = 1e-6;
-/* A variable nearer to a mark than this, in widths of its bounds, stands there but for rounding of the search. */
+/* A variable nearer to a mark than this, in widths of its bounds, stands there but for rounding
+ * of the search. */
 static const double ON_MARK = 1e-12;
 /* Violation, in tolerances, that a goal is met with as well as by 0. */
 static const double STILL_MET = 1e-4;
@@ -63,8 +70,8 @@ static bool seeks_roots(const mt_nlp_engine *e)
 int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_ends *all, int *once)
 {
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
-    int *const twin =
-        mt_arena_int(&e->scratch, (size_t)all->count); /* a later end is the same */
+    /* a later end is the same */
+    int *const twin = mt_arena_int(&e->scratch, (size_t)all->count);
     int roots = 0;
     *once = 0;
     if (twin == NULL) {
@@ -97,8 +104,9 @@ int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_ends *all, int *once)
 }
 
 /*
- * How many roots no start ended at, from f1 that one start met and f2 that two met, by Chao (1984) in the form that does not divide
- * by zero: f1 (f1 - 1) / (2 (f2 + 1)), a lower bound of the expectation.
+ * How many roots no start ended at, from f1 that one start met and f2 that two met, by Chao
+ * (1984) in the form that does not divide by zero: f1 (f1 - 1) / (2 (f2 + 1)), a lower bound of
+ * the expectation.
  */
 static void count_roots(const mt_nlp_engine *e, const mt_nlp_ends *all, mt_nlp_result *out)
 {
@@ -187,8 +195,8 @@ static void merge(const mt_nlp_engine *e, mt_nlp_ends *all)
 }
 
 /*
- * Many designs may be equally far from the demands: then the one of least objective is wanted. With
- * the constraints moved to what the compromise reaches, that is a feasible problem.
+ * Many designs may be equally far from the demands: then the one of least objective is wanted.
+ * With the constraints moved to what the compromise reaches, that is a feasible problem.
  */
 static void settle(mt_nlp_engine *e, mt_nlp_point *p)
 {
@@ -238,7 +246,8 @@ static void settle_all(mt_nlp_engine *e, mt_nlp_ends *all)
     }
 }
 
-/* Variables within rounding of a mark (the original, a bound) are put on it: "0", not "1.1e-08". */
+/* Variables within rounding of a mark (the original, a bound) are put on it: "0", not
+ * "1.1e-08". */
 static void put_on_marks(mt_nlp_engine *e, mt_nlp_point *p)
 {
     const mt_nlp *const q = e->nlp;

@@ -5,10 +5,10 @@
  *
  *     g_F = C_F^T lambda + z_F,   z_F = 0 at a KKT point (Karush 1939, Kuhn and Tucker 1951),
  *
- * lambda by least squares from a pivoted QR of C_F^T with unit columns, so that its rank does not
- * depend on the scale of a constraint. lambda >= 0 on inequalities; the multipliers z of the bounds
- * are >= 0 at lower and <= 0 at upper ones. A candidate whose multiplier has the wrong sign is not
- * active: the worst is dropped, one at a time, until all are right.
+ * lambda by least squares from a pivoted QR of C_F^T with unit columns, so that its rank does
+ * not depend on the scale of a constraint. lambda >= 0 on inequalities; the multipliers z of
+ * the bounds are >= 0 at lower and <= 0 at upper ones. A candidate whose multiplier has the
+ * wrong sign is not active: the worst is dropped, one at a time, until all are right.
  */
 #include "nlp/nlp_priv.h"
 
@@ -18,16 +18,19 @@
 
 /* Candidates: within this distance (relative to the width) of a bound ... */
 static const double BOUND_NEAR = 1e-8;
-/* ... or an inequality of at most this value (or ten tolerances): SLSQP stops about so far away. */
+/* ... or an inequality of at most this value (or ten tolerances): SLSQP stops about so far
+ * away. */
 static const double IN_NEAR = 1e-6;
 static const double IN_NEAR_TOLS = 10;
-/* Rank of the unit columns: double precision halves its digits where the Jacobian turns singular. */
+/* Rank of the unit columns: double precision halves its digits where the Jacobian turns
+ * singular. */
 static const double RANK_TOL = 1e-8;
 /* Slopes that differ by less, relatively, are the same. */
 static const double TWIN = 1e-9;
 /* A wrong sign below this part of the gradient is rounding. */
 static const double SIGN_TOL = 1e-9;
-/* Gradients below this part of the largest one met are not told from zero by their direction. */
+/* Gradients below this part of the largest one met are not told from zero by their
+ * direction. */
 static const double GRADIENT_FLOOR = 1e-3;
 
 double mt_nlp_row_slope(const mt_nlp_engine *e, const mt_nlp_point *p, int i, int j)
@@ -73,7 +76,8 @@ static bool allocate(mt_nlp_engine *e, mt_arena *mem, mt_nlp_active *a)
     return true;
 }
 
-/* Has a row among those before it the same slopes? Of modes that stay together by symmetry one is enough. */
+/* Has a row among those before it the same slopes? Of modes that stay together by symmetry one
+ * is enough. */
 static bool is_twin(const mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_active *a,
                     int row)
 {

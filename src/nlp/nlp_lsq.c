@@ -4,15 +4,17 @@
  *
  *     minimise 1/2 |R(t)|^2,  lower <= t <= upper
  *
- * A step solves min |R + J s|^2 + mu |s|^2 over the variables that are free (not at a bound which the
- * gradient pushes them through), by QR of the stacked matrix, so that the condition is not squared.
- * Variables that would cross a bound are put on it and the others solved again: near a solution the
- * right bounds are active at once. Towards mu = infinity the step is the projected gradient, a
- * descent direction, so a reduction is always found. With mu -> 0 the steps are Gauss-Newton's of
- * least norm: directions without influence do not move at all. (GSL's multifit has no bounds.)
+ * A step solves min |R + J s|^2 + mu |s|^2 over the variables that are free (not at a bound
+ * which the gradient pushes them through), by QR of the stacked matrix, so that the condition
+ * is not squared. Variables that would cross a bound are put on it and the others solved again:
+ * near a solution the right bounds are active at once. Towards mu = infinity the step is the
+ * projected gradient, a descent direction, so a reduction is always found. With mu -> 0 the
+ * steps are Gauss-Newton's of least norm: directions without influence do not move at all.
+ * (GSL's multifit has no bounds.)
  *
- * It goes on until nothing improves, not until a tolerance is met: at a double root R is quadratic in
- * the error, |R| = 1e-6 leaves an error of 1e-3, and the convergence is only by halves.
+ * It goes on until nothing improves, not until a tolerance is met: at a double root R is
+ * quadratic in the error, |R| = 1e-6 leaves an error of 1e-3, and the convergence is only by
+ * halves.
  */
 #include "nlp/nlp_priv.h"
 
@@ -21,19 +23,22 @@
 #include <string.h>
 
 enum { ITERATIONS = 150, REJECTIONS = 25, REJECTIONS_EXACT = 3, STAGNATIONS = 3 };
-/* mu relative to the largest column norm of J, squared: the first value (the usual choice) and the least (its root is
- * far above the rounding of J, so that rounding never makes a step). */
+/* mu relative to the largest column norm of J, squared: the first value (the usual choice) and
+ * the least (its root is far above the rounding of J, so that rounding never makes a step). */
 static const double MU_FIRST = 1e-3;
 static const double MU_LEAST = 1e-16;
-/* Gain ratios (actual over predicted reduction) for accepting a step and for trusting the model much more. */
+/* Gain ratios (actual over predicted reduction) for accepting a step and for trusting the model
+ * much more. */
 static const double GAIN_ACCEPT = 1e-4;
 static const double GAIN_GOOD = 0.75;
-/* |R| of this size is the rounding of a few operations on numbers near 1 (R is dimensionless). */
+/* |R| of this size is the rounding of a few operations on numbers near 1 (R is
+ * dimensionless). */
 static const double R_EXACT = 16 * DBL_EPSILON;
 /* A relative reduction of |R|^2 smaller than this is rounding. */
 static const double STAGNATION = 64 * DBL_EPSILON;
 
-/* Violations this far below their tolerances need no stubborn search for a further reduction. */
+/* Violations this far below their tolerances need no stubborn search for a further
+ * reduction. */
 static const double VIOLATION_EXACT = 1e-3;
 
 typedef struct lsq {
@@ -98,8 +103,8 @@ static double half_squares(const lsq *w, const mt_nlp_point *p)
     return w->aim == MT_NLP_RESIDUALS ? p->f : 0.5 * p->squares;
 }
 
-/* Free variables: not held, not on a bound that the gradient pushes through. Returns the greatest
- * column norm of J. */
+/* Free variables: not held, not on a bound that the gradient pushes through. Returns the
+ * greatest column norm of J. */
 static double choose_free(lsq *w, const mt_nlp_point *p)
 {
     const mt_nlp *const q = w->e->nlp;

@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * From nearly there to full accuracy: Newton's method on the KKT conditions in the null space of the
- * active constraints (Nocedal and Wright, Numerical Optimization, 2006, section 18.3).
+ * From nearly there to full accuracy: Newton's method on the KKT conditions in the null space
+ * of the active constraints (Nocedal and Wright, Numerical Optimization, 2006, section 18.3).
  *
  *     C p_y = -c              least norm, from the QR of C^T
- *     Z^T H Z p_z = -Z^T g    Z an orthonormal basis of the null space of C (on the free variables)
+ *     Z^T H Z p_z = -Z^T g
+ *         Z an orthonormal basis of the null space of C (on the free variables)
  *     t := t + p_y + Z p_z
  *
- * H is the Hessian of the Lagrangian. Gradients are exact, so Z^T H Z comes from one further gradient
- * per column of Z (forward difference; its error of about 1e-6 costs one digit in six per step, and
- * the fixed point, where Z^T g = 0 and c = 0, does not depend on it). A negative eigenvalue of
- * Z^T H Z at a converged point tells a saddle from a minimum. Where the Hessian is too expensive or a
- * point refuses a value, the step is Gauss-Newton's or there is none: the best point stands.
+ * H is the Hessian of the Lagrangian. Gradients are exact, so Z^T H Z comes from one further
+ * gradient per column of Z (forward difference; its error of about 1e-6 costs one digit in six
+ * per step, and the fixed point, where Z^T g = 0 and c = 0, does not depend on it). A negative
+ * eigenvalue of Z^T H Z at a converged point tells a saddle from a minimum. Where the Hessian
+ * is too expensive or a point refuses a value, the step is Gauss-Newton's or there is none: the
+ * best point stands.
  */
 #include "nlp/nlp_priv.h"
 
@@ -31,13 +33,14 @@ static const double ON_BOUND = 1e-8;
 /* KKT residual and violation that cannot be improved in double precision. */
 static const double KKT_DONE = 1e-13;
 static const double VIOLATION_DONE = 1e-6;
-/* Eigenvalues of the reduced Hessian below this part of the largest are noise of the differences: no step along
- * them; below minus SADDLE of it they are negative. */
+/* Eigenvalues of the reduced Hessian below this part of the largest are noise of the
+ * differences: no step along them; below minus SADDLE of it they are negative. */
 static const double CURVATURE_NOISE = 1e-7;
 static const double SADDLE = 1e-4;
 /* KKT residuals below this are stationary points. */
 static const double STATIONARY = 1e-6;
-/* A step must not be longer than this part of the one before, or the iteration is not converging. */
+/* A step must not be longer than this part of the one before, or the iteration is not
+ * converging. */
 static const double CONTRACTION = 0.7;
 /* Relative rounding allowed in the objective of the better of two points. */
 static const double F_ROUNDING = 1e-9;
@@ -90,7 +93,8 @@ static void lagrangian(const polish *w, const mt_nlp_point *p, double *gl)
     }
 }
 
-/* t := cur + h v on the free variables, backwards where that would leave the bounds; the signed h. */
+/* t := cur + h v on the free variables, backwards where that would leave the bounds; the signed
+ * h. */
 static double offset(polish *w, const double *v)
 {
     const mt_nlp *const q = w->e->nlp;
@@ -214,9 +218,10 @@ static bool normal_step(polish *w)
     return true;
 }
 
-/* Size of the step (largest entry), after variables at an active bound were put on it, and the whole
- * shortened to STEP_MOST and to the first bound met. A variable that stands on a bound and would cross it stays: its multiplier is
- * about zero, and a step shortened to nothing would end the iteration. */
+/* Size of the step (largest entry), after variables at an active bound were put on it, and the
+ * whole shortened to STEP_MOST and to the first bound met. A variable that stands on a bound
+ * and would cross it stays: its multiplier is about zero, and a step shortened to nothing would
+ * end the iteration. */
 static double take_step(polish *w)
 {
     const mt_nlp *const q = w->e->nlp;
@@ -251,8 +256,8 @@ static double rise_allowed(const polish *w, const mt_nlp_point *p)
     return rise;
 }
 
-/* Keep cur as the best where it is: feasible (or the aim has no constraints), not above the limit,
- * and nearer to a KKT point or, equally near, to the constraints. */
+/* Keep cur as the best where it is: feasible (or the aim has no constraints), not above the
+ * limit, and nearer to a KKT point or, equally near, to the constraints. */
 static void keep(polish *w)
 {
     mt_nlp_point *const p = w->cur;
@@ -300,7 +305,8 @@ static void find_saddle(const polish *w, double *saddle)
     }
 }
 
-/* Reduced Hessian and its eigenvectors; false where there is none (the normal step alone remains). */
+/* Reduced Hessian and its eigenvectors; false where there is none (the normal step alone
+ * remains). */
 static bool curvature(polish *w)
 {
     if (w->nz == 0) {

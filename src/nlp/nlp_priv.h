@@ -9,8 +9,9 @@
 
 /*
  * The inside of the search engine. A point is a design with everything the callback said there;
- * an engine owns the problem, the budget and the scratch memory. Every array over variables has all
- * n of them; `held` marks those that must not move (fixed by their bounds, or frozen for a while).
+ * an engine owns the problem, the budget and the scratch memory. Every array over variables has
+ * all n of them; `held` marks those that must not move (fixed by their bounds, or frozen for a
+ * while).
  */
 typedef struct mt_nlp_point {
     double *t;  /* [n] */
@@ -38,8 +39,8 @@ typedef struct mt_nlp_engine {
     int n_free;     /* variables with lower < upper */
     double *origin; /* [n] clamped */
     bool *held;     /* [n] */
-    /* what the constraints fall short of at a compromise ([n_eq], [n_in]): subtracted from their
-     * values while its change is minimised; NULL otherwise */
+    /* what the constraints fall short of at a compromise ([n_eq], [n_in]): subtracted from
+     * their values while its change is minimised; NULL otherwise */
     const double *eq_shift;
     const double *in_shift;
     double eq_tol;   /* largest tolerance of an equality, 0 without */
@@ -80,8 +81,8 @@ typedef struct mt_nlp_active {
     int *free; /* [n_free] variables neither held nor at an active bound */
     int *side; /* [n] -1 lower, +1 upper bound active, 0 not (held variables: 0) */
     int k;
-    int *
-        row; /* [k] i < n_eq: equality i, else inequality i - n_eq, the `next` ones behind the others */
+    /* [k] i < n_eq: equality i, else inequality i - n_eq, the `next` ones behind the others */
+    int *row;
     double *scale;  /* [k] norm of the row on the free variables (1 for a zero row) */
     double *lambda; /* [k] */
     double *z;      /* [n] aim's gradient minus sum lambda_i grad c_i, all variables */
@@ -98,12 +99,13 @@ void mt_nlp_engine_free(mt_nlp_engine *e);
 void mt_nlp_end(mt_nlp_engine *e, mt_status rc);
 /* m x n doubles in mem, zeroed; NULL where memory is out (the engine is ended then). */
 double *mt_nlp_f64(mt_nlp_engine *e, mt_arena *mem, size_t m, size_t n);
-/* A point in mem with room for everything; NULL where memory is out (the engine is ended then). */
+/* A point in mem with room for everything; NULL where memory is out (the engine is ended
+ * then). */
 mt_nlp_point *mt_nlp_point_new(mt_nlp_engine *e, mt_arena *mem);
 void mt_nlp_point_copy(const mt_nlp_engine *e, mt_nlp_point *to, const mt_nlp_point *from);
 void mt_nlp_point_swap(mt_nlp_point **a, mt_nlp_point **b);
-/* Evaluate at t (clamped to the bounds; may be p->t). False: no finite value here, or the search
- * has ended (e->ended); p is then unusable. One call of the callback, no heap. */
+/* Evaluate at t (clamped to the bounds; may be p->t). False: no finite value here, or the
+ * search has ended (e->ended); p is then unusable. One call of the callback, no heap. */
 bool mt_nlp_evaluate(mt_nlp_engine *e, const double *t, bool with_gradient, mt_nlp_point *p);
 /* t within the bounds; what is on a bound or at the origin to rounding is put on it. */
 double mt_nlp_clamp(const mt_nlp_engine *e, int j, double t);
@@ -115,26 +117,28 @@ double mt_nlp_distance(const mt_nlp_engine *e, const mt_nlp_point *a, const mt_n
 /* Gradient of what `aim` minimises (squares and residuals with the factor 1/2), g[n]. */
 void mt_nlp_gradient(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim, double *g);
 
-/* nlp.c: objective under the constraints from p, the equalities reduced to rows. p: where it ends. Again from there while it is
- * no minimum, and never for the worse. */
+/* nlp.c: objective under the constraints from p, the equalities reduced to rows. p: where it
+ * ends. Again from there while it is no minimum, and never for the worse. */
 void mt_nlp_minimise(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p);
 
 /* nlp_judge.c: room for n ends more; false: out of memory. */
 bool mt_nlp_ends_grow(mt_nlp_engine *e, mt_nlp_ends *all, int n);
-/* Isolated roots, *once: those that one start only ended at; 0 where the problem has none, or a curve of solutions. */
+/* Isolated roots, *once: those that one start only ended at; 0 where the problem has none, or a
+ * curve of solutions. */
 int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_ends *all, int *once);
 /* The ends as a ranked result in mem. */
 void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_result *out);
 
-/* nlp_starts.c: start k (0: the origin) of `starts`; t column-major n x starts in mem, NULL where
- * memory is out. */
+/* nlp_starts.c: start k (0: the origin) of `starts`; t column-major n x starts in mem, NULL
+ * where memory is out. */
 double *mt_nlp_starts(const mt_nlp_engine *e, int starts, mt_arena *mem);
 
-/* nlp_lsq.c: bounded Levenberg-Marquardt from *p on residuals or violations; *p is where it ends. */
+/* nlp_lsq.c: bounded Levenberg-Marquardt from *p on residuals or violations; *p is where it
+ * ends. */
 void mt_nlp_least_squares(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p);
 
-/* nlp_slsqp.c: one local search from p; the equalities are only those in rows[n_rows]. last: where
- * it ended; p: the best point it met by mt_nlp_better. */
+/* nlp_slsqp.c: one local search from p; the equalities are only those in rows[n_rows]. last:
+ * where it ended; p: the best point it met by mt_nlp_better. */
 void mt_nlp_slsqp(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p,
                   mt_nlp_point *last);
 

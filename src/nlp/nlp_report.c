@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From a point to the record of a solution: bounds met, multipliers, KKT residual. No evaluation. */
+/* From a point to the record of a solution: bounds met, multipliers, KKT residual. No
+ * evaluation. */
 #include "nlp/nlp_priv.h"
 
 #include <math.h>
@@ -7,7 +8,8 @@
 
 /* A variable this near to its bound, relative to the width, is on it. */
 static const double ON_BOUND = 1e-8;
-/* A multiplier takes part in a dependence of the gradients where its coefficient exceeds this. */
+/* A multiplier takes part in a dependence of the gradients where its coefficient exceeds
+ * this. */
 static const double DEPENDENT = 1e-6;
 
 static bool allocate(mt_nlp_engine *e, mt_arena *mem, mt_nlp_solution *s)

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Is a solution a double root, or a point on a curve of solutions? Both have weak directions v,
- * |C v| <= sqrt(tolerance) in every active constraint C t = 0: a step of sqrt(tolerance) along v
- * is not seen. More of them than there are variables without a constraint decide nothing yet: step
- * h = 10 sqrt(tolerance) along v and go back to the constraints (least squares, steps of least norm).
+ * |C v| <= sqrt(tolerance) in every active constraint C t = 0: a step of sqrt(tolerance) along
+ * v is not seen. More of them than there are variables without a constraint decide nothing yet:
+ * step h = 10 sqrt(tolerance) along v and go back to the constraints (least squares, steps of
+ * least norm).
  *
  *     stays away:                     a curve of solutions
  *     returns, and |C v| grew with h: a double root (the constraints are quadratic along v)
@@ -18,8 +19,8 @@ enum { PROBES_MOST = 8 };
 static const double PROBE_STEPS = 10;  /* h in units of sqrt(tolerance), a mark well above it */
 static const double PROBE_MOST = 0.05; /* and at most this (t is a logarithm: 5 percent) */
 static const double GROWTH = 3;        /* of |C v| along v that means quadratic */
-static const double ROWS_RANK_TOL =
-    1e-6; /* gradients of two equalities are one below this angle */
+/* gradients of two equalities are one below this angle */
+static const double ROWS_RANK_TOL = 1e-6;
 
 /* max over the active rows of |C_i v| / sqrt(tol_i) at p. */
 static double slope_along(const mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_active *a,
@@ -104,7 +105,8 @@ static void probe(mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_active *
     w->singular = w->singular || (!stays && quadratic);
 }
 
-/* Independent equalities, by pivoted QR of their gradients (unit length) on the variables not held. */
+/* Independent equalities, by pivoted QR of their gradients (unit length) on the variables not
+ * held. */
 static mt_status independent_rows(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem,
                                   mt_nlp_weakness *w)
 {

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The only door to NLopt: SLSQP with exact gradients. Nothing it returns is believed. Every point it
- * asks about is evaluated once (objective and constraints are asked for separately at the same t) and
- * kept when it is better than all before. It never sees a value that is not finite: such a point
- * gets the last finite values, and the run is stopped and begun again from the best point in a box
- * half as wide as the failing step; the box widens again while the runs in it succeed.
+ * The only door to NLopt: SLSQP with exact gradients. Nothing it returns is believed. Every
+ * point it asks about is evaluated once (objective and constraints are asked for separately at
+ * the same t) and kept when it is better than all before. It never sees a value that is not
+ * finite: such a point gets the last finite values, and the run is stopped and begun again from
+ * the best point in a box half as wide as the failing step; the box widens again while the runs
+ * in it succeed.
  */
 #include "nlp/nlp_priv.h"
 
@@ -18,7 +19,8 @@
 #include "base/format.h"
 #include "nlp/libraries.h"
 
-/* NLopt (2.7.1, nlopt_vsprintf) ends the process where it has no memory for the sentence that goes with NLOPT_FAILURE: that there is some is known when a run begins. */
+/* NLopt (2.7.1, nlopt_vsprintf) ends the process where it has no memory for the sentence that
+ * goes with NLOPT_FAILURE: that there is some is known when a run begins. */
 enum { MESSAGE_ROOM = 1024 };
 enum { EVALS_BASE = 200, EVALS_PER_VARIABLE = 20, RESTARTS = 12 };
 /* Where SLSQP may stop: what is left, our Newton iteration does in a few steps. */
@@ -112,7 +114,8 @@ static void inequalities(unsigned int m, double *c, unsigned int n, const double
     }
 }
 
-/* What its verdicts mean to us. Where it came to rest, or gave up in its own arithmetic (NLOPT_ROUNDOFF_LIMITED: a singular subproblem; NLOPT_FAILURE: linearised constraints that
+/* What its verdicts mean to us. Where it came to rest, or gave up in its own arithmetic
+ * (NLOPT_ROUNDOFF_LIMITED: a singular subproblem; NLOPT_FAILURE: linearised constraints that
  * contradict each other), the best point it has shown counts, which is judged elsewhere. */
 static mt_status status_of(nlopt_result verdict)
 {
@@ -170,8 +173,8 @@ static mt_status set_up(slsqp *w)
     return status_of(nlopt_set_maxeval(w->opt, left < most ? (int)left + 1 : most));
 }
 
-/* One run from cur in the box [centre - radius, centre + radius] within the bounds. False: it met
- * a point without value, or could not be started. */
+/* One run from cur in the box [centre - radius, centre + radius] within the bounds. False: it
+ * met a point without value, or could not be started. */
 static bool run_once(slsqp *w, double radius)
 {
     const mt_nlp *const q = w->e->nlp;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Where the local searches begin: the original design, then a low-discrepancy sequence over the
- * bounds, turned by a shift modulo 1 that depends on the seed (Cranley and Patterson 1976; seed 0 and 1: the
- * sequence as it is). GSL's Sobol generator knows 40 dimensions and is silent beyond; its reverse
- * Halton knows 1229; past that, pseudo-random numbers are as good.
+ * bounds, turned by a shift modulo 1 that depends on the seed (Cranley and Patterson 1976; seed
+ * 0 and 1: the sequence as it is). GSL's Sobol generator knows 40 dimensions and is silent
+ * beyond; its reverse Halton knows 1229; past that, pseudo-random numbers are as good.
  */
 #include "nlp/nlp_priv.h"
 

@@ -1,17 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Directions of t-space that the problem does not see. Candidates come from the Jacobian at the
- * solution, rows divided by tolerances, columns multiplied by the widths of the bounds, so that an
- * entry is the change, in tolerances, of crossing the bounds: first single variables (an engineer
- * reads those), then the small right singular vectors of the remaining columns. A Jacobian is a statement
- * about one point, so every candidate d is confirmed by evaluating across the bounds: a double root, whose Jacobian is
- * singular too, fails there. The longest way across the box along d is
+ * solution, rows divided by tolerances, columns multiplied by the widths of the bounds, so that
+ * an entry is the change, in tolerances, of crossing the bounds: first single variables (an
+ * engineer reads those), then the small right singular vectors of the remaining columns. A
+ * Jacobian is a statement about one point, so every candidate d is confirmed by evaluating
+ * across the bounds: a double root, whose Jacobian is singular too, fails there. The longest
+ * way across the box along d is
  *
  *     L = min_j (upper_j - lower_j) / |d_j|,
  *
- * and through a corner there may be none at all: nothing would change because nothing moves. A solution without room along d (a
- * millionth of L; rounding is no room) stands where it does by its bounds, and d is none. Else d is followed from the solution and, since
- * its room may be short, from points with at least L/4 either way: the solution, the origin and the middle, each moved that far inside.
+ * and through a corner there may be none at all: nothing would change because nothing moves. A
+ * solution without room along d (a millionth of L; rounding is no room) stands where it does by
+ * its bounds, and d is none. Else d is followed from the solution and, since its room may be
+ * short, from points with at least L/4 either way: the solution, the origin and the middle,
+ * each moved that far inside.
  */
 #include "nlp/nlp_priv.h"
 
@@ -19,12 +22,13 @@
 #include <math.h>
 #include <string.h>
 
-/* Residuals are dimensionless (ln of ratios, differences of unit vectors); they carry no tolerance: the usual one of
- * a frequency, a relative 1e-6, is used. The same for an objective, relative to its size. */
+/* Residuals are dimensionless (ln of ratios, differences of unit vectors); they carry no
+ * tolerance: the usual one of a frequency, a relative 1e-6, is used. The same for an objective,
+ * relative to its size. */
 static const double RESIDUAL_TOL = 1e-6;
 static const double F_TOL_REL = 1e-6;
-/* Linear change (in tolerances) of crossing the bounds up to which a direction is a candidate: more
- * than 1, since the middle decides, not the slope at one end. */
+/* Linear change (in tolerances) of crossing the bounds up to which a direction is a candidate:
+ * more than 1, since the middle decides, not the slope at one end. */
 static const double CANDIDATE = 4;
 /* A candidate is left out when so little of it is new beside those already found. */
 static const double NEW_PART = 0.1;
@@ -32,7 +36,8 @@ static const double NEW_PART = 0.1;
 static const double ENTRY_NOISE = 1e-9;
 /* Marks from one end of the crossing to the other, ends included. */
 enum { MARKS = 3 };
-/* Points to cross from: the solution where it stands; it, the origin and the middle of the bounds, moved inside. */
+/* Points to cross from: the solution where it stands; it, the origin and the middle of the
+ * bounds, moved inside. */
 enum { BASES = 4 };
 /* Room either way that a crossing needs, in units of the longest way across the box. */
 static const double ROOM = 0.25;
@@ -149,8 +154,8 @@ static void make_room(const mt_nlp_engine *e, const double *base, const double *
     }
 }
 
-/* Greatest change, in tolerances, along x->from + s d over all s within the bounds; infinity where a
- * point has no value. */
+/* Greatest change, in tolerances, along x->from + s d over all s within the bounds; infinity
+ * where a point has no value. */
 static double effect(crossing *x, const double *d)
 {
     mt_nlp_engine *const e = x->e;
@@ -232,7 +237,8 @@ static void confirm(crossing *x, const mt_nlp_point *solution, mt_nlp_result *ou
     }
 }
 
-/* Scaled Jacobian of the columns that are not yet undetermined; single variables are tried here. */
+/* Scaled Jacobian of the columns that are not yet undetermined; single variables are tried
+ * here. */
 static int single_variables(crossing *x, const mt_nlp_point *p, mt_nlp_result *out, double *A,
                             int *column)
 {
@@ -360,9 +366,10 @@ static bool is_single(const mt_nlp_engine *e, const mt_nlp_result *u, int j)
     return false;
 }
 
-/* Is a point as good as before? Nothing may be paid for an undetermined direction: not the demands, not the objective beyond
- * what counts as unchanged, not that the point is a local solution. A compromise may be farther from the demands by the tolerances
- * together: that much the directions may do by what they are. */
+/* Is a point as good as before? Nothing may be paid for an undetermined direction: not the
+ * demands, not the objective beyond what counts as unchanged, not that the point is a local
+ * solution. A compromise may be farther from the demands by the tolerances together: that much
+ * the directions may do by what they are. */
 static bool as_good(const mt_nlp_engine *e, const mt_nlp_point *after,
                     const mt_nlp_point *before)
 {
@@ -376,8 +383,8 @@ static bool as_good(const mt_nlp_engine *e, const mt_nlp_point *after,
     return mt_nlp_feasible(after) && after->f <= f_most && stationary;
 }
 
-/* t := p pulled back to the origin along the directions, as far as the bounds let it; single variables exactly. True: it
- * differs. */
+/* t := p pulled back to the origin along the directions, as far as the bounds let it; single
+ * variables exactly. True: it differs. */
 static bool pulled(const mt_nlp_engine *e, const mt_nlp_result *u, const mt_nlp_point *p,
                    double *off, double *t)
 {
@@ -399,12 +406,12 @@ static bool pulled(const mt_nlp_engine *e, const mt_nlp_result *u, const mt_nlp_
     return moves;
 }
 
-/* The effects, each below a tolerance, may add up: meet the demands exactly again, at least objective, the single
- * variables standing still. */
+/* The effects, each below a tolerance, may add up: meet the demands exactly again, at least
+ * objective, the single variables standing still. */
 static void restore(mt_nlp_engine *e, const mt_nlp_result *u, bool feasible, mt_nlp_point *p)
 {
-    const bool isolated =
-        feasible && !(p->kkt < HUGE_VAL); /* a root: no freedom to minimise in */
+    /* a root: no freedom to minimise in */
+    const bool isolated = feasible && !(p->kkt < HUGE_VAL);
     bool *const held = mt_arena_alloc(&e->scratch, (size_t)e->n, sizeof *held);
     if (held == NULL) {
         mt_nlp_end(e, mt_fail_memory(e->err));

@@ -5,7 +5,8 @@
  *     limits:   in = ln(f / f_least), ln(f_most / f)
  *     shape:    r  = sqrt(w) (sign u - s_ref),     u = s / |s|, sign = sign(s . s_ref)
  *     mac:      in = mac - at_least, at_most - mac
- *     limit:    in = (g - at_least) / |at_least|, ..., eq = (g - equals) / |equals|  (divided by 1 where the number is 0)
+ *     limit:    in = (g - at_least) / |at_least|, ..., eq = (g - equals) / |equals|
+ *         (divided by 1 where the number is 0)
  */
 #include <math.h>
 #include <string.h>
@@ -44,7 +45,8 @@ mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, doubl
     for (int k = first; k < first + size; k++) {
         MT_TRY(mt_analysis_dlambda_raw(a, k, p->work, err));
         mt_axpy(p->n, 1.0, p->work, out);
-        /* vibrations of 0 Hz share their cluster with rigid-body modes, which have no slope and add nothing to the sum */
+        /* vibrations of 0 Hz share their cluster with rigid-body modes, which have no slope and
+         * add nothing to the sum */
         vibrating += modes->kind[k] == MT_MODE_FLEXIBLE ? 1 : 0;
     }
     for (int i = 0; i < p->n && vibrating > 0; i++) {
@@ -58,8 +60,8 @@ static void put(const mt_problem *p, double *matrix, int rows, int row, double f
 {
     const int n = p->n;
     if (gradient != NULL && p->n_t > n && matrix != p->dr) {
-        matrix[row + ((ptrdiff_t)n * rows)] =
-            0.0; /* the clearance enters no goal but the bands */
+        /* the clearance enters no goal but the bands */
+        matrix[row + ((ptrdiff_t)n * rows)] = 0.0;
     }
     for (int i = 0; i < n && gradient != NULL; i++) {
         matrix[row + ((ptrdiff_t)i * rows)] = factor * gradient[i];

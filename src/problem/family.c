@@ -53,7 +53,8 @@ static void name_drive(const mt_problem *p, mt_family *f)
     }
 }
 
-/* Views that are the same mechanism as `first`, which is in no family yet. A view without a drive belongs to the family of the first driven one that it is like. */
+/* Views that are the same mechanism as `first`, which is in no family yet. A view without a
+ * drive belongs to the family of the first driven one that it is like. */
 static mt_status gather(mt_problem *p, int first, mt_family *f, mt_err *err)
 {
     f->view = mt_arena_int(&p->mem, (size_t)p->n_views);
@@ -298,8 +299,7 @@ static void intersect(const mt_problem *p, const mt_clear *a, const mt_clear *b,
                          .lower_hz = fmax(x->lower_hz, y->lower_hz),
                          .upper_hz = fmin(x->upper_hz, y->upper_hz),
                          .label = x->label},
-                .tolerance = fmin(a->tolerance, b->tolerance)
-            };
+                .tolerance = fmin(a->tolerance, b->tolerance)};
             put(list, n, &fresh);
         }
     }

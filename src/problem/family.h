@@ -5,9 +5,13 @@
 #include "problem/problem.h"
 
 /*
- * Configurations that are one mechanism in several positions of one driven joint (mechanics/system.h: mt_system_same_drive) are a family. Frequencies are continuous along the drive, so
- * between two positions that differ in the number of modes below a band a mode passes through it. Two bands of two views of a family that share frequencies are tied: a design has the same number of
- * modes below both. Where positions are named on both sides, what is forbidden between them is what some position on the one side and some position on the other side both forbid.
+ * Configurations that are one mechanism in several positions of one driven joint
+ * (mechanics/system.h: mt_system_same_drive) are a family. Frequencies are continuous along the
+ * drive, so between two positions that differ in the number of modes below a band a mode passes
+ * through it. Two bands of two views of a family that share frequencies are tied: a design has
+ * the same number of modes below both. Where positions are named on both sides, what is
+ * forbidden between them is what some position on the one side and some position on the other
+ * side both forbid.
  */
 struct mt_family {
     int n; /* views, at least two */
@@ -18,11 +22,12 @@ struct mt_family {
     bool fixed;         /* the positions do not depend on the design */
     int configuration;  /* of a view with a drive */
     bool banded;        /* at least two views keep clear of bands */
-    mt_analysis
-        *driven; /* owned: the position is the last input; made when first needed (motion.h) */
+    /* owned: the position is the last input; made when first needed (motion.h) */
+    mt_analysis *driven;
 };
 
-/* One more position of a family where the bands between its positions are kept: a cutting plane of a search. */
+/* One more position of a family where the bands between its positions are kept: a cutting plane
+ * of a search. */
 typedef struct mt_cut {
     int family;
     double position;
@@ -39,17 +44,22 @@ double mt_family_position(const mt_problem *p, const mt_family *f, int k);
 int mt_family_of(const mt_problem *p, int view);
 /* Have tied bands the same number of modes below them? */
 bool mt_ties_agree(const mt_problem *p, const int *below);
-/* below made so that they do: the least (most: the greatest) number of each set of tied bands. */
+/* below made so that they do: the least (most: the greatest) number of each set of tied
+ * bands. */
 void mt_ties_settle(const mt_problem *p, bool most, int *below);
 /*
- * The best that the bands tied to band `tie` can have: *below the number of modes below all of them that leaves the most room, the room ln(edge / f), ln(f / edge) of the mode that comes
- * nearest to an edge with its margin, or is beyond it most (negative). Of a band that is tied to no other this is the room of its own modes. NaN: unstable. After the views have been solved.
+ * The best that the bands tied to band `tie` can have: *below the number of modes below all of
+ * them that leaves the most room, the room ln(edge / f), ln(f / edge) of the mode that comes
+ * nearest to an edge with its margin, or is beyond it most (negative). Of a band that is tied
+ * to no other this is the room of its own modes. NaN: unstable. After the views have been
+ * solved.
  */
 double mt_tie_room(const mt_problem *p, int tie, int *below);
 /* The least of all ties; below[n_bands] (may be NULL) as above. */
 double mt_ties_room(const mt_problem *p, int *below);
 
-/* How far the bands are from an assignment: -room (ln) of the worst, 0 where all have theirs. NaN: unstable. */
+/* How far the bands are from an assignment: -room (ln) of the worst, 0 where all have theirs.
+ * NaN: unstable. */
 double mt_ties_violation(const mt_problem *p, const int *below);
 
 /* A band that is forbidden between two neighbouring positions. */
@@ -58,7 +68,8 @@ typedef struct mt_way_band {
     mt_band band; /* its label: that of the left position */
     double tolerance;
 } mt_way_band;
-/* What is forbidden at positions from left to right (a < b: no position of the family between them): list[*n] in mem, ascending. After the views have been solved. */
+/* What is forbidden at positions from left to right (a < b: no position of the family between
+ * them): list[*n] in mem, ascending. After the views have been solved. */
 mt_status mt_family_bands(const mt_problem *p, const mt_family *f, double left, double right,
                           mt_arena *mem, mt_way_band **list, int *n, mt_err *err);
 

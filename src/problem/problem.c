@@ -21,9 +21,10 @@ void mt_problem_delete(mt_problem *p)
     }
 }
 
-/* Values of a parameter below this part of the original are next to nothing: there t is linear in x, so that 0 itself is
- * within reach (t = ln(floor) - 1). It is no smaller because the slope of a goal over t falls with it, and a search must
- * still feel that slope to arrive at 0. */
+/* Values of a parameter below this part of the original are next to nothing: there t is linear
+ * in x, so that 0 itself is within reach (t = ln(floor) - 1). It is no smaller because the
+ * slope of a goal over t falls with it, and a search must still feel that slope to arrive at
+ * 0. */
 static const double FLOOR_PART = 1e-3;
 
 double mt_problem_t(const mt_problem *p, int i, double x)
@@ -51,8 +52,8 @@ static bool catalogue_value(const mt_problem *p, int i, double t, double *x)
 {
     const mt_variable *const v = &p->study->variables[i];
     int low = 0;
-    int high =
-        v->n_catalogue; /* the first value with a coordinate of at least t is in low .. high */
+    /* the first value with a coordinate of at least t is in low .. high */
+    int high = v->n_catalogue;
     while (low < high) {
         const int middle = low + ((high - low) / 2);
         if (mt_problem_t(p, i, v->catalogue[middle]) < t) {
@@ -72,7 +73,8 @@ void mt_problem_x(const mt_problem *p, const double *t, double *x)
 {
     for (int i = 0; i < p->n; i++) {
         const mt_variable *const v = &p->study->variables[i];
-        /* the original value first: it may lie outside the bounds, where the baseline is meant */
+        /* the original value first: it may lie outside the bounds, where the baseline is
+         * meant */
         if (t[i] == p->origin_t[i]) {
             x[i] = p->original[i];
         } else if (catalogue_value(p, i, t[i], &x[i])) {

@@ -9,21 +9,28 @@
 #include "study/study.h"
 
 /*
- * A study compiled for evaluation: variables as scaled coordinates t, one analysis per configuration that a goal names, goals as a flat list of demands (one per goal and
+ * A study compiled for evaluation: variables as scaled coordinates t, one analysis per
+ * configuration that a goal names, goals as a flat list of demands (one per goal and
  * configuration), the objectives. One problem, one worker.
  *
- * Coordinates: t = ln x where the lower bound and the original value are positive. A lower bound of 0 keeps the logarithm down to a floor, a thousandth of the original,
+ * Coordinates: t = ln x where the lower bound and the original value are positive. A lower
+ * bound of 0 keeps the logarithm down to a floor, a thousandth of the original,
  *     t = ln x                              x >= floor
- *     t = ln(floor) + (x - floor)/floor     x <  floor      (continuous with its slope; dx/dt = max(x, floor))
- * Where the original is 0 or negative, the bounds reach below 0, or the study gives a scale, t = x / scale. The change of a redesign is then
+ *     t = ln(floor) + (x - floor)/floor     x <  floor
+ *         (continuous with its slope; dx/dt = max(x, floor))
+ * Where the original is 0 or negative, the bounds reach below 0, or the study gives a scale, t
+ * = x / scale. The change of a redesign is then
  *     sqrt(sum w_i (t_i - t_i(original))^2).
  *
- * Objectives in order: `stage` is the one that is minimised; the ones before it are held by one inequality each,
+ * Objectives in order: `stage` is the one that is minimised; the ones before it are held by one
+ * inequality each,
  *     (limit_j - f_j) / unit_j >= 0,
- * but a misfit by one equality for each residual, r - r_held = 0: at an exact fit the slope of |r|^2 vanishes and an inequality would hold nothing.
+ * but a misfit by one equality for each residual, r - r_held = 0: at an exact fit the slope of
+ * |r|^2 vanishes and an inequality would hold nothing.
  *
- * Files: problem.c (life, coordinates, the face to the search), problem_demands.c (goals to demands), problem_aims.c (expressions, objectives), problem_eval.c (one evaluation),
- * demand.c (value and gradient of one demand).
+ * Files: problem.c (life, coordinates, the face to the search), problem_demands.c (goals to
+ * demands), problem_aims.c (expressions, objectives), problem_eval.c (one evaluation), demand.c
+ * (value and gradient of one demand).
  */
 
 /* A configuration that goals speak of. */
@@ -38,8 +45,8 @@ typedef struct mt_view {
     bool needs_vectors;   /* a goal needs shapes even where no gradient is asked for */
     bool tracked;         /* track belongs to the last solve */
     bool solved;          /* the last solve succeeded */
-    const struct mt_cut
-        *cut; /* NULL: as the configuration says; else at this position (family.h) */
+    /* NULL: as the configuration says; else at this position (family.h) */
+    const struct mt_cut *cut;
 } mt_view;
 
 typedef struct mt_family mt_family; /* positions of one drive (family.h) */
@@ -63,8 +70,10 @@ typedef struct mt_demand {
 } mt_demand;
 
 /*
- * The bands that one configuration keeps clear of: all avoid goals that name it, united. A gap assignment says how many vibration modes lie below each band; with one, the
- * cluster of modes on each side of each band is constrained (in = ln(lower / f), ln(f / upper)), which is smooth where "no mode inside" is not. Without one, no rows.
+ * The bands that one configuration keeps clear of: all avoid goals that name it, united. A gap
+ * assignment says how many vibration modes lie below each band; with one, the cluster of modes
+ * on each side of each band is constrained (in = ln(lower / f), ln(f / upper)), which is smooth
+ * where "no mode inside" is not. Without one, no rows.
  */
 typedef struct mt_clear {
     int view;
@@ -77,7 +86,8 @@ typedef struct mt_clear {
     double tolerance;
 } mt_clear;
 
-/* An objective. Its value f is what the search minimises: 1/2 change^2, kg, the expression's value, 1/2 |r|^2. */
+/* An objective. Its value f is what the search minimises: 1/2 change^2, kg, the expression's
+ * value, 1/2 |r|^2. */
 typedef struct mt_aim {
     mt_objective_type type;
     const mt_objective *objective; /* NULL: none */
@@ -110,25 +120,29 @@ typedef struct mt_problem {
     int *below;  /* [n_bands] the assignment that is searched; NULL: none */
     int n_families;
     mt_family *families;
-    int *
-        tie; /* [n_bands] the first of the bands that have the same number of modes below them (family.h); but for cuts */
-    double
-        motion_room; /* of a design that is described: the least between the positions of its drives; HUGE_VAL: none */
-    bool
-        clearance; /* t has one more entry, the least clearance ln(...) that is made greatest */
-    int n_t;       /* n, or n + 1 */
+    /* [n_bands] the first of the bands that have the same number of modes below them
+     * (family.h); but for cuts */
+    int *tie;
+    /* of a design that is described: the least between the positions of its drives; HUGE_VAL:
+     * none */
+    double motion_room;
+    /* t has one more entry, the least clearance ln(...) that is made greatest */
+    bool clearance;
+    int n_t; /* n, or n + 1 */
     int n_eq;
     int n_in;   /* of the goals, their corners last; held objectives follow */
     int n_next; /* rows that follow from those of limits (problem_next.c) */
     struct mt_next *next;
-    int *next_of;      /* [n_next] */
-    int n_corner_rows; /* of them at corners of the tolerances, where these are samples (robust.h) */
+    int *next_of; /* [n_next] */
+    /* of them at corners of the tolerances, where these are samples (robust.h) */
+    int n_corner_rows;
     int n_res;
     double *eq_tol;     /* [n_eq + n_res] */
     double *in_tol;     /* [n_in + n_aims] */
     double weights;     /* sum of the weights of the demands that are residuals */
     mt_program program; /* expressions: limits, objectives, published quantities */
-    int n_searched; /* nodes of it that the search needs: those of published quantities follow */
+    /* nodes of it that the search needs: those of published quantities follow */
+    int n_searched;
     mt_node *published; /* [study->n_published] */
     double *value;      /* [program.count] */
     double *grad;       /* program.count rows of n, after an evaluation with gradient */
@@ -145,7 +159,8 @@ typedef struct mt_problem {
     double *dshape; /* max ns x n */
     long evaluations;
     long proof_boxes; /* budget of a proof; 0: as certify.h has it */
-    int starts; /* local solves of a search where the study does not say; 0: by the number of variables */
+    /* local solves of a search where the study does not say; 0: by the number of variables */
+    int starts;
     struct mt_robust *robust; /* variables with a tolerance (robust.h); NULL: none */
     const double *hint; /* [n + 1] coordinates of one more design to start from; NULL: none */
     void (*progress)(void *context, const char *text); /* NULL, or called now and then */
@@ -153,9 +168,10 @@ typedef struct mt_problem {
 } mt_problem;
 
 /*
- * Compile. Solves every view once at the original design; a configuration that is unstable there is no failure, its goals are unmet.
- * Fails: MT_E_INPUT with the goal's address in the text (a mode that is not there, no common sensor; what this version does not search), numerical failures at the
- * original design (no equilibrium, ...), MT_E_MEMORY.
+ * Compile. Solves every view once at the original design; a configuration that is unstable
+ * there is no failure, its goals are unmet. Fails: MT_E_INPUT with the goal's address in the
+ * text (a mode that is not there, no common sensor; what this version does not search),
+ * numerical failures at the original design (no equilibrium, ...), MT_E_MEMORY.
  */
 mt_status mt_problem_new(const mt_study *study, mt_reference_cache *references,
                          mt_problem **out, mt_err *err);
@@ -169,11 +185,13 @@ mt_status mt_problem_new_cut(const mt_study *study, mt_reference_cache *referenc
 void mt_problem_delete(mt_problem *p);
 /* Compile and forget: can the study be asked? Fails as mt_problem_new. */
 mt_status mt_problem_try(const mt_study *study, mt_err *err);
-/* Parameter values x[n] of coordinates t[n]: a bound, a value of a catalogue, and the original value come back to the last bit. */
+/* Parameter values x[n] of coordinates t[n]: a bound, a value of a catalogue, and the original
+ * value come back to the last bit. */
 void mt_problem_x(const mt_problem *p, const double *t, double *x);
 /* The coordinate of value x of variable i. */
 double mt_problem_t(const mt_problem *p, int i, double x);
-/* Rows of `in` (of `eq`) and of its derivative in the present stage: goals, then held objectives. */
+/* Rows of `in` (of `eq`) and of its derivative in the present stage: goals, then held
+ * objectives. */
 int mt_problem_rows_in(const mt_problem *p);
 int mt_problem_rows_eq(const mt_problem *p);
 /* dx_i/dt_i at the value x of variable i. */
@@ -185,14 +203,16 @@ mt_nlp mt_problem_nlp(mt_problem *p);
 /* The nlp's callback: context is the problem. Fails: MT_E_INTERRUPTED, and as its parts do. */
 mt_status mt_problem_eval(void *context, const double *t, bool with_gradient,
                           mt_nlp_values *out, mt_err *err);
-/* The first half of an evaluation: parameters, expressions. The views follow with mt_view_solve. */
+/* The first half of an evaluation: parameters, expressions. The views follow with
+ * mt_view_solve. */
 mt_status mt_problem_place(mt_problem *p, const double *t, bool with_gradient, mt_err *err);
 mt_status mt_view_solve(mt_problem *p, mt_view *view, bool with_gradient, mt_err *err);
 /* Arrays of out for the present stage, in mem. */
 mt_status mt_problem_values_init(const mt_problem *p, mt_arena *mem, mt_nlp_values *out,
                                  mt_err *err);
 
-/* An analysis of a configuration at x[n], counted as the study counts (study->counted). *out is the caller's. Fails as mt_analysis_new. */
+/* An analysis of a configuration at x[n], counted as the study counts (study->counted). *out is
+ * the caller's. Fails as mt_analysis_new. */
 mt_status mt_problem_analyse(const mt_problem *p, int configuration, const double *x,
                              mt_analysis **out, mt_err *err);
 /* The same for the configuration of a view, with the view's count (cheaper). */
@@ -202,7 +222,8 @@ mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const double
 int mt_problem_view(const mt_problem *p, int configuration);
 /* The same, made where it is not there yet. */
 mt_status mt_problem_add_view(mt_problem *p, int configuration, int *out, mt_err *err);
-/* *pos: position of a mode (by index, or by place in the view's list of named ones where mode is 0) in the view's modes; -1: there is none, or the configuration is unstable. */
+/* *pos: position of a mode (by index, or by place in the view's list of named ones where mode
+ * is 0) in the view's modes; -1: there is none, or the configuration is unstable. */
 mt_status mt_view_position(mt_problem *p, mt_view *view, int mode, int named, int *pos,
                            mt_err *err);
 /* Vibration modes of a view: as many as any design of the study has. */
@@ -216,10 +237,12 @@ mt_status mt_clear_init(mt_problem *p, const int *below, int n_cuts, const struc
 /* Fill the rows of all clears, after their views have been solved. */
 mt_status mt_clear_eval(mt_problem *p, const double *t, bool with_gradient, mt_nlp_values *out,
                         mt_err *err);
-/* How the modes of an analysis lie: below[bands.n] (may be NULL) modes below the middle of each band; the largest relative way that a mode is inside a band with its margin (0: none is); *worst
- * (may be NULL) its position; NaN where the configuration is unstable. */
+/* How the modes of an analysis lie: below[bands.n] (may be NULL) modes below the middle of each
+ * band; the largest relative way that a mode is inside a band with its margin (0: none is);
+ * *worst (may be NULL) its position; NaN where the configuration is unstable. */
 double mt_clear_violation(const mt_clear *c, const mt_modes *modes, int *below, int *worst);
-/* Which mode and edge does row `row` (0: the first of the bands, behind those of the demands) of a search with an assignment below[n_bands] hold? false: there is no such row. p: the
+/* Which mode and edge does row `row` (0: the first of the bands, behind those of the demands)
+ * of a search with an assignment below[n_bands] hold? false: there is no such row. p: the
  * problem without an assignment. */
 typedef struct mt_clear_row {
     int clear;
@@ -229,10 +252,12 @@ typedef struct mt_clear_row {
 } mt_clear_row;
 bool mt_clear_row_at(const mt_problem *p, const int *below, int row, mt_clear_row *out);
 int mt_clear_row_count(const mt_problem *p, const int *below);
-/* ln of the least ratio that any vibration mode keeps from a band with its margin (what the objective "clearance" makes greatest), after its view has been solved; negative: a mode is
+/* ln of the least ratio that any vibration mode keeps from a band with its margin (what the
+ * objective "clearance" makes greatest), after its view has been solved; negative: a mode is
  * inside; NaN: unstable. */
 double mt_clear_room(const mt_problem *p, const mt_clear *c);
-/* Least clearance of any vibration mode from any band without its margin, in percent of the edge; *band, *pos (may be NULL) say where. */
+/* Least clearance of any vibration mode from any band without its margin, in percent of the
+ * edge; *band, *pos (may be NULL) say where. */
 double mt_clear_least_percent(const mt_clear *c, const mt_modes *modes, int *band, int *pos);
 
 /* problem_demands.c: views, demands and their rows. */
@@ -242,31 +267,40 @@ double mt_problem_tolerance(const mt_goal *g);
 /* Once all rows are counted: tolerances and work space. */
 mt_status mt_problem_init_rows(mt_problem *p, mt_err *err);
 /*
- * demand.c: rows in ln f. A spring that starts from 0 has f = 0 and df/dk infinite there, while d(f^2)/dk is finite: below floor_hz, MT_FREQUENCY_FLOOR of what a mode is compared with, ln f
+ * demand.c: rows in ln f. A spring that starts from 0 has f = 0 and df/dk infinite there, while
+ * d(f^2)/dk is finite: below floor_hz, MT_FREQUENCY_FLOOR of what a mode is compared with, ln f
  * goes on as its tangent in f^2,
  *     ln f_0 + (f^2 / f_0^2 - 1) / 2,
- * which has a value and a slope at 0 Hz, the same sign, and the same derivative at f_0. No goal is met down there, whatever its tolerance.
+ * which has a value and a slope at 0 Hz, the same sign, and the same derivative at f_0. No goal
+ * is met down there, whatever its tolerance.
  */
 #define MT_FREQUENCY_FLOOR 1e-3
-/* A mode at 0 Hz is inside a band that begins there by this much, a factor of 1000 of its upper edge: ln(1 / MT_FREQUENCY_FLOOR). */
+/* A mode at 0 Hz is inside a band that begins there by this much, a factor of 1000 of its upper
+ * edge: ln(1 / MT_FREQUENCY_FLOOR). */
 #define MT_MOST_INSIDE 7.0
-/* ln(f / edge_hz) of the mode at pos, so continued; pos -1: a mode at infinity, MT_MOST_INSIDE above anything and without a slope. */
+/* ln(f / edge_hz) of the mode at pos, so continued; pos -1: a mode at infinity, MT_MOST_INSIDE
+ * above anything and without a slope. */
 double mt_problem_ln_ratio(const mt_modes *modes, int pos, double edge_hz, double floor_hz);
-/* Its slope lambda'/(2 lambda) for all variables, chained to t: out[n]. A repeated mode: the mean of its cluster, which is smooth where the single modes are not. */
+/* Its slope lambda'/(2 lambda) for all variables, chained to t: out[n]. A repeated mode: the
+ * mean of its cluster, which is smooth where the single modes are not. */
 mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, double floor_hz,
                                    double *out, mt_err *err);
-/* Values (and gradients, unless NULL where out holds none) of one demand after its view has been solved; rows as numbered. */
+/* Values (and gradients, unless NULL where out holds none) of one demand after its view has
+ * been solved; rows as numbered. */
 mt_status mt_demand_eval(mt_problem *p, const mt_demand *d, bool with_gradient,
                          mt_nlp_values *out, mt_err *err);
-/* problem_next.c: a limit on a mode holds for all that lie beyond it; where modes cross, those tell the search what comes next. After everything else of the problem. */
+/* problem_next.c: a limit on a mode holds for all that lie beyond it; where modes cross, those
+ * tell the search what comes next. After everything else of the problem. */
 mt_status mt_next_init(mt_problem *p, mt_err *err);
-/* Fill out->next (and out->dnext), unless NULL, after the views and corners have been solved. */
+/* Fill out->next (and out->dnext), unless NULL, after the views and corners have been
+ * solved. */
 mt_status mt_next_eval(mt_problem *p, bool with_gradient, mt_nlp_values *out, mt_err *err);
 /* problem_aims.c: the program of expressions, and the objectives. After the demands. */
 mt_status mt_problem_init_aims(mt_problem *p, mt_err *err);
 /* f of objective k at the last evaluation, gradient[n_t] (may be NULL) likewise. */
 double mt_aim_value(const mt_problem *p, int k, double *gradient);
-/* Hold objective k at f, as well as it can be told from f, from the next stage on; a misfit at the residuals of the last evaluation. */
+/* Hold objective k at f, as well as it can be told from f, from the next stage on; a misfit at
+ * the residuals of the last evaluation. */
 void mt_aim_hold(mt_problem *p, int k, double f);
 /* The rows of the objectives that are held. */
 void mt_aim_hold_rows(mt_problem *p, bool with_gradient, mt_nlp_values *out);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Expressions and objectives. What an objective is worth at a design:
- *     change:      f = 1/2 sum w_i (t_i - t_i(original))^2,    df/dt_i = w_i (t_i - t_i(original))
+ *     change:      f = 1/2 sum w_i (t_i - t_i(original))^2,
+ *         df/dt_i = w_i (t_i - t_i(original))
  *     mass:        f = sum of the masses of the items named
  *     expression:  f = the expression
  *     misfit:      f = 1/2 |r|^2,                              df/dt = dr^T r
@@ -13,11 +14,14 @@
 #include "model/values.h"
 #include "problem/problem.h"
 
-/* An objective is held within this part of its value (of 1 kg or one unit of the expression where it is below that). */
+/* An objective is held within this part of its value (of 1 kg or one unit of the expression
+ * where it is below that). */
 static const double HELD = 1e-6;
-/* The same for the objectives that are half a square, of the root where it is below 1: a change or a misfit of 1e-6 is none to an engineer. */
+/* The same for the objectives that are half a square, of the root where it is below 1: a change
+ * or a misfit of 1e-6 is none to an engineer. */
 static const double HELD_ROOT = 1e-6;
-/* A held objective may leave its limit by this part of what it was given above its optimum: the optimum itself stays well inside. */
+/* A held objective may leave its limit by this part of what it was given above its optimum: the
+ * optimum itself stays well inside. */
 static const double HELD_TOLERANCE = 0.01;
 
 /* Limits, objectives and published quantities as one program of the variables. */

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Bands. Modes are sorted, so a design without a mode inside any band has one gap assignment: how many modes lie below each band. For a given assignment k_b the
- * condition is smooth wherever the modes are simple:
+ * Bands. Modes are sorted, so a design without a mode inside any band has one gap assignment:
+ * how many modes lie below each band. For a given assignment k_b the condition is smooth
+ * wherever the modes are simple:
  *     f_k <= lower_b,   f_(k+1) >= upper_b.
- * Where neighbours change places on the way the next modes on each side take over, so a cluster of them is constrained (their rows follow from the first by the order of the
- * modes; they only tell the search what comes next). With the objective "clearance" every row has to exceed the extra coordinate z, which is made as great as it can be.
+ * Where neighbours change places on the way the next modes on each side take over, so a cluster
+ * of them is constrained (their rows follow from the first by the order of the modes; they only
+ * tell the search what comes next). With the objective "clearance" every row has to exceed the
+ * extra coordinate z, which is made as great as it can be.
  */
 #include <math.h>
 #include <string.h>
@@ -16,7 +19,8 @@
 static const double CLEARANCE_LOWER = -3.0;
 static const double CLEARANCE_UPPER = 3.0;
 
-/* Rows of one band: modes k, k-1, ... below and k+1, k+2, ... above, as many as there are and at most the cluster. */
+/* Rows of one band: modes k, k-1, ... below and k+1, k+2, ... above, as many as there are and
+ * at most the cluster. */
 static int rows_below(const mt_clear *c, int below)
 {
     return below < c->cluster ? below : c->cluster;

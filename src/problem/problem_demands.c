@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From goals to demands: one per goal and configuration, each with a view, a mode, a reference and its rows. */
+/* From goals to demands: one per goal and configuration, each with a view, a mode, a reference
+ * and its rows. */
 #include <math.h>
 
 #include "problem/family.h"
@@ -72,7 +73,8 @@ mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const double
     return MT_OK;
 }
 
-/* Shape of each named mode of the configuration at the original design; of those that are there. The model names a mode by its index at its own design: vibrations of 0 Hz, which only
+/* Shape of each named mode of the configuration at the original design; of those that are
+ * there. The model names a mode by its index at its own design: vibrations of 0 Hz, which only
  * the study counts, have none there. */
 static mt_status name_modes(mt_problem *p, mt_view *view, mt_err *err)
 {
@@ -170,7 +172,8 @@ static mt_status resolve_name(const mt_problem *p, const mt_view *view, mt_deman
                    mt_analysis_configuration(view->analysis), instability(view));
 }
 
-/* An index must be there at some design; where the original one is unstable nothing has an index, and it is enough that there are as many freedoms. */
+/* An index must be there at some design; where the original one is unstable nothing has an
+ * index, and it is enough that there are as many freedoms. */
 static mt_status resolve_index(const mt_view *view, const mt_demand *d, mt_err *err)
 {
     const int most = mt_view_vibrations(view);

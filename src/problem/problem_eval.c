@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One evaluation: parameters, expressions, the modes of every view, every demand, the objective and those that are held. */
+/* One evaluation: parameters, expressions, the modes of every view, every demand, the objective
+ * and those that are held. */
 #include <string.h>
 
 #include "base/format.h"
@@ -7,7 +8,8 @@
 #include "problem/problem.h"
 #include "problem/robust.h"
 
-/* Evaluations between two lines of progress: a tenth of a second or so for a small mechanism. */
+/* Evaluations between two lines of progress: a tenth of a second or so for a small
+ * mechanism. */
 enum { PROGRESS_EVERY = 500, PROGRESS_TEXT = 80 };
 
 mt_status mt_problem_place(mt_problem *p, const double *t, bool with_gradient, mt_err *err)
@@ -20,7 +22,8 @@ mt_status mt_problem_place(mt_problem *p, const double *t, bool with_gradient, m
     mt_node bad = MT_NO_NODE;
     mt_err own = {0};
     const mt_status rc = mt_program_gradient(&p->program, p->x, p->value, p->grad, &bad, &own);
-    /* a published quantity may have no slope, as a change has none at the original design: nobody needs it */
+    /* a published quantity may have no slope, as a change has none at the original design:
+     * nobody needs it */
     return rc == MT_OK || (rc == MT_E_DOMAIN && bad >= p->n_searched)
                ? MT_OK
                : mt_fail(err, rc, "%s", own.text);

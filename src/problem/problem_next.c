@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Modes are sorted: f_k at least a limit means f_(k+1) at least it, too. Such rows demand nothing, but f_k has a kink where modes cross, and of a slope that is that of one
- * mode here and of another there a search learns little. With the rows of the modes that come next, where they do not touch each other (those of different symmetry), all rows are smooth.
+ * Modes are sorted: f_k at least a limit means f_(k+1) at least it, too. Such rows demand
+ * nothing, but f_k has a kink where modes cross, and of a slope that is that of one mode here
+ * and of another there a search learns little. With the rows of the modes that come next, where
+ * they do not touch each other (those of different symmetry), all rows are smooth.
  */
 #include <math.h>
 

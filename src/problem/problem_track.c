@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Named modes of a view: told directly from the original shapes, else along the straight line of designs in t from the original one (tracking.h). */
+/* Named modes of a view: told directly from the original shapes, else along the straight line
+ * of designs in t from the original one (tracking.h). */
 #include <math.h>
 
 #include "problem/problem.h"

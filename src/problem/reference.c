@@ -74,7 +74,8 @@ void mt_reference_cache_free(mt_reference_cache *cache)
     *cache = (mt_reference_cache){0};
 }
 
-/* The reference's own analysis, made when first asked for, and the position of its mode there. */
+/* The reference's own analysis, made when first asked for, and the position of its mode
+ * there. */
 static mt_status computed_mode(mt_reference_cache *cache, int reference, int mode,
                                mt_analysis **out, int *pos, mt_err *err)
 {

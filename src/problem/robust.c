@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which corners of the tolerances may be the worst, which goals can be judged there, and their rows. */
+/* Which corners of the tolerances may be the worst, which goals can be judged there, and their
+ * rows. */
 #include "problem/robust.h"
 
 #include <math.h>
@@ -8,7 +9,8 @@
 
 #include "prove/enclosure.h"
 
-/* All combinations of so many variables whose sign is not known; of more: all low, all high, and each alone against the others. */
+/* All combinations of so many variables whose sign is not known; of more: all low, all high,
+ * and each alone against the others. */
 enum { COMBINED_MOST = 5 };
 /* A target's range is kept within this, relatively: the default tolerance of a goal. */
 static const double ROW_TOLERANCE = 1e-6;
@@ -65,16 +67,16 @@ static bool is_high(int c, int j, int n)
     return c < 2 ? c == 1 : ((c & 1) != 0) != (j == (c - 2) / 2);
 }
 
-/* Corner c of sides * combinations: which side, and which combination of the variables of unknown sign. */
+/* Corner c of sides * combinations: which side, and which combination of the variables of
+ * unknown sign. */
 static mt_status make_corner(mt_problem *p, const int *signs, int sides, int unknown, int c,
                              mt_corner *out, mt_err *err)
 {
     const int side = c % sides;
     int j = 0;
-    *out = (mt_corner){
-        .factor = mt_arena_f64(&p->mem, (size_t)p->n, 1),
-        .may = {sides == 1 || side == MT_LOWEST, sides == 1 || side == MT_HIGHEST}
-    };
+    *out =
+        (mt_corner){.factor = mt_arena_f64(&p->mem, (size_t)p->n, 1),
+                    .may = {sides == 1 || side == MT_LOWEST, sides == 1 || side == MT_HIGHEST}};
     if (out->factor == NULL) {
         return mt_fail_memory(err);
     }
@@ -88,7 +90,8 @@ static mt_status make_corner(mt_problem *p, const int *signs, int sides, int unk
     return MT_OK;
 }
 
-/* The corners that signs[n] leave, without analyses; at least the design itself, where a range has no other rows. */
+/* The corners that signs[n] leave, without analyses; at least the design itself, where a range
+ * has no other rows. */
 static mt_status make_corners(mt_problem *p, const int *signs, bool ranged, mt_corner_set *out,
                               mt_err *err)
 {
@@ -114,7 +117,8 @@ static mt_status make_corners(mt_problem *p, const int *signs, bool ranged, mt_c
     return MT_OK;
 }
 
-/* Bounds on both sides of 0 turn the ends of a relative tolerance over: no sign then says which end is the soft one. */
+/* Bounds on both sides of 0 turn the ends of a relative tolerance over: no sign then says which
+ * end is the soft one. */
 static int sign_of(const mt_problem *p, int i, bool rises, bool falls)
 {
     const mt_variable *const v = &p->study->variables[i];
@@ -242,7 +246,9 @@ static mt_status init_limits(mt_problem *p, mt_err *err)
     return MT_OK;
 }
 
-/* Rows of one limit at all corners of its side. The worst corner takes the place of the design's own row `own`; where the corners are samples, or there is no such row (-1), they come on top. */
+/* Rows of one limit at all corners of its side. The worst corner takes the place of the
+ * design's own row `own`; where the corners are samples, or there is no such row (-1), they
+ * come on top. */
 static void list_rows(mt_problem *p, const mt_corner_set *set, const mt_robust_row *what,
                       int own, mt_robust_row *rows)
 {
@@ -296,7 +302,8 @@ static void list_all(mt_problem *p, mt_robust_row *rows)
     }
 }
 
-/* Number the rows, once to count them and once to keep them, and make room for their tolerances. */
+/* Number the rows, once to count them and once to keep them, and make room for their
+ * tolerances. */
 static mt_status init_rows(mt_problem *p, mt_err *err)
 {
     mt_robust *const r = p->robust;

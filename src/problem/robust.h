@@ -6,19 +6,29 @@
 #include "result/result.h"
 
 /*
- * Variables with a tolerance. Each of them may turn out anywhere within |x' - x| <= tolerance |x|, and the goals have to hold all the same.
+ * Variables with a tolerance. Each of them may turn out anywhere within |x' - x| <= tolerance
+ * |x|, and the goals have to hold all the same.
  *
- * In the search a goal is judged at corners x_i (1 -+ tolerance_i), one row of the problem for each corner that may be the worst, so that every row is smooth. Which corners these are is
- * decided over the bounds of ALL variables, widened by the tolerances, by enclosures of the derivatives of all coefficients (mt_enclosure_effects; intervals for limits of expressions):
- *     a variable that is shown to stiffen (to soften) everywhere stands at its soft end for "at least" and for modes above a band, at its stiff end for "at most" and modes below one;
- *     one for which neither is shown (it enters stiffness and mass, or the sign of its slope depends on the others, or gravity loads the mechanism) stands at either end, in all
+ * In the search a goal is judged at corners x_i (1 -+ tolerance_i), one row of the problem for
+ * each corner that may be the worst, so that every row is smooth. Which corners these are is
+ * decided over the bounds of ALL variables, widened by the tolerances, by enclosures of the
+ * derivatives of all coefficients (mt_enclosure_effects; intervals for limits of expressions):
+ *     a variable that is shown to stiffen
+ *         (to soften) everywhere stands at its soft end for "at least" and for modes above a
+ *         band, at its stiff end for "at most" and modes below one;
+ *     one for which neither is shown
+ *         (it enters stiffness and mass, or the sign of its slope depends on the others, or
+ *         gravity loads the mechanism) stands at either end, in all
  *     combinations while there are few of them, and the design itself is judged as well.
- * Without any of the second kind the corners are the worst there is, at every design: two of them, exact. Otherwise they are samples, and so are the points that an earlier search was
+ * Without any of the second kind the corners are the worst there is, at every design: two of
+ * them, exact. Otherwise they are samples, and so are the points that an earlier search was
  * found to have missed (mt_study's cuts).
  *
- * What is reported of a design is found anew there (mt_robust_ranges): over its own tolerances alone more signs are proven, and where they are not, the worst is searched within.
+ * What is reported of a design is found anew there (mt_robust_ranges): over its own tolerances
+ * alone more signs are proven, and where they are not, the worst is searched within.
  *
- * The misfit and the objectives are those of the design itself, but the clearance. A target (or "equals") is met by the design itself; with a "tolerance_percent" of its own it is a range,
+ * The misfit and the objectives are those of the design itself, but the clearance. A target (or
+ * "equals") is met by the design itself; with a "tolerance_percent" of its own it is a range,
  * in which the design stays everywhere over the tolerances.
  */
 typedef enum mt_robust_side { MT_LOWEST, MT_HIGHEST, MT_ROBUST_SIDES } mt_robust_side;
@@ -26,11 +36,12 @@ typedef enum mt_robust_side { MT_LOWEST, MT_HIGHEST, MT_ROBUST_SIDES } mt_robust
 typedef struct mt_corner {
     mt_analysis *analysis; /* owned; NULL: of an expression */
     double *factor;        /* [n] inputs of the corner are factor times the design's */
-    bool may
-        [MT_ROBUST_SIDES]; /* may be where frequencies (the expression) are lowest, highest */
+    /* may be where frequencies (the expression) are lowest, highest */
+    bool may[MT_ROBUST_SIDES];
 } mt_corner;
 
-/* Of a view, or of a limit. n = 0: the tolerances do not matter. exact: one corner for each side, and it is the worst. */
+/* Of a view, or of a limit. n = 0: the tolerances do not matter. exact: one corner for each
+ * side, and it is the worst. */
 typedef struct mt_corner_set {
     bool exact;
     int n;
@@ -47,7 +58,8 @@ typedef struct mt_robust_row {
     double tolerance;
 } mt_robust_row;
 
-/* What a number does over the tolerances of one design: value[MT_LOWEST] <= it <= value[MT_HIGHEST], NaN where it has none somewhere; at[side]: [n] where that is. */
+/* What a number does over the tolerances of one design: value[MT_LOWEST] <= it <=
+ * value[MT_HIGHEST], NaN where it has none somewhere; at[side]: [n] where that is. */
 typedef struct mt_robust_range {
     bool proven; /* false: sampled */
     double value[MT_ROBUST_SIDES];
@@ -71,32 +83,41 @@ typedef struct mt_robust {
     mt_robust_range *number; /* [n_demands] of limits */
 } mt_robust;
 
-/* Nothing (p->robust stays NULL) where no variable has a tolerance. After everything else of the problem: adds rows to `in`. Fails: MT_E_INPUT where a goal cannot be judged over
+/* Nothing (p->robust stays NULL) where no variable has a tolerance. After everything else of
+ * the problem: adds rows to `in`. Fails: MT_E_INPUT where a goal cannot be judged over
  * tolerances, saying why; MT_E_MEMORY, numerical failures. */
 mt_status mt_robust_init(mt_problem *p, mt_err *err);
 /* Accepts NULL. */
 void mt_robust_free(mt_robust *r);
 /* Half the width of variable i's tolerance, as a part of its value. */
 double mt_robust_tolerance(const mt_problem *p, int i);
-/* Is a demand for a target (or "equals") one for a range over the tolerances? Asked before its rows are numbered; then demand->ranged. */
+/* Is a demand for a target (or "equals") one for a range over the tolerances? Asked before its
+ * rows are numbered; then demand->ranged. */
 bool mt_robust_is_range(const mt_problem *p, const mt_demand *d);
-/* robust_eval.c: modes of all corners of the design at p->x. Nothing where p has no tolerances, likewise below. */
+/* robust_eval.c: modes of all corners of the design at p->x. Nothing where p has no tolerances,
+ * likewise below. */
 mt_status mt_robust_solve(mt_problem *p, bool with_gradient, mt_err *err);
-/* Fill the rows of all corners. After mt_robust_solve and the rows of the design itself, some of which they replace. */
+/* Fill the rows of all corners. After mt_robust_solve and the rows of the design itself, some
+ * of which they replace. */
 mt_status mt_robust_rows(mt_problem *p, const double *t, bool with_gradient, mt_nlp_values *out,
                          mt_err *err);
-/* The row of `in` that stands on top of the design's own ones; NULL where it is none of these. */
+/* The row of `in` that stands on top of the design's own ones; NULL where it is none of
+ * these. */
 const mt_robust_row *mt_robust_corner_row(const mt_problem *p, int row);
 /* Is row i of `in` judged at a corner (in place of the design itself, or on top)? */
 bool mt_robust_at_corner(const mt_problem *p, int i);
-/* The limit [Hz] that a row sets a frequency, of a band without the clearance; NaN: it is one on an expression. */
+/* The limit [Hz] that a row sets a frequency, of a band without the clearance; NaN: it is one
+ * on an expression. */
 double mt_robust_limit_hz(const mt_problem *p, const mt_robust_row *row);
-/* mt_clear_room over all corners, or over the ranges where they are known: modes are paired by their index. */
+/* mt_clear_room over all corners, or over the ranges where they are known: modes are paired by
+ * their index. */
 double mt_robust_room(const mt_problem *p, const mt_clear *c);
 /*
- * robust_range.c: what the vibration modes of each view, and the expressions of all limits, do over the tolerances of the design at p->x, from fresh analyses. Proven where enclosures over
- * these tolerances show every sign; else sampled: corners, points within, and for the first modes[view] descent from the best of them (a view with 0 is left out). Into p->robust.
- * Cost: two analyses where proven, else some hundreds.
+ * robust_range.c: what the vibration modes of each view, and the expressions of all limits, do
+ * over the tolerances of the design at p->x, from fresh analyses. Proven where enclosures over
+ * these tolerances show every sign; else sampled: corners, points within, and for the first
+ * modes[view] descent from the best of them (a view with 0 is left out). Into p->robust. Cost:
+ * two analyses where proven, else some hundreds.
  */
 mt_status mt_robust_ranges(mt_problem *p, const int *modes, mt_err *err);
 /* Are all ranges proven? */
@@ -112,7 +133,8 @@ typedef struct mt_robust_probe {
     int m;
     int n_descend; /* so many of them by descent too */
     void *context;
-    /* value[m] at x (slopes may be asked for next where with_gradient). Failures but memory and internal ones mean that the numbers do not exist there. */
+    /* value[m] at x (slopes may be asked for next where with_gradient). Failures but memory and
+     * internal ones mean that the numbers do not exist there. */
     mt_status (*eval)(void *context, const double *x, bool with_gradient, double *value,
                       mt_err *err);
     mt_status (*slope)(void *context, int k, double *slope, mt_err *err);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows at the corners: as demand.c and problem_clear.c make them, with the corner's modes and its factors in the gradient. */
+/* Rows at the corners: as demand.c and problem_clear.c make them, with the corner's modes and
+ * its factors in the gradient. */
 #include <math.h>
 
 #include "problem/robust.h"
@@ -34,7 +35,8 @@ mt_status mt_robust_solve(mt_problem *p, bool with_gradient, mt_err *err)
     return MT_OK;
 }
 
-/* in = sign (q - edge) - z: q = ln(f / limit) and edge 0, or an expression and its limit over their unit. */
+/* in = sign (q - edge) - z: q = ln(f / limit) and edge 0, or an expression and its limit over
+ * their unit. */
 typedef struct quantity {
     double value;
     double edge;
@@ -171,7 +173,8 @@ mt_status mt_robust_rows(mt_problem *p, const double *t, bool with_gradient, mt_
     return MT_OK;
 }
 
-/* Lowest and highest frequency of vibration mode k of a view: its range where that is known, else of the design itself and its corners; false: there is no such mode. */
+/* Lowest and highest frequency of vibration mode k of a view: its range where that is known,
+ * else of the design itself and its corners; false: there is no such mode. */
 static bool span_of(const mt_problem *p, int view, int k, double *low, double *high)
 {
     const mt_corner_set *const set = &p->robust->views[view];

@@ -35,7 +35,8 @@ static mt_status make_box(mt_problem *p, box *b, mt_err *err)
     return MT_OK;
 }
 
-/* The corners of the lowest and the highest value by what raising each input does; false: one of them does both. */
+/* The corners of the lowest and the highest value by what raising each input does; false: one
+ * of them does both. */
 static bool find_corners(const mt_problem *p, box *b)
 {
     for (int i = 0; i < p->n; i++) {

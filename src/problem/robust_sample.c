@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The least and greatest of numbers over a box, where nothing is known of them but values and slopes: the corners, points spread over the box, and from the best of these, for each number
- * and side, steps of Frank and Wolfe: to the corner that the slopes point at, or as far towards it as it helps; where that gains nothing, along one input after the other and to points around. A
- * monotone
- * number is settled by the corners, one with its extreme inside by the steps; a number with many extremes may hide one.
+ * The least and greatest of numbers over a box, where nothing is known of them but values and
+ * slopes: the corners, points spread over the box, and from the best of these, for each number
+ * and side, steps of Frank and Wolfe: to the corner that the slopes point at, or as far towards
+ * it as it helps; where that gains nothing, along one input after the other and to points
+ * around. A monotone number is settled by the corners, one with its extreme inside by the
+ * steps; a number with many extremes may hide one.
  */
 #include <math.h>
 #include <string.h>
@@ -11,8 +13,9 @@
 #include "problem/robust.h"
 
 enum {
-    CORNERS_MOST =
-        6, /* inputs of which all corners are tried; of more, the two of all low and all high, and each alone against the others */
+    /* inputs of which all corners are tried; of more, the two of all low and all high, and each
+     * alone against the others */
+    CORNERS_MOST = 6,
     SPREAD_PER_INPUT = 24,
     SPREAD_MOST = 192,
     ROUNDS_MOST = 3,
@@ -27,9 +30,7 @@ static const double GAIN = 1e-9;
 
 mt_status mt_robust_range_init(int n, mt_arena *mem, mt_robust_range *out, mt_err *err)
 {
-    *out = (mt_robust_range){
-        .value = {HUGE_VAL, -HUGE_VAL}
-    };
+    *out = (mt_robust_range){.value = {HUGE_VAL, -HUGE_VAL}};
     for (int side = 0; side < MT_ROBUST_SIDES; side++) {
         out->at[side] = mt_arena_f64(mem, (size_t)n, 1);
         if (out->at[side] == NULL) {
@@ -105,7 +106,8 @@ static mt_status visit_corners(sampler *s, mt_err *err)
     return MT_OK;
 }
 
-/* Point c of the additive recurrence of the golden ratio's generalisation: x^(n+1) = x + 1, steps 1/x, 1/x^2, ...; point 0 is the middle. */
+/* Point c of the additive recurrence of the golden ratio's generalisation: x^(n+1) = x + 1,
+ * steps 1/x, 1/x^2, ...; point 0 is the middle. */
 static void spread(const sampler *s, int c, double *x)
 {
     const mt_robust_probe *const q = s->q;
@@ -190,7 +192,8 @@ static mt_status step(sampler *s, int k, mt_robust_side side, mt_err *err)
     return s->out[k].value[side] == before ? search_line(s, k, side, err) : MT_OK;
 }
 
-/* Points of the same recurrence in boxes about the best of number k, each half as wide as the one before: over ridges, where frequencies meet, no slope and no axis leads on. */
+/* Points of the same recurrence in boxes about the best of number k, each half as wide as the
+ * one before: over ridges, where frequencies meet, no slope and no axis leads on. */
 static mt_status step_around(sampler *s, int k, mt_robust_side side, mt_err *err)
 {
     const mt_robust_probe *const q = s->q;

@@ -56,7 +56,8 @@ mt_status mt_certify_reach_of(const mt_certify *c, int limit, mt_arena *scratch,
     return rc;
 }
 
-/* A pivot ratio (mt_inertia's gap) at or below UNSURE_ULPS n eps says nothing about the sign. */
+/* A pivot ratio (mt_inertia's gap) at or below UNSURE_ULPS n eps says nothing about the
+ * sign. */
 static const double UNSURE_ULPS = 16.0;
 
 /* Vibration modes below hz. */

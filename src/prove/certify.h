@@ -6,12 +6,15 @@
 #include "prove/enclosure.h"
 
 /*
- * Certificates: statements about every design of a box, proved by enclosures and branch and bound. A proof covers the program's own arithmetic (enclosure.h).
- * Everything is deterministic; one question, one worker. Memory for results is the caller's arena; work is given back.
+ * Certificates: statements about every design of a box, proved by enclosures and branch and
+ * bound. A proof covers the program's own arithmetic (enclosure.h). Everything is
+ * deterministic; one question, one worker. Memory for results is the caller's arena; work is
+ * given back.
  */
 
-/* A forbidden band of one configuration. An edge counts as kept within `tolerance` (relative): a design that the search calls feasible is never excluded. Clip bands
- * at up_to_hz before; of one view, list them ascending. */
+/* A forbidden band of one configuration. An edge counts as kept within `tolerance` (relative):
+ * a design that the search calls feasible is never excluded. Clip bands at up_to_hz before; of
+ * one view, list them ascending. */
 typedef struct mt_certify_band {
     int view;
     double lower_hz;
@@ -28,14 +31,16 @@ typedef struct mt_certify_limit {
     double tolerance; /* relative */
 } mt_certify_limit;
 
-/* Limits of an expression's value (NaN: none): absolute tolerance is the caller's, in the limits. */
+/* Limits of an expression's value (NaN: none): absolute tolerance is the caller's, in the
+ * limits. */
 typedef struct mt_certify_bound {
     mt_node node;
     double at_least;
     double at_most;
 } mt_certify_bound;
 
-/* Only designs whose objective may be less than `below` are asked about. least: no value of the objective in lo <= x <= hi is below it. */
+/* Only designs whose objective may be less than `below` are asked about. least: no value of the
+ * objective in lo <= x <= hi is below it. */
 typedef struct mt_certify_cap {
     double (*least)(void *context, const double *lo, const double *hi);
     void *context;
@@ -43,16 +48,19 @@ typedef struct mt_certify_cap {
 } mt_certify_cap;
 
 /*
- * What is asked of the designs lower <= x <= upper, in which inputs with a catalogue take values of it only. An assignment is int[n_bands]: for each band, how many vibration modes lie below it (or on its lower
- * edge); designs whose bands break `same_as` do not meet what is asked. The views share the inputs.
+ * What is asked of the designs lower <= x <= upper, in which inputs with a catalogue take
+ * values of it only. An assignment is int[n_bands]: for each band, how many vibration modes lie
+ * below it (or on its lower edge); designs whose bands break `same_as` do not meet what is
+ * asked. The views share the inputs.
  */
 typedef struct mt_certify {
     int n_views;
     mt_enclosure *const *views; /* made for bounds that hold this box */
     int n_bands;
     const mt_certify_band *bands;
-    /* [n_bands] the first band (itself, or an earlier one) that must have the same number of modes below it (positions of one drive: between different numbers a mode would cross); NULL: all
-     * bands are free */
+    /* [n_bands] the first band (itself, or an earlier one) that must have the same number of
+     * modes below it (positions of one drive: between different numbers a mode would cross);
+     * NULL: all bands are free */
     const int *same_as;
     int n_limits;
     const mt_certify_limit *limits;
@@ -65,8 +73,8 @@ typedef struct mt_certify {
     const int *n_catalogue;         /* [n] 0: continuous; NULL: all are */
     const double *const *catalogue; /* [n] ascending values */
     const mt_certify_cap *cap;      /* NULL: any value of the objective */
-    const double
-        *scale; /* [n] NaN: bisected in ln x, else linearly; NULL: in ln x where lower > 0 */
+    /* [n] NaN: bisected in ln x, else linearly; NULL: in ln x where lower > 0 */
+    const double *scale;
     long max_boxes;          /* 0: MT_CERTIFY_BOXES */
     mt_interrupt *interrupt; /* ends the search as an exhausted budget does; NULL: never */
 } mt_certify;
@@ -75,9 +83,11 @@ enum { MT_CERTIFY_BOXES = 1000000, MT_CERTIFY_OPEN_MOST = 256 };
 
 /* Assignments that designs of the box can have. */
 typedef struct mt_certify_search {
-    bool
-        proven; /* no design of the box meets bands, limits and bounds, but with an assignment of known or found */
-    int n_found; /* assignments that were not known, each with a design that has it and meets everything */
+    /* no design of the box meets bands, limits and bounds, but with an assignment of known or
+     * found */
+    bool proven;
+    /* assignments that were not known, each with a design that has it and meets everything */
+    int n_found;
     int *found; /* [n_found x n_bands] */
     double *at; /* [n_found x n] */
     int n_open; /* neither excluded nor met when the budget ended (0 where proven) */
@@ -87,8 +97,9 @@ typedef struct mt_certify_search {
     long boxes;
 } mt_certify_search;
 
-/* Branch and bound over the box: every feasible assignment that is not among known[n_known x n_bands] is found, or excluded, or left open. known may be NULL. With n_bands
- * = 0 there is one (empty) assignment: n_found tells whether the limits can be met. Fails: MT_E_MEMORY. */
+/* Branch and bound over the box: every feasible assignment that is not among known[n_known x
+ * n_bands] is found, or excluded, or left open. known may be NULL. With n_bands = 0 there is
+ * one (empty) assignment: n_found tells whether the limits can be met. Fails: MT_E_MEMORY. */
 mt_status mt_certify_assignments(const mt_certify *c, int n_known, const int *known,
                                  mt_arena *mem, mt_certify_search *out, mt_err *err);
 
@@ -101,12 +112,15 @@ typedef enum mt_verdict { MT_VERDICT_LIST(MT_VERDICT_ENUM) MT_VERDICT_COUNT } mt
 #undef MT_VERDICT_ENUM
 const char *mt_verdict_text(mt_verdict verdict);
 
-/* Can a design of the box have this assignment[n_bands] and meet limits and bounds? at[n] (may be NULL): one that does, where POSSIBLE. boxes may be NULL. */
+/* Can a design of the box have this assignment[n_bands] and meet limits and bounds? at[n] (may
+ * be NULL): one that does, where POSSIBLE. boxes may be NULL. */
 mt_status mt_certify_possible(const mt_certify *c, const int *assignment, mt_arena *scratch,
                               mt_verdict *verdict, double *at, long *boxes, mt_err *err);
 
-/* Limit `limit` of c alone: can it be met in the box, and what can its mode's frequency be there? The range encloses all that can be reached; where the enclosure is loose
- * (an input in K and M) it is wider than what is reached, and branch and bound decides the verdict. A mode that does not exist is IMPOSSIBLE, its range NaN. */
+/* Limit `limit` of c alone: can it be met in the box, and what can its mode's frequency be
+ * there? The range encloses all that can be reached; where the enclosure is loose (an input in
+ * K and M) it is wider than what is reached, and branch and bound decides the verdict. A mode
+ * that does not exist is IMPOSSIBLE, its range NaN. */
 typedef struct mt_certify_reach {
     mt_verdict verdict;
     double low_hz;
@@ -127,22 +141,28 @@ typedef struct mt_certify_edge {
 } mt_certify_edge;
 
 typedef enum mt_tolerance_end {
-    MT_TOLERANCE_EDGE, /* beyond, the mode of `edge` may cross it (or, where the enclosure is loose, cannot be shown not to) */
+    /* beyond, the mode of `edge` may cross it (or, where the enclosure is loose, cannot be
+     * shown not to) */
+    MT_TOLERANCE_EDGE,
     MT_TOLERANCE_DOMAIN, /* beyond, a stiffness or mass may be negative */
     MT_TOLERANCE_MOST    /* the largest percentage that was asked about */
 } mt_tolerance_end;
 
 typedef struct mt_tolerance {
-    double
-        percent; /* proven: bands (their edges as given: leave out margins) and limits hold for every design within */
+    /* proven: bands (their edges as given: leave out margins) and limits hold for every design
+     * within */
+    double percent;
     mt_tolerance_end end;
     mt_certify_edge edge; /* where end is EDGE */
 } mt_tolerance;
 
 /*
- * Tolerance boxes about x[n]: |x_i' - x_i| <= percent / 100 * unit_i, for all inputs together (*all) and for each alone (each[n], may be NULL). unit NULL: |x_i|. They may
- * leave the bounds of the enclosures. Tolerances of bands and limits are not granted here: a design on an edge (to 5e-10 of it) has 0 percent and the edge. Where an
- * input enters K and M, up to boxes_per_test sub-boxes (0: 64) tighten each of the some 30 tests of a box. assignment[n_bands] is that of x. c->lower, upper, bounds, catalogues and cap are not used.
+ * Tolerance boxes about x[n]: |x_i' - x_i| <= percent / 100 * unit_i, for all inputs together
+ * (*all) and for each alone (each[n], may be NULL). unit NULL: |x_i|. They may leave the bounds
+ * of the enclosures. Tolerances of bands and limits are not granted here: a design on an edge
+ * (to 5e-10 of it) has 0 percent and the edge. Where an input enters K and M, up to
+ * boxes_per_test sub-boxes (0: 64) tighten each of the some 30 tests of a box.
+ * assignment[n_bands] is that of x. c->lower, upper, bounds, catalogues and cap are not used.
  */
 typedef struct mt_tolerance_question {
     const double *x;
@@ -156,8 +176,10 @@ mt_status mt_certify_tolerance(const mt_certify *c, const mt_tolerance_question 
                                mt_err *err);
 
 /*
- * Independent check of one design: the number of modes inside a band by inertia of K - lambda M alone (mt_inertia, pivoting, no eigenvalue; another path than everything above and
- * than mt_modal_solve), edges moved inwards by the relative tolerance. sure: the pivots are well away from zero.
+ * Independent check of one design: the number of modes inside a band by inertia of K - lambda M
+ * alone (mt_inertia, pivoting, no eigenvalue; another path than everything above and than
+ * mt_modal_solve), edges moved inwards by the relative tolerance. sure: the pivots are well
+ * away from zero.
  */
 typedef struct mt_band_count {
     int below;  /* vibration modes below the band */

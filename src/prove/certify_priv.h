@@ -5,9 +5,11 @@
 #include "prove/certify.h"
 
 /*
- * Boxes still to be looked at: a stack, bisected at the variable that is relatively widest (its width in t over that at the start is 2^-depth, so a count of bisections
- * says which; ties go to the first). Depth first: the stack never holds more than one box per bisection. Along an input with a catalogue a box begins and ends at values of it, and its halves
- * leave the gap between two values out.
+ * Boxes still to be looked at: a stack, bisected at the variable that is relatively widest (its
+ * width in t over that at the start is 2^-depth, so a count of bisections says which; ties go
+ * to the first). Depth first: the stack never holds more than one box per bisection. Along an
+ * input with a catalogue a box begins and ends at values of it, and its halves leave the gap
+ * between two values out.
  */
 typedef struct mt_boxes {
     int n;
@@ -27,7 +29,8 @@ typedef struct mt_boxes {
     double *beyond; /* [n] where its upper half begins */
 } mt_boxes;
 
-/* active: those on which any view, or bound, depends (loose_only: those that enter K and M of a view). */
+/* active: those on which any view, or bound, depends (loose_only: those that enter K and M of a
+ * view). */
 mt_status mt_boxes_init(mt_boxes *b, const mt_certify *c, bool loose_only, mt_arena *mem,
                         mt_err *err);
 /* Start over with one box; none where a catalogue has no value in it. */
@@ -37,7 +40,8 @@ bool mt_boxes_pop(mt_boxes *b);
 /* Put both halves of the box that was popped back; false where it is too small to be halved. */
 bool mt_boxes_split(mt_boxes *b);
 
-/* Edges of an assignment and of the limits, with their tolerances where `granted`: out[2 (n_bands + n_limits)]. Returns their number. */
+/* Edges of an assignment and of the limits, with their tolerances where `granted`: out[2
+ * (n_bands + n_limits)]. Returns their number. */
 int mt_certify_edges(const mt_certify *c, const int *assignment, bool granted,
                      mt_certify_edge *out);
 /* Set the box in all views. False where nothing is known over it in one of them. */

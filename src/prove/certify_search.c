@@ -1,15 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Branch and bound over assignments. For a box and a band [a, b], the number j of modes below the band at any design that keeps it lies in
+ * Branch and bound over assignments. For a box and a band [a, b], the number j of modes below
+ * the band at any design that keeps it lies in
  *     least_below(b) <= j <= most_below(a),
- * so the box is done with where for some band (or limit, or bound) nothing is left, or where all assignments that are left are known. Else the box is halved. Where a
- * single unknown assignment is left, or a pass ends, the middle of the box is tried: a design that meets everything makes its assignment known. Catalogues only thin the boxes out, and a
- * cap cuts off those whose designs are all too costly: with the objective of a known design as cap, "nothing found, nothing open" proves that none is better.
+ * so the box is done with where for some band (or limit, or bound) nothing is left, or where
+ * all assignments that are left are known. Else the box is halved. Where a single unknown
+ * assignment is left, or a pass ends, the middle of the box is tried: a design that meets
+ * everything makes its assignment known. Catalogues only thin the boxes out, and a cap cuts off
+ * those whose designs are all too costly: with the objective of a known design as cap, "nothing
+ * found, nothing open" proves that none is better.
  *
- * Assignments have to be in order within a view, and equal where bands are the same (same_as). Both are narrowed in before anything is listed: j(i) >= j(before i), j(i) = j(same as i).
+ * Assignments have to be in order within a view, and equal where bands are the same (same_as).
+ * Both are narrowed in before anything is listed: j(i) >= j(before i), j(i) = j(same as i).
  *
- * Passes go deeper and deeper (iterative deepening). Depth first at once would dive into the first surface on which two assignments touch, where boxes stay undecided down
- * to rounding, before it meets the designs next to it that settle the matter. What earlier passes cost is a fraction of the last one.
+ * Passes go deeper and deeper (iterative deepening). Depth first at once would dive into the
+ * first surface on which two assignments touch, where boxes stay undecided down to rounding,
+ * before it meets the designs next to it that settle the matter. What earlier passes cost is a
+ * fraction of the last one.
  */
 #include "prove/certify_priv.h"
 
@@ -22,8 +29,8 @@ typedef struct search {
     mt_arena *mem;   /* results */
     mt_err *err;
     int *previous; /* [n_bands] the band before in the same view; -1 */
-    int *
-        least; /* [n_bands] assignments of the box: j between, not below that of the band before */
+    /* [n_bands] assignments of the box: j between, not below that of the band before */
+    int *least;
     int *most;
     int *tuple; /* [n_bands] work */
     int *single;
@@ -35,8 +42,8 @@ typedef struct search {
     int cap_known;
     int *known; /* known, found */
     int cap_order;
-    int *
-        order; /* [n_known] their places in the list, sorted by memcmp: every box looks for some */
+    /* [n_known] their places in the list, sorted by memcmp: every box looks for some */
+    int *order;
     int cap_found;
     int cap_open;
     int limit; /* bisections of a box in this pass */
@@ -46,8 +53,8 @@ typedef struct search {
 static mt_status claim(search *s, mt_arena *work)
 {
     const mt_certify *const c = s->c;
-    const size_t bands =
-        (size_t)c->n_bands + 1; /* never of length 0: memcpy and memcmp want pointers */
+    /* never of length 0: memcpy and memcmp want pointers */
+    const size_t bands = (size_t)c->n_bands + 1;
     const size_t nodes = c->program == NULL ? 0 : (size_t)c->program->count;
     s->previous = mt_arena_int(work, bands);
     s->least = mt_arena_int(work, bands);
@@ -160,7 +167,8 @@ static bool place(search *s, int i)
     return s->tuple[i] >= low && s->tuple[i] <= s->most[i];
 }
 
-/* The first consistent assignment that keeps the bands before `from`, or follows them in lexicographic order: bands as low as they go. */
+/* The first consistent assignment that keeps the bands before `from`, or follows them in
+ * lexicographic order: bands as low as they go. */
 static bool fill(search *s, int from)
 {
     int i = from;
@@ -280,7 +288,8 @@ static bool limit_possible(const mt_certify *c, const mt_certify_limit *l)
                e, mt_enclosure_lambda(l->at_least_hz * (1.0 - l->tolerance))) < l->mode;
 }
 
-/* Modes that may lie below a band, or on its lower edge; below one that begins at 0 there are none, a mode of 0 Hz is in it. */
+/* Modes that may lie below a band, or on its lower edge; below one that begins at 0 there are
+ * none, a mode of 0 Hz is in it. */
 static int most_under(mt_enclosure *e, const mt_certify_band *b)
 {
     const double lambda = mt_enclosure_lambda(b->lower_hz * (1.0 + b->tolerance));
@@ -314,7 +323,8 @@ static bool below_cap(const mt_certify *c, const double *lo, const double *hi)
     return c->cap == NULL || c->cap->least(c->cap->context, lo, hi) < c->cap->below;
 }
 
-/* What is left in the box: unknown assignments (0, 1, 2 for more). Where nothing is known of the box, everything is left. */
+/* What is left in the box: unknown assignments (0, 1, 2 for more). Where nothing is known of
+ * the box, everything is left. */
 static int examine(search *s)
 {
     const mt_certify *const c = s->c;
@@ -351,7 +361,8 @@ static bool same_counts(const search *s, const int *tuple)
     return true;
 }
 
-/* Does the middle of the box meet everything? Its assignment goes to `single` (in a search for one: it must have that). */
+/* Does the middle of the box meet everything? Its assignment goes to `single` (in a search for
+ * one: it must have that). */
 static bool witnessed(search *s)
 {
     const mt_boxes *const b = &s->boxes;

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * How far a design may stray: the largest percentage whose box is proven, by bisection. Boxes are nested and enclosures inclusion monotone, so what is proven for a
- * percentage is proven for all below. Where an input enters K and M, the test may halve its box along such inputs; a half whose very middle fails ends that.
+ * How far a design may stray: the largest percentage whose box is proven, by bisection. Boxes
+ * are nested and enclosures inclusion monotone, so what is proven for a percentage is proven
+ * for all below. Where an input enters K and M, the test may halve its box along such inputs; a
+ * half whose very middle fails ends that.
  */
 #include "prove/certify_priv.h"
 
@@ -10,7 +12,8 @@
 
 enum { DEFAULT_BOXES = 64, MOST_STEPS = 40 };
 
-/* Bisection ends when the percentage is known to this share of itself, or is below NEARLY_NOTHING. */
+/* Bisection ends when the percentage is known to this share of itself, or is below
+ * NEARLY_NOTHING. */
 static const double RESOLUTION = 1e-4;
 static const double NEARLY_NOTHING = 1e-7;
 

@@ -6,19 +6,24 @@
 #include "base/interrupt.h"
 
 /*
- * What the modes of one configuration can do while the inputs stay within a box: proofs, not samples.
+ * What the modes of one configuration can do while the inputs stay within a box: proofs, not
+ * samples.
  *
  * At fixed geometry, with nothing loading the mechanism,
- *     K(x) = K0 + sum_i c_i(x) P_i,   M(x) = M0 + sum_i c_i(x) Q_i,   P_i, Q_i positive semidefinite,
- * so bounds of the coefficients c_i over the box (interval arithmetic) are bounds of K and M in the order of
- * symmetric matrices: soft corner (K low, M high), stiff corner (K high, M low). For every lambda >= 0
+ *     K(x) = K0 + sum_i c_i(x) P_i,   M(x) = M0 + sum_i c_i(x) Q_i,
+ *         P_i, Q_i positive semidefinite,
+ * so bounds of the coefficients c_i over the box (interval arithmetic) are bounds of K and M in
+ * the order of symmetric matrices: soft corner (K low, M high), stiff corner (K high, M low).
+ * For every lambda >= 0
  *     K_low - lambda M_high  <=  K(x) - lambda M(x)  <=  K_high - lambda M_low,
- * hence the number of modes below lambda (the number of negative eigenvalues, Sylvester) lies between that of
- * the stiff corner and that of the soft one, and so does each eigenvalue between theirs (Courant and Fischer).
- * Exact where each input enters K alone or M alone, valid but not tight for an input in both (a bar's area).
+ * hence the number of modes below lambda (the number of negative eigenvalues, Sylvester) lies
+ * between that of the stiff corner and that of the soft one, and so does each eigenvalue
+ * between theirs (Courant and Fischer). Exact where each input enters K alone or M alone, valid
+ * but not tight for an input in both (a bar's area).
  *
- * That is only so under conditions, and mt_enclosure_new checks them. One enclosure, one worker: boxes are set
- * in it. The rows of K and M are taken as the program has computed them; their rounding is within the slack.
+ * That is only so under conditions, and mt_enclosure_new checks them. One enclosure, one
+ * worker: boxes are set in it. The rows of K and M are taken as the program has computed them;
+ * their rounding is within the slack.
  */
 enum { MT_REASON_SIZE = 256 };
 
@@ -33,7 +38,8 @@ typedef struct mt_enclosure_part {
     double trace;
 } mt_enclosure_part;
 
-/* Is a coefficient required to be positive over the bounds? A coupling of two rows has two of either sign: its own, and minus that (enclosure_terms.c). */
+/* Is a coefficient required to be positive over the bounds? A coupling of two rows has two of
+ * either sign: its own, and minus that (enclosure_terms.c). */
 typedef enum mt_sign { MT_SIGN_POSITIVE, MT_SIGN_ANY, MT_SIGN_NEGATED } mt_sign;
 
 typedef struct mt_enclosure_coefficient {
@@ -42,18 +48,19 @@ typedef struct mt_enclosure_coefficient {
     bool mass;        /* first seen in the mass matrix */
     mt_sign required;
     bool dependent; /* an input occurs twice in it: its interval alone is not tight */
-    signed char
-        *sign;     /* [n_inputs] of the derivative over the bounds; 0: none, or it changes */
+    /* [n_inputs] of the derivative over the bounds; 0: none, or it changes */
+    signed char *sign;
     bool monotone; /* in all its inputs over the bounds */
-    bool
-        held; /* a stiffness that was positive over the box that mt_enclosure_note_held noted */
+    /* a stiffness that was positive over the box that mt_enclosure_note_held noted */
+    bool held;
     double least; /* over the bounds */
-    double
-        most; /* likewise; where that is 0, a box in which it is not may have fewer rigid-body modes */
+    /* likewise; where that is 0, a box in which it is not may have fewer rigid-body modes */
+    double most;
     mt_enclosure_part part[MT_MATRICES];
 } mt_enclosure_coefficient;
 
-/* What a term of the system adds to the parts of a coefficient: with its rows r, or a and b, and its factor */
+/* What a term of the system adds to the parts of a coefficient: with its rows r, or a and b,
+ * and its factor */
 typedef enum mt_enclosure_form {
     MT_FORM_ROWS,      /* factor sum r r^T */
     MT_FORM_PAIR,      /* factor (a b^T + b a^T) / 2 */
@@ -76,16 +83,18 @@ typedef struct mt_enclosure {
     double *lower; /* [n_inputs] bounds that the conditions were checked for */
     double *upper;
     int n; /* order of the matrices below, in which M at the bounds' low end is the identity */
-    int n_rigid; /* rigid-body modes that the analysis counts: every design of the bounds has as many null directions at least */
-    int n_modes; /* vibration modes: n - n_rigid */
+    /* rigid-body modes that the analysis counts: every design of the bounds has as many null
+     * directions at least */
+    int n_rigid;
+    int n_modes;        /* vibration modes: n - n_rigid */
     mt_program program; /* of the coefficients alone */
     int n_coefficients;
     mt_node *sources; /* [n_coefficients] their nodes in the system's program */
     int n_pieces;
     mt_enclosure_piece *pieces;
     int *of_term[MT_MATRICES]; /* coefficient of each term; -1: it does not vary */
-    const char
-        *coupled; /* name of a spring or body whose coupling is of either sign; NULL: none */
+    /* name of a spring or body whose coupling is of either sign; NULL: none */
+    const char *coupled;
     bool coupled_mass;
     mt_enclosure_coefficient *coefficients;
     bool bounded; /* least and most are known: they hold in every box within the bounds */
@@ -110,44 +119,56 @@ typedef struct mt_enclosure {
 } mt_enclosure;
 
 /*
- * Enclose the modes of an analysis (which has been solved at least once) over lower <= x <= upper [n_inputs]. *out is NULL, and the call a success, where a
- * condition fails: reason[MT_REASON_SIZE] then says which, as a sentence after "no certificate: ". Nothing of the analysis is
- * kept but names, which belong to the model. Fails: MT_E_MEMORY, numerical failures of LAPACK.
+ * Enclose the modes of an analysis (which has been solved at least once) over lower <= x <=
+ * upper [n_inputs]. *out is NULL, and the call a success, where a condition fails:
+ * reason[MT_REASON_SIZE] then says which, as a sentence after "no certificate: ". Nothing of
+ * the analysis is kept but names, which belong to the model. Fails: MT_E_MEMORY, numerical
+ * failures of LAPACK.
  */
 mt_status mt_enclosure_new(const mt_analysis *a, const double *lower, const double *upper,
                            mt_enclosure **out, char *reason, mt_err *err);
 void mt_enclosure_delete(mt_enclosure *e);
 
-/* Set the box lo <= x <= hi; it may leave the bounds. False where nothing is known over it: a coefficient may be negative or is not enclosed, or the work is interrupted. No heap. */
+/* Set the box lo <= x <= hi; it may leave the bounds. False where nothing is known over it: a
+ * coefficient may be negative or is not enclosed, or the work is interrupted. No heap. */
 bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi);
-/* Note which stiffnesses are positive all over the box that is set; and are they so all over the one that is set later? Where one is not, a design of that box may have one more
+/* Note which stiffnesses are positive all over the box that is set; and are they so all over
+ * the one that is set later? Where one is not, a design of that box may have one more
  * rigid-body mode. */
 void mt_enclosure_note_held(mt_enclosure *e);
 bool mt_enclosure_keeps_held(const mt_enclosure *e);
-/* The most and the fewest vibration modes below lambda [rad^2/s^2] that a design of the box may have: at no design are there more with eigenvalue <= lambda than
- * most, at every design there are at least `least` with eigenvalue < lambda (lambda counted up or down by the slack of rounding). In doubt: n_modes and 0. No heap
- * after the first calls; O(n^3 / 3), O(n) for chains. */
+/* The most and the fewest vibration modes below lambda [rad^2/s^2] that a design of the box may
+ * have: at no design are there more with eigenvalue <= lambda than most, at every design there
+ * are at least `least` with eigenvalue < lambda (lambda counted up or down by the slack of
+ * rounding). In doubt: n_modes and 0. No heap after the first calls; O(n^3 / 3), O(n) for
+ * chains. */
 int mt_enclosure_most_below(mt_enclosure *e, double lambda);
 int mt_enclosure_least_below(mt_enclosure *e, double lambda);
 /* lambda of a frequency in Hz: (2 pi f)^2. */
 double mt_enclosure_lambda(double hz);
-/* low[n_modes], high[n_modes]: what each vibration mode's frequency can be in the box [Hz], by two eigensolves, widened by their error. */
+/* low[n_modes], high[n_modes]: what each vibration mode's frequency can be in the box [Hz], by
+ * two eigensolves, widened by their error. */
 mt_status mt_enclosure_ranges(mt_enclosure *e, double *low, double *high, mt_err *err);
 
 /*
- * The two corners of a box at which all modes are lowest and highest: soft[n_inputs], stiff[n_inputs]; an input without influence stays in the middle. False where
- * there are none: an input (named in reason) stiffens here and softens there, or adds stiffness and mass together. An input with lo = hi is no obstacle.
+ * The two corners of a box at which all modes are lowest and highest: soft[n_inputs],
+ * stiff[n_inputs]; an input without influence stays in the middle. False where there are none:
+ * an input (named in reason) stiffens here and softens there, or adds stiffness and mass
+ * together. An input with lo = hi is no obstacle.
  */
 bool mt_enclosure_corners(mt_enclosure *e, const mt_model *model, const int *inputs,
                           const double *lo, const double *hi, double *soft, double *stiff,
                           char *reason);
 /*
- * What raising each input does to the modes over the box lo <= x <= hi, whatever the other inputs are in it: effects[n_inputs]. MT_STIFFENS alone: no frequency falls; MT_SOFTENS alone:
- * none rises; both: neither is shown; 0: no influence. The derivative of every coefficient is enclosed over the whole box.
+ * What raising each input does to the modes over the box lo <= x <= hi, whatever the other
+ * inputs are in it: effects[n_inputs]. MT_STIFFENS alone: no frequency falls; MT_SOFTENS alone:
+ * none rises; both: neither is shown; 0: no influence. The derivative of every coefficient is
+ * enclosed over the whole box.
  */
 enum { MT_STIFFENS = 1, MT_SOFTENS = 2 };
 void mt_enclosure_effects(mt_enclosure *e, const double *lo, const double *hi, int *effects);
-/* Does input i enter both K and M (then only smaller boxes make the enclosure tight)? And does it enter at all? */
+/* Does input i enter both K and M (then only smaller boxes make the enclosure tight)? And does
+ * it enter at all? */
 bool mt_enclosure_loose(const mt_enclosure *e, int i);
 bool mt_enclosure_depends(const mt_enclosure *e, int i);
 

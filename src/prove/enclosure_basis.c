@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Coordinates in which the eigenvalue problem of every box is (nearly) a standard one: M_low is the mass at the low end of the bounds, W the basis with
- * W^T M_low W = I. Then W^T M(x) W >= I within the bounds, so a perturbation of norm e of W^T (K - lambda M) W moves no eigenvalue by more than e.
+ * Coordinates in which the eigenvalue problem of every box is (nearly) a standard one: M_low is
+ * the mass at the low end of the bounds, W the basis with W^T M_low W = I. Then W^T M(x) W >= I
+ * within the bounds, so a perturbation of norm e of W^T (K - lambda M) W moves no eigenvalue by
+ * more than e.
  *
- * Regular M_low = L L^T: W = L^-T, which keeps chains sparse (L is diagonal there). Directions T0 without mass: where the varying springs do not act on them
- * (T0^T r = 0), their static condensation is the same at every design, and the mode shapes Y at the soft corner span {y: T0^T K y = 0}: W = Y.
+ * Regular M_low = L L^T: W = L^-T, which keeps chains sparse (L is diagonal there). Directions
+ * T0 without mass: where the varying springs do not act on them (T0^T r = 0), their static
+ * condensation is the same at every design, and the mode shapes Y at the soft corner span {y:
+ * T0^T K y = 0}: W = Y.
  */
 #include "prove/enclosure_priv.h"
 
@@ -29,7 +33,8 @@ typedef struct basis {
 
 static const mt_term_kind KINDS[MT_MATRICES] = {MT_TERM_STIFFNESS, MT_TERM_MASS};
 
-/* The massless part of a varying spring's row, relative to the row, that counts as none: rounding of rows and null space. */
+/* The massless part of a varying spring's row, relative to the row, that counts as none:
+ * rounding of rows and null space. */
 static const double MASSLESS_SHARE = 1e-12;
 
 static mt_status room(mt_arena *mem, size_t m, size_t n, double **out, mt_err *err)
@@ -161,7 +166,8 @@ static mt_status check_massless(const mt_enclosure *e, const basis *b, mt_arena 
     return MT_OK;
 }
 
-/* Why K low or M low is not positive: the model may be so, or the bounds of couplings are too loose to tell. */
+/* Why K low or M low is not positive: the model may be so, or the bounds of couplings are too
+ * loose to tell. */
 static void say_lost(const mt_enclosure *e, bool unstable, char *reason)
 {
     if (e->coupled != NULL) {
@@ -231,7 +237,8 @@ static mt_status to_basis_matrix(const basis *b, const double *a, mt_arena *scra
     return MT_OK;
 }
 
-/* dense (r x r, lower): the sum of a coefficient's pieces in the basis; returns whether there are any. */
+/* dense (r x r, lower): the sum of a coefficient's pieces in the basis; returns whether there
+ * are any. */
 static bool add_pieces(const mt_enclosure *e, const basis *b, mt_matrix which, int coefficient,
                        double *work, double *dense)
 {
@@ -324,8 +331,10 @@ static bool all_squares(const mt_linear *lin)
 }
 
 /*
- * Slack of an eigenvalue relative to the trace of K (or of lambda M): ROUNDING_ULPS (n + terms) eps, times the condition of the basis, for the rounding of the rows in the
- * basis (n eps each, amplified by the condition), of sums of `terms` parts, and of the model's own evaluation. 16 as the modal room counts (modal_priv.h).
+ * Slack of an eigenvalue relative to the trace of K (or of lambda M): ROUNDING_ULPS (n + terms)
+ * eps, times the condition of the basis, for the rounding of the rows in the basis (n eps each,
+ * amplified by the condition), of sums of `terms` parts, and of the model's own evaluation. 16
+ * as the modal room counts (modal_priv.h).
  */
 static const double ROUNDING_ULPS = 16.0;
 

@@ -2,11 +2,15 @@
 /*
  * One box: bounds of the coefficients, corner matrices, inertia counts.
  *
- * A count is the number of negative pivots of A - sigma M = L D L^T without pivoting, which keeps chains and bands sparse. What is computed is the exact factorisation
- * of a matrix that differs by E, |E| <= g |L||D||L|^T, g = (n + 1) eps (Higham, Accuracy and Stability of Numerical Algorithms, 2002, ch. 10), so that
+ * A count is the number of negative pivots of A - sigma M = L D L^T without pivoting, which
+ * keeps chains and bands sparse. What is computed is the exact factorisation of a matrix that
+ * differs by E, |E| <= g |L||D||L|^T, g = (n + 1) eps (Higham, Accuracy and Stability of
+ * Numerical Algorithms, 2002, ch. 10), so that
  *     ||E||_2 <= g trace(|L||D||L|^T) = g sum_k |d_k| (1 + sum_i l_ik^2),
- * which costs nothing to sum up: growth is seen, not assumed. Since M >= mu I, shifting sigma by e / mu in the safe direction makes the count a bound as long as
- * ||E|| <= e. Where growth is larger, pivoting decides (mt_inertia); where its gap is at rounding level too, nothing is said.
+ * which costs nothing to sum up: growth is seen, not assumed. Since M >= mu I, shifting sigma
+ * by e / mu in the safe direction makes the count a bound as long as ||E|| <= e. Where growth
+ * is larger, pivoting decides (mt_inertia); where its gap is at rounding level too, nothing is
+ * said.
  *
  * e = slack_k + slack_m lambda, at least HARMLESS lambda.
  */
@@ -18,10 +22,12 @@
 
 #include "linalg/dense.h"
 
-/* A shift of lambda by this share moves a frequency by half of it: far below the 1e-6 within which goals are met, and room for the growth of a factorisation without
- * pivoting in all but one case in a thousand or so. */
+/* A shift of lambda by this share moves a frequency by half of it: far below the 1e-6 within
+ * which goals are met, and room for the growth of a factorisation without pivoting in all but
+ * one case in a thousand or so. */
 static const double HARMLESS = 1e-9;
-/* The part of the slack that rounding of A and M itself is given; the rest is for the factorisation. */
+/* The part of the slack that rounding of A and M itself is given; the rest is for the
+ * factorisation. */
 static const double SHARE_OF_DATA = 0.5;
 /* Below this share of n eps a pivot ratio says nothing (mt_inertia's gap). */
 static const double UNSURE_ULPS = 16.0;
@@ -45,7 +51,8 @@ static void assemble(mt_enclosure *e, mt_matrix m, mt_side side)
     }
 }
 
-/* mu: M at the box's low end is at least mu times M at that of the bounds (the identity); 0 where it may not be. */
+/* mu: M at the box's low end is at least mu times M at that of the bounds (the identity); 0
+ * where it may not be. */
 static double least_mass_share(const mt_enclosure *e)
 {
     double mu = 1.0;
@@ -140,7 +147,8 @@ static void shifted(const mt_enclosure *e, const double *k, const double *m, dou
     }
 }
 
-/* Negative pivots of w (destroyed); growth: trace(|L||D||L|^T). A zero pivot counts as tiny and negative; the growth then tells. */
+/* Negative pivots of w (destroyed); growth: trace(|L||D||L|^T). A zero pivot counts as tiny and
+ * negative; the growth then tells. */
 static int negative_pivots(ptrdiff_t n, double *w, double *growth)
 {
     int negative = 0;
@@ -168,7 +176,8 @@ static int negative_pivots(ptrdiff_t n, double *w, double *growth)
     return negative;
 }
 
-/* Modes below sigma at a corner, rigid-body modes included; -1: unsure. room: how far E may go. */
+/* Modes below sigma at a corner, rigid-body modes included; -1: unsure. room: how far E may
+ * go. */
 static int count_below(mt_enclosure *e, mt_side side_k, mt_side side_m, double sigma,
                        double room)
 {
@@ -218,7 +227,8 @@ int mt_enclosure_least_below(mt_enclosure *e, double lambda)
     return count < 0 ? 0 : vibrating(e, count);
 }
 
-/* Eigenvalues of a corner into lambda; *error: slack_k + slack_m |lambda| and the solver's own. */
+/* Eigenvalues of a corner into lambda; *error: slack_k + slack_m |lambda| and the solver's
+ * own. */
 static mt_status solve_corner(mt_enclosure *e, mt_side side_k, mt_side side_m, mt_modes *modes,
                               mt_err *err)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Conditions under which bounds of the coefficients bound the modes, as far as the system's structure shows them. */
+/* Conditions under which bounds of the coefficients bound the modes, as far as the system's
+ * structure shows them. */
 #include "prove/enclosure_priv.h"
 
 #include "base/format.h"
@@ -31,7 +32,8 @@ static void keep(const mt_system *sys, mt_node node, int *found)
     *found = *found >= 0 ? *found : input_of(sys, node);
 }
 
-/* An input that shapes the geometry of stiffness and mass; -1 where none does (where a sensor stands moves no mode). */
+/* An input that shapes the geometry of stiffness and mass; -1 where none does (where a sensor
+ * stands moves no mode). */
 static int shaping_input(const mt_system *sys)
 {
     int found = -1;

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The coefficients that vary: each node once, in a program of their own, so that a box costs no more than it must.
+ * The coefficients that vary: each node once, in a program of their own, so that a box costs no
+ * more than it must.
  *
- * An interval evaluation is tight where each input occurs once in an expression. Where one occurs twice (h^3 b / (h b + ...)) the value at the right corner is
- * used instead: over a box in which the derivative's enclosure has one sign for an input, the extremes lie at that input's ends; and the mean value, the better the smaller the box. Where even
- * so a coefficient is not shown to be positive over the bounds (d^2 - (d - 2 t)^2), they are divided until it is, or an effort is spent; the bound that this gives holds for
- * every box within them.
+ * An interval evaluation is tight where each input occurs once in an expression. Where one
+ * occurs twice (h^3 b / (h b + ...)) the value at the right corner is used instead: over a box
+ * in which the derivative's enclosure has one sign for an input, the extremes lie at that
+ * input's ends; and the mean value, the better the smaller the box. Where even so a coefficient
+ * is not shown to be positive over the bounds (d^2 - (d - 2 t)^2), they are divided until it
+ * is, or an effort is spent; the bound that this gives holds for every box within them.
  */
 #include "prove/enclosure_priv.h"
 
@@ -135,7 +138,8 @@ static mt_status claim_work(mt_enclosure *e, mt_err *err)
 /* Sub-boxes of the bounds that one coefficient may cost. */
 enum { LEAST_BOXES = 512 };
 
-/* The input on which a coefficient depends that is widest as a share of the bounds; -1: none is wide. */
+/* The input on which a coefficient depends that is widest as a share of the bounds; -1: none is
+ * wide. */
 static int widest_input(const mt_enclosure *e, const mt_enclosure_coefficient *c,
                         const double *lo, const double *hi)
 {
@@ -154,7 +158,8 @@ static int widest_input(const mt_enclosure *e, const mt_enclosure_coefficient *c
     return widest;
 }
 
-/* c->least, c->most over the bounds, by sub-boxes where one box does not show that they are positive and finite. */
+/* c->least, c->most over the bounds, by sub-boxes where one box does not show that they are
+ * positive and finite. */
 static mt_status refine(mt_enclosure *e, int i, mt_err *err)
 {
     mt_enclosure_coefficient *const c = &e->coefficients[i];
@@ -239,7 +244,8 @@ mt_status mt_enclosure_collect(mt_enclosure *e, const mt_linear *lin, bool *ok, 
     return check_positive(e, ok, reason, err);
 }
 
-/* The inputs at which a coefficient is least (side MT_LOW) or greatest: the end that its derivative's sign says, the whole interval where it has none. */
+/* The inputs at which a coefficient is least (side MT_LOW) or greatest: the end that its
+ * derivative's sign says, the whole interval where it has none. */
 static void corner_of(mt_enclosure *e, const mt_enclosure_coefficient *c, mt_side side,
                       const double *lo, const double *hi)
 {
@@ -264,7 +270,8 @@ static bool within(const mt_enclosure *e, const double *lo, const double *hi)
     return inside;
 }
 
-/* The middle of the box: f(x) = f(m) + sum_k f_k (x_k - m_k) with f_k from the gradient's enclosure over the box, which dnode holds (mean value). */
+/* The middle of the box: f(x) = f(m) + sum_k f_k (x_k - m_k) with f_k from the gradient's
+ * enclosure over the box, which dnode holds (mean value). */
 static void mean_values(mt_enclosure *e, const double *lo, const double *hi)
 {
     const size_t inputs = (size_t)e->n_inputs;
@@ -293,7 +300,8 @@ static void mean_values(mt_enclosure *e, const double *lo, const double *hi)
     }
 }
 
-/* Bounds of dependent coefficients: the best of the plain enclosure, the mean value's and that of the corners. */
+/* Bounds of dependent coefficients: the best of the plain enclosure, the mean value's and that
+ * of the corners. */
 static void sharpen(mt_enclosure *e, const double *lo, const double *hi)
 {
     mt_program_interval_gradient(&e->program, lo, hi, e->node[MT_LOW], e->node[MT_HIGH],

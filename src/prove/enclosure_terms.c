@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The varying terms as coefficients c(x) >= 0 times positive semidefinite matrices. A term that is a sum of squares of rows is one. A term that couples two rows,
+ * The varying terms as coefficients c(x) >= 0 times positive semidefinite matrices. A term that
+ * is a sum of squares of rows is one. A term that couples two rows,
  *     c (a b^T + b a^T) / 2,
- * is not; but all terms of one block (a bushing, an inertia tensor) whose coefficients are one product f(x) times constants form f R^T B R with a constant B, which is semidefinite
- * or not: it is asked. Where it is not, or where there is no common f,
+ * is not; but all terms of one block (a bushing, an inertia tensor) whose coefficients are one
+ * product f(x) times constants form f R^T B R with a constant B, which is semidefinite or not:
+ * it is asked. Where it is not, or where there is no common f,
  *     c (a b^T + b a^T) / 2 = c (s a + b/s)(s a + b/s)^T / 4 - c (s a - b/s)(s a - b/s)^T / 4,
- * two semidefinite matrices with coefficients c and -c of either sign: bounds of them are bounds still, less tight ones, the least loose with s^2 = |b|/|a|.
+ * two semidefinite matrices with coefficients c and -c of either sign: bounds of them are
+ * bounds still, less tight ones, the least loose with s^2 = |b|/|a|.
  */
 #include "prove/enclosure_priv.h"
 
@@ -18,7 +21,8 @@ enum { FACTORS = 8, STACK = 32, BLOCK = 6, BLOCK_TERMS = 64 };
 
 static const mt_term_kind KINDS[MT_MATRICES] = {MT_TERM_STIFFNESS, MT_TERM_MASS};
 
-/* Below minus this times n eps an eigenvalue of a block of unit diagonal is negative: rounding of its constants. */
+/* Below minus this times n eps an eigenvalue of a block of unit diagonal is negative: rounding
+ * of its constants. */
 static const double NEGATIVE_ULPS = 16.0;
 
 /* constant x product of base^power, bases ascending. */
@@ -89,7 +93,8 @@ static bool proportional(const monomial *a, const monomial *b)
     return same;
 }
 
-/* What row `which` (0, 1) of a term is a row of: the measure of a spring, the body and axis of a rotation; -1: terms that are in no block. */
+/* What row `which` (0, 1) of a term is a row of: the measure of a spring, the body and axis of
+ * a rotation; -1: terms that are in no block. */
 static int key_of(const mt_linear *lin, mt_matrix m, int term, int which)
 {
     const mt_system *const sys = lin->sys;
@@ -122,7 +127,8 @@ static int place_of(const block *b, int key)
     return -1;
 }
 
-/* Let the block grow over the terms that couple one of its rows to another; false where it grows too large. */
+/* Let the block grow over the terms that couple one of its rows to another; false where it
+ * grows too large. */
 static bool grow(const mt_linear *lin, mt_matrix m, block *b)
 {
     const mt_term_list *const list = &lin->list[KINDS[m]];
@@ -148,7 +154,8 @@ static bool grow(const mt_linear *lin, mt_matrix m, block *b)
     return true;
 }
 
-/* The terms of the block; false where there are too many, or none that could be its reference. */
+/* The terms of the block; false where there are too many, or none that could be its
+ * reference. */
 static bool gather(const mt_linear *lin, mt_matrix m, const mt_enclosure *e, block *b)
 {
     const mt_term_list *const list = &lin->list[KINDS[m]];
@@ -175,7 +182,8 @@ static bool gather(const mt_linear *lin, mt_matrix m, const mt_enclosure *e, blo
     return b->reference >= 0;
 }
 
-/* B, lower, its diagonal made one so that units do not matter; false where an entry of that is not positive. */
+/* B, lower, its diagonal made one so that units do not matter; false where an entry of that is
+ * not positive. */
 static bool block_matrix(const mt_linear *lin, mt_matrix m, const block *b, double *a)
 {
     const mt_term_list *const list = &lin->list[KINDS[m]];
@@ -267,11 +275,9 @@ static mt_status list_pair(mt_enclosure *e, const mt_linear *lin, mt_matrix m, i
                            mt_err *err)
 {
     const mt_node node = lin->list[KINDS[m]].terms[term].coefficient;
-    block b = {
-        .factor = monomial_of(&lin->sys->program, node),
-        .n = 2,
-        .key = {key_of(lin, m, term, 0), key_of(lin, m, term, 1)}
-    };
+    block b = {.factor = monomial_of(&lin->sys->program, node),
+               .n = 2,
+               .key = {key_of(lin, m, term, 0), key_of(lin, m, term, 1)}};
     bool whole = b.factor.known && grow(lin, m, &b) && gather(lin, m, e, &b);
     if (whole) {
         MT_TRY(semidefinite(lin, m, &b, &e->scratch, &whole, err));

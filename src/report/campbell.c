@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Campbell diagrams: frequency over the speed of what turns. Orders are straight lines through the origin, modes horizontals; where they cross within the operating range a
- * mode is excited. One diagram for each rotor and machine that the study avoids.
+ * Campbell diagrams: frequency over the speed of what turns. Orders are straight lines through
+ * the origin, modes horizontals; where they cross within the operating range a mode is excited.
+ * One diagram for each rotor and machine that the study avoids.
  */
 #include <math.h>
 #include <string.h>
@@ -87,7 +88,8 @@ static bool take_label(plot *p, double y)
     return true;
 }
 
-/* A row above the plot where a label of so many letters has room at x, which it then takes; -1: none. */
+/* A row above the plot where a label of so many letters has room at x, which it then takes; -1:
+ * none. */
 static int take_top(plot *p, double x, size_t letters)
 {
     const double half = 0.5 * LETTER * (double)letters;
@@ -107,7 +109,8 @@ static int take_top(plot *p, double x, size_t letters)
     return -1;
 }
 
-/* The greater of the mode's frequencies that are shown and lie at or below `top`; 0 where there is none. */
+/* The greater of the mode's frequencies that are shown and lie at or below `top`; 0 where there
+ * is none. */
 static double within(const plot *p, const mt_result_frequency *f, double top)
 {
     const double before = p->before && f->original_hz <= top ? f->original_hz : 0.0;
@@ -115,7 +118,8 @@ static double within(const plot *p, const mt_result_frequency *f, double top)
     return concerns(p, f) ? fmax(before, after) : 0.0;
 }
 
-/* As high as the modes that some order comes near to; one that lies far above all of them would press the rest flat. */
+/* As high as the modes that some order comes near to; one that lies far above all of them would
+ * press the rest flat. */
 static void set_scales(plot *p)
 {
     double modes = 0.0;

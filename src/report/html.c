@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The report of a study as one page: what was asked, what to change, why, and how far to trust it. */
+/* The report of a study as one page: what was asked, what to change, why, and how far to trust
+ * it. */
 #include "report/number.h"
 #include "report/result_tables.h"
 #include "report/summary.h"

@@ -7,7 +7,8 @@
 #include "base/format.h"
 #include "report/number.h"
 
-/* Frequencies to 6 digits show changes of 1e-5; percentages and sizes of changes need no more than 3; parameters 6, as a drawing would. */
+/* Frequencies to 6 digits show changes of 1e-5; percentages and sizes of changes need no more
+ * than 3; parameters 6, as a drawing would. */
 enum {
     HZ_DIGITS = 6,
     VALUE_DIGITS = 6,
@@ -151,7 +152,8 @@ mt_table mt_report_goals(const mt_recommendation *r)
     return t;
 }
 
-/* The clearance of the same mode on the other side: the lists have a mode's lower band first. */
+/* The clearance of the same mode on the other side: the lists have a mode's lower band
+ * first. */
 static bool same_mode(const mt_result_clearance *a, const mt_result_clearance *b)
 {
     return a->mode == b->mode && strcmp(a->configuration, b->configuration) == 0;
@@ -352,7 +354,8 @@ bool mt_report_verified(const mt_result *result, int *judged)
     return all;
 }
 
-/* "4 x installed mode 1 at 18 Hz": a goal by its words, which are the first demand's where it has several. */
+/* "4 x installed mode 1 at 18 Hz": a goal by its words, which are the first demand's where it
+ * has several. */
 static void weight_cell(mt_table *t, const mt_result *result, const char *goal, double factor)
 {
     char text[WEIGHT_TEXT];

@@ -5,34 +5,43 @@
 #include "report/table.h"
 #include "result/result.h"
 
-/* Tables of a result; the caller frees them. Frequencies have 6 significant digits, changes 3. */
+/* Tables of a result; the caller frees them. Frequencies have 6 significant digits, changes
+ * 3. */
 
-/* configuration, mode, name, original, recommended, target or limits, error, MAC with the reference. */
+/* configuration, mode, name, original, recommended, target or limits, error, MAC with the
+ * reference. */
 mt_table mt_report_frequencies(const mt_recommendation *r);
 /* name, unit, original, recommended, change, bound. */
 mt_table mt_report_parameters(const mt_recommendation *r);
-/* How the change of a parameter counts, as a sentence; false (and nothing) where it is the plain logarithm. */
+/* How the change of a parameter counts, as a sentence; false (and nothing) where it is the
+ * plain logarithm. */
 bool mt_report_measure(const mt_result_parameter *p, mt_text *out);
 /* goal, value, demand, violation, met. */
 mt_table mt_report_goals(const mt_recommendation *r);
-/* Each mode beside its neighbouring bands, one line per mode: the band below it and the band above it with the distance to each. */
+/* Each mode beside its neighbouring bands, one line per mode: the band below it and the band
+ * above it with the distance to each. */
 mt_table mt_report_clearances(const mt_recommendation *r);
-/* One row for each drive with several positions: where the motion between them comes nearest to a band. */
+/* One row for each drive with several positions: where the motion between them comes nearest to
+ * a band. */
 mt_table mt_report_motions(const mt_recommendation *r);
 /* Bands and how many modes lie below each. */
 mt_table mt_report_gaps(const mt_recommendation *r);
 /* One line per recommendation. */
 mt_table mt_report_alternatives(const mt_result *result);
-/* Under other weights: parameter, unit, value, low, high, change of both, and what takes them there. */
+/* Under other weights: parameter, unit, value, low, high, change of both, and what takes them
+ * there. */
 mt_table mt_report_spread(const mt_result *result);
-/* One line per point of the trade study: what varies, status, score, change, clearance, parameters. No columns where there is none (trade.c). */
+/* One line per point of the trade study: what varies, status, score, change, clearance,
+ * parameters. No columns where there is none (trade.c). */
 mt_table mt_report_trade(const mt_result *result);
 /* label, published, computed, difference, role, source, verdict. */
 mt_table mt_report_published(const mt_result *result);
-/* The whole of all designs, one row each (rank 0: the baseline), for a spreadsheet: recommendations.csv. */
+/* The whole of all designs, one row each (rank 0: the baseline), for a spreadsheet:
+ * recommendations.csv. */
 mt_table mt_report_designs(const mt_result *result);
 
-/* Does every published entry that can be compared hold? *judged (may be NULL): how many of them there are. */
+/* Does every published entry that can be compared hold? *judged (may be NULL): how many of them
+ * there are. */
 bool mt_report_verified(const mt_result *result, int *judged);
 /* "holds", "fails", "not comparable" */
 const char *mt_report_verdict(const mt_result_published *p);

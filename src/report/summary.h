@@ -5,27 +5,33 @@
 #include "base/text.h"
 #include "result/result.h"
 
-/* What a result says, as text for a terminal: status, goals, frequencies, parameters, reasons, alternatives, what stays undetermined, certificates and,
- * where asked for, published against computed. Memory running out shows in out->failed. */
+/* What a result says, as text for a terminal: status, goals, frequencies, parameters, reasons,
+ * alternatives, what stays undetermined, certificates and, where asked for, published against
+ * computed. Memory running out shows in out->failed. */
 void mt_report_summary(const mt_result *result, bool with_published, mt_text *out);
-/* Of it, what the goals leave open: undetermined directions and the spread under other weights. Nothing where there is neither. */
+/* Of it, what the goals leave open: undetermined directions and the spread under other weights.
+ * Nothing where there is neither. */
 void mt_report_uncertainty(const mt_result *result, mt_text *out);
 
-/* Doubts with their places, then facts, each list under its title; nothing where there are none. */
+/* Doubts with their places, then facts, each list under its title; nothing where there are
+ * none. */
 void mt_report_doubts(const mt_doubt_list *list, mt_text *out);
 /* One of them, in one line without its end: "stick.json:12:9: /goals/0: installed: ..." */
 void mt_report_doubt(const mt_doubt *d, bool with_place, mt_text *out);
-/* Does a doubt stand about the question? Then nothing is called proven without saying so: the word for a certificate. */
+/* Does a doubt stand about the question? Then nothing is called proven without saying so: the
+ * word for a certificate. */
 bool mt_report_doubtful(const mt_result *result);
 const char *mt_report_surety(bool proven, bool doubtful);
 
-/* The same as one self-contained HTML page (no scripts, nothing loaded from elsewhere, figures as inline SVG), light and printable. */
+/* The same as one self-contained HTML page (no scripts, nothing loaded from elsewhere, figures
+ * as inline SVG), light and printable. */
 void mt_report_html(const mt_result *result, mt_text *out);
 /* Its figures; that of a trade study only where there is one and some point meets its goals. */
 void mt_report_svg_trade(const mt_result *result, mt_text *out);
 void mt_report_svg_frequencies(const mt_recommendation *r, mt_text *out);
 void mt_report_svg_changes(const mt_recommendation *r, mt_text *out);
-/* A Campbell diagram with its heading for each rotor and machine that the study avoids (campbell.c). */
+/* A Campbell diagram with its heading for each rotor and machine that the study avoids
+ * (campbell.c). */
 void mt_report_svg_campbell(const mt_result *result, mt_text *out);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The figures of the report: one row per frequency or parameter, drawn to a common linear scale. */
+/* The figures of the report: one row per frequency or parameter, drawn to a common linear
+ * scale. */
 #include "report/svg.h"
 
 #include <math.h>

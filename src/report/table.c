@@ -105,7 +105,8 @@ void mt_table_quoted(mt_table *t, double value)
              mt_report_exact(value, exact));
 }
 
-/* Below this a percentage says nothing: the tightest tolerance of a goal is 1e-4 % by default, and frequencies carry relative rounding of about 1e-14. */
+/* Below this a percentage says nothing: the tightest tolerance of a goal is 1e-4 % by default,
+ * and frequencies carry relative rounding of about 1e-14. */
 static const double PERCENT_NOISE = 1e-9;
 
 void mt_table_percent(mt_table *t, double value, int digits)
@@ -255,8 +256,10 @@ static bool is_number(const char *s)
 }
 
 /*
- * Would a spreadsheet take the cell for a formula? They do where it begins with = + - @ (tabs and line ends are escaped before), some with their full-width
- * forms, some after blanks. A cell that has an apostrophe there already is counted in, so that taking one away always gives the text back.
+ * Would a spreadsheet take the cell for a formula? They do where it begins with = + - @ (tabs
+ * and line ends are escaped before), some with their full-width forms, some after blanks. A
+ * cell that has an apostrophe there already is counted in, so that taking one away always gives
+ * the text back.
  */
 static bool is_formula(const char *s)
 {

@@ -6,8 +6,9 @@
 #include "base/text.h"
 
 /*
- * A table, made once and printed in any of three forms: aligned text, CSV (RFC 4180), HTML. Columns first, then cells row by row. Memory running out is
- * remembered and passed on to the mt_text that the table is printed into: check that one at the end.
+ * A table, made once and printed in any of three forms: aligned text, CSV (RFC 4180), HTML.
+ * Columns first, then cells row by row. Memory running out is remembered and passed on to the
+ * mt_text that the table is printed into: check that one at the end.
  */
 typedef enum mt_align {
     MT_ALIGN_LEFT,
@@ -53,17 +54,20 @@ void mt_table_quoted(mt_table *t, double value);
 void mt_table_percent(mt_table *t, double value, int digits);
 int mt_table_rows(const mt_table *t);
 
-/* Heading, rule, rows; two blanks between columns, `indent` before the first, none behind the last. */
+/* Heading, rule, rows; two blanks between columns, `indent` before the first, none behind the
+ * last. */
 void mt_table_print(const mt_table *t, int indent, mt_text *out);
 /* Header line and rows, each ended by CR LF. */
 void mt_table_csv(const mt_table *t, mt_text *out);
 /* <table>...</table>, every text escaped. */
 void mt_table_html(const mt_table *t, mt_text *out);
 
-/* One CSV field, quoted where RFC 4180 asks for it, in one line: control characters are made visible (base/visible.h). Text that a spreadsheet would take for a
- * formula (it begins with = + - @) gets an apostrophe in front; a number does not. */
+/* One CSV field, quoted where RFC 4180 asks for it, in one line: control characters are made
+ * visible (base/visible.h). Text that a spreadsheet would take for a formula (it begins with =
+ * + - @) gets an apostrophe in front; a number does not. */
 void mt_csv_field(const char *s, mt_text *out);
-/* Text within HTML or a quoted attribute: & < > " ' become references, control characters but tab and line feed are made visible. */
+/* Text within HTML or a quoted attribute: & < > " ' become references, control characters but
+ * tab and line feed are made visible. */
 void mt_html_escape(const char *s, mt_text *out);
 
 #endif

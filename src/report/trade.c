@@ -92,10 +92,7 @@ static bool drawn(const mt_trade_point *p)
 
 static frame frame_of(const mt_trade_result *trade)
 {
-    frame f = {
-        { HUGE_VAL,  HUGE_VAL},
-        {-HUGE_VAL, -HUGE_VAL}
-    };
+    frame f = {{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
     for (int i = 0; i < trade->n_points; i++) {
         const mt_trade_point *const p = &trade->points[i];
         const double at[2] = {p->values[trade->n_vary - 1], p->best.score};
@@ -148,7 +145,8 @@ static void axes(const frame *f, const mt_result *result, mt_text *out)
     mt_text_add(out, v->unit != NULL ? "]</text>\n" : "</text>\n");
 }
 
-/* Points first .. first + n - 1 as one line; a point without a design that meets the goals breaks it. */
+/* Points first .. first + n - 1 as one line; a point without a design that meets the goals
+ * breaks it. */
 static void curve(const frame *f, const mt_trade_result *trade, int first, int n,
                   const char *colour, mt_text *out)
 {

@@ -9,7 +9,8 @@
 #include "base/arena.h"
 #include "base/doubt.h"
 
-/* What a study answers: plain records, no computation. All texts live in the result's arena. NaN: not applicable (written as null). */
+/* What a study answers: plain records, no computation. All texts live in the result's arena.
+ * NaN: not applicable (written as null). */
 
 typedef struct mt_result_parameter {
     const char *name;
@@ -42,11 +43,13 @@ typedef struct mt_result_frequency {
     double highest_hz;
     double residual; /* LAPACK-style ratio of this mode */
     double orthogonality;
-    /* [n_parameters] Hz per unit of each variable; NaN at a repeated mode; NULL: not computed */
+    /* [n_parameters] Hz per unit of each variable; NaN at a repeated mode; NULL: not
+     * computed */
     double *sensitivity;
     bool repeated;
-    const char *
-        slack; /* of a vibration of 0 Hz (not written: reasons tell): the springs of zero stiffness that would hold it, "" where none would; NULL: it is held */
+    /* of a vibration of 0 Hz (not written: reasons tell): the springs of zero stiffness that
+     * would hold it, "" where none would; NULL: it is held */
+    const char *slack;
 } mt_result_frequency;
 
 /* A goal judged at a design. */
@@ -59,7 +62,8 @@ typedef struct mt_result_goal {
     bool met;
     bool weighted; /* part of the misfit: does not decide status */
     bool doubtful; /* its named mode is ambiguous or lost: not met, whatever the number */
-    /* the worst value over the tolerances of the variables, which the goal is judged by; NaN: none */
+    /* the worst value over the tolerances of the variables, which the goal is judged by; NaN:
+     * none */
     double worst;
     double *worst_at; /* [n_parameters] where that is; NULL: none */
 } mt_result_goal;
@@ -73,7 +77,8 @@ typedef struct mt_result_clearance {
     double percent; /* of the nearest edge of the band without its margin; negative inside */
     double margin_percent; /* what was asked for at that edge */
     const char *side;      /* where the mode lies: "below", "inside", "above" */
-    /* over the tolerances of the variables: nearest to the band, or deepest inside; NaN: none */
+    /* over the tolerances of the variables: nearest to the band, or deepest inside; NaN:
+     * none */
     double worst_hz;
     double worst_percent;
 } mt_result_clearance;
@@ -97,17 +102,17 @@ typedef struct mt_result_motion {
     double from;         /* first and last named position */
     double to;
     int positions; /* that were looked at; 0: none */
-    double
-        least_clearance_percent; /* of an edge of a band without its margin, negative beyond it; NaN: not followed */
+    /* of an edge of a band without its margin, negative beyond it; NaN: not followed */
+    double least_clearance_percent;
     double margin_percent; /* asked for there */
     double at;             /* where it is */
     double hz;
     int mode;         /* whose it is, or which crosses; 0: none */
     const char *band; /* NULL: none */
-    bool
-        crosses; /* a mode is nearer to a band than its margin, or inside, between the positions */
-    const char *
-        grade; /* "sampled" | "sampled coarsely" | "incomplete" | "unstable" | "not followed" */
+    /* a mode is nearer to a band than its margin, or inside, between the positions */
+    bool crosses;
+    /* "sampled" | "sampled coarsely" | "incomplete" | "unstable" | "not followed" */
+    const char *grade;
     const char *text; /* in words, without a full stop */
 } mt_result_motion;
 
@@ -120,7 +125,8 @@ typedef struct mt_result_tolerance {
 /* Inside it the bands, without their margin, are kept. */
 typedef struct mt_tolerance_box {
     double all_percent; /* all variables together; 0 for a design on an edge */
-    /* what would be met there: "mode 2 of \"installed\" at the lower edge of 4P of UH-60"; NULL */
+    /* what would be met there: "mode 2 of \"installed\" at the lower edge of 4P of UH-60";
+     * NULL */
     const char *edge;
     bool proven; /* false: sampled */
     int n_variables;
@@ -132,16 +138,18 @@ typedef struct mt_recommendation {
     bool feasible;
     /* "feasible and proven" | "feasible" | "compromise" | "infeasible" | "not verified" */
     const char *grade;
-    const char *
-        disagreement; /* of a fresh analysis with what the search read, in words (not written: warnings and reasons tell); NULL: none */
-    double score;     /* first objective's value in its unit; NaN where infeasible */
+    /* of a fresh analysis with what the search read, in words (not written: warnings and
+     * reasons tell); NULL: none */
+    const char *disagreement;
+    double score; /* first objective's value in its unit; NaN where infeasible */
     const char *score_unit;
     double change; /* size of the redesign */
     double misfit; /* NaN: no weighted goals */
     double violation_percent;
     double clearance_percent; /* least of all clearances; NaN: no bands */
     double kkt_residual;      /* relative; NaN where not an optimum */
-    /* how the worst over the tolerances of the variables is known: "proven", "sampled"; NULL: they have none */
+    /* how the worst over the tolerances of the variables is known: "proven", "sampled"; NULL:
+     * they have none */
     const char *worst_case;
     bool singular; /* a double solution: the Jacobian of the goals is singular here */
     int n_parameters;
@@ -170,7 +178,8 @@ typedef struct mt_undetermined {
     double effect_percent;
 } mt_undetermined;
 
-/* Where a variable of the best design moves when the weight of one goal at a time is changed. */
+/* Where a variable of the best design moves when the weight of one goal at a time is
+ * changed. */
 typedef struct mt_result_spread {
     const char *parameter;
     const char *unit; /* may be NULL */
@@ -211,7 +220,8 @@ typedef struct mt_certificate {
     double reachable_upper_hz;
 } mt_certificate;
 
-/* One number of the question that, moved so far with everything else as it is, lets a design meet all goals. */
+/* One number of the question that, moved so far with everything else as it is, lets a design
+ * meet all goals. */
 typedef struct mt_relaxation {
     const char *kind;    /* "bound" | "band" | "goal" */
     const char *pointer; /* what it belongs to: "/variables/0", "/goals/2" */
@@ -220,8 +230,8 @@ typedef struct mt_relaxation {
     double from;
     double to;
     double change_percent; /* of |from|; NaN where that is 0 */
-    double *
-        design; /* [n_variables] values of the variables of a design that then meets all goals */
+    /* [n_variables] values of the variables of a design that then meets all goals */
+    double *design;
     const char *text; /* as a sentence */
 } mt_relaxation;
 
@@ -286,7 +296,9 @@ typedef struct mt_result_run {
     int n_outputs; /* files written beside the result; 0: it is written alone */
     const char **output_names;
     const char **output_sha256;
-    int n_incomplete; /* phases that an interrupt cut, or that were not begun because of it, by the names of what they write ("search", "spread", ...) */
+    /* phases that an interrupt cut, or that were not begun because of it, by the names of what
+     * they write ("search", "spread", ...) */
+    int n_incomplete;
     const char **incomplete;
 } mt_result_run;
 
@@ -318,8 +330,8 @@ typedef struct mt_result {
     mt_result_published *published;
     int n_warnings;
     const char **warnings;
-    mt_doubt_list
-        doubts; /* facts of the model and doubts about the question, said before anything else */
+    /* facts of the model and doubts about the question, said before anything else */
+    mt_doubt_list doubts;
     mt_result_run run;
 } mt_result;
 

@@ -7,7 +7,8 @@
 
 #include "problem/family.h"
 
-/* Combinations between two looks at what is left to do: enough for any number of workers, few enough to stop in time. Fixed, so that results do not depend on the workers. */
+/* Combinations between two looks at what is left to do: enough for any number of workers, few
+ * enough to stop in time. Fixed, so that results do not depend on the workers. */
 enum { BATCH = 4096, BATCH_MIXED = 16 };
 /* Designs that are kept for alternatives, where the study does not ask for more. */
 enum { KEPT = 16 };
@@ -84,7 +85,8 @@ static mt_status list_all(const mt_discrete *d, int n, mt_combination **out, mt_
     return MT_OK;
 }
 
-/* By the change that cannot be avoided, then in the order of the list (pick lies in one array in that order). */
+/* By the change that cannot be avoided, then in the order of the list (pick lies in one array
+ * in that order). */
 static int by_change(const void *a, const void *b)
 {
     const mt_combination *const x = a;
@@ -101,7 +103,8 @@ static int kept_at_most(const mt_discrete *d)
     return asked > KEPT ? asked : KEPT;
 }
 
-/* The best `most` of list[n], ranked, into best[*n_best]: insertion, so that equal ones keep their order. What would be among them is followed over its motion first. */
+/* The best `most` of list[n], ranked, into best[*n_best]: insertion, so that equal ones keep
+ * their order. What would be among them is followed over its motion first. */
 static mt_status rank(mt_discrete *d, mt_combination *const *list, int n, int most,
                       mt_combination **best, int *n_best, mt_err *err)
 {
@@ -125,7 +128,8 @@ static mt_status rank(mt_discrete *d, mt_combination *const *list, int n, int mo
     return MT_OK;
 }
 
-/* Can no combination from here on rank among the best? All of them change more than the last of these. */
+/* Can no combination from here on rank among the best? All of them change more than the last of
+ * these. */
 static bool settled(const mt_discrete *d, const mt_combination *next, int most,
                     mt_combination *const *best, int n_best)
 {
@@ -133,7 +137,8 @@ static bool settled(const mt_discrete *d, const mt_combination *next, int most,
            best[most - 1]->feasible && next->least > best[most - 1]->f[0];
 }
 
-/* Evaluations that each combination of the next batch may use; 0: no limit; -1: the budget is spent. */
+/* Evaluations that each combination of the next batch may use; 0: no limit; -1: the budget is
+ * spent. */
 static long share_of_budget(const mt_discrete *d, int batch)
 {
     const long most = d->p->study->search.max_evaluations;
@@ -204,7 +209,8 @@ static mt_status look(mt_discrete *d, double combinations, ranking *r,
     return MT_OK;
 }
 
-/* In the form of any other search: no multipliers, a bound only where a continuous variable stands at one. */
+/* In the form of any other search: no multipliers, a bound only where a continuous variable
+ * stands at one. */
 static mt_status to_solution(const mt_discrete *d, const mt_combination *c,
                              mt_nlp_solution *out, mt_err *err)
 {

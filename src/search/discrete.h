@@ -6,13 +6,18 @@
 #include "result/result.h"
 
 /*
- * Search with catalogues. A combination is one value from every catalogue; the other variables, where there are any, are searched continuously for each combination (a search
- * like any other, over gap assignments where there are bands).
+ * Search with catalogues. A combination is one value from every catalogue; the other variables,
+ * where there are any, are searched continuously for each combination (a search like any other,
+ * over gap assignments where there are bands).
  *
- * Few combinations are enumerated, all of them, in the order of the change that they cannot do without; with the objective "change" the enumeration ends where no later one can rank among
- * those that are kept. Beyond MT_DISCRETE_MOST combinations (MT_DISCRETE_MOST_MIXED where continuous variables remain) the search is a heuristic: the relaxed
- * problem (every catalogue as the interval that it spans), roundings of its designs, then steps to neighbouring values while these help. What neither settles, branch and bound does where the
- * modes can be enclosed (discrete_prove.c): which gap assignments some combination has, that none meets all goals, that none is better than the best found.
+ * Few combinations are enumerated, all of them, in the order of the change that they cannot do
+ * without; with the objective "change" the enumeration ends where no later one can rank among
+ * those that are kept. Beyond MT_DISCRETE_MOST combinations (MT_DISCRETE_MOST_MIXED where
+ * continuous variables remain) the search is a heuristic: the relaxed problem (every catalogue
+ * as the interval that it spans), roundings of its designs, then steps to neighbouring values
+ * while these help. What neither settles, branch and bound does where the modes can be enclosed
+ * (discrete_prove.c): which gap assignments some combination has, that none meets all goals,
+ * that none is better than the best found.
  */
 enum { MT_DISCRETE_MOST = 200000, MT_DISCRETE_MOST_MIXED = 400 };
 
@@ -21,8 +26,9 @@ typedef struct mt_discrete_report {
     bool all;            /* every combination was judged, or shown not to rank */
     double combinations; /* how many there are */
     int judged;
-    bool
-        driven; /* several positions of one drive: only combinations that might rank were followed between them */
+    /* several positions of one drive: only combinations that might rank were followed between
+     * them */
+    bool driven;
     int followed; /* of the feasible ones */
     int feasible; /* of those judged: combinations with a design that meets all goals */
     /* branch and bound */
@@ -31,8 +37,9 @@ typedef struct mt_discrete_report {
     int n_kinds;       /* assignments that a combination has */
     double n_possible; /* monotone assignments there are; 1 without bands */
     bool complete;     /* no goal was left out of the question */
-    double
-        best_within; /* proven: no design's objective is less by more than this share of the best one's; NaN: not proven */
+    /* proven: no design's objective is less by more than this share of the best one's; NaN: not
+     * proven */
+    double best_within;
     long boxes;
     const char *reason; /* why there is no proof; NULL */
 } mt_discrete_report;
@@ -73,23 +80,29 @@ typedef struct mt_discrete {
 
 bool mt_study_is_discrete(const mt_study *study);
 /*
- * problems[n_workers] as for mt_search_designs. Designs by the objectives in order (equal to 12 digits: in the order of the combinations), each combination once; else, where none is
- * feasible, by the squares of the violations. out->solutions belong to stage 0. Deterministic for any number of workers. Results in mem. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INPUT.
+ * problems[n_workers] as for mt_search_designs. Designs by the objectives in order (equal to 12
+ * digits: in the order of the combinations), each combination once; else, where none is
+ * feasible, by the squares of the violations. out->solutions belong to stage 0. Deterministic
+ * for any number of workers. Results in mem. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INPUT.
  */
 mt_status mt_discrete_solve(mt_problem *const *problems, int n_workers, mt_arena *mem,
                             mt_nlp_result *out, mt_discrete_report *report, mt_err *err);
 
-/* discrete_judge.c: judge list[n], on workers; at most budget evaluations for each where it is mixed (0: no limit). Adds to the search's counters. */
+/* discrete_judge.c: judge list[n], on workers; at most budget evaluations for each where it is
+ * mixed (0: no limit). Adds to the search's counters. */
 mt_status mt_discrete_judge(mt_discrete *d, int n, mt_combination *list, long budget,
                             mt_err *err);
-/* discrete_undetermined.c: directions that the goals do not settle at the best combination, into out: single catalogues any of whose values does, and those of the continuous variables with the
- * catalogues as they are. Searches that combination once more where it is mixed. */
+/* discrete_undetermined.c: directions that the goals do not settle at the best combination,
+ * into out: single catalogues any of whose values does, and those of the continuous variables
+ * with the catalogues as they are. Searches that combination once more where it is mixed. */
 mt_status mt_discrete_undetermined(mt_discrete *d, const mt_combination *best,
                                    mt_nlp_result *out, mt_err *err);
-/* discrete_judge.c: search the continuous variables of c once more, for those directions (nothing of c is changed); memory of out->undetermined is mem's. */
+/* discrete_judge.c: search the continuous variables of c once more, for those directions
+ * (nothing of c is changed); memory of out->undetermined is mem's. */
 mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_arena *mem,
                                  mt_nlp_result *out, mt_err *err);
-/* Judge a feasible combination over the range of motion (motion.h), once; nothing where it is mixed (its own search has done so). It may be feasible no more. */
+/* Judge a feasible combination over the range of motion (motion.h), once; nothing where it is
+ * mixed (its own search has done so). It may be feasible no more. */
 mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err);
 /* Is a ahead of b? Feasible ones first, by the objectives; the others by squares. */
 bool mt_discrete_before(const mt_discrete *d, const mt_combination *a, const mt_combination *b);
@@ -97,7 +110,8 @@ bool mt_discrete_before(const mt_discrete *d, const mt_combination *a, const mt_
 mt_status mt_discrete_alloc(const mt_discrete *d, int n, mt_combination **out, mt_err *err);
 /* Coordinates and unavoidable change of c from its pick. */
 void mt_discrete_set(const mt_discrete *d, mt_combination *c);
-/* discrete_prove.c: what branch and bound can settle, into the report; combinations that it finds join (*all)[*n], judged. */
+/* discrete_prove.c: what branch and bound can settle, into the report; combinations that it
+ * finds join (*all)[*n], judged. */
 mt_status mt_discrete_prove(mt_discrete *d, mt_combination ***all, int *n,
                             mt_discrete_report *report, mt_err *err);
 /* discrete_near.c: the heuristic. (*list)[*n] are the combinations that it has judged. */

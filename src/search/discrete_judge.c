@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Judge combinations of catalogue values. Where nothing else varies a combination is a design: one evaluation. Else it is a study of its own, in which
- * the bounds of the catalogues' variables are closed on their values.
+ * Judge combinations of catalogue values. Where nothing else varies a combination is a design:
+ * one evaluation. Else it is a study of its own, in which the bounds of the catalogues'
+ * variables are closed on their values.
  */
 #include <math.h>
 #include <string.h>
@@ -12,9 +13,11 @@
 #include "search/motion.h"
 #include "search/search.h"
 
-/* Combinations in one task: long enough to pay for its start, short enough to share out well. */
+/* Combinations in one task: long enough to pay for its start, short enough to share out
+ * well. */
 enum { PER_TASK = 64 };
-/* Bits of an objective that count in a comparison: 12 decimal digits, as equal designs on different ways agree. */
+/* Bits of an objective that count in a comparison: 12 decimal digits, as equal designs on
+ * different ways agree. */
 enum { BITS = 40 };
 /* Starts of the continuous search of one combination: 4 + 2 n, where the study does not say. */
 enum { STARTS_BASE = 4, STARTS_PER_VARIABLE = 2 };
@@ -91,7 +94,8 @@ static void demand_more(mt_combination *c, double short_of, double tolerance)
     c->violation = fmax(c->violation, short_of / tolerance);
 }
 
-/* Bands, each mode against each of them; the objective "clearance" is the least room left, negative. */
+/* Bands, each mode against each of them; the objective "clearance" is the least room left,
+ * negative. */
 static void judge_bands(const mt_problem *p, mt_combination *c)
 {
     double room = HUGE_VAL;
@@ -212,7 +216,8 @@ static mt_status judge_designs(void *context, int worker, int task, mt_err *err)
     return MT_OK;
 }
 
-/* The study with the bounds of its catalogues closed on c's values; it borrows everything else. */
+/* The study with the bounds of its catalogues closed on c's values; it borrows everything
+ * else. */
 static mt_status close_study(const judging *j, const mt_combination *c, mt_arena *mem,
                              mt_study *out, mt_err *err)
 {

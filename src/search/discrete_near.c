@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Too many combinations to try: search as if every catalogue were an interval, round what comes out in all ways that its most undecided variables allow, then step from
- * the best to neighbouring values (one variable, or two at a time) while that helps. Nothing is proven by this.
+ * Too many combinations to try: search as if every catalogue were an interval, round what comes
+ * out in all ways that its most undecided variables allow, then step from the best to
+ * neighbouring values (one variable, or two at a time) while that helps. Nothing is proven by
+ * this.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -83,7 +85,8 @@ static mt_status judge(walk *w, mt_err *err)
     return MT_OK;
 }
 
-/* Index of the last value whose coordinate is at most t (0 where none is), and where t lies between it and the next, 0 to 1. */
+/* Index of the last value whose coordinate is at most t (0 where none is), and where t lies
+ * between it and the next, 0 to 1. */
 static int bracket(const mt_discrete *d, int k, double t, double *part)
 {
     const int i = d->variable[k];

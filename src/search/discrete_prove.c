@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Branch and bound over catalogues, with continuous variables beside them or not. A box holds values of each catalogue from one to another, and its enclosure is that of the interval between them, so
- * whatever is excluded is excluded for every combination in it; halving leaves the gaps between values out, and a box of single values is a combination. First: which gap
- * assignments can be met; their designs are judged like any other combination. Then, with the objective of the best as a cap: is there a better one? What is found moves the cap, until nothing
- * is left, which proves the best to be the best, or an effort is spent.
+ * Branch and bound over catalogues, with continuous variables beside them or not. A box holds
+ * values of each catalogue from one to another, and its enclosure is that of the interval
+ * between them, so whatever is excluded is excluded for every combination in it; halving leaves
+ * the gaps between values out, and a box of single values is a combination. First: which gap
+ * assignments can be met; their designs are judged like any other combination. Then, with the
+ * objective of the best as a cap: is there a better one? What is found moves the cap, until
+ * nothing is left, which proves the best to be the best, or an effort is spent.
  */
 #include <math.h>
 #include <string.h>
@@ -18,11 +21,14 @@ enum {
     BOXES_LEAST = 2000,
     ROUNDS = 40 /* of a better design found and the cap moved */
 };
-/* A box costs a few factorisations, n^3 / 3 each: of large models it takes fewer to keep the time. */
+/* A box costs a few factorisations, n^3 / 3 each: of large models it takes fewer to keep the
+ * time. */
 static const double EFFORT = 3e9;
-/* Objectives that differ by less are equal: as they are ranked (discrete_judge.c), and more than intervals lose. */
+/* Objectives that differ by less are equal: as they are ranked (discrete_judge.c), and more
+ * than intervals lose. */
 static const double EQUAL = 1e-9;
-/* With continuous variables what is proven is that no design is better by more than this, or else by more than the second. */
+/* With continuous variables what is proven is that no design is better by more than this, or
+ * else by more than the second. */
 static const double WITHIN[] = {1e-2, 1e-1};
 
 typedef struct prover {
@@ -93,7 +99,8 @@ static mt_status combination_at(prover *v, const double *x, mt_combination **out
     return MT_OK;
 }
 
-/* Judge the combination of a design that meets the question: on its own, or searched from there. */
+/* Judge the combination of a design that meets the question: on its own, or searched from
+ * there. */
 static mt_status judge(prover *v, const double *x, mt_err *err)
 {
     mt_discrete *const d = v->d;
@@ -136,8 +143,8 @@ static mt_status ask(prover *v, mt_certify_search *found, mt_err *err)
 /* Below this value of the first objective a design is better than f by more than the share. */
 static double cap_of(const mt_problem *p, double f, double share)
 {
-    const bool squares =
-        p->aims[0].type == MT_OBJECTIVE_CHANGE; /* f is half the square of the change */
+    /* f is half the square of the change */
+    const bool squares = p->aims[0].type == MT_OBJECTIVE_CHANGE;
     return squares ? f * (1.0 - share) * (1.0 - share) : f - (share * fabs(f));
 }
 

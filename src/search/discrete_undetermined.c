@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Directions that the goals do not settle, where there are catalogues. A catalogue is one where each of its values in turn, all else as it is in the best combination, changes no goal by its
- * tolerance (and no objective but the change, which always asks for the value nearest to the original).
+ * Directions that the goals do not settle, where there are catalogues. A catalogue is one where
+ * each of its values in turn, all else as it is in the best combination, changes no goal by its
+ * tolerance (and no objective but the change, which always asks for the value nearest to the
+ * original).
  */
 #include <math.h>
 #include <string.h>
@@ -83,7 +85,8 @@ static double size_of(const crossing *x, int row)
     return aim ? fmax(fabs(x->at[row]) * VALUE_TOL, VALUE_TOL) : 1.0;
 }
 
-/* Greatest change of any row, in tolerances, over all values of variable i; infinite where an assignment changes or a value is lost. */
+/* Greatest change of any row, in tolerances, over all values of variable i; infinite where an
+ * assignment changes or a value is lost. */
 static double effect_of(crossing *x, int i)
 {
     const mt_problem *const p = x->d->p;

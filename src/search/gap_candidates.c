@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Which gap assignments are worth a search. Where the modes can be enclosed (proof.h), branch and bound over the bounds finds every assignment that some design has, with such a design, and proves that
- * there is no other. Elsewhere, sampled: designs spread over the bounds; each says how many modes lie below the middle of each band, and its assignment becomes a candidate. A design
- * clear of all bands has the same assignment as the samples around it, so a kind of design is only missed where it is smaller than the samples are apart. That is labelled as sampled.
+ * Which gap assignments are worth a search. Where the modes can be enclosed (proof.h), branch
+ * and bound over the bounds finds every assignment that some design has, with such a design,
+ * and proves that there is no other. Elsewhere, sampled: designs spread over the bounds; each
+ * says how many modes lie below the middle of each band, and its assignment becomes a
+ * candidate. A design clear of all bands has the same assignment as the samples around it, so a
+ * kind of design is only missed where it is smaller than the samples are apart. That is
+ * labelled as sampled.
  */
 #include "nlp/nlp_priv.h"
 
@@ -127,7 +131,8 @@ double mt_gap_count_possible(const mt_problem *p)
     return round(all);
 }
 
-/* Keep the `most` assignments of least violation, in their order; what is not kept is not needed again. */
+/* Keep the `most` assignments of least violation, in their order; what is not kept is not
+ * needed again. */
 static int keep_nearest(const sampled *list, int n, int most, bool *kept)
 {
     int count = 0;
@@ -143,7 +148,8 @@ static int keep_nearest(const sampled *list, int n, int most, bool *kept)
     return count;
 }
 
-/* A sample whose numbers differ between two positions of one drive is no kind of design; the kinds next to it have the least and the greatest of them everywhere. */
+/* A sample whose numbers differ between two positions of one drive is no kind of design; the
+ * kinds next to it have the least and the greatest of them everywhere. */
 static void insert_agreeing(const mt_problem *p, sampled *list, int *n, const int *below,
                             double violation, int *work)
 {
@@ -213,7 +219,8 @@ static mt_status sample(mt_problem *p, int n, int most, mt_arena *mem, mt_gap_ca
     return MT_OK;
 }
 
-/* What branch and bound found feasible, each with a design, and what it left open when its budget ended. */
+/* What branch and bound found feasible, each with a design, and what it left open when its
+ * budget ended. */
 static mt_status keep_proven(const mt_problem *p, const mt_certify_search *found, mt_arena *mem,
                              mt_gap_candidates *out, mt_err *err)
 {

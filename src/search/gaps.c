@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Every gap assignment is a search of its own. Where configurations are positions of one drive, the best design of an assignment is followed from position to position (motion.h); where a mode
- * crosses an edge on the way, the position of the worst crossing becomes one more configuration that has to keep the assignment, and the search begins again from there (a cutting plane: what it
- * removes crosses). A few rounds end it, as each begins next to its answer; a design that still crosses then is no design of that assignment.
+ * Every gap assignment is a search of its own. Where configurations are positions of one drive,
+ * the best design of an assignment is followed from position to position (motion.h); where a
+ * mode crosses an edge on the way, the position of the worst crossing becomes one more
+ * configuration that has to keep the assignment, and the search begins again from there (a
+ * cutting plane: what it removes crosses). A few rounds end it, as each begins next to its
+ * answer; a design that still crosses then is no design of that assignment.
  */
 #include "search/gaps.h"
 
@@ -38,7 +41,8 @@ enum { STARTS_PER_CANDIDATE = 24, SOLUTIONS_PER_CANDIDATE = 4, NEAREST = 6 };
 /* Rounds of cuts, and starts of the later ones, which begin next to their answer. */
 enum { CUT_ROUNDS = 8, CUTS_MOST = 32, CUT_STARTS = 6 };
 
-/* The caller's design where it is of this kind, else the one that the candidate comes with; NULL: none. */
+/* The caller's design where it is of this kind, else the one that the candidate comes with;
+ * NULL: none. */
 static const double *hint_of(const job *j, int k)
 {
     const size_t size = (size_t)j->p->n_bands * sizeof(int);
@@ -81,7 +85,8 @@ static mt_status search_in_order(mt_problem *p, const double *hint, slot *s, mt_
     return MT_OK;
 }
 
-/* Where the motion of a family comes nearer than `room`, one more cut for each way between two positions. */
+/* Where the motion of a family comes nearer than `room`, one more cut for each way between two
+ * positions. */
 static int add_cuts(slot *s, const mt_problem *p, int family, const mt_motion *m, double room)
 {
     int added = 0;
@@ -102,7 +107,8 @@ static void refuse(mt_nlp_solution *best, double short_of, double tolerance)
     best->violation = fmax(best->violation, short_of / tolerance);
 }
 
-/* Follow the best design over the range of motion. *added: cuts to search again with; with none a design that crosses is refused. */
+/* Follow the best design over the range of motion. *added: cuts to search again with; with none
+ * a design that crosses is refused. */
 static mt_status follow_best(slot *s, mt_problem *p, bool last, int *added, mt_err *err)
 {
     mt_nlp_values v;
@@ -135,8 +141,9 @@ static mt_status follow_best(slot *s, mt_problem *p, bool last, int *added, mt_e
 }
 
 /*
- * The least clearance z is free to be negative, so that a search can start anywhere; a design that ends with z < 0 has a mode on the wrong side of an edge: it is not of this kind, and misses the
- * bands by -z.
+ * The least clearance z is free to be negative, so that a search can start anywhere; a design
+ * that ends with z < 0 has a mode on the wrong side of an edge: it is not of this kind, and
+ * misses the bands by -z.
  */
 static void judge_clearance(const mt_problem *p, mt_nlp_result *found)
 {
@@ -156,7 +163,8 @@ static void judge_clearance(const mt_problem *p, mt_nlp_result *found)
     found->compromise = found->n_solutions > 0 && !found->solutions[0].feasible;
 }
 
-/* One search of candidate k with the cuts so far, from `from` (NULL: no hint). *again: a cut was added. */
+/* One search of candidate k with the cuts so far, from `from` (NULL: no hint). *again: a cut
+ * was added. */
 static mt_status search_round(const job *j, slot *s, int k, int round, const double *from,
                               bool *again, mt_err *why)
 {
@@ -197,7 +205,8 @@ static mt_status search_round(const job *j, slot *s, int k, int round, const dou
     return rc;
 }
 
-/* A candidate that cannot even be evaluated anywhere is no failure of the study: it has no solution. */
+/* A candidate that cannot even be evaluated anywhere is no failure of the study: it has no
+ * solution. */
 static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
 {
     job *const j = context;
@@ -223,7 +232,8 @@ static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
     return fatal ? mt_fail(err, s->rc, "%s", why.text) : MT_OK;
 }
 
-/* References that are models are analysed before the workers start: the cache is shared and not locked. */
+/* References that are models are analysed before the workers start: the cache is shared and not
+ * locked. */
 static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem,
                                 mt_gap_result *out, mt_err *err)
 {
@@ -242,7 +252,8 @@ static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem
     out->compromise = out->n_feasible == 0;
     for (int k = 0; k < j->candidates->n; k++) {
         const mt_nlp_result *const found = &j->slots[k].found;
-        /* one design for each assignment: its best; further local optima of the same kind come after (see rank) */
+        /* one design for each assignment: its best; further local optima of the same kind come
+         * after (see rank) */
         for (int i = 0; i < found->n_solutions && i < 1; i++) {
             if (found->solutions[i].feasible != out->compromise) {
                 out->solutions[out->n_solutions++] = (mt_gap_solution){
@@ -319,7 +330,8 @@ static mt_status copy_solution(const mt_problem *p, const int *below,
     return MT_OK;
 }
 
-/* Of the best solution's search; without the coordinate for the clearance, which no goal leaves free. */
+/* Of the best solution's search; without the coordinate for the clearance, which no goal leaves
+ * free. */
 static mt_status keep_undetermined(const mt_problem *p, const slot *s, mt_arena *mem,
                                    mt_gap_result *out, mt_err *err)
 {
@@ -361,7 +373,8 @@ static mt_status collect(const mt_problem *p, const job *j, mt_arena *mem, mt_ga
     return MT_OK;
 }
 
-/* Where the budget of boxes ended but left a list of open assignments, and the search met them all, nothing is open any more. */
+/* Where the budget of boxes ended but left a list of open assignments, and the search met them
+ * all, nothing is open any more. */
 static bool is_settled(const job *j)
 {
     bool met = j->candidates->all;

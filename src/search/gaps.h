@@ -6,13 +6,15 @@
 #include "result/result.h"
 
 /*
- * Search over gap assignments: every qualitatively different way to keep clear of the bands is a search of its own. Candidates come from a proof where one is possible (branch and bound
- * over the bounds: what it excludes is proven infeasible), else from samples; each is searched by the bound formulation from several starts, on workers. Results are ranked by the objective and
- * do not depend on the number of workers.
+ * Search over gap assignments: every qualitatively different way to keep clear of the bands is
+ * a search of its own. Candidates come from a proof where one is possible (branch and bound
+ * over the bounds: what it excludes is proven infeasible), else from samples; each is searched
+ * by the bound formulation from several starts, on workers. Results are ranked by the objective
+ * and do not depend on the number of workers.
  */
 typedef struct mt_gap_solution {
-    const mt_nlp_solution
-        *found;         /* its t has problem->n_t entries; the first n are the design */
+    /* its t has problem->n_t entries; the first n are the design */
+    const mt_nlp_solution *found;
     const int *below;   /* [n_bands] its assignment */
     const double *aims; /* [n_aims] its objectives, while they are ranked */
     int n_aims;
@@ -23,17 +25,20 @@ typedef struct mt_gap_result {
     int n_solutions; /* feasible ones by objective; else compromises by violation */
     mt_gap_solution *solutions;
     bool compromise;
-    int n_candidates; /* assignments that may have a design; 0: proven that none has, the solutions are the nearest misses */
-    int n_feasible;   /* of them with a design that meets all goals */
+    /* assignments that may have a design; 0: proven that none has, the solutions are the
+     * nearest misses */
+    int n_candidates;
+    int n_feasible;    /* of them with a design that meets all goals */
     double n_possible; /* all monotone assignments there are */
-    bool
-        driven; /* a configuration is a driven position: what lies between the positions is not searched */
-    bool
-        motion; /* some are positions of one drive: designs were followed between them (motion.h) */
+    /* a configuration is a driven position: what lies between the positions is not searched */
+    bool driven;
+    /* some are positions of one drive: designs were followed between them (motion.h) */
+    bool motion;
     bool tolerances;    /* variables have some, which the proof leaves out */
     bool proven;        /* every assignment that was not searched is proven infeasible */
     const char *reason; /* why not, where not proven */
-    int n_undetermined; /* directions that the goals do not settle at the best solution (mt_nlp_result) */
+    /* directions that the goals do not settle at the best solution (mt_nlp_result) */
+    int n_undetermined;
     double *undetermined; /* n x n_undetermined */
     double *undetermined_effect;
     long boxes; /* of the proof */
@@ -61,9 +66,11 @@ typedef struct mt_gap_candidates {
     long boxes;
     long evals;
 } mt_gap_candidates;
-/* Monotone assignments of m bands to n modes, C(n + m, m), over all configurations; positions of one drive have one between them. */
+/* Monotone assignments of m bands to n modes, C(n + m, m), over all configurations; positions
+ * of one drive have one between them. */
 double mt_gap_count_possible(const mt_problem *p);
-/* Assignment below[n_bands] of the design at t[n], and its worst violation; NaN where it cannot be evaluated. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
+/* Assignment below[n_bands] of the design at t[n], and its worst violation; NaN where it cannot
+ * be evaluated. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
 mt_status mt_gap_assignment(mt_problem *p, const double *t, int *below, double *violation,
                             mt_err *err);
 mt_status mt_gap_candidates_find(mt_problem *p, mt_arena *mem, mt_gap_candidates *out,

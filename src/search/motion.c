@@ -1,11 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Room of an edge at frequency f_e with margin, of the mode f that the assignment keeps on one side of it:
- *     r(s) = ln(f / f_e)  above,   ln(f_e / f)  below,      dr/ds = +- lambda' / (2 lambda),   lambda' = y^T (dK/ds - lambda dM/ds) y.
- * Modes are sorted, so of each band with k modes below it mode k and mode k + 1 are enough. An interval [a, b] of neighbouring positions is fine where for every edge
- *     max(|r(b) - r(a)|, (b - a)|r'(a)|, (b - a)|r'(b)|) <= 1/10 max(min(|c(a)|, |c(b)|), 1e-3),
- * c: the room without the margin; else its middle is looked at. The cubic with these values and slopes has its least value within the interval at a root of a quadratic; where that is below the
- * least room so far, it is the next position: the least room is then known to the fourth order of the step.
+ * Room of an edge at frequency f_e with margin, of the mode f that the assignment keeps on one
+ * side of it:
+ *     r(s) = ln(f / f_e)  above,   ln(f_e / f)  below,      dr/ds = +- lambda' / (2 lambda),
+ *         lambda' = y^T (dK/ds - lambda dM/ds) y.
+ * Modes are sorted, so of each band with k modes below it mode k and mode k + 1 are enough. An
+ * interval [a, b] of neighbouring positions is fine where for every edge
+ *     max(|r(b) - r(a)|, (b - a)|r'(a)|,
+ *         (b - a)|r'(b)|) <= 1/10 max(min(|c(a)|, |c(b)|), 1e-3),
+ * c: the room without the margin; else its middle is looked at. The cubic with these values and
+ * slopes has its least value within the interval at a root of a quadratic; where that is below
+ * the least room so far, it is the next position: the least room is then known to the fourth
+ * order of the step.
  */
 #include "search/motion.h"
 
@@ -14,11 +20,11 @@
 
 static const double PART = 0.1;     /* of a clearance, between two positions */
 static const double NEAREST = 1e-3; /* clearances (ln) below it count as it */
-static const double CLOSER =
-    1e-8; /* an improvement of the least room (ln) that is not worth a position */
+/* an improvement of the least room (ln) that is not worth a position */
+static const double CLOSER = 1e-8;
 static const double SHORTEST = 1e-7; /* of the motion: intervals that are not halved */
-static const double AWAY =
-    0.05; /* a new position keeps this part of the interval from its ends */
+/* a new position keeps this part of the interval from its ends */
+static const double AWAY = 0.05;
 static const double STEP = 0.05;  /* longest interval at first [rad, model lengths] */
 static const double SAME = 1e-12; /* positions nearer than this [rad, model lengths] are one */
 /* A clearance of less, in percent, is none: rounding. */
@@ -198,7 +204,8 @@ static double fmax_known(double a, double b)
     return MT_HAS(b) ? fmax(a, fabs(b)) : a;
 }
 
-/* Least value of the cubic on [0, 1] with values a, b and slopes da, db per unit, strictly inside; *at where. */
+/* Least value of the cubic on [0, 1] with values a, b and slopes da, db per unit, strictly
+ * inside; *at where. */
 static double cubic_least(double a, double da, double b, double db, double *at)
 {
     double least = fmin(a, b);

@@ -5,10 +5,13 @@
 #include "problem/family.h"
 
 /*
- * A design over the range of motion: the modes beside the bands are followed from each named position of a family to the next, by samples. Their slopes d f / d position are exact and
- * choose the step: between two neighbouring positions no mode moves further than a tenth of what it is away from the band (of what the slopes at both ends say, and as it turned out), or than 1e-4 of
- * itself where it stands nearly on an edge; where the cubic through values and slopes comes nearer than all positions so far, one more position is looked at there. That is no proof: a mode that is
- * at rest at all positions may move between them.
+ * A design over the range of motion: the modes beside the bands are followed from each named
+ * position of a family to the next, by samples. Their slopes d f / d position are exact and
+ * choose the step: between two neighbouring positions no mode moves further than a tenth of
+ * what it is away from the band (of what the slopes at both ends say, and as it turned out), or
+ * than 1e-4 of itself where it stands nearly on an edge; where the cubic through values and
+ * slopes comes nearer than all positions so far, one more position is looked at there. That is
+ * no proof: a mode that is at rest at all positions may move between them.
  */
 typedef enum mt_motion_end {
     MT_MOTION_WHOLE,    /* as said above */
@@ -25,11 +28,13 @@ typedef struct mt_motion {
     double from; /* first and last named position [rad, m] */
     double to;
     int positions; /* that were looked at */
-    /* least ln of the ratio between an edge with its margin and the mode that the assignment keeps on that side; negative: it crosses the edge. HUGE_VAL: no mode beside a band */
+    /* least ln of the ratio between an edge with its margin and the mode that the assignment
+     * keeps on that side; negative: it crosses the edge. HUGE_VAL: no mode beside a band */
     double room;
     double tolerance; /* of the band there */
-    double
-        percent; /* clearance there from the band without its margin, percent of the edge; negative: beyond it */
+    /* clearance there from the band without its margin, percent of the edge; negative: beyond
+     * it */
+    double percent;
     double margin_percent; /* asked for at that edge */
     double at;
     double hz;
@@ -38,19 +43,21 @@ typedef struct mt_motion {
     int tie;
     mt_band band;
     int n_ways; /* pieces of the motion between neighbouring positions */
-    double *
-        way_at; /* [n_ways] where each has its least room, strictly between its ends; NaN: it does not */
+    /* [n_ways] where each has its least room, strictly between its ends; NaN: it does not */
+    double *way_at;
     double *way_room;
 } mt_motion;
 
 /*
- * below[n_bands]: the assignment (tied bands agree). After the views have been solved at the design p->x. out's lists and texts in mem. Cost: some ten to some hundred eigensolves.
- * Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INTERRUPTED.
+ * below[n_bands]: the assignment (tied bands agree). After the views have been solved at the
+ * design p->x. out's lists and texts in mem. Cost: some ten to some hundred eigensolves. Fails:
+ * MT_E_MEMORY, MT_E_INTERNAL, MT_E_INTERRUPTED.
  */
 mt_status mt_motion_follow(mt_problem *p, int family, const int *below, mt_arena *mem,
                            mt_motion *out, mt_err *err);
 
-/* *kept: all families keep their bands over the motion, within their tolerance, and are stable. As above. */
+/* *kept: all families keep their bands over the motion, within their tolerance, and are stable.
+ * As above. */
 mt_status mt_motion_kept(mt_problem *p, const int *below, mt_arena *mem, bool *kept,
                          mt_err *err);
 

@@ -120,8 +120,8 @@ mt_status mt_proof_init(mt_proof *proof, mt_problem *p, mt_arena *mem, mt_err *e
                                    .scale = p->scale,
                                    .max_boxes = p->proof_boxes,
                                    .interrupt = p->study->model->interrupt};
-    proof->covers =
-        p->robust == NULL; /* what is possible for a design may not be over its tolerances */
+    /* what is possible for a design may not be over its tolerances */
+    proof->covers = p->robust == NULL;
     list_bands(proof, p);
     list_limits(proof, p);
     return MT_OK;

@@ -6,8 +6,10 @@
 #include "prove/certify.h"
 
 /*
- * A study's problem as a question for certificates: an enclosure of every view, the bands of its clears, the limits and targets of its frequency goals, the limits on expressions. Goals that no
- * certificate covers (shapes, MAC, modes by name) are left out, which keeps every "impossible" true.
+ * A study's problem as a question for certificates: an enclosure of every view, the bands of
+ * its clears, the limits and targets of its frequency goals, the limits on expressions. Goals
+ * that no certificate covers (shapes, MAC, modes by name) are left out, which keeps every
+ * "impossible" true.
  */
 typedef struct mt_proof {
     mt_certify question;
@@ -19,20 +21,23 @@ typedef struct mt_proof {
     mt_certify_bound *bounds;
     double *lower; /* [n] parameter values */
     double *upper;
-    bool
-        covers; /* every goal but weighted ones is in the question: what it says is possible is */
+    /* every goal but weighted ones is in the question: what it says is possible is */
+    bool covers;
     char reason[MT_REASON_SIZE]; /* why there is no certificate; empty: there can be */
     bool possible;
 } mt_proof;
 
-/* Results in mem but the enclosures, which mt_proof_free gives back. `possible` false, with the reason, is a success. */
+/* Results in mem but the enclosures, which mt_proof_free gives back. `possible` false, with the
+ * reason, is a success. */
 mt_status mt_proof_init(mt_proof *proof, mt_problem *p, mt_arena *mem, mt_err *err);
 void mt_proof_free(mt_proof *proof, const mt_problem *p);
-/* Variables with a catalogue take values of it only, instead of all between its ends. Arrays in mem. */
+/* Variables with a catalogue take values of it only, instead of all between its ends. Arrays in
+ * mem. */
 mt_status mt_proof_use_catalogues(mt_proof *proof, const mt_problem *p, mt_arena *mem,
                                   mt_err *err);
 
-/* proof_cap.c: the first objective as a cap for certificates. Where it is not known (a misfit, a clearance) there is none. p must outlive it. */
+/* proof_cap.c: the first objective as a cap for certificates. Where it is not known (a misfit,
+ * a clearance) there is none. p must outlive it. */
 typedef struct mt_proof_cap {
     mt_problem *p;
     bool known;

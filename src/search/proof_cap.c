@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Least values of an objective over boxes: exact for the change (a sum of one term for each variable), by intervals for masses and expressions. */
+/* Least values of an objective over boxes: exact for the change (a sum of one term for each
+ * variable), by intervals for masses and expressions. */
 #include <float.h>
 #include <math.h>
 #include <string.h>

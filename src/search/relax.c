@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * The search for one move. In the coordinates t of the study, with one more, s:
- *     minimise 1/2 s^2   subject to   in_i(t) + s >= 0 (i: rows of the moved number),   eq_i(t) - s = 0,   all other rows as they are;
- * for a bound there is no s: its variable may leave it, and 1/2 (t_j - bound)^2 beyond it is minimised.
+ *     minimise 1/2 s^2   subject to   in_i(t) + s >= 0 (i: rows of the moved number),
+ *         eq_i(t) - s = 0,   all other rows as they are;
+ * for a bound there is no s: its variable may leave it, and 1/2 (t_j - bound)^2 beyond it is
+ * minimised.
  */
 #include "search/relax.h"
 
@@ -18,7 +20,8 @@
 enum { STARTS = 6, EVALUATIONS = 200, ASSIGNMENTS = 6 };
 /* Where the study sets a budget: what a search of one move needs at least of it. */
 enum { BUDGET_LEAST = 2 * EVALUATIONS };
-/* A move smaller than this is none: then a design exists without it, and the search has missed it. */
+/* A move smaller than this is none: then a design exists without it, and the search has missed
+ * it. */
 static const double LEAST = 1e-9;
 
 typedef struct relaxed {
@@ -98,7 +101,8 @@ static mt_status evaluate(void *context, const double *t, bool with_gradient,
     return MT_OK;
 }
 
-/* Does the design of q hold between the positions of its drives, too? An edge is moved in one position only, which says nothing of the others. */
+/* Does the design of q hold between the positions of its drives, too? An edge is moved in one
+ * position only, which says nothing of the others. */
 static mt_status hold_motion(mt_problem *q, const mt_move *m, mt_arena *mem, double *value,
                              mt_err *err)
 {
@@ -111,7 +115,8 @@ static mt_status hold_motion(mt_problem *q, const mt_move *m, mt_arena *mem, dou
     return MT_OK;
 }
 
-/* The number that the move needs at the design t of q, and its inputs x; NaN where that does not do. */
+/* The number that the move needs at the design t of q, and its inputs x; NaN where that does
+ * not do. */
 static mt_status confirm(mt_problem *q, const mt_move *m, const double *t, mt_arena *mem,
                          double *x, double *value, mt_err *err)
 {
@@ -128,7 +133,8 @@ static mt_status confirm(mt_problem *q, const mt_move *m, const double *t, mt_ar
     return hold_motion(q, m, mem, value, err);
 }
 
-/* Keep what was found where it is the least move so far, and a problem made anew confirms it. */
+/* Keep what was found where it is the least move so far, and a problem made anew confirms
+ * it. */
 static mt_status keep(const job *j, const mt_study *study, const int *below, mt_move *m,
                       const mt_nlp_solution *found, mt_arena *mem, mt_err *err)
 {

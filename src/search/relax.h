@@ -6,11 +6,15 @@
 #include "result/result.h"
 
 /*
- * Where no design meets all goals: which single number of the question, moved by how little and everything else as it is, would let one exist? A move is a bound of a continuous variable, an
+ * Where no design meets all goals: which single number of the question, moved by how little and
+ * everything else as it is, would let one exist? A move is a bound of a continuous variable, an
  * edge of a band (with its margin), or the target or limit of a goal. For each of them
- *     minimise s  subject to  all bounds and rows of the study, those of the moved number relaxed by s,
- * s being the logarithm of the move (its part of the limit, where that has no logarithm), by local searches from several starts; with bands in the gap assignments that come nearest. What is
- * found is a design, so a move that is reported suffices for certain; that a smaller one would not is sampled.
+ *     minimise s  subject to
+ *         all bounds and rows of the study, those of the moved number relaxed by s,
+ * s being the logarithm of the move (its part of the limit, where that has no logarithm), by
+ * local searches from several starts; with bands in the gap assignments that come nearest. What
+ * is found is a design, so a move that is reported suffices for certain; that a smaller one
+ * would not is sampled.
  */
 typedef enum mt_move_kind { MT_MOVE_BOUND, MT_MOVE_EDGE, MT_MOVE_GOAL } mt_move_kind;
 
@@ -40,29 +44,36 @@ typedef struct mt_moves {
 
 /**
  * @param[in]  p    the problem without an assignment; its study has no catalogues
- * @param[in]  search  what the search found (a compromise to start from, where it has one) and spent of the study's budget
- * @param[out] out  lists in mem
- * Every move reported has been confirmed by a new problem at its design. Deterministic for any number of workers. Cost: some 1000 evaluations for each move.
- * Fails: MT_E_MEMORY, MT_E_INTERNAL.
+ * @param[in] search what the search found (a compromise to start from, where it has one) and
+ *   spent of the study's budget
+ * @param[out] out lists in mem Every move reported has been confirmed by a new problem at its
+ *   design. Deterministic for any number of workers. Cost: some 1000 evaluations for each move.
+ *   Fails: MT_E_MEMORY, MT_E_INTERNAL.
  */
 mt_status mt_relax(mt_problem *p, int workers, const mt_nlp_result *search, mt_arena *mem,
                    mt_moves *out, mt_err *err);
 
-/* relax_discrete.c: the same for a study with catalogues; problems[n_workers] of it. Without continuous variables all combinations are looked at (short_of_budget where those are too many). */
+/* relax_discrete.c: the same for a study with catalogues; problems[n_workers] of it. Without
+ * continuous variables all combinations are looked at (short_of_budget where those are too
+ * many). */
 mt_status mt_relax_discrete(mt_problem *const *problems, int n_workers,
                             const mt_nlp_result *search, mt_arena *mem, mt_moves *out,
                             mt_err *err);
 
 /* relax_moves.c: all moves that the study offers, none tried yet. Fails: MT_E_MEMORY. */
 mt_status mt_relax_moves(const mt_problem *p, mt_arena *mem, mt_moves *out, mt_err *err);
-/* The study in which the move's bound is moved away (others: only the objective is replaced, by the change); borrows the rest of `study`. False in *useful where there is no room to move. */
+/* The study in which the move's bound is moved away (others: only the objective is replaced, by
+ * the change); borrows the rest of `study`. False in *useful where there is no room to move. */
 mt_status mt_relax_study(const mt_study *study, const mt_move *m, mt_arena *mem, mt_study *out,
                          bool *useful, mt_err *err);
-/* The value that the move's number must have for the rows of q, just evaluated into v, to hold; NaN where other rows do not. */
+/* The value that the move's number must have for the rows of q, just evaluated into v, to hold;
+ * NaN where other rows do not. */
 double mt_relax_value(const mt_problem *q, const mt_move *m, const mt_nlp_values *v);
-/* A move by more than a factor of ten (ln 10), or than 2.3 times the limit itself where it has no logarithm, is no help. */
+/* A move by more than a factor of ten (ln 10), or than 2.3 times the limit itself where it has
+ * no logarithm, is no help. */
 static const double MT_RELAX_MOST = 2.302585092994046;
-/* By how much that is a move, |s|; NaN where it is none, is in the wrong direction, or is too far to be of help. */
+/* By how much that is a move, |s|; NaN where it is none, is in the wrong direction, or is too
+ * far to be of help. */
 double mt_relax_size(const mt_problem *q, const mt_move *m, double to);
 /* Found moves of `from` into `to`, which lists all, where they are less; n: variables. */
 void mt_relax_merge(mt_moves *to, const mt_moves *from, int n);

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The same question where variables come from catalogues. Without continuous variables every combination is a design, and all are looked at: a move is possible where its rows, and nothing else,
- * are in the way, and it has to go as far as they say. That is exact. With continuous variables the combinations that came nearest are closed on their values and searched as in relax.c.
+ * The same question where variables come from catalogues. Without continuous variables every
+ * combination is a design, and all are looked at: a move is possible where its rows, and
+ * nothing else, are in the way, and it has to go as far as they say. That is exact. With
+ * continuous variables the combinations that came nearest are closed on their values and
+ * searched as in relax.c.
  */
 #include <math.h>
 #include <string.h>
@@ -10,7 +13,8 @@
 #include "search/discrete.h"
 #include "search/relax.h"
 
-/* Combinations in one task; combinations that came nearest which are looked at where there are continuous variables. */
+/* Combinations in one task; combinations that came nearest which are looked at where there are
+ * continuous variables. */
 enum { PER_TASK = 256, NEAREST = 4 };
 
 typedef struct enumeration {
@@ -34,7 +38,8 @@ static void set_combination(const mt_problem *p, int k, double *t)
     }
 }
 
-/* How far the edge of a band has to give way for the modes inside it: the frequency that it must let through; 0 where none is inside. NaN: unstable, or undecided. */
+/* How far the edge of a band has to give way for the modes inside it: the frequency that it
+ * must let through; 0 where none is inside. NaN: unstable, or undecided. */
 static double let_through(const mt_band *band, const mt_modes *modes, bool upper)
 {
     double hz = mt_modal_indexed(modes) ? 0.0 : nan("");
@@ -72,7 +77,8 @@ static bool other_bands_hold(const mt_problem *p, const mt_move *m)
     return true;
 }
 
-/* Where the move's number has to be at the design just evaluated; NaN where that is not enough. */
+/* Where the move's number has to be at the design just evaluated; NaN where that is not
+ * enough. */
 static double needed(const mt_problem *p, const mt_move *m, const mt_nlp_values *v)
 {
     const double rows = mt_relax_value(p, m, v);
@@ -170,7 +176,8 @@ static mt_status enumerate(mt_problem *const *problems, int n_workers, int total
     return MT_OK;
 }
 
-/* The study with its catalogues closed on the values of a design; it borrows everything else. */
+/* The study with its catalogues closed on the values of a design; it borrows everything
+ * else. */
 static mt_status close_on(const mt_problem *p, const double *t, mt_arena *mem, mt_study *out,
                           mt_err *err)
 {

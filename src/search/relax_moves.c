@@ -86,7 +86,8 @@ mt_status mt_relax_moves(const mt_problem *p, mt_arena *mem, mt_moves *out, mt_e
     return MT_OK;
 }
 
-/* A bound moves by a factor of ten at most, or by the range where it has no sign to keep; a bound of 0 stays, since what is beyond it is another thing. */
+/* A bound moves by a factor of ten at most, or by the range where it has no sign to keep; a
+ * bound of 0 stays, since what is beyond it is another thing. */
 static double far_bound(const mt_variable *v, bool upper)
 {
     static const double FACTOR = 10.0;
@@ -153,7 +154,8 @@ bool mt_relax_is_row(const mt_problem *q, const mt_move *m, bool eq, int row)
     return at.clear == m->clear && at.band == m->band && at.above == m->upper;
 }
 
-/* Where the number must be for a row of value `row` (relaxed: what is missing is made up for) to be 0. */
+/* Where the number must be for a row of value `row` (relaxed: what is missing is made up for)
+ * to be 0. */
 static double moved(const mt_problem *q, const mt_move *m, double row)
 {
     const bool shape =

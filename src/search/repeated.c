@@ -7,7 +7,8 @@
 enum { MODES_MOST = 6 };
 /* Two limits nearer than this are one. */
 static const double SAME_LIMIT = 1e-9;
-/* Entries of B whose slopes depend on those of others up to this part are told by them: by symmetry. */
+/* Entries of B whose slopes depend on those of others up to this part are told by them: by
+ * symmetry. */
 static const double INDEPENDENT = 1e-6;
 
 /* Do they ask the same of modes of one analysis? */
@@ -46,7 +47,8 @@ static bool joined(mt_repeated *m, const mt_repeated_side *s, int index, int r)
     return false;
 }
 
-/* The modes from s->pos on (upwards for a lower limit, downwards for an upper one) that are near the limit, as a block. */
+/* The modes from s->pos on (upwards for a lower limit, downwards for an upper one) that are
+ * near the limit, as a block. */
 static mt_status add_block(mt_repeated *m, const mt_repeated_side *s, double near,
                            mt_arena *mem, mt_err *err)
 {
@@ -203,7 +205,8 @@ mt_status mt_repeated_matrices(mt_repeated *m, bool turn, mt_err *err)
     return MT_OK;
 }
 
-/* Entries of B whose slopes are independent, by pivoted QR; off the diagonal times sqrt 2, so that a turned basis changes nothing. */
+/* Entries of B whose slopes are independent, by pivoted QR; off the diagonal times sqrt 2, so
+ * that a turned basis changes nothing. */
 static mt_status choose_entries(mt_repeated *m, mt_repeated_block *b, mt_arena *mem,
                                 mt_err *err)
 {
@@ -233,7 +236,8 @@ static mt_status choose_entries(mt_repeated *m, mt_repeated_block *b, mt_arena *
     return MT_OK;
 }
 
-/* Rows of the smooth problem: the problem's own equalities that no block stands for, then the entries. */
+/* Rows of the smooth problem: the problem's own equalities that no block stands for, then the
+ * entries. */
 static mt_status number_rows(mt_repeated *m, mt_arena *mem, mt_err *err)
 {
     const mt_problem *const p = m->p;

@@ -6,13 +6,15 @@
 #include "problem/problem.h"
 
 /*
- * A row of the problem that is a limit on one mode of an analysis, sign ln(f / limit) >= 0: an upper or a lower limit, an edge of a band (with the objective "clearance" it moves with z:
- * limit exp(sign z)), either of them at a corner of the tolerances, and either side of a target. Modes that are meant by their name are none: others may pass them.
+ * A row of the problem that is a limit on one mode of an analysis, sign ln(f / limit) >= 0: an
+ * upper or a lower limit, an edge of a band (with the objective "clearance" it moves with z:
+ * limit exp(sign z)), either of them at a corner of the tolerances, and either side of a
+ * target. Modes that are meant by their name are none: others may pass them.
  */
 typedef struct mt_repeated_side {
     mt_analysis *analysis; /* of a view, or of a corner */
-    const double *
-        factor; /* [n] inputs of the corner are factor times the design's; NULL: the design itself */
+    /* [n] inputs of the corner are factor times the design's; NULL: the design itself */
+    const double *factor;
     double limit_hz;
     double sign; /* +1 at least, -1 at most */
     bool moves;  /* with z */
@@ -20,27 +22,33 @@ typedef struct mt_repeated_side {
     int pos;     /* of the mode at the last evaluation */
 } mt_repeated_side;
 
-/* repeated_sides.c: all of them, at the problem's last evaluation. In mem. Fails: MT_E_MEMORY. */
+/* repeated_sides.c: all of them, at the problem's last evaluation. In mem. Fails:
+ * MT_E_MEMORY. */
 mt_status mt_repeated_sides(mt_problem *p, mt_arena *mem, mt_repeated_side **out, int *n,
                             mt_err *err);
 /* ln of how far the mode at pos is within the limit, at the last evaluation. */
 double mt_repeated_room(const mt_problem *p, const mt_repeated_side *s, int pos);
 
 /*
- * Limits on modes that (nearly) coincide. A single mode has no slope there, its cluster has: with Y the modes of the cluster at a design t0, C = M Y
- * there and Y(t), L(t) the modes and eigenvalues elsewhere near it, all of the cluster at or above the limit s (at or below: sign -1) is
+ * Limits on modes that (nearly) coincide. A single mode has no slope there, its cluster has:
+ * with Y the modes of the cluster at a design t0, C = M Y there and Y(t), L(t) the modes and
+ * eigenvalues elsewhere near it, all of the cluster at or above the limit s (at or below: sign
+ * -1) is
  *
  *     B(t) = sign W^T (L - s) W / (2 s) positive semidefinite,   W = Y(t)^T C,
  *
- * a smooth function of t (Y W is the projection of Y(t0) on the invariant subspace, whatever the basis), whose slope where B = 0 is
- * sign W^T Y^T (dK - s dM) Y W / (2 s). Where the best design keeps the modes together, B = 0 (Overton 1992). A target on the lowest mode of a cluster holds all of it at or above the
- * target (one on the highest: at or below it): that the mode itself stands there removes the inside of this cone, not its edges, and is no other condition for a design to be stationary.
- * A target on a mode in the middle leaves every design that keeps it there without one.
+ * a smooth function of t (Y W is the projection of Y(t0) on the invariant subspace, whatever
+ * the basis), whose slope where B = 0 is sign W^T Y^T (dK - s dM) Y W / (2 s). Where the best
+ * design keeps the modes together, B = 0 (Overton 1992). A target on the lowest mode of a
+ * cluster holds all of it at or above the target (one on the highest: at or below it): that the
+ * mode itself stands there removes the inside of this cone, not its edges, and is no other
+ * condition for a design to be stationary. A target on a mode in the middle leaves every design
+ * that keeps it there without one.
  */
 typedef struct mt_repeated_block {
     mt_repeated_side side; /* of the mode that the others follow */
-    bool
-        both; /* a target of the lowest and of the highest of them: B = 0, its multiplier of any sign */
+    /* a target of the lowest and of the highest of them: B = 0, its multiplier of any sign */
+    bool both;
     int index;    /* vibration index of the lowest mode */
     int r;        /* modes */
     int row_most; /* the row that asks it of the mode which the others follow, -1: several do */
@@ -56,8 +64,8 @@ typedef struct mt_repeated {
     mt_problem *p;
     int n_blocks;
     mt_repeated_block *blocks;
-    bool *
-        replaced; /* [n_eq + n_in] rows of the problem, equalities first, that the blocks stand for */
+    /* [n_eq + n_in] rows of the problem, equalities first, that the blocks stand for */
+    bool *replaced;
     int n_kept;           /* equalities of the problem that remain */
     int n_rows;           /* entries of all blocks, behind them */
     double *eq_tol;       /* [n_kept + n_rows] */
@@ -65,12 +73,14 @@ typedef struct mt_repeated {
 } mt_repeated;
 
 /*
- * The blocks at t: modes within `near` (relative) of an upper or lower limit that is asked of one of them, two or more at a time. Everything in
- * mem. After the problem could be evaluated at t with gradient (done here); fails as mt_problem_eval.
+ * The blocks at t: modes within `near` (relative) of an upper or lower limit that is asked of
+ * one of them, two or more at a time. Everything in mem. After the problem could be evaluated
+ * at t with gradient (done here); fails as mt_problem_eval.
  */
 mt_status mt_repeated_find(mt_problem *p, const double *t, double near, mt_arena *mem,
                            mt_repeated *out, mt_err *err);
-/* b and g of every block at the problem's last evaluation, which had gradients; turn: in the basis of t0, else in that of the modes. */
+/* b and g of every block at the problem's last evaluation, which had gradients; turn: in the
+ * basis of t0, else in that of the modes. */
 mt_status mt_repeated_matrices(mt_repeated *m, bool turn, mt_err *err);
 /* The problem with B = 0 in place of the rows replaced: context of the search is m. */
 mt_nlp mt_repeated_nlp(mt_repeated *m);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which rows of a problem are limits on single modes: of goals, of bands with their assignment, and of both at corners of the tolerances. */
+/* Which rows of a problem are limits on single modes: of goals, of bands with their assignment,
+ * and of both at corners of the tolerances. */
 #include <math.h>
 
 #include "problem/robust.h"

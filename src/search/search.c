@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Designs nearer than this (0.1 percent in a positive parameter) are one, as in the search itself. */
+/* Designs nearer than this (0.1 percent in a positive parameter) are one, as in the search
+ * itself. */
 static const double SAME = 1e-3;
 /* Values of a held objective that differ by less, relatively, rank by the next objective. */
 static const double EQUAL = 4e-6;
@@ -145,7 +146,8 @@ bool mt_search_same(int n, const double *a, const double *b)
     return most <= SAME;
 }
 
-/* Behind a design that is shown to be a local optimum those that are not are ends of failed searches. */
+/* Behind a design that is shown to be a local optimum those that are not are ends of failed
+ * searches. */
 static void drop_failed(mt_nlp_result *out)
 {
     int kept = 0;
@@ -214,7 +216,8 @@ static mt_status later_stages(stages *s, int *stage, mt_err *err)
         }
         *stage = k;
     }
-    /* solutions that a stage has not reached keep the value of an earlier one: say so by one measure for all */
+    /* solutions that a stage has not reached keep the value of an earlier one: say so by one
+     * measure for all */
     for (int i = 0; i < out->n_solutions; i++) {
         out->solutions[i].f = s->f[((ptrdiff_t)i * p->n_aims) + *stage];
     }

@@ -5,12 +5,16 @@
 #include "problem/problem.h"
 
 /*
- * Search a problem for designs. The first objective from many starts (mt_nlp_solve); then, for every design found, the next objective from there with the ones before it held
- * (mt_aim_hold), and so on through the list. Designs that have become one are reported once, in the order of the objectives. A compromise, a spent budget or an interruption
- * ends the list: out->stop tells, and *stage is the objective that the solutions' f belongs to. Undetermined directions are those at the best design.
- * problems[n_workers]: the same study compiled once for each worker; the result is the same for any number of them.
- * Results in mem; the stage of problems[0] is 0 again. Deterministic. That no start has any value is no failure: then there are no solutions and *why tells what was wrong.
- * Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_USAGE.
+ * Search a problem for designs. The first objective from many starts (mt_nlp_solve); then, for
+ * every design found, the next objective from there with the ones before it held (mt_aim_hold),
+ * and so on through the list. Designs that have become one are reported once, in the order of
+ * the objectives. A compromise, a spent budget or an interruption ends the list: out->stop
+ * tells, and *stage is the objective that the solutions' f belongs to. Undetermined directions
+ * are those at the best design. problems[n_workers]: the same study compiled once for each
+ * worker; the result is the same for any number of them. Results in mem; the stage of
+ * problems[0] is 0 again. Deterministic. That no start has any value is no failure: then there
+ * are no solutions and *why tells what was wrong. Fails: MT_E_MEMORY, MT_E_INTERNAL,
+ * MT_E_USAGE.
  */
 mt_status mt_search_designs(mt_problem *const *problems, int n_workers, mt_arena *mem,
                             mt_nlp_result *out, int *stage, mt_err *why, mt_err *err);
@@ -18,17 +22,22 @@ mt_status mt_search_designs(mt_problem *const *problems, int n_workers, mt_arena
 /* Are designs at a[n] and b[n] one, as in the search itself? */
 bool mt_search_same(int n, const double *a, const double *b);
 
-/* search_repeated.c: improve ends where modes repeat, judge whether they are optima, rank, and drop what is one and what is not shown to be optimal behind a
- * better design. In the present stage; solutions and their multipliers in place. out->evals may grow to `most` (0: some thousands more). Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_USAGE. */
+/* search_repeated.c: improve ends where modes repeat, judge whether they are optima, rank, and
+ * drop what is one and what is not shown to be optimal behind a better design. In the present
+ * stage; solutions and their multipliers in place. out->evals may grow to `most` (0: some
+ * thousands more). Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_USAGE. */
 mt_status mt_search_repeated(mt_problem *p, long most, mt_arena *mem, mt_nlp_result *out,
                              mt_err *err);
 
-/* search_continuum.c: of solutions between which all designs are feasible and have their objectives, one is kept (solution->continuum); n_found and n_once likewise. At most 3 evaluations
- * for each pair with equal objectives. In place; compromises stay as they are. Fails: MT_E_MEMORY. */
+/* search_continuum.c: of solutions between which all designs are feasible and have their
+ * objectives, one is kept (solution->continuum); n_found and n_once likewise. At most 3
+ * evaluations for each pair with equal objectives. In place; compromises stay as they are.
+ * Fails: MT_E_MEMORY. */
 mt_status mt_search_join_continua(mt_problem *p, mt_arena *mem, mt_nlp_result *out,
                                   mt_err *err);
 
-/* Is a design with objectives a[n] before one with b[n]? By the objectives in order; values that a held objective may differ by count as equal. */
+/* Is a design with objectives a[n] before one with b[n]? By the objectives in order; values
+ * that a held objective may differ by count as equal. */
 bool mt_search_before(int n, const double *a, const double *b);
 
 #endif

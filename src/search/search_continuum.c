@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Where solutions form a continuum, every start ends at another place of it. Two solutions a and b belong to one continuum where
+ * Where solutions form a continuum, every start ends at another place of it. Two solutions a
+ * and b belong to one continuum where
  *
  *     t = a + s (b - a),   s = 1/4, 1/2, 3/4,
  *
- * meet all goals with the objectives that a and b have, within their tolerance. Isolated solutions do not: between them the objective rises or a goal is missed.
- * Of a continuum one is kept, the nearest to the original design. Curved ones, whose chord leaves them, are not told.
+ * meet all goals with the objectives that a and b have, within their tolerance. Isolated
+ * solutions do not: between them the objective rises or a goal is missed. Of a continuum one is
+ * kept, the nearest to the original design. Curved ones, whose chord leaves them, are not told.
  */
 #include <math.h>
 #include <string.h>
@@ -13,7 +15,8 @@
 #include "search/search.h"
 
 enum { BETWEEN = 3 };
-/* Objectives that differ by less are equal: relative to their size; those without unit (roots of half squares, clearances) to this at least, as residuals are. */
+/* Objectives that differ by less are equal: relative to their size; those without unit (roots
+ * of half squares, clearances) to this at least, as residuals are. */
 static const double EQUAL = 1e-6;
 /* A solution uses the tolerances of its goals: rounding beyond them. */
 static const double FEASIBLE = 1.0 + 1e-6;
@@ -98,7 +101,8 @@ static double distance(const mt_problem *p, const mt_nlp_solution *s)
     return sum;
 }
 
-/* One record for both, at the place of the better: it is that of the nearer to the original, unless directions are told of the better, or the nearer is no local solution. */
+/* One record for both, at the place of the better: it is that of the nearer to the original,
+ * unless directions are told of the better, or the nearer is no local solution. */
 static void join(const continua *c, int into, const mt_nlp_solution *other)
 {
     mt_nlp_result *const out = c->out;
@@ -114,7 +118,8 @@ static void join(const continua *c, int into, const mt_nlp_solution *other)
     s->continuum = true;
 }
 
-/* group[i]: the first solution of i's continuum, i itself where it is alone. All pairs are compared, so that it does not matter which of a continuum is kept. */
+/* group[i]: the first solution of i's continuum, i itself where it is alone. All pairs are
+ * compared, so that it does not matter which of a continuum is kept. */
 static void find_groups(continua *c, int *group)
 {
     for (int i = 0; i < c->out->n_solutions; i++) {
@@ -132,7 +137,8 @@ static void find_groups(continua *c, int *group)
     }
 }
 
-/* Ranked: what belongs to a better one goes into it. group: afterwards its place in the list, as -1 - place, for each first. */
+/* Ranked: what belongs to a better one goes into it. group: afterwards its place in the list,
+ * as -1 - place, for each first. */
 static void join_all(const continua *c, int *group)
 {
     mt_nlp_result *const out = c->out;

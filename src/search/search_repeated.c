@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Ends of a search where modes repeat. Single modes have no slopes there: the search's own methods stall, and its KKT residual says nothing. So every end
- * with a residual is taken on: the smooth problem that keeps the modes together (repeated.h) is solved from there, and stationarity is that
- * of the cluster (cone.h). Where it is none, the residual is a way down: a step along it, and the search from there. Until nothing improves.
+ * Ends of a search where modes repeat. Single modes have no slopes there: the search's own
+ * methods stall, and its KKT residual says nothing. So every end with a residual is taken on:
+ * the smooth problem that keeps the modes together (repeated.h) is solved from there, and
+ * stationarity is that of the cluster (cone.h). Where it is none, the residual is a way down: a
+ * step along it, and the search from there. Until nothing improves.
  */
 #include <math.h>
 #include <string.h>
@@ -15,7 +17,8 @@ enum { RESERVED = 2 };
 enum { ROUNDS = 10, SOLVE_EVALUATIONS = 600, STEPS = 5 };
 /* Modes within this of a limit are tried as one cluster, the widest first. */
 static const double NEAR[] = {2e-2, 3e-3, 3e-4};
-/* ... and within this they are one where stationarity is judged: the search leaves them about so far apart. */
+/* ... and within this they are one where stationarity is judged: the search leaves them about
+ * so far apart. */
 static const double TOGETHER = 1e-5;
 /* The smooth problem is trusted so far from where its cluster was taken (t is a logarithm). */
 static const double BOX = 0.2;
@@ -25,9 +28,11 @@ static const double SHORTER = 0.3;
 /* A smaller gain, relative to the objective, is none. */
 static const double GAIN = 1e-8;
 static const double STATIONARY = 1e-6;
-/* A design that uses the tolerances of its demands (a relative 1e-6) is lighter by about so much than one that meets them exactly. */
+/* A design that uses the tolerances of its demands (a relative 1e-6) is lighter by about so
+ * much than one that meets them exactly. */
 static const double TOLERANCES_BUY = 1e-5;
-/* An end with a residual above this is not shown to be a local optimum, and not listed behind a better one. */
+/* An end with a residual above this is not shown to be a local optimum, and not listed behind a
+ * better one. */
 static const double NOT_SHOWN = 1e-4;
 /* As in the search itself: on a bound; an active row. */
 static const double ON_BOUND = 1e-8;
@@ -40,8 +45,8 @@ typedef struct refine {
     long evals;
     long most;
     mt_stop stop;
-    double
-        gain; /* a design counts as better from this gain on, relative; below 0: it may lose so much */
+    /* a design counts as better from this gain on, relative; below 0: it may lose so much */
+    double gain;
 } refine;
 
 /* Would `more` evaluations be too many? */
@@ -62,7 +67,8 @@ static double violation(const mt_problem *p, const mt_nlp_values *v)
     return most;
 }
 
-/* Solve nlp from t, near it; a feasible design of the study that is better than f: into t, f. */
+/* Solve nlp from t, near it; a feasible design of the study that is better than f: into t,
+ * f. */
 static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double *f,
                            bool *better, mt_err *err)
 {
@@ -132,8 +138,8 @@ static mt_status keep_together(refine *w, double near, double *t, double *f, boo
     return MT_OK;
 }
 
-/* Rows of the balance of gradients: equalities, active inequalities that no block stands for, active bounds. which[row]: i < n_eq an equality, then
- * inequalities, then variables. */
+/* Rows of the balance of gradients: equalities, active inequalities that no block stands for,
+ * active bounds. which[row]: i < n_eq an equality, then inequalities, then variables. */
 static int balance_rows(const mt_repeated *m, const double *t, double *rows, bool *free_sign,
                         int *which)
 {
@@ -172,8 +178,9 @@ static int balance_rows(const mt_repeated *m, const double *t, double *rows, boo
     return k;
 }
 
-/* Multipliers of the balance into the record. Of modes held together only the one that the others follow has its own: all may give way with
- * it, which saves the trace of U; where several are asked for they have none. */
+/* Multipliers of the balance into the record. Of modes held together only the one that the
+ * others follow has its own: all may give way with it, which saves the trace of U; where
+ * several are asked for they have none. */
 static void put_multipliers(const mt_repeated *m, const mt_cone *c, const int *which,
                             mt_nlp_solution *s)
 {
@@ -238,7 +245,8 @@ static mt_status cone_blocks(const mt_repeated *m, mt_arena *mem, mt_cone_block 
     return list == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
-/* Stationarity at t as a statement about clusters: *kkt, z[n], and the multipliers (s may be NULL). */
+/* Stationarity at t as a statement about clusters: *kkt, z[n], and the multipliers (s may be
+ * NULL). */
 static mt_status judge(refine *w, const double *t, double *kkt, double *z, mt_nlp_solution *s,
                        mt_err *err)
 {
@@ -305,7 +313,8 @@ static mt_status step_down(refine *w, const double *z, double *t, double *f, boo
     return MT_OK;
 }
 
-/* Where nothing is to be gained any more: the same design exactly, if that is nearer to a stationary one. */
+/* Where nothing is to be gained any more: the same design exactly, if that is nearer to a
+ * stationary one. */
 static mt_status settle(refine *w, double near, double *kkt, double *z, mt_nlp_solution *s,
                         mt_err *err)
 {
@@ -379,7 +388,8 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
     return MT_OK;
 }
 
-/* By objective; what is one counts once, and an end that is not shown to be optimal does not stand behind a better design. */
+/* By objective; what is one counts once, and an end that is not shown to be optimal does not
+ * stand behind a better design. */
 static void rank(const mt_problem *p, mt_nlp_result *out)
 {
     int kept = 0;

@@ -4,7 +4,8 @@
 
 #include "model/model.h"
 
-/* A catalogue of rotors: plain records, read by io. Each value says where it comes from and whether anybody has read that. */
+/* A catalogue of rotors: plain records, read by io. Each value says where it comes from and
+ * whether anybody has read that. */
 typedef struct mt_aircraft_value {
     double value;     /* Hz, or the number of blades */
     const char *text; /* "258 rpm", "4": as the catalogue gives it */

@@ -156,7 +156,8 @@ static const char *short_label(parts *p, int first, int last)
                            b->of != NULL ? b->of : "", last - first + 1);
 }
 
-/* "8P + 1T of UH-60 + 1P of Lynx": an owner is named behind the last of its neighbours in the list. */
+/* "8P + 1T of UH-60 + 1P of Lynx": an owner is named behind the last of its neighbours in the
+ * list. */
 static const char *label_of(parts *p, int first, int last)
 {
     const bool many = last - first >= LISTED_MOST;

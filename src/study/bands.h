@@ -6,17 +6,22 @@
 #include "study/machine.h"
 
 /*
- * Forbidden frequency bands: from lists in Hz, from the harmonics of rotors and from the orders of machines (machine.h). A rotor that turns at f [Hz], within r1 f to r2 f,
- * forbids for its harmonic m
+ * Forbidden frequency bands: from lists in Hz, from the harmonics of rotors and from the orders
+ * of machines (machine.h). A rotor that turns at f [Hz], within r1 f to r2 f, forbids for its
+ * harmonic m
  *     base    [m f r1, m f r2]
  *     margin  [m f r1 (1 - p/100), m f r2 (1 + p/100)]      p: separation margin in percent
- * A design keeps its modes out of the bands with their margin; proofs over tolerances take the base.
+ * A design keeps its modes out of the bands with their margin; proofs over tolerances take the
+ * base.
  *
- * Bands that overlap or touch with their margins are one band: no mode fits between them. Its base is the hull of their bases. Nothing is lost by that: a
- * mode that starts outside the merged band and moves continuously meets one of the bases before it can reach a gap between them.
+ * Bands that overlap or touch with their margins are one band: no mode fits between them. Its
+ * base is the hull of their bases. Nothing is lost by that: a mode that starts outside the
+ * merged band and moves continuously meets one of the bases before it can reach a gap between
+ * them.
  */
 
-/* A harmonic as written: "4P", "nP", "2nP" of the main rotor, "1T", "nT" of the tail rotor. n (or N) is the number of blades. */
+/* A harmonic as written: "4P", "nP", "2nP" of the main rotor, "1T", "nT" of the tail rotor. n
+ * (or N) is the number of blades. */
 typedef struct mt_harmonic {
     int multiple;     /* the number in front, 1 where there is none */
     bool blade_count; /* times the number of blades */
@@ -33,15 +38,16 @@ enum {
 };
 
 /**
- * Read "[number][n]P" or "...T": a number from 1 to MT_MAX_MULTIPLE without leading zeros, n or N, or both. Sets all but addr; text is not
- * copied. Returns false (out is zeroed) for anything else.
+ * Read "[number][n]P" or "...T": a number from 1 to MT_MAX_MULTIPLE without leading zeros, n or
+ * N, or both. Sets all but addr; text is not copied. Returns false (out is zeroed) for anything
+ * else.
  */
 bool mt_harmonic_parse(const char *text, mt_harmonic *out);
 
 /* Numbers are NaN (MT_HAS in study/study.h) and counts 0 where not given. */
 typedef struct mt_rotor {
-    mt_name
-        aircraft; /* of the catalogue: speeds and blades come from there; s NULL: they are given here */
+    /* of the catalogue: speeds and blades come from there; s NULL: they are given here */
+    mt_name aircraft;
     const char *name; /* in labels; NULL: the aircraft's, else "rotor" */
     double speed_hz;
     int blades;
@@ -49,8 +55,8 @@ typedef struct mt_rotor {
     int tail_blades;
     int n_harmonics;
     mt_harmonic *harmonics;
-    double
-        range_lower; /* speeds from range_lower * speed to range_upper * speed; default 1 and 1 */
+    /* speeds from range_lower * speed to range_upper * speed; default 1 and 1 */
+    double range_lower;
     double range_upper;
     double margin_percent; /* default: that of the list of bands */
     mt_addr addr;
@@ -63,7 +69,8 @@ typedef struct mt_rotor {
 
 /* Every optional member at "not given" or its default, all addresses at addr. */
 mt_rotor mt_rotor_default(mt_addr addr);
-/* Frequency of a harmonic at the nominal speed [Hz]; NaN where the speed or the number of blades that it needs is not given. */
+/* Frequency of a harmonic at the nominal speed [Hz]; NaN where the speed or the number of
+ * blades that it needs is not given. */
 double mt_rotor_harmonic_hz(const mt_rotor *rotor, const mt_harmonic *harmonic);
 
 typedef struct mt_band_hz {
@@ -103,15 +110,18 @@ typedef struct mt_bands_source {
 double mt_bands_margin(const mt_bands_source *source, double own);
 
 /**
- * The bands of a source, merged, sorted, cut off at up_to_hz (a base that lies above it becomes the point up_to_hz).
- * @param[in]  margin_percent  replaces every margin of the source, of all rotors and machines too; NaN: margins as given
- * @param[out] out             lists and texts in mem
- * Harmonics whose frequency is not known and intervals with NaN are left out: the checks of a study have noted them. O(n log n) bands.
- * Fails: MT_E_MEMORY.
+ * The bands of a source, merged, sorted, cut off at up_to_hz (a base that lies above it becomes
+ * the point up_to_hz).
+ * @param[in] margin_percent replaces every margin of the source, of all rotors and machines
+ *   too; NaN: margins as given
+ * @param[out] out lists and texts in mem Harmonics whose frequency is not known and intervals
+ *   with NaN are left out: the checks of a study have noted them. O(n log n) bands. Fails:
+ *   MT_E_MEMORY.
  */
 mt_status mt_bands_make(const mt_bands_source *source, double margin_percent, mt_arena *mem,
                         mt_bands *out, mt_err *err);
-/* One list from several (all goals that name one configuration), merged again; notes tell of the new mergers only. Fails: MT_E_MEMORY. */
+/* One list from several (all goals that name one configuration), merged again; notes tell of
+ * the new mergers only. Fails: MT_E_MEMORY. */
 mt_status mt_bands_unite(int n, const mt_bands *const *lists, mt_arena *mem, mt_bands *out,
                          mt_err *err);
 
@@ -119,12 +129,14 @@ mt_status mt_bands_unite(int n, const mt_bands *const *lists, mt_arena *mem, mt_
 typedef enum mt_band_side { MT_BELOW_BAND, MT_INSIDE_BAND, MT_ABOVE_BAND } mt_band_side;
 const char *mt_band_side_name(mt_band_side side);
 /**
- * Clearance of a frequency from a band in percent of the nearest edge of its base: what compares with a margin. Negative inside: then how
- * far the frequency would have to move to the nearest edge, in percent of that edge. side: NULL, or where it lies.
+ * Clearance of a frequency from a band in percent of the nearest edge of its base: what
+ * compares with a margin. Negative inside: then how far the frequency would have to move to the
+ * nearest edge, in percent of that edge. side: NULL, or where it lies.
  */
 double mt_band_clearance_percent(const mt_band *band, double hz, mt_band_side *side);
 
-/** ln(a/b) of frequencies or edges, a >= 0; HUGE_VAL where b is not above 0: a mode that vanishes, a band that begins at 0. */
+/** ln(a/b) of frequencies or edges, a >= 0; HUGE_VAL where b is not above 0: a mode that
+ * vanishes, a band that begins at 0. */
 double mt_log_ratio(double a_hz, double b_hz);
 
 #endif

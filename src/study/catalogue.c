@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * IEC 60063: the values of E48, E96 and E192 are 10^(i/N) rounded to three digits, but for 9.20 in E192, where the rule says 9.19. E24 and
- * below are older and have two digits that no rule gives; E12, E6 and E3 are every second, fourth and eighth of E24.
+ * IEC 60063: the values of E48, E96 and E192 are 10^(i/N) rounded to three digits, but for 9.20
+ * in E192, where the rule says 9.19. E24 and below are older and have two digits that no rule
+ * gives; E12, E6 and E3 are every second, fourth and eighth of E24.
  */
 #include "study/catalogue.h"
 

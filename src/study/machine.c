@@ -91,7 +91,8 @@ static bool mesh_lines(const mt_gear *gear, const mt_order *order, const char *o
 {
     const double teeth = (double)order->thousandths * (double)gear->teeth;
     for (int s = -gear->sidebands; s <= gear->sidebands; s++) {
-        /* thousandths of turns are whole numbers: rounded by the division and by the ratio only */
+        /* thousandths of turns are whole numbers: rounded by the division and by the ratio
+         * only */
         const double turns = (teeth + (double)(THOUSAND * s)) / (double)THOUSAND;
         const char *const what =
             s == 0 ? order->text : mt_arena_printf(mem, "%s%+d", order->text, s);

@@ -5,11 +5,16 @@
 #include "model/model.h"
 
 /*
- * A machine that excites: an engine, a pump, a gearbox. Its shaft turns at f [1/s], somewhere within f1 to f2, and whatever it does happens a fixed number of times per turn, its order:
- *     order k of the shaft      k                       "0.5E", "1E", "1.5E": a four-stroke cylinder fires every second turn
- *     mesh of a gear            k z r                   "1G", "2G": z teeth on a shaft that turns r times as fast as the machine's
- *     its sidebands             (k z + s) r             "1G+1", "1G-2": modulated by the turns of the gear's own shaft, s = -S .. S
- * Each forbids the frequencies order f1 to order f2 (bands.h). Rotors, with blades and a tail, are in bands.h.
+ * A machine that excites: an engine, a pump, a gearbox. Its shaft turns at f [1/s], somewhere
+ * within f1 to f2, and whatever it does happens a fixed number of times per turn, its order:
+ *     order k of the shaft      k
+ *         "0.5E", "1E", "1.5E": a four-stroke cylinder fires every second turn
+ *     mesh of a gear            k z r
+ *         "1G", "2G": z teeth on a shaft that turns r times as fast as the machine's
+ *     its sidebands             (k z + s) r
+ *         "1G+1", "1G-2": modulated by the turns of the gear's own shaft, s = -S .. S
+ * Each forbids the frequencies order f1 to order f2 (bands.h). Rotors, with blades and a tail,
+ * are in bands.h.
  */
 
 /* An order as written, in thousandths: exact, and a product with it is rounded once. */
@@ -22,8 +27,9 @@ typedef struct mt_order {
 enum { MT_MAX_ORDER_THOUSANDTHS = 999999, MT_MAX_TEETH = 9999, MT_MAX_SIDEBANDS = 99 };
 
 /**
- * Read a decimal number above 0 and below 1000 with at most three decimals and without leading zeros, followed by the letter: "0.5E". Sets all but addr; text is not copied. Returns
- * false (out is zeroed) for anything else.
+ * Read a decimal number above 0 and below 1000 with at most three decimals and without leading
+ * zeros, followed by the letter: "0.5E". Sets all but addr; text is not copied. Returns false
+ * (out is zeroed) for anything else.
  */
 bool mt_order_parse(const char *text, char letter, mt_order *out);
 
@@ -63,7 +69,8 @@ mt_machine mt_machine_default(mt_addr addr);
 /* Least (end 0) or greatest (1) speed [1/s]; NaN where not known. */
 double mt_machine_speed_hz(const mt_machine *machine, int end);
 
-/* Something that happens `order` times per turn of the machine: `what` ("1.5E", "1G-1") of `of` ("engine", "pinion"). */
+/* Something that happens `order` times per turn of the machine: `what` ("1.5E", "1G-1") of `of`
+ * ("engine", "pinion"). */
 typedef struct mt_order_line {
     double order;
     const char *what;
@@ -72,7 +79,8 @@ typedef struct mt_order_line {
 
 /* How many lines a machine has. */
 int mt_machine_line_count(const mt_machine *machine);
-/* All of them, lines[mt_machine_line_count]; texts that the machine lends or in mem. Fails: MT_E_MEMORY. */
+/* All of them, lines[mt_machine_line_count]; texts that the machine lends or in mem. Fails:
+ * MT_E_MEMORY. */
 mt_status mt_machine_lines(const mt_machine *machine, mt_arena *mem, mt_order_line *lines,
                            mt_err *err);
 

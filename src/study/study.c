@@ -7,7 +7,8 @@
 
 enum { DEFAULT_RECOMMENDATIONS = 5, DEFAULT_SEED = 1 };
 
-/* A goal is met within this, in percent of the demand: far below what an engineer can build, far above rounding. */
+/* A goal is met within this, in percent of the demand: far below what an engineer can build,
+ * far above rounding. */
 static const double DEFAULT_TOLERANCE_PERCENT = 1e-4;
 
 mt_status mt_study_new(mt_study **out, mt_err *err)

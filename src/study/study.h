@@ -11,10 +11,12 @@
 #include "study/bands.h"
 
 /*
- * A question asked of a model: variables, goals, objective, references, published values. Filled by a reader (io), checked by
- * mt_study_finish, then immutable. Numbers of a study are expressions of the model's parameters evaluated once at the original design
- * (plain doubles here), except those that must follow the design: limit.expression, objective.expression, published.quantity (mt_expr).
- * NaN (nan("")) stands for "not given" in the doubles below; MT_HAS(x) asks.
+ * A question asked of a model: variables, goals, objective, references, published values.
+ * Filled by a reader (io), checked by mt_study_finish, then immutable. Numbers of a study are
+ * expressions of the model's parameters evaluated once at the original design (plain doubles
+ * here), except those that must follow the design: limit.expression, objective.expression,
+ * published.quantity (mt_expr). NaN (nan("")) stands for "not given" in the doubles below;
+ * MT_HAS(x) asks.
  */
 #define MT_HAS(x) ((x) == (x))
 
@@ -59,7 +61,8 @@ typedef enum mt_goal_type { MT_GOAL_LIST(MT_GOAL_ENUM) MT_GOAL_TYPE_COUNT } mt_g
 /* What modes must keep clear of, and how the search goes about it. */
 typedef struct mt_avoid {
     mt_bands_source source;
-    /* modes on each side of a band that are held there by constraints of their own, so that neighbours which change places are seen */
+    /* modes on each side of a band that are held there by constraints of their own, so that
+     * neighbours which change places are seen */
     int cluster;
     mt_bands bands;     /* of the source; by finish */
     mt_addr bands_addr; /* the addresses of what was not given equal the goal's */
@@ -81,7 +84,8 @@ typedef struct mt_goal {
     double equals;            /* limit */
     double tolerance_percent; /* default 1e-4 */
     double weight;            /* NaN: a constraint; else a residual of the misfit */
-    /* shape, mac; frequency: its target is the frequency of that mode, instead of target_hz; its addr equals addr where it was not given */
+    /* shape, mac; frequency: its target is the frequency of that mode, instead of target_hz;
+     * its addr equals addr where it was not given */
     mt_name reference_name;
     int reference;
     int reference_mode; /* 1-based; 0: same index as mode */
@@ -186,7 +190,8 @@ typedef struct mt_published {
     mt_addr tolerance_percent_addr;
 } mt_published;
 
-/* A trade study: one or two quantities take each of their values (all pairs of two), and every such study is answered by its best design. */
+/* A trade study: one or two quantities take each of their values (all pairs of two), and every
+ * such study is answered by its best design. */
 typedef enum mt_vary_kind {
     MT_VARY_BOUND,    /* a bound of a variable */
     MT_VARY_GOAL,     /* a number of a goal */
@@ -240,10 +245,11 @@ typedef struct mt_search {
     long max_evaluations; /* 0: default */
 } mt_search;
 
-/* How far the best design of a misfit moves when single weights are changed: the uncertainty that a choice of weights hides. */
+/* How far the best design of a misfit moves when single weights are changed: the uncertainty
+ * that a choice of weights hides. */
 typedef struct mt_spread {
-    double
-        factor; /* every weighted goal's weight times and divided by it in turn; NaN: not asked for */
+    /* every weighted goal's weight times and divided by it in turn; NaN: not asked for */
+    double factor;
     mt_addr factor_addr;
 } mt_spread;
 
@@ -267,7 +273,8 @@ typedef struct mt_study {
     const char *description;
     mt_name model_path;
     mt_model *model; /* owned */
-    /* [model's parameters] values at the original design (model/values.h); made by finish where NULL */
+    /* [model's parameters] values at the original design (model/values.h); made by finish where
+     * NULL */
     double *original;
     MT_LIST_OF(mt_variable, variables);
     MT_LIST_OF(mt_goal, goals);
@@ -275,17 +282,20 @@ typedef struct mt_study {
     MT_LIST_OF(mt_objective, objectives);
     MT_LIST_OF(mt_published, published);
     mt_trade trade;
-    /* the designs that are counted alike (analysis.h): variables within their bounds or catalogues, with their tolerances and the original values, and what a trade study varies; by
-     * finish. Studies made from this one (points of a trade study, one combination of a catalogue) keep it. */
+    /* the designs that are counted alike (analysis.h): variables within their bounds or
+     * catalogues, with their tolerances and the original values, and what a trade study varies;
+     * by finish. Studies made from this one (points of a trade study, one combination of a
+     * catalogue) keep it. */
     mt_count_box counted;
     mt_name aircraft_path; /* of the catalogue read, or unreadable (noted); s NULL: none */
     mt_aircraft_list aircraft;
-    /* for the result: what a reader of it must know (values that nobody confirmed, bands that were merged); by finish */
+    /* for the result: what a reader of it must know (values that nobody confirmed, bands that
+     * were merged); by finish */
     MT_LIST_OF(const char *, warnings);
-    mt_doubt_list
-        doubts; /* of the study's own numbers; by finish, their places by the reader */
-    MT_LIST_OF(mt_study_place,
-               places);  /* of goals, variables and their numbers; by the reader */
+    /* of the study's own numbers; by finish, their places by the reader */
+    mt_doubt_list doubts;
+    /* of goals, variables and their numbers; by the reader */
+    MT_LIST_OF(mt_study_place, places);
     bool examined;       /* doubts have been told already: a point of a trade study */
     int recommendations; /* how many to report; default 5 */
     mt_addr recommendations_addr;
@@ -295,22 +305,26 @@ typedef struct mt_study {
     mt_input_file *inputs;
 } mt_study;
 
-/* A reference may use the same mt_model as the study or another reference: mt_study_delete frees each model once. */
+/* A reference may use the same mt_model as the study or another reference: mt_study_delete
+ * frees each model once. */
 mt_status mt_study_new(mt_study **out, mt_err *err);
-/* Records with every optional member at "not given" (NaN, MT_ABSENT, defaults) and all addresses at addr. */
+/* Records with every optional member at "not given" (NaN, MT_ABSENT, defaults) and all
+ * addresses at addr. */
 mt_variable mt_variable_default(mt_addr addr);
 mt_goal mt_goal_default(mt_goal_type type, mt_addr addr);
 mt_avoid mt_avoid_default(mt_addr addr);
 mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr);
 mt_published mt_published_default(mt_published_kind kind, mt_addr addr);
 /*
- * Resolve names and check meaning, all problems at once: unknown names with "did you mean", bounds in the wrong order, catalogue and
- * bounds together, duplicate variables, goals without a demand, weights without the objective "misfit" and the reverse, a variable
- * overridden in every configuration that the goals name, references without a common sensor, mode indices below 1, ... Fills in
- * defaults (configuration: the model's only one; objective: change; range of a variable), sorts catalogues, looks up aircraft, makes the
- * bands, sets `original` and `warnings`. study->model
- * is set and finished before. Bounds at or below 0 are fine for a positive parameter (problem.h: how its change is measured then).
- * Returns MT_E_INPUT where diags holds errors, MT_E_MEMORY.
+ * Resolve names and check meaning, all problems at once: unknown names with "did you mean",
+ * bounds in the wrong order, catalogue and bounds together, duplicate variables, goals without
+ * a demand, weights without the objective "misfit" and the reverse, a variable overridden in
+ * every configuration that the goals name, references without a common sensor, mode indices
+ * below 1, ... Fills in defaults (configuration: the model's only one; objective: change; range
+ * of a variable), sorts catalogues, looks up aircraft, makes the bands, sets `original` and
+ * `warnings`. study->model is set and finished before. Bounds at or below 0 are fine for a
+ * positive parameter (problem.h: how its change is measured then). Returns MT_E_INPUT where
+ * diags holds errors, MT_E_MEMORY.
  */
 mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err);
 /* MT_ABSENT where there is none. */
@@ -319,7 +333,8 @@ int mt_study_find_reference(const mt_study *study, const char *name);
 bool mt_study_asks(const mt_study *study, int configuration);
 /* Fill in where a doubt's address stands, if that is known. */
 void mt_study_place_doubt(const mt_study *study, mt_doubt *doubt);
-/* Where what the text's leading JSON pointer names ("/goals/2: ...") stands; NULL: it begins with none, or the place was not kept. */
+/* Where what the text's leading JSON pointer names ("/goals/2: ...") stands; NULL: it begins
+ * with none, or the place was not kept. */
 const mt_study_place *mt_study_find_place(const mt_study *study, const char *text);
 /* The names that files use: "frequency", "verifies", "parameter". */
 const char *mt_goal_type_name(mt_goal_type type);

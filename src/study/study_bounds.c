@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The numbers of the model where the variables stand at their bounds. A search goes there: a diameter of 0 or a wall of no thickness is found now, and named with its variable, not as a
- * failure of some evaluation. Looked at are the designs with one variable at a bound and the corners of the box (all 2^n for n <= MOST_ENUMERATED, else the two at which all variables are
+ * The numbers of the model where the variables stand at their bounds. A search goes there: a
+ * diameter of 0 or a wall of no thickness is found now, and named with its variable, not as a
+ * failure of some evaluation. Looked at are the designs with one variable at a bound and the
+ * corners of the box (all 2^n for n <= MOST_ENUMERATED, else the two at which all variables are
  * least or greatest). Designs that a limit of the study forbids do not count.
  */
 #include <math.h>
@@ -11,7 +13,8 @@
 #include "study/study_check.h"
 
 enum { MOST_ENUMERATED = 6 };
-/* A search takes far longer than to look at a hundred million numbers: what asks for more is no study. */
+/* A search takes far longer than to look at a hundred million numbers: what asks for more is no
+ * study. */
 static const double MOST_WORK = 1e8;
 
 typedef struct corners {
@@ -172,7 +175,8 @@ static void one_corner(corners *k, unsigned which)
     }
 }
 
-/* Operations of all designs: numbers of every configuration that counts, parameters for every limit. */
+/* Operations of all designs: numbers of every configuration that counts, parameters for every
+ * limit. */
 static double count_work(const corners *k)
 {
     const mt_study *const s = k->c->study;

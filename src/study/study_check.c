@@ -7,7 +7,8 @@
 #include "base/text.h"
 #include "model/values.h"
 
-/* Every record that a name can mean begins with its mt_name: the nearest of n records of `size` bytes, for "did you mean". */
+/* Every record that a name can mean begins with its mt_name: the nearest of n records of `size`
+ * bytes, for "did you mean". */
 static const char *nearest(mt_study_check *c, const char *name, const void *records, int n,
                            size_t size)
 {

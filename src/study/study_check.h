@@ -4,8 +4,8 @@
 
 #include "study/study.h"
 
-/* The steps of mt_study_finish, one file each. Each notes its problems and fills in what could be resolved; what could not stays
- * MT_ABSENT. */
+/* The steps of mt_study_finish, one file each. Each notes its problems and fills in what could
+ * be resolved; what could not stays MT_ABSENT. */
 typedef struct mt_study_check {
     mt_study *study;
     const mt_model *model;
@@ -24,26 +24,31 @@ void mt_study_check_trade(mt_study_check *c);      /* study_trade.c; last of the
 void mt_study_fill_counted(mt_study_check *c);     /* study_counted.c; after all of them */
 void mt_study_check_bounds(mt_study_check *c);     /* study_bounds.c; where nothing is wrong */
 void mt_study_check_redundant(mt_study_check *c);  /* study_redundant.c; after them, likewise */
-void mt_study_check_doubts(
-    mt_study_check *c); /* study_doubts.c; last, where nothing is wrong */
+/* study_doubts.c; last, where nothing is wrong */
+void mt_study_check_doubts(mt_study_check *c);
 
-/* Shared: names to indices, with "did you mean". An absent name gives MT_ABSENT without a message. */
+/* Shared: names to indices, with "did you mean". An absent name gives MT_ABSENT without a
+ * message. */
 int mt_check_parameter(mt_study_check *c, mt_name name);
 int mt_check_configuration(mt_study_check *c, const mt_model *model, mt_name name);
 int mt_check_reference(mt_study_check *c, mt_name name);
-/* NULL where the name is absent or unknown (noted, unless the catalogue itself could not be read). */
+/* NULL where the name is absent or unknown (noted, unless the catalogue itself could not be
+ * read). */
 const mt_aircraft *mt_check_aircraft(mt_study_check *c, mt_name name);
 /* A sentence for the result; text is in the study's arena (NULL: out of memory). */
 void mt_check_warn_result(mt_study_check *c, const char *text);
-/* The model's only configuration where a name is absent; noted at addr where there are several. */
+/* The model's only configuration where a name is absent; noted at addr where there are
+ * several. */
 int mt_check_only_configuration(mt_study_check *c, const mt_model *model, mt_addr addr);
-/* Resolve a mode and check its index (absent: noted). Returns its index, that of a named mode included; 0 where there is none. */
+/* Resolve a mode and check its index (absent: noted). Returns its index, that of a named mode
+ * included; 0 where there is none. */
 int mt_check_mode(mt_study_check *c, mt_mode_ref *mode);
-/* Does the reference have the mode, and of it what is compared: its shape, else its frequency? reference_mode 0: mode_index. Problems
- * noted at addr. */
+/* Does the reference have the mode, and of it what is compared: its shape, else its frequency?
+ * reference_mode 0: mode_index. Problems noted at addr. */
 void mt_check_reference_mode(mt_study_check *c, int reference, int reference_mode,
                              int mode_index, bool shape, mt_addr addr);
-/* A shape or a MAC needs a sensor and a direction that the model and the reference's model both have. (study_references.c) */
+/* A shape or a MAC needs a sensor and a direction that the model and the reference's model both
+ * have. (study_references.c) */
 void mt_check_common_sensors(mt_study_check *c, int reference, mt_addr addr);
 /* Was a number given, even if it could not be read (then its own address is known)? */
 bool mt_check_given(double value, mt_addr value_addr, mt_addr owner);

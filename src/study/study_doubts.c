@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Numbers of a study that are allowed and hardly meant. What such a question has for an answer may be right, even proven, and is not what the engineer wanted to know: "feasible
- * and proven" of bands at a hundred times the rotor's speed. Limits are wide: a good study is not warned of.
+ * Numbers of a study that are allowed and hardly meant. What such a question has for an answer
+ * may be right, even proven, and is not what the engineer wanted to know: "feasible and proven"
+ * of bands at a hundred times the rotor's speed. Limits are wide: a good study is not warned
+ * of.
  */
 #include <math.h>
 
 #include "study/study_check.h"
 
-/* A rotor turns at 0.9 to 1.1 of its nominal speed, between idle and overspeed at 0.5 to 1.3; [95, 105] is per cent. */
+/* A rotor turns at 0.9 to 1.1 of its nominal speed, between idle and overspeed at 0.5 to 1.3;
+ * [95, 105] is per cent. */
 static const double LEAST_SPEED = 0.5;
 static const double MOST_SPEED = 2.0;
 /* An engine idles at a tenth of its nominal speed, and turns at less than 30 000 per minute. */
@@ -20,7 +23,8 @@ static const double LEAST_MARGIN_PERCENT = 1.0;
 static const double LEAST_WIDTH = 1e-3;
 /* A goal met within half of what it asks asks for nothing. */
 static const double MOST_TOLERANCE_PERCENT = 50.0;
-/* Bounds that span more than eight decades, or lie three from the original, have a power of ten wrong more often than not. */
+/* Bounds that span more than eight decades, or lie three from the original, have a power of ten
+ * wrong more often than not. */
 static const double MOST_SPAN = 1e8;
 static const double MOST_SHIFT = 1e3;
 static const double PERCENT = 100.0;
@@ -63,7 +67,8 @@ static void doubt_range(mt_doubt_list *out, const factors *range)
        range->addr);
 }
 
-/* Speeds are in turns per second; what is meant for turns per minute is sixty times too fast. */
+/* Speeds are in turns per second; what is meant for turns per minute is sixty times too
+ * fast. */
 static void doubt_speed(mt_doubt_list *out, const mt_machine *machine)
 {
     const double lower = mt_machine_speed_hz(machine, 0);

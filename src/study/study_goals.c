@@ -35,7 +35,8 @@ typedef struct demands {
     bool at_most;
 } demands;
 
-/* An equality excludes limits, limits must leave room. `choices` names the members that ask for a value. */
+/* An equality excludes limits, limits must leave room. `choices` names the members that ask for
+ * a value. */
 static void check_demands(mt_study_check *c, const mt_goal *goal, demands d,
                           const char *choices, const char *unit)
 {

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * A variable that shapes the geometry may take joints out of the redundancy that the mechanism lives on: a tilted hinge of a planar four-bar in space, one crank of a parallelogram with
- * three. At any other value the mechanism cannot be closed, or has lost a motion: its frequencies are no function that a search could follow. Said where the study is read.
+ * A variable that shapes the geometry may take joints out of the redundancy that the mechanism
+ * lives on: a tilted hinge of a planar four-bar in space, one crank of a parallelogram with
+ * three. At any other value the mechanism cannot be closed, or has lost a motion: its
+ * frequencies are no function that a search could follow. Said where the study is read.
  */
 #include "mechanics/linear.h"
 #include "study/study_check.h"
 
-/* Names configuration c's variables that break a redundancy; each variable once over all configurations. */
+/* Names configuration c's variables that break a redundancy; each variable once over all
+ * configurations. */
 static mt_status judge(mt_study_check *c, mt_linear *lin, bool *told, mt_err *err)
 {
     const mt_study *const s = c->study;

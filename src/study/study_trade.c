@@ -51,7 +51,8 @@ static const char *side_name(const mt_vary *v)
                                    : (v->upper ? "upper bound" : "lower bound");
 }
 
-/* Where both sides vary every value of the one has to leave room to every value of the other. */
+/* Where both sides vary every value of the one has to leave room to every value of the
+ * other. */
 static void check_sides(mt_study_check *c, const mt_vary *v)
 {
     const mt_vary *const other = other_side(c, v);
@@ -223,8 +224,8 @@ static void check_vary(mt_study_check *c, mt_vary *v)
         v->text = v->name.s;
         break;
     }
-    const bool made =
-        v->kind != MT_VARY_PARAMETER; /* else it is the name, which a wrong file may lack */
+    /* else it is the name, which a wrong file may lack */
+    const bool made = v->kind != MT_VARY_PARAMETER;
     c->out_of_memory = c->out_of_memory || (made && v->text == NULL);
 }
 

@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Named modes along sweeps of a parameter. Two oscillators of unit mass, k1 and k2 to the ground and c between them:
+ * Named modes along sweeps of a parameter. Two oscillators of unit mass, k1 and k2 to the
+ * ground and c between them:
  *     K = [k1 + c, -c; -c, k2 + c],   tan 2 theta = -2 c / (k2 - k1),
- * where theta is the angle of the modes to the masses. A name that was given at theta_0 has the share cos^2(theta - theta_0) of the mode that turned with it: everything below is that closed form.
+ * where theta is the angle of the modes to the masses. A name that was given at theta_0 has the
+ * share cos^2(theta - theta_0) of the mode that turned with it: everything below is that closed
+ * form.
  */
 #include "problem/problem.h"
 #include "study_fixture.h"
@@ -141,7 +144,8 @@ static void tracking__a_veering_hands_the_names_over(mt_test *t)
     CHECK(t, n.swapped > 150);
 }
 
-/* Both frequencies are equal, the shapes any: the name cannot be told, but its frequency can. */
+/* Both frequencies are equal, the shapes any: the name cannot be told, but its frequency
+ * can. */
 static void tracking__equal_frequencies_are_ambiguous(mt_test *t)
 {
     char model[4096];
@@ -169,7 +173,8 @@ static void tracking__equal_frequencies_are_ambiguous(mt_test *t)
     study_free(&s);
 }
 
-/* Half way through a veering the named mode is either of two: a target met there by number is no answer. */
+/* Half way through a veering the named mode is either of two: a target met there by number is
+ * no answer. */
 static void tracking__a_goal_inside_a_veering_is_not_met(mt_test *t)
 {
     char model[4096];
@@ -188,7 +193,8 @@ static void tracking__a_goal_inside_a_veering_is_not_met(mt_test *t)
     study_free(&s);
 }
 
-/* k1 is to bring the mode of mass 1 from 1 to 3 rad^2/s^2, past the other at 2: it is then the second mode. */
+/* k1 is to bring the mode of mass 1 from 1 to 3 rad^2/s^2, past the other at 2: it is then the
+ * second mode. */
 static void tracking__a_named_goal_is_solved_through_a_swap(mt_test *t)
 {
     static const char *const couplings[] = {"0", "0.001", "0.01"};
@@ -264,9 +270,11 @@ static void write_row(mt_text *model, mt_text *study)
 }
 
 /*
- * Shapes that dissolve. The frequencies of a row never cross (its matrix is tridiagonal with couplings that never vanish), so by continuity the i-th named mode is the i-th mode wherever no veering
- * narrower than the resolution was leapt over. Of designs drawn at random the walk must reach many, and what it reaches must be that mode in nearly all of them: nearly, because rows with soft
- * springs do have narrow veerings.
+ * Shapes that dissolve. The frequencies of a row never cross (its matrix is tridiagonal with
+ * couplings that never vanish), so by continuity the i-th named mode is the i-th mode wherever
+ * no veering narrower than the resolution was leapt over. Of designs drawn at random the walk
+ * must reach many, and what it reaches must be that mode in nearly all of them: nearly, because
+ * rows with soft springs do have narrow veerings.
  */
 static void tracking__dissolved_shapes_are_followed(mt_test *t)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Every place from loading a study to its answer that asks for memory is refused once: that is a failure with its name, and nothing is lost or left. */
+/* Every place from loading a study to its answer that asks for memory is refused once: that is
+ * a failure with its name, and nothing is lost or left. */
 #include "mt_alloc.h"
 #include "mt_sites.h"
 #include "nlp/prepare.h"

@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * How much work there is between two questions whether to stop: not more, of dense linear algebra, than one analysis needs, whatever the phase, and however many configurations, positions,
- * starts or boxes there are. The linker leads every call of a kernel through here (tests/CMakeLists.txt), where its multiplications are counted.
+ * How much work there is between two questions whether to stop: not more, of dense linear
+ * algebra, than one analysis needs, whatever the phase, and however many configurations,
+ * positions, starts or boxes there are. The linker leads every call of a kernel through here
+ * (tests/CMakeLists.txt), where its multiplications are counted.
  */
 #include "linalg/dense.h"
 #include "nlp/prepare.h"
 #include "study_kinds.h"
 
 /*
- * In n^3, n the states of the largest configuration: a few decompositions (about 10 n^3 each) are one unit of work; two units are more. What is counted for matrices of one or two rows is their
- * overhead, so that it says nothing of them.
+ * In n^3, n the states of the largest configuration: a few decompositions (about 10 n^3 each)
+ * are one unit of work; two units are more. What is counted for matrices of one or two rows is
+ * their overhead, so that it says nothing of them.
  */
 static const double MOST = 40.0;
 enum { LEAST_ORDER = 6, EIG = 9, SVD = 20, QR = 2, SOLVE = 1 };
@@ -24,7 +27,8 @@ static void spend(double weight, int m, int n, int k)
     order = m > order ? m : order;
 }
 
-/* NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,readability-function-size): names are the linker's, parameters the kernels' */
+/* names are the linker's, parameters the kernels' */
+/* NOLINTBEGIN(bugprone-reserved-identifier,cert-*,readability-function-size) */
 #define WRAP(type, name, parameters, arguments, weight, m, n, k) \
     type __real_##name parameters;                               \
     type __wrap_##name parameters;                               \
@@ -64,7 +68,7 @@ void __wrap_mt_gemm(bool ta, bool tb, int m, int n, int k, double alpha, const d
     __real_mt_gemm(ta, tb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc);
 }
 
-/* NOLINTEND(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,readability-function-size) */
+/* NOLINTEND(bugprone-reserved-identifier,cert-*,readability-function-size) */
 
 static int ask(void *context)
 {

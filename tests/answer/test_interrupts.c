@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * A study that is interrupted says what of its answer is missing, and what it does say is what it says when it is left alone. Moments are counted, not timed: a solve asks whether to stop before
- * every unit of work, always in the same order; it is told to at fifty of these questions, spread evenly over all of them.
+ * A study that is interrupted says what of its answer is missing, and what it does say is what
+ * it says when it is left alone. Moments are counted, not timed: a solve asks whether to stop
+ * before every unit of work, always in the same order; it is told to at fifty of these
+ * questions, spread evenly over all of them.
  *
- * MT_INTERRUPT_PLACES=50 takes that many moments of every study of the tree (minutes); without it, those that ask often are interrupted fewer times, and the longest once, near their beginning.
+ * MT_INTERRUPT_PLACES=50 takes that many moments of every study of the tree (minutes); without
+ * it, those that ask often are interrupted fewer times, and the longest once, near their
+ * beginning.
  */
 #include <glob.h>
 
@@ -12,8 +16,9 @@
 #include "study_kinds.h"
 
 enum { PLACES = 50, PATH_SIZE = 600 };
-/* Questions of one study that the short form goes through on its way to all its places together, and the places that each has at least. Of the tree, a study that asks more than LONG is
- * interrupted once, after EARLY. */
+/* Questions of one study that the short form goes through on its way to all its places
+ * together, and the places that each has at least. Of the tree, a study that asks more than
+ * LONG is interrupted once, after EARLY. */
 enum { QUESTIONS = 20000, PLACES_LEAST = 2, LONG = 5000, EARLY = 1500 };
 /* Numbers of one design, analysed twice. */
 static const double SAME = 1e-9;
@@ -78,7 +83,8 @@ static void same_text(mt_test *t, const mt_result *a, const mt_result *b)
     free(other);
 }
 
-/* What is not named as incomplete is the same to the byte; what is, is not there, but for designs and points of a trade study, which are judged below. */
+/* What is not named as incomplete is the same to the byte; what is, is not there, but for
+ * designs and points of a trade study, which are judged below. */
 static void rest_is_whole(mt_test *t, const mt_result *whole, const mt_result *r)
 {
     mt_result expected = *whole;
@@ -168,7 +174,8 @@ static void designs_hold(mt_test *t, const mt_study *study, const mt_result *r)
     mt_arena_free(&mem);
 }
 
-/* A point that was answered is answered as well as in the whole study, but for what its neighbours had known better. */
+/* A point that was answered is answered as well as in the whole study, but for what its
+ * neighbours had known better. */
 static void points_hold(mt_test *t, const mt_trade_result *whole, const mt_trade_result *cut)
 {
     CHECK_INT(t, cut->n_points, whole->n_points);
@@ -255,7 +262,8 @@ static bool is_long(mt_test *t, const mt_study *study)
     return ended;
 }
 
-/* Interrupt a study at many places: to finish, at once, and to finish and a little later at once. */
+/* Interrupt a study at many places: to finish, at once, and to finish and a little later at
+ * once. */
 static void disturb(mt_test *t, const char *name, const mt_study *study, tally *n)
 {
     mt_result *whole = NULL;

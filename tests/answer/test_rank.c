@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Springs that are 0 in the original, or within the bounds: one count of vibration modes for all designs of a study. Two masses in a row,
+ * Springs that are 0 in the original, or within the bounds: one count of vibration modes for
+ * all designs of a study. Two masses in a row,
  *     m x1'' = -k1 x1 + k2 (x2 - x1),   m x2'' = -k2 (x2 - x1),
  * have lambda as an eigenvalue where (k1 + k2 - lambda m)(k2 - lambda m) = k2^2, hence
  *     k1 = k2^2 / (k2 - lambda m) - k2 + lambda m,
@@ -34,12 +35,12 @@ static void rank__an_added_spring_is_sized_from_zero(mt_test *t)
         const char *goal;
         double hz; /* that mode 1 comes to */
     } rows[] = {
-        {     "target",                  "{'type': 'frequency', 'mode': 1, 'target_hz': 1.5}",1.5                                                                                              },
-        {   "at least",               "{'type': 'frequency', 'mode': 1, 'at_least_hz': 1.25}",  1.25},
-        { "low target",                "{'type': 'frequency', 'mode': 1, 'target_hz': 0.001}", 0.001},
-        {  "from 0 Hz",                          "{'type': 'avoid', 'bands_hz': [[0, 1.75]]}",  1.75},
+        {"target", "{'type': 'frequency', 'mode': 1, 'target_hz': 1.5}", 1.5},
+        {"at least", "{'type': 'frequency', 'mode': 1, 'at_least_hz': 1.25}", 1.25},
+        {"low target", "{'type': 'frequency', 'mode': 1, 'target_hz': 0.001}", 0.001},
+        {"from 0 Hz", "{'type': 'avoid', 'bands_hz': [[0, 1.75]]}", 1.75},
         {"two demands", "{'type': 'frequency', 'mode': 1, 'at_least_hz': 1, 'at_most_hz': 2}",
-         1.0                                                                                        },
+         1.0},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         char members[STUDY_PATH];
@@ -64,7 +65,8 @@ static void rank__an_added_spring_is_sized_from_zero(mt_test *t)
 
 static void rank__a_band_sees_the_mode_that_the_spring_brings(mt_test *t)
 {
-    /* mode 1 rises to 2.08 Hz at most: it cannot pass the band, and stays below with k1 small enough */
+    /* mode 1 rises to 2.08 Hz at most: it cannot pass the band, and stays below with k1 small
+     * enough */
     study_case c;
     if (study_solve(t, ADDED,
                     "'variables': [{'parameter': 'k1', 'lower': 50, 'upper': 400}], 'goals': "
@@ -120,11 +122,11 @@ static void rank__catalogues_may_hold_no_spring(mt_test *t)
         double best;
     } rows[] = {
         {"{'type': 'frequency', 'mode': 1, 'at_least_hz': 1}", 2, 100.0},
-        { "{'type': 'frequency', 'mode': 1, 'at_most_hz': 1}", 1,   0.0},
-        {         "{'type': 'avoid', 'bands_hz': [[0, 1.2]]}", 1, 200.0},
-        {       "{'type': 'avoid', 'bands_hz': [[1.0, 1.2]]}", 2,   0.0},
+        {"{'type': 'frequency', 'mode': 1, 'at_most_hz': 1}", 1, 0.0},
+        {"{'type': 'avoid', 'bands_hz': [[0, 1.2]]}", 1, 200.0},
+        {"{'type': 'avoid', 'bands_hz': [[1.0, 1.2]]}", 2, 0.0},
         {"{'type': 'frequency', 'mode': 1, 'at_least_hz': 2}", 0, 200.0},
-        {"{'type': 'frequency', 'mode': 2, 'at_least_hz': 1}", 3,   0.0},
+        {"{'type': 'frequency', 'mode': 2, 'at_least_hz': 1}", 3, 0.0},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         char members[STUDY_PATH];
@@ -158,7 +160,8 @@ static void rank__corners_of_tolerances_count_alike(mt_test *t)
     study_free(&c);
 }
 
-/* Over the upper bound of the spring, and over a spring that is no variable: at every point index 1 is the mode that k1 holds. */
+/* Over the upper bound of the spring, and over a spring that is no variable: at every point
+ * index 1 is the mode that k1 holds. */
 static void rank__points_of_a_trade_study_count_alike(mt_test *t)
 {
     study_case c;
@@ -187,7 +190,8 @@ static void rank__points_of_a_trade_study_count_alike(mt_test *t)
     study_free(&c);
 }
 
-/* The model names "coupled" as its mode 1, counted at its own design, where the added spring is 0. */
+/* The model names "coupled" as its mode 1, counted at its own design, where the added spring is
+ * 0. */
 static void rank__a_named_mode_is_the_models(mt_test *t)
 {
     study_case c;
@@ -207,7 +211,8 @@ static void rank__a_named_mode_is_the_models(mt_test *t)
     study_free(&c);
 }
 
-/* A mass that is 0 in the original: its mode comes down from infinity. With k1 = 500, k2 = 1000, m1 = 1 and lambda given, m2 lambda (K11 - lambda) = det K - k2 lambda. */
+/* A mass that is 0 in the original: its mode comes down from infinity. With k1 = 500, k2 =
+ * 1000, m1 = 1 and lambda given, m2 lambda (K11 - lambda) = det K - k2 lambda. */
 static void rank__an_added_mass_is_sized_from_zero(mt_test *t)
 {
     static const char *const model =
@@ -227,10 +232,10 @@ static void rank__an_added_mass_is_sized_from_zero(mt_test *t)
         const char *goal;
         double hz; /* of the mode that decides */
     } rows[] = {
-        {             "mode 1",   "{'type': 'frequency', 'mode': 1, 'target_hz': 3}", 3.0},
-        { "mode 2 by a target",   "{'type': 'frequency', 'mode': 2, 'target_hz': 8}", 8.0},
-        {  "mode 2 by a limit",  "{'type': 'frequency', 'mode': 2, 'at_most_hz': 8}", 8.0},
-        {   "mode 1 by a band",            "{'type': 'avoid', 'bands_hz': [[3, 6]]}", 3.0},
+        {"mode 1", "{'type': 'frequency', 'mode': 1, 'target_hz': 3}", 3.0},
+        {"mode 2 by a target", "{'type': 'frequency', 'mode': 2, 'target_hz': 8}", 8.0},
+        {"mode 2 by a limit", "{'type': 'frequency', 'mode': 2, 'at_most_hz': 8}", 8.0},
+        {"mode 1 by a band", "{'type': 'avoid', 'bands_hz': [[3, 6]]}", 3.0},
         {"mode 2 is far above", "{'type': 'frequency', 'mode': 2, 'at_least_hz': 8}", 0.0},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
@@ -289,13 +294,13 @@ static void rank__the_count_is_the_least_of_the_box(mt_test *t)
         const char *k1; /* an expression of a, which is 0 at first and at most 10 */
         int rigid;
     } rows[] = {
-        {                "added",               "'a'", 0},
-        {       "nothing to add",             "'0*a'", 1},
-        {     "only in a corner", "'max(0, a - 9.9)'", 0},
-        {         "out of reach",  "'max(0, a - 11)'", 1},
-        {"there at the original",           "'7 + a'", 0},
-        {"gone at the other end",          "'10 - a'", 0},
-        {           "sum of two",       "'a*a + 3*a'", 0},
+        {"added", "'a'", 0},
+        {"nothing to add", "'0*a'", 1},
+        {"only in a corner", "'max(0, a - 9.9)'", 0},
+        {"out of reach", "'max(0, a - 11)'", 1},
+        {"there at the original", "'7 + a'", 0},
+        {"gone at the other end", "'10 - a'", 0},
+        {"sum of two", "'a*a + 3*a'", 0},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         char model[8 * STUDY_PATH];
@@ -315,7 +320,8 @@ static void rank__the_count_is_the_least_of_the_box(mt_test *t)
     }
 }
 
-/* A coordinate that is held by nothing but what is 0 in the original: a spring of any kind. k rises to 50. */
+/* A coordinate that is held by nothing but what is 0 in the original: a spring of any kind. k
+ * rises to 50. */
 static void rank__every_kind_of_spring_counts(mt_test *t)
 {
 #define PLANE \
@@ -331,26 +337,30 @@ static void rank__every_kind_of_spring_counts(mt_test *t)
         int held;  /* directions that k holds */
         double hz; /* of mode 1 at k = 50 */
     } rows[] = {
-        {        "torsion",
+        {"torsion",
          PLANE WHEEL "'springs': [{'name': 's', 'type': 'torsion', 'joint': 'p', "
-         "'stiffness_n_m_per_rad': 'k'}]}", 1, 1.5915494309189535                                     },
-        {        "bushing",
+                     "'stiffness_n_m_per_rad': 'k'}]}",
+         1, 1.5915494309189535},
+        {"bushing",
          PLANE BLOCK "'springs': [{'name': 's', 'type': 'bushing', 'bodies': "
-         "['ground', 'w'], 'at': [0, 0], 'stiffness_n_per_m': ['2*k', "
-         "'8*k'], 'stiffness_n_m_per_rad': '2*k'}]}", 3, 1.1253953951963827                           },
- /* E A / l = 50 of a bar of length 1 without mass; 'k' is its area */
-        {            "bar",
+                     "['ground', 'w'], 'at': [0, 0], 'stiffness_n_per_m': ['2*k', "
+                     "'8*k'], 'stiffness_n_m_per_rad': '2*k'}]}",
+         3, 1.1253953951963827},
+        /* E A / l = 50 of a bar of length 1 without mass; 'k' is its area */
+        {"bar",
          PLANE "'bodies': [{'name': 'w', 'mass_kg': 0.5, 'centre': [1, 0]}], 'joints': "
-         "[{'name': 'r', 'type': 'pin-in-slot', 'bodies': ['ground', 'w'], 'at': "
-         "[1, 0], 'axis': [1, 0]}], 'springs': [{'name': 's', 'type': 'bar', "
-         "'bodies': ['ground', 'w'], 'at': [[0, 0], [1, 0]], "
-         "'youngs_modulus_pa': 1, 'area_m2': 'k', 'density_kg_per_m3': 0.03}]}", 1, 1.1253953951963827},
+               "[{'name': 'r', 'type': 'pin-in-slot', 'bodies': ['ground', 'w'], 'at': "
+               "[1, 0], 'axis': [1, 0]}], 'springs': [{'name': 's', 'type': 'bar', "
+               "'bodies': ['ground', 'w'], 'at': [[0, 0], [1, 0]], "
+               "'youngs_modulus_pa': 1, 'area_m2': 'k', 'density_kg_per_m3': 0.03}]}",
+         1, 1.1253953951963827},
         {"hinge of a link",
          PLANE "'points': {'a': [0, 0], 'b': [2, 0]}, 'links': [{'name': 'l', "
-         "'from': 'a', 'to': 'b', 'elements': 2, 'mass_kg': 6, "
-         "'stiffness_n_m_per_rad': ['k']}], 'joints': [{'name': 'f', "
-         "'type': 'fixed', 'bodies': ['ground', 'l.start'], 'at': "
-         "'a'}]}", 1, 1.1253953951963827                                                              },
+               "'from': 'a', 'to': 'b', 'elements': 2, 'mass_kg': 6, "
+               "'stiffness_n_m_per_rad': ['k']}], 'joints': [{'name': 'f', "
+               "'type': 'fixed', 'bodies': ['ground', 'l.start'], 'at': "
+               "'a'}]}",
+         1, 1.1253953951963827},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         opened o;
@@ -372,7 +382,8 @@ static void rank__every_kind_of_spring_counts(mt_test *t)
     }
 }
 
-/* Gravity loads the pendulum, so that designs are sampled: without its mass nothing brings it back. */
+/* Gravity loads the pendulum, so that designs are sampled: without its mass nothing brings it
+ * back. */
 static void rank__loaded_configurations_are_counted_over_designs(mt_test *t)
 {
     opened o;
@@ -395,7 +406,8 @@ static void rank__loaded_configurations_are_counted_over_designs(mt_test *t)
     close_problem(&o);
 }
 
-/* An analysis without a box counts as its first design does. Elsewhere it fails, or counts anew, but never drops a mode; and no enclosure rests on it. */
+/* An analysis without a box counts as its first design does. Elsewhere it fails, or counts
+ * anew, but never drops a mode; and no enclosure rests on it. */
 static void rank__a_count_that_does_not_hold_is_noticed(mt_test *t)
 {
     study_case c;
@@ -430,7 +442,8 @@ static void rank__a_count_that_does_not_hold_is_noticed(mt_test *t)
     study_free(&c);
 }
 
-/* A stiffness that falls to 0 ends a tolerance box: there the design gains a rigid-body mode. */
+/* A stiffness that falls to 0 ends a tolerance box: there the design gains a rigid-body
+ * mode. */
 static void rank__a_tolerance_box_ends_where_a_spring_lets_go(mt_test *t)
 {
     study_case c;
@@ -456,11 +469,11 @@ static void rank__a_fresh_analysis_decides(mt_test *t)
         int rigid;     /* more of them than there are */
         bool doubted;
     } rows[] = {
-        {          "as it is",         1.0, 0, false},
-        {   "within rounding", 1.0 + 1e-14, 0, false},
-        { "another frequency",  1.0 + 1e-6, 0,  true},
-        {"a mode not counted",         1.0, 1,  true},
-        {"a mode taken for 0",         0.0, 0,  true},
+        {"as it is", 1.0, 0, false},
+        {"within rounding", 1.0 + 1e-14, 0, false},
+        {"another frequency", 1.0 + 1e-6, 0, true},
+        {"a mode not counted", 1.0, 1, true},
+        {"a mode taken for 0", 0.0, 0, true},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         opened o;

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Random networks of masses and springs, many of them 0 in the original or at a bound, and random questions. Whatever is claimed of them is held against dense sampling: K and M are set up
- * here from the list of springs, eigenvalues found by Jacobi rotations, and modes counted by the rank of K where every spring that can be there is.
+ * Random networks of masses and springs, many of them 0 in the original or at a bound, and
+ * random questions. Whatever is claimed of them is held against dense sampling: K and M are set
+ * up here from the list of springs, eigenvalues found by Jacobi rotations, and modes counted by
+ * the rank of K where every spring that can be there is.
  */
 #include <stdarg.h>
 
@@ -38,7 +40,8 @@ typedef struct network {
     int mode;       /* of the limit */
 } network;
 
-/* Eigenvalues of M^-1/2 K M^-1/2 for stiffnesses k, ascending; rotations until what is off the diagonal is rounding. */
+/* Eigenvalues of M^-1/2 K M^-1/2 for stiffnesses k, ascending; rotations until what is off the
+ * diagonal is rounding. */
 static void eigenvalues(const network *w, const double *k, double *lambda)
 {
     double a[MOST_MASSES][MOST_MASSES] = {{0.0}};
@@ -233,7 +236,8 @@ static void write_study(const network *w, char *text)
     add(text, "}]");
 }
 
-/* Are the demands met at k, with this much to spare (relative)? *below: modes below the band. */
+/* Are the demands met at k, with this much to spare (relative)? *below: modes below the
+ * band. */
 static bool meets(const network *w, const double *k, double spare, int *below)
 {
     double hz[MOST_MASSES];

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * One spring, one mass, f = sqrt(k/m)/(2 pi), and two measurements f_1, f_2 that contradict each other, weights w_1, w_2. In t = ln k each residual is (t - t_i)/2, so the misfit is
+ * One spring, one mass, f = sqrt(k/m)/(2 pi), and two measurements f_1, f_2 that contradict
+ * each other, weights w_1, w_2. In t = ln k each residual is (t - t_i)/2, so the misfit is
  * least at the weighted mean
  *     ln k = (w_1 ln k_1 + w_2 ln k_2)/(w_1 + w_2),   k_i = (2 pi f_i)^2 m.
  */
@@ -98,7 +99,8 @@ static void spread__is_the_range_of_weighted_means(mt_test *t)
         CHECK_NEAR(t, s->high, high, TOL);
         CHECK_NEAR(t, s->low_percent, 100.0 * (low / value - 1.0), 1e-4);
         CHECK_NEAR(t, s->high_percent, 100.0 * (high / value - 1.0), 1e-4);
-        /* raising one weight and lowering the other give the same design: either is a true answer */
+        /* raising one weight and lowering the other give the same design: either is a true
+         * answer */
         if (CHECK(t, s->low_goal != NULL && s->high_goal != NULL)) {
             CHECK(t, s->low_factor == (s->low_goal[7] == '0' ? 5.0 : 0.2));
             CHECK(t, s->high_factor == (s->high_goal[7] == '0' ? 0.2 : 5.0));

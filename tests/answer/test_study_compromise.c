@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where goals cannot be met, or do not settle the design; and originals and bounds of every sign. */
+/* Where goals cannot be met, or do not settle the design; and originals and bounds of every
+ * sign. */
 #include "study_fixture.h"
 
 static const double TOL = 1e-6;
@@ -37,7 +38,8 @@ static void unreachable_target__gives_the_nearest_design_at_its_bound(mt_test *t
     study_free(&c);
 }
 
-/* A parameter that nothing depends on stays exactly where it was, whatever rounding logarithms bring. */
+/* A parameter that nothing depends on stays exactly where it was, whatever rounding logarithms
+ * bring. */
 static void undetermined_parameter__keeps_its_value_and_is_named(mt_test *t)
 {
     study_case c;
@@ -59,7 +61,8 @@ static void undetermined_parameter__keeps_its_value_and_is_named(mt_test *t)
     study_free(&c);
 }
 
-/* Only the product a b counts (it is k1): the difference of the logarithms is open, and the change least along the sum. */
+/* Only the product a b counts (it is k1): the difference of the logarithms is open, and the
+ * change least along the sum. */
 static void undetermined_direction__is_named_as_a_combination(mt_test *t)
 {
     study_case c;
@@ -109,7 +112,8 @@ static void original_outside_its_bounds__is_described_where_it_is(mt_test *t)
     study_free(&c);
 }
 
-/* Bounds below zero: the change is (new - original)/scale, the scale the range where none is given; a bound of zero keeps the logarithm. */
+/* Bounds below zero: the change is (new - original)/scale, the scale the range where none is
+ * given; a bound of zero keeps the logarithm. */
 static void bounds_at_and_below_zero__set_the_measure(mt_test *t)
 {
     static const struct {
@@ -118,13 +122,13 @@ static void bounds_at_and_below_zero__set_the_measure(mt_test *t)
         double want; /* of x, where k1 = 2 */
         double change;
     } rows[] = {
-        { "'x': 0.5, 'k1': '1 + x', 'k2': 1, 'm': 1",                "'lower': 0, 'upper': 4",1.0,
-         0.69314718055994529                                                                                              },
-        {   "'x': 0, 'k1': '1 + x', 'k2': 1, 'm': 1",             "'lower': -0.5, 'upper': 4", 1.0,              1.0 / 4.5},
+        {"'x': 0.5, 'k1': '1 + x', 'k2': 1, 'm': 1", "'lower': 0, 'upper': 4", 1.0,
+         0.69314718055994529},
+        {"'x': 0, 'k1': '1 + x', 'k2': 1, 'm': 1", "'lower': -0.5, 'upper': 4", 1.0, 1.0 / 4.5},
         {"'x': -0.5, 'k1': '3 + x', 'k2': 1, 'm': 1", "'lower': -2, 'upper': 2, 'scale': 0.1",
-         -1.0,                    5.0                                                                                     },
-        { "'x': 0.5, 'k1': '4 - x', 'k2': 1, 'm': 1",   "'lower': 0, 'upper': 2, 'weight': 4", 2.0,
-         2.7725887222397811                                                                                               },
+         -1.0, 5.0},
+        {"'x': 0.5, 'k1': '4 - x', 'k2': 1, 'm': 1", "'lower': 0, 'upper': 2, 'weight': 4", 2.0,
+         2.7725887222397811},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         study_case c;
@@ -149,7 +153,8 @@ static void bounds_at_and_below_zero__set_the_measure(mt_test *t)
     }
 }
 
-/* A stiffness whose lower bound is zero: at zero the mode is not there, and the search goes around that. */
+/* A stiffness whose lower bound is zero: at zero the mode is not there, and the search goes
+ * around that. */
 static void lower_bound_zero_of_a_stiffness__is_no_obstacle(mt_test *t)
 {
     study_case c;

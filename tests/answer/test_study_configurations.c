@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Configurations: overrides, inheritance, shared variables; configurations that are unstable or lack the mode. */
+/* Configurations: overrides, inheritance, shared variables; configurations that are unstable or
+ * lack the mode. */
 #include "study_fixture.h"
 
 static const double TOL = 1e-6;
@@ -93,7 +94,8 @@ static void goal_over_several_configurations__holds_in_each(mt_test *t)
     " 'stiffness_n_m_per_rad': 'k'}],"                                                   \
     "'modes': {'upright': {'configuration': 'default', 'index': 1}}}"
 
-/* k - m g l < 0: the pendulum stands on its head and falls. The search may still find a spring that holds it. */
+/* k - m g l < 0: the pendulum stands on its head and falls. The search may still find a spring
+ * that holds it. */
 static void unstable_original__leaves_its_goals_unmet_and_is_left(mt_test *t)
 {
     study_case c;
@@ -141,14 +143,15 @@ static void absent_modes__are_errors_that_name_the_goal(mt_test *t)
         const char *goal;
         const char *text;
     } rows[] = {
-        {STUDY_TWO_MASSES("'k1': 3, 'k2': 1, 'm': 1",""),                          "k1",
-         "{'type': 'frequency', 'mode': 3, 'target_hz': 1}","/goals/1: configuration \"default\" has no vibration mode 3 (it has 2)"                                                                   },
-        {                                   INVERTED,                         "k", "{'type': 'frequency', 'mode': 'upright', 'target_hz': 1}",
+        {STUDY_TWO_MASSES("'k1': 3, 'k2': 1, 'm': 1", ""), "k1",
+         "{'type': 'frequency', 'mode': 3, 'target_hz': 1}",
+         "/goals/1: configuration \"default\" has no vibration mode 3 (it has 2)"},
+        {INVERTED, "k", "{'type': 'frequency', 'mode': 'upright', 'target_hz': 1}",
          "/goals/1: mode \"upright\" is vibration mode 1 of configuration \"default\", which "
-         "has none at the original design (it is unstable there)"                                                                         },
+         "has none at the original design (it is unstable there)"},
         {STUDY_TWO_MASSES("'k1': 3, 'k2': 1, 'm': 1",
-         ", 'configurations': {'a': {}, 'b': {}},"
-         "'modes': {'low': {'configuration': 'a', 'index': 1}}"),
+                          ", 'configurations': {'a': {}, 'b': {}},"
+                          "'modes': {'low': {'configuration': 'a', 'index': 1}}"),
          "k1", "{'type': 'frequency', 'configuration': 'b', 'mode': 'low', 'target_hz': 1}",
          "/goals/1: mode \"low\" is named in configuration \"a\", not in \"b\""},
     };

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Least mass, least expression, limits. A point mass on two bars (areas A1, A2, from (0, 0) and (4, 0) to (1, 2)), bars with consistent mass:
+ * Least mass, least expression, limits. A point mass on two bars (areas A1, A2, from (0, 0) and
+ * (4, 0) to (1, 2)), bars with consistent mass:
  *     K = sum E A_i / L_i d_i d_i^T,   M = (m + sum rho A_i L_i / 3) I,
- * so that the frequencies are roots of a quadratic, and the least mass for f_1 >= f is found by bisection in A2 inside a golden section in A1.
+ * so that the frequencies are roots of a quadratic, and the least mass for f_1 >= f is found by
+ * bisection in A2 inside a golden section in A1.
  */
 #include "study_fixture.h"
 
@@ -39,10 +41,8 @@ static double mass_of(double a1, double a2)
 /* Lowest (sign -1) or highest frequency in Hz. */
 static double truss_hz(double a1, double a2, int sign)
 {
-    const double direction[2][2] = {
-        { 1.0 / bar_length(0), 2.0 / bar_length(0)},
-        {-3.0 / bar_length(1), 2.0 / bar_length(1)}
-    };
+    const double direction[2][2] = {{1.0 / bar_length(0), 2.0 / bar_length(0)},
+                                    {-3.0 / bar_length(1), 2.0 / bar_length(1)}};
     const double area[2] = {a1, a2};
     double k[3] = {0.0, 0.0, 0.0}; /* xx, xy, yy */
     for (int i = 0; i < 2; i++) {
@@ -108,7 +108,8 @@ static const char *const LEAST =
     AREAS("1e-6", "5e-3") "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 40}],"
                           "'objective': {'minimise': 'mass', 'of': ['bar_*']}";
 
-/* Golden section knows A1 to sqrt(eps); the mass, flat there, to far better. The goal's tolerance is 1e-6. */
+/* Golden section knows A1 to sqrt(eps); the mass, flat there, to far better. The goal's
+ * tolerance is 1e-6. */
 static const double MASS_TOL = 2e-6;
 static const double AREA_TOL = 1e-4;
 
@@ -160,7 +161,8 @@ static void least_mass__is_stopped_by_a_bound_and_names_it(mt_test *t)
     study_free(&c);
 }
 
-/* The same optimum asked for as an expression, between limits that do not matter; then with one that does. */
+/* The same optimum asked for as an expression, between limits that do not matter; then with one
+ * that does. */
 static void least_expression__obeys_its_limits(mt_test *t)
 {
     study_case c;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Objectives in order: what the first leaves open the next decides, and the first stays where it was. */
+/* Objectives in order: what the first leaves open the next decides, and the first stays where
+ * it was. */
 #include "study_fixture.h"
 
 static const double TOL = 1e-6;
@@ -21,11 +22,13 @@ static void exact_misfit__leaves_the_rest_to_the_next_objective(mt_test *t)
         const char *next;
         double a; /* with a b = 2 */
     } rows[] = {
-        {"{'minimise': 'a + 3*b'}",2.449489742783178                                   }, /* sqrt(6) */
-        {      "{'minimise': 'a'}",               0.5},
-        {      "{'minimise': 'b'}",               4.0},
-        { "{'minimise': 'change'}",
-         1.5811388300841898                          }, /* a/b = 1.25 as at the original design */
+        /* sqrt(6) */
+        {"{'minimise': 'a + 3*b'}", 2.449489742783178},
+        {"{'minimise': 'a'}", 0.5},
+        {"{'minimise': 'b'}", 4.0},
+        {"{'minimise': 'change'}",
+         /* a/b = 1.25 as at the original design */
+         1.5811388300841898},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         study_case c;
@@ -68,7 +71,8 @@ static void flat_optimum__is_settled_by_the_next_objective(mt_test *t)
     study_free(&c);
 }
 
-/* Two goals ask the one frequency for different values: the least misfit is at the weighted mean of the logarithms, and stays there. */
+/* Two goals ask the one frequency for different values: the least misfit is at the weighted
+ * mean of the logarithms, and stays there. */
 static void inexact_misfit__is_held(mt_test *t)
 {
     study_case c;
@@ -86,7 +90,8 @@ static void inexact_misfit__is_held(mt_test *t)
         CHECK_NEAR(t, c.result->recommendations[0].misfit, sqrt(2.0 / 3.0) * log(0.13 / 0.12),
                    TOL);
         CHECK_NEAR(t, study_frequency(&c, 1, "default", 1), hz, 4e-6);
-        /* lambda^2 - lambda (k1 + 2 k2) + k1 k2 = 0 gives k1(k2); the least sum has d k1/d k2 = -1, which is k1 k2: (k2 - lambda)^2 = lambda^2 */
+        /* lambda^2 - lambda (k1 + 2 k2) + k1 k2 = 0 gives k1(k2); the least sum has d k1/d k2 =
+         * -1, which is k1 k2: (k2 - lambda)^2 = lambda^2 */
         const double k2 = 2.0 * lambda;
         const double k1 = ((2.0 * lambda * k2) - (lambda * lambda)) / (k2 - lambda);
         CHECK_NEAR(t, study_value(&c, 1, "k2"), k2, 1e-3);
@@ -95,7 +100,8 @@ static void inexact_misfit__is_held(mt_test *t)
     study_free(&c);
 }
 
-/* Weighted goals beside another first objective are residuals that the first stage does not see. */
+/* Weighted goals beside another first objective are residuals that the first stage does not
+ * see. */
 static void misfit_as_second_objective__follows_the_first(mt_test *t)
 {
     study_case c;
@@ -112,7 +118,8 @@ static void misfit_as_second_objective__follows_the_first(mt_test *t)
     study_free(&c);
 }
 
-/* Least change first: it is zero at an original design that meets its goals, and nothing may move any more. */
+/* Least change first: it is zero at an original design that meets its goals, and nothing may
+ * move any more. */
 static void change_as_first_objective__is_held_at_the_original(mt_test *t)
 {
     study_case c;
@@ -127,14 +134,15 @@ static void change_as_first_objective__is_held_at_the_original(mt_test *t)
     study_free(&c);
 }
 
-/* Two pairs of stiffnesses give both frequencies, (3, 1) and (2, 1.5), and one product, 3: the second objective alone decides their order. */
+/* Two pairs of stiffnesses give both frequencies, (3, 1) and (2, 1.5), and one product, 3: the
+ * second objective alone decides their order. */
 static void equal_first_objective__the_second_decides_the_order(mt_test *t)
 {
     static const struct {
         const char *second;
         double k1[2]; /* by rank */
     } rows[] = {
-        { "k1", {2.0, 3.0}},
+        {"k1", {2.0, 3.0}},
         {"-k1", {3.0, 2.0}},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frequencies and shapes of measurements and of other configurations: as targets, as misfit, as MAC. */
+/* Frequencies and shapes of measurements and of other configurations: as targets, as misfit, as
+ * MAC. */
 #include "study_fixture.h"
 
 static const double TOL = 1e-6;
 
-/* Shape of mode `sign` of the row (k1, k2), m = 1, at the two masses: (k2, k1 + k2 - lambda). */
+/* Shape of mode `sign` of the row (k1, k2), m = 1, at the two masses: (k2, k1 + k2 -
+ * lambda). */
 static void two_shape(double k1, double k2, int sign, double s[2])
 {
     s[0] = k2;
@@ -22,7 +24,8 @@ static double two_mac(const double a[2], const double b[2])
     "'variables': [{'parameter': 'k1', 'lower': 0.5, 'upper': 10}," \
     " {'parameter': 'k2', 'lower': 0.5, 'upper': 10}],"
 
-/* "test": the modes of (2, 1), the first with the opposite sign and another length, the second with its sensors in another order. */
+/* "test": the modes of (2, 1), the first with the opposite sign and another length, the second
+ * with its sensors in another order. */
 static const char *references(char text[1024])
 {
     double a[2];
@@ -92,7 +95,8 @@ static double off_by(double k1, double w)
     return 100.0 * sqrt(((a * a) + (w * b * b)) / (1.0 + w));
 }
 
-/* One unknown, two frequencies of different designs: the misfit is that of the closed form's minimum, found by golden section (k1 to sqrt(eps)). */
+/* One unknown, two frequencies of different designs: the misfit is that of the closed form's
+ * minimum, found by golden section (k1 to sqrt(eps)). */
 static void contradicting_measurements__leave_the_least_misfit(mt_test *t)
 {
     study_case c;
@@ -130,7 +134,8 @@ static void contradicting_measurements__leave_the_least_misfit(mt_test *t)
     study_free(&c);
 }
 
-/* A MAC as a constraint, in the middle of the way: the least change stops where the MAC is just met. */
+/* A MAC as a constraint, in the middle of the way: the least change stops where the MAC is just
+ * met. */
 static void mac_at_least__is_a_constraint(mt_test *t)
 {
     study_case c;
@@ -182,7 +187,8 @@ static void reference_configuration__gives_targets_and_shapes(mt_test *t)
     study_free(&c);
 }
 
-/* Of the sensors only those count that both sides have: with a single one every shape is the same, and says nothing. */
+/* Of the sensors only those count that both sides have: with a single one every shape is the
+ * same, and says nothing. */
 static void sensors_of_one_side_only__are_left_out(mt_test *t)
 {
     study_case c;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where no design exists: the nearest one, and which single number would let one exist. One mass on a spring, m (2 pi f)^2 = k, and the row of two masses, both in closed form. */
+/* Where no design exists: the nearest one, and which single number would let one exist. One
+ * mass on a spring, m (2 pi f)^2 = k, and the row of two masses, both in closed form. */
 #include "study_fixture.h"
 
 static const double TOL = 1e-5;
@@ -62,32 +63,38 @@ static void one_mass__every_kind_of_move_is_exact(mt_test *t)
         int n; /* moves there are */
     } rows[] = {
         {"at least",
-         "{'type': 'frequency', 'mode': 1, 'at_least_hz': 6}",              {"at_least_hz", "upper bound of k"},
+         "{'type': 'frequency', 'mode': 1, 'at_least_hz': 6}",
+         {"at_least_hz", "upper bound of k"},
          {high, stiffness(HZ)},
          {1200.0, stiffness(HZ)},
          2},
-        { "at most",
-         "{'type': 'frequency', 'mode': 1, 'at_most_hz': 4}",               {"at_most_hz", "lower bound of k"},
+        {"at most",
+         "{'type': 'frequency', 'mode': 1, 'at_most_hz': 4}",
+         {"at_most_hz", "lower bound of k"},
          {low, stiffness(LOW_HZ)},
          {800.0, stiffness(LOW_HZ)},
          2},
-        {  "target",
-         "{'type': 'frequency', 'mode': 1, 'target_hz': 6}",                {"target_hz", "upper bound of k"},
+        {"target",
+         "{'type': 'frequency', 'mode': 1, 'target_hz': 6}",
+         {"target_hz", "upper bound of k"},
          {high, stiffness(HZ)},
          {1200.0, stiffness(HZ)},
          2},
-        {    "band",
-         "{'type': 'avoid', 'bands_hz': [[4, 6]]}", {"upper edge", "lower edge", "upper bound of k"},
+        {"band",
+         "{'type': 'avoid', 'bands_hz': [[4, 6]]}",
+         {"upper edge", "lower edge", "upper bound of k"},
          {high, low, stiffness(HZ)},
          {1200.0, 800.0, stiffness(HZ)},
          4},
-        {   "limit",
-         "{'type': 'limit', 'expression': '2*k', 'at_most': 1500}", {"at_most of goal /goals/0", "lower bound of k"},
+        {"limit",
+         "{'type': 'limit', 'expression': '2*k', 'at_most': 1500}",
+         {"at_most of goal /goals/0", "lower bound of k"},
          {1600.0, 750.0},
          {800.0, 750.0},
          2},
-        {  "equals",
-         "{'type': 'limit', 'expression': '2*k', 'equals': 1500}",  {"equals of goal /goals/0", "lower bound of k"},
+        {"equals",
+         "{'type': 'limit', 'expression': '2*k', 'equals': 1500}",
+         {"equals of goal /goals/0", "lower bound of k"},
          {1600.0, 750.0},
          {800.0, 750.0},
          2},
@@ -120,11 +127,11 @@ static void catalogue__goals_and_edges_can_move(mt_test *t)
         const char *what;
         double k; /* of the design that is next */
     } rows[] = {
-        {  "at least", "{'type': 'frequency', 'mode': 1, 'at_least_hz': 6}", "at_least_hz",
-         1200.0                                                                                   },
-        {    "target", "{'type': 'frequency', 'mode': 1, 'target_hz': 5.1}",   "target_hz", 1000.0},
-        {"upper edge",            "{'type': 'avoid', 'bands_hz': [[4, 6]]}",  "upper edge", 1200.0},
-        {"lower edge",            "{'type': 'avoid', 'bands_hz': [[4, 6]]}",  "lower edge",  800.0},
+        {"at least", "{'type': 'frequency', 'mode': 1, 'at_least_hz': 6}", "at_least_hz",
+         1200.0},
+        {"target", "{'type': 'frequency', 'mode': 1, 'target_hz': 5.1}", "target_hz", 1000.0},
+        {"upper edge", "{'type': 'avoid', 'bands_hz': [[4, 6]]}", "upper edge", 1200.0},
+        {"lower edge", "{'type': 'avoid', 'bands_hz': [[4, 6]]}", "lower edge", 800.0},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         study_case c;
@@ -231,7 +238,8 @@ static void check_bounds(mt_test *t, const study_case *c, const double *top, dou
     }
 }
 
-/* Random boxes and limits of mode 1, which rises with both stiffnesses: the moves follow from the closed form. */
+/* Random boxes and limits of mode 1, which rises with both stiffnesses: the moves follow from
+ * the closed form. */
 static void two_masses__moves_of_random_studies_are_least(mt_test *t)
 {
     enum { STUDIES = 60 };

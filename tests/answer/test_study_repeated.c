@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The best design has a repeated mode: a mass of 1 kg in a plane, held by springs k_i in the directions n_i, K = sum k_i n_i n_i^T. The cheapest
- * K with its lowest eigenvalue at least 1 is K = 1, where no single mode has a slope.
+ * The best design has a repeated mode: a mass of 1 kg in a plane, held by springs k_i in the
+ * directions n_i, K = sum k_i n_i n_i^T. The cheapest K with its lowest eigenvalue at least 1
+ * is K = 1, where no single mode has a slope.
  */
 #include "study_fixture.h"
 
@@ -28,7 +29,8 @@ static void shown(mt_test *t, const study_case *c)
                1.0 / (2.0 * STUDY_PI), 1e-6);
 }
 
-/* Three directions: K = 1 needs k = 2/3 each, whatever they cost (in bounds for which the multiplier is positive definite). */
+/* Three directions: K = 1 needs k = 2/3 each, whatever they cost (in bounds for which the
+ * multiplier is positive definite). */
 static void repeated__three_springs_come_to_the_one_design(mt_test *t)
 {
     study_case c;
@@ -47,7 +49,8 @@ static void repeated__three_springs_come_to_the_one_design(mt_test *t)
     study_free(&c);
 }
 
-/* Two crosses of springs: K = 1 by either, and by every mixture; the cheaper cross wins, the other stays at its bounds. */
+/* Two crosses of springs: K = 1 by either, and by every mixture; the cheaper cross wins, the
+ * other stays at its bounds. */
 static void repeated__the_cheaper_cross_wins(mt_test *t)
 {
     study_case c;
@@ -128,7 +131,8 @@ static void repeated__the_worst_corner_is_a_clusters(mt_test *t)
     study_free(&c);
 }
 
-/* A target on the lowest mode of the cluster; and on the highest, where as much spring as possible is wanted. */
+/* A target on the lowest mode of the cluster; and on the highest, where as much spring as
+ * possible is wanted. */
 static void repeated__a_target_is_kept_by_the_cluster_beyond_it(mt_test *t)
 {
     study_case c;
@@ -153,7 +157,8 @@ static void repeated__a_target_is_kept_by_the_cluster_beyond_it(mt_test *t)
     MODEL("'ka': 1, 'kb': 3, 'kc': 5, 'kd': 2",                       \
           SPRING("a", "1", "0") "," SPRING("b", "0", "1") "," SPRING( \
               "c", "sqrt(0.5)", "sqrt(0.5)") "," SPRING("d", "-sqrt(0.5)", "sqrt(0.5)"))
-/* Both modes at one target: K = 1, three equations where two are asked, and the cheaper cross as far as it goes. */
+/* Both modes at one target: K = 1, three equations where two are asked, and the cheaper cross
+ * as far as it goes. */
 static void repeated__two_targets_are_three_equations(mt_test *t)
 {
     study_case c;
@@ -174,7 +179,8 @@ static void repeated__two_targets_are_three_equations(mt_test *t)
     study_free(&c);
 }
 
-/* One more spring beside the first, from a catalogue: every value of it has its own design with K = 1, and no other. */
+/* One more spring beside the first, from a catalogue: every value of it has its own design with
+ * K = 1, and no other. */
 static void repeated__each_value_of_a_catalogue_has_one_design(mt_test *t)
 {
     study_case c;
@@ -199,7 +205,8 @@ static void repeated__each_value_of_a_catalogue_has_one_design(mt_test *t)
     study_free(&c);
 }
 
-/* Every mixture of both crosses has the same sum of springs: the second objective chooses among them, and what it leaves where the search stalls is no design. */
+/* Every mixture of both crosses has the same sum of springs: the second objective chooses among
+ * them, and what it leaves where the search stalls is no design. */
 static void repeated__a_second_objective_comes_to_one_design(mt_test *t)
 {
     study_case c;

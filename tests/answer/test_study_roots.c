@@ -10,7 +10,8 @@ static const double ROOT_TOL = 1e-9;
     "'variables': [{'parameter': 'k1', 'lower': 0.5, 'upper': 10}," \
     " {'parameter': 'k2', 'lower': 0.5, 'upper': 10}],"
 
-/* k1, k2 with both eigenvalues of (3, 1): trace k1 + 2 k2 = 5, determinant k1 k2 = 3, so k1 = 3 or 2. */
+/* k1, k2 with both eigenvalues of (3, 1): trace k1 + 2 k2 = 5, determinant k1 k2 = 3, so k1 = 3
+ * or 2. */
 static void springs_in_a_row__both_designs_are_found_and_ranked_by_change(mt_test *t)
 {
     study_case c;
@@ -48,7 +49,8 @@ static void springs_in_a_row__both_designs_are_found_and_ranked_by_change(mt_tes
     }
 }
 
-/* At (2, 1) both roots coincide: dk/dlambda is infinite, so that a target error e moves the design by sqrt(e); targets are held to far less. */
+/* At (2, 1) both roots coincide: dk/dlambda is infinite, so that a target error e moves the
+ * design by sqrt(e); targets are held to far less. */
 static void springs_in_a_row__double_root_is_one_singular_design(mt_test *t)
 {
     study_case c;
@@ -82,7 +84,8 @@ static double four_bar_hz(const mt_model *model, double a)
     return hz;
 }
 
-/* A closed loop under gravity: every evaluation closes the loop with the position solver and finds the equilibrium. */
+/* A closed loop under gravity: every evaluation closes the loop with the position solver and
+ * finds the equilibrium. */
 static void four_bar__crank_length_is_solved_for_and_verified(mt_test *t)
 {
     study_case c;

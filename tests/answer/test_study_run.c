@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How a study runs: the same bytes every time and for any number of workers, budgets, interruption, shortage of memory, and the comparison with a fresh analysis. */
+/* How a study runs: the same bytes every time and for any number of workers, budgets,
+ * interruption, shortage of memory, and the comparison with a fresh analysis. */
 #include "describe/describe.h"
 #include "mt_alloc.h"
 #include "nlp/prepare.h"
@@ -167,7 +168,8 @@ static void fresh_analysis_that_differs__is_a_warning(mt_test *t)
     study_free(&c);
 }
 
-/* A result may outlive its study. Freed memory is poisoned under AddressSanitizer, and overwritten here in any build. */
+/* A result may outlive its study. Freed memory is poisoned under AddressSanitizer, and
+ * overwritten here in any build. */
 static void result__owns_its_texts(mt_test *t)
 {
     study_case c;
@@ -187,7 +189,8 @@ static void result__owns_its_texts(mt_test *t)
     study_free(&c);
 }
 
-/* Every allocation fails in turn (from the thousandth on, every 37th): solving gives the answer or says that memory is out, and gives everything back. */
+/* Every allocation fails in turn (from the thousandth on, every 37th): solving gives the answer
+ * or says that memory is out, and gives everything back. */
 static void shortage_of_memory__is_reported_and_leaks_nothing(mt_test *t)
 {
     study_case c;

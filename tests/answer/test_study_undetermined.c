@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two masses, two springs, one target; the original design in each corner of the bounds. No direction is free of influence. */
+/* Two masses, two springs, one target; the original design in each corner of the bounds. No
+ * direction is free of influence. */
 #include "study_fixture.h"
 
 enum { CORNERS = 8, STEPS = 40, ZOOMS = 8, TEXT = 1024 };
 static const double LOWER[3] = {1.0, 0.6, 0.5}; /* k1, k2, m */
 static const double UPPER[3] = {4.0, 2.4, 2.0};
 
-/* Least change from `original` with the lower mode at lambda: for any k1, k2 the mass follows, lambda being 1/m of that at m = 1. */
+/* Least change from `original` with the lower mode at lambda: for any k1, k2 the mass follows,
+ * lambda being 1/m of that at m = 1. */
 static double least_change(const double *original, double lambda)
 {
     double low[2] = {log(LOWER[0]), log(LOWER[1])};
@@ -71,7 +73,8 @@ static void study_undetermined__an_original_in_a_corner_gets_the_least_change(mt
     }
 }
 
-/* p touches nothing but its own limit, which is wide; whatever is searched, it is named and stays where it was. */
+/* p touches nothing but its own limit, which is wide; whatever is searched, it is named and
+ * stays where it was. */
 static void study_undetermined__is_told_of_bands_and_catalogues(mt_test *t)
 {
     static const struct {
@@ -81,29 +84,38 @@ static void study_undetermined__is_told_of_bands_and_catalogues(mt_test *t)
         const char *text; /* the direction; NULL: none */
         double p;
     } rows[] = {
-        {                   "bands",
+        {"bands",
          "{'parameter': 'k1', 'lower': 500, 'upper': 4000}, {'parameter': 'p', 'lower': 1, "
-         "'upper': 9}",         "'goals': [{'type': 'avoid', 'bands_hz': [[2, 3.5]]}]",  "p", 3.0              },
-        {               "clearance",
+         "'upper': 9}",
+         "'goals': [{'type': 'avoid', 'bands_hz': [[2, 3.5]]}]", "p", 3.0},
+        {"clearance",
          "{'parameter': 'k1', 'lower': 500, 'upper': 4000}, {'parameter': 'p', 'lower': 1, "
-         "'upper': 9}",                                         "'goals': [{'type': 'avoid', 'bands_hz': [[2, 3.5]]}], 'objective': {'maximise': "
-                                         "'clearance'}",  "p", 3.0                      },
-        {     "objectives in order",
+         "'upper': 9}",
+         "'goals': [{'type': 'avoid', 'bands_hz': [[2, 3.5]]}], 'objective': {'maximise': "
+         "'clearance'}",
+         "p", 3.0},
+        {"objectives in order",
          "{'parameter': 'k1', 'lower': 500, 'upper': 4000}, {'parameter': 'p', 'lower': 1, "
-         "'upper': 9}",                "'goals': [{'type': 'avoid', 'bands_hz': [[2, 3.5]]}], 'objective': [{'maximise': "
-                "'clearance'}, {'minimise': 'change'}]",  "p", 3.0                      },
-        {             "a catalogue",
+         "'upper': 9}",
+         "'goals': [{'type': 'avoid', 'bands_hz': [[2, 3.5]]}], 'objective': [{'maximise': "
+         "'clearance'}, {'minimise': 'change'}]",
+         "p", 3.0},
+        {"a catalogue",
          "{'parameter': 'k1', 'catalogue': [500, 1000, 4000]}, {'parameter': 'p', "
-         "'catalogue': [1, 4, 9]}", "'goals': [{'type': 'frequency', 'mode': 1, 'at_most_hz': 3}]",  "p", 4.0  },
+         "'catalogue': [1, 4, 9]}",
+         "'goals': [{'type': 'frequency', 'mode': 1, 'at_most_hz': 3}]", "p", 4.0},
         {"a catalogue that matters",
          "{'parameter': 'k1', 'catalogue': [500, 1000, 4000]}, {'parameter': 'k2', "
-         "'catalogue': [500, 1000]}", "'goals': [{'type': 'frequency', 'mode': 1, 'at_most_hz': 3}]", NULL, 3.0},
-        {      "beside a catalogue",
+         "'catalogue': [500, 1000]}",
+         "'goals': [{'type': 'frequency', 'mode': 1, 'at_most_hz': 3}]", NULL, 3.0},
+        {"beside a catalogue",
          "{'parameter': 'k1', 'catalogue': [500, 1000, 4000]}, {'parameter': 'p', 'lower': "
-         "1, 'upper': 9}", "'goals': [{'type': 'frequency', 'mode': 1, 'at_most_hz': 3}]",  "p", 3.0           },
+         "1, 'upper': 9}",
+         "'goals': [{'type': 'frequency', 'mode': 1, 'at_most_hz': 3}]", "p", 3.0},
         {"bands beside a catalogue",
          "{'parameter': 'k1', 'catalogue': [500, 1000, 4000]}, {'parameter': 'p', 'lower': "
-         "1, 'upper': 9}",         "'goals': [{'type': 'avoid', 'bands_hz': [[2, 3.5]]}]",  "p", 3.0           },
+         "1, 'upper': 9}",
+         "'goals': [{'type': 'avoid', 'bands_hz': [[2, 3.5]]}]", "p", 3.0},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         char members[TEXT];

@@ -2,7 +2,8 @@
 /* Trade studies: every point against a study of its own, the front against its definition. */
 #include "six.h"
 
-/* Two searches of one optimum end within the tolerance of the bands (1e-6) of each other, some times a slope of order one. */
+/* Two searches of one optimum end within the tolerance of the bands (1e-6) of each other, some
+ * times a slope of order one. */
 static const double SAME_OPTIMUM = 1e-5;
 
 static void vary_margin(six *s, int n, double *margins)
@@ -13,12 +14,10 @@ static void vary_margin(six *s, int n, double *margins)
     v.n_values = n;
     v.values = margins;
     v.text = "margin_percent of /goals/0";
-    s->study->trade = (mt_trade){
-        .n_vary = 1,
-        .vary = {                  v   },
-        .n_objectives = 2,
-        .objectives = { MT_OBJECTIVE_CHANGE,MT_OBJECTIVE_CLEARANCE}
-    };
+    s->study->trade = (mt_trade){.n_vary = 1,
+                                 .vary = {v},
+                                 .n_objectives = 2,
+                                 .objectives = {MT_OBJECTIVE_CHANGE, MT_OBJECTIVE_CLEARANCE}};
 }
 
 /* The study with other bands, put in by hand. */
@@ -87,7 +86,8 @@ static void trade__the_front_is_what_nothing_beats(mt_test *t)
     six_end(&s);
 }
 
-/* k_6 as a parameter that varies, the other five as variables: the same as closing its bounds. */
+/* k_6 as a parameter that varies, the other five as variables: the same as closing its
+ * bounds. */
 static void trade__a_parameter_varies(mt_test *t)
 {
     double values[] = {7000.0, 10000.0, 14000.0};

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Better starts than a point has of its own: a hint of the caller's, and the designs of the neighbours in a trade study. */
+/* Better starts than a point has of its own: a hint of the caller's, and the designs of the
+ * neighbours in a trade study. */
 #include "study_fixture.h"
 
 #define MODEL STUDY_TWO_MASSES("'k1': {'value': 0.9, 'unit': 'N/m'}, 'k2': 1, 'm': 1", "")
-/* Minima of -cos(20 k1) - k1/10 at k1 = (2 pi j + asin(1/200)) / 20, each deeper than the one before: a single start stays in the valley that it begins in. */
+/* Minima of -cos(20 k1) - k1/10 at k1 = (2 pi j + asin(1/200)) / 20, each deeper than the one
+ * before: a single start stays in the valley that it begins in. */
 #define VALLEYS                                                         \
     "'search': {'starts': 2, 'max_evaluations': 400},"                  \
     "'goals': [{'type': 'frequency', 'mode': 2, 'at_least_hz': 0.01}]," \
@@ -59,7 +61,8 @@ static void trade__a_neighbour_improves_a_point(mt_test *t)
     if (CHECK(t, trade != NULL) && CHECK_INT(t, trade->n_points, 2)) {
         const double narrow = trade->points[1].best.parameters[0].recommended;
         const double wide = trade->points[0].best.parameters[0].recommended;
-        /* the deepest valley of all is the only one of the narrow range; the wide one has it, too, and does not begin in it */
+        /* the deepest valley of all is the only one of the narrow range; the wide one has it,
+         * too, and does not begin in it */
         CHECK_NEAR(t, narrow, valley(15), 1e-4);
         CHECK_NEAR(t, wide, valley(15), 1e-4);
         CHECK_NEAR(t, trade->points[0].best.score, depth(valley(15)), 1e-6);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Fresh analyses that disagree, through a whole answer. No study is known for which they do, so it is planted: this program has its own mt_describe_disagreement in place of the one in
+ * Fresh analyses that disagree, through a whole answer. No study is known for which they do, so
+ * it is planted: this program has its own mt_describe_disagreement in place of the one in
  * describe_verify.c (which test_rank.c tests).
  */
 #include "describe/describe.h"
@@ -28,15 +29,15 @@ static const struct {
     bool baseline; /* also the original design, or it alone, is doubted */
     bool first;    /* recommendation 1 is */
 } ROWS[] = {
-    {     "nowhere, band",                                                                TO_4000 BAND,9.0, false, false                                                                                                       },
-    {    "nowhere, limit",                                                               TO_4000 LIMIT, 9.0, false, false},
-    {  "everywhere, band",                                                                TO_4000 BAND, 0.0,  true,  true},
-    { "everywhere, limit",                                                               TO_4000 LIMIT, 0.0,  true,  true},
-    {"the recommendation",                                                               TO_4000 LIMIT, 3.3, false,  true},
-    {       "a catalogue", "'variables': [{'parameter': 'k1', 'catalogue': [500, 2000, 4000]}], " BAND,
-     0.0,  true,  true                                                                                                   },
-    {        "infeasible",   "'variables': [{'parameter': 'k1', 'lower': 500, 'upper': 1000}], " LIMIT,
-     0.0,  true,  true                                                                                                   },
+    {"nowhere, band", TO_4000 BAND, 9.0, false, false},
+    {"nowhere, limit", TO_4000 LIMIT, 9.0, false, false},
+    {"everywhere, band", TO_4000 BAND, 0.0, true, true},
+    {"everywhere, limit", TO_4000 LIMIT, 0.0, true, true},
+    {"the recommendation", TO_4000 LIMIT, 3.3, false, true},
+    {"a catalogue", "'variables': [{'parameter': 'k1', 'catalogue': [500, 2000, 4000]}], " BAND,
+     0.0, true, true},
+    {"infeasible", "'variables': [{'parameter': 'k1', 'lower': 500, 'upper': 1000}], " LIMIT,
+     0.0, true, true},
 };
 
 static void verify__what_is_doubted_is_not_graded_nor_proven(mt_test *t)

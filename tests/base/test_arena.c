@@ -178,16 +178,8 @@ static bool poisoned(const void *p, size_t n)
 static void arena__bytes_that_nobody_asked_for_are_poisoned(mt_test *t)
 {
     enum { LEAST = 64 };
-    static const size_t sizes[][2] = {
-        {  0, 120},
-        {  1,   1},
-        {  7,   1},
-        {  1,  64},
-        {  3,  24},
-        {  5, 200},
-        {900,   8},
-        {  1, 999}
-    };
+    static const size_t sizes[][2] = {{0, 120}, {1, 1},   {7, 1},   {1, 64},
+                                      {3, 24},  {5, 200}, {900, 8}, {1, 999}};
     mt_arena a;
     REQUIRE(t, mt_arena_init(&a, 1024, NULL) == MT_OK);
     const mt_arena_mark mark = mt_arena_get_mark(&a);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The k-th allocation fails, for every k: whatever runs out of memory says so, and nothing leaks. The two files of
- * src/base that touch the heap are compiled into this test with an allocator of its own; that works under every
- * sanitizer, which interposing malloc in the whole program would not.
+ * The k-th allocation fails, for every k: whatever runs out of memory says so, and nothing
+ * leaks. The two files of src/base that touch the heap are compiled into this test with an
+ * allocator of its own; that works under every sanitizer, which interposing malloc in the whole
+ * program would not.
  */
 #include <limits.h>
 #include <stdio.h>
@@ -113,7 +114,7 @@ static void memory__every_failing_allocation_is_reported_and_nothing_leaks(mt_te
         long least; /* allocations that it makes at least, so that the loop means something */
     } rows[] = {
         {"arena", use_arena, 4},
-        { "text",  use_text, 3},
+        {"text", use_text, 3},
         {"diags", use_diags, 4},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {

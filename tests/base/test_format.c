@@ -113,19 +113,23 @@ static void visible__escapes_what_cannot_be_seen(mt_test *t)
         const char *text;
         const char *want;
     } rows[] = {
-        {                                        "",                                        ""},
+        {"", ""},
         {"gr\xC3\xB6\xC3\x9F"
-"e \xE2\x82\xAC \xF0\x9F\x98\x80", "gr\xC3\xB6\xC3\x9F"
- "e \xE2\x82\xAC \xF0\x9F\x98\x80"                 },
-        {                              "\x01\t\x7F",                   "\\u0001\\u0009\\u007f"},
-        {                        "\xC2\x80\xC2\x9F",                          "\\u0080\\u009f"},
-        {                                "\xC2\xA0",                                "\xC2\xA0"}, /* a blank is a blank */
-        {                "\xE2\x80\xAA\xE2\x81\xA9",                          "\\u202a\\u2069"},
-        {                "\xE2\x80\xA8\xE2\x80\x8B",                          "\\u2028\\u200b"},
-        {                            "\xEF\xBB\xBF",                                 "\\ufeff"},
-        {                        "\xF3\xA0\x81\x81",                          "\\udb40\\udc41"},
-        {                        "\xC0\xAF\x80\xC3",                    "\\xc0\\xaf\\x80\\xc3"}, /* no UTF-8 */
-        {                            "\xED\xA0\x80",                         "\\xed\\xa0\\x80"}, /* a surrogate */
+         "e \xE2\x82\xAC \xF0\x9F\x98\x80",
+         "gr\xC3\xB6\xC3\x9F"
+         "e \xE2\x82\xAC \xF0\x9F\x98\x80"},
+        {"\x01\t\x7F", "\\u0001\\u0009\\u007f"},
+        {"\xC2\x80\xC2\x9F", "\\u0080\\u009f"},
+        /* a blank is a blank */
+        {"\xC2\xA0", "\xC2\xA0"},
+        {"\xE2\x80\xAA\xE2\x81\xA9", "\\u202a\\u2069"},
+        {"\xE2\x80\xA8\xE2\x80\x8B", "\\u2028\\u200b"},
+        {"\xEF\xBB\xBF", "\\ufeff"},
+        {"\xF3\xA0\x81\x81", "\\udb40\\udc41"},
+        /* no UTF-8 */
+        {"\xC0\xAF\x80\xC3", "\\xc0\\xaf\\x80\\xc3"},
+        /* a surrogate */
+        {"\xED\xA0\x80", "\\xed\\xa0\\x80"},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_text out = {.s = NULL};
@@ -138,7 +142,8 @@ static void visible__escapes_what_cannot_be_seen(mt_test *t)
     CHECK_INT(t, mt_visible_run("a\tb", 3, false), 1);
 }
 
-/* Random bytes: what comes out is UTF-8 without control characters, and to make it visible again changes nothing. */
+/* Random bytes: what comes out is UTF-8 without control characters, and to make it visible
+ * again changes nothing. */
 static void visible__leaves_no_control_character_of_any_bytes(mt_test *t)
 {
     mt_random random = mt_random_seed(7);

@@ -41,15 +41,15 @@ static void text__distance_counts_edits_and_swaps(mt_test *t)
         int most;
         int want;
     } rows[] = {
-        {      "",        "", 3, 0},
-        {      "",     "abc", 3, 3},
-        {   "abc",     "abc", 0, 0},
-        {"weight",  "wieght", 2, 1}, /* one swap of neighbours */
-        {    "ca",     "abc", 9, 3}, /* no edit inside a swapped pair: 3, not 2 */
+        {"", "", 3, 0},
+        {"", "abc", 3, 3},
+        {"abc", "abc", 0, 0},
+        {"weight", "wieght", 2, 1}, /* one swap of neighbours */
+        {"ca", "abc", 9, 3},        /* no edit inside a swapped pair: 3, not 2 */
         {"kitten", "sitting", 9, 3},
         {"kitten", "sitting", 2, 3}, /* cut off */
-        {     "a", "abcdefg", 2, 3}, /* cut off by length alone */
-        {  "K_T9",    "K_T8", 1, 1},
+        {"a", "abcdefg", 2, 3},      /* cut off by length alone */
+        {"K_T9", "K_T8", 1, 1},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "%s / %s", rows[i].a, rows[i].b);
@@ -128,12 +128,8 @@ static void text__nearest_name_is_offered_only_when_near(mt_test *t)
         const char *name;
         const char *want;
     } rows[] = {
-        {"wieght", "weight"},
-        {  "K_T9",   "K_T1"},
-        {  "uper",  "upper"},
-        { "zzzzz",     NULL},
-        {     "b",     NULL},
-        {      "",     NULL},
+        {"wieght", "weight"}, {"K_T9", "K_T1"}, {"uper", "upper"},
+        {"zzzzz", NULL},      {"b", NULL},      {"", NULL},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "\"%s\"", rows[i].name);
@@ -149,20 +145,20 @@ static void text__patterns_match_whole_names(mt_test *t)
         const char *name;
         bool want;
     } rows[] = {
-        {  "bar*",    "bar12",  true},
-        {  "bar*",      "bar",  true},
-        {  "bar*",  "crowbar", false},
-        {  "*bar",  "crowbar",  true},
-        {     "*",         "",  true},
-        {      "",        "a", false},
-        {      "",         "",  true},
-        {   "k_?",      "k_1",  true},
-        {   "k_?",       "k_", false},
-        { "a*b*c", "aXbXbXXc",  true},
-        { "a*b*c",  "aXbXXcX", false},
-        {"*aaab*", "aaaaaaab",  true}, /* needs to go back behind the star */
-        {    "**",      "any",  true},
-        { "abc?*",      "abc", false},
+        {"bar*", "bar12", true},
+        {"bar*", "bar", true},
+        {"bar*", "crowbar", false},
+        {"*bar", "crowbar", true},
+        {"*", "", true},
+        {"", "a", false},
+        {"", "", true},
+        {"k_?", "k_1", true},
+        {"k_?", "k_", false},
+        {"a*b*c", "aXbXbXXc", true},
+        {"a*b*c", "aXbXXcX", false},
+        {"*aaab*", "aaaaaaab", true}, /* needs to go back behind the star */
+        {"**", "any", true},
+        {"abc?*", "abc", false},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "%s on %s", rows[i].pattern, rows[i].name);

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * How long the nine-element beam takes, and how wrong the answer is, both against long double (exact_beam.h).
+ * How long the nine-element beam takes, and how wrong the answer is, both against long double
+ * (exact_beam.h).
  *     bench_beam          ours alone
  *     bench_beam FILE     beside the numbers that bench_beam.m printed into FILE
- * Evaluations are timed as the search makes them, springs moving from call to call; each time is the best of several rounds, which
- * is what the machine can do when nothing else disturbs it.
+ * Evaluations are timed as the search makes them, springs moving from call to call; each time
+ * is the best of several rounds, which is what the machine can do when nothing else disturbs
+ * it.
  */
 #include <math.h>
 #include <stdio.h>
@@ -99,7 +101,8 @@ static mt_study *load(const char *name)
     return study;
 }
 
-/* Best time to answer the study: baseline, search, each design recomputed from scratch. Leaves the last result. */
+/* Best time to answer the study: baseline, search, each design recomputed from scratch. Leaves
+ * the last result. */
 static double time_study(const mt_study *study, int solves, mt_result **result)
 {
     double best = HUGE_VAL;

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The free-free lumped beam once more, in long double and by other means than the library: what both sides of the benchmark are measured
- * against. Coordinates: height of the left end, angles theta_1..9; e_i = height of the centre of element i,
+ * The free-free lumped beam once more, in long double and by other means than the library: what
+ * both sides of the benchmark are measured against. Coordinates: height of the left end, angles
+ * theta_1..9; e_i = height of the centre of element i,
  *     e_i = y + L_e (theta_1 + ... + theta_{i-1}) + L_e theta_i / 2,
- *     M = sum m_e e_i e_i^T + I_e d_i d_i^T,   K = sum K_i (d_{i+1} - d_i)(d_{i+1} - d_i)^T,   d_i picks theta_i,
- * M = L L^T, and cyclic Jacobi rotations on L^-1 K L^-T. df/dK_i = (theta_{i+1} - theta_i)^2 / (8 pi^2 f) for a shape of unit modal mass.
+ *     M = sum m_e e_i e_i^T + I_e d_i d_i^T,   K = sum K_i (d_{i+1} - d_i)(d_{i+1} - d_i)^T,
+ *         d_i picks theta_i,
+ * M = L L^T, and cyclic Jacobi rotations on L^-1 K L^-T. df/dK_i = (theta_{i+1} - theta_i)^2 /
+ * (8 pi^2 f) for a shape of unit modal mass.
  */
 #ifndef TESTS_BENCH_EXACT_BEAM_H
 #define TESTS_BENCH_EXACT_BEAM_H

@@ -1,15 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The k-th allocation is refused, or all from the k-th on, in every command, whoever asks for it: our own rooms, cJSON, NLopt, GSL, LAPACKE, the C library. Requests of our arenas, which
- * hand out most memory without asking the system, are numbered with them. Each time the command runs
- * in a process of its own, which has to end as ever (the same exit status, output and files to the byte: an allocation that is not missed) or with the exit status of a shortage, a
- * message, and nothing half done. It may not crash, hang, leak (in instrumented builds), call a file wrong, or answer otherwise.
+ * The k-th allocation is refused, or all from the k-th on, in every command, whoever asks for
+ * it: our own rooms, cJSON, NLopt, GSL, LAPACKE, the C library. Requests of our arenas, which
+ * hand out most memory without asking the system, are numbered with them. Each time the command
+ * runs in a process of its own, which has to end as ever (the same exit status, output and
+ * files to the byte: an allocation that is not missed) or with the exit status of a shortage, a
+ * message, and nothing half done. It may not crash, hang, leak (in instrumented builds), call a
+ * file wrong, or answer otherwise.
  *
- *     test_allocation_sites                            a sample, of a seed that is printed; places that ask for memory come first
+ *     test_allocation_sites
+ *         a sample, of a seed that is printed; places that ask for memory come first
  *     test_allocation_sites --seed S --count N         N of each command
- *     test_allocation_sites --all                      every k of every command, both ways: hours
- *     test_allocation_sites --line 1 "run -o @ FILE" ...    of this command line, which ends with 1 where nothing is refused
- *     test_allocation_sites --only 7 --at 42 [--on]    one of them again (--on: all from the 42nd on); with MT_ALLOCATIONS_TALK=1 it says who asked
+ *     test_allocation_sites --all
+ *         every k of every command, both ways: hours
+ *     test_allocation_sites --line 1 "run -o @ FILE" ...
+ *         of this command line, which ends with 1 where nothing is refused
+ *     test_allocation_sites --only 7 --at 42 [--on]
+ *         one of them again
+ *         (--on: all from the 42nd on); with MT_ALLOCATIONS_TALK=1 it says who asked
  */
 #define _GNU_SOURCE /* memmem, MAP_ANONYMOUS; NOLINT(cert-dcl37-c,cert-dcl51-cpp) */
 #include <execinfo.h>
@@ -41,69 +49,70 @@ enum { FULL = 100, SOME = 25, FEW = 10 };
 #define MODELS "tests/models/"
 #define WRONG  "tests/io/wrong/"
 static struct {
-    const char *
-        words; /* separated by blanks; @: a folder for results, empty before each run; %: one with a result */
+    /* separated by blanks; @: a folder for results, empty before each run; %: one with a
+     * result */
+    const char *words;
     int code;
     int share;
 } commands[] = {
-    {                                                                              "--version",MT_EXIT_DONE,FULL                                                                                                              },
-    {                                                                                 "--help",  MT_EXIT_DONE, FULL},
-    {                                                                             "run --help",  MT_EXIT_DONE, FULL},
-    {                                                                               "--manual",  MT_EXIT_DONE, FULL},
-    {                                                                                   "runn", MT_EXIT_INPUT, FULL},
-    {                                      "modes --shapes --damped " MODELS "space_body.json",  MT_EXIT_DONE, FULL},
-    {                   "modes --shapes --set h=0.11 --format json " MODELS "space_frame.json",  MT_EXIT_DONE,
-     FULL                                                                                                          },
-    {                                  "modes --damped --format csv " MODELS "space_body.json",  MT_EXIT_DONE, FULL},
-    {                                                  "modes --set mas=1 " MODELS "ring.json", MT_EXIT_INPUT, FULL},
-    {                                                   "modes -c nowhere " MODELS "ring.json", MT_EXIT_INPUT, FULL},
-    {            "mac " MODELS "space_frame.json:loaded " MODELS "space_frame.json:weightless",
-     MT_EXIT_DONE, FULL                                                                                            },
-    {    "mac --format json " MODELS "driven_rod.json:sprung " MODELS "driven_rod.json:locked",
-     MT_EXIT_DONE, FULL                                                                                            },
-    {     "mac --format csv " MODELS "driven_rod.json:sprung " MODELS "driven_rod.json:locked",
-     MT_EXIT_DONE, FULL                                                                                            },
-    {                                                 "sensitivity " MODELS "space_frame.json",  MT_EXIT_DONE, FULL},
-    {                                          "sensitivity --format json " MODELS "ring.json",  MT_EXIT_DONE, FULL},
-    {                          "sensitivity --format csv --parameters mas " MODELS "ring.json", MT_EXIT_INPUT, FULL},
-    {                                                        "info " MODELS "space_stick.json",  MT_EXIT_DONE, FULL},
-    {                                       "info --format json " MODELS "space_four_bar.json",  MT_EXIT_DONE, FULL},
-    {                                              "info --format csv " MODELS "four_bar.json",  MT_EXIT_DONE, FULL},
-    {                       "sweep --drive pivot=-0.1:0.1:3 --modes " MODELS "driven_rod.json",  MT_EXIT_DONE, FULL},
-    {                 "sweep --drive pivot=-0.1:0.1:3 --format json " MODELS "driven_rod.json",  MT_EXIT_DONE,
-     FULL                                                                                                          },
-    {                   "sweep --drive pivo=-0.1:0.1:3 --format csv " MODELS "driven_rod.json", MT_EXIT_INPUT,
-     FULL                                                                                                          },
-    {                    "check --format json tests/schema/space.json tests/schema/plane.json",  MT_EXIT_DONE, FULL},
-    {  "check tests/io/good/study_full.json problems/aircraft.json studies/engine_orders.json",
-     MT_EXIT_INPUT, FULL                                                                                           },
-    {             "check --format csv " WRONG "dampers.json " WRONG "study_unknown_names.json",
-     MT_EXIT_INPUT, FULL                                                                                           },
-    {         "check " WRONG "study_model_wrong.json " WRONG "links.json " WRONG "circle.json",
-     MT_EXIT_INPUT, FULL                                                                                           },
-    {      "check " WRONG "syntax_many.json " WRONG "unknown_members.json " WRONG "types.json",
-     MT_EXIT_INPUT, FULL                                                                                           },
+    {"--version", MT_EXIT_DONE, FULL},
+    {"--help", MT_EXIT_DONE, FULL},
+    {"run --help", MT_EXIT_DONE, FULL},
+    {"--manual", MT_EXIT_DONE, FULL},
+    {"runn", MT_EXIT_INPUT, FULL},
+    {"modes --shapes --damped " MODELS "space_body.json", MT_EXIT_DONE, FULL},
+    {"modes --shapes --set h=0.11 --format json " MODELS "space_frame.json", MT_EXIT_DONE,
+     FULL},
+    {"modes --damped --format csv " MODELS "space_body.json", MT_EXIT_DONE, FULL},
+    {"modes --set mas=1 " MODELS "ring.json", MT_EXIT_INPUT, FULL},
+    {"modes -c nowhere " MODELS "ring.json", MT_EXIT_INPUT, FULL},
+    {"mac " MODELS "space_frame.json:loaded " MODELS "space_frame.json:weightless",
+     MT_EXIT_DONE, FULL},
+    {"mac --format json " MODELS "driven_rod.json:sprung " MODELS "driven_rod.json:locked",
+     MT_EXIT_DONE, FULL},
+    {"mac --format csv " MODELS "driven_rod.json:sprung " MODELS "driven_rod.json:locked",
+     MT_EXIT_DONE, FULL},
+    {"sensitivity " MODELS "space_frame.json", MT_EXIT_DONE, FULL},
+    {"sensitivity --format json " MODELS "ring.json", MT_EXIT_DONE, FULL},
+    {"sensitivity --format csv --parameters mas " MODELS "ring.json", MT_EXIT_INPUT, FULL},
+    {"info " MODELS "space_stick.json", MT_EXIT_DONE, FULL},
+    {"info --format json " MODELS "space_four_bar.json", MT_EXIT_DONE, FULL},
+    {"info --format csv " MODELS "four_bar.json", MT_EXIT_DONE, FULL},
+    {"sweep --drive pivot=-0.1:0.1:3 --modes " MODELS "driven_rod.json", MT_EXIT_DONE, FULL},
+    {"sweep --drive pivot=-0.1:0.1:3 --format json " MODELS "driven_rod.json", MT_EXIT_DONE,
+     FULL},
+    {"sweep --drive pivo=-0.1:0.1:3 --format csv " MODELS "driven_rod.json", MT_EXIT_INPUT,
+     FULL},
+    {"check --format json tests/schema/space.json tests/schema/plane.json", MT_EXIT_DONE, FULL},
+    {"check tests/io/good/study_full.json problems/aircraft.json studies/engine_orders.json",
+     MT_EXIT_INPUT, FULL},
+    {"check --format csv " WRONG "dampers.json " WRONG "study_unknown_names.json",
+     MT_EXIT_INPUT, FULL},
+    {"check " WRONG "study_model_wrong.json " WRONG "links.json " WRONG "circle.json",
+     MT_EXIT_INPUT, FULL},
+    {"check " WRONG "syntax_many.json " WRONG "unknown_members.json " WRONG "types.json",
+     MT_EXIT_INPUT, FULL},
     {"check --format json " WRONG "study_model_outside.json " WRONG "study_model_missing.json",
-     MT_EXIT_INPUT, FULL                                                                                           },
-    {                                                      "check %/engine_orders/result.json",  MT_EXIT_DONE, FULL},
-    {                                             "apply --root / %/engine_orders/result.json",  MT_EXIT_DONE, FULL},
-    {      "apply --root / --model problems/engine_accessory.json %/engine_orders/result.json",
-     MT_EXIT_DONE, FULL                                                                                            },
-    {           "apply --root / --model problems/beam_lumped.json %/engine_orders/result.json",
-     MT_EXIT_INPUT, FULL                                                                                           },
-    {                                             "apply --rank 9 %/engine_orders/result.json", MT_EXIT_INPUT, FULL},
-    {                                  "compare --format json studies/inceptor_catalogue.json",  MT_EXIT_DONE, SOME},
-    {                                                      "compare studies/beam_table_3.json",  MT_EXIT_DONE, SOME},
-    {                                        "compare --format csv studies/engine_orders.json",  MT_EXIT_DONE, SOME},
-    {                                                    "run -o @ studies/engine_orders.json",  MT_EXIT_DONE, SOME},
-    {                                    "run -o @ --threads 2 studies/inceptor_tuning_2.json",  MT_EXIT_DONE, SOME},
-    {                    "run -o @ studies/inceptor_catalogue.json studies/engine_orders.json",  MT_EXIT_DONE, SOME},
-    {                                     "run -o @ --format json studies/inceptor_stick.json",  MT_EXIT_DONE, SOME},
-    {                               "run -o @ --verify --format csv studies/beam_table_4.json",  MT_EXIT_DONE, SOME},
-    {                                            "run -o @ studies/six_masses_infeasible.json", MT_EXIT_GOALS,  FEW},
-    {                                                   "run -o @ studies/inceptor_trade.json",  MT_EXIT_DONE,  FEW},
-    {                                                 "run -o @ studies/six_masses_bands.json",  MT_EXIT_DONE,  FEW},
-    {                                                    "run -o @ " WRONG "study_bounds.json", MT_EXIT_INPUT, FULL},
+     MT_EXIT_INPUT, FULL},
+    {"check %/engine_orders/result.json", MT_EXIT_DONE, FULL},
+    {"apply --root / %/engine_orders/result.json", MT_EXIT_DONE, FULL},
+    {"apply --root / --model problems/engine_accessory.json %/engine_orders/result.json",
+     MT_EXIT_DONE, FULL},
+    {"apply --root / --model problems/beam_lumped.json %/engine_orders/result.json",
+     MT_EXIT_INPUT, FULL},
+    {"apply --rank 9 %/engine_orders/result.json", MT_EXIT_INPUT, FULL},
+    {"compare --format json studies/inceptor_catalogue.json", MT_EXIT_DONE, SOME},
+    {"compare studies/beam_table_3.json", MT_EXIT_DONE, SOME},
+    {"compare --format csv studies/engine_orders.json", MT_EXIT_DONE, SOME},
+    {"run -o @ studies/engine_orders.json", MT_EXIT_DONE, SOME},
+    {"run -o @ --threads 2 studies/inceptor_tuning_2.json", MT_EXIT_DONE, SOME},
+    {"run -o @ studies/inceptor_catalogue.json studies/engine_orders.json", MT_EXIT_DONE, SOME},
+    {"run -o @ --format json studies/inceptor_stick.json", MT_EXIT_DONE, SOME},
+    {"run -o @ --verify --format csv studies/beam_table_4.json", MT_EXIT_DONE, SOME},
+    {"run -o @ studies/six_masses_infeasible.json", MT_EXIT_GOALS, FEW},
+    {"run -o @ studies/inceptor_trade.json", MT_EXIT_DONE, FEW},
+    {"run -o @ studies/six_masses_bands.json", MT_EXIT_DONE, FEW},
+    {"run -o @ " WRONG "study_bounds.json", MT_EXIT_INPUT, FULL},
 };
 
 typedef mt_child_text text;
@@ -240,7 +249,8 @@ static bool as_ever(const left *got, const left *want)
            files_are_right(got, want);
 }
 
-/* What reached standard output is whole: nothing, or what was printed about other studies, a part of what the undisturbed run prints that ends with a line. JSON is one document: all or
+/* What reached standard output is whole: nothing, or what was printed about other studies, a
+ * part of what the undisturbed run prints that ends with a line. JSON is one document: all or
  * none. */
 static bool output_is_whole(const left *got, const left *want, const char *line)
 {
@@ -319,7 +329,8 @@ static long find_places(long n, long *first)
     return found;
 }
 
-/* The first request of every place and size, then others by chance; in turn alone and with all that follow. */
+/* The first request of every place and size, then others by chance; in turn alone and with all
+ * that follow. */
 static long sample(mt_test *t, int i, long n, long count, const left *want, mt_random *random)
 {
     long *const first = calloc((size_t)n + 1, sizeof *first);

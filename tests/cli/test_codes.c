@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Every exit status that a command can have is provoked and seen, and the commands, and the README, know no other. */
+/* Every exit status that a command can have is provoked and seen, and the commands, and the
+ * README, know no other. */
 #include <ctype.h>
 #include <signal.h>
 #include <stdio.h>
@@ -53,80 +54,80 @@ static const struct {
     int code;
     how how;
 } rows[] = {
-    {                                                            "--version",        MT_EXIT_DONE,AS_IT_IS                                                                                                  },
-    {                                                            "--version",      MT_EXIT_SYSTEM,    SHORT},
-    {                                                               "--help",      MT_EXIT_SYSTEM,     FULL},
-    {                                                                     "",       MT_EXIT_INPUT, AS_IT_IS},
+    {"--version", MT_EXIT_DONE, AS_IT_IS},
+    {"--version", MT_EXIT_SYSTEM, SHORT},
+    {"--help", MT_EXIT_SYSTEM, FULL},
+    {"", MT_EXIT_INPUT, AS_IT_IS},
 
-    {                                  "run -o @ studies/engine_orders.json",        MT_EXIT_DONE, AS_IT_IS},
-    {                                                 "run -o @ %/fast.json",       MT_EXIT_GOALS, AS_IT_IS},
-    {                                        "run -o @ --verify %/fast.json",       MT_EXIT_GOALS, AS_IT_IS},
-    {                          "run -o @ --verify studies/beam_table_3.json",        MT_EXIT_DONE, AS_IT_IS},
-    {                                                                  "run",       MT_EXIT_INPUT, AS_IT_IS},
-    {                                                 "run -o @ %/none.json",      MT_EXIT_SYSTEM, AS_IT_IS},
-    {                            "run -o @ tests/io/wrong/study_bounds.json",       MT_EXIT_INPUT, AS_IT_IS},
-    {                  "run -o @ --verify tests/install/pendulum_study.json",       MT_EXIT_INPUT, AS_IT_IS},
-    {                                          "run -o @ %/ghost_study.json",   MT_EXIT_NUMERICAL, AS_IT_IS},
-    {                        "run -o /dev/null/x studies/engine_orders.json",      MT_EXIT_SYSTEM, AS_IT_IS},
-    {                                  "run -o @ studies/engine_orders.json",      MT_EXIT_SYSTEM,    SHORT},
-    {                                  "run -o @ studies/engine_orders.json",      MT_EXIT_SYSTEM,     FULL},
-    {                                  "run -o @ studies/engine_orders.json", MT_EXIT_INTERRUPTED,  STOPPED},
-    {   "run -o @ %/fast.json %/ghost_study.json studies/engine_orders.json",   MT_EXIT_NUMERICAL,
-     AS_IT_IS                                                                                              },
+    {"run -o @ studies/engine_orders.json", MT_EXIT_DONE, AS_IT_IS},
+    {"run -o @ %/fast.json", MT_EXIT_GOALS, AS_IT_IS},
+    {"run -o @ --verify %/fast.json", MT_EXIT_GOALS, AS_IT_IS},
+    {"run -o @ --verify studies/beam_table_3.json", MT_EXIT_DONE, AS_IT_IS},
+    {"run", MT_EXIT_INPUT, AS_IT_IS},
+    {"run -o @ %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
+    {"run -o @ tests/io/wrong/study_bounds.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"run -o @ --verify tests/install/pendulum_study.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"run -o @ %/ghost_study.json", MT_EXIT_NUMERICAL, AS_IT_IS},
+    {"run -o /dev/null/x studies/engine_orders.json", MT_EXIT_SYSTEM, AS_IT_IS},
+    {"run -o @ studies/engine_orders.json", MT_EXIT_SYSTEM, SHORT},
+    {"run -o @ studies/engine_orders.json", MT_EXIT_SYSTEM, FULL},
+    {"run -o @ studies/engine_orders.json", MT_EXIT_INTERRUPTED, STOPPED},
+    {"run -o @ %/fast.json %/ghost_study.json studies/engine_orders.json", MT_EXIT_NUMERICAL,
+     AS_IT_IS},
 
-    {                                    "compare studies/beam_table_3.json",        MT_EXIT_DONE, AS_IT_IS},
-    {                                                  "compare %/fast.json",       MT_EXIT_GOALS, AS_IT_IS},
-    {                             "compare tests/io/wrong/study_bounds.json",       MT_EXIT_INPUT, AS_IT_IS},
-    {                                           "compare %/ghost_study.json",   MT_EXIT_NUMERICAL, AS_IT_IS},
-    {                                    "compare studies/beam_table_3.json",      MT_EXIT_SYSTEM,    SHORT},
-    {                                    "compare studies/beam_table_3.json",      MT_EXIT_SYSTEM,     FULL},
+    {"compare studies/beam_table_3.json", MT_EXIT_DONE, AS_IT_IS},
+    {"compare %/fast.json", MT_EXIT_GOALS, AS_IT_IS},
+    {"compare tests/io/wrong/study_bounds.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"compare %/ghost_study.json", MT_EXIT_NUMERICAL, AS_IT_IS},
+    {"compare studies/beam_table_3.json", MT_EXIT_SYSTEM, SHORT},
+    {"compare studies/beam_table_3.json", MT_EXIT_SYSTEM, FULL},
 
-    {                                            "modes " MODELS "ring.json",        MT_EXIT_DONE, AS_IT_IS},
-    {                                 "modes -c nowhere " MODELS "ring.json",       MT_EXIT_INPUT, AS_IT_IS},
-    {                                                   "modes %/ghost.json",   MT_EXIT_NUMERICAL, AS_IT_IS},
-    {                                            "modes " MODELS "ring.json",      MT_EXIT_SYSTEM,    SHORT},
-    {                                            "modes " MODELS "ring.json",      MT_EXIT_SYSTEM,     FULL},
+    {"modes " MODELS "ring.json", MT_EXIT_DONE, AS_IT_IS},
+    {"modes -c nowhere " MODELS "ring.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"modes %/ghost.json", MT_EXIT_NUMERICAL, AS_IT_IS},
+    {"modes " MODELS "ring.json", MT_EXIT_SYSTEM, SHORT},
+    {"modes " MODELS "ring.json", MT_EXIT_SYSTEM, FULL},
 
-    {"mac " MODELS "driven_rod.json:sprung " MODELS "driven_rod.json:locked",        MT_EXIT_DONE,
-     AS_IT_IS                                                                                              },
-    {       "mac " MODELS "driven_rod.json " MODELS "driven_rod.json:locked",       MT_EXIT_INPUT, AS_IT_IS},
-    {                                        "mac %/ghost.json %/ghost.json",   MT_EXIT_NUMERICAL, AS_IT_IS},
-    {"mac " MODELS "driven_rod.json:sprung " MODELS "driven_rod.json:locked",      MT_EXIT_SYSTEM,
-     SHORT                                                                                                 },
-    {"mac " MODELS "driven_rod.json:sprung " MODELS "driven_rod.json:locked",      MT_EXIT_SYSTEM,
-     FULL                                                                                                  },
+    {"mac " MODELS "driven_rod.json:sprung " MODELS "driven_rod.json:locked", MT_EXIT_DONE,
+     AS_IT_IS},
+    {"mac " MODELS "driven_rod.json " MODELS "driven_rod.json:locked", MT_EXIT_INPUT, AS_IT_IS},
+    {"mac %/ghost.json %/ghost.json", MT_EXIT_NUMERICAL, AS_IT_IS},
+    {"mac " MODELS "driven_rod.json:sprung " MODELS "driven_rod.json:locked", MT_EXIT_SYSTEM,
+     SHORT},
+    {"mac " MODELS "driven_rod.json:sprung " MODELS "driven_rod.json:locked", MT_EXIT_SYSTEM,
+     FULL},
 
-    {             "sweep --drive pivot=-0.1:0.1:3 " MODELS "driven_rod.json",        MT_EXIT_DONE, AS_IT_IS},
-    {              "sweep --drive pivo=-0.1:0.1:3 " MODELS "driven_rod.json",       MT_EXIT_INPUT, AS_IT_IS},
-    {                       "sweep --drive jD=0:3:4 " MODELS "four_bar.json",   MT_EXIT_NUMERICAL, AS_IT_IS},
-    {             "sweep --drive pivot=-0.1:0.1:3 " MODELS "driven_rod.json",      MT_EXIT_SYSTEM,    SHORT},
-    {             "sweep --drive pivot=-0.1:0.1:3 " MODELS "driven_rod.json",      MT_EXIT_SYSTEM,     FULL},
+    {"sweep --drive pivot=-0.1:0.1:3 " MODELS "driven_rod.json", MT_EXIT_DONE, AS_IT_IS},
+    {"sweep --drive pivo=-0.1:0.1:3 " MODELS "driven_rod.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"sweep --drive jD=0:3:4 " MODELS "four_bar.json", MT_EXIT_NUMERICAL, AS_IT_IS},
+    {"sweep --drive pivot=-0.1:0.1:3 " MODELS "driven_rod.json", MT_EXIT_SYSTEM, SHORT},
+    {"sweep --drive pivot=-0.1:0.1:3 " MODELS "driven_rod.json", MT_EXIT_SYSTEM, FULL},
 
-    {                                      "sensitivity " MODELS "ring.json",        MT_EXIT_DONE, AS_IT_IS},
-    {                     "sensitivity --parameters xyz " MODELS "ring.json",       MT_EXIT_INPUT, AS_IT_IS},
-    {                                             "sensitivity %/ghost.json",   MT_EXIT_NUMERICAL, AS_IT_IS},
-    {                                      "sensitivity " MODELS "ring.json",      MT_EXIT_SYSTEM,    SHORT},
-    {                                      "sensitivity " MODELS "ring.json",      MT_EXIT_SYSTEM,     FULL},
+    {"sensitivity " MODELS "ring.json", MT_EXIT_DONE, AS_IT_IS},
+    {"sensitivity --parameters xyz " MODELS "ring.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"sensitivity %/ghost.json", MT_EXIT_NUMERICAL, AS_IT_IS},
+    {"sensitivity " MODELS "ring.json", MT_EXIT_SYSTEM, SHORT},
+    {"sensitivity " MODELS "ring.json", MT_EXIT_SYSTEM, FULL},
 
-    {                                             "info " MODELS "ring.json",        MT_EXIT_DONE, AS_IT_IS},
-    {                                 "info --set xyz=1 " MODELS "ring.json",       MT_EXIT_INPUT, AS_IT_IS},
-    {                                                    "info %/ghost.json",   MT_EXIT_NUMERICAL, AS_IT_IS},
-    {                                             "info " MODELS "ring.json",      MT_EXIT_SYSTEM,    SHORT},
-    {                                             "info " MODELS "ring.json",      MT_EXIT_SYSTEM,     FULL},
+    {"info " MODELS "ring.json", MT_EXIT_DONE, AS_IT_IS},
+    {"info --set xyz=1 " MODELS "ring.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"info %/ghost.json", MT_EXIT_NUMERICAL, AS_IT_IS},
+    {"info " MODELS "ring.json", MT_EXIT_SYSTEM, SHORT},
+    {"info " MODELS "ring.json", MT_EXIT_SYSTEM, FULL},
 
-    {                           "apply --root / %/engine_orders/result.json",        MT_EXIT_DONE, AS_IT_IS},
-    {                          "apply --rank 99 %/engine_orders/result.json",       MT_EXIT_INPUT, AS_IT_IS},
-    {                                                    "apply %/none.json",      MT_EXIT_SYSTEM, AS_IT_IS},
-    {                           "apply --root / %/engine_orders/result.json",      MT_EXIT_SYSTEM,    SHORT},
-    {                           "apply --root / %/engine_orders/result.json",      MT_EXIT_SYSTEM,     FULL},
+    {"apply --root / %/engine_orders/result.json", MT_EXIT_DONE, AS_IT_IS},
+    {"apply --rank 99 %/engine_orders/result.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"apply %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
+    {"apply --root / %/engine_orders/result.json", MT_EXIT_SYSTEM, SHORT},
+    {"apply --root / %/engine_orders/result.json", MT_EXIT_SYSTEM, FULL},
 
-    {                                            "check " MODELS "ring.json",        MT_EXIT_DONE, AS_IT_IS},
-    {                                    "check tests/io/wrong/dampers.json",       MT_EXIT_INPUT, AS_IT_IS},
-    {                                                   "check %/ghost.json",   MT_EXIT_NUMERICAL, AS_IT_IS},
-    {                                                    "check %/none.json",      MT_EXIT_SYSTEM, AS_IT_IS},
-    {           "check tests/io/wrong/dampers.json %/ghost.json %/none.json",      MT_EXIT_SYSTEM, AS_IT_IS},
-    {                                            "check " MODELS "ring.json",      MT_EXIT_SYSTEM,    SHORT},
-    {                                            "check " MODELS "ring.json",      MT_EXIT_SYSTEM,     FULL},
+    {"check " MODELS "ring.json", MT_EXIT_DONE, AS_IT_IS},
+    {"check tests/io/wrong/dampers.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"check %/ghost.json", MT_EXIT_NUMERICAL, AS_IT_IS},
+    {"check %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
+    {"check tests/io/wrong/dampers.json %/ghost.json %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
+    {"check " MODELS "ring.json", MT_EXIT_SYSTEM, SHORT},
+    {"check " MODELS "ring.json", MT_EXIT_SYSTEM, FULL},
 };
 
 /* What each command can end with. */
@@ -136,15 +137,15 @@ static const struct {
     const char *command;
     bool can[MT_COUNT(CODES)];
 } able[MT_CMD_IDS] = {
-    [MT_CMD_RUN] = {        "run",    {true, true, true, true, true, true}},
-    [MT_CMD_COMPARE] = {    "compare",   {true, true, true, true, true, false}},
-    [MT_CMD_MODES] = {      "modes",  {true, false, true, true, true, false}},
-    [MT_CMD_MAC] = {        "mac",  {true, false, true, true, true, false}},
-    [MT_CMD_SWEEP] = {      "sweep",  {true, false, true, true, true, false}},
-    [MT_CMD_SENSITIVITY] = {"sensitivity",  {true, false, true, true, true, false}},
-    [MT_CMD_INFO] = {       "info",  {true, false, true, true, true, false}},
-    [MT_CMD_APPLY] = {      "apply", {true, false, true, false, true, false}},
-    [MT_CMD_CHECK] = {      "check",  {true, false, true, true, true, false}},
+    [MT_CMD_RUN] = {"run", {true, true, true, true, true, true}},
+    [MT_CMD_COMPARE] = {"compare", {true, true, true, true, true, false}},
+    [MT_CMD_MODES] = {"modes", {true, false, true, true, true, false}},
+    [MT_CMD_MAC] = {"mac", {true, false, true, true, true, false}},
+    [MT_CMD_SWEEP] = {"sweep", {true, false, true, true, true, false}},
+    [MT_CMD_SENSITIVITY] = {"sensitivity", {true, false, true, true, true, false}},
+    [MT_CMD_INFO] = {"info", {true, false, true, true, true, false}},
+    [MT_CMD_APPLY] = {"apply", {true, false, true, false, true, false}},
+    [MT_CMD_CHECK] = {"check", {true, false, true, true, true, false}},
 };
 
 static void begin(void *context)
@@ -238,7 +239,8 @@ static void codes__each_is_seen(mt_test *t)
     mt_child_close();
 }
 
-/* Whole numbers within the paragraph of `path` that begins with `begin` are the codes, each of them. */
+/* Whole numbers within the paragraph of `path` that begins with `begin` are the codes, each of
+ * them. */
 static void check_text(mt_test *t, const char *path, const char *begin)
 {
     static char text[1 << 18];

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Every place that asks an arena for memory, from the command line to what is printed, is refused once: the command says so with the exit status of a shortage and gives everything
+ * Every place that asks an arena for memory, from the command line to what is printed, is
+ * refused once: the command says so with the exit status of a shortage and gives everything
  * back. So it does where the system itself runs out, at any allocation.
  */
 #include <fcntl.h>
@@ -25,37 +26,38 @@ static const struct {
     const char *words; /* separated by blanks; @: the folder for results */
     int code;
 } commands[] = {
-    {                                    "modes --shapes --damped " MODELS "space_body.json",MT_EXIT_DONE                                                                                             },
-    {                              "modes --shapes --format json " MODELS "space_stick.json",  MT_EXIT_DONE},
-    {                      "modes -c damped --damped --set kr=900 " MODELS "space_body.json",  MT_EXIT_DONE},
-    {                               "modes --damped --format json " MODELS "space_body.json",  MT_EXIT_DONE},
-    {                                "modes --damped --format csv " MODELS "space_body.json",  MT_EXIT_DONE},
-    {                  "modes --shapes --set h=0.11 --format csv " MODELS "space_frame.json",  MT_EXIT_DONE},
-    {                                                      "modes " MODELS "driven_rod.json",  MT_EXIT_DONE},
-    {                                                            "modes " MODELS "ring.json",  MT_EXIT_DONE},
-    {          "mac " MODELS "space_frame.json:loaded " MODELS "space_frame.json:weightless",
-     MT_EXIT_DONE                                                                                          },
-    {                                                     "mac --format json " MODELS "space_frame.json:loaded " MODELS
-                                                     "space_frame.json:weightless",  MT_EXIT_DONE     },
-    {   "mac --format csv " MODELS "driven_rod.json:sprung " MODELS "driven_rod.json:locked",
-     MT_EXIT_DONE                                                                                          },
-    {                                               "sensitivity " MODELS "space_frame.json",  MT_EXIT_DONE},
-    {                                        "sensitivity --format json " MODELS "ring.json",  MT_EXIT_DONE},
-    {                                   "sensitivity --format csv " MODELS "driven_rod.json",  MT_EXIT_DONE},
-    {                                                      "info " MODELS "space_stick.json",  MT_EXIT_DONE},
-    {                                     "info --format json " MODELS "space_four_bar.json",  MT_EXIT_DONE},
-    {                                            "info --format csv " MODELS "four_bar.json",  MT_EXIT_DONE},
-    {                     "sweep --drive pivot=-0.1:0.1:3 --modes " MODELS "driven_rod.json",  MT_EXIT_DONE},
-    {                  "check --format json tests/schema/space.json tests/schema/plane.json",  MT_EXIT_DONE},
+    {"modes --shapes --damped " MODELS "space_body.json", MT_EXIT_DONE},
+    {"modes --shapes --format json " MODELS "space_stick.json", MT_EXIT_DONE},
+    {"modes -c damped --damped --set kr=900 " MODELS "space_body.json", MT_EXIT_DONE},
+    {"modes --damped --format json " MODELS "space_body.json", MT_EXIT_DONE},
+    {"modes --damped --format csv " MODELS "space_body.json", MT_EXIT_DONE},
+    {"modes --shapes --set h=0.11 --format csv " MODELS "space_frame.json", MT_EXIT_DONE},
+    {"modes " MODELS "driven_rod.json", MT_EXIT_DONE},
+    {"modes " MODELS "ring.json", MT_EXIT_DONE},
+    {"mac " MODELS "space_frame.json:loaded " MODELS "space_frame.json:weightless",
+     MT_EXIT_DONE},
+    {"mac --format json " MODELS "space_frame.json:loaded " MODELS
+     "space_frame.json:weightless",
+     MT_EXIT_DONE},
+    {"mac --format csv " MODELS "driven_rod.json:sprung " MODELS "driven_rod.json:locked",
+     MT_EXIT_DONE},
+    {"sensitivity " MODELS "space_frame.json", MT_EXIT_DONE},
+    {"sensitivity --format json " MODELS "ring.json", MT_EXIT_DONE},
+    {"sensitivity --format csv " MODELS "driven_rod.json", MT_EXIT_DONE},
+    {"info " MODELS "space_stick.json", MT_EXIT_DONE},
+    {"info --format json " MODELS "space_four_bar.json", MT_EXIT_DONE},
+    {"info --format csv " MODELS "four_bar.json", MT_EXIT_DONE},
+    {"sweep --drive pivot=-0.1:0.1:3 --modes " MODELS "driven_rod.json", MT_EXIT_DONE},
+    {"check --format json tests/schema/space.json tests/schema/plane.json", MT_EXIT_DONE},
     {"check tests/io/good/study_full.json problems/aircraft.json studies/engine_orders.json",
-     MT_EXIT_INPUT                                                                                         },
-    {                                                    "check tests/io/wrong/dampers.json", MT_EXIT_INPUT},
-    {                                          "run -o @ --quiet studies/engine_orders.json",  MT_EXIT_DONE},
-    {                                      "run -o @ --quiet studies/inceptor_tuning_2.json",  MT_EXIT_DONE},
-    {                                "compare --format json studies/inceptor_catalogue.json",  MT_EXIT_DONE},
-    {                                                    "check @/engine_orders/result.json",  MT_EXIT_DONE},
-    {    "apply --root / --model problems/engine_accessory.json @/engine_orders/result.json",
-     MT_EXIT_DONE                                                                                          },
+     MT_EXIT_INPUT},
+    {"check tests/io/wrong/dampers.json", MT_EXIT_INPUT},
+    {"run -o @ --quiet studies/engine_orders.json", MT_EXIT_DONE},
+    {"run -o @ --quiet studies/inceptor_tuning_2.json", MT_EXIT_DONE},
+    {"compare --format json studies/inceptor_catalogue.json", MT_EXIT_DONE},
+    {"check @/engine_orders/result.json", MT_EXIT_DONE},
+    {"apply --root / --model problems/engine_accessory.json @/engine_orders/result.json",
+     MT_EXIT_DONE},
 };
 
 /* What the last command printed. */
@@ -123,7 +125,8 @@ static void keep(void)
     n_whole = n_printed;
 }
 
-/* Memory for what this form of output does not show (a table beside JSON) is not missed: the command must print what it prints otherwise, byte by byte. */
+/* Memory for what this form of output does not show (a table beside JSON) is not missed: the
+ * command must print what it prints otherwise, byte by byte. */
 static bool as_ever(int code, int expected)
 {
     return code == expected && n_printed == n_whole && memcmp(printed, whole, n_whole) == 0;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What results say of bands: two unit masses in a row, whose frequencies have a closed form (study_fixture.h). */
+/* What results say of bands: two unit masses in a row, whose frequencies have a closed form
+ * (study_fixture.h). */
 #include <stdlib.h>
 
 #include "study_fixture.h"
@@ -75,7 +76,8 @@ static double best_change(mt_test *t, const char *lower_edge, double *price)
     return change;
 }
 
-/* Mode 2 must come down to the edge: what the sentence says of the edge is the difference between two studies, up to the second order of a 1 % step and three digits. */
+/* Mode 2 must come down to the edge: what the sentence says of the edge is the difference
+ * between two studies, up to the second order of a 1 % step and three digits. */
 static void bands__edge_costs_what_its_price_says(mt_test *t)
 {
     double price = nan("");
@@ -129,7 +131,8 @@ static double middle_score(mt_test *t, const char *upper_edge, double *price)
     return score;
 }
 
-/* The clearance is a ratio, its price is in points of its percentage: the difference between two studies, wherever the optimum lies. */
+/* The clearance is a ratio, its price is in points of its percentage: the difference between
+ * two studies, wherever the optimum lies. */
 static void bands__clearance_costs_what_its_price_says(mt_test *t)
 {
     static const double edges[] = {0.3, 0.35, 0.42, 0.47};

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The published list: each kind of entry, each judgement, at the original and at the recommended design. */
+/* The published list: each kind of entry, each judgement, at the original and at the
+ * recommended design. */
 #include "study_fixture.h"
 
 /* Original (2.5, 1.2), solved (2, 1). */
@@ -62,18 +63,18 @@ static void parameters_and_quantities__are_judged(mt_test *t)
 {
     const double none = nan("");
     const row rows[] = {
-        {                     "'parameter': 'k1', 'value': 2, 'tolerance_percent': 0.01",  2.0,true                                                                                               },
-        {    "'parameter': 'k1', 'value': 2.5, 'tolerance': 1e-15, 'design': 'original'",  2.5,
-         true                                                                                        },
-        {                             "'parameter': 'm', 'value': 1, 'tolerance': 1e-15",  1.0,  true},
-        {                    "'quantity': 'k1/k2', 'value': 2.1, 'tolerance_percent': 1",  2.0, false},
-        {                    "'quantity': 'k1/k2', 'value': 2.1, 'tolerance_percent': 5",  2.0,  true},
-        {                       "'quantity': 'k1 - 2*k2', 'value': 0, 'tolerance': 1e-6", none,  true},
-        {"'quantity': 'k1 + k2', 'value': 3.7, 'tolerance': 1e-12, 'design': 'original'",  3.7,
-         true                                                                                        },
-        {                                                           "'status': 'solved'", none,  true},
-        {                                                       "'status': 'compromise'", none, false},
-        {     "'parameter': 'k1', 'value': 99, 'tolerance': 1, 'role': 'not_comparable'",  2.0,  true},
+        {"'parameter': 'k1', 'value': 2, 'tolerance_percent': 0.01", 2.0, true},
+        {"'parameter': 'k1', 'value': 2.5, 'tolerance': 1e-15, 'design': 'original'", 2.5,
+         true},
+        {"'parameter': 'm', 'value': 1, 'tolerance': 1e-15", 1.0, true},
+        {"'quantity': 'k1/k2', 'value': 2.1, 'tolerance_percent': 1", 2.0, false},
+        {"'quantity': 'k1/k2', 'value': 2.1, 'tolerance_percent': 5", 2.0, true},
+        {"'quantity': 'k1 - 2*k2', 'value': 0, 'tolerance': 1e-6", none, true},
+        {"'quantity': 'k1 + k2', 'value': 3.7, 'tolerance': 1e-12, 'design': 'original'", 3.7,
+         true},
+        {"'status': 'solved'", none, true},
+        {"'status': 'compromise'", none, false},
+        {"'parameter': 'k1', 'value': 99, 'tolerance': 1, 'role': 'not_comparable'", 2.0, true},
     };
     check_rows(t, (int)(sizeof rows / sizeof rows[0]), rows);
 }
@@ -81,23 +82,25 @@ static void parameters_and_quantities__are_judged(mt_test *t)
 static void frequencies_and_macs__are_judged(mt_test *t)
 {
     const row rows[] = {
-        {                          "'frequency': {'mode': 1}, 'value': 0.12, 'tolerance': 0.01",low(2.0, 1.0),  true                                                                                                },
-        {                          "'frequency': {'mode': 1}, 'value': 0.12, 'tolerance': 1e-4",     low(2.0, 1.0), false},
-        {                      "'frequency': {'mode': 'low'}, 'value': 0.12, 'tolerance': 0.01",     low(2.0, 1.0),  true},
+        {"'frequency': {'mode': 1}, 'value': 0.12, 'tolerance': 0.01", low(2.0, 1.0), true},
+        {"'frequency': {'mode': 1}, 'value': 0.12, 'tolerance': 1e-4", low(2.0, 1.0), false},
+        {"'frequency': {'mode': 'low'}, 'value': 0.12, 'tolerance': 0.01", low(2.0, 1.0), true},
         {"'frequency': {'mode': 'low'}, 'value': 0.13, 'tolerance': 0.01, 'design': 'original'",
-         low(2.5, 1.2),  true                                                                                            },
-        {                                          "'frequency': {'mode': 1}, 'at_least': 0.12",     low(2.0, 1.0),  true},
-        {                                         "'frequency': {'mode': 1}, 'at_least': 0.122",     low(2.0, 1.0), false},
-        {                            "'mac': {'mode': 1, 'reference': 'test'}, 'at_least': 0.9", mac_low(2.0, 1.0),  true},
-        {                                                     "'mac': {'mode': 'low', 'reference': 'test', 'reference_mode': 1},"
-                                                     " 'at_least': 0.9999999", mac_low(2.0, 1.0), false         },
-        {      "'mac': {'mode': 1, 'reference': 'test'}, 'at_least': 0.9, 'design': 'original'",
-         mac_low(2.5, 1.2),  true                                                                                        },
+         low(2.5, 1.2), true},
+        {"'frequency': {'mode': 1}, 'at_least': 0.12", low(2.0, 1.0), true},
+        {"'frequency': {'mode': 1}, 'at_least': 0.122", low(2.0, 1.0), false},
+        {"'mac': {'mode': 1, 'reference': 'test'}, 'at_least': 0.9", mac_low(2.0, 1.0), true},
+        {"'mac': {'mode': 'low', 'reference': 'test', 'reference_mode': 1},"
+         " 'at_least': 0.9999999",
+         mac_low(2.0, 1.0), false},
+        {"'mac': {'mode': 1, 'reference': 'test'}, 'at_least': 0.9, 'design': 'original'",
+         mac_low(2.5, 1.2), true},
     };
     check_rows(t, (int)(sizeof rows / sizeof rows[0]), rows);
 }
 
-/* A configuration that falls over has no frequency, and no entry about it holds, whatever its role. */
+/* A configuration that falls over has no frequency, and no entry about it holds, whatever its
+ * role. */
 static void value_that_cannot_be_computed__never_holds(mt_test *t)
 {
     study_case c;

@@ -72,14 +72,14 @@ static void limits__are_at_clear_or_between(mt_test *t)
         const char *goal;
         const char *text;
     } rows[] = {
-        {            "'at_least_hz': '3/(2*pi)'","to 0.477465 Hz, at its lower limit;"                                                 },
-        {           "'at_most_hz': '1.5/(2*pi)'",                      "to 0.238732 Hz, at its upper limit;"},
-        {                   "'at_least_hz': 0.1", "stays at 0.31831 Hz, clear of its lower limit of 0.1 Hz;"},
-        {                    "'at_most_hz': 0.5", "stays at 0.31831 Hz, clear of its upper limit of 0.5 Hz;"},
+        {"'at_least_hz': '3/(2*pi)'", "to 0.477465 Hz, at its lower limit;"},
+        {"'at_most_hz': '1.5/(2*pi)'", "to 0.238732 Hz, at its upper limit;"},
+        {"'at_least_hz': 0.1", "stays at 0.31831 Hz, clear of its lower limit of 0.1 Hz;"},
+        {"'at_most_hz': 0.5", "stays at 0.31831 Hz, clear of its upper limit of 0.5 Hz;"},
         {"'at_least_hz': 0.3, 'at_most_hz': 0.4",
-         "stays at 0.31831 Hz, between its limits of 0.3 and 0.4 Hz;"                                       },
-        {            "'at_least_hz': '5/(2*pi)'",               "20 % below its lower limit of 0.795775 Hz;"},
-        {           "'at_most_hz': '0.5/(2*pi)'",             "100 % above its upper limit of 0.0795775 Hz;"},
+         "stays at 0.31831 Hz, between its limits of 0.3 and 0.4 Hz;"},
+        {"'at_least_hz': '5/(2*pi)'", "20 % below its lower limit of 0.795775 Hz;"},
+        {"'at_most_hz': '0.5/(2*pi)'", "100 % above its upper limit of 0.0795775 Hz;"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         study_case c;
@@ -94,7 +94,8 @@ static void limits__are_at_clear_or_between(mt_test *t)
     }
 }
 
-/* The number before "% below" or "% above" and the one behind "of" of a sentence with `part`; false where there is none. */
+/* The number before "% below" or "% above" and the one behind "of" of a sentence with `part`;
+ * false where there is none. */
 static bool told(const study_case *c, const char *part, double *percent, double *limit_hz)
 {
     const mt_recommendation *const r = &c->result->recommendations[0];
@@ -114,7 +115,8 @@ static bool told(const study_case *c, const char *part, double *percent, double 
     return false;
 }
 
-/* Whatever is asked, however far away: percentages in sentences, of goals and of frequencies are those of the frequency and the limit that stand beside them. */
+/* Whatever is asked, however far away: percentages in sentences, of goals and of frequencies
+ * are those of the frequency and the limit that stand beside them. */
 static void percentages__are_those_of_the_numbers_beside_them(mt_test *t)
 {
     static const char *const kinds[] = {"target_hz", "at_least_hz", "at_most_hz"};

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the tests of expressions share: the parameters x, y, z and k_1, and one expression as a program. */
+/* What the tests of expressions share: the parameters x, y, z and k_1, and one expression as a
+ * program. */
 #ifndef EXPR_FIXTURE_H
 #define EXPR_FIXTURE_H
 

@@ -55,22 +55,10 @@ static void program__constants_are_folded_and_neutral_operations_dropped(mt_test
         const char *text;
         const char *as; /* must be the same node */
     } rows[] = {
-        {   "2*pi*3", "6*pi"},
-        { "sqrt(16)",    "4"},
-        {      "x+0",    "x"},
-        {      "0+x",    "x"},
-        {      "x-0",    "x"},
-        {      "1*x",    "x"},
-        {      "x/1",    "x"},
-        {      "x^1",    "x"},
-        {      "x*0",    "0"},
-        {      "x-x",    "0"},
-        {      "x^0",    "1"},
-        {      "--x",    "x"},
-        {  "x*(2-1)",    "x"},
-        {      "y+x",  "x+y"},
-        {       "+x",    "x"},
-        {"pow(x, y)",  "x^y"},
+        {"2*pi*3", "6*pi"}, {"sqrt(16)", "4"}, {"x+0", "x"}, {"0+x", "x"},
+        {"x-0", "x"},       {"1*x", "x"},      {"x/1", "x"}, {"x^1", "x"},
+        {"x*0", "0"},       {"x-x", "0"},      {"x^0", "1"}, {"--x", "x"},
+        {"x*(2-1)", "x"},   {"y+x", "x+y"},    {"+x", "x"},  {"pow(x, y)", "x^y"},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "%s = %s", rows[i].text, rows[i].as);
@@ -94,21 +82,22 @@ static void program__values_that_are_not_finite_are_errors_with_their_address(mt
         const char *text;
         const char *want;
     } rows[] = {
-        {                "1/0",           "1 / 0 has no finite value"},
-        {                "y/x",          "-3 / 0 has no finite value"},
-        {                "0/x",           "0 / 0 has no finite value"},
-        {            "sqrt(y)",        "sqrt(-3) has no finite value"},
-        {              "ln(x)",           "ln(0) has no finite value"},
-        {           "log10(y)",       "log10(-3) has no finite value"},
-        {            "asin(y)",        "asin(-3) has no finite value"},
-        {            "acos(2)",         "acos(2) has no finite value"},
-        {              "y^0.5",        "-3 ^ 0.5 has no finite value"},
-        {               "x^-1",          "0 ^ -1 has no finite value"},
-        {                "z*z", "1e+300 * 1e+300 has no finite value"},
-        {             "exp(z)",     "exp(1e+300) has no finite value"},
-        {        "1 + 0*ln(y)",          "ln(-3) has no finite value"}, /* unused, and still an error */
-        {        "(1/0)^0 * x",           "1 / 0 has no finite value"},
-        {"sqrt(-1) - sqrt(-1)",        "sqrt(-1) has no finite value"},
+        {"1/0", "1 / 0 has no finite value"},
+        {"y/x", "-3 / 0 has no finite value"},
+        {"0/x", "0 / 0 has no finite value"},
+        {"sqrt(y)", "sqrt(-3) has no finite value"},
+        {"ln(x)", "ln(0) has no finite value"},
+        {"log10(y)", "log10(-3) has no finite value"},
+        {"asin(y)", "asin(-3) has no finite value"},
+        {"acos(2)", "acos(2) has no finite value"},
+        {"y^0.5", "-3 ^ 0.5 has no finite value"},
+        {"x^-1", "0 ^ -1 has no finite value"},
+        {"z*z", "1e+300 * 1e+300 has no finite value"},
+        {"exp(z)", "exp(1e+300) has no finite value"},
+        /* unused, and still an error */
+        {"1 + 0*ln(y)", "ln(-3) has no finite value"},
+        {"(1/0)^0 * x", "1 / 0 has no finite value"},
+        {"sqrt(-1) - sqrt(-1)", "sqrt(-1) has no finite value"},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "%s", rows[i].text);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Any bytes as a catalogue of aircraft, read by itself and by a study whose rotor is to be found in it. */
+/* Any bytes as a catalogue of aircraft, read by itself and by a study whose rotor is to be
+ * found in it. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Any bytes as an expression of four parameters: it is refused with a message, or parsed, built and
- * evaluated, and then its value lies in its enclosure over a box around the point.
+ * Any bytes as an expression of four parameters: it is refused with a message, or parsed, built
+ * and evaluated, and then its value lies in its enclosure over a box around the point.
  */
 #include <math.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Any bytes as a model file: they are refused with messages that have a place, or become a model. Whatever happens, the messages are
- * lines of visible text.
+ * Any bytes as a model file: they are refused with messages that have a place, or become a
+ * model. Whatever happens, the messages are lines of visible text.
  */
 #include "common/fuzz.h"
 #include "io/io.h"

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Any bytes as a model, the whole way: file, positions, modes, slopes, damped modes, doubts, a sweep. Whatever happens is a status with a text; numbers that come out are finite, ordered and
- * accounted for.
+ * Any bytes as a model, the whole way: file, positions, modes, slopes, damped modes, doubts, a
+ * sweep. Whatever happens is a status with a text; numbers that come out are finite, ordered
+ * and accounted for.
  */
 #include <math.h>
 
@@ -15,7 +16,8 @@
 #include "mechanics/sweep.h"
 #include "model/values.h"
 
-/* Stiffness over mass [rad^2/s^2] beyond which slopes, products of two such numbers, may be no doubles. */
+/* Stiffness over mass [rad^2/s^2] beyond which slopes, products of two such numbers, may be no
+ * doubles. */
 static const double SLOPED_SCALE = 1e150;
 
 /* Small enough for hundreds of models in a second. */

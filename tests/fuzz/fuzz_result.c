@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Any bytes as a result: what is read of it is written, shown and applied to the model that it names. */
+/* Any bytes as a result: what is read of it is written, shown and applied to the model that it
+ * names. */
 #include <math.h>
 #include <string.h>
 

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Any bytes as a study, the whole way: file, one evaluation with gradient, a search on a tiny budget, the result as JSON, tables, text and page, and the JSON read back. Behind a NUL may
- * stand the study's own model, which it calls "model.json"; the shipped models are where the shipped studies look for them.
+ * Any bytes as a study, the whole way: file, one evaluation with gradient, a search on a tiny
+ * budget, the result as JSON, tables, text and page, and the JSON read back. Behind a NUL may
+ * stand the study's own model, which it calls "model.json"; the shipped models are where the
+ * shipped studies look for them.
  */
 #include <math.h>
 #include <signal.h>

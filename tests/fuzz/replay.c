@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Runs a fuzz target where libFuzzer is not linked: every file of the corpus folder, every seed of a list, the empty input, and then mutants of all of them:
+ * Runs a fuzz target where libFuzzer is not linked: every file of the corpus folder, every seed
+ * of a list, the empty input, and then mutants of all of them:
  *     fuzz_model CORPUS [SEEDS [RUNS [SEED]]]
- * SEEDS: a file with names between commas. No file is an error, not a pass. What a mutant breaks is left in the file TARGET.broken in the current folder (the target's input as it is).
+ * SEEDS: a file with names between commas. No file is an error, not a pass. What a mutant
+ * breaks is left in the file TARGET.broken in the current folder (the target's input as it is).
  */
 #include <dirent.h>
 #include <fcntl.h>
@@ -36,7 +38,8 @@ typedef struct input {
 static input inputs[MAX_INPUTS];
 static int n_inputs;
 
-/* The whole file in memory of its exact size, so that a read past the end is seen; NULL on error. */
+/* The whole file in memory of its exact size, so that a read past the end is seen; NULL on
+ * error. */
 static uint8_t *read_all(const char *path, size_t *size)
 {
     struct stat info;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * A stranger's program: includes what is installed, links it, and sees one version. consumer MODEL STUDY prints the version, the frequency of the model's first configuration, and what
+ * A stranger's program: includes what is installed, links it, and sees one version. consumer
+ * MODEL STUDY prints the version, the frequency of the model's first configuration, and what
  * the study says: outcome and value of its variable L.
  */
 #include <modetune/model.h>

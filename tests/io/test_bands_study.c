@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A study with bands, rotors, catalogues by rule and a trade section: every member arrives, aircraft are looked up, bands are made. */
+/* A study with bands, rotors, catalogues by rule and a trade section: every member arrives,
+ * aircraft are looked up, bands are made. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +26,8 @@ static mt_study *load_full(mt_test *t, mt_text *messages)
     return s;
 }
 
-/* A study of the model with one variable and one goal of type "avoid" with these members, in a file of its own. */
+/* A study of the model with one variable and one goal of type "avoid" with these members, in a
+ * file of its own. */
 static mt_study *load_goal(mt_test *t, const char *members, const char *goal)
 {
     char folder[] = "/tmp/mt_bands_XXXXXX";
@@ -124,7 +126,8 @@ static void check_rotors(mt_test *t, const mt_study *s)
     }
 }
 
-/* An engine of 10 to 11 turns per second with two gears, 10 %; and one without a name, 2 % of the list. */
+/* An engine of 10 to 11 turns per second with two gears, 10 %; and one without a name, 2 % of
+ * the list. */
 static void check_machines(mt_test *t, const mt_study *s)
 {
     static const struct {
@@ -133,13 +136,13 @@ static void check_machines(mt_test *t, const mt_study *s)
         double margin; /* of 1 */
         const char *label;
     } rows[] = {
-        {   5.0,    5.5,  0.1,                       "0.5E of engine"},
-        {  22.5,   27.5,  0.1, "0.125G-1 of pinion + 2.50E of engine"},
-        {  37.5,  41.25,  0.1,                     "0.125G of pinion"},
-        {  52.5,  57.75,  0.1,                   "0.125G+1 of pinion"},
-        { 285.0,  346.5,  0.1,           "1G-1 + 1G + 1G+1 of pinion"},
-        {1010.0, 1111.0,  0.1,                         "1G of engine"},
-        {2000.0, 2000.0, 0.02,                      "1E of machine 2"},
+        {5.0, 5.5, 0.1, "0.5E of engine"},
+        {22.5, 27.5, 0.1, "0.125G-1 of pinion + 2.50E of engine"},
+        {37.5, 41.25, 0.1, "0.125G of pinion"},
+        {52.5, 57.75, 0.1, "0.125G+1 of pinion"},
+        {285.0, 346.5, 0.1, "1G-1 + 1G + 1G+1 of pinion"},
+        {1010.0, 1111.0, 0.1, "1G of engine"},
+        {2000.0, 2000.0, 0.02, "1E of machine 2"},
     };
     const mt_avoid *const avoid = s->goals[2].avoid;
     const mt_avoid *const other = s->goals[3].avoid;
@@ -272,9 +275,9 @@ static void bands_study__confirmed_values_need_no_warning(mt_test *t)
         int warnings;
     } rows[] = {
         {"AH-64", "[\"1P\", \"nP\", \"1T\"]", 0},
-        {"CH-47",                 "[\"nP\"]", 0},
-        {"UH-60",         "[\"1P\", \"nP\"]", 1}, /* its speed */
-        {"UH-60",         "[\"1P\", \"nT\"]", 3}, /* and both numbers of the tail rotor */
+        {"CH-47", "[\"nP\"]", 0},
+        {"UH-60", "[\"1P\", \"nP\"]", 1}, /* its speed */
+        {"UH-60", "[\"1P\", \"nT\"]", 3}, /* and both numbers of the tail rotor */
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         char goal[128];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Doubts are found under the same promise as everything else: no leak, no crash, whichever allocation fails. What they say is tested by tests/cli/test_doubts.py. */
+/* Doubts are found under the same promise as everything else: no leak, no crash, whichever
+ * allocation fails. What they say is tested by tests/cli/test_doubts.py. */
 #include <unistd.h>
 
 #include "answer/doubts.h"
@@ -30,8 +31,7 @@ static void doubts__every_failing_allocation_is_survived(mt_test *t)
         const char *name;
         int found;
     } rows[] = {
-        {"six_masses_bands.json", 0},
-        {  "inceptor_stick.json", 1}  /* it floats */
+        {"six_masses_bands.json", 0}, {"inceptor_stick.json", 1} /* it floats */
     };
     REQUIRE(t, chdir(MT_TEST_SOURCE_DIR "/studies") == 0);
     for (int i = 0; i < MT_COUNT(rows); i++) {

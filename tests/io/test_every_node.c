@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Every value of every shipped and every good file is replaced by every wrong thing, one at a time: the file is read, or refused with places. Under sanitizers that is the test of every
- * reader of a list, an object, a number or a name with empty, wrong-typed, doubled, nested and oversized input.
- * MT_NODES: how many of the cases to take of each kind of file, evenly; 0: all (a million, some minutes).
+ * Every value of every shipped and every good file is replaced by every wrong thing, one at a
+ * time: the file is read, or refused with places. Under sanitizers that is the test of every
+ * reader of a list, an object, a number or a name with empty, wrong-typed, doubled, nested and
+ * oversized input. MT_NODES: how many of the cases to take of each kind of file, evenly; 0: all
+ * (a million, some minutes).
  */
 #define _XOPEN_SOURCE 700 /* NOLINT(cert-dcl37-c,cert-dcl51-cpp): mkdtemp */
 
@@ -34,51 +36,51 @@ static const struct wrong {
     const char *text;
     bool refused;
 } WRONGS[] = {
-    {                        "{}", false},
-    {                        "[]", false},
-    {                      "null", false},
-    {                      "true", false},
-    {                     "false", false},
-    {                      "\"\"", false},
-    {                     "\"x\"", false},
-    {                 "\"0 * 1\"", false},
-    {                         "0", false},
-    {                        "-0", false},
-    {                         "1", false},
-    {                        "-1", false},
-    {                       "2.5", false},
-    {                     "1e308", false},
-    {                    "-1e308", false},
-    {                    "1e-320", false},
-    {                    "1e-400", false},
-    {                "2147483648", false},
-    {               "-2147483649", false},
-    {      "18446744073709551616", false},
-    {                     "1e999",  true},
-    {                    "-1e999",  true},
-    {                       "[0]", false},
-    {                      "[[]]", false},
-    {                      "[{}]", false},
-    {                     "[[0]]", false},
-    {                    "[null]", false},
-    {                    "[0, 0]", false},
-    {                 "[0, 0, 0]", false},
-    {            "[\"a\", \"a\"]", false},
-    {           "[[0, 0], \"a\"]", false},
-    {  "[[0, 0], [1, 0], [2, 0]]", false},
-    {                "{\"\": {}}", false},
-    {               "{\"a\": {}}", false},
-    {               "{\"a\": []}", false},
-    {    "{\"a\": {}, \"a\": {}}",  true},
-    {"{\"a\": 1, \"\\u0061\": 1}",  true},
-    {"{\"name\": 0, \"name\": 0}",  true},
-    {               "\"\\u0000\"",  true},
-    { "\"\\u0000\\u0000\\u0000\"",  true},
-    {               "\"\\ud800\"",  true},
-    {  "\"\\u001b[2J\\u0007\\r\"", false},
-    { "\"\\u202e\\ud83d\\ude00\"", false},
-    {                     "[0, ]",  true},
-    {                       "NaN",  true},
+    {"{}", false},
+    {"[]", false},
+    {"null", false},
+    {"true", false},
+    {"false", false},
+    {"\"\"", false},
+    {"\"x\"", false},
+    {"\"0 * 1\"", false},
+    {"0", false},
+    {"-0", false},
+    {"1", false},
+    {"-1", false},
+    {"2.5", false},
+    {"1e308", false},
+    {"-1e308", false},
+    {"1e-320", false},
+    {"1e-400", false},
+    {"2147483648", false},
+    {"-2147483649", false},
+    {"18446744073709551616", false},
+    {"1e999", true},
+    {"-1e999", true},
+    {"[0]", false},
+    {"[[]]", false},
+    {"[{}]", false},
+    {"[[0]]", false},
+    {"[null]", false},
+    {"[0, 0]", false},
+    {"[0, 0, 0]", false},
+    {"[\"a\", \"a\"]", false},
+    {"[[0, 0], \"a\"]", false},
+    {"[[0, 0], [1, 0], [2, 0]]", false},
+    {"{\"\": {}}", false},
+    {"{\"a\": {}}", false},
+    {"{\"a\": []}", false},
+    {"{\"a\": {}, \"a\": {}}", true},
+    {"{\"a\": 1, \"\\u0061\": 1}", true},
+    {"{\"name\": 0, \"name\": 0}", true},
+    {"\"\\u0000\"", true},
+    {"\"\\u0000\\u0000\\u0000\"", true},
+    {"\"\\ud800\"", true},
+    {"\"\\u001b[2J\\u0007\\r\"", false},
+    {"\"\\u202e\\ud83d\\ude00\"", false},
+    {"[0, ]", true},
+    {"NaN", true},
 };
 
 typedef enum large {
@@ -124,7 +126,8 @@ static void add_large(large which, mt_text *out)
     }
 }
 
-/* What is done at a node: replaced by a wrong thing, and what only members or items can suffer. */
+/* What is done at a node: replaced by a wrong thing, and what only members or items can
+ * suffer. */
 enum {
     AT_DOUBLE = MT_COUNT(WRONGS),
     AT_DROP,
@@ -244,7 +247,8 @@ static bool write_text(const char *path, const mt_text *text)
     return f != NULL && fwrite(text->s, 1, text->length, f) == text->length && fclose(f) == 0;
 }
 
-/* Later versions may add members to results: nothing is said of those that are not known, nor of what is behind them. */
+/* Later versions may add members to results: nothing is said of those that are not known, nor
+ * of what is behind them. */
 static void check_change(mt_test *t, kind k, const change *c, const char *path, counts *n)
 {
     mt_text text = {0};
@@ -383,7 +387,8 @@ static void check_sources(mt_test *t, kind k, const sources *s, const char *path
            taken, all, n.accepted, n.refused);
 }
 
-/* A folder of our own: in memory where the system has such a place, for thousands of files are written. */
+/* A folder of our own: in memory where the system has such a place, for thousands of files are
+ * written. */
 static bool make_folder(char *folder, size_t size)
 {
     (void)snprintf(folder, size, "%s/mt_nodes_XXXXXX",

@@ -11,19 +11,21 @@
 
 enum { LIMIT = 1000 };
 
-/* FIPS 180-4's examples ("abc", 448 bits, 896 bits), the empty text, and lengths around the padding's edges against sha256sum. */
+/* FIPS 180-4's examples ("abc", 448 bits, 896 bits), the empty text, and lengths around the
+ * padding's edges against sha256sum. */
 static void file__sha256_matches_the_standard(mt_test *t)
 {
     static const struct {
         const char *text;
         const char *hash;
     } rows[] = {
-        {                                                        "","e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"                                                                    },
-        {                                                     "abc", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"},
+        {"", "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"},
+        {"abc", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"},
         {"abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq",
-         "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1"                                                            },
-        {                    "abcdefghbcdefghicdefghijdefghijkefghijklfghijklmghijklmnhijklmnoijklmnopjklmnopqklmno"
-                    "pqrlmnopqrsmnopqrstnopqrstu", "cf5b16a778af8380036ce59e7b0492370b249b11e8f07a51afac45037afee9d1"         },
+         "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1"},
+        {"abcdefghbcdefghicdefghijdefghijkefghijklfghijklmghijklmnhijklmnoijklmnopjklmnopqklmno"
+         "pqrlmnopqrsmnopqrstnopqrstu",
+         "cf5b16a778af8380036ce59e7b0492370b249b11e8f07a51afac45037afee9d1"},
     };
     char hash[MT_SHA256_TEXT];
     for (int i = 0; i < MT_COUNT(rows); i++) {
@@ -31,7 +33,8 @@ static void file__sha256_matches_the_standard(mt_test *t)
         mt_sha256(rows[i].text, strlen(rows[i].text), hash);
         CHECK_STR(t, hash, rows[i].hash);
     }
-    /* lengths 0 .. 199: the hashes of all of them, hashed (the chain 0 .. 199 of "a" was made by sha256sum) */
+    /* lengths 0 .. 199: the hashes of all of them, hashed (the chain 0 .. 199 of "a" was made
+     * by sha256sum) */
     char chain[200 * 64];
     char letters[200];
     memset(letters, 'a', sizeof letters);
@@ -52,9 +55,9 @@ static void file__paths_are_joined_to_the_naming_file(mt_test *t)
         const char *joined;
     } rows[] = {
         {"studies/a.json", "../problems/b.json", "studies/../problems/b.json"},
-        {        "a.json",             "b.json",                     "b.json"},
-        {     "/x/a.json",             "b.json",                  "/x/b.json"},
-        {     "/x/a.json",          "/y/b.json",                  "/y/b.json"},
+        {"a.json", "b.json", "b.json"},
+        {"/x/a.json", "b.json", "/x/b.json"},
+        {"/x/a.json", "/y/b.json", "/y/b.json"},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         char *const joined = mt_file_join(rows[i].naming, rows[i].name);
@@ -99,17 +102,10 @@ static void file__only_regular_files_beneath_the_root_are_read(mt_test *t)
         const char *path;
         mt_status rc;
     } rows[] = {
-        {        "in/a",       MT_OK},
-        { "in/leads_in",       MT_OK},
-        {"in/leads_out",  MT_E_INPUT},
-        {         "out",  MT_E_INPUT},
-        {   "in/../out",  MT_E_INPUT},
-        {    "inside/c",  MT_E_INPUT},
-        {     "in/pipe",  MT_E_INPUT},
-        {          "in",  MT_E_INPUT},
-        {     "in/none", MT_E_SYSTEM},
-        {     "in/loop", MT_E_SYSTEM},
-        {      "root/a",       MT_OK},
+        {"in/a", MT_OK},          {"in/leads_in", MT_OK},    {"in/leads_out", MT_E_INPUT},
+        {"out", MT_E_INPUT},      {"in/../out", MT_E_INPUT}, {"inside/c", MT_E_INPUT},
+        {"in/pipe", MT_E_INPUT},  {"in", MT_E_INPUT},        {"in/none", MT_E_SYSTEM},
+        {"in/loop", MT_E_SYSTEM}, {"root/a", MT_OK},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "%s", rows[i].path);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files of a folder replaced as one, without faults but those that any user can bring about; tests/io/test_folder_faults.c has the others. */
+/* Files of a folder replaced as one, without faults but those that any user can bring about;
+ * tests/io/test_folder_faults.c has the others. */
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * A result's folder is replaced by a child whose k-th call to the system fails or is its last, for every k. Afterwards the folder is the old result or the new one, whole, or its readers
- * refuse it; what fails leaves the old one and nothing else (unless it is the removal that fails); the next run mends it, also where it comes to nothing itself. Then pairs of faults, and runs at the same time.
- * MT_FAULTS_EVERY=1: every fault at every call, not one of them in turn; MT_FAULTS_PAIRS=N and MT_FAULTS_SEED=S: pairs; MT_FAULTS_ROUNDS=N: rounds of runs at the same time.
+ * A result's folder is replaced by a child whose k-th call to the system fails or is its last,
+ * for every k. Afterwards the folder is the old result or the new one, whole, or its readers
+ * refuse it; what fails leaves the old one and nothing else (unless it is the removal that
+ * fails); the next run mends it, also where it comes to nothing itself. Then pairs of faults,
+ * and runs at the same time. MT_FAULTS_EVERY=1: every fault at every call, not one of them in
+ * turn; MT_FAULTS_PAIRS=N and MT_FAULTS_SEED=S: pairs; MT_FAULTS_ROUNDS=N: rounds of runs at
+ * the same time.
  */
 #include <dirent.h>
 #include <errno.h>
@@ -35,7 +39,8 @@ static long knob(const char *name, long otherwise)
     return text == NULL ? otherwise : strtol(text, NULL, 10);
 }
 
-/* A result that calls itself `version`, and its files; without a trade study its folder has no trade.csv. */
+/* A result that calls itself `version`, and its files; without a trade study its folder has no
+ * trade.csv. */
 typedef struct unit {
     const char *version;
     mt_text texts[MT_RESULT_FILE_COUNT];
@@ -95,7 +100,8 @@ static mt_status save(const unit *u, mt_err *err)
     return mt_folder_replace(folder, files, MT_RESULT_FILE_COUNT, err);
 }
 
-/* A child that saves with this fault; its status as of waitpid: exited with 0 or 1, or killed. */
+/* A child that saves with this fault; its status as of waitpid: exited with 0 or 1, or
+ * killed. */
 static int save_with_fault(const unit *u, long k, mt_fault fault, int error)
 {
     (void)fflush(NULL);
@@ -167,7 +173,8 @@ static void empty_folder(void)
     (void)rmdir(folder);
 }
 
-/* What a reader takes it for: the version, "refused", "nothing", or what else went wrong. The text stays until the next call. */
+/* What a reader takes it for: the version, "refused", "nothing", or what else went wrong. The
+ * text stays until the next call. */
 static const char *reader(void)
 {
     static char version[32];
@@ -192,7 +199,8 @@ static void start_with(mt_test *t, const unit *old)
     }
 }
 
-/* Whatever happened: old, new or refused, and no reader is deceived. Returns whether it is broken. */
+/* Whatever happened: old, new or refused, and no reader is deceived. Returns whether it is
+ * broken. */
 static bool check_state(mt_test *t, const unit *old, const unit *new)
 {
     const char *const said = reader();
@@ -249,7 +257,8 @@ typedef struct variant {
 
 static unit units[4];
 
-/* Is the i-th of n faults tried at call k? Instrumented builds, where a child is dear, try a fifth of the calls. */
+/* Is the i-th of n faults tried at call k? Instrumented builds, where a child is dear, try a
+ * fifth of the calls. */
 static bool is_turn(long k, int i, int n)
 {
     const long stride = getenv("MT_INSTRUMENTED") != NULL ? 5 : 1;
@@ -259,10 +268,10 @@ static bool is_turn(long k, int i, int n)
 static const variant *variants(void)
 {
     static const variant list[] = {
-        {          "a new folder",      NULL, &units[1], &units[0]},
+        {"a new folder", NULL, &units[1], &units[0]},
         {"a trade study is added", &units[0], &units[1], &units[2]},
         {"a trade study has gone", &units[1], &units[2], &units[0]},
-        {      "all are replaced", &units[3], &units[1], &units[2]},
+        {"all are replaced", &units[3], &units[1], &units[2]},
     };
     return list;
 }
@@ -293,7 +302,8 @@ static bool prepare(mt_test *t)
     return ok;
 }
 
-/* One call that fails: what was there stays, or the new files are there (only the last flush tells of it then), and nothing else. */
+/* One call that fails: what was there stays, or the new files are there (only the last flush
+ * tells of it then), and nothing else. */
 static void check_failure(mt_test *t, const variant *v, int status, const char *function)
 {
     const bool removal = strcmp(function, "unlinkat") == 0;
@@ -360,7 +370,8 @@ static void folder_faults__a_killed_run_is_noticed_and_mended(mt_test *t)
     CHECK(t, broken > 3);
 }
 
-/* A disk that goes on failing: even then no reader is deceived, and the next run that can mends it. */
+/* A disk that goes on failing: even then no reader is deceived, and the next run that can mends
+ * it. */
 static void folder_faults__what_fails_for_good_deceives_nobody(mt_test *t)
 {
     REQUIRE(t, prepare(t));
@@ -407,7 +418,8 @@ static void folder_faults__of_pairs_one_result_remains(mt_test *t)
     }
 }
 
-/* Children that save and read at the same time; a reader meets whole results only, since it waits for who writes. */
+/* Children that save and read at the same time; a reader meets whole results only, since it
+ * waits for who writes. */
 static void concurrent_round(mt_test *t, int children, bool same)
 {
     pid_t child[OTHERS];

@@ -9,7 +9,8 @@
 #include "mt_alloc.h"
 #include "mt_test.h"
 
-/* What the parser says about a text: all diagnostics, "" where there are none. Owned by the caller. */
+/* What the parser says about a text: all diagnostics, "" where there are none. Owned by the
+ * caller. */
 static mt_text said_about(const char *text, size_t length, mt_status *rc)
 {
     mt_json *doc = NULL;
@@ -29,144 +30,144 @@ typedef struct syntax_row {
 } syntax_row;
 
 static const syntax_row syntax_rows[] = {
-    {                                                 "","f:1:1: error: the text is empty\n"                                                         },
-    {                                            " \n\t",                                          "f:1:1: error: the text is empty\n"},
-    {                                      "{\"a\": 1,}",    "f:1:8: error: no comma is allowed behind the last member of an object\n"},
-    {                                          "[1, 2,]",         "f:1:6: error: no comma is allowed behind the last item of a list\n"},
-    {                                            "[1 2]",          "f:1:4: error: unexpected \"2\" where \",\" or \"]\" is expected\n"},
-    {                                            "[1, 2",             "f:1:6: error: the text ends where \",\" or \"]\" is expected\n"},
-    {                                              "[1}",          "f:1:3: error: unexpected \"}\" where \",\" or \"]\" is expected\n"},
-    {                                        "{\"a\" 1}",                   "f:1:6: error: unexpected \"1\" where \":\" is expected\n"},
-    {                                           "{a: 1}",                  "f:1:2: error: a member name must stand in double quotes\n"},
-    {                                        "{\"a\": }",                 "f:1:7: error: unexpected \"}\" where a value is expected\n"},
-    {                                              "1 2",     "f:1:3: error: unexpected \"2\" where the end of the text is expected\n"},
-    {                                             "[01]",              "f:1:2: error: malformed number 01: it must not start with 0\n"},
-    {                                             "[.5]",   "f:1:2: error: malformed number .5: digits are missing before the point\n"},
-    {                                             "[5.]",    "f:1:2: error: malformed number 5.: digits are missing after the point\n"},
-    {                                             "[1e]",    "f:1:2: error: malformed number 1e: digits are missing in the exponent\n"},
-    {                                             "[+1]",              "f:1:2: error: malformed number +1: it must not start with +\n"},
-    {                                              "[-]",    "f:1:2: error: malformed number -: digits are missing before the point\n"},
-    {                                           "[0x10]",                                              "f:1:2: error: malformed number 0x10: write an expression as a string in "
-                                              "double quotes\n"              },
-    {                                 "[NaN, -Infinity]",
+    {"", "f:1:1: error: the text is empty\n"},
+    {" \n\t", "f:1:1: error: the text is empty\n"},
+    {"{\"a\": 1,}", "f:1:8: error: no comma is allowed behind the last member of an object\n"},
+    {"[1, 2,]", "f:1:6: error: no comma is allowed behind the last item of a list\n"},
+    {"[1 2]", "f:1:4: error: unexpected \"2\" where \",\" or \"]\" is expected\n"},
+    {"[1, 2", "f:1:6: error: the text ends where \",\" or \"]\" is expected\n"},
+    {"[1}", "f:1:3: error: unexpected \"}\" where \",\" or \"]\" is expected\n"},
+    {"{\"a\" 1}", "f:1:6: error: unexpected \"1\" where \":\" is expected\n"},
+    {"{a: 1}", "f:1:2: error: a member name must stand in double quotes\n"},
+    {"{\"a\": }", "f:1:7: error: unexpected \"}\" where a value is expected\n"},
+    {"1 2", "f:1:3: error: unexpected \"2\" where the end of the text is expected\n"},
+    {"[01]", "f:1:2: error: malformed number 01: it must not start with 0\n"},
+    {"[.5]", "f:1:2: error: malformed number .5: digits are missing before the point\n"},
+    {"[5.]", "f:1:2: error: malformed number 5.: digits are missing after the point\n"},
+    {"[1e]", "f:1:2: error: malformed number 1e: digits are missing in the exponent\n"},
+    {"[+1]", "f:1:2: error: malformed number +1: it must not start with +\n"},
+    {"[-]", "f:1:2: error: malformed number -: digits are missing before the point\n"},
+    {"[0x10]", "f:1:2: error: malformed number 0x10: write an expression as a string in "
+               "double quotes\n"},
+    {"[NaN, -Infinity]",
      "f:1:2: error: NaN is not a number in JSON: numbers must be finite\n"
-     "f:1:7: error: -Infinity is not a number in JSON: numbers must be finite\n"                                                      },
-    {                             "{\"a\": [True, 'x']}",
+     "f:1:7: error: -Infinity is not a number in JSON: numbers must be finite\n"},
+    {"{\"a\": [True, 'x']}",
      "f:1:8: error: /a: unexpected True: strings are written in double quotes\n"
-     "f:1:14: error: /a: strings are written in double quotes\n"                                                                      },
-    {                                       "[\"a\tb\"]",        "f:1:4: error: control character U+0009 in a string: write \\u0009\n"},
-    {                                       "[\"a\nb\"]",
-     "f:1:2: error: the string that begins here has no closing quote on its line\n"                                                   },
-    {                                        "[\"\\x\"]", "f:1:3: error: unknown escape in a string: write \"\\\\\" for a backslash\n"},
-    {                                    "[\"\\u12g4\"]",            "f:1:3: error: \\u must be followed by four hexadecimal digits\n"},
-    {                                    "[\"\\ud800\"]",
-     "f:1:3: error: \\ud800 is half of a surrogate pair without its other half\n"                                                     },
-    {                             "[\"\\udc00\\ud800\"]",
+     "f:1:14: error: /a: strings are written in double quotes\n"},
+    {"[\"a\tb\"]", "f:1:4: error: control character U+0009 in a string: write \\u0009\n"},
+    {"[\"a\nb\"]",
+     "f:1:2: error: the string that begins here has no closing quote on its line\n"},
+    {"[\"\\x\"]", "f:1:3: error: unknown escape in a string: write \"\\\\\" for a backslash\n"},
+    {"[\"\\u12g4\"]", "f:1:3: error: \\u must be followed by four hexadecimal digits\n"},
+    {"[\"\\ud800\"]",
+     "f:1:3: error: \\ud800 is half of a surrogate pair without its other half\n"},
+    {"[\"\\udc00\\ud800\"]",
      "f:1:3: error: \\udc00 is half of a surrogate pair without its other half\n"
-     "f:1:9: error: \\ud800 is half of a surrogate pair without its other half\n"                                                     },
-    {                                    "[\"\\u0000\"]",             "f:1:3: error: the character U+0000 is not allowed in strings\n"},
-    {                                   "[\"\xC0\x80\"]",                            "f:1:3: error: byte 0xC0 is not valid UTF-8\nf:1:4: error: byte "
-                            "0x80 is not valid UTF-8\n"                      },
-    {                               "[\"\xED\xA0\x80\"]",                                                                         NULL},
-    {                           "[\"\xF4\x90\x80\x80\"]",                                                                         NULL},
-    {                                   "[\"\xE2\x82\"]",                                                                         NULL},
-    {                                  "\xEF\xBB\xBF[1]",                                 "f:1:1: error: the text starts with a byte order mark: save it as "
-                                 "UTF-8 without one\n"                       },
-    {                                        "\xFF\xFE[",                       "f:1:1: error: the text is UTF-16: save it as UTF-8\n"},
-    {                                        "// x\n[1]",
-     "f:1:1: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"                                            },
-    {                                   "[1, /* x */ 2]",
-     "f:1:5: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"                                            },
+     "f:1:9: error: \\ud800 is half of a surrogate pair without its other half\n"},
+    {"[\"\\u0000\"]", "f:1:3: error: the character U+0000 is not allowed in strings\n"},
+    {"[\"\xC0\x80\"]", "f:1:3: error: byte 0xC0 is not valid UTF-8\nf:1:4: error: byte "
+                       "0x80 is not valid UTF-8\n"},
+    {"[\"\xED\xA0\x80\"]", NULL},
+    {"[\"\xF4\x90\x80\x80\"]", NULL},
+    {"[\"\xE2\x82\"]", NULL},
+    {"\xEF\xBB\xBF[1]", "f:1:1: error: the text starts with a byte order mark: save it as "
+                        "UTF-8 without one\n"},
+    {"\xFF\xFE[", "f:1:1: error: the text is UTF-16: save it as UTF-8\n"},
+    {"// x\n[1]",
+     "f:1:1: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"},
+    {"[1, /* x */ 2]",
+     "f:1:5: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"},
     {"{\"a\": 1, \"b\": {\"c\": 1, \"c\": 2}, \"a\": 3}",
      "f:1:24: error: /b: member \"c\" is given twice, first in line 1\n"
-     "f:1:33: error: member \"a\" is given twice, first in line 1\n"                                                                  },
-    {                       "{\"a\": 1, \"\\u0061\": 2}",
-     "f:1:10: error: member \"a\" is given twice, first in line 1\n"                                                                  },
-    {                  "{\"a/b\": {\"~c\": [0, 1e999]}}",
-     "f:1:20: error: /a~1b/~0c/1: the number is beyond the range of a double\n"                                                       },
-    {                     "{\"\\u001b[2J\": [0, 1e999]}",
-     "f:1:19: error: /\\u001b[2J/1: the number is beyond the range of a double\n"                                                     },
-    {                         "{\n \"\xC3\xA4\": 1e999}",
-     "f:2:7: error: /\xC3\xA4: the number is beyond the range of a double\n"                                                          },
-    {                                    "[\r\n\r1e999]",             "f:3:1: error: /0: the number is beyond the range of a double\n"},
+     "f:1:33: error: member \"a\" is given twice, first in line 1\n"},
+    {"{\"a\": 1, \"\\u0061\": 2}",
+     "f:1:10: error: member \"a\" is given twice, first in line 1\n"},
+    {"{\"a/b\": {\"~c\": [0, 1e999]}}",
+     "f:1:20: error: /a~1b/~0c/1: the number is beyond the range of a double\n"},
+    {"{\"\\u001b[2J\": [0, 1e999]}",
+     "f:1:19: error: /\\u001b[2J/1: the number is beyond the range of a double\n"},
+    {"{\n \"\xC3\xA4\": 1e999}",
+     "f:2:7: error: /\xC3\xA4: the number is beyond the range of a double\n"},
+    {"[\r\n\r1e999]", "f:3:1: error: /0: the number is beyond the range of a double\n"},
 };
 
 static const syntax_row lost_rows[] = {
-    {                    "[1 \"x\"]","f:1:4: error: unexpected string where \",\" or \"]\" is expected\n"                                     },
-    {                "[1 \"x\", 2,]", "f:1:4: error: unexpected string where \",\" or \"]\" is expected\n"
- "f:1:10: error: no comma is allowed behind the last item of a list\n"                     },
-    {                  "[1 [2], 3,]",   "f:1:4: error: unexpected \"[\" where \",\" or \"]\" is expected\n"
-   "f:1:10: error: no comma is allowed behind the last item of a list\n"                   },
-    {                   "[1 {}, 3,]",     "f:1:4: error: unexpected \"{\" where \",\" or \"]\" is expected\n"
-     "f:1:9: error: no comma is allowed behind the last item of a list\n"                  },
-    {                     "[1 : 3,]",                        "f:1:4: error: unexpected \":\" where \",\" or \"]\" is expected\n"},
-    {             "[1 \xC3\xA4, 3,]",
-     "f:1:4: error: unexpected byte 0xC3 where \",\" or \"]\" is expected\n"                                                    },
-    {                     "[1 \x7F]",                    "f:1:4: error: unexpected byte 0x7F where \",\" or \"]\" is expected\n"},
-    {                      "[1 / 2]",                        "f:1:4: error: unexpected \"/\" where \",\" or \"]\" is expected\n"},
-    {                         "[1 /",                        "f:1:4: error: unexpected \"/\" where \",\" or \"]\" is expected\n"},
-    {                 "{\"a\": 1, }",                  "f:1:8: error: no comma is allowed behind the last member of an object\n"},
-    {              "{\"a\": 1, [2]}",
-     "f:1:10: error: unexpected \"[\" where a member name in double quotes is expected\n"                                       },
-    {                         "{\"a",             "f:1:2: error: the string that begins here has no closing quote on its line\n"},
-    {                   "[\"a\rb\"]",
-     "f:1:2: error: the string that begins here has no closing quote on its line\n"                                             },
-    {                        "[\"\\",  "f:1:2: error: the string that begins here has no closing quote on its line\n"
-  "f:1:3: error: unknown escape in a string: write \"\\\\\" for a backslash\n"             },
-    {                     "[\"\\u12",          "f:1:2: error: the string that begins here has no closing quote on its line\n"
-          "f:1:3: error: \\u must be followed by four hexadecimal digits\n"                },
-    {                "[\"\\u12G4\"]",                          "f:1:3: error: \\u must be followed by four hexadecimal digits\n"},
-    {                "[\"\\u12/4\"]",                          "f:1:3: error: \\u must be followed by four hexadecimal digits\n"},
-    {                "[\"\\u12@4\"]",                          "f:1:3: error: \\u must be followed by four hexadecimal digits\n"},
-    {         "[\"\\ud83d\\u0041\"]",
-     "f:1:3: error: \\ud83d is half of a surrogate pair without its other half\n"                                               },
-    {         "[\"\\ud83d\\ue000\"]",
-     "f:1:3: error: \\ud83d is half of a surrogate pair without its other half\n"                                               },
-    {             "[\"\\ud83d\\n\"]",
-     "f:1:3: error: \\ud83d is half of a surrogate pair without its other half\n"                                               },
-    {                   "[\"\\ud83d",
+    {"[1 \"x\"]", "f:1:4: error: unexpected string where \",\" or \"]\" is expected\n"},
+    {"[1 \"x\", 2,]", "f:1:4: error: unexpected string where \",\" or \"]\" is expected\n"
+                      "f:1:10: error: no comma is allowed behind the last item of a list\n"},
+    {"[1 [2], 3,]", "f:1:4: error: unexpected \"[\" where \",\" or \"]\" is expected\n"
+                    "f:1:10: error: no comma is allowed behind the last item of a list\n"},
+    {"[1 {}, 3,]", "f:1:4: error: unexpected \"{\" where \",\" or \"]\" is expected\n"
+                   "f:1:9: error: no comma is allowed behind the last item of a list\n"},
+    {"[1 : 3,]", "f:1:4: error: unexpected \":\" where \",\" or \"]\" is expected\n"},
+    {"[1 \xC3\xA4, 3,]",
+     "f:1:4: error: unexpected byte 0xC3 where \",\" or \"]\" is expected\n"},
+    {"[1 \x7F]", "f:1:4: error: unexpected byte 0x7F where \",\" or \"]\" is expected\n"},
+    {"[1 / 2]", "f:1:4: error: unexpected \"/\" where \",\" or \"]\" is expected\n"},
+    {"[1 /", "f:1:4: error: unexpected \"/\" where \",\" or \"]\" is expected\n"},
+    {"{\"a\": 1, }", "f:1:8: error: no comma is allowed behind the last member of an object\n"},
+    {"{\"a\": 1, [2]}",
+     "f:1:10: error: unexpected \"[\" where a member name in double quotes is expected\n"},
+    {"{\"a", "f:1:2: error: the string that begins here has no closing quote on its line\n"},
+    {"[\"a\rb\"]",
+     "f:1:2: error: the string that begins here has no closing quote on its line\n"},
+    {"[\"\\", "f:1:2: error: the string that begins here has no closing quote on its line\n"
+              "f:1:3: error: unknown escape in a string: write \"\\\\\" for a backslash\n"},
+    {"[\"\\u12", "f:1:2: error: the string that begins here has no closing quote on its line\n"
+                 "f:1:3: error: \\u must be followed by four hexadecimal digits\n"},
+    {"[\"\\u12G4\"]", "f:1:3: error: \\u must be followed by four hexadecimal digits\n"},
+    {"[\"\\u12/4\"]", "f:1:3: error: \\u must be followed by four hexadecimal digits\n"},
+    {"[\"\\u12@4\"]", "f:1:3: error: \\u must be followed by four hexadecimal digits\n"},
+    {"[\"\\ud83d\\u0041\"]",
+     "f:1:3: error: \\ud83d is half of a surrogate pair without its other half\n"},
+    {"[\"\\ud83d\\ue000\"]",
+     "f:1:3: error: \\ud83d is half of a surrogate pair without its other half\n"},
+    {"[\"\\ud83d\\n\"]",
+     "f:1:3: error: \\ud83d is half of a surrogate pair without its other half\n"},
+    {"[\"\\ud83d",
      "f:1:2: error: the string that begins here has no closing quote on its line\n"
-     "f:1:3: error: \\ud83d is half of a surrogate pair without its other half\n"                                               },
-    {           "[\"\xE0\x9F\xBF\"]",                                      "f:1:3: error: byte 0xE0 is not valid UTF-8\n"
-                                      "f:1:4: error: byte 0x9F is not valid UTF-8\nf:1:4: error: byte "
-                                      "0xBF is not valid UTF-8\n"                          },
-    {       "[\"\xF0\x8F\xBF\xBF\"]",                                                                                       NULL},
-    {       "[\"\xF5\x80\x80\x80\"]",                                                                                       NULL},
-    {                      "[\"\xE2",                              "f:1:2: error: the string that begins here has no closing quote on its line\n"
-                              "f:1:3: error: byte 0xE2 is not valid UTF-8\n"               },
-    {                     "[1] // x",
-     "f:1:5: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"                                      },
-    {                 "[1] /* / * x",
-     "f:1:5: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"                                      },
-    {                   "[1] /* x *",
-     "f:1:5: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"                                      },
-    {               "[/* * / */ 1,]",
+     "f:1:3: error: \\ud83d is half of a surrogate pair without its other half\n"},
+    {"[\"\xE0\x9F\xBF\"]", "f:1:3: error: byte 0xE0 is not valid UTF-8\n"
+                           "f:1:4: error: byte 0x9F is not valid UTF-8\nf:1:4: error: byte "
+                           "0xBF is not valid UTF-8\n"},
+    {"[\"\xF0\x8F\xBF\xBF\"]", NULL},
+    {"[\"\xF5\x80\x80\x80\"]", NULL},
+    {"[\"\xE2", "f:1:2: error: the string that begins here has no closing quote on its line\n"
+                "f:1:3: error: byte 0xE2 is not valid UTF-8\n"},
+    {"[1] // x",
+     "f:1:5: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"},
+    {"[1] /* / * x",
+     "f:1:5: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"},
+    {"[1] /* x *",
+     "f:1:5: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"},
+    {"[/* * / */ 1,]",
      "f:1:2: error: comments are not allowed in JSON; use \"description\" or \"source\"\n"
-     "f:1:13: error: no comma is allowed behind the last item of a list\n"                                                      },
-    {                          "['x",                "f:1:2: error: strings are written in double quotes\n"
-                "f:1:4: error: the text ends where \",\" or \"]\" is expected\n"           },
-    {                   "['x\n, 1,]",     "f:1:2: error: strings are written in double quotes\n"
-     "f:2:4: error: no comma is allowed behind the last item of a list\n"                  },
-    {                   "[Infinity]",                 "f:1:2: error: Infinity is not a number in JSON: numbers must be finite\n"},
-    {            "[Zero, _a, trues]",
+     "f:1:13: error: no comma is allowed behind the last item of a list\n"},
+    {"['x", "f:1:2: error: strings are written in double quotes\n"
+            "f:1:4: error: the text ends where \",\" or \"]\" is expected\n"},
+    {"['x\n, 1,]", "f:1:2: error: strings are written in double quotes\n"
+                   "f:2:4: error: no comma is allowed behind the last item of a list\n"},
+    {"[Infinity]", "f:1:2: error: Infinity is not a number in JSON: numbers must be finite\n"},
+    {"[Zero, _a, trues]",
      "f:1:2: error: unexpected Zero: strings are written in double quotes\n"
      "f:1:8: error: unexpected _a: strings are written in double quotes\n"
-     "f:1:12: error: unexpected trues: strings are written in double quotes\n"                                                  },
-    {           "[2-1, 1e5-, 1.5.2]",                                    "f:1:2: error: malformed number 2-1: write an expression as a "
-                                    "string in double quotes\n"
-                                    "f:1:7: error: malformed number 1e5-: write an expression as a "
-                                    "string in double quotes\n"
-                                    "f:1:13: error: malformed number 1.5.2: write an expression as "
-                                    "a string in double quotes\n"                          },
-    {                    "[1e+, 1e]", "f:1:2: error: malformed number 1e+: digits are missing in the exponent\n"
- "f:1:7: error: malformed number 1e: digits are missing in the exponent\n"                 },
-    {                    "\xFE\xFF[",                                     "f:1:1: error: the text is UTF-16: save it as UTF-8\n"},
-    {                        "\xFE[",                           "f:1:1: error: unexpected byte 0xFE where a value is expected\n"},
-    {                         "\xFE",                           "f:1:1: error: unexpected byte 0xFE where a value is expected\n"},
+     "f:1:12: error: unexpected trues: strings are written in double quotes\n"},
+    {"[2-1, 1e5-, 1.5.2]", "f:1:2: error: malformed number 2-1: write an expression as a "
+                           "string in double quotes\n"
+                           "f:1:7: error: malformed number 1e5-: write an expression as a "
+                           "string in double quotes\n"
+                           "f:1:13: error: malformed number 1.5.2: write an expression as "
+                           "a string in double quotes\n"},
+    {"[1e+, 1e]", "f:1:2: error: malformed number 1e+: digits are missing in the exponent\n"
+                  "f:1:7: error: malformed number 1e: digits are missing in the exponent\n"},
+    {"\xFE\xFF[", "f:1:1: error: the text is UTF-16: save it as UTF-8\n"},
+    {"\xFE[", "f:1:1: error: unexpected byte 0xFE where a value is expected\n"},
+    {"\xFE", "f:1:1: error: unexpected byte 0xFE where a value is expected\n"},
     {"{\"a\": {\"b\\\"c/d~\": [x]}}",
-     "f:1:20: error: /a/b\\\"c~1d~0: unexpected x: strings are written in double quotes\n"                                      },
-    {             "{\"a\": {e/: 1}}",     "f:1:8: error: /a: a member name must stand in double quotes\n"
-     "f:1:9: error: /a: unexpected \"/\" where \":\" is expected\n"                        },
+     "f:1:20: error: /a/b\\\"c~1d~0: unexpected x: strings are written in double quotes\n"},
+    {"{\"a\": {e/: 1}}", "f:1:8: error: /a: a member name must stand in double quotes\n"
+                         "f:1:9: error: /a: unexpected \"/\" where \":\" is expected\n"},
 };
 
 static void check_rows(mt_test *t, int n, const syntax_row *rows)
@@ -254,27 +255,29 @@ static void json__nesting_and_length_are_limited(mt_test *t)
     free(spaces);
 }
 
-/* Decimal texts and the doubles that are nearest to them, in hexadecimal notation: no decimal conversion of the test's own. */
+/* Decimal texts and the doubles that are nearest to them, in hexadecimal notation: no decimal
+ * conversion of the test's own. */
 static void json__numbers_are_the_nearest_doubles(mt_test *t)
 {
     static const struct {
         const char *text;
         double value;
     } rows[] = {
-        {                                                                               "0.1",0x1.999999999999ap-4                                                                                              },
-        {                                                                  "9007199254740993",                  0x1p53},
+        {"0.1", 0x1.999999999999ap-4},
+        {"9007199254740993", 0x1p53},
         {"9007199254740993.00000000000000000000000000000000000000000000000000000000000000001",
-         0x1.0000000000001p53                                                                                         },
-        {                                                                            "17.678",    0x1.1ad916872b021p+4},
-        {                                                            "1.7976931348623157e308",  0x1.fffffffffffffp1023},
-        {                                                           "4.9406564584124654e-324",               0x1p-1074},
-        {                                                                                "-0",                    -0.0},
-        {                                                           "2.2250738585072011e-308", 0x0.fffffffffffffp-1022},
-        {                                                                       "0."
-                                                                       "000000000000000000000000000000000000000000000000000000000000000000000000000000000001e"
-                                                                       "84",                     1.0         },
-        {                           "1.00000000000000011102230246251565404236316680908203125",                     1.0},
-        {                           "1.00000000000000011102230246251565404236316680908203126",     0x1.0000000000001p0},
+         0x1.0000000000001p53},
+        {"17.678", 0x1.1ad916872b021p+4},
+        {"1.7976931348623157e308", 0x1.fffffffffffffp1023},
+        {"4.9406564584124654e-324", 0x1p-1074},
+        {"-0", -0.0},
+        {"2.2250738585072011e-308", 0x0.fffffffffffffp-1022},
+        {"0."
+         "000000000000000000000000000000000000000000000000000000000000000000000000000000000001e"
+         "84",
+         1.0},
+        {"1.00000000000000011102230246251565404236316680908203125", 1.0},
+        {"1.00000000000000011102230246251565404236316680908203126", 0x1.0000000000001p0},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_json *doc = NULL;
@@ -365,7 +368,8 @@ static int count_of(const char *text, const char *what)
     return n;
 }
 
-/* Forty-nine problems, then a text with two more: the first of them is the fiftieth and the last that is told, wherever it stands. */
+/* Forty-nine problems, then a text with two more: the first of them is the fiftieth and the
+ * last that is told, wherever it stands. */
 static void json__the_scan_ends_with_the_fiftieth_problem(mt_test *t)
 {
     enum { MOST = 50 };
@@ -373,28 +377,28 @@ static void json__the_scan_ends_with_the_fiftieth_problem(mt_test *t)
         const char *text;
         const char *last;
     } rows[] = {
-        {             "// x\n[1,]",             "50:1: error: comments"},
-        {           "[/* x */ 1,]",             "50:2: error: comments"},
-        {        "[1 /* x */, 2,]",             "50:4: error: comments"},
-        {        "[1, /* x */ 2,]",             "50:5: error: comments"},
-        {    "{/* x */ \"a\": 1,}",             "50:2: error: comments"},
-        {   "{\"a\" /* x */ : 1,}",             "50:6: error: comments"},
-        {    "{\"a\": /* x */ 1,}",             "50:7: error: comments"},
-        {          "[1] /* x */ 2",             "50:5: error: comments"},
-        {"{\"a\": 1, \"\\x\": 1,}",      "50:11: error: unknown escape"},
-        {                "{a: 1,}",        "50:2: error: a member name"},
-        {          "[\"\\x\", 1,]",       "50:3: error: unknown escape"},
-        {      "[\"\\u12g4\", 1,]",             "50:3: error: \\u must"},
-        {      "[\"\\u0000\", 1,]", "50:3: error: the character U+0000"},
-        {      "[\"\\ud800\", 1,]",              "50:3: error: \\ud800"},
-        {           "[\"\t\", 1,]",    "50:3: error: control character"},
-        {         "[\"\x80\", 1,]",            "50:3: error: byte 0x80"},
-        {          "[1 \"x\", 1,]",    "50:4: error: unexpected string"},
-        {               "[01, 1,]",            "50:2: error: malformed"},
-        {              "[NaN, 1,]",                  "50:2: error: NaN"},
-        {                "[x, 1,]",         "50:2: error: unexpected x"},
-        {              "['x', 1,]",              "50:2: error: strings"},
-        {             "[[1,], 1,]",         "50:4: error: /0: no comma"},
+        {"// x\n[1,]", "50:1: error: comments"},
+        {"[/* x */ 1,]", "50:2: error: comments"},
+        {"[1 /* x */, 2,]", "50:4: error: comments"},
+        {"[1, /* x */ 2,]", "50:5: error: comments"},
+        {"{/* x */ \"a\": 1,}", "50:2: error: comments"},
+        {"{\"a\" /* x */ : 1,}", "50:6: error: comments"},
+        {"{\"a\": /* x */ 1,}", "50:7: error: comments"},
+        {"[1] /* x */ 2", "50:5: error: comments"},
+        {"{\"a\": 1, \"\\x\": 1,}", "50:11: error: unknown escape"},
+        {"{a: 1,}", "50:2: error: a member name"},
+        {"[\"\\x\", 1,]", "50:3: error: unknown escape"},
+        {"[\"\\u12g4\", 1,]", "50:3: error: \\u must"},
+        {"[\"\\u0000\", 1,]", "50:3: error: the character U+0000"},
+        {"[\"\\ud800\", 1,]", "50:3: error: \\ud800"},
+        {"[\"\t\", 1,]", "50:3: error: control character"},
+        {"[\"\x80\", 1,]", "50:3: error: byte 0x80"},
+        {"[1 \"x\", 1,]", "50:4: error: unexpected string"},
+        {"[01, 1,]", "50:2: error: malformed"},
+        {"[NaN, 1,]", "50:2: error: NaN"},
+        {"[x, 1,]", "50:2: error: unexpected x"},
+        {"['x', 1,]", "50:2: error: strings"},
+        {"[[1,], 1,]", "50:4: error: /0: no comma"},
     };
     char text[1024];
     for (int i = 0; i < MT_COUNT(rows); i++) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * JSON class by class (RFC 8259): documents that are valid, invalid, or for the implementation to decide, each with what we do: it is accepted, or refused at a place.
+ * JSON class by class (RFC 8259): documents that are valid, invalid, or for the implementation
+ * to decide, each with what we do: it is accepted, or refused at a place.
  */
 #include "io/json_verdict.h"
 #include "mt_test.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The scanner against a recogniser of the test's own that follows the grammar of RFC 8259 and shares nothing with it: all sequences of a few tokens, all short numbers, all bytes in all
+ * The scanner against a recogniser of the test's own that follows the grammar of RFC 8259 and
+ * shares nothing with it: all sequences of a few tokens, all short numbers, all bytes in all
  * positions, all \u escapes, all short sequences of UTF-8, all cuts of a document.
  * MT_JSON_LENGTH: of the sequences (default 4, 5 for numbers).
  */
@@ -8,8 +9,9 @@
 #include "mt_test.h"
 
 /*
- * The test's own recogniser: the grammar of RFC 8259, and beyond it what io/json.h says (no U+0000, numbers within the range of a double). Names given twice do not
- * occur in what it is asked. Each function takes a position and gives the one behind what it recognised, or FAIL.
+ * The test's own recogniser: the grammar of RFC 8259, and beyond it what io/json.h says (no
+ * U+0000, numbers within the range of a double). Names given twice do not occur in what it is
+ * asked. Each function takes a position and gives the one behind what it recognised, or FAIL.
  */
 static const size_t FAIL = (size_t)-1;
 
@@ -63,7 +65,8 @@ static size_t number(const text *x, size_t i)
     return isfinite(strtod(copy, NULL)) ? i : FAIL;
 }
 
-/* A code point by arithmetic: its bits are put together and it must need as many bytes as it has. */
+/* A code point by arithmetic: its bits are put together and it must need as many bytes as it
+ * has. */
 static size_t code_point(const text *x, size_t i)
 {
     static const long least[] = {0, 0, 0x80, 0x800, 0x10000};
@@ -275,27 +278,27 @@ static void grammar__all_short_numbers(mt_test *t)
 static void grammar__every_byte_in_every_position(mt_test *t)
 {
     static const char *const frames[][2] = {
-        {         "",          ""},
-        {        " ",         " "},
-        {        "[",         "]"},
-        {       "[1",         "]"},
-        {      "[1,",        "2]"},
-        {       "[0",        "0]"},
-        {      "[-1",        "5]"},
-        {     "[tru",         "]"},
-        {        "{",  "\"a\":1}"},
-        {   "{\"a\"",       ":1}"},
-        {  "{\"a\":",        "1}"},
-        { "{\"a\":1",         "}"},
-        {       "\"",        "\""},
-        {      "\"a",       "b\""},
-        {     "\"\\",        "\""},
-        {   "\"\\u0",      "11\""},
+        {"", ""},
+        {" ", " "},
+        {"[", "]"},
+        {"[1", "]"},
+        {"[1,", "2]"},
+        {"[0", "0]"},
+        {"[-1", "5]"},
+        {"[tru", "]"},
+        {"{", "\"a\":1}"},
+        {"{\"a\"", ":1}"},
+        {"{\"a\":", "1}"},
+        {"{\"a\":1", "}"},
+        {"\"", "\""},
+        {"\"a", "b\""},
+        {"\"\\", "\""},
+        {"\"\\u0", "11\""},
         {"\"\\ud800", "\\udc00\""},
-        {       "[]",          ""},
-        {     "[]\n",          ""},
-        {   "\"\xC3",        "\""},
-        {   "\"\xE2",    "\xAC\""},
+        {"[]", ""},
+        {"[]\n", ""},
+        {"\"\xC3", "\""},
+        {"\"\xE2", "\xAC\""},
     };
     tally y = {.t = t};
     for (int i = 0; i < MT_COUNT(frames); i++) {
@@ -359,7 +362,8 @@ static void grammar__all_short_sequences_of_utf8(mt_test *t)
     conclude(&y);
 }
 
-/* A document with everything in it: cut after every byte, without every byte, with every byte doubled. */
+/* A document with everything in it: cut after every byte, without every byte, with every byte
+ * doubled. */
 static void grammar__every_cut_of_a_document(mt_test *t)
 {
     static const char whole[] =

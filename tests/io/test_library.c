@@ -15,7 +15,8 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* Uniform bar of length l and square section w on a pivot at its end: omega^2 = (g l/2)/(l^2/3 + w^2/12). */
+/* Uniform bar of length l and square section w on a pivot at its end: omega^2 = (g l/2)/(l^2/3
+ * + w^2/12). */
 static double pendulum_hz(double l)
 {
     const double w = 0.05;
@@ -32,10 +33,7 @@ static mt_model *read_model(mt_test *t, const char *path)
 static void frequencies__follow_settings_and_configurations(mt_test *t)
 {
     mt_model *const model = read_model(t, MODELS "pendulum.json");
-    const mt_setting settings[] = {
-        {"L", 0.5},
-        {"m", 7.0}
-    };
+    const mt_setting settings[] = {{"L", 0.5}, {"m", 7.0}};
     mt_mode_count count;
     double hz[3] = {-1.0, -1.0, -1.0};
     REQUIRE(t, model != NULL);
@@ -74,10 +72,7 @@ static void wrong_arguments__are_refused_by_name(mt_test *t)
 {
     mt_model *const model = read_model(t, MODELS "pendulum.json");
     const mt_setting unknown = {"l", 0.5};
-    const mt_setting twice[] = {
-        {"L", 0.5},
-        {"L", 0.6}
-    };
+    const mt_setting twice[] = {{"L", 0.5}, {"L", 0.6}};
     mt_mode_count count;
     mt_err err = {MT_OK, ""};
     REQUIRE(t, model != NULL);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Every function of include/, with NULL for each of its pointers in turn: what the convention in modetune/status.h says is what happens. The headers are read, so that a function, or an
+ * Every function of include/, with NULL for each of its pointers in turn: what the convention
+ * in modetune/status.h says is what happens. The headers are read, so that a function, or an
  * argument, that is not in the table here is found.
  */
 #include "modetune/dynamics.h"
@@ -33,7 +34,8 @@ static mt_err said;
 #define ARG(k, pointer) (null == (k) ? NULL : (pointer))
 /* An answer, or nothing, as a status: what is not there is MT_E_USAGE. */
 #define ANSWER(is) ((is) ? MT_OK : MT_E_USAGE)
-/* The functions that take a format, as if they took any text: the compiler refuses NULL there. */
+/* The functions that take a format, as if they took any text: the compiler refuses NULL
+ * there. */
 static mt_status (*volatile any_fail)(mt_err *err, mt_status code, const char *fmt,
                                       ...) = mt_fail;
 static mt_status (*volatile any_err_in)(mt_err *err, mt_status rc, const char *fmt,
@@ -252,7 +254,8 @@ static mt_status call_udwadia_phohomsiri(int null)
                                  ARG(4, xdd), ARG(5, &said));
 }
 
-/* One letter for each pointer among the arguments: r refused, a allowed, n answered with nothing. */
+/* One letter for each pointer among the arguments: r refused, a allowed, n answered with
+ * nothing. */
 #define ROW(name, nulls)                \
     {                                   \
         "mt_" #name, nulls, call_##name \
@@ -393,10 +396,7 @@ static void public__wrong_numbers_are_refused(mt_test *t)
     mt_result *r = NULL;
     mt_mode_count count;
     double hz[1];
-    const mt_setting unnamed[2] = {
-        { "L", 1.0},
-        {NULL, 1.0}
-    };
+    const mt_setting unnamed[2] = {{"L", 1.0}, {NULL, 1.0}};
     const mt_setting not_finite = {"L", nan("")};
     const double hint[1] = {HUGE_VAL};
     REQUIRE(t, mt_model_read(MODEL, &m, NULL) == MT_OK);

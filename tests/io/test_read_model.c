@@ -155,7 +155,8 @@ static void model__errors_name_the_first_problem_and_count_the_others(mt_test *t
     CHECK_STR(t, err.text, "/nowhere/x.json: No such file or directory");
 }
 
-/* A chain of parameters as long as a file allows neither overflows a stack nor takes quadratic time. */
+/* A chain of parameters as long as a file allows neither overflows a stack nor takes quadratic
+ * time. */
 static void model__a_long_chain_of_parameters_is_no_problem(mt_test *t)
 {
     enum { LENGTH = 50000 };

@@ -13,23 +13,21 @@
 #include "mt_test.h"
 
 static mt_result_parameter PARAMETERS[] = {
-    { .name = "K_T1",
+    {.name = "K_T1",
      .unit = "N m/rad",
      .original = 1e4,
      .recommended = 10147.0 + 1.0 / 3.0,
      .change_percent = 1.4733333333333334,
      .at_bound = NULL},
-    {.name = "M_SAU", .unit = NULL, .original = 0.0, .recommended = 0.2, .at_bound = "lower" },
+    {.name = "M_SAU", .unit = NULL, .original = 0.0, .recommended = 0.2, .at_bound = "lower"},
 };
 static double SENSITIVITY[] = {1.25e-3, -2.0};
-static mt_result_goal GOALS[] = {
-    {.text = "installed mode 1 at 18 Hz",
-     .pointer = "/goals/0",
-     .value = 18.0,
-     .demand = 18.0,
-     .met = true,
-     .worst = 17.5}
-};
+static mt_result_goal GOALS[] = {{.text = "installed mode 1 at 18 Hz",
+                                  .pointer = "/goals/0",
+                                  .value = 18.0,
+                                  .demand = 18.0,
+                                  .met = true,
+                                  .worst = 17.5}};
 static const char *REASONS[] = {"K_T1 rises by 1.5 %."};
 static const char *VARIABLES[] = {"K_T1", "M_SAU"};
 static double DIRECTION[] = {0.0, 1.0};
@@ -106,13 +104,13 @@ static mt_result_motion MOTIONS[] = {
      .text = "mode 1 comes nearest"},
 };
 static mt_result_tolerance TOLERANCES[] = {
-    { "K_T1",      4.5, "mode 1 at 4P of UH-60"},
-    {"M_SAU", HUGE_VAL,                    NULL},
+    {"K_T1", 4.5, "mode 1 at 4P of UH-60"},
+    {"M_SAU", HUGE_VAL, NULL},
 };
 static double TRADE_VALUES[] = {10.0, 0.25};
 static mt_trade_vary VARY[] = {
     {"upper bound of M_SAU", "/trade/vary/0", "kg"},
-    {      "margin_percent", "/trade/vary/1", NULL},
+    {"margin_percent", "/trade/vary/1", NULL},
 };
 static const char *FRONT[] = {"change", "clearance"};
 
@@ -391,17 +389,17 @@ static void result_file__a_damaged_one_is_refused(mt_test *t)
         const char *at;   /* what the message points at the line of */
         const char *want; /* the message behind path and line */
     } rows[] = {
-        {           "format",                    "modetune-result/1","modetune-result/2",        "modetune-result/2",
+        {"format", "modetune-result/1", "modetune-result/2", "modetune-result/2",
          "13: error: /format: unknown format \"modetune-result/2\"; did you mean "
-         "\"modetune-result/1\"?\n"                                                     },
-        {      "member gone",      "  \"status\": \"compromise\",\n",                  "",                        "{",
-         "1: error: member \"status\" is missing\n"                                     },
-        {             "rank",                          "\"rank\": 1",     "\"rank\": 1.5",            "\"rank\": 1.5",
+         "\"modetune-result/1\"?\n"},
+        {"member gone", "  \"status\": \"compromise\",\n", "", "{",
+         "1: error: member \"status\" is missing\n"},
+        {"rank", "\"rank\": 1", "\"rank\": 1.5", "\"rank\": 1.5",
          "15: error: /recommendations/0/rank: must be a whole number from 0 to 100000\n"},
         {"text for a number", "\"recommended\": 0.20000000000000001",
          "\"recommended\": \"0.2\"", "\"recommended\": \"0.2\"",
          "24: error: /baseline/parameters/1/recommended: must be a number or null, not a "
-         "string\n"                                                                     },
+         "string\n"},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         char path[64];

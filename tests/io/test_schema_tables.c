@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Each reader's table of keys holds the members of the schema's definition of the same name: names, which are required, and types. */
+/* Each reader's table of keys holds the members of the schema's definition of the same name:
+ * names, which are required, and types. */
 #include <string.h>
 
 #include "io/file.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A right study: every member arrives, names are resolved, numbers are evaluated at the original design. */
+/* A right study: every member arrives, names are resolved, numbers are evaluated at the
+ * original design. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,7 +28,8 @@ static mt_study *load(mt_test *t, const char *path)
     return s;
 }
 
-/* A small study with these members, in a file of its own beside the model; the caller deletes it. */
+/* A small study with these members, in a file of its own beside the model; the caller deletes
+ * it. */
 static mt_study *load_text(mt_test *t, const char *members, mt_text *messages)
 {
     char folder[] = "/tmp/mt_study_XXXXXX";
@@ -263,10 +265,10 @@ static void study__models_lie_beneath_the_root(mt_test *t)
         const char *root;
         mt_status want;
     } rows[] = {
-        {"default: the parent of the study's folder",                                 NULL,      MT_OK},
-        {                           "a folder above",                   MT_TEST_SOURCE_DIR,      MT_OK},
-        {       "a folder that holds the model only", MT_TEST_SOURCE_DIR "/tests/io/wrong",      MT_OK},
-        {                   "a folder that does not",  MT_TEST_SOURCE_DIR "/tests/io/good", MT_E_INPUT},
+        {"default: the parent of the study's folder", NULL, MT_OK},
+        {"a folder above", MT_TEST_SOURCE_DIR, MT_OK},
+        {"a folder that holds the model only", MT_TEST_SOURCE_DIR "/tests/io/wrong", MT_OK},
+        {"a folder that does not", MT_TEST_SOURCE_DIR "/tests/io/good", MT_E_INPUT},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_study *s = NULL;

@@ -70,14 +70,10 @@ static void write_json__misuse_is_remembered(mt_test *t)
         const char *name;
         const char *calls; /* { [ open, } close, n value with a name, v without */
     } rows[] = {
-        {       "nothing written",     ""},
-        {             "left open",    "{"},
-        {          "closed twice",  "{}}"},
-        {  "no name in an object",  "{v}"},
-        {      "a name in a list",  "[n]"},
-        {     "a name at the top",    "n"},
-        { "two values at the top",   "vv"},
-        {"two objects at the top", "{}{}"},
+        {"nothing written", ""},         {"left open", "{"},
+        {"closed twice", "{}}"},         {"no name in an object", "{v}"},
+        {"a name in a list", "[n]"},     {"a name at the top", "n"},
+        {"two values at the top", "vv"}, {"two objects at the top", "{}{}"},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "%s", rows[i].name);
@@ -117,19 +113,19 @@ static void write_json__strings_are_escaped(mt_test *t)
         const char *text;
         const char *want;
     } rows[] = {
-        {                    "plain",                             "K_T1 = 3","\"K_T1 = 3\"\n"                                                                             },
-        {      "quote and backslash",                             "\"a\\b\"",                       "\"\\\"a\\\\b\\\"\"\n"},
-        {            "short escapes",                           "\b\f\n\r\t",                      "\"\\b\\f\\n\\r\\t\"\n"},
-        {       "control characters",                         "\x01\x1f\x7f",                "\"\\u0001\\u001f\\u007f\"\n"},
-        {              "slash stays",                                  "a/b",                                  "\"a/b\"\n"},
+        {"plain", "K_T1 = 3", "\"K_T1 = 3\"\n"},
+        {"quote and backslash", "\"a\\b\"", "\"\\\"a\\\\b\\\"\"\n"},
+        {"short escapes", "\b\f\n\r\t", "\"\\b\\f\\n\\r\\t\"\n"},
+        {"control characters", "\x01\x1f\x7f", "\"\\u0001\\u001f\\u007f\"\n"},
+        {"slash stays", "a/b", "\"a/b\"\n"},
         {"two, three and four bytes", "\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80",
-         "\"\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80\"\n"                                                                     },
-        {          "C1, turns, tags", "\xC2\x9B\xE2\x80\xAE\xF3\xA0\x81\x81",
-         "\"\\u009b\\u202e\\udb40\\udc41\"\n"                                                                             },
-        {        "lone continuation",                               "a\x80z",                       "\"a\xEF\xBF\xBDz\"\n"},
-        {                 "overlong",                             "\xC0\xAF",             "\"\xEF\xBF\xBD\xEF\xBF\xBD\"\n"},
-        {                "surrogate",                         "\xED\xA0\x80", "\"\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD\"\n"},
-        {       "cut off at the end",                             "\xE2\x82",             "\"\xEF\xBF\xBD\xEF\xBF\xBD\"\n"},
+         "\"\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80\"\n"},
+        {"C1, turns, tags", "\xC2\x9B\xE2\x80\xAE\xF3\xA0\x81\x81",
+         "\"\\u009b\\u202e\\udb40\\udc41\"\n"},
+        {"lone continuation", "a\x80z", "\"a\xEF\xBF\xBDz\"\n"},
+        {"overlong", "\xC0\xAF", "\"\xEF\xBF\xBD\xEF\xBF\xBD\"\n"},
+        {"surrogate", "\xED\xA0\x80", "\"\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD\"\n"},
+        {"cut off at the end", "\xE2\x82", "\"\xEF\xBF\xBD\xEF\xBF\xBD\"\n"},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "%s", rows[i].name);

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Every tests/io/wrong/NAME.json is wrong, and NAME.expected holds the exact text that says so: all problems, with the file's base
- * name. Files study_* are studies, result_* results, aircraft_* catalogues of aircraft, all others models. The files in wrong/parts are what studies refer to.
- * MT_WRONG_PRINT=1 prints what is said, for whoever writes the expected text of a new file: read it, do not just copy it.
+ * Every tests/io/wrong/NAME.json is wrong, and NAME.expected holds the exact text that says so:
+ * all problems, with the file's base name. Files study_* are studies, result_* results,
+ * aircraft_* catalogues of aircraft, all others models. The files in wrong/parts are what
+ * studies refer to. MT_WRONG_PRINT=1 prints what is said, for whoever writes the expected text
+ * of a new file: read it, do not just copy it.
  */
 #include <dirent.h>
 #include <stdio.h>
@@ -47,7 +49,8 @@ static int list_files(mt_arena *mem, char **names)
     return n;
 }
 
-/* What reading the file says; err where there are no diagnostics (the file itself cannot be read). */
+/* What reading the file says; err where there are no diagnostics (the file itself cannot be
+ * read). */
 static mt_status read_wrong(const char *name, mt_text *said)
 {
     mt_err err = {.text = ""};
@@ -114,7 +117,8 @@ static void wrong_files__say_exactly_what_is_expected(mt_test *t)
     mt_arena_free(&mem);
 }
 
-/* Diagnostics are made under the same promise as everything else: no leak, no crash, whichever allocation fails. */
+/* Diagnostics are made under the same promise as everything else: no leak, no crash, whichever
+ * allocation fails. */
 static void wrong_files__every_failing_allocation_is_survived(mt_test *t)
 {
     static const char *const names[] = {"study_unknown_names.json", "study_model_wrong.json",

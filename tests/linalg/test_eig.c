@@ -109,12 +109,7 @@ static void eig__general_finds_real_and_complex_roots(mt_test *t)
     }
     CHECK_INT(t, mt_eig_general(4, a, wr, wi, vr, &mem, NULL), MT_OK);
     bool seen[4] = {false};
-    const double want[4][2] = {
-        {1.0,  0.0},
-        {2.0,  0.0},
-        {0.0,  1.0},
-        {0.0, -1.0}
-    };
+    const double want[4][2] = {{1.0, 0.0}, {2.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}};
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 4; k++) {
             seen[k] = seen[k] || hypot(wr[i] - want[k][0], wi[i] - want[k][1]) <= 1e-13;

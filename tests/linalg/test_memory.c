@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Every routine that takes scratch, with every one of its allocations failing in turn: it must say
- * so and leave the arena as it was. */
+/* Every routine that takes scratch, with every one of its allocations failing in turn: it must
+ * say so and leave the arena as it was. */
 #include <math.h>
 
 #include "linalg/dense.h"
@@ -110,18 +110,18 @@ static void linalg__failing_allocations_are_reported_and_scratch_is_given_back(m
         const char *name;
         routine *run;
     } rows[] = {
-        {    "eig_sym",     run_eig_sym},
+        {"eig_sym", run_eig_sym},
         {"eig_general", run_eig_general},
-        {    "inertia",     run_inertia},
-        {   "lu_solve",          run_lu},
-        {  "sym_solve",         run_sym},
-        { "svd with u",         run_svd},
-        {"svd with vt",   run_svd_other},
-        { "svd_jacobi",      run_jacobi},
-        {       "pinv",        run_pinv},
-        {     "assign",      run_assign},
-        {  "qr_factor",   run_qr_factor},
-        {   "qr_solve",    run_qr_solve},
+        {"inertia", run_inertia},
+        {"lu_solve", run_lu},
+        {"sym_solve", run_sym},
+        {"svd with u", run_svd},
+        {"svd with vt", run_svd_other},
+        {"svd_jacobi", run_jacobi},
+        {"pinv", run_pinv},
+        {"assign", run_assign},
+        {"qr_factor", run_qr_factor},
+        {"qr_solve", run_qr_solve},
     };
     for (int r = 0; r < MT_COUNT(rows); r++) {
         mt_status rc = MT_E_MEMORY;

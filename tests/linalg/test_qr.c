@@ -68,16 +68,8 @@ static void qr__finds_rank_range_and_complement(mt_test *t)
         int m;
         int n;
         int rank;
-    } rows[] = {
-        { 6,  4, 4},
-        { 6,  4, 2},
-        { 4,  6, 4},
-        { 4,  6, 3},
-        { 5,  5, 5},
-        { 5,  5, 0},
-        { 1,  1, 1},
-        {12, 12, 7}
-    };
+    } rows[] = {{6, 4, 4}, {6, 4, 2}, {4, 6, 4}, {4, 6, 3},
+                {5, 5, 5}, {5, 5, 0}, {1, 1, 1}, {12, 12, 7}};
     mt_random g = mt_random_seed(3);
     for (int k = 0; k < MT_COUNT(rows); k++) {
         const int m = rows[k].m;

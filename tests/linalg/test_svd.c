@@ -16,14 +16,7 @@ static mt_arena mem;
 
 static void svd__thin_factors_reproduce_the_matrix(mt_test *t)
 {
-    static const int sizes[][2] = {
-        {5, 3},
-        {3, 5},
-        {4, 4},
-        {1, 7},
-        {9, 1},
-        {9, 9}
-    };
+    static const int sizes[][2] = {{5, 3}, {3, 5}, {4, 4}, {1, 7}, {9, 1}, {9, 9}};
     mt_random g = mt_random_seed(2);
     for (int k = 0; k < MT_COUNT(sizes); k++) {
         const int m = sizes[k][0];
@@ -150,8 +143,8 @@ static void kernels__norms_see_nan_and_products_have_edges(mt_test *t)
     const double huge[1] = {-HUGE_VAL};
     CHECK(t, !mt_all_finite(1, huge));
     double y[2] = {nan(""), 3.0};
-    mt_gemv(false, 2, 0, 1.0, x, 2, x, 0.0,
-            y); /* an empty sum with beta 0 is 0, whatever y was */
+    /* an empty sum with beta 0 is 0, whatever y was */
+    mt_gemv(false, 2, 0, 1.0, x, 2, x, 0.0, y);
     CHECK_NEAR(t, fabs(y[0]) + fabs(y[1]), 0.0, 0.0);
     double c[4] = {nan(""), nan(""), nan(""), nan("")};
     mt_gemm(false, false, 2, 2, 0, 1.0, x, 2, x, 1, 0.0, c, 2);

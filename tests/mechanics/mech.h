@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Models for tests: read from tests/models, or from a text with numbers filled in; analysed with named parameters as inputs. */
+/* Models for tests: read from tests/models, or from a text with numbers filled in; analysed
+ * with named parameters as inputs. */
 #ifndef TESTS_MECHANICS_MECH_H
 #define TESTS_MECHANICS_MECH_H
 
@@ -61,7 +62,8 @@ static inline void mech_free(mech *s)
     *s = (mech){0};
 }
 
-/* Value of a parameter without inputs: parameters of test models that serve as inputs are plain numbers. */
+/* Value of a parameter without inputs: parameters of test models that serve as inputs are plain
+ * numbers. */
 static inline double mech_value(const mt_model *model, int parameter)
 {
     const mt_expr *const e = &model->nums[model->parameters[parameter].value].expr;

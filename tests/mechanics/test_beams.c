@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Beam links against Euler and Bernoulli: omega = (beta L)^2 sqrt(EI/(rho A))/L^2, where beta L is a root of
- *     free-free cos cosh = 1,   pinned-free tan = tanh,   pinned-pinned sin = 0,   clamped-free cos cosh = -1.
+ * Beam links against Euler and Bernoulli: omega = (beta L)^2 sqrt(EI/(rho A))/L^2, where beta L
+ * is a root of
+ *     free-free cos cosh = 1,   pinned-free tan = tanh,   pinned-pinned sin = 0,
+ *         clamped-free cos cosh = -1.
  * The frequency of a consistent-mass cubic element is too high by a relative C (beta L/n)^4.
  */
 #include "mechanics/mech.h"
@@ -83,12 +85,10 @@ typedef struct support {
     int rigid;
 } support;
 
-static const support SUPPORTS[] = {
-    {    "free-free",               "",     free_free, 4.0, 3},
-    {  "pinned-free",            PIN_A,   pinned_free, 3.2, 1},
-    {"pinned-pinned", PIN_A ", " PIN_B, pinned_pinned, 2.4, 0},
-    { "clamped-free",            CLAMP,  clamped_free, 1.2, 0}
-};
+static const support SUPPORTS[] = {{"free-free", "", free_free, 4.0, 3},
+                                   {"pinned-free", PIN_A, pinned_free, 3.2, 1},
+                                   {"pinned-pinned", PIN_A ", " PIN_B, pinned_pinned, 2.4, 0},
+                                   {"clamped-free", CLAMP, clamped_free, 1.2, 0}};
 
 /* Relative error of the frequency of bending mode k (from 0). */
 static double error_of(mt_test *t, const support *c, int elements, int k)
@@ -114,8 +114,8 @@ static void beams__converge_with_fourth_order(mt_test *t)
     for (int i = 0; i < MT_COUNT(SUPPORTS); i++) {
         for (int k = 0; k < 2; k++) {
             mt_test_row(t, "%s, mode %d", SUPPORTS[i].name, k + 1);
-            const int n =
-                k == 0 ? 4 : 8; /* the second mode needs twice as many to be in its wave */
+            /* the second mode needs twice as many to be in its wave */
+            const int n = k == 0 ? 4 : 8;
             const double coarse = error_of(t, &SUPPORTS[i], n, k);
             const double middle = error_of(t, &SUPPORTS[i], 2 * n, k);
             const double fine = error_of(t, &SUPPORTS[i], 4 * n, k);
@@ -142,7 +142,8 @@ static void beams__axial_mode_of_a_clamped_beam(mt_test *t)
     mech_free(&s);
 }
 
-/* Own weight: tip deflection q L^4/(8 EI) in small displacements, and frequencies that hardly change. A stiff beam under a small load must find its equilibrium. */
+/* Own weight: tip deflection q L^4/(8 EI) in small displacements, and frequencies that hardly
+ * change. A stiff beam under a small load must find its equilibrium. */
 static void beams__hang_under_their_weight(mt_test *t)
 {
     mech s;
@@ -170,7 +171,8 @@ static void beams__hang_under_their_weight(mt_test *t)
     mech_free(&s);
 }
 
-/* A cantilever of L = E I = 1 that hardly stretches, with a dead load at its end; drawn from its end to its root where `flip`. */
+/* A cantilever of L = E I = 1 that hardly stretches, with a dead load at its end; drawn from
+ * its end to its root where `flip`. */
 static mt_model *cantilever(mt_test *t, int elements, bool flip, const char *load)
 {
     char text[TEXT];
@@ -189,19 +191,18 @@ static mt_model *cantilever(mt_test *t, int elements, bool flip, const char *loa
     return mech_parse(t, text);
 }
 
-/* The elastica: u and w of the end under P L^2/(EI) across (K. Mattiasson, Int. J. Num. Meth. Eng. 17 (1981) 145-153, elliptic integrals). */
+/* The elastica: u and w of the end under P L^2/(EI) across (K. Mattiasson, Int. J. Num. Meth.
+ * Eng. 17 (1981) 145-153, elliptic integrals). */
 static void beams__bend_to_the_elastica(mt_test *t)
 {
     static const struct {
         const char *load;
         double u;
         double w;
-    } rows[] = {
-        { "\"force_n\": [0, 1]", 0.05643, 0.30172},
-        { "\"force_n\": [0, 2]", 0.16064, 0.49346},
-        { "\"force_n\": [0, 5]", 0.38763, 0.71379},
-        {"\"force_n\": [0, 10]", 0.55500, 0.81061}
-    };
+    } rows[] = {{"\"force_n\": [0, 1]", 0.05643, 0.30172},
+                {"\"force_n\": [0, 2]", 0.16064, 0.49346},
+                {"\"force_n\": [0, 5]", 0.38763, 0.71379},
+                {"\"force_n\": [0, 10]", 0.55500, 0.81061}};
     for (int i = 0; i < 2 * MT_COUNT(rows); i++) {
         const bool flip = i % 2 == 1;
         mech s;
@@ -215,7 +216,8 @@ static void beams__bend_to_the_elastica(mt_test *t)
     }
 }
 
-/* A moment of pi E I/L at its end bends it to a half circle: the end turns by pi exactly, and lies a diameter 2 L/pi above the root. */
+/* A moment of pi E I/L at its end bends it to a half circle: the end turns by pi exactly, and
+ * lies a diameter 2 L/pi above the root. */
 static void beams__bend_to_a_half_circle(mt_test *t)
 {
     double error[2] = {nan(""), nan("")};

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "mechanics/mech.h"
 
-/* Eigenvalues of a few well-scaled freedoms: rounding is 1e-14, the printed references have ten digits. */
+/* Eigenvalues of a few well-scaled freedoms: rounding is 1e-14, the printed references have ten
+ * digits. */
 static const double TOL = 1e-9;
 
 static void closed_form__physical_pendulum_swings(mt_test *t)
@@ -129,7 +130,8 @@ static void closed_form__taut_string_is_stiff_across(mt_test *t)
     }
 }
 
-/* M = diag(..) and K of rod and disc (absolute angles), rod at angle a from hanging, its servo stiffness k in force. */
+/* M = diag(..) and K of rod and disc (absolute angles), rod at angle a from hanging, its servo
+ * stiffness k in force. */
 static void driven_rod_pair(double k, double a, double hz[2])
 {
     const double m = 2.0;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * A wheel on a sprung shaft drives a rotor through a gear of ratio N. Whatever the angle of the shaft,
+ * A wheel on a sprung shaft drives a rotor through a gear of ratio N. Whatever the angle of the
+ * shaft,
  *     omega^2 = k / (J_wheel + N^2 J_rotor),
  * also where the rotor has turned by more than half a turn or several whole ones.
  */
@@ -38,10 +39,10 @@ static void gear__keeps_its_ratio_over_whole_turns(mt_test *t)
         const char *name;
         double ratio;
     } rows[] = {
-        {       "there", 12.0},
-        {   "half_turn", 12.0},
-        {       "turns", 12.0},
-        {"broken_ratio",  7.3},
+        {"there", 12.0},
+        {"half_turn", 12.0},
+        {"turns", 12.0},
+        {"broken_ratio", 7.3},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mech s;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What must not matter: where a model stands, in which order its parts are listed. And a closed loop whose crank length is a variable. */
+/* What must not matter: where a model stands, in which order its parts are listed. And a closed
+ * loop whose crank length is a variable. */
 #include "mechanics/info.h"
 #include "mechanics/mech.h"
 
@@ -65,12 +66,7 @@ static mt_model *chain(mt_test *t, const int order[4])
 
 static void invariance__order_of_bodies_joints_and_springs(mt_test *t)
 {
-    static const int orders[][4] = {
-        {0, 1, 2, 3},
-        {3, 2, 1, 0},
-        {2, 0, 3, 1},
-        {1, 3, 0, 2}
-    };
+    static const int orders[][4] = {{0, 1, 2, 3}, {3, 2, 1, 0}, {2, 0, 3, 1}, {1, 3, 0, 2}};
     double first[4] = {0.0};
     for (int o = 0; o < MT_COUNT(orders); o++) {
         mech s;
@@ -91,7 +87,8 @@ static double distance(const mt_pose *a, const mt_pose *b)
     return hypot(creal(a->x[0] - b->x[0]), creal(a->x[1] - b->x[1]));
 }
 
-/* The crank is drawn for 0.15 m; at other lengths the loop closes and the bodies keep their size. */
+/* The crank is drawn for 0.15 m; at other lengths the loop closes and the bodies keep their
+ * size. */
 static void loop__closes_for_other_crank_lengths(mt_test *t)
 {
     mech s;

@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * What a load costs in accuracy: nothing. References are the same equations in displacements or angles, in thirty digits:
- *   chain    rigid links of length l_i and mass m_i, hinged with torsional springs k_i, hung on (or standing on) a pin in gravity: with the links' angles a,
- *            2 V = sum k_i (a_i+1 - a_i)^2 + g sum m_i (sum_j<i l_j a_j^2 + l_i/2 a_i^2),   the second sum negative where it stands
- *   strip    a clamped Euler-Bernoulli beam in cubic elements, with a preloaded string elsewhere in the model
+ * What a load costs in accuracy: nothing. References are the same equations in displacements or
+ * angles, in thirty digits:
+ *   chain rigid links of length l_i and mass m_i, hinged with torsional springs k_i, hung on
+ *   (or standing on) a pin in gravity: with the links' angles a,
+ *            2 V = sum k_i (a_i+1 - a_i)^2 + g sum m_i (sum_j<i l_j a_j^2 + l_i/2 a_i^2),
+ *                the second sum negative where it stands
+ *   strip a clamped Euler-Bernoulli beam in cubic elements, with a preloaded string elsewhere
+ *   in the model
  */
 #include "mechanics/mech.h"
 #include "support/mt_quad.h"
@@ -23,7 +27,8 @@ static void clear_exact(int n, int band)
     exact.band = band;
 }
 
-/* Uniform chain of length 1 m in lateral displacements of its joints, where everything is banded. */
+/* Uniform chain of length 1 m in lateral displacements of its joints, where everything is
+ * banded. */
 static void uniform_chain(int n, double mass, double spring, double gravity)
 {
     const mt_quad h = (mt_quad)1 / n;
@@ -100,17 +105,9 @@ static void loaded__hundred_links_to_forty_digits(mt_test *t)
 static void cantilever(int n, double bending, double line_mass)
 {
     static const int STIFF[4][4] = {
-        { 12,  6, -12,  6},
-        {  6,  4,  -6,  2},
-        {-12, -6,  12, -6},
-        {  6,  2,  -6,  4}
-    };
+        {12, 6, -12, 6}, {6, 4, -6, 2}, {-12, -6, 12, -6}, {6, 2, -6, 4}};
     static const int MASS[4][4] = {
-        {156, 22,  54, -13},
-        { 22,  4,  13,  -3},
-        { 54, 13, 156, -22},
-        {-13, -3, -22,   4}
-    };
+        {156, 22, 54, -13}, {22, 4, 13, -3}, {54, 13, 156, -22}, {-13, -3, -22, 4}};
     const mt_quad h = (mt_quad)1 / n;
     clear_exact(2 * n, 3);
     for (int e = 0; e < n; e++) {
@@ -229,11 +226,9 @@ static mt_model *links_model(mt_test *t, const links *s)
         const char *name;
         const double *x;
         int n;
-    } lists[] = {
-        {     "element_length_m", s->length,     s->n},
-        {      "element_mass_kg",   s->mass,     s->n},
-        {"stiffness_n_m_per_rad", s->spring, s->n - 1}
-    };
+    } lists[] = {{"element_length_m", s->length, s->n},
+                 {"element_mass_kg", s->mass, s->n},
+                 {"stiffness_n_m_per_rad", s->spring, s->n - 1}};
     for (int k = 0; k < MT_COUNT(lists); k++) {
         used += snprintf(text + used, sizeof text - (size_t)used, ", \"%s\": [", lists[k].name);
         for (int i = 0; i < lists[k].n; i++) {
@@ -275,7 +270,8 @@ static void loaded__errors_of_random_chains_hold(mt_test *t)
     CHECK(t, unstable > 20);
 }
 
-/* An arm and its counterweight, in equilibrium in every position: centre of both in the pivot. */
+/* An arm and its counterweight, in equilibrium in every position: centre of both in the
+ * pivot. */
 typedef struct arm {
     int dimension;
     double pivot[3];
@@ -426,18 +422,16 @@ static void loaded__arms_out_of_balance_are_not_neutral(mt_test *t)
     }
 }
 
-/* A link that stands on a torsional spring: at k = m g l/2 it is at its buckling load. Masses and lengths are powers of two: nothing is rounded on the way. */
+/* A link that stands on a torsional spring: at k = m g l/2 it is at its buckling load. Masses
+ * and lengths are powers of two: nothing is rounded on the way. */
 static void loaded__buckling_load_is_undecided(mt_test *t)
 {
     static const struct {
         double part; /* of the buckling stiffness, beyond 1 */
         mt_mode_kind kind;
     } rows[] = {
-        {   0.0, MT_MODE_UNDECIDED},
-        { 2e-16, MT_MODE_UNDECIDED},
-        {-2e-16, MT_MODE_UNDECIDED},
-        { 1e-10,  MT_MODE_FLEXIBLE},
-        {-1e-10,  MT_MODE_UNSTABLE},
+        {0.0, MT_MODE_UNDECIDED},  {2e-16, MT_MODE_UNDECIDED}, {-2e-16, MT_MODE_UNDECIDED},
+        {1e-10, MT_MODE_FLEXIBLE}, {-1e-10, MT_MODE_UNSTABLE},
     };
     for (int r = 0; r < MT_COUNT(rows); r++) {
         char text[TEXT];

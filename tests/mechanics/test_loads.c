@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Dead loads against closed forms.
- *   pendulum m, l, dead force F down at its bob              omega^2 = (m g + F)/(m l); a force that follows the rod: g/l
- *   the same force towards an anchor D below the bob         omega^2 = g/l + F (1 + l/D)/(m l), whose limit is the dead force
- *   spherical body, inertia J about its pivot, force at a    omega^2 = F a/J about both axes
- *   column of two rigid links, springs k, dead tip load P    buckles at P l/k = (3 - sqrt 5)/2 (Ziegler 1968; the load that follows never buckles it)
- *   pendulum with a moment M                                 m g l sin theta = M, omega^2 = g cos theta/l
- *   motor of torque M between a pendulum and a flywheel      the pendulum leans by -M
- *   slider under F against a spring of free length L0 at the distance h
- *                                                            F = k (L - L0) x/L, K = k (1 - L0/L) + k (L0/L)(x/L)^2
+ *   pendulum m, l, dead force F down at its bob omega^2 = (m g + F)/(m l); a force that follows
+ *   the rod: g/l the same force towards an anchor D below the bob omega^2 = g/l + F (1 +
+ *   l/D)/(m l), whose limit is the dead force spherical body, inertia J about its pivot, force
+ *   at a omega^2 = F a/J about both axes column of two rigid links, springs k, dead tip load P
+ *   buckles at P l/k = (3 - sqrt 5)/2 (Ziegler 1968; the load that follows never buckles it)
+ *   pendulum with a moment M m g l sin theta = M, omega^2 = g cos theta/l motor of torque M
+ *   between a pendulum and a flywheel the pendulum leans by -M slider under F against a spring
+ *   of free length L0 at the distance h
+ *                                                            F = k (L - L0) x/L, K = k
+ *                                                                (1 - L0/L) + k (L0/L)(x/L)^2
  */
 #include "mechanics/mech.h"
 
@@ -65,11 +67,9 @@ static void load__a_dead_force_stiffens_a_pendulum_and_a_following_one_does_not(
         const char *name;
         double lambda;
     } rows[] = {
-        {     "bare",                                             still},
-        {     "dead",                                              dead},
-        {   "on_rod",                                              dead},
-        { "anchored", still + (5.0 * (1.0 + (0.7 / 1e5)) / (2.0 * 0.7))},
-        {"following",                                             still},
+        {"bare", still},      {"dead", dead},
+        {"on_rod", dead},     {"anchored", still + (5.0 * (1.0 + (0.7 / 1e5)) / (2.0 * 0.7))},
+        {"following", still},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mech s;
@@ -131,7 +131,8 @@ static void load__a_column_of_two_links_buckles_under_a_dead_load(mt_test *t)
         CHECK_INT(t, s.a->modes.n_unstable, 1);
     }
     mech_free(&s);
-    /* angles of the two links: K = [20 - P/2, -10; -10, 10 - P/2], M = m l^2 [4/3, 1/2; 1/2, 1/3], m = 1/2, l = 1/2 */
+    /* angles of the two links: K = [20 - P/2, -10; -10, 10 - P/2], M = m l^2 [4/3, 1/2; 1/2,
+     * 1/3], m = 1/2, l = 1/2 */
     if (mech_must(t, mech_parse(t, model), "half", "", &s)) {
         const double k11 = 20.0 - 2.0;
         const double k22 = 10.0 - 2.0;
@@ -161,13 +162,13 @@ static void load__a_moment_leans_a_pendulum(mt_test *t)
         const char *name;
         const char *text;
     } rows[] = {
-        {           "on the body",
-         LEANING(2,    "[0, -9.81]",         "0.02",    "[0, 0]",    "[0, -0.5]","",      "\"on\": \"bob\"")                                                                                 },
-        {          "on the joint",
-         LEANING(2,    "[0, -9.81]",         "0.02",    "[0, 0]",    "[0, -0.5]", "", "\"joint\": \"pivot\"")},
+        {"on the body",
+         LEANING(2, "[0, -9.81]", "0.02", "[0, 0]", "[0, -0.5]", "", "\"on\": \"bob\"")},
+        {"on the joint",
+         LEANING(2, "[0, -9.81]", "0.02", "[0, 0]", "[0, -0.5]", "", "\"joint\": \"pivot\"")},
         {"on the joint, in space",
          LEANING(3, "[0, -9.81, 0]", "[1, 1, 0.02]", "[0, 0, 0]", "[0, -0.5, 0]",
-         ", \"axis\": [0, 0, 2]", "\"joint\": \"pivot\"")                                                    },
+                 ", \"axis\": [0, 0, 2]", "\"joint\": \"pivot\"")},
     };
     const double mgl = 9.81 * 0.5;
     const double hz = hz_of(mgl * sqrt(1.0 - (9.0 / (mgl * mgl))) / (0.02 + 0.25));
@@ -184,7 +185,8 @@ static void load__a_moment_leans_a_pendulum(mt_test *t)
     }
 }
 
-/* The reaction of the motor leans the pendulum the other way; the flywheel's own spring takes the torque. */
+/* The reaction of the motor leans the pendulum the other way; the flywheel's own spring takes
+ * the torque. */
 static void load__of_a_joint_has_its_reaction_on_the_first_body(mt_test *t)
 {
     static const char model[] =

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Kernels of measure.h: values against independent formulas, gradients and Hessians against slopes in the exponential chart, derivatives by complex step against slopes. */
+/* Kernels of measure.h: values against independent formulas, gradients and Hessians against
+ * slopes in the exponential chart, derivatives by complex step against slopes. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -58,10 +59,7 @@ static void random_unit(mt_random *r, double *v)
 /* Turned by `angle` about a random axis, somewhere in the unit cube. */
 static mt_pose random_pose(mt_random *r, double angle)
 {
-    mt_pose p = {
-        {0.0, 0.0, 0.0 },
-        { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}
-    };
+    mt_pose p = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}};
     double x[3];
     double axis[3];
     mt_random_fill(r, 3, x);
@@ -151,7 +149,8 @@ static double value_at(const void *ctx, int n, const double *x)
     return creal(mt_measure_value(&s->m, &p[0], &p[1])) + 1.0; /* rounding: of size one */
 }
 
-/* Slope along direction `entry` of the value at x: by its fourth-order difference, exact to 1e-12. */
+/* Slope along direction `entry` of the value at x: by its fourth-order difference, exact to
+ * 1e-12. */
 static double inner_slope(const void *ctx, int n, const double *x)
 {
     static const double AT[] = {-3.0, -2.0, -1.0, 1.0, 2.0, 3.0};
@@ -171,8 +170,8 @@ static double inner_slope(const void *ctx, int n, const double *x)
 
 static void check_gradient(mt_test *t, scene *s, const char *name, double angle)
 {
-    const double step =
-        angle > 2.0 ? 0.1 * STEP : STEP; /* near half a turn kernels bend more */
+    /* near half a turn kernels bend more */
+    const double step = angle > 2.0 ? 0.1 * STEP : STEP;
     double x[MT_LOCAL] = {0.0};
     mt_jet jet;
     mt_measure_eval(&s->m, &s->pose[0], &s->pose[1], false, &jet);
@@ -259,7 +258,8 @@ static void measure__a_wrong_gradient_is_caught(mt_test *t)
     }
 }
 
-/* All data carry a derivative along a line parameter; the imaginary part must be the slope along it. */
+/* All data carry a derivative along a line parameter; the imaginary part must be the slope
+ * along it. */
 typedef struct line {
     scene s;
     double v[VECTORS][3]; /* direction of each vector */
@@ -319,30 +319,23 @@ static void measure__complex_step_carries_derivatives(mt_test *t)
 /* Body b turned by theta about a unit axis against body a. */
 static void rotation_vector(double angle, const double *axis, double xi[3])
 {
-    mt_pose a = {
-        {0.0, 0.0, 0.0 },
-        { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}
-    };
+    mt_pose a = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}};
     mt_pose b = a;
     static const double none[3] = {0.0, 0.0, 0.0};
-    static const mt_cx e[3][3] = {
-        {1.0, 0.0, 0.0},
-        {0.0, 1.0, 0.0},
-        {0.0, 0.0, 1.0}
-    };
+    static const mt_cx e[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
     const double theta[3] = {angle * axis[0], angle * axis[1], angle * axis[2]};
     mt_pose_move(&b, none, theta);
     for (int k = 0; k < 3; k++) {
         const mt_measure_data m = {
-            .kind = MT_MEASURE_ROTATION, .component = k, .dir = {e[0], e[1], e[2]}
-        };
+            .kind = MT_MEASURE_ROTATION, .component = k, .dir = {e[0], e[1], e[2]}};
         xi[k] = creal(mt_measure_value(&m, &a, &b));
     }
 }
 
 static void measure__rotation_vector_is_that_of_the_turn(mt_test *t)
 {
-    /* around the switch from series to closed form (1 - cos = 0.01 at 0.1415 rad) and near pi */
+    /* around the switch from series to closed form (1 - cos = 0.01 at 0.1415 rad) and near
+     * pi */
     static const double ANGLES[] = {0.0,    1e-300, 1e-12, 1e-8,   1e-4, 0.1, 0.1414,
                                     0.1416, 0.5,    1.0,   PI / 2, 2.0,  2.9, 3.0};
     mt_random r = mt_random_seed(11);
@@ -364,20 +357,14 @@ static void measure__rotation_vector_is_that_of_the_turn(mt_test *t)
 /* Body b at (1, 2, 0) turned by 0.3 about z; a at the origin. */
 static void measure__values_match_plane_geometry(mt_test *t)
 {
-    mt_pose a = {
-        {0.0, 0.0, 0.0 },
-        { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}
-    };
+    mt_pose a = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}};
     mt_pose b = a;
     static const double x[3] = {1.0, 2.0, 0.0};
     static const double turn[3] = {0.0, 0.0, 0.3};
     static const mt_cx ex[3] = {1.0, 0.0, 0.0};
     static const mt_cx ey[3] = {0.0, 1.0, 0.0};
     static const mt_cx p[3] = {0.5, 0.0, 0.0};
-    mt_measure_data m = {
-        .kind = MT_MEASURE_PLANE, .point = { p,  p  },
-             .dir = { ey, ex,NULL}
-    };
+    mt_measure_data m = {.kind = MT_MEASURE_PLANE, .point = {p, p}, .dir = {ey, ex, NULL}};
     mt_pose_move(&b, x, turn);
     CHECK_NEAR(t, creal(mt_measure_value(&m, &a, &b)), 2.0 + 0.5 * sin(0.3), 1e-15);
     m.kind = MT_MEASURE_DISTANCE;
@@ -385,9 +372,7 @@ static void measure__values_match_plane_geometry(mt_test *t)
                hypot(0.5 + 0.5 * cos(0.3), 2.0 + 0.5 * sin(0.3)), 1e-15);
     m.kind = MT_MEASURE_DOT; /* ey . (R ex) */
     CHECK_NEAR(t, creal(mt_measure_value(&m, &a, &b)), sin(0.3), 1e-15);
-    m = (mt_measure_data){
-        .kind = MT_MEASURE_ANGLE, .dir = {ex, ey, NULL}
-    };
+    m = (mt_measure_data){.kind = MT_MEASURE_ANGLE, .dir = {ex, ey, NULL}};
     CHECK_NEAR(t, creal(mt_measure_value(&m, &a, &b)), 0.3, 1e-15);
     mt_jet jet; /* work of a force at a point of b */
     static const mt_cx f[3] = {3.0, -2.0, 0.0};

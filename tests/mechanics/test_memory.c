@@ -9,17 +9,17 @@ static const struct {
     const char *configuration;
     const char *inputs;
 } CASES[] = {
-    {           "ring",               NULL,        "k m"},
-    {       "pendulum",            "twice",        "m L"},
-    {       "four_bar",          "trimmed",        "a k"},
-    {     "driven_rod",           "locked",    "angle L"},
-    {       "massless",           "sprung",         "k1"},
-    {    "space_stick",           "geared", "tilt ratio"},
-    {    "space_frame",           "loaded",        "h x"},
-    {       "pendulum", "drawn_horizontal",          "m"},
-    {           "rods",           "bodies",        "h m"},
-    {          "loads",          "trimmed",       "F to"},
-    {"space_couplings",           "loaded",     "tilt r"},
+    {"ring", NULL, "k m"},
+    {"pendulum", "twice", "m L"},
+    {"four_bar", "trimmed", "a k"},
+    {"driven_rod", "locked", "angle L"},
+    {"massless", "sprung", "k1"},
+    {"space_stick", "geared", "tilt ratio"},
+    {"space_frame", "loaded", "h x"},
+    {"pendulum", "drawn_horizontal", "m"},
+    {"rods", "bodies", "h m"},
+    {"loads", "trimmed", "F to"},
+    {"space_couplings", "loaded", "tilt r"},
 };
 
 static void memory__failing_allocations_are_errors(mt_test *t)

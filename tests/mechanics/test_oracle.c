@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The symmetric path against the paper's formulation. With xdd(q) the acceleration of Udwadia and Kalaba at rest at a displaced position q, its Jacobian J, taken by
- * differences, has over all nq states the eigenvalues -lambda of the n modes and as many zeros as there are independent constraints (a constraint that is violated
- * does not act back). Stiff directions bend the soft ones at second order, so differences are of sixth order, h = 3e-4: truncation ~ h^6, rounding ~ eps/h = 1e-12, both
- * of the largest lambda, which lies up to 1e7 above the lowest here.
+ * The symmetric path against the paper's formulation. With xdd(q) the acceleration of Udwadia
+ * and Kalaba at rest at a displaced position q, its Jacobian J, taken by differences, has over
+ * all nq states the eigenvalues -lambda of the n modes and as many zeros as there are
+ * independent constraints (a constraint that is violated does not act back). Stiff directions
+ * bend the soft ones at second order, so differences are of sixth order, h = 3e-4: truncation ~
+ * h^6, rounding ~ eps/h = 1e-12, both of the largest lambda, which lies up to 1e7 above the
+ * lowest here.
  */
 #include "modetune/dynamics.h"
 
@@ -40,7 +43,8 @@ static bool acceleration(const motion *s, const double *dq, double *xdd, mt_err 
                 : mt_udwadia_kalaba(n, s->lin->m, s->m, s->q, s->a, s->b, xdd, err)) == MT_OK;
 }
 
-/* Bring dq back to where all constraints hold: least-norm steps, each wrong by |dq| relative. */
+/* Bring dq back to where all constraints hold: least-norm steps, each wrong by |dq|
+ * relative. */
 static bool restore(const motion *s, double *dq, mt_err *err)
 {
     enum { STEPS = 12 };
@@ -59,8 +63,8 @@ static bool restore(const motion *s, double *dq, mt_err *err)
     return ok;
 }
 
-/* Jacobian of the acceleration along the columns of `along` (nq x cols; NULL: all states), nq x cols. Along given columns the displaced positions keep the
- * constraints. */
+/* Jacobian of the acceleration along the columns of `along` (nq x cols; NULL: all states), nq x
+ * cols. Along given columns the displaced positions keep the constraints. */
 static bool jacobian(const motion *s, int cols, const double *along, double *j, double *largest,
                      mt_err *err)
 {
@@ -125,7 +129,8 @@ static void compare(mt_test *t, const mt_modes *modes, int order, double *wr, co
     }
 }
 
-/* Where constraints are redundant they are so only while they hold: then J acts along the freedoms Z alone, J Z = Z J_r. */
+/* Where constraints are redundant they are so only while they hold: then J acts along the
+ * freedoms Z alone, J Z = Z J_r. */
 static bool reduced_jacobian(const motion *x, double *j, double *rest, mt_err *err)
 {
     const int nq = x->lin->sys->nq;
@@ -175,24 +180,15 @@ static const struct {
     const char *configuration; /* NULL: all */
     bool singular;             /* mass matrix */
 } SYSTEMS[] = {
-    {       "pendulum",        NULL, false},
-    {"double_pendulum", "distances", false},
-    {"double_pendulum",      "rods",  true},
-    {   "eight_masses",        NULL, false},
-    {     "nine_discs",        NULL, false},
-    {           "ring",        NULL, false},
-    {    "taut_string",        NULL, false},
-    {     "driven_rod",        NULL, false},
-    {       "four_bar",        NULL, false},
-    {     "space_body",        NULL, false},
-    { "space_four_bar",        NULL, false},
-    {    "space_stick",        NULL, false},
-    {    "space_frame",        NULL, false},
-    {      "couplings",        NULL, false},
-    {"space_couplings",        NULL, false},
-    {          "loads",        NULL, false},
-    {    "space_loads",        NULL, false},
-    {           "rods", "distances", false},
+    {"pendulum", NULL, false},         {"double_pendulum", "distances", false},
+    {"double_pendulum", "rods", true}, {"eight_masses", NULL, false},
+    {"nine_discs", NULL, false},       {"ring", NULL, false},
+    {"taut_string", NULL, false},      {"driven_rod", NULL, false},
+    {"four_bar", NULL, false},         {"space_body", NULL, false},
+    {"space_four_bar", NULL, false},   {"space_stick", NULL, false},
+    {"space_frame", NULL, false},      {"couplings", NULL, false},
+    {"space_couplings", NULL, false},  {"loads", NULL, false},
+    {"space_loads", NULL, false},      {"rods", "distances", false},
 };
 
 static void oracle__udwadia_kalaba_agrees_on_every_model(mt_test *t)
@@ -243,7 +239,8 @@ static void oracle__redundant_constraints_are_no_trouble(mt_test *t)
     CHECK_NEAR(t, xdd[0], 3.0, 1e-14);
 }
 
-/* x1 = x2 + const, only x1 has mass: Udwadia and Phohomsiri's case. Without the constraint x2 is not determined. */
+/* x1 = x2 + const, only x1 has mass: Udwadia and Phohomsiri's case. Without the constraint x2
+ * is not determined. */
 static void oracle__singular_mass_needs_the_constraint(mt_test *t)
 {
     static const double mass[4] = {2.0, 0.0, 0.0, 0.0};

@@ -1,29 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Rods between ball joints, stated in every way: a distance joint, with or without mass_kg, or a body between two spherical joints whose inertia about its own axis is 0.
- *   bob M on a uniform rod m, l                       omega^2 = g (M + m/2)/(l (M + m/3))
- *   a plate hung on four rods, any direction          the same frequencies however the rods are stated
- * The spin of a thin body about its axis is idle: not a freedom, whatever else the body carries on its axis.
+ * Rods between ball joints, stated in every way: a distance joint, with or without mass_kg, or
+ * a body between two spherical joints whose inertia about its own axis is 0.
+ *   bob M on a uniform rod m, l omega^2 = g (M + m/2)/(l (M + m/3)) a plate hung on four rods,
+ *   any direction the same frequencies however the rods are stated
+ * The spin of a thin body about its axis is idle: not a freedom, whatever else the body carries
+ * on its axis.
  */
 #include "mechanics/mech.h"
 
-/* Different elimination, the same mechanism: rounding of some 30 states, and what equilibrium leaves of soft freedoms. */
+/* Different elimination, the same mechanism: rounding of some 30 states, and what equilibrium
+ * leaves of soft freedoms. */
 static const double TOL = 1e-10;
 
 enum { RODS = 4, TEXT = 8000 };
 
 static const double LOW[RODS][3] = {
-    {  0.3,  0.2,   0.0},
-    { -0.3, 0.25,  0.02},
-    {-0.25, -0.3,   0.0},
-    { 0.28, -0.2, -0.03}
-};
+    {0.3, 0.2, 0.0}, {-0.3, 0.25, 0.02}, {-0.25, -0.3, 0.0}, {0.28, -0.2, -0.03}};
 static const double HIGH[RODS][3] = {
-    { 0.32,  0.18, 0.71},
-    {-0.21,  0.27, 0.64},
-    { -0.2, -0.33, 0.58},
-    {  0.2, -0.27,  0.6}
-};
+    {0.32, 0.18, 0.71}, {-0.21, 0.27, 0.64}, {-0.2, -0.33, 0.58}, {0.2, -0.27, 0.6}};
 
 typedef enum rod_kind { DISTANCE, DISTANCE_MASS, BODY, THIN_BODY, SOLID_BODY } rod_kind;
 
@@ -53,14 +48,7 @@ static void add_body(writer *w, rod_kind kind, int i)
     const double spin = kind == SOLID_BODY ? 1e-3 : 0.0; /* s a a^T */
     ADD(w, "\"mass_kg\": \"m\", \"inertia_kg_m2\": [");
     for (int k = 0; k < 6; k++) {
-        static const int AT[6][2] = {
-            {0, 0},
-            {1, 1},
-            {2, 2},
-            {0, 1},
-            {0, 2},
-            {1, 2}
-        };
+        static const int AT[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
         const int p = AT[k][0];
         const int q = AT[k][1];
         ADD(w, "%s\"m/12*%.17g + %.17g\"", k == 0 ? "" : ", ",
@@ -125,9 +113,9 @@ static void rods__of_every_kind_give_one_mechanism(mt_test *t)
         int idle;
         int rigid;
     } rows[] = {
-        {               "without mass",       BODY,      DISTANCE, RODS,    0},
-        {                       "thin",  THIN_BODY, DISTANCE_MASS, RODS,    0},
-        {"with inertia about the axis", SOLID_BODY, DISTANCE_MASS,    0, RODS},
+        {"without mass", BODY, DISTANCE, RODS, 0},
+        {"thin", THIN_BODY, DISTANCE_MASS, RODS, 0},
+        {"with inertia about the axis", SOLID_BODY, DISTANCE_MASS, 0, RODS},
     };
     for (int i = 0; i < 2 * MT_COUNT(rows); i++) {
         const double g = i % 2 == 0 ? 0.0 : 9.81;
@@ -169,7 +157,8 @@ static void rods__with_mass_swing_as_rods_do(mt_test *t)
     }
 }
 
-/* All elements of a straight link between two ball joints turn together; a hinge, a spring at the side or a mass off the axis ends that. */
+/* All elements of a straight link between two ball joints turn together; a hinge, a spring at
+ * the side or a mass off the axis ends that. */
 static void rods__spin_idly_as_a_whole_or_not_at_all(mt_test *t)
 {
     static const char model[] =
@@ -201,8 +190,8 @@ static void rods__spin_idly_as_a_whole_or_not_at_all(mt_test *t)
         int idle;
         int rigid;
     } rows[] = {
-        {  "idle", 1, 0},
-        { "thick", 0, 1},
+        {"idle", 1, 0},
+        {"thick", 0, 1},
         {"pinned", 1, 0},
     };
     double hz[3] = {0.0};
@@ -259,7 +248,8 @@ static void rods__spin_idly_as_a_whole_or_not_at_all(mt_test *t)
     "{\"trim\": \"servo\"}}}, \"back\": {\"drive\": {\"joint\": \"in\", \"position_rad\": " \
     "-1.5}}}}"
 
-/* A spatial four-bar, crank and rocker joined by a thin rod between ball joints, over three radians of its crank. The rod goes from (0.1, 0, 0.05) to (0.5, 0.3, 0.25). */
+/* A spatial four-bar, crank and rocker joined by a thin rod between ball joints, over three
+ * radians of its crank. The rod goes from (0.1, 0, 0.05) to (0.5, 0.3, 0.25). */
 static void rods__couple_crank_and_rocker_in_every_position(mt_test *t)
 {
     static const char distance[] = CRANKS

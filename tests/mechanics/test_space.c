@@ -16,9 +16,9 @@ static void space__one_body_on_bushings(mt_test *t)
         int rigid;
     } rows[] = {
         {"translation", {5.03292121, 10.06584242, 15.09876363}, 3, 3},
-        {   "rotation",   {5.03292121, 7.11762543, 8.71727525}, 3, 3},
-        {       "ball",   {3.55881272, 5.81151683, 8.71727525}, 3, 0},
-        {      "hinge",                     {5.81151683, 0, 0}, 1, 0},
+        {"rotation", {5.03292121, 7.11762543, 8.71727525}, 3, 3},
+        {"ball", {3.55881272, 5.81151683, 8.71727525}, 3, 0},
+        {"hinge", {5.81151683, 0, 0}, 1, 0},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mech s;
@@ -30,7 +30,8 @@ static void space__one_body_on_bushings(mt_test *t)
     }
 }
 
-/* xdd = -M^-1 (K x + C xd) as a first-order system: eigenvalues -zeta w +- i w sqrt(1 - zeta^2). */
+/* xdd = -M^-1 (K x + C xd) as a first-order system: eigenvalues -zeta w +- i w sqrt(1 -
+ * zeta^2). */
 static bool damped_roots(mt_linear *lin, mt_arena *mem, double *wr, double *wi, mt_err *err)
 {
     const int n = lin->n;
@@ -175,7 +176,8 @@ static void space__planar_links_keep_their_frequencies(mt_test *t)
     }
 }
 
-/* Clamped oblique beam in space: bending about both axes and torsion, against Euler-Bernoulli and Saint-Venant. */
+/* Clamped oblique beam in space: bending about both axes and torsion, against Euler-Bernoulli
+ * and Saint-Venant. */
 static void space__clamped_beam_bends_both_ways_and_twists(mt_test *t)
 {
     static const double L = 1.3;

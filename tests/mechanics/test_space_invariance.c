@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * What must not matter in space: where the whole model stands, in which order its parts are listed, joints given twice, units of length and mass. The model: servo shaft with
- * crank, a rod between ball joints (its spin is a rigid-body mode), a stick on an oblique pivot, a head on the stick held by springs; in gravity.
+ * What must not matter in space: where the whole model stands, in which order its parts are
+ * listed, joints given twice, units of length and mass. The model: servo shaft with crank, a
+ * rod between ball joints (its spin is a rigid-body mode), a stick on an oblique pivot, a head
+ * on the stick held by springs; in gravity.
  */
 #include <float.h>
 #include <stdarg.h>
@@ -22,12 +24,8 @@ typedef struct setting {
     int hinges; /* how often the pivot is given */
 } setting;
 
-static const setting PLAIN = {
-    "plain", {0.0, 0.0, 0.0},
-     { 0.0, 0.0, 0.0  },
-     1.0, 1.0, { 0,   1,   2,     3},
-     1
-};
+static const setting PLAIN = {"plain", {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, 1.0, 1.0, {0, 1, 2, 3},
+                              1};
 
 typedef struct writer {
     const setting *s;
@@ -85,14 +83,7 @@ static void put_point(writer *w, const double p[3])
 /* R J R^T of a tensor xx yy zz xy xz yz. */
 static void put_inertia(writer *w, const double j[6])
 {
-    static const int PAIR[6][2] = {
-        {0, 0},
-        {1, 1},
-        {2, 2},
-        {0, 1},
-        {0, 2},
-        {1, 2}
-    };
+    static const int PAIR[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
     const double full[9] = {j[0], j[3], j[4], j[3], j[1], j[5], j[4], j[5], j[2]};
     double r[9];
     rotation(w->s->turn, r);
@@ -115,10 +106,10 @@ static const struct {
     double inertia[6];
     double centre[3];
 } BODIES[PARTS] = {
-    {"crank", 0.2,   {1e-4, 1e-4, 2e-4, 1e-5, 0.0, 0.0}, {0.01, 0.0, 0.005}},
-    {  "rod", 0.1,  {1e-4, 2e-4, 3e-4, 2e-5, 0.0, 1e-5}, {0.075, 0.1, 0.06}},
-    {"stick", 1.0,  {0.01, 0.01, 0.002, 0.0, 1e-3, 0.0},   {0.1, 0.2, 0.35}},
-    { "head", 0.5, {1e-3, 2e-3, 1.5e-3, 0.0, 0.0, 2e-4}, {0.11, 0.19, 0.55}},
+    {"crank", 0.2, {1e-4, 1e-4, 2e-4, 1e-5, 0.0, 0.0}, {0.01, 0.0, 0.005}},
+    {"rod", 0.1, {1e-4, 2e-4, 3e-4, 2e-5, 0.0, 1e-5}, {0.075, 0.1, 0.06}},
+    {"stick", 1.0, {0.01, 0.01, 0.002, 0.0, 1e-3, 0.0}, {0.1, 0.2, 0.35}},
+    {"head", 0.5, {1e-3, 2e-3, 1.5e-3, 0.0, 0.0, 2e-4}, {0.11, 0.19, 0.55}},
 };
 
 static const struct {
@@ -129,11 +120,11 @@ static const struct {
     double at[3];
     double axis[3];
 } JOINTS[PARTS + 1] = {
-    {    "shaft",  "revolute", "ground", "crank",   {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}},
-    {     "port", "spherical",  "crank",   "rod", {0.05, 0.0, 0.02}, {0.0, 0.0, 0.0}},
-    {"starboard", "spherical",    "rod", "stick",   {0.1, 0.2, 0.1}, {0.0, 0.0, 0.0}},
-    {    "pivot",  "revolute", "ground", "stick",   {0.1, 0.2, 0.3}, {3.0, 0.0, 4.0}},
-    {     "neck", "spherical",  "stick",  "head",   {0.1, 0.2, 0.5}, {0.0, 0.0, 0.0}},
+    {"shaft", "revolute", "ground", "crank", {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}},
+    {"port", "spherical", "crank", "rod", {0.05, 0.0, 0.02}, {0.0, 0.0, 0.0}},
+    {"starboard", "spherical", "rod", "stick", {0.1, 0.2, 0.1}, {0.0, 0.0, 0.0}},
+    {"pivot", "revolute", "ground", "stick", {0.1, 0.2, 0.3}, {3.0, 0.0, 4.0}},
+    {"neck", "spherical", "stick", "head", {0.1, 0.2, 0.5}, {0.0, 0.0, 0.0}},
 };
 
 static void put_joint(writer *w, int i, int again)
@@ -152,8 +143,8 @@ static void put_joint(writer *w, int i, int again)
 static void put_springs(writer *w)
 {
     static const double END[3][2][3] = {
-        {{0.16, 0.19, 0.6},  {0.6, 0.2, 0.7}},
-        {{0.11, 0.24, 0.6},  {0.0, 0.7, 0.6}},
+        {{0.16, 0.19, 0.6}, {0.6, 0.2, 0.7}},
+        {{0.11, 0.24, 0.6}, {0.0, 0.7, 0.6}},
         {{0.08, 0.15, 0.6}, {0.1, -0.3, 0.4}},
     };
     const double square = w->s->length * w->s->length;
@@ -207,15 +198,15 @@ static mt_model *make(mt_test *t, const setting *s)
 }
 
 static const setting SETTINGS[] = {
-    {          "turned",  {0.4, -0.9, 1.7},  {0.0, 0.0, 0.0},   1.0,    1.0, {0, 1, 2, 3}, 1},
-    {"turned and moved", {-2.0, 0.5, -0.3}, {3.0, -1.0, 2.0},   1.0,    1.0, {0, 1, 2, 3}, 1},
-    {       "reordered",   {0.0, 0.0, 0.0},  {0.0, 0.0, 0.0},   1.0,    1.0, {3, 1, 0, 2}, 1},
-    { "reordered again",   {0.0, 0.0, 0.0},  {0.0, 0.0, 0.0},   1.0,    1.0, {2, 3, 1, 0}, 1},
-    {   "pivot doubled",   {0.0, 0.0, 0.0},  {0.0, 0.0, 0.0},   1.0,    1.0, {0, 1, 2, 3}, 2},
-    {   "pivot tripled",  {0.4, -0.9, 1.7},  {0.0, 0.0, 0.0},   1.0,    1.0, {3, 1, 0, 2}, 3},
-    {     "millimetres",   {0.0, 0.0, 0.0},  {0.0, 0.0, 0.0},   1e3,    1.0, {0, 1, 2, 3}, 1},
-    {           "grams",   {0.0, 0.0, 0.0},  {0.0, 0.0, 0.0},   1.0,    1e3, {0, 1, 2, 3}, 1},
-    {"inches and slugs",   {0.1, 0.2, 0.3},  {1.0, 1.0, 1.0}, 39.37, 0.0685, {0, 1, 2, 3}, 1},
+    {"turned", {0.4, -0.9, 1.7}, {0.0, 0.0, 0.0}, 1.0, 1.0, {0, 1, 2, 3}, 1},
+    {"turned and moved", {-2.0, 0.5, -0.3}, {3.0, -1.0, 2.0}, 1.0, 1.0, {0, 1, 2, 3}, 1},
+    {"reordered", {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, 1.0, 1.0, {3, 1, 0, 2}, 1},
+    {"reordered again", {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, 1.0, 1.0, {2, 3, 1, 0}, 1},
+    {"pivot doubled", {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, 1.0, 1.0, {0, 1, 2, 3}, 2},
+    {"pivot tripled", {0.4, -0.9, 1.7}, {0.0, 0.0, 0.0}, 1.0, 1.0, {3, 1, 0, 2}, 3},
+    {"millimetres", {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, 1e3, 1.0, {0, 1, 2, 3}, 1},
+    {"grams", {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, 1.0, 1e3, {0, 1, 2, 3}, 1},
+    {"inches and slugs", {0.1, 0.2, 0.3}, {1.0, 1.0, 1.0}, 39.37, 0.0685, {0, 1, 2, 3}, 1},
 };
 
 /* 1e-10, or what rounding of the highest mode does to a low one: 4 eps n (f_max/f)^2. */

@@ -77,7 +77,8 @@ static double within_turn(double x)
     return x - 2.0 * MECH_PI * round(x / (2.0 * MECH_PI));
 }
 
-/* The linkage of tests/models/four_bar.json, for a crank at angle t2: rocker by Freudenstein's equation
+/* The linkage of tests/models/four_bar.json, for a crank at angle t2: rocker by Freudenstein's
+ * equation
  *     K1 cos t4 - K2 cos t2 + K3 = cos(t2 - t4),
  * in half angles, and coupler from the positions of its ends. */
 typedef struct four_bar {
@@ -143,10 +144,7 @@ static void sweep__ratio_is_the_slope_of_the_coordinate(mt_test *t)
 {
     static const char *const configurations[] = {"still", "loaded", "trimmed"};
     const mt_system_drive drives[] = {
-        {.joint = "jA"},
-        { .joint = "jD"            },
-        { .joint = "jA",            .spring = "servo"}
-    };
+        {.joint = "jA"}, {.joint = "jD"}, {.joint = "jA", .spring = "servo"}};
     const double h = 1e-4;
     for (int k = 0; k < MT_COUNT(drives); k++) {
         run r;
@@ -259,8 +257,9 @@ static void sweep__limit_is_located(mt_test *t)
     run_free(&r);
 }
 
-/* A servo shaft about z with a crank arm, a rod between two ball joints, a stick about an oblique axis: with P on the crank and Q on the stick,
- * |P - Q|^2 = L^2 is A cos f + B sin f = C. The rod's idle spin is free. */
+/* A servo shaft about z with a crank arm, a rod between two ball joints, a stick about an
+ * oblique axis: with P on the crank and Q on the stick, |P - Q|^2 = L^2 is A cos f + B sin f =
+ * C. The rod's idle spin is free. */
 #define SERVO_STICK                                                                            \
     "{ \"format\": \"modetune-model/1\", \"name\": \"servo and stick\", \"dimension\": 3,"     \
     "  \"points\": { \"O\": [0, 0, 0], \"P\": [0.05, 0, 0.02], \"Q\": [0.1, 0.2, 0.1], "       \
@@ -347,10 +346,8 @@ static double stick_angle(double s, double near, double *ratio)
 static void sweep__servo_moves_the_stick_in_space(mt_test *t)
 {
     static const char *const configurations[] = {"still", "heavy"};
-    const mt_system_drive drives[] = {
-        {.joint = "shaft" },
-        { .joint = "shaft",.spring = "servo"}
-    };
+    const mt_system_drive drives[] = {{.joint = "shaft"},
+                                      {.joint = "shaft", .spring = "servo"}};
     for (int k = 0; k < MT_COUNT(drives); k++) {
         run r;
         double near = 0.0;
@@ -374,10 +371,8 @@ static void sweep__servo_moves_the_stick_in_space(mt_test *t)
 static void sweep__a_locked_rod_is_held_by_its_moment(mt_test *t)
 {
     /* V = k a^2/2 - (m/2 + m_d) g L cos a, wound up twice */
-    const mt_system_drive drives[] = {
-        {.joint = "pivot" },
-        { .joint = "pivot",.spring = "servo"}
-    };
+    const mt_system_drive drives[] = {{.joint = "pivot"},
+                                      {.joint = "pivot", .spring = "servo"}};
     for (int k = 0; k < MT_COUNT(drives); k++) {
         run r;
         if (CHECK(t, run_sweep(t, mech_load(t, "driven_rod"), "sprung", &drives[k],
@@ -398,10 +393,8 @@ static void sweep__a_locked_rod_is_held_by_its_moment(mt_test *t)
 
 static void sweep__meets_the_configuration_that_drives_the_same(mt_test *t)
 {
-    const mt_system_drive drives[] = {
-        {.joint = "pivot" },
-        { .joint = "pivot",.spring = "servo"}
-    };
+    const mt_system_drive drives[] = {{.joint = "pivot"},
+                                      {.joint = "pivot", .spring = "servo"}};
     static const char *const configurations[] = {"locked", "trimmed"};
     mt_model *const model = mech_load(t, "driven_rod");
     for (int k = 0; k < MT_COUNT(drives) && model != NULL; k++) {
@@ -434,15 +427,18 @@ static void sweep__refuses_in_words(mt_test *t)
         const char *text;
     } rows[] = {
         {"driven_rod",
-         "sprung",    {.joint = "pivat", .spring = NULL},
+         "sprung",
+         {.joint = "pivat", .spring = NULL},
          "drive: there is no joint \"pivat\" in configuration \"sprung\"; did you mean "
-         "\"pivot\"?"                                                                },
+         "\"pivot\"?"},
         {"driven_rod",
-         "sprung", {.joint = "pivot", .spring = "serve"},
+         "sprung",
+         {.joint = "pivot", .spring = "serve"},
          "drive: there is no spring \"serve\" to hold it in configuration \"sprung\""},
         {"space_body",
-         "ball",     {.joint = "ball", .spring = NULL},
-         "drive: joint \"ball\" (spherical) has no coordinate to drive"              },
+         "ball",
+         {.joint = "ball", .spring = NULL},
+         "drive: joint \"ball\" (spherical) has no coordinate to drive"},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         run r;

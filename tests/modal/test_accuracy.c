@@ -71,14 +71,15 @@ static const struct {
     int rigid;
     bool plain_fails;
 } rows[] = {
-    {           "one size, on a wall",{9.0, 5.0, 3.0, 7.0, 2.0, 4.0, 6.0, 8.0},0, false                                                                                      },
-    {       "stiff and soft by turns",  {1e12, 1.0, 1e12, 3.0, 1e12, 1e12, 2.0, 5e11}, 0,  true},
+    {"one size, on a wall", {9.0, 5.0, 3.0, 7.0, 2.0, 4.0, 6.0, 8.0}, 0, false},
+    {"stiff and soft by turns", {1e12, 1.0, 1e12, 3.0, 1e12, 1e12, 2.0, 5e11}, 0, true},
     {"soft at the wall, stiff behind",
      {1.0, 1e12, 2e12, 3e12, 1e12, 1e12, 2e12, 5e12},
-     0,  true                                                                                  },
-    {                  "every decade",     {1.0, 1e2, 1e4, 1e6, 1e7, 1e9, 1e11, 1e12}, 0,  true},
-    {         "free, one soft spring", {0.0, 1e12, 1e12, 1.0, 1e12, 1e12, 1e12, 1e12}, 1,  true},
-    {              "free, ratio 1e20", {0.0, 1e20, 1.0, 1e20, 1e10, 1e20, 1e20, 1e20}, 1,  true},
+     0,
+     true},
+    {"every decade", {1.0, 1e2, 1e4, 1e6, 1e7, 1e9, 1e11, 1e12}, 0, true},
+    {"free, one soft spring", {0.0, 1e12, 1e12, 1.0, 1e12, 1e12, 1e12, 1e12}, 1, true},
+    {"free, ratio 1e20", {0.0, 1e20, 1.0, 1e20, 1e10, 1e20, 1e20, 1e20}, 1, true},
 };
 
 static void accuracy__spring_factors_keep_the_lowest_mode(mt_test *t)
@@ -139,10 +140,7 @@ static void accuracy__rank_of_the_factor_counts_rigid_body_modes(mt_test *t)
         double support;
         int rigid;
     } cases[] = {
-        {     "ring", 1e-8,  0.0, 1},
-        {"open ring",  0.0,  0.0, 1},
-        {"held ring",  1e4, 1e-6, 0}
-    };
+        {"ring", 1e-8, 0.0, 1}, {"open ring", 0.0, 0.0, 1}, {"held ring", 1e4, 1e-6, 0}};
     for (int r = 0; r < MT_COUNT(cases); r++) {
         chain s;
         mt_modes modes;

@@ -12,7 +12,8 @@ static const double TOL = 1e-12;
 /* A residual of this many n eps is not perfect, but rounding. */
 static const double RESIDUAL = 20.0;
 
-/* Masses on a line; springs[i] before mass i, springs[n] behind the last one, to walls at both ends. */
+/* Masses on a line; springs[i] before mass i, springs[n] behind the last one, to walls at both
+ * ends. */
 static void chain_matrices(int n, const double *springs, const double *masses, double *k,
                            double *m)
 {
@@ -62,9 +63,7 @@ static double complex root(const damped *s, int i)
     const union {
         double part[2];
         double complex z;
-    } u = {
-        {s->d.re[i], s->d.im[i]}
-    };
+    } u = {{s->d.re[i], s->d.im[i]}};
     return u.z;
 }
 
@@ -86,12 +85,12 @@ static void damped__single_mass_has_its_closed_form(mt_test *t)
         double c;
         double k;
     } rows[] = {
-        {        "undamped", 2.0,  0.0, 50.0},
-        {           "light", 2.0, 1e-9, 50.0},
-        {           "usual", 2.0,  3.0, 50.0},
-        { "nearly critical", 2.0, 19.9, 50.0},
-        {            "over", 2.0, 25.0, 50.0},
-        {    "heavily over", 2.0,  2e4, 50.0},
+        {"undamped", 2.0, 0.0, 50.0},
+        {"light", 2.0, 1e-9, 50.0},
+        {"usual", 2.0, 3.0, 50.0},
+        {"nearly critical", 2.0, 19.9, 50.0},
+        {"over", 2.0, 25.0, 50.0},
+        {"heavily over", 2.0, 2e4, 50.0},
         {"negative damping", 2.0, -3.0, 50.0},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
@@ -179,10 +178,7 @@ static void damped__rigid_body_pairs_stand_apart(mt_test *t)
     /* two masses, spring and damper between them; the second row also drags on the ground */
     const double k[4] = {100.0, -100.0, -100.0, 100.0};
     const double m[4] = {1.0, 0.0, 0.0, 4.0};
-    const double c[2][4] = {
-        {1.0, -1.0, -1.0, 1.0},
-        {1.0, -1.0, -1.0, 1.5}
-    };
+    const double c[2][4] = {{1.0, -1.0, -1.0, 1.0}, {1.0, -1.0, -1.0, 1.5}};
     damped s;
     if (damped_solve(t, 2, k, c[0], m, &s)) {
         CHECK_INT(t, s.d.count, 2);
@@ -209,7 +205,8 @@ static void damped__rigid_body_pairs_stand_apart(mt_test *t)
 
 static void damped__spring_and_damper_in_a_row_need_no_mass_between(mt_test *t)
 {
-    /* ground - k0 - mass, and mass - k1 - node - c - ground: (m s^2 + k0)(c s + k1) + k1 c s = 0 */
+    /* ground - k0 - mass, and mass - k1 - node - c - ground: (m s^2 + k0)(c s + k1) + k1 c s =
+     * 0 */
     static const double k0s[] = {30.0, 0.0};
     const double k1 = 80.0;
     const double c1 = 2.0;
@@ -237,7 +234,8 @@ static void damped__spring_and_damper_in_a_row_need_no_mass_between(mt_test *t)
 
 static void damped__massless_nodes_with_and_without_damper(mt_test *t)
 {
-    /* mass - k1 - node - k2 - node with a damper to ground: as one spring k1 k2/(k1 + k2) in that row */
+    /* mass - k1 - node - k2 - node with a damper to ground: as one spring k1 k2/(k1 + k2) in
+     * that row */
     const double k1 = 80.0;
     const double k2 = 240.0;
     const double k = 60.0;
@@ -275,7 +273,8 @@ static void damped__unstable_directions_are_said(mt_test *t)
     mt_arena_free(&s.mem);
 }
 
-/* One body of 1 kg, J = diag(1, 2, 3), 1 m above a ball joint, on a rotational bushing with a damper of 0.01 of its stiffness. */
+/* One body of 1 kg, J = diag(1, 2, 3), 1 m above a ball joint, on a rotational bushing with a
+ * damper of 0.01 of its stiffness. */
 static void damped__body_on_a_damped_bushing(mt_test *t)
 {
     static const double hz[] = {3.53650019, 5.71383732, 8.38400687};

@@ -237,8 +237,8 @@ static void ring(chain *s, double first)
 static void derivative__clusters_split_as_their_matrix_says(mt_test *t)
 {
     enum { R = 6 };
-    const double h =
-        1e-2; /* of 1e4: error h^2 f''' ~ 1e-10 relative, rounding 1e-14 * 1e4 / h = 1e-8 */
+    /* of 1e4: error h^2 f''' ~ 1e-10 relative, rounding 1e-14 * 1e4 / h = 1e-8 */
+    const double h = 1e-2;
     chain s;
     mt_modes modes;
     mt_modes up;

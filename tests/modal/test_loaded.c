@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Stiffnesses far apart with a load on top, K = B^T diag(c) B + G, against thirty digits: what is
- * asked for is n eps (|lambda| + |G|) with a moderate factor, however large c is.
+ * Stiffnesses far apart with a load on top, K = B^T diag(c) B + G, against thirty digits: what
+ * is asked for is n eps (|lambda| + |G|) with a moderate factor, however large c is.
  */
 #include <math.h>
 #include <string.h>

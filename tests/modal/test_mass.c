@@ -179,8 +179,8 @@ static void mass__negative_masses_are_errors(mt_test *t)
     };
     const double m[3][4] = {
         {1.0, 0.0, nil, -1.0},
-        {1.0, 2.0, nil,  1.0},
-        {1.0, 0.5, nil,  0.0},
+        {1.0, 2.0, nil, 1.0},
+        {1.0, 0.5, nil, 0.0},
     };
     const double k[4] = {1.0, 0.0, nil, 1.0};
     for (int r = 0; r < 3; r++) {

@@ -36,11 +36,7 @@ static void modal__two_masses_on_a_wall_match_closed_form(mt_test *t)
         const char *name;
         double m;
         double k;
-    } rows[] = {
-        { "unit",  1.0,    1.0},
-        {"steel",  7.3, 2.1e11},
-        { "soft", 1e-3,   1e-9}
-    };
+    } rows[] = {{"unit", 1.0, 1.0}, {"steel", 7.3, 2.1e11}, {"soft", 1e-3, 1e-9}};
     for (int r = 0; r < MT_COUNT(rows); r++) {
         chain s;
         mt_modes modes;
@@ -417,7 +413,8 @@ static void modal__every_failing_allocation_is_reported(mt_test *t)
     CHECK_INT(t, rc, MT_OK);
 }
 
-/* Two masses of 1 kg on springs of 50 and 90 N/m, the first uncertain by 60 and strained, the second by 100 and not: undecided, and a rigid body's, which is at 0 and comes first. */
+/* Two masses of 1 kg on springs of 50 and 90 N/m, the first uncertain by 60 and strained, the
+ * second by 100 and not: undecided, and a rigid body's, which is at 0 and comes first. */
 static void modal__judged_modes_ascend(mt_test *t)
 {
     const double k[] = {50.0, 0.0, 0.0, 90.0};

@@ -55,7 +55,7 @@ static void values__name_the_parameter_without_a_value(mt_test *t)
         const char *parameters;
         const char *want;
     } rows[] = {
-        {                  "itself",           "\"a\": 1, \"b\": \"ln(a - 1)\"","parameter \"b\" has no finite value"        },
+        {"itself", "\"a\": 1, \"b\": \"ln(a - 1)\"", "parameter \"b\" has no finite value"},
         {"not the one that uses it", "\"u\": \"2*b\", \"b\": \"1/z\", \"z\": 0",
          "parameter \"b\" has no finite value"},
     };
@@ -102,12 +102,7 @@ static void values__of_an_expression(mt_test *t)
     static const struct {
         const char *text;
         double want; /* 0: there is no finite value */
-    } rows[] = {
-        {        "a*b^2", 18.0},
-        {            "7",  7.0},
-        {"1/(b - a - 1)",  0.0},
-        {     "1e308*10",  0.0}
-    };
+    } rows[] = {{"a*b^2", 18.0}, {"7", 7.0}, {"1/(b - a - 1)", 0.0}, {"1e308*10", 0.0}};
     const double values[] = {2.0, 3.0};
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_expr e = {0};

@@ -2,7 +2,8 @@
 #ifndef TESTS_NLP_PROBLEM_H
 #define TESTS_NLP_PROBLEM_H
 
-/* Closed-form problems for the search engine: a callback over plain functions, and its result. */
+/* Closed-form problems for the search engine: a callback over plain functions, and its
+ * result. */
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stationarity where eigenvalues repeat: sum k_i n_i n_i^T = I held at least there, n_i at 0, 60 and 120 degrees, the cost sum w_i k_i. */
+/* Stationarity where eigenvalues repeat: sum k_i n_i n_i^T = I held at least there, n_i at 0,
+ * 60 and 120 degrees, the cost sum w_i k_i. */
 #include <math.h>
 
 #include "mt_test.h"
@@ -34,14 +35,12 @@ static mt_status solve(const double *w, const double *g, double *u, double *z, d
     return rc;
 }
 
-/* n_i^T U n_i = w_i has one solution; the point is stationary where it is positive semidefinite. */
+/* n_i^T U n_i = w_i has one solution; the point is stationary where it is positive
+ * semidefinite. */
 static void cone__three_springs_have_their_multiplier(mt_test *t)
 {
     static const double weights[][SPRINGS] = {
-        {1.0, 1.0, 1.0},
-        {1.0, 1.3, 0.8},
-        {2.0, 0.8, 1.0}
-    };
+        {1.0, 1.0, 1.0}, {1.0, 1.3, 0.8}, {2.0, 0.8, 1.0}};
     double g[4 * SPRINGS];
     slopes(g);
     for (int k = 0; k < MT_COUNT(weights); k++) {
@@ -62,7 +61,8 @@ static void cone__three_springs_have_their_multiplier(mt_test *t)
     }
 }
 
-/* Where U would have a negative eigenvalue, -z lowers the cost and lifts every mode of the cluster. */
+/* Where U would have a negative eigenvalue, -z lowers the cost and lifts every mode of the
+ * cluster. */
 static void cone__the_residual_is_a_way_down(mt_test *t)
 {
     static const double w[SPRINGS] = {1.0, 0.1, 0.1};

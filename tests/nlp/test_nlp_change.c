@@ -64,14 +64,15 @@ static void nlp_change__minima_are_ranked_by_change(mt_test *t)
     mt_arena_free(&c.mem);
 }
 
-/* The start at the origin, on the axis of symmetry, leads to the saddle (0, 1): one start only. */
+/* The start at the origin, on the axis of symmetry, leads to the saddle (0, 1): one start
+ * only. */
 static void nlp_change__saddle_is_left(mt_test *t)
 {
     nlp_case c = {0};
     case_begin(&c, 2, ellipse, -3, 3);
     c.nlp.n_eq = 1;
-    c.origin[0] =
-        1.0; /* towards the vertex (2, 0), a maximum of the distance along the curve: 4/3 < 2 */
+    /* towards the vertex (2, 0), a maximum of the distance along the curve: 4/3 < 2 */
+    c.origin[0] = 1.0;
     mt_nlp_options opt = mt_nlp_options_default();
     opt.starts = 1;
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);
@@ -183,8 +184,8 @@ static void nlp_change__feasible_origin_is_the_answer(mt_test *t)
     mt_arena_free(&c.mem);
 }
 
-/* Only a product is seen: t0 + t1 - s = 0 leaves the least change, and nothing is undetermined for
- * the objective; with an objective that is constant, (1, -1)/sqrt 2 is. */
+/* Only a product is seen: t0 + t1 - s = 0 leaves the least change, and nothing is undetermined
+ * for the objective; with an objective that is constant, (1, -1)/sqrt 2 is. */
 static mt_status product(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
                          mt_err *err)
 {

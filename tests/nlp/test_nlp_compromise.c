@@ -63,8 +63,8 @@ static void nlp_compromise__bounds_are_respected(mt_test *t)
     mt_arena_free(&c.mem);
 }
 
-/* Two local compromises: cos(t) = 1.5 has the nearest values at every multiple of 2 pi; with the
- * second equality t = 1 in weak form they differ, and are ranked by their squares. */
+/* Two local compromises: cos(t) = 1.5 has the nearest values at every multiple of 2 pi; with
+ * the second equality t = 1 in weak form they differ, and are ranked by their squares. */
 static mt_status wave(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
                       mt_err *err)
 {
@@ -135,8 +135,8 @@ static void nlp_compromise__excluding_inequalities_meet_half_way(mt_test *t)
     mt_arena_free(&c.mem);
 }
 
-/* One demand is out of reach (t0 <= 2 < 3), the other, t1 + 2 t2 = 1, leaves a line: of all equal
- * compromises the one of least change, t = (2, 1/5, 2/5), and only that. */
+/* One demand is out of reach (t0 <= 2 < 3), the other, t1 + 2 t2 = 1, leaves a line: of all
+ * equal compromises the one of least change, t = (2, 1/5, 2/5), and only that. */
 static mt_status line(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
                       mt_err *err)
 {
@@ -204,7 +204,8 @@ static void nlp_compromise__least_change_also_on_a_curve(mt_test *t)
     mt_arena_free(&c.mem);
 }
 
-/* t_0 = 0 and t_0 = 0.1 - 1e-4 t_1: t_1 at its bound would miss by 7e-5 less, which is less than the demands' tolerance of 1e-3. */
+/* t_0 = 0 and t_0 = 0.1 - 1e-4 t_1: t_1 at its bound would miss by 7e-5 less, which is less
+ * than the demands' tolerance of 1e-3. */
 static mt_status weakly_seen(void *context, const double *t, bool with_gradient,
                              mt_nlp_values *out, mt_err *err)
 {

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Roots that are hard to meet: the search goes on until every root was met twice, or says how many may be missing. */
+/* Roots that are hard to meet: the search goes on until every root was met twice, or says how
+ * many may be missing. */
 #include "nlp_problem.h"
 
-/* eq_j = (t_j + 0.9) (t_j - 0.5): 2^n roots; Newton's basins of t_j meet at -0.2, 0.4 : 0.6 of the bounds -1 to 1. */
+/* eq_j = (t_j + 0.9) (t_j - 0.5): 2^n roots; Newton's basins of t_j meet at -0.2, 0.4 : 0.6 of
+ * the bounds -1 to 1. */
 enum { PAIRS = 4, ROOTS = 16, FEW = 24 };
 
 static mt_status pairs(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
@@ -107,7 +109,8 @@ static void nlp_coverage__any_number_of_workers_finds_the_same(mt_test *t)
     mt_arena_free(&c[1].mem);
 }
 
-/* t_0 = t_1, twice: a curve of roots, each met once by its start. No number of starts would meet one twice. */
+/* t_0 = t_1, twice: a curve of roots, each met once by its start. No number of starts would
+ * meet one twice. */
 static mt_status diagonal(void *context, const double *t, bool with_gradient,
                           mt_nlp_values *out, mt_err *err)
 {

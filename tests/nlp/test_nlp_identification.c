@@ -136,7 +136,8 @@ static void nlp_identification__nonlinear_converges_to_1e9(mt_test *t)
 }
 
 /* Parameter estimation like a misfit of shapes: y_k = a exp(-b x_k) sampled with a known error,
- * a, b in logarithms; the gradient of 1/2 |r|^2 at the end must vanish, by the callback itself. */
+ * a, b in logarithms; the gradient of 1/2 |r|^2 at the end must vanish, by the callback
+ * itself. */
 enum { SAMPLES = 12 };
 static mt_status decay(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
                        mt_err *err)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where optimisers go wrong: bad starts, missing values, budgets, failing callbacks, equal bytes. */
+/* Where optimisers go wrong: bad starts, missing values, budgets, failing callbacks, equal
+ * bytes. */
 #include "nlp_problem.h"
 
 enum { TUTORIAL_SIDE = 5 };
@@ -150,7 +151,8 @@ static void bumps_case(nlp_case *c, int n)
     fatal_call = -1;
 }
 
-/* Every start has an even share of the budget, so a start that ends early leaves some unused. */
+/* Every start has an even share of the budget, so a start that ends early leaves some
+ * unused. */
 static void nlp_robust__budget_is_never_exceeded(mt_test *t)
 {
     nlp_case c = {0};

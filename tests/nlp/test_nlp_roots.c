@@ -3,10 +3,10 @@
 #include "nlp_problem.h"
 
 /*
- * Two unit masses in a row on springs k1 (to ground) and k2 (between): K = [[k1+k2, -k2], [-k2, k2]],
- * lambda = (a -+ s)/2, a = k1 + 2 k2, s = sqrt(a^2 - 4 k1 k2).
- * t = ln k, eq_i = ln(lambda_i/target_i)/2, the logarithm of a frequency ratio.
- * sum a and product k1 k2 give a quadratic for k1: two designs have the same frequencies.
+ * Two unit masses in a row on springs k1 (to ground) and k2 (between): K = [[k1+k2, -k2], [-k2,
+ * k2]], lambda = (a -+ s)/2, a = k1 + 2 k2, s = sqrt(a^2 - 4 k1 k2). t = ln k, eq_i =
+ * ln(lambda_i/target_i)/2, the logarithm of a frequency ratio. sum a and product k1 k2 give a
+ * quadratic for k1: two designs have the same frequencies.
  */
 static mt_status chain(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
                        mt_err *err)
@@ -66,10 +66,7 @@ static void nlp_roots__chain_finds_both_spring_pairs_ranked(mt_test *t)
     CHECK_INT(t, c.result.n_undetermined, 0);
     CHECK_INT(t, c.result.stop, MT_STOP_DONE);
     CHECK_INT(t, c.result.evals, c.calls);
-    static const double want[2][2] = {
-        {3,   1},
-        {2, 1.5}
-    };
+    static const double want[2][2] = {{3, 1}, {2, 1.5}};
     for (int i = 0; i < 2 && i < c.result.n_solutions; i++) {
         const mt_nlp_solution *const s = &c.result.solutions[i];
         mt_test_row(t, "solution %d", i + 1);

@@ -43,8 +43,8 @@ static double *starts_in(box *b, int n, unsigned long seed, mt_nlp_engine *e)
     return t;
 }
 
-/* Every variable has a third of the points in each half, at least: a generator that returns zeros,
- * or repeats a column, does not. */
+/* Every variable has a third of the points in each half, at least: a generator that returns
+ * zeros, or repeats a column, does not. */
 static void nlp_starts__fill_the_bounds_in_any_dimension(mt_test *t)
 {
     static box b;
@@ -65,7 +65,8 @@ static void nlp_starts__fill_the_bounds_in_any_dimension(mt_test *t)
                 inside = inside && (j == 1 ? x == 5 : x >= 2 && x <= 6);
                 low += x < 4;
             }
-            /* pseudo-random columns (beyond 1229) may be off by four deviations of sqrt(32)/2 */
+            /* pseudo-random columns (beyond 1229) may be off by four deviations of
+             * sqrt(32)/2 */
             const int least = n <= 1230 ? 10 : 4;
             balanced = balanced && (j == 1 || (low >= least && low <= STARTS - 1 - least));
         }

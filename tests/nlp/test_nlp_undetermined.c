@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * What the goals do not settle, and what only looks so: through a corner of the bounds no direction has room, and "nothing
- * changes along it" is then no finding. Random problems with originals on the bounds, against a search on nested grids.
+ * What the goals do not settle, and what only looks so: through a corner of the bounds no
+ * direction has room, and "nothing changes along it" is then no finding. Random problems with
+ * originals on the bounds, against a search on nested grids.
  */
 #include "nlp_problem.h"
 
@@ -29,7 +30,8 @@ typedef struct springs_case {
     bool least_sum;   /* the objective is the sum of the stiffnesses, not the change */
 } springs_case;
 
-/* ln of omega^2 and its slopes: lambda = (a + b)/2 +- sqrt(((a - b)/2)^2 + c^2), a = (k0 + k1)/m0, b = (k1 + k2)/m1. */
+/* ln of omega^2 and its slopes: lambda = (a + b)/2 +- sqrt(((a - b)/2)^2 + c^2), a = (k0 +
+ * k1)/m0, b = (k1 + k2)/m1. */
 static double ln_lambda(const springs_case *s, const double *t, double *slope)
 {
     const double k[] = {exp(t[0]), exp(t[1]), exp(t[2])};
@@ -115,8 +117,8 @@ static void make(springs_case *s, uint64_t *state)
     s->c.nlp.context = s;
 }
 
-/* Least objective over t[2] with t[0], t[1] as they are; HUGE_VAL where the demand cannot be met. lambda rises with every
- * spring: what meets the demand is an interval. */
+/* Least objective over t[2] with t[0], t[1] as they are; HUGE_VAL where the demand cannot be
+ * met. lambda rises with every spring: what meets the demand is an interval. */
 static double best_third(const springs_case *s, double *t)
 {
     double low = s->c.lower[2];
@@ -144,7 +146,8 @@ static double best_third(const springs_case *s, double *t)
     return objective(s, t, NULL);
 }
 
-/* An upper bound of the least objective, near it: a grid over two variables, then finer ones around its best. */
+/* An upper bound of the least objective, near it: a grid over two variables, then finer ones
+ * around its best. */
 static double on_grids(const springs_case *s)
 {
     double low[2] = {s->c.lower[0], s->c.lower[1]};
@@ -175,8 +178,8 @@ static double on_grids(const springs_case *s)
 
 static void nlp_undetermined__originals_on_bounds_do_not_spoil_optima(mt_test *t)
 {
-    static const double REACHED =
-        1e-6; /* of the objective: the tolerance of a demand buys about so much */
+    /* of the objective: the tolerance of a demand buys about so much */
+    static const double REACHED = 1e-6;
     uint64_t state = 20260207;
     springs_case s = {.kind = TARGET};
     int judged = 0;
@@ -223,8 +226,8 @@ static mt_status difference(void *context, const double *t, bool with_gradient,
 static void nlp_undetermined__a_combination_through_a_corner_is_still_found(mt_test *t)
 {
     nlp_case c = {0};
-    case_begin(&c, 2, difference, 0,
-               1); /* origin (0, 0): no room along (1, 1) in one direction */
+    /* origin (0, 0): no room along (1, 1) in one direction */
+    case_begin(&c, 2, difference, 0, 1);
     c.nlp.n_eq = 1;
     const mt_nlp_options opt = mt_nlp_options_default();
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);
@@ -235,7 +238,8 @@ static void nlp_undetermined__a_combination_through_a_corner_is_still_found(mt_t
     mt_arena_free(&c.mem);
 }
 
-/* At (1, 0), the only point with t0 - t1 = 1, nothing can move along (1, 1); rounding of a bound is no room. */
+/* At (1, 0), the only point with t0 - t1 = 1, nothing can move along (1, 1); rounding of a
+ * bound is no room. */
 static void nlp_undetermined__no_room_at_the_solution_is_no_direction(mt_test *t)
 {
     static const double SHORT[] = {0, 1e-15, 1e-12, 1e-4};

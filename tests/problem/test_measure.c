@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How the change of a variable counts: ln(new/original), smoothly down to 0 where 0 is allowed; what else it is, is told. */
+/* How the change of a variable counts: ln(new/original), smoothly down to 0 where 0 is allowed;
+ * what else it is, is told. */
 #include "mt_random.h"
 #include "problem/problem.h"
 #include "study_fixture.h"
 
-/* Kept equations hold to 1e-6 relative; an optimum of a smooth change is then good to about that. */
+/* Kept equations hold to 1e-6 relative; an optimum of a smooth change is then good to about
+ * that. */
 static const double SAME = 1e-9;
 static const double ROUNDING = 1e-14;
 
@@ -32,7 +34,8 @@ static void coordinates__are_smooth_and_invert(mt_test *t)
             mt_problem_x(p, &at, &back);
             CHECK_NEAR_ABS(t, back, x, ROUNDING * fmax(x, p->floor[0]));
             CHECK(t, at > before);
-            /* a difference across the floor is wrong by the jump of the curvature, h/floor^2/2 */
+            /* a difference across the floor is wrong by the jump of the curvature,
+             * h/floor^2/2 */
             CHECK_NEAR(t, (mt_problem_t(p, 0, x + h) - mt_problem_t(p, 0, x - h)) / (2.0 * h),
                        1.0 / mt_problem_stretch_at(p, 0, x), 2e-7);
             before = at;
@@ -44,7 +47,8 @@ static void coordinates__are_smooth_and_invert(mt_test *t)
     study_free(&c);
 }
 
-/* The least change for a frequency, with a lower bound that does nothing: the answer is one, to rounding, and between random problems never another. */
+/* The least change for a frequency, with a lower bound that does nothing: the answer is one, to
+ * rounding, and between random problems never another. */
 static void inactive_lower_bound__changes_nothing(mt_test *t)
 {
     static const char *const lower[] = {"0.3", "1e-3", "1e-12", "0"};
@@ -81,7 +85,8 @@ static void inactive_lower_bound__changes_nothing(mt_test *t)
     }
 }
 
-/* A mass that may go: the frequency asks for less of it than there is, the objective for none. */
+/* A mass that may go: the frequency asks for less of it than there is, the objective for
+ * none. */
 static void zero__is_reached_where_it_is_best(mt_test *t)
 {
     study_case c;
@@ -120,16 +125,16 @@ static void measure__is_told_and_makes_the_change(mt_test *t)
         double scale;
         double least;
     } rows[] = {
-        {"k1",               "'lower': 0.1, 'upper': 9",  0.0,  0.0},
-        {"k1",                 "'lower': 0, 'upper': 9",  0.0, 2e-3},
-        {"k1",                "'lower': -1, 'upper': 9", 10.0,  0.0},
-        {"k1",   "'lower': 0.1, 'upper': 9, 'scale': 3",  3.0,  0.0},
-        {"k1",     "'lower': 0, 'upper': 9, 'scale': 3",  3.0,  0.0},
-        {"k1",    "'catalogue': [0, 1, 2.5, 3, 3.5, 4]",  0.0, 2e-3},
-        {"k1",          "'catalogue': [1, 2.5, 3, 3.5]",  0.0,  0.0},
-        { "z",                 "'lower': 0, 'upper': 5",  5.0,  0.0},
-        { "n",               "'lower': -8, 'upper': -1",  7.0,  0.0},
-        { "n", "'lower': -8, 'upper': -1, 'scale': 0.5",  0.5,  0.0},
+        {"k1", "'lower': 0.1, 'upper': 9", 0.0, 0.0},
+        {"k1", "'lower': 0, 'upper': 9", 0.0, 2e-3},
+        {"k1", "'lower': -1, 'upper': 9", 10.0, 0.0},
+        {"k1", "'lower': 0.1, 'upper': 9, 'scale': 3", 3.0, 0.0},
+        {"k1", "'lower': 0, 'upper': 9, 'scale': 3", 3.0, 0.0},
+        {"k1", "'catalogue': [0, 1, 2.5, 3, 3.5, 4]", 0.0, 2e-3},
+        {"k1", "'catalogue': [1, 2.5, 3, 3.5]", 0.0, 0.0},
+        {"z", "'lower': 0, 'upper': 5", 5.0, 0.0},
+        {"n", "'lower': -8, 'upper': -1", 7.0, 0.0},
+        {"n", "'lower': -8, 'upper': -1, 'scale': 0.5", 0.5, 0.0},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         study_case c;

@@ -99,7 +99,8 @@ static double hz_1(mt_test *t, six *s, const double *x)
     return mt_modal_hz(&s->a->modes, mt_modal_flexible(&s->a->modes, 1));
 }
 
-/* All six springs 2 % softer: the whole stiffness times 0.98, every frequency times its root. */
+/* All six springs 2 % softer: the whole stiffness times 0.98, every frequency times its
+ * root. */
 static void robust__a_limit_is_met_exactly_at_its_corner(mt_test *t)
 {
     static const struct {
@@ -109,7 +110,7 @@ static void robust__a_limit_is_met_exactly_at_its_corner(mt_test *t)
         double want;
     } rows[] = {
         {"at least", 7.2, 9.0, 7.2 / 0.98994949366116653},
-        { "at most", 5.0, 6.5, 6.5 / 1.00995049383620780},
+        {"at most", 5.0, 6.5, 6.5 / 1.00995049383620780},
     };
     for (int k = 0; k < MT_COUNT(rows); k++) {
         six s;
@@ -164,7 +165,8 @@ static void robust__catalogues_are_judged_at_the_corners(mt_test *t)
     six_end(&s);
 }
 
-/* Rows of a range of frequencies: slopes of the corners' modes against differences of the rows. */
+/* Rows of a range of frequencies: slopes of the corners' modes against differences of the
+ * rows. */
 static void check_slopes(mt_test *t, mt_problem *p, mt_arena *mem)
 {
     mt_err err = {.text = ""};
@@ -257,7 +259,8 @@ static void robust__a_target_is_met_by_the_design_and_its_range_reported(mt_test
     six_end(&s);
 }
 
-/* A larger lower mass raises the second frequency: gravity loads the mechanism, and the worst corner is found by trying. */
+/* A larger lower mass raises the second frequency: gravity loads the mechanism, and the worst
+ * corner is found by trying. */
 static void robust__a_loaded_mechanism_is_sampled(mt_test *t)
 {
     mt_err err = {.text = ""};

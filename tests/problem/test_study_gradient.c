@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The whole callback of the search against central differences: every row of every kind of goal, every objective, every coordinate. */
+/* The whole callback of the search against central differences: every row of every kind of
+ * goal, every objective, every coordinate. */
 #include "mt_slope.h"
 #include "problem/problem.h"
 #include "study_fixture.h"
@@ -40,7 +41,8 @@ typedef struct probe {
     const double *at; /* the entry that is looked at */
 } probe;
 
-/* Plus one: rows that are held are 0 here, and their noise is that of the residuals, which are of order one. */
+/* Plus one: rows that are held are 0 here, and their noise is that of the residuals, which are
+ * of order one. */
 static double entry(const void *context, int n, const double *t)
 {
     const probe *const q = context;
@@ -86,7 +88,8 @@ static void check_stage(mt_test *t, mt_problem *p, double *at, mt_arena *mem)
     }
 }
 
-/* The four-bar under gravity (loops, equilibrium) beside the same without gravity; logarithmic and linear variables; every goal and objective there is. */
+/* The four-bar under gravity (loops, equilibrium) beside the same without gravity; logarithmic
+ * and linear variables; every goal and objective there is. */
 static const char *const EVERYTHING =
     "'variables': [{'parameter': 'a', 'lower': 0.1, 'upper': 0.2},"
     " {'parameter': 'm_c', 'lower': 1, 'upper': 4, 'weight': 2},"

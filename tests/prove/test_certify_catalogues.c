@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Branch and bound over catalogues against brute force: random chains of masses with lists of values, beside continuous variables or not. Every combination is judged by a fresh analysis, the
- * continuous ones at many values: none may have what is excluded, and none may be better than what a cap proves to be the best.
+ * Branch and bound over catalogues against brute force: random chains of masses with lists of
+ * values, beside continuous variables or not. Every combination is judged by a fresh analysis,
+ * the continuous ones at many values: none may have what is excluded, and none may be better
+ * than what a cap proves to be the best.
  */
 #include <stdarg.h>
 #include <stdlib.h>
@@ -129,7 +131,8 @@ static bool begin(mt_test *t, int seed, int continuous, rig *g)
     return true;
 }
 
-/* How many modes lie below the band at x; -1: the design does not meet the question, by more than the tolerance. */
+/* How many modes lie below the band at x; -1: the design does not meet the question, by more
+ * than the tolerance. */
 static int kind_of(mt_test *t, rig *g, const double *x, double tolerance)
 {
     const mt_analysis_options opt = mt_analysis_options_default();
@@ -169,7 +172,8 @@ static void place(rig *g, const int *pick, double *x)
     }
 }
 
-/* A sum that has its least value at other designs than the middle: least over a box by its corners. */
+/* A sum that has its least value at other designs than the middle: least over a box by its
+ * corners. */
 static double cost(void *context, const double *lo, const double *hi)
 {
     const rig *const g = context;

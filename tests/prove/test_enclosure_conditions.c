@@ -3,7 +3,8 @@
 #include "mechanics/mech.h"
 #include "prove/certify.h"
 
-/* Two masses on rails, one spring to the ground, one between them. The texts in place: where the first mass is, the masses, the first spring and more members of it, the second. */
+/* Two masses on rails, one spring to the ground, one between them. The texts in place: where
+ * the first mass is, the masses, the first spring and more members of it, the second. */
 static const char *const PAIR =
     "{\"format\": \"modetune-model/1\", \"name\": \"pair\", \"dimension\": 2,"
     "\"parameters\": {\"k1\": 1e4, \"k2\": 2e4, \"m1\": 2, \"m2\": 1, \"L\": 1, \"F\": 0},"
@@ -81,48 +82,58 @@ static void enclosure__conditions_are_checked_and_named(mt_test *t)
         double share[2];
         const char *reason; /* NULL: a certificate */
     } rows[] = {
-        {                             "plain",{"m1", "m2", "L", "k1", "", "k2"},"k1 k2 m1 m2",  {0.5, 2.0},         NULL                                                                                                             },
-        {            "springs may go to zero", {"m1", "m2", "L", "k1", "", "k2"},          "k1",  {0.0, 2.0},                                     NULL},
-        {                          "a length",
+        {"plain", {"m1", "m2", "L", "k1", "", "k2"}, "k1 k2 m1 m2", {0.5, 2.0}, NULL},
+        {"springs may go to zero", {"m1", "m2", "L", "k1", "", "k2"}, "k1", {0.0, 2.0}, NULL},
+        {"a length",
          {"m1", "m2", "L", "k1", "", "k2"},
-         "k1 L",  {0.5, 2.0},
-         "parameter \"L\" shapes the geometry"                                                                                                        },
-        {         "a length that is no input",
+         "k1 L",
+         {0.5, 2.0},
+         "parameter \"L\" shapes the geometry"},
+        {"a length that is no input",
          {"m1", "m2", "L", "k1*L", "", "k2"},
-         "k1",  {0.5, 2.0},
-         NULL                                                                                                                                         },
-        {                         "a preload",
+         "k1",
+         {0.5, 2.0},
+         NULL},
+        {"a preload",
          {"m1", "m2", "L", "k1", ", \"preload_n\": \"F\"", "k2"},
-         "k1",  {0.5, 2.0},
-         "spring \"s1\" is preloaded"                                                                                                                 },
-        {            "a stiffness below zero",
+         "k1",
+         {0.5, 2.0},
+         "spring \"s1\" is preloaded"},
+        {"a stiffness below zero",
          {"m1", "m2", "L", "k1 - 4000", "", "k2"},
-         "k1", {0.25, 2.0},
-         "stiffness of \"s1\" may be negative within the bounds"                                                                                      },
-        {  "a stiffness that may be anything",
+         "k1",
+         {0.25, 2.0},
+         "stiffness of \"s1\" may be negative within the bounds"},
+        {"a stiffness that may be anything",
          {"m1", "m2", "L", "1e8/(k1 - 5e3)", "", "k2"},
-         "k1",  {0.5, 2.0},
-         "stiffness of \"s1\" may be negative within the bounds"                                                                                      },
-        {        "a stiffness that overflows",
+         "k1",
+         {0.5, 2.0},
+         "stiffness of \"s1\" may be negative within the bounds"},
+        {"a stiffness that overflows",
          {"m1", "m2", "L", "exp(k1/13 - 760)", "", "k2"},
-         "k1",  {0.5, 2.0},
-         "stiffness of \"s1\" may be without limit within the bounds"                                                                                 },
-        {           "a mass that is negative",
+         "k1",
+         {0.5, 2.0},
+         "stiffness of \"s1\" may be without limit within the bounds"},
+        {"a mass that is negative",
          {"m1", "m2 - 0.7", "L", "k1", "", "k2"},
-         "m2",  {0.5, 2.0},
-         "mass of \"b\" may be negative within the bounds"                                                                                            },
-        {              "a mass that vanishes",
+         "m2",
+         {0.5, 2.0},
+         "mass of \"b\" may be negative within the bounds"},
+        {"a mass that vanishes",
          {"m1", "m2", "L", "k1", "", "k2"},
-         "m2",  {0.0, 2.0},
-         "mass of \"b\" may vanish within the bounds"                                                                                                 },
+         "m2",
+         {0.0, 2.0},
+         "mass of \"b\" may vanish within the bounds"},
         {"a massless body on varying springs",
          {"0", "m2", "L", "k1", "", "k2"},
-         "k1 m2",  {0.5, 2.0},
-         "spring \"s1\" acts on a massless freedom"                                                                                                   },
-        {  "a massless body on fixed springs",
+         "k1 m2",
+         {0.5, 2.0},
+         "spring \"s1\" acts on a massless freedom"},
+        {"a massless body on fixed springs",
          {"0", "m2", "L", "k1", "", "k2"},
-         "m2",  {0.5, 2.0},
-         NULL                                                                                                                                         },
+         "m2",
+         {0.5, 2.0},
+         NULL},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         rig r;
@@ -172,7 +183,8 @@ static void enclosure__a_coupling_of_either_sign_is_bounded_or_named(mt_test *t)
         "[0, 0, 0, 0, \"k\", 0], [0, 0, 0, 0, 0, \"k\"]]}],"
         "\"configurations\": {\"one\": {}}}";
     if (enclose(t, mech_parse(t, text), NULL, "c", WIDE, &r) && CHECK(t, r.e != NULL)) {
-        /* x and y: k + c and k - c over m = 1, modes 6 and 3 beside k/3, k/2, k, k; sum and difference of x and y are these modes, so the bounds are tight */
+        /* x and y: k + c and k - c over m = 1, modes 6 and 3 beside k/3, k/2, k, k; sum and
+         * difference of x and y are these modes, so the bounds are tight */
         static const double lo[1] = {80.0};
         static const double hi[1] = {120.0};
         double low[6];
@@ -208,7 +220,8 @@ static void enclosure__a_coupling_of_either_sign_is_bounded_or_named(mt_test *t)
     end(&r);
 }
 
-/* Stiffnesses that lie 1e10 apart: the slack is that of the stiff ones, and bounds stay bounds. */
+/* Stiffnesses that lie 1e10 apart: the slack is that of the stiff ones, and bounds stay
+ * bounds. */
 static void enclosure__stiffnesses_far_apart_stay_enclosed(mt_test *t)
 {
     rig r;
@@ -258,20 +271,26 @@ static void enclosure__an_edge_that_is_touched_exactly(mt_test *t)
         } rows[] = {
             {"mode 1 on the lower edge",
              {0, f1, 0.5 * (f1 + f2), 0.0},
-             below_1,  f1,
-             1,  true,
-             false                                                                           },
-            {"mode 1 on the upper edge", {0, 0.5 * f1, f1, 0.0}, below_0,  f1, 1,  true, true},
+             below_1,
+             f1,
+             1,
+             true,
+             false},
+            {"mode 1 on the upper edge", {0, 0.5 * f1, f1, 0.0}, below_0, f1, 1, true, true},
             {"mode 2 on the upper edge",
              {0, 0.5 * (f1 + f2), f2, 0.0},
-             below_1,  f2,
-             2,  true,
-             true                                                                            },
-            { "just off the lower edge",
+             below_1,
+             f2,
+             2,
+             true,
+             true},
+            {"just off the lower edge",
              {0, off, 0.5 * (f1 + f2), 0.0},
-             below_1, off,
-             1, false,
-             false                                                                           },
+             below_1,
+             off,
+             1,
+             false,
+             false},
         };
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
             mt_tolerance all;
@@ -290,7 +309,8 @@ static void enclosure__an_edge_that_is_touched_exactly(mt_test *t)
                 CHECK(t, each[k].percent >= all.percent);
                 CHECK(t, !rows[i].zero || each[k].percent == 0.0);
             }
-            /* touching is feasible: the assignment is never excluded, not even in the box that is this one design */
+            /* touching is feasible: the assignment is never excluded, not even in the box that
+             * is this one design */
             mt_verdict verdict;
             c.lower = r.s.at;
             c.upper = r.s.at;
@@ -303,7 +323,8 @@ static void enclosure__an_edge_that_is_touched_exactly(mt_test *t)
     end(&r);
 }
 
-/* All stiffnesses together and all masses together: f goes with sqrt(k/m), so the largest percentage is known: ((1 + p)/(1 - p))^(1/2) = edge / f. */
+/* All stiffnesses together and all masses together: f goes with sqrt(k/m), so the largest
+ * percentage is known: ((1 + p)/(1 - p))^(1/2) = edge / f. */
 static void enclosure__a_tolerance_box_is_as_large_as_it_can_be(mt_test *t)
 {
     rig r;
@@ -406,12 +427,12 @@ static void enclosure__bands_are_counted_by_inertia_alone(mt_test *t)
             int below;
             int inside;
         } rows[] = {
-            {           "none",      f3 * 1.01,      f3 * 1.02, 3, 0},
-            {            "one",      f3 * 0.99,      f3 * 1.01, 2, 1},
-            {"on the low edge",             f3,      f3 * 1.01, 3, 0},
-            {"on the top edge",      f3 * 0.99,             f3, 2, 0},
-            {      "from zero",            0.0,      f3 * 1.01, 0, 3},
-            {     "everything", f3 / 1000000.0, f3 * 1000000.0, 0, 8},
+            {"none", f3 * 1.01, f3 * 1.02, 3, 0},
+            {"one", f3 * 0.99, f3 * 1.01, 2, 1},
+            {"on the low edge", f3, f3 * 1.01, 3, 0},
+            {"on the top edge", f3 * 0.99, f3, 2, 0},
+            {"from zero", 0.0, f3 * 1.01, 0, 3},
+            {"everything", f3 / 1000000.0, f3 * 1000000.0, 0, 8},
         };
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
             mt_band_count n;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Row of six masses: m = (2, 1.5, 1, 1, 0.8, 0.5) kg, k = (4, 3, 2, 2, 1.5, 1)e4 exp(x) N/m, four bands. All 210 monotone assignments are settled. */
+/* Row of six masses: m = (2, 1.5, 1, 1, 0.8, 0.5) kg, k = (4, 3, 2, 2, 1.5, 1)e4 exp(x) N/m,
+ * four bands. All 210 monotone assignments are settled. */
 #include "mechanics/mech.h"
 #include "prove/certify.h"
 #include "support/mt_alloc.h"
@@ -8,12 +9,10 @@ enum { N = 6, BANDS = 4 };
 
 static const double LN_2 = 0.69314718055994530942;
 
-static const mt_certify_band BAND[BANDS] = {
-    {0,  3.87,  4.73, 1e-6},
-    {0,  7.74,  9.46, 1e-6},
-    {0, 15.48, 18.92, 1e-6},
-    {0, 30.96, 37.84, 1e-6}
-};
+static const mt_certify_band BAND[BANDS] = {{0, 3.87, 4.73, 1e-6},
+                                            {0, 7.74, 9.46, 1e-6},
+                                            {0, 15.48, 18.92, 1e-6},
+                                            {0, 30.96, 37.84, 1e-6}};
 
 typedef struct rig {
     mech s;
@@ -209,11 +208,9 @@ static void enclosure__a_frequency_out_of_reach_is_proven_so(mt_test *t)
         const double f1 = mech_hz(&r.s, 1);
         const double root = sqrt(2.0);
         const mt_certify_limit limit[] = {
-            {0, 1,         f1 * 1.5,          nan(""), 1e-6},
-            {0, 1,          nan(""),         f1 / 1.5, 1e-6},
-            {0, 1,         f1 * 1.2,         f1 * 1.2, 1e-6},
-            {0, 1, f1 * root * 1.01, f1 * root * 1.01, 1e-6},
-            {0, 7,              1.0,          nan(""), 1e-6},
+            {0, 1, f1 * 1.5, nan(""), 1e-6},  {0, 1, nan(""), f1 / 1.5, 1e-6},
+            {0, 1, f1 * 1.2, f1 * 1.2, 1e-6}, {0, 1, f1 * root * 1.01, f1 * root * 1.01, 1e-6},
+            {0, 7, 1.0, nan(""), 1e-6},
         };
         static const mt_verdict want[] = {MT_VERDICT_IMPOSSIBLE, MT_VERDICT_IMPOSSIBLE,
                                           MT_VERDICT_POSSIBLE, MT_VERDICT_IMPOSSIBLE,
@@ -238,7 +235,8 @@ static void enclosure__a_frequency_out_of_reach_is_proven_so(mt_test *t)
     end(&r);
 }
 
-/* Where the first mass alone between its springs would have the frequency asked about, the first pivot vanishes and the factorisation without pivoting says nothing. */
+/* Where the first mass alone between its springs would have the frequency asked about, the
+ * first pivot vanishes and the factorisation without pivoting says nothing. */
 static void enclosure__a_pivot_that_vanishes_calls_for_pivoting(mt_test *t)
 {
     rig r;

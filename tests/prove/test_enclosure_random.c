@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Certificates against brute force: over many small random systems, no sampled design has what a certificate excludes, and no design inside a tolerance box fails.
- * Two configurations each: chains of masses (free or held, springs and masses by expressions of parameters, also such in which one occurs twice), and trusses whose
- * areas enter stiffness and mass.
+ * Certificates against brute force: over many small random systems, no sampled design has what
+ * a certificate excludes, and no design inside a tolerance box fails. Two configurations each:
+ * chains of masses (free or held, springs and masses by expressions of parameters, also such in
+ * which one occurs twice), and trusses whose areas enter stiffness and mass.
  */
 #include <stdarg.h>
 #include <stdlib.h>
@@ -198,7 +199,8 @@ static double hz(const mt_analysis *a, int mode)
     return at < 0 ? nan("") : mt_modal_hz(&a->modes, at);
 }
 
-/* Bands about the original frequencies: two of view 0, in order, and one of view 1; one alone where the two overlap. */
+/* Bands about the original frequencies: two of view 0, in order, and one of view 1; one alone
+ * where the two overlap. */
 static void choose_bands(rig *g)
 {
     mt_random *const r = &g->w.r;
@@ -262,7 +264,8 @@ static bool begin(mt_test *t, int seed, rig *g)
     return true;
 }
 
-/* Modes in both views at x; how many lie below each band. False where one lies in a band by more than `tolerance`. */
+/* Modes in both views at x; how many lie below each band. False where one lies in a band by
+ * more than `tolerance`. */
 static bool feasible(mt_test *t, rig *g, const double *x, double tolerance, int *below)
 {
     const mt_analysis_options opt = mt_analysis_options_default();
@@ -361,7 +364,8 @@ static bool agrees(const mt_certify *c, const int *same_as, const int *below)
     return true;
 }
 
-/* Of two proven answers the one with tied bands has the assignments of the free one in which they agree, and no other. */
+/* Of two proven answers the one with tied bands has the assignments of the free one in which
+ * they agree, and no other. */
 static void enclosure__tied_bands_leave_what_agrees(mt_test *t)
 {
     static const int same_as[BANDS] = {
@@ -451,7 +455,8 @@ static void enclosure__every_sample_lies_in_the_ranges(mt_test *t)
     }
 }
 
-/* Sample the box of `percent` (of one input, or of all: alone = -1): the bands stay empty, the assignment stays. */
+/* Sample the box of `percent` (of one input, or of all: alone = -1): the bands stay empty, the
+ * assignment stays. */
 static void check_inside(mt_test *t, rig *g, const double *x, double percent, int alone,
                          const int *assignment)
 {
@@ -471,7 +476,8 @@ static void check_inside(mt_test *t, rig *g, const double *x, double percent, in
     }
 }
 
-/* Where each input enters K alone or M alone, and one way only, the soft or stiff corner of a slightly larger box breaks an edge. */
+/* Where each input enters K alone or M alone, and one way only, the soft or stiff corner of a
+ * slightly larger box breaks an edge. */
 static bool tight(mt_test *t, rig *g, const double *x, double percent)
 {
     double lo[MECH_INPUTS];

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Sizing: sections, areas, masses and moduli enter stiffness and mass, not positions, so their certificates are held against brute force: frames of beams in the plane and in space, trusses in
- * space, links of rigid elements, random sections. No fresh analysis of a sampled design may lie outside what is proven for its box.
+ * Sizing: sections, areas, masses and moduli enter stiffness and mass, not positions, so their
+ * certificates are held against brute force: frames of beams in the plane and in space, trusses
+ * in space, links of rigid elements, random sections. No fresh analysis of a sampled design may
+ * lie outside what is proven for its box.
  */
 #include <stdarg.h>
 #include <stdlib.h>
@@ -160,15 +162,8 @@ static void frame_3(writer *w)
 /* Two free points in space, each held by bars from the ground, with one between them. */
 static void truss_3(writer *w)
 {
-    static const char *const HELD[7][2] = {
-        {"g0", "u"},
-        {"g1", "u"},
-        {"g2", "u"},
-        {"g1", "v"},
-        {"g2", "v"},
-        {"g3", "v"},
-        { "u", "v"}
-    };
+    static const char *const HELD[7][2] = {{"g0", "u"}, {"g1", "u"}, {"g2", "u"}, {"g1", "v"},
+                                           {"g2", "v"}, {"g3", "v"}, {"u", "v"}};
     put(w, "{\"format\": \"modetune-model/1\", \"name\": \"truss\", \"dimension\": 3, "
            "\"points\": {\"g0\": [0, 0, 0], \"g1\": [1, 0, 0.1], \"g2\": [0.5, 1, 0], "
            "\"g3\": [2, 0.5, 0], \"nu\": [0.4, 0.4, 0.9], \"nv\": [1.3, 0.4, 1.1]}, "
@@ -217,7 +212,8 @@ static void links(writer *w, bool space)
         space ? ", 0" : "");
 }
 
-/* A semidefinite n x n matrix, times a parameter each (`common`), or with a parameter in each coupling: those are small against the diagonal. Lower entries as texts. */
+/* A semidefinite n x n matrix, times a parameter each (`common`), or with a parameter in each
+ * coupling: those are small against the diagonal. Lower entries as texts. */
 static void matrix(writer *w, int n, double scale, bool common, char entry[6][6][64])
 {
     double a[6][6];
@@ -455,7 +451,8 @@ static bool among(const int *list, int n, int one)
     return false;
 }
 
-/* No sample has an assignment that is excluded, and none in the tolerance box of a design leaves its own. */
+/* No sample has an assignment that is excluded, and none in the tolerance box of a design
+ * leaves its own. */
 static void check_band(mt_test *t, rig *g, tally *n)
 {
     const int mode = 1 + mt_random_int(&g->w.r, g->e->n_modes < 4 ? g->e->n_modes : 4);
@@ -530,7 +527,8 @@ static void sizing__no_sample_has_what_is_excluded(mt_test *t)
     CHECK(t, launched || n.boxes > SYSTEMS / 4);
 }
 
-/* A tube given by its wall, pi/4 (d^2 - (d - 2 t)^2), is one by its diameters; and it is enclosed where the wall is thin. */
+/* A tube given by its wall, pi/4 (d^2 - (d - 2 t)^2), is one by its diameters; and it is
+ * enclosed where the wall is thin. */
 static void sizing__a_tube_by_its_wall_is_a_tube(mt_test *t)
 {
     static const char *const text =

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * The paper's beam through the library: the reference against Euler and Bernoulli,
- *     f = (beta L)^2 / (2 pi) sqrt(EI / (m L^3)),   free-free cos cosh = 1,  pinned-free tan = tanh,  pinned-pinned sin = 0,
- * the lumped model against the closed-form parts of its definition, and the studies against the paper.
+ *     f = (beta L)^2 / (2 pi) sqrt(EI / (m L^3)),   free-free cos cosh = 1,
+ *         pinned-free tan = tanh,  pinned-pinned sin = 0,
+ * the lumped model against the closed-form parts of its definition, and the studies against the
+ * paper.
  */
 #include <math.h>
 #include <stdio.h>
@@ -24,14 +26,17 @@ enum { SPRINGS = 8, MODES = 4 };
 static const double PI = 3.14159265358979323846;
 static const double LENGTH_M = 2.8284271247461901;
 static const double MASS_KG = 1.0;
-/* A consistent-mass element is too high by (beta h)^4/1440 in omega: 1.1e-6 for the fourth mode on 72 elements; rounding of the
- * eigenvalue, n eps times the ratio of the largest to the first stiffness, stays below 1e-7. */
+/* A consistent-mass element is too high by (beta h)^4/1440 in omega: 1.1e-6 for the fourth mode
+ * on 72 elements; rounding of the eigenvalue, n eps times the ratio of the largest to the first
+ * stiffness, stays below 1e-7. */
 static const double REFERENCE_TOL = 1.2e-6;
 /* The same ten operations in another order. */
 static const double ROUNDING = 1e-14;
-/* A frequency is good to about 1e-14; the fourth spring moves it by about a tenth of its own change, and rounding differs between machines. */
+/* A frequency is good to about 1e-14; the fourth spring moves it by about a tenth of its own
+ * change, and rounding differs between machines. */
 static const double SPRING_TOL = 1e-11;
-/* Exact targets are met to the goals' tolerance, 1e-6; the springs follow with a factor of about two. */
+/* Exact targets are met to the goals' tolerance, 1e-6; the springs follow with a factor of
+ * about two. */
 static const double SYMMETRY_TOL = 1e-5;
 
 static double free_free(double x)
@@ -169,9 +174,9 @@ static void beam__studies_hold_what_the_paper_published(mt_test *t)
         int judged;
     } rows[] = {
         {STUDIES "beam_reference.json", 12},
-        {  STUDIES "beam_table_3.json",  8},
-        {  STUDIES "beam_table_4.json",  8},
-        {  STUDIES "beam_table_5.json",  8},
+        {STUDIES "beam_table_3.json", 8},
+        {STUDIES "beam_table_4.json", 8},
+        {STUDIES "beam_table_5.json", 8},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_study *const study = load_study(t, rows[i].path);
@@ -245,7 +250,8 @@ static void beam__a_wrong_published_value_is_noticed(mt_test *t)
     mt_study_delete(study);
 }
 
-/* One spring of the lumped beam, to 1.71 Hz; goal and references in JSON. NaN where there is no answer. */
+/* One spring of the lumped beam, to 1.71 Hz; goal and references in JSON. NaN where there is no
+ * answer. */
 static double tuned_spring(mt_test *t, const char *goal, const char *references)
 {
     char folder[] = "/tmp/mt_beam_XXXXXX";

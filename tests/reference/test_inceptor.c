@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The paper's inceptor through the library: what its model must be before any study is asked (one idle spin, Fig. 16's signs, the linkage's ratio, positions that can be driven
- * to), and that its identified values are identified again.
+ * The paper's inceptor through the library: what its model must be before any study is asked
+ * (one idle spin, Fig. 16's signs, the linkage's ratio, positions that can be driven to), and
+ * that its identified values are identified again.
  */
 #include <math.h>
 #include <stdio.h>
@@ -101,8 +102,8 @@ static void inceptor__shapes_have_the_signs_of_figure_16(mt_test *t)
     REQUIRE(t, model != NULL);
     static const char *const names[] = {"rocking", "stick bending"};
     static const int signs[][ELEMENTS] = {
-        {-1, 1,  1}, /* Fig. 16 a: 2 and 3 in phase, 1 on the other side of the pivot */
-        { 0, 1, -1}, /* 2 and 3 opposed; of 1 the paper says nothing */
+        {-1, 1, 1}, /* Fig. 16 a: 2 and 3 in phase, 1 on the other side of the pivot */
+        {0, 1, -1}, /* 2 and 3 opposed; of 1 the paper says nothing */
     };
     mt_analysis *const a = analyse(t, model, "installed", 0, NULL, NULL);
     CHECK_INT(t, model->n_modes, MT_COUNT(names));
@@ -134,7 +135,8 @@ static double of(const values *v, const char *name)
     return at < 0 ? nan("") : v->value[at];
 }
 
-/* Kinetic energy is 1/2 J w^2 where the stick turns at w and the shaft, against the gearbox, at ratio w: J by hand. */
+/* Kinetic energy is 1/2 J w^2 where the stick turns at w and the shaft, against the gearbox, at
+ * ratio w: J by hand. */
 static double rocking_inertia(const values *v, double ratio)
 {
     const double r = of(v, "r_SAU");
@@ -164,7 +166,8 @@ static double rocking_inertia(const values *v, double ratio)
 }
 
 /*
- * With springs in the stick as good as rigid and a force sensor without mass one freedom is left. The sensor cannot change its length, so the crank's end stays where it is to first
+ * With springs in the stick as good as rigid and a force sensor without mass one freedom is
+ * left. The sensor cannot change its length, so the crank's end stays where it is to first
  * order along the sensor; the sensor's direction drops out because the end moves in y alone:
  *     w (r + L_c) + ratio w L_c = 0,    omega^2 = k_servo ratio^2 / J.
  */
@@ -172,7 +175,8 @@ static void inceptor__a_stiff_stick_rocks_on_the_servo(mt_test *t)
 {
     static const char *const names[] = {"K_T1", "K_T2", "m_s"};
     static const double stiff[] = {1e12, 1e12, 1e-9};
-    /* springs of 1e12 beside 4e3 N m/rad bend by 4e-9, a sensor of 1e-9 kg beside 1 kg weighs 1e-9 */
+    /* springs of 1e12 beside 4e3 N m/rad bend by 4e-9, a sensor of 1e-9 kg beside 1 kg weighs
+     * 1e-9 */
     static const double RIGID = 1e-7;
     values v = {.model = load_model(t)};
     REQUIRE(t, v.model != NULL);
@@ -191,7 +195,8 @@ static void inceptor__a_stiff_stick_rocks_on_the_servo(mt_test *t)
     mt_model_delete(v.model);
 }
 
-/* The sensor leans by a few degrees only: little changes over the range, the same on both sides, and weight matters less than the paper's last digit. */
+/* The sensor leans by a few degrees only: little changes over the range, the same on both
+ * sides, and weight matters less than the paper's last digit. */
 static void inceptor__gravity_and_the_range_of_motion_matter_little(mt_test *t)
 {
     mt_model *const model = load_model(t);
@@ -200,9 +205,9 @@ static void inceptor__gravity_and_the_range_of_motion_matter_little(mt_test *t)
         const char *name;
         double most[2]; /* relative change of the two frequencies */
     } rows[] = {
-        {    "in_gravity", {1e-4, 1e-4}},
+        {"in_gravity", {1e-4, 1e-4}},
         {"stick_minus_10", {0.15, 0.02}},
-        { "stick_plus_10", {0.15, 0.02}},
+        {"stick_plus_10", {0.15, 0.02}},
     };
     mt_analysis *const base = analyse(t, model, "installed", 0, NULL, NULL);
     for (int i = 0; base != NULL && i < MT_COUNT(rows); i++) {
@@ -227,8 +232,9 @@ static mt_study *load_study(mt_test *t, const char *path)
 }
 
 /*
- * Start up to 8 % away from the identified values, but not along the scale that the data leave open (masses s^-2, lengths s):
- * there the search keeps what it is given. The sum of the factors' logarithms along (2, 2, -1, -1) is zero.
+ * Start up to 8 % away from the identified values, but not along the scale that the data leave
+ * open (masses s^-2, lengths s): there the search keeps what it is given. The sum of the
+ * factors' logarithms along (2, 2, -1, -1) is zero.
  */
 static void inceptor__its_values_are_identified_again(mt_test *t)
 {

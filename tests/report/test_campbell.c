@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Campbell diagrams of results built by hand: what is marked is what crosses within the operating range. */
+/* Campbell diagrams of results built by hand: what is marked is what crosses within the
+ * operating range. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -20,7 +21,8 @@ typedef struct sample {
     mt_recommendation recommendation;
 } sample;
 
-/* An engine from 10 to 50 turns per second; modes before and after anywhere, one of another configuration. */
+/* An engine from 10 to 50 turns per second; modes before and after anywhere, one of another
+ * configuration. */
 static bool begin(mt_test *t, mt_random *random, sample *s)
 {
     *s = (sample){.result = NULL};

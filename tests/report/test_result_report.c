@@ -12,7 +12,8 @@ static mt_result_frequency frequencies[2];
 static mt_recommendation recommendations[1];
 static mt_result_published published[3];
 
-/* Two variables, two frequencies, one recommendation; published values that hold, fail and cannot be compared. */
+/* Two variables, two frequencies, one recommendation; published values that hold, fail and
+ * cannot be compared. */
 static mt_result *make(mt_test *t)
 {
     static const char *variables[] = {"k<1>", "m"};
@@ -73,9 +74,8 @@ static void summary__says_status_numbers_and_reasons(mt_test *t)
         "  m          -      1.00000   0.500000       -50.0  lower\n",
         "  The change of k<1> counts as ln(new/original), below 0.0500000 N/m linearly.\n",
         "  The change of m counts linearly, 2.00000 as 1.\n",
-        /* clang-format off */
-        "  held              1  -        0.750000     1.00000           1.00000          0    -\n",
-        /* clang-format on */
+        "  held              1  -        0.750000     1.00000           1.00000          0    "
+        "-\n",
         "at least 1.90000",
         "  - k<1> rises & m falls.\n",
     };
@@ -130,14 +130,14 @@ static void designs__have_the_baseline_first_and_one_column_per_variable(mt_test
 }
 
 static mt_result_clearance clearances[] = {
-    {"held", "4P of X", 1, 1.0, 20.0, 10.0,  "below", 0.0, 0.0},
-    {"held", "4P of X", 2, 2.0, 33.0, 10.0,  "above", 0.0, 0.0},
+    {"held", "4P of X", 1, 1.0, 20.0, 10.0, "below", 0.0, 0.0},
+    {"held", "4P of X", 2, 2.0, 33.0, 10.0, "above", 0.0, 0.0},
     {"held", "8P of X", 2, 2.0, -1.5, 10.0, "inside", 0.0, 0.0},
-    {  "up", "4P of X", 2, 2.5, 40.0, 10.0,  "below", 0.0, 0.0},
+    {"up", "4P of X", 2, 2.5, 40.0, 10.0, "below", 0.0, 0.0},
 };
 static mt_result_gap gaps[] = {
     {"held", "4P of X", 1.25, 1.5, 1.125, 1.65, 1},
-    {  "up", "4P of X", 1.25, 1.5, 1.125, 1.65, 2},
+    {"up", "4P of X", 1.25, 1.5, 1.125, 1.65, 2},
 };
 
 /* The sample with bands. */
@@ -189,7 +189,8 @@ static void designs__with_bands_have_clearance_and_assignment(mt_test *t)
     mt_result_delete(r);
 }
 
-/* A design that lists fewer modes of the first configuration must not shift those of the second. */
+/* A design that lists fewer modes of the first configuration must not shift those of the
+ * second. */
 static void designs__find_frequencies_by_configuration_and_mode(mt_test *t)
 {
     mt_result *const r = make(t);

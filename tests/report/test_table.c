@@ -12,14 +12,10 @@ static void number__shows_significant_digits(mt_test *t)
         int digits;
         const char *want;
     } rows[] = {
-        {       18.0, 6,  "18.0000"},
-        {0.610329821, 6, "0.610330"},
-        {    17678.0, 6,  "17678.0"},
-        {   100000.0, 6,   "100000"},
-        {     2.1e11, 6,  "2.1e+11"},
-        {    -1.5e-9, 3, "-1.5e-09"},
-        {        0.0, 6,        "0"},
-        {       -0.0, 6,        "0"},
+        {18.0, 6, "18.0000"},    {0.610329821, 6, "0.610330"},
+        {17678.0, 6, "17678.0"}, {100000.0, 6, "100000"},
+        {2.1e11, 6, "2.1e+11"},  {-1.5e-9, 3, "-1.5e-09"},
+        {0.0, 6, "0"},           {-0.0, 6, "0"},
     };
     char s[MT_NUMBER_TEXT];
     for (int i = 0; i < MT_COUNT(rows); i++) {
@@ -111,13 +107,9 @@ static void csv__quotes_what_rfc_4180_asks_for(mt_test *t)
         const char *field;
         const char *want;
     } rows[] = {
-        {     "plain",              "plain"},
-        {       "a,b",            "\"a,b\""},
-        {"say \"no\"", "\"say \"\"no\"\"\""},
-        {      "a\nb",          "a\\u000ab"}, /* a row is a line */
-        {      "a\rb",          "a\\u000db"},
-        {          "",                   ""},
-        {   "größe",            "größe"},
+        {"plain", "plain"},    {"a,b", "\"a,b\""}, {"say \"no\"", "\"say \"\"no\"\"\""},
+        {"a\nb", "a\\u000ab"}, /* a row is a line */
+        {"a\rb", "a\\u000db"}, {"", ""},           {"größe", "größe"},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_text out = {.s = NULL};
@@ -128,35 +120,37 @@ static void csv__quotes_what_rfc_4180_asks_for(mt_test *t)
     }
 }
 
-/* What a spreadsheet would take for a formula has an apostrophe in front; taking it away gives the text back. */
+/* What a spreadsheet would take for a formula has an apostrophe in front; taking it away gives
+ * the text back. */
 static void csv__protects_formulas_and_leaves_numbers(mt_test *t)
 {
     static const struct {
         const char *field;
         const char *want;
     } rows[] = {
-        {                   "=1+1",                   "'=1+1"},
-        {               "@SUM(A1)",               "'@SUM(A1)"},
-        {               "+cmd|x!A",               "'+cmd|x!A"},
-        {                   "-2+3",                   "'-2+3"},
-        {                   "  =1",                   "'  =1"},
-        {                    "'=1",                    "''=1"},
-        {                      "-",                      "'-"},
-        {                    "-e5",                    "'-e5"},
-        {                 "-1.5.2",                 "'-1.5.2"},
-        {                    "-1e",                    "'-1e"},
-        {                   "=a,b",               "\"'=a,b\""},
-        {             "\xEF\xBC\x9D"
-             "1",               "'\xEF\xBC\x9D"
-               "1"                 },
-        {                   "-1.5",                    "-1.5"},
-        {                     "+3",                      "+3"},
-        {                 "-.5e-3",                  "-.5e-3"},
-        {                "-1.E+10",                 "-1.E+10"},
+        {"=1+1", "'=1+1"},
+        {"@SUM(A1)", "'@SUM(A1)"},
+        {"+cmd|x!A", "'+cmd|x!A"},
+        {"-2+3", "'-2+3"},
+        {"  =1", "'  =1"},
+        {"'=1", "''=1"},
+        {"-", "'-"},
+        {"-e5", "'-e5"},
+        {"-1.5.2", "'-1.5.2"},
+        {"-1e", "'-1e"},
+        {"=a,b", "\"'=a,b\""},
+        {"\xEF\xBC\x9D"
+         "1",
+         "'\xEF\xBC\x9D"
+         "1"},
+        {"-1.5", "-1.5"},
+        {"+3", "+3"},
+        {"-.5e-3", "-.5e-3"},
+        {"-1.E+10", "-1.E+10"},
         {"-3.2999999999999998e-14", "-3.2999999999999998e-14"},
-        {                    "a=b",                     "a=b"},
-        {                   "it's",                    "it's"},
-        {               "'quoted'",                "'quoted'"},
+        {"a=b", "a=b"},
+        {"it's", "it's"},
+        {"'quoted'", "'quoted'"},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_text out = {.s = NULL};

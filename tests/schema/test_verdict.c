@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * What the readers think of the structure of files, for test_schemas.py, which compares it with the schemas. Started with the name of a
- * list, a line "model PATH", "study PATH" or "aircraft PATH" each, it prints for each the number of errors of structure, the number of lines said, and the
- * status. Without arguments it tests itself: that it can tell right from wrong.
+ * What the readers think of the structure of files, for test_schemas.py, which compares it with
+ * the schemas. Started with the name of a list, a line "model PATH", "study PATH" or "aircraft
+ * PATH" each, it prints for each the number of errors of structure, the number of lines said,
+ * and the status. Without arguments it tests itself: that it can tell right from wrong.
  */
 #include <stdio.h>
 #include <string.h>

@@ -181,7 +181,8 @@ static void discrete__mixed_agrees_with_every_value_on_its_own(mt_test *t)
     six_end(&s);
 }
 
-/* Springs within 5 %, three of them in steps: the bands stay occupied, whatever the others do. */
+/* Springs within 5 %, three of them in steps: the bands stay occupied, whatever the others
+ * do. */
 static void discrete__that_no_combination_with_others_beside_works_is_proven(mt_test *t)
 {
     static const double near[] = {-0.05, -0.02, 0.0, 0.03, 0.05};
@@ -228,8 +229,10 @@ static void discrete__that_none_of_too_many_combinations_works_is_proven(mt_test
     six_end(&s);
 }
 
-/* An expression, and a mass, as the objective beside a continuous variable: k1 of a list, k2 free; mode 1 at least at f. The least k2 lies at the greatest k1, in closed form:
- * lambda^2 - (k1 + 2 k2) lambda + k1 k2 = 0 with m = 1 gives k2 = lambda (k1 - lambda) / (k1 - 2 lambda). */
+/* An expression, and a mass, as the objective beside a continuous variable: k1 of a list, k2
+ * free; mode 1 at least at f. The least k2 lies at the greatest k1, in closed form: lambda^2 -
+ * (k1 + 2 k2) lambda + k1 k2 = 0 with m = 1 gives k2 = lambda (k1 - lambda) / (k1 - 2
+ * lambda). */
 static void discrete__the_best_of_an_expression_is_proven_within_one_per_cent(mt_test *t)
 {
     study_case c;
@@ -291,7 +294,8 @@ static void discrete__of_too_many_combinations_the_best_is_proven(mt_test *t)
         CHECK(t, c != NULL && !c->proven);
         CHECK(t, six_clear(&s, x, 0.0));
         check_members(t, &s, best);
-        /* the only one of the 2.3 million combinations or so within this change that keeps clear, by another program's enumeration of them: steps -4, 6, 0, 2, -2, -4 */
+        /* the only one of the 2.3 million combinations or so within this change that keeps
+         * clear, by another program's enumeration of them: steps -4, 6, 0, 2, -2, -4 */
         CHECK_NEAR(t, best->change, 0.05 * sqrt(76.0), ROUNDING);
         CHECK(t, proves(r, "gap_assignments"));
         CHECK(t, proves(r, "optimal"));

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where a proof's budget of boxes ends, what it left open is searched; only where a design was found for all of that is the question settled. The row of six masses with springs within a factor of two. */
+/* Where a proof's budget of boxes ends, what it left open is searched; only where a design was
+ * found for all of that is the question settled. The row of six masses with springs within a
+ * factor of two. */
 #include "search/gaps.h"
 #include "study_fixture.h"
 

@@ -17,32 +17,19 @@ static void bands__harmonics_are_read_as_written(mt_test *t)
         bool blade_count;
         bool tail;
     } rows[] = {
-        {                   "1P",   1, false, false},
-        {                  "12P",  12, false, false},
-        {                 "999P", 999, false, false},
-        {                   "nP",   1,  true, false},
-        {                   "NP",   1,  true, false},
-        {                  "2nP",   2,  true, false},
-        {                  "2NP",   2,  true, false},
-        {                   "1T",   1, false,  true},
-        {                   "nT",   1,  true,  true},
-        {                  "3nT",   3,  true,  true},
-        {                     "",   0, false, false},
-        {                    "P",   0, false, false},
-        {                    "1",   0, false, false},
-        {                    "n",   0, false, false},
-        {                   "0P",   0, false, false},
-        {                  "04P",   0, false, false},
-        {                  "0nP",   0, false, false},
-        {                   "1p",   0, false, false},
-        {                  "1PP",   0, false, false},
-        {                  "nnP",   0, false, false},
-        {                  "n2P",   0, false, false},
-        {                "1000P",   0, false, false},
-        {                  "-1P",   0, false, false},
-        {                  " 1P",   0, false, false},
-        {                 "1.5P",   0, false, false},
-        {"99999999999999999999P",   0, false, false},
+        {"1P", 1, false, false},     {"12P", 12, false, false},
+        {"999P", 999, false, false}, {"nP", 1, true, false},
+        {"NP", 1, true, false},      {"2nP", 2, true, false},
+        {"2NP", 2, true, false},     {"1T", 1, false, true},
+        {"nT", 1, true, true},       {"3nT", 3, true, true},
+        {"", 0, false, false},       {"P", 0, false, false},
+        {"1", 0, false, false},      {"n", 0, false, false},
+        {"0P", 0, false, false},     {"04P", 0, false, false},
+        {"0nP", 0, false, false},    {"1p", 0, false, false},
+        {"1PP", 0, false, false},    {"nnP", 0, false, false},
+        {"n2P", 0, false, false},    {"1000P", 0, false, false},
+        {"-1P", 0, false, false},    {" 1P", 0, false, false},
+        {"1.5P", 0, false, false},   {"99999999999999999999P", 0, false, false},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_harmonic h;
@@ -69,9 +56,7 @@ typedef struct sample {
 
 static bool begin(mt_test *t, sample *s)
 {
-    *s = (sample){
-        .source = {.margin_percent = nan(""), .up_to_hz = nan("")}
-    };
+    *s = (sample){.source = {.margin_percent = nan(""), .up_to_hz = nan("")}};
     s->source.rotors = s->rotors;
     s->source.intervals = s->intervals;
     return CHECK_INT(t, mt_arena_init(&s->mem, 0, NULL), MT_OK);
@@ -143,7 +128,8 @@ static void bands__that_overlap_are_merged_and_said_so(mt_test *t)
     rotor->range_lower = 0.98;
     rotor->range_upper = 1.02;
     s.source.margin_percent = 5.0; /* the rotor gives none of its own */
-    /* 1P 4.3, 1T 19.83; 8P 34.4 and 9P 38.7 meet: 34.4 * 1.02 * 1.05 = 36.84, 38.7 * 0.98 * 0.95 = 36.03 */
+    /* 1P 4.3, 1T 19.83; 8P 34.4 and 9P 38.7 meet: 34.4 * 1.02 * 1.05 = 36.84, 38.7 * 0.98 *
+     * 0.95 = 36.03 */
     make(t, &s, nan(""));
     if (CHECK_INT(t, s.bands.n, 3)) {
         check_band(
@@ -202,11 +188,11 @@ static void bands__are_cut_off_at_the_limit(mt_test *t)
         int n;
         double edges[4];
     } rows[] = {
-        {      "above all", 1000.0, 3, {180.0, 200.0, 210.0, 231.0}},
-        {"inside a margin",  190.0, 3, {180.0, 190.0, 190.0, 190.0}},
-        {  "inside a base",  100.0, 2,   {81.0, 90.0, 100.0, 100.0}},
-        {  "on a low edge",   81.0, 1,      {9.0, 10.0, 20.0, 22.0}},
-        {      "below all",    9.0, 0,         {0.0, 0.0, 0.0, 0.0}},
+        {"above all", 1000.0, 3, {180.0, 200.0, 210.0, 231.0}},
+        {"inside a margin", 190.0, 3, {180.0, 190.0, 190.0, 190.0}},
+        {"inside a base", 100.0, 2, {81.0, 90.0, 100.0, 100.0}},
+        {"on a low edge", 81.0, 1, {9.0, 10.0, 20.0, 22.0}},
+        {"below all", 9.0, 0, {0.0, 0.0, 0.0, 0.0}},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "%s", rows[i].name);
@@ -299,17 +285,12 @@ static void bands__clearance_is_a_percentage_of_the_nearest_edge(mt_test *t)
         double percent;
         mt_band_side side;
     } rows[] = {
-        {&band,  9.0,   10.0,  MT_BELOW_BAND},
-        {&band, 22.0,   10.0,  MT_ABOVE_BAND},
-        {&band,  0.0,  100.0,  MT_BELOW_BAND},
-        {&band, 40.0,  100.0,  MT_ABOVE_BAND},
-        {&band, 10.0,    0.0, MT_INSIDE_BAND},
-        {&band, 20.0,    0.0, MT_INSIDE_BAND},
-        {&band, 11.0,  -10.0, MT_INSIDE_BAND},
-        {&band, 19.0,   -5.0, MT_INSIDE_BAND},
-        { &low, 19.0,   -5.0, MT_INSIDE_BAND},
-        { &low,  0.0, -100.0, MT_INSIDE_BAND},
-        { &low, 30.0,   50.0,  MT_ABOVE_BAND},
+        {&band, 9.0, 10.0, MT_BELOW_BAND},    {&band, 22.0, 10.0, MT_ABOVE_BAND},
+        {&band, 0.0, 100.0, MT_BELOW_BAND},   {&band, 40.0, 100.0, MT_ABOVE_BAND},
+        {&band, 10.0, 0.0, MT_INSIDE_BAND},   {&band, 20.0, 0.0, MT_INSIDE_BAND},
+        {&band, 11.0, -10.0, MT_INSIDE_BAND}, {&band, 19.0, -5.0, MT_INSIDE_BAND},
+        {&low, 19.0, -5.0, MT_INSIDE_BAND},   {&low, 0.0, -100.0, MT_INSIDE_BAND},
+        {&low, 30.0, 50.0, MT_ABOVE_BAND},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_band_side side = MT_INSIDE_BAND;
@@ -327,9 +308,7 @@ static void bands__every_failing_allocation_is_survived(mt_test *t)
     mt_status rc = MT_E_MEMORY;
     for (long nth = 0; rc == MT_E_MEMORY && mt_alloc_works(); nth++) {
         const long before = mt_alloc_live();
-        sample s = {
-            .source = {.margin_percent = 20.0, .up_to_hz = nan("")}
-        };
+        sample s = {.source = {.margin_percent = 20.0, .up_to_hz = nan("")}};
         s.source.rotors = s.rotors;
         (void)add_rotor(&s, "UH-60", MT_COUNT(harmonics), harmonics);
         mt_test_row(t, "allocation %ld", nth);

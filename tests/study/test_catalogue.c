@@ -35,7 +35,8 @@ static void catalogue__every_series_has_its_number_of_values(mt_test *t)
         CHECK(t, v[0] == 1.0);
         for (int k = 1; k < per_decade; k++) {
             CHECK(t, v[k] > v[k - 1]);
-            /* a rule-made value is within half of the last digit of the power, a historical one within 5 % */
+            /* a rule-made value is within half of the last digit of the power, a historical one
+             * within 5 % */
             const double exact = pow(10.0, (double)k / (double)per_decade);
             CHECK_NEAR_ABS(t, v[k], exact, per_decade > 24 ? 0.0062 : 0.05 * exact);
         }
@@ -47,11 +48,7 @@ static void catalogue__every_series_has_its_number_of_values(mt_test *t)
 static void catalogue__coarse_series_are_parts_of_fine_ones(mt_test *t)
 {
     static const char *const pairs[][2] = {
-        { "E3",   "E6"},
-        { "E6",  "E12"},
-        {"E12",  "E24"},
-        {"E48",  "E96"},
-        {"E96", "E192"},
+        {"E3", "E6"}, {"E6", "E12"}, {"E12", "E24"}, {"E48", "E96"}, {"E96", "E192"},
     };
     double coarse[192];
     double fine[192];
@@ -74,23 +71,11 @@ static void catalogue__known_values_are_there(mt_test *t)
         double value;
         bool is;
     } rows[] = {
-        {  "E3",  4.7,  true},
-        {  "E3",  4.6, false},
-        {  "E6",  6.8,  true},
-        { "E12",  2.7,  true},
-        { "E12",  2.6, false},
-        { "E24",  2.7,  true},
-        { "E24",  3.3,  true},
-        { "E24",  8.2,  true},
-        { "E24",  8.3, false},
-        { "E48", 1.05,  true},
-        { "E48", 9.53,  true},
-        { "E96", 1.02,  true},
-        { "E96", 9.76,  true},
-        {"E192",  9.2,  true},
-        {"E192", 9.19, false},
-        {"E192", 1.01,  true},
-        {"E192", 9.88,  true},
+        {"E3", 4.7, true},    {"E3", 4.6, false},  {"E6", 6.8, true},     {"E12", 2.7, true},
+        {"E12", 2.6, false},  {"E24", 2.7, true},  {"E24", 3.3, true},    {"E24", 8.2, true},
+        {"E24", 8.3, false},  {"E48", 1.05, true}, {"E48", 9.53, true},   {"E96", 1.02, true},
+        {"E96", 9.76, true},  {"E192", 9.2, true}, {"E192", 9.19, false}, {"E192", 1.01, true},
+        {"E192", 9.88, true},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         double v = nan("");

@@ -17,45 +17,46 @@ static void orders__are_read_as_written(mt_test *t)
         char letter;
         int thousandths; /* 0: no order */
     } rows[] = {
-        {       "0.5E", 'E',    500},
-        {         "1E", 'E',   1000},
-        {       "1.5E", 'E',   1500},
-        {      "2.50E", 'E',   2500},
-        {     "0.001E", 'E',      1},
-        {   "999.999E", 'E', 999999},
-        {    "12.125E", 'E',  12125},
-        {        "10E", 'E',  10000},
-        {         "1G", 'G',   1000},
-        {       "0.5G", 'G',    500},
-        {         "1E", 'G',      0},
-        {         "1G", 'E',      0},
-        {           "", 'E',      0},
-        {          "E", 'E',      0},
-        {          "1", 'E',      0},
-        {         "0E", 'E',      0},
-        {       "0.0E", 'E',      0},
-        {     "0.000E", 'E',      0},
-        {        "00E", 'E',      0},
-        {        "01E", 'E',      0},
-        {      "00.5E", 'E',      0},
-        {        ".5E", 'E',      0},
-        {        "1.E", 'E',      0},
-        {    "1.2345E", 'E',      0},
-        {      "1000E", 'E',      0},
-        {"9999999999E", 'E',      0},
-        {         "1e", 'E',      0},
-        {        "1EE", 'E',      0},
-        {        "1E ", 'E',      0},
-        {        " 1E", 'E',      0},
-        {        "+1E", 'E',      0},
-        {        "-1E", 'E',      0},
-        {       "1,5E", 'E',      0},
-        {       "1/2E", 'E',      0},
-        {         "nE", 'E',      0},
-        {       "1e1E", 'E',      0},
-        {     "1.5.5E", 'E',      0},
-        { "\xC2\xBD"
- "E", 'E',      0         },
+        {"0.5E", 'E', 500},
+        {"1E", 'E', 1000},
+        {"1.5E", 'E', 1500},
+        {"2.50E", 'E', 2500},
+        {"0.001E", 'E', 1},
+        {"999.999E", 'E', 999999},
+        {"12.125E", 'E', 12125},
+        {"10E", 'E', 10000},
+        {"1G", 'G', 1000},
+        {"0.5G", 'G', 500},
+        {"1E", 'G', 0},
+        {"1G", 'E', 0},
+        {"", 'E', 0},
+        {"E", 'E', 0},
+        {"1", 'E', 0},
+        {"0E", 'E', 0},
+        {"0.0E", 'E', 0},
+        {"0.000E", 'E', 0},
+        {"00E", 'E', 0},
+        {"01E", 'E', 0},
+        {"00.5E", 'E', 0},
+        {".5E", 'E', 0},
+        {"1.E", 'E', 0},
+        {"1.2345E", 'E', 0},
+        {"1000E", 'E', 0},
+        {"9999999999E", 'E', 0},
+        {"1e", 'E', 0},
+        {"1EE", 'E', 0},
+        {"1E ", 'E', 0},
+        {" 1E", 'E', 0},
+        {"+1E", 'E', 0},
+        {"-1E", 'E', 0},
+        {"1,5E", 'E', 0},
+        {"1/2E", 'E', 0},
+        {"nE", 'E', 0},
+        {"1e1E", 'E', 0},
+        {"1.5.5E", 'E', 0},
+        {"\xC2\xBD"
+         "E",
+         'E', 0},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_order o;
@@ -94,18 +95,12 @@ static void lines__of_gears_have_teeth_ratio_and_sidebands(mt_test *t)
         const char *what;
         const char *of;
     } want[] = {
-        {               0.5,   "0.5E", "engine"},
-        {(23.0 - 2.0) * 0.8,   "1G-2", "pinion"},
-        {        22.0 * 0.8,   "1G-1", "pinion"},
-        {        23.0 * 0.8,     "1G", "pinion"},
-        {        24.0 * 0.8,   "1G+1", "pinion"},
-        {        25.0 * 0.8,   "1G+2", "pinion"},
-        {        32.5 * 0.8, "1.5G-2", "pinion"},
-        {        33.5 * 0.8, "1.5G-1", "pinion"},
-        {        34.5 * 0.8,   "1.5G", "pinion"},
-        {        35.5 * 0.8, "1.5G+1", "pinion"},
-        {        36.5 * 0.8, "1.5G+2", "pinion"},
-        {              17.0,     "1G", "engine"},
+        {0.5, "0.5E", "engine"},          {(23.0 - 2.0) * 0.8, "1G-2", "pinion"},
+        {22.0 * 0.8, "1G-1", "pinion"},   {23.0 * 0.8, "1G", "pinion"},
+        {24.0 * 0.8, "1G+1", "pinion"},   {25.0 * 0.8, "1G+2", "pinion"},
+        {32.5 * 0.8, "1.5G-2", "pinion"}, {33.5 * 0.8, "1.5G-1", "pinion"},
+        {34.5 * 0.8, "1.5G", "pinion"},   {35.5 * 0.8, "1.5G+1", "pinion"},
+        {36.5 * 0.8, "1.5G+2", "pinion"}, {17.0, "1G", "engine"},
     };
     mt_order e;
     mt_order g[2];
@@ -142,7 +137,8 @@ static void lines__of_gears_have_teeth_ratio_and_sidebands(mt_test *t)
 
 enum { ORDERS = 8 };
 
-/* Bands of orders 0.5 to 4 over a range of speeds: disjoint where it is narrow, one where it is wide, and every frequency order x speed is inside. */
+/* Bands of orders 0.5 to 4 over a range of speeds: disjoint where it is narrow, one where it is
+ * wide, and every frequency order x speed is inside. */
 static void bands__cover_every_order_at_every_speed(mt_test *t)
 {
     static const struct {
@@ -152,10 +148,10 @@ static void bands__cover_every_order_at_every_speed(mt_test *t)
         int bands;
         const char *label; /* of the last */
     } rows[] = {
-        {        49.0, 50.0,  0.0, 8,                         "4E of engine"},
-        {        30.0, 31.0, 10.0, 4, "2E + 2.5E + 3E + 3.5E + 4E of engine"},
-        {700.0 / 60.0, 50.0,  5.0, 1,       "0.5E to 4E of engine (8 bands)"},
-        {        25.0, 25.0,  1.0, 8,                         "4E of engine"},
+        {49.0, 50.0, 0.0, 8, "4E of engine"},
+        {30.0, 31.0, 10.0, 4, "2E + 2.5E + 3E + 3.5E + 4E of engine"},
+        {700.0 / 60.0, 50.0, 5.0, 1, "0.5E to 4E of engine (8 bands)"},
+        {25.0, 25.0, 1.0, 8, "4E of engine"},
     };
     static const char *const texts[ORDERS] = {"0.5E", "1E", "1.5E", "2E",
                                               "2.5E", "3E", "3.5E", "4E"};

@@ -91,7 +91,8 @@ bool mt_alloc_works(void)
  * these names are the C library's, and meant to be */
 
 #    ifdef SANITIZED
-/* what the sanitizer puts in place of the C library's; it may be called before a sanitizer is ready, so that what calls it is not instrumented */
+/* what the sanitizer puts in place of the C library's; it may be called before a sanitizer is
+ * ready, so that what calls it is not instrumented */
 #        define REAL(name) __interceptor_##name
 #        define PLAIN      __attribute__((no_sanitize("address", "undefined")))
 #    else
@@ -104,8 +105,9 @@ void *REAL(realloc)(void *old, size_t size);
 void *REAL(memalign)(size_t alignment, size_t size);
 void REAL(free)(void *block);
 
-/* Code of OpenBLAS. For some orders its product of small matrices asks malloc for a buffer and writes to it unseen (0.3.21, dgemm_small_kernel): nobody's
- * test can let that fail, and it is no allocation of ours. */
+/* Code of OpenBLAS. For some orders its product of small matrices asks malloc for a buffer and
+ * writes to it unseen (0.3.21, dgemm_small_kernel): nobody's test can let that fail, and it is
+ * no allocation of ours. */
 static _Atomic uintptr_t blas_from;
 static _Atomic uintptr_t blas_to; /* 0: not looked for yet */
 
@@ -138,7 +140,8 @@ PLAIN static bool from_blas(const void *caller)
     return (uintptr_t)caller >= blas_from && (uintptr_t)caller < blas_to;
 }
 
-/* NLopt (2.7.1) ends the process where it has no memory for a sentence. That there is some is seen to before (nlp_slsqp.c), which a shortage of one moment cannot know. */
+/* NLopt (2.7.1) ends the process where it has no memory for a sentence. That there is some is
+ * seen to before (nlp_slsqp.c), which a shortage of one moment cannot know. */
 extern char *nlopt_vsprintf(char *text, const char *format, va_list args) __attribute__((weak));
 
 PLAIN static bool from_nlopt_message(const void *caller)

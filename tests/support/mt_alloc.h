@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * Counts and fails allocations: in every test program malloc, calloc, realloc, aligned_alloc,
- * posix_memalign and free are replaced, also as the shared libraries see them. Where somebody else already replaces them (a
- * sanitizer, valgrind) the counters mean nothing and nothing fails, which mt_alloc_works() tells: ask it first.
- * What OpenBLAS takes for itself is neither counted nor failed: it could not bear it.
+ * posix_memalign and free are replaced, also as the shared libraries see them. Where somebody
+ * else already replaces them (a sanitizer, valgrind) the counters mean nothing and nothing
+ * fails, which mt_alloc_works() tells: ask it first. What OpenBLAS takes for itself is neither
+ * counted nor failed: it could not bear it.
  *
  *     for (long nth = 0; mt_alloc_works(); nth++) {
  *         mt_alloc_fail_after(nth);
@@ -31,10 +32,12 @@ void mt_alloc_fail_only(long nth);
 /* Count and fail beside gcc's AddressSanitizer, too, from here on. */
 void mt_alloc_use_beside_sanitizer(void);
 
-/* Have every allocation told before it is made or refused, with the address that it returns to; NULL: none. It must not allocate. */
+/* Have every allocation told before it is made or refused, with the address that it returns to;
+ * NULL: none. It must not allocate. */
 void mt_alloc_watch(void (*seen)(const void *caller, size_t size));
 
-/* Number a request of another allocator (an arena's) as if it were one of these, and tell whether it is to fail. */
+/* Number a request of another allocator (an arena's) as if it were one of these, and tell
+ * whether it is to fail. */
 bool mt_alloc_refuses(const void *caller, size_t size);
 
 /* Successful allocations since the program started. */

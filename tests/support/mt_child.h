@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Runs the program's command line in a process of its own (a fork of the test: no loading, so that thousands of runs take seconds), and keeps what it leaves behind: exit status or
- * signal, output, messages, files. Within a line @ stands for a folder that is empty before each run and emptied after it, % for one that lasts.
+ * Runs the program's command line in a process of its own (a fork of the test: no loading, so
+ * that thousands of runs take seconds), and keeps what it leaves behind: exit status or signal,
+ * output, messages, files. Within a line @ stands for a folder that is empty before each run
+ * and emptied after it, % for one that lasts.
  */
 #ifndef MT_CHILD_H
 #define MT_CHILD_H

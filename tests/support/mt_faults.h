@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Makes the k-th call to the system fail, or the last thing that the process does. Every function that our own code calls to open, read, write, name or remove files is replaced by the
- * linker (--wrap), for the programs test_*_faults and for modetune_faults, which is the program itself. Calls are counted over all of these functions, so that no clock decides when.
+ * Makes the k-th call to the system fail, or the last thing that the process does. Every
+ * function that our own code calls to open, read, write, name or remove files is replaced by
+ * the linker (--wrap), for the programs test_*_faults and for modetune_faults, which is the
+ * program itself. Calls are counted over all of these functions, so that no clock decides when.
  *
- * modetune_faults takes its orders from the environment: MT_FAULT="K:ACTION[:ERRNO]", and MT_FAULT_LOG names a file that the calls are listed in, one per line.
+ * modetune_faults takes its orders from the environment: MT_FAULT="K:ACTION[:ERRNO]", and
+ * MT_FAULT_LOG names a file that the calls are listed in, one per line.
  *     fail   the k-th call fails with ERRNO
  *     ever   so do all later calls of the same function
  *     kill   the process is killed in place of the k-th call

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Eigenvalues in more than thirty digits, for small symmetric pencils: bisection on the inertia of K - x M (Sylvester), by L D L^T without pivoting. */
+/* Eigenvalues in more than thirty digits, for small symmetric pencils: bisection on the inertia
+ * of K - x M (Sylvester), by L D L^T without pivoting. */
 #ifndef MT_QUAD_H
 #define MT_QUAD_H
 
@@ -62,8 +63,8 @@ static inline int mt_quad_below(const mt_quad_pencil *p, mt_quad x)
 /* Eigenvalue `index` (from 0, ascending). */
 static inline mt_quad mt_quad_eigenvalue(const mt_quad_pencil *p, int index)
 {
-    mt_quad low =
-        (mt_quad)-1.0371; /* no small number: a pivot of exactly 0 would stop the elimination */
+    /* no small number: a pivot of exactly 0 would stop the elimination */
+    mt_quad low = (mt_quad)-1.0371;
     mt_quad high = (mt_quad)1.0623;
     while (mt_quad_below(p, low) > index) {
         low *= 4;

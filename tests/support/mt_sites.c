@@ -74,7 +74,8 @@ bool mt_sites_failed(void)
     return sites.failed;
 }
 
-/* A frame begins with the address of its caller's frame and its return address. What is no frame (a foreign library keeps none) ends the walk. */
+/* A frame begins with the address of its caller's frame and its return address. What is no
+ * frame (a foreign library keeps none) ends the walk. */
 static place place_of(const char *frame)
 {
     enum { WORD = sizeof(void *) };

@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Fails allocations by the place that asks for them. Arenas hand out most memory without asking the system for it, so failing the k-th allocation of the system seldom meets a given
- * check. Here every function of base/arena.h that hands out memory is replaced by the linker (--wrap, for programs named test_*_sites), which knows its caller by the return address:
- * a first run notes all places, then each is made to fail once. Where frames can be walked (instrumented builds, MT_SITES_CALLERS) a place is known by the caller's callers, too, so
- * that a refusal also comes up every way that leads to it; and there, where runs are dear, what an earlier run of the program had refused need not be refused again.
+ * Fails allocations by the place that asks for them. Arenas hand out most memory without asking
+ * the system for it, so failing the k-th allocation of the system seldom meets a given check.
+ * Here every function of base/arena.h that hands out memory is replaced by the linker (--wrap,
+ * for programs named test_*_sites), which knows its caller by the return address: a first run
+ * notes all places, then each is made to fail once. Where frames can be walked (instrumented
+ * builds, MT_SITES_CALLERS) a place is known by the caller's callers, too, so that a refusal
+ * also comes up every way that leads to it; and there, where runs are dear, what an earlier run
+ * of the program had refused need not be refused again.
  *
  *     mt_sites_record();
  *     run();

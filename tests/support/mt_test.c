@@ -68,7 +68,8 @@ bool mt_test_near(mt_test *t, double got, double want, double tol_abs, const cha
 {
     const double residual = fabs(got - want);
     const double tol = t->tol_scale * tol_abs;
-    /* false for NaN in any of the three; equal infinities have a NaN residual and fail as well */
+    /* false for NaN in any of the three; equal infinities have a NaN residual and fail as
+     * well */
     const bool holds = residual <= tol;
     if (record(t, holds, t->tol_scale <= 0.0, file, line)) {
         (void)fprintf(stderr, "%s is %.17g, want %.17g, off by %.3g, tolerance %.3g\n", text,

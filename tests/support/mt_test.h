@@ -48,7 +48,8 @@ bool mt_test_passed(const mt_test *t);
 /* Name the row that the following checks belong to. */
 void mt_test_row(mt_test *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Each records one check and returns whether it held, so that a caller can stop where going on makes no sense. */
+/* Each records one check and returns whether it held, so that a caller can stop where going on
+ * makes no sense. */
 void mt_test_note(mt_test *t, bool holds, const char *text, const char *file, int line);
 bool mt_test_near(mt_test *t, double got, double want, double tol_abs, const char *text,
                   const char *file, int line);
@@ -57,7 +58,8 @@ bool mt_test_int(mt_test *t, long long got, long long want, const char *text, co
 bool mt_test_str(mt_test *t, const char *got, const char *want, const char *text,
                  const char *file, int line);
 
-/* Inline, so that compilers and analysers see that what was checked holds where this returned true. */
+/* Inline, so that compilers and analysers see that what was checked holds where this returned
+ * true. */
 static inline bool mt_test_true(mt_test *t, bool holds, const char *text, const char *file,
                                 int line)
 {
@@ -78,7 +80,8 @@ static inline bool mt_test_true(mt_test *t, bool holds, const char *text, const 
     mt_test_int((t), (long long)(got), (long long)(want), #got, __FILE__, __LINE__)
 /* Equal text; NULL equals only NULL. */
 #define CHECK_STR(t, got, want) mt_test_str((t), (got), (want), #got, __FILE__, __LINE__)
-/* Like CHECK, and ends the test function where the rest could not run. Only before anything is owned. */
+/* Like CHECK, and ends the test function where the rest could not run. Only before anything is
+ * owned. */
 #define REQUIRE(t, cond)       \
     do {                       \
         if (!CHECK(t, cond)) { \

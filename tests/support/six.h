@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The study of six masses and four bands, changed by tests in place, and its designs judged without the search. */
+/* The study of six masses and four bands, changed by tests in place, and its designs judged
+ * without the search. */
 #ifndef TESTS_SIX_H
 #define TESTS_SIX_H
 
@@ -17,11 +18,7 @@
 enum { SIX = 6, SIX_BANDS = 4, SIX_MOST = 32 };
 
 static const double SIX_BAND[SIX_BANDS][2] = {
-    { 3.87,  4.73},
-    { 7.74,  9.46},
-    {15.48, 18.92},
-    {30.96, 37.84}
-};
+    {3.87, 4.73}, {7.74, 9.46}, {15.48, 18.92}, {30.96, 37.84}};
 
 typedef struct six {
     mt_study *study;
@@ -69,7 +66,8 @@ static inline void six_catalogue(six *s, int i, int n, const double *ln)
     v->upper = s->catalogue[i][n - 1];
 }
 
-/* Does x[6] keep every mode out of every band, widened by margin (relative)? The search's tolerance is 1e-6. */
+/* Does x[6] keep every mode out of every band, widened by margin (relative)? The search's
+ * tolerance is 1e-6. */
 static inline bool six_clear(six *s, const double *x, double margin)
 {
     mt_err err = {.text = ""};

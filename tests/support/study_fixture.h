@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Studies for tests: model and study as texts (with ' for ", so that they can be read here), written beside each other into a folder of their own, loaded the way a user's files are,
- * and solved.
+ * Studies for tests: model and study as texts (with ' for ", so that they can be read here),
+ * written beside each other into a folder of their own, loaded the way a user's files are, and
+ * solved.
  */
 #ifndef TESTS_STUDY_FIXTURE_H
 #define TESTS_STUDY_FIXTURE_H
@@ -20,7 +21,8 @@ enum { STUDY_PATH = 512 };
 
 static const double STUDY_PI = 3.14159265358979323846;
 
-/* Two masses in a row: ground - k1 - m1 - k2 - m2, guided along x. K = [k1 + k2, -k2; -k2, k2]. */
+/* Two masses in a row: ground - k1 - m1 - k2 - m2, guided along x. K = [k1 + k2, -k2; -k2,
+ * k2]. */
 #define STUDY_TWO_MASSES_ROW                                                              \
     "'bodies': [{'name': 'm1', 'mass_kg': 'm', 'centre': [1, 0]},"                        \
     " {'name': 'm2', 'mass_kg': 'm', 'centre': [2, 0]}],"                                 \
@@ -78,7 +80,8 @@ static inline bool study_write(const char *path, const char *text)
     return fclose(f) == 0;
 }
 
-/* Load the study with these members (after "format" and "model"). model: a text that begins with a brace, or the name of a file in tests/models. */
+/* Load the study with these members (after "format" and "model"). model: a text that begins
+ * with a brace, or the name of a file in tests/models. */
 static inline bool study_load(mt_test *t, const char *model, const char *members, study_case *c)
 {
     char folder[] = "/tmp/mt_tune_XXXXXX";
@@ -142,7 +145,8 @@ static inline bool study_solve(mt_test *t, const char *model, const char *member
     return ok;
 }
 
-/* Value of a parameter in recommendation `rank` (from 1; 0: the baseline); NaN where there is none. */
+/* Value of a parameter in recommendation `rank` (from 1; 0: the baseline); NaN where there is
+ * none. */
 static inline double study_value(const study_case *c, int rank, const char *parameter)
 {
     if (c->result == NULL || rank > c->result->n_recommendations) {

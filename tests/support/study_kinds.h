@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Small studies that together pass through every phase of an answer and every kind of search, for tests that disturb them. */
+/* Small studies that together pass through every phase of an answer and every kind of search,
+ * for tests that disturb them. */
 #ifndef TESTS_STUDY_KINDS_H
 #define TESTS_STUDY_KINDS_H
 
@@ -12,7 +13,8 @@
     "'lower': 0.2, 'upper': 5}],"
 #define QUICK "'search': {'starts': 2, 'max_evaluations': 300},"
 
-/* A mass held at the origin by three springs in a plane: the lightest K with its lowest eigenvalue at least 1 has a repeated mode. */
+/* A mass held at the origin by three springs in a plane: the lightest K with its lowest
+ * eigenvalue at least 1 has a repeated mode. */
 #define HELD(name, x, y)                                                                     \
     "{'name': 's" name "', 'type': 'axial', 'bodies': ['ground', 'm'], 'at': [['" x "', '" y \
     "', 0], [0, 0, 0]], 'stiffness_n_per_m': 'k" name "'},"
@@ -29,7 +31,7 @@ static const struct {
     const char *model;
     const char *members;
 } study_kinds[] = {
-    {            "targets, published of every kind",
+    {"targets, published of every kind",
      ROW(", 'modes': {'first': {'configuration': 'default', 'index': 1}}"),
      TWO QUICK
      "'references': {'test': {'modes': [{'frequency_hz': 0.13, 'shape': {'p1.x': 0.3, 'p2.x': "
@@ -43,76 +45,77 @@ static const struct {
      "{'quantity': 'k1/k2', 'value': 2, 'tolerance_percent': 1, 'label': 'ratio'},"
      "{'frequency': {'mode': 1}, 'value': 0.1, 'tolerance': 1},"
      "{'mac': {'mode': 1, 'reference': 'test'}, 'at_least': 0.9},"
-     "{'mac': {'mode': 2, 'reference': 'own'}, 'at_least': 0.9}, {'status': 'solved'}]"        },
-    {                  "misfit with shapes, spread",                       ROW(""),
+     "{'mac': {'mode': 2, 'reference': 'own'}, 'at_least': 0.9}, {'status': 'solved'}]"},
+    {"misfit with shapes, spread", ROW(""),
      TWO QUICK "'references': {'test': {'modes': [{'frequency_hz': 0.13, 'shape': {'p1.x': "
-     "0.3, 'p2.x': 1}}]}},"
-     "'goals': [{'type': 'frequency', 'mode': 1, 'target_hz': 0.12, 'weight': 1},"
-     "{'type': 'shape', 'mode': 1, 'reference': 'test', 'weight': 0.5},"
-     "{'type': 'frequency', 'mode': 2, 'target_hz': 0.4, 'weight': 1}],"
-     "'objective': {'minimise': 'misfit'}, 'spread': {'factor': 3}"                            },
-    {                  "bands, objectives in order",                       ROW(""),
+               "0.3, 'p2.x': 1}}]}},"
+               "'goals': [{'type': 'frequency', 'mode': 1, 'target_hz': 0.12, 'weight': 1},"
+               "{'type': 'shape', 'mode': 1, 'reference': 'test', 'weight': 0.5},"
+               "{'type': 'frequency', 'mode': 2, 'target_hz': 0.4, 'weight': 1}],"
+               "'objective': {'minimise': 'misfit'}, 'spread': {'factor': 3}"},
+    {"bands, objectives in order", ROW(""),
      TWO QUICK "'goals': [{'type': 'avoid', 'bands_hz': [[0.1, 0.14], [0.3, 0.36]], "
-     "'margin_percent': 1}],"
-     "'objective': [{'minimise': 'change'}, {'minimise': 'k1 + k2'}]"                          },
-    {                                   "clearance",                       ROW(""),
+               "'margin_percent': 1}],"
+               "'objective': [{'minimise': 'change'}, {'minimise': 'k1 + k2'}]"},
+    {"clearance", ROW(""),
      TWO QUICK "'goals': [{'type': 'avoid', 'bands_hz': [[0.1, 0.14]]}], 'objective': "
-     "{'maximise': 'clearance'}"                                                               },
-    {                       "no design keeps clear",                       ROW(""),
+               "{'maximise': 'clearance'}"},
+    {"no design keeps clear", ROW(""),
      "'variables': [{'parameter': 'k1', 'lower': 2.9, 'upper': 3.1}]," QUICK
      "'goals': [{'type': 'avoid', 'bands_hz': [[0.1, 0.2]]}, {'type': 'frequency', 'mode': 2, "
-     "'at_least_hz': 1}]"                                                                      },
-    {                 "limits that no design meets",                       ROW(""),
+     "'at_least_hz': 1}]"},
+    {"limits that no design meets", ROW(""),
      TWO QUICK "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.2}, {'type': "
-     "'frequency', 'mode': 2, 'at_most_hz': 0.3}]"                                             },
-    {                                  "tolerances",                       ROW(""),
+               "'frequency', 'mode': 2, 'at_most_hz': 0.3}]"},
+    {"tolerances", ROW(""),
      "'variables': [{'parameter': 'k1', 'lower': 0.5, 'upper': 5, 'tolerance_percent': 2}, "
      "{'parameter': 'k2', 'lower': 0.2, 'upper': 5}]," QUICK
      "'goals': [{'type': 'avoid', 'bands_hz': [[0.1, 0.14]]}, {'type': 'frequency', 'mode': 2, "
      "'at_least_hz': 0.2},"
-     "{'type': 'limit', 'expression': 'k1*k2', 'at_most': 30}]"                                },
-    {                                  "catalogues",                       ROW(""),
+     "{'type': 'limit', 'expression': 'k1*k2', 'at_most': 30}]"},
+    {"catalogues", ROW(""),
      "'variables': [{'parameter': 'k1', 'catalogue': [1, 2, 3, 4]}, {'parameter': 'k2', "
      "'catalogue': {'series': 'E3', 'lower': 0.5, 'upper': 5}}]," QUICK
-     "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.1}]"                         },
-    {      "catalogue beside a continuous variable",                       ROW(""),
+     "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.1}]"},
+    {"catalogue beside a continuous variable", ROW(""),
      "'variables': [{'parameter': 'k1', 'catalogue': [1, 2, 3, 4]}, {'parameter': 'k2', "
      "'lower': 0.2, 'upper': 5}]," QUICK
      "'goals': [{'type': 'frequency', 'mode': 1, 'target_hz': 0.11}, {'type': 'avoid', "
-     "'bands_hz': [[0.2, 0.24]]}]"                                                             },
-    {               "no combination meets the goal",                       ROW(""),
+     "'bands_hz': [[0.2, 0.24]]}]"},
+    {"no combination meets the goal", ROW(""),
      "'variables': [{'parameter': 'k1', 'catalogue': [1, 2, 3]}, {'parameter': 'k2', 'lower': "
      "0.2, 'upper': 5}]," QUICK
-     "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 1}]"                           },
-    {             "trade over a bound and a target",                       ROW(""),
+     "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 1}]"},
+    {"trade over a bound and a target", ROW(""),
      TWO QUICK "'goals': [{'type': 'frequency', 'mode': 1, 'target_hz': 0.12}],"
-     "'trade': {'vary': [{'variable': 'k1', 'bound': 'upper', 'values': [4, 5]},"
-     "{'goal': 0, 'member': 'target_hz', 'values': [0.11, 0.12]}]}"                            },
-    {         "trade over a margin and a parameter",                       ROW(""),
+               "'trade': {'vary': [{'variable': 'k1', 'bound': 'upper', 'values': [4, 5]},"
+               "{'goal': 0, 'member': 'target_hz', 'values': [0.11, 0.12]}]}"},
+    {"trade over a margin and a parameter", ROW(""),
      TWO QUICK
      "'goals': [{'type': 'avoid', 'bands_hz': [[0.1, 0.14]], 'margin_percent': 1}],"
      "'trade': {'vary': [{'goal': 0, 'member': 'margin_percent', 'values': [1, 2]},"
-     "{'parameter': 'm', 'values': [1, 1.1]}], 'objectives': ['change', 'clearance']}"         },
-    {                             "a repeated mode",                          STAR,
+     "{'parameter': 'm', 'values': [1, 1.1]}], 'objectives': ['change', 'clearance']}"},
+    {"a repeated mode", STAR,
      "'variables': [{'parameter': 'ka', 'lower': 0.01, 'upper': 20}, {'parameter': 'kb', "
      "'lower': 0.01, 'upper': 20}, {'parameter': 'kc', 'lower': 0.01, 'upper': 20}]," QUICK
      "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': '1/(2*pi)'}],"
-     "'objective': {'minimise': 'ka + 1.3*kb + 0.8*kc'}"                                       },
-    {         "more combinations than can be tried",                       ROW(""),
+     "'objective': {'minimise': 'ka + 1.3*kb + 0.8*kc'}"},
+    {"more combinations than can be tried", ROW(""),
      "'variables': [{'parameter': 'k1', 'catalogue': {'series': 'E96', 'lower': 0.5, 'upper': "
      "5}}, {'parameter': 'm', 'catalogue': {'series': 'E96', 'lower': 0.5, 'upper': 5}}, "
      "{'parameter': 'k2', 'catalogue': {'series': 'E96', 'lower': 0.5, 'upper': 5}}]," QUICK
      "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.12}, {'type': 'frequency', "
-     "'mode': 2, 'at_most_hz': 0.3}]"                                                          },
+     "'mode': 2, 'at_most_hz': 0.3}]"},
     {"tolerances of what bends stiffness both ways",
-     STUDY_TWO_MASSES("'a': 1, 'k1': '2 + a*(3 - a)', 'k2': 1, 'm': 1, 'n': '2*m'",         ""),"'variables': [{'parameter': 'a', 'lower': 0.5, 'upper': 2.5, 'tolerance_percent': 3}, "
+     STUDY_TWO_MASSES("'a': 1, 'k1': '2 + a*(3 - a)', 'k2': 1, 'm': 1, 'n': '2*m'", ""),
+     "'variables': [{'parameter': 'a', 'lower': 0.5, 'upper': 2.5, 'tolerance_percent': 3}, "
      "{'parameter': 'k2', 'lower': 0.2, 'upper': 5, 'tolerance_percent': 2}]," QUICK
      "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.1},"
      "{'type': 'limit', 'expression': 'a*(3 - a)*k2', 'at_most': 3}]"},
-    {                 "driven positions in gravity",                  "driven_rod",
+    {"driven positions in gravity", "driven_rod",
      "'variables': [{'parameter': 'k', 'lower': 20, 'upper': 80}]," QUICK
      "'goals': [{'type': 'avoid', 'configurations': ['sprung', 'trimmed'], 'bands_hz': [[1.5, "
-     "1.6]]}]"           },
+     "1.6]]}]"},
 };
 
 #endif

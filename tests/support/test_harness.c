@@ -23,12 +23,9 @@ static void harness__near_fails_on_nan_and_infinity(mt_test *t)
         double want;
         double tol;
     } rows[] = {
-        {        "got is NaN", bad, 1.0,  1.0},
-        {       "want is NaN", 1.0, bad,  1.0},
-        {      "both are NaN", bad, bad,  1.0},
-        {  "tolerance is NaN", 1.0, 1.0,  bad},
-        {   "got is infinite", inf, 1.0,  1.0},
-        { "both are infinite", inf, inf,  1.0},
+        {"got is NaN", bad, 1.0, 1.0},          {"want is NaN", 1.0, bad, 1.0},
+        {"both are NaN", bad, bad, 1.0},        {"tolerance is NaN", 1.0, 1.0, bad},
+        {"got is infinite", inf, 1.0, 1.0},     {"both are infinite", inf, inf, 1.0},
         {"negative tolerance", 1.0, 1.0, -1.0},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {

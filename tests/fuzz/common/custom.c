@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* libFuzzer's hooks: mutate by node most of the time, by bytes now and then; read the shipped files as seeds. */
+/* libFuzzer's hooks: mutate by node most of the time, by bytes now and then; read the shipped
+ * files as seeds. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* realpath and mkdtemp are in POSIX.1-2008, but the C library shows them only with X/Open: asked for before any header. */
+/* realpath and mkdtemp are in POSIX.1-2008, but the C library shows them only with X/Open:
+ * asked for before any header. */
 #define _XOPEN_SOURCE 700 /* NOLINT(cert-dcl37-c,cert-dcl51-cpp): for the system, not ours */
 
 #include "common/fuzz.h"

@@ -104,7 +104,8 @@ static size_t extreme(fuzz_random *r, uint8_t *text)
     return (size_t)snprintf((char *)text, TEXT_SIZE, "%s", s);
 }
 
-/* A number that is near the one there, or far away; another extreme where there is no number. */
+/* A number that is near the one there, or far away; another extreme where there is no
+ * number. */
 static size_t number(fuzz_random *r, const uint8_t *s, size_t n, uint8_t *text)
 {
     static const double factors[] = {-1.0,        0.0, 0.5,  2.0, 10.0, 0.1,
@@ -142,7 +143,8 @@ static size_t drop(uint8_t *data, size_t size, const node *a)
     return size - (end - begin);
 }
 
-/* The same once more behind a comma: an item doubled, a member given twice (or, by other, under another name). */
+/* The same once more behind a comma: an item doubled, a member given twice (or, by other, under
+ * another name). */
 static size_t double_up(uint8_t *data, size_t size, size_t max, const node *a, const uint8_t *s,
                         const node *b)
 {
@@ -213,7 +215,8 @@ static size_t replace_by(uint8_t *data, size_t size, size_t max, const node *a,
     return put(data, size, max, a->begin, a->end, text, end - begin);
 }
 
-/* One change at node a; b: another node of the same text, c: one of the other text o (b's where there is none). */
+/* One change at node a; b: another node of the same text, c: one of the other text o (b's where
+ * there is none). */
 static size_t change(fuzz_random *r, uint8_t *data, size_t size, size_t max, const node *a,
                      const node *b, const uint8_t *o, const node *c)
 {
