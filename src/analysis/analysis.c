@@ -75,8 +75,7 @@ static mt_status refresh_mass(mt_analysis *a, mt_err *err)
     if (a->mass_version == a->lin->mass_version) {
         return MT_OK;
     }
-    const mt_arena_mark start = {a->mass_mem.first, 0, 0};
-    mt_arena_rewind(&a->mass_mem, start);
+    mt_arena_clear(&a->mass_mem);
     a->mass_version = 0;
     MT_TRY(mt_modal_factor_mass(a->lin->n, a->lin->m_r, &a->mass_mem, &a->mass, err));
     a->mass_version = a->lin->mass_version;
@@ -119,8 +118,7 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_stiffness_factor *fact
 mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
                             const mt_analysis_options *opt, mt_err *err)
 {
-    const mt_arena_mark start = {a->mem.first, 0, 0};
-    mt_arena_rewind(&a->mem, start);
+    mt_arena_clear(&a->mem);
     a->solves++;
     a->with_gradient = false;
     a->modes = (mt_modes){0}; /* where this fails there are none: not those of another design */

@@ -276,7 +276,6 @@ static void add_what_is_left(const mt_analysis *a, mt_doubt_list *list)
         if (strcmp(d->kind, "gap") == 0) {
             d->text =
                 mt_arena_printf(list->mem, "%s (to %.1e m)", d->text, a->lin->position.gap_m);
-            list->out_of_memory = list->out_of_memory || d->text == NULL;
         }
     }
 }
@@ -318,7 +317,7 @@ static mt_status gather(mt_analysis *a, int n_inputs, const int *inputs, const d
             return mt_fail(err, MT_E_INPUT, "%s", list->items[i].text);
         }
     }
-    return list->out_of_memory ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(list->mem, err);
 }
 
 mt_status mt_doubts_of_analysis(mt_analysis *a, int n_inputs, const int *inputs,
@@ -336,5 +335,5 @@ mt_status mt_doubts_of_analysis(mt_analysis *a, int n_inputs, const int *inputs,
         }
     }
     mt_arena_free(&mem);
-    return rc == MT_OK && out->out_of_memory ? mt_fail_memory(err) : rc;
+    return rc == MT_OK ? mt_arena_check(out->mem, err) : rc;
 }

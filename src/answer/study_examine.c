@@ -211,7 +211,6 @@ static void add_goals(const mt_study *s, int c, mt_doubt_list *of_model, int fir
                                       "%s; goals name it, and none of them is met by a design "
                                       "that does so",
                                       d->text);
-            of_model->out_of_memory = of_model->out_of_memory || d->text == NULL;
         }
     }
 }
@@ -228,9 +227,8 @@ static mt_status examine_reference(const mt_study *s, const mt_reference *r, mt_
     MT_TRY(mt_arena_init(&mem, 0, err));
     mt_doubt_list list = mt_doubt_list_default(&mem);
     double *const value = mt_arena_f64(&mem, (size_t)r->model->n_nums, 1);
-    mt_status rc = value == NULL ? mt_fail_memory(err)
-                                 : mt_model_numbers(r->model, r->configuration, 0, NULL, NULL,
-                                                    &mem, value, err);
+    mt_status rc =
+        mt_model_numbers(r->model, r->configuration, 0, NULL, NULL, &mem, value, err);
     if (rc == MT_OK) {
         mt_model_judge(r->model, r->configuration, value, &list);
     }
@@ -240,7 +238,7 @@ static mt_status examine_reference(const mt_study *s, const mt_reference *r, mt_
             mt_doubt_copy(out, &list.items[i]);
         }
     }
-    rc = rc == MT_OK && list.out_of_memory ? mt_fail_memory(err) : rc;
+    rc = rc == MT_OK ? mt_arena_check(&mem, err) : rc;
     mt_arena_free(&mem);
     return rc;
 }
@@ -348,5 +346,5 @@ mt_status mt_study_examine(const mt_study *study, double most_work, mt_doubt_lis
     for (int i = 0; i < study->n_references; i++) {
         MT_TRY(examine_reference(study, &study->references[i], out, err));
     }
-    return out->out_of_memory || of_model.out_of_memory ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(out->mem, err);
 }

@@ -84,7 +84,8 @@ mt_status mt_arena_init(mt_arena *a, size_t block_size, mt_err *err)
     a->block_size = rounded(block_size == 0 ? DEFAULT_BLOCK_SIZE : block_size, 1);
     a->first = a->block_size == 0 ? NULL : block_new(a->block_size);
     a->current = a->first;
-    return a->first == NULL ? mt_fail_memory(err) : MT_OK;
+    a->failed = a->first == NULL;
+    return mt_arena_check(a, err);
 }
 
 void mt_arena_free(mt_arena *a)
@@ -97,6 +98,28 @@ void mt_arena_free(mt_arena *a)
         b = next;
     }
     *a = (mt_arena){0};
+}
+
+mt_status mt_arena_check(mt_arena *a, mt_err *err)
+{
+    a->told = a->failed;
+    return a->failed ? mt_fail_memory(err) : MT_OK;
+}
+
+bool mt_arena_failed(const mt_arena *a)
+{
+    return a->failed;
+}
+
+void mt_arena_fail(mt_arena *a)
+{
+    a->failed = true;
+}
+
+static void *refuse(mt_arena *a)
+{
+    mt_arena_fail(a);
+    return NULL;
 }
 
 static bool fits(const mt_arena_block *b, size_t bytes)
@@ -129,8 +152,9 @@ static bool make_room(mt_arena *a, size_t bytes)
 void *mt_arena_alloc(mt_arena *a, size_t count, size_t size)
 {
     const size_t bytes = rounded(count, size);
-    if (bytes == 0 || bytes > SIZE_MAX - zone(size) || !make_room(a, bytes + zone(size))) {
-        return NULL;
+    if (a->failed || bytes == 0 || bytes > SIZE_MAX - zone(size) ||
+        !make_room(a, bytes + zone(size))) {
+        return refuse(a);
     }
     unsigned char *const p = a->current->data + a->current->used;
     a->current->used += bytes + zone(size);
@@ -143,10 +167,7 @@ void *mt_arena_alloc(mt_arena *a, size_t count, size_t size)
 
 double *mt_arena_f64(mt_arena *a, size_t m, size_t n)
 {
-    if (n != 0 && m > SIZE_MAX / n) {
-        return NULL;
-    }
-    return mt_arena_alloc(a, m * n, sizeof(double));
+    return n != 0 && m > SIZE_MAX / n ? refuse(a) : mt_arena_alloc(a, m * n, sizeof(double));
 }
 
 int *mt_arena_int(mt_arena *a, size_t n)
@@ -156,12 +177,12 @@ int *mt_arena_int(mt_arena *a, size_t n)
 
 char *mt_arena_strdup(mt_arena *a, const char *s)
 {
-    return mt_arena_strndup(a, s, strlen(s));
+    return a->failed ? NULL : mt_arena_strndup(a, s, strlen(s));
 }
 
 char *mt_arena_strndup(mt_arena *a, const char *s, size_t length)
 {
-    char *const copy = length == SIZE_MAX ? NULL : mt_arena_alloc(a, length + 1, 1);
+    char *const copy = length == SIZE_MAX ? refuse(a) : mt_arena_alloc(a, length + 1, 1);
     if (copy != NULL) {
         memcpy(copy, s, length);
     }
@@ -171,9 +192,12 @@ char *mt_arena_strndup(mt_arena *a, const char *s, size_t length)
 char *mt_arena_vprintf(mt_arena *a, const char *fmt, va_list args)
 {
     va_list again;
+    if (a->failed) {
+        return NULL;
+    }
     va_copy(again, args);
     const int n = mt_vsnprintf(NULL, 0, fmt, args);
-    char *const s = n < 0 ? NULL : mt_arena_alloc(a, (size_t)n + 1, 1);
+    char *const s = n < 0 ? refuse(a) : mt_arena_alloc(a, (size_t)n + 1, 1);
     if (s != NULL) {
         (void)mt_vsnprintf(s, (size_t)n + 1, fmt, again);
     }
@@ -193,11 +217,14 @@ char *mt_arena_printf(mt_arena *a, const char *fmt, ...)
 void *mt_arena_grow(mt_arena *a, void *items, int count, int *capacity, size_t size)
 {
     enum { FIRST_CAPACITY = 8 };
+    if (a->failed) {
+        return NULL;
+    }
     if (count < *capacity) {
         return items;
     }
     if (count > INT_MAX / 2) {
-        return NULL;
+        return refuse(a);
     }
     const int room = count < FIRST_CAPACITY / 2 ? FIRST_CAPACITY : 2 * count;
     void *const grown = mt_arena_alloc(a, (size_t)room, size);
@@ -218,6 +245,7 @@ mt_arena_mark mt_arena_get_mark(const mt_arena *a)
         .block = a->current,
         .block_used = a->current == NULL ? 0 : a->current->used,
         .used = a->used,
+        .failed = a->failed,
     };
 }
 
@@ -226,12 +254,21 @@ void mt_arena_rewind(mt_arena *a, mt_arena_mark mark)
     mt_arena_block *b = mark.block == NULL ? a->first : mark.block;
     a->current = mark.block;
     a->used = mark.used;
+    if (a->told && !mark.failed) {
+        a->failed = false;
+        a->told = false;
+    }
     size_t keep = mark.block_used;
     for (; b != NULL; b = b->next) {
         b->used = keep;
         POISON(b->data + keep, b->size - keep);
         keep = 0;
     }
+}
+
+void mt_arena_clear(mt_arena *a)
+{
+    mt_arena_rewind(a, (mt_arena_mark){.block = NULL});
 }
 
 mt_status mt_fail_memory(mt_err *err)

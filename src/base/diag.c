@@ -19,12 +19,10 @@ static void add(mt_diags *d, mt_addr addr, mt_severity severity, bool structural
 {
     char line[TEXT_SIZE];
     const bool written = mt_vsnprintf(line, sizeof line, fmt, args) >= 0;
-    const char *const text = written ? mt_arena_strdup(d->mem, line) : NULL;
+    const char *const text = mt_arena_strdup(d->mem, written ? line : fmt);
     mt_diag *const items =
-        text == NULL ? NULL
-                     : mt_arena_grow(d->mem, d->items, d->count, &d->capacity, sizeof *items);
+        mt_arena_grow(d->mem, d->items, d->count, &d->capacity, sizeof *items);
     if (items == NULL) {
-        d->out_of_memory = 1;
         return;
     }
     items[d->count] =

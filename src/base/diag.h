@@ -32,10 +32,9 @@ typedef struct mt_diags {
     int errors;     /* how many of them are errors (also those beyond the limit) */
     int structural; /* how many of the errors are structural, likewise */
     int warnings;   /* how many are warnings, likewise */
-    int out_of_memory;
 } mt_diags;
 
-/* Empty list whose texts live in mem. */
+/* Empty list whose texts live in mem, which remembers where there is no memory for one. */
 mt_diags mt_diags_default(mt_arena *mem);
 /* Add a problem; beyond MT_DIAG_LIMIT only counted. */
 void mt_diag_error(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);

@@ -19,11 +19,9 @@ static mt_doubt *add(mt_doubt_list *list, const mt_doubt *item)
     if (is_full(list, item->level)) {
         return NULL;
     }
-    mt_doubt *const items = item->text == NULL ? NULL
-                                               : mt_arena_grow(list->mem, list->items, list->n,
-                                                               &list->capacity, sizeof *items);
+    mt_doubt *const items =
+        mt_arena_grow(list->mem, list->items, list->n, &list->capacity, sizeof *items);
     if (items == NULL) {
-        list->out_of_memory = true;
         return NULL;
     }
     list->items = items;
@@ -59,9 +57,7 @@ void mt_doubt_sort(mt_doubt_list *list, int first)
 
 static const char *text(mt_doubt_list *list, const char *s)
 {
-    const char *const copy = s == NULL ? NULL : mt_arena_strdup(list->mem, s);
-    list->out_of_memory = list->out_of_memory || (s != NULL && copy == NULL);
-    return copy;
+    return s == NULL ? NULL : mt_arena_strdup(list->mem, s);
 }
 
 void mt_doubt_copy(mt_doubt_list *list, const mt_doubt *item)

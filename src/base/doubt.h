@@ -43,13 +43,12 @@ typedef struct mt_doubt_list {
     mt_doubt *items;
     int n;
     int capacity;
-    bool out_of_memory;
 } mt_doubt_list;
 
-/* Empty list whose texts live in mem. */
+/* Empty list whose texts live in mem, which remembers where there is no memory for one. */
 mt_doubt_list mt_doubt_list_default(mt_arena *mem);
-/* Add one with a formatted text; returns it (until the next), NULL when out of memory (noted)
- * and beyond MT_DOUBT_LIMIT, where none is added. */
+/* Add one with a formatted text; returns it (until the next), NULL when out of memory and
+ * beyond MT_DOUBT_LIMIT, where none is added. */
 mt_doubt *mt_doubt_add(mt_doubt_list *list, mt_doubt_level level, const char *kind,
                        const char *fmt, ...) MT_PRINTF(4, 5);
 /* Items first .. n - 1 in the order of falling size; equal ones keep their order. */

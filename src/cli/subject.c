@@ -160,7 +160,7 @@ static mt_status judge(mt_subject *s, mt_err *err)
             return mt_fail(err, MT_E_USAGE, "--set: %s", list.items[i].text);
         }
     }
-    return list.out_of_memory ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(list.mem, err);
 }
 
 static mt_status choose(const mt_args *args, const char *configuration, mt_subject *s,

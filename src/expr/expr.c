@@ -93,9 +93,7 @@ const char *const *mt_expr_names(int *n)
 mt_status mt_expr_number(double value, mt_arena *mem, mt_expr *out, mt_err *err)
 {
     mt_code *const code = mt_arena_alloc(mem, 1, sizeof *code);
-    if (code == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     *code = (mt_code){.op = MT_OP_CONST, .param = -1, .value = value};
     *out = (mt_expr){.code = code, .length = 1};
     return MT_OK;

@@ -367,9 +367,7 @@ mt_status mt_expr_parse(const char *text, mt_expr_lookup lookup, const void *con
         return expected(&p, "an operator or the end");
     }
     mt_code *const code = mt_arena_alloc(mem, (size_t)p.length, sizeof *code);
-    if (code == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     memcpy(code, p.code, (size_t)p.length * sizeof *code);
     *out = (mt_expr){.code = code, .length = p.length};
     return MT_OK;

@@ -23,11 +23,8 @@ mt_status mt_program_init(mt_program *p, int n_inputs, mt_arena *mem, mt_err *er
 {
     *p = (mt_program){.mem = mem, .n_inputs = n_inputs};
     p->table = mt_arena_int(mem, FIRST_TABLE_SIZE);
-    if (p->table == NULL) {
-        return mt_fail_memory(err);
-    }
     p->table_size = FIRST_TABLE_SIZE;
-    return MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 static uint64_t value_bits(double value)
@@ -75,29 +72,29 @@ static int table_slot(const mt_program *p, const mt_program_node *n)
     return (int)slot;
 }
 
-/* Keep the table at most half full. */
-static bool table_reserve(mt_program *p)
+/* Keep the table at most half full. Without memory it stays as it is. */
+static void table_reserve(mt_program *p)
 {
     if (p->count < p->table_size / 2) {
-        return true;
+        return;
     }
-    int *const table =
-        p->table_size > INT_MAX / 4 ? NULL : mt_arena_int(p->mem, 2 * (size_t)p->table_size);
+    const size_t most = INT_MAX / 2;
+    const size_t size = 2 * (size_t)p->table_size;
+    int *const table = mt_arena_int(p->mem, size > most ? SIZE_MAX : size);
     if (table == NULL) {
-        return false;
+        return;
     }
     p->table = table;
-    p->table_size *= 2;
+    p->table_size = (int)size;
     for (int i = 0; i < p->count; i++) {
         p->table[table_slot(p, &p->nodes[i])] = i + 1;
     }
-    return true;
 }
 
 static mt_node intern(mt_program *p, const mt_program_node *n)
 {
-    if (p->out_of_memory) {
-        return MT_NO_NODE;
+    if (mt_arena_failed(p->mem)) {
+        return MT_NO_NODE; /* the table may be missing, or full */
     }
     const int slot = table_slot(p, n);
     if (p->table[slot] != 0) {
@@ -106,16 +103,12 @@ static mt_node intern(mt_program *p, const mt_program_node *n)
     mt_program_node *const nodes =
         mt_arena_grow(p->mem, p->nodes, p->count, &p->capacity, sizeof *nodes);
     if (nodes == NULL) {
-        p->out_of_memory = true;
         return MT_NO_NODE;
     }
     p->nodes = nodes;
     p->nodes[p->count] = *n;
     p->table[slot] = ++p->count;
-    if (!table_reserve(p)) {
-        p->out_of_memory = true;
-        return MT_NO_NODE;
-    }
+    table_reserve(p);
     return p->count - 1;
 }
 
@@ -281,10 +274,7 @@ mt_status mt_program_finish(mt_program *p, mt_err *err)
     p->active = mt_arena_alloc(p->mem, count, sizeof *p->active);
     p->active_nodes = mt_arena_int(p->mem, count);
     p->inputs_of = mt_arena_alloc(p->mem, count, (size_t)p->words * sizeof *p->inputs_of);
-    if (p->out_of_memory || p->active == NULL || p->active_nodes == NULL ||
-        p->inputs_of == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(p->mem, err));
     p->n_active = 0;
     for (int i = 0; i < p->count; i++) {
         collect_inputs(p, i);

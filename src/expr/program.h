@@ -13,9 +13,9 @@
  * often, without the heap: values; values with exact first derivatives (forward mode);
  * enclosures of both over a box. A node is evaluated even where nothing uses it, so no domain
  * error can hide behind a factor 0. Building: init, then const/input/unary/binary/expr in any
- * order, then finish. A failed allocation is remembered, every later node is MT_NO_NODE
- * (accepted as an operand), and finish reports it. Building more after finish is possible;
- * finish again then. A finished program is only read by the evaluations: threads may share it.
+ * order, then finish. Once the arena has failed every node is MT_NO_NODE (accepted as an
+ * operand), and finish says so. Building more after finish is possible; finish again then. A
+ * finished program is only read by the evaluations: threads may share it.
  */
 typedef int mt_node; /* index of a node; MT_NO_NODE: absent */
 enum { MT_NO_NODE = -1 };
@@ -42,7 +42,6 @@ typedef struct mt_program {
     int words;
     int *active_nodes; /* the active ones in order */
     int n_active;
-    bool out_of_memory; /* set while building; finish turns it into MT_E_MEMORY */
 } mt_program;
 
 mt_status mt_program_init(mt_program *p, int n_inputs, mt_arena *mem, mt_err *err);

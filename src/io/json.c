@@ -190,7 +190,7 @@ static mt_status build(mt_json *doc, mt_err *err)
     if (!link_items(doc)) {
         return mt_fail(err, MT_E_INTERNAL, "scanner and cJSON disagree");
     }
-    if (!read_numbers(doc) || !find_duplicates(doc) || doc->diags.out_of_memory) {
+    if (!read_numbers(doc) || !find_duplicates(doc) || mt_arena_failed(doc->diags.mem)) {
         return mt_fail_memory(err);
     }
     return MT_OK;

@@ -94,5 +94,8 @@ void mt_json_pointer(const mt_json *doc, mt_addr addr, mt_text *out);
  * how many more there are.
  */
 void mt_json_print(const mt_json *doc, const char *file, mt_text *out);
+/* MT_E_MEMORY, MT_E_INPUT where there are errors, or MT_OK. err: the first error as it is
+ * printed, and how many more there are. */
+mt_status mt_json_status(const mt_json *doc, const char *file, mt_err *err);
 
 #endif

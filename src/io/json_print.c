@@ -205,3 +205,30 @@ void mt_json_print(const mt_json *doc, const char *file, mt_text *out)
         mt_text_addf(out, "%s: %d more not shown\n", file, more);
     }
 }
+
+mt_status mt_json_status(const mt_json *doc, const char *file, mt_err *err)
+{
+    const mt_diags *const diags = &doc->diags;
+    MT_TRY(mt_arena_check(diags->mem, err));
+    if (diags->errors == 0) {
+        return MT_OK;
+    }
+    mt_text text = {0};
+    mt_json_print(doc, file, &text);
+    if (text.failed) {
+        mt_text_free(&text);
+        return mt_fail_memory(err);
+    }
+    /* the first error: warnings may stand before it */
+    const char *line = text.s == NULL ? "" : text.s;
+    while (strchr(line, '\n') != NULL && strstr(line, ": error: ") > strchr(line, '\n')) {
+        line = strchr(line, '\n') + 1;
+    }
+    const int length = (int)strcspn(line, "\n");
+    const int more = diags->errors - 1;
+    const mt_status rc =
+        more == 0 ? mt_fail(err, MT_E_INPUT, "%.*s", length, line)
+                  : mt_fail(err, MT_E_INPUT, "%.*s (and %d more)", length, line, more);
+    mt_text_free(&text);
+    return rc;
+}

@@ -103,9 +103,7 @@ static void read_parameter_names(mt_model_reader *mr, mt_addr object)
     }
     mr->r.names = names;
     mr->r.n_names = n_names;
-    if (!mt_model_index_parameters(m)) {
-        mr->r.out_of_memory = true;
-    }
+    mt_model_index_parameters(m);
 }
 
 static void read_parameter(mt_model_reader *mr, mt_addr value, mt_parameter *p)
@@ -292,8 +290,8 @@ mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_
     mt_addr at[MODEL_COUNT];
     if (check_format(&mr.r) && mt_reader_object(&mr.r, MT_JSON_ROOT, &mt_model_keys, at)) {
         read_root(&mr, at);
-        if (!mr.r.out_of_memory && mt_model_finish(m, mr.r.diags, NULL) == MT_E_MEMORY) {
-            mr.r.out_of_memory = true;
+        if (!mr.r.out_of_memory) {
+            (void)mt_model_finish(m, mr.r.diags, NULL); /* the arenas remember a shortage */
         }
         mr.r.out_of_memory = mr.r.out_of_memory || !note_places(&mr);
     }
@@ -327,8 +325,7 @@ mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **o
     if (rc == MT_OK) {
         rc = mt_model_from_json(doc, path, out, err);
     } else if (rc == MT_E_INPUT) {
-        const mt_reader r = {.doc = doc, .diags = mt_json_diags(doc)};
-        rc = mt_reader_status(&r, path, err);
+        rc = mt_json_status(doc, path, err);
     }
     if (rc == MT_OK && *out != NULL) {
         rc = note_file(*out, path, &file, err);

@@ -373,7 +373,7 @@ static mt_status read_text(mt_study_reader *s, const mt_file *file, mt_text *mes
     s->model_messages = &model_messages;
     int *const structural = s->files.structural;
     s->files.structural = NULL; /* counts this file, not the models */
-    rc = rc == MT_OK ? read_document(s, err) : mt_reader_status(&s->r, s->study->path, err);
+    rc = rc == MT_OK ? read_document(s, err) : mt_json_status(doc, s->study->path, err);
     if (structural != NULL) {
         *structural = s->r.diags->structural;
     }

@@ -356,28 +356,9 @@ bool mt_reader_expr(mt_reader *r, mt_addr value, mt_expr *out)
 
 mt_status mt_reader_status(const mt_reader *r, const char *file, mt_err *err)
 {
-    if (r->out_of_memory || r->diags->out_of_memory) {
+    if (r->out_of_memory) {
         return mt_fail_memory(err);
     }
-    if (r->diags->errors == 0) {
-        return MT_OK;
-    }
-    mt_text text = {0};
-    mt_json_print(r->doc, file, &text);
-    if (text.failed) {
-        mt_text_free(&text);
-        return mt_fail_memory(err);
-    }
-    /* the first error: warnings may stand before it */
-    const char *line = text.s == NULL ? "" : text.s;
-    while (strchr(line, '\n') != NULL && strstr(line, ": error: ") > strchr(line, '\n')) {
-        line = strchr(line, '\n') + 1;
-    }
-    const int length = (int)strcspn(line, "\n");
-    const int more = r->diags->errors - 1;
-    const mt_status rc =
-        more == 0 ? mt_fail(err, MT_E_INPUT, "%.*s", length, line)
-                  : mt_fail(err, MT_E_INPUT, "%.*s (and %d more)", length, line, more);
-    mt_text_free(&text);
-    return rc;
+    MT_TRY(mt_arena_check(r->mem, err));
+    return mt_json_status(r->doc, file, err);
 }

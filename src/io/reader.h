@@ -137,8 +137,7 @@ bool mt_reader_expr(mt_reader *r, mt_addr value, mt_expr *out);
 /* The same for a text that came from elsewhere than a value of its own. */
 bool mt_reader_expr_text(mt_reader *r, mt_addr addr, const char *text, mt_expr *out);
 
-/* MT_E_MEMORY, MT_E_INPUT where the document has errors, or MT_OK. err: the first diagnostic
- * and how many more there are. */
+/* MT_E_MEMORY, or mt_json_status of the document. */
 mt_status mt_reader_status(const mt_reader *r, const char *file, mt_err *err);
 
 #endif

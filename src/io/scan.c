@@ -512,7 +512,7 @@ mt_status mt_json_scan(mt_json *doc, mt_err *err)
     } else {
         scan_text(&sc);
     }
-    if (sc.out_of_memory || doc->diags.out_of_memory) {
+    if (sc.out_of_memory || mt_arena_failed(doc->diags.mem)) {
         return mt_fail_memory(err);
     }
     return doc->diags.errors == 0 ? MT_OK : mt_fail(err, MT_E_INPUT, "the text is not JSON");

@@ -45,11 +45,7 @@ const char *mt_build_name(mt_builder *b, const char *fmt, ...)
     (void)mt_vsnprintf(text, sizeof text, fmt, args);
     va_end(args);
     const char *const s = mt_arena_strdup(&b->sys->mem, text);
-    if (s == NULL) {
-        b->sys->program.out_of_memory = true;
-        return "";
-    }
-    return s;
+    return s == NULL ? "" : s;
 }
 
 static int add_vec(mt_builder *b, const mt_vec_def *def)
@@ -64,7 +60,6 @@ static int add_vec(mt_builder *b, const mt_vec_def *def)
     }
     mt_vec_def *const grown = GROW(b, vecs);
     if (grown == NULL) {
-        sys->program.out_of_memory = true;
         return 0;
     }
     sys->vecs = grown;
@@ -123,7 +118,6 @@ int mt_build_body(mt_builder *b, const char *name, const mt_node centre[3], bool
     mt_system *const sys = b->sys;
     mt_state_body *const grown = GROW(b, bodies);
     if (grown == NULL) {
-        sys->program.out_of_memory = true;
         return 0;
     }
     sys->bodies = grown;
@@ -158,7 +152,6 @@ int mt_build_measure(mt_builder *b, const mt_measure_def *def)
     mt_system *const sys = b->sys;
     mt_measure_def *const grown = GROW(b, measures);
     if (grown == NULL) {
-        sys->program.out_of_memory = true;
         return 0;
     }
     sys->measures = grown;
@@ -179,7 +172,6 @@ void mt_build_constraint(mt_builder *b, int measure, mt_node target, bool drawn)
     mt_system *const sys = b->sys;
     mt_constraint_def *const grown = GROW(b, constraints);
     if (grown == NULL) {
-        sys->program.out_of_memory = true;
         return;
     }
     sys->constraints = grown;
@@ -204,7 +196,6 @@ void mt_build_inertia(mt_builder *b, const mt_inertia_def *def)
     }
     mt_inertia_def *const grown = GROW(b, inertias);
     if (grown == NULL) {
-        sys->program.out_of_memory = true;
         return;
     }
     sys->inertias = grown;
@@ -216,7 +207,6 @@ void mt_build_load(mt_builder *b, const mt_load_def *def)
     mt_system *const sys = b->sys;
     mt_load_def *const grown = GROW(b, loads);
     if (grown == NULL) {
-        sys->program.out_of_memory = true;
         return;
     }
     sys->loads = grown;
@@ -246,7 +236,6 @@ int mt_build_item(mt_builder *b, const char *name, mt_node mass)
     mt_system *const sys = b->sys;
     mt_item_def *const grown = GROW(b, items);
     if (grown == NULL) {
-        sys->program.out_of_memory = true;
         return 0;
     }
     sys->items = grown;

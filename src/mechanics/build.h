@@ -4,8 +4,8 @@
 
 #include "mechanics/system.h"
 
-/* What the files build_*.c share while a system is made. Out of memory is noted in
- * program.out_of_memory and found at the end. */
+/* What the files build_*.c share while a system is made. A shortage is remembered by the arena
+ * of the system, which is asked at the end. */
 typedef struct mt_builder {
     mt_system *sys;
     const mt_model *model;

@@ -69,7 +69,7 @@ static mt_status drive(mt_builder *b, const request *r)
     sys->driven = true;
     sys->drive_constraint = sys->n_constraints;
     mt_build_constraint(b, sys->joints[joint].coordinate, MT_NO_NODE, false);
-    if (!sys->program.out_of_memory) {
+    if (!mt_arena_failed(&sys->mem)) {
         sys->constraints[sys->drive_constraint].joint = joint;
     }
     sys->trim = r->spring != NULL;

@@ -151,7 +151,6 @@ static mt_system_joint *new_joint(mt_builder *b, const mt_joint *joint, const in
     mt_system_joint *const joints =
         mt_arena_grow(&sys->mem, sys->joints, sys->n_joints, &sys->cap_joints, sizeof *joints);
     if (joints == NULL) {
-        sys->program.out_of_memory = true;
         return NULL;
     }
     sys->joints = joints;
@@ -192,7 +191,7 @@ static mt_status build_gear(mt_builder *b, const mt_joint *joint)
     mt_system_joint *const made = new_joint(
         b, joint, (const int[2]){sys->joints[first].body[1], sys->joints[second].body[1]});
     if (made == NULL) {
-        return MT_OK; /* noted in out_of_memory */
+        return MT_OK; /* the arena remembers */
     }
     mt_build_constraint(b, sys->joints[second].coordinate, MT_NO_NODE, true);
     if (sys->n_constraints > made->first) {

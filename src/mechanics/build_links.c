@@ -240,7 +240,6 @@ static void build_hinge(mt_builder *b, const mt_link *link, const link_geometry 
     mt_spring_def *const springs = mt_arena_grow(&sys->mem, sys->springs, sys->n_springs,
                                                  &sys->cap_springs, sizeof *springs);
     if (joints == NULL || springs == NULL) {
-        sys->program.out_of_memory = true;
         return;
     }
     sys->springs = springs;
@@ -315,7 +314,6 @@ static void beam_spring(mt_builder *b, const mt_link *link, int element,
     mt_spring_def *const springs = mt_arena_grow(&sys->mem, sys->springs, sys->n_springs,
                                                  &sys->cap_springs, sizeof *springs);
     if (springs == NULL) {
-        sys->program.out_of_memory = true;
         return;
     }
     sys->springs = springs;

@@ -18,7 +18,6 @@ static void add_channels(mt_builder *b, const mt_sensor *sensor, mt_channel_def 
         mt_channel_def *const grown = mt_arena_grow(&sys->mem, sys->channels, sys->n_channels,
                                                     &sys->cap_channels, sizeof *grown);
         if (grown == NULL) {
-            sys->program.out_of_memory = true;
             return;
         }
         sys->channels = grown;
@@ -94,9 +93,7 @@ static mt_status sensor_on_link(mt_builder *b, const mt_sensor *sensor, const do
     link_point(b, link, fraction, at);
     const mt_arena_mark mark = mt_arena_get_mark(&b->sys->mem);
     const double *const v = values_so_far(b, original, &b->sys->mem);
-    if (v == NULL || p->out_of_memory) {
-        return mt_fail_memory(b->err);
-    }
+    MT_TRY(mt_arena_check(&b->sys->mem, b->err));
     const double f = v[fraction];
     const bool inside = f >= 0.0 && f <= 1.0;
     const int rigid =

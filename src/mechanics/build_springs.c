@@ -14,7 +14,6 @@ static void add_spring(mt_builder *b, const mt_spring_def *def)
     mt_spring_def *const springs = mt_arena_grow(&sys->mem, sys->springs, sys->n_springs,
                                                  &sys->cap_springs, sizeof *springs);
     if (springs == NULL) {
-        sys->program.out_of_memory = true;
         return;
     }
     sys->springs = springs;

@@ -312,9 +312,8 @@ static void assemble(mt_linear *lin, bool geometry_new)
 
 static mt_status rebuild(mt_linear *lin, mt_err *err)
 {
-    const mt_arena_mark start = {lin->geometry.first, 0, 0};
     lin->built = false;
-    mt_arena_rewind(&lin->geometry, start);
+    mt_arena_clear(&lin->geometry);
     mt_data_vecs(&lin->data);
     MT_TRY(mt_position_solve(lin->sys, &lin->data, lin->follow ? &lin->last : NULL,
                              &lin->geometry, &lin->position, err));

@@ -218,9 +218,7 @@ static mt_status build(mt_system *sys, const mt_system_drive *drive, const doubl
                               sys->parameters, &sys->mem, err));
     MT_TRY(prepare(&b, sys, err));
     const mt_status rc = build_parts(&b, at);
-    if (sys->program.out_of_memory) {
-        return mt_fail_memory(err); /* whatever else the shortage led to */
-    }
+    MT_TRY(mt_arena_check(&sys->mem, err)); /* whatever else the shortage led to */
     MT_TRY(rc);
     MT_TRY(mt_program_finish(&sys->program, err));
     sys->geometry_fixed = geometry_is_fixed(sys);

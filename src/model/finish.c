@@ -24,7 +24,6 @@ void mt_finish_unknown(mt_finish *f, mt_name name, const mt_names *table, const 
     const char **const names =
         mt_arena_alloc(&f->m->mem, (size_t)table->count + (size_t)n_more, sizeof *names);
     if (names == NULL) {
-        f->out_of_memory = true;
         return;
     }
     int n = 0;
@@ -101,9 +100,8 @@ static void enter(mt_finish *f, mt_names *table, mt_name name, int value, const 
     if (name.s == NULL) {
         return;
     }
-    if (!mt_names_add(table, &f->m->mem, name.s, value, &taken)) {
-        f->out_of_memory = true;
-    } else if (taken) {
+    mt_names_add(table, &f->m->mem, name.s, value, &taken);
+    if (taken) {
         mt_diag_error(f->d, name.addr, "the name \"%s\" is taken by another %s", name.s, what);
     }
 }
@@ -161,7 +159,6 @@ static void ensure_configuration(mt_finish *f)
     }
     m->configurations = mt_arena_alloc(&m->mem, 1, sizeof *m->configurations);
     if (m->configurations == NULL) {
-        f->out_of_memory = true;
         return;
     }
     m->n_configurations = 1;
@@ -198,14 +195,13 @@ mt_status mt_model_finish(mt_model *model, mt_diags *diags, mt_err *err)
         mt_finish_loads,      mt_finish_sensors, mt_finish_drives,         mt_finish_cycles,
         mt_finish_values,
     };
-    mt_finish f = {.m = model, .d = diags, .out_of_memory = model->out_of_memory};
+    mt_finish f = {.m = model, .d = diags};
     const int n_stages = fits(model, diags) ? MT_COUNT(stages) : 0;
-    for (int i = 0; i < n_stages && !f.out_of_memory; i++) {
+    for (int i = 0; i < n_stages && !mt_arena_failed(&model->mem); i++) {
         stages[i](&f);
     }
-    if (f.out_of_memory || diags->out_of_memory) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&model->mem, err));
+    MT_TRY(mt_arena_check(diags->mem, err));
     if (diags->errors > 0) {
         return mt_fail(err, MT_E_INPUT, "%s%s", diags->count > 0 ? diags->items[0].text : "",
                        diags->errors > 1 ? " (and more)" : "");

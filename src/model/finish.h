@@ -4,13 +4,12 @@
 
 #include "model/names.h"
 
-/* What the files finish_*.c share while a model is resolved and checked. Problems go to diags;
- * a function returns nothing. */
+/* What the files finish_*.c share while a model is resolved and checked. Problems go to diags,
+ * and the model's arena remembers a shortage; a function returns nothing. */
 typedef struct mt_finish {
     mt_model *m;
     mt_diags *d;
     int *order; /* [n_configurations] those that others are like first */
-    bool out_of_memory;
 } mt_finish;
 
 /* The index of a name, which is looked up in a table; MT_ABSENT where it is not there (noted:

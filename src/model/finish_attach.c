@@ -93,12 +93,10 @@ void mt_finish_attach(mt_finish *f, mt_attach *a)
         static const char *const more[] = {"ground"};
         const char *const stem = mt_arena_strndup(&f->m->mem, s, length);
         const mt_name name = {.s = stem, .addr = a->name.addr};
-        if (stem == NULL) {
-            f->out_of_memory = true;
-            return;
+        if (stem != NULL) {
+            mt_finish_unknown(f, name, table, dot == NULL ? "body" : "link", more,
+                              dot == NULL ? 1 : 0);
         }
-        mt_finish_unknown(f, name, table, dot == NULL ? "body" : "link", more,
-                          dot == NULL ? 1 : 0);
     } else if (i >= 0 && dot == NULL) {
         a->kind = MT_ATTACH_BODY;
         a->index = i;

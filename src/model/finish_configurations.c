@@ -39,18 +39,11 @@ static void check_like(mt_finish *f, int c, int *state)
     }
 }
 
-/* All configurations, those that others are like first; [n_configurations]. NULL when out of
- * memory. */
-static int *inheritance_order(mt_finish *f)
+/* order[n_configurations]: all configurations, those that others are like first. chain
+ * [n_configurations]; state, likewise, is 0. */
+static void find_order(mt_finish *f, int *chain, int *state)
 {
     const int n = f->m->n_configurations;
-    int *const order = mt_arena_int(&f->m->mem, (size_t)n);
-    int *const chain = mt_arena_int(&f->m->mem, (size_t)n);
-    int *const state = mt_arena_int(&f->m->mem, (size_t)n);
-    if (order == NULL || chain == NULL || state == NULL) {
-        f->out_of_memory = true;
-        return NULL;
-    }
     int done = 0;
     for (int c = 0; c < n; c++) {
         int depth = 0;
@@ -60,10 +53,9 @@ static int *inheritance_order(mt_finish *f)
             chain[depth++] = at;
         }
         while (depth > 0) {
-            order[done++] = chain[--depth];
+            f->order[done++] = chain[--depth];
         }
     }
-    return order;
 }
 
 /* Own overrides first, then those inherited that are not given again. overridden [n_parameters]
@@ -78,7 +70,6 @@ static void inherit_overrides(mt_finish *f, mt_configuration *c, bool *overridde
     mt_override *const all =
         mt_arena_alloc(&f->m->mem, (size_t)own + (size_t)parent->n_overrides, sizeof *all);
     if (all == NULL) {
-        f->out_of_memory = true;
         return;
     }
     if (own > 0) {
@@ -130,11 +121,14 @@ static void inherit(mt_finish *f, mt_configuration *c, bool *overridden)
 void mt_finish_configurations(mt_finish *f)
 {
     mt_model *const m = f->m;
-    int *const state = mt_arena_int(&m->mem, (size_t)m->n_configurations);
+    const size_t n = (size_t)m->n_configurations;
+    int *const walked = mt_arena_int(&m->mem, n);
+    int *const state = mt_arena_int(&m->mem, n);
+    int *const chain = mt_arena_int(&m->mem, n);
     bool *const overridden =
         mt_arena_alloc(&m->mem, (size_t)m->n_parameters, sizeof *overridden);
-    if (state == NULL || overridden == NULL) {
-        f->out_of_memory = true;
+    f->order = mt_arena_int(&m->mem, n);
+    if (mt_arena_failed(&m->mem)) {
         return;
     }
     for (int c = 0; c < m->n_configurations; c++) {
@@ -142,11 +136,11 @@ void mt_finish_configurations(mt_finish *f)
         it->like =
             mt_finish_find(f, it->like_name, &m->tables->configurations, "configuration");
     }
-    for (int c = 0; c < m->n_configurations && !f->out_of_memory; c++) {
-        check_like(f, c, state);
+    for (int c = 0; c < m->n_configurations; c++) {
+        check_like(f, c, walked);
     }
-    f->order = f->out_of_memory ? NULL : inheritance_order(f);
-    for (int i = 0; f->order != NULL && i < m->n_configurations; i++) {
+    find_order(f, chain, state);
+    for (int i = 0; i < m->n_configurations; i++) {
         inherit(f, &m->configurations[f->order[i]], overridden);
     }
     for (int i = 0; i < m->n_modes; i++) {
@@ -165,7 +159,6 @@ static void resolve_presence(mt_finish *f, mt_presence *in)
     }
     bool *const present = mt_arena_alloc(&m->mem, (size_t)m->n_configurations, sizeof *present);
     if (present == NULL) {
-        f->out_of_memory = true;
         return;
     }
     for (int i = 0; i < in->names.count; i++) {

@@ -145,7 +145,7 @@ static bool circles(search *s)
     for (int i = 0; i < n; i++) {
         s->state[i] = UNSEEN;
     }
-    for (int i = 0; i < n && !s->f->out_of_memory; i++) {
+    for (int i = 0; i < n; i++) {
         if (s->state[i] == UNSEEN && circle_from(s, i)) {
             any = true;
             for (int k = 0; k < s->depth; k++) {
@@ -177,15 +177,14 @@ void mt_finish_cycles(mt_finish *f)
                 .state = mt_arena_int(&m->mem, n),
                 .stack = mt_arena_int(&m->mem, n),
                 .next = mt_arena_int(&m->mem, n)};
-    if (s.value == NULL || s.state == NULL || s.stack == NULL || s.next == NULL) {
-        f->out_of_memory = true;
+    if (mt_arena_failed(&m->mem)) {
         return;
     }
     apply(m, NULL, s.value);
     if (circles(&s)) {
         return; /* configurations would repeat it */
     }
-    for (int c = 0; c < m->n_configurations && !f->out_of_memory; c++) {
+    for (int c = 0; c < m->n_configurations; c++) {
         if (m->configurations[c].n_overrides > 0) {
             s.configuration = m->configurations[c].name.s;
             apply(m, &m->configurations[c], s.value);

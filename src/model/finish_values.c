@@ -38,9 +38,8 @@ void mt_finish_values(mt_finish *f)
     mt_arena texts = {.first = NULL};
     mt_doubt_list list = mt_doubt_list_default(&texts);
     const bool sound = f->d->errors == 0;
-    bool ok = mt_arena_init(&texts, 0, NULL) == MT_OK;
-    double *const value = ok ? mt_arena_f64(&texts, (size_t)m->n_nums, 1) : NULL;
-    ok = value != NULL;
+    double *const value = mt_arena_f64(&texts, (size_t)m->n_nums, 1);
+    bool ok = value != NULL;
     for (int pass = 0; pass < 2 && sound && ok; pass++) {
         for (int c = 0; c < m->n_configurations && ok; c++) {
             const bool own = m->configurations[c].n_overrides > 0;
@@ -59,6 +58,8 @@ void mt_finish_values(mt_finish *f)
             }
         }
     }
-    f->out_of_memory = f->out_of_memory || !ok || list.out_of_memory;
+    if (!ok || mt_arena_failed(&texts)) {
+        mt_arena_fail(&m->mem);
+    }
     mt_arena_free(&texts);
 }

@@ -283,10 +283,6 @@ static void judge_side(mt_judge *j, const holder *h, int side)
     if (off > DOUBTED_OFF * s.whole) {
         const char *const after =
             mt_arena_printf(j->out->mem, "; the whole link is %.4g m long", s.whole);
-        if (after == NULL) {
-            j->out->out_of_memory = true;
-            return;
-        }
         say_off(j, h, side, MT_LEVEL_DOUBT, off, (phrase_around){"", after});
     } else if (off > TOLD_OFF * s.whole && h->joint != NULL) {
         say_off(j, h, side, MT_LEVEL_FACT, off, (phrase_around){"", ""});

@@ -15,9 +15,8 @@ mt_status mt_model_new(mt_model **out, mt_err *err)
     if (model == NULL) {
         return mt_fail_memory(err);
     }
-    if (mt_arena_init(&model->mem, 0, NULL) == MT_OK) {
-        model->tables = mt_arena_alloc(&model->mem, 1, sizeof *model->tables);
-    }
+    (void)mt_arena_init(&model->mem, 0, NULL);
+    model->tables = mt_arena_alloc(&model->mem, 1, sizeof *model->tables);
     if (model->tables == NULL) {
         mt_model_delete(model);
         return mt_fail_memory(err);
@@ -44,7 +43,6 @@ mt_num mt_model_add_num(mt_model *model, mt_expr expr, mt_addr addr)
     mt_number *const nums =
         mt_arena_grow(&model->mem, model->nums, model->n_nums, &model->cap_nums, sizeof *nums);
     if (nums == NULL) {
-        model->out_of_memory = true;
         return MT_ABSENT;
     }
     model->nums = nums;

@@ -382,7 +382,6 @@ typedef struct mt_model {
     int n_places;       /* one per number, sorted by address; 0: not read from a file */
     mt_place *places;
     struct mt_model_names *tables; /* private: names to indices */
-    bool out_of_memory;            /* while it was filled; mt_model_finish fails then */
     /* NULL in a model that was made or read. Who answers a question that may be interrupted
      * asks it of a copy of this record that has the interrupt (and borrows everything else):
      * then no work on the model can be begun without passing by it. */

@@ -25,13 +25,14 @@ static int slot_of(const mt_names *t, const char *name, size_t length)
     return (int)at;
 }
 
+/* Without memory the table stays as it is. */
 static bool grow(mt_names *t, mt_arena *mem)
 {
     enum { FIRST = 32 };
     mt_names larger = {.size = t->size == 0 ? FIRST : 2 * t->size, .count = t->count};
     larger.keys = mt_arena_alloc(mem, (size_t)larger.size, sizeof *larger.keys);
     larger.values = mt_arena_int(mem, (size_t)larger.size);
-    if (larger.keys == NULL || larger.values == NULL) {
+    if (mt_arena_failed(mem)) {
         return false;
     }
     for (int i = 0; i < t->size; i++) {
@@ -45,22 +46,19 @@ static bool grow(mt_names *t, mt_arena *mem)
     return true;
 }
 
-bool mt_names_add(mt_names *t, mt_arena *mem, const char *name, int value, bool *taken)
+void mt_names_add(mt_names *t, mt_arena *mem, const char *name, int value, bool *taken)
 {
+    *taken = false;
     if (2 * (t->count + 1) > t->size && !grow(t, mem)) {
-        return false;
+        return;
     }
     const int at = slot_of(t, name, strlen(name));
-    const bool was_there = t->keys[at] != NULL;
-    if (taken != NULL) {
-        *taken = was_there;
-    }
-    if (!was_there) {
+    *taken = t->keys[at] != NULL;
+    if (!*taken) {
         t->keys[at] = name;
         t->values[at] = value;
         t->count++;
     }
-    return true;
 }
 
 int mt_names_find(const mt_names *t, const char *name, size_t length, bool *found)
@@ -74,15 +72,15 @@ int mt_names_find(const mt_names *t, const char *name, size_t length, bool *foun
     return *found ? t->values[at] : MT_ABSENT;
 }
 
-bool mt_model_index_parameters(mt_model *model)
+void mt_model_index_parameters(mt_model *model)
 {
     mt_names *const table = &model->tables->parameters;
+    bool taken = false;
     *table = (mt_names){0};
     for (int i = 0; i < model->n_parameters; i++) {
         const char *const name = model->parameters[i].name.s;
-        if (name != NULL && !mt_names_add(table, &model->mem, name, i, NULL)) {
-            return false;
+        if (name != NULL) {
+            mt_names_add(table, &model->mem, name, i, &taken);
         }
     }
-    return true;
 }

@@ -25,14 +25,13 @@ typedef struct mt_model_names {
     mt_names configurations;
 } mt_model_names;
 
-/* Enter a name. *taken (not NULL): it was there already, and stays as it was. False when out of
- * memory. */
-bool mt_names_add(mt_names *t, mt_arena *mem, const char *name, int value, bool *taken);
+/* Enter a name. *taken: it was there already, and stays as it was. */
+void mt_names_add(mt_names *t, mt_arena *mem, const char *name, int value, bool *taken);
 /* The value of a name of so many bytes; *found tells whether there is one. */
 int mt_names_find(const mt_names *t, const char *name, size_t length, bool *found);
 
 /* Make the table of parameters before the others exist, so that mt_model_lookup is fast while
- * expressions are read. Duplicates are left to mt_model_finish. False when out of memory. */
-bool mt_model_index_parameters(mt_model *model);
+ * expressions are read. Duplicates are left to mt_model_finish. */
+void mt_model_index_parameters(mt_model *model);
 
 #endif

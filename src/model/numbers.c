@@ -14,16 +14,13 @@ static mt_status begin(const mt_model *model, int configuration, int n_inputs,
     const size_t n = (size_t)model->n_parameters;
     int *const is_input = mt_arena_int(mem, n);
     *nodes = mt_arena_int(mem, n);
-    if (is_input == NULL || *nodes == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_program_init(program, n_inputs, mem, err));
     for (size_t i = 0; i < n; i++) {
         is_input[i] = MT_ABSENT;
     }
     for (int i = 0; i < n_inputs; i++) {
         is_input[inputs[i]] = i;
     }
-    MT_TRY(mt_program_init(program, n_inputs, mem, err));
     return mt_emit_parameters(model, configuration, is_input, program, *nodes, mem, err);
 }
 
@@ -35,9 +32,6 @@ static mt_status evaluate(const mt_model *model, int configuration, int n_inputs
     mt_node *const nodes = mt_arena_int(mem, n_nums);
     mt_node *parameters = NULL;
     mt_program program;
-    if (nodes == NULL) {
-        return mt_fail_memory(err);
-    }
     MT_TRY(begin(model, configuration, n_inputs, inputs, mem, &program, &parameters, err));
     for (size_t i = 0; i < n_nums; i++) {
         const mt_number *const number = &model->nums[i];
@@ -46,9 +40,7 @@ static mt_status evaluate(const mt_model *model, int configuration, int n_inputs
     MT_TRY(mt_program_finish(&program, err));
     double *const all = mt_arena_f64(mem, (size_t)program.count, 1);
     mt_node bad = program.count;
-    if (all == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     mt_err ignored = {.code = MT_OK}; /* who evaluates the model says what has no value */
     const mt_status rc = mt_program_eval(&program, at, all, &bad, &ignored);
     if (rc != MT_OK && rc != MT_E_DOMAIN) {
@@ -79,9 +71,7 @@ static mt_status evaluate_parameters(const mt_model *model, int n_inputs, const 
     MT_TRY(begin(model, MT_ABSENT, n_inputs, inputs, mem, &program, &nodes, err));
     MT_TRY(mt_program_finish(&program, err));
     double *const all = mt_arena_f64(mem, (size_t)program.count, 1);
-    if (all == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_program_eval(&program, at, all, NULL, err));
     for (int i = 0; i < model->n_parameters; i++) {
         value[i] = all[nodes[i]];

@@ -68,9 +68,7 @@ static mt_status emit(const emission *x, int parameter, mt_err *err)
         nodes[p] = s.input
                        ? mt_program_input(x->program, x->is_input[p], s.number->addr)
                        : mt_program_expr(x->program, &s.number->expr, nodes, s.number->addr);
-        if (nodes[p] == MT_NO_NODE) { /* those that wait for it would wait for ever */
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(x->program->mem, err)); /* what waits would wait for ever */
     }
     return MT_OK;
 }
@@ -81,9 +79,7 @@ mt_status mt_emit_parameters(const mt_model *model, int configuration, const int
     const int n = model->n_parameters;
     int *const stack = mt_arena_int(mem, (size_t)n + 1);
     mt_num *const override = mt_arena_alloc(mem, (size_t)n, sizeof *override);
-    if (stack == NULL || override == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < n; i++) {
         nodes[i] = MT_NO_NODE;
         override[i] = MT_ABSENT;

@@ -64,9 +64,7 @@ static mt_status emit(order *o, int parameter, mt_err *err)
         const int top = o->stack[--o->depth];
         o->nodes[top] = mt_program_expr(&o->program, value_of(o, top), o->nodes,
                                         o->model->parameters[top].name.addr);
-        if (o->nodes[top] == MT_NO_NODE) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(o->program.mem, err)); /* what waits would wait for ever */
     }
     return MT_OK;
 }
@@ -79,9 +77,7 @@ static mt_status evaluate(order *o, mt_arena *mem, double *values, int *bad, mt_
     }
     MT_TRY(mt_program_finish(&o->program, err));
     double *const all = mt_arena_f64(mem, (size_t)o->program.count, 1);
-    if (all == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     mt_node bad_node = MT_NO_NODE;
     const mt_status rc = mt_program_eval(&o->program, NULL, all, &bad_node, err);
     for (int i = 0; rc == MT_OK && i < n; i++) {
@@ -115,20 +111,14 @@ mt_status mt_model_original_values(const mt_model *model, mt_arena *mem, double 
         .stack = mt_arena_int(mem, n),
         .cursor = mt_arena_int(mem, n),
     };
-    mt_status rc = MT_E_MEMORY;
-    if (o.nodes == NULL || o.stack == NULL || o.cursor == NULL) {
-        (void)mt_fail_memory(err);
-        goto done;
-    }
-    for (size_t i = 0; i < n; i++) {
+    mt_status rc = mt_program_init(&o.program, 0, mem, err);
+    for (size_t i = 0; rc == MT_OK && i < n; i++) {
         o.nodes[i] = MT_NO_NODE;
         o.cursor[i] = MT_ABSENT;
     }
-    rc = mt_program_init(&o.program, 0, mem, err);
     if (rc == MT_OK) {
         rc = evaluate(&o, mem, values, which, err);
     }
-done:
     mt_arena_rewind(mem, mark);
     return rc;
 }
@@ -137,11 +127,8 @@ static mt_status expr_value(const mt_model *model, const double *values, const m
                             mt_arena *mem, double *out, mt_err *err)
 {
     mt_program program;
-    MT_TRY(mt_program_init(&program, 0, mem, err));
     mt_node *const nodes = mt_arena_int(mem, (size_t)model->n_parameters);
-    if (nodes == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_program_init(&program, 0, mem, err));
     for (int i = 0; i < e->length; i++) {
         if (e->code[i].op == MT_OP_PARAM) {
             nodes[e->code[i].param] = mt_program_const(&program, values[e->code[i].param]);
@@ -150,9 +137,7 @@ static mt_status expr_value(const mt_model *model, const double *values, const m
     const mt_node node = mt_program_expr(&program, e, nodes, MT_NO_ADDR);
     MT_TRY(mt_program_finish(&program, err));
     double *const all = mt_arena_f64(mem, (size_t)program.count, 1);
-    if (all == NULL || node == MT_NO_NODE) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_program_eval(&program, NULL, all, NULL, err));
     *out = all[node];
     return MT_OK;

@@ -73,7 +73,7 @@ static void judge(corners *k, mt_doubt_list *out)
             }
         }
     }
-    k->rc = out->out_of_memory ? MT_E_MEMORY : k->rc;
+    k->rc = mt_arena_failed(out->mem) ? MT_E_MEMORY : k->rc;
 }
 
 static const mt_doubt *fault_at(const mt_doubt_list *list, mt_addr addr)
@@ -207,7 +207,7 @@ static void look_at_all(corners *k)
     for (unsigned w = 0; k->n > 1 && w < n_corners && k->rc == MT_OK; w++) {
         one_corner(k, w);
     }
-    k->rc = k->told.out_of_memory ? MT_E_MEMORY : k->rc;
+    k->rc = mt_arena_failed(&k->mem) ? MT_E_MEMORY : k->rc;
 }
 
 void mt_study_check_bounds(mt_study_check *c)

@@ -237,9 +237,11 @@ mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err)
     if (diags->errors == 0 && !c.out_of_memory) {
         mt_study_check_redundant(&c);
     }
-    if (c.out_of_memory || diags->out_of_memory) {
+    if (c.out_of_memory) {
         return mt_fail_memory(err);
     }
+    MT_TRY(mt_arena_check(&study->mem, err));
+    MT_TRY(mt_arena_check(diags->mem, err));
     if (diags->errors > 0) {
         return mt_fail(err, MT_E_INPUT, "%s",
                        diags->count > 0 ? diags->items[0].text : "the study has errors");

@@ -54,19 +54,113 @@ static void arena__memory_is_aligned_zeroed_and_apart(mt_test *t)
     mt_arena_free(&a);
 }
 
+/* Requests that no arena can meet. */
+enum { N_TOO_LARGE = 7 };
+static const void *too_large(mt_arena *a, int i)
+{
+    switch (i) {
+    case 0:
+        return mt_arena_alloc(a, SIZE_MAX, 1);
+    case 1:
+        return mt_arena_alloc(a, SIZE_MAX / 2, 3);
+    case 2:
+        return mt_arena_alloc(a, 2, SIZE_MAX / 2 + 1); /* the product wraps to 0 */
+    case 3:
+        return mt_arena_f64(a, SIZE_MAX / 8, 9);
+    case 4:
+        return mt_arena_f64(a, SIZE_MAX / 2 + 1, 2); /* m * n wraps to 0 */
+    case 5:
+        return mt_arena_int(a, SIZE_MAX / 2);
+    default:
+        return mt_arena_strndup(a, "", SIZE_MAX);
+    }
+}
+
 static void arena__products_that_wrap_give_null(mt_test *t)
 {
     mt_arena a;
     REQUIRE(t, mt_arena_init(&a, 0, NULL) == MT_OK);
-    CHECK(t, mt_arena_alloc(&a, SIZE_MAX, 1) == NULL);
-    CHECK(t, mt_arena_alloc(&a, SIZE_MAX / 2, 3) == NULL);
-    CHECK(t, mt_arena_alloc(&a, 2, SIZE_MAX / 2 + 1) == NULL); /* the product wraps to 0 */
-    CHECK(t, mt_arena_f64(&a, SIZE_MAX / 8, 9) == NULL);
-    CHECK(t, mt_arena_f64(&a, SIZE_MAX / 2 + 1, 2) == NULL); /* m * n wraps to 0 */
-    CHECK(t, mt_arena_int(&a, SIZE_MAX / 2) == NULL);
-    CHECK(t, mt_arena_strndup(&a, "", SIZE_MAX) == NULL);
+    for (int i = 0; i < N_TOO_LARGE; i++) {
+        mt_test_row(t, "request %d", i);
+        CHECK(t, too_large(&a, i) == NULL);
+        CHECK_INT(t, mt_arena_check(&a, NULL), MT_E_MEMORY);
+        mt_arena_clear(&a);
+    }
     CHECK_INT(t, a.used, 0);
     mt_arena_free(&a);
+}
+
+static void arena__after_a_request_that_failed_every_one_fails(mt_test *t)
+{
+    mt_arena a;
+    mt_err err = {.code = MT_OK};
+    REQUIRE(t, mt_arena_init(&a, 0, NULL) == MT_OK);
+    const mt_arena_mark mark = mt_arena_get_mark(&a);
+    for (int i = 0; i < N_TOO_LARGE; i++) {
+        mt_test_row(t, "request %d", i);
+        int capacity = 8;
+        int items[8] = {0};
+        CHECK_INT(t, mt_arena_check(&a, &err), MT_OK);
+        CHECK(t, too_large(&a, i) == NULL);
+        CHECK(t, mt_arena_failed(&a));
+        CHECK(t, mt_arena_alloc(&a, 1, 1) == NULL && mt_arena_f64(&a, 1, 1) == NULL);
+        CHECK(t, mt_arena_int(&a, 1) == NULL && mt_arena_strdup(&a, NULL) == NULL);
+        CHECK(t, mt_arena_strndup(&a, NULL, 1) == NULL);
+        CHECK(t, mt_arena_printf(&a, "%d", 1) == NULL);
+        CHECK(t, mt_arena_grow(&a, items, 1, &capacity, sizeof *items) == NULL);
+        CHECK_INT(t, capacity, 8);
+        CHECK_INT(t, a.used, 0);
+        CHECK_INT(t, mt_arena_check(&a, &err), MT_E_MEMORY);
+        CHECK_STR(t, err.text, "out of memory");
+        mt_arena_rewind(&a, mark);
+    }
+    mt_arena_free(&a);
+}
+
+/* What happened to the arena before a rewind: a failure ends with it only if it was told and
+ * the mark is older. */
+static void arena__a_rewind_loses_no_failure_that_was_not_told(mt_test *t)
+{
+    static const struct {
+        const char *name;
+        bool before; /* a request failed before the mark was taken */
+        bool after;
+        bool told;
+        bool failed; /* after the rewind */
+    } rows[] = {
+        {"nothing failed", false, false, false, false},
+        {"nothing failed, and was asked", false, false, true, false},
+        {"failed since the mark", false, true, false, true},
+        {"failed since the mark, told", false, true, true, false},
+        {"failed before the mark", true, false, false, true},
+        {"failed before the mark, told", true, false, true, true},
+        {"failed before and since", true, true, true, true},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        mt_arena a;
+        mt_test_row(t, "%s", rows[i].name);
+        REQUIRE(t, mt_arena_init(&a, 0, NULL) == MT_OK);
+        if (rows[i].before) {
+            mt_arena_fail(&a);
+        }
+        const mt_arena_mark mark = mt_arena_get_mark(&a);
+        if (rows[i].after) {
+            mt_arena_fail(&a);
+        }
+        if (rows[i].told) {
+            (void)mt_arena_check(&a, NULL);
+        }
+        CHECK_INT(t, mt_arena_failed(&a), rows[i].before || rows[i].after);
+        mt_arena_rewind(&a, mark);
+        CHECK_INT(t, mt_arena_failed(&a), rows[i].failed);
+        CHECK_INT(t, mt_arena_alloc(&a, 1, 1) == NULL, rows[i].failed);
+        (void)mt_arena_check(&a, NULL);
+        mt_arena_clear(&a);
+        CHECK(t, !mt_arena_failed(&a));
+        mt_arena_free(&a);
+        CHECK(t, mt_arena_alloc(&a, 1, 1) != NULL);
+        mt_arena_free(&a);
+    }
 }
 
 static void arena__zero_products_give_pointers_of_their_own(mt_test *t)
@@ -215,6 +309,8 @@ static void arena__what_has_grown_away_is_poisoned(mt_test *t)
 
 MT_TEST_MAIN(MT_TEST(arena__memory_is_aligned_zeroed_and_apart),
              MT_TEST(arena__products_that_wrap_give_null),
+             MT_TEST(arena__after_a_request_that_failed_every_one_fails),
+             MT_TEST(arena__a_rewind_loses_no_failure_that_was_not_told),
              MT_TEST(arena__zero_products_give_pointers_of_their_own),
              MT_TEST(arena__rewind_gives_the_same_memory_again_zeroed),
              MT_TEST(arena__works_from_all_zero_and_frees_twice),

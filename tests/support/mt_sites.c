@@ -123,6 +123,13 @@ static bool refuses(const void *call, const char *frame)
     return false;
 }
 
+/* As an arena does that has no memory. */
+static void *refuse(mt_arena *a)
+{
+    mt_arena_fail(a);
+    return NULL;
+}
+
 #define REFUSED() refuses(__builtin_return_address(0), __builtin_frame_address(0))
 
 /* The linker's names for what it replaces, and for what was there. */
@@ -147,40 +154,39 @@ void *__wrap_mt_arena_grow(mt_arena *a, void *items, int count, int *capacity, s
 
 mt_status __wrap_mt_arena_init(mt_arena *a, size_t block_size, mt_err *err)
 {
-    *a = (mt_arena){0};
-    return REFUSED() ? mt_fail_memory(err) : __real_mt_arena_init(a, block_size, err);
+    return __real_mt_arena_init(a, REFUSED() ? SIZE_MAX : block_size, err);
 }
 
 void *__wrap_mt_arena_alloc(mt_arena *a, size_t count, size_t size)
 {
-    return REFUSED() ? NULL : __real_mt_arena_alloc(a, count, size);
+    return REFUSED() ? refuse(a) : __real_mt_arena_alloc(a, count, size);
 }
 
 double *__wrap_mt_arena_f64(mt_arena *a, size_t m, size_t n)
 {
-    return REFUSED() ? NULL : __real_mt_arena_f64(a, m, n);
+    return REFUSED() ? refuse(a) : __real_mt_arena_f64(a, m, n);
 }
 
 int *__wrap_mt_arena_int(mt_arena *a, size_t n)
 {
-    return REFUSED() ? NULL : __real_mt_arena_int(a, n);
+    return REFUSED() ? refuse(a) : __real_mt_arena_int(a, n);
 }
 
 char *__wrap_mt_arena_strdup(mt_arena *a, const char *s)
 {
-    return REFUSED() ? NULL : __real_mt_arena_strdup(a, s);
+    return REFUSED() ? refuse(a) : __real_mt_arena_strdup(a, s);
 }
 
 char *__wrap_mt_arena_strndup(mt_arena *a, const char *s, size_t length)
 {
-    return REFUSED() ? NULL : __real_mt_arena_strndup(a, s, length);
+    return REFUSED() ? refuse(a) : __real_mt_arena_strndup(a, s, length);
 }
 
 char *__wrap_mt_arena_printf(mt_arena *a, const char *fmt, ...)
 {
     va_list args;
     if (REFUSED()) {
-        return NULL;
+        return refuse(a);
     }
     va_start(args, fmt);
     char *const text = __real_mt_arena_vprintf(a, fmt, args);
@@ -190,11 +196,11 @@ char *__wrap_mt_arena_printf(mt_arena *a, const char *fmt, ...)
 
 char *__wrap_mt_arena_vprintf(mt_arena *a, const char *fmt, va_list args)
 {
-    return REFUSED() ? NULL : __real_mt_arena_vprintf(a, fmt, args);
+    return REFUSED() ? refuse(a) : __real_mt_arena_vprintf(a, fmt, args);
 }
 
 void *__wrap_mt_arena_grow(mt_arena *a, void *items, int count, int *capacity, size_t size)
 {
-    return REFUSED() ? NULL : __real_mt_arena_grow(a, items, count, capacity, size);
+    return REFUSED() ? refuse(a) : __real_mt_arena_grow(a, items, count, capacity, size);
 }
 /* NOLINTEND(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp) */
