@@ -170,9 +170,11 @@ static double original_hz(const mt_study *s, const mt_goal *goal, const mt_analy
     return nan("");
 }
 
-static void doubt_target(mt_doubt_list *out, const char *member, double asked, mt_addr addr,
-                         double hz, bool above, bool below)
+static void doubt_target(mt_doubt_list *out, const mt_goal *goal, mt_goal_slot slot, double hz)
 {
+    const double asked = goal->number[slot];
+    const bool above = slot != MT_SLOT_AT_MOST;
+    const bool below = slot != MT_SLOT_AT_LEAST;
     const double ratio = hz > 0.0 ? asked / hz : nan("");
     if (!((above && ratio >= FAR_TARGET) || (below && ratio <= 1.0 / FAR_TARGET))) {
         return;
@@ -185,9 +187,10 @@ static void doubt_target(mt_doubt_list *out, const char *member, double asked, m
     mt_doubt *const d =
         mt_doubt_add(out, MT_LEVEL_DOUBT, "target",
                      "%s %.6g Hz is %s %s the original frequency, %.6g Hz: is the unit Hz?",
-                     member, asked, times, ratio >= 1.0 ? "above" : "below", hz);
+                     mt_goal_member_name(mt_goal_kind_of(goal->type), slot), asked, times,
+                     ratio >= 1.0 ? "above" : "below", hz);
     if (d != NULL) {
-        d->addr = addr;
+        d->addr = goal->number_addr[slot];
     }
 }
 
@@ -261,12 +264,9 @@ static mt_status examine_configuration(const mt_study *s, int c, mt_doubt_list *
                 continue;
             }
             const double hz = original_hz(s, goal, a);
-            doubt_target(of_study, "target_hz", goal->target_hz, goal->target_addr, hz, true,
-                         true);
-            doubt_target(of_study, "at_least_hz", goal->at_least, goal->at_least_addr, hz, true,
-                         false);
-            doubt_target(of_study, "at_most_hz", goal->at_most, goal->at_most_addr, hz, false,
-                         true);
+            for (int slot = MT_SLOT_EQUALS; slot <= MT_SLOT_AT_MOST; slot++) {
+                doubt_target(of_study, goal, (mt_goal_slot)slot, hz);
+            }
         }
     }
     mt_analysis_delete(a);

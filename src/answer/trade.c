@@ -262,7 +262,7 @@ static void mark_front(const trade *t, mt_trade_result *out)
     }
 }
 
-/* The unit of what varies: Hz and percent by the member's name, else the parameter's own. */
+/* The unit of what varies; NULL: it has none. */
 static const char *unit_of(const mt_study *study, const mt_vary *v)
 {
     if (v->kind == MT_VARY_PARAMETER) {
@@ -271,9 +271,8 @@ static const char *unit_of(const mt_study *study, const mt_vary *v)
     if (v->kind == MT_VARY_BOUND) {
         return study->model->parameters[study->variables[v->variable].parameter].unit;
     }
-    const char *const name = mt_goal_member_name(v->member);
-    const bool percent = v->member == MT_MEMBER_MARGIN;
-    return percent ? "%" : strstr(name, "_hz") != NULL ? "Hz" : NULL;
+    const char *const unit = mt_goal_kind_of(study->goals[v->goal].type)->unit;
+    return v->slot == MT_SLOT_MARGIN ? "%" : unit[0] != '\0' ? unit : NULL;
 }
 
 static mt_status describe_what(const trade *t, mt_arena *mem, mt_trade_result *out, mt_err *err)
@@ -298,7 +297,7 @@ static mt_status describe_what(const trade *t, mt_arena *mem, mt_trade_result *o
         }
     }
     for (int i = 0; i < asked->n_objectives; i++) {
-        out->objectives[i] = mt_objective_type_name(asked->objectives[i]);
+        out->objectives[i] = mt_objective_kind_of(asked->objectives[i])->name;
     }
     return MT_OK;
 }

@@ -25,32 +25,6 @@ static mt_status put_margin(mt_goal *g, double percent, mt_arena *mem, mt_err *e
     return mt_bands_make(&avoid->source, percent, mem, &avoid->bands, err);
 }
 
-static mt_status put_goal(mt_goal *g, mt_goal_member member, double value, mt_arena *mem,
-                          mt_err *err)
-{
-    switch (member) {
-    case MT_MEMBER_TARGET:
-        g->target_hz = value;
-        break;
-    case MT_MEMBER_AT_LEAST_HZ:
-    case MT_MEMBER_AT_LEAST:
-        g->at_least = value;
-        break;
-    case MT_MEMBER_AT_MOST_HZ:
-    case MT_MEMBER_AT_MOST:
-        g->at_most = value;
-        break;
-    case MT_MEMBER_EQUALS:
-        g->equals = value;
-        break;
-    case MT_MEMBER_MARGIN:
-        return put_margin(g, value, mem, err);
-    case MT_GOAL_MEMBER_COUNT:
-        return mt_fail(err, MT_E_INTERNAL, "a trade study varies no member of a goal");
-    }
-    return MT_OK;
-}
-
 /* A model whose parameter has another value; variables start from what follows from it. */
 static mt_status put_parameter(mt_study *s, int parameter, double value, mt_arena *mem,
                                mt_err *err)
@@ -82,7 +56,11 @@ static mt_status put(mt_study *s, const mt_vary *v, double value, mt_arena *mem,
         return MT_OK;
     }
     case MT_VARY_GOAL:
-        return put_goal(&s->goals[v->goal], v->member, value, mem, err);
+        if (v->slot == MT_SLOT_MARGIN) {
+            return put_margin(&s->goals[v->goal], value, mem, err);
+        }
+        s->goals[v->goal].number[v->slot] = value;
+        return MT_OK;
     case MT_VARY_PARAMETER:
         return put_parameter(s, v->parameter, value, mem, err);
     }

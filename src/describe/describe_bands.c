@@ -194,7 +194,7 @@ static mt_status judge(mt_problem *fresh, int goal, int configuration, mt_result
     out->text = avoid_text(g, mt_analysis_configuration(view->analysis), &result->mem);
     out->pointer = mt_arena_printf(&result->mem, "/goals/%d", goal);
     out->violation_percent = violation > 0.0 ? missing : violation; /* 0, or NaN */
-    out->met = violation <= mt_problem_tolerance(g) * (1.0 + MET_SLACK);
+    out->met = violation <= mt_goal_tolerance(g) * (1.0 + MET_SLACK);
     return out->text == NULL || out->pointer == NULL ? mt_fail_memory(err) : MT_OK;
 }
 

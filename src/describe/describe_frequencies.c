@@ -95,7 +95,7 @@ static mt_status describe_mode(const listing *l, int index, mt_result_frequency 
 static void attach_frequency(const mt_demand *d, mt_result_frequency *f)
 {
     const mt_goal *const g = d->goal;
-    f->target_hz = MT_HAS(d->target_hz) ? d->target_hz : f->target_hz;
+    f->target_hz = MT_HAS(d->equals) ? d->equals : f->target_hz;
     f->at_least_hz = MT_HAS(g->at_least) ? g->at_least : f->at_least_hz;
     f->at_most_hz = MT_HAS(g->at_most) ? g->at_most : f->at_most_hz;
     if (MT_HAS(f->target_hz)) {

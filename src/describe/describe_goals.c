@@ -35,14 +35,14 @@ static const char *mode_text(const mt_problem *p, const mt_demand *d, mt_arena *
 static const char *frequency_text(const mt_demand *d, const char *mode, mt_arena *mem,
                                   double *number)
 {
-    if (!MT_HAS(d->target_hz)) {
+    if (!MT_HAS(d->equals)) {
         return range_text(mode, d->goal, " Hz", mem, number);
     }
-    *number = d->target_hz;
+    *number = d->equals;
     if (d->shape.reference == NULL) {
-        return mt_arena_printf(mem, "%s at %.10g Hz", mode, d->target_hz);
+        return mt_arena_printf(mem, "%s at %.10g Hz", mode, d->equals);
     }
-    return mt_arena_printf(mem, "%s at %.10g Hz as mode %d of \"%s\"", mode, d->target_hz,
+    return mt_arena_printf(mem, "%s at %.10g Hz as mode %d of \"%s\"", mode, d->equals,
                            d->shape.mode, d->shape.reference);
 }
 
@@ -69,9 +69,9 @@ static const char *demand_text(const mt_problem *p, const mt_demand *d, mt_arena
         return mac == NULL ? NULL : range_text(mac, g, "", mem, number);
     }
     case MT_GOAL_LIMIT:
-        if (MT_HAS(g->equals)) {
-            *number = g->equals;
-            return mt_arena_printf(mem, "%s equal to %.10g", what, g->equals);
+        if (MT_HAS(d->equals)) {
+            *number = d->equals;
+            return mt_arena_printf(mem, "%s equal to %.10g", what, d->equals);
         }
         return range_text(what, g, "", mem, number);
     case MT_GOAL_AVOID:
@@ -138,8 +138,8 @@ static double off_by(const mt_demand *d, double hz)
 {
     const mt_goal *const g = d->goal;
     double worst = 0.0;
-    if (MT_HAS(d->target_hz)) {
-        return fabs(hz / d->target_hz - 1.0);
+    if (MT_HAS(d->equals)) {
+        return fabs(hz / d->equals - 1.0);
     }
     worst = MT_HAS(g->at_least) ? greater(worst, 1.0 - hz / g->at_least) : worst;
     return MT_HAS(g->at_most) ? greater(worst, hz / g->at_most - 1.0) : worst;

@@ -64,7 +64,7 @@ typedef struct verdict {
 static verdict judge(const mt_demand *d, const mt_robust_range *r)
 {
     const bool ratio = d->view >= 0;
-    const double target = ratio ? d->target_hz : d->goal->equals;
+    const double target = d->equals;
     const bool equal = MT_HAS(target);
     const double limit[MT_ROBUST_SIDES] = {equal ? target : d->goal->at_least,
                                            equal ? target : d->goal->at_most};

@@ -53,6 +53,7 @@ enum { MAX_RECOMMENDATIONS = 1000, MAX_STARTS = 100000 };
 
 const mt_key_table *const *mt_study_key_tables(int *n)
 {
+#define GOAL_KEYS(id, ...) &mt_study_goal_keys[MT_GOAL_##id],
     static const mt_key_table *const tables[] = {
         &mt_study_keys,
         &mt_study_search_keys,
@@ -60,12 +61,7 @@ const mt_key_table *const *mt_study_key_tables(int *n)
         &mt_study_variable_keys,
         &mt_study_reference_keys,
         &mt_study_measured_keys,
-        &mt_study_frequency_keys,
-        &mt_study_shape_keys,
-        &mt_study_mac_keys,
-        &mt_study_limit_keys,
-        &mt_study_avoid_keys,
-        &mt_study_rotor_keys,
+        MT_GOAL_LIST(GOAL_KEYS) & mt_study_rotor_keys,
         &mt_study_tail_keys,
         &mt_study_machine_keys,
         &mt_study_gear_keys,
@@ -78,6 +74,7 @@ const mt_key_table *const *mt_study_key_tables(int *n)
         &mt_study_published_frequency_keys,
         &mt_study_published_mac_keys,
     };
+#undef GOAL_KEYS
     *n = MT_COUNT(tables);
     return tables;
 }
@@ -259,7 +256,7 @@ static void note_places(mt_study_reader *s)
     for (int i = 0; i < study->n_goals && i < MOST_PLACED; i++) {
         const mt_goal *const g = &study->goals[i];
         note_place(s, g->addr);
-        note_place(s, g->target_addr);
+        note_place(s, g->equals_addr);
         note_place(s, g->at_least_addr);
         note_place(s, g->at_most_addr);
     }

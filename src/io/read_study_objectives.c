@@ -13,39 +13,42 @@ enum { OBJECTIVE_KEYS(MT_STUDY_KEY_ENUM) OBJECTIVE_KEY_COUNT };
 static const mt_key KEYS[] = {OBJECTIVE_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_objective_keys = {"objective", KEYS, OBJECTIVE_KEY_COUNT};
 
-/* What is minimised: one of these words, else an expression of parameters. */
+/* What is minimised: the word of an objective, else an expression of parameters. */
 static void read_minimise(mt_study_reader *s, mt_addr value, mt_objective *o)
 {
-    static const struct {
-        const char *name;
-        mt_objective_type type;
-    } words[] = {
-        {"change", MT_OBJECTIVE_CHANGE},
-        {"mass", MT_OBJECTIVE_MASS},
-        {"misfit", MT_OBJECTIVE_MISFIT},
-    };
     o->type = MT_OBJECTIVE_EXPRESSION;
     if (value == MT_NO_ADDR) {
         return;
     }
     const char *const text = mt_json_string(s->r.doc, value);
-    for (int i = 0; i < MT_COUNT(words); i++) {
-        if (strcmp(text, words[i].name) == 0) {
-            o->type = words[i].type;
-            return;
+    for (int i = 0; i < MT_OBJECTIVE_TYPE_COUNT; i++) {
+        const mt_objective_type type = (mt_objective_type)i;
+        const char *const name = mt_objective_kind_of(type)->name;
+        if (!mt_objective_is(type, MT_WORD) || strcmp(text, name) != 0) {
+            continue;
         }
+        if (mt_objective_is(type, MT_MAXIMISED)) {
+            mt_diag_error(s->r.diags, value, "a %s is maximised: {\"maximise\": \"%s\"}", name,
+                          name);
+        }
+        o->type = mt_objective_is(type, MT_MAXIMISED) ? MT_OBJECTIVE_EXPRESSION : type;
+        return;
     }
-    if (strcmp(text, "clearance") == 0) {
-        mt_diag_error(s->r.diags, value,
-                      "a clearance is maximised: {\"maximise\": \"clearance\"}");
-    } else {
-        mt_read_study_expr(s, value, &o->expression, &o->expression_text);
-    }
+    mt_read_study_expr(s, value, &o->expression, &o->expression_text);
+}
+
+/* What is maximised is one of the words. */
+static void read_maximise(mt_study_reader *s, mt_addr value, mt_objective *o)
+{
+    mt_objective_type types[MT_OBJECTIVE_TYPE_COUNT];
+    const char *names[MT_OBJECTIVE_TYPE_COUNT];
+    const int n = mt_objectives_with(MT_WORD | MT_MAXIMISED, types, names);
+    const int choice = mt_reader_choice(&s->r, value, "objective", names, n);
+    o->type = choice == MT_ABSENT ? MT_OBJECTIVE_NONE : types[choice];
 }
 
 static bool read_objective(mt_study_reader *s, mt_addr value, mt_objective *objective)
 {
-    static const char *const maximised[] = {"clearance"};
     mt_study_object o;
     if (!mt_read_study_object(s, value, &mt_study_objective_keys, &o)) {
         return false;
@@ -55,12 +58,11 @@ static bool read_objective(mt_study_reader *s, mt_addr value, mt_objective *obje
     if (sense == OBJECTIVE_MINIMISE) {
         read_minimise(s, o.found[OBJECTIVE_MINIMISE], objective);
     } else if (sense == OBJECTIVE_MAXIMISE) {
-        const int choice = mt_reader_choice(&s->r, o.found[OBJECTIVE_MAXIMISE], "objective",
-                                            maximised, MT_COUNT(maximised));
-        objective->type = choice == MT_ABSENT ? MT_OBJECTIVE_NONE : MT_OBJECTIVE_CLEARANCE;
+        read_maximise(s, o.found[OBJECTIVE_MAXIMISE], objective);
     }
     objective->of = mt_reader_refs(&s->r, o.found[OBJECTIVE_OF]);
-    if (mt_read_study_has(s, &o, OBJECTIVE_OF) && objective->type != MT_OBJECTIVE_MASS) {
+    if (mt_read_study_has(s, &o, OBJECTIVE_OF) &&
+        !mt_objective_is(objective->type, MT_OF_ITEMS)) {
         mt_diag_error(s->r.diags, mt_read_study_place(s, &o, OBJECTIVE_OF),
                       "\"of\" goes with the objective \"mass\"");
     }

@@ -92,11 +92,7 @@ extern const mt_key_table mt_study_vary_keys;
 extern const mt_key_table mt_study_span_keys;
 extern const mt_key_table mt_study_reference_keys;
 extern const mt_key_table mt_study_measured_keys;
-extern const mt_key_table mt_study_frequency_keys;
-extern const mt_key_table mt_study_shape_keys;
-extern const mt_key_table mt_study_mac_keys;
-extern const mt_key_table mt_study_limit_keys;
-extern const mt_key_table mt_study_avoid_keys;
+extern const mt_key_table mt_study_goal_keys[MT_GOAL_TYPE_COUNT]; /* by kind */
 extern const mt_key_table mt_study_rotor_keys;
 extern const mt_key_table mt_study_tail_keys;
 extern const mt_key_table mt_study_machine_keys;

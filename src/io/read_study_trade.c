@@ -2,6 +2,8 @@
 /* "trade": what varies over which values, and the objectives of the Pareto front. */
 #include "io/read_study_priv.h"
 
+#include <string.h>
+
 #define TRADE_KEYS(X)                                       \
     X(TRADE_VARY, "vary", MT_KEY_LIST, true)                \
     X(TRADE_OBJECTIVES, "objectives", MT_KEY_LIST, false)   \
@@ -110,12 +112,31 @@ static int goal_of(mt_study_reader *s, mt_addr value, mt_addr goals)
     return MT_ABSENT;
 }
 
+/* The numbers of goals of any kind that may vary, each name once. Returns how many. */
+static int varying_members(const char **names)
+{
+    int n = 0;
+    for (int i = 0; i < MT_GOAL_TYPE_COUNT; i++) {
+        const mt_goal_kind *const kind = mt_goal_kind_of((mt_goal_type)i);
+        for (int k = 0; k < kind->n; k++) {
+            const mt_goal_member *const m = &kind->members[k];
+            bool known = !mt_goal_may_vary(m);
+            for (int j = 0; j < n && !known; j++) {
+                known = strcmp(names[j], m->name) == 0;
+            }
+            if (!known) {
+                names[n++] = m->name;
+            }
+        }
+    }
+    return n;
+}
+
 static void read_vary(mt_study_reader *s, mt_addr value, mt_addr goals, mt_vary *v)
 {
     static const char *const bounds[] = {"lower", "upper"};
-#define MEMBER_NAME(id, name) name,
-    static const char *const members[] = {MT_GOAL_MEMBER_LIST(MEMBER_NAME)};
-#undef MEMBER_NAME
+    const char *members[MT_GOAL_TYPE_COUNT * MT_MAX_KEYS];
+    const int n_members = varying_members(members);
     mt_study_object o;
     *v = mt_vary_default(MT_VARY_PARAMETER, value);
     if (!mt_read_study_object(s, value, &mt_study_vary_keys, &o)) {
@@ -127,14 +148,14 @@ static void read_vary(mt_study_reader *s, mt_addr value, mt_addr goals, mt_vary 
     const int bound =
         mt_reader_choice(&s->r, o.found[VARY_BOUND], "bound", bounds, MT_COUNT(bounds));
     const int member =
-        mt_reader_choice(&s->r, o.found[VARY_MEMBER], "member", members, MT_COUNT(members));
+        mt_reader_choice(&s->r, o.found[VARY_MEMBER], "member", members, n_members);
     v->kind = which == VARY_VARIABLE ? MT_VARY_BOUND
               : which == VARY_GOAL   ? MT_VARY_GOAL
                                      : MT_VARY_PARAMETER;
     v->name = mt_reader_ref(&s->r, which == VARY_VARIABLE ? o.found[VARY_VARIABLE]
                                                           : o.found[VARY_PARAMETER]);
     v->upper = bound == 1;
-    v->member = member == MT_ABSENT ? MT_GOAL_MEMBER_COUNT : (mt_goal_member)member;
+    v->member = member == MT_ABSENT ? NULL : members[member];
     v->goal = goal_of(s, o.found[VARY_GOAL], goals);
     v->values_addr = mt_read_study_place(s, &o, VARY_VALUES);
     read_values(s, o.found[VARY_VALUES], v);
@@ -142,14 +163,11 @@ static void read_vary(mt_study_reader *s, mt_addr value, mt_addr goals, mt_vary 
 
 static void read_front(mt_study_reader *s, mt_addr list, mt_trade *trade)
 {
-    static const mt_objective_type types[] = {MT_OBJECTIVE_CHANGE, MT_OBJECTIVE_MASS,
-                                              MT_OBJECTIVE_MISFIT, MT_OBJECTIVE_CLEARANCE};
-    const char *names[MT_COUNT(types)];
+    mt_objective_type types[MT_OBJECTIVE_TYPE_COUNT];
+    const char *names[MT_OBJECTIVE_TYPE_COUNT];
+    const int n = mt_objectives_with(MT_FRONT, types, names);
     if (list == MT_NO_ADDR) {
         return;
-    }
-    for (int i = 0; i < MT_COUNT(types); i++) {
-        names[i] = mt_objective_type_name(types[i]);
     }
     mt_items items = mt_reader_items(&s->r, list);
     if (items.count != MT_COUNT(trade->objectives)) {
@@ -157,8 +175,7 @@ static void read_front(mt_study_reader *s, mt_addr list, mt_trade *trade)
         return;
     }
     while (mt_items_next(&items)) {
-        const int which =
-            mt_reader_choice(&s->r, items.at, "objective", names, MT_COUNT(types));
+        const int which = mt_reader_choice(&s->r, items.at, "objective", names, n);
         if (which != MT_ABSENT) {
             trade->objectives[trade->n_objectives++] = types[which];
         }

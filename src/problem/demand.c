@@ -111,7 +111,7 @@ static mt_status frequency_demand(mt_problem *p, const mt_demand *d, int pos,
 {
     mt_analysis *const a = p->views[d->view].analysis;
     const mt_goal *const g = d->goal;
-    const double edge = fmin(fmin(d->target_hz, g->at_least), g->at_most); /* of those given */
+    const double edge = fmin(fmin(d->equals, g->at_least), g->at_most); /* of those given */
     const double floor = MT_FREQUENCY_FLOOR * edge;
     double *const gradient = with_gradient ? p->dshape : NULL; /* n numbers of it */
     if (pos >= 0 && !(mt_modal_hz(&a->modes, pos) >= 0.0)) {
@@ -121,7 +121,7 @@ static mt_status frequency_demand(mt_problem *p, const mt_demand *d, int pos,
     if (with_gradient) {
         MT_TRY(mt_problem_dln_frequency(p, a, pos, floor, gradient, err));
     }
-    const scalar v = {.to_target = mt_problem_ln_ratio(&a->modes, pos, d->target_hz, floor),
+    const scalar v = {.to_target = mt_problem_ln_ratio(&a->modes, pos, d->equals, floor),
                       .above = mt_problem_ln_ratio(&a->modes, pos, g->at_least, floor),
                       .below = -mt_problem_ln_ratio(&a->modes, pos, g->at_most, floor),
                       .target_slope = 1.0,
@@ -206,10 +206,10 @@ static void limit_demand(mt_problem *p, const mt_demand *d, bool with_gradient,
 {
     const mt_goal *const g = d->goal;
     const double value = p->value[d->node];
-    const scalar v = {.to_target = (value - g->equals) / unit_of(g->equals),
+    const scalar v = {.to_target = (value - d->equals) / unit_of(d->equals),
                       .above = (value - g->at_least) / unit_of(g->at_least),
                       .below = (g->at_most - value) / unit_of(g->at_most),
-                      .target_slope = 1.0 / unit_of(g->equals),
+                      .target_slope = 1.0 / unit_of(d->equals),
                       .above_slope = 1.0 / unit_of(g->at_least),
                       .below_slope = -1.0 / unit_of(g->at_most)};
     for (int k = 0; k < p->n && with_gradient; k++) {

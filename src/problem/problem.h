@@ -59,7 +59,7 @@ typedef struct mt_demand {
     int named;                /* position in the view's list, where by name */
     mt_node node;             /* limit: node of the expressions' program */
     mt_reference_shape shape; /* shape, mac; frequency: without the shape */
-    double target_hz;         /* frequency; NaN: limits only */
+    double equals; /* what is asked for, by the goal or its reference; NaN: limits only */
     double weight; /* the goal's, unless changed to see what it does; NaN: a constraint */
     bool ranged; /* a target that is a range over the tolerances of the variables (robust.h) */
     int row_eq;  /* its row in eq, -1 none */
@@ -262,8 +262,6 @@ double mt_clear_least_percent(const mt_clear *c, const mt_modes *modes, int *ban
 
 /* problem_demands.c: views, demands and their rows. */
 mt_status mt_problem_init_demands(mt_problem *p, int n_cuts, mt_err *err);
-/* Relative tolerance of a goal. */
-double mt_problem_tolerance(const mt_goal *g);
 /* Once all rows are counted: tolerances and work space. */
 mt_status mt_problem_init_rows(mt_problem *p, mt_err *err);
 /*

@@ -59,7 +59,7 @@ static mt_status add_clear(mt_problem *p, int goal_index, int view, mt_err *err)
         if (p->clears[i].view == view) {
             mt_clear *const c = &p->clears[i];
             c->cluster = g->avoid->cluster > c->cluster ? g->avoid->cluster : c->cluster;
-            c->tolerance = fmin(c->tolerance, mt_problem_tolerance(g));
+            c->tolerance = fmin(c->tolerance, mt_goal_tolerance(g));
             return MT_OK;
         }
     }
@@ -69,7 +69,7 @@ static mt_status add_clear(mt_problem *p, int goal_index, int view, mt_err *err)
                     .cluster = g->avoid->cluster,
                     .first = p->n_bands,
                     .row_in = -1,
-                    .tolerance = mt_problem_tolerance(g)};
+                    .tolerance = mt_goal_tolerance(g)};
     MT_TRY(unite(p, c, err));
     p->n_bands += c->bands.n;
     p->n_clears++;

@@ -6,9 +6,6 @@
 #include "problem/family.h"
 #include "problem/robust.h"
 
-/* Default tolerance of a goal in percent (the format's documentation says so too). */
-static const double DEFAULT_TOLERANCE_PERCENT = 1e-4;
-
 int mt_problem_view(const mt_problem *p, int configuration)
 {
     for (int i = 0; i < p->n_views; i++) {
@@ -197,31 +194,24 @@ static mt_status resolve_reference(mt_problem *p, const mt_view *view, mt_demand
     const int mode = g->reference_mode > 0 ? g->reference_mode : own;
     if (g->type == MT_GOAL_FREQUENCY) {
         MT_TRY(mt_reference_frequency_init(p->references, g->reference, mode, &d->shape, err));
-        d->target_hz = d->shape.frequency_hz;
+        d->equals = d->shape.frequency_hz;
         return MT_OK;
     }
     return mt_reference_shape_init(p->references, g->reference, mode, view->analysis->sys,
                                    &p->mem, &d->shape, err);
 }
 
-double mt_problem_tolerance(const mt_goal *g)
-{
-    const double percent =
-        MT_HAS(g->tolerance_percent) ? g->tolerance_percent : DEFAULT_TOLERANCE_PERCENT;
-    return percent / 100.0;
-}
-
 static void number_rows(mt_problem *p, mt_demand *d)
 {
     const mt_goal *const g = d->goal;
-    d->tolerance = mt_problem_tolerance(g);
+    d->tolerance = mt_goal_tolerance(g);
     if (MT_HAS(g->weight)) {
         d->row_res = p->n_res;
         p->n_res += g->type == MT_GOAL_SHAPE ? d->shape.ns : 1;
         p->weights += g->weight;
     } else if (mt_robust_is_range(p, d)) {
         d->ranged = true; /* its rows are those of the corners */
-    } else if (MT_HAS(g->equals) || MT_HAS(d->target_hz)) {
+    } else if (MT_HAS(d->equals)) {
         d->row_eq = p->n_eq++;
     } else {
         d->row_in = p->n_in;
@@ -243,7 +233,7 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
                      .row_eq = -1,
                      .row_in = -1,
                      .row_res = -1,
-                     .target_hz = g->target_hz,
+                     .equals = g->equals,
                      .weight = g->weight};
     if (g->type != MT_GOAL_LIMIT) {
         MT_TRY(mt_err_in(err, mt_problem_add_view(p, configuration, &d->view, err), "/goals/%d",

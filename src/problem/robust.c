@@ -12,8 +12,8 @@
 /* All combinations of so many variables whose sign is not known; of more: all low, all high,
  * and each alone against the others. */
 enum { COMBINED_MOST = 5 };
-/* A target's range is kept within this, relatively: the default tolerance of a goal. */
-static const double ROW_TOLERANCE = 1e-6;
+/* A target's range is kept within this, relatively. */
+static const double ROW_TOLERANCE = MT_DEFAULT_TOLERANCE_PERCENT / 100.0;
 
 /* What raising a variable does. */
 enum { FALLS = -1, NOTHING, RISES, UNKNOWN };
@@ -36,8 +36,7 @@ static bool any_tolerance(const mt_problem *p)
 
 bool mt_robust_is_range(const mt_problem *p, const mt_demand *d)
 {
-    return any_tolerance(p) && (MT_HAS(d->goal->equals) || MT_HAS(d->target_hz)) &&
-           d->goal->tolerance_addr != d->goal->addr;
+    return any_tolerance(p) && MT_HAS(d->equals) && d->goal->tolerance_addr != d->goal->addr;
 }
 
 /* The bounds, wider by the tolerances. */

@@ -101,8 +101,7 @@ static double limit_of(const mt_problem *p, const mt_robust_row *row)
     if (!d->ranged) {
         return low ? d->goal->at_least : d->goal->at_most;
     }
-    return d->view >= 0 ? d->target_hz * (1.0 + give)
-                        : d->goal->equals + (give * unit_of(d->goal->equals));
+    return d->view >= 0 ? d->equals * (1.0 + give) : d->equals + (give * unit_of(d->equals));
 }
 
 static double edge_of(const mt_problem *p, const mt_robust_row *row)

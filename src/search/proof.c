@@ -50,18 +50,18 @@ static void list_bands(mt_proof *proof, const mt_problem *p)
 
 static mt_certify_limit frequency_limit(const mt_demand *d)
 {
-    const bool target = MT_HAS(d->target_hz);
-    return (mt_certify_limit){d->view, d->mode, target ? d->target_hz : d->goal->at_least,
-                              target ? d->target_hz : d->goal->at_most, d->tolerance};
+    const bool target = MT_HAS(d->equals);
+    return (mt_certify_limit){d->view, d->mode, target ? d->equals : d->goal->at_least,
+                              target ? d->equals : d->goal->at_most, d->tolerance};
 }
 
 /* A limit on an expression, its relative tolerance granted. */
 static mt_certify_bound expression_bound(const mt_demand *d)
 {
     const mt_goal *const g = d->goal;
-    const bool equal = MT_HAS(g->equals);
-    const double least = equal ? g->equals : g->at_least;
-    const double most = equal ? g->equals : g->at_most;
+    const bool equal = MT_HAS(d->equals);
+    const double least = equal ? d->equals : g->at_least;
+    const double most = equal ? d->equals : g->at_most;
     const double give_least = d->tolerance * (fabs(least) > 0.0 ? fabs(least) : 1.0);
     const double give_most = d->tolerance * (fabs(most) > 0.0 ? fabs(most) : 1.0);
     return (mt_certify_bound){d->node, least - give_least, most + give_most};

@@ -27,7 +27,7 @@ static void add_goal_moves(const mt_problem *p, mt_moves *out)
         }
         if (d->row_eq >= 0) {
             m.target = true;
-            m.from = g->type == MT_GOAL_LIMIT ? g->equals : d->target_hz;
+            m.from = d->equals;
             add(out, m);
             continue;
         }

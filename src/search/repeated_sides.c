@@ -41,8 +41,8 @@ static void add_demand(listing *l, const mt_demand *d)
             s.row = n_eq + in;
             add(l, &s, d->mode);
         }
-        if (d->row_eq >= 0 && MT_HAS(d->target_hz)) {
-            s.limit_hz = d->target_hz;
+        if (d->row_eq >= 0 && MT_HAS(d->equals)) {
+            s.limit_hz = d->equals;
             s.row = d->row_eq;
             add(l, &s, d->mode);
         }

@@ -7,10 +7,6 @@
 
 enum { DEFAULT_RECOMMENDATIONS = 5, DEFAULT_SEED = 1 };
 
-/* A goal is met within this, in percent of the demand: far below what an engineer can build,
- * far above rounding. */
-static const double DEFAULT_TOLERANCE_PERCENT = 1e-4;
-
 mt_status mt_study_new(mt_study **out, mt_err *err)
 {
     *out = NULL;
@@ -128,22 +124,25 @@ mt_goal mt_goal_default(mt_goal_type type, mt_addr addr)
         .type = type,
         .configurations_addr = addr,
         .mode = no_mode(addr),
-        .target_hz = nan(""),
+        .equals = nan(""),
         .at_least = nan(""),
         .at_most = nan(""),
-        .equals = nan(""),
-        .tolerance_percent = DEFAULT_TOLERANCE_PERCENT,
+        .tolerance_percent = MT_DEFAULT_TOLERANCE_PERCENT,
         .weight = nan(""),
         .reference_name = {.addr = addr},
         .reference = MT_ABSENT,
         .addr = addr,
-        .target_addr = addr,
+        .equals_addr = addr,
         .at_least_addr = addr,
         .at_most_addr = addr,
-        .equals_addr = addr,
         .tolerance_addr = addr,
         .weight_addr = addr,
     };
+}
+
+double mt_goal_tolerance(const mt_goal *goal)
+{
+    return goal->tolerance_percent / 100.0;
 }
 
 mt_avoid mt_avoid_default(mt_addr addr)
@@ -195,16 +194,6 @@ mt_published mt_published_default(mt_published_kind kind, mt_addr addr)
     case id:                \
         return name;
 
-const char *mt_goal_type_name(mt_goal_type type)
-{
-    switch (type) {
-        MT_GOAL_LIST(NAME_CASE)
-    case MT_GOAL_TYPE_COUNT:
-        break;
-    }
-    return "unknown";
-}
-
 const char *mt_role_name(mt_role role)
 {
     switch (role) {
@@ -223,35 +212,6 @@ const char *mt_published_kind_name(mt_published_kind kind)
         break;
     }
     return "unknown";
-}
-
-const char *mt_goal_member_name(mt_goal_member member)
-{
-    switch (member) {
-        MT_GOAL_MEMBER_LIST(NAME_CASE)
-    case MT_GOAL_MEMBER_COUNT:
-        break;
-    }
-    return "unknown";
-}
-
-const char *mt_objective_type_name(mt_objective_type type)
-{
-    switch (type) {
-    case MT_OBJECTIVE_CHANGE:
-        return "change";
-    case MT_OBJECTIVE_MASS:
-        return "mass";
-    case MT_OBJECTIVE_EXPRESSION:
-        return "expression";
-    case MT_OBJECTIVE_MISFIT:
-        return "misfit";
-    case MT_OBJECTIVE_CLEARANCE:
-        return "clearance";
-    case MT_OBJECTIVE_NONE:
-        break;
-    }
-    return "none";
 }
 
 const char *const *mt_study_statuses(int *n)

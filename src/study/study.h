@@ -9,6 +9,8 @@
 #include "model/model.h"
 #include "study/aircraft.h"
 #include "study/bands.h"
+#include "study/goal_kinds.h"
+#include "study/objective_kinds.h"
 
 /*
  * A question asked of a model: variables, goals, objective, references, published values.
@@ -19,6 +21,10 @@
  * MT_HAS(x) asks.
  */
 #define MT_HAS(x) ((x) == (x))
+
+/* A goal is met within this, in percent of the demand, where it does not say: far below what an
+ * engineer can build, far above rounding. */
+#define MT_DEFAULT_TOLERANCE_PERCENT 1e-4
 
 typedef struct mt_variable {
     mt_name parameter_name;
@@ -48,16 +54,6 @@ typedef struct mt_mode_ref {
     mt_addr addr;
 } mt_mode_ref;
 
-#define MT_GOAL_LIST(X)               \
-    X(MT_GOAL_FREQUENCY, "frequency") \
-    X(MT_GOAL_SHAPE, "shape")         \
-    X(MT_GOAL_MAC, "mac")             \
-    X(MT_GOAL_LIMIT, "limit")         \
-    X(MT_GOAL_AVOID, "avoid")
-#define MT_GOAL_ENUM(id, name) id,
-typedef enum mt_goal_type { MT_GOAL_LIST(MT_GOAL_ENUM) MT_GOAL_TYPE_COUNT } mt_goal_type;
-#undef MT_GOAL_ENUM
-
 /* What modes must keep clear of, and how the search goes about it. */
 typedef struct mt_avoid {
     mt_bands_source source;
@@ -71,20 +67,34 @@ typedef struct mt_avoid {
 } mt_avoid;
 
 typedef struct mt_goal {
-    mt_goal_type type;
+    mt_goal_type type; /* kinds: goal_kinds.h */
     /* one ("configuration") or several ("configurations"); none given: the model's only one */
     mt_name_list configuration_names;
     mt_addr configurations_addr; /* of either member; addr: none is there */
     int n_configurations;
     int *configurations;
     mt_mode_ref mode;
-    double target_hz;
-    double at_least; /* frequency: Hz; mac: 0..1; limit: unit of the expression */
-    double at_most;
-    double equals;            /* limit */
-    double tolerance_percent; /* default 1e-4 */
-    double weight;            /* NaN: a constraint; else a residual of the misfit */
-    /* shape, mac; frequency: its target is the frequency of that mode, instead of target_hz;
+    union {
+        struct {
+            double equals;   /* "target_hz", "equals" */
+            double at_least; /* in the unit of the kind of goal (goal_kinds.h) */
+            double at_most;
+            double tolerance_percent;
+            double weight; /* NaN: a constraint; else a residual of the misfit */
+        };
+        double number[MT_GOAL_NUMBERS];
+    };
+    union { /* where these stand; of what was not given equal to addr */
+        struct {
+            mt_addr equals_addr;
+            mt_addr at_least_addr;
+            mt_addr at_most_addr;
+            mt_addr tolerance_addr;
+            mt_addr weight_addr;
+        };
+        mt_addr number_addr[MT_GOAL_NUMBERS];
+    };
+    /* shape, mac; frequency: its target is the frequency of that mode, instead of "target_hz";
      * its addr equals addr where it was not given */
     mt_name reference_name;
     int reference;
@@ -94,12 +104,6 @@ typedef struct mt_goal {
     mt_avoid *avoid; /* avoid: in the study's arena; else NULL */
     const char *description;
     mt_addr addr;
-    mt_addr target_addr; /* the addresses of what was not given equal addr */
-    mt_addr at_least_addr;
-    mt_addr at_most_addr;
-    mt_addr equals_addr;
-    mt_addr tolerance_addr;
-    mt_addr weight_addr;
 } mt_goal;
 
 /* Modes to compare with: another model's configuration, or measured values at sensors. */
@@ -123,15 +127,6 @@ typedef struct mt_reference {
     const char *source;
     mt_addr addr;
 } mt_reference;
-
-typedef enum mt_objective_type {
-    MT_OBJECTIVE_NONE,
-    MT_OBJECTIVE_CHANGE,
-    MT_OBJECTIVE_MASS,
-    MT_OBJECTIVE_EXPRESSION,
-    MT_OBJECTIVE_MISFIT,
-    MT_OBJECTIVE_CLEARANCE
-} mt_objective_type;
 
 typedef struct mt_objective {
     mt_objective_type type;
@@ -198,29 +193,15 @@ typedef enum mt_vary_kind {
     MT_VARY_PARAMETER /* a parameter that is no variable */
 } mt_vary_kind;
 
-/* Numbers of goals that may vary, as files name them. */
-#define MT_GOAL_MEMBER_LIST(X)              \
-    X(MT_MEMBER_TARGET, "target_hz")        \
-    X(MT_MEMBER_AT_LEAST_HZ, "at_least_hz") \
-    X(MT_MEMBER_AT_MOST_HZ, "at_most_hz")   \
-    X(MT_MEMBER_AT_LEAST, "at_least")       \
-    X(MT_MEMBER_AT_MOST, "at_most")         \
-    X(MT_MEMBER_EQUALS, "equals")           \
-    X(MT_MEMBER_MARGIN, "margin_percent")
-#define MT_GOAL_MEMBER_ENUM(id, name) id,
-typedef enum mt_goal_member {
-    MT_GOAL_MEMBER_LIST(MT_GOAL_MEMBER_ENUM) MT_GOAL_MEMBER_COUNT
-} mt_goal_member;
-#undef MT_GOAL_MEMBER_ENUM
-
 typedef struct mt_vary {
     mt_vary_kind kind;
-    mt_name name;  /* of the variable or parameter */
-    int variable;  /* bound: index in the study's variables */
-    bool upper;    /* bound: which one */
-    int parameter; /* parameter: of the model */
-    int goal;      /* goal: index in the study's goals */
-    mt_goal_member member;
+    mt_name name;       /* of the variable or parameter */
+    int variable;       /* bound: index in the study's variables */
+    bool upper;         /* bound: which one */
+    int parameter;      /* parameter: of the model */
+    int goal;           /* goal: index in the study's goals */
+    const char *member; /* goal: name of its number; NULL: noted by who filled the study */
+    mt_goal_slot slot;  /* of that number; by finish */
     int n_values;
     double *values;   /* [n_values] in the order given; in the unit of what varies */
     const char *text; /* "upper bound of M_SAU", "target_hz of goal 1": by finish */
@@ -313,6 +294,8 @@ mt_status mt_study_new(mt_study **out, mt_err *err);
 mt_variable mt_variable_default(mt_addr addr);
 mt_goal mt_goal_default(mt_goal_type type, mt_addr addr);
 mt_avoid mt_avoid_default(mt_addr addr);
+/* Tolerance of a goal, of 1. */
+double mt_goal_tolerance(const mt_goal *goal);
 mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr);
 mt_published mt_published_default(mt_published_kind kind, mt_addr addr);
 /*
@@ -336,13 +319,9 @@ void mt_study_place_doubt(const mt_study *study, mt_doubt *doubt);
 /* Where what the text's leading JSON pointer names ("/goals/2: ...") stands; NULL: it begins
  * with none, or the place was not kept. */
 const mt_study_place *mt_study_find_place(const mt_study *study, const char *text);
-/* The names that files use: "frequency", "verifies", "parameter". */
-const char *mt_goal_type_name(mt_goal_type type);
+/* The names that files use: "verifies", "parameter". */
 const char *mt_role_name(mt_role role);
 const char *mt_published_kind_name(mt_published_kind kind);
-const char *mt_goal_member_name(mt_goal_member member);
-/* "change", "mass", "misfit", "clearance"; "expression" and "none" for the others. */
-const char *mt_objective_type_name(mt_objective_type type);
 /* What a published `status` may say, in the order of mt_result_status; *n their number. */
 const char *const *mt_study_statuses(int *n);
 

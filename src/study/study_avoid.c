@@ -6,13 +6,11 @@
 
 #include "study/study_check.h"
 
-static const double GREATEST_PERCENT = 100.0; /* a margin of it would reach down to 0 Hz */
-
 static void check_margin(mt_study_check *c, double margin, mt_addr addr)
 {
-    if (MT_HAS(margin) && !(margin >= 0.0 && margin < GREATEST_PERCENT)) {
-        mt_diag_error(c->diags, addr, "margin_percent (%g) must be at least 0 and below 100",
-                      margin);
+    if (MT_HAS(margin) && !mt_goal_in_range(MT_RANGE_PERCENT, margin)) {
+        mt_diag_error(c->diags, addr, "margin_percent (%g) must be %s", margin,
+                      mt_goal_range_text(MT_RANGE_PERCENT));
     }
 }
 

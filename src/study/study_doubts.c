@@ -130,7 +130,7 @@ static void doubt_goal(mt_doubt_list *out, const mt_goal *goal)
                         goal->tolerance_percent),
            goal->tolerance_addr);
     }
-    if (goal->type == MT_GOAL_AVOID && goal->avoid != NULL) {
+    if (goal->avoid != NULL) {
         doubt_avoid(out, goal);
     }
 }
@@ -169,8 +169,8 @@ static void doubt_trade(mt_doubt_list *out, const mt_trade *trade)
 {
     for (int i = 0; i < trade->n_vary; i++) {
         const mt_vary *const v = &trade->vary[i];
-        for (int k = 0;
-             k < v->n_values && v->kind == MT_VARY_GOAL && v->member == MT_MEMBER_MARGIN; k++) {
+        const bool margin = v->kind == MT_VARY_GOAL && v->slot == MT_SLOT_MARGIN;
+        for (int k = 0; k < v->n_values && margin; k++) {
             doubt_margin(out, v->values[k], v->values_addr);
         }
     }

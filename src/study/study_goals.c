@@ -29,98 +29,100 @@ static void resolve_configurations(mt_study_check *c, mt_goal *goal)
     }
 }
 
-typedef struct demands {
-    const char *equal; /* the member that asks for a value; NULL: none does */
-    bool at_least;
-    bool at_most;
-} demands;
-
-/* An equality excludes limits, limits must leave room. `choices` names the members that ask for
- * a value. */
-static void check_demands(mt_study_check *c, const mt_goal *goal, demands d,
-                          const char *choices, const char *unit)
+static bool given(const mt_goal *goal, mt_goal_slot slot)
 {
-    if (d.equal != NULL && (d.at_least || d.at_most)) {
-        mt_diag_error(c->diags, goal->addr, "\"%s\" excludes \"%s%s\"", d.equal,
-                      d.at_least ? "at_least" : "at_most", unit);
-    } else if (d.equal == NULL && !d.at_least && !d.at_most) {
+    return mt_check_given(goal->number[slot], goal->number_addr[slot], goal->addr);
+}
+
+/* The member that asks for a value, by its number or by a reference that gives it; NULL: none
+ * does. */
+static const char *equality_of(const mt_goal *goal, const mt_goal_kind *kind)
+{
+    const bool reference = goal->reference_name.addr != goal->addr;
+    return given(goal, MT_SLOT_EQUALS) ? mt_goal_member_name(kind, MT_SLOT_EQUALS)
+           : reference                 ? mt_goal_member_name(kind, MT_SLOT_REFERENCE)
+                                       : NULL;
+}
+
+/* An equality excludes another one and limits, limits must leave room, and only an equality has
+ * a residual. Of kinds that can ask for a value. */
+static void check_demands(mt_study_check *c, const mt_goal *goal, const mt_goal_kind *kind)
+{
+    const bool least = given(goal, MT_SLOT_AT_LEAST);
+    const bool most = given(goal, MT_SLOT_AT_MOST);
+    const char *const equality = equality_of(goal, kind);
+    const char *const equals = mt_goal_member_name(kind, MT_SLOT_EQUALS);
+    const char *const at_least = mt_goal_member_name(kind, MT_SLOT_AT_LEAST);
+    const char *const at_most = mt_goal_member_name(kind, MT_SLOT_AT_MOST);
+    const bool refers = mt_goal_member_at(kind, MT_SLOT_REFERENCE) >= 0;
+    if (given(goal, MT_SLOT_EQUALS) && goal->reference_name.addr != goal->addr) {
+        mt_diag_error(c->diags, goal->addr, "\"%s\" excludes \"reference\"", equals);
+    }
+    if (equality != NULL && (least || most)) {
+        mt_diag_error(c->diags, goal->addr, "\"%s\" excludes \"%s\"", equality,
+                      least ? at_least : at_most);
+    } else if (equality == NULL && !least && !most) {
         mt_diag_error(c->diags, goal->addr,
-                      "the goal demands nothing: give %s, \"at_least%s\" or \"at_most%s\"",
-                      choices, unit, unit);
+                      "the goal demands nothing: give \"%s\", %s\"%s\" or \"%s\"", equals,
+                      refers ? "\"reference\", " : "", at_least, at_most);
     }
     if (goal->at_least >= goal->at_most) {
-        mt_diag_error(c->diags, goal->at_most_addr,
-                      "at_most%s (%g) is not above at_least%s (%g)", unit, goal->at_most, unit,
-                      goal->at_least);
+        mt_diag_error(c->diags, goal->at_most_addr, "%s (%g) is not above %s (%g)", at_most,
+                      goal->at_most, at_least, goal->at_least);
+    }
+    if (MT_HAS(goal->weight) && equality == NULL && (least || most)) {
+        mt_diag_error(c->diags, goal->weight_addr,
+                      "only a goal with \"%s\" or \"reference\" can be part of the misfit",
+                      equals);
     }
 }
 
-static demands demands_of(const mt_goal *goal)
-{
-    const char *equal = NULL;
-    if (goal->type == MT_GOAL_LIMIT) {
-        equal = mt_check_given(goal->equals, goal->equals_addr, goal->addr) ? "equals" : NULL;
-    } else if (mt_check_given(goal->target_hz, goal->target_addr, goal->addr)) {
-        equal = "target_hz";
-    } else if (goal->reference_name.addr != goal->addr) {
-        equal = "reference";
-    }
-    return (demands){
-        .equal = equal,
-        .at_least = mt_check_given(goal->at_least, goal->at_least_addr, goal->addr),
-        .at_most = mt_check_given(goal->at_most, goal->at_most_addr, goal->addr),
-    };
-}
-
-static void check_frequency(mt_study_check *c, mt_goal *goal, int index)
-{
-    const demands d = demands_of(goal);
-    const bool target = mt_check_given(goal->target_hz, goal->target_addr, goal->addr);
-    goal->reference = mt_check_reference(c, goal->reference_name);
-    mt_check_reference_mode(c, goal->reference, goal->reference_mode, index, false, goal->addr);
-    if (target && goal->reference_name.addr != goal->addr) {
-        mt_diag_error(c->diags, goal->addr, "\"target_hz\" excludes \"reference\"");
-    }
-    mt_check_positive(c, goal->target_hz, goal->target_addr, "target_hz");
-    mt_check_positive(c, goal->at_least, goal->at_least_addr, "at_least_hz");
-    mt_check_positive(c, goal->at_most, goal->at_most_addr, "at_most_hz");
-    check_demands(c, goal, d, "\"target_hz\", \"reference\"", "_hz");
-    if (MT_HAS(goal->weight) && d.equal == NULL && (d.at_least || d.at_most)) {
-        mt_diag_error(
-            c->diags, goal->weight_addr,
-            "only a goal with \"target_hz\" or \"reference\" can be part of the misfit");
-    }
-}
-
-static void check_compared(mt_study_check *c, mt_goal *goal, int index)
+/* A reference gives a value, where the goal can ask for one, else a shape. */
+static void check_reference(mt_study_check *c, mt_goal *goal, bool shape, int index)
 {
     goal->reference = mt_check_reference(c, goal->reference_name);
-    mt_check_reference_mode(c, goal->reference, goal->reference_mode, index, true, goal->addr);
-    mt_check_common_sensors(c, goal->reference, goal->reference_name.addr);
-    if (goal->type == MT_GOAL_MAC && (goal->at_least <= 0.0 || goal->at_least > 1.0)) {
-        mt_diag_error(c->diags, goal->at_least_addr,
-                      "at_least (%g) must be above 0 and at most 1", goal->at_least);
+    mt_check_reference_mode(c, goal->reference, goal->reference_mode, index, shape, goal->addr);
+    if (shape) {
+        mt_check_common_sensors(c, goal->reference, goal->reference_name.addr);
+    }
+}
+
+/* Numbers of the goal within what their kind allows. */
+static void check_numbers(mt_study_check *c, const mt_goal *goal, const mt_goal_kind *kind)
+{
+    for (int i = 0; i < kind->n; i++) {
+        const mt_goal_member *const m = &kind->members[i];
+        if (m->slot >= MT_GOAL_NUMBERS) {
+            continue;
+        }
+        const double value = goal->number[m->slot];
+        if (MT_HAS(value) && !mt_goal_in_range(m->range, value)) {
+            mt_diag_error(c->diags, goal->number_addr[m->slot], "%s (%g) must be %s", m->name,
+                          value, mt_goal_range_text(m->range));
+        }
     }
 }
 
 static void check_goal(mt_study_check *c, mt_goal *goal)
 {
-    mt_check_positive(c, goal->tolerance_percent, goal->tolerance_addr, "tolerance_percent");
-    mt_check_positive(c, goal->weight, goal->weight_addr, "weight");
-    if (goal->type == MT_GOAL_LIMIT) {
-        check_demands(c, goal, demands_of(goal), "\"equals\"", "");
-        return;
+    const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
+    const bool values = mt_goal_member_at(kind, MT_SLOT_EQUALS) >= 0;
+    int index = 0;
+    check_numbers(c, goal, kind);
+    if (mt_goal_member_at(kind, MT_SLOT_CONFIGURATION) >= 0) {
+        resolve_configurations(c, goal);
     }
-    resolve_configurations(c, goal);
-    if (goal->type == MT_GOAL_AVOID) {
+    if (goal->avoid != NULL) {
         mt_study_check_avoid(c, goal);
-        return;
     }
-    const int index = mt_check_mode(c, &goal->mode);
-    if (goal->type == MT_GOAL_FREQUENCY) {
-        check_frequency(c, goal, index);
-    } else if (goal->type == MT_GOAL_SHAPE || goal->type == MT_GOAL_MAC) {
-        check_compared(c, goal, index);
+    if (mt_goal_member_at(kind, MT_SLOT_MODE) >= 0) {
+        index = mt_check_mode(c, &goal->mode);
+    }
+    if (mt_goal_member_at(kind, MT_SLOT_REFERENCE) >= 0) {
+        check_reference(c, goal, !values, index);
+    }
+    if (values) {
+        check_demands(c, goal, kind);
     }
 }
 

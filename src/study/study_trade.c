@@ -4,16 +4,6 @@
 
 #include "study/study_check.h"
 
-static bool is_least(mt_goal_member member)
-{
-    return member == MT_MEMBER_AT_LEAST || member == MT_MEMBER_AT_LEAST_HZ;
-}
-
-static bool is_most(mt_goal_member member)
-{
-    return member == MT_MEMBER_AT_MOST || member == MT_MEMBER_AT_MOST_HZ;
-}
-
 /* Do two that vary limit one number from its two sides? */
 static bool opposite(const mt_vary *a, const mt_vary *b)
 {
@@ -25,8 +15,9 @@ static bool opposite(const mt_vary *a, const mt_vary *b)
         return a->upper != b->upper && a->name.s != NULL && b->name.s != NULL &&
                strcmp(a->name.s, b->name.s) == 0;
     case MT_VARY_GOAL:
-        return a->goal == b->goal && ((is_least(a->member) && is_most(b->member)) ||
-                                      (is_most(a->member) && is_least(b->member)));
+        return a->goal == b->goal &&
+               ((a->slot == MT_SLOT_AT_LEAST && b->slot == MT_SLOT_AT_MOST) ||
+                (a->slot == MT_SLOT_AT_MOST && b->slot == MT_SLOT_AT_LEAST));
     case MT_VARY_PARAMETER:
         break;
     }
@@ -47,8 +38,7 @@ static const mt_vary *other_side(const mt_study_check *c, const mt_vary *v)
 
 static const char *side_name(const mt_vary *v)
 {
-    return v->kind == MT_VARY_GOAL ? mt_goal_member_name(v->member)
-                                   : (v->upper ? "upper bound" : "lower bound");
+    return v->kind == MT_VARY_GOAL ? v->member : (v->upper ? "upper bound" : "lower bound");
 }
 
 /* Where both sides vary every value of the one has to leave room to every value of the
@@ -59,7 +49,7 @@ static void check_sides(mt_study_check *c, const mt_vary *v)
     if (other == NULL || other > v) {
         return; /* told at the second of them */
     }
-    const bool lower = v->kind == MT_VARY_GOAL ? is_least(v->member) : !v->upper;
+    const bool lower = v->kind == MT_VARY_GOAL ? v->slot == MT_SLOT_AT_LEAST : !v->upper;
     for (int i = 0; i < v->n_values; i++) {
         for (int k = 0; k < other->n_values; k++) {
             const double low = lower ? v->values[i] : other->values[k];
@@ -107,75 +97,51 @@ static void vary_bound(mt_study_check *c, mt_vary *v)
     }
 }
 
-/* The number of the goal that varies; NULL where its type has no such member. */
-static const double *number_of(const mt_goal *g, mt_goal_member member)
+/* Limits on both sides must leave room, whichever of them varies; both: check_sides. */
+static bool leaves_room(mt_goal_slot slot, const mt_goal *goal, double value)
 {
-    const bool frequency = g->type == MT_GOAL_FREQUENCY;
-    const bool plain = g->type == MT_GOAL_LIMIT || g->type == MT_GOAL_MAC;
-    switch (member) {
-    case MT_MEMBER_TARGET:
-        return frequency ? &g->target_hz : NULL;
-    case MT_MEMBER_AT_LEAST_HZ:
-        return frequency ? &g->at_least : NULL;
-    case MT_MEMBER_AT_MOST_HZ:
-        return frequency ? &g->at_most : NULL;
-    case MT_MEMBER_AT_LEAST:
-        return plain ? &g->at_least : NULL;
-    case MT_MEMBER_AT_MOST:
-        return g->type == MT_GOAL_LIMIT ? &g->at_most : NULL;
-    case MT_MEMBER_EQUALS:
-        return g->type == MT_GOAL_LIMIT ? &g->equals : NULL;
-    case MT_MEMBER_MARGIN:
-        return g->avoid != NULL ? &g->avoid->source.margin_percent : NULL;
-    case MT_GOAL_MEMBER_COUNT:
-        break;
+    return !(slot == MT_SLOT_AT_LEAST && value >= goal->at_most) &&
+           !(slot == MT_SLOT_AT_MOST && value <= goal->at_least);
+}
+
+/* The member of the goal that varies; NULL where the goal has none of this name, or no number
+ * there to begin with. */
+static const mt_goal_member *member_of(const mt_goal *goal, const char *name)
+{
+    const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
+    for (int i = 0; i < kind->n; i++) {
+        const mt_goal_member *const m = &kind->members[i];
+        if (strcmp(m->name, name) == 0 && mt_goal_may_vary(m)) {
+            const bool none = m->slot < MT_GOAL_NUMBERS && !MT_HAS(goal->number[m->slot]);
+            return none ? NULL : m;
+        }
     }
     return NULL;
 }
 
-static bool allowed(mt_goal_member member, const mt_goal *goal, double value)
+/* Before anything is compared. */
+static void find_slot(const mt_study *s, mt_vary *v)
 {
-    switch (member) {
-    case MT_MEMBER_TARGET:
-    case MT_MEMBER_AT_LEAST_HZ:
-    case MT_MEMBER_AT_MOST_HZ:
-        return value > 0.0;
-    case MT_MEMBER_AT_LEAST:
-        return goal->type != MT_GOAL_MAC || (value > 0.0 && value <= 1.0);
-    case MT_MEMBER_MARGIN:
-        return value >= 0.0 && value < 100.0;
-    case MT_MEMBER_AT_MOST:
-    case MT_MEMBER_EQUALS:
-    case MT_GOAL_MEMBER_COUNT:
-        break;
-    }
-    return true;
-}
-
-/* Limits on both sides must leave room, whichever of them varies; both: check_sides. */
-static bool leaves_room(mt_goal_member member, const mt_goal *goal, double value)
-{
-    return !(is_least(member) && value >= goal->at_most) &&
-           !(is_most(member) && value <= goal->at_least);
+    const bool known = v->goal >= 0 && v->goal < s->n_goals && v->member != NULL;
+    const mt_goal_member *const m = known ? member_of(&s->goals[v->goal], v->member) : NULL;
+    v->slot = m != NULL ? m->slot : MT_SLOT_TYPE;
 }
 
 static void vary_goal(mt_study_check *c, const mt_vary *v)
 {
-    if (v->goal < 0 || v->goal >= c->study->n_goals || v->member == MT_GOAL_MEMBER_COUNT) {
+    if (v->goal < 0 || v->goal >= c->study->n_goals || v->member == NULL) {
         return; /* noted by who filled the study */
     }
     const mt_goal *const goal = &c->study->goals[v->goal];
-    const double *const number = number_of(goal, v->member);
-    if (number == NULL || (!MT_HAS(*number) && v->member != MT_MEMBER_MARGIN)) {
-        mt_diag_error(c->diags, v->addr, "the goal has no \"%s\" that could vary",
-                      mt_goal_member_name(v->member));
+    const mt_goal_member *const m = member_of(goal, v->member);
+    if (m == NULL) {
+        mt_diag_error(c->diags, v->addr, "the goal has no \"%s\" that could vary", v->member);
         return;
     }
     for (int i = 0; i < v->n_values; i++) {
-        if (!allowed(v->member, goal, v->values[i]) ||
-            (other_side(c, v) == NULL && !leaves_room(v->member, goal, v->values[i]))) {
-            mt_diag_error(c->diags, v->values_addr, "%s cannot be %g",
-                          mt_goal_member_name(v->member), v->values[i]);
+        if (!mt_goal_in_range(m->range, v->values[i]) ||
+            (other_side(c, v) == NULL && !leaves_room(m->slot, goal, v->values[i]))) {
+            mt_diag_error(c->diags, v->values_addr, "%s cannot be %g", v->member, v->values[i]);
         }
     }
 }
@@ -216,8 +182,8 @@ static void check_vary(mt_study_check *c, mt_vary *v)
         break;
     case MT_VARY_GOAL:
         vary_goal(c, v);
-        v->text =
-            mt_arena_printf(mem, "%s of /goals/%d", mt_goal_member_name(v->member), v->goal);
+        v->text = mt_arena_printf(mem, "%s of /goals/%d", v->member == NULL ? "?" : v->member,
+                                  v->goal);
         break;
     case MT_VARY_PARAMETER:
         vary_parameter(c, v);
@@ -232,7 +198,7 @@ static void check_vary(mt_study_check *c, mt_vary *v)
 static bool same(const mt_vary *a, const mt_vary *b)
 {
     return a->kind == b->kind && a->variable == b->variable && a->upper == b->upper &&
-           a->parameter == b->parameter && a->goal == b->goal && a->member == b->member;
+           a->parameter == b->parameter && a->goal == b->goal && a->slot == b->slot;
 }
 
 static bool has_objective(const mt_study *s, mt_objective_type type)
@@ -264,10 +230,10 @@ static void check_front(mt_study_check *c)
         if (type == MT_OBJECTIVE_CLEARANCE && !has_goal(s, MT_GOAL_AVOID)) {
             mt_diag_error(c->diags, trade->objectives_addr,
                           "the clearance needs a goal of type \"avoid\"");
-        } else if ((type == MT_OBJECTIVE_MASS || type == MT_OBJECTIVE_MISFIT) &&
-                   !has_objective(s, type)) {
+        } else if (mt_objective_is(type, MT_OF_STUDY) && !has_objective(s, type)) {
             mt_diag_error(c->diags, trade->objectives_addr,
-                          "\"%s\" is no objective of the study", mt_objective_type_name(type));
+                          "\"%s\" is no objective of the study",
+                          mt_objective_kind_of(type)->name);
         }
     }
     if (trade->n_objectives == 2 && trade->objectives[0] == trade->objectives[1]) {
@@ -284,6 +250,9 @@ void mt_study_check_trade(mt_study_check *c)
     }
     if (c->study->n_variables == 0) {
         mt_diag_error(c->diags, trade->addr, "a trade study needs variables");
+    }
+    for (int i = 0; i < trade->n_vary; i++) {
+        find_slot(c->study, &trade->vary[i]);
     }
     for (int i = 0; i < trade->n_vary; i++) {
         check_vary(c, &trade->vary[i]);

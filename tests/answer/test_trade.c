@@ -10,7 +10,8 @@ static void vary_margin(six *s, int n, double *margins)
 {
     mt_vary v = mt_vary_default(MT_VARY_GOAL, 0);
     v.goal = 0;
-    v.member = MT_MEMBER_MARGIN;
+    v.member = "margin_percent";
+    v.slot = MT_SLOT_MARGIN;
     v.n_values = n;
     v.values = margins;
     v.text = "margin_percent of /goals/0";

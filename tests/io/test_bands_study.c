@@ -209,7 +209,7 @@ static void check_trade(mt_test *t, const mt_study *s)
     }
     CHECK_INT(t, v[1].kind, MT_VARY_GOAL);
     CHECK_INT(t, v[1].goal, 0);
-    CHECK_INT(t, v[1].member, MT_MEMBER_MARGIN);
+    CHECK_INT(t, v[1].slot, MT_SLOT_MARGIN);
     CHECK_STR(t, v[1].text, "margin_percent of /goals/0");
     for (int i = 0; i < 5 && CHECK_INT(t, v[1].n_values, 5); i++) {
         CHECK_NEAR_ABS(t, v[1].values[i], 5.0 * (double)i, TOL);

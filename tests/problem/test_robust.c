@@ -245,7 +245,7 @@ static void robust__a_target_is_met_by_the_design_and_its_range_reported(mt_test
     REQUIRE(t, six_begin(t, &s));
     with_tolerances(&s);
     limit_mode_1(&s, nan(""), nan(""));
-    s.study->goals[0].target_hz = 7.0;
+    s.study->goals[0].equals = 7.0;
     mt_result *const r = six_solve(t, s.study, 1);
     if (r != NULL && CHECK(t, r->n_recommendations > 0)) {
         const mt_recommendation *const best = &r->recommendations[0];

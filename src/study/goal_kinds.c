@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/goal_kinds.h"
+
+#include <stddef.h>
+
+#define MEMBER(slot, name, type, required, range) \
+    {MT_SLOT_##slot, name, required, MT_RANGE_##range},
+#define MEMBERS(id, name, members, unit, measure) \
+    static const mt_goal_member id##_MEMBERS[] = {MT_GOAL_##members(MEMBER)};
+MT_GOAL_LIST(MEMBERS)
+
+#define KIND(id, name, members, unit, measure)                                              \
+    {name, unit, MT_MEASURE_##measure, (int)(sizeof id##_MEMBERS / sizeof id##_MEMBERS[0]), \
+     id##_MEMBERS},
+static const mt_goal_kind KINDS[] = {MT_GOAL_LIST(KIND)};
+
+const mt_goal_kind *mt_goal_kind_of(mt_goal_type type)
+{
+    return &KINDS[type];
+}
+
+int mt_goal_member_at(const mt_goal_kind *kind, mt_goal_slot slot)
+{
+    for (int i = 0; i < kind->n; i++) {
+        if (kind->members[i].slot == slot) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+const char *mt_goal_member_name(const mt_goal_kind *kind, mt_goal_slot slot)
+{
+    const int at = mt_goal_member_at(kind, slot);
+    return at < 0 ? NULL : kind->members[at].name;
+}
+
+bool mt_goal_in_range(mt_goal_range range, double value)
+{
+    static const double GREATEST_PERCENT = 100.0; /* a margin of it would reach down to 0 Hz */
+    switch (range) {
+    case MT_RANGE_POSITIVE:
+        return value > 0.0;
+    case MT_RANGE_SHARE:
+        return value > 0.0 && value <= 1.0;
+    case MT_RANGE_PERCENT:
+        return value >= 0.0 && value < GREATEST_PERCENT;
+    case MT_RANGE_ANY:
+        break;
+    }
+    return true;
+}
+
+const char *mt_goal_range_text(mt_goal_range range)
+{
+    switch (range) {
+    case MT_RANGE_POSITIVE:
+        return "above 0";
+    case MT_RANGE_SHARE:
+        return "above 0 and at most 1";
+    case MT_RANGE_PERCENT:
+        return "at least 0 and below 100";
+    case MT_RANGE_ANY:
+        break;
+    }
+    return "a number";
+}
+
+bool mt_goal_may_vary(const mt_goal_member *member)
+{
+    return member->slot <= MT_SLOT_AT_MOST || member->slot == MT_SLOT_MARGIN;
+}

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STUDY_GOAL_KINDS_H
+#define STUDY_GOAL_KINDS_H
+
+#include <stdbool.h>
+
+/*
+ * The kinds of goals as a table: what files call them, the members that each reads, what their
+ * numbers may be, and how a value is measured against them. Readers, checks, trade studies and
+ * sentences go through it.
+ *
+ * X(slot, name, type, required, range) for each member: where it goes in an mt_goal, its name
+ * in files, its type there (MT_KEY_... of io/reader.h), whether it must be there, and what a
+ * number may be.
+ */
+#define MT_GOAL_ANY(X)                              \
+    X(TYPE, "type", TEXT, true, ANY)                \
+    X(DESCRIPTION, "description", TEXT, false, ANY) \
+    X(SOURCE, "source", TEXT, false, ANY)           \
+    X(TOLERANCE, "tolerance_percent", NUMBER, false, POSITIVE)
+#define MT_GOAL_OF_CONFIGURATIONS(X)                    \
+    MT_GOAL_ANY(X)                                      \
+    X(CONFIGURATION, "configuration", TEXT, false, ANY) \
+    X(CONFIGURATIONS, "configurations", LIST, false, ANY)
+#define MT_GOAL_OF_MODE(X)       \
+    MT_GOAL_OF_CONFIGURATIONS(X) \
+    X(MODE, "mode", TEXT_OR_COUNT, true, ANY)
+
+#define MT_GOAL_FREQUENCY_MEMBERS(X)                       \
+    MT_GOAL_OF_MODE(X)                                     \
+    X(EQUALS, "target_hz", NUMBER, false, POSITIVE)        \
+    X(REFERENCE, "reference", TEXT, false, ANY)            \
+    X(REFERENCE_MODE, "reference_mode", COUNT, false, ANY) \
+    X(AT_LEAST, "at_least_hz", NUMBER, false, POSITIVE)    \
+    X(AT_MOST, "at_most_hz", NUMBER, false, POSITIVE)      \
+    X(WEIGHT, "weight", NUMBER, false, POSITIVE)
+#define MT_GOAL_SHAPE_MEMBERS(X)                           \
+    MT_GOAL_OF_MODE(X)                                     \
+    X(REFERENCE, "reference", TEXT, true, ANY)             \
+    X(REFERENCE_MODE, "reference_mode", COUNT, false, ANY) \
+    X(WEIGHT, "weight", NUMBER, true, POSITIVE)
+#define MT_GOAL_MAC_MEMBERS(X)                             \
+    MT_GOAL_OF_MODE(X)                                     \
+    X(REFERENCE, "reference", TEXT, true, ANY)             \
+    X(REFERENCE_MODE, "reference_mode", COUNT, false, ANY) \
+    X(AT_LEAST, "at_least", NUMBER, true, SHARE)
+#define MT_GOAL_LIMIT_MEMBERS(X)                 \
+    MT_GOAL_ANY(X)                               \
+    X(EXPRESSION, "expression", TEXT, true, ANY) \
+    X(AT_LEAST, "at_least", NUMBER, false, ANY)  \
+    X(AT_MOST, "at_most", NUMBER, false, ANY)    \
+    X(EQUALS, "equals", NUMBER, false, ANY)
+#define MT_GOAL_AVOID_MEMBERS(X)                        \
+    MT_GOAL_OF_CONFIGURATIONS(X)                        \
+    X(BANDS, "bands_hz", LIST, false, ANY)              \
+    X(ROTOR, "rotor", OBJECT, false, ANY)               \
+    X(ROTORS, "rotors", LIST, false, ANY)               \
+    X(MACHINE, "machine", OBJECT, false, ANY)           \
+    X(MACHINES, "machines", LIST, false, ANY)           \
+    X(MARGIN, "margin_percent", NUMBER, false, PERCENT) \
+    X(UP_TO, "up_to_hz", NUMBER, false, ANY)            \
+    X(CLUSTER, "cluster", COUNT, false, ANY)
+
+/* X(id, name in files, list of members, unit of the numbers, how a value is measured against
+ * them) */
+#define MT_GOAL_LIST(X)                                       \
+    X(FREQUENCY, "frequency", FREQUENCY_MEMBERS, "Hz", RATIO) \
+    X(SHAPE, "shape", SHAPE_MEMBERS, "", DIFFERENCE)          \
+    X(MAC, "mac", MAC_MEMBERS, "", DIFFERENCE)                \
+    X(LIMIT, "limit", LIMIT_MEMBERS, "", PART)                \
+    X(AVOID, "avoid", AVOID_MEMBERS, "Hz", RATIO)
+#define MT_GOAL_ENUM(id, ...) MT_GOAL_##id,
+typedef enum mt_goal_type { MT_GOAL_LIST(MT_GOAL_ENUM) MT_GOAL_TYPE_COUNT } mt_goal_type;
+#undef MT_GOAL_ENUM
+
+/* Where a member goes. The first ones are numbers of any kind of goal: mt_goal.number[]. */
+typedef enum mt_goal_slot {
+    MT_SLOT_EQUALS,
+    MT_SLOT_AT_LEAST,
+    MT_SLOT_AT_MOST,
+    MT_SLOT_TOLERANCE,
+    MT_SLOT_WEIGHT,
+    MT_GOAL_NUMBERS,
+    MT_SLOT_MARGIN = MT_GOAL_NUMBERS, /* from here on each is known to its reader */
+    MT_SLOT_UP_TO,
+    MT_SLOT_TYPE,
+    MT_SLOT_DESCRIPTION,
+    MT_SLOT_SOURCE,
+    MT_SLOT_CONFIGURATION,
+    MT_SLOT_CONFIGURATIONS,
+    MT_SLOT_MODE,
+    MT_SLOT_REFERENCE,
+    MT_SLOT_REFERENCE_MODE,
+    MT_SLOT_EXPRESSION,
+    MT_SLOT_BANDS,
+    MT_SLOT_ROTOR,
+    MT_SLOT_ROTORS,
+    MT_SLOT_MACHINE,
+    MT_SLOT_MACHINES,
+    MT_SLOT_CLUSTER
+} mt_goal_slot;
+
+/* What a number may be. */
+typedef enum mt_goal_range {
+    MT_RANGE_ANY,
+    MT_RANGE_POSITIVE,
+    MT_RANGE_SHARE,  /* above 0, at most 1 */
+    MT_RANGE_PERCENT /* at least 0, below 100 */
+} mt_goal_range;
+
+/* What a value v is off by, where v0 is asked for. */
+typedef enum mt_goal_measure {
+    MT_MEASURE_RATIO,      /* ln(v / v0) */
+    MT_MEASURE_PART,       /* (v - v0) / |v0|, or v where v0 is 0 */
+    MT_MEASURE_DIFFERENCE, /* v - v0 */
+} mt_goal_measure;
+
+typedef struct mt_goal_member {
+    mt_goal_slot slot;
+    const char *name;
+    bool required;
+    mt_goal_range range;
+} mt_goal_member;
+
+typedef struct mt_goal_kind {
+    const char *name;
+    const char *unit; /* "": none, or that of an expression, which nobody knows */
+    mt_goal_measure measure;
+    int n;
+    const mt_goal_member *members; /* [n] in the order in which readers look at them */
+} mt_goal_kind;
+
+const mt_goal_kind *mt_goal_kind_of(mt_goal_type type);
+/* Place of a member among those of its kind; -1: the kind has none. */
+int mt_goal_member_at(const mt_goal_kind *kind, mt_goal_slot slot);
+/* The name that files use; NULL: the kind has no such member. */
+const char *mt_goal_member_name(const mt_goal_kind *kind, mt_goal_slot slot);
+bool mt_goal_in_range(mt_goal_range range, double value);
+/* "above 0": what a number of this range must be. */
+const char *mt_goal_range_text(mt_goal_range range);
+/* Numbers that a trade study may vary. Is the member one of them? */
+bool mt_goal_may_vary(const mt_goal_member *member);
+
+#endif

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STUDY_OBJECTIVE_KINDS_H
+#define STUDY_OBJECTIVE_KINDS_H
+
+#include <stdbool.h>
+
+/*
+ * The kinds of objectives as a table. X(id, name, unit, properties):
+ *     WORD         files name it by its name (an expression is its own text)
+ *     MAXIMISED    its value is the negative of what is made greatest
+ *     HALF_SQUARE
+ *         its value is half the square of what results show, which has a derivative where the
+ *         square's root has none
+ *     AMOUNT
+ *         of something that has a unit and no natural size: two values are equal relative to
+ *         themselves
+ *     OF_ITEMS     "of" may list items
+ *     FRONT
+ *         can be one side of a Pareto front; with OF_STUDY, if it is an objective of the study
+ */
+#define MT_OBJECTIVE_LIST(X)                                                          \
+    X(NONE, "none", "", 0)                                                            \
+    X(CHANGE, "change", "", MT_WORD | MT_HALF_SQUARE | MT_FRONT)                      \
+    X(MASS, "mass", "kg", MT_WORD | MT_AMOUNT | MT_OF_ITEMS | MT_FRONT | MT_OF_STUDY) \
+    X(EXPRESSION, "expression", "", MT_AMOUNT)                                        \
+    X(MISFIT, "misfit", "", MT_WORD | MT_HALF_SQUARE | MT_FRONT | MT_OF_STUDY)        \
+    X(CLEARANCE, "clearance", "%", MT_WORD | MT_MAXIMISED | MT_FRONT)
+#define MT_OBJECTIVE_ENUM(id, ...) MT_OBJECTIVE_##id,
+typedef enum mt_objective_type { MT_OBJECTIVE_LIST(MT_OBJECTIVE_ENUM) } mt_objective_type;
+#undef MT_OBJECTIVE_ENUM
+#define MT_OBJECTIVE_ONE(...) +1
+enum { MT_OBJECTIVE_TYPE_COUNT = MT_OBJECTIVE_LIST(MT_OBJECTIVE_ONE) };
+#undef MT_OBJECTIVE_ONE
+
+enum {
+    MT_WORD = 1,
+    MT_MAXIMISED = 2,
+    MT_HALF_SQUARE = 4,
+    MT_AMOUNT = 8,
+    MT_OF_ITEMS = 16,
+    MT_FRONT = 32,
+    MT_OF_STUDY = 64
+};
+
+typedef struct mt_objective_kind {
+    const char *name;
+    const char *unit; /* of what results show */
+    unsigned properties;
+} mt_objective_kind;
+
+const mt_objective_kind *mt_objective_kind_of(mt_objective_type type);
+/* All that have these properties, in the order of the table: types[] and names[], both of
+ * MT_OBJECTIVE_TYPE_COUNT. Returns their number. */
+int mt_objectives_with(unsigned properties, mt_objective_type *types, const char **names);
+/* Has it all of these properties? */
+bool mt_objective_is(mt_objective_type type, unsigned properties);
+
+#endif
