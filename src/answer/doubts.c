@@ -133,18 +133,18 @@ static mt_status say_redundant(mt_linear *lin, mt_doubt_list *out, mt_err *err)
     const char *last = "";
     int same = 0;
     for (int k = 0; k <= n; k++) {
-        const char *text = "";
+        mt_joint_names joints = {.text = ""};
         if (k < n) {
-            MT_TRY(mt_linear_redundant_set(lin, k, &text, err));
+            MT_TRY(mt_linear_redundant_set(lin, k, out->mem, &joints, err));
         }
-        if (same > 0 && strcmp(text, last) != 0) {
+        if (same > 0 && strcmp(joints.text, last) != 0) {
             (void)mt_doubt_add(out, MT_LEVEL_FACT, "redundant",
                                same == 1 ? "redundant: %d equation of %s changes nothing"
                                          : "redundant: %d equations of %s change nothing",
                                same, last);
             same = 0;
         }
-        last = text;
+        last = joints.text;
         same++;
     }
     return MT_OK;
@@ -182,12 +182,12 @@ static void say_motion(const mt_linear *lin, mt_doubt_list *out)
 static mt_status say_dead_centre(mt_linear *lin, mt_doubt_list *out, mt_err *err)
 {
     mt_nearness near;
-    MT_TRY(mt_linear_nearness(lin, &near, err));
+    MT_TRY(mt_linear_nearness(lin, out->mem, &near, err));
     if (near.near) {
         (void)mt_doubt_add(out, MT_LEVEL_FACT, "dead_centre",
                            "near a dead centre: about %.2g rad (or model lengths) on, joints "
                            "%s depend on each other; motions must stay far below that",
-                           near.distance, near.joints);
+                           near.distance, near.joints.text);
     }
     return MT_OK;
 }

@@ -77,8 +77,9 @@ const char *mt_mode_kind_name(mt_mode_kind kind);
 int mt_modes_shown(const mt_modes *modes, int count);
 /* Doubts and facts of a configuration, one line each, before its table. */
 void mt_cli_print_doubts(const mt_doubt_list *list, mt_text *out);
-/* Names within a text of quoted ones ("\"a\", \"b\""), as items of an open JSON list. */
-void mt_cli_json_names(mt_json_writer *w, const char *quoted);
+/* Their names as a list; member "redundant_constraints": a list of such lists. */
+void mt_cli_json_joints(mt_json_writer *w, const char *member, const mt_joint_names *joints);
+mt_status mt_cli_json_redundant(mt_json_writer *w, mt_linear *lin, mt_arena *mem, mt_err *err);
 /* Member "dead_centre" of an open object: null, or how far away one is and whose equations
  * depend on each other there. */
 void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness);

@@ -23,7 +23,7 @@ typedef struct view {
     mt_doubt_list doubts;
 } view;
 
-static mt_status write_json(mt_json_writer *w, const view *v, mt_err *err)
+static mt_status write_json(mt_json_writer *w, view *v, mt_err *err)
 {
     const mt_info *const i = &v->info;
     const bool planar = v->s->model->dimension == 2;
@@ -47,15 +47,7 @@ static mt_status write_json(mt_json_writer *w, const view *v, mt_err *err)
     mt_json_put_integer(w, "freedoms", i->freedoms);
     mt_json_put_integer(w, "idle_spins", i->idle);
     mt_json_put_integer(w, "redundant_equations", i->redundant);
-    mt_json_open(w, "redundant_constraints", '[');
-    for (int k = 0; k < i->redundant; k++) {
-        const char *text = NULL;
-        MT_TRY(mt_linear_redundant_set(v->a->lin, k, &text, err));
-        mt_json_open_flat(w, NULL, '[');
-        mt_cli_json_names(w, text);
-        mt_json_close(w);
-    }
-    mt_json_close(w);
+    MT_TRY(mt_cli_json_redundant(w, v->a->lin, &v->mem, err));
     mt_json_put_number(w, "equilibrium_residual", i->residual);
     mt_json_put_number(w, "gap_m", i->gap_m);
     mt_cli_json_dead_centre(w, &v->nearness);
@@ -147,8 +139,8 @@ static mt_status one(const mt_args *args, view *v, mt_json_writer *w, mt_table *
 {
     MT_TRY(mt_subject_analyse(v->s, v->c, &v->a, err));
     MT_TRY(mt_info_fill(v->a->lin, &v->info, err));
-    MT_TRY(mt_linear_nearness(v->a->lin, &v->nearness, err));
     MT_TRY(mt_arena_init(&v->mem, 0, err));
+    MT_TRY(mt_linear_nearness(v->a->lin, &v->mem, &v->nearness, err));
     v->doubts = mt_doubt_list_default(&v->mem);
     MT_TRY(
         mt_doubts_of_analysis(v->a, v->s->n_inputs, v->s->inputs, v->s->at, &v->doubts, err));

@@ -60,20 +60,6 @@ static void json_mode(mt_json_writer *w, const view *v, int i)
     mt_json_close(w);
 }
 
-static mt_status json_redundant(mt_json_writer *w, mt_linear *lin, mt_err *err)
-{
-    mt_json_open(w, "redundant_constraints", '[');
-    for (int k = 0; k < mt_linear_redundant(lin); k++) {
-        const char *text = NULL;
-        MT_TRY(mt_linear_redundant_set(lin, k, &text, err));
-        mt_json_open_flat(w, NULL, '[');
-        mt_cli_json_names(w, text);
-        mt_json_close(w);
-    }
-    mt_json_close(w);
-    return MT_OK;
-}
-
 static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
 {
     const mt_modes *const m = &v->a->modes;
@@ -95,11 +81,11 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     if (v->with_damping) {
         mt_damped_json(&v->damped, v->count, w);
     }
-    MT_TRY(json_redundant(w, v->a->lin, err));
+    MT_TRY(mt_cli_json_redundant(w, v->a->lin, &v->a->mem, err));
     mt_json_open(w, "equilibrium", '{');
     mt_json_put_bool(w, "solved", lin->position.equilibrium.active);
     mt_json_put_integer(w, "iterations", lin->position.iterations);
-    mt_json_put_number(w, "residual", lin->position.residual);
+    mt_json_put_number(w, "residual", lin->position.equilibrium.residual);
     mt_json_put_number(w, "gap_m", lin->position.gap_m);
     mt_json_put_number(w, "largest_motion_m", lin->position.moved_m);
     mt_json_put_number(w, "largest_turn_rad", lin->position.turned_rad);
@@ -230,7 +216,7 @@ static void tell(const view *v, mt_text *out)
     const mt_linear *const lin = v->a->lin;
     if (lin->position.equilibrium.active) {
         mt_text_addf(out, "  Equilibrium found in %d iterations, residual %.1e.\n",
-                     lin->position.iterations, lin->position.residual);
+                     lin->position.iterations, lin->position.equilibrium.residual);
     }
     if (m->n_condensed > 0) {
         mt_text_addf(out, "  %d direction%s without mass follow%s statically.\n",

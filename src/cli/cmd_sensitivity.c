@@ -38,9 +38,7 @@ static void json_no_derivatives(mt_json_writer *w, const mt_survey *v)
             mt_json_put_string(w, "parameter", name_of(v, k));
             mt_json_put_string(w, "reason",
                                v->independence[k].opens ? "opens_joints" : "blocks_motion");
-            mt_json_open_flat(w, "joints", '[');
-            mt_cli_json_names(w, v->independence[k].joints);
-            mt_json_close(w);
+            mt_cli_json_joints(w, "joints", &v->independence[k].joints);
             mt_json_close(w);
         }
     }
@@ -142,7 +140,7 @@ static void write_text(mt_text *out, const mt_survey *v)
     for (int k = 0; k < v->n; k++) {
         if (has_none(v, k)) {
             mt_text_addf(out, "  No derivative by %s: joints %s %s.\n", name_of(v, k),
-                         v->independence[k].joints, why_not(v, k));
+                         v->independence[k].joints.text, why_not(v, k));
         }
     }
     if (overridden) {

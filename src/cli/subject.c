@@ -317,25 +317,27 @@ void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness)
     mt_json_open(w, "dead_centre", '{');
     mt_json_put_number(w, "distance", nearness->distance);
     mt_json_put_number(w, "independence", nearness->independence);
-    mt_json_open_flat(w, "joints", '[');
-    mt_cli_json_names(w, nearness->joints);
-    mt_json_close(w);
+    mt_cli_json_joints(w, "joints", &nearness->joints);
     mt_json_close(w);
 }
 
-void mt_cli_json_names(mt_json_writer *w, const char *quoted)
+void mt_cli_json_joints(mt_json_writer *w, const char *member, const mt_joint_names *joints)
 {
-    mt_text name = {.s = NULL};
-    for (const char *at = strchr(quoted, '"'); at != NULL; at = strchr(at, '"')) {
-        const size_t length = strcspn(at + 1, "\"");
-        name.length = 0;
-        mt_text_add_n(&name, at + 1, length);
-        if (name.failed) {
-            break;
-        }
-        mt_json_put_string(w, NULL, name.s);
-        at += length + (at[length + 1] == '"' ? 2 : 1);
+    mt_json_open_flat(w, member, '[');
+    for (int i = 0; i < joints->n; i++) {
+        mt_json_put_string(w, NULL, joints->name[i]);
     }
-    w->out->failed = w->out->failed || name.failed;
-    mt_text_free(&name);
+    mt_json_close(w);
+}
+
+mt_status mt_cli_json_redundant(mt_json_writer *w, mt_linear *lin, mt_arena *mem, mt_err *err)
+{
+    mt_json_open(w, "redundant_constraints", '[');
+    for (int k = 0; k < mt_linear_redundant(lin); k++) {
+        mt_joint_names joints;
+        MT_TRY(mt_linear_redundant_set(lin, k, mem, &joints, err));
+        mt_cli_json_joints(w, NULL, &joints);
+    }
+    mt_json_close(w);
+    return MT_OK;
 }

@@ -166,7 +166,7 @@ static mt_status differentiate(mt_survey *v, mt_analysis *a, int p, int k, mt_er
 static mt_status leave_out(mt_survey *v, mt_analysis *a, int p, int k, mt_err *err)
 {
     double *const out = v->per_unit + ((ptrdiff_t)k * v->room);
-    MT_TRY(mt_linear_independence(a->lin, p, &v->independence[k], err));
+    MT_TRY(mt_linear_independence(a->lin, p, &v->mem, &v->independence[k], err));
     bool gone = v->independence[k].opens;
     for (int i = 0; i < v->modes && (gone || v->independence[k].blocks); i++) {
         int size = 1;

@@ -146,7 +146,7 @@ static void tell_dead_centre(const mt_sweep_view *v, mt_text *out)
                      "  Near a dead centre at %.6g %s: about %.2g rad (or model lengths) on, "
                      "joints %s depend on each other.\n",
                      nearest->drive, unit_of(driven(v)->angle), nearest->near->distance,
-                     nearest->near->joints);
+                     nearest->near->joints.text);
     }
 }
 

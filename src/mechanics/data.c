@@ -3,28 +3,13 @@
 
 #include <stddef.h>
 
-static const mt_pose GROUND = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}};
-
-mt_pose mt_pose_ground(void)
-{
-    return GROUND;
-}
-
-const mt_pose *mt_pose_of(const mt_pose *poses, int body)
-{
-    return body == MT_GROUND ? &GROUND : &poses[body];
-}
-
 mt_status mt_data_init(mt_data *d, const mt_system *sys, mt_arena *mem, mt_err *err)
 {
     *d = (mt_data){.sys = sys, .input = -1};
     d->vec = mt_arena_alloc(mem, (size_t)sys->n_vecs, sizeof *d->vec);
     d->rest = mt_arena_alloc(mem, (size_t)sys->n_springs, sizeof *d->rest);
     d->target = mt_arena_alloc(mem, (size_t)sys->n_constraints, sizeof *d->target);
-    d->turn = mt_arena_f64(mem, (size_t)sys->n_measures, 1);
-    return d->vec == NULL || d->rest == NULL || d->target == NULL || d->turn == NULL
-               ? mt_fail_memory(err)
-               : MT_OK;
+    return d->vec == NULL || d->rest == NULL || d->target == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
 mt_cx mt_data_scalar(const mt_data *d, mt_node node, double otherwise)
@@ -89,7 +74,6 @@ mt_measure_data mt_data_measure(const mt_data *d, const mt_measure_def *def)
         .point = {vec_or_null(d, def->point[0]), vec_or_null(d, def->point[1])},
         .dir = {vec_or_null(d, def->dir[0]), vec_or_null(d, def->dir[1]),
                 vec_or_null(d, def->dir[2])},
-        .near = d->turn[def - d->sys->measures],
     };
     if (def->kind == MT_MEASURE_BEAM) {
         m.beam.length = mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0);
@@ -101,30 +85,50 @@ mt_measure_data mt_data_measure(const mt_data *d, const mt_measure_def *def)
     return m;
 }
 
-/* The same as the reference position sees it: no angle has turned yet. */
-static mt_measure_data unturned(const mt_data *d, const mt_measure_def *def)
+static mt_measure_data measure_at(const mt_data *d, const mt_measure_def *def,
+                                  const mt_placement *at)
 {
     mt_measure_data m = mt_data_measure(d, def);
-    m.near = 0.0;
+    m.near = at->turn[def - d->sys->measures];
     return m;
 }
 
-void mt_data_turns(mt_data *d, const mt_pose *poses)
+mt_cx mt_data_value(const mt_data *d, const mt_measure_def *def, const mt_placement *at)
+{
+    const mt_measure_data m = measure_at(d, def, at);
+    return mt_measure_value(&m, mt_pose_of(at->pose, def->body[0]),
+                            mt_pose_of(at->pose, def->body[1]));
+}
+
+void mt_data_eval(const mt_data *d, const mt_measure_def *def, const mt_placement *at,
+                  bool second, mt_jet *out)
+{
+    const mt_measure_data m = measure_at(d, def, at);
+    mt_measure_eval(&m, mt_pose_of(at->pose, def->body[0]), mt_pose_of(at->pose, def->body[1]),
+                    second, out);
+}
+
+void mt_data_turns(const mt_data *d, mt_placement *at)
 {
     for (int i = 0; i < d->sys->n_measures; i++) {
         const mt_measure_def *const def = &d->sys->measures[i];
         if (def->kind == MT_MEASURE_ANGLE) {
-            const mt_measure_data m = mt_data_measure(d, def);
-            d->turn[i] = creal(mt_measure_value(&m, mt_pose_of(poses, def->body[0]),
-                                                mt_pose_of(poses, def->body[1])));
+            at->turn[i] = creal(mt_data_value(d, def, at));
         }
     }
+}
+
+mt_cx mt_data_target(const mt_data *d, int i, const mt_placement *at)
+{
+    const bool drive = i == d->sys->drive_constraint;
+    return d->target[i] -
+           (drive ? creal(mt_data_scalar(d, d->sys->drive, 0.0)) - at->drive : 0.0);
 }
 
 void mt_data_drawn(const mt_data *d, mt_pose *poses)
 {
     for (int i = 0; i < d->sys->n_bodies; i++) {
-        poses[i] = GROUND;
+        poses[i] = mt_pose_ground();
         for (int k = 0; k < 3; k++) {
             poses[i].x[k] = d->vec[d->sys->bodies[i].centre][k];
         }
@@ -133,8 +137,8 @@ void mt_data_drawn(const mt_data *d, mt_pose *poses)
 
 static mt_cx drawn_value(const mt_data *d, const mt_measure_def *def)
 {
-    mt_pose pose[2] = {GROUND, GROUND};
-    const mt_measure_data m = unturned(d, def);
+    mt_pose pose[2] = {mt_pose_ground(), mt_pose_ground()};
+    const mt_measure_data m = mt_data_measure(d, def);
     for (int side = 0; side < 2; side++) {
         for (int k = 0; k < 3 && def->body[side] != MT_GROUND; k++) {
             pose[side].x[k] = d->vec[d->sys->bodies[def->body[side]].centre][k];
@@ -162,7 +166,7 @@ void mt_data_rest(mt_data *d, const mt_pose *reference)
         const mt_spring_def *const s = &sys->springs[i];
         for (int side = 0; side < 2; side++) {
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
-            const mt_measure_data m = unturned(d, def);
+            const mt_measure_data m = mt_data_measure(d, def);
             d->rest[i][side] = s->free != MT_NO_NODE
                                    ? mt_data_scalar(d, s->free, 0.0)
                                    : mt_measure_value(&m, mt_pose_of(reference, def->body[0]),
@@ -172,7 +176,7 @@ void mt_data_rest(mt_data *d, const mt_pose *reference)
     if (sys->drive_constraint >= 0) {
         const mt_measure_def *const def =
             &sys->measures[sys->constraints[sys->drive_constraint].measure[0]];
-        const mt_measure_data m = unturned(d, def);
+        const mt_measure_data m = mt_data_measure(d, def);
         const mt_cx at = mt_measure_value(&m, mt_pose_of(reference, def->body[0]),
                                           mt_pose_of(reference, def->body[1]));
         d->target[sys->drive_constraint] = at + mt_data_scalar(d, sys->drive, 0.0);

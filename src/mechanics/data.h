@@ -2,7 +2,7 @@
 #ifndef MECHANICS_DATA_H
 #define MECHANICS_DATA_H
 
-#include "mechanics/system.h"
+#include "mechanics/pose.h"
 
 /*
  * All numbers of a system at one design, as the complex kernels read them: values alone (input
@@ -15,10 +15,7 @@ typedef struct mt_data {
     int input;           /* -1: no derivative */
     mt_cx (*vec)[3];     /* [n_vecs] */
     mt_cx (*rest)[2];    /* [n_springs] rest values of the two measures of each spring */
-    mt_cx *target;       /* [n_constraints] */
-    /* [n_measures] where each angle stands, whole turns counted; 0 in the reference position.
-     * An angle is read as the value nearest to this */
-    double *turn;
+    mt_cx *target;       /* [n_constraints] that of the drive with the joint at its place */
 } mt_data;
 
 mt_status mt_data_init(mt_data *d, const mt_system *sys, mt_arena *mem, mt_err *err);
@@ -30,16 +27,21 @@ void mt_data_vecs(mt_data *d);
 void mt_data_targets(mt_data *d);
 /* Rest values and the target of the drive, at the reference position. */
 void mt_data_rest(mt_data *d, const mt_pose *reference);
-/* Note where the angles stand at `poses`, which are less than half a turn from the last noted
- * ones. */
-void mt_data_turns(mt_data *d, const mt_pose *poses);
+/* Note in at->turn where the angles stand, which are less than half a turn from where they
+ * were. */
+void mt_data_turns(const mt_data *d, mt_placement *at);
+/* Target of constraint i with the driven joint where `at` holds it. */
+mt_cx mt_data_target(const mt_data *d, int i, const mt_placement *at);
 /* A node as a complex number; MT_NO_NODE gives `otherwise`. */
 mt_cx mt_data_scalar(const mt_data *d, mt_node node, double otherwise);
-/* The measure with its vectors filled in. */
+/* The measure with its vectors filled in; of an angle the value nearest to 0 is meant. */
 mt_measure_data mt_data_measure(const mt_data *d, const mt_measure_def *def);
+/* Its value at a place, an angle with its whole turns. */
+mt_cx mt_data_value(const mt_data *d, const mt_measure_def *def, const mt_placement *at);
+/* The same with derivatives, as mt_measure_eval. */
+void mt_data_eval(const mt_data *d, const mt_measure_def *def, const mt_placement *at,
+                  bool second, mt_jet *out);
 /* Positions as drawn (with their derivative); poses[n_bodies]. */
 void mt_data_drawn(const mt_data *d, mt_pose *poses);
-const mt_pose *mt_pose_of(const mt_pose *poses, int body); /* the ground's for MT_GROUND */
-mt_pose mt_pose_ground(void);
 
 #endif

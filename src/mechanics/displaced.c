@@ -50,7 +50,7 @@ mt_status mt_mass_matrix(mt_linear *lin, const mt_pose *poses, double *m, mt_err
 
 /* The trimmed spring carries its trim force at the linearised position and its stiffness from
  * there. */
-static double trimmed_force(const mt_linear *lin, const mt_pose *poses)
+static double trimmed_force(const mt_linear *lin, const mt_placement *at)
 {
     const mt_system *const sys = lin->sys;
     if (sys->trim_spring < 0) {
@@ -58,36 +58,28 @@ static double trimmed_force(const mt_linear *lin, const mt_pose *poses)
     }
     const mt_spring_def *const s = &sys->springs[sys->trim_spring];
     const mt_measure_def *const def = &sys->measures[s->measure[0]];
-    const mt_measure_data m = mt_data_measure(&lin->data, def);
-    const mt_pose *const sets[2] = {poses, lin->position.pose};
-    double value[2];
-    for (int i = 0; i < 2; i++) {
-        value[i] = creal(mt_measure_value(&m, mt_pose_of(sets[i], def->body[0]),
-                                          mt_pose_of(sets[i], def->body[1])));
-    }
-    return lin->position.trim_force + (lin->value[s->stiffness] * (value[0] - value[1]));
+    const double there = creal(mt_data_value(&lin->data, def, at));
+    const double here = creal(mt_data_value(&lin->data, def, &lin->position.at));
+    return lin->position.equilibrium.trim_force + (lin->value[s->stiffness] * (there - here));
 }
 
 mt_status mt_displaced_eval(mt_linear *lin, const double *dq, double *m, double *q, double *a,
                             double *c, mt_err *err)
 {
     const mt_system *const sys = lin->sys;
-    const size_t n = (size_t)sys->n_bodies;
     const ptrdiff_t all = sys->n_constraints;
     mt_lagrangian l;
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
-    mt_pose *const poses = mt_arena_alloc(&lin->scratch, n, sizeof *poses);
-    if (poses == NULL) {
-        return mt_fail_memory(err);
-    }
+    mt_placement at;
+    MT_TRY(mt_placement_init(&at, sys, &lin->scratch, err));
     MT_TRY(mt_lagrangian_init(&l, sys, false, &lin->scratch, err));
-    memcpy(poses, lin->position.pose, n * sizeof *poses);
+    mt_placement_copy(sys, &lin->position.at, &at);
     if (dq != NULL) {
-        mt_position_move(sys, poses, dq);
+        mt_poses_move(sys, at.pose, dq);
     }
-    l.trim_force = trimmed_force(lin, poses);
-    mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, poses, (int)all,
-                       NULL, MT_CURVATURE_NONE, &l);
+    l.trim_force = trimmed_force(lin, &at);
+    mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, &at, (int)all, NULL,
+                       MT_CURVATURE_NONE, &l);
     for (ptrdiff_t j = 0; j < sys->nq; j++) {
         q[j] = -creal(l.g[j]);
         for (ptrdiff_t i = 0; i < lin->m; i++) {
@@ -97,7 +89,7 @@ mt_status mt_displaced_eval(mt_linear *lin, const double *dq, double *m, double 
     for (ptrdiff_t i = 0; i < lin->m && c != NULL; i++) {
         c[i] = creal(l.c[i]);
     }
-    MT_TRY(mt_mass_matrix(lin, poses, m, err));
+    MT_TRY(mt_mass_matrix(lin, at.pose, m, err));
     mt_arena_rewind(&lin->scratch, mark);
     return MT_OK;
 }

@@ -14,12 +14,11 @@
  */
 #include "mechanics/drive.h"
 
-#include "mechanics/newton_priv.h"
-
 #include <math.h>
 #include <string.h>
 
 #include "base/interrupt.h"
+#include "mechanics/newton_step.h"
 #include "mechanics/singular.h"
 
 /* Longest step of the driven joint's coordinate [rad or model lengths], and of any body. */
@@ -43,14 +42,14 @@ static const double LIMIT_RATIO = 100.0;
 enum { MOST_STEPS = 20000 };
 
 typedef struct walk {
-    mt_state *p;
-    mt_data *data;
+    const mt_system *sys;
+    const mt_data *data;
+    mt_placement *at; /* where it stands */
+    int iterations;
     mt_arena *mem;
     int row;        /* of the drive */
     double unit;    /* of the joint's coordinate: 1 rad, or the model length [m] */
     double goal;    /* position of the joint that is asked for */
-    mt_cx target;   /* of the drive's row there */
-    double at;      /* present position */
     mt_pose *trial; /* [bodies] */
     mt_pose *guess; /* [bodies] */
     double *rate;   /* [nq] dq/ds */
@@ -61,12 +60,11 @@ typedef struct walk {
 
 static mt_status walk_init(walk *w, mt_err *err)
 {
-    const mt_system *const sys = w->p->sys;
+    const mt_system *const sys = w->sys;
     const size_t n = (size_t)sys->n_bodies;
     w->row = sys->drive_constraint;
     w->unit = sys->joints[sys->drive_joint].angle ? 1.0 : sys->length_m;
     w->goal = creal(mt_data_scalar(w->data, sys->drive, 0.0));
-    w->target = w->data->target[w->row];
     w->trial = mt_arena_alloc(w->mem, n, sizeof *w->trial);
     w->guess = mt_arena_alloc(w->mem, n, sizeof *w->guess);
     w->rate = mt_arena_f64(w->mem, (size_t)sys->nq, 1);
@@ -99,7 +97,7 @@ static mt_status relax(walk *w, mt_newton_work *work, const mt_elimination *e, m
     if (eta == NULL) {
         return mt_fail_memory(err);
     }
-    mt_lagrangian_eval(w->data, MT_ENERGY_PHYSICAL, w->p->pose, w->p->pose, work->p->m, NULL,
+    mt_lagrangian_eval(w->data, MT_ENERGY_PHYSICAL, w->at->pose, w->at, work->p->m, NULL,
                        MT_CURVATURE_ELASTIC, &work->l);
     for (ptrdiff_t i = 0; i < (ptrdiff_t)nq * nq; i++) {
         work->h[i] = creal(work->l.h[i]);
@@ -118,7 +116,7 @@ static mt_newton_problem problem_here(const walk *w, int m)
 {
     return (mt_newton_problem){.data = w->data,
                                .energy = MT_ENERGY_ANCHOR,
-                               .drawn = w->p->pose,
+                               .drawn = w->at->pose,
                                .m = m,
                                .trim = false};
 }
@@ -128,15 +126,15 @@ static mt_status eliminate_here(const walk *w, const mt_newton_problem *problem,
                                 mt_newton_work *work, mt_elimination *e, mt_err *err)
 {
     MT_TRY(mt_newton_work_init(work, problem, w->mem, err));
-    mt_newton_evaluate(work, w->p->pose, false);
-    return mt_eliminate(w->p->sys, problem->m, work->a, w->mem, e, err);
+    mt_newton_evaluate(work, w->at, false);
+    return mt_eliminate(w->sys, problem->m, work->a, w->mem, e, err);
 }
 
 /* dq/ds where the walk stands, and its size in model lengths per unit of the coordinate. Held:
  * the old rate stays. */
 static mt_status find_rate(walk *w, double *size, mt_err *err)
 {
-    const mt_system *const sys = w->p->sys;
+    const mt_system *const sys = w->sys;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
     const mt_newton_problem problem = problem_here(w, sys->n_constraints);
     mt_newton_work work;
@@ -159,22 +157,23 @@ static mt_status find_rate(walk *w, double *size, mt_err *err)
  * branch. */
 static mt_status try_step(walk *w, double to, double length, bool *good, mt_err *err)
 {
-    const mt_system *const sys = w->p->sys;
+    const mt_system *const sys = w->sys;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
     mt_stage stage = {.active = false};
+    mt_placement trial = {.pose = w->trial, .turn = w->at->turn, .drive = to};
     memcpy(w->trial, w->guess, (size_t)sys->n_bodies * sizeof *w->trial);
-    w->data->target[w->row] = w->target - (w->goal - to);
     const mt_newton_problem problem = {.data = w->data,
                                        .energy = MT_ENERGY_ANCHOR,
                                        .drawn = w->guess,
                                        .m = sys->n_constraints,
                                        .trim = false};
-    const mt_status rc = mt_newton_solve(&problem, w->trial, w->mem, w->p, &stage, &w->why);
+    const mt_status rc = mt_newton_solve(&problem, &trial, w->mem, &stage, &w->why);
+    w->iterations += stage.iterations;
     mt_arena_rewind(w->mem, mark);
     if (mt_is_final(rc)) {
         return mt_fail(err, rc, "%s", w->why.text);
     }
-    *good = rc == MT_OK && mt_newton_distance(sys, w->trial, w->guess) <= CORRECTION * length;
+    *good = rc == MT_OK && mt_poses_distance(sys, w->trial, w->guess) <= CORRECTION * length;
     return MT_OK;
 }
 
@@ -182,8 +181,8 @@ static mt_status try_step(walk *w, double to, double length, bool *good, mt_err 
  * step holds. */
 static mt_status advance(walk *w, double *h, mt_err *err)
 {
-    const mt_system *const sys = w->p->sys;
-    const double way = w->goal - w->at;
+    const mt_system *const sys = w->sys;
+    const double way = w->goal - w->at->drive;
     double size = 0.0;
     bool good = false;
     MT_TRY(find_rate(w, &size, err));
@@ -193,19 +192,19 @@ static mt_status advance(walk *w, double *h, mt_err *err)
     }
     double step = fmin(fmin(*h, fabs(way)), BODY_STEP * w->unit / size);
     while (!good && step >= fmin(SHORTEST * DRIVE_STEP * w->unit, fabs(way))) {
-        const double to = step >= fabs(way) ? w->goal : w->at + copysign(step, way);
+        const double to = step >= fabs(way) ? w->goal : w->at->drive + copysign(step, way);
         for (int j = 0; j < sys->nq; j++) {
-            w->motion[j] = (to - w->at) * w->rate[j];
+            w->motion[j] = (to - w->at->drive) * w->rate[j];
         }
-        memcpy(w->guess, w->p->pose, (size_t)sys->n_bodies * sizeof *w->guess);
-        mt_position_move(sys, w->guess, w->motion);
+        memcpy(w->guess, w->at->pose, (size_t)sys->n_bodies * sizeof *w->guess);
+        mt_poses_move(sys, w->guess, w->motion);
         MT_TRY(try_step(w, to, step * size / w->unit, &good, err));
         *h = good ? 2.0 * step : 0.0;
         step = good ? step : 0.5 * step;
         if (good) {
-            memcpy(w->p->pose, w->trial, (size_t)sys->n_bodies * sizeof *w->trial);
-            mt_data_turns(w->data, w->p->pose);
-            w->at = to;
+            memcpy(w->at->pose, w->trial, (size_t)sys->n_bodies * sizeof *w->trial);
+            mt_data_turns(w->data, w->at);
+            w->at->drive = to;
         }
     }
     *h = fmin(*h, DRIVE_STEP * w->unit);
@@ -215,7 +214,7 @@ static mt_status advance(walk *w, double *h, mt_err *err)
 /* The joint that turns or slides furthest along dq/ds, other than the driven one; -1: none. */
 static int fastest_joint(const walk *w, double *ratio)
 {
-    const mt_system *const sys = w->p->sys;
+    const mt_system *const sys = w->sys;
     int best = -1;
     double most = 0.0;
     for (int i = 0; i < sys->n_joints; i++) {
@@ -223,7 +222,7 @@ static int fastest_joint(const walk *w, double *ratio)
         if (joint->coordinate < 0 || i == sys->drive_joint) {
             continue;
         }
-        const double rate = mt_drive_rate(w->data, joint->coordinate, w->p->pose, w->rate);
+        const double rate = mt_drive_rate(w->data, joint->coordinate, w->at->pose, w->rate);
         const double scaled = fabs(rate) / (joint->angle ? 1.0 : sys->length_m);
         if (scaled > most) {
             most = scaled;
@@ -236,7 +235,7 @@ static int fastest_joint(const walk *w, double *ratio)
 
 static mt_status refuse(walk *w, mt_err *err)
 {
-    const mt_system *const sys = w->p->sys;
+    const mt_system *const sys = w->sys;
     const mt_system_joint *const joint = &sys->joints[sys->drive_joint];
     const char *const unit = joint->angle ? "rad" : "m";
     double size = 0.0;
@@ -253,16 +252,16 @@ static mt_status refuse(walk *w, mt_err *err)
         return fast < 0 ? mt_fail(err, MT_E_ASSEMBLY,
                                   "joint \"%s\" cannot be driven beyond %.6g %s: limit "
                                   "position, where the mechanism moves without it",
-                                  joint->name, w->at, unit)
+                                  joint->name, w->at->drive, unit)
                         : mt_fail(err, MT_E_ASSEMBLY,
                                   "joint \"%s\" cannot be driven beyond %.6g %s: limit "
                                   "position, where joint \"%s\" moves without it (%.2g %s per "
                                   "%s just before)",
-                                  joint->name, w->at, unit, sys->joints[fast].name, ratio,
-                                  sys->joints[fast].angle ? "rad" : "m", unit);
+                                  joint->name, w->at->drive, unit, sys->joints[fast].name,
+                                  ratio, sys->joints[fast].angle ? "rad" : "m", unit);
     }
     return mt_fail(err, MT_E_ASSEMBLY, "joint \"%s\" cannot be driven beyond %.6g %s: %s",
-                   joint->name, w->at, unit,
+                   joint->name, w->at->drive, unit,
                    w->why.text[0] != '\0'
                        ? w->why.text
                        : "singular position, from which several ways lead on");
@@ -271,13 +270,13 @@ static mt_status refuse(walk *w, mt_err *err)
 /* From a dead centre of the other joints several ways lead on. */
 static mt_status refuse_dead_centre(walk *w, mt_err *err)
 {
-    const mt_system *const sys = w->p->sys;
+    const mt_system *const sys = w->sys;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
     const mt_newton_problem problem = problem_here(w, sys->n_constraints - 1);
     mt_newton_work work;
     mt_elimination e;
     MT_TRY(eliminate_here(w, &problem, &work, &e, err));
-    const mt_status rc = mt_singular_refuse(w->data, w->p->pose, &e, w->mem, err);
+    const mt_status rc = mt_singular_refuse(w->data, w->at, &e, w->mem, err);
     MT_TRY(mt_err_in(err, rc, "the position that it is driven from"));
     mt_arena_rewind(w->mem, mark);
     return MT_OK;
@@ -291,18 +290,18 @@ double mt_drive_reach(const mt_system *sys)
 /* Bodies that move much further than the joint make steps short. */
 static mt_status refuse_steps(const walk *w, mt_err *err)
 {
-    const mt_system *const sys = w->p->sys;
+    const mt_system *const sys = w->sys;
     const mt_system_joint *const joint = &sys->joints[sys->drive_joint];
     return mt_fail(err, MT_E_ASSEMBLY,
                    "joint \"%s\" came to %g %s in %d steps, and not to %g %s: other parts move "
                    "too far for that",
-                   joint->name, w->at, joint->angle ? "rad" : "m", (int)MOST_STEPS, w->goal,
-                   joint->angle ? "rad" : "m");
+                   joint->name, w->at->drive, joint->angle ? "rad" : "m", (int)MOST_STEPS,
+                   w->goal, joint->angle ? "rad" : "m");
 }
 
 static mt_status refuse_far(const walk *w, mt_err *err)
 {
-    const mt_system *const sys = w->p->sys;
+    const mt_system *const sys = w->sys;
     const mt_system_joint *const joint = &sys->joints[sys->drive_joint];
     return mt_fail(err, MT_E_ASSEMBLY,
                    "joint \"%s\" cannot be driven to %g %s: at most %g %s from the reference "
@@ -311,41 +310,25 @@ static mt_status refuse_far(const walk *w, mt_err *err)
                    joint->angle ? "rad" : "m");
 }
 
-mt_status mt_drive_solve(mt_state *p, mt_data *data, const mt_drive_start *start, mt_arena *mem,
+mt_status mt_drive_solve(const mt_data *data, mt_placement *at, int *iterations, mt_arena *mem,
                          mt_err *err)
 {
-    const mt_system *const sys = p->sys;
-    walk w = {.p = p, .data = data, .mem = mem};
+    walk w = {.sys = data->sys, .data = data, .at = at, .mem = mem};
     MT_TRY(walk_init(&w, err));
-    if (!(fabs(w.goal) <= mt_drive_reach(sys))) {
+    if (!(fabs(w.goal) <= mt_drive_reach(w.sys))) {
         return refuse_far(&w, err);
     }
-    if (start != NULL && start->valid) {
-        w.at = start->position;
-        memcpy(p->pose, start->pose, (size_t)sys->n_bodies * sizeof *p->pose);
-        memcpy(data->turn, start->turn, (size_t)sys->n_measures * sizeof *data->turn);
-    }
-    if (w.at != w.goal && w.at == 0.0) {
+    if (at->drive != w.goal && at->drive == 0.0) {
         MT_TRY(refuse_dead_centre(&w, err));
     }
     double h = DRIVE_STEP * w.unit;
     int steps = 0;
-    for (; w.at != w.goal && h > 0.0 && steps < MOST_STEPS; steps++) {
-        MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
+    for (; at->drive != w.goal && h > 0.0 && steps < MOST_STEPS; steps++) {
+        MT_TRY(mt_interrupt_check(w.sys->model->interrupt, err));
         MT_TRY(advance(&w, &h, err));
     }
-    p->reached = w.at;
-    data->target[w.row] = w.target;
-    return w.at == w.goal ? MT_OK : h > 0.0 ? refuse_steps(&w, err) : refuse(&w, err);
-}
-
-void mt_drive_keep(const mt_state *p, mt_drive_start *start)
-{
-    const mt_system *const sys = p->sys;
-    memcpy(start->pose, p->driven_pose, (size_t)sys->n_bodies * sizeof *start->pose);
-    memcpy(start->turn, p->driven_turn, (size_t)sys->n_measures * sizeof *start->turn);
-    start->position = p->reached;
-    start->valid = true;
+    *iterations += w.iterations;
+    return at->drive == w.goal ? MT_OK : h > 0.0 ? refuse_steps(&w, err) : refuse(&w, err);
 }
 
 double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses, const double *rate)

@@ -2,25 +2,23 @@
 #ifndef MECHANICS_DRIVE_H
 #define MECHANICS_DRIVE_H
 
-#include "mechanics/position.h"
+#include "mechanics/newton.h"
 
 /*
- * Bring the driven joint from where it stands (the reference position, or `start`) to its
- * place, on the branch where it stands. p->pose: in, out. Closed there, the springs strained
- * about as little as they can be. Angles are followed over whole turns (data->turn). p->reached
- * tells how far it came [rad, m]. Fails: MT_E_ASSEMBLY beyond mt_drive_reach, where MOST_STEPS
- * (drive.c) do not get there, at a limit position, in a position that the other joints hold,
- * and where they do not stay closed; MT_E_DEAD_CENTRE from where the drawing is one;
- * MT_E_MEMORY.
+ * Bring the driven joint from where `at` says that it stands to its place, on the branch where
+ * it stands; at: in, out. Closed there, the springs strained about as little as they can be.
+ * Angles are followed over whole turns. Where it fails, at->drive tells how far it came; what
+ * Newton needed is added to *iterations. Fails: MT_E_ASSEMBLY beyond mt_drive_reach, where
+ * MOST_STEPS (drive.c) do not get there, at a limit position, in a position that the other
+ * joints hold, and where they do not stay closed; MT_E_DEAD_CENTRE from where the drawing is
+ * one; MT_E_MEMORY.
  */
-mt_status mt_drive_solve(mt_state *p, mt_data *data, const mt_drive_start *start, mt_arena *mem,
+mt_status mt_drive_solve(const mt_data *data, mt_placement *at, int *iterations, mt_arena *mem,
                          mt_err *err);
 
 /* The farthest position that the driven joint is brought to: MT_DRIVE_REACH rad, or model
  * lengths [m]. */
 double mt_drive_reach(const mt_system *sys);
-/* Keep where the walk ended, for the next one. */
-void mt_drive_keep(const mt_state *p, mt_drive_start *start);
 /* d(measure)/ds along the motion rate[nq] at poses. */
 double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses,
                      const double *rate);

@@ -42,8 +42,5 @@ mt_status mt_eliminate_left_null(const mt_elimination *e, int k, double *w, mt_a
  * is then as small as the rest of R. */
 mt_status mt_eliminate_left_vector(const mt_elimination *e, int rank, int k, double *w,
                                    mt_arena *scratch, mt_err *err);
-/* Joints with an entry in the combination w[m] (largest entry about 1), each once: "\"a\",
- * \"b\"", cut where the text is full. */
-void mt_joint_names(const mt_system *sys, int m, const double *w, char *text, size_t size);
 
 #endif

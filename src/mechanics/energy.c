@@ -202,7 +202,7 @@ mt_status mt_linear_energies(mt_linear *lin, int cols, const double *y, const mt
     const size_t nq = (size_t)lin->sys->nq;
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     worker k = {.lin = lin};
-    k.unbalanced = RESIDUALS * lin->position.residual;
+    k.unbalanced = RESIDUALS * lin->position.equilibrium.residual;
     k.shape = SHAPE_ULPS * DBL_EPSILON / lin->e.qr.kept;
     k.phi = mt_arena_f64(&lin->scratch, nq, (size_t)cols);
     k.w = mt_arena_f64(&lin->scratch, nq, 1);

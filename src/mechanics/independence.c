@@ -84,7 +84,8 @@ static bool opens(const mt_linear *lin, const mt_linear_tangent *t, const double
     return false;
 }
 
-mt_status mt_linear_independence(mt_linear *lin, int p, mt_independence *out, mt_err *err)
+mt_status mt_linear_independence(mt_linear *lin, int p, mt_arena *mem, mt_independence *out,
+                                 mt_err *err)
 {
     *out = (mt_independence){.opens = false};
     if (!can_change(lin, p)) {
@@ -101,7 +102,7 @@ mt_status mt_linear_independence(mt_linear *lin, int p, mt_independence *out, mt
         const bool blocks = mt_norm2(lin->n, l.out) > VANISHES * terms;
         out->opens = opens(lin, t, l.w);
         if (out->opens || (blocks && !out->blocks)) {
-            mt_joint_names(lin->sys, lin->m, l.w, out->joints, sizeof out->joints);
+            MT_TRY(mt_name_joints(lin->sys, lin->m, l.w, mem, &out->joints, err));
         }
         out->blocks = out->blocks || blocks;
     }

@@ -21,7 +21,7 @@ static double row_of_motion(const mt_linear *lin, const mt_term *t, const double
 {
     double sum = 0.0;
     for (int i = 0; i < MT_LOCAL; i++) {
-        const mt_pose *const pose = mt_pose_of(lin->position.pose, t->body[i / 6]);
+        const mt_pose *const pose = mt_pose_of(lin->position.at.pose, t->body[i / 6]);
         const int axis = i % 6;
         double v = axis == k ? 1.0 : 0.0;
         if (axis < 3 && k >= 3 && axis != k - 3) { /* e_(k-3) x r */
@@ -84,7 +84,7 @@ mt_status mt_info_fill(const mt_linear *lin, mt_info *out, mt_err *err)
                      .freedoms = lin->n,
                      .idle = lin->n_idle,
                      .redundant = mt_linear_redundant(lin),
-                     .residual = lin->position.residual,
+                     .residual = lin->position.equilibrium.residual,
                      .gap_m = lin->position.gap_m};
     rigid_energy(lin, g);
     from_energy((const double(*)[MOTIONS])g, lin->sys->dimension, out);

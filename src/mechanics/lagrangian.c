@@ -248,7 +248,7 @@ static double left_open(const mt_lagrangian *l, const mt_system *sys, const int 
     return fabs(way);
 }
 
-static void add_springs(const mt_data *d, const mt_pose *poses, mt_curvature curvature,
+static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature curvature,
                         mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
@@ -263,27 +263,24 @@ static void add_springs(const mt_data *d, const mt_pose *poses, mt_curvature cur
         }
         for (int side = 0; side < (coupling ? 2 : 1); side++) {
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
-            const mt_measure_data m = mt_data_measure(d, def);
-            mt_measure_eval(&m, mt_pose_of(poses, def->body[0]),
-                            mt_pose_of(poses, def->body[1]), curvature != MT_CURVATURE_NONE,
-                            &jet[side]);
+            mt_data_eval(d, def, at, curvature != MT_CURVATURE_NONE, &jet[side]);
             stretch[side] = jet[side].value - d->rest[i][side];
         }
         const mt_cx k = mt_data_scalar(d, s->stiffness, 0.0);
-        note_noise(d, first, poses, &jet[0], creal(k), out);
+        note_noise(d, first, at->pose, &jet[0], creal(k), out);
         if (coupling) {
             add_coupling(sys, first->body, k, stretch, jet, curvature, out);
             for (int side = 0; side < 2; side++) {
                 const double force = 0.5 * fabs(creal(cx_mul(k, stretch[1 - side])));
                 const double way = left_open(out, sys, first->body, &jet[1 - side]);
-                note_terms(d, &sys->measures[s->measure[side]], poses, &jet[side], force, force,
-                           0.5 * fabs(creal(k)) * way, out);
+                note_terms(d, &sys->measures[s->measure[side]], at->pose, &jet[side], force,
+                           force, 0.5 * fabs(creal(k)) * way, out);
             }
         } else {
             const double force =
                 fabs(creal(add_spring(d, i, k, stretch[0], jet, curvature, out)));
             const double way = left_open(out, sys, first->body, &jet[0]);
-            note_terms(d, first, poses, &jet[0], force, force,
+            note_terms(d, first, at->pose, &jet[0], force, force,
                        i == sys->trim_spring ? fabs(out->left.trim) : fabs(creal(k)) * way,
                        out);
         }
@@ -292,18 +289,16 @@ static void add_springs(const mt_data *d, const mt_pose *poses, mt_curvature cur
 
 /* Jet of what a load does work along: F . x, or its measure; *size: what that is multiplied
  * with. */
-static void load_jet(const mt_data *d, const mt_load_def *load, const mt_pose *poses,
+static void load_jet(const mt_data *d, const mt_load_def *load, const mt_placement *at,
                      bool hessian, int body[2], mt_cx *size, mt_jet *jet)
 {
     const mt_system *const sys = d->sys;
     if (load->measure >= 0) {
         const mt_measure_def *const def = &sys->measures[load->measure];
-        const mt_measure_data m = mt_data_measure(d, def);
         body[0] = def->body[0];
         body[1] = def->body[1];
         *size = mt_data_scalar(d, load->size, 0.0);
-        mt_measure_eval(&m, mt_pose_of(poses, body[0]), mt_pose_of(poses, body[1]), hessian,
-                        jet);
+        mt_data_eval(d, def, at, hessian, jet);
         return;
     }
     mt_cx f[3];
@@ -313,7 +308,7 @@ static void load_jet(const mt_data *d, const mt_load_def *load, const mt_pose *p
     body[0] = load->body;
     body[1] = MT_GROUND;
     *size = 1.0;
-    mt_measure_point(load->point < 0 ? NULL : d->vec[load->point], f, &poses[load->body],
+    mt_measure_point(load->point < 0 ? NULL : d->vec[load->point], f, &at->pose[load->body],
                      hessian, jet);
 }
 
@@ -330,19 +325,20 @@ static void note_load(const mt_data *d, const mt_load_def *load, const mt_pose *
     }
 }
 
-static void add_loads(const mt_data *d, const mt_pose *poses, bool hessian, mt_lagrangian *out)
+static void add_loads(const mt_data *d, const mt_placement *at, bool hessian,
+                      mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
     mt_jet jet;
     for (int i = 0; i < sys->n_loads; i++) {
         int body[2];
         mt_cx size = 0.0;
-        load_jet(d, &sys->loads[i], poses, hessian, body, &size, &jet);
+        load_jet(d, &sys->loads[i], at, hessian, body, &size, &jet);
         add_gradient(sys, body, jet.g, -size, out->g);
         note_force(sys, out, body, &jet, size);
         if (hessian) {
             add_hessian(sys, body, &jet, -size, 0.0, NULL, out->h);
-            note_load(d, &sys->loads[i], poses, &jet, size, out);
+            note_load(d, &sys->loads[i], at->pose, &jet, size, out);
         }
     }
 }
@@ -441,8 +437,8 @@ static void note_joint(const mt_data *d, const mt_measure_def *def, const mt_pos
     }
 }
 
-static void add_constraints(const mt_data *d, const mt_pose *poses, int m, const mt_cx *lambda,
-                            bool hessian, mt_lagrangian *out)
+static void add_constraints(const mt_data *d, const mt_placement *at, int m,
+                            const mt_cx *lambda, bool hessian, mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
     mt_jet jet;
@@ -450,13 +446,11 @@ static void add_constraints(const mt_data *d, const mt_pose *poses, int m, const
     for (int i = 0; i < m; i++) {
         const mt_constraint_def *const c = &sys->constraints[i];
         const bool curved = hessian && lambda != NULL;
-        out->c[i] = -d->target[i];
+        out->c[i] = -mt_data_target(d, i, at);
         for (int t = 0; t < c->terms; t++) {
             const mt_measure_def *const def = &sys->measures[c->measure[t]];
-            const mt_measure_data measure = mt_data_measure(d, def);
             const mt_cx factor = mt_data_scalar(d, c->coefficient[t], 1.0);
-            mt_measure_eval(&measure, mt_pose_of(poses, def->body[0]),
-                            mt_pose_of(poses, def->body[1]), curved, &jet);
+            mt_data_eval(d, def, at, curved, &jet);
             out->c[i] += cx_mul(factor, jet.value);
             for (int k = 0; k < MT_LOCAL; k++) {
                 const int dof = mt_local_dof(sys, def->body, k);
@@ -468,25 +462,23 @@ static void add_constraints(const mt_data *d, const mt_pose *poses, int m, const
                 const mt_cx force = cx_mul(factor, lambda[i]);
                 add_hessian(sys, def->body, &jet, force, 0.0, NULL, out->h);
                 const double left = out->left.lambda != NULL ? out->left.lambda[i] : 0.0;
-                note_joint(d, def, poses, &jet, force, fabs(creal(factor) * left), out);
+                note_joint(d, def, at->pose, &jet, force, fabs(creal(factor) * left), out);
             }
         }
         out->c[i] -= surplus_turns(d, i, creal(out->c[i]));
     }
 }
 
-void mt_constraint_values(const mt_data *d, const mt_pose *poses, int m, double *c)
+void mt_constraint_values(const mt_data *d, const mt_placement *at, int m, double *c)
 {
     const mt_system *const sys = d->sys;
     for (int i = 0; i < m; i++) {
         const mt_constraint_def *const def = &sys->constraints[i];
-        c[i] = -creal(d->target[i]);
+        c[i] = -creal(mt_data_target(d, i, at));
         for (int t = 0; t < def->terms; t++) {
             const mt_measure_def *const measure = &sys->measures[def->measure[t]];
-            const mt_measure_data data = mt_data_measure(d, measure);
             c[i] += creal(mt_data_scalar(d, def->coefficient[t], 1.0)) *
-                    creal(mt_measure_value(&data, mt_pose_of(poses, measure->body[0]),
-                                           mt_pose_of(poses, measure->body[1])));
+                    creal(mt_data_value(d, measure, at));
         }
         c[i] -= surplus_turns(d, i, c[i]);
     }
@@ -520,7 +512,7 @@ double mt_constraint_curve(const mt_data *d, const mt_pose *poses, int i, int t,
 }
 
 void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,
-                        const mt_pose *poses, int m, const mt_cx *lambda,
+                        const mt_placement *at, int m, const mt_cx *lambda,
                         mt_curvature curvature, mt_lagrangian *out)
 {
     const bool hessian = curvature != MT_CURVATURE_NONE;
@@ -535,15 +527,15 @@ void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn
     out->n_pieces = 0;
     out->force_noise = 0.0;
     if (energy == MT_ENERGY_PHYSICAL) {
-        add_springs(d, poses, curvature, out);
-        add_loads(d, poses, hessian && curvature != MT_CURVATURE_ELASTIC, out);
+        add_springs(d, at, curvature, out);
+        add_loads(d, at, hessian && curvature != MT_CURVATURE_ELASTIC, out);
     } else {
-        add_anchor(d, drawn, poses, hessian, out);
+        add_anchor(d, drawn, at->pose, hessian, out);
     }
-    add_constraints(d, poses, m, lambda, hessian, out);
+    add_constraints(d, at, m, lambda, hessian, out);
 }
 
-double mt_energy_value(const mt_data *d, const mt_pose *poses, double trim_force)
+double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_force)
 {
     const mt_system *const sys = d->sys;
     double v = 0.0;
@@ -552,10 +544,7 @@ double mt_energy_value(const mt_data *d, const mt_pose *poses, double trim_force
         double stretch[2];
         for (int side = 0; side < 2 && !s->damper; side++) {
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
-            const mt_measure_data m = mt_data_measure(d, def);
-            const mt_cx value = mt_measure_value(&m, mt_pose_of(poses, def->body[0]),
-                                                 mt_pose_of(poses, def->body[1]));
-            stretch[side] = creal(value) - creal(d->rest[i][side]);
+            stretch[side] = creal(mt_data_value(d, def, at)) - creal(d->rest[i][side]);
         }
         if (s->damper) {
             continue;
@@ -571,7 +560,7 @@ double mt_energy_value(const mt_data *d, const mt_pose *poses, double trim_force
         mt_jet jet;
         int body[2];
         mt_cx size = 0.0;
-        load_jet(d, &sys->loads[i], poses, false, body, &size, &jet);
+        load_jet(d, &sys->loads[i], at, false, body, &size, &jet);
         v -= creal(size) * creal(jet.value);
     }
     return v;

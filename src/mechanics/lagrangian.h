@@ -69,10 +69,10 @@ typedef struct mt_lagrangian {
 /* m: how many constraints take part (the drive's is the last of them). lambda may be NULL (0).
  * h is filled as `curvature` says. */
 void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,
-                        const mt_pose *poses, int m, const mt_cx *lambda,
+                        const mt_placement *at, int m, const mt_cx *lambda,
                         mt_curvature curvature, mt_lagrangian *out);
 /* c[m]: the constraints' values alone. */
-void mt_constraint_values(const mt_data *d, const mt_pose *poses, int m, double *c);
+void mt_constraint_values(const mt_data *d, const mt_placement *at, int m, double *c);
 /* Term t of constraint i along the motion phi[nq]: b[12] = c'' phi over the local freedoms of
  * the term's bodies. Returns the Frobenius norm of c'' with rows and columns weighed by
  * scale[nq]. */
@@ -92,6 +92,6 @@ static inline int mt_local_dof(const mt_system *sys, const int body[2], int k)
     return b == MT_GROUND ? -1 : sys->bodies[b].dof[k % 6];
 }
 /* Energy alone. */
-double mt_energy_value(const mt_data *d, const mt_pose *poses, double trim_force);
+double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_force);
 
 #endif

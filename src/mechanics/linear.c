@@ -7,7 +7,6 @@
 
 #include "base/interrupt.h"
 #include "mechanics/couplings.h"
-#include "mechanics/drive.h"
 #include "mechanics/idle.h"
 #include "mechanics/reduce.h"
 #include "mechanics/tangent.h"
@@ -39,12 +38,7 @@ static mt_status init(mt_linear *lin, const mt_system *sys, mt_err *err)
     lin->data.value = lin->value;
     lin->dual.value = lin->value;
     lin->dual.grad = lin->grad;
-    lin->dual.turn = lin->data.turn; /* both see the angles where they stand */
-    lin->last.pose = mt_arena_alloc(&lin->base, (size_t)sys->n_bodies, sizeof *lin->last.pose);
-    lin->last.turn = mt_arena_f64(&lin->base, (size_t)sys->n_measures, 1);
-    if (lin->last.pose == NULL || lin->last.turn == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_placement_init(&lin->last, sys, &lin->base, err));
     MT_TRY(mt_terms_new(sys, &lin->base, lin->list, err));
     const size_t terms = (size_t)lin->list[MT_TERM_STIFFNESS].n_terms;
     lin->coupling = mt_arena_alloc(&lin->base, terms, sizeof *lin->coupling);
@@ -83,7 +77,7 @@ static mt_status evaluate_rows(mt_linear *lin, mt_err *err)
         if (lin->rows[kind] == NULL || rows == NULL) {
             return mt_fail_memory(err);
         }
-        mt_rows_eval(&lin->data, (mt_term_kind)kind, list, lin->position.pose, rows);
+        mt_rows_eval(&lin->data, (mt_term_kind)kind, list, lin->position.at.pose, rows);
         for (size_t i = 0; i < size; i++) {
             lin->rows[kind][i] = creal(rows[i]);
         }
@@ -118,12 +112,12 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     for (int i = 0; i < all && loaded; i++) {
         lambda[i] = lin->position.equilibrium.lambda[i];
     }
-    l.trim_force = lin->position.trim_force;
+    l.trim_force = lin->position.equilibrium.trim_force;
     if (loaded) {
         MT_TRY(mt_lagrangian_want_terms(&l, sys, &lin->geometry, err));
         l.left = lin->position.equilibrium.left;
     }
-    mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, lin->position.pose,
+    mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, &lin->position.at,
                        all, loaded ? lambda : NULL,
                        loaded ? MT_CURVATURE_GEOMETRIC : MT_CURVATURE_NONE, &l);
     for (ptrdiff_t j = 0; j < nq; j++) {
@@ -151,7 +145,7 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     mt_arena_rewind(&lin->scratch, mark);
     MT_TRY(mt_eliminate(sys, lin->m, lin->a, &lin->geometry, &lin->e, err));
     lin->n = lin->e.n;
-    return mt_singular_refuse(&lin->data, lin->position.pose, &lin->e, &lin->scratch, err);
+    return mt_singular_refuse(&lin->data, &lin->position.at, &lin->e, &lin->scratch, err);
 }
 
 /* out (n x n) += c times the term's rows, lower triangle. */
@@ -315,11 +309,13 @@ static mt_status rebuild(mt_linear *lin, mt_err *err)
     lin->built = false;
     mt_arena_clear(&lin->geometry);
     mt_data_vecs(&lin->data);
-    MT_TRY(mt_position_solve(lin->sys, &lin->data, lin->follow ? &lin->last : NULL,
-                             &lin->geometry, &lin->position, err));
+    MT_TRY(mt_position_solve(lin->sys, &lin->data,
+                             lin->follow && lin->has_last ? &lin->last : NULL, &lin->geometry,
+                             &lin->position, err));
     MT_TRY(constrain(lin, err));
     if (lin->sys->driven) { /* not from a dead centre: which way led on would be open */
-        mt_drive_keep(&lin->position, &lin->last);
+        mt_placement_copy(lin->sys, &lin->position.driven, &lin->last);
+        lin->has_last = true;
     }
     MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
     MT_TRY(evaluate_rows(lin, err));

@@ -43,7 +43,8 @@ typedef struct mt_linear {
     /* a driven joint begins where the last update left it, instead of at the reference
      * position: for sweeps */
     bool follow;
-    mt_drive_start last;
+    mt_placement last; /* where it left the driven joint */
+    bool has_last;
     int first_input;  /* derivatives are asked for from this input on; 0: of all of them */
     mt_elimination e; /* at the final position, constraints of the linearised system */
     double *z_error;  /* nq x n: bounds of the errors of e.z */
@@ -96,13 +97,14 @@ mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradi
  *         freedoms, and the mode y has no derivative.
  */
 typedef struct mt_independence {
-    bool opens;                     /* the first */
-    bool blocks;                    /* the second, for some motion */
-    char joints[MT_SINGULAR_NAMES]; /* whose equations they are */
+    bool opens;            /* the first */
+    bool blocks;           /* the second, for some motion */
+    mt_joint_names joints; /* whose equations they are */
 } mt_independence;
-/* After an update with gradients. Costs nothing where no equation is redundant or p moves
- * nothing. */
-mt_status mt_linear_independence(mt_linear *lin, int p, mt_independence *out, mt_err *err);
+/* After an update with gradients; names are in mem. Costs nothing where no equation is
+ * redundant or p moves nothing. */
+mt_status mt_linear_independence(mt_linear *lin, int p, mt_arena *mem, mt_independence *out,
+                                 mt_err *err);
 /* blocked[cols]: which of the motions y (n x cols) are. */
 mt_status mt_linear_blocked(mt_linear *lin, int p, int cols, const double *y, bool *blocked,
                             mt_err *err);
@@ -120,13 +122,13 @@ mt_status mt_linear_sense(mt_linear *lin, int ns, const int *channel, int cols, 
 mt_status mt_linear_sense_derivative(mt_linear *lin, int p, int ns, const int *channel,
                                      int cols, const double *y, const double *dy, double *ds,
                                      mt_err *err);
-/* Number of redundant equations (m - rank) and, for set k, its joints' names: text "\"a\",
- * \"b\"" (in the geometry arena, valid until the next update). */
+/* Number of redundant equations (m - rank) and, for set k, its joints' names, in mem. */
 int mt_linear_redundant(const mt_linear *lin);
-mt_status mt_linear_redundant_set(mt_linear *lin, int k, const char **text, mt_err *err);
+mt_status mt_linear_redundant_set(mt_linear *lin, int k, mt_arena *mem, mt_joint_names *out,
+                                  mt_err *err);
 /* How near the position is to one where equations depend on each other there only (singular.h).
- * After an update. */
-mt_status mt_linear_nearness(mt_linear *lin, mt_nearness *out, mt_err *err);
+ * After an update; names are in mem. */
+mt_status mt_linear_nearness(mt_linear *lin, mt_arena *mem, mt_nearness *out, mt_err *err);
 /* Names of the bodies and directions that dominate a direction y in the freedoms: "bob
  * (rotation)", for messages. Buffer of size bytes. */
 void mt_linear_name_direction(const mt_linear *lin, const double *y, char *text, size_t size);

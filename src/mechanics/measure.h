@@ -87,10 +87,5 @@ mt_cx mt_measure_value(const mt_measure_data *m, const mt_pose *a, const mt_pose
 /* Jet of the work potential f . P of a point fixed to body a (local freedoms 0..5). */
 void mt_measure_point(const mt_cx *s, const mt_cx *f, const mt_pose *a, bool second,
                       mt_jet *out);
-/* R -> exp(theta^) R (Rodrigues), x -> x + dx; real increments, the derivative parts of the
- * pose are dropped. */
-void mt_pose_move(mt_pose *pose, const double *dx, const double *theta);
-/* Put the derivative (dx, theta) on a real pose: x + i h dx, R + i h theta^ R. */
-void mt_pose_tangent(mt_pose *pose, const double *dx, const double *theta);
 
 #endif

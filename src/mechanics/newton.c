@@ -9,12 +9,15 @@
  * its buckling load, compressed along its axis) is an equilibrium that does not say which way
  * it falls: it stands, and is told as unstable.
  */
-#include "mechanics/newton_priv.h"
+#include "mechanics/newton.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "mechanics/names.h"
+#include "mechanics/newton_descent.h"
+#include "mechanics/newton_step.h"
 #include "mechanics/singular.h"
 
 enum { NEWTON_LIMIT = 60, WHERE_SIZE = 300 };
@@ -22,6 +25,8 @@ enum { NEWTON_LIMIT = 60, WHERE_SIZE = 300 };
 enum { SADDLES = 12 };
 /* Energies differ by rounding below this part of them. */
 static const double ENERGY_ROUNDING = 1e-12;
+/* Entries of a left null vector (largest 1) above this belong to the dependent set. */
+static const double IN_THE_SET = 1e-6;
 
 /* What the step last found, w->step and trim, would change: with r = g + A^T lambda + t trim +
  * H step unbalanced, A^T lambda' = -r. */
@@ -47,14 +52,13 @@ static mt_status keep_step(const mt_newton_work *w, const mt_elimination *e, dou
 
 /* tau: of the trimmed spring, before the last step. */
 static mt_status keep(mt_newton_work *w, const mt_elimination *e, double *inverse, double tau,
-                      mt_arena *mem, mt_state *report, mt_stage *stage, mt_err *err)
+                      mt_arena *mem, mt_stage *stage, mt_err *err)
 {
     MT_TRY(keep_step(w, e, w->tau - tau, mem, &stage->left, err));
     w->tau = tau;
     const size_t nq = (size_t)w->sys->nq;
     const size_t m = (size_t)w->p->m;
     stage->active = true;
-    stage->m = w->p->m;
     stage->e = *e;
     stage->order = e->n + (w->p->trim ? 1 : 0);
     stage->inverse = inverse;
@@ -63,23 +67,23 @@ static mt_status keep(mt_newton_work *w, const mt_elimination *e, double *invers
     stage->h = mt_arena_f64(mem, nq, nq);
     stage->a = mt_arena_f64(mem, m, nq);
     stage->trim = mt_arena_f64(mem, nq, 1);
-    if (stage->lambda == NULL || stage->h == NULL || stage->a == NULL || stage->trim == NULL) {
+    stage->d_lambda = mt_arena_f64(mem, m, 1);
+    if (stage->lambda == NULL || stage->h == NULL || stage->a == NULL || stage->trim == NULL ||
+        stage->d_lambda == NULL) {
         return mt_fail_memory(err);
     }
     memcpy(stage->lambda, w->lambda, m * sizeof *stage->lambda);
     memcpy(stage->h, w->h, nq * nq * sizeof *stage->h);
     memcpy(stage->a, w->a, m * nq * sizeof *stage->a);
     memcpy(stage->trim, w->trim, nq * sizeof *stage->trim);
-    if (w->p->energy == MT_ENERGY_PHYSICAL) {
-        report->residual = w->residual;
-        report->trim_force = w->tau;
-    }
+    stage->residual = w->residual;
+    stage->trim_force = w->tau;
     return MT_OK;
 }
 
 /* Plain Newton from the present position; *done tells whether it converged. */
-static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_state *report,
-                         mt_stage *stage, bool *done, mt_err *err)
+static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_stage *stage,
+                         bool *done, mt_err *err)
 {
     double previous = HUGE_VAL;
     double unbalanced = HUGE_VAL;
@@ -89,12 +93,11 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
         mt_elimination e;
         double *inverse = NULL;
         const double tau = w->tau;
-        MT_TRY(mt_newton_linearise(w, poses, mem, &e, &inverse, err));
+        MT_TRY(mt_newton_linearise(w, at, mem, &e, &inverse, err));
         if (it == 0 && w->p->energy == MT_ENERGY_PHYSICAL && w->gap <= MT_STEP_DONE) {
-            /* several ways lead on */
-            MT_TRY(mt_singular_refuse(w->p->data, poses, &e, mem, err));
+            MT_TRY(mt_singular_refuse(w->p->data, at, &e, mem, err)); /* several ways lead on */
         }
-        report->iterations++;
+        stage->iterations++;
         if (it == 0 && w->watch && w->gap <= MT_STEP_DONE && w->moved > MT_DRAWN &&
             w->residual > MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise)) {
             bool falls = false;
@@ -108,7 +111,7 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
                            (w->moved >= 0.25 * previous || w->moved <= 8.0 * DBL_EPSILON);
         const bool rests = small && w->gap <= MT_STEP_DONE;
         if (rests && w->residual <= MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise)) {
-            const mt_status rc = keep(w, &e, inverse, tau, mem, report, stage, err);
+            const mt_status rc = keep(w, &e, inverse, tau, mem, stage, err);
             *done = rc == MT_OK;
             return rc;
         }
@@ -117,8 +120,8 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
         }                 /* else the force of the trimmed spring is still settling */
         previous = w->moved;
         unbalanced = w->residual;
-        mt_newton_take_step(w, poses, MT_STEP_LIMIT);
-        mt_newton_follow(w, poses);
+        mt_newton_take_step(w, at, MT_STEP_LIMIT);
+        mt_newton_follow(w, at);
         mt_arena_rewind(mem, mark);
         if (!(w->moved < HUGE_VAL)) {
             return MT_OK;
@@ -129,39 +132,76 @@ static mt_status iterate(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_st
 
 /* A position that is not a number ends the iteration, not the analysis: the start may be
  * bad. */
-static mt_status attempt(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_state *report,
-                         mt_stage *stage, bool *done, mt_err *err)
+static mt_status attempt(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_stage *stage,
+                         bool *done, mt_err *err)
 {
-    const mt_status rc = iterate(w, poses, mem, report, stage, done, err);
+    const mt_status rc = iterate(w, at, mem, stage, done, err);
     return rc == MT_E_DOMAIN || rc == MT_E_NO_CONVERGENCE ? MT_OK : rc;
 }
 
-/* poses: where the search ended; closed, where the stage began closed. */
-static mt_status refuse(mt_newton_work *w, const mt_pose *poses, bool closed, mt_arena *mem,
-                        const mt_state *report, mt_err *err)
+/* Which joints to name: those in the left null vectors of A that the gap lies along (they
+ * contradict each other), else the one furthest open. */
+static mt_status say_open(const mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
+                          mt_err *err)
+{
+    int worst = 0;
+    double gap = 0.0;
+    for (int i = 0; i < w->p->m; i++) {
+        if (!(fabs(w->c[i]) <= gap)) {
+            gap = fabs(w->c[i]);
+            worst = i;
+        }
+    }
+    const mt_constraint_def *const c = &w->sys->constraints[worst];
+    const mt_measure_kind kind = w->sys->measures[c->measure[0]].kind;
+    const bool length = kind == MT_MEASURE_PLANE || kind == MT_MEASURE_DISTANCE;
+    const char *const unit = length ? "m" : "(cosine or rad)";
+    double *const null = mt_arena_f64(mem, (size_t)w->p->m, 1);
+    if (null == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int k = 0; k < e->m - e->qr.rank; k++) {
+        MT_TRY(mt_eliminate_left_null(e, k, null, mem, err));
+        if (fabs(null[worst]) > IN_THE_SET) {
+            mt_joint_names names;
+            MT_TRY(mt_name_joints(w->sys, w->p->m, null, mem, &names, err));
+            return mt_fail(err, MT_E_ASSEMBLY,
+                           "joints %s contradict each other: a gap of %.6g %s is left",
+                           names.text, gap, unit);
+        }
+    }
+    return mt_fail(err, MT_E_ASSEMBLY,
+                   "the mechanism cannot be assembled: joint \"%s\" stays open by %.6g %s",
+                   w->sys->joints[c->joint].name, gap, unit);
+}
+
+/* at: where the search ended; closed, where the stage began closed. */
+static mt_status refuse(mt_newton_work *w, const mt_placement *at, bool closed, mt_arena *mem,
+                        const mt_stage *stage, mt_err *err)
 {
     mt_elimination e;
     double *inverse = NULL;
     memset(w->lambda, 0, (size_t)w->p->m * sizeof *w->lambda);
-    mt_newton_evaluate(w, poses, false);
+    mt_newton_evaluate(w, at, false);
     MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &e, err));
     if (!closed && !(mt_newton_gap_of(w) <= MT_STEP_DONE)) {
-        return mt_newton_open_loop(w->p, poses, &e, mem, err);
+        return say_open(w, &e, mem, err);
     }
-    MT_TRY(mt_newton_linearise(w, poses, mem, &e, &inverse, err));
+    MT_TRY(mt_newton_linearise(w, at, mem, &e, &inverse, err));
     char where[WHERE_SIZE];
     mt_eliminate_project(&e, w->g, w->reduced);
-    mt_position_name_motion(w->sys, &e, w->reduced, where, sizeof where);
+    mt_name_motion(w->sys, &e, w->reduced, where, sizeof where);
     return mt_fail(err, MT_E_EQUILIBRIUM,
                    "no equilibrium found after %d iterations: %.3g of the forces at work stay "
                    "unbalanced on %s (free to move under load?)",
-                   report->iterations, w->residual, where);
+                   stage->iterations, w->residual, where);
 }
 
 /* Is the stationary point that was last evaluated a saddle, with the drive held, that the way
  * from the start leads down from? That direction goes into w->step. */
-static mt_status find_saddle(mt_newton_work *w, const mt_pose *start, const mt_pose *poses,
-                             const mt_stage *stage, bool *saddle, mt_arena *mem, mt_err *err)
+static mt_status find_saddle(mt_newton_work *w, const mt_placement *start,
+                             const mt_placement *at, const mt_stage *stage, bool *saddle,
+                             mt_arena *mem, mt_err *err)
 {
     mt_elimination held;
     const mt_elimination *e = &stage->e;
@@ -173,7 +213,7 @@ static mt_status find_saddle(mt_newton_work *w, const mt_pose *start, const mt_p
         MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &held, err));
         e = &held;
     }
-    mt_newton_way(w->sys, start, poses, way);
+    mt_poses_way(w->sys, start->pose, at->pose, way);
     return mt_newton_falls(w, e, way, saddle, mem, err);
 }
 
@@ -185,149 +225,125 @@ typedef struct ending {
     double before; /* the energy where the stage began */
 } ending;
 
-static mt_status judge(mt_newton_work *w, const mt_pose *start, const mt_pose *poses,
+static mt_status judge(mt_newton_work *w, const mt_placement *start, const mt_placement *at,
                        const mt_stage *stage, ending *end, mt_arena *mem, mt_err *err)
 {
     end->saddle = false;
     if (end->done) {
-        MT_TRY(find_saddle(w, start, poses, stage, &end->saddle, mem, err));
-        end->energy = mt_energy_value(w->p->data, poses, w->tau);
+        MT_TRY(find_saddle(w, start, at, stage, &end->saddle, mem, err));
+        end->energy = mt_energy_value(w->p->data, at, w->tau);
     }
     return MT_OK;
 }
 
-/* A position with its whole turns. */
-typedef struct place {
-    mt_pose *pose;
-    double *turn;
-} place;
-
-static mt_status note(const mt_newton_work *w, const mt_pose *poses, place *out, mt_arena *mem,
-                      mt_err *err)
+static mt_status note(const mt_newton_work *w, const mt_placement *at, mt_placement *out,
+                      mt_arena *mem, mt_err *err)
 {
-    const size_t n = (size_t)w->sys->n_bodies;
-    const size_t turns = (size_t)w->sys->n_measures;
-    out->pose = mt_arena_alloc(mem, n, sizeof *out->pose);
-    out->turn = mt_arena_f64(mem, turns, 1);
-    if (out->pose == NULL || out->turn == NULL) {
-        return mt_fail_memory(err);
-    }
-    memcpy(out->pose, poses, n * sizeof *poses);
-    memcpy(out->turn, w->p->data->turn, turns * sizeof *out->turn);
+    MT_TRY(mt_placement_init(out, w->sys, mem, err));
+    mt_placement_copy(w->sys, at, out);
     return MT_OK;
 }
 
-static void go_back(const mt_newton_work *w, const place *to, mt_pose *poses)
+/* Downhill from `at`, and out of every saddle on the way. */
+static mt_status settle(mt_newton_work *w, const mt_placement *start, mt_placement *at,
+                        mt_arena *mem, mt_stage *stage, ending *end, mt_err *err)
 {
-    memcpy(poses, to->pose, (size_t)w->sys->n_bodies * sizeof *poses);
-    memcpy(w->p->data->turn, to->turn, (size_t)w->sys->n_measures * sizeof *to->turn);
-}
-
-/* Downhill from poses, and out of every saddle on the way. */
-static mt_status settle(mt_newton_work *w, const mt_pose *start, mt_pose *poses, mt_arena *mem,
-                        mt_state *report, mt_stage *stage, ending *end, mt_err *err)
-{
-    const size_t size = (size_t)w->sys->n_bodies * sizeof *poses;
-    mt_pose *const low = mt_arena_alloc(mem, (size_t)w->sys->n_bodies, sizeof *low);
-    if (low == NULL) {
-        return mt_fail_memory(err);
-    }
     bool on = true;
+    mt_placement low;
+    MT_TRY(mt_placement_init(&low, w->sys, mem, err));
     for (int i = 0; i < SADDLES && on; i++) {
-        MT_TRY(mt_newton_descend(w, poses, mem, err));
-        memcpy(low, poses, size);
-        MT_TRY(attempt(w, poses, mem, report, stage, &end->done, err));
-        MT_TRY(judge(w, start, poses, stage, end, mem, err));
+        MT_TRY(mt_newton_descend(w, at, mem, err));
+        mt_placement_copy(w->sys, at, &low);
+        MT_TRY(attempt(w, at, mem, stage, &end->done, err));
+        MT_TRY(judge(w, start, at, stage, end, mem, err));
         on = end->saddle;
         if (on) {
-            MT_TRY(mt_newton_leave_saddle(w, poses, &on, mem, err));
+            MT_TRY(mt_newton_leave_saddle(w, at, &on, mem, err));
         }
     }
     if (!end->done) {
-        memcpy(poses, low, size);
+        mt_placement_copy(w->sys, &low, at);
     }
     return MT_OK;
 }
 
 /* With trim: the stationary point with the joint locked is where the trimmed one begins. */
-static mt_status lock_first(const mt_newton_work *w, mt_pose *poses, mt_arena *mem,
-                            mt_state *report, mt_err *err)
+static mt_status lock_first(const mt_newton_work *w, mt_placement *at, mt_arena *mem,
+                            mt_stage *stage, mt_err *err)
 {
     mt_newton_problem locked = *w->p;
-    mt_stage stage = {.active = false};
-    mt_state other = *report;
-    place before;
+    mt_stage other = {.iterations = stage->iterations};
+    mt_placement before;
     locked.trim = false;
-    MT_TRY(note(w, poses, &before, mem, err));
-    const mt_status rc = mt_newton_solve(&locked, poses, mem, &other, &stage, NULL);
-    report->iterations = other.iterations;
+    MT_TRY(note(w, at, &before, mem, err));
+    const mt_status rc = mt_newton_solve(&locked, at, mem, &other, NULL);
+    stage->iterations = other.iterations;
     if (rc != MT_OK) {
-        go_back(w, &before, poses);
+        mt_placement_copy(w->sys, &before, at);
     }
     return rc == MT_E_MEMORY ? mt_fail_memory(err) : MT_OK;
 }
 
 /* A physical stage whose plain Newton ended as `end` says: downhill from the start, unless it
  * may stay. */
-static mt_status go_on(mt_newton_work *w, const place *start, mt_pose *poses, mt_arena *mem,
-                       mt_state *report, mt_stage *stage, ending *end, mt_err *err)
+static mt_status go_on(mt_newton_work *w, const mt_placement *start, mt_placement *at,
+                       mt_arena *mem, mt_stage *stage, ending *end, mt_err *err)
 {
-    MT_TRY(judge(w, start->pose, poses, stage, end, mem, err));
+    MT_TRY(judge(w, start, at, stage, end, mem, err));
     const double rounding = ENERGY_ROUNDING * (fabs(end->before) + fabs(end->energy));
     const bool uphill = !w->p->trim && end->done && end->energy > end->before + rounding;
     const bool settled = !end->saddle && !uphill;
-    if (end->done && (settled || mt_newton_distance(w->sys, start->pose, poses) <= MT_DRAWN)) {
+    if (end->done &&
+        (settled || mt_poses_distance(w->sys, start->pose, at->pose) <= MT_DRAWN)) {
         return MT_OK;
     }
     const mt_stage first_stage = *stage;
-    const mt_state first_report = *report;
     const bool found = end->done;
-    place first;
-    MT_TRY(note(w, poses, &first, mem, err));
+    mt_placement first;
+    MT_TRY(note(w, at, &first, mem, err));
     w->watch = false;
-    go_back(w, start, poses);
+    mt_placement_copy(w->sys, start, at);
     w->tau = 0.0;
     if (w->p->trim && found) {
-        MT_TRY(lock_first(w, poses, mem, report, err));
-        MT_TRY(attempt(w, poses, mem, report, stage, &end->done, err));
+        MT_TRY(lock_first(w, at, mem, stage, err));
+        MT_TRY(attempt(w, at, mem, stage, &end->done, err));
     } else {
-        MT_TRY(settle(w, start->pose, poses, mem, report, stage, end, err));
+        MT_TRY(settle(w, start, at, mem, stage, end, err));
     }
     if (found && !end->done) { /* nothing lower holds it: the saddle stands, told as unstable */
         end->done = true;
         *stage = first_stage;
-        *report = first_report;
-        go_back(w, &first, poses);
+        mt_placement_copy(w->sys, &first, at);
     }
     return MT_OK;
 }
 
-mt_status mt_newton_solve(const mt_newton_problem *problem, mt_pose *poses, mt_arena *mem,
-                          mt_state *report, mt_stage *stage, mt_err *err)
+mt_status mt_newton_solve(const mt_newton_problem *problem, mt_placement *at, mt_arena *mem,
+                          mt_stage *stage, mt_err *err)
 {
     mt_newton_work w;
     ending end = {.done = false};
-    place start;
+    mt_placement start;
     MT_TRY(mt_newton_work_init(&w, problem, mem, err));
-    MT_TRY(note(&w, poses, &start, mem, err));
-    mt_newton_evaluate(&w, poses, false);
+    MT_TRY(note(&w, at, &start, mem, err));
+    mt_newton_evaluate(&w, at, false);
     const bool closed = mt_newton_gap_of(&w) <= MT_STEP_DONE;
-    end.before = mt_energy_value(problem->data, poses, 0.0);
+    end.before = mt_energy_value(problem->data, at, 0.0);
     w.watch = problem->energy == MT_ENERGY_PHYSICAL && !problem->trim;
-    MT_TRY(attempt(&w, poses, mem, report, stage, &end.done, err));
+    MT_TRY(attempt(&w, at, mem, stage, &end.done, err));
     if (problem->energy == MT_ENERGY_PHYSICAL) {
-        MT_TRY(go_on(&w, &start, poses, mem, report, stage, &end, err));
+        MT_TRY(go_on(&w, &start, at, mem, stage, &end, err));
     }
-    return end.done ? MT_OK : refuse(&w, poses, closed, mem, report, err);
+    return end.done ? MT_OK : refuse(&w, at, closed, mem, stage, err);
 }
 
-mt_status mt_newton_gap(const mt_newton_problem *problem, const mt_pose *poses, mt_arena *mem,
+mt_status mt_newton_gap(const mt_newton_problem *problem, const mt_placement *at, mt_arena *mem,
                         double *gap_m, mt_err *err)
 {
     mt_newton_work w;
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     MT_TRY(mt_newton_work_init(&w, problem, mem, err));
-    mt_newton_evaluate(&w, poses, false);
+    mt_newton_evaluate(&w, at, false);
     *gap_m = mt_newton_gap_of(&w) * w.sys->length_m;
     mt_arena_rewind(mem, mark);
     return MT_OK;

@@ -5,7 +5,7 @@
  * energy, evaluated back on the constraints, is lower. It ends near a stable equilibrium, or in
  * a saddle where symmetry leads into it; Newton finishes.
  */
-#include "mechanics/newton_priv.h"
+#include "mechanics/newton_descent.h"
 
 #include <math.h>
 #include <string.h>
@@ -15,12 +15,12 @@ enum { DESCENT_LIMIT = 400, HALVINGS = 30, RESTORE_LIMIT = 20 };
 static const double OUT = 0.1;
 
 /* Back to the constraints by least-norm steps. */
-static mt_status restore(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_err *err)
+static mt_status restore(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_err *err)
 {
     for (int it = 0; it < RESTORE_LIMIT; it++) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
         mt_elimination e;
-        mt_newton_evaluate(w, poses, false);
+        mt_newton_evaluate(w, at, false);
         if (mt_newton_gap_of(w) <= MT_STEP_DONE) {
             return MT_OK;
         }
@@ -34,7 +34,7 @@ static mt_status restore(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_er
         MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &e, err));
         MT_TRY(mt_eliminate_particular(&e, minus_c, w->step, mem, err));
         w->moved = mt_newton_scaled_norm(w, w->step);
-        mt_newton_take_step(w, poses, MT_STEP_LIMIT);
+        mt_newton_take_step(w, at, MT_STEP_LIMIT);
         mt_arena_rewind(mem, mark);
     }
     return mt_fail(err, MT_E_ASSEMBLY, "the joints do not stay closed");
@@ -67,7 +67,7 @@ static mt_status direction_of(mt_newton_work *w, const mt_elimination *e, mt_are
 
 /* Halve the step until the energy is lower; *lower tells whether it is, else the poses are back
  * where they were. */
-static mt_status search_line(mt_newton_work *w, mt_pose *poses, double *energy, bool *lower,
+static mt_status search_line(mt_newton_work *w, mt_placement *at, double *energy, bool *lower,
                              mt_arena *mem, mt_err *err)
 {
     const size_t nq = (size_t)w->sys->nq;
@@ -80,16 +80,16 @@ static mt_status search_line(mt_newton_work *w, mt_pose *poses, double *energy, 
         return mt_fail_memory(err);
     }
     memcpy(direction, w->step, nq * sizeof *direction);
-    memcpy(kept, poses, n * sizeof *kept);
+    memcpy(kept, at->pose, n * sizeof *kept);
     *lower = false;
     for (int half = 0; half < HALVINGS && !*lower; half++) {
-        memcpy(poses, kept, n * sizeof *kept);
+        memcpy(at->pose, kept, n * sizeof *kept);
         memcpy(w->step, direction, nq * sizeof *direction);
         w->moved = full;
-        mt_newton_take_step(w, poses, length);
-        const mt_status rc = restore(w, poses, mem, NULL);
+        mt_newton_take_step(w, at, length);
+        const mt_status rc = restore(w, at, mem, NULL);
         if (rc == MT_OK) {
-            const double now = mt_energy_value(w->p->data, poses, w->tau);
+            const double now = mt_energy_value(w->p->data, at, w->tau);
             *lower = now < *energy;
             *energy = *lower ? now : *energy;
         } else if (rc != MT_E_ASSEMBLY && rc != MT_E_DOMAIN) {
@@ -98,19 +98,19 @@ static mt_status search_line(mt_newton_work *w, mt_pose *poses, double *energy, 
         length *= 0.5;
     }
     if (*lower) {
-        mt_newton_follow(w, poses);
+        mt_newton_follow(w, at);
     } else {
-        memcpy(poses, kept, n * sizeof *kept);
+        memcpy(at->pose, kept, n * sizeof *kept);
     }
     return MT_OK;
 }
 
-mt_status mt_newton_leave_saddle(mt_newton_work *w, mt_pose *poses, bool *lower, mt_arena *mem,
-                                 mt_err *err)
+mt_status mt_newton_leave_saddle(mt_newton_work *w, mt_placement *at, bool *lower,
+                                 mt_arena *mem, mt_err *err)
 {
     const int nq = w->sys->nq;
     double *const out = mt_arena_f64(mem, (size_t)nq, 1);
-    double energy = mt_energy_value(w->p->data, poses, w->tau);
+    double energy = mt_energy_value(w->p->data, at, w->tau);
     *lower = false;
     if (out == NULL) {
         return mt_fail_memory(err);
@@ -120,7 +120,7 @@ mt_status mt_newton_leave_saddle(mt_newton_work *w, mt_pose *poses, bool *lower,
     for (int side = 0; side < 2 && !*lower; side++) {
         memcpy(w->step, out, (size_t)nq * sizeof *out);
         w->moved = OUT;
-        MT_TRY(search_line(w, poses, &energy, lower, mem, err));
+        MT_TRY(search_line(w, at, &energy, lower, mem, err));
         for (int j = 0; j < nq; j++) {
             out[j] = -out[j];
         }
@@ -128,22 +128,22 @@ mt_status mt_newton_leave_saddle(mt_newton_work *w, mt_pose *poses, bool *lower,
     return MT_OK;
 }
 
-mt_status mt_newton_descend(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_err *err)
+mt_status mt_newton_descend(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_err *err)
 {
-    MT_TRY(restore(w, poses, mem, err));
-    double energy = mt_energy_value(w->p->data, poses, w->tau);
+    MT_TRY(restore(w, at, mem, err));
+    double energy = mt_energy_value(w->p->data, at, w->tau);
     bool lower = true;
     for (int it = 0; it < DESCENT_LIMIT && lower; it++) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
         const double tau = w->tau;
         mt_elimination e;
         double *inverse = NULL;
-        MT_TRY(mt_newton_linearise(w, poses, mem, &e, &inverse, err));
+        MT_TRY(mt_newton_linearise(w, at, mem, &e, &inverse, err));
         w->tau = tau; /* the force of the trimmed spring stands while the energy is compared */
         lower = w->residual > MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise);
         if (lower) { /* not lower: as low as rounding lets us see, Newton decides */
             MT_TRY(direction_of(w, &e, mem, err));
-            MT_TRY(search_line(w, poses, &energy, &lower, mem, err));
+            MT_TRY(search_line(w, at, &energy, &lower, mem, err));
         }
         mt_arena_rewind(mem, mark);
     }

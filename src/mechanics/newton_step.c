@@ -14,7 +14,7 @@
  *     [Z^T H Z   Z^T t] [eta]   [-Z^T (g + H v)  ]
  *     [a_d Z       0  ] [tau] = [-(c_d + a_d v)  ].
  */
-#include "mechanics/newton_priv.h"
+#include "mechanics/newton_step.h"
 
 #include <math.h>
 #include <string.h>
@@ -57,7 +57,7 @@ static void real_part(ptrdiff_t n, const mt_cx *from, double *to)
     }
 }
 
-void mt_newton_evaluate(mt_newton_work *w, const mt_pose *poses, bool hessian)
+void mt_newton_evaluate(mt_newton_work *w, const mt_placement *at, bool hessian)
 {
     const int m = w->p->m;
     const ptrdiff_t nq = w->sys->nq;
@@ -66,7 +66,7 @@ void mt_newton_evaluate(mt_newton_work *w, const mt_pose *poses, bool hessian)
     for (int i = 0; i < m; i++) {
         w->lambda_cx[i] = w->lambda[i];
     }
-    mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, poses, m, w->lambda_cx,
+    mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, at, m, w->lambda_cx,
                        hessian ? MT_CURVATURE_FULL : MT_CURVATURE_NONE, &w->l);
     real_part(nq, w->l.g, w->g);
     real_part(nq, w->l.trim, w->trim);
@@ -112,19 +112,6 @@ double mt_newton_scaled_norm(const mt_newton_work *w, const double *dq)
         }
     }
     return s;
-}
-
-double mt_newton_distance(const mt_system *sys, const mt_pose *a, const mt_pose *b)
-{
-    double most = 0.0;
-    for (int i = 0; i < sys->n_bodies; i++) {
-        for (int k = 0; k < 9; k++) {
-            const double x = k < 3 ? fabs(creal(a[i].x[k] - b[i].x[k])) / sys->length_m : 0.0;
-            const double d = fmax(x, fabs(creal(a[i].r[k] - b[i].r[k])));
-            most = !(d <= most) ? d : most; /* NaN is kept */
-        }
-    }
-    return most;
 }
 
 double mt_newton_gap_of(const mt_newton_work *w)
@@ -227,33 +214,6 @@ mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena 
     return MT_OK;
 }
 
-void mt_newton_way(const mt_system *sys, const mt_pose *from, const mt_pose *to, double *way)
-{
-    for (int b = 0; b < sys->n_bodies; b++) {
-        double r[3][3]; /* R1 R0^T */
-        for (int i = 0; i < 3; i++) {
-            for (int k = 0; k < 3; k++) {
-                r[i][k] = 0.0;
-                for (int j = 0; j < 3; j++) {
-                    r[i][k] += creal(to[b].r[i + (3 * j)]) * creal(from[b].r[k + (3 * j)]);
-                }
-            }
-        }
-        double turn[3] = {r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]};
-        const double sine = mt_norm2(3, turn);
-        const double angle = atan2(sine, r[0][0] + r[1][1] + r[2][2] - 1.0);
-        for (int k = 0; k < 3; k++) {
-            const int *const dof = sys->bodies[b].dof;
-            if (dof[k] >= 0) {
-                way[dof[k]] = creal(to[b].x[k]) - creal(from[b].x[k]);
-            }
-            if (dof[3 + k] >= 0) {
-                way[dof[3 + k]] = sine > 0.0 ? angle / sine * turn[k] : 0.0;
-            }
-        }
-    }
-}
-
 /* Z has orthonormal columns in the elimination's coordinates. */
 mt_status mt_newton_falls(mt_newton_work *w, const mt_elimination *e, const double *way,
                           bool *falls, mt_arena *mem, mt_err *err)
@@ -287,17 +247,17 @@ mt_status mt_newton_falls(mt_newton_work *w, const mt_elimination *e, const doub
 }
 
 /* Multipliers, then gradient, Hessian and residual with them. */
-static mt_status balance(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
+static mt_status balance(mt_newton_work *w, const mt_placement *at, mt_arena *mem,
                          mt_elimination *e, mt_err *err)
 {
     memset(w->lambda, 0, (size_t)w->p->m * sizeof *w->lambda);
-    mt_newton_evaluate(w, poses, false);
+    mt_newton_evaluate(w, at, false);
     MT_TRY(eliminate(w, mem, e, err));
     for (int j = 0; j < w->sys->nq; j++) {
         w->v[j] = -w->g[j];
     }
     MT_TRY(mt_eliminate_multipliers(e, w->v, w->lambda, mem, err));
-    mt_newton_evaluate(w, poses, true);
+    mt_newton_evaluate(w, at, true);
     w->gap = mt_newton_gap_of(w);
     mt_eliminate_project(e, w->g, w->reduced);
     const double unbalanced = mt_max_abs(e->n, w->reduced);
@@ -335,12 +295,12 @@ static mt_status shorten(mt_newton_work *w, const mt_elimination *e, double *eta
     return MT_OK;
 }
 
-mt_status mt_newton_linearise(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
+mt_status mt_newton_linearise(mt_newton_work *w, const mt_placement *at, mt_arena *mem,
                               mt_elimination *e, double **inverse, mt_err *err)
 {
     const int nq = w->sys->nq;
     MT_TRY(mt_interrupt_check(w->sys->model->interrupt, err));
-    MT_TRY(balance(w, poses, mem, e, err));
+    MT_TRY(balance(w, at, mem, e, err));
     MT_TRY(mt_newton_invert(w, e, mem, inverse, err));
     double *const minus_c = mt_arena_f64(mem, (size_t)w->p->m, 1);
     double *const hv = mt_arena_f64(mem, (size_t)nq, 1);
@@ -382,18 +342,18 @@ mt_status mt_newton_linearise(mt_newton_work *w, const mt_pose *poses, mt_arena 
     return MT_OK;
 }
 
-void mt_newton_follow(const mt_newton_work *w, const mt_pose *poses)
+void mt_newton_follow(const mt_newton_work *w, mt_placement *at)
 {
     if (w->p->energy == MT_ENERGY_PHYSICAL) {
-        mt_data_turns(w->p->data, poses);
+        mt_data_turns(w->p->data, at);
     }
 }
 
-void mt_newton_take_step(mt_newton_work *w, mt_pose *poses, double limit)
+void mt_newton_take_step(mt_newton_work *w, mt_placement *at, double limit)
 {
     const double factor = w->moved > limit ? limit / w->moved : 1.0;
     for (int j = 0; j < w->sys->nq; j++) {
         w->step[j] *= factor;
     }
-    mt_position_move(w->sys, poses, w->step);
+    mt_poses_move(w->sys, at->pose, w->step);
 }

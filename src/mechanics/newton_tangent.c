@@ -8,27 +8,29 @@
  * K the reduced Hessian of newton_step.c with the border of the trimmed spring. The chart moves
  * with the position; that adds nothing, because grad L = 0 there.
  */
-#include "mechanics/newton_priv.h"
+#include "mechanics/newton_tangent.h"
 
 #include <string.h>
 
+#include "mechanics/newton_step.h"
+
 /* (grad L). into w->g and -c. into w->c. */
-static mt_status differentiate(mt_newton_work *w, const mt_pose *poses, const mt_state *p,
-                               const mt_stage *stage, const double *d, mt_arena *scratch,
-                               mt_err *err)
+static mt_status differentiate(mt_newton_work *w, const mt_placement *at, const mt_stage *stage,
+                               const double *d, mt_arena *scratch, mt_err *err)
 {
     const int m = w->p->m;
-    mt_pose *const moved = mt_arena_alloc(scratch, (size_t)w->sys->n_bodies, sizeof *moved);
-    if (moved == NULL) {
+    mt_placement moved = *at;
+    moved.pose = mt_arena_alloc(scratch, (size_t)w->sys->n_bodies, sizeof *moved.pose);
+    if (moved.pose == NULL) {
         return mt_fail_memory(err);
     }
-    mt_position_complex(w->sys, poses, d, moved);
+    mt_poses_tangent(w->sys, at->pose, d, moved.pose);
     for (int i = 0; i < m; i++) {
         w->lambda_cx[i] = stage->lambda[i];
     }
-    w->l.trim_force = p->trim_force;
+    w->l.trim_force = stage->trim_force;
     w->l.trim_force_derivative = 0.0;
-    mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, moved, m, w->lambda_cx,
+    mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, &moved, m, w->lambda_cx,
                        MT_CURVATURE_NONE, &w->l);
     for (int j = 0; j < w->sys->nq; j++) {
         mt_cx sum = w->l.g[j];
@@ -72,8 +74,8 @@ static mt_status respond(mt_newton_work *w, const mt_stage *stage, double *eta,
     return MT_OK;
 }
 
-mt_status mt_newton_tangent(const mt_newton_problem *problem, const mt_pose *poses, mt_state *p,
-                            const mt_stage *stage, double *d, mt_arena *scratch, mt_err *err)
+mt_status mt_newton_tangent(const mt_newton_problem *problem, const mt_placement *at,
+                            mt_stage *stage, double *d, mt_arena *scratch, mt_err *err)
 {
     if (!stage->active) {
         return MT_OK;
@@ -85,7 +87,7 @@ mt_status mt_newton_tangent(const mt_newton_problem *problem, const mt_pose *pos
     if (eta == NULL) {
         return mt_fail_memory(err);
     }
-    MT_TRY(differentiate(&w, poses, p, stage, d, scratch, err));
+    MT_TRY(differentiate(&w, at, stage, d, scratch, err));
     MT_TRY(respond(&w, stage, eta, scratch, err));
     const int nq = w.sys->nq;
     mt_axpy(nq, 1.0, w.v, d);
@@ -94,9 +96,9 @@ mt_status mt_newton_tangent(const mt_newton_problem *problem, const mt_pose *pos
         for (int j = 0; j < nq; j++) {
             w.g[j] = -w.g[j];
         }
-        memset(p->d_lambda, 0, (size_t)w.sys->n_constraints * sizeof *p->d_lambda);
-        MT_TRY(mt_eliminate_multipliers(&stage->e, w.g, p->d_lambda, scratch, err));
-        p->d_trim_force = problem->trim ? eta[stage->e.n] : 0.0;
+        memset(stage->d_lambda, 0, (size_t)w.p->m * sizeof *stage->d_lambda);
+        MT_TRY(mt_eliminate_multipliers(&stage->e, w.g, stage->d_lambda, scratch, err));
+        stage->d_trim_force = problem->trim ? eta[stage->e.n] : 0.0;
     }
     mt_arena_rewind(scratch, mark);
     return MT_OK;

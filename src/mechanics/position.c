@@ -5,39 +5,7 @@
 #include <string.h>
 
 #include "mechanics/drive.h"
-#include "mechanics/newton.h"
-
-static void body_motion(const mt_system *sys, int body, const double *dq, double dx[3],
-                        double theta[3])
-{
-    for (int k = 0; k < 3; k++) {
-        const int *const dof = sys->bodies[body].dof;
-        dx[k] = dof[k] >= 0 ? dq[dof[k]] : 0.0;
-        theta[k] = dof[3 + k] >= 0 ? dq[dof[3 + k]] : 0.0;
-    }
-}
-
-void mt_position_move(const mt_system *sys, mt_pose *poses, const double *dq)
-{
-    for (int i = 0; i < sys->n_bodies; i++) {
-        double dx[3];
-        double theta[3];
-        body_motion(sys, i, dq, dx, theta);
-        mt_pose_move(&poses[i], dx, theta);
-    }
-}
-
-void mt_position_complex(const mt_system *sys, const mt_pose *poses, const double *dq,
-                         mt_pose *out)
-{
-    for (int i = 0; i < sys->n_bodies; i++) {
-        double dx[3];
-        double theta[3];
-        out[i] = poses[i];
-        body_motion(sys, i, dq, dx, theta);
-        mt_pose_tangent(&out[i], dx, theta);
-    }
-}
+#include "mechanics/newton_tangent.h"
 
 /* Constraints of the plain assembly: all but the drive's. */
 static int assembly_constraints(const mt_system *sys)
@@ -49,7 +17,7 @@ static int assembly_constraints(const mt_system *sys)
  * drawing's own numbers: it closes as it is. */
 static const double DRAWN_CLOSED = 1e-13;
 
-static mt_status close_loops(mt_state *p, mt_data *data, mt_arena *mem, mt_err *err)
+static mt_status close_loops(mt_state *p, const mt_data *data, mt_arena *mem, mt_err *err)
 {
     const mt_system *const sys = p->sys;
     const mt_newton_problem problem = {.data = data,
@@ -58,27 +26,27 @@ static mt_status close_loops(mt_state *p, mt_data *data, mt_arena *mem, mt_err *
                                        .m = assembly_constraints(sys),
                                        .trim = false};
     double gap = 0.0;
-    memcpy(p->reference, p->drawn, (size_t)sys->n_bodies * sizeof *p->reference);
+    memcpy(p->reference.pose, p->drawn, (size_t)sys->n_bodies * sizeof *p->drawn);
     if (sys->drawn_closed) {
         return MT_OK; /* and the drawing's motion is the reference's */
     }
-    MT_TRY(mt_newton_gap(&problem, p->reference, mem, &gap, err));
+    MT_TRY(mt_newton_gap(&problem, &p->reference, mem, &gap, err));
     if (gap <= DRAWN_CLOSED * sys->length_m && sys->geometry_fixed) {
         /* where inputs shape the geometry the stage is needed for its derivative, even if
          * nothing moves now */
         return MT_OK;
     }
-    return mt_newton_solve(&problem, p->reference, mem, p, &p->closure, err);
+    return mt_newton_solve(&problem, &p->reference, mem, &p->closure, err);
 }
 
-static mt_status balance(mt_state *p, mt_data *data, mt_arena *mem, mt_err *err)
+static mt_status balance(mt_state *p, const mt_data *data, mt_arena *mem, mt_err *err)
 {
     const mt_newton_problem problem = {.data = data,
                                        .energy = MT_ENERGY_PHYSICAL,
                                        .drawn = p->drawn,
                                        .m = p->sys->n_constraints,
                                        .trim = p->sys->trim};
-    return mt_newton_solve(&problem, p->pose, mem, p, &p->equilibrium, err);
+    return mt_newton_solve(&problem, &p->at, mem, &p->equilibrium, err);
 }
 
 /*
@@ -87,35 +55,23 @@ static mt_status balance(mt_state *p, mt_data *data, mt_arena *mem, mt_err *err)
  * alone, with a derivative. Where that closure or the equilibrium from there fails (far from
  * the drawing the anchor pulls no longer), what was found stands.
  */
-static mt_status anchor_loose_freedoms(mt_state *p, mt_data *data, mt_arena *mem, mt_err *err)
+static mt_status anchor_loose_freedoms(mt_state *p, const mt_data *data, mt_arena *mem,
+                                       mt_err *err)
 {
-    const size_t n = (size_t)p->sys->n_bodies;
     const mt_newton_problem problem = {.data = data,
                                        .energy = MT_ENERGY_ANCHOR,
                                        .drawn = p->drawn,
                                        .m = p->sys->n_constraints,
                                        .trim = false};
     mt_state other = *p;
-    other.pose = mt_arena_alloc(mem, n, sizeof *other.pose);
-    if (other.pose == NULL) {
-        return mt_fail_memory(err);
-    }
-    const size_t turns = (size_t)p->sys->n_measures;
-    double *const turn = mt_arena_f64(mem, turns, 1);
-    if (turn == NULL) {
-        return mt_fail_memory(err);
-    }
-    memcpy(turn, data->turn, turns * sizeof *turn);
-    memcpy(data->turn, p->driven_turn, turns * sizeof *turn);
-    memcpy(other.pose, p->driven_pose, n * sizeof *other.pose);
-    mt_status rc = mt_newton_solve(&problem, other.pose, mem, &other, &other.driven, NULL);
+    MT_TRY(mt_placement_init(&other.at, p->sys, mem, err));
+    mt_placement_copy(p->sys, &p->driven, &other.at);
+    mt_status rc = mt_newton_solve(&problem, &other.at, mem, &other.anchored, NULL);
     if (rc == MT_OK) {
         rc = balance(&other, data, mem, NULL);
     }
     if (rc == MT_OK) {
         *p = other;
-    } else {
-        memcpy(data->turn, turn, turns * sizeof *turn);
     }
     return rc == MT_E_MEMORY ? mt_fail_memory(err) : MT_OK;
 }
@@ -138,16 +94,16 @@ static double turn_between(const mt_pose *from, const mt_pose *to)
 
 static void measure_motion(mt_state *p)
 {
-    const mt_pose *const from = p->sys->driven ? p->driven_pose : p->drawn;
+    const mt_pose *const from = p->sys->driven ? p->driven.pose : p->drawn;
     p->moved_body = -1;
     p->turned_body = -1;
     for (int i = 0; i < p->sys->n_bodies; i++) {
         double way[3];
         for (int k = 0; k < 3; k++) {
-            way[k] = creal(p->pose[i].x[k]) - creal(from[i].x[k]);
+            way[k] = creal(p->at.pose[i].x[k]) - creal(from[i].x[k]);
         }
         const double moved = mt_norm2(3, way);
-        const double turned = turn_between(&from[i], &p->pose[i]);
+        const double turned = turn_between(&from[i], &p->at.pose[i]);
         if (moved > p->moved_m) {
             p->moved_m = moved;
             p->moved_body = i;
@@ -159,35 +115,32 @@ static void measure_motion(mt_state *p)
     }
 }
 
-mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_drive_start *start,
+static mt_status state_init(mt_state *p, const mt_system *sys, mt_arena *mem, mt_err *err)
+{
+    *p = (mt_state){.sys = sys};
+    MT_TRY(mt_placement_init(&p->reference, sys, mem, err));
+    MT_TRY(mt_placement_init(&p->driven, sys, mem, err));
+    MT_TRY(mt_placement_init(&p->at, sys, mem, err));
+    p->drawn = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *p->drawn);
+    p->d_reference = mt_arena_f64(mem, (size_t)sys->nq, 1);
+    p->d_pose = mt_arena_f64(mem, (size_t)sys->nq, 1);
+    const bool bad = p->drawn == NULL || p->d_reference == NULL || p->d_pose == NULL;
+    return bad ? mt_fail_memory(err) : MT_OK;
+}
+
+mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placement *start,
                             mt_arena *mem, mt_state *out, mt_err *err)
 {
-    const size_t n = (size_t)sys->n_bodies;
-    const size_t nq = (size_t)sys->nq;
-    *out = (mt_state){.sys = sys};
-    out->drawn = mt_arena_alloc(mem, n, sizeof *out->drawn);
-    out->reference = mt_arena_alloc(mem, n, sizeof *out->reference);
-    out->driven_pose = mt_arena_alloc(mem, n, sizeof *out->driven_pose);
-    out->pose = mt_arena_alloc(mem, n, sizeof *out->pose);
-    out->d_reference = mt_arena_f64(mem, nq, 1);
-    out->d_pose = mt_arena_f64(mem, nq, 1);
-    out->d_lambda = mt_arena_f64(mem, (size_t)sys->n_constraints, 1);
-    out->driven_turn = mt_arena_f64(mem, (size_t)sys->n_measures, 1);
-    if (out->drawn == NULL || out->reference == NULL || out->driven_pose == NULL ||
-        out->pose == NULL || out->d_reference == NULL || out->d_pose == NULL ||
-        out->d_lambda == NULL || out->driven_turn == NULL) {
-        return mt_fail_memory(err);
-    }
-    memset(data->turn, 0, (size_t)sys->n_measures * sizeof *data->turn);
+    MT_TRY(state_init(out, sys, mem, err));
     mt_data_drawn(data, out->drawn);
     mt_data_targets(data);
     MT_TRY(close_loops(out, data, mem, err));
-    mt_data_rest(data, out->reference);
-    memcpy(out->pose, out->reference, n * sizeof *out->pose);
+    mt_data_rest(data, out->reference.pose);
+    mt_placement_copy(sys, &out->reference, &out->at);
     if (sys->driven) {
-        MT_TRY(mt_drive_solve(out, data, start, mem, err));
-        memcpy(out->driven_pose, out->pose, n * sizeof *out->pose);
-        memcpy(out->driven_turn, data->turn, (size_t)sys->n_measures * sizeof *data->turn);
+        mt_placement_copy(sys, start != NULL ? start : &out->reference, &out->driven);
+        MT_TRY(mt_drive_solve(data, &out->driven, &out->iterations, mem, err));
+        mt_placement_copy(sys, &out->driven, &out->at);
     }
     if (sys->loaded || sys->driven) {
         MT_TRY(balance(out, data, mem, err));
@@ -195,6 +148,8 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_drive_
     if (sys->driven && out->equilibrium.null_freedoms > 0) {
         MT_TRY(anchor_loose_freedoms(out, data, mem, err));
     }
+    out->iterations += out->closure.iterations + out->anchored.iterations;
+    out->iterations += out->equilibrium.iterations;
     measure_motion(out);
     if (sys->drawn_closed && !sys->driven && !sys->loaded) {
         return MT_OK; /* nothing was moved: no gap */
@@ -204,7 +159,7 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_drive_
                                      .drawn = out->drawn,
                                      .m = sys->n_constraints,
                                      .trim = false};
-    return mt_newton_gap(&check, out->pose, mem, &out->gap_m, err);
+    return mt_newton_gap(&check, &out->at, mem, &out->gap_m, err);
 }
 
 mt_status mt_position_tangent(mt_state *p, mt_data *data, mt_arena *scratch, mt_err *err)
@@ -241,21 +196,20 @@ mt_status mt_position_tangent(mt_state *p, mt_data *data, mt_arena *scratch, mt_
                                  .drawn = drawn,
                                  .m = assembly_constraints(sys),
                                  .trim = false};
-    MT_TRY(mt_newton_tangent(&problem, p->reference, p, &p->closure, p->d_reference, scratch,
-                             err));
-    mt_position_complex(sys, p->reference, p->d_reference, work);
+    MT_TRY(
+        mt_newton_tangent(&problem, &p->reference, &p->closure, p->d_reference, scratch, err));
+    mt_poses_tangent(sys, p->reference.pose, p->d_reference, work);
     mt_data_rest(data, work);
     memcpy(p->d_pose, p->d_reference, (size_t)sys->nq * sizeof *p->d_pose);
     if (sys->driven) {
         problem.m = sys->n_constraints;
-        MT_TRY(mt_newton_tangent(&problem, p->pose, p, &p->driven, p->d_pose, scratch, err));
+        MT_TRY(mt_newton_tangent(&problem, &p->at, &p->anchored, p->d_pose, scratch, err));
     }
     if (p->equilibrium.active) {
         problem.energy = MT_ENERGY_PHYSICAL;
         problem.m = sys->n_constraints;
         problem.trim = sys->trim;
-        MT_TRY(
-            mt_newton_tangent(&problem, p->pose, p, &p->equilibrium, p->d_pose, scratch, err));
+        MT_TRY(mt_newton_tangent(&problem, &p->at, &p->equilibrium, p->d_pose, scratch, err));
     }
     mt_arena_rewind(scratch, mark);
     return MT_OK;

@@ -28,7 +28,7 @@ static double extent_of(const mt_linear *lin)
     double extent = lin->sys->length_m;
     for (int b = 0; b < lin->sys->n_bodies; b++) {
         for (int k = 0; k < 3; k++) {
-            extent = fmax(extent, fabs(creal(lin->position.pose[b].x[k])));
+            extent = fmax(extent, fabs(creal(lin->position.at.pose[b].x[k])));
         }
     }
     return extent;

@@ -32,8 +32,6 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "mechanics/position.h"
-
 enum { PROBES = 4, WALKS = 2, CHORDS = 60, HALVINGS = 6 };
 
 /* Relative diagonal entries of R below which an equation is looked at: to refuse (at a dead
@@ -55,7 +53,7 @@ static const double OPEN_ROOM = 1e3;
 
 typedef struct near {
     const mt_data *d;
-    const mt_pose *poses;
+    const mt_placement *at;
     const mt_elimination *e;
     double unit; /* rounding of closed equations, model lengths */
     int rank;    /* equations that are clearly independent */
@@ -151,7 +149,7 @@ static double curve(const near *v, int i, const double *phi, double *push)
         for (int t = 0; t < sys->constraints[j].terms && w != 0.0; t++) {
             const int *const body = sys->measures[sys->constraints[j].measure[t]].body;
             double b[MT_LOCAL];
-            size = fmax(size, mt_constraint_curve(v->d, v->poses, j, t, phi, e->dc, b));
+            size = fmax(size, mt_constraint_curve(v->d, v->at->pose, j, t, phi, e->dc, b));
             for (int k = 0; k < MT_LOCAL; k++) {
                 const int dof = mt_local_dof(sys, body, k);
                 push[dof < 0 ? 0 : dof] += dof < 0 ? 0.0 : w * b[k];
@@ -218,12 +216,12 @@ static mt_status curvatures(near *v, mt_arena *mem, mt_err *err)
 }
 
 /* Equations whose relative diagonal entry of R is below `look`. */
-static mt_status look_at(const mt_data *d, const mt_pose *poses, const mt_elimination *e,
+static mt_status look_at(const mt_data *d, const mt_placement *at, const mt_elimination *e,
                          double look, near *v, mt_arena *mem, mt_err *err)
 {
     const int most = e->m < e->nq ? e->m : e->nq;
     const double first = most > 0 ? fabs(e->qr.qr[0]) : 0.0;
-    *v = (near){.d = d, .poses = poses, .e = e};
+    *v = (near){.d = d, .at = at, .e = e};
     while (v->rank < most &&
            fabs(e->qr.qr[v->rank + ((ptrdiff_t)v->rank * e->nq)]) > look * first) {
         v->rank++;
@@ -235,7 +233,7 @@ static mt_status look_at(const mt_data *d, const mt_pose *poses, const mt_elimin
         v->k = 0;
         return MT_OK;
     }
-    v->unit = rounding(d, poses);
+    v->unit = rounding(d, at->pose);
     v->w = mt_arena_f64(mem, (size_t)e->m, (size_t)v->k + 1);
     v->z = mt_arena_f64(mem, (size_t)e->nq, (size_t)v->n);
     v->s = mt_arena_f64(mem, (size_t)v->k, 1);
@@ -254,17 +252,17 @@ static mt_status look_at(const mt_data *d, const mt_pose *poses, const mt_elimin
     return curvatures(v, mem, err);
 }
 
-static mt_status say(const near *v, const double *w, mt_err *err)
+static mt_status say(const near *v, const double *w, mt_arena *mem, mt_err *err)
 {
-    char names[MT_SINGULAR_NAMES];
-    mt_joint_names(v->d->sys, v->e->m, w, names, sizeof names);
+    mt_joint_names names;
+    MT_TRY(mt_name_joints(v->d->sys, v->e->m, w, mem, &names, err));
     return mt_fail(err, MT_E_DEAD_CENTRE,
                    "dead centre: joints %s depend on each other in this very position, and not "
                    "beside it. How it moves on from here is not determined (several ways, or "
                    "none), nor are the forces of these joints: it has no small vibrations to "
                    "compute. Put it a little out of this position, or leave out what is "
                    "superfluous",
-                   names);
+                   names.text);
 }
 
 /* Largest motion of a body in a displacement [model lengths, rad]. */
@@ -282,7 +280,7 @@ static double size_of(const mt_system *sys, const double *dq)
 }
 
 typedef struct walk {
-    mt_pose *poses;
+    mt_placement at;
     double *dq;   /* [nq] */
     double *back; /* [nq] */
     double *c;    /* [m] */
@@ -297,9 +295,9 @@ static mt_status close(const near *v, walk *w, bool *closed, mt_arena *mem, mt_e
     const double limit = 2.0 * size_of(sys, w->dq);
     *closed = false;
     for (int it = 0; it < CHORDS && !*closed; it++) {
-        memcpy(w->poses, v->poses, (size_t)sys->n_bodies * sizeof *w->poses);
-        mt_position_move(sys, w->poses, w->dq);
-        mt_constraint_values(v->d, w->poses, e->m, w->c);
+        mt_placement_copy(sys, v->at, &w->at);
+        mt_poses_move(sys, w->at.pose, w->dq);
+        mt_constraint_values(v->d, &w->at, e->m, w->c);
         w->left = 0.0;
         for (int i = 0; i < e->qr.rank; i++) {
             const int row = e->qr.perm[i];
@@ -364,14 +362,14 @@ static mt_status walk_away(const near *v, mt_arena *mem, mt_err *err)
     const size_t nq = (size_t)e->nq;
     uint64_t state = 2;
     int open = -1;
-    walk w = {.poses = mt_arena_alloc(mem, (size_t)v->d->sys->n_bodies, sizeof *w.poses),
-              .dq = mt_arena_f64(mem, nq, 1),
+    walk w = {.dq = mt_arena_f64(mem, nq, 1),
               .back = mt_arena_f64(mem, nq, 1),
               .c = mt_arena_f64(mem, (size_t)e->m, 1)};
     double *const null = mt_arena_f64(mem, (size_t)e->m, 1);
-    if (w.poses == NULL || w.dq == NULL || w.back == NULL || w.c == NULL || null == NULL) {
+    if (w.dq == NULL || w.back == NULL || w.c == NULL || null == NULL) {
         return mt_fail_memory(err);
     }
+    MT_TRY(mt_placement_init(&w.at, v->d->sys, mem, err));
     for (int i = 0; i < WALKS && open < 0; i++) {
         MT_TRY(find_open(v, &state, &w, &open, mem, err));
     }
@@ -379,49 +377,50 @@ static mt_status walk_away(const near *v, mt_arena *mem, mt_err *err)
         return MT_OK;
     }
     MT_TRY(mt_eliminate_left_null(e, open, null, mem, err));
-    return say(v, null, err);
+    return say(v, null, mem, err);
 }
 
-static mt_status judge(const mt_data *d, const mt_pose *poses, const mt_elimination *e,
+static mt_status judge(const mt_data *d, const mt_placement *at, const mt_elimination *e,
                        mt_arena *mem, mt_err *err)
 {
     near v;
     int worst = -1;
-    MT_TRY(look_at(d, poses, e, LOOK, &v, mem, err));
+    MT_TRY(look_at(d, at, e, LOOK, &v, mem, err));
     for (int i = 0; i < v.k; i++) {
         const bool here = is_curved(&v, i) && v.s[i] * v.s[i] <= SAME * v.unit * v.h[i];
         worst = here && (worst < 0 || v.h[i] > v.h[worst]) ? i : worst;
     }
     if (worst >= 0) {
-        return say(&v, v.w + ((ptrdiff_t)worst * e->m), err);
+        return say(&v, v.w + ((ptrdiff_t)worst * e->m), mem, err);
     }
     return v.k > 0 && e->qr.rank < e->m && e->n > 0 ? walk_away(&v, mem, err) : MT_OK;
 }
 
-mt_status mt_singular_refuse(const mt_data *d, const mt_pose *poses, const mt_elimination *e,
+mt_status mt_singular_refuse(const mt_data *d, const mt_placement *at, const mt_elimination *e,
                              mt_arena *scratch, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    const mt_status rc = judge(d, poses, e, scratch, err);
+    const mt_status rc = judge(d, at, e, scratch, err);
     mt_arena_rewind(scratch, mark);
     return rc;
 }
 
-mt_status mt_singular_nearness(const mt_data *d, const mt_pose *poses, const mt_elimination *e,
-                               mt_arena *scratch, mt_nearness *out, mt_err *err)
+mt_status mt_singular_nearness(const mt_data *d, const mt_placement *at,
+                               const mt_elimination *e, mt_arena *scratch, mt_arena *mem,
+                               mt_nearness *out, mt_err *err)
 {
     near v;
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     *out = (mt_nearness){.independence = 1.0, .distance = HUGE_VAL};
-    MT_TRY(look_at(d, poses, e, LOOK_NEAR, &v, scratch, err));
+    MT_TRY(look_at(d, at, e, LOOK_NEAR, &v, scratch, err));
     for (int i = 0; i < v.k; i++) {
         const double distance = i < v.kept && is_curved(&v, i) ? v.s[i] / v.h[i] : HUGE_VAL;
         if (distance <= MT_NEAR_DISTANCE && distance < out->distance) {
             out->near = true;
             out->independence = v.s[i];
             out->distance = distance;
-            mt_joint_names(d->sys, e->m, v.w + ((ptrdiff_t)i * e->m), out->joints,
-                           sizeof out->joints);
+            MT_TRY(mt_name_joints(d->sys, e->m, v.w + ((ptrdiff_t)i * e->m), mem, &out->joints,
+                                  err));
         }
     }
     mt_arena_rewind(scratch, mark);

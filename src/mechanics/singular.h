@@ -4,8 +4,7 @@
 
 #include "mechanics/eliminate.h"
 #include "mechanics/lagrangian.h"
-
-enum { MT_SINGULAR_NAMES = 400 };
+#include "mechanics/names.h"
 
 /* How near a position is to one where the equations of joints depend on each other there
  * only. */
@@ -14,8 +13,8 @@ typedef struct mt_nearness {
     /* what is left of the equations' independence: a singular value of the equations in rows of
      * unit length, about 1 far away, 0 there */
     double independence;
-    double distance;                /* about how far it is [rad, model lengths] */
-    char joints[MT_SINGULAR_NAMES]; /* "\"a\", \"b\"": whose equations they are */
+    double distance;       /* about how far it is [rad, model lengths] */
+    mt_joint_names joints; /* whose equations they are */
 } mt_nearness;
 
 /* Said to be near up to this distance [rad, model lengths]: about three degrees. */
@@ -26,15 +25,16 @@ static const double MT_NEAR_DISTANCE = 0.05;
  * each other here only (a dead centre, a folded parallelogram, a rope just taut): then the
  * motions that A allows to first order are not the motions that there are, and the forces of
  * the joints are not determined. Joints that are redundant everywhere are none of this.
- * @param[in] d, poses  closed position (to rounding)
+ * @param[in] d, at     closed position (to rounding)
  * @param[in] e elimination of the first e->m constraints there Fails: MT_E_DEAD_CENTRE with the
  *   joints' names, MT_E_MEMORY. Costs nothing where the equations are far from dependent; else
  *   a few products with A and O(e->m nq) per freedom.
  */
-mt_status mt_singular_refuse(const mt_data *d, const mt_pose *poses, const mt_elimination *e,
+mt_status mt_singular_refuse(const mt_data *d, const mt_placement *at, const mt_elimination *e,
                              mt_arena *scratch, mt_err *err);
-/* How near is such a position? Arguments as above. */
-mt_status mt_singular_nearness(const mt_data *d, const mt_pose *poses, const mt_elimination *e,
-                               mt_arena *scratch, mt_nearness *out, mt_err *err);
+/* How near is such a position? Arguments as above; names are in mem. */
+mt_status mt_singular_nearness(const mt_data *d, const mt_placement *at,
+                               const mt_elimination *e, mt_arena *scratch, mt_arena *mem,
+                               mt_nearness *out, mt_err *err);
 
 #endif

@@ -19,15 +19,9 @@ void mt_sweep_range(double from, double to, int steps, double *positions)
     }
 }
 
-static double value_at(const mt_data *data, int measure, const mt_pose *poses, bool turned)
+static double value_at(const mt_data *data, int measure, const mt_placement *at)
 {
-    const mt_measure_def *const def = &data->sys->measures[measure];
-    mt_measure_data m = mt_data_measure(data, def);
-    if (!turned) {
-        m.near = 0.0;
-    }
-    return creal(
-        mt_measure_value(&m, mt_pose_of(poses, def->body[0]), mt_pose_of(poses, def->body[1])));
+    return creal(mt_data_value(data, &data->sys->measures[measure], at));
 }
 
 static mt_status record_nearness(mt_linear *lin, mt_sweep_point *point, mt_arena *mem,
@@ -35,7 +29,7 @@ static mt_status record_nearness(mt_linear *lin, mt_sweep_point *point, mt_arena
 {
     mt_nearness *const near = mt_arena_alloc(mem, 1, sizeof *near);
     point->near = near;
-    return near == NULL ? mt_fail_memory(err) : mt_linear_nearness(lin, near, err);
+    return near == NULL ? mt_fail_memory(err) : mt_linear_nearness(lin, mem, near, err);
 }
 
 static mt_status record(mt_linear *lin, mt_sweep_point *point, mt_err *err)
@@ -49,14 +43,15 @@ static mt_status record(mt_linear *lin, mt_sweep_point *point, mt_err *err)
         point->coordinate[i] = nan("");
         point->ratio[i] = nan("");
         if (measure >= 0) {
-            point->coordinate[i] = value_at(&lin->data, measure, p->pose, true) -
-                                   value_at(&lin->data, measure, p->reference, false);
-            point->ratio[i] = mt_drive_rate(&lin->data, measure, p->pose, p->d_pose);
+            point->coordinate[i] = value_at(&lin->data, measure, &p->at) -
+                                   value_at(&lin->data, measure, &p->reference);
+            point->ratio[i] = mt_drive_rate(&lin->data, measure, p->at.pose, p->d_pose);
         }
     }
     /* grad V + lambda grad s = 0: what holds the joint balances -dV/ds */
-    point->hold = sys->trim ? p->trim_force : -p->equilibrium.lambda[sys->drive_constraint];
-    point->residual = p->residual;
+    point->hold =
+        sys->trim ? p->equilibrium.trim_force : -p->equilibrium.lambda[sys->drive_constraint];
+    point->residual = p->equilibrium.residual;
     point->gap_m = p->gap_m;
     return MT_OK;
 }
@@ -156,9 +151,9 @@ mt_status mt_sweep_run(mt_linear *lin, const double *inputs, int n, const double
         return MT_OK;
     }
     lin->follow = true;
-    lin->last.valid = false; /* begin at the reference position */
+    lin->has_last = false; /* begin at the reference position */
     mt_status rc = walk(&s, nearest, 1, err);
-    lin->last.valid = false;
+    lin->has_last = false;
     if (rc == MT_OK && nearest > 0) {
         rc = walk(&s, nearest - 1, -1, err);
     }

@@ -73,13 +73,14 @@ static void closing(const mt_linear *lin, const mt_lagrangian *l, mt_linear_tang
     }
 }
 
-static mt_status tangent_constraints(mt_linear *lin, const mt_pose *poses, mt_linear_tangent *t,
-                                     mt_err *err)
+static mt_status tangent_constraints(mt_linear *lin, const mt_placement *at,
+                                     mt_linear_tangent *t, mt_err *err)
 {
     const mt_system *const sys = lin->sys;
     const ptrdiff_t nq = sys->nq;
     const int all = sys->n_constraints;
-    const bool loaded = lin->position.equilibrium.active;
+    const mt_stage *const equilibrium = &lin->position.equilibrium;
+    const bool loaded = equilibrium->active;
     mt_lagrangian l;
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     MT_TRY(mt_lagrangian_init(&l, sys, loaded, &lin->scratch, err));
@@ -91,11 +92,11 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_pose *poses, mt_li
         return mt_fail_memory(err);
     }
     for (int i = 0; i < all && loaded; i++) {
-        lambda[i] = cx_make(lin->position.equilibrium.lambda[i], lin->position.d_lambda[i]);
+        lambda[i] = cx_make(equilibrium->lambda[i], equilibrium->d_lambda[i]);
     }
-    l.trim_force = lin->position.trim_force;
-    l.trim_force_derivative = lin->position.d_trim_force;
-    mt_lagrangian_eval(&lin->dual, MT_ENERGY_PHYSICAL, lin->position.drawn, poses, all,
+    l.trim_force = equilibrium->trim_force;
+    l.trim_force_derivative = equilibrium->d_trim_force;
+    mt_lagrangian_eval(&lin->dual, MT_ENERGY_PHYSICAL, lin->position.drawn, at, all,
                        loaded ? lambda : NULL,
                        loaded ? MT_CURVATURE_GEOMETRIC : MT_CURVATURE_NONE, &l);
     for (ptrdiff_t j = 0; j < nq; j++) {
@@ -117,16 +118,17 @@ mt_status mt_tangent_update(mt_linear *lin, mt_err *err)
 {
     const mt_system *const sys = lin->sys;
     lin->tangent = mt_arena_alloc(&lin->geometry, (size_t)sys->n_inputs, sizeof *lin->tangent);
-    mt_pose *const poses = mt_arena_alloc(&lin->geometry, (size_t)sys->n_bodies, sizeof *poses);
-    if (lin->tangent == NULL || poses == NULL) {
+    mt_placement at = lin->position.at;
+    at.pose = mt_arena_alloc(&lin->geometry, (size_t)sys->n_bodies, sizeof *at.pose);
+    if (lin->tangent == NULL || at.pose == NULL) {
         return mt_fail_memory(err);
     }
     for (int p = lin->first_input; p < sys->n_inputs; p++) {
         lin->dual.input = p;
         MT_TRY(mt_position_tangent(&lin->position, &lin->dual, &lin->scratch, err));
-        mt_position_complex(sys, lin->position.pose, lin->position.d_pose, poses);
-        MT_TRY(tangent_rows(lin, poses, &lin->tangent[p], err));
-        MT_TRY(tangent_constraints(lin, poses, &lin->tangent[p], err));
+        mt_poses_tangent(sys, lin->position.at.pose, lin->position.d_pose, at.pose);
+        MT_TRY(tangent_rows(lin, at.pose, &lin->tangent[p], err));
+        MT_TRY(tangent_constraints(lin, &at, &lin->tangent[p], err));
     }
     return MT_OK;
 }

@@ -409,7 +409,7 @@ mt_status mt_motion_follow(mt_problem *p, int family, const int *below, mt_arena
                                      why.text, err);
     }
     w.a = f->driven;
-    w.a->lin->last.valid = false; /* begin at the reference position */
+    w.a->lin->has_last = false; /* begin at the reference position */
     w.unit = f->angle ? 1.0 : w.a->sys->length_m;
     w.inputs = mt_arena_f64(mem, (size_t)p->n + 1, 1);
     if (w.inputs == NULL) {

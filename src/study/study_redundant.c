@@ -18,7 +18,7 @@ static mt_status judge(mt_study_check *c, mt_linear *lin, bool *told, mt_err *er
         if (told[i]) {
             continue;
         }
-        MT_TRY(mt_linear_independence(lin, i, &what, err));
+        MT_TRY(mt_linear_independence(lin, i, &c->study->mem, &what, err));
         told[i] = what.opens || what.blocks;
         if (told[i]) {
             mt_diag_error(
@@ -33,7 +33,7 @@ static mt_status judge(mt_study_check *c, mt_linear *lin, bool *told, mt_err *er
                       "block a motion, and its frequency is gone at once; give the joints "
                       "the freedom that they need",
                 c->model->parameters[s->variables[i].parameter].name.s,
-                s->variables[i].original, what.joints,
+                s->variables[i].original, what.joints.text,
                 c->model->configurations[lin->sys->configuration].name.s);
         }
     }

@@ -36,11 +36,11 @@ static void closed_form__a_hinge_given_twice_is_named(mt_test *t)
 {
     mech s;
     if (mech_must(t, mech_load(t, "pendulum"), "twice", "", &s)) {
-        const char *text = "";
+        mt_joint_names joints = {.text = ""};
         CHECK_INT(t, mt_linear_redundant(s.a->lin), 2);
         for (int k = 0; k < mt_linear_redundant(s.a->lin); k++) {
-            CHECK(t, mt_linear_redundant_set(s.a->lin, k, &text, &s.err) == MT_OK);
-            CHECK_STR(t, text, "\"pivot\", \"pivot_again\"");
+            CHECK(t, mt_linear_redundant_set(s.a->lin, k, &s.a->mem, &joints, &s.err) == MT_OK);
+            CHECK_STR(t, joints.text, "\"pivot\", \"pivot_again\"");
         }
     }
     mech_free(&s);
@@ -162,7 +162,7 @@ static void closed_form__driven_rod_is_locked_or_trimmed(mt_test *t)
         driven_rod_pair(40.0, angle, hz);
         mech_expect(t, &s, 2, hz, 0, TOL);
         /* the servo carries the weight's moment */
-        CHECK_NEAR(t, fabs(s.a->lin->position.trim_force),
+        CHECK_NEAR(t, fabs(s.a->lin->position.equilibrium.trim_force),
                    (1.0 + 0.5) * 0.8 * 9.81 * sin(angle), TOL);
     }
     mech_free(&s);

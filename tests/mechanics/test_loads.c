@@ -178,7 +178,7 @@ static void load__a_moment_leans_a_pendulum(mt_test *t)
         if (mech_must(t, mech_parse(t, rows[i].text), NULL, "", &s)) {
             mech_expect(t, &s, 1, &hz, 0, TOL);
             /* positive: counter-clockwise, as the axis points */
-            const double lean = creal(s.a->lin->position.pose[0].x[0]);
+            const double lean = creal(s.a->lin->position.at.pose[0].x[0]);
             CHECK_NEAR(t, lean, 0.5 * 3.0 / mgl, TOL);
         }
         mech_free(&s);
@@ -210,8 +210,8 @@ static void load__of_a_joint_has_its_reaction_on_the_first_body(mt_test *t)
     mech s;
     if (mech_must(t, mech_parse(t, model), NULL, "", &s)) {
         mech_expect(t, &s, 2, hz, 0, TOL);
-        CHECK_NEAR(t, creal(s.a->lin->position.pose[0].x[0]), -0.5 * 3.0 / mgl, TOL);
-        CHECK_NEAR(t, asin(creal(s.a->lin->position.pose[1].r[1])), 3.0 / 40.0, TOL);
+        CHECK_NEAR(t, creal(s.a->lin->position.at.pose[0].x[0]), -0.5 * 3.0 / mgl, TOL);
+        CHECK_NEAR(t, asin(creal(s.a->lin->position.at.pose[1].r[1])), 3.0 / 40.0, TOL);
     }
     mech_free(&s);
 }
@@ -234,7 +234,7 @@ static void load__along_a_guide_pushes_a_slider_to_its_place(mt_test *t)
     mech s;
     if (mech_must(t, mech_parse(t, model), NULL, "", &s)) {
         mech_expect(t, &s, 1, &hz, 0, TOL);
-        CHECK_NEAR(t, creal(s.a->lin->position.pose[0].x[0]), 0.4, TOL);
+        CHECK_NEAR(t, creal(s.a->lin->position.at.pose[0].x[0]), 0.4, TOL);
     }
     mech_free(&s);
 }
@@ -289,7 +289,7 @@ static void load__of_zero_loads_nothing(mt_test *t)
     if (mech_must(t, mech_parse(t, model), "loaded", "", &s)) {
         CHECK(t, s.a->sys->loaded);
         CHECK_INT(t, s.a->sys->n_loads, 1);
-        CHECK_NEAR(t, creal(s.a->lin->position.pose[0].x[0]), 1.0 / 200.0, TOL);
+        CHECK_NEAR(t, creal(s.a->lin->position.at.pose[0].x[0]), 1.0 / 200.0, TOL);
     }
     mech_free(&s);
 }

@@ -275,8 +275,8 @@ static void rods__couple_crank_and_rocker_in_every_position(mt_test *t)
             CHECK_INT(t, s.a->lin->n_idle, 1);
             mech_expect(t, &s, i < 2 ? 1 : 0, &hz, 0, TOL);
             for (int k = 0; k < 2; k++) {
-                CHECK_NEAR_ABS(t, creal(s.a->lin->position.pose[k].x[2]),
-                               creal(reference.a->lin->position.pose[k].x[2]), TOL);
+                CHECK_NEAR_ABS(t, creal(s.a->lin->position.at.pose[k].x[2]),
+                               creal(reference.a->lin->position.at.pose[k].x[2]), TOL);
             }
             mech_free(&s);
         }

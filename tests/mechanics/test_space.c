@@ -108,10 +108,12 @@ static void space__planar_four_bar_with_redundant_hinges(mt_test *t)
         const bool both = mech_must(t, mech_load(t, "four_bar"), names[i], "", &plane) &&
                           mech_must(t, mech_load(t, "space_four_bar"), names[i], "", &space);
         if (both) {
-            const char *text = "";
+            mt_joint_names joints = {.text = ""};
             CHECK_INT(t, mt_linear_redundant(space.a->lin), 3);
-            CHECK(t, mt_linear_redundant_set(space.a->lin, 0, &text, &space.err) == MT_OK);
-            CHECK(t, strstr(text, "\"jA\"") != NULL && strstr(text, "\"jC\"") != NULL);
+            CHECK(t, mt_linear_redundant_set(space.a->lin, 0, &space.a->mem, &joints,
+                                             &space.err) == MT_OK);
+            CHECK(t, strstr(joints.text, "\"jA\"") != NULL &&
+                         strstr(joints.text, "\"jC\"") != NULL);
             CHECK_INT(t, space.a->modes.count, 1);
             CHECK_NEAR(t, mech_hz(&space, 1), mech_hz(&plane, 1), TOL);
             mech_free(&space);

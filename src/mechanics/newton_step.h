@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef MECHANICS_NEWTON_PRIV_H
-#define MECHANICS_NEWTON_PRIV_H
+#ifndef MECHANICS_NEWTON_STEP_H
+#define MECHANICS_NEWTON_STEP_H
 
 #include "mechanics/newton.h"
 
@@ -47,11 +47,11 @@ static const double MT_STEP_LIMIT = 0.3;
 
 mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_arena *mem,
                               mt_err *err);
-/* Lagrangian at poses with w->lambda and w->tau. */
-void mt_newton_evaluate(mt_newton_work *w, const mt_pose *poses, bool hessian);
-/* Everything at poses: multipliers, Hessian, elimination, inverse (of order n, with trim n +
+/* Lagrangian at a place with w->lambda and w->tau. */
+void mt_newton_evaluate(mt_newton_work *w, const mt_placement *at, bool hessian);
+/* Everything at a place: multipliers, Hessian, elimination, inverse (of order n, with trim n +
  * 1), and the step v + Z eta (unlimited); tau is advanced. */
-mt_status mt_newton_linearise(mt_newton_work *w, const mt_pose *poses, mt_arena *mem,
+mt_status mt_newton_linearise(mt_newton_work *w, const mt_placement *at, mt_arena *mem,
                               mt_elimination *e, double **inverse, mt_err *err);
 /* Z^T H Z, n x n with leading dimension ld. */
 mt_status mt_newton_reduce_hessian(const mt_newton_work *w, const mt_elimination *e, double *k,
@@ -60,15 +60,13 @@ mt_status mt_newton_reduce_hessian(const mt_newton_work *w, const mt_elimination
  * freedoms without stiffness into w. */
 mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
                            double **inverse, mt_err *err);
-/* Move the poses along w->step, at most `limit` model lengths. */
-void mt_newton_take_step(mt_newton_work *w, mt_pose *poses, double limit);
+/* Move the place along w->step, at most `limit` model lengths. */
+void mt_newton_take_step(mt_newton_work *w, mt_placement *at, double limit);
 /* Physical energy: note the whole turns of angles after a step (springs wind up); else they
  * stay where the drive left them. */
-void mt_newton_follow(const mt_newton_work *w, const mt_pose *poses);
+void mt_newton_follow(const mt_newton_work *w, mt_placement *at);
 /* Largest motion of dq in model lengths, rotations as they are. */
 double mt_newton_scaled_norm(const mt_newton_work *w, const double *dq);
-/* Largest difference of two positions: model lengths, and entries of the rotations. */
-double mt_newton_distance(const mt_system *sys, const mt_pose *a, const mt_pose *b);
 /* Largest violation of the constraints last evaluated, in model lengths. */
 double mt_newton_gap_of(const mt_newton_work *w);
 /* *falls: has Z^T H Z of the w->h last evaluated eigenvalues below 0 by more than rounding, and
@@ -76,13 +74,5 @@ double mt_newton_gap_of(const mt_newton_work *w);
  * leave open? That part, reversed, goes into w->step, which else stays. */
 mt_status mt_newton_falls(mt_newton_work *w, const mt_elimination *e, const double *way,
                           bool *falls, mt_arena *mem, mt_err *err);
-/* way[nq]: the motion that takes `from` to `to`. */
-void mt_newton_way(const mt_system *sys, const mt_pose *from, const mt_pose *to, double *way);
-/* Move the poses from a stationary point along w->step, or against it, to a lower energy;
- * *lower: is there one? */
-mt_status mt_newton_leave_saddle(mt_newton_work *w, mt_pose *poses, bool *lower, mt_arena *mem,
-                                 mt_err *err);
-/* Energy descent along the constraints as far as rounding of the energy lets it. */
-mt_status mt_newton_descend(mt_newton_work *w, mt_pose *poses, mt_arena *mem, mt_err *err);
 
 #endif

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_POSE_H
+#define MECHANICS_POSE_H
+
+#include "mechanics/system.h"
+
+/* Where bodies stand: one by one, all bodies of a system, and with what a position says
+ * besides. */
+
+mt_pose mt_pose_ground(void);
+const mt_pose *mt_pose_of(const mt_pose *poses, int body); /* the ground's for MT_GROUND */
+/* R -> exp(theta^) R (Rodrigues), x -> x + dx; real increments, the derivative parts of the
+ * pose are dropped. */
+void mt_pose_move(mt_pose *pose, const double *dx, const double *theta);
+/* Put the derivative (dx, theta) on a real pose: x + i h dx, R + i h theta^ R. */
+void mt_pose_tangent(mt_pose *pose, const double *dx, const double *theta);
+
+/* All bodies along dq[nq]: moved (real), or with dq as their derivative; out may be poses. */
+void mt_poses_move(const mt_system *sys, mt_pose *poses, const double *dq);
+void mt_poses_tangent(const mt_system *sys, const mt_pose *poses, const double *dq,
+                      mt_pose *out);
+/* Largest difference: model lengths, and entries of the rotations. NaN where there is one. */
+double mt_poses_distance(const mt_system *sys, const mt_pose *a, const mt_pose *b);
+/* way[nq]: the motion that takes `from` to `to`. */
+void mt_poses_way(const mt_system *sys, const mt_pose *from, const mt_pose *to, double *way);
+
+/* A position of a system, with what the poses alone do not tell. */
+typedef struct mt_placement {
+    mt_pose *pose; /* [bodies] */
+    /* [measures] where each angle stands, whole turns counted; 0 in the reference position. An
+     * angle is read as the value nearest to this. */
+    double *turn;
+    double drive; /* where the driven joint is held, from the reference position [rad, m] */
+} mt_placement;
+
+mt_status mt_placement_init(mt_placement *place, const mt_system *sys, mt_arena *mem,
+                            mt_err *err);
+void mt_placement_copy(const mt_system *sys, const mt_placement *from, mt_placement *to);
+
+#endif
