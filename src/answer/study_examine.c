@@ -259,7 +259,8 @@ static mt_status examine_configuration(const mt_study *s, int c, mt_doubt_list *
     }
     for (int g = 0; rc == MT_OK && g < s->n_goals; g++) {
         const mt_goal *const goal = &s->goals[g];
-        for (int k = 0; k < goal->n_configurations && goal->type == MT_GOAL_FREQUENCY; k++) {
+        const bool in_hz = strcmp(mt_goal_kind_of(goal->type)->unit, "Hz") == 0;
+        for (int k = 0; k < goal->n_configurations && in_hz; k++) {
             if (goal->configurations[k] != c) {
                 continue;
             }
@@ -288,7 +289,7 @@ static int count_asked(const mt_study *study, double *work)
     double most = 0.0;
     for (int g = 0; g < study->n_goals; g++) {
         const mt_goal *const goal = &study->goals[g];
-        around += goal->type == MT_GOAL_AVOID ? (double)goal->n_configurations : 0.0;
+        around += goal->avoid != NULL ? (double)goal->n_configurations : 0.0;
     }
     around *= (2.0 * study->n_variables) + 3.0;
     for (int c = 0; c < study->model->n_configurations; c++) {
@@ -327,7 +328,7 @@ mt_status mt_study_examine(const mt_study *study, double most_work, mt_doubt_lis
         }
     }
     for (int g = 0; g < study->n_goals && look; g++) {
-        if (study->goals[g].type == MT_GOAL_AVOID && study->goals[g].avoid != NULL) {
+        if (study->goals[g].avoid != NULL) {
             MT_TRY(examine_bands(study, g, out, err));
         }
     }

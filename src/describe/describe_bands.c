@@ -93,7 +93,7 @@ int mt_describe_avoid_count(const mt_problem *p)
     int n = 0;
     for (int i = 0; i < p->study->n_goals; i++) {
         const mt_goal *const g = &p->study->goals[i];
-        n += g->type == MT_GOAL_AVOID ? g->n_configurations : 0;
+        n += g->avoid != NULL ? g->n_configurations : 0;
     }
     return n;
 }
@@ -203,7 +203,7 @@ mt_status mt_describe_avoid_goals(mt_problem *fresh, mt_result *result, mt_recom
 {
     for (int i = 0; i < fresh->study->n_goals; i++) {
         const mt_goal *const g = &fresh->study->goals[i];
-        for (int k = 0; g->type == MT_GOAL_AVOID && k < g->n_configurations; k++) {
+        for (int k = 0; g->avoid != NULL && k < g->n_configurations; k++) {
             MT_TRY(
                 judge(fresh, i, g->configurations[k], result, &rec->goals[rec->n_goals], err));
             rec->n_goals++;

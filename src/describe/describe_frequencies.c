@@ -120,9 +120,9 @@ static mt_status attach(const listing *l, const mt_demand *d, mt_err *err)
         if (f->mode != index) {
             continue;
         }
-        if (d->goal->type == MT_GOAL_FREQUENCY) {
+        if (d->quantity == MT_QUANTITY_FREQUENCY) {
             attach_frequency(d, f);
-        } else if (pos >= 0) {
+        } else if (pos >= 0 && d->shape.ns > 0) {
             f->reference = d->shape.reference;
             MT_TRY(mt_reference_mac(l->scratch, pos, &d->shape, &f->mac, err));
         }

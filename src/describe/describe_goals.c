@@ -3,108 +3,66 @@
 #include <math.h>
 
 #include "describe/describe.h"
+#include "problem/goal.h"
 
 /* Rounding of ln and of the eigenvalues may push a goal that is met exactly on its tolerance
  * over it. */
 static const double MET_SLACK = 1e-6;
 static const double PERCENT = 100.0;
 
-/* "from a to b Hz", "at least a Hz", "at most b Hz"; *number: the limit meant. */
-static const char *range_text(const char *what, const mt_goal *g, const char *unit,
-                              mt_arena *mem, double *number)
+/* "installed mode 1", "installed \"heave\"", or the expression. */
+static const char *quantity_text(const mt_problem *p, const mt_demand *d, mt_arena *mem)
 {
-    const bool least = MT_HAS(g->at_least);
-    *number = least ? g->at_least : g->at_most;
-    if (least && MT_HAS(g->at_most)) {
-        return mt_arena_printf(mem, "%s from %.10g to %.10g%s", what, g->at_least, g->at_most,
-                               unit);
+    if (d->view < 0) {
+        return d->goal->expression_text;
     }
-    return mt_arena_printf(mem, "%s at %s %.10g%s", what, least ? "least" : "most", *number,
-                           unit);
-}
-
-static const char *mode_text(const mt_problem *p, const mt_demand *d, mt_arena *mem)
-{
     const char *const configuration = mt_analysis_configuration(p->views[d->view].analysis);
-    if (d->mode > 0) {
-        return mt_arena_printf(mem, "%s mode %d", configuration, d->mode);
-    }
-    return mt_arena_printf(mem, "%s \"%s\"", configuration, d->goal->mode.mode_name.s);
+    return d->mode > 0
+               ? mt_arena_printf(mem, "%s mode %d", configuration, d->mode)
+               : mt_arena_printf(mem, "%s \"%s\"", configuration, d->goal->mode.mode_name.s);
 }
 
-static const char *frequency_text(const mt_demand *d, const char *mode, mt_arena *mem,
-                                  double *number)
+/* " from a to b Hz", " at least a Hz", " at most b Hz", " at a Hz as mode 2 of \"fe\"", or nothing;
+ * *number: the number meant, 0 where there is none. */
+static const char *interval_text(const mt_demand *d, mt_arena *mem, double *number)
 {
-    if (!MT_HAS(d->equals)) {
-        return range_text(mode, d->goal, " Hz", mem, number);
+    const mt_goal *const g = d->goal;
+    const char *const name = mt_goal_kind_of(g->type)->unit;
+    const char *const unit = mt_arena_printf(mem, "%s%s", name[0] != '\0' ? " " : "", name);
+    const bool least = MT_HAS(g->at_least);
+    *number = MT_HAS(d->equals) ? d->equals : least ? g->at_least : g->at_most;
+    if (unit == NULL) {
+        return NULL;
     }
-    *number = d->equals;
-    if (d->shape.reference == NULL) {
-        return mt_arena_printf(mem, "%s at %.10g Hz", mode, d->equals);
+    if (MT_HAS(d->equals) && d->shape.reference != NULL) {
+        return mt_arena_printf(mem, " %s %.10g%s as mode %d of \"%s\"", d->ops->equals,
+                               d->equals, unit, d->shape.mode, d->shape.reference);
     }
-    return mt_arena_printf(mem, "%s at %.10g Hz as mode %d of \"%s\"", mode, d->equals,
-                           d->shape.mode, d->shape.reference);
+    if (MT_HAS(d->equals)) {
+        return mt_arena_printf(mem, " %s %.10g%s", d->ops->equals, d->equals, unit);
+    }
+    if (least && MT_HAS(g->at_most)) {
+        return mt_arena_printf(mem, " from %.10g to %.10g%s", g->at_least, g->at_most, unit);
+    }
+    if (!MT_HAS(*number)) {
+        *number = 0.0;
+        return "";
+    }
+    return mt_arena_printf(mem, " at %s %.10g%s", least ? "least" : "most", *number, unit);
 }
 
-/* What a demand asks for, as text, and the number that it asks for. NULL where memory is
- * out. */
+/* What a demand asks for, as text, and the number that it asks for. NULL where memory is out. */
 static const char *demand_text(const mt_problem *p, const mt_demand *d, mt_arena *mem,
                                double *number)
 {
-    const mt_goal *const g = d->goal;
-    const char *const what = d->view >= 0 ? mode_text(p, d, mem) : g->expression_text;
-    *number = 0.0;
-    if (what == NULL) {
-        return NULL;
-    }
-    switch (g->type) {
-    case MT_GOAL_FREQUENCY:
-        return frequency_text(d, what, mem, number);
-    case MT_GOAL_SHAPE:
-        return mt_arena_printf(mem, "%s shaped as mode %d of \"%s\"", what, d->shape.mode,
-                               d->shape.reference);
-    case MT_GOAL_MAC: {
-        const char *const mac = mt_arena_printf(mem, "%s: MAC with mode %d of \"%s\"", what,
-                                                d->shape.mode, d->shape.reference);
-        return mac == NULL ? NULL : range_text(mac, g, "", mem, number);
-    }
-    case MT_GOAL_LIMIT:
-        if (MT_HAS(d->equals)) {
-            *number = d->equals;
-            return mt_arena_printf(mem, "%s equal to %.10g", what, d->equals);
-        }
-        return range_text(what, g, "", mem, number);
-    case MT_GOAL_AVOID:
-    case MT_GOAL_TYPE_COUNT:
-        break;
-    }
-    return "";
-}
-
-/* The demand's quantity: Hz, distance of unit shapes, MAC, value of an expression; NaN where
- * there is none. */
-static mt_status demand_value(mt_problem *fresh, const mt_demand *d, double *value, mt_err *err)
-{
-    int pos = -1;
-    *value = nan("");
-    if (d->goal->type == MT_GOAL_LIMIT) {
-        *value = fresh->value[d->node];
-        return MT_OK;
-    }
-    mt_view *const view = &fresh->views[d->view];
-    MT_TRY(mt_view_position(fresh, view, d->mode, d->named, &pos, err));
-    if (pos < 0) {
-        return MT_OK;
-    }
-    if (d->goal->type == MT_GOAL_FREQUENCY) {
-        *value = mt_modal_hz(&view->analysis->modes, pos);
-        return MT_OK;
-    }
-    if (d->goal->type == MT_GOAL_SHAPE) {
-        *value = mt_norm2(d->shape.ns, fresh->r + d->row_res) / sqrt(d->weight);
-        return MT_OK;
-    }
-    return mt_reference_mac(view->analysis, pos, &d->shape, value, err);
+    const char *const quantity = quantity_text(p, d, mem);
+    const char *const subject = quantity == NULL || d->ops->subject == NULL
+                                    ? quantity
+                                    : d->ops->subject(d, quantity, mem);
+    const char *const interval = interval_text(d, mem, number);
+    return subject == NULL || interval == NULL
+               ? NULL
+               : mt_arena_printf(mem, "%s%s", subject, interval);
 }
 
 /* Of two parts of a violation the greater; NaN is the greatest. */
@@ -118,31 +76,33 @@ static double greater(double a, double b)
 static double demand_violation(const mt_problem *fresh, const mt_demand *d,
                                const mt_nlp_values *v)
 {
+    double worst = 0.0;
     if (d->row_res >= 0) {
-        const int rows = d->goal->type == MT_GOAL_SHAPE ? d->shape.ns : 1;
-        return mt_norm2(rows, fresh->r + d->row_res) / sqrt(d->weight);
+        return mt_norm2(d->n_res, fresh->r + d->row_res) / sqrt(d->weight);
     }
     if (d->row_eq >= 0) {
         return fabs(v->eq[d->row_eq]);
     }
-    double worst = 0.0;
     for (int k = 0; k < d->n_in; k++) {
         worst = greater(worst, -v->in[d->row_in + k]);
     }
     return worst;
 }
 
-/* What a frequency goal is off by, of 1: (limit - f)/limit below its limit, (f - limit)/limit
- * above. */
-static double off_by(const mt_demand *d, double hz)
+/* The same as a part of what is asked for, where it is a logarithm: (limit - q)/limit below its
+ * limit, (q - limit)/limit above. */
+static double off_by(const mt_demand *d, double q, double violation)
 {
     const mt_goal *const g = d->goal;
     double worst = 0.0;
-    if (MT_HAS(d->equals)) {
-        return fabs(hz / d->equals - 1.0);
+    if (d->measure != MT_MEASURE_RATIO) {
+        return violation;
     }
-    worst = MT_HAS(g->at_least) ? greater(worst, 1.0 - hz / g->at_least) : worst;
-    return MT_HAS(g->at_most) ? greater(worst, hz / g->at_most - 1.0) : worst;
+    if (MT_HAS(d->equals)) {
+        return fabs(q / d->equals - 1.0);
+    }
+    worst = MT_HAS(g->at_least) ? greater(worst, 1.0 - q / g->at_least) : worst;
+    return MT_HAS(g->at_most) ? greater(worst, q / g->at_most - 1.0) : worst;
 }
 
 /* Solve all views; the first that fails otherwise than by memory is told in `why`. */
@@ -185,15 +145,14 @@ static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
     double violation = nan("");
     double percent = nan("");
     g->worst = nan("");
-    const mt_status rc = mt_demand_eval(fresh, d, false, v, &own);
+    const mt_status rc = mt_demand_eval(fresh, d, false, v, &g->value, &own);
     if (mt_is_final(rc)) {
         return mt_fail(err, rc, "%s", own.text);
     }
     if (rc == MT_OK) {
         violation = demand_violation(fresh, d, v);
-        MT_TRY(demand_value(fresh, d, &g->value, err));
-        percent =
-            PERCENT * (d->goal->type == MT_GOAL_FREQUENCY ? off_by(d, g->value) : violation);
+        g->value = isfinite(g->value) ? g->value : nan(""); /* a mode at infinity has none */
+        percent = PERCENT * off_by(d, g->value, violation);
         MT_TRY(mt_describe_worst(fresh, d, result, g, &violation, &percent, err));
     } else {
         g->value = nan("");

@@ -38,11 +38,13 @@ mt_status mt_describe_ranges(mt_problem *fresh, mt_err *err)
 
 /* How far a range falls short of a limit, relatively; negative: room is left. NaN where there
  * is no value somewhere. */
-static double beyond(const mt_robust_range *r, mt_robust_side side, double limit, bool ratio)
+static double beyond(const mt_robust_range *r, mt_robust_side side, double limit,
+                     mt_goal_measure measure)
 {
     const double value = r->value[side];
     const double sign = side == MT_LOWEST ? 1.0 : -1.0;
-    const double unit = fabs(limit) > 0.0 ? fabs(limit) : 1.0;
+    const bool ratio = measure == MT_MEASURE_RATIO;
+    const double unit = mt_measure_unit(measure, limit);
     const double far = sign * (ratio ? mt_log_ratio(limit, value) : (limit - value) / unit);
     return ratio && far > MT_MOST_INSIDE ? MT_MOST_INSIDE : far; /* NaN stays */
 }
@@ -50,8 +52,9 @@ static double beyond(const mt_robust_range *r, mt_robust_side side, double limit
 /* A violation in percent of what is asked for: that of a frequency is a logarithm. */
 static double percent_of(const mt_demand *d, mt_robust_side side, double violation)
 {
-    const double below = d->view >= 0 ? -expm1(-violation) : violation;
-    const double above = d->view >= 0 ? expm1(violation) : violation;
+    const bool ratio = d->measure == MT_MEASURE_RATIO;
+    const double below = ratio ? -expm1(-violation) : violation;
+    const double above = ratio ? expm1(violation) : violation;
     return PERCENT * (side == MT_LOWEST ? below : above);
 }
 
@@ -63,7 +66,6 @@ typedef struct verdict {
 
 static verdict judge(const mt_demand *d, const mt_robust_range *r)
 {
-    const bool ratio = d->view >= 0;
     const double target = d->equals;
     const bool equal = MT_HAS(target);
     const double limit[MT_ROBUST_SIDES] = {equal ? target : d->goal->at_least,
@@ -74,13 +76,14 @@ static verdict judge(const mt_demand *d, const mt_robust_range *r)
         if (!MT_HAS(limit[k]) || !MT_HAS(v.percent)) {
             continue;
         }
-        const double far = beyond(r, side, limit[k], ratio);
+        const double far = beyond(r, side, limit[k], d->measure);
         const double percent = percent_of(d, side, far);
         v.side = percent > v.percent || !MT_HAS(percent) ? side : v.side;
         v.violation = far > v.violation || !MT_HAS(far) ? far : v.violation;
         v.percent = percent > v.percent || !MT_HAS(percent) ? percent : v.percent;
     }
-    if (equal && ratio) { /* within the tolerance as a part of the target */
+    if (equal &&
+        d->measure == MT_MEASURE_RATIO) { /* within the tolerance as a part of the target */
         v.violation = v.percent / PERCENT;
     }
     return v;

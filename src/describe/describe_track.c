@@ -49,5 +49,5 @@ bool mt_describe_is_told(const mt_view *view, const mt_demand *d)
     }
     const int first = mt_modal_cluster(&view->analysis->modes, k->pos, &size);
     const bool same_hz = k->rival >= first && k->rival < first + size;
-    return d->goal->type == MT_GOAL_FREQUENCY && k->state == MT_TRACK_AMBIGUOUS && same_hz;
+    return d->quantity == MT_QUANTITY_FREQUENCY && k->state == MT_TRACK_AMBIGUOUS && same_hz;
 }

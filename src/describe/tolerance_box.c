@@ -132,9 +132,8 @@ static bool worth_a_box(const mt_problem *p)
 {
     bool limits = false;
     for (int i = 0; i < p->n_demands; i++) {
-        const mt_goal *const g = p->demands[i].goal;
-        limits = limits || (g->type == MT_GOAL_FREQUENCY && p->demands[i].n_in > 0 &&
-                            p->demands[i].mode > 0);
+        const mt_demand *const d = &p->demands[i];
+        limits = limits || (mt_demand_is_frequency(d) && d->n_in > 0);
     }
     return p->n > 0 && p->n_eq == 0 && (p->n_bands > 0 || limits);
 }

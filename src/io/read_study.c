@@ -54,26 +54,25 @@ enum { MAX_RECOMMENDATIONS = 1000, MAX_STARTS = 100000 };
 const mt_key_table *const *mt_study_key_tables(int *n)
 {
 #define GOAL_KEYS(id, ...) &mt_study_goal_keys[MT_GOAL_##id],
-    static const mt_key_table *const tables[] = {
-        &mt_study_keys,
-        &mt_study_search_keys,
-        &mt_study_spread_keys,
-        &mt_study_variable_keys,
-        &mt_study_reference_keys,
-        &mt_study_measured_keys,
-        MT_GOAL_LIST(GOAL_KEYS) & mt_study_rotor_keys,
-        &mt_study_tail_keys,
-        &mt_study_machine_keys,
-        &mt_study_gear_keys,
-        &mt_study_catalogue_keys,
-        &mt_study_trade_keys,
-        &mt_study_vary_keys,
-        &mt_study_span_keys,
-        &mt_study_objective_keys,
-        &mt_study_published_keys,
-        &mt_study_published_frequency_keys,
-        &mt_study_published_mac_keys,
-    };
+    static const mt_key_table *const tables[] = {&mt_study_keys,
+                                                 &mt_study_search_keys,
+                                                 &mt_study_spread_keys,
+                                                 &mt_study_variable_keys,
+                                                 &mt_study_reference_keys,
+                                                 &mt_study_measured_keys,
+                                                 &mt_study_rotor_keys,
+                                                 &mt_study_tail_keys,
+                                                 &mt_study_machine_keys,
+                                                 &mt_study_gear_keys,
+                                                 &mt_study_catalogue_keys,
+                                                 &mt_study_trade_keys,
+                                                 &mt_study_vary_keys,
+                                                 &mt_study_span_keys,
+                                                 &mt_study_objective_keys,
+                                                 &mt_study_published_keys,
+                                                 &mt_study_published_frequency_keys,
+                                                 &mt_study_published_mac_keys,
+                                                 MT_GOAL_LIST(GOAL_KEYS)};
 #undef GOAL_KEYS
     *n = MT_COUNT(tables);
     return tables;

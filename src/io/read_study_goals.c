@@ -5,11 +5,10 @@
 
 /* The table of keys of each kind of goal, of the list that goal_kinds.h has of its members. */
 #define KEY(slot, name, type, required, range) {name, MT_KEY_##type, required},
-#define KEYS(id, name, members, unit, measure) \
-    static const mt_key id##_KEYS[] = {MT_GOAL_##members(KEY)};
+#define KEYS(id, ...)                          static const mt_key id##_KEYS[] = {MT_GOAL_##id##_MEMBERS(KEY)};
 MT_GOAL_LIST(KEYS)
 
-#define TABLE(id, name, members, unit, measure) {"goal_" name, id##_KEYS, MT_COUNT(id##_KEYS)},
+#define TABLE(id, name, ...) {"goal_" #name, id##_KEYS, MT_COUNT(id##_KEYS)},
 const mt_key_table mt_study_goal_keys[MT_GOAL_TYPE_COUNT] = {MT_GOAL_LIST(TABLE)};
 
 /* A goal being read. */

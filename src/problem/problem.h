@@ -51,10 +51,20 @@ typedef struct mt_view {
 
 typedef struct mt_family mt_family; /* positions of one drive (family.h) */
 
+/* What a demand limits: what is known of it over boxes of designs, and of modes in their order. */
+typedef enum mt_quantity {
+    MT_QUANTITY_FREQUENCY, /* of a mode */
+    MT_QUANTITY_EXPRESSION,
+    MT_QUANTITY_OTHER
+} mt_quantity;
+
 typedef struct mt_demand {
+    const struct mt_goal_ops *ops; /* of its kind (goal.h), likewise the next two */
+    mt_quantity quantity;
+    mt_goal_measure measure;
     const mt_goal *goal;
     int goal_index;
-    int view;                 /* -1: a limit */
+    int view;                 /* -1: of no configuration, an expression */
     int mode;                 /* 1-based index; 0: by name */
     int named;                /* position in the view's list, where by name */
     mt_node node;             /* limit: node of the expressions' program */
@@ -66,6 +76,8 @@ typedef struct mt_demand {
     int row_in;  /* first row in in, -1 none */
     int n_in;    /* 2 where at_least and at_most are both given */
     int row_res; /* first residual, -1 none */
+    int n_res;   /* residuals */
+    double floor_hz;  /* of a frequency: below, its logarithm goes on as a tangent */
     double tolerance; /* relative */
 } mt_demand;
 
@@ -155,6 +167,7 @@ typedef struct mt_problem {
     double *dr;     /* n_res x n */
     double *r_held; /* [n_res] what a held misfit keeps them at */
     double *work;   /* [n] */
+    double *slope;  /* [n] of a demand */
     double *shape;  /* [max ns] */
     double *dshape; /* max ns x n */
     long evaluations;
@@ -265,7 +278,7 @@ mt_status mt_problem_init_demands(mt_problem *p, int n_cuts, mt_err *err);
 /* Once all rows are counted: tolerances and work space. */
 mt_status mt_problem_init_rows(mt_problem *p, mt_err *err);
 /*
- * demand.c: rows in ln f. A spring that starts from 0 has f = 0 and df/dk infinite there, while
+ * goal_frequency.c: rows in ln f. A spring that starts from 0 has f = 0 and df/dk infinite there, while
  * d(f^2)/dk is finite: below floor_hz, MT_FREQUENCY_FLOOR of what a mode is compared with, ln f
  * goes on as its tangent in f^2,
  *     ln f_0 + (f^2 / f_0^2 - 1) / 2,
@@ -276,17 +289,22 @@ mt_status mt_problem_init_rows(mt_problem *p, mt_err *err);
 /* A mode at 0 Hz is inside a band that begins there by this much, a factor of 1000 of its upper
  * edge: ln(1 / MT_FREQUENCY_FLOOR). */
 #define MT_MOST_INSIDE 7.0
-/* ln(f / edge_hz) of the mode at pos, so continued; pos -1: a mode at infinity, MT_MOST_INSIDE
- * above anything and without a slope. */
+/* ln(f / edge_hz), so continued; of a mode at infinity MT_MOST_INSIDE, without a slope. */
+double mt_frequency_ln_ratio(double hz, double edge_hz, double floor_hz);
+/* The same of the mode at pos; -1: at infinity. */
 double mt_problem_ln_ratio(const mt_modes *modes, int pos, double edge_hz, double floor_hz);
 /* Its slope lambda'/(2 lambda) for all variables, chained to t: out[n]. A repeated mode: the
  * mean of its cluster, which is smooth where the single modes are not. */
 mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, double floor_hz,
                                    double *out, mt_err *err);
 /* Values (and gradients, unless NULL where out holds none) of one demand after its view has
- * been solved; rows as numbered. */
+ * been solved; rows as numbered. *value (may be NULL): the number that is held (infinite of a
+ * mode at infinity), or the distance that its residuals amount to. */
 mt_status mt_demand_eval(mt_problem *p, const mt_demand *d, bool with_gradient,
-                         mt_nlp_values *out, mt_err *err);
+                         mt_nlp_values *out, double *value, mt_err *err);
+/* Does it limit the frequency of a mode by its index? Those are sorted: what holds for one holds
+ * for all beyond it. */
+bool mt_demand_is_frequency(const mt_demand *d);
 /* problem_next.c: a limit on a mode holds for all that lie beyond it; where modes cross, those
  * tell the search what comes next. After everything else of the problem. */
 mt_status mt_next_init(mt_problem *p, mt_err *err);

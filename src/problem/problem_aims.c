@@ -45,7 +45,7 @@ static mt_status init_program(mt_problem *p, mt_err *err)
     MT_TRY(mt_emit_parameters(s->model, MT_ABSENT, is_input, &p->program, nodes, &p->mem, err));
     for (int i = 0; i < p->n_demands; i++) {
         mt_demand *const d = &p->demands[i];
-        if (d->goal->type == MT_GOAL_LIMIT) {
+        if (d->quantity == MT_QUANTITY_EXPRESSION) {
             d->node = mt_program_expr(&p->program, &d->goal->expression, nodes, d->goal->addr);
         }
     }

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "problem/family.h"
+#include "problem/goal.h"
 #include "problem/robust.h"
 
 /* Range of the extra coordinate: a clearance of -95 % to +2000 %. */
@@ -32,6 +33,9 @@ static int rows_above(const mt_clear *c, int below, int flexible)
     return left < c->cluster ? left : c->cluster;
 }
 
+/* Bands are no number: their rows are those of the clears. */
+const mt_goal_ops mt_goal_avoid = {.quantity = MT_QUANTITY_OTHER};
+
 static mt_status unite(mt_problem *p, mt_clear *c, mt_err *err)
 {
     const mt_study *const s = p->study;
@@ -43,7 +47,7 @@ static mt_status unite(mt_problem *p, mt_clear *c, mt_err *err)
     }
     for (int i = 0; i < s->n_goals; i++) {
         const mt_goal *const g = &s->goals[i];
-        for (int k = 0; g->type == MT_GOAL_AVOID && k < g->n_configurations; k++) {
+        for (int k = 0; g->avoid != NULL && k < g->n_configurations; k++) {
             if (g->configurations[k] == p->views[c->view].configuration) {
                 lists[n++] = &g->avoid->bands;
             }
@@ -146,7 +150,7 @@ mt_status mt_clear_init(mt_problem *p, const int *below, int n_cuts, const struc
     }
     for (int i = 0; i < s->n_goals; i++) {
         const mt_goal *const g = &s->goals[i];
-        for (int k = 0; g->type == MT_GOAL_AVOID && k < g->n_configurations; k++) {
+        for (int k = 0; g->avoid != NULL && k < g->n_configurations; k++) {
             MT_TRY(add_clear(p, i, mt_problem_view(p, g->configurations[k]), err));
         }
     }

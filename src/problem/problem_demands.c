@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "problem/family.h"
+#include "problem/goal.h"
 #include "problem/robust.h"
 
 int mt_problem_view(const mt_problem *p, int configuration)
@@ -182,32 +183,14 @@ static mt_status resolve_index(const mt_view *view, const mt_demand *d, mt_err *
                    d->goal_index, mt_analysis_configuration(view->analysis), d->mode, most);
 }
 
-/* What the goal is compared with: a shape, or a frequency, which is then the target. */
-static mt_status resolve_reference(mt_problem *p, const mt_view *view, mt_demand *d,
-                                   mt_err *err)
-{
-    const mt_goal *const g = d->goal;
-    if (g->reference_name.s == NULL) {
-        return MT_OK;
-    }
-    const int own = d->mode > 0 ? d->mode : p->study->model->modes[g->mode.named].index;
-    const int mode = g->reference_mode > 0 ? g->reference_mode : own;
-    if (g->type == MT_GOAL_FREQUENCY) {
-        MT_TRY(mt_reference_frequency_init(p->references, g->reference, mode, &d->shape, err));
-        d->equals = d->shape.frequency_hz;
-        return MT_OK;
-    }
-    return mt_reference_shape_init(p->references, g->reference, mode, view->analysis->sys,
-                                   &p->mem, &d->shape, err);
-}
-
 static void number_rows(mt_problem *p, mt_demand *d)
 {
     const mt_goal *const g = d->goal;
     d->tolerance = mt_goal_tolerance(g);
     if (MT_HAS(g->weight)) {
         d->row_res = p->n_res;
-        p->n_res += g->type == MT_GOAL_SHAPE ? d->shape.ns : 1;
+        d->n_res = d->ops->value == NULL ? d->shape.ns : 1;
+        p->n_res += d->n_res;
         p->weights += g->weight;
     } else if (mt_robust_is_range(p, d)) {
         d->ranged = true; /* its rows are those of the corners */
@@ -224,7 +207,10 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
 {
     const mt_goal *const g = &p->study->goals[goal_index];
     mt_demand *const d = &p->demands[p->n_demands];
-    *d = (mt_demand){.goal = g,
+    *d = (mt_demand){.ops = mt_goal_ops_of(g->type),
+                     .quantity = mt_goal_ops_of(g->type)->quantity,
+                     .measure = mt_goal_kind_of(g->type)->measure,
+                     .goal = g,
                      .goal_index = goal_index,
                      .view = -1,
                      .mode = g->mode.index,
@@ -235,14 +221,15 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
                      .row_res = -1,
                      .equals = g->equals,
                      .weight = g->weight};
-    if (g->type != MT_GOAL_LIMIT) {
+    if (configuration != MT_ABSENT) {
         MT_TRY(mt_err_in(err, mt_problem_add_view(p, configuration, &d->view, err), "/goals/%d",
                          goal_index));
         mt_view *const view = &p->views[d->view];
         MT_TRY(d->mode > 0 ? resolve_index(view, d, err) : resolve_name(p, view, d, err));
-        MT_TRY(mt_err_in(err, resolve_reference(p, view, d, err), "/goals/%d", goal_index));
-        view->needs_vectors =
-            view->needs_vectors || g->type != MT_GOAL_FREQUENCY || d->named >= 0;
+        view->needs_vectors = view->needs_vectors || d->ops->needs_vectors || d->named >= 0;
+    }
+    if (d->ops->compile != NULL) {
+        MT_TRY(mt_err_in(err, d->ops->compile(p, d, err), "/goals/%d", goal_index));
     }
     number_rows(p, d);
     p->n_demands++;
@@ -265,8 +252,9 @@ mt_status mt_problem_init_rows(mt_problem *p, mt_err *err)
     p->r_held = mt_arena_f64(&p->mem, (size_t)p->n_res, 1);
     p->shape = mt_arena_f64(&p->mem, ns, 1);
     p->dshape = mt_arena_f64(&p->mem, ns, n);
+    p->slope = mt_arena_f64(&p->mem, n, 1);
     if (p->eq_tol == NULL || p->in_tol == NULL || p->r == NULL || p->dr == NULL ||
-        p->r_held == NULL || p->shape == NULL || p->dshape == NULL) {
+        p->r_held == NULL || p->shape == NULL || p->dshape == NULL || p->slope == NULL) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < p->n_clears; i++) {
@@ -300,15 +288,14 @@ mt_status mt_problem_init_demands(mt_problem *p, int n_cuts, mt_err *err)
         return mt_fail_memory(err);
     }
     for (int i = 0; i < s->n_goals; i++) {
-        if (s->goals[i].type == MT_GOAL_LIMIT) {
-            MT_TRY(add_demand(p, i, -1, err));
-            continue;
+        const mt_goal *const g = &s->goals[i];
+        if (g->n_configurations == 0) {
+            MT_TRY(add_demand(p, i, MT_ABSENT, err));
         }
-        for (int k = 0; k < s->goals[i].n_configurations; k++) {
+        for (int k = 0; k < g->n_configurations; k++) {
             int view = -1;
-            MT_TRY(s->goals[i].type == MT_GOAL_AVOID
-                       ? mt_problem_add_view(p, s->goals[i].configurations[k], &view, err)
-                       : add_demand(p, i, s->goals[i].configurations[k], err));
+            MT_TRY(g->avoid != NULL ? mt_problem_add_view(p, g->configurations[k], &view, err)
+                                    : add_demand(p, i, g->configurations[k], err));
         }
     }
     return MT_OK;

@@ -66,7 +66,7 @@ mt_status mt_problem_eval(void *context, const double *t, bool with_gradient,
     }
     MT_TRY(mt_robust_solve(p, with_gradient, err));
     for (int i = 0; i < p->n_demands; i++) {
-        MT_TRY(mt_err_in(err, mt_demand_eval(p, &p->demands[i], with_gradient, out, err),
+        MT_TRY(mt_err_in(err, mt_demand_eval(p, &p->demands[i], with_gradient, out, NULL, err),
                          "/goals/%d", p->demands[i].goal_index));
     }
     MT_TRY(mt_clear_eval(p, t, with_gradient, out, err));

@@ -38,16 +38,11 @@ static void add(mt_problem *p, const mt_next *what, int view, int row)
     }
 }
 
-static bool is_meant(const mt_demand *d)
-{
-    return d->goal->type == MT_GOAL_FREQUENCY && d->view >= 0 && d->mode > 0;
-}
-
 static void add_demand(mt_problem *p, const mt_demand *d)
 {
     const mt_goal *const g = d->goal;
     int row = d->row_in;
-    for (int k = 0; k < 2 && d->row_in >= 0 && is_meant(d); k++) {
+    for (int k = 0; k < 2 && d->row_in >= 0 && mt_demand_is_frequency(d); k++) {
         const mt_next what = {.analysis = p->views[d->view].analysis,
                               .limit_hz = k == 0 ? g->at_least : g->at_most,
                               .sign = k == 0 ? 1.0 : -1.0,
@@ -65,7 +60,7 @@ static void add_corners(mt_problem *p)
 {
     for (int k = 0; p->robust != NULL && k < p->robust->n_rows; k++) {
         const mt_robust_row *const row = &p->robust->rows[k];
-        if (row->demand >= 0 && is_meant(&p->demands[row->demand])) {
+        if (row->demand >= 0 && mt_demand_is_frequency(&p->demands[row->demand])) {
             const mt_demand *const d = &p->demands[row->demand];
             const mt_corner *const c = &p->robust->views[d->view].corners[row->corner];
             const mt_next what = {.analysis = c->analysis,

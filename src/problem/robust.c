@@ -176,11 +176,11 @@ static mt_status check_demand(const mt_demand *d, mt_err *err)
     if (d->row_res >= 0) {
         return MT_OK;
     }
-    if (d->goal->type != MT_GOAL_FREQUENCY) {
+    if (d->quantity == MT_QUANTITY_OTHER) {
         return mt_fail(err, MT_E_INPUT,
-                       "/goals/%d: a MAC is not judged over \"tolerance_percent\": give the "
-                       "goal a weight, or the variables no tolerance",
-                       d->goal_index);
+                       "/goals/%d: a goal of type \"%s\" is not judged over "
+                       "\"tolerance_percent\": give it a weight, or the variables no tolerance",
+                       d->goal_index, mt_goal_kind_of(d->goal->type)->name);
     }
     return d->mode > 0 ? MT_OK
                        : mt_fail(err, MT_E_INPUT,
@@ -233,7 +233,7 @@ static mt_status init_limits(mt_problem *p, mt_err *err)
     for (int k = 0; k < p->n_demands; k++) {
         const mt_demand *const d = &p->demands[k];
         const bool held = d->row_in >= 0 || d->ranged;
-        if (d->goal->type != MT_GOAL_LIMIT || !held) {
+        if (d->quantity != MT_QUANTITY_EXPRESSION || !held) {
             continue;
         }
         const size_t row = (size_t)d->node * n;

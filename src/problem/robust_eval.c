@@ -87,11 +87,6 @@ static mt_status expression(mt_problem *p, const mt_corner *c, mt_node node, dou
     return MT_OK;
 }
 
-static double unit_of(double limit)
-{
-    return fabs(limit) > 0.0 ? fabs(limit) : 1.0;
-}
-
 /* The limit that a row keeps, of a target with its tolerance. */
 static double limit_of(const mt_problem *p, const mt_robust_row *row)
 {
@@ -101,7 +96,9 @@ static double limit_of(const mt_problem *p, const mt_robust_row *row)
     if (!d->ranged) {
         return low ? d->goal->at_least : d->goal->at_most;
     }
-    return d->view >= 0 ? d->equals * (1.0 + give) : d->equals + (give * unit_of(d->equals));
+    return d->measure == MT_MEASURE_RATIO
+               ? d->equals * (1.0 + give)
+               : d->equals + (give * mt_measure_unit(d->measure, d->equals));
 }
 
 static double edge_of(const mt_problem *p, const mt_robust_row *row)
@@ -137,9 +134,10 @@ static mt_status demand_value(mt_problem *p, const mt_robust_row *row, bool with
         return frequency(p, &p->robust->views[d->view].corners[row->corner], d->mode, limit,
                          with_gradient, &q->value, err);
     }
-    q->edge = limit / unit_of(limit);
-    return expression(p, &p->robust->limits[row->demand].corners[row->corner], d->node,
-                      unit_of(limit), with_gradient, &q->value, err);
+    const double unit = mt_measure_unit(d->measure, limit);
+    q->edge = limit / unit;
+    return expression(p, &p->robust->limits[row->demand].corners[row->corner], d->node, unit,
+                      with_gradient, &q->value, err);
 }
 
 static mt_status band_value(mt_problem *p, const mt_robust_row *row, const double *t,

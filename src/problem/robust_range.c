@@ -198,7 +198,7 @@ static mt_status range_numbers(mt_problem *p, box *b, mt_err *err)
                              .context = &c,
                              .eval = eval_number,
                              .slope = slope_number};
-        if (d->goal->type != MT_GOAL_LIMIT) {
+        if (d->quantity != MT_QUANTITY_EXPRESSION) {
             continue;
         }
         for (int i = 0; i < p->n; i++) {
@@ -231,7 +231,7 @@ bool mt_robust_proven(const mt_problem *p)
         proven = proven && (r->n_ranges[i] == 0 || r->hz[i][0].proven);
     }
     for (int k = 0; k < p->n_demands; k++) {
-        const bool limit = p->demands[k].goal->type == MT_GOAL_LIMIT;
+        const bool limit = p->demands[k].quantity == MT_QUANTITY_EXPRESSION;
         proven = proven && (!limit || r->number[k].proven);
     }
     return proven;

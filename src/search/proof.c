@@ -48,23 +48,20 @@ static void list_bands(mt_proof *proof, const mt_problem *p)
     proof->question.same_as = p->tie;
 }
 
-static mt_certify_limit frequency_limit(const mt_demand *d)
+/* The interval that a demand keeps its number in. */
+static void interval(const mt_demand *d, double *least, double *most)
 {
-    const bool target = MT_HAS(d->equals);
-    return (mt_certify_limit){d->view, d->mode, target ? d->equals : d->goal->at_least,
-                              target ? d->equals : d->goal->at_most, d->tolerance};
+    const bool equal = MT_HAS(d->equals);
+    *least = equal ? d->equals : d->goal->at_least;
+    *most = equal ? d->equals : d->goal->at_most;
 }
 
-/* A limit on an expression, its relative tolerance granted. */
-static mt_certify_bound expression_bound(const mt_demand *d)
+/* A limit on an expression, its tolerance granted. */
+static mt_certify_bound expression_bound(const mt_demand *d, double least, double most)
 {
-    const mt_goal *const g = d->goal;
-    const bool equal = MT_HAS(d->equals);
-    const double least = equal ? d->equals : g->at_least;
-    const double most = equal ? d->equals : g->at_most;
-    const double give_least = d->tolerance * (fabs(least) > 0.0 ? fabs(least) : 1.0);
-    const double give_most = d->tolerance * (fabs(most) > 0.0 ? fabs(most) : 1.0);
-    return (mt_certify_bound){d->node, least - give_least, most + give_most};
+    return (mt_certify_bound){d->node,
+                              least - (d->tolerance * mt_measure_unit(d->measure, least)),
+                              most + (d->tolerance * mt_measure_unit(d->measure, most))};
 }
 
 /* Frequency goals by index that are constraints, and limits on expressions. */
@@ -73,14 +70,20 @@ static void list_limits(mt_proof *proof, const mt_problem *p)
     mt_certify *const q = &proof->question;
     for (int i = 0; i < p->n_demands; i++) {
         const mt_demand *const d = &p->demands[i];
-        const bool constraint = d->row_res < 0;
-        proof->covers = proof->covers && (!constraint || d->goal->type == MT_GOAL_LIMIT ||
-                                          (d->goal->type == MT_GOAL_FREQUENCY && d->mode > 0));
-        if (constraint && d->goal->type == MT_GOAL_FREQUENCY && d->mode > 0) {
+        double least = 0.0;
+        double most = 0.0;
+        if (d->row_res >= 0) {
+            continue;
+        }
+        interval(d, &least, &most);
+        if (mt_demand_is_frequency(d)) {
             proof->limit_demand[q->n_limits] = i;
-            proof->limits[q->n_limits++] = frequency_limit(d);
-        } else if (constraint && d->goal->type == MT_GOAL_LIMIT) {
-            proof->bounds[q->n_bounds++] = expression_bound(d);
+            proof->limits[q->n_limits++] =
+                (mt_certify_limit){d->view, d->mode, least, most, d->tolerance};
+        } else if (d->quantity == MT_QUANTITY_EXPRESSION) {
+            proof->bounds[q->n_bounds++] = expression_bound(d, least, most);
+        } else {
+            proof->covers = false;
         }
     }
     q->limits = proof->limits;

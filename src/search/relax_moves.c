@@ -154,21 +154,23 @@ bool mt_relax_is_row(const mt_problem *q, const mt_move *m, bool eq, int row)
     return at.clear == m->clear && at.band == m->band && at.above == m->upper;
 }
 
-/* Where the number must be for a row of value `row` (relaxed: what is missing is made up for)
- * to be 0. */
+/* How the number that moves is measured: edges of bands as frequencies are. */
+static mt_goal_measure measure_of(const mt_problem *q, const mt_move *m)
+{
+    return m->kind == MT_MOVE_GOAL ? q->demands[m->demand].measure : MT_MEASURE_RATIO;
+}
+
+/* Where the number must be for a row of value `row` (relaxed: what is missing is made up for) to
+ * be 0. */
 static double moved(const mt_problem *q, const mt_move *m, double row)
 {
-    const bool shape =
-        m->kind == MT_MOVE_GOAL && q->demands[m->demand].goal->type != MT_GOAL_FREQUENCY;
+    const mt_goal_measure measure = measure_of(q, m);
     const bool lower_edge = m->kind == MT_MOVE_EDGE && !m->upper;
     const bool at_most = m->kind == MT_MOVE_GOAL && m->upper;
     const double sign = lower_edge || at_most ? -1.0 : 1.0;
-    if (shape) { /* a MAC, or an expression relative to its limit */
-        const bool mac = q->demands[m->demand].goal->type == MT_GOAL_MAC;
-        const double unit = mac || !(fabs(m->from) > 0.0) ? 1.0 : fabs(m->from);
-        return m->from + (sign * row * unit);
-    }
-    return m->from * exp(sign * row);
+    return measure == MT_MEASURE_RATIO
+               ? m->from * exp(sign * row)
+               : m->from + (sign * row * mt_measure_unit(measure, m->from));
 }
 
 double mt_relax_value(const mt_problem *q, const mt_move *m, const mt_nlp_values *v)
@@ -197,9 +199,10 @@ double mt_relax_value(const mt_problem *q, const mt_move *m, const mt_nlp_values
 double mt_relax_size(const mt_problem *q, const mt_move *m, double to)
 {
     const bool goal = m->kind == MT_MOVE_GOAL;
-    const mt_goal_type type = goal ? q->demands[m->demand].goal->type : MT_GOAL_FREQUENCY;
-    const double unit = type == MT_GOAL_LIMIT && fabs(m->from) > 0.0 ? fabs(m->from) : 1.0;
-    const double s = type == MT_GOAL_FREQUENCY ? log(to / m->from) : (to - m->from) / unit;
+    const mt_goal_measure measure = measure_of(q, m);
+    const double s = measure == MT_MEASURE_RATIO
+                         ? log(to / m->from)
+                         : (to - m->from) / mt_measure_unit(measure, m->from);
     /* a lower limit gives way downwards, an upper edge too */
     const bool down = goal ? !m->upper : m->upper;
     const bool right = m->target ? fabs(s) > 0.0 : (down ? -s : s) > 0.0;

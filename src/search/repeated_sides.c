@@ -29,7 +29,7 @@ static void add_demand(listing *l, const mt_demand *d)
     const mt_problem *const p = l->p;
     const mt_goal *const g = d->goal;
     const int n_eq = mt_problem_rows_eq(p);
-    if (g->type != MT_GOAL_FREQUENCY || d->view < 0 || d->mode <= 0) {
+    if (!mt_demand_is_frequency(d)) {
         return;
     }
     for (int k = 0; k < 2; k++) {

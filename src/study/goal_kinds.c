@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/goal_kinds.h"
 
+#include <math.h>
 #include <stddef.h>
 
 #define MEMBER(slot, name, type, required, range) \
     {MT_SLOT_##slot, name, required, MT_RANGE_##range},
-#define MEMBERS(id, name, members, unit, measure) \
-    static const mt_goal_member id##_MEMBERS[] = {MT_GOAL_##members(MEMBER)};
+#define MEMBERS(id, ...) \
+    static const mt_goal_member id##_MEMBERS[] = {MT_GOAL_##id##_MEMBERS(MEMBER)};
 MT_GOAL_LIST(MEMBERS)
 
-#define KIND(id, name, members, unit, measure)                                              \
-    {name, unit, MT_MEASURE_##measure, (int)(sizeof id##_MEMBERS / sizeof id##_MEMBERS[0]), \
+#define KIND(id, name, unit, measure)                                                        \
+    {#name, unit, MT_MEASURE_##measure, (int)(sizeof id##_MEMBERS / sizeof id##_MEMBERS[0]), \
      id##_MEMBERS},
 static const mt_goal_kind KINDS[] = {MT_GOAL_LIST(KIND)};
 
@@ -33,6 +34,11 @@ const char *mt_goal_member_name(const mt_goal_kind *kind, mt_goal_slot slot)
 {
     const int at = mt_goal_member_at(kind, slot);
     return at < 0 ? NULL : kind->members[at].name;
+}
+
+double mt_measure_unit(mt_goal_measure measure, double asked)
+{
+    return measure == MT_MEASURE_PART && fabs(asked) > 0.0 ? fabs(asked) : 1.0;
 }
 
 bool mt_goal_in_range(mt_goal_range range, double value)

@@ -61,14 +61,14 @@
     X(UP_TO, "up_to_hz", NUMBER, false, ANY)            \
     X(CLUSTER, "cluster", COUNT, false, ANY)
 
-/* X(id, name in files, list of members, unit of the numbers, how a value is measured against
- * them) */
-#define MT_GOAL_LIST(X)                                       \
-    X(FREQUENCY, "frequency", FREQUENCY_MEMBERS, "Hz", RATIO) \
-    X(SHAPE, "shape", SHAPE_MEMBERS, "", DIFFERENCE)          \
-    X(MAC, "mac", MAC_MEMBERS, "", DIFFERENCE)                \
-    X(LIMIT, "limit", LIMIT_MEMBERS, "", PART)                \
-    X(AVOID, "avoid", AVOID_MEMBERS, "Hz", RATIO)
+/* X(id, name in files, unit of the numbers, how a value is measured against them). Its members
+ * are MT_GOAL_<id>_MEMBERS, its operations mt_goal_<name> of problem/goal.h. */
+#define MT_GOAL_LIST(X)                  \
+    X(FREQUENCY, frequency, "Hz", RATIO) \
+    X(SHAPE, shape, "", DIFFERENCE)      \
+    X(MAC, mac, "", DIFFERENCE)          \
+    X(LIMIT, limit, "", PART)            \
+    X(AVOID, avoid, "Hz", RATIO)
 #define MT_GOAL_ENUM(id, ...) MT_GOAL_##id,
 typedef enum mt_goal_type { MT_GOAL_LIST(MT_GOAL_ENUM) MT_GOAL_TYPE_COUNT } mt_goal_type;
 #undef MT_GOAL_ENUM
@@ -135,6 +135,8 @@ const mt_goal_kind *mt_goal_kind_of(mt_goal_type type);
 int mt_goal_member_at(const mt_goal_kind *kind, mt_goal_slot slot);
 /* The name that files use; NULL: the kind has no such member. */
 const char *mt_goal_member_name(const mt_goal_kind *kind, mt_goal_slot slot);
+/* What a difference from `asked` is divided by. */
+double mt_measure_unit(mt_goal_measure measure, double asked);
 bool mt_goal_in_range(mt_goal_range range, double value);
 /* "above 0": what a number of this range must be. */
 const char *mt_goal_range_text(mt_goal_range range);

@@ -46,6 +46,16 @@ void mt_study_delete(mt_study *study)
     free(study);
 }
 
+bool mt_study_has_bands(const mt_study *study)
+{
+    for (int g = 0; g < study->n_goals; g++) {
+        if (study->goals[g].avoid != NULL) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool mt_study_asks(const mt_study *study, int configuration)
 {
     for (int g = 0; g < study->n_goals; g++) {

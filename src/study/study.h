@@ -312,6 +312,8 @@ mt_published mt_published_default(mt_published_kind kind, mt_addr addr);
 mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err);
 /* MT_ABSENT where there is none. */
 int mt_study_find_reference(const mt_study *study, const char *name);
+/* Is there a goal that keeps clear of bands? */
+bool mt_study_has_bands(const mt_study *study);
 /* Does a goal ask for this configuration? */
 bool mt_study_asks(const mt_study *study, int configuration);
 /* Fill in where a doubt's address stands, if that is known. */

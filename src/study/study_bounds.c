@@ -47,7 +47,7 @@ static bool is_allowed(corners *k)
         mt_model_parameters(k->c->model, k->n, k->inputs, k->x, &k->mem, k->parameter, NULL);
     k->rc = rc == MT_E_MEMORY ? rc : k->rc;
     for (int i = 0; rc == MT_OK && i < s->n_goals && allowed; i++) {
-        allowed = s->goals[i].type != MT_GOAL_LIMIT || is_met(k, &s->goals[i]);
+        allowed = s->goals[i].expression_text == NULL || is_met(k, &s->goals[i]);
     }
     return rc == MT_OK && allowed;
 }
@@ -187,7 +187,7 @@ static double count_work(const corners *k)
         each += is_asked(s, c) ? (double)m->n_nums : 0.0;
     }
     for (int g = 0; g < s->n_goals; g++) {
-        each += s->goals[g].type == MT_GOAL_LIMIT ? (double)m->n_parameters : 0.0;
+        each += s->goals[g].expression_text != NULL ? (double)m->n_parameters : 0.0;
     }
     return designs * each;
 }

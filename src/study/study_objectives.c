@@ -100,12 +100,7 @@ static void check_spread(mt_study_check *c)
 static void check_clearance(mt_study_check *c)
 {
     const mt_objective *const clearance = find(c->study, MT_OBJECTIVE_CLEARANCE);
-    for (int i = 0; i < c->study->n_goals; i++) {
-        if (c->study->goals[i].type == MT_GOAL_AVOID) {
-            return;
-        }
-    }
-    if (clearance != NULL) {
+    if (clearance != NULL && !mt_study_has_bands(c->study)) {
         mt_diag_error(c->diags, clearance->addr,
                       "the clearance needs a goal of type \"avoid\"");
     }

@@ -211,23 +211,13 @@ static bool has_objective(const mt_study *s, mt_objective_type type)
     return false;
 }
 
-static bool has_goal(const mt_study *s, mt_goal_type type)
-{
-    for (int i = 0; i < s->n_goals; i++) {
-        if (s->goals[i].type == type) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static void check_front(mt_study_check *c)
 {
     const mt_study *const s = c->study;
     const mt_trade *const trade = &s->trade;
     for (int i = 0; i < trade->n_objectives; i++) {
         const mt_objective_type type = trade->objectives[i];
-        if (type == MT_OBJECTIVE_CLEARANCE && !has_goal(s, MT_GOAL_AVOID)) {
+        if (type == MT_OBJECTIVE_CLEARANCE && !mt_study_has_bands(s)) {
             mt_diag_error(c->diags, trade->objectives_addr,
                           "the clearance needs a goal of type \"avoid\"");
         } else if (mt_objective_is(type, MT_OF_STUDY) && !has_objective(s, type)) {

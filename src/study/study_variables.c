@@ -125,7 +125,7 @@ static bool is_followed(const mt_study *s, int parameter, bool *asked)
 {
     for (int i = 0; i < s->n_goals; i++) {
         const mt_goal *const goal = &s->goals[i];
-        if (goal->type == MT_GOAL_LIMIT) {
+        if (goal->n_configurations == 0) {
             *asked = true;
             return true;
         }
