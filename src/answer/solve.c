@@ -348,9 +348,10 @@ static mt_status describe_baseline(mt_answer *a, mt_err *err)
     const mt_design original = {.t = p->origin_t};
     MT_TRY(mt_describe_run(a->study, result, err));
     MT_TRY(mt_describe_excitations(a->study, result, err));
-    result->doubts = mt_doubt_list_default(&result->mem);
     if (!a->study->examined) {
-        MT_TRY(mt_study_examine(a->study, HUGE_VAL, &result->doubts, err));
+        mt_doubt_list list = mt_doubt_list_default(&result->mem);
+        MT_TRY(mt_study_examine(a->study, HUGE_VAL, &list, err));
+        MT_TRY(mt_result_take_doubts(result, &list, err));
     }
     MT_TRY(mt_describe_design(p, &original, NULL, result, &result->baseline, err));
     return mt_describe_baseline_reasons(p, result, err);

@@ -225,9 +225,8 @@ static void lower_grade(mt_recommendation *r)
 /* The points of a trade study are answers to the same question. */
 void mt_answer_qualify_trade(mt_result *result)
 {
-    const mt_doubt_list *const list = &result->doubts;
-    const bool doubtful = mt_doubt_count(list->n, list->items, MT_LEVEL_DOUBT) > 0;
-    for (int i = 0; doubtful && result->trade != NULL && i < result->trade->n_points; i++) {
+    for (int i = 0;
+         result->n_doubts > 0 && result->trade != NULL && i < result->trade->n_points; i++) {
         lower_grade(&result->trade->points[i].best);
     }
 }
@@ -236,12 +235,8 @@ void mt_answer_qualify_trade(mt_result *result)
  * and no design is graded beyond "feasible". */
 static mt_status qualify(mt_result *result, mt_err *err)
 {
-    const mt_doubt_list *const list = &result->doubts;
-    const int n = mt_doubt_count(list->n, list->items, MT_LEVEL_DOUBT);
-    const char *first = "";
-    for (int i = list->n - 1; i >= 0; i--) {
-        first = list->items[i].level == MT_LEVEL_DOUBT ? list->items[i].text : first;
-    }
+    const int n = result->n_doubts;
+    const char *const first = n > 0 ? result->doubts[0].text : "";
     if (n == 0) {
         return MT_OK;
     }

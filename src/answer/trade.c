@@ -307,7 +307,8 @@ static mt_status describe_point(const trade *t, int k, mt_arena *mem, mt_trade_p
 {
     const mt_result *const r = answer_of(&t->points[k]);
     const mt_recommendation *const best = best_of(r);
-    *out = (mt_trade_point){.values = mt_arena_f64(mem, MT_MAX_VARY, 1),
+    *out = (mt_trade_point){.n_values = t->study->trade.n_vary,
+                            .values = mt_arena_f64(mem, MT_MAX_VARY, 1),
                             .status = r != NULL ? r->status : MT_RESULT_INTERRUPTED,
                             .best = mt_recommendation_default()};
     out->status_text = mt_arena_strdup(mem, r != NULL && r->status_text != NULL

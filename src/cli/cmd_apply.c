@@ -27,8 +27,8 @@ typedef struct replacement {
 static const char *hash_of_model(const mt_result *result)
 {
     for (int i = 0; i < result->run.n_inputs; i++) {
-        if (strcmp(result->run.input_names[i], result->model_file) == 0) {
-            return result->run.input_sha256[i];
+        if (strcmp(result->run.inputs[i].file, result->model.file) == 0) {
+            return result->run.inputs[i].sha256;
         }
     }
     return NULL;
@@ -53,7 +53,7 @@ static void try_from(quest *q, const char *naming)
     if (q->path != NULL || q->failed == MT_E_MEMORY) {
         return;
     }
-    char *const path = naming == NULL ? NULL : mt_file_join(naming, q->result->model_file);
+    char *const path = naming == NULL ? NULL : mt_file_join(naming, q->result->model.file);
     const mt_status rc = path == NULL
                              ? mt_fail_memory(&why)
                              : mt_file_read(path, q->root, MT_JSON_MAX_BYTES, &q->file, &why);
@@ -122,7 +122,7 @@ static mt_status search(const char *result_path, quest *q, mt_err *err)
         err, MT_E_INPUT,
         "%s: the model \"%s\" is not found as it was when the study was solved: name "
         "it with --model",
-        result_path, q->result->model_file);
+        result_path, q->result->model.file);
 }
 
 static mt_status find_model(const mt_args *args, const mt_result *result, mt_file *file,

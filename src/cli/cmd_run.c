@@ -187,27 +187,6 @@ int mt_cmd_run(const mt_args *args, mt_text *out)
     return code == MT_EXIT_DONE ? for_each_study(args, out, true, run_one) : code;
 }
 
-static void json_published(mt_json_writer *w, const mt_result_published *p)
-{
-    mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "label", p->label);
-    mt_json_put_string(w, "kind", p->kind);
-    if (p->published_text != NULL) {
-        mt_json_put_string(w, "published", p->published_text);
-        mt_json_put_string(w, "computed", p->computed_text);
-    } else {
-        mt_json_put_number(w, "published", p->published);
-        mt_json_put_number(w, "computed", p->computed);
-    }
-    mt_json_put_number(w, "difference", p->difference);
-    mt_json_put_number(w, "difference_percent", p->difference_percent);
-    mt_json_put_string(w, "demand", p->demand);
-    mt_json_put_string(w, "role", p->role);
-    mt_json_put_string(w, "source", p->source);
-    mt_json_put_bool(w, "holds", p->holds);
-    mt_json_close(w);
-}
-
 static void print_comparison(const job *j, mt_json_writer *w, mt_text *out)
 {
     const mt_result *const r = j->result;
@@ -217,26 +196,23 @@ static void print_comparison(const job *j, mt_json_writer *w, mt_text *out)
     switch (j->args->format) {
     case MT_FORMAT_JSON:
         mt_json_open(w, NULL, '{');
-        mt_json_put_string(w, "study", r->study_file);
-        mt_json_put_string(w, "status", mt_result_status_name(r->status));
-        mt_json_put_doubts(w, "doubts", &r->doubts, MT_LEVEL_DOUBT);
+        mt_json_put_string(w, "study", r->study.file);
+        mt_result_put_member(w, "status", r);
+        mt_result_put_member(w, "doubts", r);
         mt_json_put_bool(w, "holds", holds && judged > 0);
-        mt_json_open(w, "published", '[');
-        for (int i = 0; i < r->n_published; i++) {
-            json_published(w, &r->published[i]);
-        }
-        mt_json_close(w);
-        mt_result_put_uncertainty(w, r);
+        mt_result_put_member(w, "published", r);
+        mt_result_put_member(w, "undetermined", r);
+        mt_result_put_member(w, "spread", r);
         mt_json_close(w);
         break;
     case MT_FORMAT_CSV:
         mt_table_csv(&t, out);
         break;
     case MT_FORMAT_TEXT:
-        mt_text_addf(out, "%s: %s\n", r->study_name == NULL ? j->path : r->study_name,
+        mt_text_addf(out, "%s: %s\n", r->study.name == NULL ? j->path : r->study.name,
                      mt_result_status_name(r->status));
         if (mt_report_doubtful(r)) {
-            mt_report_doubts(&r->doubts, out);
+            mt_report_doubts(r, out);
             mt_text_add(out, "\n");
         }
         mt_table_print(&t, 2, out);

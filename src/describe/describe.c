@@ -63,8 +63,11 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
             .change_percent =
                 original != 0.0 ? 100.0 * (x[i] - original) / fabs(original) : nan(""),
             .at_bound = bound_of(v, x[i]),
-            .measure_scale = MT_HAS(p->scale[i]) ? p->scale[i] : 0.0,
-            .measure_floor = p->floor[i],
+            .measure = MT_HAS(p->scale[i]) ? "linear"
+                       : p->floor[i] > 0.0 ? "logarithmic with floor"
+                                           : "logarithmic",
+            .measure_floor = p->floor[i] > 0.0 ? p->floor[i] : nan(""),
+            .measure_scale = p->scale[i],
         };
     }
     rec->change = sqrt(change);

@@ -339,6 +339,7 @@ mt_status mt_describe_clearances(mt_problem *fresh, mt_result *result, mt_recomm
     for (int i = 0; i < fresh->n_clears; i++) {
         MT_TRY(list_clear(fresh, &fresh->clears[i], below, result, rec, err));
     }
+    rec->gaps = rec->n_gaps > 0 ? rec->gaps : NULL;
     for (int i = 0; i < rec->n_motions; i++) {
         rec->clearance_percent =
             fmin(rec->clearance_percent, rec->motions[i].least_clearance_percent);

@@ -54,7 +54,6 @@ mt_status mt_describe_undetermined(const mt_problem *p, const mt_nlp_result *fou
     for (int k = 0; k < found->n_undetermined; k++) {
         const double *const v = found->undetermined + ((ptrdiff_t)k * p->n);
         mt_undetermined *const u = &result->undetermined[k];
-        u->n = p->n;
         u->direction = mt_arena_f64(&result->mem, (size_t)p->n, 1);
         u->text = direction_text(p, v, &result->mem);
         u->effect_percent = 100.0 * tolerance * found->undetermined_effect[k];

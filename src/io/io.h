@@ -63,8 +63,8 @@ void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result)
 /* The items of one level as a list of objects. */
 void mt_json_put_doubts(mt_json_writer *w, const char *name, const mt_doubt_list *list,
                         mt_doubt_level level);
-/* Of it, the members "undetermined" and "spread", into an object that is open. */
-void mt_result_put_uncertainty(mt_json_writer *w, const mt_result *result);
+/* One of its members, into an object that is open; name NULL: all of them. */
+void mt_result_put_member(mt_json_writer *w, const char *name, const mt_result *result);
 
 /* The files that hold a result in its folder. All are replaced as one (io/folder.h);
  * result.json decides, and names the others with their digests. */
@@ -93,12 +93,10 @@ mt_status mt_result_check_folder(const char *path, const char *sha256, const mt_
                                  mt_err *err);
 
 /**
- * Read back from a result file what `apply` needs: status, names and files of study and model,
- * inputs, and of every recommendation rank, feasibility, grade, score, change, violation and
- * parameters. What else the file holds is left alone. A result.json in its folder is read only
- * where the files beside it belong to it; a run that is just replacing them is waited for.
- * Owned by the caller (mt_result_delete). Fails: MT_E_INPUT, MT_E_SYSTEM, MT_E_MEMORY; messages
- * as for mt_study_load.
+ * Read a result file back, whole: writing it again gives the same bytes. A result.json in its
+ * folder is read only where the files beside it belong to it; a run that is just replacing them
+ * is waited for. Owned by the caller (mt_result_delete). Fails: MT_E_INPUT, MT_E_SYSTEM,
+ * MT_E_MEMORY; messages as for mt_study_load.
  */
 mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result **out,
                          mt_text *messages, mt_err *err);

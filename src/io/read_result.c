@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A result read back: what `apply` needs. Members that are not looked at may be anything, so
- * that later versions can add some. */
+/*
+ * A result read back, whole: every member of the tables must be there and of its type, and no
+ * other. Besides, the parameters of every design are the variables, and each point of a trade
+ * study has one value of each quantity that varies.
+ */
+#include <assert.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,192 +17,373 @@
 
 enum { READER_PATIENCE_MS = 10000 };
 
+static const char FORMAT[] = "format";
+
+enum { MOST_FIELDS = 40 }; /* of a record */
+
 typedef struct result_reader {
     mt_reader r;
     mt_result *result;
+    int n_variables;
+    const char **variables; /* [n_variables] as listed; they live as long as the document */
+    mt_name *by_name;       /* [n_variables] sorted; addr: the place in the list */
 } result_reader;
 
-/* A member that must be there and of the given type; MT_NO_ADDR where it is not (noted). */
-static mt_addr need(result_reader *s, mt_addr object, const char *name, mt_key_type type)
+static void read_record(result_reader *s, mt_addr value, const mt_record *record, void *item);
+
+static mt_addr member(const result_reader *s, mt_addr object, const char *name)
 {
-    const mt_addr value = mt_json_member(s->r.doc, object, name);
-    if (value == MT_NO_ADDR && object != MT_NO_ADDR) {
-        mt_diag_structure(s->r.diags, object, "member \"%s\" is missing", name);
-    }
-    return mt_reader_type(&s->r, value, type) ? value : MT_NO_ADDR;
+    return object == MT_NO_ADDR ? MT_NO_ADDR : mt_json_member(s->r.doc, object, name);
 }
 
-/* A number; NaN for null, absent or wrong (noted). */
-static double number(result_reader *s, mt_addr object, const char *name)
+/* Null where it may be; what is absent or wrong has been noted, and reads as null. */
+static bool is_null(result_reader *s, const mt_field *f, mt_addr value)
 {
-    const mt_addr value = need(s, object, name, MT_KEY_ANY);
-    const mt_json_type type =
-        value == MT_NO_ADDR ? MT_JSON_NULL : mt_json_type_of(s->r.doc, value);
+    return value == MT_NO_ADDR ||
+           (f->nullable && mt_json_type_of(s->r.doc, value) == MT_JSON_NULL);
+}
+
+static double read_number(result_reader *s, mt_addr value, bool nullable)
+{
+    const mt_json_type type = mt_json_type_of(s->r.doc, value);
     if (type == MT_JSON_NUMBER) {
         return mt_json_number(s->r.doc, value);
     }
-    if (type != MT_JSON_NULL) {
-        mt_diag_structure(s->r.diags, value, "must be a number or null, not %s",
-                          mt_json_type_text(type));
+    if (type != MT_JSON_NULL || !nullable) {
+        mt_diag_structure(s->r.diags, value, "must be a number%s, not %s",
+                          nullable ? " or null" : "", mt_json_type_text(type));
     }
     return nan("");
 }
 
-/* A text; NULL for null, absent or wrong (noted). */
-static const char *text(result_reader *s, mt_addr object, const char *name)
+/* Integers are exact in a double up to here. */
+static const double LONGEST = 9007199254740992.0;
+
+static long read_long(result_reader *s, mt_addr value)
 {
-    const mt_addr value = need(s, object, name, MT_KEY_ANY);
-    if (value == MT_NO_ADDR || mt_json_type_of(s->r.doc, value) == MT_JSON_NULL) {
-        return NULL;
+    if (!mt_reader_type(&s->r, value, MT_KEY_COUNT)) {
+        return 0;
     }
-    return mt_reader_text(&s->r, value);
+    const double number = mt_json_number(s->r.doc, value);
+    if (number == floor(number) && number >= 0.0 && number <= LONGEST) {
+        return (long)number;
+    }
+    mt_diag_structure(s->r.diags, value, "must be a whole number, 0 or more");
+    return 0;
 }
 
-static void read_parameter(result_reader *s, mt_addr value, mt_result_parameter *p)
+static void read_list(result_reader *s, mt_addr value, const mt_field *f, void *at, int *n)
 {
-    if (!mt_reader_type(&s->r, value, MT_KEY_OBJECT)) {
+    if (!mt_reader_type(&s->r, value, MT_KEY_LIST)) {
         return;
     }
-    p->name = mt_reader_text(&s->r, need(s, value, "name", MT_KEY_TEXT));
-    p->unit = text(s, value, "unit");
-    p->original = number(s, value, "original");
-    p->recommended = number(s, value, "recommended");
-    p->change_percent = number(s, value, "change_percent");
-    p->at_bound = text(s, value, "at_bound");
+    mt_items items = mt_reader_items(&s->r, value);
+    char *const room = mt_reader_room(&s->r, &items, f->record->size);
+    *(void **)at = room;
+    for (*n = 0; mt_items_next(&items); ++*n) {
+        read_record(s, items.at, f->record, room + ((size_t)*n * f->record->size));
+    }
+}
+
+/* One of the names; as the table has it, so that it lives for ever. */
+static const char *read_choice(result_reader *s, mt_addr value, const mt_field *f)
+{
+    const int k = mt_reader_choice(&s->r, value, f->name, f->choices, f->n_choices);
+    return k == MT_ABSENT ? NULL : f->choices[k];
+}
+
+/* The first where it is none of them (noted). */
+static int read_enum(result_reader *s, mt_addr value, const mt_field *f)
+{
+    const int k = mt_reader_choice(&s->r, value, f->name, f->choices, f->n_choices);
+    return k == MT_ABSENT ? 0 : k;
+}
+
+static void read_texts(result_reader *s, mt_addr value, const mt_field *f, const char ***texts,
+                       int *n)
+{
+    if (!mt_reader_type(&s->r, value, MT_KEY_LIST)) {
+        return;
+    }
+    mt_items items = mt_reader_items(&s->r, value);
+    *texts = mt_reader_room(&s->r, &items, sizeof **texts);
+    for (*n = 0; mt_items_next(&items); ++*n) {
+        (*texts)[*n] =
+            f->choices != NULL ? read_choice(s, items.at, f) : mt_reader_text(&s->r, items.at);
+    }
+}
+
+static void read_numbers(result_reader *s, mt_addr value, double **numbers, int *n)
+{
+    if (!mt_reader_type(&s->r, value, MT_KEY_LIST)) {
+        return;
+    }
+    mt_items items = mt_reader_items(&s->r, value);
+    *numbers = mt_reader_room(&s->r, &items, sizeof **numbers);
+    for (*n = 0; mt_items_next(&items); ++*n) {
+        (*numbers)[*n] = read_number(s, items.at, true);
+    }
 }
 
 static int by_name(const void *a, const void *b)
 {
     const mt_name *const x = a;
     const mt_name *const y = b;
-    const int order = strcmp(x->s, y->s);
-    return order != 0 ? order : (x->addr > y->addr) - (x->addr < y->addr);
+    return strcmp(x->s, y->s);
 }
 
-/* A design gives a parameter one value. */
-static void refuse_twice(result_reader *s, mt_addr list, int most)
+/* Index of the variable; `expected` is tried first. MT_ABSENT: there is none of that name. */
+static int find_variable(const result_reader *s, const char *name, int expected)
 {
-    if (most < 2) {
-        return;
+    if (expected < s->n_variables && strcmp(s->variables[expected], name) == 0) {
+        return expected;
     }
-    const mt_arena_mark mark = mt_arena_get_mark(&s->result->mem);
-    mt_name *const names = mt_arena_alloc(&s->result->mem, (size_t)most, sizeof *names);
-    int n = 0;
-    s->r.out_of_memory = s->r.out_of_memory || names == NULL;
-    for (mt_items i = mt_reader_items(&s->r, list); names != NULL && mt_items_next(&i);) {
-        const mt_addr name = mt_json_type_of(s->r.doc, i.at) == MT_JSON_OBJECT
-                                 ? mt_json_member(s->r.doc, i.at, "name")
-                                 : MT_NO_ADDR;
-        if (n < most && name != MT_NO_ADDR &&
-            mt_json_type_of(s->r.doc, name) == MT_JSON_STRING) {
-            names[n++] = (mt_name){.s = mt_json_string(s->r.doc, name), .addr = name};
-        }
-    }
-    if (n > 0) {
-        qsort(names, (size_t)n, sizeof *names, by_name);
-    }
-    for (int i = 1; i < n; i++) {
-        if (strcmp(names[i].s, names[i - 1].s) == 0) {
-            mt_diag_error(s->r.diags, names[i].addr, "\"%s\" is listed twice", names[i].s);
-        }
-    }
-    mt_arena_rewind(&s->result->mem, mark);
+    const mt_name key = {.s = name};
+    const mt_name *const found =
+        s->n_variables == 0
+            ? NULL
+            : bsearch(&key, s->by_name, (size_t)s->n_variables, sizeof key, by_name);
+    return found == NULL ? MT_ABSENT : (int)found->addr;
 }
 
-static void read_design(result_reader *s, mt_addr value, mt_recommendation *out)
+/* Each variable's number, by its name: the parser has seen that no name comes twice. */
+static double *read_by_variable(result_reader *s, mt_addr value, bool nullable)
 {
-    *out = mt_recommendation_default();
+    const int n = s->n_variables;
+    if (!mt_reader_type(&s->r, value, MT_KEY_OBJECT)) {
+        return NULL;
+    }
+    double *const values = mt_arena_f64(s->r.mem, (size_t)n, 1);
+    s->r.out_of_memory = s->r.out_of_memory || values == NULL;
+    int members = 0;
+    bool known = true;
+    for (mt_items i = mt_reader_items(&s->r, value); values != NULL && mt_items_next(&i);) {
+        const char *const name = mt_json_name(s->r.doc, i.at);
+        const int k = find_variable(s, name, members);
+        if (k == MT_ABSENT) {
+            mt_diag_error(s->r.diags, mt_json_name_addr(s->r.doc, i.at),
+                          "\"%s\" is no variable", name);
+            known = false;
+        } else {
+            values[k] = read_number(s, i.at, nullable);
+            members++;
+        }
+    }
+    if (values != NULL && known && members < n) {
+        mt_diag_error(s->r.diags, value, "%d of %d variables are missing", n - members, n);
+    }
+    return values;
+}
+
+/* `value` is neither null nor absent. */
+static void read_field(result_reader *s, mt_addr value, const mt_field *f, void *item)
+{
+    void *const at = (char *)item + f->offset;
+    void *const other = (char *)item + f->other;
+    switch (f->type) {
+    case MT_FIELD_TEXT:
+        *(const char **)at = mt_reader_text(&s->r, value);
+        break;
+    case MT_FIELD_CHOICE:
+        *(const char **)at = read_choice(s, value, f);
+        break;
+    case MT_FIELD_ENUM:
+        *(int *)at = read_enum(s, value, f);
+        break;
+    case MT_FIELD_NUMBER:
+        *(double *)at = read_number(s, value, f->nullable);
+        break;
+    case MT_FIELD_VALUE:
+        if (mt_json_type_of(s->r.doc, value) == MT_JSON_STRING) {
+            *(const char **)other = mt_reader_text(&s->r, value);
+            break;
+        }
+        *(double *)at = read_number(s, value, f->nullable);
+        break;
+    case MT_FIELD_COUNT:
+        *(int *)at = mt_reader_count(&s->r, value, f->least, INT_MAX, *(int *)at);
+        break;
+    case MT_FIELD_LONG:
+        *(long *)at = read_long(s, value);
+        break;
+    case MT_FIELD_FLAG:
+        *(bool *)at = mt_reader_flag(&s->r, value, false);
+        break;
+    case MT_FIELD_RECORD:
+        read_record(s, value, f->record, at);
+        break;
+    case MT_FIELD_OPTION:
+        *(void **)at = mt_arena_alloc(s->r.mem, 1, f->record->size);
+        s->r.out_of_memory = s->r.out_of_memory || *(void **)at == NULL;
+        if (*(void **)at != NULL) {
+            read_record(s, value, f->record, *(void **)at);
+        }
+        break;
+    case MT_FIELD_LIST:
+        read_list(s, value, f, at, other);
+        break;
+    case MT_FIELD_TEXTS:
+        read_texts(s, value, f, at, other);
+        break;
+    case MT_FIELD_NUMBERS:
+        read_numbers(s, value, at, other);
+        break;
+    case MT_FIELD_BY_VARIABLE:
+        *(double **)at = read_by_variable(s, value, f->numbers_nullable);
+        break;
+    case MT_FIELD_TYPE_COUNT:
+        break;
+    }
+}
+
+static const mt_field *find_field(const mt_record *record, const char *name, int expected)
+{
+    for (int i = 0; i < record->n; i++) {
+        const mt_field *const f = &record->fields[(expected + i) % record->n];
+        if (f->name != NULL && strcmp(f->name, name) == 0) {
+            return f;
+        }
+    }
+    return NULL;
+}
+
+/* Is it the root's "format", which the table of the result does not have? */
+static bool is_format(const mt_record *record, const char *name)
+{
+    return record == &mt_result_record && strcmp(name, FORMAT) == 0;
+}
+
+static void read_members(result_reader *s, mt_addr value, const mt_record *record, void *item)
+{
+    bool seen[MOST_FIELDS] = {false};
+    int expected = 0;
+    assert(record->n <= MOST_FIELDS);
     if (!mt_reader_type(&s->r, value, MT_KEY_OBJECT)) {
         return;
     }
-    out->rank = mt_reader_count(&s->r, need(s, value, "rank", MT_KEY_COUNT), 0, MT_MAX_LIST, 0);
-    out->feasible = mt_reader_flag(&s->r, need(s, value, "feasible", MT_KEY_BOOL), false);
-    out->grade = text(s, value, "grade");
-    out->score = number(s, value, "score");
-    out->score_unit = text(s, value, "score_unit");
-    out->change = number(s, value, "change");
-    out->misfit = number(s, value, "misfit");
-    out->violation_percent = number(s, value, "violation_percent");
-    const mt_addr list = need(s, value, "parameters", MT_KEY_LIST);
-    mt_items items = mt_reader_items(&s->r, list);
-    out->parameters = mt_reader_room(&s->r, &items, sizeof *out->parameters);
-    while (mt_items_next(&items)) {
-        read_parameter(s, items.at, &out->parameters[out->n_parameters++]);
-    }
-    refuse_twice(s, list, out->n_parameters);
-}
-
-static void read_recommendations(result_reader *s, mt_addr list)
-{
-    mt_result *const result = s->result;
-    mt_items items = mt_reader_items(&s->r, list);
-    result->recommendations = mt_reader_room(&s->r, &items, sizeof *result->recommendations);
-    while (mt_items_next(&items)) {
-        read_design(s, items.at, &result->recommendations[result->n_recommendations++]);
-    }
-}
-
-/* Files and their digests; returns how many. */
-static int read_digests(result_reader *s, mt_addr list, const char ***names,
-                        const char ***sha256)
-{
-    int n = 0;
-    mt_items items = mt_reader_items(&s->r, list);
-    *names = mt_reader_room(&s->r, &items, sizeof **names);
-    *sha256 = mt_reader_room(&s->r, &items, sizeof **sha256);
-    while (mt_items_next(&items)) {
-        if (mt_reader_type(&s->r, items.at, MT_KEY_OBJECT)) {
-            (*names)[n] = mt_reader_text(&s->r, need(s, items.at, "file", MT_KEY_TEXT));
-            (*sha256)[n] = mt_reader_text(&s->r, need(s, items.at, "sha256", MT_KEY_TEXT));
-            n++;
+    for (mt_items i = mt_reader_items(&s->r, value); mt_items_next(&i);) {
+        const char *const name = mt_json_name(s->r.doc, i.at);
+        const mt_field *const f = find_field(record, name, expected);
+        if (f != NULL && !seen[f - record->fields]) { /* given twice has been noted */
+            seen[f - record->fields] = true;
+            expected = (int)(f - record->fields) + 1;
+            if (!is_null(s, f, i.at)) {
+                read_field(s, i.at, f, item);
+            }
+        } else if (f == NULL && !is_format(record, name)) {
+            mt_diag_structure(s->r.diags, mt_json_name_addr(s->r.doc, i.at),
+                              "unknown member \"%s\"", name);
         }
     }
-    return n;
+    for (int i = 0; i < record->n; i++) {
+        if (record->fields[i].name != NULL && !seen[i]) {
+            mt_diag_structure(s->r.diags, value, "member \"%s\" is missing",
+                              record->fields[i].name);
+        }
+    }
 }
 
-static void read_run(result_reader *s, mt_addr value)
+static void read_record(result_reader *s, mt_addr value, const mt_record *record, void *item)
 {
-    mt_result_run *const run = &s->result->run;
-    run->modetune_version = text(s, value, "modetune");
-    run->n_inputs = read_digests(s, need(s, value, "inputs", MT_KEY_LIST), &run->input_names,
-                                 &run->input_sha256);
-    /* results of version 0.1.0 and before name no outputs */
-    const bool has =
-        value != MT_NO_ADDR && mt_json_member(s->r.doc, value, "outputs") != MT_NO_ADDR;
-    run->n_outputs = !has ? 0
-                          : read_digests(s, need(s, value, "outputs", MT_KEY_LIST),
-                                         &run->output_names, &run->output_sha256);
+    mt_record_clear(record, item);
+    read_members(s, value, record, item);
 }
 
-static void read_named_file(result_reader *s, const char *member, const char **name,
-                            const char **file)
+/* The variables come before what is told by their names, wherever they stand; what is no text
+ * is noted when its turn comes. */
+static void list_variables(result_reader *s)
 {
-    const mt_addr object = need(s, MT_JSON_ROOT, member, MT_KEY_OBJECT);
-    *name = text(s, object, "name");
-    *file = mt_reader_text(&s->r, need(s, object, "file", MT_KEY_TEXT));
+    const mt_addr list = member(s, MT_JSON_ROOT, "variables");
+    mt_items items = mt_reader_items(&s->r, list);
+    const mt_items again = items;
+    s->variables = mt_reader_room(&s->r, &items, sizeof *s->variables);
+    items = again;
+    s->by_name = mt_reader_room(&s->r, &items, sizeof *s->by_name);
+    if (s->variables == NULL || s->by_name == NULL) {
+        return;
+    }
+    while (mt_items_next(&items)) {
+        const bool is_text = mt_json_type_of(s->r.doc, items.at) == MT_JSON_STRING;
+        const char *const name = is_text ? mt_json_string(s->r.doc, items.at) : "";
+        if (is_text && mt_json_type_of(s->r.doc, list) == MT_JSON_ARRAY) {
+            s->by_name[s->n_variables] = (mt_name){.s = name, .addr = s->n_variables};
+            s->variables[s->n_variables++] = name;
+        }
+    }
+    if (s->n_variables > 0) {
+        qsort(s->by_name, (size_t)s->n_variables, sizeof *s->by_name, by_name);
+    }
+    for (int i = 1; i < s->n_variables; i++) {
+        if (strcmp(s->by_name[i].s, s->by_name[i - 1].s) == 0) {
+            mt_diag_error(s->r.diags, list, "\"%s\" is listed twice", s->by_name[i].s);
+        }
+    }
+}
+
+/* The parameters of a design are the variables, in their order; a design that was not found has
+ * none. */
+static void check_design(result_reader *s, mt_addr design)
+{
+    const mt_addr list = member(s, design, "parameters");
+    mt_items items = mt_reader_items(&s->r, list);
+    if (items.count != 0 && items.count != s->n_variables) {
+        mt_diag_error(s->r.diags, list, "has %d parameters, not one for each of %d variables",
+                      items.count, s->n_variables);
+        return;
+    }
+    for (int i = 0; mt_items_next(&items); i++) {
+        const mt_addr name = member(s, items.at, "name");
+        if (name != MT_NO_ADDR && mt_json_type_of(s->r.doc, name) == MT_JSON_STRING &&
+            strcmp(mt_json_string(s->r.doc, name), s->variables[i]) != 0) {
+            mt_diag_error(s->r.diags, name, "must be \"%s\", the variable of this place",
+                          s->variables[i]);
+        }
+    }
+}
+
+static void check_trade(result_reader *s, mt_addr trade)
+{
+    const mt_addr vary = member(s, trade, "vary");
+    const int n = mt_reader_items(&s->r, vary).count;
+    if (n < 1 || n > MT_MAX_VARY) {
+        mt_diag_structure(s->r.diags, vary == MT_NO_ADDR ? trade : vary,
+                          "must have 1 to %d quantities", MT_MAX_VARY);
+    }
+    mt_items points = mt_reader_items(&s->r, member(s, trade, "points"));
+    while (mt_items_next(&points)) {
+        const mt_addr values = member(s, points.at, "values");
+        if (values != MT_NO_ADDR && mt_reader_items(&s->r, values).count != n) {
+            mt_diag_error(s->r.diags, values, "must have %d value%s, as many as vary", n,
+                          n == 1 ? "" : "s");
+        }
+        check_design(s, member(s, points.at, "best"));
+    }
 }
 
 static void read_root(result_reader *s)
 {
-#define STATUS_NAME(id, name) name,
-    static const char *const statuses[] = {MT_RESULT_STATUS_LIST(STATUS_NAME)};
-#undef STATUS_NAME
     static const char *const formats[] = {"modetune-result/1"};
-    mt_result *const result = s->result;
     if (!mt_reader_type(&s->r, MT_JSON_ROOT, MT_KEY_OBJECT)) {
         return;
     }
-    (void)mt_reader_choice(&s->r, need(s, MT_JSON_ROOT, "format", MT_KEY_TEXT), "format",
-                           formats, MT_COUNT(formats));
-    read_named_file(s, "study", &result->study_name, &result->study_file);
-    read_named_file(s, "model", &result->model_name, &result->model_file);
-    const int status = mt_reader_choice(&s->r, need(s, MT_JSON_ROOT, "status", MT_KEY_TEXT),
-                                        "status", statuses, MT_COUNT(statuses));
-    result->status = status == MT_ABSENT ? MT_RESULT_INTERRUPTED : (mt_result_status)status;
-    result->status_text = text(s, MT_JSON_ROOT, "status_text");
-    read_design(s, need(s, MT_JSON_ROOT, "baseline", MT_KEY_OBJECT), &result->baseline);
-    read_recommendations(s, need(s, MT_JSON_ROOT, "recommendations", MT_KEY_LIST));
-    read_run(s, need(s, MT_JSON_ROOT, "run", MT_KEY_OBJECT));
+    const mt_addr format = member(s, MT_JSON_ROOT, FORMAT);
+    if (format == MT_NO_ADDR) {
+        mt_diag_structure(s->r.diags, MT_JSON_ROOT, "member \"%s\" is missing", FORMAT);
+    }
+    (void)mt_reader_choice(&s->r, format, FORMAT, formats, MT_COUNT(formats));
+    list_variables(s);
+    read_members(s, MT_JSON_ROOT, &mt_result_record, s->result);
+    check_design(s, member(s, MT_JSON_ROOT, "baseline"));
+    const mt_addr list = member(s, MT_JSON_ROOT, "recommendations");
+    for (mt_items i = mt_reader_items(&s->r, list); mt_items_next(&i);) {
+        check_design(s, i.at);
+    }
+    if (s->result->trade != NULL) {
+        check_trade(s, member(s, MT_JSON_ROOT, "trade"));
+    }
+    for (int i = 0; i < s->result->n_doubts; i++) {
+        s->result->doubts[i].level = MT_LEVEL_DOUBT;
+    }
 }
 
 static mt_status read_text(result_reader *s, const char *path, const mt_file *file,

@@ -32,17 +32,17 @@ mt_status mt_result_note_outputs(mt_result *result, int n, const char *const *na
 {
     mt_result_run *const run = &result->run;
     run->n_outputs = 0;
-    run->output_names = mt_arena_alloc(&result->mem, (size_t)n, sizeof *run->output_names);
-    run->output_sha256 = mt_arena_alloc(&result->mem, (size_t)n, sizeof *run->output_sha256);
-    if (run->output_names == NULL || run->output_sha256 == NULL) {
+    run->outputs = mt_arena_alloc(&result->mem, (size_t)n, sizeof *run->outputs);
+    if (run->outputs == NULL) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < n; i++) {
         char sha256[MT_SHA256_TEXT];
         mt_sha256(texts[i].s, texts[i].length, sha256);
-        run->output_names[i] = mt_arena_strdup(&result->mem, names[i]);
-        run->output_sha256[i] = mt_arena_strdup(&result->mem, sha256);
-        if (run->output_names[i] == NULL || run->output_sha256[i] == NULL) {
+        mt_result_digest *const output = &run->outputs[i];
+        output->file = mt_arena_strdup(&result->mem, names[i]);
+        output->sha256 = mt_arena_strdup(&result->mem, sha256);
+        if (output->file == NULL || output->sha256 == NULL) {
             return mt_fail_memory(err);
         }
         run->n_outputs = i + 1;
@@ -123,8 +123,8 @@ static mt_status refuse(const char *path, const char *name, bool unfinished, mt_
 static const char *named_digest(const mt_result *r, const char *name)
 {
     for (int i = 0; i < r->run.n_outputs; i++) {
-        if (strcmp(r->run.output_names[i], name) == 0) {
-            return r->run.output_sha256[i];
+        if (strcmp(r->run.outputs[i].file, name) == 0) {
+            return r->run.outputs[i].sha256;
         }
     }
     return NULL;
@@ -150,12 +150,12 @@ mt_status mt_result_check_folder(const char *path, const char *sha256, const mt_
     free(folder);
     part_state state = PART_MISSING;
     for (int i = 0; i < result->run.n_outputs; i++) {
-        const char *const name = result->run.output_names[i];
+        const char *const name = result->run.outputs[i].file;
         if (strchr(name, '/') != NULL) {
             return mt_fail(err, MT_E_INPUT, "%s: /run/outputs/%d: \"%s\" is no file beside it",
                            path, i, name);
         }
-        MT_TRY(look_at(path, name, result->run.output_sha256[i], &state, err));
+        MT_TRY(look_at(path, name, result->run.outputs[i].sha256, &state, err));
         if (state == PART_FOREIGN || (state == PART_MISSING && unfinished)) {
             return refuse(path, name, unfinished, err);
         }

@@ -126,20 +126,17 @@ static void add_relaxations(const mt_result *result, mt_text *out)
     mt_text_add(out, "</ul>\n");
 }
 
-static void add_doubts(const mt_doubt_list *list, mt_doubt_level level, const char *title,
-                       mt_text *out)
+static void add_doubts(int n, const mt_doubt *items, bool doubts, mt_text *out)
 {
-    if (mt_doubt_count(list->n, list->items, level) == 0) {
+    if (n == 0) {
         return;
     }
-    heading(title, out);
-    mt_text_addf(out, "<ul%s>\n", level == MT_LEVEL_DOUBT ? " class=\"doubts\"" : "");
-    for (int i = 0; i < list->n; i++) {
+    heading(doubts ? "Doubts" : "Facts of the model", out);
+    mt_text_addf(out, "<ul%s>\n", doubts ? " class=\"doubts\"" : "");
+    for (int i = 0; i < n; i++) {
         mt_text text = {.s = NULL};
-        if (list->items[i].level == level) {
-            mt_report_doubt(&list->items[i], level == MT_LEVEL_DOUBT, &text);
-            add_item(text.s == NULL ? "" : text.s, out);
-        }
+        mt_report_doubt(&items[i], doubts, &text);
+        add_item(text.s == NULL ? "" : text.s, out);
         out->failed = out->failed || text.failed;
         mt_text_free(&text);
     }
@@ -150,21 +147,21 @@ static void add_footer(const mt_result_run *run, mt_text *out)
 {
     mt_text_add(out, "<footer>modetune ");
     mt_html_escape(run->modetune_version == NULL ? "" : run->modetune_version, out);
-    mt_text_addf(out, ", seed %lu, %ld evaluations from %d starts.", run->seed,
+    mt_text_addf(out, ", seed %ld, %ld evaluations from %d starts.", run->seed,
                  run->evaluations, run->starts);
     for (int i = 0; i < run->n_inputs; i++) {
         mt_text_add(out, "<br>");
-        mt_html_escape(run->input_names[i], out);
+        mt_html_escape(run->inputs[i].file, out);
         mt_text_add(out, ": sha256 ");
-        mt_html_escape(run->input_sha256[i], out);
+        mt_html_escape(run->inputs[i].sha256, out);
     }
     mt_text_add(out, "</footer>\n");
 }
 
 void mt_report_html(const mt_result *result, mt_text *out)
 {
-    const char *const name = result->study_name != NULL   ? result->study_name
-                             : result->study_file != NULL ? result->study_file
+    const char *const name = result->study.name != NULL   ? result->study.name
+                             : result->study.file != NULL ? result->study.file
                                                           : "study";
     const char *const status = mt_result_status_name(result->status);
     mt_text_add(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -175,8 +172,8 @@ void mt_report_html(const mt_result *result, mt_text *out)
     mt_text_addf(out, "</h1>\n<p class=\"status %s\"><b>%s</b>. ", status, status);
     mt_html_escape(result->status_text == NULL ? "" : result->status_text, out);
     mt_text_add(out, "</p>\n");
-    add_doubts(&result->doubts, MT_LEVEL_DOUBT, "Doubts", out);
-    add_doubts(&result->doubts, MT_LEVEL_FACT, "Facts of the model", out);
+    add_doubts(result->n_doubts, result->doubts, true, out);
+    add_doubts(result->n_facts, result->facts, false, out);
     add_best(result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline,
              out);
     mt_report_svg_campbell(result, out);

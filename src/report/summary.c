@@ -65,7 +65,7 @@ void mt_report_doubt(const mt_doubt *d, bool with_place, mt_text *out)
 
 bool mt_report_doubtful(const mt_result *result)
 {
-    return mt_doubt_count(result->doubts.n, result->doubts.items, MT_LEVEL_DOUBT) > 0;
+    return result->n_doubts > 0;
 }
 
 const char *mt_report_surety(bool proven, bool doubtful)
@@ -76,23 +76,22 @@ const char *mt_report_surety(bool proven, bool doubtful)
     return doubtful ? "proven of the question as it stands, which is doubtful" : "proven";
 }
 
-void mt_report_doubts(const mt_doubt_list *list, mt_text *out)
+static void print_doubts(int n, const mt_doubt *items, bool doubts, mt_text *out)
 {
-    static const char *const titles[] = {"Facts of the model", "Doubts"};
-    for (int level = MT_LEVEL_DOUBT; level >= MT_LEVEL_FACT; level--) {
-        bool any = false;
-        for (int i = 0; i < list->n; i++) {
-            if ((int)list->items[i].level == level) {
-                if (!any) {
-                    mt_text_addf(out, "\n%s\n", titles[level]);
-                }
-                mt_text_add(out, "  - ");
-                mt_report_doubt(&list->items[i], level == MT_LEVEL_DOUBT, out);
-                mt_text_add(out, "\n");
-                any = true;
-            }
-        }
+    if (n > 0) {
+        mt_text_add(out, doubts ? "\nDoubts\n" : "\nFacts of the model\n");
     }
+    for (int i = 0; i < n; i++) {
+        mt_text_add(out, "  - ");
+        mt_report_doubt(&items[i], doubts, out);
+        mt_text_add(out, "\n");
+    }
+}
+
+void mt_report_doubts(const mt_result *result, mt_text *out)
+{
+    print_doubts(result->n_doubts, result->doubts, true, out);
+    print_doubts(result->n_facts, result->facts, false, out);
 }
 
 static void print_best(const mt_recommendation *r, mt_text *out)
@@ -146,11 +145,11 @@ void mt_report_uncertainty(const mt_result *result, mt_text *out)
 void mt_report_summary(const mt_result *result, bool with_published, mt_text *out)
 {
     const char *const name =
-        result->study_name == NULL ? result->study_file : result->study_name;
+        result->study.name == NULL ? result->study.file : result->study.name;
     mt_text_addf(out, "%s\n%s\n", name == NULL ? "study" : name,
                  result->status_text == NULL ? mt_result_status_name(result->status)
                                              : result->status_text);
-    mt_report_doubts(&result->doubts, out);
+    mt_report_doubts(result, out);
     const bool doubtful = mt_report_doubtful(result);
     if (result->n_recommendations > 0) {
         print_best(&result->recommendations[0], out);

@@ -15,7 +15,7 @@ void mt_report_uncertainty(const mt_result *result, mt_text *out);
 
 /* Doubts with their places, then facts, each list under its title; nothing where there are
  * none. */
-void mt_report_doubts(const mt_doubt_list *list, mt_text *out);
+void mt_report_doubts(const mt_result *result, mt_text *out);
 /* One of them, in one line without its end: "stick.json:12:9: /goals/0: installed: ..." */
 void mt_report_doubt(const mt_doubt *d, bool with_place, mt_text *out);
 /* Does a doubt stand about the question? Then nothing is called proven without saying so: the

@@ -4,23 +4,387 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* What each record holds, in the order of result.json. */
+
+#define STATUS_NAME(id, name) name,
+static const char *const STATUSES[] = {MT_RESULT_STATUS_LIST(STATUS_NAME)};
+#undef STATUS_NAME
+
+#define THIS mt_result_parameter
+static const char *const BOUNDS[] = {"lower", "upper"};
+static const char *const MEASURES[] = {"logarithmic", "logarithmic with floor", "linear"};
+static const mt_field PARAMETER_FIELDS[] = {
+    MT_F_TEXT("name", name),
+    MT_F_TEXT_OR_NULL("unit", unit),
+    MT_F_NUMBER_OR_NULL("original", original),
+    MT_F_NUMBER_OR_NULL("recommended", recommended),
+    MT_F_NUMBER_OR_NULL("change_percent", change_percent),
+    MT_F_CHOICE_OR_NULL("at_bound", at_bound, BOUNDS),
+    MT_F_CHOICE("measure", measure, MEASURES),
+    MT_F_NUMBER_OR_NULL("measure_floor", measure_floor),
+    MT_F_NUMBER_OR_NULL("measure_scale", measure_scale),
+};
+static const mt_record PARAMETER = MT_F_RECORD_OF(PARAMETER_FIELDS);
+#undef THIS
+
+#define THIS mt_result_frequency
+static const char *const IDENTITIES[] = {"tracked", "ambiguous", "lost"};
+static const mt_field FREQUENCY_FIELDS[] = {
+    MT_F_TEXT("configuration", configuration),
+    MT_F_COUNT("mode", mode, 0),
+    MT_F_TEXT_OR_NULL("name", name),
+    MT_F_CHOICE_OR_NULL("identity", identity, IDENTITIES),
+    MT_F_NUMBER_OR_NULL("share", share),
+    MT_F_COUNT_OR_NULL("rival_mode", rival_mode, 1),
+    MT_F_NUMBER_OR_NULL("rival_share", rival_share),
+    MT_F_NUMBER_OR_NULL("original_hz", original_hz),
+    MT_F_NUMBER_OR_NULL("recommended_hz", recommended_hz),
+    MT_F_NUMBER_OR_NULL("target_hz", target_hz),
+    MT_F_NUMBER_OR_NULL("at_least_hz", at_least_hz),
+    MT_F_NUMBER_OR_NULL("at_most_hz", at_most_hz),
+    MT_F_NUMBER_OR_NULL("error_percent", error_percent),
+    MT_F_NUMBER_OR_NULL("lowest_hz", lowest_hz),
+    MT_F_NUMBER_OR_NULL("highest_hz", highest_hz),
+    MT_F_TEXT_OR_NULL("reference", reference),
+    MT_F_NUMBER_OR_NULL("mac", mac),
+    MT_F_FLAG("repeated", repeated),
+    MT_F_BY_VARIABLE_OR_NULL("sensitivity", sensitivity),
+    MT_F_NUMBER_OR_NULL("residual", residual),
+    MT_F_NUMBER_OR_NULL("orthogonality", orthogonality),
+    MT_F_UNWRITTEN_TEXT(slack),
+};
+static const mt_record FREQUENCY = MT_F_RECORD_OF(FREQUENCY_FIELDS);
+#undef THIS
+
+#define THIS mt_result_clearance
+static const char *const SIDES[] = {"below", "inside", "above"};
+static const mt_field CLEARANCE_FIELDS[] = {
+    MT_F_TEXT("configuration", configuration),
+    MT_F_TEXT("band", band),
+    MT_F_COUNT("mode", mode, 1),
+    MT_F_NUMBER_OR_NULL("hz", hz),
+    MT_F_NUMBER_OR_NULL("percent", percent),
+    MT_F_NUMBER_OR_NULL("margin_percent", margin_percent),
+    MT_F_NUMBER_OR_NULL("worst_hz", worst_hz),
+    MT_F_NUMBER_OR_NULL("worst_percent", worst_percent),
+    MT_F_CHOICE("side", side, SIDES),
+};
+static const mt_record CLEARANCE = MT_F_RECORD_OF(CLEARANCE_FIELDS);
+#undef THIS
+
+#define THIS mt_result_gap
+static const mt_field GAP_FIELDS[] = {
+    MT_F_TEXT("configuration", configuration),
+    MT_F_TEXT("band", band),
+    MT_F_NUMBER_OR_NULL("lower_hz", lower_hz),
+    MT_F_NUMBER_OR_NULL("upper_hz", upper_hz),
+    MT_F_NUMBER_OR_NULL("margin_lower_hz", margin_lower_hz),
+    MT_F_NUMBER_OR_NULL("margin_upper_hz", margin_upper_hz),
+    MT_F_COUNT("modes_below", modes_below, 0),
+};
+static const mt_record GAP = MT_F_RECORD_OF(GAP_FIELDS);
+#undef THIS
+
+#define THIS mt_result_motion
+static const char *const DRIVE_UNITS[] = {"rad", "m"};
+static const char *const MOTION_GRADES[] = {"sampled", "sampled coarsely", "incomplete",
+                                            "unstable", "not followed"};
+static const mt_field MOTION_FIELDS[] = {
+    MT_F_TEXT("goal", pointer),
+    MT_F_TEXT("drive", drive),
+    MT_F_CHOICE("unit", unit, DRIVE_UNITS),
+    MT_F_NUMBER_OR_NULL("from", from),
+    MT_F_NUMBER_OR_NULL("to", to),
+    MT_F_COUNT("positions", positions, 0),
+    MT_F_NUMBER_OR_NULL("least_clearance_percent", least_clearance_percent),
+    MT_F_NUMBER_OR_NULL("margin_percent", margin_percent),
+    MT_F_NUMBER_OR_NULL("at", at),
+    MT_F_NUMBER_OR_NULL("hz", hz),
+    MT_F_COUNT_OR_NULL("mode", mode, 1),
+    MT_F_TEXT_OR_NULL("band", band),
+    MT_F_FLAG("crosses", crosses),
+    MT_F_CHOICE("grade", grade, MOTION_GRADES),
+    MT_F_TEXT("text", text),
+};
+static const mt_record MOTION = MT_F_RECORD_OF(MOTION_FIELDS);
+#undef THIS
+
+#define THIS mt_result_tolerance
+static const mt_field TOLERANCE_FIELDS[] = {
+    MT_F_TEXT("name", name),
+    MT_F_NUMBER_OR_NULL("percent", percent),
+    MT_F_TEXT_OR_NULL("edge", edge),
+};
+static const mt_record TOLERANCE = MT_F_RECORD_OF(TOLERANCE_FIELDS);
+#undef THIS
+
+#define THIS mt_tolerance_box
+static const mt_field TOLERANCE_BOX_FIELDS[] = {
+    MT_F_NUMBER_OR_NULL("all_percent", all_percent),
+    MT_F_TEXT_OR_NULL("edge", edge),
+    MT_F_FLAG("proven", proven),
+    MT_F_LIST("per_variable", variables, n_variables, mt_result_tolerance, TOLERANCE),
+};
+static const mt_record TOLERANCE_BOX = MT_F_RECORD_OF(TOLERANCE_BOX_FIELDS);
+#undef THIS
+
+#define THIS mt_result_goal
+static const mt_field GOAL_FIELDS[] = {
+    MT_F_TEXT("goal", text),
+    MT_F_TEXT("pointer", pointer),
+    MT_F_NUMBER_OR_NULL("value", value),
+    MT_F_NUMBER_OR_NULL("demand", demand),
+    MT_F_NUMBER_OR_NULL("worst", worst),
+    MT_F_BY_VARIABLE_OR_NULL("worst_at", worst_at),
+    MT_F_NUMBER_OR_NULL("violation_percent", violation_percent),
+    MT_F_FLAG("met", met),
+    MT_F_FLAG("weighted", weighted),
+    MT_F_FLAG("doubtful", doubtful),
+};
+static const mt_record GOAL = MT_F_RECORD_OF(GOAL_FIELDS);
+#undef THIS
+
+#define THIS mt_recommendation
+static const char *const SURETIES[] = {"proven", "sampled"};
+static const mt_field DESIGN_FIELDS[] = {
+    MT_F_COUNT("rank", rank, 0),
+    MT_F_FLAG("feasible", feasible),
+    MT_F_TEXT_OR_NULL("grade", grade),
+    MT_F_NUMBER_OR_NULL("score", score),
+    MT_F_TEXT_OR_NULL("score_unit", score_unit),
+    MT_F_NUMBER_OR_NULL("change", change),
+    MT_F_NUMBER_OR_NULL("misfit", misfit),
+    MT_F_NUMBER_OR_NULL("violation_percent", violation_percent),
+    MT_F_NUMBER_OR_NULL("clearance_percent", clearance_percent),
+    MT_F_NUMBER_OR_NULL("kkt_residual", kkt_residual),
+    MT_F_CHOICE_OR_NULL("worst_case", worst_case, SURETIES),
+    MT_F_FLAG("singular", singular),
+    MT_F_LIST("parameters", parameters, n_parameters, mt_result_parameter, PARAMETER),
+    MT_F_LIST("frequencies", frequencies, n_frequencies, mt_result_frequency, FREQUENCY),
+    MT_F_LIST("clearances", clearances, n_clearances, mt_result_clearance, CLEARANCE),
+    MT_F_LIST_OR_NULL("gap_assignment", gaps, n_gaps, mt_result_gap, GAP),
+    MT_F_LIST("motion", motions, n_motions, mt_result_motion, MOTION),
+    MT_F_OPTION("tolerance_box", tolerance_box, mt_tolerance_box, TOLERANCE_BOX),
+    MT_F_LIST("goals", goals, n_goals, mt_result_goal, GOAL),
+    MT_F_TEXTS("reasons", reasons, n_reasons),
+    MT_F_UNWRITTEN_TEXT(disagreement),
+};
+const mt_record mt_design_record = MT_F_RECORD_OF(DESIGN_FIELDS);
+#undef THIS
+
+#define THIS mt_undetermined
+static const mt_field UNDETERMINED_FIELDS[] = {
+    MT_F_TEXT("direction", text),
+    MT_F_NUMBER_OR_NULL("effect_percent", effect_percent),
+    MT_F_BY_VARIABLE("components", direction),
+};
+static const mt_record UNDETERMINED = MT_F_RECORD_OF(UNDETERMINED_FIELDS);
+#undef THIS
+
+#define THIS mt_result_spread
+static const mt_field SPREAD_FIELDS[] = {
+    MT_F_TEXT("parameter", parameter),
+    MT_F_TEXT_OR_NULL("unit", unit),
+    MT_F_NUMBER_OR_NULL("value", value),
+    MT_F_NUMBER_OR_NULL("low", low),
+    MT_F_NUMBER_OR_NULL("low_percent", low_percent),
+    MT_F_TEXT_OR_NULL("low_goal", low_goal),
+    MT_F_NUMBER_OR_NULL("low_weight_factor", low_factor),
+    MT_F_NUMBER_OR_NULL("high", high),
+    MT_F_NUMBER_OR_NULL("high_percent", high_percent),
+    MT_F_TEXT_OR_NULL("high_goal", high_goal),
+    MT_F_NUMBER_OR_NULL("high_weight_factor", high_factor),
+};
+static const mt_record SPREAD = MT_F_RECORD_OF(SPREAD_FIELDS);
+#undef THIS
+
+#define THIS mt_certificate
+static const mt_field CERTIFICATE_FIELDS[] = {
+    MT_F_TEXT("kind", kind),
+    MT_F_TEXT("text", text),
+    MT_F_FLAG("proven", proven),
+    MT_F_TEXT_OR_NULL("pointer", pointer),
+    MT_F_NUMBER_OR_NULL("reachable_lower_hz", reachable_lower_hz),
+    MT_F_NUMBER_OR_NULL("reachable_upper_hz", reachable_upper_hz),
+};
+static const mt_record CERTIFICATE = MT_F_RECORD_OF(CERTIFICATE_FIELDS);
+#undef THIS
+
+#define THIS mt_relaxation
+static const char *const RELAXATIONS[] = {"bound", "band", "goal"};
+static const mt_field RELAXATION_FIELDS[] = {
+    MT_F_CHOICE("kind", kind, RELAXATIONS),
+    MT_F_TEXT("pointer", pointer),
+    MT_F_TEXT("what", what),
+    MT_F_TEXT_OR_NULL("unit", unit),
+    MT_F_NUMBER("from", from),
+    MT_F_NUMBER("to", to),
+    MT_F_NUMBER_OR_NULL("change_percent", change_percent),
+    MT_F_NUMBERS_BY_VARIABLE("design", design),
+    MT_F_TEXT("text", text),
+};
+static const mt_record RELAXATION = MT_F_RECORD_OF(RELAXATION_FIELDS);
+#undef THIS
+
+#define THIS mt_trade_vary
+static const mt_field VARY_FIELDS[] = {
+    MT_F_TEXT("quantity", text),
+    MT_F_TEXT("pointer", pointer),
+    MT_F_TEXT_OR_NULL("unit", unit),
+};
+static const mt_record VARY = MT_F_RECORD_OF(VARY_FIELDS);
+#undef THIS
+
+#define THIS mt_trade_point
+static const mt_field POINT_FIELDS[] = {
+    MT_F_NUMBERS("values", values, n_values),
+    MT_F_ENUM("status", status, mt_result_status, STATUSES),
+    MT_F_TEXT_OR_NULL("status_text", status_text),
+    MT_F_FLAG("pareto", pareto),
+    MT_F_RECORD("best", best, mt_recommendation, mt_design_record),
+};
+static const mt_record POINT = MT_F_RECORD_OF(POINT_FIELDS);
+#undef THIS
+
+#define THIS mt_trade_result
+static const mt_field TRADE_FIELDS[] = {
+    MT_F_LIST("vary", vary, n_vary, mt_trade_vary, VARY),
+    MT_F_TEXTS("objectives", objectives, n_objectives),
+    MT_F_LIST("points", points, n_points, mt_trade_point, POINT),
+};
+static const mt_record TRADE = MT_F_RECORD_OF(TRADE_FIELDS);
+#undef THIS
+
+#define THIS mt_result_order
+static const mt_field ORDER_FIELDS[] = {
+    MT_F_TEXT("label", label),
+    MT_F_NUMBER("order", order),
+};
+static const mt_record ORDER = MT_F_RECORD_OF(ORDER_FIELDS);
+#undef THIS
+
+#define THIS mt_result_excitation
+static const mt_field EXCITATION_FIELDS[] = {
+    MT_F_TEXT("name", name),
+    MT_F_TEXT("pointer", pointer),
+    MT_F_NUMBER("speed_lower_hz", speed_lower_hz),
+    MT_F_NUMBER("speed_upper_hz", speed_upper_hz),
+    MT_F_NUMBER("margin_percent", margin_percent),
+    MT_F_TEXTS("configurations", configurations, n_configurations),
+    MT_F_LIST("orders", orders, n_orders, mt_result_order, ORDER),
+};
+static const mt_record EXCITATION = MT_F_RECORD_OF(EXCITATION_FIELDS);
+#undef THIS
+
+#define THIS mt_result_published
+static const char *const PUBLISHED_KINDS[] = {"parameter", "quantity", "frequency", "mac",
+                                              "status"};
+static const char *const ROLES[] = {"verifies", "calibrates", "not_comparable"};
+static const mt_field PUBLISHED_FIELDS[] = {
+    MT_F_TEXT_OR_NULL("label", label),
+    MT_F_CHOICE("kind", kind, PUBLISHED_KINDS),
+    MT_F_TEXT("pointer", pointer),
+    MT_F_CHOICE("role", role, ROLES),
+    MT_F_VALUE_OR_NULL("published", published, published_text),
+    MT_F_VALUE_OR_NULL("computed", computed, computed_text),
+    MT_F_NUMBER_OR_NULL("difference", difference),
+    MT_F_NUMBER_OR_NULL("difference_percent", difference_percent),
+    MT_F_TEXT_OR_NULL("demand", demand),
+    MT_F_FLAG("holds", holds),
+    MT_F_TEXT_OR_NULL("source", source),
+};
+static const mt_record PUBLISHED = MT_F_RECORD_OF(PUBLISHED_FIELDS);
+#undef THIS
+
+#define THIS mt_doubt
+static const mt_field DOUBT_FIELDS[] = {
+    MT_F_TEXT("kind", kind),
+    MT_F_TEXT("text", text),
+    MT_F_TEXT_OR_NULL("configuration", configuration),
+    MT_F_TEXT_OR_NULL("file", file),
+    MT_F_COUNT_OR_NULL("line", line, 1),
+    MT_F_COUNT_OR_NULL("column", column, 1),
+    MT_F_TEXT_OR_NULL("pointer", pointer),
+};
+const mt_record mt_doubt_record = MT_F_RECORD_OF(DOUBT_FIELDS);
+#undef THIS
+
+#define THIS mt_result_digest
+static const mt_field DIGEST_FIELDS[] = {
+    MT_F_TEXT("file", file),
+    MT_F_TEXT("sha256", sha256),
+};
+static const mt_record DIGEST = MT_F_RECORD_OF(DIGEST_FIELDS);
+#undef THIS
+
+#define THIS mt_result_run
+static const char *const PHASES[] = {"search",      "recommendations", "spread", "certificates",
+                                     "relaxations", "published",       "trade"};
+static const mt_field RUN_FIELDS[] = {
+    MT_F_TEXT_OR_NULL("modetune", modetune_version),
+    MT_F_TEXT_OR_NULL("blas", blas),
+    MT_F_TEXT_OR_NULL("nlopt", nlopt_version),
+    MT_F_TEXT_OR_NULL("gsl", gsl_version),
+    MT_F_LONG("seed", seed),
+    MT_F_COUNT("starts", starts, 0),
+    MT_F_COUNT_OR_NULL("distinct_designs", distinct_designs, 0),
+    MT_F_COUNT_OR_NULL("found_once", found_once, 0),
+    MT_F_NUMBER_OR_NULL("estimated_missing", estimated_missing),
+    MT_F_LONG("evaluations", evaluations),
+    MT_F_CHOICES("incomplete", incomplete, n_incomplete, PHASES),
+    MT_F_LIST("inputs", inputs, n_inputs, mt_result_digest, DIGEST),
+    MT_F_LIST("outputs", outputs, n_outputs, mt_result_digest, DIGEST),
+};
+static const mt_record RUN = MT_F_RECORD_OF(RUN_FIELDS);
+#undef THIS
+
+#define THIS mt_result_source
+static const mt_field SOURCE_FIELDS[] = {
+    MT_F_TEXT_OR_NULL("name", name),
+    MT_F_TEXT("file", file),
+};
+static const mt_record SOURCE = MT_F_RECORD_OF(SOURCE_FIELDS);
+#undef THIS
+
+#define THIS mt_result
+static const mt_field RESULT_FIELDS[] = {
+    MT_F_RECORD("study", study, mt_result_source, SOURCE),
+    MT_F_RECORD("model", model, mt_result_source, SOURCE),
+    MT_F_ENUM("status", status, mt_result_status, STATUSES),
+    MT_F_TEXT_OR_NULL("status_text", status_text),
+    MT_F_LIST("doubts", doubts, n_doubts, mt_doubt, mt_doubt_record),
+    MT_F_LIST("facts", facts, n_facts, mt_doubt, mt_doubt_record),
+    MT_F_TEXTS("variables", variables, n_variables),
+    MT_F_RECORD("baseline", baseline, mt_recommendation, mt_design_record),
+    MT_F_LIST("recommendations", recommendations, n_recommendations, mt_recommendation,
+              mt_design_record),
+    MT_F_LIST("undetermined", undetermined, n_undetermined, mt_undetermined, UNDETERMINED),
+    MT_F_LIST("spread", spread, n_spread, mt_result_spread, SPREAD),
+    MT_F_LIST("certificates", certificates, n_certificates, mt_certificate, CERTIFICATE),
+    MT_F_LIST("relaxations", relaxations, n_relaxations, mt_relaxation, RELAXATION),
+    MT_F_LIST("excitations", excitations, n_excitations, mt_result_excitation, EXCITATION),
+    MT_F_OPTION("trade", trade, mt_trade_result, TRADE),
+    MT_F_LIST("published", published, n_published, mt_result_published, PUBLISHED),
+    MT_F_TEXTS("warnings", warnings, n_warnings),
+    MT_F_RECORD("run", run, mt_result_run, RUN),
+};
+const mt_record mt_result_record = MT_F_RECORD_OF(RESULT_FIELDS);
+#undef THIS
+
 mt_status mt_result_new(mt_result **out, mt_err *err)
 {
     *out = NULL;
-    mt_result *const result = calloc(1, sizeof *result);
+    mt_result *const result = malloc(sizeof *result);
     if (result == NULL) {
         return mt_fail_memory(err);
     }
+    mt_record_clear(&mt_result_record, result);
+    result->status = MT_RESULT_INTERRUPTED;
     const mt_status rc = mt_arena_init(&result->mem, 0, err);
     if (rc != MT_OK) {
         free(result);
         return rc;
     }
-    result->status = MT_RESULT_INTERRUPTED;
-    result->baseline = mt_recommendation_default();
-    result->run.distinct_designs = -1;
-    result->run.found_once = -1;
-    result->run.estimated_missing = nan("");
     *out = result;
     return MT_OK;
 }
@@ -53,77 +417,81 @@ void mt_result_take_back(mt_result *result, const mt_result_mark *mark)
     result->n_warnings = mark->n_warnings;
 }
 
+mt_status mt_result_take_doubts(mt_result *result, const mt_doubt_list *list, mt_err *err)
+{
+    result->doubts = mt_arena_alloc(&result->mem, (size_t)list->n, sizeof *result->doubts);
+    result->facts = mt_arena_alloc(&result->mem, (size_t)list->n, sizeof *result->facts);
+    if (result->doubts == NULL || result->facts == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < list->n; i++) {
+        if (list->items[i].level == MT_LEVEL_DOUBT) {
+            result->doubts[result->n_doubts++] = list->items[i];
+        } else if (list->items[i].level == MT_LEVEL_FACT) {
+            result->facts[result->n_facts++] = list->items[i];
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_recommendation_copy(const mt_recommendation *from, mt_arena *mem,
+                                 mt_recommendation *out, mt_err *err)
+{
+    *out = *from;
+    return mt_record_own(&mt_design_record, out, from->n_parameters, mem) ? MT_OK
+                                                                          : mt_fail_memory(err);
+}
+
+mt_status mt_result_own(mt_result *result, mt_err *err)
+{
+    return mt_record_own(&mt_result_record, result, result->n_variables, &result->mem)
+               ? MT_OK
+               : mt_fail_memory(err);
+}
+
 mt_recommendation mt_recommendation_default(void)
 {
-    return (mt_recommendation){
-        .score = nan(""),
-        .change = nan(""),
-        .misfit = nan(""),
-        .violation_percent = nan(""),
-        .clearance_percent = nan(""),
-        .kkt_residual = nan(""),
-    };
+    mt_recommendation r;
+    mt_record_clear(&mt_design_record, &r);
+    return r;
 }
 
 mt_result_frequency mt_result_frequency_default(void)
 {
-    return (mt_result_frequency){
-        .original_hz = nan(""),
-        .recommended_hz = nan(""),
-        .target_hz = nan(""),
-        .at_least_hz = nan(""),
-        .at_most_hz = nan(""),
-        .error_percent = nan(""),
-        .lowest_hz = nan(""),
-        .highest_hz = nan(""),
-        .mac = nan(""),
-        .share = nan(""),
-        .rival_share = nan(""),
-        .residual = nan(""),
-        .orthogonality = nan(""),
-    };
+    mt_result_frequency r;
+    mt_record_clear(&FREQUENCY, &r);
+    return r;
 }
 
 mt_result_published mt_result_published_default(void)
 {
-    return (mt_result_published){
-        .published = nan(""),
-        .computed = nan(""),
-        .difference = nan(""),
-        .difference_percent = nan(""),
-    };
+    mt_result_published r;
+    mt_record_clear(&PUBLISHED, &r);
+    return r;
 }
 
 mt_certificate mt_certificate_default(void)
 {
-    return (mt_certificate){.reachable_lower_hz = nan(""), .reachable_upper_hz = nan("")};
+    mt_certificate r;
+    mt_record_clear(&CERTIFICATE, &r);
+    return r;
 }
 
 mt_tolerance_box mt_tolerance_box_default(void)
 {
-    return (mt_tolerance_box){.all_percent = nan("")};
+    mt_tolerance_box r;
+    mt_record_clear(&TOLERANCE_BOX, &r);
+    return r;
 }
 
 mt_result_motion mt_result_motion_default(void)
 {
-    return (mt_result_motion){.from = nan(""),
-                              .to = nan(""),
-                              .least_clearance_percent = nan(""),
-                              .margin_percent = nan(""),
-                              .at = nan(""),
-                              .hz = nan("")};
+    mt_result_motion r;
+    mt_record_clear(&MOTION, &r);
+    return r;
 }
-
-#define NAME_CASE(id, name) \
-    case id:                \
-        return name;
 
 const char *mt_result_status_name(mt_result_status status)
 {
-    switch (status) {
-        MT_RESULT_STATUS_LIST(NAME_CASE)
-    case MT_RESULT_STATUS_COUNT:
-        break;
-    }
-    return "unknown";
+    return (int)status >= 0 && status < MT_RESULT_STATUS_COUNT ? STATUSES[status] : "unknown";
 }

@@ -8,9 +8,13 @@
 
 #include "base/arena.h"
 #include "base/doubt.h"
+#include "result/record.h"
 
-/* What a study answers: plain records, no computation. All texts live in the result's arena.
- * NaN: not applicable (written as null). */
+/*
+ * What a study answers: plain records, no computation. All texts live in the result's arena.
+ * NaN: not applicable (null in JSON). A member that is added here gets its line in the tables
+ * of result.c: writer, reader and copier follow from them, and the schema is held against them.
+ */
 
 typedef struct mt_result_parameter {
     const char *name;
@@ -19,8 +23,11 @@ typedef struct mt_result_parameter {
     double recommended;
     double change_percent; /* NaN where original is 0 */
     const char *at_bound;  /* NULL, "lower", "upper" */
-    double measure_scale; /* its change counts as (new - original)/scale; 0: ln(new/original) */
-    double measure_floor; /* where the logarithm goes on as its tangent; 0: nowhere */
+    /* how a change counts: by ln(new/original), "logarithmic"; the same with a floor;
+     * "linear" */
+    const char *measure;
+    double measure_floor; /* where the logarithm goes on as its tangent; NaN: nowhere */
+    double measure_scale; /* of a linear measure: (new - original)/scale; NaN: it is none */
 } mt_result_parameter;
 
 typedef struct mt_result_frequency {
@@ -171,9 +178,9 @@ typedef struct mt_recommendation {
 
 /* A direction in the space of the variables along which the goals do not change. */
 typedef struct mt_undetermined {
-    int n;             /* number of variables */
-    double *direction; /* unit vector in ln(parameter) (positive ones) or parameter/scale */
-    const char *text;  /* "K_T2" or "0.71 ln a - 0.71 ln b" */
+    /* [n_variables] unit vector in ln(parameter) (positive ones) or parameter/scale */
+    double *direction;
+    const char *text; /* "K_T2" or "0.71 ln a - 0.71 ln b" */
     /* greatest change of any goal when the bounds are crossed along it */
     double effect_percent;
 } mt_undetermined;
@@ -237,7 +244,8 @@ typedef struct mt_relaxation {
 
 /* One study of a trade study, with its best design. */
 typedef struct mt_trade_point {
-    double *values; /* [n_vary] */
+    int n_values; /* n_vary */
+    double *values;
     mt_result_status status;
     const char *status_text;
     mt_recommendation best;
@@ -278,12 +286,18 @@ typedef struct mt_result_excitation {
     mt_result_order *orders;
 } mt_result_excitation;
 
+/* A file that the result names with the SHA-256 of its bytes. */
+typedef struct mt_result_digest {
+    const char *file;
+    const char *sha256; /* hexadecimal */
+} mt_result_digest;
+
 typedef struct mt_result_run {
     const char *modetune_version;
     const char *blas;
     const char *nlopt_version;
     const char *gsl_version;
-    unsigned long seed;
+    long seed;
     long evaluations;
     int starts;
     /* of a search from starts; -1, NaN: not applicable */
@@ -291,23 +305,24 @@ typedef struct mt_result_run {
     int found_once;           /* of them, by one start only */
     double estimated_missing; /* isolated designs that no start met, at least */
     int n_inputs;
-    const char **input_names;
-    const char **input_sha256;
+    mt_result_digest *inputs;
     int n_outputs; /* files written beside the result; 0: it is written alone */
-    const char **output_names;
-    const char **output_sha256;
+    mt_result_digest *outputs;
     /* phases that an interrupt cut, or that were not begun because of it, by the names of what
      * they write ("search", "spread", ...) */
     int n_incomplete;
     const char **incomplete;
 } mt_result_run;
 
+typedef struct mt_result_source {
+    const char *name; /* NULL: the file gives none */
+    const char *file;
+} mt_result_source;
+
 typedef struct mt_result {
     mt_arena mem;
-    const char *study_name;
-    const char *study_file; /* its file name, without folder */
-    const char *model_name;
-    const char *model_file;  /* as the study writes it, relative to its folder: for `apply` */
+    mt_result_source study;  /* its file name, without folder */
+    mt_result_source model;  /* as the study writes it, relative to its folder: for `apply` */
     const char *status_text; /* one sentence */
     mt_recommendation baseline; /* the original design, rank 0 */
     mt_result_status status;
@@ -330,8 +345,10 @@ typedef struct mt_result {
     mt_result_published *published;
     int n_warnings;
     const char **warnings;
-    /* facts of the model and doubts about the question, said before anything else */
-    mt_doubt_list doubts;
+    int n_doubts; /* about the question, said before anything else */
+    mt_doubt *doubts;
+    int n_facts; /* of the model, said next */
+    mt_doubt *facts;
     mt_result_run run;
 } mt_result;
 
@@ -348,15 +365,26 @@ typedef struct mt_result_mark {
 } mt_result_mark;
 mt_result_mark mt_result_get_mark(const mt_result *result);
 void mt_result_take_back(mt_result *result, const mt_result_mark *mark);
-/* A recommendation whose numbers are all "not applicable". */
+/* Doubts and facts of a list, copied. Fails: MT_E_MEMORY. */
+mt_status mt_result_take_doubts(mt_result *result, const mt_doubt_list *list, mt_err *err);
+/* A copy of all that a recommendation of one result holds, which may outlive it. Fails:
+ * MT_E_MEMORY. */
+mt_status mt_recommendation_copy(const mt_recommendation *from, mt_arena *mem,
+                                 mt_recommendation *out, mt_err *err);
+/* All that it has borrowed becomes its own. Fails: MT_E_MEMORY. */
+mt_status mt_result_own(mt_result *result, mt_err *err);
+
+/* What these structs hold, member by member as in JSON. */
+extern const mt_record mt_result_record;
+extern const mt_record mt_design_record; /* mt_recommendation */
+extern const mt_record mt_doubt_record;
+
+/* A recommendation whose numbers are all "not applicable"; the others likewise. */
 mt_recommendation mt_recommendation_default(void);
 mt_result_frequency mt_result_frequency_default(void);
 mt_result_published mt_result_published_default(void);
 mt_certificate mt_certificate_default(void);
 mt_tolerance_box mt_tolerance_box_default(void);
 mt_result_motion mt_result_motion_default(void);
-/* result_copy.c: with all texts, in mem. */
-mt_status mt_recommendation_copy(const mt_recommendation *from, mt_arena *mem,
-                                 mt_recommendation *out, mt_err *err);
 
 #endif

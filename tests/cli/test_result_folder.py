@@ -130,12 +130,12 @@ class Belonging(FolderTest):
         self.assertEqual(self.expect(0, "apply", "results/two/kept.json").stdout, whole)
         self.refused()
 
-    def test_a_result_without_outputs_is_of_an_older_version_and_read(self):
+    def test_a_result_of_an_older_build_is_refused(self):
         path = self.results / "result.json"
         result = json.loads(path.read_text(encoding="utf-8"))
         del result["run"]["outputs"]
         path.write_text(json.dumps(result), encoding="utf-8")
-        self.expect(0, "apply", "results/two/result.json")
+        self.assertIn('/run: member "outputs" is missing', self.expect(2, "apply", "results/two/result.json").stderr)
 
     def test_outputs_that_lead_elsewhere_are_refused(self):
         path = self.results / "result.json"

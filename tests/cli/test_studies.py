@@ -172,9 +172,11 @@ class Apply(CliTest):
     def test_a_result_that_was_tampered_with_is_refused(self):
         path = self.folder / "results/two/result.json"
         text = path.read_text(encoding="utf-8")
-        for old, new, want in (('"name": "k2"', '"name": "k1"', "\"k1\" is listed twice"),
-                               ('"name": "k2"', '"name": "k9"', 'there is no parameter "k9"'),
-                               ('"recommended": 3', '"recommended": null, "x": 3', 'recommends no value of "k1"')):
+        for old, new, want in (('"name": "k2"', '"name": "k1"', '/parameters/1/name: must be "k2"'),
+                               ('"variables": [\n    "k1"', '"variables": [\n    "k2"', '"k2" is listed twice'),
+                               ('"recommended": 3', '"recommended": null, "x": 3', 'unknown member "x"'),
+                               ('"recommended": 3', '"recommended": null', 'recommends no value of "k1"'),
+                               ('"reasons": ', '"reason": ', 'member "reasons" is missing')):
             with self.subTest(new):
                 self.assertIn(old, text)
                 self.write("other.json", text.replace(old, new))

@@ -68,8 +68,8 @@ static void make(unit *u, const char *version, bool trade)
     mt_result *r = NULL;
     u->ok = mt_result_new(&r, NULL) == MT_OK;
     if (u->ok) {
-        r->study_file = "s.json";
-        r->model_file = "m.json";
+        r->study.file = "s.json";
+        r->model.file = "m.json";
         r->status_text = version;
         u->ok = mt_result_note_outputs(r, n, names, outputs, NULL) == MT_OK &&
                 mt_result_write(r, result, NULL) == MT_OK;

@@ -151,8 +151,15 @@ static void measure__is_told_and_makes_the_change(mt_test *t)
             CHECK(t, c.result->n_recommendations > 0)) {
             const mt_recommendation *const r = &c.result->recommendations[0];
             double sum = 0.0;
-            CHECK_NEAR_ABS(t, r->parameters[0].measure_scale, rows[i].scale, 0.0);
-            CHECK_NEAR_ABS(t, r->parameters[0].measure_floor, rows[i].least, 1e-18);
+            const mt_result_parameter *const p = &r->parameters[0];
+            CHECK_STR(t, p->measure,
+                      rows[i].scale > 0.0   ? "linear"
+                      : rows[i].least > 0.0 ? "logarithmic with floor"
+                                            : "logarithmic");
+            CHECK(t, rows[i].scale > 0.0 ? p->measure_scale == rows[i].scale
+                                         : isnan(p->measure_scale));
+            CHECK(t, rows[i].least > 0.0 ? fabs(p->measure_floor - rows[i].least) <= 1e-18
+                                         : isnan(p->measure_floor));
             for (int k = 0; k < r->n_parameters; k++) {
                 sum += pow(counted(&r->parameters[k]), 2.0);
             }

@@ -22,8 +22,10 @@ static mt_result *make(mt_test *t)
     if (!CHECK(t, mt_result_new(&r, NULL) == MT_OK)) {
         return NULL;
     }
-    parameters[0] = (mt_result_parameter){"k<1>", "N/m", 50.0, 92.942, 85.884, NULL, 0.0, 0.05};
-    parameters[1] = (mt_result_parameter){"m", NULL, 1.0, 0.5, -50.0, "lower", 2.0, 0.0};
+    parameters[0] = (mt_result_parameter){
+        "k<1>", "N/m", 50.0, 92.942, 85.884, NULL, "logarithmic with floor", 0.05, nan("")};
+    parameters[1] =
+        (mt_result_parameter){"m", NULL, 1.0, 0.5, -50.0, "lower", "linear", nan(""), 2.0};
     for (int i = 0; i < 2; i++) {
         frequencies[i] = mt_result_frequency_default();
         frequencies[i].configuration = "held";
@@ -52,7 +54,7 @@ static mt_result *make(mt_test *t)
         published[i].computed = 1.0 + i;
         published[i].holds = i == 0;
     }
-    r->study_name = "A <study>";
+    r->study.name = "A <study>";
     r->status = MT_RESULT_SOLVED;
     r->status_text = "Solved.";
     r->baseline = recommendations[0];

@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RESULT_RECORD_H
+#define RESULT_RECORD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/arena.h"
+#include "base/base.h"
+
+/*
+ * What a struct holds, as a table: whoever writes, reads, copies or checks results walks these
+ * tables and knows no struct. A record is plain: its texts and lists lie in an arena that it
+ * does not know.
+ */
+typedef enum mt_field_type {
+    MT_FIELD_TEXT,    /* const char * */
+    MT_FIELD_CHOICE,  /* const char *, one of `choices` */
+    MT_FIELD_ENUM,    /* an enum whose names are `choices` */
+    MT_FIELD_NUMBER,  /* double; null is NaN */
+    MT_FIELD_VALUE,   /* double, or const char * (at `other`) where that is not NULL */
+    MT_FIELD_COUNT,   /* int, `least` or more; null is what is less */
+    MT_FIELD_LONG,    /* long, 0 or more */
+    MT_FIELD_FLAG,    /* bool */
+    MT_FIELD_RECORD,  /* a struct */
+    MT_FIELD_OPTION,  /* a pointer to a struct; null is NULL */
+    MT_FIELD_LIST,    /* a pointer to structs; like the next two, their int count at `other` */
+    MT_FIELD_TEXTS,   /* const char ** */
+    MT_FIELD_NUMBERS, /* double *; in one line */
+    MT_FIELD_BY_VARIABLE, /* double *, one for each variable of the study, by its name */
+    MT_FIELD_TYPE_COUNT
+} mt_field_type;
+
+typedef struct mt_record mt_record;
+
+typedef struct mt_field {
+    const char *name; /* NULL: copied, but neither written nor read */
+    mt_field_type type;
+    bool nullable;         /* of a list: NULL is null, else NULL is empty */
+    bool numbers_nullable; /* of numbers by variable: single ones may be NaN */
+    int least;
+    size_t offset;
+    size_t other;
+    const mt_record *record;
+    const char *const *choices;
+    int n_choices;
+} mt_field;
+
+struct mt_record {
+    size_t size; /* of the struct */
+    int n;
+    const mt_field *fields; /* in the order in which they are written */
+};
+
+/*
+ * How the tables are written, with THIS for the struct. The compiler checks every member's
+ * type: MT_F_MEMBER is its offset, times one where the type is the one that is said, and no
+ * expression elsewhere.
+ */
+#define MT_F_MEMBER(of, m) (offsetof(THIS, m) * _Generic(&((THIS *)NULL)->m, of * : 1U))
+#define MT_F_FIELD(json, kind, or_null, of, m) \
+    .name = (json), .type = (kind), .nullable = (or_null), .offset = MT_F_MEMBER(of, m)
+#define MT_F_ONE_OF(list) .choices = (list), .n_choices = MT_COUNT(list)
+
+#define MT_F_TEXT(json, m)                                      \
+    {                                                           \
+        MT_F_FIELD(json, MT_FIELD_TEXT, false, const char *, m) \
+    }
+#define MT_F_TEXT_OR_NULL(json, m)                             \
+    {                                                          \
+        MT_F_FIELD(json, MT_FIELD_TEXT, true, const char *, m) \
+    }
+#define MT_F_CHOICE(json, m, list)                                                   \
+    {                                                                                \
+        MT_F_FIELD(json, MT_FIELD_CHOICE, false, const char *, m), MT_F_ONE_OF(list) \
+    }
+#define MT_F_CHOICE_OR_NULL(json, m, list)                                          \
+    {                                                                               \
+        MT_F_FIELD(json, MT_FIELD_CHOICE, true, const char *, m), MT_F_ONE_OF(list) \
+    }
+#define MT_F_ENUM(json, m, of, list)                                     \
+    {                                                                    \
+        MT_F_FIELD(json, MT_FIELD_ENUM, false, of, m), MT_F_ONE_OF(list) \
+    }
+#define MT_F_NUMBER(json, m)                                \
+    {                                                       \
+        MT_F_FIELD(json, MT_FIELD_NUMBER, false, double, m) \
+    }
+#define MT_F_NUMBER_OR_NULL(json, m)                       \
+    {                                                      \
+        MT_F_FIELD(json, MT_FIELD_NUMBER, true, double, m) \
+    }
+#define MT_F_VALUE_OR_NULL(json, m, text)                  \
+    {                                                      \
+        MT_F_FIELD(json, MT_FIELD_VALUE, true, double, m), \
+            .other = MT_F_MEMBER(const char *, text)       \
+    }
+#define MT_F_COUNT(json, m, from)                                        \
+    {                                                                    \
+        MT_F_FIELD(json, MT_FIELD_COUNT, false, int, m), .least = (from) \
+    }
+#define MT_F_COUNT_OR_NULL(json, m, from)                               \
+    {                                                                   \
+        MT_F_FIELD(json, MT_FIELD_COUNT, true, int, m), .least = (from) \
+    }
+#define MT_F_LONG(json, m)                              \
+    {                                                   \
+        MT_F_FIELD(json, MT_FIELD_LONG, false, long, m) \
+    }
+#define MT_F_FLAG(json, m)                              \
+    {                                                   \
+        MT_F_FIELD(json, MT_FIELD_FLAG, false, bool, m) \
+    }
+#define MT_F_RECORD(json, m, of, what)                                     \
+    {                                                                      \
+        MT_F_FIELD(json, MT_FIELD_RECORD, false, of, m), .record = &(what) \
+    }
+#define MT_F_OPTION(json, m, of, what)                                      \
+    {                                                                       \
+        MT_F_FIELD(json, MT_FIELD_OPTION, true, of *, m), .record = &(what) \
+    }
+#define MT_F_LIST(json, m, n, of, what)                                                \
+    {                                                                                  \
+        MT_F_FIELD(json, MT_FIELD_LIST, false, of *, m), .other = MT_F_MEMBER(int, n), \
+                                                         .record = &(what)             \
+    }
+#define MT_F_LIST_OR_NULL(json, m, n, of, what)                                       \
+    {                                                                                 \
+        MT_F_FIELD(json, MT_FIELD_LIST, true, of *, m), .other = MT_F_MEMBER(int, n), \
+                                                        .record = &(what)             \
+    }
+#define MT_F_TEXTS(json, m, n)                                     \
+    {                                                              \
+        MT_F_FIELD(json, MT_FIELD_TEXTS, false, const char **, m), \
+            .other = MT_F_MEMBER(int, n)                           \
+    }
+#define MT_F_CHOICES(json, m, n, list)                             \
+    {                                                              \
+        MT_F_FIELD(json, MT_FIELD_TEXTS, false, const char **, m), \
+            .other = MT_F_MEMBER(int, n), MT_F_ONE_OF(list)        \
+    }
+#define MT_F_NUMBERS(json, m, n)                                                             \
+    {                                                                                        \
+        MT_F_FIELD(json, MT_FIELD_NUMBERS, false, double *, m), .other = MT_F_MEMBER(int, n) \
+    }
+#define MT_F_BY_VARIABLE(json, m)                                                            \
+    {                                                                                        \
+        MT_F_FIELD(json, MT_FIELD_BY_VARIABLE, false, double *, m), .numbers_nullable = true \
+    }
+#define MT_F_BY_VARIABLE_OR_NULL(json, m)                                                   \
+    {                                                                                       \
+        MT_F_FIELD(json, MT_FIELD_BY_VARIABLE, true, double *, m), .numbers_nullable = true \
+    }
+#define MT_F_NUMBERS_BY_VARIABLE(json, m)                          \
+    {                                                              \
+        MT_F_FIELD(json, MT_FIELD_BY_VARIABLE, false, double *, m) \
+    }
+#define MT_F_UNWRITTEN_TEXT(m)                                 \
+    {                                                          \
+        MT_F_FIELD(NULL, MT_FIELD_TEXT, true, const char *, m) \
+    }
+#define MT_F_RECORD_OF(fields)                   \
+    {                                            \
+        sizeof(THIS), MT_COUNT(fields), (fields) \
+    }
+
+/* All that is unknown: numbers NaN, counts below their least, nothing in lists, the rest
+ * zero. */
+void mt_record_clear(const mt_record *record, void *item);
+/* Every text and list of a struct replaced by a copy in mem; n_variables: of the study. False:
+ * out of memory. */
+bool mt_record_own(const mt_record *record, void *item, int n_variables, mt_arena *mem);
+
+#endif
