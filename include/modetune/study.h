@@ -11,8 +11,7 @@
  *     }
  *
  * The search uses BLAS: have it use one thread, or the bits of results may differ from run to
- * run. Have GSL's error handler switched off (gsl_set_error_handler_off), or a shortage of
- * memory in it ends the process.
+ * run. GSL's error handler, which belongs to the whole process, is neither set nor called.
  */
 #ifndef MODETUNE_STUDY_H
 #define MODETUNE_STUDY_H

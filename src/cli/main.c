@@ -3,7 +3,6 @@
 
 #include "cli/cli.h"
 #include "linalg/blas.h"
-#include "nlp/prepare.h"
 
 extern char **environ;
 
@@ -42,7 +41,6 @@ int main(int argc, char *argv[])
 {
     mt_terminal_open();
     mt_terminal_ignore_signals();
-    mt_tune_prepare_process();
     mt_blas_set_threads(1);
     const int code = mt_cli_main(argc, argv);
     return mt_exit_worse(code, mt_terminal_close());

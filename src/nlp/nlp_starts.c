@@ -4,6 +4,10 @@
  * bounds, turned by a shift modulo 1 that depends on the seed (Cranley and Patterson 1976; seed
  * 0 and 1: the sequence as it is). GSL's Sobol generator knows 40 dimensions and is silent
  * beyond; its reverse Halton knows 1229; past that, pseudo-random numbers are as good.
+ *
+ * The state of a generator lies in an arena: of what gsl_qrng_alloc and _free would do, only the
+ * shortage of memory calls GSL's error handler, which belongs to the whole process. So nothing
+ * here calls it, whatever a program has it do, and any number of threads may be here at once.
  */
 #include "nlp/nlp_priv.h"
 
@@ -24,24 +28,29 @@ static double next_uniform(uint64_t *state)
     return (double)(z >> 11) * 0x1p-53;
 }
 
-/* NULL where there is none for so many dimensions, or memory is out. */
-static gsl_qrng *sequence(int d)
+/* The sequence of so many dimensions at its start; one without a type where there is none. */
+static gsl_qrng sequence(int d, mt_arena *mem)
 {
-    if (d < 1 || d > HALTON_MOST) {
-        return NULL;
+    gsl_qrng q = {.dimension = (unsigned)d};
+    if (d >= 1 && d <= HALTON_MOST) {
+        q.type = d <= SOBOL_MOST ? gsl_qrng_sobol : gsl_qrng_reversehalton;
+        q.state_size = q.type->state_size(q.dimension);
+        q.state = mt_arena_alloc(mem, 1, q.state_size);
     }
-    return gsl_qrng_alloc(d <= SOBOL_MOST ? gsl_qrng_sobol : gsl_qrng_reversehalton,
-                          (unsigned int)d);
+    if (q.state != NULL) {
+        gsl_qrng_init(&q);
+    }
+    return q;
 }
 
 /* The next point u[d] of the unit cube. */
 static void next_point(gsl_qrng *q, uint64_t *state, int d, const double *shift, double *u)
 {
-    if (q != NULL) {
+    if (q->type != NULL) {
         (void)gsl_qrng_get(q, u);
     }
     for (int j = 0; j < d; j++) {
-        const double x = q != NULL ? u[j] : next_uniform(state);
+        const double x = q->type != NULL ? u[j] : next_uniform(state);
         u[j] = x + shift[j] - floor(x + shift[j]);
     }
 }
@@ -53,16 +62,13 @@ double *mt_nlp_starts(const mt_nlp_engine *e, int starts, mt_arena *mem)
     double *const t = mt_arena_f64(mem, (size_t)e->n, (size_t)starts);
     double *const shift = mt_arena_f64(mem, (size_t)d, 1);
     double *const u = mt_arena_f64(mem, (size_t)d, 1);
-    if (t == NULL || shift == NULL || u == NULL) {
+    gsl_qrng q = sequence(d, mem);
+    if (mt_arena_failed(mem)) {
         return NULL;
     }
     uint64_t state = e->opt.seed;
     for (int j = 0; j < d && e->opt.seed > 1; j++) {
         shift[j] = next_uniform(&state);
-    }
-    gsl_qrng *const q = sequence(d);
-    if (q == NULL && d >= 1 && d <= HALTON_MOST) {
-        return NULL;
     }
     for (int k = 0; k < starts; k++) {
         double *const tk = t + (ptrdiff_t)k * e->n;
@@ -76,13 +82,12 @@ double *mt_nlp_starts(const mt_nlp_engine *e, int starts, mt_arena *mem)
             }
             continue;
         }
-        next_point(q, &state, d, shift, u);
+        next_point(&q, &state, d, shift, u);
         for (int j = 0, i = 0; j < e->n; j++) {
             if (!e->held[j]) {
                 tk[j] = mt_nlp_clamp(e, j, p->lower[j] + u[i++] * (p->upper[j] - p->lower[j]));
             }
         }
     }
-    gsl_qrng_free(q);
     return t;
 }

@@ -3,7 +3,6 @@
  * a failure with its name, and nothing is lost or left. */
 #include "mt_alloc.h"
 #include "mt_sites.h"
-#include "nlp/prepare.h"
 #include "study_kinds.h"
 
 /* Under valgrind every tenth place. */
@@ -20,7 +19,6 @@ static mt_status answer(const mt_study *study, mt_result **result, mt_err *err)
 
 static void places__each_is_refused_once(mt_test *t)
 {
-    mt_tune_prepare_process(); /* the search library would end the process otherwise */
     for (int i = 0; i < MT_COUNT(study_kinds); i++) {
         study_case c;
         mt_err err = {.text = ""};

@@ -6,7 +6,6 @@
  * (tests/CMakeLists.txt), where its multiplications are counted.
  */
 #include "linalg/dense.h"
-#include "nlp/prepare.h"
 #include "study_kinds.h"
 
 /*
@@ -99,7 +98,6 @@ static void judge(mt_test *t, const char *name, const mt_study *study)
 
 static void questions__come_after_one_unit_of_work(mt_test *t)
 {
-    mt_tune_prepare_process();
     for (int i = 0; i < MT_COUNT(study_kinds); i++) {
         study_case c;
         mt_test_row(t, "%s", study_kinds[i].name);
@@ -115,7 +113,6 @@ static void questions__come_after_one_unit_of_work_in_studies_of_the_tree(mt_tes
     static const char *const names[] = {
         "beam_table_3",      "engine_orders",       "inceptor_catalogue", "inceptor_stick",
         "inceptor_tuning_1", "inceptor_prediction", "six_masses_bands"};
-    mt_tune_prepare_process();
     for (int i = 0; i < MT_COUNT(names); i++) {
         char path[STUDY_PATH];
         mt_study *study = NULL;

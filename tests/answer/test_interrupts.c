@@ -12,7 +12,6 @@
 #include <glob.h>
 
 #include "describe/describe.h"
-#include "nlp/prepare.h"
 #include "study_kinds.h"
 
 enum { PLACES = 50, PATH_SIZE = 600 };
@@ -299,7 +298,6 @@ static void disturb(mt_test *t, const char *name, const mt_study *study, tally *
 static void every_kind__says_what_is_missing(mt_test *t)
 {
     tally n = {0};
-    mt_tune_prepare_process();
     for (int i = 0; i < MT_COUNT(study_kinds); i++) {
         study_case c;
         mt_test_row(t, "%s", study_kinds[i].name);
@@ -336,7 +334,6 @@ static void every_study_of_the_tree__says_what_is_missing(mt_test *t)
 {
     glob_t list;
     tally n = {0};
-    mt_tune_prepare_process();
     if (!CHECK_INT(t, glob(MT_TEST_SOURCE_DIR "/studies/*.json", 0, NULL, &list), 0)) {
         return;
     }

@@ -36,7 +36,6 @@
 #include "mt_random.h"
 #include "mt_sites.h"
 #include "mt_test.h"
-#include "nlp/prepare.h"
 
 enum {
     MOST_ASKED = 1 << 20,
@@ -173,7 +172,6 @@ static void begin(void *context)
     }
     mt_sites_ask(mt_alloc_refuses);
     mt_terminal_ignore_signals();
-    mt_tune_prepare_process();
     mt_blas_set_threads(1);
 }
 

@@ -13,7 +13,6 @@
 #include "mt_alloc.h"
 #include "mt_child.h"
 #include "mt_test.h"
-#include "nlp/prepare.h"
 
 /* A body without mass that nothing holds. */
 static const char GHOST[] =
@@ -152,7 +151,6 @@ static void begin(void *context)
 {
     const how way = *(const how *)context;
     mt_terminal_ignore_signals();
-    mt_tune_prepare_process();
     mt_blas_set_threads(1);
     if (way == STOPPED) {
         mt_terminal_hold_signals();

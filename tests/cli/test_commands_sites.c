@@ -14,7 +14,6 @@
 #include "mt_alloc.h"
 #include "mt_sites.h"
 #include "mt_test.h"
-#include "nlp/prepare.h"
 
 enum { MOST_WORDS = 16, ALLOCATIONS_TRIED = 60 };
 
@@ -196,7 +195,6 @@ static void commands__tell_every_shortage(mt_test *t)
     static const char *const left[] = {"engine_orders", "inceptor_tuning_2"};
     static const char *const files[] = {"result.json", "recommendations.csv", "report.html",
                                         "trade.csv", "timing.json"};
-    mt_tune_prepare_process(); /* the search library would end the process otherwise */
     FILE *const file = tmpfile();
     catcher = file == NULL ? -1 : fileno(file);
     if (!CHECK(t, catcher >= 0 && chdir(MT_TEST_SOURCE_DIR) == 0 && mkdtemp(folder) != NULL)) {
