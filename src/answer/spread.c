@@ -134,7 +134,7 @@ static mt_status search_all(spread *s, mt_arena *mem, mt_err *err)
 
 bool mt_spread_is_asked(const mt_problem *p)
 {
-    return MT_HAS(p->study->spread.factor) && p->aims[0].type == MT_OBJECTIVE_MISFIT &&
+    return MT_HAS(p->study->spread.factor) && mt_objective_is(p->aims[0].type, MT_RESIDUALS) &&
            !mt_study_is_discrete(p->study);
 }
 

@@ -125,7 +125,7 @@ static bool better(const mt_study *study, const mt_result *a, const mt_result *b
         return x->feasible;
     }
     const bool most =
-        study->n_objectives > 0 && study->objectives[0].type == MT_OBJECTIVE_CLEARANCE;
+        study->n_objectives > 0 && mt_objective_is(study->objectives[0].type, MT_MAXIMISED);
     return x->feasible && (most ? x->score > y->score : x->score < y->score);
 }
 
@@ -213,20 +213,16 @@ static double front_value(const mt_study *study, mt_objective_type type,
         return nan("");
     }
     const bool is_first = study->n_objectives > 0 && study->objectives[0].type == type;
-    switch (type) {
-    case MT_OBJECTIVE_CHANGE:
+    if (type == MT_OBJECTIVE_CHANGE) {
         return r->change;
-    case MT_OBJECTIVE_CLEARANCE:
-        return -r->clearance_percent;
-    case MT_OBJECTIVE_MISFIT:
-        return r->misfit;
-    case MT_OBJECTIVE_MASS:
-    case MT_OBJECTIVE_EXPRESSION:
-        return is_first ? r->score : nan("");
-    case MT_OBJECTIVE_NONE:
-        break;
     }
-    return nan("");
+    if (mt_objective_is(type, MT_RESIDUALS)) {
+        return r->misfit;
+    }
+    if (mt_objective_is(type, MT_BANDS)) {
+        return -r->clearance_percent;
+    }
+    return is_first ? r->score : nan("");
 }
 
 /* Is a as good as b in both and better in one, by more than the searches' rounding? */

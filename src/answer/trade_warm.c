@@ -35,12 +35,8 @@ static mt_status objective_at(warm *w, const double *t, double *f, mt_err *err)
     MT_TRY(mt_problem_values_init(p, &w->mem, &v, err));
     MT_TRY(mt_problem_eval(p, t, false, &v, err));
     *f = mt_aim_value(p, 0, NULL);
-    if (p->aims[0].type == MT_OBJECTIVE_CLEARANCE) {
-        double room = HUGE_VAL;
-        for (int i = 0; i < p->n_clears; i++) {
-            room = fmin(room, mt_clear_room(p, &p->clears[i]));
-        }
-        *f = -room;
+    if (mt_objective_is(p->aims[0].type, MT_BANDS)) {
+        *f = -mt_clears_room(p);
     }
     return MT_OK;
 }

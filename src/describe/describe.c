@@ -74,52 +74,37 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
     return MT_OK;
 }
 
-/* A half square as its root: what results show of changes and misfits. */
-static double shown(const mt_problem *p, int k, double f)
-{
-    const mt_objective_type type = p->aims[k].type;
-    return type == MT_OBJECTIVE_CHANGE || type == MT_OBJECTIVE_MISFIT ? sqrt(2.0 * f) : f;
-}
-
 /* The objective at this design. The fresh problem has no coordinate for the least clearance: it
  * is looked up among the modes. */
 static double aim_value(const mt_problem *fresh, int k)
 {
-    double least = HUGE_VAL;
-    if (fresh->aims[k].type != MT_OBJECTIVE_CLEARANCE) {
-        return mt_aim_value(fresh, k, NULL);
-    }
-    for (int i = 0; i < fresh->n_clears; i++) {
-        least = fmin(least, mt_clear_room(fresh, &fresh->clears[i]));
-    }
-    least = fmin(least, fresh->motion_room);
-    return -least;
+    return mt_objective_is(fresh->aims[k].type, MT_BANDS)
+               ? -fmin(mt_clears_room(fresh), fresh->motion_room)
+               : mt_aim_value(fresh, k, NULL);
 }
 
 static void describe_score(const mt_problem *fresh, mt_recommendation *rec)
 {
-    const bool none = fresh->aims[0].type == MT_OBJECTIVE_NONE || !rec->feasible;
+    const mt_objective_type type = fresh->aims[0].type;
+    const bool none = type == MT_OBJECTIVE_NONE || !rec->feasible;
     if (fresh->n_res > 0) {
         rec->misfit = mt_norm2(fresh->n_res, fresh->r);
     }
-    const bool clearance = fresh->aims[0].type == MT_OBJECTIVE_CLEARANCE;
-    /* of a clearance -ln of a ratio: shown in percent of it */
-    const double f = aim_value(fresh, 0);
-    const double score = clearance ? 100.0 * expm1(-f) : shown(fresh, 0, f);
-    rec->score = none ? nan("") : score;
-    rec->score_unit = fresh->aims[0].type == MT_OBJECTIVE_MASS ? "kg" : clearance ? "%" : "";
+    rec->score = none ? nan("") : mt_aim_shown(fresh, 0, aim_value(fresh, 0));
+    rec->score_unit = mt_objective_kind_of(type)->unit;
 }
 
 /* Does the fresh objective agree with the one that the search ended with? */
 static mt_status compare(const mt_problem *fresh, const mt_design *design, mt_result *result,
                          mt_err *err)
 {
-    const double f = shown(fresh, design->stage, aim_value(fresh, design->stage));
-    const double had = shown(fresh, design->stage, design->found->f);
-    const bool searched_within = fresh->robust != NULL && !mt_robust_proven(fresh) &&
-                                 fresh->aims[design->stage].type == MT_OBJECTIVE_CLEARANCE;
-    const bool other_kind = /* a clearance that is missed is that of the kind searched */
-        fresh->aims[design->stage].type == MT_OBJECTIVE_CLEARANCE && !design->found->feasible;
+    const int k = design->stage;
+    const bool bands = mt_objective_is(fresh->aims[k].type, MT_BANDS);
+    const double f = mt_aim_root(fresh, k, aim_value(fresh, k));
+    const double had = mt_aim_root(fresh, k, design->found->f);
+    const bool searched_within = bands && fresh->robust != NULL && !mt_robust_proven(fresh);
+    /* a clearance that is missed is that of the kind searched */
+    const bool other_kind = bands && !design->found->feasible;
     if (other_kind || fabs(f - had) <= SAME_OBJECTIVE * fmax(fabs(f), 1.0) || searched_within) {
         /* within the tolerances more was found than at the corners of the search */
         return MT_OK;

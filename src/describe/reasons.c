@@ -291,26 +291,14 @@ static void say_misfit(mt_sentences *s)
 
 static const char *aim_text(const mt_aim *a)
 {
-    switch (a->type) {
-    case MT_OBJECTIVE_CHANGE:
-        return "change";
-    case MT_OBJECTIVE_MASS:
-        return "mass";
-    case MT_OBJECTIVE_EXPRESSION:
-        return a->objective->expression_text;
-    case MT_OBJECTIVE_MISFIT:
-        return "misfit";
-    case MT_OBJECTIVE_CLEARANCE:
-        return "clearance";
-    case MT_OBJECTIVE_NONE:
-        break;
-    }
-    return "objective";
+    return mt_objective_is(a->type, MT_WORD) ? mt_objective_kind_of(a->type)->name
+           : a->objective != NULL            ? a->objective->expression_text
+                                             : "objective";
 }
 
 static const char *best_of(const mt_aim *a)
 {
-    return a->type == MT_OBJECTIVE_CLEARANCE ? "greatest" : "least";
+    return mt_objective_is(a->type, MT_MAXIMISED) ? "greatest" : "least";
 }
 
 /* Among the kinds of design that keep clear of the bands. */

@@ -9,49 +9,28 @@
 #include <math.h>
 #include <string.h>
 
+#include "problem/objective.h"
+
 static const double PERCENT = 100.0;
 
 /* Of the objective, what a change df of its value f is called: "0.12 kg". NULL: not worth a
- * sentence, more than there is (a slope says nothing that far), or out of memory. */
+ * sentence, or out of memory. */
 static const char *price(mt_sentences *s, double df)
 {
-    mt_arena *const mem = &s->result->mem;
-    const char *text = "";
-    if (!(fabs(df) > 0.0) || !s->rec->feasible) {
-        return NULL;
-    }
-    switch (s->p->aims[s->design->stage].type) {
-    case MT_OBJECTIVE_MASS:
-        if (s->design->stage == 0 && fabs(df) > s->rec->score) {
-            return NULL;
-        }
-        text = mt_arena_printf(mem, "%.3g kg", df);
-        break;
-    case MT_OBJECTIVE_EXPRESSION:
-        text = mt_arena_printf(mem, "%.3g", df);
-        break;
-    case MT_OBJECTIVE_CHANGE:
-        if (!(s->rec->change > 0.0) || fabs(df) > s->rec->change * s->rec->change) {
-            return NULL;
-        }
-        text = mt_arena_printf(mem, "%.3g of the size of the redesign", df / s->rec->change);
-        break;
-    case MT_OBJECTIVE_CLEARANCE:
-        /* f = -ln(1 + clearance) */
-        text = mt_arena_printf(mem, "%.3g percentage points of the least clearance",
-                               (PERCENT + s->rec->score) * df);
-        break;
-    case MT_OBJECTIVE_MISFIT:
-    case MT_OBJECTIVE_NONE:
-        return NULL;
-    }
-    s->failed = s->failed || text == NULL;
-    return text;
+    const mt_objective_ops *const ops = s->p->aims[s->design->stage].ops;
+    const mt_price q = {.df = df,
+                        .change = s->rec->change,
+                        .score = s->rec->score,
+                        .first = s->design->stage == 0};
+    return !(fabs(df) > 0.0) || !s->rec->feasible || ops->price == NULL
+               ? NULL
+               : ops->price(&q, &s->result->mem);
 }
 
 static const char *win(const mt_sentences *s)
 {
-    return s->p->aims[s->design->stage].type == MT_OBJECTIVE_CLEARANCE ? "gain" : "save";
+    const mt_objective_type type = s->p->aims[s->design->stage].type;
+    return mt_objective_is(type, MT_MAXIMISED) ? "gain" : "save";
 }
 
 /* What one percent less of each demand would save. */

@@ -171,7 +171,7 @@ mt_status mt_problem_new_cut(const mt_study *study, mt_reference_cache *referenc
     p->n = study->n_variables;
     p->motion_room = HUGE_VAL;
     p->clearance = below != NULL && study->n_objectives > 0 &&
-                   study->objectives[0].type == MT_OBJECTIVE_CLEARANCE;
+                   mt_objective_is(study->objectives[0].type, MT_BANDS);
     p->n_t = p->n + (p->clearance ? 1 : 0);
     mt_status rc = mt_arena_init(&p->mem, 0, err);
     rc = rc == MT_OK ? init_variables(p, err) : rc;
@@ -189,14 +189,14 @@ mt_status mt_problem_new_cut(const mt_study *study, mt_reference_cache *referenc
 
 static int residuals(const mt_problem *p)
 {
-    return p->aims[p->stage].type == MT_OBJECTIVE_MISFIT ? p->n_res : 0;
+    return mt_objective_is(p->aims[p->stage].type, MT_RESIDUALS) ? p->n_res : 0;
 }
 
 /* Is a misfit among the objectives before the present one? */
 static bool misfit_held(const mt_problem *p)
 {
     for (int k = 0; k < p->stage; k++) {
-        if (p->aims[k].type == MT_OBJECTIVE_MISFIT) {
+        if (mt_objective_is(p->aims[k].type, MT_RESIDUALS)) {
             return true;
         }
     }

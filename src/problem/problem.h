@@ -98,16 +98,16 @@ typedef struct mt_clear {
     double tolerance;
 } mt_clear;
 
-/* An objective. Its value f is what the search minimises: 1/2 change^2, kg, the expression's
- * value, 1/2 |r|^2. */
+/* An objective. */
 typedef struct mt_aim {
     mt_objective_type type;
-    const mt_objective *objective; /* NULL: none */
-    mt_node node;                  /* expression: in the problem's program */
-    int n_mass;                    /* items counted by a mass */
-    mt_node *mass;                 /* [n_mass] nodes in the first view's program */
-    double limit;                  /* f at most this while it is held */
-    double unit;                   /* what a violation of the limit is divided by */
+    const struct mt_objective_ops *ops; /* of its kind (objective.h) */
+    const mt_objective *objective;      /* NULL: none */
+    mt_node node;                       /* expression: in the problem's program */
+    int n_mass;                         /* items counted by a mass */
+    mt_node *mass;                      /* [n_mass] nodes in the first view's program */
+    double limit;                       /* f at most this while it is held */
+    double unit;                        /* what a violation of the limit is divided by */
 } mt_aim;
 
 typedef struct mt_problem {
@@ -269,6 +269,8 @@ int mt_clear_row_count(const mt_problem *p, const int *below);
  * objective "clearance" makes greatest), after its view has been solved; negative: a mode is
  * inside; NaN: unstable. */
 double mt_clear_room(const mt_problem *p, const mt_clear *c);
+/* The least of all clears; infinite without bands. */
+double mt_clears_room(const mt_problem *p);
 /* Least clearance of any vibration mode from any band without its margin, in percent of the
  * edge; *band, *pos (may be NULL) say where. */
 double mt_clear_least_percent(const mt_clear *c, const mt_modes *modes, int *band, int *pos);
@@ -315,6 +317,10 @@ mt_status mt_next_eval(mt_problem *p, bool with_gradient, mt_nlp_values *out, mt
 mt_status mt_problem_init_aims(mt_problem *p, mt_err *err);
 /* f of objective k at the last evaluation, gradient[n_t] (may be NULL) likewise. */
 double mt_aim_value(const mt_problem *p, int k, double *gradient);
+/* A value f of objective k, a half square as its root: differences of these are told. */
+double mt_aim_root(const mt_problem *p, int k, double f);
+/* What results show of it. */
+double mt_aim_shown(const mt_problem *p, int k, double f);
 /* Hold objective k at f, as well as it can be told from f, from the next stage on; a misfit at
  * the residuals of the last evaluation. */
 void mt_aim_hold(mt_problem *p, int k, double f);

@@ -1,18 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * Expressions and objectives. What an objective is worth at a design:
- *     change:      f = 1/2 sum w_i (t_i - t_i(original))^2,
- *         df/dt_i = w_i (t_i - t_i(original))
- *     mass:        f = sum of the masses of the items named
- *     expression:  f = the expression
- *     misfit:      f = 1/2 |r|^2,                              df/dt = dr^T r
- * The squares, not their roots: those have no derivative where the search is to end.
- */
+/* The program of expressions, and the objectives: which there are, and how those that come
+ * first are held while the next one is searched. */
 #include <math.h>
 
-#include "base/text.h"
 #include "model/values.h"
-#include "problem/problem.h"
+#include "problem/objective.h"
 
 /* An objective is held within this part of its value (of 1 kg or one unit of the expression
  * where it is below that). */
@@ -23,6 +15,24 @@ static const double HELD_ROOT = 1e-6;
 /* A held objective may leave its limit by this part of what it was given above its optimum: the
  * optimum itself stays well inside. */
 static const double HELD_TOLERANCE = 0.01;
+
+#define OPS(id, name, ...) &mt_objective_##name,
+static const mt_objective_ops *const OPERATIONS[] = {MT_OBJECTIVE_LIST(OPS)};
+
+const mt_objective_ops *mt_objective_ops_of(mt_objective_type type)
+{
+    return OPERATIONS[type];
+}
+
+static double nothing(const mt_problem *p, const mt_aim *a, double *gradient)
+{
+    (void)p;
+    (void)a;
+    (void)gradient;
+    return 0.0;
+}
+
+const mt_objective_ops mt_objective_none = {.value = nothing};
 
 /* Limits, objectives and published quantities as one program of the variables. */
 static mt_status init_program(mt_problem *p, mt_err *err)
@@ -51,9 +61,8 @@ static mt_status init_program(mt_problem *p, mt_err *err)
     }
     for (int i = 0; i < p->n_aims; i++) {
         mt_aim *const a = &p->aims[i];
-        if (a->type == MT_OBJECTIVE_EXPRESSION) {
-            a->node = mt_program_expr(&p->program, &a->objective->expression, nodes,
-                                      a->objective->addr);
+        if (a->ops->compile != NULL) {
+            MT_TRY(a->ops->compile(p, a, nodes, err));
         }
     }
     p->n_searched = p->program.count;
@@ -72,42 +81,6 @@ static mt_status init_program(mt_problem *p, mt_err *err)
     return p->value == NULL || p->grad == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
-static bool counted(const mt_objective *o, const char *name)
-{
-    for (int i = 0; i < o->of.count; i++) {
-        if (mt_text_matches(o->of.items[i].s, name)) {
-            return true;
-        }
-    }
-    return o->of.count == 0;
-}
-
-/* Items whose mass is to be least: of the first configuration that a goal names. */
-static mt_status init_mass(mt_problem *p, mt_aim *a, mt_err *err)
-{
-    int view = 0;
-    if (p->n_views == 0) {
-        MT_TRY(mt_problem_add_view(p, 0, &view, err));
-    }
-    const mt_system *const sys = p->views[view].analysis->sys;
-    a->mass = mt_arena_alloc(&p->mem, (size_t)sys->n_items, sizeof *a->mass);
-    if (a->mass == NULL) {
-        return mt_fail_memory(err);
-    }
-    for (int i = 0; i < sys->n_items; i++) {
-        if (sys->items[i].mass != MT_NO_NODE && counted(a->objective, sys->items[i].name)) {
-            a->mass[a->n_mass++] = sys->items[i].mass;
-        }
-    }
-    if (a->n_mass == 0) {
-        return mt_fail(err, MT_E_INPUT,
-                       "objective \"mass\": nothing that is meant is part of configuration "
-                       "\"%s\", the first that a goal names",
-                       mt_analysis_configuration(p->views[view].analysis));
-    }
-    return MT_OK;
-}
-
 mt_status mt_problem_init_aims(mt_problem *p, mt_err *err)
 {
     const mt_study *const s = p->study;
@@ -116,59 +89,13 @@ mt_status mt_problem_init_aims(mt_problem *p, mt_err *err)
     if (p->aims == NULL) {
         return mt_fail_memory(err);
     }
-    p->aims[0] = (mt_aim){.type = MT_OBJECTIVE_NONE, .node = MT_NO_NODE};
-    for (int i = 0; i < s->n_objectives; i++) {
+    for (int i = 0; i < p->n_aims; i++) {
+        const mt_objective *const o = s->n_objectives > 0 ? &s->objectives[i] : NULL;
+        const mt_objective_type type = o != NULL ? o->type : MT_OBJECTIVE_NONE;
         p->aims[i] = (mt_aim){
-            .type = s->objectives[i].type, .objective = &s->objectives[i], .node = MT_NO_NODE};
-        if (p->aims[i].type == MT_OBJECTIVE_MASS) {
-            MT_TRY(init_mass(p, &p->aims[i], err));
-        }
+            .type = type, .ops = mt_objective_ops_of(type), .objective = o, .node = MT_NO_NODE};
     }
     return init_program(p, err);
-}
-
-static double change_value(const mt_problem *p, double *gradient)
-{
-    double f = 0.0;
-    for (int i = 0; i < p->n; i++) {
-        const double w = p->study->variables[i].weight;
-        const double d = p->t[i] - p->origin_t[i];
-        f += 0.5 * w * d * d;
-        if (gradient != NULL) {
-            gradient[i] = w * d;
-        }
-    }
-    return f;
-}
-
-static double mass_value(const mt_problem *p, const mt_aim *a, double *gradient)
-{
-    const mt_linear *const lin = p->views[0].analysis->lin;
-    double f = 0.0;
-    for (int k = 0; k < a->n_mass; k++) {
-        f += lin->value[a->mass[k]];
-        for (int i = 0; i < p->n && gradient != NULL; i++) {
-            gradient[i] +=
-                mt_problem_stretch(p, i) * lin->grad[((ptrdiff_t)a->mass[k] * p->n) + i];
-        }
-    }
-    return f;
-}
-
-static double expression_value(const mt_problem *p, const mt_aim *a, double *gradient)
-{
-    for (int i = 0; i < p->n && gradient != NULL; i++) {
-        gradient[i] = mt_problem_stretch(p, i) * p->grad[((ptrdiff_t)a->node * p->n) + i];
-    }
-    return p->value[a->node];
-}
-
-static double misfit_value(const mt_problem *p, double *gradient)
-{
-    for (int i = 0; i < p->n && gradient != NULL; i++) {
-        gradient[i] = mt_dot(p->n_res, p->dr + ((ptrdiff_t)i * p->n_res), p->r);
-    }
-    return 0.5 * mt_dot(p->n_res, p->r, p->r);
 }
 
 double mt_aim_value(const mt_problem *p, int k, double *gradient)
@@ -177,24 +104,18 @@ double mt_aim_value(const mt_problem *p, int k, double *gradient)
     for (int i = 0; i < p->n_t && gradient != NULL; i++) {
         gradient[i] = 0.0;
     }
-    switch (a->type) {
-    case MT_OBJECTIVE_CHANGE:
-        return change_value(p, gradient);
-    case MT_OBJECTIVE_MASS:
-        return mass_value(p, a, gradient);
-    case MT_OBJECTIVE_EXPRESSION:
-        return expression_value(p, a, gradient);
-    case MT_OBJECTIVE_MISFIT:
-        return misfit_value(p, gradient);
-    case MT_OBJECTIVE_CLEARANCE:
-        if (p->clearance && gradient != NULL) {
-            gradient[p->n] = -1.0;
-        }
-        return p->clearance ? -p->t[p->n] : 0.0;
-    case MT_OBJECTIVE_NONE:
-        break;
-    }
-    return 0.0;
+    return a->ops->value(p, a, gradient);
+}
+
+double mt_aim_root(const mt_problem *p, int k, double f)
+{
+    return mt_objective_is(p->aims[k].type, MT_HALF_SQUARE) ? sqrt(2.0 * fmax(f, 0.0)) : f;
+}
+
+double mt_aim_shown(const mt_problem *p, int k, double f)
+{
+    const mt_aim *const a = &p->aims[k];
+    return a->ops->shown != NULL ? a->ops->shown(f) : mt_aim_root(p, k, f);
 }
 
 /* Row of `in` that holds objective k: a misfit among those before it has none. */
@@ -202,7 +123,7 @@ static int held_row(const mt_problem *p, int k)
 {
     int row = p->n_in;
     for (int i = 0; i < k; i++) {
-        row += p->aims[i].type == MT_OBJECTIVE_MISFIT ? 0 : 1;
+        row += mt_objective_is(p->aims[i].type, MT_RESIDUALS) ? 0 : 1;
     }
     return row;
 }
@@ -211,14 +132,14 @@ void mt_aim_hold(mt_problem *p, int k, double f)
 {
     mt_aim *const a = &p->aims[k];
     const double root = sqrt(2.0 * fmax(f, 0.0));
-    if (a->type == MT_OBJECTIVE_MISFIT) {
+    if (mt_objective_is(a->type, MT_RESIDUALS)) {
         for (int i = 0; i < p->n_res; i++) {
             p->r_held[i] = p->r[i];
             p->eq_tol[p->n_eq + i] = HELD_ROOT * fmax(root, 1.0);
         }
         return;
     }
-    if (a->type == MT_OBJECTIVE_CHANGE) {
+    if (mt_objective_is(a->type, MT_HALF_SQUARE)) {
         const double most = root + (HELD_ROOT * fmax(root, 1.0));
         a->limit = 0.5 * most * most;
         a->unit = a->limit;
@@ -247,7 +168,7 @@ void mt_aim_hold_rows(mt_problem *p, bool with_gradient, mt_nlp_values *out)
     const ptrdiff_t rows = mt_problem_rows_in(p);
     for (int k = 0; k < p->stage; k++) {
         const mt_aim *const a = &p->aims[k];
-        if (a->type == MT_OBJECTIVE_MISFIT) {
+        if (mt_objective_is(a->type, MT_RESIDUALS)) {
             hold_misfit(p, with_gradient, out);
             continue;
         }

@@ -336,6 +336,15 @@ double mt_clear_room(const mt_problem *p, const mt_clear *c)
     return room;
 }
 
+double mt_clears_room(const mt_problem *p)
+{
+    double room = HUGE_VAL;
+    for (int i = 0; i < p->n_clears; i++) {
+        room = fmin(room, mt_clear_room(p, &p->clears[i]));
+    }
+    return room;
+}
+
 double mt_clear_least_percent(const mt_clear *c, const mt_modes *modes, int *band, int *pos)
 {
     double least = HUGE_VAL;

@@ -72,7 +72,7 @@ mt_status mt_problem_eval(void *context, const double *t, bool with_gradient,
     MT_TRY(mt_clear_eval(p, t, with_gradient, out, err));
     MT_TRY(mt_robust_rows(p, t, with_gradient, out, err));
     MT_TRY(mt_next_eval(p, with_gradient, out, err));
-    if (p->aims[p->stage].type == MT_OBJECTIVE_MISFIT) {
+    if (mt_objective_is(p->aims[p->stage].type, MT_RESIDUALS)) {
         memcpy(out->r, p->r, (size_t)p->n_res * sizeof *p->r);
         if (with_gradient) {
             memcpy(out->dr, p->dr, (size_t)p->n_res * (size_t)p->n * sizeof *p->dr);

@@ -118,7 +118,7 @@ static void judge_bands(const mt_problem *p, mt_combination *c)
         room = tied;
     }
     for (int k = 0; k < p->n_aims; k++) {
-        if (p->aims[k].type == MT_OBJECTIVE_CLEARANCE) {
+        if (mt_objective_is(p->aims[k].type, MT_BANDS)) {
             c->f[k] = -room;
         }
     }
@@ -175,7 +175,7 @@ static mt_status follow(mt_problem *p, mt_combination *c, mt_arena *mem, mt_err 
         room = fmin(room, m.room);
     }
     for (int k = 0; k < p->n_aims; k++) {
-        if (p->aims[k].type == MT_OBJECTIVE_CLEARANCE) {
+        if (mt_objective_is(p->aims[k].type, MT_BANDS)) {
             c->f[k] = fmax(c->f[k], -room);
         }
     }
@@ -262,7 +262,7 @@ static mt_status evaluate_aims(mt_problem *p, const mt_nlp_solution *s, bool gap
     MT_TRY(mt_problem_eval(p, c->t, false, &v, err));
     c->evals++;
     for (int k = 0; k < p->n_aims; k++) {
-        const bool clearance = p->aims[k].type == MT_OBJECTIVE_CLEARANCE;
+        const bool clearance = mt_objective_is(p->aims[k].type, MT_BANDS);
         c->f[k] = k == 0 && gaps && clearance ? s->f : mt_aim_value(p, k, NULL);
     }
     return MT_OK;

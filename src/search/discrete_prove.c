@@ -144,7 +144,7 @@ static mt_status ask(prover *v, mt_certify_search *found, mt_err *err)
 static double cap_of(const mt_problem *p, double f, double share)
 {
     /* f is half the square of the change */
-    const bool squares = p->aims[0].type == MT_OBJECTIVE_CHANGE;
+    const bool squares = mt_objective_is(p->aims[0].type, MT_HALF_SQUARE);
     return squares ? f * (1.0 - share) * (1.0 - share) : f - (share * fabs(f));
 }
 

@@ -62,8 +62,7 @@ static bool measure(crossing *x, double *rows, int *below)
         rows[n++] = p->r[i] / VALUE_TOL;
     }
     for (int k = 0; k < p->n_aims && known; k++) {
-        const mt_objective_type type = p->aims[k].type;
-        const bool counts = type == MT_OBJECTIVE_MASS || type == MT_OBJECTIVE_EXPRESSION;
+        const bool counts = mt_objective_is(p->aims[k].type, MT_AMOUNT);
         rows[n++] = counts ? mt_aim_value(p, k, NULL) / VALUE_TOL : 0.0;
     }
     for (int i = 0; i < p->n_clears && known; i++) {

@@ -53,10 +53,7 @@ static bool measure(continua *c, const double *t, double *aims)
         good = -c->v.in[i] <= p->in_tol[i] * FEASIBLE;
     }
     for (int k = 0; k < p->n_aims && good; k++) {
-        const mt_objective_type type = p->aims[k].type;
-        const bool half_square = type == MT_OBJECTIVE_CHANGE || type == MT_OBJECTIVE_MISFIT;
-        const double f = mt_aim_value(p, k, NULL);
-        aims[k] = half_square ? sqrt(2.0 * fmax(f, 0.0)) : f;
+        aims[k] = mt_aim_root(p, k, mt_aim_value(p, k, NULL));
         good = isfinite(aims[k]);
     }
     return good;
@@ -65,8 +62,7 @@ static bool measure(continua *c, const double *t, double *aims)
 static bool equal(const mt_problem *p, const double *a, const double *b)
 {
     for (int k = 0; k < p->n_aims; k++) {
-        const mt_objective_type type = p->aims[k].type;
-        const bool unit = type == MT_OBJECTIVE_MASS || type == MT_OBJECTIVE_EXPRESSION;
+        const bool unit = mt_objective_is(p->aims[k].type, MT_AMOUNT);
         const double size = fmax(fabs(a[k]), fabs(b[k]));
         if (!(fabs(a[k] - b[k]) <= EQUAL * (unit ? size : fmax(size, 1.0)))) {
             return false;

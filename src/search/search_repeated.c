@@ -421,7 +421,7 @@ mt_status mt_search_repeated(mt_problem *p, long most, mt_arena *mem, mt_nlp_res
     refine w = {.p = p, .mem = mem, .evals = out->evals, .stop = MT_STOP_DONE, .gain = GAIN};
     bool any = false;
     const bool smooth = out->compromise || out->stop == MT_STOP_USER ||
-                        p->aims[p->stage].type == MT_OBJECTIVE_MISFIT;
+                        mt_objective_is(p->aims[p->stage].type, MT_RESIDUALS);
     w.most = most > 0 ? most : out->evals + (long)ROUNDS * SOLVE_EVALUATIONS * 8;
     for (int i = 0; i < out->n_solutions && !smooth; i++) {
         if (out->solutions[i].kkt > STATIONARY && out->solutions[i].feasible) {

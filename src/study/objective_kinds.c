@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/objective_kinds.h"
 
-#define KIND(id, name, unit, properties) {name, unit, properties},
+#define KIND(id, name, unit, properties) {#name, unit, properties},
 static const mt_objective_kind KINDS[] = {MT_OBJECTIVE_LIST(KIND)};
 
 const mt_objective_kind *mt_objective_kind_of(mt_objective_type type)

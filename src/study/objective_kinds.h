@@ -5,26 +5,26 @@
 #include <stdbool.h>
 
 /*
- * The kinds of objectives as a table. X(id, name, unit, properties):
+ * The kinds of objectives as a table: X(id, name, unit of what results show, properties). Their
+ * operations are mt_objective_<name> of problem/objective.h. Properties:
  *     WORD         files name it by its name (an expression is its own text)
  *     MAXIMISED    its value is the negative of what is made greatest
- *     HALF_SQUARE
- *         its value is half the square of what results show, which has a derivative where the
- *         square's root has none
- *     AMOUNT
- *         of something that has a unit and no natural size: two values are equal relative to
- *         themselves
+ *     HALF_SQUARE  its value is half the square of what results show, which has a derivative
+ *                  where the square's root has none
+ *     AMOUNT       of something without a natural size: two are equal relative to themselves
+ *     RESIDUALS    half the square of the weighted goals' residuals, which it needs
+ *     BANDS        of the bands that goals keep clear of, which it needs; a coordinate of the
+ *                  search for one gap assignment, elsewhere looked up among the modes
  *     OF_ITEMS     "of" may list items
- *     FRONT
- *         can be one side of a Pareto front; with OF_STUDY, if it is an objective of the study
+ *     FRONT        can be one side of a Pareto front; with OF_STUDY, if the study has it
  */
-#define MT_OBJECTIVE_LIST(X)                                                          \
-    X(NONE, "none", "", 0)                                                            \
-    X(CHANGE, "change", "", MT_WORD | MT_HALF_SQUARE | MT_FRONT)                      \
-    X(MASS, "mass", "kg", MT_WORD | MT_AMOUNT | MT_OF_ITEMS | MT_FRONT | MT_OF_STUDY) \
-    X(EXPRESSION, "expression", "", MT_AMOUNT)                                        \
-    X(MISFIT, "misfit", "", MT_WORD | MT_HALF_SQUARE | MT_FRONT | MT_OF_STUDY)        \
-    X(CLEARANCE, "clearance", "%", MT_WORD | MT_MAXIMISED | MT_FRONT)
+#define MT_OBJECTIVE_LIST(X)                                                                \
+    X(NONE, none, "", 0)                                                                    \
+    X(CHANGE, change, "", MT_WORD | MT_HALF_SQUARE | MT_FRONT)                              \
+    X(MASS, mass, "kg", MT_WORD | MT_AMOUNT | MT_OF_ITEMS | MT_FRONT | MT_OF_STUDY)         \
+    X(EXPRESSION, expression, "", MT_AMOUNT)                                                \
+    X(MISFIT, misfit, "", MT_WORD | MT_HALF_SQUARE | MT_RESIDUALS | MT_FRONT | MT_OF_STUDY) \
+    X(CLEARANCE, clearance, "%", MT_WORD | MT_MAXIMISED | MT_BANDS | MT_FRONT)
 #define MT_OBJECTIVE_ENUM(id, ...) MT_OBJECTIVE_##id,
 typedef enum mt_objective_type { MT_OBJECTIVE_LIST(MT_OBJECTIVE_ENUM) } mt_objective_type;
 #undef MT_OBJECTIVE_ENUM
@@ -39,7 +39,9 @@ enum {
     MT_AMOUNT = 8,
     MT_OF_ITEMS = 16,
     MT_FRONT = 32,
-    MT_OF_STUDY = 64
+    MT_OF_STUDY = 64,
+    MT_RESIDUALS = 128,
+    MT_BANDS = 256
 };
 
 typedef struct mt_objective_kind {

@@ -33,7 +33,7 @@ static void check_objective(mt_study_check *c, int which)
     const mt_study *const s = c->study;
     const mt_objective *const o = &s->objectives[which];
     for (int k = 0; k < which; k++) {
-        if (o->type != MT_OBJECTIVE_EXPRESSION && s->objectives[k].type == o->type) {
+        if (mt_objective_is(o->type, MT_WORD) && s->objectives[k].type == o->type) {
             mt_diag_error(c->diags, o->addr, "this objective is given twice");
             break;
         }
@@ -46,10 +46,11 @@ static void check_objective(mt_study_check *c, int which)
     }
 }
 
-static const mt_objective *find(const mt_study *s, mt_objective_type type)
+/* The objective that has these properties. */
+static const mt_objective *find(const mt_study *s, unsigned properties)
 {
     for (int i = 0; i < s->n_objectives; i++) {
-        if (s->objectives[i].type == type) {
+        if (mt_objective_is(s->objectives[i].type, properties)) {
             return &s->objectives[i];
         }
     }
@@ -60,7 +61,7 @@ static const mt_objective *find(const mt_study *s, mt_objective_type type)
 static void check_misfit(mt_study_check *c)
 {
     const mt_study *const s = c->study;
-    const mt_objective *const misfit = find(s, MT_OBJECTIVE_MISFIT);
+    const mt_objective *const misfit = find(s, MT_RESIDUALS);
     bool weighted = false;
     for (int i = 0; i < s->n_goals; i++) {
         const mt_goal *const goal = &s->goals[i];
@@ -85,8 +86,8 @@ static void check_spread(mt_study_check *c)
     if (spread->factor_addr == MT_NO_ADDR) {
         return;
     }
-    const bool first =
-        c->study->n_objectives > 0 && c->study->objectives[0].type == MT_OBJECTIVE_MISFIT;
+    const bool first = c->study->n_objectives > 0 &&
+                       mt_objective_is(c->study->objectives[0].type, MT_RESIDUALS);
     if (!first) {
         mt_diag_error(c->diags, spread->factor_addr,
                       "a spread needs \"objective\": {\"minimise\": \"misfit\"}");
@@ -99,7 +100,7 @@ static void check_spread(mt_study_check *c)
 
 static void check_clearance(mt_study_check *c)
 {
-    const mt_objective *const clearance = find(c->study, MT_OBJECTIVE_CLEARANCE);
+    const mt_objective *const clearance = find(c->study, MT_BANDS);
     if (clearance != NULL && !mt_study_has_bands(c->study)) {
         mt_diag_error(c->diags, clearance->addr,
                       "the clearance needs a goal of type \"avoid\"");

@@ -217,7 +217,7 @@ static void check_front(mt_study_check *c)
     const mt_trade *const trade = &s->trade;
     for (int i = 0; i < trade->n_objectives; i++) {
         const mt_objective_type type = trade->objectives[i];
-        if (type == MT_OBJECTIVE_CLEARANCE && !mt_study_has_bands(s)) {
+        if (mt_objective_is(type, MT_BANDS) && !mt_study_has_bands(s)) {
             mt_diag_error(c->diags, trade->objectives_addr,
                           "the clearance needs a goal of type \"avoid\"");
         } else if (mt_objective_is(type, MT_OF_STUDY) && !has_objective(s, type)) {

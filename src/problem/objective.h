@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef PROBLEM_OBJECTIVE_H
+#define PROBLEM_OBJECTIVE_H
+
+#include "problem/problem.h"
+
+/* What a change df of an objective's value is worth at a design. */
+typedef struct mt_price {
+    double df;
+    double change; /* of the design */
+    double score;  /* of the design, by the first objective */
+    bool first;    /* the objective is the first one */
+} mt_price;
+
+/*
+ * The operations of a kind of objective, one file for each kind (objective_<kind>.c); what files
+ * and results call it, and its properties, stand in study/objective_kinds.h. The search makes
+ * its value f least.
+ */
+typedef struct mt_objective_ops {
+    /* Nodes and items that f is made of; nodes[parameters of the model] of p->program. NULL:
+     * there are none. */
+    mt_status (*compile)(mt_problem *p, mt_aim *a, const mt_node *nodes, mt_err *err);
+    /* f at the last evaluation, and its gradient[n_t], zero before, unless NULL. */
+    double (*value)(const mt_problem *p, const mt_aim *a, double *gradient);
+    /* At most any f over a box of inputs; low, high: room for
+     * the nodes of any program of p. NULL: not known. */
+    double (*least)(const mt_problem *p, const mt_aim *a, const double *lo, const double *hi,
+                    double *low, double *high);
+    /* What results show of f. NULL: f, or the root of twice f where f is half a square. */
+    double (*shown)(double f);
+    /* "0.12 kg". NULL: not worth a sentence, more than there is (a slope says nothing that far).
+     * The member NULL: it never is. */
+    const char *(*price)(const mt_price *q, mt_arena *mem);
+} mt_objective_ops;
+
+#define MT_OBJECTIVE_OPS(id, name, ...) extern const mt_objective_ops mt_objective_##name;
+MT_OBJECTIVE_LIST(MT_OBJECTIVE_OPS)
+#undef MT_OBJECTIVE_OPS
+const mt_objective_ops *mt_objective_ops_of(mt_objective_type type);
+
+/* Sums of n terms and the logarithms in them are rounded by less than this many times n eps. */
+#define MT_OBJECTIVE_ULPS 16.0
+
+#endif

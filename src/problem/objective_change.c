@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* "change": f = 1/2 sum w_i (t_i - t_i(original))^2, of which each term is least at the end of a
+ * box that is nearer to the original. */
+#include <float.h>
+#include <math.h>
+
+#include "problem/objective.h"
+
+static double value(const mt_problem *p, const mt_aim *a, double *gradient)
+{
+    double f = 0.0;
+    (void)a;
+    for (int i = 0; i < p->n; i++) {
+        const double w = p->study->variables[i].weight;
+        const double d = p->t[i] - p->origin_t[i];
+        f += 0.5 * w * d * d;
+        if (gradient != NULL) {
+            gradient[i] = w * d;
+        }
+    }
+    return f;
+}
+
+static double least(const mt_problem *p, const mt_aim *a, const double *lo, const double *hi,
+                    double *low, double *high)
+{
+    double f = 0.0;
+    (void)a;
+    (void)low;
+    (void)high;
+    for (int i = 0; i < p->n; i++) {
+        const double below = p->origin_t[i] - mt_problem_t(p, i, hi[i]);
+        const double above = mt_problem_t(p, i, lo[i]) - p->origin_t[i];
+        const double d = fmax(fmax(below, above), 0.0);
+        f += 0.5 * p->study->variables[i].weight * d * d;
+    }
+    return f * (1.0 - (MT_OBJECTIVE_ULPS * (double)p->n * DBL_EPSILON));
+}
+
+/* dc = df / c */
+static const char *price(const mt_price *q, mt_arena *mem)
+{
+    return !(q->change > 0.0) || fabs(q->df) > q->change * q->change
+               ? NULL
+               : mt_arena_printf(mem, "%.3g of the size of the redesign", q->df / q->change);
+}
+
+const mt_objective_ops mt_objective_change = {.value = value, .least = least, .price = price};

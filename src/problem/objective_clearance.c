@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * "clearance": f = -ln(1 + least clearance of any mode from any band). In the search of one gap
+ * assignment that is the last coordinate, which every row of a band has to exceed
+ * (problem_clear.c); elsewhere mt_clears_room looks it up among the modes.
+ */
+#include <math.h>
+
+#include "problem/objective.h"
+
+static const double PERCENT = 100.0;
+
+static double value(const mt_problem *p, const mt_aim *a, double *gradient)
+{
+    (void)a;
+    if (p->clearance && gradient != NULL) {
+        gradient[p->n] = -1.0;
+    }
+    return p->clearance ? -p->t[p->n] : 0.0;
+}
+
+static double shown(double f)
+{
+    return PERCENT * expm1(-f);
+}
+
+static const char *price(const mt_price *q, mt_arena *mem)
+{
+    return mt_arena_printf(mem, "%.3g percentage points of the least clearance",
+                           (PERCENT + q->score) * q->df);
+}
+
+const mt_objective_ops mt_objective_clearance = {
+    .value = value, .shown = shown, .price = price};

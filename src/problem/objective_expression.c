@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* An expression of parameters: f = its value. */
+#include "problem/objective.h"
+
+static mt_status compile(mt_problem *p, mt_aim *a, const mt_node *nodes, mt_err *err)
+{
+    (void)err;
+    a->node =
+        mt_program_expr(&p->program, &a->objective->expression, nodes, a->objective->addr);
+    return MT_OK; /* the program tells when it is finished */
+}
+
+static double value(const mt_problem *p, const mt_aim *a, double *gradient)
+{
+    for (int i = 0; i < p->n && gradient != NULL; i++) {
+        gradient[i] = mt_problem_stretch(p, i) * p->grad[((ptrdiff_t)a->node * p->n) + i];
+    }
+    return p->value[a->node];
+}
+
+static double least(const mt_problem *p, const mt_aim *a, const double *lo, const double *hi,
+                    double *low, double *high)
+{
+    mt_program_interval(&p->program, lo, hi, low, high);
+    return low[a->node];
+}
+
+static const char *price(const mt_price *q, mt_arena *mem)
+{
+    return mt_arena_printf(mem, "%.3g", q->df);
+}
+
+const mt_objective_ops mt_objective_expression = {
+    .compile = compile, .value = value, .least = least, .price = price};
