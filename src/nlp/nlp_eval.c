@@ -163,8 +163,6 @@ void mt_nlp_point_copy(const mt_nlp_engine *e, mt_nlp_point *to, const mt_nlp_po
     to->violation = from->violation;
     to->squares = from->squares;
     to->kkt = from->kkt;
-    to->start = from->start;
-    to->curve = from->curve;
 }
 
 void mt_nlp_point_swap(mt_nlp_point **a, mt_nlp_point **b)
@@ -235,7 +233,6 @@ static void derive(const mt_nlp_engine *e, mt_nlp_point *p, bool with_gradient)
         p->squares += below * below;
     }
     p->kkt = HUGE_VAL;
-    p->curve = false;
 }
 
 /* Constraints relative to what a compromise reaches. */

@@ -12,11 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Ends nearer than this are one (0.1 percent in a parameter: the same design to an engineer),
- * and nearer than the root of the tolerance, which a double root smears; that is capped where
- * tolerances are wide. */
-static const double SAME = 1e-3;
-static const double SAME_MOST = 1e-2;
 /* Ends nearer than this are one and the same to rounding; merged ones farther apart were two
  * roots. */
 static const double IDENTICAL = 1e-5;
@@ -35,72 +30,11 @@ static const double ON_MARK = 1e-12;
 /* Violation, in tolerances, that a goal is met with as well as by 0. */
 static const double STILL_MET = 1e-4;
 
-bool mt_nlp_ends_grow(mt_nlp_engine *e, mt_nlp_ends *all, int n)
-{
-    const size_t wanted = (size_t)all->count + (size_t)n;
-    mt_nlp_end_point *const at = mt_arena_alloc(&e->scratch, wanted, sizeof *at);
-    if (at == NULL) {
-        return false;
-    }
-    for (int i = 0; i < all->count; i++) {
-        at[i] = all->at[i];
-    }
-    all->at = at;
-    return true;
-}
-
 static void swap(mt_nlp_ends *all, int i, int k)
 {
-    const mt_nlp_end_point one = all->at[i];
+    const mt_nlp_local one = all->at[i];
     all->at[i] = all->at[k];
     all->at[k] = one;
-}
-
-/* Ends nearer than this are one. */
-static double same_distance(const mt_nlp_engine *e)
-{
-    return fmax(SAME, fmin(sqrt(e->eq_tol), SAME_MOST));
-}
-
-static bool seeks_roots(const mt_nlp_engine *e)
-{
-    return e->nlp->n_eq >= e->n_free && e->n_free > 0;
-}
-
-int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_ends *all, int *once)
-{
-    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
-    /* a later end is the same */
-    int *const twin = mt_arena_int(&e->scratch, (size_t)all->count);
-    int roots = 0;
-    *once = 0;
-    if (twin == NULL) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
-        return 0;
-    }
-    for (int i = 0; i < all->count && seeks_roots(e); i++) {
-        const mt_nlp_point *const p = all->at[i].p;
-        if (mt_nlp_feasible(p) && p->curve) {
-            roots = 0;
-            *once = 0;
-            break;
-        }
-        if (!mt_nlp_feasible(p) || twin[i] != 0) {
-            continue;
-        }
-        int hits = 1;
-        for (int k = i + 1; k < all->count; k++) {
-            if (mt_nlp_feasible(all->at[k].p) &&
-                mt_nlp_distance(e, p, all->at[k].p) <= same_distance(e)) {
-                twin[k] = 1;
-                hits++;
-            }
-        }
-        roots++;
-        *once += hits == 1;
-    }
-    mt_arena_rewind(&e->scratch, mark);
-    return roots;
 }
 
 /*
@@ -111,11 +45,11 @@ int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_ends *all, int *once)
 static void count_roots(const mt_nlp_engine *e, const mt_nlp_ends *all, mt_nlp_result *out)
 {
     int f2 = 0;
-    bool isolated = seeks_roots(e) && all->count > 0 && !out->compromise;
+    bool isolated = mt_nlp_seeks_roots(e) && all->count > 0 && !out->compromise;
     for (int i = 0; i < all->count; i++) {
         out->n_once += all->at[i].hits == 1;
         f2 += all->at[i].hits == 2;
-        isolated = isolated && !all->at[i].p->curve;
+        isolated = isolated && !all->at[i].curve;
     }
     out->n_found = all->count;
     out->missing = isolated ? 0.5 * out->n_once * (out->n_once - 1) / (f2 + 1.0) : nan("");
@@ -125,7 +59,7 @@ static void count_roots(const mt_nlp_engine *e, const mt_nlp_ends *all, mt_nlp_r
 static void rank(mt_nlp_ends *all)
 {
     for (int i = 1; i < all->count; i++) {
-        const mt_nlp_end_point end = all->at[i];
+        const mt_nlp_local end = all->at[i];
         int k = i;
         for (; k > 0 && mt_nlp_better(end.p, all->at[k - 1].p); k--) {
             all->at[k] = all->at[k - 1];
@@ -174,7 +108,7 @@ static void drop_useless(mt_nlp_ends *all)
 /* Merge equal ends into the better one. Ranked. */
 static void merge(const mt_nlp_engine *e, mt_nlp_ends *all)
 {
-    const double same = same_distance(e);
+    const double same = mt_nlp_same_distance(e);
     int kept = 0;
     for (int i = 0; i < all->count; i++) {
         int twin = -1;
@@ -185,11 +119,11 @@ static void merge(const mt_nlp_engine *e, mt_nlp_ends *all)
             swap(all, kept++, i);
             continue;
         }
-        mt_nlp_end_point *const one = &all->at[twin];
-        const mt_nlp_point *const p = all->at[i].p;
-        one->merged = one->merged || mt_nlp_distance(e, one->p, p) > IDENTICAL;
-        one->hits += all->at[i].hits;
-        one->p->start = p->start < one->p->start ? p->start : one->p->start;
+        mt_nlp_local *const one = &all->at[twin];
+        const mt_nlp_local *const end = &all->at[i];
+        one->merged = one->merged || mt_nlp_distance(e, one->p, end->p) > IDENTICAL;
+        one->hits += end->hits;
+        one->start = end->start < one->start ? end->start : one->start;
     }
     all->count = kept;
 }
@@ -202,13 +136,13 @@ static void settle(mt_nlp_engine *e, mt_nlp_point *p)
 {
     const mt_nlp *const q = e->nlp;
     mt_arena *const mem = &e->scratch;
-    mt_nlp_point *const to = mt_nlp_point_new(e, mem);
-    double *const eq = mt_arena_f64(mem, (size_t)q->n_eq, 1);
-    double *const in = mt_arena_f64(mem, (size_t)q->n_in, 1);
-    if (to == NULL || eq == NULL || in == NULL) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
+    mt_nlp_local s;
+    double *const eq = mt_nlp_f64(e, mem, (size_t)q->n_eq, 1);
+    double *const in = mt_nlp_f64(e, mem, (size_t)q->n_in, 1);
+    if (eq == NULL || in == NULL || !mt_nlp_local_init(e, mem, &s)) {
         return;
     }
+    mt_nlp_point *const to = s.p;
     memcpy(eq, p->eq, (size_t)q->n_eq * sizeof *eq);
     for (int i = 0; i < q->n_in; i++) {
         in[i] = fmin(p->in[i], 0);
@@ -220,7 +154,9 @@ static void settle(mt_nlp_engine *e, mt_nlp_point *p)
                            mt_nlp_weakness_at(e, to, mem, &w) && w.curve &&
                            w.n_rows < e->n_free;
     if (minimised) {
-        mt_nlp_minimise(e, w.n_rows, w.rows, to);
+        s.n_rows = w.n_rows;
+        s.rows = w.rows;
+        mt_nlp_minimise(e, &s);
     }
     e->eq_shift = NULL;
     e->in_shift = NULL;
@@ -230,7 +166,6 @@ static void settle(mt_nlp_engine *e, mt_nlp_point *p)
     if (!(to->f < p->f - SETTLED_GAIN * fabs(p->f))) {
         return;
     }
-    to->start = p->start;
     mt_nlp_polish(e, MT_NLP_SQUARES, to, NULL); /* back from within the tolerances */
     if (to->squares <= p->squares * (1 + EQUAL_SQUARES)) {
         mt_nlp_point_copy(e, p, to);
@@ -271,8 +206,6 @@ static void put_on_marks(mt_nlp_engine *e, mt_nlp_point *p)
     if (moved && mt_nlp_evaluate(e, to->t, true, to) &&
         to->violation <= fmax(p->violation, STILL_MET)) {
         to->kkt = p->kkt;
-        to->start = p->start;
-        to->curve = p->curve;
         mt_nlp_point_copy(e, p, to);
     }
     mt_arena_rewind(&e->scratch, mark);
@@ -297,7 +230,8 @@ void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_resu
     rank(all);
     drop_useless(all);
     out->compromise = all->count > 0 && !mt_nlp_feasible(all->at[0].p);
-    if (all->count > 0 && !mt_nlp_undetermined(e, all->at[0].p, mem, out)) {
+    if (all->count > 0 && all->at[0].p != all->directed &&
+        !mt_nlp_undetermined(e, all->at[0].p, mem, out)) {
         return;
     }
     for (int i = 0; i < all->count && out->n_undetermined > 0; i++) {
@@ -326,6 +260,7 @@ void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_resu
     }
     for (int i = 0; i < count && mt_nlp_report(e, all->at[i].p, mem, &out->solutions[i]); i++) {
         out->solutions[i].singular = is_singular(e, all->at[i].p, all->at[i].merged);
+        out->solutions[i].start = all->at[i].start;
         out->solutions[i].hits = all->at[i].hits;
         out->n_solutions = i + 1;
     }

@@ -10,10 +10,12 @@
  *
  * H is the Hessian of the Lagrangian. Gradients are exact, so Z^T H Z comes from one further
  * gradient per column of Z (forward difference; its error of about 1e-6 costs one digit in six
- * per step, and the fixed point, where Z^T g = 0 and c = 0, does not depend on it). A negative
- * eigenvalue of Z^T H Z at a converged point tells a saddle from a minimum. Where the Hessian
- * is too expensive or a point refuses a value, the step is Gauss-Newton's or there is none: the
- * best point stands.
+ * per step, and the fixed point, where Z^T g = 0 and c = 0, does not depend on it). That is
+ * most of the cost, so one Hessian serves as long as steps shrink fast with it and the active
+ * constraints are the same (the simplified Newton method). A negative eigenvalue of Z^T H Z at
+ * a stationary point tells a saddle from a minimum, and ends the iteration: the caller leaves
+ * it. Where the Hessian is too expensive or a point refuses a value, the step is Gauss-Newton's
+ * or there is none: the best point stands.
  */
 #include "nlp/nlp_priv.h"
 
@@ -40,8 +42,11 @@ static const double SADDLE = 1e-4;
 /* KKT residuals below this are stationary points. */
 static const double STATIONARY = 1e-6;
 /* A step must not be longer than this part of the one before, or the iteration is not
- * converging. */
+ * converging; with an old Hessian not longer than the second, or it takes a new one. */
 static const double CONTRACTION = 0.7;
+static const double CONTRACTION_OLD = 0.2;
+/* ... unless it is as short as this: then t is known as well as its gradients tell. */
+static const double STEP_KNOWN = 1e-10;
 /* Relative rounding allowed in the objective of the better of two points. */
 static const double F_ROUNDING = 1e-9;
 
@@ -52,7 +57,10 @@ typedef struct polish {
     int nz;
     double *Z;    /* n_free x nz */
     double *H;    /* nz x nz, then its eigenvectors */
-    double *w;    /* [nz] eigenvalues */
+    int n_v;      /* columns of the last Hessian; -1: there is none */
+    double *V;    /* n x n_v: its eigenvectors Z H on all variables */
+    double *w;    /* [n_v] its eigenvalues */
+    int *active;  /* [n + 1 + rows] the active set it is of */
     double *gl;   /* [n] gradient of the Lagrangian elsewhere */
     double *step; /* [n] */
     double *t;    /* [n] */
@@ -62,17 +70,32 @@ typedef struct polish {
     double limit; /* the objective must not end above this */
 } polish;
 
-static bool prepare(polish *w)
+/* The active set as numbers: sides of the variables, rows. */
+static bool active_changed(polish *w)
+{
+    const int n = w->e->n;
+    bool changed = w->n_v < 0 || w->active[n] != w->a.k;
+    for (int j = 0; j < n && !changed; j++) {
+        changed = w->active[j] != w->a.side[j];
+    }
+    for (int i = 0; i < w->a.k && !changed; i++) {
+        changed = w->active[n + 1 + i] != w->a.row[i];
+    }
+    memcpy(w->active, w->a.side, (size_t)n * sizeof *w->active);
+    memcpy(w->active + n + 1, w->a.row, (size_t)w->a.k * sizeof *w->active);
+    w->active[n] = w->a.k;
+    return changed;
+}
+
+static bool null_space(polish *w)
 {
     mt_nlp_engine *const e = w->e;
     mt_arena *const mem = &e->scratch;
     const size_t nf = (size_t)w->a.n_free;
     w->nz = w->a.n_free - w->a.qr.rank;
-    w->Z = mt_arena_f64(mem, nf, (size_t)w->nz);
-    w->H = mt_arena_f64(mem, (size_t)w->nz, (size_t)w->nz);
-    w->w = mt_arena_f64(mem, (size_t)w->nz, 1);
-    if (!w->Z || !w->H || !w->w) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
+    w->Z = mt_nlp_f64(e, mem, nf, (size_t)w->nz);
+    w->H = mt_nlp_f64(e, mem, (size_t)w->nz, (size_t)w->nz);
+    if (!w->Z || !w->H) {
         return false;
     }
     const mt_status rc = w->nz > 0 ? mt_qr_q(&w->a.qr, w->a.qr.rank, w->Z, mem, e->err) : MT_OK;
@@ -169,26 +192,15 @@ static bool gauss_newton(polish *w)
 /* step += Z p_z, from the eigenvalues of H; negative curvature is used by its size. */
 static void reduced_step(polish *w)
 {
-    const int nf = w->a.n_free;
+    const int n = w->e->n;
     double largest = 0;
-    for (int c = 0; c < w->nz; c++) {
+    for (int c = 0; c < w->n_v; c++) {
         largest = fmax(largest, fabs(w->w[c]));
     }
-    for (int c = 0; c < w->nz; c++) {
-        if (fabs(w->w[c]) <= CURVATURE_NOISE * largest) {
-            continue;
-        }
-        double *const v = w->gl; /* eigenvector on the free variables */
-        memset(v, 0, (size_t)w->e->n * sizeof *v);
-        for (int r = 0; r < w->nz; r++) {
-            mt_axpy(nf, w->H[r + (ptrdiff_t)c * w->nz], w->Z + (ptrdiff_t)r * nf, v);
-        }
-        double slope = 0;
-        for (int i = 0; i < nf; i++) {
-            slope += v[i] * w->a.z[w->a.free[i]];
-        }
-        for (int i = 0; i < nf; i++) {
-            w->step[w->a.free[i]] -= v[i] * slope / fabs(w->w[c]);
+    for (int c = 0; c < w->n_v; c++) {
+        const double *const v = w->V + (ptrdiff_t)c * n;
+        if (fabs(w->w[c]) > CURVATURE_NOISE * largest) {
+            mt_axpy(n, -mt_dot(n, v, w->a.z) / fabs(w->w[c]), v, w->step);
         }
     }
 }
@@ -281,50 +293,59 @@ static void keep(polish *w)
 }
 
 /* Where Z^T H Z has a negative eigenvalue: its eigenvector, largest entry positive. */
-static void find_saddle(const polish *w, double *saddle)
+static bool find_saddle(const polish *w, double *saddle)
 {
-    memset(saddle, 0, (size_t)w->e->n * sizeof *saddle);
-    const double largest = w->nz > 0 ? fmax(fabs(w->w[0]), fabs(w->w[w->nz - 1])) : 0;
-    if (w->nz == 0 || !(w->w[0] < -SADDLE * largest)) {
-        return;
+    const int n = w->e->n;
+    memset(saddle, 0, (size_t)n * sizeof *saddle);
+    const double largest = w->n_v > 0 ? fmax(fabs(w->w[0]), fabs(w->w[w->n_v - 1])) : 0;
+    if (w->n_v <= 0 || !(w->w[0] < -SADDLE * largest)) {
+        return false;
     }
-    double sign = 0;
-    double most = 0;
-    for (int i = 0; i < w->a.n_free; i++) {
-        const int j = w->a.free[i];
-        for (int r = 0; r < w->nz; r++) {
-            saddle[j] += w->Z[i + (ptrdiff_t)r * w->a.n_free] * w->H[r];
-        }
-        if (fabs(saddle[j]) > most) {
-            most = fabs(saddle[j]);
-            sign = saddle[j] > 0 ? 1 : -1;
-        }
+    int most = 0;
+    for (int j = 1; j < n; j++) {
+        most = fabs(w->V[j]) > fabs(w->V[most]) ? j : most;
     }
-    for (int j = 0; j < w->e->n; j++) {
-        saddle[j] *= sign;
-    }
+    mt_axpy(n, w->V[most] > 0 ? 1 : -1, w->V, saddle);
+    return true;
 }
 
-/* Reduced Hessian and its eigenvectors; false where there is none (the normal step alone
- * remains). */
-static bool curvature(polish *w)
+/* Reduced Hessian at cur and its eigenvectors; without one the normal step alone remains. */
+static void curvature(polish *w)
 {
-    if (w->nz == 0) {
-        return false;
+    const int nf = w->a.n_free;
+    w->n_v = -1;
+    if (!null_space(w)) {
+        return;
     }
     const long left = w->e->opt.max_evals - w->e->evals;
-    const bool affordable = w->nz <= HESSIAN_MOST && left > 2 * (long)w->nz;
-    if (!(affordable && reduced_hessian(w)) && !gauss_newton(w)) {
-        return false;
+    const bool affordable = w->nz > 0 && w->nz <= HESSIAN_MOST && left > 2 * (long)w->nz;
+    if (w->nz > 0 && !(affordable && reduced_hessian(w)) && !gauss_newton(w)) {
+        return;
     }
     const mt_status rc = mt_eig_sym(w->nz, w->H, w->w, true, &w->e->scratch, w->e->err);
     if (rc != MT_OK) {
         mt_nlp_end(w->e, rc);
+        return;
     }
-    return rc == MT_OK;
+    w->n_v = w->nz;
+    memset(w->V, 0, (size_t)w->e->n * (size_t)w->n_v * sizeof *w->V);
+    for (int c = 0; c < w->n_v; c++) {
+        double *const v = w->V + (ptrdiff_t)c * w->e->n;
+        for (int r = 0; r < w->n_v; r++) {
+            for (int i = 0; i < nf; i++) {
+                v[w->a.free[i]] += w->Z[i + (ptrdiff_t)r * nf] * w->H[r + (ptrdiff_t)c * w->nz];
+            }
+        }
+    }
 }
 
-/* One Newton step from cur. False: done, or no further. size: of this step. */
+static double longest(const polish *w)
+{
+    return mt_max_abs(w->e->n, w->step);
+}
+
+/* One Newton step from cur. False: done, or no further. size: of the step before, then of this
+ * one. */
 static bool newton_step(polish *w, double *size, double *saddle)
 {
     mt_nlp_engine *const e = w->e;
@@ -333,20 +354,29 @@ static bool newton_step(polish *w, double *size, double *saddle)
     }
     keep(w);
     const double c = w->aim == MT_NLP_OBJECTIVE ? w->cur->violation : 0;
-    if (e->ended || !prepare(w)) {
-        return false;
-    }
     const bool done = w->a.kkt <= KKT_DONE && c <= VIOLATION_DONE;
-    if ((done && saddle == NULL) || !normal_step(w)) {
+    if (e->ended || (done && saddle == NULL) || !normal_step(w)) {
         return false;
     }
-    if (curvature(w)) {
-        if (saddle != NULL && w->a.kkt <= STATIONARY) {
-            find_saddle(w, saddle);
+    bool fresh = active_changed(w);
+    if (!fresh) {
+        reduced_step(w);
+        fresh = longest(w) > CONTRACTION_OLD * *size;
+        if (fresh && longest(w) <= STEP_KNOWN) {
+            return false;
+        }
+    }
+    if (fresh) {
+        curvature(w);
+        if (e->ended || !normal_step(w)) {
+            return false;
         }
         reduced_step(w);
     }
-    if (done || e->ended) {
+    if (saddle != NULL && w->a.kkt <= STATIONARY && find_saddle(w, saddle)) {
+        return false;
+    }
+    if (done) {
         return false;
     }
     *size = take_step(w);
@@ -356,36 +386,41 @@ static bool newton_step(polish *w, double *size, double *saddle)
 static void iterate(polish *w, double *saddle)
 {
     mt_arena *const mem = &w->e->scratch;
-    double previous = HUGE_VAL;
+    double size = HUGE_VAL;
     for (int it = 0; it < ITERATIONS; it++) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
-        double size = 0;
+        const double previous = size;
         const bool moved = newton_step(w, &size, saddle);
         mt_arena_rewind(mem, mark);
         if (!moved || (it > 3 && size > CONTRACTION * previous)) {
             return;
         }
-        previous = size;
-        w->trial->start = w->cur->start;
         mt_nlp_point_swap(&w->cur, &w->trial);
     }
 }
 
 void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p, double *saddle)
 {
-    polish w = {.e = e, .aim = aim};
+    const mt_nlp *const q = e->nlp;
+    polish w = {.e = e, .aim = aim, .n_v = -1};
     mt_arena *const mem = &e->scratch;
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     w.gl = mt_nlp_f64(e, mem, (size_t)e->n, 1);
     w.step = mt_nlp_f64(e, mem, (size_t)e->n, 1);
     w.t = mt_nlp_f64(e, mem, (size_t)e->n, 1);
+    w.V = mt_nlp_f64(e, mem, (size_t)e->n, (size_t)e->n_free);
+    w.w = mt_nlp_f64(e, mem, (size_t)e->n_free, 1);
+    w.active = mt_arena_int(mem, (size_t)(e->n + 1 + q->n_eq + q->n_in + q->n_next));
+    if (w.active == NULL) {
+        mt_nlp_end(e, mt_fail_memory(e->err));
+    }
     w.cur = mt_nlp_point_new(e, mem);
     w.trial = mt_nlp_point_new(e, mem);
     w.best = mt_nlp_point_new(e, mem);
     if (saddle != NULL) {
         memset(saddle, 0, (size_t)e->n * sizeof *saddle);
     }
-    if (w.gl && w.step && w.t && w.cur && w.trial && w.best &&
+    if (w.gl && w.step && w.t && w.V && w.w && w.active && w.cur && w.trial && w.best &&
         mt_nlp_active_set(e, p, aim, mem, &w.a)) {
         w.limit =
             aim == MT_NLP_SQUARES ? p->squares * (1 + F_ROUNDING) : p->f + rise_allowed(&w, p);

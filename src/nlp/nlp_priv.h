@@ -28,8 +28,6 @@ typedef struct mt_nlp_point {
     double violation; /* max |violation| / tolerance; <= 1 is feasible */
     double squares;   /* sum of squares of eq and of the negative part of in */
     double kkt;       /* last known relative KKT residual, infinity where unknown */
-    int start;
-    bool curve; /* solutions form a curve here: no isolated root */
 } mt_nlp_point;
 
 typedef struct mt_nlp_engine {
@@ -57,22 +55,34 @@ typedef struct mt_nlp_engine {
     mt_arena scratch;
 } mt_nlp_engine;
 
-/* Where local solves ended. */
-typedef struct mt_nlp_end_point {
-    mt_nlp_point *p;
-    bool merged; /* another root was merged into it */
-    int hits;    /* how many starts ended here */
-} mt_nlp_end_point;
-
-typedef struct mt_nlp_ends {
-    mt_nlp_end_point *at; /* [count], and room for those of mt_nlp_ends_grow */
-    int count;
-    int starts; /* made so far */
-} mt_nlp_ends;
-
 /* What a local method minimises: the objective under the constraints, the residuals r, or the
  * squares of the violations (both of the latter under the bounds only). */
 typedef enum mt_nlp_aim { MT_NLP_OBJECTIVE, MT_NLP_RESIDUALS, MT_NLP_SQUARES } mt_nlp_aim;
+
+/* One local search, and where it ended. */
+typedef struct mt_nlp_local {
+    mt_nlp_point *p;    /* the start, then the best it met */
+    mt_nlp_point *last; /* where SLSQP came to rest */
+    mt_nlp_aim aim;     /* what Newton has to do: nothing for a root (squares) */
+    int n_rows;
+    int *rows;     /* [n_rows] the equalities that are independent */
+    bool begun;    /* the start has values */
+    bool restored; /* SLSQP had no feasible end, and the least squares of the violations is p */
+    bool curve;    /* solutions form a curve here: no isolated root */
+    bool polished; /* nothing is left to be done */
+    double *from;  /* [n] where the approach ended */
+    double kkt;    /* relative KKT residual there */
+    int start;     /* which start found it first */
+    int hits;      /* how many starts ended here */
+    bool merged;   /* another root was merged into it */
+} mt_nlp_local;
+
+typedef struct mt_nlp_ends {
+    mt_nlp_local *at; /* [count], and room for those of mt_nlp_ends_grow */
+    int count;
+    int starts;                   /* made so far */
+    const mt_nlp_point *directed; /* where the undetermined directions were sought */
+} mt_nlp_ends;
 
 /* Constraints that hold a point in place, and their multipliers: on the free variables
  * aim's gradient = sum lambda_i grad c_i, c_i an equality or an active inequality. */
@@ -117,16 +127,35 @@ double mt_nlp_distance(const mt_nlp_engine *e, const mt_nlp_point *a, const mt_n
 /* Gradient of what `aim` minimises (squares and residuals with the factor 1/2), g[n]. */
 void mt_nlp_gradient(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim, double *g);
 
-/* nlp.c: objective under the constraints from p, the equalities reduced to rows. p: where it
- * ends. Again from there while it is no minimum, and never for the worse. */
-void mt_nlp_minimise(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p);
+/* nlp_local.c: room for a search in mem; false: out of memory. */
+bool mt_nlp_local_init(mt_nlp_engine *e, mt_arena *mem, mt_nlp_local *s);
+/* From p, which has values, to about where it leads; then all the way, off saddles, never for
+ * the worse. */
+void mt_nlp_local_approach(mt_nlp_engine *e, mt_nlp_local *s);
+void mt_nlp_local_finish(mt_nlp_engine *e, mt_nlp_local *s);
+/* Both for the objective under the constraints, the equalities being rows[n_rows]. */
+void mt_nlp_minimise(mt_nlp_engine *e, mt_nlp_local *s);
+/* Is it worth Newton's method before a restoration? */
+bool mt_nlp_nearly_feasible(const mt_nlp_point *p);
+/* The point of it that counts. */
+const mt_nlp_point *mt_nlp_local_stand(const mt_nlp_local *s);
 
-/* nlp_judge.c: room for n ends more; false: out of memory. */
+/* nlp_ends.c: room for n ends more; false: out of memory. */
 bool mt_nlp_ends_grow(mt_nlp_engine *e, mt_nlp_ends *all, int n);
 /* Isolated roots, *once: those that one start only ended at; 0 where the problem has none, or a
  * curve of solutions. */
 int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_ends *all, int *once);
-/* The ends as a ranked result in mem. */
+/* Ends to polish next, chosen[all->count]: of those that are near each other one; ends that lie
+ * at one that is polished are dropped. Returns how many. */
+int mt_nlp_ends_choose(mt_nlp_engine *e, mt_nlp_ends *all, const mt_nlp_result *directions,
+                       mt_nlp_local **chosen);
+/* Did Newton come to rest there? */
+bool mt_nlp_came_to_rest(const mt_nlp_local *s);
+/* Ends nearer than this are one; does the problem ask for isolated roots? */
+double mt_nlp_same_distance(const mt_nlp_engine *e);
+bool mt_nlp_seeks_roots(const mt_nlp_engine *e);
+
+/* nlp_judge.c: the ends as a ranked result in mem. */
 void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_result *out);
 
 /* nlp_starts.c: start k (0: the origin) of `starts`; t column-major n x starts in mem, NULL

@@ -88,8 +88,7 @@ bool mt_nlp_report(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem, mt_nl
     *out = (mt_nlp_solution){.f = p->f,
                              .violation = p->violation,
                              .squares = p->squares,
-                             .feasible = mt_nlp_feasible(p),
-                             .start = p->start};
+                             .feasible = mt_nlp_feasible(p)};
     if (!allocate(e, mem, out)) {
         return false;
     }

@@ -332,6 +332,7 @@ bool mt_nlp_undetermined(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem,
         mt_nlp_end(e, mt_fail_memory(e->err));
         return false;
     }
+    out->n_undetermined = 0;
     if (e->ended) {
         return true;
     }
@@ -378,7 +379,9 @@ static bool as_good(const mt_nlp_engine *e, const mt_nlp_point *after,
         const double tol = hypot(mt_norm2(q->n_eq, q->eq_tol), mt_norm2(q->n_in, q->in_tol));
         return sqrt(after->squares) <= sqrt(before->squares) + tol;
     }
-    const double f_most = before->f + F_TOL_REL * fabs(before->f);
+    const double misfit = sqrt(2 * before->f) + RESIDUAL_TOL * sqrt(q->n_res);
+    const double f_most =
+        q->n_res > 0 ? 0.5 * misfit * misfit : before->f + F_TOL_REL * fabs(before->f);
     const bool stationary = after->kkt <= fmax(before->kkt, STATIONARY);
     return mt_nlp_feasible(after) && after->f <= f_most && stationary;
 }
@@ -440,7 +443,6 @@ void mt_nlp_pull_back(mt_nlp_engine *e, const mt_nlp_result *undetermined, mt_nl
     if (to == NULL || t == NULL || off == NULL) {
         mt_nlp_end(e, mt_fail_memory(e->err));
     } else if (pulled(e, undetermined, p, off, t) && mt_nlp_evaluate(e, t, true, to)) {
-        to->start = p->start;
         to->kkt = p->kkt;
         restore(e, undetermined, mt_nlp_feasible(p), to);
         if (as_good(e, to, p)) {

@@ -81,6 +81,43 @@ static void nlp_change__saddle_is_left(mt_test *t)
     mt_arena_free(&c.mem);
 }
 
+/* Many variables, of which the first two lie on the ellipse: two minima, and a Hessian costs
+ * MANY - 1 gradients. */
+enum { MANY = 24 };
+static mt_status many(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
+                      mt_err *err)
+{
+    (void)ellipse(context, t, with_gradient, out, err);
+    out->f = 0;
+    for (int j = 0; j < MANY; j++) {
+        out->f += cosh(t[j] - 0.1);
+        out->df[j] = sinh(t[j] - 0.1);
+    }
+    return MT_OK;
+}
+
+/* Newton's method is done once for each minimum, however many starts lead there: a start more
+ * costs much less than a Hessian. */
+static void nlp_change__a_minimum_is_polished_once(mt_test *t)
+{
+    static const int starts[] = {16, 56};
+    long evals[MT_COUNT(starts)];
+    for (int k = 0; k < MT_COUNT(starts); k++) {
+        nlp_case c = {0};
+        case_begin(&c, MANY, many, -2, 2);
+        c.nlp.n_eq = 1;
+        mt_nlp_options opt = mt_nlp_options_default();
+        opt.starts = starts[k];
+        opt.least_change = false;
+        REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+        CHECK_INT(t, c.result.n_solutions, 2);
+        CHECK(t, c.result.solutions[1].kkt < 1e-12);
+        evals[k] = c.result.evals;
+        mt_arena_free(&c.mem);
+    }
+    CHECK(t, evals[1] - evals[0] < (starts[1] - starts[0]) * (MANY - 1) * 3 / 4);
+}
+
 /*
  * Truss-like: n bars of area exp(t_i), weight sum exp(t_i), stress a_i exp(-t_i) <= 1 as
  * in_i = t_i - ln a_i >= 0, and one displacement, sum b_i exp(-t_i) <= D as in_n = 1 - sum/D.
@@ -225,6 +262,7 @@ static void nlp_change__combination_without_influence_is_named(mt_test *t)
 MT_TEST_MAIN(MT_TEST(nlp_change__both_minima_are_kept_and_vertices_are_not),
              MT_TEST(nlp_change__minima_are_ranked_by_change),
              MT_TEST(nlp_change__saddle_is_left),
+             MT_TEST(nlp_change__a_minimum_is_polished_once),
              MT_TEST(nlp_change__weight_under_inequalities_from_an_infeasible_start),
              MT_TEST(nlp_change__active_bound_has_its_multiplier),
              MT_TEST(nlp_change__feasible_origin_is_the_answer),

@@ -188,7 +188,47 @@ static void nlp_identification__misfit_with_an_unseen_parameter(mt_test *t)
     mt_arena_free(&c.mem);
 }
 
+/* No residual is left, and only t0 + t1 is seen: all starts end at one design, the nearest to
+ * the origin of those without misfit. */
+static mt_status product(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
+                         mt_err *err)
+{
+    nlp_case *const c = context;
+    (void)with_gradient;
+    (void)err;
+    c->calls++;
+    out->r[0] = log(sqrt(exp(t[0]) * exp(t[1])) / c->target[0]); /* as of a frequency */
+    out->r[1] = sinh(t[2]) - 0.7;
+    memset(out->dr, 0, 6 * sizeof *out->dr);
+    out->dr[0] = 0.5;
+    out->dr[2] = 0.5;
+    out->dr[5] = cosh(t[2]);
+    return MT_OK;
+}
+
+static void nlp_identification__what_an_exact_fit_does_not_see_stays_at_the_origin(mt_test *t)
+{
+    for (int k = 0; k < 20; k++) { /* it is a matter of rounding what is left of a misfit */
+        const double y = 2 + 0.1 * k;
+        nlp_case c = {0};
+        case_begin(&c, 3, product, -3, 3);
+        c.nlp.n_res = 2;
+        c.target[0] = y;
+        c.origin[0] = 0.3;
+        c.origin[1] = -0.2;
+        const mt_nlp_options opt = mt_nlp_options_default();
+        REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+        CHECK_INT(t, c.result.n_undetermined, 1);
+        CHECK_INT(t, c.result.n_solutions, 1);
+        CHECK_NEAR(t, c.result.solutions[0].t[0], log(y) + 0.25, 1e-12);
+        CHECK_NEAR(t, c.result.solutions[0].t[1], log(y) - 0.25, 1e-12);
+        CHECK_NEAR(t, c.result.solutions[0].t[2], asinh(0.7), 1e-12);
+        mt_arena_free(&c.mem);
+    }
+}
+
 MT_TEST_MAIN(MT_TEST(nlp_identification__linear_matches_closed_form),
              MT_TEST(nlp_identification__without_equalities_is_least_squares),
              MT_TEST(nlp_identification__nonlinear_converges_to_1e9),
-             MT_TEST(nlp_identification__misfit_with_an_unseen_parameter))
+             MT_TEST(nlp_identification__misfit_with_an_unseen_parameter),
+             MT_TEST(nlp_identification__what_an_exact_fit_does_not_see_stays_at_the_origin))
