@@ -84,18 +84,20 @@ static mt_status read_count(const char *s, const char *option, int most, int *ou
     return MT_OK;
 }
 
-static mt_status read_format(const char *s, mt_format *out, mt_err *err)
+static mt_status read_format(const char *s, int command, mt_format *out, mt_err *err)
 {
-    static const char *const names[] = {"text", "json", "csv"};
+    static const char *const names[] = {"text", "json", "csv", "html"};
+    const bool html = command == MT_CMD_REPORT;
+    const int n = html ? MT_COUNT(names) : MT_COUNT(names) - 1;
     char suggestion[SUGGESTION_TEXT];
-    for (int i = 0; i < MT_COUNT(names); i++) {
+    for (int i = 0; i < n; i++) {
         if (strcmp(s, names[i]) == 0) {
             *out = (mt_format)i;
             return MT_OK;
         }
     }
-    return mt_fail(err, MT_E_USAGE, "--format: \"%s\" is none of text, json, csv%s", s,
-                   did_you_mean(s, names, MT_COUNT(names), "", suggestion));
+    return mt_fail(err, MT_E_USAGE, "--format: \"%s\" is none of text, json, csv%s%s", s,
+                   html ? ", html" : "", did_you_mean(s, names, n, "", suggestion));
 }
 
 static mt_status store(mt_args *args, int option, const char *value, mt_err *err)
@@ -127,7 +129,7 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
     case MT_OPT_MAX_MEMORY:
         return mt_limits_read_size(value, &args->max_memory, err);
     case MT_OPT_FORMAT:
-        return read_format(value, &args->format, err);
+        return read_format(value, args->command, &args->format, err);
     default:
         return MT_OK;
     }

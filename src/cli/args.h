@@ -44,6 +44,7 @@ typedef enum mt_command_id {
     MT_CMD_SWEEP,
     MT_CMD_SENSITIVITY,
     MT_CMD_INFO,
+    MT_CMD_REPORT,
     MT_CMD_APPLY,
     MT_CMD_CHECK,
     MT_CMD_IDS
@@ -82,7 +83,13 @@ extern const mt_exit mt_exits[MT_EXITS];
 /* Does the command take the option, or the program where it is MT_CMD_NONE? */
 bool mt_option_is_of(int option, int command);
 
-typedef enum mt_format { MT_FORMAT_TEXT, MT_FORMAT_JSON, MT_FORMAT_CSV } mt_format;
+/* MT_FORMAT_HTML: of MT_CMD_REPORT alone. */
+typedef enum mt_format {
+    MT_FORMAT_TEXT,
+    MT_FORMAT_JSON,
+    MT_FORMAT_CSV,
+    MT_FORMAT_HTML
+} mt_format;
 
 typedef struct mt_args {
     int command; /* mt_command_id, MT_CMD_NONE */

@@ -84,32 +84,13 @@ static int outcome(const job *j, bool verify)
     return j->result->status == MT_RESULT_SOLVED ? MT_EXIT_DONE : MT_EXIT_GOALS;
 }
 
-static void print_result(const job *j, bool verify, mt_json_writer *w, mt_text *out)
-{
-    mt_table designs;
-    switch (j->args->format) {
-    case MT_FORMAT_JSON:
-        mt_result_put(w, NULL, j->result);
-        break;
-    case MT_FORMAT_CSV:
-        designs = mt_report_designs(j->result);
-        mt_table_csv(&designs, out);
-        mt_table_free(&designs);
-        break;
-    case MT_FORMAT_TEXT:
-        mt_report_summary(j->result, verify, out);
-        mt_text_add(out, "\n");
-        break;
-    }
-}
-
 /* What a command does with an answer; its exit status. */
 typedef int (*use_answer)(const job *j, mt_json_writer *w, mt_text *out);
 
 static int run_one(const job *j, mt_json_writer *w, mt_text *out)
 {
     const bool verify = j->args->given[MT_OPT_VERIFY];
-    print_result(j, verify, w, out);
+    mt_save_print(j->args, j->result, w, out);
     return mt_exit_worse(outcome(j, verify), mt_save(j->args, j->path, j->result, j->seconds));
 }
 
@@ -208,6 +189,7 @@ static void print_comparison(const job *j, mt_json_writer *w, mt_text *out)
     case MT_FORMAT_CSV:
         mt_table_csv(&t, out);
         break;
+    case MT_FORMAT_HTML: /* of report alone */
     case MT_FORMAT_TEXT:
         mt_text_addf(out, "%s: %s\n", r->study.name == NULL ? j->path : r->study.name,
                      mt_result_status_name(r->status));

@@ -39,10 +39,11 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "natural frequencies at each position"),
     OPTION(MT_OPT_PARAMETERS, '\0', "parameters", "A,B", BIT(MT_CMD_SENSITIVITY),
            "parameters to vary (default: all that are not made of others)"),
-    OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR", BIT(MT_CMD_RUN),
-           "folder for the results (default: results, in the current one)"),
-    OPTION(MT_OPT_VERIFY, '\0', "verify", NULL, BIT(MT_CMD_RUN),
-           "judge the study's published values; they alone decide the exit status"),
+    OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR", BIT(MT_CMD_RUN) | BIT(MT_CMD_REPORT),
+           "folder for the results (default of run: results, in the current one; of report: "
+           "nothing is written)"),
+    OPTION(MT_OPT_VERIFY, '\0', "verify", NULL, BIT(MT_CMD_RUN) | BIT(MT_CMD_REPORT),
+           "show the study's published values, too; of run, they alone decide the exit status"),
     OPTION(MT_OPT_THREADS, '\0', "threads", "N", ON_STUDIES,
            "number of workers of the search, of which at most 64 are used; the result does not "
            "depend on it"),
@@ -58,7 +59,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "files named by other files must lie beneath DIR (default: the parent of the "
            "study's folder)"),
     OPTION(MT_OPT_FORMAT, '\0', "format", "text|json|csv", MT_ALL_COMMANDS,
-           "form of what goes to standard output (default: text)"),
+           "form of what goes to standard output (default: text; of report also html)"),
     OPTION(MT_OPT_QUIET, '\0', "quiet", NULL, MT_ALL_COMMANDS,
            "no talk on standard error; errors and warnings stay"),
     OPTION(MT_OPT_HELP, 'h', "help", NULL, MT_ALL_COMMANDS,
@@ -122,6 +123,16 @@ const mt_command mt_commands[MT_CMD_IDS] = {
             "masses, mobility and redundancies of each configuration",
             "Prints the total mass, its centre and inertia, the freedoms, and the sets of "
             "redundant joints of each configuration, in the position where it is linearised."),
+    COMMAND(
+        MT_CMD_REPORT, "report", "RESULT.json", 1, 1,
+        "what a result says, as text, CSV or HTML",
+        "Prints the summary that run printed (--format csv: recommendations.csv, html: "
+        "report.html, json: the result), from the result alone: neither study nor model is "
+        "looked for, and nothing is solved. With --output the files are written anew into "
+        "DIR/<study file name without .json>/, as run does; how long the solution took is "
+        "not known to a result, so timing.json is only taken over where it stands beside it. "
+        "A result.json is refused where the files beside it are of another run or were "
+        "changed; a copy that stands alone is read."),
     COMMAND(
         MT_CMD_APPLY, "apply", "RESULT.json", 1, 1, "the model with the recommended values",
         "Prints the model file with the recommended values put in; everything else of its text "

@@ -133,8 +133,7 @@ static mt_status write_timing(const mt_args *args, const char *study_path,
 }
 
 /* The tables and the page; empty where the result has none of the kind. */
-static mt_status write_output(const mt_result *result, mt_result_file which, mt_text *out,
-                              mt_err *err)
+static void write_output(const mt_result *result, mt_result_file which, mt_text *out)
 {
     mt_table table = {0};
     switch (which) {
@@ -158,19 +157,39 @@ static mt_status write_output(const mt_result *result, mt_result_file which, mt_
     case MT_RESULT_FILE_COUNT:
         break;
     }
-    return out->failed ? mt_fail_memory(err) : MT_OK;
 }
 
-/* All texts, in the order in which one names the other. */
-static mt_status write_texts(const mt_args *args, const char *study_path, mt_result *result,
-                             double seconds, mt_text texts[MT_RESULT_FILE_COUNT], mt_err *err)
+void mt_save_print(const mt_args *args, const mt_result *result, mt_json_writer *w,
+                   mt_text *out)
+{
+    switch (args->format) {
+    case MT_FORMAT_JSON:
+        mt_result_put(w, NULL, result);
+        break;
+    case MT_FORMAT_CSV:
+        write_output(result, MT_RESULT_FILE_DESIGNS, out);
+        break;
+    case MT_FORMAT_HTML:
+        write_output(result, MT_RESULT_FILE_REPORT, out);
+        break;
+    case MT_FORMAT_TEXT:
+        mt_report_summary(result, args->given[MT_OPT_VERIFY], out);
+        mt_text_add(out, "\n");
+        break;
+    }
+}
+
+/* The files that result.json names, and itself with its digest. */
+static mt_status write_texts(mt_result *result, mt_text texts[MT_RESULT_FILE_COUNT],
+                             char sha256[MT_SHA256_TEXT], mt_err *err)
 {
     const char *names[MT_RESULT_FILE_COUNT] = {NULL};
     mt_text outputs[MT_RESULT_FILE_COUNT];
     int n = 0;
     for (int i = 0; i < MT_RESULT_FILE_TIMING; i++) {
         const mt_result_file which = (mt_result_file)i;
-        MT_TRY(write_output(result, which, &texts[i], err));
+        write_output(result, which, &texts[i]);
+        MT_TRY(texts[i].failed ? mt_fail_memory(err) : MT_OK);
         if (texts[i].s != NULL) {
             names[n] = mt_result_file_name(which);
             outputs[n++] = texts[i];
@@ -178,36 +197,76 @@ static mt_status write_texts(const mt_args *args, const char *study_path, mt_res
     }
     MT_TRY(mt_result_note_outputs(result, n, names, outputs, err));
     mt_text *const text = &texts[MT_RESULT_FILE_RESULT];
-    char sha256[MT_SHA256_TEXT];
     MT_TRY(mt_result_write(result, text, err));
     mt_sha256(text->s, text->length, sha256);
-    return write_timing(args, study_path, result, seconds, sha256,
-                        &texts[MT_RESULT_FILE_TIMING], err);
+    return MT_OK;
+}
+
+/* A result on its way into its folder. */
+typedef struct saving {
+    const char *study_path; /* or file name: names the folder */
+    char *folder;
+    mt_text texts[MT_RESULT_FILE_COUNT];
+    char sha256[MT_SHA256_TEXT];
+    mt_err err;
+} saving;
+
+static mt_status begin(const mt_args *args, mt_result *result, saving *s)
+{
+    s->folder = folder_of(args, s->study_path);
+    return s->folder == NULL ? mt_fail_memory(&s->err)
+                             : write_texts(result, s->texts, s->sha256, &s->err);
+}
+
+static int end(const mt_args *args, mt_status rc, const char *told, saving *s)
+{
+    if (rc == MT_OK) {
+        mt_folder_file files[MT_RESULT_FILE_COUNT];
+        for (int i = 0; i < MT_RESULT_FILE_COUNT; i++) {
+            files[i] = (mt_folder_file){mt_result_file_name((mt_result_file)i), s->texts[i].s,
+                                        s->texts[i].length};
+        }
+        rc = mt_folder_replace(s->folder, files, MT_RESULT_FILE_COUNT, &s->err);
+    }
+    if (rc == MT_OK) {
+        mt_terminal_talk(args->given[MT_OPT_QUIET], "%s; written to %s/", told, s->folder);
+    }
+    for (int i = 0; i < MT_RESULT_FILE_COUNT; i++) {
+        mt_text_free(&s->texts[i]);
+    }
+    free(s->folder);
+    return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &s->err);
 }
 
 int mt_save(const mt_args *args, const char *study_path, mt_result *result, double seconds)
 {
-    mt_text texts[MT_RESULT_FILE_COUNT] = {{.s = NULL}};
-    mt_err err = {.code = MT_OK};
-    char *const folder = folder_of(args, study_path);
-    mt_status rc = folder == NULL ? mt_fail_memory(&err)
-                                  : write_texts(args, study_path, result, seconds, texts, &err);
+    saving s = {.study_path = study_path};
+    mt_text told = {.s = NULL};
+    mt_status rc = begin(args, result, &s);
     if (rc == MT_OK) {
-        mt_folder_file files[MT_RESULT_FILE_COUNT];
-        for (int i = 0; i < MT_RESULT_FILE_COUNT; i++) {
-            files[i] = (mt_folder_file){mt_result_file_name((mt_result_file)i), texts[i].s,
-                                        texts[i].length};
-        }
-        rc = mt_folder_replace(folder, files, MT_RESULT_FILE_COUNT, &err);
+        rc = write_timing(args, study_path, result, seconds, s.sha256,
+                          &s.texts[MT_RESULT_FILE_TIMING], &s.err);
     }
+    mt_text_addf(&told, "%s: %.3g s, %ld evaluations", study_path, seconds,
+                 result->run.evaluations);
+    rc = rc == MT_OK && told.failed ? mt_fail_memory(&s.err) : rc;
+    const int code = end(args, rc, told.s, &s);
+    mt_text_free(&told);
+    return code;
+}
+
+int mt_save_again(const mt_args *args, const char *result_path, mt_result *result)
+{
+    saving s = {.study_path = result->study.file};
+    if (is_no_file(s.study_path)) {
+        mt_terminal_error("%s: /study/file: \"%s\" is not the name of a file", result_path,
+                          s.study_path);
+        return MT_EXIT_INPUT;
+    }
+    mt_status rc = begin(args, result, &s);
     if (rc == MT_OK) {
-        mt_terminal_talk(args->given[MT_OPT_QUIET],
-                         "%s: %.3g s, %ld evaluations; written to %s/", study_path, seconds,
-                         result->run.evaluations, folder);
+        rc = mt_result_read_timing(result_path, s.sha256, &s.texts[MT_RESULT_FILE_TIMING],
+                                   &s.err);
     }
-    for (int i = 0; i < MT_RESULT_FILE_COUNT; i++) {
-        mt_text_free(&texts[i]);
-    }
-    free(folder);
-    return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
+    return end(args, rc, result_path, &s);
 }

@@ -84,6 +84,10 @@ const char *mt_result_file_name(mt_result_file which);
  * Fails: MT_E_MEMORY. */
 mt_status mt_result_note_outputs(mt_result *result, int n, const char *const *names,
                                  const mt_text *texts, mt_err *err);
+/* The text of timing.json beside the result at `path`, where it names the result with this
+ * digest; else nothing. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
+mt_status mt_result_read_timing(const char *path, const char *sha256, mt_text *out,
+                                mt_err *err);
 /* Is this a result that was written as a folder, and still called so? A copy under another name
  * belongs to nothing. */
 bool mt_result_has_folder(const char *path, const mt_result *result);

@@ -72,6 +72,27 @@ static mt_status names_result(const mt_file *timing, const char *sha256, bool *d
     return rc == MT_E_INPUT ? MT_OK : rc;
 }
 
+mt_status mt_result_read_timing(const char *path, const char *sha256, mt_text *out, mt_err *err)
+{
+    char *const timing = mt_file_join(path, TIMING);
+    mt_file file = {.bytes = NULL};
+    bool belongs = false;
+    if (timing == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_status rc = MT_OK;
+    if (!mt_file_absent(timing)) {
+        rc = mt_file_read(timing, NULL, PART_MAX_BYTES, &file, err);
+        rc = rc == MT_OK ? names_result(&file, sha256, &belongs, err) : rc;
+    }
+    if (belongs) {
+        mt_text_add_n(out, file.bytes, file.length);
+    }
+    mt_file_free(&file);
+    free(timing);
+    return out->failed ? mt_fail_memory(err) : rc == MT_E_INPUT ? MT_OK : rc;
+}
+
 /* The file of that name beside the result; `sha256` is its own digest, or the result's for
  * timing.json. */
 static mt_status look_at(const char *path, const char *name, const char *sha256,

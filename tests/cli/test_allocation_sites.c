@@ -94,6 +94,8 @@ static struct {
     {"check --format json " WRONG "study_model_outside.json " WRONG "study_model_missing.json",
      MT_EXIT_INPUT, FULL},
     {"check %/engine_orders/result.json", MT_EXIT_DONE, FULL},
+    {"report --verify %/engine_orders/result.json", MT_EXIT_DONE, FULL},
+    {"report --format html -o @ %/engine_orders/result.json", MT_EXIT_DONE, FULL},
     {"apply --root / %/engine_orders/result.json", MT_EXIT_DONE, FULL},
     {"apply --root / --model problems/engine_accessory.json %/engine_orders/result.json",
      MT_EXIT_DONE, FULL},

@@ -114,6 +114,12 @@ static const struct {
     {"info " MODELS "ring.json", MT_EXIT_SYSTEM, SHORT},
     {"info " MODELS "ring.json", MT_EXIT_SYSTEM, FULL},
 
+    {"report %/engine_orders/result.json", MT_EXIT_DONE, AS_IT_IS},
+    {"report --format htm %/engine_orders/result.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"report %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
+    {"report %/engine_orders/result.json", MT_EXIT_SYSTEM, SHORT},
+    {"report %/engine_orders/result.json", MT_EXIT_SYSTEM, FULL},
+
     {"apply --root / %/engine_orders/result.json", MT_EXIT_DONE, AS_IT_IS},
     {"apply --rank 99 %/engine_orders/result.json", MT_EXIT_INPUT, AS_IT_IS},
     {"apply %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
@@ -143,6 +149,7 @@ static const struct {
     [MT_CMD_SWEEP] = {"sweep", {true, false, true, true, true, false}},
     [MT_CMD_SENSITIVITY] = {"sensitivity", {true, false, true, true, true, false}},
     [MT_CMD_INFO] = {"info", {true, false, true, true, true, false}},
+    [MT_CMD_REPORT] = {"report", {true, false, true, false, true, false}},
     [MT_CMD_APPLY] = {"apply", {true, false, true, false, true, false}},
     [MT_CMD_CHECK] = {"check", {true, false, true, true, true, false}},
 };

@@ -15,6 +15,7 @@ OPTIONS = {
     "sweep": {"configuration", "set", "count", "drive", "hold", "modes"},
     "sensitivity": {"configuration", "set", "count", "parameters"},
     "info": {"configuration", "set"},
+    "report": {"output", "verify"},
     "apply": {"rank", "model"},
     "check": set(),
 }

@@ -277,6 +277,7 @@ class Hunt:
             result = f"results/{name}/result.json"
             if (folders[0] / result).exists() and (folders[1] / result).exists():
                 self.both(path.name, folders, twins, ["check", result], next(forms))
+                self.both(path.name, folders, twins, ["report", result], next(forms))
                 self.both(path.name, folders, twins, ["apply", result], "text")
 
     def lay_out(self, top, documents, twins):

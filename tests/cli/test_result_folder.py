@@ -33,6 +33,7 @@ LINES = {
     "info": ["info", "problems/model.json", "--format", "json"],
     "check": ["check", "studies/two.json", "results/two/result.json"],
     "catalogue": ["check", str(SOURCE / "studies/inceptor_rotor.json")],
+    "report": ["report", "results/two/result.json", "--format", "html"],
     "apply": ["apply", "results/two/result.json"],
     "apply --model": ["apply", "results/two/result.json", "--model", "problems/model.json", "--root", "problems"],
     "compare": ["compare", "studies/judged.json"],

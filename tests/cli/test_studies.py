@@ -182,6 +182,30 @@ class Apply(CliTest):
                 self.write("other.json", text.replace(old, new))
                 self.assertIn(want, self.expect(2, "apply", "other.json").stderr)
 
+    def test_a_report_is_what_the_run_told(self):
+        folder = self.folder / "results/two"
+        ran = {p.name: p.read_bytes() for p in folder.iterdir()}
+        summary = self.expect(0, "run", self.study).stdout
+        self.write("alone.json", ran["result.json"].decode())
+        (folder / "report.html").unlink()
+        for line in (("results/two/result.json", "-o", "results"), ("alone.json", "-o", "again"), ("alone.json",)):
+            self.assertEqual(self.expect(0, "report", *line).stdout, summary)
+        self.assertEqual({p.name: p.read_bytes() for p in folder.iterdir()} | {"timing.json": b""}, ran | {"timing.json": b""})
+        self.assertIn(b"result_sha256", (folder / "timing.json").read_bytes())
+        del ran["timing.json"]  # beside alone.json there is none
+        self.assertEqual({p.name: p.read_bytes() for p in (self.folder / "again/two").iterdir()}, ran)
+        for form, name in (("html", "report.html"), ("csv", "recommendations.csv"), ("json", "result.json")):
+            self.assertEqual(self.expect(0, "report", "alone.json", "--format", form).stdout.encode(), ran[name].replace(b"\r\n", b"\n"))
+
+    def test_a_report_of_another_program_names_its_own_files(self):
+        text = (self.folder / "results/two/result.json").read_text(encoding="utf-8")
+        self.write("other.json", re.sub('"modetune": "[^"]*"', '"modetune": "0.0.1"', text))
+        self.expect(0, "report", "other.json", "-o", "again")
+        self.assertIn("0.0.1", (self.folder / "again/two/report.html").read_text(encoding="utf-8"))
+        self.expect(0, "check", "again/two/result.json")
+        self.write("other.json", text.replace('"file": "two.json"', '"file": "x/.."', 1))
+        self.assertIn("is not the name of a file", self.expect(2, "report", "other.json", "-o", "again").stderr)
+
     def test_check_knows_results_and_studies(self):
         self.assertEqual(self.expect(0, "check", "results/two/result.json", self.study).stdout,
                          "results/two/result.json: ok (result)\nstudies/two.json: ok (study)\n")

@@ -108,6 +108,7 @@ def commands(rng, case):
     workers = ["--threads", str(rng.choice((1, 1, 2, 3)))]
     yield ["check", file, *form()]
     if case.kind == "result":
+        yield ["report", file, "--format", rng.choice(("text", "html", "json", "csv"))]
         yield ["apply", file, "--root", "."]
         yield ["apply", file, "--root", ".", "--rank", str(rng.choice((1, 2, 7)))]
         return
@@ -220,7 +221,7 @@ class Answer:
 
     def _form(self, done):
         """What is printed is whole, in its form."""
-        if done.code == 2 and done.out and done.args[0] in ("run", "apply", "mac"):
+        if done.code == 2 and done.out and done.args[0] in ("run", "report", "apply", "mac"):
             yield "form", f"refused, and printed all the same: {done.out[:200]!r}"
         if len(done.bytes) >= MOST_OUTPUT:
             yield "form", "endless output"
@@ -270,7 +271,7 @@ class Answer:
         rows = list(csv.reader((out / "recommendations.csv").read_text(encoding="utf-8", errors="replace").splitlines(keepends=True)))
         if len({len(row) for row in rows}) != 1:
             yield "form", "recommendations.csv is not rectangular"
-        for args in (["check", "out/changed/result.json", "--root", "."], *([["apply", "out/changed/result.json", "--root", "."]]
+        for args in (["check", "out/changed/result.json", "--root", "."], ["report", "out/changed/result.json", "--format", "json"], *([["apply", "out/changed/result.json", "--root", "."]]
                      if result.get("recommendations") and result["variables"] else [])):
             back = self.do(args)
             yield from ((check, f"then {' '.join(args)}: {text}") for check, text in self.judge(back))

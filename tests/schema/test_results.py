@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every shipped study's result.json validates against its schema, every member of which is required and appears: a member that the writer drops is missed here."""
+"""Every shipped study's result.json validates against its schema, every member of which is required and appears: a member that the writer drops is missed here.
+Read back, it gives all files and texts again, to the byte."""
 import copy
 import json
 import os
@@ -88,6 +89,19 @@ def seen_in(schema, root, value, seen, where="#"):
             seen_in(schema["items"], root, inner, seen, f"{where}/items")
 
 
+def reported(study, path):
+    """What "report" makes of the result alone is what "run" made: every file, and what both print."""
+    again = path.parent.parent / "again"
+    lines = [["run", str(study), "-o", str(again.parent / "ran"), "--quiet", "--verify"], ["report", str(path), "-o", str(again), "--quiet", "--verify"]]
+    ran, told = (subprocess.run([PROGRAM, *line], capture_output=True, timeout=600) for line in lines)
+    if told.returncode != 0 or told.stdout != ran.stdout:
+        yield f"{study.name}: report prints something else than run: exit {told.returncode}: {told.stderr.decode()[:300]}"
+    for file in sorted(path.parent.iterdir()):
+        other = again / study.stem / file.name
+        if not other.exists() or other.read_bytes() != file.read_bytes():
+            yield f"{study.name}: report writes another {file.name}"
+
+
 def main():
     schema = json.loads((ROOT / "schemas/result.schema.json").read_text(encoding="utf-8"))
     validator = jsonschema.Draft7Validator(schema)
@@ -104,6 +118,7 @@ def main():
                 continue
             result = json.loads(path.read_text(encoding="utf-8"))
             problems += [f"{study.name}: {e.json_path}: {e.message}" for e in validator.iter_errors(result)]
+            problems += reported(study, path)
             seen_in(schema, schema, result, seen)
             checked += 1
             for member in members_of(result):
