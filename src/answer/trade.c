@@ -6,11 +6,8 @@
 
 #include "base/interrupt.h"
 #include "base/workers.h"
+#include "nlp/merit.h"
 #include "search/discrete.h"
-
-/* Objectives that differ by less, relatively, are the same: searches of one optimum end so
- * near. */
-static const double SAME = 1e-6;
 
 typedef struct point {
     double values[MT_MAX_VARY];
@@ -121,12 +118,12 @@ static bool better(const mt_study *study, const mt_result *a, const mt_result *b
     if (x == NULL || y == NULL) {
         return y == NULL && x != NULL;
     }
-    if (x->feasible != y->feasible) {
-        return x->feasible;
-    }
     const bool most =
         study->n_objectives > 0 && mt_objective_is(study->objectives[0].type, MT_MAXIMISED);
-    return x->feasible && (most ? x->score > y->score : x->score < y->score);
+    const double f = most ? -x->score : x->score;
+    const double g = most ? -y->score : y->score;
+    return mt_merit_before(&(mt_merit){.feasible = x->feasible, .n = 1, .f = &f},
+                           &(mt_merit){.feasible = y->feasible, .n = 1, .f = &g}, 0.0);
 }
 
 /* From the neighbours' designs of the first pass, which are no longer changed: any order gives
@@ -228,15 +225,9 @@ static double front_value(const mt_study *study, mt_objective_type type,
 /* Is a as good as b in both and better in one, by more than the searches' rounding? */
 static bool dominates(const double *a, const double *b)
 {
-    bool gain = false;
-    for (int i = 0; i < 2; i++) {
-        const double slack = SAME * fmax(fabs(b[i]), SAME);
-        if (!(a[i] <= b[i] + slack)) {
-            return false;
-        }
-        gain = gain || a[i] < b[i] - slack;
-    }
-    return gain;
+    const int first = mt_compare(a[0], b[0], MT_EQUAL_FOUND);
+    const int second = mt_compare(a[1], b[1], MT_EQUAL_FOUND);
+    return MT_HAS(a[0] + a[1]) && first <= 0 && second <= 0 && first + second < 0;
 }
 
 static void mark_front(const trade *t, mt_trade_result *out)

@@ -4,12 +4,10 @@
 #include <math.h>
 
 #include "answer/trade.h"
+#include "nlp/merit.h"
 #include "problem/family.h"
 #include "search/discrete.h"
 
-/* Less than this, relatively, is the same objective: two searches of one optimum end so
- * near. */
-static const double BETTER = 1e-6;
 enum { LOCAL_EVALUATIONS = 500 };
 
 typedef struct warm {
@@ -87,8 +85,8 @@ static mt_status compare(warm *w, const double *x, const double *best_x, bool *b
     MT_TRY(mt_nlp_solve(&nlp, &opt, &w->mem, &found, err));
     *evaluations += found.evals;
     if (found.n_solutions > 0 && found.solutions[0].feasible) {
-        const double gain = best_f - found.solutions[0].f;
-        *better = best_x == NULL || gain > BETTER * fmax(fabs(best_f), BETTER);
+        *better =
+            best_x == NULL || mt_compare(found.solutions[0].f, best_f, MT_EQUAL_FOUND) < 0;
     }
     return MT_OK;
 }

@@ -2,6 +2,7 @@
 #ifndef DESCRIBE_DESCRIBE_H
 #define DESCRIBE_DESCRIBE_H
 
+#include "nlp/merit.h"
 #include "problem/problem.h"
 #include "result/result.h"
 

@@ -7,8 +7,6 @@
 #include "describe/describe.h"
 #include "problem/robust.h"
 
-/* Rounding of ln and of the eigenvalues may push a mode that stands on an edge over it. */
-static const double MET_SLACK = 1e-6;
 static const double PERCENT = 100.0;
 
 /* Nearer to an edge than this, in percent of it, is on it: frequencies carry relative rounding
@@ -112,90 +110,76 @@ static const char *avoid_text(const mt_goal *g, const char *configuration, mt_ar
                                                              : up_to);
 }
 
-/* The clearance that comes nearest to its margin, or falls short of it most; and that margin.
- * NaN without bands or modes. Returns by how much bands are missed. */
-static double tightest(const mt_bands *bands, const mt_modes *modes, mt_result_goal *g)
-{
-    double least = HUGE_VAL;
-    double missing = 0.0;
-    for (int b = 0; b < bands->n; b++) {
-        for (int i = 0; i < modes->count; i++) {
-            if (modes->kind[i] != MT_MODE_FLEXIBLE) {
-                continue;
-            }
-            const double hz = mt_modal_hz(modes, i);
-            double asked = 0.0;
-            const double has = standing(&bands->items[b], hz, &asked);
-            missing = fmax(missing, missing_percent(&bands->items[b], hz));
-            if (has - asked < least) {
-                least = has - asked;
-                g->value = has;
-                g->demand = asked;
-            }
-        }
-    }
-    return missing;
-}
+/* Of all modes beside all bands the clearance that comes nearest to its margin, or falls short
+ * of it most. */
+typedef struct tightest {
+    double has; /* NaN without bands or modes */
+    double asked;
+    double missing;   /* of any of them; 0: all are clear */
+    const double *at; /* [n] where over the tolerances; NULL: at the design itself */
+} tightest;
 
-/* The same over the tolerances of the variables; *missing stays where there are none. */
-static mt_status tightest_worst(const mt_problem *fresh, int view, const mt_bands *bands,
-                                mt_result *result, mt_result_goal *g, double *missing,
-                                mt_err *err)
+static tightest find_tightest(const mt_problem *fresh, int view, const mt_bands *bands,
+                              bool over_tolerances)
 {
     const mt_modes *const modes = &fresh->views[view].analysis->modes;
-    const double *where = NULL;
+    tightest t = {.has = nan(""), .asked = nan("")};
     double least = HUGE_VAL;
-    for (int b = 0; b < bands->n && fresh->robust != NULL; b++) {
+    for (int b = 0; b < bands->n; b++) {
+        const mt_band *const band = &bands->items[b];
         for (int k = 1; mt_modal_flexible(modes, k) >= 0; k++) {
             const double *at = NULL;
             double asked = 0.0;
-            const double hz =
-                mt_describe_worst_hz(fresh, view, k, &bands->items[b],
-                                     mt_modal_hz(modes, mt_modal_flexible(modes, k)), &at);
-            const double has = standing(&bands->items[b], hz, &asked);
-            *missing = fmax(*missing, missing_percent(&bands->items[b], hz));
+            double hz = mt_modal_hz(modes, mt_modal_flexible(modes, k));
+            hz = over_tolerances ? mt_describe_worst_hz(fresh, view, k, band, hz, &at) : hz;
+            const double has = standing(band, hz, &asked);
+            t.missing = fmax(t.missing, missing_percent(band, hz));
             if (has - asked < least) {
                 least = has - asked;
-                g->worst = has;
-                where = at;
+                t.has = has;
+                t.asked = asked;
+                t.at = at;
             }
         }
     }
-    if (where == NULL) {
-        return MT_OK;
-    }
-    g->worst_at = mt_arena_f64(&result->mem, (size_t)fresh->n, 1);
-    if (g->worst_at == NULL) {
-        return mt_fail_memory(err);
-    }
-    memcpy(g->worst_at, where, (size_t)fresh->n * sizeof *where);
-    return MT_OK;
+    return t;
 }
 
 static mt_status judge(mt_problem *fresh, int goal, int configuration, mt_result *result,
                        mt_result_goal *out, mt_err *err)
 {
     const mt_goal *const g = &fresh->study->goals[goal];
-    const mt_view *const view = &fresh->views[mt_problem_view(fresh, configuration)];
+    const int at = mt_problem_view(fresh, configuration);
+    const mt_view *const view = &fresh->views[at];
+    const mt_clear own = {.view = at, .bands = g->avoid->bands};
     const mt_modes *const modes = &view->analysis->modes;
-    const mt_clear own = {.view = mt_problem_view(fresh, configuration),
-                          .bands = g->avoid->bands};
+    mt_arena *const mem = &result->mem;
+    tightest nominal = {.has = nan(""), .asked = nan(""), .missing = nan("")};
+    tightest worst = {.has = nan("")};
     double violation = view->solved ? mt_clear_violation(&own, modes, NULL, NULL) : nan("");
     if (MT_HAS(violation) && fresh->robust != NULL) {
-        const double worst = mt_robust_room(fresh, &own);
-        violation = MT_HAS(worst) ? fmax(-worst, 0.0) : worst;
+        const double room = mt_robust_room(fresh, &own);
+        violation = MT_HAS(room) ? fmax(-room, 0.0) : room;
     }
-    double missing = nan("");
-    *out = (mt_result_goal){.value = nan(""), .demand = nan(""), .worst = nan("")};
     if (MT_HAS(violation)) {
-        missing = tightest(&g->avoid->bands, modes, out);
-        MT_TRY(tightest_worst(fresh, own.view, &g->avoid->bands, result, out, &missing, err));
+        nominal = find_tightest(fresh, at, &own.bands, false);
+        worst = fresh->robust != NULL ? find_tightest(fresh, at, &own.bands, true) : worst;
     }
-    out->text = avoid_text(g, mt_analysis_configuration(view->analysis), &result->mem);
-    out->pointer = mt_arena_printf(&result->mem, "/goals/%d", goal);
-    out->violation_percent = violation > 0.0 ? missing : violation; /* 0, or NaN */
-    out->met = violation <= mt_goal_tolerance(g) * (1.0 + MET_SLACK);
-    return out->text == NULL || out->pointer == NULL ? mt_fail_memory(err) : MT_OK;
+    *out = (mt_result_goal){
+        .text = avoid_text(g, mt_analysis_configuration(view->analysis), mem),
+        .pointer = mt_arena_printf(mem, "/goals/%d", goal),
+        .value = nominal.has,
+        .demand = nominal.asked,
+        /* 0, or NaN */
+        .violation_percent = violation > 0.0 ? fmax(nominal.missing, worst.missing) : violation,
+        .met = mt_is_met(violation, mt_goal_tolerance(g)),
+        .worst = worst.has};
+    if (worst.at != NULL) {
+        out->worst_at = mt_arena_f64(mem, (size_t)fresh->n, 1);
+        MT_TRY(mt_arena_check(mem, err));
+        memcpy(out->worst_at, worst.at, (size_t)fresh->n * sizeof *worst.at);
+    }
+    return mt_arena_check(mem, err);
 }
 
 mt_status mt_describe_avoid_goals(mt_problem *fresh, mt_result *result, mt_recommendation *rec,

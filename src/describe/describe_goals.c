@@ -5,9 +5,6 @@
 #include "describe/describe.h"
 #include "problem/goal.h"
 
-/* Rounding of ln and of the eigenvalues may push a goal that is met exactly on its tolerance
- * over it. */
-static const double MET_SLACK = 1e-6;
 static const double PERCENT = 100.0;
 
 /* "installed mode 1", "installed \"heave\"", or the expression. */
@@ -162,7 +159,7 @@ static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
     g->text = demand_text(fresh, d, &result->mem, &g->demand);
     g->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
     g->violation_percent = percent;
-    g->met = violation <= d->tolerance * (1.0 + MET_SLACK);
+    g->met = mt_is_met(violation, d->tolerance);
     if (g->text == NULL || g->pointer == NULL) {
         return mt_fail_memory(err);
     }

@@ -6,8 +6,6 @@
 #include "describe/describe.h"
 #include "search/motion.h"
 
-/* As for the goals themselves: rounding of ln and of the eigenvalues. */
-static const double MET_SLACK = 1e-6;
 /* Less than this (ln) beyond an edge is on it: a driven position is closed, and its modes are
  * solved for, to about 1e-12. */
 static const double ON_EDGE = 1e-9;
@@ -113,7 +111,7 @@ static mt_status examine(described *d, mt_err *err)
         }
     }
     d->violation = room >= -ON_EDGE ? 0.0 : -room;
-    if (d->violation <= d->tolerance * (1.0 + MET_SLACK)) {
+    if (mt_is_met(d->violation, d->tolerance)) {
         d->followed = true;
         MT_TRY(mt_motion_follow(p, family, best, &p->mem, &d->motion, err));
         d->violation = d->motion.end == MT_MOTION_UNSTABLE ? nan("")
@@ -161,7 +159,7 @@ static const char *nearest_text(const described *d, const char *range)
         return mt_arena_printf(mem, "%s (%d positions sampled): no mode beside a band", range,
                                m->positions);
     }
-    if (m->room >= -d->tolerance * (1.0 + MET_SLACK)) {
+    if (mt_is_met(-m->room, d->tolerance)) {
         return mt_arena_printf(
             mem,
             "%s (%d positions sampled): mode %d comes nearest, at %.4g %s (%.6g Hz), %.3g %% "
@@ -224,7 +222,7 @@ static mt_status put_goal(const described *d, const char *range, mt_recommendati
     *g = (mt_result_goal){.value = d->followed ? d->motion.percent : nan(""),
                           .demand = d->followed ? d->motion.margin_percent : nan(""),
                           .violation_percent = PERCENT * d->violation,
-                          .met = d->violation <= d->tolerance * (1.0 + MET_SLACK)};
+                          .met = mt_is_met(d->violation, d->tolerance)};
     g->text = c->mode > 0 && !d->followed
                   ? mt_arena_printf(mem,
                                     "%s clear of its bands: mode %d crosses %s between "
@@ -252,8 +250,8 @@ static mt_status put_row(const described *d, const char *range, double from, dou
     row->grade = grade_of(d);
     row->mode = d->followed ? m->mode : c->mode;
     row->band = band == NULL ? NULL : mt_arena_strdup(mem, band);
-    row->crosses =
-        d->violation > d->tolerance * (1.0 + MET_SLACK) && (d->followed || c->mode > 0);
+    row->crosses = d->violation > 0.0 && !mt_is_met(d->violation, d->tolerance) &&
+                   (d->followed || c->mode > 0);
     if (d->followed) {
         row->positions = m->positions;
         row->least_clearance_percent = m->percent;

@@ -22,16 +22,12 @@ void mt_say(mt_sentences *s, const char *fmt, ...)
     va_start(args, fmt);
     const char *const text = mt_arena_vprintf(&s->result->mem, fmt, args);
     va_end(args);
-    const char **const grown =
-        text == NULL ? NULL
-                     : mt_arena_grow(&s->result->mem, s->rec->reasons, s->rec->n_reasons,
-                                     &s->capacity, sizeof *grown);
-    if (grown == NULL) {
-        s->failed = true;
-        return;
+    const char **const grown = mt_arena_grow(&s->result->mem, s->rec->reasons,
+                                             s->rec->n_reasons, &s->capacity, sizeof *grown);
+    if (grown != NULL) {
+        s->rec->reasons = grown;
+        s->rec->reasons[s->rec->n_reasons++] = text;
     }
-    s->rec->reasons = grown;
-    s->rec->reasons[s->rec->n_reasons++] = text;
 }
 
 static bool unchanged(const mt_result_parameter *p)
@@ -62,7 +58,7 @@ static void say_kept(mt_sentences *s, int kept)
 {
     const char *text = "";
     int left = kept;
-    for (int i = 0; i < s->rec->n_parameters && text != NULL; i++) {
+    for (int i = 0; i < s->rec->n_parameters; i++) {
         const mt_result_parameter *const p = &s->rec->parameters[i];
         if (!unchanged(p)) {
             continue;
@@ -72,9 +68,7 @@ static void say_kept(mt_sentences *s, int kept)
             mt_arena_printf(&s->result->mem, "%s%s%s", text, p->name, left == 1 ? "" : after);
         left--;
     }
-    if (text == NULL) {
-        s->failed = true;
-    } else if (kept > 0 && kept == s->rec->n_parameters) {
+    if (kept > 0 && kept == s->rec->n_parameters) {
         mt_say(s, "The original design stays as it is.");
     } else if (kept > 0) {
         mt_say(s, "%s keep%s original value%s.", text, kept == 1 ? "s its" : " their",
@@ -119,11 +113,8 @@ static const char *lever_text(mt_sentences *s, const mt_result_frequency *f)
     if (lever < 0) {
         return "";
     }
-    const char *const text =
-        mt_arena_printf(&s->result->mem, "; %s moves it most, %+.3g Hz for 1 %% more",
-                        s->rec->parameters[lever].name, most);
-    s->failed = s->failed || text == NULL;
-    return text == NULL ? "" : text;
+    return mt_arena_printf(&s->result->mem, "; %s moves it most, %+.3g Hz for 1 %% more",
+                           s->rec->parameters[lever].name, most);
 }
 
 /* How the frequency (over the tolerances: its worst) stands to the limit that is nearer: "at
@@ -164,10 +155,8 @@ static const char *range_text(mt_sentences *s, const mt_result_frequency *f)
     if (!MT_HAS(f->lowest_hz) || !MT_HAS(f->highest_hz)) {
         return "";
     }
-    const char *const text = mt_arena_printf(
-        &s->result->mem, ", over the tolerances %.6g to %.6g Hz", f->lowest_hz, f->highest_hz);
-    s->failed = s->failed || text == NULL;
-    return text == NULL ? "" : text;
+    return mt_arena_printf(&s->result->mem, ", over the tolerances %.6g to %.6g Hz",
+                           f->lowest_hz, f->highest_hz);
 }
 
 static void demand_text(const mt_result_frequency *f, char *text)
@@ -306,10 +295,6 @@ static void say_kind_rank(mt_sentences *s, const char *first)
 {
     const mt_gap_result *const g = s->design->gaps;
     const char *const sure = mt_describe_gaps_left(g, &s->result->mem);
-    s->failed = s->failed || sure == NULL;
-    if (s->failed) {
-        return;
-    }
     if (g->n_solutions == 1) {
         mt_say(s, "It is the only kind of design among %.0f gap assignments (%s).",
                g->n_possible, sure);
@@ -353,10 +338,8 @@ static void say_rank(mt_sentences *s, const mt_nlp_result *search)
     if (s->design->discrete != NULL) {
         mt_arena *const mem = &s->result->mem;
         const char *const by = mt_arena_printf(mem, "%s %s", best_of(&s->p->aims[0]), first);
-        const char *const text =
-            mt_discrete_rank_text(s->design->discrete, search, s->rec->rank, by, mem);
-        s->failed = s->failed || text == NULL || by == NULL;
-        mt_say(s, "%s", s->failed ? "" : text);
+        mt_say(s, "%s",
+               mt_discrete_rank_text(s->design->discrete, search, s->rec->rank, by, mem));
         return;
     }
     if (search->compromise) {
@@ -400,7 +383,7 @@ mt_status mt_describe_baseline_reasons(const mt_problem *p, mt_result *result, m
     say_slack(&s);
     say_violations(&s);
     mt_say_bands(&s);
-    return s.failed ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(&result->mem, err);
 }
 
 mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
@@ -417,11 +400,11 @@ mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
     mt_say_bands(&s);
     if (design->cut) {
         mt_say(&s, "The search was interrupted: better designs may exist.");
-        return s.failed ? mt_fail_memory(err) : MT_OK;
+        return mt_arena_check(&result->mem, err);
     }
     mt_say_prices(&s);
     say_misfit(&s);
     say_rank(&s, search);
     say_optimality(&s);
-    return s.failed ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(&result->mem, err);
 }

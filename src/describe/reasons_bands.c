@@ -31,13 +31,9 @@ static const char *band_text(mt_sentences *s, const mt_result_clearance *c)
     }
     const char *const numbers =
         mt_arena_printf(&s->result->mem, "%.6g to %.6g Hz", g->lower_hz, g->upper_hz);
-    if (numbers == NULL || strcmp(numbers, c->band) == 0) {
-        s->failed = s->failed || numbers == NULL;
-        return c->band;
-    }
-    const char *const text = mt_arena_printf(&s->result->mem, "%s (%s)", numbers, c->band);
-    s->failed = s->failed || text == NULL;
-    return text == NULL ? c->band : text;
+    return numbers == NULL || strcmp(numbers, c->band) == 0
+               ? c->band
+               : mt_arena_printf(&s->result->mem, "%s (%s)", numbers, c->band);
 }
 
 /* "installed keeps 0, 1, 2 and 4 modes below its bands." */
@@ -45,13 +41,11 @@ static void say_kind(mt_sentences *s, int first, int n)
 {
     const mt_result_gap *const g = &s->rec->gaps[first];
     const char *text = "";
-    for (int i = 0; i < n && text != NULL; i++) {
+    for (int i = 0; i < n; i++) {
         const char *const before = i == 0 ? "" : i == n - 1 ? " and " : ", ";
         text = mt_arena_printf(&s->result->mem, "%s%s%d", text, before, g[i].modes_below);
     }
-    if (text == NULL) {
-        s->failed = true;
-    } else if (n == 1) {
+    if (n == 1) {
         mt_say(s, "%s has %s mode%s below the band %s.", g->configuration, text,
                g->modes_below == 1 ? "" : "s", g->band);
     } else {

@@ -97,12 +97,9 @@ static double amount_of(const mt_result_parameter *p)
 /* "0.1 kg more allowed on M_SAU" */
 static const char *room_text(mt_sentences *s, const mt_result_parameter *p, double amount)
 {
-    const char *const text =
-        mt_arena_printf(&s->result->mem, "%.6g%s%s %s allowed on %s", amount,
-                        p->unit != NULL ? " " : "", p->unit != NULL ? p->unit : "",
-                        strcmp(p->at_bound, "upper") == 0 ? "more" : "less", p->name);
-    s->failed = s->failed || text == NULL;
-    return text == NULL ? "" : text;
+    return mt_arena_printf(&s->result->mem, "%.6g%s%s %s allowed on %s", amount,
+                           p->unit != NULL ? " " : "", p->unit != NULL ? p->unit : "",
+                           strcmp(p->at_bound, "upper") == 0 ? "more" : "less", p->name);
 }
 
 /* Where the objective tells: the multiplier, chained to the parameter. */

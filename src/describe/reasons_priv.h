@@ -11,7 +11,6 @@ typedef struct mt_sentences {
     mt_result *result;
     mt_recommendation *rec;
     int capacity;
-    bool failed; /* out of memory: looked at once, at the end */
 } mt_sentences;
 
 /* Add a sentence. */

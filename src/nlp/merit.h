@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NLP_MERIT_H
+#define NLP_MERIT_H
+
+#include <stdbool.h>
+
+/*
+ * When a constraint is met, and which of two designs is the better one: one rule for points of a
+ * search, ends of searches, combinations of a catalogue and answers of a trade study.
+ */
+
+/* What is held is met within its tolerance; a number that is recomputed may lie over it by its
+ * rounding (of a logarithm, of eigenvalues). NaN: not met. */
+bool mt_is_met(double violation, double tolerance);
+
+/* What designs are ranked by. */
+typedef struct mt_merit {
+    bool feasible;
+    double squares; /* of what is missed, where it is not feasible */
+    int n;
+    const double *f; /* [n] objectives in their order; less is better */
+} mt_merit;
+
+/* Designs that are evaluated alike: rounding on different ways to the same design. */
+#define MT_EQUAL_JUDGED 0x1p-40
+/* Designs that searches ended at: held objectives, their tolerances used or not. */
+#define MT_EQUAL_FOUND 4e-6
+
+/* -1: a is less, 1: b is; 0: they differ by less than `equal`, relatively (of 1e-6, where both are
+ * smaller); NaN is neither less nor more. */
+int mt_compare(double a, double b, double equal);
+
+/* Is a better than b? One that meets all goals is better than one that does not, of two that do
+ * not the one that misses less; then the objectives decide in their order, each as mt_compare has
+ * it. */
+bool mt_merit_before(const mt_merit *a, const mt_merit *b, double equal);
+
+#endif
