@@ -5,6 +5,7 @@
 #include "answer/doubts.h"
 #include "cli/cli.h"
 #include "io/file.h"
+#include "io/json_print.h"
 #include "problem/problem.h"
 #include "report/summary.h"
 #include "report/table.h"

@@ -1,199 +1,184 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The document: text, scanned nodes and cJSON's tree side by side. cJSON gets a copy of the
- * text in which every number is 0: it cuts numbers off at 63 characters, so that ours are read
- * from the source, by strtod, with the decimal point of the locale in place of ours (the C
- * library rounds correctly).
+ * The document: the scanner says whether the text is JSON, cJSON builds it. Both go through it in
+ * the same order, which makes the scanner's spots the addresses of cJSON's items.
+ *
+ * cJSON reads numbers as the C library does, correctly rounded, but with the decimal point of the
+ * locale, and not beyond the 63rd character. So this thread is in the locale "C" while it reads,
+ * and longer numbers are 0 to it and read here.
  */
 #include "io/json_priv.h"
 
 #include <float.h>
+#include <locale.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static bool is_value(const mt_json *doc, mt_addr value)
+#include "io/json_print.h"
+
+enum { CJSON_NUMBER_MOST = 63, CJSON_TYPE = 0xFF };
+
+/* NULL for what is no address of a value. */
+static cJSON *item_of(const mt_json *doc, mt_addr value)
 {
-    return value >= 0 && value < doc->count && doc->nodes[value].item != NULL;
+    return doc->items != NULL && value >= 0 && value < doc->spots.n ? doc->items[value] : NULL;
 }
 
-/* The source with all numbers replaced by 0 and spaces; heap. */
-static char *without_numbers(const mt_json *doc)
+static mt_addr addr_of(const cJSON *item)
 {
-    char *const copy = malloc(doc->length + 1);
-    if (copy == NULL) {
-        return NULL;
-    }
-    memcpy(copy, doc->text, doc->length + 1);
-    for (int i = 0; i < doc->count; i++) {
-        const mt_json_node *const node = &doc->nodes[i];
-        if (node->type == MT_JSON_NUMBER) {
-            memset(copy + node->start, ' ', node->end - node->start);
-            copy[node->start] = '0';
+    return item == NULL ? MT_NO_ADDR : item->valueint;
+}
+
+/* Bytes of the number at a spot; 0 where there stands something else. */
+static size_t number_length(const mt_json *doc, mt_addr value)
+{
+    return strspn(doc->text + doc->spots.items[value].start, "+-.0123456789eE");
+}
+
+/* The text as cJSON can read it: every number that is too long for it is 0 and blanks. */
+static char *without_long_numbers(mt_json *doc, mt_arena *mem)
+{
+    char *const copy = mt_arena_strndup(mem, doc->text, doc->length);
+    for (int i = 0; copy != NULL && i < doc->spots.n; i++) {
+        const size_t n = number_length(doc, i);
+        if (n > CJSON_NUMBER_MOST) {
+            memset(copy + doc->spots.items[i].start, ' ', n);
+            copy[doc->spots.items[i].start] = '0';
         }
     }
     return copy;
 }
 
-/* Give every node its cJSON item. False where the two trees differ: a bug. */
+/* Address and item find each other. False where scanner and cJSON disagree: a bug. */
 static bool link_items(mt_json *doc)
 {
-    doc->nodes[MT_JSON_ROOT].item = doc->tree;
-    for (int i = 0; i < doc->count; i++) {
-        const mt_json_node *const node = &doc->nodes[i];
-        if (node->type != MT_JSON_ARRAY && node->type != MT_JSON_OBJECT) {
+    cJSON *outer[MT_JSON_MAX_DEPTH];
+    int depth = 0;
+    int n = 0;
+    for (cJSON *at = doc->tree; at != NULL;) {
+        if (n == doc->spots.n || (at->child != NULL && depth == MT_JSON_MAX_DEPTH)) {
+            return false;
+        }
+        at->valueint = n;
+        doc->items[n++] = at;
+        if (at->child != NULL) {
+            outer[depth++] = at;
+            at = at->child;
             continue;
         }
-        cJSON *item = node->item->child;
-        mt_addr child = i + 1;
-        for (int k = 0; k < node->children; k++) {
-            if (item == NULL || child == MT_NO_ADDR) {
-                return false;
-            }
-            doc->nodes[child].item = item;
-            item = item->next;
-            child = doc->nodes[child].next;
+        while (at->next == NULL && depth > 0) {
+            at = outer[--depth];
         }
-        if (item != NULL) {
-            return false;
+        at = at->next;
+    }
+    return n == doc->spots.n;
+}
+
+/* The numbers that cJSON has not read; those beyond the range of a double are noted, and the
+ * largest one stands for them. */
+static void finish_numbers(mt_json *doc)
+{
+    for (int i = 0; i < doc->spots.n; i++) {
+        cJSON *const item = doc->items[i];
+        if (!cJSON_IsNumber(item)) {
+            continue;
         }
-    }
-    return true;
-}
-
-/* How this locale writes the decimal point, found by writing one. */
-static void decimal_point(char *point, size_t size)
-{
-    char half[32];
-    const int n = snprintf(half, sizeof half, "%.1f", 0.5); /* "0", the point, "5" */
-    const size_t length = n > 2 ? (size_t)n - 2 : 0;
-    if (length == 0 || length >= size) {
-        (void)snprintf(point, size, ".");
-        return;
-    }
-    memcpy(point, half + 1, length);
-    point[length] = '\0';
-}
-
-/* The value of one number; beyond the range of a double it is noted and the largest one stands
- * for it. */
-static bool read_number(mt_json *doc, mt_addr value, const char *point)
-{
-    const mt_json_node *const node = &doc->nodes[value];
-    const char *const source = doc->text + node->start;
-    const size_t n = node->end - node->start;
-    const char *const dot = memchr(source, '.', n);
-    const size_t before = dot == NULL ? n : (size_t)(dot - source);
-    const mt_arena_mark mark = mt_arena_get_mark(&doc->mem);
-    const char *const text = dot == NULL
-                                 ? mt_arena_printf(&doc->mem, "%.*s", (int)n, source)
-                                 : mt_arena_printf(&doc->mem, "%.*s%s%.*s", (int)before, source,
-                                                   point, (int)(n - before - 1), dot + 1);
-    if (text == NULL) {
-        return false;
-    }
-    double number = strtod(text, NULL);
-    mt_arena_rewind(&doc->mem, mark);
-    if (!isfinite(number)) {
-        mt_diag_error(&doc->diags, value, "the number is beyond the range of a double");
-        number = number < 0.0 ? -DBL_MAX : DBL_MAX;
-    }
-    node->item->valuedouble = number;
-    return true;
-}
-
-static bool read_numbers(mt_json *doc)
-{
-    char point[8];
-    decimal_point(point, sizeof point);
-    for (int i = 0; i < doc->count; i++) {
-        if (doc->nodes[i].type == MT_JSON_NUMBER && !read_number(doc, i, point)) {
-            return false;
+        if (number_length(doc, i) > CJSON_NUMBER_MOST) {
+            item->valuedouble = strtod(doc->text + doc->spots.items[i].start, NULL);
+        }
+        if (!isfinite(item->valuedouble)) {
+            mt_diag_error(&doc->diags, i, "the number is beyond the range of a double");
+            item->valuedouble = item->valuedouble < 0.0 ? -DBL_MAX : DBL_MAX;
         }
     }
-    return true;
 }
 
-typedef struct member {
-    int parent;
-    mt_addr value;
-    const char *name;
-} member;
-
-static int compare_members(const void *a, const void *b)
+static int compare_names(const void *a, const void *b)
 {
-    const member *const x = a;
-    const member *const y = b;
-    if (x->parent != y->parent) {
-        return x->parent < y->parent ? -1 : 1;
-    }
-    const int order = strcmp(x->name, y->name);
-    return order != 0 ? order : (x->value > y->value) - (x->value < y->value);
+    const cJSON *const x = *(cJSON *const *)a;
+    const cJSON *const y = *(cJSON *const *)b;
+    const int order = strcmp(x->string, y->string);
+    return order != 0 ? order : (x->valueint > y->valueint) - (x->valueint < y->valueint);
 }
 
-static void note_duplicate(mt_json *doc, const member *first, const member *again)
+static void note_duplicate(mt_json *doc, const cJSON *first, const cJSON *again)
 {
-    const mt_addr at = mt_json_name_addr(doc, again->value);
+    const mt_addr at = mt_json_name_addr(doc, again->valueint);
     if (mt_diag_may_suggest(&doc->diags)) { /* finding a line takes a walk through the text */
         int line = 0;
         int column = 0;
-        mt_json_place(doc, mt_json_name_addr(doc, first->value), &line, &column);
+        mt_json_place(doc, mt_json_name_addr(doc, first->valueint), &line, &column);
         mt_diag_error(&doc->diags, at, "member \"%s\" is given twice, first in line %d",
-                      again->name, line);
+                      again->string, line);
     } else {
-        mt_diag_error(&doc->diags, at, "member \"%s\" is given twice", again->name);
+        mt_diag_error(&doc->diags, at, "member \"%s\" is given twice", again->string);
     }
 }
 
-/* Note names that an object has twice: all members sorted by object, name, place. */
-static bool find_duplicates(mt_json *doc)
+/* Note names that an object has twice, and take all members but the first out of it. Sorted by
+ * name, so that a large object takes no longer than its text; members has room for all. */
+static void take_out_duplicates(mt_json *doc, cJSON *object, cJSON **members)
 {
-    member *const members = malloc((size_t)doc->count * sizeof *members);
-    if (members == NULL) {
-        return false;
-    }
     size_t n = 0;
-    for (int i = 1; i < doc->count; i++) {
-        if (doc->nodes[i].name != 0) {
-            members[n++] = (member){doc->nodes[i].parent, i, doc->nodes[i].item->string};
-        }
+    for (cJSON *m = object->child; m != NULL; m = m->next) {
+        members[n++] = m;
     }
-    qsort(members, n, sizeof *members, compare_members);
-    size_t first = 0; /* of those equal to the one before i */
-    for (size_t i = 1; i < n; i++) {
-        if (members[i].parent != members[first].parent ||
-            strcmp(members[i].name, members[first].name) != 0) {
+    qsort(members, n, sizeof(cJSON *), compare_names);
+    for (size_t first = 0, i = 1; i < n; i++) {
+        if (strcmp(members[first]->string, members[i]->string) != 0) {
             first = i;
             continue;
         }
-        doc->nodes[members[i].value].duplicate = true;
-        doc->nodes[members[i].parent].children--;
-        note_duplicate(doc, &members[first], &members[i]);
+        note_duplicate(doc, members[first], members[i]);
+        cJSON_AddItemToArray(doc->duplicates, cJSON_DetachItemViaPointer(object, members[i]));
     }
-    free(members);
-    return true;
 }
 
 /* Let cJSON build the values of a scanned text. */
 static mt_status build(mt_json *doc, mt_err *err)
 {
-    char *const copy = without_numbers(doc);
-    if (copy == NULL) {
+    mt_arena scratch = {.first = NULL};
+    const size_t n = (size_t)doc->spots.n;
+    const char *const text = without_long_numbers(doc, &scratch);
+    cJSON **const members = mt_arena_alloc(&scratch, n, sizeof *members);
+    doc->items = mt_arena_alloc(&doc->mem, n, sizeof(cJSON *));
+    doc->duplicates = cJSON_CreateArray();
+    if (mt_arena_failed(&scratch) || mt_arena_failed(&doc->mem) || doc->duplicates == NULL) {
+        mt_arena_free(&scratch);
         return mt_fail_memory(err);
     }
-    doc->tree = cJSON_ParseWithLengthOpts(copy, doc->length + 1, NULL, true);
-    free(copy);
+    doc->tree = cJSON_ParseWithLengthOpts(text, doc->length + 1, NULL, true);
+    mt_status rc = MT_OK;
     if (doc->tree == NULL) {
-        return mt_fail_memory(err); /* the text is valid: only memory can be the reason */
+        rc = mt_fail_memory(err); /* the text is valid: only memory can be the reason */
+    } else if (!link_items(doc)) {
+        rc = mt_fail(err, MT_E_INTERNAL, "scanner and cJSON disagree");
     }
-    if (!link_items(doc)) {
-        return mt_fail(err, MT_E_INTERNAL, "scanner and cJSON disagree");
+    if (rc == MT_OK) {
+        finish_numbers(doc);
     }
-    if (!read_numbers(doc) || !find_duplicates(doc) || mt_arena_failed(doc->diags.mem)) {
+    for (size_t i = 0; rc == MT_OK && i < n; i++) {
+        if (cJSON_IsObject(doc->items[i])) {
+            take_out_duplicates(doc, doc->items[i], members);
+        }
+    }
+    mt_arena_free(&scratch);
+    return rc;
+}
+
+/* This thread keeps its locale. */
+static mt_status build_in_any_locale(mt_json *doc, mt_err *err)
+{
+    const locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (c == (locale_t)0) {
         return mt_fail_memory(err);
     }
-    return MT_OK;
+    const locale_t own = uselocale(c);
+    const mt_status rc = build(doc, err);
+    (void)uselocale(own);
+    freelocale(c);
+    return rc;
 }
 
 mt_status mt_json_parse(const char *text, size_t length, mt_json **out, mt_err *err)
@@ -203,31 +188,31 @@ mt_status mt_json_parse(const char *text, size_t length, mt_json **out, mt_err *
     if (doc == NULL) {
         return mt_fail_memory(err);
     }
-    mt_status rc = mt_arena_init(&doc->mem, 0, err);
-    if (rc != MT_OK) {
-        goto done;
-    }
-    doc->diags = mt_diags_default(&doc->mem);
-    doc->length = length;
     /* of a text that is too long only the start is of use */
-    const size_t kept = length > MT_JSON_MAX_BYTES ? 0 : length;
-    doc->text = mt_arena_strndup(&doc->mem, text, kept);
-    if (doc->text == NULL) {
-        rc = mt_fail_memory(err);
-        goto done;
-    }
-    rc = mt_json_scan(doc, err);
-    doc->length = kept;
+    doc->length = length > MT_JSON_MAX_BYTES ? 0 : length;
+    doc->diags = mt_diags_default(&doc->mem);
+    doc->text = mt_arena_strndup(&doc->mem, text, doc->length);
+    mt_status rc = mt_arena_check(&doc->mem, err);
     if (rc == MT_OK) {
-        rc = build(doc, err);
+        mt_json_scan(doc->text, length, &doc->spots, &doc->diags);
+        rc = mt_arena_check(&doc->mem, err);
     }
-done:
-    if (rc == MT_OK || rc == MT_E_INPUT) {
+    if (rc == MT_OK && doc->diags.errors > 0) {
         *out = doc;
-    } else {
-        mt_json_delete(doc);
+        return mt_fail(err, MT_E_INPUT, "the text is not JSON");
     }
-    return rc;
+    if (rc == MT_OK) {
+        rc = build_in_any_locale(doc, err);
+    }
+    if (rc == MT_OK) {
+        rc = mt_arena_check(&doc->mem, err);
+    }
+    if (rc != MT_OK) {
+        mt_json_delete(doc);
+        return rc;
+    }
+    *out = doc;
+    return MT_OK;
 }
 
 void mt_json_delete(mt_json *doc)
@@ -236,6 +221,7 @@ void mt_json_delete(mt_json *doc)
         return;
     }
     cJSON_Delete(doc->tree);
+    cJSON_Delete(doc->duplicates);
     mt_arena_free(&doc->mem);
     free(doc);
 }
@@ -247,7 +233,22 @@ mt_diags *mt_json_diags(mt_json *doc)
 
 mt_json_type mt_json_type_of(const mt_json *doc, mt_addr value)
 {
-    return is_value(doc, value) ? (mt_json_type)doc->nodes[value].type : MT_JSON_NULL;
+    const cJSON *const item = item_of(doc, value);
+    switch (item == NULL ? cJSON_NULL : item->type & CJSON_TYPE) {
+    case cJSON_False:
+    case cJSON_True:
+        return MT_JSON_BOOL;
+    case cJSON_Number:
+        return MT_JSON_NUMBER;
+    case cJSON_String:
+        return MT_JSON_STRING;
+    case cJSON_Array:
+        return MT_JSON_ARRAY;
+    case cJSON_Object:
+        return MT_JSON_OBJECT;
+    default:
+        return MT_JSON_NULL;
+    }
 }
 
 const char *mt_json_type_text(mt_json_type type)
@@ -271,61 +272,71 @@ const char *mt_json_type_text(mt_json_type type)
 
 const char *mt_json_string(const mt_json *doc, mt_addr value)
 {
-    const char *const s = is_value(doc, value) ? doc->nodes[value].item->valuestring : NULL;
+    const char *const s = cJSON_GetStringValue(item_of(doc, value));
     return s == NULL ? "" : s;
 }
 
 double mt_json_number(const mt_json *doc, mt_addr value)
 {
-    return is_value(doc, value) ? doc->nodes[value].item->valuedouble : 0.0;
+    const cJSON *const item = item_of(doc, value);
+    return item == NULL ? 0.0 : item->valuedouble;
 }
 
 bool mt_json_bool(const mt_json *doc, mt_addr value)
 {
-    return is_value(doc, value) && cJSON_IsTrue(doc->nodes[value].item);
+    return cJSON_IsTrue(item_of(doc, value)) != 0;
 }
 
 int mt_json_count(const mt_json *doc, mt_addr value)
 {
-    return is_value(doc, value) ? doc->nodes[value].children : 0;
+    return cJSON_GetArraySize(item_of(doc, value));
 }
 
 mt_addr mt_json_first(const mt_json *doc, mt_addr value)
 {
-    return mt_json_count(doc, value) > 0 ? value + 1 : MT_NO_ADDR;
+    const cJSON *const item = item_of(doc, value);
+    return item == NULL ? MT_NO_ADDR : addr_of(item->child);
 }
 
 mt_addr mt_json_next(const mt_json *doc, mt_addr value)
 {
-    if (!is_value(doc, value)) {
-        return MT_NO_ADDR;
-    }
-    mt_addr next = doc->nodes[value].next;
-    while (next != MT_NO_ADDR && doc->nodes[next].duplicate) {
-        next = doc->nodes[next].next;
-    }
-    return next;
+    const cJSON *const item = item_of(doc, value);
+    return item == NULL ? MT_NO_ADDR : addr_of(item->next);
 }
 
 mt_addr mt_json_member(const mt_json *doc, mt_addr value, const char *name)
 {
-    if (mt_json_type_of(doc, value) != MT_JSON_OBJECT) {
-        return MT_NO_ADDR;
-    }
-    for (mt_addr m = mt_json_first(doc, value); m != MT_NO_ADDR; m = mt_json_next(doc, m)) {
-        if (strcmp(doc->nodes[m].item->string, name) == 0) {
-            return m;
-        }
-    }
-    return MT_NO_ADDR;
+    const cJSON *const item = item_of(doc, value);
+    return cJSON_IsObject(item) ? addr_of(cJSON_GetObjectItemCaseSensitive(item, name))
+                                : MT_NO_ADDR;
 }
 
 const char *mt_json_name(const mt_json *doc, mt_addr value)
 {
-    return is_value(doc, value) ? doc->nodes[value].item->string : NULL;
+    const cJSON *const item = item_of(doc, value);
+    return item == NULL ? NULL : item->string;
 }
 
 mt_addr mt_json_name_addr(const mt_json *doc, mt_addr value)
 {
-    return value < 0 || doc->nodes[value].name == 0 ? value : doc->count + value;
+    return item_of(doc, value) == NULL || doc->spots.items[value].name == 0
+               ? value
+               : doc->spots.n + value;
+}
+
+bool mt_json_span(const mt_json *doc, mt_addr value, size_t *begin, size_t *end)
+{
+    const cJSON *const item = item_of(doc, value);
+    if (!cJSON_IsNumber(item) && !cJSON_IsString(item)) {
+        return false;
+    }
+    *begin = doc->spots.items[value].start;
+    *end = *begin + number_length(doc, value);
+    if (cJSON_IsString(item)) {
+        for (*end = *begin + 1; doc->text[*end] != '"'; ++*end) {
+            *end += doc->text[*end] == '\\';
+        }
+        ++*end;
+    }
+    return true;
 }

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Addresses to places and JSON pointers, diagnostics to text. */
+#include "io/json_print.h"
+
 #include "io/json_priv.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    LINE_MAX_BYTES = 1000, /* a message is cut there */
-    INDEX_TEXT = 16
-};
+enum { LINE_MAX_BYTES = 1000 }; /* a message is cut there */
 
 /* A place while walking through the text. */
 typedef struct cursor {
@@ -31,19 +30,20 @@ static void advance(const mt_json *doc, cursor *at, size_t offset)
     }
 }
 
-/* The node of an address; *name: the address means the member name in front of it. */
-static const mt_json_node *node_of(const mt_json *doc, mt_addr addr, bool *name)
+/* The spot of an address; *name: the address means the member name in front of it. */
+static const mt_json_spot *spot_of(const mt_json *doc, mt_addr addr, bool *name)
 {
-    *name = addr >= doc->count;
-    const mt_addr index = *name ? addr - doc->count : addr;
-    return index >= 0 && index < doc->count ? &doc->nodes[index] : NULL;
+    const int n = doc->spots.n;
+    *name = addr >= n;
+    const mt_addr index = *name ? addr - n : addr;
+    return index >= 0 && index < n ? &doc->spots.items[index] : NULL;
 }
 
 static size_t offset_of(const mt_json *doc, mt_addr addr)
 {
     bool name = false;
-    const mt_json_node *const node = node_of(doc, addr, &name);
-    return node == NULL ? 0 : name ? node->name : node->start;
+    const mt_json_spot *const spot = spot_of(doc, addr, &name);
+    return spot == NULL ? 0 : name ? spot->name : spot->start;
 }
 
 void mt_json_place(const mt_json *doc, mt_addr addr, int *line, int *column)
@@ -52,24 +52,6 @@ void mt_json_place(const mt_json *doc, mt_addr addr, int *line, int *column)
     advance(doc, &at, offset_of(doc, addr));
     *line = at.line;
     *column = at.column;
-}
-
-bool mt_json_span(const mt_json *doc, mt_addr value, size_t *begin, size_t *end)
-{
-    if (value < 0 || value >= doc->count) {
-        return false;
-    }
-    const mt_json_node *const node = &doc->nodes[value];
-    *begin = node->start;
-    *end = node->end;
-    if (node->type == MT_JSON_STRING) {
-        size_t at = node->start + 1;
-        while (at < doc->length && doc->text[at] != '"') {
-            at += doc->text[at] == '\\' ? 2 : 1;
-        }
-        *end = at + 1;
-    }
-    return node->type == MT_JSON_NUMBER || node->type == MT_JSON_STRING;
 }
 
 void mt_json_places(const mt_json *doc, int n, const mt_addr *addrs, int *lines, int *columns)
@@ -82,12 +64,12 @@ void mt_json_places(const mt_json *doc, int n, const mt_addr *addrs, int *lines,
     }
 }
 
-/* A member name as a pointer writes it: decoded where the values stand, else as in the
- * source. */
-static void add_name(const mt_json *doc, const mt_json_node *node, mt_text *out)
+/* A member name as a pointer writes it: decoded where the values stand, else as in the source. */
+static void add_name(const mt_json *doc, mt_addr value, mt_text *out)
 {
-    const char *s = node->item == NULL ? doc->text + node->name + 1 : node->item->string;
-    const bool in_source = node->item == NULL;
+    const bool in_source = doc->items == NULL;
+    const char *s =
+        in_source ? doc->text + doc->spots.items[value].name + 1 : doc->items[value]->string;
     for (; *s != '\0' && !(in_source && (*s == '"' || *s == ':')); s++) {
         if (in_source && *s == '\\' && s[1] != '\0') {
             mt_text_add_n(out, s++, 1);
@@ -100,45 +82,39 @@ static void add_name(const mt_json *doc, const mt_json_node *node, mt_text *out)
     }
 }
 
-static int index_among_siblings(const mt_json *doc, mt_addr value)
+static int index_in_list(const mt_json *doc, mt_addr value)
 {
+    const mt_json_spot *const spots = doc->spots.items;
+    const mt_addr list = spots[value].parent;
     int index = 0;
-    mt_addr at = doc->nodes[value].parent + 1;
-    /* syntax errors leave nodes of type 0 in front of the first item */
-    while (at < value && doc->nodes[at].type == 0) {
-        at++;
-    }
-    while (at != value && at != MT_NO_ADDR) {
-        at = doc->nodes[at].next;
-        index++;
+    for (mt_addr i = list + 1; i < value; i++) {
+        index += spots[i].parent == list && !spots[i].mistake;
     }
     return index;
 }
 
 void mt_json_pointer(const mt_json *doc, mt_addr addr, mt_text *out)
 {
-    bool name = false;
-    const mt_json_node *node = node_of(doc, addr, &name);
+    const mt_json_spot *const spots = doc->spots.items;
     mt_addr path[MT_JSON_MAX_DEPTH + 1];
     int depth = 0;
-    if (node == NULL) {
+    bool name = false;
+    const mt_json_spot *const spot = spot_of(doc, addr, &name);
+    if (spot == NULL) {
         return;
     }
-    const bool outer = name || node->type == 0;
-    mt_addr at = outer ? node->parent : (mt_addr)(node - doc->nodes);
-    /* problems before the text's value come first among the nodes: the root is what has no
-     * parent */
-    for (; at >= 0 && doc->nodes[at].parent != MT_NO_ADDR; at = doc->nodes[at].parent) {
+    mt_addr at = name || spot->mistake ? spot->parent : addr;
+    /* mistakes before the text's value come first: the root is what has no parent */
+    for (; at != MT_NO_ADDR && spots[at].parent != MT_NO_ADDR; at = spots[at].parent) {
         path[depth++] = at;
     }
     while (depth > 0) {
         at = path[--depth];
-        node = &doc->nodes[at];
         mt_text_add(out, "/");
-        if (node->name != 0) {
-            add_name(doc, node, out);
+        if (spots[at].name != 0) {
+            add_name(doc, at, out);
         } else {
-            mt_text_addf(out, "%d", index_among_siblings(doc, at));
+            mt_text_addf(out, "%d", index_in_list(doc, at));
         }
     }
 }

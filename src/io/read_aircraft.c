@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "io/file.h"
+#include "io/json_print.h"
 #include "study/bands.h"
 
 #define KEY_ENUM(id, name, type, required) id,
@@ -81,7 +82,6 @@ static void read_speed(mt_reader *r, mt_addr value, bool rpm, mt_aircraft_value 
     }
     out->value = rpm ? speed / 60.0 : speed;
     out->text = mt_arena_printf(r->mem, "%.10g %s", speed, rpm ? "rpm" : "Hz");
-    r->out_of_memory = r->out_of_memory || out->text == NULL;
 }
 
 static void read_blades(mt_reader *r, mt_addr value, mt_aircraft_value *out)
@@ -94,7 +94,6 @@ static void read_blades(mt_reader *r, mt_addr value, mt_aircraft_value *out)
     const int blades = mt_reader_count(r, found[VALUE_VALUE], 1, MT_MAX_BLADES, 1);
     out->value = (double)blades;
     out->text = mt_arena_printf(r->mem, "%d", blades);
-    r->out_of_memory = r->out_of_memory || out->text == NULL;
 }
 
 static void read_rotor(mt_reader *r, mt_addr value, mt_aircraft_rotor *out)
@@ -214,7 +213,7 @@ mt_status mt_aircraft_load(const char *path, const mt_io_options *opt, mt_arena 
     }
     if (rc == MT_OK) {
         out->sha256 = mt_arena_strdup(mem, file.sha256);
-        rc = out->sha256 == NULL ? mt_fail_memory(err) : rc;
+        rc = mt_arena_check(mem, err);
     }
     mt_file_free(&file);
     return rc;

@@ -102,7 +102,7 @@ void mt_read_joints(mt_model_reader *mr, mt_addr list)
     mt_model *const m = mr->m;
     for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
         mt_joint *const grown =
-            mt_read_grow(mr, m->joints, m->n_joints, &m->cap_joints, sizeof *grown);
+            mt_arena_grow(&m->mem, m->joints, m->n_joints, &m->cap_joints, sizeof *grown);
         if (grown == NULL) {
             return;
         }
@@ -188,7 +188,6 @@ static mt_num *read_matrix(mt_model_reader *mr, mt_addr value)
     }
     mt_num *const matrix = mt_arena_alloc(&mr->m->mem, (size_t)ORDER * ORDER, sizeof *matrix);
     if (matrix == NULL) {
-        mr->r.out_of_memory = true;
         return NULL;
     }
     mt_items rows = mt_reader_items(&mr->r, value);
@@ -275,8 +274,8 @@ void mt_read_springs(mt_model_reader *mr, mt_addr springs, mt_addr dampers)
     const mt_addr lists[] = {springs, dampers};
     for (int k = 0; k < 2; k++) {
         for (mt_items i = mt_reader_items(&mr->r, lists[k]); mt_items_next(&i);) {
-            mt_spring *const grown =
-                mt_read_grow(mr, m->springs, m->n_springs, &m->cap_springs, sizeof *grown);
+            mt_spring *const grown = mt_arena_grow(&m->mem, m->springs, m->n_springs,
+                                                   &m->cap_springs, sizeof *grown);
             if (grown == NULL) {
                 return;
             }

@@ -145,7 +145,7 @@ void mt_read_links(mt_model_reader *mr, mt_addr list)
     mt_model *const m = mr->m;
     for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
         mt_link *const grown =
-            mt_read_grow(mr, m->links, m->n_links, &m->cap_links, sizeof *grown);
+            mt_arena_grow(&m->mem, m->links, m->n_links, &m->cap_links, sizeof *grown);
         if (grown == NULL) {
             return;
         }

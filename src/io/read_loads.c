@@ -61,7 +61,7 @@ void mt_read_loads(mt_model_reader *mr, mt_addr list)
     mt_model *const m = mr->m;
     for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
         mt_load *const grown =
-            mt_read_grow(mr, m->loads, m->n_loads, &m->cap_loads, sizeof *grown);
+            mt_arena_grow(&m->mem, m->loads, m->n_loads, &m->cap_loads, sizeof *grown);
         if (grown == NULL) {
             return;
         }

@@ -9,6 +9,7 @@
 
 #include "io/file.h"
 #include "io/io.h"
+#include "io/json_print.h"
 #include "model/names.h"
 
 #define MODEL_KEYS(X)                                 \
@@ -84,8 +85,7 @@ static void read_parameter_names(mt_model_reader *mr, mt_addr object)
     const char **const names =
         mt_arena_alloc(&m->mem, (size_t)n + (size_t)n_more, sizeof *names);
     m->parameters = mt_reader_room(&mr->r, &items, sizeof *m->parameters);
-    if (names == NULL || m->parameters == NULL) {
-        mr->r.out_of_memory = true;
+    if (mt_arena_failed(&m->mem)) {
         return;
     }
     m->cap_parameters = n;
@@ -131,7 +131,7 @@ static void read_parameters(mt_model_reader *mr, mt_addr object)
 {
     read_parameter_names(mr, object);
     mt_items items = mt_reader_items(&mr->r, object);
-    for (int k = 0; !mr->r.out_of_memory && mt_items_next(&items); k++) {
+    for (int k = 0; !mt_arena_failed(&mr->m->mem) && mt_items_next(&items); k++) {
         read_parameter(mr, items.at, &mr->m->parameters[k]);
     }
 }
@@ -141,7 +141,7 @@ static void read_points(mt_model_reader *mr, mt_addr object)
     mt_model *const m = mr->m;
     for (mt_items i = mt_reader_items(&mr->r, object); mt_items_next(&i);) {
         mt_point *const grown =
-            mt_read_grow(mr, m->points, m->n_points, &m->cap_points, sizeof *grown);
+            mt_arena_grow(&m->mem, m->points, m->n_points, &m->cap_points, sizeof *grown);
         if (grown == NULL) {
             return;
         }
@@ -182,7 +182,7 @@ static void read_bodies(mt_model_reader *mr, mt_addr list)
     mt_model *const m = mr->m;
     for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
         mt_body *const grown =
-            mt_read_grow(mr, m->bodies, m->n_bodies, &m->cap_bodies, sizeof *grown);
+            mt_arena_grow(&m->mem, m->bodies, m->n_bodies, &m->cap_bodies, sizeof *grown);
         if (grown == NULL) {
             return;
         }
@@ -209,7 +209,7 @@ static void read_root(mt_model_reader *mr, const mt_addr *at)
     m->dimension = mt_reader_count(&mr->r, at[MODEL_DIMENSION], 2, 3, 0);
     m->dimension_addr = at[MODEL_DIMENSION];
     read_parameters(mr, at[MODEL_PARAMETERS]);
-    if (mr->r.out_of_memory) {
+    if (mt_arena_failed(&m->mem)) {
         return;
     }
     m->has_gravity = mt_read_vector(mr, at[MODEL_GRAVITY], m->gravity);
@@ -251,7 +251,7 @@ static int compare_addrs(const void *a, const void *b)
 }
 
 /* Keep where every number stands: the document is gone when a value turns out to be wrong. */
-static bool note_places(mt_model_reader *mr)
+static void note_places(mt_model_reader *mr)
 {
     mt_model *const m = mr->m;
     const size_t n = (size_t)m->n_nums;
@@ -260,8 +260,8 @@ static bool note_places(mt_model_reader *mr)
     int *const addrs = mt_arena_int(&m->mem, n);
     int *const lines = mt_arena_int(&m->mem, n);
     int *const columns = mt_arena_int(&m->mem, n);
-    if (m->places == NULL || addrs == NULL || lines == NULL || columns == NULL) {
-        return false;
+    if (mt_arena_failed(&m->mem)) {
+        return;
     }
     for (size_t i = 0; i < n; i++) {
         addrs[i] = m->nums[i].addr;
@@ -273,7 +273,6 @@ static bool note_places(mt_model_reader *mr)
     }
     m->n_places = m->n_nums;
     mt_arena_rewind(&m->mem, mark);
-    return true;
 }
 
 mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_err *err)
@@ -290,10 +289,8 @@ mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_
     mt_addr at[MODEL_COUNT];
     if (check_format(&mr.r) && mt_reader_object(&mr.r, MT_JSON_ROOT, &mt_model_keys, at)) {
         read_root(&mr, at);
-        if (!mr.r.out_of_memory) {
-            (void)mt_model_finish(m, mr.r.diags, NULL); /* the arenas remember a shortage */
-        }
-        mr.r.out_of_memory = mr.r.out_of_memory || !note_places(&mr);
+        (void)mt_model_finish(m, mr.r.diags, NULL); /* the arenas remember a shortage */
+        note_places(&mr);
     }
     const mt_status rc = mt_reader_status(&mr.r, file, err);
     if (rc != MT_OK) {
@@ -309,7 +306,7 @@ static mt_status note_file(mt_model *m, const char *path, const mt_file *f, mt_e
 {
     m->path = mt_arena_strdup(&m->mem, path);
     m->sha256 = mt_arena_strdup(&m->mem, f->sha256);
-    return m->path == NULL || m->sha256 == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(&m->mem, err);
 }
 
 mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **out,

@@ -54,9 +54,6 @@ int mt_read_at(mt_model_reader *mr, mt_addr value, mt_position at[2]);
 /* Two names of what stands where a body may; names NULL where absent or wrong. */
 void mt_read_bodies(mt_model_reader *mr, mt_addr value, mt_attach bodies[2]);
 mt_presence mt_read_presence(mt_model_reader *mr, mt_addr value);
-/* Room for one more item in a list of the model: the new items pointer, NULL (noted) when out
- * of memory. */
-void *mt_read_grow(mt_model_reader *mr, void *items, int count, int *capacity, size_t size);
 
 void mt_read_links(mt_model_reader *mr, mt_addr list);
 void mt_read_joints(mt_model_reader *mr, mt_addr list);

@@ -179,10 +179,3 @@ mt_presence mt_read_presence(mt_model_reader *mr, mt_addr value)
     }
     return in;
 }
-
-void *mt_read_grow(mt_model_reader *mr, void *items, int count, int *capacity, size_t size)
-{
-    void *const grown = mt_arena_grow(&mr->m->mem, items, count, capacity, size);
-    mr->r.out_of_memory = mr->r.out_of_memory || grown == NULL;
-    return grown;
-}

@@ -13,6 +13,7 @@
 #include "io/file.h"
 #include "io/folder.h"
 #include "io/io.h"
+#include "io/json_print.h"
 #include "io/reader.h"
 
 enum { READER_PATIENCE_MS = 10000 };
@@ -154,7 +155,6 @@ static double *read_by_variable(result_reader *s, mt_addr value, bool nullable)
         return NULL;
     }
     double *const values = mt_arena_f64(s->r.mem, (size_t)n, 1);
-    s->r.out_of_memory = s->r.out_of_memory || values == NULL;
     int members = 0;
     bool known = true;
     for (mt_items i = mt_reader_items(&s->r, value); values != NULL && mt_items_next(&i);) {
@@ -214,7 +214,6 @@ static void read_field(result_reader *s, mt_addr value, const mt_field *f, void 
         break;
     case MT_FIELD_OPTION:
         *(void **)at = mt_arena_alloc(s->r.mem, 1, f->record->size);
-        s->r.out_of_memory = s->r.out_of_memory || *(void **)at == NULL;
         if (*(void **)at != NULL) {
             read_record(s, value, f->record, *(void **)at);
         }
@@ -299,7 +298,7 @@ static void list_variables(result_reader *s)
     s->variables = mt_reader_room(&s->r, &items, sizeof *s->variables);
     items = again;
     s->by_name = mt_reader_room(&s->r, &items, sizeof *s->by_name);
-    if (s->variables == NULL || s->by_name == NULL) {
+    if (mt_arena_failed(s->r.mem)) {
         return;
     }
     while (mt_items_next(&items)) {

@@ -99,7 +99,7 @@ void mt_read_sensors(mt_model_reader *mr, mt_addr list)
     mt_model *const m = mr->m;
     for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
         mt_sensor *const grown =
-            mt_read_grow(mr, m->sensors, m->n_sensors, &m->cap_sensors, sizeof *grown);
+            mt_arena_grow(&m->mem, m->sensors, m->n_sensors, &m->cap_sensors, sizeof *grown);
         if (grown == NULL) {
             return;
         }
@@ -113,7 +113,7 @@ void mt_read_modes(mt_model_reader *mr, mt_addr object)
     mt_model *const m = mr->m;
     for (mt_items i = mt_reader_items(&mr->r, object); mt_items_next(&i);) {
         mt_named_mode *const grown =
-            mt_read_grow(mr, m->modes, m->n_modes, &m->cap_modes, sizeof *grown);
+            mt_arena_grow(&m->mem, m->modes, m->n_modes, &m->cap_modes, sizeof *grown);
         if (grown == NULL) {
             return;
         }
@@ -175,8 +175,9 @@ void mt_read_configurations(mt_model_reader *mr, mt_addr object)
 {
     mt_model *const m = mr->m;
     for (mt_items i = mt_reader_items(&mr->r, object); mt_items_next(&i);) {
-        mt_configuration *const grown = mt_read_grow(mr, m->configurations, m->n_configurations,
-                                                     &m->cap_configurations, sizeof *grown);
+        mt_configuration *const grown =
+            mt_arena_grow(&m->mem, m->configurations, m->n_configurations,
+                          &m->cap_configurations, sizeof *grown);
         if (grown == NULL) {
             return;
         }

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "io/file.h"
+#include "io/json_print.h"
 #include "model/values.h"
 
 #define STUDY_KEYS(X)                                                \
@@ -84,7 +85,6 @@ void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *
     mt_input_file *const inputs =
         mt_arena_alloc(&study->mem, (size_t)study->n_inputs + 1, sizeof *inputs);
     if (inputs == NULL) {
-        s->r.out_of_memory = true;
         return;
     }
     for (int i = 0; i < study->n_inputs; i++) {
@@ -93,9 +93,19 @@ void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *
     mt_input_file *const added = &inputs[study->n_inputs];
     added->name = mt_arena_strdup(&study->mem, name);
     added->sha256 = mt_arena_strdup(&study->mem, sha256);
-    s->r.out_of_memory = s->r.out_of_memory || added->name == NULL || added->sha256 == NULL;
     study->inputs = inputs;
     study->n_inputs++;
+}
+
+void mt_read_study_take_messages(mt_study_reader *s, mt_text *messages)
+{
+    if (messages->length > 0) {
+        mt_text_add(s->model_messages, messages->s);
+    }
+    if (messages->failed) {
+        mt_arena_fail(s->r.mem);
+    }
+    mt_text_free(messages);
 }
 
 void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *file,
@@ -122,7 +132,7 @@ static mt_model *load_model(mt_study_reader *s, mt_name path)
     mt_text messages = {0};
     char *const joined = mt_file_join(s->study->path, path.s);
     if (joined == NULL) {
-        s->r.out_of_memory = true;
+        mt_arena_fail(s->r.mem);
         return NULL;
     }
     const mt_status rc = mt_model_load(joined, &s->files, &model, &messages, &why);
@@ -131,11 +141,7 @@ static mt_model *load_model(mt_study_reader *s, mt_name path)
     } else {
         mt_read_study_note_failure(s, path, joined, rc, &why, messages.length > 0);
     }
-    if (messages.length > 0) {
-        mt_text_add(s->model_messages, messages.s);
-    }
-    s->r.out_of_memory = s->r.out_of_memory || messages.failed;
-    mt_text_free(&messages);
+    mt_read_study_take_messages(s, &messages);
     free(joined);
     return model;
 }
@@ -153,7 +159,6 @@ mt_model *mt_read_study_model(mt_study_reader *s, mt_name path)
     mt_study_file *const read =
         mt_arena_grow(&s->study->mem, s->read, s->n_read, &s->cap_read, sizeof *read);
     if (read == NULL) {
-        s->r.out_of_memory = true;
         return NULL;
     }
     read[s->n_read] = (mt_study_file){path, load_model(s, path)};
@@ -168,7 +173,6 @@ static void use_parameters(mt_study_reader *s)
     const size_t n = (size_t)model->n_parameters;
     const char **const names = mt_arena_alloc(&s->study->mem, n, sizeof *names);
     if (names == NULL) {
-        s->r.out_of_memory = true;
         return;
     }
     for (size_t i = 0; i < n; i++) {
@@ -193,12 +197,13 @@ static void read_model(mt_study_reader *s, mt_addr value)
     use_parameters(s);
     double *const values = mt_arena_f64(&study->mem, (size_t)study->model->n_parameters, 1);
     if (values == NULL) {
-        s->r.out_of_memory = true;
         return;
     }
     const mt_status rc =
         mt_model_original_values(study->model, &study->mem, values, NULL, NULL);
-    s->r.out_of_memory = s->r.out_of_memory || rc == MT_E_MEMORY;
+    if (rc == MT_E_MEMORY) {
+        mt_arena_fail(&study->mem); /* it was told, and rewound */
+    }
     study->original = rc == MT_OK ? values : NULL; /* mt_study_finish says what is wrong */
 }
 
@@ -235,7 +240,6 @@ static void note_place(mt_study_reader *s, mt_addr addr)
                                                  &study->cap_places, sizeof *places);
     mt_text pointer = {.s = NULL};
     if (places == NULL) {
-        s->r.out_of_memory = true;
         return;
     }
     mt_json_pointer(s->r.doc, addr, &pointer);
@@ -243,7 +247,9 @@ static void note_place(mt_study_reader *s, mt_addr addr)
     *p = (mt_study_place){.addr = addr};
     mt_json_place(s->r.doc, addr, &p->line, &p->column);
     p->pointer = mt_arena_strdup(&study->mem, pointer.s == NULL ? "" : pointer.s);
-    s->r.out_of_memory = s->r.out_of_memory || pointer.failed || p->pointer == NULL;
+    if (pointer.failed) {
+        mt_arena_fail(&study->mem);
+    }
     mt_text_free(&pointer);
     study->places = places;
 }
@@ -321,7 +327,6 @@ static void name_by_file(mt_study_reader *s)
     const char *const dot = strrchr(file, '.');
     const size_t length = dot == NULL || dot == file ? strlen(file) : (size_t)(dot - file);
     study->name = mt_arena_strndup(&study->mem, file, length);
-    s->r.out_of_memory = s->r.out_of_memory || study->name == NULL;
 }
 
 static mt_status read_document(mt_study_reader *s, mt_err *err)
@@ -330,9 +335,7 @@ static mt_status read_document(mt_study_reader *s, mt_err *err)
     if (s->study->name == NULL) {
         name_by_file(s);
     }
-    if (s->r.out_of_memory) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(s->r.mem, err));
     if (s->failed != MT_OK && s->failed != MT_E_INPUT) {
         return mt_fail(err, s->failed, "%s", s->why.text);
     }
@@ -342,9 +345,6 @@ static mt_status read_document(mt_study_reader *s, mt_err *err)
             return rc;
         }
         note_places(s);
-        if (s->r.out_of_memory) {
-            return mt_fail_memory(err);
-        }
     }
     const mt_status rc = mt_reader_status(&s->r, s->study->path, err);
     if (rc == MT_OK && s->failed != MT_OK) {

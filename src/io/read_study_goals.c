@@ -62,9 +62,7 @@ static void read_configurations(const reading *g)
     }
     const mt_name name = mt_reader_ref(&s->r, found(g, MT_SLOT_CONFIGURATION));
     mt_name *const items = mt_arena_alloc(&s->study->mem, 1, sizeof *items);
-    if (items == NULL) {
-        s->r.out_of_memory = true;
-    } else if (name.s != NULL) {
+    if (items != NULL && name.s != NULL) {
         items[0] = name;
         g->goal->configuration_names = (mt_name_list){1, items};
     }
@@ -142,7 +140,6 @@ static void read_avoid(const reading *g)
     mt_avoid *const avoid = mt_arena_alloc(&s->study->mem, 1, sizeof *avoid);
     bool any = false;
     if (avoid == NULL) {
-        s->r.out_of_memory = true;
         return;
     }
     *avoid = mt_avoid_default(g->goal->addr);

@@ -59,7 +59,7 @@ int mt_read_study_one_of(mt_study_reader *s, const mt_study_object *o, int first
         mt_text names = {0};
         list_keys(keys, n, &names);
         if (names.failed) {
-            s->r.out_of_memory = true;
+            mt_arena_fail(s->r.mem);
         } else {
             mt_diag_structure(s->r.diags, o->addr, "one of %s is missing", names.s);
         }
@@ -85,7 +85,7 @@ double mt_read_study_number(mt_study_reader *s, mt_addr value)
     const mt_status rc =
         mt_model_expr_value(model, s->study->original, &e, &s->study->mem, &number, NULL);
     if (rc == MT_E_MEMORY) {
-        s->r.out_of_memory = true;
+        mt_arena_fail(s->r.mem); /* it was told, and rewound */
     } else if (rc != MT_OK) {
         mt_diag_error(s->r.diags, value, "\"%s\" has no finite value at the original design",
                       mt_json_string(s->r.doc, value));

@@ -152,11 +152,7 @@ static void load(mt_study_reader *s, mt_name path, const char *file)
         study->aircraft = (mt_aircraft_list){0};
         mt_read_study_note_failure(s, path, file, rc, &why, messages.length > 0);
     }
-    if (messages.length > 0) {
-        mt_text_add(s->model_messages, messages.s);
-    }
-    s->r.out_of_memory = s->r.out_of_memory || messages.failed;
-    mt_text_free(&messages);
+    mt_read_study_take_messages(s, &messages);
 }
 
 /* Where the study names no catalogue: the one beside the model, if there is one. */
@@ -166,7 +162,9 @@ static mt_name beside_model(mt_study_reader *s)
     char *const joined = model.s == NULL ? NULL : mt_file_join(model.s, "aircraft.json");
     const mt_name path = {.s = joined == NULL ? NULL : mt_arena_strdup(&s->study->mem, joined),
                           .addr = model.addr};
-    s->r.out_of_memory = s->r.out_of_memory || (model.s != NULL && path.s == NULL);
+    if (model.s != NULL && joined == NULL) {
+        mt_arena_fail(s->r.mem);
+    }
     free(joined);
     return path;
 }
@@ -180,7 +178,7 @@ void mt_read_study_aircraft(mt_study_reader *s, mt_addr value)
     const mt_name path = named ? mt_reader_ref(&s->r, value) : beside_model(s);
     char *const file = path.s == NULL ? NULL : mt_file_join(s->study->path, path.s);
     if (path.s != NULL && file == NULL) {
-        s->r.out_of_memory = true;
+        mt_arena_fail(s->r.mem);
     } else if (file != NULL && (named || !mt_file_absent(file))) {
         load(s, path, file);
     }

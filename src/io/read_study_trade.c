@@ -48,7 +48,6 @@ static void read_span(mt_study_reader *s, mt_addr value, mt_vary *v)
     }
     v->values = mt_arena_f64(&s->study->mem, (size_t)n, 1);
     if (v->values == NULL) {
-        s->r.out_of_memory = true;
         return;
     }
     v->n_values = n;

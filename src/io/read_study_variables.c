@@ -66,7 +66,6 @@ static void expand_rule(mt_study_reader *s, const mt_study_object *o, const rule
         }
         v->catalogue = mt_arena_f64(&s->study->mem, (size_t)n, 1);
         if (v->catalogue == NULL) {
-            s->r.out_of_memory = true;
             return;
         }
         v->n_catalogue = expand(r, n, v->catalogue);

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "io/json_print.h"
+
 static const char *const KEY_TEXTS[] = {
 #define MT_KEY_TYPE_TEXT(id, types, text) text,
     MT_KEY_TYPE_LIST(MT_KEY_TYPE_TEXT)
@@ -160,7 +162,6 @@ void *mt_reader_room(mt_reader *r, mt_items *items, size_t size)
 {
     void *const room = mt_arena_alloc(r->mem, (size_t)items->count, size);
     if (room == NULL) {
-        r->out_of_memory = true;
         items->left = 0;
     }
     return room;
@@ -171,9 +172,7 @@ const char *mt_reader_text(mt_reader *r, mt_addr value)
     if (!mt_reader_type(r, value, MT_KEY_TEXT)) {
         return NULL;
     }
-    const char *const copy = mt_arena_strdup(r->mem, mt_json_string(r->doc, value));
-    r->out_of_memory = r->out_of_memory || copy == NULL;
-    return copy;
+    return mt_arena_strdup(r->mem, mt_json_string(r->doc, value));
 }
 
 mt_name mt_reader_ref(mt_reader *r, mt_addr value)
@@ -238,9 +237,7 @@ mt_name mt_reader_member_name(mt_reader *r, mt_addr value, mt_name_form form)
         return (mt_name){.s = NULL, .addr = value};
     }
     check_form(r, at, s, form);
-    const mt_name name = {.s = mt_arena_strdup(r->mem, s), .addr = at};
-    r->out_of_memory = r->out_of_memory || name.s == NULL;
-    return name;
+    return (mt_name){.s = mt_arena_strdup(r->mem, s), .addr = at};
 }
 
 mt_name_list mt_reader_refs(mt_reader *r, mt_addr value)
@@ -264,10 +261,9 @@ mt_name_list mt_reader_refs(mt_reader *r, mt_addr value)
 static const char *joined(mt_reader *r, const char *const *names, int n)
 {
     const char *text = "";
-    for (int i = 0; i < n && text != NULL; i++) {
+    for (int i = 0; i < n; i++) {
         text = mt_arena_printf(r->mem, "%s%s%s", text, i == 0 ? "" : ", ", names[i]);
     }
-    r->out_of_memory = r->out_of_memory || text == NULL;
     return text == NULL ? "" : text;
 }
 
@@ -329,9 +325,7 @@ bool mt_reader_expr_text(mt_reader *r, mt_addr addr, const char *text, mt_expr *
         return true;
     }
     *out = (mt_expr){0};
-    if (rc == MT_E_MEMORY) {
-        r->out_of_memory = true;
-    } else {
+    if (rc != MT_E_MEMORY) {
         mt_diag_error(r->diags, addr, "%s", err.text);
     }
     return false;
@@ -348,7 +342,6 @@ bool mt_reader_expr(mt_reader *r, mt_addr value, mt_expr *out)
     }
     if (mt_expr_number(mt_json_number(r->doc, value), r->mem, out, NULL) != MT_OK) {
         *out = (mt_expr){0};
-        r->out_of_memory = true;
         return false;
     }
     return true;
@@ -356,9 +349,6 @@ bool mt_reader_expr(mt_reader *r, mt_addr value, mt_expr *out)
 
 mt_status mt_reader_status(const mt_reader *r, const char *file, mt_err *err)
 {
-    if (r->out_of_memory) {
-        return mt_fail_memory(err);
-    }
     MT_TRY(mt_arena_check(r->mem, err));
     return mt_json_status(r->doc, file, err);
 }

@@ -23,7 +23,6 @@ typedef struct mt_reader {
     const void *context;
     const char *const *names; /* candidates for "did you mean" in expressions */
     int n_names;
-    bool out_of_memory;
 } mt_reader;
 
 /* id, JSON types, what a message calls it */

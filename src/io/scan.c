@@ -4,13 +4,15 @@
  * 8259 exactly. A problem inside a token, a missing or superfluous comma and a comment are
  * noted and the scan goes on; where the structure is lost it ends.
  */
-#include "io/json_priv.h"
+#include "io/scan.h"
 
 #include <limits.h>
 #include <stdarg.h>
 #include <string.h>
 
 #include "base/format.h"
+#include "base/visible.h"
+#include "io/json.h"
 
 enum {
     MESSAGE_SIZE = 256,
@@ -19,28 +21,27 @@ enum {
 };
 
 typedef struct scan {
-    mt_json *doc;
-    const unsigned char *s;
+    const char *s;
     size_t n;
     size_t i;   /* next byte */
     int parent; /* container that we are in */
     int depth;
-    bool out_of_memory;
+    mt_json_spots *out;
+    mt_diags *diags;
 } scan;
 
-static mt_addr add_node(scan *sc, size_t start, int type)
+/* Its address; MT_NO_ADDR where memory is out, which the arena remembers. */
+static mt_addr add_spot(scan *sc, mt_json_spot spot)
 {
-    mt_json *const doc = sc->doc;
-    mt_json_node *const nodes =
-        mt_arena_grow(&doc->mem, doc->nodes, doc->count, &doc->capacity, sizeof *nodes);
-    if (nodes == NULL) {
-        sc->out_of_memory = true;
+    mt_json_spots *const out = sc->out;
+    mt_json_spot *const items =
+        mt_arena_grow(sc->diags->mem, out->items, out->n, &out->capacity, sizeof *items);
+    if (items == NULL) {
         return MT_NO_ADDR;
     }
-    doc->nodes = nodes;
-    nodes[doc->count] = (mt_json_node){
-        .start = (unsigned)start, .parent = sc->parent, .next = MT_NO_ADDR, .type = type};
-    return doc->count++;
+    out->items = items;
+    items[out->n] = spot;
+    return out->n++;
 }
 
 /* Note a problem; true where the scan may go on. */
@@ -51,44 +52,15 @@ static bool MT_PRINTF(3, 4) wrong(scan *sc, size_t at, const char *fmt, ...)
     va_start(args, fmt);
     (void)mt_vsnprintf(text, sizeof text, fmt, args);
     va_end(args);
-    const mt_addr mark = add_node(sc, at, 0);
-    if (mark == MT_NO_ADDR) {
-        return false;
-    }
-    mt_diag_error(&sc->doc->diags, mark, "%s", text);
-    return sc->doc->diags.errors < MAX_SYNTAX_ERRORS;
+    const mt_addr spot = add_spot(
+        sc, (mt_json_spot){.start = (unsigned)at, .parent = sc->parent, .mistake = true});
+    mt_diag_error(sc->diags, spot, "%s", text);
+    return sc->diags->errors < MAX_SYNTAX_ERRORS && spot != MT_NO_ADDR;
 }
 
 static int peek(const scan *sc)
 {
-    return sc->i < sc->n ? sc->s[sc->i] : -1;
-}
-
-/* Length of the well-formed UTF-8 sequence that starts at s (Unicode 15, table 3-7), 0 where
- * there is none. */
-static size_t utf8_length(const unsigned char *s, size_t n)
-{
-    if (s[0] < 0x80U) {
-        return 1;
-    }
-    if (s[0] < 0xC2U || s[0] > 0xF4U) {
-        return 0;
-    }
-    const size_t length = s[0] < 0xE0U ? 2 : s[0] < 0xF0U ? 3 : 4;
-    if (n < length) {
-        return 0;
-    }
-    const unsigned low = s[0] == 0xE0U ? 0xA0U : s[0] == 0xF0U ? 0x90U : 0x80U;
-    const unsigned high = s[0] == 0xEDU ? 0x9FU : s[0] == 0xF4U ? 0x8FU : 0xBFU;
-    if (s[1] < low || s[1] > high) {
-        return 0;
-    }
-    for (size_t k = 2; k < length; k++) {
-        if ((s[k] & 0xC0U) != 0x80U) {
-            return 0;
-        }
-    }
-    return length;
+    return sc->i < sc->n ? (unsigned char)sc->s[sc->i] : -1;
 }
 
 /* Skip a comment, which JSON has not. */
@@ -98,7 +70,7 @@ static bool skip_comment(scan *sc)
     const bool block = sc->s[at + 1] == '*';
     sc->i += 2;
     while (sc->i < sc->n) {
-        const unsigned char c = sc->s[sc->i];
+        const char c = sc->s[sc->i];
         if (block ? c == '*' && sc->i + 1 < sc->n && sc->s[sc->i + 1] == '/' : c == '\n') {
             sc->i += block ? 2 : 1;
             break;
@@ -133,7 +105,7 @@ static int hex4(const scan *sc, size_t at)
     }
     int value = 0;
     for (size_t k = 0; k < 4; k++) {
-        const unsigned char c = sc->s[at + k];
+        const char c = sc->s[at + k];
         const int digit = c >= '0' && c <= '9'   ? c - '0'
                           : c >= 'a' && c <= 'f' ? c - 'a' + 10
                           : c >= 'A' && c <= 'F' ? c - 'A' + 10
@@ -176,7 +148,7 @@ static bool scan_unicode_escape(scan *sc)
 
 static bool scan_escape(scan *sc)
 {
-    const int c = sc->i + 1 < sc->n ? sc->s[sc->i + 1] : -1;
+    const int c = sc->i + 1 < sc->n ? (unsigned char)sc->s[sc->i + 1] : -1;
     if (c == 'u') {
         return scan_unicode_escape(sc);
     }
@@ -208,7 +180,7 @@ static bool scan_string(scan *sc)
             go_on = scan_escape(sc);
             continue;
         }
-        const size_t length = c < ' ' ? 0 : utf8_length(sc->s + sc->i, sc->n - sc->i);
+        const size_t length = c < ' ' ? 0 : mt_utf8_length(sc->s + sc->i, sc->n - sc->i);
         if (length == 0) {
             go_on = c < ' ' ? wrong(sc, sc->i,
                                     "control character U+%04X in a string: write \\u%04x",
@@ -231,7 +203,7 @@ static bool is_word(int c)
            c == '+' || c == '-' || c == '.';
 }
 
-static size_t digits(const unsigned char *s, size_t n)
+static size_t digits(const char *s, size_t n)
 {
     size_t k = 0;
     while (k < n && is_digit(s[k])) {
@@ -242,7 +214,7 @@ static size_t digits(const unsigned char *s, size_t n)
 
 /* What is wrong with a number, by the grammar of RFC 8259, 6: [-] int [ "." digits ] [ e [+-]
  * digits ]; NULL: nothing. */
-static const char *number_fault(const unsigned char *s, size_t n)
+static const char *number_fault(const char *s, size_t n)
 {
     size_t i = s[0] == '-' ? 1 : 0;
     const size_t whole = digits(s + i, n - i);
@@ -271,42 +243,33 @@ static const char *number_fault(const unsigned char *s, size_t n)
     return i == n ? NULL : "write an expression as a string in double quotes";
 }
 
-static bool is_text(const unsigned char *s, size_t n, const char *text)
+static bool is_text(const char *s, size_t n, const char *text)
 {
     return n == strlen(text) && memcmp(s, text, n) == 0;
 }
 
 /* A number or one of true, false, null. */
-static bool scan_word(scan *sc, int *type)
+static bool scan_word(scan *sc)
 {
     const size_t start = sc->i;
     while (is_word(peek(sc))) {
         sc->i++;
     }
-    const unsigned char *const s = sc->s + start;
+    const char *const s = sc->s + start;
     const size_t n = sc->i - start;
     const int shown = n < WORD_SHOWN ? (int)n : WORD_SHOWN;
-    const char *const word = (const char *)s;
-    if (is_text(s, n, "true") || is_text(s, n, "false")) {
-        *type = MT_JSON_BOOL;
+    if (is_text(s, n, "true") || is_text(s, n, "false") || is_text(s, n, "null")) {
         return true;
     }
-    if (is_text(s, n, "null")) {
-        *type = MT_JSON_NULL;
-        return true;
-    }
-    *type = MT_JSON_NUMBER;
     if (is_text(s, n, "NaN") || is_text(s, n, "Infinity") || is_text(s, n, "-Infinity")) {
         return wrong(sc, start, "%.*s is not a number in JSON: numbers must be finite", shown,
-                     word);
+                     s);
     }
     if (is_digit(s[0]) || s[0] == '-' || s[0] == '+' || s[0] == '.') {
         const char *const fault = s[0] == '+' ? "it must not start with +" : number_fault(s, n);
-        return fault == NULL ||
-               wrong(sc, start, "malformed number %.*s: %s", shown, word, fault);
+        return fault == NULL || wrong(sc, start, "malformed number %.*s: %s", shown, s, fault);
     }
-    return wrong(sc, start, "unexpected %.*s: strings are written in double quotes", shown,
-                 word);
+    return wrong(sc, start, "unexpected %.*s: strings are written in double quotes", shown, s);
 }
 
 static bool unexpected(scan *sc, const char *wanted)
@@ -383,10 +346,9 @@ static bool scan_separator(scan *sc, char close, bool *more)
 }
 
 /* The items behind an opening bracket. */
-static bool scan_items(scan *sc, mt_addr self, char close)
+static bool scan_items(scan *sc, char close)
 {
     const bool is_list = close == ']';
-    mt_addr last = MT_NO_ADDR;
     bool more = true;
     if (!skip_space(sc)) {
         return false;
@@ -400,16 +362,7 @@ static bool scan_items(scan *sc, mt_addr self, char close)
         if (!skip_space(sc)) {
             return false;
         }
-        const mt_addr item = sc->doc->count;
-        if (!scan_value(sc, name)) {
-            return false;
-        }
-        if (last != MT_NO_ADDR) {
-            sc->doc->nodes[last].next = item;
-        }
-        last = item;
-        sc->doc->nodes[self].children++;
-        if (!scan_separator(sc, close, &more)) {
+        if (!scan_value(sc, name) || !scan_separator(sc, close, &more)) {
             return false;
         }
     }
@@ -428,7 +381,7 @@ static bool scan_container(scan *sc, mt_addr self)
     const int outer = sc->parent;
     sc->parent = self;
     sc->depth++;
-    const bool ok = scan_items(sc, self, close);
+    const bool ok = scan_items(sc, close);
     sc->depth--;
     sc->parent = outer;
     return ok;
@@ -446,17 +399,17 @@ static bool scan_quoted_wrongly(scan *sc)
 
 static bool scan_value(scan *sc, size_t name)
 {
-    if (sc->doc->count >= MT_JSON_MAX_VALUES) {
+    if (sc->out->n >= MT_JSON_MAX_VALUES) {
         (void)wrong(sc, sc->i, "more than %d values", MT_JSON_MAX_VALUES);
         return false;
     }
     const int c = peek(sc);
-    int type = c == '{' ? MT_JSON_OBJECT : c == '[' ? MT_JSON_ARRAY : MT_JSON_STRING;
-    const mt_addr self = add_node(sc, sc->i, type);
+    const mt_addr self = add_spot(
+        sc,
+        (mt_json_spot){.start = (unsigned)sc->i, .name = (unsigned)name, .parent = sc->parent});
     if (self == MT_NO_ADDR) {
         return false;
     }
-    sc->doc->nodes[self].name = (unsigned)name;
     if (c == '{' || c == '[') {
         return scan_container(sc, self);
     }
@@ -467,10 +420,7 @@ static bool scan_value(scan *sc, size_t name)
         return scan_quoted_wrongly(sc);
     }
     if (is_word(c)) {
-        const bool ok = scan_word(sc, &type);
-        sc->doc->nodes[self].type = type;
-        sc->doc->nodes[self].end = (unsigned)sc->i;
-        return ok;
+        return scan_word(sc);
     }
     (void)unexpected(sc, "a value");
     return false;
@@ -479,13 +429,13 @@ static bool scan_value(scan *sc, size_t name)
 /* A whole text: one value between white space. */
 static void scan_text(scan *sc)
 {
-    static const unsigned char bom[] = {0xEF, 0xBB, 0xBF};
+    static const char bom[] = {'\xEF', '\xBB', '\xBF'};
     if (sc->n >= sizeof bom && memcmp(sc->s, bom, sizeof bom) == 0) {
         (void)wrong(sc, 0,
                     "the text starts with a byte order mark: save it as UTF-8 without one");
         sc->i = sizeof bom;
     }
-    if (sc->n >= 2 && sc->s[0] >= 0xFEU && sc->s[1] >= 0xFEU) {
+    if (sc->n >= 2 && (unsigned char)sc->s[0] >= 0xFEU && (unsigned char)sc->s[1] >= 0xFEU) {
         (void)wrong(sc, 0, "the text is UTF-16: save it as UTF-8");
         return;
     }
@@ -501,19 +451,12 @@ static void scan_text(scan *sc)
     }
 }
 
-mt_status mt_json_scan(mt_json *doc, mt_err *err)
+void mt_json_scan(const char *text, size_t length, mt_json_spots *out, mt_diags *diags)
 {
-    scan sc = {.doc = doc,
-               .s = (const unsigned char *)doc->text,
-               .n = doc->length,
-               .parent = MT_NO_ADDR};
-    if (doc->length > MT_JSON_MAX_BYTES) {
+    scan sc = {.s = text, .n = length, .parent = MT_NO_ADDR, .out = out, .diags = diags};
+    if (length > MT_JSON_MAX_BYTES) {
         (void)wrong(&sc, 0, "longer than %d bytes", MT_JSON_MAX_BYTES);
     } else {
         scan_text(&sc);
     }
-    if (sc.out_of_memory || mt_arena_failed(doc->diags.mem)) {
-        return mt_fail_memory(err);
-    }
-    return doc->diags.errors == 0 ? MT_OK : mt_fail(err, MT_E_INPUT, "the text is not JSON");
 }

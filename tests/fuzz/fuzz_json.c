@@ -5,6 +5,7 @@
  */
 #include "common/fuzz.h"
 #include "io/io.h"
+#include "io/json_print.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

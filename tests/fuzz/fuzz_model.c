@@ -11,6 +11,7 @@
 #include "cli/damped.h"
 #include "common/fuzz.h"
 #include "io/io.h"
+#include "io/json_print.h"
 #include "linalg/blas.h"
 #include "mechanics/info.h"
 #include "mechanics/sweep.h"
