@@ -6,6 +6,8 @@
 
 #include "base/interrupt.h"
 #include "mechanics/energy.h"
+#include "mechanics/products.h"
+#include "mechanics/redundant.h"
 
 enum { DIRECTION_TEXT = 300 };
 
@@ -72,22 +74,28 @@ mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
 /* Factor the reduced mass again where it has changed. */
 static mt_status refresh_mass(mt_analysis *a, mt_err *err)
 {
-    if (a->mass_version == a->lin->mass_version) {
+    const mt_reduced r = mt_linear_reduced(a->lin);
+    if (a->mass_version == r.mass_version) {
         return MT_OK;
     }
     mt_arena_clear(&a->mass_mem);
     a->mass_version = 0;
-    MT_TRY(mt_modal_factor_mass(a->lin->n, a->lin->m_r, &a->mass_mem, &a->mass, err));
-    a->mass_version = a->lin->mass_version;
+    MT_TRY(mt_modal_factor_mass(r.n, r.m, &a->mass_mem, &a->mass, err));
+    a->mass_version = r.mass_version;
     return MT_OK;
 }
 
-static mt_status solve_and_judge(mt_analysis *a, const mt_stiffness_factor *factor,
+static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                                  const mt_modal_options *options, mt_err *err)
 {
-    MT_TRY(
-        mt_modal_solve_factored(a->lin->k, &a->mass, factor, options, &a->mem, &a->modes, err));
-    const bool asked = a->lin->kg != NULL || mt_modal_in_doubt(&a->modes);
+    const mt_stiffness_factor factor = {.rows = r->rows,
+                                        .b = r->b,
+                                        .c = r->c,
+                                        .noise = r->noise,
+                                        .g = r->g,
+                                        .interrupt = a->sys->model->interrupt};
+    MT_TRY(mt_modal_solve_factored(r->k, &a->mass, &factor, options, &a->mem, &a->modes, err));
+    const bool asked = r->loaded || mt_modal_in_doubt(&a->modes);
     if (a->modes.y == NULL || !asked) {
         return MT_OK;
     }
@@ -125,27 +133,21 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
     MT_TRY(mt_linear_update(a->lin, inputs, opt->gradient, err));
     MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
     MT_TRY(refresh_mass(a, err));
-    const mt_linear *const lin = a->lin;
-    const mt_stiffness_factor factor = {.rows = lin->list[MT_TERM_STIFFNESS].n_rows,
-                                        .b = lin->factor_b,
-                                        .c = lin->factor_c,
-                                        .noise = lin->factor_noise,
-                                        .g = lin->has_factor_g ? lin->factor_g : NULL,
-                                        .interrupt = a->sys->model->interrupt};
+    const mt_reduced r = mt_linear_reduced(a->lin);
     mt_modal_options options = mt_modal_options_default();
     options.n_rigid = a->n_rigid;
     /* where K is no sum of squares, shapes say what rounding leaves of its sign */
-    options.vectors = opt->vectors || opt->gradient || lin->has_factor_g;
+    options.vectors = opt->vectors || opt->gradient || r.g != NULL;
     options.need_accuracy = opt->accuracy;
     options.check = opt->check;
-    mt_status rc = solve_and_judge(a, &factor, &options, err);
+    mt_status rc = solve_and_judge(a, &r, &options, err);
     if (rc == MT_OK && a->modes.n_held > 0 && a->recount) {
         options.n_rigid = -1;
-        rc = solve_and_judge(a, &factor, &options, err);
+        rc = solve_and_judge(a, &r, &options, err);
     }
     if (rc == MT_E_MASSLESS && a->modes.massless != NULL) {
         char text[DIRECTION_TEXT];
-        mt_linear_name_direction(lin, a->modes.massless, text, sizeof text);
+        mt_linear_name_direction(a->lin, a->modes.massless, text, sizeof text);
         return mt_fail(
             err, rc,
             "neither mass nor stiffness holds %s: give it a mass, a spring, or a joint", text);
@@ -159,7 +161,7 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
     }
     a->with_gradient = opt->gradient;
     if (opt->gradient) {
-        const size_t n = (size_t)lin->n;
+        const size_t n = (size_t)r.n;
         a->dky = mt_arena_f64(&a->mem, n, (size_t)a->sys->n_inputs);
         a->dmy = mt_arena_f64(&a->mem, n, (size_t)a->sys->n_inputs);
         a->slopes = mt_arena_f64(&a->mem, (size_t)a->modes.count, (size_t)a->sys->n_inputs);
@@ -173,23 +175,23 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
 
 mt_status mt_analysis_products(mt_analysis *a, int pos, mt_err *err)
 {
-    const ptrdiff_t n = a->lin->n;
+    const ptrdiff_t n = mt_linear_freedoms(a->lin);
     if (!a->with_gradient) {
         return mt_fail(err, MT_E_INTERNAL,
                        "derivatives asked for after a solve without gradient");
     }
     MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
     for (int p = 0; p < a->sys->n_inputs; p++) {
-        MT_TRY(mt_linear_products(a->lin, p, 1, a->modes.y + (pos * n), a->dky + (p * n),
-                                  a->dmy + (p * n), NULL, err));
+        MT_TRY(mt_linear_products(a->lin, p, 1, mt_modal_shape(&a->modes, pos),
+                                  a->dky + (p * n), a->dmy + (p * n), NULL, err));
     }
     return MT_OK;
 }
 
 mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_err *err)
 {
-    const ptrdiff_t n = a->lin->n;
-    const double *const y = a->modes.y + (pos * n);
+    const ptrdiff_t n = mt_linear_freedoms(a->lin);
+    const double *const y = mt_modal_shape(&a->modes, pos);
     const size_t np = (size_t)a->sys->n_inputs;
     const bool known = a->with_gradient && a->sloped[pos];
     if (!known) {
@@ -208,7 +210,7 @@ mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_e
 mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *repeated,
                               mt_err *err)
 {
-    const ptrdiff_t n = a->lin->n;
+    const ptrdiff_t n = mt_linear_freedoms(a->lin);
     bool any = false;
     MT_TRY(mt_analysis_products(a, pos, err));
     for (int p = 0; p < a->sys->n_inputs; p++) {
@@ -226,9 +228,9 @@ mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *re
 mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel, double *s,
                             double *ds, mt_err *err)
 {
-    const ptrdiff_t n = a->lin->n;
+    const ptrdiff_t n = mt_linear_freedoms(a->lin);
     const int np = a->sys->n_inputs;
-    const double *const y = a->modes.y + (pos * n);
+    const double *const y = mt_modal_shape(&a->modes, pos);
     MT_TRY(mt_linear_sense(a->lin, ns, channel, 1, y, s, err));
     if (ds == NULL || np == 0) {
         return MT_OK;
@@ -240,7 +242,8 @@ mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel,
     }
     MT_TRY(mt_analysis_products(a, pos, err));
     const mt_directions given = {.np = np, .dky = a->dky, .dmy = a->dmy};
-    const mt_pencil pencil = {.n = (int)n, .k = a->lin->k, .m = a->lin->m_r};
+    const mt_reduced r = mt_linear_reduced(a->lin);
+    const mt_pencil pencil = {.n = r.n, .k = r.k, .m = r.m};
     if (a->modes.n_condensed == 0) {
         MT_TRY(mt_modal_dvector_by_modes(&a->modes, pos, &given, dy, NULL, &a->mem, err));
     } else {

@@ -84,9 +84,9 @@ mt_status mt_analysis_count(mt_analysis *a, const mt_count_box *box,
  * that are missing there (a mass is 0)? It is at infinity. */
 bool mt_analysis_is_infinite(const mt_analysis *a, int index);
 /* Directions that remain free where only the terms of K with holds[t] (one for each of
- * lin->list[MT_TERM_STIFFNESS]) resist: the null directions of their sum, whatever their sizes.
- * Geometry and mass are those of the last update. Not where the mechanism is loaded (lin->kg).
- * O(n^3). */
+ * mt_linear_terms(lin, MT_TERM_STIFFNESS)) resist: the null directions of their sum, whatever
+ * their sizes. Geometry and mass are those of the last update. Not where the mechanism is
+ * loaded (mt_reduced.loaded). O(n^3). */
 mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor *mass,
                                       const bool *holds, mt_arena *scratch, int *n,
                                       mt_err *err);

@@ -37,26 +37,27 @@ static void add_pair(ptrdiff_t n, double size, const double *a, const double *b,
 /* A term that holds counts with its own size, or 1 where that is 0: any size will do. */
 static double size_of(const mt_linear *lin, const mt_term *term)
 {
-    const double now = lin->value[term->coefficient];
+    const double now = mt_linear_value(lin, term->coefficient);
     return now != 0.0 && isfinite(now) ? (term->pair ? now : fabs(now)) : 1.0;
 }
 
 mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor *mass,
                                       const bool *holds, mt_arena *scratch, int *n, mt_err *err)
 {
-    const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];
-    const ptrdiff_t order = lin->n;
+    const mt_term_list *const list = mt_linear_terms(lin, MT_TERM_STIFFNESS);
+    const mt_reduced r = mt_linear_reduced(lin);
+    const ptrdiff_t order = r.n;
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     double *const k = mt_arena_f64(scratch, (size_t)order, (size_t)order);
     double *const c = mt_arena_f64(scratch, (size_t)list->n_rows, 1);
     const mt_stiffness_factor factor = {.rows = list->n_rows,
-                                        .b = lin->factor_b,
+                                        .b = r.b,
                                         .c = c,
-                                        .noise = lin->factor_noise,
-                                        .interrupt = lin->sys->model->interrupt};
+                                        .noise = r.noise,
+                                        .interrupt = mt_linear_system(lin)->model->interrupt};
     mt_modal_options opt = mt_modal_options_default();
     mt_modes modes;
-    bool squares = lin->kg == NULL;
+    bool squares = !r.loaded;
     if (k == NULL || c == NULL) {
         return mt_fail_memory(err);
     }
@@ -66,7 +67,7 @@ mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor
             continue;
         }
         const double size = size_of(lin, term);
-        const double *const a = lin->reduced[MT_TERM_STIFFNESS] + (term->first * order);
+        const double *const a = mt_linear_row(lin, MT_TERM_STIFFNESS, term->first);
         squares = squares && !term->pair;
         c[term->first] = term->pair ? 0.0 : size;
         add_pair(order, size, a, term->pair ? a + order : a, k);
@@ -95,8 +96,8 @@ typedef struct family {
 static mt_status count_terms(family *f, mt_arena *mem, int *n_rigid, mt_err *err)
 {
     const mt_linear *const lin = f->a->lin;
-    const mt_program *const p = &lin->sys->program;
-    const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];
+    const mt_program *const p = &mt_linear_system(lin)->program;
+    const mt_term_list *const list = mt_linear_terms(lin, MT_TERM_STIFFNESS);
     double *const lo = mt_arena_f64(mem, (size_t)p->count, 1);
     double *const hi = mt_arena_f64(mem, (size_t)p->count, 1);
     bool *const holds = mt_arena_alloc(mem, (size_t)list->n_terms, sizeof *holds);
@@ -117,9 +118,9 @@ static mt_status count_terms(family *f, mt_arena *mem, int *n_rigid, mt_err *err
 static mt_status count_masses(const family *f, mt_arena *mem, int *n_most, mt_err *err)
 {
     const mt_linear *const lin = f->a->lin;
-    const mt_program *const p = &lin->sys->program;
-    const mt_term_list *const list = &lin->list[MT_TERM_MASS];
-    const ptrdiff_t n = lin->n;
+    const mt_program *const p = &mt_linear_system(lin)->program;
+    const mt_term_list *const list = mt_linear_terms(lin, MT_TERM_MASS);
+    const ptrdiff_t n = mt_linear_freedoms(lin);
     double *const lo = mt_arena_f64(mem, (size_t)p->count, 1);
     double *const hi = mt_arena_f64(mem, (size_t)p->count, 1);
     double *const m = mt_arena_f64(mem, (size_t)n, (size_t)n);
@@ -128,16 +129,16 @@ static mt_status count_masses(const family *f, mt_arena *mem, int *n_most, mt_er
         return mt_fail_memory(err);
     }
     mt_program_interval(p, f->lower, f->upper, lo, hi);
-    memcpy(m, lin->m_r, (size_t)(n * n) * sizeof *m);
+    memcpy(m, mt_linear_reduced(lin).m, (size_t)(n * n) * sizeof *m);
     for (int t = 0; t < list->n_terms; t++) {
         const mt_term *const term = &list->terms[t];
         const mt_node c = term->coefficient;
-        if (term->pair || lin->value[c] != 0.0 || !(hi[c] > DBL_MIN)) {
+        if (term->pair || mt_linear_value(lin, c) != 0.0 || !(hi[c] > DBL_MIN)) {
             continue;
         }
         const double size = isfinite(hi[c]) ? hi[c] : 1.0;
         for (int r = 0; r < term->count; r++) {
-            const double *const row = lin->reduced[MT_TERM_MASS] + ((term->first + r) * n);
+            const double *const row = mt_linear_row(lin, MT_TERM_MASS, term->first + r);
             for (ptrdiff_t j = 0; j < n; j++) {
                 mt_axpy((int)n, size * row[j], row, m + (j * n));
             }
@@ -207,8 +208,9 @@ static mt_status open_family(const mt_analysis *a, const mt_count_box *box,
  * they couple. */
 static bool is_structural(const mt_linear *lin)
 {
-    const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];
-    bool structural = lin->sys->geometry_fixed && !lin->sys->loaded && lin->kg == NULL;
+    const mt_term_list *const list = mt_linear_terms(lin, MT_TERM_STIFFNESS);
+    const mt_system *const sys = mt_linear_system(lin);
+    bool structural = sys->geometry_fixed && !sys->loaded && !mt_linear_reduced(lin).loaded;
     for (int t = 0; t < list->n_terms; t++) {
         structural = structural && !(list->terms[t].pair && list->terms[t].varies);
     }
@@ -256,9 +258,9 @@ bool mt_analysis_is_infinite(const mt_analysis *a, int index)
 /* Does row . y differ from 0 by more than rounding for a vector of the cluster? */
 static bool acts_on(const mt_analysis *a, const double *row, int first, int size)
 {
-    const ptrdiff_t n = a->lin->n;
+    const ptrdiff_t n = mt_linear_freedoms(a->lin);
     for (int k = first; k < first + size; k++) {
-        const double *const y = a->modes.y + (k * n);
+        const double *const y = mt_modal_shape(&a->modes, k);
         double part = 0.0;
         double most = 0.0;
         for (ptrdiff_t i = 0; i < n; i++) {
@@ -275,7 +277,7 @@ static bool acts_on(const mt_analysis *a, const double *row, int first, int size
 bool mt_analysis_slack(const mt_analysis *a, int pos, char *text, size_t size)
 {
     const mt_linear *const lin = a->lin;
-    const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];
+    const mt_term_list *const list = mt_linear_terms(lin, MT_TERM_STIFFNESS);
     size_t used = 0;
     const char *last = NULL;
     text[0] = '\0';
@@ -287,11 +289,10 @@ bool mt_analysis_slack(const mt_analysis *a, int pos, char *text, size_t size)
     const int first = mt_modal_cluster(&a->modes, pos, &cluster);
     for (int t = 0; t < list->n_terms && used < size; t++) {
         const mt_term *const term = &list->terms[t];
-        const char *const name = lin->sys->springs[term->source].name;
-        const double *const row =
-            lin->reduced[MT_TERM_STIFFNESS] + ((ptrdiff_t)term->first * lin->n);
+        const char *const name = a->sys->springs[term->source].name;
+        const double *const row = mt_linear_row(lin, MT_TERM_STIFFNESS, term->first);
         const bool told = last != NULL && strcmp(last, name) == 0;
-        if (!told && term->varies && lin->value[term->coefficient] == 0.0 &&
+        if (!told && term->varies && mt_linear_value(lin, term->coefficient) == 0.0 &&
             acts_on(a, row, first, cluster)) {
             const int wrote =
                 mt_snprintf(text + used, size - used, "%s\"%s\"", used > 0 ? ", " : "", name);

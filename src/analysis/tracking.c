@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/tracking.h"
 
+#include "mechanics/products.h"
+
 mt_status mt_track_weigh(mt_analysis *a, int pos, double *w, mt_err *err)
 {
-    return mt_linear_mass_product(a->lin, a->modes.y + ((ptrdiff_t)pos * a->lin->n), w, err);
+    return mt_linear_mass_product(a->lin, mt_modal_shape(&a->modes, pos), w, err);
 }
 
 /* share: n x count, column-major; rows are the named modes. */
@@ -12,7 +14,7 @@ static void shares(const mt_analysis *a, int n, const double *const *w, double *
 {
     const int nq = a->sys->nq;
     for (int c = 0; c < a->modes.count; c++) {
-        mt_linear_expand(a->lin, 1, a->modes.y + ((ptrdiff_t)c * a->lin->n), phi);
+        mt_linear_expand(a->lin, 1, mt_modal_shape(&a->modes, c), phi);
         for (int r = 0; r < n; r++) {
             const double part = mt_dot(nq, w[r], phi);
             share[r + ((ptrdiff_t)c * n)] = part * part;

@@ -6,6 +6,7 @@
 
 #include "base/format.h"
 #include "mechanics/info.h"
+#include "mechanics/redundant.h"
 #include "model/values.h"
 
 enum { NAME_SIZE = 400, NUMBER_SIZE = 32, NAMED = 3, STATES_2D = 3, STATES_3D = 6 };
@@ -95,8 +96,7 @@ static void name_motion(const mt_analysis *a, mt_mode_kind kind, char *text)
     text[0] = '\0';
     for (int i = 0; i < a->modes.count && text[0] == '\0'; i++) {
         if (a->modes.kind[i] == kind && a->modes.y != NULL) {
-            mt_linear_name_direction(a->lin, a->modes.y + ((ptrdiff_t)i * a->lin->n), text,
-                                     NAME_SIZE);
+            mt_linear_name_direction(a->lin, mt_modal_shape(&a->modes, i), text, NAME_SIZE);
         }
     }
     cut(text);
@@ -156,8 +156,8 @@ static const double MUCH_OF_LENGTH = 0.01;
 
 static void say_motion(const mt_linear *lin, mt_doubt_list *out)
 {
-    const mt_state *const p = &lin->position;
-    const mt_system *const sys = lin->sys;
+    const mt_state *const p = mt_linear_position(lin);
+    const mt_system *const sys = mt_linear_system(lin);
     const char *const from = sys->driven ? "where it is driven to" : "the drawing";
     const bool turns = p->turned_body >= 0 && p->turned_rad > MUCH_RAD;
     const bool moves = p->moved_body >= 0 && p->moved_m > MUCH_OF_LENGTH * sys->length_m;
@@ -196,19 +196,20 @@ static mt_status say_dead_centre(mt_linear *lin, mt_doubt_list *out, mt_err *err
 static void say_idle(const mt_linear *lin, mt_doubt_list *out)
 {
     char name[NAME_SIZE] = "";
+    const bool *idle = NULL;
+    const int spins = mt_linear_idle(lin, &idle);
     int n = 0;
-    for (int b = 0; b < lin->sys->n_bodies && lin->n_idle > 0; b++) {
-        if (lin->idle[b] && n++ < NAMED) {
+    for (int b = 0; b < mt_linear_system(lin)->n_bodies && spins > 0; b++) {
+        if (idle[b] && n++ < NAMED) {
             const size_t used = strlen(name);
             (void)mt_snprintf(name + used, sizeof name - used, "%s\"%s\"", n == 1 ? "" : ", ",
-                              lin->sys->bodies[b].name);
+                              mt_linear_system(lin)->bodies[b].name);
         }
     }
-    if (lin->n_idle > 0) {
+    if (spins > 0) {
         (void)mt_doubt_add(out, MT_LEVEL_FACT, "idle_spin",
                            "%d idle spin%s, without inertia and stiffness, left out: %s%s",
-                           lin->n_idle, lin->n_idle == 1 ? "" : "s", name,
-                           n > NAMED ? ", ..." : "");
+                           spins, spins == 1 ? "" : "s", name, n > NAMED ? ", ..." : "");
     }
 }
 
@@ -274,8 +275,8 @@ static void add_what_is_left(const mt_analysis *a, mt_doubt_list *list)
     for (int i = 0; i < list->n; i++) {
         mt_doubt *const d = &list->items[i];
         if (strcmp(d->kind, "gap") == 0) {
-            d->text =
-                mt_arena_printf(list->mem, "%s (to %.1e m)", d->text, a->lin->position.gap_m);
+            d->text = mt_arena_printf(list->mem, "%s (to %.1e m)", d->text,
+                                      mt_linear_position(a->lin)->gap_m);
         }
     }
 }

@@ -7,6 +7,7 @@
 #include "cli/terminal.h"
 #include "io/io.h"
 #include "io/write_json.h"
+#include "mechanics/singular.h"
 #include "study/study.h"
 
 /*

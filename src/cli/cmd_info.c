@@ -6,6 +6,7 @@
 #include "base/format.h"
 #include "cli/cli.h"
 #include "mechanics/info.h"
+#include "mechanics/redundant.h"
 #include "report/number.h"
 #include "report/table.h"
 
@@ -90,7 +91,7 @@ static void write_text(mt_text *out, const view *v)
         mt_text_addf(out, " - %d idle spin%s", i->idle, i->idle == 1 ? "" : "s");
     }
     mt_text_add(out, "\n");
-    if (v->a->lin->position.equilibrium.active) {
+    if (mt_linear_position(v->a->lin)->equilibrium.active) {
         mt_text_addf(out, "  equilibrium residual %.1e, largest gap of a joint %.1e m\n",
                      i->residual, i->gap_m);
     }

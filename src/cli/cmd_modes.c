@@ -63,12 +63,12 @@ static void json_mode(mt_json_writer *w, const view *v, int i)
 static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
 {
     const mt_modes *const m = &v->a->modes;
-    const mt_linear *const lin = v->a->lin;
+    const mt_state *const at = mt_linear_position(v->a->lin);
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
     mt_json_put_doubts(w, "doubts", &v->doubts, MT_LEVEL_DOUBT);
     mt_json_put_doubts(w, "facts", &v->doubts, MT_LEVEL_FACT);
-    mt_json_put_integer(w, "freedoms", lin->n);
+    mt_json_put_integer(w, "freedoms", mt_linear_freedoms(v->a->lin));
     mt_json_put_integer(w, "rigid_body_modes", m->n_rigid);
     mt_json_put_integer(w, "unstable_modes", m->n_unstable + m->n_unstable_condensed);
     mt_json_put_integer(w, "undecided_modes", m->n_undecided);
@@ -83,12 +83,12 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     }
     MT_TRY(mt_cli_json_redundant(w, v->a->lin, &v->a->mem, err));
     mt_json_open(w, "equilibrium", '{');
-    mt_json_put_bool(w, "solved", lin->position.equilibrium.active);
-    mt_json_put_integer(w, "iterations", lin->position.iterations);
-    mt_json_put_number(w, "residual", lin->position.equilibrium.residual);
-    mt_json_put_number(w, "gap_m", lin->position.gap_m);
-    mt_json_put_number(w, "largest_motion_m", lin->position.moved_m);
-    mt_json_put_number(w, "largest_turn_rad", lin->position.turned_rad);
+    mt_json_put_bool(w, "solved", at->equilibrium.active);
+    mt_json_put_integer(w, "iterations", at->iterations);
+    mt_json_put_number(w, "residual", at->equilibrium.residual);
+    mt_json_put_number(w, "gap_m", at->gap_m);
+    mt_json_put_number(w, "largest_motion_m", at->moved_m);
+    mt_json_put_number(w, "largest_turn_rad", at->turned_rad);
     mt_json_close(w);
     mt_json_close(w);
     return MT_OK;
@@ -213,10 +213,10 @@ static void tell_clusters(const mt_modes *m, int shown, mt_text *out)
 static void tell(const view *v, mt_text *out)
 {
     const mt_modes *const m = &v->a->modes;
-    const mt_linear *const lin = v->a->lin;
-    if (lin->position.equilibrium.active) {
+    const mt_state *const at = mt_linear_position(v->a->lin);
+    if (at->equilibrium.active) {
         mt_text_addf(out, "  Equilibrium found in %d iterations, residual %.1e.\n",
-                     lin->position.iterations, lin->position.equilibrium.residual);
+                     at->iterations, at->equilibrium.residual);
     }
     if (m->n_condensed > 0) {
         mt_text_addf(out, "  %d direction%s without mass follow%s statically.\n",

@@ -25,14 +25,15 @@ static const char *kind_name(mt_damped_kind kind)
 
 mt_status mt_damped_of(mt_analysis *a, mt_arena *mem, mt_damped_modes *out, mt_err *err)
 {
-    const size_t n = (size_t)a->lin->n;
+    const mt_reduced r = mt_linear_reduced(a->lin);
+    const size_t n = (size_t)r.n;
     double *const c = mt_arena_f64(mem, n, n);
     if (c == NULL) {
         return mt_fail_memory(err);
     }
     mt_linear_damping(a->lin, c);
     const mt_damped_problem p = {
-        .n = a->lin->n, .k = a->lin->k, .c = c, .mass = &a->mass, .modes = &a->modes};
+        .n = r.n, .k = r.k, .c = c, .mass = &a->mass, .modes = &a->modes};
     return mt_modal_damped(&p, mem, out, err);
 }
 

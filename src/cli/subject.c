@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "mechanics/redundant.h"
 #include "model/values.h"
 
 int mt_cli_failed(mt_status rc, const mt_err *err)

@@ -15,6 +15,8 @@
 #include <string.h>
 
 #include "linalg/dense.h"
+#include "mechanics/independence.h"
+#include "mechanics/products.h"
 
 static const double PI = 3.14159265358979323846;
 static const double PER_CENT = 0.01;
@@ -123,7 +125,7 @@ static mt_status choose_modes(mt_survey *v, const mt_modes *m, int wanted, mt_er
 static mt_status cluster_values(mt_analysis *a, int p, int first, int size, double *dlambda,
                                 mt_err *err)
 {
-    const size_t n = (size_t)a->lin->n;
+    const size_t n = (size_t)mt_linear_freedoms(a->lin);
     const size_t r = (size_t)size;
     const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
     double *const dky = mt_arena_f64(&a->mem, n, r);
@@ -132,7 +134,7 @@ static mt_status cluster_values(mt_analysis *a, int p, int first, int size, doub
     if (dky == NULL || dmy == NULL || matrix == NULL) {
         return mt_fail_memory(err);
     }
-    MT_TRY(mt_linear_products(a->lin, p, size, a->modes.y + ((size_t)first * n), dky, dmy, NULL,
+    MT_TRY(mt_linear_products(a->lin, p, size, mt_modal_shape(&a->modes, first), dky, dmy, NULL,
                               err));
     MT_TRY(mt_modal_dcluster(&a->modes, first, size, dky, dmy, matrix, &a->mem, err));
     MT_TRY(mt_eig_sym(size, matrix, dlambda, false, &a->mem, err));
@@ -172,8 +174,7 @@ static mt_status leave_out(mt_survey *v, mt_analysis *a, int p, int k, mt_err *e
         int size = 1;
         const int first = mt_modal_cluster(&a->modes, v->position[i], &size);
         for (int j = first; j < first + size && !gone; j++) {
-            MT_TRY(mt_linear_blocked(a->lin, p, 1, a->modes.y + ((size_t)j * (size_t)a->lin->n),
-                                     &gone, err));
+            MT_TRY(mt_linear_blocked(a->lin, p, 1, mt_modal_shape(&a->modes, j), &gone, err));
         }
         out[i] = gone ? nan("") : out[i];
     }
@@ -233,7 +234,7 @@ static mt_status find_values(mt_survey *v, mt_err *err)
     }
     MT_TRY(mt_subject_analyse(v->s, v->c, &a, err));
     for (int k = 0; k < v->n; k++) {
-        v->value[k] = a->lin->value[a->sys->parameters[v->parameter[k]]];
+        v->value[k] = mt_linear_value(a->lin, a->sys->parameters[v->parameter[k]]);
         v->overridden[k] = is_overridden(v, v->parameter[k]);
     }
     mt_analysis_delete(a);

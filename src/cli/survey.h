@@ -3,6 +3,7 @@
 #define CLI_SURVEY_H
 
 #include "cli/cli.h"
+#include "mechanics/independence.h"
 
 /*
  * How far parameters move the frequencies of one configuration: exact derivatives of the first

@@ -10,6 +10,8 @@
  */
 #include "mechanics/couplings.h"
 
+#include "mechanics/linear_priv.h"
+
 #include <float.h>
 #include <math.h>
 

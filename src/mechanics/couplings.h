@@ -4,6 +4,14 @@
 
 #include "mechanics/linear.h"
 
+/* Does the spring that a term of K comes from couple its measures (a bushing's matrix), and
+ * does any of its terms depend on an input? */
+typedef enum mt_coupling {
+    MT_COUPLING_NONE,
+    MT_COUPLING_WHOLE,
+    MT_COUPLING_VARIES
+} mt_coupling;
+
 /* coupling[n_terms] of the stiffness terms. */
 void mt_couplings_find(const mt_linear *lin, mt_coupling *coupling);
 /*

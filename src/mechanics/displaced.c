@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "mechanics/displaced.h"
 
+#include "mechanics/linear_priv.h"
+
 #include <string.h>
 
 static double *entry(double *m, ptrdiff_t nq, int row, int column)

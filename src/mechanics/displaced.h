@@ -20,7 +20,7 @@ mt_status mt_mass_matrix(mt_linear *lin, const mt_pose *poses, double *m, mt_err
  * @param[out] m     nq x nq mass matrix
  * @param[out] q [nq] impressed forces of springs and loads, that of the trimmed spring
  *   included; no constraint forces [N, N m]
- * @param[out] a     lin->m x nq constraint Jacobian, column-major
+ * @param[out] a     m x nq constraint Jacobian, column-major
  * @param[out] c [lin->m] by how much each constraint is violated [m, rad, cosine]; may be NULL
  *   A x = 0 holds for the velocities that the joints allow; at rest the right-hand side of A
  *   xdd = b is zero. Fails: MT_E_MEMORY.

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "mechanics/energy.h"
 
+#include "mechanics/linear_priv.h"
+
 #include <float.h>
 #include <math.h>
 

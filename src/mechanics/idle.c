@@ -14,6 +14,8 @@
  */
 #include "mechanics/idle.h"
 
+#include "mechanics/linear_priv.h"
+
 #include <math.h>
 #include <string.h>
 

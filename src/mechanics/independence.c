@@ -4,10 +4,14 @@
  * length are judged against the sum of their own terms: what should vanish is rounding of them,
  * also through the position's derivative; what does not is of their size.
  */
+#include "mechanics/independence.h"
+
+#include "mechanics/linear_priv.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "mechanics/linear.h"
+#include "mechanics/redundant.h"
 #include "mechanics/tangent.h"
 
 static const double VANISHES = 1e-8;

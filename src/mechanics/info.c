@@ -8,7 +8,11 @@
  */
 #include "mechanics/info.h"
 
+#include "mechanics/linear_priv.h"
+
 #include <math.h>
+
+#include "mechanics/redundant.h"
 
 enum { MOTIONS = 6 };
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "mechanics/linear.h"
+#include "mechanics/linear_priv.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +10,7 @@
 #include "mechanics/couplings.h"
 #include "mechanics/idle.h"
 #include "mechanics/reduce.h"
+#include "mechanics/singular.h"
 #include "mechanics/tangent.h"
 
 void mt_linear_delete(mt_linear *lin)
@@ -322,7 +324,6 @@ static mt_status rebuild(mt_linear *lin, mt_err *err)
     MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
     MT_TRY(fixed_parts(lin, err));
     MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
-    lin->geometry_version++;
     lin->built = true;
     return MT_OK;
 }
@@ -361,13 +362,91 @@ mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradi
         lin->built = false;
         return mt_fail(err, MT_E_INTERRUPTED, "interrupted");
     }
-    lin->with_gradient = with_gradient;
     const bool still = !lin->position.equilibrium.active || lin->unstressed;
     if (with_gradient && !(sys->geometry_fixed && still)) {
         return mt_tangent_update(lin, err);
     }
     lin->tangent = NULL;
     return MT_OK;
+}
+
+void mt_linear_follow(mt_linear *lin, bool on)
+{
+    lin->follow = on;
+    lin->has_last = false;
+}
+
+void mt_linear_first_input(mt_linear *lin, int first)
+{
+    lin->first_input = first;
+}
+
+const mt_system *mt_linear_system(const mt_linear *lin)
+{
+    return lin->sys;
+}
+
+const mt_state *mt_linear_position(const mt_linear *lin)
+{
+    return &lin->position;
+}
+
+int mt_linear_freedoms(const mt_linear *lin)
+{
+    return lin->n;
+}
+
+int mt_linear_equations(const mt_linear *lin)
+{
+    return lin->m;
+}
+
+mt_reduced mt_linear_reduced(const mt_linear *lin)
+{
+    return (mt_reduced){.n = lin->n,
+                        .k = lin->k,
+                        .m = lin->m_r,
+                        .mass_version = lin->mass_version,
+                        .loaded = lin->kg != NULL,
+                        .rows = lin->list[MT_TERM_STIFFNESS].n_rows,
+                        .b = lin->factor_b,
+                        .c = lin->factor_c,
+                        .noise = lin->factor_noise,
+                        .g = lin->has_factor_g ? lin->factor_g : NULL};
+}
+
+const mt_term_list *mt_linear_terms(const mt_linear *lin, mt_term_kind kind)
+{
+    return &lin->list[kind];
+}
+
+const double *mt_linear_row(const mt_linear *lin, mt_term_kind kind, int row)
+{
+    return lin->reduced[kind] + ((ptrdiff_t)row * lin->n);
+}
+
+const double *mt_linear_fixed(const mt_linear *lin, mt_term_kind kind)
+{
+    assert(kind == MT_TERM_STIFFNESS || kind == MT_TERM_MASS);
+    return kind == MT_TERM_STIFFNESS ? lin->k_fixed : lin->m_fixed;
+}
+
+double mt_linear_value(const mt_linear *lin, mt_node node)
+{
+    return lin->value[node];
+}
+
+double mt_linear_slope(const mt_linear *lin, mt_node node, int input)
+{
+    return lin->grad[((ptrdiff_t)node * lin->sys->n_inputs) + input];
+}
+
+int mt_linear_idle(const mt_linear *lin, const bool **idle)
+{
+    if (idle != NULL) {
+        *idle = lin->idle;
+    }
+    return lin->n_idle;
 }
 
 void mt_linear_expand(const mt_linear *lin, int cols, const double *y, double *phi)

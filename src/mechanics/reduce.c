@@ -12,6 +12,8 @@
  */
 #include "mechanics/reduce.h"
 
+#include "mechanics/linear_priv.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the elimination found, in the user's words: redundant joints, directions named by
  * body. */
-#include "mechanics/linear.h"
+#include "mechanics/redundant.h"
+
+#include "mechanics/linear_priv.h"
 
 int mt_linear_redundant(const mt_linear *lin)
 {

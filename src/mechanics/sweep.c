@@ -6,10 +6,13 @@
  */
 #include "mechanics/sweep.h"
 
+#include "mechanics/linear_priv.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "mechanics/drive.h"
+#include "mechanics/redundant.h"
 
 void mt_sweep_range(double from, double to, int steps, double *positions)
 {
@@ -150,13 +153,12 @@ mt_status mt_sweep_run(mt_linear *lin, const double *inputs, int n, const double
     if (n == 0) {
         return MT_OK;
     }
-    lin->follow = true;
-    lin->has_last = false; /* begin at the reference position */
+    mt_linear_follow(lin, true);
     mt_status rc = walk(&s, nearest, 1, err);
-    lin->has_last = false;
+    mt_linear_follow(lin, true); /* and from the reference position the other way */
     if (rc == MT_OK && nearest > 0) {
         rc = walk(&s, nearest - 1, -1, err);
     }
-    lin->follow = false;
+    mt_linear_follow(lin, false);
     return rc;
 }

@@ -3,6 +3,7 @@
 #define MECHANICS_SWEEP_H
 
 #include "mechanics/linear.h"
+#include "mechanics/singular.h"
 
 /*
  * The static response of a mechanism along the range of one driven joint: a system made by

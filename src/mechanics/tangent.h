@@ -2,7 +2,7 @@
 #ifndef MECHANICS_TANGENT_H
 #define MECHANICS_TANGENT_H
 
-#include "mechanics/linear.h"
+#include "mechanics/linear_priv.h"
 
 /* What depends on one input beyond the coefficients: geometry, position, constraint forces. */
 struct mt_linear_tangent {

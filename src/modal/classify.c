@@ -88,6 +88,11 @@ void mt_modal_find_clusters(mt_modes *modes)
     }
 }
 
+const double *mt_modal_shape(const mt_modes *modes, int i)
+{
+    return modes->y + ((ptrdiff_t)i * modes->n);
+}
+
 int mt_modal_cluster(const mt_modes *modes, int i, int *size)
 {
     int first = i;

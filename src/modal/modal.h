@@ -118,6 +118,10 @@ typedef struct mt_modes {
                          NULL */
 } mt_modes;
 
+/* Shape y of the mode at position i, [n]; those of the modes behind it follow. After a solve
+ * with vectors. */
+const double *mt_modal_shape(const mt_modes *modes, int i);
+
 /* Compute the modes. opt NULL: default; factor may be NULL. Results live in mem, scratch is
  * given back; repeated calls with mem rewound do not touch the heap. O(n^3), about 11 us for
  * n = 11 with vectors.

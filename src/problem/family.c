@@ -12,7 +12,7 @@ static const mt_system *system_of(const mt_problem *p, int view)
 double mt_family_position(const mt_problem *p, const mt_family *f, int k)
 {
     const mt_analysis *const a = p->views[f->view[k]].analysis;
-    return a->sys->drive == MT_NO_NODE ? 0.0 : a->lin->value[a->sys->drive];
+    return a->sys->drive == MT_NO_NODE ? 0.0 : mt_linear_value(a->lin, a->sys->drive);
 }
 
 bool mt_family_any(const mt_problem *p)

@@ -46,10 +46,9 @@ static double value(const mt_problem *p, const mt_aim *a, double *gradient)
     const mt_linear *const lin = p->views[0].analysis->lin;
     double f = 0.0;
     for (int k = 0; k < a->n_mass; k++) {
-        f += lin->value[a->mass[k]];
+        f += mt_linear_value(lin, a->mass[k]);
         for (int i = 0; i < p->n && gradient != NULL; i++) {
-            gradient[i] +=
-                mt_problem_stretch(p, i) * lin->grad[((ptrdiff_t)a->mass[k] * p->n) + i];
+            gradient[i] += mt_problem_stretch(p, i) * mt_linear_slope(lin, a->mass[k], i);
         }
     }
     return f;

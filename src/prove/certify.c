@@ -64,15 +64,15 @@ static const double UNSURE_ULPS = 16.0;
 static mt_status below(const mt_linear *lin, int n_rigid, double hz, mt_arena *scratch,
                        int *modes, bool *sure, mt_err *err)
 {
+    const mt_reduced r = mt_linear_reduced(lin);
     int count[3];
     double gap = 0.0;
     *modes = 0;
     if (!(hz > 0.0)) {
         return MT_OK;
     }
-    MT_TRY(mt_inertia(lin->n, lin->k, lin->m_r, mt_enclosure_lambda(hz), count, &gap, scratch,
-                      err));
-    *sure = *sure && gap > UNSURE_ULPS * (double)lin->n * DBL_EPSILON;
+    MT_TRY(mt_inertia(r.n, r.k, r.m, mt_enclosure_lambda(hz), count, &gap, scratch, err));
+    *sure = *sure && gap > UNSURE_ULPS * (double)r.n * DBL_EPSILON;
     *modes = count[0] > n_rigid ? count[0] - n_rigid : 0;
     return MT_OK;
 }

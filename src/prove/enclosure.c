@@ -61,7 +61,7 @@ static mt_status note_inputs(mt_enclosure *e, mt_err *err)
 static mt_status check_count(mt_enclosure *e, const mt_analysis *a, bool *ok, char *reason,
                              mt_err *err)
 {
-    const mt_term_list *const list = &a->lin->list[MT_TERM_STIFFNESS];
+    const mt_term_list *const list = mt_linear_terms(a->lin, MT_TERM_STIFFNESS);
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     bool *const holds = mt_arena_alloc(&e->scratch, (size_t)list->n_terms, sizeof *holds);
     int free_directions = 0;
@@ -70,7 +70,7 @@ static mt_status check_count(mt_enclosure *e, const mt_analysis *a, bool *ok, ch
     }
     for (int t = 0; t < list->n_terms; t++) {
         const int at = e->of_term[MT_STIFFNESS][t];
-        holds[t] = at < 0 ? a->lin->value[list->terms[t].coefficient] != 0.0
+        holds[t] = at < 0 ? mt_linear_value(a->lin, list->terms[t].coefficient) != 0.0
                           : e->coefficients[at].most > 0.0 || e->coefficients[at].least < 0.0;
     }
     const mt_status rc = mt_analysis_free_directions(a->lin, &a->mass, holds, &e->scratch,

@@ -64,10 +64,10 @@ static void to_basis(const basis *b, int n, const double *row, double *out)
 static void add_piece(const mt_linear *lin, const basis *b, const mt_enclosure_piece *p,
                       double weight, double *work, double *dense)
 {
-    const int n = lin->n;
+    const int n = mt_linear_freedoms(lin);
     const ptrdiff_t r = b == NULL ? n : b->r;
-    const mt_term *const t = &lin->list[KINDS[p->matrix]].terms[p->term];
-    const double *const rows = lin->reduced[KINDS[p->matrix]] + ((ptrdiff_t)t->first * n);
+    const mt_term *const t = &mt_linear_terms(lin, KINDS[p->matrix])->terms[p->term];
+    const double *const rows = mt_linear_row(lin, KINDS[p->matrix], t->first);
     const bool whole = p->form == MT_FORM_SUM || p->form == MT_FORM_DIFFERENCE;
     const double c = whole ? 0.25 * weight : p->factor * weight;
     double *const v = work + (2 * (ptrdiff_t)n);
@@ -95,12 +95,11 @@ static void add_piece(const mt_linear *lin, const basis *b, const mt_enclosure_p
 static mt_status low_matrix(const mt_enclosure *e, const mt_linear *lin, mt_matrix which,
                             mt_arena *mem, double **out, mt_err *err)
 {
-    const ptrdiff_t n = lin->n;
+    const ptrdiff_t n = mt_linear_freedoms(lin);
     double *work = NULL;
     MT_TRY(room(mem, (size_t)n, 4, &work, err));
     MT_TRY(room(mem, (size_t)n, (size_t)n, out, err));
-    memcpy(*out, which == MT_STIFFNESS ? lin->k_fixed : lin->m_fixed,
-           (size_t)(n * n) * sizeof **out);
+    memcpy(*out, mt_linear_fixed(lin, KINDS[which]), (size_t)(n * n) * sizeof **out);
     for (int i = 0; i < e->n_pieces; i++) {
         if (e->pieces[i].matrix == which) {
             add_piece(lin, NULL, &e->pieces[i], e->value[MT_LOW][e->pieces[i].coefficient],
@@ -142,16 +141,16 @@ static mt_status check_massless(const mt_enclosure *e, const basis *b, mt_arena 
     mt_symm(b->n, b->r, b->m_low, b->y, my);
     MT_TRY(mt_qr_factor(b->n, b->r, my, b->n, 0.0, scratch, &qr, err));
     MT_TRY(mt_qr_q(&qr, b->r, t0, scratch, err));
-    const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];
+    const mt_term_list *const list = mt_linear_terms(lin, MT_TERM_STIFFNESS);
     for (int i = 0; i < list->n_rows && *ok; i++) {
         const mt_term *const t = &list->terms[list->row_term[i]];
-        const double *const row = lin->reduced[MT_TERM_STIFFNESS] + ((ptrdiff_t)i * b->n);
+        const double *const row = mt_linear_row(lin, MT_TERM_STIFFNESS, i);
         mt_gemv(true, b->n, (int)z, 1.0, t0, b->n, row, 0.0, part);
         if (t->varies && mt_norm2((int)z, part) > MASSLESS_SHARE * mt_norm2(b->n, row)) {
             *ok = false;
             (void)mt_snprintf(reason, MT_REASON_SIZE,
                               "spring \"%s\" acts on a massless freedom",
-                              lin->sys->springs[t->source].name);
+                              mt_linear_system(lin)->springs[t->source].name);
         }
     }
     for (int i = 0; i < e->n_coefficients && *ok; i++) {
@@ -320,10 +319,10 @@ static bool all_squares(const mt_linear *lin)
 {
     bool squares = true;
     for (int m = 0; m < MT_MATRICES; m++) {
-        const mt_term_list *const list = &lin->list[KINDS[m]];
+        const mt_term_list *const list = mt_linear_terms(lin, KINDS[m]);
         for (int i = 0; i < list->n_terms; i++) {
             const mt_term *const t = &list->terms[i];
-            const double c = t->varies ? 0.0 : lin->value[t->coefficient];
+            const double c = t->varies ? 0.0 : mt_linear_value(lin, t->coefficient);
             squares = squares && (c == 0.0 || (c > 0.0 && !t->pair));
         }
     }
@@ -354,8 +353,8 @@ static mt_status reduce(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_er
     MT_TRY(make_parts(e, b, err));
     for (mt_matrix m = MT_STIFFNESS; m < MT_MATRICES; m++) {
         MT_TRY(room(&e->mem, r, r, &e->fixed[m], err));
-        MT_TRY(to_basis_matrix(b, m == MT_STIFFNESS ? lin->k_fixed : lin->m_fixed, &e->scratch,
-                               e->fixed[m], err));
+        MT_TRY(
+            to_basis_matrix(b, mt_linear_fixed(lin, KINDS[m]), &e->scratch, e->fixed[m], err));
         for (mt_side s = MT_LOW; s <= MT_HIGH && (m == MT_STIFFNESS || e->mass_varies); s++) {
             MT_TRY(room(&e->mem, r, r, &e->at[m][s], err));
         }
@@ -363,10 +362,10 @@ static mt_status reduce(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_er
     MT_TRY(room(&e->mem, r, r, &e->work, err));
     e->fixed_norm = mt_norm2((int)(r * r), e->fixed[MT_STIFFNESS]);
     e->squares = all_squares(lin) && e->coupled == NULL;
-    e->roundoff =
-        ROUNDING_ULPS *
-        (double)(e->n + lin->list[MT_TERM_STIFFNESS].n_rows + lin->list[MT_TERM_MASS].n_rows) *
-        DBL_EPSILON * b->condition;
+    e->roundoff = ROUNDING_ULPS *
+                  (double)(e->n + mt_linear_terms(lin, MT_TERM_STIFFNESS)->n_rows +
+                           mt_linear_terms(lin, MT_TERM_MASS)->n_rows) *
+                  DBL_EPSILON * b->condition;
     return MT_OK;
 }
 
@@ -374,7 +373,7 @@ mt_status mt_enclosure_reduce(mt_enclosure *e, const mt_linear *lin, bool *ok, c
                               mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
-    basis b = {.lin = lin, .n = lin->n};
+    basis b = {.lin = lin, .n = mt_linear_freedoms(lin)};
     *ok = true;
     const mt_status rc = reduce(e, &b, ok, reason, err);
     mt_arena_rewind(&e->scratch, mark);

@@ -92,7 +92,7 @@ bool mt_enclosure_admits(const mt_analysis *a, char *reason)
     if (!loads_refused(sys, reason)) {
         return false;
     }
-    if (a->lin->position.equilibrium.active && !a->lin->unstressed) {
+    if (mt_linear_reduced(a->lin).loaded) {
         (void)mt_snprintf(reason, MT_REASON_SIZE,
                           "a driven joint or an equilibrium places the mechanism");
         return false;

@@ -236,7 +236,7 @@ mt_status mt_enclosure_collect(mt_enclosure *e, const mt_linear *lin, bool *ok, 
                                mt_err *err)
 {
     MT_TRY(mt_enclosure_list_terms(e, lin, err));
-    MT_TRY(extract(e, &lin->sys->program, err));
+    MT_TRY(extract(e, &mt_linear_system(lin)->program, err));
     MT_TRY(claim_work(e, err));
     MT_TRY(find_dependent(e, err));
     set_signs(e);

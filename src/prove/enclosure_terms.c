@@ -97,8 +97,8 @@ static bool proportional(const monomial *a, const monomial *b)
  * a rotation; -1: terms that are in no block. */
 static int key_of(const mt_linear *lin, mt_matrix m, int term, int which)
 {
-    const mt_system *const sys = lin->sys;
-    const int source = lin->list[KINDS[m]].terms[term].source;
+    const mt_system *const sys = mt_linear_system(lin);
+    const int source = mt_linear_terms(lin, KINDS[m])->terms[term].source;
     if (m == MT_STIFFNESS) {
         return sys->springs[source].measure[which];
     }
@@ -131,7 +131,7 @@ static int place_of(const block *b, int key)
  * grows too large. */
 static bool grow(const mt_linear *lin, mt_matrix m, block *b)
 {
-    const mt_term_list *const list = &lin->list[KINDS[m]];
+    const mt_term_list *const list = mt_linear_terms(lin, KINDS[m]);
     for (bool grown = true; grown;) {
         grown = false;
         for (int t = 0; t < list->n_terms; t++) {
@@ -141,7 +141,8 @@ static bool grow(const mt_linear *lin, mt_matrix m, block *b)
                 place_of(b, key[1 - known]) >= 0) {
                 continue;
             }
-            const monomial f = monomial_of(&lin->sys->program, list->terms[t].coefficient);
+            const monomial f =
+                monomial_of(&mt_linear_system(lin)->program, list->terms[t].coefficient);
             if (proportional(&f, &b->factor)) {
                 if (b->n == BLOCK) {
                     return false;
@@ -158,7 +159,7 @@ static bool grow(const mt_linear *lin, mt_matrix m, block *b)
  * reference. */
 static bool gather(const mt_linear *lin, mt_matrix m, const mt_enclosure *e, block *b)
 {
-    const mt_term_list *const list = &lin->list[KINDS[m]];
+    const mt_term_list *const list = mt_linear_terms(lin, KINDS[m]);
     b->reference = -1;
     for (int t = 0; t < list->n_terms; t++) {
         const mt_term *const term = &list->terms[t];
@@ -166,7 +167,7 @@ static bool gather(const mt_linear *lin, mt_matrix m, const mt_enclosure *e, blo
             place_of(b, key_of(lin, m, t, 1)) < 0) {
             continue;
         }
-        const monomial f = monomial_of(&lin->sys->program, term->coefficient);
+        const monomial f = monomial_of(&mt_linear_system(lin)->program, term->coefficient);
         if (!proportional(&f, &b->factor)) {
             continue;
         }
@@ -186,7 +187,7 @@ static bool gather(const mt_linear *lin, mt_matrix m, const mt_enclosure *e, blo
  * not positive. */
 static bool block_matrix(const mt_linear *lin, mt_matrix m, const block *b, double *a)
 {
-    const mt_term_list *const list = &lin->list[KINDS[m]];
+    const mt_term_list *const list = mt_linear_terms(lin, KINDS[m]);
     const double one = b->constant[b->reference];
     const ptrdiff_t n = b->n;
     double root[BLOCK] = {0.0};
@@ -223,8 +224,8 @@ static mt_status semidefinite(const mt_linear *lin, mt_matrix m, const block *b,
 
 static const char *name_of(const mt_linear *lin, mt_matrix m, int term)
 {
-    const mt_system *const sys = lin->sys;
-    const int source = lin->list[KINDS[m]].terms[term].source;
+    const mt_system *const sys = mt_linear_system(lin);
+    const int source = mt_linear_terms(lin, KINDS[m])->terms[term].source;
     return m == MT_STIFFNESS ? sys->springs[source].name
                              : sys->items[sys->inertias[source].item].name;
 }
@@ -232,7 +233,7 @@ static const char *name_of(const mt_linear *lin, mt_matrix m, int term)
 static int add_coefficient(mt_enclosure *e, const mt_linear *lin, mt_matrix m, int term,
                            mt_sign sign)
 {
-    const mt_node source = lin->list[KINDS[m]].terms[term].coefficient;
+    const mt_node source = mt_linear_terms(lin, KINDS[m])->terms[term].coefficient;
     for (int i = 0; i < e->n_coefficients && sign == MT_SIGN_POSITIVE; i++) {
         if (e->sources[i] == source && e->coefficients[i].required == MT_SIGN_POSITIVE) {
             return i;
@@ -257,9 +258,10 @@ static void add_piece(mt_enclosure *e, mt_matrix m, int term, int coefficient,
 static void split(mt_enclosure *e, const mt_linear *lin, mt_matrix m, int term)
 {
     const double *const a =
-        lin->reduced[KINDS[m]] + ((ptrdiff_t)lin->list[KINDS[m]].terms[term].first * lin->n);
-    const double norm_a = mt_norm2(lin->n, a);
-    const double norm_b = mt_norm2(lin->n, a + lin->n);
+        mt_linear_row(lin, KINDS[m], mt_linear_terms(lin, KINDS[m])->terms[term].first);
+    const int n = mt_linear_freedoms(lin);
+    const double norm_a = mt_norm2(n, a);
+    const double norm_b = mt_norm2(n, a + n);
     const double s = norm_a > 0.0 && norm_b > 0.0 ? sqrt(norm_b / norm_a) : 1.0;
     add_piece(e, m, term, add_coefficient(e, lin, m, term, MT_SIGN_NEGATED), MT_FORM_DIFFERENCE,
               s);
@@ -274,8 +276,8 @@ static void split(mt_enclosure *e, const mt_linear *lin, mt_matrix m, int term)
 static mt_status list_pair(mt_enclosure *e, const mt_linear *lin, mt_matrix m, int term,
                            mt_err *err)
 {
-    const mt_node node = lin->list[KINDS[m]].terms[term].coefficient;
-    block b = {.factor = monomial_of(&lin->sys->program, node),
+    const mt_node node = mt_linear_terms(lin, KINDS[m])->terms[term].coefficient;
+    block b = {.factor = monomial_of(&mt_linear_system(lin)->program, node),
                .n = 2,
                .key = {key_of(lin, m, term, 0), key_of(lin, m, term, 1)}};
     bool whole = b.factor.known && grow(lin, m, &b) && gather(lin, m, e, &b);
@@ -288,7 +290,7 @@ static mt_status list_pair(mt_enclosure *e, const mt_linear *lin, mt_matrix m, i
     }
     const int c = add_coefficient(e, lin, m, b.term[b.reference], MT_SIGN_POSITIVE);
     for (int i = 0; i < b.n_terms; i++) {
-        const bool pair = lin->list[KINDS[m]].terms[b.term[i]].pair;
+        const bool pair = mt_linear_terms(lin, KINDS[m])->terms[b.term[i]].pair;
         add_piece(e, m, b.term[i], c, pair ? MT_FORM_PAIR : MT_FORM_ROWS,
                   b.constant[i] / b.constant[b.reference]);
     }
@@ -297,8 +299,8 @@ static mt_status list_pair(mt_enclosure *e, const mt_linear *lin, mt_matrix m, i
 
 static mt_status claim(mt_enclosure *e, const mt_linear *lin, mt_err *err)
 {
-    const size_t n[MT_MATRICES] = {(size_t)lin->list[MT_TERM_STIFFNESS].n_terms,
-                                   (size_t)lin->list[MT_TERM_MASS].n_terms};
+    const size_t n[MT_MATRICES] = {(size_t)mt_linear_terms(lin, MT_TERM_STIFFNESS)->n_terms,
+                                   (size_t)mt_linear_terms(lin, MT_TERM_MASS)->n_terms};
     const size_t most = (2 * (n[0] + n[1])) + 1;
     e->sources = mt_arena_int(&e->mem, most);
     e->coefficients = mt_arena_alloc(&e->mem, most, sizeof *e->coefficients);
@@ -320,7 +322,7 @@ static mt_status claim(mt_enclosure *e, const mt_linear *lin, mt_err *err)
 /* Couplings first: they take the squares of their block along. */
 static mt_status list_matrix(mt_enclosure *e, const mt_linear *lin, mt_matrix m, mt_err *err)
 {
-    const mt_term_list *const list = &lin->list[KINDS[m]];
+    const mt_term_list *const list = mt_linear_terms(lin, KINDS[m]);
     for (int t = 0; t < list->n_terms; t++) {
         if (list->terms[t].varies && list->terms[t].pair && e->of_term[m][t] < 0) {
             MT_TRY(list_pair(e, lin, m, t, err));

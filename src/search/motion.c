@@ -18,6 +18,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "mechanics/products.h"
+
 static const double PART = 0.1;     /* of a clearance, between two positions */
 static const double NEAREST = 1e-3; /* clearances (ln) below it count as it */
 /* an improvement of the least room (ln) that is not worth a position */
@@ -85,8 +87,7 @@ static mt_status open_drive(mt_problem *p, mt_family *f, double position, mt_err
                                   at, &f->driven, err));
     f->driven->n_rigid = p->views[f->view[0]].analysis->n_rigid; /* one count for all designs */
     f->driven->n_most = p->views[f->view[0]].analysis->n_most;
-    f->driven->lin->first_input = p->n; /* the only slope that is asked for */
-    f->driven->lin->follow = true;
+    mt_linear_first_input(f->driven->lin, p->n); /* the only slope that is asked for */
     return MT_OK;
 }
 
@@ -94,8 +95,8 @@ static mt_status open_drive(mt_problem *p, mt_family *f, double position, mt_err
 static mt_status slope_of(walk *w, const edge *e, int pos, double *slope, mt_err *err)
 {
     mt_analysis *const a = w->a;
-    const ptrdiff_t n = a->lin->n;
-    const double *const y = a->modes.y + (pos * n);
+    const ptrdiff_t n = mt_linear_freedoms(a->lin);
+    const double *const y = mt_modal_shape(&a->modes, pos);
     int size = 1;
     (void)mt_modal_cluster(&a->modes, pos, &size);
     *slope = nan("");
@@ -409,7 +410,7 @@ mt_status mt_motion_follow(mt_problem *p, int family, const int *below, mt_arena
                                      why.text, err);
     }
     w.a = f->driven;
-    w.a->lin->has_last = false; /* begin at the reference position */
+    mt_linear_follow(w.a->lin, true); /* from the reference position on */
     w.unit = f->angle ? 1.0 : w.a->sys->length_m;
     w.inputs = mt_arena_f64(mem, (size_t)p->n + 1, 1);
     if (w.inputs == NULL) {

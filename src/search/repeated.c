@@ -67,7 +67,7 @@ static mt_status add_block(mt_repeated *m, const mt_repeated_side *s, double nea
         return MT_OK;
     }
     const int low = s->sign > 0 ? s->pos : s->pos - r + 1;
-    const int n = a->lin->n;
+    const int n = mt_linear_freedoms(a->lin);
     const size_t r2 = (size_t)r * (size_t)r;
     int index = 0;
     for (int i = 0; i <= low; i++) {
@@ -88,8 +88,8 @@ static mt_status add_block(mt_repeated *m, const mt_repeated_side *s, double nea
     if (!b->c || !b->b || !b->g || !b->entry) {
         return mt_fail_memory(err);
     }
-    mt_gemm(false, false, n, r, n, 1.0, a->lin->m_r, n, a->modes.y + ((ptrdiff_t)low * n), n,
-            0.0, b->c, n);
+    mt_gemm(false, false, n, r, n, 1.0, mt_linear_reduced(a->lin).m, n,
+            mt_modal_shape(&a->modes, low), n, 0.0, b->c, n);
     return MT_OK;
 }
 
@@ -146,10 +146,10 @@ static mt_status block_column(const mt_repeated *m, mt_repeated_block *b, int lo
 {
     mt_problem *const p = m->p;
     mt_analysis *const a = b->side.analysis;
-    const int n = a->lin->n;
+    const int n = mt_linear_freedoms(a->lin);
     const int r = b->r;
     const double sign = b->side.sign;
-    const double *const y = a->modes.y + ((ptrdiff_t)low * n);
+    const double *const y = mt_modal_shape(&a->modes, low);
     b->b[k + (k * r)] = sign * 0.5 * (a->modes.lambda[low + k] / s - 1.0);
     MT_TRY(mt_analysis_products(a, low + k, err));
     for (int j = 0; j < p->n; j++) {
@@ -173,7 +173,7 @@ static mt_status block_matrices(mt_repeated *m, mt_repeated_block *b, bool turn,
 {
     const mt_problem *const p = m->p;
     const mt_analysis *const a = b->side.analysis;
-    const int n = a->lin->n;
+    const int n = mt_linear_freedoms(a->lin);
     const int r = b->r;
     const int low = mt_modal_flexible(&a->modes, b->index);
     const double z = b->side.moves ? p->t[p->n] : 0.0;
@@ -187,8 +187,8 @@ static mt_status block_matrices(mt_repeated *m, mt_repeated_block *b, bool turn,
     }
     if (turn) {
         double w[MODES_MOST * MODES_MOST];
-        mt_gemm(true, false, r, r, n, 1.0, a->modes.y + ((ptrdiff_t)low * n), n, b->c, n, 0.0,
-                w, r);
+        mt_gemm(true, false, r, r, n, 1.0, mt_modal_shape(&a->modes, low), n, b->c, n, 0.0, w,
+                r);
         turned(r, w, b->b);
         for (int j = 0; j < p->n_t; j++) {
             turned(r, w, b->g + ((ptrdiff_t)j * r * r));

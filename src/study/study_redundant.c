@@ -5,7 +5,9 @@
  * three. At any other value the mechanism cannot be closed, or has lost a motion: its
  * frequencies are no function that a search could follow. Said where the study is read.
  */
+#include "mechanics/independence.h"
 #include "mechanics/linear.h"
+#include "mechanics/redundant.h"
 #include "study/study_check.h"
 
 /* Names configuration c's variables that break a redundancy; each variable once over all
@@ -34,7 +36,7 @@ static mt_status judge(mt_study_check *c, mt_linear *lin, bool *told, mt_err *er
                       "the freedom that they need",
                 c->model->parameters[s->variables[i].parameter].name.s,
                 s->variables[i].original, what.joints.text,
-                c->model->configurations[lin->sys->configuration].name.s);
+                c->model->configurations[mt_linear_system(lin)->configuration].name.s);
         }
     }
     return MT_OK;

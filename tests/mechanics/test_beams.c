@@ -158,7 +158,7 @@ static void beams__hang_under_their_weight(mt_test *t)
         "\"joints\": [{\"name\": \"c\", \"type\": \"fixed\", \"bodies\": [\"ground\", "
         "\"beam.start\"], \"at\": [0, 0]}]}");
     if (mech_must(t, mech_parse(t, text), NULL, "", &s)) {
-        const mt_pose *const tip = &s.a->lin->position.at.pose[8];
+        const mt_pose *const tip = &mt_linear_position(s.a->lin)->at.pose[8];
         const double ei = 2.1e11 * pow(0.02, 4) / 12.0;
         const double q = 7850.0 * 4e-4 * 9.81;
         /* terms of second order: (w/L)^2 ~ 3e-8 */
@@ -208,7 +208,7 @@ static void beams__bend_to_the_elastica(mt_test *t)
         mech s;
         mt_test_row(t, "%s%s", rows[i / 2].load, flip ? ", drawn from its end" : "");
         if (mech_must(t, cantilever(t, 16, flip, rows[i / 2].load), NULL, "", &s)) {
-            const mt_pose *const tip = &s.a->lin->position.at.pose[flip ? 0 : 16];
+            const mt_pose *const tip = &mt_linear_position(s.a->lin)->at.pose[flip ? 0 : 16];
             CHECK_NEAR_ABS(t, 1.0 - creal(tip->x[0]), rows[i / 2].u, 3e-5);
             CHECK_NEAR_ABS(t, creal(tip->x[1]), rows[i / 2].w, 3e-5);
         }
@@ -226,7 +226,7 @@ static void beams__bend_to_a_half_circle(mt_test *t)
         mech s;
         mt_test_row(t, "%d elements", n);
         if (mech_must(t, cantilever(t, n, false, "\"moment_n_m\": \"pi\""), NULL, "", &s)) {
-            const mt_pose *const tip = &s.a->lin->position.at.pose[n];
+            const mt_pose *const tip = &mt_linear_position(s.a->lin)->at.pose[n];
             CHECK_NEAR_ABS(t, creal(tip->r[0]), -1.0, 1e-9);
             CHECK_NEAR_ABS(t, creal(tip->r[1]), 0.0, 1e-9);
             CHECK_NEAR_ABS(t, creal(tip->x[0]), 0.0, 1e-9);

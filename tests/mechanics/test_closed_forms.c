@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "mechanics/mech.h"
+#include "mechanics/redundant.h"
 
 /* Eigenvalues of a few well-scaled freedoms: rounding is 1e-14, the printed references have ten
  * digits. */
@@ -162,7 +163,7 @@ static void closed_form__driven_rod_is_locked_or_trimmed(mt_test *t)
         driven_rod_pair(40.0, angle, hz);
         mech_expect(t, &s, 2, hz, 0, TOL);
         /* the servo carries the weight's moment */
-        CHECK_NEAR(t, fabs(s.a->lin->position.equilibrium.trim_force),
+        CHECK_NEAR(t, fabs(mt_linear_position(s.a->lin)->equilibrium.trim_force),
                    (1.0 + 0.5) * 0.8 * 9.81 * sin(angle), TOL);
     }
     mech_free(&s);

@@ -99,7 +99,7 @@ static void loop__closes_for_other_crank_lengths(mt_test *t)
             const double a = 0.10 + 0.012 * i;
             mt_test_row(t, "crank of %g m", a);
             CHECK(t, mt_analysis_solve(s.a, &a, &opt, &s.err) == MT_OK);
-            const mt_state *const p = &s.a->lin->position;
+            const mt_state *const p = mt_linear_position(s.a->lin);
             const mt_pose ground = mt_pose_ground();
             CHECK(t, p->gap_m <= 1e-14);
             CHECK_NEAR(t, distance(&p->at.pose[0], &ground), a / 2.0, 1e-12);
@@ -143,7 +143,7 @@ static void info__masses_of_plane_and_space(mt_test *t)
         static const double M[3] = {1.0, 2.0, 0.8};
         static const double ZZ[3] = {0.15 * 0.15 / 12.0, 0.02, 0.005};
         for (int b = 0; b < 3; b++) {
-            const mt_pose *const p = &s.a->lin->position.at.pose[b];
+            const mt_pose *const p = &mt_linear_position(s.a->lin)->at.pose[b];
             own += ZZ[b];
             moved += M[b] * (pow(creal(p->x[0]) - info.centre_m[0], 2.0) +
                              pow(creal(p->x[1]) - info.centre_m[1], 2.0));

@@ -8,6 +8,8 @@
  * h^6, rounding ~ eps/h = 1e-12, both of the largest lambda, which lies up to 1e7 above the
  * lowest here.
  */
+#include "mechanics/linear_priv.h"
+
 #include "modetune/dynamics.h"
 
 #include <stdlib.h>
@@ -15,6 +17,7 @@
 #include "linalg/dense.h"
 #include "mechanics/displaced.h"
 #include "mechanics/mech.h"
+#include "mechanics/redundant.h"
 
 static const double STEP = 3e-4; /* model lengths, rad */
 static const double TOL = 1e-6;
@@ -34,13 +37,14 @@ typedef struct motion {
 
 static bool acceleration(const motion *s, const double *dq, double *xdd, mt_err *err)
 {
-    const int n = s->lin->sys->nq;
+    const int n = mt_linear_system(s->lin)->nq;
     if (mt_displaced_eval(s->lin, dq, s->m, s->q, s->a, NULL, err) != MT_OK) {
         return false;
     }
-    return (s->singular
-                ? mt_udwadia_phohomsiri(n, s->lin->m, s->m, s->q, s->a, s->b, xdd, err)
-                : mt_udwadia_kalaba(n, s->lin->m, s->m, s->q, s->a, s->b, xdd, err)) == MT_OK;
+    return (s->singular ? mt_udwadia_phohomsiri(n, mt_linear_equations(s->lin), s->m, s->q,
+                                                s->a, s->b, xdd, err)
+                        : mt_udwadia_kalaba(n, mt_linear_equations(s->lin), s->m, s->q, s->a,
+                                            s->b, xdd, err)) == MT_OK;
 }
 
 /* Bring dq back to where all constraints hold: least-norm steps, each wrong by |dq|
@@ -48,8 +52,8 @@ static bool acceleration(const motion *s, const double *dq, double *xdd, mt_err 
 static bool restore(const motion *s, double *dq, mt_err *err)
 {
     enum { STEPS = 12 };
-    const size_t n = (size_t)s->lin->sys->nq;
-    const size_t m = (size_t)s->lin->m;
+    const size_t n = (size_t)mt_linear_system(s->lin)->nq;
+    const size_t m = (size_t)mt_linear_equations(s->lin);
     const mt_arena_mark mark = mt_arena_get_mark(&mem);
     double *const c = mt_arena_f64(&mem, m, 1);
     double *const pinv = mt_arena_f64(&mem, n, m);
@@ -71,8 +75,8 @@ static bool jacobian(const motion *s, int cols, const double *along, double *j, 
     static const double AT[] = {-3.0, -2.0, -1.0, 1.0, 2.0, 3.0};
     static const double WEIGHT[] = {-1.0 / 60.0, 9.0 / 60.0,  -45.0 / 60.0,
                                     45.0 / 60.0, -9.0 / 60.0, 1.0 / 60.0};
-    const size_t n = (size_t)s->lin->sys->nq;
-    const double h = STEP * s->lin->sys->length_m;
+    const size_t n = (size_t)mt_linear_system(s->lin)->nq;
+    const double h = STEP * mt_linear_system(s->lin)->length_m;
     double *const dq = mt_arena_f64(&mem, n, 1);
     double *const xdd = mt_arena_f64(&mem, n, 1);
     bool ok = acceleration(s, NULL, xdd, err);
@@ -133,8 +137,8 @@ static void compare(mt_test *t, const mt_modes *modes, int order, double *wr, co
  * freedoms Z alone, J Z = Z J_r. */
 static bool reduced_jacobian(const motion *x, double *j, double *rest, mt_err *err)
 {
-    const int nq = x->lin->sys->nq;
-    const int n = x->lin->n;
+    const int nq = mt_linear_system(x->lin)->nq;
+    const int n = mt_linear_freedoms(x->lin);
     const double *const z = x->lin->e.z;
     double *const jz = mt_arena_f64(&mem, (size_t)nq, (size_t)n);
     double *const zinv = mt_arena_f64(&mem, (size_t)n, (size_t)nq);
@@ -150,10 +154,10 @@ static void check_system(mt_test *t, mech *s, bool singular)
 {
     mt_linear *const lin = s->a->lin;
     const bool redundant = mt_linear_redundant(lin) > 0;
-    const size_t n = (size_t)lin->sys->nq;
-    const size_t m = (size_t)lin->m;
+    const size_t n = (size_t)mt_linear_system(lin)->nq;
+    const size_t m = (size_t)mt_linear_equations(lin);
     const mt_arena_mark mark = mt_arena_get_mark(&mem);
-    const int order = redundant ? lin->n : lin->sys->nq;
+    const int order = redundant ? mt_linear_freedoms(lin) : mt_linear_system(lin)->nq;
     double *const j = mt_arena_f64(&mem, n, n);
     double *const wr = mt_arena_f64(&mem, n, 1);
     double *const wi = mt_arena_f64(&mem, n, 1);
@@ -169,7 +173,8 @@ static void check_system(mt_test *t, mech *s, bool singular)
     if (CHECK(t, ok) &&
         CHECK(t, mt_eig_general(order, j, wr, wi, NULL, &mem, &s->err) == MT_OK)) {
         const mt_modes *const modes = &s->a->modes;
-        CHECK(t, rest <= 1e-8 * fabs(modes->lambda[modes->count - 1]) * lin->sys->length_m);
+        CHECK(t, rest <= 1e-8 * fabs(modes->lambda[modes->count - 1]) *
+                             mt_linear_system(lin)->length_m);
         compare(t, modes, order, wr, wi);
     }
     mt_arena_rewind(&mem, mark);

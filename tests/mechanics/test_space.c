@@ -2,6 +2,7 @@
 /* Three dimensions: closed forms of one body, planar mechanisms in space. */
 #include "linalg/dense.h"
 #include "mechanics/mech.h"
+#include "mechanics/redundant.h"
 
 enum { TEXT = 4000 };
 
@@ -34,13 +35,13 @@ static void space__one_body_on_bushings(mt_test *t)
  * zeta^2). */
 static bool damped_roots(mt_linear *lin, mt_arena *mem, double *wr, double *wi, mt_err *err)
 {
-    const int n = lin->n;
+    const int n = mt_linear_freedoms(lin);
     const size_t size = (size_t)n;
     double *const a = mt_arena_f64(mem, 2 * size, 2 * size);
     double *const m = mt_arena_f64(mem, size, size);
     double *const kc = mt_arena_f64(mem, size, 2 * size); /* K beside C, then M^-1 of both */
-    memcpy(m, lin->m_r, size * size * sizeof *m);
-    memcpy(kc, lin->k, size * size * sizeof *kc);
+    memcpy(m, mt_linear_reduced(lin).m, size * size * sizeof *m);
+    memcpy(kc, mt_linear_reduced(lin).k, size * size * sizeof *kc);
     mt_linear_damping(lin, kc + size * size);
     if (mt_lu_solve(n, m, 2 * n, kc, NULL, mem, err) != MT_OK) {
         return false;
@@ -65,7 +66,7 @@ static void space__dampers_enter_the_damping_matrix(mt_test *t)
     if (mech_must(t, mech_load(t, "space_body"), "damped", "", &s)) {
         double wr[6];
         double wi[6];
-        CHECK_INT(t, s.a->lin->n, 3);
+        CHECK_INT(t, mt_linear_freedoms(s.a->lin), 3);
         CHECK(t, damped_roots(s.a->lin, &mem, wr, wi, &s.err));
         for (int k = 0; k < 3; k++) {
             double nearest = HUGE_VAL;

@@ -9,6 +9,7 @@
 #include <stdarg.h>
 
 #include "mechanics/mech.h"
+#include "mechanics/redundant.h"
 
 enum { TEXT = 8000, PARTS = 4, MODES = 4 };
 

@@ -251,8 +251,8 @@ static void sweep__limit_is_located(mt_test *t)
     if (CHECK(t, run_sweep(t, mech_parse(t, SLIDER_CRANK), NULL, &drive,
                            (const double[]){0.2, 0.2}, 1, &r))) {
         CHECK_INT(t, r.sweep.n_reached, 0);
-        CHECK_NEAR_ABS(t, r.lin->position.driven.drive, 0.4 - x0, LIMIT_TOL);
-        CHECK(t, r.lin->position.driven.drive <= 0.4 - x0);
+        CHECK_NEAR_ABS(t, mt_linear_position(r.lin)->driven.drive, 0.4 - x0, LIMIT_TOL);
+        CHECK(t, mt_linear_position(r.lin)->driven.drive <= 0.4 - x0);
     }
     run_free(&r);
 }

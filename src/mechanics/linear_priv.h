@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_LINEAR_PRIV_H
+#define MECHANICS_LINEAR_PRIV_H
+
+#include "mechanics/couplings.h"
+#include "mechanics/linear.h"
+
+/* What the files of this room share of a linearised system. */
+
+typedef struct mt_linear_tangent mt_linear_tangent;
+
+struct mt_linear {
+    const mt_system *sys;
+    mt_arena base;     /* lives as long as this */
+    mt_arena geometry; /* rewound when the geometry changes */
+    mt_arena scratch;
+    double *value; /* [program.count] */
+    double *grad;  /* [program.count x n_inputs], after an update with gradients */
+    mt_term_list list[MT_TERM_KINDS];
+    mt_coupling *coupling; /* of the terms of K (couplings.h) */
+    bool *squared; /* of the terms of K: their spring with couplings is a sum of squares */
+    mt_data data;  /* real */
+    mt_data dual;  /* with derivative */
+    mt_state position;
+    /* a driven joint begins where the last update left it, instead of at the reference
+     * position: for sweeps */
+    bool follow;
+    mt_placement last; /* where it left the driven joint */
+    bool has_last;
+    int first_input;  /* derivatives are asked for from this input on; 0: of all of them */
+    mt_elimination e; /* at the final position, constraints of the linearised system */
+    double *z_error;  /* nq x n: bounds of the errors of e.z */
+    int m;            /* constraints in force */
+    double *a;        /* m x nq */
+    int n;            /* freedoms */
+    int n_idle; /* spins without mass, stiffness or joint, left out of the freedoms (idle.h) */
+    bool *idle; /* [bodies] takes part in one */
+    int n_pieces;                   /* of pieces */
+    double *rows[MT_TERM_KINDS];    /* 12 x n_rows, local freedoms */
+    double *reduced[MT_TERM_KINDS]; /* n x n_rows: Z^T row, rounding made 0 (reduce.h) */
+    bool *blocked[MT_TERM_KINDS];   /* [n_rows]: the joints block it, the reduced row is 0 */
+    double *noise;    /* n x n_rows: bounds of the errors of reduced[MT_TERM_STIFFNESS] */
+    double *kg;       /* nq x nq geometric stiffness; NULL where nothing loads */
+    mt_piece *pieces; /* [n_pieces] of the forces that make kg */
+    double *kg_terms; /* nq x nq: magnitudes of the terms that kg is the sum of */
+    double *k;        /* n x n */
+    double *m_r;      /* n x n */
+    double *k_fixed;  /* part of K_r from terms without inputs (and Kg) */
+    double *m_fixed;
+    double *g_fixed;  /* part of factor_g from Kg */
+    double *factor_b; /* list[STIFFNESS].n_rows x n: B */
+    double *factor_c;
+    double *factor_noise; /* bounds of the errors of factor_b's entries */
+    /* n x n: what is no sum of squares: geometric stiffness, indefinite couplings, negative
+     * coefficients; K_r = B^T diag(c) B + G */
+    double *factor_g;
+    bool has_factor_g;          /* is there such a part? */
+    unsigned long mass_version; /* changes when M_r does */
+    bool unstressed;  /* driven to its place with no spring stretched: as good as unloaded */
+    bool idle_varies; /* whether there are idle spins depends on inputs */
+    bool built;
+    mt_linear_tangent *tangent; /* [n_inputs], where geometry or position depend on inputs */
+};
+
+#endif

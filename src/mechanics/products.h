@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_PRODUCTS_H
+#define MECHANICS_PRODUCTS_H
+
+#include "mechanics/linear.h"
+
+/* Products of K, M and sensors with shapes y in the freedoms (n x cols, column-major), and
+ * their derivatives. */
+
+/* dky = (dK_r/dp) y and dmy = (dM_r/dp) y for input p, with all that depends on it (geometry,
+ * constraints, equilibrium); n x cols. dm_zero (may be NULL): dmy is zero. After an update with
+ * gradients. */
+mt_status mt_linear_products(mt_linear *lin, int p, int cols, const double *y, double *dky,
+                             double *dmy, bool *dm_zero, mt_err *err);
+/* Values of channels channel[ns] for shapes y (n x cols): s ns x cols. */
+mt_status mt_linear_sense(mt_linear *lin, int ns, const int *channel, int cols, const double *y,
+                          double *s, mt_err *err);
+/* Their derivative with respect to input p, given dy = dy/dp (n x cols): ds ns x cols. */
+mt_status mt_linear_sense_derivative(mt_linear *lin, int p, int ns, const int *channel,
+                                     int cols, const double *y, const double *dy, double *ds,
+                                     mt_err *err);
+/* w = M Z y over all states, nq (mass-weighted shape, for correlation with shapes at other
+ * designs). */
+mt_status mt_linear_mass_product(mt_linear *lin, const double *y, double *w, mt_err *err);
+
+#endif
