@@ -80,6 +80,10 @@ mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
  */
 mt_status mt_analysis_count(mt_analysis *a, const mt_count_box *box,
                             const mt_system_drive *drive, double position, mt_err *err);
+/* Position in a->modes of the vibration mode that the model names by `index`: it counts at the
+ * first design alone, without the vibrations of 0 Hz that only a family has. -1: as
+ * mt_modal_flexible. */
+int mt_analysis_named(const mt_analysis *a, int index);
 /* Has the family more vibration modes than the last solve's design, and this index one of those
  * that are missing there (a mass is 0)? It is at infinity. */
 bool mt_analysis_is_infinite(const mt_analysis *a, int index);

@@ -249,9 +249,14 @@ mt_status mt_analysis_count(mt_analysis *a, const mt_count_box *box,
     return rc;
 }
 
+int mt_analysis_named(const mt_analysis *a, int index)
+{
+    return mt_modal_flexible(&a->modes, index + a->n_null - a->n_rigid);
+}
+
 bool mt_analysis_is_infinite(const mt_analysis *a, int index)
 {
-    return mt_modal_indexed(&a->modes) && index > a->modes.count - a->modes.n_rigid &&
+    return mt_modal_indexed(&a->modes) && index > mt_modal_vibrations(&a->modes) &&
            index <= a->n_most - a->n_rigid;
 }
 

@@ -155,19 +155,15 @@ static mt_status examine_bands(const mt_study *s, int g, mt_doubt_list *out, mt_
  * none. */
 static double original_hz(const mt_study *s, const mt_goal *goal, const mt_analysis *a)
 {
-    int index = goal->mode.index;
-    int seen = 0;
-    if (goal->mode.named != MT_ABSENT) {
+    int pos = -1;
+    if (goal->mode.named == MT_ABSENT) {
+        pos = mt_modal_flexible(&a->modes, goal->mode.index);
+    } else {
         const mt_named_mode *const m = &s->model->modes[goal->mode.named];
         const bool here = m->configuration == a->sys->configuration;
-        index = here ? m->index + a->n_null - a->n_rigid : 0; /* as the model counts */
+        pos = here ? mt_analysis_named(a, m->index) : -1;
     }
-    for (int i = 0; i < a->modes.count; i++) {
-        if (a->modes.kind[i] == MT_MODE_FLEXIBLE && ++seen == index) {
-            return mt_modal_hz(&a->modes, i);
-        }
-    }
-    return nan("");
+    return pos < 0 ? nan("") : mt_modal_hz(&a->modes, pos);
 }
 
 static void doubt_target(mt_doubt_list *out, const mt_goal *goal, mt_goal_slot slot, double hz)

@@ -129,7 +129,7 @@ static mt_status prepare_modes(job *j, int wanted, mt_err *err)
 {
     const size_t n = (size_t)j->v.request->n;
     const mt_modes *const m = &j->a->modes;
-    const int flexible = m->count - m->n_rigid;
+    const int flexible = mt_modal_vibrations(m);
     j->v.modes = flexible < wanted ? flexible : wanted;
     j->v.hz = mt_arena_f64(&j->mem, (size_t)j->v.modes, n);
     j->v.rigid = mt_arena_int(&j->mem, n);

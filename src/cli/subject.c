@@ -253,14 +253,8 @@ void mt_subject_warn_overridden(const mt_subject *s, int c)
 
 int mt_modes_index(const mt_modes *modes, int pos)
 {
-    int index = 0;
-    if (modes->kind[pos] != MT_MODE_FLEXIBLE || modes->n_undecided > 0) {
-        return 0;
-    }
-    for (int i = 0; i <= pos; i++) {
-        index += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
-    }
-    return index;
+    const bool has = modes->kind[pos] == MT_MODE_FLEXIBLE && modes->n_undecided == 0;
+    return has ? mt_modal_index(modes, pos) : 0;
 }
 
 const char *mt_mode_kind_name(mt_mode_kind kind)

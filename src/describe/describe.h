@@ -69,8 +69,6 @@ mt_status mt_describe_worst(mt_problem *fresh, const mt_demand *d, mt_result *re
  * NULL without tolerances. */
 double mt_describe_worst_hz(const mt_problem *fresh, int view, int mode, const mt_band *band,
                             double hz, const double **at);
-/* describe_track.c: vibration index of the mode at pos; 0 for -1. */
-int mt_describe_index(const mt_modes *modes, int pos);
 /* "ambiguous between modes 2 and 3", "lost: ..."; "" where the named mode is told. NULL:
  * memory. */
 const char *mt_describe_identity(const mt_view *view, int named, mt_arena *mem);

@@ -29,7 +29,7 @@ static mt_status index_of_demand(mt_problem *p, mt_view *view, const mt_demand *
 {
     int pos = -1;
     MT_TRY(mt_view_position(p, view, d->mode, d->named, &pos, err));
-    *index = mt_describe_index(&view->analysis->modes, pos);
+    *index = mt_modal_index(&view->analysis->modes, pos);
     return MT_OK;
 }
 
@@ -41,12 +41,12 @@ static mt_status put_name(const listing *l, mt_result_frequency *f, mt_err *err)
     for (int i = 0; i < l->view->n_named; i++) {
         int pos = -1;
         MT_TRY(mt_view_position(l->fresh, l->view, 0, i, &pos, err));
-        if (pos >= 0 && mt_describe_index(modes, pos) == f->mode) {
+        if (pos >= 0 && mt_modal_index(modes, pos) == f->mode) {
             const mt_track *const k = &l->view->track[i];
             f->name = l->fresh->study->model->modes[l->view->named[i]].name.s;
             f->identity = mt_track_state_name(k->state);
             f->share = k->share;
-            f->rival_mode = mt_describe_index(modes, k->rival);
+            f->rival_mode = mt_modal_index(modes, k->rival);
             f->rival_share = k->rival_share;
         }
     }
@@ -154,15 +154,12 @@ static mt_status count_modes(mt_problem *fresh, int v, int *count, mt_err *err)
 {
     mt_view *const view = &fresh->views[v];
     const mt_modes *const modes = &view->analysis->modes;
-    int flexible = 0;
     int wanted = LISTED_MODES;
     *count = 0;
     if (!view->solved) {
         return MT_OK;
     }
-    for (int i = 0; i < modes->count; i++) {
-        flexible += modes->kind[i] == MT_MODE_RIGID_BODY ? 0 : 1;
-    }
+    const int flexible = mt_modal_vibrations(modes);
     for (int i = 0; i < fresh->n_demands; i++) {
         int index = 0;
         if (fresh->demands[i].view == v) {

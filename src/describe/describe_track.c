@@ -4,21 +4,12 @@
 
 static const double PERCENT = 100.0;
 
-int mt_describe_index(const mt_modes *modes, int pos)
-{
-    int index = 0;
-    for (int i = 0; i <= pos; i++) {
-        index += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
-    }
-    return index;
-}
-
 const char *mt_describe_identity(const mt_view *view, int named, mt_arena *mem)
 {
     const mt_track *const k = &view->track[named];
     const mt_modes *const modes = &view->analysis->modes;
-    const int own = mt_describe_index(modes, k->pos);
-    const int rival = mt_describe_index(modes, k->rival);
+    const int own = mt_modal_index(modes, k->pos);
+    const int rival = mt_modal_index(modes, k->rival);
     int size = 1;
     if (k->pos < 0 || k->state == MT_TRACKED) {
         return "";

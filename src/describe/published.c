@@ -52,7 +52,7 @@ static mt_status viewed_at(judge *j, const mt_published *pub, const mt_analysis 
         MT_TRY(mt_problem_place(p, t, false, err));
         MT_TRY(mt_view_solve(p, view, false, err));
         MT_TRY(mt_view_position(p, view, 0, i, pos, err));
-        *pos = mt_modal_flexible(&a->modes, mt_describe_index(&view->analysis->modes, *pos));
+        *pos = mt_modal_flexible(&a->modes, mt_modal_index(&view->analysis->modes, *pos));
         *found = true;
     }
     return MT_OK;
@@ -76,8 +76,7 @@ static mt_status named_at(judge *j, const mt_published *pub, mt_analysis *a, int
         return mt_fail_memory(err);
     }
     for (int i = 0; i < model->n_modes; i++) {
-        const int there = mt_modal_flexible(&first->modes, model->modes[i].index +
-                                                               first->n_null - first->n_rigid);
+        const int there = mt_analysis_named(first, model->modes[i].index);
         if (model->modes[i].configuration != pub->configuration || there < 0) {
             continue;
         }
@@ -102,10 +101,7 @@ static mt_status mode_at(judge *j, const mt_published *pub, mt_analysis *a, int 
 {
     const bool by_index = pub->mode.index > 0;
     *index = by_index ? pub->mode.index : j->p->study->model->modes[pub->mode.named].index;
-    /* the model names a mode by its index at its own design, without vibrations of 0 Hz that
-     * only the study counts */
-    const int loose = by_index ? 0 : a->n_null - a->n_rigid;
-    *pos = mt_modal_flexible(&a->modes, *index + loose);
+    *pos = by_index ? mt_modal_flexible(&a->modes, *index) : mt_analysis_named(a, *index);
     if (by_index || pub->original) {
         return MT_OK;
     }

@@ -6,9 +6,9 @@
  * column; the potentials then move by the distances, which keeps both properties, so the
  * pairing is optimal for the rows added so far. The shorter side plays the rows.
  */
-#include <math.h>
+#include "linalg/assign.h"
 
-#include "linalg/dense.h"
+#include <math.h>
 
 typedef struct matching {
     int rows; /* the shorter side */

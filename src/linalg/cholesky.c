@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "linalg/cholesky.h"
+
 #include "linalg/lapack_priv.h"
 
 #include <cblas.h>

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Eigenvalues. dsyevd and not dsyevr: the latter loses orthogonality on clusters in the LAPACK
  * that we build on. */
+#include "linalg/eig.h"
+
 #include "linalg/lapack_priv.h"
 
 #include <limits.h>

@@ -5,6 +5,8 @@
  * |a_ii| + |shift b_ii| becomes about one: the pivots of D then say how much is left after
  * cancellation, whatever the units of the rows are; powers of two change no digit.
  */
+#include "linalg/inertia.h"
+
 #include "linalg/lapack_priv.h"
 
 #include <float.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Products and norms. BLAS refuses leading dimensions below one, hence `ld`. */
+#include "linalg/kernels.h"
+
 #include <cblas.h>
 
 #include <math.h>
-
-#include "linalg/dense.h"
 
 static int ld(int rows)
 {

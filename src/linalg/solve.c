@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "linalg/solve.h"
+
 #include "linalg/lapack_priv.h"
 
 static mt_status singular(const char *what, lapack_int pivot, mt_err *err)

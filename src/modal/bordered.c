@@ -8,6 +8,8 @@
  * has a reciprocal condition of about (gap to the next eigenvalue) / s. Below 16 n eps that gap
  * is rounding: the mode is repeated.
  */
+#include "modal/bordered.h"
+
 #include "modal/modal_priv.h"
 
 #include <float.h>

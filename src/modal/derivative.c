@@ -7,6 +7,8 @@
  * From the left with y^T:                   lambdadot = y^T f.
  * From the left with another mode's y_j^T:  y_j^T M ydot = y_j^T f / (lambda - lambda_j).
  */
+#include "modal/derivative.h"
+
 #include "modal/modal_priv.h"
 
 #include <float.h>

@@ -10,6 +10,8 @@
  * elongation is squared. Shapes are known to p eps at best, which stiff springs of the scale s
  * answer with (p eps)^2 s.
  */
+#include "modal/judge.h"
+
 #include "modal/modal_priv.h"
 
 #include <float.h>

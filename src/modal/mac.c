@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Modal assurance criterion, for single shapes and for subspaces. Shapes are scaled by their
  * largest entry first, so squares neither over- nor underflow. */
+#include "modal/mac.h"
+
 #include "modal/modal_priv.h"
 
 #include <math.h>

@@ -13,6 +13,8 @@
  * Else the eigenvectors V of S split the space: T1 = D V1 e1^-1/2 has mass (T1^T M T1 = I),
  * T0 = D V0 has none.
  */
+#include "modal/mass.h"
+
 #include "modal/modal_priv.h"
 
 #include <float.h>

@@ -9,9 +9,10 @@
  * by just TIE flips; no rule is continuous, and engineers draw equal entries far more often
  * than those.
  */
-#include <math.h>
+#include "modal/sign.h"
 
-#include "modal/modal.h"
+#include <math.h>
+#include <stddef.h>
 
 static const double TIE = 1e-6;
 

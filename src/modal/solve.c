@@ -4,6 +4,8 @@
  *   take results from mem; mark; plain path; kinds; perhaps the factor path (and the load's
  *   part on top of it) and kinds again; clusters; signs; checks; rewind to the mark.
  */
+#include "modal/solve.h"
+
 #include "modal/modal_priv.h"
 
 #include <float.h>

@@ -203,7 +203,7 @@ static double tie_room_with(const mt_problem *p, int tie, int k, bool *stable, i
             if (p->tie[c->first + b] != tie) {
                 continue;
             }
-            const int flexible = modes->count - modes->n_rigid;
+            const int flexible = mt_modal_vibrations(modes);
             *stable = *stable && mt_modal_indexed(modes);
             *most = flexible > *most ? flexible : *most;
             room = fmin(room, room_with(modes, &c->bands.items[b], k));

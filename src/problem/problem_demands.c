@@ -86,8 +86,7 @@ static mt_status name_modes(mt_problem *p, mt_view *view, mt_err *err)
         return mt_fail_memory(err);
     }
     for (int i = 0; i < model->n_modes; i++) {
-        const int pos =
-            mt_modal_flexible(&a->modes, model->modes[i].index + a->n_null - a->n_rigid);
+        const int pos = mt_analysis_named(a, model->modes[i].index);
         if (model->modes[i].configuration != view->configuration || pos < 0) {
             continue;
         }

@@ -136,7 +136,7 @@ static mt_status range_view(mt_problem *p, int view, int modes, box *b, mt_err *
     mt_robust *const r = p->robust;
     mt_analysis *a = NULL;
     mt_status rc = mt_view_analyse(p, &p->views[view], p->x, &a, err);
-    const int all = rc == MT_OK ? a->modes.count - a->modes.n_rigid : 0;
+    const int all = rc == MT_OK ? mt_modal_vibrations(&a->modes) : 0;
     r->hz[view] = mt_arena_alloc(&p->mem, (size_t)all, sizeof *r->hz[view]);
     r->n_ranges[view] = r->hz[view] == NULL ? 0 : all;
     rc = rc == MT_OK && r->hz[view] == NULL ? mt_fail_memory(err) : rc;

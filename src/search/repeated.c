@@ -69,10 +69,7 @@ static mt_status add_block(mt_repeated *m, const mt_repeated_side *s, double nea
     const int low = s->sign > 0 ? s->pos : s->pos - r + 1;
     const int n = mt_linear_freedoms(a->lin);
     const size_t r2 = (size_t)r * (size_t)r;
-    int index = 0;
-    for (int i = 0; i <= low; i++) {
-        index += a->modes.kind[i] == MT_MODE_FLEXIBLE;
-    }
+    const int index = mt_modal_index(&a->modes, low);
     if (joined(m, s, index, r)) {
         return MT_OK;
     }

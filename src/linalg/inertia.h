@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef LINALG_INERTIA_H
+#define LINALG_INERTIA_H
+
+#include "base/arena.h"
+
+/* Number of negative, zero and positive eigenvalues of symmetric A - shift*B (B may be NULL:
+ * identity), by LDL^T (Bunch-Kaufman) after scaling by powers of two to unit diagonal of |A| +
+ * |shift B| (units of rows do not matter), with the smallest |pivot block eigenvalue| relative
+ * to the largest in *gap (may be NULL; 1: well separated from zero; near n eps: the count is
+ * unsure). count: negative, zero, positive. A, B lower read, unchanged. */
+mt_status mt_inertia(int n, const double *a, const double *b, double shift, int count[3],
+                     double *gap, mt_arena *scratch, mt_err *err);
+
+#endif

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef LINALG_SOLVE_H
+#define LINALG_SOLVE_H
+
+#include "base/arena.h"
+
+/* LU with partial pivoting, A (n x n, destroyed) X = B (n x nrhs, overwritten). *rcond (may be
+ * NULL): reciprocal condition estimate in the 1-norm, 0 where singular. Fails MT_E_SINGULAR at
+ * an exactly zero pivot only: whoever must know about nearly singular systems scales them and
+ * looks at rcond. */
+mt_status mt_lu_solve(int n, double *a, int nrhs, double *b, double *rcond, mt_arena *scratch,
+                      mt_err *err);
+/* Symmetric indefinite solve (dsysv), A lower read and destroyed, B overwritten. Fails
+ * MT_E_SINGULAR (exactly zero pivot block). */
+mt_status mt_sym_solve(int n, double *a, int nrhs, double *b, mt_arena *scratch, mt_err *err);
+
+#endif

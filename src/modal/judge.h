@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MODAL_JUDGE_H
+#define MODAL_JUDGE_H
+
+#include "modal/modes.h"
+
+/*
+ * What the terms that K and M are sums of say of the shapes y, each term evaluated by itself:
+ * spring by spring c (f . y)^2, and so on. Where stiff springs hardly take part in a mode,
+ * their terms are tiny, and the sum is accurate where an entry of the assembled K is not.
+ */
+typedef struct mt_mode_energies {
+    double *stiffness;       /* [count] y^T K y */
+    double *mass;            /* [count] y^T M y */
+    double *stiffness_noise; /* [count] what rounding may have made of it, counted by terms */
+    double *mass_noise;      /* [count] */
+    double *load_noise; /* [count] the part of stiffness_noise that is in K as it is given, and
+                           that no solution of K can be without */
+    bool *strained; /* [count] does any spring move by more than the rounding of its terms? */
+} mt_mode_energies;
+/*
+ * Replace each lambda_i by the quotient of its energies where that is the surer one, and decide
+ * the kinds anew, mode by mode: n_rigid as in the options of the solve that gave `modes` (with
+ * vectors). Now a rigid-body mode is one within its error in which no spring is strained, and
+ * one that is strained is undecided. A shape whose error is at most r in the norm of the
+ * residual changes the quotient by r min(1, r/gap) at most, gap: distance to the next lambda
+ * (Parlett, The Symmetric Eigenvalue Problem, sec. 10-5 and 11-7). Overwrites e.
+ */
+void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes);
+
+/* Is that worth its while: could a kind be wrong, or is an error above 1e-9 of its lambda? */
+bool mt_modal_in_doubt(const mt_modes *modes);
+
+#endif

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MODAL_MODES_H
+#define MODAL_MODES_H
+
+#include <stdbool.h>
+
+typedef enum mt_mode_kind {
+    MT_MODE_FLEXIBLE,
+    MT_MODE_RIGID_BODY,
+    MT_MODE_UNSTABLE,
+    MT_MODE_UNDECIDED /* rounding hides the sign of lambda */
+} mt_mode_kind;
+
+typedef struct mt_modes {
+    int n;           /* order of K, M */
+    int count;       /* modes: n - n_condensed */
+    int n_condensed; /* directions without mass */
+    int n_rigid;
+    int n_held; /* of an n_rigid that was given: those that are no null directions of K */
+    int n_unstable;
+    int n_undecided;
+    int n_unstable_condensed; /* directions without mass and with negative stiffness: unstable,
+                                 though no entry of lambda shows it */
+    double *lambda;           /* [count] ascending [rad^2/s^2] */
+    mt_mode_kind *kind;       /* [count] */
+    int *cluster; /* [count] number of the cluster of repeated modes that a mode belongs to
+                     (from 0, ascending) */
+    double *y; /* n x count, mass-normalised, sign by mt_modal_fix_sign; NULL without vectors */
+    double *residual; /* [count] ||K y - lambda M y|| / ((||K|| + |lambda| ||M||) ||y|| n eps)
+                       * in coordinates scaled to m_ii = 1: O(1) is perfect; NULL without
+                       * vectors and check */
+    double *orthogonality; /* [count] max_j |y_i^T M y_j - delta_ij| / (n eps); NULL likewise */
+    double *error;         /* [count] |error of lambda_i| <= error_i: backward error, generously
+                           counted, or what mt_modal_judge made of it */
+    double error_bound; /* |error of lambda_i| <= error_bound + error_relative * |lambda_i|, for
+                           certificates: backward error, generously counted */
+    double error_relative;
+    bool from_factor; /* the stiffness factor was used */
+    double scale;     /* the stiffness scale s [rad^2/s^2] */
+    double *massless; /* [n] after MT_E_MASSLESS: the offending direction, largest entry 1; else
+                         NULL */
+} mt_modes;
+
+/* Shape y of the mode at position i, [n]; those of the modes behind it follow. After a solve
+ * with vectors. */
+const double *mt_modal_shape(const mt_modes *modes, int i);
+
+/* Has each flexible mode an index: is no mode unstable or undecided? */
+bool mt_modal_indexed(const mt_modes *modes);
+/* lambda -> Hz: sqrt(lambda)/(2 pi); 0 for rigid-body modes; NaN for unstable and undecided
+ * ones. */
+double mt_modal_hz(const mt_modes *modes, int i);
+/* |error of mt_modal_hz| <= this [Hz], by error_i; NaN where the frequency is. */
+double mt_modal_error_hz(const mt_modes *modes, int i);
+/* How many vibration modes there are: those that are no rigid-body modes. Where a mode is unstable
+ * or undecided it is counted, and none has an index. */
+int mt_modal_vibrations(const mt_modes *modes);
+/* Position in lambda of vibration mode `index` (1-based, flexible modes ascending); -1 where
+ * there are fewer, or where any mode is unstable or undecided. */
+int mt_modal_flexible(const mt_modes *modes, int index);
+/* Its inverse: the number of flexible modes up to position pos; 0 for -1. */
+int mt_modal_index(const mt_modes *modes, int pos);
+/* The cluster that mode i belongs to: its first position; its size in *size. Size 1: a simple
+ * mode. */
+int mt_modal_cluster(const mt_modes *modes, int i, int *size);
+
+#endif
