@@ -59,10 +59,9 @@ _Static_assert((int)DAMPER_COUNT == (int)SPRING_SOURCE + 1,
                "a damper's keys are a spring's first");
 MT_READ_TABLE(mt_damper_keys, "damper", DAMPER_KEYS);
 
-#define NAME_OF_5(id, name, in2, in3, coordinate) name,
-#define NAME_OF_2(id, name)                       name,
-static const char *const JOINT_NAMES[] = {MT_JOINT_LIST(NAME_OF_5)};
-static const char *const SPRING_NAMES[] = {MT_SPRING_LIST(NAME_OF_2)};
+#define NAME_OF(id, name) name,
+static const char *const JOINT_NAMES[] = {MT_JOINT_LIST(NAME_OF)};
+static const char *const SPRING_NAMES[] = {MT_SPRING_LIST(NAME_OF)};
 
 static void read_gear(mt_model_reader *mr, mt_addr value, mt_joint *j)
 {

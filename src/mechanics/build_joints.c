@@ -11,6 +11,7 @@
  * ratio s_0 as drawn. In two dimensions what lies out of the plane is left out.
  */
 #include "mechanics/build.h"
+#include "model/joint.h"
 
 static void plane(mt_builder *b, const int body[2], const int arm[2], int dir)
 {
@@ -128,19 +129,20 @@ void mt_build_joint_equations(mt_builder *b, mt_joint_type type, const int body[
 
 /* The joint's coordinate from the reference position: an angle about its axis or a displacement
  * along it; -1: none. */
-static int coordinate_of(mt_builder *b, mt_joint_type type, const int body[2], const int arm[2],
-                         int axis)
+static int coordinate_of(mt_builder *b, mt_coordinate coordinate, const int body[2],
+                         const int arm[2], int axis)
 {
-    if (type == MT_JOINT_REVOLUTE || type == MT_JOINT_CYLINDRICAL) {
+    mt_measure_def def = mt_measure_def_default(MT_MEASURE_PLANE, body[0], body[1]);
+    switch (coordinate) {
+    case MT_COORDINATE_ANGLE:
         return mt_build_angle(b, body[0], body[1], axis);
-    }
-    if (type == MT_JOINT_PRISMATIC || type == MT_JOINT_PIN_IN_SLOT ||
-        type == MT_JOINT_POINT_ON_LINE) {
-        mt_measure_def def = mt_measure_def_default(MT_MEASURE_PLANE, body[0], body[1]);
+    case MT_COORDINATE_DISPLACEMENT:
         def.point[0] = arm[0];
         def.point[1] = arm[1];
         def.dir[0] = axis;
         return mt_build_measure(b, &def);
+    case MT_COORDINATE_NONE:
+        break;
     }
     return -1;
 }
@@ -225,6 +227,7 @@ static void joint_arms(mt_builder *b, const mt_joint *joint, const int body[2], 
 
 static mt_status build_joint(mt_builder *b, const mt_joint *joint)
 {
+    const mt_joint_kind *const kind = mt_joint_kind_of(joint->type);
     int body[2];
     int arm[2];
     int axis[2] = {b->axis_vec[2], -1};
@@ -239,7 +242,7 @@ static mt_status build_joint(mt_builder *b, const mt_joint *joint)
                        joint->name.s);
     }
     joint_arms(b, joint, body, arm);
-    const bool closed = joint->n_at == 1 || joint->type == MT_JOINT_ORIENTATION;
+    const bool closed = joint->n_at == 1 || kind->most_at == 0;
     if (!closed || joint->length != MT_ABSENT) {
         b->sys->drawn_closed = false;
     }
@@ -265,8 +268,8 @@ static mt_status build_joint(mt_builder *b, const mt_joint *joint)
         mt_build_rod(b, body, arm, mass, mt_build_item(b, joint->name.s, mass));
     }
     made->count = b->sys->n_constraints - made->first;
-    made->coordinate = coordinate_of(b, joint->type, body, arm, axis[0]);
-    made->angle = joint->type == MT_JOINT_REVOLUTE || joint->type == MT_JOINT_CYLINDRICAL;
+    made->coordinate = coordinate_of(b, kind->coordinate, body, arm, axis[0]);
+    made->angle = kind->coordinate == MT_COORDINATE_ANGLE;
     return MT_OK;
 }
 
@@ -275,8 +278,8 @@ mt_status mt_build_joints(mt_builder *b)
     for (int pass = 0; pass < 2; pass++) { /* gears need the joints that they couple */
         for (int i = 0; i < b->model->n_joints; i++) {
             const mt_joint *const joint = &b->model->joints[i];
-            const bool gear = joint->type == MT_JOINT_GEAR || joint->type == MT_JOINT_RACK;
-            if (gear != (pass == 1) || !mt_model_present(&joint->in, b->sys->configuration)) {
+            if (mt_joint_kind_of(joint->type)->couples != (pass == 1) ||
+                !mt_model_present(&joint->in, b->sys->configuration)) {
                 continue;
             }
             MT_TRY(pass == 1 ? build_gear(b, joint) : build_joint(b, joint));

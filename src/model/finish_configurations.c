@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "model/finish.h"
+#include "model/joint.h"
 
 enum { UNSEEN, ON_PATH, DONE };
 
@@ -248,24 +249,20 @@ static void check_drive(mt_finish *f, int index)
 /* position_rad for a joint that turns, position_m for one that slides. */
 static void check_drive_unit(mt_finish *f, const mt_drive *drive)
 {
-#define COORDINATE_OF(id, name, in2, in3, coordinate) coordinate,
-    static const char coordinates[] = {MT_JOINT_LIST(COORDINATE_OF)};
-#undef COORDINATE_OF
     const mt_joint *const joint = &f->m->joints[drive->joint];
     if (joint->type == MT_JOINT_TYPE_COUNT) {
         return;
     }
-    const char coordinate = coordinates[joint->type];
-    if (coordinate == '-') {
+    const mt_coordinate coordinate = mt_joint_kind_of(joint->type)->coordinate;
+    if (coordinate == MT_COORDINATE_NONE) {
         mt_diag_error(f->d, drive->joint_name.addr, "%s %s joint cannot be driven",
-                      joint->type == MT_JOINT_ORIENTATION ? "an" : "a",
-                      mt_joint_type_name(joint->type));
+                      mt_joint_article(joint->type), mt_joint_type_name(joint->type));
     } else if (drive->position != MT_ABSENT &&
-               drive->position_is_angle != (coordinate == 'a')) {
+               drive->position_is_angle != (coordinate == MT_COORDINATE_ANGLE)) {
         mt_diag_error(f->d, mt_finish_addr(f->m, drive->position),
                       "the position of a %s joint is given as \"%s\"",
                       mt_joint_type_name(joint->type),
-                      coordinate == 'a' ? "position_rad" : "position_m");
+                      coordinate == MT_COORDINATE_ANGLE ? "position_rad" : "position_m");
     }
 }
 

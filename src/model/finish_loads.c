@@ -8,19 +8,7 @@
  * joint; a pair of forces states any other, with the potential that it has.
  */
 #include "model/finish.h"
-
-#define COORDINATE_OF(id, name, in2, in3, coordinate) coordinate,
-static const char COORDINATE[] = {MT_JOINT_LIST(COORDINATE_OF)};
-#undef COORDINATE_OF
-
-/* 'a' angle, 'd' displacement, '-' none; NULL: a link's hinge. */
-static char coordinate_of(const mt_joint *joint)
-{
-    if (joint == NULL) {
-        return 'a';
-    }
-    return COORDINATE[joint->type];
-}
+#include "model/joint.h"
 
 static void check_joint(mt_finish *f, const mt_load *l)
 {
@@ -39,18 +27,21 @@ static void check_joint(mt_finish *f, const mt_load *l)
         return;
     }
     const mt_joint *const joint = l->joint == MT_ABSENT ? NULL : &f->m->joints[l->joint];
-    const char coordinate = coordinate_of(joint);
-    if (coordinate == '-') {
+    /* a link's hinge turns */
+    const mt_coordinate coordinate =
+        joint == NULL ? MT_COORDINATE_ANGLE : mt_joint_kind_of(joint->type)->coordinate;
+    if (coordinate == MT_COORDINATE_NONE) {
         mt_diag_error(f->d, l->joint_name.addr, "\"%s\" is %s, which has no coordinate to load",
                       joint->name.s, mt_joint_type_name(joint->type));
         return;
     }
-    if (coordinate == 'a' ? l->has_force || !l->has_moment : l->has_moment || !l->has_force) {
+    if (coordinate == MT_COORDINATE_ANGLE ? l->has_force || !l->has_moment
+                                          : l->has_moment || !l->has_force) {
         mt_diag_error(f->d, l->joint_name.addr, "joint \"%s\" %s: its load is \"%s\"",
-                      l->joint_name.s, coordinate == 'a' ? "turns" : "slides",
-                      coordinate == 'a' ? "moment_n_m" : "force_n");
+                      l->joint_name.s, coordinate == MT_COORDINATE_ANGLE ? "turns" : "slides",
+                      coordinate == MT_COORDINATE_ANGLE ? "moment_n_m" : "force_n");
     }
-    for (int side = 0; side < 2 && joint != NULL && coordinate == 'a'; side++) {
+    for (int side = 0; side < 2 && joint != NULL && coordinate == MT_COORDINATE_ANGLE; side++) {
         if (mt_finish_is_point_mass(f, &joint->bodies[side])) {
             mt_diag_error(f->d, l->joint_name.addr,
                           "\"%s\" of joint \"%s\" is a point mass, which does not turn",

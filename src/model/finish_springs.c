@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "model/finish.h"
+#include "model/joint.h"
 
 /* Members that a type needs (N), may have (M), or has not ( ). */
 typedef enum need { NONE, MAY, NEEDS } need;
@@ -52,9 +53,8 @@ static void check_torsion_joint(mt_finish *f, const mt_spring *s)
     const char *const what = s->damper ? "damper" : "spring";
     if (s->joint != MT_ABSENT) {
         const mt_joint *const joint = &f->m->joints[s->joint];
-        const bool turns = joint->type == MT_JOINT_REVOLUTE ||
-                           joint->type == MT_JOINT_CYLINDRICAL ||
-                           joint->type == MT_JOINT_TYPE_COUNT;
+        const bool turns = joint->type == MT_JOINT_TYPE_COUNT ||
+                           mt_joint_kind_of(joint->type)->coordinate == MT_COORDINATE_ANGLE;
         if (!turns) {
             mt_diag_error(f->d, s->joint_name.addr,
                           "a torsion %s acts on the angle of a revolute joint; \"%s\" is %s",

@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "model/joint.h"
 #include "model/judge.h"
 
 /* A joint this part of a link's length away from it is told: less is a drawing's rounding. */
@@ -300,12 +301,12 @@ static double gap_of(const mt_judge *j, const mt_joint *joint)
     if (joint->n_at != 2 || !place_of(j, &joint->at[0], a) || !place_of(j, &joint->at[1], b)) {
         return nan("");
     }
-    if (joint->type == MT_JOINT_DISTANCE) {
+    const mt_closes closes = mt_joint_kind_of(joint->type)->closes;
+    if (closes == MT_CLOSES_LENGTH) {
         return joint->length == MT_ABSENT ? nan("")
                                           : fabs(distance(a, b) - j->value[joint->length]);
     }
-    if (!joint->has_axis || joint->type == MT_JOINT_REVOLUTE ||
-        joint->type == MT_JOINT_UNIVERSAL) {
+    if (!joint->has_axis || closes == MT_CLOSES_ALL) {
         return distance(a, b);
     }
     for (int k = 0; k < 3; k++) {
@@ -321,7 +322,7 @@ static double gap_of(const mt_judge *j, const mt_joint *joint)
         axis[k] = axis[k] / largest / length; /* an axis may have any length */
         dot += d[k] * axis[k];
     }
-    if (joint->type == MT_JOINT_PLANAR || joint->type == MT_JOINT_POINT_ON_PLANE) {
+    if (closes == MT_CLOSES_ALONG) {
         return fabs(dot);
     }
     for (int k = 0; k < 3; k++) { /* free along the axis */

@@ -147,17 +147,13 @@ bool mt_model_present(const mt_presence *in, int configuration)
     return in->present == NULL || in->present[configuration];
 }
 
-#define MT_TYPE_NAME_CASE_2(id, name) \
-    case id:                          \
+#define NAME_CASE(id, name) \
+    case id:                \
         return name;
-#define MT_TYPE_NAME_CASE_5(id, name, in2, in3, coordinate) \
-    case id:                                                \
-        return name;
-
 const char *mt_joint_type_name(mt_joint_type type)
 {
     switch (type) {
-        MT_JOINT_LIST(MT_TYPE_NAME_CASE_5)
+        MT_JOINT_LIST(NAME_CASE)
     case MT_JOINT_TYPE_COUNT:
         break;
     }
@@ -167,7 +163,7 @@ const char *mt_joint_type_name(mt_joint_type type)
 const char *mt_spring_type_name(mt_spring_type type)
 {
     switch (type) {
-        MT_SPRING_LIST(MT_TYPE_NAME_CASE_2)
+        MT_SPRING_LIST(NAME_CASE)
     case MT_SPRING_TYPE_COUNT:
         break;
     }

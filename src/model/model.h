@@ -181,24 +181,23 @@ typedef struct mt_link {
     mt_addr stiffness_addr;
 } mt_link;
 
-/* type, JSON name, in 2-D, in 3-D, coordinate: 'a' angle, 'd' displacement, '-' none (what
- * `drive` may move) */
-#define MT_JOINT_LIST(X)                                           \
-    X(MT_JOINT_FIXED, "fixed", true, true, '-')                    \
-    X(MT_JOINT_REVOLUTE, "revolute", true, true, 'a')              \
-    X(MT_JOINT_PRISMATIC, "prismatic", true, true, 'd')            \
-    X(MT_JOINT_PIN_IN_SLOT, "pin-in-slot", true, false, 'd')       \
-    X(MT_JOINT_DISTANCE, "distance", true, true, '-')              \
-    X(MT_JOINT_CYLINDRICAL, "cylindrical", false, true, 'a')       \
-    X(MT_JOINT_SPHERICAL, "spherical", false, true, '-')           \
-    X(MT_JOINT_UNIVERSAL, "universal", false, true, '-')           \
-    X(MT_JOINT_PLANAR, "planar", false, true, '-')                 \
-    X(MT_JOINT_POINT_ON_LINE, "point-on-line", false, true, 'd')   \
-    X(MT_JOINT_POINT_ON_PLANE, "point-on-plane", false, true, '-') \
-    X(MT_JOINT_ORIENTATION, "orientation", true, true, '-')        \
-    X(MT_JOINT_GEAR, "gear", true, true, '-')                      \
-    X(MT_JOINT_RACK, "rack", true, true, '-')
-#define MT_JOINT_ENUM(id, name, in2, in3, coordinate) id,
+/* type, JSON name; what they are stands in joint.c */
+#define MT_JOINT_LIST(X)                         \
+    X(MT_JOINT_FIXED, "fixed")                   \
+    X(MT_JOINT_REVOLUTE, "revolute")             \
+    X(MT_JOINT_PRISMATIC, "prismatic")           \
+    X(MT_JOINT_PIN_IN_SLOT, "pin-in-slot")       \
+    X(MT_JOINT_DISTANCE, "distance")             \
+    X(MT_JOINT_CYLINDRICAL, "cylindrical")       \
+    X(MT_JOINT_SPHERICAL, "spherical")           \
+    X(MT_JOINT_UNIVERSAL, "universal")           \
+    X(MT_JOINT_PLANAR, "planar")                 \
+    X(MT_JOINT_POINT_ON_LINE, "point-on-line")   \
+    X(MT_JOINT_POINT_ON_PLANE, "point-on-plane") \
+    X(MT_JOINT_ORIENTATION, "orientation")       \
+    X(MT_JOINT_GEAR, "gear")                     \
+    X(MT_JOINT_RACK, "rack")
+#define MT_JOINT_ENUM(id, name) id,
 typedef enum mt_joint_type { MT_JOINT_LIST(MT_JOINT_ENUM) MT_JOINT_TYPE_COUNT } mt_joint_type;
 #undef MT_JOINT_ENUM
 
