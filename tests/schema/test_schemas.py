@@ -21,13 +21,32 @@ def load(path):
     return json.loads(path.read_text(encoding="utf-8"))
 
 
-def validators():
-    found = {}
-    for kind in KINDS.values():
-        schema = load(ROOT / f"schemas/{kind}.schema.json")
-        jsonschema.Draft7Validator.check_schema(schema)
-        found[kind] = jsonschema.Draft7Validator(schema)
-    return found
+class Schema:
+    """A schema that remembers what of the originals its references found valid: mutants share all that was not changed."""
+
+    def __init__(self, kind):
+        self.text = load(ROOT / f"schemas/{kind}.schema.json")
+        jsonschema.Draft7Validator.check_schema(self.text)
+        self.known = {}  # (reference, identity) to the value, which is kept, so that no other can have its identity
+        self.learning = False
+        self.usual = jsonschema.Draft7Validator.VALIDATORS["$ref"]
+        self.validator = jsonschema.validators.extend(jsonschema.Draft7Validator, {"$ref": self.ref})(self.text)
+
+    def ref(self, validator, reference, value, schema):
+        if (reference, id(value)) in self.known:
+            return
+        errors = self.usual(validator, reference, value, schema)
+        if self.learning:
+            errors = list(errors)
+            if not errors:
+                self.known[reference, id(value)] = value
+        yield from errors
+
+    def errors_of_original(self, document):
+        self.learning = True
+        errors = list(self.validator.iter_errors(document))
+        self.learning = False
+        return errors
 
 
 def shipped():
@@ -65,63 +84,73 @@ OTHER_TYPES = [None, True, 7, 0, 2.5, -1, "x", "", [], {}, [1], ["x", "y"], {"x"
                "x" * 300, "\u001b", [[]], [None], [{}], [[0, 1], [1, 2]], [0] * 40, {"": 1}, {"x": {}}, {"x": []}]
 
 
-def mutants(document):
-    """Members dropped, renamed, doubled in lists, of another type; unknown members added; lists cut and stretched."""
+def changes(document):
+    """What may be done where: members dropped, renamed, doubled in lists, of another type; unknown members added; lists cut and stretched."""
     for path in places(document):
         if not path:
             continue
+        parent = at(document, path[:-1])
+        value, is_member = parent[path[-1]], isinstance(parent, dict)
         for change in ["drop", "rename", "sign", "add", "double"] + [("type", v) for v in OTHER_TYPES]:
-            mutant = copy.deepcopy(document)
-            parent = mutant
-            for step in path[:-1]:
-                parent = parent[step]
-            key, value = path[-1], parent[path[-1]]
-            is_member = isinstance(parent, dict)
-            if change == "drop":
-                del parent[key]
-            elif change in ("rename", "sign"):
-                if not is_member:
-                    continue
-                parent[key + ("x" if change == "rename" else "-")] = parent.pop(key)
-            elif change == "add":
-                if not isinstance(value, dict):
-                    continue
-                value["unknown_member"] = 1
-            elif change == "double":
-                if is_member:
-                    continue
-                parent.append(copy.deepcopy(value))
-            else:
-                if type(value) is type(change[1]) and value == change[1]:
-                    continue
-                parent[key] = change[1]
-            # a file of another format is not read on: the verdicts agree, but there is nothing to compare
-            yield f"{'/'.join(map(str, path))}: {change}", mutant
+            if change in ("rename", "sign") and not is_member or change == "add" and not isinstance(value, dict) or change == "double" and is_member:
+                continue
+            if isinstance(change, tuple) and type(value) is type(change[1]) and value == change[1]:
+                continue
+            yield path, change
+
+
+def at(document, path):
+    for step in path:
+        document = document[step]
+    return document
+
+
+def changed(document, path, change):
+    """The document with one change; what is not above the place is the original's own."""
+    mutant = parent = copy.copy(document)
+    for step in path[:-1]:
+        parent[step] = copy.copy(parent[step])
+        parent = parent[step]
+    key = path[-1]
+    if change == "drop":
+        del parent[key]
+    elif change in ("rename", "sign"):
+        parent[key + ("x" if change == "rename" else "-")] = parent.pop(key)
+    elif change == "add":
+        parent[key] = dict(parent[key], unknown_member=1)
+    elif change == "double":
+        parent.append(parent[key])
+    else:
+        parent[key] = change[1]
+    return mutant
 
 
 def main():
     problems, checked = [], 0
-    schema_of = validators()
-    for kind, validator in schema_of.items():
-        problems += [f"{kind}.schema.json: {where} has no description" for where in undocumented(validator.schema)]
+    schema_of = {kind: Schema(kind) for kind in KINDS.values()}
+    for kind, schema in schema_of.items():
+        problems += [f"{kind}.schema.json: {where} has no description" for where in undocumented(schema.text)]
     files = shipped()
     jobs, originals = [], []
     for path, kind in files:
         if kind is None:
             problems.append(f"{path}: member \"format\" names no known format")
             continue
-        problems += [f"{path}: {e.json_path}: {e.message}" for e in schema_of[kind].iter_errors(load(path))]
+        document = load(path)
+        problems += [f"{path}: {e.json_path}: {e.message}" for e in schema_of[kind].errors_of_original(document)]
         checked += 1
         if kind != "result":
-            originals.append((path, kind, "as it is", load(path)))
-            jobs += [(path, kind, text, mutant) for text, mutant in mutants(load(path))]
+            originals.append((path, kind, "as it is", document))
+            jobs += [(path, kind, document, *how) for how in changes(document)]
     step = max(1, len(jobs) // int(os.environ.get("MT_MUTANTS", "4000")))  # evenly thinned where there are many
-    jobs = originals + jobs[::step]
+    # a file of another format is not read on: the verdicts agree, but there is nothing to compare
+    jobs = originals + [(path, kind, f"{'/'.join(map(str, where))}: {change}", changed(document, where, change))
+                        for path, kind, document, where, change in jobs[::step]]
     with tempfile.TemporaryDirectory() as folder:
         names = []
         for i, (path, kind, _, mutant) in enumerate(jobs):
             if kind == "study":  # models are named relative to the study
-                mutant = json.loads(json.dumps(mutant))
+                mutant = copy.deepcopy(mutant)
                 if isinstance(mutant.get("aircraft"), str):
                     mutant["aircraft"] = str((path.parent / mutant["aircraft"]).resolve())
                 references = mutant.get("references")
@@ -144,7 +173,7 @@ def main():
         wrong += refused
         if text == "as it is" and not verdict.endswith(" MT_OK"):
             problems.append(f"{path}: the reader refuses it")
-        if refused == schema_of[kind].is_valid(mutant):
+        if refused == schema_of[kind].validator.is_valid(mutant):
             problems.append(f"{path.name}: {text}: the reader {'refuses' if refused else 'accepts'} it, the schema does not agree")
     if jobs and (wrong == 0 or wrong == len(jobs)):
         problems.append("all verdicts are the same: the comparison cannot fail")
