@@ -70,20 +70,3 @@ void mt_doubt_copy(mt_doubt_list *list, const mt_doubt *item)
     copy.file = text(list, item->file);
     (void)add(list, &copy);
 }
-
-int mt_doubt_count(int n, const mt_doubt *items, mt_doubt_level level)
-{
-    int count = 0;
-    for (int i = 0; i < n; i++) {
-        count += items[i].level == level ? 1 : 0;
-    }
-    return count;
-}
-
-const char *mt_doubt_level_name(mt_doubt_level level)
-{
-#define MT_DOUBT_LEVEL_NAME(id, name) name,
-    static const char *const names[] = {MT_DOUBT_LEVEL_LIST(MT_DOUBT_LEVEL_NAME)};
-#undef MT_DOUBT_LEVEL_NAME
-    return names[level];
-}

@@ -12,15 +12,12 @@
  * is not meant ("2 free motions"), a doubt (a value that is allowed and hardly meant: a margin
  * of 0.1 %), or a fault (a value that cannot be: a negative mass).
  */
-#define MT_DOUBT_LEVEL_LIST(X) \
-    X(MT_LEVEL_FACT, "fact")   \
-    X(MT_LEVEL_DOUBT, "doubt") \
-    X(MT_LEVEL_FAULT, "fault")
-#define MT_DOUBT_LEVEL_ENUM(id, name) id,
 typedef enum mt_doubt_level {
-    MT_DOUBT_LEVEL_LIST(MT_DOUBT_LEVEL_ENUM) MT_LEVEL_COUNT
+    MT_LEVEL_FACT,
+    MT_LEVEL_DOUBT,
+    MT_LEVEL_FAULT,
+    MT_LEVEL_COUNT
 } mt_doubt_level;
-#undef MT_DOUBT_LEVEL_ENUM
 
 typedef struct mt_doubt {
     mt_doubt_level level;
@@ -55,7 +52,5 @@ mt_doubt *mt_doubt_add(mt_doubt_list *list, mt_doubt_level level, const char *ki
 void mt_doubt_sort(mt_doubt_list *list, int first);
 /* Copy of an item, with all its texts, into another list. */
 void mt_doubt_copy(mt_doubt_list *list, const mt_doubt *item);
-int mt_doubt_count(int n, const mt_doubt *items, mt_doubt_level level);
-const char *mt_doubt_level_name(mt_doubt_level level);
 
 #endif

@@ -117,8 +117,6 @@ void mt_args_free(mt_args *args);
 
 /* What --help prints: of the whole (MT_CMD_NONE) or of one command. */
 void mt_help(int command, mt_text *out);
-/* "modetune modes MODEL [options]" */
-void mt_help_usage(int command, mt_text *out);
 /* The manual page, section 1, in the language of man(7). */
 void mt_manual(mt_text *out);
 

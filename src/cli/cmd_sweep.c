@@ -58,7 +58,10 @@ static mt_status read_points(const char *text, const double range[2], int *out, 
     return MT_OK;
 }
 
-mt_status mt_sweep_read(const mt_args *args, mt_subject *s, mt_sweep_request *out, mt_err *err)
+/* "JOINT=FROM:TO:N" with expressions of the subject's values, into mem. Fails: MT_E_USAGE,
+ * MT_E_MEMORY. */
+static mt_status read_request(const mt_args *args, mt_subject *s, mt_sweep_request *out,
+                              mt_err *err)
 {
     const char *const text = args->value[MT_OPT_DRIVE];
     double range[2] = {0.0, 0.0};
@@ -335,7 +338,7 @@ int mt_cmd_sweep(const mt_args *args, mt_text *out)
     if (code != MT_EXIT_DONE) {
         goto done;
     }
-    const mt_status rc = mt_sweep_read(args, &s, &request, &err);
+    const mt_status rc = read_request(args, &s, &request, &err);
     if (rc != MT_OK) {
         code = mt_cli_failed(rc, &err);
         goto done;

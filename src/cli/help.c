@@ -54,7 +54,8 @@ static void help_option(const mt_option *o, mt_text *out)
     fill(o->help, OPTION_COLUMN, out);
 }
 
-void mt_help_usage(int command, mt_text *out)
+/* "modetune modes MODEL [options]" */
+static void usage(int command, mt_text *out)
 {
     const mt_command *const c = &mt_commands[command];
     mt_text_addf(out, "modetune %s %s [options]", c->name, c->operands);
@@ -63,7 +64,7 @@ void mt_help_usage(int command, mt_text *out)
 static void help_command(int command, mt_text *out)
 {
     mt_text_add(out, "Usage: ");
-    mt_help_usage(command, out);
+    usage(command, out);
     mt_text_add(out, "\n\n");
     fill(mt_commands[command].details, 0, out);
     mt_text_add(out, "\nOptions:\n");

@@ -26,10 +26,6 @@ typedef struct mt_sweep_view {
     int *undecided; /* [n] */
 } mt_sweep_view;
 
-/* "JOINT=FROM:TO:N" with expressions of the subject's values, into mem. Fails: MT_E_USAGE,
- * MT_E_MEMORY. */
-mt_status mt_sweep_read(const mt_args *args, mt_subject *s, mt_sweep_request *out, mt_err *err);
-
 void mt_sweep_print(const mt_sweep_view *v, mt_text *out);
 void mt_sweep_json(const mt_sweep_view *v, mt_json_writer *w);
 /* Columns, then rows of all points; the columns of two configurations are the same where their

@@ -80,7 +80,8 @@ int mt_exit_worse(int a, int b)
     return lost ? MT_EXIT_SYSTEM : a > b ? a : b;
 }
 
-bool mt_terminal_colour(int descriptor)
+/* Is standard output (descriptor 1) or error (2) a terminal where colour is welcome? */
+static bool takes_colour(int descriptor)
 {
     const char *const refused = getenv("NO_COLOR");
     const char *const terminal = getenv("TERM");
@@ -193,7 +194,7 @@ static void line(const char *fmt, va_list args)
 MT_PRINTF(3, 0)
 static void say(const char *kind, const char *colour, const char *fmt, va_list args)
 {
-    const bool coloured = mt_terminal_colour(STDERR_FILENO);
+    const bool coloured = takes_colour(STDERR_FILENO);
     (void)fprintf(stderr, "modetune: %s%s:%s ", coloured ? colour : "", kind,
                   coloured ? PLAIN : "");
     line(fmt, args);
@@ -224,7 +225,7 @@ static void diagnostic(const char *text, size_t length)
         {" error: ", RED},
         {" warning: ", YELLOW},
     };
-    const bool coloured = mt_terminal_colour(STDERR_FILENO);
+    const bool coloured = takes_colour(STDERR_FILENO);
     size_t done = 0;
     for (int i = 0; coloured && done == 0 && i < MT_COUNT(words); i++) {
         const char *const at = strstr(text, words[i].word);

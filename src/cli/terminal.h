@@ -49,8 +49,6 @@ void mt_terminal_diagnostics(const char *lines);
 void mt_terminal_talk(bool quiet, const char *fmt, ...) MT_PRINTF(2, 3);
 /* One line that is written over again and again, on a terminal only. Text NULL: wipe it. */
 void mt_terminal_progress(bool quiet, const char *text);
-/* Is standard output (descriptor 1) or error (2) a terminal where colour is welcome? */
-bool mt_terminal_colour(int descriptor);
 
 /* SIGPIPE and SIGXFSZ become errors of writing. SIGINT and SIGTERM stay as the system has them,
  * and end the program, but while they are held. */

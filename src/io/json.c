@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The document: the scanner says whether the text is JSON, cJSON builds it. Both go through it in
- * the same order, which makes the scanner's spots the addresses of cJSON's items.
+ * The document: the scanner says whether the text is JSON, cJSON builds it. Both go through it
+ * in the same order, which makes the scanner's spots the addresses of cJSON's items.
  *
- * cJSON reads numbers as the C library does, correctly rounded, but with the decimal point of the
- * locale, and not beyond the 63rd character. So this thread is in the locale "C" while it reads,
- * and longer numbers are 0 to it and read here.
+ * cJSON reads numbers as the C library does, correctly rounded, but with the decimal point of
+ * the locale, and not beyond the 63rd character. So this thread is in the locale "C" while it
+ * reads, and longer numbers are 0 to it and read here.
  */
 #include "io/json_priv.h"
 

@@ -64,7 +64,8 @@ void mt_json_places(const mt_json *doc, int n, const mt_addr *addrs, int *lines,
     }
 }
 
-/* A member name as a pointer writes it: decoded where the values stand, else as in the source. */
+/* A member name as a pointer writes it: decoded where the values stand, else as in the
+ * source. */
 static void add_name(const mt_json *doc, mt_addr value, mt_text *out)
 {
     const bool in_source = doc->items == NULL;

@@ -8,8 +8,8 @@
 #include "io/scan.h"
 
 /* cJSON holds names, values and who is whose child; beside it stands only what it has no room
- * for: the text, where in it each value stands, and the way from an address to the item (back it
- * is the item's valueint, which nobody else uses). */
+ * for: the text, where in it each value stands, and the way from an address to the item (back
+ * it is the item's valueint, which nobody else uses). */
 struct mt_json {
     mt_arena mem;
     mt_diags diags;

@@ -5,7 +5,8 @@
 
 /* The table of keys of each kind of goal, of the list that goal_kinds.h has of its members. */
 #define KEY(slot, name, type, required, range) {name, MT_KEY_##type, required},
-#define KEYS(id, ...)                          static const mt_key id##_KEYS[] = {MT_GOAL_##id##_MEMBERS(KEY)};
+
+#define KEYS(id, ...) static const mt_key id##_KEYS[] = {MT_GOAL_##id##_MEMBERS(KEY)};
 MT_GOAL_LIST(KEYS)
 
 #define TABLE(id, name, ...) {"goal_" #name, id##_KEYS, MT_COUNT(id##_KEYS)},

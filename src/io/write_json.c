@@ -29,8 +29,8 @@ const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE]
         return buffer;
     }
     char raw[MT_JSON_NUMBER_SIZE];
-    const int length =
-        snprintf(raw, sizeof raw, "%.17g", value == 0.0 ? 0.0 : value); /* -0 is 0 */
+    /* -0 is 0 */
+    const int length = snprintf(raw, sizeof raw, "%.17g", value == 0.0 ? 0.0 : value);
     int n = 0;
     for (int i = 0; i < length && i < MT_JSON_NUMBER_SIZE - 1; i++) {
         if (is_number_char(raw[i])) {

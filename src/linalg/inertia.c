@@ -69,8 +69,8 @@ static mt_status factor(int n, double *c, lapack_int *ipiv, mt_arena *scratch, m
     lapack_int lwork = 0;
     MT_TRY(mt_lapack_work(scratch, query, n, &work, &lwork, err));
     info = LAPACKE_dsytrf_work(LAPACK_COL_MAJOR, 'L', n, c, n, ipiv, work, lwork);
-    return info < 0 ? mt_lapack_bug("dsytrf", info, err)
-                    : MT_OK; /* > 0: a zero pivot is counted */
+    /* > 0: a zero pivot is counted */
+    return info < 0 ? mt_lapack_bug("dsytrf", info, err) : MT_OK;
 }
 
 static tally count_blocks(int n, const double *c, const lapack_int *ipiv)

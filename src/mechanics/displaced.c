@@ -26,7 +26,9 @@ static void add_product(const mt_system *sys, const mt_term *t, double c, const 
     }
 }
 
-mt_status mt_mass_matrix(mt_linear *lin, const mt_pose *poses, double *m, mt_err *err)
+/* Mass matrix over all states at given positions: m nq x nq, both triangles, column-major [kg,
+ * kg m^2]. After mt_linear_update. */
+static mt_status mass_matrix(mt_linear *lin, const mt_pose *poses, double *m, mt_err *err)
 {
     const mt_system *const sys = lin->sys;
     const mt_term_list *const list = &lin->list[MT_TERM_MASS];
@@ -91,7 +93,7 @@ mt_status mt_displaced_eval(mt_linear *lin, const double *dq, double *m, double 
     for (ptrdiff_t i = 0; i < lin->m && c != NULL; i++) {
         c[i] = creal(l.c[i]);
     }
-    MT_TRY(mt_mass_matrix(lin, at.pose, m, err));
+    MT_TRY(mass_matrix(lin, at.pose, m, err));
     mt_arena_rewind(&lin->scratch, mark);
     return MT_OK;
 }

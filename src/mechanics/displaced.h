@@ -9,10 +9,6 @@
  * and at positions near the linearised one: what the linearisation is the derivative of.
  */
 
-/* Mass matrix over all states at given positions: m nq x nq, both triangles, column-major [kg,
- * kg m^2]. After mt_linear_update. */
-mt_status mt_mass_matrix(mt_linear *lin, const mt_pose *poses, double *m, mt_err *err);
-
 /**
  * @param[in]  lin   after mt_linear_update; its scratch is used
  * @param[in] dq [nq] displacement from the linearised position: each body is moved by dx and

@@ -156,8 +156,8 @@ typedef struct mt_system {
     mt_node *parameters; /* [model parameters] node of each parameter in this configuration */
     mt_program program;
     int nq; /* states */
-    double
-        length_m; /* model length at the original design (system_length.c); scales rotations */
+    /* model length at the original design (system_length.c); scales rotations */
+    double length_m;
     MT_LIST_OF(mt_vec_def, vecs);
     MT_LIST_OF(mt_measure_def, measures);
     MT_LIST_OF(mt_state_body, bodies);
@@ -220,7 +220,8 @@ mt_status mt_system_same_drive(const mt_system *a, const mt_system *b, bool *sam
  * without force, a beam's strains change with none of them. */
 bool mt_system_beams_shape(const mt_system *sys);
 
-/* What a displacement is compared with (system_length.c), of the values v of all nodes; above 0. */
+/* What a displacement is compared with (system_length.c), of the values v of all nodes; above
+ * 0. */
 double mt_system_length(const mt_system *sys, const double *v);
 
 int mt_system_find_channel(const mt_system *sys, const char *name);

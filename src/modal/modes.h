@@ -52,8 +52,8 @@ bool mt_modal_indexed(const mt_modes *modes);
 double mt_modal_hz(const mt_modes *modes, int i);
 /* |error of mt_modal_hz| <= this [Hz], by error_i; NaN where the frequency is. */
 double mt_modal_error_hz(const mt_modes *modes, int i);
-/* How many vibration modes there are: those that are no rigid-body modes. Where a mode is unstable
- * or undecided it is counted, and none has an index. */
+/* How many vibration modes there are: those that are no rigid-body modes. Where a mode is
+ * unstable or undecided it is counted, and none has an index. */
 int mt_modal_vibrations(const mt_modes *modes);
 /* Position in lambda of vibration mode `index` (1-based, flexible modes ascending); -1 where
  * there are fewer, or where any mode is unstable or undecided. */

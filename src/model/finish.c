@@ -112,7 +112,7 @@ static void enter(mt_finish *f, mt_names *table, mt_name name, int value, const 
         enter((f), &(f)->m->tables->table, (f)->m->list[i].name, i, (what)); \
     }
 
-void mt_finish_names(mt_finish *f)
+static void finish_names(mt_finish *f)
 {
     mt_model *const m = f->m;
     *m->tables = (mt_model_names){0};
@@ -143,7 +143,7 @@ void mt_finish_names(mt_finish *f)
     }
 }
 
-void mt_finish_bodies(mt_finish *f)
+static void finish_bodies(mt_finish *f)
 {
     for (int i = 0; i < f->m->n_bodies; i++) {
         mt_finish_position(f, &f->m->bodies[i].centre);
@@ -190,8 +190,8 @@ static bool fits(const mt_model *m, mt_diags *diags)
 mt_status mt_model_finish(mt_model *model, mt_diags *diags, mt_err *err)
 {
     static void (*const stages[])(mt_finish *) = {
-        ensure_configuration, mt_finish_names,   mt_finish_configurations, mt_finish_presence,
-        mt_finish_bodies,     mt_finish_links,   mt_finish_joints,         mt_finish_springs,
+        ensure_configuration, finish_names,      mt_finish_configurations, mt_finish_presence,
+        finish_bodies,        mt_finish_links,   mt_finish_joints,         mt_finish_springs,
         mt_finish_loads,      mt_finish_sensors, mt_finish_drives,         mt_finish_cycles,
         mt_finish_values,
     };

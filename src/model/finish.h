@@ -55,10 +55,8 @@ void mt_finish_ring_end(mt_finish_ring *ring);
 mt_addr mt_finish_addr(const mt_model *m, mt_num num);
 
 /* The stages, in order. */
-void mt_finish_names(mt_finish *f);
 void mt_finish_configurations(mt_finish *f);
 void mt_finish_presence(mt_finish *f);
-void mt_finish_bodies(mt_finish *f);
 void mt_finish_links(mt_finish *f);
 void mt_finish_joints(mt_finish *f);
 void mt_finish_springs(mt_finish *f);

@@ -103,14 +103,12 @@ typedef struct mt_certify_search {
 mt_status mt_certify_assignments(const mt_certify *c, int n_known, const int *known,
                                  mt_arena *mem, mt_certify_search *out, mt_err *err);
 
-#define MT_VERDICT_LIST(X)                        \
-    X(MT_VERDICT_IMPOSSIBLE, "proven impossible") \
-    X(MT_VERDICT_POSSIBLE, "possible")            \
-    X(MT_VERDICT_OPEN, "not proven")
-#define MT_VERDICT_ENUM(id, text) id,
-typedef enum mt_verdict { MT_VERDICT_LIST(MT_VERDICT_ENUM) MT_VERDICT_COUNT } mt_verdict;
-#undef MT_VERDICT_ENUM
-const char *mt_verdict_text(mt_verdict verdict);
+typedef enum mt_verdict {
+    MT_VERDICT_IMPOSSIBLE, /* proven */
+    MT_VERDICT_POSSIBLE,
+    MT_VERDICT_OPEN, /* not proven */
+    MT_VERDICT_COUNT
+} mt_verdict;
 
 /* Can a design of the box have this assignment[n_bands] and meet limits and bounds? at[n] (may
  * be NULL): one that does, where POSSIBLE. boxes may be NULL. */

@@ -530,20 +530,6 @@ mt_status mt_certify_assignments(const mt_certify *c, int n_known, const int *kn
     return rc;
 }
 
-const char *mt_verdict_text(mt_verdict verdict)
-{
-    switch (verdict) {
-#define MT_VERDICT_CASE(id, text) \
-    case id:                      \
-        return text;
-        MT_VERDICT_LIST(MT_VERDICT_CASE)
-#undef MT_VERDICT_CASE
-    case MT_VERDICT_COUNT:
-        break;
-    }
-    return "";
-}
-
 mt_status mt_certify_possible(const mt_certify *c, const int *assignment, mt_arena *scratch,
                               mt_verdict *verdict, double *at, long *boxes, mt_err *err)
 {

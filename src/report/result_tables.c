@@ -329,7 +329,8 @@ mt_table mt_report_alternatives(const mt_result *result)
     return t;
 }
 
-const char *mt_report_verdict(const mt_result_published *p)
+/* "holds", "fails", "not comparable" */
+static const char *verdict(const mt_result_published *p)
 {
     if (p->role != NULL && strcmp(p->role, "not_comparable") == 0) {
         return "not comparable";
@@ -423,7 +424,7 @@ mt_table mt_report_published(const mt_result *result)
         mt_table_percent(&t, p->difference_percent, PERCENT_DIGITS);
         mt_table_text(&t, p->demand);
         mt_table_text(&t, p->role);
-        mt_table_text(&t, mt_report_verdict(p));
+        mt_table_text(&t, verdict(p));
         mt_table_text(&t, p->source);
     }
     return t;

@@ -43,7 +43,5 @@ mt_table mt_report_designs(const mt_result *result);
 /* Does every published entry that can be compared hold? *judged (may be NULL): how many of them
  * there are. */
 bool mt_report_verified(const mt_result *result, int *judged);
-/* "holds", "fails", "not comparable" */
-const char *mt_report_verdict(const mt_result_published *p);
 
 #endif

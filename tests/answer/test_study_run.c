@@ -202,8 +202,8 @@ static void complain(const char *reason, const char *file, int line, int code)
 }
 
 /* Every allocation fails in turn (from the thousandth on, every 37th): solving gives the answer
- * or says that memory is out, and gives everything back; GSL's error handler, which is the whole
- * process's, is neither called nor another one afterwards. */
+ * or says that memory is out, and gives everything back; GSL's error handler, which is the
+ * whole process's, is neither called nor another one afterwards. */
 static void shortage_of_memory__is_reported_and_leaks_nothing(mt_test *t)
 {
     study_case c;

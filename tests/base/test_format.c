@@ -93,8 +93,8 @@ static void format__makes_arguments_visible_and_nothing_else(mt_test *t)
 /* For every size, what is kept is the longest beginning of the whole that is UTF-8. */
 static void format__cuts_between_characters(mt_test *t)
 {
-    static const char text[] =
-        "a\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80z"; /* 1, 2, 3, 4, 1 bytes */
+    /* 1, 2, 3, 4, 1 bytes */
+    static const char text[] = "a\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80z";
     static const int whole[] = {0, 1, 1, 3, 3, 3, 6, 6, 6, 6, 10, 11, 11};
     for (int n = 0; n < MT_COUNT(whole); n++) {
         char got[SIZE];

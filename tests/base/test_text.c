@@ -171,10 +171,11 @@ static void text__width_counts_code_points(mt_test *t)
     CHECK_INT(t, mt_text_width(""), 0);
     CHECK_INT(t, mt_text_width("Hz"), 2);
     CHECK_INT(t, mt_text_width("\xCF\x89\xC2\xB2"), 2); /* omega squared */
+    /* less or equal */
     CHECK_INT(t,
               mt_text_width("a\xE2\x89\xA4"
                             "b"),
-              3); /* less or equal */
+              3);
 }
 
 MT_TEST_MAIN(MT_TEST(text__grows_and_formats),

@@ -189,8 +189,8 @@ static const struct {
 
 static void derivatives__agree_with_slopes_in_every_mechanism(mt_test *t)
 {
-    const bool few = getenv("MT_TEST_LAUNCHED") !=
-                     NULL; /* valgrind: one derivative of every third is enough */
+    /* valgrind: one derivative of every third is enough */
+    const bool few = getenv("MT_TEST_LAUNCHED") != NULL;
     for (int i = 0; i < MT_COUNT(CASES); i += few ? 3 : 1) {
         mech s;
         mt_test_row(t, "%s, %s", CASES[i].file, CASES[i].configuration);

@@ -202,8 +202,8 @@ static void oracle__udwadia_kalaba_agrees_on_every_model(mt_test *t)
     REQUIRE(t, mt_arena_init(&mem, 0, &err) == MT_OK);
     for (int i = 0; i < MT_COUNT(SYSTEMS); i++) {
         mt_model *const model = mech_load(t, SYSTEMS[i].file);
-        const bool few =
-            getenv("MT_TEST_LAUNCHED") != NULL; /* valgrind: one of each is enough */
+        /* valgrind: one of each is enough */
+        const bool few = getenv("MT_TEST_LAUNCHED") != NULL;
         const int all = model == NULL ? 0 : model->n_configurations;
         const int n = few && SYSTEMS[i].configuration == NULL && all > 0 ? 1 : all;
         for (int c = 0; c < n; c++) {
