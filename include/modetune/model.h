@@ -5,6 +5,7 @@
 #define MODETUNE_MODEL_H
 
 #include "modetune/export.h"
+#include "modetune/read.h"
 #include "modetune/status.h"
 
 #ifdef __cplusplus
@@ -15,12 +16,15 @@ typedef struct mt_model mt_model;
 
 /**
  * Read a model file (format "modetune-model/1").
- * @param[in]  path  regular file of at most 16 MiB
- * @param[out] out the model, owned by the caller; NULL on failure Fails: MT_E_INPUT (the file
- *   is wrong; err tells the first problem with line, column and JSON pointer, and how many more
- *   there are), MT_E_SYSTEM (the file cannot be read), MT_E_MEMORY.
+ * @param[in]  path  regular file of at most 16 MiB, or one that opt gives by its text
+ * @param[in]  opt   NULL: defaults
+ * @param[out] out   the model, owned by the caller; NULL on failure
+ * Time in proportion to the size. Fails: MT_E_INPUT (the file is wrong; err tells the first
+ * problem with line, column and JSON pointer, and how many more there are, opt->diagnostics all
+ * of them), MT_E_SYSTEM (the file cannot be read), MT_E_USAGE (opt), MT_E_MEMORY.
  */
-MT_API mt_status mt_model_read(const char *path, mt_model **out, mt_err *err);
+MT_API mt_status mt_model_read(const char *path, const mt_read_options *opt, mt_model **out,
+                               mt_err *err);
 /* Accepts NULL. */
 MT_API void mt_model_delete(mt_model *model);
 

@@ -4,7 +4,7 @@
  *
  *     mt_study *study;
  *     mt_result *result;
- *     if (mt_study_read("studies/beam_identification.json", &study, &err) == MT_OK &&
+ *     if (mt_study_read("studies/beam_identification.json", NULL, &study, &err) == MT_OK &&
  *         mt_study_solve(study, NULL, &result, &err) == MT_OK &&
  *         mt_result_outcome(result) == MT_RESULT_SOLVED) {
  *         k = mt_result_value(result, 1, "K_T1");
@@ -17,6 +17,7 @@
 #define MODETUNE_STUDY_H
 
 #include "modetune/export.h"
+#include "modetune/read.h"
 #include "modetune/status.h"
 
 #ifdef __cplusplus
@@ -55,13 +56,17 @@ typedef struct mt_solve_options {
 } mt_solve_options;
 
 /**
- * Read a study file (format "modetune-study/1") and the models that it names, which must lie
- * beneath the parent of its folder.
- * @param[out] out the study, owned by the caller; NULL on failure Fails: MT_E_INPUT (err tells
- *   the first problem with file, line, column and JSON pointer, and how many more there are),
- *   MT_E_SYSTEM, MT_E_MEMORY.
+ * Read a study file (format "modetune-study/1") and the models and catalogues that it names,
+ * each relative to the folder of the file that names it.
+ * @param[in]  path  regular file of at most 16 MiB, or one that opt gives by its text
+ * @param[in]  opt   NULL: defaults
+ * @param[out] out   the study, owned by the caller; NULL on failure
+ * Fails: MT_E_INPUT (err tells the first problem with file, line, column and JSON pointer, and
+ * how many more there are, opt->diagnostics all of them), MT_E_SYSTEM, MT_E_USAGE (opt),
+ * MT_E_MEMORY.
  */
-MT_API mt_status mt_study_read(const char *path, mt_study **out, mt_err *err);
+MT_API mt_status mt_study_read(const char *path, const mt_read_options *opt, mt_study **out,
+                               mt_err *err);
 /* Accepts NULL. */
 MT_API void mt_study_delete(mt_study *study);
 

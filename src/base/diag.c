@@ -49,7 +49,7 @@ void mt_diag_error(mt_diags *d, mt_addr addr, const char *fmt, ...)
     }
     va_list args;
     va_start(args, fmt);
-    add(d, addr, MT_SEV_ERROR, false, fmt, args);
+    add(d, addr, MT_SEVERITY_ERROR, false, fmt, args);
     va_end(args);
 }
 
@@ -62,7 +62,7 @@ void mt_diag_structure(mt_diags *d, mt_addr addr, const char *fmt, ...)
     }
     va_list args;
     va_start(args, fmt);
-    add(d, addr, MT_SEV_ERROR, true, fmt, args);
+    add(d, addr, MT_SEVERITY_ERROR, true, fmt, args);
     va_end(args);
 }
 
@@ -74,6 +74,6 @@ void mt_diag_warning(mt_diags *d, mt_addr addr, const char *fmt, ...)
     }
     va_list args;
     va_start(args, fmt);
-    add(d, addr, MT_SEV_WARNING, false, fmt, args);
+    add(d, addr, MT_SEVERITY_WARNING, false, fmt, args);
     va_end(args);
 }

@@ -2,6 +2,8 @@
 #ifndef BASE_DIAG_H
 #define BASE_DIAG_H
 
+#include "modetune/read.h"
+
 #include "base/arena.h"
 
 /*
@@ -14,8 +16,6 @@ typedef int mt_addr;
 /* So many problems are kept; so many of them, the first, say what may have been meant: to look
  * for it takes a walk through all names. */
 enum { MT_NO_ADDR = -1, MT_DIAG_LIMIT = 200, MT_DIAG_SUGGESTIONS = 50 };
-
-typedef enum mt_severity { MT_SEV_ERROR, MT_SEV_WARNING } mt_severity;
 
 typedef struct mt_diag {
     mt_addr addr;

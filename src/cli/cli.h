@@ -30,11 +30,11 @@ int mt_cli_main(int argc, char *const argv[]);
 
 /* What loading a file said: diagnostics as they are, else the error itself. Returns the exit
  * status of rc; frees the messages. */
-int mt_cli_loaded(mt_status rc, mt_text *messages, const mt_err *err);
+int mt_cli_loaded(mt_status rc, mt_diagnostics *messages, const mt_err *err);
 /* What was found when a study was held against its model: told in messages with its place where
  * the study knows it, else led by the file in err. Nothing where rc is MT_OK. */
 void mt_cli_place(const mt_study *study, const char *path, mt_status rc, mt_err *err,
-                  mt_text *messages);
+                  mt_diagnostics *messages);
 /* Report err and return the exit status of rc. */
 int mt_cli_failed(mt_status rc, const mt_err *err);
 mt_io_options mt_cli_io(const mt_args *args);

@@ -259,7 +259,7 @@ static mt_status apply(const mt_args *args, const mt_result *result, mt_text *ou
 int mt_cmd_apply(const mt_args *args, mt_text *out)
 {
     const mt_io_options opt = mt_cli_io(args);
-    mt_text messages = {.s = NULL};
+    mt_diagnostics messages = {.count = 0};
     mt_err err = {.code = MT_OK};
     mt_result *result = NULL;
     if (args->format == MT_FORMAT_CSV) {

@@ -53,7 +53,7 @@ static int kind_of(mt_json *doc)
 }
 
 static mt_status find_kind(const char *path, const mt_io_options *opt, int *kind,
-                           mt_text *messages, mt_err *err)
+                           mt_diagnostics *messages, mt_err *err)
 {
     mt_file file = {.bytes = NULL};
     mt_json *doc = NULL;
@@ -66,7 +66,7 @@ static mt_status find_kind(const char *path, const mt_io_options *opt, int *kind
         *kind = rc == MT_OK ? kind_of(doc) : KIND_COUNT;
         if (*kind == KIND_COUNT) {
             rc = rc == MT_OK ? mt_fail(err, MT_E_INPUT, "%s: the format is unknown", path) : rc;
-            mt_json_print(doc, path, messages);
+            mt_json_report(doc, path, messages);
         }
     }
     mt_json_delete(doc);
@@ -100,28 +100,24 @@ static mt_status examine_model(const mt_model *model, mt_doubt_list *found, mt_e
 
 /* What the analysis says besides the diagnostics of loading, which hold the doubts about single
  * numbers already. */
-static void add_messages(const mt_doubt_list *found, const char *path, mt_text *messages)
+static void add_messages(const mt_doubt_list *found, const char *path, mt_diagnostics *messages)
 {
     mt_text text = {.s = NULL};
     for (int i = 0; i < found->n; i++) {
-        mt_doubt d = found->items[i];
+        const mt_doubt *const d = &found->items[i];
         text.length = 0;
-        d.file = d.file == NULL ? path : d.file;
-        mt_report_doubt(&d, false, &text);
-        if (text.s == NULL || (messages->s != NULL && strstr(messages->s, d.text) != NULL)) {
-            continue;
+        mt_report_doubt(d, false, &text);
+        if (text.s != NULL && strstr(mt_diagnostics_text(messages), d->text) == NULL) {
+            const mt_diagnostic_place place = {.file = d->file == NULL ? path : d->file,
+                                               .line = d->line,
+                                               .column = d->column,
+                                               .pointer = d->pointer};
+            mt_diagnostics_add(
+                messages, d->level == MT_LEVEL_DOUBT ? MT_SEVERITY_WARNING : MT_SEVERITY_NOTE,
+                &place, text.s);
         }
-        mt_text_addf(messages, "%s", d.file);
-        if (d.line > 0) {
-            mt_text_addf(messages, ":%d:%d", d.line, d.column);
-        }
-        mt_text_addf(messages, ": %s: ", d.level == MT_LEVEL_DOUBT ? "warning" : "note");
-        if (d.pointer != NULL && d.pointer[0] != '\0') {
-            mt_text_addf(messages, "%s: ", d.pointer);
-        }
-        mt_text_addf(messages, "%s\n", text.s);
     }
-    messages->failed = messages->failed || text.failed;
+    messages->lines.failed = messages->lines.failed || text.failed;
     mt_text_free(&text);
 }
 
@@ -145,7 +141,7 @@ static void forget(subject *s)
 enum { MOST_TRIED = 200 };
 
 /* What reads well is held against mechanics: each configuration, and each goal of a study. */
-static mt_status examine(const subject *s, const char *path, mt_text *messages,
+static mt_status examine(const subject *s, const char *path, mt_diagnostics *messages,
                          mt_doubt_list *found, mt_err *err)
 {
     mt_status rc = MT_OK;
@@ -166,7 +162,7 @@ static mt_status examine(const subject *s, const char *path, mt_text *messages,
 }
 
 static mt_status load(int kind, const char *path, const mt_io_options *opt, subject *s,
-                      mt_text *messages, mt_doubt_list *found, mt_err *err)
+                      mt_diagnostics *messages, mt_doubt_list *found, mt_err *err)
 {
     mt_aircraft_list aircraft = {0};
     mt_status rc = MT_OK;
@@ -192,11 +188,35 @@ static mt_status load(int kind, const char *path, const mt_io_options *opt, subj
     return rc;
 }
 
+/* What was told, each with its place; or the failure, where that is all there is. */
+static void put_problems(mt_json_writer *w, const char *path, const mt_diagnostics *messages,
+                         const char *failure)
+{
+    static const char *const names[MT_SEVERITY_COUNT] = {"error", "warning", "note"};
+    mt_json_open(w, "problems", '[');
+    const bool alone = failure != NULL && messages->count == 0;
+    for (int i = 0; i < messages->count || (alone && i == 0); i++) {
+        const int line = mt_diagnostics_line(messages, i);
+        mt_json_open(w, NULL, '{');
+        mt_json_put_string(w, "severity",
+                           alone ? names[0] : names[mt_diagnostics_severity(messages, i)]);
+        mt_json_put_string(w, "file", alone ? path : mt_diagnostics_file(messages, i));
+        if (line > 0) {
+            mt_json_put_integer(w, "line", line);
+            mt_json_put_integer(w, "column", mt_diagnostics_column(messages, i));
+            mt_json_put_string(w, "pointer", mt_diagnostics_pointer(messages, i));
+        }
+        mt_json_put_string(w, "message", alone ? failure : mt_diagnostics_message(messages, i));
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+}
+
 static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_table *t,
                  mt_text *out)
 {
     const mt_io_options opt = mt_cli_io(args);
-    mt_text messages = {.s = NULL};
+    mt_diagnostics messages = {.count = 0};
     mt_err err = {.code = MT_OK};
     int kind = KIND_COUNT;
     mt_arena mem = {.first = NULL};
@@ -208,16 +228,12 @@ static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_ta
         rc = load(kind, path, &opt, &read, &messages, &found, &err);
     }
     const char *const name = kind == KIND_COUNT ? NULL : kinds[kind];
-    const char *problems = rc == MT_OK ? "" : err.text;
-    if (messages.s != NULL) {
-        problems = messages.s;
-    }
     if (args->format == MT_FORMAT_JSON) {
         mt_json_open(w, NULL, '{');
         mt_json_put_string(w, "file", path);
         mt_json_put_string(w, "kind", name);
         mt_json_put_bool(w, "ok", rc == MT_OK);
-        mt_json_put_string(w, "problems", problems);
+        put_problems(w, path, &messages, rc == MT_OK ? NULL : err.text);
         mt_json_put_doubts(w, "doubts", &found, MT_LEVEL_DOUBT);
         mt_json_put_doubts(w, "facts", &found, MT_LEVEL_FACT);
         mt_json_close(w);

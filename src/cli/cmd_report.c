@@ -16,7 +16,7 @@ static int report(const mt_args *args, mt_result *result, mt_text *out)
 int mt_cmd_report(const mt_args *args, mt_text *out)
 {
     const mt_io_options opt = mt_cli_io(args);
-    mt_text messages = {.s = NULL};
+    mt_diagnostics messages = {.count = 0};
     mt_err err = {.code = MT_OK};
     mt_result *result = NULL;
     const mt_status rc = mt_result_load(args->operands[0], &opt, &result, &messages, &err);

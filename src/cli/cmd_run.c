@@ -28,7 +28,7 @@ static void progress(void *context, const char *text)
 static int answer(job *j)
 {
     mt_io_options io = mt_cli_io(j->args);
-    mt_text messages = {.s = NULL};
+    mt_diagnostics messages = {.count = 0};
     mt_err err = {.code = MT_OK};
     mt_status rc = mt_study_load(j->path, &io, &j->study, &messages, &err);
     const int code = mt_cli_loaded(rc, &messages, &err);
@@ -48,7 +48,6 @@ static int answer(job *j)
     rc = mt_study_solve(j->study, &opt, &j->result, &err);
     j->seconds = mt_terminal_seconds() - start;
     mt_terminal_progress(j->args->given[MT_OPT_QUIET], NULL);
-    messages = (mt_text){.s = NULL};
     mt_cli_place(j->study, j->path, rc, &err, &messages);
     return mt_cli_loaded(rc, &messages, &err);
 }

@@ -17,18 +17,16 @@ int mt_cli_failed(mt_status rc, const mt_err *err)
     return mt_exit_of(rc);
 }
 
-int mt_cli_loaded(mt_status rc, mt_text *messages, const mt_err *err)
+int mt_cli_loaded(mt_status rc, mt_diagnostics *messages, const mt_err *err)
 {
-    const bool told = messages->s != NULL && strstr(messages->s, "error: ") != NULL;
+    const bool told = mt_diagnostics_first_error(messages) >= 0;
     mt_err shortage = {.code = MT_OK};
-    if (messages->failed && rc != MT_E_MEMORY) { /* some of them are missing */
+    if (messages->lines.failed && rc != MT_E_MEMORY) { /* some of them are missing */
         rc = mt_fail_memory(&shortage);
         err = &shortage;
     }
-    if (messages->s != NULL) {
-        mt_terminal_diagnostics(messages->s);
-    }
-    mt_text_free(messages);
+    mt_terminal_diagnostics(mt_diagnostics_text(messages));
+    mt_diagnostics_free(messages);
     if (rc != MT_OK && !(told && rc == MT_E_INPUT)) {
         return mt_cli_failed(rc, err);
     }
@@ -36,16 +34,17 @@ int mt_cli_loaded(mt_status rc, mt_text *messages, const mt_err *err)
 }
 
 void mt_cli_place(const mt_study *study, const char *path, mt_status rc, mt_err *err,
-                  mt_text *messages)
+                  mt_diagnostics *messages)
 {
-    const mt_study_place *const place =
+    const mt_study_place *const found =
         rc == MT_E_INPUT ? mt_study_find_place(study, err->text) : NULL;
-    if (place == NULL) {
+    if (found == NULL) {
         (void)mt_err_in(err, rc, "%s", path);
         return;
     }
-    mt_text_addf(messages, "%s:%d:%d: error: %s\n", path, place->line, place->column,
-                 err->text);
+    const mt_diagnostic_place place = {
+        .file = path, .line = found->line, .column = found->column};
+    mt_diagnostics_add(messages, MT_SEVERITY_ERROR, &place, err->text);
 }
 
 mt_io_options mt_cli_io(const mt_args *args)
@@ -203,7 +202,7 @@ int mt_subject_load(const mt_args *args, const char *path, const char *configura
                     mt_subject *out)
 {
     const mt_io_options opt = mt_cli_io(args);
-    mt_text messages = {.s = NULL};
+    mt_diagnostics messages = {.count = 0};
     mt_err err = {.code = MT_OK};
     out->path = path;
     mt_status rc = mt_arena_init(&out->mem, 0, &err);

@@ -2,7 +2,9 @@
 #ifndef IO_IO_H
 #define IO_IO_H
 
+#include "base/diagnostics.h"
 #include "base/text.h"
+#include "io/files.h"
 #include "io/json.h"
 #include "io/write_json.h"
 #include "model/model.h"
@@ -14,6 +16,7 @@ typedef struct mt_io_options {
     /* folder that files named by other files must lie in; NULL: for a study the parent of its
      * folder, for a model no limit */
     const char *root;
+    mt_files files;   /* where models, studies and catalogues come from; zeroed: the disk */
     size_t max_bytes; /* of one file; 0: MT_JSON_MAX_BYTES */
     /* [out] number of errors that a JSON Schema of the file sees as well; NULL: not wanted */
     int *structural;
@@ -23,12 +26,11 @@ typedef struct mt_io_options {
  * Read, resolve and check a model file (format "modetune-model/1").
  * @param[in]  opt       NULL: defaults
  * @param[out] out       the model, owned by the caller (mt_model_delete); NULL on failure
- * @param[out] messages every diagnostic, warnings included, is appended as text
- *   (mt_json_print); may be NULL Fails: MT_E_INPUT (err: the first diagnostic), MT_E_SYSTEM,
- *   MT_E_MEMORY.
+ * @param[out] messages  every diagnostic, warnings included, is added; may be NULL
+ * Fails: MT_E_INPUT (err: the first diagnostic), MT_E_SYSTEM, MT_E_MEMORY.
  */
 mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **out,
-                        mt_text *messages, mt_err *err);
+                        mt_diagnostics *messages, mt_err *err);
 /* The same from a document that is parsed already; problems go to its diagnostics. `file` names
  * it in err. */
 mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_err *err);
@@ -39,13 +41,13 @@ mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_
  * @param[in]  opt       NULL: defaults; the models must lie beneath root
  * @param[out] out the study, owned by the caller (mt_study_delete), models included; NULL on
  *   failure
- * @param[out] messages the diagnostics of the study, then those of the models, are appended;
- *   may be NULL Every problem is reported, whichever file it is in. Fails: MT_E_INPUT (err: the
+ * @param[out] messages the diagnostics of the study, then those of the models, are added; may
+ *   be NULL Every problem is reported, whichever file it is in. Fails: MT_E_INPUT (err: the
  *   first; a model that is not there counts as one of the study's problems), MT_E_SYSTEM (a
  *   file cannot be read, or the study itself is not there), MT_E_MEMORY.
  */
 mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **out,
-                        mt_text *messages, mt_err *err);
+                        mt_diagnostics *messages, mt_err *err);
 
 /**
  * Read and check a catalogue of aircraft (format "modetune-aircraft/1").
@@ -53,7 +55,7 @@ mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **o
  * Fails and messages as for mt_model_load.
  */
 mt_status mt_aircraft_load(const char *path, const mt_io_options *opt, mt_arena *mem,
-                           mt_aircraft_list *out, mt_text *messages, mt_err *err);
+                           mt_aircraft_list *out, mt_diagnostics *messages, mt_err *err);
 
 /* Append a result as JSON (format "modetune-result/1"): the same result gives the same bytes.
  * Fails: MT_E_MEMORY. */
@@ -103,6 +105,6 @@ mt_status mt_result_check_folder(const char *path, const char *sha256, const mt_
  * MT_E_MEMORY; messages as for mt_study_load.
  */
 mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result **out,
-                         mt_text *messages, mt_err *err);
+                         mt_diagnostics *messages, mt_err *err);
 
 #endif

@@ -44,9 +44,9 @@ typedef struct mt_json mt_json;
  * @param[in]  text   length bytes, need not be NUL-terminated; not kept
  * @param[out] out the document, owned by the caller; given for MT_OK and MT_E_INPUT, else NULL
  *   Fails: MT_E_INPUT when the text is not JSON (every problem is in mt_json_diags; the
- *   document then has no values and serves mt_json_print only), MT_E_MEMORY. A name given twice
- *   is a problem in mt_json_diags, but MT_OK: reading can go on, the later members of that name
- *   are passed over.
+ *   document then has no values and serves mt_json_report only), MT_E_MEMORY. A name given
+ *   twice is a problem in mt_json_diags, but MT_OK: reading can go on, the later members of
+ *   that name are passed over.
  */
 mt_status mt_json_parse(const char *text, size_t length, mt_json **out, mt_err *err);
 void mt_json_delete(mt_json *doc);

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Addresses to places and JSON pointers, diagnostics to text. */
+/* Addresses to places and JSON pointers, and diagnostics with these. */
 #include "io/json_print.h"
 
 #include "io/json_priv.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-enum { LINE_MAX_BYTES = 1000 }; /* a message is cut there */
 
 /* A place while walking through the text. */
 typedef struct cursor {
@@ -135,35 +133,24 @@ static int compare_entries(const void *a, const void *b)
     return (x->index > y->index) - (x->index < y->index);
 }
 
-/* Text made visible, cut at a character boundary. */
-static void add_visible(const char *text, mt_text *out)
-{
-    mt_text_addf(out, "%.*s%s", LINE_MAX_BYTES, text,
-                 strlen(text) > LINE_MAX_BYTES ? "..." : "");
-}
-
-static void print_one(const mt_json *doc, const char *file, const mt_diag *diag, cursor *at,
-                      mt_text *out)
+static void report_one(const mt_json *doc, const char *file, const mt_diag *diag, cursor *at,
+                       mt_diagnostics *out)
 {
     mt_text pointer = {0};
-    mt_text_addf(out, "%s", file);
+    mt_diagnostic_place place = {.file = file};
     if (diag->addr != MT_NO_ADDR) {
         advance(doc, at, offset_of(doc, diag->addr));
-        mt_text_addf(out, ":%d:%d", at->line, at->column);
+        place.line = at->line;
+        place.column = at->column;
         mt_json_pointer(doc, diag->addr, &pointer);
+        place.pointer = pointer.s;
     }
-    mt_text_add(out, diag->severity == MT_SEV_ERROR ? ": error: " : ": warning: ");
-    if (pointer.s != NULL) {
-        add_visible(pointer.s, out);
-        mt_text_add(out, ": ");
-    }
-    add_visible(diag->text, out);
-    mt_text_add(out, "\n");
-    out->failed = out->failed || pointer.failed;
+    mt_diagnostics_add(out, diag->severity, &place, diag->text);
+    out->lines.failed = out->lines.failed || pointer.failed;
     mt_text_free(&pointer);
 }
 
-void mt_json_print(const mt_json *doc, const char *file, mt_text *out)
+void mt_json_report(const mt_json *doc, const char *file, mt_diagnostics *out)
 {
     const mt_diags *const diags = &doc->diags;
     entry order[MT_DIAG_LIMIT] = {{0, 0}};
@@ -175,11 +162,11 @@ void mt_json_print(const mt_json *doc, const char *file, mt_text *out)
     qsort(order, (size_t)n, sizeof order[0], compare_entries);
     cursor at = {0, 1, 1};
     for (int i = 0; i < n; i++) {
-        print_one(doc, file, &diags->items[order[i].index], &at, out);
+        report_one(doc, file, &diags->items[order[i].index], &at, out);
     }
     const int more = diags->errors + diags->warnings - n;
     if (more > 0) {
-        mt_text_addf(out, "%s: %d more not shown\n", file, more);
+        mt_diagnostics_leave_out(out, file, more);
     }
 }
 
@@ -190,15 +177,15 @@ mt_status mt_json_status(const mt_json *doc, const char *file, mt_err *err)
     if (diags->errors == 0) {
         return MT_OK;
     }
-    mt_text text = {0};
-    mt_json_print(doc, file, &text);
-    if (text.failed) {
-        mt_text_free(&text);
+    mt_diagnostics said = {.count = 0};
+    mt_json_report(doc, file, &said);
+    if (said.lines.failed) {
+        mt_diagnostics_free(&said);
         return mt_fail_memory(err);
     }
-    /* the first error: warnings may stand before it */
-    const char *line = text.s == NULL ? "" : text.s;
-    while (strchr(line, '\n') != NULL && strstr(line, ": error: ") > strchr(line, '\n')) {
+    /* the line of the first error: warnings may stand before it */
+    const char *line = mt_diagnostics_text(&said);
+    for (int i = mt_diagnostics_first_error(&said); i > 0; i--) {
         line = strchr(line, '\n') + 1;
     }
     const int length = (int)strcspn(line, "\n");
@@ -206,6 +193,6 @@ mt_status mt_json_status(const mt_json *doc, const char *file, mt_err *err)
     const mt_status rc =
         more == 0 ? mt_fail(err, MT_E_INPUT, "%.*s", length, line)
                   : mt_fail(err, MT_E_INPUT, "%.*s (and %d more)", length, line, more);
-    mt_text_free(&text);
+    mt_diagnostics_free(&said);
     return rc;
 }

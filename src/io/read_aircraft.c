@@ -177,7 +177,8 @@ static void read_root(mt_reader *r, mt_aircraft_list *list)
 }
 
 static mt_status read_text(const char *path, const mt_file *file, const mt_io_options *opt,
-                           mt_arena *mem, mt_aircraft_list *out, mt_text *messages, mt_err *err)
+                           mt_arena *mem, mt_aircraft_list *out, mt_diagnostics *messages,
+                           mt_err *err)
 {
     mt_json *doc = NULL;
     mt_status rc = mt_json_parse(file->bytes, file->length, &doc, err);
@@ -193,21 +194,22 @@ static mt_status read_text(const char *path, const mt_file *file, const mt_io_op
         *opt->structural = r.diags->structural;
     }
     if (messages != NULL) {
-        mt_json_print(doc, path, messages);
-        rc = messages->failed ? mt_fail_memory(err) : rc;
+        mt_json_report(doc, path, messages);
+        rc = messages->lines.failed ? mt_fail_memory(err) : rc;
     }
     mt_json_delete(doc);
     return rc;
 }
 
 mt_status mt_aircraft_load(const char *path, const mt_io_options *opt, mt_arena *mem,
-                           mt_aircraft_list *out, mt_text *messages, mt_err *err)
+                           mt_aircraft_list *out, mt_diagnostics *messages, mt_err *err)
 {
     const size_t limit =
         opt == NULL || opt->max_bytes == 0 ? MT_JSON_MAX_BYTES : opt->max_bytes;
     mt_file file = {0};
     *out = (mt_aircraft_list){0};
-    mt_status rc = mt_file_read(path, opt == NULL ? NULL : opt->root, limit, &file, err);
+    mt_status rc = mt_files_read(opt == NULL ? NULL : &opt->files, path,
+                                 opt == NULL ? NULL : opt->root, limit, &file, err);
     if (rc == MT_OK) {
         rc = read_text(path, &file, opt, mem, out, messages, err);
     }

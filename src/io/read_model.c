@@ -310,14 +310,15 @@ static mt_status note_file(mt_model *m, const char *path, const mt_file *f, mt_e
 }
 
 mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **out,
-                        mt_text *messages, mt_err *err)
+                        mt_diagnostics *messages, mt_err *err)
 {
     const size_t limit =
         opt != NULL && opt->max_bytes != 0 ? opt->max_bytes : MT_JSON_MAX_BYTES;
     mt_file file = {0};
     mt_json *doc = NULL;
     *out = NULL;
-    MT_TRY(mt_file_read(path, opt == NULL ? NULL : opt->root, limit, &file, err));
+    MT_TRY(mt_files_read(opt == NULL ? NULL : &opt->files, path, opt == NULL ? NULL : opt->root,
+                         limit, &file, err));
     mt_status rc = mt_json_parse(file.bytes, file.length, &doc, err);
     if (rc == MT_OK) {
         rc = mt_model_from_json(doc, path, out, err);
@@ -331,8 +332,8 @@ mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **o
         *opt->structural = mt_json_diags(doc)->structural;
     }
     if (doc != NULL && messages != NULL) {
-        mt_json_print(doc, path, messages);
-        rc = messages->failed ? mt_fail_memory(err) : rc;
+        mt_json_report(doc, path, messages);
+        rc = messages->lines.failed ? mt_fail_memory(err) : rc;
     }
     if (rc != MT_OK) {
         mt_model_delete(*out);
@@ -341,12 +342,4 @@ mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **o
     mt_json_delete(doc);
     mt_file_free(&file);
     return rc;
-}
-
-mt_status mt_model_read(const char *path, mt_model **out, mt_err *err)
-{
-    MT_NOT_NULL(out, err);
-    *out = NULL;
-    MT_NOT_NULL(path, err);
-    return mt_model_load(path, NULL, out, NULL, err);
 }

@@ -386,7 +386,7 @@ static void read_root(result_reader *s)
 }
 
 static mt_status read_text(result_reader *s, const char *path, const mt_file *file,
-                           mt_text *messages, mt_err *err)
+                           mt_diagnostics *messages, mt_err *err)
 {
     mt_json *doc = NULL;
     mt_status rc = mt_json_parse(file->bytes, file->length, &doc, err);
@@ -401,8 +401,8 @@ static mt_status read_text(result_reader *s, const char *path, const mt_file *fi
     }
     rc = mt_reader_status(&s->r, path, err);
     if (messages != NULL) {
-        mt_json_print(doc, path, messages);
-        rc = messages->failed ? mt_fail_memory(err) : rc;
+        mt_json_report(doc, path, messages);
+        rc = messages->lines.failed ? mt_fail_memory(err) : rc;
     }
     mt_json_delete(doc);
     return rc;
@@ -410,7 +410,7 @@ static mt_status read_text(result_reader *s, const char *path, const mt_file *fi
 
 /* The file by itself; sha256 of its bytes. */
 static mt_status load_alone(const char *path, const mt_io_options *opt, mt_result **out,
-                            char sha256[MT_SHA256_TEXT], mt_text *messages, mt_err *err)
+                            char sha256[MT_SHA256_TEXT], mt_diagnostics *messages, mt_err *err)
 {
     const size_t limit =
         opt == NULL || opt->max_bytes == 0 ? MT_JSON_MAX_BYTES : opt->max_bytes;
@@ -436,7 +436,7 @@ static mt_status load_alone(const char *path, const mt_io_options *opt, mt_resul
 
 /* Read once more while no run writes: what did not fit together may have been half replaced. */
 static mt_status load_locked(const char *path, const mt_io_options *opt, mt_result **out,
-                             mt_text *messages, mt_err *err)
+                             mt_diagnostics *messages, mt_err *err)
 {
     char sha256[MT_SHA256_TEXT];
     char *const folder = mt_file_folder(path);
@@ -455,7 +455,7 @@ static mt_status load_locked(const char *path, const mt_io_options *opt, mt_resu
 }
 
 mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result **out,
-                         mt_text *messages, mt_err *err)
+                         mt_diagnostics *messages, mt_err *err)
 {
     char sha256[MT_SHA256_TEXT];
     mt_status rc = load_alone(path, opt, out, sha256, messages, err);

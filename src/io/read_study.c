@@ -97,21 +97,10 @@ void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *
     study->n_inputs++;
 }
 
-void mt_read_study_take_messages(mt_study_reader *s, mt_text *messages)
-{
-    if (messages->length > 0) {
-        mt_text_add(s->model_messages, messages->s);
-    }
-    if (messages->failed) {
-        mt_arena_fail(s->r.mem);
-    }
-    mt_text_free(messages);
-}
-
 void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *file,
                                 mt_status rc, const mt_err *why, bool told)
 {
-    if (mt_is_final(rc) || (rc == MT_E_SYSTEM && !mt_file_absent(file))) {
+    if (mt_is_final(rc) || (rc == MT_E_SYSTEM && !mt_files_lack(&s->files.files, file))) {
         s->failed = rc;
         s->why = *why;
         return;
@@ -129,19 +118,18 @@ static mt_model *load_model(mt_study_reader *s, mt_name path)
 {
     mt_err why = {.code = MT_OK};
     mt_model *model = NULL;
-    mt_text messages = {0};
+    const int told = s->model_messages->count;
     char *const joined = mt_file_join(s->study->path, path.s);
     if (joined == NULL) {
         mt_arena_fail(s->r.mem);
         return NULL;
     }
-    const mt_status rc = mt_model_load(joined, &s->files, &model, &messages, &why);
+    const mt_status rc = mt_model_load(joined, &s->files, &model, s->model_messages, &why);
     if (rc == MT_OK) {
         mt_read_study_note_input(s, path.s, model->sha256);
     } else {
-        mt_read_study_note_failure(s, path, joined, rc, &why, messages.length > 0);
+        mt_read_study_note_failure(s, path, joined, rc, &why, s->model_messages->count > told);
     }
-    mt_read_study_take_messages(s, &messages);
     free(joined);
     return model;
 }
@@ -355,11 +343,11 @@ static mt_status read_document(mt_study_reader *s, mt_err *err)
 
 /* Parse and read the study's text; the document's diagnostics go to messages, before those of
  * the models. */
-static mt_status read_text(mt_study_reader *s, const mt_file *file, mt_text *messages,
+static mt_status read_text(mt_study_reader *s, const mt_file *file, mt_diagnostics *messages,
                            mt_err *err)
 {
     mt_json *doc = NULL;
-    mt_text model_messages = {0};
+    mt_diagnostics model_messages = {.count = 0};
     mt_status rc = mt_json_parse(file->bytes, file->length, &doc, err);
     if (doc == NULL) {
         return rc;
@@ -374,22 +362,20 @@ static mt_status read_text(mt_study_reader *s, const mt_file *file, mt_text *mes
         *structural = s->r.diags->structural;
     }
     if (messages != NULL) {
-        mt_json_print(doc, s->study->path, messages);
-        if (model_messages.length > 0) {
-            mt_text_add(messages, model_messages.s);
-        }
+        mt_json_report(doc, s->study->path, messages);
+        mt_diagnostics_append(messages, &model_messages);
     }
-    if (model_messages.failed || (messages != NULL && messages->failed)) {
+    if (model_messages.lines.failed || (messages != NULL && messages->lines.failed)) {
         rc = mt_fail_memory(err);
     }
     s->model_messages = NULL;
-    mt_text_free(&model_messages);
+    mt_diagnostics_free(&model_messages);
     mt_json_delete(doc);
     return rc;
 }
 
 mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **out,
-                        mt_text *messages, mt_err *err)
+                        mt_diagnostics *messages, mt_err *err)
 {
     mt_file file = {0};
     char *root = NULL;
@@ -410,7 +396,7 @@ mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **o
     }
     s.files.root = root == NULL ? s.files.root : root;
     const size_t limit = s.files.max_bytes == 0 ? MT_JSON_MAX_BYTES : s.files.max_bytes;
-    rc = mt_file_read(path, NULL, limit, &file, err);
+    rc = mt_files_read(&s.files.files, path, NULL, limit, &file, err);
     if (rc != MT_OK) {
         goto done;
     }

@@ -16,8 +16,8 @@ typedef struct mt_study_file {
 typedef struct mt_study_reader {
     mt_reader r;
     mt_study *study;
-    mt_io_options files;     /* for the models; root is set */
-    mt_text *model_messages; /* diagnostics of the model files */
+    mt_io_options files;            /* for the models; root is set */
+    mt_diagnostics *model_messages; /* diagnostics of the model files */
     /* MT_OK, or why a model could not be read; only MT_E_INPUT lets reading go on */
     mt_status failed;
     mt_err why; /* the first such failure */
@@ -63,8 +63,6 @@ mt_model *mt_read_study_model(mt_study_reader *s, mt_name path);
 bool mt_read_study_pair(mt_study_reader *s, mt_addr value, double out[2]);
 /* Remember a file that was read, with the digest of its bytes. */
 void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *sha256);
-/* What was said about another file goes behind what is said about this one; frees it. */
-void mt_read_study_take_messages(mt_study_reader *s, mt_text *messages);
 /* A file was refused: its own diagnostics tell (`told`), or, where there are none, the address
  * of `path` in the study does: also where `file`, the path joined, leads to nothing. What is
  * there and cannot be read is no fault of the study's. */

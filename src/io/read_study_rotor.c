@@ -142,17 +142,16 @@ static void load(mt_study_reader *s, mt_name path, const char *file)
 {
     mt_study *const study = s->study;
     mt_err why = {.code = MT_OK};
-    mt_text messages = {0};
+    const int told = s->model_messages->count;
     study->aircraft_path = path;
-    const mt_status rc =
-        mt_aircraft_load(file, &s->files, &study->mem, &study->aircraft, &messages, &why);
+    const mt_status rc = mt_aircraft_load(file, &s->files, &study->mem, &study->aircraft,
+                                          s->model_messages, &why);
     if (rc == MT_OK) {
         mt_read_study_note_input(s, path.s, study->aircraft.sha256);
     } else {
         study->aircraft = (mt_aircraft_list){0};
-        mt_read_study_note_failure(s, path, file, rc, &why, messages.length > 0);
+        mt_read_study_note_failure(s, path, file, rc, &why, s->model_messages->count > told);
     }
-    mt_read_study_take_messages(s, &messages);
 }
 
 /* Where the study names no catalogue: the one beside the model, if there is one. */
@@ -179,7 +178,7 @@ void mt_read_study_aircraft(mt_study_reader *s, mt_addr value)
     char *const file = path.s == NULL ? NULL : mt_file_join(s->study->path, path.s);
     if (path.s != NULL && file == NULL) {
         mt_arena_fail(s->r.mem);
-    } else if (file != NULL && (named || !mt_file_absent(file))) {
+    } else if (file != NULL && (named || !mt_files_lack(&s->files.files, file))) {
         load(s, path, file);
     }
     free(file);

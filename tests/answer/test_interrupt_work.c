@@ -117,7 +117,7 @@ static void questions__come_after_one_unit_of_work_in_studies_of_the_tree(mt_tes
         char path[STUDY_PATH];
         mt_study *study = NULL;
         (void)snprintf(path, sizeof path, "%s/studies/%s.json", MT_TEST_SOURCE_DIR, names[i]);
-        if (CHECK_INT(t, mt_study_read(path, &study, NULL), MT_OK)) {
+        if (CHECK_INT(t, mt_study_read(path, NULL, &study, NULL), MT_OK)) {
             judge(t, names[i], study);
         }
         mt_study_delete(study);

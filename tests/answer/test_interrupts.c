@@ -341,7 +341,7 @@ static void every_study_of_the_tree__says_what_is_missing(mt_test *t)
         mt_study *study = NULL;
         mt_err err = {.text = ""};
         mt_test_row(t, "%s", list.gl_pathv[i]);
-        if (CHECK_INT(t, mt_study_read(list.gl_pathv[i], &study, &err), MT_OK)) {
+        if (CHECK_INT(t, mt_study_read(list.gl_pathv[i], NULL, &study, &err), MT_OK)) {
             const char *const name = strrchr(list.gl_pathv[i], '/') + 1;
             if (is_long(t, study)) {
                 interrupt_early(t, study, &n);

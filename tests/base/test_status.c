@@ -75,7 +75,7 @@ static void diag__problems_are_kept_in_order(mt_test *t)
     CHECK_INT(t, d.errors, 1);
     CHECK_STR(t, d.items[0].text, "unknown member \"wieght\"");
     CHECK_INT(t, d.items[0].addr, 7);
-    CHECK_INT(t, d.items[1].severity, MT_SEV_WARNING);
+    CHECK_INT(t, d.items[1].severity, MT_SEVERITY_WARNING);
     mt_arena_free(&mem);
 }
 

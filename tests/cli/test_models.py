@@ -286,7 +286,12 @@ class Check(CliTest):
         got = self.json_of("check", self.model, bad, code=2)
         self.assertEqual([(g["file"], g["kind"], g["ok"]) for g in got],
                          [(self.model, "model", True), (bad, None, False)])
-        self.assertIn("bad.json:1:1: error: ", got[1]["problems"])
+        self.assertEqual({p["severity"] for p in got[0]["problems"]}, {"note"})
+        (problem,) = got[1]["problems"]
+        self.assertTrue(problem.pop("message").startswith('member "format" is missing: one of '))
+        self.assertEqual(problem, {"severity": "error", "file": bad, "line": 1, "column": 1, "pointer": ""})
+        gone = self.json_of("check", "gone.json", code=4)[0]["problems"]
+        self.assertEqual([sorted(p) for p in gone], [["file", "message", "severity"]])
 
     def test_csv_says_the_same(self):
         bad = self.write("bad.json", "{}")

@@ -12,7 +12,7 @@
 static void use(const char *name)
 {
     mt_text text = {0};
-    mt_text said = {0};
+    mt_diagnostics said = {.count = 0};
     mt_study *study = NULL;
     mt_err err = {.code = MT_OK};
     const mt_io_options opt = {.root = "/"};
@@ -41,10 +41,10 @@ static void use(const char *name)
     const mt_status rc = mt_study_load(path, &opt, &study, &said, &err);
     if (rc != MT_OK) {
         DEMAND(rc == MT_E_INPUT && study == NULL);
-        DEMAND(mt_hostile_diagnosed(said.s, said.length));
+        DEMAND(mt_hostile_diagnosed(said.lines.s, said.lines.length));
     }
     mt_study_delete(study);
-    mt_text_free(&said);
+    mt_diagnostics_free(&said);
     mt_text_free(&text);
 }
 
@@ -52,13 +52,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     mt_arena mem = {0};
     mt_aircraft_list list = {0};
-    mt_text said = {0};
+    mt_diagnostics said = {.count = 0};
     mt_err err = {.code = MT_OK};
     const char *const path = fuzz_write("aircraft.json", data, size);
     const mt_status rc = mt_aircraft_load(path, NULL, &mem, &list, &said, &err);
     if (rc != MT_OK) {
         DEMAND(rc == MT_E_INPUT && err.text[0] != '\0');
-        DEMAND(mt_hostile_diagnosed(said.s, said.length));
+        DEMAND(mt_hostile_diagnosed(said.lines.s, said.lines.length));
     }
     for (int i = 0; rc == MT_OK && i < list.n; i++) {
         DEMAND(list.items[i].name.s != NULL && list.items[i].name.s[0] != '\0');
@@ -67,7 +67,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (rc == MT_OK && list.n > 0) {
         use(list.items[0].name.s);
     }
-    mt_text_free(&said);
+    mt_diagnostics_free(&said);
     mt_arena_free(&mem);
     return 0;
 }

@@ -195,20 +195,20 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     mt_json *doc = NULL;
     mt_model *model = NULL;
-    mt_text said = {0};
+    mt_diagnostics said = {.count = 0};
     mt_status rc = mt_json_parse((const char *)data, size, &doc, NULL);
     mt_blas_set_threads(1);
     if (rc == MT_OK) {
         rc = mt_model_from_json(doc, "f", &model, NULL);
     }
     DEMAND(rc == MT_OK || rc == MT_E_INPUT);
-    mt_json_print(doc, "f", &said);
+    mt_json_report(doc, "f", &said);
     if (rc != MT_OK) {
-        DEMAND(mt_hostile_diagnosed(said.s, said.length));
+        DEMAND(mt_hostile_diagnosed(said.lines.s, said.lines.length));
     } else if (is_small(model)) {
         use(model, data, size);
     }
-    mt_text_free(&said);
+    mt_diagnostics_free(&said);
     mt_model_delete(model);
     mt_json_delete(doc);
     return 0;

@@ -58,18 +58,18 @@ static void apply(const char *path)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     mt_result *result = NULL;
-    mt_text said = {0};
+    mt_diagnostics said = {.count = 0};
     mt_err err = {.code = MT_OK};
     const char *const path = fuzz_write("result.json", data, size);
     const mt_status rc = mt_result_load(path, NULL, &result, &said, &err);
     if (rc != MT_OK) {
         DEMAND(rc == MT_E_INPUT && result == NULL && err.text[0] != '\0');
-        DEMAND(mt_hostile_diagnosed(said.s, said.length));
+        DEMAND(mt_hostile_diagnosed(said.lines.s, said.lines.length));
     } else {
         show(result);
         apply(path);
     }
-    mt_text_free(&said);
+    mt_diagnostics_free(&said);
     mt_result_delete(result);
     return 0;
 }

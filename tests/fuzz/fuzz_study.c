@@ -136,13 +136,13 @@ static void demand_told(const mt_result *r, const uint8_t *data, size_t size)
     mt_text said = {0};
     mt_err err = {.code = MT_OK};
     mt_result *again = NULL;
-    mt_text messages = {0};
+    mt_diagnostics messages = {.count = 0};
     DEMAND(mt_result_write(r, &said, &err) == MT_OK);
     const char *const path = fuzz_write("result.json", (const uint8_t *)said.s, said.length);
     DEMAND(mt_result_load(path, NULL, &again, &messages, &err) == MT_OK);
     DEMAND(again->status == r->status && again->n_recommendations == r->n_recommendations);
     mt_result_delete(again);
-    mt_text_free(&messages);
+    mt_diagnostics_free(&messages);
     mt_text_free(&said);
     mt_report_summary(r, true, &said);
     DEMAND(!said.failed);
@@ -184,7 +184,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const uint8_t *const nul = size == 0 ? NULL : memchr(data, 0, size);
     const size_t first = nul == NULL ? size : (size_t)(nul - data);
     mt_study *study = NULL;
-    mt_text said = {0};
+    mt_diagnostics said = {.count = 0};
     mt_err err = {.code = MT_OK};
     mt_io_options opt = {.root = "/"};
     mt_blas_set_threads(1);
@@ -194,12 +194,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         mt_study_load(fuzz_write("study.json", data, first), &opt, &study, &said, &err);
     if (rc != MT_OK) {
         DEMAND(rc == MT_E_INPUT && study == NULL && err.text[0] != '\0');
-        DEMAND(mt_hostile_diagnosed(said.s, said.length));
+        DEMAND(mt_hostile_diagnosed(said.lines.s, said.lines.length));
     } else if (is_small(study)) {
         compile(study);
         answer(study, data, size);
     }
-    mt_text_free(&said);
+    mt_diagnostics_free(&said);
     mt_study_delete(study);
     return 0;
 }

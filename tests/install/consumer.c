@@ -17,7 +17,7 @@ static int ask_model(const char *path)
     mt_model *model = NULL;
     mt_mode_count count;
     double hz = 0.0;
-    if (mt_model_read(path, &model, &err) != MT_OK ||
+    if (mt_model_read(path, NULL, &model, &err) != MT_OK ||
         mt_model_frequencies(model, NULL, 0, NULL, 1, &hz, &count, &err) != MT_OK) {
         fprintf(stderr, "%s\n", err.text);
         mt_model_delete(model);
@@ -33,7 +33,7 @@ static int ask_study(const char *path)
     mt_study *study = NULL;
     mt_result *result = NULL;
     int failed = 1;
-    if (mt_study_read(path, &study, &err) != MT_OK ||
+    if (mt_study_read(path, NULL, &study, &err) != MT_OK ||
         mt_study_solve(study, NULL, &result, &err) != MT_OK) {
         fprintf(stderr, "%s\n", err.text);
     } else {

@@ -35,12 +35,12 @@ static inline verdict judge(const char *text, size_t n)
         v.number = mt_json_number(doc, MT_JSON_ROOT);
     }
     if (doc != NULL && !v.accepted) {
-        mt_text said = {0};
-        mt_json_print(doc, "f", &said);
+        mt_diagnostics said = {.count = 0};
+        mt_json_report(doc, "f", &said);
         (void)snprintf(v.place, sizeof v.place, "%.*s",
-                       said.s == NULL ? 0 : (int)strcspn(said.s + 2, " ") - 1,
-                       said.s == NULL ? "" : said.s + 2);
-        mt_text_free(&said);
+                       said.lines.s == NULL ? 0 : (int)strcspn(said.lines.s + 2, " ") - 1,
+                       mt_diagnostics_text(&said) + 2);
+        mt_diagnostics_free(&said);
     }
     mt_json_delete(doc);
     free(exact);

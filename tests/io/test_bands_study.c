@@ -17,7 +17,7 @@
 
 static const double TOL = 1e-14; /* a few roundings: products of four numbers */
 
-static mt_study *load_full(mt_test *t, mt_text *messages)
+static mt_study *load_full(mt_test *t, mt_diagnostics *messages)
 {
     mt_study *s = NULL;
     mt_err err = {.text = ""};
@@ -33,7 +33,7 @@ static mt_study *load_goal(mt_test *t, const char *members, const char *goal)
     char folder[] = "/tmp/mt_bands_XXXXXX";
     char path[64];
     mt_study *s = NULL;
-    mt_text messages = {0};
+    mt_diagnostics messages = {.count = 0};
     const mt_io_options opt = {.root = "/"};
     if (!CHECK(t, mkdtemp(folder) != NULL)) {
         return NULL;
@@ -48,12 +48,12 @@ static mt_study *load_goal(mt_test *t, const char *members, const char *goal)
                       MODEL, members, goal);
         CHECK_INT(t, fclose(f), 0);
         if (!CHECK_INT(t, mt_study_load(path, &opt, &s, &messages, NULL), MT_OK)) {
-            (void)fprintf(stderr, "%s", messages.s == NULL ? "" : messages.s);
+            (void)fprintf(stderr, "%s", mt_diagnostics_text(&messages));
         }
     }
     (void)unlink(path);
     (void)rmdir(folder);
-    mt_text_free(&messages);
+    mt_diagnostics_free(&messages);
     return s;
 }
 
@@ -241,14 +241,15 @@ static void check_warnings(mt_test *t, const mt_study *s)
 
 static void bands_study__every_member_arrives(mt_test *t)
 {
-    mt_text messages = {0};
+    mt_diagnostics messages = {.count = 0};
     mt_study *const s = load_full(t, &messages);
     REQUIRE(t, s != NULL);
     /* the tail rotor's speed is hearsay; the last line says no more */
-    CHECK(t, messages.s != NULL &&
-                 strstr(messages.s, "warning: /goals/0/rotor/aircraft: Dragonfly: the tail "
-                                    "rotor's speed (20 Hz) is not confirmed by a public "
-                                    "document\n") != NULL);
+    CHECK(t,
+          messages.lines.s != NULL &&
+              strstr(messages.lines.s, "warning: /goals/0/rotor/aircraft: Dragonfly: the tail "
+                                       "rotor's speed (20 Hz) is not confirmed by a public "
+                                       "document\n") != NULL);
     if (CHECK_INT(t, s->n_goals, 5)) {
         check_avoid(t, s);
         check_rotors(t, s);
@@ -263,7 +264,7 @@ static void bands_study__every_member_arrives(mt_test *t)
         CHECK_INT(t, strlen(s->inputs[2].sha256), 64);
     }
     mt_study_delete(s);
-    mt_text_free(&messages);
+    mt_diagnostics_free(&messages);
 }
 
 /* Only what the harmonics use is asked for. */
@@ -312,10 +313,10 @@ static void bands_study__every_aircraft_of_the_catalogue_can_be_used(mt_test *t)
 {
     mt_arena mem = {0};
     mt_aircraft_list list = {0};
-    mt_text messages = {0};
+    mt_diagnostics messages = {.count = 0};
     REQUIRE(t, mt_arena_init(&mem, 0, NULL) == MT_OK);
     CHECK_INT(t, mt_aircraft_load(AIRCRAFT, NULL, &mem, &list, &messages, NULL), MT_OK);
-    CHECK_STR(t, messages.s, NULL);
+    CHECK_STR(t, messages.lines.s, NULL);
     CHECK(t, list.n >= 10);
     for (int i = 0; i < list.n; i++) {
         const mt_aircraft *const a = &list.items[i];
@@ -326,7 +327,7 @@ static void bands_study__every_aircraft_of_the_catalogue_can_be_used(mt_test *t)
         CHECK(t, !a->has_tail || a->tail_rotor.speed.value > 3.0 * a->main_rotor.speed.value);
         CHECK(t, a->main_rotor.speed.source != NULL && *a->main_rotor.speed.source != '\0');
     }
-    mt_text_free(&messages);
+    mt_diagnostics_free(&messages);
     mt_arena_free(&mem);
 }
 
@@ -336,14 +337,14 @@ static void bands_study__every_failing_allocation_is_survived(mt_test *t)
     for (long nth = 0; rc == MT_E_MEMORY && mt_alloc_works(); nth++) {
         const long before = mt_alloc_live();
         mt_study *s = NULL;
-        mt_text messages = {0};
+        mt_diagnostics messages = {.count = 0};
         mt_test_row(t, "allocation %ld", nth);
         mt_alloc_fail_after(nth);
         rc = mt_study_load(FULL, NULL, &s, &messages, NULL);
         mt_alloc_fail_after(-1);
         CHECK(t, (rc == MT_OK) == (s != NULL));
         mt_study_delete(s);
-        mt_text_free(&messages);
+        mt_diagnostics_free(&messages);
         CHECK_INT(t, mt_alloc_live(), before);
     }
     CHECK(t, rc == MT_OK || !mt_alloc_works());

@@ -143,7 +143,7 @@ static const char *const KIND_NAMES[] = {"model", "study", "aircraft", "result"}
 
 typedef struct reading {
     mt_status rc;
-    mt_text said;
+    mt_diagnostics said;
 } reading;
 
 static reading read_back(kind k, const char *path)
@@ -258,15 +258,16 @@ static void check_change(mt_test *t, kind k, const change *c, const char *path, 
         n->accepted += r.rc == MT_OK ? 1 : 0;
         n->refused += r.rc == MT_E_INPUT ? 1 : 0;
         bool good = r.rc == MT_OK ? !must_be_refused(c) : r.rc == MT_E_INPUT;
-        good = good && (r.rc == MT_OK ? mt_hostile_visible(r.said.s, r.said.length)
-                                      : mt_hostile_diagnosed(r.said.s, r.said.length));
+        good =
+            good && (r.rc == MT_OK ? mt_hostile_visible(r.said.lines.s, r.said.lines.length)
+                                   : mt_hostile_diagnosed(r.said.lines.s, r.said.lines.length));
         if (!CHECK(t, good)) {
             (void)fprintf(stderr, "%s: %s\n%.200s\n", mt_status_name(r.rc),
                           c->is_large || c->what >= MT_COUNT(WRONGS) ? ""
                                                                      : WRONGS[c->what].text,
-                          r.said.s == NULL ? "" : r.said.s);
+                          r.said.lines.s == NULL ? "" : r.said.lines.s);
         }
-        mt_text_free(&r.said);
+        mt_diagnostics_free(&r.said);
     }
     mt_text_free(&text);
 }

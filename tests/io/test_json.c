@@ -11,14 +11,14 @@
 
 /* What the parser says about a text: all diagnostics, "" where there are none. Owned by the
  * caller. */
-static mt_text said_about(const char *text, size_t length, mt_status *rc)
+static mt_diagnostics said_about(const char *text, size_t length, mt_status *rc)
 {
     mt_json *doc = NULL;
-    mt_text said = {0};
-    mt_text_add(&said, "");
+    mt_diagnostics said = {.count = 0};
+    mt_text_add(&said.lines, "");
     *rc = mt_json_parse(text, length, &doc, NULL);
     if (doc != NULL) {
-        mt_json_print(doc, "f", &said);
+        mt_json_report(doc, "f", &said);
     }
     mt_json_delete(doc);
     return said;
@@ -174,14 +174,14 @@ static void check_rows(mt_test *t, int n, const syntax_row *rows)
 {
     for (int i = 0; i < n; i++) {
         mt_status rc = MT_OK;
-        mt_text said = said_about(rows[i].text, strlen(rows[i].text), &rc);
+        mt_diagnostics said = said_about(rows[i].text, strlen(rows[i].text), &rc);
         mt_test_row(t, "%s", rows[i].text);
         if (rows[i].said != NULL) {
-            CHECK_STR(t, said.s, rows[i].said);
+            CHECK_STR(t, said.lines.s, rows[i].said);
         } else {
             CHECK_INT(t, rc, MT_E_INPUT);
         }
-        mt_text_free(&said);
+        mt_diagnostics_free(&said);
     }
 }
 
@@ -221,11 +221,11 @@ static void json__what_the_standard_allows_is_accepted(mt_test *t)
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_status rc = MT_E_INTERNAL;
-        mt_text said = said_about(rows[i], strlen(rows[i]), &rc);
+        mt_diagnostics said = said_about(rows[i], strlen(rows[i]), &rc);
         mt_test_row(t, "%s", rows[i]);
         CHECK_INT(t, rc, MT_OK);
-        CHECK_STR(t, said.s, "");
-        mt_text_free(&said);
+        CHECK_STR(t, said.lines.s, "");
+        mt_diagnostics_free(&said);
     }
 }
 
@@ -237,10 +237,10 @@ static void json__nesting_and_length_are_limited(mt_test *t)
         mt_status rc = MT_OK;
         memset(deep, '[', depth);
         memset(deep + depth, ']', depth);
-        mt_text said = said_about(deep, 2 * depth, &rc);
+        mt_diagnostics said = said_about(deep, 2 * depth, &rc);
         CHECK_INT(t, rc, extra == 0 ? MT_OK : MT_E_INPUT);
-        CHECK(t, extra == 0 || strstr(said.s, "nested deeper than 64 levels") != NULL);
-        mt_text_free(&said);
+        CHECK(t, extra == 0 || strstr(said.lines.s, "nested deeper than 64 levels") != NULL);
+        mt_diagnostics_free(&said);
     }
     const size_t long_length = (size_t)MT_JSON_MAX_BYTES + 1;
     char *const spaces = malloc(long_length);
@@ -248,10 +248,10 @@ static void json__nesting_and_length_are_limited(mt_test *t)
     memset(spaces, ' ', long_length);
     spaces[0] = '1';
     mt_status rc = MT_OK;
-    mt_text said = said_about(spaces, long_length, &rc);
+    mt_diagnostics said = said_about(spaces, long_length, &rc);
     CHECK_INT(t, rc, MT_E_INPUT);
-    CHECK_STR(t, said.s, "f:1:1: error: longer than 16777216 bytes\n");
-    mt_text_free(&said);
+    CHECK_STR(t, said.lines.s, "f:1:1: error: longer than 16777216 bytes\n");
+    mt_diagnostics_free(&said);
     free(spaces);
 }
 
@@ -354,15 +354,15 @@ static void json__values_and_places_are_found_by_address(mt_test *t)
 static void json__more_problems_than_the_limit_are_counted(mt_test *t)
 {
     mt_json *doc = NULL;
-    mt_text said = {0};
+    mt_diagnostics said = {.count = 0};
     REQUIRE(t, mt_json_parse("[]", 2, &doc, NULL) == MT_OK);
     for (int i = 0; i < MT_DIAG_LIMIT + 3; i++) {
         mt_diag_error(mt_json_diags(doc), MT_JSON_ROOT, "problem %d", i);
     }
-    mt_json_print(doc, "f", &said);
-    CHECK(t, strstr(said.s, "f:1:1: error: problem 199\nf: 3 more not shown\n") != NULL);
-    CHECK(t, strstr(said.s, "problem 200") == NULL);
-    mt_text_free(&said);
+    mt_json_report(doc, "f", &said);
+    CHECK(t, strstr(said.lines.s, "f:1:1: error: problem 199\nf: 3 more not shown\n") != NULL);
+    CHECK(t, strstr(said.lines.s, "problem 200") == NULL);
+    mt_diagnostics_free(&said);
     mt_json_delete(doc);
 }
 
@@ -416,12 +416,12 @@ static void json__the_scan_ends_with_the_fiftieth_problem(mt_test *t)
             at += (size_t)snprintf(text + at, sizeof text - at, "// x\n");
         }
         (void)snprintf(text + at, sizeof text - at, "%s", rows[i].text);
-        mt_text said = said_about(text, strlen(text), &rc);
+        mt_diagnostics said = said_about(text, strlen(text), &rc);
         mt_test_row(t, "%s", rows[i].text);
         CHECK_INT(t, rc, MT_E_INPUT);
-        CHECK_INT(t, count_of(said.s, ": error: "), MOST);
-        CHECK(t, strstr(said.s, rows[i].last) != NULL);
-        mt_text_free(&said);
+        CHECK_INT(t, count_of(said.lines.s, ": error: "), MOST);
+        CHECK(t, strstr(said.lines.s, rows[i].last) != NULL);
+        mt_diagnostics_free(&said);
     }
 }
 
@@ -436,15 +436,15 @@ static void json__values_are_limited(mt_test *t)
     }
     text[2 * n] = ']';
     mt_status rc = MT_OK;
-    mt_text said = said_about(text, 2 * n + 1, &rc);
+    mt_diagnostics said = said_about(text, 2 * n + 1, &rc);
     CHECK_INT(t, rc, MT_E_INPUT);
-    CHECK_STR(t, said.s, "f:1:2000000: error: more than 1000000 values\n");
-    mt_text_free(&said);
+    CHECK_STR(t, said.lines.s, "f:1:2000000: error: more than 1000000 values\n");
+    mt_diagnostics_free(&said);
     text[2 * n - 2] = ' '; /* one item less */
     text[2 * n - 1] = ' ';
     said = said_about(text, 2 * n + 1, &rc);
     CHECK_INT(t, rc, MT_OK);
-    mt_text_free(&said);
+    mt_diagnostics_free(&said);
     free(text);
 }
 
@@ -454,7 +454,7 @@ static void json__long_lines_are_cut_between_characters(mt_test *t)
     enum { LONGEST = 4096 };
     for (int shift = 0; shift < 3; shift++) {
         mt_json *doc = NULL;
-        mt_text said = {0};
+        mt_diagnostics said = {.count = 0};
         mt_text long_one = {0};
         REQUIRE(t, mt_json_parse("[]", 2, &doc, NULL) == MT_OK);
         mt_text_add_n(&long_one, "xxx", (size_t)shift);
@@ -462,15 +462,16 @@ static void json__long_lines_are_cut_between_characters(mt_test *t)
             mt_text_add(&long_one, "\xE2\x82\xAC");
         }
         mt_diag_error(mt_json_diags(doc), MT_NO_ADDR, "%s", long_one.s);
-        mt_json_print(doc, "f", &said);
+        mt_json_report(doc, "f", &said);
         mt_test_row(t, "%d bytes before", shift);
-        const char *const end = strstr(said.s, "...\n");
-        if (CHECK(t, end != NULL && end - said.s > 3 && strlen(said.s) < strlen(long_one.s))) {
+        const char *const end = strstr(said.lines.s, "...\n");
+        if (CHECK(t, end != NULL && end - said.lines.s > 3 &&
+                         strlen(said.lines.s) < strlen(long_one.s))) {
             CHECK(t, memcmp(end - 3, "\xE2\x82\xAC", 3) == 0);
-            CHECK(t, strncmp(said.s, "f: error: ", 10) == 0);
+            CHECK(t, strncmp(said.lines.s, "f: error: ", 10) == 0);
         }
         mt_text_free(&long_one);
-        mt_text_free(&said);
+        mt_diagnostics_free(&said);
         mt_json_delete(doc);
     }
 }

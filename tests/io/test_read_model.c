@@ -128,7 +128,7 @@ static void model__configurations_inherit_what_they_are_like(mt_test *t)
 static void model__without_configurations_has_one(mt_test *t)
 {
     mt_model *m = NULL;
-    REQUIRE(t, mt_model_read(space, &m, NULL) == MT_OK);
+    REQUIRE(t, mt_model_read(space, NULL, &m, NULL) == MT_OK);
     CHECK_INT(t, mt_model_configuration_count(m), 1);
     CHECK_STR(t, mt_model_configuration_name(m, 0), "default");
     CHECK_STR(t, mt_model_configuration_name(m, 1), NULL);
@@ -146,12 +146,12 @@ static void model__errors_name_the_first_problem_and_count_the_others(mt_test *t
 {
     mt_model *m = NULL;
     mt_err err = {MT_OK, ""};
-    CHECK_INT(t, mt_model_read(MT_TEST_SOURCE_DIR "/tests/io/wrong/like.json", &m, &err),
+    CHECK_INT(t, mt_model_read(MT_TEST_SOURCE_DIR "/tests/io/wrong/like.json", NULL, &m, &err),
               MT_E_INPUT);
     CHECK(t, m == NULL);
     CHECK(t, strstr(err.text, "like.json:3:56: error: /configurations/b/like: ") != NULL);
     CHECK(t, strstr(err.text, "(and 2 more)") != NULL);
-    CHECK_INT(t, mt_model_read("/nowhere/x.json", &m, &err), MT_E_SYSTEM);
+    CHECK_INT(t, mt_model_read("/nowhere/x.json", NULL, &m, &err), MT_E_SYSTEM);
     CHECK_STR(t, err.text, "/nowhere/x.json: No such file or directory");
 }
 
@@ -187,14 +187,14 @@ static void model__every_failing_allocation_is_survived(mt_test *t)
         for (long nth = 0; rc == MT_E_MEMORY && mt_alloc_works(); nth++) {
             const long before = mt_alloc_live();
             mt_model *m = NULL;
-            mt_text said = {0};
+            mt_diagnostics said = {.count = 0};
             mt_test_row(t, "%s, allocation %ld", paths[i], nth);
             mt_alloc_fail_after(nth);
             rc = mt_model_load(paths[i], NULL, &m, &said, NULL);
             mt_alloc_fail_after(-1);
             CHECK(t, (rc == MT_OK) == (m != NULL));
             mt_model_delete(m);
-            mt_text_free(&said);
+            mt_diagnostics_free(&said);
             CHECK_INT(t, mt_alloc_live(), before);
         }
         CHECK(t, rc == MT_OK || !mt_alloc_works());

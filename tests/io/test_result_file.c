@@ -289,7 +289,7 @@ static void result_file__comes_back_whole(mt_test *t)
 {
     char path[64];
     mt_text text = written(NULL, NULL);
-    mt_text messages = {0};
+    mt_diagnostics messages = {.count = 0};
     mt_text again = {0};
     mt_result *r = NULL;
     mt_err err = {.text = ""};
@@ -298,7 +298,7 @@ static void result_file__comes_back_whole(mt_test *t)
     CHECK_INT(t, mt_result_load(path, NULL, &r, &messages, &err), MT_OK);
     (void)unlink(path);
     CHECK_STR(t, err.text, "");
-    CHECK_STR(t, messages.s, NULL);
+    CHECK_STR(t, messages.lines.s, NULL);
     if (r != NULL) {
         CHECK_INT(t, mt_result_write(r, &again, NULL), MT_OK);
         CHECK_STR(t, again.s, text.s);
@@ -307,7 +307,7 @@ static void result_file__comes_back_whole(mt_test *t)
     }
     mt_result_delete(r);
     mt_text_free(&again);
-    mt_text_free(&messages);
+    mt_diagnostics_free(&messages);
     mt_text_free(&text);
 }
 
@@ -428,7 +428,7 @@ static void result_file__a_damaged_one_is_refused(mt_test *t)
         char path[64];
         mt_test_row(t, "%s", rows[i].name);
         mt_text text = written(rows[i].find, rows[i].replace);
-        mt_text messages = {0};
+        mt_diagnostics messages = {.count = 0};
         mt_result *r = NULL;
         if (CHECK(t, text.s != NULL)) {
             write_file(text.s, path);
@@ -437,10 +437,10 @@ static void result_file__a_damaged_one_is_refused(mt_test *t)
             char want[300];
             (void)snprintf(want, sizeof want, "%s:%d:%s", path, line_of(text.s, rows[i].at),
                            rows[i].want);
-            CHECK_STR(t, messages.s, want);
+            CHECK_STR(t, messages.lines.s, want);
             (void)unlink(path);
         }
-        mt_text_free(&messages);
+        mt_diagnostics_free(&messages);
         mt_text_free(&text);
     }
 }
@@ -464,11 +464,12 @@ static void result_file__every_failing_allocation_is_survived(mt_test *t)
     for (long nth = 0; mt_alloc_works(); nth++) {
         mt_result *r = NULL;
         mt_text again = {0};
+        mt_diagnostics said = {.count = 0};
         sample s = {.result = NULL};
         const long before = mt_alloc_live();
         mt_test_row(t, "allocation %ld", nth);
         mt_alloc_fail_after(nth);
-        mt_status rc = mt_result_load(path, NULL, &r, &again, NULL);
+        mt_status rc = mt_result_load(path, NULL, &r, &said, NULL);
         if (rc == MT_OK) {
             rc = make_sample(&s) ? mt_result_write(s.result, &again, NULL) : MT_E_MEMORY;
         }
@@ -477,6 +478,7 @@ static void result_file__every_failing_allocation_is_survived(mt_test *t)
         mt_result_delete(r);
         mt_result_delete(s.result);
         mt_text_free(&again);
+        mt_diagnostics_free(&said);
         CHECK_INT(t, mt_alloc_live(), before);
         if (rc != MT_E_MEMORY) {
             break;

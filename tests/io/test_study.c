@@ -19,18 +19,18 @@ static const double TOL = 1e-15; /* a few roundings: quotients and products of t
 static mt_study *load(mt_test *t, const char *path)
 {
     mt_study *s = NULL;
-    mt_text messages = {0};
+    mt_diagnostics messages = {.count = 0};
     mt_err err = {.text = ""};
     CHECK_INT(t, mt_study_load(path, NULL, &s, &messages, &err), MT_OK);
-    CHECK_STR(t, messages.s, NULL);
+    CHECK_STR(t, messages.lines.s, NULL);
     CHECK_STR(t, err.text, "");
-    mt_text_free(&messages);
+    mt_diagnostics_free(&messages);
     return s;
 }
 
 /* A small study with these members, in a file of its own beside the model; the caller deletes
  * it. */
-static mt_study *load_text(mt_test *t, const char *members, mt_text *messages)
+static mt_study *load_text(mt_test *t, const char *members, mt_diagnostics *messages)
 {
     char folder[] = "/tmp/mt_study_XXXXXX";
     char path[64];
@@ -248,14 +248,15 @@ static void study__bounds_below_zero_are_fine(mt_test *t)
 
 static void study__an_original_value_outside_the_bounds_is_a_warning(mt_test *t)
 {
-    mt_text messages = {0};
+    mt_diagnostics messages = {.count = 0};
     mt_study *const s = load_text(
         t, ", \"variables\": [{\"parameter\": \"k1\", \"lower\": 4, \"upper\": 5}]", &messages);
-    CHECK(t, messages.s != NULL &&
-                 strstr(messages.s, "warning: /variables/0: the original value of \"k1\" (3) "
-                                    "lies outside 4 to 5\n") != NULL);
+    CHECK(t, messages.lines.s != NULL &&
+                 strstr(messages.lines.s,
+                        "warning: /variables/0: the original value of \"k1\" (3) "
+                        "lies outside 4 to 5\n") != NULL);
     mt_study_delete(s);
-    mt_text_free(&messages);
+    mt_diagnostics_free(&messages);
 }
 
 static void study__models_lie_beneath_the_root(mt_test *t)
@@ -272,15 +273,15 @@ static void study__models_lie_beneath_the_root(mt_test *t)
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_study *s = NULL;
-        mt_text messages = {0};
+        mt_diagnostics messages = {.count = 0};
         const mt_io_options opt = {.root = rows[i].root};
         mt_test_row(t, "%s", rows[i].name);
         CHECK_INT(t, mt_study_load(FULL, &opt, &s, &messages, NULL), rows[i].want);
-        const bool told =
-            messages.s != NULL && strstr(messages.s, "outside the root folder") != NULL;
+        const bool told = messages.lines.s != NULL &&
+                          strstr(messages.lines.s, "outside the root folder") != NULL;
         CHECK(t, told == (rows[i].want != MT_OK));
         mt_study_delete(s);
-        mt_text_free(&messages);
+        mt_diagnostics_free(&messages);
     }
 }
 
@@ -299,14 +300,14 @@ static void study__every_failing_allocation_is_survived(mt_test *t)
     for (long nth = 0; rc == MT_E_MEMORY && mt_alloc_works(); nth++) {
         const long before = mt_alloc_live();
         mt_study *s = NULL;
-        mt_text messages = {0};
+        mt_diagnostics messages = {.count = 0};
         mt_test_row(t, "allocation %ld", nth);
         mt_alloc_fail_after(nth);
         rc = mt_study_load(FULL, NULL, &s, &messages, NULL);
         mt_alloc_fail_after(-1);
         CHECK(t, (rc == MT_OK) == (s != NULL));
         mt_study_delete(s);
-        mt_text_free(&messages);
+        mt_diagnostics_free(&messages);
         CHECK_INT(t, mt_alloc_live(), before);
     }
     CHECK(t, rc == MT_OK || !mt_alloc_works());

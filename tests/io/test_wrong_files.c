@@ -51,7 +51,7 @@ static int list_files(mt_arena *mem, char **names)
 
 /* What reading the file says; err where there are no diagnostics (the file itself cannot be
  * read). */
-static mt_status read_wrong(const char *name, mt_text *said)
+static mt_status read_wrong(const char *name, mt_diagnostics *said)
 {
     mt_err err = {.text = ""};
     mt_model *model = NULL;
@@ -71,8 +71,8 @@ static mt_status read_wrong(const char *name, mt_text *said)
     } else {
         rc = mt_model_load(name, NULL, &model, said, &err);
     }
-    if (rc != MT_OK && rc != MT_E_MEMORY && said->length == 0) {
-        mt_text_addf(said, "%s\n", err.text);
+    if (rc != MT_OK && rc != MT_E_MEMORY && said->count == 0) {
+        mt_text_addf(&said->lines, "%s\n", err.text);
     }
     mt_model_delete(model);
     mt_study_delete(study);
@@ -84,19 +84,19 @@ static void check_file(mt_test *t, const char *name)
 {
     enum { LIMIT = 1 << 20 };
     char path[256];
-    mt_text said = {0};
+    mt_diagnostics said = {.count = 0};
     mt_file expected = {0};
     mt_test_row(t, "%s", name);
     CHECK_INT(t, read_wrong(name, &said), MT_E_INPUT);
     if (getenv("MT_WRONG_PRINT") != NULL) {
-        printf("== %s\n%s", name, said.s == NULL ? "" : said.s);
+        printf("== %s\n%s", name, mt_diagnostics_text(&said));
     }
     (void)snprintf(path, sizeof path, "%.*sexpected", (int)strlen(name) - 4, name);
     if (CHECK_INT(t, mt_file_read(path, NULL, LIMIT, &expected, NULL), MT_OK)) {
-        CHECK_STR(t, said.s, expected.bytes);
+        CHECK_STR(t, said.lines.s, expected.bytes);
     }
     mt_file_free(&expected);
-    mt_text_free(&said);
+    mt_diagnostics_free(&said);
 }
 
 static void wrong_files__say_exactly_what_is_expected(mt_test *t)
@@ -129,12 +129,12 @@ static void wrong_files__every_failing_allocation_is_survived(mt_test *t)
         mt_status rc = MT_E_MEMORY;
         for (long nth = 0; rc == MT_E_MEMORY && mt_alloc_works(); nth++) {
             const long before = mt_alloc_live();
-            mt_text said = {0};
+            mt_diagnostics said = {.count = 0};
             mt_test_row(t, "%s, allocation %ld", names[i], nth);
             mt_alloc_fail_after(nth);
             rc = read_wrong(names[i], &said);
             mt_alloc_fail_after(-1);
-            mt_text_free(&said);
+            mt_diagnostics_free(&said);
             CHECK(t, rc == MT_E_INPUT || rc == MT_E_MEMORY);
             CHECK_INT(t, mt_alloc_live(), before);
         }

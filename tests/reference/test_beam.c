@@ -134,13 +134,13 @@ static void beam__reference_is_euler_and_bernoulli(mt_test *t)
 static mt_study *load_study(mt_test *t, const char *path)
 {
     mt_study *study = NULL;
-    mt_text messages = {0};
+    mt_diagnostics messages = {.count = 0};
     const mt_io_options opt = {.root = "/"};
     mt_err err = {.text = ""};
     CHECK_INT(t, mt_study_load(path, &opt, &study, &messages, &err), MT_OK);
-    CHECK_STR(t, messages.s, NULL);
+    CHECK_STR(t, messages.lines.s, NULL);
     CHECK_STR(t, err.text, "");
-    mt_text_free(&messages);
+    mt_diagnostics_free(&messages);
     return study;
 }
 

@@ -23,7 +23,7 @@ typedef struct verdict {
 static verdict judge(const char *kind, const char *path)
 {
     verdict v = {MT_OK, 0, 0};
-    mt_text said = {0};
+    mt_diagnostics said = {.count = 0};
     mt_model *model = NULL;
     mt_study *study = NULL;
     const mt_io_options opt = {.root = "/", .structural = &v.structural};
@@ -38,12 +38,12 @@ static verdict judge(const char *kind, const char *path)
     } else {
         v.rc = mt_model_load(path, &opt, &model, &said, NULL);
     }
-    for (const char *s = said.s; s != NULL && *s != '\0'; s++) {
+    for (const char *s = said.lines.s; s != NULL && *s != '\0'; s++) {
         v.lines += *s == '\n';
     }
     mt_model_delete(model);
     mt_study_delete(study);
-    mt_text_free(&said);
+    mt_diagnostics_free(&said);
     return v;
 }
 

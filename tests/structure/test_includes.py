@@ -25,6 +25,7 @@ ALLOWED = {
     "search": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem"},
     "describe": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem", "search"},
     "answer": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem", "search", "describe"},
+    "library": set(ROOMS) - {"library", "report", "cli"},
     "io": {"base", "expr", "model", "study", "result"},
     "report": {"base", "result"},
     "cli": set(ROOMS),
@@ -32,7 +33,7 @@ ALLOWED = {
 # public headers stand in include/modetune and belong to a room: the one of the same name, or
 # private headers that another room reads: starts of searches are not to be had from nlp.h
 LOOKED_INTO = {("search", "nlp/nlp_priv.h")}
-PUBLIC = {"export": "base", "version": "base", "status": "base", "dynamics": "mechanics", "study": "study", "modes": "analysis"}
+PUBLIC = {"export": "base", "read": "base", "version": "base", "status": "base", "dynamics": "mechanics", "study": "study", "modes": "analysis"}
 # <system header> pattern: the rooms that may include it
 DOORS = [
     (re.compile(r"lapacke|cblas|lapack|openblas"), {"linalg"}),

@@ -88,7 +88,7 @@ static inline bool study_load(mt_test *t, const char *model, const char *members
     char model_path[STUDY_PATH];
     char study_path[STUDY_PATH];
     char text[2 * STUDY_PATH];
-    mt_text messages = {0};
+    mt_diagnostics messages = {.count = 0};
     const mt_io_options opt = {.root = "/"};
     *c = (study_case){.rc = MT_E_SYSTEM};
     if (!CHECK(t, mkdtemp(folder) != NULL)) {
@@ -114,13 +114,14 @@ static inline bool study_load(mt_test *t, const char *model, const char *members
         c->rc = mt_study_load(study_path, &opt, &c->study, &messages, &c->err);
     }
     if (!CHECK_INT(t, c->rc, MT_OK)) {
-        (void)fprintf(stderr, "%s\n", messages.s == NULL ? c->err.text : messages.s);
+        (void)fprintf(stderr, "%s\n",
+                      messages.lines.s == NULL ? c->err.text : messages.lines.s);
     }
     (void)unlink(study_path);
     (void)unlink(model_path + (inside ? 0 : strlen(model_path)));
     (void)rmdir(folder);
     mt_text_free(&study);
-    mt_text_free(&messages);
+    mt_diagnostics_free(&messages);
     return c->rc == MT_OK;
 }
 

@@ -26,7 +26,7 @@ static double pendulum_hz(double l)
 static mt_model *read_model(mt_test *t, const char *path)
 {
     mt_model *model = NULL;
-    CHECK_INT(t, mt_model_read(path, &model, NULL), MT_OK);
+    CHECK_INT(t, mt_model_read(path, NULL, &model, NULL), MT_OK);
     return model;
 }
 
@@ -95,7 +95,7 @@ static void study__is_read_solved_and_told(mt_test *t)
     mt_study *study = NULL;
     mt_result *result = NULL;
     char *text = NULL;
-    CHECK_INT(t, mt_study_read(STUDIES "pendulum_study.json", &study, NULL), MT_OK);
+    CHECK_INT(t, mt_study_read(STUDIES "pendulum_study.json", NULL, &study, NULL), MT_OK);
     REQUIRE(t, study != NULL);
     CHECK_INT(t, mt_study_solve(study, NULL, &result, NULL), MT_OK);
     mt_study_delete(study);
@@ -125,7 +125,7 @@ static void missing_study__is_said(mt_test *t)
 {
     mt_study *study = NULL;
     mt_err err = {MT_OK, ""};
-    CHECK_INT(t, mt_study_read(STUDIES "nothing.json", &study, &err), MT_E_SYSTEM);
+    CHECK_INT(t, mt_study_read(STUDIES "nothing.json", NULL, &study, &err), MT_E_SYSTEM);
     CHECK(t, study == NULL);
     CHECK(t, strstr(err.text, "nothing.json") != NULL);
     mt_study_delete(study);

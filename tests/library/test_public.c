@@ -7,6 +7,7 @@
 #include "modetune/dynamics.h"
 #include "modetune/model.h"
 #include "modetune/modes.h"
+#include "modetune/read.h"
 #include "modetune/study.h"
 #include "modetune/version.h"
 
@@ -28,6 +29,8 @@ static mt_study *study;
 static mt_result *result;
 static const char configuration[] = "hanging";
 static const char parameter[] = "L";
+static mt_diagnostics *list;
+static mt_diagnostics *wrong; /* of a file that is */
 static mt_err said;
 
 /* Argument number k of a call where pointer number `null` is to be NULL. */
@@ -72,10 +75,76 @@ static mt_status call_version(int null)
     return ANSWER(strcmp(mt_version(), MT_VERSION_STRING) == 0);
 }
 
+static mt_status call_diagnostics_new(int null)
+{
+    mt_diagnostics *out = null == 0 ? list : NULL;
+    const mt_status rc = mt_diagnostics_new(ARG(0, &out), ARG(1, &said));
+    mt_diagnostics_delete(null == 0 ? NULL : out);
+    return rc;
+}
+
+static mt_status call_diagnostics_delete(int null)
+{
+    mt_diagnostics *own = NULL;
+    const mt_status rc = mt_diagnostics_new(&own, &said);
+    mt_diagnostics_delete(ARG(0, own));
+    if (null == 0) {
+        mt_diagnostics_delete(own);
+    }
+    return rc;
+}
+
+static mt_status call_diagnostics_count(int null)
+{
+    return ANSWER(mt_diagnostics_count(ARG(0, wrong)) > 0);
+}
+
+static mt_status call_diagnostics_left_out(int null)
+{
+    return ANSWER(mt_diagnostics_left_out(ARG(0, wrong)) == 0);
+}
+
+static mt_status call_diagnostics_severity(int null)
+{
+    return ANSWER((int)mt_diagnostics_severity(ARG(0, wrong), 0) != MT_SEVERITY_COUNT);
+}
+
+static mt_status call_diagnostics_file(int null)
+{
+    return ANSWER(mt_diagnostics_file(ARG(0, wrong), 0) != NULL);
+}
+
+static mt_status call_diagnostics_line(int null)
+{
+    return ANSWER(mt_diagnostics_line(ARG(0, wrong), 0) > 0);
+}
+
+static mt_status call_diagnostics_column(int null)
+{
+    return ANSWER(mt_diagnostics_column(ARG(0, wrong), 0) > 0);
+}
+
+static mt_status call_diagnostics_pointer(int null)
+{
+    return ANSWER(mt_diagnostics_pointer(ARG(0, wrong), 0) != NULL);
+}
+
+static mt_status call_diagnostics_message(int null)
+{
+    return ANSWER(mt_diagnostics_message(ARG(0, wrong), 0) != NULL);
+}
+
+static mt_status call_diagnostics_text(int null)
+{
+    return ANSWER(mt_diagnostics_text(ARG(0, wrong)) != NULL);
+}
+
 static mt_status call_model_read(int null)
 {
     mt_model *out = null == 0 ? model : NULL; /* must become NULL */
-    const mt_status rc = mt_model_read(ARG(0, MODEL), ARG(1, &out), ARG(2, &said));
+    const mt_read_options opt = {.size = sizeof opt, .diagnostics = list};
+    const mt_status rc =
+        mt_model_read(ARG(0, MODEL), ARG(1, &opt), ARG(2, &out), ARG(3, &said));
     const bool owned = out != NULL;
     mt_model_delete(out);
     return rc == MT_OK || !owned ? rc : MT_E_INTERNAL;
@@ -84,7 +153,7 @@ static mt_status call_model_read(int null)
 static mt_status call_model_delete(int null)
 {
     mt_model *own = NULL;
-    const mt_status rc = mt_model_read(MODEL, &own, &said);
+    const mt_status rc = mt_model_read(MODEL, NULL, &own, &said);
     mt_model_delete(ARG(0, own));
     if (null == 0) {
         mt_model_delete(own);
@@ -134,7 +203,9 @@ static mt_status call_model_frequencies(int null)
 static mt_status call_study_read(int null)
 {
     mt_study *out = null == 0 ? study : NULL;
-    const mt_status rc = mt_study_read(ARG(0, STUDY), ARG(1, &out), ARG(2, &said));
+    const mt_read_options opt = {.size = sizeof opt, .diagnostics = list};
+    const mt_status rc =
+        mt_study_read(ARG(0, STUDY), ARG(1, &opt), ARG(2, &out), ARG(3, &said));
     const bool owned = out != NULL;
     mt_study_delete(out);
     return rc == MT_OK || !owned ? rc : MT_E_INTERNAL;
@@ -143,7 +214,7 @@ static mt_status call_study_read(int null)
 static mt_status call_study_delete(int null)
 {
     mt_study *own = NULL;
-    const mt_status rc = mt_study_read(STUDY, &own, &said);
+    const mt_status rc = mt_study_read(STUDY, NULL, &own, &said);
     mt_study_delete(ARG(0, own));
     if (null == 0) {
         mt_study_delete(own);
@@ -270,7 +341,18 @@ static const struct {
     ROW(fail, "aa"),
     ROW(err_in, "aa"),
     ROW(version, ""),
-    ROW(model_read, "rra"),
+    ROW(diagnostics_new, "ra"),
+    ROW(diagnostics_delete, "a"),
+    ROW(diagnostics_count, "n"),
+    ROW(diagnostics_left_out, "a"),
+    ROW(diagnostics_severity, "n"),
+    ROW(diagnostics_file, "n"),
+    ROW(diagnostics_line, "n"),
+    ROW(diagnostics_column, "n"),
+    ROW(diagnostics_pointer, "n"),
+    ROW(diagnostics_message, "n"),
+    ROW(diagnostics_text, "n"),
+    ROW(model_read, "rara"),
     ROW(model_delete, "a"),
     ROW(model_title, "n"),
     ROW(model_dimension, "n"),
@@ -279,7 +361,7 @@ static const struct {
     ROW(model_configuration_count, "n"),
     ROW(model_configuration_name, "n"),
     ROW(model_frequencies, "rarrra"),
-    ROW(study_read, "rra"),
+    ROW(study_read, "rara"),
     ROW(study_delete, "a"),
     ROW(solve_options_default, ""),
     ROW(study_solve, "rara"),
@@ -300,8 +382,14 @@ static const struct {
 
 static void public__null_is_refused_allowed_or_nothing(mt_test *t)
 {
-    REQUIRE(t, mt_model_read(MODEL, &model, &said) == MT_OK);
-    REQUIRE(t, mt_study_read(STUDY, &study, &said) == MT_OK);
+    const mt_file_text file = {"wrong.json", "{}"};
+    mt_read_options opt = {.size = sizeof opt, .files = &file, .n_files = 1};
+    REQUIRE(t, mt_diagnostics_new(&list, &said) == MT_OK);
+    REQUIRE(t, mt_diagnostics_new(&wrong, &said) == MT_OK);
+    opt.diagnostics = wrong;
+    REQUIRE(t, mt_model_read("wrong.json", &opt, &model, &said) == MT_E_INPUT);
+    REQUIRE(t, mt_model_read(MODEL, NULL, &model, &said) == MT_OK);
+    REQUIRE(t, mt_study_read(STUDY, NULL, &study, &said) == MT_OK);
     REQUIRE(t, mt_study_solve(study, NULL, &result, &said) == MT_OK);
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "%s, everything given", rows[i].name);
@@ -320,6 +408,8 @@ static void public__null_is_refused_allowed_or_nothing(mt_test *t)
     mt_result_delete(result);
     mt_study_delete(study);
     mt_model_delete(model);
+    mt_diagnostics_delete(list);
+    mt_diagnostics_delete(wrong);
 }
 
 /* Comments of a header as blanks. */
@@ -399,7 +489,7 @@ static void public__wrong_numbers_are_refused(mt_test *t)
     const mt_setting unnamed[2] = {{"L", 1.0}, {NULL, 1.0}};
     const mt_setting not_finite = {"L", nan("")};
     const double hint[1] = {HUGE_VAL};
-    REQUIRE(t, mt_model_read(MODEL, &m, NULL) == MT_OK);
+    REQUIRE(t, mt_model_read(MODEL, NULL, &m, NULL) == MT_OK);
     CHECK_INT(t, mt_model_frequencies(m, NULL, -1, NULL, 1, hz, &count, NULL), MT_E_USAGE);
     CHECK_INT(t, mt_model_frequencies(m, NULL, 0, NULL, -1, hz, &count, NULL), MT_E_USAGE);
     CHECK_INT(t, mt_model_frequencies(m, NULL, 2, unnamed, 1, hz, &count, &said), MT_E_USAGE);
@@ -415,7 +505,7 @@ static void public__wrong_numbers_are_refused(mt_test *t)
     mt_model_delete(m);
 
     mt_solve_options opt = mt_solve_options_default();
-    CHECK_INT(t, mt_study_read(STUDY, &s, NULL), MT_OK);
+    CHECK_INT(t, mt_study_read(STUDY, NULL, &s, NULL), MT_OK);
     opt.hint = hint;
     CHECK_INT(t, mt_study_solve(s, &opt, &r, NULL), MT_E_USAGE);
     opt.hint = NULL;
