@@ -79,7 +79,7 @@ static mt_status tell_undescribed(const mt_answer *a, mt_err *err)
     for (int i = a->result->n_recommendations;
          i < a->found.n_solutions && i < a->study->recommendations; i++) {
         const char *text = "";
-        mt_problem_x(p, a->found.solutions[i].t, x);
+        mt_case_x(&a->asked, a->found.solutions[i].t, x);
         for (int k = 0; k < p->n && text != NULL; k++) {
             text = mt_arena_printf(mem, "%s%s%s = %.17g", text, k > 0 ? ", " : "",
                                    p->study->variables[k].parameter_name.s, x[k]);
@@ -97,7 +97,7 @@ static mt_status tell_undescribed(const mt_answer *a, mt_err *err)
 static mt_status search_gaps(mt_answer *a, mt_err *err)
 {
     mt_gap_result *const g = &a->gaps;
-    MT_TRY(mt_gaps_solve(a->p, a->n_workers, &a->mem, g, err));
+    MT_TRY(mt_gaps_solve(a->workers, a->n_workers, &a->mem, g, err));
     a->found.solutions =
         mt_arena_alloc(&a->mem, (size_t)g->n_solutions, sizeof *a->found.solutions);
     if (a->found.solutions == NULL) {
@@ -152,8 +152,8 @@ static mt_status spread(mt_answer *a, mt_err *err)
 {
     return a->result->n_recommendations == 0
                ? MT_OK
-               : mt_spread_solve(a->p, &a->found.solutions[0], &a->mem, &a->found.evals,
-                                 a->result, err);
+               : mt_spread_solve(a->workers[0], &a->found.solutions[0], &a->mem,
+                                 &a->found.evals, a->result, err);
 }
 
 static mt_status certify(mt_answer *a, mt_err *err)
@@ -185,7 +185,7 @@ static mt_status relax(mt_answer *a, mt_err *err)
     }
     MT_TRY(mt_study_is_discrete(a->study)
                ? mt_relax_discrete(a->workers, a->n_workers, &a->found, &a->mem, &moves, err)
-               : mt_relax(a->p, a->n_workers, &a->found, &a->mem, &moves, err));
+               : mt_relax(a->workers, a->n_workers, &a->found, &a->mem, &moves, err));
     a->found.evals += moves.evals;
     a->found.starts += moves.starts;
     if (moves.short_of_budget && a->found.stop != MT_STOP_MAX_EVALS) {
@@ -205,9 +205,10 @@ static mt_status publish(mt_answer *a, mt_err *err)
         return mt_fail_memory(err);
     }
     if (recommended) {
-        mt_problem_x(a->p, a->found.solutions[0].t, x);
+        mt_case_x(&a->asked, a->found.solutions[0].t, x);
     }
-    return mt_describe_published(a->p, a->p->original, recommended ? x : NULL, a->result, err);
+    return mt_describe_published(a->workers[0], a->p->original, recommended ? x : NULL,
+                                 a->result, err);
 }
 
 /* Does the study ask for what this phase writes? */
@@ -305,18 +306,16 @@ static mt_status take_hint(mt_answer *a, const double *hint, mt_err *err)
     for (int i = 0; i < p->n; i++) {
         t[i] = mt_problem_t(p, i, hint[i]); /* the search brings it within the bounds */
     }
-    for (int i = 0; i < a->n_workers; i++) {
-        a->workers[i]->hint = t;
-    }
+    a->asked.hint = t;
     return MT_OK;
 }
 
 static mt_status fill(mt_answer *a, const mt_solve_options *opt, mt_err *err)
 {
-    mt_problem *const p = a->p;
+    const mt_problem *const p = a->p;
     mt_result *const result = a->result;
-    p->progress = opt->progress; /* the first worker's: one line at a time */
-    p->progress_context = opt->progress_context;
+    a->workers[0]->progress = opt->progress; /* the first worker's: one line at a time */
+    a->workers[0]->progress_context = opt->progress_context;
     a->searched = p->n > 0 && (p->n_demands > 0 || p->n_clears > 0);
     if (opt->hint != NULL) {
         MT_TRY(take_hint(a, opt->hint, err));
@@ -343,9 +342,9 @@ static mt_status fill(mt_answer *a, const mt_solve_options *opt, mt_err *err)
 /* The original design, without which there is nothing to tell. */
 static mt_status describe_baseline(mt_answer *a, mt_err *err)
 {
-    mt_problem *const p = a->p;
+    const mt_problem *const p = a->p;
     mt_result *const result = a->result;
-    const mt_design original = {.t = p->origin_t};
+    const mt_design original = {.t = p->whole.origin_t};
     MT_TRY(mt_describe_run(a->study, result, err));
     MT_TRY(mt_describe_excitations(a->study, result, err));
     if (!a->study->examined) {
@@ -357,21 +356,22 @@ static mt_status describe_baseline(mt_answer *a, mt_err *err)
     return mt_describe_baseline_reasons(p, result, err);
 }
 
-/* One problem for each worker; references are analysed with the first and only read
- * afterwards. */
-static mt_status open_problems(mt_answer *a, mt_err *err)
+/* One problem, and a workspace for each worker. */
+static mt_status open_problem(mt_answer *a, mt_err *err)
 {
     const bool alone = a->threads < 1 || a->study->n_variables == 0;
     const int n = alone ? 1 : a->threads < MT_WORKERS_MOST ? a->threads : MT_WORKERS_MOST;
-    a->workers = mt_arena_alloc(&a->mem, (size_t)n, sizeof(mt_problem *));
+    MT_TRY(mt_problem_new(a->study, &a->p, err));
+    a->asked = a->p->whole;
+    a->workers = mt_arena_alloc(&a->mem, (size_t)n, sizeof(mt_workspace *));
     if (a->workers == NULL) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < n; i++) {
-        MT_TRY(mt_problem_new(a->study, &a->references, &a->workers[i], err));
+        MT_TRY(mt_workspace_new(a->p, &a->workers[i], err));
+        mt_workspace_back(a->workers[i], &a->asked);
         a->n_workers = i + 1;
     }
-    a->p = a->workers[0];
     return MT_OK;
 }
 
@@ -379,7 +379,7 @@ static mt_status begin(mt_answer *a, mt_err *err)
 {
     mt_err own = {.code = MT_OK};
     mt_interrupt_enter(&a->interrupt, MT_PHASE_BASELINE, true);
-    mt_status rc = open_problems(a, &own);
+    mt_status rc = open_problem(a, &own);
     rc = rc == MT_OK ? describe_baseline(a, &own) : rc;
     if (mt_interrupt_is_cut(&a->interrupt, MT_PHASE_BASELINE) && is_due_to_cut(rc)) {
         return mt_fail(err, MT_E_INTERRUPTED,
@@ -435,15 +435,14 @@ mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_
     mt_status rc = mt_arena_init(&a.mem, 0, err);
     rc = rc == MT_OK ? mt_result_new(&a.result, err) : rc;
     rc = rc == MT_OK ? ask(&a, study, use, err) : rc;
-    rc = rc == MT_OK ? mt_reference_cache_init(&a.references, a.study, &a.mem, err) : rc;
     rc = rc == MT_OK ? begin(&a, err) : rc;
     rc = rc == MT_OK ? fill(&a, use, err) : rc;
     rc = rc == MT_OK ? phase(&a, MT_PHASE_TRADE, trade, err) : rc;
     rc = rc == MT_OK ? mt_answer_note_cuts(&a, err) : rc;
     for (int i = 0; i < a.n_workers; i++) {
-        mt_problem_delete(a.workers[i]);
+        mt_workspace_delete(a.workers[i]);
     }
-    mt_reference_cache_free(&a.references);
+    mt_problem_delete(a.p);
     mt_arena_free(&a.mem);
     if (rc != MT_OK) {
         mt_result_delete(a.result);

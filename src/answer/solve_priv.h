@@ -34,12 +34,12 @@ typedef struct mt_answer {
     mt_interrupt interrupt;
     mt_result_mark mark; /* of the result: what is complete */
     int threads;
-    mt_problem *p;        /* workers[0] */
-    mt_problem **workers; /* [n_workers] owned */
+    mt_problem *p;          /* owned */
+    mt_case asked;          /* the whole of it; with the caller's design to start from */
+    mt_workspace **workers; /* [n_workers] owned, set to that */
     int n_workers;
     mt_result *result;
     mt_arena mem;
-    mt_reference_cache references;
     mt_nlp_result found;
     mt_gap_result gaps;          /* where there are bands: found is made from it */
     mt_discrete_report discrete; /* where there are catalogues: what the search did */

@@ -16,7 +16,9 @@
 #include "search/discrete.h"
 
 typedef struct spread {
-    mt_problem *p;
+    mt_workspace *w; /* set to c */
+    mt_case c;
+    double *weight; /* [n_demands] of c */
     mt_result *result;
     const mt_nlp_solution *best;
     double *x; /* [n] */
@@ -26,15 +28,16 @@ typedef struct spread {
 static mt_status start(spread *s, mt_err *err)
 {
     mt_result *const r = s->result;
-    const size_t n = (size_t)s->p->n;
+    const size_t n = (size_t)s->w->p->n;
     s->x = mt_arena_f64(&r->mem, n, 1);
     r->spread = mt_arena_alloc(&r->mem, n, sizeof *r->spread);
     if (s->x == NULL || r->spread == NULL) {
         return mt_fail_memory(err);
     }
-    mt_problem_x(s->p, s->best->t, s->x);
-    for (int i = 0; i < s->p->n; i++) {
-        const mt_parameter *const parameter = &s->p->study->model->parameters[s->p->inputs[i]];
+    mt_case_x(s->w->c, s->best->t, s->x);
+    for (int i = 0; i < s->w->p->n; i++) {
+        const mt_parameter *const parameter =
+            &s->w->p->study->model->parameters[s->w->p->inputs[i]];
         r->spread[i] = (mt_result_spread){
             .parameter = mt_arena_strdup(&r->mem, parameter->name.s),
             .unit = parameter->unit == NULL ? NULL : mt_arena_strdup(&r->mem, parameter->unit),
@@ -49,15 +52,15 @@ static mt_status start(spread *s, mt_err *err)
             return mt_fail_memory(err);
         }
     }
-    r->n_spread = s->p->n;
+    r->n_spread = s->w->p->n;
     return MT_OK;
 }
 
-static void scale_weight(mt_problem *p, int goal, double factor)
+static void scale_weight(const mt_problem *p, double *weight, int goal, double factor)
 {
     for (int i = 0; i < p->n_demands; i++) {
         if (p->demands[i].goal_index == goal) {
-            p->demands[i].weight = p->study->goals[goal].weight * factor;
+            weight[i] = p->study->goals[goal].weight * factor;
         }
     }
 }
@@ -68,8 +71,8 @@ static mt_status note(spread *s, const double *t, int goal, double factor, mt_er
     if (pointer == NULL) {
         return mt_fail_memory(err);
     }
-    mt_problem_x(s->p, t, s->x);
-    for (int i = 0; i < s->p->n; i++) {
+    mt_case_x(s->w->c, t, s->x);
+    for (int i = 0; i < s->w->p->n; i++) {
         mt_result_spread *const r = &s->result->spread[i];
         if (s->x[i] < r->low) {
             r->low = s->x[i];
@@ -88,14 +91,14 @@ static mt_status note(spread *s, const double *t, int goal, double factor, mt_er
  * directions are kept at. */
 static mt_status search_again(spread *s, int goal, double factor, mt_arena *mem, mt_err *err)
 {
-    mt_nlp nlp = mt_problem_nlp(s->p);
+    mt_nlp nlp = mt_workspace_nlp(s->w);
     mt_nlp_options options = mt_nlp_options_default();
     mt_nlp_result found = {0};
     nlp.origin = s->best->t;
     options.starts = 1;
-    scale_weight(s->p, goal, factor);
+    scale_weight(s->w->p, s->weight, goal, factor);
     const mt_status rc = mt_nlp_solve(&nlp, &options, mem, &found, err);
-    scale_weight(s->p, goal, 1.0);
+    scale_weight(s->w->p, s->weight, goal, 1.0);
     s->evaluations += found.evals;
     if (rc != MT_OK) {
         return rc;
@@ -111,7 +114,7 @@ static mt_status search_again(spread *s, int goal, double factor, mt_arena *mem,
 
 static mt_status search_all(spread *s, mt_arena *mem, mt_err *err)
 {
-    const mt_study *const study = s->p->study;
+    const mt_study *const study = s->w->p->study;
     for (int g = 0; g < study->n_goals; g++) {
         const double factor = study->spread.factor;
         if (!MT_HAS(study->goals[g].weight)) {
@@ -138,18 +141,25 @@ bool mt_spread_is_asked(const mt_problem *p)
            !mt_study_is_discrete(p->study);
 }
 
-mt_status mt_spread_solve(mt_problem *p, const mt_nlp_solution *best, mt_arena *mem,
+mt_status mt_spread_solve(mt_workspace *w, const mt_nlp_solution *best, mt_arena *mem,
                           long *evaluations, mt_result *result, mt_err *err)
 {
-    spread s = {.p = p, .result = result, .best = best};
-    if (!mt_spread_is_asked(p)) {
+    const mt_case *const asked = w->c;
+    const size_t n = (size_t)w->p->n_demands;
+    if (!mt_spread_is_asked(w->p)) {
         return MT_OK;
     }
+    spread s = {
+        .w = w, .c = *asked, .weight = mt_arena_f64(mem, n, 1), .result = result, .best = best};
+    if (s.weight == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(s.weight, asked->weight, n * sizeof *s.weight);
+    s.c.weight = s.weight;
     MT_TRY(start(&s, err));
-    const int stage = p->stage;
-    p->stage = 0; /* the misfit alone: objectives after it decide between its equals */
+    mt_workspace_back(w, &s.c);
     const mt_status rc = search_all(&s, mem, err);
-    p->stage = stage;
+    mt_workspace_back(w, asked);
     *evaluations += s.evaluations;
     return rc;
 }

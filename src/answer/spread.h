@@ -7,12 +7,12 @@
 /*
  * How the best design moves when the weight of one goal at a time is multiplied or divided by
  * the study's factor, the misfit minimised again from the best design. Nothing where the study
- * does not ask for it. p's weights are changed meanwhile and put back. Evaluations are added to
+ * does not ask for it. Evaluations are added to
  * *evaluations. Cost: one local search for each weighted goal and side.
  */
 /* Does the study ask for it? */
 bool mt_spread_is_asked(const mt_problem *p);
-mt_status mt_spread_solve(mt_problem *p, const mt_nlp_solution *best, mt_arena *mem,
+mt_status mt_spread_solve(mt_workspace *w, const mt_nlp_solution *best, mt_arena *mem,
                           long *evaluations, mt_result *result, mt_err *err);
 
 #endif

@@ -128,7 +128,7 @@ static bool better(const mt_study *study, const mt_result *a, const mt_result *b
 
 /* From the neighbours' designs of the first pass, which are no longer changed: any order gives
  * the same. */
-static mt_status try_neighbours(const trade *t, int k, const mt_study *study, mt_arena *mem,
+static mt_status try_neighbours(const trade *t, int k, mt_trade_warm *warm, mt_arena *mem,
                                 mt_err *err)
 {
     point *const p = &t->points[k];
@@ -145,14 +145,14 @@ static mt_status try_neighbours(const trade *t, int k, const mt_study *study, mt
             continue;
         }
         MT_TRY(values_of(near, mem, &x, err));
-        MT_TRY(mt_trade_improves(study, x, best_x, &gain, &p->evaluations, err));
+        MT_TRY(mt_trade_improves(warm, x, best_x, &gain, &p->evaluations, err));
         if (!gain) {
             continue;
         }
         mt_result *fresh = NULL;
         MT_TRY(answer(t, k, x, &fresh, err));
         p->evaluations += fresh != NULL ? fresh->run.evaluations : 0;
-        if (better(study, fresh, answer_of(p))) {
+        if (better(warm->study, fresh, answer_of(p))) {
             mt_result_delete(p->again);
             p->again = fresh;
             MT_TRY(values_of(best_of(fresh), mem, &best_x, err));
@@ -174,7 +174,9 @@ static mt_status solve_warm(void *context, int worker, int k, mt_err *err)
     }
     MT_TRY(mt_arena_init(&mem, 0, err));
     mt_status rc = mt_trade_study(t->study, t->points[k].values, &mem, &study, err);
-    rc = rc == MT_OK ? try_neighbours(t, k, &study, &mem, err) : rc;
+    mt_trade_warm warm = {.study = &study};
+    rc = rc == MT_OK ? try_neighbours(t, k, &warm, &mem, err) : rc;
+    mt_trade_warm_free(&warm);
     mt_arena_free(&mem);
     return rc;
 }

@@ -10,79 +10,92 @@
 
 enum { LOCAL_EVALUATIONS = 500 };
 
-typedef struct warm {
-    const mt_study *study;
-    mt_arena mem;
-    mt_reference_cache references;
-    mt_problem *p;      /* plain */
-    mt_problem *in_gap; /* with the assignment of x, where there are bands; else NULL */
-} warm;
-
-static void to_t(const mt_problem *p, const double *x, double *t)
+static mt_status open_warm(mt_trade_warm *warm, mt_err *err)
 {
-    for (int i = 0; i < p->n; i++) {
-        t[i] = fmin(fmax(mt_problem_t(p, i, x[i]), p->lower_t[i]), p->upper_t[i]);
+    if (warm->p == NULL) {
+        MT_TRY(mt_problem_new(warm->study, &warm->p, err));
+    }
+    return warm->w != NULL ? MT_OK : mt_workspace_new(warm->p, &warm->w, err);
+}
+
+void mt_trade_warm_free(mt_trade_warm *warm)
+{
+    mt_workspace_delete(warm->w);
+    mt_problem_delete(warm->p);
+    *warm = (mt_trade_warm){.study = warm->study};
+}
+
+static void to_t(const mt_case *c, const double *x, double *t)
+{
+    for (int i = 0; i < c->p->n; i++) {
+        t[i] = fmin(fmax(mt_problem_t(c->p, i, x[i]), c->lower_t[i]), c->upper_t[i]);
     }
 }
 
 /* The first objective at t as the search sees it. */
-static mt_status objective_at(warm *w, const double *t, double *f, mt_err *err)
+static mt_status objective_at(mt_workspace *w, const double *t, mt_arena *mem, double *f,
+                              mt_err *err)
 {
-    mt_problem *const p = w->p;
+    const mt_case *const c = w->c;
     mt_nlp_values v;
-    MT_TRY(mt_problem_values_init(p, &w->mem, &v, err));
-    MT_TRY(mt_problem_eval(p, t, false, &v, err));
-    *f = mt_aim_value(p, 0, NULL);
-    if (mt_objective_is(p->aims[0].type, MT_BANDS)) {
-        *f = -mt_clears_room(p);
+    MT_TRY(mt_case_values_init(c, mem, &v, err));
+    MT_TRY(mt_workspace_eval(w, t, false, &v, err));
+    *f = mt_aim_value(w, 0, NULL);
+    if (mt_objective_is(c->aims[0].type, MT_BANDS)) {
+        *f = -mt_clears_room(w);
     }
     return MT_OK;
 }
 
 /* The kind of design that t is. */
-static mt_status open_gap(warm *w, const double *t, mt_err *err)
+static mt_status open_gap(mt_workspace *w, const double *t, mt_arena *mem, mt_case *out,
+                          mt_err *err)
 {
     const mt_problem *const p = w->p;
-    int *const below = mt_arena_int(&w->mem, (size_t)p->n_bands);
+    int *const below = mt_arena_int(mem, (size_t)p->n_bands);
     double f = 0.0;
     if (below == NULL) {
         return mt_fail_memory(err);
     }
-    MT_TRY(objective_at(w, t, &f, err));
+    MT_TRY(objective_at(w, t, mem, &f, err));
     for (int i = 0; i < p->n_clears; i++) {
         const mt_clear *const c = &p->clears[i];
-        (void)mt_clear_violation(c, &p->views[c->view].analysis->modes, below + c->first, NULL);
+        (void)mt_clear_violation(c, &w->views[c->view].analysis->modes, below + c->first, NULL);
     }
     if (!mt_ties_agree(p, below)) {
         return mt_fail(err, MT_E_DOMAIN, "a mode crosses a band between two positions");
     }
-    return mt_problem_new_in_gap(w->study, &w->references, below, &w->in_gap, err);
+    return mt_case_in_gap(&p->whole, below, 0, NULL, w, mem, out, err);
 }
 
-static mt_status compare(warm *w, const double *x, const double *best_x, bool *better,
-                         long *evaluations, mt_err *err)
+static mt_status compare(mt_workspace *w, const double *x, const double *best_x, mt_arena *mem,
+                         bool *better, long *evaluations, mt_err *err)
 {
-    double *const t = mt_arena_f64(&w->mem, (size_t)w->p->n + 1, 1);
-    double *const best_t = mt_arena_f64(&w->mem, (size_t)w->p->n + 1, 1);
+    const mt_problem *const p = w->p;
+    double *const t = mt_arena_f64(mem, (size_t)p->n + 1, 1);
+    double *const best_t = mt_arena_f64(mem, (size_t)p->n + 1, 1);
     double best_f = HUGE_VAL;
     mt_nlp_options opt = mt_nlp_options_default();
     mt_nlp_result found = {0};
+    mt_case in_gap;
     if (t == NULL || best_t == NULL) {
         return mt_fail_memory(err);
     }
-    to_t(w->p, x, t);
+    to_t(&p->whole, x, t);
     if (best_x != NULL) {
-        to_t(w->p, best_x, best_t);
-        MT_TRY(objective_at(w, best_t, &best_f, err));
+        to_t(&p->whole, best_x, best_t);
+        MT_TRY(objective_at(w, best_t, mem, &best_f, err));
     }
-    if (w->p->n_clears > 0) {
-        MT_TRY(open_gap(w, t, err));
+    mt_status rc = p->n_clears > 0 ? open_gap(w, t, mem, &in_gap, err) : MT_OK;
+    if (rc == MT_OK) {
+        mt_nlp nlp = mt_workspace_nlp(w);
+        nlp.origin = t; /* its last entry, where there is a clearance, is 0: on the edges */
+        opt.starts = 1;
+        opt.max_evals = LOCAL_EVALUATIONS;
+        rc = mt_nlp_solve(&nlp, &opt, mem, &found, err);
     }
-    mt_nlp nlp = mt_problem_nlp(w->in_gap != NULL ? w->in_gap : w->p);
-    nlp.origin = t; /* its last entry, where there is a clearance, is 0: on the edges */
-    opt.starts = 1;
-    opt.max_evals = LOCAL_EVALUATIONS;
-    MT_TRY(mt_nlp_solve(&nlp, &opt, &w->mem, &found, err));
+    mt_workspace_back(w, &p->whole);
+    MT_TRY(rc);
     *evaluations += found.evals;
     if (found.n_solutions > 0 && found.solutions[0].feasible) {
         *better =
@@ -91,21 +104,16 @@ static mt_status compare(warm *w, const double *x, const double *best_x, bool *b
     return MT_OK;
 }
 
-mt_status mt_trade_improves(const mt_study *study, const double *x, const double *best_x,
+mt_status mt_trade_improves(mt_trade_warm *warm, const double *x, const double *best_x,
                             bool *better, long *evaluations, mt_err *err)
 {
-    warm w = {.study = study};
+    mt_arena mem;
     mt_err why = {0};
     *better = false;
-    mt_status rc = mt_arena_init(&w.mem, 0, &why);
-    rc = rc == MT_OK ? mt_reference_cache_init(&w.references, study, &w.mem, &why) : rc;
-    rc = rc == MT_OK ? mt_problem_new(study, &w.references, &w.p, &why) : rc;
-    rc = rc == MT_OK ? compare(&w, x, best_x, better, evaluations, &why) : rc;
-    mt_problem_delete(w.in_gap);
-    mt_problem_delete(w.p);
-    mt_reference_cache_free(&w.references);
-    mt_arena_free(&w.mem);
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    mt_status rc = open_warm(warm, &why);
+    rc = rc == MT_OK ? compare(warm->w, x, best_x, &mem, better, evaluations, &why) : rc;
+    mt_arena_free(&mem);
     /* a start without a value is no better start, and no failure */
-    const bool ends = mt_is_final(rc);
-    return ends ? mt_fail(err, rc, "%s", why.text) : MT_OK;
+    return mt_pass_final(rc, &why, err);
 }

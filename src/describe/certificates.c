@@ -126,15 +126,14 @@ static mt_status say_reach(const mt_demand *d, const char *configuration,
                  d->mode, r->low_hz, r->high_hz);
 }
 
-static mt_status reach(mt_problem *p, const mt_proof *proof, int limit, mt_arena *mem,
+static mt_status reach(const mt_problem *p, const mt_proof *proof, int limit, mt_arena *mem,
                        mt_result *result, bool *infeasible, mt_err *err)
 {
     mt_certify_reach r = {0};
     const mt_demand *const d = &p->demands[proof->limit_demand[limit]];
     MT_TRY(mt_certify_reach_of(&proof->question, limit, mem, &r, err));
     *infeasible = *infeasible || r.verdict == MT_VERDICT_IMPOSSIBLE;
-    MT_TRY(
-        say_reach(d, mt_analysis_configuration(p->views[d->view].analysis), &r, result, err));
+    MT_TRY(say_reach(d, mt_view_name(p, &p->views[d->view]), &r, result, err));
     mt_certificate *const c = &result->certificates[result->n_certificates - 1];
     c->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
     c->reachable_lower_hz = r.low_hz;
@@ -159,12 +158,12 @@ static mt_status jointly(const mt_proof *proof, mt_arena *mem, mt_result *result
                  found.boxes);
 }
 
-mt_status mt_describe_limit_certificates(mt_problem *p, mt_arena *mem, mt_result *result,
+mt_status mt_describe_limit_certificates(const mt_problem *p, mt_arena *mem, mt_result *result,
                                          bool *infeasible, mt_err *err)
 {
     mt_proof proof;
     *infeasible = false;
-    mt_status rc = mt_proof_init(&proof, p, mem, err);
+    mt_status rc = mt_proof_init(&proof, &p->whole, mem, err);
     if (rc == MT_OK && !proof.possible && proof.reason[0] != '\0') {
         rc = state(result, "infeasible", false, err,
                    "That no design meets all goals is sampled, not proven: no certificate, %s.",
@@ -176,6 +175,6 @@ mt_status mt_describe_limit_certificates(mt_problem *p, mt_arena *mem, mt_result
     if (rc == MT_OK && proof.possible && !*infeasible && proof.question.n_limits > 0) {
         rc = jointly(&proof, mem, result, infeasible, err);
     }
-    mt_proof_free(&proof, p);
+    mt_proof_free(&proof);
     return rc;
 }

@@ -12,7 +12,7 @@ mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *resu
 const char *mt_describe_gaps_left(const mt_gap_result *gaps, mt_arena *mem);
 /* After a search without bands that met no goal fully: what each limit can reach, and whether
  * that is a proof. */
-mt_status mt_describe_limit_certificates(mt_problem *p, mt_arena *mem, mt_result *result,
+mt_status mt_describe_limit_certificates(const mt_problem *p, mt_arena *mem, mt_result *result,
                                          bool *infeasible, mt_err *err);
 
 #endif

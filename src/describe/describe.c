@@ -53,7 +53,7 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
         const mt_variable *const v = &p->study->variables[i];
         const mt_parameter *const parameter = &p->study->model->parameters[v->parameter];
         const double original = p->original[i];
-        const double d = t[i] - p->origin_t[i];
+        const double d = t[i] - p->whole.origin_t[i];
         change += v->weight * d * d;
         rec->parameters[i] = (mt_result_parameter){
             .name = parameter->name.s,
@@ -76,33 +76,33 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
 
 /* The objective at this design. The fresh problem has no coordinate for the least clearance: it
  * is looked up among the modes. */
-static double aim_value(const mt_problem *fresh, int k)
+static double aim_value(const mt_workspace *fresh, int k)
 {
-    return mt_objective_is(fresh->aims[k].type, MT_BANDS)
+    return mt_objective_is(fresh->c->aims[k].type, MT_BANDS)
                ? -fmin(mt_clears_room(fresh), fresh->motion_room)
                : mt_aim_value(fresh, k, NULL);
 }
 
-static void describe_score(const mt_problem *fresh, mt_recommendation *rec)
+static void describe_score(const mt_workspace *fresh, mt_recommendation *rec)
 {
-    const mt_objective_type type = fresh->aims[0].type;
+    const mt_objective_type type = fresh->c->aims[0].type;
     const bool none = type == MT_OBJECTIVE_NONE || !rec->feasible;
-    if (fresh->n_res > 0) {
-        rec->misfit = mt_norm2(fresh->n_res, fresh->r);
+    if (fresh->p->n_res > 0) {
+        rec->misfit = mt_norm2(fresh->p->n_res, fresh->r);
     }
-    rec->score = none ? nan("") : mt_aim_shown(fresh, 0, aim_value(fresh, 0));
+    rec->score = none ? nan("") : mt_aim_shown(&fresh->c->aims[0], aim_value(fresh, 0));
     rec->score_unit = mt_objective_kind_of(type)->unit;
 }
 
 /* Does the fresh objective agree with the one that the search ended with? */
-static mt_status compare(const mt_problem *fresh, const mt_design *design, mt_result *result,
+static mt_status compare(const mt_workspace *fresh, const mt_design *design, mt_result *result,
                          mt_err *err)
 {
     const int k = design->stage;
-    const bool bands = mt_objective_is(fresh->aims[k].type, MT_BANDS);
-    const double f = mt_aim_root(fresh, k, aim_value(fresh, k));
-    const double had = mt_aim_root(fresh, k, design->found->f);
-    const bool searched_within = bands && fresh->robust != NULL && !mt_robust_proven(fresh);
+    const bool bands = mt_objective_is(fresh->c->aims[k].type, MT_BANDS);
+    const double f = mt_aim_root(&fresh->c->aims[k], aim_value(fresh, k));
+    const double had = mt_aim_root(&fresh->c->aims[k], design->found->f);
+    const bool searched_within = bands && fresh->c->robust != NULL && !mt_robust_proven(fresh);
     /* a clearance that is missed is that of the kind searched */
     const bool other_kind = bands && !design->found->feasible;
     if (other_kind || fabs(f - had) <= SAME_OBJECTIVE * fmax(fabs(f), 1.0) || searched_within) {
@@ -130,19 +130,19 @@ static mt_status doubt(const mt_design *design, mt_result *result, mt_recommenda
                                   design->rank, rec->disagreement);
 }
 
-static mt_status describe(mt_problem *fresh, const mt_design *design,
+static mt_status describe(mt_workspace *fresh, const mt_design *design,
                           const mt_recommendation *baseline, mt_result *result,
                           mt_recommendation *rec, mt_err *err)
 {
     *rec = mt_recommendation_default();
     rec->rank = design->rank;
     MT_TRY(mt_describe_goals(fresh, design, result, rec, err));
-    MT_TRY(describe_parameters(fresh, fresh->x, design->t, result, rec, err));
+    MT_TRY(describe_parameters(fresh->p, fresh->x, design->t, result, rec, err));
     MT_TRY(mt_describe_frequencies(fresh, design, baseline, result, rec, err));
     MT_TRY(doubt(design, result, rec, err));
     MT_TRY(mt_describe_clearances(fresh, result, rec, err));
     describe_score(fresh, rec);
-    if (fresh->robust != NULL) {
+    if (fresh->c->robust != NULL) {
         rec->worst_case = mt_robust_proven(fresh) ? "proven" : "sampled";
     }
     rec->grade = rec->disagreement != NULL ? "not verified"
@@ -160,14 +160,14 @@ static mt_status describe(mt_problem *fresh, const mt_design *design,
     return compare(fresh, design, result, err);
 }
 
-mt_status mt_describe_design(mt_problem *p, const mt_design *design,
+mt_status mt_describe_design(const mt_problem *p, const mt_design *design,
                              const mt_recommendation *baseline, mt_result *result,
                              mt_recommendation *rec, mt_err *err)
 {
-    mt_problem *fresh = NULL;
-    MT_TRY(mt_problem_new(p->study, p->references, &fresh, err));
+    mt_workspace *fresh = NULL;
+    MT_TRY(mt_workspace_new(p, &fresh, err));
     const mt_status rc = describe(fresh, design, baseline, result, rec, err);
-    mt_problem_delete(fresh);
+    mt_workspace_delete(fresh);
     return rc;
 }
 

@@ -3,7 +3,7 @@
 #define DESCRIBE_DESCRIBE_H
 
 #include "nlp/merit.h"
-#include "problem/problem.h"
+#include "problem/workspace.h"
 #include "result/result.h"
 
 /*
@@ -30,52 +30,52 @@ typedef struct mt_design {
  * baseline: NULL while the baseline itself is described. A design where goals have no value (an
  * unstable configuration) is described as far as it goes, with a warning. Fails: MT_E_MEMORY,
  * MT_E_INTERNAL, failures of the fresh analyses. */
-mt_status mt_describe_design(mt_problem *p, const mt_design *design,
+mt_status mt_describe_design(const mt_problem *p, const mt_design *design,
                              const mt_recommendation *baseline, mt_result *result,
                              mt_recommendation *rec, mt_err *err);
 /* Parts of it. describe_goals.c: place and solve everything of fresh at t and judge every
  * goal. */
-mt_status mt_describe_goals(mt_problem *fresh, const mt_design *design, mt_result *result,
+mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_result *result,
                             mt_recommendation *rec, mt_err *err);
 /* describe_bands.c: how many goals the avoid goals are, one per configuration; judge them into
  * rec->goals[rec->n_goals...] once the views of fresh are solved. A goal's value is the
  * clearance that comes nearest to its margin (or falls short of it most), in percent of the
  * band's edge, its demand that margin. */
 int mt_describe_avoid_count(const mt_problem *p);
-mt_status mt_describe_avoid_goals(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
-                                  mt_err *err);
+mt_status mt_describe_avoid_goals(mt_workspace *fresh, mt_result *result,
+                                  mt_recommendation *rec, mt_err *err);
 /* describe_motion.c: how many families of positions of one drive keep clear of bands; each
  * judged over its motion as one more goal, and as a row of rec->motions. After the views of
  * fresh have been solved; sets fresh->motion_room. */
 int mt_describe_motion_count(const mt_problem *p);
-mt_status mt_describe_motions(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+mt_status mt_describe_motions(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                               mt_err *err);
 /* Clearance of each mode from its neighbouring bands, modes below each band, the least
  * clearance. Nothing of an unstable configuration. */
-mt_status mt_describe_clearances(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+mt_status mt_describe_clearances(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                  mt_err *err);
 /* Vibration modes of a view up to the first above its highest band; 0 without bands. */
-int mt_describe_modes_in_reach(const mt_problem *p, int view);
+int mt_describe_modes_in_reach(const mt_workspace *fresh, int view);
 /* The margin that the edge of the band nearest to hz has, in percent of the edge. */
 double mt_describe_margin_percent(const mt_band *band, double hz);
 /* describe_robust.c, nothing without tolerances: what modes and expressions do over the
  * tolerances of fresh's design, once its views are solved. */
-mt_status mt_describe_ranges(mt_problem *fresh, mt_err *err);
+mt_status mt_describe_ranges(mt_workspace *fresh, mt_err *err);
 /* Judge a demand by its worst value, which goes into g; *violation (relative) and *percent (of
  * what is asked), of the design itself before, become those of the worst. */
-mt_status mt_describe_worst(mt_problem *fresh, const mt_demand *d, mt_result *result,
+mt_status mt_describe_worst(mt_workspace *fresh, const mt_demand *d, mt_result *result,
                             mt_result_goal *g, double *violation, double *percent, mt_err *err);
 /* How near a mode that is at hz comes to a band, or how deep inside it; *at: [n] where. NaN and
  * NULL without tolerances. */
-double mt_describe_worst_hz(const mt_problem *fresh, int view, int mode, const mt_band *band,
+double mt_describe_worst_hz(const mt_workspace *fresh, int view, int mode, const mt_band *band,
                             double hz, const double **at);
 /* "ambiguous between modes 2 and 3", "lost: ..."; "" where the named mode is told. NULL:
  * memory. */
-const char *mt_describe_identity(const mt_view *view, int named, mt_arena *mem);
+const char *mt_describe_identity(const mt_view_work *view, int named, mt_arena *mem);
 /* Is it certain enough which mode the demand means? A frequency that all candidates have is. */
-bool mt_describe_is_told(const mt_view *view, const mt_demand *d);
+bool mt_describe_is_told(const mt_view_work *view, const mt_demand *d);
 /* describe_frequencies.c: after mt_describe_goals, whose views are compared. */
-mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
+mt_status mt_describe_frequencies(mt_workspace *fresh, const mt_design *design,
                                   const mt_recommendation *baseline, mt_result *result,
                                   mt_recommendation *rec, mt_err *err);
 /*
@@ -92,7 +92,7 @@ bool mt_describe_is_doubted(const mt_result *result);
 mt_status mt_describe_withdraw(mt_result *result, mt_err *err);
 /* tolerance_box.c: inertia counts confirm the bands of a feasible design; its tolerance box,
  * where the modes can be enclosed. After the clearances. */
-mt_status mt_describe_tolerance(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+mt_status mt_describe_tolerance(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                 mt_err *err);
 /* describe_undetermined.c: directions that the goals do not settle. */
 mt_status mt_describe_undetermined(const mt_problem *p, const mt_nlp_result *found,
@@ -105,7 +105,7 @@ mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
                               mt_recommendation *rec, mt_err *err);
 /* Judge the published list: x_recommended NULL where there is none (then the original design
  * stands in). Fails with the entry's address in the text (published.c). */
-mt_status mt_describe_published(mt_problem *p, const double *x_original,
+mt_status mt_describe_published(mt_workspace *w, const double *x_original,
                                 const double *x_recommended, mt_result *result, mt_err *err);
 /* Versions, seed, inputs, names of the variables (describe_run.c). */
 mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err);

@@ -119,7 +119,7 @@ typedef struct tightest {
     const double *at; /* [n] where over the tolerances; NULL: at the design itself */
 } tightest;
 
-static tightest find_tightest(const mt_problem *fresh, int view, const mt_bands *bands,
+static tightest find_tightest(const mt_workspace *fresh, int view, const mt_bands *bands,
                               bool over_tolerances)
 {
     const mt_modes *const modes = &fresh->views[view].analysis->modes;
@@ -145,19 +145,19 @@ static tightest find_tightest(const mt_problem *fresh, int view, const mt_bands 
     return t;
 }
 
-static mt_status judge(mt_problem *fresh, int goal, int configuration, mt_result *result,
+static mt_status judge(mt_workspace *fresh, int goal, int configuration, mt_result *result,
                        mt_result_goal *out, mt_err *err)
 {
-    const mt_goal *const g = &fresh->study->goals[goal];
-    const int at = mt_problem_view(fresh, configuration);
-    const mt_view *const view = &fresh->views[at];
+    const mt_goal *const g = &fresh->p->study->goals[goal];
+    const int at = mt_problem_view(fresh->p, configuration);
+    const mt_view_work *const view = &fresh->views[at];
     const mt_clear own = {.view = at, .bands = g->avoid->bands};
     const mt_modes *const modes = &view->analysis->modes;
     mt_arena *const mem = &result->mem;
     tightest nominal = {.has = nan(""), .asked = nan(""), .missing = nan("")};
     tightest worst = {.has = nan("")};
     double violation = view->solved ? mt_clear_violation(&own, modes, NULL, NULL) : nan("");
-    if (MT_HAS(violation) && fresh->robust != NULL) {
+    if (MT_HAS(violation) && fresh->c->robust != NULL) {
         const double room = mt_robust_room(fresh, &own);
         violation = MT_HAS(room) ? fmax(-room, 0.0) : room;
     }
@@ -175,18 +175,18 @@ static mt_status judge(mt_problem *fresh, int goal, int configuration, mt_result
         .met = mt_is_met(violation, mt_goal_tolerance(g)),
         .worst = worst.has};
     if (worst.at != NULL) {
-        out->worst_at = mt_arena_f64(mem, (size_t)fresh->n, 1);
+        out->worst_at = mt_arena_f64(mem, (size_t)fresh->p->n, 1);
         MT_TRY(mt_arena_check(mem, err));
-        memcpy(out->worst_at, worst.at, (size_t)fresh->n * sizeof *worst.at);
+        memcpy(out->worst_at, worst.at, (size_t)fresh->p->n * sizeof *worst.at);
     }
     return mt_arena_check(mem, err);
 }
 
-mt_status mt_describe_avoid_goals(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
-                                  mt_err *err)
+mt_status mt_describe_avoid_goals(mt_workspace *fresh, mt_result *result,
+                                  mt_recommendation *rec, mt_err *err)
 {
-    for (int i = 0; i < fresh->study->n_goals; i++) {
-        const mt_goal *const g = &fresh->study->goals[i];
+    for (int i = 0; i < fresh->p->study->n_goals; i++) {
+        const mt_goal *const g = &fresh->p->study->goals[i];
         for (int k = 0; g->avoid != NULL && k < g->n_configurations; k++) {
             MT_TRY(
                 judge(fresh, i, g->configurations[k], result, &rec->goals[rec->n_goals], err));
@@ -196,13 +196,13 @@ mt_status mt_describe_avoid_goals(mt_problem *fresh, mt_result *result, mt_recom
     return MT_OK;
 }
 
-int mt_describe_modes_in_reach(const mt_problem *p, int view)
+int mt_describe_modes_in_reach(const mt_workspace *fresh, int view)
 {
-    const mt_modes *const modes = &p->views[view].analysis->modes;
+    const mt_modes *const modes = &fresh->views[view].analysis->modes;
     int n = 0;
-    for (int c = 0; c < p->n_clears; c++) {
-        const mt_bands *const bands = &p->clears[c].bands;
-        if (p->clears[c].view != view || bands->n == 0) {
+    for (int c = 0; c < fresh->c->n_clears; c++) {
+        const mt_bands *const bands = &fresh->c->clears[c].bands;
+        if (fresh->c->clears[c].view != view || bands->n == 0) {
             continue;
         }
         const double top = bands->items[bands->n - 1].upper_hz;
@@ -217,7 +217,7 @@ int mt_describe_modes_in_reach(const mt_problem *p, int view)
 }
 
 typedef struct listing {
-    const mt_problem *fresh;
+    const mt_workspace *fresh;
     int view;
     mt_result *result;
     mt_recommendation *rec;
@@ -282,10 +282,10 @@ static mt_status list_gaps(const listing *l, const int *below, mt_err *err)
     return MT_OK;
 }
 
-static mt_status list_clear(mt_problem *fresh, const mt_clear *c, int *below, mt_result *result,
-                            mt_recommendation *rec, mt_err *err)
+static mt_status list_clear(mt_workspace *fresh, const mt_clear *c, int *below,
+                            mt_result *result, mt_recommendation *rec, mt_err *err)
 {
-    const mt_view *const view = &fresh->views[c->view];
+    const mt_view_work *const view = &fresh->views[c->view];
     const mt_modes *const modes = &view->analysis->modes;
     const int count = mt_describe_modes_in_reach(fresh, c->view);
     const listing l = {.fresh = fresh,
@@ -305,14 +305,14 @@ static mt_status list_clear(mt_problem *fresh, const mt_clear *c, int *below, mt
     return MT_OK;
 }
 
-mt_status mt_describe_clearances(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+mt_status mt_describe_clearances(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                  mt_err *err)
 {
     size_t most = 0;
     size_t bands = 0;
-    for (int i = 0; i < fresh->n_clears; i++) {
-        most += 2 * (size_t)mt_describe_modes_in_reach(fresh, fresh->clears[i].view);
-        bands += (size_t)fresh->clears[i].bands.n;
+    for (int i = 0; i < fresh->c->n_clears; i++) {
+        most += 2 * (size_t)mt_describe_modes_in_reach(fresh, fresh->c->clears[i].view);
+        bands += (size_t)fresh->c->clears[i].bands.n;
     }
     int *const below = mt_arena_int(&fresh->mem, bands);
     rec->clearances = mt_arena_alloc(&result->mem, most, sizeof *rec->clearances);
@@ -320,8 +320,8 @@ mt_status mt_describe_clearances(mt_problem *fresh, mt_result *result, mt_recomm
     if (below == NULL || rec->clearances == NULL || rec->gaps == NULL) {
         return mt_fail_memory(err);
     }
-    for (int i = 0; i < fresh->n_clears; i++) {
-        MT_TRY(list_clear(fresh, &fresh->clears[i], below, result, rec, err));
+    for (int i = 0; i < fresh->c->n_clears; i++) {
+        MT_TRY(list_clear(fresh, &fresh->c->clears[i], below, result, rec, err));
     }
     rec->gaps = rec->n_gaps > 0 ? rec->gaps : NULL;
     for (int i = 0; i < rec->n_motions; i++) {

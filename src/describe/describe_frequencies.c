@@ -13,22 +13,22 @@ static const double PI = 3.14159265358979323846;
 
 /* One configuration while its modes are listed. */
 typedef struct listing {
-    mt_problem *fresh;
+    mt_workspace *fresh;
     const mt_design *design;
     mt_result *result;
     mt_recommendation *rec;
     /* its analysis was opened at the original design and solved here, as in the search */
-    mt_view *view;
+    mt_view_work *view;
     mt_analysis *scratch; /* opened here */
     int first;            /* its first row of rec->frequencies */
 } listing;
 
 /* Vibration index of a demand's mode at this design; 0: it has none. */
-static mt_status index_of_demand(mt_problem *p, mt_view *view, const mt_demand *d, int *index,
-                                 mt_err *err)
+static mt_status index_of_demand(mt_workspace *fresh, mt_view_work *view, const mt_demand *d,
+                                 int *index, mt_err *err)
 {
     int pos = -1;
-    MT_TRY(mt_view_position(p, view, d->mode, d->named, &pos, err));
+    MT_TRY(mt_view_position(fresh, view, d->mode, d->named, &pos, err));
     *index = mt_modal_index(&view->analysis->modes, pos);
     return MT_OK;
 }
@@ -38,12 +38,12 @@ static mt_status index_of_demand(mt_problem *p, mt_view *view, const mt_demand *
 static mt_status put_name(const listing *l, mt_result_frequency *f, mt_err *err)
 {
     const mt_modes *const modes = &l->view->analysis->modes;
-    for (int i = 0; i < l->view->n_named; i++) {
+    for (int i = 0; i < l->view->of->n_named; i++) {
         int pos = -1;
         MT_TRY(mt_view_position(l->fresh, l->view, 0, i, &pos, err));
         if (pos >= 0 && mt_modal_index(modes, pos) == f->mode) {
             const mt_track *const k = &l->view->track[i];
-            f->name = l->fresh->study->model->modes[l->view->named[i]].name.s;
+            f->name = l->fresh->p->study->model->modes[l->view->of->named[i]].name.s;
             f->identity = mt_track_state_name(k->state);
             f->share = k->share;
             f->rival_mode = mt_modal_index(modes, k->rival);
@@ -56,7 +56,7 @@ static mt_status put_name(const listing *l, mt_result_frequency *f, mt_err *err)
 static mt_status describe_mode(const listing *l, int index, mt_result_frequency *f, mt_err *err)
 {
     mt_analysis *const a = l->scratch;
-    const int n = l->fresh->n;
+    const int n = l->fresh->p->n;
     const int pos = mt_modal_flexible(&a->modes, index);
     *f = mt_result_frequency_default();
     f->configuration = mt_analysis_configuration(a);
@@ -150,9 +150,9 @@ static mt_status warn_lost(const listing *l, const mt_demand *d, mt_err *err)
         l->design->rank, d->goal->mode.mode_name.s, mt_analysis_configuration(l->scratch), why);
 }
 
-static mt_status count_modes(mt_problem *fresh, int v, int *count, mt_err *err)
+static mt_status count_modes(mt_workspace *fresh, int v, int *count, mt_err *err)
 {
-    mt_view *const view = &fresh->views[v];
+    mt_view_work *const view = &fresh->views[v];
     const mt_modes *const modes = &view->analysis->modes;
     int wanted = LISTED_MODES;
     *count = 0;
@@ -160,11 +160,11 @@ static mt_status count_modes(mt_problem *fresh, int v, int *count, mt_err *err)
         return MT_OK;
     }
     const int flexible = mt_modal_vibrations(modes);
-    for (int i = 0; i < fresh->n_demands; i++) {
+    for (int i = 0; i < fresh->p->n_demands; i++) {
         int index = 0;
-        if (fresh->demands[i].view == v) {
-            MT_TRY(index_of_demand(fresh, view, &fresh->demands[i], &index, err));
-            index = index == 0 ? fresh->demands[i].mode : index;
+        if (fresh->p->demands[i].view == v) {
+            MT_TRY(index_of_demand(fresh, view, &fresh->p->demands[i], &index, err));
+            index = index == 0 ? fresh->p->demands[i].mode : index;
         }
         wanted = index > wanted ? index : wanted;
     }
@@ -222,7 +222,7 @@ static mt_status note_failure(const listing *l, const mt_err *why, mt_err *err)
 
 static mt_status list_view(listing *l, int v, int count, mt_err *err)
 {
-    mt_problem *const fresh = l->fresh;
+    mt_workspace *const fresh = l->fresh;
     mt_analysis_options opt = mt_analysis_options_default();
     opt.gradient = true;
     MT_TRY(verify(l, err));
@@ -231,21 +231,21 @@ static mt_status list_view(listing *l, int v, int count, mt_err *err)
         MT_TRY(describe_mode(l, k, &l->rec->frequencies[l->rec->n_frequencies], err));
         l->rec->n_frequencies++;
     }
-    for (int i = 0; i < fresh->n_demands; i++) {
-        if (fresh->demands[i].view == v) {
-            MT_TRY(attach(l, &fresh->demands[i], err));
-            MT_TRY(warn_lost(l, &fresh->demands[i], err));
+    for (int i = 0; i < fresh->p->n_demands; i++) {
+        if (fresh->p->demands[i].view == v) {
+            MT_TRY(attach(l, &fresh->p->demands[i], err));
+            MT_TRY(warn_lost(l, &fresh->p->demands[i], err));
         }
     }
     return MT_OK;
 }
 
-mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
+mt_status mt_describe_frequencies(mt_workspace *fresh, const mt_design *design,
                                   const mt_recommendation *baseline, mt_result *result,
                                   mt_recommendation *rec, mt_err *err)
 {
     size_t most = 0;
-    for (int v = 0; v < fresh->n_views; v++) {
+    for (int v = 0; v < fresh->c->n_views; v++) {
         int count = 0;
         MT_TRY(count_modes(fresh, v, &count, err));
         most += (size_t)count;
@@ -254,7 +254,7 @@ mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
     if (rec->frequencies == NULL) {
         return mt_fail_memory(err);
     }
-    for (int v = 0; v < fresh->n_views; v++) {
+    for (int v = 0; v < fresh->c->n_views; v++) {
         int count = 0;
         listing l = {.fresh = fresh, .design = design, .result = result, .rec = rec};
         l.view = &fresh->views[v];
@@ -264,8 +264,9 @@ mt_status mt_describe_frequencies(mt_problem *fresh, const mt_design *design,
             continue;
         }
         mt_err why = {.code = MT_OK};
-        mt_status rc = mt_analysis_new(fresh->study->model, l.view->configuration, fresh->n,
-                                       fresh->inputs, fresh->x, &l.scratch, &why);
+        mt_status rc =
+            mt_analysis_new(fresh->p->study->model, l.view->of->configuration, fresh->p->n,
+                            fresh->p->inputs, fresh->x, &l.scratch, &why);
         rc = rc == MT_OK ? list_view(&l, v, count, err) : note_failure(&l, &why, err);
         mt_analysis_delete(l.scratch);
         MT_TRY(rc);

@@ -13,7 +13,7 @@ static const char *quantity_text(const mt_problem *p, const mt_demand *d, mt_are
     if (d->view < 0) {
         return d->goal->expression_text;
     }
-    const char *const configuration = mt_analysis_configuration(p->views[d->view].analysis);
+    const char *const configuration = mt_view_name(p, &p->views[d->view]);
     return d->mode > 0
                ? mt_arena_printf(mem, "%s mode %d", configuration, d->mode)
                : mt_arena_printf(mem, "%s \"%s\"", configuration, d->goal->mode.mode_name.s);
@@ -70,12 +70,12 @@ static double greater(double a, double b)
 
 /* Relative violation of a demand that has been evaluated, that of a frequency a logarithm; of a
  * shape its distance. */
-static double demand_violation(const mt_problem *fresh, const mt_demand *d,
+static double demand_violation(const mt_workspace *fresh, const mt_demand *d,
                                const mt_nlp_values *v)
 {
     double worst = 0.0;
     if (d->row_res >= 0) {
-        return mt_norm2(d->n_res, fresh->r + d->row_res) / sqrt(d->weight);
+        return mt_norm2(d->n_res, fresh->r + d->row_res) / sqrt(d->goal->weight);
     }
     if (d->row_eq >= 0) {
         return fabs(v->eq[d->row_eq]);
@@ -103,12 +103,12 @@ static double off_by(const mt_demand *d, double q, double violation)
 }
 
 /* Solve all views; the first that fails otherwise than by memory is told in `why`. */
-static mt_status solve_views(mt_problem *fresh, mt_err *why, mt_err *err)
+static mt_status solve_views(mt_workspace *fresh, mt_err *why, mt_err *err)
 {
-    for (int i = 0; i < fresh->n_views; i++) {
-        mt_view *const view = &fresh->views[i];
+    for (int i = 0; i < fresh->c->n_views; i++) {
+        mt_view_work *const view = &fresh->views[i];
         mt_err own = {0};
-        view->needs_vectors = view->needs_vectors || view->n_named > 0;
+        view->needs_vectors = view->needs_vectors || view->of->n_named > 0;
         const mt_status rc = mt_view_solve(fresh, view, false, &own);
         if (mt_is_final(rc)) {
             return mt_fail(err, rc, "%s", own.text);
@@ -124,7 +124,7 @@ static mt_status solve_views(mt_problem *fresh, mt_err *why, mt_err *err)
 }
 
 /* Nobody can tell which mode is meant: the goal is not met, whatever its number. */
-static mt_status doubt(const mt_problem *fresh, const mt_demand *d, mt_result *result,
+static mt_status doubt(const mt_workspace *fresh, const mt_demand *d, mt_result *result,
                        mt_result_goal *g, mt_err *err)
 {
     const char *const why =
@@ -135,7 +135,7 @@ static mt_status doubt(const mt_problem *fresh, const mt_demand *d, mt_result *r
     return g->text == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
-static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
+static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v,
                        mt_result *result, mt_result_goal *g, mt_err *why, mt_err *err)
 {
     mt_err own = {0};
@@ -156,7 +156,7 @@ static mt_status judge(mt_problem *fresh, const mt_demand *d, mt_nlp_values *v,
         *why = why->code == MT_OK ? own : *why;
     }
     g->weighted = d->row_res >= 0;
-    g->text = demand_text(fresh, d, &result->mem, &g->demand);
+    g->text = demand_text(fresh->p, d, &result->mem, &g->demand);
     g->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
     g->violation_percent = percent;
     g->met = mt_is_met(violation, d->tolerance);
@@ -174,24 +174,25 @@ static const char *design_text(const mt_design *design, mt_arena *mem)
                                  : mt_arena_printf(mem, "recommendation %d", design->rank);
 }
 
-mt_status mt_describe_goals(mt_problem *fresh, const mt_design *design, mt_result *result,
+mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_result *result,
                             mt_recommendation *rec, mt_err *err)
 {
     mt_nlp_values v;
     mt_err why = {.code = MT_OK};
-    const size_t most = (size_t)fresh->n_demands + (size_t)mt_describe_avoid_count(fresh) +
-                        (size_t)mt_describe_motion_count(fresh);
+    const size_t most = (size_t)fresh->p->n_demands +
+                        (size_t)mt_describe_avoid_count(fresh->p) +
+                        (size_t)mt_describe_motion_count(fresh->p);
     rec->goals = mt_arena_alloc(&result->mem, most, sizeof *rec->goals);
     rec->feasible = true;
     rec->violation_percent = 0.0;
     if (rec->goals == NULL) {
         return mt_fail_memory(err);
     }
-    MT_TRY(mt_problem_values_init(fresh, &fresh->mem, &v, err));
-    MT_TRY(mt_problem_place(fresh, design->t, false, err));
+    MT_TRY(mt_case_values_init(fresh->c, &fresh->mem, &v, err));
+    MT_TRY(mt_workspace_place(fresh, design->t, false, err));
     MT_TRY(solve_views(fresh, &why, err));
-    for (int i = 0; i < fresh->n_demands; i++) {
-        MT_TRY(judge(fresh, &fresh->demands[i], &v, result, &rec->goals[i], &why, err));
+    for (int i = 0; i < fresh->p->n_demands; i++) {
+        MT_TRY(judge(fresh, &fresh->p->demands[i], &v, result, &rec->goals[i], &why, err));
         rec->n_goals++;
     }
     MT_TRY(mt_describe_avoid_goals(fresh, result, rec, err));

@@ -23,7 +23,7 @@ typedef struct crossing {
 } crossing;
 
 typedef struct described {
-    mt_problem *p; /* fresh, views solved */
+    mt_workspace *fresh; /* views solved */
     mt_result *result;
     const mt_family *family;
     double tolerance;
@@ -36,7 +36,7 @@ typedef struct described {
 
 static const char *configuration_of(const described *d, const mt_clear *c)
 {
-    return mt_analysis_configuration(d->p->views[c->view].analysis);
+    return mt_view_name(d->fresh->p, &d->fresh->p->views[c->view]);
 }
 
 /* Tied bands of two clears that have different numbers of modes below their middles.
@@ -47,7 +47,8 @@ static void find_between(described *d, const mt_clear *a, const mt_clear *b, con
         for (int y = 0; y < b->bands.n && d->cross.mode == 0; y++) {
             const int here = below[a->first + x];
             const int there = below[b->first + y];
-            if (here != there && d->p->tie[a->first + x] == d->p->tie[b->first + y]) {
+            if (here != there &&
+                d->fresh->c->tie[a->first + x] == d->fresh->c->tie[b->first + y]) {
                 d->cross = (crossing){(here < there ? here : there) + 1,
                                       a->bands.items[x].label,
                                       configuration_of(d, a),
@@ -61,11 +62,12 @@ static void find_between(described *d, const mt_clear *a, const mt_clear *b, con
 
 static void find_crossing(described *d, const int *below)
 {
-    const mt_problem *const p = d->p;
-    const int family = (int)(d->family - p->families);
-    for (int i = 0; i < p->n_clears; i++) {
-        for (int k = 0; k < i && mt_family_of(p, p->clears[i].view) == family; k++) {
-            find_between(d, &p->clears[k], &p->clears[i], below);
+    const mt_workspace *const fresh = d->fresh;
+    const int family = (int)(d->family - fresh->p->families);
+    for (int i = 0; i < fresh->c->n_clears; i++) {
+        for (int k = 0; k < i && mt_family_of(fresh->p, fresh->c->clears[i].view) == family;
+             k++) {
+            find_between(d, &fresh->c->clears[k], &fresh->c->clears[i], below);
         }
     }
 }
@@ -74,21 +76,21 @@ static void find_crossing(described *d, const int *below)
  * is followed. */
 static mt_status examine(described *d, mt_err *err)
 {
-    mt_problem *const p = d->p;
-    const int family = (int)(d->family - p->families);
-    int *const below = mt_arena_int(&p->mem, (size_t)p->n_bands);
-    int *const best = mt_arena_int(&p->mem, (size_t)p->n_bands);
+    mt_workspace *const fresh = d->fresh;
+    const int family = (int)(d->family - fresh->p->families);
+    int *const below = mt_arena_int(&fresh->mem, (size_t)fresh->c->n_bands);
+    int *const best = mt_arena_int(&fresh->mem, (size_t)fresh->c->n_bands);
     double room = HUGE_VAL;
     if (below == NULL || best == NULL) {
         return mt_fail_memory(err);
     }
     d->tolerance = HUGE_VAL;
-    for (int i = p->n_clears - 1; i >= 0; i--) {
-        const mt_clear *const c = &p->clears[i];
-        const mt_view *const view = &p->views[c->view];
+    for (int i = fresh->c->n_clears - 1; i >= 0; i--) {
+        const mt_clear *const c = &fresh->c->clears[i];
+        const mt_view_work *const view = &fresh->views[c->view];
         const bool known = view->solved && MT_HAS(mt_clear_violation(c, &view->analysis->modes,
                                                                      below + c->first, NULL));
-        if (mt_family_of(p, c->view) != family) {
+        if (mt_family_of(fresh->p, c->view) != family) {
             continue;
         }
         d->tolerance = fmin(d->tolerance, c->tolerance);
@@ -100,24 +102,24 @@ static mt_status examine(described *d, mt_err *err)
         return MT_OK; /* a position has no modes, or is unstable: its own goals say so */
     }
     find_crossing(d, below);
-    for (int i = 0; i < p->n_clears; i++) {
-        const mt_clear *const c = &p->clears[i];
-        const bool own = mt_family_of(p, c->view) == family;
+    for (int i = 0; i < fresh->c->n_clears; i++) {
+        const mt_clear *const c = &fresh->c->clears[i];
+        const bool own = mt_family_of(fresh->p, c->view) == family;
         for (int b = c->first; own && b < c->first + c->bands.n; b++) {
-            if (p->tie[b] == b) {
-                room = fmin(room, mt_tie_room(p, b, &best[b]));
+            if (fresh->c->tie[b] == b) {
+                room = fmin(room, mt_tie_room(fresh, b, &best[b]));
             }
-            best[b] = best[p->tie[b]];
+            best[b] = best[fresh->c->tie[b]];
         }
     }
     d->violation = room >= -ON_EDGE ? 0.0 : -room;
     if (mt_is_met(d->violation, d->tolerance)) {
         d->followed = true;
-        MT_TRY(mt_motion_follow(p, family, best, &p->mem, &d->motion, err));
+        MT_TRY(mt_motion_follow(fresh, family, best, &fresh->mem, &d->motion, err));
         d->violation = d->motion.end == MT_MOTION_UNSTABLE ? nan("")
                        : d->motion.room >= -ON_EDGE        ? d->violation
                                                     : fmax(d->violation, -d->motion.room);
-        p->motion_room = fmin(p->motion_room, d->motion.room);
+        fresh->motion_room = fmin(fresh->motion_room, d->motion.room);
     }
     return MT_OK;
 }
@@ -190,7 +192,8 @@ static const char *end_text(const described *d)
     case MT_MOTION_NONE:
         break;
     }
-    return d->p->robust != NULL ? "; tolerances are judged at the named positions alone" : "";
+    return d->fresh->c->robust != NULL ? "; tolerances are judged at the named positions alone"
+                                       : "";
 }
 
 static const char *sentence(const described *d, const char *range)
@@ -265,17 +268,17 @@ static mt_status put_row(const described *d, const char *range, double from, dou
     return bad ? mt_fail_memory(err) : MT_OK;
 }
 
-static mt_status describe_family(mt_problem *fresh, const mt_family *f, mt_result *result,
+static mt_status describe_family(mt_workspace *fresh, const mt_family *f, mt_result *result,
                                  mt_recommendation *rec, mt_err *err)
 {
-    described d = {.p = fresh, .result = result, .family = f};
+    described d = {.fresh = fresh, .result = result, .family = f};
     double from = HUGE_VAL;
     double to = -HUGE_VAL;
     d.motion.percent = nan("");
     MT_TRY(examine(&d, err));
     for (int k = 0; k < f->n; k++) {
-        from = fmin(from, mt_family_position(fresh, f, k));
-        to = fmax(to, mt_family_position(fresh, f, k));
+        from = fmin(from, mt_family_position(fresh->views[f->view[k]].analysis));
+        to = fmax(to, mt_family_position(fresh->views[f->view[k]].analysis));
     }
     if (d.followed && d.motion.end == MT_MOTION_NONE) {
         return MT_OK; /* no band is asked for on both sides of a motion */
@@ -297,17 +300,17 @@ int mt_describe_motion_count(const mt_problem *p)
     return n;
 }
 
-mt_status mt_describe_motions(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+mt_status mt_describe_motions(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                               mt_err *err)
 {
-    const int most = mt_describe_motion_count(fresh);
+    const int most = mt_describe_motion_count(fresh->p);
     rec->motions = mt_arena_alloc(&result->mem, (size_t)most, sizeof *rec->motions);
     if (rec->motions == NULL) {
         return mt_fail_memory(err);
     }
-    for (int i = 0; i < fresh->n_families; i++) {
-        if (fresh->families[i].banded) {
-            MT_TRY(describe_family(fresh, &fresh->families[i], result, rec, err));
+    for (int i = 0; i < fresh->p->n_families; i++) {
+        if (fresh->p->families[i].banded) {
+            MT_TRY(describe_family(fresh, &fresh->p->families[i], result, rec, err));
         }
     }
     return MT_OK;

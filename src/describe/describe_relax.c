@@ -29,7 +29,7 @@ static void name_goal(const mt_problem *p, const mt_move *m, mt_arena *mem, mt_r
     out->what = d->view < 0
                     ? mt_arena_printf(mem, "%s of goal %s", member, out->pointer)
                     : mt_arena_printf(mem, "%s of goal %s (\"%s\")", member, out->pointer,
-                                      mt_analysis_configuration(p->views[d->view].analysis));
+                                      mt_view_name(p, &p->views[d->view]));
 }
 
 static void name_edge(const mt_problem *p, const mt_move *m, mt_arena *mem, mt_relaxation *out)
@@ -41,10 +41,9 @@ static void name_edge(const mt_problem *p, const mt_move *m, mt_arena *mem, mt_r
     out->kind = "band";
     out->pointer = mt_arena_printf(mem, "/goals/%d", c->goal_index);
     out->unit = "Hz";
-    out->what = mt_arena_printf(mem, "%s edge of the band \"%s\"%s in \"%s\"",
-                                m->upper ? "upper" : "lower", band->label,
-                                margin ? " (with its margin)" : "",
-                                mt_analysis_configuration(p->views[c->view].analysis));
+    out->what = mt_arena_printf(
+        mem, "%s edge of the band \"%s\"%s in \"%s\"", m->upper ? "upper" : "lower",
+        band->label, margin ? " (with its margin)" : "", mt_view_name(p, &p->views[c->view]));
 }
 
 static void name_bound(const mt_problem *p, const mt_move *m, mt_arena *mem, mt_relaxation *out)

@@ -11,24 +11,24 @@
 enum { LISTED_MODES = 4 };
 static const double PERCENT = 100.0;
 
-mt_status mt_describe_ranges(mt_problem *fresh, mt_err *err)
+mt_status mt_describe_ranges(mt_workspace *fresh, mt_err *err)
 {
-    if (fresh->robust == NULL) {
+    if (fresh->c->robust == NULL) {
         return MT_OK;
     }
-    int *const modes = mt_arena_int(&fresh->mem, (size_t)fresh->n_views + 1);
+    int *const modes = mt_arena_int(&fresh->mem, (size_t)fresh->c->n_views + 1);
     if (modes == NULL) {
         return mt_fail_memory(err);
     }
-    for (int i = 0; i < fresh->n_demands; i++) {
-        const mt_demand *const d = &fresh->demands[i];
+    for (int i = 0; i < fresh->p->n_demands; i++) {
+        const mt_demand *const d = &fresh->p->demands[i];
         if (d->view >= 0) {
             const int most = d->mode > LISTED_MODES ? d->mode : LISTED_MODES;
             modes[d->view] = most > modes[d->view] ? most : modes[d->view];
         }
     }
-    for (int i = 0; i < fresh->n_clears; i++) {
-        const int view = fresh->clears[i].view;
+    for (int i = 0; i < fresh->c->n_clears; i++) {
+        const int view = fresh->c->clears[i].view;
         const int reach = mt_describe_modes_in_reach(fresh, view) + 1;
         const int most = reach > LISTED_MODES ? reach : LISTED_MODES;
         modes[view] = most > modes[view] ? most : modes[view];
@@ -89,15 +89,15 @@ static verdict judge(const mt_demand *d, const mt_robust_range *r)
     return v;
 }
 
-mt_status mt_describe_worst(mt_problem *fresh, const mt_demand *d, mt_result *result,
+mt_status mt_describe_worst(mt_workspace *fresh, const mt_demand *d, mt_result *result,
                             mt_result_goal *g, double *violation, double *percent, mt_err *err)
 {
-    const mt_robust *const robust = fresh->robust;
-    if (robust == NULL || d->row_res >= 0) {
+    if (fresh->robust == NULL || d->row_res >= 0) {
         return MT_OK;
     }
-    const mt_robust_range *const r = d->view >= 0 ? mt_robust_hz(fresh, d->view, d->mode)
-                                                  : &robust->number[d - fresh->demands];
+    const mt_robust_range *const r = d->view >= 0
+                                         ? mt_robust_hz(fresh, d->view, d->mode)
+                                         : &fresh->robust->number[d - fresh->p->demands];
     if (r == NULL || r->at[MT_LOWEST] == NULL) {
         return MT_OK; /* the design itself could not be evaluated */
     }
@@ -108,15 +108,15 @@ mt_status mt_describe_worst(mt_problem *fresh, const mt_demand *d, mt_result *re
         *percent = v.percent > *percent || !MT_HAS(v.percent) ? v.percent : *percent;
     }
     g->worst = r->value[v.side];
-    g->worst_at = mt_arena_f64(&result->mem, (size_t)fresh->n, 1);
+    g->worst_at = mt_arena_f64(&result->mem, (size_t)fresh->p->n, 1);
     if (g->worst_at == NULL) {
         return mt_fail_memory(err);
     }
-    memcpy(g->worst_at, r->at[v.side], (size_t)fresh->n * sizeof *g->worst_at);
+    memcpy(g->worst_at, r->at[v.side], (size_t)fresh->p->n * sizeof *g->worst_at);
     return MT_OK;
 }
 
-double mt_describe_worst_hz(const mt_problem *fresh, int view, int mode, const mt_band *band,
+double mt_describe_worst_hz(const mt_workspace *fresh, int view, int mode, const mt_band *band,
                             double hz, const double **at)
 {
     const mt_robust_range *const r = mt_robust_hz(fresh, view, mode);

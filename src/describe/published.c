@@ -9,7 +9,8 @@
 enum { ORIGINAL, RECOMMENDED, DESIGNS };
 
 typedef struct judge {
-    mt_problem *p;
+    mt_workspace *w;
+    const mt_problem *p;
     mt_result *result;
     mt_arena mem;             /* work */
     const double *x[DESIGNS]; /* parameters */
@@ -33,25 +34,25 @@ static mt_status analysis_at(judge *j, int configuration, int design, mt_analysi
 static mt_status viewed_at(judge *j, const mt_published *pub, const mt_analysis *a, int *pos,
                            bool *found, mt_err *err)
 {
-    mt_problem *const p = j->p;
-    const int v = mt_problem_view(p, pub->configuration);
-    double *const t = mt_arena_f64(&j->mem, (size_t)p->n_t, 1);
+    mt_workspace *const w = j->w;
+    const int v = mt_problem_view(w->p, pub->configuration);
+    double *const t = mt_arena_f64(&j->mem, (size_t)w->p->n + 1, 1);
     *found = false;
     if (t == NULL) {
         return mt_fail_memory(err);
     }
-    for (int i = 0; i < p->n; i++) {
-        t[i] = mt_problem_t(p, i, j->x[RECOMMENDED][i]);
+    for (int i = 0; i < w->p->n; i++) {
+        t[i] = mt_problem_t(w->p, i, j->x[RECOMMENDED][i]);
     }
-    for (int i = 0; v >= 0 && i < p->views[v].n_named; i++) {
-        mt_view *const view = &p->views[v];
-        if (view->named[i] != pub->mode.named) {
+    for (int i = 0; v >= 0 && i < w->p->views[v].n_named; i++) {
+        mt_view_work *const view = &w->views[v];
+        if (view->of->named[i] != pub->mode.named) {
             continue;
         }
         view->needs_vectors = true;
-        MT_TRY(mt_problem_place(p, t, false, err));
-        MT_TRY(mt_view_solve(p, view, false, err));
-        MT_TRY(mt_view_position(p, view, 0, i, pos, err));
+        MT_TRY(mt_workspace_place(w, t, false, err));
+        MT_TRY(mt_view_solve(w, view, false, err));
+        MT_TRY(mt_view_position(w, view, 0, i, pos, err));
         *pos = mt_modal_flexible(&a->modes, mt_modal_index(&view->analysis->modes, *pos));
         *found = true;
     }
@@ -286,11 +287,12 @@ static mt_status judge_all(judge *j, mt_err *err)
     return MT_OK;
 }
 
-mt_status mt_describe_published(mt_problem *p, const double *x_original,
+mt_status mt_describe_published(mt_workspace *w, const double *x_original,
                                 const double *x_recommended, mt_result *result, mt_err *err)
 {
-    const int n_analyses = DESIGNS * p->study->model->n_configurations;
-    judge j = {.p = p,
+    const int n_analyses = DESIGNS * w->p->study->model->n_configurations;
+    judge j = {.w = w,
+               .p = w->p,
                .result = result,
                .x = {x_original, x_recommended != NULL ? x_recommended : x_original}};
     MT_TRY(mt_arena_init(&j.mem, 0, err));

@@ -269,7 +269,7 @@ static void say_misfit(mt_sentences *s)
         const mt_result_goal *const g = &s->rec->goals[i];
         if (g->weighted) {
             weighted++;
-            sum += s->p->demands[i].weight * g->violation_percent * g->violation_percent;
+            sum += s->p->demands[i].goal->weight * g->violation_percent * g->violation_percent;
         }
     }
     if (weighted > 0 && MT_HAS(s->rec->misfit) && isfinite(sum)) {
@@ -377,7 +377,7 @@ static void say_rank(mt_sentences *s, const mt_nlp_result *search)
 
 mt_status mt_describe_baseline_reasons(const mt_problem *p, mt_result *result, mt_err *err)
 {
-    const mt_design original = {.t = p->origin_t};
+    const mt_design original = {.t = p->whole.origin_t};
     mt_sentences s = {.p = p, .design = &original, .result = result, .rec = &result->baseline};
     say_doubt(&s);
     say_slack(&s);

@@ -72,18 +72,17 @@ static void say_edges(mt_sentences *s)
     const mt_nlp_solution *const found = s->design->found;
     mt_clear_row row;
     for (int i = 0; s->design->below != NULL && found->mult_in != NULL &&
-                    mt_clear_row_at(s->p, s->design->below, i, &row);
+                    mt_clear_row_at(&s->p->whole, s->design->below, i, &row);
          i++) {
         const mt_clear *const c = &s->p->clears[row.clear];
-        const double mult = found->mult_in[s->p->n_in - s->p->n_corner_rows + i];
+        const double mult = found->mult_in[s->p->whole.first_band_row + i];
         const char *const saved = mult > 0.0 ? price(s, mult / PERCENT) : NULL;
         if (saved != NULL) {
             mt_say(s,
                    "The %s edge of %s, which holds %s mode %d, has a price: giving way by "
                    "1 %% would %s %s.",
                    row.above ? "upper" : "lower", c->bands.items[row.band].label,
-                   mt_analysis_configuration(s->p->views[c->view].analysis), row.mode, win(s),
-                   saved);
+                   mt_view_name(s->p, &s->p->views[c->view]), row.mode, win(s), saved);
         }
     }
 }

@@ -17,7 +17,7 @@ static const double MOST_PERCENT = 100.0;
  * boxes cost more and gain less. */
 enum { BOXES_FEW_VARIABLES = 64, BOXES_MANY_VARIABLES = 8, FEW_VARIABLES = 8 };
 
-static mt_status count_band(mt_problem *fresh, const mt_clear *c, const mt_band *band,
+static mt_status count_band(mt_workspace *fresh, const mt_clear *c, const mt_band *band,
                             mt_result *result, bool *confirmed, mt_err *err)
 {
     const mt_analysis *const a = fresh->views[c->view].analysis;
@@ -35,7 +35,7 @@ static mt_status count_band(mt_problem *fresh, const mt_clear *c, const mt_band 
 }
 
 /* Every band of a clear, by inertia, at the design that its analysis has been solved at. */
-static mt_status confirm_here(mt_problem *fresh, const mt_clear *c, mt_result *result,
+static mt_status confirm_here(mt_workspace *fresh, const mt_clear *c, mt_result *result,
                               bool *confirmed, mt_err *err)
 {
     for (int b = 0; b < c->bands.n; b++) {
@@ -46,7 +46,7 @@ static mt_status confirm_here(mt_problem *fresh, const mt_clear *c, mt_result *r
 
 /* At the two corners of the tolerances between which all modes stay: the same counts there are
  * those of every design between. */
-static mt_status confirm_corners(mt_problem *fresh, const mt_clear *c, mt_result *result,
+static mt_status confirm_corners(mt_workspace *fresh, const mt_clear *c, mt_result *result,
                                  bool *confirmed, mt_err *err)
 {
     mt_analysis *const a = fresh->views[c->view].analysis;
@@ -61,13 +61,13 @@ static mt_status confirm_corners(mt_problem *fresh, const mt_clear *c, mt_result
 }
 
 /* Every band of every clear. */
-static mt_status confirm(mt_problem *fresh, mt_result *result, bool *confirmed, mt_err *err)
+static mt_status confirm(mt_workspace *fresh, mt_result *result, bool *confirmed, mt_err *err)
 {
-    *confirmed = fresh->n_bands > 0;
-    for (int i = 0; i < fresh->n_clears; i++) {
-        const mt_clear *const c = &fresh->clears[i];
+    *confirmed = fresh->c->n_bands > 0;
+    for (int i = 0; i < fresh->c->n_clears; i++) {
+        const mt_clear *const c = &fresh->c->clears[i];
         MT_TRY(confirm_here(fresh, c, result, confirmed, err));
-        if (fresh->robust != NULL) {
+        if (fresh->c->robust != NULL) {
             MT_TRY(confirm_corners(fresh, c, result, confirmed, err));
         }
     }
@@ -83,7 +83,7 @@ static mt_status edge_text(const mt_problem *p, const mt_recommendation *rec,
         return MT_OK;
     }
     const mt_certify_edge *const e = &t->edge;
-    const char *const configuration = mt_analysis_configuration(p->views[e->view].analysis);
+    const char *const configuration = mt_view_name(p, &p->views[e->view]);
     *text = e->band >= 0
                 ? mt_arena_printf(mem, "mode %d of \"%s\" at the %s edge of %s, %.6g Hz",
                                   e->mode, configuration, e->above ? "upper" : "lower",
@@ -93,36 +93,37 @@ static mt_status edge_text(const mt_problem *p, const mt_recommendation *rec,
     return *text == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
-static mt_status fill_box(mt_problem *p, mt_proof *proof, const mt_recommendation *rec,
+static mt_status fill_box(mt_workspace *fresh, mt_proof *proof, const mt_recommendation *rec,
                           mt_result *result, mt_tolerance_box *box, mt_err *err)
 {
     mt_certify q = proof->question;
     mt_tolerance all = {0};
-    mt_tolerance *const each = mt_arena_alloc(&p->mem, (size_t)p->n, sizeof *each);
-    int *const assignment = mt_arena_int(&p->mem, (size_t)p->n_bands);
-    box->variables = mt_arena_alloc(&result->mem, (size_t)p->n, sizeof *box->variables);
+    mt_tolerance *const each = mt_arena_alloc(&fresh->mem, (size_t)fresh->p->n, sizeof *each);
+    int *const assignment = mt_arena_int(&fresh->mem, (size_t)fresh->c->n_bands);
+    box->variables = mt_arena_alloc(&result->mem, (size_t)fresh->p->n, sizeof *box->variables);
     if (each == NULL || assignment == NULL || box->variables == NULL) {
         return mt_fail_memory(err);
     }
-    for (int i = 0; i < p->n_bands; i++) {
+    for (int i = 0; i < fresh->c->n_bands; i++) {
         assignment[i] = rec->gaps[i].modes_below;
     }
     q.bands = proof->bases;
-    const mt_tolerance_question question = {
-        .x = p->x,
-        .assignment = assignment,
-        .most_percent = MOST_PERCENT,
-        .boxes_per_test = p->n <= FEW_VARIABLES ? BOXES_FEW_VARIABLES : BOXES_MANY_VARIABLES};
-    MT_TRY(mt_certify_tolerance(&q, &question, &p->mem, &all, each, err));
+    const mt_tolerance_question question = {.x = fresh->x,
+                                            .assignment = assignment,
+                                            .most_percent = MOST_PERCENT,
+                                            .boxes_per_test = fresh->p->n <= FEW_VARIABLES
+                                                                  ? BOXES_FEW_VARIABLES
+                                                                  : BOXES_MANY_VARIABLES};
+    MT_TRY(mt_certify_tolerance(&q, &question, &fresh->mem, &all, each, err));
     box->proven = true;
     box->all_percent = all.percent;
-    MT_TRY(edge_text(p, rec, &all, &result->mem, &box->edge, err));
-    box->n_variables = p->n;
-    for (int i = 0; i < p->n; i++) {
+    MT_TRY(edge_text(fresh->p, rec, &all, &result->mem, &box->edge, err));
+    box->n_variables = fresh->p->n;
+    for (int i = 0; i < fresh->p->n; i++) {
         mt_result_tolerance *const own = &box->variables[i];
         *own =
             (mt_result_tolerance){.name = rec->parameters[i].name, .percent = each[i].percent};
-        MT_TRY(edge_text(p, rec, &each[i], &result->mem, &own->edge, err));
+        MT_TRY(edge_text(fresh->p, rec, &each[i], &result->mem, &own->edge, err));
     }
     return MT_OK;
 }
@@ -138,7 +139,7 @@ static bool worth_a_box(const mt_problem *p)
     return p->n > 0 && p->n_eq == 0 && (p->n_bands > 0 || limits);
 }
 
-mt_status mt_describe_tolerance(mt_problem *fresh, mt_result *result, mt_recommendation *rec,
+mt_status mt_describe_tolerance(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                 mt_err *err)
 {
     mt_proof proof;
@@ -149,10 +150,10 @@ mt_status mt_describe_tolerance(mt_problem *fresh, mt_result *result, mt_recomme
     MT_TRY(confirm(fresh, result, &confirmed, err));
     /* between the positions of a drive there are samples and no proof */
     rec->grade = confirmed && rec->n_motions == 0 ? "feasible and proven" : rec->grade;
-    if (!worth_a_box(fresh) || rec->n_gaps != fresh->n_bands) {
+    if (!worth_a_box(fresh->p) || rec->n_gaps != fresh->c->n_bands) {
         return MT_OK;
     }
-    mt_status rc = mt_proof_init(&proof, fresh, &fresh->mem, err);
+    mt_status rc = mt_proof_init(&proof, fresh->c, &fresh->mem, err);
     if (rc == MT_OK && proof.possible) {
         mt_tolerance_box *const box = mt_arena_alloc(&result->mem, 1, sizeof *box);
         if (box == NULL) {
@@ -163,6 +164,6 @@ mt_status mt_describe_tolerance(mt_problem *fresh, mt_result *result, mt_recomme
             rec->tolerance_box = box;
         }
     }
-    mt_proof_free(&proof, fresh);
+    mt_proof_free(&proof);
     return rc;
 }

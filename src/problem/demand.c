@@ -23,11 +23,16 @@ bool mt_demand_is_frequency(const mt_demand *d)
     return d->quantity == MT_QUANTITY_FREQUENCY && d->mode > 0;
 }
 
-static void put(const mt_problem *p, double *matrix, int rows, int row, double factor,
+double mt_demand_weight(const mt_workspace *w, const mt_demand *d)
+{
+    return w->c->weight[d - w->p->demands];
+}
+
+static void put(const mt_workspace *w, double *matrix, int rows, int row, double factor,
                 const double *gradient)
 {
-    const int n = p->n;
-    if (gradient != NULL && p->n_t > n && matrix != p->dr) {
+    const int n = w->p->n;
+    if (gradient != NULL && w->c->n_t > n && matrix != w->dr) {
         matrix[row + ((ptrdiff_t)n * rows)] =
             0.0; /* the clearance enters no goal but the bands */
     }
@@ -46,35 +51,35 @@ static double off(const mt_demand *d, double q, double limit, double *factor)
 }
 
 /* Rows of a number: slope NULL where none is wanted. */
-static void store(mt_problem *p, const mt_demand *d, double q, const double *slope,
+static void store(mt_workspace *w, const mt_demand *d, double q, const double *slope,
                   mt_nlp_values *out)
 {
     double factor = 1.0;
     const double target = off(d, q, d->equals, &factor);
     if (d->row_res >= 0) {
-        const double w = sqrt(d->weight);
-        p->r[d->row_res] = w * target;
-        put(p, p->dr, p->n_res, d->row_res, w * factor, slope);
+        const double weight = sqrt(mt_demand_weight(w, d));
+        w->r[d->row_res] = weight * target;
+        put(w, w->dr, w->p->n_res, d->row_res, weight * factor, slope);
         return;
     }
     if (d->row_eq >= 0) {
         out->eq[d->row_eq] = target;
-        put(p, out->deq, mt_problem_rows_eq(p), d->row_eq, factor, slope);
+        put(w, out->deq, mt_case_rows_eq(w->c), d->row_eq, factor, slope);
         return;
     }
-    const int rows = mt_problem_rows_in(p);
+    const int rows = mt_case_rows_in(w->c);
     for (int k = 0; k < d->n_in; k++) {
         const bool above = k == 0 && MT_HAS(d->goal->at_least);
         const double sign = above ? 1.0 : -1.0;
         const double limit = above ? d->goal->at_least : d->goal->at_most;
         out->in[d->row_in + k] = sign * off(d, q, limit, &factor);
-        put(p, out->din, rows, d->row_in + k, sign * factor, slope);
+        put(w, out->din, rows, d->row_in + k, sign * factor, slope);
     }
 }
 
-static mt_status no_mode(const mt_problem *p, const mt_demand *d, mt_err *err)
+static mt_status no_mode(const mt_workspace *w, const mt_demand *d, mt_err *err)
 {
-    const mt_analysis *const a = p->views[d->view].analysis;
+    const mt_analysis *const a = w->views[d->view].analysis;
     const char *const why =
         a->modes.n_unstable > 0 ? "is unstable, so that its modes have no index"
         : a->modes.n_undecided > 0
@@ -86,32 +91,32 @@ static mt_status no_mode(const mt_problem *p, const mt_demand *d, mt_err *err)
 }
 
 /* Where the demand's mode is; -1 for a goal without one, and for a frequency at infinity. */
-static mt_status find_mode(mt_problem *p, const mt_demand *d, int *pos, mt_err *err)
+static mt_status find_mode(mt_workspace *w, const mt_demand *d, int *pos, mt_err *err)
 {
     *pos = -1;
     if (d->view < 0) {
         return MT_OK;
     }
-    mt_view *const view = &p->views[d->view];
-    MT_TRY(mt_view_position(p, view, d->mode, d->named, pos, err));
+    mt_view_work *const view = &w->views[d->view];
+    MT_TRY(mt_view_position(w, view, d->mode, d->named, pos, err));
     const bool infinite = d->quantity == MT_QUANTITY_FREQUENCY && view->solved &&
                           mt_analysis_is_infinite(view->analysis, d->mode);
-    return *pos < 0 && !infinite ? no_mode(p, d, err) : MT_OK;
+    return *pos < 0 && !infinite ? no_mode(w, d, err) : MT_OK;
 }
 
-mt_status mt_demand_eval(mt_problem *p, const mt_demand *d, bool with_gradient,
+mt_status mt_demand_eval(mt_workspace *w, const mt_demand *d, bool with_gradient,
                          mt_nlp_values *out, double *value, mt_err *err)
 {
     int pos = -1;
     double q = nan("");
-    double *const slope = with_gradient ? p->slope : NULL;
-    MT_TRY(find_mode(p, d, &pos, err));
+    double *const slope = with_gradient ? w->slope : NULL;
+    MT_TRY(find_mode(w, d, &pos, err));
     if (d->ops->value == NULL) {
-        MT_TRY(d->ops->residuals(p, d, pos, with_gradient, err));
-        q = mt_norm2(d->n_res, p->r + d->row_res) / sqrt(d->weight);
+        MT_TRY(d->ops->residuals(w, d, pos, with_gradient, err));
+        q = mt_norm2(d->n_res, w->r + d->row_res) / sqrt(mt_demand_weight(w, d));
     } else {
-        MT_TRY(d->ops->value(p, d, pos, &q, slope, err));
-        store(p, d, q, slope, out);
+        MT_TRY(d->ops->value(w, d, pos, &q, slope, err));
+        store(w, d, q, slope, out);
     }
     if (value != NULL) {
         *value = q;

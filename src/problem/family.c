@@ -6,12 +6,11 @@
 
 static const mt_system *system_of(const mt_problem *p, int view)
 {
-    return p->views[view].analysis->sys;
+    return p->views[view].original->sys;
 }
 
-double mt_family_position(const mt_problem *p, const mt_family *f, int k)
+double mt_family_position(const mt_analysis *a)
 {
-    const mt_analysis *const a = p->views[f->view[k]].analysis;
     return a->sys->drive == MT_NO_NODE ? 0.0 : mt_linear_value(a->lin, a->sys->drive);
 }
 
@@ -93,14 +92,6 @@ mt_status mt_families_init(mt_problem *p, mt_err *err)
         }
     }
     return tie(p, err);
-}
-
-void mt_families_free(mt_problem *p)
-{
-    for (int i = 0; i < p->n_families; i++) {
-        mt_analysis_delete(p->families[i].driven);
-        p->families[i].driven = NULL;
-    }
 }
 
 /* Common frequencies, of the bases and, over more than a point, with the margins. */
@@ -187,18 +178,19 @@ static double room_with(const mt_modes *modes, const mt_band *band, int k)
     return over >= 0 ? fmin(room, log(mt_modal_hz(modes, over) / band->upper_hz)) : room;
 }
 
-static const mt_modes *modes_of(const mt_problem *p, const mt_clear *c)
+static const mt_modes *modes_of(const mt_workspace *w, const mt_clear *c)
 {
-    return &p->views[c->view].analysis->modes;
+    return &w->views[c->view].analysis->modes;
 }
 
 /* The least room of all bands tied to `tie` with k modes below. */
-static double tie_room_with(const mt_problem *p, int tie, int k, bool *stable, int *most)
+static double tie_room_with(const mt_workspace *w, int tie, int k, bool *stable, int *most)
 {
+    const mt_problem *const p = w->p;
     double room = HUGE_VAL;
     for (int i = 0; i < p->n_clears; i++) {
         const mt_clear *const c = &p->clears[i];
-        const mt_modes *const modes = modes_of(p, c);
+        const mt_modes *const modes = modes_of(w, c);
         for (int b = 0; b < c->bands.n; b++) {
             if (p->tie[c->first + b] != tie) {
                 continue;
@@ -212,14 +204,14 @@ static double tie_room_with(const mt_problem *p, int tie, int k, bool *stable, i
     return room;
 }
 
-double mt_tie_room(const mt_problem *p, int tie, int *below)
+double mt_tie_room(const mt_workspace *w, int tie, int *below)
 {
     bool stable = true;
     int most = 0;
-    double best = tie_room_with(p, tie, 0, &stable, &most);
+    double best = tie_room_with(w, tie, 0, &stable, &most);
     *below = 0;
     for (int k = 1; k <= most; k++) {
-        const double room = tie_room_with(p, tie, k, &stable, &most);
+        const double room = tie_room_with(w, tie, k, &stable, &most);
         if (room > best) {
             best = room;
             *below = k;
@@ -228,12 +220,13 @@ double mt_tie_room(const mt_problem *p, int tie, int *below)
     return stable ? best : nan("");
 }
 
-double mt_ties_violation(const mt_problem *p, const int *below)
+double mt_ties_violation(const mt_workspace *w, const int *below)
 {
+    const mt_problem *const p = w->p;
     double worst = 0.0;
     for (int i = 0; i < p->n_clears; i++) {
         const mt_clear *const c = &p->clears[i];
-        const mt_modes *const modes = modes_of(p, c);
+        const mt_modes *const modes = modes_of(w, c);
         for (int b = 0; b < c->bands.n; b++) {
             const double room = room_with(modes, &c->bands.items[b], below[c->first + b]);
             worst = fmax(worst, mt_modal_indexed(modes) ? -room : nan(""));
@@ -242,13 +235,14 @@ double mt_ties_violation(const mt_problem *p, const int *below)
     return worst;
 }
 
-double mt_ties_room(const mt_problem *p, int *below)
+double mt_ties_room(const mt_workspace *w, int *below)
 {
+    const mt_problem *const p = w->p;
     double least = HUGE_VAL;
     for (int i = 0; i < p->n_bands; i++) {
         int k = 0;
         if (p->tie[i] == i) {
-            const double room = mt_tie_room(p, i, &k);
+            const double room = mt_tie_room(w, i, &k);
             least = !(room >= least) ? room : least;
         }
         if (below != NULL) {
@@ -327,8 +321,9 @@ static size_t count_tied(const mt_problem *p)
     return n;
 }
 
-mt_status mt_family_bands(const mt_problem *p, const mt_family *f, double left, double right,
-                          mt_arena *mem, mt_way_band **list, int *n, mt_err *err)
+mt_status mt_family_bands(const mt_problem *p, const mt_family *f, const double *at,
+                          double left, double right, mt_arena *mem, mt_way_band **list, int *n,
+                          mt_err *err)
 {
     const size_t most = count_tied(p);
     *n = 0;
@@ -340,8 +335,7 @@ mt_status mt_family_bands(const mt_problem *p, const mt_family *f, double left, 
         const mt_clear *const a = clear_of(p, f->view[i]);
         for (int k = 0; k < f->n && a != NULL; k++) {
             const mt_clear *const b = k == i ? NULL : clear_of(p, f->view[k]);
-            if (b != NULL && mt_family_position(p, f, i) <= left &&
-                mt_family_position(p, f, k) >= right) {
+            if (b != NULL && at[i] <= left && at[k] >= right) {
                 intersect(p, a, b, *list, n);
             }
         }

@@ -2,7 +2,7 @@
 #ifndef PROBLEM_FAMILY_H
 #define PROBLEM_FAMILY_H
 
-#include "problem/problem.h"
+#include "problem/workspace.h"
 
 /*
  * Configurations that are one mechanism in several positions of one driven joint
@@ -22,8 +22,6 @@ struct mt_family {
     bool fixed;         /* the positions do not depend on the design */
     int configuration;  /* of a view with a drive */
     bool banded;        /* at least two views keep clear of bands */
-    /* owned: the position is the last input; made when first needed (motion.h) */
-    mt_analysis *driven;
 };
 
 /* One more position of a family where the bands between its positions are kept: a cutting plane
@@ -35,11 +33,10 @@ typedef struct mt_cut {
 
 /* After views and clears: families, p->tie. Fails: MT_E_MEMORY. */
 mt_status mt_families_init(mt_problem *p, mt_err *err);
-void mt_families_free(mt_problem *p);
 /* Does a family keep clear of bands in several positions? */
 bool mt_family_any(const mt_problem *p);
-/* Position of the k-th view of a family at the last evaluation [rad, m]. */
-double mt_family_position(const mt_problem *p, const mt_family *f, int k);
+/* Position of a view at its last solve [rad, m]. */
+double mt_family_position(const mt_analysis *a);
 /* Family that a view belongs to; -1. */
 int mt_family_of(const mt_problem *p, int view);
 /* Have tied bands the same number of modes below them? */
@@ -54,13 +51,13 @@ void mt_ties_settle(const mt_problem *p, bool most, int *below);
  * to no other this is the room of its own modes. NaN: unstable. After the views have been
  * solved.
  */
-double mt_tie_room(const mt_problem *p, int tie, int *below);
+double mt_tie_room(const mt_workspace *w, int tie, int *below);
 /* The least of all ties; below[n_bands] (may be NULL) as above. */
-double mt_ties_room(const mt_problem *p, int *below);
+double mt_ties_room(const mt_workspace *w, int *below);
 
 /* How far the bands are from an assignment: -room (ln) of the worst, 0 where all have theirs.
  * NaN: unstable. */
-double mt_ties_violation(const mt_problem *p, const int *below);
+double mt_ties_violation(const mt_workspace *w, const int *below);
 
 /* A band that is forbidden between two neighbouring positions. */
 typedef struct mt_way_band {
@@ -69,11 +66,14 @@ typedef struct mt_way_band {
     double tolerance;
 } mt_way_band;
 /* What is forbidden at positions from left to right (a < b: no position of the family between
- * them): list[*n] in mem, ascending. After the views have been solved. */
-mt_status mt_family_bands(const mt_problem *p, const mt_family *f, double left, double right,
-                          mt_arena *mem, mt_way_band **list, int *n, mt_err *err);
+ * them): list[*n] in mem, ascending. at[f->n]: positions of its views. */
+mt_status mt_family_bands(const mt_problem *p, const mt_family *f, const double *at,
+                          double left, double right, mt_arena *mem, mt_way_band **list, int *n,
+                          mt_err *err);
 
-/* problem_clear.c: one more view with its clear, behind all others. */
-mt_status mt_clear_cut(mt_problem *p, const mt_cut *cut, mt_err *err);
+/* problem_clear.c: views, bands and assignment of a case (mt_case_lay_out), and its rows of
+ * `in` behind those of the demands. */
+mt_status mt_clear_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cut *cuts,
+                           mt_arena *mem, mt_err *err);
 
 #endif

@@ -2,7 +2,7 @@
 #ifndef PROBLEM_GOAL_H
 #define PROBLEM_GOAL_H
 
-#include "problem/problem.h"
+#include "problem/workspace.h"
 
 /*
  * The operations of a kind of goal, one file for each kind (goal_<kind>.c); what files may say of
@@ -20,10 +20,10 @@ typedef struct mt_goal_ops {
     mt_status (*compile)(mt_problem *p, mt_demand *d, mt_err *err);
     /* q of the mode at pos after its view has been solved (a mode at infinity: -1, of a frequency
      * only; a goal without a mode: -1), and its slope[n] unless NULL. */
-    mt_status (*value)(mt_problem *p, const mt_demand *d, int pos, double *q, double *slope,
+    mt_status (*value)(mt_workspace *w, const mt_demand *d, int pos, double *q, double *slope,
                        mt_err *err);
-    /* Of a goal that is no number: residuals from p->r[d->row_res] on, and their slopes. */
-    mt_status (*residuals)(mt_problem *p, const mt_demand *d, int pos, bool with_gradient,
+    /* Of a goal that is no number: residuals from w->r[d->row_res] on, and their slopes. */
+    mt_status (*residuals)(mt_workspace *w, const mt_demand *d, int pos, bool with_gradient,
                            mt_err *err);
     /* What sentences say is held, of the mode or expression called `what`; NULL: just that. */
     const char *(*subject)(const mt_demand *d, const char *what, mt_arena *mem);
@@ -35,9 +35,9 @@ MT_GOAL_LIST(MT_GOAL_OPS)
 #undef MT_GOAL_OPS
 const mt_goal_ops *mt_goal_ops_of(mt_goal_type type);
 
-/* Shape of the mode at pos at the demand's sensors, into p->shape (and p->dshape), and its norm.
+/* Shape of the mode at pos at the demand's sensors, into w->shape (and w->dshape), and its norm.
  * Fails: MT_E_DOMAIN where the mode does not move there. (goal_shape.c) */
-mt_status mt_goal_sense(mt_problem *p, const mt_demand *d, int pos, bool with_gradient,
+mt_status mt_goal_sense(mt_workspace *w, const mt_demand *d, int pos, bool with_gradient,
                         double *norm, mt_err *err);
 /* Look up the reference's shape. (goal_shape.c) */
 mt_status mt_goal_compile_shape(mt_problem *p, mt_demand *d, mt_err *err);

@@ -29,13 +29,13 @@ double mt_problem_ln_ratio(const mt_modes *modes, int pos, double edge_hz, doubl
     return mt_frequency_ln_ratio(hz, edge_hz, floor_hz);
 }
 
-mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, double floor_hz,
+mt_status mt_problem_dln_frequency(mt_workspace *w, mt_analysis *a, int pos, double floor_hz,
                                    double *out, mt_err *err)
 {
     int size = 1;
     int vibrating = 0;
     const mt_modes *const modes = &a->modes;
-    memset(out, 0, (size_t)p->n * sizeof *out);
+    memset(out, 0, (size_t)w->p->n * sizeof *out);
     if (pos < 0) {
         return MT_OK;
     }
@@ -43,14 +43,14 @@ mt_status mt_problem_dln_frequency(mt_problem *p, mt_analysis *a, int pos, doubl
     const double lambda =
         fmax(modes->lambda[pos], mt_enclosure_lambda(fmax(floor_hz, LEAST_FLOOR_HZ)));
     for (int k = first; k < first + size; k++) {
-        MT_TRY(mt_analysis_dlambda_raw(a, k, p->work, err));
-        mt_axpy(p->n, 1.0, p->work, out);
+        MT_TRY(mt_analysis_dlambda_raw(a, k, w->work, err));
+        mt_axpy(w->p->n, 1.0, w->work, out);
         /* vibrations of 0 Hz share their cluster with rigid-body modes, which have no slope and
          * add nothing to the sum */
         vibrating += modes->kind[k] == MT_MODE_FLEXIBLE ? 1 : 0;
     }
-    for (int i = 0; i < p->n && vibrating > 0; i++) {
-        out[i] *= mt_problem_stretch(p, i) / (2.0 * lambda * (double)vibrating);
+    for (int i = 0; i < w->p->n && vibrating > 0; i++) {
+        out[i] *= mt_workspace_stretch(w, i) / (2.0 * lambda * (double)vibrating);
     }
     return MT_OK;
 }
@@ -68,16 +68,16 @@ static mt_status compile(mt_problem *p, mt_demand *d, mt_err *err)
     return MT_OK;
 }
 
-static mt_status value(mt_problem *p, const mt_demand *d, int pos, double *q, double *slope,
+static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, double *slope,
                        mt_err *err)
 {
-    mt_analysis *const a = p->views[d->view].analysis;
+    mt_analysis *const a = w->views[d->view].analysis;
     *q = pos < 0 ? HUGE_VAL : mt_modal_hz(&a->modes, pos);
     if (!(*q >= 0.0)) {
         return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\": the mode has no frequency",
                        mt_analysis_configuration(a));
     }
-    return slope == NULL ? MT_OK : mt_problem_dln_frequency(p, a, pos, d->floor_hz, slope, err);
+    return slope == NULL ? MT_OK : mt_problem_dln_frequency(w, a, pos, d->floor_hz, slope, err);
 }
 
 const mt_goal_ops mt_goal_frequency = {

@@ -2,17 +2,17 @@
 /* "mac": q = MAC of the mode's shape at the sensors with that of a reference. */
 #include "problem/goal.h"
 
-static mt_status value(mt_problem *p, const mt_demand *d, int pos, double *q, double *slope,
+static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, double *slope,
                        mt_err *err)
 {
     const int ns = d->shape.ns;
     double norm = 0.0;
-    MT_TRY(mt_goal_sense(p, d, pos, slope != NULL, &norm, err));
-    mt_mac_matrix(ns, 1, p->shape, 1, d->shape.shape, q);
-    for (int k = 0; k < p->n && slope != NULL; k++) {
-        const double *const ds = p->dshape + ((ptrdiff_t)k * ns);
+    MT_TRY(mt_goal_sense(w, d, pos, slope != NULL, &norm, err));
+    mt_mac_matrix(ns, 1, w->shape, 1, d->shape.shape, q);
+    for (int k = 0; k < w->p->n && slope != NULL; k++) {
+        const double *const ds = w->dshape + ((ptrdiff_t)k * ns);
         slope[k] =
-            mt_problem_stretch(p, k) * mt_mac_derivative(ns, p->shape, ds, d->shape.shape);
+            mt_workspace_stretch(w, k) * mt_mac_derivative(ns, w->shape, ds, d->shape.shape);
     }
     return MT_OK;
 }

@@ -17,7 +17,7 @@ int mt_goal_reference_mode(const mt_problem *p, const mt_demand *d)
 
 mt_status mt_goal_compile_shape(mt_problem *p, mt_demand *d, mt_err *err)
 {
-    const mt_system *const sys = p->views[d->view].analysis->sys;
+    const mt_system *const sys = p->views[d->view].original->sys;
     return d->goal->reference_name.s == NULL
                ? MT_OK
                : mt_reference_shape_init(p->references, d->goal->reference,
@@ -25,13 +25,13 @@ mt_status mt_goal_compile_shape(mt_problem *p, mt_demand *d, mt_err *err)
                                          err);
 }
 
-mt_status mt_goal_sense(mt_problem *p, const mt_demand *d, int pos, bool with_gradient,
+mt_status mt_goal_sense(mt_workspace *w, const mt_demand *d, int pos, bool with_gradient,
                         double *norm, mt_err *err)
 {
-    mt_analysis *const a = p->views[d->view].analysis;
-    MT_TRY(mt_analysis_shape(a, pos, d->shape.ns, d->shape.channel, p->shape,
-                             with_gradient ? p->dshape : NULL, err));
-    *norm = mt_norm2(d->shape.ns, p->shape);
+    mt_analysis *const a = w->views[d->view].analysis;
+    MT_TRY(mt_analysis_shape(a, pos, d->shape.ns, d->shape.channel, w->shape,
+                             with_gradient ? w->dshape : NULL, err));
+    *norm = mt_norm2(d->shape.ns, w->shape);
     if (!(*norm > 0.0)) {
         return mt_fail(err, MT_E_DOMAIN,
                        "configuration \"%s\": the mode does not move at the sensors of "
@@ -41,25 +41,25 @@ mt_status mt_goal_sense(mt_problem *p, const mt_demand *d, int pos, bool with_gr
     return MT_OK;
 }
 
-static mt_status residuals(mt_problem *p, const mt_demand *d, int pos, bool with_gradient,
+static mt_status residuals(mt_workspace *w, const mt_demand *d, int pos, bool with_gradient,
                            mt_err *err)
 {
     const int ns = d->shape.ns;
-    const double w = sqrt(d->weight);
-    double *const u = p->shape;
+    const double weight = sqrt(mt_demand_weight(w, d));
+    double *const u = w->shape;
     double norm = 0.0;
-    MT_TRY(mt_goal_sense(p, d, pos, with_gradient, &norm, err));
+    MT_TRY(mt_goal_sense(w, d, pos, with_gradient, &norm, err));
     const double sign = mt_dot(ns, u, d->shape.shape) < 0.0 ? -1.0 : 1.0;
     for (int i = 0; i < ns; i++) {
         u[i] /= norm;
-        p->r[d->row_res + i] = w * ((sign * u[i]) - d->shape.shape[i]);
+        w->r[d->row_res + i] = weight * ((sign * u[i]) - d->shape.shape[i]);
     }
-    for (int k = 0; k < p->n && with_gradient; k++) {
-        const double *const ds = p->dshape + ((ptrdiff_t)k * ns);
+    for (int k = 0; k < w->p->n && with_gradient; k++) {
+        const double *const ds = w->dshape + ((ptrdiff_t)k * ns);
         const double along = mt_dot(ns, u, ds);
-        const double factor = w * sign * mt_problem_stretch(p, k) / norm;
+        const double factor = weight * sign * mt_workspace_stretch(w, k) / norm;
         for (int i = 0; i < ns; i++) {
-            p->dr[d->row_res + i + ((ptrdiff_t)k * p->n_res)] =
+            w->dr[d->row_res + i + ((ptrdiff_t)k * w->p->n_res)] =
                 factor * (ds[i] - (along * u[i]));
         }
     }

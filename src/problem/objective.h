@@ -2,7 +2,7 @@
 #ifndef PROBLEM_OBJECTIVE_H
 #define PROBLEM_OBJECTIVE_H
 
-#include "problem/problem.h"
+#include "problem/workspace.h"
 
 /* What a change df of an objective's value is worth at a design. */
 typedef struct mt_price {
@@ -22,7 +22,7 @@ typedef struct mt_objective_ops {
      * there are none. */
     mt_status (*compile)(mt_problem *p, mt_aim *a, const mt_node *nodes, mt_err *err);
     /* f at the last evaluation, and its gradient[n_t], zero before, unless NULL. */
-    double (*value)(const mt_problem *p, const mt_aim *a, double *gradient);
+    double (*value)(const mt_workspace *w, const mt_aim *a, double *gradient);
     /* At most any f over a box of inputs; low, high: room for
      * the nodes of any program of p. NULL: not known. */
     double (*least)(const mt_problem *p, const mt_aim *a, const double *lo, const double *hi,

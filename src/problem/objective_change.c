@@ -6,16 +6,16 @@
 
 #include "problem/objective.h"
 
-static double value(const mt_problem *p, const mt_aim *a, double *gradient)
+static double value(const mt_workspace *w, const mt_aim *a, double *gradient)
 {
     double f = 0.0;
     (void)a;
-    for (int i = 0; i < p->n; i++) {
-        const double w = p->study->variables[i].weight;
-        const double d = p->t[i] - p->origin_t[i];
-        f += 0.5 * w * d * d;
+    for (int i = 0; i < w->p->n; i++) {
+        const double weight = w->p->study->variables[i].weight;
+        const double d = w->t[i] - w->c->origin_t[i];
+        f += 0.5 * weight * d * d;
         if (gradient != NULL) {
-            gradient[i] = w * d;
+            gradient[i] = weight * d;
         }
     }
     return f;
@@ -29,8 +29,8 @@ static double least(const mt_problem *p, const mt_aim *a, const double *lo, cons
     (void)low;
     (void)high;
     for (int i = 0; i < p->n; i++) {
-        const double below = p->origin_t[i] - mt_problem_t(p, i, hi[i]);
-        const double above = mt_problem_t(p, i, lo[i]) - p->origin_t[i];
+        const double below = p->whole.origin_t[i] - mt_problem_t(p, i, hi[i]);
+        const double above = mt_problem_t(p, i, lo[i]) - p->whole.origin_t[i];
         const double d = fmax(fmax(below, above), 0.0);
         f += 0.5 * p->study->variables[i].weight * d * d;
     }

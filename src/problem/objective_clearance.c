@@ -10,13 +10,13 @@
 
 static const double PERCENT = 100.0;
 
-static double value(const mt_problem *p, const mt_aim *a, double *gradient)
+static double value(const mt_workspace *w, const mt_aim *a, double *gradient)
 {
     (void)a;
-    if (p->clearance && gradient != NULL) {
-        gradient[p->n] = -1.0;
+    if (w->c->clearance && gradient != NULL) {
+        gradient[w->p->n] = -1.0;
     }
-    return p->clearance ? -p->t[p->n] : 0.0;
+    return w->c->clearance ? -w->t[w->p->n] : 0.0;
 }
 
 static double shown(double f)

@@ -10,12 +10,12 @@ static mt_status compile(mt_problem *p, mt_aim *a, const mt_node *nodes, mt_err 
     return MT_OK; /* the program tells when it is finished */
 }
 
-static double value(const mt_problem *p, const mt_aim *a, double *gradient)
+static double value(const mt_workspace *w, const mt_aim *a, double *gradient)
 {
-    for (int i = 0; i < p->n && gradient != NULL; i++) {
-        gradient[i] = mt_problem_stretch(p, i) * p->grad[((ptrdiff_t)a->node * p->n) + i];
+    for (int i = 0; i < w->p->n && gradient != NULL; i++) {
+        gradient[i] = mt_workspace_stretch(w, i) * w->grad[((ptrdiff_t)a->node * w->p->n) + i];
     }
-    return p->value[a->node];
+    return w->value[a->node];
 }
 
 static double least(const mt_problem *p, const mt_aim *a, const double *lo, const double *hi,

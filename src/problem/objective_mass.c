@@ -24,7 +24,7 @@ static mt_status compile(mt_problem *p, mt_aim *a, const mt_node *nodes, mt_err 
     if (p->n_views == 0) {
         MT_TRY(mt_problem_add_view(p, 0, &view, err));
     }
-    const mt_system *const sys = p->views[view].analysis->sys;
+    const mt_system *const sys = p->views[view].original->sys;
     a->mass = mt_arena_alloc(&p->mem, (size_t)sys->n_items, sizeof *a->mass);
     MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < sys->n_items; i++) {
@@ -36,19 +36,19 @@ static mt_status compile(mt_problem *p, mt_aim *a, const mt_node *nodes, mt_err 
         return mt_fail(err, MT_E_INPUT,
                        "objective \"mass\": nothing that is meant is part of configuration "
                        "\"%s\", the first that a goal names",
-                       mt_analysis_configuration(p->views[view].analysis));
+                       mt_analysis_configuration(p->views[view].original));
     }
     return MT_OK;
 }
 
-static double value(const mt_problem *p, const mt_aim *a, double *gradient)
+static double value(const mt_workspace *w, const mt_aim *a, double *gradient)
 {
-    const mt_linear *const lin = p->views[0].analysis->lin;
+    const mt_linear *const lin = w->views[0].analysis->lin;
     double f = 0.0;
     for (int k = 0; k < a->n_mass; k++) {
         f += mt_linear_value(lin, a->mass[k]);
-        for (int i = 0; i < p->n && gradient != NULL; i++) {
-            gradient[i] += mt_problem_stretch(p, i) * mt_linear_slope(lin, a->mass[k], i);
+        for (int i = 0; i < w->p->n && gradient != NULL; i++) {
+            gradient[i] += mt_workspace_stretch(w, i) * mt_linear_slope(lin, a->mass[k], i);
         }
     }
     return f;
@@ -58,7 +58,7 @@ static double least(const mt_problem *p, const mt_aim *a, const double *lo, cons
                     double *low, double *high)
 {
     double f = 0.0;
-    mt_program_interval(&p->views[0].analysis->sys->program, lo, hi, low, high);
+    mt_program_interval(&p->views[0].original->sys->program, lo, hi, low, high);
     for (int k = 0; k < a->n_mass; k++) {
         f += low[a->mass[k]];
     }

@@ -24,9 +24,9 @@ const mt_objective_ops *mt_objective_ops_of(mt_objective_type type)
     return OPERATIONS[type];
 }
 
-static double nothing(const mt_problem *p, const mt_aim *a, double *gradient)
+static double nothing(const mt_workspace *w, const mt_aim *a, double *gradient)
 {
-    (void)p;
+    (void)w;
     (void)a;
     (void)gradient;
     return 0.0;
@@ -75,10 +75,7 @@ static mt_status init_program(mt_problem *p, mt_err *err)
             p->published[i] = nodes[pub->parameter];
         }
     }
-    MT_TRY(mt_program_finish(&p->program, err));
-    p->value = mt_arena_f64(&p->mem, (size_t)p->program.count, 1);
-    p->grad = mt_arena_f64(&p->mem, (size_t)p->program.count, (size_t)p->n);
-    return p->value == NULL || p->grad == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_program_finish(&p->program, err);
 }
 
 mt_status mt_problem_init_aims(mt_problem *p, mt_err *err)
@@ -98,85 +95,86 @@ mt_status mt_problem_init_aims(mt_problem *p, mt_err *err)
     return init_program(p, err);
 }
 
-double mt_aim_value(const mt_problem *p, int k, double *gradient)
+double mt_aim_value(const mt_workspace *w, int k, double *gradient)
 {
-    const mt_aim *const a = &p->aims[k];
-    for (int i = 0; i < p->n_t && gradient != NULL; i++) {
+    const mt_aim *const a = &w->c->aims[k];
+    for (int i = 0; i < w->c->n_t && gradient != NULL; i++) {
         gradient[i] = 0.0;
     }
-    return a->ops->value(p, a, gradient);
+    return a->ops->value(w, a, gradient);
 }
 
-double mt_aim_root(const mt_problem *p, int k, double f)
+double mt_aim_root(const mt_aim *a, double f)
 {
-    return mt_objective_is(p->aims[k].type, MT_HALF_SQUARE) ? sqrt(2.0 * fmax(f, 0.0)) : f;
+    return mt_objective_is(a->type, MT_HALF_SQUARE) ? sqrt(2.0 * fmax(f, 0.0)) : f;
 }
 
-double mt_aim_shown(const mt_problem *p, int k, double f)
+double mt_aim_shown(const mt_aim *a, double f)
 {
-    const mt_aim *const a = &p->aims[k];
-    return a->ops->shown != NULL ? a->ops->shown(f) : mt_aim_root(p, k, f);
+    return a->ops->shown != NULL ? a->ops->shown(f) : mt_aim_root(a, f);
 }
 
 /* Row of `in` that holds objective k: a misfit among those before it has none. */
-static int held_row(const mt_problem *p, int k)
+static int held_row(const mt_case *c, int k)
 {
-    int row = p->n_in;
+    int row = c->n_in;
     for (int i = 0; i < k; i++) {
-        row += mt_objective_is(p->aims[i].type, MT_RESIDUALS) ? 0 : 1;
+        row += mt_objective_is(c->aims[i].type, MT_RESIDUALS) ? 0 : 1;
     }
     return row;
 }
 
-void mt_aim_hold(mt_problem *p, int k, double f)
+void mt_aim_hold(mt_case *c, const mt_workspace *w, int k, double f)
 {
-    mt_aim *const a = &p->aims[k];
+    mt_held *const held = &c->held[k];
     const double root = sqrt(2.0 * fmax(f, 0.0));
-    if (mt_objective_is(a->type, MT_RESIDUALS)) {
-        for (int i = 0; i < p->n_res; i++) {
-            p->r_held[i] = p->r[i];
-            p->eq_tol[p->n_eq + i] = HELD_ROOT * fmax(root, 1.0);
+    if (mt_objective_is(c->aims[k].type, MT_RESIDUALS)) {
+        for (int i = 0; i < c->p->n_res; i++) {
+            c->r_held[i] = w->r[i];
+            c->eq_tol[c->p->n_eq + i] = HELD_ROOT * fmax(root, 1.0);
         }
         return;
     }
-    if (mt_objective_is(a->type, MT_HALF_SQUARE)) {
+    if (mt_objective_is(c->aims[k].type, MT_HALF_SQUARE)) {
         const double most = root + (HELD_ROOT * fmax(root, 1.0));
-        a->limit = 0.5 * most * most;
-        a->unit = a->limit;
+        held->limit = 0.5 * most * most;
+        held->unit = held->limit;
     } else {
-        a->unit = fmax(fabs(f), 1.0);
-        a->limit = f + (HELD * a->unit);
+        held->unit = fmax(fabs(f), 1.0);
+        held->limit = f + (HELD * held->unit);
     }
-    p->in_tol[held_row(p, k)] = HELD_TOLERANCE * (a->limit - f) / a->unit;
+    c->in_tol[held_row(c, k)] = HELD_TOLERANCE * (held->limit - f) / held->unit;
 }
 
 /* r - r_held = 0 */
-static void hold_misfit(const mt_problem *p, bool with_gradient, mt_nlp_values *out)
+static void hold_misfit(const mt_workspace *w, bool with_gradient, mt_nlp_values *out)
 {
-    const ptrdiff_t rows = mt_problem_rows_eq(p);
+    const mt_problem *const p = w->p;
+    const ptrdiff_t rows = mt_case_rows_eq(w->c);
     for (int i = 0; i < p->n_res; i++) {
         const ptrdiff_t row = p->n_eq + i;
-        out->eq[row] = p->r[i] - p->r_held[i];
-        for (int j = 0; j < p->n_t && with_gradient; j++) {
-            out->deq[row + (j * rows)] = j < p->n ? p->dr[i + ((ptrdiff_t)j * p->n_res)] : 0.0;
+        out->eq[row] = w->r[i] - w->c->r_held[i];
+        for (int j = 0; j < w->c->n_t && with_gradient; j++) {
+            out->deq[row + (j * rows)] = j < p->n ? w->dr[i + ((ptrdiff_t)j * p->n_res)] : 0.0;
         }
     }
 }
 
-void mt_aim_hold_rows(mt_problem *p, bool with_gradient, mt_nlp_values *out)
+void mt_aim_hold_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out)
 {
-    const ptrdiff_t rows = mt_problem_rows_in(p);
-    for (int k = 0; k < p->stage; k++) {
-        const mt_aim *const a = &p->aims[k];
-        if (mt_objective_is(a->type, MT_RESIDUALS)) {
-            hold_misfit(p, with_gradient, out);
+    const mt_case *const c = w->c;
+    const ptrdiff_t rows = mt_case_rows_in(c);
+    for (int k = 0; k < c->stage; k++) {
+        const mt_held *const held = &c->held[k];
+        if (mt_objective_is(c->aims[k].type, MT_RESIDUALS)) {
+            hold_misfit(w, with_gradient, out);
             continue;
         }
-        const ptrdiff_t row = held_row(p, k);
+        const ptrdiff_t row = held_row(c, k);
         out->in[row] =
-            (a->limit - mt_aim_value(p, k, with_gradient ? p->work : NULL)) / a->unit;
-        for (int j = 0; j < p->n_t && with_gradient; j++) {
-            out->din[row + (j * rows)] = -p->work[j] / a->unit;
+            (held->limit - mt_aim_value(w, k, with_gradient ? w->work : NULL)) / held->unit;
+        for (int j = 0; j < c->n_t && with_gradient; j++) {
+            out->din[row + (j * rows)] = -w->work[j] / held->unit;
         }
     }
 }

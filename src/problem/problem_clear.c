@@ -72,7 +72,6 @@ static mt_status add_clear(mt_problem *p, int goal_index, int view, mt_err *err)
                     .goal_index = goal_index,
                     .cluster = g->avoid->cluster,
                     .first = p->n_bands,
-                    .row_in = -1,
                     .tolerance = mt_goal_tolerance(g)};
     MT_TRY(unite(p, c, err));
     p->n_bands += c->bands.n;
@@ -80,71 +79,11 @@ static mt_status add_clear(mt_problem *p, int goal_index, int view, mt_err *err)
     return MT_OK;
 }
 
-static void number_rows(mt_problem *p, mt_clear *c)
-{
-    const int flexible = mt_view_vibrations(&p->views[c->view]);
-    c->row_in = p->n_in;
-    for (int b = 0; b < c->bands.n; b++) {
-        const int below = p->below[c->first + b];
-        c->n_rows += rows_below(c, below) + rows_above(c, below, flexible);
-    }
-    p->n_in += c->n_rows;
-}
-
-static mt_status add_cut(mt_problem *p, const mt_cut *cut, mt_clear *c, mt_err *err)
-{
-    mt_view *const view = &p->views[p->n_views];
-    const mt_family *const f = &p->families[cut->family];
-    *view = (mt_view){.configuration = f->configuration, .solved = true, .cut = cut};
-    MT_TRY(mt_view_analyse(p, view, p->original, &view->analysis, err));
-    c->view = p->n_views++;
-    c->first = p->n_bands;
-    p->n_clears++;
-    return MT_OK;
-}
-
-mt_status mt_clear_cut(mt_problem *p, const mt_cut *cut, mt_err *err)
-{
-    mt_way_band *way = NULL;
-    int n = 0;
-    const mt_family *const f = &p->families[cut->family];
-    mt_clear *const c = &p->clears[p->n_clears];
-    *c = (mt_clear){.row_in = -1, .cluster = 1, .tolerance = HUGE_VAL};
-    MT_TRY(mt_family_bands(p, f, cut->position, cut->position, &p->mem, &way, &n, err));
-    c->bands.items = mt_arena_alloc(&p->mem, (size_t)n, sizeof *c->bands.items);
-    int *const tie = mt_arena_int(&p->mem, (size_t)p->n_bands + (size_t)n);
-    int *const below = mt_arena_int(&p->mem, (size_t)p->n_bands + (size_t)n);
-    if (c->bands.items == NULL || tie == NULL || below == NULL) {
-        return mt_fail_memory(err);
-    }
-    for (int i = p->n_clears - 1; i >= 0; i--) {
-        const mt_clear *const own = &p->clears[i];
-        if (mt_family_of(p, own->view) == cut->family) {
-            c->goal_index = own->goal_index;
-            c->cluster = own->cluster > c->cluster ? own->cluster : c->cluster;
-        }
-    }
-    MT_TRY(add_cut(p, cut, c, err));
-    memcpy(tie, p->tie, (size_t)p->n_bands * sizeof *tie);
-    memcpy(below, p->below, (size_t)p->n_bands * sizeof *below);
-    for (int i = 0; i < n; i++) {
-        c->bands.items[i] = way[i].band;
-        c->tolerance = fmin(c->tolerance, way[i].tolerance);
-        tie[p->n_bands] = way[i].tie;
-        below[p->n_bands++] = p->below[way[i].tie];
-    }
-    c->bands.n = n;
-    p->tie = tie;
-    p->below = below;
-    return MT_OK;
-}
-
-mt_status mt_clear_init(mt_problem *p, const int *below, int n_cuts, const struct mt_cut *cuts,
-                        mt_err *err)
+mt_status mt_problem_init_clears(mt_problem *p, mt_err *err)
 {
     const mt_study *const s = p->study;
-    p->clears = mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations + (size_t)n_cuts + 1,
-                               sizeof *p->clears);
+    p->clears =
+        mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations + 1, sizeof *p->clears);
     if (p->clears == NULL) {
         return mt_fail_memory(err);
     }
@@ -154,27 +93,128 @@ mt_status mt_clear_init(mt_problem *p, const int *below, int n_cuts, const struc
             MT_TRY(add_clear(p, i, mt_problem_view(p, g->configurations[k]), err));
         }
     }
-    MT_TRY(mt_families_init(p, err));
-    if (below == NULL || p->n_bands == 0) {
-        return MT_OK;
-    }
-    p->below = mt_arena_int(&p->mem, (size_t)p->n_bands);
-    if (p->below == NULL) {
+    return mt_families_init(p, err);
+}
+
+/* The lists of a case with cuts, while they grow. */
+typedef struct lists {
+    mt_view *views;
+    mt_clear *clears;
+    int *tie;
+    int *below;
+} lists;
+
+/* One more view with its bands, behind all others. */
+static mt_status add_cut(mt_case *c, const mt_cut *cut, lists *l, mt_arena *mem, mt_err *err)
+{
+    const mt_problem *const p = c->p;
+    const mt_family *const f = &p->families[cut->family];
+    const mt_view *const like = &p->views[f->view[0]];
+    mt_clear *const clear = &l->clears[c->n_clears];
+    mt_way_band *way = NULL;
+    int n = 0;
+    double *const at = mt_arena_f64(mem, (size_t)f->n, 1);
+    if (at == NULL) {
         return mt_fail_memory(err);
     }
-    for (int i = 0; i < p->n_bands; i++) {
-        p->below[i] = below[i];
+    for (int k = 0; k < f->n; k++) {
+        at[k] = mt_family_position(p->views[f->view[k]].original);
     }
+    MT_TRY(mt_family_bands(p, f, at, cut->position, cut->position, mem, &way, &n, err));
+    int *const tie = mt_arena_int(mem, (size_t)c->n_bands + (size_t)n);
+    int *const below = mt_arena_int(mem, (size_t)c->n_bands + (size_t)n);
+    *clear =
+        (mt_clear){.view = c->n_views,
+                   .cluster = 1,
+                   .first = c->n_bands,
+                   .tolerance = HUGE_VAL,
+                   .bands = {.n = n, .items = mt_arena_alloc(mem, (size_t)n, sizeof(mt_band))}};
+    if (clear->bands.items == NULL || tie == NULL || below == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = p->n_clears - 1; i >= 0; i--) {
+        const mt_clear *const own = &p->clears[i];
+        if (mt_family_of(p, own->view) == cut->family) {
+            clear->goal_index = own->goal_index;
+            clear->cluster = own->cluster > clear->cluster ? own->cluster : clear->cluster;
+        }
+    }
+    memcpy(tie, l->tie, (size_t)c->n_bands * sizeof *tie);
+    memcpy(below, l->below, (size_t)c->n_bands * sizeof *below);
+    for (int i = 0; i < n; i++) {
+        clear->bands.items[i] = way[i].band;
+        clear->tolerance = fmin(clear->tolerance, way[i].tolerance);
+        tie[c->n_bands + i] = way[i].tie;
+        below[c->n_bands + i] = l->below[way[i].tie];
+    }
+    l->views[c->n_views++] = (mt_view){.configuration = f->configuration,
+                                       .n_rigid = like->n_rigid,
+                                       .n_most = like->n_most,
+                                       .cut = cut};
+    l->tie = tie;
+    l->below = below;
+    c->n_bands += n;
+    c->n_clears++;
+    return MT_OK;
+}
+
+static mt_status add_cuts(mt_case *c, int n_cuts, const mt_cut *cuts, lists *l, mt_arena *mem,
+                          mt_err *err)
+{
+    const mt_problem *const p = c->p;
+    const size_t n_views = (size_t)p->n_views + (size_t)n_cuts;
+    const size_t n_clears = (size_t)p->n_clears + (size_t)n_cuts;
+    l->views = mt_arena_alloc(mem, n_views, sizeof *l->views);
+    l->clears = mt_arena_alloc(mem, n_clears, sizeof *l->clears);
+    /* views point there */
+    mt_cut *const own = mt_arena_alloc(mem, (size_t)n_cuts, sizeof *own);
+    if (l->views == NULL || l->clears == NULL || own == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(l->views, p->views, (size_t)p->n_views * sizeof *l->views);
+    memcpy(l->clears, p->clears, (size_t)p->n_clears * sizeof *l->clears);
     for (int i = 0; i < n_cuts; i++) {
-        MT_TRY(mt_clear_cut(p, &cuts[i], err));
+        own[i] = cuts[i];
+        MT_TRY(add_cut(c, &own[i], l, mem, err));
     }
-    for (int i = 0; i < p->n_clears; i++) {
-        number_rows(p, &p->clears[i]);
+    c->views = l->views;
+    c->clears = l->clears;
+    return MT_OK;
+}
+
+mt_status mt_clear_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cut *cuts,
+                           mt_arena *mem, mt_err *err)
+{
+    const mt_problem *const p = c->p;
+    const bool any = below != NULL && p->n_bands > 0;
+    lists l = {.tie = p->tie};
+    c->clearance = any && mt_objective_is(c->aims[0].type, MT_BANDS);
+    c->n_t = p->n + (c->clearance ? 1 : 0);
+    c->n_views = p->n_views;
+    c->views = p->views;
+    c->n_clears = p->n_clears;
+    c->clears = p->clears;
+    c->n_bands = p->n_bands;
+    c->tie = p->tie;
+    c->below = NULL;
+    c->n_in = p->n_in;
+    c->first_band_row = p->n_in;
+    if (!any) {
+        return MT_OK;
     }
-    if (p->clearance) {
-        p->lower_t[p->n] = CLEARANCE_LOWER;
-        p->upper_t[p->n] = CLEARANCE_UPPER;
-        p->origin_t[p->n] = 0.0;
+    l.below = mt_arena_int(mem, (size_t)p->n_bands);
+    if (l.below == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(l.below, below, (size_t)p->n_bands * sizeof *below);
+    MT_TRY(n_cuts > 0 ? add_cuts(c, n_cuts, cuts, &l, mem, err) : MT_OK);
+    c->tie = l.tie;
+    c->below = l.below;
+    c->n_in += mt_clear_row_count(c, c->below);
+    if (c->clearance) {
+        c->lower_t[p->n] = CLEARANCE_LOWER;
+        c->upper_t[p->n] = CLEARANCE_UPPER;
+        c->origin_t[p->n] = 0.0;
     }
     return MT_OK;
 }
@@ -187,14 +227,15 @@ typedef struct edge_row {
     double sign;
 } edge_row;
 
-static mt_status put_row(mt_problem *p, const mt_view *view, const edge_row *e, const double *t,
+static mt_status put_row(mt_workspace *w, const mt_view_work *view, const edge_row *e,
                          bool with_gradient, mt_nlp_values *out, mt_err *err)
 {
     mt_analysis *const a = view->analysis;
+    const int n = w->p->n;
     const int index = e->index;
     const int row = e->row;
     const double sign = e->sign;
-    const double z = p->clearance ? t[p->n] : 0.0;
+    const double z = w->c->clearance ? w->t[n] : 0.0;
     const int pos = mt_modal_flexible(&a->modes, index);
     const double floor = MT_FREQUENCY_FLOOR * e->edge_hz;
     if ((pos < 0 && !mt_analysis_is_infinite(a, index)) || !(e->edge_hz > 0.0)) {
@@ -205,48 +246,38 @@ static mt_status put_row(mt_problem *p, const mt_view *view, const edge_row *e, 
     if (!with_gradient) {
         return MT_OK;
     }
-    MT_TRY(mt_problem_dln_frequency(p, a, pos, floor, p->dshape, err));
-    for (int i = 0; i < p->n; i++) {
-        out->din[row + ((ptrdiff_t)i * mt_problem_rows_in(p))] = sign * p->dshape[i];
+    const ptrdiff_t rows = mt_case_rows_in(w->c);
+    MT_TRY(mt_problem_dln_frequency(w, a, pos, floor, w->dshape, err));
+    for (int i = 0; i < n; i++) {
+        out->din[row + (i * rows)] = sign * w->dshape[i];
     }
-    if (p->clearance) {
-        out->din[row + ((ptrdiff_t)p->n * mt_problem_rows_in(p))] = -1.0;
-    }
-    return MT_OK;
-}
-
-/* Rows of one clear: over bands, below then above, nearest mode first. */
-static mt_status put_rows(mt_problem *p, const mt_clear *c, const double *t, bool with_gradient,
-                          mt_nlp_values *out, mt_err *err)
-{
-    const mt_view *const view = &p->views[c->view];
-    const int flexible = mt_view_vibrations(view);
-    int row = c->row_in;
-    for (int b = 0; b < c->bands.n; b++) {
-        const mt_band *const band = &c->bands.items[b];
-        const int below = p->below[c->first + b];
-        for (int k = 0; k < rows_below(c, below); k++) {
-            const edge_row e = {row++, below - k, band->lower_hz, -1.0};
-            MT_TRY(put_row(p, view, &e, t, with_gradient, out, err));
-        }
-        for (int k = 0; k < rows_above(c, below, flexible); k++) {
-            const edge_row e = {row++, below + 1 + k, band->upper_hz, 1.0};
-            MT_TRY(put_row(p, view, &e, t, with_gradient, out, err));
-        }
-    }
-    if (row != c->row_in + c->n_rows) {
-        return mt_fail(err, MT_E_DOMAIN,
-                       "configuration \"%s\" has another number of modes here",
-                       mt_analysis_configuration(view->analysis));
+    if (w->c->clearance) {
+        out->din[row + (n * rows)] = -1.0;
     }
     return MT_OK;
 }
 
-mt_status mt_clear_eval(mt_problem *p, const double *t, bool with_gradient, mt_nlp_values *out,
-                        mt_err *err)
+/* Rows run over clears and their bands, below then above, nearest mode first. */
+mt_status mt_clear_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out, mt_err *err)
 {
-    for (int i = 0; i < p->n_clears && p->below != NULL; i++) {
-        MT_TRY(put_rows(p, &p->clears[i], t, with_gradient, out, err));
+    const mt_case *const c = w->c;
+    int row = c->first_band_row;
+    for (int i = 0; i < c->n_clears && c->below != NULL; i++) {
+        const mt_clear *const clear = &c->clears[i];
+        const mt_view_work *const view = &w->views[clear->view];
+        const int flexible = mt_view_vibrations(view->of);
+        for (int b = 0; b < clear->bands.n; b++) {
+            const mt_band *const band = &clear->bands.items[b];
+            const int below = c->below[clear->first + b];
+            for (int k = 0; k < rows_below(clear, below); k++) {
+                const edge_row e = {row++, below - k, band->lower_hz, -1.0};
+                MT_TRY(put_row(w, view, &e, with_gradient, out, err));
+            }
+            for (int k = 0; k < rows_above(clear, below, flexible); k++) {
+                const edge_row e = {row++, below + 1 + k, band->upper_hz, 1.0};
+                MT_TRY(put_row(w, view, &e, with_gradient, out, err));
+            }
+        }
     }
     return MT_OK;
 }
@@ -282,26 +313,26 @@ double mt_clear_violation(const mt_clear *c, const mt_modes *modes, int *below, 
     return violation;
 }
 
-int mt_clear_row_count(const mt_problem *p, const int *below)
+int mt_clear_row_count(const mt_case *c, const int *below)
 {
     mt_clear_row ignored;
     int n = 0;
-    while (mt_clear_row_at(p, below, n, &ignored)) {
+    while (mt_clear_row_at(c, below, n, &ignored)) {
         n++;
     }
     return n;
 }
 
-bool mt_clear_row_at(const mt_problem *p, const int *below, int row, mt_clear_row *out)
+bool mt_clear_row_at(const mt_case *c, const int *below, int row, mt_clear_row *out)
 {
     int left = row;
-    for (int i = 0; i < p->n_clears; i++) {
-        const mt_clear *const c = &p->clears[i];
-        const int flexible = mt_view_vibrations(&p->views[c->view]);
-        for (int b = 0; b < c->bands.n; b++) {
-            const int k = below[c->first + b];
-            const int under = rows_below(c, k);
-            const int rows = under + rows_above(c, k, flexible);
+    for (int i = 0; i < c->n_clears; i++) {
+        const mt_clear *const clear = &c->clears[i];
+        const int flexible = mt_view_vibrations(&c->views[clear->view]);
+        for (int b = 0; b < clear->bands.n; b++) {
+            const int k = below[clear->first + b];
+            const int under = rows_below(clear, k);
+            const int rows = under + rows_above(clear, k, flexible);
             if (left < rows) {
                 const bool above = left >= under;
                 const int mode = above ? k + 1 + left - under : k - left;
@@ -314,11 +345,11 @@ bool mt_clear_row_at(const mt_problem *p, const int *below, int row, mt_clear_ro
     return false;
 }
 
-double mt_clear_room(const mt_problem *p, const mt_clear *c)
+double mt_clear_room(const mt_workspace *w, const mt_clear *c)
 {
-    const mt_modes *const modes = &p->views[c->view].analysis->modes;
-    if (p->robust != NULL) {
-        return mt_robust_room(p, c);
+    const mt_modes *const modes = &w->views[c->view].analysis->modes;
+    if (w->c->robust != NULL) {
+        return mt_robust_room(w, c);
     }
     double room = mt_modal_indexed(modes) ? HUGE_VAL : nan("");
     for (int b = 0; b < c->bands.n; b++) {
@@ -336,11 +367,11 @@ double mt_clear_room(const mt_problem *p, const mt_clear *c)
     return room;
 }
 
-double mt_clears_room(const mt_problem *p)
+double mt_clears_room(const mt_workspace *w)
 {
     double room = HUGE_VAL;
-    for (int i = 0; i < p->n_clears; i++) {
-        room = fmin(room, mt_clear_room(p, &p->clears[i]));
+    for (int i = 0; i < w->c->n_clears; i++) {
+        room = fmin(room, mt_clear_room(w, &w->c->clears[i]));
     }
     return room;
 }

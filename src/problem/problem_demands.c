@@ -48,20 +48,18 @@ mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const double
 {
     mt_analysis *a = NULL;
     mt_system_drive drive = {.fixed = true};
-    const mt_view *like = view;
     *out = NULL;
     if (view->cut != NULL) {
         const mt_family *const f = &p->families[view->cut->family];
         drive.joint = f->joint;
         drive.spring = f->spring;
         drive.position = view->cut->position;
-        like = view->analysis != NULL ? view : &p->views[f->view[0]];
     }
     MT_TRY(mt_analysis_new_driven(p->study->model, view->configuration,
                                   view->cut != NULL ? &drive : NULL, p->n, p->inputs, x, &a,
                                   err));
-    a->n_rigid = like->analysis->n_rigid;
-    a->n_most = like->analysis->n_most;
+    a->n_rigid = view->n_rigid;
+    a->n_most = view->n_most;
     const mt_status rc = solve_counted(a, a->n_null, x, err);
     if (rc != MT_OK) {
         mt_analysis_delete(a);
@@ -77,12 +75,11 @@ mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const double
 static mt_status name_modes(mt_problem *p, mt_view *view, mt_err *err)
 {
     const mt_model *const model = p->study->model;
-    mt_analysis *const a = view->analysis;
+    mt_analysis *const a = view->original;
     const size_t most = (size_t)model->n_modes;
     view->named = mt_arena_int(&p->mem, most);
-    view->track = mt_arena_alloc(&p->mem, most, sizeof *view->track);
     view->shape = mt_arena_alloc(&p->mem, most, sizeof *view->shape);
-    if (view->named == NULL || view->track == NULL || view->shape == NULL) {
+    if (view->named == NULL || view->shape == NULL) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < model->n_modes; i++) {
@@ -108,36 +105,27 @@ mt_status mt_problem_add_view(mt_problem *p, int configuration, int *out, mt_err
         return MT_OK;
     }
     mt_view *const view = &p->views[p->n_views];
-    *view = (mt_view){.configuration = configuration, .solved = true};
-    MT_TRY(mt_problem_analyse(p, configuration, p->original, &view->analysis, err));
+    *view = (mt_view){.configuration = configuration};
+    MT_TRY(mt_problem_analyse(p, configuration, p->original, &view->original, err));
+    view->n_rigid = view->original->n_rigid;
+    view->n_most = view->original->n_most;
     *out = p->n_views++;
     return name_modes(p, view, err);
 }
 
-mt_status mt_view_position(mt_problem *p, mt_view *view, int mode, int named, int *pos,
-                           mt_err *err)
-{
-    *pos = -1;
-    if (!view->solved) {
-        return MT_OK;
-    }
-    if (mode > 0) {
-        *pos = mt_modal_flexible(&view->analysis->modes, mode);
-        return MT_OK;
-    }
-    MT_TRY(mt_view_track(p, view, err));
-    *pos = view->track[named].pos;
-    return MT_OK;
-}
-
 int mt_view_vibrations(const mt_view *view)
 {
-    return view->analysis->n_most - view->analysis->n_rigid;
+    return view->n_most - view->n_rigid;
+}
+
+const char *mt_view_name(const mt_problem *p, const mt_view *view)
+{
+    return p->study->model->configurations[view->configuration].name.s;
 }
 
 static const char *instability(const mt_view *view)
 {
-    const mt_modes *const modes = &view->analysis->modes;
+    const mt_modes *const modes = &view->original->modes;
     return modes->n_unstable > 0    ? " (it is unstable there)"
            : modes->n_undecided > 0 ? " (rounding hides whether it is stable there)"
                                     : "";
@@ -160,13 +148,13 @@ static mt_status resolve_name(const mt_problem *p, const mt_view *view, mt_deman
                        "/goals/%d: mode \"%s\" is named in configuration \"%s\", not in \"%s\"",
                        d->goal_index, wanted->name.s,
                        model->configurations[wanted->configuration].name.s,
-                       mt_analysis_configuration(view->analysis));
+                       mt_analysis_configuration(view->original));
     }
     return mt_fail(err, MT_E_INPUT,
                    "/goals/%d: mode \"%s\" is vibration mode %d of configuration \"%s\", "
                    "which has none at the original design%s",
                    d->goal_index, wanted->name.s, wanted->index,
-                   mt_analysis_configuration(view->analysis), instability(view));
+                   mt_analysis_configuration(view->original), instability(view));
 }
 
 /* An index must be there at some design; where the original one is unstable nothing has an
@@ -179,7 +167,7 @@ static mt_status resolve_index(const mt_view *view, const mt_demand *d, mt_err *
     }
     return mt_fail(err, MT_E_INPUT,
                    "/goals/%d: configuration \"%s\" has no vibration mode %d (it has %d)",
-                   d->goal_index, mt_analysis_configuration(view->analysis), d->mode, most);
+                   d->goal_index, mt_analysis_configuration(view->original), d->mode, most);
 }
 
 static void number_rows(mt_problem *p, mt_demand *d)
@@ -218,8 +206,7 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
                      .row_eq = -1,
                      .row_in = -1,
                      .row_res = -1,
-                     .equals = g->equals,
-                     .weight = g->weight};
+                     .equals = g->equals};
     if (configuration != MT_ABSENT) {
         MT_TRY(mt_err_in(err, mt_problem_add_view(p, configuration, &d->view, err), "/goals/%d",
                          goal_index));
@@ -235,45 +222,7 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
     return MT_OK;
 }
 
-/* Once the rows are counted: tolerances and work space. */
-mt_status mt_problem_init_rows(mt_problem *p, mt_err *err)
-{
-    const size_t n = (size_t)p->n;
-    size_t ns = 1;
-    for (int i = 0; i < p->n_demands; i++) {
-        const size_t own = (size_t)p->demands[i].shape.ns;
-        ns = own > ns ? own : ns;
-    }
-    p->eq_tol = mt_arena_f64(&p->mem, (size_t)p->n_eq + (size_t)p->n_res, 1);
-    p->in_tol = mt_arena_f64(&p->mem, (size_t)p->n_in + (size_t)p->study->n_objectives, 1);
-    p->r = mt_arena_f64(&p->mem, (size_t)p->n_res, 1);
-    p->dr = mt_arena_f64(&p->mem, (size_t)p->n_res, n);
-    p->r_held = mt_arena_f64(&p->mem, (size_t)p->n_res, 1);
-    p->shape = mt_arena_f64(&p->mem, ns, 1);
-    p->dshape = mt_arena_f64(&p->mem, ns, n);
-    p->slope = mt_arena_f64(&p->mem, n, 1);
-    if (p->eq_tol == NULL || p->in_tol == NULL || p->r == NULL || p->dr == NULL ||
-        p->r_held == NULL || p->shape == NULL || p->dshape == NULL || p->slope == NULL) {
-        return mt_fail_memory(err);
-    }
-    for (int i = 0; i < p->n_clears; i++) {
-        for (int k = 0; k < p->clears[i].n_rows; k++) {
-            p->in_tol[p->clears[i].row_in + k] = p->clears[i].tolerance;
-        }
-    }
-    for (int i = 0; i < p->n_demands; i++) {
-        const mt_demand *const d = &p->demands[i];
-        if (d->row_eq >= 0) {
-            p->eq_tol[d->row_eq] = d->tolerance;
-        }
-        for (int k = 0; k < d->n_in; k++) {
-            p->in_tol[d->row_in + k] = d->tolerance;
-        }
-    }
-    return MT_OK;
-}
-
-mt_status mt_problem_init_demands(mt_problem *p, int n_cuts, mt_err *err)
+mt_status mt_problem_init_demands(mt_problem *p, mt_err *err)
 {
     const mt_study *const s = p->study;
     size_t most = 0;
@@ -281,8 +230,7 @@ mt_status mt_problem_init_demands(mt_problem *p, int n_cuts, mt_err *err)
         most += (size_t)s->goals[i].n_configurations + 1;
     }
     p->demands = mt_arena_alloc(&p->mem, most, sizeof *p->demands);
-    p->views = mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations + (size_t)n_cuts,
-                              sizeof *p->views);
+    p->views = mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations, sizeof *p->views);
     if (p->demands == NULL || p->views == NULL) {
         return mt_fail_memory(err);
     }

@@ -13,101 +13,104 @@ enum { NEXT_MOST = 5 };
 
 /* One of them. */
 typedef struct mt_next {
-    mt_analysis *analysis; /* of a view, or of a corner */
-    const double *factor;  /* [n] of that corner; NULL: the design itself */
+    int view;
+    int corner; /* of the tolerances; -1: the design itself */
     double limit_hz;
     double sign;
     int mode; /* vibration index */
 } mt_next;
 
-static void add(mt_problem *p, const mt_next *what, int view, int row)
+/* Rows that follow from row `row`, behind n that are there, unless list is NULL; their
+ * number. */
+static int add(const mt_case *c, const mt_next *what, int row, mt_next *list, int *next_of,
+               int n)
 {
-    const int most = mt_view_vibrations(&p->views[view]);
+    const int most = mt_view_vibrations(&c->views[what->view]);
     const int step = what->sign > 0.0 ? 1 : -1;
-    for (int i = 1; i <= NEXT_MOST; i++) {
-        const int mode = what->mode + (i * step);
+    int more = 0;
+    for (; more < NEXT_MOST; more++) {
+        const int mode = what->mode + ((more + 1) * step);
         if (mode < 1 || mode > most || !(what->limit_hz > 0.0)) {
-            return;
+            break;
         }
-        if (p->next != NULL) {
-            p->next[p->n_next] = *what;
-            p->next[p->n_next].mode = mode;
-            p->next_of[p->n_next] = row;
-        }
-        p->n_next++;
-    }
-}
-
-static void add_demand(mt_problem *p, const mt_demand *d)
-{
-    const mt_goal *const g = d->goal;
-    int row = d->row_in;
-    for (int k = 0; k < 2 && d->row_in >= 0 && mt_demand_is_frequency(d); k++) {
-        const mt_next what = {.analysis = p->views[d->view].analysis,
-                              .limit_hz = k == 0 ? g->at_least : g->at_most,
-                              .sign = k == 0 ? 1.0 : -1.0,
-                              .mode = d->mode};
-        if (MT_HAS(what.limit_hz)) {
-            if (!mt_robust_at_corner(p, row)) {
-                add(p, &what, d->view, row);
-            }
-            row++;
+        if (list != NULL) {
+            list[n + more] = *what;
+            list[n + more].mode = mode;
+            next_of[n + more] = row;
         }
     }
+    return more;
 }
 
-static void add_corners(mt_problem *p)
+/* All of them into list and next_of, unless NULL; their number. */
+static int list_all(const mt_case *c, mt_next *list, int *next_of)
 {
-    for (int k = 0; p->robust != NULL && k < p->robust->n_rows; k++) {
-        const mt_robust_row *const row = &p->robust->rows[k];
-        if (row->demand >= 0 && mt_demand_is_frequency(&p->demands[row->demand])) {
-            const mt_demand *const d = &p->demands[row->demand];
-            const mt_corner *const c = &p->robust->views[d->view].corners[row->corner];
-            const mt_next what = {.analysis = c->analysis,
-                                  .factor = c->factor,
-                                  .limit_hz = mt_robust_limit_hz(p, row),
-                                  .sign = row->side == MT_LOWEST ? 1.0 : -1.0,
+    const mt_problem *const p = c->p;
+    int n = 0;
+    for (int i = 0; i < p->n_demands; i++) {
+        const mt_demand *const d = &p->demands[i];
+        int row = d->row_in;
+        for (int k = 0; k < 2 && d->row_in >= 0 && mt_demand_is_frequency(d); k++) {
+            const mt_next what = {.view = d->view,
+                                  .corner = -1,
+                                  .limit_hz = k == 0 ? d->goal->at_least : d->goal->at_most,
+                                  .sign = k == 0 ? 1.0 : -1.0,
                                   .mode = d->mode};
-            add(p, &what, d->view, row->row);
-        }
-    }
-}
-
-mt_status mt_next_init(mt_problem *p, mt_err *err)
-{
-    for (int pass = 0; pass < 2; pass++) { /* counted, then kept */
-        p->n_next = 0;
-        for (int i = 0; i < p->n_demands; i++) {
-            add_demand(p, &p->demands[i]);
-        }
-        add_corners(p);
-        if (pass == 0) {
-            p->next = mt_arena_alloc(&p->mem, (size_t)p->n_next, sizeof *p->next);
-            p->next_of = mt_arena_int(&p->mem, (size_t)p->n_next);
-            if (p->next == NULL || p->next_of == NULL) {
-                return mt_fail_memory(err);
+            if (MT_HAS(what.limit_hz)) {
+                n += mt_robust_at_corner(c, row) ? 0 : add(c, &what, row, list, next_of, n);
+                row++;
             }
         }
     }
+    for (int k = 0; c->robust != NULL && k < c->robust->n_rows; k++) {
+        const mt_robust_row *const row = &c->robust->rows[k];
+        if (row->demand >= 0 && mt_demand_is_frequency(&p->demands[row->demand])) {
+            const mt_next what = {.view = p->demands[row->demand].view,
+                                  .corner = row->corner,
+                                  .limit_hz = mt_robust_limit_hz(c, row),
+                                  .sign = row->side == MT_LOWEST ? 1.0 : -1.0,
+                                  .mode = p->demands[row->demand].mode};
+            n += add(c, &what, row->row, list, next_of, n);
+        }
+    }
+    return n;
+}
+
+mt_status mt_next_init(mt_case *c, mt_arena *mem, mt_err *err)
+{
+    c->n_next = list_all(c, NULL, NULL);
+    mt_next *const next = mt_arena_alloc(mem, (size_t)c->n_next, sizeof *next);
+    int *const next_of = mt_arena_int(mem, (size_t)c->n_next);
+    if (next == NULL || next_of == NULL) {
+        return mt_fail_memory(err);
+    }
+    (void)list_all(c, next, next_of);
+    c->next = next;
+    c->next_of = next_of;
     return MT_OK;
 }
 
-mt_status mt_next_eval(mt_problem *p, bool with_gradient, mt_nlp_values *out, mt_err *err)
+mt_status mt_next_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out, mt_err *err)
 {
-    for (int k = 0; out->next != NULL && k < p->n_next; k++) {
-        const mt_next *const s = &p->next[k];
-        const int pos = mt_modal_flexible(&s->analysis->modes, s->mode);
+    const mt_case *const c = w->c;
+    const int n = w->p->n;
+    for (int k = 0; out->next != NULL && k < c->n_next; k++) {
+        const mt_next *const s = &c->next[k];
+        const mt_view_work *const view = &w->views[s->view];
+        mt_analysis *const a = s->corner < 0 ? view->analysis : view->corners[s->corner];
+        const double *const factor =
+            s->corner < 0 ? NULL : c->robust->views[s->view].corners[s->corner].factor;
+        const int pos = mt_modal_flexible(&a->modes, s->mode);
         const double floor_hz = MT_FREQUENCY_FLOOR * s->limit_hz;
-        out->next[k] =
-            s->sign * mt_problem_ln_ratio(&s->analysis->modes, pos, s->limit_hz, floor_hz);
+        out->next[k] = s->sign * mt_problem_ln_ratio(&a->modes, pos, s->limit_hz, floor_hz);
         if (!with_gradient) {
             continue;
         }
-        MT_TRY(mt_problem_dln_frequency(p, s->analysis, pos, floor_hz, p->dshape, err));
-        for (int i = 0; i < p->n_t; i++) {
-            const double part = i < p->n && s->factor != NULL ? s->factor[i] : 1.0;
-            out->dnext[k + ((ptrdiff_t)i * p->n_next)] =
-                i < p->n ? s->sign * part * p->dshape[i] : 0.0;
+        MT_TRY(mt_problem_dln_frequency(w, a, pos, floor_hz, w->dshape, err));
+        for (int i = 0; i < c->n_t; i++) {
+            const double part = i < n && factor != NULL ? factor[i] : 1.0;
+            out->dnext[k + ((ptrdiff_t)i * c->n_next)] =
+                i < n ? s->sign * part * w->dshape[i] : 0.0;
         }
     }
     return MT_OK;

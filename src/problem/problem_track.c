@@ -3,14 +3,14 @@
  * of designs in t from the original one (tracking.h). */
 #include <math.h>
 
-#include "problem/problem.h"
+#include "problem/workspace.h"
 
 /* A walk has at most so many of its shortest steps, however far the design is. */
 static const double MOST_STEPS = 128.0;
 
 typedef struct way {
-    const mt_problem *p;
-    mt_view *view;
+    const mt_workspace *w;
+    mt_view_work *view;
     double *t;  /* [n_t] work */
     double *x;  /* [n] */
     double *to; /* [n] the present design */
@@ -19,22 +19,24 @@ typedef struct way {
 static mt_status solve_at(void *context, double s, mt_analysis **out, mt_err *err)
 {
     const way *const w = context;
-    const mt_problem *const p = w->p;
+    const mt_problem *const p = w->w->p;
+    const double *const origin_t = p->whole.origin_t;
     const mt_analysis_options opt = {.vectors = true, .accuracy = true};
     for (int i = 0; i < p->n; i++) {
-        w->t[i] = p->origin_t[i] + (s * (w->to[i] - p->origin_t[i]));
+        w->t[i] = origin_t[i] + (s * (w->to[i] - origin_t[i]));
     }
-    mt_problem_x(p, w->t, w->x);
+    mt_case_x(w->w->c, w->t, w->x);
     if (w->view->scout == NULL) {
-        MT_TRY(mt_view_analyse(p, w->view, p->original, &w->view->scout, err));
+        MT_TRY(mt_view_analyse(p, w->view->of, p->original, &w->view->scout, err));
     }
     *out = w->view->scout;
     return mt_analysis_solve(w->view->scout, w->x, &opt, err);
 }
 
-static mt_status follow(const mt_problem *p, mt_view *view, mt_arena *mem, mt_err *err)
+static mt_status follow(const mt_workspace *ws, mt_view_work *view, mt_arena *mem, mt_err *err)
 {
-    way w = {.p = p,
+    const mt_problem *const p = ws->p;
+    way w = {.w = ws,
              .view = view,
              .t = mt_arena_f64(mem, (size_t)p->n + 1, 1),
              .x = mt_arena_f64(mem, (size_t)p->n, 1),
@@ -44,25 +46,25 @@ static mt_status follow(const mt_problem *p, mt_view *view, mt_arena *mem, mt_er
         return mt_fail_memory(err);
     }
     for (int i = 0; i < p->n; i++) {
-        w.to[i] = mt_problem_t(p, i, p->x[i]);
-        far = fmax(far, fabs(w.to[i] - p->origin_t[i]));
+        w.to[i] = mt_problem_t(p, i, ws->x[i]);
+        far = fmax(far, fabs(w.to[i] - p->whole.origin_t[i]));
     }
     const mt_track_way path = {
         .solve = solve_at,
         .context = &w,
         .resolution = far > 0.0 ? fmax(MT_TRACK_RESOLUTION / far, 1.0 / MOST_STEPS) : 1.0};
-    return mt_track_follow(&path, view->n_named, view->shape, view->analysis, mem, view->track,
-                           err);
+    return mt_track_follow(&path, view->of->n_named, view->of->shape, view->analysis, mem,
+                           view->track, err);
 }
 
-mt_status mt_view_track(mt_problem *p, mt_view *view, mt_err *err)
+mt_status mt_view_track(mt_workspace *w, mt_view_work *view, mt_err *err)
 {
     if (view->tracked) {
         return MT_OK;
     }
-    const mt_arena_mark mark = mt_arena_get_mark(&p->mem);
-    const mt_status rc = follow(p, view, &p->mem, err);
-    mt_arena_rewind(&p->mem, mark);
+    const mt_arena_mark mark = mt_arena_get_mark(&w->mem);
+    const mt_status rc = follow(w, view, &w->mem, err);
+    mt_arena_rewind(&w->mem, mark);
     view->tracked = rc == MT_OK;
     return rc;
 }

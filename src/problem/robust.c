@@ -40,21 +40,20 @@ bool mt_robust_is_range(const mt_problem *p, const mt_demand *d)
 }
 
 /* The bounds, wider by the tolerances. */
-static void widen(const mt_problem *p, double *lower, double *upper)
+static void widen(const mt_case *c)
 {
-    for (int i = 0; i < p->n; i++) {
-        const mt_variable *const v = &p->study->variables[i];
-        const double tolerance = mt_robust_tolerance(p, i);
-        lower[i] = v->lower - (tolerance * fabs(v->lower));
-        upper[i] = v->upper + (tolerance * fabs(v->upper));
+    for (int i = 0; i < c->p->n; i++) {
+        const double tolerance = mt_robust_tolerance(c->p, i);
+        c->robust->lower[i] = c->lower[i] - (tolerance * fabs(c->lower[i]));
+        c->robust->upper[i] = c->upper[i] + (tolerance * fabs(c->upper[i]));
     }
 }
 
 /* Factor of input i where it is low (side -1), high (1) or does not matter (0). */
-static double factor_of(const mt_problem *p, int i, int side)
+static double factor_of(const mt_case *c, int i, int side)
 {
-    const double sign = p->study->variables[i].upper > 0.0 ? 1.0 : -1.0;
-    return 1.0 + (sign * (double)side * mt_robust_tolerance(p, i));
+    const double sign = c->upper[i] > 0.0 ? 1.0 : -1.0;
+    return 1.0 + (sign * (double)side * mt_robust_tolerance(c->p, i));
 }
 
 /* Is the j-th of n variables of unknown sign high in combination c? */
@@ -66,37 +65,37 @@ static bool is_high(int c, int j, int n)
     return c < 2 ? c == 1 : ((c & 1) != 0) != (j == (c - 2) / 2);
 }
 
-/* Corner c of sides * combinations: which side, and which combination of the variables of
+/* Corner k of sides * combinations: which side, and which combination of the variables of
  * unknown sign. */
-static mt_status make_corner(mt_problem *p, const int *signs, int sides, int unknown, int c,
-                             mt_corner *out, mt_err *err)
+static mt_status make_corner(const mt_case *c, const int *signs, int sides, int unknown, int k,
+                             mt_arena *mem, mt_corner *out, mt_err *err)
 {
-    const int side = c % sides;
+    const int side = k % sides;
     int j = 0;
     *out =
-        (mt_corner){.factor = mt_arena_f64(&p->mem, (size_t)p->n, 1),
+        (mt_corner){.factor = mt_arena_f64(mem, (size_t)c->p->n, 1),
                     .may = {sides == 1 || side == MT_LOWEST, sides == 1 || side == MT_HIGHEST}};
     if (out->factor == NULL) {
         return mt_fail_memory(err);
     }
-    for (int i = 0; i < p->n; i++) {
+    for (int i = 0; i < c->p->n; i++) {
         int at = side == MT_LOWEST ? -signs[i] : signs[i];
         if (signs[i] == UNKNOWN) {
-            at = is_high(c / sides, j++, unknown) ? 1 : -1;
+            at = is_high(k / sides, j++, unknown) ? 1 : -1;
         }
-        out->factor[i] = factor_of(p, i, at);
+        out->factor[i] = factor_of(c, i, at);
     }
     return MT_OK;
 }
 
 /* The corners that signs[n] leave, without analyses; at least the design itself, where a range
  * has no other rows. */
-static mt_status make_corners(mt_problem *p, const int *signs, bool ranged, mt_corner_set *out,
-                              mt_err *err)
+static mt_status make_corners(const mt_case *c, const int *signs, bool ranged, mt_arena *mem,
+                              mt_corner_set *out, mt_err *err)
 {
     int known = 0;
     int unknown = 0;
-    for (int i = 0; i < p->n; i++) {
+    for (int i = 0; i < c->p->n; i++) {
         known += signs[i] == RISES || signs[i] == FALLS ? 1 : 0;
         unknown += signs[i] == UNKNOWN ? 1 : 0;
     }
@@ -106,41 +105,39 @@ static mt_status make_corners(mt_problem *p, const int *signs, bool ranged, mt_c
     }
     const int sides = known > 0 ? MT_ROBUST_SIDES : 1;
     const int n = sides * (unknown <= COMBINED_MOST ? 1 << unknown : 2 * (unknown + 1));
-    out->corners = mt_arena_alloc(&p->mem, (size_t)n, sizeof *out->corners);
+    out->corners = mt_arena_alloc(mem, (size_t)n, sizeof *out->corners);
     if (out->corners == NULL) {
         return mt_fail_memory(err);
     }
     for (; out->n < n; out->n++) {
-        MT_TRY(make_corner(p, signs, sides, unknown, out->n, &out->corners[out->n], err));
+        MT_TRY(make_corner(c, signs, sides, unknown, out->n, mem, &out->corners[out->n], err));
     }
     return MT_OK;
 }
 
 /* Bounds on both sides of 0 turn the ends of a relative tolerance over: no sign then says which
  * end is the soft one. */
-static int sign_of(const mt_problem *p, int i, bool rises, bool falls)
+static int sign_of(const mt_case *c, int i, bool rises, bool falls)
 {
-    const mt_variable *const v = &p->study->variables[i];
-    const bool turns = v->lower < 0.0 && v->upper > 0.0;
-    if (!(mt_robust_tolerance(p, i) > 0.0) || (!rises && !falls)) {
+    const bool turns = c->lower[i] < 0.0 && c->upper[i] > 0.0;
+    if (!(mt_robust_tolerance(c->p, i) > 0.0) || (!rises && !falls)) {
         return NOTHING;
     }
     return turns || (rises && falls) ? UNKNOWN : rises ? RISES : FALLS;
 }
 
 /* Signs over the whole box of all variables. */
-static mt_status signs_of_view(mt_problem *p, int view, int *signs, mt_err *err)
+static mt_status signs_of_view(const mt_case *c, const mt_analysis *a, int *signs, mt_err *err)
 {
     char reason[MT_REASON_SIZE] = "";
     mt_enclosure *e = NULL;
-    MT_TRY(mt_enclosure_new(p->views[view].analysis, p->robust->lower, p->robust->upper, &e,
-                            reason, err));
+    MT_TRY(mt_enclosure_new(a, c->robust->lower, c->robust->upper, &e, reason, err));
     if (e != NULL) {
-        mt_enclosure_effects(e, p->robust->lower, p->robust->upper, signs);
+        mt_enclosure_effects(e, c->robust->lower, c->robust->upper, signs);
     }
-    for (int i = 0; i < p->n; i++) {
+    for (int i = 0; i < c->p->n; i++) {
         const int effect = e == NULL ? MT_STIFFENS | MT_SOFTENS : signs[i];
-        signs[i] = sign_of(p, i, (effect & MT_STIFFENS) != 0, (effect & MT_SOFTENS) != 0);
+        signs[i] = sign_of(c, i, (effect & MT_STIFFENS) != 0, (effect & MT_SOFTENS) != 0);
     }
     mt_enclosure_delete(e);
     return MT_OK;
@@ -155,20 +152,17 @@ static bool has_range(const mt_problem *p, int view)
     return any;
 }
 
-static mt_status init_view(mt_problem *p, int view, mt_err *err)
+static mt_status init_view(const mt_case *c, int view, const mt_workspace *w, mt_arena *mem,
+                           mt_err *err)
 {
-    mt_corner_set *const set = &p->robust->views[view];
-    int *const signs = mt_arena_int(&p->mem, (size_t)p->n);
+    const bool cut = view >= c->p->n_views;
+    const mt_analysis *const a = cut ? w->views[view].analysis : c->views[view].original;
+    int *const signs = mt_arena_int(mem, (size_t)c->p->n);
     if (signs == NULL) {
         return mt_fail_memory(err);
     }
-    MT_TRY(signs_of_view(p, view, signs, err));
-    MT_TRY(make_corners(p, signs, has_range(p, view), set, err));
-    for (int c = 0; c < set->n; c++) {
-        MT_TRY(
-            mt_view_analyse(p, &p->views[view], p->original, &set->corners[c].analysis, err));
-    }
-    return MT_OK;
+    MT_TRY(signs_of_view(c, a, signs, err));
+    return make_corners(c, signs, has_range(c->p, view), mem, &c->robust->views[view], err);
 }
 
 static mt_status check_demand(const mt_demand *d, mt_err *err)
@@ -190,9 +184,13 @@ static mt_status check_demand(const mt_demand *d, mt_err *err)
                                  d->goal_index, d->goal->mode.mode_name.s);
 }
 
-static mt_status init_views(mt_problem *p, mt_err *err)
+/* Corners of the views that constraints or bands look at; those of the problem's own may be
+ * known. */
+static mt_status init_views(mt_case *c, const mt_robust *known, const mt_workspace *w,
+                            mt_arena *mem, mt_err *err)
 {
-    int *const wanted = mt_arena_int(&p->mem, (size_t)p->n_views + 1);
+    const mt_problem *const p = c->p;
+    int *const wanted = mt_arena_int(mem, (size_t)c->n_views + 1);
     if (wanted == NULL) {
         return mt_fail_memory(err);
     }
@@ -204,31 +202,34 @@ static mt_status init_views(mt_problem *p, mt_err *err)
             wanted[d->view] = wanted[d->view] || held;
         }
     }
-    for (int i = 0; i < p->n_clears; i++) {
-        wanted[p->clears[i].view] = 1;
+    for (int i = 0; i < c->n_clears; i++) {
+        wanted[c->clears[i].view] = 1;
     }
-    for (int i = 0; i < p->n_views; i++) {
-        if (wanted[i]) {
-            MT_TRY(init_view(p, i, err));
+    for (int i = 0; i < c->n_views; i++) {
+        if (known != NULL && i < p->n_views) {
+            c->robust->views[i] = known->views[i];
+        } else if (wanted[i]) {
+            MT_TRY(init_view(c, i, w, mem, err));
         }
     }
     return MT_OK;
 }
 
 /* Signs of the expressions' slopes over the bounds decide their corners. */
-static mt_status init_limits(mt_problem *p, mt_err *err)
+static mt_status init_limits(mt_case *c, mt_arena *mem, mt_err *err)
 {
+    const mt_problem *const p = c->p;
     const size_t n = (size_t)p->n;
     const size_t count = (size_t)p->program.count;
-    int *const signs = mt_arena_int(&p->mem, n);
-    double *const lo = mt_arena_f64(&p->mem, count, 1);
-    double *const hi = mt_arena_f64(&p->mem, count, 1);
-    double *const dlo = mt_arena_f64(&p->mem, count, n);
-    double *const dhi = mt_arena_f64(&p->mem, count, n);
+    int *const signs = mt_arena_int(mem, n);
+    double *const lo = mt_arena_f64(mem, count, 1);
+    double *const hi = mt_arena_f64(mem, count, 1);
+    double *const dlo = mt_arena_f64(mem, count, n);
+    double *const dhi = mt_arena_f64(mem, count, n);
     if (signs == NULL || lo == NULL || hi == NULL || dlo == NULL || dhi == NULL) {
         return mt_fail_memory(err);
     }
-    mt_program_interval_gradient(&p->program, p->robust->lower, p->robust->upper, lo, hi, dlo,
+    mt_program_interval_gradient(&p->program, c->robust->lower, c->robust->upper, lo, hi, dlo,
                                  dhi);
     for (int k = 0; k < p->n_demands; k++) {
         const mt_demand *const d = &p->demands[k];
@@ -238,9 +239,9 @@ static mt_status init_limits(mt_problem *p, mt_err *err)
         }
         const size_t row = (size_t)d->node * n;
         for (int i = 0; i < p->n; i++) {
-            signs[i] = sign_of(p, i, dhi[row + (size_t)i] > 0.0, dlo[row + (size_t)i] < 0.0);
+            signs[i] = sign_of(c, i, dhi[row + (size_t)i] > 0.0, dlo[row + (size_t)i] < 0.0);
         }
-        MT_TRY(make_corners(p, signs, d->ranged, &p->robust->limits[k], err));
+        MT_TRY(make_corners(c, signs, d->ranged, mem, &c->robust->limits[k], err));
     }
     return MT_OK;
 }
@@ -248,29 +249,29 @@ static mt_status init_limits(mt_problem *p, mt_err *err)
 /* Rows of one limit at all corners of its side. The worst corner takes the place of the
  * design's own row `own`; where the corners are samples, or there is no such row (-1), they
  * come on top. */
-static void list_rows(mt_problem *p, const mt_corner_set *set, const mt_robust_row *what,
-                      int own, mt_robust_row *rows)
+static void list_rows(mt_case *c, const mt_corner_set *set, const mt_robust_row *what, int own,
+                      mt_robust_row *rows)
 {
-    mt_robust *const r = p->robust;
-    for (int c = 0; c < set->n; c++) {
-        if (!set->corners[c].may[what->side]) {
+    mt_robust *const r = c->robust;
+    for (int k = 0; k < set->n; k++) {
+        if (!set->corners[k].may[what->side]) {
             continue;
         }
         if (rows != NULL) {
             rows[r->n_rows] = *what;
-            rows[r->n_rows].corner = c;
-            rows[r->n_rows].row = set->exact && own >= 0 ? own : p->n_in;
+            rows[r->n_rows].corner = k;
+            rows[r->n_rows].row = set->exact && own >= 0 ? own : c->n_in;
         }
-        p->n_in += set->exact && own >= 0 ? 0 : 1;
+        c->n_in += set->exact && own >= 0 ? 0 : 1;
         r->n_rows++;
     }
 }
 
-static void list_demand(mt_problem *p, int demand, mt_robust_row *rows)
+static void list_demand(mt_case *c, int demand, mt_robust_row *rows)
 {
-    const mt_demand *const d = &p->demands[demand];
+    const mt_demand *const d = &c->p->demands[demand];
     const mt_corner_set *const set =
-        d->view >= 0 ? &p->robust->views[d->view] : &p->robust->limits[demand];
+        d->view >= 0 ? &c->robust->views[d->view] : &c->robust->limits[demand];
     const bool target = d->ranged;
     const bool asked[MT_ROBUST_SIDES] = {MT_HAS(d->goal->at_least), MT_HAS(d->goal->at_most)};
     int own = d->row_in;
@@ -279,112 +280,114 @@ static void list_demand(mt_problem *p, int demand, mt_robust_row *rows)
             const mt_robust_row what = {.demand = demand,
                                         .side = (mt_robust_side)side,
                                         .tolerance = target ? ROW_TOLERANCE : d->tolerance};
-            list_rows(p, set, &what, target ? -1 : own++, rows);
+            list_rows(c, set, &what, target ? -1 : own++, rows);
         }
     }
 }
 
-static void list_all(mt_problem *p, mt_robust_row *rows)
+static void list_all(mt_case *c, mt_robust_row *rows)
 {
     mt_clear_row at;
-    p->robust->n_rows = 0;
-    for (int i = 0; i < p->n_demands; i++) {
-        list_demand(p, i, rows);
+    c->robust->n_rows = 0;
+    for (int i = 0; i < c->p->n_demands; i++) {
+        list_demand(c, i, rows);
     }
-    for (int k = 0; p->below != NULL && mt_clear_row_at(p, p->below, k, &at); k++) {
-        const mt_clear *const c = &p->clears[at.clear];
+    for (int k = 0; c->below != NULL && mt_clear_row_at(c, c->below, k, &at); k++) {
+        const mt_clear *const clear = &c->clears[at.clear];
         const mt_robust_row what = {.demand = -1,
                                     .at = at,
                                     .side = at.above ? MT_LOWEST : MT_HIGHEST,
-                                    .tolerance = c->tolerance};
-        list_rows(p, &p->robust->views[c->view], &what, p->clears[0].row_in + k, rows);
+                                    .tolerance = clear->tolerance};
+        list_rows(c, &c->robust->views[clear->view], &what, c->first_band_row + k, rows);
     }
 }
 
 /* Number the rows, once to count them and once to keep them, and make room for their
  * tolerances. */
-static mt_status init_rows(mt_problem *p, mt_err *err)
+static mt_status init_rows(mt_case *c, mt_arena *mem, mt_err *err)
 {
-    mt_robust *const r = p->robust;
-    const int before = p->n_in;
-    list_all(p, NULL);
-    r->rows = mt_arena_alloc(&p->mem, (size_t)r->n_rows, sizeof *r->rows);
-    double *const tolerances =
-        mt_arena_f64(&p->mem, (size_t)p->n_in + (size_t)p->study->n_objectives, 1);
+    mt_robust *const r = c->robust;
+    const int before = c->n_in;
+    list_all(c, NULL);
+    r->rows = mt_arena_alloc(mem, (size_t)r->n_rows, sizeof *r->rows);
+    double *const tolerances = mt_arena_f64(mem, (size_t)c->n_in + (size_t)c->n_aims, 1);
     if (r->rows == NULL || tolerances == NULL) {
         return mt_fail_memory(err);
     }
     if (before > 0) {
-        memcpy(tolerances, p->in_tol, (size_t)before * sizeof *tolerances);
+        memcpy(tolerances, c->in_tol, (size_t)before * sizeof *tolerances);
     }
-    p->n_in = before;
-    list_all(p, r->rows);
+    c->n_in = before;
+    list_all(c, r->rows);
     for (int i = 0; i < r->n_rows; i++) {
         tolerances[r->rows[i].row] = r->rows[i].tolerance;
     }
-    p->in_tol = tolerances;
-    p->n_corner_rows = p->n_in - before;
+    c->in_tol = tolerances;
+    c->n_corner_rows = c->n_in - before;
     return MT_OK;
 }
 
-static mt_status claim(mt_problem *p, mt_robust *r, mt_err *err)
+mt_status mt_robust_init(mt_case *c, const mt_robust *known, const mt_workspace *w,
+                         mt_arena *mem, mt_err *err)
 {
-    const size_t n = (size_t)p->n;
-    const size_t count = (size_t)p->program.count;
-    const size_t views = (size_t)p->n_views;
-    const size_t demands = (size_t)p->n_demands;
-    *r = (mt_robust){.views = mt_arena_alloc(&p->mem, views, sizeof *r->views),
-                     .limits = mt_arena_alloc(&p->mem, demands, sizeof *r->limits),
-                     .n_views = p->n_views,
-                     .lower = mt_arena_f64(&p->mem, n, 1),
-                     .upper = mt_arena_f64(&p->mem, n, 1),
-                     .x = mt_arena_f64(&p->mem, n, 1),
-                     .slope = mt_arena_f64(&p->mem, n, 1),
-                     .value = mt_arena_f64(&p->mem, count, 1),
-                     .grad = mt_arena_f64(&p->mem, count, n),
-                     .n_ranges = mt_arena_int(&p->mem, views),
-                     .hz = mt_arena_alloc(&p->mem, views, sizeof(mt_robust_range *)),
-                     .number = mt_arena_alloc(&p->mem, demands, sizeof *r->number)};
-    const bool bad = r->views == NULL || r->limits == NULL || r->lower == NULL ||
-                     r->upper == NULL || r->x == NULL || r->slope == NULL || r->value == NULL ||
-                     r->grad == NULL || r->n_ranges == NULL || r->hz == NULL ||
-                     r->number == NULL;
-    return bad ? mt_fail_memory(err) : MT_OK;
-}
-
-mt_status mt_robust_init(mt_problem *p, mt_err *err)
-{
-    if (!any_tolerance(p)) {
+    const size_t n = (size_t)c->p->n;
+    c->n_corner_rows = 0;
+    if (!any_tolerance(c->p)) {
         return MT_OK;
     }
-    mt_robust *const r = mt_arena_alloc(&p->mem, 1, sizeof *r);
+    mt_robust *const r = mt_arena_alloc(mem, 1, sizeof *r);
     if (r == NULL) {
         return mt_fail_memory(err);
     }
-    MT_TRY(claim(p, r, err));
-    widen(p, r->lower, r->upper);
-    p->robust = r;
-    MT_TRY(init_views(p, err));
-    MT_TRY(init_limits(p, err));
-    return init_rows(p, err);
+    *r = (mt_robust){.views = mt_arena_alloc(mem, (size_t)c->n_views, sizeof *r->views),
+                     .limits = known != NULL ? known->limits
+                                             : mt_arena_alloc(mem, (size_t)c->p->n_demands,
+                                                              sizeof *r->limits),
+                     .lower = mt_arena_f64(mem, n, 1),
+                     .upper = mt_arena_f64(mem, n, 1)};
+    if (r->views == NULL || r->limits == NULL || r->lower == NULL || r->upper == NULL) {
+        return mt_fail_memory(err);
+    }
+    c->robust = r;
+    widen(c);
+    MT_TRY(init_views(c, known, w, mem, err));
+    MT_TRY(known != NULL ? MT_OK : init_limits(c, mem, err));
+    return init_rows(c, mem, err);
 }
 
-const mt_robust_row *mt_robust_corner_row(const mt_problem *p, int row)
+mt_status mt_robust_work_init(mt_workspace *w, mt_err *err)
 {
-    for (int k = 0;
-         p->robust != NULL && row >= p->n_in - p->n_corner_rows && k < p->robust->n_rows; k++) {
-        if (p->robust->rows[k].row == row) {
-            return &p->robust->rows[k];
+    const size_t n = (size_t)w->p->n;
+    const size_t count = (size_t)w->p->program.count;
+    const size_t views = (size_t)w->p->n_views;
+    if (!any_tolerance(w->p)) {
+        return MT_OK;
+    }
+    mt_robust_work *const r = mt_arena_alloc(&w->mem, 1, sizeof *r);
+    if (r == NULL) {
+        return mt_fail_memory(err);
+    }
+    *r = (mt_robust_work){
+        .x = mt_arena_f64(&w->mem, n, 1),
+        .slope = mt_arena_f64(&w->mem, n, 1),
+        .value = mt_arena_f64(&w->mem, count, 1),
+        .grad = mt_arena_f64(&w->mem, count, n),
+        .n_ranges = mt_arena_int(&w->mem, views),
+        .hz = mt_arena_alloc(&w->mem, views, sizeof(mt_robust_range *)),
+        .number = mt_arena_alloc(&w->mem, (size_t)w->p->n_demands, sizeof *r->number)};
+    w->robust = r;
+    const bool bad = r->x == NULL || r->slope == NULL || r->value == NULL || r->grad == NULL ||
+                     r->n_ranges == NULL || r->hz == NULL || r->number == NULL;
+    return bad ? mt_fail_memory(err) : MT_OK;
+}
+
+const mt_robust_row *mt_robust_corner_row(const mt_case *c, int row)
+{
+    const int first = c->n_in - c->n_corner_rows;
+    for (int k = 0; c->robust != NULL && row >= first && k < c->robust->n_rows; k++) {
+        if (c->robust->rows[k].row == row) {
+            return &c->robust->rows[k];
         }
     }
     return NULL;
-}
-
-void mt_robust_free(mt_robust *r)
-{
-    for (int i = 0; r != NULL && i < r->n_views; i++) {
-        for (int c = 0; c < r->views[i].n; c++) {
-            mt_analysis_delete(r->views[i].corners[c].analysis);
-        }
-    }
 }

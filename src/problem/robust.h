@@ -2,7 +2,7 @@
 #ifndef PROBLEM_ROBUST_H
 #define PROBLEM_ROBUST_H
 
-#include "problem/problem.h"
+#include "problem/workspace.h"
 #include "result/result.h"
 
 /*
@@ -34,8 +34,7 @@
 typedef enum mt_robust_side { MT_LOWEST, MT_HIGHEST, MT_ROBUST_SIDES } mt_robust_side;
 
 typedef struct mt_corner {
-    mt_analysis *analysis; /* owned; NULL: of an expression */
-    double *factor;        /* [n] inputs of the corner are factor times the design's */
+    double *factor; /* [n] inputs of the corner are factor times the design's */
     /* may be where frequencies (the expression) are lowest, highest */
     bool may[MT_ROBUST_SIDES];
 } mt_corner;
@@ -66,64 +65,69 @@ typedef struct mt_robust_range {
     double *at[MT_ROBUST_SIDES];
 } mt_robust_range;
 
+/* Corners and their rows, of a case. */
 typedef struct mt_robust {
-    mt_corner_set *views;  /* [n_views] */
+    mt_corner_set *views;  /* [n_views of the case] */
     mt_corner_set *limits; /* [n_demands] */
-    int n_views;
     int n_rows;
     mt_robust_row *rows;
     double *lower; /* [n] bounds, widened by the tolerances */
     double *upper;
+} mt_robust;
+
+/* Of a workspace. */
+typedef struct mt_robust_work {
     double *x;               /* [n] work */
     double *slope;           /* [n] work */
     double *value;           /* [program.count] work */
     double *grad;            /* program.count rows of n: work */
-    int *n_ranges;           /* [n_views] after mt_robust_ranges */
+    int *n_ranges;           /* [n_views of the problem] after mt_robust_ranges */
     mt_robust_range **hz;    /* [n_views] of its vibration modes, [n_ranges] */
     mt_robust_range *number; /* [n_demands] of limits */
-} mt_robust;
+} mt_robust_work;
 
-/* Nothing (p->robust stays NULL) where no variable has a tolerance. After everything else of
- * the problem: adds rows to `in`. Fails: MT_E_INPUT where a goal cannot be judged over
- * tolerances, saying why; MT_E_MEMORY, numerical failures. */
-mt_status mt_robust_init(mt_problem *p, mt_err *err);
-/* Accepts NULL. */
-void mt_robust_free(mt_robust *r);
+/* c->robust (NULL where no variable has a tolerance), in mem: adds rows to `in` behind those of
+ * the bands. known: corners over the same bounds, of another assignment; NULL: none. w: with
+ * analyses of the case's views; NULL: there are no cuts. Fails: MT_E_INPUT where a goal cannot
+ * be judged over tolerances, saying why; MT_E_MEMORY, numerical failures. */
+mt_status mt_robust_init(mt_case *c, const mt_robust *known, const mt_workspace *w,
+                         mt_arena *mem, mt_err *err);
+/* w->robust; stays NULL where no variable has a tolerance. */
+mt_status mt_robust_work_init(mt_workspace *w, mt_err *err);
 /* Half the width of variable i's tolerance, as a part of its value. */
 double mt_robust_tolerance(const mt_problem *p, int i);
 /* Is a demand for a target (or "equals") one for a range over the tolerances? Asked before its
  * rows are numbered; then demand->ranged. */
 bool mt_robust_is_range(const mt_problem *p, const mt_demand *d);
-/* robust_eval.c: modes of all corners of the design at p->x. Nothing where p has no tolerances,
- * likewise below. */
-mt_status mt_robust_solve(mt_problem *p, bool with_gradient, mt_err *err);
+/* robust_eval.c: modes of all corners of the design at w->x. Nothing where there are no
+ * tolerances, likewise below. */
+mt_status mt_robust_solve(mt_workspace *w, bool with_gradient, mt_err *err);
 /* Fill the rows of all corners. After mt_robust_solve and the rows of the design itself, some
  * of which they replace. */
-mt_status mt_robust_rows(mt_problem *p, const double *t, bool with_gradient, mt_nlp_values *out,
-                         mt_err *err);
+mt_status mt_robust_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out, mt_err *err);
 /* The row of `in` that stands on top of the design's own ones; NULL where it is none of
  * these. */
-const mt_robust_row *mt_robust_corner_row(const mt_problem *p, int row);
+const mt_robust_row *mt_robust_corner_row(const mt_case *c, int row);
 /* Is row i of `in` judged at a corner (in place of the design itself, or on top)? */
-bool mt_robust_at_corner(const mt_problem *p, int i);
+bool mt_robust_at_corner(const mt_case *c, int i);
 /* The limit [Hz] that a row sets a frequency, of a band without the clearance; NaN: it is one
  * on an expression. */
-double mt_robust_limit_hz(const mt_problem *p, const mt_robust_row *row);
+double mt_robust_limit_hz(const mt_case *c, const mt_robust_row *row);
 /* mt_clear_room over all corners, or over the ranges where they are known: modes are paired by
  * their index. */
-double mt_robust_room(const mt_problem *p, const mt_clear *c);
+double mt_robust_room(const mt_workspace *w, const mt_clear *c);
 /*
  * robust_range.c: what the vibration modes of each view, and the expressions of all limits, do
- * over the tolerances of the design at p->x, from fresh analyses. Proven where enclosures over
+ * over the tolerances of the design at w->x, from fresh analyses. Proven where enclosures over
  * these tolerances show every sign; else sampled: corners, points within, and for the first
- * modes[view] descent from the best of them (a view with 0 is left out). Into p->robust. Cost:
+ * modes[view] descent from the best of them (a view with 0 is left out). Into w->robust. Cost:
  * two analyses where proven, else some hundreds.
  */
-mt_status mt_robust_ranges(mt_problem *p, const int *modes, mt_err *err);
+mt_status mt_robust_ranges(mt_workspace *w, const int *modes, mt_err *err);
 /* Are all ranges proven? */
-bool mt_robust_proven(const mt_problem *p);
+bool mt_robust_proven(const mt_workspace *w);
 /* Of vibration mode `mode` of a view; NULL: not computed. */
-const mt_robust_range *mt_robust_hz(const mt_problem *p, int view, int mode);
+const mt_robust_range *mt_robust_hz(const mt_workspace *w, int view, int mode);
 
 /* robust_sample.c: the least and greatest of m numbers over a box, sampled. */
 typedef struct mt_robust_probe {

@@ -5,32 +5,26 @@
 
 #include "problem/robust.h"
 
-static void move(const mt_problem *p, const double *factor)
+static void move(const mt_workspace *w, const double *factor)
 {
-    for (int i = 0; i < p->n; i++) {
-        p->robust->x[i] = p->x[i] * factor[i];
+    for (int i = 0; i < w->p->n; i++) {
+        w->robust->x[i] = w->x[i] * factor[i];
     }
 }
 
-static mt_status solve_view(mt_problem *p, const mt_corner_set *set, bool with_gradient,
-                            mt_err *err)
+mt_status mt_robust_solve(mt_workspace *w, bool with_gradient, mt_err *err)
 {
     const mt_analysis_options opt = {
         .gradient = with_gradient, .vectors = with_gradient, .accuracy = true};
-    for (int c = 0; c < set->n; c++) {
-        mt_analysis *const a = set->corners[c].analysis;
-        move(p, set->corners[c].factor);
-        MT_TRY(mt_err_in(err, mt_analysis_solve(a, p->robust->x, &opt, err),
-                         "configuration \"%s\" at a corner of the tolerances",
-                         mt_analysis_configuration(a)));
-    }
-    return MT_OK;
-}
-
-mt_status mt_robust_solve(mt_problem *p, bool with_gradient, mt_err *err)
-{
-    for (int i = 0; p->robust != NULL && i < p->robust->n_views; i++) {
-        MT_TRY(solve_view(p, &p->robust->views[i], with_gradient, err));
+    for (int i = 0; w->c->robust != NULL && i < w->c->n_views; i++) {
+        const mt_corner_set *const set = &w->c->robust->views[i];
+        for (int k = 0; k < set->n; k++) {
+            mt_analysis *const a = w->views[i].corners[k];
+            move(w, set->corners[k].factor);
+            MT_TRY(mt_err_in(err, mt_analysis_solve(a, w->robust->x, &opt, err),
+                             "configuration \"%s\" at a corner of the tolerances",
+                             mt_analysis_configuration(a)));
+        }
     }
     return MT_OK;
 }
@@ -44,10 +38,11 @@ typedef struct quantity {
 } quantity;
 
 /* ln(f / edge_hz) at the corner, its slopes over t into robust->slope. */
-static mt_status frequency(mt_problem *p, const mt_corner *c, int mode, double edge_hz,
-                           bool with_gradient, double *value, mt_err *err)
+static mt_status frequency(mt_workspace *w, int view, const mt_robust_row *row, int mode,
+                           double edge_hz, bool with_gradient, double *value, mt_err *err)
 {
-    mt_analysis *const a = c->analysis;
+    mt_analysis *const a = w->views[view].corners[row->corner];
+    const double *const factor = w->c->robust->views[view].corners[row->corner].factor;
     const int pos = mt_modal_flexible(&a->modes, mode);
     const double floor_hz = MT_FREQUENCY_FLOOR * edge_hz;
     if (pos < 0 && !mt_analysis_is_infinite(a, mode)) {
@@ -58,21 +53,22 @@ static mt_status frequency(mt_problem *p, const mt_corner *c, int mode, double e
     }
     *value = mt_problem_ln_ratio(&a->modes, pos, edge_hz, floor_hz);
     if (with_gradient) {
-        MT_TRY(mt_problem_dln_frequency(p, a, pos, floor_hz, p->robust->slope, err));
-        for (int i = 0; i < p->n; i++) {
-            p->robust->slope[i] *= c->factor[i];
+        MT_TRY(mt_problem_dln_frequency(w, a, pos, floor_hz, w->robust->slope, err));
+        for (int i = 0; i < w->p->n; i++) {
+            w->robust->slope[i] *= factor[i];
         }
     }
     return MT_OK;
 }
 
-static mt_status expression(mt_problem *p, const mt_corner *c, mt_node node, double unit,
+static mt_status expression(mt_workspace *w, const mt_corner *c, mt_node node, double unit,
                             bool with_gradient, double *value, mt_err *err)
 {
-    mt_robust *const r = p->robust;
+    const mt_problem *const p = w->p;
+    mt_robust_work *const r = w->robust;
     mt_node bad = MT_NO_NODE;
     mt_err own = {0};
-    move(p, c->factor);
+    move(w, c->factor);
     const mt_status rc =
         with_gradient ? mt_program_gradient(&p->program, r->x, r->value, r->grad, &bad, &own)
                       : mt_program_eval(&p->program, r->x, r->value, &bad, &own);
@@ -81,7 +77,7 @@ static mt_status expression(mt_problem *p, const mt_corner *c, mt_node node, dou
     }
     *value = r->value[node] / unit;
     for (int i = 0; i < p->n && with_gradient; i++) {
-        r->slope[i] = mt_problem_stretch(p, i) * c->factor[i] *
+        r->slope[i] = mt_workspace_stretch(w, i) * c->factor[i] *
                       r->grad[((ptrdiff_t)node * p->n) + i] / unit;
     }
     return MT_OK;
@@ -101,70 +97,70 @@ static double limit_of(const mt_problem *p, const mt_robust_row *row)
                : d->equals + (give * mt_measure_unit(d->measure, d->equals));
 }
 
-static double edge_of(const mt_problem *p, const mt_robust_row *row)
+static double edge_of(const mt_case *c, const mt_robust_row *row)
 {
-    const mt_band *const band = &p->clears[row->at.clear].bands.items[row->at.band];
+    const mt_band *const band = &c->clears[row->at.clear].bands.items[row->at.band];
     return row->at.above ? band->upper_hz : band->lower_hz;
 }
 
-bool mt_robust_at_corner(const mt_problem *p, int i)
+bool mt_robust_at_corner(const mt_case *c, int i)
 {
-    for (int k = 0; p->robust != NULL && k < p->robust->n_rows; k++) {
-        if (p->robust->rows[k].row == i) {
+    for (int k = 0; c->robust != NULL && k < c->robust->n_rows; k++) {
+        if (c->robust->rows[k].row == i) {
             return true;
         }
     }
     return false;
 }
 
-double mt_robust_limit_hz(const mt_problem *p, const mt_robust_row *row)
+double mt_robust_limit_hz(const mt_case *c, const mt_robust_row *row)
 {
     if (row->demand < 0) {
-        return edge_of(p, row);
+        return edge_of(c, row);
     }
-    return p->demands[row->demand].view >= 0 ? limit_of(p, row) : nan("");
+    return c->p->demands[row->demand].view >= 0 ? limit_of(c->p, row) : nan("");
 }
 
-static mt_status demand_value(mt_problem *p, const mt_robust_row *row, bool with_gradient,
+static mt_status demand_value(mt_workspace *w, const mt_robust_row *row, bool with_gradient,
                               quantity *q, mt_err *err)
 {
-    const mt_demand *const d = &p->demands[row->demand];
-    const double limit = limit_of(p, row);
+    const mt_demand *const d = &w->p->demands[row->demand];
+    const double limit = limit_of(w->p, row);
     if (d->view >= 0) {
-        return frequency(p, &p->robust->views[d->view].corners[row->corner], d->mode, limit,
-                         with_gradient, &q->value, err);
+        return frequency(w, d->view, row, d->mode, limit, with_gradient, &q->value, err);
     }
     const double unit = mt_measure_unit(d->measure, limit);
     q->edge = limit / unit;
-    return expression(p, &p->robust->limits[row->demand].corners[row->corner], d->node, unit,
+    return expression(w, &w->c->robust->limits[row->demand].corners[row->corner], d->node, unit,
                       with_gradient, &q->value, err);
 }
 
-static mt_status band_value(mt_problem *p, const mt_robust_row *row, const double *t,
-                            bool with_gradient, quantity *q, mt_err *err)
+static mt_status band_value(mt_workspace *w, const mt_robust_row *row, bool with_gradient,
+                            quantity *q, mt_err *err)
 {
-    const mt_clear *const c = &p->clears[row->at.clear];
-    q->z = p->clearance ? t[p->n] : 0.0;
-    return frequency(p, &p->robust->views[c->view].corners[row->corner], row->at.mode,
-                     edge_of(p, row), with_gradient, &q->value, err);
+    const mt_clear *const clear = &w->c->clears[row->at.clear];
+    q->z = w->c->clearance ? w->t[w->p->n] : 0.0;
+    return frequency(w, clear->view, row, row->at.mode, edge_of(w->c, row), with_gradient,
+                     &q->value, err);
 }
 
-mt_status mt_robust_rows(mt_problem *p, const double *t, bool with_gradient, mt_nlp_values *out,
-                         mt_err *err)
+mt_status mt_robust_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out, mt_err *err)
 {
-    const ptrdiff_t rows = mt_problem_rows_in(p);
-    for (int k = 0; p->robust != NULL && k < p->robust->n_rows; k++) {
-        const mt_robust_row *const row = &p->robust->rows[k];
+    const mt_robust *const r = w->c->robust;
+    const ptrdiff_t rows = mt_case_rows_in(w->c);
+    const int n = w->p->n;
+    for (int k = 0; r != NULL && k < r->n_rows; k++) {
+        const mt_robust_row *const row = &r->rows[k];
         const double sign = row->side == MT_LOWEST ? 1.0 : -1.0;
         quantity q = {.z = 0.0};
-        MT_TRY(row->demand >= 0 ? demand_value(p, row, with_gradient, &q, err)
-                                : band_value(p, row, t, with_gradient, &q, err));
+        MT_TRY(row->demand >= 0 ? demand_value(w, row, with_gradient, &q, err)
+                                : band_value(w, row, with_gradient, &q, err));
         out->in[row->row] = (sign * (q.value - q.edge)) - q.z;
-        for (int i = 0; i < p->n && with_gradient; i++) {
-            out->din[row->row + (i * rows)] = sign * p->robust->slope[i];
+        for (int i = 0; i < n && with_gradient; i++) {
+            out->din[row->row + (i * rows)] = sign * w->robust->slope[i];
         }
-        if (with_gradient && p->n_t > p->n) {
-            out->din[row->row + (p->n * rows)] = row->demand >= 0 ? 0.0 : -1.0;
+        if (with_gradient && w->c->n_t > n) {
+            out->din[row->row + (n * rows)] = row->demand >= 0 ? 0.0 : -1.0;
         }
     }
     return MT_OK;
@@ -172,23 +168,23 @@ mt_status mt_robust_rows(mt_problem *p, const double *t, bool with_gradient, mt_
 
 /* Lowest and highest frequency of vibration mode k of a view: its range where that is known,
  * else of the design itself and its corners; false: there is no such mode. */
-static bool span_of(const mt_problem *p, int view, int k, double *low, double *high)
+static bool span_of(const mt_workspace *w, int view, int k, double *low, double *high)
 {
-    const mt_corner_set *const set = &p->robust->views[view];
-    const mt_robust_range *const range = mt_robust_hz(p, view, k);
+    const int n_corners = w->c->robust->views[view].n;
+    const mt_robust_range *const range = mt_robust_hz(w, view, k);
     if (range != NULL) {
         *low = range->value[MT_LOWEST];
         *high = range->value[MT_HIGHEST];
         return true;
     }
-    if (p->robust->n_ranges[view] > 0) {
+    if (w->robust->n_ranges[view] > 0) {
         return false;
     }
     *low = HUGE_VAL;
     *high = 0.0;
-    for (int c = -1; c < set->n; c++) {
+    for (int c = -1; c < n_corners; c++) {
         const mt_modes *const modes =
-            c < 0 ? &p->views[view].analysis->modes : &set->corners[c].analysis->modes;
+            c < 0 ? &w->views[view].analysis->modes : &w->views[view].corners[c]->modes;
         const int pos = mt_modal_flexible(modes, k);
         if (pos < 0) {
             return false;
@@ -199,18 +195,18 @@ static bool span_of(const mt_problem *p, int view, int k, double *low, double *h
     return true;
 }
 
-double mt_robust_room(const mt_problem *p, const mt_clear *c)
+double mt_robust_room(const mt_workspace *w, const mt_clear *c)
 {
-    const mt_modes *const modes = &p->views[c->view].analysis->modes;
-    const mt_corner_set *const set = &p->robust->views[c->view];
+    const mt_modes *const modes = &w->views[c->view].analysis->modes;
+    const int n_corners = w->c->robust->views[c->view].n;
     double low = 0.0;
     double high = 0.0;
     bool indexed = mt_modal_indexed(modes);
-    for (int k = 0; k < set->n; k++) {
-        indexed = indexed && mt_modal_indexed(&set->corners[k].analysis->modes);
+    for (int k = 0; k < n_corners; k++) {
+        indexed = indexed && mt_modal_indexed(&w->views[c->view].corners[k]->modes);
     }
     double room = indexed ? HUGE_VAL : nan("");
-    for (int k = 1; MT_HAS(room) && span_of(p, c->view, k, &low, &high); k++) {
+    for (int k = 1; MT_HAS(room) && span_of(w, c->view, k, &low, &high); k++) {
         for (int b = 0; b < c->bands.n; b++) {
             const mt_band *const band = &c->bands.items[b];
             const double below =

@@ -40,7 +40,7 @@ static mt_status begin(mt_discrete *d, mt_err *err)
     }
     d->mixed = d->n_discrete < p->n;
     for (int i = 0; i < d->n_workers && !d->mixed; i++) {
-        MT_TRY(mt_problem_values_init(d->problems[i], d->mem, &d->values[i], err));
+        MT_TRY(mt_case_values_init(d->c, d->mem, &d->values[i], err));
     }
     return MT_OK;
 }
@@ -62,7 +62,7 @@ void mt_discrete_set(const mt_discrete *d, mt_combination *c)
         const int i = d->variable[k];
         const mt_variable *const v = &p->study->variables[i];
         const double t = mt_problem_t(p, i, v->catalogue[c->pick[k]]);
-        const double away = t - p->origin_t[i];
+        const double away = t - d->c->origin_t[i];
         c->t[i] = t;
         change += 0.5 * v->weight * away * away;
     }
@@ -141,7 +141,7 @@ static bool settled(const mt_discrete *d, const mt_combination *next, int most,
  * spent. */
 static long share_of_budget(const mt_discrete *d, int batch)
 {
-    const long most = d->p->study->search.max_evaluations;
+    const long most = d->c->search.max_evaluations;
     const long left = (most - d->evals) / batch;
     if (most <= 0) {
         return 0;
@@ -225,7 +225,7 @@ static mt_status to_solution(const mt_discrete *d, const mt_combination *c,
                              .kkt = c->kkt,
                              .bound = mt_arena_int(d->mem, n),
                              .mult_eq = mt_arena_f64(d->mem, (size_t)p->n_eq, 1),
-                             .mult_in = mt_arena_f64(d->mem, (size_t)p->n_in + 1, 1),
+                             .mult_in = mt_arena_f64(d->mem, (size_t)d->c->n_in + 1, 1),
                              .mult_bound = mt_arena_f64(d->mem, n, 1)};
     if (out->bound == NULL || out->mult_eq == NULL || out->mult_in == NULL ||
         out->mult_bound == NULL) {
@@ -234,16 +234,16 @@ static mt_status to_solution(const mt_discrete *d, const mt_combination *c,
     for (int i = 0; i < p->n_eq; i++) {
         out->mult_eq[i] = nan("");
     }
-    for (int i = 0; i < p->n_in; i++) {
+    for (int i = 0; i < d->c->n_in; i++) {
         out->mult_in[i] = nan("");
     }
     for (int i = 0; i < p->n; i++) {
         const bool discrete = p->study->variables[i].n_catalogue > 0;
         out->mult_bound[i] = nan("");
-        out->bound[i] = discrete                   ? 0
-                        : c->t[i] == p->lower_t[i] ? -1
-                        : c->t[i] == p->upper_t[i] ? 1
-                                                   : 0;
+        out->bound[i] = discrete                      ? 0
+                        : c->t[i] == d->c->lower_t[i] ? -1
+                        : c->t[i] == d->c->upper_t[i] ? 1
+                                                      : 0;
     }
     return MT_OK;
 }
@@ -271,11 +271,14 @@ static mt_status unless_interrupted(mt_discrete *d, mt_status rc)
     return rc == MT_E_INTERRUPTED ? MT_OK : rc;
 }
 
-mt_status mt_discrete_solve(mt_problem *const *problems, int n_workers, mt_arena *mem,
+mt_status mt_discrete_solve(mt_workspace *const *workers, int n_workers, mt_arena *mem,
                             mt_nlp_result *out, mt_discrete_report *report, mt_err *err)
 {
-    mt_discrete d = {
-        .problems = problems, .n_workers = n_workers, .p = problems[0], .mem = mem};
+    mt_discrete d = {.workers = workers,
+                     .n_workers = n_workers,
+                     .p = workers[0]->p,
+                     .c = workers[0]->c,
+                     .mem = mem};
     MT_TRY(begin(&d, err));
     ranking r = {.most = kept_at_most(&d)};
     r.best = mt_arena_alloc(mem, (size_t)r.most, sizeof(mt_combination *));

@@ -2,7 +2,7 @@
 #ifndef SEARCH_DISCRETE_H
 #define SEARCH_DISCRETE_H
 
-#include "problem/problem.h"
+#include "problem/workspace.h"
 #include "result/result.h"
 
 /*
@@ -65,9 +65,10 @@ typedef struct mt_combination {
 
 /* A search under way: what its files share. */
 typedef struct mt_discrete {
-    mt_problem *const *problems; /* [n_workers] the relaxed problem */
+    mt_workspace *const *workers; /* [n_workers] */
     int n_workers;
-    mt_problem *p; /* problems[0] */
+    const mt_problem *p;
+    const mt_case *c; /* the relaxed problem: every catalogue an interval */
     mt_arena *mem;
     int n_discrete;
     int *variable; /* [n_discrete] */
@@ -80,12 +81,12 @@ typedef struct mt_discrete {
 
 bool mt_study_is_discrete(const mt_study *study);
 /*
- * problems[n_workers] as for mt_search_designs. Designs by the objectives in order (equal to 12
+ * workers[n_workers] as for mt_search_designs. Designs by the objectives in order (equal to 12
  * digits: in the order of the combinations), each combination once; else, where none is
  * feasible, by the squares of the violations. out->solutions belong to stage 0. Deterministic
  * for any number of workers. Results in mem. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INPUT.
  */
-mt_status mt_discrete_solve(mt_problem *const *problems, int n_workers, mt_arena *mem,
+mt_status mt_discrete_solve(mt_workspace *const *workers, int n_workers, mt_arena *mem,
                             mt_nlp_result *out, mt_discrete_report *report, mt_err *err);
 
 /* discrete_judge.c: judge list[n], on workers; at most budget evaluations for each where it is
@@ -108,6 +109,10 @@ mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err);
 bool mt_discrete_before(const mt_discrete *d, const mt_combination *a, const mt_combination *b);
 /* Room for n combinations. */
 mt_status mt_discrete_alloc(const mt_discrete *d, int n, mt_combination **out, mt_err *err);
+/* The whole case with the bounds of its catalogues closed on the values x[n], laid out. w: set
+ * to it. Fails as mt_case_lay_out. */
+mt_status mt_discrete_close(const mt_case *whole, const double *x, mt_workspace *w,
+                            mt_arena *mem, mt_case *out, mt_err *err);
 /* Coordinates and unavoidable change of c from its pick. */
 void mt_discrete_set(const mt_discrete *d, mt_combination *c);
 /* discrete_prove.c: what branch and bound can settle, into the report; combinations that it

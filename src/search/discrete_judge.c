@@ -96,29 +96,29 @@ static void demand_more(mt_combination *c, double short_of, double tolerance)
 
 /* Bands, each mode against each of them; the objective "clearance" is the least room left,
  * negative. */
-static void judge_bands(const mt_problem *p, mt_combination *c)
+static void judge_bands(const mt_workspace *w, mt_combination *c)
 {
     double room = HUGE_VAL;
     double tied = HUGE_VAL;
-    for (int i = 0; i < p->n_clears; i++) {
-        const mt_clear *const clear = &p->clears[i];
-        const double here = mt_clear_room(p, clear);
+    for (int i = 0; i < w->c->n_clears; i++) {
+        const mt_clear *const clear = &w->c->clears[i];
+        const double here = mt_clear_room(w, clear);
         demand_more(c, MT_HAS(here) ? fmax(-here, 0.0) : here, clear->tolerance);
         room = fmin(room, here);
     }
-    for (int i = 0; i < p->n_bands; i++) { /* one drive, one number of modes below a band */
+    for (int i = 0; i < w->c->n_bands; i++) { /* one drive, one number of modes below a band */
         int below = 0;
-        if (p->tie[i] == i) {
-            const double here = mt_tie_room(p, i, &below);
+        if (w->c->tie[i] == i) {
+            const double here = mt_tie_room(w, i, &below);
             tied = !(here >= tied) ? here : tied;
         }
     }
-    if (mt_family_any(p) && !(tied >= room)) {
-        demand_more(c, MT_HAS(tied) ? fmax(-tied, 0.0) : tied, p->clears[0].tolerance);
+    if (mt_family_any(w->p) && !(tied >= room)) {
+        demand_more(c, MT_HAS(tied) ? fmax(-tied, 0.0) : tied, w->c->clears[0].tolerance);
         room = tied;
     }
-    for (int k = 0; k < p->n_aims; k++) {
-        if (mt_objective_is(p->aims[k].type, MT_BANDS)) {
+    for (int k = 0; k < w->c->n_aims; k++) {
+        if (mt_objective_is(w->c->aims[k].type, MT_BANDS)) {
             c->f[k] = -room;
         }
     }
@@ -126,11 +126,11 @@ static void judge_bands(const mt_problem *p, mt_combination *c)
 
 static mt_status judge_design(const mt_discrete *d, int worker, mt_combination *c, mt_err *err)
 {
-    mt_problem *const p = d->problems[worker];
+    mt_workspace *const w = d->workers[worker];
     mt_nlp_values *const v = &d->values[worker];
     mt_err own = {0};
     c->evals = 1;
-    const mt_status rc = mt_problem_eval(p, c->t, false, v, &own);
+    const mt_status rc = mt_workspace_eval(w, c->t, false, v, &own);
     if (rc != MT_OK) {
         c->stop = rc == MT_E_INTERRUPTED ? MT_STOP_USER : MT_STOP_DONE;
         c->judged = rc != MT_E_INTERRUPTED;
@@ -139,34 +139,34 @@ static mt_status judge_design(const mt_discrete *d, int worker, mt_combination *
     c->judged = true;
     c->violation = 0.0;
     c->squares = 0.0;
-    for (int k = 0; k < p->n_aims; k++) {
-        c->f[k] = mt_aim_value(p, k, NULL);
+    for (int k = 0; k < w->c->n_aims; k++) {
+        c->f[k] = mt_aim_value(w, k, NULL);
     }
-    for (int i = 0; i < p->n_eq; i++) {
-        demand_more(c, fabs(v->eq[i]), p->eq_tol[i]);
+    for (int i = 0; i < w->p->n_eq; i++) {
+        demand_more(c, fabs(v->eq[i]), w->c->eq_tol[i]);
     }
-    for (int i = 0; i < p->n_in; i++) {
-        demand_more(c, MT_HAS(v->in[i]) ? fmax(-v->in[i], 0.0) : v->in[i], p->in_tol[i]);
+    for (int i = 0; i < w->c->n_in; i++) {
+        demand_more(c, MT_HAS(v->in[i]) ? fmax(-v->in[i], 0.0) : v->in[i], w->c->in_tol[i]);
     }
-    judge_bands(p, c);
+    judge_bands(w, c);
     c->feasible = c->violation <= 1.0;
     return MT_OK;
 }
 
-/* Motions of the design at c, whose views have been solved with the first worker's problem. */
-static mt_status follow(mt_problem *p, mt_combination *c, mt_arena *mem, mt_err *err)
+/* Motions of the design at c, whose views have been solved with w. */
+static mt_status follow(mt_workspace *w, mt_combination *c, mt_arena *mem, mt_err *err)
 {
-    int *const below = mt_arena_int(mem, (size_t)p->n_bands);
+    int *const below = mt_arena_int(mem, (size_t)w->c->n_bands);
     if (below == NULL) {
         return mt_fail_memory(err);
     }
-    double room = mt_ties_room(p, below);
-    for (int i = 0; i < p->n_families; i++) {
+    double room = mt_ties_room(w, below);
+    for (int i = 0; i < w->p->n_families; i++) {
         mt_motion m = {.room = 0.0};
-        if (!p->families[i].banded) {
+        if (!w->p->families[i].banded) {
             continue;
         }
-        MT_TRY(mt_motion_follow(p, i, below, mem, &m, err));
+        MT_TRY(mt_motion_follow(w, i, below, mem, &m, err));
         c->evals += m.positions;
         if (m.end == MT_MOTION_UNSTABLE || m.room < -m.tolerance) {
             demand_more(c, m.end == MT_MOTION_UNSTABLE ? nan("") : -m.room, m.tolerance);
@@ -174,8 +174,8 @@ static mt_status follow(mt_problem *p, mt_combination *c, mt_arena *mem, mt_err 
         }
         room = fmin(room, m.room);
     }
-    for (int k = 0; k < p->n_aims; k++) {
-        if (mt_objective_is(p->aims[k].type, MT_BANDS)) {
+    for (int k = 0; k < w->c->n_aims; k++) {
+        if (mt_objective_is(w->c->aims[k].type, MT_BANDS)) {
             c->f[k] = fmax(c->f[k], -room);
         }
     }
@@ -184,16 +184,16 @@ static mt_status follow(mt_problem *p, mt_combination *c, mt_arena *mem, mt_err 
 
 mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err)
 {
-    mt_problem *const p = d->p;
+    mt_workspace *const w = d->workers[0];
     mt_arena mem;
     mt_err own = {0};
-    if (d->mixed || !c->feasible || c->followed || !mt_family_any(p)) {
+    if (d->mixed || !c->feasible || c->followed || !mt_family_any(w->p)) {
         return MT_OK;
     }
     c->followed = true;
     MT_TRY(mt_arena_init(&mem, 0, err));
-    mt_status rc = mt_problem_eval(p, c->t, false, &d->values[0], &own);
-    rc = rc == MT_OK ? follow(p, c, &mem, &own) : rc;
+    mt_status rc = mt_workspace_eval(w, c->t, false, &d->values[0], &own);
+    rc = rc == MT_OK ? follow(w, c, &mem, &own) : rc;
     mt_arena_free(&mem);
     if (rc == MT_E_INTERRUPTED) {
         d->stop = MT_STOP_USER;
@@ -216,29 +216,37 @@ static mt_status judge_designs(void *context, int worker, int task, mt_err *err)
     return MT_OK;
 }
 
-/* The study with the bounds of its catalogues closed on c's values; it borrows everything
- * else. */
-static mt_status close_study(const judging *j, const mt_combination *c, mt_arena *mem,
-                             mt_study *out, mt_err *err)
+mt_status mt_discrete_close(const mt_case *whole, const double *x, mt_workspace *w,
+                            mt_arena *mem, mt_case *out, mt_err *err)
 {
-    const mt_study *const whole = j->d->p->study;
-    const int n = whole->n_variables;
-    *out = *whole;
-    out->trade.n_vary = 0;
-    out->variables = mt_arena_alloc(mem, (size_t)n, sizeof *out->variables);
-    if (out->variables == NULL) {
+    const mt_problem *const p = whole->p;
+    MT_TRY(mt_case_copy(whole, mem, out, err));
+    for (int i = 0; i < p->n; i++) {
+        if (p->study->variables[i].n_catalogue > 0) {
+            mt_case_bound(out, i, x[i], x[i]);
+        }
+    }
+    return mt_case_lay_out(out, NULL, 0, NULL, w, mem, err);
+}
+
+/* The case in which c's values are searched; w is set to it. */
+static mt_status close_on(const mt_discrete *d, const mt_combination *c, long budget,
+                          mt_workspace *w, mt_arena *mem, mt_case *out, mt_err *err)
+{
+    const mt_problem *const p = d->p;
+    double *const x = mt_arena_f64(mem, (size_t)p->n, 1);
+    if (x == NULL) {
         return mt_fail_memory(err);
     }
-    memcpy(out->variables, whole->variables, (size_t)n * sizeof *out->variables);
-    for (int k = 0; k < j->d->n_discrete; k++) {
-        mt_variable *const v = &out->variables[j->d->variable[k]];
-        v->lower = v->catalogue[c->pick[k]];
-        v->upper = v->lower;
+    for (int k = 0; k < d->n_discrete; k++) {
+        x[d->variable[k]] = p->study->variables[d->variable[k]].catalogue[c->pick[k]];
     }
+    MT_TRY(mt_discrete_close(d->c, x, w, mem, out, err));
     if (out->search.starts <= 0) {
-        out->search.starts = STARTS_BASE + (STARTS_PER_VARIABLE * (n - j->d->n_discrete));
+        out->search.starts = STARTS_BASE + (STARTS_PER_VARIABLE * (p->n - d->n_discrete));
     }
-    out->search.max_evaluations = j->budget;
+    out->search.max_evaluations = budget;
+    out->hint = c->from;
     return MT_OK;
 }
 
@@ -253,30 +261,29 @@ static void keep(const mt_nlp_solution *s, int n, mt_combination *c)
 }
 
 /* All objectives at the design found, by one more evaluation. */
-static mt_status evaluate_aims(mt_problem *p, const mt_nlp_solution *s, bool gaps,
+static mt_status evaluate_aims(mt_workspace *w, const mt_nlp_solution *s, bool gaps,
                                mt_arena *mem, mt_combination *c, mt_err *err)
 {
     mt_nlp_values v;
-    p->stage = 0;
-    MT_TRY(mt_problem_values_init(p, mem, &v, err));
-    MT_TRY(mt_problem_eval(p, c->t, false, &v, err));
+    MT_TRY(mt_case_values_init(w->c, mem, &v, err));
+    MT_TRY(mt_workspace_eval(w, c->t, false, &v, err));
     c->evals++;
-    for (int k = 0; k < p->n_aims; k++) {
-        const bool clearance = mt_objective_is(p->aims[k].type, MT_BANDS);
-        c->f[k] = k == 0 && gaps && clearance ? s->f : mt_aim_value(p, k, NULL);
+    for (int k = 0; k < w->c->n_aims; k++) {
+        const bool clearance = mt_objective_is(w->c->aims[k].type, MT_BANDS);
+        c->f[k] = k == 0 && gaps && clearance ? s->f : mt_aim_value(w, k, NULL);
     }
     return MT_OK;
 }
 
-static mt_status search_closed(mt_problem *p, mt_arena *mem, mt_combination *c, mt_err *err)
+static mt_status search_closed(mt_workspace *w, mt_arena *mem, mt_combination *c, mt_err *err)
 {
     mt_nlp_result plain = {0};
     mt_gap_result gaps = {0};
     mt_err why = {0};
     int stage = 0;
-    const bool bands = p->n_clears > 0;
-    MT_TRY(bands ? mt_gaps_solve(p, 1, mem, &gaps, err)
-                 : mt_search_designs(&p, 1, mem, &plain, &stage, &why, err));
+    const bool bands = w->p->n_clears > 0;
+    MT_TRY(bands ? mt_gaps_solve(&w, 1, mem, &gaps, err)
+                 : mt_search_designs(&w, 1, mem, &plain, &stage, &why, err));
     const int n = bands ? gaps.n_solutions : plain.n_solutions;
     c->evals = bands ? gaps.evals : plain.evals;
     c->starts = bands ? gaps.starts : plain.starts;
@@ -286,8 +293,8 @@ static mt_status search_closed(mt_problem *p, mt_arena *mem, mt_combination *c, 
         return MT_OK;
     }
     const mt_nlp_solution *const best = bands ? gaps.solutions[0].found : &plain.solutions[0];
-    keep(best, p->n, c);
-    const mt_status rc = evaluate_aims(p, best, bands, mem, c, &why);
+    keep(best, w->p->n, c);
+    const mt_status rc = evaluate_aims(w, best, bands, mem, c, &why);
     if (rc != MT_OK) {
         c->feasible = false;
         c->squares = HUGE_VAL;
@@ -298,45 +305,40 @@ static mt_status search_closed(mt_problem *p, mt_arena *mem, mt_combination *c, 
 mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_arena *mem,
                                  mt_nlp_result *out, mt_err *err)
 {
-    const judging j = {.d = d};
-    mt_study closed;
-    mt_problem *p = NULL;
+    mt_workspace *const w = d->workers[0];
+    mt_case closed;
     mt_gap_result gaps = {0};
     mt_err why = {0};
     int stage = 0;
     *out = (mt_nlp_result){.n_undetermined = 0};
-    MT_TRY(close_study(&j, c, mem, &closed, err));
-    MT_TRY(mt_problem_new(&closed, d->p->references, &p, err));
-    const bool bands = p->n_clears > 0;
-    const mt_status rc = bands ? mt_gaps_solve(p, 1, mem, &gaps, err)
-                               : mt_search_designs(&p, 1, mem, out, &stage, &why, err);
+    mt_status rc = close_on(d, c, 0, w, mem, &closed, err);
+    closed.hint = NULL;
+    const bool bands = d->p->n_clears > 0;
+    if (rc == MT_OK) {
+        rc = bands ? mt_gaps_solve(&w, 1, mem, &gaps, err)
+                   : mt_search_designs(&w, 1, mem, out, &stage, &why, err);
+    }
     if (bands) {
         *out = (mt_nlp_result){.evals = gaps.evals,
                                .n_undetermined = gaps.n_undetermined,
                                .undetermined = gaps.undetermined,
                                .undetermined_effect = gaps.undetermined_effect};
     }
-    mt_problem_delete(p);
+    mt_workspace_back(w, d->c);
     return rc;
 }
 
 static mt_status judge_mixed(void *context, int worker, int task, mt_err *err)
 {
     const judging *const j = context;
-    const mt_problem *const whole = j->d->p;
+    mt_workspace *const w = j->d->workers[worker];
     mt_combination *const c = &j->list[task];
     mt_arena mem;
-    mt_study closed;
-    mt_problem *p = NULL;
-    (void)worker;
+    mt_case closed;
     MT_TRY(mt_arena_init(&mem, 0, err));
-    mt_status rc = close_study(j, c, &mem, &closed, err);
-    rc = rc == MT_OK ? mt_problem_new(&closed, whole->references, &p, err) : rc;
-    if (rc == MT_OK) {
-        p->hint = c->from;
-        rc = search_closed(p, &mem, c, err);
-    }
-    mt_problem_delete(p);
+    mt_status rc = close_on(j->d, c, j->budget, w, &mem, &closed, err);
+    rc = rc == MT_OK ? search_closed(w, &mem, c, err) : rc;
+    mt_workspace_back(w, j->d->c);
     mt_arena_free(&mem);
     if (rc == MT_E_INTERRUPTED) {
         c->stop = MT_STOP_USER;

@@ -68,7 +68,7 @@ static void propose(walk *w, const int *pick)
 static mt_status judge(walk *w, mt_err *err)
 {
     mt_discrete *const d = w->d;
-    const long most = d->p->study->search.max_evaluations;
+    const long most = d->c->search.max_evaluations;
     const long left = most - d->evals;
     if (most > 0 && left < w->n_fresh) {
         w->n_fresh = left > 0 && !d->mixed ? (int)left : 0;
@@ -164,9 +164,9 @@ static mt_status round_relaxed(walk *w, mt_err *err)
     mt_gap_result gaps = {0};
     mt_err why = {0};
     int stage = 0;
-    MT_TRY(bands ? mt_gaps_solve(d->p, d->n_workers, d->mem, &gaps, err)
-                 : mt_search_designs(d->problems, d->n_workers, d->mem, &plain, &stage, &why,
-                                     err));
+    MT_TRY(
+        bands ? mt_gaps_solve(d->workers, d->n_workers, d->mem, &gaps, err)
+              : mt_search_designs(d->workers, d->n_workers, d->mem, &plain, &stage, &why, err));
     const int found = bands ? gaps.n_solutions : plain.n_solutions;
     const int n = found < RELAXED_MOST ? found : RELAXED_MOST;
     d->evals += bands ? gaps.evals : plain.evals;
@@ -177,7 +177,7 @@ static mt_status round_relaxed(walk *w, mt_err *err)
         MT_TRY(propose_roundings(w, bands ? gaps.solutions[i].found->t : plain.solutions[i].t,
                                  err));
     }
-    MT_TRY(propose_roundings(w, d->p->origin_t, err));
+    MT_TRY(propose_roundings(w, d->c->origin_t, err));
     return judge(w, err);
 }
 

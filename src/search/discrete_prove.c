@@ -105,7 +105,7 @@ static mt_status judge(prover *v, const double *x, mt_err *err)
 {
     mt_discrete *const d = v->d;
     mt_combination *c = NULL;
-    const long most = d->p->study->search.max_evaluations;
+    const long most = d->c->search.max_evaluations;
     const long left = most - d->evals;
     MT_TRY(combination_at(v, x, &c, err));
     if (c == NULL) {
@@ -214,14 +214,14 @@ mt_status mt_discrete_prove(mt_discrete *d, mt_combination ***all, int *n,
 {
     prover v = {.d = d, .report = report, .all = *all, .n = *n, .capacity = *n};
     report->asked = true;
-    mt_status rc = mt_proof_init(&v.proof, d->p, d->mem, err);
+    mt_status rc = mt_proof_init(&v.proof, d->c, d->mem, err);
     if (rc == MT_OK && v.proof.possible) {
         rc = prove(&v, err);
     } else if (rc == MT_OK) {
         report->reason = mt_arena_strdup(d->mem, v.proof.reason);
         rc = report->reason == NULL ? mt_fail_memory(err) : MT_OK;
     }
-    mt_proof_free(&v.proof, d->p);
+    mt_proof_free(&v.proof);
     *all = v.all;
     *n = v.n;
     return rc;

@@ -29,7 +29,7 @@ static mt_status claim(crossing *x, mt_err *err)
 {
     const mt_problem *const p = x->d->p;
     mt_arena *const mem = x->d->mem;
-    x->rows = p->n_eq + p->n_in + p->n_res + p->n_aims + p->n_clears;
+    x->rows = p->n_eq + x->d->c->n_in + p->n_res + p->n_aims + p->n_clears;
     x->at = mt_arena_f64(mem, (size_t)x->rows, 1);
     x->now = mt_arena_f64(mem, (size_t)x->rows, 1);
     x->below = mt_arena_int(mem, 2 * (size_t)p->n_bands + 1);
@@ -37,39 +37,39 @@ static mt_status claim(crossing *x, mt_err *err)
     if (x->at == NULL || x->now == NULL || x->below == NULL || x->t == NULL) {
         return mt_fail_memory(err);
     }
-    return mt_problem_values_init(p, mem, &x->v, err);
+    return mt_case_values_init(x->d->c, mem, &x->v, err);
 }
 
 /* Rows divided by their tolerances at x->t; false where a goal has no value. */
 static bool measure(crossing *x, double *rows, int *below)
 {
-    mt_problem *const p = x->d->p;
+    mt_workspace *const w = x->d->workers[0];
     int n = 0;
     if (x->rc != MT_OK) {
         return false;
     }
-    const mt_status rc = mt_problem_eval(p, x->t, false, &x->v, &x->err);
+    const mt_status rc = mt_workspace_eval(w, x->t, false, &x->v, &x->err);
     bool known = rc == MT_OK;
     x->rc = mt_is_final(rc) ? rc : MT_OK;
     x->d->evals++;
-    for (int i = 0; i < p->n_eq && known; i++) {
-        rows[n++] = x->v.eq[i] / p->eq_tol[i];
+    for (int i = 0; i < w->p->n_eq && known; i++) {
+        rows[n++] = x->v.eq[i] / w->c->eq_tol[i];
     }
-    for (int i = 0; i < p->n_in && known; i++) {
-        rows[n++] = x->v.in[i] / p->in_tol[i];
+    for (int i = 0; i < w->c->n_in && known; i++) {
+        rows[n++] = x->v.in[i] / w->c->in_tol[i];
     }
-    for (int i = 0; i < p->n_res && known; i++) {
-        rows[n++] = p->r[i] / VALUE_TOL;
+    for (int i = 0; i < w->p->n_res && known; i++) {
+        rows[n++] = w->r[i] / VALUE_TOL;
     }
-    for (int k = 0; k < p->n_aims && known; k++) {
-        const bool counts = mt_objective_is(p->aims[k].type, MT_AMOUNT);
-        rows[n++] = counts ? mt_aim_value(p, k, NULL) / VALUE_TOL : 0.0;
+    for (int k = 0; k < w->c->n_aims && known; k++) {
+        const bool counts = mt_objective_is(w->c->aims[k].type, MT_AMOUNT);
+        rows[n++] = counts ? mt_aim_value(w, k, NULL) / VALUE_TOL : 0.0;
     }
-    for (int i = 0; i < p->n_clears && known; i++) {
-        const mt_clear *const c = &p->clears[i];
-        const mt_modes *const modes = &p->views[c->view].analysis->modes;
+    for (int i = 0; i < w->c->n_clears && known; i++) {
+        const mt_clear *const c = &w->c->clears[i];
+        const mt_modes *const modes = &w->views[c->view].analysis->modes;
         const double violation = mt_clear_violation(c, modes, below + c->first, NULL);
-        rows[n++] = mt_clear_room(p, c) / c->tolerance;
+        rows[n++] = mt_clear_room(w, c) / c->tolerance;
         known = violation == violation;
     }
     return known;
@@ -79,7 +79,7 @@ static bool measure(crossing *x, double *rows, int *below)
 static double size_of(const crossing *x, int row)
 {
     const mt_problem *const p = x->d->p;
-    const int first = p->n_eq + p->n_in + p->n_res;
+    const int first = p->n_eq + x->d->c->n_in + p->n_res;
     const bool aim = row >= first && row < first + p->n_aims;
     return aim ? fmax(fabs(x->at[row]) * VALUE_TOL, VALUE_TOL) : 1.0;
 }
@@ -143,7 +143,6 @@ mt_status mt_discrete_undetermined(mt_discrete *d, const mt_combination *best,
 {
     crossing x = {.d = d};
     mt_nlp_result continuous = {0};
-    d->p->stage = 0;
     MT_TRY(claim(&x, err));
     memcpy(x.t, best->t, (size_t)d->p->n * sizeof *x.t);
     if (d->mixed) {

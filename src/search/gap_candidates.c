@@ -35,17 +35,17 @@ static int compare_below(const int *a, const int *b, int n)
     return 0;
 }
 
-mt_status mt_gap_assignment(mt_problem *p, const double *t, int *below, double *violation,
+mt_status mt_gap_assignment(mt_workspace *w, const double *t, int *below, double *violation,
                             mt_err *err)
 {
-    mt_problem_x(p, t, p->x);
+    mt_case_x(w->c, t, w->x);
     *violation = 0.0;
-    for (int i = 0; i < p->n_clears; i++) {
-        const mt_clear *const c = &p->clears[i];
-        mt_analysis *const a = p->views[c->view].analysis;
+    for (int i = 0; i < w->c->n_clears; i++) {
+        const mt_clear *const c = &w->c->clears[i];
+        mt_analysis *const a = w->views[c->view].analysis;
         const mt_analysis_options opt = {.accuracy = false};
         mt_err own = {0};
-        const mt_status rc = mt_analysis_solve(a, p->x, &opt, &own);
+        const mt_status rc = mt_analysis_solve(a, w->x, &opt, &own);
         if (rc != MT_OK) {
             *violation = nan("");
             return mt_pass_final(rc, &own, err);
@@ -150,9 +150,10 @@ static int keep_nearest(const sampled *list, int n, int most, bool *kept)
 
 /* A sample whose numbers differ between two positions of one drive is no kind of design; the
  * kinds next to it have the least and the greatest of them everywhere. */
-static void insert_agreeing(const mt_problem *p, sampled *list, int *n, const int *below,
+static void insert_agreeing(const mt_workspace *w, sampled *list, int *n, const int *below,
                             double violation, int *work)
 {
+    const mt_problem *const p = w->p;
     const size_t size = (size_t)p->n_bands * sizeof *below;
     if (mt_ties_agree(p, below)) {
         insert(p, list, n, below, violation);
@@ -161,19 +162,20 @@ static void insert_agreeing(const mt_problem *p, sampled *list, int *n, const in
     for (int most = 0; most < 2; most++) {
         memcpy(work, below, size);
         mt_ties_settle(p, most == 1, work);
-        insert(p, list, n, work, mt_ties_violation(p, work));
+        insert(p, list, n, work, mt_ties_violation(w, work));
     }
 }
 
 /* The assignments of n designs spread over the bounds, at most `most` of them. */
-static mt_status sample(mt_problem *p, int n, int most, mt_arena *mem, mt_gap_candidates *out,
+static mt_status sample(mt_workspace *w, int n, int most, mt_arena *mem, mt_gap_candidates *out,
                         mt_err *err)
 {
-    mt_nlp nlp = mt_problem_nlp(p);
+    const mt_problem *const p = w->p;
+    mt_nlp nlp = mt_workspace_nlp(w);
     mt_nlp_options opt = mt_nlp_options_default();
     mt_nlp_engine e;
     nlp.n = p->n;
-    opt.seed = p->study->search.seed;
+    opt.seed = w->c->search.seed;
     sampled *const list = mt_arena_alloc(mem, CANDIDATES_MOST, sizeof *list);
     int *const below = mt_arena_int(mem, (size_t)p->n_bands);
     int *const work = mt_arena_int(mem, (size_t)p->n_bands);
@@ -194,9 +196,9 @@ static mt_status sample(mt_problem *p, int n, int most, mt_arena *mem, mt_gap_ca
         if (mt_interrupted(p->study->model->interrupt)) {
             break;
         }
-        rc = mt_gap_assignment(p, t + ((ptrdiff_t)k * p->n), below, &violation, err);
+        rc = mt_gap_assignment(w, t + ((ptrdiff_t)k * p->n), below, &violation, err);
         if (rc == MT_OK && MT_HAS(violation)) {
-            insert_agreeing(p, list, &out->n, below, violation, work);
+            insert_agreeing(w, list, &out->n, below, violation, work);
         }
         out->evals++;
     }
@@ -254,32 +256,32 @@ static mt_status keep_proven(const mt_problem *p, const mt_certify_search *found
     return MT_OK;
 }
 
-mt_status mt_gap_candidates_find(mt_problem *p, mt_arena *mem, mt_gap_candidates *out,
+mt_status mt_gap_candidates_find(mt_workspace *w, mt_arena *mem, mt_gap_candidates *out,
                                  mt_err *err)
 {
     mt_proof proof;
     mt_certify_search found = {0};
-    *out = (mt_gap_candidates){.possible = mt_gap_count_possible(p)};
-    mt_status rc = mt_proof_init(&proof, p, mem, err);
+    *out = (mt_gap_candidates){.possible = mt_gap_count_possible(w->p)};
+    mt_status rc = mt_proof_init(&proof, w->c, mem, err);
     if (rc == MT_OK && proof.possible) {
         rc = mt_certify_assignments(&proof.question, 0, NULL, mem, &found, err);
-        rc = rc == MT_OK ? keep_proven(p, &found, mem, out, err) : rc;
+        rc = rc == MT_OK ? keep_proven(w->p, &found, mem, out, err) : rc;
     }
     const bool by_samples = !proof.possible || (!out->proven && out->n == 0);
     if (rc == MT_OK && by_samples) {
         out->reason = mt_arena_strdup(mem, proof.reason);
-        const int wanted = SAMPLES_PER_VARIABLE * (p->n + 1);
+        const int wanted = SAMPLES_PER_VARIABLE * (w->p->n + 1);
         const int n = wanted < SAMPLES_MOST ? wanted : SAMPLES_MOST;
         rc = out->reason == NULL ? mt_fail_memory(err)
-                                 : sample(p, n, CANDIDATES_MOST, mem, out, err);
+                                 : sample(w, n, CANDIDATES_MOST, mem, out, err);
     }
-    mt_proof_free(&proof, p);
+    mt_proof_free(&proof);
     return rc;
 }
 
-mt_status mt_gap_candidates_near(mt_problem *p, int most, mt_arena *mem, mt_gap_candidates *out,
-                                 mt_err *err)
+mt_status mt_gap_candidates_near(mt_workspace *w, int most, mt_arena *mem,
+                                 mt_gap_candidates *out, mt_err *err)
 {
-    *out = (mt_gap_candidates){.possible = mt_gap_count_possible(p)};
-    return sample(p, MT_GAP_SAMPLES_NEAR, most, mem, out, err);
+    *out = (mt_gap_candidates){.possible = mt_gap_count_possible(w->p)};
+    return sample(w, MT_GAP_SAMPLES_NEAR, most, mem, out, err);
 }

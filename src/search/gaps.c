@@ -30,11 +30,13 @@ typedef struct slot {
 } slot;
 
 typedef struct job {
-    mt_problem *p;
+    mt_workspace *const *workers;
+    const mt_case *c; /* without an assignment */
+    const mt_problem *p;
     const mt_gap_candidates *candidates;
     slot *slots;
     mt_nlp_options options;
-    const int *hint_below; /* [n_bands] assignment of p->hint; NULL: none */
+    const int *hint_below; /* [n_bands] assignment of c->hint; NULL: none */
 } job;
 
 enum { STARTS_PER_CANDIDATE = 24, SOLUTIONS_PER_CANDIDATE = 4, NEAREST = 6 };
@@ -48,40 +50,38 @@ static const double *hint_of(const job *j, int k)
     const size_t size = (size_t)j->p->n_bands * sizeof(int);
     const int *const below = j->candidates->below + ((ptrdiff_t)k * j->p->n_bands);
     if (j->hint_below != NULL && memcmp(below, j->hint_below, size) == 0) {
-        return j->p->hint;
+        return j->c->hint;
     }
     return j->candidates->at == NULL ? NULL : j->candidates->at + ((ptrdiff_t)k * j->p->n);
 }
 
 /* Values of all objectives at the best solution, by which the candidates are ranked. */
-static mt_status keep_aims(mt_problem *p, slot *s, mt_err *err)
+static mt_status keep_aims(mt_workspace *w, slot *s, mt_err *err)
 {
     mt_nlp_values v;
-    s->aims = mt_arena_f64(&s->mem, (size_t)p->n_aims, 1);
+    s->aims = mt_arena_f64(&s->mem, (size_t)w->c->n_aims, 1);
     if (s->aims == NULL) {
         return mt_fail_memory(err);
     }
-    p->stage = 0;
-    MT_TRY(mt_problem_values_init(p, &s->mem, &v, err));
-    MT_TRY(mt_problem_eval(p, s->found.solutions[0].t, false, &v, err));
-    for (int k = 0; k < p->n_aims; k++) {
-        s->aims[k] = mt_aim_value(p, k, NULL);
+    MT_TRY(mt_case_values_init(w->c, &s->mem, &v, err));
+    MT_TRY(mt_workspace_eval(w, s->found.solutions[0].t, false, &v, err));
+    for (int k = 0; k < w->c->n_aims; k++) {
+        s->aims[k] = mt_aim_value(w, k, NULL);
     }
     return MT_OK;
 }
 
 /* The objectives in order, each with those before it held (search.h). */
-static mt_status search_in_order(mt_problem *p, const double *hint, slot *s, mt_err *err)
+static mt_status search_in_order(mt_workspace *w, slot *s, mt_err *err)
 {
     int stage = 0;
     mt_err why = {0};
-    p->hint = hint;
-    MT_TRY(mt_search_designs(&p, 1, &s->mem, &s->found, &stage, &why, err));
+    MT_TRY(mt_search_designs(&w, 1, &s->mem, &s->found, &stage, &why, err));
     if (s->found.n_solutions == 0 || s->found.compromise || s->found.stop == MT_STOP_USER) {
         return MT_OK;
     }
-    MT_TRY(keep_aims(p, s, err));
-    s->found.solutions[0].f = s->aims[p->n_aims - 1];
+    MT_TRY(keep_aims(w, s, err));
+    s->found.solutions[0].f = s->aims[w->c->n_aims - 1];
     return MT_OK;
 }
 
@@ -109,25 +109,24 @@ static void refuse(mt_nlp_solution *best, double short_of, double tolerance)
 
 /* Follow the best design over the range of motion. *added: cuts to search again with; with none
  * a design that crosses is refused. */
-static mt_status follow_best(slot *s, mt_problem *p, bool last, int *added, mt_err *err)
+static mt_status follow_best(slot *s, mt_workspace *w, bool last, int *added, mt_err *err)
 {
     mt_nlp_values v;
     mt_nlp_solution *const best = &s->found.solutions[0];
-    const double wanted = p->clearance ? best->t[p->n] : 0.0;
+    const double wanted = w->c->clearance ? best->t[w->p->n] : 0.0;
     double short_of = 0.0;
     double tolerance = 1.0;
     *added = 0;
-    p->stage = 0;
-    MT_TRY(mt_problem_values_init(p, &s->mem, &v, err));
-    MT_TRY(mt_problem_eval(p, best->t, false, &v, err));
-    for (int i = 0; i < p->n_families; i++) {
+    MT_TRY(mt_case_values_init(w->c, &s->mem, &v, err));
+    MT_TRY(mt_workspace_eval(w, best->t, false, &v, err));
+    for (int i = 0; i < w->p->n_families; i++) {
         mt_motion m = {.room = 0.0};
-        if (!p->families[i].banded) {
+        if (!w->p->families[i].banded) {
             continue;
         }
-        MT_TRY(mt_motion_follow(p, i, p->below, &s->mem, &m, err));
+        MT_TRY(mt_motion_follow(w, i, w->c->below, &s->mem, &m, err));
         s->evals += m.positions;
-        *added += last ? 0 : add_cuts(s, p, i, &m, wanted);
+        *added += last ? 0 : add_cuts(s, w->p, i, &m, wanted);
         if (m.end == MT_MOTION_UNSTABLE || m.room < -m.tolerance) {
             const double here = m.end == MT_MOTION_UNSTABLE ? 1.0 : -m.room;
             tolerance = here > short_of && m.tolerance > 0.0 ? m.tolerance : tolerance;
@@ -145,15 +144,15 @@ static mt_status follow_best(slot *s, mt_problem *p, bool last, int *added, mt_e
  * that ends with z < 0 has a mode on the wrong side of an edge: it is not of this kind, and
  * misses the bands by -z.
  */
-static void judge_clearance(const mt_problem *p, mt_nlp_result *found)
+static void judge_clearance(const mt_case *c, mt_nlp_result *found)
 {
     double tolerance = HUGE_VAL;
-    for (int i = 0; i < p->n_clears; i++) {
-        tolerance = fmin(tolerance, p->clears[i].tolerance);
+    for (int i = 0; i < c->n_clears; i++) {
+        tolerance = fmin(tolerance, c->clears[i].tolerance);
     }
-    for (int i = 0; i < found->n_solutions && p->clearance; i++) {
+    for (int i = 0; i < found->n_solutions && c->clearance; i++) {
         mt_nlp_solution *const s = &found->solutions[i];
-        const double z = s->t[p->n];
+        const double z = s->t[c->p->n];
         if (z < -tolerance) {
             s->feasible = false;
             s->squares += z * z;
@@ -165,43 +164,43 @@ static void judge_clearance(const mt_problem *p, mt_nlp_result *found)
 
 /* One search of candidate k with the cuts so far, from `from` (NULL: no hint). *again: a cut
  * was added. */
-static mt_status search_round(const job *j, slot *s, int k, int round, const double *from,
-                              bool *again, mt_err *why)
+static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int round,
+                              const double *from, bool *again, mt_err *why)
 {
-    mt_problem *p = NULL;
+    const int *const below = j->candidates->below + ((ptrdiff_t)k * j->p->n_bands);
     mt_nlp_options options = j->options;
+    mt_case c;
     int added = 0;
     *again = false;
-    MT_TRY(mt_problem_new_cut(j->p->study, j->p->references,
-                              j->candidates->below + ((ptrdiff_t)k * j->p->n_bands), s->n_cuts,
-                              s->cuts, &p, why));
+    MT_TRY(mt_case_in_gap(j->c, below, s->n_cuts, s->cuts, w, &s->mem, &c, why));
     options.starts =
         round > 1 && options.starts > CUT_STARTS ? (int)CUT_STARTS : options.starts;
-    p->starts = options.starts;
-    s->n_t = p->n_t;
-    mt_nlp nlp = mt_problem_nlp(p);
-    double *const hint = mt_arena_f64(&s->mem, (size_t)p->n_t, 1);
-    if (hint != NULL && from != NULL) {
-        memcpy(hint, from, (size_t)p->n * sizeof *hint);
-        nlp.hint = hint;
+    c.starts = options.starts;
+    s->n_t = c.n_t;
+    double *const hint = mt_arena_f64(&s->mem, (size_t)c.n_t, 1);
+    if (hint == NULL) {
+        return mt_fail_memory(why);
     }
-    mt_status rc = hint == NULL    ? mt_fail_memory(why)
-                   : p->n_aims > 1 ? search_in_order(p, nlp.hint, s, why)
-                                   : mt_nlp_solve(&nlp, &options, &s->mem, &s->found, why);
-    if (rc == MT_OK && p->n_aims == 1) {
-        rc = mt_search_repeated(p, options.max_evals, &s->mem, &s->found, why);
+    if (from != NULL) {
+        memcpy(hint, from, (size_t)j->p->n * sizeof *hint);
+    }
+    c.hint = from != NULL ? hint : NULL;
+    const mt_nlp nlp = mt_workspace_nlp(w);
+    mt_status rc = c.n_aims > 1 ? search_in_order(w, s, why)
+                                : mt_nlp_solve(&nlp, &options, &s->mem, &s->found, why);
+    if (rc == MT_OK && c.n_aims == 1) {
+        rc = mt_search_repeated(w, options.max_evals, &s->mem, &s->found, why);
     }
     if (rc == MT_OK) {
-        judge_clearance(p, &s->found);
+        judge_clearance(&c, &s->found);
     }
     s->evals += s->found.evals;
     s->starts += s->found.starts;
     if (rc == MT_OK && s->found.n_solutions > 0 && s->found.solutions[0].feasible &&
-        s->found.stop != MT_STOP_USER && mt_family_any(p)) {
-        rc = follow_best(s, p, round + 1 == CUT_ROUNDS, &added, why);
+        s->found.stop != MT_STOP_USER && mt_family_any(j->p)) {
+        rc = follow_best(s, w, round + 1 == CUT_ROUNDS, &added, why);
     }
     *again = added > 0;
-    mt_problem_delete(p);
     return rc;
 }
 
@@ -211,9 +210,9 @@ static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
 {
     job *const j = context;
     slot *const s = &j->slots[k];
+    mt_workspace *const w = j->workers[worker];
     mt_err why = {0};
     bool again = true;
-    (void)worker;
     MT_TRY(mt_arena_init(&s->mem, 0, err));
     s->cuts = mt_arena_alloc(&s->mem, CUTS_MOST, sizeof *s->cuts);
     if (s->cuts == NULL) {
@@ -221,19 +220,18 @@ static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
     }
     for (int round = 0; again && round < CUT_ROUNDS; round++) {
         const bool known = round > 0 && s->found.n_solutions > 0;
-        s->rc = search_round(j, s, k, round, known ? s->found.solutions[0].t : hint_of(j, k),
+        s->rc = search_round(j, w, s, k, round, known ? s->found.solutions[0].t : hint_of(j, k),
                              &again, &why);
     }
     if (s->rc != MT_OK) { /* perhaps on the way from position to position: nothing is known */
         s->found.n_solutions = 0;
         s->found.stop = s->rc == MT_E_INTERRUPTED ? MT_STOP_USER : s->found.stop;
     }
+    mt_workspace_back(w, j->c); /* the candidate's case goes */
     const bool fatal = mt_is_final(s->rc);
     return fatal ? mt_fail(err, s->rc, "%s", why.text) : MT_OK;
 }
 
-/* References that are models are analysed before the workers start: the cache is shared and not
- * locked. */
 static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem,
                                 mt_gap_result *out, mt_err *err)
 {
@@ -261,7 +259,7 @@ static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem
                     .below = j->candidates->below + ((ptrdiff_t)k * p->n_bands),
                     .candidate = k,
                     .aims = j->slots[k].aims,
-                    .n_aims = j->slots[k].aims == NULL ? 0 : p->n_aims};
+                    .n_aims = j->slots[k].aims == NULL ? 0 : j->c->n_aims};
             }
         }
     }
@@ -294,12 +292,12 @@ static void rank(mt_gap_result *r)
 }
 
 /* Solutions outlive the slots: copy what is kept. */
-static mt_status copy_solution(const mt_problem *p, const int *below,
-                               const mt_nlp_solution *from, mt_arena *mem,
-                               const mt_nlp_solution **out, mt_err *err)
+static mt_status copy_solution(const mt_case *c, const int *below, const mt_nlp_solution *from,
+                               mt_arena *mem, const mt_nlp_solution **out, mt_err *err)
 {
+    const mt_problem *const p = c->p;
     const size_t n_eq = (size_t)p->n_eq;
-    const size_t n_in = (size_t)p->n_in + (size_t)mt_clear_row_count(p, below);
+    const size_t n_in = (size_t)c->n_in + (size_t)mt_clear_row_count(c, below);
     const size_t n = (size_t)p->n + 1;
     mt_nlp_solution *const s = mt_arena_alloc(mem, 1, sizeof *s);
     double *const t = mt_arena_f64(mem, n, 1);
@@ -359,10 +357,10 @@ static mt_status collect(const mt_problem *p, const job *j, mt_arena *mem, mt_ga
         MT_TRY(keep_undetermined(p, &j->slots[out->solutions[0].candidate], mem, out, err));
     }
     for (int i = 0; i < out->n_solutions; i++) {
-        MT_TRY(copy_solution(p, out->solutions[i].below, out->solutions[i].found, mem,
+        MT_TRY(copy_solution(j->c, out->solutions[i].below, out->solutions[i].found, mem,
                              &out->solutions[i].found, err));
         out->solutions[i].aims = NULL; /* the slots' memory goes */
-        out->stage = out->solutions[i].n_aims > 0 ? p->n_aims - 1 : 0;
+        out->stage = out->solutions[i].n_aims > 0 ? j->c->n_aims - 1 : 0;
     }
     for (int k = 0; k < j->candidates->n; k++) {
         const mt_nlp_result *const found = &j->slots[k].found;
@@ -385,49 +383,55 @@ static bool is_settled(const job *j)
     return met;
 }
 
-mt_status mt_gaps_solve(mt_problem *p, int workers, mt_arena *mem, mt_gap_result *out,
-                        mt_err *err)
+mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, mt_arena *mem,
+                        mt_gap_result *out, mt_err *err)
 {
+    mt_workspace *const w = workers[0];
+    const mt_case *const c = w->c;
+    const mt_problem *const p = w->p;
     mt_gap_candidates candidates = {0};
     *out = (mt_gap_result){.stop = MT_STOP_DONE};
-    MT_TRY(mt_gap_candidates_find(p, mem, &candidates, err));
+    MT_TRY(mt_gap_candidates_find(w, mem, &candidates, err));
     out->n_candidates = candidates.n;
     out->n_possible = candidates.possible;
     out->proven = candidates.proven;
-    out->tolerances = p->robust != NULL;
+    out->tolerances = c->robust != NULL;
     if (candidates.proven && candidates.n == 0) { /* then the nearest designs are wanted */
         const long boxes = candidates.boxes;
-        MT_TRY(mt_gap_candidates_near(p, NEAREST, mem, &candidates, err));
+        MT_TRY(mt_gap_candidates_near(w, NEAREST, mem, &candidates, err));
         candidates.boxes = boxes;
     }
     for (int i = 0; i < p->n_clears; i++) {
-        out->driven = out->driven || p->views[p->clears[i].view].analysis->sys->driven;
+        out->driven = out->driven || p->views[p->clears[i].view].original->sys->driven;
     }
     out->motion = mt_family_any(p);
     out->reason = candidates.reason;
     out->boxes = candidates.boxes;
     out->evals = candidates.evals;
-    job j = {.p = p, .candidates = &candidates, .options = mt_nlp_options_default()};
-    j.options.seed = p->study->search.seed;
-    j.options.starts =
-        p->study->search.starts > 0 ? p->study->search.starts : STARTS_PER_CANDIDATE + p->n;
-    j.options.max_evals = p->study->search.max_evaluations;
+    job j = {.workers = workers,
+             .c = c,
+             .p = p,
+             .candidates = &candidates,
+             .options = mt_nlp_options_default()};
+    j.options.seed = c->search.seed;
+    j.options.starts = c->search.starts > 0 ? c->search.starts : STARTS_PER_CANDIDATE + p->n;
+    j.options.max_evals = c->search.max_evaluations;
     j.options.max_solutions = SOLUTIONS_PER_CANDIDATE;
-    j.options.least_change = p->aims[p->stage].type == MT_OBJECTIVE_CHANGE;
-    if (p->hint != NULL) {
+    j.options.least_change = c->aims[0].type == MT_OBJECTIVE_CHANGE;
+    if (c->hint != NULL) {
         int *const below = mt_arena_int(mem, (size_t)p->n_bands);
         double violation = 0.0;
         if (below == NULL) {
             return mt_fail_memory(err);
         }
-        MT_TRY(mt_gap_assignment(p, p->hint, below, &violation, err));
+        MT_TRY(mt_gap_assignment(w, c->hint, below, &violation, err));
         j.hint_below = MT_HAS(violation) ? below : NULL;
     }
     j.slots = mt_arena_alloc(mem, (size_t)candidates.n, sizeof *j.slots);
     if (j.slots == NULL) {
         return mt_fail_memory(err);
     }
-    mt_status rc = mt_workers_run(workers, candidates.n, search_candidate, &j, err);
+    mt_status rc = mt_workers_run(n_workers, candidates.n, search_candidate, &j, err);
     rc = rc == MT_OK ? collect(p, &j, mem, out, err) : rc;
     out->proven = out->proven || is_settled(&j);
     for (int k = 0; k < candidates.n; k++) {

@@ -2,7 +2,7 @@
 #ifndef SEARCH_GAPS_H
 #define SEARCH_GAPS_H
 
-#include "problem/problem.h"
+#include "problem/workspace.h"
 #include "result/result.h"
 
 /*
@@ -48,9 +48,10 @@ typedef struct mt_gap_result {
     mt_stop stop;
 } mt_gap_result;
 
-/* p: the problem without an assignment. Results in mem. */
-mt_status mt_gaps_solve(mt_problem *p, int workers, mt_arena *mem, mt_gap_result *out,
-                        mt_err *err);
+/* workers[n_workers], set to one case without an assignment, and set to it again afterwards.
+ * Results in mem. */
+mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, mt_arena *mem,
+                        mt_gap_result *out, mt_err *err);
 
 enum { MT_GAP_SAMPLES_NEAR = 512 };
 /* gap_candidates.c: the assignments worth searching, n rows of n_bands. */
@@ -71,12 +72,12 @@ typedef struct mt_gap_candidates {
 double mt_gap_count_possible(const mt_problem *p);
 /* Assignment below[n_bands] of the design at t[n], and its worst violation; NaN where it cannot
  * be evaluated. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
-mt_status mt_gap_assignment(mt_problem *p, const double *t, int *below, double *violation,
+mt_status mt_gap_assignment(mt_workspace *w, const double *t, int *below, double *violation,
                             mt_err *err);
-mt_status mt_gap_candidates_find(mt_problem *p, mt_arena *mem, mt_gap_candidates *out,
+mt_status mt_gap_candidates_find(mt_workspace *w, mt_arena *mem, mt_gap_candidates *out,
                                  mt_err *err);
 /* The (at most) `most` assignments that samples over the bounds come nearest to. */
-mt_status mt_gap_candidates_near(mt_problem *p, int most, mt_arena *mem, mt_gap_candidates *out,
-                                 mt_err *err);
+mt_status mt_gap_candidates_near(mt_workspace *w, int most, mt_arena *mem,
+                                 mt_gap_candidates *out, mt_err *err);
 
 #endif

@@ -51,7 +51,7 @@ typedef struct sample {
 } sample;
 
 typedef struct walk {
-    mt_problem *p;
+    mt_workspace *ws;
     mt_analysis *a;
     mt_arena *mem;
     double *inputs; /* [n + 1] */
@@ -71,23 +71,28 @@ static bool ends(mt_status rc)
 }
 
 /* The family's mechanism with the position as its last input, made at the original design. */
-static mt_status open_drive(mt_problem *p, mt_family *f, double position, mt_err *err)
+static mt_status open_drive(mt_workspace *ws, int family, mt_err *err)
 {
+    const mt_problem *const p = ws->p;
+    const mt_family *const f = &p->families[family];
+    const mt_view *const like = &p->views[f->view[0]];
     const mt_system_drive drive = {.joint = f->joint, .spring = f->spring};
-    double *const at = mt_arena_f64(&p->mem, (size_t)p->n + 1, 1);
-    if (f->driven != NULL) {
+    mt_analysis *a = NULL;
+    if (ws->driven[family] != NULL) {
         return MT_OK;
     }
+    double *const at = mt_arena_f64(&ws->mem, (size_t)p->n + 1, 1);
     if (at == NULL) {
         return mt_fail_memory(err);
     }
     memcpy(at, p->original, (size_t)p->n * sizeof *at);
-    at[p->n] = position;
+    at[p->n] = mt_family_position(like->original);
     MT_TRY(mt_analysis_new_driven(p->study->model, f->configuration, &drive, p->n, p->inputs,
-                                  at, &f->driven, err));
-    f->driven->n_rigid = p->views[f->view[0]].analysis->n_rigid; /* one count for all designs */
-    f->driven->n_most = p->views[f->view[0]].analysis->n_most;
-    mt_linear_first_input(f->driven->lin, p->n); /* the only slope that is asked for */
+                                  at, &a, err));
+    a->n_rigid = like->n_rigid; /* one count for all designs */
+    a->n_most = like->n_most;
+    mt_linear_first_input(a->lin, p->n); /* the only slope that is asked for */
+    ws->driven[family] = a;
     return MT_OK;
 }
 
@@ -103,7 +108,7 @@ static mt_status slope_of(walk *w, const edge *e, int pos, double *slope, mt_err
     if (size > 1 || !(a->modes.lambda[pos] > 0.0)) {
         return MT_OK;
     }
-    MT_TRY(mt_linear_products(a->lin, w->p->n, 1, y, a->dky, a->dmy, NULL, err));
+    MT_TRY(mt_linear_products(a->lin, w->ws->p->n, 1, y, a->dky, a->dmy, NULL, err));
     const double lambda = a->modes.lambda[pos];
     const double rate = mt_dot((int)n, y, a->dky) - (lambda * mt_dot((int)n, y, a->dmy));
     *slope = e->sign * rate / (2.0 * lambda);
@@ -182,7 +187,7 @@ static mt_status look(walk *w, double at, int next, mt_err *err)
         return mt_fail_memory(err);
     }
     w->out->positions++;
-    w->inputs[w->p->n] = at;
+    w->inputs[w->ws->p->n] = at;
     mt_status rc = mt_analysis_solve(w->a, w->inputs, &opt, &why);
     if (rc == MT_OK && w->a->modes.n_unstable > 0) {
         return note_break(w, at, MT_MOTION_UNSTABLE, "it is unstable there", err);
@@ -336,11 +341,12 @@ static mt_status go(walk *w, double left, double right, mt_err *err)
 }
 
 /* Distinct positions of the views with bands, ascending. */
-static int list_positions(const mt_problem *p, const mt_family *f, double unit, double *list)
+static int list_positions(const mt_family *f, const double *positions, double unit,
+                          double *list)
 {
     int n = 0;
     for (int k = 0; k < f->n; k++) {
-        const double at = mt_family_position(p, f, k);
+        const double at = positions[k];
         bool known = false;
         for (int i = 0; i < n; i++) {
             known = known || fabs(list[i] - at) <= SAME * unit;
@@ -359,11 +365,15 @@ static int list_positions(const mt_problem *p, const mt_family *f, double unit, 
 static mt_status follow(walk *w, const mt_family *f, const int *below, mt_err *err)
 {
     double *const list = mt_arena_f64(w->mem, (size_t)f->n, 1);
-    if (list == NULL) {
+    double *const positions = mt_arena_f64(w->mem, (size_t)f->n, 1);
+    if (list == NULL || positions == NULL) {
         return mt_fail_memory(err);
     }
+    for (int k = 0; k < f->n; k++) {
+        positions[k] = mt_family_position(w->ws->views[f->view[k]].analysis);
+    }
     mt_motion *const out = w->out;
-    const int n = list_positions(w->p, f, w->unit, list);
+    const int n = list_positions(f, positions, w->unit, list);
     out->from = list[0];
     out->to = list[n - 1];
     out->way_at = mt_arena_f64(w->mem, (size_t)n, 1);
@@ -375,7 +385,8 @@ static mt_status follow(walk *w, const mt_family *f, const int *below, mt_err *e
     for (int i = 0; i + 1 < n; i++) {
         mt_way_band *bands = NULL;
         int n_bands = 0;
-        MT_TRY(mt_family_bands(w->p, f, list[i], list[i + 1], w->mem, &bands, &n_bands, err));
+        MT_TRY(mt_family_bands(w->ws->p, f, positions, list[i], list[i + 1], w->mem, &bands,
+                               &n_bands, err));
         w->way = i;
         out->n_ways = i + 1;
         out->way_at[i] = nan("");
@@ -390,10 +401,11 @@ static mt_status follow(walk *w, const mt_family *f, const int *below, mt_err *e
     return MT_OK;
 }
 
-mt_status mt_motion_follow(mt_problem *p, int family, const int *below, mt_arena *mem,
+mt_status mt_motion_follow(mt_workspace *ws, int family, const int *below, mt_arena *mem,
                            mt_motion *out, mt_err *err)
 {
-    mt_family *const f = &p->families[family];
+    const mt_family *const f = &ws->p->families[family];
+    const double first = mt_family_position(ws->views[f->view[0]].analysis);
     mt_err why = {.code = MT_OK};
     *out = (mt_motion){.end = MT_MOTION_NONE,
                        .room = HUGE_VAL,
@@ -402,32 +414,31 @@ mt_status mt_motion_follow(mt_problem *p, int family, const int *below, mt_arena
                        .at = nan(""),
                        .hz = nan(""),
                        .broken_at = nan("")};
-    walk w = {.p = p, .mem = mem, .out = out};
-    const mt_status rc = open_drive(p, f, mt_family_position(p, f, 0), &why);
+    walk w = {.ws = ws, .mem = mem, .out = out};
+    const mt_status rc = open_drive(ws, family, &why);
     if (rc != MT_OK) {
         return ends(rc) ? mt_fail(err, rc, "%s", why.text)
-                        : note_break(&w, mt_family_position(p, f, 0), MT_MOTION_BROKEN,
-                                     why.text, err);
+                        : note_break(&w, first, MT_MOTION_BROKEN, why.text, err);
     }
-    w.a = f->driven;
+    w.a = ws->driven[family];
     mt_linear_follow(w.a->lin, true); /* from the reference position on */
     w.unit = f->angle ? 1.0 : w.a->sys->length_m;
-    w.inputs = mt_arena_f64(mem, (size_t)p->n + 1, 1);
+    w.inputs = mt_arena_f64(mem, (size_t)ws->p->n + 1, 1);
     if (w.inputs == NULL) {
         return mt_fail_memory(err);
     }
-    memcpy(w.inputs, p->x, (size_t)p->n * sizeof *w.inputs);
+    memcpy(w.inputs, ws->x, (size_t)ws->p->n * sizeof *w.inputs);
     return follow(&w, f, below, err);
 }
 
-mt_status mt_motion_kept(mt_problem *p, const int *below, mt_arena *mem, bool *kept,
+mt_status mt_motion_kept(mt_workspace *ws, const int *below, mt_arena *mem, bool *kept,
                          mt_err *err)
 {
     *kept = true;
-    for (int i = 0; i < p->n_families && *kept; i++) {
+    for (int i = 0; i < ws->p->n_families && *kept; i++) {
         mt_motion m = {.room = 0.0};
-        if (p->families[i].banded) {
-            MT_TRY(mt_motion_follow(p, i, below, mem, &m, err));
+        if (ws->p->families[i].banded) {
+            MT_TRY(mt_motion_follow(ws, i, below, mem, &m, err));
             *kept = m.end != MT_MOTION_UNSTABLE && m.room >= -m.tolerance;
         }
     }

@@ -50,15 +50,15 @@ typedef struct mt_motion {
 
 /*
  * below[n_bands]: the assignment (tied bands agree). After the views have been solved at the
- * design p->x. out's lists and texts in mem. Cost: some ten to some hundred eigensolves. Fails:
- * MT_E_MEMORY, MT_E_INTERNAL, MT_E_INTERRUPTED.
+ * design ws->x. out's lists and texts in mem. Cost: some ten to some hundred eigensolves.
+ * Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INTERRUPTED.
  */
-mt_status mt_motion_follow(mt_problem *p, int family, const int *below, mt_arena *mem,
+mt_status mt_motion_follow(mt_workspace *ws, int family, const int *below, mt_arena *mem,
                            mt_motion *out, mt_err *err);
 
 /* *kept: all families keep their bands over the motion, within their tolerance, and are stable.
  * As above. */
-mt_status mt_motion_kept(mt_problem *p, const int *below, mt_arena *mem, bool *kept,
+mt_status mt_motion_kept(mt_workspace *ws, const int *below, mt_arena *mem, bool *kept,
                          mt_err *err);
 
 #endif

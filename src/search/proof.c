@@ -5,26 +5,26 @@
 
 #include "base/format.h"
 
-void mt_proof_free(mt_proof *proof, const mt_problem *p)
+void mt_proof_free(mt_proof *proof)
 {
-    for (int i = 0; proof->views != NULL && i < p->n_views; i++) {
+    for (int i = 0; proof->views != NULL && i < proof->question.n_views; i++) {
         mt_enclosure_delete(proof->views[i]);
         proof->views[i] = NULL;
     }
 }
 
-static mt_status enclose(mt_proof *proof, mt_problem *p, mt_err *err)
+static mt_status enclose(mt_proof *proof, const mt_problem *p, mt_err *err)
 {
     proof->possible = p->n_views > 0 && p->n > 0;
     for (int i = 0; i < p->n_views && proof->possible; i++) {
         char why[MT_REASON_SIZE] = "";
-        MT_TRY(mt_enclosure_new(p->views[i].analysis, proof->lower, proof->upper,
+        MT_TRY(mt_enclosure_new(p->views[i].original, proof->lower, proof->upper,
                                 &proof->views[i], why, err));
         if (proof->views[i] == NULL) {
             proof->possible = false;
             (void)mt_snprintf(proof->reason, sizeof proof->reason,
                               "configuration \"%.50s\": %.150s",
-                              mt_analysis_configuration(p->views[i].analysis), why);
+                              mt_analysis_configuration(p->views[i].original), why);
         }
     }
     return MT_OK;
@@ -91,8 +91,9 @@ static void list_limits(mt_proof *proof, const mt_problem *p)
     q->program = q->n_bounds > 0 ? &p->program : NULL;
 }
 
-mt_status mt_proof_init(mt_proof *proof, mt_problem *p, mt_arena *mem, mt_err *err)
+mt_status mt_proof_init(mt_proof *proof, const mt_case *c, mt_arena *mem, mt_err *err)
 {
+    const mt_problem *const p = c->p;
     const size_t n = (size_t)p->n;
     const size_t n_demands = (size_t)p->n_demands;
     const size_t n_bands = (size_t)p->n_bands;
@@ -111,20 +112,20 @@ mt_status mt_proof_init(mt_proof *proof, mt_problem *p, mt_arena *mem, mt_err *e
         return mt_fail_memory(err);
     }
     for (int i = 0; i < p->n; i++) {
-        proof->lower[i] = p->study->variables[i].lower;
-        proof->upper[i] = p->study->variables[i].upper;
+        proof->lower[i] = c->lower[i];
+        proof->upper[i] = c->upper[i];
     }
-    MT_TRY(enclose(proof, p, err));
     proof->question = (mt_certify){.n_views = p->n_views,
                                    .views = proof->views,
                                    .n = p->n,
                                    .lower = proof->lower,
                                    .upper = proof->upper,
                                    .scale = p->scale,
-                                   .max_boxes = p->proof_boxes,
+                                   .max_boxes = c->proof_boxes,
                                    .interrupt = p->study->model->interrupt};
+    MT_TRY(enclose(proof, p, err));
     /* what is possible for a design may not be over its tolerances */
-    proof->covers = p->robust == NULL;
+    proof->covers = c->robust == NULL;
     list_bands(proof, p);
     list_limits(proof, p);
     return MT_OK;

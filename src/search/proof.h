@@ -2,11 +2,11 @@
 #ifndef SEARCH_PROOF_H
 #define SEARCH_PROOF_H
 
-#include "problem/problem.h"
+#include "problem/workspace.h"
 #include "prove/certify.h"
 
 /*
- * A study's problem as a question for certificates: an enclosure of every view, the bands of
+ * A case of a problem as a question for certificates: an enclosure of every view, the bands of
  * its clears, the limits and targets of its frequency goals, the limits on expressions. Goals
  * that no certificate covers (shapes, MAC, modes by name) are left out, which keeps every
  * "impossible" true.
@@ -29,8 +29,9 @@ typedef struct mt_proof {
 
 /* Results in mem but the enclosures, which mt_proof_free gives back. `possible` false, with the
  * reason, is a success. */
-mt_status mt_proof_init(mt_proof *proof, mt_problem *p, mt_arena *mem, mt_err *err);
-void mt_proof_free(mt_proof *proof, const mt_problem *p);
+mt_status mt_proof_init(mt_proof *proof, const mt_case *c, mt_arena *mem, mt_err *err);
+/* Accepts a zeroed proof. */
+void mt_proof_free(mt_proof *proof);
 /* Variables with a catalogue take values of it only, instead of all between its ends. Arrays in
  * mem. */
 mt_status mt_proof_use_catalogues(mt_proof *proof, const mt_problem *p, mt_arena *mem,
@@ -39,12 +40,12 @@ mt_status mt_proof_use_catalogues(mt_proof *proof, const mt_problem *p, mt_arena
 /* proof_cap.c: the first objective as a cap for certificates. Where it is not known (a misfit,
  * a clearance) there is none. p must outlive it. */
 typedef struct mt_proof_cap {
-    mt_problem *p;
+    const mt_problem *p;
     bool known;
     double *low; /* work */
     double *high;
     mt_certify_cap cap; /* `below` is the caller's */
 } mt_proof_cap;
-mt_status mt_proof_cap_init(mt_proof_cap *c, mt_problem *p, mt_arena *mem, mt_err *err);
+mt_status mt_proof_cap_init(mt_proof_cap *c, const mt_problem *p, mt_arena *mem, mt_err *err);
 
 #endif

@@ -12,10 +12,10 @@ static double least(void *context, const double *lo, const double *hi)
     return c->known ? a->ops->least(c->p, a, lo, hi, c->low, c->high) : -HUGE_VAL;
 }
 
-mt_status mt_proof_cap_init(mt_proof_cap *c, mt_problem *p, mt_arena *mem, mt_err *err)
+mt_status mt_proof_cap_init(mt_proof_cap *c, const mt_problem *p, mt_arena *mem, mt_err *err)
 {
     const int own = p->program.count;
-    const int system = p->n_views > 0 ? p->views[0].analysis->sys->program.count : 0;
+    const int system = p->n_views > 0 ? p->views[0].original->sys->program.count : 0;
     const size_t count = (size_t)(own > system ? own : system);
     *c = (mt_proof_cap){.p = p,
                         .known = p->aims[0].ops->least != NULL,

@@ -2,7 +2,7 @@
 #ifndef SEARCH_RELAX_H
 #define SEARCH_RELAX_H
 
-#include "problem/problem.h"
+#include "problem/workspace.h"
 #include "result/result.h"
 
 /*
@@ -43,43 +43,44 @@ typedef struct mt_moves {
 } mt_moves;
 
 /**
- * @param[in]  p    the problem without an assignment; its study has no catalogues
- * @param[in] search what the search found (a compromise to start from, where it has one) and
- *   spent of the study's budget
- * @param[out] out lists in mem Every move reported has been confirmed by a new problem at its
+ * @param[in] workers [n_workers] set to one case without an assignment, in which no catalogue
+ *   is open; set to it again
+ *                      afterwards
+ * @param[in]  search  what the search found (a compromise to start from, where it has one) and
+ *                     spent of the study's budget
+ * @param[out] out lists in mem Every move reported has been confirmed by a new workspace at its
  *   design. Deterministic for any number of workers. Cost: some 1000 evaluations for each move.
  *   Fails: MT_E_MEMORY, MT_E_INTERNAL.
  */
-mt_status mt_relax(mt_problem *p, int workers, const mt_nlp_result *search, mt_arena *mem,
-                   mt_moves *out, mt_err *err);
+mt_status mt_relax(mt_workspace *const *workers, int n_workers, const mt_nlp_result *search,
+                   mt_arena *mem, mt_moves *out, mt_err *err);
 
-/* relax_discrete.c: the same for a study with catalogues; problems[n_workers] of it. Without
- * continuous variables all combinations are looked at (short_of_budget where those are too
- * many). */
-mt_status mt_relax_discrete(mt_problem *const *problems, int n_workers,
+/* relax_discrete.c: the same for a study with catalogues. Without continuous variables all
+ * combinations are looked at (short_of_budget where those are too many). */
+mt_status mt_relax_discrete(mt_workspace *const *workers, int n_workers,
                             const mt_nlp_result *search, mt_arena *mem, mt_moves *out,
                             mt_err *err);
 
 /* relax_moves.c: all moves that the study offers, none tried yet. Fails: MT_E_MEMORY. */
-mt_status mt_relax_moves(const mt_problem *p, mt_arena *mem, mt_moves *out, mt_err *err);
-/* The study in which the move's bound is moved away (others: only the objective is replaced, by
- * the change); borrows the rest of `study`. False in *useful where there is no room to move. */
-mt_status mt_relax_study(const mt_study *study, const mt_move *m, mt_arena *mem, mt_study *out,
-                         bool *useful, mt_err *err);
-/* The value that the move's number must have for the rows of q, just evaluated into v, to hold;
+mt_status mt_relax_moves(const mt_case *c, mt_arena *mem, mt_moves *out, mt_err *err);
+/* The case in which the move's bound is moved away, and the objective is the change; w is set
+ * to it. Nothing is laid out, and false in *useful, where there is no room to move. */
+mt_status mt_relax_case(const mt_case *from, const mt_move *m, mt_workspace *w, mt_arena *mem,
+                        mt_case *out, bool *useful, mt_err *err);
+/* The value that the move's number must have for the rows of w, just evaluated into v, to hold;
  * NaN where other rows do not. */
-double mt_relax_value(const mt_problem *q, const mt_move *m, const mt_nlp_values *v);
+double mt_relax_value(const mt_workspace *w, const mt_move *m, const mt_nlp_values *v);
 /* A move by more than a factor of ten (ln 10), or than 2.3 times the limit itself where it has
  * no logarithm, is no help. */
 static const double MT_RELAX_MOST = 2.302585092994046;
 /* By how much that is a move, |s|; NaN where it is none, is in the wrong direction, or is too
  * far to be of help. */
-double mt_relax_size(const mt_problem *q, const mt_move *m, double to);
+double mt_relax_size(const mt_problem *p, const mt_move *m, double to);
 /* Found moves of `from` into `to`, which lists all, where they are less; n: variables. */
 void mt_relax_merge(mt_moves *to, const mt_moves *from, int n);
 /* Found ones only, least first; stable. */
 void mt_relax_rank(mt_moves *moves);
 /* Is this row of `in` (of the equalities, where eq) the move's? */
-bool mt_relax_is_row(const mt_problem *q, const mt_move *m, bool eq, int row);
+bool mt_relax_is_row(const mt_case *c, const mt_move *m, bool eq, int row);
 
 #endif

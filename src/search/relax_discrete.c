@@ -18,7 +18,7 @@
 enum { PER_TASK = 256, NEAREST = 4 };
 
 typedef struct enumeration {
-    mt_problem *const *problems;
+    mt_workspace *const *workers;
     mt_nlp_values *values; /* [n_workers] */
     int total;
     const mt_moves *none; /* all moves, none found */
@@ -53,20 +53,20 @@ static double let_through(const mt_band *band, const mt_modes *modes, bool upper
     return hz;
 }
 
-static const mt_modes *modes_of(const mt_problem *p, int clear)
+static const mt_modes *modes_of(const mt_workspace *w, int clear)
 {
-    return &p->views[p->clears[clear].view].analysis->modes;
+    return &w->views[w->c->clears[clear].view].analysis->modes;
 }
 
 /* Bands with a mode inside (beyond the tolerance), but the move's own. */
-static bool other_bands_hold(const mt_problem *p, const mt_move *m)
+static bool other_bands_hold(const mt_workspace *w, const mt_move *m)
 {
-    for (int i = 0; i < p->n_clears; i++) {
-        const mt_clear *const c = &p->clears[i];
+    for (int i = 0; i < w->c->n_clears; i++) {
+        const mt_clear *const c = &w->c->clears[i];
         for (int b = 0; b < c->bands.n; b++) {
             const bool own = m->kind == MT_MOVE_EDGE && m->clear == i && m->band == b;
             const mt_band *const band = &c->bands.items[b];
-            const double f = own ? 0.0 : let_through(band, modes_of(p, i), false);
+            const double f = own ? 0.0 : let_through(band, modes_of(w, i), false);
             const double inside =
                 f > 0.0 ? fmin(mt_log_ratio(f, band->lower_hz), log(band->upper_hz / f)) : 0.0;
             if (!(f >= 0.0) || inside > c->tolerance) {
@@ -79,34 +79,34 @@ static bool other_bands_hold(const mt_problem *p, const mt_move *m)
 
 /* Where the move's number has to be at the design just evaluated; NaN where that is not
  * enough. */
-static double needed(const mt_problem *p, const mt_move *m, const mt_nlp_values *v)
+static double needed(const mt_workspace *w, const mt_move *m, const mt_nlp_values *v)
 {
-    const double rows = mt_relax_value(p, m, v);
-    if (!MT_HAS(rows) || !other_bands_hold(p, m)) {
+    const double rows = mt_relax_value(w, m, v);
+    if (!MT_HAS(rows) || !other_bands_hold(w, m)) {
         return nan("");
     }
     if (m->kind != MT_MOVE_EDGE) {
         return rows;
     }
-    if (p->robust != NULL) {
+    if (w->c->robust != NULL) {
         return nan(""); /* the modes at hand are not those of the worst corner */
     }
-    const mt_band *const band = &p->clears[m->clear].bands.items[m->band];
-    const double f = let_through(band, modes_of(p, m->clear), m->upper);
+    const mt_band *const band = &w->c->clears[m->clear].bands.items[m->band];
+    const double f = let_through(band, modes_of(w, m->clear), m->upper);
     return f > 0.0 ? f : nan("");
 }
 
-static void look(const mt_problem *p, const mt_nlp_values *v, mt_moves *moves)
+static void look(const mt_workspace *w, const mt_nlp_values *v, mt_moves *moves)
 {
     for (int k = 0; k < moves->n; k++) {
         mt_move *const m = &moves->items[k];
-        const double to = needed(p, m, v);
-        const double size = mt_relax_size(p, m, to);
+        const double to = needed(w, m, v);
+        const double size = mt_relax_size(w->p, m, to);
         if (size > 0.0 && (!m->found || size < m->size)) {
             m->found = true;
             m->to = to;
             m->size = size;
-            memcpy(m->x, p->x, (size_t)p->n * sizeof *m->x);
+            memcpy(m->x, w->x, (size_t)w->p->n * sizeof *m->x);
         }
     }
 }
@@ -114,19 +114,19 @@ static void look(const mt_problem *p, const mt_nlp_values *v, mt_moves *moves)
 static mt_status look_at_some(void *context, int worker, int task, mt_err *err)
 {
     const enumeration *const e = context;
-    mt_problem *const p = e->problems[worker];
+    mt_workspace *const w = e->workers[worker];
     const int end = (task + 1) * PER_TASK < e->total ? (task + 1) * PER_TASK : e->total;
     mt_nlp_values *const v = &e->values[worker];
     for (int k = task * PER_TASK; k < end && !e->stopped[task]; k++) {
         mt_err own = {0};
-        set_combination(p, k, p->work);
-        const mt_status rc = mt_problem_eval(p, p->work, false, v, &own);
+        set_combination(w->p, k, w->work);
+        const mt_status rc = mt_workspace_eval(w, w->work, false, v, &own);
         if (mt_is_final(rc)) {
             return mt_fail(err, rc, "%s", own.text);
         }
         e->stopped[task] = rc == MT_E_INTERRUPTED;
         if (rc == MT_OK) {
-            look(p, v, &e->tasks[task]);
+            look(w, v, &e->tasks[task]);
         }
     }
     return MT_OK;
@@ -135,7 +135,7 @@ static mt_status look_at_some(void *context, int worker, int task, mt_err *err)
 /* Each task's own list of moves. */
 static mt_status prepare(enumeration *e, int n_workers, int n_tasks, mt_arena *mem, mt_err *err)
 {
-    const size_t n = (size_t)e->problems[0]->n;
+    const size_t n = (size_t)e->workers[0]->p->n;
     const size_t n_moves = (size_t)e->none->n;
     e->values = mt_arena_alloc(mem, (size_t)n_workers, sizeof *e->values);
     e->tasks = mt_arena_alloc(mem, (size_t)n_tasks, sizeof *e->tasks);
@@ -145,7 +145,7 @@ static mt_status prepare(enumeration *e, int n_workers, int n_tasks, mt_arena *m
         return mt_fail_memory(err);
     }
     for (int i = 0; i < n_workers; i++) {
-        MT_TRY(mt_problem_values_init(e->problems[i], mem, &e->values[i], err));
+        MT_TRY(mt_case_values_init(e->workers[i]->c, mem, &e->values[i], err));
     }
     for (int i = 0; i < n_tasks; i++) {
         e->tasks[i] = *e->none;
@@ -161,57 +161,46 @@ static mt_status prepare(enumeration *e, int n_workers, int n_tasks, mt_arena *m
     return MT_OK;
 }
 
-static mt_status enumerate(mt_problem *const *problems, int n_workers, int total, mt_arena *mem,
-                           mt_moves *out, mt_err *err)
+static mt_status enumerate(mt_workspace *const *workers, int n_workers, int total,
+                           mt_arena *mem, mt_moves *out, mt_err *err)
 {
     const int n_tasks = (total + PER_TASK - 1) / PER_TASK;
-    enumeration e = {.problems = problems, .total = total, .none = out};
+    enumeration e = {.workers = workers, .total = total, .none = out};
     MT_TRY(prepare(&e, n_workers, n_tasks, mem, err));
     MT_TRY(mt_workers_run(n_workers, n_tasks, look_at_some, &e, err));
     for (int i = 0; i < n_tasks; i++) {
         out->stopped = out->stopped || e.stopped[i];
-        mt_relax_merge(out, &e.tasks[i], problems[0]->n);
+        mt_relax_merge(out, &e.tasks[i], workers[0]->p->n);
     }
     out->evals += total;
     return MT_OK;
 }
 
-/* The study with its catalogues closed on the values of a design; it borrows everything
- * else. */
-static mt_status close_on(const mt_problem *p, const double *t, mt_arena *mem, mt_study *out,
-                          mt_err *err)
+/* With the catalogues closed on the values of design s. */
+static mt_status relax_near(mt_workspace *const *workers, int n_workers,
+                            const mt_nlp_solution *s, long spent, mt_arena *mem, mt_moves *out,
+                            mt_err *err)
 {
-    const size_t n = (size_t)p->n;
-    double *const x = mt_arena_f64(mem, n, 1);
-    *out = *p->study;
-    out->variables = mt_arena_alloc(mem, n, sizeof *out->variables);
-    if (x == NULL || out->variables == NULL) {
-        return mt_fail_memory(err);
-    }
-    memcpy(out->variables, p->study->variables, n * sizeof *out->variables);
-    mt_problem_x(p, t, x);
-    for (size_t i = 0; i < n; i++) {
-        mt_variable *const v = &out->variables[i];
-        v->lower = v->n_catalogue > 0 ? x[i] : v->lower;
-        v->upper = v->n_catalogue > 0 ? x[i] : v->upper;
-    }
-    return MT_OK;
-}
-
-static mt_status relax_near(mt_problem *p, int n_workers, const mt_nlp_solution *s, long spent,
-                            mt_arena *mem, mt_moves *out, mt_err *err)
-{
-    mt_study closed;
-    mt_problem *q = NULL;
+    const mt_case *const whole = workers[0]->c;
+    mt_case closed;
     mt_moves found = {0};
     mt_nlp_solution near = *s;
     const mt_nlp_result from = {.n_solutions = 1, .solutions = &near, .evals = spent};
-    MT_TRY(close_on(p, s->t, mem, &closed, err));
-    MT_TRY(mt_problem_new(&closed, p->references, &q, err));
-    const mt_status rc = mt_relax(q, n_workers, &from, mem, &found, err);
-    mt_problem_delete(q);
+    double *const x = mt_arena_f64(mem, (size_t)whole->p->n, 1);
+    if (x == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_case_x(whole, s->t, x);
+    mt_status rc = mt_discrete_close(whole, x, workers[0], mem, &closed, err);
+    for (int i = 1; i < n_workers && rc == MT_OK; i++) {
+        rc = mt_workspace_use(workers[i], &closed, err);
+    }
+    rc = rc == MT_OK ? mt_relax(workers, n_workers, &from, mem, &found, err) : rc;
+    for (int i = 0; i < n_workers; i++) {
+        mt_workspace_back(workers[i], whole);
+    }
     if (rc == MT_OK) {
-        mt_relax_merge(out, &found, p->n);
+        mt_relax_merge(out, &found, whole->p->n);
         out->evals += found.evals;
         out->starts += found.starts;
         out->stopped = out->stopped || found.stopped;
@@ -220,12 +209,12 @@ static mt_status relax_near(mt_problem *p, int n_workers, const mt_nlp_solution 
     return rc;
 }
 
-mt_status mt_relax_discrete(mt_problem *const *problems, int n_workers,
+mt_status mt_relax_discrete(mt_workspace *const *workers, int n_workers,
                             const mt_nlp_result *search, mt_arena *mem, mt_moves *out,
                             mt_err *err)
 {
-    mt_problem *const p = problems[0];
-    const long most = p->study->search.max_evaluations;
+    const mt_problem *const p = workers[0]->p;
+    const long most = workers[0]->c->search.max_evaluations;
     double total = 1.0;
     bool mixed = false;
     for (int i = 0; i < p->n; i++) {
@@ -233,18 +222,18 @@ mt_status mt_relax_discrete(mt_problem *const *problems, int n_workers,
         mixed = mixed || n == 0;
         total *= n > 0 ? (double)n : 1.0;
     }
-    MT_TRY(mt_relax_moves(p, mem, out, err));
+    MT_TRY(mt_relax_moves(workers[0]->c, mem, out, err));
     if (mixed) {
         const int n = search->n_solutions < NEAREST ? search->n_solutions : NEAREST;
         for (int i = 0; i < n && !out->stopped; i++) {
-            MT_TRY(relax_near(p, n_workers, &search->solutions[i], search->evals + out->evals,
-                              mem, out, err));
+            MT_TRY(relax_near(workers, n_workers, &search->solutions[i],
+                              search->evals + out->evals, mem, out, err));
         }
     } else {
         out->short_of_budget = total > (double)MT_DISCRETE_MOST ||
                                (most > 0 && total > (double)(most - search->evals));
         if (!out->short_of_budget) {
-            MT_TRY(enumerate(problems, n_workers, (int)total, mem, out, err));
+            MT_TRY(enumerate(workers, n_workers, (int)total, mem, out, err));
         }
     }
     mt_relax_rank(out);

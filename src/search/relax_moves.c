@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "problem/objective.h"
 #include "problem/robust.h"
 #include "search/relax.h"
 
@@ -59,20 +60,21 @@ static void add_edge_moves(const mt_problem *p, mt_moves *out)
     }
 }
 
-mt_status mt_relax_moves(const mt_problem *p, mt_arena *mem, mt_moves *out, mt_err *err)
+mt_status mt_relax_moves(const mt_case *c, mt_arena *mem, mt_moves *out, mt_err *err)
 {
+    const mt_problem *const p = c->p;
     const size_t most = 2 * ((size_t)p->n + (size_t)p->n_bands + (size_t)p->n_demands);
     *out = (mt_moves){.items = mt_arena_alloc(mem, most, sizeof *out->items)};
     if (out->items == NULL) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < p->n; i++) {
-        const mt_variable *const v = &p->study->variables[i];
-        for (int side = 0; side < 2 && v->n_catalogue == 0; side++) {
+        const bool open = p->study->variables[i].n_catalogue == 0;
+        for (int side = 0; side < 2 && open; side++) {
             add(out, (mt_move){.kind = MT_MOVE_BOUND,
                                .variable = i,
                                .upper = side == 1,
-                               .from = side == 1 ? v->upper : v->lower});
+                               .from = side == 1 ? c->upper[i] : c->lower[i]});
         }
     }
     add_edge_moves(p, out);
@@ -88,40 +90,33 @@ mt_status mt_relax_moves(const mt_problem *p, mt_arena *mem, mt_moves *out, mt_e
 
 /* A bound moves by a factor of ten at most, or by the range where it has no sign to keep; a
  * bound of 0 stays, since what is beyond it is another thing. */
-static double far_bound(const mt_variable *v, bool upper)
+static double far_bound(const mt_case *c, int i, bool upper)
 {
     static const double FACTOR = 10.0;
-    const double range = v->upper - v->lower;
+    const double range = c->upper[i] - c->lower[i];
+    const double from = upper ? c->upper[i] : c->lower[i];
     if (upper) {
-        return v->upper > 0.0 ? FACTOR * v->upper : v->upper < 0.0 ? v->upper + range : 0.0;
+        return from > 0.0 ? FACTOR * from : from < 0.0 ? from + range : 0.0;
     }
-    return v->lower > 0.0 ? v->lower / FACTOR : v->lower < 0.0 ? v->lower - range : 0.0;
+    return from > 0.0 ? from / FACTOR : from < 0.0 ? from - range : 0.0;
 }
 
-mt_status mt_relax_study(const mt_study *study, const mt_move *m, mt_arena *mem, mt_study *out,
-                         bool *useful, mt_err *err)
+mt_status mt_relax_case(const mt_case *from, const mt_move *m, mt_workspace *w, mt_arena *mem,
+                        mt_case *out, bool *useful, mt_err *err)
 {
-    mt_objective *const change = mt_arena_alloc(mem, 1, sizeof *change);
-    const size_t n = (size_t)study->n_variables;
-    *out = *study;
+    static const mt_aim CHANGE = {
+        .type = MT_OBJECTIVE_CHANGE, .ops = &mt_objective_change, .node = MT_NO_NODE};
     *useful = true;
-    out->variables = mt_arena_alloc(mem, n, sizeof *out->variables);
-    if (change == NULL || out->variables == NULL) {
-        return mt_fail_memory(err);
-    }
-    memcpy(out->variables, study->variables, n * sizeof *out->variables);
-    *change = (mt_objective){.type = MT_OBJECTIVE_CHANGE};
-    out->objectives = change;
-    out->n_objectives = 1;
-    out->n_published = 0;
-    out->trade.n_vary = 0;
+    MT_TRY(mt_case_copy(from, mem, out, err));
+    out->n_aims = 1;
+    out->aims = &CHANGE;
     if (m->kind == MT_MOVE_BOUND) {
-        mt_variable *const v = &out->variables[m->variable];
-        const double to = far_bound(v, m->upper);
-        *useful = m->upper ? to > v->upper : to < v->lower;
-        *(m->upper ? &v->upper : &v->lower) = to;
+        const int i = m->variable;
+        const double to = far_bound(from, i, m->upper);
+        *useful = m->upper ? to > from->upper[i] : to < from->lower[i];
+        mt_case_bound(out, i, m->upper ? from->lower[i] : to, m->upper ? to : from->upper[i]);
     }
-    return MT_OK;
+    return *useful ? mt_case_lay_out(out, NULL, 0, NULL, w, mem, err) : MT_OK;
 }
 
 /* A row on top of the design's own, at a corner of the tolerances. */
@@ -134,20 +129,20 @@ static bool is_corner_row(const mt_move *m, const mt_robust_row *row)
            row->at.band == m->band && row->at.above == m->upper;
 }
 
-bool mt_relax_is_row(const mt_problem *q, const mt_move *m, bool eq, int row)
+bool mt_relax_is_row(const mt_case *c, const mt_move *m, bool eq, int row)
 {
     mt_clear_row at;
-    const mt_robust_row *const corner = eq ? NULL : mt_robust_corner_row(q, row);
+    const mt_robust_row *const corner = eq ? NULL : mt_robust_corner_row(c, row);
     if (corner != NULL) {
         return is_corner_row(m, corner);
     }
     if (m->kind == MT_MOVE_GOAL) {
-        const mt_demand *const d = &q->demands[m->demand];
+        const mt_demand *const d = &c->p->demands[m->demand];
         const int second = m->upper && MT_HAS(d->goal->at_least) ? 1 : 0;
         return m->target ? eq && row == d->row_eq : !eq && row == d->row_in + second;
     }
-    if (m->kind != MT_MOVE_EDGE || eq || q->below == NULL || row < q->clears[0].row_in ||
-        !mt_clear_row_at(q, q->below, row - q->clears[0].row_in, &at)) {
+    if (m->kind != MT_MOVE_EDGE || eq || c->below == NULL || row < c->first_band_row ||
+        !mt_clear_row_at(c, c->below, row - c->first_band_row, &at)) {
         return false;
     }
     /* modes above a band are held by its upper edge */
@@ -155,16 +150,16 @@ bool mt_relax_is_row(const mt_problem *q, const mt_move *m, bool eq, int row)
 }
 
 /* How the number that moves is measured: edges of bands as frequencies are. */
-static mt_goal_measure measure_of(const mt_problem *q, const mt_move *m)
+static mt_goal_measure measure_of(const mt_problem *p, const mt_move *m)
 {
-    return m->kind == MT_MOVE_GOAL ? q->demands[m->demand].measure : MT_MEASURE_RATIO;
+    return m->kind == MT_MOVE_GOAL ? p->demands[m->demand].measure : MT_MEASURE_RATIO;
 }
 
 /* Where the number must be for a row of value `row` (relaxed: what is missing is made up for) to
  * be 0. */
-static double moved(const mt_problem *q, const mt_move *m, double row)
+static double moved(const mt_problem *p, const mt_move *m, double row)
 {
-    const mt_goal_measure measure = measure_of(q, m);
+    const mt_goal_measure measure = measure_of(p, m);
     const bool lower_edge = m->kind == MT_MOVE_EDGE && !m->upper;
     const bool at_most = m->kind == MT_MOVE_GOAL && m->upper;
     const double sign = lower_edge || at_most ? -1.0 : 1.0;
@@ -173,33 +168,31 @@ static double moved(const mt_problem *q, const mt_move *m, double row)
                : m->from + (sign * row * mt_measure_unit(measure, m->from));
 }
 
-double mt_relax_value(const mt_problem *q, const mt_move *m, const mt_nlp_values *v)
+double mt_relax_value(const mt_workspace *w, const mt_move *m, const mt_nlp_values *v)
 {
+    const mt_case *const c = w->c;
     double worst = m->target ? 0.0 : HUGE_VAL;
-    for (int i = 0; i < q->n_eq; i++) {
-        if (mt_relax_is_row(q, m, true, i)) {
+    for (int i = 0; i < w->p->n_eq; i++) {
+        if (mt_relax_is_row(c, m, true, i)) {
             worst = v->eq[i];
-        } else if (!(fabs(v->eq[i]) <= q->eq_tol[i])) {
+        } else if (!(fabs(v->eq[i]) <= c->eq_tol[i])) {
             return nan("");
         }
     }
-    for (int i = 0; i < q->n_in; i++) {
-        if (mt_relax_is_row(q, m, false, i)) {
+    for (int i = 0; i < c->n_in; i++) {
+        if (mt_relax_is_row(c, m, false, i)) {
             worst = fmin(worst, v->in[i]);
-        } else if (!(v->in[i] >= -q->in_tol[i])) {
+        } else if (!(v->in[i] >= -c->in_tol[i])) {
             return nan("");
         }
     }
-    if (m->kind == MT_MOVE_BOUND) {
-        return q->x[m->variable];
-    }
-    return moved(q, m, worst);
+    return m->kind == MT_MOVE_BOUND ? w->x[m->variable] : moved(w->p, m, worst);
 }
 
-double mt_relax_size(const mt_problem *q, const mt_move *m, double to)
+double mt_relax_size(const mt_problem *p, const mt_move *m, double to)
 {
     const bool goal = m->kind == MT_MOVE_GOAL;
-    const mt_goal_measure measure = measure_of(q, m);
+    const mt_goal_measure measure = measure_of(p, m);
     const double s = measure == MT_MEASURE_RATIO
                          ? log(to / m->from)
                          : (to - m->from) / mt_measure_unit(measure, m->from);

@@ -52,17 +52,17 @@ static bool joined(mt_repeated *m, const mt_repeated_side *s, int index, int r)
 static mt_status add_block(mt_repeated *m, const mt_repeated_side *s, double near,
                            mt_arena *mem, mt_err *err)
 {
-    mt_problem *const p = m->p;
+    mt_workspace *const ws = m->ws;
     const mt_analysis *const a = s->analysis;
     const int step = s->sign > 0 ? 1 : -1;
     int r = 0;
     while (r < MODES_MOST && vibrates(&a->modes, s->pos + r * step) &&
-           fabs(mt_repeated_room(p, s, s->pos + r * step)) <= near) {
+           fabs(mt_repeated_room(ws, s, s->pos + r * step)) <= near) {
         r++;
     }
     const int before = s->pos - step;
     const bool apart =
-        !vibrates(&a->modes, before) || fabs(mt_repeated_room(p, s, before)) > near;
+        !vibrates(&a->modes, before) || fabs(mt_repeated_room(ws, s, before)) > near;
     if (r < 2 || !apart) {
         return MT_OK;
     }
@@ -80,7 +80,7 @@ static mt_status add_block(mt_repeated *m, const mt_repeated_side *s, double nea
                              .row_most = -1,
                              .c = mt_arena_f64(mem, (size_t)n, (size_t)r),
                              .b = mt_arena_f64(mem, r2, 1),
-                             .g = mt_arena_f64(mem, r2, (size_t)p->n_t),
+                             .g = mt_arena_f64(mem, r2, (size_t)ws->c->n_t),
                              .entry = mt_arena_int(mem, r2)};
     if (!b->c || !b->b || !b->g || !b->entry) {
         return mt_fail_memory(err);
@@ -141,7 +141,7 @@ static void turned(int r, const double *w, double *a)
 static mt_status block_column(const mt_repeated *m, mt_repeated_block *b, int low, int k,
                               double s, mt_err *err)
 {
-    mt_problem *const p = m->p;
+    mt_workspace *const ws = m->ws;
     mt_analysis *const a = b->side.analysis;
     const int n = mt_linear_freedoms(a->lin);
     const int r = b->r;
@@ -149,9 +149,9 @@ static mt_status block_column(const mt_repeated *m, mt_repeated_block *b, int lo
     const double *const y = mt_modal_shape(&a->modes, low);
     b->b[k + (k * r)] = sign * 0.5 * (a->modes.lambda[low + k] / s - 1.0);
     MT_TRY(mt_analysis_products(a, low + k, err));
-    for (int j = 0; j < p->n; j++) {
+    for (int j = 0; j < ws->p->n; j++) {
         const double part = b->side.factor != NULL ? b->side.factor[j] : 1.0;
-        const double factor = sign * part * mt_problem_stretch(p, j) / (2.0 * s);
+        const double factor = sign * part * mt_workspace_stretch(ws, j) / (2.0 * s);
         for (int l = 0; l < r; l++) {
             const double *const yl = y + ((ptrdiff_t)l * n);
             const double slope = mt_dot(n, yl, a->dky + ((ptrdiff_t)j * n)) -
@@ -159,8 +159,8 @@ static mt_status block_column(const mt_repeated *m, mt_repeated_block *b, int lo
             b->g[l + (k * r) + ((ptrdiff_t)j * r * r)] = factor * slope;
         }
     }
-    for (int l = 0; l < r && p->n_t > p->n; l++) {
-        b->g[l + (k * r) + ((ptrdiff_t)p->n * r * r)] =
+    for (int l = 0; l < r && ws->c->n_t > ws->p->n; l++) {
+        b->g[l + (k * r) + ((ptrdiff_t)ws->p->n * r * r)] =
             l == k && b->side.moves ? -a->modes.lambda[low + k] / s : 0.0;
     }
     return MT_OK;
@@ -168,12 +168,12 @@ static mt_status block_column(const mt_repeated *m, mt_repeated_block *b, int lo
 
 static mt_status block_matrices(mt_repeated *m, mt_repeated_block *b, bool turn, mt_err *err)
 {
-    const mt_problem *const p = m->p;
+    const mt_workspace *const ws = m->ws;
     const mt_analysis *const a = b->side.analysis;
     const int n = mt_linear_freedoms(a->lin);
     const int r = b->r;
     const int low = mt_modal_flexible(&a->modes, b->index);
-    const double z = b->side.moves ? p->t[p->n] : 0.0;
+    const double z = b->side.moves ? ws->t[ws->p->n] : 0.0;
     const double w0 = 6.283185307179586 * b->side.limit_hz * exp(b->side.sign * z);
     if (low < 0 || low + r > a->modes.count) {
         return mt_fail(err, MT_E_DOMAIN, "repeated modes: they are not all there");
@@ -187,7 +187,7 @@ static mt_status block_matrices(mt_repeated *m, mt_repeated_block *b, bool turn,
         mt_gemm(true, false, r, r, n, 1.0, mt_modal_shape(&a->modes, low), n, b->c, n, 0.0, w,
                 r);
         turned(r, w, b->b);
-        for (int j = 0; j < p->n_t; j++) {
+        for (int j = 0; j < ws->c->n_t; j++) {
             turned(r, w, b->g + ((ptrdiff_t)j * r * r));
         }
     }
@@ -207,7 +207,7 @@ mt_status mt_repeated_matrices(mt_repeated *m, bool turn, mt_err *err)
 static mt_status choose_entries(mt_repeated *m, mt_repeated_block *b, mt_arena *mem,
                                 mt_err *err)
 {
-    const int n = m->p->n_t;
+    const int n = m->ws->c->n_t;
     const int r = b->r;
     double *const a = mt_arena_f64(mem, (size_t)n, (size_t)r * (size_t)r);
     int *const entry = mt_arena_int(mem, (size_t)r * (size_t)r);
@@ -237,8 +237,8 @@ static mt_status choose_entries(mt_repeated *m, mt_repeated_block *b, mt_arena *
  * entries. */
 static mt_status number_rows(mt_repeated *m, mt_arena *mem, mt_err *err)
 {
-    const mt_problem *const p = m->p;
-    const int n_eq = mt_problem_rows_eq(p);
+    const mt_workspace *const ws = m->ws;
+    const int n_eq = mt_case_rows_eq(ws->c);
     double least = 1.0;
     for (int i = 0; i < n_eq; i++) {
         m->n_kept += m->replaced[i] ? 0 : 1;
@@ -252,14 +252,14 @@ static mt_status number_rows(mt_repeated *m, mt_arena *mem, mt_err *err)
     if (m->eq_tol == NULL) {
         return mt_fail_memory(err);
     }
-    for (int i = 0; i < mt_problem_rows_in(p); i++) {
-        least = fmin(least, p->in_tol[i]);
+    for (int i = 0; i < mt_case_rows_in(ws->c); i++) {
+        least = fmin(least, ws->c->in_tol[i]);
     }
     int kept = 0;
     for (int i = 0; i < n_eq; i++) {
-        least = fmin(least, p->eq_tol[i]);
+        least = fmin(least, ws->c->eq_tol[i]);
         if (!m->replaced[i]) {
-            m->eq_tol[kept++] = p->eq_tol[i];
+            m->eq_tol[kept++] = ws->c->eq_tol[i];
         }
     }
     for (int i = 0; i < m->n_rows; i++) {
@@ -268,18 +268,18 @@ static mt_status number_rows(mt_repeated *m, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
-mt_status mt_repeated_find(mt_problem *p, const double *t, double near, mt_arena *mem,
+mt_status mt_repeated_find(mt_workspace *ws, const double *t, double near, mt_arena *mem,
                            mt_repeated *out, mt_err *err)
 {
     mt_repeated_side *sides = NULL;
     int n = 0;
-    *out = (mt_repeated){.p = p};
-    MT_TRY(mt_problem_values_init(p, mem, &out->values, err));
-    MT_TRY(mt_problem_eval(p, t, true, &out->values, err));
-    MT_TRY(mt_repeated_sides(p, mem, &sides, &n, err));
+    *out = (mt_repeated){.ws = ws};
+    MT_TRY(mt_case_values_init(ws->c, mem, &out->values, err));
+    MT_TRY(mt_workspace_eval(ws, t, true, &out->values, err));
+    MT_TRY(mt_repeated_sides(ws, mem, &sides, &n, err));
     out->blocks = mt_arena_alloc(mem, (size_t)n, sizeof *out->blocks);
     out->replaced =
-        mt_arena_alloc(mem, (size_t)mt_problem_rows_eq(p) + (size_t)mt_problem_rows_in(p),
+        mt_arena_alloc(mem, (size_t)mt_case_rows_eq(ws->c) + (size_t)mt_case_rows_in(ws->c),
                        sizeof *out->replaced);
     if (out->blocks == NULL || out->replaced == NULL) {
         return mt_fail_memory(err);
@@ -293,16 +293,16 @@ mt_status mt_repeated_find(mt_problem *p, const double *t, double near, mt_arena
 /* The problem's own rows at its last evaluation. */
 static void own_rows(const mt_repeated *m, mt_nlp_values *out)
 {
-    const mt_problem *const p = m->p;
+    const mt_workspace *const ws = m->ws;
     const mt_nlp_values *const v = &m->values;
-    const int n_eq = mt_problem_rows_eq(p);
-    const int n_in = mt_problem_rows_in(p);
+    const int n_eq = mt_case_rows_eq(ws->c);
+    const int n_in = mt_case_rows_in(ws->c);
     const int rows = m->n_kept + m->n_rows;
     int kept = 0;
     for (int i = 0; i < n_in; i++) {
         const bool replaced = m->replaced[n_eq + i];
         out->in[i] = replaced ? 1.0 : v->in[i];
-        for (int j = 0; j < p->n_t; j++) {
+        for (int j = 0; j < ws->c->n_t; j++) {
             const ptrdiff_t at = i + ((ptrdiff_t)j * n_in);
             out->din[at] = replaced ? 0.0 : v->din[at];
         }
@@ -312,7 +312,7 @@ static void own_rows(const mt_repeated *m, mt_nlp_values *out)
             continue;
         }
         out->eq[kept] = v->eq[i];
-        for (int j = 0; j < p->n_t; j++) {
+        for (int j = 0; j < ws->c->n_t; j++) {
             out->deq[kept + ((ptrdiff_t)j * rows)] = v->deq[i + ((ptrdiff_t)j * n_eq)];
         }
         kept++;
@@ -323,13 +323,13 @@ static mt_status evaluate(void *context, const double *t, bool with_gradient,
                           mt_nlp_values *out, mt_err *err)
 {
     mt_repeated *const m = context;
-    mt_problem *const p = m->p;
+    mt_workspace *const ws = m->ws;
     const int rows = m->n_kept + m->n_rows;
     (void)with_gradient; /* the matrices need the vectors anyhow */
-    MT_TRY(mt_problem_eval(p, t, true, &m->values, err));
+    MT_TRY(mt_workspace_eval(ws, t, true, &m->values, err));
     MT_TRY(mt_repeated_matrices(m, true, err));
     out->f = m->values.f;
-    memcpy(out->df, m->values.df, (size_t)p->n_t * sizeof *out->df);
+    memcpy(out->df, m->values.df, (size_t)ws->c->n_t * sizeof *out->df);
     own_rows(m, out);
     for (int k = 0; k < m->n_blocks; k++) {
         const mt_repeated_block *const b = &m->blocks[k];
@@ -337,7 +337,7 @@ static mt_status evaluate(void *context, const double *t, bool with_gradient,
             const int e = b->entry[i];
             const double factor = e / b->r == e % b->r ? 1.0 : sqrt(2.0);
             out->eq[b->first + i] = factor * b->b[e];
-            for (int j = 0; j < p->n_t; j++) {
+            for (int j = 0; j < ws->c->n_t; j++) {
                 out->deq[b->first + i + ((ptrdiff_t)j * rows)] =
                     factor * b->g[e + ((ptrdiff_t)j * b->r * b->r)];
             }
@@ -348,7 +348,7 @@ static mt_status evaluate(void *context, const double *t, bool with_gradient,
 
 mt_nlp mt_repeated_nlp(mt_repeated *m)
 {
-    mt_nlp nlp = mt_problem_nlp(m->p);
+    mt_nlp nlp = mt_workspace_nlp(m->ws);
     nlp.n_eq = m->n_kept + m->n_rows;
     nlp.eq_tol = m->eq_tol;
     nlp.eval = evaluate;

@@ -3,7 +3,7 @@
 #define SEARCH_REPEATED_H
 
 #include "nlp/cone.h"
-#include "problem/problem.h"
+#include "problem/workspace.h"
 
 /*
  * A row of the problem that is a limit on one mode of an analysis, sign ln(f / limit) >= 0: an
@@ -24,10 +24,10 @@ typedef struct mt_repeated_side {
 
 /* repeated_sides.c: all of them, at the problem's last evaluation. In mem. Fails:
  * MT_E_MEMORY. */
-mt_status mt_repeated_sides(mt_problem *p, mt_arena *mem, mt_repeated_side **out, int *n,
+mt_status mt_repeated_sides(mt_workspace *ws, mt_arena *mem, mt_repeated_side **out, int *n,
                             mt_err *err);
 /* ln of how far the mode at pos is within the limit, at the last evaluation. */
-double mt_repeated_room(const mt_problem *p, const mt_repeated_side *s, int pos);
+double mt_repeated_room(const mt_workspace *ws, const mt_repeated_side *s, int pos);
 
 /*
  * Limits on modes that (nearly) coincide. A single mode has no slope there, its cluster has:
@@ -54,14 +54,14 @@ typedef struct mt_repeated_block {
     int row_most; /* the row that asks it of the mode which the others follow, -1: several do */
     double *c;    /* n x r, n the freedoms of the analysis */
     double *b;    /* r x r, at the last mt_repeated_eval */
-    double *g;    /* p->n_t matrices r x r: dB/dt_j there */
+    double *g;    /* n_t matrices r x r: dB/dt_j there */
     int n_rows;   /* independent entries of B, at t0 */
     int *entry;   /* [n_rows] k + l r */
     int first;    /* its first equality */
 } mt_repeated_block;
 
 typedef struct mt_repeated {
-    mt_problem *p;
+    mt_workspace *ws;
     int n_blocks;
     mt_repeated_block *blocks;
     /* [n_eq + n_in] rows of the problem, equalities first, that the blocks stand for */
@@ -75,9 +75,9 @@ typedef struct mt_repeated {
 /*
  * The blocks at t: modes within `near` (relative) of an upper or lower limit that is asked of
  * one of them, two or more at a time. Everything in mem. After the problem could be evaluated
- * at t with gradient (done here); fails as mt_problem_eval.
+ * at t with gradient (done here); fails as mt_workspace_eval.
  */
-mt_status mt_repeated_find(mt_problem *p, const double *t, double near, mt_arena *mem,
+mt_status mt_repeated_find(mt_workspace *ws, const double *t, double near, mt_arena *mem,
                            mt_repeated *out, mt_err *err);
 /* b and g of every block at the problem's last evaluation, which had gradients; turn: in the
  * basis of t0, else in that of the modes. */

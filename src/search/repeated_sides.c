@@ -7,7 +7,7 @@
 #include "search/repeated.h"
 
 typedef struct listing {
-    const mt_problem *p;
+    const mt_workspace *ws;
     mt_repeated_side *items;
     int n;
 } listing;
@@ -26,18 +26,18 @@ static void add(listing *l, const mt_repeated_side *what, int mode)
 
 static void add_demand(listing *l, const mt_demand *d)
 {
-    const mt_problem *const p = l->p;
+    const mt_workspace *const ws = l->ws;
     const mt_goal *const g = d->goal;
-    const int n_eq = mt_problem_rows_eq(p);
+    const int n_eq = mt_case_rows_eq(ws->c);
     if (!mt_demand_is_frequency(d)) {
         return;
     }
     for (int k = 0; k < 2; k++) {
-        mt_repeated_side s = {.analysis = p->views[d->view].analysis,
+        mt_repeated_side s = {.analysis = ws->views[d->view].analysis,
                               .limit_hz = k == 0 ? g->at_least : g->at_most,
                               .sign = k == 0 ? 1.0 : -1.0};
         const int in = d->row_in + (k == 1 && MT_HAS(g->at_least) ? 1 : 0);
-        if (d->row_in >= 0 && MT_HAS(s.limit_hz) && !mt_robust_at_corner(p, in)) {
+        if (d->row_in >= 0 && MT_HAS(s.limit_hz) && !mt_robust_at_corner(ws->c, in)) {
             s.row = n_eq + in;
             add(l, &s, d->mode);
         }
@@ -51,18 +51,18 @@ static void add_demand(listing *l, const mt_demand *d)
 
 static void add_bands(listing *l)
 {
-    const mt_problem *const p = l->p;
+    const mt_workspace *const ws = l->ws;
     mt_clear_row at;
-    for (int k = 0; p->below != NULL && mt_clear_row_at(p, p->below, k, &at); k++) {
-        const mt_clear *const c = &p->clears[at.clear];
+    for (int k = 0; ws->c->below != NULL && mt_clear_row_at(ws->c, ws->c->below, k, &at); k++) {
+        const mt_clear *const c = &ws->c->clears[at.clear];
         const mt_band *const band = &c->bands.items[at.band];
-        const int in = p->clears[0].row_in + k;
-        const mt_repeated_side s = {.analysis = p->views[c->view].analysis,
+        const int in = ws->c->first_band_row + k;
+        const mt_repeated_side s = {.analysis = ws->views[c->view].analysis,
                                     .limit_hz = at.above ? band->upper_hz : band->lower_hz,
                                     .sign = at.above ? 1.0 : -1.0,
-                                    .moves = p->clearance,
-                                    .row = mt_problem_rows_eq(p) + in};
-        if (!mt_robust_at_corner(p, in)) {
+                                    .moves = ws->c->clearance,
+                                    .row = mt_case_rows_eq(ws->c) + in};
+        if (!mt_robust_at_corner(ws->c, in)) {
             add(l, &s, at.mode);
         }
     }
@@ -70,35 +70,35 @@ static void add_bands(listing *l)
 
 static void add_corners(listing *l)
 {
-    const mt_problem *const p = l->p;
-    for (int k = 0; p->robust != NULL && k < p->robust->n_rows; k++) {
-        const mt_robust_row *const row = &p->robust->rows[k];
-        const mt_demand *const d = row->demand >= 0 ? &p->demands[row->demand] : NULL;
-        const int view = d != NULL ? d->view : p->clears[row->at.clear].view;
+    const mt_workspace *const ws = l->ws;
+    for (int k = 0; ws->c->robust != NULL && k < ws->c->robust->n_rows; k++) {
+        const mt_robust_row *const row = &ws->c->robust->rows[k];
+        const mt_demand *const d = row->demand >= 0 ? &ws->p->demands[row->demand] : NULL;
+        const int view = d != NULL ? d->view : ws->c->clears[row->at.clear].view;
         if (view >= 0) {
-            const mt_corner *const c = &p->robust->views[view].corners[row->corner];
-            const mt_repeated_side s = {.analysis = c->analysis,
-                                        .factor = c->factor,
-                                        .limit_hz = mt_robust_limit_hz(p, row),
+            const mt_corner_set *const set = &ws->c->robust->views[view];
+            const mt_repeated_side s = {.analysis = ws->views[view].corners[row->corner],
+                                        .factor = set->corners[row->corner].factor,
+                                        .limit_hz = mt_robust_limit_hz(ws->c, row),
                                         .sign = row->side == MT_LOWEST ? 1.0 : -1.0,
-                                        .moves = d == NULL && p->clearance,
-                                        .row = mt_problem_rows_eq(p) + row->row};
+                                        .moves = d == NULL && ws->c->clearance,
+                                        .row = mt_case_rows_eq(ws->c) + row->row};
             add(l, &s, d != NULL ? d->mode : row->at.mode);
         }
     }
 }
 
-mt_status mt_repeated_sides(mt_problem *p, mt_arena *mem, mt_repeated_side **out, int *n,
+mt_status mt_repeated_sides(mt_workspace *ws, mt_arena *mem, mt_repeated_side **out, int *n,
                             mt_err *err)
 {
-    const size_t corners = p->robust != NULL ? (size_t)p->robust->n_rows : 0;
-    const size_t most = 4 * (size_t)p->n_demands + (size_t)p->n_in + corners;
-    listing l = {.p = p, .items = mt_arena_alloc(mem, most, sizeof *l.items)};
+    const size_t corners = ws->c->robust != NULL ? (size_t)ws->c->robust->n_rows : 0;
+    const size_t most = 4 * (size_t)ws->p->n_demands + (size_t)ws->c->n_in + corners;
+    listing l = {.ws = ws, .items = mt_arena_alloc(mem, most, sizeof *l.items)};
     if (l.items == NULL) {
         return mt_fail_memory(err);
     }
-    for (int i = 0; i < p->n_demands; i++) {
-        add_demand(&l, &p->demands[i]);
+    for (int i = 0; i < ws->p->n_demands; i++) {
+        add_demand(&l, &ws->p->demands[i]);
     }
     add_bands(&l);
     add_corners(&l);
@@ -107,8 +107,8 @@ mt_status mt_repeated_sides(mt_problem *p, mt_arena *mem, mt_repeated_side **out
     return MT_OK;
 }
 
-double mt_repeated_room(const mt_problem *p, const mt_repeated_side *s, int pos)
+double mt_repeated_room(const mt_workspace *ws, const mt_repeated_side *s, int pos)
 {
-    const double z = s->moves ? p->t[p->n] : 0.0;
+    const double z = s->moves ? ws->t[ws->p->n] : 0.0;
     return (s->sign * log(mt_modal_hz(&s->analysis->modes, pos) / s->limit_hz)) - z;
 }

@@ -16,76 +16,77 @@ static const double NOT_SHOWN = 1e-4;
 enum { STAGE_EVALUATIONS = 2000 };
 
 /* Options that all stages share. */
-static mt_nlp_options options_of(const mt_problem *p)
+static mt_nlp_options options_of(const mt_case *c)
 {
     mt_nlp_options opt = mt_nlp_options_default();
-    opt.seed = p->study->search.seed;
-    opt.starts = p->study->search.starts > 0 ? p->study->search.starts : p->starts;
-    opt.max_evals = p->study->search.max_evaluations;
-    opt.least_change = p->aims[p->stage].type == MT_OBJECTIVE_CHANGE;
+    opt.seed = c->search.seed;
+    opt.starts = c->search.starts > 0 ? c->search.starts : c->starts;
+    opt.max_evals = c->search.max_evaluations;
+    opt.least_change = c->aims[c->stage].type == MT_OBJECTIVE_CHANGE;
     return opt;
 }
 
-static mt_status first_stage(mt_problem *const *problems, int n_workers, mt_arena *mem,
+static mt_status first_stage(mt_workspace *const *workers, int n_workers, mt_arena *mem,
                              mt_nlp_result *out, mt_err *err)
 {
-    const mt_nlp_options opt = options_of(problems[0]);
-    mt_nlp nlp = mt_problem_nlp(problems[0]);
+    const mt_nlp_options opt = options_of(workers[0]->c);
+    mt_nlp nlp = mt_workspace_nlp(workers[0]);
     void **const contexts = mt_arena_alloc(mem, (size_t)n_workers, sizeof *contexts);
     if (contexts == NULL) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < n_workers; i++) {
-        contexts[i] = problems[i];
+        contexts[i] = workers[i];
     }
     nlp.n_workers = n_workers;
     nlp.contexts = contexts;
     return mt_nlp_solve(&nlp, &opt, mem, out, err);
 }
 
-/* The present stage from one design. */
-static mt_status later_stage(mt_problem *p, const double *from, long budget, mt_arena *mem,
-                             mt_nlp_result *out, mt_err *err)
-{
-    mt_nlp_options opt = options_of(p);
-    mt_nlp nlp = mt_problem_nlp(p);
-    opt.starts = 1;
-    opt.max_evals = budget;
-    nlp.origin = from;
-    MT_TRY(mt_nlp_solve(&nlp, &opt, mem, out, err));
-    return mt_search_repeated(p, p->study->search.max_evaluations > 0 ? budget : 0, mem, out,
-                              err);
-}
-
-/* Objectives of one design: f[n_aims]. */
-static mt_status aims_at(mt_problem *p, const double *t, mt_arena *mem, double *f, mt_err *err)
-{
-    mt_nlp_values v;
-    const mt_arena_mark mark = mt_arena_get_mark(mem);
-    const int stage = p->stage;
-    p->stage = 0; /* nothing need be held yet */
-    mt_status rc = mt_problem_values_init(p, mem, &v, err);
-    rc = rc == MT_OK ? mt_problem_eval(p, t, false, &v, err) : rc;
-    for (int k = 0; k < p->n_aims && rc == MT_OK; k++) {
-        f[k] = mt_aim_value(p, k, NULL);
-    }
-    p->stage = stage;
-    mt_arena_rewind(mem, mark);
-    return rc;
-}
-
 /* The stages of one search after the first. */
 typedef struct stages {
-    mt_problem *p;
+    mt_workspace *ws;
+    const mt_case *first;
+    mt_case *later; /* with the objectives before its stage held */
     mt_arena *mem;
     mt_nlp_result *out;
     double *f;     /* n_aims values of each solution, at its present design */
     double *limit; /* n_aims values of each, at the end of the objective's own stage */
 } stages;
 
+/* The present stage from one design. */
+static mt_status later_stage(const stages *s, const double *from, long budget,
+                             mt_nlp_result *out, mt_err *err)
+{
+    mt_nlp_options opt = options_of(s->later);
+    mt_workspace_back(s->ws, s->later);
+    mt_nlp nlp = mt_workspace_nlp(s->ws);
+    opt.starts = 1;
+    opt.max_evals = budget;
+    nlp.origin = from;
+    MT_TRY(mt_nlp_solve(&nlp, &opt, s->mem, out, err));
+    return mt_search_repeated(s->ws, s->first->search.max_evaluations > 0 ? budget : 0, s->mem,
+                              out, err);
+}
+
+/* Objectives of one design, where nothing is held yet: f[n_aims]. */
+static mt_status aims_at(const stages *s, const double *t, double *f, mt_err *err)
+{
+    mt_nlp_values v;
+    const mt_arena_mark mark = mt_arena_get_mark(s->mem);
+    mt_workspace_back(s->ws, s->first);
+    mt_status rc = mt_case_values_init(s->first, s->mem, &v, err);
+    rc = rc == MT_OK ? mt_workspace_eval(s->ws, t, false, &v, err) : rc;
+    for (int k = 0; k < s->first->n_aims && rc == MT_OK; k++) {
+        f[k] = mt_aim_value(s->ws, k, NULL);
+    }
+    mt_arena_rewind(s->mem, mark);
+    return rc;
+}
+
 static long budget_left(const stages *s)
 {
-    const long most = s->p->study->search.max_evaluations;
+    const long most = s->first->search.max_evaluations;
     const long left = most - s->out->evals;
     return most > 0 && left < STAGE_EVALUATIONS ? left : STAGE_EVALUATIONS;
 }
@@ -93,22 +94,22 @@ static long budget_left(const stages *s)
 /* Improve solution i in the present stage. */
 static mt_status refine(stages *s, int i, mt_err *err)
 {
-    mt_problem *const p = s->p;
+    mt_case *const c = s->later;
     mt_nlp_solution *const old = &s->out->solutions[i];
-    double *const f = s->f + ((ptrdiff_t)i * p->n_aims);
-    double *const limit = s->limit + ((ptrdiff_t)i * p->n_aims);
+    double *const f = s->f + ((ptrdiff_t)i * c->n_aims);
+    double *const limit = s->limit + ((ptrdiff_t)i * c->n_aims);
     mt_nlp_result next = {0};
     const long budget = budget_left(s);
     if (budget <= 0) {
         s->out->stop = MT_STOP_MAX_EVALS;
         return MT_OK;
     }
-    MT_TRY(aims_at(p, old->t, s->mem, f, err)); /* the residuals that a misfit is held at */
-    limit[p->stage - 1] = f[p->stage - 1];
-    for (int k = 0; k < p->stage; k++) {
-        mt_aim_hold(p, k, limit[k]);
+    MT_TRY(aims_at(s, old->t, f, err)); /* the residuals that a misfit is held at */
+    limit[c->stage - 1] = f[c->stage - 1];
+    for (int k = 0; k < c->stage; k++) {
+        mt_aim_hold(c, s->ws, k, limit[k]);
     }
-    MT_TRY(later_stage(p, old->t, budget, s->mem, &next, err));
+    MT_TRY(later_stage(s, old->t, budget, &next, err));
     s->out->evals += next.evals;
     s->out->stop = next.stop;
     if (next.n_solutions == 0 || next.compromise) {
@@ -124,7 +125,7 @@ static mt_status refine(stages *s, int i, mt_err *err)
         s->out->undetermined = next.undetermined;
         s->out->undetermined_effect = next.undetermined_effect;
     }
-    return aims_at(p, old->t, s->mem, f, err);
+    return aims_at(s, old->t, f, err);
 }
 
 bool mt_search_before(int n, const double *a, const double *b)
@@ -163,7 +164,7 @@ static void drop_failed(mt_nlp_result *out)
 /* Drop what has become one, then rank (insertion, stable). */
 static void rank(stages *s)
 {
-    const int n_aims = s->p->n_aims;
+    const int n_aims = s->first->n_aims;
     int kept = 0;
     for (int i = 0; i < s->out->n_solutions; i++) {
         mt_nlp_solution *const all = s->out->solutions;
@@ -171,7 +172,7 @@ static void rank(stages *s)
         double *const f = s->f + ((ptrdiff_t)i * n_aims);
         bool twin = false;
         for (int k = 0; k < kept; k++) {
-            twin = twin || mt_search_same(s->p->n, all[k].t, one.t);
+            twin = twin || mt_search_same(s->first->p->n, all[k].t, one.t);
         }
         if (twin) {
             continue;
@@ -198,19 +199,21 @@ static void rank(stages *s)
 
 static mt_status later_stages(stages *s, int *stage, mt_err *err)
 {
-    mt_problem *const p = s->p;
     mt_nlp_result *const out = s->out;
-    const size_t n_aims = (size_t)p->n_aims;
-    s->f = mt_arena_f64(s->mem, n_aims, (size_t)out->n_solutions);
-    s->limit = mt_arena_f64(s->mem, n_aims, (size_t)out->n_solutions);
+    mt_case later;
+    const int n_aims = s->first->n_aims;
+    MT_TRY(mt_case_for_stages(s->first, s->mem, &later, err));
+    s->later = &later;
+    s->f = mt_arena_f64(s->mem, (size_t)n_aims, (size_t)out->n_solutions);
+    s->limit = mt_arena_f64(s->mem, (size_t)n_aims, (size_t)out->n_solutions);
     if (s->f == NULL || s->limit == NULL) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < out->n_solutions; i++) {
-        MT_TRY(aims_at(p, out->solutions[i].t, s->mem, s->f + ((ptrdiff_t)i * p->n_aims), err));
+        MT_TRY(aims_at(s, out->solutions[i].t, s->f + ((ptrdiff_t)i * n_aims), err));
     }
-    for (int k = 1; k < p->n_aims && out->stop == MT_STOP_DONE; k++) {
-        p->stage = k;
+    for (int k = 1; k < n_aims && out->stop == MT_STOP_DONE; k++) {
+        later.stage = k;
         for (int i = 0; i < out->n_solutions && out->stop == MT_STOP_DONE; i++) {
             MT_TRY(refine(s, i, err));
         }
@@ -219,19 +222,20 @@ static mt_status later_stages(stages *s, int *stage, mt_err *err)
     /* solutions that a stage has not reached keep the value of an earlier one: say so by one
      * measure for all */
     for (int i = 0; i < out->n_solutions; i++) {
-        out->solutions[i].f = s->f[((ptrdiff_t)i * p->n_aims) + *stage];
+        out->solutions[i].f = s->f[((ptrdiff_t)i * n_aims) + *stage];
     }
     rank(s);
     return MT_OK;
 }
 
-mt_status mt_search_designs(mt_problem *const *problems, int n_workers, mt_arena *mem,
+mt_status mt_search_designs(mt_workspace *const *workers, int n_workers, mt_arena *mem,
                             mt_nlp_result *out, int *stage, mt_err *why, mt_err *err)
 {
-    mt_problem *const p = problems[0];
+    mt_workspace *const ws = workers[0];
+    const mt_case *const c = ws->c;
     mt_err own = {.code = MT_OK};
     *stage = 0;
-    const mt_status rc = first_stage(problems, n_workers, mem, out, &own);
+    const mt_status rc = first_stage(workers, n_workers, mem, out, &own);
     if (mt_is_final(rc) || rc == MT_E_USAGE) {
         return mt_fail(err, rc, "%s", own.text);
     }
@@ -240,17 +244,17 @@ mt_status mt_search_designs(mt_problem *const *problems, int n_workers, mt_arena
         *why = own;
         return MT_OK;
     }
-    MT_TRY(mt_search_repeated(p, p->study->search.max_evaluations, mem, out, err));
-    if (p->n_aims == 1 || out->compromise || out->n_solutions == 0 ||
+    MT_TRY(mt_search_repeated(ws, c->search.max_evaluations, mem, out, err));
+    if (c->n_aims == 1 || out->compromise || out->n_solutions == 0 ||
         out->stop != MT_STOP_DONE) {
-        return mt_search_join_continua(p, mem, out, err);
+        return mt_search_join_continua(ws, mem, out, err);
     }
-    stages s = {.p = p, .mem = mem, .out = out};
+    stages s = {.ws = ws, .first = c, .mem = mem, .out = out};
     const mt_status later = later_stages(&s, stage, err);
-    p->stage = 0;
+    mt_workspace_back(ws, c);
     if (later == MT_E_INTERRUPTED) {
         out->stop = MT_STOP_USER;
         return MT_OK;
     }
-    return later == MT_OK ? mt_search_join_continua(p, mem, out, err) : later;
+    return later == MT_OK ? mt_search_join_continua(ws, mem, out, err) : later;
 }

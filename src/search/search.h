@@ -2,7 +2,7 @@
 #ifndef SEARCH_SEARCH_H
 #define SEARCH_SEARCH_H
 
-#include "problem/problem.h"
+#include "problem/workspace.h"
 
 /*
  * Search a problem for designs. The first objective from many starts (mt_nlp_solve); then, for
@@ -10,13 +10,12 @@
  * and so on through the list. Designs that have become one are reported once, in the order of
  * the objectives. A compromise, a spent budget or an interruption ends the list: out->stop
  * tells, and *stage is the objective that the solutions' f belongs to. Undetermined directions
- * are those at the best design. problems[n_workers]: the same study compiled once for each
- * worker; the result is the same for any number of them. Results in mem; the stage of
- * problems[0] is 0 again. Deterministic. That no start has any value is no failure: then there
- * are no solutions and *why tells what was wrong. Fails: MT_E_MEMORY, MT_E_INTERNAL,
- * MT_E_USAGE.
+ * are those at the best design. workers[n_workers], set to one case, in its first stage: the
+ * result is the same for any number of them. Results in mem; the workers are set to that case
+ * again. Deterministic. That no start has any value is no failure: then there are no solutions
+ * and *why tells what was wrong. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_USAGE.
  */
-mt_status mt_search_designs(mt_problem *const *problems, int n_workers, mt_arena *mem,
+mt_status mt_search_designs(mt_workspace *const *workers, int n_workers, mt_arena *mem,
                             mt_nlp_result *out, int *stage, mt_err *why, mt_err *err);
 
 /* Are designs at a[n] and b[n] one, as in the search itself? */
@@ -26,14 +25,14 @@ bool mt_search_same(int n, const double *a, const double *b);
  * drop what is one and what is not shown to be optimal behind a better design. In the present
  * stage; solutions and their multipliers in place. out->evals may grow to `most` (0: some
  * thousands more). Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_USAGE. */
-mt_status mt_search_repeated(mt_problem *p, long most, mt_arena *mem, mt_nlp_result *out,
+mt_status mt_search_repeated(mt_workspace *ws, long most, mt_arena *mem, mt_nlp_result *out,
                              mt_err *err);
 
 /* search_continuum.c: of solutions between which all designs are feasible and have their
  * objectives, one is kept (solution->continuum); n_found and n_once likewise. At most 3
  * evaluations for each pair with equal objectives. In place; compromises stay as they are.
  * Fails: MT_E_MEMORY. */
-mt_status mt_search_join_continua(mt_problem *p, mt_arena *mem, mt_nlp_result *out,
+mt_status mt_search_join_continua(mt_workspace *ws, mt_arena *mem, mt_nlp_result *out,
                                   mt_err *err);
 
 /* Is a design with objectives a[n] before one with b[n]? By the objectives in order; values

@@ -24,7 +24,7 @@ static const double FEASIBLE = 1.0 + 1e-6;
 static const double STATIONARY = 1e-6;
 
 typedef struct continua {
-    mt_problem *p;
+    mt_workspace *ws;
     mt_nlp_result *out;
     mt_nlp_values v;
     double *aims; /* n_aims of each solution */
@@ -37,32 +37,32 @@ typedef struct continua {
 /* The objectives at t, half squares as roots; false where it has none, or misses a goal. */
 static bool measure(continua *c, const double *t, double *aims)
 {
-    mt_problem *const p = c->p;
-    const long most = p->study->search.max_evaluations;
+    mt_workspace *const ws = c->ws;
+    const long most = ws->c->search.max_evaluations;
     if (c->rc != MT_OK || (most > 0 && c->out->evals >= most)) {
         return false;
     }
     c->out->evals++;
-    const mt_status rc = mt_problem_eval(p, t, false, &c->v, &c->err);
+    const mt_status rc = mt_workspace_eval(ws, t, false, &c->v, &c->err);
     bool good = rc == MT_OK;
     c->rc = mt_is_final(rc) ? rc : MT_OK;
-    for (int i = 0; i < p->n_eq && good; i++) {
-        good = fabs(c->v.eq[i]) <= p->eq_tol[i] * FEASIBLE;
+    for (int i = 0; i < ws->p->n_eq && good; i++) {
+        good = fabs(c->v.eq[i]) <= ws->c->eq_tol[i] * FEASIBLE;
     }
-    for (int i = 0; i < p->n_in && good; i++) {
-        good = -c->v.in[i] <= p->in_tol[i] * FEASIBLE;
+    for (int i = 0; i < ws->c->n_in && good; i++) {
+        good = -c->v.in[i] <= ws->c->in_tol[i] * FEASIBLE;
     }
-    for (int k = 0; k < p->n_aims && good; k++) {
-        aims[k] = mt_aim_root(p, k, mt_aim_value(p, k, NULL));
+    for (int k = 0; k < ws->c->n_aims && good; k++) {
+        aims[k] = mt_aim_root(&ws->c->aims[k], mt_aim_value(ws, k, NULL));
         good = isfinite(aims[k]);
     }
     return good;
 }
 
-static bool equal(const mt_problem *p, const double *a, const double *b)
+static bool equal(const mt_workspace *ws, const double *a, const double *b)
 {
-    for (int k = 0; k < p->n_aims; k++) {
-        const bool unit = mt_objective_is(p->aims[k].type, MT_AMOUNT);
+    for (int k = 0; k < ws->c->n_aims; k++) {
+        const bool unit = mt_objective_is(ws->c->aims[k].type, MT_AMOUNT);
         const double size = fmax(fabs(a[k]), fabs(b[k]));
         if (!(fabs(a[k] - b[k]) <= EQUAL * (unit ? size : fmax(size, 1.0)))) {
             return false;
@@ -76,23 +76,23 @@ static bool connected(continua *c, int i, int k)
 {
     const double *const a = c->out->solutions[i].t;
     const double *const b = c->out->solutions[k].t;
-    const double *const aims = c->aims + ((ptrdiff_t)i * c->p->n_aims);
-    bool one = equal(c->p, aims, c->aims + ((ptrdiff_t)k * c->p->n_aims));
+    const double *const aims = c->aims + ((ptrdiff_t)i * c->ws->c->n_aims);
+    bool one = equal(c->ws, aims, c->aims + ((ptrdiff_t)k * c->ws->c->n_aims));
     for (int m = 1; m <= BETWEEN && one; m++) {
-        for (int j = 0; j < c->p->n_t; j++) {
+        for (int j = 0; j < c->ws->c->n_t; j++) {
             c->t[j] = a[j] + ((b[j] - a[j]) * m / (BETWEEN + 1));
         }
-        one = measure(c, c->t, c->at) && equal(c->p, aims, c->at);
+        one = measure(c, c->t, c->at) && equal(c->ws, aims, c->at);
     }
     return one;
 }
 
 /* Squared distance from the original design. */
-static double distance(const mt_problem *p, const mt_nlp_solution *s)
+static double distance(const mt_workspace *ws, const mt_nlp_solution *s)
 {
     double sum = 0.0;
-    for (int j = 0; j < p->n; j++) {
-        sum += (s->t[j] - p->origin_t[j]) * (s->t[j] - p->origin_t[j]);
+    for (int j = 0; j < ws->p->n; j++) {
+        sum += (s->t[j] - ws->c->origin_t[j]) * (s->t[j] - ws->c->origin_t[j]);
     }
     return sum;
 }
@@ -106,7 +106,7 @@ static void join(const continua *c, int into, const mt_nlp_solution *other)
     const int hits = s->hits + other->hits;
     const int start = s->start < other->start ? s->start : other->start;
     const bool told = into == 0 && out->n_undetermined > 0;
-    if (!told && other->kkt <= STATIONARY && distance(c->p, other) < distance(c->p, s)) {
+    if (!told && other->kkt <= STATIONARY && distance(c->ws, other) < distance(c->ws, s)) {
         *s = *other;
     }
     s->hits = hits;
@@ -163,25 +163,24 @@ static void count(mt_nlp_result *out, int before)
     out->missing = nan("");
 }
 
-mt_status mt_search_join_continua(mt_problem *p, mt_arena *mem, mt_nlp_result *out, mt_err *err)
+mt_status mt_search_join_continua(mt_workspace *ws, mt_arena *mem, mt_nlp_result *out,
+                                  mt_err *err)
 {
-    continua c = {.p = p, .out = out};
+    continua c = {.ws = ws, .out = out};
     const int n = out->n_solutions;
-    const int stage = p->stage;
     if (out->compromise || n < 2 || out->stop == MT_STOP_USER) {
         return MT_OK;
     }
-    c.aims = mt_arena_f64(mem, (size_t)p->n_aims, (size_t)n);
-    c.at = mt_arena_f64(mem, (size_t)p->n_aims, 1);
-    c.t = mt_arena_f64(mem, (size_t)p->n_t, 1);
+    c.aims = mt_arena_f64(mem, (size_t)ws->c->n_aims, (size_t)n);
+    c.at = mt_arena_f64(mem, (size_t)ws->c->n_aims, 1);
+    c.t = mt_arena_f64(mem, (size_t)ws->c->n_t, 1);
     int *const group = mt_arena_int(mem, (size_t)n);
     if (c.aims == NULL || c.at == NULL || c.t == NULL || group == NULL) {
         return mt_fail_memory(err);
     }
-    p->stage = 0; /* nothing need be held: the objectives are compared */
-    mt_status rc = mt_problem_values_init(p, mem, &c.v, err);
+    mt_status rc = mt_case_values_init(ws->c, mem, &c.v, err);
     for (int i = 0; i < n && rc == MT_OK; i++) {
-        double *const aims = c.aims + ((ptrdiff_t)i * p->n_aims);
+        double *const aims = c.aims + ((ptrdiff_t)i * ws->c->n_aims);
         if (!measure(&c, out->solutions[i].t, aims)) {
             aims[0] = nan(""); /* equal to nothing */
         }
@@ -196,6 +195,5 @@ mt_status mt_search_join_continua(mt_problem *p, mt_arena *mem, mt_nlp_result *o
         join_all(&c, group);
         count(out, n);
     }
-    p->stage = stage;
     return rc;
 }

@@ -40,7 +40,7 @@ static const double ACTIVE = 1e-6;
 static const double ACTIVE_TOLS = 10;
 
 typedef struct refine {
-    mt_problem *p;
+    mt_workspace *ws;
     mt_arena *mem;
     long evals;
     long most;
@@ -55,14 +55,14 @@ static bool spent(const refine *w, long more)
     return w->evals + more > w->most;
 }
 
-static double violation(const mt_problem *p, const mt_nlp_values *v)
+static double violation(const mt_workspace *ws, const mt_nlp_values *v)
 {
     double most = 0.0;
-    for (int i = 0; i < mt_problem_rows_eq(p); i++) {
-        most = fmax(most, fabs(v->eq[i]) / p->eq_tol[i]);
+    for (int i = 0; i < mt_case_rows_eq(ws->c); i++) {
+        most = fmax(most, fabs(v->eq[i]) / ws->c->eq_tol[i]);
     }
-    for (int i = 0; i < mt_problem_rows_in(p); i++) {
-        most = fmax(most, -v->in[i] / p->in_tol[i]);
+    for (int i = 0; i < mt_case_rows_in(ws->c); i++) {
+        most = fmax(most, -v->in[i] / ws->c->in_tol[i]);
     }
     return most;
 }
@@ -72,10 +72,10 @@ static double violation(const mt_problem *p, const mt_nlp_values *v)
 static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double *f,
                            bool *better, mt_err *err)
 {
-    mt_problem *const p = w->p;
+    mt_workspace *const ws = w->ws;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
-    double *const lower = mt_arena_f64(w->mem, (size_t)p->n_t, 1);
-    double *const upper = mt_arena_f64(w->mem, (size_t)p->n_t, 1);
+    double *const lower = mt_arena_f64(w->mem, (size_t)ws->c->n_t, 1);
+    double *const upper = mt_arena_f64(w->mem, (size_t)ws->c->n_t, 1);
     mt_nlp_options opt = mt_nlp_options_default();
     mt_nlp_result found = {0};
     mt_nlp_values v;
@@ -88,9 +88,9 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
     if (left <= 0) {
         return MT_OK;
     }
-    for (int j = 0; j < p->n_t; j++) {
-        lower[j] = fmax(p->lower_t[j], t[j] - box);
-        upper[j] = fmin(p->upper_t[j], t[j] + box);
+    for (int j = 0; j < ws->c->n_t; j++) {
+        lower[j] = fmax(ws->c->lower_t[j], t[j] - box);
+        upper[j] = fmin(ws->c->upper_t[j], t[j] + box);
     }
     nlp->lower = lower;
     nlp->upper = upper;
@@ -103,12 +103,12 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
     w->evals += found.evals;
     w->stop = found.stop == MT_STOP_USER ? MT_STOP_USER : w->stop;
     const bool is = rc == MT_OK && found.n_solutions > 0 && !found.compromise;
-    rc = is ? mt_problem_values_init(p, w->mem, &v, &own) : rc;
-    rc = is && rc == MT_OK ? mt_problem_eval(p, found.solutions[0].t, false, &v, &own) : rc;
+    rc = is ? mt_case_values_init(ws->c, w->mem, &v, &own) : rc;
+    rc = is && rc == MT_OK ? mt_workspace_eval(ws, found.solutions[0].t, false, &v, &own) : rc;
     if (is && rc == MT_OK) {
         w->evals++;
-        if (violation(p, &v) <= 1.0 && v.f < *f - w->gain * fabs(*f)) {
-            memcpy(t, found.solutions[0].t, (size_t)p->n_t * sizeof *t);
+        if (violation(ws, &v) <= 1.0 && v.f < *f - w->gain * fabs(*f)) {
+            memcpy(t, found.solutions[0].t, (size_t)ws->c->n_t * sizeof *t);
             *f = v.f;
             *better = true;
         }
@@ -128,7 +128,7 @@ static mt_status keep_together(refine *w, double near, double *t, double *f, boo
     if (spent(w, 1 + RESERVED)) {
         return MT_OK;
     }
-    MT_TRY(mt_repeated_find(w->p, t, near, w->mem, &m, err));
+    MT_TRY(mt_repeated_find(w->ws, t, near, w->mem, &m, err));
     w->evals++;
     if (m.n_blocks > 0 && m.n_rows > 0) {
         mt_nlp nlp = mt_repeated_nlp(&m);
@@ -143,16 +143,17 @@ static mt_status keep_together(refine *w, double near, double *t, double *f, boo
 static int balance_rows(const mt_repeated *m, const double *t, double *rows, bool *free_sign,
                         int *which)
 {
-    const mt_problem *const p = m->p;
+    const mt_workspace *const ws = m->ws;
     const mt_nlp_values *const v = &m->values;
-    const int n = p->n_t;
-    const int n_eq = mt_problem_rows_eq(p);
-    const int n_in = mt_problem_rows_in(p);
+    const int n = ws->c->n_t;
+    const int n_eq = mt_case_rows_eq(ws->c);
+    const int n_in = mt_case_rows_in(ws->c);
     int k = 0;
     for (int i = 0; i < n_eq + n_in; i++) {
         const int in = i - n_eq;
-        const bool active = !m->replaced[i] &&
-                            (in < 0 || v->in[in] <= fmax(ACTIVE, ACTIVE_TOLS * p->in_tol[in]));
+        const bool active =
+            !m->replaced[i] &&
+            (in < 0 || v->in[in] <= fmax(ACTIVE, ACTIVE_TOLS * ws->c->in_tol[in]));
         for (int j = 0; j < n && active; j++) {
             rows[j + ((ptrdiff_t)k * n)] =
                 in < 0 ? v->deq[i + ((ptrdiff_t)j * n_eq)] : v->din[in + ((ptrdiff_t)j * n_in)];
@@ -163,11 +164,11 @@ static int balance_rows(const mt_repeated *m, const double *t, double *rows, boo
         }
     }
     for (int j = 0; j < n; j++) {
-        const double near = ON_BOUND * (p->upper_t[j] - p->lower_t[j]);
-        const bool fixed = !(p->lower_t[j] < p->upper_t[j]);
-        const int side = t[j] <= p->lower_t[j] + near   ? 1
-                         : t[j] >= p->upper_t[j] - near ? -1
-                                                        : 0;
+        const double near = ON_BOUND * (ws->c->upper_t[j] - ws->c->lower_t[j]);
+        const bool fixed = !(ws->c->lower_t[j] < ws->c->upper_t[j]);
+        const int side = t[j] <= ws->c->lower_t[j] + near   ? 1
+                         : t[j] >= ws->c->upper_t[j] - near ? -1
+                                                            : 0;
         if (side != 0 || fixed) {
             memset(rows + ((ptrdiff_t)k * n), 0, (size_t)n * sizeof *rows);
             rows[j + ((ptrdiff_t)k * n)] = fixed ? 1.0 : side;
@@ -184,9 +185,9 @@ static int balance_rows(const mt_repeated *m, const double *t, double *rows, boo
 static void put_multipliers(const mt_repeated *m, const mt_cone *c, const int *which,
                             mt_nlp_solution *s)
 {
-    const int n_eq = mt_problem_rows_eq(m->p);
-    const int n_in = mt_problem_rows_in(m->p);
-    memset(s->mult_bound, 0, (size_t)m->p->n_t * sizeof *s->mult_bound);
+    const int n_eq = mt_case_rows_eq(m->ws->c);
+    const int n_in = mt_case_rows_in(m->ws->c);
+    memset(s->mult_bound, 0, (size_t)m->ws->c->n_t * sizeof *s->mult_bound);
     for (int i = 0; i < n_eq + n_in; i++) {
         double *const mult = i < n_eq ? &s->mult_eq[i] : &s->mult_in[i - n_eq];
         *mult = m->replaced[i] ? nan("") : 0.0;
@@ -199,7 +200,7 @@ static void put_multipliers(const mt_repeated *m, const mt_cone *c, const int *w
             s->mult_in[i - n_eq] = c->x[k];
         } else {
             const int j = i - n_eq - n_in;
-            s->mult_bound[j] = c->x[k] * c->rows[j + ((ptrdiff_t)k * m->p->n_t)];
+            s->mult_bound[j] = c->x[k] * c->rows[j + ((ptrdiff_t)k * m->ws->c->n_t)];
         }
     }
     int at = 0; /* in the cone, which has two blocks where both sides hold */
@@ -230,7 +231,7 @@ static mt_status cone_blocks(const mt_repeated *m, mt_arena *mem, mt_cone_block 
     for (int b = 0; b < m->n_blocks && list != NULL; b++) {
         const mt_repeated_block *const block = &m->blocks[b];
         const size_t r = (size_t)block->r;
-        const int size = block->r * block->r * m->p->n_t;
+        const int size = block->r * block->r * m->ws->c->n_t;
         for (int side = 0; side < (block->both ? 2 : 1); side++) {
             double *const g = mt_arena_f64(mem, (size_t)size, 1);
             double *const u = mt_arena_f64(mem, r, r);
@@ -250,18 +251,18 @@ static mt_status cone_blocks(const mt_repeated *m, mt_arena *mem, mt_cone_block 
 static mt_status judge(refine *w, const double *t, double *kkt, double *z, mt_nlp_solution *s,
                        mt_err *err)
 {
-    mt_problem *const p = w->p;
+    mt_workspace *const ws = w->ws;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
     mt_repeated m;
-    MT_TRY(mt_repeated_find(p, t, TOGETHER, w->mem, &m, err));
+    MT_TRY(mt_repeated_find(ws, t, TOGETHER, w->mem, &m, err));
     w->evals++;
-    const size_t n = (size_t)p->n_t;
-    const size_t most = (size_t)mt_problem_rows_eq(p) + (size_t)mt_problem_rows_in(p) + n;
+    const size_t n = (size_t)ws->c->n_t;
+    const size_t most = (size_t)mt_case_rows_eq(ws->c) + (size_t)mt_case_rows_in(ws->c) + n;
     double *const rows = mt_arena_f64(w->mem, n, most);
     bool *const free_sign = mt_arena_alloc(w->mem, most, sizeof *free_sign);
     int *const which = mt_arena_int(w->mem, most);
     mt_cone_block *blocks = NULL;
-    mt_cone c = {.n = p->n_t,
+    mt_cone c = {.n = ws->c->n_t,
                  .gradient = m.values.df,
                  .rows = rows,
                  .free_sign = free_sign,
@@ -286,29 +287,29 @@ static mt_status judge(refine *w, const double *t, double *kkt, double *z, mt_nl
 static mt_status step_down(refine *w, const double *z, double *t, double *f, bool *better,
                            mt_err *err)
 {
-    mt_problem *const p = w->p;
-    double *const from = mt_arena_f64(w->mem, (size_t)p->n_t, 1);
+    mt_workspace *const ws = w->ws;
+    double *const from = mt_arena_f64(w->mem, (size_t)ws->c->n_t, 1);
     double size = 0.0;
     *better = false;
     if (from == NULL) {
         return mt_fail_memory(err);
     }
-    for (int j = 0; j < p->n_t; j++) {
+    for (int j = 0; j < ws->c->n_t; j++) {
         size = fmax(size, fabs(z[j]));
     }
     double step = STEP;
     for (int k = 0; k < STEPS && !*better && size > 0.0 && w->stop == MT_STOP_DONE; k++) {
-        for (int j = 0; j < p->n_t; j++) {
+        for (int j = 0; j < ws->c->n_t; j++) {
             const double to = t[j] - (step * z[j] / size);
-            from[j] = fmin(fmax(to, p->lower_t[j]), p->upper_t[j]);
+            from[j] = fmin(fmax(to, ws->c->lower_t[j]), ws->c->upper_t[j]);
         }
-        mt_nlp nlp = mt_problem_nlp(p);
+        mt_nlp nlp = mt_workspace_nlp(ws);
         nlp.hint = NULL;
         MT_TRY(try_solve(w, &nlp, HUGE_VAL, from, f, better, err));
         step *= SHORTER;
     }
     if (*better) {
-        memcpy(t, from, (size_t)p->n_t * sizeof *t);
+        memcpy(t, from, (size_t)ws->c->n_t * sizeof *t);
     }
     return MT_OK;
 }
@@ -318,7 +319,7 @@ static mt_status step_down(refine *w, const double *z, double *t, double *f, boo
 static mt_status settle(refine *w, double near, double *kkt, double *z, mt_nlp_solution *s,
                         mt_err *err)
 {
-    const size_t n = (size_t)w->p->n_t;
+    const size_t n = (size_t)w->ws->c->n_t;
     double *const t = mt_arena_f64(w->mem, n, 1);
     double *const z_after = mt_arena_f64(w->mem, n, 1);
     double f = s->f;
@@ -350,9 +351,9 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
     if (spent(w, 1)) {
         return MT_OK;
     }
-    mt_problem *const p = w->p;
+    mt_workspace *const ws = w->ws;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
-    double *const z = mt_arena_f64(w->mem, (size_t)p->n_t, 1);
+    double *const z = mt_arena_f64(w->mem, (size_t)ws->c->n_t, 1);
     double kkt = s->kkt;
     if (z == NULL) {
         return mt_fail_memory(err);
@@ -380,9 +381,10 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
     }
     MT_TRY(judge(w, s->t, &kkt, z, s, err));
     s->kkt = kkt;
-    for (int j = 0; j < p->n_t; j++) {
-        const double near = ON_BOUND * (p->upper_t[j] - p->lower_t[j]);
-        s->bound[j] = s->t[j] <= p->lower_t[j] + near ? -1 : s->t[j] >= p->upper_t[j] - near;
+    for (int j = 0; j < ws->c->n_t; j++) {
+        const double near = ON_BOUND * (ws->c->upper_t[j] - ws->c->lower_t[j]);
+        s->bound[j] =
+            s->t[j] <= ws->c->lower_t[j] + near ? -1 : s->t[j] >= ws->c->upper_t[j] - near;
     }
     mt_arena_rewind(w->mem, mark);
     return MT_OK;
@@ -390,7 +392,7 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
 
 /* By objective; what is one counts once, and an end that is not shown to be optimal does not
  * stand behind a better design. */
-static void rank(const mt_problem *p, mt_nlp_result *out)
+static void rank(const mt_workspace *ws, mt_nlp_result *out)
 {
     int kept = 0;
     for (int i = 1; i < out->n_solutions; i++) {
@@ -405,7 +407,7 @@ static void rank(const mt_problem *p, mt_nlp_result *out)
         const mt_nlp_solution *const s = &out->solutions[i];
         bool drop = i > 0 && s->kkt > NOT_SHOWN;
         for (int k = 0; k < kept && !drop; k++) {
-            drop = mt_search_same(p->n, out->solutions[k].t, s->t);
+            drop = mt_search_same(ws->p->n, out->solutions[k].t, s->t);
         }
         if (!drop) {
             out->solutions[kept++] = *s;
@@ -415,13 +417,13 @@ static void rank(const mt_problem *p, mt_nlp_result *out)
     out->n_solutions = kept;
 }
 
-mt_status mt_search_repeated(mt_problem *p, long most, mt_arena *mem, mt_nlp_result *out,
+mt_status mt_search_repeated(mt_workspace *ws, long most, mt_arena *mem, mt_nlp_result *out,
                              mt_err *err)
 {
-    refine w = {.p = p, .mem = mem, .evals = out->evals, .stop = MT_STOP_DONE, .gain = GAIN};
+    refine w = {.ws = ws, .mem = mem, .evals = out->evals, .stop = MT_STOP_DONE, .gain = GAIN};
     bool any = false;
     const bool smooth = out->compromise || out->stop == MT_STOP_USER ||
-                        mt_objective_is(p->aims[p->stage].type, MT_RESIDUALS);
+                        mt_objective_is(ws->c->aims[ws->c->stage].type, MT_RESIDUALS);
     w.most = most > 0 ? most : out->evals + (long)ROUNDS * SOLVE_EVALUATIONS * 8;
     for (int i = 0; i < out->n_solutions && !smooth; i++) {
         if (out->solutions[i].kkt > STATIONARY && out->solutions[i].feasible) {
@@ -434,7 +436,7 @@ mt_status mt_search_repeated(mt_problem *p, long most, mt_arena *mem, mt_nlp_res
     }
     out->evals = w.evals;
     if (any) {
-        rank(p, out);
+        rank(ws, out);
     }
     return MT_OK;
 }

@@ -7,7 +7,7 @@
  * share cos^2(theta - theta_0) of the mode that turned with it: everything below is that closed
  * form.
  */
-#include "problem/problem.h"
+#include "problem/workspace.h"
 #include "study_fixture.h"
 #include "support/mt_random.h"
 
@@ -50,13 +50,13 @@ static double lambda_at(double theta, double k1, double k2, double c)
     return (a * a * (k1 + c)) + (b * b * (k2 + c)) - (2.0 * a * b * c);
 }
 
-static const mt_view *track_at(mt_problem *p, double k1, mt_err *err)
+static const mt_view_work *track_at(mt_workspace *w, double k1, mt_err *err)
 {
-    const double t = mt_problem_t(p, 0, k1);
-    mt_view *const view = &p->views[0];
-    const bool ok = mt_problem_place(p, &t, false, err) == MT_OK &&
-                    mt_view_solve(p, view, false, err) == MT_OK &&
-                    mt_view_track(p, view, err) == MT_OK;
+    const double t = mt_problem_t(w->p, 0, k1);
+    mt_view_work *const view = &w->views[0];
+    const bool ok = mt_workspace_place(w, &t, false, err) == MT_OK &&
+                    mt_view_solve(w, view, false, err) == MT_OK &&
+                    mt_view_track(w, view, err) == MT_OK;
     return ok ? view : NULL;
 }
 
@@ -67,7 +67,7 @@ typedef struct sweep_count {
 } sweep_count;
 
 /* The names at one point of the sweep against the closed form. */
-static void check_point(mt_test *t, const mt_view *view, double k1, double c, double start,
+static void check_point(mt_test *t, const mt_view_work *view, double k1, double c, double start,
                         sweep_count *count)
 {
     const double theta = angle(k1, 2.0, c);
@@ -95,9 +95,9 @@ static void sweep(mt_test *t, const char *coupling, sweep_count *count)
 {
     char model[4096];
     study_case s;
-    mt_reference_cache references = {0};
     mt_arena mem = {0};
     mt_problem *p = NULL;
+    mt_workspace *w = NULL;
     const double c = strtod(coupling, NULL);
     enum { POINTS = 301 };
     (void)snprintf(model, sizeof model, TWO_OSCILLATORS, coupling);
@@ -106,21 +106,21 @@ static void sweep(mt_test *t, const char *coupling, sweep_count *count)
         return;
     }
     CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK);
-    CHECK_INT(t, mt_reference_cache_init(&references, s.study, &mem, NULL), MT_OK);
-    if (CHECK_INT(t, mt_problem_new(s.study, &references, &p, NULL), MT_OK)) {
+    if (CHECK_INT(t, mt_problem_new(s.study, &p, NULL), MT_OK) &&
+        CHECK_INT(t, mt_workspace_new(p, &w, NULL), MT_OK)) {
         const double start = angle(1.0, 2.0, c);
         for (int i = 0; i < POINTS; i++) {
             const double k1 = 1.0 + (3.0 * i / (POINTS - 1));
             mt_err err = {0};
-            const mt_view *const view = track_at(p, k1, &err);
+            const mt_view_work *const view = track_at(w, k1, &err);
             mt_test_row(t, "c = %s, k1 = %g", coupling, k1);
             if (CHECK(t, view != NULL)) {
                 check_point(t, view, k1, c, start, count);
             }
         }
     }
+    mt_workspace_delete(w);
     mt_problem_delete(p);
-    mt_reference_cache_free(&references);
     mt_arena_free(&mem);
     study_free(&s);
 }
@@ -282,9 +282,9 @@ static void tracking__dissolved_shapes_are_followed(mt_test *t)
     mt_text model = {0};
     mt_text study = {0};
     study_case s;
-    mt_reference_cache references = {0};
     mt_arena mem = {0};
     mt_problem *p = NULL;
+    mt_workspace *w = NULL;
     mt_random random = mt_random_seed(7);
     int dissolved = 0;
     int reached = 0;
@@ -292,22 +292,22 @@ static void tracking__dissolved_shapes_are_followed(mt_test *t)
     write_row(&model, &study);
     REQUIRE(t, model.s != NULL && study.s != NULL && study_load(t, model.s, study.s, &s));
     CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK);
-    CHECK_INT(t, mt_reference_cache_init(&references, s.study, &mem, NULL), MT_OK);
-    CHECK_INT(t, mt_problem_new(s.study, &references, &p, NULL), MT_OK);
-    for (int d = 0; d < DESIGNS && p != NULL; d++) {
+    CHECK_INT(t, mt_problem_new(s.study, &p, NULL), MT_OK);
+    CHECK_INT(t, mt_workspace_new(p, &w, NULL), MT_OK);
+    for (int d = 0; d < DESIGNS && w != NULL; d++) {
         double x[N];
         double now[N];
         mt_track direct[N];
-        mt_view *const view = &p->views[0];
+        mt_view_work *const view = &w->views[0];
         for (int i = 0; i < N; i++) {
             x[i] = log((i + 1.0) * exp(mt_random_in(&random, -1.2, 1.2)));
         }
         mt_test_row(t, "design %d", d);
-        CHECK_INT(t, mt_problem_place(p, x, false, NULL), MT_OK);
-        CHECK_INT(t, mt_view_solve(p, view, false, NULL), MT_OK);
-        CHECK_INT(t, mt_track_match(view->analysis, N, view->shape, direct, NULL), MT_OK);
+        CHECK_INT(t, mt_workspace_place(w, x, false, NULL), MT_OK);
+        CHECK_INT(t, mt_view_solve(w, view, false, NULL), MT_OK);
+        CHECK_INT(t, mt_track_match(view->analysis, N, view->of->shape, direct, NULL), MT_OK);
         memcpy(now, view->analysis->modes.lambda, sizeof now);
-        CHECK_INT(t, mt_view_track(p, view, NULL), MT_OK);
+        CHECK_INT(t, mt_view_track(w, view, NULL), MT_OK);
         for (int i = 0; i < N; i++) {
             CHECK(t, now[i] == view->analysis->modes.lambda[i]);
         }
@@ -327,8 +327,8 @@ static void tracking__dissolved_shapes_are_followed(mt_test *t)
     CHECK(t, dissolved > 50);
     CHECK(t, reached > dissolved / 2);
     CHECK(t, 50 * right >= 49 * reached);
+    mt_workspace_delete(w);
     mt_problem_delete(p);
-    mt_reference_cache_free(&references);
     mt_arena_free(&mem);
     mt_text_free(&model);
     mt_text_free(&study);

@@ -138,19 +138,17 @@ static void same_goals(mt_test *t, const mt_recommendation *a, const mt_recommen
 static void designs_hold(mt_test *t, const mt_study *study, const mt_result *r)
 {
     mt_arena mem;
-    mt_reference_cache references = {0};
     mt_problem *p = NULL;
     mt_result *own = NULL;
     mt_err err = {.text = ""};
     if (!CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK)) {
         return;
     }
-    mt_status rc = mt_reference_cache_init(&references, study, &mem, &err);
-    rc = rc == MT_OK ? mt_problem_new(study, &references, &p, &err) : rc;
+    mt_status rc = mt_problem_new(study, &p, &err);
     rc = rc == MT_OK ? mt_result_new(&own, &err) : rc;
     for (int k = 0; k < r->n_recommendations && rc == MT_OK; k++) {
         const mt_recommendation *const rec = &r->recommendations[k];
-        double *const x = mt_arena_f64(&mem, (size_t)p->n_t + 1, 1);
+        double *const x = mt_arena_f64(&mem, (size_t)p->n + 1, 1);
         mt_nlp_solution found = {.t = x};
         const mt_design design = {.t = x, .found = &found, .rank = k + 1, .cut = true};
         mt_recommendation fresh;
@@ -169,7 +167,6 @@ static void designs_hold(mt_test *t, const mt_study *study, const mt_result *r)
     CHECK_INT(t, rc, MT_OK);
     mt_result_delete(own);
     mt_problem_delete(p);
-    mt_reference_cache_free(&references);
     mt_arena_free(&mem);
 }
 

@@ -262,9 +262,9 @@ static void rank__an_added_mass_is_sized_from_zero(mt_test *t)
 
 typedef struct opened {
     study_case c;
-    mt_reference_cache references;
     mt_arena mem;
     mt_problem *p;
+    mt_workspace *w;
 } opened;
 
 static bool open_problem(mt_test *t, const char *model, const char *members, opened *o)
@@ -273,15 +273,14 @@ static bool open_problem(mt_test *t, const char *model, const char *members, ope
     *o = (opened){.p = NULL};
     return study_load(t, model, members, &o->c) &&
            CHECK_INT(t, mt_arena_init(&o->mem, 0, &err), MT_OK) &&
-           CHECK_INT(t, mt_reference_cache_init(&o->references, o->c.study, &o->mem, &err),
-                     MT_OK) &&
-           CHECK_INT(t, mt_problem_new(o->c.study, &o->references, &o->p, &err), MT_OK);
+           CHECK_INT(t, mt_problem_new(o->c.study, &o->p, &err), MT_OK) &&
+           CHECK_INT(t, mt_workspace_new(o->p, &o->w, &err), MT_OK);
 }
 
 static void close_problem(opened *o)
 {
+    mt_workspace_delete(o->w);
     mt_problem_delete(o->p);
-    mt_reference_cache_free(&o->references);
     mt_arena_free(&o->mem);
     study_free(&o->c);
 }
@@ -314,7 +313,7 @@ static void rank__the_count_is_the_least_of_the_box(mt_test *t)
                          "'variables': [{'parameter': 'a', 'lower': 0, 'upper': 10}], 'goals': "
                          "[{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.1}]",
                          &o)) {
-            CHECK_INT(t, o.p->views[0].analysis->n_rigid, rows[i].rigid);
+            CHECK_INT(t, o.w->views[0].analysis->n_rigid, rows[i].rigid);
         }
         close_problem(&o);
     }
@@ -372,7 +371,7 @@ static void rank__every_kind_of_spring_counts(mt_test *t)
                          "'variables': [{'parameter': 'k', 'lower': 0, 'upper': 50}], 'goals': "
                          "[{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.1}]",
                          &o)) {
-            mt_analysis *const a = o.p->views[0].analysis;
+            mt_analysis *const a = o.w->views[0].analysis;
             CHECK_INT(t, a->n_null, rows[i].held);
             CHECK_INT(t, a->n_rigid, 0);
             CHECK_INT(t, mt_analysis_solve(a, &most, &opt, &err), MT_OK);
@@ -400,8 +399,8 @@ static void rank__loaded_configurations_are_counted_over_designs(mt_test *t)
             "'variables': [{'parameter': 'k', 'lower': 0, 'upper': 50}], 'goals': [{'type': "
             "'frequency', 'mode': 1, 'at_least_hz': 0.1}]",
             &o)) {
-        CHECK_INT(t, o.p->views[0].analysis->n_null, 1);
-        CHECK_INT(t, o.p->views[0].analysis->n_rigid, 0);
+        CHECK_INT(t, o.w->views[0].analysis->n_null, 1);
+        CHECK_INT(t, o.w->views[0].analysis->n_rigid, 0);
     }
     close_problem(&o);
 }
@@ -486,9 +485,9 @@ static void rank__a_fresh_analysis_decides(mt_test *t)
                          "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 1}]",
                          &o) &&
             CHECK_INT(t, mt_result_new(&result, &err), MT_OK)) {
-            const mt_design design = {.t = o.p->origin_t};
-            CHECK_INT(t, mt_describe_goals(o.p, &design, result, &rec, &err), MT_OK);
-            mt_modes *const modes = &o.p->views[0].analysis->modes;
+            const mt_design design = {.t = o.p->whole.origin_t};
+            CHECK_INT(t, mt_describe_goals(o.w, &design, result, &rec, &err), MT_OK);
+            mt_modes *const modes = &o.w->views[0].analysis->modes;
             CHECK(t, rec.feasible);
             modes->lambda[0] *= rows[i].factor;
             if (rows[i].rigid > 0) {
@@ -496,7 +495,7 @@ static void rank__a_fresh_analysis_decides(mt_test *t)
                 modes->n_rigid = 1;
                 modes->lambda[0] = 0.0;
             }
-            CHECK_INT(t, mt_describe_frequencies(o.p, &design, NULL, result, &rec, &err),
+            CHECK_INT(t, mt_describe_frequencies(o.w, &design, NULL, result, &rec, &err),
                       MT_OK);
             CHECK_INT(t, rec.disagreement != NULL, rows[i].doubted);
             /* what the answer makes of it */

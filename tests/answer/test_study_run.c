@@ -140,15 +140,13 @@ static void fresh_analysis_that_differs__is_a_warning(mt_test *t)
 {
     study_case c;
     mt_arena mem;
-    mt_reference_cache references = {0};
     mt_problem *p = NULL;
     mt_result *result = NULL;
     mt_recommendation rec;
     if (study_load(t, MODEL, SPRINGS TARGETS, &c) &&
         CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK)) {
-        CHECK_INT(t, mt_reference_cache_init(&references, c.study, &mem, NULL), MT_OK);
         CHECK_INT(t, mt_result_new(&result, NULL), MT_OK);
-        if (CHECK_INT(t, mt_problem_new(c.study, &references, &p, NULL), MT_OK)) {
+        if (CHECK_INT(t, mt_problem_new(c.study, &p, NULL), MT_OK)) {
             const double at[2] = {log(3.0), log(1.0)};
             const double d[2] = {log(3.0 / 2.9), log(1.0 / 1.05)};
             mt_nlp_solution found = {.f = 0.5 * ((d[0] * d[0]) + (d[1] * d[1]))};
@@ -163,7 +161,6 @@ static void fresh_analysis_that_differs__is_a_warning(mt_test *t)
         }
         mt_problem_delete(p);
         mt_result_delete(result);
-        mt_reference_cache_free(&references);
         mt_arena_free(&mem);
     }
     study_free(&c);

@@ -14,7 +14,7 @@
 #include "common/fuzz.h"
 #include "io/io.h"
 #include "linalg/blas.h"
-#include "problem/problem.h"
+#include "problem/workspace.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
 
@@ -84,40 +84,38 @@ static void demand_failed(mt_status rc, const mt_err *err)
     DEMAND(err->code == rc && err->text[0] != '\0');
 }
 
-static void evaluate(mt_problem *p)
+static void evaluate(const mt_problem *p)
 {
     mt_nlp_values v;
+    mt_workspace *w = NULL;
     mt_err err = {.code = MT_OK};
-    const mt_nlp nlp = mt_problem_nlp(p);
-    DEMAND(mt_problem_values_init(p, &p->mem, &v, &err) == MT_OK);
-    for (int i = 0; i < nlp.n; i++) {
-        DEMAND(!isnan(nlp.lower[i]) && !isnan(nlp.upper[i]) && nlp.lower[i] <= nlp.upper[i]);
+    mt_status rc = mt_workspace_new(p, &w, &err);
+    if (rc == MT_OK) {
+        const mt_nlp nlp = mt_workspace_nlp(w);
+        DEMAND(mt_case_values_init(w->c, &w->mem, &v, &err) == MT_OK);
+        for (int i = 0; i < nlp.n; i++) {
+            DEMAND(!isnan(nlp.lower[i]) && !isnan(nlp.upper[i]) &&
+                   nlp.lower[i] <= nlp.upper[i]);
+        }
+        rc = mt_workspace_eval(w, w->c->origin_t, true, &v, &err);
     }
-    const mt_status rc = mt_problem_eval(p, p->origin_t, true, &v, &err);
     if (rc != MT_OK) {
         demand_failed(rc, &err);
     }
+    mt_workspace_delete(w);
 }
 
 static void compile(const mt_study *study)
 {
-    mt_arena mem = {0};
-    mt_reference_cache references;
     mt_problem *p = NULL;
     mt_err err = {.code = MT_OK};
-    mt_status rc = mt_reference_cache_init(&references, study, &mem, &err);
+    const mt_status rc = mt_problem_new(study, &p, &err);
     if (rc == MT_OK) {
-        rc = mt_problem_new(study, &references, &p, &err);
-        if (rc == MT_OK && !p->clearance) {
-            evaluate(p);
-        }
-        mt_problem_delete(p);
-        mt_reference_cache_free(&references);
-    }
-    if (rc != MT_OK) {
+        evaluate(p);
+    } else {
         demand_failed(rc, &err);
     }
-    mt_arena_free(&mem);
+    mt_problem_delete(p);
 }
 
 static void demand_table(mt_table t, const uint8_t *data, size_t size)

@@ -2,7 +2,7 @@
 /* How the change of a variable counts: ln(new/original), smoothly down to 0 where 0 is allowed;
  * what else it is, is told. */
 #include "mt_random.h"
-#include "problem/problem.h"
+#include "problem/workspace.h"
 #include "study_fixture.h"
 
 /* Kept equations hold to 1e-6 relative; an optimum of a smooth change is then good to about
@@ -18,12 +18,11 @@ static void coordinates__are_smooth_and_invert(mt_test *t)
     static const double rows[] = {0.0,  1e-9, 1e-3, 1.999e-3, 2e-3, 2.001e-3,
                                   0.01, 1.0,  1.9,  2.0,      4.0};
     study_case c;
-    mt_reference_cache references = {0};
     mt_problem *p = NULL;
     if (study_load(t, STUDY_TWO_MASSES(ORIGINAL, ""),
                    "'variables': [{'parameter': 'k1', 'lower': 0, 'upper': 4}]," FIRST_MODE,
                    &c) &&
-        CHECK(t, mt_problem_new(c.study, &references, &p, &c.err) == MT_OK)) {
+        CHECK(t, mt_problem_new(c.study, &p, &c.err) == MT_OK)) {
         double before = -HUGE_VAL;
         for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
             const double x = rows[i];
@@ -31,7 +30,7 @@ static void coordinates__are_smooth_and_invert(mt_test *t)
             const double h = 1e-7 * fmax(x, p->floor[0]);
             double back = nan("");
             mt_test_row(t, "x = %g", x);
-            mt_problem_x(p, &at, &back);
+            mt_case_x(&p->whole, &at, &back);
             CHECK_NEAR_ABS(t, back, x, ROUNDING * fmax(x, p->floor[0]));
             CHECK(t, at > before);
             /* a difference across the floor is wrong by the jump of the curvature,
@@ -41,7 +40,7 @@ static void coordinates__are_smooth_and_invert(mt_test *t)
             before = at;
         }
         mt_test_row(t, "ends");
-        CHECK_NEAR(t, mt_problem_t(p, 0, 2.0) - p->lower_t[0], log(1e3) + 1.0, ROUNDING);
+        CHECK_NEAR(t, mt_problem_t(p, 0, 2.0) - p->whole.lower_t[0], log(1e3) + 1.0, ROUNDING);
     }
     mt_problem_delete(p);
     study_free(&c);

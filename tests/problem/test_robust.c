@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tolerances against brute force: every corner of the box, and random designs within it. */
 #include "mt_random.h"
-#include "problem/problem.h"
+#include "problem/workspace.h"
 #include "six.h"
 
 static const double TOLERANCE = 0.02;
@@ -167,21 +167,21 @@ static void robust__catalogues_are_judged_at_the_corners(mt_test *t)
 
 /* Rows of a range of frequencies: slopes of the corners' modes against differences of the
  * rows. */
-static void check_slopes(mt_test *t, mt_problem *p, mt_arena *mem)
+static void check_slopes(mt_test *t, mt_workspace *w, mt_arena *mem)
 {
     mt_err err = {.text = ""};
     mt_nlp_values at;
     mt_nlp_values side[2];
     double x[SIX];
-    CHECK(t, mt_problem_values_init(p, mem, &at, &err) == MT_OK);
-    CHECK(t, mt_problem_values_init(p, mem, &side[0], &err) == MT_OK);
-    CHECK(t, mt_problem_values_init(p, mem, &side[1], &err) == MT_OK);
-    CHECK(t, mt_problem_eval(p, p->origin_t, true, &at, &err) == MT_OK);
+    CHECK(t, mt_case_values_init(w->c, mem, &at, &err) == MT_OK);
+    CHECK(t, mt_case_values_init(w->c, mem, &side[0], &err) == MT_OK);
+    CHECK(t, mt_case_values_init(w->c, mem, &side[1], &err) == MT_OK);
+    CHECK(t, mt_workspace_eval(w, w->c->origin_t, true, &at, &err) == MT_OK);
     for (int i = 0; i < SIX; i++) {
         for (int k = 0; k < 2; k++) {
-            memcpy(x, p->origin_t, sizeof x);
+            memcpy(x, w->c->origin_t, sizeof x);
             x[i] += k == 0 ? -STEP : STEP;
-            CHECK(t, mt_problem_eval(p, x, false, &side[k], &err) == MT_OK);
+            CHECK(t, mt_workspace_eval(w, x, false, &side[k], &err) == MT_OK);
         }
         for (int row = 0; row < 2; row++) {
             mt_test_row(t, "row %d, variable %d", row, i);
@@ -195,19 +195,19 @@ static void robust__slopes_are_those_of_the_corners(mt_test *t)
 {
     mt_err err = {.text = ""};
     mt_arena mem;
-    mt_reference_cache cache;
     mt_problem *p = NULL;
+    mt_workspace *w = NULL;
     six s;
     REQUIRE(t, six_begin(t, &s));
     with_tolerances(&s);
     limit_mode_1(&s, 6.0, 7.0);
     if (CHECK(t, mt_arena_init(&mem, 0, &err) == MT_OK)) {
-        if (CHECK(t, mt_reference_cache_init(&cache, s.study, &mem, &err) == MT_OK) &&
-            CHECK(t, mt_problem_new(s.study, &cache, &p, &err) == MT_OK)) {
-            check_slopes(t, p, &mem);
+        if (CHECK(t, mt_problem_new(s.study, &p, &err) == MT_OK) &&
+            CHECK(t, mt_workspace_new(p, &w, &err) == MT_OK)) {
+            check_slopes(t, w, &mem);
         }
+        mt_workspace_delete(w);
         mt_problem_delete(p);
-        mt_reference_cache_free(&cache);
         mt_arena_free(&mem);
     }
     six_end(&s);

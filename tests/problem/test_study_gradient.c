@@ -2,7 +2,7 @@
 /* The whole callback of the search against central differences: every row of every kind of
  * goal, every objective, every coordinate. */
 #include "mt_slope.h"
-#include "problem/problem.h"
+#include "problem/workspace.h"
 #include "study_fixture.h"
 
 /* One evaluation is good to some n eps of the eigenvalues, more where shapes enter. */
@@ -13,8 +13,8 @@ static const double STEP = 1e-3;
 typedef struct compiled {
     study_case c;
     mt_arena mem;
-    mt_reference_cache references;
     mt_problem *p;
+    mt_workspace *w;
 } compiled;
 
 static bool compile(mt_test *t, const char *model, const char *members, compiled *s)
@@ -22,21 +22,20 @@ static bool compile(mt_test *t, const char *model, const char *members, compiled
     *s = (compiled){.p = NULL};
     return study_load(t, model, members, &s->c) &&
            CHECK_INT(t, mt_arena_init(&s->mem, 0, NULL), MT_OK) &&
-           CHECK_INT(t, mt_reference_cache_init(&s->references, s->c.study, &s->mem, NULL),
-                     MT_OK) &&
-           CHECK_INT(t, mt_problem_new(s->c.study, &s->references, &s->p, &s->c.err), MT_OK);
+           CHECK_INT(t, mt_problem_new(s->c.study, &s->p, &s->c.err), MT_OK) &&
+           CHECK_INT(t, mt_workspace_new(s->p, &s->w, &s->c.err), MT_OK);
 }
 
 static void compiled_free(compiled *s)
 {
+    mt_workspace_delete(s->w);
     mt_problem_delete(s->p);
-    mt_reference_cache_free(&s->references);
     mt_arena_free(&s->mem);
     study_free(&s->c);
 }
 
 typedef struct probe {
-    mt_problem *p;
+    mt_workspace *w;
     mt_nlp_values *v; /* scratch */
     const double *at; /* the entry that is looked at */
 } probe;
@@ -47,44 +46,44 @@ static double entry(const void *context, int n, const double *t)
 {
     const probe *const q = context;
     (void)n;
-    return mt_problem_eval(q->p, t, false, q->v, NULL) == MT_OK ? 1.0 + *q->at : nan("");
+    return mt_workspace_eval(q->w, t, false, q->v, NULL) == MT_OK ? 1.0 + *q->at : nan("");
 }
 
 static void check_row(mt_test *t, const probe *q, double *at, const double *slope, int stride,
                       const char *what)
 {
-    const mt_nlp nlp = mt_problem_nlp(q->p);
+    const mt_nlp nlp = mt_workspace_nlp(q->w);
     for (int i = 0; i < nlp.n; i++) {
-        mt_test_row(t, "stage %d, %s, variable %d", q->p->stage, what, i);
+        mt_test_row(t, "stage %d, %s, variable %d", q->w->c->stage, what, i);
         CHECK(t, mt_slope_agrees(entry, q, nlp.n, at, i, slope[(ptrdiff_t)i * stride], STEP,
                                  NOISE));
     }
 }
 
-static void check_rows(mt_test *t, mt_problem *p, double *at, mt_nlp_values *v, int rows,
+static void check_rows(mt_test *t, mt_workspace *w, double *at, mt_nlp_values *v, int rows,
                        const double *value, const double *slope, const char *what)
 {
     for (int i = 0; i < rows; i++) {
         char name[32];
-        const probe q = {.p = p, .v = v, .at = &value[i]};
+        const probe q = {.w = w, .v = v, .at = &value[i]};
         (void)snprintf(name, sizeof name, "%s %d", what, i);
         check_row(t, &q, at, slope + i, rows, name);
     }
 }
 
 /* All slopes of the present stage at t. */
-static void check_stage(mt_test *t, mt_problem *p, double *at, mt_arena *mem)
+static void check_stage(mt_test *t, mt_workspace *w, double *at, mt_arena *mem)
 {
-    const mt_nlp nlp = mt_problem_nlp(p);
+    const mt_nlp nlp = mt_workspace_nlp(w);
     mt_nlp_values g;
     mt_nlp_values v;
-    CHECK_INT(t, mt_problem_values_init(p, mem, &g, NULL), MT_OK);
-    CHECK_INT(t, mt_problem_values_init(p, mem, &v, NULL), MT_OK);
-    if (CHECK_INT(t, mt_problem_eval(p, at, true, &g, NULL), MT_OK)) {
-        check_rows(t, p, at, &v, 1, &v.f, g.df, "objective");
-        check_rows(t, p, at, &v, nlp.n_res, v.r, g.dr, "residual");
-        check_rows(t, p, at, &v, nlp.n_eq, v.eq, g.deq, "equality");
-        check_rows(t, p, at, &v, nlp.n_in, v.in, g.din, "inequality");
+    CHECK_INT(t, mt_case_values_init(w->c, mem, &g, NULL), MT_OK);
+    CHECK_INT(t, mt_case_values_init(w->c, mem, &v, NULL), MT_OK);
+    if (CHECK_INT(t, mt_workspace_eval(w, at, true, &g, NULL), MT_OK)) {
+        check_rows(t, w, at, &v, 1, &v.f, g.df, "objective");
+        check_rows(t, w, at, &v, nlp.n_res, v.r, g.dr, "residual");
+        check_rows(t, w, at, &v, nlp.n_eq, v.eq, g.deq, "equality");
+        check_rows(t, w, at, &v, nlp.n_in, v.in, g.din, "inequality");
     }
 }
 
@@ -123,10 +122,13 @@ static void callback__has_exact_gradients(mt_test *t)
         CHECK_INT(t, s.p->n_in, 6);
         CHECK_INT(t, s.p->n_res, 9);
         CHECK_INT(t, s.p->n_aims, 4);
+        mt_case later;
+        CHECK_INT(t, mt_case_for_stages(&s.p->whole, &s.mem, &later, NULL), MT_OK);
+        CHECK_INT(t, mt_workspace_use(s.w, &later, NULL), MT_OK);
         for (int k = 0; k < s.p->n_aims; k++) {
-            s.p->stage = k;
-            check_stage(t, s.p, at, &s.mem);
-            mt_aim_hold(s.p, k, 1.01 * mt_aim_value(s.p, k, NULL));
+            later.stage = k;
+            check_stage(t, s.w, at, &s.mem);
+            mt_aim_hold(&later, s.w, k, 1.01 * mt_aim_value(s.w, k, NULL));
         }
     }
     compiled_free(&s);
@@ -159,8 +161,8 @@ static void named_and_repeated_modes__have_exact_gradients(mt_test *t)
                 &s)) {
         double at[3] = {log(4.5), log(1.2), log(1.1)};
         int size = 0;
-        check_stage(t, s.p, at, &s.mem);
-        (void)mt_modal_cluster(&s.p->views[0].analysis->modes, 2, &size);
+        check_stage(t, s.w, at, &s.mem);
+        (void)mt_modal_cluster(&s.w->views[0].analysis->modes, 2, &size);
         CHECK_INT(t, size, 2); /* modes 3 and 4 are one pair */
     }
     compiled_free(&s);

@@ -16,22 +16,24 @@ static void solve(mt_test *t, const char *bands, long boxes, mt_gap_result *out)
     study_case c;
     char members[1024];
     mt_arena mem;
-    mt_reference_cache references = {0};
     mt_problem *p = NULL;
+    mt_workspace *w = NULL;
     *out = (mt_gap_result){0};
     (void)snprintf(members, sizeof members,
                    SPRINGS "'goals': [{'type': 'avoid', 'bands_hz': %s}]", bands);
     CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK);
     if (study_load(t, "six_masses", members, &c) &&
-        CHECK_INT(t, mt_reference_cache_init(&references, c.study, &mem, &c.err), MT_OK) &&
-        CHECK_INT(t, mt_problem_new(c.study, &references, &p, &c.err), MT_OK)) {
-        p->proof_boxes = boxes;
-        CHECK_INT(t, mt_gaps_solve(p, 1, &mem, out, &c.err), MT_OK);
+        CHECK_INT(t, mt_problem_new(c.study, &p, &c.err), MT_OK)) {
+        mt_case few = p->whole;
+        few.proof_boxes = boxes;
+        CHECK_INT(t, mt_workspace_new(p, &w, &c.err), MT_OK);
+        CHECK_INT(t, mt_workspace_use(w, &few, &c.err), MT_OK);
+        CHECK_INT(t, mt_gaps_solve(&w, 1, &mem, out, &c.err), MT_OK);
         CHECK(t, out->boxes > 0);
     }
     out->solutions = NULL; /* the arena goes */
+    mt_workspace_delete(w);
     mt_problem_delete(p);
-    mt_reference_cache_free(&references);
     mt_arena_free(&mem);
     study_free(&c);
 }

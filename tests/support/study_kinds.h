@@ -67,6 +67,10 @@ static const struct {
     {"limits that no design meets", ROW(""),
      TWO QUICK "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.2}, {'type': "
                "'frequency', 'mode': 2, 'at_most_hz': 0.3}]"},
+    {"what would let a design meet the limits", ROW(""),
+     TWO "'search': {'starts': 2, 'max_evaluations': 3000},"
+         "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.2}, {'type': "
+         "'frequency', 'mode': 2, 'at_most_hz': 0.3}]"},
     {"tolerances", ROW(""),
      "'variables': [{'parameter': 'k1', 'lower': 0.5, 'upper': 5, 'tolerance_percent': 2}, "
      "{'parameter': 'k2', 'lower': 0.2, 'upper': 5}]," QUICK

@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "problem/case.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "problem/family.h"
+#include "problem/robust.h"
+
+mt_status mt_case_copy(const mt_case *from, mt_arena *mem, mt_case *out, mt_err *err)
+{
+    const size_t n = (size_t)from->p->n + 1;
+    double *const numbers = mt_arena_f64(mem, n, 5);
+    if (numbers == NULL) {
+        return mt_fail_memory(err);
+    }
+    const double *const old[] = {from->lower, from->upper, from->lower_t, from->upper_t,
+                                 from->origin_t};
+    for (size_t k = 0; k < MT_COUNT(old); k++) {
+        memcpy(numbers + (k * n), old[k], n * sizeof *numbers);
+    }
+    *out = *from;
+    out->lower = numbers;
+    out->upper = numbers + n;
+    out->lower_t = numbers + (2 * n);
+    out->upper_t = numbers + (3 * n);
+    out->origin_t = numbers + (4 * n);
+    return MT_OK;
+}
+
+void mt_case_bound(mt_case *c, int i, double lower, double upper)
+{
+    c->lower[i] = lower;
+    c->upper[i] = upper;
+    c->lower_t[i] = mt_problem_t(c->p, i, lower);
+    c->upper_t[i] = mt_problem_t(c->p, i, upper);
+    c->robust = NULL; /* its corners are those of all bounds */
+}
+
+/* Tolerances of all rows; those of corners and of what is held follow. */
+static mt_status init_tolerances(mt_case *c, mt_arena *mem, mt_err *err)
+{
+    const mt_problem *const p = c->p;
+    mt_clear_row at;
+    c->eq_tol = mt_arena_f64(mem, (size_t)p->n_eq + (size_t)p->n_res, 1);
+    c->in_tol = mt_arena_f64(mem, (size_t)c->n_in + (size_t)c->n_aims, 1);
+    if (c->eq_tol == NULL || c->in_tol == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < p->n_demands; i++) {
+        const mt_demand *const d = &p->demands[i];
+        if (d->row_eq >= 0) {
+            c->eq_tol[d->row_eq] = d->tolerance;
+        }
+        for (int k = 0; k < d->n_in; k++) {
+            c->in_tol[d->row_in + k] = d->tolerance;
+        }
+    }
+    for (int k = 0; c->below != NULL && mt_clear_row_at(c, c->below, k, &at); k++) {
+        c->in_tol[c->first_band_row + k] = c->clears[at.clear].tolerance;
+    }
+    return MT_OK;
+}
+
+mt_status mt_case_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cut *cuts,
+                          mt_workspace *w, mt_arena *mem, mt_err *err)
+{
+    const mt_robust *const known = c->robust;
+    c->robust = NULL;
+    c->n_next = 0;
+    MT_TRY(mt_clear_lay_out(c, below, n_cuts, cuts, mem, err));
+    MT_TRY(init_tolerances(c, mem, err));
+    MT_TRY(w != NULL ? mt_workspace_use(w, c, err) : MT_OK); /* analyses of the cuts */
+    MT_TRY(mt_robust_init(c, known, w, mem, err));
+    MT_TRY(mt_next_init(c, mem, err));
+    return w != NULL ? mt_workspace_use(w, c, err) : MT_OK;
+}
+
+mt_status mt_case_in_gap(const mt_case *from, const int *below, int n_cuts, const mt_cut *cuts,
+                         mt_workspace *w, mt_arena *mem, mt_case *out, mt_err *err)
+{
+    MT_TRY(mt_case_copy(from, mem, out, err));
+    return mt_case_lay_out(out, below, n_cuts, cuts, w, mem, err);
+}
+
+mt_status mt_case_for_stages(const mt_case *from, mt_arena *mem, mt_case *out, mt_err *err)
+{
+    const size_t n_eq = (size_t)from->p->n_eq + (size_t)from->p->n_res;
+    const size_t n_in = (size_t)from->n_in + (size_t)from->n_aims;
+    *out = *from;
+    out->held = mt_arena_alloc(mem, (size_t)from->n_aims, sizeof *out->held);
+    out->r_held = mt_arena_f64(mem, (size_t)from->p->n_res, 1);
+    out->eq_tol = mt_arena_f64(mem, n_eq, 1);
+    out->in_tol = mt_arena_f64(mem, n_in, 1);
+    if (out->held == NULL || out->r_held == NULL || out->eq_tol == NULL ||
+        out->in_tol == NULL) {
+        return mt_fail_memory(err);
+    }
+    memcpy(out->eq_tol, from->eq_tol, n_eq * sizeof *out->eq_tol);
+    memcpy(out->in_tol, from->in_tol, n_in * sizeof *out->in_tol);
+    return MT_OK;
+}
+
+/* The catalogue's value whose coordinate is t, to the last bit; false where there is none. */
+static bool catalogue_value(const mt_problem *p, int i, double t, double *x)
+{
+    const mt_variable *const v = &p->study->variables[i];
+    int low = 0;
+    /* the first value with a coordinate of at least t is in low .. high */
+    int high = v->n_catalogue;
+    while (low < high) {
+        const int middle = low + ((high - low) / 2);
+        if (mt_problem_t(p, i, v->catalogue[middle]) < t) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    if (low == v->n_catalogue || mt_problem_t(p, i, v->catalogue[low]) != t) {
+        return false;
+    }
+    *x = v->catalogue[low];
+    return true;
+}
+
+void mt_case_x(const mt_case *c, const double *t, double *x)
+{
+    const mt_problem *const p = c->p;
+    for (int i = 0; i < p->n; i++) {
+        /* the original value first: it may lie outside the bounds, where the baseline is
+         * meant */
+        if (t[i] == c->origin_t[i]) {
+            x[i] = p->original[i];
+        } else if (catalogue_value(p, i, t[i], &x[i])) {
+            continue;
+        } else if (!(t[i] < c->upper_t[i])) {
+            x[i] = c->upper[i];
+        } else if (!(t[i] > c->lower_t[i])) {
+            x[i] = c->lower[i];
+        } else {
+            x[i] = mt_problem_value(p, i, t[i]);
+        }
+    }
+}
+
+int mt_case_rows_res(const mt_case *c)
+{
+    return mt_objective_is(c->aims[c->stage].type, MT_RESIDUALS) ? c->p->n_res : 0;
+}
+
+/* Is a misfit among the objectives before the present one? */
+static bool misfit_held(const mt_case *c)
+{
+    for (int k = 0; k < c->stage; k++) {
+        if (mt_objective_is(c->aims[k].type, MT_RESIDUALS)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int mt_case_rows_in(const mt_case *c)
+{
+    return c->n_in + c->stage - (misfit_held(c) ? 1 : 0);
+}
+
+int mt_case_rows_eq(const mt_case *c)
+{
+    return c->p->n_eq + (misfit_held(c) ? c->p->n_res : 0);
+}
+
+mt_status mt_case_values_init(const mt_case *c, mt_arena *mem, mt_nlp_values *out, mt_err *err)
+{
+    const size_t n = (size_t)c->n_t;
+    const size_t n_res = (size_t)mt_case_rows_res(c);
+    const size_t n_eq = (size_t)mt_case_rows_eq(c);
+    const size_t n_in = (size_t)mt_case_rows_in(c);
+    *out = (mt_nlp_values){
+        .f = 0.0,
+        .df = mt_arena_f64(mem, n, 1),
+        .r = mt_arena_f64(mem, n_res, 1),
+        .dr = mt_arena_f64(mem, n_res, n),
+        .eq = mt_arena_f64(mem, n_eq, 1),
+        .deq = mt_arena_f64(mem, n_eq, n),
+        .in = mt_arena_f64(mem, n_in, 1),
+        .din = mt_arena_f64(mem, n_in, n),
+    };
+    const bool bad = out->df == NULL || out->r == NULL || out->dr == NULL || out->eq == NULL ||
+                     out->deq == NULL || out->in == NULL || out->din == NULL;
+    return bad ? mt_fail_memory(err) : MT_OK;
+}

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef PROBLEM_CASE_H
+#define PROBLEM_CASE_H
+
+#include "analysis/analysis.h"
+#include "nlp/nlp.h"
+#include "study/study.h"
+
+/*
+ * What of a problem is asked: within which bounds, with which gap assignment, for which
+ * objective with which others held. A case is small, made in the caller's memory from another
+ * one, and not changed while anyone evaluates it; what it does not change it shares with the
+ * case that it was made from, which has to outlive it.
+ *
+ * Objectives in order: `stage` is the one that is minimised; the ones before it are held by one
+ * inequality each,
+ *     (limit_j - f_j) / unit_j >= 0,
+ * but a misfit by one equality for each residual, r - r_held = 0: at an exact fit the slope of
+ * |r|^2 vanishes and an inequality would hold nothing.
+ *
+ * Rows: those of the demands as the problem numbers them, in `in` followed by those of the
+ * bands (problem_clear.c), of corners of the tolerances (robust.h), of objectives that are
+ * held.
+ */
+struct mt_problem;
+struct mt_workspace;
+struct mt_cut;
+
+/* An objective that is held. */
+typedef struct mt_held {
+    double limit; /* f at most this */
+    double unit;  /* what a violation is divided by */
+} mt_held;
+
+typedef struct mt_case {
+    const struct mt_problem *p;
+    double *lower; /* [n] parameter values */
+    double *upper;
+    double *lower_t; /* [n + 1] coordinates; room for one more */
+    double *upper_t;
+    double *origin_t; /* [n + 1] may lie outside the bounds, where the original design does */
+    /* t has one more entry, the least clearance ln(...) that is made greatest */
+    bool clearance;
+    int n_t; /* n, or n + 1 */
+    int n_aims;
+    const struct mt_aim *aims;
+    int stage;            /* of aims */
+    mt_held *held;        /* [n_aims] those before the stage; NULL at stage 0 */
+    double *r_held;       /* [n_res] what a held misfit keeps the residuals at */
+    const double *weight; /* [n_demands] NaN: a constraint */
+    const int *below;     /* [n_bands] the gap assignment; NULL: none */
+    int n_views;          /* the problem's, then those of cuts */
+    const struct mt_view *views;
+    int n_clears; /* likewise */
+    const struct mt_clear *clears;
+    int n_bands;
+    const int *tie;     /* [n_bands] */
+    int first_band_row; /* in `in` */
+    int n_in;           /* held objectives follow */
+    /* the last of them, at corners of the tolerances where these are samples */
+    int n_corner_rows;
+    double *eq_tol;           /* [n_eq + n_res] */
+    double *in_tol;           /* [n_in + n_aims] */
+    struct mt_robust *robust; /* variables with a tolerance (robust.h); NULL: none */
+    int n_next;               /* rows that follow from those of limits (problem_next.c) */
+    const struct mt_next *next;
+    const int *next_of; /* [n_next] */
+    mt_search search;   /* the study's; a part of its budget */
+    /* local solves of a search where the study does not say; 0: by the number of variables */
+    int starts;
+    long proof_boxes;   /* budget of a proof; 0: as certify.h has it */
+    const double *hint; /* [n + 1] coordinates of one more design to start from; NULL: none */
+} mt_case;
+
+/* out: as `from`, with bounds of its own. Fails: MT_E_MEMORY. */
+mt_status mt_case_copy(const mt_case *from, mt_arena *mem, mt_case *out, mt_err *err);
+/* Bounds of variable i, as parameter values. mt_case_lay_out follows. */
+void mt_case_bound(mt_case *c, int i, double lower, double upper);
+/*
+ * Rows of c within its bounds with a gap assignment below[n_bands of the problem] (NULL: none),
+ * and cuts[n_cuts] of it (family.h) behind all other bands. w: set to this case afterwards,
+ * whose analyses of the cuts are made here; NULL while the problem is compiled. Fails:
+ * MT_E_INPUT where a goal cannot be judged over tolerances, MT_E_MEMORY, numerical failures.
+ */
+mt_status mt_case_lay_out(mt_case *c, const int *below, int n_cuts, const struct mt_cut *cuts,
+                          struct mt_workspace *w, mt_arena *mem, mt_err *err);
+/* The case of `from` in a gap: mt_case_copy and mt_case_lay_out. */
+mt_status mt_case_in_gap(const mt_case *from, const int *below, int n_cuts,
+                         const struct mt_cut *cuts, struct mt_workspace *w, mt_arena *mem,
+                         mt_case *out, mt_err *err);
+/* The same case for later stages: with room for objectives that are held (mt_aim_hold). Fails:
+ * MT_E_MEMORY. */
+mt_status mt_case_for_stages(const mt_case *from, mt_arena *mem, mt_case *out, mt_err *err);
+/* Parameter values x[n] of coordinates t[n]: a bound, a value of a catalogue, and the original
+ * value come back to the last bit. */
+void mt_case_x(const mt_case *c, const double *t, double *x);
+/* Rows of `in` (of `eq`) and of its derivative in the present stage: goals, then held
+ * objectives. */
+int mt_case_rows_in(const mt_case *c);
+int mt_case_rows_eq(const mt_case *c);
+/* Residuals of the present stage. */
+int mt_case_rows_res(const mt_case *c);
+/* Arrays of out for the present stage, in mem. */
+mt_status mt_case_values_init(const mt_case *c, mt_arena *mem, mt_nlp_values *out, mt_err *err);
+
+#endif

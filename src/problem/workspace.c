@@ -1,0 +1,282 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One evaluation: parameters, expressions, the modes of every view, every demand, the objective
+ * and those that are held. */
+#include "problem/workspace.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/format.h"
+#include "base/interrupt.h"
+#include "problem/family.h"
+#include "problem/robust.h"
+
+/* Evaluations between two lines of progress: a tenth of a second or so for a small
+ * mechanism. */
+enum { PROGRESS_EVERY = 500, PROGRESS_TEXT = 80 };
+
+static void drop_corners(mt_view_work *view)
+{
+    for (int i = 0; i < view->n_corners; i++) {
+        mt_analysis_delete(view->corners[i]);
+    }
+    view->n_corners = 0;
+}
+
+void mt_workspace_delete(mt_workspace *w)
+{
+    if (w != NULL) {
+        for (int i = 0; i < w->n_views; i++) {
+            mt_analysis_delete(w->views[i].analysis);
+            mt_analysis_delete(w->views[i].scout);
+            drop_corners(&w->views[i]);
+        }
+        for (int i = 0; w->driven != NULL && i < w->p->n_families; i++) {
+            mt_analysis_delete(w->driven[i]);
+        }
+        mt_arena_free(&w->mem);
+        free(w);
+    }
+}
+
+static mt_status claim(mt_workspace *w, mt_err *err)
+{
+    const mt_problem *const p = w->p;
+    const size_t n = (size_t)p->n;
+    const size_t count = (size_t)p->program.count;
+    const size_t n_res = (size_t)p->n_res;
+    size_t ns = 1;
+    for (int i = 0; i < p->n_demands; i++) {
+        const size_t own = (size_t)p->demands[i].shape.ns;
+        ns = own > ns ? own : ns;
+    }
+    w->driven = mt_arena_alloc(&w->mem, (size_t)p->n_families, sizeof(mt_analysis *));
+    w->value = mt_arena_f64(&w->mem, count, 1);
+    w->grad = mt_arena_f64(&w->mem, count, n);
+    w->x = mt_arena_f64(&w->mem, n, 1);
+    w->t = mt_arena_f64(&w->mem, n + 1, 1);
+    w->r = mt_arena_f64(&w->mem, n_res, 1);
+    w->dr = mt_arena_f64(&w->mem, n_res, n);
+    w->work = mt_arena_f64(&w->mem, n + 1, 1);
+    w->slope = mt_arena_f64(&w->mem, n, 1);
+    w->shape = mt_arena_f64(&w->mem, ns, 1);
+    w->dshape = mt_arena_f64(&w->mem, ns, n);
+    const bool bad = w->driven == NULL || w->value == NULL || w->grad == NULL || w->x == NULL ||
+                     w->t == NULL || w->r == NULL || w->dr == NULL || w->work == NULL ||
+                     w->slope == NULL || w->shape == NULL || w->dshape == NULL;
+    return bad ? mt_fail_memory(err) : mt_robust_work_init(w, err);
+}
+
+mt_status mt_workspace_new(const mt_problem *p, mt_workspace **out, mt_err *err)
+{
+    *out = NULL;
+    mt_workspace *const w = calloc(1, sizeof *w);
+    if (w == NULL) {
+        return mt_fail_memory(err);
+    }
+    w->p = p;
+    w->motion_room = HUGE_VAL;
+    mt_status rc = mt_arena_init(&w->mem, 0, err);
+    rc = rc == MT_OK ? claim(w, err) : rc;
+    rc = rc == MT_OK ? mt_workspace_use(w, &p->whole, err) : rc;
+    if (rc != MT_OK) {
+        mt_workspace_delete(w);
+        return rc;
+    }
+    *out = w;
+    return MT_OK;
+}
+
+/* Places for n views, those that are there with what they have. */
+static mt_status make_room(mt_workspace *w, int n, mt_err *err)
+{
+    if (n <= w->n_views) {
+        return MT_OK;
+    }
+    mt_view_work *const views = mt_arena_alloc(&w->mem, (size_t)n, sizeof *views);
+    if (views == NULL) {
+        return mt_fail_memory(err);
+    }
+    if (w->n_views > 0) {
+        memcpy(views, w->views, (size_t)w->n_views * sizeof *views);
+    }
+    w->views = views;
+    w->n_views = n;
+    return MT_OK;
+}
+
+/* An analysis of the view, which is there already unless it is of another cut. */
+static mt_status open_view(mt_workspace *w, mt_view_work *view, const mt_view *of, mt_err *err)
+{
+    const bool other = of->cut != NULL &&
+                       (view->family != of->cut->family || view->position != of->cut->position);
+    view->of = of;
+    if (view->analysis != NULL && !other) {
+        return MT_OK;
+    }
+    drop_corners(view);
+    mt_analysis_delete(view->analysis);
+    view->analysis = NULL;
+    MT_TRY(mt_view_analyse(w->p, of, w->p->original, &view->analysis, err));
+    view->needs_vectors = of->needs_vectors;
+    view->solved = true;
+    view->tracked = false;
+    view->family = of->cut != NULL ? of->cut->family : -1;
+    view->position = of->cut != NULL ? of->cut->position : 0.0;
+    view->track = mt_arena_alloc(&w->mem, (size_t)of->n_named, sizeof *view->track);
+    return view->track == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+static mt_status open_corners(mt_workspace *w, mt_view_work *view, int n, mt_err *err)
+{
+    if (n <= view->n_corners) {
+        return MT_OK;
+    }
+    mt_analysis **const corners = mt_arena_alloc(&w->mem, (size_t)n, sizeof(mt_analysis *));
+    if (corners == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < view->n_corners; i++) {
+        corners[i] = view->corners[i];
+    }
+    view->corners = corners;
+    for (; view->n_corners < n; view->n_corners++) {
+        MT_TRY(mt_view_analyse(w->p, view->of, w->p->original, &corners[view->n_corners], err));
+    }
+    return MT_OK;
+}
+
+mt_status mt_workspace_use(mt_workspace *w, const mt_case *c, mt_err *err)
+{
+    MT_TRY(make_room(w, c->n_views, err));
+    for (int i = 0; i < c->n_views; i++) {
+        MT_TRY(open_view(w, &w->views[i], &c->views[i], err));
+        MT_TRY(
+            open_corners(w, &w->views[i], c->robust != NULL ? c->robust->views[i].n : 0, err));
+    }
+    w->c = c;
+    return MT_OK;
+}
+
+void mt_workspace_back(mt_workspace *w, const mt_case *c)
+{
+    for (int i = 0; i < c->n_views; i++) {
+        w->views[i].of = &c->views[i];
+    }
+    w->c = c;
+}
+
+double mt_workspace_stretch(const mt_workspace *w, int i)
+{
+    return mt_problem_stretch_at(w->p, i, w->x[i]);
+}
+
+mt_nlp mt_workspace_nlp(mt_workspace *w)
+{
+    const mt_case *const c = w->c;
+    const mt_nlp nlp = {.n = c->n_t,
+                        .lower = c->lower_t,
+                        .upper = c->upper_t,
+                        .hint = c->hint,
+                        .origin = c->origin_t,
+                        .n_res = mt_case_rows_res(c),
+                        .n_eq = mt_case_rows_eq(c),
+                        .n_in = mt_case_rows_in(c),
+                        .eq_tol = c->eq_tol,
+                        .in_tol = c->in_tol,
+                        .n_next = c->n_next,
+                        .next_of = c->next_of,
+                        .eval = mt_workspace_eval,
+                        .context = w};
+    return nlp;
+}
+
+mt_status mt_workspace_place(mt_workspace *w, const double *t, bool with_gradient, mt_err *err)
+{
+    const mt_problem *const p = w->p;
+    memmove(w->t, t, (size_t)w->c->n_t * sizeof *t);
+    mt_case_x(w->c, t, w->x);
+    if (!with_gradient) {
+        return mt_program_eval(&p->program, w->x, w->value, NULL, err);
+    }
+    mt_node bad = MT_NO_NODE;
+    mt_err own = {0};
+    const mt_status rc = mt_program_gradient(&p->program, w->x, w->value, w->grad, &bad, &own);
+    /* a published quantity may have no slope, as a change has none at the original design:
+     * nobody needs it */
+    return rc == MT_OK || (rc == MT_E_DOMAIN && bad >= p->n_searched)
+               ? MT_OK
+               : mt_fail(err, rc, "%s", own.text);
+}
+
+mt_status mt_view_solve(mt_workspace *w, mt_view_work *view, bool with_gradient, mt_err *err)
+{
+    const mt_analysis_options opt = {.gradient = with_gradient,
+                                     .vectors = with_gradient || view->needs_vectors,
+                                     .accuracy = true,
+                                     .check = false};
+    view->tracked = false;
+    view->solved = false;
+    MT_TRY(mt_err_in(err, mt_analysis_solve(view->analysis, w->x, &opt, err),
+                     "configuration \"%s\"", mt_analysis_configuration(view->analysis)));
+    view->solved = true;
+    return MT_OK;
+}
+
+mt_status mt_view_position(mt_workspace *w, mt_view_work *view, int mode, int named, int *pos,
+                           mt_err *err)
+{
+    *pos = -1;
+    if (!view->solved) {
+        return MT_OK;
+    }
+    if (mode > 0) {
+        *pos = mt_modal_flexible(&view->analysis->modes, mode);
+        return MT_OK;
+    }
+    MT_TRY(mt_view_track(w, view, err));
+    *pos = view->track[named].pos;
+    return MT_OK;
+}
+
+static void say_progress(const mt_workspace *w)
+{
+    if (w->progress != NULL && w->evaluations % PROGRESS_EVERY == 0) {
+        char text[PROGRESS_TEXT];
+        (void)mt_snprintf(text, sizeof text, "searching: more than %ld designs evaluated",
+                          w->evaluations);
+        w->progress(w->progress_context, text);
+    }
+}
+
+mt_status mt_workspace_eval(void *context, const double *t, bool with_gradient,
+                            mt_nlp_values *out, mt_err *err)
+{
+    mt_workspace *const w = context;
+    const mt_problem *const p = w->p;
+    MT_TRY(mt_interrupt_check(p->study->model->interrupt, err));
+    w->evaluations++;
+    say_progress(w);
+    MT_TRY(mt_workspace_place(w, t, with_gradient, err));
+    for (int i = 0; i < w->c->n_views; i++) {
+        MT_TRY(mt_view_solve(w, &w->views[i], with_gradient, err));
+    }
+    MT_TRY(mt_robust_solve(w, with_gradient, err));
+    for (int i = 0; i < p->n_demands; i++) {
+        MT_TRY(mt_err_in(err, mt_demand_eval(w, &p->demands[i], with_gradient, out, NULL, err),
+                         "/goals/%d", p->demands[i].goal_index));
+    }
+    MT_TRY(mt_clear_eval(w, with_gradient, out, err));
+    MT_TRY(mt_robust_rows(w, with_gradient, out, err));
+    MT_TRY(mt_next_eval(w, with_gradient, out, err));
+    if (mt_case_rows_res(w->c) > 0) {
+        memcpy(out->r, w->r, (size_t)p->n_res * sizeof *w->r);
+        if (with_gradient) {
+            memcpy(out->dr, w->dr, (size_t)p->n_res * (size_t)p->n * sizeof *w->dr);
+        }
+    }
+    out->f = mt_aim_value(w, w->c->stage, with_gradient ? out->df : NULL);
+    mt_aim_hold_rows(w, with_gradient, out);
+    return MT_OK;
+}
