@@ -123,10 +123,7 @@ static mt_status assign(matching *g, int m, int *pair, mt_arena *scratch, mt_err
     g->from = mt_arena_int(scratch, columns);
     g->row_of = mt_arena_int(scratch, columns);
     g->done = mt_arena_alloc(scratch, columns, sizeof *g->done);
-    if (g->u == NULL || g->v == NULL || g->distance == NULL || g->from == NULL ||
-        g->row_of == NULL || g->done == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     for (int j = 0; j < g->columns; j++) {
         g->row_of[j] = -1;
     }

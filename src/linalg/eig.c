@@ -25,9 +25,7 @@ static mt_status eig_sym(int n, double *a, double *w, char job, mt_arena *scratc
     lapack_int lwork = 0;
     MT_TRY(mt_lapack_work(scratch, query, least, &work, &lwork, err));
     int *const iwork = mt_arena_int(scratch, (size_t)liwork);
-    if (iwork == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     info =
         LAPACKE_dsyevd_work(LAPACK_COL_MAJOR, job, 'L', n, a, n, w, work, lwork, iwork, liwork);
     if (info < 0) {

@@ -97,9 +97,7 @@ static mt_status inertia(int n, const double *a, const double *b, double shift, 
     double *const c = mt_arena_f64(scratch, (size_t)n, (size_t)n);
     int *const exponent = mt_arena_int(scratch, (size_t)n);
     lapack_int *const ipiv = mt_arena_alloc(scratch, (size_t)n, sizeof *ipiv);
-    if (c == NULL || exponent == NULL || ipiv == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     shifted(n, a, b, shift, c, exponent);
     if (!mt_lower_finite(n, c)) {
         return mt_lapack_not_finite("dsytrf", err);

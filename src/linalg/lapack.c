@@ -23,5 +23,5 @@ mt_status mt_lapack_work(mt_arena *scratch, double query, double minimum, double
     }
     *lwork = (lapack_int)size;
     *work = mt_arena_f64(scratch, (size_t)size, 1);
-    return *work == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(scratch, err);
 }

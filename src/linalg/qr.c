@@ -32,9 +32,7 @@ static void decide_rank(double tol, mt_qr *f)
 static mt_status factor(mt_qr *f, mt_arena *scratch, mt_err *err)
 {
     lapack_int *const jpvt = mt_arena_alloc(scratch, (size_t)f->n, sizeof *jpvt);
-    if (jpvt == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     double query = 0.0;
     lapack_int info = LAPACKE_dgeqp3_work(LAPACK_COL_MAJOR, f->m, f->n, f->qr, f->m, jpvt,
                                           f->tau, &query, -1);
@@ -59,9 +57,7 @@ mt_status mt_qr_factor(int m, int n, const double *a, int lda, double tol, mt_ar
     out->perm = mt_arena_int(mem, (size_t)n);
     out->qr = mt_arena_f64(mem, (size_t)m, (size_t)n);
     out->tau = mt_arena_f64(mem, (size_t)least(m, n), 1);
-    if (out->perm == NULL || out->qr == NULL || out->tau == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int j = 0; j < n; j++) {
         out->perm[j] = j;
         if (m > 0) {
@@ -180,12 +176,8 @@ mt_status mt_qr_solve(const mt_qr *f, int nrhs, const double *b, double *x, mt_a
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     const size_t entries = (size_t)f->m * (size_t)nrhs;
     double *const qtb = mt_arena_f64(scratch, (size_t)f->m, (size_t)nrhs);
-    if (qtb == NULL) {
-        mt_arena_rewind(scratch, mark);
-        return mt_fail_memory(err);
-    }
-    mt_status rc = MT_OK;
-    if (entries > 0) {
+    mt_status rc = mt_arena_check(scratch, err);
+    if (rc == MT_OK && entries > 0) {
         memcpy(qtb, b, entries * sizeof *qtb);
         rc = mt_qr_apply_q(f, true, nrhs, qtb, scratch, err);
     }

@@ -14,9 +14,7 @@ static mt_status estimate_rcond(int n, const double *lu, double norm, double *rc
 {
     double *const work = mt_arena_f64(scratch, 4, (size_t)n);
     lapack_int *const iwork = mt_arena_alloc(scratch, (size_t)n, sizeof *iwork);
-    if (work == NULL || iwork == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     const lapack_int info =
         LAPACKE_dgecon_work(LAPACK_COL_MAJOR, '1', n, lu, n, norm, rcond, work, iwork);
     return info < 0 ? mt_lapack_bug("dgecon", info, err) : MT_OK;
@@ -27,9 +25,7 @@ static mt_status lu_solve(int n, double *a, int nrhs, double *b, double *rcond,
 {
     lapack_int *const ipiv = mt_arena_alloc(scratch, (size_t)n, sizeof *ipiv);
     double *const unused = mt_arena_f64(scratch, (size_t)n, 1);
-    if (ipiv == NULL || unused == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     const double norm =
         rcond == NULL ? 0.0 : LAPACKE_dlange_work(LAPACK_COL_MAJOR, '1', n, n, a, n, unused);
     lapack_int info = LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, a, n, ipiv);
@@ -69,9 +65,7 @@ static mt_status sym_solve(int n, double *a, int nrhs, double *b, mt_arena *scra
                            mt_err *err)
 {
     lapack_int *const ipiv = mt_arena_alloc(scratch, (size_t)n, sizeof *ipiv);
-    if (ipiv == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     double query = 0.0;
     lapack_int info =
         LAPACKE_dsysv_work(LAPACK_COL_MAJOR, 'L', n, nrhs, a, n, ipiv, b, n, &query, -1);

@@ -63,9 +63,7 @@ static mt_status svd(svd_job *j, mt_arena *scratch, mt_err *err)
     /* dgesdd destroys A even where it fails */
     double *const copy = mt_arena_f64(scratch, m, n);
     lapack_int *const iwork = mt_arena_alloc(scratch, 8 * r, sizeof *iwork);
-    if ((j->vectors && (j->u == NULL || j->vt == NULL)) || copy == NULL || iwork == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     memcpy(copy, j->a, m * n * sizeof *copy);
     double *work = NULL;
     lapack_int lwork = 0;
@@ -115,9 +113,7 @@ static mt_status jacobi(int m, int n, double *a, double *s, double *v, mt_arena 
     MT_TRY(mt_lapack_work(scratch, 0.0, least, &work, &lwork, err));
     lapack_int *const iwork =
         mt_arena_alloc(scratch, (size_t)m + 3 * (size_t)n + 1, sizeof *iwork);
-    if (iwork == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     double none = 0.0;
     const lapack_int info =
         LAPACKE_dgejsv_work(LAPACK_COL_MAJOR, 'F', 'N', v == NULL ? 'N' : 'V', 'N', 'N', 'N', m,
@@ -163,9 +159,7 @@ static mt_status pinv_of(int m, int n, const double *a, double tol, double *pinv
     double *const s = mt_arena_f64(scratch, (size_t)r, 1);
     double *const u = mt_arena_f64(scratch, (size_t)m, (size_t)r);
     double *const vt = mt_arena_f64(scratch, (size_t)r, (size_t)n);
-    if (copy == NULL || s == NULL || u == NULL || vt == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     memcpy(copy, a, (size_t)m * (size_t)n * sizeof *copy);
     MT_TRY(mt_svd(m, n, copy, s, u, vt, scratch, err));
     int kept = 0;

@@ -24,9 +24,7 @@ static mt_status no_such_joint(mt_builder *b, const request *r, int found)
     }
     const char **const names =
         mt_arena_alloc(&b->sys->mem, (size_t)sys->n_joints, sizeof *names);
-    if (names == NULL) {
-        return mt_fail_memory(b->err);
-    }
+    MT_TRY(mt_arena_check(&b->sys->mem, b->err));
     int n = 0;
     for (int i = 0; i < sys->n_joints; i++) {
         if (sys->joints[i].coordinate >= 0) {

@@ -9,7 +9,7 @@ mt_status mt_data_init(mt_data *d, const mt_system *sys, mt_arena *mem, mt_err *
     d->vec = mt_arena_alloc(mem, (size_t)sys->n_vecs, sizeof *d->vec);
     d->rest = mt_arena_alloc(mem, (size_t)sys->n_springs, sizeof *d->rest);
     d->target = mt_arena_alloc(mem, (size_t)sys->n_constraints, sizeof *d->target);
-    return d->vec == NULL || d->rest == NULL || d->target == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 mt_cx mt_data_scalar(const mt_data *d, mt_node node, double otherwise)

@@ -35,9 +35,7 @@ static mt_status mass_matrix(mt_linear *lin, const mt_pose *poses, double *m, mt
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     mt_cx *const rows =
         mt_arena_alloc(&lin->scratch, (size_t)list->n_rows * MT_LOCAL, sizeof *rows);
-    if (rows == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->scratch, err));
     memset(m, 0, (size_t)sys->nq * (size_t)sys->nq * sizeof *m);
     mt_rows_eval(&lin->data, MT_TERM_MASS, list, poses, rows);
     for (int i = 0; i < list->n_terms; i++) {

@@ -69,9 +69,7 @@ static mt_status walk_init(walk *w, mt_err *err)
     w->guess = mt_arena_alloc(w->mem, n, sizeof *w->guess);
     w->rate = mt_arena_f64(w->mem, (size_t)sys->nq, 1);
     w->motion = mt_arena_f64(w->mem, (size_t)sys->nq, 1);
-    const bool ok =
-        w->trial != NULL && w->guess != NULL && w->rate != NULL && w->motion != NULL;
-    return ok ? MT_OK : mt_fail_memory(err);
+    return mt_arena_check(w->mem, err);
 }
 
 /* Largest |A rate - e_d| in rows scaled as the elimination does. */
@@ -94,9 +92,7 @@ static mt_status relax(walk *w, mt_newton_work *work, const mt_elimination *e, m
     const int nq = e->nq;
     double *inverse = NULL;
     double *const eta = mt_arena_f64(w->mem, (size_t)e->n, 1);
-    if (eta == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(w->mem, err));
     mt_lagrangian_eval(w->data, MT_ENERGY_PHYSICAL, w->at->pose, w->at, work->p->m, NULL,
                        MT_CURVATURE_ELASTIC, &work->l);
     for (ptrdiff_t i = 0; i < (ptrdiff_t)nq * nq; i++) {

@@ -16,9 +16,7 @@ mt_status mt_eliminate(const mt_system *sys, int m, const double *a, mt_arena *m
     *out = (mt_elimination){.m = m, .nq = nq};
     out->dr = mt_arena_f64(mem, (size_t)m, 1);
     out->dc = mt_arena_f64(mem, (size_t)nq, 1);
-    if (at == NULL || out->dr == NULL || out->dc == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int b = 0; b < sys->n_bodies; b++) {
         for (int k = 0; k < 6; k++) {
             if (sys->bodies[b].dof[k] >= 0) {
@@ -40,9 +38,7 @@ mt_status mt_eliminate(const mt_system *sys, int m, const double *a, mt_arena *m
     MT_TRY(mt_qr_factor(nq, m, at, nq, RANK_TOLERANCE, mem, &out->qr, err));
     out->n = nq - out->qr.rank;
     out->z = mt_arena_f64(mem, (size_t)nq, (size_t)out->n);
-    if (out->z == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_qr_q(&out->qr, out->qr.rank, out->z, mem, err));
     for (int c = 0; c < out->n; c++) {
         for (int j = 0; j < nq; j++) {
@@ -57,9 +53,7 @@ mt_status mt_eliminate_particular(const mt_elimination *e, const double *b, doub
 {
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     double *const scaled = mt_arena_f64(scratch, (size_t)e->m, 1);
-    if (scaled == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     for (int i = 0; i < e->m; i++) {
         scaled[i] = e->dr[i] * b[i];
     }
@@ -76,9 +70,7 @@ mt_status mt_eliminate_multipliers(const mt_elimination *e, const double *g, dou
 {
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     double *const scaled = mt_arena_f64(scratch, (size_t)e->nq, 1);
-    if (scaled == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     for (int j = 0; j < e->nq; j++) {
         scaled[j] = e->dc[j] * g[j];
     }
@@ -114,9 +106,7 @@ mt_status mt_eliminate_left_vector(const mt_elimination *e, int rank, int k, dou
     const double *const r = e->qr.qr;
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     double *const x = mt_arena_f64(scratch, (size_t)rank, 1);
-    if (x == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     for (int i = rank - 1; i >= 0; i--) {
         double s = r[i + ((ptrdiff_t)(rank + k) * e->nq)];
         for (int j = i + 1; j < rank; j++) {

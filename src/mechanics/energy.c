@@ -46,9 +46,7 @@ static mt_status list_entries(worker *k, mt_arena *mem, mt_err *err)
         count += lin->kg_terms[i] != 0.0 || lin->kg[i] != 0.0 ? 1 : 0;
     }
     k->load = mt_arena_alloc(mem, (size_t)count, sizeof *k->load);
-    if (k->load == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (ptrdiff_t j = 0; count > 0 && j < nq; j++) {
         for (ptrdiff_t i = j; i < nq; i++) {
             const double value = lin->kg[i + (j * nq)];
@@ -208,7 +206,7 @@ mt_status mt_linear_energies(mt_linear *lin, int cols, const double *y, const mt
     k.shape = SHAPE_ULPS * DBL_EPSILON / lin->e.qr.kept;
     k.phi = mt_arena_f64(&lin->scratch, nq, (size_t)cols);
     k.w = mt_arena_f64(&lin->scratch, nq, 1);
-    mt_status rc = k.phi == NULL || k.w == NULL ? mt_fail_memory(err) : MT_OK;
+    mt_status rc = mt_arena_check(&lin->scratch, err);
     rc = rc == MT_OK ? list_entries(&k, &lin->scratch, err) : rc;
     if (rc == MT_OK) {
         mt_linear_expand(lin, cols, y, k.phi);

@@ -105,9 +105,7 @@ static mt_status find_candidates(search *s, mt_err *err)
     tensor *const inertia = mt_arena_alloc(&s->lin->scratch, bodies, sizeof *inertia);
     s->list = mt_arena_alloc(&s->lin->scratch, 3 * bodies, sizeof *s->list);
     s->first = mt_arena_int(&s->lin->scratch, bodies + 1);
-    if (s->list == NULL || s->first == NULL || inertia == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&s->lin->scratch, err));
     for (int i = 0; i < s->lin->list[MT_TERM_MASS].n_rows; i++) {
         add_inertia(s->lin, i, inertia);
     }
@@ -212,9 +210,7 @@ static mt_status take_load(search *s, mt_err *err)
         return MT_OK;
     }
     double *const kz = mt_arena_f64(&lin->scratch, (size_t)nq, 1);
-    if (kz == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->scratch, err));
     for (ptrdiff_t i = 0; i < nq * nq; i++) {
         most = fmax(most, fabs(e->dc[i % nq] * lin->kg[i] * e->dc[i / nq]));
     }
@@ -271,9 +267,7 @@ static mt_status leave_out(mt_linear *lin, int spins, const double *phi, mt_err 
     double *const y = mt_arena_f64(&lin->scratch, (size_t)e->n, (size_t)spins);
     double *const yt = mt_arena_f64(&lin->scratch, (size_t)spins, (size_t)e->n);
     bool *const gone = mt_arena_alloc(&lin->scratch, (size_t)e->n, sizeof *gone);
-    if (zs == NULL || y == NULL || yt == NULL || gone == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->scratch, err));
     for (ptrdiff_t i = 0; i < (ptrdiff_t)e->nq * e->n; i++) {
         zs[i] = e->z[i] / e->dc[i % e->nq];
     }
@@ -313,10 +307,7 @@ static mt_status decide(search *s, mt_err *err)
     s->row = mt_arena_f64(&lin->scratch, n, 1);
     s->at = mt_arena_int(&lin->scratch, n);
     double *const phi = mt_arena_f64(&lin->scratch, (size_t)lin->sys->nq, n);
-    if (s->gram == NULL || s->value == NULL || s->worst == NULL || s->row == NULL ||
-        s->at == NULL || phi == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->scratch, err));
     MT_TRY(take_all(s, err));
     MT_TRY(mt_eig_sym(s->n, s->gram, s->value, true, &lin->scratch, err));
     if (s->value[0] > WORTH_A_LOOK) {
@@ -340,9 +331,7 @@ mt_status mt_idle_remove(mt_linear *lin, mt_err *err)
     lin->n_idle = 0;
     lin->idle_varies = false;
     lin->idle = mt_arena_alloc(&lin->geometry, (size_t)lin->sys->n_bodies, sizeof *lin->idle);
-    if (lin->idle == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->geometry, err));
     if (lin->sys->dimension == 3) {
         MT_TRY(find_candidates(&s, err));
     }

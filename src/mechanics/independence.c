@@ -58,7 +58,7 @@ static mt_status left_init(left *l, const mt_linear *lin, mt_arena *mem, mt_err 
     l->w = mt_arena_f64(mem, (size_t)lin->m, 1);
     l->row = mt_arena_f64(mem, (size_t)lin->sys->nq, 1);
     l->out = mt_arena_f64(mem, (size_t)lin->n, 1);
-    return l->w == NULL || l->row == NULL || l->out == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 static bool can_change(const mt_linear *lin, int p)

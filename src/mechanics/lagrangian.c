@@ -16,9 +16,7 @@ mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessia
     l->c = mt_arena_alloc(mem, m, sizeof *l->c);
     l->a = mt_arena_alloc(mem, m * nq, sizeof *l->a);
     l->h = hessian ? mt_arena_alloc(mem, nq * nq, sizeof *l->h) : NULL;
-    const bool bad = l->g == NULL || l->trim == NULL || l->c == NULL || l->a == NULL ||
-                     (hessian && l->h == NULL);
-    return bad ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
@@ -28,8 +26,7 @@ mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_ar
     l->push = mt_arena_f64(mem, (size_t)sys->n_bodies, 1);
     const size_t most = 2 * ((size_t)sys->n_springs + (size_t)sys->n_constraints);
     l->pieces = mt_arena_alloc(mem, most + (size_t)sys->n_loads, sizeof *l->pieces);
-    return l->terms == NULL || l->push == NULL || l->pieces == NULL ? mt_fail_memory(err)
-                                                                    : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 static void local_dofs(const mt_system *sys, const int body[2], int dof[MT_LOCAL])

@@ -32,9 +32,7 @@ static mt_status init(mt_linear *lin, const mt_system *sys, mt_err *err)
     MT_TRY(mt_arena_init(&lin->scratch, 0, err));
     lin->value = mt_arena_f64(&lin->base, count, 1);
     lin->grad = mt_arena_f64(&lin->base, count, (size_t)sys->n_inputs);
-    if (lin->value == NULL || lin->grad == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->base, err));
     MT_TRY(mt_data_init(&lin->data, sys, &lin->base, err));
     MT_TRY(mt_data_init(&lin->dual, sys, &lin->base, err));
     lin->data.value = lin->value;
@@ -45,9 +43,7 @@ static mt_status init(mt_linear *lin, const mt_system *sys, mt_err *err)
     const size_t terms = (size_t)lin->list[MT_TERM_STIFFNESS].n_terms;
     lin->coupling = mt_arena_alloc(&lin->base, terms, sizeof *lin->coupling);
     lin->squared = mt_arena_alloc(&lin->base, terms, sizeof *lin->squared);
-    if (lin->coupling == NULL || lin->squared == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->base, err));
     mt_couplings_find(lin, lin->coupling);
     return MT_OK;
 }
@@ -76,9 +72,8 @@ static mt_status evaluate_rows(mt_linear *lin, mt_err *err)
         lin->rows[kind] = mt_arena_f64(&lin->geometry, size, 1);
         const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
         mt_cx *const rows = mt_arena_alloc(&lin->scratch, size, sizeof *rows);
-        if (lin->rows[kind] == NULL || rows == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(&lin->geometry, err));
+        MT_TRY(mt_arena_check(&lin->scratch, err));
         mt_rows_eval(&lin->data, (mt_term_kind)kind, list, lin->position.at.pose, rows);
         for (size_t i = 0; i < size; i++) {
             lin->rows[kind][i] = creal(rows[i]);
@@ -108,9 +103,8 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     MT_TRY(mt_lagrangian_init(&l, sys, loaded, &lin->scratch, err));
     mt_cx *const lambda = mt_arena_alloc(&lin->scratch, (size_t)all, sizeof *lambda);
     lin->a = mt_arena_f64(&lin->geometry, (size_t)lin->m, (size_t)nq);
-    if (lambda == NULL || lin->a == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->scratch, err));
+    MT_TRY(mt_arena_check(&lin->geometry, err));
     for (int i = 0; i < all && loaded; i++) {
         lambda[i] = lin->position.equilibrium.lambda[i];
     }
@@ -137,9 +131,7 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     lin->n_pieces = l.n_pieces;
     if (loaded && !lin->unstressed) {
         lin->kg = mt_arena_f64(&lin->geometry, (size_t)nq, (size_t)nq);
-        if (lin->kg == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(&lin->geometry, err));
         for (ptrdiff_t i = 0; i < nq * nq; i++) {
             lin->kg[i] = creal(l.h[i]);
         }
@@ -236,17 +228,11 @@ static mt_status fixed_parts(mt_linear *lin, mt_err *err)
     lin->factor_noise = mt_arena_f64(&lin->geometry, rows, n);
     lin->factor_g = mt_arena_f64(&lin->geometry, n, n);
     lin->g_fixed = mt_arena_f64(&lin->geometry, n, n);
-    if (lin->k == NULL || lin->m_r == NULL || lin->k_fixed == NULL || lin->m_fixed == NULL ||
-        lin->factor_b == NULL || lin->factor_c == NULL || lin->factor_noise == NULL ||
-        lin->factor_g == NULL || lin->g_fixed == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->geometry, err));
     if (lin->kg != NULL) {
         const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
         double *const kz = mt_arena_f64(&lin->scratch, (size_t)nq, n);
-        if (kz == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(&lin->scratch, err));
         mt_gemm(false, false, (int)nq, lin->n, (int)nq, 1.0, lin->kg, (int)nq, lin->e.z,
                 (int)nq, 0.0, kz, (int)nq);
         mt_gemm(true, false, lin->n, lin->n, (int)nq, 1.0, lin->e.z, (int)nq, kz, (int)nq, 0.0,

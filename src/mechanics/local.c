@@ -59,10 +59,7 @@ static mt_status claim(work *w, mt_arena *mem, mt_err *err)
     w->best = mt_arena_int(mem, rank);
     w->score = mt_arena_f64(mem, rank, 1);
     w->list = mt_arena_int(mem, nq);
-    const bool bad = w->g == NULL || w->e == NULL || w->weight == NULL || w->pivot == NULL ||
-                     w->order == NULL || w->follows == NULL || w->best == NULL ||
-                     w->score == NULL || w->list == NULL;
-    return bad ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 /* mass[nq]: diagonal of M; weights in the elimination's coordinates. */

@@ -15,7 +15,7 @@ mt_status mt_name_joints(const mt_system *sys, int m, const double *w, mt_arena 
     const char **const name = mt_arena_alloc(mem, (size_t)m, sizeof *name);
     const char *text = "";
     int n = 0;
-    for (int i = 0; i < m && name != NULL && text != NULL; i++) {
+    for (int i = 0; i < m && name != NULL; i++) {
         const int joint = sys->constraints[i].joint;
         const char *const of = joint >= 0 ? sys->joints[joint].name : NULL;
         bool in = joint >= 0 && fabs(w[i]) > least;
@@ -28,7 +28,7 @@ mt_status mt_name_joints(const mt_system *sys, int m, const double *w, mt_arena 
         }
     }
     *out = (mt_joint_names){.n = n, .name = name, .text = text};
-    return name == NULL || text == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 /* Freedoms that move more than this fraction of the largest motion are named. */

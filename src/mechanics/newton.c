@@ -39,9 +39,7 @@ static mt_status keep_step(const mt_newton_work *w, const mt_elimination *e, dou
     left->q = mt_arena_f64(mem, (size_t)nq, 1);
     left->lambda = mt_arena_f64(mem, (size_t)m, 1);
     double *const r = mt_arena_f64(mem, (size_t)nq, 1);
-    if (left->q == NULL || left->lambda == NULL || r == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     memcpy(left->q, w->step, (size_t)nq * sizeof *left->q);
     for (ptrdiff_t j = 0; j < nq; j++) {
         r[j] = -w->g[j] - (left->trim * w->trim[j]) - mt_dot(m, w->a + (j * m), w->lambda);
@@ -68,10 +66,7 @@ static mt_status keep(mt_newton_work *w, const mt_elimination *e, double *invers
     stage->a = mt_arena_f64(mem, m, nq);
     stage->trim = mt_arena_f64(mem, nq, 1);
     stage->d_lambda = mt_arena_f64(mem, m, 1);
-    if (stage->lambda == NULL || stage->h == NULL || stage->a == NULL || stage->trim == NULL ||
-        stage->d_lambda == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     memcpy(stage->lambda, w->lambda, m * sizeof *stage->lambda);
     memcpy(stage->h, w->h, nq * nq * sizeof *stage->h);
     memcpy(stage->a, w->a, m * nq * sizeof *stage->a);
@@ -157,9 +152,7 @@ static mt_status say_open(const mt_newton_work *w, const mt_elimination *e, mt_a
     const bool length = kind == MT_MEASURE_PLANE || kind == MT_MEASURE_DISTANCE;
     const char *const unit = length ? "m" : "(cosine or rad)";
     double *const null = mt_arena_f64(mem, (size_t)w->p->m, 1);
-    if (null == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < e->m - e->qr.rank; k++) {
         MT_TRY(mt_eliminate_left_null(e, k, null, mem, err));
         if (fabs(null[worst]) > IN_THE_SET) {
@@ -206,9 +199,7 @@ static mt_status find_saddle(mt_newton_work *w, const mt_placement *start,
     mt_elimination held;
     const mt_elimination *e = &stage->e;
     double *const way = mt_arena_f64(mem, (size_t)w->sys->nq, 1);
-    if (way == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     if (w->p->trim) {
         MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &held, err));
         e = &held;

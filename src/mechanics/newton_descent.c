@@ -25,9 +25,7 @@ static mt_status restore(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
             return MT_OK;
         }
         double *const minus_c = mt_arena_f64(mem, (size_t)w->p->m, 1);
-        if (minus_c == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(mem, err));
         for (int i = 0; i < w->p->m; i++) {
             minus_c[i] = -w->c[i];
         }
@@ -49,9 +47,7 @@ static mt_status direction_of(mt_newton_work *w, const mt_elimination *e, mt_are
     double *const k = mt_arena_f64(mem, (size_t)n, (size_t)n);
     double *const values = mt_arena_f64(mem, (size_t)n, 1);
     double *const eta = mt_arena_f64(mem, (size_t)n, 1);
-    if (k == NULL || values == NULL || eta == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_newton_reduce_hessian(w, e, k, n, mem, err));
     mt_eliminate_project(e, w->g, w->reduced);
     const double soft = mt_norm2(n, w->reduced) / (MT_STEP_LIMIT * w->sys->length_m);
@@ -76,9 +72,7 @@ static mt_status search_line(mt_newton_work *w, mt_placement *at, double *energy
     double length = fmin(full, MT_STEP_LIMIT);
     double *const direction = mt_arena_f64(mem, nq, 1);
     mt_pose *const kept = mt_arena_alloc(mem, n, sizeof *kept);
-    if (direction == NULL || kept == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     memcpy(direction, w->step, nq * sizeof *direction);
     memcpy(kept, at->pose, n * sizeof *kept);
     *lower = false;
@@ -112,9 +106,7 @@ mt_status mt_newton_leave_saddle(mt_newton_work *w, mt_placement *at, bool *lowe
     double *const out = mt_arena_f64(mem, (size_t)nq, 1);
     double energy = mt_energy_value(w->p->data, at, w->tau);
     *lower = false;
-    if (out == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     const double size = mt_newton_scaled_norm(w, w->step);
     mt_axpy(nq, size > 0.0 ? OUT / size : 0.0, w->step, out);
     for (int side = 0; side < 2 && !*lower; side++) {

@@ -44,10 +44,7 @@ mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_
     w->v = mt_arena_f64(mem, nq, 1);
     w->step = mt_arena_f64(mem, nq, 1);
     w->reduced = mt_arena_f64(mem, nq + 1, 1);
-    const bool bad = w->lambda_cx == NULL || w->lambda == NULL || w->g == NULL ||
-                     w->c == NULL || w->a == NULL || w->h == NULL || w->trim == NULL ||
-                     w->v == NULL || w->step == NULL || w->reduced == NULL;
-    return bad ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 static void real_part(ptrdiff_t n, const mt_cx *from, double *to)
@@ -90,9 +87,7 @@ static mt_status eliminate(const mt_newton_work *w, mt_arena *mem, mt_eliminatio
         return mt_eliminate(w->sys, m, w->a, mem, e, err);
     }
     double *const a = mt_arena_f64(mem, (size_t)m, (size_t)w->sys->nq);
-    if (a == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (ptrdiff_t j = 0; j < w->sys->nq; j++) {
         memcpy(a + (j * m), w->a + (j * w->p->m), (size_t)m * sizeof *a);
     }
@@ -131,9 +126,7 @@ mt_status mt_newton_reduce_hessian(const mt_newton_work *w, const mt_elimination
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     double *const hz = mt_arena_f64(mem, (size_t)e->nq, (size_t)e->n);
-    if (hz == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     mt_gemm(false, false, e->nq, e->n, e->nq, 1.0, w->h, e->nq, e->z, e->nq, 0.0, hz, e->nq);
     mt_gemm(true, false, e->n, e->n, e->nq, 1.0, e->z, e->nq, hz, e->nq, 0.0, k, ld);
     mt_arena_rewind(mem, mark);
@@ -190,9 +183,7 @@ mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena 
     double scale[2] = {1.0, 1.0}; /* of the border: row, column */
     double *const k = mt_arena_f64(mem, (size_t)order, (size_t)order);
     *inverse = mt_arena_f64(mem, (size_t)order, (size_t)order);
-    if (k == NULL || *inverse == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_newton_reduce_hessian(w, e, k, order, mem, err));
     const double noise = NO_STIFFNESS * stiffness_scale(w, e);
     if (w->p->trim) { /* units that keep the border of the size of the rest */
@@ -225,9 +216,7 @@ mt_status mt_newton_falls(mt_newton_work *w, const mt_elimination *e, const doub
     double *const y = mt_arena_f64(mem, (size_t)n, 1);
     double *const down = mt_arena_f64(mem, (size_t)n, 1);
     *falls = false;
-    if (k == NULL || values == NULL || scaled == NULL || y == NULL || down == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_newton_reduce_hessian(w, e, k, n, mem, err));
     MT_TRY(mt_eig_sym(n, k, values, true, mem, err));
     for (int j = 0; j < e->nq; j++) {
@@ -281,9 +270,7 @@ static mt_status shorten(mt_newton_work *w, const mt_elimination *e, double *eta
     double *const k = mt_arena_f64(mem, (size_t)n, (size_t)n);
     double *const values = mt_arena_f64(mem, (size_t)n, 1);
     double *const kept = mt_arena_f64(mem, (size_t)n, 1);
-    if (k == NULL || values == NULL || kept == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_newton_reduce_hessian(w, e, k, e->n, mem, err));
     MT_TRY(mt_eig_sym(e->n, k, values, true, mem, err));
     for (ptrdiff_t i = 0; i < n; i++) {
@@ -305,9 +292,7 @@ mt_status mt_newton_linearise(mt_newton_work *w, const mt_placement *at, mt_aren
     double *const minus_c = mt_arena_f64(mem, (size_t)w->p->m, 1);
     double *const hv = mt_arena_f64(mem, (size_t)nq, 1);
     double *const eta = mt_arena_f64(mem, (size_t)e->n + 1, 1);
-    if (minus_c == NULL || hv == NULL || eta == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < w->p->m; i++) {
         minus_c[i] = -w->c[i];
     }

@@ -21,9 +21,7 @@ static mt_status differentiate(mt_newton_work *w, const mt_placement *at, const 
     const int m = w->p->m;
     mt_placement moved = *at;
     moved.pose = mt_arena_alloc(scratch, (size_t)w->sys->n_bodies, sizeof *moved.pose);
-    if (moved.pose == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     mt_poses_tangent(w->sys, at->pose, d, moved.pose);
     for (int i = 0; i < m; i++) {
         w->lambda_cx[i] = stage->lambda[i];
@@ -84,9 +82,7 @@ mt_status mt_newton_tangent(const mt_newton_problem *problem, const mt_placement
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     MT_TRY(mt_newton_work_init(&w, problem, scratch, err));
     double *const eta = mt_arena_f64(scratch, (size_t)stage->order + 1, 1);
-    if (eta == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     MT_TRY(differentiate(&w, at, stage, d, scratch, err));
     MT_TRY(respond(&w, stage, eta, scratch, err));
     const int nq = w.sys->nq;

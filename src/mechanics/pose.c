@@ -138,7 +138,7 @@ mt_status mt_placement_init(mt_placement *place, const mt_system *sys, mt_arena 
     *place = (mt_placement){.drive = 0.0};
     place->pose = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *place->pose);
     place->turn = mt_arena_f64(mem, (size_t)sys->n_measures, 1);
-    return place->pose == NULL || place->turn == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 void mt_placement_copy(const mt_system *sys, const mt_placement *from, mt_placement *to)

@@ -124,8 +124,7 @@ static mt_status state_init(mt_state *p, const mt_system *sys, mt_arena *mem, mt
     p->drawn = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *p->drawn);
     p->d_reference = mt_arena_f64(mem, (size_t)sys->nq, 1);
     p->d_pose = mt_arena_f64(mem, (size_t)sys->nq, 1);
-    const bool bad = p->drawn == NULL || p->d_reference == NULL || p->d_pose == NULL;
-    return bad ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placement *start,
@@ -169,9 +168,7 @@ mt_status mt_position_tangent(mt_state *p, mt_data *data, mt_arena *scratch, mt_
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     mt_pose *const drawn = mt_arena_alloc(scratch, n, sizeof *drawn);
     mt_pose *const work = mt_arena_alloc(scratch, n, sizeof *work);
-    if (drawn == NULL || work == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     mt_data_vecs(data);
     mt_data_targets(data);
     mt_data_drawn(data, drawn);

@@ -144,9 +144,7 @@ static mt_status moving_init(moving *v, const mt_linear *lin, mt_arena *scratch,
     v->w = mt_arena_f64(scratch, nq, 1);
     v->lambda = mt_arena_f64(scratch, (size_t)lin->m, 1);
     v->b = mt_arena_f64(scratch, (size_t)lin->m, 1);
-    const bool bad = v->phi == NULL || v->z == NULL || v->kphi == NULL || v->w == NULL ||
-                     v->lambda == NULL || v->b == NULL;
-    return bad ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(scratch, err);
 }
 
 /* phi = Z y, z = Z' y. */
@@ -217,9 +215,7 @@ mt_status mt_linear_sense(mt_linear *lin, int ns, const int *channel, int cols, 
     const mt_term_list *const list = &lin->list[MT_TERM_CHANNEL];
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     double *const phi = mt_arena_f64(&lin->scratch, (size_t)lin->sys->nq, 1);
-    if (phi == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->scratch, err));
     for (int c = 0; c < cols; c++) {
         mt_eliminate_expand(&lin->e, y + ((ptrdiff_t)c * lin->n), phi);
         for (int i = 0; i < ns; i++) {
@@ -269,9 +265,7 @@ mt_status mt_linear_mass_product(mt_linear *lin, const double *y, double *w, mt_
     const size_t nq = (size_t)lin->sys->nq;
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     double *const phi = mt_arena_f64(&lin->scratch, nq, 1);
-    if (phi == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->scratch, err));
     mt_linear_expand(lin, 1, y, phi);
     memset(w, 0, nq * sizeof *w);
     full_product(lin, MT_TERM_MASS, phi, w);

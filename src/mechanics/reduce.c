@@ -60,9 +60,8 @@ mt_status mt_reduce_basis(mt_linear *lin, mt_err *err)
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     double *const mass = mt_arena_f64(&lin->scratch, (size_t)lin->sys->nq, 1);
     lin->z_error = mt_arena_f64(&lin->geometry, (size_t)lin->sys->nq, (size_t)lin->n);
-    if (mass == NULL || lin->z_error == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->scratch, err));
+    MT_TRY(mt_arena_check(&lin->geometry, err));
     diagonal_mass(lin, mass);
     MT_TRY(mt_eliminate_local(lin->a, mass, extent_of(lin), &lin->scratch, &lin->e,
                               lin->z_error, err));
@@ -105,9 +104,8 @@ static mt_status reduce_rows(mt_linear *lin, int kind, double extent, mt_err *er
         mt_arena_f64(kept ? &lin->geometry : &lin->scratch, n, kept ? rows : 1);
     lin->reduced[kind] = mt_arena_f64(&lin->geometry, n, rows);
     lin->blocked[kind] = mt_arena_alloc(&lin->geometry, rows, sizeof *lin->blocked[kind]);
-    if (error == NULL || lin->reduced[kind] == NULL || lin->blocked[kind] == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(kept ? &lin->geometry : &lin->scratch, err));
+    MT_TRY(mt_arena_check(&lin->geometry, err));
     for (size_t i = 0; i < rows; i++) {
         double *const out = lin->reduced[kind] + (i * n);
         double *const bound = error + (kept ? i * n : 0);

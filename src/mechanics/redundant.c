@@ -15,9 +15,7 @@ mt_status mt_linear_redundant_set(mt_linear *lin, int k, mt_arena *mem, mt_joint
 {
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     double *const null = mt_arena_f64(&lin->scratch, (size_t)lin->m, 1);
-    if (null == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->scratch, err));
     MT_TRY(mt_eliminate_left_null(&lin->e, k, null, &lin->scratch, err));
     MT_TRY(mt_name_joints(lin->sys, lin->m, null, mem, out, err));
     mt_arena_rewind(&lin->scratch, mark);

@@ -47,9 +47,7 @@ mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists,
         lists[k] = (mt_term_list){0};
         lists[k].terms = mt_arena_alloc(mem, most_terms, sizeof(mt_term));
         lists[k].row_term = mt_arena_int(mem, most_terms * 12);
-        if (lists[k].terms == NULL || lists[k].row_term == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(mem, err));
     }
     for (int i = 0; i < sys->n_springs; i++) {
         const mt_spring_def *const s = &sys->springs[i];

@@ -100,9 +100,7 @@ static mt_status decompose(near *v, mt_arena *mem, mt_err *err)
     double *const small = mt_arena_f64(mem, (size_t)v->k, (size_t)columns);
     double *const u = mt_arena_f64(mem, (size_t)v->k, (size_t)v->k);
     v->vt = mt_arena_f64(mem, (size_t)v->k, (size_t)columns);
-    if (raw == NULL || small == NULL || u == NULL || v->vt == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < v->k; i++) {
         double *const w = raw + ((ptrdiff_t)i * e->m);
         MT_TRY(mt_eliminate_left_vector(e, v->rank, i, w, mem, err));
@@ -172,9 +170,7 @@ static mt_status curvature(near *v, int i, int level, mt_arena *mem, mt_err *err
     double *const g = mt_arena_f64(mem, (size_t)v->n, 1);
     double *const phi = mt_arena_f64(mem, (size_t)e->nq, 1);
     double *const push = mt_arena_f64(mem, (size_t)e->nq, 1);
-    if (g == NULL || phi == NULL || push == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int p = 0; p < PROBES; p++) {
         for (int c = 0; c < v->n; c++) {
             g[c] = draw(&state);
@@ -239,9 +235,7 @@ static mt_status look_at(const mt_data *d, const mt_placement *at, const mt_elim
     v->s = mt_arena_f64(mem, (size_t)v->k, 1);
     v->h = mt_arena_f64(mem, (size_t)v->k + 1, 1);
     v->sum = mt_arena_f64(mem, (size_t)v->k + 1, 1);
-    if (v->w == NULL || v->z == NULL || v->s == NULL || v->h == NULL || v->sum == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_qr_q(&e->qr, v->rank, v->z, mem, err));
     for (ptrdiff_t c = 0; c < v->n; c++) {
         for (int j = 0; j < e->nq; j++) {
@@ -329,9 +323,7 @@ static mt_status find_open(const near *v, uint64_t *state, walk *w, int *open, m
     bool closed = false;
     double length = WALK;
     *open = -1;
-    if (y == NULL || direction == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < e->n; i++) {
         y[i] = draw(state);
     }
@@ -366,9 +358,7 @@ static mt_status walk_away(const near *v, mt_arena *mem, mt_err *err)
               .back = mt_arena_f64(mem, nq, 1),
               .c = mt_arena_f64(mem, (size_t)e->m, 1)};
     double *const null = mt_arena_f64(mem, (size_t)e->m, 1);
-    if (w.dq == NULL || w.back == NULL || w.c == NULL || null == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_placement_init(&w.at, v->d->sys, mem, err));
     for (int i = 0; i < WALKS && open < 0; i++) {
         MT_TRY(find_open(v, &state, &w, &open, mem, err));

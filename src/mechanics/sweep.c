@@ -32,7 +32,8 @@ static mt_status record_nearness(mt_linear *lin, mt_sweep_point *point, mt_arena
 {
     mt_nearness *const near = mt_arena_alloc(mem, 1, sizeof *near);
     point->near = near;
-    return near == NULL ? mt_fail_memory(err) : mt_linear_nearness(lin, mem, near, err);
+    MT_TRY(mt_arena_check(mem, err));
+    return mt_linear_nearness(lin, mem, near, err);
 }
 
 static mt_status record(mt_linear *lin, mt_sweep_point *point, mt_err *err)
@@ -66,9 +67,7 @@ static mt_status sweep_point_init(mt_sweep_point *point, int n_joints, double dr
         .drive = drive, .hold = nan(""), .residual = nan(""), .gap_m = nan("")};
     point->coordinate = mt_arena_f64(mem, (size_t)n_joints, 1);
     point->ratio = mt_arena_f64(mem, (size_t)n_joints, 1);
-    if (point->coordinate == NULL || point->ratio == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < n_joints; i++) {
         point->coordinate[i] = nan("");
         point->ratio[i] = nan("");
@@ -123,9 +122,7 @@ static mt_status walk(const sweeper *s, int first, int step, mt_err *err)
                             point->drive, joint->angle ? "rad" : "m");
         }
         point->why = mt_arena_strdup(s->mem, why.text);
-        if (point->why == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(s->mem, err));
         limit = point->status == MT_E_ASSEMBLY ? point->why : NULL;
     }
     return MT_OK;
@@ -140,9 +137,7 @@ mt_status mt_sweep_run(mt_linear *lin, const double *inputs, int n, const double
     int nearest = 0;
     *out = (mt_sweep){.n_joints = lin->sys->n_joints, .n_points = n};
     out->points = mt_arena_alloc(mem, (size_t)n, sizeof *out->points);
-    if (out->points == NULL || s.inputs == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     if (others > 0) {
         memcpy(s.inputs, inputs, others * sizeof *inputs);
     }

@@ -11,17 +11,22 @@
 
 /* Give a list its first entry: where memory ends later, index 0 stands for what could not be
  * made and may be read until the shortage is reported. */
-#define RESERVE(sys, name)                                                  \
-    (((sys)->name = mt_arena_grow(&(sys)->mem, NULL, 0, &(sys)->cap_##name, \
-                                  sizeof *(sys)->name)) != NULL)
+#define RESERVE(sys, name) \
+    (sys)->name = mt_arena_grow(&(sys)->mem, NULL, 0, &(sys)->cap_##name, sizeof *(sys)->name)
 
 static mt_status reserve(mt_system *sys, mt_err *err)
 {
-    const bool ok = RESERVE(sys, vecs) && RESERVE(sys, measures) && RESERVE(sys, bodies) &&
-                    RESERVE(sys, constraints) && RESERVE(sys, joints) &&
-                    RESERVE(sys, springs) && RESERVE(sys, inertias) && RESERVE(sys, loads) &&
-                    RESERVE(sys, channels) && RESERVE(sys, items);
-    return ok ? MT_OK : mt_fail_memory(err);
+    RESERVE(sys, vecs);
+    RESERVE(sys, measures);
+    RESERVE(sys, bodies);
+    RESERVE(sys, constraints);
+    RESERVE(sys, joints);
+    RESERVE(sys, springs);
+    RESERVE(sys, inertias);
+    RESERVE(sys, loads);
+    RESERVE(sys, channels);
+    RESERVE(sys, items);
+    return mt_arena_check(&sys->mem, err);
 }
 
 static mt_status prepare(mt_builder *b, mt_system *sys, mt_err *err)
@@ -32,9 +37,7 @@ static mt_status prepare(mt_builder *b, mt_system *sys, mt_err *err)
     b->err = err;
     b->body_of = mt_arena_int(&sys->mem, (size_t)model->n_bodies + 1);
     b->link_first = mt_arena_int(&sys->mem, (size_t)model->n_links + 1);
-    if (b->body_of == NULL || b->link_first == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&sys->mem, err));
     MT_TRY(reserve(sys, err));
     b->zero = mt_program_const(&sys->program, 0.0);
     b->one = mt_program_const(&sys->program, 1.0);
@@ -158,9 +161,7 @@ static mt_status settle(mt_system *sys, const double *at, mt_err *err)
     mt_node bad = MT_NO_NODE;
     const mt_arena_mark mark = mt_arena_get_mark(&sys->mem);
     double *const v = mt_arena_f64(&sys->mem, (size_t)sys->program.count, 1);
-    if (v == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&sys->mem, err));
     MT_TRY(mt_program_eval(&sys->program, at, v, &bad, err));
     MT_TRY(choose_helpers(sys, v, err));
     for (int i = 0; i < sys->n_measures; i++) {
@@ -201,9 +202,7 @@ static mt_status build(mt_system *sys, const mt_system_drive *drive, const doubl
     const size_t n_parameters = (size_t)sys->model->n_parameters;
     int *const is_input = mt_arena_int(&sys->mem, n_parameters + 1);
     sys->parameters = mt_arena_alloc(&sys->mem, n_parameters + 1, sizeof *sys->parameters);
-    if (is_input == NULL || sys->parameters == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&sys->mem, err));
     for (size_t i = 0; i < n_parameters; i++) {
         is_input[i] = -1;
     }
@@ -242,7 +241,7 @@ mt_status mt_system_new_driven(const mt_model *model, int configuration,
         sys->n_inputs = n_inputs + (drive != NULL && !drive->fixed ? 1 : 0);
         sys->drive = MT_NO_NODE;
         sys->inputs = mt_arena_int(&sys->mem, (size_t)n_inputs + 1);
-        rc = sys->inputs == NULL ? mt_fail_memory(err) : MT_OK;
+        rc = mt_arena_check(&sys->mem, err);
     }
     if (rc == MT_OK && sys->inputs != NULL) {
         if (n_inputs > 0) {

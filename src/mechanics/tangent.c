@@ -28,9 +28,8 @@ static mt_status tangent_rows(mt_linear *lin, const mt_pose *poses, mt_linear_ta
         t->still[kind] = mt_arena_alloc(&lin->geometry, (size_t)list->n_rows, sizeof(bool));
         const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
         mt_cx *const rows = mt_arena_alloc(&lin->scratch, size, sizeof *rows);
-        if (t->rows[kind] == NULL || t->still[kind] == NULL || rows == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(&lin->geometry, err));
+        MT_TRY(mt_arena_check(&lin->scratch, err));
         mt_rows_eval(&lin->dual, (mt_term_kind)kind, list, poses, rows);
         for (size_t i = 0; i < size; i++) {
             t->rows[kind][i] = cx_derivative(rows[i]);
@@ -82,9 +81,8 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_placement *at,
     t->a = mt_arena_f64(&lin->geometry, (size_t)lin->m, (size_t)nq);
     t->c = mt_arena_f64(&lin->geometry, (size_t)lin->m, 1);
     t->kg = loaded ? mt_arena_f64(&lin->geometry, (size_t)nq, (size_t)nq) : NULL;
-    if (lambda == NULL || t->a == NULL || t->c == NULL || (loaded && t->kg == NULL)) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->scratch, err));
+    MT_TRY(mt_arena_check(&lin->geometry, err));
     for (int i = 0; i < all && loaded; i++) {
         lambda[i] = cx_make(equilibrium->lambda[i], equilibrium->d_lambda[i]);
     }
@@ -114,9 +112,7 @@ mt_status mt_tangent_update(mt_linear *lin, mt_err *err)
     lin->tangent = mt_arena_alloc(&lin->geometry, (size_t)sys->n_inputs, sizeof *lin->tangent);
     mt_placement at = lin->position.at;
     at.pose = mt_arena_alloc(&lin->geometry, (size_t)sys->n_bodies, sizeof *at.pose);
-    if (lin->tangent == NULL || at.pose == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&lin->geometry, err));
     for (int p = lin->first_input; p < sys->n_inputs; p++) {
         lin->dual.input = p;
         MT_TRY(mt_position_tangent(&lin->position, &lin->dual, &lin->scratch, err));

@@ -23,9 +23,7 @@ static mt_status inverse_root(int n, const double *mass, double *root, mt_arena 
     double *const v = mt_arena_f64(mem, size, size);
     double *const scaled = mt_arena_f64(mem, size, size);
     double *const w = mt_arena_f64(mem, size, 1);
-    if (v == NULL || scaled == NULL || w == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     memcpy(v, mass, size * size * sizeof *v);
     MT_TRY(mt_eig_sym(n, v, w, true, mem, err));
     if (!(w[0] > 0.0)) {
@@ -74,9 +72,7 @@ static mt_status kalaba(const problem *p, double *xdd, mt_arena *mem, mt_err *er
     double *const pinv = mt_arena_f64(mem, (size_t)n, (size_t)m);
     double *const work = mt_arena_f64(mem, (size_t)n, 1);
     double *const miss = mt_arena_f64(mem, (size_t)m, 1);
-    if (root == NULL || ar == NULL || pinv == NULL || work == NULL || miss == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(inverse_root(n, p->mass, root, mem, err));
     mt_gemv(false, n, n, 1.0, root, n, p->q, 0.0, work);
     mt_gemv(false, n, n, 1.0, root, n, work, 0.0, xdd); /* a = M^-1 Q */
@@ -104,10 +100,7 @@ static mt_status phohomsiri(const problem *p, double *xdd, mt_arena *mem, mt_err
     double *const stack = mt_arena_f64(mem, (size_t)rows, (size_t)n);
     double *const pinv = mt_arena_f64(mem, (size_t)n, (size_t)rows);
     double *const right = mt_arena_f64(mem, (size_t)rows, 1);
-    if (apinv == NULL || filter == NULL || full == NULL || stack == NULL || pinv == NULL ||
-        right == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (ptrdiff_t i = 0; i < n; i++) {
         filter[i + (i * n)] = 1.0;
     }

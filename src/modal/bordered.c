@@ -84,9 +84,7 @@ static mt_status solve(const mt_pencil *p, bordered *b, const mt_directions *dir
     b->my = mt_arena_f64(scratch, n, 1);
     b->a = mt_arena_f64(scratch, n + 1, n + 1);
     b->rhs = mt_arena_f64(scratch, n + 1, (size_t)dir->np);
-    if (b->d == NULL || b->my == NULL || b->a == NULL || b->rhs == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     choose_scales(p, b);
     mt_symm(p->n, 1, p->m, b->y, b->my);
     fill_matrix(p, b);

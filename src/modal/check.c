@@ -81,9 +81,7 @@ mt_status mt_modal_check(const double *k, const mt_mass_factor *mass, mt_arena *
     c.ky = mt_arena_f64(scratch, (size_t)n, r);
     c.my = mass->m == NULL ? modes->y : mt_arena_f64(scratch, (size_t)n, r);
     double *const gram = mt_arena_f64(scratch, r, r);
-    if (c.d == NULL || c.ky == NULL || c.my == NULL || gram == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     for (int i = 0; i < n; i++) {
         const double kii = fabs(k[i + (ptrdiff_t)i * n]);
         const double virtual_d =

@@ -42,9 +42,7 @@ static mt_status claim(parts *p, mt_arena *scratch, mt_err *err)
     p->values = mt_arena_f64(scratch, z, 1);
     p->k01 = mt_arena_f64(scratch, z, r);
     p->work = mt_arena_f64(scratch, z, r);
-    const bool ok = p->kt != NULL && p->h != NULL && p->vectors != NULL && p->values != NULL &&
-                    p->k01 != NULL && p->work != NULL;
-    return ok ? MT_OK : mt_fail_memory(err);
+    return mt_arena_check(scratch, err);
 }
 
 /* |t|^T |K| |t|, K lower. */
@@ -136,9 +134,7 @@ mt_status mt_modal_condense(const double *k, const mt_mass_factor *mass, mt_aren
         p.h[j] = terms > 0.0 ? 1.0 / sqrt(terms) : 0.0;
     }
     double *const kt = mt_arena_f64(scratch, (size_t)n, (size_t)n);
-    if (kt == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     mt_symm(n, n, k, p.t, kt);
     mt_gemm(true, false, n, n, n, 1.0, p.t, n, kt, n, 0.0, p.kt, n);
     MT_TRY(factor_k00(&p, scratch, out, err));

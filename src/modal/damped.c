@@ -54,9 +54,7 @@ static mt_status sandwich(const parts *s, const double *b, int ra, const double 
 {
     const mt_arena_mark mark = mt_arena_get_mark(s->mem);
     double *const bc = mt_arena_f64(s->mem, (size_t)s->n, (size_t)rc);
-    if (bc == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(s->mem, err));
     mt_symm(s->n, rc, b, c, bc);
     mt_gemm(true, false, ra, rc, s->n, 1.0, a, s->n, bc, s->n, 0.0, out, ra);
     mt_arena_rewind(s->mem, mark);
@@ -73,9 +71,7 @@ static mt_status turn_rigid(parts *s, mt_err *err)
     double *const c = mt_arena_f64(s->mem, (size_t)m->n_rigid, (size_t)m->n_rigid);
     double *const mu = mt_arena_f64(s->mem, (size_t)m->n_rigid, 1);
     double *const turned = mt_arena_f64(s->mem, (size_t)s->n, (size_t)m->n_rigid);
-    if (old == NULL || c == NULL || mu == NULL || turned == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(s->mem, err));
     for (int i = 0; i < s->r; i++) {
         if (m->kind[i] == MT_MODE_RIGID_BODY) {
             memcpy(old + ((ptrdiff_t)count++ * s->n), s->y + ((ptrdiff_t)i * s->n),
@@ -103,9 +99,7 @@ static mt_status split_massless(parts *s, double *t, double *mu, int *u, mt_err 
     const int z = s->z;
     double *const scaled = mt_arena_f64(s->mem, (size_t)n, (size_t)z);
     double *const c = mt_arena_f64(s->mem, (size_t)z, (size_t)z);
-    if (scaled == NULL || c == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(s->mem, err));
     for (int j = 0; j < z; j++) {
         double kjj = 0.0;
         const double *const tj = s->p->mass->t + ((ptrdiff_t)(s->r + j) * n);
@@ -128,9 +122,7 @@ static mt_status massless(parts *s, mt_err *err)
     double rcond = 1.0;
     double *const t = mt_arena_f64(s->mem, (size_t)n, (size_t)s->z);
     double *const mu = mt_arena_f64(s->mem, (size_t)s->z, 1);
-    if (t == NULL || mu == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(s->mem, err));
     MT_TRY(split_massless(s, t, mu, &u, err));
     const int zd = s->z - u;
     s->zd = zd;
@@ -139,9 +131,7 @@ static mt_status massless(parts *s, mt_err *err)
     s->kd = mt_arena_f64(s->mem, (size_t)zd, (size_t)zd);
     double *const kuu = mt_arena_f64(s->mem, (size_t)u, (size_t)u);
     double *const kud = mt_arena_f64(s->mem, (size_t)u, (size_t)zd);
-    if (s->kd == NULL || kuu == NULL || kud == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(s->mem, err));
     if (zd > 0 && u > 0) {
         MT_TRY(sandwich(s, s->p->k, u, t, u, t, kuu, err));
         MT_TRY(sandwich(s, s->p->k, u, t, zd, s->b, kud, err));
@@ -165,17 +155,12 @@ static mt_status prepare(parts *s, mt_err *err)
     s->caa = mt_arena_f64(s->mem, r, r);
     s->x_of = mt_arena_int(s->mem, r);
     s->v_of = mt_arena_int(s->mem, r);
-    if (s->y == NULL || s->omega == NULL || s->caa == NULL || s->x_of == NULL ||
-        s->v_of == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(s->mem, err));
     memcpy(s->y, m->y, n * r * sizeof *s->y);
     MT_TRY(turn_rigid(s, err));
     MT_TRY(massless(s, err));
     s->cda = mt_arena_f64(s->mem, (size_t)s->zd, r);
-    if (s->cda == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(s->mem, err));
     MT_TRY(sandwich(s, s->p->c, s->r, s->y, s->r, s->y, s->caa, err));
     MT_TRY(sandwich(s, s->p->c, s->zd, s->b, s->r, s->y, s->cda, err));
     const double most = mt_max_abs((ptrdiff_t)s->r * s->r, s->caa);
@@ -301,9 +286,7 @@ static mt_status claim(mt_damped_modes *out, int n, int count, mt_arena *mem, mt
     out->residual = mt_arena_f64(mem, m, 1);
     out->y_re = mt_arena_f64(mem, (size_t)n, m);
     out->y_im = mt_arena_f64(mem, (size_t)n, m);
-    const bool ok = out->kind != NULL && out->re != NULL && out->im != NULL &&
-                    out->residual != NULL && out->y_re != NULL && out->y_im != NULL;
-    return ok ? MT_OK : mt_fail_memory(err);
+    return mt_arena_check(mem, err);
 }
 
 static mt_status solve(const parts *s, mt_damped_modes *out, mt_err *err)
@@ -315,9 +298,7 @@ static mt_status solve(const parts *s, mt_damped_modes *out, mt_err *err)
     double *const wr = mt_arena_f64(s->mem, order, 1);
     double *const wi = mt_arena_f64(s->mem, order, 1);
     int *const perm = mt_arena_int(s->mem, order);
-    if (a == NULL || vr == NULL || wr == NULL || wi == NULL || perm == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(s->mem, err));
     assemble(s, a);
     const double noise = s->tol * mt_max_abs((ptrdiff_t)(order * order), a);
     MT_TRY(mt_eig_general(s->order, a, wr, wi, vr, s->mem, err));

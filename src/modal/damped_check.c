@@ -148,9 +148,7 @@ mt_status mt_damped_check(const mt_damped_problem *p, mt_damped_modes *out, mt_a
     c.f[0] = mt_arena_f64(mem, n, 1);
     c.f[1] = mt_arena_f64(mem, n, 1);
     c.work = mt_arena_f64(mem, n, 1);
-    if (c.d == NULL || c.f[0] == NULL || c.f[1] == NULL || c.work == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (size_t i = 0; i < n;
          i++) { /* as check.c: without mass, what the stiffness scale would give it */
         const double kii = fabs(p->k[i + (i * n)]);

@@ -59,9 +59,7 @@ mt_status mt_modal_dcluster(const mt_modes *modes, int first, int r, const doubl
     const int n = modes->n;
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     double *const f = mt_arena_f64(scratch, (size_t)n, (size_t)r);
-    if (f == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     double mean = 0.0;
     for (int i = 0; i < r; i++) {
         mean += modes->lambda[first + i] / r;
@@ -128,13 +126,12 @@ mt_status mt_modal_dvector_by_modes(const mt_modes *modes, int i, const mt_direc
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     double *const f = mt_arena_f64(scratch, (size_t)n, (size_t)dir->np);
     double *const a = mt_arena_f64(scratch, (size_t)n, (size_t)dir->np);
-    if (f == NULL || a == NULL) {
-        mt_arena_rewind(scratch, mark);
-        return mt_fail_memory(err);
+    const mt_status rc = mt_arena_check(scratch, err);
+    if (rc == MT_OK) {
+        load(entries, modes->lambda[i], dir->dky, dir->dmy, f);
+        mt_gemm(true, false, n, dir->np, n, 1.0, modes->y, n, f, n, 0.0, a, n);
+        combine(modes, i, dir, a, dy, dlambda);
     }
-    load(entries, modes->lambda[i], dir->dky, dir->dmy, f);
-    mt_gemm(true, false, n, dir->np, n, 1.0, modes->y, n, f, n, 0.0, a, n);
-    combine(modes, i, dir, a, dy, dlambda);
     mt_arena_rewind(scratch, mark);
-    return MT_OK;
+    return rc;
 }

@@ -124,9 +124,7 @@ static mt_status sort_coordinates(graded *g, mt_arena *scratch, mt_err *err)
     g->place = mt_arena_int(scratch, (size_t)n);
     double *const size = mt_arena_f64(scratch, (size_t)n, 1);
     double *const column = mt_arena_f64(scratch, (size_t)n, 1);
-    if (g->place == NULL || size == NULL || column == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     for (ptrdiff_t i = 0; i < n; i++) {
         for (ptrdiff_t j = 0; j < g->rows; j++) {
             size[i] = fmax(size[i], fabs(g->ct[i + j * n]));
@@ -155,9 +153,7 @@ static mt_status prepare(const mt_stiffness_factor *b, const mt_mass_factor *mas
     double *const rho = mt_arena_f64(scratch, rows, 1);
     g->ct = mt_arena_f64(scratch, n, rows);
     g->d = mt_arena_f64(scratch, rows, 1);
-    if (g->ct == NULL || g->d == NULL || rho == NULL || (mass->t != NULL && bt == NULL)) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     if (!mt_all_finite((ptrdiff_t)b->rows * g->n, b->b)) {
         return mt_fail(err, MT_E_DOMAIN, "stiffness factor: an entry is not a finite number");
     }
@@ -193,9 +189,7 @@ static mt_status singular_values(graded *g, mt_arena *scratch, mt_err *err)
     g->f = mt_arena_f64(scratch, (size_t)g->rows, (size_t)r);
     g->s = mt_arena_f64(scratch, (size_t)r, 1);
     g->v = mt_arena_f64(scratch, (size_t)r, (size_t)r);
-    if (g->f == NULL || g->s == NULL || g->v == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     g->kept = g->qr.kept;
     if (is_graded(g)) {
         mt_graded e = {.n = g->n,
@@ -228,9 +222,7 @@ static mt_status vectors(const graded *g, const mt_mass_factor *mass, mt_arena *
     const int r = g->qr.rank;
     double *const q = mt_arena_f64(scratch, (size_t)n, (size_t)n);
     double *const column = mt_arena_f64(scratch, (size_t)n, 1);
-    if (q == NULL || column == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     for (int j = 0; j < n - r; j++) {
         q[r + j + (ptrdiff_t)j * n] = 1.0;
     }

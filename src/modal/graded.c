@@ -121,9 +121,7 @@ mt_status mt_modal_graded(mt_graded *g, mt_arena *mem, mt_err *err)
     double *const y = mt_arena_f64(mem, (size_t)rows, rank);
     double *const size = mt_arena_f64(mem, (size_t)rows, 1);
     mt_qr yq;
-    if (column == NULL || l == NULL || y == NULL || size == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int j = 0; j < rows; j++) {
         column[j] = j;
     }

@@ -48,9 +48,7 @@ static mt_status claim(loaded *l, mt_arena *scratch, mt_err *err)
     l->f = mt_arena_f64(scratch, n, n);
     l->sigma = mt_arena_f64(scratch, n, 1);
     l->v = mt_arena_f64(scratch, n, n);
-    const bool ok =
-        l->h != NULL && l->s != NULL && l->f != NULL && l->sigma != NULL && l->v != NULL;
-    return ok ? MT_OK : mt_fail_memory(err);
+    return mt_arena_check(scratch, err);
 }
 
 /* h := W + D; f is work. */

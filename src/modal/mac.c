@@ -54,9 +54,7 @@ static mt_status basis(int ns, int r, const double *a, double *u, int *rank, mt_
     const int least = ns < r ? ns : r;
     double *const copy = mt_arena_f64(scratch, (size_t)ns, (size_t)r);
     double *const s = mt_arena_f64(scratch, (size_t)least, 1);
-    if (copy == NULL || s == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     for (int j = 0; j < r; j++) { /* each shape has its own scale: none may hide another */
         const double size = mt_max_abs(ns, a + (ptrdiff_t)j * ns);
         for (int i = 0; i < ns; i++) {
@@ -78,9 +76,7 @@ static mt_status subspace(int ns, int ra, const double *a, int rb, const double 
     double *const ua = mt_arena_f64(scratch, (size_t)ns, (size_t)ra);
     double *const ub = mt_arena_f64(scratch, (size_t)ns, (size_t)rb);
     double *const c = mt_arena_f64(scratch, (size_t)ra, (size_t)rb);
-    if (ua == NULL || ub == NULL || c == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     int rank_a = 0;
     int rank_b = 0;
     MT_TRY(basis(ns, ra, a, ua, &rank_a, scratch, err));

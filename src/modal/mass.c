@@ -116,9 +116,7 @@ static mt_status by_cholesky(mt_mass_factor *f, double *l, const double *d, doub
     }
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     double *const linv = mt_arena_f64(scratch, (size_t)n, (size_t)n);
-    if (linv == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     mt_tri_inverse(n, l, linv);
     f->condition = inverse_diagonal(n, linv, d, w);
     mt_arena_rewind(scratch, mark);
@@ -163,9 +161,7 @@ static mt_status by_split(mt_mass_factor *f, double *t, double *w, mt_arena *scr
     const double tol = mt_modal_tolerance(n);
     double *const v = mt_arena_f64(scratch, (size_t)n, (size_t)n);
     double *const e = mt_arena_f64(scratch, (size_t)n, 1);
-    if (v == NULL || e == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     scaled_mass(n, f->m, f->d, v);
     MT_TRY(mt_eig_sym(n, v, e, true, scratch, err));
     int massless = 0;
@@ -191,9 +187,7 @@ mt_status mt_modal_factor_mass(int n, const double *m, mt_arena *mem, mt_mass_fa
     double *const l = mt_arena_f64(mem, (size_t)n, (size_t)n);
     double *const d = mt_arena_f64(mem, (size_t)n, 1);
     double *const w = mt_arena_f64(mem, (size_t)n, 1);
-    if (l == NULL || d == NULL || w == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     if (n == 0) {
         return MT_OK;
     }
@@ -224,9 +218,7 @@ mt_status mt_modal_identity_mass(int n, mt_arena *mem, mt_mass_factor *out, mt_e
 {
     *out = (mt_mass_factor){.n = n, .rank = n, .condition = 1.0, .kept = 1.0};
     double *const ones = mt_arena_f64(mem, (size_t)n, 1);
-    if (ones == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < n; i++) {
         ones[i] = 1.0;
     }

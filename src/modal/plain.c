@@ -29,9 +29,7 @@ static mt_status regular(const double *k, const mt_mass_factor *mass, double *a,
     double *q = a;
     if (mass->t != NULL) {
         q = mt_arena_f64(scratch, (size_t)n, (size_t)n);
-        if (q == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(scratch, err));
         mt_symm(n, n, k, mass->t, a);
         mt_gemm(true, false, n, n, n, 1.0, mass->t, n, a, n, 0.0, q, n);
     } else {
@@ -58,9 +56,7 @@ static mt_status condensed(const double *k, const mt_mass_factor *mass, mt_arena
     const bool vectors = out->y != NULL;
     double *const a = mt_arena_f64(scratch, (size_t)r, (size_t)r);
     double *const t1 = mt_arena_f64(scratch, (size_t)n, (size_t)r);
-    if (a == NULL || t1 == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     MT_TRY(mt_modal_condense(k, mass, scratch, a, t1, out, err));
     MT_TRY(mt_eig_sym(r, a, out->lambda, vectors, scratch, err));
     if (vectors) {
@@ -80,9 +76,7 @@ mt_status mt_modal_plain(const double *k, const mt_mass_factor *mass, mt_arena *
         MT_TRY(condensed(k, mass, scratch, out, err));
     } else {
         double *const a = out->y != NULL ? out->y : mt_arena_f64(scratch, (size_t)n, (size_t)n);
-        if (a == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(scratch, err));
         MT_TRY(regular(k, mass, a, scratch, out, err));
     }
     out->scale = stiffness_scale(k, mass, out);

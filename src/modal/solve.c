@@ -34,22 +34,17 @@ static mt_status claim(const mt_mass_factor *mass, const mt_modal_options *opt, 
     out->kind = mt_arena_alloc(mem, c, sizeof *out->kind);
     out->cluster = mt_arena_int(mem, c);
     out->error = mt_arena_f64(mem, c, 1);
-    bool ok =
-        out->lambda != NULL && out->kind != NULL && out->cluster != NULL && out->error != NULL;
     if (opt->vectors) {
         out->y = mt_arena_f64(mem, (size_t)mass->n, c);
-        ok = ok && out->y != NULL;
     }
     if (opt->vectors && opt->check) {
         out->residual = mt_arena_f64(mem, c, 1);
         out->orthogonality = mt_arena_f64(mem, c, 1);
-        ok = ok && out->residual != NULL && out->orthogonality != NULL;
     }
     if (out->n_condensed > 0) {
         out->massless = mt_arena_f64(mem, (size_t)mass->n, 1);
-        ok = ok && out->massless != NULL;
     }
-    return ok ? MT_OK : mt_fail_memory(err);
+    return mt_arena_check(mem, err);
 }
 
 /* Is the plain result good enough? Signs and ranks are in doubt where a factor (K semidefinite
@@ -84,9 +79,7 @@ static mt_status by_factor(const mt_stiffness_factor *factor, const mt_mass_fact
     double *const wanted = out->y;
     if (factor->g != NULL && out->y == NULL) {
         out->y = mt_arena_f64(scratch, (size_t)out->n, (size_t)out->n);
-        if (out->y == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(scratch, err));
     }
     mt_status rc = mt_modal_by_factor(factor, mass, scratch, out, null_count, err);
     if (rc == MT_OK && factor->g != NULL) {
