@@ -60,38 +60,3 @@ mt_status mt_lu_solve(int n, double *a, int nrhs, double *b, double *rcond, mt_a
     mt_arena_rewind(scratch, mark);
     return rc;
 }
-
-static mt_status sym_solve(int n, double *a, int nrhs, double *b, mt_arena *scratch,
-                           mt_err *err)
-{
-    lapack_int *const ipiv = mt_arena_alloc(scratch, (size_t)n, sizeof *ipiv);
-    MT_TRY(mt_arena_check(scratch, err));
-    double query = 0.0;
-    lapack_int info =
-        LAPACKE_dsysv_work(LAPACK_COL_MAJOR, 'L', n, nrhs, a, n, ipiv, b, n, &query, -1);
-    if (info != 0) {
-        return mt_lapack_bug("dsysv", info, err);
-    }
-    double *work = NULL;
-    lapack_int lwork = 0;
-    MT_TRY(mt_lapack_work(scratch, query, n, &work, &lwork, err));
-    info = LAPACKE_dsysv_work(LAPACK_COL_MAJOR, 'L', n, nrhs, a, n, ipiv, b, n, work, lwork);
-    if (info < 0) {
-        return mt_lapack_bug("dsysv", info, err);
-    }
-    return info > 0 ? singular("LDL^T", info, err) : MT_OK;
-}
-
-mt_status mt_sym_solve(int n, double *a, int nrhs, double *b, mt_arena *scratch, mt_err *err)
-{
-    if (n == 0) {
-        return MT_OK;
-    }
-    if (!mt_lower_finite(n, a) || !mt_all_finite((ptrdiff_t)n * nrhs, b)) {
-        return mt_lapack_not_finite("dsysv", err);
-    }
-    const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    const mt_status rc = sym_solve(n, a, nrhs, b, scratch, err);
-    mt_arena_rewind(scratch, mark);
-    return rc;
-}

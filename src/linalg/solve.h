@@ -10,8 +10,5 @@
  * looks at rcond. */
 mt_status mt_lu_solve(int n, double *a, int nrhs, double *b, double *rcond, mt_arena *scratch,
                       mt_err *err);
-/* Symmetric indefinite solve (dsysv), A lower read and destroyed, B overwritten. Fails
- * MT_E_SINGULAR (exactly zero pivot block). */
-mt_status mt_sym_solve(int n, double *a, int nrhs, double *b, mt_arena *scratch, mt_err *err);
 
 #endif

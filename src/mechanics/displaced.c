@@ -5,11 +5,6 @@
 
 #include <string.h>
 
-static double *entry(double *m, ptrdiff_t nq, int row, int column)
-{
-    return &m[row + (column * nq)];
-}
-
 /* m += c (f g^T + g f^T)/2 over the states of a term's bodies. */
 static void add_product(const mt_system *sys, const mt_term *t, double c, const mt_cx *f,
                         const mt_cx *g, double *m)
@@ -19,15 +14,14 @@ static void add_product(const mt_system *sys, const mt_term *t, double c, const 
         for (int i = 0; i < MT_LOCAL && column >= 0; i++) {
             const int row = mt_local_dof(sys, t->body, i);
             if (row >= 0) {
-                *entry(m, sys->nq, row, column) +=
+                m[row + (ptrdiff_t)column * sys->nq] +=
                     0.5 * c * ((creal(f[i]) * creal(g[j])) + (creal(g[i]) * creal(f[j])));
             }
         }
     }
 }
 
-/* Mass matrix over all states at given positions: m nq x nq, both triangles, column-major [kg,
- * kg m^2]. After mt_linear_update. */
+/* m nq x nq, both triangles. */
 static mt_status mass_matrix(mt_linear *lin, const mt_pose *poses, double *m, mt_err *err)
 {
     const mt_system *const sys = lin->sys;

@@ -232,25 +232,17 @@ int mt_enclosure_least_below(mt_enclosure *e, double lambda)
 static mt_status solve_corner(mt_enclosure *e, mt_side side_k, mt_side side_m, mt_modes *modes,
                               mt_err *err)
 {
-    const size_t n = (size_t)e->n;
-    double *const m = mt_arena_f64(&e->scratch, n, n);
+    mt_mass_factor mass;
     *modes = (mt_modes){0};
-    if (m == NULL) {
-        (void)mt_fail_memory(err);
-        return MT_E_MEMORY;
-    }
-    if (e->mass_varies) {
-        memcpy(m, e->at[MT_MASS][side_m], n * n * sizeof *m);
-    }
-    for (size_t i = 0; i < n && !e->mass_varies; i++) {
-        m[i * (n + 1)] = 1.0;
-    }
+    MT_TRY(e->mass_varies
+               ? mt_modal_factor_mass(e->n, e->at[MT_MASS][side_m], &e->scratch, &mass, err)
+               : mt_modal_identity_mass(e->n, &e->scratch, &mass, err));
     mt_modal_options opt = mt_modal_options_default();
     opt.n_rigid = e->n_rigid;
     opt.vectors = false;
     opt.check = false;
-    return mt_modal_solve(e->n, e->at[MT_STIFFNESS][side_k], m, NULL, &opt, &e->scratch, modes,
-                          err);
+    return mt_modal_solve_factored(e->at[MT_STIFFNESS][side_k], &mass, NULL, &opt, &e->scratch,
+                                   modes, err);
 }
 
 static double hz_of(double lambda)

@@ -52,9 +52,6 @@ WRAP(mt_status, mt_svd,
 WRAP(mt_status, mt_svd_jacobi,
      (int m, int n, double *a, double *s, double *v, mt_arena *scratch, mt_err *err),
      (m, n, a, s, v, scratch, err), SVD, m, n, n)
-WRAP(mt_status, mt_sym_solve,
-     (int n, double *a, int nrhs, double *b, mt_arena *scratch, mt_err *err),
-     (n, a, nrhs, b, scratch, err), SOLVE, n, n, n)
 
 void __real_mt_gemm(bool ta, bool tb, int m, int n, int k, double alpha, const double *a,
                     int lda, const double *b, int ldb, double beta, double *c, int ldc);

@@ -155,7 +155,7 @@ static void qr__takes_empty_matrices_and_refuses_nan(mt_test *t)
     CHECK_INT(t, mt_qr_solve(&f, 1, bad, x, &mem, NULL), MT_E_DOMAIN);
 }
 
-static void solve__lu_and_symmetric_agree_with_the_planted_solution(mt_test *t)
+static void solve__lu_agrees_with_the_planted_solution(mt_test *t)
 {
     enum { N = 9, NRHS = 3 };
     mt_random g = mt_random_seed(6);
@@ -167,21 +167,10 @@ static void solve__lu_and_symmetric_agree_with_the_planted_solution(mt_test *t)
     mt_random_fill(&g, N * NRHS, x);
     mt_symmetrise_lower(N, a);
     mt_gemm(false, false, N, NRHS, N, 1.0, a, N, x, N, 0.0, b, N);
-    double a2[N * N];
-    double b2[N * NRHS];
-    memcpy(a2, a, sizeof a);
-    memcpy(b2, b, sizeof b);
     CHECK_INT(t, mt_lu_solve(N, a, NRHS, b, &rcond, &mem, NULL), MT_OK);
     CHECK(t, rcond > 0.0 && rcond <= 1.0);
-    for (int j = 1; j < N; j++) {
-        for (int i = 0; i < j; i++) {
-            a2[i + j * N] = nan("");
-        }
-    }
-    CHECK_INT(t, mt_sym_solve(N, a2, NRHS, b2, &mem, NULL), MT_OK);
     for (int i = 0; i < N * NRHS; i++) {
         CHECK_NEAR_ABS(t, b[i], x[i], TOL / rcond);
-        CHECK_NEAR_ABS(t, b2[i], x[i], TOL / rcond);
     }
 }
 
@@ -196,14 +185,11 @@ static void solve__singular_matrices_are_errors(mt_test *t)
     CHECK_INT(t, mt_lu_solve(2, c, 1, b, &rcond, &mem, &err), MT_E_SINGULAR);
     CHECK_NEAR(t, rcond, 0.0, 0.0);
     CHECK_STR(t, err.text, "LU: the matrix is singular at row 2");
-    memcpy(c, a, sizeof a);
-    CHECK_INT(t, mt_sym_solve(2, c, 1, b, &mem, &err), MT_E_SINGULAR);
     double near[4] = {1.0, 1.0, 1.0, 1.0 + 4.0 * DBL_EPSILON};
     CHECK_INT(t, mt_lu_solve(2, near, 1, b, &rcond, &mem, NULL), MT_OK);
     CHECK(t, rcond < 4.0 * DBL_EPSILON);
     double poisoned[4] = {1.0, 0.0, 0.0, nan("")};
     CHECK_INT(t, mt_lu_solve(2, poisoned, 1, b, &rcond, &mem, NULL), MT_E_DOMAIN);
-    CHECK_INT(t, mt_sym_solve(2, poisoned, 1, b, &mem, NULL), MT_E_DOMAIN);
     b[0] = HUGE_VAL;
     memcpy(c, a, sizeof a);
     CHECK_INT(t, mt_lu_solve(2, c, 1, b, &rcond, &mem, NULL), MT_E_DOMAIN);
@@ -215,7 +201,7 @@ int main(void)
         MT_TEST(qr__finds_rank_range_and_complement),
         MT_TEST(qr__solves_least_squares_and_transposed_systems),
         MT_TEST(qr__takes_empty_matrices_and_refuses_nan),
-        MT_TEST(solve__lu_and_symmetric_agree_with_the_planted_solution),
+        MT_TEST(solve__lu_agrees_with_the_planted_solution),
         MT_TEST(solve__singular_matrices_are_errors),
     };
     const int failed = mt_arena_init(&mem, 0, NULL) != MT_OK
