@@ -10,6 +10,7 @@
  *         k = mt_result_value(result, 1, "K_T1");
  *     }
  *
+ * Studies and results are immutable: any number of threads may read and solve the same study.
  * The search uses BLAS: have it use one thread, or the bits of results may differ from run to
  * run. GSL's error handler, which belongs to the whole process, is neither set nor called.
  */
@@ -17,6 +18,7 @@
 #define MODETUNE_STUDY_H
 
 #include "modetune/export.h"
+#include "modetune/model.h"
 #include "modetune/read.h"
 #include "modetune/status.h"
 
@@ -40,6 +42,7 @@ typedef enum mt_result_status {
 #undef MT_RESULT_STATUS_ENUM
 
 typedef struct mt_solve_options {
+    size_t size; /* sizeof(mt_solve_options); modetune/read.h tells how options grow */
     /* workers, fewer than 1 count as 1, at most 64 are used; the result does not depend on
      * it */
     int threads;
@@ -70,8 +73,20 @@ MT_API mt_status mt_study_read(const char *path, const mt_read_options *opt, mt_
 /* Accepts NULL. */
 MT_API void mt_study_delete(mt_study *study);
 
-/* One thread, nothing else. */
-MT_API mt_solve_options mt_solve_options_default(void);
+/* What the study calls itself, else its file; lives as long as the study, like all names
+ * here. */
+MT_API const char *mt_study_title(const mt_study *study);
+/* Its model, which is the study's and goes with it. */
+MT_API const mt_model *mt_study_model(const mt_study *study);
+/* Number of variables, and of each from 0: the parameter (NULL beyond the last), its value in
+ * the model and its bounds, those of a catalogue its ends (NaN beyond the last), in its
+ * unit. */
+MT_API int mt_study_variable_count(const mt_study *study);
+MT_API const char *mt_study_variable_name(const mt_study *study, int variable);
+MT_API double mt_study_variable_original(const mt_study *study, int variable);
+MT_API double mt_study_variable_lower(const mt_study *study, int variable);
+MT_API double mt_study_variable_upper(const mt_study *study, int variable);
+
 /**
  * Answer a study: the original design described, searched for better ones, each recommendation
  * analysed anew at its design, published values judged.
@@ -117,10 +132,24 @@ MT_API const char *mt_result_reason(const mt_result *result, int rank, int i);
 
 /**
  * Everything, as a JSON text (format "modetune-result/1").
- * @param[out] text  NUL-terminated, to be given to free(); NULL on failure
+ * @param[out] text  NUL-terminated, to be given to mt_string_delete; NULL on failure
  * Fails: MT_E_MEMORY.
  */
 MT_API mt_status mt_result_json(const mt_result *result, char **text, mt_err *err);
+/* Accepts NULL. */
+MT_API void mt_string_delete(char *text);
+
+/**
+ * A question as text in, its answer as text out: mt_study_read, mt_study_solve, mt_result_json.
+ * @param[in]  study  a study file's text, NUL-terminated. It is called "study.json", in the
+ *   present folder: files that it names are given by `read` or found from there
+ * @param[in]  read   NULL: defaults
+ * @param[in]  solve  NULL: defaults
+ * @param[out] result as mt_result_json gives it, to be given to mt_string_delete; NULL on
+ *   failure Fails: as these three.
+ */
+MT_API mt_status mt_solve_json(const char *study, const mt_read_options *read,
+                               const mt_solve_options *solve, char **result, mt_err *err);
 
 #ifdef __cplusplus
 }

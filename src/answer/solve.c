@@ -12,17 +12,12 @@
 #include "answer/doubts.h"
 #include "answer/spread.h"
 #include "answer/trade.h"
+#include "base/options.h"
 #include "base/workers.h"
 #include "describe/certificates.h"
 #include "describe/describe_discrete.h"
 #include "describe/describe_relax.h"
 #include "search/search.h"
-
-mt_solve_options mt_solve_options_default(void)
-{
-    const mt_solve_options opt = {.threads = 1};
-    return opt;
-}
 
 static mt_status describe_solutions(mt_answer *a, mt_err *err)
 {
@@ -421,22 +416,22 @@ static mt_status trade(mt_answer *a, mt_err *err)
 mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_result **out,
                          mt_err *err)
 {
-    const mt_solve_options defaults = mt_solve_options_default();
-    const mt_solve_options *const use = opt != NULL ? opt : &defaults;
-    mt_answer a = {.threads = use->threads};
+    mt_solve_options use;
     MT_NOT_NULL(out, err);
     *out = NULL;
     MT_NOT_NULL(study, err);
-    for (int i = 0; use->hint != NULL && i < study->n_variables; i++) {
-        if (!isfinite(use->hint[i])) {
+    MT_TRY(MT_OPTIONS_TAKE(opt, &use, err));
+    mt_answer a = {.threads = use.threads};
+    for (int i = 0; use.hint != NULL && i < study->n_variables; i++) {
+        if (!isfinite(use.hint[i])) {
             return mt_fail(err, MT_E_USAGE, "mt_study_solve: hint[%d] is not finite", i);
         }
     }
     mt_status rc = mt_arena_init(&a.mem, 0, err);
     rc = rc == MT_OK ? mt_result_new(&a.result, err) : rc;
-    rc = rc == MT_OK ? ask(&a, study, use, err) : rc;
+    rc = rc == MT_OK ? ask(&a, study, &use, err) : rc;
     rc = rc == MT_OK ? begin(&a, err) : rc;
-    rc = rc == MT_OK ? fill(&a, use, err) : rc;
+    rc = rc == MT_OK ? fill(&a, &use, err) : rc;
     rc = rc == MT_OK ? phase(&a, MT_PHASE_TRADE, trade, err) : rc;
     rc = rc == MT_OK ? mt_answer_note_cuts(&a, err) : rc;
     for (int i = 0; i < a.n_workers; i++) {

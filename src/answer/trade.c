@@ -56,7 +56,7 @@ static mt_status answer(const trade *t, int k, const double *hint, mt_result **o
     mt_arena mem;
     mt_study study;
     MT_TRY(mt_arena_init(&mem, 0, err));
-    const mt_solve_options opt = {.threads = 1, .hint = hint};
+    const mt_solve_options opt = {.size = sizeof opt, .threads = 1, .hint = hint};
     mt_status rc = mt_trade_study(t->study, t->points[k].values, &mem, &study, err);
     rc = rc == MT_OK ? mt_study_solve(&study, &opt, out, err) : rc;
     if (rc != MT_OK && rc != MT_E_INTERRUPTED) {

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "analysis/channels.h"
 #include "base/format.h"
 #include "cli/cli.h"
 #include "cli/shapes.h"
@@ -66,25 +67,16 @@ static int load(const mt_args *args, const char *text, comparison *c, side *x)
 
 static mt_status common_channels(comparison *c, mt_err *err)
 {
-    const mt_system *const a = c->a.a->sys;
-    const mt_system *const b = c->b.a->sys;
-    c->a.channels = mt_arena_int(&c->mem, (size_t)a->n_channels);
-    c->b.channels = mt_arena_int(&c->mem, (size_t)a->n_channels);
-    if (c->a.channels == NULL || c->b.channels == NULL) {
-        return mt_fail_memory(err);
-    }
-    for (int i = 0; i < a->n_channels; i++) {
-        const int other = mt_system_find_channel(b, a->channels[i].name);
-        if (other >= 0) {
-            c->a.channels[c->ns] = i;
-            c->b.channels[c->ns++] = other;
-        }
-    }
+    mt_common_channels common;
+    MT_TRY(mt_analysis_common_channels(c->a.a, c->b.a, &c->mem, &common, err));
+    c->ns = common.n;
+    c->a.channels = common.a;
+    c->b.channels = common.b;
     return c->ns > 0 ? MT_OK
                      : mt_fail(err, MT_E_INPUT,
                                "the two have no sensor and direction in common (%d channels in "
                                "A, %d in B)",
-                               a->n_channels, b->n_channels);
+                               c->a.a->sys->n_channels, c->b.a->sys->n_channels);
 }
 
 static mt_status choose_modes(comparison *c, side *x, int wanted, mt_err *err)

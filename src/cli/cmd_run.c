@@ -35,7 +35,7 @@ static int answer(job *j)
     if (rc != MT_OK) {
         return code;
     }
-    mt_solve_options opt = mt_solve_options_default();
+    mt_solve_options opt = {.size = sizeof opt};
     mt_args progress_args = *j->args;
     opt.threads = j->args->threads;
     opt.stop = j->stops ? mt_terminal_wish : NULL;

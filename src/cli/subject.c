@@ -144,23 +144,12 @@ static mt_status read_set(mt_subject *s, const char *text, const char *const *na
 /* What --set makes of the model must be a mechanism still. */
 static mt_status judge(mt_subject *s, mt_err *err)
 {
-    double *const value = mt_arena_f64(&s->mem, (size_t)s->model->n_nums, 1);
-    mt_doubt_list list = mt_doubt_list_default(&s->mem);
-    if (value == NULL) {
-        return mt_fail_memory(err);
-    }
     for (int i = 0; i < s->n_configurations && s->n_inputs > 0; i++) {
-        const int c = s->configurations[i];
-        MT_TRY(
-            mt_model_numbers(s->model, c, s->n_inputs, s->inputs, s->at, &s->mem, value, err));
-        mt_model_judge(s->model, c, value, &list);
+        const mt_status rc = mt_model_admit(s->model, s->configurations[i], s->n_inputs,
+                                            s->inputs, s->at, &s->mem, err);
+        MT_TRY(mt_err_in(err, rc, "--set"));
     }
-    for (int i = 0; i < list.n; i++) {
-        if (list.items[i].level == MT_LEVEL_FAULT) {
-            return mt_fail(err, MT_E_USAGE, "--set: %s", list.items[i].text);
-        }
-    }
-    return mt_arena_check(list.mem, err);
+    return MT_OK;
 }
 
 static mt_status choose(const mt_args *args, const char *configuration, mt_subject *s,

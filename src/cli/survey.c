@@ -1,24 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- *     dlambda/dp = y^T (dK - lambda dM) y,   f = sqrt(lambda) / (2 pi),
- *         df/dp = (dlambda/dp) / (8 pi^2 f).
- *
- * Where joints are redundant at the present value of a parameter only, frequencies jump there:
- * no derivative (mt_linear_independence).
- *
  * A parameter that is made of others ("EI": "E*I") must not be an input together with them, or
  * it would no longer follow: it gets an analysis of its own.
  */
 #include "cli/survey.h"
 
-#include <math.h>
 #include <string.h>
 
-#include "linalg/dense.h"
-#include "mechanics/independence.h"
-#include "mechanics/products.h"
+#include "analysis/sensitivity.h"
 
-static const double PI = 3.14159265358979323846;
 static const double PER_CENT = 0.01;
 
 static bool depends_on_others(const mt_model *model, int parameter)
@@ -120,67 +110,6 @@ static mt_status choose_modes(mt_survey *v, const mt_modes *m, int wanted, mt_er
     return MT_OK;
 }
 
-/* Derivatives of the cluster that begins at position first with respect to input p: its
- * directional values, ascending. */
-static mt_status cluster_values(mt_analysis *a, int p, int first, int size, double *dlambda,
-                                mt_err *err)
-{
-    const size_t n = (size_t)mt_linear_freedoms(a->lin);
-    const size_t r = (size_t)size;
-    const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
-    double *const dky = mt_arena_f64(&a->mem, n, r);
-    double *const dmy = mt_arena_f64(&a->mem, n, r);
-    double *const matrix = mt_arena_f64(&a->mem, r, r);
-    if (dky == NULL || dmy == NULL || matrix == NULL) {
-        return mt_fail_memory(err);
-    }
-    MT_TRY(mt_linear_products(a->lin, p, size, mt_modal_shape(&a->modes, first), dky, dmy, NULL,
-                              err));
-    MT_TRY(mt_modal_dcluster(&a->modes, first, size, dky, dmy, matrix, &a->mem, err));
-    MT_TRY(mt_eig_sym(size, matrix, dlambda, false, &a->mem, err));
-    mt_arena_rewind(&a->mem, mark);
-    return MT_OK;
-}
-
-/* All modes with respect to input p of the analysis, which is entry k of the survey. */
-static mt_status differentiate(mt_survey *v, mt_analysis *a, int p, int k, mt_err *err)
-{
-    double *const out = v->per_unit + ((ptrdiff_t)k * v->room);
-    double *const values = mt_arena_f64(&v->mem, (size_t)v->room, 1);
-    if (values == NULL) {
-        return mt_fail_memory(err);
-    }
-    for (int i = 0; i < v->modes;) {
-        int size = 1;
-        const int first = mt_modal_cluster(&a->modes, v->position[i], &size);
-        MT_TRY(cluster_values(a, p, first, size, values, err));
-        for (int j = 0; j < size && i < v->modes; j++) {
-            /* f^2 has a slope where f is 0, f has none */
-            out[i] = v->hz[i] > 0.0 ? values[j] / (8.0 * PI * PI * v->hz[i]) : nan("");
-            i++;
-        }
-    }
-    return MT_OK;
-}
-
-/* No derivative where the position has none; else from the first mode on that is blocked: those
- * above it are counted anew. */
-static mt_status leave_out(mt_survey *v, mt_analysis *a, int p, int k, mt_err *err)
-{
-    double *const out = v->per_unit + ((ptrdiff_t)k * v->room);
-    MT_TRY(mt_linear_independence(a->lin, p, &v->mem, &v->independence[k], err));
-    bool gone = v->independence[k].opens;
-    for (int i = 0; i < v->modes && (gone || v->independence[k].blocks); i++) {
-        int size = 1;
-        const int first = mt_modal_cluster(&a->modes, v->position[i], &size);
-        for (int j = first; j < first + size && !gone; j++) {
-            MT_TRY(mt_linear_blocked(a->lin, p, 1, mt_modal_shape(&a->modes, j), &gone, err));
-        }
-        out[i] = gone ? nan("") : out[i];
-    }
-    return MT_OK;
-}
-
 /* One analysis with the inputs of --set and the parameters entry[n] of the survey. */
 static mt_status analyse(mt_survey *v, int n, const int *entry, int wanted, mt_err *err)
 {
@@ -215,8 +144,9 @@ static mt_status analyse(mt_survey *v, int n, const int *entry, int wanted, mt_e
     rc = rc == MT_OK ? mt_analysis_solve(a, at, &opt, err) : rc;
     rc = rc == MT_OK ? choose_modes(v, &a->modes, wanted, err) : rc;
     for (int i = 0; rc == MT_OK && i < n; i++) {
-        rc = differentiate(v, a, slot[i], entry[i], err);
-        rc = rc == MT_OK ? leave_out(v, a, slot[i], entry[i], err) : rc;
+        rc = mt_analysis_sensitivity(a, slot[i], v->modes, v->position, &v->mem,
+                                     v->per_unit + ((ptrdiff_t)entry[i] * v->room),
+                                     &v->independence[entry[i]], err);
     }
     mt_analysis_delete(a);
     return rc;

@@ -320,3 +320,19 @@ void mt_model_judge(const mt_model *model, int configuration, const double *valu
     judge_drive(&j);
     mt_judge_geometry(&j);
 }
+
+mt_status mt_model_admit(const mt_model *model, int configuration, int n_inputs,
+                         const int *inputs, const double *at, mt_arena *mem, mt_err *err)
+{
+    double *const value = mt_arena_f64(mem, (size_t)model->n_nums, 1);
+    mt_doubt_list list = mt_doubt_list_default(mem);
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(mt_model_numbers(model, configuration, n_inputs, inputs, at, mem, value, err));
+    mt_model_judge(model, configuration, value, &list);
+    for (int i = 0; i < list.n; i++) {
+        if (list.items[i].level == MT_LEVEL_FAULT) {
+            return mt_fail(err, MT_E_USAGE, "%s", list.items[i].text);
+        }
+    }
+    return mt_arena_check(mem, err);
+}

@@ -67,4 +67,9 @@ mt_status mt_model_numbers(const mt_model *model, int configuration, int n_input
 void mt_model_judge(const mt_model *model, int configuration, const double *value,
                     mt_doubt_list *out);
 
+/* Are the numbers of a configuration those of a mechanism, with these inputs? Scratch from mem.
+ * Fails: MT_E_USAGE (the first fault that mt_model_judge finds), as mt_model_numbers. */
+mt_status mt_model_admit(const mt_model *model, int configuration, int n_inputs,
+                         const int *inputs, const double *at, mt_arena *mem, mt_err *err);
+
 #endif

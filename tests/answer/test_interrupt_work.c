@@ -77,7 +77,7 @@ static int ask(void *context)
 
 static void judge(mt_test *t, const char *name, const mt_study *study)
 {
-    mt_solve_options opt = mt_solve_options_default();
+    mt_solve_options opt = {.size = sizeof opt};
     mt_result *result = NULL;
     opt.stop = ask;
     work = worst = 0.0;

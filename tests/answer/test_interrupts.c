@@ -40,7 +40,7 @@ static int wish(void *context)
 
 static mt_status solve(const mt_study *study, moment *m, mt_result **out, mt_err *err)
 {
-    mt_solve_options opt = mt_solve_options_default();
+    mt_solve_options opt = {.size = sizeof opt};
     m->asked = 0;
     opt.stop = wish;
     opt.stop_context = m;

@@ -37,7 +37,7 @@ static void same_study__gives_the_same_bytes_for_any_workers(mt_test *t)
     if (study_load(t, MODEL, SPRINGS TARGETS ", 'search': {'seed': 7}", &c)) {
         char *const first = answer(t, &c, NULL);
         for (int threads = 1; threads <= 3; threads++) {
-            mt_solve_options opt = mt_solve_options_default();
+            mt_solve_options opt = {.size = sizeof opt};
             opt.threads = threads;
             mt_test_row(t, "%d workers", threads);
             char *const again = answer(t, &c, &opt);
@@ -97,7 +97,7 @@ static void interruption__keeps_what_was_found(mt_test *t)
     study_case c;
     interruption i = {0, 0};
     if (study_load(t, MODEL, SPRINGS TARGETS ", 'search': {'starts': 300}", &c)) {
-        mt_solve_options opt = mt_solve_options_default();
+        mt_solve_options opt = {.size = sizeof opt};
         opt.stop = wish_of;
         opt.stop_context = &i;
         opt.progress = interrupt;
@@ -119,7 +119,7 @@ static void stop_before_the_first_design__is_an_answer_too(mt_test *t)
     interruption i = {MT_WISH_FINISH, 0};
     mt_err err = {.text = ""};
     if (study_load(t, MODEL, SPRINGS TARGETS, &c)) {
-        mt_solve_options opt = mt_solve_options_default();
+        mt_solve_options opt = {.size = sizeof opt};
         opt.stop = wish_of;
         opt.stop_context = &i;
         if (CHECK_INT(t, mt_study_solve(c.study, &opt, &c.result, NULL), MT_OK)) {

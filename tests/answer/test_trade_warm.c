@@ -33,7 +33,7 @@ static void hint__is_one_more_start(mt_test *t)
     for (int j = 2; j <= 15;
          j++) { /* the valleys between the bounds, but for the bounds' own */
         const double hint = valley(j) + 0.02;
-        const mt_solve_options opt = {.threads = 1, .hint = &hint};
+        const mt_solve_options opt = {.size = sizeof opt, .threads = 1, .hint = &hint};
         mt_test_row(t, "valley %d", j);
         if (!CHECK_INT(t, mt_study_solve(c.study, &opt, &c.result, &c.err), MT_OK)) {
             break;

@@ -159,7 +159,7 @@ static void answer(mt_study *study, const uint8_t *data, size_t size)
 {
     mt_result *result = NULL;
     mt_err err = {.code = MT_OK};
-    mt_solve_options opt = mt_solve_options_default();
+    mt_solve_options opt = {.size = sizeof opt};
     opt.stop = wish;
     opt.progress = hear_progress;
     study->search.starts = 1;

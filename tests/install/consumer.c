@@ -4,8 +4,8 @@
  * MODEL STUDY prints the version, the frequency of the model's first configuration, and what
  * the study says: outcome and value of its variable L.
  */
+#include <modetune/mechanism.h>
 #include <modetune/model.h>
-#include <modetune/modes.h>
 #include <modetune/study.h>
 #include <modetune/version.h>
 #include <stdio.h>
@@ -15,16 +15,18 @@ static int ask_model(const char *path)
 {
     mt_err err = {MT_OK, ""};
     mt_model *model = NULL;
-    mt_mode_count count;
-    double hz = 0.0;
+    mt_mechanism *mechanism = NULL;
+    int failed = 1;
     if (mt_model_read(path, NULL, &model, &err) != MT_OK ||
-        mt_model_frequencies(model, NULL, 0, NULL, 1, &hz, &count, &err) != MT_OK) {
+        mt_mechanism_new(model, NULL, 0, NULL, &mechanism, &err) != MT_OK) {
         fprintf(stderr, "%s\n", err.text);
-        mt_model_delete(model);
-        return 1;
+    } else {
+        failed = printf(" %d mode %.6f Hz", mt_mechanism_vibration_modes(mechanism),
+                        mt_mechanism_hz(mechanism, 1)) < 0;
     }
+    mt_mechanism_delete(mechanism);
     mt_model_delete(model);
-    return printf(" %d mode %.6f Hz", count.vibration, hz) < 0;
+    return failed;
 }
 
 static int ask_study(const char *path)

@@ -5,8 +5,8 @@
  * argument, that is not in the table here is found.
  */
 #include "modetune/dynamics.h"
+#include "modetune/mechanism.h"
 #include "modetune/model.h"
-#include "modetune/modes.h"
 #include "modetune/read.h"
 #include "modetune/study.h"
 #include "modetune/version.h"
@@ -21,6 +21,9 @@
 #include "mt_test.h"
 
 #define MODEL MT_TEST_SOURCE_DIR "/tests/models/pendulum.json"
+#define PENDULUM_TEXT                                                                      \
+    "{\"format\": \"modetune-model/1\", \"dimension\": 2, \"bodies\": [{\"name\": \"a\", " \
+    "\"mass_kg\": 1, \"inertia_kg_m2\": 1, \"centre\": [0, 0]}]}"
 #define STUDY MT_TEST_SOURCE_DIR "/tests/install/pendulum_study.json"
 
 /* What the calls need, made once. */
@@ -29,14 +32,21 @@ static mt_study *study;
 static mt_result *result;
 static const char configuration[] = "hanging";
 static const char parameter[] = "L";
+static mt_mechanism *mechanism;
 static mt_diagnostics *list;
 static mt_diagnostics *wrong; /* of a file that is */
 static mt_err said;
+static const double one[1] = {1.0};
 
 /* Argument number k of a call where pointer number `null` is to be NULL. */
 #define ARG(k, pointer) (null == (k) ? NULL : (pointer))
 /* An answer, or nothing, as a status: what is not there is MT_E_USAGE. */
 #define ANSWER(is) ((is) ? MT_OK : MT_E_USAGE)
+#define TELLS(name, is)                    \
+    static mt_status call_##name(int null) \
+    {                                      \
+        return ANSWER(is);                 \
+    }
 /* The functions that take a format, as if they took any text: the compiler refuses NULL
  * there. */
 static mt_status (*volatile any_fail)(mt_err *err, mt_status code, const char *fmt,
@@ -58,11 +68,7 @@ static mt_status call_status_name(int null)
                   mt_status_name(MT_STATUS_COUNT) != NULL);
 }
 
-static mt_status call_fail(int null)
-{
-    return ANSWER(any_fail(ARG(0, &said), MT_E_INPUT, ARG(1, "text")) == MT_E_INPUT);
-}
-
+TELLS(fail, any_fail(ARG(0, &said), MT_E_INPUT, ARG(1, "text")) == MT_E_INPUT)
 static mt_status call_err_in(int null)
 {
     said.text[0] = '\0';
@@ -94,51 +100,15 @@ static mt_status call_diagnostics_delete(int null)
     return rc;
 }
 
-static mt_status call_diagnostics_count(int null)
-{
-    return ANSWER(mt_diagnostics_count(ARG(0, wrong)) > 0);
-}
-
-static mt_status call_diagnostics_left_out(int null)
-{
-    return ANSWER(mt_diagnostics_left_out(ARG(0, wrong)) == 0);
-}
-
-static mt_status call_diagnostics_severity(int null)
-{
-    return ANSWER((int)mt_diagnostics_severity(ARG(0, wrong), 0) != MT_SEVERITY_COUNT);
-}
-
-static mt_status call_diagnostics_file(int null)
-{
-    return ANSWER(mt_diagnostics_file(ARG(0, wrong), 0) != NULL);
-}
-
-static mt_status call_diagnostics_line(int null)
-{
-    return ANSWER(mt_diagnostics_line(ARG(0, wrong), 0) > 0);
-}
-
-static mt_status call_diagnostics_column(int null)
-{
-    return ANSWER(mt_diagnostics_column(ARG(0, wrong), 0) > 0);
-}
-
-static mt_status call_diagnostics_pointer(int null)
-{
-    return ANSWER(mt_diagnostics_pointer(ARG(0, wrong), 0) != NULL);
-}
-
-static mt_status call_diagnostics_message(int null)
-{
-    return ANSWER(mt_diagnostics_message(ARG(0, wrong), 0) != NULL);
-}
-
-static mt_status call_diagnostics_text(int null)
-{
-    return ANSWER(mt_diagnostics_text(ARG(0, wrong)) != NULL);
-}
-
+TELLS(diagnostics_count, mt_diagnostics_count(ARG(0, wrong)) > 0)
+TELLS(diagnostics_left_out, mt_diagnostics_left_out(ARG(0, wrong)) == 0)
+TELLS(diagnostics_severity, (int)mt_diagnostics_severity(ARG(0, wrong), 0) != MT_SEVERITY_COUNT)
+TELLS(diagnostics_file, mt_diagnostics_file(ARG(0, wrong), 0) != NULL)
+TELLS(diagnostics_line, mt_diagnostics_line(ARG(0, wrong), 0) > 0)
+TELLS(diagnostics_column, mt_diagnostics_column(ARG(0, wrong), 0) > 0)
+TELLS(diagnostics_pointer, mt_diagnostics_pointer(ARG(0, wrong), 0) != NULL)
+TELLS(diagnostics_message, mt_diagnostics_message(ARG(0, wrong), 0) != NULL)
+TELLS(diagnostics_text, mt_diagnostics_text(ARG(0, wrong)) != NULL)
 static mt_status call_model_read(int null)
 {
     mt_model *out = null == 0 ? model : NULL; /* must become NULL */
@@ -161,43 +131,66 @@ static mt_status call_model_delete(int null)
     return rc;
 }
 
-static mt_status call_model_title(int null)
+TELLS(model_title, mt_model_title(ARG(0, model)) != NULL)
+TELLS(model_dimension, mt_model_dimension(ARG(0, model)) == 2)
+TELLS(model_parameter_count, mt_model_parameter_count(ARG(0, model)) > 0)
+TELLS(model_parameter_name, mt_model_parameter_name(ARG(0, model), 0) != NULL)
+TELLS(model_configuration_count, mt_model_configuration_count(ARG(0, model)) > 0)
+TELLS(model_configuration_name, mt_model_configuration_name(ARG(0, model), 0) != NULL)
+static mt_status call_mechanism_new(int null)
 {
-    return ANSWER(mt_model_title(ARG(0, model)) != NULL);
+    mt_mechanism *out = null == 0 ? mechanism : NULL;
+    const char *const names[] = {parameter};
+    const mt_status rc = mt_mechanism_new(ARG(0, model), ARG(1, configuration), 1,
+                                          ARG(2, names), ARG(3, &out), ARG(4, &said));
+    const bool owned = out != NULL;
+    mt_mechanism_delete(out);
+    return rc == MT_OK || !owned ? rc : MT_E_INTERNAL;
 }
 
-static mt_status call_model_dimension(int null)
+static mt_status call_mechanism_delete(int null)
 {
-    return ANSWER(mt_model_dimension(ARG(0, model)) == 2);
+    mt_mechanism *own = NULL;
+    const mt_status rc = mt_mechanism_new(model, NULL, 0, NULL, &own, &said);
+    mt_mechanism_delete(ARG(0, own));
+    if (null == 0) {
+        mt_mechanism_delete(own);
+    }
+    return rc;
 }
 
-static mt_status call_model_parameter_count(int null)
+static mt_status call_mechanism_evaluate(int null)
 {
-    return ANSWER(mt_model_parameter_count(ARG(0, model)) > 0);
+    return mt_mechanism_evaluate(ARG(0, mechanism), ARG(1, one), ARG(2, &said));
 }
 
-static mt_status call_model_parameter_name(int null)
+TELLS(mechanism_value, isfinite(mt_mechanism_value(ARG(0, mechanism), ARG(1, parameter))))
+TELLS(mechanism_vibration_modes, mt_mechanism_vibration_modes(ARG(0, mechanism)) == 1)
+TELLS(mechanism_rigid_body_modes, mt_mechanism_rigid_body_modes(ARG(0, mechanism)) == 0)
+TELLS(mechanism_unstable_modes, mt_mechanism_unstable_modes(ARG(0, mechanism)) == 0)
+TELLS(mechanism_undecided_modes, mt_mechanism_undecided_modes(ARG(0, mechanism)) == 0)
+TELLS(mechanism_hz, isfinite(mt_mechanism_hz(ARG(0, mechanism), 1)))
+TELLS(mechanism_error_hz, isfinite(mt_mechanism_error_hz(ARG(0, mechanism), 1)))
+TELLS(mechanism_multiplicity, mt_mechanism_multiplicity(ARG(0, mechanism), 1) == 1)
+TELLS(mechanism_channels, mt_mechanism_channels(ARG(0, mechanism)) > 0)
+TELLS(mechanism_channel, mt_mechanism_channel(ARG(0, mechanism), 0) != NULL)
+static mt_status call_mechanism_shape(int null)
 {
-    return ANSWER(mt_model_parameter_name(ARG(0, model), 0) != NULL);
+    double shape[8];
+    return mt_mechanism_shape(ARG(0, mechanism), 1, ARG(1, shape), ARG(2, &said));
 }
 
-static mt_status call_model_configuration_count(int null)
+static mt_status call_mechanism_mac(int null)
 {
-    return ANSWER(mt_model_configuration_count(ARG(0, model)) > 0);
+    double mac[1];
+    return mt_mechanism_mac(ARG(0, mechanism), 1, ARG(1, mechanism), 1, ARG(2, mac),
+                            ARG(3, &said));
 }
 
-static mt_status call_model_configuration_name(int null)
+static mt_status call_mechanism_sensitivities(int null)
 {
-    return ANSWER(mt_model_configuration_name(ARG(0, model), 0) != NULL);
-}
-
-static mt_status call_model_frequencies(int null)
-{
-    const mt_setting setting = {parameter, 1.0};
-    double hz[4];
-    mt_mode_count count;
-    return mt_model_frequencies(ARG(0, model), ARG(1, configuration), 1, ARG(2, &setting), 4,
-                                ARG(3, hz), ARG(4, &count), ARG(5, &said));
+    double slope[1];
+    return mt_mechanism_sensitivities(ARG(0, mechanism), 1, ARG(1, slope), ARG(2, &said));
 }
 
 static mt_status call_study_read(int null)
@@ -222,18 +215,17 @@ static mt_status call_study_delete(int null)
     return rc;
 }
 
-static mt_status call_solve_options_default(int null)
-{
-    (void)null;
-    const mt_solve_options opt = mt_solve_options_default();
-    return ANSWER(opt.threads == 1 && opt.hint == NULL && opt.stop == NULL &&
-                  opt.progress == NULL);
-}
-
+TELLS(study_title, mt_study_title(ARG(0, study)) != NULL)
+TELLS(study_model, mt_study_model(ARG(0, study)) != NULL)
+TELLS(study_variable_count, mt_study_variable_count(ARG(0, study)) == 1)
+TELLS(study_variable_name, mt_study_variable_name(ARG(0, study), 0) != NULL)
+TELLS(study_variable_original, isfinite(mt_study_variable_original(ARG(0, study), 0)))
+TELLS(study_variable_lower, isfinite(mt_study_variable_lower(ARG(0, study), 0)))
+TELLS(study_variable_upper, isfinite(mt_study_variable_upper(ARG(0, study), 0)))
 static mt_status call_study_solve(int null)
 {
     mt_result *out = null == 0 ? result : NULL;
-    const mt_solve_options opt = mt_solve_options_default();
+    const mt_solve_options opt = {.size = sizeof opt};
     const mt_status rc =
         mt_study_solve(ARG(0, study), ARG(1, &opt), ARG(2, &out), ARG(3, &said));
     const bool owned = out != NULL;
@@ -265,39 +257,38 @@ static mt_status call_result_status_name(int null)
                   mt_result_status_name(MT_RESULT_STATUS_COUNT) != NULL);
 }
 
-static mt_status call_result_summary(int null)
+TELLS(result_summary, mt_result_summary(ARG(0, result)) != NULL)
+TELLS(result_recommendations, mt_result_recommendations(ARG(0, result)) > 0)
+TELLS(result_feasible, mt_result_feasible(ARG(0, result), 1) != 0)
+TELLS(result_value, isfinite(mt_result_value(ARG(0, result), 1, ARG(1, "L"))))
+TELLS(result_hz, isfinite(mt_result_hz(ARG(0, result), 1, ARG(1, configuration), 1)))
+TELLS(result_reasons, mt_result_reasons(ARG(0, result), 1) > 0)
+TELLS(result_reason, mt_result_reason(ARG(0, result), 1, 0) != NULL)
+static mt_status call_string_delete(int null)
 {
-    return ANSWER(mt_result_summary(ARG(0, result)) != NULL);
+    char *own = NULL;
+    const mt_status rc = mt_result_json(result, &own, &said);
+    mt_string_delete(ARG(0, own));
+    if (null == 0) {
+        mt_string_delete(own);
+    }
+    return rc;
 }
 
-static mt_status call_result_recommendations(int null)
+static mt_status call_solve_json(int null)
 {
-    return ANSWER(mt_result_recommendations(ARG(0, result)) > 0);
-}
-
-static mt_status call_result_feasible(int null)
-{
-    return ANSWER(mt_result_feasible(ARG(0, result), 1) != 0);
-}
-
-static mt_status call_result_value(int null)
-{
-    return ANSWER(isfinite(mt_result_value(ARG(0, result), 1, ARG(1, "L"))));
-}
-
-static mt_status call_result_hz(int null)
-{
-    return ANSWER(isfinite(mt_result_hz(ARG(0, result), 1, ARG(1, configuration), 1)));
-}
-
-static mt_status call_result_reasons(int null)
-{
-    return ANSWER(mt_result_reasons(ARG(0, result), 1) > 0);
-}
-
-static mt_status call_result_reason(int null)
-{
-    return ANSWER(mt_result_reason(ARG(0, result), 1, 0) != NULL);
+    static const char text[] =
+        "{\"format\": \"modetune-study/1\", \"model\": \"m.json\", \"goals\": []}";
+    const mt_file_text file = {"m.json", PENDULUM_TEXT};
+    const mt_read_options read = {.size = sizeof read, .files = &file, .n_files = 1};
+    const mt_solve_options solve = {.size = sizeof solve};
+    char *out = NULL;
+    /* without options the model is looked for on the disk, where it is not */
+    const mt_status rc =
+        mt_solve_json(ARG(0, text), ARG(1, &read), ARG(2, &solve), ARG(3, &out), ARG(4, &said));
+    const bool owned = out != NULL;
+    mt_string_delete(out);
+    return (rc == MT_OK) != owned ? MT_E_INTERNAL : null == 1 && rc == MT_E_INPUT ? MT_OK : rc;
 }
 
 static mt_status call_result_json(int null)
@@ -305,11 +296,9 @@ static mt_status call_result_json(int null)
     char *out = NULL;
     const mt_status rc = mt_result_json(ARG(0, result), ARG(1, &out), ARG(2, &said));
     const bool owned = out != NULL;
-    free(out);
+    mt_string_delete(out);
     return null < 0 && !owned ? MT_E_INTERNAL : rc;
 }
-
-static const double one[1] = {1.0};
 
 static mt_status call_udwadia_kalaba(int null)
 {
@@ -360,10 +349,31 @@ static const struct {
     ROW(model_parameter_name, "n"),
     ROW(model_configuration_count, "n"),
     ROW(model_configuration_name, "n"),
-    ROW(model_frequencies, "rarrra"),
+    ROW(mechanism_new, "rarra"),
+    ROW(mechanism_delete, "a"),
+    ROW(mechanism_evaluate, "rra"),
+    ROW(mechanism_value, "nn"),
+    ROW(mechanism_vibration_modes, "n"),
+    ROW(mechanism_rigid_body_modes, "a"),
+    ROW(mechanism_unstable_modes, "a"),
+    ROW(mechanism_undecided_modes, "a"),
+    ROW(mechanism_hz, "n"),
+    ROW(mechanism_error_hz, "n"),
+    ROW(mechanism_multiplicity, "n"),
+    ROW(mechanism_channels, "n"),
+    ROW(mechanism_channel, "n"),
+    ROW(mechanism_shape, "rra"),
+    ROW(mechanism_mac, "rrra"),
+    ROW(mechanism_sensitivities, "rra"),
     ROW(study_read, "rara"),
     ROW(study_delete, "a"),
-    ROW(solve_options_default, ""),
+    ROW(study_title, "n"),
+    ROW(study_model, "n"),
+    ROW(study_variable_count, "n"),
+    ROW(study_variable_name, "n"),
+    ROW(study_variable_original, "n"),
+    ROW(study_variable_lower, "n"),
+    ROW(study_variable_upper, "n"),
     ROW(study_solve, "rara"),
     ROW(result_delete, "a"),
     ROW(result_outcome, "n"),
@@ -376,6 +386,8 @@ static const struct {
     ROW(result_reasons, "n"),
     ROW(result_reason, "n"),
     ROW(result_json, "rra"),
+    ROW(string_delete, "a"),
+    ROW(solve_json, "raara"),
     ROW(udwadia_kalaba, "rrrrra"),
     ROW(udwadia_phohomsiri, "rrrrra"),
 };
@@ -390,6 +402,8 @@ static void public__null_is_refused_allowed_or_nothing(mt_test *t)
     REQUIRE(t, mt_model_read("wrong.json", &opt, &model, &said) == MT_E_INPUT);
     REQUIRE(t, mt_model_read(MODEL, NULL, &model, &said) == MT_OK);
     REQUIRE(t, mt_study_read(STUDY, NULL, &study, &said) == MT_OK);
+    const char *const names[] = {parameter};
+    REQUIRE(t, mt_mechanism_new(model, NULL, 1, names, &mechanism, &said) == MT_OK);
     REQUIRE(t, mt_study_solve(study, NULL, &result, &said) == MT_OK);
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "%s, everything given", rows[i].name);
@@ -407,6 +421,7 @@ static void public__null_is_refused_allowed_or_nothing(mt_test *t)
     }
     mt_result_delete(result);
     mt_study_delete(study);
+    mt_mechanism_delete(mechanism);
     mt_model_delete(model);
     mt_diagnostics_delete(list);
     mt_diagnostics_delete(wrong);
@@ -437,8 +452,10 @@ static void check_declaration(mt_test *t, const char *at)
         begin--;
     }
     (void)snprintf(name, sizeof name, "%.*s", (int)(open - begin), begin);
+    bool counted = false; /* this argument: a pointer may point to another one */
     for (const char *p = open; *p != ')' && p < at + length; p++) {
-        pointers += *p == '*' && (p[1] != '*') ? 1 : 0;
+        pointers += *p == '*' && !counted ? 1 : 0;
+        counted = *p != ',' && (counted || *p == '*');
     }
     mt_test_row(t, "%s in the headers, with %d pointers", name, pointers);
     int found = -1;
@@ -484,28 +501,21 @@ static void public__wrong_numbers_are_refused(mt_test *t)
     mt_model *m = NULL;
     mt_study *s = NULL;
     mt_result *r = NULL;
-    mt_mode_count count;
-    double hz[1];
-    const mt_setting unnamed[2] = {{"L", 1.0}, {NULL, 1.0}};
-    const mt_setting not_finite = {"L", nan("")};
     const double hint[1] = {HUGE_VAL};
     REQUIRE(t, mt_model_read(MODEL, NULL, &m, NULL) == MT_OK);
-    CHECK_INT(t, mt_model_frequencies(m, NULL, -1, NULL, 1, hz, &count, NULL), MT_E_USAGE);
-    CHECK_INT(t, mt_model_frequencies(m, NULL, 0, NULL, -1, hz, &count, NULL), MT_E_USAGE);
-    CHECK_INT(t, mt_model_frequencies(m, NULL, 2, unnamed, 1, hz, &count, &said), MT_E_USAGE);
-    CHECK_STR(t, said.text, "mt_model_frequencies: settings[1] has no name");
-    CHECK_INT(t, mt_model_frequencies(m, NULL, 1, &not_finite, 1, hz, &count, NULL),
-              MT_E_USAGE);
-    CHECK_INT(t, mt_model_frequencies(m, "", 0, NULL, 1, hz, &count, NULL), MT_E_USAGE);
-    CHECK_INT(t, mt_model_frequencies(m, NULL, 0, NULL, 0, NULL, &count, NULL), MT_OK);
     CHECK(t, mt_model_parameter_name(m, -1) == NULL);
     CHECK(t, mt_model_parameter_name(m, mt_model_parameter_count(m)) == NULL);
     CHECK(t, mt_model_configuration_name(m, -1) == NULL);
     CHECK(t, mt_model_configuration_name(m, mt_model_configuration_count(m)) == NULL);
     mt_model_delete(m);
 
-    mt_solve_options opt = mt_solve_options_default();
+    mt_solve_options opt = {.size = sizeof opt};
     CHECK_INT(t, mt_study_read(STUDY, NULL, &s, NULL), MT_OK);
+    for (int i = -1; i <= 1; i += 2) {
+        CHECK(t, mt_study_variable_name(s, i) == NULL);
+        CHECK(t, isnan(mt_study_variable_original(s, i)));
+        CHECK(t, isnan(mt_study_variable_lower(s, i)) && isnan(mt_study_variable_upper(s, i)));
+    }
     opt.hint = hint;
     CHECK_INT(t, mt_study_solve(s, &opt, &r, NULL), MT_E_USAGE);
     opt.hint = NULL;

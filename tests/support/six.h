@@ -101,7 +101,7 @@ static inline mt_result *six_solve(mt_test *t, const mt_study *study, int thread
 {
     mt_err err = {.text = ""};
     mt_result *result = NULL;
-    mt_solve_options opt = mt_solve_options_default();
+    mt_solve_options opt = {.size = sizeof opt};
     opt.threads = threads;
     if (!CHECK(t, mt_study_solve(study, &opt, &result, &err) == MT_OK)) {
         (void)fprintf(stderr, "%s\n", err.text);

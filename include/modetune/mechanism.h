@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * One configuration of a model, made ready once and evaluated as often as wanted at other
+ * values of its parameters: frequencies with bounds of their errors, shapes at the sensors,
+ * correlation of shapes, exact derivatives.
+ *
+ *     const char *const names[] = {"k_servo"};
+ *     const double values[] = {450.0};
+ *     if (mt_mechanism_new(model, "installed", 1, names, &mechanism, &err) == MT_OK &&
+ *         mt_mechanism_evaluate(mechanism, values, &err) == MT_OK) {
+ *         hz = mt_mechanism_hz(mechanism, 1);
+ *     }
+ *
+ * What a mechanism says is of its last evaluation, and depends on none before: the same values
+ * give the same bits. After one that failed it has no modes. A mechanism is used by one thread
+ * at a time; any number of them may share a model. BLAS has to use one thread.
+ */
+#ifndef MODETUNE_MECHANISM_H
+#define MODETUNE_MECHANISM_H
+
+#include "modetune/export.h"
+#include "modetune/model.h"
+#include "modetune/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct mt_mechanism mt_mechanism;
+
+/**
+ * Make a configuration ready, and evaluate it at the model's own values.
+ * @param[in]  model          must outlive the mechanism
+ * @param[in]  configuration  name; NULL: the model's first
+ * @param[in]  inputs [n_inputs] names of the parameters whose values will be given; others keep
+ *   the model's own, and those that are expressions follow, unless they are inputs themselves. A
+ *   value that the configuration itself fixes wins. NULL with n_inputs 0
+ * @param[out] out owned by the caller; NULL on failure Fails: MT_E_USAGE (no such configuration
+ *   or parameter, one given twice, a name missing), and as mt_mechanism_evaluate.
+ */
+MT_API mt_status mt_mechanism_new(const mt_model *model, const char *configuration,
+                                  int n_inputs, const char *const *inputs, mt_mechanism **out,
+                                  mt_err *err);
+/* Accepts NULL. */
+MT_API void mt_mechanism_delete(mt_mechanism *mechanism);
+/**
+ * Undamped natural modes, linearised at the equilibrium.
+ * @param[in]  values  [n_inputs] in the units of the parameters, finite; NULL without inputs
+ * O(n^3) in the number of freedoms; no heap after the first evaluations of one size.
+ * Fails: MT_E_USAGE (a value is not finite, or makes a number of the model what it may not be,
+ * as a mass below 0), MT_E_ASSEMBLY, MT_E_EQUILIBRIUM, MT_E_DEAD_CENTRE, MT_E_MASSLESS,
+ * MT_E_DOMAIN, MT_E_NO_CONVERGENCE, MT_E_MEMORY; err tells which joint, number or body.
+ */
+MT_API mt_status mt_mechanism_evaluate(mt_mechanism *mechanism, const double *values,
+                                       mt_err *err);
+
+/* Value of a parameter, in its unit, as it was evaluated; NaN where none has this name. */
+MT_API double mt_mechanism_value(const mt_mechanism *mechanism, const char *parameter);
+
+/*
+ * Modes by kind. Vibration modes have an index, from 1, by ascending frequency; where one mode
+ * is unstable or undecided none has, and the functions below that take an index answer with
+ * nothing. Undecided: rounding hides the sign of the mode's stiffness while springs do move in
+ * it, as at a buckling load.
+ */
+MT_API int mt_mechanism_vibration_modes(const mt_mechanism *mechanism);
+MT_API int mt_mechanism_rigid_body_modes(const mt_mechanism *mechanism);
+MT_API int mt_mechanism_unstable_modes(const mt_mechanism *mechanism);
+MT_API int mt_mechanism_undecided_modes(const mt_mechanism *mechanism);
+/* Frequency of vibration mode `mode`, and a bound of what rounding may have made of it [Hz];
+ * NaN where there is no such mode. */
+MT_API double mt_mechanism_hz(const mt_mechanism *mechanism, int mode);
+MT_API double mt_mechanism_error_hz(const mt_mechanism *mechanism, int mode);
+/* How many modes have this frequency: 1 is a simple one. 0 where there is no such mode. */
+MT_API int mt_mechanism_multiplicity(const mt_mechanism *mechanism, int mode);
+
+/* Channels, the directions of all sensors of the configuration: how many, and the name of each,
+ * "sensor.direction", from 0 (NULL beyond the last; lives as long as the mechanism). */
+MT_API int mt_mechanism_channels(const mt_mechanism *mechanism);
+MT_API const char *mt_mechanism_channel(const mt_mechanism *mechanism, int channel);
+/**
+ * Shape of a vibration mode at the channels.
+ * @param[out] shape [channels] mass-normalised: a length [m/sqrt(kg)] or an angle
+ *   [rad/sqrt(kg)]; its sign is arbitrary, but the same for the same values. NULL without
+ *   channels Fails: MT_E_USAGE (no such mode), MT_E_MEMORY.
+ */
+MT_API mt_status mt_mechanism_shape(mt_mechanism *mechanism, int mode, double *shape,
+                                    mt_err *err);
+/**
+ * Modal assurance criterion of the shapes of two mechanisms, which may be of different models,
+ * at the channels whose names both have:
+ *     mac_ij = (a_i . b_j)^2 / ((a_i . a_i)(b_j . b_j)), in [0, 1].
+ * @param[in]  modes_a, modes_b  how many vibration modes, the first ones
+ * @param[out] mac  modes_a x modes_b, column-major; NaN where a shape vanishes at all channels
+ *   a and b may be the same. Source: Ewins, Modal Testing, 2000, section 5.
+ *   Fails: MT_E_USAGE (fewer modes than that, no channel in common), MT_E_MEMORY.
+ */
+MT_API mt_status mt_mechanism_mac(mt_mechanism *a, int modes_a, mt_mechanism *b, int modes_b,
+                                  double *mac, mt_err *err);
+/**
+ * Exact derivatives of the first vibration modes with respect to all inputs.
+ * @param[in]  modes  how many
+ * @param[out] hz_per_unit  modes x n_inputs, column-major [Hz per unit of the input]. Repeated
+ *   modes have no derivative each, but along the directions into which an input splits them:
+ *   these values, ascending. NaN where there is none: at 0 Hz, and where joints that are
+ *   redundant at this value only block the motion, or come apart, at any other. NULL without
+ *   inputs
+ * O(n^3 + n^2 modes n_inputs); the first call evaluates once more, later evaluations are ready
+ * for it. Fails: MT_E_USAGE (fewer modes than that), and as mt_mechanism_evaluate.
+ */
+MT_API mt_status mt_mechanism_sensitivities(mt_mechanism *mechanism, int modes,
+                                            double *hz_per_unit, mt_err *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "modetune/mechanism.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/analysis.h"
+#include "analysis/channels.h"
+#include "analysis/sensitivity.h"
+#include "base/text.h"
+#include "model/values.h"
+
+struct mt_mechanism {
+    mt_analysis *a; /* owned */
+    mt_arena mem;   /* as long as this */
+    mt_arena scratch;
+    int n_inputs;
+    int *inputs;   /* [n_inputs] parameters */
+    double *at;    /* [n_inputs] their values at the last evaluation */
+    bool slopes;   /* derivatives have been asked for: they will be again */
+    bool has_none; /* the last evaluation failed */
+};
+
+static mt_status unknown(const char *what, const char *name, int n, const char *const *names,
+                         mt_err *err)
+{
+    const char *const nearest = mt_text_nearest(name, names, n);
+    return nearest == NULL
+               ? mt_fail(err, MT_E_USAGE, "no %s is called \"%s\"", what, name)
+               : mt_fail(err, MT_E_USAGE, "no %s is called \"%s\"; did you mean \"%s\"?", what,
+                         name, nearest);
+}
+
+/* The names of n things that `name_of` gives. */
+static const char **names_of(const mt_model *model, int n,
+                             const char *(*name_of)(const mt_model *model, int i),
+                             mt_arena *mem, mt_err *err)
+{
+    const char **const names = mt_arena_alloc(mem, (size_t)n, sizeof *names);
+    for (int i = 0; names != NULL && i < n; i++) {
+        names[i] = name_of(model, i);
+    }
+    if (names == NULL) {
+        (void)mt_fail_memory(err);
+    }
+    return names;
+}
+
+static mt_status find_configuration(const mt_model *model, const char *name, mt_arena *mem,
+                                    int *out, mt_err *err)
+{
+    const int n = mt_model_configuration_count(model);
+    *out = name == NULL ? 0 : mt_model_find_configuration(model, name);
+    if (*out != MT_ABSENT) {
+        return MT_OK;
+    }
+    const char **const names = names_of(model, n, mt_model_configuration_name, mem, err);
+    return names == NULL ? MT_E_MEMORY : unknown("configuration", name, n, names, err);
+}
+
+static mt_status find_inputs(mt_mechanism *m, const mt_model *model, const char *const *inputs,
+                             mt_err *err)
+{
+    const int n = mt_model_parameter_count(model);
+    double *const own = mt_arena_f64(&m->scratch, (size_t)n, 1);
+    m->inputs = mt_arena_int(&m->mem, (size_t)m->n_inputs);
+    m->at = mt_arena_f64(&m->mem, (size_t)m->n_inputs, 1);
+    MT_TRY(mt_arena_check(&m->mem, err));
+    MT_TRY(mt_arena_check(&m->scratch, err));
+    MT_TRY(mt_model_original_values(model, &m->scratch, own, NULL, err));
+    for (int i = 0; i < m->n_inputs; i++) {
+        if (inputs[i] == NULL) {
+            return mt_fail(err, MT_E_USAGE, "mt_mechanism_new: inputs[%d] is NULL", i);
+        }
+        m->inputs[i] = mt_model_find_parameter(model, inputs[i]);
+        if (m->inputs[i] == MT_ABSENT) {
+            const char **const names =
+                names_of(model, n, mt_model_parameter_name, &m->scratch, err);
+            return names == NULL ? MT_E_MEMORY : unknown("parameter", inputs[i], n, names, err);
+        }
+        for (int k = 0; k < i; k++) {
+            if (m->inputs[k] == m->inputs[i]) {
+                return mt_fail(err, MT_E_USAGE, "parameter \"%s\" is given twice", inputs[i]);
+            }
+        }
+        m->at[i] = own[m->inputs[i]];
+    }
+    return MT_OK;
+}
+
+static mt_status make(mt_mechanism *m, const mt_model *model, const char *configuration,
+                      const char *const *inputs, mt_err *err)
+{
+    int which = 0;
+    MT_TRY(mt_arena_init(&m->mem, 0, err));
+    MT_TRY(mt_arena_init(&m->scratch, 0, err));
+    MT_TRY(find_configuration(model, configuration, &m->scratch, &which, err));
+    MT_TRY(find_inputs(m, model, inputs, err));
+    MT_TRY(mt_analysis_new(model, which, m->n_inputs, m->inputs, m->at, &m->a, err));
+    m->a->n_rigid = -1; /* each design counts its own */
+    return MT_OK;
+}
+
+mt_status mt_mechanism_new(const mt_model *model, const char *configuration, int n_inputs,
+                           const char *const *inputs, mt_mechanism **out, mt_err *err)
+{
+    MT_NOT_NULL(out, err);
+    *out = NULL;
+    MT_NOT_NULL(model, err);
+    if (n_inputs < 0) {
+        return mt_fail(err, MT_E_USAGE, "mt_mechanism_new: n_inputs is negative");
+    }
+    if (n_inputs > 0) {
+        MT_NOT_NULL(inputs, err);
+    }
+    mt_mechanism *const m = calloc(1, sizeof *m);
+    if (m == NULL) {
+        return mt_fail_memory(err);
+    }
+    m->n_inputs = n_inputs;
+    const mt_status rc = make(m, model, configuration, inputs, err);
+    if (rc != MT_OK) {
+        mt_mechanism_delete(m);
+        return rc;
+    }
+    *out = m;
+    return MT_OK;
+}
+
+void mt_mechanism_delete(mt_mechanism *mechanism)
+{
+    if (mechanism != NULL) {
+        mt_analysis_delete(mechanism->a);
+        mt_arena_free(&mechanism->mem);
+        mt_arena_free(&mechanism->scratch);
+        free(mechanism);
+    }
+}
+
+static mt_status solve(mt_mechanism *m, mt_err *err)
+{
+    mt_analysis_options opt = mt_analysis_options_default();
+    opt.check = false;
+    opt.gradient = m->slopes;
+    mt_arena_clear(&m->scratch);
+    m->has_none = true;
+    MT_TRY(mt_model_admit(m->a->sys->model, m->a->sys->configuration, m->n_inputs, m->inputs,
+                          m->at, &m->scratch, err));
+    MT_TRY(mt_err_in(err, mt_analysis_solve(m->a, m->at, &opt, err), "configuration \"%s\"",
+                     mt_analysis_configuration(m->a)));
+    m->has_none = false;
+    return MT_OK;
+}
+
+mt_status mt_mechanism_evaluate(mt_mechanism *mechanism, const double *values, mt_err *err)
+{
+    MT_NOT_NULL(mechanism, err);
+    if (mechanism->n_inputs > 0) {
+        MT_NOT_NULL(values, err);
+    }
+    for (int i = 0; i < mechanism->n_inputs; i++) {
+        if (!isfinite(values[i])) {
+            mechanism->has_none = true;
+            return mt_fail(err, MT_E_USAGE, "mt_mechanism_evaluate: values[%d] is not finite",
+                           i);
+        }
+    }
+    for (int i = 0; i < mechanism->n_inputs; i++) {
+        mechanism->at[i] = values[i];
+    }
+    return solve(mechanism, err);
+}
+
+double mt_mechanism_value(const mt_mechanism *mechanism, const char *parameter)
+{
+    if (mechanism == NULL || parameter == NULL || mechanism->has_none) {
+        return nan("");
+    }
+    const mt_system *const sys = mechanism->a->sys;
+    const int p = mt_model_find_parameter(sys->model, parameter);
+    return p == MT_ABSENT ? nan("") : mt_linear_value(mechanism->a->lin, sys->parameters[p]);
+}
+
+static const mt_modes *modes_of(const mt_mechanism *m)
+{
+    static const mt_modes none;
+    return m == NULL || m->has_none ? &none : &m->a->modes;
+}
+
+int mt_mechanism_vibration_modes(const mt_mechanism *mechanism)
+{
+    const mt_modes *const modes = modes_of(mechanism);
+    return modes->count - modes->n_rigid - modes->n_unstable - modes->n_undecided;
+}
+
+int mt_mechanism_rigid_body_modes(const mt_mechanism *mechanism)
+{
+    return modes_of(mechanism)->n_rigid;
+}
+
+int mt_mechanism_unstable_modes(const mt_mechanism *mechanism)
+{
+    const mt_modes *const modes = modes_of(mechanism);
+    return modes->n_unstable + modes->n_unstable_condensed;
+}
+
+int mt_mechanism_undecided_modes(const mt_mechanism *mechanism)
+{
+    return modes_of(mechanism)->n_undecided;
+}
+
+/* Where vibration mode `mode` stands among all; -1: nowhere. */
+static int position_of(const mt_mechanism *m, int mode)
+{
+    const mt_modes *const modes = modes_of(m);
+    return modes->n_unstable_condensed > 0 ? -1 : mt_modal_flexible(modes, mode);
+}
+
+double mt_mechanism_hz(const mt_mechanism *mechanism, int mode)
+{
+    const int at = position_of(mechanism, mode);
+    return at < 0 ? nan("") : mt_modal_hz(modes_of(mechanism), at);
+}
+
+double mt_mechanism_error_hz(const mt_mechanism *mechanism, int mode)
+{
+    const int at = position_of(mechanism, mode);
+    return at < 0 ? nan("") : mt_modal_error_hz(modes_of(mechanism), at);
+}
+
+int mt_mechanism_multiplicity(const mt_mechanism *mechanism, int mode)
+{
+    const int at = position_of(mechanism, mode);
+    int size = 0;
+    if (at >= 0) {
+        (void)mt_modal_cluster(modes_of(mechanism), at, &size);
+    }
+    return size;
+}
+
+int mt_mechanism_channels(const mt_mechanism *mechanism)
+{
+    return mechanism == NULL ? 0 : mechanism->a->sys->n_channels;
+}
+
+const char *mt_mechanism_channel(const mt_mechanism *mechanism, int channel)
+{
+    return channel < 0 || channel >= mt_mechanism_channels(mechanism)
+               ? NULL
+               : mechanism->a->sys->channels[channel].name;
+}
+
+/* The positions of the first n vibration modes. */
+static mt_status positions_of(const mt_mechanism *m, int n, const char *function, mt_arena *mem,
+                              int **out, mt_err *err)
+{
+    if (n < 0 || (n > 0 && position_of(m, n) < 0)) {
+        return mt_fail(err, MT_E_USAGE, "%s: there is no vibration mode %d", function, n);
+    }
+    *out = mt_arena_int(mem, (size_t)n);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < n; i++) {
+        (*out)[i] = position_of(m, i + 1);
+    }
+    return MT_OK;
+}
+
+/* Shapes of the modes at these positions at ns channels: ns x n. */
+static mt_status shapes_of(mt_mechanism *m, int ns, const int *channels, int n, const int *at,
+                           double *shape, mt_err *err)
+{
+    for (int i = 0; i < n; i++) {
+        MT_TRY(mt_analysis_shape(m->a, at[i], ns, channels, shape + ((ptrdiff_t)i * ns), NULL,
+                                 err));
+    }
+    return MT_OK;
+}
+
+mt_status mt_mechanism_shape(mt_mechanism *mechanism, int mode, double *shape, mt_err *err)
+{
+    MT_NOT_NULL(mechanism, err);
+    const int ns = mt_mechanism_channels(mechanism);
+    const int at = position_of(mechanism, mode);
+    if (ns > 0) {
+        MT_NOT_NULL(shape, err);
+    }
+    if (at < 0) {
+        return mt_fail(err, MT_E_USAGE, "mt_mechanism_shape: there is no vibration mode %d",
+                       mode);
+    }
+    mt_arena_clear(&mechanism->scratch);
+    int *const channels = mt_arena_int(&mechanism->scratch, (size_t)ns);
+    MT_TRY(mt_arena_check(&mechanism->scratch, err));
+    for (int i = 0; i < ns; i++) {
+        channels[i] = i;
+    }
+    return shapes_of(mechanism, ns, channels, 1, &at, shape, err);
+}
+
+mt_status mt_mechanism_mac(mt_mechanism *a, int modes_a, mt_mechanism *b, int modes_b,
+                           double *mac, mt_err *err)
+{
+    mt_common_channels common;
+    int *at_a = NULL;
+    int *at_b = NULL;
+    MT_NOT_NULL(a, err);
+    MT_NOT_NULL(b, err);
+    MT_NOT_NULL(mac, err);
+    mt_arena *const mem = &a->scratch;
+    mt_arena_clear(mem);
+    MT_TRY(positions_of(a, modes_a, __func__, mem, &at_a, err));
+    MT_TRY(positions_of(b, modes_b, __func__, mem, &at_b, err));
+    MT_TRY(mt_analysis_common_channels(a->a, b->a, mem, &common, err));
+    if (common.n == 0) {
+        return mt_fail(err, MT_E_USAGE, "mt_mechanism_mac: there is no channel in common");
+    }
+    double *const shape_a = mt_arena_f64(mem, (size_t)common.n, (size_t)modes_a);
+    double *const shape_b = mt_arena_f64(mem, (size_t)common.n, (size_t)modes_b);
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(shapes_of(a, common.n, common.a, modes_a, at_a, shape_a, err));
+    MT_TRY(shapes_of(b, common.n, common.b, modes_b, at_b, shape_b, err));
+    mt_mac_matrix(common.n, modes_a, shape_a, modes_b, shape_b, mac);
+    return MT_OK;
+}
+
+mt_status mt_mechanism_sensitivities(mt_mechanism *mechanism, int modes, double *hz_per_unit,
+                                     mt_err *err)
+{
+    int *at = NULL;
+    MT_NOT_NULL(mechanism, err);
+    if (mechanism->n_inputs > 0) {
+        MT_NOT_NULL(hz_per_unit, err);
+    }
+    if (!mechanism->has_none && !mechanism->a->with_gradient) {
+        mechanism->slopes = true;
+        MT_TRY(solve(mechanism, err));
+    }
+    mt_arena_clear(&mechanism->scratch);
+    MT_TRY(positions_of(mechanism, modes, __func__, &mechanism->scratch, &at, err));
+    for (int p = 0; p < mechanism->n_inputs; p++) {
+        mt_independence why;
+        MT_TRY(mt_analysis_sensitivity(mechanism->a, p, modes, at, &mechanism->scratch,
+                                       hz_per_unit + ((ptrdiff_t)p * modes), &why, err));
+    }
+    return MT_OK;
+}
