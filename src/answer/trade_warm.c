@@ -60,7 +60,7 @@ static mt_status open_gap(mt_workspace *w, const double *t, mt_arena *mem, mt_ca
     MT_TRY(objective_at(w, t, mem, &f, err));
     for (int i = 0; i < p->n_clears; i++) {
         const mt_clear *const c = &p->clears[i];
-        (void)mt_clear_violation(c, &w->views[c->view].analysis->modes, below + c->first, NULL);
+        (void)mt_clear_look(c, &w->views[c->view].analysis->modes, below + c->first);
     }
     if (!mt_ties_agree(p, below)) {
         return mt_fail(err, MT_E_DOMAIN, "a mode crosses a band between two positions");

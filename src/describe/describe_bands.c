@@ -152,15 +152,10 @@ static mt_status judge(mt_workspace *fresh, int goal, int configuration, mt_resu
     const int at = mt_problem_view(fresh->p, configuration);
     const mt_view_work *const view = &fresh->views[at];
     const mt_clear own = {.view = at, .bands = g->avoid->bands};
-    const mt_modes *const modes = &view->analysis->modes;
     mt_arena *const mem = &result->mem;
     tightest nominal = {.has = nan(""), .asked = nan(""), .missing = nan("")};
     tightest worst = {.has = nan("")};
-    double violation = view->solved ? mt_clear_violation(&own, modes, NULL, NULL) : nan("");
-    if (MT_HAS(violation) && fresh->c->robust != NULL) {
-        const double room = mt_robust_room(fresh, &own);
-        violation = MT_HAS(room) ? fmax(-room, 0.0) : room;
-    }
+    const double violation = mt_short_of(view->solved ? mt_clear_room(fresh, &own) : nan(""));
     if (MT_HAS(violation)) {
         nominal = find_tightest(fresh, at, &own.bands, false);
         worst = fresh->robust != NULL ? find_tightest(fresh, at, &own.bands, true) : worst;
@@ -294,7 +289,7 @@ static mt_status list_clear(mt_workspace *fresh, const mt_clear *c, int *below,
                        .rec = rec,
                        .configuration = mt_analysis_configuration(view->analysis),
                        .bands = &c->bands};
-    if (!view->solved || !MT_HAS(mt_clear_violation(c, modes, below, NULL))) {
+    if (!view->solved || !MT_HAS(mt_clear_look(c, modes, below))) {
         return MT_OK; /* unstable: no mode has an index here */
     }
     MT_TRY(list_gaps(&l, below, err));

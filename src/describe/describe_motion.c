@@ -88,8 +88,8 @@ static mt_status examine(described *d, mt_err *err)
     for (int i = fresh->c->n_clears - 1; i >= 0; i--) {
         const mt_clear *const c = &fresh->c->clears[i];
         const mt_view_work *const view = &fresh->views[c->view];
-        const bool known = view->solved && MT_HAS(mt_clear_violation(c, &view->analysis->modes,
-                                                                     below + c->first, NULL));
+        const bool known =
+            view->solved && MT_HAS(mt_clear_look(c, &view->analysis->modes, below + c->first));
         if (mt_family_of(fresh->p, c->view) != family) {
             continue;
         }

@@ -9,6 +9,39 @@ bool mt_is_met(double violation, double tolerance)
     return violation <= tolerance * (1.0 + ROUNDING);
 }
 
+double mt_short_of(double room)
+{
+    return room != room ? room : fmax(-room, 0.0);
+}
+
+void mt_miss(mt_missed *m, double short_of, double tolerance)
+{
+    if (short_of != short_of || m->violation != m->violation) {
+        *m = (mt_missed){.violation = short_of + m->violation, .squares = HUGE_VAL};
+        return;
+    }
+    m->squares += short_of * short_of;
+    m->violation = fmax(m->violation, short_of / tolerance);
+}
+
+mt_missed mt_missed_of(int n_eq, const double *eq, const double *eq_tol, int n_in,
+                       const double *in, const double *in_tol)
+{
+    mt_missed m = {0.0, 0.0};
+    for (int i = 0; i < n_eq; i++) {
+        mt_miss(&m, fabs(eq[i]), eq_tol[i]);
+    }
+    for (int i = 0; i < n_in; i++) {
+        mt_miss(&m, mt_short_of(in[i]), in_tol[i]);
+    }
+    return m;
+}
+
+bool mt_is_held(double violation)
+{
+    return violation <= 1.0;
+}
+
 int mt_compare(double a, double b, double equal)
 {
     static const double NOTHING = 1e-6; /* of a change, a misfit, a part of a band's edge */

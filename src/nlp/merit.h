@@ -13,6 +13,20 @@
  * rounding (of a logarithm, of eigenvalues). NaN: not met. */
 bool mt_is_met(double violation, double tolerance);
 
+/* What a row of room `room` is short of: 0 where it has some, NaN where it has no value. */
+double mt_short_of(double room);
+
+/* What is missed of all rows that are held. */
+typedef struct mt_missed {
+    double violation; /* the most of any, of its tolerance; NaN: a row has no value */
+    double squares;   /* infinite then */
+} mt_missed;
+void mt_miss(mt_missed *m, double short_of, double tolerance);
+mt_missed mt_missed_of(int n_eq, const double *eq, const double *eq_tol, int n_in,
+                       const double *in, const double *in_tol);
+/* Does a search hold its rows? It has to reach their tolerances themselves. */
+bool mt_is_held(double violation);
+
 /* What designs are ranked by. */
 typedef struct mt_merit {
     bool feasible;
@@ -25,6 +39,8 @@ typedef struct mt_merit {
 #define MT_EQUAL_JUDGED 0x1p-40
 /* Designs that searches ended at: held objectives, their tolerances used or not. */
 #define MT_EQUAL_FOUND 4e-6
+/* Designs nearer than this in every coordinate (0.1 percent in a positive parameter) are one. */
+#define MT_SAME_DESIGN 1e-3
 
 /* -1: a is less, 1: b is; 0: they differ by less than `equal`, relatively (of 1e-6, where both are
  * smaller); NaN is neither less nor more. */

@@ -282,9 +282,16 @@ mt_status mt_clear_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
     return MT_OK;
 }
 
-double mt_clear_violation(const mt_clear *c, const mt_modes *modes, int *below, int *worst)
+double mt_band_room(const mt_band *band, double low_hz, double high_hz)
 {
-    double violation = mt_modal_indexed(modes) ? 0.0 : nan("");
+    const double below =
+        band->lower_hz > 0.0 ? mt_log_ratio(band->lower_hz, high_hz) : -HUGE_VAL;
+    return fmax(below, fmax(mt_log_ratio(low_hz, band->upper_hz), -MT_MOST_INSIDE));
+}
+
+double mt_clear_look(const mt_clear *c, const mt_modes *modes, int *below)
+{
+    double room = HUGE_VAL;
     for (int b = 0; b < c->bands.n; b++) {
         const mt_band *const band = &c->bands.items[b];
         const bool from_zero = !(band->lower_hz > 0.0); /* 0 Hz is inside: nothing is below */
@@ -292,25 +299,16 @@ double mt_clear_violation(const mt_clear *c, const mt_modes *modes, int *below, 
         int count = 0;
         for (int i = 0; i < modes->count; i++) {
             const double hz = mt_modal_hz(modes, i);
-            if (modes->kind[i] != MT_MODE_FLEXIBLE) {
-                continue;
-            }
-            const double over = mt_log_ratio(hz, band->lower_hz);
-            const double under = fmin(mt_log_ratio(band->upper_hz, hz), MT_MOST_INSIDE);
-            const double inside = fmin(over, under);
-            count += hz <= middle && !from_zero ? 1 : 0;
-            if (inside > violation) {
-                violation = inside;
-                if (worst != NULL) {
-                    *worst = i;
-                }
+            if (modes->kind[i] == MT_MODE_FLEXIBLE) {
+                room = fmin(room, mt_band_room(band, hz, hz));
+                count += hz <= middle && !from_zero ? 1 : 0;
             }
         }
         if (below != NULL) {
             below[b] = count;
         }
     }
-    return violation;
+    return mt_modal_indexed(modes) ? room : nan("");
 }
 
 int mt_clear_row_count(const mt_case *c, const int *below)
@@ -347,24 +345,8 @@ bool mt_clear_row_at(const mt_case *c, const int *below, int row, mt_clear_row *
 
 double mt_clear_room(const mt_workspace *w, const mt_clear *c)
 {
-    const mt_modes *const modes = &w->views[c->view].analysis->modes;
-    if (w->c->robust != NULL) {
-        return mt_robust_room(w, c);
-    }
-    double room = mt_modal_indexed(modes) ? HUGE_VAL : nan("");
-    for (int b = 0; b < c->bands.n; b++) {
-        const mt_band *const band = &c->bands.items[b];
-        for (int i = 0; i < modes->count; i++) {
-            if (modes->kind[i] == MT_MODE_FLEXIBLE && MT_HAS(room)) {
-                const double hz = mt_modal_hz(modes, i);
-                const double below =
-                    band->lower_hz > 0.0 ? mt_log_ratio(band->lower_hz, hz) : -HUGE_VAL;
-                const double above = fmax(mt_log_ratio(hz, band->upper_hz), -MT_MOST_INSIDE);
-                room = fmin(room, fmax(below, above));
-            }
-        }
-    }
-    return room;
+    return w->c->robust != NULL ? mt_robust_room(w, c)
+                                : mt_clear_look(c, &w->views[c->view].analysis->modes, NULL);
 }
 
 double mt_clears_room(const mt_workspace *w)
@@ -374,28 +356,4 @@ double mt_clears_room(const mt_workspace *w)
         room = fmin(room, mt_clear_room(w, &w->c->clears[i]));
     }
     return room;
-}
-
-double mt_clear_least_percent(const mt_clear *c, const mt_modes *modes, int *band, int *pos)
-{
-    double least = HUGE_VAL;
-    for (int b = 0; b < c->bands.n; b++) {
-        for (int i = 0; i < modes->count; i++) {
-            if (modes->kind[i] != MT_MODE_FLEXIBLE) {
-                continue;
-            }
-            const double percent =
-                mt_band_clearance_percent(&c->bands.items[b], mt_modal_hz(modes, i), NULL);
-            if (!(percent >= least)) {
-                least = percent;
-                if (band != NULL) {
-                    *band = b;
-                }
-                if (pos != NULL) {
-                    *pos = i;
-                }
-            }
-        }
-    }
-    return least;
 }

@@ -208,11 +208,7 @@ double mt_robust_room(const mt_workspace *w, const mt_clear *c)
     double room = indexed ? HUGE_VAL : nan("");
     for (int k = 1; MT_HAS(room) && span_of(w, c->view, k, &low, &high); k++) {
         for (int b = 0; b < c->bands.n; b++) {
-            const mt_band *const band = &c->bands.items[b];
-            const double below =
-                band->lower_hz > 0.0 ? mt_log_ratio(band->lower_hz, high) : -HUGE_VAL;
-            const double here =
-                fmax(below, fmax(mt_log_ratio(low, band->upper_hz), -MT_MOST_INSIDE));
+            const double here = mt_band_room(&c->bands.items[b], low, high);
             room = fmin(room, MT_HAS(low + high) ? here : -HUGE_VAL);
         }
     }

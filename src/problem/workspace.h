@@ -81,10 +81,12 @@ mt_status mt_view_track(mt_workspace *w, mt_view_work *view, mt_err *err);
 
 /* problem_clear.c: fill the rows of all bands, after their views have been solved. */
 mt_status mt_clear_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out, mt_err *err);
-/* How the modes of an analysis lie: below[bands.n] (may be NULL) modes below the middle of each
- * band; the largest relative way that a mode is inside a band with its margin (0: none is);
- * *worst (may be NULL) its position; NaN where the configuration is unstable. */
-double mt_clear_violation(const mt_clear *c, const mt_modes *modes, int *below, int *worst);
+/* ln of the least ratio that a mode anywhere between low and high keeps from a band with its
+ * margin; negative: it can be inside. */
+double mt_band_room(const mt_band *band, double low_hz, double high_hz);
+/* The least of that for any vibration mode of an analysis and any band; NaN where the
+ * configuration is unstable. below[bands.n] (may be NULL): modes below the middle of each. */
+double mt_clear_look(const mt_clear *c, const mt_modes *modes, int *below);
 /* Which mode and edge does row `row` (0: the first of the bands, behind those of the demands)
  * of a search with an assignment below[n_bands] hold? false: there is no such row. */
 typedef struct mt_clear_row {
@@ -95,15 +97,11 @@ typedef struct mt_clear_row {
 } mt_clear_row;
 bool mt_clear_row_at(const mt_case *c, const int *below, int row, mt_clear_row *out);
 int mt_clear_row_count(const mt_case *c, const int *below);
-/* ln of the least ratio that any vibration mode keeps from a band with its margin (what the
- * objective "clearance" makes greatest), after its view has been solved; negative: a mode is
- * inside; NaN: unstable. */
+/* mt_clear_look after the view has been solved, with tolerances over them: what the objective
+ * "clearance" makes greatest. */
 double mt_clear_room(const mt_workspace *w, const mt_clear *c);
 /* The least of all clears; infinite without bands. */
 double mt_clears_room(const mt_workspace *w);
-/* Least clearance of any vibration mode from any band without its margin, in percent of the
- * edge; *band, *pos (may be NULL) say where. */
-double mt_clear_least_percent(const mt_clear *c, const mt_modes *modes, int *band, int *pos);
 
 /*
  * goal_frequency.c: rows in ln f. A spring that starts from 0 has f = 0 and df/dk infinite there, while

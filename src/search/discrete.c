@@ -112,7 +112,7 @@ static mt_status rank(mt_discrete *d, mt_combination *const *list, int n, int mo
         if (*n_best < most || mt_discrete_before(d, list[i], best[*n_best - 1])) {
             MT_TRY(mt_discrete_follow(d, list[i], err));
         }
-        if (!list[i]->judged || !MT_HAS(list[i]->violation)) {
+        if (!list[i]->judged || !MT_HAS(list[i]->missed.violation)) {
             continue;
         }
         int at = *n_best < most ? (*n_best)++ : most;
@@ -218,8 +218,8 @@ static mt_status to_solution(const mt_discrete *d, const mt_combination *c,
     const size_t n = (size_t)p->n + 1;
     *out = (mt_nlp_solution){.t = c->t,
                              .f = c->f[0],
-                             .violation = c->violation,
-                             .squares = c->squares,
+                             .violation = c->missed.violation,
+                             .squares = c->missed.squares,
                              .feasible = c->feasible,
                              .singular = c->singular,
                              .kkt = c->kkt,

@@ -2,6 +2,7 @@
 #ifndef SEARCH_DISCRETE_H
 #define SEARCH_DISCRETE_H
 
+#include "nlp/merit.h"
 #include "problem/workspace.h"
 #include "result/result.h"
 
@@ -51,8 +52,7 @@ typedef struct mt_combination {
     double *f; /* [n_aims] objectives there */
     const double *from; /* [n + 1] a design t to start from; NULL: none */
     double least;       /* half of the squared change that pick alone makes */
-    double violation;   /* as in mt_nlp_solution; NaN: it has no value */
-    double squares;
+    mt_missed missed;
     double kkt;
     bool judged;
     bool feasible;

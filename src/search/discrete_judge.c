@@ -16,9 +16,6 @@
 /* Combinations in one task: long enough to pay for its start, short enough to share out
  * well. */
 enum { PER_TASK = 64 };
-/* Bits of an objective that count in a comparison: 12 decimal digits, as equal designs on
- * different ways agree. */
-enum { BITS = 40 };
 /* Starts of the continuous search of one combination: 4 + 2 n, where the study does not say. */
 enum { STARTS_BASE = 4, STARTS_PER_VARIABLE = 2 };
 
@@ -46,52 +43,18 @@ mt_status mt_discrete_alloc(const mt_discrete *d, int n, mt_combination **out, m
         list[i] = (mt_combination){.pick = pick + ((size_t)i * n_pick),
                                    .t = t + ((size_t)i * n_t),
                                    .f = f + ((size_t)i * n_aims),
-                                   .violation = nan(""),
-                                   .squares = HUGE_VAL,
+                                   .missed = {nan(""), HUGE_VAL},
                                    .kkt = nan("")};
     }
     return MT_OK;
 }
 
-static double rounded(double f)
-{
-    int exponent = 0;
-    if (!isfinite(f)) {
-        return f;
-    }
-    const double lead = frexp(f, &exponent);
-    return ldexp(round(ldexp(lead, BITS)), exponent - BITS);
-}
-
 bool mt_discrete_before(const mt_discrete *d, const mt_combination *a, const mt_combination *b)
 {
-    if (a->feasible != b->feasible) {
-        return a->feasible;
-    }
-    const double square_a = rounded(a->squares);
-    const double square_b = rounded(b->squares);
-    if (!a->feasible && square_a != square_b) {
-        return square_a < square_b;
-    }
-    for (int k = 0; k < d->p->n_aims; k++) {
-        const double f_a = rounded(a->f[k]);
-        const double f_b = rounded(b->f[k]);
-        if (f_a != f_b) {
-            return f_a < f_b;
-        }
-    }
-    return false;
-}
-
-static void demand_more(mt_combination *c, double short_of, double tolerance)
-{
-    if (!MT_HAS(short_of) || !MT_HAS(c->violation)) {
-        c->squares = HUGE_VAL;
-        c->violation = nan("");
-        return;
-    }
-    c->squares += short_of * short_of;
-    c->violation = fmax(c->violation, short_of / tolerance);
+    const int n = d->p->n_aims;
+    const mt_merit x = {a->feasible, a->missed.squares, n, a->f};
+    const mt_merit y = {b->feasible, b->missed.squares, n, b->f};
+    return mt_merit_before(&x, &y, MT_EQUAL_JUDGED);
 }
 
 /* Bands, each mode against each of them; the objective "clearance" is the least room left,
@@ -103,7 +66,7 @@ static void judge_bands(const mt_workspace *w, mt_combination *c)
     for (int i = 0; i < w->c->n_clears; i++) {
         const mt_clear *const clear = &w->c->clears[i];
         const double here = mt_clear_room(w, clear);
-        demand_more(c, MT_HAS(here) ? fmax(-here, 0.0) : here, clear->tolerance);
+        mt_miss(&c->missed, mt_short_of(here), clear->tolerance);
         room = fmin(room, here);
     }
     for (int i = 0; i < w->c->n_bands; i++) { /* one drive, one number of modes below a band */
@@ -114,7 +77,7 @@ static void judge_bands(const mt_workspace *w, mt_combination *c)
         }
     }
     if (mt_family_any(w->p) && !(tied >= room)) {
-        demand_more(c, MT_HAS(tied) ? fmax(-tied, 0.0) : tied, w->c->clears[0].tolerance);
+        mt_miss(&c->missed, mt_short_of(tied), w->c->clears[0].tolerance);
         room = tied;
     }
     for (int k = 0; k < w->c->n_aims; k++) {
@@ -137,19 +100,12 @@ static mt_status judge_design(const mt_discrete *d, int worker, mt_combination *
         return mt_pass_final(rc, &own, err);
     }
     c->judged = true;
-    c->violation = 0.0;
-    c->squares = 0.0;
     for (int k = 0; k < w->c->n_aims; k++) {
         c->f[k] = mt_aim_value(w, k, NULL);
     }
-    for (int i = 0; i < w->p->n_eq; i++) {
-        demand_more(c, fabs(v->eq[i]), w->c->eq_tol[i]);
-    }
-    for (int i = 0; i < w->c->n_in; i++) {
-        demand_more(c, MT_HAS(v->in[i]) ? fmax(-v->in[i], 0.0) : v->in[i], w->c->in_tol[i]);
-    }
+    c->missed = mt_missed_of(w->p->n_eq, v->eq, w->c->eq_tol, w->c->n_in, v->in, w->c->in_tol);
     judge_bands(w, c);
-    c->feasible = c->violation <= 1.0;
+    c->feasible = mt_is_held(c->missed.violation);
     return MT_OK;
 }
 
@@ -169,7 +125,7 @@ static mt_status follow(mt_workspace *w, mt_combination *c, mt_arena *mem, mt_er
         MT_TRY(mt_motion_follow(w, i, below, mem, &m, err));
         c->evals += m.positions;
         if (m.end == MT_MOTION_UNSTABLE || m.room < -m.tolerance) {
-            demand_more(c, m.end == MT_MOTION_UNSTABLE ? nan("") : -m.room, m.tolerance);
+            mt_miss(&c->missed, m.end == MT_MOTION_UNSTABLE ? nan("") : -m.room, m.tolerance);
             c->feasible = false;
         }
         room = fmin(room, m.room);
@@ -253,8 +209,7 @@ static mt_status close_on(const mt_discrete *d, const mt_combination *c, long bu
 static void keep(const mt_nlp_solution *s, int n, mt_combination *c)
 {
     memcpy(c->t, s->t, (size_t)n * sizeof *c->t);
-    c->violation = s->violation;
-    c->squares = s->squares;
+    c->missed = (mt_missed){s->violation, s->squares};
     c->kkt = s->kkt;
     c->singular = s->singular;
     c->feasible = s->feasible;
@@ -297,7 +252,7 @@ static mt_status search_closed(mt_workspace *w, mt_arena *mem, mt_combination *c
     const mt_status rc = evaluate_aims(w, best, bands, mem, c, &why);
     if (rc != MT_OK) {
         c->feasible = false;
-        c->squares = HUGE_VAL;
+        c->missed.squares = HUGE_VAL;
     }
     return mt_pass_final(rc, &why, err);
 }

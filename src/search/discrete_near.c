@@ -215,7 +215,7 @@ static const mt_combination *best_of(const walk *w)
     const mt_combination *best = NULL;
     for (int i = 0; i < w->n; i++) {
         const mt_combination *const c = w->all[i];
-        if (c->judged && MT_HAS(c->violation) &&
+        if (c->judged && MT_HAS(c->missed.violation) &&
             (best == NULL || mt_discrete_before(w->d, c, best))) {
             best = c;
         }

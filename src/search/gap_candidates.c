@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "nlp/merit.h"
 #include "problem/family.h"
 #include "search/gaps.h"
 #include "search/proof.h"
@@ -50,7 +51,7 @@ mt_status mt_gap_assignment(mt_workspace *w, const double *t, int *below, double
             *violation = nan("");
             return mt_pass_final(rc, &own, err);
         }
-        const double v = mt_clear_violation(c, &a->modes, below + c->first, NULL);
+        const double v = mt_short_of(mt_clear_look(c, &a->modes, below + c->first));
         *violation = !(v <= *violation) ? v : *violation;
     }
     return MT_OK;

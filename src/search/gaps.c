@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "base/workers.h"
+#include "nlp/merit.h"
 #include "search/motion.h"
 #include "search/search.h"
 
@@ -85,6 +86,15 @@ static mt_status search_in_order(mt_workspace *w, slot *s, mt_err *err)
     return MT_OK;
 }
 
+static void refuse(mt_nlp_solution *best, double short_of, double tolerance)
+{
+    mt_missed m = {best->violation, best->squares};
+    mt_miss(&m, short_of, tolerance);
+    best->feasible = false;
+    best->squares = m.squares;
+    best->violation = m.violation;
+}
+
 /* Where the motion of a family comes nearer than `room`, one more cut for each way between two
  * positions. */
 static int add_cuts(slot *s, const mt_problem *p, int family, const mt_motion *m, double room)
@@ -98,13 +108,6 @@ static int add_cuts(slot *s, const mt_problem *p, int family, const mt_motion *m
         }
     }
     return added;
-}
-
-static void refuse(mt_nlp_solution *best, double short_of, double tolerance)
-{
-    best->feasible = false;
-    best->squares += short_of * short_of;
-    best->violation = fmax(best->violation, short_of / tolerance);
 }
 
 /* Follow the best design over the range of motion. *added: cuts to search again with; with none
@@ -154,9 +157,7 @@ static void judge_clearance(const mt_case *c, mt_nlp_result *found)
         mt_nlp_solution *const s = &found->solutions[i];
         const double z = s->t[c->p->n];
         if (z < -tolerance) {
-            s->feasible = false;
-            s->squares += z * z;
-            s->violation = fmax(s->violation, -z / tolerance);
+            refuse(s, -z, tolerance);
         }
     }
     found->compromise = found->n_solutions > 0 && !found->solutions[0].feasible;
@@ -266,16 +267,12 @@ static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem
     return MT_OK;
 }
 
-static bool better(const mt_gap_solution *a, const mt_gap_solution *b, bool compromise)
+static bool better(const mt_gap_solution *a, const mt_gap_solution *b)
 {
-    const int n = compromise ? 0 : (a->n_aims < b->n_aims ? a->n_aims : b->n_aims);
-    if (mt_search_before(n, a->aims, b->aims)) {
-        return true;
-    }
-    if (mt_search_before(n, b->aims, a->aims)) {
-        return false;
-    }
-    return compromise ? a->found->squares < b->found->squares : a->found->f < b->found->f;
+    const mt_merit x = {a->found->feasible, a->found->squares, a->n_aims, a->aims};
+    const mt_merit y = {b->found->feasible, b->found->squares, b->n_aims, b->aims};
+    const bool before = mt_merit_before(&x, &y, MT_EQUAL_FOUND);
+    return before || (!mt_merit_before(&y, &x, MT_EQUAL_FOUND) && a->found->f < b->found->f);
 }
 
 /* Stable: what is equal keeps the order of the assignments. */
@@ -284,7 +281,7 @@ static void rank(mt_gap_result *r)
     for (int i = 1; i < r->n_solutions; i++) {
         const mt_gap_solution s = r->solutions[i];
         int k = i;
-        for (; k > 0 && better(&s, &r->solutions[k - 1], r->compromise); k--) {
+        for (; k > 0 && better(&s, &r->solutions[k - 1]); k--) {
             r->solutions[k] = r->solutions[k - 1];
         }
         r->solutions[k] = s;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "nlp/merit.h"
 #include "problem/objective.h"
 #include "problem/robust.h"
 #include "search/relax.h"
@@ -175,14 +176,14 @@ double mt_relax_value(const mt_workspace *w, const mt_move *m, const mt_nlp_valu
     for (int i = 0; i < w->p->n_eq; i++) {
         if (mt_relax_is_row(c, m, true, i)) {
             worst = v->eq[i];
-        } else if (!(fabs(v->eq[i]) <= c->eq_tol[i])) {
+        } else if (!mt_is_met(fabs(v->eq[i]), c->eq_tol[i])) {
             return nan("");
         }
     }
     for (int i = 0; i < c->n_in; i++) {
         if (mt_relax_is_row(c, m, false, i)) {
             worst = fmin(worst, v->in[i]);
-        } else if (!(v->in[i] >= -c->in_tol[i])) {
+        } else if (!mt_is_met(-v->in[i], c->in_tol[i])) {
             return nan("");
         }
     }

@@ -4,11 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Designs nearer than this (0.1 percent in a positive parameter) are one, as in the search
- * itself. */
-static const double SAME = 1e-3;
-/* Values of a held objective that differ by less, relatively, rank by the next objective. */
-static const double EQUAL = 4e-6;
+#include "nlp/merit.h"
+
 /* KKT residuals of local optima, and of what is none. */
 static const double SHOWN = 1e-6;
 static const double NOT_SHOWN = 1e-4;
@@ -128,23 +125,13 @@ static mt_status refine(stages *s, int i, mt_err *err)
     return aims_at(s, old->t, f, err);
 }
 
-bool mt_search_before(int n, const double *a, const double *b)
-{
-    for (int k = 0; k < n; k++) {
-        if (fabs(a[k] - b[k]) > EQUAL * fmax(fabs(a[k]), fabs(b[k]))) {
-            return a[k] < b[k];
-        }
-    }
-    return false;
-}
-
 bool mt_search_same(int n, const double *a, const double *b)
 {
     double most = 0.0;
     for (int i = 0; i < n; i++) {
         most = fmax(most, fabs(a[i] - b[i]));
     }
-    return most <= SAME;
+    return most <= MT_SAME_DESIGN;
 }
 
 /* Behind a design that is shown to be a local optimum those that are not are ends of failed
@@ -178,8 +165,13 @@ static void rank(stages *s)
             continue;
         }
         int at = kept++;
-        for (; at > 0 && mt_search_before(n_aims, f, s->f + ((ptrdiff_t)(at - 1) * n_aims));
-             at--) {
+        const mt_merit own = {one.feasible, one.squares, n_aims, f};
+        for (; at > 0; at--) {
+            const double *const g = s->f + ((ptrdiff_t)(at - 1) * n_aims);
+            const mt_merit other = {all[at - 1].feasible, all[at - 1].squares, n_aims, g};
+            if (!mt_merit_before(&own, &other, MT_EQUAL_FOUND)) {
+                break;
+            }
             all[at] = all[at - 1];
         }
         all[at] = one;

@@ -35,8 +35,4 @@ mt_status mt_search_repeated(mt_workspace *ws, long most, mt_arena *mem, mt_nlp_
 mt_status mt_search_join_continua(mt_workspace *ws, mt_arena *mem, mt_nlp_result *out,
                                   mt_err *err);
 
-/* Is a design with objectives a[n] before one with b[n]? By the objectives in order; values
- * that a held objective may differ by count as equal. */
-bool mt_search_before(int n, const double *a, const double *b);
-
 #endif

@@ -12,14 +12,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "nlp/merit.h"
 #include "search/search.h"
 
 enum { BETWEEN = 3 };
 /* Objectives that differ by less are equal: relative to their size; those without unit (roots
  * of half squares, clearances) to this at least, as residuals are. */
 static const double EQUAL = 1e-6;
-/* A solution uses the tolerances of its goals: rounding beyond them. */
-static const double FEASIBLE = 1.0 + 1e-6;
 /* KKT residuals below this are local solutions, as in the search. */
 static const double STATIONARY = 1e-6;
 
@@ -46,11 +45,11 @@ static bool measure(continua *c, const double *t, double *aims)
     const mt_status rc = mt_workspace_eval(ws, t, false, &c->v, &c->err);
     bool good = rc == MT_OK;
     c->rc = mt_is_final(rc) ? rc : MT_OK;
-    for (int i = 0; i < ws->p->n_eq && good; i++) {
-        good = fabs(c->v.eq[i]) <= ws->c->eq_tol[i] * FEASIBLE;
-    }
-    for (int i = 0; i < ws->c->n_in && good; i++) {
-        good = -c->v.in[i] <= ws->c->in_tol[i] * FEASIBLE;
+    if (good) {
+        const mt_case *const k = ws->c;
+        const mt_missed m =
+            mt_missed_of(ws->p->n_eq, c->v.eq, k->eq_tol, k->n_in, c->v.in, k->in_tol);
+        good = mt_is_met(m.violation, 1.0);
     }
     for (int k = 0; k < ws->c->n_aims && good; k++) {
         aims[k] = mt_aim_root(&ws->c->aims[k], mt_aim_value(ws, k, NULL));

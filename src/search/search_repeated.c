@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "nlp/merit.h"
 #include "search/repeated.h"
 #include "search/search.h"
 
@@ -55,16 +56,12 @@ static bool spent(const refine *w, long more)
     return w->evals + more > w->most;
 }
 
-static double violation(const mt_workspace *ws, const mt_nlp_values *v)
+static bool is_held(const mt_workspace *ws, const mt_nlp_values *v)
 {
-    double most = 0.0;
-    for (int i = 0; i < mt_case_rows_eq(ws->c); i++) {
-        most = fmax(most, fabs(v->eq[i]) / ws->c->eq_tol[i]);
-    }
-    for (int i = 0; i < mt_case_rows_in(ws->c); i++) {
-        most = fmax(most, -v->in[i] / ws->c->in_tol[i]);
-    }
-    return most;
+    const mt_case *const c = ws->c;
+    const mt_missed m = mt_missed_of(mt_case_rows_eq(c), v->eq, c->eq_tol, mt_case_rows_in(c),
+                                     v->in, c->in_tol);
+    return mt_is_held(m.violation);
 }
 
 /* Solve nlp from t, near it; a feasible design of the study that is better than f: into t,
@@ -107,7 +104,7 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
     rc = is && rc == MT_OK ? mt_workspace_eval(ws, found.solutions[0].t, false, &v, &own) : rc;
     if (is && rc == MT_OK) {
         w->evals++;
-        if (violation(ws, &v) <= 1.0 && v.f < *f - w->gain * fabs(*f)) {
+        if (is_held(ws, &v) && v.f < *f - w->gain * fabs(*f)) {
             memcpy(t, found.solutions[0].t, (size_t)ws->c->n_t * sizeof *t);
             *f = v.f;
             *better = true;
@@ -390,6 +387,12 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
     return MT_OK;
 }
 
+static bool before(const mt_nlp_solution *a, const mt_nlp_solution *b)
+{
+    return mt_merit_before(&(mt_merit){a->feasible, a->squares, 1, &a->f},
+                           &(mt_merit){b->feasible, b->squares, 1, &b->f}, 0.0);
+}
+
 /* By objective; what is one counts once, and an end that is not shown to be optimal does not
  * stand behind a better design. */
 static void rank(const mt_workspace *ws, mt_nlp_result *out)
@@ -398,7 +401,7 @@ static void rank(const mt_workspace *ws, mt_nlp_result *out)
     for (int i = 1; i < out->n_solutions; i++) {
         const mt_nlp_solution s = out->solutions[i];
         int k = i;
-        for (; k > 0 && s.f < out->solutions[k - 1].f; k--) {
+        for (; k > 0 && before(&s, &out->solutions[k - 1]); k--) {
             out->solutions[k] = out->solutions[k - 1];
         }
         out->solutions[k] = s;
