@@ -16,15 +16,19 @@ static mt_status state(mt_result *result, const char *kind, bool proven, mt_err 
                        const char *fmt, ...)
 {
     va_list args;
-    int capacity = result->n_certificates;
-    mt_certificate *const grown = mt_arena_grow(
-        &result->mem, result->certificates, result->n_certificates, &capacity, sizeof *grown);
     va_start(args, fmt);
     const char *const text = mt_arena_vprintf(&result->mem, fmt, args);
     va_end(args);
-    if (grown == NULL || text == NULL) {
-        return mt_fail_memory(err);
-    }
+    return mt_describe_certificate(result, kind, proven, text, err);
+}
+
+mt_status mt_describe_certificate(mt_result *result, const char *kind, bool proven,
+                                  const char *text, mt_err *err)
+{
+    int capacity = result->n_certificates;
+    mt_certificate *const grown = mt_arena_grow(
+        &result->mem, result->certificates, result->n_certificates, &capacity, sizeof *grown);
+    MT_TRY(mt_arena_check(&result->mem, err));
     result->certificates = grown;
     mt_certificate *const c = &result->certificates[result->n_certificates++];
     *c = mt_certificate_default();
@@ -138,7 +142,7 @@ static mt_status reach(const mt_problem *p, const mt_proof *proof, int limit, mt
     c->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
     c->reachable_lower_hz = r.low_hz;
     c->reachable_upper_hz = r.high_hz;
-    return c->pointer == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(&result->mem, err);
 }
 
 static mt_status jointly(const mt_proof *proof, mt_arena *mem, mt_result *result,

@@ -4,6 +4,9 @@
 
 #include "search/gaps.h"
 
+/* One more certificate; text is in result->mem, NULL where memory is out. */
+mt_status mt_describe_certificate(mt_result *result, const char *kind, bool proven,
+                                  const char *text, mt_err *err);
 /* What the answer may claim as proven. infeasible: it is a proof that no design exists. */
 mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *result,
                                       bool *infeasible, mt_err *err);

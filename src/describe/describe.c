@@ -24,9 +24,7 @@ mt_status mt_describe_warn(mt_result *result, mt_err *err, const char *fmt, ...)
     va_start(args, fmt);
     const char *const text = mt_arena_vprintf(&result->mem, fmt, args);
     va_end(args);
-    if (grown == NULL || text == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     result->warnings = grown;
     result->warnings[result->n_warnings++] = text;
     return MT_OK;
@@ -45,9 +43,7 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
 {
     rec->n_parameters = p->n;
     rec->parameters = mt_arena_alloc(&result->mem, (size_t)p->n, sizeof *rec->parameters);
-    if (rec->parameters == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     double change = 0.0;
     for (int i = 0; i < p->n; i++) {
         const mt_variable *const v = &p->study->variables[i];

@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "describe/certificates.h"
+
 /* Pure enumeration proves; a continuous search within each combination is sampled, a heuristic
  * all the more. */
 static bool proves(const mt_discrete_report *report)
@@ -55,31 +57,11 @@ static const char *certificate_text(const mt_discrete_report *r, const mt_nlp_re
                   "those that rank)",
                   r->followed)
             : "";
-    return between == NULL
-               ? NULL
-               : mt_arena_printf(mem,
-                                 "Enumerated: all %.0f combinations of catalogue values were "
-                                 "judged, %d of them meet%s all goals%s.%s",
-                                 r->combinations, r->feasible, r->feasible == 1 ? "s" : "",
-                                 between, rest);
-}
-
-static mt_status state(mt_result *result, const char *kind, bool proven, const char *text,
-                       mt_err *err)
-{
-    int capacity = result->n_certificates;
-    mt_certificate *const grown = mt_arena_grow(
-        &result->mem, result->certificates, result->n_certificates, &capacity, sizeof *grown);
-    if (grown == NULL || text == NULL) {
-        return mt_fail_memory(err);
-    }
-    result->certificates = grown;
-    mt_certificate *const c = &result->certificates[result->n_certificates++];
-    *c = mt_certificate_default();
-    c->kind = kind;
-    c->text = text;
-    c->proven = proven;
-    return MT_OK;
+    return mt_arena_printf(mem,
+                           "Enumerated: all %.0f combinations of catalogue values were "
+                           "judged, %d of them meet%s all goals%s.%s",
+                           r->combinations, r->feasible, r->feasible == 1 ? "s" : "", between,
+                           rest);
 }
 
 static const char *with_others(const mt_discrete_report *r)
@@ -94,7 +76,7 @@ static mt_status describe_kinds(const mt_discrete_report *r, mt_result *result, 
     if (r->reason != NULL) {
         return r->feasible > 0
                    ? MT_OK
-                   : state(
+                   : mt_describe_certificate(
                          result, "infeasible", false,
                          mt_arena_printf(mem,
                                          "That no combination meets all goals is sampled, not "
@@ -103,31 +85,33 @@ static mt_status describe_kinds(const mt_discrete_report *r, mt_result *result, 
                          err);
     }
     if (excluded(r)) {
-        return state(result, "infeasible", true,
-                     mt_arena_printf(mem,
-                                     "No combination of catalogue values%s meets all goals: "
-                                     "proven by branch and bound (%ld boxes).",
-                                     with_others(r), r->boxes),
-                     err);
+        return mt_describe_certificate(
+            result, "infeasible", true,
+            mt_arena_printf(mem,
+                            "No combination of catalogue values%s meets all goals: "
+                            "proven by branch and bound (%ld boxes).",
+                            with_others(r), r->boxes),
+            err);
     }
     if (!r->settled) {
-        return state(result, "gap_assignments", false,
-                     mt_arena_printf(mem,
-                                     "The budget of branch and bound ended before all "
-                                     "combinations were settled (%ld boxes).",
-                                     r->boxes),
-                     err);
+        return mt_describe_certificate(
+            result, "gap_assignments", false,
+            mt_arena_printf(mem,
+                            "The budget of branch and bound ended before all "
+                            "combinations were settled (%ld boxes).",
+                            r->boxes),
+            err);
     }
     if (!(r->n_possible > 1.0)) {
         return MT_OK;
     }
-    return state(result, "gap_assignments", true,
-                 mt_arena_printf(mem,
-                                 "Of %.0f gap assignments %d %s be met by catalogue values%s; "
-                                 "all others are proven infeasible (branch and bound).",
-                                 r->n_possible, r->n_kinds, r->complete ? "can" : "may",
-                                 with_others(r)),
-                 err);
+    return mt_describe_certificate(
+        result, "gap_assignments", true,
+        mt_arena_printf(mem,
+                        "Of %.0f gap assignments %d %s be met by catalogue values%s; "
+                        "all others are proven infeasible (branch and bound).",
+                        r->n_possible, r->n_kinds, r->complete ? "can" : "may", with_others(r)),
+        err);
 }
 
 static mt_status describe_best(const mt_discrete_report *r, mt_result *result, mt_err *err)
@@ -145,15 +129,15 @@ static mt_status describe_best(const mt_discrete_report *r, mt_result *result, m
                               "objective than the best design: proven by branch and bound "
                               "(%ld boxes).",
                               r->boxes);
-    return state(result, "optimal", true, text, err);
+    return mt_describe_certificate(result, "optimal", true, text, err);
 }
 
 mt_status mt_describe_discrete_certificate(const mt_discrete_report *report,
                                            const mt_nlp_result *found, mt_result *result,
                                            bool *infeasible, mt_err *err)
 {
-    MT_TRY(state(result, "enumeration", proves(report),
-                 certificate_text(report, found, &result->mem), err));
+    MT_TRY(mt_describe_certificate(result, "enumeration", proves(report),
+                                   certificate_text(report, found, &result->mem), err));
     *infeasible =
         excluded(report) || (proves(report) && (found->n_solutions == 0 || found->compromise));
     if (report->asked) {
@@ -181,9 +165,6 @@ const char *mt_discrete_rank_text(const mt_discrete_report *report, const mt_nlp
                                   int rank, const char *objective, mt_arena *mem)
 {
     const char *const how = excluded(report) ? "proven for all" : certainty(report, mem);
-    if (how == NULL) {
-        return NULL;
-    }
     if (found->compromise) {
         return mt_arena_printf(mem,
                                "No combination of catalogue values that was judged meets all "

@@ -14,82 +14,60 @@ static bool has_order(const mt_rotor *rotor, int i, double *order)
 static mt_status put_rotor(const mt_rotor *rotor, mt_arena *mem, mt_result_excitation *e,
                            mt_err *err)
 {
-    e->name = rotor->name != NULL         ? rotor->name
-              : rotor->aircraft.s != NULL ? rotor->aircraft.s
-                                          : "rotor";
+    const char *const name = rotor->name != NULL         ? rotor->name
+                             : rotor->aircraft.s != NULL ? rotor->aircraft.s
+                                                         : "rotor";
+    e->name = mt_arena_strdup(mem, name);
     e->speed_lower_hz = rotor->speed_hz * rotor->range_lower;
     e->speed_upper_hz = rotor->speed_hz * rotor->range_upper;
     e->orders = mt_arena_alloc(mem, (size_t)rotor->n_harmonics, sizeof *e->orders);
-    if (e->orders == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < rotor->n_harmonics; i++) {
         double order = 0.0;
         if (has_order(rotor, i, &order)) {
-            e->orders[e->n_orders++] =
-                (mt_result_order){.label = rotor->harmonics[i].text, .order = order};
+            e->orders[e->n_orders++] = (mt_result_order){
+                .label = mt_arena_strdup(mem, rotor->harmonics[i].text), .order = order};
         }
     }
-    return MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 static mt_status put_machine(const mt_machine *machine, mt_arena *mem, mt_result_excitation *e,
                              mt_err *err)
 {
     const int n = mt_machine_line_count(machine);
+    const char *const name = machine->name != NULL ? machine->name : "machine";
     mt_order_line *const lines = mt_arena_alloc(mem, (size_t)n, sizeof *lines);
-    e->name = machine->name != NULL ? machine->name : "machine";
+    e->name = mt_arena_strdup(mem, name);
     e->speed_lower_hz = mt_machine_speed_hz(machine, 0);
     e->speed_upper_hz = mt_machine_speed_hz(machine, 1);
     e->orders = mt_arena_alloc(mem, (size_t)n, sizeof *e->orders);
-    if (lines == NULL || e->orders == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_machine_lines(machine, mem, lines, err));
     e->n_orders = n;
     for (int i = 0; i < n; i++) {
-        const bool own = strcmp(lines[i].of, e->name) == 0;
+        const bool own = strcmp(lines[i].of, name) == 0;
         e->orders[i] = (mt_result_order){
-            .label = own ? lines[i].what
+            .label = own ? mt_arena_strdup(mem, lines[i].what)
                          : mt_arena_printf(mem, "%s of %s", lines[i].what, lines[i].of),
             .order = lines[i].order};
-        if (e->orders[i].label == NULL) {
-            return mt_fail_memory(err);
-        }
     }
-    return MT_OK;
-}
-
-/* Texts become the result's own: study and result live apart. */
-static mt_status own_texts(mt_arena *mem, mt_result_excitation *e, mt_err *err)
-{
-    e->name = mt_arena_strdup(mem, e->name);
-    bool bad = e->name == NULL || e->pointer == NULL;
-    for (int i = 0; i < e->n_orders; i++) {
-        e->orders[i].label = mt_arena_strdup(mem, e->orders[i].label);
-        bad = bad || e->orders[i].label == NULL;
-    }
-    return bad ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 static mt_status begin(const mt_study *study, int goal, mt_arena *mem, mt_result_excitation *e,
                        mt_err *err)
 {
     const mt_goal *const g = &study->goals[goal];
-    *e = (mt_result_excitation){.pointer = mt_arena_printf(mem, "/goals/%d", goal)};
-    e->configurations = mt_arena_alloc(mem, (size_t)g->n_configurations, sizeof(char *));
-    if (e->configurations == NULL) {
-        return mt_fail_memory(err);
-    }
+    *e = (mt_result_excitation){
+        .pointer = mt_arena_printf(mem, "/goals/%d", goal),
+        .configurations = mt_arena_alloc(mem, (size_t)g->n_configurations, sizeof(char *))};
+    MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < g->n_configurations; k++) {
         const char *const name = study->model->configurations[g->configurations[k]].name.s;
-        e->configurations[k] = mt_arena_strdup(mem, name);
-        if (e->configurations[k] == NULL) {
-            return mt_fail_memory(err);
-        }
-        e->n_configurations++;
+        e->configurations[e->n_configurations++] = mt_arena_strdup(mem, name);
     }
-    return MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 static mt_status describe_goal(const mt_study *study, int goal, mt_result *result, mt_err *err)
@@ -105,7 +83,6 @@ static mt_status describe_goal(const mt_study *study, int goal, mt_result *resul
         e->margin_percent =
             mt_bands_margin(source, machine ? m->margin_percent : rotor->margin_percent);
         MT_TRY(machine ? put_machine(m, mem, e, err) : put_rotor(rotor, mem, e, err));
-        MT_TRY(own_texts(mem, e, err));
         result->n_excitations++;
     }
     return MT_OK;
@@ -120,9 +97,7 @@ mt_status mt_describe_excitations(const mt_study *study, mt_result *result, mt_e
         most += avoid == NULL ? 0 : (size_t)avoid->source.n_machines;
     }
     result->excitations = mt_arena_alloc(&result->mem, most, sizeof *result->excitations);
-    if (result->excitations == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < study->n_goals; i++) {
         if (study->goals[i].avoid != NULL) {
             MT_TRY(describe_goal(study, i, result, err));

@@ -62,9 +62,7 @@ static mt_status describe_mode(const listing *l, int index, mt_result_frequency 
     f->configuration = mt_analysis_configuration(a);
     f->mode = index;
     f->sensitivity = mt_arena_f64(&l->result->mem, (size_t)n, 1);
-    if (f->sensitivity == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&l->result->mem, err));
     if (pos < 0) { /* unstable here */
         for (int i = 0; i < n; i++) {
             f->sensitivity[i] = nan("");
@@ -87,7 +85,6 @@ static mt_status describe_mode(const listing *l, int index, mt_result_frequency 
     char slack[SLACK_TEXT];
     if (mt_analysis_slack(a, pos, slack, sizeof slack)) {
         f->slack = mt_arena_strdup(&l->result->mem, slack);
-        MT_TRY(f->slack == NULL ? mt_fail_memory(err) : MT_OK);
     }
     return put_name(l, f, err);
 }
@@ -139,9 +136,7 @@ static mt_status warn_lost(const listing *l, const mt_demand *d, mt_err *err)
     }
     MT_TRY(index_of_demand(l->fresh, l->view, d, &index, err));
     const char *const why = mt_describe_identity(l->view, d->named, &l->result->mem);
-    if (why == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&l->result->mem, err));
     if (index == 0 || why[0] == '\0') {
         return MT_OK;
     }
@@ -196,9 +191,7 @@ static mt_status verify(listing *l, mt_err *err)
     const mt_analysis *const had = l->view->analysis;
     const char *const text = mt_describe_disagreement(
         &had->modes, &l->scratch->modes, mt_analysis_configuration(had), &l->result->mem);
-    if (text == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&l->result->mem, err));
     if (text[0] != '\0' && l->rec->disagreement == NULL) {
         l->rec->disagreement = text;
     }
@@ -217,7 +210,7 @@ static mt_status note_failure(const listing *l, const mt_err *why, mt_err *err)
         l->rec->disagreement =
             mt_arena_printf(&l->result->mem, "a fresh analysis fails: %s", why->text);
     }
-    return l->rec->disagreement == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(&l->result->mem, err);
 }
 
 static mt_status list_view(listing *l, int v, int count, mt_err *err)
@@ -251,9 +244,7 @@ mt_status mt_describe_frequencies(mt_workspace *fresh, const mt_design *design,
         most += (size_t)count;
     }
     rec->frequencies = mt_arena_alloc(&result->mem, most, sizeof *rec->frequencies);
-    if (rec->frequencies == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     for (int v = 0; v < fresh->c->n_views; v++) {
         int count = 0;
         listing l = {.fresh = fresh, .design = design, .result = result, .rec = rec};

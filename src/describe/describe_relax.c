@@ -60,7 +60,7 @@ static void name_bound(const mt_problem *p, const mt_move *m, mt_arena *mem, mt_
 static const char *design_text(const mt_problem *p, const double *x, mt_arena *mem)
 {
     const char *text = "";
-    for (int i = 0; i < p->n && text != NULL; i++) {
+    for (int i = 0; i < p->n; i++) {
         text = mt_arena_printf(mem, "%s%s%s = %.6g", text, i > 0 ? ", " : "",
                                p->study->variables[i].parameter_name.s, x[i]);
     }
@@ -86,21 +86,17 @@ static mt_status describe(const mt_problem *p, const mt_move *m, mt_arena *mem,
     }
     out->design = mt_arena_f64(mem, (size_t)p->n, 1);
     const char *const design = design_text(p, m->x, mem);
-    if (out->pointer == NULL || out->what == NULL || out->design == NULL || design == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     memcpy(out->design, m->x, (size_t)p->n * sizeof *out->design);
     const char *const percent =
         fabs(m->from) > 0.0 ? mt_arena_printf(mem, " (%+.3g %%)", out->change_percent) : "";
     out->text =
-        percent == NULL
-            ? NULL
-            : mt_arena_printf(mem,
-                              "With the %s at %.6g%s%s instead of %.6g%s and nothing "
-                              "else changed, a design meets all goals: %s.",
-                              out->what, m->to, out->unit != NULL ? " " : "",
-                              out->unit != NULL ? out->unit : "", m->from, percent, design);
-    return out->text == NULL ? mt_fail_memory(err) : MT_OK;
+        mt_arena_printf(mem,
+                        "With the %s at %.6g%s%s instead of %.6g%s and nothing else changed, a "
+                        "design meets all goals: %s.",
+                        out->what, m->to, out->unit != NULL ? " " : "",
+                        out->unit != NULL ? out->unit : "", m->from, percent, design);
+    return mt_arena_check(mem, err);
 }
 
 mt_status mt_describe_relaxations(const mt_problem *p, const mt_moves *moves, mt_result *result,
@@ -108,9 +104,7 @@ mt_status mt_describe_relaxations(const mt_problem *p, const mt_moves *moves, mt
 {
     const int n = moves->n < MOST ? moves->n : MOST;
     result->relaxations = mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->relaxations);
-    if (result->relaxations == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < n; i++) {
         MT_TRY(describe(p, &moves->items[i], &result->mem, &result->relaxations[i], err));
         result->n_relaxations = i + 1;

@@ -17,9 +17,7 @@ mt_status mt_describe_ranges(mt_workspace *fresh, mt_err *err)
         return MT_OK;
     }
     int *const modes = mt_arena_int(&fresh->mem, (size_t)fresh->c->n_views + 1);
-    if (modes == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&fresh->mem, err));
     for (int i = 0; i < fresh->p->n_demands; i++) {
         const mt_demand *const d = &fresh->p->demands[i];
         if (d->view >= 0) {
@@ -109,9 +107,7 @@ mt_status mt_describe_worst(mt_workspace *fresh, const mt_demand *d, mt_result *
     }
     g->worst = r->value[v.side];
     g->worst_at = mt_arena_f64(&result->mem, (size_t)fresh->p->n, 1);
-    if (g->worst_at == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     memcpy(g->worst_at, r->at[v.side], (size_t)fresh->p->n * sizeof *g->worst_at);
     return MT_OK;
 }

@@ -48,18 +48,14 @@ mt_status mt_describe_undetermined(const mt_problem *p, const mt_nlp_result *fou
     }
     result->undetermined = mt_arena_alloc(&result->mem, (size_t)found->n_undetermined,
                                           sizeof *result->undetermined);
-    if (result->undetermined == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     for (int k = 0; k < found->n_undetermined; k++) {
         const double *const v = found->undetermined + ((ptrdiff_t)k * p->n);
         mt_undetermined *const u = &result->undetermined[k];
         u->direction = mt_arena_f64(&result->mem, (size_t)p->n, 1);
         u->text = direction_text(p, v, &result->mem);
         u->effect_percent = 100.0 * tolerance * found->undetermined_effect[k];
-        if (u->direction == NULL || u->text == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(&result->mem, err));
         memcpy(u->direction, v, (size_t)p->n * sizeof *v);
         result->n_undetermined++;
     }

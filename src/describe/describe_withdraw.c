@@ -38,9 +38,6 @@ mt_status mt_describe_withdraw(mt_result *result, mt_err *err)
                             "Withdrawn, since a fresh analysis disagrees with the readings "
                             "that it rests on: %s",
                             c->text);
-        if (c->text == NULL) {
-            return mt_fail_memory(err);
-        }
     }
-    return MT_OK;
+    return mt_arena_check(&result->mem, err);
 }

@@ -38,9 +38,7 @@ static mt_status viewed_at(judge *j, const mt_published *pub, const mt_analysis 
     const int v = mt_problem_view(w->p, pub->configuration);
     double *const t = mt_arena_f64(&j->mem, (size_t)w->p->n + 1, 1);
     *found = false;
-    if (t == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&j->mem, err));
     for (int i = 0; i < w->p->n; i++) {
         t[i] = mt_problem_t(w->p, i, j->x[RECOMMENDED][i]);
     }
@@ -73,18 +71,14 @@ static mt_status named_at(judge *j, const mt_published *pub, mt_analysis *a, int
     const double **const w = mt_arena_alloc(&j->mem, most, sizeof *w);
     mt_track *const track = mt_arena_alloc(&j->mem, most, sizeof *track);
     *pos = -1;
-    if (w == NULL || track == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&j->mem, err));
     for (int i = 0; i < model->n_modes; i++) {
         const int there = mt_analysis_named(first, model->modes[i].index);
         if (model->modes[i].configuration != pub->configuration || there < 0) {
             continue;
         }
         double *const shape = mt_arena_f64(&j->mem, (size_t)first->sys->nq, 1);
-        if (shape == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(&j->mem, err));
         MT_TRY(mt_track_weigh(first, there, shape, err));
         wanted = i == pub->mode.named ? n : wanted;
         w[n++] = shape;
@@ -243,9 +237,7 @@ static mt_status judge_one(judge *j, int i, mt_result_published *out, mt_err *er
     out->kind = mt_published_kind_name(pub->kind);
     out->source = pub->source;
     out->demand = demand_of(pub, mem);
-    if (out->label == NULL || out->pointer == NULL || out->demand == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     if (pub->kind == MT_PUBLISHED_STATUS) {
         out->published_text = pub->status;
         out->computed_text = mt_result_status_name(j->result->status);
@@ -270,14 +262,10 @@ static mt_status judge_all(judge *j, mt_err *err)
     mt_result *const result = j->result;
     const int n = j->p->study->n_published;
     result->published = mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->published);
-    if (result->published == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     for (int d = 0; d < DESIGNS; d++) {
         j->value[d] = mt_arena_f64(&j->mem, (size_t)j->p->program.count, 1);
-        if (j->value[d] == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(&j->mem, err));
         MT_TRY(mt_program_eval(&j->p->program, j->x[d], j->value[d], NULL, err));
     }
     for (int i = 0; i < n; i++) {
@@ -297,7 +285,8 @@ mt_status mt_describe_published(mt_workspace *w, const double *x_original,
                .x = {x_original, x_recommended != NULL ? x_recommended : x_original}};
     MT_TRY(mt_arena_init(&j.mem, 0, err));
     j.analysis = mt_arena_alloc(&j.mem, (size_t)n_analyses, sizeof(mt_analysis *));
-    const mt_status rc = j.analysis == NULL ? mt_fail_memory(err) : judge_all(&j, err);
+    mt_status rc = mt_arena_check(&j.mem, err);
+    rc = rc == MT_OK ? judge_all(&j, err) : rc;
     for (int i = 0; j.analysis != NULL && i < n_analyses; i++) {
         mt_analysis_delete(j.analysis[i]);
     }

@@ -90,7 +90,7 @@ static mt_status edge_text(const mt_problem *p, const mt_recommendation *rec,
                                   rec->gaps[e->band].band, e->hz)
                 : mt_arena_printf(mem, "mode %d of \"%s\" at its limit of %.6g Hz", e->mode,
                                   configuration, e->hz);
-    return *text == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 static mt_status fill_box(mt_workspace *fresh, mt_proof *proof, const mt_recommendation *rec,
@@ -101,9 +101,8 @@ static mt_status fill_box(mt_workspace *fresh, mt_proof *proof, const mt_recomme
     mt_tolerance *const each = mt_arena_alloc(&fresh->mem, (size_t)fresh->p->n, sizeof *each);
     int *const assignment = mt_arena_int(&fresh->mem, (size_t)fresh->c->n_bands);
     box->variables = mt_arena_alloc(&result->mem, (size_t)fresh->p->n, sizeof *box->variables);
-    if (each == NULL || assignment == NULL || box->variables == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&fresh->mem, err));
+    MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < fresh->c->n_bands; i++) {
         assignment[i] = rec->gaps[i].modes_below;
     }
