@@ -132,10 +132,11 @@ double mt_describe_worst_hz(const mt_workspace *fresh, int view, int mode, const
 static const char *tolerances_text(const mt_problem *p, mt_arena *mem)
 {
     const char *text = "";
+    int n = 0;
     for (int i = 0; i < p->n; i++) {
         const double percent = PERCENT * mt_robust_tolerance(p, i);
         if (percent > 0.0) {
-            text = mt_arena_printf(mem, "%s%s%s %.6g %%", text, text[0] == '\0' ? "" : ", ",
+            text = mt_arena_printf(mem, "%s%s%s %.6g %%", text, n++ == 0 ? "" : ", ",
                                    p->study->variables[i].parameter_name.s, percent);
         }
     }
