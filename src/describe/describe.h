@@ -90,8 +90,8 @@ const char *mt_describe_disagreement(const mt_modes *study, const mt_modes *fres
  * verified". */
 bool mt_describe_is_doubted(const mt_result *result);
 mt_status mt_describe_withdraw(mt_result *result, mt_err *err);
-/* tolerance_box.c: inertia counts confirm the bands of a feasible design; its tolerance box,
- * where the modes can be enclosed. After the clearances. */
+/* describe_tolerance.c: inertia counts confirm the bands of a feasible design; its tolerance
+ * box, where the modes can be enclosed. After the clearances. */
 mt_status mt_describe_tolerance(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                 mt_err *err);
 /* describe_undetermined.c: directions that the goals do not settle. */
@@ -99,12 +99,13 @@ mt_status mt_describe_undetermined(const mt_problem *p, const mt_nlp_result *fou
                                    mt_result *result, mt_err *err);
 /* What is wrong with the original design, in sentences. */
 mt_status mt_describe_baseline_reasons(const mt_problem *p, mt_result *result, mt_err *err);
-/* Sentences why a recommendation is what it is; after mt_describe_undetermined (reasons.c). */
+/* Sentences why a recommendation is what it is; after mt_describe_undetermined
+ * (describe_reasons.c). */
 mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
                               const mt_nlp_result *search, mt_result *result,
                               mt_recommendation *rec, mt_err *err);
 /* Judge the published list: x_recommended NULL where there is none (then the original design
- * stands in). Fails with the entry's address in the text (published.c). */
+ * stands in). Fails with the entry's address in the text (describe_published.c). */
 mt_status mt_describe_published(mt_workspace *w, const double *x_original,
                                 const double *x_recommended, mt_result *result, mt_err *err);
 /* Versions, seed, inputs, names of the variables (describe_run.c). */

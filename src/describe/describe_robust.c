@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Goals over the tolerances of the variables: nominal and worst values beside each other. */
-#include "describe/reasons_priv.h"
-
 #include <math.h>
 #include <string.h>
 
+#include "describe/describe.h"
 #include "problem/robust.h"
 
 /* Modes of a configuration that the frequency table lists beyond those that goals name. */
@@ -126,38 +125,4 @@ double mt_describe_worst_hz(const mt_workspace *fresh, int view, int mode, const
     *at = r->at[side];
     /* one that crosses the band from one side to the other is in its middle on the way */
     return side == MT_LOWEST ? fmax(end, fmin(middle, hz)) : fmin(end, fmax(middle, hz));
-}
-
-/* "k1 2 %, k2 5 %" */
-static const char *tolerances_text(const mt_problem *p, mt_arena *mem)
-{
-    const char *text = "";
-    int n = 0;
-    for (int i = 0; i < p->n; i++) {
-        const double percent = PERCENT * mt_robust_tolerance(p, i);
-        if (percent > 0.0) {
-            text = mt_arena_printf(mem, "%s%s%s %.6g %%", text, n++ == 0 ? "" : ", ",
-                                   p->study->variables[i].parameter_name.s, percent);
-        }
-    }
-    return text;
-}
-
-void mt_say_worst(mt_sentences *s)
-{
-    if (s->rec->worst_case == NULL) {
-        return;
-    }
-    const char *const text = tolerances_text(s->p, &s->result->mem);
-    if (strcmp(s->rec->worst_case, "proven") == 0) {
-        mt_say(s,
-               "Over the tolerances (%s) goals are judged at their worst corner, which is "
-               "proven to be that.",
-               text);
-    } else {
-        mt_say(s,
-               "Over the tolerances (%s) goals are judged by the worst that corners and "
-               "samples within found: sampled, not proven.",
-               text);
-    }
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Goals of type "avoid": rotors looked up in the catalogue, numbers checked, bands made. */
+#include "study/study_priv.h"
+
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
-
-#include "study/study_check.h"
 
 static void check_margin(mt_study_check *c, double margin, mt_addr addr)
 {

@@ -6,11 +6,12 @@
  * corners of the box (all 2^n for n <= MOST_ENUMERATED, else the two at which all variables are
  * least or greatest). Designs that a limit of the study forbids do not count.
  */
+#include "study/study_priv.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 #include "model/values.h"
-#include "study/study_check.h"
 
 enum { MOST_ENUMERATED = 6 };
 /* A search takes far longer than to look at a hundred million numbers: what asks for more is no

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/study_check.h"
+#include "study/study_priv.h"
 
 #include <stddef.h>
 #include <string.h>

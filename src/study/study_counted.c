@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The box of designs whose vibration modes a study counts alike. */
-#include <math.h>
+#include "study/study_priv.h"
 
-#include "study/study_check.h"
+#include <math.h>
 
 static void widen(mt_count_box *box, int at, double x)
 {

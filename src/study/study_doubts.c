@@ -5,9 +5,9 @@
  * of bands at a hundred times the rotor's speed. Limits are wide: a good study is not warned
  * of.
  */
-#include <math.h>
+#include "study/study_priv.h"
 
-#include "study/study_check.h"
+#include <math.h>
 
 /* A rotor turns at 0.9 to 1.1 of its nominal speed, between idle and overspeed at 0.5 to 1.3;
  * [95, 105] is per cent. */

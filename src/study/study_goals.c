@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/study_check.h"
+#include "study/study_priv.h"
 
 static void resolve_configurations(mt_study_check *c, mt_goal *goal)
 {

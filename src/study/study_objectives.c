@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/study_priv.h"
+
 #include "base/text.h"
-#include "study/study_check.h"
 
 static bool matches_item(const mt_model *m, const char *pattern)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/study_check.h"
+#include "study/study_priv.h"
 
 /* What a value is judged by: a tolerance, absolute or relative, or limits; one that is not
  * comparable needs none. Limits do without a value, too: it is then only shown. */

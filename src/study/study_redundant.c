@@ -8,7 +8,7 @@
 #include "mechanics/independence.h"
 #include "mechanics/linear.h"
 #include "mechanics/redundant.h"
-#include "study/study_check.h"
+#include "study/study_priv.h"
 
 /* Names configuration c's variables that break a redundancy; each variable once over all
  * configurations. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include <string.h>
+#include "study/study_priv.h"
 
-#include "study/study_check.h"
+#include <string.h>
 
 /* Directions by bit, as model.h defines them; in the plane "r" is the rotation. */
 static const char *const DIRECTIONS[] = {"x", "y", "z", "rx", "ry", "rz"};

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The trade study: what varies, over which values, and the two objectives of its front. */
-#include <string.h>
+#include "study/study_priv.h"
 
-#include "study/study_check.h"
+#include <string.h>
 
 /* Do two that vary limit one number from its two sides? */
 static bool opposite(const mt_vary *a, const mt_vary *b)

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/study_priv.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 #include "study/catalogue.h"
-#include "study/study_check.h"
 
 static int ascending(const void *a, const void *b)
 {

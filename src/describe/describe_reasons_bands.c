@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sentences about bands: the kind of the design, modes on edges and inside, and the least of
  * the other clearances. */
-#include "describe/reasons_priv.h"
+#include "describe/describe_reasons_priv.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
  * over its limit; limits are relative (a ratio's logarithm), bounds are in t, which is chained
  * to the parameter here. The change enters the search as half its square: dc = df / c.
  */
-#include "describe/reasons_priv.h"
+#include "describe/describe_reasons_priv.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef DESCRIBE_REASONS_PRIV_H
-#define DESCRIBE_REASONS_PRIV_H
+#ifndef DESCRIBE_DESCRIBE_REASONS_PRIV_H
+#define DESCRIBE_DESCRIBE_REASONS_PRIV_H
 
 #include "describe/describe.h"
 
@@ -16,13 +16,13 @@ typedef struct mt_sentences {
 /* Add a sentence. */
 void mt_say(mt_sentences *s, const char *fmt, ...) MT_PRINTF(2, 3);
 
-/* reasons_bands.c: how the modes lie between the bands and which of them stand on an edge.
+/* How the modes lie between the bands and which of them stand on an edge.
  * Nothing without bands. */
 void mt_say_bands(mt_sentences *s);
-/* describe_robust.c: how surely goals hold over the tolerances of the variables. Nothing
+/* How surely goals hold over the tolerances of the variables. Nothing
  * without these. */
 void mt_say_worst(mt_sentences *s);
-/* reasons_prices.c: what the demands, the edges of bands and the active bounds cost: their
+/* What the demands, the edges of bands and the active bounds cost: their
  * multipliers in the objective's unit, or, where a frequency is missed, what more room at a
  * bound would do for it. */
 void mt_say_prices(mt_sentences *s);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sentences an engineer can paste into a report: what changes, what that does, what is missed,
  * what a demand costs, and how sure the answer is. */
-#include "describe/reasons_priv.h"
+#include "describe/describe_reasons_priv.h"
 
 #include <math.h>
 #include <stdarg.h>

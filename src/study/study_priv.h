@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef STUDY_STUDY_CHECK_H
-#define STUDY_STUDY_CHECK_H
+#ifndef STUDY_STUDY_PRIV_H
+#define STUDY_STUDY_PRIV_H
 
 #include "study/study.h"
 

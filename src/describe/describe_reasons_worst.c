@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sentences about the tolerances of the variables: how surely goals hold over them. */
+#include "describe/describe_reasons_priv.h"
+
+#include <string.h>
+
+#include "problem/robust.h"
+
+void mt_say_worst(mt_sentences *s)
+{
+    static const double PERCENT = 100.0;
+    const char *text = ""; /* "k1 2 %, k2 5 %" */
+    int n = 0;
+    if (s->rec->worst_case == NULL) {
+        return;
+    }
+    for (int i = 0; i < s->p->n; i++) {
+        const double percent = PERCENT * mt_robust_tolerance(s->p, i);
+        if (percent > 0.0) {
+            text =
+                mt_arena_printf(&s->result->mem, "%s%s%s %.6g %%", text, n++ == 0 ? "" : ", ",
+                                s->p->study->variables[i].parameter_name.s, percent);
+        }
+    }
+    if (strcmp(s->rec->worst_case, "proven") == 0) {
+        mt_say(s,
+               "Over the tolerances (%s) goals are judged at their worst corner, which is "
+               "proven to be that.",
+               text);
+    } else {
+        mt_say(s,
+               "Over the tolerances (%s) goals are judged by the worst that corners and "
+               "samples within found: sampled, not proven.",
+               text);
+    }
+}
