@@ -74,14 +74,12 @@ typedef struct parts {
     mt_arena *mem;
     int n;
     part *items;
-    bool out_of_memory;
 } parts;
 
 static void add_part(parts *p, double lower, double upper, double margin_percent,
                      const char *what, const char *of)
 {
     part *const added = &p->items[p->n];
-    p->out_of_memory = p->out_of_memory || what == NULL;
     if (!(lower <= upper)) {
         return; /* not known */
     }
@@ -120,9 +118,7 @@ static mt_status add_machine(parts *p, const mt_machine *machine, double margin_
 {
     const int n = mt_machine_line_count(machine);
     mt_order_line *const lines = mt_arena_alloc(p->mem, (size_t)n, sizeof *lines);
-    if (lines == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(p->mem, err));
     MT_TRY(mt_machine_lines(machine, p->mem, lines, err));
     for (int i = 0; i < n; i++) {
         add_part(p, lines[i].order * mt_machine_speed_hz(machine, 0),
@@ -160,19 +156,16 @@ static const char *short_label(parts *p, int first, int last)
  * list. */
 static const char *label_of(parts *p, int first, int last)
 {
-    const bool many = last - first >= LISTED_MOST;
-    const char *label = many ? short_label(p, first, last) : "";
-    if (many) {
-        p->out_of_memory = p->out_of_memory || label == NULL;
-        return label;
+    const char *label = "";
+    if (last - first >= LISTED_MOST) {
+        return short_label(p, first, last);
     }
-    for (int i = first; i <= last && label != NULL; i++) {
+    for (int i = first; i <= last; i++) {
         const part *const a = &p->items[i];
         const bool named = a->of != NULL && (i == last || p->items[i + 1].of != a->of);
         label = mt_arena_printf(p->mem, "%s%s%s%s%s", label, i == first ? "" : " + ", a->what,
                                 named ? " of " : "", named ? a->of : "");
     }
-    p->out_of_memory = p->out_of_memory || label == NULL;
     return label;
 }
 
@@ -206,17 +199,15 @@ static bool cut_off(mt_band *band, double up_to_hz)
 
 static void note_merger(parts *p, const mt_band *band, mt_bands *out)
 {
-    const char *const label = band->label == NULL ? "" : band->label;
     const bool margin =
         band->lower_hz < band->base_lower_hz || band->upper_hz > band->base_upper_hz;
     const char *note =
-        mt_arena_printf(p->mem, "%s overlap: merged into one band, %.6g to %.6g Hz", label,
-                        band->base_lower_hz, band->base_upper_hz);
-    if (margin && note != NULL) {
+        mt_arena_printf(p->mem, "%s overlap: merged into one band, %.6g to %.6g Hz",
+                        band->label, band->base_lower_hz, band->base_upper_hz);
+    if (margin) {
         note = mt_arena_printf(p->mem, "%s, with its margin %.6g to %.6g Hz", note,
                                band->lower_hz, band->upper_hz);
     }
-    p->out_of_memory = p->out_of_memory || note == NULL;
     out->notes[out->n_notes++] = note;
 }
 
@@ -225,9 +216,7 @@ static mt_status merge_all(parts *p, double up_to_hz, mt_bands *out, mt_err *err
     *out = (mt_bands){0};
     out->items = mt_arena_alloc(p->mem, (size_t)p->n, sizeof *out->items);
     out->notes = mt_arena_alloc(p->mem, (size_t)p->n, sizeof *out->notes);
-    if (p->out_of_memory || out->items == NULL || out->notes == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(p->mem, err));
     qsort(p->items, (size_t)p->n, sizeof *p->items, by_frequency);
     for (int first = 0, last = 0; first < p->n; first = ++last) {
         double upper = p->items[first].band.upper_hz;
@@ -243,7 +232,7 @@ static mt_status merge_all(parts *p, double up_to_hz, mt_bands *out, mt_err *err
             note_merger(p, &band, out);
         }
     }
-    return p->out_of_memory ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(p->mem, err);
 }
 
 mt_status mt_bands_make(const mt_bands_source *source, double margin_percent, mt_arena *mem,
@@ -257,9 +246,7 @@ mt_status mt_bands_make(const mt_bands_source *source, double margin_percent, mt
         most += (size_t)mt_machine_line_count(&source->machines[i]);
     }
     parts p = {.mem = mem, .items = mt_arena_alloc(mem, most, sizeof *p.items)};
-    if (p.items == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < source->n_intervals; i++) {
         const mt_band_hz *const band = &source->intervals[i];
         add_part(&p, band->lower_hz, band->upper_hz,
@@ -290,9 +277,7 @@ mt_status mt_bands_unite(int n, const mt_bands *const *lists, mt_arena *mem, mt_
         most += (size_t)lists[i]->n;
     }
     parts p = {.mem = mem, .items = mt_arena_alloc(mem, most, sizeof *p.items)};
-    if (p.items == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < n; i++) {
         for (int k = 0; k < lists[i]->n; k++) {
             const mt_band *const band = &lists[i]->items[k];

@@ -86,7 +86,7 @@ int mt_machine_line_count(const mt_machine *machine)
 }
 
 /* The lines of one multiple of a mesh, from the lowest sideband up. */
-static bool mesh_lines(const mt_gear *gear, const mt_order *order, const char *of,
+static void mesh_lines(const mt_gear *gear, const mt_order *order, const char *of,
                        mt_arena *mem, mt_order_line *lines)
 {
     const double teeth = (double)order->thousandths * (double)gear->teeth;
@@ -97,11 +97,7 @@ static bool mesh_lines(const mt_gear *gear, const mt_order *order, const char *o
         const char *const what =
             s == 0 ? order->text : mt_arena_printf(mem, "%s%+d", order->text, s);
         *lines++ = (mt_order_line){.order = turns * gear->ratio, .what = what, .of = of};
-        if (what == NULL) {
-            return false;
-        }
     }
-    return true;
 }
 
 mt_status mt_machine_lines(const mt_machine *machine, mt_arena *mem, mt_order_line *lines,
@@ -118,11 +114,9 @@ mt_status mt_machine_lines(const mt_machine *machine, mt_arena *mem, mt_order_li
         const mt_gear *const gear = &machine->gears[i];
         for (int k = 0; k < gear_orders(gear); k++) {
             const mt_order *const order = gear->n_orders > 0 ? &gear->orders[k] : &mesh;
-            if (!mesh_lines(gear, order, gear->name == NULL ? of : gear->name, mem, lines)) {
-                return mt_fail_memory(err);
-            }
+            mesh_lines(gear, order, gear->name == NULL ? of : gear->name, mem, lines);
             lines += (2 * gear->sidebands) + 1;
         }
     }
-    return MT_OK;
+    return mt_arena_check(mem, err);
 }

@@ -155,7 +155,6 @@ static void name_rotors(mt_study_check *c, const mt_bands_source *source)
         mt_rotor *const rotor = &source->rotors[i];
         if (rotor->name == NULL && rotor->aircraft.s == NULL) {
             rotor->name = mt_arena_printf(&c->study->mem, "rotor %d", i + 1);
-            c->out_of_memory = c->out_of_memory || rotor->name == NULL;
         }
     }
 }
@@ -220,7 +219,6 @@ static void name_machines(mt_study_check *c, const mt_bands_source *source)
         mt_machine *const machine = &source->machines[i];
         if (machine->name == NULL) {
             machine->name = mt_arena_printf(&c->study->mem, "machine %d", i + 1);
-            c->out_of_memory = c->out_of_memory || machine->name == NULL;
         }
     }
 }
@@ -241,8 +239,7 @@ static void make_bands(mt_study_check *c, const mt_goal *goal)
     mt_avoid *const avoid = goal->avoid;
     mt_study *const s = c->study;
     if (mt_bands_make(&avoid->source, nan(""), &s->mem, &avoid->bands, NULL) != MT_OK) {
-        c->out_of_memory = true;
-        return;
+        return; /* as the arena knows */
     }
     if (avoid->bands.n == 0) {
         mt_diag_error(c->diags, avoid->up_to_addr, "no band lies below up_to_hz (%g)",

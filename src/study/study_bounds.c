@@ -220,7 +220,7 @@ void mt_study_check_bounds(mt_study_check *c)
         return;
     }
     if (mt_arena_init(&k.mem, 0, NULL) != MT_OK) {
-        c->out_of_memory = true;
+        mt_arena_fail(&c->study->mem);
         return;
     }
     if (count_work(&k) > MOST_WORK) {
@@ -236,11 +236,12 @@ void mt_study_check_bounds(mt_study_check *c)
     k.x = mt_arena_f64(&k.mem, n, 1);
     k.value = mt_arena_f64(&k.mem, (size_t)m->n_nums, 1);
     k.parameter = mt_arena_f64(&k.mem, (size_t)m->n_parameters, 1);
-    if (k.inputs == NULL || k.x == NULL || k.value == NULL || k.parameter == NULL) {
-        k.rc = MT_E_MEMORY;
-    } else {
+    k.rc = mt_arena_check(&k.mem, NULL);
+    if (k.rc == MT_OK) {
         look_at_all(&k);
     }
-    c->out_of_memory = c->out_of_memory || k.rc != MT_OK;
+    if (k.rc != MT_OK) {
+        mt_arena_fail(&c->study->mem);
+    }
     mt_arena_free(&k.mem);
 }

@@ -22,11 +22,7 @@ static const char *nearest(mt_study_check *c, const char *name, const void *reco
         const void *const record = (const char *)records + (size_t)i * size;
         names[i] = ((const mt_name *)record)->s;
     }
-    if (names == NULL) {
-        c->out_of_memory = true;
-    } else {
-        found = mt_text_nearest(name, names, n);
-    }
+    found = names == NULL ? NULL : mt_text_nearest(name, names, n);
     mt_arena_rewind(&c->study->mem, mark);
     return found;
 }
@@ -109,16 +105,12 @@ const mt_aircraft *mt_check_aircraft(mt_study_check *c, mt_name name)
 void mt_check_warn_result(mt_study_check *c, const char *text)
 {
     mt_study *const s = c->study;
-    const char **const list = text == NULL
-                                  ? NULL
-                                  : mt_arena_grow(&s->mem, (void *)s->warnings, s->n_warnings,
-                                                  &s->cap_warnings, sizeof *list);
-    if (list == NULL) {
-        c->out_of_memory = true;
-        return;
+    const char **const list = mt_arena_grow(&s->mem, (void *)s->warnings, s->n_warnings,
+                                            &s->cap_warnings, sizeof *list);
+    if (list != NULL) {
+        list[s->n_warnings++] = text;
+        s->warnings = list;
     }
-    list[s->n_warnings++] = text;
-    s->warnings = list;
 }
 
 int mt_check_only_configuration(mt_study_check *c, const mt_model *model, mt_addr addr)
@@ -195,9 +187,7 @@ static mt_status evaluate_original(mt_study_check *c, mt_err *err)
         return MT_OK;
     }
     double *const values = mt_arena_f64(&s->mem, (size_t)c->model->n_parameters, 1);
-    if (values == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&s->mem, err));
     mt_err why = {.code = MT_OK};
     const mt_status rc = mt_model_original_values(c->model, &s->mem, values, NULL, &why);
     if (rc == MT_E_DOMAIN || rc == MT_E_INPUT) {
@@ -230,15 +220,12 @@ mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err)
         mt_diag_error(diags, study->recommendations_addr,
                       "recommendations (%d) must be above 0", study->recommendations);
     }
-    if (diags->errors == 0 && !c.out_of_memory) {
+    if (diags->errors == 0 && !mt_arena_failed(&study->mem)) {
         mt_study_check_doubts(&c);
         mt_study_check_bounds(&c);
     }
-    if (diags->errors == 0 && !c.out_of_memory) {
+    if (diags->errors == 0 && !mt_arena_failed(&study->mem)) {
         mt_study_check_redundant(&c);
-    }
-    if (c.out_of_memory) {
-        return mt_fail_memory(err);
     }
     MT_TRY(mt_arena_check(&study->mem, err));
     MT_TRY(mt_arena_check(diags->mem, err));

@@ -48,8 +48,7 @@ void mt_study_fill_counted(mt_study_check *c)
                           .lower = mt_arena_f64(&s->mem, room, 1),
                           .upper = mt_arena_f64(&s->mem, room, 1),
                           .at = mt_arena_f64(&s->mem, room, 1)};
-    if (box->parameter == NULL || box->lower == NULL || box->upper == NULL || box->at == NULL) {
-        c->out_of_memory = true;
+    if (mt_arena_failed(&s->mem)) {
         return;
     }
     for (int i = 0; i < s->n_variables && s->original != NULL; i++) {

@@ -191,5 +191,4 @@ void mt_study_check_doubts(mt_study_check *c)
     for (int i = 0; i < out->n; i++) {
         mt_diag_warning(c->diags, out->items[i].addr, "%s", out->items[i].text);
     }
-    c->out_of_memory = c->out_of_memory || mt_arena_failed(&s->mem);
 }

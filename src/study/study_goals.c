@@ -7,7 +7,6 @@ static void resolve_configurations(mt_study_check *c, mt_goal *goal)
     const int n = names->count > 0 ? names->count : 1;
     goal->configurations = mt_arena_int(&c->study->mem, (size_t)n);
     if (goal->configurations == NULL) {
-        c->out_of_memory = true;
         return;
     }
     goal->n_configurations = n;
@@ -112,7 +111,7 @@ static void check_goal(mt_study_check *c, mt_goal *goal)
     if (mt_goal_member_at(kind, MT_SLOT_CONFIGURATION) >= 0) {
         resolve_configurations(c, goal);
     }
-    if (goal->avoid != NULL) {
+    if (mt_goal_member_at(kind, MT_SLOT_BANDS) >= 0) {
         mt_study_check_avoid(c, goal);
     }
     if (mt_goal_member_at(kind, MT_SLOT_MODE) >= 0) {

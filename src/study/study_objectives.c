@@ -122,11 +122,9 @@ void mt_study_check_objectives(mt_study_check *c)
     }
     mt_objective *const list =
         mt_arena_grow(&s->mem, s->objectives, 0, &s->cap_objectives, sizeof *list);
-    if (list == NULL) {
-        c->out_of_memory = true;
-        return;
+    if (list != NULL) {
+        list[0] = (mt_objective){.type = MT_OBJECTIVE_CHANGE, .addr = MT_NO_ADDR};
+        s->objectives = list;
+        s->n_objectives = 1;
     }
-    list[0] = (mt_objective){.type = MT_OBJECTIVE_CHANGE, .addr = MT_NO_ADDR};
-    s->objectives = list;
-    s->n_objectives = 1;
 }

@@ -6,11 +6,10 @@
 
 /* The steps of mt_study_finish, one file each. Each notes its problems and fills in what could
  * be resolved; what could not stays MT_ABSENT. */
-typedef struct mt_study_check {
+typedef struct mt_study_check { /* a shortage is known to the study's arena */
     mt_study *study;
     const mt_model *model;
     mt_diags *diags;
-    bool out_of_memory;
 } mt_study_check;
 
 void mt_study_check_references(mt_study_check *c);           /* study_references.c */

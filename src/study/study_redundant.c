@@ -67,23 +67,24 @@ void mt_study_check_redundant(mt_study_check *c)
 {
     const mt_study *const s = c->study;
     const size_t n = (size_t)s->n_variables;
-    mt_arena mem;
-    if (n == 0 || mt_arena_init(&mem, 0, NULL) != MT_OK) {
-        c->out_of_memory = c->out_of_memory || n > 0;
+    mt_arena mem = {0};
+    if (n == 0) {
         return;
     }
-    int *const inputs = mt_arena_int(&mem, n);
-    double *const at = mt_arena_f64(&mem, n, 1);
-    bool *const told = mt_arena_alloc(&mem, n, sizeof *told);
-    c->out_of_memory = c->out_of_memory || inputs == NULL || at == NULL || told == NULL;
-    for (size_t i = 0; i < n && !c->out_of_memory; i++) {
+    mt_status rc = mt_arena_init(&mem, 0, NULL);
+    int *const inputs = rc == MT_OK ? mt_arena_int(&mem, n) : NULL;
+    double *const at = rc == MT_OK ? mt_arena_f64(&mem, n, 1) : NULL;
+    bool *const told = rc == MT_OK ? mt_arena_alloc(&mem, n, sizeof *told) : NULL;
+    rc = rc == MT_OK ? mt_arena_check(&mem, NULL) : rc;
+    for (size_t i = 0; i < n && rc == MT_OK; i++) {
         inputs[i] = s->variables[i].parameter;
         at[i] = s->variables[i].original;
     }
-    for (int i = 0; i < c->model->n_configurations && !c->out_of_memory; i++) {
-        if (mt_study_asks(s, i)) {
-            c->out_of_memory = look_at(c, i, inputs, at, told, NULL) == MT_E_MEMORY;
-        }
+    for (int i = 0; i < c->model->n_configurations && rc != MT_E_MEMORY; i++) {
+        rc = mt_study_asks(s, i) ? look_at(c, i, inputs, at, told, NULL) : rc;
+    }
+    if (rc == MT_E_MEMORY) {
+        mt_arena_fail(&c->study->mem);
     }
     mt_arena_free(&mem);
 }

@@ -190,9 +190,6 @@ static void check_vary(mt_study_check *c, mt_vary *v)
         v->text = v->name.s;
         break;
     }
-    /* else it is the name, which a wrong file may lack */
-    const bool made = v->kind != MT_VARY_PARAMETER;
-    c->out_of_memory = c->out_of_memory || (made && v->text == NULL);
 }
 
 static bool same(const mt_vary *a, const mt_vary *b)

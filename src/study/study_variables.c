@@ -91,7 +91,6 @@ void mt_study_check_variables(mt_study_check *c)
     mt_study *const s = c->study;
     int *const first = mt_arena_int(&s->mem, (size_t)c->model->n_parameters);
     if (first == NULL) {
-        c->out_of_memory = true;
         return;
     }
     for (int i = 0; i < s->n_variables; i++) {
