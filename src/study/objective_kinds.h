@@ -26,11 +26,10 @@
     X(MISFIT, misfit, "", MT_WORD | MT_HALF_SQUARE | MT_RESIDUALS | MT_FRONT | MT_OF_STUDY) \
     X(CLEARANCE, clearance, "%", MT_WORD | MT_MAXIMISED | MT_BANDS | MT_FRONT)
 #define MT_OBJECTIVE_ENUM(id, ...) MT_OBJECTIVE_##id,
-typedef enum mt_objective_type { MT_OBJECTIVE_LIST(MT_OBJECTIVE_ENUM) } mt_objective_type;
+typedef enum mt_objective_type {
+    MT_OBJECTIVE_LIST(MT_OBJECTIVE_ENUM) MT_OBJECTIVE_TYPE_COUNT
+} mt_objective_type;
 #undef MT_OBJECTIVE_ENUM
-#define MT_OBJECTIVE_ONE(...) +1
-enum { MT_OBJECTIVE_TYPE_COUNT = MT_OBJECTIVE_LIST(MT_OBJECTIVE_ONE) };
-#undef MT_OBJECTIVE_ONE
 
 enum {
     MT_WORD = 1,
