@@ -5,10 +5,11 @@
  * three. At any other value the mechanism cannot be closed, or has lost a motion: its
  * frequencies are no function that a search could follow. Said where the study is read.
  */
+#include "study/study_priv.h"
+
 #include "mechanics/independence.h"
 #include "mechanics/linear.h"
 #include "mechanics/redundant.h"
-#include "study/study_priv.h"
 
 /* Names configuration c's variables that break a redundancy; each variable once over all
  * configurations. */
