@@ -177,13 +177,7 @@ static void note_noise(const mt_data *d, const mt_measure_def *def, const mt_pos
                        const mt_jet *jet, double stiffness, mt_lagrangian *out)
 {
     const bool angle = is_angle(def);
-    double extent = angle ? 1.0 : d->sys->length_m;
-    for (int side = 0; side < 2 && !angle; side++) {
-        const mt_pose *const pose = mt_pose_of(poses, def->body[side]);
-        for (int k = 0; k < 3; k++) {
-            extent = fmax(extent, fabs(creal(pose->x[k])));
-        }
-    }
+    double extent = angle ? 1.0 : fmax(d->sys->length_m, extent_of(poses, def->body));
     if (is_chord(def)) {
         extent /= creal(mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0));
     }
@@ -424,16 +418,6 @@ static void push_joints(const mt_data *d, int m, const mt_cx *lambda, mt_lagrang
     }
 }
 
-static void note_joint(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
-                       const mt_jet *jet, mt_cx force, double open, mt_lagrangian *out)
-{
-    if (out->terms != NULL) {
-        const double arm = is_angle(def) ? d->sys->length_m : 1.0;
-        const double size = fabs(creal(force)) + (arm * joint_push(out, def->body));
-        note_terms(d, def, poses, jet, size, size, open, out);
-    }
-}
-
 static void add_constraints(const mt_data *d, const mt_placement *at, int m,
                             const mt_cx *lambda, bool hessian, mt_lagrangian *out)
 {
@@ -458,8 +442,13 @@ static void add_constraints(const mt_data *d, const mt_placement *at, int m,
             if (curved) {
                 const mt_cx force = cx_mul(factor, lambda[i]);
                 add_hessian(sys, def->body, &jet, force, 0.0, NULL, out->h);
-                const double left = out->left.lambda != NULL ? out->left.lambda[i] : 0.0;
-                note_joint(d, def, at->pose, &jet, force, fabs(creal(factor) * left), out);
+                if (out->terms != NULL) {
+                    const double left = out->left.lambda != NULL ? out->left.lambda[i] : 0.0;
+                    const double arm = is_angle(def) ? sys->length_m : 1.0;
+                    const double size = fabs(creal(force)) + (arm * joint_push(out, def->body));
+                    note_terms(d, def, at->pose, &jet, size, size, fabs(creal(factor) * left),
+                               out);
+                }
             }
         }
         out->c[i] -= surplus_turns(d, i, creal(out->c[i]));

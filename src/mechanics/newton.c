@@ -190,24 +190,6 @@ static mt_status refuse(mt_newton_work *w, const mt_placement *at, bool closed, 
                    stage->iterations, w->residual, where);
 }
 
-/* Is the stationary point that was last evaluated a saddle, with the drive held, that the way
- * from the start leads down from? That direction goes into w->step. */
-static mt_status find_saddle(mt_newton_work *w, const mt_placement *start,
-                             const mt_placement *at, const mt_stage *stage, bool *saddle,
-                             mt_arena *mem, mt_err *err)
-{
-    mt_elimination held;
-    const mt_elimination *e = &stage->e;
-    double *const way = mt_arena_f64(mem, (size_t)w->sys->nq, 1);
-    MT_TRY(mt_arena_check(mem, err));
-    if (w->p->trim) {
-        MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &held, err));
-        e = &held;
-    }
-    mt_poses_way(w->sys, start->pose, at->pose, way);
-    return mt_newton_falls(w, e, way, saddle, mem, err);
-}
-
 /* What is kept of the better of two ends. */
 typedef struct ending {
     bool done;
@@ -216,15 +198,26 @@ typedef struct ending {
     double before; /* the energy where the stage began */
 } ending;
 
+/* Is the stationary point that was last evaluated a saddle, with the drive held, that the way
+ * from the start leads down from? That direction goes into w->step. */
 static mt_status judge(mt_newton_work *w, const mt_placement *start, const mt_placement *at,
                        const mt_stage *stage, ending *end, mt_arena *mem, mt_err *err)
 {
+    mt_elimination held;
+    const mt_elimination *e = &stage->e;
     end->saddle = false;
-    if (end->done) {
-        MT_TRY(find_saddle(w, start, at, stage, &end->saddle, mem, err));
-        end->energy = mt_energy_value(w->p->data, at, w->tau);
+    if (!end->done) {
+        return MT_OK;
     }
-    return MT_OK;
+    double *const way = mt_arena_f64(mem, (size_t)w->sys->nq, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    if (w->p->trim) {
+        MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &held, err));
+        e = &held;
+    }
+    mt_poses_way(w->sys, start->pose, at->pose, way);
+    end->energy = mt_energy_value(w->p->data, at, w->tau);
+    return mt_newton_falls(w, e, way, &end->saddle, mem, err);
 }
 
 static mt_status note(const mt_newton_work *w, const mt_placement *at, mt_placement *out,

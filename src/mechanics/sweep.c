@@ -27,39 +27,6 @@ static double value_at(const mt_data *data, int measure, const mt_placement *at)
     return creal(mt_data_value(data, &data->sys->measures[measure], at));
 }
 
-static mt_status record_nearness(mt_linear *lin, mt_sweep_point *point, mt_arena *mem,
-                                 mt_err *err)
-{
-    mt_nearness *const near = mt_arena_alloc(mem, 1, sizeof *near);
-    point->near = near;
-    MT_TRY(mt_arena_check(mem, err));
-    return mt_linear_nearness(lin, mem, near, err);
-}
-
-static mt_status record(mt_linear *lin, mt_sweep_point *point, mt_err *err)
-{
-    const mt_system *const sys = lin->sys;
-    mt_state *const p = &lin->position;
-    lin->dual.input = sys->n_inputs - 1;
-    MT_TRY(mt_position_tangent(p, &lin->dual, &lin->scratch, err));
-    for (int i = 0; i < sys->n_joints; i++) {
-        const int measure = sys->joints[i].coordinate;
-        point->coordinate[i] = nan("");
-        point->ratio[i] = nan("");
-        if (measure >= 0) {
-            point->coordinate[i] = value_at(&lin->data, measure, &p->at) -
-                                   value_at(&lin->data, measure, &p->reference);
-            point->ratio[i] = mt_drive_rate(&lin->data, measure, p->at.pose, p->d_pose);
-        }
-    }
-    /* grad V + lambda grad s = 0: what holds the joint balances -dV/ds */
-    point->hold =
-        sys->trim ? p->equilibrium.trim_force : -p->equilibrium.lambda[sys->drive_constraint];
-    point->residual = p->equilibrium.residual;
-    point->gap_m = p->gap_m;
-    return MT_OK;
-}
-
 static mt_status sweep_point_init(mt_sweep_point *point, int n_joints, double drive,
                                   mt_arena *mem, mt_err *err)
 {
@@ -86,11 +53,31 @@ typedef struct sweeper {
 static mt_status solve_point(const sweeper *s, int i, mt_err *err)
 {
     mt_sweep_point *const point = &s->out->points[i];
-    s->inputs[s->lin->sys->n_inputs - 1] = point->drive;
+    mt_linear *const lin = s->lin;
+    const mt_system *const sys = lin->sys;
+    mt_state *const p = &lin->position;
+    s->inputs[sys->n_inputs - 1] = point->drive;
     MT_TRY(s->visitor != NULL ? s->visitor->visit(s->visitor->context, i, s->inputs, err)
-                              : mt_linear_update(s->lin, s->inputs, true, err));
-    MT_TRY(record(s->lin, point, err));
-    MT_TRY(record_nearness(s->lin, point, s->mem, err));
+                              : mt_linear_update(lin, s->inputs, true, err));
+    lin->dual.input = sys->n_inputs - 1;
+    MT_TRY(mt_position_tangent(p, &lin->dual, &lin->scratch, err));
+    for (int j = 0; j < sys->n_joints; j++) {
+        const int measure = sys->joints[j].coordinate;
+        if (measure >= 0) {
+            point->coordinate[j] = value_at(&lin->data, measure, &p->at) -
+                                   value_at(&lin->data, measure, &p->reference);
+            point->ratio[j] = mt_drive_rate(&lin->data, measure, p->at.pose, p->d_pose);
+        }
+    }
+    /* grad V + lambda grad s = 0: what holds the joint balances -dV/ds */
+    point->hold =
+        sys->trim ? p->equilibrium.trim_force : -p->equilibrium.lambda[sys->drive_constraint];
+    point->residual = p->equilibrium.residual;
+    point->gap_m = p->gap_m;
+    mt_nearness *const near = mt_arena_alloc(s->mem, 1, sizeof *near);
+    MT_TRY(mt_arena_check(s->mem, err));
+    point->near = near;
+    MT_TRY(mt_linear_nearness(lin, s->mem, near, err));
     s->out->n_reached++;
     return MT_OK;
 }

@@ -145,8 +145,7 @@ static mt_status choose_helpers(mt_system *sys, const double *v, mt_err *err)
                                "%s is not perpendicular to the link (cosine %g)", what, cosine);
             }
         }
-        if (def->kind == MT_VEC_UNIT &&
-            !(hypot(hypot(v[def->node[0]], v[def->node[1]]), v[def->node[2]]) > 0.0)) {
+        if (def->kind == MT_VEC_UNIT && !(length_of_vec(def, v) > 0.0)) {
             return mt_fail(err, MT_E_INPUT, "%s has length zero", what);
         }
         mt_data_vec(&d, i);
