@@ -6,6 +6,8 @@
 #include "answer/trade.h"
 #include "nlp/merit.h"
 #include "problem/family.h"
+#include "problem/goal_avoid.h"
+#include "problem/objective.h"
 #include "search/discrete.h"
 
 enum { LOCAL_EVALUATIONS = 500 };

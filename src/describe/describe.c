@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdarg.h>
 
+#include "problem/goal_avoid.h"
+#include "problem/objective.h"
 #include "problem/robust.h"
 
 /* The objective as the search had it and as it is recomputed may differ by this much,

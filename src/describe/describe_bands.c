@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "describe/describe.h"
+#include "problem/goal_avoid.h"
 #include "problem/robust.h"
 
 static const double PERCENT = 100.0;

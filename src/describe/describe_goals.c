@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "describe/describe.h"
+#include "problem/demand.h"
 #include "problem/goal.h"
 
 static const double PERCENT = 100.0;

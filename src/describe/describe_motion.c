@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "describe/describe.h"
+#include "problem/goal_avoid.h"
 #include "search/motion.h"
 
 /* Less than this (ln) beyond an edge is on it: a driven position is closed, and its modes are

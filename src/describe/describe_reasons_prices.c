@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "problem/goal_avoid.h"
 #include "problem/objective.h"
 
 static const double PERCENT = 100.0;

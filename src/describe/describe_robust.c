@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "describe/describe.h"
+#include "problem/goal_frequency.h"
 #include "problem/robust.h"
 
 /* Modes of a configuration that the frequency table lists beyond those that goals name. */

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "describe/describe.h"
+#include "problem/demand.h"
 #include "problem/robust.h"
 #include "search/proof.h"
 

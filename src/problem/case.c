@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "problem/family.h"
+#include "problem/goal_avoid.h"
+#include "problem/next.h"
 #include "problem/robust.h"
 
 mt_status mt_case_copy(const mt_case *from, mt_arena *mem, mt_case *out, mt_err *err)

@@ -19,7 +19,7 @@
  * |r|^2 vanishes and an inequality would hold nothing.
  *
  * Rows: those of the demands as the problem numbers them, in `in` followed by those of the
- * bands (problem_clear.c), of corners of the tolerances (robust.h), of objectives that are
+ * bands (goal_avoid.c), of corners of the tolerances (robust.h), of objectives that are
  * held.
  */
 struct mt_problem;
@@ -62,7 +62,7 @@ typedef struct mt_case {
     double *eq_tol;           /* [n_eq + n_res] */
     double *in_tol;           /* [n_in + n_aims] */
     struct mt_robust *robust; /* variables with a tolerance (robust.h); NULL: none */
-    int n_next;               /* rows that follow from those of limits (problem_next.c) */
+    int n_next;               /* rows that follow from those of limits (next.h) */
     const struct mt_next *next;
     const int *next_of; /* [n_next] */
     mt_search search;   /* the study's; a part of its budget */

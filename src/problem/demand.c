@@ -6,17 +6,12 @@
  *     limits:   in = off(at_least), -off(at_most)
  *     residual: r  = sqrt(w) off(target)
  */
+#include "problem/demand.h"
+
 #include <math.h>
 
 #include "problem/goal.h"
-
-#define OPS(id, name, ...) &mt_goal_##name,
-static const mt_goal_ops *const OPERATIONS[] = {MT_GOAL_LIST(OPS)};
-
-const mt_goal_ops *mt_goal_ops_of(mt_goal_type type)
-{
-    return OPERATIONS[type];
-}
+#include "problem/goal_frequency.h"
 
 bool mt_demand_is_frequency(const mt_demand *d)
 {

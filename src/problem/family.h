@@ -71,9 +71,4 @@ mt_status mt_family_bands(const mt_problem *p, const mt_family *f, const double 
                           double left, double right, mt_arena *mem, mt_way_band **list, int *n,
                           mt_err *err);
 
-/* problem_clear.c: views, bands and assignment of a case (mt_case_lay_out), and its rows of
- * `in` behind those of the demands. */
-mt_status mt_clear_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cut *cuts,
-                           mt_arena *mem, mt_err *err);
-
 #endif

@@ -3,6 +3,8 @@
  * "frequency": q = the frequency of a mode [Hz], its rows in ln q,
  *     d ln q / dt = lambda' / (2 lambda) dx/dt
  */
+#include "problem/goal_frequency.h"
+
 #include <math.h>
 #include <string.h>
 

@@ -6,6 +6,7 @@
  */
 #include <math.h>
 
+#include "problem/demand.h"
 #include "problem/goal.h"
 
 int mt_goal_reference_mode(const mt_problem *p, const mt_demand *d)

@@ -39,6 +39,19 @@ MT_OBJECTIVE_LIST(MT_OBJECTIVE_OPS)
 #undef MT_OBJECTIVE_OPS
 const mt_objective_ops *mt_objective_ops_of(mt_objective_type type);
 
+/* f of objective k at the last evaluation, gradient[n_t] (may be NULL)
+ * likewise. */
+double mt_aim_value(const mt_workspace *w, int k, double *gradient);
+/* A value f of an objective, a half square as its root: differences of these are told. */
+double mt_aim_root(const mt_aim *a, double f);
+/* What results show of it. */
+double mt_aim_shown(const mt_aim *a, double f);
+/* Hold objective k of c (mt_case_for_stages) at f, as well as it can be told from f, from the
+ * next stage on; a misfit at the residuals of w's last evaluation. */
+void mt_aim_hold(mt_case *c, const mt_workspace *w, int k, double f);
+/* The rows of the objectives that are held. */
+void mt_aim_hold_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out);
+
 /* Sums of n terms and the logarithms in them are rounded by less than this many times n eps. */
 #define MT_OBJECTIVE_ULPS 16.0
 

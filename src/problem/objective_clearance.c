@@ -2,7 +2,7 @@
 /*
  * "clearance": f = -ln(1 + least clearance of any mode from any band). In the search of one gap
  * assignment that is the last coordinate, which every row of a band has to exceed
- * (problem_clear.c); elsewhere mt_clears_room looks it up among the modes.
+ * (goal_avoid.c); elsewhere mt_clears_room looks it up among the modes.
  */
 #include <math.h>
 

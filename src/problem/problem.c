@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "problem/goal_avoid.h"
+
 void mt_problem_delete(mt_problem *p)
 {
     if (p != NULL) {
@@ -131,8 +133,8 @@ mt_status mt_problem_new(const mt_study *study, mt_problem **out, mt_err *err)
     rc = rc == MT_OK ? init_references(p, err) : rc;
     rc = rc == MT_OK ? init_variables(p, err) : rc;
     rc = rc == MT_OK ? mt_problem_init_demands(p, err) : rc;
-    rc = rc == MT_OK ? mt_problem_init_clears(p, err) : rc;
-    rc = rc == MT_OK ? mt_problem_init_aims(p, err) : rc;
+    rc = rc == MT_OK ? mt_clears_compile(p, err) : rc;
+    rc = rc == MT_OK ? mt_problem_init_program(p, err) : rc;
     rc = rc == MT_OK ? init_whole(p, err) : rc;
     if (rc != MT_OK) {
         mt_problem_delete(p);

@@ -23,8 +23,9 @@
  * = x / scale. The change of a redesign is then
  *     sqrt(sum w_i (t_i - t_i(original))^2).
  *
- * Files: problem.c (life, coordinates), problem_demands.c (goals to demands), problem_aims.c
- * (expressions and objectives), problem_clear.c (bands), family.c (positions of one drive).
+ * Files: problem.c (life, coordinates), problem_demands.c (goals to demands), problem_program.c
+ * (expressions and objectives); goal_*.c and objective_*.c are the kinds, family.c ties the
+ * positions of one drive.
  */
 
 /* A configuration that goals speak of; or, of a case, one more position of a drive. */
@@ -169,12 +170,7 @@ const char *mt_view_name(const mt_problem *p, const mt_view *view);
 
 /* problem_demands.c: views, demands and their rows. */
 mt_status mt_problem_init_demands(mt_problem *p, mt_err *err);
-/* problem_clear.c: the bands of each view. After the demands. */
-mt_status mt_problem_init_clears(mt_problem *p, mt_err *err);
-/* Does it limit the frequency of a mode by its index? Those are sorted: what holds for one holds
- * for all beyond it. (demand.c) */
-bool mt_demand_is_frequency(const mt_demand *d);
-/* problem_aims.c: the program of expressions, and the objectives. After the demands. */
-mt_status mt_problem_init_aims(mt_problem *p, mt_err *err);
+/* problem_program.c: the program of expressions, and the objectives. After the demands. */
+mt_status mt_problem_init_program(mt_problem *p, mt_err *err);
 
 #endif

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "problem/goal_avoid.h"
 #include "prove/enclosure.h"
 
 /* All combinations of so many variables whose sign is not known; of more: all low, all high,

@@ -2,7 +2,7 @@
 #ifndef PROBLEM_ROBUST_H
 #define PROBLEM_ROBUST_H
 
-#include "problem/workspace.h"
+#include "problem/goal_avoid.h"
 #include "result/result.h"
 
 /*

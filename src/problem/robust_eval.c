@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows at the corners: as demand.c and problem_clear.c make them, with the corner's modes and
+/* Rows at the corners: as demand.c and goal_avoid.c make them, with the corner's modes and
  * its factors in the gradient. */
 #include <math.h>
 
+#include "problem/goal_avoid.h"
+#include "problem/goal_frequency.h"
 #include "problem/robust.h"
 
 static void move(const mt_workspace *w, const double *factor)

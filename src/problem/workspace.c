@@ -9,7 +9,11 @@
 
 #include "base/format.h"
 #include "base/interrupt.h"
+#include "problem/demand.h"
 #include "problem/family.h"
+#include "problem/goal_avoid.h"
+#include "problem/next.h"
+#include "problem/objective.h"
 #include "problem/robust.h"
 
 /* Evaluations between two lines of progress: a tenth of a second or so for a small

@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "base/workers.h"
+#include "problem/goal_avoid.h"
+#include "problem/objective.h"
 #include "search/discrete.h"
 #include "search/gaps.h"
 #include "search/motion.h"

@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "problem/goal_avoid.h"
+#include "problem/objective.h"
 #include "search/discrete.h"
 
 /* Residuals and objectives carry no tolerance: relative to their size, as elsewhere (nlp.h). */

@@ -14,6 +14,8 @@
 
 #include "base/workers.h"
 #include "nlp/merit.h"
+#include "problem/goal_avoid.h"
+#include "problem/objective.h"
 #include "search/motion.h"
 #include "search/search.h"
 

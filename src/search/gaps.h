@@ -54,7 +54,7 @@ mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, mt_arena *m
                         mt_gap_result *out, mt_err *err);
 
 enum { MT_GAP_SAMPLES_NEAR = 512 };
-/* gap_candidates.c: the assignments worth searching, n rows of n_bands. */
+/* gaps_candidates.c: the assignments worth searching, n rows of n_bands. */
 typedef struct mt_gap_candidates {
     int n;
     int *below;

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/format.h"
+#include "problem/demand.h"
 
 void mt_proof_free(mt_proof *proof)
 {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "nlp/merit.h"
+#include "problem/goal_avoid.h"
 #include "problem/objective.h"
 #include "problem/robust.h"
 #include "search/relax.h"

@@ -3,6 +3,8 @@
  * and of both at corners of the tolerances. */
 #include <math.h>
 
+#include "problem/demand.h"
+#include "problem/goal_avoid.h"
 #include "problem/robust.h"
 #include "search/repeated.h"
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "nlp/merit.h"
+#include "problem/objective.h"
 
 /* KKT residuals of local optima, and of what is none. */
 static const double SHOWN = 1e-6;

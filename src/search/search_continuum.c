@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "nlp/merit.h"
+#include "problem/objective.h"
 #include "search/search.h"
 
 enum { BETWEEN = 3 };

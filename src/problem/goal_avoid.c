@@ -9,11 +9,13 @@
  * tell the search what comes next). With the objective "clearance" every row has to exceed the
  * extra coordinate z, which is made as great as it can be.
  */
+#include "problem/goal_avoid.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "problem/family.h"
 #include "problem/goal.h"
+#include "problem/goal_frequency.h"
 #include "problem/robust.h"
 
 /* Range of the extra coordinate: a clearance of -95 % to +2000 %. */
@@ -79,7 +81,7 @@ static mt_status add_clear(mt_problem *p, int goal_index, int view, mt_err *err)
     return MT_OK;
 }
 
-mt_status mt_problem_init_clears(mt_problem *p, mt_err *err)
+mt_status mt_clears_compile(mt_problem *p, mt_err *err)
 {
     const mt_study *const s = p->study;
     p->clears =

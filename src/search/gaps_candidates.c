@@ -16,6 +16,7 @@
 
 #include "nlp/merit.h"
 #include "problem/family.h"
+#include "problem/goal_avoid.h"
 #include "search/gaps.h"
 #include "search/proof.h"
 

@@ -5,8 +5,12 @@
  * and of another there a search learns little. With the rows of the modes that come next, where
  * they do not touch each other (those of different symmetry), all rows are smooth.
  */
+#include "problem/next.h"
+
 #include <math.h>
 
+#include "problem/demand.h"
+#include "problem/goal_frequency.h"
 #include "problem/robust.h"
 
 enum { NEXT_MOST = 5 };

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef PROBLEM_GOAL_AVOID_H
+#define PROBLEM_GOAL_AVOID_H
+
+#include "problem/family.h"
+
+/*
+ * Bands that modes keep clear of: those of all goals "avoid" that name a configuration, united.
+ */
+/* The bands of each view. After the demands. */
+mt_status mt_clears_compile(mt_problem *p, mt_err *err);
+/* Views, bands and assignment of a case (mt_case_lay_out), and its rows of
+ * `in` behind those of the demands. */
+mt_status mt_clear_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cut *cuts,
+                           mt_arena *mem, mt_err *err);
+/* Fill the rows of all bands, after their views have been solved. */
+mt_status mt_clear_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out, mt_err *err);
+/* ln of the least ratio that a mode anywhere between low and high keeps from a band with its
+ * margin; negative: it can be inside. */
+double mt_band_room(const mt_band *band, double low_hz, double high_hz);
+/* The least of that for any vibration mode of an analysis and any band; NaN where the
+ * configuration is unstable. below[bands.n] (may be NULL): modes below the middle of each. */
+double mt_clear_look(const mt_clear *c, const mt_modes *modes, int *below);
+/* Which mode and edge does row `row` (0: the first of the bands, behind those of the demands)
+ * of a search with an assignment below[n_bands] hold? false: there is no such row. */
+typedef struct mt_clear_row {
+    int clear;
+    int band; /* of its list */
+    int mode; /* vibration index */
+    bool above;
+} mt_clear_row;
+bool mt_clear_row_at(const mt_case *c, const int *below, int row, mt_clear_row *out);
+int mt_clear_row_count(const mt_case *c, const int *below);
+/* mt_clear_look after the view has been solved, with tolerances over them: what the objective
+ * "clearance" makes greatest. */
+double mt_clear_room(const mt_workspace *w, const mt_clear *c);
+/* The least of all clears; infinite without bands. */
+double mt_clears_room(const mt_workspace *w);
+
+#endif

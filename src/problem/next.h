@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef PROBLEM_NEXT_H
+#define PROBLEM_NEXT_H
+
+#include "problem/workspace.h"
+
+/* A limit on a mode holds for all that lie beyond it; where modes cross, those
+ * tell the search what comes next. After all other rows of the case. */
+mt_status mt_next_init(mt_case *c, mt_arena *mem, mt_err *err);
+/* Fill out->next (and out->dnext), unless NULL, after the views and corners have been
+ * solved. */
+mt_status mt_next_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out, mt_err *err);
+
+#endif
