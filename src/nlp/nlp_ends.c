@@ -9,10 +9,10 @@
 
 #include <math.h>
 
-/* Ends nearer than this are one (0.1 percent in a parameter: the same design to an engineer),
- * and nearer than the root of the tolerance, which a double root smears; that is capped where
- * tolerances are wide. */
-static const double SAME = 1e-3;
+#include "nlp/merit.h"
+
+/* Ends are one that are nearer than the root of the tolerance, which a double root smears; that
+ * is capped where tolerances are wide. */
 static const double SAME_MOST = 1e-2;
 /* Polished ends with a KKT residual below this came to rest. */
 static const double STATIONARY = 1e-6;
@@ -37,7 +37,7 @@ bool mt_nlp_ends_grow(mt_nlp_engine *e, mt_nlp_ends *all, int n)
 
 double mt_nlp_same_distance(const mt_nlp_engine *e)
 {
-    return fmax(SAME, fmin(sqrt(e->eq_tol), SAME_MOST));
+    return fmax(MT_SAME_DESIGN, fmin(sqrt(e->eq_tol), SAME_MOST));
 }
 
 bool mt_nlp_seeks_roots(const mt_nlp_engine *e)
@@ -105,8 +105,8 @@ static bool alike(const mt_nlp_engine *e, const mt_nlp_local *a, const mt_nlp_lo
         (!mt_nlp_nearly_feasible(pa) || pb->f < pa->f - LOWER * fabs(pa->f))) {
         return false;
     }
-    return apart(e->n, a->from, b->from, directions, d) <= SAME ||
-           (a->polished && apart(e->n, pa->t, b->from, directions, d) <= SAME);
+    return apart(e->n, a->from, b->from, directions, d) <= MT_SAME_DESIGN ||
+           (a->polished && apart(e->n, pa->t, b->from, directions, d) <= MT_SAME_DESIGN);
 }
 
 bool mt_nlp_came_to_rest(const mt_nlp_local *s)

@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "nlp/merit.h"
+
 enum { STARTS_BASE = 8, STARTS_PER_VARIABLE = 4, STARTS_MOST = 64, EVALS_PER_START = 2000 };
 enum { SOLUTIONS_KEPT = 16 };
 /* What differs from a bound by less, relative to the bounds, differs by rounding: a few
@@ -221,17 +223,9 @@ static void derive(const mt_nlp_engine *e, mt_nlp_point *p, bool with_gradient)
             mt_gemv(true, q->n_res, e->n, 1.0, p->dr, q->n_res, p->r, 0.0, p->df);
         }
     }
-    p->violation = 0;
-    p->squares = 0;
-    for (int i = 0; i < q->n_eq; i++) {
-        p->violation = fmax(p->violation, fabs(p->eq[i]) / q->eq_tol[i]);
-        p->squares += p->eq[i] * p->eq[i];
-    }
-    for (int i = 0; i < q->n_in; i++) {
-        const double below = fmin(p->in[i], 0);
-        p->violation = fmax(p->violation, -below / q->in_tol[i]);
-        p->squares += below * below;
-    }
+    const mt_missed m = mt_missed_of(q->n_eq, p->eq, q->eq_tol, q->n_in, p->in, q->in_tol);
+    p->violation = m.violation;
+    p->squares = m.squares;
     p->kkt = HUGE_VAL;
 }
 
@@ -329,17 +323,14 @@ bool mt_nlp_evaluate(mt_nlp_engine *e, const double *t, bool with_gradient, mt_n
 
 bool mt_nlp_feasible(const mt_nlp_point *p)
 {
-    return p->violation <= 1;
+    return mt_is_held(p->violation);
 }
 
 bool mt_nlp_better(const mt_nlp_point *a, const mt_nlp_point *b)
 {
-    const bool fa = mt_nlp_feasible(a);
-    const bool fb = mt_nlp_feasible(b);
-    if (fa != fb) {
-        return fa;
-    }
-    return fa ? a->f < b->f : a->squares < b->squares;
+    const mt_merit x = {mt_nlp_feasible(a), a->squares, mt_nlp_feasible(a) ? 1 : 0, &a->f};
+    const mt_merit y = {mt_nlp_feasible(b), b->squares, mt_nlp_feasible(b) ? 1 : 0, &b->f};
+    return mt_merit_before(&x, &y, 0.0);
 }
 
 double mt_nlp_distance(const mt_nlp_engine *e, const mt_nlp_point *a, const mt_nlp_point *b)
