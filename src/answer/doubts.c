@@ -7,6 +7,7 @@
 #include "base/format.h"
 #include "mechanics/info.h"
 #include "mechanics/redundant.h"
+#include "model/judge.h"
 #include "model/values.h"
 
 enum { NAME_SIZE = 400, NUMBER_SIZE = 32, NAMED = 3, STATES_2D = 3, STATES_3D = 6 };

@@ -12,6 +12,7 @@
 
 #include "answer/doubts.h"
 #include "base/format.h"
+#include "model/judge.h"
 #include "model/values.h"
 
 enum { TIMES_SIZE = 32 };

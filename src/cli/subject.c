@@ -6,6 +6,7 @@
 
 #include "cli/cli.h"
 #include "mechanics/redundant.h"
+#include "model/judge.h"
 #include "model/values.h"
 
 int mt_cli_failed(mt_status rc, const mt_err *err)

@@ -1,93 +1,377 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Recursive descent over the grammar of expr.h, one function per rule, to postfix code. Every
+ * way to nest (parenthesis, argument, sign, exponent) goes through `deeper`, so the recursion
+ * is at most MT_EXPR_MAX_DEPTH * 5 small frames. The first problem ends the parse; its place is
+ * counted in characters (code points), from 1.
+ */
+#include "expr/expr.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/format.h"
+#include "base/text.h"
 #include "expr/names.h"
 #include "expr/op.h"
 
-/* One list makes the table of functions, that of constants and the names that are reserved. */
-#define FUNCTION_LIST(X)    \
-    X("sqrt", MT_OP_SQRT)   \
-    X("cbrt", MT_OP_CBRT)   \
-    X("exp", MT_OP_EXP)     \
-    X("ln", MT_OP_LN)       \
-    X("log10", MT_OP_LOG10) \
-    X("sin", MT_OP_SIN)     \
-    X("cos", MT_OP_COS)     \
-    X("tan", MT_OP_TAN)     \
-    X("asin", MT_OP_ASIN)   \
-    X("acos", MT_OP_ACOS)   \
-    X("atan", MT_OP_ATAN)   \
-    X("sinh", MT_OP_SINH)   \
-    X("cosh", MT_OP_COSH)   \
-    X("tanh", MT_OP_TANH)   \
-    X("abs", MT_OP_ABS)     \
-    X("atan2", MT_OP_ATAN2) \
-    X("min", MT_OP_MIN)     \
-    X("max", MT_OP_MAX)     \
-    X("hypot", MT_OP_HYPOT) \
-    X("pow", MT_OP_POW)
-/* pi and pi/180 rounded to a double; 1 rpm = 1/60 turns per second */
-#define CONSTANT_LIST(X)             \
-    X("pi", 3.14159265358979323846)  \
-    X("deg", 0.01745329251994329577) \
-    X("rpm", 1.0 / 60.0)
+typedef struct parser {
+    const char *text;
+    size_t at; /* next byte */
+    int depth;
+    int length; /* of code */
+    mt_expr_lookup lookup;
+    const void *context;
+    const char *const *names;
+    int n_names;
+    mt_err *err;
+    mt_code code[MT_EXPR_MAX_CODE];
+} parser;
 
-#define NAME_ENTRY(name, value)  name,
-#define VALUE_ENTRY(name, value) value,
+/* A name longer than this is shortened in messages. */
+enum { SHOWN = 60 };
 
-static const char *const reserved_names[] = {FUNCTION_LIST(NAME_ENTRY)
-                                                 CONSTANT_LIST(NAME_ENTRY)};
-static const mt_op function_ops[] = {FUNCTION_LIST(VALUE_ENTRY)};
-static const double constant_values[] = {CONSTANT_LIST(VALUE_ENTRY)};
+static mt_status parse_sum(parser *p);
+static mt_status parse_unary(parser *p);
 
-enum {
-    N_NAMES = MT_COUNT(reserved_names),
-    N_FUNCTIONS = MT_COUNT(function_ops),
-};
-
-static bool same(const char *name, size_t length, const char *reserved)
+static bool is_digit(char c)
 {
-    return strlen(reserved) == length && memcmp(name, reserved, length) == 0;
+    return c >= '0' && c <= '9';
 }
 
-bool mt_expr_find_function(const char *name, size_t length, mt_op *op)
+static bool is_name_start(char c)
 {
-    for (int i = 0; i < N_FUNCTIONS; i++) {
-        if (same(name, length, reserved_names[i])) {
-            *op = function_ops[i];
-            return true;
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+static bool is_name_part(char c)
+{
+    return is_name_start(c) || is_digit(c);
+}
+
+/* Number of the character that the byte at `at` begins. */
+static int character(const parser *p, size_t at)
+{
+    int n = 1;
+    for (size_t i = 0; i < at; i++) {
+        n += ((unsigned char)p->text[i] & 0xC0U) != 0x80U; /* 10xxxxxx continues a character */
+    }
+    return n;
+}
+
+static int shown(size_t length)
+{
+    return length < SHOWN ? (int)length : SHOWN;
+}
+
+static char peek(parser *p)
+{
+    while (p->text[p->at] == ' ' || p->text[p->at] == '\t' || p->text[p->at] == '\n' ||
+           p->text[p->at] == '\r') {
+        p->at++;
+    }
+    return p->text[p->at];
+}
+
+/* "at character 3: "*" where ... is expected" at the next thing in the text. */
+static mt_status expected(parser *p, const char *what)
+{
+    const unsigned char c = (unsigned char)peek(p);
+    const int where = character(p, p->at);
+    if (c == '\0') {
+        return mt_fail(p->err, MT_E_INPUT,
+                       "at character %d: the expression ends where %s is expected", where,
+                       what);
+    }
+    if (c < 0x20U || c == 0x7FU) {
+        return mt_fail(p->err, MT_E_INPUT,
+                       "at character %d: control character where %s is expected", where, what);
+    }
+    const char *const from = p->text + p->at;
+    size_t n = 1;
+    while (c >= 0x80U ? n < 4 && ((unsigned char)from[n] & 0xC0U) == 0x80U
+                      : is_name_part((char)c) && is_name_part(from[n])) {
+        n++;
+    }
+    return mt_fail(p->err, MT_E_INPUT, "at character %d: \"%.*s\" where %s is expected", where,
+                   shown(n), from, what);
+}
+
+static mt_status emit(parser *p, mt_op op, int param, double value)
+{
+    if (p->length == MT_EXPR_MAX_CODE) {
+        return mt_fail(p->err, MT_E_INPUT,
+                       "at character %d: the expression has more than %d parts",
+                       character(p, p->at), (int)MT_EXPR_MAX_CODE);
+    }
+    p->code[p->length++] = (mt_code){.op = op, .param = param, .value = value};
+    return MT_OK;
+}
+
+static mt_status emit_op(parser *p, mt_op op)
+{
+    return emit(p, op, -1, 0.0);
+}
+
+/* Parse with `rule` one level further down. */
+static mt_status deeper(parser *p, mt_status (*rule)(parser *p))
+{
+    if (p->depth == MT_EXPR_MAX_DEPTH) {
+        return mt_fail(p->err, MT_E_INPUT, "at character %d: nested more than %d levels deep",
+                       character(p, p->at), (int)MT_EXPR_MAX_DEPTH);
+    }
+    p->depth++;
+    MT_TRY(rule(p));
+    p->depth--;
+    return MT_OK;
+}
+
+static mt_status parse_close(parser *p, size_t open)
+{
+    if (peek(p) != ')') {
+        char what[64];
+        (void)mt_snprintf(what, sizeof what,
+                          "an operator or the \")\" for the \"(\" at character %d",
+                          character(p, open));
+        return expected(p, what);
+    }
+    p->at++;
+    return MT_OK;
+}
+
+/* The candidate nearest to the name, from the parameters or from functions and constants; NULL:
+ * none. */
+static const char *suggestion(const parser *p, const char *name, bool function)
+{
+    int n = 0;
+    const char *const *const reserved = mt_expr_names(&n);
+    const char *const of_ours = mt_text_nearest(name, reserved, n);
+    const char *const of_theirs =
+        mt_text_nearest(name, p->names, p->names == NULL ? 0 : p->n_names);
+    if (function) {
+        return of_ours;
+    }
+    return of_theirs != NULL ? of_theirs : of_ours;
+}
+
+static mt_status unknown_name(parser *p, size_t from, size_t length, bool function)
+{
+    char name[MT_EXPR_MAX_LENGTH + 1];
+    memcpy(name, p->text + from, length);
+    name[length] = '\0';
+    const char *const near = suggestion(p, name, function);
+    const char *const kind = function ? "function" : "name";
+    const int where = character(p, from);
+    if (near == NULL) {
+        return mt_fail(p->err, MT_E_INPUT, "at character %d: unknown %s \"%.*s\"", where, kind,
+                       (int)SHOWN, name);
+    }
+    return mt_fail(p->err, MT_E_INPUT,
+                   "at character %d: unknown %s \"%.*s\"; did you mean \"%s\"?", where, kind,
+                   (int)SHOWN, name, near);
+}
+
+/* The arguments of a function whose name began at `from`; p stands at the "(". */
+static mt_status parse_call(parser *p, size_t from, size_t length)
+{
+    mt_op op = MT_OP_CONST;
+    if (!mt_expr_find_function(p->text + from, length, &op)) {
+        return unknown_name(p, from, length, true);
+    }
+    const size_t open = p->at++;
+    int count = 0;
+    for (bool more = true; more; count++) {
+        MT_TRY(deeper(p, parse_sum));
+        more = peek(p) == ',';
+        p->at += more;
+    }
+    const int operands = mt_op_operands(op);
+    if (count != operands) {
+        return mt_fail(p->err, MT_E_INPUT,
+                       "at character %d: function \"%.*s\" takes %d argument%s, not %d",
+                       character(p, from), (int)length, p->text + from, operands,
+                       operands == 1 ? "" : "s", count);
+    }
+    MT_TRY(parse_close(p, open));
+    return emit_op(p, op);
+}
+
+static mt_status parse_name(parser *p)
+{
+    const size_t from = p->at;
+    while (is_name_part(p->text[p->at])) {
+        p->at++;
+    }
+    const char *const name = p->text + from;
+    const size_t length = p->at - from;
+    if (peek(p) == '(') {
+        return parse_call(p, from, length);
+    }
+    double value = 0.0;
+    if (mt_expr_find_constant(name, length, &value)) {
+        return emit(p, MT_OP_CONST, -1, value);
+    }
+    mt_op op = MT_OP_CONST;
+    if (mt_expr_find_function(name, length, &op)) {
+        return mt_fail(p->err, MT_E_INPUT, "at character %d: function \"%.*s\" without \"(\"",
+                       character(p, from), (int)length, name);
+    }
+    const int param = p->lookup == NULL ? -1 : p->lookup(p->context, name, length);
+    if (param < 0) {
+        return unknown_name(p, from, length, false);
+    }
+    return emit(p, MT_OP_PARAM, param, 0.0);
+}
+
+/* What is wrong with the number that begins at `from`: shows it up to the end of what looks
+ * like one. */
+static mt_status bad_number(parser *p, size_t from, const char *what)
+{
+    size_t end = from;
+    while (is_name_part(p->text[end]) || p->text[end] == '.') {
+        end++;
+    }
+    return mt_fail(p->err, MT_E_INPUT, "at character %d: \"%.*s\" %s", character(p, from),
+                   shown(end - from), p->text + from, what);
+}
+
+/*
+ * number = (digits [ "." [digits] ] | "." digits) [ ("e"|"E") ["+"|"-"] digits ], correctly
+ * rounded. The C library rounds correctly, but reads the decimal point of the process's locale.
+ * So it gets none: "12.50e3" is handed over as "1250e1", which means the same in every locale.
+ */
+static mt_status parse_number(parser *p)
+{
+    const char *const s = p->text;
+    const size_t from = p->at;
+    char digits[MT_EXPR_MAX_LENGTH + 32];
+    size_t n = 0;
+    int exponent = 0;
+    bool point = false;
+    for (; is_digit(s[p->at]) || (s[p->at] == '.' && !point); p->at++) {
+        if (s[p->at] == '.') {
+            point = true;
+        } else {
+            digits[n++] = s[p->at];
+            exponent -= point;
         }
     }
-    return false;
-}
-
-bool mt_expr_find_constant(const char *name, size_t length, double *value)
-{
-    for (int i = N_FUNCTIONS; i < N_NAMES; i++) {
-        if (same(name, length, reserved_names[i])) {
-            *value = constant_values[i - N_FUNCTIONS];
-            return true;
-        }
+    if (n == 0) {
+        return bad_number(p, from, "is not a number");
     }
-    return false;
-}
-
-bool mt_expr_reserved(const char *name)
-{
-    for (int i = 0; i < N_NAMES; i++) {
-        if (strcmp(name, reserved_names[i]) == 0) {
-            return true;
+    if (s[p->at] == 'e' || s[p->at] == 'E') {
+        enum { EXPONENT_LIMIT = 100000 }; /* beyond any text's digits and any double's range */
+        const bool negative = s[p->at + 1] == '-';
+        p->at += negative || s[p->at + 1] == '+' ? 2 : 1;
+        if (!is_digit(s[p->at])) {
+            return bad_number(p, from, "is not a number");
         }
+        int e = 0;
+        for (; is_digit(s[p->at]); p->at++) {
+            e = e < EXPONENT_LIMIT ? 10 * e + (s[p->at] - '0') : e;
+        }
+        exponent += negative ? -e : e;
     }
-    return false;
+    if (is_name_part(s[p->at]) || s[p->at] == '.') {
+        return bad_number(p, from, "is not a number; a product needs \"*\"");
+    }
+    (void)mt_snprintf(digits + n, sizeof digits - n, "e%d", exponent);
+    const double value = strtod(digits, NULL);
+    if (!isfinite(value)) {
+        return bad_number(p, from, "is too large for a number");
+    }
+    return emit(p, MT_OP_CONST, -1, value);
 }
 
-const char *const *mt_expr_names(int *n)
+static mt_status parse_atom(parser *p)
 {
-    *n = N_NAMES;
-    return reserved_names;
+    const char c = peek(p);
+    if (is_digit(c) || c == '.') {
+        return parse_number(p);
+    }
+    if (is_name_start(c)) {
+        return parse_name(p);
+    }
+    if (c == '(') {
+        const size_t open = p->at++;
+        MT_TRY(deeper(p, parse_sum));
+        return parse_close(p, open);
+    }
+    return expected(p, "a number, a name or \"(\"");
+}
+
+static mt_status parse_power(parser *p)
+{
+    MT_TRY(parse_atom(p));
+    if (peek(p) != '^') {
+        return MT_OK;
+    }
+    p->at++;
+    MT_TRY(deeper(p, parse_unary));
+    return emit_op(p, MT_OP_POW);
+}
+
+static mt_status parse_unary(parser *p)
+{
+    const char c = peek(p);
+    if (c != '+' && c != '-') {
+        return parse_power(p);
+    }
+    p->at++;
+    MT_TRY(deeper(p, parse_unary));
+    return c == '-' ? emit_op(p, MT_OP_NEG) : MT_OK;
+}
+
+static mt_status parse_product(parser *p)
+{
+    MT_TRY(parse_unary(p));
+    for (char c = peek(p); c == '*' || c == '/'; c = peek(p)) {
+        p->at++;
+        MT_TRY(parse_unary(p));
+        MT_TRY(emit_op(p, c == '*' ? MT_OP_MUL : MT_OP_DIV));
+    }
+    return MT_OK;
+}
+
+static mt_status parse_sum(parser *p)
+{
+    MT_TRY(parse_product(p));
+    for (char c = peek(p); c == '+' || c == '-'; c = peek(p)) {
+        p->at++;
+        MT_TRY(parse_product(p));
+        MT_TRY(emit_op(p, c == '+' ? MT_OP_ADD : MT_OP_SUB));
+    }
+    return MT_OK;
+}
+
+mt_status mt_expr_parse(const char *text, mt_expr_lookup lookup, const void *context,
+                        const char *const *names, int n_names, mt_arena *mem, mt_expr *out,
+                        mt_err *err)
+{
+    if (strnlen(text, MT_EXPR_MAX_LENGTH + 1) > MT_EXPR_MAX_LENGTH) {
+        return mt_fail(err, MT_E_INPUT, "the expression is longer than %d bytes",
+                       (int)MT_EXPR_MAX_LENGTH);
+    }
+    parser p;
+    p.text = text;
+    p.at = 0;
+    p.depth = 0;
+    p.length = 0;
+    p.lookup = lookup;
+    p.context = context;
+    p.names = names;
+    p.n_names = n_names;
+    p.err = err;
+    MT_TRY(parse_sum(&p));
+    if (peek(&p) != '\0') {
+        return expected(&p, "an operator or the end");
+    }
+    mt_code *const code = mt_arena_alloc(mem, (size_t)p.length, sizeof *code);
+    MT_TRY(mt_arena_check(mem, err));
+    memcpy(code, p.code, (size_t)p.length * sizeof *code);
+    *out = (mt_expr){.code = code, .length = p.length};
+    return MT_OK;
 }
 
 mt_status mt_expr_number(double value, mt_arena *mem, mt_expr *out, mt_err *err)

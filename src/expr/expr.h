@@ -9,14 +9,16 @@
 
 /*
  * Parameter expressions, parsed once into postfix code. Grammar:
- *   sum = product { ("+" | "-") product } product = unary { ("*" | "/") unary } unary = ("+" |
- *   "-") unary | power power = atom [ "^" unary ] right associative; binds tighter than a sign:
- *   -2^2 = -4 atom = number | name | function "(" sum { "," sum } ")" | "(" sum ")" number =
- *   decimal digits with an optional point and exponent, correctly rounded, the same in
- *             every locale; no hexadecimal, no inf or nan
- * Functions of one argument: sqrt cbrt exp ln log10 sin cos tan asin acos atan sinh cosh tanh
- * abs; of two: atan2 min max hypot pow. Angles in radians. x^0 = 1 for every x; a negative
- * number has powers with integer exponents only. Constants: pi, deg (pi/180), rpm (1/60:
+ *     sum     = product { ("+" | "-") product }
+ *     product = unary { ("*" | "/") unary }
+ *     unary   = ("+" | "-") unary | power
+ *     power   = atom [ "^" unary ]      right associative, binds tighter than a sign
+ *     atom    = number | name | function "(" sum { "," sum } ")" | "(" sum ")"
+ *     number  = decimal digits with an optional point and exponent
+ * So -2^2 = -4. Numbers are correctly rounded, the same in every locale; there is no hexadecimal,
+ * no inf and no nan. Functions of one argument: sqrt cbrt exp ln log10 sin cos tan asin acos atan
+ * sinh cosh tanh abs; of two: atan2 min max hypot pow. Angles in radians. x^0 = 1 for every x; a
+ * negative number has powers with integer exponents only. Constants: pi, deg (pi/180), rpm (1/60:
  * "258*rpm" is a speed in Hz); e is not a constant. A parameter name is [A-Za-z_][A-Za-z0-9_]*;
  * names of functions and constants are reserved. Limits, so that no text can exhaust anything:
  * bytes of text; levels of parentheses, arguments, signs and exponents; parts of the code.
@@ -69,10 +71,6 @@ typedef struct mt_expr {
 /* Finds a parameter by name (not NUL-terminated: length given); -1 where there is none. */
 typedef int (*mt_expr_lookup)(const void *context, const char *name, size_t length);
 
-/* Is the name taken by a function or a constant? */
-bool mt_expr_reserved(const char *name);
-/* Names of all functions and constants, for "did you mean"; *n their number. */
-const char *const *mt_expr_names(int *n);
 /*
  * Parse NUL-terminated text into code that lives in mem. lookup (with context) knows the
  * parameters; NULL: there are none. names[n_names] are the candidates for "did you mean"

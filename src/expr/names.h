@@ -8,5 +8,9 @@
  * such. */
 bool mt_expr_find_function(const char *name, size_t length, mt_op *op);
 bool mt_expr_find_constant(const char *name, size_t length, double *value);
+/* Is the name taken by a function or a constant? */
+bool mt_expr_reserved(const char *name);
+/* Names of all functions and constants, for "did you mean"; *n their number. */
+const char *const *mt_expr_names(int *n);
 
 #endif

@@ -7,9 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "expr/names.h"
 #include "io/file.h"
 #include "io/io.h"
 #include "io/json_print.h"
+#include "model/finish.h"
 #include "model/names.h"
 
 #define MODEL_KEYS(X)                                 \

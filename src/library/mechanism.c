@@ -9,7 +9,7 @@
 #include "analysis/channels.h"
 #include "analysis/sensitivity.h"
 #include "base/text.h"
-#include "model/values.h"
+#include "model/judge.h"
 
 struct mt_mechanism {
     mt_analysis *a; /* owned */

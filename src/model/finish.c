@@ -3,10 +3,13 @@
  * stages share. */
 #include "model/finish.h"
 
+#include "model/finish_priv.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
+#include "expr/names.h"
 
 mt_addr mt_finish_addr(const mt_model *m, mt_num num)
 {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What joints, springs and sensors hold on to: "ground", a body, "link.start", "link.end",
  * "link.node3", "link.3". */
+#include "model/finish_priv.h"
+
 #include <limits.h>
 #include <string.h>
-
-#include "model/finish.h"
 
 /* The number that s is, 0 or more without leading zeros; -1 where it is none. */
 static int whole_number(const char *s)

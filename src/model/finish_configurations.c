@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Configurations: `like`, what is inherited through it (overrides, gravity, drive), and which
  * items each contains. */
+#include "model/finish_priv.h"
+
 #include <string.h>
 
-#include "model/finish.h"
 #include "model/joint.h"
 
 enum { UNSEEN, ON_PATH, DONE };

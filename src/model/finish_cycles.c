@@ -5,11 +5,12 @@
  * overrides. Depth-first with an explicit stack: a chain of parameters may be as long as the
  * file allows.
  */
+#include "model/finish_priv.h"
+
 #include <stdarg.h>
 #include <string.h>
 
 #include "base/format.h"
-#include "model/finish.h"
 
 enum { UNSEEN, ON_PATH, DONE };
 

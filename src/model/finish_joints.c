@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Joints: has each what its type needs (joint.h)? */
-#include "model/finish.h"
+#include "model/finish_priv.h"
+
 #include "model/joint.h"
 
 static void check_point_mass(mt_finish *f, const mt_joint *j, int side)

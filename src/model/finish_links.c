@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Flexible links: which members a kind and a section need, and the lengths of lists. */
-#include "model/finish.h"
+#include "model/finish_priv.h"
 
 /* Whether a member was given where it must be, or must not be. */
 static void wants(mt_finish *f, const mt_link *l, bool given, bool wanted, const char *member,

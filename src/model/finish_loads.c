@@ -7,7 +7,8 @@
  * of Structural Stability, 1968). So in three dimensions a moment acts on the coordinate of a
  * joint; a pair of forces states any other, with the potential that it has.
  */
-#include "model/finish.h"
+#include "model/finish_priv.h"
+
 #include "model/joint.h"
 
 static void check_joint(mt_finish *f, const mt_load *l)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sensors: on a body, on a link at a fraction of its length, or at the centre of one rigid
  * element. */
-#include <string.h>
+#include "model/finish_priv.h"
 
-#include "model/finish.h"
+#include <string.h>
 
 enum { ROTATIONS = 8 | 16 | 32, PLANAR = 1 | 2 | 32 };
 

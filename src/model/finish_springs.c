@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Springs and dampers: what they hold on to, and which members each type needs. */
+#include "model/finish_priv.h"
+
 #include <string.h>
 
-#include "model/finish.h"
 #include "model/joint.h"
 
 /* Members that a type needs (N), may have (M), or has not ( ). */

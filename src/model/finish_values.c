@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The last stage: what the numbers are, in every configuration. Faults are errors, doubts
  * warnings; what several configurations share is said once. */
+#include "model/finish_priv.h"
+
 #include <stddef.h>
 #include <string.h>
 
-#include "model/finish.h"
+#include "model/judge.h"
 #include "model/values.h"
 
 static bool is_told(const mt_doubt_list *list, int n, const mt_doubt *d)

@@ -7,6 +7,9 @@
  */
 #include "model/judge.h"
 
+#include "model/judge_priv.h"
+#include "model/values.h"
+
 #include <math.h>
 #include <stddef.h>
 

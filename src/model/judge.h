@@ -2,31 +2,22 @@
 #ifndef MODEL_JUDGE_H
 #define MODEL_JUDGE_H
 
-#include "model/values.h"
+#include "base/doubt.h"
+#include "model/model.h"
 
-/* What the files judge*.c share: one configuration, its numbers, and what is said of them. */
-typedef struct mt_judge {
-    const mt_model *model;
-    int configuration;
-    const double *value; /* [n_nums] */
-    mt_doubt_list *out;
-} mt_judge;
+/**
+ * Judge the numbers of a configuration: faults (masses and stiffnesses below 0, sections
+ * without area) and doubts (a modulus that no material has, a drive beyond a turn). Each names
+ * item and member, carries its JSON pointer and, where the model was read from a file, its
+ * place.
+ * @param[in]  value  [n_nums] as mt_model_numbers gives them
+ */
+void mt_model_judge(const mt_model *model, int configuration, const double *value,
+                    mt_doubt_list *out);
 
-/* Which item of the file a number belongs to. */
-typedef struct mt_item {
-    const char *what; /* "link" */
-    const char *list; /* "links" */
-    int index;        /* in that list */
-    const char *name;
-} mt_item;
-
-/* Say where a doubt (NULL: out of memory) stands: the address of a number, and its pointer.
- * Returns it. */
-mt_doubt *mt_judge_place(mt_judge *j, mt_doubt *doubt, mt_addr addr, const char *pointer);
-/* The pointer of the drive in force, which a configuration may have taken over. */
-const char *mt_judge_drive_pointer(const mt_judge *j, const char *member);
-/* Joints and springs off what they hold, pairs of points that are apart, sizes
- * (judge_geometry.c). */
-void mt_judge_geometry(mt_judge *j);
+/* Are the numbers of a configuration those of a mechanism, with these inputs? Scratch from mem.
+ * Fails: MT_E_USAGE (the first fault that mt_model_judge finds), as mt_model_numbers. */
+mt_status mt_model_admit(const mt_model *model, int configuration, int n_inputs,
+                         const int *inputs, const double *at, mt_arena *mem, mt_err *err);
 
 #endif

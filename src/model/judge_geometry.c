@@ -4,12 +4,13 @@
  * points that only closing brings together, sizes. With a segment P + s d, 0 <= s <= 1, the
  * distance of a point X is |X - P - clamp(d . (X - P) / d . d) d|.
  */
+#include "model/judge_priv.h"
+
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 
 #include "model/joint.h"
-#include "model/judge.h"
 
 /* A joint this part of a link's length away from it is told: less is a drawing's rounding. */
 static const double TOLD_OFF = 0.01;

@@ -396,16 +396,6 @@ mt_num mt_model_add_num(mt_model *model, mt_expr expr, mt_addr addr);
 /* Lookup function for mt_expr_parse over model->parameters (context: the model). */
 int mt_model_lookup(const void *model, const char *name, size_t length);
 
-/* Resolve and check; every problem goes to diags (duplicate names, unknown names with "did you
- * mean", wrong list lengths, joint types not in this dimension, cycles of `like` and of
- * parameters with their path "a -> b -> a" per configuration, a point mass where an orientation
- * is needed, reserved names, names with a dot, a point named like a parameter where `at` is
- * ambiguous ...). An item that a reader could not read completely (its faults are in diags
- * already) carries a type of ..._TYPE_COUNT (joint, spring), 0 elements (link) or no name in
- * `on` (sensor) and is only checked for its name. The form of names is the reader's to check.
- * Returns MT_E_INPUT where diags holds errors, else MT_OK; MT_E_MEMORY. */
-mt_status mt_model_finish(mt_model *model, mt_diags *diags, mt_err *err);
-
 /* MT_ABSENT where there is none, likewise below */
 int mt_model_find_parameter(const mt_model *model, const char *name);
 int mt_model_find_configuration(const mt_model *model, const char *name);

@@ -1,126 +1,210 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Parameters into program nodes, and their values. Which definition counts: an override of the
+ * configuration, else an input of the caller, else the parameter's own expression. Emission
+ * follows the dependences depth first with an explicit stack, so a long chain cannot overflow the
+ * C stack; the model was checked for cycles.
+ */
 #include "model/values.h"
 
 #include <math.h>
 #include <stddef.h>
 
-#include "expr/program.h"
+typedef struct source {
+    bool input;
+    const mt_number *number;
+} source;
 
-/* Emits parameters into a program, operands first: a walk in depth over "needs", with its own
- * stack, because a chain of parameters may be as long as the file allows. */
-typedef struct order {
-    const mt_model *model;
-    mt_program program;
-    mt_node *nodes; /* [n_parameters] MT_NO_NODE until emitted */
-    int *stack;     /* parameters being worked on, innermost last */
-    /* [n_parameters] where the reading of a parameter's code stands; MT_ABSENT: not begun */
-    int *cursor;
-    int depth;
-} order;
-
-static const mt_expr *value_of(const order *o, int parameter)
+static source source_of(const mt_model *model, const mt_num *override, const int *is_input,
+                        int parameter)
 {
-    return &o->model->nums[o->model->parameters[parameter].value].expr;
-}
-
-static mt_status push(order *o, int parameter, mt_err *err)
-{
-    if (o->cursor[parameter] != MT_ABSENT) {
-        return mt_fail(err, MT_E_INPUT, "parameter \"%s\" depends on itself",
-                       o->model->parameters[parameter].name.s);
+    if (override[parameter] != MT_ABSENT) {
+        return (source){false, &model->nums[override[parameter]]};
     }
-    o->cursor[parameter] = 0;
-    o->stack[o->depth++] = parameter;
-    return MT_OK;
+    const mt_number *const own = &model->nums[model->parameters[parameter].value];
+    return (source){is_input != NULL && is_input[parameter] >= 0, own};
 }
 
-/* The next parameter that the one on top of the stack needs and that has no node yet;
- * MT_ABSENT: all there. */
-static int missing_operand(order *o)
+/* First parameter in the expression that has no node yet, or -1. */
+static int missing_operand(const mt_expr *e, const mt_node *nodes)
 {
-    const int top = o->stack[o->depth - 1];
-    const mt_expr *const e = value_of(o, top);
-    for (int *at = &o->cursor[top]; *at < e->length; ++*at) {
-        const mt_code *const code = &e->code[*at];
-        if (code->op == MT_OP_PARAM && o->nodes[code->param] == MT_NO_NODE) {
-            return code->param;
+    for (int i = 0; i < e->length; i++) {
+        if (e->code[i].op == MT_OP_PARAM && nodes[e->code[i].param] == MT_NO_NODE) {
+            return e->code[i].param;
         }
     }
-    return MT_ABSENT;
+    return -1;
 }
 
-static mt_status emit(order *o, int parameter, mt_err *err)
+/* What emission reads and fills. */
+typedef struct emission {
+    const mt_model *model;
+    const mt_num *override; /* [n_parameters] the configuration's number, MT_ABSENT: none */
+    const int *is_input;
+    mt_program *program;
+    mt_node *nodes;
+    int *stack; /* model->n_parameters + 1 places */
+} emission;
+
+/* One parameter and all that it waits for, deepest first. */
+static mt_status emit(const emission *x, int parameter, mt_err *err)
 {
-    if (o->nodes[parameter] != MT_NO_NODE) {
-        return MT_OK;
-    }
-    MT_TRY(push(o, parameter, err));
-    while (o->depth > 0) {
-        const int need = missing_operand(o);
-        if (need != MT_ABSENT) {
-            MT_TRY(push(o, need, err));
+    mt_node *const nodes = x->nodes;
+    int depth = 0;
+    x->stack[0] = parameter;
+    while (depth >= 0) {
+        const int p = x->stack[depth];
+        if (nodes[p] != MT_NO_NODE) {
+            depth--;
             continue;
         }
-        const int top = o->stack[--o->depth];
-        o->nodes[top] = mt_program_expr(&o->program, value_of(o, top), o->nodes,
-                                        o->model->parameters[top].name.addr);
-        MT_TRY(mt_arena_check(o->program.mem, err)); /* what waits would wait for ever */
+        const source s = source_of(x->model, x->override, x->is_input, p);
+        const int waits_for = s.input ? -1 : missing_operand(&s.number->expr, nodes);
+        if (waits_for >= 0) {
+            if (depth >= x->model->n_parameters) {
+                return mt_fail(err, MT_E_INTERNAL, "parameter \"%s\" depends on itself",
+                               x->model->parameters[p].name.s);
+            }
+            x->stack[++depth] = waits_for;
+            continue;
+        }
+        nodes[p] = s.input
+                       ? mt_program_input(x->program, x->is_input[p], s.number->addr)
+                       : mt_program_expr(x->program, &s.number->expr, nodes, s.number->addr);
+        MT_TRY(mt_arena_check(x->program->mem, err)); /* what waits would wait for ever */
     }
     return MT_OK;
 }
 
-static mt_status evaluate(order *o, mt_arena *mem, double *values, int *bad, mt_err *err)
+mt_status mt_emit_parameters(const mt_model *model, int configuration, const int *is_input,
+                             mt_program *program, mt_node *nodes, mt_arena *mem, mt_err *err)
 {
-    const int n = o->model->n_parameters;
-    for (int i = 0; i < n; i++) {
-        MT_TRY(emit(o, i, err));
-    }
-    MT_TRY(mt_program_finish(&o->program, err));
-    double *const all = mt_arena_f64(mem, (size_t)o->program.count, 1);
+    const int n = model->n_parameters;
+    int *const stack = mt_arena_int(mem, (size_t)n + 1);
+    mt_num *const override = mt_arena_alloc(mem, (size_t)n, sizeof *override);
     MT_TRY(mt_arena_check(mem, err));
-    mt_node bad_node = MT_NO_NODE;
-    const mt_status rc = mt_program_eval(&o->program, NULL, all, &bad_node, err);
-    for (int i = 0; rc == MT_OK && i < n; i++) {
-        values[i] = all[o->nodes[i]];
+    for (int i = 0; i < n; i++) {
+        nodes[i] = MT_NO_NODE;
+        override[i] = MT_ABSENT;
     }
-    /* the node belongs to the first parameter, in order of evaluation, that it spoils: one
-     * whose node follows it first */
-    for (int i = 0; rc == MT_E_DOMAIN && i < n; i++) {
-        if (o->nodes[i] >= bad_node && (*bad == MT_ABSENT || o->nodes[i] < o->nodes[*bad])) {
+    const mt_configuration *const c =
+        configuration < 0 ? NULL : &model->configurations[configuration];
+    for (int i = c == NULL ? -1 : c->n_overrides - 1; i >= 0; i--) { /* the first one counts */
+        override[c->overrides[i].parameter] = c->overrides[i].value;
+    }
+    const emission x = {model, override, is_input, program, nodes, stack};
+    for (int i = 0; i < n; i++) {
+        MT_TRY(emit(&x, i, err));
+    }
+    return MT_OK;
+}
+
+/* A program with the parameters of a configuration (MT_ABSENT: of the file), some of them
+ * inputs; nodes[n_parameters]. */
+static mt_status begin(const mt_model *model, int configuration, int n_inputs,
+                       const int *inputs, mt_arena *mem, mt_program *program, mt_node **nodes,
+                       mt_err *err)
+{
+    const size_t n = (size_t)model->n_parameters;
+    int *const is_input = mt_arena_int(mem, n);
+    *nodes = mt_arena_int(mem, n);
+    MT_TRY(mt_program_init(program, n_inputs, mem, err));
+    for (size_t i = 0; i < n; i++) {
+        is_input[i] = MT_ABSENT;
+    }
+    for (int i = 0; i < n_inputs; i++) {
+        is_input[inputs[i]] = i;
+    }
+    return mt_emit_parameters(model, configuration, is_input, program, *nodes, mem, err);
+}
+
+static mt_status evaluate(const mt_model *model, int configuration, int n_inputs,
+                          const int *inputs, const double *at, mt_arena *mem, double *value,
+                          mt_err *err)
+{
+    const size_t n_nums = (size_t)model->n_nums;
+    mt_node *const nodes = mt_arena_int(mem, n_nums);
+    mt_node *parameters = NULL;
+    mt_program program;
+    MT_TRY(begin(model, configuration, n_inputs, inputs, mem, &program, &parameters, err));
+    for (size_t i = 0; i < n_nums; i++) {
+        const mt_number *const number = &model->nums[i];
+        nodes[i] = mt_program_expr(&program, &number->expr, parameters, number->addr);
+    }
+    MT_TRY(mt_program_finish(&program, err));
+    double *const all = mt_arena_f64(mem, (size_t)program.count, 1);
+    mt_node bad = program.count;
+    MT_TRY(mt_arena_check(mem, err));
+    mt_err ignored = {.code = MT_OK}; /* who evaluates the model says what has no value */
+    const mt_status rc = mt_program_eval(&program, at, all, &bad, &ignored);
+    if (rc != MT_OK && rc != MT_E_DOMAIN) {
+        return mt_fail(err, rc, "%s", ignored.text);
+    }
+    for (size_t i = 0; i < n_nums; i++) {
+        value[i] = rc == MT_OK || nodes[i] < bad ? all[nodes[i]] : nan("");
+    }
+    return MT_OK;
+}
+
+mt_status mt_model_numbers(const mt_model *model, int configuration, int n_inputs,
+                           const int *inputs, const double *at, mt_arena *mem, double *value,
+                           mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    const mt_status rc = evaluate(model, configuration, n_inputs, inputs, at, mem, value, err);
+    mt_arena_rewind(mem, mark);
+    return rc;
+}
+
+/* *bad: where a value is not finite, the first parameter in order of evaluation that has none. */
+static mt_status evaluate_parameters(const mt_model *model, int n_inputs, const int *inputs,
+                                     const double *at, mt_arena *mem, double *value, int *bad,
+                                     mt_err *err)
+{
+    mt_node *nodes = NULL;
+    mt_program program;
+    MT_TRY(begin(model, MT_ABSENT, n_inputs, inputs, mem, &program, &nodes, err));
+    MT_TRY(mt_program_finish(&program, err));
+    double *const all = mt_arena_f64(mem, (size_t)program.count, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    mt_node without = MT_NO_NODE;
+    const mt_status rc = mt_program_eval(&program, at, all, &without, err);
+    for (int i = 0; rc == MT_OK && i < model->n_parameters; i++) {
+        value[i] = all[nodes[i]];
+    }
+    /* the node belongs to the first parameter that it spoils: one whose node follows it first */
+    for (int i = 0; rc == MT_E_DOMAIN && i < model->n_parameters; i++) {
+        if (nodes[i] >= without && (*bad == MT_ABSENT || nodes[i] < nodes[*bad])) {
             *bad = i;
         }
     }
-    if (rc == MT_E_DOMAIN && *bad != MT_ABSENT) {
-        return mt_fail(err, rc, "parameter \"%s\" has no finite value",
-                       o->model->parameters[*bad].name.s);
-    }
+    return rc;
+}
+
+mt_status mt_model_parameters(const mt_model *model, int n_inputs, const int *inputs,
+                              const double *at, mt_arena *mem, double *value, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    int bad = MT_ABSENT;
+    const mt_status rc =
+        evaluate_parameters(model, n_inputs, inputs, at, mem, value, &bad, err);
+    mt_arena_rewind(mem, mark);
     return rc;
 }
 
 mt_status mt_model_original_values(const mt_model *model, mt_arena *mem, double *values,
                                    int *bad, mt_err *err)
 {
-    const size_t n = (size_t)model->n_parameters;
     const mt_arena_mark mark = mt_arena_get_mark(mem);
-    int ignored = MT_ABSENT;
-    int *const which = bad == NULL ? &ignored : bad;
-    *which = MT_ABSENT;
-    order o = {
-        .model = model,
-        .nodes = mt_arena_int(mem, n),
-        .stack = mt_arena_int(mem, n),
-        .cursor = mt_arena_int(mem, n),
-    };
-    mt_status rc = mt_program_init(&o.program, 0, mem, err);
-    for (size_t i = 0; rc == MT_OK && i < n; i++) {
-        o.nodes[i] = MT_NO_NODE;
-        o.cursor[i] = MT_ABSENT;
-    }
-    if (rc == MT_OK) {
-        rc = evaluate(&o, mem, values, which, err);
-    }
+    int which = MT_ABSENT;
+    const mt_status rc = evaluate_parameters(model, 0, NULL, NULL, mem, values, &which, err);
     mt_arena_rewind(mem, mark);
-    return rc;
+    if (bad != NULL) {
+        *bad = which;
+    }
+    return which == MT_ABSENT ? rc
+                              : mt_fail(err, rc, "parameter \"%s\" has no finite value",
+                                        model->parameters[which].name.s);
 }
 
 static mt_status expr_value(const mt_model *model, const double *values, const mt_expr *e,

@@ -2,7 +2,6 @@
 #ifndef MODEL_VALUES_H
 #define MODEL_VALUES_H
 
-#include "base/doubt.h"
 #include "expr/program.h"
 #include "model/model.h"
 
@@ -14,10 +13,10 @@
 /**
  * @param[in]  model   finished (no cycles among parameters)
  * @param[out] values  [n_parameters], each in its parameter's unit
- * @param[out] bad may be NULL: the parameter without a finite value where MT_E_DOMAIN is
- *   returned, else MT_ABSENT Scratch comes from mem and goes back. O(total length of the
- *   expressions). Fails: MT_E_DOMAIN, the message names the parameter; MT_E_INPUT (a cycle: the
- *   model was not checked), MT_E_MEMORY.
+ * @param[out] bad     may be NULL: the parameter without a finite value where MT_E_DOMAIN is
+ *                     returned, else MT_ABSENT
+ * Scratch comes from mem and goes back. O(total length of the expressions).
+ * Fails: MT_E_DOMAIN, the message names the parameter; MT_E_MEMORY, MT_E_INTERNAL (a cycle).
  */
 mt_status mt_model_original_values(const mt_model *model, mt_arena *mem, double *values,
                                    int *bad, mt_err *err);
@@ -41,7 +40,7 @@ mt_status mt_emit_parameters(const mt_model *model, int configuration, const int
  * Values of all parameters where some are inputs, those made of others following; no
  * configuration's overrides.
  * @param[out] value  [n_parameters]
- *   Scratch from mem, given back. Fails: MT_E_DOMAIN, MT_E_MEMORY, MT_E_INTERNAL.
+ * Scratch from mem, given back. Fails: MT_E_DOMAIN, MT_E_MEMORY, MT_E_INTERNAL.
  */
 mt_status mt_model_parameters(const mt_model *model, int n_inputs, const int *inputs,
                               const double *at, mt_arena *mem, double *value, mt_err *err);
@@ -49,27 +48,13 @@ mt_status mt_model_parameters(const mt_model *model, int n_inputs, const int *in
 /**
  * All numbers of the model as they are in a configuration, where some parameters are inputs.
  * @param[in]  inputs  [n_inputs] parameters; at[n_inputs] their values
- * @param[out] value [n_nums]; NaN where a number has no finite value (or stands behind one that
- *   has none) Scratch from mem, given back. O(total length of the expressions). Fails:
- *   MT_E_MEMORY, MT_E_INTERNAL.
+ * @param[out] value   [n_nums]; NaN where a number has no finite value (or stands behind one
+ *                     that has none)
+ * Scratch from mem, given back. O(total length of the expressions).
+ * Fails: MT_E_MEMORY, MT_E_INTERNAL.
  */
 mt_status mt_model_numbers(const mt_model *model, int configuration, int n_inputs,
                            const int *inputs, const double *at, mt_arena *mem, double *value,
                            mt_err *err);
-
-/**
- * Judge the numbers of a configuration: faults (masses and stiffnesses below 0, sections
- * without area) and doubts (a modulus that no material has, a drive beyond a turn). Each names
- * item and member, carries its JSON pointer and, where the model was read from a file, its
- * place.
- * @param[in]  value  [n_nums] as mt_model_numbers gives them
- */
-void mt_model_judge(const mt_model *model, int configuration, const double *value,
-                    mt_doubt_list *out);
-
-/* Are the numbers of a configuration those of a mechanism, with these inputs? Scratch from mem.
- * Fails: MT_E_USAGE (the first fault that mt_model_judge finds), as mt_model_numbers. */
-mt_status mt_model_admit(const mt_model *model, int configuration, int n_inputs,
-                         const int *inputs, const double *at, mt_arena *mem, mt_err *err);
 
 #endif

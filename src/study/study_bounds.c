@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "model/judge.h"
 #include "model/values.h"
 
 enum { MOST_ENUMERATED = 6 };

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "model/finish.h"
 #include "model/names.h"
 #include "mt_test.h"
 

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MODEL_JUDGE_PRIV_H
+#define MODEL_JUDGE_PRIV_H
+
+#include "model/judge.h"
+
+/* What the files judge*.c share: one configuration, its numbers, and what is said of them. */
+typedef struct mt_judge {
+    const mt_model *model;
+    int configuration;
+    const double *value; /* [n_nums] */
+    mt_doubt_list *out;
+} mt_judge;
+
+/* Which item of the file a number belongs to. */
+typedef struct mt_item {
+    const char *what; /* "link" */
+    const char *list; /* "links" */
+    int index;        /* in that list */
+    const char *name;
+} mt_item;
+
+/* Say where a doubt (NULL: out of memory) stands: the address of a number, and its pointer.
+ * Returns it. */
+mt_doubt *mt_judge_place(mt_judge *j, mt_doubt *doubt, mt_addr addr, const char *pointer);
+/* The pointer of the drive in force, which a configuration may have taken over. */
+const char *mt_judge_drive_pointer(const mt_judge *j, const char *member);
+/* Joints and springs off what they hold, pairs of points that are apart, sizes
+ * (judge_geometry.c). */
+void mt_judge_geometry(mt_judge *j);
+
+#endif
