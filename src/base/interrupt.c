@@ -19,30 +19,20 @@ void mt_interrupt_enter(mt_interrupt *i, int phase, bool makes_ready)
     i->makes_ready = makes_ready;
 }
 
-static void raise_level(mt_interrupt *i, int to)
-{
-    int had = atomic_load(&i->level);
-    while (had < to && !atomic_compare_exchange_weak(&i->level, &had, to)) {
-    }
-}
-
-/* The strongest wish so far: asked anew until there can be no stronger one. */
-static int level_of(mt_interrupt *i)
-{
-    if (i->wish != NULL && atomic_load(&i->level) < MT_WISH_END) {
-        raise_level(i, i->wish(i->context));
-    }
-    return atomic_load(&i->level);
-}
-
-/* Parts have no wish of their own: that of the outermost work counts for all. */
+/* The strongest wish so far, asked anew until there can be no stronger one. Parts have none of
+ * their own: that of the outermost work counts for all. */
 static int wish_for(mt_interrupt *i)
 {
-    mt_interrupt *whole = i;
-    while (whole->whole != NULL) {
-        whole = whole->whole;
+    while (i->whole != NULL) {
+        i = i->whole;
     }
-    return level_of(whole);
+    int had = atomic_load(&i->level);
+    if (i->wish != NULL && had < MT_WISH_END) {
+        const int now = i->wish(i->context);
+        while (had < now && !atomic_compare_exchange_weak(&i->level, &had, now)) {
+        }
+    }
+    return atomic_load(&i->level);
 }
 
 bool mt_interrupted(mt_interrupt *i)

@@ -92,10 +92,3 @@ mt_status mt_err_in(mt_err *err, mt_status rc, const char *fmt, ...)
     copy_cut(err->text, text);
     return rc;
 }
-
-mt_status mt_check_argument(const void *argument, const char *function, const char *name,
-                            mt_err *err)
-{
-    return argument != NULL ? MT_OK
-                            : mt_fail(err, MT_E_USAGE, "%s: %s is NULL", function, name);
-}

@@ -195,11 +195,6 @@ static mt_interval increasing(double (*f)(double), mt_interval a, double least, 
     return widen(f(a.lo), f(a.hi), least, most);
 }
 
-static mt_interval op_sqrt(mt_interval a)
-{
-    return a.lo < 0.0 ? mt_interval_all() : increasing(sqrt, a, 0.0, HUGE_VAL);
-}
-
 static mt_interval logarithm(double (*f)(double), mt_interval a)
 {
     return a.lo <= 0.0 ? mt_interval_all() : increasing(f, a, -HUGE_VAL, HUGE_VAL);
@@ -232,16 +227,6 @@ static mt_interval wave(double (*f)(double), mt_interval a, double crest)
     return widen(lo, hi, -1.0, 1.0);
 }
 
-static mt_interval op_sin(mt_interval a)
-{
-    return wave(sin, a, 0.25);
-}
-
-static mt_interval op_cos(mt_interval a)
-{
-    return wave(cos, a, 0.0);
-}
-
 static mt_interval op_tan(mt_interval a)
 {
     if (!(a.hi - a.lo < PI) || has_point(a, 0.5, PI)) {
@@ -253,26 +238,6 @@ static mt_interval op_tan(mt_interval a)
 static bool within_one(mt_interval a)
 {
     return a.lo >= -1.0 && a.hi <= 1.0;
-}
-
-static mt_interval op_asin(mt_interval a)
-{
-    return within_one(a) ? increasing(asin, a, -HUGE_VAL, HUGE_VAL) : mt_interval_all();
-}
-
-static mt_interval op_acos(mt_interval a)
-{
-    return within_one(a) ? widen(acos(a.hi), acos(a.lo), 0.0, HUGE_VAL) : mt_interval_all();
-}
-
-static mt_interval op_cosh(mt_interval a)
-{
-    return widen(cosh(mt_interval_mig(a)), cosh(mt_interval_mag(a)), 1.0, HUGE_VAL);
-}
-
-static mt_interval op_abs(mt_interval a)
-{
-    return mt_interval_of(mt_interval_mig(a), mt_interval_mag(a));
 }
 
 /* a^n, n an integer other than 0, |n| beyond 2^53 included: those are even. */
@@ -327,19 +292,13 @@ static mt_interval op_atan2(mt_interval y, mt_interval x)
                  HUGE_VAL);
 }
 
-static mt_interval op_hypot(mt_interval a, mt_interval b)
-{
-    return widen(hypot(mt_interval_mig(a), mt_interval_mig(b)),
-                 hypot(mt_interval_mag(a), mt_interval_mag(b)), 0.0, HUGE_VAL);
-}
-
 mt_interval mt_interval_op(mt_op op, mt_interval a, mt_interval b)
 {
     switch (op) {
     case MT_OP_NEG:
         return mt_interval_neg(a);
     case MT_OP_SQRT:
-        return op_sqrt(a);
+        return a.lo < 0.0 ? mt_interval_all() : increasing(sqrt, a, 0.0, HUGE_VAL);
     case MT_OP_CBRT:
         return increasing(cbrt, a, -HUGE_VAL, HUGE_VAL);
     case MT_OP_EXP:
@@ -349,25 +308,25 @@ mt_interval mt_interval_op(mt_op op, mt_interval a, mt_interval b)
     case MT_OP_LOG10:
         return logarithm(log10, a);
     case MT_OP_SIN:
-        return op_sin(a);
+        return wave(sin, a, 0.25);
     case MT_OP_COS:
-        return op_cos(a);
+        return wave(cos, a, 0.0);
     case MT_OP_TAN:
         return op_tan(a);
     case MT_OP_ASIN:
-        return op_asin(a);
+        return within_one(a) ? increasing(asin, a, -HUGE_VAL, HUGE_VAL) : mt_interval_all();
     case MT_OP_ACOS:
-        return op_acos(a);
+        return within_one(a) ? widen(acos(a.hi), acos(a.lo), 0.0, HUGE_VAL) : mt_interval_all();
     case MT_OP_ATAN:
         return increasing(atan, a, -HUGE_VAL, HUGE_VAL);
     case MT_OP_SINH:
         return increasing(sinh, a, -HUGE_VAL, HUGE_VAL);
     case MT_OP_COSH:
-        return op_cosh(a);
+        return widen(cosh(mt_interval_mig(a)), cosh(mt_interval_mag(a)), 1.0, HUGE_VAL);
     case MT_OP_TANH:
         return increasing(tanh, a, -1.0, 1.0);
     case MT_OP_ABS:
-        return op_abs(a);
+        return mt_interval_of(mt_interval_mig(a), mt_interval_mag(a));
     case MT_OP_ADD:
         return mt_interval_add(a, b);
     case MT_OP_SUB:
@@ -385,7 +344,8 @@ mt_interval mt_interval_op(mt_op op, mt_interval a, mt_interval b)
     case MT_OP_MAX:
         return mt_interval_of(fmax(a.lo, b.lo), fmax(a.hi, b.hi));
     case MT_OP_HYPOT:
-        return op_hypot(a, b);
+        return widen(hypot(mt_interval_mig(a), mt_interval_mig(b)),
+                     hypot(mt_interval_mag(a), mt_interval_mag(b)), 0.0, HUGE_VAL);
     case MT_OP_CONST:
     case MT_OP_PARAM:
     case MT_OP_COUNT:

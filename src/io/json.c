@@ -141,8 +141,10 @@ static mt_status build(mt_json *doc, mt_err *err)
     mt_arena scratch = {.first = NULL};
     const size_t n = (size_t)doc->spots.n;
     const char *const text = without_long_numbers(doc, &scratch);
+    /* NOLINTBEGIN(bugprone-sizeof-expression): pointers are what is meant */
     cJSON **const members = mt_arena_alloc(&scratch, n, sizeof *members);
-    doc->items = mt_arena_alloc(&doc->mem, n, sizeof(cJSON *));
+    doc->items = mt_arena_alloc(&doc->mem, n, sizeof *doc->items);
+    /* NOLINTEND(bugprone-sizeof-expression) */
     doc->duplicates = cJSON_CreateArray();
     if (mt_arena_failed(&scratch) || mt_arena_failed(&doc->mem) || doc->duplicates == NULL) {
         mt_arena_free(&scratch);

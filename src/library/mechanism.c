@@ -10,6 +10,7 @@
 #include "analysis/sensitivity.h"
 #include "base/text.h"
 #include "model/judge.h"
+#include "model/values.h"
 
 struct mt_mechanism {
     mt_analysis *a; /* owned */

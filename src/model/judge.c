@@ -8,12 +8,12 @@
 #include "model/judge.h"
 
 #include "model/judge_priv.h"
-#include "model/values.h"
 
 #include <math.h>
 #include <stddef.h>
 
 #include "base/format.h"
+#include "model/values.h"
 
 /* Pa. Silicone rubber has some 1e6, steel 2e11, diamond 1.2e12; steel in MPa is 2.1e5,
  * aluminium in psi 1e7 (not seen), steel in GPa 210. */
