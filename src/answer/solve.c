@@ -279,6 +279,27 @@ static mt_status phase(mt_answer *a, mt_phase which, phase_work work, mt_err *er
     return MT_OK;
 }
 
+/* A list that a phase did not get to is NULL, one that it found nothing for is empty. */
+static void *kept(const mt_answer *a, mt_phase which, void *list, int n)
+{
+    const bool cut = mt_interrupt_is_cut(&a->interrupt, (int)which);
+    if (list == NULL && !cut) {
+        return mt_arena_alloc(&a->result->mem, 0, 1);
+    }
+    return n == 0 && cut ? NULL : list;
+}
+
+static mt_status tell_cut_lists(mt_answer *a, mt_err *err)
+{
+    mt_result *const r = a->result;
+    r->undetermined = kept(a, MT_PHASE_SEARCH, r->undetermined, r->n_undetermined);
+    r->spread = kept(a, MT_PHASE_SPREAD, r->spread, r->n_spread);
+    r->certificates = kept(a, MT_PHASE_CERTIFICATES, r->certificates, r->n_certificates);
+    r->relaxations = kept(a, MT_PHASE_RELAXATIONS, r->relaxations, r->n_relaxations);
+    r->published = kept(a, MT_PHASE_PUBLISHED, r->published, r->n_published);
+    return mt_arena_check(&r->mem, err);
+}
+
 /* What of the proofs is left where they were cut: nothing. */
 static mt_status certify_whole(mt_answer *a, mt_err *err)
 {
@@ -331,6 +352,7 @@ static mt_status fill(mt_answer *a, const mt_solve_options *opt, mt_err *err)
     result->run.starts = a->found.starts;
     MT_TRY(mt_answer_set_status(a, err));
     MT_TRY(phase(a, MT_PHASE_PUBLISHED, publish, err));
+    MT_TRY(tell_cut_lists(a, err));
     return mt_describe_own(a->study, result, err);
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "modetune/version.h"
 
+#include "base/build.h"
 #include "cli/limits.h"
 
 typedef int (*command_function)(const mt_args *args, mt_text *out);
@@ -34,7 +35,8 @@ int mt_cli_main(int argc, char *const argv[])
     if (rc != MT_OK) {
         code = wrong_use(&args, rc, &err);
     } else if (args.given[MT_OPT_VERSION]) {
-        mt_text_addf(&out, "modetune %s\n", mt_version());
+        mt_text_addf(&out, "modetune %s (commit %s, compiled by %s)\n", mt_version(),
+                     mt_build_commit(), mt_build_compiler());
     } else if (args.given[MT_OPT_MANUAL]) {
         mt_manual(&out);
     } else if (args.given[MT_OPT_HELP]) {

@@ -161,15 +161,19 @@ static mt_status judge(mt_workspace *fresh, int goal, int configuration, mt_resu
         nominal = find_tightest(fresh, at, &own.bands, false);
         worst = fresh->robust != NULL ? find_tightest(fresh, at, &own.bands, true) : worst;
     }
-    *out = (mt_result_goal){
-        .text = avoid_text(g, mt_analysis_configuration(view->analysis), mem),
-        .pointer = mt_arena_printf(mem, "/goals/%d", goal),
-        .value = nominal.has,
-        .demand = nominal.asked,
-        /* 0, or NaN */
-        .violation_percent = violation > 0.0 ? fmax(nominal.missing, worst.missing) : violation,
-        .met = mt_is_met(violation, mt_goal_tolerance(g)),
-        .worst = worst.has};
+    *out = mt_result_goal_default();
+    out->type = mt_goal_kind_of(MT_GOAL_AVOID)->name;
+    out->configuration = mt_analysis_configuration(view->analysis);
+    out->text = avoid_text(g, out->configuration, mem);
+    out->pointer = mt_arena_printf(mem, "/goals/%d", goal);
+    out->unit = "%";
+    out->value = nominal.has;
+    out->at_least = nominal.asked;
+    out->tolerance_percent = PERCENT * mt_goal_tolerance(g);
+    /* 0, or NaN */
+    out->violation_percent = violation > 0.0 ? fmax(nominal.missing, worst.missing) : violation;
+    out->met = mt_is_met(violation, mt_goal_tolerance(g));
+    out->worst = worst.has;
     if (worst.at != NULL) {
         out->worst_at = mt_arena_f64(mem, (size_t)fresh->p->n, 1);
         MT_TRY(mt_arena_check(mem, err));
@@ -219,6 +223,7 @@ typedef struct listing {
     mt_recommendation *rec;
     const char *configuration;
     const mt_bands *bands;
+    int first; /* index of the first band among all of the study */
 } listing;
 
 static mt_status add_clearance(const listing *l, int band, int mode, double hz, mt_err *err)
@@ -227,7 +232,10 @@ static mt_status add_clearance(const listing *l, int band, int mode, double hz, 
     mt_result_clearance *const c = &l->rec->clearances[l->rec->n_clearances];
     mt_band_side side = MT_INSIDE_BAND;
     const double *at = NULL;
-    *c = (mt_result_clearance){.configuration = l->configuration, .mode = mode, .hz = hz};
+    *c = (mt_result_clearance){.configuration = l->configuration,
+                               .band_id = l->first + band + 1,
+                               .mode = mode,
+                               .hz = hz};
     c->worst_hz = mt_describe_worst_hz(l->fresh, l->view, mode, b, hz, &at);
     c->worst_percent = MT_HAS(c->worst_hz) ? clearance(b, c->worst_hz, &side) : nan("");
     c->percent = clearance(b, hz, &side);
@@ -263,6 +271,7 @@ static mt_status list_gaps(const listing *l, const int *below, mt_err *err)
     for (int b = 0; b < l->bands->n; b++) {
         const mt_band *const band = &l->bands->items[b];
         l->rec->gaps[l->rec->n_gaps] = (mt_result_gap){
+            .id = l->first + b + 1,
             .configuration = l->configuration,
             .band = mt_arena_strdup(&l->result->mem, band->label),
             .lower_hz = band->base_lower_hz,
@@ -289,7 +298,8 @@ static mt_status list_clear(mt_workspace *fresh, const mt_clear *c, int *below,
                        .result = result,
                        .rec = rec,
                        .configuration = mt_analysis_configuration(view->analysis),
-                       .bands = &c->bands};
+                       .bands = &c->bands,
+                       .first = c->first};
     if (!view->solved || !MT_HAS(mt_clear_look(c, modes, below))) {
         return MT_OK; /* unstable: no mode has an index here */
     }

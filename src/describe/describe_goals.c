@@ -20,15 +20,15 @@ static const char *quantity_text(const mt_problem *p, const mt_demand *d, mt_are
                : mt_arena_printf(mem, "%s \"%s\"", configuration, d->goal->mode.mode_name.s);
 }
 
-/* " from a to b Hz", " at least a Hz", " at most b Hz", " at a Hz as mode 2 of \"fe\"", or nothing;
- * *number: the number meant, 0 where there is none. */
-static const char *interval_text(const mt_demand *d, mt_arena *mem, double *number)
+/* " from a to b Hz", " at least a Hz", " at most b Hz", " at a Hz as mode 2 of \"fe\"", or
+ * nothing. */
+static const char *interval_text(const mt_demand *d, mt_arena *mem)
 {
     const mt_goal *const g = d->goal;
     const char *const name = mt_goal_kind_of(g->type)->unit;
     const char *const unit = mt_arena_printf(mem, "%s%s", name[0] != '\0' ? " " : "", name);
     const bool least = MT_HAS(g->at_least);
-    *number = MT_HAS(d->equals) ? d->equals : least ? g->at_least : g->at_most;
+    const double number = least ? g->at_least : g->at_most;
     if (unit == NULL) {
         return NULL;
     }
@@ -42,22 +42,20 @@ static const char *interval_text(const mt_demand *d, mt_arena *mem, double *numb
     if (least && MT_HAS(g->at_most)) {
         return mt_arena_printf(mem, " from %.10g to %.10g%s", g->at_least, g->at_most, unit);
     }
-    if (!MT_HAS(*number)) {
-        *number = 0.0;
+    if (!MT_HAS(number)) {
         return "";
     }
-    return mt_arena_printf(mem, " at %s %.10g%s", least ? "least" : "most", *number, unit);
+    return mt_arena_printf(mem, " at %s %.10g%s", least ? "least" : "most", number, unit);
 }
 
-/* What a demand asks for, as text, and the number that it asks for. NULL where memory is out. */
-static const char *demand_text(const mt_problem *p, const mt_demand *d, mt_arena *mem,
-                               double *number)
+/* What a demand asks for, as text. NULL where memory is out. */
+static const char *demand_text(const mt_problem *p, const mt_demand *d, mt_arena *mem)
 {
     const char *const quantity = quantity_text(p, d, mem);
     const char *const subject = quantity == NULL || d->ops->subject == NULL
                                     ? quantity
                                     : d->ops->subject(d, quantity, mem);
-    const char *const interval = interval_text(d, mem, number);
+    const char *const interval = interval_text(d, mem);
     return subject == NULL || interval == NULL
                ? NULL
                : mt_arena_printf(mem, "%s%s", subject, interval);
@@ -136,13 +134,34 @@ static mt_status doubt(const mt_workspace *fresh, const mt_demand *d, mt_result 
     return g->text == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
+/* What is asked for, of what, in figures. */
+static void say_what(const mt_problem *p, const mt_demand *d, mt_result_goal *g)
+{
+    const mt_goal *const asked = d->goal;
+    const mt_goal_kind *const kind = mt_goal_kind_of(asked->type);
+    g->type = kind->name;
+    g->unit = d->view < 0 ? NULL : kind->unit;
+    g->expression = d->view < 0 ? asked->expression_text : NULL;
+    g->reference = asked->reference_name.s;
+    if (d->view >= 0) {
+        g->configuration = mt_view_name(p, &p->views[d->view]);
+        g->mode = d->mode;
+        g->name = d->mode > 0 ? NULL : asked->mode.mode_name.s;
+    }
+    g->at_least = asked->at_least;
+    g->at_most = asked->at_most;
+    g->target = asked->type == MT_GOAL_SHAPE ? 0.0 : d->equals;
+    g->tolerance_percent = PERCENT * d->tolerance;
+}
+
 static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v,
                        mt_result *result, mt_result_goal *g, mt_err *why, mt_err *err)
 {
     mt_err own = {0};
     double violation = nan("");
     double percent = nan("");
-    g->worst = nan("");
+    *g = mt_result_goal_default();
+    say_what(fresh->p, d, g);
     const mt_status rc = mt_demand_eval(fresh, d, false, v, &g->value, &own);
     if (mt_is_final(rc)) {
         return mt_fail(err, rc, "%s", own.text);
@@ -157,7 +176,7 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
         *why = why->code == MT_OK ? own : *why;
     }
     g->weighted = d->row_res >= 0;
-    g->text = demand_text(fresh->p, d, &result->mem, &g->demand);
+    g->text = demand_text(fresh->p, d, &result->mem);
     g->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
     g->violation_percent = percent;
     g->met = mt_is_met(violation, d->tolerance);

@@ -21,6 +21,7 @@ typedef struct crossing {
     const char *to;
     int from_below;
     int to_below;
+    int band_id;
 } crossing;
 
 typedef struct described {
@@ -55,7 +56,8 @@ static void find_between(described *d, const mt_clear *a, const mt_clear *b, con
                                       configuration_of(d, a),
                                       configuration_of(d, b),
                                       here,
-                                      there};
+                                      there,
+                                      d->fresh->c->tie[a->first + x] + 1};
             }
         }
     }
@@ -223,10 +225,14 @@ static mt_status put_goal(const described *d, const char *range, mt_recommendati
     mt_result_goal *const g = &rec->goals[rec->n_goals++];
     mt_arena *const mem = &d->result->mem;
     const crossing *const c = &d->cross;
-    *g = (mt_result_goal){.value = d->followed ? d->motion.percent : nan(""),
-                          .demand = d->followed ? d->motion.margin_percent : nan(""),
-                          .violation_percent = PERCENT * d->violation,
-                          .met = mt_is_met(d->violation, d->tolerance)};
+    *g = mt_result_goal_default();
+    g->type = mt_goal_kind_of(MT_GOAL_AVOID)->name;
+    g->unit = "%";
+    g->value = d->followed ? d->motion.percent : nan("");
+    g->at_least = d->followed ? d->motion.margin_percent : nan("");
+    g->tolerance_percent = PERCENT * d->tolerance;
+    g->violation_percent = PERCENT * d->violation;
+    g->met = mt_is_met(d->violation, d->tolerance);
     g->text = c->mode > 0 && !d->followed
                   ? mt_arena_printf(mem,
                                     "%s clear of its bands: mode %d crosses %s between "
@@ -254,6 +260,7 @@ static mt_status put_row(const described *d, const char *range, double from, dou
     row->grade = grade_of(d);
     row->mode = d->followed ? m->mode : c->mode;
     row->band = band == NULL ? NULL : mt_arena_strdup(mem, band);
+    row->band_id = band == NULL ? 0 : d->followed ? m->tie + 1 : c->band_id;
     row->crosses = d->violation > 0.0 && !mt_is_met(d->violation, d->tolerance) &&
                    (d->followed || c->mode > 0);
     if (d->followed) {

@@ -5,11 +5,29 @@
 
 #include <string.h>
 
+#include "base/build.h"
 #include "describe/describe.h"
 #include "linalg/blas.h"
 #include "nlp/libraries.h"
 
 enum { VERSION_SIZE = 16 };
+
+static mt_status describe_objectives(const mt_study *study, mt_result *result, mt_err *err)
+{
+    result->objectives =
+        mt_arena_alloc(&result->mem, (size_t)study->n_objectives, sizeof *result->objectives);
+    if (result->objectives == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < study->n_objectives; i++) {
+        const mt_objective *const o = &study->objectives[i];
+        const mt_objective_kind *const kind = mt_objective_kind_of(o->type);
+        const bool own = o->type == MT_OBJECTIVE_EXPRESSION;
+        result->objectives[result->n_objectives++] = (mt_result_objective){
+            kind->name, own ? o->expression_text : kind->name, own ? NULL : kind->unit};
+    }
+    return MT_OK;
+}
 
 mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err)
 {
@@ -19,6 +37,7 @@ mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err)
     char nlopt[VERSION_SIZE];
     mt_nlopt_version(nlopt);
     run->modetune_version = MT_VERSION_STRING;
+    run->build = (mt_result_build){mt_build_commit(), mt_build_compiler()};
     run->blas = mt_arena_strdup(mem, mt_blas_description());
     run->nlopt_version = mt_arena_strdup(mem, nlopt);
     run->gsl_version = mt_arena_strdup(mem, mt_gsl_version());
@@ -37,7 +56,7 @@ mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err)
     for (int i = 0; i < study->n_variables; i++) {
         result->variables[i] = study->variables[i].parameter_name.s;
     }
-    return MT_OK;
+    return describe_objectives(study, result, err);
 }
 
 mt_status mt_describe_own(const mt_study *study, mt_result *result, mt_err *err)

@@ -147,7 +147,9 @@ static void add_footer(const mt_result_run *run, mt_text *out)
 {
     mt_text_add(out, "<footer>modetune ");
     mt_html_escape(run->modetune_version == NULL ? "" : run->modetune_version, out);
-    mt_text_addf(out, ", seed %ld, %ld evaluations from %d starts.", run->seed,
+    mt_text_add(out, " (");
+    mt_html_escape(run->build.commit == NULL ? "" : run->build.commit, out);
+    mt_text_addf(out, "), seed %ld, %ld evaluations from %d starts.", run->seed,
                  run->evaluations, run->starts);
     for (int i = 0; i < run->n_inputs; i++) {
         mt_text_add(out, "<br>");

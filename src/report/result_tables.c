@@ -127,6 +127,26 @@ bool mt_report_measure(const mt_result_parameter *p, mt_text *out)
     return false;
 }
 
+/* The target or the limit; "7.00000 to 9.00000" where there are two. */
+static void asked_cell(mt_table *t, const mt_result_goal *g)
+{
+    char low[MT_NUMBER_TEXT];
+    char high[MT_NUMBER_TEXT];
+    char text[DEMAND_TEXT];
+    if (isnan(g->target) && !isnan(g->at_least) && !isnan(g->at_most)) {
+        (void)mt_snprintf(text, sizeof text, "%s to %s",
+                          mt_report_number(g->at_least, VALUE_DIGITS, low),
+                          mt_report_number(g->at_most, VALUE_DIGITS, high));
+        mt_table_text(t, text);
+        return;
+    }
+    mt_table_number(t,
+                    !isnan(g->target)     ? g->target
+                    : !isnan(g->at_least) ? g->at_least
+                                          : g->at_most,
+                    VALUE_DIGITS);
+}
+
 mt_table mt_report_goals(const mt_recommendation *r)
 {
     mt_table t = mt_table_default();
@@ -145,7 +165,7 @@ mt_table mt_report_goals(const mt_recommendation *r)
         if (r->worst_case != NULL) {
             mt_table_number(&t, g->worst, VALUE_DIGITS);
         }
-        mt_table_number(&t, g->demand, VALUE_DIGITS);
+        asked_cell(&t, g);
         mt_table_percent(&t, g->violation_percent, PERCENT_DIGITS);
         mt_table_text(&t, g->weighted ? "weighted" : g->met ? "met" : "not met");
     }

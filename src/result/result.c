@@ -4,6 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "study/goal_kinds.h"
+#include "study/objective_kinds.h"
+
 /* What each record holds, in the order of result.json. */
 
 #define STATUS_NAME(id, name) name,
@@ -61,6 +64,7 @@ static const char *const SIDES[] = {"below", "inside", "above"};
 static const mt_field CLEARANCE_FIELDS[] = {
     MT_F_TEXT("configuration", configuration),
     MT_F_TEXT("band", band),
+    MT_F_COUNT("band_id", band_id, 1),
     MT_F_COUNT("mode", mode, 1),
     MT_F_NUMBER_OR_NULL("hz", hz),
     MT_F_NUMBER_OR_NULL("percent", percent),
@@ -74,6 +78,7 @@ static const mt_record CLEARANCE = MT_F_RECORD_OF(CLEARANCE_FIELDS);
 
 #define THIS mt_result_gap
 static const mt_field GAP_FIELDS[] = {
+    MT_F_COUNT("id", id, 1),
     MT_F_TEXT("configuration", configuration),
     MT_F_TEXT("band", band),
     MT_F_NUMBER_OR_NULL("lower_hz", lower_hz),
@@ -102,6 +107,7 @@ static const mt_field MOTION_FIELDS[] = {
     MT_F_NUMBER_OR_NULL("hz", hz),
     MT_F_COUNT_OR_NULL("mode", mode, 1),
     MT_F_TEXT_OR_NULL("band", band),
+    MT_F_COUNT_OR_NULL("band_id", band_id, 1),
     MT_F_FLAG("crosses", crosses),
     MT_F_CHOICE("grade", grade, MOTION_GRADES),
     MT_F_TEXT("text", text),
@@ -128,12 +134,25 @@ static const mt_field TOLERANCE_BOX_FIELDS[] = {
 static const mt_record TOLERANCE_BOX = MT_F_RECORD_OF(TOLERANCE_BOX_FIELDS);
 #undef THIS
 
-#define THIS mt_result_goal
+#define THIS                     mt_result_goal
+#define GOAL_NAME(id, name, ...) #name,
+static const char *const GOAL_TYPES[] = {MT_GOAL_LIST(GOAL_NAME)};
+#undef GOAL_NAME
 static const mt_field GOAL_FIELDS[] = {
     MT_F_TEXT("goal", text),
     MT_F_TEXT("pointer", pointer),
+    MT_F_CHOICE("type", type, GOAL_TYPES),
+    MT_F_TEXT_OR_NULL("configuration", configuration),
+    MT_F_COUNT_OR_NULL("mode", mode, 1),
+    MT_F_TEXT_OR_NULL("name", name),
+    MT_F_TEXT_OR_NULL("reference", reference),
+    MT_F_TEXT_OR_NULL("expression", expression),
+    MT_F_TEXT_OR_NULL("unit", unit),
     MT_F_NUMBER_OR_NULL("value", value),
-    MT_F_NUMBER_OR_NULL("demand", demand),
+    MT_F_NUMBER_OR_NULL("target", target),
+    MT_F_NUMBER_OR_NULL("at_least", at_least),
+    MT_F_NUMBER_OR_NULL("at_most", at_most),
+    MT_F_NUMBER_OR_NULL("tolerance_percent", tolerance_percent),
     MT_F_NUMBER_OR_NULL("worst", worst),
     MT_F_BY_VARIABLE_OR_NULL("worst_at", worst_at),
     MT_F_NUMBER_OR_NULL("violation_percent", violation_percent),
@@ -317,11 +336,20 @@ static const mt_field DIGEST_FIELDS[] = {
 static const mt_record DIGEST = MT_F_RECORD_OF(DIGEST_FIELDS);
 #undef THIS
 
+#define THIS mt_result_build
+static const mt_field BUILD_FIELDS[] = {
+    MT_F_TEXT("commit", commit),
+    MT_F_TEXT("compiler", compiler),
+};
+static const mt_record BUILD = MT_F_RECORD_OF(BUILD_FIELDS);
+#undef THIS
+
 #define THIS mt_result_run
 static const char *const PHASES[] = {"search",      "recommendations", "spread", "certificates",
                                      "relaxations", "published",       "trade"};
 static const mt_field RUN_FIELDS[] = {
     MT_F_TEXT_OR_NULL("modetune", modetune_version),
+    MT_F_RECORD("build", build, mt_result_build, BUILD),
     MT_F_TEXT_OR_NULL("blas", blas),
     MT_F_TEXT_OR_NULL("nlopt", nlopt_version),
     MT_F_TEXT_OR_NULL("gsl", gsl_version),
@@ -336,6 +364,18 @@ static const mt_field RUN_FIELDS[] = {
     MT_F_LIST("outputs", outputs, n_outputs, mt_result_digest, DIGEST),
 };
 static const mt_record RUN = MT_F_RECORD_OF(RUN_FIELDS);
+#undef THIS
+
+#define THIS                          mt_result_objective
+#define OBJECTIVE_NAME(id, name, ...) #name,
+static const char *const OBJECTIVE_TYPES[] = {MT_OBJECTIVE_LIST(OBJECTIVE_NAME)};
+#undef OBJECTIVE_NAME
+static const mt_field OBJECTIVE_FIELDS[] = {
+    MT_F_CHOICE("type", type, OBJECTIVE_TYPES),
+    MT_F_TEXT("text", text),
+    MT_F_TEXT_OR_NULL("unit", unit),
+};
+static const mt_record OBJECTIVE = MT_F_RECORD_OF(OBJECTIVE_FIELDS);
 #undef THIS
 
 #define THIS mt_result_source
@@ -355,16 +395,19 @@ static const mt_field RESULT_FIELDS[] = {
     MT_F_LIST("doubts", doubts, n_doubts, mt_doubt, mt_doubt_record),
     MT_F_LIST("facts", facts, n_facts, mt_doubt, mt_doubt_record),
     MT_F_TEXTS("variables", variables, n_variables),
+    MT_F_LIST("objectives", objectives, n_objectives, mt_result_objective, OBJECTIVE),
     MT_F_RECORD("baseline", baseline, mt_recommendation, mt_design_record),
     MT_F_LIST("recommendations", recommendations, n_recommendations, mt_recommendation,
               mt_design_record),
-    MT_F_LIST("undetermined", undetermined, n_undetermined, mt_undetermined, UNDETERMINED),
-    MT_F_LIST("spread", spread, n_spread, mt_result_spread, SPREAD),
-    MT_F_LIST("certificates", certificates, n_certificates, mt_certificate, CERTIFICATE),
-    MT_F_LIST("relaxations", relaxations, n_relaxations, mt_relaxation, RELAXATION),
+    MT_F_LIST_OR_NULL("undetermined", undetermined, n_undetermined, mt_undetermined,
+                      UNDETERMINED),
+    MT_F_LIST_OR_NULL("spread", spread, n_spread, mt_result_spread, SPREAD),
+    MT_F_LIST_OR_NULL("certificates", certificates, n_certificates, mt_certificate,
+                      CERTIFICATE),
+    MT_F_LIST_OR_NULL("relaxations", relaxations, n_relaxations, mt_relaxation, RELAXATION),
     MT_F_LIST("excitations", excitations, n_excitations, mt_result_excitation, EXCITATION),
     MT_F_OPTION("trade", trade, mt_trade_result, TRADE),
-    MT_F_LIST("published", published, n_published, mt_result_published, PUBLISHED),
+    MT_F_LIST_OR_NULL("published", published, n_published, mt_result_published, PUBLISHED),
     MT_F_TEXTS("warnings", warnings, n_warnings),
     MT_F_RECORD("run", run, mt_result_run, RUN),
 };
@@ -453,6 +496,13 @@ mt_recommendation mt_recommendation_default(void)
 {
     mt_recommendation r;
     mt_record_clear(&mt_design_record, &r);
+    return r;
+}
+
+mt_result_goal mt_result_goal_default(void)
+{
+    mt_result_goal r;
+    mt_record_clear(&GOAL, &r);
     return r;
 }
 

@@ -59,12 +59,24 @@ typedef struct mt_result_frequency {
     const char *slack;
 } mt_result_frequency;
 
-/* A goal judged at a design. */
+/* A goal judged at a design: of one mode in one configuration, of the bands of one, of the
+ * motion of a drive between its named positions, or of an expression. */
 typedef struct mt_result_goal {
-    const char *text;    /* "installed mode 1 at 18 Hz" */
-    const char *pointer; /* "/goals/0" */
+    const char *text;          /* "installed mode 1 at 18 Hz" */
+    const char *pointer;       /* "/goals/0" */
+    const char *type;          /* as files call it: "frequency" */
+    const char *configuration; /* NULL: of none, or of several */
+    int mode;                  /* as asked by its index; 0: by name, or none */
+    const char *name;          /* of the mode, where asked by it; NULL */
+    const char *reference;     /* that it is compared with; NULL */
+    const char *expression;    /* of a limit; NULL */
+    /* of value, target and limits; "": none; NULL: the expression's own */
+    const char *unit;
     double value;
-    double demand; /* target or limit */
+    double target; /* NaN: limits only; of a shape 0: its distance */
+    double at_least;
+    double at_most;
+    double tolerance_percent; /* a violation up to it is met */
     double violation_percent;
     bool met;
     bool weighted; /* part of the misfit: does not decide status */
@@ -79,6 +91,7 @@ typedef struct mt_result_goal {
 typedef struct mt_result_clearance {
     const char *configuration;
     const char *band; /* its label: "4P of UH-60" */
+    int band_id;      /* as in mt_result_gap */
     int mode;         /* vibration index at this design */
     double hz;
     double percent; /* of the nearest edge of the band without its margin; negative inside */
@@ -92,6 +105,8 @@ typedef struct mt_result_clearance {
 
 /* How many modes lie below a band: the kind of a design. */
 typedef struct mt_result_gap {
+    /* of this band of this configuration, from 1: the same at all designs of a result */
+    int id;
     const char *configuration;
     const char *band;
     double lower_hz; /* of the band without its margin */
@@ -116,6 +131,7 @@ typedef struct mt_result_motion {
     double hz;
     int mode;         /* whose it is, or which crosses; 0: none */
     const char *band; /* NULL: none */
+    int band_id;      /* as in mt_result_gap, of the first position that has it; 0: none */
     /* a mode is nearer to a band than its margin, or inside, between the positions */
     bool crosses;
     /* "sampled" | "sampled coarsely" | "incomplete" | "unstable" | "not followed" */
@@ -292,8 +308,15 @@ typedef struct mt_result_digest {
     const char *sha256; /* hexadecimal */
 } mt_result_digest;
 
+/* What the program was made from. */
+typedef struct mt_result_build {
+    const char *commit; /* "unknown" where the sources were no repository */
+    const char *compiler;
+} mt_result_build;
+
 typedef struct mt_result_run {
     const char *modetune_version;
+    mt_result_build build;
     const char *blas;
     const char *nlopt_version;
     const char *gsl_version;
@@ -314,6 +337,13 @@ typedef struct mt_result_run {
     const char **incomplete;
 } mt_result_run;
 
+/* What the designs are best in, first of all in the first. */
+typedef struct mt_result_objective {
+    const char *type; /* as files call it: "mass" */
+    const char *text; /* the type, or the expression */
+    const char *unit; /* "": none; NULL: the expression's own */
+} mt_result_objective;
+
 typedef struct mt_result_source {
     const char *name; /* NULL: the file gives none */
     const char *file;
@@ -324,10 +354,13 @@ typedef struct mt_result {
     mt_result_source study;  /* its file name, without folder */
     mt_result_source model;  /* as the study writes it, relative to its folder: for `apply` */
     const char *status_text; /* one sentence */
+    int n_objectives;        /* 0: none is asked for */
+    mt_result_objective *objectives;
     mt_recommendation baseline; /* the original design, rank 0 */
     mt_result_status status;
     int n_recommendations;
     mt_recommendation *recommendations;
+    /* lists that are NULL were not computed: an interrupt cut them */
     int n_undetermined;
     mt_undetermined *undetermined;
     int n_spread; /* 0, or one per variable */
@@ -381,6 +414,7 @@ extern const mt_record mt_doubt_record;
 
 /* A recommendation whose numbers are all "not applicable"; the others likewise. */
 mt_recommendation mt_recommendation_default(void);
+mt_result_goal mt_result_goal_default(void);
 mt_result_frequency mt_result_frequency_default(void);
 mt_result_published mt_result_published_default(void);
 mt_certificate mt_certificate_default(void);

@@ -58,7 +58,8 @@ class Help(CliTest):
     def test_version_is_that_of_the_header(self):
         header = (SOURCE / "include/modetune/version.h").read_text(encoding="utf-8")
         version = re.search(r'MT_VERSION_STRING "([^"]+)"', header).group(1)
-        self.assertEqual(self.expect(0, "--version").stdout, f"modetune {version}\n")
+        self.assertRegex(self.expect(0, "--version").stdout,
+                         rf"^modetune {re.escape(version)} \(commit [-+.0-9A-Za-z]+, compiled by [A-Za-z]+ [0-9.]+\)\n$")
 
     def test_manual_page_is_well_formed_and_says_what_help_says(self):
         page = self.expect(0, "--manual").stdout

@@ -26,7 +26,7 @@ static void bands__are_goals_with_clearance_and_margin(mt_test *t)
     CHECK(t, !r->goals[0].met && !r->feasible);
     /* mode 2 inside the second band: to its upper edge it is 2.9 %, and 5 % more are asked */
     CHECK_NEAR(t, r->goals[0].value, 100.0 * (f2 - 0.34) / 0.34, 1e-9);
-    CHECK_NEAR(t, r->goals[0].demand, 5.0, 1e-9);
+    CHECK_NEAR(t, r->goals[0].at_least, 5.0, 1e-9);
     CHECK_NEAR(t, r->goals[0].violation_percent, 100.0 * (0.34 * 1.05 - f2) / 0.34, 1e-9);
     CHECK_NEAR(t, r->clearance_percent, 100.0 * (f2 - 0.34) / 0.34, 1e-9);
     CHECK_STR(t, r->clearances[0].side, "above");

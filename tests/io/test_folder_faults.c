@@ -69,6 +69,7 @@ static void make(unit *u, const char *version, bool trade)
     u->ok = mt_result_new(&r, NULL) == MT_OK;
     if (u->ok) {
         r->study.file = "s.json";
+        r->run.build = (mt_result_build){"unknown", "none"};
         r->model.file = "m.json";
         r->status_text = version;
         u->ok = mt_result_note_outputs(r, n, names, outputs, NULL) == MT_OK &&

@@ -33,7 +33,12 @@ static double SENSITIVITY[] = {1.25e-3, -2.0};
 static mt_result_goal GOALS[] = {{.text = "installed mode 1 at 18 Hz",
                                   .pointer = "/goals/0",
                                   .value = 18.0,
-                                  .demand = 18.0,
+                                  .type = "frequency",
+                                  .configuration = "installed",
+                                  .mode = 1,
+                                  .unit = "Hz",
+                                  .target = 18.0,
+                                  .tolerance_percent = 1e-4,
                                   .met = true,
                                   .worst = 17.5}};
 static const char *REASONS[] = {"K_T1 rises by 1.5 %."};
@@ -61,6 +66,8 @@ static mt_relaxation RELAXATIONS[] = {{.kind = "bound",
                                        .change_percent = 100.0,
                                        .design = DESIGN,
                                        .text = "raise it"}};
+static mt_result_objective OBJECTIVES[] = {{"change", "change", ""},
+                                           {"expression", "a + b", NULL}};
 static const char *CONFIGURATIONS[] = {"installed"};
 static mt_result_order ORDERS[] = {{"4P", 4.0}};
 static mt_result_excitation EXCITATIONS[] = {{"/goals/1", "UH-60", 4.0, 4.5, 10.0,
@@ -103,19 +110,21 @@ static void fill_design(sample *s, mt_recommendation *r)
 static mt_result_clearance CLEARANCES[] = {
     {.configuration = "installed",
      .band = "4P of UH-60",
+     .band_id = 1,
      .mode = 1,
      .hz = 14.0,
      .percent = 12.5,
      .side = "below"},
     {.configuration = "installed",
      .band = "4P of UH-60",
+     .band_id = 1,
      .mode = 2,
      .hz = 25.0,
      .percent = 30.0,
      .side = "above"},
 };
 static mt_result_gap GAPS[] = {
-    {.configuration = "installed", .band = "4P of UH-60", .modes_below = 1},
+    {.id = 1, .configuration = "installed", .band = "4P of UH-60", .modes_below = 1},
 };
 static mt_result_motion MOTIONS[] = {
     {.pointer = "/goals/0",
@@ -130,6 +139,7 @@ static mt_result_motion MOTIONS[] = {
      .hz = 14.5,
      .mode = 1,
      .band = "4P of UH-60",
+     .band_id = 1,
      .grade = "sampled",
      .text = "mode 1 comes nearest"},
 };
@@ -241,9 +251,25 @@ static bool make_sample(sample *s)
     r->published = s->published;
     r->n_warnings = 1;
     r->warnings = REASONS;
-    r->run = (mt_result_run){
-        "0.1.0", "OpenBLAS 0.3.21", "2.7.1", "2.7.1",   1, 1234, 16, 9, 3, 1.5, 1, INPUTS,
-        1,       OUTPUTS,           1,       INCOMPLETE};
+    r->n_objectives = MT_COUNT(OBJECTIVES);
+    r->objectives = OBJECTIVES;
+    r->run = (mt_result_run){.modetune_version = "0.1.0",
+                             .build = {"0123456789ab", "GNU 12.2.0"},
+                             .blas = "OpenBLAS 0.3.21",
+                             .nlopt_version = "2.7.1",
+                             .gsl_version = "2.7.1",
+                             .seed = 1,
+                             .evaluations = 1234,
+                             .starts = 16,
+                             .distinct_designs = 9,
+                             .found_once = 3,
+                             .estimated_missing = 1.5,
+                             .n_inputs = MT_COUNT(INPUTS),
+                             .inputs = INPUTS,
+                             .n_outputs = MT_COUNT(OUTPUTS),
+                             .outputs = OUTPUTS,
+                             .n_incomplete = MT_COUNT(INCOMPLETE),
+                             .incomplete = INCOMPLETE};
     return true;
 }
 
@@ -363,6 +389,10 @@ static void result_file__holds_what_the_design_promises(mt_test *t)
         "\"direction\": \"M_SAU\"",
         "\"proven\": true",
         "\"seed\": 1",
+        "\"relaxations\": [\n",
+        "\"target\": 18,",
+        "\"band_id\": 1",
+        "\"commit\": \"0123456789ab\"",
     };
     mt_text text = written(NULL, NULL);
     REQUIRE(t, text.s != NULL);

@@ -132,14 +132,14 @@ static void designs__have_the_baseline_first_and_one_column_per_variable(mt_test
 }
 
 static mt_result_clearance clearances[] = {
-    {"held", "4P of X", 1, 1.0, 20.0, 10.0, "below", 0.0, 0.0},
-    {"held", "4P of X", 2, 2.0, 33.0, 10.0, "above", 0.0, 0.0},
-    {"held", "8P of X", 2, 2.0, -1.5, 10.0, "inside", 0.0, 0.0},
-    {"up", "4P of X", 2, 2.5, 40.0, 10.0, "below", 0.0, 0.0},
+    {"held", "4P of X", 1, 1, 1.0, 20.0, 10.0, "below", 0.0, 0.0},
+    {"held", "4P of X", 1, 2, 2.0, 33.0, 10.0, "above", 0.0, 0.0},
+    {"held", "8P of X", 1, 2, 2.0, -1.5, 10.0, "inside", 0.0, 0.0},
+    {"up", "4P of X", 1, 2, 2.5, 40.0, 10.0, "below", 0.0, 0.0},
 };
 static mt_result_gap gaps[] = {
-    {"held", "4P of X", 1.25, 1.5, 1.125, 1.65, 1},
-    {"up", "4P of X", 1.25, 1.5, 1.125, 1.65, 2},
+    {1, "held", "4P of X", 1.25, 1.5, 1.125, 1.65, 1},
+    {2, "up", "4P of X", 1.25, 1.5, 1.125, 1.65, 2},
 };
 
 /* The sample with bands. */

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/build.h"
+
+/* made anew by every build, and changed where the commit is another */
+#include "base/build_info.h"
+
+const char *mt_build_commit(void)
+{
+    return MT_BUILD_COMMIT;
+}
+
+const char *mt_build_compiler(void)
+{
+    return MT_BUILD_COMPILER;
+}
