@@ -14,8 +14,10 @@
 #include "cli/cli.h"
 #include "io/file.h"
 #include "io/folder.h"
+#include "report/html.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
+#include "report/trade.h"
 
 static const char DEFAULT_FOLDER[] = "results";
 

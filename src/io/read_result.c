@@ -80,7 +80,7 @@ static void read_list(result_reader *s, mt_addr value, const mt_field *f, void *
     }
     mt_items items = mt_reader_items(&s->r, value);
     char *const room = mt_reader_room(&s->r, &items, f->record->size);
-    *(void **)at = room;
+    mt_record_set_pointer(at, room);
     for (*n = 0; mt_items_next(&items); ++*n) {
         read_record(s, items.at, f->record, room + ((size_t)*n * f->record->size));
     }
@@ -175,6 +175,15 @@ static double *read_by_variable(result_reader *s, mt_addr value, bool nullable)
     return values;
 }
 
+static void read_option(result_reader *s, mt_addr value, const mt_field *f, void *at)
+{
+    void *const own = mt_arena_alloc(s->r.mem, 1, f->record->size);
+    mt_record_set_pointer(at, own);
+    if (own != NULL) {
+        read_record(s, value, f->record, own);
+    }
+}
+
 /* `value` is neither null nor absent. */
 static void read_field(result_reader *s, mt_addr value, const mt_field *f, void *item)
 {
@@ -213,10 +222,7 @@ static void read_field(result_reader *s, mt_addr value, const mt_field *f, void 
         read_record(s, value, f->record, at);
         break;
     case MT_FIELD_OPTION:
-        *(void **)at = mt_arena_alloc(s->r.mem, 1, f->record->size);
-        if (*(void **)at != NULL) {
-            read_record(s, value, f->record, *(void **)at);
-        }
+        read_option(s, value, f, at);
         break;
     case MT_FIELD_LIST:
         read_list(s, value, f, at, other);
@@ -228,7 +234,7 @@ static void read_field(result_reader *s, mt_addr value, const mt_field *f, void 
         read_numbers(s, value, at, other);
         break;
     case MT_FIELD_BY_VARIABLE:
-        *(double **)at = read_by_variable(s, value, f->numbers_nullable);
+        mt_record_set_pointer(at, read_by_variable(s, value, f->numbers_nullable));
         break;
     case MT_FIELD_TYPE_COUNT:
         break;

@@ -68,11 +68,10 @@ static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
 {
     const void *const at = (const char *)item + f->offset;
     const void *const other = (const char *)item + f->other;
-    const void *const *const pointer = at;
     switch (f->type) {
     case MT_FIELD_TEXT:
     case MT_FIELD_CHOICE:
-        mt_json_put_string(w, f->name, *pointer);
+        mt_json_put_string(w, f->name, mt_record_get_pointer(at));
         break;
     case MT_FIELD_ENUM:
         mt_json_put_string(w, f->name, f->choices[*(const unsigned *)at]);
@@ -104,19 +103,19 @@ static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
         put_record(w, f->name, f->record, at, variables);
         break;
     case MT_FIELD_OPTION:
-        put_record(w, f->name, f->record, *pointer, variables);
+        put_record(w, f->name, f->record, mt_record_get_pointer(at), variables);
         break;
     case MT_FIELD_LIST:
-        put_list(w, f, *pointer, *(const int *)other, variables);
+        put_list(w, f, mt_record_get_pointer(at), *(const int *)other, variables);
         break;
     case MT_FIELD_TEXTS:
-        put_texts(w, f->name, *(const char *const *const *)at, *(const int *)other);
+        put_texts(w, f->name, mt_record_get_pointer(at), *(const int *)other);
         break;
     case MT_FIELD_NUMBERS:
-        put_numbers(w, f->name, *pointer, *(const int *)other);
+        put_numbers(w, f->name, mt_record_get_pointer(at), *(const int *)other);
         break;
     case MT_FIELD_BY_VARIABLE:
-        put_by_variable(w, f->name, *pointer, variables);
+        put_by_variable(w, f->name, mt_record_get_pointer(at), variables);
         break;
     case MT_FIELD_TYPE_COUNT:
         break;

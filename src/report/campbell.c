@@ -4,11 +4,12 @@
  * the origin, modes horizontals; where they cross within the operating range a mode is excited.
  * One diagram for each rotor and machine that the study avoids.
  */
+#include "report/campbell.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "base/format.h"
-#include "report/summary.h"
 #include "report/svg.h"
 #include "report/table.h"
 

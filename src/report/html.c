@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The report of a study as one page: what was asked, what to change, why, and how far to trust
  * it. */
+#include "report/html.h"
+
+#include "report/campbell.h"
 #include "report/number.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
+#include "report/svg.h"
+#include "report/trade.h"
 
 static const char STYLE[] =
     "body{font:15px/1.45 system-ui,sans-serif;color:#1a1a1a;background:#fff;max-width:60em;"

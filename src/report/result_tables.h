@@ -16,7 +16,7 @@ mt_table mt_report_parameters(const mt_recommendation *r);
 /* How the change of a parameter counts, as a sentence; false (and nothing) where it is the
  * plain logarithm. */
 bool mt_report_measure(const mt_result_parameter *p, mt_text *out);
-/* goal, value, demand, violation, met. */
+/* goal, value, target or limits, violation, verdict. */
 mt_table mt_report_goals(const mt_recommendation *r);
 /* Each mode beside its neighbouring bands, one line per mode: the band below it and the band
  * above it with the distance to each. */
@@ -31,9 +31,6 @@ mt_table mt_report_alternatives(const mt_result *result);
 /* Under other weights: parameter, unit, value, low, high, change of both, and what takes them
  * there. */
 mt_table mt_report_spread(const mt_result *result);
-/* One line per point of the trade study: what varies, status, score, change, clearance,
- * parameters. No columns where there is none (trade.c). */
-mt_table mt_report_trade(const mt_result *result);
 /* label, published, computed, difference, role, source, verdict. */
 mt_table mt_report_published(const mt_result *result);
 /* The whole of all designs, one row each (rank 0: the baseline), for a spreadsheet:

@@ -5,6 +5,7 @@
 
 #include "report/number.h"
 #include "report/result_tables.h"
+#include "report/trade.h"
 
 enum { INDENT = 2, DIGITS = 4 };
 

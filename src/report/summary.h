@@ -23,15 +23,4 @@ void mt_report_doubt(const mt_doubt *d, bool with_place, mt_text *out);
 bool mt_report_doubtful(const mt_result *result);
 const char *mt_report_surety(bool proven, bool doubtful);
 
-/* The same as one self-contained HTML page (no scripts, nothing loaded from elsewhere, figures
- * as inline SVG), light and printable. */
-void mt_report_html(const mt_result *result, mt_text *out);
-/* Its figures; that of a trade study only where there is one and some point meets its goals. */
-void mt_report_svg_trade(const mt_result *result, mt_text *out);
-void mt_report_svg_frequencies(const mt_recommendation *r, mt_text *out);
-void mt_report_svg_changes(const mt_recommendation *r, mt_text *out);
-/* A Campbell diagram with its heading for each rotor and machine that the study avoids
- * (campbell.c). */
-void mt_report_svg_campbell(const mt_result *result, mt_text *out);
-
 #endif

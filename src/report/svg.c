@@ -8,7 +8,6 @@
 
 #include "base/format.h"
 #include "report/number.h"
-#include "report/summary.h"
 #include "report/table.h"
 
 /* Layout in pixels. */

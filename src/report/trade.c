@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trade studies: one line per point, and the curve of the best score over what varies. */
+#include "report/trade.h"
+
 #include <math.h>
 
 #include "base/format.h"
 #include "report/number.h"
-#include "report/result_tables.h"
-#include "report/summary.h"
 
 enum { VALUE_DIGITS = 6, PERCENT_DIGITS = 3, HEADING_TEXT = 160 };
 /* Layout of the curve in pixels. */

@@ -20,82 +20,78 @@ void mt_record_clear(const mt_record *record, void *item)
     }
 }
 
-/* Replace n borrowed items, if there are any, by their copy. */
-static bool own_items(void *at, int n, size_t size, mt_arena *mem)
+void *mt_record_get_pointer(const void *at)
 {
-    const void *const from = *(void **)at;
-    if (from == NULL) {
-        return true;
-    }
-    void *const own = mt_arena_alloc(mem, (size_t)n, size);
+    void *pointer = NULL;
+    memcpy(&pointer, at, sizeof pointer);
+    return pointer;
+}
+
+void mt_record_set_pointer(void *at, const void *pointer)
+{
+    memcpy(at, &pointer, sizeof pointer);
+}
+
+/* Replace n borrowed items, if there are any, by their copy; returns it. */
+static void *own_items(void *at, int n, size_t size, mt_arena *mem)
+{
+    const void *const from = mt_record_get_pointer(at);
+    void *const own = from == NULL ? NULL : mt_arena_alloc(mem, (size_t)n, size);
     if (own != NULL && n > 0) {
         memcpy(own, from, (size_t)n * size);
     }
-    *(void **)at = own;
-    return own != NULL;
+    mt_record_set_pointer(at, own);
+    return own;
 }
 
-static bool own_text(void *at, mt_arena *mem)
+static void own_text(const char **text, mt_arena *mem)
 {
-    const char **const text = at;
-    if (*text != NULL) {
-        *text = mt_arena_strdup(mem, *text);
-        return *text != NULL;
+    *text = *text == NULL ? NULL : mt_arena_strdup(mem, *text);
+}
+
+static void own_list(const mt_record *record, void *at, int n, int n_variables, mt_arena *mem)
+{
+    char *const items = own_items(at, n, record->size, mem);
+    for (int i = 0; i < n && items != NULL; i++) {
+        mt_record_own(record, items + ((size_t)i * record->size), n_variables, mem);
     }
-    return true;
 }
 
-static bool own_texts(void *at, int n, mt_arena *mem)
+void mt_record_own(const mt_record *record, void *item, int n_variables, mt_arena *mem)
 {
-    bool done = own_items(at, n, sizeof(const char *), mem);
-    for (int i = 0; i < n && done; i++) {
-        done = own_text(*(const char ***)at + i, mem);
-    }
-    return done;
-}
-
-static bool own_list(const mt_record *record, void *at, int n, int n_variables, mt_arena *mem)
-{
-    bool done = own_items(at, n, record->size, mem);
-    for (int i = 0; i < n && done; i++) {
-        done =
-            mt_record_own(record, *(char **)at + ((size_t)i * record->size), n_variables, mem);
-    }
-    return done;
-}
-
-bool mt_record_own(const mt_record *record, void *item, int n_variables, mt_arena *mem)
-{
-    bool done = true;
-    for (int i = 0; i < record->n && done; i++) {
+    for (int i = 0; i < record->n; i++) {
         const mt_field *const f = &record->fields[i];
         void *const at = (char *)item + f->offset;
         void *const other = (char *)item + f->other;
+        const char **texts = NULL;
         switch (f->type) {
         case MT_FIELD_TEXT:
         case MT_FIELD_CHOICE:
-            done = own_text(at, mem);
+            own_text(at, mem);
             break;
         case MT_FIELD_VALUE:
-            done = own_text(other, mem);
+            own_text(other, mem);
             break;
         case MT_FIELD_RECORD:
-            done = mt_record_own(f->record, at, n_variables, mem);
+            mt_record_own(f->record, at, n_variables, mem);
             break;
         case MT_FIELD_OPTION:
-            done = own_list(f->record, at, *(void **)at != NULL, n_variables, mem);
+            own_list(f->record, at, 1, n_variables, mem);
             break;
         case MT_FIELD_LIST:
-            done = own_list(f->record, at, *(int *)other, n_variables, mem);
+            own_list(f->record, at, *(int *)other, n_variables, mem);
             break;
         case MT_FIELD_TEXTS:
-            done = own_texts(at, *(int *)other, mem);
+            texts = own_items(at, *(int *)other, sizeof *texts, mem);
+            for (int k = 0; k < *(int *)other && texts != NULL; k++) {
+                own_text(&texts[k], mem);
+            }
             break;
         case MT_FIELD_NUMBERS:
-            done = own_items(at, *(int *)other, sizeof(double), mem);
+            (void)own_items(at, *(int *)other, sizeof(double), mem);
             break;
         case MT_FIELD_BY_VARIABLE:
-            done = own_items(at, n_variables, sizeof(double), mem);
+            (void)own_items(at, n_variables, sizeof(double), mem);
             break;
         case MT_FIELD_ENUM:
         case MT_FIELD_NUMBER:
@@ -106,5 +102,4 @@ bool mt_record_own(const mt_record *record, void *item, int n_variables, mt_aren
             break;
         }
     }
-    return done;
 }

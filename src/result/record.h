@@ -167,8 +167,11 @@ struct mt_record {
 /* All that is unknown: numbers NaN, counts below their least, nothing in lists, the rest
  * zero. */
 void mt_record_clear(const mt_record *record, void *item);
-/* Every text and list of a struct replaced by a copy in mem; n_variables: of the study. False:
- * out of memory. */
-bool mt_record_own(const mt_record *record, void *item, int n_variables, mt_arena *mem);
+/* Every text and list of a struct replaced by a copy in mem, which is asked about shortages at
+ * the end; n_variables: of the study. */
+void mt_record_own(const mt_record *record, void *item, int n_variables, mt_arena *mem);
+/* The pointer that lies at a member, whatever it points to. */
+void *mt_record_get_pointer(const void *at);
+void mt_record_set_pointer(void *at, const void *pointer);
 
 #endif

@@ -464,9 +464,7 @@ mt_status mt_result_take_doubts(mt_result *result, const mt_doubt_list *list, mt
 {
     result->doubts = mt_arena_alloc(&result->mem, (size_t)list->n, sizeof *result->doubts);
     result->facts = mt_arena_alloc(&result->mem, (size_t)list->n, sizeof *result->facts);
-    if (result->doubts == NULL || result->facts == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < list->n; i++) {
         if (list->items[i].level == MT_LEVEL_DOUBT) {
             result->doubts[result->n_doubts++] = list->items[i];
@@ -481,15 +479,14 @@ mt_status mt_recommendation_copy(const mt_recommendation *from, mt_arena *mem,
                                  mt_recommendation *out, mt_err *err)
 {
     *out = *from;
-    return mt_record_own(&mt_design_record, out, from->n_parameters, mem) ? MT_OK
-                                                                          : mt_fail_memory(err);
+    mt_record_own(&mt_design_record, out, from->n_parameters, mem);
+    return mt_arena_check(mem, err);
 }
 
 mt_status mt_result_own(mt_result *result, mt_err *err)
 {
-    return mt_record_own(&mt_result_record, result, result->n_variables, &result->mem)
-               ? MT_OK
-               : mt_fail_memory(err);
+    mt_record_own(&mt_result_record, result, result->n_variables, &result->mem);
+    return mt_arena_check(&result->mem, err);
 }
 
 mt_recommendation mt_recommendation_default(void)

@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "common/fuzz.h"
 #include "io/io.h"
+#include "report/html.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
 

@@ -15,6 +15,7 @@
 #include "io/io.h"
 #include "linalg/blas.h"
 #include "problem/workspace.h"
+#include "report/html.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
 

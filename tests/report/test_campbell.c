@@ -7,6 +7,7 @@
 
 #include "mt_random.h"
 #include "mt_test.h"
+#include "report/campbell.h"
 #include "report/summary.h"
 
 enum { ORDERS = 6, MODES = 4, LABEL = 16 };

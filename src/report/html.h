@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef REPORT_HTML_H
+#define REPORT_HTML_H
+
+#include "base/text.h"
+#include "result/result.h"
+
+/* What a result says as one self-contained HTML page (no scripts, nothing loaded from elsewhere,
+ * figures as inline SVG), light and printable. Memory running out shows in out->failed. */
+void mt_report_html(const mt_result *result, mt_text *out);
+
+#endif

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef REPORT_TRADE_H
+#define REPORT_TRADE_H
+
+#include "report/table.h"
+#include "result/result.h"
+
+/* One line per point of the trade study: what varies, status, score, change, clearance,
+ * parameters; the caller frees it. No columns where there is none. */
+mt_table mt_report_trade(const mt_result *result);
+/* Its figure; only where there is one and some point meets its goals. */
+void mt_report_svg_trade(const mt_result *result, mt_text *out);
+
+#endif
