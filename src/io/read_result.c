@@ -20,7 +20,10 @@ enum { READER_PATIENCE_MS = 10000 };
 
 static const char FORMAT[] = "format";
 
-enum { MOST_FIELDS = 40 }; /* of a record */
+enum {
+    MOST_FIELDS = 40, /* of a record */
+    MOST_OUTPUTS = 16
+};
 
 typedef struct result_reader {
     mt_reader r;
@@ -365,6 +368,26 @@ static void check_trade(result_reader *s, mt_addr trade)
     }
 }
 
+/* They are looked at: few, and where they are said to be. */
+static void check_outputs(result_reader *s, mt_addr list)
+{
+    mt_items items = mt_reader_items(&s->r, list);
+    if (items.count > MOST_OUTPUTS) {
+        mt_diag_error(s->r.diags, list, "names more than %d files", MOST_OUTPUTS);
+        return;
+    }
+    while (mt_items_next(&items)) {
+        const mt_addr file = member(s, items.at, "file");
+        const bool is_text =
+            file != MT_NO_ADDR && mt_json_type_of(s->r.doc, file) == MT_JSON_STRING;
+        const char *const name = is_text ? mt_json_string(s->r.doc, file) : "";
+        if (is_text && (name[0] == '\0' || strchr(name, '/') != NULL ||
+                        strcmp(name, ".") == 0 || strcmp(name, "..") == 0)) {
+            mt_diag_error(s->r.diags, file, "\"%s\" is no file beside it", name);
+        }
+    }
+}
+
 static void read_root(result_reader *s)
 {
     static const char *const formats[] = {"modetune-result/1"};
@@ -386,6 +409,7 @@ static void read_root(result_reader *s)
     if (s->result->trade != NULL) {
         check_trade(s, member(s, MT_JSON_ROOT, "trade"));
     }
+    check_outputs(s, member(s, member(s, MT_JSON_ROOT, "run"), "outputs"));
     for (int i = 0; i < s->result->n_doubts; i++) {
         s->result->doubts[i].level = MT_LEVEL_DOUBT;
     }

@@ -5,8 +5,9 @@
 #include "base/text.h"
 #include "result/result.h"
 
-/* What a result says as one self-contained HTML page (no scripts, nothing loaded from elsewhere,
- * figures as inline SVG), light and printable. Memory running out shows in out->failed. */
+/* What a result says as one self-contained HTML page (no scripts, nothing loaded from
+ * elsewhere, figures as inline SVG), light and printable. Memory running out shows in
+ * out->failed. */
 void mt_report_html(const mt_result *result, mt_text *out);
 
 #endif

@@ -35,15 +35,15 @@ typedef struct mt_record mt_record;
 
 typedef struct mt_field {
     const char *name; /* NULL: copied, but neither written nor read */
-    mt_field_type type;
-    bool nullable;         /* of a list: NULL is null, else NULL is empty */
-    bool numbers_nullable; /* of numbers by variable: single ones may be NaN */
-    int least;
     size_t offset;
     size_t other;
     const mt_record *record;
     const char *const *choices;
+    mt_field_type type;
+    int least;
     int n_choices;
+    bool nullable;         /* of a list: NULL is null, else NULL is empty */
+    bool numbers_nullable; /* of numbers by variable: single ones may be NaN */
 } mt_field;
 
 struct mt_record {
@@ -57,6 +57,7 @@ struct mt_record {
  * type: MT_F_MEMBER is its offset, times one where the type is the one that is said, and no
  * expression elsewhere.
  */
+/* NOLINTBEGIN(bugprone-macro-parentheses): types are not put into parentheses */
 #define MT_F_MEMBER(of, m) (offsetof(THIS, m) * _Generic(&((THIS *)NULL)->m, of * : 1U))
 #define MT_F_FIELD(json, kind, or_null, of, m) \
     .name = (json), .type = (kind), .nullable = (or_null), .offset = MT_F_MEMBER(of, m)
@@ -163,6 +164,7 @@ struct mt_record {
     {                                            \
         sizeof(THIS), MT_COUNT(fields), (fields) \
     }
+/* NOLINTEND(bugprone-macro-parentheses) */
 
 /* All that is unknown: numbers NaN, counts below their least, nothing in lists, the rest
  * zero. */

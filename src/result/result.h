@@ -354,34 +354,34 @@ typedef struct mt_result {
     mt_result_source study;  /* its file name, without folder */
     mt_result_source model;  /* as the study writes it, relative to its folder: for `apply` */
     const char *status_text; /* one sentence */
-    int n_objectives;        /* 0: none is asked for */
-    mt_result_objective *objectives;
-    mt_recommendation baseline; /* the original design, rank 0 */
     mt_result_status status;
-    int n_recommendations;
-    mt_recommendation *recommendations;
-    /* lists that are NULL were not computed: an interrupt cut them */
-    int n_undetermined;
-    mt_undetermined *undetermined;
-    int n_spread; /* 0, or one per variable */
-    mt_result_spread *spread;
     int n_variables;
     const char **variables;
-    int n_certificates;
-    mt_certificate *certificates;
-    int n_relaxations; /* least first; only where no design meets all goals */
-    mt_relaxation *relaxations;
-    mt_result_excitation *excitations;
-    mt_trade_result *trade; /* NULL: the study has none */
-    int n_excitations;
-    int n_published;
-    mt_result_published *published;
-    int n_warnings;
-    const char **warnings;
+    mt_result_objective *objectives; /* none: nothing is asked for */
+    int n_objectives;
     int n_doubts; /* about the question, said before anything else */
     mt_doubt *doubts;
-    int n_facts; /* of the model, said next */
-    mt_doubt *facts;
+    mt_doubt *facts; /* of the model, said next */
+    int n_facts;
+    int n_recommendations;
+    mt_recommendation baseline; /* the original design, rank 0 */
+    mt_recommendation *recommendations;
+    mt_result_excitation *excitations;
+    int n_excitations;
+    /* from here on lists that are NULL were not computed: an interrupt cut them */
+    int n_undetermined;
+    mt_undetermined *undetermined;
+    mt_result_spread *spread; /* none, or one per variable */
+    int n_spread;
+    int n_certificates;
+    mt_certificate *certificates;
+    mt_relaxation *relaxations; /* least first; only where no design meets all goals */
+    int n_relaxations;
+    int n_published;
+    mt_result_published *published;
+    mt_trade_result *trade; /* NULL: the study has none, or that */
+    const char **warnings;
+    int n_warnings;
     mt_result_run run;
 } mt_result;
 

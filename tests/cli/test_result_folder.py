@@ -142,11 +142,11 @@ class Belonging(FolderTest):
         path = self.results / "result.json"
         text = path.read_text(encoding="utf-8")
         path.write_text(text.replace('"report.html"', '"../../studies/two.json"'), encoding="utf-8")
-        self.assertIn('/run/outputs/1: "../../studies/two.json" is no file beside it', self.refused())
+        self.assertIn('error: /run/outputs/1/file: "../../studies/two.json" is no file beside it', self.refused())
         result = json.loads(text)
         result["run"]["outputs"] *= 9
         path.write_text(json.dumps(result), encoding="utf-8")
-        self.assertIn("/run/outputs: names more than 16 files", self.refused())
+        self.assertIn("error: /run/outputs: names more than 16 files", self.refused())
 
     def test_a_replacement_that_was_cut_is_told(self):
         (self.results / ".modetune-new.result.json").write_text("hal", encoding="utf-8")

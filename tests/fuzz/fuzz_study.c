@@ -18,6 +18,7 @@
 #include "report/html.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
+#include "report/trade.h"
 
 enum {
     MOST_VARIABLES = 6,

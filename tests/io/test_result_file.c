@@ -184,6 +184,29 @@ static void fill_bands(sample *s)
     s->result->trade = &s->trade;
 }
 
+static void fill_run(mt_result *r)
+{
+    r->n_objectives = MT_COUNT(OBJECTIVES);
+    r->objectives = OBJECTIVES;
+    r->run = (mt_result_run){.modetune_version = "0.1.0",
+                             .build = {"0123456789ab", "GNU 12.2.0"},
+                             .blas = "OpenBLAS 0.3.21",
+                             .nlopt_version = "2.7.1",
+                             .gsl_version = "2.7.1",
+                             .seed = 1,
+                             .evaluations = 1234,
+                             .starts = 16,
+                             .distinct_designs = 9,
+                             .found_once = 3,
+                             .estimated_missing = 1.5,
+                             .n_inputs = MT_COUNT(INPUTS),
+                             .inputs = INPUTS,
+                             .n_outputs = MT_COUNT(OUTPUTS),
+                             .outputs = OUTPUTS,
+                             .n_incomplete = MT_COUNT(INCOMPLETE),
+                             .incomplete = INCOMPLETE};
+}
+
 static bool make_sample(sample *s)
 {
     if (mt_result_new(&s->result, NULL) != MT_OK) {
@@ -251,25 +274,7 @@ static bool make_sample(sample *s)
     r->published = s->published;
     r->n_warnings = 1;
     r->warnings = REASONS;
-    r->n_objectives = MT_COUNT(OBJECTIVES);
-    r->objectives = OBJECTIVES;
-    r->run = (mt_result_run){.modetune_version = "0.1.0",
-                             .build = {"0123456789ab", "GNU 12.2.0"},
-                             .blas = "OpenBLAS 0.3.21",
-                             .nlopt_version = "2.7.1",
-                             .gsl_version = "2.7.1",
-                             .seed = 1,
-                             .evaluations = 1234,
-                             .starts = 16,
-                             .distinct_designs = 9,
-                             .found_once = 3,
-                             .estimated_missing = 1.5,
-                             .n_inputs = MT_COUNT(INPUTS),
-                             .inputs = INPUTS,
-                             .n_outputs = MT_COUNT(OUTPUTS),
-                             .outputs = OUTPUTS,
-                             .n_incomplete = MT_COUNT(INCOMPLETE),
-                             .incomplete = INCOMPLETE};
+    fill_run(r);
     return true;
 }
 

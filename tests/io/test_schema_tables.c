@@ -167,7 +167,7 @@ static void check_record(mt_test *t, const mt_json *doc, mt_addr schema,
     if (!CHECK(t, properties != MT_NO_ADDR) || !CHECK(t, record->n <= MT_MAX_KEYS)) {
         return;
     }
-    const char *names[MT_MAX_KEYS + 1];
+    const char *names[MT_MAX_KEYS + 1] = {NULL};
     int n = 0;
     if (schema == MT_JSON_ROOT) {
         names[n++] = "format";

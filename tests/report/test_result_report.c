@@ -79,8 +79,7 @@ static void summary__says_status_numbers_and_reasons(mt_test *t)
         "  m          -      1.00000   0.500000       -50.0  lower\n",
         "  The change of k<1> counts as ln(new/original), below 0.0500000 N/m linearly.\n",
         "  The change of m counts linearly, 2.00000 as 1.\n",
-        "  held              1  -        0.750000     1.00000           1.00000          0    "
-        "-\n",
+        "  1  -        0.750000     1.00000           1.00000          0    -\n",
         "at least 1.90000",
         "  - k<1> rises & m falls.\n",
     };
