@@ -10,12 +10,18 @@
  *
  * Nothing here depends on time, addresses or the order of memory: equal input, equal bytes.
  */
-#include "nlp/nlp_priv.h"
+#include "nlp/nlp.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/workers.h"
+#include "nlp/ends.h"
+#include "nlp/engine.h"
+#include "nlp/judge.h"
+#include "nlp/local.h"
+#include "nlp/starts.h"
+#include "nlp/undetermined.h"
 
 enum { HALVINGS = 6 };
 /* So many times the first starts are made at most to meet every root twice. */
@@ -114,7 +120,7 @@ static void collect(mt_nlp_engine *e, const start_job *job, long before)
         e->evals += s->evals;
         e->stop = s->stop == MT_STOP_USER || e->stop == MT_STOP_DONE ? s->stop : e->stop;
         if (s->fatal != MT_OK && e->fatal == MT_OK) {
-            mt_nlp_end(e, mt_fail(e->err, s->fatal, "%s", s->fatal_err.text));
+            (void)mt_nlp_ok(e, mt_fail(e->err, s->fatal, "%s", s->fatal_err.text));
         }
         if (s->refused != MT_OK && e->refused == MT_OK) {
             e->refused = s->refused;
@@ -127,10 +133,7 @@ static void collect(mt_nlp_engine *e, const start_job *job, long before)
 static void run_job(mt_nlp_engine *e, start_job *job, job_task task, long before)
 {
     job->task = task;
-    const mt_status rc = mt_workers_run(e->nlp->n_workers, job->n, run_task, job, e->err);
-    if (rc != MT_OK) {
-        mt_nlp_end(e, rc);
-    }
+    (void)mt_nlp_ok(e, mt_workers_run(e->nlp->n_workers, job->n, run_task, job, e->err));
     collect(e, job, before);
 }
 
@@ -141,19 +144,20 @@ static bool add_starts(mt_nlp_engine *e, mt_nlp_ends *all, int n)
     mt_arena *const mem = &e->scratch;
     const long before = e->evals;
     start_job job = {.e = e, .n = n, .budget = e->opt.max_evals - before};
-    double *const t = mt_nlp_starts(e, all->starts + n, mem);
+    double *const t = mt_nlp_starts(e->nlp, e->opt.seed, all->starts + n, mem);
     job.slots = mt_arena_alloc(mem, (size_t)n, sizeof *job.slots);
     job.at = mt_arena_alloc(mem, (size_t)n, sizeof(mt_nlp_local *));
-    if (t == NULL || job.slots == NULL || job.at == NULL || !mt_nlp_ends_grow(e, all, n)) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
+    mt_nlp_ends_grow(e, all, n);
+    if (!mt_nlp_has_room(e, mem)) {
         return false;
     }
     mt_nlp_local *const first = all->at + all->count;
     for (int k = 0; k < n; k++) {
+        first[k] = mt_nlp_local_new(e, mem);
         job.at[k] = &first[k];
-        if (!mt_nlp_local_init(e, mem, &first[k])) {
-            return false;
-        }
+    }
+    if (!mt_nlp_has_room(e, mem)) {
+        return false;
     }
     job.t = t + (ptrdiff_t)all->starts * e->n;
     run_job(e, &job, BEGIN, before);
@@ -178,8 +182,7 @@ static void finish_job(mt_nlp_engine *e, int n, mt_nlp_local **at)
     const long before = e->evals;
     start_job job = {.e = e, .n = n, .at = at, .budget = e->opt.max_evals - before};
     job.slots = mt_arena_alloc(&e->scratch, (size_t)n, sizeof *job.slots);
-    if (job.slots == NULL) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
+    if (!mt_nlp_has_room(e, &e->scratch)) {
         return;
     }
     run_job(e, &job, FINISH, before);
@@ -197,8 +200,7 @@ static void finish_ends(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nl
 {
     mt_nlp_local **const chosen =
         mt_arena_alloc(&e->scratch, (size_t)all->count, sizeof(mt_nlp_local *));
-    if (chosen == NULL) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
+    if (!mt_nlp_has_room(e, &e->scratch)) {
         return;
     }
     int n = 0;
@@ -256,6 +258,11 @@ static mt_status finish(mt_nlp_engine *e, const mt_nlp_ends *all, mt_nlp_result 
                        e->refused_err.text);
     }
     return MT_OK;
+}
+
+mt_nlp_options mt_nlp_options_default(void)
+{
+    return (mt_nlp_options){.seed = 1, .least_change = true};
 }
 
 mt_status mt_nlp_solve(const mt_nlp *nlp, const mt_nlp_options *opt, mt_arena *mem,

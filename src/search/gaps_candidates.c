@@ -8,13 +8,12 @@
  * kind of design is only missed where it is smaller than the samples are apart. That is
  * labelled as sampled.
  */
-#include "nlp/nlp_priv.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "nlp/merit.h"
+#include "nlp/starts.h"
 #include "problem/family.h"
 #include "problem/goal_avoid.h"
 #include "search/gaps.h"
@@ -174,10 +173,7 @@ static mt_status sample(mt_workspace *w, int n, int most, mt_arena *mem, mt_gap_
 {
     const mt_problem *const p = w->p;
     mt_nlp nlp = mt_workspace_nlp(w);
-    mt_nlp_options opt = mt_nlp_options_default();
-    mt_nlp_engine e;
     nlp.n = p->n;
-    opt.seed = w->c->search.seed;
     sampled *const list = mt_arena_alloc(mem, CANDIDATES_MOST, sizeof *list);
     int *const below = mt_arena_int(mem, (size_t)p->n_bands);
     int *const work = mt_arena_int(mem, (size_t)p->n_bands);
@@ -190,9 +186,8 @@ static mt_status sample(mt_workspace *w, int n, int most, mt_arena *mem, mt_gap_
             return mt_fail_memory(err);
         }
     }
-    MT_TRY(mt_nlp_engine_init(&e, &nlp, &opt, err));
-    const double *const t = mt_nlp_starts(&e, n, mem);
-    mt_status rc = t == NULL ? mt_fail_memory(err) : MT_OK;
+    const double *const t = mt_nlp_starts(&nlp, w->c->search.seed, n, mem);
+    mt_status rc = mt_arena_check(mem, err);
     for (int k = 0; rc == MT_OK && k < n; k++) {
         double violation = 0.0;
         if (mt_interrupted(p->study->model->interrupt)) {
@@ -204,7 +199,6 @@ static mt_status sample(mt_workspace *w, int n, int most, mt_arena *mem, mt_gap_
         }
         out->evals++;
     }
-    mt_nlp_engine_free(&e);
     MT_TRY(rc);
     bool kept[CANDIDATES_MOST] = {false};
     const int n_found = out->n;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Starting points: the origin, then a sequence that fills the bounds in any dimension. */
-#include "nlp/nlp_priv.h"
-
+#include "nlp/starts.h"
 #include "nlp_problem.h"
 
 enum { D_MOST = 1300, STARTS = 33 };
@@ -23,7 +22,7 @@ typedef struct box {
 } box;
 
 /* Starts in the box [2, 6], the origin beyond it in variable 0, variable 1 fixed at 5. */
-static double *starts_in(box *b, int n, unsigned long seed, mt_nlp_engine *e)
+static double *starts_in(box *b, int n, unsigned long seed, mt_arena *mem)
 {
     for (int j = 0; j < n; j++) {
         b->lower[j] = j == 1 ? 5 : 2;
@@ -32,15 +31,7 @@ static double *starts_in(box *b, int n, unsigned long seed, mt_nlp_engine *e)
     }
     const mt_nlp nlp = {
         .n = n, .lower = b->lower, .upper = b->upper, .origin = b->origin, .eval = unused};
-    mt_nlp_options opt = mt_nlp_options_default();
-    opt.seed = seed;
-    if (mt_nlp_engine_init(e, &nlp, &opt, NULL) != MT_OK) {
-        return NULL;
-    }
-    e->nlp = &nlp;
-    double *const t = mt_nlp_starts(e, STARTS, &e->scratch);
-    e->nlp = NULL;
-    return t;
+    return mt_arena_init(mem, 0, NULL) == MT_OK ? mt_nlp_starts(&nlp, seed, STARTS, mem) : NULL;
 }
 
 /* Every variable has a third of the points in each half, at least: a generator that returns
@@ -52,8 +43,8 @@ static void nlp_starts__fill_the_bounds_in_any_dimension(mt_test *t)
     for (int k = 0; k < (int)(sizeof sizes / sizeof sizes[0]); k++) {
         const int n = sizes[k];
         mt_test_row(t, "%d variables", n);
-        mt_nlp_engine e;
-        const double *const s = starts_in(&b, n, 1, &e);
+        mt_arena mem;
+        const double *const s = starts_in(&b, n, 1, &mem);
         REQUIRE(t, s != NULL);
         CHECK(t, s[0] == 6); /* clamped origin */
         bool inside = true;
@@ -73,7 +64,7 @@ static void nlp_starts__fill_the_bounds_in_any_dimension(mt_test *t)
         CHECK(t, inside);
         CHECK(t, n > 40 || balanced); /* Halton with large bases fills slowly */
         CHECK(t, n == 1 || s[1] == 5);
-        mt_nlp_engine_free(&e);
+        mt_arena_free(&mem);
     }
 }
 
@@ -82,32 +73,32 @@ static void nlp_starts__beyond_40_variables_are_not_constant(mt_test *t)
     static box b;
     for (int n = 42; n <= D_MOST; n += D_MOST - 42) {
         mt_test_row(t, "%d variables", n);
-        mt_nlp_engine e;
-        const double *const s = starts_in(&b, n, 1, &e);
+        mt_arena mem;
+        const double *const s = starts_in(&b, n, 1, &mem);
         REQUIRE(t, s != NULL);
         int moving = 0;
         for (int j = 0; j < n; j++) {
             moving += s[j + n] != s[j + 2 * n] && s[j + 2 * n] != s[j + 3 * n];
         }
         CHECK_INT(t, moving, n - 1);
-        mt_nlp_engine_free(&e);
+        mt_arena_free(&mem);
     }
 }
 
 static void nlp_starts__seed_turns_the_sequence_reproducibly(mt_test *t)
 {
     static box b;
-    mt_nlp_engine e[3];
-    const double *const one = starts_in(&b, 5, 7, &e[0]);
-    const double *const two = starts_in(&b, 5, 7, &e[1]);
-    const double *const other = starts_in(&b, 5, 8, &e[2]);
+    mt_arena mem[3];
+    const double *const one = starts_in(&b, 5, 7, &mem[0]);
+    const double *const two = starts_in(&b, 5, 7, &mem[1]);
+    const double *const other = starts_in(&b, 5, 8, &mem[2]);
     REQUIRE(t, one != NULL && two != NULL && other != NULL);
     const size_t bytes = (size_t)STARTS * 5 * sizeof(double);
     CHECK(t, same_bytes(one, two, bytes));
     CHECK(t, !same_bytes(one, other, bytes));
     CHECK(t, same_bytes(one, other, 5 * sizeof(double))); /* the origin stays the first */
     for (int k = 0; k < 3; k++) {
-        mt_nlp_engine_free(&e[k]);
+        mt_arena_free(&mem[k]);
     }
 }
 

@@ -11,10 +11,16 @@
  * curvature. A saddle is left along its direction, and the approach is made again from there.
  * An infeasible end is a local minimum of the squares of the violations.
  */
-#include "nlp/nlp_priv.h"
+#include "nlp/local.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "nlp/kkt.h"
+#include "nlp/lsq.h"
+#include "nlp/polish.h"
+#include "nlp/slsqp.h"
+#include "nlp/weakness.h"
 
 enum { ROUNDS = 3 };
 /* KKT residuals below this are local solutions. */
@@ -30,19 +36,14 @@ bool mt_nlp_nearly_feasible(const mt_nlp_point *p)
     return p->violation <= NEARLY;
 }
 
-bool mt_nlp_local_init(mt_nlp_engine *e, mt_arena *mem, mt_nlp_local *s)
+mt_nlp_local mt_nlp_local_new(const mt_nlp_engine *e, mt_arena *mem)
 {
-    *s = (mt_nlp_local){.p = mt_nlp_point_new(e, mem),
-                        .last = mt_nlp_point_new(e, mem),
-                        .from = mt_nlp_f64(e, mem, (size_t)e->n, 1),
-                        .rows = mt_arena_int(mem, (size_t)e->nlp->n_eq),
-                        .kkt = HUGE_VAL,
-                        .hits = 1};
-    if (s->p == NULL || s->last == NULL || s->from == NULL || s->rows == NULL) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
-        return false;
-    }
-    return true;
+    return (mt_nlp_local){.p = mt_nlp_point_new(e, mem),
+                          .last = mt_nlp_point_new(e, mem),
+                          .from = mt_arena_f64(mem, (size_t)e->n, 1),
+                          .rows = mt_arena_int(mem, (size_t)e->nlp->n_eq),
+                          .kkt = HUGE_VAL,
+                          .hits = 1};
 }
 
 const mt_nlp_point *mt_nlp_local_stand(const mt_nlp_local *s)
@@ -89,9 +90,9 @@ static bool step_off(mt_nlp_engine *e, const double *saddle, mt_nlp_point *p)
 {
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     const double most = mt_max_abs(e->n, saddle);
-    mt_nlp_point *const to = most > 0 ? mt_nlp_point_new(e, &e->scratch) : NULL;
+    mt_nlp_point *const to = mt_nlp_point_new(e, &e->scratch);
     bool moved = false;
-    if (to != NULL) {
+    if (most > 0 && mt_nlp_has_room(e, &e->scratch)) {
         mt_nlp_point_copy(e, to, p);
         mt_axpy(e->n, SADDLE_STEP / most, saddle, to->t);
         moved = mt_nlp_evaluate(e, to->t, true, to);
@@ -108,7 +109,10 @@ static bool step_off(mt_nlp_engine *e, const double *saddle, mt_nlp_point *p)
 static void finish_minimum(mt_nlp_engine *e, mt_nlp_local *s)
 {
     mt_nlp_point *const before = mt_nlp_point_new(e, &e->scratch);
-    double *const saddle = mt_nlp_f64(e, &e->scratch, (size_t)e->n, 1);
+    double *const saddle = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
+    if (!mt_nlp_has_room(e, &e->scratch)) {
+        return;
+    }
     for (int round = 0; round < ROUNDS && !e->ended; round++) {
         if (round > 0) {
             descend(e, s);
@@ -125,9 +129,7 @@ static void finish_minimum(mt_nlp_engine *e, mt_nlp_local *s)
             return;
         }
     }
-    if (before != NULL && saddle != NULL) { /* the search ended on the way */
-        mt_nlp_point_copy(e, s->p, before);
-    }
+    mt_nlp_point_copy(e, s->p, before); /* the search ended on the way */
 }
 
 void mt_nlp_minimise(mt_nlp_engine *e, mt_nlp_local *s)
@@ -190,8 +192,9 @@ void mt_nlp_local_approach(mt_nlp_engine *e, mt_nlp_local *s)
 void mt_nlp_local_finish(mt_nlp_engine *e, mt_nlp_local *s)
 {
     mt_nlp_point *const before = mt_nlp_point_new(e, &e->scratch);
-    double *const saddle = mt_nlp_f64(e, &e->scratch, (size_t)e->n, 1);
-    for (int round = 0; before != NULL && saddle != NULL && round < ROUNDS; round++) {
+    double *const saddle = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
+    const bool room = mt_nlp_has_room(e, &e->scratch);
+    for (int round = 0; room && round < ROUNDS; round++) {
         if (round > 0) {
             approach(e, s);
         }

@@ -10,7 +10,7 @@
  * the bounds are >= 0 at lower and <= 0 at upper ones. A candidate whose multiplier has the
  * wrong sign is not active: the worst is dropped, one at a time, until all are right.
  */
-#include "nlp/nlp_priv.h"
+#include "nlp/kkt.h"
 
 #include <float.h>
 #include <math.h>
@@ -58,7 +58,7 @@ double mt_nlp_row_tol(const mt_nlp_engine *e, int i)
                           : q->in_tol[q->next_of[in - q->n_in]];
 }
 
-static bool allocate(mt_nlp_engine *e, mt_arena *mem, mt_nlp_active *a)
+static void allocate(const mt_nlp_engine *e, mt_arena *mem, mt_nlp_active *a)
 {
     const size_t n = (size_t)e->n;
     const size_t k = (size_t)e->nlp->n_eq + (size_t)e->nlp->n_in + (size_t)e->nlp->n_next;
@@ -69,11 +69,6 @@ static bool allocate(mt_nlp_engine *e, mt_arena *mem, mt_nlp_active *a)
                          .lambda = mt_arena_f64(mem, k, 1),
                          .c = mt_arena_f64(mem, k, 1),
                          .z = mt_arena_f64(mem, n, 1)};
-    if (!a->free || !a->side || !a->row || !a->scale || !a->lambda || !a->c || !a->z) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
-        return false;
-    }
-    return true;
 }
 
 /* Has a row among those before it the same slopes? Of modes that stay together by symmetry one
@@ -133,9 +128,7 @@ static mt_status multipliers(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim
     const int nf = a->n_free;
     double *const ct = mt_arena_f64(mem, (size_t)nf, (size_t)a->k);
     double *const gf = mt_arena_f64(mem, (size_t)nf, 1);
-    if (ct == NULL || gf == NULL) {
-        return mt_fail_memory(e->err);
-    }
+    MT_TRY(mt_arena_check(mem, e->err));
     for (int i = 0; i < a->k; i++) {
         double *const col = ct + (ptrdiff_t)i * nf;
         for (int j = 0; j < nf; j++) {
@@ -229,16 +222,15 @@ static double gradient_norm(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nl
 bool mt_nlp_active_set(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim, mt_arena *mem,
                        mt_nlp_active *a)
 {
-    if (!allocate(e, mem, a)) {
+    allocate(e, mem, a);
+    if (!mt_nlp_has_room(e, mem)) {
         return false;
     }
     candidates(e, p, aim, a);
     const double g_norm = gradient_norm(e, p, aim, a->z);
     for (;;) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
-        const mt_status rc = multipliers(e, p, aim, mem, a);
-        if (rc != MT_OK) {
-            mt_nlp_end(e, rc);
+        if (!mt_nlp_ok(e, multipliers(e, p, aim, mem, a))) {
             return false;
         }
         if (!drop_worst(e, a, g_norm)) {

@@ -17,11 +17,13 @@
  * it. Where the Hessian is too expensive or a point refuses a value, the step is Gauss-Newton's
  * or there is none: the best point stands.
  */
-#include "nlp/nlp_priv.h"
+#include "nlp/polish.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
+
+#include "nlp/kkt.h"
 
 enum { ITERATIONS = 14, HESSIAN_MOST = 64 };
 /* Difference step in t: near the square root of the rounding of a gradient. */
@@ -93,16 +95,10 @@ static bool null_space(polish *w)
     mt_arena *const mem = &e->scratch;
     const size_t nf = (size_t)w->a.n_free;
     w->nz = w->a.n_free - w->a.qr.rank;
-    w->Z = mt_nlp_f64(e, mem, nf, (size_t)w->nz);
-    w->H = mt_nlp_f64(e, mem, (size_t)w->nz, (size_t)w->nz);
-    if (!w->Z || !w->H) {
-        return false;
-    }
-    const mt_status rc = w->nz > 0 ? mt_qr_q(&w->a.qr, w->a.qr.rank, w->Z, mem, e->err) : MT_OK;
-    if (rc != MT_OK) {
-        mt_nlp_end(e, rc);
-    }
-    return rc == MT_OK;
+    w->Z = mt_arena_f64(mem, nf, (size_t)w->nz);
+    w->H = mt_arena_f64(mem, (size_t)w->nz, (size_t)w->nz);
+    return mt_nlp_has_room(e, mem) &&
+           (w->nz == 0 || mt_nlp_ok(e, mt_qr_q(&w->a.qr, w->a.qr.rank, w->Z, mem, e->err)));
 }
 
 /* Gradient of the Lagrangian with the present multipliers at a point. */
@@ -173,8 +169,7 @@ static bool gauss_newton(polish *w)
         return false;
     }
     double *const jz = mt_arena_f64(&w->e->scratch, (size_t)q->n_res, (size_t)w->nz);
-    if (jz == NULL) {
-        mt_nlp_end(w->e, mt_fail_memory(w->e->err));
+    if (!mt_nlp_has_room(w->e, &w->e->scratch)) {
         return false;
     }
     for (int c = 0; c < w->nz; c++) {
@@ -212,16 +207,13 @@ static bool normal_step(polish *w)
     memset(w->step, 0, (size_t)w->e->n * sizeof *w->step);
     double *const rhs = mt_arena_f64(mem, (size_t)w->a.k, 1);
     double *const y = mt_arena_f64(mem, (size_t)w->a.n_free, 1);
-    if (rhs == NULL || y == NULL) {
-        mt_nlp_end(w->e, mt_fail_memory(w->e->err));
+    if (!mt_nlp_has_room(w->e, mem)) {
         return false;
     }
     for (int i = 0; i < w->a.k; i++) {
         rhs[i] = -w->a.c[i] / w->a.scale[i];
     }
-    const mt_status rc = mt_qr_solve_transposed(&w->a.qr, 1, rhs, y, mem, w->e->err);
-    if (rc != MT_OK) {
-        mt_nlp_end(w->e, rc);
+    if (!mt_nlp_ok(w->e, mt_qr_solve_transposed(&w->a.qr, 1, rhs, y, mem, w->e->err))) {
         return false;
     }
     for (int i = 0; i < w->a.n_free; i++) {
@@ -252,7 +244,7 @@ static double take_step(polish *w)
     for (int j = 0; j < w->e->n; j++) {
         w->t[j] = w->a.side[j] < 0   ? q->lower[j]
                   : w->a.side[j] > 0 ? q->upper[j]
-                                     : mt_nlp_clamp(w->e, j, w->cur->t[j] + part * w->step[j]);
+                                     : mt_nlp_clamp(q, j, w->cur->t[j] + part * w->step[j]);
     }
     return size;
 }
@@ -322,9 +314,7 @@ static void curvature(polish *w)
     if (w->nz > 0 && !(affordable && reduced_hessian(w)) && !gauss_newton(w)) {
         return;
     }
-    const mt_status rc = mt_eig_sym(w->nz, w->H, w->w, true, &w->e->scratch, w->e->err);
-    if (rc != MT_OK) {
-        mt_nlp_end(w->e, rc);
+    if (!mt_nlp_ok(w->e, mt_eig_sym(w->nz, w->H, w->w, true, &w->e->scratch, w->e->err))) {
         return;
     }
     w->n_v = w->nz;
@@ -405,23 +395,20 @@ void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p, double *sa
     polish w = {.e = e, .aim = aim, .n_v = -1};
     mt_arena *const mem = &e->scratch;
     const mt_arena_mark mark = mt_arena_get_mark(mem);
-    w.gl = mt_nlp_f64(e, mem, (size_t)e->n, 1);
-    w.step = mt_nlp_f64(e, mem, (size_t)e->n, 1);
-    w.t = mt_nlp_f64(e, mem, (size_t)e->n, 1);
-    w.V = mt_nlp_f64(e, mem, (size_t)e->n, (size_t)e->n_free);
-    w.w = mt_nlp_f64(e, mem, (size_t)e->n_free, 1);
-    w.active = mt_arena_int(mem, (size_t)(e->n + 1 + q->n_eq + q->n_in + q->n_next));
-    if (w.active == NULL) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
-    }
+    w.gl = mt_arena_f64(mem, (size_t)e->n, 1);
+    w.step = mt_arena_f64(mem, (size_t)e->n, 1);
+    w.t = mt_arena_f64(mem, (size_t)e->n, 1);
+    w.V = mt_arena_f64(mem, (size_t)e->n, (size_t)e->n_free);
+    w.w = mt_arena_f64(mem, (size_t)e->n_free, 1);
+    const int rows = q->n_eq + q->n_in + q->n_next;
+    w.active = mt_arena_int(mem, (size_t)e->n + 1 + (size_t)rows);
     w.cur = mt_nlp_point_new(e, mem);
     w.trial = mt_nlp_point_new(e, mem);
     w.best = mt_nlp_point_new(e, mem);
     if (saddle != NULL) {
         memset(saddle, 0, (size_t)e->n * sizeof *saddle);
     }
-    if (w.gl && w.step && w.t && w.V && w.w && w.active && w.cur && w.trial && w.best &&
-        mt_nlp_active_set(e, p, aim, mem, &w.a)) {
+    if (mt_nlp_has_room(e, mem) && mt_nlp_active_set(e, p, aim, mem, &w.a)) {
         w.limit =
             aim == MT_NLP_SQUARES ? p->squares * (1 + F_ROUNDING) : p->f + rise_allowed(&w, p);
         p->kkt = w.a.kkt;

@@ -16,7 +16,7 @@
  * quadratic in the error, |R| = 1e-6 leaves an error of 1e-3, and the convergence is only by
  * halves.
  */
-#include "nlp/nlp_priv.h"
+#include "nlp/lsq.h"
 
 #include <float.h>
 #include <math.h>
@@ -55,7 +55,7 @@ typedef struct lsq {
     int *index; /* [n] */
 } lsq;
 
-static bool allocate(lsq *w)
+static void allocate(lsq *w)
 {
     mt_arena *const mem = &w->e->scratch;
     const size_t n = (size_t)w->e->n;
@@ -68,11 +68,6 @@ static bool allocate(lsq *w)
     w->x = mt_arena_f64(mem, n, 1);
     w->free = mt_arena_alloc(mem, n, sizeof *w->free);
     w->index = mt_arena_int(mem, n);
-    if (!w->R || !w->J || !w->s || !w->A || !w->b || !w->x || !w->free || !w->index) {
-        mt_nlp_end(w->e, mt_fail_memory(w->e->err));
-        return false;
-    }
-    return true;
 }
 
 /* R and J of the aim at p; inequalities that hold count as zero rows. */
@@ -152,8 +147,7 @@ static bool solve_free(lsq *w, double mu)
         rc = mt_qr_solve(&qr, 1, w->b, w->x, mem, w->e->err);
     }
     mt_arena_rewind(mem, mark);
-    if (rc != MT_OK) {
-        mt_nlp_end(w->e, rc);
+    if (!mt_nlp_ok(w->e, rc)) {
         return false;
     }
     for (int c = 0; c < k; c++) {
@@ -252,7 +246,8 @@ void mt_nlp_least_squares(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p)
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     mt_nlp_point *const a = mt_nlp_point_new(e, &e->scratch);
     mt_nlp_point *const b = mt_nlp_point_new(e, &e->scratch);
-    if (a != NULL && b != NULL && w.m > 0 && e->n > 0 && allocate(&w)) {
+    allocate(&w);
+    if (w.m > 0 && e->n > 0 && mt_nlp_has_room(e, &e->scratch)) {
         iterate(&w, p, a, b);
     }
     mt_arena_rewind(&e->scratch, mark);

@@ -7,10 +7,15 @@
  *     multipliers, KKT residual, singularity. Compromises are settled: the least objective
  *         among equally good ones.
  */
-#include "nlp/nlp_priv.h"
+#include "nlp/judge.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "nlp/polish.h"
+#include "nlp/report.h"
+#include "nlp/undetermined.h"
+#include "nlp/weakness.h"
 
 /* Ends nearer than this are one and the same to rounding; merged ones farther apart were two
  * roots. */
@@ -136,10 +141,10 @@ static void settle(mt_nlp_engine *e, mt_nlp_point *p)
 {
     const mt_nlp *const q = e->nlp;
     mt_arena *const mem = &e->scratch;
-    mt_nlp_local s;
-    double *const eq = mt_nlp_f64(e, mem, (size_t)q->n_eq, 1);
-    double *const in = mt_nlp_f64(e, mem, (size_t)q->n_in, 1);
-    if (eq == NULL || in == NULL || !mt_nlp_local_init(e, mem, &s)) {
+    mt_nlp_local s = mt_nlp_local_new(e, mem);
+    double *const eq = mt_arena_f64(mem, (size_t)q->n_eq, 1);
+    double *const in = mt_arena_f64(mem, (size_t)q->n_in, 1);
+    if (!mt_nlp_has_room(e, mem)) {
         return;
     }
     mt_nlp_point *const to = s.p;
@@ -189,7 +194,7 @@ static void put_on_marks(mt_nlp_engine *e, mt_nlp_point *p)
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     mt_nlp_point *const to = mt_nlp_point_new(e, &e->scratch);
     bool moved = false;
-    if (to == NULL) {
+    if (!mt_nlp_has_room(e, &e->scratch)) {
         return;
     }
     mt_nlp_point_copy(e, to, p);
@@ -254,8 +259,7 @@ void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_resu
     count_roots(e, all, out);
     const int count = all->count < e->opt.max_solutions ? all->count : e->opt.max_solutions;
     out->solutions = mt_arena_alloc(mem, (size_t)count, sizeof *out->solutions);
-    if (out->solutions == NULL) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
+    if (!mt_nlp_has_room(e, mem)) {
         return;
     }
     for (int i = 0; i < count && mt_nlp_report(e, all->at[i].p, mem, &out->solutions[i]); i++) {

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From a point to the record of a solution: bounds met, multipliers, KKT residual. No
  * evaluation. */
-#include "nlp/nlp_priv.h"
+#include "nlp/report.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "nlp/kkt.h"
 
 /* A variable this near to its bound, relative to the width, is on it. */
 static const double ON_BOUND = 1e-8;
@@ -12,7 +14,7 @@ static const double ON_BOUND = 1e-8;
  * this. */
 static const double DEPENDENT = 1e-6;
 
-static bool allocate(mt_nlp_engine *e, mt_arena *mem, mt_nlp_solution *s)
+static void allocate(const mt_nlp_engine *e, mt_arena *mem, mt_nlp_solution *s)
 {
     const size_t n = (size_t)e->n;
     s->t = mt_arena_f64(mem, n, 1);
@@ -20,11 +22,6 @@ static bool allocate(mt_nlp_engine *e, mt_arena *mem, mt_nlp_solution *s)
     s->mult_bound = mt_arena_f64(mem, n, 1);
     s->mult_eq = mt_arena_f64(mem, (size_t)e->nlp->n_eq, 1);
     s->mult_in = mt_arena_f64(mem, (size_t)e->nlp->n_in, 1);
-    if (!s->t || !s->bound || !s->mult_bound || !s->mult_eq || !s->mult_in) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
-        return false;
-    }
-    return true;
 }
 
 /* Multipliers of linearly dependent gradients are not unique: NaN. */
@@ -33,9 +30,7 @@ static mt_status mark_dependent(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_
 {
     double *const col = mt_arena_f64(mem, (size_t)a->n_free, 1);
     double *const x = mt_arena_f64(mem, (size_t)a->k, 1);
-    if (col == NULL || x == NULL) {
-        return mt_fail_memory(e->err);
-    }
+    MT_TRY(mt_arena_check(mem, e->err));
     for (int d = a->qr.rank; d < a->k; d++) {
         const int i = a->qr.perm[d];
         for (int j = 0; j < a->n_free; j++) {
@@ -89,7 +84,8 @@ bool mt_nlp_report(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem, mt_nl
                              .violation = p->violation,
                              .squares = p->squares,
                              .feasible = mt_nlp_feasible(p)};
-    if (!allocate(e, mem, out)) {
+    allocate(e, mem, out);
+    if (!mt_nlp_has_room(e, mem)) {
         return false;
     }
     memcpy(out->t, p->t, (size_t)e->n * sizeof *out->t);
@@ -102,11 +98,7 @@ bool mt_nlp_report(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem, mt_nl
     const mt_nlp_aim aim = out->feasible ? MT_NLP_OBJECTIVE : MT_NLP_SQUARES;
     bool ok = mt_nlp_active_set(e, p, aim, &e->scratch, &a);
     if (ok && out->feasible) {
-        const mt_status rc = mark_dependent(e, p, &a, &e->scratch);
-        if (rc != MT_OK) {
-            mt_nlp_end(e, rc);
-            ok = false;
-        }
+        ok = mt_nlp_ok(e, mark_dependent(e, p, &a, &e->scratch));
         put_multipliers(e, &a, out);
     } else {
         no_multipliers(e, out);

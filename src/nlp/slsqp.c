@@ -7,7 +7,7 @@
  * the best point in a box half as wide as the failing step; the box widens again while the runs
  * in it succeed.
  */
-#include "nlp/nlp_priv.h"
+#include "nlp/slsqp.h"
 
 #include <nlopt.h>
 
@@ -16,8 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/format.h"
-#include "nlp/libraries.h"
+#include "nlp/kkt.h"
 
 /* NLopt (2.7.1, nlopt_vsprintf) ends the process where it has no memory for the sentence that
  * goes with NLOPT_FAILURE: that there is some is known when a run begins. */
@@ -196,7 +195,7 @@ static bool run_once(slsqp *w, double radius)
     nlopt_destroy(w->opt);
     w->opt = NULL;
     if (rc != MT_OK && !w->e->ended) {
-        mt_nlp_end(w->e, mt_fail(w->e->err, rc, "SLSQP: %s", mt_status_text(rc)));
+        (void)mt_nlp_ok(w->e, mt_fail(w->e->err, rc, "SLSQP: %s", mt_status_text(rc)));
     }
     return !w->failed && !w->e->ended;
 }
@@ -239,10 +238,10 @@ static void search(slsqp *w)
     }
 }
 
-static bool allocate(slsqp *w)
+static void allocate(slsqp *w)
 {
-    mt_nlp_engine *const e = w->e;
-    mt_arena *const mem = &e->scratch;
+    const mt_nlp_engine *const e = w->e;
+    mt_arena *const mem = &w->e->scratch;
     const size_t n = (size_t)e->n;
     w->free = mt_arena_int(mem, n);
     w->lower = mt_arena_f64(mem, n, 1);
@@ -255,12 +254,6 @@ static bool allocate(slsqp *w)
     w->cur = mt_nlp_point_new(e, mem);
     w->trial = mt_nlp_point_new(e, mem);
     w->best = mt_nlp_point_new(e, mem);
-    if (!w->tol_in || !w->free || !w->lower || !w->upper || !w->x || !w->t || !w->t_failed ||
-        !w->tol || !w->cur || !w->trial || !w->best) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
-        return false;
-    }
-    return true;
 }
 
 void mt_nlp_slsqp(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p,
@@ -269,7 +262,8 @@ void mt_nlp_slsqp(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p
     slsqp w = {.e = e, .n_rows = n_rows, .rows = rows};
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     mt_nlp_point_copy(e, last, p);
-    if (e->n_free > n_rows && allocate(&w)) {
+    allocate(&w);
+    if (e->n_free > n_rows && mt_nlp_has_room(e, &e->scratch)) {
         for (int j = 0; j < e->n; j++) {
             w.t[j] = p->t[j];
             if (!e->held[j]) {
@@ -285,11 +279,4 @@ void mt_nlp_slsqp(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p
         mt_nlp_point_copy(e, last, w.cur);
     }
     mt_arena_rewind(&e->scratch, mark);
-}
-
-void mt_nlopt_version(char text[16])
-{
-    int v[3];
-    nlopt_version(&v[0], &v[1], &v[2]);
-    (void)mt_snprintf(text, 16, "%d.%d.%d", v[0], v[1], v[2]);
 }

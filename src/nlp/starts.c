@@ -5,15 +5,18 @@
  * 0 and 1: the sequence as it is). GSL's Sobol generator knows 40 dimensions and is silent
  * beyond; its reverse Halton knows 1229; past that, pseudo-random numbers are as good.
  *
- * The state of a generator lies in an arena: of what gsl_qrng_alloc and _free would do, only the
- * shortage of memory calls GSL's error handler, which belongs to the whole process. So nothing
- * here calls it, whatever a program has it do, and any number of threads may be here at once.
+ * The state of a generator lies in an arena: of what gsl_qrng_alloc and _free would do, only
+ * the shortage of memory calls GSL's error handler, which belongs to the whole process. So
+ * nothing here calls it, whatever a program has it do, and any number of threads may be here at
+ * once.
  */
-#include "nlp/nlp_priv.h"
+#include "nlp/starts.h"
 
 #include <gsl/gsl_qrng.h>
 #include <math.h>
 #include <string.h>
+
+#include "nlp/engine.h"
 
 enum { SOBOL_MOST = 40, HALTON_MOST = 1229 };
 
@@ -55,38 +58,35 @@ static void next_point(gsl_qrng *q, uint64_t *state, int d, const double *shift,
     }
 }
 
-double *mt_nlp_starts(const mt_nlp_engine *e, int starts, mt_arena *mem)
+double *mt_nlp_starts(const mt_nlp *nlp, unsigned long seed, int starts, mt_arena *mem)
 {
-    const int d = e->n_free;
-    const mt_nlp *const p = e->nlp;
-    double *const t = mt_arena_f64(mem, (size_t)e->n, (size_t)starts);
+    int d = 0;
+    for (int j = 0; j < nlp->n; j++) {
+        d += nlp->lower[j] < nlp->upper[j];
+    }
+    double *const t = mt_arena_f64(mem, (size_t)nlp->n, (size_t)starts);
     double *const shift = mt_arena_f64(mem, (size_t)d, 1);
     double *const u = mt_arena_f64(mem, (size_t)d, 1);
     gsl_qrng q = sequence(d, mem);
     if (mt_arena_failed(mem)) {
         return NULL;
     }
-    uint64_t state = e->opt.seed;
-    for (int j = 0; j < d && e->opt.seed > 1; j++) {
+    uint64_t state = seed;
+    for (int j = 0; j < d && seed > 1; j++) {
         shift[j] = next_uniform(&state);
     }
     for (int k = 0; k < starts; k++) {
-        double *const tk = t + (ptrdiff_t)k * e->n;
-        memcpy(tk, e->origin, (size_t)e->n * sizeof *tk);
-        if (k == 0) {
-            continue;
+        const bool hint = k == 1 && nlp->hint != NULL;
+        if (k > 0 && !hint) {
+            next_point(&q, &state, d, shift, u);
         }
-        if (k == 1 && p->hint != NULL) {
-            for (int j = 0; j < e->n; j++) {
-                tk[j] = mt_nlp_clamp(e, j, p->hint[j]);
-            }
-            continue;
-        }
-        next_point(&q, &state, d, shift, u);
-        for (int j = 0, i = 0; j < e->n; j++) {
-            if (!e->held[j]) {
-                tk[j] = mt_nlp_clamp(e, j, p->lower[j] + u[i++] * (p->upper[j] - p->lower[j]));
-            }
+        for (int j = 0, i = 0; j < nlp->n; j++) {
+            const double width = nlp->upper[j] - nlp->lower[j];
+            const bool moves = k > 0 && !hint && width > 0;
+            const double at = moves  ? nlp->lower[j] + u[i++] * width
+                              : hint ? nlp->hint[j]
+                                     : nlp->origin[j];
+            t[j + (ptrdiff_t)k * nlp->n] = mt_nlp_clamp(nlp, j, at);
         }
     }
     return t;

@@ -16,11 +16,15 @@
  * short, from points with at least L/4 either way: the solution, the origin and the middle,
  * each moved that far inside.
  */
-#include "nlp/nlp_priv.h"
+#include "nlp/undetermined.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
+
+#include "nlp/kkt.h"
+#include "nlp/lsq.h"
+#include "nlp/polish.h"
 
 /* Residuals are dimensionless (ln of ratios, differences of unit vectors); they carry no
  * tolerance: the usual one of a frequency, a relative 1e-6, is used. The same for an objective,
@@ -280,9 +284,7 @@ static mt_status combinations(crossing *x, const mt_nlp_point *p, mt_nlp_result 
     double *const s = mt_arena_f64(mem, (size_t)k, 1);
     double *const u = mt_arena_f64(mem, (size_t)rows, (size_t)k);
     double *const vt = mt_arena_f64(mem, (size_t)k, (size_t)k);
-    if (!s || !u || !vt) {
-        return mt_fail_memory(e->err);
-    }
+    MT_TRY(mt_arena_check(mem, e->err));
     MT_TRY(mt_svd(rows, k, A, s, u, vt, mem, e->err));
     /* a singular value is the change for a unit vector; it knows rounding of the largest */
     const double small = fmax(CANDIDATE, 16 * DBL_EPSILON * (double)rows * s[0]);
@@ -310,16 +312,11 @@ static bool find(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_result *out)
     x.at = mt_nlp_point_new(e, mem);
     x.t = mt_arena_f64(mem, (size_t)e->n, 1);
     x.base = mt_arena_f64(mem, (size_t)e->n, 1);
-    if (!A || !column || !x.from || !x.at || !x.t || !x.base) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
+    if (!mt_nlp_has_room(e, mem)) {
         return false;
     }
     const int k = single_variables(&x, p, out, A, column);
-    const mt_status rc = k > 0 ? combinations(&x, p, out, A, column, k) : MT_OK;
-    if (rc != MT_OK) {
-        mt_nlp_end(e, rc);
-    }
-    return rc == MT_OK;
+    return k == 0 || mt_nlp_ok(e, combinations(&x, p, out, A, column, k));
 }
 
 bool mt_nlp_undetermined(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem,
@@ -328,8 +325,7 @@ bool mt_nlp_undetermined(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem,
     /* one column more than there can be directions: a candidate is made in place */
     out->undetermined = mt_arena_f64(mem, (size_t)e->n, (size_t)e->n + 1);
     out->undetermined_effect = mt_arena_f64(mem, (size_t)e->n, 1);
-    if (!out->undetermined || !out->undetermined_effect) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
+    if (!mt_nlp_has_room(e, mem)) {
         return false;
     }
     out->n_undetermined = 0;
@@ -416,8 +412,7 @@ static void restore(mt_nlp_engine *e, const mt_nlp_result *u, bool feasible, mt_
     /* a root: no freedom to minimise in */
     const bool isolated = feasible && !(p->kkt < HUGE_VAL);
     bool *const held = mt_arena_alloc(&e->scratch, (size_t)e->n, sizeof *held);
-    if (held == NULL) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
+    if (!mt_nlp_has_room(e, &e->scratch)) {
         return;
     }
     memcpy(held, e->held, (size_t)e->n * sizeof *held);
@@ -440,9 +435,8 @@ void mt_nlp_pull_back(mt_nlp_engine *e, const mt_nlp_result *undetermined, mt_nl
     mt_nlp_point *const to = mt_nlp_point_new(e, &e->scratch);
     double *const t = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
     double *const off = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
-    if (to == NULL || t == NULL || off == NULL) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
-    } else if (pulled(e, undetermined, p, off, t) && mt_nlp_evaluate(e, t, true, to)) {
+    if (mt_nlp_has_room(e, &e->scratch) && pulled(e, undetermined, p, off, t) &&
+        mt_nlp_evaluate(e, t, true, to)) {
         to->kkt = p->kkt;
         restore(e, undetermined, mt_nlp_feasible(p), to);
         if (as_good(e, to, p)) {

@@ -5,7 +5,7 @@
  * once for each. The most stationary end of a neighbourhood stands for it; where Newton did not
  * come to rest from there, the next one has its turn.
  */
-#include "nlp/nlp_priv.h"
+#include "nlp/ends.h"
 
 #include <math.h>
 
@@ -21,18 +21,14 @@ static const double LOWER = 1e-5;
 /* So many ends of a neighbourhood are polished before it is given up. */
 enum { TRIES = 2 };
 
-bool mt_nlp_ends_grow(mt_nlp_engine *e, mt_nlp_ends *all, int n)
+void mt_nlp_ends_grow(mt_nlp_engine *e, mt_nlp_ends *all, int n)
 {
     const size_t wanted = (size_t)all->count + (size_t)n;
     mt_nlp_local *const at = mt_arena_alloc(&e->scratch, wanted, sizeof *at);
-    if (at == NULL) {
-        return false;
-    }
-    for (int i = 0; i < all->count; i++) {
+    for (int i = 0; i < all->count && at != NULL; i++) {
         at[i] = all->at[i];
     }
-    all->at = at;
-    return true;
+    all->at = at != NULL ? at : all->at;
 }
 
 double mt_nlp_same_distance(const mt_nlp_engine *e)
@@ -52,8 +48,7 @@ int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_ends *all, int *once)
     int *const twin = mt_arena_int(&e->scratch, (size_t)all->count);
     int roots = 0;
     *once = 0;
-    if (twin == NULL) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
+    if (!mt_nlp_has_room(e, &e->scratch)) {
         return 0;
     }
     for (int i = 0; i < all->count && mt_nlp_seeks_roots(e); i++) {
@@ -136,10 +131,10 @@ static bool is_known(const mt_nlp_engine *e, mt_nlp_ends *all, mt_nlp_local *one
 int mt_nlp_ends_choose(mt_nlp_engine *e, mt_nlp_ends *all, const mt_nlp_result *directions,
                        mt_nlp_local **chosen)
 {
-    double *const d = mt_nlp_f64(e, &e->scratch, (size_t)e->n, 1);
+    double *const d = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
     int left = 0;
     int n = 0;
-    if (d == NULL) {
+    if (!mt_nlp_has_room(e, &e->scratch)) {
         return 0;
     }
     for (int i = 0; i < all->count; i++) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The only caller of the problem's callback: budget, finite values and failures are decided
  * here. */
-#include "nlp/nlp_priv.h"
+#include "nlp/engine.h"
 
 #include <float.h>
 #include <math.h>
@@ -14,11 +14,6 @@ enum { SOLUTIONS_KEPT = 16 };
 /* What differs from a bound by less, relative to the bounds, differs by rounding: a few
  * operations on t. */
 static const double ON_IT = 64 * DBL_EPSILON;
-
-mt_nlp_options mt_nlp_options_default(void)
-{
-    return (mt_nlp_options){.seed = 1, .least_change = true};
-}
 
 static void fill_defaults(mt_nlp_engine *e)
 {
@@ -56,6 +51,11 @@ static mt_status check_problem(const mt_nlp *p, mt_err *err)
                            tol);
         }
     }
+    for (int i = 0; i < p->n_next; i++) {
+        if (p->next_of[i] < 0 || p->next_of[i] >= p->n_in) {
+            return mt_fail(err, MT_E_USAGE, "search: row %d follows from none", i);
+        }
+    }
     return MT_OK;
 }
 
@@ -67,20 +67,15 @@ mt_status mt_nlp_engine_init(mt_nlp_engine *e, const mt_nlp *nlp, const mt_nlp_o
     MT_TRY(mt_arena_init(&e->scratch, 0, err));
     e->origin = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
     e->held = mt_arena_alloc(&e->scratch, (size_t)e->n, sizeof *e->held);
-    if (e->origin == NULL || e->held == NULL) {
+    const mt_status rc = mt_arena_check(&e->scratch, err);
+    if (rc != MT_OK) {
         mt_arena_free(&e->scratch);
-        return mt_fail_memory(err);
+        return rc;
     }
     for (int j = 0; j < e->n; j++) {
         e->held[j] = nlp->lower[j] >= nlp->upper[j];
         e->n_free += !e->held[j];
-        e->origin[j] = mt_nlp_clamp(e, j, nlp->origin[j]);
-    }
-    for (int i = 0; i < nlp->n_next; i++) {
-        if (nlp->next_of[i] < 0 || nlp->next_of[i] >= nlp->n_in) {
-            mt_arena_free(&e->scratch);
-            return mt_fail(err, MT_E_USAGE, "search: row %d follows from none", i);
-        }
+        e->origin[j] = mt_nlp_clamp(nlp, j, nlp->origin[j]);
     }
     for (int i = 0; i < nlp->n_eq; i++) {
         e->eq_tol = fmax(e->eq_tol, nlp->eq_tol[i]);
@@ -95,53 +90,40 @@ void mt_nlp_engine_free(mt_nlp_engine *e)
     mt_arena_free(&e->scratch);
 }
 
-void mt_nlp_end(mt_nlp_engine *e, mt_status rc)
+bool mt_nlp_ok(mt_nlp_engine *e, mt_status rc)
 {
-    e->ended = true;
-    if (e->fatal == MT_OK) {
-        e->fatal = rc;
-    }
+    e->ended = e->ended || rc != MT_OK;
+    e->fatal = e->fatal == MT_OK ? rc : e->fatal;
+    return rc == MT_OK;
 }
 
-double *mt_nlp_f64(mt_nlp_engine *e, mt_arena *mem, size_t m, size_t n)
+bool mt_nlp_has_room(mt_nlp_engine *e, mt_arena *mem)
 {
-    double *const room = mt_arena_f64(mem, m, n);
-    if (room == NULL) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
-    }
-    return room;
+    return mt_nlp_ok(e, mt_arena_check(mem, e->err));
 }
 
-mt_nlp_point *mt_nlp_point_new(mt_nlp_engine *e, mt_arena *mem)
+mt_nlp_point *mt_nlp_point_new(const mt_nlp_engine *e, mt_arena *mem)
 {
     const mt_nlp *const q = e->nlp;
     const size_t n = (size_t)e->n;
+    const size_t n_res = (size_t)q->n_res;
+    const size_t n_eq = (size_t)q->n_eq;
+    const size_t n_in = (size_t)q->n_in;
+    const size_t n_next = (size_t)q->n_next;
     mt_nlp_point *const p = mt_arena_alloc(mem, 1, sizeof *p);
-    if (p == NULL) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
-        return NULL;
+    if (p != NULL) {
+        *p = (mt_nlp_point){.t = mt_arena_f64(mem, n, 1),
+                            .df = mt_arena_f64(mem, n, 1),
+                            .r = mt_arena_f64(mem, n_res, 1),
+                            .dr = mt_arena_f64(mem, n_res, n),
+                            .eq = mt_arena_f64(mem, n_eq, 1),
+                            .deq = mt_arena_f64(mem, n_eq, n),
+                            .in = mt_arena_f64(mem, n_in, 1),
+                            .din = mt_arena_f64(mem, n_in, n),
+                            .next = mt_arena_f64(mem, n_next, 1),
+                            .dnext = mt_arena_f64(mem, n_next, n),
+                            .kkt = HUGE_VAL};
     }
-    double **const arrays[] = {&p->t,   &p->df, &p->r,   &p->dr,   &p->eq,
-                               &p->deq, &p->in, &p->din, &p->next, &p->dnext};
-    const size_t rows[] = {1,
-                           1,
-                           (size_t)q->n_res,
-                           (size_t)q->n_res,
-                           (size_t)q->n_eq,
-                           (size_t)q->n_eq,
-                           (size_t)q->n_in,
-                           (size_t)q->n_in,
-                           (size_t)q->n_next,
-                           (size_t)q->n_next};
-    const size_t columns[] = {n, n, 1, n, 1, n, 1, n, 1, n};
-    for (int k = 0; k < MT_COUNT(arrays); k++) {
-        *arrays[k] = mt_arena_f64(mem, rows[k], columns[k]);
-        if (*arrays[k] == NULL) {
-            mt_nlp_end(e, mt_fail_memory(e->err));
-            return NULL;
-        }
-    }
-    p->kkt = HUGE_VAL;
     return p;
 }
 
@@ -174,11 +156,11 @@ void mt_nlp_point_swap(mt_nlp_point **a, mt_nlp_point **b)
     *b = c;
 }
 
-double mt_nlp_clamp(const mt_nlp_engine *e, int j, double t)
+double mt_nlp_clamp(const mt_nlp *nlp, int j, double t)
 {
-    const double lower = e->nlp->lower[j];
-    const double upper = e->nlp->upper[j];
-    const double origin = e->nlp->origin[j];
+    const double lower = nlp->lower[j];
+    const double upper = nlp->upper[j];
+    const double origin = nlp->origin[j];
     const double near = ON_IT * fmax(fabs(lower), fabs(upper));
     if (fabs(t - origin) <= near && origin >= lower && origin <= upper) {
         return origin;
@@ -252,8 +234,7 @@ static bool is_final(mt_nlp_engine *e, mt_status rc, const mt_err *here)
         return true;
     }
     if (mt_is_final(rc)) {
-        mt_nlp_end(e, mt_fail(e->err, rc, "%s", here->text));
-        return true;
+        return !mt_nlp_ok(e, mt_fail(e->err, rc, "%s", here->text));
     }
     return false;
 }
@@ -285,7 +266,7 @@ bool mt_nlp_evaluate(mt_nlp_engine *e, const double *t, bool with_gradient, mt_n
         if (!isfinite(t[j])) {
             return false;
         }
-        p->t[j] = mt_nlp_clamp(e, j, t[j]);
+        p->t[j] = mt_nlp_clamp(e->nlp, j, t[j]);
     }
     mt_nlp_values v = {.f = 0,
                        .df = p->df,

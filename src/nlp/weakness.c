@@ -10,10 +10,13 @@
  *     returns, and |C v| grew with h: a double root (the constraints are quadratic along v)
  *     returns, and |C v| as before:   a simple root, weakly determined
  */
-#include "nlp/nlp_priv.h"
+#include "nlp/weakness.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "nlp/kkt.h"
+#include "nlp/lsq.h"
 
 enum { PROBES_MOST = 8 };
 static const double PROBE_STEPS = 10;  /* h in units of sqrt(tolerance), a mark well above it */
@@ -47,8 +50,7 @@ static double *right_vectors(mt_nlp_engine *e, const mt_nlp_point *p, const mt_n
     double *const s = mt_arena_f64(mem, (size_t)nf, 1);
     double *const u = mt_arena_f64(mem, (size_t)m, (size_t)nf);
     double *const vt = mt_arena_f64(mem, (size_t)nf, (size_t)nf);
-    if (!c || !s || !u || !vt) {
-        mt_nlp_end(e, mt_fail_memory(e->err));
+    if (!mt_nlp_has_room(e, mem)) {
         return NULL;
     }
     for (int j = 0; j < nf; j++) {
@@ -57,12 +59,7 @@ static double *right_vectors(mt_nlp_engine *e, const mt_nlp_point *p, const mt_n
                                       sqrt(mt_nlp_row_tol(e, a->row[i]));
         }
     }
-    const mt_status rc = mt_svd(m, nf, c, s, u, vt, mem, e->err);
-    if (rc != MT_OK) {
-        mt_nlp_end(e, rc);
-        return NULL;
-    }
-    return vt;
+    return mt_nlp_ok(e, mt_svd(m, nf, c, s, u, vt, mem, e->err)) ? vt : NULL;
 }
 
 /* Step along v and return to the constraints. */
@@ -75,8 +72,8 @@ static void probe(mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_active *
     }
     const double h = fmin(PROBE_STEPS * sqrt(tol), PROBE_MOST);
     mt_nlp_point *const x = mt_nlp_point_new(e, &e->scratch);
-    double *const t = mt_nlp_f64(e, &e->scratch, (size_t)e->n, 1);
-    if (x == NULL || t == NULL) {
+    double *const t = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
+    if (!mt_nlp_has_room(e, &e->scratch)) {
         return;
     }
     const double before = slope_along(e, p, a, v);
@@ -86,7 +83,7 @@ static void probe(mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_active *
         moved = 0;
         for (int i = 0; i < a->n_free; i++) {
             const int j = a->free[i];
-            t[j] = mt_nlp_clamp(e, j, p->t[j] + sign * h * v[i]);
+            t[j] = mt_nlp_clamp(e->nlp, j, p->t[j] + sign * h * v[i]);
             moved += (t[j] - p->t[j]) * (t[j] - p->t[j]);
         }
         moved = sqrt(moved);
@@ -114,9 +111,7 @@ static mt_status independent_rows(mt_nlp_engine *e, const mt_nlp_point *p, mt_ar
     double *const ct = mt_arena_f64(mem, (size_t)e->n, (size_t)n_eq);
     bool *const kept = mt_arena_alloc(mem, (size_t)n_eq, sizeof *kept);
     w->rows = mt_arena_int(mem, (size_t)n_eq);
-    if (!ct || !kept || !w->rows) {
-        return mt_fail_memory(e->err);
-    }
+    MT_TRY(mt_arena_check(mem, e->err));
     for (int i = 0; i < n_eq; i++) {
         double *const col = ct + (ptrdiff_t)i * e->n;
         for (int j = 0; j < e->n; j++) {
@@ -144,13 +139,9 @@ bool mt_nlp_weakness_at(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem,
                         mt_nlp_weakness *w)
 {
     *w = (mt_nlp_weakness){0};
-    const mt_status rc = e->n > 0 ? independent_rows(e, p, mem, w) : MT_OK;
     mt_nlp_active a;
-    if (rc != MT_OK) {
-        mt_nlp_end(e, rc);
-        return false;
-    }
-    if (!mt_nlp_active_set(e, p, MT_NLP_OBJECTIVE, &e->scratch, &a)) {
+    if ((e->n > 0 && !mt_nlp_ok(e, independent_rows(e, p, mem, w))) ||
+        !mt_nlp_active_set(e, p, MT_NLP_OBJECTIVE, &e->scratch, &a)) {
         return false;
     }
     if (a.k == 0 || a.n_free == 0) {
@@ -158,8 +149,8 @@ bool mt_nlp_weakness_at(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem,
         return true;
     }
     double *const vt = right_vectors(e, p, &a, &e->scratch);
-    double *const v = mt_nlp_f64(e, &e->scratch, (size_t)a.n_free, (size_t)a.n_free);
-    if (vt == NULL || v == NULL) {
+    double *const v = mt_arena_f64(&e->scratch, (size_t)a.n_free, (size_t)a.n_free);
+    if (vt == NULL || !mt_nlp_has_room(e, &e->scratch)) {
         return false;
     }
     int weak = 0;

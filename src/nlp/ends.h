@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NLP_ENDS_H
+#define NLP_ENDS_H
+
+#include "nlp/local.h"
+
+typedef struct mt_nlp_ends {
+    mt_nlp_local *at; /* [count], and room for those of mt_nlp_ends_grow */
+    int count;
+    int starts;                   /* made so far */
+    const mt_nlp_point *directed; /* where the undetermined directions were sought */
+} mt_nlp_ends;
+
+/* Room for n ends more. */
+void mt_nlp_ends_grow(mt_nlp_engine *e, mt_nlp_ends *all, int n);
+/* Isolated roots, *once: those that one start only ended at; 0 where the problem has none, or a
+ * curve of solutions. */
+int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_ends *all, int *once);
+/* Ends to polish next, chosen[all->count]: of those that are near each other one; ends that lie
+ * at one that is polished are dropped. Returns how many. */
+int mt_nlp_ends_choose(mt_nlp_engine *e, mt_nlp_ends *all, const mt_nlp_result *directions,
+                       mt_nlp_local **chosen);
+/* Did Newton come to rest there? */
+bool mt_nlp_came_to_rest(const mt_nlp_local *s);
+/* Ends nearer than this are one; does the problem ask for isolated roots? */
+double mt_nlp_same_distance(const mt_nlp_engine *e);
+bool mt_nlp_seeks_roots(const mt_nlp_engine *e);
+
+#endif

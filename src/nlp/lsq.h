@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NLP_LSQ_H
+#define NLP_LSQ_H
+
+#include "nlp/engine.h"
+
+/* Bounded Levenberg-Marquardt from *p on residuals or violations; *p is where it
+ * ends. */
+void mt_nlp_least_squares(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p);
+
+#endif

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NLP_REPORT_H
+#define NLP_REPORT_H
+
+#include "nlp/engine.h"
+
+/* Fill the record of a solution from a point (copies; no evaluation). */
+bool mt_nlp_report(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem,
+                   mt_nlp_solution *out);
+
+#endif

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NLP_SLSQP_H
+#define NLP_SLSQP_H
+
+#include "nlp/engine.h"
+
+/* One local search from p; the equalities are only those in rows[n_rows]. last:
+ * where it ended; p: the best point it met by mt_nlp_better. */
+void mt_nlp_slsqp(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p,
+                  mt_nlp_point *last);
+
+#endif
