@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "analysis/count.h"
 #include "answer/doubts.h"
 #include "base/format.h"
 #include "model/judge.h"

@@ -7,6 +7,7 @@
 #include <stdarg.h>
 
 #include "describe/describe.h"
+#include "prove/reach.h"
 #include "search/proof.h"
 
 static mt_status state(mt_result *result, const char *kind, bool proven, mt_err *err,

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "analysis/count.h"
 #include "describe/describe.h"
 #include "problem/robust.h"
 

@@ -10,6 +10,8 @@
 #include "describe/describe.h"
 #include "problem/demand.h"
 #include "problem/robust.h"
+#include "prove/band_count.h"
+#include "prove/tolerance.h"
 #include "search/proof.h"
 
 /* Tolerances beyond this are not asked about. */

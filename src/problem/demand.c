@@ -10,6 +10,7 @@
 
 #include <math.h>
 
+#include "analysis/count.h"
 #include "problem/goal.h"
 #include "problem/goal_frequency.h"
 
@@ -28,8 +29,8 @@ static void put(const mt_workspace *w, double *matrix, int rows, int row, double
 {
     const int n = w->p->n;
     if (gradient != NULL && w->c->n_t > n && matrix != w->dr) {
-        matrix[row + ((ptrdiff_t)n * rows)] =
-            0.0; /* the clearance enters no goal but the bands */
+        /* the clearance enters no goal but the bands */
+        matrix[row + ((ptrdiff_t)n * rows)] = 0.0;
     }
     for (int i = 0; i < n && gradient != NULL; i++) {
         matrix[row + ((ptrdiff_t)i * rows)] = factor * gradient[i];

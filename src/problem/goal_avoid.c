@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "analysis/count.h"
 #include "problem/goal.h"
 #include "problem/goal_frequency.h"
 #include "problem/robust.h"

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "problem/goal.h"
+#include "prove/box.h"
 #include "prove/enclosure.h"
 
 /* No floor lies lower: the square of an angular frequency would leave the range of a double. */

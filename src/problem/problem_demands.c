@@ -3,6 +3,7 @@
  * and its rows. */
 #include <math.h>
 
+#include "analysis/count.h"
 #include "problem/family.h"
 #include "problem/goal.h"
 #include "problem/robust.h"

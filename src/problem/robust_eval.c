@@ -3,6 +3,7 @@
  * its factors in the gradient. */
 #include <math.h>
 
+#include "analysis/count.h"
 #include "problem/goal_avoid.h"
 #include "problem/goal_frequency.h"
 #include "problem/robust.h"

@@ -1,90 +1,556 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What one mode can reach in a box; and the count that checks a band by inertia alone. */
+/*
+ * Branch and bound over assignments. For a box and a band [a, b], the number j of modes below
+ * the band at any design that keeps it lies in
+ *     least_below(b) <= j <= most_below(a),
+ * so the box is done with where for some band (or limit, or bound) nothing is left, or where
+ * all assignments that are left are known. Else the box is halved. Where a single unknown
+ * assignment is left, or a pass ends, the middle of the box is tried: a design that meets
+ * everything makes its assignment known. Catalogues only thin the boxes out, and a cap cuts off
+ * those whose designs are all too costly: with the objective of a known design as cap, "nothing
+ * found, nothing open" proves that none is better.
+ *
+ * Assignments have to be in order within a view, and equal where bands are the same (same_as).
+ * Both are narrowed in before anything is listed: j(i) >= j(before i), j(i) = j(same as i).
+ *
+ * Passes go deeper and deeper (iterative deepening). Depth first at once would dive into the
+ * first surface on which two assignments touch, where boxes stay undecided down to rounding,
+ * before it meets the designs next to it that settle the matter. What earlier passes cost is a
+ * fraction of the last one.
+ */
 #include "prove/certify.h"
 
-#include <float.h>
 #include <math.h>
+#include <string.h>
 
-#include "linalg/dense.h"
+#include "prove/boxes.h"
 
-/* Frequency range of the limit's mode over the box; NaN where nothing is known. */
-static mt_status range_of(const mt_certify *c, const mt_certify_limit *l, mt_arena *scratch,
-                          mt_certify_reach *out, mt_err *err)
+typedef struct search {
+    const mt_certify *c;
+    const int *only; /* NULL: all assignments */
+    mt_arena *mem;   /* results */
+    mt_err *err;
+    int *previous; /* [n_bands] the band before in the same view; -1 */
+    /* [n_bands] assignments of the box: j between, not below that of the band before */
+    int *least;
+    int *most;
+    int *tuple; /* [n_bands] work */
+    int *single;
+    mt_certify_edge *edges; /* work */
+    double *node_lo;        /* [program.count] work */
+    double *node_hi;
+    mt_boxes boxes;
+    int n_known;
+    int cap_known;
+    int *known; /* known, found */
+    int cap_order;
+    /* [n_known] their places in the list, sorted by memcmp: every box looks for some */
+    int *order;
+    int cap_found;
+    int cap_open;
+    int limit; /* bisections of a box in this pass */
+    mt_certify_search *out;
+} search;
+
+static mt_status claim(search *s, mt_arena *work)
+{
+    const mt_certify *const c = s->c;
+    /* never of length 0: memcpy and memcmp want pointers */
+    const size_t bands = (size_t)c->n_bands + 1;
+    const size_t nodes = c->program == NULL ? 0 : (size_t)c->program->count;
+    s->previous = mt_arena_int(work, bands);
+    s->least = mt_arena_int(work, bands);
+    s->most = mt_arena_int(work, bands);
+    s->tuple = mt_arena_int(work, bands);
+    s->single = mt_arena_int(work, bands);
+    s->edges =
+        mt_arena_alloc(work, 2 * ((size_t)c->n_bands + (size_t)c->n_limits), sizeof *s->edges);
+    s->node_lo = mt_arena_f64(work, nodes, 1);
+    s->node_hi = mt_arena_f64(work, nodes, 1);
+    if (s->previous == NULL || s->least == NULL || s->most == NULL || s->tuple == NULL ||
+        s->single == NULL || s->edges == NULL || s->node_lo == NULL || s->node_hi == NULL) {
+        return mt_fail_memory(s->err);
+    }
+    for (int i = 0; i < c->n_bands; i++) {
+        s->previous[i] = -1;
+        for (int k = 0; k < i; k++) {
+            s->previous[i] = c->bands[k].view == c->bands[i].view ? k : s->previous[i];
+        }
+    }
+    return mt_boxes_init(&s->boxes, c, false, work, s->err);
+}
+
+/* Room for one more assignment behind the count in *list; its place. */
+static int *append(search *s, int **list, int count, int *capacity)
+{
+    const size_t size = ((size_t)s->c->n_bands + 1) * sizeof(int); /* + 1: never 0 */
+    int *const grown = mt_arena_grow(s->mem, *list, count, capacity, size);
+    if (grown == NULL) {
+        (void)mt_fail_memory(s->err);
+        return NULL;
+    }
+    *list = grown;
+    return grown + ((ptrdiff_t)count * s->c->n_bands);
+}
+
+static void copy(const search *s, int *to, const int *from)
+{
+    memcpy(to, from, (size_t)s->c->n_bands * sizeof *to);
+}
+
+static bool listed(const search *s, const int *list, int count, const int *tuple)
+{
+    const size_t n = (size_t)s->c->n_bands;
+    for (int i = 0; i < count; i++) {
+        if (memcmp(list + ((size_t)i * n), tuple, n * sizeof *tuple) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* How many known assignments come before the tuple in s->order; *there: the next one is it. */
+static int place_of(const search *s, const int *tuple, bool *there)
+{
+    const size_t n = (size_t)s->c->n_bands;
+    int low = 0;
+    int high = s->n_known;
+    *there = false;
+    while (low < high && !*there) {
+        const int middle = low + ((high - low) / 2);
+        const int *const known = s->known + ((size_t)s->order[middle] * n);
+        const int before = memcmp(known, tuple, n * sizeof *tuple);
+        *there = before == 0;
+        low = before < 0 ? middle + 1 : before == 0 ? middle : low;
+        high = before > 0 ? middle : high;
+    }
+    return low;
+}
+
+static bool is_known(const search *s, const int *tuple)
+{
+    bool there = false;
+    (void)place_of(s, tuple, &there);
+    return there;
+}
+
+static bool note_known(search *s, const int *tuple)
+{
+    int *const place = append(s, &s->known, s->n_known, &s->cap_known);
+    int *const order =
+        mt_arena_grow(s->mem, s->order, s->n_known, &s->cap_order, sizeof *order);
+    if (place == NULL || order == NULL) {
+        (void)mt_fail_memory(s->err);
+        return false;
+    }
+    bool there = false;
+    s->order = order;
+    const int at = place_of(s, tuple, &there);
+    memmove(order + at + 1, order + at, (size_t)(s->n_known - at) * sizeof *order);
+    order[at] = s->n_known;
+    copy(s, place, tuple);
+    s->n_known++;
+    return true;
+}
+
+/* The earlier band that band i has to equal; -1: none. */
+static int same_of(const search *s, int i)
+{
+    return s->c->same_as != NULL && s->c->same_as[i] < i ? s->c->same_as[i] : -1;
+}
+
+/* Band i at its least value that suits those before it; false: there is none. */
+static bool place(search *s, int i)
+{
+    const int same = same_of(s, i);
+    const int before = s->previous[i] < 0 ? 0 : s->tuple[s->previous[i]];
+    const int low = before > s->least[i] ? before : s->least[i];
+    s->tuple[i] = same < 0 ? low : s->tuple[same];
+    return s->tuple[i] >= low && s->tuple[i] <= s->most[i];
+}
+
+/* The first consistent assignment that keeps the bands before `from`, or follows them in
+ * lexicographic order: bands as low as they go. */
+static bool fill(search *s, int from)
+{
+    int i = from;
+    while (i >= 0 && i < s->c->n_bands) {
+        if (place(s, i)) {
+            i++;
+            continue;
+        }
+        do { /* back to the last one that can be raised */
+            i--;
+        } while (i >= 0 && (same_of(s, i) >= 0 || s->tuple[i] >= s->most[i]));
+        if (i >= 0) {
+            s->tuple[i]++;
+            i++;
+        }
+    }
+    return i >= 0;
+}
+
+static bool next(search *s)
+{
+    int i = s->c->n_bands - 1;
+    while (i >= 0 && (same_of(s, i) >= 0 || s->tuple[i] >= s->most[i])) {
+        i--;
+    }
+    if (i < 0) {
+        return false;
+    }
+    s->tuple[i]++;
+    return fill(s, i + 1);
+}
+
+static void raise_to(int *low, int other, bool *changed)
+{
+    *changed = *changed || other > *low;
+    *low = other > *low ? other : *low;
+}
+
+static void lower_to(int *high, int other, bool *changed)
+{
+    *changed = *changed || other < *high;
+    *high = other < *high ? other : *high;
+}
+
+/* Ranges of the bands that order and equality leave: false where one is empty. */
+static bool narrow(search *s)
+{
+    bool changed = true;
+    while (changed) {
+        changed = false;
+        for (int i = 0; i < s->c->n_bands; i++) {
+            const int before = s->previous[i];
+            const int same = same_of(s, i);
+            if (before >= 0) {
+                raise_to(&s->least[i], s->least[before], &changed);
+                lower_to(&s->most[before], s->most[i], &changed);
+            }
+            if (same >= 0) {
+                raise_to(&s->least[i], s->least[same], &changed);
+                raise_to(&s->least[same], s->least[i], &changed);
+                lower_to(&s->most[i], s->most[same], &changed);
+                lower_to(&s->most[same], s->most[i], &changed);
+            }
+            if (s->least[i] > s->most[i]) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* How many assignments of the box are not known: 0, 1 (then it is in single), or 2 for more. */
+static int unknown(search *s)
+{
+    int count = 0;
+    for (bool more = fill(s, 0); more && count < 2; more = next(s)) {
+        if (!is_known(s, s->tuple)) {
+            copy(s, s->single, s->tuple);
+            count++;
+        }
+    }
+    return count;
+}
+
+/* Can the bounds be met in the box (all: everywhere in it)? */
+static bool bounds_met(search *s, const double *lo, const double *hi, bool all)
+{
+    const mt_certify *const c = s->c;
+    if (c->n_bounds == 0) {
+        return true;
+    }
+    mt_program_interval(c->program, lo, hi, s->node_lo, s->node_hi);
+    for (int i = 0; i < c->n_bounds; i++) {
+        const mt_certify_bound *const b = &c->bounds[i];
+        const double low = all ? s->node_hi[b->node] : s->node_lo[b->node];
+        const double high = all ? s->node_lo[b->node] : s->node_hi[b->node];
+        if (low > b->at_most || high < b->at_least) { /* NaN limits: never */
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool limit_possible(const mt_certify *c, const mt_certify_limit *l)
 {
     mt_enclosure *const e = c->views[l->view];
-    if (!mt_enclosure_set(e, c->lower, c->upper)) {
-        return MT_OK;
+    if (l->mode > e->n_modes) {
+        return false;
     }
-    double *const low = mt_arena_f64(scratch, (size_t)e->n_modes, 1);
-    double *const high = mt_arena_f64(scratch, (size_t)e->n_modes, 1);
-    if (low == NULL || high == NULL) {
-        return mt_fail_memory(err);
+    if (!isnan(l->at_most_hz) &&
+        mt_enclosure_most_below(e, mt_enclosure_lambda(l->at_most_hz * (1.0 + l->tolerance))) <
+            l->mode) {
+        return false;
     }
-    MT_TRY(mt_enclosure_ranges(e, low, high, err));
-    out->low_hz = low[l->mode - 1];
-    out->high_hz = high[l->mode - 1];
+    return isnan(l->at_least_hz) ||
+           mt_enclosure_least_below(
+               e, mt_enclosure_lambda(l->at_least_hz * (1.0 - l->tolerance))) < l->mode;
+}
+
+/* Modes that may lie below a band, or on its lower edge; below one that begins at 0 there are
+ * none, a mode of 0 Hz is in it. */
+static int most_under(mt_enclosure *e, const mt_certify_band *b)
+{
+    const double lambda = mt_enclosure_lambda(b->lower_hz * (1.0 + b->tolerance));
+    return b->lower_hz > 0.0 ? mt_enclosure_most_below(e, lambda) : 0;
+}
+
+/* Assignments of one band in the box that is set, into least, most; false: none. */
+static bool band_possible(search *s, int i)
+{
+    const mt_certify_band *const b = &s->c->bands[i];
+    mt_enclosure *const e = s->c->views[b->view];
+    const int *const only = s->only == NULL ? NULL : s->only + i;
+    s->most[i] = most_under(e, b);
+    if (only != NULL && s->most[i] < *only) {
+        return false;
+    }
+    s->least[i] =
+        mt_enclosure_least_below(e, mt_enclosure_lambda(b->upper_hz * (1.0 - b->tolerance)));
+    if (only != NULL) {
+        const bool possible = s->least[i] <= *only;
+        s->least[i] = *only;
+        s->most[i] = *only;
+        return possible;
+    }
+    return s->least[i] <= s->most[i];
+}
+
+/* May a design of the box have an objective below the cap? */
+static bool below_cap(const mt_certify *c, const double *lo, const double *hi)
+{
+    return c->cap == NULL || c->cap->least(c->cap->context, lo, hi) < c->cap->below;
+}
+
+/* What is left in the box: unknown assignments (0, 1, 2 for more). Where nothing is known of
+ * the box, everything is left. */
+static int examine(search *s)
+{
+    const mt_certify *const c = s->c;
+    const mt_boxes *const b = &s->boxes;
+    bool possible =
+        below_cap(c, b->now_lo, b->now_hi) && bounds_met(s, b->now_lo, b->now_hi, false);
+    if (!possible) {
+        return 0;
+    }
+    if (!mt_certify_set(c, b->now_lo, b->now_hi)) {
+        for (int i = 0; i < c->n_bands; i++) {
+            s->least[i] = s->only == NULL ? 0 : s->only[i];
+            s->most[i] = s->only == NULL ? c->views[c->bands[i].view]->n_modes : s->only[i];
+        }
+        return narrow(s) ? unknown(s) : 0;
+    }
+    for (int i = 0; i < c->n_limits && possible; i++) {
+        possible = limit_possible(c, &c->limits[i]);
+    }
+    for (int i = 0; i < c->n_bands && possible; i++) {
+        possible = band_possible(s, i);
+    }
+    return possible && narrow(s) ? unknown(s) : 0;
+}
+
+static bool same_counts(const search *s, const int *tuple)
+{
+    for (int i = 0; i < s->c->n_bands; i++) {
+        const int same = same_of(s, i);
+        if (same >= 0 && tuple[i] != tuple[same]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Does the middle of the box meet everything? Its assignment goes to `single` (in a search for
+ * one: it must have that). */
+static bool witnessed(search *s)
+{
+    const mt_boxes *const b = &s->boxes;
+    if (!below_cap(s->c, b->middle, b->middle) || !bounds_met(s, b->middle, b->middle, true) ||
+        !mt_certify_set(s->c, b->middle, b->middle)) {
+        return false;
+    }
+    for (int i = 0; i < s->c->n_bands; i++) {
+        const mt_certify_band *const band = &s->c->bands[i];
+        const double lambda = mt_enclosure_lambda(band->lower_hz * (1.0 + band->tolerance));
+        s->single[i] = s->only != NULL
+                           ? s->only[i]
+                           : mt_enclosure_least_below(s->c->views[band->view], lambda);
+    }
+    if (!same_counts(s, s->single) || is_known(s, s->single)) {
+        return false;
+    }
+    const int n = mt_certify_edges(s->c, s->single, true, s->edges);
+    return mt_certify_first_open(s->c, n, s->edges) < 0;
+}
+
+static mt_status note_found(search *s)
+{
+    mt_certify_search *const out = s->out;
+    const size_t n = (size_t)s->c->n;
+    int capacity = s->cap_found;
+    int *const place = append(s, &out->found, out->n_found, &s->cap_found);
+    double *const at =
+        mt_arena_grow(s->mem, out->at, out->n_found, &capacity, (n + 1) * sizeof *at);
+    if (place == NULL || at == NULL || !note_known(s, s->single)) {
+        return mt_fail_memory(s->err);
+    }
+    copy(s, place, s->single);
+    out->at = at;
+    if (n > 0) {
+        memcpy(at + ((size_t)out->n_found * n), s->boxes.middle, n * sizeof *at);
+    }
+    out->n_found++;
     return MT_OK;
 }
 
-static mt_status reach(const mt_certify *c, int limit, mt_arena *scratch, mt_certify_reach *out,
-                       mt_err *err)
+/* Everything unknown that is left in the box stays open. */
+static mt_status note_open(search *s)
 {
-    const mt_certify_limit *const l = &c->limits[limit];
-    mt_certify one = *c;
-    *out = (mt_certify_reach){MT_VERDICT_IMPOSSIBLE, nan(""), nan(""), 0};
-    if (l->mode < 1 || l->mode > c->views[l->view]->n_modes) {
-        return MT_OK;
+    mt_certify_search *const out = s->out;
+    out->proven = false;
+    for (bool more = fill(s, 0); more && !out->more; more = next(s)) {
+        if (is_known(s, s->tuple) || listed(s, out->open, out->n_open, s->tuple)) {
+            continue;
+        }
+        out->more = out->n_open == MT_CERTIFY_OPEN_MOST; /* there is one more */
+        if (out->more) {
+            break;
+        }
+        int *const place = append(s, &out->open, out->n_open, &s->cap_open);
+        if (place == NULL) {
+            return MT_E_MEMORY;
+        }
+        copy(s, place, s->tuple);
+        out->n_open++;
     }
-    MT_TRY(range_of(c, l, scratch, out, err));
-    if (out->high_hz < l->at_least_hz * (1.0 - l->tolerance) ||
-        out->low_hz > l->at_most_hz * (1.0 + l->tolerance)) {
-        return MT_OK;
-    }
-    one.n_bands = 0;
-    one.n_bounds = 0;
-    one.limits = l;
-    one.n_limits = 1;
-    return mt_certify_possible(&one, NULL, scratch, &out->verdict, NULL, &out->boxes, err);
+    return MT_OK;
 }
 
-mt_status mt_certify_reach_of(const mt_certify *c, int limit, mt_arena *scratch,
-                              mt_certify_reach *out, mt_err *err)
+/* An assignment that stayed open in one box may have been found in a later one. */
+static void drop_found(search *s)
 {
-    const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    const mt_status rc = reach(c, limit, scratch, out, err);
-    mt_arena_rewind(scratch, mark);
+    mt_certify_search *const out = s->out;
+    const ptrdiff_t n = s->c->n_bands;
+    int kept = 0;
+    for (int i = 0; i < out->n_open; i++) {
+        if (!is_known(s, out->open + (i * n))) {
+            memmove(out->open + (kept * n), out->open + (i * n), (size_t)n * sizeof(int));
+            kept++;
+        }
+    }
+    out->n_open = kept;
+    out->proven = kept == 0 && !out->more;
+}
+
+/* Bisections between one pass and the next: 64 times as many boxes at most. */
+enum { DEEPER = 6 };
+
+static int depth_of(const mt_boxes *b)
+{
+    int depth = 0;
+    for (int i = 0; i < b->n; i++) {
+        depth += b->now_depth[i];
+    }
+    return depth;
+}
+
+/* One box: settle it, or halve it, or leave it open. *deeper: a deeper pass may settle it. */
+static mt_status visit(search *s, bool *deeper)
+{
+    mt_certify_search *const out = s->out;
+    const long most = s->c->max_boxes > 0 ? s->c->max_boxes : MT_CERTIFY_BOXES;
+    out->stopped = out->stopped || mt_interrupted(s->c->interrupt);
+    const int left = examine(s);
+    out->boxes++;
+    if (left == 0) {
+        return MT_OK;
+    }
+    const bool cut = depth_of(&s->boxes) >= s->limit;
+    if ((left == 1 || cut) && witnessed(s)) {
+        MT_TRY(note_found(s));
+        if (unknown(s) == 0) {
+            return MT_OK;
+        }
+    }
+    const bool spent = out->stopped || out->boxes >= most;
+    if (!spent && !cut && mt_boxes_split(&s->boxes)) {
+        return MT_OK;
+    }
+    *deeper = *deeper || cut;
+    return note_open(s);
+}
+
+static mt_status run(search *s)
+{
+    mt_certify_search *const out = s->out;
+    const long most = s->c->max_boxes > 0 ? s->c->max_boxes : MT_CERTIFY_BOXES;
+    bool deeper = true;
+    for (s->limit = DEEPER; deeper && !(s->only != NULL && out->n_found > 0);
+         s->limit += DEEPER) {
+        deeper = false;
+        out->proven = true;
+        out->n_open = 0;
+        out->more = false;
+        mt_boxes_start(&s->boxes, s->c->lower, s->c->upper);
+        while (mt_boxes_pop(&s->boxes) && !(s->only != NULL && out->n_found > 0)) {
+            MT_TRY(visit(s, &deeper));
+        }
+        if (!out->proven) {
+            drop_found(s);
+        }
+        deeper = deeper && !out->proven && !out->stopped && out->boxes < most;
+    }
+    return MT_OK;
+}
+
+static mt_status search_all(const mt_certify *c, int n_known, const int *known, const int *only,
+                            mt_arena *mem, mt_arena *work, mt_certify_search *out, mt_err *err)
+{
+    search s = {.c = c, .only = only, .mem = mem, .err = err, .out = out};
+    *out = (mt_certify_search){0};
+    MT_TRY(claim(&s, work));
+    for (int i = 0; i < n_known; i++) {
+        if (!note_known(&s, known + ((ptrdiff_t)i * c->n_bands))) {
+            return MT_E_MEMORY;
+        }
+    }
+    return run(&s);
+}
+
+mt_status mt_certify_assignments(const mt_certify *c, int n_known, const int *known,
+                                 mt_arena *mem, mt_certify_search *out, mt_err *err)
+{
+    mt_arena work = {0};
+    mt_status rc = mt_arena_init(&work, 0, err);
+    if (rc == MT_OK) {
+        rc = search_all(c, n_known, known, NULL, mem, &work, out, err);
+    }
+    mt_arena_free(&work);
     return rc;
 }
 
-/* A pivot ratio (mt_inertia's gap) at or below UNSURE_ULPS n eps says nothing about the
- * sign. */
-static const double UNSURE_ULPS = 16.0;
-
-/* Vibration modes below hz. */
-static mt_status below(const mt_linear *lin, int n_rigid, double hz, mt_arena *scratch,
-                       int *modes, bool *sure, mt_err *err)
+mt_status mt_certify_possible(const mt_certify *c, const int *assignment, mt_arena *scratch,
+                              mt_verdict *verdict, double *at, long *boxes, mt_err *err)
 {
-    const mt_reduced r = mt_linear_reduced(lin);
-    int count[3];
-    double gap = 0.0;
-    *modes = 0;
-    if (!(hz > 0.0)) {
-        return MT_OK;
+    static const int none = 0; /* with no bands the assignment is empty */
+    mt_certify_search out;
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    const mt_status rc = search_all(c, 0, NULL, assignment == NULL ? &none : assignment,
+                                    scratch, scratch, &out, err);
+    *verdict = MT_VERDICT_OPEN;
+    if (rc == MT_OK) {
+        *verdict = out.n_found > 0 ? MT_VERDICT_POSSIBLE
+                                   : (out.proven ? MT_VERDICT_IMPOSSIBLE : MT_VERDICT_OPEN);
+        if (at != NULL && out.n_found > 0 && c->n > 0) {
+            memcpy(at, out.at, (size_t)c->n * sizeof *at);
+        }
+        if (boxes != NULL) {
+            *boxes = out.boxes;
+        }
     }
-    MT_TRY(mt_inertia(r.n, r.k, r.m, mt_enclosure_lambda(hz), count, &gap, scratch, err));
-    *sure = *sure && gap > UNSURE_ULPS * (double)r.n * DBL_EPSILON;
-    *modes = count[0] > n_rigid ? count[0] - n_rigid : 0;
-    return MT_OK;
-}
-
-mt_status mt_certify_count(const mt_linear *lin, int n_rigid, double lower_hz, double upper_hz,
-                           double tolerance, mt_arena *scratch, mt_band_count *out, mt_err *err)
-{
-    int under = 0;
-    *out = (mt_band_count){.sure = true};
-    MT_TRY(below(lin, n_rigid, lower_hz * (1.0 + tolerance), scratch, &out->below, &out->sure,
-                 err));
-    MT_TRY(below(lin, n_rigid, upper_hz * (1.0 - tolerance), scratch, &under, &out->sure, err));
-    out->inside = under > out->below ? under - out->below : 0;
-    return MT_OK;
+    mt_arena_rewind(scratch, mark);
+    return rc;
 }

@@ -3,7 +3,7 @@
 #define PROVE_CERTIFY_H
 
 #include "base/interrupt.h"
-#include "prove/enclosure.h"
+#include "prove/box.h"
 
 /*
  * Certificates: statements about every design of a box, proved by enclosures and branch and
@@ -115,19 +115,6 @@ typedef enum mt_verdict {
 mt_status mt_certify_possible(const mt_certify *c, const int *assignment, mt_arena *scratch,
                               mt_verdict *verdict, double *at, long *boxes, mt_err *err);
 
-/* Limit `limit` of c alone: can it be met in the box, and what can its mode's frequency be
- * there? The range encloses all that can be reached; where the enclosure is loose (an input in
- * K and M) it is wider than what is reached, and branch and bound decides the verdict. A mode
- * that does not exist is IMPOSSIBLE, its range NaN. */
-typedef struct mt_certify_reach {
-    mt_verdict verdict;
-    double low_hz;
-    double high_hz;
-    long boxes;
-} mt_certify_reach;
-mt_status mt_certify_reach_of(const mt_certify *c, int limit, mt_arena *scratch,
-                              mt_certify_reach *out, mt_err *err);
-
 /* One edge that a mode must keep: "mode 3 stays above 9.46 Hz". */
 typedef struct mt_certify_edge {
     int view;
@@ -137,55 +124,5 @@ typedef struct mt_certify_edge {
     double hz;
     bool above; /* the mode must stay above hz; else below */
 } mt_certify_edge;
-
-typedef enum mt_tolerance_end {
-    /* beyond, the mode of `edge` may cross it (or, where the enclosure is loose, cannot be
-     * shown not to) */
-    MT_TOLERANCE_EDGE,
-    MT_TOLERANCE_DOMAIN, /* beyond, a stiffness or mass may be negative */
-    MT_TOLERANCE_MOST    /* the largest percentage that was asked about */
-} mt_tolerance_end;
-
-typedef struct mt_tolerance {
-    /* proven: bands (their edges as given: leave out margins) and limits hold for every design
-     * within */
-    double percent;
-    mt_tolerance_end end;
-    mt_certify_edge edge; /* where end is EDGE */
-} mt_tolerance;
-
-/*
- * Tolerance boxes about x[n]: |x_i' - x_i| <= percent / 100 * unit_i, for all inputs together
- * (*all) and for each alone (each[n], may be NULL). unit NULL: |x_i|. They may leave the bounds
- * of the enclosures. Tolerances of bands and limits are not granted here: a design on an edge
- * (to 5e-10 of it) has 0 percent and the edge. Where an input enters K and M, up to
- * boxes_per_test sub-boxes (0: 64) tighten each of the some 30 tests of a box.
- * assignment[n_bands] is that of x. c->lower, upper, bounds, catalogues and cap are not used.
- */
-typedef struct mt_tolerance_question {
-    const double *x;
-    const double *unit;
-    const int *assignment;
-    double most_percent;
-    long boxes_per_test;
-} mt_tolerance_question;
-mt_status mt_certify_tolerance(const mt_certify *c, const mt_tolerance_question *q,
-                               mt_arena *scratch, mt_tolerance *all, mt_tolerance *each,
-                               mt_err *err);
-
-/*
- * Independent check of one design: the number of modes inside a band by inertia of K - lambda M
- * alone (mt_inertia, pivoting, no eigenvalue; another path than everything above and than
- * mt_modal_solve), edges moved inwards by the relative tolerance. sure: the pivots are well
- * away from zero.
- */
-typedef struct mt_band_count {
-    int below;  /* vibration modes below the band */
-    int inside; /* in it */
-    bool sure;
-} mt_band_count;
-mt_status mt_certify_count(const mt_linear *lin, int n_rigid, double lower_hz, double upper_hz,
-                           double tolerance, mt_arena *scratch, mt_band_count *out,
-                           mt_err *err);
 
 #endif

@@ -2,13 +2,15 @@
 /* Making an enclosure: conditions, coefficients, basis. And what is asked of an input. */
 #include "prove/enclosure.h"
 
-#include "prove/enclosure_priv.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/count.h"
 #include "base/format.h"
+#include "prove/basis.h"
+#include "prove/check.h"
+#include "prove/coefficients.h"
 
 void mt_enclosure_delete(mt_enclosure *e)
 {

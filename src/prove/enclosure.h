@@ -39,7 +39,7 @@ typedef struct mt_enclosure_part {
 } mt_enclosure_part;
 
 /* Is a coefficient required to be positive over the bounds? A coupling of two rows has two of
- * either sign: its own, and minus that (enclosure_terms.c). */
+ * either sign: its own, and minus that (terms.c). */
 typedef enum mt_sign { MT_SIGN_POSITIVE, MT_SIGN_ANY, MT_SIGN_NEGATED } mt_sign;
 
 typedef struct mt_enclosure_coefficient {
@@ -102,7 +102,7 @@ typedef struct mt_enclosure {
     bool squares;               /* K0 and M0 are sums of squares: boxes may leave the bounds */
     double *fixed[MT_MATRICES]; /* n x n, lower */
     double fixed_norm;          /* of K0 */
-    double roundoff;            /* relative slack: see enclosure_box.c */
+    double roundoff;            /* relative slack: see box.c */
     bool *in[MT_MATRICES];      /* [n_inputs] does the input enter this matrix? */
     /* of the box that is set */
     double *value[2];           /* [n_coefficients] */
@@ -128,27 +128,6 @@ typedef struct mt_enclosure {
 mt_status mt_enclosure_new(const mt_analysis *a, const double *lower, const double *upper,
                            mt_enclosure **out, char *reason, mt_err *err);
 void mt_enclosure_delete(mt_enclosure *e);
-
-/* Set the box lo <= x <= hi; it may leave the bounds. False where nothing is known over it: a
- * coefficient may be negative or is not enclosed, or the work is interrupted. No heap. */
-bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi);
-/* Note which stiffnesses are positive all over the box that is set; and are they so all over
- * the one that is set later? Where one is not, a design of that box may have one more
- * rigid-body mode. */
-void mt_enclosure_note_held(mt_enclosure *e);
-bool mt_enclosure_keeps_held(const mt_enclosure *e);
-/* The most and the fewest vibration modes below lambda [rad^2/s^2] that a design of the box may
- * have: at no design are there more with eigenvalue <= lambda than most, at every design there
- * are at least `least` with eigenvalue < lambda (lambda counted up or down by the slack of
- * rounding). In doubt: n_modes and 0. No heap after the first calls; O(n^3 / 3), O(n) for
- * chains. */
-int mt_enclosure_most_below(mt_enclosure *e, double lambda);
-int mt_enclosure_least_below(mt_enclosure *e, double lambda);
-/* lambda of a frequency in Hz: (2 pi f)^2. */
-double mt_enclosure_lambda(double hz);
-/* low[n_modes], high[n_modes]: what each vibration mode's frequency can be in the box [Hz], by
- * two eigensolves, widened by their error. */
-mt_status mt_enclosure_ranges(mt_enclosure *e, double *low, double *high, mt_err *err);
 
 /*
  * The two corners of a box at which all modes are lowest and highest: soft[n_inputs],

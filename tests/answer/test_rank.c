@@ -8,6 +8,7 @@
  * and at k1 = 0 lambda = 0, 2 k2 / m.
  */
 #include "describe/describe.h"
+#include "prove/box.h"
 #include "prove/enclosure.h"
 #include "study_fixture.h"
 

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* When there is no certificate, and why; corners; what touches an edge exactly. */
 #include "mechanics/mech.h"
+#include "prove/band_count.h"
 #include "prove/certify.h"
+#include "prove/tolerance.h"
 
 /* Two masses on rails, one spring to the ground, one between them. The texts in place: where
  * the first mass is, the masses, the first spring and more members of it, the second. */

@@ -10,6 +10,7 @@
 
 #include "mechanics/mech.h"
 #include "prove/certify.h"
+#include "prove/tolerance.h"
 #include "support/mt_random.h"
 
 enum {

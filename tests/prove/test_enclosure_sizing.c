@@ -10,6 +10,7 @@
 
 #include "mechanics/mech.h"
 #include "prove/certify.h"
+#include "prove/tolerance.h"
 #include "support/mt_random.h"
 
 enum { TEXT = 16384, SYSTEMS = 40, SAMPLES = 60, MODES = 96, FAMILIES = 5 };

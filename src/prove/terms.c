@@ -10,7 +10,7 @@
  * two semidefinite matrices with coefficients c and -c of either sign: bounds of them are
  * bounds still, less tight ones, the least loose with s^2 = |b|/|a|.
  */
-#include "prove/enclosure_priv.h"
+#include "prove/terms.h"
 
 #include <float.h>
 #include <math.h>

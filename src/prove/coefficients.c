@@ -10,13 +10,14 @@
  * is not shown to be positive over the bounds (d^2 - (d - 2 t)^2), they are divided until it
  * is, or an effort is spent; the bound that this gives holds for every box within them.
  */
-#include "prove/enclosure_priv.h"
+#include "prove/coefficients.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/format.h"
 #include "expr/interval.h"
+#include "prove/terms.h"
 
 /* Copy what the coefficients need of the system's program. */
 static mt_status extract(mt_enclosure *e, const mt_program *from, mt_err *err)

@@ -14,13 +14,14 @@
  *
  * e = slack_k + slack_m lambda, at least HARMLESS lambda.
  */
-#include "prove/enclosure_priv.h"
+#include "prove/box.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "linalg/dense.h"
+#include "prove/coefficients.h"
 
 /* A shift of lambda by this share moves a frequency by half of it: far below the 1e-6 within
  * which goals are met, and room for the growth of a factorisation without pivoting in all but

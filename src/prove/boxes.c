@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The stack of boxes, and edges tested over one. */
-#include "prove/certify_priv.h"
+#include "prove/boxes.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "prove/box.h"
 
 /* A variable is bisected this often at most: 2^-40 of the bounds, far below any tolerance. */
 enum { MOST_DEPTH = 40 };

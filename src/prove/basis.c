@@ -10,7 +10,7 @@
  * condensation is the same at every design, and the mode shapes Y at the soft corner span {y:
  * T0^T K y = 0}: W = Y.
  */
-#include "prove/enclosure_priv.h"
+#include "prove/basis.h"
 
 #include <float.h>
 #include <math.h>

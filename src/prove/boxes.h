@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef PROVE_CERTIFY_PRIV_H
-#define PROVE_CERTIFY_PRIV_H
+#ifndef PROVE_BOXES_H
+#define PROVE_BOXES_H
 
 #include "prove/certify.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Conditions under which bounds of the coefficients bound the modes, as far as the system's
  * structure shows them. */
-#include "prove/enclosure_priv.h"
+#include "prove/check.h"
 
 #include "base/format.h"
 

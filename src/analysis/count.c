@@ -11,11 +11,12 @@
  * the expressions: the rank that one design has, almost all have, and the greatest rank among a
  * few designs in general position is that of the family.
  */
+#include "analysis/count.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-#include "analysis/analysis.h"
 #include "base/format.h"
 
 /* Designs in general position besides corners and middle; their coordinates are fractions of i

@@ -5,10 +5,12 @@
  * for all below. Where an input enters K and M, the test may halve its box along such inputs; a
  * half whose very middle fails ends that.
  */
-#include "prove/certify_priv.h"
+#include "prove/tolerance.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "prove/boxes.h"
 
 enum { DEFAULT_BOXES = 64, MOST_STEPS = 40 };
 

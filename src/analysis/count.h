@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef ANALYSIS_COUNT_H
+#define ANALYSIS_COUNT_H
+
+#include "analysis/analysis.h"
+#include "model/count_box.h"
+
+/*
+ * Count the modes as for all designs of the box (NULL or empty: nothing changes) and take
+ * n_rigid from there; the modes of the last solve are void where it changed. n_rigid never
+ * exceeds what any design of the box has free, as long as geometry is fixed and nothing loads
+ * the mechanism: a term of K counts unless interval arithmetic shows its coefficient to be 0
+ * over the whole box. Elsewhere it is the least of a fixed list of designs (the first, corners,
+ * middle, eight more), and a solve that meets a design with less freedom fails. Cost: nothing
+ * where no direction is free at the first design; else one more system and one eigensolve, or
+ * some fifteen solves. Fails as mt_analysis_new_driven.
+ */
+mt_status mt_analysis_count(mt_analysis *a, const mt_count_box *box,
+                            const mt_system_drive *drive, double position, mt_err *err);
+/* Position in a->modes of the vibration mode that the model names by `index`: it counts at the
+ * first design alone, without the vibrations of 0 Hz that only a family has. -1: as
+ * mt_modal_flexible. */
+int mt_analysis_named(const mt_analysis *a, int index);
+/* Has the family more vibration modes than the last solve's design, and this index one of those
+ * that are missing there (a mass is 0)? It is at infinity. */
+bool mt_analysis_is_infinite(const mt_analysis *a, int index);
+/* Directions that remain free where only the terms of K with holds[t] (one for each of
+ * mt_linear_terms(lin, MT_TERM_STIFFNESS)) resist: the null directions of their sum, whatever
+ * their sizes. Geometry and mass are those of the last update. Not where the mechanism is
+ * loaded (mt_reduced.loaded). O(n^3). */
+mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor *mass,
+                                      const bool *holds, mt_arena *scratch, int *n,
+                                      mt_err *err);
+/* Is the mode at pos a vibration of 0 Hz (after a solve with vectors)? And the springs of zero
+ * stiffness that would hold it: "\"ground\", \"k2\"", perhaps "", in text[size]. */
+bool mt_analysis_slack(const mt_analysis *a, int pos, char *text, size_t size);
+
+#endif
