@@ -107,10 +107,7 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                           .mass_noise = mt_arena_f64(&a->mem, count, 1),
                           .load_noise = mt_arena_f64(&a->mem, count, 1),
                           .strained = mt_arena_alloc(&a->mem, count, sizeof(bool))};
-    if (e.stiffness == NULL || e.mass == NULL || e.stiffness_noise == NULL ||
-        e.mass_noise == NULL || e.load_noise == NULL || e.strained == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&a->mem, err));
     const mt_energies out = {.stiffness = e.stiffness,
                              .mass = e.mass,
                              .stiffness_noise = e.stiffness_noise,
@@ -166,9 +163,7 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
         a->dmy = mt_arena_f64(&a->mem, n, (size_t)a->sys->n_inputs);
         a->slopes = mt_arena_f64(&a->mem, (size_t)a->modes.count, (size_t)a->sys->n_inputs);
         a->sloped = mt_arena_alloc(&a->mem, (size_t)a->modes.count, sizeof *a->sloped);
-        if (a->dky == NULL || a->dmy == NULL || a->slopes == NULL || a->sloped == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(&a->mem, err));
     }
     return MT_OK;
 }
@@ -237,9 +232,7 @@ mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel,
     }
     const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
     double *const dy = mt_arena_f64(&a->mem, (size_t)n, (size_t)np);
-    if (dy == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&a->mem, err));
     MT_TRY(mt_analysis_products(a, pos, err));
     const mt_directions given = {.np = np, .dky = a->dky, .dmy = a->dmy};
     const mt_reduced r = mt_linear_reduced(a->lin);

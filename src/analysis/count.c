@@ -59,9 +59,7 @@ mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor
     mt_modal_options opt = mt_modal_options_default();
     mt_modes modes;
     bool squares = !r.loaded;
-    if (k == NULL || c == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     for (int t = 0; t < list->n_terms; t++) {
         const mt_term *const term = &list->terms[t];
         if (!holds[t]) {
@@ -102,9 +100,7 @@ static mt_status count_terms(family *f, mt_arena *mem, int *n_rigid, mt_err *err
     double *const lo = mt_arena_f64(mem, (size_t)p->count, 1);
     double *const hi = mt_arena_f64(mem, (size_t)p->count, 1);
     bool *const holds = mt_arena_alloc(mem, (size_t)list->n_terms, sizeof *holds);
-    if (lo == NULL || hi == NULL || holds == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     mt_program_interval(p, f->lower, f->upper, lo, hi);
     for (int t = 0; t < list->n_terms; t++) {
         const mt_node c = list->terms[t].coefficient;
@@ -126,9 +122,7 @@ static mt_status count_masses(const family *f, mt_arena *mem, int *n_most, mt_er
     double *const hi = mt_arena_f64(mem, (size_t)p->count, 1);
     double *const m = mt_arena_f64(mem, (size_t)n, (size_t)n);
     mt_mass_factor factor;
-    if (lo == NULL || hi == NULL || m == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     mt_program_interval(p, f->lower, f->upper, lo, hi);
     memcpy(m, mt_linear_reduced(lin).m, (size_t)(n * n) * sizeof *m);
     for (int t = 0; t < list->n_terms; t++) {
@@ -192,9 +186,7 @@ static mt_status open_family(const mt_analysis *a, const mt_count_box *box,
     f->upper = mt_arena_f64(mem, room, 1);
     f->at = mt_arena_f64(mem, room, 1);
     f->x = mt_arena_f64(mem, room, 1);
-    if (f->lower == NULL || f->upper == NULL || f->at == NULL || f->x == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     memcpy(f->lower, box->lower, (size_t)box->n * sizeof *f->lower);
     memcpy(f->upper, box->upper, (size_t)box->n * sizeof *f->upper);
     memcpy(f->at, box->at, (size_t)box->n * sizeof *f->at);

@@ -79,12 +79,13 @@ mt_status mt_track_match(mt_analysis *a, int n, const double *const *w, mt_track
     double *const all = mt_arena_f64(&a->mem, (size_t)n, (size_t)a->modes.count);
     double *const phi = mt_arena_f64(&a->mem, (size_t)a->sys->nq, 1);
     int *const pair = mt_arena_int(&a->mem, (size_t)n);
-    if (all == NULL || phi == NULL || pair == NULL) {
+    mt_status rc = mt_arena_check(&a->mem, err);
+    if (rc != MT_OK) {
         mt_arena_rewind(&a->mem, mark);
-        return mt_fail_memory(err);
+        return rc;
     }
     shares(a, n, w, phi, all);
-    const mt_status rc = mt_assign(n, a->modes.count, all, pair, &a->mem, err);
+    rc = mt_assign(n, a->modes.count, all, pair, &a->mem, err);
     for (int r = 0; r < n && rc == MT_OK; r++) {
         put_track(a, n, all, r, pair[r], &tracks[r]);
     }
@@ -226,15 +227,11 @@ static mt_status walk_init(walk *k, const double *const *w, mt_arena *mem, mt_er
     k->w = mt_arena_alloc(mem, n, sizeof *k->w);
     k->own = mt_arena_alloc(mem, n, sizeof *k->own);
     k->tracks = mt_arena_alloc(mem, n, sizeof *k->tracks);
-    if (k->w == NULL || k->own == NULL || k->tracks == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int r = 0; r < k->n; r++) {
         k->w[r] = w[r];
         k->own[r] = mt_arena_f64(mem, (size_t)k->end->sys->nq, 1);
-        if (k->own[r] == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(mem, err));
     }
     return MT_OK;
 }

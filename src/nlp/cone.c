@@ -75,9 +75,7 @@ static mt_status solve(columns *w, double *z, mt_err *err)
     }
     double *const y = mt_arena_f64(w->mem, (size_t)k, 1);
     mt_qr qr;
-    if (y == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(w->mem, err));
     MT_TRY(mt_qr_factor(w->n, k, w->p, w->n, HELPS, w->mem, &qr, err));
     MT_TRY(mt_qr_solve(&qr, 1, w->c->gradient, y, w->mem, err));
     memcpy(z, w->c->gradient, (size_t)w->n * sizeof *z);
@@ -152,9 +150,7 @@ static mt_status add_atoms(columns *w, int r_most, const double *z, bool *added,
         const mt_arena_mark mark = mt_arena_get_mark(w->mem);
         double *const s = mt_arena_f64(w->mem, (size_t)r, (size_t)r);
         double *const e = mt_arena_f64(w->mem, (size_t)r, 1);
-        if (s == NULL || e == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(w->mem, err));
         double scale = 0;
         for (int j = 0; j < w->n; j++) {
             const double *const g = block->g + (ptrdiff_t)j * r * r;
@@ -219,10 +215,7 @@ mt_status mt_cone_residual(mt_cone *c, mt_arena *scratch, mt_err *err)
                  .which = mt_arena_int(scratch, most),
                  .size = mt_norm2(c->n, c->gradient)};
     double *const unit = mt_arena_f64(scratch, (size_t)r_most, 1);
-    if (!w.a || !w.length || !w.x || !w.v || !w.block || !w.free_sign || !w.in || !w.p ||
-        !w.y || !w.which || !unit) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     for (int i = 0; i < c->n_rows; i++) {
         memcpy(w.a + (ptrdiff_t)i * c->n, c->rows + (ptrdiff_t)i * c->n, n * sizeof *w.a);
         add_column(&w, c->free_sign[i], -1);

@@ -40,11 +40,7 @@ static const double MASSLESS_SHARE = 1e-12;
 static mt_status room(mt_arena *mem, size_t m, size_t n, double **out, mt_err *err)
 {
     *out = mt_arena_f64(mem, m, n);
-    if (*out == NULL) {
-        (void)mt_fail_memory(err);
-        return MT_E_MEMORY;
-    }
-    return MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 /* out (r) = W^T row; without a basis the row itself. */
@@ -262,9 +258,7 @@ static mt_status make_part(const double *dense, ptrdiff_t r, mt_arena *mem,
     }
     part->at = mt_arena_int(mem, (size_t)count);
     part->value = mt_arena_f64(mem, (size_t)count, 1);
-    if (part->at == NULL || part->value == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     part->count = 0;
     for (ptrdiff_t i = 0; i < r * r; i++) {
         if (dense[i] != 0.0) {

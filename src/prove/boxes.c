@@ -34,10 +34,7 @@ static mt_status claim(mt_boxes *b, mt_arena *mem, mt_err *err)
     b->now_depth = mt_arena_alloc(mem, n, sizeof(signed char));
     b->middle = mt_arena_f64(mem, n, 1);
     b->beyond = mt_arena_f64(mem, n, 1);
-    const bool ok = b->lo != NULL && b->hi != NULL && b->depth != NULL && b->active != NULL &&
-                    b->logarithmic != NULL && b->now_lo != NULL && b->now_hi != NULL &&
-                    b->now_depth != NULL && b->middle != NULL && b->beyond != NULL;
-    return ok ? MT_OK : mt_fail_memory(err);
+    return mt_arena_check(mem, err);
 }
 
 mt_status mt_boxes_init(mt_boxes *b, const mt_certify *c, bool loose_only, mt_arena *mem,
@@ -51,9 +48,7 @@ mt_status mt_boxes_init(mt_boxes *b, const mt_certify *c, bool loose_only, mt_ar
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     bool *const bound = mt_arena_alloc(mem, (size_t)c->n, sizeof *bound);
     bool *const one = mt_arena_alloc(mem, (size_t)c->n, sizeof *one);
-    if (bound == NULL || one == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < c->n_bounds; k++) {
         mt_program_depends(c->program, c->bounds[k].node, one);
         for (int i = 0; i < c->n; i++) {

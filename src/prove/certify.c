@@ -67,10 +67,7 @@ static mt_status claim(search *s, mt_arena *work)
         mt_arena_alloc(work, 2 * ((size_t)c->n_bands + (size_t)c->n_limits), sizeof *s->edges);
     s->node_lo = mt_arena_f64(work, nodes, 1);
     s->node_hi = mt_arena_f64(work, nodes, 1);
-    if (s->previous == NULL || s->least == NULL || s->most == NULL || s->tuple == NULL ||
-        s->single == NULL || s->edges == NULL || s->node_lo == NULL || s->node_hi == NULL) {
-        return mt_fail_memory(s->err);
-    }
+    MT_TRY(mt_arena_check(work, s->err));
     for (int i = 0; i < c->n_bands; i++) {
         s->previous[i] = -1;
         for (int k = 0; k < i; k++) {
@@ -86,7 +83,6 @@ static int *append(search *s, int **list, int count, int *capacity)
     const size_t size = ((size_t)s->c->n_bands + 1) * sizeof(int); /* + 1: never 0 */
     int *const grown = mt_arena_grow(s->mem, *list, count, capacity, size);
     if (grown == NULL) {
-        (void)mt_fail_memory(s->err);
         return NULL;
     }
     *list = grown;
@@ -134,15 +130,12 @@ static bool is_known(const search *s, const int *tuple)
     return there;
 }
 
-static bool note_known(search *s, const int *tuple)
+static mt_status note_known(search *s, const int *tuple)
 {
     int *const place = append(s, &s->known, s->n_known, &s->cap_known);
     int *const order =
         mt_arena_grow(s->mem, s->order, s->n_known, &s->cap_order, sizeof *order);
-    if (place == NULL || order == NULL) {
-        (void)mt_fail_memory(s->err);
-        return false;
-    }
+    MT_TRY(mt_arena_check(s->mem, s->err));
     bool there = false;
     s->order = order;
     const int at = place_of(s, tuple, &there);
@@ -150,7 +143,7 @@ static bool note_known(search *s, const int *tuple)
     order[at] = s->n_known;
     copy(s, place, tuple);
     s->n_known++;
-    return true;
+    return MT_OK;
 }
 
 /* The earlier band that band i has to equal; -1: none. */
@@ -394,9 +387,7 @@ static mt_status note_found(search *s)
     int *const place = append(s, &out->found, out->n_found, &s->cap_found);
     double *const at =
         mt_arena_grow(s->mem, out->at, out->n_found, &capacity, (n + 1) * sizeof *at);
-    if (place == NULL || at == NULL || !note_known(s, s->single)) {
-        return mt_fail_memory(s->err);
-    }
+    MT_TRY(note_known(s, s->single));
     copy(s, place, s->single);
     out->at = at;
     if (n > 0) {
@@ -420,9 +411,7 @@ static mt_status note_open(search *s)
             break;
         }
         int *const place = append(s, &out->open, out->n_open, &s->cap_open);
-        if (place == NULL) {
-            return MT_E_MEMORY;
-        }
+        MT_TRY(mt_arena_check(s->mem, s->err));
         copy(s, place, s->tuple);
         out->n_open++;
     }
@@ -513,9 +502,7 @@ static mt_status search_all(const mt_certify *c, int n_known, const int *known, 
     *out = (mt_certify_search){0};
     MT_TRY(claim(&s, work));
     for (int i = 0; i < n_known; i++) {
-        if (!note_known(&s, known + ((ptrdiff_t)i * c->n_bands))) {
-            return MT_E_MEMORY;
-        }
+        MT_TRY(note_known(&s, known + ((ptrdiff_t)i * c->n_bands)));
     }
     return run(&s);
 }

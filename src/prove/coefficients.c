@@ -24,9 +24,7 @@ static mt_status extract(mt_enclosure *e, const mt_program *from, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     int *const map = mt_arena_int(&e->scratch, (size_t)from->count);
-    if (map == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&e->scratch, err));
     for (int i = 0; i < e->n_coefficients; i++) {
         map[e->sources[i]] = 1;
     }
@@ -73,9 +71,7 @@ static mt_status find_dependent(mt_enclosure *e, mt_err *err)
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     const size_t inputs = (size_t)e->n_inputs;
     int *const ways = mt_arena_int(&e->scratch, (size_t)p->count * inputs);
-    if (ways == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&e->scratch, err));
     for (int i = 0; i < p->count; i++) {
         const mt_program_node *const n = &p->nodes[i];
         int *const own = ways + ((size_t)i * inputs);
@@ -120,20 +116,16 @@ static void set_signs(mt_enclosure *e)
 static mt_status claim_work(mt_enclosure *e, mt_err *err)
 {
     const size_t inputs = (size_t)e->n_inputs;
-    bool ok = true;
     for (int s = 0; s < 2; s++) {
         e->value[s] = mt_arena_f64(&e->mem, (size_t)e->n_coefficients, 1);
         e->node[s] = mt_arena_f64(&e->mem, (size_t)e->program.count, 1);
         e->dnode[s] = mt_arena_f64(&e->mem, (size_t)e->program.count, inputs);
         e->corner_x[s] = mt_arena_f64(&e->mem, inputs, 1);
-        ok = ok && e->value[s] != NULL && e->node[s] != NULL && e->dnode[s] != NULL &&
-             e->corner_x[s] != NULL;
     }
-    for (int i = 0; i < e->n_coefficients && ok; i++) {
+    for (int i = 0; i < e->n_coefficients; i++) {
         e->coefficients[i].sign = mt_arena_alloc(&e->mem, inputs, sizeof(signed char));
-        ok = e->coefficients[i].sign != NULL;
     }
-    return ok ? MT_OK : mt_fail_memory(err);
+    return mt_arena_check(&e->mem, err);
 }
 
 /* Sub-boxes of the bounds that one coefficient may cost. */
@@ -169,9 +161,7 @@ static mt_status refine(mt_enclosure *e, int i, mt_err *err)
     double *const lo = mt_arena_f64(&e->scratch, n, LEAST_BOXES + 1);
     double *const hi = mt_arena_f64(&e->scratch, n, LEAST_BOXES + 1);
     int count = 1;
-    if (lo == NULL || hi == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&e->scratch, err));
     memcpy(lo, e->lower, n * sizeof *lo);
     memcpy(hi, e->upper, n * sizeof *hi);
     double least = HUGE_VAL;

@@ -29,10 +29,7 @@ static mt_status keep_bounds(mt_enclosure *e, const double *lower, const double 
     e->upper = mt_arena_f64(&e->mem, n, 1);
     e->in[MT_STIFFNESS] = mt_arena_alloc(&e->mem, n, sizeof(bool));
     e->in[MT_MASS] = mt_arena_alloc(&e->mem, n, sizeof(bool));
-    if (e->lower == NULL || e->upper == NULL || e->in[MT_STIFFNESS] == NULL ||
-        e->in[MT_MASS] == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&e->mem, err));
     if (n > 0) {
         memcpy(e->lower, lower, n * sizeof *lower);
         memcpy(e->upper, upper, n * sizeof *upper);
@@ -43,9 +40,7 @@ static mt_status keep_bounds(mt_enclosure *e, const double *lower, const double 
 static mt_status note_inputs(mt_enclosure *e, mt_err *err)
 {
     bool *const depends = mt_arena_alloc(&e->mem, (size_t)e->n_inputs, sizeof *depends);
-    if (depends == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&e->mem, err));
     for (int i = 0; i < e->n_coefficients; i++) {
         mt_program_depends(&e->program, e->coefficients[i].node, depends);
         for (int m = 0; m < MT_MATRICES; m++) {
@@ -67,9 +62,7 @@ static mt_status check_count(mt_enclosure *e, const mt_analysis *a, bool *ok, ch
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     bool *const holds = mt_arena_alloc(&e->scratch, (size_t)list->n_terms, sizeof *holds);
     int free_directions = 0;
-    if (holds == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&e->scratch, err));
     for (int t = 0; t < list->n_terms; t++) {
         const int at = e->of_term[MT_STIFFNESS][t];
         holds[t] = at < 0 ? mt_linear_value(a->lin, list->terms[t].coefficient) != 0.0

@@ -16,9 +16,7 @@ static mt_status range_of(const mt_certify *c, const mt_certify_limit *l, mt_are
     }
     double *const low = mt_arena_f64(scratch, (size_t)e->n_modes, 1);
     double *const high = mt_arena_f64(scratch, (size_t)e->n_modes, 1);
-    if (low == NULL || high == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     MT_TRY(mt_enclosure_ranges(e, low, high, err));
     out->low_hz = low[l->mode - 1];
     out->high_hz = high[l->mode - 1];

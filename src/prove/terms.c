@@ -307,16 +307,12 @@ static mt_status claim(mt_enclosure *e, const mt_linear *lin, mt_err *err)
     e->pieces = mt_arena_alloc(&e->mem, most, sizeof *e->pieces);
     for (int m = 0; m < MT_MATRICES; m++) {
         e->of_term[m] = mt_arena_int(&e->mem, n[m] + 1);
-        if (e->of_term[m] == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(&e->mem, err));
         for (size_t t = 0; t < n[m]; t++) {
             e->of_term[m][t] = -1;
         }
     }
-    return e->sources == NULL || e->coefficients == NULL || e->pieces == NULL
-               ? mt_fail_memory(err)
-               : MT_OK;
+    return MT_OK;
 }
 
 /* Couplings first: they take the squares of their block along. */

@@ -130,9 +130,7 @@ static mt_status run(const mt_certify *c, const mt_tolerance_question *q, mt_are
                              sizeof *t.edges);
     t.lo = mt_arena_f64(scratch, (size_t)c->n, 1);
     t.hi = mt_arena_f64(scratch, (size_t)c->n, 1);
-    if (t.edges == NULL || t.lo == NULL || t.hi == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(scratch, err));
     t.n_edges = mt_certify_edges(c, q->assignment, false, t.edges);
     MT_TRY(mt_boxes_init(&t.boxes, c, true, scratch, err));
     for (int i = 0; i < c->n; i++) {
