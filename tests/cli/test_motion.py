@@ -268,7 +268,7 @@ class Random(unittest.TestCase):
 
     def test_what_is_recommended_stays_clear_all_the_way(self):
         seen = 0
-        arms = 2 if "MT_INSTRUMENTED" in os.environ else 10
+        arms = int(os.environ.get("MT_MOTION_ARMS", "2" if "MT_INSTRUMENTED" in os.environ else "4"))
         for seed in range(arms):
             rng = random.Random(seed)
             model = self.model(rng)

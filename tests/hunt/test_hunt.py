@@ -13,7 +13,7 @@ from faults import FAULTS
 from known import reason
 
 SEED = "1"
-COUNT = 3 if os.environ.get("MT_INSTRUMENTED") else 25  # of each kind
+COUNT = 3 if os.environ.get("MT_INSTRUMENTED") else 9  # of each kind
 CASES = Path(__file__).resolve().parent / "cases"
 
 

@@ -16,7 +16,7 @@ from faults import FAULTS
 from known import reason
 
 SEED = "1"
-COUNT = 2 if os.environ.get("MT_INSTRUMENTED") or os.environ.get("MT_TEST_LAUNCHED") else 12  # of each kind
+COUNT = 2 if os.environ.get("MT_INSTRUMENTED") or os.environ.get("MT_TEST_LAUNCHED") else 5  # of each kind
 CASES = Path(__file__).resolve().parent / "cases"
 G = 9.81
 
