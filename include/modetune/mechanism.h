@@ -32,9 +32,9 @@ typedef struct mt_mechanism mt_mechanism;
  * Make a configuration ready, and evaluate it at the model's own values.
  * @param[in]  model          must outlive the mechanism
  * @param[in]  configuration  name; NULL: the model's first
- * @param[in]  inputs [n_inputs] names of the parameters whose values will be given; others keep
- *   the model's own, and those that are expressions follow, unless they are inputs themselves. A
- *   value that the configuration itself fixes wins. NULL with n_inputs 0
+ * @param[in]  inputs [n_inputs] names of the parameters whose values will be given; others
+ *   keep the model's own, and those that are expressions follow, unless they are inputs
+ *   themselves. A value that the configuration itself fixes wins. NULL with n_inputs 0
  * @param[out] out owned by the caller; NULL on failure Fails: MT_E_USAGE (no such configuration
  *   or parameter, one given twice, a name missing), and as mt_mechanism_evaluate.
  */

@@ -70,7 +70,8 @@ static double clearance(const mt_band *band, double hz, mt_band_side *side)
     return percent;
 }
 
-double mt_describe_margin_percent(const mt_band *band, double hz)
+/* The margin that the edge of the band nearest to hz has, in percent of the edge. */
+static double margin_percent(const mt_band *band, double hz)
 {
     return margin(band, by_lower_edge(band, hz));
 }
@@ -239,7 +240,7 @@ static mt_status add_clearance(const listing *l, int band, int mode, double hz, 
     c->worst_hz = mt_describe_worst_hz(l->fresh, l->view, mode, b, hz, &at);
     c->worst_percent = MT_HAS(c->worst_hz) ? clearance(b, c->worst_hz, &side) : nan("");
     c->percent = clearance(b, hz, &side);
-    c->margin_percent = mt_describe_margin_percent(b, hz);
+    c->margin_percent = margin_percent(b, hz);
     c->side = mt_band_side_name(side);
     c->band = mt_arena_strdup(&l->result->mem, b->label);
     l->rec->n_clearances++;

@@ -15,13 +15,14 @@
  *     power   = atom [ "^" unary ]      right associative, binds tighter than a sign
  *     atom    = number | name | function "(" sum { "," sum } ")" | "(" sum ")"
  *     number  = decimal digits with an optional point and exponent
- * So -2^2 = -4. Numbers are correctly rounded, the same in every locale; there is no hexadecimal,
- * no inf and no nan. Functions of one argument: sqrt cbrt exp ln log10 sin cos tan asin acos atan
- * sinh cosh tanh abs; of two: atan2 min max hypot pow. Angles in radians. x^0 = 1 for every x; a
- * negative number has powers with integer exponents only. Constants: pi, deg (pi/180), rpm (1/60:
- * "258*rpm" is a speed in Hz); e is not a constant. A parameter name is [A-Za-z_][A-Za-z0-9_]*;
- * names of functions and constants are reserved. Limits, so that no text can exhaust anything:
- * bytes of text; levels of parentheses, arguments, signs and exponents; parts of the code.
+ * So -2^2 = -4. Numbers are correctly rounded, the same in every locale; there is no
+ * hexadecimal, no inf and no nan. Functions of one argument: sqrt cbrt exp ln log10 sin cos tan
+ * asin acos atan sinh cosh tanh abs; of two: atan2 min max hypot pow. Angles in radians. x^0 =
+ * 1 for every x; a negative number has powers with integer exponents only. Constants: pi, deg
+ * (pi/180), rpm (1/60: "258*rpm" is a speed in Hz); e is not a constant. A parameter name is
+ * [A-Za-z_][A-Za-z0-9_]*; names of functions and constants are reserved. Limits, so that no
+ * text can exhaust anything: bytes of text; levels of parentheses, arguments, signs and
+ * exponents; parts of the code.
  */
 enum { MT_EXPR_MAX_LENGTH = 4096, MT_EXPR_MAX_DEPTH = 64, MT_EXPR_MAX_CODE = 1024 };
 

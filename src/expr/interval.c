@@ -70,7 +70,7 @@ static bool both_finite(double a, double b)
     return isfinite(a) && isfinite(b);
 }
 
-mt_interval mt_interval_neg(mt_interval a)
+static mt_interval negative(mt_interval a)
 {
     return (mt_interval){-a.hi, -a.lo};
 }
@@ -86,7 +86,7 @@ mt_interval mt_interval_add(mt_interval a, mt_interval b)
 
 mt_interval mt_interval_sub(mt_interval a, mt_interval b)
 {
-    return mt_interval_add(a, mt_interval_neg(b));
+    return mt_interval_add(a, negative(b));
 }
 
 /* Bounds of the exact product of two bounds. Zero times an infinite bound is 0: the factor that
@@ -145,21 +145,22 @@ mt_interval mt_interval_div(mt_interval a, mt_interval b)
                         quotient_of(a.hi, b.lo), quotient_of(a.hi, b.hi));
 }
 
-double mt_interval_mig(mt_interval a)
+/* The lesser and the greater of |x| over the interval. */
+static double mig(mt_interval a)
 {
     return mt_interval_has(a, 0.0) ? 0.0 : fmin(fabs(a.lo), fabs(a.hi));
 }
 
-double mt_interval_mag(mt_interval a)
+static double mag(mt_interval a)
 {
     return fmax(fabs(a.lo), fabs(a.hi));
 }
 
 mt_interval mt_interval_square(mt_interval a)
 {
-    const double mig = mt_interval_mig(a);
-    const double mag = mt_interval_mag(a);
-    return mt_interval_hull(product_of(mig, mig), product_of(mag, mag));
+    const double low = mig(a);
+    const double high = mag(a);
+    return mt_interval_hull(product_of(low, low), product_of(high, high));
 }
 
 /*
@@ -247,8 +248,8 @@ static mt_interval integer_power(mt_interval a, double n)
         return mt_interval_all();
     }
     if (fmod(n, 2.0) == 0.0) {
-        const double at_mig = pow(mt_interval_mig(a), n);
-        const double at_mag = pow(mt_interval_mag(a), n);
+        const double at_mig = pow(mig(a), n);
+        const double at_mag = pow(mag(a), n);
         return widen(fmin(at_mig, at_mag), fmax(at_mig, at_mag), 0.0, HUGE_VAL);
     }
     /* odd: n > 0 increases everywhere, n < 0 decreases on either side of 0; the sign is that of
@@ -296,7 +297,7 @@ mt_interval mt_interval_op(mt_op op, mt_interval a, mt_interval b)
 {
     switch (op) {
     case MT_OP_NEG:
-        return mt_interval_neg(a);
+        return negative(a);
     case MT_OP_SQRT:
         return a.lo < 0.0 ? mt_interval_all() : increasing(sqrt, a, 0.0, HUGE_VAL);
     case MT_OP_CBRT:
@@ -322,11 +323,11 @@ mt_interval mt_interval_op(mt_op op, mt_interval a, mt_interval b)
     case MT_OP_SINH:
         return increasing(sinh, a, -HUGE_VAL, HUGE_VAL);
     case MT_OP_COSH:
-        return widen(cosh(mt_interval_mig(a)), cosh(mt_interval_mag(a)), 1.0, HUGE_VAL);
+        return widen(cosh(mig(a)), cosh(mag(a)), 1.0, HUGE_VAL);
     case MT_OP_TANH:
         return increasing(tanh, a, -1.0, 1.0);
     case MT_OP_ABS:
-        return mt_interval_of(mt_interval_mig(a), mt_interval_mag(a));
+        return mt_interval_of(mig(a), mag(a));
     case MT_OP_ADD:
         return mt_interval_add(a, b);
     case MT_OP_SUB:
@@ -344,8 +345,7 @@ mt_interval mt_interval_op(mt_op op, mt_interval a, mt_interval b)
     case MT_OP_MAX:
         return mt_interval_of(fmax(a.lo, b.lo), fmax(a.hi, b.hi));
     case MT_OP_HYPOT:
-        return widen(hypot(mt_interval_mig(a), mt_interval_mig(b)),
-                     hypot(mt_interval_mag(a), mt_interval_mag(b)), 0.0, HUGE_VAL);
+        return widen(hypot(mig(a), mig(b)), hypot(mag(a), mag(b)), 0.0, HUGE_VAL);
     case MT_OP_CONST:
     case MT_OP_PARAM:
     case MT_OP_COUNT:
@@ -408,7 +408,7 @@ static mt_interval_partials atan2_partials(mt_interval a, mt_interval b)
     const mt_interval h = mt_interval_op(MT_OP_HYPOT, a, b);
     return (mt_interval_partials){
         mt_interval_div(mt_interval_div(b, h), h),
-        mt_interval_neg(mt_interval_div(mt_interval_div(a, h), h)),
+        negative(mt_interval_div(mt_interval_div(a, h), h)),
     };
 }
 
@@ -446,13 +446,13 @@ mt_interval_partials mt_interval_op_partials(mt_op op, mt_interval a, mt_interva
     case MT_OP_SIN:
         return slope(unary_op(MT_OP_COS, a));
     case MT_OP_COS:
-        return slope(mt_interval_neg(unary_op(MT_OP_SIN, a)));
+        return slope(negative(unary_op(MT_OP_SIN, a)));
     case MT_OP_TAN:
         return slope(mt_interval_add(one, mt_interval_square(v)));
     case MT_OP_ASIN:
         return slope(asin_slope(a));
     case MT_OP_ACOS:
-        return slope(mt_interval_neg(asin_slope(a)));
+        return slope(negative(asin_slope(a)));
     case MT_OP_ATAN:
         return slope(inverse(mt_interval_add(one, mt_interval_square(a))));
     case MT_OP_SINH:
@@ -470,7 +470,7 @@ mt_interval_partials mt_interval_op_partials(mt_op op, mt_interval a, mt_interva
     case MT_OP_MUL:
         return (mt_interval_partials){b, a};
     case MT_OP_DIV:
-        return (mt_interval_partials){inverse(b), mt_interval_neg(mt_interval_div(v, b))};
+        return (mt_interval_partials){inverse(b), negative(mt_interval_div(v, b))};
     case MT_OP_POW:
         return pow_partials(a, b, v);
     case MT_OP_ATAN2:

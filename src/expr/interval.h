@@ -31,17 +31,12 @@ bool mt_interval_has(mt_interval a, double x);
 /* The smallest interval that holds both. */
 mt_interval mt_interval_hull(mt_interval a, mt_interval b);
 
-mt_interval mt_interval_neg(mt_interval a);
 mt_interval mt_interval_add(mt_interval a, mt_interval b);
 mt_interval mt_interval_sub(mt_interval a, mt_interval b);
 mt_interval mt_interval_mul(mt_interval a, mt_interval b);
 mt_interval mt_interval_div(mt_interval a, mt_interval b);
 /* { x * x }: tighter than the product of two that could differ. */
 mt_interval mt_interval_square(mt_interval a);
-
-/* The lesser and the greater of |x| over the interval. */
-double mt_interval_mig(mt_interval a);
-double mt_interval_mag(mt_interval a);
 
 /* { op(x, y) }; b is ignored where op has one operand. */
 mt_interval mt_interval_op(mt_op op, mt_interval a, mt_interval b);

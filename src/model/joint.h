@@ -4,8 +4,8 @@
 
 #include "model/model.h"
 
-/* What a joint's position along its freedom is called by: what `drive` moves, and loads, torsion
- * springs, gears and racks act on. About or along its axis. */
+/* What a joint's position along its freedom is called by: what `drive` moves, and loads,
+ * torsion springs, gears and racks act on. About or along its axis. */
 typedef enum mt_coordinate {
     MT_COORDINATE_NONE,
     MT_COORDINATE_ANGLE,

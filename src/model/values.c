@@ -2,8 +2,8 @@
 /*
  * Parameters into program nodes, and their values. Which definition counts: an override of the
  * configuration, else an input of the caller, else the parameter's own expression. Emission
- * follows the dependences depth first with an explicit stack, so a long chain cannot overflow the
- * C stack; the model was checked for cycles.
+ * follows the dependences depth first with an explicit stack, so a long chain cannot overflow
+ * the C stack; the model was checked for cycles.
  */
 #include "model/values.h"
 
@@ -156,7 +156,8 @@ mt_status mt_model_numbers(const mt_model *model, int configuration, int n_input
     return rc;
 }
 
-/* *bad: where a value is not finite, the first parameter in order of evaluation that has none. */
+/* *bad: where a value is not finite, the first parameter in order of evaluation that has
+ * none. */
 static mt_status evaluate_parameters(const mt_model *model, int n_inputs, const int *inputs,
                                      const double *at, mt_arena *mem, double *value, int *bad,
                                      mt_err *err)
@@ -172,7 +173,8 @@ static mt_status evaluate_parameters(const mt_model *model, int n_inputs, const 
     for (int i = 0; rc == MT_OK && i < model->n_parameters; i++) {
         value[i] = all[nodes[i]];
     }
-    /* the node belongs to the first parameter that it spoils: one whose node follows it first */
+    /* the node belongs to the first parameter that it spoils: one whose node follows it
+     * first */
     for (int i = 0; rc == MT_E_DOMAIN && i < model->n_parameters; i++) {
         if (nodes[i] >= without && (*bad == MT_ABSENT || nodes[i] < nodes[*bad])) {
             *bad = i;

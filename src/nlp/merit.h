@@ -5,8 +5,8 @@
 #include <stdbool.h>
 
 /*
- * When a constraint is met, and which of two designs is the better one: one rule for points of a
- * search, ends of searches, combinations of a catalogue and answers of a trade study.
+ * When a constraint is met, and which of two designs is the better one: one rule for points of
+ * a search, ends of searches, combinations of a catalogue and answers of a trade study.
  */
 
 /* What is held is met within its tolerance; a number that is recomputed may lie over it by its
@@ -39,16 +39,17 @@ typedef struct mt_merit {
 #define MT_EQUAL_JUDGED 0x1p-40
 /* Designs that searches ended at: held objectives, their tolerances used or not. */
 #define MT_EQUAL_FOUND 4e-6
-/* Designs nearer than this in every coordinate (0.1 percent in a positive parameter) are one. */
+/* Designs nearer than this in every coordinate (0.1 percent in a positive parameter) are
+ * one. */
 #define MT_SAME_DESIGN 1e-3
 
-/* -1: a is less, 1: b is; 0: they differ by less than `equal`, relatively (of 1e-6, where both are
- * smaller); NaN is neither less nor more. */
+/* -1: a is less, 1: b is; 0: they differ by less than `equal`, relatively (of 1e-6, where both
+ * are smaller); NaN is neither less nor more. */
 int mt_compare(double a, double b, double equal);
 
 /* Is a better than b? One that meets all goals is better than one that does not, of two that do
- * not the one that misses less; then the objectives decide in their order, each as mt_compare has
- * it. */
+ * not the one that misses less; then the objectives decide in their order, each as mt_compare
+ * has it. */
 bool mt_merit_before(const mt_merit *a, const mt_merit *b, double equal);
 
 #endif

@@ -4,8 +4,8 @@
 
 #include "problem/workspace.h"
 
-/* Does it limit the frequency of a mode by its index? Those are sorted: what holds for one holds
- * for all beyond it. */
+/* Does it limit the frequency of a mode by its index? Those are sorted: what holds for one
+ * holds for all beyond it. */
 bool mt_demand_is_frequency(const mt_demand *d);
 /* Values (and gradients, unless NULL where out holds none) of one demand after its view has
  * been solved; rows as numbered. *value (may be NULL): the number that is held (infinite of a

@@ -5,12 +5,12 @@
 #include "problem/workspace.h"
 
 /*
- * The operations of a kind of goal, one file for each kind (goal_<kind>.c); what files may say of
- * it stands in study/goal_kinds.h. Most are a number q with a slope, held against an interval:
- * rows, residuals, violations, relaxations, proofs and sentences follow from q and the measure
- * of the kind,
+ * The operations of a kind of goal, one file for each kind (goal_<kind>.c); what files may say
+ * of it stands in study/goal_kinds.h. Most are a number q with a slope, held against an
+ * interval: rows, residuals, violations, relaxations, proofs and sentences follow from q and
+ * the measure of the kind,
  *     ratio        row = ln(q / limit)             slope d ln q / dt
- *     part         row = (q - limit) / |limit|     slope dq / dt     (divided by 1 where it is 0)
+ *     part         row = (q - limit) / |limit|     slope dq / dt (divided by 1 where it is 0)
  *     difference   row = q - limit                 slope dq / dt
  */
 typedef struct mt_goal_ops {
@@ -18,8 +18,8 @@ typedef struct mt_goal_ops {
     bool needs_vectors; /* shapes, even where no gradient is asked for */
     /* Look up what the goal is compared with, once view and mode are known. NULL: nothing. */
     mt_status (*compile)(mt_problem *p, mt_demand *d, mt_err *err);
-    /* q of the mode at pos after its view has been solved (a mode at infinity: -1, of a frequency
-     * only; a goal without a mode: -1), and its slope[n] unless NULL. */
+    /* q of the mode at pos after its view has been solved (a mode at infinity: -1, of a
+     * frequency only; a goal without a mode: -1), and its slope[n] unless NULL. */
     mt_status (*value)(mt_workspace *w, const mt_demand *d, int pos, double *q, double *slope,
                        mt_err *err);
     /* Of a goal that is no number: residuals from w->r[d->row_res] on, and their slopes. */
@@ -35,8 +35,8 @@ MT_GOAL_LIST(MT_GOAL_OPS)
 #undef MT_GOAL_OPS
 const mt_goal_ops *mt_goal_ops_of(mt_goal_type type);
 
-/* Shape of the mode at pos at the demand's sensors, into w->shape (and w->dshape), and its norm.
- * Fails: MT_E_DOMAIN where the mode does not move there. (goal_shape.c) */
+/* Shape of the mode at pos at the demand's sensors, into w->shape (and w->dshape), and its
+ * norm. Fails: MT_E_DOMAIN where the mode does not move there. (goal_shape.c) */
 mt_status mt_goal_sense(mt_workspace *w, const mt_demand *d, int pos, bool with_gradient,
                         double *norm, mt_err *err);
 /* Look up the reference's shape. (goal_shape.c) */

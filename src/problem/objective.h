@@ -13,9 +13,9 @@ typedef struct mt_price {
 } mt_price;
 
 /*
- * The operations of a kind of objective, one file for each kind (objective_<kind>.c); what files
- * and results call it, and its properties, stand in study/objective_kinds.h. The search makes
- * its value f least.
+ * The operations of a kind of objective, one file for each kind (objective_<kind>.c); what
+ * files and results call it, and its properties, stand in study/objective_kinds.h. The search
+ * makes its value f least.
  */
 typedef struct mt_objective_ops {
     /* Nodes and items that f is made of; nodes[parameters of the model] of p->program. NULL:
@@ -29,8 +29,8 @@ typedef struct mt_objective_ops {
                     double *low, double *high);
     /* What results show of f. NULL: f, or the root of twice f where f is half a square. */
     double (*shown)(double f);
-    /* "0.12 kg". NULL: not worth a sentence, more than there is (a slope says nothing that far).
-     * The member NULL: it never is. */
+    /* "0.12 kg". NULL: not worth a sentence, more than there is (a slope says nothing that
+     * far). The member NULL: it never is. */
     const char *(*price)(const mt_price *q, mt_arena *mem);
 } mt_objective_ops;
 

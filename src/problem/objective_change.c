@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* "change": f = 1/2 sum w_i (t_i - t_i(original))^2, of which each term is least at the end of a
- * box that is nearer to the original. */
+/* "change": f = 1/2 sum w_i (t_i - t_i(original))^2, of which each term is least at the end of
+ * a box that is nearer to the original. */
 #include <float.h>
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* "mass": f = sum of the masses of the items named, those of the first configuration that a goal
- * names. */
+/* "mass": f = sum of the masses of the items named, those of the first configuration that a
+ * goal names. */
 #include <float.h>
 #include <math.h>
 

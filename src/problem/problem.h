@@ -46,7 +46,8 @@ typedef struct mt_view {
 
 typedef struct mt_family mt_family; /* positions of one drive (family.h) */
 
-/* What a demand limits: what is known of it over boxes of designs, and of modes in their order. */
+/* What a demand limits: what is known of it over boxes of designs, and of modes in their
+ * order. */
 typedef enum mt_quantity {
     MT_QUANTITY_FREQUENCY, /* of a mode */
     MT_QUANTITY_EXPRESSION,

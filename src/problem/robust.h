@@ -146,9 +146,6 @@ typedef struct mt_robust_probe {
 /* out[m], `at` filled. Nothing is proven. */
 mt_status mt_robust_sample(const mt_robust_probe *q, mt_arena *mem, mt_robust_range *out,
                            mt_err *err);
-/* Compare value[m] at x with what is known: out[m]. */
-void mt_robust_note(const mt_robust_probe *q, const double *x, const double *value,
-                    mt_robust_range *out);
 mt_status mt_robust_range_init(int n, mt_arena *mem, mt_robust_range *out, mt_err *err);
 
 #endif

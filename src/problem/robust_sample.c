@@ -41,8 +41,9 @@ mt_status mt_robust_range_init(int n, mt_arena *mem, mt_robust_range *out, mt_er
 }
 
 /* What does not exist somewhere is the least and the greatest there is. */
-void mt_robust_note(const mt_robust_probe *q, const double *x, const double *value,
-                    mt_robust_range *out)
+/* Compare value[m] at x with what is known: out[m]. */
+static void note(const mt_robust_probe *q, const double *x, const double *value,
+                 mt_robust_range *out)
 {
     for (int k = 0; k < q->m; k++) {
         for (int side = 0; side < MT_ROBUST_SIDES; side++) {
@@ -79,7 +80,7 @@ static mt_status visit(sampler *s, const double *x, bool with_gradient, mt_err *
     for (int k = 0; k < s->q->m && rc != MT_OK; k++) {
         s->value[k] = nan("");
     }
-    mt_robust_note(s->q, x, s->value, s->out);
+    note(s->q, x, s->value, s->out);
     return MT_OK;
 }
 

@@ -157,8 +157,8 @@ static mt_goal_measure measure_of(const mt_problem *p, const mt_move *m)
     return m->kind == MT_MOVE_GOAL ? p->demands[m->demand].measure : MT_MEASURE_RATIO;
 }
 
-/* Where the number must be for a row of value `row` (relaxed: what is missing is made up for) to
- * be 0. */
+/* Where the number must be for a row of value `row` (relaxed: what is missing is made up for)
+ * to be 0. */
 static double moved(const mt_problem *p, const mt_move *m, double row)
 {
     const mt_goal_measure measure = measure_of(p, m);

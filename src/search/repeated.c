@@ -194,7 +194,9 @@ static mt_status block_matrices(mt_repeated *m, mt_repeated_block *b, bool turn,
     return MT_OK;
 }
 
-mt_status mt_repeated_matrices(mt_repeated *m, bool turn, mt_err *err)
+/* b and g of every block at the problem's last evaluation, which had gradients; turn: in the
+ * basis of t0, else in that of the modes. */
+static mt_status matrices(mt_repeated *m, bool turn, mt_err *err)
 {
     for (int b = 0; b < m->n_blocks; b++) {
         MT_TRY(block_matrices(m, &m->blocks[b], turn, err));
@@ -286,7 +288,7 @@ mt_status mt_repeated_find(mt_workspace *ws, const double *t, double near, mt_ar
     }
     MT_TRY(find_blocks(out, sides, n, near, mem, err));
     find_rows(out, sides, n);
-    MT_TRY(mt_repeated_matrices(out, false, err));
+    MT_TRY(matrices(out, false, err));
     return number_rows(out, mem, err);
 }
 
@@ -327,7 +329,7 @@ static mt_status evaluate(void *context, const double *t, bool with_gradient,
     const int rows = m->n_kept + m->n_rows;
     (void)with_gradient; /* the matrices need the vectors anyhow */
     MT_TRY(mt_workspace_eval(ws, t, true, &m->values, err));
-    MT_TRY(mt_repeated_matrices(m, true, err));
+    MT_TRY(matrices(m, true, err));
     out->f = m->values.f;
     memcpy(out->df, m->values.df, (size_t)ws->c->n_t * sizeof *out->df);
     own_rows(m, out);

@@ -79,9 +79,6 @@ typedef struct mt_repeated {
  */
 mt_status mt_repeated_find(mt_workspace *ws, const double *t, double near, mt_arena *mem,
                            mt_repeated *out, mt_err *err);
-/* b and g of every block at the problem's last evaluation, which had gradients; turn: in the
- * basis of t0, else in that of the modes. */
-mt_status mt_repeated_matrices(mt_repeated *m, bool turn, mt_err *err);
 /* The problem with B = 0 in place of the rows replaced: context of the search is m. */
 mt_nlp mt_repeated_nlp(mt_repeated *m);
 

@@ -27,6 +27,11 @@ def code_only(text):
     return _TOKENS.sub(blank, text)
 
 
+def without_comments(text):
+    """The text with comments blanked, literals as they are; line numbers stay."""
+    return _TOKENS.sub(lambda m: m.group() if m.group()[0] in "\"'" else " " + "\n" * m.group().count("\n"), text)
+
+
 def verdict(what, files, problems):
     """Exit 1 with every problem, or when there was nothing to look at."""
     for problem in problems:
