@@ -6,8 +6,7 @@
 #include <stddef.h>
 
 #include "base/base.h"
-
-enum { MT_SHA256_TEXT = 65 }; /* 64 hexadecimal digits and the terminator */
+#include "io/sha256.h"
 
 /* A whole file in memory (heap). */
 typedef struct mt_file {
@@ -40,8 +39,5 @@ char *mt_file_folder(const char *path);
 /* The folder that the files named by a study must lie in by default: the parent of its folder
  * ("folder/.."). Heap. */
 char *mt_file_default_root(const char *study_path);
-
-/* SHA-256 (FIPS 180-4) of the bytes, in lower-case hexadecimal digits. */
-void mt_sha256(const void *bytes, size_t length, char out[MT_SHA256_TEXT]);
 
 #endif

@@ -2,8 +2,18 @@
 #ifndef IO_READ_AIRCRAFT_H
 #define IO_READ_AIRCRAFT_H
 
-#include "io/io.h"
+#include "base/diagnostics.h"
+#include "io/options.h"
 #include "io/reader.h"
+#include "study/aircraft.h"
+
+/**
+ * Read and check a catalogue of aircraft (format "modetune-aircraft/1").
+ * @param[in]  mem  owns the records; not freed on failure
+ * Fails and messages as for mt_model_load.
+ */
+mt_status mt_aircraft_load(const char *path, const mt_io_options *opt, mt_arena *mem,
+                           mt_aircraft_list *out, mt_diagnostics *messages, mt_err *err);
 
 /* The tables of keys of a catalogue of aircraft, for the test that holds them to the JSON
  * Schema; *n their number. */

@@ -2,6 +2,8 @@
 /* A model file: the root, parameters, points and bodies, and how the parts come together. */
 #include "io/read_model.h"
 
+#include "io/read_model_priv.h"
+
 #include "modetune/model.h"
 
 #include <stdlib.h>
@@ -9,7 +11,6 @@
 
 #include "expr/names.h"
 #include "io/file.h"
-#include "io/io.h"
 #include "io/json_print.h"
 #include "model/finish.h"
 #include "model/names.h"

@@ -2,65 +2,27 @@
 #ifndef IO_READ_MODEL_H
 #define IO_READ_MODEL_H
 
+#include "base/diagnostics.h"
+#include "io/json.h"
+#include "io/options.h"
 #include "io/reader.h"
+#include "model/model.h"
 
-/* What the files read_model*.c share: the reader and the model that it fills. */
-typedef struct mt_model_reader {
-    mt_reader r;
-    mt_model *m;
-} mt_model_reader;
-
-/* One list of keys makes the enum of their places and the table:
- *     #define POINT_KEYS(X) X(POINT_X, "x", NUMBER, true) ...
- *     enum { POINT_KEYS(MT_READ_ENUM) POINT_COUNT }; */
-#define MT_READ_ENUM(id, name, type, required) id,
-#define MT_READ_KEY(id, name, type, required)  {(name), MT_KEY_##type, (required)},
-#define MT_READ_TABLE(table, what, KEYS)                      \
-    static const mt_key table##_keys[] = {KEYS(MT_READ_KEY)}; \
-    const mt_key_table table = {(what), table##_keys, MT_COUNT(table##_keys)}
+/**
+ * Read, resolve and check a model file (format "modetune-model/1").
+ * @param[in]  opt       NULL: defaults
+ * @param[out] out       the model, owned by the caller (mt_model_delete); NULL on failure
+ * @param[out] messages  every diagnostic, warnings included, is added; may be NULL
+ * Fails: MT_E_INPUT (err: the first diagnostic), MT_E_SYSTEM, MT_E_MEMORY.
+ */
+mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **out,
+                        mt_diagnostics *messages, mt_err *err);
+/* The same from a document that is parsed already; problems go to its diagnostics. `file` names
+ * it in err. */
+mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_err *err);
 
 /* All key tables of a model file, `what` being the name of the definition in the schema; *n
  * their number. */
 const mt_key_table *const *mt_model_key_tables(int *n);
-
-extern const mt_key_table mt_model_keys;
-extern const mt_key_table mt_parameter_keys;
-extern const mt_key_table mt_body_keys;
-extern const mt_key_table mt_link_keys;
-extern const mt_key_table mt_section_keys;
-extern const mt_key_table mt_shear_keys;
-extern const mt_key_table mt_joint_keys;
-extern const mt_key_table mt_spring_keys;
-extern const mt_key_table mt_damper_keys;
-extern const mt_key_table mt_load_keys;
-extern const mt_key_table mt_sensor_keys;
-extern const mt_key_table mt_mode_keys;
-extern const mt_key_table mt_configuration_keys;
-extern const mt_key_table mt_drive_keys;
-extern const mt_key_table mt_hold_keys;
-
-/* A number or expression of the model's parameters; MT_ABSENT where absent or wrong. */
-mt_num mt_read_num(mt_model_reader *mr, mt_addr value);
-/* A list of least..most entries, each a number; *n their number (0 where absent or wrong). A
- * single number gives a list of one where `single` says so. */
-mt_num *mt_read_nums(mt_model_reader *mr, mt_addr value, bool single, int least, int most,
-                     int *n);
-/* As many numbers as the model has dimensions; false (x all absent) where absent or wrong. */
-bool mt_read_vector(mt_model_reader *mr, mt_addr value, mt_num x[3]);
-/* The name of a point, or coordinates. An absent one has point MT_ABSENT and given false. */
-mt_position mt_read_position(mt_model_reader *mr, mt_addr value);
-/* One position, or the pair of positions on two bodies; their number. */
-int mt_read_at(mt_model_reader *mr, mt_addr value, mt_position at[2]);
-/* Two names of what stands where a body may; names NULL where absent or wrong. */
-void mt_read_bodies(mt_model_reader *mr, mt_addr value, mt_attach bodies[2]);
-mt_presence mt_read_presence(mt_model_reader *mr, mt_addr value);
-
-void mt_read_links(mt_model_reader *mr, mt_addr list);
-void mt_read_joints(mt_model_reader *mr, mt_addr list);
-void mt_read_springs(mt_model_reader *mr, mt_addr springs, mt_addr dampers);
-void mt_read_loads(mt_model_reader *mr, mt_addr list);
-void mt_read_sensors(mt_model_reader *mr, mt_addr list);
-void mt_read_modes(mt_model_reader *mr, mt_addr object);
-void mt_read_configurations(mt_model_reader *mr, mt_addr object);
 
 #endif

@@ -4,6 +4,8 @@
  * other. Besides, the parameters of every design are the variables, and each point of a trade
  * study has one value of each quantity that varies.
  */
+#include "io/read_result.h"
+
 #include <assert.h>
 #include <limits.h>
 #include <math.h>
@@ -12,9 +14,10 @@
 
 #include "io/file.h"
 #include "io/folder.h"
-#include "io/io.h"
 #include "io/json_print.h"
 #include "io/reader.h"
+#include "io/result_folder.h"
+#include "study/study.h"
 
 enum { READER_PATIENCE_MS = 10000 };
 

@@ -2,7 +2,9 @@
 #ifndef IO_READ_STUDY_PRIV_H
 #define IO_READ_STUDY_PRIV_H
 
-#include "io/io.h"
+#include "io/options.h"
+#include "io/read_aircraft.h"
+#include "io/read_model.h"
 #include "io/reader.h"
 #include "study/study.h"
 

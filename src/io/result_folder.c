@@ -5,12 +5,14 @@
  * the result's digest instead. A file that is not there contradicts nothing, unless the folder
  * is just being replaced; one that is must be the one that is named.
  */
+#include "io/result_folder.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "io/file.h"
 #include "io/folder.h"
-#include "io/io.h"
+#include "io/json.h"
 
 static const char RESULT[] = "result.json";
 static const char TIMING[] = "timing.json";

@@ -5,11 +5,11 @@
  * of the square roots of the first 8 (4.2.2, 5.3.3); they are computed here, exactly, by
  * integer roots, instead of being typed in.
  */
+#include "io/sha256.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
-
-#include "io/file.h"
 
 enum { BLOCK = 64, ROUNDS = 64, WORDS = 8 };
 

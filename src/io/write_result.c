@@ -3,9 +3,9 @@
  * result.json: everything that a study answered, and nothing about where, when or with how many
  * workers. What is written, and under which name, stands in the tables of the result.
  */
-#include <string.h>
+#include "io/write_result.h"
 
-#include "io/io.h"
+#include <string.h>
 
 /* Names of the variables, for values that are written by them. */
 typedef struct names {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dead loads. */
-#include "io/read_model.h"
+#include "io/read_model_priv.h"
 
 #define LOAD_KEYS(X)                                    \
     X(LOAD_NAME, "name", TEXT, true)                    \

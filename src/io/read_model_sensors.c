@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sensors, named modes and configurations. */
+#include "io/read_model_priv.h"
+
 #include <limits.h>
 #include <string.h>
-
-#include "io/read_model.h"
 
 #define SENSOR_KEYS(X)                                \
     X(SENSOR_NAME, "name", TEXT, true)                \

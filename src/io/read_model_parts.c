@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the items of a model are made of: numbers, vectors, positions, names of bodies,
  * presence. */
-#include <string.h>
+#include "io/read_model_priv.h"
 
-#include "io/read_model.h"
+#include <string.h>
 
 mt_num mt_read_num(mt_model_reader *mr, mt_addr value)
 {

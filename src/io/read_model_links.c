@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Flexible links and their sections. */
-#include <limits.h>
+#include "io/read_model_priv.h"
 
-#include "io/read_model.h"
+#include <limits.h>
 
 #define LINK_KEYS(X)                                                  \
     X(LINK_NAME, "name", TEXT, true)                                  \

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Joints, springs and dampers. */
-#include "io/read_model.h"
+#include "io/read_model_priv.h"
 
 #define JOINT_KEYS(X)                                  \
     X(JOINT_NAME, "name", TEXT, true)                  \

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef IO_READ_RESULT_H
+#define IO_READ_RESULT_H
+
+#include "base/diagnostics.h"
+#include "io/options.h"
+#include "result/result.h"
+
+/**
+ * Read a result file back, whole: writing it again gives the same bytes. A result.json in its
+ * folder is read only where the files beside it belong to it; a run that is just replacing them
+ * is waited for. Owned by the caller (mt_result_delete). Fails: MT_E_INPUT, MT_E_SYSTEM,
+ * MT_E_MEMORY; messages as for mt_model_load.
+ */
+mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result **out,
+                         mt_diagnostics *messages, mt_err *err);
+
+#endif

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef IO_RESULT_FOLDER_H
+#define IO_RESULT_FOLDER_H
+
+#include "base/text.h"
+#include "result/result.h"
+
+/* The files that hold a result in its folder. All are replaced as one (io/folder.h);
+ * result.json decides, and names the others with their digests. */
+#define MT_RESULT_FILE_LIST(X)                       \
+    X(MT_RESULT_FILE_DESIGNS, "recommendations.csv") \
+    X(MT_RESULT_FILE_TRADE, "trade.csv")             \
+    X(MT_RESULT_FILE_REPORT, "report.html")          \
+    X(MT_RESULT_FILE_TIMING, "timing.json")          \
+    X(MT_RESULT_FILE_RESULT, "result.json")
+#define MT_RESULT_FILE_ENUM(id, name) id,
+typedef enum mt_result_file {
+    MT_RESULT_FILE_LIST(MT_RESULT_FILE_ENUM) MT_RESULT_FILE_COUNT
+} mt_result_file;
+#undef MT_RESULT_FILE_ENUM
+const char *mt_result_file_name(mt_result_file which);
+/* Note in result->run the n files that are to stand beside it, with the digests of their texts.
+ * Fails: MT_E_MEMORY. */
+mt_status mt_result_note_outputs(mt_result *result, int n, const char *const *names,
+                                 const mt_text *texts, mt_err *err);
+/* The text of timing.json beside the result at `path`, where it names the result with this
+ * digest; else nothing. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
+mt_status mt_result_read_timing(const char *path, const char *sha256, mt_text *out,
+                                mt_err *err);
+/* Is this a result that was written as a folder, and still called so? A copy under another name
+ * belongs to nothing. */
+bool mt_result_has_folder(const char *path, const mt_result *result);
+/* Do the files beside such a result, as far as they are there, belong to it? sha256: of its own
+ * bytes. Fails: MT_E_INPUT where they do not, MT_E_SYSTEM, MT_E_MEMORY. */
+mt_status mt_result_check_folder(const char *path, const char *sha256, const mt_result *result,
+                                 mt_err *err);
+
+#endif

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef IO_WRITE_RESULT_H
+#define IO_WRITE_RESULT_H
+
+#include "base/doubt.h"
+#include "base/text.h"
+#include "io/write_json.h"
+#include "result/result.h"
+
+/* Append a result as JSON (format "modetune-result/1"): the same result gives the same bytes.
+ * Fails: MT_E_MEMORY. */
+mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err);
+/* The same as a value within a larger document (name NULL: in a list, or the whole). */
+void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result);
+/* The items of one level as a list of objects. */
+void mt_json_put_doubts(mt_json_writer *w, const char *name, const mt_doubt_list *list,
+                        mt_doubt_level level);
+/* One of its members, into an object that is open; name NULL: all of them. */
+void mt_result_put_member(mt_json_writer *w, const char *name, const mt_result *result);
+
+#endif
