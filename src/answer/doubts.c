@@ -302,9 +302,7 @@ static mt_status gather(mt_analysis *a, int n_inputs, const int *inputs, const d
     const mt_model *const m = a->sys->model;
     const int c = a->sys->configuration;
     double *const value = mt_arena_f64(list->mem, (size_t)m->n_nums, 1);
-    if (value == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(list->mem, err));
     MT_TRY(mt_model_numbers(m, c, n_inputs, inputs, at, list->mem, value, err));
     MT_TRY(doubt_scale(a, list, err));
     MT_TRY(say_freedoms(a, list, err));

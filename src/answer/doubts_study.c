@@ -91,9 +91,7 @@ static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, 
     double *const x = mt_arena_f64(mem, (size_t)n, 1);
     mt_analysis_options opt = mt_analysis_options_default();
     mt_analysis *a = NULL;
-    if (inputs == NULL || x == NULL || r->above == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < n; i++) {
         inputs[i] = s->variables[i].parameter;
     }

@@ -29,9 +29,7 @@ static mt_status describe_solutions(mt_answer *a, mt_err *err)
     const int n = found->n_solutions < most ? found->n_solutions : most;
     result->recommendations =
         mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->recommendations);
-    if (result->recommendations == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     MT_TRY(mt_describe_undetermined(a->p, found, result, err));
     for (int i = 0; i < n; i++) {
         a->mark = mt_result_get_mark(result);
@@ -68,9 +66,7 @@ static mt_status tell_undescribed(const mt_answer *a, mt_err *err)
     mt_arena *const mem = &a->result->mem;
     const mt_problem *const p = a->p;
     double *const x = mt_arena_f64(mem, (size_t)p->n, 1);
-    if (x == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = a->result->n_recommendations;
          i < a->found.n_solutions && i < a->study->recommendations; i++) {
         const char *text = "";
@@ -95,9 +91,7 @@ static mt_status search_gaps(mt_answer *a, mt_err *err)
     MT_TRY(mt_gaps_solve(a->workers, a->n_workers, &a->mem, g, err));
     a->found.solutions =
         mt_arena_alloc(&a->mem, (size_t)g->n_solutions, sizeof *a->found.solutions);
-    if (a->found.solutions == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&a->mem, err));
     for (int i = 0; i < g->n_solutions; i++) {
         a->found.solutions[i] = *g->solutions[i].found;
     }
@@ -196,9 +190,7 @@ static mt_status publish(mt_answer *a, mt_err *err)
 {
     double *const x = mt_arena_f64(&a->mem, (size_t)a->p->n, 1);
     const bool recommended = a->result->n_recommendations > 0;
-    if (x == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&a->mem, err));
     if (recommended) {
         mt_case_x(&a->asked, a->found.solutions[0].t, x);
     }
@@ -316,9 +308,7 @@ static mt_status take_hint(mt_answer *a, const double *hint, mt_err *err)
 {
     const mt_problem *const p = a->p;
     double *const t = mt_arena_f64(&a->mem, (size_t)p->n + 1, 1);
-    if (t == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&a->mem, err));
     for (int i = 0; i < p->n; i++) {
         t[i] = mt_problem_t(p, i, hint[i]); /* the search brings it within the bounds */
     }
@@ -381,9 +371,7 @@ static mt_status open_problem(mt_answer *a, mt_err *err)
     MT_TRY(mt_problem_new(a->study, &a->p, err));
     a->asked = a->p->whole;
     a->workers = mt_arena_alloc(&a->mem, (size_t)n, sizeof(mt_workspace *));
-    if (a->workers == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&a->mem, err));
     for (int i = 0; i < n; i++) {
         MT_TRY(mt_workspace_new(a->p, &a->workers[i], err));
         mt_workspace_back(a->workers[i], &a->asked);
@@ -417,9 +405,7 @@ static mt_status ask(mt_answer *a, const mt_study *study, const mt_solve_options
     a->own_study.model = &a->own_model;
     a->own_study.references = mt_arena_alloc(&a->mem, n, sizeof *study->references);
     a->study = &a->own_study;
-    if (a->own_study.references == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&a->mem, err));
     for (size_t i = 0; i < n; i++) {
         mt_reference *const r = &a->own_study.references[i];
         *r = study->references[i];

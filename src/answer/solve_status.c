@@ -248,7 +248,7 @@ static mt_status qualify(mt_result *result, mt_err *err)
                                  result->status_text)
                : mt_arena_printf(&result->mem, "Doubtful question (%s; and %d more). %s", first,
                                  n - 1, result->status_text);
-    return result->status_text == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(&result->mem, err);
 }
 
 mt_status mt_answer_set_status(const mt_answer *a, mt_err *err)
@@ -262,7 +262,8 @@ mt_status mt_answer_set_status(const mt_answer *a, mt_err *err)
         result->status = MT_RESULT_COMPROMISE; /* the baseline is no answer of the search */
     }
     result->status_text = status_text(a, best);
-    return result->status_text == NULL ? mt_fail_memory(err) : qualify(result, err);
+    MT_TRY(mt_arena_check(&result->mem, err));
+    return qualify(result, err);
 }
 
 /* "search, certificates and trade" */
@@ -287,9 +288,7 @@ mt_status mt_answer_note_cuts(const mt_answer *a, mt_err *err)
         return MT_OK;
     }
     run->incomplete = mt_arena_alloc(&result->mem, MT_PHASE_COUNT, sizeof *run->incomplete);
-    if (run->incomplete == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     for (int k = 0; k < MT_PHASE_COUNT; k++) {
         if (mt_interrupt_is_cut(&a->interrupt, k)) {
             run->incomplete[run->n_incomplete++] = names[k];
@@ -297,9 +296,7 @@ mt_status mt_answer_note_cuts(const mt_answer *a, mt_err *err)
     }
     const char *const list = list_text(run, &result->mem);
     result->status = MT_RESULT_INTERRUPTED;
-    result->status_text =
-        list == NULL ? NULL
-                     : mt_arena_printf(&result->mem, "Interrupted (not complete: %s). %s", list,
-                                       result->status_text);
-    return result->status_text == NULL ? mt_fail_memory(err) : MT_OK;
+    result->status_text = mt_arena_printf(&result->mem, "Interrupted (not complete: %s). %s",
+                                          list, result->status_text);
+    return mt_arena_check(&result->mem, err);
 }

@@ -31,9 +31,7 @@ static mt_status start(spread *s, mt_err *err)
     const size_t n = (size_t)s->w->p->n;
     s->x = mt_arena_f64(&r->mem, n, 1);
     r->spread = mt_arena_alloc(&r->mem, n, sizeof *r->spread);
-    if (s->x == NULL || r->spread == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&r->mem, err));
     mt_case_x(s->w->c, s->best->t, s->x);
     for (int i = 0; i < s->w->p->n; i++) {
         const mt_parameter *const parameter =
@@ -47,11 +45,8 @@ static mt_status start(spread *s, mt_err *err)
             .low_factor = nan(""),
             .high_factor = nan(""),
         };
-        if (r->spread[i].parameter == NULL ||
-            (parameter->unit != NULL && r->spread[i].unit == NULL)) {
-            return mt_fail_memory(err);
-        }
     }
+    MT_TRY(mt_arena_check(&r->mem, err));
     r->n_spread = s->w->p->n;
     return MT_OK;
 }
@@ -68,9 +63,7 @@ static void scale_weight(const mt_problem *p, double *weight, int goal, double f
 static mt_status note(spread *s, const double *t, int goal, double factor, mt_err *err)
 {
     const char *const pointer = mt_arena_printf(&s->result->mem, "/goals/%d", goal);
-    if (pointer == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&s->result->mem, err));
     mt_case_x(s->w->c, t, s->x);
     for (int i = 0; i < s->w->p->n; i++) {
         mt_result_spread *const r = &s->result->spread[i];
@@ -151,9 +144,7 @@ mt_status mt_spread_solve(mt_workspace *w, const mt_nlp_solution *best, mt_arena
     }
     spread s = {
         .w = w, .c = *asked, .weight = mt_arena_f64(mem, n, 1), .result = result, .best = best};
-    if (s.weight == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     memcpy(s.weight, asked->weight, n * sizeof *s.weight);
     s.c.weight = s.weight;
     MT_TRY(start(&s, err));

@@ -99,9 +99,7 @@ static mt_status values_of(const mt_recommendation *r, mt_arena *mem, const doub
         return MT_OK;
     }
     double *const values = mt_arena_f64(mem, (size_t)r->n_parameters, 1);
-    if (values == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < r->n_parameters; i++) {
         values[i] = r->parameters[i].recommended;
     }
@@ -190,9 +188,7 @@ static mt_status begin(trade *t, mt_arena *mem, mt_err *err)
         t->n *= t->size[i];
     }
     t->points = mt_arena_alloc(mem, (size_t)t->n, sizeof *t->points);
-    if (t->points == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < t->n; k++) {
         const int at[MT_MAX_VARY] = {k / t->size[1], k % t->size[1]};
         t->points[k] = (point){.first = NULL};
@@ -271,20 +267,15 @@ static mt_status describe_what(const trade *t, mt_arena *mem, mt_trade_result *o
     out->vary = mt_arena_alloc(mem, (size_t)asked->n_vary, sizeof *out->vary);
     out->n_objectives = asked->n_objectives;
     out->objectives = mt_arena_alloc(mem, (size_t)asked->n_objectives + 1, sizeof(char *));
-    if (out->vary == NULL || out->objectives == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < asked->n_vary; i++) {
         const char *const unit = unit_of(t->study, &asked->vary[i]);
         out->vary[i] =
             (mt_trade_vary){.text = mt_arena_strdup(mem, asked->vary[i].text),
                             .pointer = mt_arena_printf(mem, "/trade/vary/%d", i),
                             .unit = unit == NULL ? NULL : mt_arena_strdup(mem, unit)};
-        if (out->vary[i].text == NULL || out->vary[i].pointer == NULL ||
-            (unit != NULL && out->vary[i].unit == NULL)) {
-            return mt_fail_memory(err);
-        }
     }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < asked->n_objectives; i++) {
         out->objectives[i] = mt_objective_kind_of(asked->objectives[i])->name;
     }
@@ -303,9 +294,7 @@ static mt_status describe_point(const trade *t, int k, mt_arena *mem, mt_trade_p
     out->status_text = mt_arena_strdup(mem, r != NULL && r->status_text != NULL
                                                 ? r->status_text
                                                 : "Interrupted before it was answered.");
-    if (out->values == NULL || out->status_text == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     memcpy(out->values, t->points[k].values, sizeof t->points[k].values);
     return best == NULL ? MT_OK : mt_recommendation_copy(best, mem, &out->best, err);
 }
@@ -313,15 +302,11 @@ static mt_status describe_point(const trade *t, int k, mt_arena *mem, mt_trade_p
 static mt_status describe(const trade *t, mt_result *result, mt_err *err)
 {
     mt_trade_result *const out = mt_arena_alloc(&result->mem, 1, sizeof *out);
-    if (out == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     *out = (mt_trade_result){.n_points = t->n};
     MT_TRY(describe_what(t, &result->mem, out, err));
     out->points = mt_arena_alloc(&result->mem, (size_t)t->n, sizeof *out->points);
-    if (out->points == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     for (int k = 0; k < t->n; k++) {
         MT_TRY(describe_point(t, k, &result->mem, &out->points[k], err));
         result->run.evaluations += t->points[k].evaluations;

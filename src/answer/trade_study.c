@@ -18,9 +18,7 @@ static void *copied(mt_arena *mem, const void *items, int n, size_t size)
 static mt_status put_margin(mt_goal *g, double percent, mt_arena *mem, mt_err *err)
 {
     mt_avoid *const avoid = copied(mem, g->avoid, 1, sizeof *avoid);
-    if (avoid == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     g->avoid = avoid;
     return mt_bands_make(&avoid->source, percent, mem, &avoid->bands, err);
 }
@@ -33,9 +31,7 @@ static mt_status put_parameter(mt_study *s, int parameter, double value, mt_aren
     mt_number *const nums =
         copied(mem, s->model->nums, s->model->n_nums, sizeof *s->model->nums);
     s->original = mt_arena_f64(mem, (size_t)s->model->n_parameters, 1);
-    if (model == NULL || nums == NULL || s->original == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     mt_number *const number = &nums[model->parameters[parameter].value];
     MT_TRY(mt_expr_number(value, mem, &number->expr, err));
     model->nums = nums;
@@ -80,9 +76,7 @@ mt_status mt_trade_study(const mt_study *study, const double *values, mt_arena *
     out->variables =
         copied(mem, study->variables, study->n_variables, sizeof *study->variables);
     out->goals = copied(mem, study->goals, study->n_goals, sizeof *study->goals);
-    if (out->variables == NULL || out->goals == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < study->trade.n_vary; k++) {
         MT_TRY(put(out, &study->trade.vary[k], values[k], mem, err));
     }

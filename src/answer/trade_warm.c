@@ -56,9 +56,7 @@ static mt_status open_gap(mt_workspace *w, const double *t, mt_arena *mem, mt_ca
     const mt_problem *const p = w->p;
     int *const below = mt_arena_int(mem, (size_t)p->n_bands);
     double f = 0.0;
-    if (below == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(objective_at(w, t, mem, &f, err));
     for (int i = 0; i < p->n_clears; i++) {
         const mt_clear *const c = &p->clears[i];
@@ -80,9 +78,7 @@ static mt_status compare(mt_workspace *w, const double *x, const double *best_x,
     mt_nlp_options opt = mt_nlp_options_default();
     mt_nlp_result found = {0};
     mt_case in_gap;
-    if (t == NULL || best_t == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     to_t(&p->whole, x, t);
     if (best_x != NULL) {
         to_t(&p->whole, best_x, best_t);

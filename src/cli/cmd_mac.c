@@ -83,18 +83,14 @@ static mt_status choose_modes(comparison *c, side *x, int wanted, mt_err *err)
 {
     const mt_modes *const m = &x->a->modes;
     x->position = mt_arena_int(&c->mem, (size_t)m->count);
-    if (x->position == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&c->mem, err));
     for (int i = 0; i < m->count && x->n < wanted; i++) {
         if (m->kind[i] == MT_MODE_FLEXIBLE) {
             x->position[x->n++] = i;
         }
     }
     x->shape = mt_arena_f64(&c->mem, (size_t)c->ns, (size_t)x->n);
-    if (x->shape == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&c->mem, err));
     return mt_shapes_at(x->a, c->ns, x->channels, x->n, x->position, x->shape, err);
 }
 
@@ -108,9 +104,7 @@ static mt_status correlate(comparison *c, int count, mt_err *err)
     MT_TRY(choose_modes(c, &c->b, wanted, err));
     c->mac = mt_arena_f64(&c->mem, (size_t)c->a.n, (size_t)c->b.n);
     c->pair = mt_arena_int(&c->mem, (size_t)c->a.n);
-    if (c->mac == NULL || c->pair == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&c->mem, err));
     mt_mac_matrix(c->ns, c->a.n, c->a.shape, c->b.n, c->b.shape, c->mac);
     return mt_mac_pair(c->a.n, c->b.n, c->mac, c->pair, &c->mem, err);
 }
@@ -124,9 +118,7 @@ static mt_status note_alike(comparison *c, const side *x, emit_note emit, void *
 {
     const int n = x->n;
     double *const own = mt_arena_f64(&c->mem, (size_t)n, (size_t)n);
-    if (own == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&c->mem, err));
     mt_mac_matrix(c->ns, n, x->shape, n, x->shape, own);
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < j; i++) {
@@ -182,9 +174,7 @@ static mt_status subspace_at(comparison *c, int i, subspace *out, mt_err *err)
     const size_t ns = (size_t)c->ns;
     double *const b = mt_arena_f64(&c->mem, ns, (size_t)out->size);
     out->cos2 = mt_arena_f64(&c->mem, (size_t)out->size, 1);
-    if (b == NULL || out->cos2 == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&c->mem, err));
     for (int k = 0; k < out->size; k++) {
         const int j = c->pair[i + k];
         if (j >= 0) {

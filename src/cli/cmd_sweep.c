@@ -24,9 +24,7 @@ static mt_status read_bound(mt_subject *s, const char *text, size_t length, doub
     const char **const names = mt_arena_alloc(&s->mem, (size_t)n, sizeof *names);
     const char *const copy = mt_arena_strndup(&s->mem, text, length);
     mt_expr e;
-    if (names == NULL || copy == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&s->mem, err));
     for (int i = 0; i < n; i++) {
         names[i] = s->model->parameters[i].name.s;
     }
@@ -76,16 +74,12 @@ static mt_status read_request(const mt_args *args, mt_subject *s, mt_sweep_reque
     }
     out->drive.joint = mt_arena_strndup(&s->mem, text, (size_t)(equals - text));
     out->drive.spring = args->value[MT_OPT_HOLD];
-    if (out->drive.joint == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&s->mem, err));
     MT_TRY(read_bound(s, equals + 1, (size_t)(first - equals - 1), &range[0], err));
     MT_TRY(read_bound(s, first + 1, (size_t)(second - first - 1), &range[1], err));
     MT_TRY(read_points(second + 1, range, &out->n, err));
     out->positions = mt_arena_f64(&s->mem, (size_t)out->n, 1);
-    if (out->positions == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&s->mem, err));
     mt_sweep_range(range[0], range[1], out->n, out->positions);
     return MT_OK;
 }
@@ -138,10 +132,7 @@ static mt_status prepare_modes(job *j, int wanted, mt_err *err)
     j->v.rigid = mt_arena_int(&j->mem, n);
     j->v.unstable = mt_arena_int(&j->mem, n);
     j->v.undecided = mt_arena_int(&j->mem, n);
-    if (j->v.hz == NULL || j->v.rigid == NULL || j->v.unstable == NULL ||
-        j->v.undecided == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&j->mem, err));
     for (size_t i = 0; i < n * (size_t)j->v.modes; i++) {
         j->v.hz[i] = nan("");
     }
@@ -182,9 +173,7 @@ static mt_status run(const mt_args *args, const mt_subject *s, int c, job *j, mt
     const size_t n = (size_t)s->n_inputs;
     MT_TRY(mt_arena_init(&j->mem, 0, err));
     double *const at = mt_arena_f64(&j->mem, n + 1, 1);
-    if (at == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&j->mem, err));
     for (size_t i = 0; i < n; i++) {
         at[i] = s->at[i];
     }

@@ -28,9 +28,7 @@ mt_status mt_damped_of(mt_analysis *a, mt_arena *mem, mt_damped_modes *out, mt_e
     const mt_reduced r = mt_linear_reduced(a->lin);
     const size_t n = (size_t)r.n;
     double *const c = mt_arena_f64(mem, n, n);
-    if (c == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     mt_linear_damping(a->lin, c);
     const mt_damped_problem p = {
         .n = r.n, .k = r.k, .c = c, .mass = &a->mass, .modes = &a->modes};

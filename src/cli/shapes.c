@@ -18,17 +18,13 @@ static mt_status at_sensors(mt_analysis *a, int modes, mt_arena *mem, mt_shapes 
     const int n = sys->n_channels;
     int *const channels = mt_arena_int(mem, (size_t)n);
     int *const positions = mt_arena_int(mem, (size_t)modes);
-    if (channels == NULL || positions == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     out->sensors = true;
     out->n = n;
     for (int k = 0; k < n; k++) {
         channels[k] = k;
         out->name[k] = mt_arena_strdup(mem, sys->channels[k].name);
-        if (out->name[k] == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(mem, err));
     }
     for (int i = 0; i < modes; i++) {
         positions[i] = i;
@@ -54,9 +50,7 @@ static mt_status of_bodies(mt_analysis *a, int modes, mt_arena *mem, mt_shapes *
         }
     }
     for (int q = 0; q < sys->nq; q++) {
-        if (out->name[q] == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(mem, err));
     }
     mt_linear_expand(a->lin, modes, a->modes.y, out->value);
     return MT_OK;
@@ -67,9 +61,7 @@ mt_status mt_shapes_of(mt_analysis *a, int modes, mt_arena *mem, mt_shapes *out,
     const size_t most = (size_t)(a->sys->n_channels > 0 ? a->sys->n_channels : a->sys->nq);
     out->name = mt_arena_alloc(mem, most, sizeof *out->name);
     out->value = mt_arena_f64(mem, most, (size_t)modes);
-    if (out->name == NULL || out->value == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     return a->sys->n_channels > 0 ? at_sensors(a, modes, mem, out, err)
                                   : of_bodies(a, modes, mem, out, err);
 }

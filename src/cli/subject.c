@@ -95,9 +95,7 @@ static mt_status find_configuration(mt_subject *s, const char *name, mt_err *err
         return MT_OK;
     }
     const char **const names = mt_arena_alloc(&s->mem, (size_t)n, sizeof *names);
-    if (names == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&s->mem, err));
     for (int i = 0; i < n; i++) {
         names[i] = s->model->configurations[i].name.s;
     }
@@ -114,9 +112,7 @@ static mt_status read_set(mt_subject *s, const char *text, const char *const *na
         return mt_fail(err, MT_E_USAGE, "\"%s\" is not NAME=VALUE", text);
     }
     const char *const name = mt_arena_strndup(&s->mem, text, (size_t)(equals - text));
-    if (name == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&s->mem, err));
     const int parameter = mt_model_find_parameter(s->model, name);
     if (parameter == MT_ABSENT) {
         return unknown("parameter", name, names, s->model->n_parameters, err);
@@ -164,10 +160,7 @@ static mt_status choose(const mt_args *args, const char *configuration, mt_subje
     s->inputs = mt_arena_int(&s->mem, np);
     s->at = mt_arena_f64(&s->mem, np, 1);
     s->configurations = mt_arena_int(&s->mem, (size_t)nc);
-    if (names == NULL || s->original == NULL || s->values == NULL || s->inputs == NULL ||
-        s->at == NULL || s->configurations == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&s->mem, err));
     if (configuration != NULL) {
         MT_TRY(find_configuration(s, configuration, err));
     } else {

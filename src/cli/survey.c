@@ -35,9 +35,7 @@ static mt_status add_parameter(mt_survey *v, const char *name, mt_err *err)
     if (found == MT_ABSENT) {
         const char **const names =
             mt_arena_alloc(&v->mem, (size_t)model->n_parameters, sizeof *names);
-        if (names == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(&v->mem, err));
         for (int i = 0; i < model->n_parameters; i++) {
             names[i] = model->parameters[i].name.s;
         }
@@ -59,9 +57,7 @@ static mt_status choose_parameters(mt_survey *v, const char *list, mt_err *err)
 {
     const mt_model *const model = v->s->model;
     v->parameter = mt_arena_int(&v->mem, (size_t)model->n_parameters);
-    if (v->parameter == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&v->mem, err));
     for (int i = 0; list == NULL && i < model->n_parameters; i++) {
         if (!depends_on_others(model, i)) {
             v->parameter[v->n++] = i;
@@ -70,9 +66,7 @@ static mt_status choose_parameters(mt_survey *v, const char *list, mt_err *err)
     while (list != NULL && *list != '\0') {
         const size_t length = strcspn(list, ",");
         const char *const name = mt_arena_strndup(&v->mem, list, length);
-        if (name == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(&v->mem, err));
         MT_TRY(add_parameter(v, name, err));
         list += length + (list[length] == ',' ? 1 : 0);
     }
@@ -94,9 +88,7 @@ static mt_status choose_modes(mt_survey *v, const mt_modes *m, int wanted, mt_er
     v->hz = mt_arena_f64(&v->mem, most, 1);
     v->repeated = mt_arena_alloc(&v->mem, most, sizeof *v->repeated);
     v->per_unit = mt_arena_f64(&v->mem, most, (size_t)v->n);
-    if (v->position == NULL || v->hz == NULL || v->repeated == NULL || v->per_unit == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&v->mem, err));
     for (int i = 0; i < m->count && v->modes < wanted; i++) {
         int size = 1;
         if (m->kind[i] == MT_MODE_FLEXIBLE) {
@@ -119,9 +111,7 @@ static mt_status analyse(mt_survey *v, int n, const int *entry, int wanted, mt_e
     int *const slot = mt_arena_int(&v->mem, room);
     double *const at = mt_arena_f64(&v->mem, room, 1);
     mt_analysis *a = NULL;
-    if (inputs == NULL || slot == NULL || at == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&v->mem, err));
     int count = 0;
     for (int i = 0; i < s->n_inputs; i++) {
         inputs[count] = s->inputs[i];
@@ -159,9 +149,7 @@ static mt_status find_values(mt_survey *v, mt_err *err)
     v->value = mt_arena_f64(&v->mem, (size_t)v->n, 1);
     v->overridden = mt_arena_alloc(&v->mem, (size_t)v->n, sizeof *v->overridden);
     v->independence = mt_arena_alloc(&v->mem, (size_t)v->n, sizeof *v->independence);
-    if (v->independence == NULL || v->value == NULL || v->overridden == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&v->mem, err));
     MT_TRY(mt_subject_analyse(v->s, v->c, &a, err));
     for (int k = 0; k < v->n; k++) {
         v->value[k] = mt_linear_value(a->lin, a->sys->parameters[v->parameter[k]]);
@@ -175,9 +163,7 @@ static mt_status carry_out(mt_survey *v, int wanted, mt_err *err)
 {
     int *const together = mt_arena_int(&v->mem, (size_t)v->n);
     int n = 0;
-    if (together == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&v->mem, err));
     for (int k = 0; k < v->n; k++) {
         if (!depends_on_others(v->s->model, v->parameter[k])) {
             together[n++] = k;

@@ -247,7 +247,7 @@ static mt_status add_clearance(const listing *l, int band, int mode, double hz, 
     if (!(c->percent >= l->rec->clearance_percent)) {
         l->rec->clearance_percent = c->percent;
     }
-    return c->band == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(&l->result->mem, err);
 }
 
 /* The band that the mode is in, or its neighbours on both sides. */
@@ -281,11 +281,9 @@ static mt_status list_gaps(const listing *l, const int *below, mt_err *err)
             .margin_upper_hz = band->upper_hz,
             .modes_below = below[b],
         };
-        if (l->rec->gaps[l->rec->n_gaps++].band == NULL) {
-            return mt_fail_memory(err);
-        }
+        l->rec->n_gaps++;
     }
-    return MT_OK;
+    return mt_arena_check(&l->result->mem, err);
 }
 
 static mt_status list_clear(mt_workspace *fresh, const mt_clear *c, int *below,
@@ -324,9 +322,8 @@ mt_status mt_describe_clearances(mt_workspace *fresh, mt_result *result, mt_reco
     int *const below = mt_arena_int(&fresh->mem, bands);
     rec->clearances = mt_arena_alloc(&result->mem, most, sizeof *rec->clearances);
     rec->gaps = mt_arena_alloc(&result->mem, bands, sizeof *rec->gaps);
-    if (below == NULL || rec->clearances == NULL || rec->gaps == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&fresh->mem, err));
+    MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < fresh->c->n_clears; i++) {
         MT_TRY(list_clear(fresh, &fresh->c->clears[i], below, result, rec, err));
     }

@@ -129,9 +129,9 @@ static mt_status doubt(const mt_workspace *fresh, const mt_demand *d, mt_result 
     const char *const why =
         mt_describe_identity(&fresh->views[d->view], d->named, &result->mem);
     g->met = false;
-    g->text = why == NULL ? NULL : mt_arena_printf(&result->mem, "%s, %s", g->text, why);
+    g->text = mt_arena_printf(&result->mem, "%s, %s", g->text, why);
     g->doubtful = true;
-    return g->text == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(&result->mem, err);
 }
 
 /* What is asked for, of what, in figures. */
@@ -180,9 +180,7 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
     g->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
     g->violation_percent = percent;
     g->met = mt_is_met(violation, d->tolerance);
-    if (g->text == NULL || g->pointer == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     return d->view < 0 || mt_describe_is_told(&fresh->views[d->view], d)
                ? MT_OK
                : doubt(fresh, d, result, g, err);
@@ -205,9 +203,7 @@ mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_res
     rec->goals = mt_arena_alloc(&result->mem, most, sizeof *rec->goals);
     rec->feasible = true;
     rec->violation_percent = 0.0;
-    if (rec->goals == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     MT_TRY(mt_case_values_init(fresh->c, &fresh->mem, &v, err));
     MT_TRY(mt_workspace_place(fresh, design->t, false, err));
     MT_TRY(solve_views(fresh, &why, err));

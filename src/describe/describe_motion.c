@@ -84,9 +84,7 @@ static mt_status examine(described *d, mt_err *err)
     int *const below = mt_arena_int(&fresh->mem, (size_t)fresh->c->n_bands);
     int *const best = mt_arena_int(&fresh->mem, (size_t)fresh->c->n_bands);
     double room = HUGE_VAL;
-    if (below == NULL || best == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&fresh->mem, err));
     d->tolerance = HUGE_VAL;
     for (int i = fresh->c->n_clears - 1; i >= 0; i--) {
         const mt_clear *const c = &fresh->c->clears[i];
@@ -240,7 +238,7 @@ static mt_status put_goal(const described *d, const char *range, mt_recommendati
                                     range, c->mode, c->band, c->from, c->to)
                   : mt_arena_printf(mem, "%s clear of its bands between the positions", range);
     g->pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index);
-    return g->text == NULL || g->pointer == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 static mt_status put_row(const described *d, const char *range, double from, double to,
@@ -271,9 +269,7 @@ static mt_status put_row(const described *d, const char *range, double from, dou
         row->hz = m->hz;
     }
     row->text = sentence(d, range);
-    const bool bad = row->drive == NULL || row->pointer == NULL ||
-                     (band != NULL && row->band == NULL) || row->text == NULL;
-    return bad ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 static mt_status describe_family(mt_workspace *fresh, const mt_family *f, mt_result *result,
@@ -292,9 +288,7 @@ static mt_status describe_family(mt_workspace *fresh, const mt_family *f, mt_res
         return MT_OK; /* no band is asked for on both sides of a motion */
     }
     const char *const range = range_text(&d, from, to);
-    if (range == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     MT_TRY(put_goal(&d, range, rec, err));
     return put_row(&d, range, from, to, rec, err);
 }
@@ -313,9 +307,7 @@ mt_status mt_describe_motions(mt_workspace *fresh, mt_result *result, mt_recomme
 {
     const int most = mt_describe_motion_count(fresh->p);
     rec->motions = mt_arena_alloc(&result->mem, (size_t)most, sizeof *rec->motions);
-    if (rec->motions == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < fresh->p->n_families; i++) {
         if (fresh->p->families[i].banded) {
             MT_TRY(describe_family(fresh, &fresh->p->families[i], result, rec, err));

@@ -16,9 +16,7 @@ static mt_status describe_objectives(const mt_study *study, mt_result *result, m
 {
     result->objectives =
         mt_arena_alloc(&result->mem, (size_t)study->n_objectives, sizeof *result->objectives);
-    if (result->objectives == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < study->n_objectives; i++) {
         const mt_objective *const o = &study->objectives[i];
         const mt_objective_kind *const kind = mt_objective_kind_of(o->type);
@@ -44,10 +42,7 @@ mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err)
     run->seed = (long)study->search.seed;
     run->inputs = mt_arena_alloc(mem, (size_t)study->n_inputs, sizeof *run->inputs);
     result->variables = mt_arena_alloc(mem, n, sizeof *result->variables);
-    if (run->blas == NULL || run->nlopt_version == NULL || run->gsl_version == NULL ||
-        run->inputs == NULL || result->variables == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     run->n_inputs = study->n_inputs;
     for (int i = 0; i < study->n_inputs; i++) {
         run->inputs[i] = (mt_result_digest){study->inputs[i].name, study->inputs[i].sha256};

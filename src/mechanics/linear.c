@@ -296,6 +296,7 @@ static mt_status rebuild(mt_linear *lin, mt_err *err)
 {
     lin->built = false;
     mt_arena_clear(&lin->geometry);
+    mt_arena_clear(&lin->scratch); /* of what a failure left */
     mt_data_vecs(&lin->data);
     MT_TRY(mt_position_solve(lin->sys, &lin->data,
                              lin->follow && lin->has_last ? &lin->last : NULL, &lin->geometry,

@@ -13,9 +13,7 @@ mt_status mt_case_copy(const mt_case *from, mt_arena *mem, mt_case *out, mt_err 
 {
     const size_t n = (size_t)from->p->n + 1;
     double *const numbers = mt_arena_f64(mem, n, 5);
-    if (numbers == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     const double *const old[] = {from->lower, from->upper, from->lower_t, from->upper_t,
                                  from->origin_t};
     for (size_t k = 0; k < MT_COUNT(old); k++) {
@@ -46,9 +44,7 @@ static mt_status init_tolerances(mt_case *c, mt_arena *mem, mt_err *err)
     mt_clear_row at;
     c->eq_tol = mt_arena_f64(mem, (size_t)p->n_eq + (size_t)p->n_res, 1);
     c->in_tol = mt_arena_f64(mem, (size_t)c->n_in + (size_t)c->n_aims, 1);
-    if (c->eq_tol == NULL || c->in_tol == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < p->n_demands; i++) {
         const mt_demand *const d = &p->demands[i];
         if (d->row_eq >= 0) {
@@ -94,10 +90,7 @@ mt_status mt_case_for_stages(const mt_case *from, mt_arena *mem, mt_case *out, m
     out->r_held = mt_arena_f64(mem, (size_t)from->p->n_res, 1);
     out->eq_tol = mt_arena_f64(mem, n_eq, 1);
     out->in_tol = mt_arena_f64(mem, n_in, 1);
-    if (out->held == NULL || out->r_held == NULL || out->eq_tol == NULL ||
-        out->in_tol == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     memcpy(out->eq_tol, from->eq_tol, n_eq * sizeof *out->eq_tol);
     memcpy(out->in_tol, from->in_tol, n_in * sizeof *out->in_tol);
     return MT_OK;
@@ -187,7 +180,5 @@ mt_status mt_case_values_init(const mt_case *c, mt_arena *mem, mt_nlp_values *ou
         .in = mt_arena_f64(mem, n_in, 1),
         .din = mt_arena_f64(mem, n_in, n),
     };
-    const bool bad = out->df == NULL || out->r == NULL || out->dr == NULL || out->eq == NULL ||
-                     out->deq == NULL || out->in == NULL || out->din == NULL;
-    return bad ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }

@@ -57,9 +57,7 @@ static void name_drive(const mt_problem *p, mt_family *f)
 static mt_status gather(mt_problem *p, int first, mt_family *f, mt_err *err)
 {
     f->view = mt_arena_int(&p->mem, (size_t)p->n_views);
-    if (f->view == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < p->n_views; i++) {
         bool same = i == first;
         if (mt_family_of(p, i) < 0 && !same) {
@@ -77,9 +75,7 @@ static mt_status tie(mt_problem *p, mt_err *err);
 mt_status mt_families_init(mt_problem *p, mt_err *err)
 {
     p->families = mt_arena_alloc(&p->mem, (size_t)p->n_views, sizeof *p->families);
-    if (p->families == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < p->n_views; i++) {
         mt_family f = {.n = 0};
         if (!system_of(p, i)->driven || mt_family_of(p, i) >= 0) {
@@ -125,9 +121,7 @@ static void tie_clears(mt_problem *p, const mt_clear *a, const mt_clear *b)
 static mt_status tie(mt_problem *p, mt_err *err)
 {
     p->tie = mt_arena_int(&p->mem, (size_t)p->n_bands);
-    if (p->tie == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < p->n_bands; i++) {
         p->tie[i] = i;
     }
@@ -328,9 +322,7 @@ mt_status mt_family_bands(const mt_problem *p, const mt_family *f, const double 
     const size_t most = count_tied(p);
     *n = 0;
     *list = mt_arena_alloc(mem, most, sizeof **list);
-    if (*list == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < f->n; i++) {
         const mt_clear *const a = clear_of(p, f->view[i]);
         for (int k = 0; k < f->n && a != NULL; k++) {

@@ -45,9 +45,7 @@ static mt_status unite(mt_problem *p, mt_clear *c, mt_err *err)
     const mt_bands **const lists =
         mt_arena_alloc(&p->mem, (size_t)s->n_goals, sizeof(mt_bands *));
     int n = 0;
-    if (lists == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < s->n_goals; i++) {
         const mt_goal *const g = &s->goals[i];
         for (int k = 0; g->avoid != NULL && k < g->n_configurations; k++) {
@@ -87,9 +85,7 @@ mt_status mt_clears_compile(mt_problem *p, mt_err *err)
     const mt_study *const s = p->study;
     p->clears =
         mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations + 1, sizeof *p->clears);
-    if (p->clears == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < s->n_goals; i++) {
         const mt_goal *const g = &s->goals[i];
         for (int k = 0; g->avoid != NULL && k < g->n_configurations; k++) {
@@ -117,9 +113,7 @@ static mt_status add_cut(mt_case *c, const mt_cut *cut, lists *l, mt_arena *mem,
     mt_way_band *way = NULL;
     int n = 0;
     double *const at = mt_arena_f64(mem, (size_t)f->n, 1);
-    if (at == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < f->n; k++) {
         at[k] = mt_family_position(p->views[f->view[k]].original);
     }
@@ -132,9 +126,7 @@ static mt_status add_cut(mt_case *c, const mt_cut *cut, lists *l, mt_arena *mem,
                    .first = c->n_bands,
                    .tolerance = HUGE_VAL,
                    .bands = {.n = n, .items = mt_arena_alloc(mem, (size_t)n, sizeof(mt_band))}};
-    if (clear->bands.items == NULL || tie == NULL || below == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = p->n_clears - 1; i >= 0; i--) {
         const mt_clear *const own = &p->clears[i];
         if (mt_family_of(p, own->view) == cut->family) {
@@ -171,9 +163,7 @@ static mt_status add_cuts(mt_case *c, int n_cuts, const mt_cut *cuts, lists *l, 
     l->clears = mt_arena_alloc(mem, n_clears, sizeof *l->clears);
     /* views point there */
     mt_cut *const own = mt_arena_alloc(mem, (size_t)n_cuts, sizeof *own);
-    if (l->views == NULL || l->clears == NULL || own == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     memcpy(l->views, p->views, (size_t)p->n_views * sizeof *l->views);
     memcpy(l->clears, p->clears, (size_t)p->n_clears * sizeof *l->clears);
     for (int i = 0; i < n_cuts; i++) {
@@ -206,9 +196,7 @@ mt_status mt_clear_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cu
         return MT_OK;
     }
     l.below = mt_arena_int(mem, (size_t)p->n_bands);
-    if (l.below == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     memcpy(l.below, below, (size_t)p->n_bands * sizeof *below);
     MT_TRY(n_cuts > 0 ? add_cuts(c, n_cuts, cuts, &l, mem, err) : MT_OK);
     c->tie = l.tie;

@@ -85,9 +85,7 @@ mt_status mt_next_init(mt_case *c, mt_arena *mem, mt_err *err)
     c->n_next = list_all(c, NULL, NULL);
     mt_next *const next = mt_arena_alloc(mem, (size_t)c->n_next, sizeof *next);
     int *const next_of = mt_arena_int(mem, (size_t)c->n_next);
-    if (next == NULL || next_of == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     (void)list_all(c, next, next_of);
     c->next = next;
     c->next_of = next_of;

@@ -69,9 +69,7 @@ static mt_status init_variables(mt_problem *p, mt_err *err)
     p->original = mt_arena_f64(&p->mem, n, 1);
     p->scale = mt_arena_f64(&p->mem, n, 1);
     p->floor = mt_arena_f64(&p->mem, n, 1);
-    if (p->inputs == NULL || p->original == NULL || p->scale == NULL || p->floor == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < p->n; i++) {
         const mt_variable *const v = &p->study->variables[i];
         p->inputs[i] = v->parameter;
@@ -105,10 +103,7 @@ static mt_status init_whole(mt_problem *p, mt_err *err)
                    .aims = p->aims,
                    .weight = weight,
                    .search = p->study->search};
-    if (c->lower == NULL || c->upper == NULL || c->lower_t == NULL || c->upper_t == NULL ||
-        c->origin_t == NULL || weight == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < p->n; i++) {
         const mt_variable *const v = &p->study->variables[i];
         mt_case_bound(c, i, v->lower, v->upper);

@@ -80,18 +80,14 @@ static mt_status name_modes(mt_problem *p, mt_view *view, mt_err *err)
     const size_t most = (size_t)model->n_modes;
     view->named = mt_arena_int(&p->mem, most);
     view->shape = mt_arena_alloc(&p->mem, most, sizeof *view->shape);
-    if (view->named == NULL || view->shape == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < model->n_modes; i++) {
         const int pos = mt_analysis_named(a, model->modes[i].index);
         if (model->modes[i].configuration != view->configuration || pos < 0) {
             continue;
         }
         double *const w = mt_arena_f64(&p->mem, (size_t)a->sys->nq, 1);
-        if (w == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(&p->mem, err));
         MT_TRY(mt_track_weigh(a, pos, w, err));
         view->named[view->n_named] = i;
         view->shape[view->n_named++] = w;
@@ -232,9 +228,7 @@ mt_status mt_problem_init_demands(mt_problem *p, mt_err *err)
     }
     p->demands = mt_arena_alloc(&p->mem, most, sizeof *p->demands);
     p->views = mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations, sizeof *p->views);
-    if (p->demands == NULL || p->views == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < s->n_goals; i++) {
         const mt_goal *const g = &s->goals[i];
         if (g->n_configurations == 0) {

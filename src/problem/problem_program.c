@@ -10,9 +10,7 @@ static mt_status init_program(mt_problem *p, mt_err *err)
     int *const is_input = mt_arena_int(&p->mem, n_parameters);
     mt_node *const nodes = mt_arena_alloc(&p->mem, n_parameters, sizeof *nodes);
     p->published = mt_arena_alloc(&p->mem, (size_t)s->n_published, sizeof *p->published);
-    if (is_input == NULL || nodes == NULL || p->published == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&p->mem, err));
     for (size_t i = 0; i < n_parameters; i++) {
         is_input[i] = -1;
     }
@@ -51,9 +49,7 @@ mt_status mt_problem_init_program(mt_problem *p, mt_err *err)
     const mt_study *const s = p->study;
     p->n_aims = s->n_objectives > 0 ? s->n_objectives : 1;
     p->aims = mt_arena_alloc(&p->mem, (size_t)p->n_aims, sizeof *p->aims);
-    if (p->aims == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < p->n_aims; i++) {
         const mt_objective *const o = s->n_objectives > 0 ? &s->objectives[i] : NULL;
         const mt_objective_type type = o != NULL ? o->type : MT_OBJECTIVE_NONE;

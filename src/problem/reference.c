@@ -44,9 +44,7 @@ static mt_status measured(const mt_reference *r, const mt_system *sys, mt_arena 
     }
     out->channel = mt_arena_int(mem, (size_t)m->n_values);
     out->shape = mt_arena_f64(mem, (size_t)m->n_values, 1);
-    if (out->channel == NULL || out->shape == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < m->n_values; i++) {
         const int c = mt_system_find_channel(sys, m->channels[i].s);
         if (c >= 0) {
@@ -63,7 +61,7 @@ mt_status mt_reference_cache_init(mt_reference_cache *cache, const mt_study *stu
 {
     cache->analysis = mt_arena_alloc(mem, (size_t)study->n_references, sizeof(mt_analysis *));
     cache->study = study;
-    return cache->analysis == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 void mt_reference_cache_free(mt_reference_cache *cache)
@@ -102,9 +100,7 @@ static mt_status computed(mt_analysis *a, int pos, const mt_reference *r, const 
     int *const theirs = mt_arena_int(mem, most);
     out->channel = mt_arena_int(mem, most);
     out->shape = mt_arena_f64(mem, most, 1);
-    if (theirs == NULL || out->channel == NULL || out->shape == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < sys->n_channels; i++) {
         const int c = mt_system_find_channel(a->sys, sys->channels[i].name);
         if (c >= 0) {
@@ -164,9 +160,7 @@ mt_status mt_reference_mac(mt_analysis *a, int pos, const mt_reference_shape *re
 {
     const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
     double *const s = mt_arena_f64(&a->mem, (size_t)ref->ns, 1);
-    if (s == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&a->mem, err));
     const mt_status rc = mt_analysis_shape(a, pos, ref->ns, ref->channel, s, NULL, err);
     if (rc == MT_OK) {
         mt_mac_matrix(ref->ns, 1, s, 1, ref->shape, mac);

@@ -76,9 +76,7 @@ static mt_status make_corner(const mt_case *c, const int *signs, int sides, int 
     *out =
         (mt_corner){.factor = mt_arena_f64(mem, (size_t)c->p->n, 1),
                     .may = {sides == 1 || side == MT_LOWEST, sides == 1 || side == MT_HIGHEST}};
-    if (out->factor == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < c->p->n; i++) {
         int at = side == MT_LOWEST ? -signs[i] : signs[i];
         if (signs[i] == UNKNOWN) {
@@ -107,9 +105,7 @@ static mt_status make_corners(const mt_case *c, const int *signs, bool ranged, m
     const int sides = known > 0 ? MT_ROBUST_SIDES : 1;
     const int n = sides * (unknown <= COMBINED_MOST ? 1 << unknown : 2 * (unknown + 1));
     out->corners = mt_arena_alloc(mem, (size_t)n, sizeof *out->corners);
-    if (out->corners == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (; out->n < n; out->n++) {
         MT_TRY(make_corner(c, signs, sides, unknown, out->n, mem, &out->corners[out->n], err));
     }
@@ -159,9 +155,7 @@ static mt_status init_view(const mt_case *c, int view, const mt_workspace *w, mt
     const bool cut = view >= c->p->n_views;
     const mt_analysis *const a = cut ? w->views[view].analysis : c->views[view].original;
     int *const signs = mt_arena_int(mem, (size_t)c->p->n);
-    if (signs == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(signs_of_view(c, a, signs, err));
     return make_corners(c, signs, has_range(c->p, view), mem, &c->robust->views[view], err);
 }
@@ -192,9 +186,7 @@ static mt_status init_views(mt_case *c, const mt_robust *known, const mt_workspa
 {
     const mt_problem *const p = c->p;
     int *const wanted = mt_arena_int(mem, (size_t)c->n_views + 1);
-    if (wanted == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < p->n_demands; i++) {
         const mt_demand *const d = &p->demands[i];
         if (d->view >= 0) {
@@ -227,9 +219,7 @@ static mt_status init_limits(mt_case *c, mt_arena *mem, mt_err *err)
     double *const hi = mt_arena_f64(mem, count, 1);
     double *const dlo = mt_arena_f64(mem, count, n);
     double *const dhi = mt_arena_f64(mem, count, n);
-    if (signs == NULL || lo == NULL || hi == NULL || dlo == NULL || dhi == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     mt_program_interval_gradient(&p->program, c->robust->lower, c->robust->upper, lo, hi, dlo,
                                  dhi);
     for (int k = 0; k < p->n_demands; k++) {
@@ -312,9 +302,7 @@ static mt_status init_rows(mt_case *c, mt_arena *mem, mt_err *err)
     list_all(c, NULL);
     r->rows = mt_arena_alloc(mem, (size_t)r->n_rows, sizeof *r->rows);
     double *const tolerances = mt_arena_f64(mem, (size_t)c->n_in + (size_t)c->n_aims, 1);
-    if (r->rows == NULL || tolerances == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     if (before > 0) {
         memcpy(tolerances, c->in_tol, (size_t)before * sizeof *tolerances);
     }
@@ -337,18 +325,14 @@ mt_status mt_robust_init(mt_case *c, const mt_robust *known, const mt_workspace 
         return MT_OK;
     }
     mt_robust *const r = mt_arena_alloc(mem, 1, sizeof *r);
-    if (r == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     *r = (mt_robust){.views = mt_arena_alloc(mem, (size_t)c->n_views, sizeof *r->views),
                      .limits = known != NULL ? known->limits
                                              : mt_arena_alloc(mem, (size_t)c->p->n_demands,
                                                               sizeof *r->limits),
                      .lower = mt_arena_f64(mem, n, 1),
                      .upper = mt_arena_f64(mem, n, 1)};
-    if (r->views == NULL || r->limits == NULL || r->lower == NULL || r->upper == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     c->robust = r;
     widen(c);
     MT_TRY(init_views(c, known, w, mem, err));
@@ -365,9 +349,7 @@ mt_status mt_robust_work_init(mt_workspace *w, mt_err *err)
         return MT_OK;
     }
     mt_robust_work *const r = mt_arena_alloc(&w->mem, 1, sizeof *r);
-    if (r == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&w->mem, err));
     *r = (mt_robust_work){
         .x = mt_arena_f64(&w->mem, n, 1),
         .slope = mt_arena_f64(&w->mem, n, 1),
@@ -377,9 +359,7 @@ mt_status mt_robust_work_init(mt_workspace *w, mt_err *err)
         .hz = mt_arena_alloc(&w->mem, views, sizeof(mt_robust_range *)),
         .number = mt_arena_alloc(&w->mem, (size_t)w->p->n_demands, sizeof *r->number)};
     w->robust = r;
-    const bool bad = r->x == NULL || r->slope == NULL || r->value == NULL || r->grad == NULL ||
-                     r->n_ranges == NULL || r->hz == NULL || r->number == NULL;
-    return bad ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(&w->mem, err);
 }
 
 const mt_robust_row *mt_robust_corner_row(const mt_case *c, int row)

@@ -23,10 +23,7 @@ static mt_status make_box(mt_workspace *w, box *b, mt_err *err)
                .soft = mt_arena_f64(&w->mem, n, 1),
                .stiff = mt_arena_f64(&w->mem, n, 1),
                .effects = mt_arena_int(&w->mem, n)};
-    if (b->lo == NULL || b->hi == NULL || b->soft == NULL || b->stiff == NULL ||
-        b->effects == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&w->mem, err));
     for (int i = 0; i < w->p->n; i++) {
         const double half = mt_robust_tolerance(w->p, i) * fabs(w->x[i]);
         b->lo[i] = w->x[i] - half;
@@ -70,9 +67,7 @@ static mt_status range_of(mt_workspace *w, mt_robust_probe *q, box *b, bool prov
                           mt_robust_range *out, mt_err *err)
 {
     double *const value = mt_arena_f64(&w->mem, (size_t)q->m, 1);
-    if (value == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&w->mem, err));
     q->lo = b->lo;
     q->hi = b->hi;
     for (int k = 0; k < q->m; k++) {
@@ -185,9 +180,7 @@ static mt_status range_numbers(mt_workspace *w, box *b, mt_err *err)
     double *const hi = mt_arena_f64(&w->mem, count, 1);
     double *const dlo = mt_arena_f64(&w->mem, count, n);
     double *const dhi = mt_arena_f64(&w->mem, count, n);
-    if (lo == NULL || hi == NULL || dlo == NULL || dhi == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&w->mem, err));
     mt_program_interval_gradient(&w->p->program, b->lo, b->hi, lo, hi, dlo, dhi);
     for (int k = 0; k < w->p->n_demands; k++) {
         const mt_demand *const d = &w->p->demands[k];

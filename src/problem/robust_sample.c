@@ -33,9 +33,7 @@ mt_status mt_robust_range_init(int n, mt_arena *mem, mt_robust_range *out, mt_er
     *out = (mt_robust_range){.value = {HUGE_VAL, -HUGE_VAL}};
     for (int side = 0; side < MT_ROBUST_SIDES; side++) {
         out->at[side] = mt_arena_f64(mem, (size_t)n, 1);
-        if (out->at[side] == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(mem, err));
     }
     return MT_OK;
 }
@@ -271,9 +269,7 @@ mt_status mt_robust_sample(const mt_robust_probe *q, mt_arena *mem, mt_robust_ra
                  .from = mt_arena_f64(mem, n, 1),
                  .to = mt_arena_f64(mem, n, 1),
                  .slope = mt_arena_f64(mem, n, 1)};
-    if (s.value == NULL || s.x == NULL || s.from == NULL || s.to == NULL || s.slope == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < q->n; i++) {
         s.n_free += is_free(q, i) ? 1 : 0;
     }

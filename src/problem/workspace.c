@@ -99,9 +99,7 @@ static mt_status make_room(mt_workspace *w, int n, mt_err *err)
         return MT_OK;
     }
     mt_view_work *const views = mt_arena_alloc(&w->mem, (size_t)n, sizeof *views);
-    if (views == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&w->mem, err));
     if (w->n_views > 0) {
         memcpy(views, w->views, (size_t)w->n_views * sizeof *views);
     }
@@ -129,7 +127,7 @@ static mt_status open_view(mt_workspace *w, mt_view_work *view, const mt_view *o
     view->family = of->cut != NULL ? of->cut->family : -1;
     view->position = of->cut != NULL ? of->cut->position : 0.0;
     view->track = mt_arena_alloc(&w->mem, (size_t)of->n_named, sizeof *view->track);
-    return view->track == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(&w->mem, err);
 }
 
 static mt_status open_corners(mt_workspace *w, mt_view_work *view, int n, mt_err *err)
@@ -138,9 +136,7 @@ static mt_status open_corners(mt_workspace *w, mt_view_work *view, int n, mt_err
         return MT_OK;
     }
     mt_analysis **const corners = mt_arena_alloc(&w->mem, (size_t)n, sizeof(mt_analysis *));
-    if (corners == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&w->mem, err));
     for (int i = 0; i < view->n_corners; i++) {
         corners[i] = view->corners[i];
     }

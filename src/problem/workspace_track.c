@@ -42,9 +42,7 @@ static mt_status follow(const mt_workspace *ws, mt_view_work *view, mt_arena *me
              .x = mt_arena_f64(mem, (size_t)p->n, 1),
              .to = mt_arena_f64(mem, (size_t)p->n, 1)};
     double far = 0.0;
-    if (w.t == NULL || w.x == NULL || w.to == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < p->n; i++) {
         w.to[i] = mt_problem_t(p, i, ws->x[i]);
         far = fmax(far, fabs(w.to[i] - p->whole.origin_t[i]));

@@ -30,9 +30,7 @@ static mt_status begin(mt_discrete *d, mt_err *err)
     const mt_problem *const p = d->p;
     d->variable = mt_arena_int(d->mem, (size_t)p->n);
     d->values = mt_arena_alloc(d->mem, (size_t)d->n_workers, sizeof *d->values);
-    if (d->variable == NULL || d->values == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(d->mem, err));
     for (int i = 0; i < p->n; i++) {
         if (p->study->variables[i].n_catalogue > 0) {
             d->variable[d->n_discrete++] = i;
@@ -163,9 +161,7 @@ static mt_status enumerate(mt_discrete *d, int n, mt_combination **out, ranking 
     mt_combination **const pointers =
         mt_arena_alloc(d->mem, (size_t)batch, sizeof(mt_combination *));
     MT_TRY(list_all(d, n, &list, err));
-    if (pointers == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(d->mem, err));
     qsort(list, (size_t)n, sizeof *list, by_change);
     *out = list;
     report->all = true;
@@ -200,9 +196,7 @@ static mt_status look(mt_discrete *d, double combinations, ranking *r,
     *n = (int)combinations;
     MT_TRY(enumerate(d, *n, &list, r, report, err));
     *all = mt_arena_alloc(d->mem, (size_t)*n, sizeof(mt_combination *));
-    if (*all == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(d->mem, err));
     for (int i = 0; i < *n; i++) {
         (*all)[i] = &list[i];
     }
@@ -227,10 +221,7 @@ static mt_status to_solution(const mt_discrete *d, const mt_combination *c,
                              .mult_eq = mt_arena_f64(d->mem, (size_t)p->n_eq, 1),
                              .mult_in = mt_arena_f64(d->mem, (size_t)d->c->n_in + 1, 1),
                              .mult_bound = mt_arena_f64(d->mem, n, 1)};
-    if (out->bound == NULL || out->mult_eq == NULL || out->mult_in == NULL ||
-        out->mult_bound == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(d->mem, err));
     for (int i = 0; i < p->n_eq; i++) {
         out->mult_eq[i] = nan("");
     }
@@ -253,9 +244,7 @@ static mt_status collect(const mt_discrete *d, const ranking *r, mt_nlp_result *
 {
     *out = (mt_nlp_result){.evals = d->evals, .starts = d->starts, .stop = d->stop};
     out->solutions = mt_arena_alloc(d->mem, (size_t)r->n, sizeof *out->solutions);
-    if (out->solutions == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(d->mem, err));
     out->compromise = r->n > 0 && !r->best[0]->feasible;
     for (int i = 0; i < r->n && r->best[i]->feasible != out->compromise; i++) {
         MT_TRY(to_solution(d, r->best[i], &out->solutions[i], err));
@@ -282,9 +271,7 @@ mt_status mt_discrete_solve(mt_workspace *const *workers, int n_workers, mt_aren
     MT_TRY(begin(&d, err));
     ranking r = {.most = kept_at_most(&d)};
     r.best = mt_arena_alloc(mem, (size_t)r.most, sizeof(mt_combination *));
-    if (r.best == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     const double n = count_combinations(&d);
     mt_combination **all = NULL;
     int n_all = 0;

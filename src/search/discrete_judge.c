@@ -38,9 +38,7 @@ mt_status mt_discrete_alloc(const mt_discrete *d, int n, mt_combination **out, m
     double *const t = mt_arena_f64(d->mem, n_t, (size_t)n);
     double *const f = mt_arena_f64(d->mem, n_aims, (size_t)n);
     *out = list;
-    if (list == NULL || pick == NULL || t == NULL || f == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(d->mem, err));
     for (int i = 0; i < n; i++) {
         list[i] = (mt_combination){.pick = pick + ((size_t)i * n_pick),
                                    .t = t + ((size_t)i * n_t),
@@ -115,9 +113,7 @@ static mt_status judge_design(const mt_discrete *d, int worker, mt_combination *
 static mt_status follow(mt_workspace *w, mt_combination *c, mt_arena *mem, mt_err *err)
 {
     int *const below = mt_arena_int(mem, (size_t)w->c->n_bands);
-    if (below == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     double room = mt_ties_room(w, below);
     for (int i = 0; i < w->p->n_families; i++) {
         mt_motion m = {.room = 0.0};
@@ -193,9 +189,7 @@ static mt_status close_on(const mt_discrete *d, const mt_combination *c, long bu
 {
     const mt_problem *const p = d->p;
     double *const x = mt_arena_f64(mem, (size_t)p->n, 1);
-    if (x == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < d->n_discrete; k++) {
         x[d->variable[k]] = p->study->variables[d->variable[k]].catalogue[c->pick[k]];
     }

@@ -133,9 +133,7 @@ static mt_status propose_roundings(walk *w, const double *t, mt_err *err)
     int *const pick = mt_arena_int(d->mem, (size_t)n);
     int *const open = mt_arena_int(d->mem, (size_t)most);
     double *const part = mt_arena_f64(d->mem, (size_t)n, 1);
-    if (low == NULL || pick == NULL || open == NULL || part == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(d->mem, err));
     for (int k = 0; k < n; k++) {
         low[k] = bracket(d, k, t[d->variable[k]], &part[k]);
     }
@@ -230,9 +228,7 @@ mt_status mt_discrete_near(mt_discrete *d, mt_combination ***list, int *n, mt_er
     const int rounds = d->mixed ? ROUNDS_MIXED : ROUNDS;
     int *const pick = mt_arena_int(d->mem, (size_t)size);
     w.all = mt_arena_alloc(d->mem, VISITED_MOST, sizeof(mt_combination *));
-    if (pick == NULL || w.all == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(d->mem, err));
     MT_TRY(round_relaxed(&w, err));
     const mt_combination *centre = NULL;
     for (int k = 0; k < rounds && d->stop == MT_STOP_DONE; k++) {

@@ -89,9 +89,7 @@ static mt_status combination_at(prover *v, const double *x, mt_combination **out
     }
     mt_combination **const grown =
         mt_arena_grow(d->mem, v->all, v->n, &v->capacity, sizeof(mt_combination *));
-    if (grown == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(d->mem, err));
     mt_discrete_set(d, c);
     v->all = grown;
     v->all[v->n++] = c;
@@ -119,9 +117,7 @@ static mt_status judge(prover *v, const double *x, mt_err *err)
         return MT_OK;
     }
     double *const from = mt_arena_f64(d->mem, (size_t)d->p->n + 1, 1);
-    if (from == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(d->mem, err));
     for (int i = 0; i < d->p->n; i++) {
         from[i] = mt_problem_t(d->p, i, x[i]);
     }
@@ -219,7 +215,7 @@ mt_status mt_discrete_prove(mt_discrete *d, mt_combination ***all, int *n,
         rc = prove(&v, err);
     } else if (rc == MT_OK) {
         report->reason = mt_arena_strdup(d->mem, v.proof.reason);
-        rc = report->reason == NULL ? mt_fail_memory(err) : MT_OK;
+        rc = mt_arena_check(d->mem, err);
     }
     mt_proof_free(&v.proof);
     *all = v.all;

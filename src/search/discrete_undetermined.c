@@ -36,9 +36,7 @@ static mt_status claim(crossing *x, mt_err *err)
     x->now = mt_arena_f64(mem, (size_t)x->rows, 1);
     x->below = mt_arena_int(mem, 2 * (size_t)p->n_bands + 1);
     x->t = mt_arena_f64(mem, (size_t)p->n + 1, 1);
-    if (x->at == NULL || x->now == NULL || x->below == NULL || x->t == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     return mt_case_values_init(x->d->c, mem, &x->v, err);
 }
 
@@ -115,9 +113,7 @@ static mt_status cross(crossing *x, const mt_nlp_result *continuous, mt_nlp_resu
     const size_t room = (size_t)x->d->n_discrete + (size_t)continuous->n_undetermined;
     out->undetermined = mt_arena_f64(x->d->mem, n, room);
     out->undetermined_effect = mt_arena_f64(x->d->mem, room, 1);
-    if (out->undetermined == NULL || out->undetermined_effect == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(x->d->mem, err));
     const bool known = measure(x, x->at, x->below);
     for (int k = 0; k < x->d->n_discrete && known; k++) {
         const int i = x->d->variable[k];

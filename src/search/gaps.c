@@ -63,9 +63,7 @@ static mt_status keep_aims(mt_workspace *w, slot *s, mt_err *err)
 {
     mt_nlp_values v;
     s->aims = mt_arena_f64(&s->mem, (size_t)w->c->n_aims, 1);
-    if (s->aims == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&s->mem, err));
     MT_TRY(mt_case_values_init(w->c, &s->mem, &v, err));
     MT_TRY(mt_workspace_eval(w, s->found.solutions[0].t, false, &v, err));
     for (int k = 0; k < w->c->n_aims; k++) {
@@ -181,9 +179,7 @@ static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int
     c.starts = options.starts;
     s->n_t = c.n_t;
     double *const hint = mt_arena_f64(&s->mem, (size_t)c.n_t, 1);
-    if (hint == NULL) {
-        return mt_fail_memory(why);
-    }
+    MT_TRY(mt_arena_check(&s->mem, why));
     if (from != NULL) {
         memcpy(hint, from, (size_t)j->p->n * sizeof *hint);
     }
@@ -218,9 +214,7 @@ static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
     bool again = true;
     MT_TRY(mt_arena_init(&s->mem, 0, err));
     s->cuts = mt_arena_alloc(&s->mem, CUTS_MOST, sizeof *s->cuts);
-    if (s->cuts == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&s->mem, err));
     for (int round = 0; again && round < CUT_ROUNDS; round++) {
         const bool known = round > 0 && s->found.n_solutions > 0;
         s->rc = search_round(j, w, s, k, round, known ? s->found.solutions[0].t : hint_of(j, k),
@@ -243,9 +237,7 @@ static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem
         most += j->slots[k].found.n_solutions;
     }
     out->solutions = mt_arena_alloc(mem, (size_t)most, sizeof *out->solutions);
-    if (out->solutions == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < j->candidates->n; k++) {
         const mt_nlp_result *const found = &j->slots[k].found;
         out->n_feasible += found->n_solutions > 0 && found->solutions[0].feasible ? 1 : 0;
@@ -304,10 +296,7 @@ static mt_status copy_solution(const mt_case *c, const int *below, const mt_nlp_
     double *const mult = mt_arena_f64(mem, n, 1);
     double *const mult_eq = mt_arena_f64(mem, n_eq, 1);
     double *const mult_in = mt_arena_f64(mem, n_in, 1);
-    if (s == NULL || t == NULL || bound == NULL || mult == NULL || mult_eq == NULL ||
-        mult_in == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     memcpy(t, from->t, (size_t)p->n * sizeof *t);
     memcpy(bound, from->bound, (size_t)p->n * sizeof *bound);
     memcpy(mult, from->mult_bound, (size_t)p->n * sizeof *mult);
@@ -335,9 +324,7 @@ static mt_status keep_undetermined(const mt_problem *p, const slot *s, mt_arena 
     const size_t count = (size_t)s->found.n_undetermined;
     out->undetermined = mt_arena_f64(mem, (size_t)p->n, count);
     out->undetermined_effect = mt_arena_f64(mem, count, 1);
-    if (out->undetermined == NULL || out->undetermined_effect == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (size_t k = 0; k < count; k++) {
         memcpy(out->undetermined + (k * (size_t)p->n),
                s->found.undetermined + (k * (size_t)s->n_t), (size_t)p->n * sizeof(double));
@@ -420,16 +407,12 @@ mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, mt_arena *m
     if (c->hint != NULL) {
         int *const below = mt_arena_int(mem, (size_t)p->n_bands);
         double violation = 0.0;
-        if (below == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(mem, err));
         MT_TRY(mt_gap_assignment(w, c->hint, below, &violation, err));
         j.hint_below = MT_HAS(violation) ? below : NULL;
     }
     j.slots = mt_arena_alloc(mem, (size_t)candidates.n, sizeof *j.slots);
-    if (j.slots == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     mt_status rc = mt_workers_run(n_workers, candidates.n, search_candidate, &j, err);
     rc = rc == MT_OK ? collect(p, &j, mem, out, err) : rc;
     out->proven = out->proven || is_settled(&j);

@@ -177,14 +177,10 @@ static mt_status sample(mt_workspace *w, int n, int most, mt_arena *mem, mt_gap_
     sampled *const list = mt_arena_alloc(mem, CANDIDATES_MOST, sizeof *list);
     int *const below = mt_arena_int(mem, (size_t)p->n_bands);
     int *const work = mt_arena_int(mem, (size_t)p->n_bands);
-    if (list == NULL || below == NULL || work == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < CANDIDATES_MOST; i++) {
         list[i].below = mt_arena_int(mem, (size_t)p->n_bands);
-        if (list[i].below == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(mem, err));
     }
     const double *const t = mt_nlp_starts(&nlp, w->c->search.seed, n, mem);
     mt_status rc = mt_arena_check(mem, err);
@@ -204,9 +200,7 @@ static mt_status sample(mt_workspace *w, int n, int most, mt_arena *mem, mt_gap_
     const int n_found = out->n;
     out->n = keep_nearest(list, n_found, most, kept);
     out->below = mt_arena_int(mem, (size_t)out->n * (size_t)p->n_bands);
-    if (out->below == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     int *row = out->below;
     for (int i = 0; i < n_found; i++) {
         if (kept[i]) {
@@ -226,9 +220,7 @@ static mt_status keep_proven(const mt_problem *p, const mt_certify_search *found
     const int n = found->n_found + found->n_open;
     out->below = mt_arena_int(mem, (size_t)n * row);
     out->at = mt_arena_f64(mem, (size_t)p->n, (size_t)n);
-    if (out->below == NULL || out->at == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     if (found->n_found > 0) {
         memcpy(out->below, found->found, (size_t)found->n_found * row * sizeof *out->below);
     }

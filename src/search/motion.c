@@ -82,9 +82,7 @@ static mt_status open_drive(mt_workspace *ws, int family, mt_err *err)
         return MT_OK;
     }
     double *const at = mt_arena_f64(&ws->mem, (size_t)p->n + 1, 1);
-    if (at == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&ws->mem, err));
     memcpy(at, p->original, (size_t)p->n * sizeof *at);
     at[p->n] = mt_family_position(like->original);
     MT_TRY(mt_analysis_new_driven(p->study->model, f->configuration, &drive, p->n, p->inputs,
@@ -154,7 +152,7 @@ static mt_status note_break(walk *w, double at, mt_motion_end end, const char *w
         out->end = end;
         out->why = mt_arena_strdup(w->mem, why);
     }
-    return out->why == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(w->mem, err);
 }
 
 static mt_status measure(walk *w, sample *s, mt_err *err)
@@ -183,9 +181,7 @@ static mt_status look(walk *w, double at, int next, mt_err *err)
                   .next = next,
                   .room = mt_arena_f64(w->mem, (size_t)w->n_edges, 1),
                   .slope = mt_arena_f64(w->mem, (size_t)w->n_edges, 1)};
-    if (s->room == NULL || s->slope == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(w->mem, err));
     w->out->positions++;
     w->inputs[w->ws->p->n] = at;
     mt_status rc = mt_analysis_solve(w->a, w->inputs, &opt, &why);
@@ -301,9 +297,7 @@ static mt_status list_edges(walk *w, const int *below, const mt_way_band *bands,
 {
     w->n_edges = 0;
     w->edges = mt_arena_alloc(w->mem, 2 * (size_t)n, sizeof *w->edges);
-    if (w->edges == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(w->mem, err));
     for (int i = 0; i < n; i++) {
         const mt_band *const b = &bands[i].band;
         const int k = below[bands[i].tie];
@@ -324,9 +318,7 @@ static mt_status go(walk *w, double left, double right, mt_err *err)
     const int pieces = (int)fmin(fmax(wanted, INTERVALS_AT_FIRST), INTERVALS_MOST_AT_FIRST);
     w->n = 0;
     w->samples = mt_arena_alloc(w->mem, POSITIONS_MOST, sizeof *w->samples);
-    if (w->samples == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(w->mem, err));
     w->samples[1].at = right; /* both ends are known before the first is looked at */
     w->samples[0].at = left;
     MT_TRY(look(w, left, pieces > 1 ? 2 : 1, err));
@@ -366,9 +358,7 @@ static mt_status follow(walk *w, const mt_family *f, const int *below, mt_err *e
 {
     double *const list = mt_arena_f64(w->mem, (size_t)f->n, 1);
     double *const positions = mt_arena_f64(w->mem, (size_t)f->n, 1);
-    if (list == NULL || positions == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(w->mem, err));
     for (int k = 0; k < f->n; k++) {
         positions[k] = mt_family_position(w->ws->views[f->view[k]].analysis);
     }
@@ -378,9 +368,7 @@ static mt_status follow(walk *w, const mt_family *f, const int *below, mt_err *e
     out->to = list[n - 1];
     out->way_at = mt_arena_f64(w->mem, (size_t)n, 1);
     out->way_room = mt_arena_f64(w->mem, (size_t)n, 1);
-    if (out->way_at == NULL || out->way_room == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(w->mem, err));
     w->shortest = SHORTEST * (out->to - out->from);
     for (int i = 0; i + 1 < n; i++) {
         mt_way_band *bands = NULL;
@@ -424,9 +412,7 @@ mt_status mt_motion_follow(mt_workspace *ws, int family, const int *below, mt_ar
     mt_linear_follow(w.a->lin, true); /* from the reference position on */
     w.unit = f->angle ? 1.0 : w.a->sys->length_m;
     w.inputs = mt_arena_f64(mem, (size_t)ws->p->n + 1, 1);
-    if (w.inputs == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     memcpy(w.inputs, ws->x, (size_t)ws->p->n * sizeof *w.inputs);
     return follow(&w, f, below, err);
 }

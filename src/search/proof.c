@@ -107,11 +107,7 @@ mt_status mt_proof_init(mt_proof *proof, const mt_case *c, mt_arena *mem, mt_err
     proof->limit_demand = mt_arena_int(mem, n_demands);
     proof->lower = mt_arena_f64(mem, n, 1);
     proof->upper = mt_arena_f64(mem, n, 1);
-    if (proof->views == NULL || proof->bands == NULL || proof->bases == NULL ||
-        proof->limits == NULL || proof->bounds == NULL || proof->limit_demand == NULL ||
-        proof->lower == NULL || proof->upper == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < p->n; i++) {
         proof->lower[i] = c->lower[i];
         proof->upper[i] = c->upper[i];
@@ -137,9 +133,7 @@ mt_status mt_proof_use_catalogues(mt_proof *proof, const mt_problem *p, mt_arena
 {
     int *const count = mt_arena_int(mem, (size_t)p->n);
     const double **const values = mt_arena_alloc(mem, (size_t)p->n, sizeof(double *));
-    if (count == NULL || values == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < p->n; i++) {
         count[i] = p->study->variables[i].n_catalogue;
         values[i] = p->study->variables[i].catalogue;

@@ -145,9 +145,7 @@ static mt_status keep(const mt_case *c, mt_move *m, const mt_nlp_solution *found
     mt_workspace *fresh = NULL;
     double *const x = mt_arena_f64(mem, n, 1);
     double to = nan("");
-    if (x == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     const double size = sqrt(2.0 * found->f);
     if (!found->feasible || !(size > LEAST) || (m->found && size >= m->size)) {
         return MT_OK;
@@ -212,9 +210,7 @@ static mt_status search_in(const job *j, mt_case *c, mt_workspace *w, mt_move *m
     opt.max_solutions = 1;
     opt.least_change = false;
     double *const hint = mt_arena_f64(&out->mem, (size_t)c->p->n + 1, 1);
-    if (hint == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(&out->mem, err));
     const mt_nlp nlp = nlp_of(&r, c, j->near, hint);
     const mt_status own = mt_nlp_solve(&nlp, &opt, &out->mem, &found, &why);
     out->evals += found.evals;
@@ -280,9 +276,7 @@ mt_status mt_relax(mt_workspace *const *workers, int n_workers, const mt_nlp_res
              .results = mt_arena_alloc(mem, (size_t)out->n, sizeof *j.results)};
     const int n = out->n;
     const int least = c->n_clears > 0 ? BUDGET_LEAST + MT_GAP_SAMPLES_NEAR : BUDGET_LEAST;
-    if (j.results == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     out->short_of_budget = j.budget < least;
     if (out->short_of_budget) {
         out->n = 0;

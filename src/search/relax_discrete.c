@@ -141,18 +141,14 @@ static mt_status prepare(enumeration *e, int n_workers, int n_tasks, mt_arena *m
     e->tasks = mt_arena_alloc(mem, (size_t)n_tasks, sizeof *e->tasks);
     e->stopped = mt_arena_alloc(mem, (size_t)n_tasks, sizeof *e->stopped);
     e->x = mt_arena_f64(mem, n * n_moves, (size_t)n_tasks);
-    if (e->values == NULL || e->tasks == NULL || e->stopped == NULL || e->x == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < n_workers; i++) {
         MT_TRY(mt_case_values_init(e->workers[i]->c, mem, &e->values[i], err));
     }
     for (int i = 0; i < n_tasks; i++) {
         e->tasks[i] = *e->none;
         e->tasks[i].items = mt_arena_alloc(mem, n_moves, sizeof *e->tasks[i].items);
-        if (e->tasks[i].items == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(mem, err));
         memcpy(e->tasks[i].items, e->none->items, n_moves * sizeof *e->tasks[i].items);
         for (size_t k = 0; k < n_moves; k++) {
             e->tasks[i].items[k].x = e->x + ((((size_t)i * n_moves) + k) * n);
@@ -187,9 +183,7 @@ static mt_status relax_near(mt_workspace *const *workers, int n_workers,
     mt_nlp_solution near = *s;
     const mt_nlp_result from = {.n_solutions = 1, .solutions = &near, .evals = spent};
     double *const x = mt_arena_f64(mem, (size_t)whole->p->n, 1);
-    if (x == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     mt_case_x(whole, s->t, x);
     mt_status rc = mt_discrete_close(whole, x, workers[0], mem, &closed, err);
     for (int i = 1; i < n_workers && rc == MT_OK; i++) {

@@ -67,9 +67,7 @@ mt_status mt_relax_moves(const mt_case *c, mt_arena *mem, mt_moves *out, mt_err 
     const mt_problem *const p = c->p;
     const size_t most = 2 * ((size_t)p->n + (size_t)p->n_bands + (size_t)p->n_demands);
     *out = (mt_moves){.items = mt_arena_alloc(mem, most, sizeof *out->items)};
-    if (out->items == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < p->n; i++) {
         const bool open = p->study->variables[i].n_catalogue == 0;
         for (int side = 0; side < 2 && open; side++) {
@@ -83,9 +81,7 @@ mt_status mt_relax_moves(const mt_case *c, mt_arena *mem, mt_moves *out, mt_err 
     add_goal_moves(p, out);
     for (int i = 0; i < out->n; i++) {
         out->items[i].x = mt_arena_f64(mem, (size_t)p->n, 1);
-        if (out->items[i].x == NULL) {
-            return mt_fail_memory(err);
-        }
+        MT_TRY(mt_arena_check(mem, err));
     }
     return MT_OK;
 }

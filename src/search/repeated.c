@@ -82,9 +82,7 @@ static mt_status add_block(mt_repeated *m, const mt_repeated_side *s, double nea
                              .b = mt_arena_f64(mem, r2, 1),
                              .g = mt_arena_f64(mem, r2, (size_t)ws->c->n_t),
                              .entry = mt_arena_int(mem, r2)};
-    if (!b->c || !b->b || !b->g || !b->entry) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     mt_gemm(false, false, n, r, n, 1.0, mt_linear_reduced(a->lin).m, n,
             mt_modal_shape(&a->modes, low), n, 0.0, b->c, n);
     return MT_OK;
@@ -214,9 +212,7 @@ static mt_status choose_entries(mt_repeated *m, mt_repeated_block *b, mt_arena *
     double *const a = mt_arena_f64(mem, (size_t)n, (size_t)r * (size_t)r);
     int *const entry = mt_arena_int(mem, (size_t)r * (size_t)r);
     int k = 0;
-    if (a == NULL || entry == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int l = 0; l < r; l++) {
         for (int i = l; i < r; i++) {
             for (int j = 0; j < n; j++) {
@@ -251,9 +247,7 @@ static mt_status number_rows(mt_repeated *m, mt_arena *mem, mt_err *err)
         m->n_rows += m->blocks[b].n_rows;
     }
     m->eq_tol = mt_arena_f64(mem, (size_t)m->n_kept + (size_t)m->n_rows, 1);
-    if (m->eq_tol == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < mt_case_rows_in(ws->c); i++) {
         least = fmin(least, ws->c->in_tol[i]);
     }
@@ -283,9 +277,7 @@ mt_status mt_repeated_find(mt_workspace *ws, const double *t, double near, mt_ar
     out->replaced =
         mt_arena_alloc(mem, (size_t)mt_case_rows_eq(ws->c) + (size_t)mt_case_rows_in(ws->c),
                        sizeof *out->replaced);
-    if (out->blocks == NULL || out->replaced == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(find_blocks(out, sides, n, near, mem, err));
     find_rows(out, sides, n);
     MT_TRY(matrices(out, false, err));

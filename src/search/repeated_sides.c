@@ -96,9 +96,7 @@ mt_status mt_repeated_sides(mt_workspace *ws, mt_arena *mem, mt_repeated_side **
     const size_t corners = ws->c->robust != NULL ? (size_t)ws->c->robust->n_rows : 0;
     const size_t most = 4 * (size_t)ws->p->n_demands + (size_t)ws->c->n_in + corners;
     listing l = {.ws = ws, .items = mt_arena_alloc(mem, most, sizeof *l.items)};
-    if (l.items == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < ws->p->n_demands; i++) {
         add_demand(&l, &ws->p->demands[i]);
     }

@@ -30,9 +30,7 @@ static mt_status first_stage(mt_workspace *const *workers, int n_workers, mt_are
     const mt_nlp_options opt = options_of(workers[0]->c);
     mt_nlp nlp = mt_workspace_nlp(workers[0]);
     void **const contexts = mt_arena_alloc(mem, (size_t)n_workers, sizeof *contexts);
-    if (contexts == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < n_workers; i++) {
         contexts[i] = workers[i];
     }
@@ -199,9 +197,7 @@ static mt_status later_stages(stages *s, int *stage, mt_err *err)
     s->later = &later;
     s->f = mt_arena_f64(s->mem, (size_t)n_aims, (size_t)out->n_solutions);
     s->limit = mt_arena_f64(s->mem, (size_t)n_aims, (size_t)out->n_solutions);
-    if (s->f == NULL || s->limit == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(s->mem, err));
     for (int i = 0; i < out->n_solutions; i++) {
         MT_TRY(aims_at(s, out->solutions[i].t, s->f + ((ptrdiff_t)i * n_aims), err));
     }

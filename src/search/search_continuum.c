@@ -175,9 +175,7 @@ mt_status mt_search_join_continua(mt_workspace *ws, mt_arena *mem, mt_nlp_result
     c.at = mt_arena_f64(mem, (size_t)ws->c->n_aims, 1);
     c.t = mt_arena_f64(mem, (size_t)ws->c->n_t, 1);
     int *const group = mt_arena_int(mem, (size_t)n);
-    if (c.aims == NULL || c.at == NULL || c.t == NULL || group == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(mem, err));
     mt_status rc = mt_case_values_init(ws->c, mem, &c.v, err);
     for (int i = 0; i < n && rc == MT_OK; i++) {
         double *const aims = c.aims + ((ptrdiff_t)i * ws->c->n_aims);

@@ -79,9 +79,7 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
     mt_err own = {0};
     const long left = w->most - w->evals - RESERVED;
     *better = false;
-    if (lower == NULL || upper == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(w->mem, err));
     if (left <= 0) {
         return MT_OK;
     }
@@ -232,15 +230,13 @@ static mt_status cone_blocks(const mt_repeated *m, mt_arena *mem, mt_cone_block 
         for (int side = 0; side < (block->both ? 2 : 1); side++) {
             double *const g = mt_arena_f64(mem, (size_t)size, 1);
             double *const u = mt_arena_f64(mem, r, r);
-            if (g == NULL || u == NULL) {
-                return mt_fail_memory(err);
-            }
+            MT_TRY(mt_arena_check(mem, err));
             mt_axpy(size, side == 0 ? 1.0 : -1.0, block->g, g);
             list[(*n)++] = (mt_cone_block){.r = block->r, .g = g, .u = u};
         }
     }
     *out = list;
-    return list == NULL ? mt_fail_memory(err) : MT_OK;
+    return mt_arena_check(mem, err);
 }
 
 /* Stationarity at t as a statement about clusters: *kkt, z[n], and the multipliers (s may be
@@ -265,9 +261,7 @@ static mt_status judge(refine *w, const double *t, double *kkt, double *z, mt_nl
                  .free_sign = free_sign,
                  .x = mt_arena_f64(w->mem, most, 1)};
     c.z = z;
-    if (!rows || !free_sign || !which || !c.x) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(w->mem, err));
     MT_TRY(cone_blocks(&m, w->mem, &blocks, &c.n_blocks, err));
     c.blocks = blocks;
     c.n_rows = balance_rows(&m, t, rows, free_sign, which);
@@ -288,9 +282,7 @@ static mt_status step_down(refine *w, const double *z, double *t, double *f, boo
     double *const from = mt_arena_f64(w->mem, (size_t)ws->c->n_t, 1);
     double size = 0.0;
     *better = false;
-    if (from == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(w->mem, err));
     for (int j = 0; j < ws->c->n_t; j++) {
         size = fmax(size, fabs(z[j]));
     }
@@ -322,9 +314,7 @@ static mt_status settle(refine *w, double near, double *kkt, double *z, mt_nlp_s
     double f = s->f;
     double after = *kkt;
     bool found = false;
-    if (t == NULL || z_after == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(w->mem, err));
     memcpy(t, s->t, n * sizeof *t);
     w->gain = -TOLERANCES_BUY;
     const mt_status rc = keep_together(w, near, t, &f, &found, err);
@@ -352,9 +342,7 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
     double *const z = mt_arena_f64(w->mem, (size_t)ws->c->n_t, 1);
     double kkt = s->kkt;
-    if (z == NULL) {
-        return mt_fail_memory(err);
-    }
+    MT_TRY(mt_arena_check(w->mem, err));
     for (int round = 0; round < ROUNDS && w->stop == MT_STOP_DONE && !spent(w, RESERVED);
          round++) {
         bool better = false;
