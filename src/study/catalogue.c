@@ -34,11 +34,6 @@ const char *const *mt_series_names(int *n)
     return NAMES;
 }
 
-int mt_series_per_decade(int which)
-{
-    return SIZES[which];
-}
-
 /* The i-th value of a decade, in hundredths: 100 to 999. */
 static int digits(int per_decade, int i)
 {

@@ -19,8 +19,6 @@ enum { MT_MAX_CATALOGUE = 10000 };
 
 /* "E3" ... "E192"; *n their number. */
 const char *const *mt_series_names(int *n);
-/* Values per decade of series `which` (position in that list). */
-int mt_series_per_decade(int which);
 
 /**
  * The values of an E series from lower to upper, both included, ascending. Bounds that miss a

@@ -5,7 +5,8 @@
 #include "mt_sites.h"
 #include "study_kinds.h"
 
-/* With MT_EVERY=1, which the sanitizers have, every place; under valgrind every tenth. */
+/* With MT_EVERY=1, which sanitizers and coverage have, every place; under valgrind every
+ * tenth. */
 static int stride(void)
 {
     return getenv("MT_EVERY") != NULL ? 1 : getenv("MT_TEST_LAUNCHED") != NULL ? 10 : 5;

@@ -29,6 +29,7 @@ class Cases(unittest.TestCase):
                 self.assertEqual(wrong, [], case["holds"])
 
 
+@unittest.skipIf("MT_INSTRUMENTED" in os.environ, "judges the hunt, not the program")
 class Faults(unittest.TestCase):
     def test_faults_are_found(self):
         for plant, kinds, check in FAULTS:

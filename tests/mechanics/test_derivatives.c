@@ -189,7 +189,7 @@ static const struct {
 
 static void derivatives__agree_with_slopes_in_every_mechanism(mt_test *t)
 {
-    /* valgrind: one derivative of every third is enough; without MT_EVERY=1, which the
+    /* valgrind: one derivative of every third is enough; without MT_EVERY=1, which
      * sanitizers have, every third derivative of all */
     const bool few = getenv("MT_TEST_LAUNCHED") != NULL;
     const bool every = getenv("MT_EVERY") != NULL;

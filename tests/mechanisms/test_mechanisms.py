@@ -21,6 +21,7 @@ CASES = Path(__file__).resolve().parent / "cases"
 G = 9.81
 
 
+@unittest.skipIf("MT_INSTRUMENTED" in os.environ, "judges the hunt, not the program")
 class Oracle(unittest.TestCase):
     """What the oracle finds where the answer is known."""
 
@@ -74,6 +75,7 @@ class Cases(unittest.TestCase):
                 self.assertEqual(wrong, [], case["holds"])
 
 
+@unittest.skipIf("MT_INSTRUMENTED" in os.environ, "judges the hunt, not the program")
 class Faults(unittest.TestCase):
     def test_faults_are_found(self):
         for plant, kinds, least in FAULTS:
