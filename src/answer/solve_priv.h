@@ -2,26 +2,25 @@
 #ifndef ANSWER_SOLVE_PRIV_H
 #define ANSWER_SOLVE_PRIV_H
 
-#include "answer/solve.h"
 #include "base/interrupt.h"
 #include "search/discrete.h"
 #include "search/gaps.h"
 
 /*
  * The phases of an answer, in their order, under the names of what they write in a result.
- * Those that make ready (the last column) bring what is known into its form, and go on unless
- * they must end at once.
+ * Those that make ready bring what is known into its form, and go on unless they must end at
+ * once. Last: what does the work (solve_phases.c).
  */
-#define MT_PHASE_LIST(X)                                 \
-    X(MT_PHASE_BASELINE, "baseline", true)               \
-    X(MT_PHASE_SEARCH, "search", false)                  \
-    X(MT_PHASE_RECOMMENDATIONS, "recommendations", true) \
-    X(MT_PHASE_SPREAD, "spread", false)                  \
-    X(MT_PHASE_CERTIFICATES, "certificates", false)      \
-    X(MT_PHASE_RELAXATIONS, "relaxations", false)        \
-    X(MT_PHASE_PUBLISHED, "published", true)             \
-    X(MT_PHASE_TRADE, "trade", false)
-#define MT_PHASE_ENUM(id, name, makes_ready) id,
+#define MT_PHASE_LIST(X)                                                      \
+    X(MT_PHASE_BASELINE, "baseline", true, mt_answer_baseline)                \
+    X(MT_PHASE_SEARCH, "search", false, mt_answer_search)                     \
+    X(MT_PHASE_RECOMMENDATIONS, "recommendations", true, mt_answer_recommend) \
+    X(MT_PHASE_SPREAD, "spread", false, mt_answer_spread)                     \
+    X(MT_PHASE_CERTIFICATES, "certificates", false, mt_answer_certify)        \
+    X(MT_PHASE_RELAXATIONS, "relaxations", false, mt_answer_relax)            \
+    X(MT_PHASE_PUBLISHED, "published", true, mt_answer_publish)               \
+    X(MT_PHASE_TRADE, "trade", false, mt_answer_trade)
+#define MT_PHASE_ENUM(id, name, makes_ready, work) id,
 typedef enum mt_phase { MT_PHASE_LIST(MT_PHASE_ENUM) MT_PHASE_COUNT } mt_phase;
 #undef MT_PHASE_ENUM
 
@@ -49,6 +48,11 @@ typedef struct mt_answer {
     bool infeasible; /* proven, and no compromise is asked for */
     bool impossible; /* proven that no design meets all goals */
 } mt_answer;
+
+/* solve_phases.c: one phase each. */
+#define MT_PHASE_DECLARE(id, name, makes_ready, work) mt_status work(mt_answer *a, mt_err *err);
+MT_PHASE_LIST(MT_PHASE_DECLARE)
+#undef MT_PHASE_DECLARE
 
 /* solve_status.c: warnings about the search, then status and its sentence. */
 mt_status mt_answer_warn(const mt_answer *a, mt_err *err);

@@ -279,7 +279,7 @@ static const char *list_text(const mt_result_run *run, mt_arena *mem)
 
 mt_status mt_answer_note_cuts(const mt_answer *a, mt_err *err)
 {
-#define MT_PHASE_NAME(id, name, makes_ready) name,
+#define MT_PHASE_NAME(id, name, makes_ready, work) name,
     static const char *const names[] = {MT_PHASE_LIST(MT_PHASE_NAME)};
 #undef MT_PHASE_NAME
     mt_result *const result = a->result;

@@ -2,8 +2,9 @@
 #ifndef ANSWER_TRADE_H
 #define ANSWER_TRADE_H
 
-#include "answer/solve.h"
 #include "problem/workspace.h"
+#include "result/result.h"
+#include "study/study.h"
 
 /*
  * The trade study of a study: every point is the study with one or two numbers replaced,

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "answer/doubts.h"
+#include "answer/examine.h"
 #include "cli/cli.h"
 #include "io/file.h"
 #include "io/json_print.h"

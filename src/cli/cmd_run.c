@@ -2,11 +2,12 @@
 /* modetune run and compare: answer studies, write what was found, judge published values. */
 #include <stdlib.h>
 
-#include "answer/solve.h"
 #include "cli/cli.h"
 #include "cli/save.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
+#include "result/result.h"
+#include "study/study.h"
 
 /* One study on its way. */
 typedef struct job {

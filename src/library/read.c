@@ -36,7 +36,7 @@ mt_status mt_model_read(const char *path, const mt_read_options *opt, mt_model *
                         mt_err *err)
 {
     mt_read_options own;
-    mt_io_options io;
+    mt_io_options io = {.root = NULL};
     MT_NOT_NULL(out, err);
     *out = NULL;
     MT_NOT_NULL(path, err);
@@ -49,7 +49,7 @@ mt_status mt_study_read(const char *path, const mt_read_options *opt, mt_study *
                         mt_err *err)
 {
     mt_read_options own;
-    mt_io_options io;
+    mt_io_options io = {.root = NULL};
     MT_NOT_NULL(out, err);
     *out = NULL;
     MT_NOT_NULL(path, err);
@@ -98,7 +98,7 @@ mt_status mt_solve_json(const char *study, const mt_read_options *read,
                         const mt_solve_options *solve, char **result, mt_err *err)
 {
     mt_read_options own;
-    mt_io_options io;
+    mt_io_options io = {.root = NULL};
     mt_study *asked = NULL;
     mt_result *answer = NULL;
     MT_NOT_NULL(result, err);

@@ -10,9 +10,10 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "answer/solve.h"
 #include "io/io.h"
 #include "mt_test.h"
+#include "result/result.h"
+#include "study/study.h"
 
 static const char MODEL[] =
     "{\"format\": \"modetune-model/1\", \"dimension\": 2,"

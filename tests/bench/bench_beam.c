@@ -15,9 +15,10 @@
 #include <time.h>
 
 #include "analysis/analysis.h"
-#include "answer/solve.h"
 #include "exact_beam.h"
 #include "io/io.h"
+#include "result/result.h"
+#include "study/study.h"
 
 enum { ROUNDS = 15, CALLS = 400, SOLVES = 9, FULL_SOLVES = 3 };
 

@@ -10,7 +10,6 @@
 #include <string.h>
 #include <sys/time.h>
 
-#include "answer/solve.h"
 #include "common/fuzz.h"
 #include "io/io.h"
 #include "linalg/blas.h"
@@ -19,6 +18,8 @@
 #include "report/result_tables.h"
 #include "report/summary.h"
 #include "report/trade.h"
+#include "result/result.h"
+#include "study/study.h"
 
 enum {
     MOST_VARIABLES = 6,

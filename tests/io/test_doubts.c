@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "answer/doubts.h"
+#include "answer/examine.h"
 #include "io/io.h"
 #include "mt_alloc.h"
 #include "mt_test.h"

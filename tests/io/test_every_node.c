@@ -15,11 +15,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "answer/solve.h"
 #include "io/file.h"
 #include "io/io.h"
 #include "mt_hostile.h"
 #include "mt_test.h"
+#include "result/result.h"
+#include "study/study.h"
 
 enum {
     MAX_NODES = 8192,

@@ -13,10 +13,11 @@
 #include <unistd.h>
 
 #include "analysis/analysis.h"
-#include "answer/solve.h"
 #include "io/io.h"
 #include "mt_test.h"
 #include "report/result_tables.h"
+#include "result/result.h"
+#include "study/study.h"
 
 #define PROBLEMS MT_TEST_SOURCE_DIR "/problems/"
 #define STUDIES  MT_TEST_SOURCE_DIR "/studies/"

@@ -10,10 +10,11 @@
 #include <string.h>
 
 #include "analysis/analysis.h"
-#include "answer/solve.h"
 #include "base/text.h"
 #include "io/io.h"
 #include "mt_test.h"
+#include "result/result.h"
+#include "study/study.h"
 
 enum { SIX = 6, SIX_BANDS = 4, SIX_MOST = 32 };
 

@@ -13,8 +13,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "answer/solve.h"
 #include "io/io.h"
+#include "result/result.h"
+#include "study/study.h"
 #include "support/mt_test.h"
 
 enum { STUDY_PATH = 512 };

@@ -7,6 +7,8 @@
  * through it in between: frequencies are continuous. Above, since modes that rest at 0 Hz at
  * one design (a spring that may be 0) are no vibrations there.
  */
+#include "answer/examine.h"
+
 #include <math.h>
 #include <string.h>
 

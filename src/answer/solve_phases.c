@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the phases of an answer do, in their order. */
+#include "answer/solve_priv.h"
+
+#include <math.h>
+
+#include "answer/examine.h"
+#include "answer/spread.h"
+#include "answer/trade.h"
+#include "describe/certificates.h"
+#include "describe/describe_discrete.h"
+#include "describe/describe_relax.h"
+#include "search/search.h"
+
+/* The original design, without which there is nothing to tell. */
+mt_status mt_answer_baseline(mt_answer *a, mt_err *err)
+{
+    const mt_problem *const p = a->p;
+    mt_result *const result = a->result;
+    const mt_design original = {.t = p->whole.origin_t};
+    MT_TRY(mt_describe_run(a->study, result, err));
+    MT_TRY(mt_describe_excitations(a->study, result, err));
+    if (!a->study->examined) {
+        mt_doubt_list list = mt_doubt_list_default(&result->mem);
+        MT_TRY(mt_study_examine(a->study, HUGE_VAL, &list, err));
+        MT_TRY(mt_result_take_doubts(result, &list, err));
+    }
+    MT_TRY(mt_describe_design(p, &original, NULL, result, &result->baseline, err));
+    return mt_describe_baseline_reasons(p, result, err);
+}
+
+/* The search over gap assignments, its solutions in the form of any other search. */
+static mt_status search_gaps(mt_answer *a, mt_err *err)
+{
+    mt_gap_result *const g = &a->gaps;
+    MT_TRY(mt_gaps_solve(a->workers, a->n_workers, &a->mem, g, err));
+    a->found.solutions =
+        mt_arena_alloc(&a->mem, (size_t)g->n_solutions, sizeof *a->found.solutions);
+    MT_TRY(mt_arena_check(&a->mem, err));
+    for (int i = 0; i < g->n_solutions; i++) {
+        a->found.solutions[i] = *g->solutions[i].found;
+    }
+    a->found.n_solutions = g->n_solutions;
+    a->found.compromise = g->compromise;
+    a->found.n_undetermined = g->n_undetermined;
+    a->found.undetermined = g->undetermined;
+    a->found.undetermined_effect = g->undetermined_effect;
+    a->stage = g->stage;
+    a->found.evals = g->evals;
+    a->found.starts = g->starts;
+    a->found.stop = g->stop;
+    return MT_OK;
+}
+
+mt_status mt_answer_search(mt_answer *a, mt_err *err)
+{
+    if (mt_study_is_discrete(a->study)) {
+        return mt_discrete_solve(a->workers, a->n_workers, &a->mem, &a->found, &a->discrete,
+                                 err);
+    }
+    if (a->p->n_clears > 0) {
+        return search_gaps(a, err);
+    }
+    MT_TRY(mt_search_designs(a->workers, a->n_workers, &a->mem, &a->found, &a->stage, &a->why,
+                             err));
+    a->result->run.distinct_designs = a->found.compromise ? 0 : a->found.n_found;
+    a->result->run.found_once = a->found.compromise ? 0 : a->found.n_once;
+    a->result->run.estimated_missing = a->found.missing;
+    return MT_OK;
+}
+
+mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
+{
+    const mt_nlp_result *const found = &a->found;
+    mt_result *const result = a->result;
+    const bool discrete = mt_study_is_discrete(a->study);
+    const bool kinds = a->gaps.n_solutions > 0;
+    const int most = a->study->recommendations;
+    const int n = found->n_solutions < most ? found->n_solutions : most;
+    result->recommendations =
+        mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->recommendations);
+    MT_TRY(mt_arena_check(&result->mem, err));
+    MT_TRY(mt_describe_undetermined(a->p, found, result, err));
+    for (int i = 0; i < n; i++) {
+        a->mark = mt_result_get_mark(result);
+        const mt_design design = {.t = found->solutions[i].t,
+                                  .found = &found->solutions[i],
+                                  .stage = a->stage,
+                                  .rank = i + 1,
+                                  .cut = mt_interrupt_is_cut(&a->interrupt, MT_PHASE_SEARCH),
+                                  .discrete = discrete ? &a->discrete : NULL,
+                                  .gaps = kinds ? &a->gaps : NULL,
+                                  .below = kinds ? a->gaps.solutions[i].below : NULL};
+        mt_recommendation *const rec = &result->recommendations[i];
+        MT_TRY(mt_describe_design(a->p, &design, &result->baseline, result, rec, err));
+        MT_TRY(mt_describe_reasons(a->p, &design, found, result, rec, err));
+        if (mt_interrupt_is_cut(&a->interrupt, MT_PHASE_RECOMMENDATIONS)) {
+            return MT_OK;
+        }
+        result->n_recommendations++;
+    }
+    a->mark = mt_result_get_mark(result);
+    if (found->n_solutions > n) {
+        MT_TRY(mt_describe_warn(result, err,
+                                "%d more distinct designs were found; \"recommendations\" in "
+                                "the study says how many to report",
+                                found->n_solutions - n));
+    }
+    return MT_OK;
+}
+
+mt_status mt_answer_spread(mt_answer *a, mt_err *err)
+{
+    return a->result->n_recommendations == 0
+               ? MT_OK
+               : mt_spread_solve(a->workers[0], &a->found.solutions[0], &a->mem,
+                                 &a->found.evals, a->result, err);
+}
+
+mt_status mt_answer_certify(mt_answer *a, mt_err *err)
+{
+    if (mt_study_is_discrete(a->study)) {
+        return mt_describe_discrete_certificate(&a->discrete, &a->found, a->result,
+                                                &a->infeasible, err);
+    }
+    if (a->p->n_clears > 0) {
+        return mt_describe_gap_certificate(&a->gaps, a->result, &a->infeasible, err);
+    }
+    if (!a->found.compromise) {
+        return MT_OK;
+    }
+    MT_TRY(mt_describe_limit_certificates(a->p, &a->mem, a->result, &a->infeasible, err));
+    a->impossible = a->infeasible;
+    /* exact targets are answered by the nearest design, also where it is proven that they
+     * cannot be met */
+    a->infeasible = a->infeasible && a->p->n_eq == 0;
+    return MT_OK;
+}
+
+/* What would let a design exist, where none was found. */
+mt_status mt_answer_relax(mt_answer *a, mt_err *err)
+{
+    mt_moves moves = {0};
+    if (!a->infeasible && !a->impossible && !a->found.compromise) {
+        return MT_OK;
+    }
+    MT_TRY(mt_study_is_discrete(a->study)
+               ? mt_relax_discrete(a->workers, a->n_workers, &a->found, &a->mem, &moves, err)
+               : mt_relax(a->workers, a->n_workers, &a->found, &a->mem, &moves, err));
+    a->found.evals += moves.evals;
+    a->found.starts += moves.starts;
+    if (moves.short_of_budget && a->found.stop != MT_STOP_MAX_EVALS) {
+        return mt_describe_warn(a->result, err,
+                                "which single change would let a design exist is not known: "
+                                "there are too many combinations, or \"max_evaluations\" left "
+                                "nothing for it");
+    }
+    return mt_describe_relaxations(a->p, &moves, a->result, err);
+}
+
+mt_status mt_answer_publish(mt_answer *a, mt_err *err)
+{
+    double *const x = mt_arena_f64(&a->mem, (size_t)a->p->n, 1);
+    const bool recommended = a->result->n_recommendations > 0;
+    MT_TRY(mt_arena_check(&a->mem, err));
+    if (recommended) {
+        mt_case_x(&a->asked, a->found.solutions[0].t, x);
+    }
+    return mt_describe_published(a->workers[0], a->p->original, recommended ? x : NULL,
+                                 a->result, err);
+}
+
+mt_status mt_answer_trade(mt_answer *a, mt_err *err)
+{
+    MT_TRY(mt_trade_solve(a->study, a->threads, a->result, err));
+    mt_answer_qualify_trade(a->result);
+    return MT_OK;
+}
