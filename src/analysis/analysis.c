@@ -29,7 +29,7 @@ void mt_analysis_delete(mt_analysis *a)
         mt_arena_free(&a->mass_mem);
         mt_arena_free(&a->mem);
         mt_linear_delete(a->lin);
-        mt_system_delete(a->sys);
+        mt_system_delete(a->own_sys);
         free(a);
     }
 }
@@ -40,35 +40,55 @@ mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs
     return mt_analysis_new_driven(model, configuration, NULL, n_inputs, inputs, at, out, err);
 }
 
-mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
-                                 const mt_system_drive *drive, int n_inputs, const int *inputs,
-                                 const double *at, mt_analysis **out, mt_err *err)
+/* Solve for the first time; *out is a, which goes where that fails. */
+static mt_status open_at(mt_analysis *a, const double *at, mt_analysis **out, mt_err *err)
 {
-    mt_analysis *const a = calloc(1, sizeof *a);
     const mt_analysis_options opt = mt_analysis_options_default();
-    *out = NULL;
-    if (a == NULL) {
-        return mt_fail_memory(err);
-    }
+    const char *const name = mt_analysis_configuration(a);
     a->n_rigid = -1;
-    mt_status rc =
-        mt_system_new_driven(model, configuration, drive, n_inputs, inputs, at, &a->sys, err);
-    if (rc == MT_OK) {
-        rc = mt_linear_new(a->sys, &a->lin, err);
-    }
-    if (rc == MT_OK) {
-        rc = mt_analysis_solve(a, at, &opt, err);
-    }
+    mt_status rc = mt_linear_new(a->sys, &a->lin, err);
+    rc = rc == MT_OK ? mt_analysis_solve(a, at, &opt, err) : rc;
     if (rc != MT_OK) {
         mt_analysis_delete(a);
-        return mt_err_in(err, rc, "configuration \"%s\"",
-                         model->configurations[configuration].name.s);
+        return mt_err_in(err, rc, "configuration \"%s\"", name);
     }
     a->n_rigid = a->modes.n_rigid;
     a->n_null = a->modes.n_rigid;
     a->n_most = a->modes.count;
     *out = a;
     return MT_OK;
+}
+
+mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
+                                 const mt_system_drive *drive, int n_inputs, const int *inputs,
+                                 const double *at, mt_analysis **out, mt_err *err)
+{
+    mt_analysis *const a = calloc(1, sizeof *a);
+    *out = NULL;
+    if (a == NULL) {
+        return mt_fail_memory(err);
+    }
+    const mt_status rc = mt_system_new_driven(model, configuration, drive, n_inputs, inputs, at,
+                                              &a->own_sys, err);
+    if (rc != MT_OK) {
+        mt_analysis_delete(a);
+        return mt_err_in(err, rc, "configuration \"%s\"",
+                         model->configurations[configuration].name.s);
+    }
+    a->sys = a->own_sys;
+    return open_at(a, at, out, err);
+}
+
+mt_status mt_analysis_new_like(const mt_analysis *like, const double *at, mt_analysis **out,
+                               mt_err *err)
+{
+    mt_analysis *const a = calloc(1, sizeof *a);
+    *out = NULL;
+    if (a == NULL) {
+        return mt_fail_memory(err);
+    }
+    a->sys = like->sys;
+    return open_at(a, at, out, err);
 }
 
 /* Factor the reduced mass again where it has changed. */

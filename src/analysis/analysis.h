@@ -17,8 +17,9 @@
  * have vibration modes of 0 Hz. Then indices and counts are continuous over the family.
  */
 typedef struct mt_analysis {
-    mt_system *sys; /* owned */
-    mt_linear *lin; /* owned */
+    const mt_system *sys;
+    mt_system *own_sys; /* owned; NULL: sys is that of another analysis */
+    mt_linear *lin;     /* owned */
     mt_arena mass_mem;
     mt_arena mem; /* of the last solve */
     mt_mass_factor mass;
@@ -67,6 +68,11 @@ mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs
 mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
                                  const mt_system_drive *drive, int n_inputs, const int *inputs,
                                  const double *at, mt_analysis **out, mt_err *err);
+/* Another one of the same system, which `like` lends: it has to outlive this one. Solved at
+ * at[n_inputs], too, and counted as that design is alone. Any number of workers may share a
+ * system. Fails as mt_linear_update and mt_modal_solve, MT_E_MEMORY. */
+mt_status mt_analysis_new_like(const mt_analysis *like, const double *at, mt_analysis **out,
+                               mt_err *err);
 /* Accepts NULL. */
 void mt_analysis_delete(mt_analysis *a);
 /* Modes at inputs[n_inputs] [the parameters' units] into a->modes, valid until the next call;

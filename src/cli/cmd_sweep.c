@@ -188,7 +188,7 @@ static mt_status run(const mt_args *args, const mt_subject *s, int c, job *j, mt
                                       err));
         j->a->recount = true; /* a spring may get hold of a direction on the way */
         MT_TRY(prepare_modes(j, args->count > 0 ? args->count : DEFAULT_MODES, err));
-        j->sys = j->a->sys;
+        j->sys = j->a->own_sys;
         j->lin = j->a->lin;
     } else {
         MT_TRY(mt_linear_new(j->sys, &j->lin, err));

@@ -7,9 +7,10 @@
 #include "result/result.h"
 
 /*
- * From a design to what is reported of it. Every number is recomputed here from scratch:
- * systems, analyses and memory are new, made at that design, and compared with what the search
- * used (a difference beyond rounding becomes a warning).
+ * From a design to what is reported of it. Every number is recomputed here from scratch, in a
+ * workspace made anew and solved at that design alone, and compared with what the search used
+ * (a difference beyond rounding becomes a warning); its modes also with those of systems that
+ * are built anew at that design (describe_verify.c).
  */
 
 /* What the search knew of a design; zeroed for the original one. */

@@ -39,37 +39,38 @@ typedef struct mt_case {
     double *lower_t; /* [n + 1] coordinates; room for one more */
     double *upper_t;
     double *origin_t; /* [n + 1] may lie outside the bounds, where the original design does */
-    /* t has one more entry, the least clearance ln(...) that is made greatest */
-    bool clearance;
+    const struct mt_aim *aims;     /* [n_aims] */
+    mt_held *held;                 /* [n_aims] those before the stage; NULL at stage 0 */
+    double *r_held;                /* [n_res] what a held misfit keeps the residuals at */
+    const double *weight;          /* [n_demands] NaN: a constraint */
+    const int *below;              /* [n_bands] the gap assignment; NULL: none */
+    const struct mt_view *views;   /* [n_views] the problem's, then those of cuts */
+    const struct mt_clear *clears; /* [n_clears] likewise */
+    const int *tie;                /* [n_bands] */
+    double *eq_tol;                /* [n_eq + n_res] */
+    double *in_tol;                /* [n_in + n_aims] */
+    struct mt_robust *robust;      /* variables with a tolerance (robust.h); NULL: none */
+    /* [n_next] rows that follow from those of limits (next.h), and from which */
+    const struct mt_next *next;
+    const int *next_of;
+    const double *hint; /* [n + 1] coordinates of one more design to start from; NULL: none */
+    mt_search search;   /* the study's; a part of its budget */
+    long proof_boxes;   /* budget of a proof; 0: as certify.h has it */
+    /* local solves of a search where the study does not say; 0: by the number of variables */
+    int starts;
     int n_t; /* n, or n + 1 */
     int n_aims;
-    const struct mt_aim *aims;
-    int stage;            /* of aims */
-    mt_held *held;        /* [n_aims] those before the stage; NULL at stage 0 */
-    double *r_held;       /* [n_res] what a held misfit keeps the residuals at */
-    const double *weight; /* [n_demands] NaN: a constraint */
-    const int *below;     /* [n_bands] the gap assignment; NULL: none */
-    int n_views;          /* the problem's, then those of cuts */
-    const struct mt_view *views;
-    int n_clears; /* likewise */
-    const struct mt_clear *clears;
+    int stage; /* of aims */
+    int n_views;
+    int n_clears;
     int n_bands;
-    const int *tie;     /* [n_bands] */
     int first_band_row; /* in `in` */
     int n_in;           /* held objectives follow */
     /* the last of them, at corners of the tolerances where these are samples */
     int n_corner_rows;
-    double *eq_tol;           /* [n_eq + n_res] */
-    double *in_tol;           /* [n_in + n_aims] */
-    struct mt_robust *robust; /* variables with a tolerance (robust.h); NULL: none */
-    int n_next;               /* rows that follow from those of limits (next.h) */
-    const struct mt_next *next;
-    const int *next_of; /* [n_next] */
-    mt_search search;   /* the study's; a part of its budget */
-    /* local solves of a search where the study does not say; 0: by the number of variables */
-    int starts;
-    long proof_boxes;   /* budget of a proof; 0: as certify.h has it */
-    const double *hint; /* [n + 1] coordinates of one more design to start from; NULL: none */
+    int n_next;
+    /* t has one more entry, the least clearance ln(...) that is made greatest */
+    bool clearance;
 } mt_case;
 
 /* out: as `from`, with bounds of its own. Fails: MT_E_MEMORY. */

@@ -316,19 +316,17 @@ static size_t count_tied(const mt_problem *p)
 }
 
 mt_status mt_family_bands(const mt_problem *p, const mt_family *f, const double *at,
-                          double left, double right, mt_arena *mem, mt_way_band **list, int *n,
+                          double left, double right, mt_arena *mem, mt_way_bands *out,
                           mt_err *err)
 {
-    const size_t most = count_tied(p);
-    *n = 0;
-    *list = mt_arena_alloc(mem, most, sizeof **list);
+    *out = (mt_way_bands){.items = mt_arena_alloc(mem, count_tied(p), sizeof *out->items)};
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < f->n; i++) {
         const mt_clear *const a = clear_of(p, f->view[i]);
         for (int k = 0; k < f->n && a != NULL; k++) {
             const mt_clear *const b = k == i ? NULL : clear_of(p, f->view[k]);
             if (b != NULL && at[i] <= left && at[k] >= right) {
-                intersect(p, a, b, *list, n);
+                intersect(p, a, b, out->items, &out->n);
             }
         }
     }

@@ -65,10 +65,14 @@ typedef struct mt_way_band {
     mt_band band; /* its label: that of the left position */
     double tolerance;
 } mt_way_band;
+typedef struct mt_way_bands {
+    int n;
+    mt_way_band *items; /* ascending */
+} mt_way_bands;
 /* What is forbidden at positions from left to right (a < b: no position of the family between
- * them): list[*n] in mem, ascending. at[f->n]: positions of its views. */
+ * them), in mem. at[f->n]: positions of its views. */
 mt_status mt_family_bands(const mt_problem *p, const mt_family *f, const double *at,
-                          double left, double right, mt_arena *mem, mt_way_band **list, int *n,
+                          double left, double right, mt_arena *mem, mt_way_bands *out,
                           mt_err *err);
 
 #endif

@@ -110,14 +110,14 @@ static mt_status add_cut(mt_case *c, const mt_cut *cut, lists *l, mt_arena *mem,
     const mt_family *const f = &p->families[cut->family];
     const mt_view *const like = &p->views[f->view[0]];
     mt_clear *const clear = &l->clears[c->n_clears];
-    mt_way_band *way = NULL;
-    int n = 0;
+    mt_way_bands way = {0};
     double *const at = mt_arena_f64(mem, (size_t)f->n, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < f->n; k++) {
         at[k] = mt_family_position(p->views[f->view[k]].original);
     }
-    MT_TRY(mt_family_bands(p, f, at, cut->position, cut->position, mem, &way, &n, err));
+    MT_TRY(mt_family_bands(p, f, at, cut->position, cut->position, mem, &way, err));
+    const int n = way.n;
     int *const tie = mt_arena_int(mem, (size_t)c->n_bands + (size_t)n);
     int *const below = mt_arena_int(mem, (size_t)c->n_bands + (size_t)n);
     *clear =
@@ -137,10 +137,10 @@ static mt_status add_cut(mt_case *c, const mt_cut *cut, lists *l, mt_arena *mem,
     memcpy(tie, l->tie, (size_t)c->n_bands * sizeof *tie);
     memcpy(below, l->below, (size_t)c->n_bands * sizeof *below);
     for (int i = 0; i < n; i++) {
-        clear->bands.items[i] = way[i].band;
-        clear->tolerance = fmin(clear->tolerance, way[i].tolerance);
-        tie[c->n_bands + i] = way[i].tie;
-        below[c->n_bands + i] = l->below[way[i].tie];
+        clear->bands.items[i] = way.items[i].band;
+        clear->tolerance = fmin(clear->tolerance, way.items[i].tolerance);
+        tie[c->n_bands + i] = way.items[i].tie;
+        below[c->n_bands + i] = l->below[way.items[i].tie];
     }
     l->views[c->n_views++] = (mt_view){.configuration = f->configuration,
                                        .n_rigid = like->n_rigid,
@@ -248,26 +248,33 @@ static mt_status put_row(mt_workspace *w, const mt_view_work *view, const edge_r
     return MT_OK;
 }
 
-/* Rows run over clears and their bands, below then above, nearest mode first. */
+/* Rows of one band from *row on: below then above, nearest mode first. */
+static mt_status put_band(mt_workspace *w, const mt_clear *c, int b, int *row,
+                          bool with_gradient, mt_nlp_values *out, mt_err *err)
+{
+    const mt_view_work *const view = &w->views[c->view];
+    const mt_band *const band = &c->bands.items[b];
+    const int below = w->c->below[c->first + b];
+    const int under = rows_below(c, below);
+    const int rows = under + rows_above(c, below, mt_view_vibrations(view->of));
+    for (int k = 0; k < rows; k++) {
+        const bool above = k >= under;
+        const edge_row e = {.row = (*row)++,
+                            .index = above ? below + 1 + k - under : below - k,
+                            .edge_hz = above ? band->upper_hz : band->lower_hz,
+                            .sign = above ? 1.0 : -1.0};
+        MT_TRY(put_row(w, view, &e, with_gradient, out, err));
+    }
+    return MT_OK;
+}
+
 mt_status mt_clear_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out, mt_err *err)
 {
     const mt_case *const c = w->c;
     int row = c->first_band_row;
     for (int i = 0; i < c->n_clears && c->below != NULL; i++) {
-        const mt_clear *const clear = &c->clears[i];
-        const mt_view_work *const view = &w->views[clear->view];
-        const int flexible = mt_view_vibrations(view->of);
-        for (int b = 0; b < clear->bands.n; b++) {
-            const mt_band *const band = &clear->bands.items[b];
-            const int below = c->below[clear->first + b];
-            for (int k = 0; k < rows_below(clear, below); k++) {
-                const edge_row e = {row++, below - k, band->lower_hz, -1.0};
-                MT_TRY(put_row(w, view, &e, with_gradient, out, err));
-            }
-            for (int k = 0; k < rows_above(clear, below, flexible); k++) {
-                const edge_row e = {row++, below + 1 + k, band->upper_hz, 1.0};
-                MT_TRY(put_row(w, view, &e, with_gradient, out, err));
-            }
+        for (int b = 0; b < c->clears[i].bands.n; b++) {
+            MT_TRY(put_band(w, &c->clears[i], b, &row, with_gradient, out, err));
         }
     }
     return MT_OK;

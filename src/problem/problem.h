@@ -157,9 +157,10 @@ double mt_problem_stretch_at(const mt_problem *p, int i, double x);
  * the caller's. Fails as mt_analysis_new. */
 mt_status mt_problem_analyse(const mt_problem *p, int configuration, const double *x,
                              mt_analysis **out, mt_err *err);
-/* The same for the configuration of a view, with the view's count (cheaper). */
-mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const double *x,
-                          mt_analysis **out, mt_err *err);
+/* The same for a view, with the view's count (cheaper). like: an analysis of the view that
+ * lends its system (mt_analysis_new_like); NULL: a system of its own. */
+mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const mt_analysis *like,
+                          const double *x, mt_analysis **out, mt_err *err);
 /* View of a configuration, -1. */
 int mt_problem_view(const mt_problem *p, int configuration);
 /* The same, made where it is not there yet. While the problem is compiled. */

@@ -44,8 +44,8 @@ mt_status mt_problem_analyse(const mt_problem *p, int configuration, const doubl
     return MT_OK;
 }
 
-mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const double *x,
-                          mt_analysis **out, mt_err *err)
+mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const mt_analysis *like,
+                          const double *x, mt_analysis **out, mt_err *err)
 {
     mt_analysis *a = NULL;
     mt_system_drive drive = {.fixed = true};
@@ -56,9 +56,10 @@ mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const double
         drive.spring = f->spring;
         drive.position = view->cut->position;
     }
-    MT_TRY(mt_analysis_new_driven(p->study->model, view->configuration,
-                                  view->cut != NULL ? &drive : NULL, p->n, p->inputs, x, &a,
-                                  err));
+    MT_TRY(like != NULL ? mt_analysis_new_like(like, x, &a, err)
+                        : mt_analysis_new_driven(p->study->model, view->configuration,
+                                                 view->cut != NULL ? &drive : NULL, p->n,
+                                                 p->inputs, x, &a, err));
     a->n_rigid = view->n_rigid;
     a->n_most = view->n_most;
     const mt_status rc = solve_counted(a, a->n_null, x, err);

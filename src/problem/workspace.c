@@ -32,9 +32,9 @@ void mt_workspace_delete(mt_workspace *w)
 {
     if (w != NULL) {
         for (int i = 0; i < w->n_views; i++) {
-            mt_analysis_delete(w->views[i].analysis);
+            drop_corners(&w->views[i]); /* of the system of the analysis */
             mt_analysis_delete(w->views[i].scout);
-            drop_corners(&w->views[i]);
+            mt_analysis_delete(w->views[i].analysis);
         }
         for (int i = 0; w->driven != NULL && i < w->p->n_families; i++) {
             mt_analysis_delete(w->driven[i]);
@@ -120,7 +120,7 @@ static mt_status open_view(mt_workspace *w, mt_view_work *view, const mt_view *o
     drop_corners(view);
     mt_analysis_delete(view->analysis);
     view->analysis = NULL;
-    MT_TRY(mt_view_analyse(w->p, of, w->p->original, &view->analysis, err));
+    MT_TRY(mt_view_analyse(w->p, of, of->original, w->p->original, &view->analysis, err));
     view->needs_vectors = of->needs_vectors;
     view->solved = true;
     view->tracked = false;
@@ -142,7 +142,8 @@ static mt_status open_corners(mt_workspace *w, mt_view_work *view, int n, mt_err
     }
     view->corners = corners;
     for (; view->n_corners < n; view->n_corners++) {
-        MT_TRY(mt_view_analyse(w->p, view->of, w->p->original, &corners[view->n_corners], err));
+        MT_TRY(mt_view_analyse(w->p, view->of, view->analysis, w->p->original,
+                               &corners[view->n_corners], err));
     }
     return MT_OK;
 }

@@ -371,19 +371,18 @@ static mt_status follow(walk *w, const mt_family *f, const int *below, mt_err *e
     MT_TRY(mt_arena_check(w->mem, err));
     w->shortest = SHORTEST * (out->to - out->from);
     for (int i = 0; i + 1 < n; i++) {
-        mt_way_band *bands = NULL;
-        int n_bands = 0;
-        MT_TRY(mt_family_bands(w->ws->p, f, positions, list[i], list[i + 1], w->mem, &bands,
-                               &n_bands, err));
+        mt_way_bands bands = {0};
+        MT_TRY(
+            mt_family_bands(w->ws->p, f, positions, list[i], list[i + 1], w->mem, &bands, err));
         w->way = i;
         out->n_ways = i + 1;
         out->way_at[i] = nan("");
         out->way_room[i] = HUGE_VAL;
-        if (n_bands == 0) {
+        if (bands.n == 0) {
             continue;
         }
         out->end = out->end == MT_MOTION_NONE ? MT_MOTION_WHOLE : out->end;
-        MT_TRY(list_edges(w, below, bands, n_bands, err));
+        MT_TRY(list_edges(w, below, bands.items, bands.n, err));
         MT_TRY(go(w, list[i], list[i + 1], err));
     }
     return MT_OK;

@@ -43,7 +43,7 @@ static mt_status first_stage(mt_workspace *const *workers, int n_workers, mt_are
 typedef struct stages {
     mt_workspace *ws;
     const mt_case *first;
-    mt_case *later; /* with the objectives before its stage held */
+    mt_case later; /* with the objectives before its stage held */
     mt_arena *mem;
     mt_nlp_result *out;
     double *f;     /* n_aims values of each solution, at its present design */
@@ -54,8 +54,8 @@ typedef struct stages {
 static mt_status later_stage(const stages *s, const double *from, long budget,
                              mt_nlp_result *out, mt_err *err)
 {
-    mt_nlp_options opt = options_of(s->later);
-    mt_workspace_back(s->ws, s->later);
+    mt_nlp_options opt = options_of(&s->later);
+    mt_workspace_back(s->ws, &s->later);
     mt_nlp nlp = mt_workspace_nlp(s->ws);
     opt.starts = 1;
     opt.max_evals = budget;
@@ -90,7 +90,7 @@ static long budget_left(const stages *s)
 /* Improve solution i in the present stage. */
 static mt_status refine(stages *s, int i, mt_err *err)
 {
-    mt_case *const c = s->later;
+    mt_case *const c = &s->later;
     mt_nlp_solution *const old = &s->out->solutions[i];
     double *const f = s->f + ((ptrdiff_t)i * c->n_aims);
     double *const limit = s->limit + ((ptrdiff_t)i * c->n_aims);
@@ -191,10 +191,8 @@ static void rank(stages *s)
 static mt_status later_stages(stages *s, int *stage, mt_err *err)
 {
     mt_nlp_result *const out = s->out;
-    mt_case later;
     const int n_aims = s->first->n_aims;
-    MT_TRY(mt_case_for_stages(s->first, s->mem, &later, err));
-    s->later = &later;
+    MT_TRY(mt_case_for_stages(s->first, s->mem, &s->later, err));
     s->f = mt_arena_f64(s->mem, (size_t)n_aims, (size_t)out->n_solutions);
     s->limit = mt_arena_f64(s->mem, (size_t)n_aims, (size_t)out->n_solutions);
     MT_TRY(mt_arena_check(s->mem, err));
@@ -202,7 +200,7 @@ static mt_status later_stages(stages *s, int *stage, mt_err *err)
         MT_TRY(aims_at(s, out->solutions[i].t, s->f + ((ptrdiff_t)i * n_aims), err));
     }
     for (int k = 1; k < n_aims && out->stop == MT_STOP_DONE; k++) {
-        later.stage = k;
+        s->later.stage = k;
         for (int i = 0; i < out->n_solutions && out->stop == MT_STOP_DONE; i++) {
             MT_TRY(refine(s, i, err));
         }
