@@ -163,7 +163,7 @@ static mt_status judge(mt_workspace *fresh, int goal, int configuration, mt_resu
         worst = fresh->robust != NULL ? find_tightest(fresh, at, &own.bands, true) : worst;
     }
     *out = mt_result_goal_default();
-    out->type = mt_goal_kind_of(MT_GOAL_AVOID)->name;
+    out->type = mt_goal_kind_of(g->type)->name;
     out->configuration = mt_analysis_configuration(view->analysis);
     out->text = avoid_text(g, out->configuration, mem);
     out->pointer = mt_arena_printf(mem, "/goals/%d", goal);

@@ -150,7 +150,7 @@ static void say_what(const mt_problem *p, const mt_demand *d, mt_result_goal *g)
     }
     g->at_least = asked->at_least;
     g->at_most = asked->at_most;
-    g->target = asked->type == MT_GOAL_SHAPE ? 0.0 : d->equals;
+    g->target = d->ops->value == NULL ? 0.0 : d->equals; /* a distance is to be none */
     g->tolerance_percent = PERCENT * d->tolerance;
 }
 

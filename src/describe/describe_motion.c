@@ -224,7 +224,7 @@ static mt_status put_goal(const described *d, const char *range, mt_recommendati
     mt_arena *const mem = &d->result->mem;
     const crossing *const c = &d->cross;
     *g = mt_result_goal_default();
-    g->type = mt_goal_kind_of(MT_GOAL_AVOID)->name;
+    g->type = mt_goal_kind_of(d->fresh->p->study->goals[d->goal_index].type)->name;
     g->unit = "%";
     g->value = d->followed ? d->motion.percent : nan("");
     g->at_least = d->followed ? d->motion.margin_percent : nan("");

@@ -20,7 +20,7 @@ static mt_status describe_objectives(const mt_study *study, mt_result *result, m
     for (int i = 0; i < study->n_objectives; i++) {
         const mt_objective *const o = &study->objectives[i];
         const mt_objective_kind *const kind = mt_objective_kind_of(o->type);
-        const bool own = o->type == MT_OBJECTIVE_EXPRESSION;
+        const bool own = o->expression_text != NULL;
         result->objectives[result->n_objectives++] = (mt_result_objective){
             kind->name, own ? o->expression_text : kind->name, own ? NULL : kind->unit};
     }
