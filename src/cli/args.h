@@ -115,9 +115,4 @@ typedef struct mt_args {
 mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err);
 void mt_args_free(mt_args *args);
 
-/* What --help prints: of the whole (MT_CMD_NONE) or of one command. */
-void mt_help(int command, mt_text *out);
-/* The manual page, section 1, in the language of man(7). */
-void mt_manual(mt_text *out);
-
 #endif

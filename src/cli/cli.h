@@ -4,6 +4,7 @@
 
 #include "analysis/analysis.h"
 #include "cli/args.h"
+#include "cli/subject.h"
 #include "cli/terminal.h"
 #include "io/io.h"
 #include "io/write_json.h"
@@ -40,43 +41,6 @@ int mt_cli_failed(mt_status rc, const mt_err *err);
 mt_io_options mt_cli_io(const mt_args *args);
 /* Close a JSON output: MT_EXIT_DONE, or a complaint and its exit status. */
 int mt_cli_json_done(mt_json_writer *w);
-
-/* A model with the parameters that --set changes, and the configurations to look at. */
-typedef struct mt_subject {
-    mt_model *model; /* owned */
-    mt_arena mem;
-    const char *path;
-    int n_inputs;
-    int *inputs;      /* parameters */
-    double *at;       /* their values */
-    double *original; /* [n_parameters] values in the file */
-    double *values;   /* [n_parameters] with --set, dependent ones followed; before overrides */
-    int n_configurations;
-    int *configurations;
-} mt_subject;
-
-/**
- * Load the model, apply --set, choose configurations: the named one, or all where the name is
- * NULL. Returns MT_EXIT_DONE or the exit status, everything said. mt_subject_free in any case
- * (subject zeroed before).
- */
-int mt_subject_load(const mt_args *args, const char *path, const char *configuration,
-                    mt_subject *out);
-void mt_subject_free(mt_subject *s);
-/* Analyse configuration c. A failure is left in err. */
-mt_status mt_subject_analyse(const mt_subject *s, int c, mt_analysis **out, mt_err *err);
-/* Warn where the configuration's own overrides win over --set. */
-void mt_subject_warn_overridden(const mt_subject *s, int c);
-const char *mt_subject_configuration(const mt_subject *s, int c);
-
-/* Facts about the modes that several commands tell. */
-/* 1-based index of the vibration mode at position pos; 0 for rigid-body, unstable and undecided
- * modes, and beside an undecided one. */
-int mt_modes_index(const mt_modes *modes, int pos);
-const char *mt_mode_kind_name(mt_mode_kind kind);
-/* How many positions to show where `count` vibration modes are wanted (0: all): rigid-body and
- * unstable ones come on top. */
-int mt_modes_shown(const mt_modes *modes, int count);
 /* Doubts and facts of a configuration, one line each, before its table. */
 void mt_cli_print_doubts(const mt_doubt_list *list, mt_text *out);
 /* Their names as a list; member "redundant_constraints": a list of such lists. */
@@ -85,8 +49,5 @@ mt_status mt_cli_json_redundant(mt_json_writer *w, mt_linear *lin, mt_arena *mem
 /* Member "dead_centre" of an open object: null, or how far away one is and whose equations
  * depend on each other there. */
 void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness);
-/* The name that the model gives to vibration mode `index` of configuration c; NULL. Only at the
- * original design. */
-const char *mt_mode_name(const mt_subject *s, int c, int index);
 
 #endif

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* --help, from the tables. */
+#include "cli/help.h"
+
 #include <stdbool.h>
 #include <string.h>
 

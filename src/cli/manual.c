@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The manual page, from the tables behind --help: what they do not say, this file does. */
+#include "cli/manual.h"
+
 #include "modetune/version.h"
 
 #include <ctype.h>

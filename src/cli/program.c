@@ -2,7 +2,9 @@
 #include "modetune/version.h"
 
 #include "base/build.h"
+#include "cli/help.h"
 #include "cli/limits.h"
+#include "cli/manual.h"
 
 typedef int (*command_function)(const mt_args *args, mt_text *out);
 

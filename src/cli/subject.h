@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CLI_SUBJECT_H
+#define CLI_SUBJECT_H
+
+#include "analysis/analysis.h"
+#include "cli/args.h"
+#include "model/model.h"
+
+/* A model with the parameters that --set changes, and the configurations to look at. */
+typedef struct mt_subject {
+    mt_model *model; /* owned */
+    mt_arena mem;
+    const char *path;
+    int n_inputs;
+    int *inputs;      /* parameters */
+    double *at;       /* their values */
+    double *original; /* [n_parameters] values in the file */
+    double *values;   /* [n_parameters] with --set, dependent ones followed; before overrides */
+    int n_configurations;
+    int *configurations;
+} mt_subject;
+
+/**
+ * Load the model, apply --set, choose configurations: the named one, or all where the name is
+ * NULL. Returns MT_EXIT_DONE or the exit status, everything said. mt_subject_free in any case
+ * (subject zeroed before).
+ */
+int mt_subject_load(const mt_args *args, const char *path, const char *configuration,
+                    mt_subject *out);
+void mt_subject_free(mt_subject *s);
+/* Analyse configuration c. A failure is left in err. */
+mt_status mt_subject_analyse(const mt_subject *s, int c, mt_analysis **out, mt_err *err);
+/* Warn where the configuration's own overrides win over --set. */
+void mt_subject_warn_overridden(const mt_subject *s, int c);
+const char *mt_subject_configuration(const mt_subject *s, int c);
+
+/* Facts about the modes that several commands tell. */
+/* 1-based index of the vibration mode at position pos; 0 for rigid-body, unstable and undecided
+ * modes, and beside an undecided one. */
+int mt_modes_index(const mt_modes *modes, int pos);
+const char *mt_mode_kind_name(mt_mode_kind kind);
+/* How many positions to show where `count` vibration modes are wanted (0: all): rigid-body and
+ * unstable ones come on top. */
+int mt_modes_shown(const mt_modes *modes, int count);
+/* The name that the model gives to vibration mode `index` of configuration c; NULL. Only at the
+ * original design. */
+const char *mt_mode_name(const mt_subject *s, int c, int index);
+
+#endif
