@@ -160,17 +160,6 @@ static void note_force(const mt_system *sys, mt_lagrangian *out, const int body[
     note_push(body, size, out);
 }
 
-/* Forces that meet in a body are known to eps of the largest of them: so is a joint's force,
- * however small it is itself. */
-static double joint_push(const mt_lagrangian *l, const int body[2])
-{
-    double push = 0.0;
-    for (int side = 0; side < 2; side++) {
-        push = body[side] == MT_GROUND ? push : fmax(push, l->push[body[side]]);
-    }
-    return push;
-}
-
 /* Positions are known to eps of the coordinates that they are the difference of, angles to eps,
  * the slope of a beam element's chord to eps of the coordinates over its length. */
 static void note_noise(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
@@ -418,6 +407,21 @@ static void push_joints(const mt_data *d, int m, const mt_cx *lambda, mt_lagrang
     }
 }
 
+/* Forces that meet in a body are known to eps of the largest of them: so is a joint's force,
+ * however small it is itself. */
+static void note_joint(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
+                       const mt_jet *jet, mt_cx force, double open, mt_lagrangian *out)
+{
+    const double arm = is_angle(def) ? d->sys->length_m : 1.0;
+    double push = 0.0;
+    for (int side = 0; side < 2 && out->terms != NULL; side++) {
+        const int body = def->body[side];
+        push = body == MT_GROUND ? push : fmax(push, out->push[body]);
+    }
+    const double size = fabs(creal(force)) + (arm * push);
+    note_terms(d, def, poses, jet, size, size, open, out); /* where they are asked for */
+}
+
 static void add_constraints(const mt_data *d, const mt_placement *at, int m,
                             const mt_cx *lambda, bool hessian, mt_lagrangian *out)
 {
@@ -442,13 +446,8 @@ static void add_constraints(const mt_data *d, const mt_placement *at, int m,
             if (curved) {
                 const mt_cx force = cx_mul(factor, lambda[i]);
                 add_hessian(sys, def->body, &jet, force, 0.0, NULL, out->h);
-                if (out->terms != NULL) {
-                    const double left = out->left.lambda != NULL ? out->left.lambda[i] : 0.0;
-                    const double arm = is_angle(def) ? sys->length_m : 1.0;
-                    const double size = fabs(creal(force)) + (arm * joint_push(out, def->body));
-                    note_terms(d, def, at->pose, &jet, size, size, fabs(creal(factor) * left),
-                               out);
-                }
+                const double left = out->left.lambda != NULL ? out->left.lambda[i] : 0.0;
+                note_joint(d, def, at->pose, &jet, force, fabs(creal(factor) * left), out);
             }
         }
         out->c[i] -= surplus_turns(d, i, creal(out->c[i]));
