@@ -64,15 +64,15 @@ static mt_status tell_undescribed(const mt_answer *a, mt_err *err)
          i < a->found.n_solutions && i < a->study->recommendations; i++) {
         const char *text = "";
         mt_case_x(&a->asked, a->found.solutions[i].t, x);
-        for (int k = 0; k < p->n && text != NULL; k++) {
+        for (int k = 0; k < p->n; k++) {
             text = mt_arena_printf(mem, "%s%s%s = %.17g", text, k > 0 ? ", " : "",
                                    p->study->variables[k].parameter_name.s, x[k]);
         }
-        MT_TRY(text == NULL ? mt_fail_memory(err)
-                            : mt_describe_warn(a->result, err,
-                                               "interrupted before design %d of the search was "
-                                               "analysed anew, nothing is verified of it: %s",
-                                               i + 1, text));
+        MT_TRY(mt_arena_check(mem, err));
+        MT_TRY(mt_describe_warn(a->result, err,
+                                "interrupted before design %d of the search was analysed anew, "
+                                "nothing is verified of it: %s",
+                                i + 1, text));
     }
     return MT_OK;
 }

@@ -158,9 +158,8 @@ mt_status mt_describe_tolerance(mt_workspace *fresh, mt_result *result, mt_recom
     mt_status rc = mt_proof_init(&proof, fresh->c, &fresh->mem, err);
     if (rc == MT_OK && proof.possible) {
         mt_tolerance_box *const box = mt_arena_alloc(&result->mem, 1, sizeof *box);
-        if (box == NULL) {
-            rc = mt_fail_memory(err);
-        } else {
+        rc = mt_arena_check(&result->mem, err);
+        if (rc == MT_OK) {
             *box = mt_tolerance_box_default();
             rc = fill_box(fresh, &proof, rec, result, box, err);
             rec->tolerance_box = box;

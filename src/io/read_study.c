@@ -390,8 +390,11 @@ mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **o
     s.r.mem = &s.study->mem;
     s.study->path = mt_arena_strdup(&s.study->mem, path);
     root = s.files.root == NULL ? mt_file_default_root(path) : NULL;
-    if (s.study->path == NULL || (root == NULL && s.files.root == NULL)) {
-        rc = mt_fail_memory(err);
+    if (root == NULL && s.files.root == NULL) {
+        mt_arena_fail(&s.study->mem);
+    }
+    rc = mt_arena_check(&s.study->mem, err);
+    if (rc != MT_OK) {
         goto done;
     }
     s.files.root = root == NULL ? s.files.root : root;

@@ -42,9 +42,7 @@ static const char **names_of(const mt_model *model, int n,
     for (int i = 0; names != NULL && i < n; i++) {
         names[i] = name_of(model, i);
     }
-    if (names == NULL) {
-        (void)mt_fail_memory(err);
-    }
+    (void)mt_arena_check(mem, err);
     return names;
 }
 

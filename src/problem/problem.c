@@ -82,9 +82,8 @@ static mt_status init_variables(mt_problem *p, mt_err *err)
 static mt_status init_references(mt_problem *p, mt_err *err)
 {
     p->references = mt_arena_alloc(&p->mem, 1, sizeof *p->references);
-    return p->references == NULL
-               ? mt_fail_memory(err)
-               : mt_reference_cache_init(p->references, p->study, &p->mem, err);
+    MT_TRY(mt_arena_check(&p->mem, err));
+    return mt_reference_cache_init(p->references, p->study, &p->mem, err);
 }
 
 /* The study as it is asked. */

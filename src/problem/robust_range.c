@@ -134,7 +134,7 @@ static mt_status range_view(mt_workspace *w, int view, int modes, box *b, mt_err
     const int all = rc == MT_OK ? mt_modal_vibrations(&a->modes) : 0;
     r->hz[view] = mt_arena_alloc(&w->mem, (size_t)all, sizeof *r->hz[view]);
     r->n_ranges[view] = r->hz[view] == NULL ? 0 : all;
-    rc = rc == MT_OK && r->hz[view] == NULL ? mt_fail_memory(err) : rc;
+    rc = rc == MT_OK ? mt_arena_check(&w->mem, err) : rc;
     rc = rc == MT_OK ? range_of_modes(w, view, modes, a, b, err) : rc;
     mt_analysis_delete(a);
     return rc;

@@ -260,8 +260,7 @@ mt_status mt_gap_candidates_find(mt_workspace *w, mt_arena *mem, mt_gap_candidat
         out->reason = mt_arena_strdup(mem, proof.reason);
         const int wanted = SAMPLES_PER_VARIABLE * (w->p->n + 1);
         const int n = wanted < SAMPLES_MOST ? wanted : SAMPLES_MOST;
-        rc = out->reason == NULL ? mt_fail_memory(err)
-                                 : sample(w, n, CANDIDATES_MOST, mem, out, err);
+        rc = sample(w, n, CANDIDATES_MOST, mem, out, err);
     }
     mt_proof_free(&proof);
     return rc;
