@@ -230,6 +230,9 @@ static void build_hinge(mt_builder *b, const mt_link *link, const link_geometry 
                         const mt_node at[3], mt_node stiffness)
 {
     mt_system *const sys = b->sys;
+    if (mt_arena_failed(&sys->mem)) {
+        return; /* the bodies beside it may be missing */
+    }
     const int second = sys->n_bodies - 1;
     const int body[2] = {second - 1, second};
     const int arm[2] = {mt_build_arm(b, body[0], at, link->name.s),

@@ -187,6 +187,7 @@ static mt_status build_parts(mt_builder *b, const double *at)
 {
     MT_TRY(mt_build_bodies(b));
     MT_TRY(mt_build_links(b));
+    MT_TRY(mt_arena_check(&b->sys->mem, b->err)); /* what follows joins bodies by their index */
     MT_TRY(mt_build_joints(b));
     MT_TRY(mt_build_springs(b));
     MT_TRY(mt_build_loads(b));
