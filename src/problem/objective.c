@@ -23,15 +23,7 @@ const mt_objective_ops *mt_objective_ops_of(mt_objective_type type)
     return OPERATIONS[type];
 }
 
-static double nothing(const mt_workspace *w, const mt_aim *a, double *gradient)
-{
-    (void)w;
-    (void)a;
-    (void)gradient;
-    return 0.0;
-}
-
-const mt_objective_ops mt_objective_none = {.value = nothing};
+const mt_objective_ops mt_objective_none = {.value = NULL};
 
 double mt_aim_value(const mt_workspace *w, int k, double *gradient)
 {
@@ -39,7 +31,7 @@ double mt_aim_value(const mt_workspace *w, int k, double *gradient)
     for (int i = 0; i < w->c->n_t && gradient != NULL; i++) {
         gradient[i] = 0.0;
     }
-    return a->ops->value(w, a, gradient);
+    return a->ops->value == NULL ? 0.0 : a->ops->value(w, a, gradient);
 }
 
 double mt_aim_root(const mt_aim *a, double f)

@@ -21,7 +21,7 @@ typedef struct mt_objective_ops {
     /* Nodes and items that f is made of; nodes[parameters of the model] of p->program. NULL:
      * there are none. */
     mt_status (*compile)(mt_problem *p, mt_aim *a, const mt_node *nodes, mt_err *err);
-    /* f at the last evaluation, and its gradient[n_t], zero before, unless NULL. */
+    /* f at the last evaluation, and its gradient[n_t], zero before, unless NULL. NULL: 0. */
     double (*value)(const mt_workspace *w, const mt_aim *a, double *gradient);
     /* At most any f over a box of inputs; low, high: room for
      * the nodes of any program of p. NULL: not known. */

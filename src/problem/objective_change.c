@@ -21,6 +21,7 @@ static double value(const mt_workspace *w, const mt_aim *a, double *gradient)
     return f;
 }
 
+/* NOLINTNEXTLINE(readability-non-const-parameter): the room is other objectives' */
 static double least(const mt_problem *p, const mt_aim *a, const double *lo, const double *hi,
                     double *low, double *high)
 {
