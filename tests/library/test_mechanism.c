@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/workers.h"
+#include "mt_alloc.h"
 #include "mt_test.h"
 
 #define MODELS MT_TEST_SOURCE_DIR "/tests/models/"
@@ -296,6 +297,49 @@ static void mechanism__repeated_modes_split_along_directions(mt_test *t)
     mt_model_delete(model);
 }
 
+/* Reading from memory, making, evaluating, and asking for everything, with the k-th allocation
+ * refused. */
+static mt_status use_everything(void)
+{
+    static const char *const names[] = {"k1", "both"};
+    static const double at[] = {2.0, 3.0};
+    const mt_read_options given = {
+        .size = sizeof given, .files = &two_masses, .n_files = 1, .files_only = 1};
+    mt_read_options opt = given;
+    mt_model *model = NULL;
+    mt_mechanism *m = NULL;
+    double room[4];
+    mt_status rc = mt_diagnostics_new(&opt.diagnostics, NULL);
+    rc = rc == MT_OK ? mt_model_read("two.json", &opt, &model, NULL) : rc;
+    rc = rc == MT_OK ? mt_mechanism_new(model, NULL, 2, names, &m, NULL) : rc;
+    rc = rc == MT_OK ? mt_mechanism_evaluate(m, at, NULL) : rc;
+    rc = rc == MT_OK ? mt_mechanism_shape(m, 1, room, NULL) : rc;
+    rc = rc == MT_OK ? mt_mechanism_mac(m, 2, m, 2, room, NULL) : rc;
+    rc = rc == MT_OK ? mt_mechanism_sensitivities(m, 2, room, NULL) : rc;
+    mt_mechanism_delete(m);
+    mt_model_delete(model);
+    mt_diagnostics_delete(opt.diagnostics);
+    return rc;
+}
+
+static void mechanism__every_failing_allocation_is_survived(mt_test *t)
+{
+    CHECK_INT(t, use_everything(), MT_OK); /* libraries claim what they keep */
+    for (long nth = 0; mt_alloc_works(); nth++) {
+        const long before = mt_alloc_live();
+        mt_test_row(t, "allocation %ld", nth);
+        mt_alloc_fail_after(nth);
+        const mt_status rc = use_everything();
+        mt_alloc_fail_after(-1);
+        CHECK(t, rc == MT_OK || rc == MT_E_MEMORY);
+        CHECK_INT(t, mt_alloc_live(), before);
+        if (rc == MT_OK) {
+            CHECK(t, nth > 10);
+            break;
+        }
+    }
+}
+
 enum { TASKS = 64, THREADS = 4 };
 typedef struct share {
     mt_mechanism *of[THREADS];
@@ -341,4 +385,5 @@ MT_TEST_MAIN(MT_TEST(mechanism__frequencies_are_those_of_the_closed_form),
              MT_TEST(mechanism__mac_compares_two_designs),
              MT_TEST(mechanism__sensitivities_are_those_of_the_closed_form),
              MT_TEST(mechanism__repeated_modes_split_along_directions),
+             MT_TEST(mechanism__every_failing_allocation_is_survived),
              MT_TEST(mechanism__threads_share_a_model))
