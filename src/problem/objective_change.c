@@ -21,9 +21,10 @@ static double value(const mt_workspace *w, const mt_aim *a, double *gradient)
     return f;
 }
 
-/* NOLINTNEXTLINE(readability-non-const-parameter): the room is other objectives' */
-static double least(const mt_problem *p, const mt_aim *a, const double *lo, const double *hi,
-                    double *low, double *high)
+static double least(
+    const mt_problem *p, const mt_aim *a, const double *lo, const double *hi,
+    double *low,  /* NOLINT(readability-non-const-parameter): others write there */
+    double *high) /* NOLINT(readability-non-const-parameter) */
 {
     double f = 0.0;
     (void)a;
