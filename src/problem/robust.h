@@ -21,8 +21,8 @@
  *         gravity loads the mechanism) stands at either end, in all
  *     combinations while there are few of them, and the design itself is judged as well.
  * Without any of the second kind the corners are the worst there is, at every design: two of
- * them, exact. Otherwise they are samples, and so are the points that an earlier search was
- * found to have missed (mt_study's cuts).
+ * them, exact. Otherwise they are samples, and a worse point between them is told of the design
+ * that the search ends with, not searched around.
  *
  * What is reported of a design is found anew there (mt_robust_ranges): over its own tolerances
  * alone more signs are proven, and where they are not, the worst is searched within.
