@@ -42,7 +42,8 @@ typedef struct mt_json mt_json;
 /**
  * Read a text.
  * @param[in]  text   length bytes, need not be NUL-terminated; not kept
- * @param[out] out the document, owned by the caller; given for MT_OK and MT_E_INPUT, else NULL
+ * @param[out] out    the document, owned by the caller; given for MT_OK and MT_E_INPUT, else
+ *                    NULL
  *   Fails: MT_E_INPUT when the text is not JSON (every problem is in mt_json_diags; the
  *   document then has no values and serves mt_json_report only), MT_E_MEMORY. A name given
  *   twice is a problem in mt_json_diags, but MT_OK: reading can go on, the later members of

@@ -11,8 +11,8 @@
  * Read, resolve and check a study file (format "modetune-study/1") with the models that it
  * names.
  * @param[in]  opt       NULL: defaults; the models must lie beneath root
- * @param[out] out the study, owned by the caller (mt_study_delete), models included; NULL on
- *   failure
+ * @param[out] out       the study, owned by the caller (mt_study_delete), models included; NULL
+ *                       on failure
  * @param[out] messages the diagnostics of the study, then those of the models, are added; may
  *   be NULL Every problem is reported, whichever file it is in. Fails: MT_E_INPUT (err: the
  *   first; a model that is not there counts as one of the study's problems), MT_E_SYSTEM (a

@@ -2,8 +2,8 @@
 /*
  * Joints as equations of measures. With P on body a, Q on body b (the joint's point as drawn on
  * each), a the joint's axis and b, c = a x b perpendicular to it:
- *   point (Q - P) = 0 along all axes parallel b_a . a_b = c_a . a_b = 0 on line b_a . (Q - P) =
- *   c_a . (Q - P) = 0 no twist b_a . c_b = 0
+ *   point      (Q - P) = 0 along all axes                    parallel   b_a.a_b = c_a.a_b = 0
+ *   on line    b_a . (Q - P) = c_a . (Q - P) = 0             no twist   b_a . c_b = 0
  * revolute = point + parallel; cylindrical = on line + parallel; prismatic = cylindrical + no
  * twist; spherical = point; universal = point + a_a . a'_b as drawn; planar = a_a . (Q - P) = 0
  * + parallel; fixed = point + no rotation; distance |Q - P| = length; on plane a_a . (Q - P) =

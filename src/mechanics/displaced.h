@@ -10,14 +10,15 @@
  */
 
 /**
- * @param[in] lin after mt_linear_update; its scratch is used
- * @param[in] dq [nq] displacement from the linearised position: each body is moved by dx and
- *   turned by exp(theta) [m, rad]; NULL: none
- * @param[out] m nq x nq mass matrix, both triangles, column-major [kg, kg m^2]
- * @param[out] q [nq] impressed forces of springs and loads, that of the trimmed spring
- *   included; no constraint forces [N, N m]
- * @param[out] a constraint Jacobian, mt_linear_equations(lin) x nq, column-major
- * @param[out] c by how much each of these constraints is violated [m, rad, cosine]; may be NULL
+ * @param[in]  lin  after mt_linear_update; its scratch is used
+ * @param[in]  dq   [nq] displacement from the linearised position: each body is moved by dx and
+ *                  turned by exp(theta) [m, rad]; NULL: none
+ * @param[out] m    nq x nq mass matrix, both triangles, column-major [kg, kg m^2]
+ * @param[out] q    [nq] impressed forces of springs and loads, that of the trimmed spring
+ *                  included; no constraint forces [N, N m]
+ * @param[out] a    constraint Jacobian, mt_linear_equations(lin) x nq, column-major
+ * @param[out] c    by how much each of these constraints is violated [m, rad, cosine]; NULL:
+ *                  not asked for
  *
  * A x = 0 holds for the velocities that the joints allow; at rest the right-hand side of
  * A xdd = b is zero. Fails: MT_E_MEMORY.

@@ -3,9 +3,9 @@
  * Continuation in the position s of the driven joint. At a closed position, with A the Jacobian
  * of all constraints and e_d the drive's row,
  *     v     = A^+ e_d                            the smallest motion that drives the joint
- *     dq/ds = v - Z (Z^T K Z)^+ Z^T K v
- *         the one that strains the springs least
- *         (K: their elastic stiffness), so that what hangs on springs comes along;
+ *     dq/ds = v - Z (Z^T K Z)^+ Z^T K v          the one that strains the springs least (K:
+ *                                                their elastic stiffness), so that what hangs
+ *                                                on springs comes along;
  * a step h goes to q (+) h dq/ds and is closed again by Newton from there. The correction is of
  * order h^2 on a smooth branch; where it is not small beside the step, or Newton does not close
  * the mechanism, the step is halved, so that the way never leaves its branch. Towards a limit

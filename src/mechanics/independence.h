@@ -9,9 +9,8 @@
  * Equations of joints that are redundant here need not be so at other values of input p. With w
  * a left null vector of A, a dot the derivative along p and the motion that it causes,
  *     w^T c. != 0         the joints do not stay closed: the position has no derivative
- *     w^T A. Z y != 0
- *         the motion y, free here, is blocked at any other value of p: so is the number of
- *         freedoms, and the mode y has no derivative.
+ *     w^T A. Z y != 0     the motion y, free here, is blocked at any other value of p: so is
+ *                         the number of freedoms, and the mode y has no derivative.
  */
 typedef struct mt_independence {
     bool opens;            /* the first */

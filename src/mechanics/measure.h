@@ -17,10 +17,14 @@
  *
  * With u, v directions and P, Q points of bodies a, b (Haug, Computer Aided Kinematics and
  * Dynamics, 1989, ch. 9 uses the same primitives):
- *   PLANE u_a . (Q_b - P_a) DOT u_a . v_b DISTANCE |Q_b - P_a| ANGLE atan2(c_a . b_b, b_a .
- *   b_b): rotation of b against a about the axis b x c, plus the whole turns that bring it next
- *   to `near` ROTATION component k of the rotation vector that takes the triad of a to that of
- *   b, in the triad of a BEAM one of the generalised strains of a beam element (measure_beam.c)
+ *   PLANE     u_a . (Q_b - P_a)
+ *   DOT       u_a . v_b
+ *   DISTANCE  |Q_b - P_a|
+ *   ANGLE     atan2(c_a . b_b, b_a . b_b): rotation of b against a about the axis b x c, plus
+ *             the whole turns that bring it next to `near`
+ *   ROTATION  component k of the rotation vector that takes the triad of a to that of b, in the
+ *             triad of a
+ *   BEAM      one of the generalised strains of a beam element (measure_beam.c)
  */
 typedef enum mt_measure_kind {
     MT_MEASURE_PLANE,

@@ -3,14 +3,15 @@
  * Generalised strains of a beam element between nodes A and B, a distance l apart as drawn.
  * Triads e (of A) and f (of B) were equal then, e1 along the element. With the chord d = x_B -
  * x_A, L = |d|, c = d/L:
- *     a2 = g(e1.c) (e3.c),  a3 = -g(e1.c) (e2.c)
- *         rotation of the end A against the chord, in its own triad, g(x) = acos(x)/sqrt(1 -
- *         x^2)
+ *     a2 = g(e1.c) (e3.c),  a3 = -g(e1.c) (e2.c)     rotation of the end A against the chord,
+ *                                                    in its own triad, g(x) = acos(x)/sqrt(1 -
+ *                                                    x^2)
  *     b2, b3                                         the same of the end B with f
- *     phi2, phi3
- *         components of log(R_A^T R_B): rotation of one end against the other
- *     phi1
- *         twist: what is left about e1 when the shortest turn from e1 to f1 has been taken off
+ *     phi2, phi3                                     components of log(R_A^T R_B): rotation of
+ *                                                    one end against the other
+ *     phi1                                           twist: what is left about e1 when the
+ *                                                    shortest turn from e1 to f1 has been taken
+ *                                                    off
  *     s2 = a2 + b2,  s3 = a3 + b3.
  * Between the ends, relative to the chord, with y = 2 x/l - 1 and Legendre polynomials P(y), mu
  * = 1/(1 + Phi), Phi = 12 E I/(k A G l^2) (mu = 1: Euler-Bernoulli),

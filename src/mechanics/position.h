@@ -6,11 +6,12 @@
 
 /*
  * Positions of a system at one design, each the minimiser of an energy under constraints:
- *   reference the drawn position with its loops closed by the smallest motion (anchor energy);
- *   skipped where the drawing already closes driven the same with the driven joint at its
- *   place; only with `drive`, and only where the equilibrium leaves freedoms without stiffness,
- *   which then stay next to the drawing equilibrium the physical energy; skipped where nothing
- *   loads the mechanism
+ *   reference    the drawn position with its loops closed by the smallest motion (anchor
+ *                energy); skipped where the drawing already closes
+ *   driven       the same with the driven joint at its place; only with `drive`, and only where
+ *                the equilibrium leaves freedoms without stiffness, which then stay next to the
+ *                drawing
+ *   equilibrium  the physical energy; skipped where nothing loads the mechanism
  * Each stage solves grad V + A^T lambda = 0, c = 0 by Newton with multipliers and checks its
  * residual; a stage that does not converge is an error, never a result. The derivative of a
  * stage with respect to an input follows from the same equations (implicit function theorem).

@@ -8,15 +8,13 @@
  *     g_i(y) = s_i v_i^T y + 1/2 y^T H_i y + O(y^3),   H_i = Z_i^T (sum_j w_ij c_j'') Z_i,
  * which does not depend on the chart, as w_i^T A vanishes to that order. (Motions that a
  * greater s_j blocks are left out of Z_i: equation j blocks them wherever H_i leads.)
- *     H_i = 0, s_i = 0
- *         the equation holds wherever the others do, as far as the second order tells:
- *         redundant everywhere, welcome
+ *     H_i = 0, s_i = 0   the equation holds wherever the others do, as far as the second order
+ *                        tells: redundant everywhere, welcome
  *     H_i = 0, s_i > 0   almost redundant, yet independent
- *     H_i > 0
- *         the gradient of g_i changes by |H_i| per unit of motion: at a distance of about s_i /
- *         |H_i| there is a position where it vanishes; the equations are
- *                        fulfilled there up to s_i^2 /
- *                            (2 |H_i|). Where that is rounding, this position is that one.
+ *     H_i > 0            the gradient of g_i changes by |H_i| per unit of motion: at a distance
+ *                        of about s_i / |H_i| there is a position where it vanishes; the
+ *                        equations are fulfilled there up to s_i^2 / (2 |H_i|). Where that is
+ *                        rounding, this position is that one.
  * |H_i| is taken from its products with a few vectors of independent entries of variance 1:
  * their mean square length is |H_i|_F^2. It counts as 0 below NO_CURVATURE of its own terms.
  *

@@ -4,9 +4,9 @@
  *
  *     every start:  the approach of a local search (nlp_local.c)
  *     ends:         one of each neighbourhood is polished to full accuracy (nlp_ends.c)
- *     judgement:
- *         feasible ones only, if any; undetermined directions at the best, all ends pulled
- *                   back along them; equal ones merged; ranked; multipliers, KKT, singularity
+ *     judgement:    feasible ones only, if any; undetermined directions at the best, all ends
+ *                   pulled back along them; equal ones merged; ranked; multipliers, KKT,
+ *                   singularity
  *
  * Nothing here depends on time, addresses or the order of memory: equal input, equal bytes.
  */

@@ -4,8 +4,8 @@
  * of the active constraints (Nocedal and Wright, Numerical Optimization, 2006, section 18.3).
  *
  *     C p_y = -c              least norm, from the QR of C^T
- *     Z^T H Z p_z = -Z^T g
- *         Z an orthonormal basis of the null space of C (on the free variables)
+ *     Z^T H Z p_z = -Z^T g    Z an orthonormal basis of the null space of C (on the free
+ *                             variables)
  *     t := t + p_y + Z p_z
  *
  * H is the Hessian of the Lagrangian. Gradients are exact, so Z^T H Z comes from one further

@@ -7,12 +7,12 @@
 /*
  * A machine that excites: an engine, a pump, a gearbox. Its shaft turns at f [1/s], somewhere
  * within f1 to f2, and whatever it does happens a fixed number of times per turn, its order:
- *     order k of the shaft      k
- *         "0.5E", "1E", "1.5E": a four-stroke cylinder fires every second turn
- *     mesh of a gear            k z r
- *         "1G", "2G": z teeth on a shaft that turns r times as fast as the machine's
- *     its sidebands             (k z + s) r
- *         "1G+1", "1G-2": modulated by the turns of the gear's own shaft, s = -S .. S
+ *     order k of the shaft      k                       "0.5E", "1E", "1.5E": a four-stroke
+ *                               cylinder fires every second turn
+ *     mesh of a gear            k z r                   "1G", "2G": z teeth on a shaft that
+ *                                                       turns r times as fast as the machine's
+ *     its sidebands             (k z + s) r             "1G+1", "1G-2": modulated by the turns
+ *                                                       of the gear's own shaft, s = -S .. S
  * Each forbids the frequencies order f1 to order f2 (bands.h). Rotors, with blades and a tail,
  * are in bands.h.
  */

@@ -8,16 +8,16 @@
  * message, and nothing half done. It may not crash, hang, leak (in instrumented builds), call a
  * file wrong, or answer otherwise.
  *
- *     test_allocation_sites
- *         a sample, of a seed that is printed; places that ask for memory come first
+ *     test_allocation_sites                            a sample, of a seed that is printed;
+ *                                                      places that ask for memory come first
  *     test_allocation_sites --seed S --count N         N of each command
- *     test_allocation_sites --all
- *         every k of every command, both ways: hours
- *     test_allocation_sites --line 1 "run -o @ FILE" ...
- *         of this command line, which ends with 1 where nothing is refused
- *     test_allocation_sites --only 7 --at 42 [--on]
- *         one of them again
- *         (--on: all from the 42nd on); with MT_ALLOCATIONS_TALK=1 it says who asked
+ *     test_allocation_sites --all                      every k of every command, both ways:
+ *                                                      hours
+ *     test_allocation_sites --line 1 "run -o @ FILE" ...    of this command line, which ends
+ *                                                           with 1 where nothing is refused
+ *     test_allocation_sites --only 7 --at 42 [--on]    one of them again (--on: all from the
+ *                                                      42nd on); with MT_ALLOCATIONS_TALK=1 it
+ *                                                      says who asked
  */
 #define _GNU_SOURCE /* memmem, MAP_ANONYMOUS; NOLINT(cert-dcl37-c,cert-dcl51-cpp) */
 #include <execinfo.h>

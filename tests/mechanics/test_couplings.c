@@ -1,13 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Joints that keep one coordinate, or couple two, against closed forms:
- *   bead on a plane inclined by a, hung on a cord of length l in it omega^2 = g sin a / l bead
- *   on a plane of normal n, springs k_x k_y k_z to the ground the two eigenvalues of P diag(k)
- *   P / m with P = I - n n^T two bodies that turn together omega^2 = (k_1 + k_2)/(J_1 + J_2),
- *   translations apart two shafts, angle of the second N times the first omega^2 = (k_1 + N^2
- *   k_2)/(J_1 + N^2 J_2) planet of ratio N on an arm of length l around a sun that does not
- *   turn omega^2 = k/(J_arm + m l^2 + J_planet (1 - N)^2) rack of mass m on a pinion of pitch
- *   radius r omega^2 = (k + c r^2)/(J + m r^2)
+ *   bead on a plane inclined by a, hung on a cord of length l in it
+ *       omega^2 = g sin a / l
+ *   bead on a plane of normal n, springs k_x k_y k_z to the ground
+ *       the two eigenvalues of P diag(k) P / m with P = I - n n^T
+ *   two bodies that turn together
+ *       omega^2 = (k_1 + k_2)/(J_1 + J_2), translations apart
+ *   two shafts, angle of the second N times the first
+ *       omega^2 = (k_1 + N^2 k_2)/(J_1 + N^2 J_2)
+ *   planet of ratio N on an arm of length l around a sun that does not turn
+ *       omega^2 = k/(J_arm + m l^2 + J_planet (1 - N)^2)
+ *   rack of mass m on a pinion of pitch radius r
+ *       omega^2 = (k + c r^2)/(J + m r^2)
  */
 #include "mechanics/mech.h"
 

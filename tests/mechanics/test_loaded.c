@@ -2,12 +2,12 @@
 /*
  * What a load costs in accuracy: nothing. References are the same equations in displacements or
  * angles, in thirty digits:
- *   chain rigid links of length l_i and mass m_i, hinged with torsional springs k_i, hung on
- *   (or standing on) a pin in gravity: with the links' angles a,
- *            2 V = sum k_i (a_i+1 - a_i)^2 + g sum m_i (sum_j<i l_j a_j^2 + l_i/2 a_i^2),
- *                the second sum negative where it stands
- *   strip a clamped Euler-Bernoulli beam in cubic elements, with a preloaded string elsewhere
- *   in the model
+ *   chain    rigid links of length l_i and mass m_i, hinged with torsional springs k_i, hung on
+ *            (or standing on) a pin in gravity: with the links' angles a,
+ *            2 V = sum k_i (a_i+1 - a_i)^2 + g sum m_i (sum_j<i l_j a_j^2 + l_i/2 a_i^2),   the
+ *                    second sum negative where it stands
+ *   strip    a clamped Euler-Bernoulli beam in cubic elements, with a preloaded string
+ *            elsewhere in the model
  */
 #include "mechanics/mech.h"
 #include "support/mt_quad.h"

@@ -1,16 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Dead loads against closed forms.
- *   pendulum m, l, dead force F down at its bob omega^2 = (m g + F)/(m l); a force that follows
- *   the rod: g/l the same force towards an anchor D below the bob omega^2 = g/l + F (1 +
- *   l/D)/(m l), whose limit is the dead force spherical body, inertia J about its pivot, force
- *   at a omega^2 = F a/J about both axes column of two rigid links, springs k, dead tip load P
- *   buckles at P l/k = (3 - sqrt 5)/2 (Ziegler 1968; the load that follows never buckles it)
- *   pendulum with a moment M m g l sin theta = M, omega^2 = g cos theta/l motor of torque M
- *   between a pendulum and a flywheel the pendulum leans by -M slider under F against a spring
- *   of free length L0 at the distance h
- *                                                            F = k (L - L0) x/L, K = k
- *                                                                (1 - L0/L) + k (L0/L)(x/L)^2
+ *   pendulum m, l, dead force F down at its bob
+ *       omega^2 = (m g + F)/(m l); a force that follows the rod: g/l
+ *   the same force towards an anchor D below the bob
+ *       omega^2 = g/l + F (1 + l/D)/(m l), whose limit is the dead force
+ *   spherical body, inertia J about its pivot, force at a
+ *       omega^2 = F a/J about both axes
+ *   column of two rigid links, springs k, dead tip load P
+ *       buckles at P l/k = (3 - sqrt 5)/2 (Ziegler 1968; the load that follows never does)
+ *   pendulum with a moment M
+ *       m g l sin theta = M, omega^2 = g cos theta/l
+ *   motor of torque M between a pendulum and a flywheel
+ *       the pendulum leans by -M
+ *   slider under F against a spring of free length L0 at the distance h
+ *       F = k (L - L0) x/L, K = k (1 - L0/L) + k (L0/L)(x/L)^2
  */
 #include "mechanics/mech.h"
 

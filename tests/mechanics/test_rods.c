@@ -2,8 +2,9 @@
 /*
  * Rods between ball joints, stated in every way: a distance joint, with or without mass_kg, or
  * a body between two spherical joints whose inertia about its own axis is 0.
- *   bob M on a uniform rod m, l omega^2 = g (M + m/2)/(l (M + m/3)) a plate hung on four rods,
- *   any direction the same frequencies however the rods are stated
+ *   bob M on a uniform rod m, l                       omega^2 = g (M + m/2)/(l (M + m/3))
+ *   a plate hung on four rods, any direction          the same frequencies however the rods are
+ *                                                     stated
  * The spin of a thin body about its axis is idle: not a freedom, whatever else the body carries
  * on its axis.
  */

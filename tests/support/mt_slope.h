@@ -18,9 +18,10 @@ typedef double mt_slope_function(const void *ctx, int n, const double *x);
  * Is slope the partial derivative of f to x[i] at x?
  * @param[in]     f, ctx  the function
  * @param[in]     n       number of unknowns, x of that length
- *   @param[in,out] x       changed at entry i during the call, and put back
+ * @param[in,out] x       changed at entry i during the call, and put back
  * @param[in]     step    h [unit of x[i]]; try 1e-3 times the scale on which f bends
- * @param[in] noise error of one evaluation of f relative to |f|; DBL_EPSILON at best. Errors of
+ * @param[in]     noise   error of one evaluation of f relative to |f|; DBL_EPSILON at best.
+ *                        Errors of
  *                        D below 100 noise (|f| + |h slope|) / h count as agreement.
  * @return true when D(h) and D(h/2) differ from slope by rounding, or by a ratio in [3.5, 4.5].
  *   Five
