@@ -143,17 +143,6 @@ static void read_one(mt_reader *r, mt_addr value, mt_aircraft_list *list)
     list->n += a->name.s != NULL ? 1 : 0;
 }
 
-static void read_list(mt_reader *r, mt_addr value, mt_aircraft_list *list)
-{
-    mt_items items = mt_reader_some_items(r, value, "the list of aircraft");
-    list->items = mt_reader_room(r, &items, sizeof *list->items);
-    while (mt_items_next(&items)) {
-        if (mt_reader_type(r, items.at, MT_KEY_OBJECT)) {
-            read_one(r, items.at, list);
-        }
-    }
-}
-
 /* A file of another kind or version gets one message, not one per member. */
 static bool check_format(mt_reader *r)
 {
@@ -171,8 +160,15 @@ static bool check_format(mt_reader *r)
 static void read_root(mt_reader *r, mt_aircraft_list *list)
 {
     mt_addr found[ROOT_KEY_COUNT];
-    if (check_format(r) && mt_reader_object(r, MT_JSON_ROOT, &ROOT_TABLE, found)) {
-        read_list(r, found[ROOT_AIRCRAFT], list);
+    if (!check_format(r) || !mt_reader_object(r, MT_JSON_ROOT, &ROOT_TABLE, found)) {
+        return;
+    }
+    mt_items items = mt_reader_some_items(r, found[ROOT_AIRCRAFT], "the list of aircraft");
+    list->items = mt_reader_room(r, &items, sizeof *list->items);
+    while (mt_items_next(&items)) {
+        if (mt_reader_type(r, items.at, MT_KEY_OBJECT)) {
+            read_one(r, items.at, list);
+        }
     }
 }
 

@@ -77,8 +77,29 @@ static mt_origin read_origin(mt_model_reader *mr, mt_addr value)
     return (mt_origin)(mt_reader_choice(&mr->r, value, "origin", names, MT_COUNT(names)) + 1);
 }
 
+static void read_parameter(mt_model_reader *mr, mt_addr value, mt_parameter *p)
+{
+    int n = 0;
+    const char *const *const units = mt_model_units(&n);
+    mt_addr at[PARAMETER_COUNT];
+    if (!mt_reader_type(&mr->r, value, MT_KEY_NUMBER_OR_OBJECT)) {
+        return;
+    }
+    if (mt_json_type_of(mr->r.doc, value) != MT_JSON_OBJECT) {
+        p->value = mt_read_num(mr, value);
+        return;
+    }
+    (void)mt_reader_object(&mr->r, value, &mt_parameter_keys, at);
+    p->value = mt_read_num(mr, at[PARAMETER_VALUE]);
+    const int unit = mt_reader_choice(&mr->r, at[PARAMETER_UNIT], "unit", units, n);
+    p->unit = unit == MT_ABSENT ? NULL : units[unit];
+    p->description = mt_reader_text(&mr->r, at[PARAMETER_DESCRIPTION]);
+    p->source = mt_reader_text(&mr->r, at[PARAMETER_SOURCE]);
+    p->origin = read_origin(mr, at[PARAMETER_ORIGIN]);
+}
+
 /* Parameters are entered by name first: expressions may look ahead. */
-static void read_parameter_names(mt_model_reader *mr, mt_addr object)
+static void read_parameters(mt_model_reader *mr, mt_addr object)
 {
     mt_model *const m = mr->m;
     mt_items items = mt_reader_items(&mr->r, object);
@@ -107,35 +128,9 @@ static void read_parameter_names(mt_model_reader *mr, mt_addr object)
     mr->r.names = names;
     mr->r.n_names = n_names;
     mt_model_index_parameters(m);
-}
-
-static void read_parameter(mt_model_reader *mr, mt_addr value, mt_parameter *p)
-{
-    int n = 0;
-    const char *const *const units = mt_model_units(&n);
-    mt_addr at[PARAMETER_COUNT];
-    if (!mt_reader_type(&mr->r, value, MT_KEY_NUMBER_OR_OBJECT)) {
-        return;
-    }
-    if (mt_json_type_of(mr->r.doc, value) != MT_JSON_OBJECT) {
-        p->value = mt_read_num(mr, value);
-        return;
-    }
-    (void)mt_reader_object(&mr->r, value, &mt_parameter_keys, at);
-    p->value = mt_read_num(mr, at[PARAMETER_VALUE]);
-    const int unit = mt_reader_choice(&mr->r, at[PARAMETER_UNIT], "unit", units, n);
-    p->unit = unit == MT_ABSENT ? NULL : units[unit];
-    p->description = mt_reader_text(&mr->r, at[PARAMETER_DESCRIPTION]);
-    p->source = mt_reader_text(&mr->r, at[PARAMETER_SOURCE]);
-    p->origin = read_origin(mr, at[PARAMETER_ORIGIN]);
-}
-
-static void read_parameters(mt_model_reader *mr, mt_addr object)
-{
-    read_parameter_names(mr, object);
-    mt_items items = mt_reader_items(&mr->r, object);
-    for (int k = 0; !mt_arena_failed(&mr->m->mem) && mt_items_next(&items); k++) {
-        read_parameter(mr, items.at, &mr->m->parameters[k]);
+    items = mt_reader_items(&mr->r, object);
+    for (int k = 0; !mt_arena_failed(&m->mem) && mt_items_next(&items); k++) {
+        read_parameter(mr, items.at, &m->parameters[k]);
     }
 }
 
@@ -304,14 +299,6 @@ mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_
     return MT_OK;
 }
 
-/* What is kept of the file besides its contents. */
-static mt_status note_file(mt_model *m, const char *path, const mt_file *f, mt_err *err)
-{
-    m->path = mt_arena_strdup(&m->mem, path);
-    m->sha256 = mt_arena_strdup(&m->mem, f->sha256);
-    return mt_arena_check(&m->mem, err);
-}
-
 mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **out,
                         mt_diagnostics *messages, mt_err *err)
 {
@@ -329,7 +316,10 @@ mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **o
         rc = mt_json_status(doc, path, err);
     }
     if (rc == MT_OK && *out != NULL) {
-        rc = note_file(*out, path, &file, err);
+        mt_model *const m = *out;
+        m->path = mt_arena_strdup(&m->mem, path);
+        m->sha256 = mt_arena_strdup(&m->mem, file.sha256);
+        rc = mt_arena_check(&m->mem, err);
     }
     if (doc != NULL && opt != NULL && opt->structural != NULL) {
         *opt->structural = mt_json_diags(doc)->structural;

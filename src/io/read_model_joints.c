@@ -63,19 +63,11 @@ MT_READ_TABLE(mt_damper_keys, "damper", DAMPER_KEYS);
 static const char *const JOINT_NAMES[] = {MT_JOINT_LIST(NAME_OF)};
 static const char *const SPRING_NAMES[] = {MT_SPRING_LIST(NAME_OF)};
 
-static void read_gear(mt_model_reader *mr, mt_addr value, mt_joint *j)
-{
-    mt_attach names[2];
-    mt_read_bodies(mr, value, names); /* two names as well */
-    for (int side = 0; side < 2; side++) {
-        j->gear_joints[side] = names[side].name;
-    }
-}
-
 static void read_joint(mt_model_reader *mr, mt_addr value, mt_joint *j)
 {
     const int before = mr->r.diags->errors;
     mt_addr at[JOINT_COUNT];
+    mt_attach coupled[2];
     (void)mt_reader_object(&mr->r, value, &mt_joint_keys, at);
     *j = (mt_joint){.gear_joint = {MT_ABSENT, MT_ABSENT}};
     j->name = mt_reader_name(&mr->r, at[JOINT_NAME]);
@@ -87,7 +79,10 @@ static void read_joint(mt_model_reader *mr, mt_addr value, mt_joint *j)
     j->has_axis_b = mt_read_vector(mr, at[JOINT_AXIS_B], j->axis_b);
     j->length = mt_read_num(mr, at[JOINT_LENGTH]);
     j->mass = mt_read_num(mr, at[JOINT_MASS]);
-    read_gear(mr, at[JOINT_JOINTS], j);
+    mt_read_bodies(mr, at[JOINT_JOINTS], coupled); /* two names as well */
+    for (int side = 0; side < 2; side++) {
+        j->gear_joints[side] = coupled[side].name;
+    }
     j->ratio = mt_read_num(mr, at[JOINT_RATIO]);
     j->ratio_m_per_rad = mt_read_num(mr, at[JOINT_RATIO_M]);
     j->in = mt_read_presence(mr, at[JOINT_IN]);

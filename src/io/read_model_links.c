@@ -97,17 +97,6 @@ static mt_section read_section(mt_model_reader *mr, mt_addr value)
     return s;
 }
 
-static void read_lists(mt_model_reader *mr, const mt_addr *at, mt_link *l)
-{
-    l->stiffness = mt_read_nums(mr, at[LINK_STIFFNESS], true, 1, MT_MAX_LIST, &l->n_stiffness);
-    l->element_length =
-        mt_read_nums(mr, at[LINK_LENGTH], true, 1, MT_MAX_LIST, &l->n_element_length);
-    l->element_mass =
-        mt_read_nums(mr, at[LINK_ELEMENT_MASS], true, 1, MT_MAX_LIST, &l->n_element_mass);
-    l->element_inertia =
-        mt_read_nums(mr, at[LINK_INERTIA], true, 1, MT_MAX_LIST, &l->n_element_inertia);
-}
-
 static void read_link(mt_model_reader *mr, mt_addr value, mt_link *l)
 {
     static const char *const kinds[] = {"rigid_elements", "beam"};
@@ -131,7 +120,13 @@ static void read_link(mt_model_reader *mr, mt_addr value, mt_link *l)
     l->rotary_inertia = at[LINK_ROTARY] == MT_NO_ADDR
                             ? l->shear.given
                             : mt_reader_flag(&mr->r, at[LINK_ROTARY], false);
-    read_lists(mr, at, l);
+    l->stiffness = mt_read_nums(mr, at[LINK_STIFFNESS], true, 1, MT_MAX_LIST, &l->n_stiffness);
+    l->element_length =
+        mt_read_nums(mr, at[LINK_LENGTH], true, 1, MT_MAX_LIST, &l->n_element_length);
+    l->element_mass =
+        mt_read_nums(mr, at[LINK_ELEMENT_MASS], true, 1, MT_MAX_LIST, &l->n_element_mass);
+    l->element_inertia =
+        mt_read_nums(mr, at[LINK_INERTIA], true, 1, MT_MAX_LIST, &l->n_element_inertia);
     l->has_hinge_axis = mt_read_vector(mr, at[LINK_HINGE_AXIS], l->hinge_axis);
     l->radius_of_gyration = mt_read_num(mr, at[LINK_GYRATION]);
     l->in = mt_read_presence(mr, at[LINK_IN]);

@@ -258,12 +258,6 @@ static const mt_field *find_field(const mt_record *record, const char *name, int
     return NULL;
 }
 
-/* Is it the root's "format", which the table of the result does not have? */
-static bool is_format(const mt_record *record, const char *name)
-{
-    return record == &mt_result_record && strcmp(name, FORMAT) == 0;
-}
-
 static void read_members(result_reader *s, mt_addr value, const mt_record *record, void *item)
 {
     bool seen[MOST_FIELDS] = {false};
@@ -281,7 +275,8 @@ static void read_members(result_reader *s, mt_addr value, const mt_record *recor
             if (!is_null(s, f, i.at)) {
                 read_field(s, i.at, f, item);
             }
-        } else if (f == NULL && !is_format(record, name)) {
+        } else if (f == NULL && (record != &mt_result_record || strcmp(name, FORMAT) != 0)) {
+            /* the table of the result lacks its format */
             mt_diag_structure(s->r.diags, mt_json_name_addr(s->r.doc, i.at),
                               "unknown member \"%s\"", name);
         }

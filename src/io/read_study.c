@@ -154,26 +154,8 @@ mt_model *mt_read_study_model(mt_study_reader *s, mt_name path)
     return s->read[s->n_read++].model;
 }
 
-/* The names that expressions may use. */
-static void use_parameters(mt_study_reader *s)
-{
-    const mt_model *const model = s->study->model;
-    const size_t n = (size_t)model->n_parameters;
-    const char **const names = mt_arena_alloc(&s->study->mem, n, sizeof *names);
-    if (names == NULL) {
-        return;
-    }
-    for (size_t i = 0; i < n; i++) {
-        names[i] = model->parameters[i].name.s;
-    }
-    s->r.lookup = mt_model_lookup;
-    s->r.context = model;
-    s->r.names = names;
-    s->r.n_names = model->n_parameters;
-}
-
-/* The study's own model and its parameters' values, before anything that is measured in
- * them. */
+/* The study's own model, the names that expressions may use, and the parameters' values, before
+ * anything that is measured in them. */
 static void read_model(mt_study_reader *s, mt_addr value)
 {
     mt_study *const study = s->study;
@@ -182,11 +164,19 @@ static void read_model(mt_study_reader *s, mt_addr value)
     if (study->model == NULL) {
         return;
     }
-    use_parameters(s);
-    double *const values = mt_arena_f64(&study->mem, (size_t)study->model->n_parameters, 1);
-    if (values == NULL) {
+    const size_t n = (size_t)study->model->n_parameters;
+    const char **const names = mt_arena_alloc(&study->mem, n, sizeof *names);
+    double *const values = mt_arena_f64(&study->mem, n, 1);
+    if (mt_arena_failed(&study->mem)) {
         return;
     }
+    for (size_t i = 0; i < n; i++) {
+        names[i] = study->model->parameters[i].name.s;
+    }
+    s->r.lookup = mt_model_lookup;
+    s->r.context = study->model;
+    s->r.names = names;
+    s->r.n_names = study->model->n_parameters;
     const mt_status rc =
         mt_model_original_values(study->model, &study->mem, values, NULL, NULL);
     if (rc == MT_E_MEMORY) {

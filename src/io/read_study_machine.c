@@ -64,17 +64,6 @@ static void read_gear(mt_study_reader *s, mt_addr value, mt_gear *gear)
     gear->orders = read_orders(s, o.found[GEAR_ORDERS], 'G', &gear->n_orders);
 }
 
-static void read_gears(mt_study_reader *s, mt_addr list, mt_machine *machine)
-{
-    mt_items items = mt_reader_some_items(&s->r, list, "the list of gears");
-    machine->gears = mt_reader_room(&s->r, &items, sizeof *machine->gears);
-    while (mt_items_next(&items)) {
-        if (mt_reader_type(&s->r, items.at, MT_KEY_OBJECT)) {
-            read_gear(s, items.at, &machine->gears[machine->n_gears++]);
-        }
-    }
-}
-
 /* A nominal speed with factors, or the two speeds themselves. */
 static void read_speeds(mt_study_reader *s, const mt_study_object *o, mt_machine *machine)
 {
@@ -116,7 +105,13 @@ void mt_read_study_machine(mt_study_reader *s, mt_addr value, mt_machine *machin
         (void)mt_read_study_one_of(s, &o, MACHINE_ORDERS, 2);
     }
     machine->orders = read_orders(s, o.found[MACHINE_ORDERS], 'E', &machine->n_orders);
-    read_gears(s, o.found[MACHINE_GEARS], machine);
+    mt_items gears = mt_reader_some_items(&s->r, o.found[MACHINE_GEARS], "the list of gears");
+    machine->gears = mt_reader_room(&s->r, &gears, sizeof *machine->gears);
+    while (mt_items_next(&gears)) {
+        if (mt_reader_type(&s->r, gears.at, MT_KEY_OBJECT)) {
+            read_gear(s, gears.at, &machine->gears[machine->n_gears++]);
+        }
+    }
     machine->margin_percent =
         mt_read_study_member(s, &o, MACHINE_MARGIN, &machine->margin_addr);
 }

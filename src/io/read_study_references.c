@@ -85,18 +85,6 @@ static void read_measured(mt_study_reader *s, mt_addr value, mt_measured_mode *m
     read_shape(s, o.found[MEASURED_SHAPE], mode);
 }
 
-static void read_modes(mt_study_reader *s, mt_addr list, mt_reference *r)
-{
-    if (list == MT_NO_ADDR) {
-        return;
-    }
-    mt_items items = mt_reader_some_items(&s->r, list, "the list of modes");
-    r->modes = mt_reader_room(&s->r, &items, sizeof *r->modes);
-    while (mt_items_next(&items)) { /* a wrong one still counts: modes are numbered */
-        read_measured(s, items.at, &r->modes[r->n_modes++]);
-    }
-}
-
 static void read_reference(mt_study_reader *s, mt_addr value, mt_reference *r)
 {
     mt_study_object o;
@@ -115,7 +103,11 @@ static void read_reference(mt_study_reader *s, mt_addr value, mt_reference *r)
     r->configuration_name = mt_reader_ref(&s->r, o.found[REFERENCE_CONFIGURATION]);
     r->model_path = mt_reader_ref(&s->r, o.found[REFERENCE_MODEL]);
     r->model = mt_read_study_model(s, r->model_path);
-    read_modes(s, o.found[REFERENCE_MODES], r);
+    mt_items modes = mt_reader_some_items(&s->r, o.found[REFERENCE_MODES], "the list of modes");
+    r->modes = mt_reader_room(&s->r, &modes, sizeof *r->modes);
+    while (mt_items_next(&modes)) { /* a wrong one still counts: modes are numbered */
+        read_measured(s, modes.at, &r->modes[r->n_modes++]);
+    }
 }
 
 void mt_read_study_references(mt_study_reader *s, mt_addr object)

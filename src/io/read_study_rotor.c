@@ -59,30 +59,22 @@ static void read_tail(mt_study_reader *s, mt_addr value, mt_rotor *rotor)
     rotor->tail_blades = mt_reader_count(&s->r, o.found[TAIL_BLADES], 1, MT_MAX_BLADES, 0);
 }
 
-static void read_harmonic(mt_study_reader *s, mt_addr at, mt_rotor *rotor)
-{
-    mt_harmonic *const h = &rotor->harmonics[rotor->n_harmonics];
-    const char *const text = mt_reader_text(&s->r, at);
-    if (text == NULL) {
-        return;
-    }
-    if (mt_harmonic_parse(text, h)) {
-        h->addr = at;
-        rotor->n_harmonics++;
-    } else {
-        mt_diag_structure(s->r.diags, at,
-                          "\"%s\" is no harmonic: a number from 1 to 999, n (the number of "
-                          "blades) or both, then P (main rotor) or T (tail rotor)",
-                          text);
-    }
-}
-
 static void read_harmonics(mt_study_reader *s, mt_addr list, mt_rotor *rotor)
 {
     mt_items items = mt_reader_some_items(&s->r, list, "the list of harmonics");
     rotor->harmonics = mt_reader_room(&s->r, &items, sizeof *rotor->harmonics);
     while (mt_items_next(&items)) {
-        read_harmonic(s, items.at, rotor);
+        mt_harmonic *const h = &rotor->harmonics[rotor->n_harmonics];
+        const char *const text = mt_reader_text(&s->r, items.at);
+        if (text != NULL && mt_harmonic_parse(text, h)) {
+            h->addr = items.at;
+            rotor->n_harmonics++;
+        } else if (text != NULL) {
+            mt_diag_structure(s->r.diags, items.at,
+                              "\"%s\" is no harmonic: a number from 1 to 999, n (the number of "
+                              "blades) or both, then P (main rotor) or T (tail rotor)",
+                              text);
+        }
     }
 }
 

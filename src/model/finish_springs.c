@@ -9,18 +9,6 @@
 /* Members that a type needs (N), may have (M), or has not ( ). */
 typedef enum need { NONE, MAY, NEEDS } need;
 
-static void check_member(mt_finish *f, const mt_spring *s, bool given, need wanted,
-                         const char *member)
-{
-    const bool wrong = given ? wanted == NONE : wanted == NEEDS;
-    if (wrong) {
-        const char *const what = s->damper ? "damper" : "spring";
-        mt_diag_error(f->d, s->name.addr, "%s \"%s\": %s %s %s %s \"%s\"", what, s->name.s,
-                      s->type == MT_SPRING_AXIAL ? "an" : "a", mt_spring_type_name(s->type),
-                      what, given ? "has no" : "needs", member);
-    }
-}
-
 bool mt_finish_hinge(mt_finish *f, mt_name name, int *at, int *number)
 {
     const char *const dot = strchr(name.s, '.');
@@ -150,6 +138,7 @@ static const rule RULES[] = {
 static void check_members(mt_finish *f, const mt_spring *s)
 {
     const rule *const r = &RULES[s->type];
+    const char *const what = s->damper ? "damper" : "spring";
     const bool torsion = s->type == MT_SPRING_TORSION;
     const char *const force = s->damper ? "damping_n_s_per_m" : "stiffness_n_per_m";
     const char *const torque = s->damper ? "damping_n_m_s_per_rad" : "stiffness_n_m_per_rad";
@@ -173,7 +162,12 @@ static void check_members(mt_finish *f, const mt_spring *s)
         {s->rotation[2] != MT_ABSENT, s->matrix == NULL ? r->lists : MAY, torque},
     };
     for (int i = 0; i < MT_COUNT(members); i++) {
-        check_member(f, s, members[i].given, members[i].wanted, members[i].member);
+        const bool given = members[i].given;
+        if (members[i].wanted == (given ? NONE : NEEDS)) {
+            mt_diag_error(f->d, s->name.addr, "%s \"%s\": %s %s %s %s \"%s\"", what, s->name.s,
+                          s->type == MT_SPRING_AXIAL ? "an" : "a", mt_spring_type_name(s->type),
+                          what, given ? "has no" : "needs", members[i].member);
+        }
     }
 }
 

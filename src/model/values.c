@@ -10,21 +10,6 @@
 #include <math.h>
 #include <stddef.h>
 
-typedef struct source {
-    bool input;
-    const mt_number *number;
-} source;
-
-static source source_of(const mt_model *model, const mt_num *override, const int *is_input,
-                        int parameter)
-{
-    if (override[parameter] != MT_ABSENT) {
-        return (source){false, &model->nums[override[parameter]]};
-    }
-    const mt_number *const own = &model->nums[model->parameters[parameter].value];
-    return (source){is_input != NULL && is_input[parameter] >= 0, own};
-}
-
 /* First parameter in the expression that has no node yet, or -1. */
 static int missing_operand(const mt_expr *e, const mt_node *nodes)
 {
@@ -58,8 +43,11 @@ static mt_status emit(const emission *x, int parameter, mt_err *err)
             depth--;
             continue;
         }
-        const source s = source_of(x->model, x->override, x->is_input, p);
-        const int waits_for = s.input ? -1 : missing_operand(&s.number->expr, nodes);
+        const mt_num over = x->override[p];
+        const bool input = over == MT_ABSENT && x->is_input != NULL && x->is_input[p] >= 0;
+        const mt_number *const number =
+            &x->model->nums[over == MT_ABSENT ? x->model->parameters[p].value : over];
+        const int waits_for = input ? -1 : missing_operand(&number->expr, nodes);
         if (waits_for >= 0) {
             if (depth >= x->model->n_parameters) {
                 return mt_fail(err, MT_E_INTERNAL, "parameter \"%s\" depends on itself",
@@ -68,9 +56,8 @@ static mt_status emit(const emission *x, int parameter, mt_err *err)
             x->stack[++depth] = waits_for;
             continue;
         }
-        nodes[p] = s.input
-                       ? mt_program_input(x->program, x->is_input[p], s.number->addr)
-                       : mt_program_expr(x->program, &s.number->expr, nodes, s.number->addr);
+        nodes[p] = input ? mt_program_input(x->program, x->is_input[p], number->addr)
+                         : mt_program_expr(x->program, &number->expr, nodes, number->addr);
         MT_TRY(mt_arena_check(x->program->mem, err)); /* what waits would wait for ever */
     }
     return MT_OK;

@@ -377,33 +377,6 @@ static void add_legend(const plot *p)
     }
 }
 
-static void diagram(plot *p)
-{
-    mt_text *const out = p->out;
-    set_scales(p);
-    if (!(p->x_most > 0.0) || !(p->y_most > 0.0) || !isfinite(p->y_most)) {
-        return;
-    }
-    mt_text_add(out, "<h2>Campbell diagram: ");
-    mt_html_escape(p->e->name, out);
-    mt_text_addf(out,
-                 "</h2>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" "
-                 "width=\"%d\" height=\"%d\" role=\"img\"><title>Campbell diagram: frequency "
-                 "over speed, orders through the origin, modes horizontal</title>\n"
-                 "<clipPath id=\"campbell%d\"><rect x=\"%d\" y=\"%d\" width=\"%d\" "
-                 "height=\"%d\"/></clipPath>\n",
-                 WIDTH, HEIGHT, WIDTH, HEIGHT, p->which, LEFT, TOP, RIGHT - LEFT, BOTTOM - TOP);
-    add_shades(p);
-    add_axes(p);
-    add_orders(p);
-    add_modes(p);
-    mt_text_addf(out, "<path d=\"M%d %dV%dH%d\" fill=\"none\" stroke=\"#333\"/>\n", LEFT, TOP,
-                 BOTTOM, RIGHT);
-    add_hidden(p);
-    add_legend(p);
-    mt_text_add(out, "</svg>\n");
-}
-
 void mt_report_svg_campbell(const mt_result *result, mt_text *out)
 {
     const bool found = result->n_recommendations > 0;
@@ -413,6 +386,28 @@ void mt_report_svg_campbell(const mt_result *result, mt_text *out)
                   .before = found,
                   .which = i,
                   .out = out};
-        diagram(&p);
+        set_scales(&p);
+        if (!(p.x_most > 0.0) || !(p.y_most > 0.0) || !isfinite(p.y_most)) {
+            continue;
+        }
+        mt_text_add(out, "<h2>Campbell diagram: ");
+        mt_html_escape(p.e->name, out);
+        mt_text_addf(
+            out,
+            "</h2>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" "
+            "width=\"%d\" height=\"%d\" role=\"img\"><title>Campbell diagram: frequency "
+            "over speed, orders through the origin, modes horizontal</title>\n"
+            "<clipPath id=\"campbell%d\"><rect x=\"%d\" y=\"%d\" width=\"%d\" "
+            "height=\"%d\"/></clipPath>\n",
+            WIDTH, HEIGHT, WIDTH, HEIGHT, p.which, LEFT, TOP, RIGHT - LEFT, BOTTOM - TOP);
+        add_shades(&p);
+        add_axes(&p);
+        add_orders(&p);
+        add_modes(&p);
+        mt_text_addf(out, "<path d=\"M%d %dV%dH%d\" fill=\"none\" stroke=\"#333\"/>\n", LEFT,
+                     TOP, BOTTOM, RIGHT);
+        add_hidden(&p);
+        add_legend(&p);
+        mt_text_add(out, "</svg>\n");
     }
 }

@@ -28,16 +28,6 @@ static void print_list(int n, const char *const *items, const char *title, mt_te
     }
 }
 
-static void print_relaxations(const mt_result *result, mt_text *out)
-{
-    if (result->n_relaxations > 0) {
-        mt_text_add(out, "\nWhat would let a design exist, one change at a time\n");
-    }
-    for (int i = 0; i < result->n_relaxations; i++) {
-        mt_text_addf(out, "  - %s\n", result->relaxations[i].text);
-    }
-}
-
 /* "stick.json:12:9: " as far as it is known. */
 static void print_place(const mt_doubt *d, mt_text *out)
 {
@@ -120,7 +110,7 @@ static void print_best(const mt_recommendation *r, mt_text *out)
     print_list(r->n_reasons, r->reasons, "Why", out);
 }
 
-static void print_undetermined(const mt_result *result, mt_text *out)
+void mt_report_uncertainty(const mt_result *result, mt_text *out)
 {
     if (result->n_undetermined > 0) {
         mt_text_add(out, "\nUndetermined: the goals hardly change along\n");
@@ -135,11 +125,6 @@ static void print_undetermined(const mt_result *result, mt_text *out)
         }
         mt_text_add(out, "\n");
     }
-}
-
-void mt_report_uncertainty(const mt_result *result, mt_text *out)
-{
-    print_undetermined(result, out);
     print_table(mt_report_spread(result), "Spread under other weights", out);
 }
 
@@ -172,7 +157,12 @@ void mt_report_summary(const mt_result *result, bool with_published, mt_text *ou
         const mt_certificate *const c = &result->certificates[i];
         mt_text_addf(out, "  - %s: %s\n", mt_report_surety(c->proven, doubtful), c->text);
     }
-    print_relaxations(result, out);
+    if (result->n_relaxations > 0) {
+        mt_text_add(out, "\nWhat would let a design exist, one change at a time\n");
+    }
+    for (int i = 0; i < result->n_relaxations; i++) {
+        mt_text_addf(out, "  - %s\n", result->relaxations[i].text);
+    }
     if (with_published) {
         print_table(mt_report_published(result), "Published against computed", out);
     }

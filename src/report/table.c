@@ -305,11 +305,6 @@ void mt_table_csv(const mt_table *t, mt_text *out)
     }
 }
 
-static size_t smaller(size_t a, size_t b)
-{
-    return a < b ? a : b;
-}
-
 void mt_html_escape(const char *s, mt_text *out)
 {
     static const char special[] = "&<>\"'";
@@ -326,7 +321,8 @@ void mt_html_escape(const char *s, mt_text *out)
             used = mt_visible_escape(s, left, escape);
             mt_text_add(out, escape);
         } else {
-            used = blank ? used : smaller(used, strcspn(s, special));
+            const size_t plain = strcspn(s, special);
+            used = blank || used < plain ? used : plain;
             mt_text_add_n(out, s, used);
         }
         s += used;
