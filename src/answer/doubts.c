@@ -270,18 +270,6 @@ static mt_status doubt_scale(const mt_analysis *a, mt_doubt_list *out, mt_err *e
     return MT_OK;
 }
 
-/* The distance after closing, beside that before. */
-static void add_what_is_left(const mt_analysis *a, mt_doubt_list *list)
-{
-    for (int i = 0; i < list->n; i++) {
-        mt_doubt *const d = &list->items[i];
-        if (strcmp(d->kind, "gap") == 0) {
-            d->text = mt_arena_printf(list->mem, "%s (to %.1e m)", d->text,
-                                      mt_linear_position(a->lin)->gap_m);
-        }
-    }
-}
-
 /* Into `out`; what is there already, of another configuration, belongs to no single one. */
 static void merge(mt_doubt_list *out, const mt_doubt *d)
 {
@@ -311,10 +299,14 @@ static mt_status gather(mt_analysis *a, int n_inputs, const int *inputs, const d
         list->items[i].file = m->path;
     }
     mt_model_judge(m, c, value, list);
-    add_what_is_left(a, list);
     for (int i = 0; i < list->n; i++) {
-        if (list->items[i].level == MT_LEVEL_FAULT) {
-            return mt_fail(err, MT_E_INPUT, "%s", list->items[i].text);
+        mt_doubt *const d = &list->items[i];
+        if (strcmp(d->kind, "gap") == 0) { /* the distance after closing, beside that before */
+            d->text = mt_arena_printf(list->mem, "%s (to %.1e m)", d->text,
+                                      mt_linear_position(a->lin)->gap_m);
+        }
+        if (d->level == MT_LEVEL_FAULT) {
+            return mt_fail(err, MT_E_INPUT, "%s", d->text);
         }
     }
     return mt_arena_check(list->mem, err);

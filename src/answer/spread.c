@@ -60,26 +60,6 @@ static void scale_weight(const mt_problem *p, double *weight, int goal, double f
     }
 }
 
-static mt_status note(spread *s, const double *t, int goal, double factor, mt_err *err)
-{
-    const char *const pointer = mt_arena_printf(&s->result->mem, "/goals/%d", goal);
-    MT_TRY(mt_arena_check(&s->result->mem, err));
-    mt_case_x(s->w->c, t, s->x);
-    for (int i = 0; i < s->w->p->n; i++) {
-        mt_result_spread *const r = &s->result->spread[i];
-        if (s->x[i] < r->low) {
-            r->low = s->x[i];
-            r->low_goal = pointer;
-            r->low_factor = factor;
-        } else if (s->x[i] > r->high) {
-            r->high = s->x[i];
-            r->high_goal = pointer;
-            r->high_factor = factor;
-        }
-    }
-    return MT_OK;
-}
-
 /* Solve again with one weight changed, from the best design, which is also what undetermined
  * directions are kept at. */
 static mt_status search_again(spread *s, int goal, double factor, mt_arena *mem, mt_err *err)
@@ -102,7 +82,22 @@ static mt_status search_again(spread *s, int goal, double factor, mt_arena *mem,
                                 "was found; its part is missing",
                                 goal, factor);
     }
-    return note(s, found.solutions[0].t, goal, factor, err);
+    const char *const pointer = mt_arena_printf(&s->result->mem, "/goals/%d", goal);
+    MT_TRY(mt_arena_check(&s->result->mem, err));
+    mt_case_x(s->w->c, found.solutions[0].t, s->x);
+    for (int i = 0; i < s->w->p->n; i++) {
+        mt_result_spread *const r = &s->result->spread[i];
+        if (s->x[i] < r->low) {
+            r->low = s->x[i];
+            r->low_goal = pointer;
+            r->low_factor = factor;
+        } else if (s->x[i] > r->high) {
+            r->high = s->x[i];
+            r->high_goal = pointer;
+            r->high_factor = factor;
+        }
+    }
+    return MT_OK;
 }
 
 static mt_status search_all(spread *s, mt_arena *mem, mt_err *err)

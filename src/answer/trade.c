@@ -282,34 +282,33 @@ static mt_status describe_what(const trade *t, mt_arena *mem, mt_trade_result *o
     return MT_OK;
 }
 
-static mt_status describe_point(const trade *t, int k, mt_arena *mem, mt_trade_point *out,
-                                mt_err *err)
-{
-    const mt_result *const r = answer_of(&t->points[k]);
-    const mt_recommendation *const best = best_of(r);
-    *out = (mt_trade_point){.n_values = t->study->trade.n_vary,
-                            .values = mt_arena_f64(mem, MT_MAX_VARY, 1),
-                            .status = r != NULL ? r->status : MT_RESULT_INTERRUPTED,
-                            .best = mt_recommendation_default()};
-    out->status_text = mt_arena_strdup(mem, r != NULL && r->status_text != NULL
-                                                ? r->status_text
-                                                : "Interrupted before it was answered.");
-    MT_TRY(mt_arena_check(mem, err));
-    memcpy(out->values, t->points[k].values, sizeof t->points[k].values);
-    return best == NULL ? MT_OK : mt_recommendation_copy(best, mem, &out->best, err);
-}
-
 static mt_status describe(const trade *t, mt_result *result, mt_err *err)
 {
-    mt_trade_result *const out = mt_arena_alloc(&result->mem, 1, sizeof *out);
-    MT_TRY(mt_arena_check(&result->mem, err));
+    mt_arena *const mem = &result->mem;
+    mt_trade_result *const out = mt_arena_alloc(mem, 1, sizeof *out);
+    MT_TRY(mt_arena_check(mem, err));
     *out = (mt_trade_result){.n_points = t->n};
-    MT_TRY(describe_what(t, &result->mem, out, err));
-    out->points = mt_arena_alloc(&result->mem, (size_t)t->n, sizeof *out->points);
-    MT_TRY(mt_arena_check(&result->mem, err));
+    MT_TRY(describe_what(t, mem, out, err));
+    out->points = mt_arena_alloc(mem, (size_t)t->n, sizeof *out->points);
+    MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < t->n; k++) {
-        MT_TRY(describe_point(t, k, &result->mem, &out->points[k], err));
-        result->run.evaluations += t->points[k].evaluations;
+        const point *const p = &t->points[k];
+        const mt_result *const r = answer_of(p);
+        const mt_recommendation *const best = best_of(r);
+        mt_trade_point *const told = &out->points[k];
+        *told = (mt_trade_point){.n_values = t->study->trade.n_vary,
+                                 .values = mt_arena_f64(mem, MT_MAX_VARY, 1),
+                                 .status = r != NULL ? r->status : MT_RESULT_INTERRUPTED,
+                                 .best = mt_recommendation_default()};
+        told->status_text = mt_arena_strdup(mem, r != NULL && r->status_text != NULL
+                                                     ? r->status_text
+                                                     : "Interrupted before it was answered.");
+        MT_TRY(mt_arena_check(mem, err));
+        memcpy(told->values, p->values, sizeof p->values);
+        if (best != NULL) {
+            MT_TRY(mt_recommendation_copy(best, mem, &told->best, err));
+        }
+        result->run.evaluations += p->evaluations;
     }
     mark_front(t, out);
     result->trade = out;

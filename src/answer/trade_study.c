@@ -15,14 +15,6 @@ static void *copied(mt_arena *mem, const void *items, int n, size_t size)
     return copy;
 }
 
-static mt_status put_margin(mt_goal *g, double percent, mt_arena *mem, mt_err *err)
-{
-    mt_avoid *const avoid = copied(mem, g->avoid, 1, sizeof *avoid);
-    MT_TRY(mt_arena_check(mem, err));
-    g->avoid = avoid;
-    return mt_bands_make(&avoid->source, percent, mem, &avoid->bands, err);
-}
-
 /* A model whose parameter has another value; variables start from what follows from it. */
 static mt_status put_parameter(mt_study *s, int parameter, double value, mt_arena *mem,
                                mt_err *err)
@@ -51,12 +43,17 @@ static mt_status put(mt_study *s, const mt_vary *v, double value, mt_arena *mem,
         *(v->upper ? &variable->upper : &variable->lower) = value;
         return MT_OK;
     }
-    case MT_VARY_GOAL:
-        if (v->slot == MT_SLOT_MARGIN) {
-            return put_margin(&s->goals[v->goal], value, mem, err);
+    case MT_VARY_GOAL: {
+        mt_goal *const g = &s->goals[v->goal];
+        if (v->slot != MT_SLOT_MARGIN) {
+            g->number[v->slot] = value;
+            return MT_OK;
         }
-        s->goals[v->goal].number[v->slot] = value;
-        return MT_OK;
+        mt_avoid *const avoid = copied(mem, g->avoid, 1, sizeof *avoid);
+        MT_TRY(mt_arena_check(mem, err));
+        g->avoid = avoid;
+        return mt_bands_make(&avoid->source, value, mem, &avoid->bands, err);
+    }
     case MT_VARY_PARAMETER:
         return put_parameter(s, v->parameter, value, mem, err);
     }

@@ -12,14 +12,6 @@
 
 enum { LOCAL_EVALUATIONS = 500 };
 
-static mt_status open_warm(mt_trade_warm *warm, mt_err *err)
-{
-    if (warm->p == NULL) {
-        MT_TRY(mt_problem_new(warm->study, &warm->p, err));
-    }
-    return warm->w != NULL ? MT_OK : mt_workspace_new(warm->p, &warm->w, err);
-}
-
 void mt_trade_warm_free(mt_trade_warm *warm)
 {
     mt_workspace_delete(warm->w);
@@ -109,7 +101,10 @@ mt_status mt_trade_improves(mt_trade_warm *warm, const double *x, const double *
     mt_err why = {0};
     *better = false;
     MT_TRY(mt_arena_init(&mem, 0, err));
-    mt_status rc = open_warm(warm, &why);
+    mt_status rc = warm->p == NULL ? mt_problem_new(warm->study, &warm->p, &why) : MT_OK;
+    if (rc == MT_OK && warm->w == NULL) {
+        rc = mt_workspace_new(warm->p, &warm->w, &why);
+    }
     rc = rc == MT_OK ? compare(warm->w, x, best_x, &mem, better, evaluations, &why) : rc;
     mt_arena_free(&mem);
     /* a start without a value is no better start, and no failure */

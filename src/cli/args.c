@@ -24,16 +24,6 @@ static const char *did_you_mean(const char *name, const char *const *names, int 
     return text;
 }
 
-static int find_command(const char *name)
-{
-    for (int i = 0; i < MT_CMD_IDS; i++) {
-        if (strcmp(name, mt_commands[i].name) == 0) {
-            return i;
-        }
-    }
-    return MT_CMD_NONE;
-}
-
 bool mt_option_is_of(int option, int command)
 {
     const unsigned commands = mt_options[option].commands;
@@ -188,12 +178,12 @@ static mt_status read_command(mt_args *args, const char *name, mt_err *err)
 {
     const char *names[MT_CMD_IDS];
     char suggestion[SUGGESTION_TEXT];
-    args->command = find_command(name);
-    if (args->command != MT_CMD_NONE) {
-        return MT_OK;
-    }
     for (int i = 0; i < MT_CMD_IDS; i++) {
         names[i] = mt_commands[i].name;
+        if (strcmp(name, names[i]) == 0) {
+            args->command = i;
+            return MT_OK;
+        }
     }
     return mt_fail(err, MT_E_USAGE, "unknown command \"%s\"%s", name,
                    did_you_mean(name, names, MT_CMD_IDS, "", suggestion));
@@ -218,27 +208,6 @@ static mt_status check_operands(const mt_args *args, mt_err *err)
     return MT_OK;
 }
 
-static mt_status read_argument(mt_args *args, int argc, char *const argv[], int *at,
-                               bool *operands_only, mt_err *err)
-{
-    const char *const s = argv[*at];
-    if (!*operands_only && strcmp(s, "--") == 0) {
-        *operands_only = true;
-        return MT_OK;
-    }
-    if (!*operands_only && strncmp(s, "--", 2) == 0) {
-        return read_long(args, argc, argv, at, err);
-    }
-    if (!*operands_only && s[0] == '-' && s[1] != '\0') {
-        return read_short(args, argc, argv, at, err);
-    }
-    if (args->command == MT_CMD_NONE) {
-        return read_command(args, s, err);
-    }
-    args->operands[args->n_operands++] = s;
-    return MT_OK;
-}
-
 mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err)
 {
     const size_t room = argc > 0 ? (size_t)argc : 1;
@@ -250,7 +219,20 @@ mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err)
         return mt_fail(err, MT_E_MEMORY, "out of memory");
     }
     for (int i = 1; i < argc; i++) {
-        MT_TRY(read_argument(out, argc, argv, &i, &operands_only, err));
+        const char *const s = argv[i];
+        mt_status rc = MT_OK;
+        if (!operands_only && strcmp(s, "--") == 0) {
+            operands_only = true;
+        } else if (!operands_only && strncmp(s, "--", 2) == 0) {
+            rc = read_long(out, argc, argv, &i, err);
+        } else if (!operands_only && s[0] == '-' && s[1] != '\0') {
+            rc = read_short(out, argc, argv, &i, err);
+        } else if (out->command == MT_CMD_NONE) {
+            rc = read_command(out, s, err);
+        } else {
+            out->operands[out->n_operands++] = s;
+        }
+        MT_TRY(rc);
     }
     return check_operands(out, err);
 }

@@ -130,14 +130,6 @@ typedef struct subject {
     mt_arena mem; /* of a catalogue of aircraft */
 } subject;
 
-static void forget(subject *s)
-{
-    mt_arena_free(&s->mem);
-    mt_model_delete(s->model);
-    mt_study_delete(s->study);
-    mt_result_delete(s->result);
-}
-
 /* More goals or variables are not compiled by who only looks: each costs some derivatives. */
 enum { MOST_TRIED = 200 };
 
@@ -163,7 +155,7 @@ static mt_status examine(const subject *s, const char *path, mt_diagnostics *mes
 }
 
 static mt_status load(int kind, const char *path, const mt_io_options *opt, subject *s,
-                      mt_diagnostics *messages, mt_doubt_list *found, mt_err *err)
+                      mt_diagnostics *messages, mt_err *err)
 {
     mt_aircraft_list aircraft = {0};
     mt_status rc = MT_OK;
@@ -184,8 +176,6 @@ static mt_status load(int kind, const char *path, const mt_io_options *opt, subj
     case KIND_COUNT:
         break;
     }
-    rc = rc == MT_OK ? examine(s, path, messages, found, err) : rc;
-    add_messages(found, path, messages);
     return rc;
 }
 
@@ -225,9 +215,9 @@ static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_ta
     subject read = {.model = NULL};
     mt_status rc = find_kind(path, &opt, &kind, &messages, &err);
     rc = rc == MT_OK ? mt_arena_init(&mem, 0, &err) : rc;
-    if (rc == MT_OK) {
-        rc = load(kind, path, &opt, &read, &messages, &found, &err);
-    }
+    rc = rc == MT_OK ? load(kind, path, &opt, &read, &messages, &err) : rc;
+    rc = rc == MT_OK ? examine(&read, path, &messages, &found, &err) : rc;
+    add_messages(&found, path, &messages);
     const char *const name = kind == KIND_COUNT ? NULL : kinds[kind];
     if (args->format == MT_FORMAT_JSON) {
         mt_json_open(w, NULL, '{');
@@ -245,7 +235,10 @@ static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_ta
     } else if (rc == MT_OK) {
         mt_text_addf(out, "%s: ok (%s)\n", path, name);
     }
-    forget(&read);
+    mt_arena_free(&read.mem);
+    mt_model_delete(read.model);
+    mt_study_delete(read.study);
+    mt_result_delete(read.result);
     mt_arena_free(&mem);
     return mt_cli_loaded(rc, &messages, &err);
 }

@@ -195,21 +195,6 @@ static void print_shapes(const view *v, mt_text *out)
     mt_table_free(&t);
 }
 
-static void tell_clusters(const mt_modes *m, int shown, mt_text *out)
-{
-    for (int i = 0; i < shown; i++) {
-        int size = 1;
-        const int first = mt_modal_cluster(m, i, &size);
-        if (size > 1 && first == i && m->kind[i] == MT_MODE_FLEXIBLE) {
-            const int index = mt_modes_index(m, i);
-            mt_text_addf(out,
-                         "  Modes %d to %d are repeated: only the space that their shapes span "
-                         "is determined.\n",
-                         index, index + size - 1);
-        }
-    }
-}
-
 static void tell(const view *v, mt_text *out)
 {
     const mt_modes *const m = &v->a->modes;
@@ -223,7 +208,17 @@ static void tell(const view *v, mt_text *out)
                      m->n_condensed, m->n_condensed == 1 ? "" : "s",
                      m->n_condensed == 1 ? "s" : "");
     }
-    tell_clusters(m, v->shown, out);
+    for (int i = 0; i < v->shown; i++) {
+        int size = 1;
+        const int first = mt_modal_cluster(m, i, &size);
+        if (size > 1 && first == i && m->kind[i] == MT_MODE_FLEXIBLE) {
+            const int index = mt_modes_index(m, i);
+            mt_text_addf(out,
+                         "  Modes %d to %d are repeated: only the space that their shapes span "
+                         "is determined.\n",
+                         index, index + size - 1);
+        }
+    }
 }
 
 static void text_view(const view *v, mt_text *out)

@@ -3,16 +3,6 @@
 #include "cli/cli.h"
 #include "cli/save.h"
 
-static int report(const mt_args *args, mt_result *result, mt_text *out)
-{
-    mt_json_writer w = mt_json_writer_default(out);
-    mt_save_print(args, result, &w, out);
-    const int code = args->format == MT_FORMAT_JSON ? mt_cli_json_done(&w) : MT_EXIT_DONE;
-    return args->given[MT_OPT_OUTPUT]
-               ? mt_exit_worse(code, mt_save_again(args, args->operands[0], result))
-               : code;
-}
-
 int mt_cmd_report(const mt_args *args, mt_text *out)
 {
     const mt_io_options opt = mt_cli_io(args);
@@ -22,7 +12,12 @@ int mt_cmd_report(const mt_args *args, mt_text *out)
     const mt_status rc = mt_result_load(args->operands[0], &opt, &result, &messages, &err);
     int code = mt_cli_loaded(rc, &messages, &err);
     if (rc == MT_OK) {
-        code = report(args, result, out);
+        mt_json_writer w = mt_json_writer_default(out);
+        mt_save_print(args, result, &w, out);
+        code = args->format == MT_FORMAT_JSON ? mt_cli_json_done(&w) : MT_EXIT_DONE;
+    }
+    if (rc == MT_OK && args->given[MT_OPT_OUTPUT]) {
+        code = mt_exit_worse(code, mt_save_again(args, args->operands[0], result));
     }
     mt_result_delete(result);
     return code;

@@ -53,14 +53,6 @@ static int answer(job *j)
     return mt_cli_loaded(rc, &messages, &err);
 }
 
-static void finish(job *j)
-{
-    mt_result_delete(j->result);
-    mt_study_delete(j->study);
-    j->result = NULL;
-    j->study = NULL;
-}
-
 /* Nothing to judge must not look like a success. */
 static int verdict(const job *j)
 {
@@ -128,7 +120,8 @@ static int one_study(const mt_args *args, int i, bool stops, mt_json_writer *w, 
     }
     mt_terminal_release_signals();
     free(words);
-    finish(&j);
+    mt_result_delete(j.result);
+    mt_study_delete(j.study);
     return mt_exit_worse(code, json ? MT_EXIT_DONE : mt_terminal_put(out));
 }
 
@@ -168,7 +161,7 @@ int mt_cmd_run(const mt_args *args, mt_text *out)
     return code == MT_EXIT_DONE ? for_each_study(args, out, true, run_one) : code;
 }
 
-static void print_comparison(const job *j, mt_json_writer *w, mt_text *out)
+static int compare_one(const job *j, mt_json_writer *w, mt_text *out)
 {
     const mt_result *const r = j->result;
     mt_table t = mt_report_published(r);
@@ -203,11 +196,6 @@ static void print_comparison(const job *j, mt_json_writer *w, mt_text *out)
         break;
     }
     mt_table_free(&t);
-}
-
-static int compare_one(const job *j, mt_json_writer *w, mt_text *out)
-{
-    print_comparison(j, w, out);
     return outcome(j, true);
 }
 

@@ -17,13 +17,6 @@ static const char *name_of(const mt_survey *v, int k)
     return v->s->model->parameters[v->parameter[k]].name.s;
 }
 
-static const char *why_not(const mt_survey *v, int k)
-{
-    return v->independence[k].opens
-               ? "could not stay closed at any other value"
-               : "are redundant at this value only and block a motion at any other";
-}
-
 static bool has_none(const mt_survey *v, int k)
 {
     return v->independence[k].opens || v->independence[k].blocks;
@@ -140,7 +133,11 @@ static void write_text(mt_text *out, const mt_survey *v)
     for (int k = 0; k < v->n; k++) {
         if (has_none(v, k)) {
             mt_text_addf(out, "  No derivative by %s: joints %s %s.\n", name_of(v, k),
-                         v->independence[k].joints.text, why_not(v, k));
+                         v->independence[k].joints.text,
+                         v->independence[k].opens
+                             ? "could not stay closed at any other value"
+                             : "are redundant at this value only and block a motion at any "
+                               "other");
         }
     }
     if (overridden) {

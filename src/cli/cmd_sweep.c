@@ -11,11 +11,6 @@
 
 enum { DEFAULT_MODES = 6, MOST_POINTS = 100001 };
 
-static mt_status wrong_form(const char *text, mt_err *err)
-{
-    return mt_fail(err, MT_E_USAGE, "--drive: \"%s\" is not JOINT=FROM:TO:N", text);
-}
-
 /* One bound: an expression of the model's values. */
 static mt_status read_bound(mt_subject *s, const char *text, size_t length, double *out,
                             mt_err *err)
@@ -70,7 +65,7 @@ static mt_status read_request(const mt_args *args, mt_subject *s, mt_sweep_reque
     const char *const first = equals == NULL ? NULL : strchr(equals, ':');
     const char *const second = first == NULL ? NULL : strchr(first + 1, ':');
     if (second == NULL || equals == text || strchr(second + 1, ':') != NULL) {
-        return wrong_form(text, err);
+        return mt_fail(err, MT_E_USAGE, "--drive: \"%s\" is not JOINT=FROM:TO:N", text);
     }
     out->drive.joint = mt_arena_strndup(&s->mem, text, (size_t)(equals - text));
     out->drive.spring = args->value[MT_OPT_HOLD];

@@ -56,19 +56,11 @@ static void help_option(const mt_option *o, mt_text *out)
     fill(o->help, OPTION_COLUMN, out);
 }
 
-/* "modetune modes MODEL [options]" */
-static void usage(int command, mt_text *out)
-{
-    const mt_command *const c = &mt_commands[command];
-    mt_text_addf(out, "modetune %s %s [options]", c->name, c->operands);
-}
-
 static void help_command(int command, mt_text *out)
 {
-    mt_text_add(out, "Usage: ");
-    usage(command, out);
-    mt_text_add(out, "\n\n");
-    fill(mt_commands[command].details, 0, out);
+    const mt_command *const c = &mt_commands[command];
+    mt_text_addf(out, "Usage: modetune %s %s [options]\n\n", c->name, c->operands);
+    fill(c->details, 0, out);
     mt_text_add(out, "\nOptions:\n");
     for (int i = 0; i < MT_OPT_IDS; i++) {
         if (mt_option_is_of(i, command)) {
