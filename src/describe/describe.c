@@ -32,14 +32,6 @@ mt_status mt_describe_warn(mt_result *result, mt_err *err, const char *fmt, ...)
     return MT_OK;
 }
 
-static const char *bound_of(const mt_variable *v, double x)
-{
-    if (x == v->lower) {
-        return "lower";
-    }
-    return x == v->upper ? "upper" : NULL;
-}
-
 static mt_status describe_parameters(const mt_problem *p, const double *x, const double *t,
                                      mt_result *result, mt_recommendation *rec, mt_err *err)
 {
@@ -60,7 +52,9 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
             .recommended = x[i],
             .change_percent =
                 original != 0.0 ? 100.0 * (x[i] - original) / fabs(original) : nan(""),
-            .at_bound = bound_of(v, x[i]),
+            .at_bound = x[i] == v->lower   ? "lower"
+                        : x[i] == v->upper ? "upper"
+                                           : NULL,
             .measure = MT_HAS(p->scale[i]) ? "linear"
                        : p->floor[i] > 0.0 ? "logarithmic with floor"
                                            : "logarithmic",

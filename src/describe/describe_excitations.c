@@ -5,12 +5,6 @@
 
 #include "describe/describe.h"
 
-static bool has_order(const mt_rotor *rotor, int i, double *order)
-{
-    *order = mt_rotor_harmonic_hz(rotor, &rotor->harmonics[i]) / rotor->speed_hz;
-    return *order > 0.0;
-}
-
 static mt_status put_rotor(const mt_rotor *rotor, mt_arena *mem, mt_result_excitation *e,
                            mt_err *err)
 {
@@ -23,8 +17,9 @@ static mt_status put_rotor(const mt_rotor *rotor, mt_arena *mem, mt_result_excit
     e->orders = mt_arena_alloc(mem, (size_t)rotor->n_harmonics, sizeof *e->orders);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < rotor->n_harmonics; i++) {
-        double order = 0.0;
-        if (has_order(rotor, i, &order)) {
+        const double order =
+            mt_rotor_harmonic_hz(rotor, &rotor->harmonics[i]) / rotor->speed_hz;
+        if (order > 0.0) {
             e->orders[e->n_orders++] = (mt_result_order){
                 .label = mt_arena_strdup(mem, rotor->harmonics[i].text), .order = order};
         }
@@ -55,31 +50,24 @@ static mt_status put_machine(const mt_machine *machine, mt_arena *mem, mt_result
     return mt_arena_check(mem, err);
 }
 
-static mt_status begin(const mt_study *study, int goal, mt_arena *mem, mt_result_excitation *e,
-                       mt_err *err)
-{
-    const mt_goal *const g = &study->goals[goal];
-    *e = (mt_result_excitation){
-        .pointer = mt_arena_printf(mem, "/goals/%d", goal),
-        .configurations = mt_arena_alloc(mem, (size_t)g->n_configurations, sizeof(char *))};
-    MT_TRY(mt_arena_check(mem, err));
-    for (int k = 0; k < g->n_configurations; k++) {
-        const char *const name = study->model->configurations[g->configurations[k]].name.s;
-        e->configurations[e->n_configurations++] = mt_arena_strdup(mem, name);
-    }
-    return mt_arena_check(mem, err);
-}
-
 static mt_status describe_goal(const mt_study *study, int goal, mt_result *result, mt_err *err)
 {
-    const mt_bands_source *const source = &study->goals[goal].avoid->source;
+    const mt_goal *const g = &study->goals[goal];
+    const mt_bands_source *const source = &g->avoid->source;
     mt_arena *const mem = &result->mem;
     for (int i = 0; i < source->n_rotors + source->n_machines; i++) {
         const bool machine = i >= source->n_rotors;
         mt_result_excitation *const e = &result->excitations[result->n_excitations];
         const mt_rotor *const rotor = machine ? NULL : &source->rotors[i];
         const mt_machine *const m = machine ? &source->machines[i - source->n_rotors] : NULL;
-        MT_TRY(begin(study, goal, mem, e, err));
+        *e = (mt_result_excitation){
+            .pointer = mt_arena_printf(mem, "/goals/%d", goal),
+            .configurations = mt_arena_alloc(mem, (size_t)g->n_configurations, sizeof(char *))};
+        MT_TRY(mt_arena_check(mem, err));
+        for (int k = 0; k < g->n_configurations; k++) {
+            const char *const name = study->model->configurations[g->configurations[k]].name.s;
+            e->configurations[e->n_configurations++] = mt_arena_strdup(mem, name);
+        }
         e->margin_percent =
             mt_bands_margin(source, machine ? m->margin_percent : rotor->margin_percent);
         MT_TRY(machine ? put_machine(m, mem, e, err) : put_rotor(rotor, mem, e, err));

@@ -186,12 +186,6 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
                : doubt(fresh, d, result, g, err);
 }
 
-static const char *design_text(const mt_design *design, mt_arena *mem)
-{
-    return design->found == NULL ? "the original design"
-                                 : mt_arena_printf(mem, "recommendation %d", design->rank);
-}
-
 mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_result *result,
                             mt_recommendation *rec, mt_err *err)
 {
@@ -227,7 +221,10 @@ mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_res
         return MT_OK;
     }
     rec->violation_percent = nan("");
-    const char *const where = design_text(design, &result->mem);
+    const char *const where =
+        design->found == NULL
+            ? "the original design"
+            : mt_arena_printf(&result->mem, "recommendation %d", design->rank);
     return where == NULL ? mt_fail_memory(err)
                          : mt_describe_warn(result, err, "not all goals have a value at %s: %s",
                                             where, why.text);

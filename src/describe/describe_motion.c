@@ -125,13 +125,6 @@ static mt_status examine(described *d, mt_err *err)
     return MT_OK;
 }
 
-/* "pivot from -0.5 to 0.5 rad" */
-static const char *range_text(const described *d, double from, double to)
-{
-    return mt_arena_printf(&d->result->mem, "%s from %.6g to %.6g %s", d->family->joint, from,
-                           to, d->family->angle ? "rad" : "m");
-}
-
 static const char *grade_of(const described *d)
 {
     if (!d->followed) {
@@ -287,7 +280,8 @@ static mt_status describe_family(mt_workspace *fresh, const mt_family *f, mt_res
     if (d.followed && d.motion.end == MT_MOTION_NONE) {
         return MT_OK; /* no band is asked for on both sides of a motion */
     }
-    const char *const range = range_text(&d, from, to);
+    const char *const range = mt_arena_printf(&result->mem, "%s from %.6g to %.6g %s", f->joint,
+                                              from, to, f->angle ? "rad" : "m");
     MT_TRY(mt_arena_check(&result->mem, err));
     MT_TRY(put_goal(&d, range, rec, err));
     return put_row(&d, range, from, to, rec, err);

@@ -133,25 +133,6 @@ static mt_status compute_mode(judge *j, const mt_published *pub, double *value, 
     return rc;
 }
 
-static mt_status compute(judge *j, int i, double *value, mt_err *err)
-{
-    const mt_published *const pub = &j->p->study->published[i];
-    *value = nan("");
-    switch (pub->kind) {
-    case MT_PUBLISHED_PARAMETER:
-    case MT_PUBLISHED_QUANTITY:
-        *value = j->value[pub->original ? ORIGINAL : RECOMMENDED][j->p->published[i]];
-        return MT_OK;
-    case MT_PUBLISHED_FREQUENCY:
-    case MT_PUBLISHED_MAC:
-        return compute_mode(j, pub, value, err);
-    case MT_PUBLISHED_STATUS:
-    case MT_PUBLISHED_KIND_COUNT:
-        break;
-    }
-    return MT_OK;
-}
-
 static const char *label_of(const mt_problem *p, const mt_published *pub, mt_arena *mem)
 {
     const mt_model *const model = p->study->model;
@@ -182,28 +163,23 @@ static const char *label_of(const mt_problem *p, const mt_published *pub, mt_are
 }
 
 /* A limit beside a published value is told; alone it stands in the value's place. */
-static const char *limit_text(const mt_published *pub, mt_arena *mem)
-{
-    const bool shown = MT_HAS(pub->value);
-    if (MT_HAS(pub->at_least) && MT_HAS(pub->at_most)) {
-        return mt_arena_printf(mem, "from %.10g to %.10g", pub->at_least, pub->at_most);
-    }
-    if (MT_HAS(pub->at_least)) {
-        return shown ? mt_arena_printf(mem, "at least %.10g", pub->at_least) : "at least";
-    }
-    return shown ? mt_arena_printf(mem, "at most %.10g", pub->at_most) : "at most";
-}
-
 static const char *demand_of(const mt_published *pub, mt_arena *mem)
 {
+    const bool shown = MT_HAS(pub->value);
     if (MT_HAS(pub->tolerance)) {
         return mt_arena_printf(mem, "within %g", pub->tolerance);
     }
     if (MT_HAS(pub->tolerance_percent)) {
         return mt_arena_printf(mem, "within %g %%", pub->tolerance_percent);
     }
-    if (MT_HAS(pub->at_least) || MT_HAS(pub->at_most)) {
-        return limit_text(pub, mem);
+    if (MT_HAS(pub->at_least) && MT_HAS(pub->at_most)) {
+        return mt_arena_printf(mem, "from %.10g to %.10g", pub->at_least, pub->at_most);
+    }
+    if (MT_HAS(pub->at_least)) {
+        return shown ? mt_arena_printf(mem, "at least %.10g", pub->at_least) : "at least";
+    }
+    if (MT_HAS(pub->at_most)) {
+        return shown ? mt_arena_printf(mem, "at most %.10g", pub->at_most) : "at most";
     }
     return "reported";
 }
@@ -246,7 +222,11 @@ static mt_status judge_one(judge *j, int i, mt_result_published *out, mt_err *er
         out->holds = strcmp(pub->status, out->computed_text) == 0;
         return MT_OK;
     }
-    MT_TRY(mt_err_in(err, compute(j, i, &out->computed, err), "/published/%d", i));
+    if (pub->kind == MT_PUBLISHED_PARAMETER || pub->kind == MT_PUBLISHED_QUANTITY) {
+        out->computed = j->value[pub->original ? ORIGINAL : RECOMMENDED][j->p->published[i]];
+    } else {
+        MT_TRY(mt_err_in(err, compute_mode(j, pub, &out->computed, err), "/published/%d", i));
+    }
     out->published = MT_HAS(pub->value)
                          ? pub->value
                          : (MT_HAS(pub->at_least) ? pub->at_least : pub->at_most);

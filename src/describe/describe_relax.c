@@ -9,23 +9,17 @@ static const double PERCENT = 100.0;
 /* Sentences of more moves than that do not help. */
 enum { MOST = 8 };
 
-/* The member of the goal that moves. */
-static const char *goal_member(const mt_goal *g, const mt_move *m)
-{
-    const mt_goal_slot slot = m->target  ? MT_SLOT_EQUALS
-                              : m->upper ? MT_SLOT_AT_MOST
-                                         : MT_SLOT_AT_LEAST;
-    return mt_goal_member_name(mt_goal_kind_of(g->type), slot);
-}
-
 static void name_goal(const mt_problem *p, const mt_move *m, mt_arena *mem, mt_relaxation *out)
 {
     const mt_demand *const d = &p->demands[m->demand];
-    const char *const member = goal_member(d->goal, m);
-    const char *const unit = mt_goal_kind_of(d->goal->type)->unit;
+    const mt_goal_kind *const kind = mt_goal_kind_of(d->goal->type);
+    const mt_goal_slot slot = m->target  ? MT_SLOT_EQUALS
+                              : m->upper ? MT_SLOT_AT_MOST
+                                         : MT_SLOT_AT_LEAST;
+    const char *const member = mt_goal_member_name(kind, slot);
     out->kind = "goal";
     out->pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index);
-    out->unit = unit[0] != '\0' ? unit : NULL;
+    out->unit = kind->unit[0] != '\0' ? kind->unit : NULL;
     out->what = d->view < 0
                     ? mt_arena_printf(mem, "%s of goal %s", member, out->pointer)
                     : mt_arena_printf(mem, "%s of goal %s (\"%s\")", member, out->pointer,

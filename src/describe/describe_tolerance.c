@@ -20,29 +20,24 @@ static const double MOST_PERCENT = 100.0;
  * boxes cost more and gain less. */
 enum { BOXES_FEW_VARIABLES = 64, BOXES_MANY_VARIABLES = 8, FEW_VARIABLES = 8 };
 
-static mt_status count_band(mt_workspace *fresh, const mt_clear *c, const mt_band *band,
-                            mt_result *result, bool *confirmed, mt_err *err)
-{
-    const mt_analysis *const a = fresh->views[c->view].analysis;
-    mt_band_count count = {0};
-    MT_TRY(mt_certify_count(a->lin, a->modes.n_rigid, band->lower_hz, band->upper_hz,
-                            c->tolerance, &fresh->mem, &count, err));
-    *confirmed = *confirmed && count.sure && count.inside == 0;
-    if (count.inside == 0) {
-        return MT_OK;
-    }
-    return mt_describe_warn(
-        result, err,
-        "%s: an inertia count finds %d mode%s inside the band %s of a recommended design",
-        mt_analysis_configuration(a), count.inside, count.inside == 1 ? "" : "s", band->label);
-}
-
 /* Every band of a clear, by inertia, at the design that its analysis has been solved at. */
 static mt_status confirm_here(mt_workspace *fresh, const mt_clear *c, mt_result *result,
                               bool *confirmed, mt_err *err)
 {
+    const mt_analysis *const a = fresh->views[c->view].analysis;
     for (int b = 0; b < c->bands.n; b++) {
-        MT_TRY(count_band(fresh, c, &c->bands.items[b], result, confirmed, err));
+        const mt_band *const band = &c->bands.items[b];
+        mt_band_count count = {0};
+        MT_TRY(mt_certify_count(a->lin, a->modes.n_rigid, band->lower_hz, band->upper_hz,
+                                c->tolerance, &fresh->mem, &count, err));
+        *confirmed = *confirmed && count.sure && count.inside == 0;
+        if (count.inside != 0) {
+            MT_TRY(mt_describe_warn(result, err,
+                                    "%s: an inertia count finds %d mode%s inside the band %s "
+                                    "of a recommended design",
+                                    mt_analysis_configuration(a), count.inside,
+                                    count.inside == 1 ? "" : "s", band->label));
+        }
     }
     return MT_OK;
 }

@@ -148,17 +148,6 @@ static void check_rotor(mt_study_check *c, const mt_avoid *avoid, mt_rotor *roto
     }
 }
 
-/* Rotors without a name are told apart by number. */
-static void name_rotors(mt_study_check *c, const mt_bands_source *source)
-{
-    for (int i = 0; i < source->n_rotors && source->n_rotors > 1; i++) {
-        mt_rotor *const rotor = &source->rotors[i];
-        if (rotor->name == NULL && rotor->aircraft.s == NULL) {
-            rotor->name = mt_arena_printf(&c->study->mem, "rotor %d", i + 1);
-        }
-    }
-}
-
 static void check_orders(mt_study_check *c, const mt_order *orders, int n)
 {
     if (n > 0 && too_many(c, n, orders[0].addr, "orders")) {
@@ -212,17 +201,6 @@ static void check_machine(mt_study_check *c, const mt_avoid *avoid, const mt_mac
     }
 }
 
-/* Machines without a name are told apart by number. */
-static void name_machines(mt_study_check *c, const mt_bands_source *source)
-{
-    for (int i = 0; i < source->n_machines && source->n_machines > 1; i++) {
-        mt_machine *const machine = &source->machines[i];
-        if (machine->name == NULL) {
-            machine->name = mt_arena_printf(&c->study->mem, "machine %d", i + 1);
-        }
-    }
-}
-
 /* A catalogue that could not be read (noted) leaves rotors without a speed. */
 static bool is_known(const mt_bands_source *source)
 {
@@ -261,13 +239,20 @@ void mt_study_check_avoid(mt_study_check *c, mt_goal *goal)
     check_margin(c, avoid->source.margin_percent, avoid->margin_addr);
     mt_check_positive(c, avoid->source.up_to_hz, avoid->up_to_addr, "up_to_hz");
     check_intervals(c, &avoid->source);
-    name_rotors(c, &avoid->source);
+    /* several rotors or machines without a name are told apart by number */
     for (int i = 0; i < avoid->source.n_rotors; i++) {
-        check_rotor(c, avoid, &avoid->source.rotors[i]);
+        mt_rotor *const rotor = &avoid->source.rotors[i];
+        if (avoid->source.n_rotors > 1 && rotor->name == NULL && rotor->aircraft.s == NULL) {
+            rotor->name = mt_arena_printf(&c->study->mem, "rotor %d", i + 1);
+        }
+        check_rotor(c, avoid, rotor);
     }
-    name_machines(c, &avoid->source);
     for (int i = 0; i < avoid->source.n_machines; i++) {
-        check_machine(c, avoid, &avoid->source.machines[i]);
+        mt_machine *const machine = &avoid->source.machines[i];
+        if (avoid->source.n_machines > 1 && machine->name == NULL) {
+            machine->name = mt_arena_printf(&c->study->mem, "machine %d", i + 1);
+        }
+        check_machine(c, avoid, machine);
     }
     if (c->diags->errors == 0 && is_known(&avoid->source)) {
         make_bands(c, goal);

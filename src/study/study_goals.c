@@ -33,28 +33,23 @@ static bool given(const mt_goal *goal, mt_goal_slot slot)
     return mt_check_given(goal->number[slot], goal->number_addr[slot], goal->addr);
 }
 
-/* The member that asks for a value, by its number or by a reference that gives it; NULL: none
- * does. */
-static const char *equality_of(const mt_goal *goal, const mt_goal_kind *kind)
-{
-    const bool reference = goal->reference_name.addr != goal->addr;
-    return given(goal, MT_SLOT_EQUALS) ? mt_goal_member_name(kind, MT_SLOT_EQUALS)
-           : reference                 ? mt_goal_member_name(kind, MT_SLOT_REFERENCE)
-                                       : NULL;
-}
-
 /* An equality excludes another one and limits, limits must leave room, and only an equality has
  * a residual. Of kinds that can ask for a value. */
 static void check_demands(mt_study_check *c, const mt_goal *goal, const mt_goal_kind *kind)
 {
+    const bool value = given(goal, MT_SLOT_EQUALS);
+    const bool reference = goal->reference_name.addr != goal->addr;
     const bool least = given(goal, MT_SLOT_AT_LEAST);
     const bool most = given(goal, MT_SLOT_AT_MOST);
-    const char *const equality = equality_of(goal, kind);
     const char *const equals = mt_goal_member_name(kind, MT_SLOT_EQUALS);
+    /* the member that asks for a value, by its number or by a reference that gives it */
+    const char *const equality = value       ? equals
+                                 : reference ? mt_goal_member_name(kind, MT_SLOT_REFERENCE)
+                                             : NULL;
     const char *const at_least = mt_goal_member_name(kind, MT_SLOT_AT_LEAST);
     const char *const at_most = mt_goal_member_name(kind, MT_SLOT_AT_MOST);
     const bool refers = mt_goal_member_at(kind, MT_SLOT_REFERENCE) >= 0;
-    if (given(goal, MT_SLOT_EQUALS) && goal->reference_name.addr != goal->addr) {
+    if (value && reference) {
         mt_diag_error(c->diags, goal->addr, "\"%s\" excludes \"reference\"", equals);
     }
     if (equality != NULL && (least || most)) {

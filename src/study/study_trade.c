@@ -119,14 +119,6 @@ static const mt_goal_member *member_of(const mt_goal *goal, const char *name)
     return NULL;
 }
 
-/* Before anything is compared. */
-static void find_slot(const mt_study *s, mt_vary *v)
-{
-    const bool known = v->goal >= 0 && v->goal < s->n_goals && v->member != NULL;
-    const mt_goal_member *const m = known ? member_of(&s->goals[v->goal], v->member) : NULL;
-    v->slot = m != NULL ? m->slot : MT_SLOT_TYPE;
-}
-
 static void vary_goal(mt_study_check *c, const mt_vary *v)
 {
     if (v->goal < 0 || v->goal >= c->study->n_goals || v->member == NULL) {
@@ -230,16 +222,20 @@ static void check_front(mt_study_check *c)
 
 void mt_study_check_trade(mt_study_check *c)
 {
+    const mt_study *const s = c->study;
     mt_trade *const trade = &c->study->trade;
     double points = 1.0;
     if (trade->n_vary == 0) {
         return;
     }
-    if (c->study->n_variables == 0) {
+    if (s->n_variables == 0) {
         mt_diag_error(c->diags, trade->addr, "a trade study needs variables");
     }
-    for (int i = 0; i < trade->n_vary; i++) {
-        find_slot(c->study, &trade->vary[i]);
+    for (int i = 0; i < trade->n_vary; i++) { /* before anything is compared */
+        mt_vary *const v = &trade->vary[i];
+        const bool known = v->goal >= 0 && v->goal < s->n_goals && v->member != NULL;
+        const mt_goal_member *const m = known ? member_of(&s->goals[v->goal], v->member) : NULL;
+        v->slot = m != NULL ? m->slot : MT_SLOT_TYPE;
     }
     for (int i = 0; i < trade->n_vary; i++) {
         check_vary(c, &trade->vary[i]);
