@@ -210,60 +210,43 @@ mt_status mt_clear_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cu
     return MT_OK;
 }
 
-/* One row: in = sign ln(f / edge) - z, sign -1 for a mode below the band. */
-typedef struct edge_row {
-    int row;
-    int index; /* vibration mode */
-    double edge_hz;
-    double sign;
-} edge_row;
-
-static mt_status put_row(mt_workspace *w, const mt_view_work *view, const edge_row *e,
-                         bool with_gradient, mt_nlp_values *out, mt_err *err)
-{
-    mt_analysis *const a = view->analysis;
-    const int n = w->p->n;
-    const int index = e->index;
-    const int row = e->row;
-    const double sign = e->sign;
-    const double z = w->c->clearance ? w->t[n] : 0.0;
-    const int pos = mt_modal_flexible(&a->modes, index);
-    const double floor = MT_FREQUENCY_FLOOR * e->edge_hz;
-    if ((pos < 0 && !mt_analysis_is_infinite(a, index)) || !(e->edge_hz > 0.0)) {
-        return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\" has no vibration mode %d here",
-                       mt_analysis_configuration(a), index);
-    }
-    out->in[row] = (sign * mt_problem_ln_ratio(&a->modes, pos, e->edge_hz, floor)) - z;
-    if (!with_gradient) {
-        return MT_OK;
-    }
-    const ptrdiff_t rows = mt_case_rows_in(w->c);
-    MT_TRY(mt_problem_dln_frequency(w, a, pos, floor, w->dshape, err));
-    for (int i = 0; i < n; i++) {
-        out->din[row + (i * rows)] = sign * w->dshape[i];
-    }
-    if (w->c->clearance) {
-        out->din[row + (n * rows)] = -1.0;
-    }
-    return MT_OK;
-}
-
-/* Rows of one band from *row on: below then above, nearest mode first. */
+/* Rows of one band from *row on: below then above, nearest mode first. One row:
+ * in = sign ln(f / edge) - z, sign -1 for a mode below the band. */
 static mt_status put_band(mt_workspace *w, const mt_clear *c, int b, int *row,
                           bool with_gradient, mt_nlp_values *out, mt_err *err)
 {
     const mt_view_work *const view = &w->views[c->view];
+    mt_analysis *const a = view->analysis;
     const mt_band *const band = &c->bands.items[b];
+    const int n = w->p->n;
+    const double z = w->c->clearance ? w->t[n] : 0.0;
+    const ptrdiff_t rows = mt_case_rows_in(w->c);
     const int below = w->c->below[c->first + b];
     const int under = rows_below(c, below);
-    const int rows = under + rows_above(c, below, mt_view_vibrations(view->of));
-    for (int k = 0; k < rows; k++) {
+    const int count = under + rows_above(c, below, mt_view_vibrations(view->of));
+    for (int k = 0; k < count; k++, (*row)++) {
         const bool above = k >= under;
-        const edge_row e = {.row = (*row)++,
-                            .index = above ? below + 1 + k - under : below - k,
-                            .edge_hz = above ? band->upper_hz : band->lower_hz,
-                            .sign = above ? 1.0 : -1.0};
-        MT_TRY(put_row(w, view, &e, with_gradient, out, err));
+        const int index = above ? below + 1 + k - under : below - k; /* vibration mode */
+        const double edge_hz = above ? band->upper_hz : band->lower_hz;
+        const double sign = above ? 1.0 : -1.0;
+        const int pos = mt_modal_flexible(&a->modes, index);
+        const double floor = MT_FREQUENCY_FLOOR * edge_hz;
+        if ((pos < 0 && !mt_analysis_is_infinite(a, index)) || !(edge_hz > 0.0)) {
+            return mt_fail(err, MT_E_DOMAIN,
+                           "configuration \"%s\" has no vibration mode %d here",
+                           mt_analysis_configuration(a), index);
+        }
+        out->in[*row] = (sign * mt_problem_ln_ratio(&a->modes, pos, edge_hz, floor)) - z;
+        if (!with_gradient) {
+            continue;
+        }
+        MT_TRY(mt_problem_dln_frequency(w, a, pos, floor, w->dshape, err));
+        for (int i = 0; i < n; i++) {
+            out->din[*row + (i * rows)] = sign * w->dshape[i];
+        }
+        if (w->c->clearance) {
+            out->din[*row + (n * rows)] = -1.0;
+        }
     }
     return MT_OK;
 }

@@ -3,14 +3,22 @@
 #include "model/values.h"
 #include "problem/objective.h"
 
-static mt_status init_program(mt_problem *p, mt_err *err)
+mt_status mt_problem_init_program(mt_problem *p, mt_err *err)
 {
     const mt_study *const s = p->study;
     const size_t n_parameters = (size_t)s->model->n_parameters;
     int *const is_input = mt_arena_int(&p->mem, n_parameters);
     mt_node *const nodes = mt_arena_alloc(&p->mem, n_parameters, sizeof *nodes);
     p->published = mt_arena_alloc(&p->mem, (size_t)s->n_published, sizeof *p->published);
+    p->n_aims = s->n_objectives > 0 ? s->n_objectives : 1;
+    p->aims = mt_arena_alloc(&p->mem, (size_t)p->n_aims, sizeof *p->aims);
     MT_TRY(mt_arena_check(&p->mem, err));
+    for (int i = 0; i < p->n_aims; i++) {
+        const mt_objective *const o = s->n_objectives > 0 ? &s->objectives[i] : NULL;
+        const mt_objective_type type = o != NULL ? o->type : MT_OBJECTIVE_NONE;
+        p->aims[i] = (mt_aim){
+            .type = type, .ops = mt_objective_ops_of(type), .objective = o, .node = MT_NO_NODE};
+    }
     for (size_t i = 0; i < n_parameters; i++) {
         is_input[i] = -1;
     }
@@ -42,19 +50,4 @@ static mt_status init_program(mt_problem *p, mt_err *err)
         }
     }
     return mt_program_finish(&p->program, err);
-}
-
-mt_status mt_problem_init_program(mt_problem *p, mt_err *err)
-{
-    const mt_study *const s = p->study;
-    p->n_aims = s->n_objectives > 0 ? s->n_objectives : 1;
-    p->aims = mt_arena_alloc(&p->mem, (size_t)p->n_aims, sizeof *p->aims);
-    MT_TRY(mt_arena_check(&p->mem, err));
-    for (int i = 0; i < p->n_aims; i++) {
-        const mt_objective *const o = s->n_objectives > 0 ? &s->objectives[i] : NULL;
-        const mt_objective_type type = o != NULL ? o->type : MT_OBJECTIVE_NONE;
-        p->aims[i] = (mt_aim){
-            .type = type, .ops = mt_objective_ops_of(type), .objective = o, .node = MT_NO_NODE};
-    }
-    return init_program(p, err);
 }

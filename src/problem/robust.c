@@ -149,17 +149,6 @@ static bool has_range(const mt_problem *p, int view)
     return any;
 }
 
-static mt_status init_view(const mt_case *c, int view, const mt_workspace *w, mt_arena *mem,
-                           mt_err *err)
-{
-    const bool cut = view >= c->p->n_views;
-    const mt_analysis *const a = cut ? w->views[view].analysis : c->views[view].original;
-    int *const signs = mt_arena_int(mem, (size_t)c->p->n);
-    MT_TRY(mt_arena_check(mem, err));
-    MT_TRY(signs_of_view(c, a, signs, err));
-    return make_corners(c, signs, has_range(c->p, view), mem, &c->robust->views[view], err);
-}
-
 static mt_status check_demand(const mt_demand *d, mt_err *err)
 {
     if (d->row_res >= 0) {
@@ -202,7 +191,12 @@ static mt_status init_views(mt_case *c, const mt_robust *known, const mt_workspa
         if (known != NULL && i < p->n_views) {
             c->robust->views[i] = known->views[i];
         } else if (wanted[i]) {
-            MT_TRY(init_view(c, i, w, mem, err));
+            const bool cut = i >= p->n_views;
+            int *const signs = mt_arena_int(mem, (size_t)p->n);
+            MT_TRY(mt_arena_check(mem, err));
+            MT_TRY(signs_of_view(c, cut ? w->views[i].analysis : c->views[i].original, signs,
+                                 err));
+            MT_TRY(make_corners(c, signs, has_range(p, i), mem, &c->robust->views[i], err));
         }
     }
     return MT_OK;

@@ -153,18 +153,19 @@ typedef struct ranking {
     mt_combination **best; /* [most] */
 } ranking;
 
-static mt_status enumerate(mt_discrete *d, int n, mt_combination **out, ranking *r,
-                           mt_discrete_report *report, mt_err *err)
+/* All n of them, all[n]. */
+static mt_status enumerate(mt_discrete *d, int n, ranking *r, mt_discrete_report *report,
+                           mt_combination ***all, mt_err *err)
 {
     mt_combination *list = NULL;
     const int batch = d->mixed ? BATCH_MIXED : BATCH;
-    mt_combination **const pointers =
-        mt_arena_alloc(d->mem, (size_t)batch, sizeof(mt_combination *));
     MT_TRY(list_all(d, n, &list, err));
-    MT_TRY(mt_arena_check(d->mem, err));
     qsort(list, (size_t)n, sizeof *list, by_change);
-    *out = list;
-    report->all = true;
+    *all = mt_arena_alloc(d->mem, (size_t)n, sizeof(mt_combination *));
+    MT_TRY(mt_arena_check(d->mem, err));
+    for (int i = 0; i < n; i++) {
+        (*all)[i] = &list[i];
+    }
     for (int first = 0; first < n; first += batch) {
         const int size = n - first < batch ? n - first : batch;
         const long budget = share_of_budget(d, size);
@@ -176,30 +177,9 @@ static mt_status enumerate(mt_discrete *d, int n, mt_combination **out, ranking 
             break;
         }
         MT_TRY(mt_discrete_judge(d, size, list + first, budget, err));
-        for (int i = 0; i < size; i++) {
-            pointers[i] = &list[first + i];
-        }
-        MT_TRY(rank(d, pointers, size, r->most, r->best, &r->n, err));
+        MT_TRY(rank(d, *all + first, size, r->most, r->best, &r->n, err));
     }
     report->all = d->stop == MT_STOP_DONE;
-    return MT_OK;
-}
-
-/* The combinations that were looked at, all[n]. */
-static mt_status look(mt_discrete *d, double combinations, ranking *r,
-                      mt_discrete_report *report, mt_combination ***all, int *n, mt_err *err)
-{
-    mt_combination *list = NULL;
-    if (combinations > (double)(d->mixed ? MT_DISCRETE_MOST_MIXED : MT_DISCRETE_MOST)) {
-        return mt_discrete_near(d, all, n, err);
-    }
-    *n = (int)combinations;
-    MT_TRY(enumerate(d, *n, &list, r, report, err));
-    *all = mt_arena_alloc(d->mem, (size_t)*n, sizeof(mt_combination *));
-    MT_TRY(mt_arena_check(d->mem, err));
-    for (int i = 0; i < *n; i++) {
-        (*all)[i] = &list[i];
-    }
     return MT_OK;
 }
 
@@ -276,7 +256,12 @@ mt_status mt_discrete_solve(mt_workspace *const *workers, int n_workers, mt_aren
     mt_combination **all = NULL;
     int n_all = 0;
     *report = (mt_discrete_report){.mixed = d.mixed, .combinations = n, .best_within = nan("")};
-    MT_TRY(look(&d, n, &r, report, &all, &n_all, err));
+    if (n > (double)(d.mixed ? MT_DISCRETE_MOST_MIXED : MT_DISCRETE_MOST)) {
+        MT_TRY(mt_discrete_near(&d, &all, &n_all, err));
+    } else {
+        n_all = (int)n;
+        MT_TRY(enumerate(&d, n_all, &r, report, &all, err));
+    }
     if ((d.mixed || !report->all) && d.stop != MT_STOP_USER) {
         MT_TRY(unless_interrupted(&d, mt_discrete_prove(&d, &all, &n_all, report, err)));
     }

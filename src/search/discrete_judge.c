@@ -202,15 +202,6 @@ static mt_status close_on(const mt_discrete *d, const mt_combination *c, long bu
     return MT_OK;
 }
 
-static void keep(const mt_nlp_solution *s, int n, mt_combination *c)
-{
-    memcpy(c->t, s->t, (size_t)n * sizeof *c->t);
-    c->missed = (mt_missed){s->violation, s->squares};
-    c->kkt = s->kkt;
-    c->singular = s->singular;
-    c->feasible = s->feasible;
-}
-
 /* All objectives at the design found, by one more evaluation. */
 static mt_status evaluate_aims(mt_workspace *w, const mt_nlp_solution *s, bool gaps,
                                mt_arena *mem, mt_combination *c, mt_err *err)
@@ -244,7 +235,11 @@ static mt_status search_closed(mt_workspace *w, mt_arena *mem, mt_combination *c
         return MT_OK;
     }
     const mt_nlp_solution *const best = bands ? gaps.solutions[0].found : &plain.solutions[0];
-    keep(best, w->p->n, c);
+    memcpy(c->t, best->t, (size_t)w->p->n * sizeof *c->t);
+    c->missed = (mt_missed){best->violation, best->squares};
+    c->kkt = best->kkt;
+    c->singular = best->singular;
+    c->feasible = best->feasible;
     const mt_status rc = evaluate_aims(w, best, bands, mem, c, &why);
     if (rc != MT_OK) {
         c->feasible = false;

@@ -58,10 +58,17 @@ static const double *hint_of(const job *j, int k)
     return j->candidates->at == NULL ? NULL : j->candidates->at + ((ptrdiff_t)k * j->p->n);
 }
 
-/* Values of all objectives at the best solution, by which the candidates are ranked. */
-static mt_status keep_aims(mt_workspace *w, slot *s, mt_err *err)
+/* The objectives in order, each with those before it held (search.h). */
+static mt_status search_in_order(mt_workspace *w, slot *s, mt_err *err)
 {
+    int stage = 0;
+    mt_err why = {0};
     mt_nlp_values v;
+    MT_TRY(mt_search_designs(&w, 1, &s->mem, &s->found, &stage, &why, err));
+    if (s->found.n_solutions == 0 || s->found.compromise || s->found.stop == MT_STOP_USER) {
+        return MT_OK;
+    }
+    /* all of them at the best solution, by which the candidates are ranked */
     s->aims = mt_arena_f64(&s->mem, (size_t)w->c->n_aims, 1);
     MT_TRY(mt_arena_check(&s->mem, err));
     MT_TRY(mt_case_values_init(w->c, &s->mem, &v, err));
@@ -69,19 +76,6 @@ static mt_status keep_aims(mt_workspace *w, slot *s, mt_err *err)
     for (int k = 0; k < w->c->n_aims; k++) {
         s->aims[k] = mt_aim_value(w, k, NULL);
     }
-    return MT_OK;
-}
-
-/* The objectives in order, each with those before it held (search.h). */
-static mt_status search_in_order(mt_workspace *w, slot *s, mt_err *err)
-{
-    int stage = 0;
-    mt_err why = {0};
-    MT_TRY(mt_search_designs(&w, 1, &s->mem, &s->found, &stage, &why, err));
-    if (s->found.n_solutions == 0 || s->found.compromise || s->found.stop == MT_STOP_USER) {
-        return MT_OK;
-    }
-    MT_TRY(keep_aims(w, s, err));
     s->found.solutions[0].f = s->aims[w->c->n_aims - 1];
     return MT_OK;
 }

@@ -311,7 +311,8 @@ static mt_status list_edges(walk *w, const int *below, const mt_way_band *bands,
     return MT_OK;
 }
 
-static mt_status go(walk *w, double left, double right, mt_err *err)
+/* The first positions of a way, evenly spread. */
+static mt_status spread(walk *w, double left, double right, mt_err *err)
 {
     const double way = right - left;
     const double wanted = ceil(way / (STEP * w->unit));
@@ -329,7 +330,7 @@ static mt_status go(walk *w, double left, double right, mt_err *err)
         const bool zero = fabs(at) <= SAME * w->unit; /* the drawing itself */
         MT_TRY(look(w, zero ? 0.0 : at, i + 1 < pieces ? w->n + 1 : 1, err));
     }
-    return refine(w, err);
+    return MT_OK;
 }
 
 /* Distinct positions of the views with bands, ascending. */
@@ -383,7 +384,8 @@ static mt_status follow(walk *w, const mt_family *f, const int *below, mt_err *e
         }
         out->end = out->end == MT_MOTION_NONE ? MT_MOTION_WHOLE : out->end;
         MT_TRY(list_edges(w, below, bands.items, bands.n, err));
-        MT_TRY(go(w, list[i], list[i + 1], err));
+        MT_TRY(spread(w, list[i], list[i + 1], err));
+        MT_TRY(refine(w, err));
     }
     return MT_OK;
 }

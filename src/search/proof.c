@@ -49,14 +49,6 @@ static void list_bands(mt_proof *proof, const mt_problem *p)
     proof->question.same_as = p->tie;
 }
 
-/* The interval that a demand keeps its number in. */
-static void interval(const mt_demand *d, double *least, double *most)
-{
-    const bool equal = MT_HAS(d->equals);
-    *least = equal ? d->equals : d->goal->at_least;
-    *most = equal ? d->equals : d->goal->at_most;
-}
-
 /* A limit on an expression, its tolerance granted. */
 static mt_certify_bound expression_bound(const mt_demand *d, double least, double most)
 {
@@ -71,12 +63,12 @@ static void list_limits(mt_proof *proof, const mt_problem *p)
     mt_certify *const q = &proof->question;
     for (int i = 0; i < p->n_demands; i++) {
         const mt_demand *const d = &p->demands[i];
-        double least = 0.0;
-        double most = 0.0;
+        /* the interval that the demand keeps its number in */
+        const double least = MT_HAS(d->equals) ? d->equals : d->goal->at_least;
+        const double most = MT_HAS(d->equals) ? d->equals : d->goal->at_most;
         if (d->row_res >= 0) {
             continue;
         }
-        interval(d, &least, &most);
         if (mt_demand_is_frequency(d)) {
             proof->limit_demand[q->n_limits] = i;
             proof->limits[q->n_limits++] =

@@ -104,20 +104,6 @@ static mt_status evaluate(void *context, const double *t, bool with_gradient,
     return MT_OK;
 }
 
-/* Does w's design hold between the positions of its drives, too? An edge is moved in one
- * position only, which says nothing of the others. */
-static mt_status hold_motion(mt_workspace *w, const mt_move *m, mt_arena *mem, double *value,
-                             mt_err *err)
-{
-    bool kept = true;
-    if (mt_family_any(w->p) && w->c->below != NULL) {
-        kept = m->kind != MT_MOVE_EDGE;
-        MT_TRY(kept ? mt_motion_kept(w, w->c->below, mem, &kept, err) : MT_OK);
-    }
-    *value = kept ? *value : nan("");
-    return MT_OK;
-}
-
 /* The number that the move needs at the design t, and its inputs x; NaN where that does not
  * do. */
 static mt_status confirm(mt_workspace *w, const mt_move *m, const double *t, mt_arena *mem,
@@ -133,7 +119,14 @@ static mt_status confirm(mt_workspace *w, const mt_move *m, const double *t, mt_
     }
     *value = mt_relax_value(w, m, &v);
     memcpy(x, w->x, (size_t)w->p->n * sizeof *x);
-    return hold_motion(w, m, mem, value, err);
+    /* Does the design hold between the positions of its drives, too? An edge is moved in one
+     * position only, which says nothing of the others. */
+    if (mt_family_any(w->p) && w->c->below != NULL) {
+        bool kept = m->kind != MT_MOVE_EDGE;
+        MT_TRY(kept ? mt_motion_kept(w, w->c->below, mem, &kept, err) : MT_OK);
+        *value = kept ? *value : nan("");
+    }
+    return MT_OK;
 }
 
 /* Keep what was found in a case where it is the least move so far, and a workspace made anew

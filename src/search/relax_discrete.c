@@ -21,10 +21,8 @@ typedef struct enumeration {
     mt_workspace *const *workers;
     mt_nlp_values *values; /* [n_workers] */
     int total;
-    const mt_moves *none; /* all moves, none found */
-    mt_moves *tasks;      /* [n_tasks] the least of each among a task's combinations */
-    double *x;            /* [n_tasks x moves x n] their designs */
-    bool *stopped;        /* [n_tasks] */
+    mt_moves *tasks; /* [n_tasks] the least of each among a task's combinations */
+    bool *stopped;   /* [n_tasks] */
 } enumeration;
 
 /* Coordinates of combination k: the last catalogue varies fastest. */
@@ -132,37 +130,32 @@ static mt_status look_at_some(void *context, int worker, int task, mt_err *err)
     return MT_OK;
 }
 
-/* Each task's own list of moves. */
-static mt_status prepare(enumeration *e, int n_workers, int n_tasks, mt_arena *mem, mt_err *err)
-{
-    const size_t n = (size_t)e->workers[0]->p->n;
-    const size_t n_moves = (size_t)e->none->n;
-    e->values = mt_arena_alloc(mem, (size_t)n_workers, sizeof *e->values);
-    e->tasks = mt_arena_alloc(mem, (size_t)n_tasks, sizeof *e->tasks);
-    e->stopped = mt_arena_alloc(mem, (size_t)n_tasks, sizeof *e->stopped);
-    e->x = mt_arena_f64(mem, n * n_moves, (size_t)n_tasks);
-    MT_TRY(mt_arena_check(mem, err));
-    for (int i = 0; i < n_workers; i++) {
-        MT_TRY(mt_case_values_init(e->workers[i]->c, mem, &e->values[i], err));
-    }
-    for (int i = 0; i < n_tasks; i++) {
-        e->tasks[i] = *e->none;
-        e->tasks[i].items = mt_arena_alloc(mem, n_moves, sizeof *e->tasks[i].items);
-        MT_TRY(mt_arena_check(mem, err));
-        memcpy(e->tasks[i].items, e->none->items, n_moves * sizeof *e->tasks[i].items);
-        for (size_t k = 0; k < n_moves; k++) {
-            e->tasks[i].items[k].x = e->x + ((((size_t)i * n_moves) + k) * n);
-        }
-    }
-    return MT_OK;
-}
-
 static mt_status enumerate(mt_workspace *const *workers, int n_workers, int total,
                            mt_arena *mem, mt_moves *out, mt_err *err)
 {
     const int n_tasks = (total + PER_TASK - 1) / PER_TASK;
-    enumeration e = {.workers = workers, .total = total, .none = out};
-    MT_TRY(prepare(&e, n_workers, n_tasks, mem, err));
+    enumeration e = {.workers = workers, .total = total};
+    const size_t n = (size_t)workers[0]->p->n;
+    const size_t n_moves = (size_t)out->n;
+    e.values = mt_arena_alloc(mem, (size_t)n_workers, sizeof *e.values);
+    e.tasks = mt_arena_alloc(mem, (size_t)n_tasks, sizeof *e.tasks);
+    e.stopped = mt_arena_alloc(mem, (size_t)n_tasks, sizeof *e.stopped);
+    double *const x = mt_arena_f64(mem, n * n_moves, (size_t)n_tasks); /* the tasks' designs */
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < n_workers; i++) {
+        MT_TRY(mt_case_values_init(workers[i]->c, mem, &e.values[i], err));
+    }
+    /* each task's own list of moves */
+    for (int i = 0; i < n_tasks; i++) {
+        mt_moves *const own = &e.tasks[i];
+        *own = *out;
+        own->items = mt_arena_alloc(mem, n_moves, sizeof *own->items);
+        MT_TRY(mt_arena_check(mem, err));
+        memcpy(own->items, out->items, n_moves * sizeof *own->items);
+        for (size_t k = 0; k < n_moves; k++) {
+            own->items[k].x = x + ((((size_t)i * n_moves) + k) * n);
+        }
+    }
     MT_TRY(mt_workers_run(n_workers, n_tasks, look_at_some, &e, err));
     for (int i = 0; i < n_tasks; i++) {
         out->stopped = out->stopped || e.stopped[i];

@@ -9,11 +9,6 @@
 #include "problem/robust.h"
 #include "search/relax.h"
 
-static bool is_constraint(const mt_demand *d)
-{
-    return d->row_eq >= 0 || d->row_in >= 0;
-}
-
 static void add(mt_moves *out, mt_move move)
 {
     out->items[out->n++] = move;
@@ -25,7 +20,7 @@ static void add_goal_moves(const mt_problem *p, mt_moves *out)
         const mt_demand *const d = &p->demands[i];
         const mt_goal *const g = d->goal;
         mt_move m = {.kind = MT_MOVE_GOAL, .demand = i};
-        if (!is_constraint(d)) {
+        if (d->row_eq < 0 && d->row_in < 0) { /* no constraint */
             continue;
         }
         if (d->row_eq >= 0) {

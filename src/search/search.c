@@ -50,21 +50,6 @@ typedef struct stages {
     double *limit; /* n_aims values of each, at the end of the objective's own stage */
 } stages;
 
-/* The present stage from one design. */
-static mt_status later_stage(const stages *s, const double *from, long budget,
-                             mt_nlp_result *out, mt_err *err)
-{
-    mt_nlp_options opt = options_of(&s->later);
-    mt_workspace_back(s->ws, &s->later);
-    mt_nlp nlp = mt_workspace_nlp(s->ws);
-    opt.starts = 1;
-    opt.max_evals = budget;
-    nlp.origin = from;
-    MT_TRY(mt_nlp_solve(&nlp, &opt, s->mem, out, err));
-    return mt_search_repeated(s->ws, s->first->search.max_evaluations > 0 ? budget : 0, s->mem,
-                              out, err);
-}
-
 /* Objectives of one design, where nothing is held yet: f[n_aims]. */
 static mt_status aims_at(const stages *s, const double *t, double *f, mt_err *err)
 {
@@ -105,7 +90,15 @@ static mt_status refine(stages *s, int i, mt_err *err)
     for (int k = 0; k < c->stage; k++) {
         mt_aim_hold(c, s->ws, k, limit[k]);
     }
-    MT_TRY(later_stage(s, old->t, budget, &next, err));
+    mt_workspace_back(s->ws, c);
+    mt_nlp_options opt = options_of(c);
+    mt_nlp nlp = mt_workspace_nlp(s->ws);
+    opt.starts = 1;
+    opt.max_evals = budget;
+    nlp.origin = old->t;
+    MT_TRY(mt_nlp_solve(&nlp, &opt, s->mem, &next, err));
+    MT_TRY(mt_search_repeated(s->ws, s->first->search.max_evaluations > 0 ? budget : 0, s->mem,
+                              &next, err));
     s->out->evals += next.evals;
     s->out->stop = next.stop;
     if (next.n_solutions == 0 || next.compromise) {
