@@ -88,11 +88,14 @@ static void newton(mt_nlp_engine *e, mt_nlp_local *s, double *saddle)
 /* Move p a little along `saddle`; false where there is none, or no value there. */
 static bool step_off(mt_nlp_engine *e, const double *saddle, mt_nlp_point *p)
 {
-    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     const double most = mt_max_abs(e->n, saddle);
+    if (!(most > 0.0)) {
+        return false;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     mt_nlp_point *const to = mt_nlp_point_new(e, &e->scratch);
     bool moved = false;
-    if (most > 0 && mt_nlp_has_room(e, &e->scratch)) {
+    if (mt_nlp_has_room(e, &e->scratch)) {
         mt_nlp_point_copy(e, to, p);
         mt_axpy(e->n, SADDLE_STEP / most, saddle, to->t);
         moved = mt_nlp_evaluate(e, to->t, true, to);
