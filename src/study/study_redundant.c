@@ -64,27 +64,31 @@ static mt_status look_at(mt_study_check *c, int configuration, const int *inputs
     return rc;
 }
 
-void mt_study_check_redundant(mt_study_check *c)
+static mt_status look(mt_study_check *c, mt_arena *mem)
 {
     const mt_study *const s = c->study;
     const size_t n = (size_t)s->n_variables;
-    mt_arena mem = {0};
-    if (n == 0) {
-        return;
-    }
-    mt_status rc = mt_arena_init(&mem, 0, NULL);
-    int *const inputs = rc == MT_OK ? mt_arena_int(&mem, n) : NULL;
-    double *const at = rc == MT_OK ? mt_arena_f64(&mem, n, 1) : NULL;
-    bool *const told = rc == MT_OK ? mt_arena_alloc(&mem, n, sizeof *told) : NULL;
-    rc = rc == MT_OK ? mt_arena_check(&mem, NULL) : rc;
-    for (size_t i = 0; i < n && rc == MT_OK; i++) {
+    MT_TRY(mt_arena_init(mem, 0, NULL));
+    int *const inputs = mt_arena_int(mem, n);
+    double *const at = mt_arena_f64(mem, n, 1);
+    bool *const told = mt_arena_alloc(mem, n, sizeof *told);
+    MT_TRY(mt_arena_check(mem, NULL));
+    for (size_t i = 0; i < n; i++) {
         inputs[i] = s->variables[i].parameter;
         at[i] = s->variables[i].original;
     }
-    for (int i = 0; i < c->model->n_configurations && rc != MT_E_MEMORY; i++) {
-        rc = mt_study_asks(s, i) ? look_at(c, i, inputs, at, told, NULL) : rc;
+    for (int i = 0; i < c->model->n_configurations; i++) {
+        if (mt_study_asks(s, i) && look_at(c, i, inputs, at, told, NULL) == MT_E_MEMORY) {
+            return MT_E_MEMORY;
+        }
     }
-    if (rc == MT_E_MEMORY) {
+    return MT_OK;
+}
+
+void mt_study_check_redundant(mt_study_check *c)
+{
+    mt_arena mem = {0};
+    if (c->study->n_variables > 0 && look(c, &mem) == MT_E_MEMORY) {
         mt_arena_fail(&c->study->mem);
     }
     mt_arena_free(&mem);
