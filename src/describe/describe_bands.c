@@ -170,7 +170,7 @@ static mt_status judge(mt_workspace *fresh, int goal, int configuration, mt_resu
     out->unit = "%";
     out->value = nominal.has;
     out->at_least = nominal.asked;
-    out->tolerance_percent = PERCENT * mt_goal_tolerance(g);
+    out->tolerance_percent = g->tolerance_percent;
     /* 0, or NaN */
     out->violation_percent = violation > 0.0 ? fmax(nominal.missing, worst.missing) : violation;
     out->met = mt_is_met(violation, mt_goal_tolerance(g));

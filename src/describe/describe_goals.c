@@ -151,7 +151,7 @@ static void say_what(const mt_problem *p, const mt_demand *d, mt_result_goal *g)
     g->at_least = asked->at_least;
     g->at_most = asked->at_most;
     g->target = d->ops->value == NULL ? 0.0 : d->equals; /* a distance is to be none */
-    g->tolerance_percent = PERCENT * d->tolerance;
+    g->tolerance_percent = asked->tolerance_percent;
 }
 
 static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v,

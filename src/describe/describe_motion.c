@@ -216,12 +216,13 @@ static mt_status put_goal(const described *d, const char *range, mt_recommendati
     mt_result_goal *const g = &rec->goals[rec->n_goals++];
     mt_arena *const mem = &d->result->mem;
     const crossing *const c = &d->cross;
+    const mt_goal *const asked = &d->fresh->p->study->goals[d->goal_index];
     *g = mt_result_goal_default();
-    g->type = mt_goal_kind_of(d->fresh->p->study->goals[d->goal_index].type)->name;
+    g->type = mt_goal_kind_of(asked->type)->name;
     g->unit = "%";
     g->value = d->followed ? d->motion.percent : nan("");
     g->at_least = d->followed ? d->motion.margin_percent : nan("");
-    g->tolerance_percent = PERCENT * d->tolerance;
+    g->tolerance_percent = asked->tolerance_percent;
     g->violation_percent = PERCENT * d->violation;
     g->met = mt_is_met(d->violation, d->tolerance);
     g->text = c->mode > 0 && !d->followed
