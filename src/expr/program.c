@@ -399,7 +399,7 @@ mt_status mt_program_gradient(const mt_program *p, const double *inputs, double 
 /*
  * Enclosures of a program over a box of inputs: by induction over the nodes, each holds every
  * value that its node takes in the box, exact or rounded (see interval.h). Constants are the
- * doubles they were folded to. Derivatives by the chain rule of program_eval.c in intervals;
+ * doubles they were folded to. Derivatives by the chain rule (above) in intervals;
  * where min or max may choose either operand, the derivative is one of the two.
  */
 

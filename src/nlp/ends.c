@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * The ends of local searches as a list. Many starts end at few designs, and the approach
- * (nlp_local.c) tells them apart already: Newton, most of the cost of a search, need be done
+ * (local.c) tells them apart already: Newton, most of the cost of a search, need be done
  * once for each. The most stationary end of a neighbourhood stands for it; where Newton did not
  * come to rest from there, the next one has its turn.
  */

@@ -2,8 +2,8 @@
 /*
  * The search: local solves from many starts, then judgement.
  *
- *     every start:  the approach of a local search (nlp_local.c)
- *     ends:         one of each neighbourhood is polished to full accuracy (nlp_ends.c)
+ *     every start:  the approach of a local search (local.c)
+ *     ends:         one of each neighbourhood is polished to full accuracy (ends.c)
  *     judgement:    feasible ones only, if any; undetermined directions at the best, all ends
  *                   pulled back along them; equal ones merged; ranked; multipliers, KKT,
  *                   singularity
