@@ -130,10 +130,10 @@ bool mt_report_measure(const mt_result_parameter *p, mt_text *out)
 /* The target or the limit; "7.00000 to 9.00000" where there are two. */
 static void asked_cell(mt_table *t, const mt_result_goal *g)
 {
-    char low[MT_NUMBER_TEXT];
-    char high[MT_NUMBER_TEXT];
-    char text[DEMAND_TEXT];
     if (isnan(g->target) && !isnan(g->at_least) && !isnan(g->at_most)) {
+        char low[MT_NUMBER_TEXT];
+        char high[MT_NUMBER_TEXT];
+        char text[DEMAND_TEXT];
         (void)mt_snprintf(text, sizeof text, "%s to %s",
                           mt_report_number(g->at_least, VALUE_DIGITS, low),
                           mt_report_number(g->at_most, VALUE_DIGITS, high));

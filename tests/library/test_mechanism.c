@@ -127,7 +127,7 @@ static void mechanism__evaluations_do_not_know_each_other(mt_test *t)
     mt_mechanism *m = NULL;
     double alone[MT_COUNT(rows)][2];
     double slope[4];
-    int rigid[MT_COUNT(rows)];
+    int rigid[MT_COUNT(rows)] = {0};
     for (int i = 0; i < MT_COUNT(rows); i++) {
         CHECK_INT(t, mt_mechanism_new(model, "held", 2, names, &m, NULL), MT_OK);
         (void)mt_mechanism_evaluate(m, rows[i], NULL);
