@@ -15,6 +15,7 @@
 #include "analysis/count.h"
 #include "answer/doubts.h"
 #include "base/format.h"
+#include "base/text.h"
 #include "model/judge.h"
 #include "model/values.h"
 
@@ -272,12 +273,6 @@ static mt_status examine_configuration(const mt_study *s, int c, mt_doubt_list *
     return rc;
 }
 
-static const char *base_name(const char *path)
-{
-    const char *const slash = path == NULL ? NULL : strrchr(path, '/');
-    return slash == NULL ? path : slash + 1;
-}
-
 /* How many configurations the study asks about, and what looking at them takes: with bands once
  * for every bound, too. */
 static int count_asked(const mt_study *study, double *work)
@@ -332,7 +327,7 @@ mt_status mt_study_examine(const mt_study *study, double most_work, mt_doubt_lis
     }
     for (int i = first; i < out->n; i++) {
         mt_doubt *const d = &out->items[i];
-        d->file = base_name(study->path);
+        d->file = mt_text_base_name(study->path);
         mt_study_place_doubt(study, d);
     }
     for (int i = 0; i < of_model.n; i++) {

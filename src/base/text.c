@@ -151,6 +151,12 @@ const char *mt_text_nearest(const char *name, const char *const *names, int n)
     return best;
 }
 
+const char *mt_text_base_name(const char *path)
+{
+    const char *const slash = path == NULL ? NULL : strrchr(path, '/');
+    return slash == NULL ? path : slash + 1;
+}
+
 /* Greedy: at a mismatch give the last star one more character and go on behind it. O(length of
  * pattern * length of name). */
 bool mt_text_matches(const char *pattern, const char *name)

@@ -36,6 +36,9 @@ const char *mt_text_nearest(const char *name, const char *const *names, int n);
 /* Does `name` match `pattern`, where * stands for any run of characters and ? for one? (Bytes:
  * names are ASCII.) */
 bool mt_text_matches(const char *pattern, const char *name);
+/* What a path ends with, "beam.json" of "studies/beam.json"; "" after a last slash; NULL of
+ * NULL. */
+const char *mt_text_base_name(const char *path);
 /* Display width in terminal columns of UTF-8 text: marks that combine take none, ideographs
  * two. */
 int mt_text_width(const char *s);

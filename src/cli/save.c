@@ -40,8 +40,7 @@ static char *folder_of(const mt_args *args, const char *study_path)
 {
     const char *const base =
         args->given[MT_OPT_OUTPUT] ? args->value[MT_OPT_OUTPUT] : DEFAULT_FOLDER;
-    const char *const slash = strrchr(study_path, '/');
-    const char *const name = slash == NULL ? study_path : slash + 1;
+    const char *const name = mt_text_base_name(study_path);
     mt_text t = {.s = NULL};
     mt_text_add(&t, base);
     mt_text_add(&t, "/");
@@ -64,8 +63,7 @@ static bool is_same_folder(const char *a, const char *b)
  * of their own. */
 static bool is_no_file(const char *path)
 {
-    const char *const slash = strrchr(path, '/');
-    const char *const name = slash == NULL ? path : slash + 1;
+    const char *const name = mt_text_base_name(path);
     return name[0] == '\0' || strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/build.h"
+#include "base/text.h"
 #include "describe/describe.h"
 #include "linalg/blas.h"
 #include "nlp/libraries.h"
@@ -56,9 +57,8 @@ mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err)
 
 mt_status mt_describe_own(const mt_study *study, mt_result *result, mt_err *err)
 {
-    const char *const slash = study->path == NULL ? NULL : strrchr(study->path, '/');
     result->study.name = study->name;
-    result->study.file = slash != NULL ? slash + 1 : study->path;
+    result->study.file = mt_text_base_name(study->path);
     result->model.name = study->model->name;
     result->model.file = study->model_path.s;
     return mt_result_own(result, err);

@@ -143,24 +143,11 @@ static void read_one(mt_reader *r, mt_addr value, mt_aircraft_list *list)
     list->n += a->name.s != NULL ? 1 : 0;
 }
 
-/* A file of another kind or version gets one message, not one per member. */
-static bool check_format(mt_reader *r)
-{
-    static const char format[] = "modetune-aircraft/1";
-    const mt_addr at = mt_json_member(r->doc, MT_JSON_ROOT, ROOT[ROOT_FORMAT].name);
-    if (at == MT_NO_ADDR || mt_json_type_of(r->doc, at) != MT_JSON_STRING ||
-        strcmp(mt_json_string(r->doc, at), format) == 0) {
-        return true; /* or the table of keys will tell */
-    }
-    mt_diag_structure(r->diags, at,
-                      "the format is not \"%s\": this is no catalogue of aircraft", format);
-    return false;
-}
-
 static void read_root(mt_reader *r, mt_aircraft_list *list)
 {
     mt_addr found[ROOT_KEY_COUNT];
-    if (!check_format(r) || !mt_reader_object(r, MT_JSON_ROOT, &ROOT_TABLE, found)) {
+    if (!mt_reader_format(r, "modetune-aircraft/1", "catalogue of aircraft") ||
+        !mt_reader_object(r, MT_JSON_ROOT, &ROOT_TABLE, found)) {
         return;
     }
     mt_items items = mt_reader_some_items(r, found[ROOT_AIRCRAFT], "the list of aircraft");

@@ -222,25 +222,6 @@ static void read_root(mt_model_reader *mr, const mt_addr *at)
     mt_read_configurations(mr, at[MODEL_CONFIGURATIONS]);
 }
 
-/* Is this a model file at all? Otherwise nothing else is worth saying. */
-static bool check_format(mt_reader *r)
-{
-    static const char format[] = "modetune-model/1";
-    const mt_addr at = mt_json_member(r->doc, MT_JSON_ROOT, "format");
-    if (mt_json_type_of(r->doc, MT_JSON_ROOT) != MT_JSON_OBJECT) {
-        return mt_reader_type(r, MT_JSON_ROOT, MT_KEY_OBJECT);
-    }
-    if (at == MT_NO_ADDR || mt_json_type_of(r->doc, at) != MT_JSON_STRING) {
-        return true; /* the table of keys will tell */
-    }
-    if (strcmp(mt_json_string(r->doc, at), format) != 0) {
-        mt_diag_structure(r->diags, at, "the format is not \"%s\": this is no model file",
-                          format);
-        return false;
-    }
-    return true;
-}
-
 static int compare_addrs(const void *a, const void *b)
 {
     const mt_addr x = *(const mt_addr *)a;
@@ -285,7 +266,8 @@ mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_
                                 .context = m},
                           .m = m};
     mt_addr at[MODEL_COUNT];
-    if (check_format(&mr.r) && mt_reader_object(&mr.r, MT_JSON_ROOT, &mt_model_keys, at)) {
+    if (mt_reader_format(&mr.r, "modetune-model/1", "model file") &&
+        mt_reader_object(&mr.r, MT_JSON_ROOT, &mt_model_keys, at)) {
         read_root(&mr, at);
         (void)mt_model_finish(m, mr.r.diags, NULL); /* the arenas remember a shortage */
         note_places(&mr);

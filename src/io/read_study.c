@@ -253,25 +253,12 @@ static void note_places(mt_study_reader *s)
     }
 }
 
-/* A file of another kind or version gets one message, not one per member. */
-static bool check_format(mt_study_reader *s)
-{
-    static const char format[] = "modetune-study/1";
-    const mt_addr at = mt_json_member(s->r.doc, MT_JSON_ROOT, "format");
-    if (at == MT_NO_ADDR || mt_json_type_of(s->r.doc, at) != MT_JSON_STRING ||
-        strcmp(mt_json_string(s->r.doc, at), format) == 0) {
-        return true; /* or the table of keys will tell */
-    }
-    mt_diag_structure(s->r.diags, at, "the format is not \"%s\": this is no study file",
-                      format);
-    return false;
-}
-
 static void read_root(mt_study_reader *s)
 {
     mt_study *const study = s->study;
     mt_study_object o;
-    if (!check_format(s) || !mt_read_study_object(s, MT_JSON_ROOT, &mt_study_keys, &o)) {
+    if (!mt_reader_format(&s->r, "modetune-study/1", "study file") ||
+        !mt_read_study_object(s, MT_JSON_ROOT, &mt_study_keys, &o)) {
         return;
     }
     study->name = mt_reader_text(&s->r, o.found[STUDY_NAME]);
@@ -291,17 +278,11 @@ static void read_root(mt_study_reader *s)
     mt_read_study_published(s, o.found[STUDY_PUBLISHED]);
 }
 
-static const char *base_name(const char *path)
-{
-    const char *const slash = strrchr(path, '/');
-    return slash == NULL ? path : slash + 1;
-}
-
 /* "beam" for "studies/beam.json": what an unnamed study is called. */
 static void name_by_file(mt_study_reader *s)
 {
     mt_study *const study = s->study;
-    const char *const file = base_name(study->path);
+    const char *const file = mt_text_base_name(study->path);
     const char *const dot = strrchr(file, '.');
     const size_t length = dot == NULL || dot == file ? strlen(file) : (size_t)(dot - file);
     study->name = mt_arena_strndup(&study->mem, file, length);
@@ -393,7 +374,7 @@ mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **o
     if (rc != MT_OK) {
         goto done;
     }
-    mt_read_study_note_input(&s, base_name(path), file.sha256);
+    mt_read_study_note_input(&s, mt_text_base_name(path), file.sha256);
     rc = read_text(&s, &file, messages, err);
 done:
     mt_file_free(&file);

@@ -74,6 +74,18 @@ static int find_key(const mt_key_table *table, const char *name)
     return MT_ABSENT;
 }
 
+bool mt_reader_format(mt_reader *r, const char *format, const char *not_this)
+{
+    const mt_addr at = mt_json_member(r->doc, MT_JSON_ROOT, "format");
+    if (at == MT_NO_ADDR || mt_json_type_of(r->doc, at) != MT_JSON_STRING ||
+        strcmp(mt_json_string(r->doc, at), format) == 0) {
+        return true;
+    }
+    mt_diag_structure(r->diags, at, "the format is not \"%s\": this is no %s", format,
+                      not_this);
+    return false;
+}
+
 bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt_addr *found)
 {
     bool seen[MT_MAX_KEYS] = {false};

@@ -73,6 +73,10 @@ enum { MT_MAX_KEYS = 40 }; /* a table has at most as many */
  *   or no object; the latter is noted.
  */
 bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt_addr *found);
+/* Is the document's "format" this one? Another text is noted, with what the file then is not
+ * ("this is no study file"), before its members are held against the wrong table; what is no
+ * text, or not there, the table of keys will tell. */
+bool mt_reader_format(mt_reader *r, const char *format, const char *not_this);
 /* Is the value of this type? Notes it where not ("must be a number or an expression, not a
  * list"). */
 bool mt_reader_type(mt_reader *r, mt_addr value, mt_key_type type);

@@ -48,12 +48,6 @@ mt_status mt_result_note_outputs(mt_result *result, int n, const char *const *na
     return MT_OK;
 }
 
-static const char *base_name(const char *path)
-{
-    const char *const slash = strrchr(path, '/');
-    return slash == NULL ? path : slash + 1;
-}
-
 /* Does timing.json name the result with this digest? */
 static mt_status names_result(const mt_file *timing, const char *sha256, bool *does,
                               mt_err *err)
@@ -152,7 +146,7 @@ static const char *named_digest(const mt_result *r, const char *name)
 
 bool mt_result_has_folder(const char *path, const mt_result *result)
 {
-    return result->run.n_outputs > 0 && strcmp(base_name(path), RESULT) == 0;
+    return result->run.n_outputs > 0 && strcmp(mt_text_base_name(path), RESULT) == 0;
 }
 
 mt_status mt_result_check_folder(const char *path, const char *sha256, const mt_result *result,

@@ -223,33 +223,27 @@ static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
     return fatal ? mt_fail(err, s->rc, "%s", why.text) : MT_OK;
 }
 
+/* One design for each assignment: its best. Its other local optima come after (see rank). */
 static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem,
                                 mt_gap_result *out, mt_err *err)
 {
-    int most = 0;
-    for (int k = 0; k < j->candidates->n; k++) {
-        most += j->slots[k].found.n_solutions;
-    }
-    out->solutions = mt_arena_alloc(mem, (size_t)most, sizeof *out->solutions);
+    const int n = j->candidates->n;
+    out->solutions = mt_arena_alloc(mem, (size_t)n, sizeof *out->solutions);
     MT_TRY(mt_arena_check(mem, err));
-    for (int k = 0; k < j->candidates->n; k++) {
+    for (int k = 0; k < n; k++) {
         const mt_nlp_result *const found = &j->slots[k].found;
         out->n_feasible += found->n_solutions > 0 && found->solutions[0].feasible ? 1 : 0;
     }
     out->compromise = out->n_feasible == 0;
-    for (int k = 0; k < j->candidates->n; k++) {
+    for (int k = 0; k < n; k++) {
         const mt_nlp_result *const found = &j->slots[k].found;
-        /* one design for each assignment: its best; further local optima of the same kind come
-         * after (see rank) */
-        for (int i = 0; i < found->n_solutions && i < 1; i++) {
-            if (found->solutions[i].feasible != out->compromise) {
-                out->solutions[out->n_solutions++] = (mt_gap_solution){
-                    .found = &found->solutions[i],
-                    .below = j->candidates->below + ((ptrdiff_t)k * p->n_bands),
-                    .candidate = k,
-                    .aims = j->slots[k].aims,
-                    .n_aims = j->slots[k].aims == NULL ? 0 : j->c->n_aims};
-            }
+        if (found->n_solutions > 0 && found->solutions[0].feasible != out->compromise) {
+            out->solutions[out->n_solutions++] =
+                (mt_gap_solution){.found = &found->solutions[0],
+                                  .below = j->candidates->below + ((ptrdiff_t)k * p->n_bands),
+                                  .candidate = k,
+                                  .aims = j->slots[k].aims,
+                                  .n_aims = j->slots[k].aims == NULL ? 0 : j->c->n_aims};
         }
     }
     return MT_OK;
