@@ -77,13 +77,13 @@ mt_status mt_displaced_eval(mt_linear *lin, const double *dq, double *m, double 
     mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, &at, (int)all, NULL,
                        MT_CURVATURE_NONE, &l);
     for (ptrdiff_t j = 0; j < sys->nq; j++) {
-        q[j] = -creal(l.g[j]);
+        q[j] = -l.g[j];
         for (ptrdiff_t i = 0; i < lin->m; i++) {
-            a[i + (j * lin->m)] = creal(l.a[i + (j * all)]);
+            a[i + (j * lin->m)] = l.a[i + (j * all)];
         }
     }
     for (ptrdiff_t i = 0; i < lin->m && c != NULL; i++) {
-        c[i] = creal(l.c[i]);
+        c[i] = l.c[i];
     }
     MT_TRY(mass_matrix(lin, at.pose, m, err));
     mt_arena_rewind(&lin->scratch, mark);

@@ -95,9 +95,6 @@ static mt_status relax(walk *w, mt_newton_work *work, const mt_elimination *e, m
     MT_TRY(mt_arena_check(w->mem, err));
     mt_lagrangian_eval(w->data, MT_ENERGY_PHYSICAL, w->at->pose, w->at, work->p->m, NULL,
                        MT_CURVATURE_ELASTIC, &work->l);
-    for (ptrdiff_t i = 0; i < (ptrdiff_t)nq * nq; i++) {
-        work->h[i] = creal(work->l.h[i]);
-    }
     MT_TRY(mt_newton_invert(work, e, w->mem, &inverse, err));
     mt_gemv(false, nq, nq, -1.0, work->h, nq, work->v, 0.0, work->g);
     mt_eliminate_project(e, work->g, work->reduced);

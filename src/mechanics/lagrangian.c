@@ -11,11 +11,11 @@ mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessia
     const size_t nq = (size_t)sys->nq;
     const size_t m = (size_t)sys->n_constraints;
     *l = (mt_lagrangian){0};
-    l->g = mt_arena_alloc(mem, nq, sizeof *l->g);
-    l->trim = mt_arena_alloc(mem, nq, sizeof *l->trim);
-    l->c = mt_arena_alloc(mem, m, sizeof *l->c);
-    l->a = mt_arena_alloc(mem, m * nq, sizeof *l->a);
-    l->h = hessian ? mt_arena_alloc(mem, nq * nq, sizeof *l->h) : NULL;
+    l->g = mt_arena_f64(mem, nq, 1);
+    l->trim = mt_arena_f64(mem, nq, 1);
+    l->c = mt_arena_f64(mem, m, 1);
+    l->a = mt_arena_f64(mem, m, nq);
+    l->h = hessian ? mt_arena_f64(mem, nq, nq) : NULL;
     return mt_arena_check(mem, err);
 }
 
@@ -36,21 +36,28 @@ static void local_dofs(const mt_system *sys, const int body[2], int dof[MT_LOCAL
     }
 }
 
+/* What is asked for of a number: its value or its derivative. */
+static double part_of(const mt_lagrangian *l, mt_cx z)
+{
+    return l->slope ? cx_derivative(z) : creal(z);
+}
+
+/* to[nq] += scale times the gradient. */
 static void add_gradient(const mt_system *sys, const int body[2], const mt_cx *g, mt_cx scale,
-                         mt_cx *out)
+                         const mt_lagrangian *l, double *to)
 {
     int dof[MT_LOCAL];
     local_dofs(sys, body, dof);
     for (int k = 0; k < MT_LOCAL; k++) {
         if (dof[k] >= 0) {
-            out[dof[k]] += cx_mul(scale, g[k]);
+            to[dof[k]] += part_of(l, cx_mul(scale, g[k]));
         }
     }
 }
 
 /* h += scale * jet.h + outer * (ga gb^T + gb ga^T)/2. */
 static void add_hessian(const mt_system *sys, const int body[2], const mt_jet *jet, mt_cx scale,
-                        mt_cx outer, const mt_jet *other, mt_cx *h)
+                        mt_cx outer, const mt_jet *other, mt_lagrangian *out)
 {
     int dof[MT_LOCAL];
     local_dofs(sys, body, dof);
@@ -68,7 +75,7 @@ static void add_hessian(const mt_system *sys, const int body[2], const mt_jet *j
                     cx_mul(jet->g[r], other->g[c]) + cx_mul(other->g[r], jet->g[c]);
                 v += 0.5 * cx_mul(outer, product);
             }
-            h[dof[r] + ((ptrdiff_t)dof[c] * sys->nq)] += v;
+            out->h[dof[r] + ((ptrdiff_t)dof[c] * sys->nq)] += part_of(out, v);
         }
     }
 }
@@ -181,12 +188,12 @@ static void add_coupling(const mt_system *sys, const int body[2], mt_cx k,
 {
     for (int side = 0; side < 2; side++) {
         const mt_cx force = 0.5 * cx_mul(k, stretch[1 - side]);
-        add_gradient(sys, body, jet[side].g, force, out->g);
+        add_gradient(sys, body, jet[side].g, force, out, out->g);
         note_force(sys, out, body, &jet[side], force);
         if (curvature != MT_CURVATURE_NONE) {
             add_hessian(sys, body, &jet[side], curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
                         curvature == MT_CURVATURE_GEOMETRIC ? 0.0 : 0.5 * k, &jet[1 - side],
-                        out->h);
+                        out);
         }
     }
 }
@@ -202,16 +209,16 @@ static mt_cx add_spring(const mt_data *d, int i, mt_cx k, mt_cx stretch, const m
     mt_cx force = cx_mul(k, stretch) + mt_data_scalar(d, s->preload, 0.0);
     if (trimmed) {
         force = cx_make(out->trim_force, out->trim_force_derivative);
-        add_gradient(sys, body, jet->g, 1.0, out->trim);
+        add_gradient(sys, body, jet->g, 1.0, out, out->trim);
     }
-    add_gradient(sys, body, jet->g, force, out->g);
+    add_gradient(sys, body, jet->g, force, out, out->g);
     note_force(sys, out, body, jet, force);
     if (curvature != MT_CURVATURE_NONE) {
         /* while the force of the trimmed spring is an unknown its stiffness does not act; in
          * the linearised system it does, there as a row (rows.h) */
         const bool geometric = curvature == MT_CURVATURE_GEOMETRIC || trimmed;
         add_hessian(sys, body, jet, curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
-                    geometric ? 0.0 : k, jet, out->h);
+                    geometric ? 0.0 : k, jet, out);
     }
     return force;
 }
@@ -314,10 +321,10 @@ static void add_loads(const mt_data *d, const mt_placement *at, bool hessian,
         int body[2];
         mt_cx size = 0.0;
         load_jet(d, &sys->loads[i], at, hessian, body, &size, &jet);
-        add_gradient(sys, body, jet.g, -size, out->g);
+        add_gradient(sys, body, jet.g, -size, out, out->g);
         note_force(sys, out, body, &jet, size);
         if (hessian) {
-            add_hessian(sys, body, &jet, -size, 0.0, NULL, out->h);
+            add_hessian(sys, body, &jet, -size, 0.0, NULL, out);
             note_load(d, &sys->loads[i], at->pose, &jet, size, out);
         }
     }
@@ -365,9 +372,9 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
         const int *const dof = sys->bodies[i].dof;
         for (int k = 0; k < 3; k++) {
             if (dof[k] >= 0) {
-                out->g[dof[k]] += poses[i].x[k] - drawn[i].x[k];
+                out->g[dof[k]] += part_of(out, poses[i].x[k] - drawn[i].x[k]);
                 if (hessian) {
-                    out->h[dof[k] + ((ptrdiff_t)dof[k] * sys->nq)] += 1.0;
+                    out->h[dof[k] + ((ptrdiff_t)dof[k] * sys->nq)] += part_of(out, 1.0);
                 }
             }
             /* -l^2/2 tr(R0^T R) */
@@ -375,9 +382,9 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
             e[k] = 1.0;
             const mt_measure_data m = {.kind = MT_MEASURE_DOT, .dir = {e, e, NULL}};
             mt_measure_eval(&m, anchor, &poses[i], hessian, &jet);
-            add_gradient(sys, body, jet.g, -0.5 * l2, out->g);
+            add_gradient(sys, body, jet.g, -0.5 * l2, out, out->g);
             if (hessian) {
-                add_hessian(sys, body, &jet, -0.5 * l2, 0.0, NULL, out->h);
+                add_hessian(sys, body, &jet, -0.5 * l2, 0.0, NULL, out);
             }
         }
     }
@@ -431,26 +438,26 @@ static void add_constraints(const mt_data *d, const mt_placement *at, int m,
     for (int i = 0; i < m; i++) {
         const mt_constraint_def *const c = &sys->constraints[i];
         const bool curved = hessian && lambda != NULL;
-        out->c[i] = -mt_data_target(d, i, at);
+        mt_cx value = -mt_data_target(d, i, at);
         for (int t = 0; t < c->terms; t++) {
             const mt_measure_def *const def = &sys->measures[c->measure[t]];
             const mt_cx factor = mt_data_scalar(d, c->coefficient[t], 1.0);
             mt_data_eval(d, def, at, curved, &jet);
-            out->c[i] += cx_mul(factor, jet.value);
+            value += cx_mul(factor, jet.value);
             for (int k = 0; k < MT_LOCAL; k++) {
                 const int dof = mt_local_dof(sys, def->body, k);
                 if (dof >= 0) {
-                    out->a[i + ((ptrdiff_t)dof * m)] += cx_mul(factor, jet.g[k]);
+                    out->a[i + ((ptrdiff_t)dof * m)] += part_of(out, cx_mul(factor, jet.g[k]));
                 }
             }
             if (curved) {
                 const mt_cx force = cx_mul(factor, lambda[i]);
-                add_hessian(sys, def->body, &jet, force, 0.0, NULL, out->h);
+                add_hessian(sys, def->body, &jet, force, 0.0, NULL, out);
                 const double left = out->left.lambda != NULL ? out->left.lambda[i] : 0.0;
                 note_joint(d, def, at->pose, &jet, force, fabs(creal(factor) * left), out);
             }
         }
-        out->c[i] -= surplus_turns(d, i, creal(out->c[i]));
+        out->c[i] = part_of(out, value - surplus_turns(d, i, creal(value)));
     }
 }
 

@@ -41,11 +41,14 @@ typedef struct mt_step_left {
 } mt_step_left;
 
 typedef struct mt_lagrangian {
-    mt_cx *g;    /* [nq] gradient of V (without lambda) */
-    mt_cx *c;    /* [m] */
-    mt_cx *a;    /* m x nq, column-major */
-    mt_cx *h;    /* nq x nq, Hessian of V + lambda c */
-    mt_cx *trim; /* [nq] gradient of the trimmed spring's measure (where the system has one) */
+    /* in: derivatives with respect to the input that the data carries instead of values, in g,
+     * c, a, h and trim */
+    bool slope;
+    double *g;    /* [nq] gradient of V (without lambda) */
+    double *c;    /* [m] */
+    double *a;    /* m x nq, column-major */
+    double *h;    /* nq x nq, Hessian of V + lambda c */
+    double *trim; /* [nq] gradient of the trimmed spring's measure (where the system has one) */
     /* sum over all loads and springs of |contribution to g|, largest entry; 0 where nothing
      * loads */
     double force_scale;

@@ -118,7 +118,7 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
                        loaded ? MT_CURVATURE_GEOMETRIC : MT_CURVATURE_NONE, &l);
     for (ptrdiff_t j = 0; j < nq; j++) {
         for (ptrdiff_t i = 0; i < lin->m; i++) {
-            lin->a[i + (j * lin->m)] = creal(l.a[i + (j * all)]);
+            lin->a[i + (j * lin->m)] = l.a[i + (j * all)];
         }
     }
     /* a driven mechanism that nothing else loads often goes to its place without stretching a
@@ -132,9 +132,7 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     if (loaded && !lin->unstressed) {
         lin->kg = mt_arena_f64(&lin->geometry, (size_t)nq, (size_t)nq);
         MT_TRY(mt_arena_check(&lin->geometry, err));
-        for (ptrdiff_t i = 0; i < nq * nq; i++) {
-            lin->kg[i] = creal(l.h[i]);
-        }
+        memcpy(lin->kg, l.h, (size_t)(nq * nq) * sizeof *lin->kg);
     }
     mt_arena_rewind(&lin->scratch, mark);
     MT_TRY(mt_eliminate(sys, lin->m, lin->a, &lin->geometry, &lin->e, err));

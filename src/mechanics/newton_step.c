@@ -36,28 +36,20 @@ mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_
     MT_TRY(mt_lagrangian_init(&w->l, sys, true, mem, err));
     w->lambda_cx = mt_arena_alloc(mem, m, sizeof *w->lambda_cx);
     w->lambda = mt_arena_f64(mem, m, 1);
-    w->g = mt_arena_f64(mem, nq, 1);
-    w->c = mt_arena_f64(mem, m, 1);
-    w->a = mt_arena_f64(mem, m, nq);
-    w->h = mt_arena_f64(mem, nq, nq);
-    w->trim = mt_arena_f64(mem, nq, 1);
+    w->g = w->l.g;
+    w->c = w->l.c;
+    w->a = w->l.a;
+    w->h = w->l.h;
+    w->trim = w->l.trim;
     w->v = mt_arena_f64(mem, nq, 1);
     w->step = mt_arena_f64(mem, nq, 1);
     w->reduced = mt_arena_f64(mem, nq + 1, 1);
     return mt_arena_check(mem, err);
 }
 
-static void real_part(ptrdiff_t n, const mt_cx *from, double *to)
-{
-    for (ptrdiff_t i = 0; i < n; i++) {
-        to[i] = creal(from[i]);
-    }
-}
-
 void mt_newton_evaluate(mt_newton_work *w, const mt_placement *at, bool hessian)
 {
     const int m = w->p->m;
-    const ptrdiff_t nq = w->sys->nq;
     w->l.trim_force = w->tau;
     w->l.trim_force_derivative = 0.0;
     for (int i = 0; i < m; i++) {
@@ -65,13 +57,6 @@ void mt_newton_evaluate(mt_newton_work *w, const mt_placement *at, bool hessian)
     }
     mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, at, m, w->lambda_cx,
                        hessian ? MT_CURVATURE_FULL : MT_CURVATURE_NONE, &w->l);
-    real_part(nq, w->l.g, w->g);
-    real_part(nq, w->l.trim, w->trim);
-    real_part(m, w->l.c, w->c);
-    real_part(m * nq, w->l.a, w->a);
-    if (hessian) {
-        real_part(nq * nq, w->l.h, w->h);
-    }
     if (w->p->energy == MT_ENERGY_ANCHOR) {
         /* the anchor's own unit: a displacement of one model length */
         w->l.force_scale = w->sys->length_m;

@@ -9,7 +9,7 @@
 typedef struct mt_newton_work {
     const mt_newton_problem *p;
     const mt_system *sys;
-    mt_lagrangian l;
+    mt_lagrangian l; /* at the present position; g, c, a, h and trim are its */
     mt_cx *lambda_cx;
     double *lambda;  /* [m] */
     double *g;       /* [nq] gradient of the energy */

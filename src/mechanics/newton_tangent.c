@@ -26,19 +26,14 @@ static mt_status differentiate(mt_newton_work *w, const mt_placement *at, const 
     for (int i = 0; i < m; i++) {
         w->lambda_cx[i] = stage->lambda[i];
     }
+    w->l.slope = true;
     w->l.trim_force = stage->trim_force;
     w->l.trim_force_derivative = 0.0;
     mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, &moved, m, w->lambda_cx,
                        MT_CURVATURE_NONE, &w->l);
-    for (int j = 0; j < w->sys->nq; j++) {
-        mt_cx sum = w->l.g[j];
-        for (int i = 0; i < m; i++) {
-            sum += w->lambda_cx[i] * w->l.a[i + ((ptrdiff_t)j * m)];
-        }
-        w->g[j] = cx_derivative(sum);
-    }
+    mt_gemv(true, m, w->sys->nq, 1.0, w->a, m, stage->lambda, 1.0, w->g);
     for (int i = 0; i < m; i++) {
-        w->c[i] = -cx_derivative(w->l.c[i]);
+        w->c[i] = -w->c[i];
     }
     return MT_OK;
 }

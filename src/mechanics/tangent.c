@@ -61,7 +61,7 @@ static void closing(const mt_linear *lin, const mt_lagrangian *l, mt_linear_tang
             moved += term;
             sizes += fabs(term);
         }
-        t->c[i] = cx_derivative(l->c[i]);
+        t->c[i] = l->c[i];
         t->terms = fmax(t->terms, lin->e.dr[i] * (sizes + fabs(t->c[i] - moved)));
     }
 }
@@ -86,6 +86,7 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_placement *at,
     for (int i = 0; i < all && loaded; i++) {
         lambda[i] = cx_make(equilibrium->lambda[i], equilibrium->d_lambda[i]);
     }
+    l.slope = true;
     l.trim_force = equilibrium->trim_force;
     l.trim_force_derivative = equilibrium->d_trim_force;
     mt_lagrangian_eval(&lin->dual, MT_ENERGY_PHYSICAL, lin->position.drawn, at, all,
@@ -93,13 +94,13 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_placement *at,
                        loaded ? MT_CURVATURE_GEOMETRIC : MT_CURVATURE_NONE, &l);
     for (ptrdiff_t j = 0; j < nq; j++) {
         for (ptrdiff_t i = 0; i < lin->m; i++) {
-            t->a[i + (j * lin->m)] = cx_derivative(l.a[i + (j * all)]);
+            t->a[i + (j * lin->m)] = l.a[i + (j * all)];
         }
     }
     closing(lin, &l, t);
     t->moves = t->moves || !all_zero((size_t)lin->m * (size_t)nq, t->a);
-    for (ptrdiff_t i = 0; loaded && i < nq * nq; i++) {
-        t->kg[i] = cx_derivative(l.h[i]);
+    if (loaded) {
+        memcpy(t->kg, l.h, (size_t)(nq * nq) * sizeof *t->kg);
     }
     t->moves = t->moves || (loaded && !all_zero((size_t)(nq * nq), t->kg));
     mt_arena_rewind(&lin->scratch, mark);
