@@ -53,12 +53,14 @@ static int kind_of(mt_json *doc)
     return KIND_COUNT;
 }
 
-static mt_status find_kind(const char *path, const mt_io_options *opt, int *kind,
+/* *out: the document, the caller's, where it has a kind; else NULL. */
+static mt_status find_kind(const char *path, const mt_io_options *opt, int *kind, mt_json **out,
                            mt_diagnostics *messages, mt_err *err)
 {
     mt_file file = {.bytes = NULL};
     mt_json *doc = NULL;
     *kind = KIND_COUNT;
+    *out = NULL;
     mt_status rc = mt_file_read(path, opt->root, MT_JSON_MAX_BYTES, &file, err);
     if (rc == MT_OK) {
         rc = mt_json_parse(file.bytes, file.length, &doc, err);
@@ -68,9 +70,11 @@ static mt_status find_kind(const char *path, const mt_io_options *opt, int *kind
         if (*kind == KIND_COUNT) {
             rc = rc == MT_OK ? mt_fail(err, MT_E_INPUT, "%s: the format is unknown", path) : rc;
             mt_json_report(doc, path, messages);
+            mt_json_delete(doc);
+            doc = NULL;
         }
     }
-    mt_json_delete(doc);
+    *out = doc;
     mt_file_free(&file);
     return rc;
 }
@@ -154,14 +158,21 @@ static mt_status examine(const subject *s, const char *path, mt_diagnostics *mes
     return rc;
 }
 
-static mt_status load(int kind, const char *path, const mt_io_options *opt, subject *s,
-                      mt_diagnostics *messages, mt_err *err)
+/* The document becomes what it is, or goes: others read their files themselves, with those that
+ * they name. */
+static mt_status load(int kind, mt_json *doc, const char *path, const mt_io_options *opt,
+                      subject *s, mt_diagnostics *messages, mt_err *err)
 {
     mt_aircraft_list aircraft = {0};
     mt_status rc = MT_OK;
+    if (kind == KIND_MODEL) {
+        rc = mt_model_from_json(doc, path, &s->model, err);
+        mt_json_report(doc, path, messages);
+        rc = messages->lines.failed ? mt_fail_memory(err) : rc;
+    }
+    mt_json_delete(doc);
     switch ((file_kind)kind) {
     case KIND_MODEL:
-        rc = mt_model_load(path, opt, &s->model, messages, err);
         break;
     case KIND_STUDY:
         rc = mt_study_load(path, opt, &s->study, messages, err);
@@ -213,9 +224,10 @@ static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_ta
     mt_arena mem = {.first = NULL};
     mt_doubt_list found = mt_doubt_list_default(&mem);
     subject read = {.model = NULL};
-    mt_status rc = find_kind(path, &opt, &kind, &messages, &err);
+    mt_json *doc = NULL;
+    mt_status rc = find_kind(path, &opt, &kind, &doc, &messages, &err);
+    rc = rc == MT_OK ? load(kind, doc, path, &opt, &read, &messages, &err) : rc;
     rc = rc == MT_OK ? mt_arena_init(&mem, 0, &err) : rc;
-    rc = rc == MT_OK ? load(kind, path, &opt, &read, &messages, &err) : rc;
     rc = rc == MT_OK ? examine(&read, path, &messages, &found, &err) : rc;
     add_messages(&found, path, &messages);
     const char *const name = kind == KIND_COUNT ? NULL : kinds[kind];

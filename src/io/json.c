@@ -198,6 +198,7 @@ mt_status mt_json_parse(const char *text, size_t length, mt_json **out, mt_err *
     /* of a text that is too long only the start is of use */
     doc->length = length > MT_JSON_MAX_BYTES ? 0 : length;
     doc->diags = mt_diags_default(&doc->mem);
+    doc->spots.most = MT_JSON_MAX_VALUES;
     doc->text = mt_arena_strndup(&doc->mem, text, doc->length);
     mt_status rc = mt_arena_check(&doc->mem, err);
     if (rc == MT_OK) {

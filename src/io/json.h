@@ -23,8 +23,8 @@
 enum {
     MT_JSON_ROOT = 0,
     MT_JSON_MAX_DEPTH = 64,
-    MT_JSON_MAX_BYTES = 16 * 1024 * 1024,
-    MT_JSON_MAX_VALUES = 1000000
+    MT_JSON_MAX_BYTES = 512 * 1024 * 1024,
+    MT_JSON_MAX_VALUES = 30000000
 };
 
 /* Bits, so that several types can be allowed at once. */

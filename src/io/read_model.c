@@ -137,17 +137,14 @@ static void read_parameters(mt_model_reader *mr, mt_addr object)
 static void read_points(mt_model_reader *mr, mt_addr object)
 {
     mt_model *const m = mr->m;
-    for (mt_items i = mt_reader_items(&mr->r, object); mt_items_next(&i);) {
-        mt_point *const grown =
-            mt_arena_grow(&m->mem, m->points, m->n_points, &m->cap_points, sizeof *grown);
-        if (grown == NULL) {
-            return;
-        }
-        m->points = grown;
+    mt_items i = mt_reader_items(&mr->r, object);
+    m->points = mt_reader_room(&mr->r, &i, sizeof *m->points);
+    while (mt_items_next(&i)) {
         mt_point *const p = &m->points[m->n_points++];
         p->name = mt_reader_member_name(&mr->r, i.at, MT_NAME_ITEM);
         (void)mt_read_vector(mr, i.at, p->x);
     }
+    mt_model_index_points(m);
 }
 
 /* In two dimensions one moment; in three three moments, or six with the products; none: a point
@@ -178,13 +175,9 @@ static void read_inertia(mt_model_reader *mr, mt_addr value, mt_body *b)
 static void read_bodies(mt_model_reader *mr, mt_addr list)
 {
     mt_model *const m = mr->m;
-    for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
-        mt_body *const grown =
-            mt_arena_grow(&m->mem, m->bodies, m->n_bodies, &m->cap_bodies, sizeof *grown);
-        if (grown == NULL) {
-            return;
-        }
-        m->bodies = grown;
+    mt_items i = mt_reader_items(&mr->r, list);
+    m->bodies = mt_reader_room(&mr->r, &i, sizeof *m->bodies);
+    while (mt_items_next(&i)) {
         mt_body *const b = &m->bodies[m->n_bodies++];
         mt_addr at[BODY_COUNT];
         (void)mt_reader_object(&mr->r, i.at, &mt_body_keys, at);
@@ -271,6 +264,7 @@ mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_
         read_root(&mr, at);
         (void)mt_model_finish(m, mr.r.diags, NULL); /* the arenas remember a shortage */
         note_places(&mr);
+        m->path = mt_arena_strdup(&m->mem, file);
     }
     const mt_status rc = mt_reader_status(&mr.r, file, err);
     if (rc != MT_OK) {
@@ -298,10 +292,8 @@ mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **o
         rc = mt_json_status(doc, path, err);
     }
     if (rc == MT_OK && *out != NULL) {
-        mt_model *const m = *out;
-        m->path = mt_arena_strdup(&m->mem, path);
-        m->sha256 = mt_arena_strdup(&m->mem, file.sha256);
-        rc = mt_arena_check(&m->mem, err);
+        (*out)->sha256 = mt_arena_strdup(&(*out)->mem, file.sha256);
+        rc = mt_arena_check(&(*out)->mem, err);
     }
     if (doc != NULL && opt != NULL && opt->structural != NULL) {
         *opt->structural = mt_json_diags(doc)->structural;

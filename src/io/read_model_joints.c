@@ -94,13 +94,9 @@ static void read_joint(mt_model_reader *mr, mt_addr value, mt_joint *j)
 void mt_read_joints(mt_model_reader *mr, mt_addr list)
 {
     mt_model *const m = mr->m;
-    for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
-        mt_joint *const grown =
-            mt_arena_grow(&m->mem, m->joints, m->n_joints, &m->cap_joints, sizeof *grown);
-        if (grown == NULL) {
-            return;
-        }
-        m->joints = grown;
+    mt_items i = mt_reader_items(&mr->r, list);
+    m->joints = mt_reader_room(&mr->r, &i, sizeof *m->joints);
+    while (mt_items_next(&i)) {
         read_joint(mr, i.at, &m->joints[m->n_joints++]);
     }
 }
@@ -265,16 +261,12 @@ static void read_spring(mt_model_reader *mr, mt_addr value, bool damper, mt_spri
 void mt_read_springs(mt_model_reader *mr, mt_addr springs, mt_addr dampers)
 {
     mt_model *const m = mr->m;
-    const mt_addr lists[] = {springs, dampers};
-    for (int k = 0; k < 2; k++) {
-        for (mt_items i = mt_reader_items(&mr->r, lists[k]); mt_items_next(&i);) {
-            mt_spring *const grown = mt_arena_grow(&m->mem, m->springs, m->n_springs,
-                                                   &m->cap_springs, sizeof *grown);
-            if (grown == NULL) {
-                return;
-            }
-            m->springs = grown;
-            read_spring(mr, i.at, k == 1, &m->springs[m->n_springs++]);
+    mt_items walk[] = {mt_reader_items(&mr->r, springs), mt_reader_items(&mr->r, dampers)};
+    mt_items both = {.count = walk[0].count + walk[1].count};
+    m->springs = mt_reader_room(&mr->r, &both, sizeof *m->springs);
+    for (int k = 0; k < 2 && m->springs != NULL; k++) {
+        while (mt_items_next(&walk[k])) {
+            read_spring(mr, walk[k].at, k == 1, &m->springs[m->n_springs++]);
         }
     }
 }

@@ -109,7 +109,7 @@ static void read_link(mt_model_reader *mr, mt_addr value, mt_link *l)
     l->kind = kind == 1 ? MT_LINK_BEAM : MT_LINK_LUMPED;
     l->from = mt_read_position(mr, at[LINK_FROM]);
     l->to = mt_read_position(mr, at[LINK_TO]);
-    l->elements = mt_reader_count(&mr->r, at[LINK_ELEMENTS], 1, MT_MAX_LIST, 0);
+    l->elements = mt_reader_count(&mr->r, at[LINK_ELEMENTS], 1, MT_MAX_ELEMENTS, 0);
     l->mass = mt_read_num(mr, at[LINK_MASS]);
     l->density = mt_read_num(mr, at[LINK_DENSITY]);
     l->youngs_modulus = mt_read_num(mr, at[LINK_YOUNG]);
@@ -120,13 +120,14 @@ static void read_link(mt_model_reader *mr, mt_addr value, mt_link *l)
     l->rotary_inertia = at[LINK_ROTARY] == MT_NO_ADDR
                             ? l->shear.given
                             : mt_reader_flag(&mr->r, at[LINK_ROTARY], false);
-    l->stiffness = mt_read_nums(mr, at[LINK_STIFFNESS], true, 1, MT_MAX_LIST, &l->n_stiffness);
+    l->stiffness =
+        mt_read_nums(mr, at[LINK_STIFFNESS], true, 1, MT_MAX_ELEMENTS, &l->n_stiffness);
     l->element_length =
-        mt_read_nums(mr, at[LINK_LENGTH], true, 1, MT_MAX_LIST, &l->n_element_length);
+        mt_read_nums(mr, at[LINK_LENGTH], true, 1, MT_MAX_ELEMENTS, &l->n_element_length);
     l->element_mass =
-        mt_read_nums(mr, at[LINK_ELEMENT_MASS], true, 1, MT_MAX_LIST, &l->n_element_mass);
+        mt_read_nums(mr, at[LINK_ELEMENT_MASS], true, 1, MT_MAX_ELEMENTS, &l->n_element_mass);
     l->element_inertia =
-        mt_read_nums(mr, at[LINK_INERTIA], true, 1, MT_MAX_LIST, &l->n_element_inertia);
+        mt_read_nums(mr, at[LINK_INERTIA], true, 1, MT_MAX_ELEMENTS, &l->n_element_inertia);
     l->has_hinge_axis = mt_read_vector(mr, at[LINK_HINGE_AXIS], l->hinge_axis);
     l->radius_of_gyration = mt_read_num(mr, at[LINK_GYRATION]);
     l->in = mt_read_presence(mr, at[LINK_IN]);
@@ -138,13 +139,9 @@ static void read_link(mt_model_reader *mr, mt_addr value, mt_link *l)
 void mt_read_links(mt_model_reader *mr, mt_addr list)
 {
     mt_model *const m = mr->m;
-    for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
-        mt_link *const grown =
-            mt_arena_grow(&m->mem, m->links, m->n_links, &m->cap_links, sizeof *grown);
-        if (grown == NULL) {
-            return;
-        }
-        m->links = grown;
+    mt_items i = mt_reader_items(&mr->r, list);
+    m->links = mt_reader_room(&mr->r, &i, sizeof *m->links);
+    while (mt_items_next(&i)) {
         read_link(mr, i.at, &m->links[m->n_links++]);
     }
 }

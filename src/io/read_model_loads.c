@@ -59,13 +59,9 @@ static void read_load(mt_model_reader *mr, mt_addr value, mt_load *l)
 void mt_read_loads(mt_model_reader *mr, mt_addr list)
 {
     mt_model *const m = mr->m;
-    for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
-        mt_load *const grown =
-            mt_arena_grow(&m->mem, m->loads, m->n_loads, &m->cap_loads, sizeof *grown);
-        if (grown == NULL) {
-            return;
-        }
-        m->loads = grown;
+    mt_items i = mt_reader_items(&mr->r, list);
+    m->loads = mt_reader_room(&mr->r, &i, sizeof *m->loads);
+    while (mt_items_next(&i)) {
         read_load(mr, i.at, &m->loads[m->n_loads++]);
     }
 }

@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "model/names.h"
+
 mt_num mt_read_num(mt_model_reader *mr, mt_addr value)
 {
     mt_expr expr;
@@ -87,12 +89,9 @@ mt_position mt_read_position(mt_model_reader *mr, mt_addr value)
 static bool is_point(const mt_model_reader *mr, mt_addr value)
 {
     const char *const s = mt_json_string(mr->r.doc, value);
-    for (int i = 0; i < mr->m->n_points; i++) {
-        if (mr->m->points[i].name.s != NULL && strcmp(mr->m->points[i].name.s, s) == 0) {
-            return true;
-        }
-    }
-    return false;
+    bool found = false;
+    (void)mt_names_find(&mr->m->tables->points, s, strlen(s), &found);
+    return found;
 }
 
 /* A list of two strings: two points, or two expressions? In three dimensions only points can be

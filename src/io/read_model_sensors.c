@@ -97,13 +97,9 @@ static void read_sensor(mt_model_reader *mr, mt_addr value, mt_sensor *s)
 void mt_read_sensors(mt_model_reader *mr, mt_addr list)
 {
     mt_model *const m = mr->m;
-    for (mt_items i = mt_reader_items(&mr->r, list); mt_items_next(&i);) {
-        mt_sensor *const grown =
-            mt_arena_grow(&m->mem, m->sensors, m->n_sensors, &m->cap_sensors, sizeof *grown);
-        if (grown == NULL) {
-            return;
-        }
-        m->sensors = grown;
+    mt_items i = mt_reader_items(&mr->r, list);
+    m->sensors = mt_reader_room(&mr->r, &i, sizeof *m->sensors);
+    while (mt_items_next(&i)) {
         read_sensor(mr, i.at, &m->sensors[m->n_sensors++]);
     }
 }
@@ -111,13 +107,9 @@ void mt_read_sensors(mt_model_reader *mr, mt_addr list)
 void mt_read_modes(mt_model_reader *mr, mt_addr object)
 {
     mt_model *const m = mr->m;
-    for (mt_items i = mt_reader_items(&mr->r, object); mt_items_next(&i);) {
-        mt_named_mode *const grown =
-            mt_arena_grow(&m->mem, m->modes, m->n_modes, &m->cap_modes, sizeof *grown);
-        if (grown == NULL) {
-            return;
-        }
-        m->modes = grown;
+    mt_items i = mt_reader_items(&mr->r, object);
+    m->modes = mt_reader_room(&mr->r, &i, sizeof *m->modes);
+    while (mt_items_next(&i)) {
         mt_named_mode *const mode = &m->modes[m->n_modes++];
         mt_addr at[MODE_COUNT];
         (void)mt_reader_object(&mr->r, i.at, &mt_mode_keys, at);
@@ -174,14 +166,9 @@ static void read_overrides(mt_model_reader *mr, mt_addr object, mt_configuration
 void mt_read_configurations(mt_model_reader *mr, mt_addr object)
 {
     mt_model *const m = mr->m;
-    for (mt_items i = mt_reader_items(&mr->r, object); mt_items_next(&i);) {
-        mt_configuration *const grown =
-            mt_arena_grow(&m->mem, m->configurations, m->n_configurations,
-                          &m->cap_configurations, sizeof *grown);
-        if (grown == NULL) {
-            return;
-        }
-        m->configurations = grown;
+    mt_items i = mt_reader_items(&mr->r, object);
+    m->configurations = mt_reader_room(&mr->r, &i, sizeof *m->configurations);
+    while (mt_items_next(&i)) {
         mt_configuration *const c = &m->configurations[m->n_configurations++];
         mt_addr at[CONFIGURATION_COUNT];
         (void)mt_reader_object(&mr->r, i.at, &mt_configuration_keys, at);

@@ -399,8 +399,8 @@ static bool scan_quoted_wrongly(scan *sc)
 
 static bool scan_value(scan *sc, size_t name)
 {
-    if (sc->out->n >= MT_JSON_MAX_VALUES) {
-        (void)wrong(sc, sc->i, "more than %d values", MT_JSON_MAX_VALUES);
+    if (sc->out->n >= sc->out->most) {
+        (void)wrong(sc, sc->i, "more than %d values", sc->out->most);
         return false;
     }
     const int c = peek(sc);

@@ -22,6 +22,7 @@ typedef struct mt_json_spots {
     mt_json_spot *items; /* in the arena of the diagnostics, which remembers a shortage */
     int n;
     int capacity;
+    int most; /* in: values of a text, else it is refused */
 } mt_json_spots;
 
 /* All values of a text of length bytes, with a NUL behind them; its mistakes go to diags, with

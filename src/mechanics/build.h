@@ -14,7 +14,11 @@ typedef struct mt_builder {
     int *body_of;          /* [model bodies] state body or -1 (absent in this configuration) */
     int *link_first;       /* [model links] first state body of the link or -1 */
     mt_node (*link_at)[3]; /* [model links] position of `from` */
+    int *joint_at;         /* [model joints] the system's joint or -1 */
+    int *hinge_at;         /* [model links] the system's joint of its first hinge or -1 */
     int axis_vec[3];       /* vectors of the global axes */
+    int *vec_at;           /* [vec_slots] hash table of vectors; -1: free */
+    int vec_slots;         /* a power of 2 */
     const mt_system_drive *drive; /* of the caller; NULL: the configuration's own */
     mt_err *err;
 } mt_builder;
@@ -25,6 +29,7 @@ void mt_build_coordinates(mt_builder *b, const mt_num x[3], mt_node out[3]);
 void mt_build_position(mt_builder *b, const mt_position *p, mt_node out[3]);
 int mt_build_vec(mt_builder *b, mt_vec_kind kind, const mt_node node[3], const char *what);
 int mt_build_perp(mt_builder *b, int axis, int which); /* which: 1, 2 */
+int mt_build_cross(mt_builder *b, int first, int second);
 mt_node mt_build_length(mt_builder *b, const mt_node from[3], const mt_node to[3]);
 /* Vector from the centre of the body (or the ground's origin) to the position. */
 int mt_build_arm(mt_builder *b, int body, const mt_node at[3], const char *what);

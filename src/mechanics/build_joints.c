@@ -165,24 +165,15 @@ static mt_system_joint *new_joint(mt_builder *b, const mt_joint *joint, const in
                           .model_joint = (int)(joint - b->model->joints),
                           .link = MT_ABSENT,
                           .hinge = -1};
+    b->joint_at[joint - b->model->joints] = sys->n_joints;
     return &sys->joints[sys->n_joints++];
-}
-
-static int find_model_joint(const mt_system *sys, int joint)
-{
-    for (int i = 0; i < sys->n_joints; i++) {
-        if (sys->joints[i].model_joint == joint) {
-            return i;
-        }
-    }
-    return -1;
 }
 
 static mt_status build_gear(mt_builder *b, const mt_joint *joint)
 {
     mt_system *const sys = b->sys;
-    const int first = find_model_joint(sys, joint->gear_joint[0]);
-    const int second = find_model_joint(sys, joint->gear_joint[1]);
+    const int first = b->joint_at[joint->gear_joint[0]];
+    const int second = b->joint_at[joint->gear_joint[1]];
     if (first < 0 || second < 0 || sys->joints[first].coordinate < 0 ||
         sys->joints[second].coordinate < 0) {
         return mt_fail(b->err, MT_E_INPUT,

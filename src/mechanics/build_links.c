@@ -110,16 +110,6 @@ static section_nodes section_of(mt_builder *b, const mt_section *s)
     return out;
 }
 
-static int cross_vec(mt_builder *b, int a, int c)
-{
-    const mt_node none[3] = {MT_NO_NODE, MT_NO_NODE, MT_NO_NODE};
-    const int at = mt_build_vec(b, MT_VEC_CROSS, none, b->sys->vecs[a].what);
-    /* a fresh entry: axis and helper were -1, which no finished CROSS has */
-    b->sys->vecs[at].axis = a;
-    b->sys->vecs[at].helper = c;
-    return at;
-}
-
 static void link_frame(mt_builder *b, const mt_link *link, link_geometry *g)
 {
     mt_node along[3];
@@ -136,7 +126,7 @@ static void link_frame(mt_builder *b, const mt_link *link, link_geometry *g)
         mt_build_coordinates(b, link->hinge_axis, hinge);
         const int axis = mt_build_vec(
             b, MT_VEC_UNIT, hinge, mt_build_name(b, "hinge axis of link \"%s\"", link->name.s));
-        g->triad[1] = cross_vec(b, axis, g->triad[0]);
+        g->triad[1] = mt_build_cross(b, axis, g->triad[0]);
         g->triad[2] = axis; /* perpendicular to e1: checked when the system is settled */
         return;
     }
@@ -246,6 +236,7 @@ static void build_hinge(mt_builder *b, const mt_link *link, const link_geometry 
         return;
     }
     sys->springs = springs;
+    b->hinge_at[link - b->model->links] = sys->n_joints - (i - 1);
     mt_system_joint *const joint = &sys->joints[sys->n_joints++];
     *joint = (mt_system_joint){.name = mt_build_name(b, "%s.h%d", link->name.s, i),
                                .type = MT_JOINT_REVOLUTE,

@@ -79,15 +79,9 @@ static int axial_measure(mt_builder *b, const ends *e)
 
 int mt_build_find_coordinate(const mt_builder *b, int joint, int link, int hinge, bool angle)
 {
-    for (int i = 0; i < b->sys->n_joints; i++) {
-        const mt_system_joint *const j = &b->sys->joints[i];
-        const bool same =
-            joint != MT_ABSENT ? j->model_joint == joint : j->link == link && j->hinge == hinge;
-        if (same && j->angle == angle) {
-            return j->coordinate;
-        }
-    }
-    return -1;
+    const int first = joint != MT_ABSENT ? b->joint_at[joint] : b->hinge_at[link];
+    const int at = first < 0 || joint != MT_ABSENT ? first : first + hinge;
+    return at >= 0 && b->sys->joints[at].angle == angle ? b->sys->joints[at].coordinate : -1;
 }
 
 static mt_status build_torsion(mt_builder *b, const mt_spring *spring)

@@ -37,7 +37,11 @@ static mt_status prepare(mt_builder *b, mt_system *sys, mt_err *err)
     b->err = err;
     b->body_of = mt_arena_int(&sys->mem, (size_t)model->n_bodies + 1);
     b->link_first = mt_arena_int(&sys->mem, (size_t)model->n_links + 1);
+    b->joint_at = mt_arena_int(&sys->mem, (size_t)model->n_joints + 1);
+    b->hinge_at = mt_arena_int(&sys->mem, (size_t)model->n_links + 1);
     MT_TRY(mt_arena_check(&sys->mem, err));
+    memset(b->joint_at, 0xFF, (size_t)model->n_joints * sizeof *b->joint_at);
+    memset(b->hinge_at, 0xFF, (size_t)model->n_links * sizeof *b->hinge_at);
     MT_TRY(reserve(sys, err));
     b->zero = mt_program_const(&sys->program, 0.0);
     b->one = mt_program_const(&sys->program, 1.0);

@@ -23,7 +23,7 @@ bool mt_finish_hinge(mt_finish *f, mt_name name, int *at, int *number)
     const mt_link *const link = &f->m->links[-1 - i];
     int hinge = 0;
     const char *c = dot + 2;
-    for (; *c >= '0' && *c <= '9' && hinge < MT_MAX_LIST; c++) {
+    for (; *c >= '0' && *c <= '9' && hinge < MT_MAX_ELEMENTS; c++) {
         hinge = 10 * hinge + (*c - '0');
     }
     const int hinges = link->kind == MT_LINK_BEAM ? 0 : link->elements - 1;

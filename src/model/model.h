@@ -16,6 +16,8 @@
  * Geometry: the reference position, global coordinates [m]; angles [rad].
  */
 enum { MT_ABSENT = -1, MT_GROUND = -1, MT_MAX_LIST = 100000 };
+/* Elements of a link at most: what is listed for them, too. */
+enum { MT_MAX_ELEMENTS = 1000000 };
 /* A drive goes so far at most from the reference position: rad (159 turns), or lengths of the
  * mechanism. The way there is walked in steps of a tenth at most. */
 enum { MT_DRIVE_REACH = 1000 };

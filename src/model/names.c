@@ -84,3 +84,16 @@ void mt_model_index_parameters(mt_model *model)
         }
     }
 }
+
+void mt_model_index_points(mt_model *model)
+{
+    mt_names *const table = &model->tables->points;
+    bool taken = false;
+    *table = (mt_names){0};
+    for (int i = 0; i < model->n_points; i++) {
+        const char *const name = model->points[i].name.s;
+        if (name != NULL) {
+            mt_names_add(table, &model->mem, name, i, &taken);
+        }
+    }
+}

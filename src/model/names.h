@@ -33,5 +33,7 @@ int mt_names_find(const mt_names *t, const char *name, size_t length, bool *foun
 /* Make the table of parameters before the others exist, so that mt_model_lookup is fast while
  * expressions are read. Duplicates are left to mt_model_finish. */
 void mt_model_index_parameters(mt_model *model);
+/* The same for points, while positions are read. */
+void mt_model_index_points(mt_model *model);
 
 #endif
