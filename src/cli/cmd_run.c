@@ -164,6 +164,8 @@ int mt_cmd_run(const mt_args *args, mt_text *out)
 static int compare_one(const job *j, mt_json_writer *w, mt_text *out)
 {
     const mt_result *const r = j->result;
+    const mt_recommendation *const best =
+        r->n_recommendations > 0 ? &r->recommendations[0] : &r->baseline;
     mt_table t = mt_report_published(r);
     int judged = 0;
     const bool holds = mt_report_verified(r, &judged);
@@ -174,6 +176,7 @@ static int compare_one(const job *j, mt_json_writer *w, mt_text *out)
         mt_result_put_member(w, "status", r);
         mt_result_put_member(w, "doubts", r);
         mt_json_put_bool(w, "holds", holds && judged > 0);
+        mt_design_put_member(w, "objectives", r, best);
         mt_result_put_member(w, "published", r);
         mt_result_put_member(w, "undetermined", r);
         mt_result_put_member(w, "spread", r);
@@ -191,6 +194,7 @@ static int compare_one(const job *j, mt_json_writer *w, mt_text *out)
             mt_text_add(out, "\n");
         }
         mt_table_print(&t, 2, out);
+        mt_report_objectives_text(best, out);
         mt_report_uncertainty(r, out);
         mt_text_add(out, "\n");
         break;

@@ -70,20 +70,34 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
  * is looked up among the modes. */
 static double aim_value(const mt_workspace *fresh, int k)
 {
-    return mt_objective_is(fresh->c->aims[k].type, MT_BANDS)
-               ? -fmin(mt_clears_room(fresh), fresh->motion_room)
-               : mt_aim_value(fresh, k, NULL);
+    if (!mt_objective_is(fresh->c->aims[k].type, MT_BANDS)) {
+        return mt_aim_value(fresh, k, NULL);
+    }
+    const double room = mt_clears_room(fresh);
+    return -(fresh->motion_room < room ? fresh->motion_room : room); /* NaN: unstable */
 }
 
-static void describe_score(const mt_workspace *fresh, mt_recommendation *rec)
+static mt_status describe_objectives(const mt_workspace *fresh,
+                                     const mt_recommendation *baseline, mt_result *result,
+                                     mt_recommendation *rec, mt_err *err)
 {
-    const mt_objective_type type = fresh->c->aims[0].type;
-    const bool none = type == MT_OBJECTIVE_NONE || !rec->feasible;
+    const int n = result->n_objectives;
+    rec->objectives = mt_arena_alloc(&result->mem, (size_t)n, sizeof *rec->objectives);
+    MT_TRY(mt_arena_check(&result->mem, err));
+    for (int k = 0; k < n; k++) {
+        const double shown = mt_aim_shown(&fresh->c->aims[k], aim_value(fresh, k));
+        const double value = isfinite(shown) ? shown : nan("");
+        rec->objectives[rec->n_objectives++] = (mt_design_objective){
+            .text = result->objectives[k].text,
+            .unit = result->objectives[k].unit,
+            .original = baseline == NULL ? value : baseline->objectives[k].original,
+            .recommended = value};
+    }
     if (fresh->p->n_res > 0) {
         rec->misfit = mt_norm2(fresh->p->n_res, fresh->r);
     }
-    rec->score = none ? nan("") : mt_aim_shown(&fresh->c->aims[0], aim_value(fresh, 0));
-    rec->score_unit = mt_objective_kind_of(type)->unit;
+    rec->score = n > 0 && rec->feasible ? rec->objectives[0].recommended : nan("");
+    return MT_OK;
 }
 
 /* Does the fresh objective agree with the one that the search ended with? */
@@ -133,7 +147,7 @@ static mt_status describe(mt_workspace *fresh, const mt_design *design,
     MT_TRY(mt_describe_frequencies(fresh, design, baseline, result, rec, err));
     MT_TRY(doubt(design, result, rec, err));
     MT_TRY(mt_describe_clearances(fresh, result, rec, err));
-    describe_score(fresh, rec);
+    MT_TRY(describe_objectives(fresh, baseline, result, rec, err));
     if (fresh->c->robust != NULL) {
         rec->worst_case = mt_robust_proven(fresh) ? "proven" : "sampled";
     }

@@ -174,6 +174,9 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
     } else {
         g->value = nan("");
         *why = why->code == MT_OK ? own : *why;
+        for (int i = 0; i < d->n_res && d->row_res >= 0; i++) {
+            fresh->r[d->row_res + i] = nan(""); /* nor is the misfit known */
+        }
     }
     g->weighted = d->row_res >= 0;
     g->text = demand_text(fresh->p, d, &result->mem);

@@ -13,6 +13,17 @@
 
 enum { VERSION_SIZE = 16 };
 
+/* "mass of bar*, rod" */
+static const char *objective_text(const mt_objective *o, mt_arena *mem)
+{
+    const char *text =
+        o->expression_text != NULL ? o->expression_text : mt_objective_kind_of(o->type)->name;
+    for (int i = 0; i < o->of.count; i++) {
+        text = mt_arena_printf(mem, "%s%s%s", text, i == 0 ? " of " : ", ", o->of.items[i].s);
+    }
+    return text;
+}
+
 static mt_status describe_objectives(const mt_study *study, mt_result *result, mt_err *err)
 {
     result->objectives =
@@ -21,11 +32,11 @@ static mt_status describe_objectives(const mt_study *study, mt_result *result, m
     for (int i = 0; i < study->n_objectives; i++) {
         const mt_objective *const o = &study->objectives[i];
         const mt_objective_kind *const kind = mt_objective_kind_of(o->type);
-        const bool own = o->expression_text != NULL;
-        result->objectives[result->n_objectives++] = (mt_result_objective){
-            kind->name, own ? o->expression_text : kind->name, own ? NULL : kind->unit};
+        result->objectives[result->n_objectives++] =
+            (mt_result_objective){kind->name, objective_text(o, &result->mem),
+                                  o->expression_text != NULL ? NULL : kind->unit};
     }
-    return MT_OK;
+    return mt_arena_check(&result->mem, err);
 }
 
 mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err)

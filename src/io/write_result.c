@@ -122,6 +122,18 @@ static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
     }
 }
 
+/* The members of that name; NULL: all of them. */
+static void put_members(mt_json_writer *w, const char *name, const mt_record *record,
+                        const void *item, const names *variables)
+{
+    for (int i = 0; i < record->n; i++) {
+        const mt_field *const f = &record->fields[i];
+        if (f->name != NULL && (name == NULL || strcmp(f->name, name) == 0)) {
+            put_field(w, f, item, variables);
+        }
+    }
+}
+
 static void put_record(mt_json_writer *w, const char *name, const mt_record *record,
                        const void *item, const names *variables)
 {
@@ -130,11 +142,7 @@ static void put_record(mt_json_writer *w, const char *name, const mt_record *rec
         return;
     }
     mt_json_open(w, name, '{');
-    for (int i = 0; i < record->n; i++) {
-        if (record->fields[i].name != NULL) {
-            put_field(w, &record->fields[i], item, variables);
-        }
-    }
+    put_members(w, NULL, record, item, variables);
     mt_json_close(w);
 }
 
@@ -153,12 +161,14 @@ void mt_json_put_doubts(mt_json_writer *w, const char *name, const mt_doubt_list
 void mt_result_put_member(mt_json_writer *w, const char *name, const mt_result *result)
 {
     const names variables = {result->n_variables, result->variables};
-    for (int i = 0; i < mt_result_record.n; i++) {
-        const mt_field *const f = &mt_result_record.fields[i];
-        if (name == NULL || strcmp(f->name, name) == 0) {
-            put_field(w, f, result, &variables);
-        }
-    }
+    put_members(w, name, &mt_result_record, result, &variables);
+}
+
+void mt_design_put_member(mt_json_writer *w, const char *name, const mt_result *result,
+                          const mt_recommendation *design)
+{
+    const names variables = {result->n_variables, result->variables};
+    put_members(w, name, &mt_design_record, design, &variables);
 }
 
 void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result)

@@ -15,7 +15,10 @@ void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result)
 /* The items of one level as a list of objects. */
 void mt_json_put_doubts(mt_json_writer *w, const char *name, const mt_doubt_list *list,
                         mt_doubt_level level);
-/* One of its members, into an object that is open; name NULL: all of them. */
+/* One of its members, into an object that is open; name NULL: all of them. One of a design of
+ * it likewise. */
 void mt_result_put_member(mt_json_writer *w, const char *name, const mt_result *result);
+void mt_design_put_member(mt_json_writer *w, const char *name, const mt_result *result,
+                          const mt_recommendation *design);
 
 #endif

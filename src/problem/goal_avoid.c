@@ -334,7 +334,9 @@ double mt_clears_room(const mt_workspace *w)
 {
     double room = HUGE_VAL;
     for (int i = 0; i < w->c->n_clears; i++) {
-        room = fmin(room, mt_clear_room(w, &w->c->clears[i]));
+        const mt_clear *const c = &w->c->clears[i];
+        const double here = w->views[c->view].solved ? mt_clear_room(w, c) : nan("");
+        room = here < room || !MT_HAS(here) ? here : room;
     }
     return room;
 }

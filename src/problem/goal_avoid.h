@@ -34,7 +34,7 @@ int mt_clear_row_count(const mt_case *c, const int *below);
 /* mt_clear_look after the view has been solved, with tolerances over them: what the objective
  * "clearance" makes greatest. */
 double mt_clear_room(const mt_workspace *w, const mt_clear *c);
-/* The least of all clears; infinite without bands. */
+/* The least of all clears; infinite without bands, NaN where one of them has none. */
 double mt_clears_room(const mt_workspace *w);
 
 #endif

@@ -63,6 +63,7 @@ static void add_list(int n, const char *const *items, const char *title, mt_text
 
 static void add_best(const mt_recommendation *r, mt_text *out)
 {
+    add_table(mt_report_objectives(r), "Objectives", out);
     add_table(mt_report_parameters(r), "Parameters", out);
     for (int i = 0; i < r->n_parameters; i++) {
         mt_text line = {0};

@@ -108,6 +108,66 @@ mt_table mt_report_parameters(const mt_recommendation *r)
     return t;
 }
 
+mt_table mt_report_objectives(const mt_recommendation *r)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "objective", "text", MT_ALIGN_LEFT);
+    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_column(&t, "before", "original", MT_ALIGN_POINT);
+    mt_table_column(&t, "after", "recommended", MT_ALIGN_POINT);
+    for (int k = 0; k < r->n_objectives; k++) {
+        const mt_design_objective *const o = &r->objectives[k];
+        mt_table_text(&t, o->text);
+        mt_table_text(&t, o->unit == NULL || o->unit[0] == '\0' ? NULL : o->unit);
+        mt_table_number(&t, o->original, VALUE_DIGITS);
+        mt_table_number(&t, o->recommended, VALUE_DIGITS);
+    }
+    return t;
+}
+
+/* The size of the redesign as tables call it, and as an objective is called that asks for the
+ * least. */
+static const char CHANGE[] = "change";
+
+static bool has_change(const mt_result *result)
+{
+    for (int k = 0; k < result->n_objectives; k++) {
+        if (strcmp(result->objectives[k].text, CHANGE) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void mt_report_objective_columns(mt_table *t, const mt_result *result)
+{
+    static const char machine[] = "objective ";
+    for (int k = 0; k < result->n_objectives; k++) {
+        const mt_result_objective *const o = &result->objectives[k];
+        const bool bare = o->unit == NULL || o->unit[0] == '\0';
+        char member[WEIGHT_TEXT];
+        (void)mt_snprintf(member, sizeof member, "%s%.200s%s%s%s", machine, o->text,
+                          bare ? "" : " [", bare ? "" : o->unit, bare ? "" : "]");
+        const char *const heading = member + strlen(machine);
+        mt_table_column(t, heading, strcmp(heading, CHANGE) == 0 ? CHANGE : member,
+                        MT_ALIGN_POINT);
+    }
+    if (!has_change(result)) {
+        mt_table_column(t, CHANGE, CHANGE, MT_ALIGN_POINT);
+    }
+}
+
+void mt_report_objective_cells(mt_table *t, const mt_result *result, const mt_recommendation *r)
+{
+    for (int k = 0; k < result->n_objectives; k++) {
+        mt_table_number(t, k < r->n_objectives ? r->objectives[k].recommended : nan(""),
+                        VALUE_DIGITS);
+    }
+    if (!has_change(result)) {
+        mt_table_number(t, r->change, VALUE_DIGITS);
+    }
+}
+
 bool mt_report_measure(const mt_result_parameter *p, mt_text *out)
 {
     char number[MT_NUMBER_TEXT];
@@ -307,18 +367,9 @@ static const char *assignment(const mt_recommendation *r, char *s, size_t size)
 mt_table mt_report_alternatives(const mt_result *result)
 {
     mt_table t = mt_table_default();
-    char heading[MT_NUMBER_TEXT] = "score";
-    if (result->n_recommendations > 0) {
-        const char *const unit = result->recommendations[0].score_unit;
-        if (unit != NULL && unit[0] != '\0' &&
-            strlen(unit) < sizeof heading - sizeof "score []") {
-            (void)mt_snprintf(heading, sizeof heading, "score [%s]", unit);
-        }
-    }
     mt_table_column(&t, "rank", "rank", MT_ALIGN_RIGHT);
     mt_table_column(&t, "grade", "grade", MT_ALIGN_LEFT);
-    mt_table_column(&t, heading, "score", MT_ALIGN_POINT);
-    mt_table_column(&t, "change", "change", MT_ALIGN_POINT);
+    mt_report_objective_columns(&t, result);
     mt_table_column(&t, "off by [%]", "violation_percent", MT_ALIGN_POINT);
     const int n = result->n_variables;
     const bool bands = result->baseline.n_gaps > 0;
@@ -333,8 +384,7 @@ mt_table mt_report_alternatives(const mt_result *result)
         const mt_recommendation *const r = &result->recommendations[i];
         mt_table_integer(&t, r->rank);
         mt_table_text(&t, r->grade);
-        mt_table_number(&t, r->score, VALUE_DIGITS);
-        mt_table_number(&t, r->change, PERCENT_DIGITS);
+        mt_report_objective_cells(&t, result, r);
         mt_table_percent(&t, r->violation_percent, PERCENT_DIGITS);
         if (bands) {
             char text[DEMAND_TEXT];
@@ -474,8 +524,7 @@ static void design_row(mt_table *t, const mt_result *result, const mt_recommenda
     mt_table_text(t, r->feasible ? "true" : "false");
     mt_table_text(t, r->grade);
     mt_table_number(t, r->score, VALUE_DIGITS);
-    mt_table_text(t, r->score_unit);
-    mt_table_number(t, r->change, VALUE_DIGITS);
+    mt_report_objective_cells(t, result, r);
     mt_table_number(t, r->misfit, VALUE_DIGITS);
     mt_table_number(t, r->violation_percent, VALUE_DIGITS);
     if (baseline->n_gaps > 0) {
@@ -503,13 +552,16 @@ static void design_row(mt_table *t, const mt_result *result, const mt_recommenda
 
 mt_table mt_report_designs(const mt_result *result)
 {
-    static const char *const fixed[] = {"rank",   "feasible",         "grade",
-                                        "score",  "score_unit",       "change",
-                                        "misfit", "violation_percent"};
+    static const char *const judged[] = {"rank", "feasible", "grade", "score"};
+    static const char *const sizes[] = {"misfit", "violation_percent"};
     static const char *const ends[] = {"hz", "lowest_hz", "highest_hz"};
     mt_table t = mt_table_default();
-    for (int i = 0; i < MT_COUNT(fixed); i++) {
-        mt_table_column(&t, fixed[i], fixed[i], MT_ALIGN_RIGHT);
+    for (int i = 0; i < MT_COUNT(judged); i++) {
+        mt_table_column(&t, judged[i], judged[i], MT_ALIGN_RIGHT);
+    }
+    mt_report_objective_columns(&t, result);
+    for (int i = 0; i < MT_COUNT(sizes); i++) {
+        mt_table_column(&t, sizes[i], sizes[i], MT_ALIGN_RIGHT);
     }
     if (result->baseline.n_gaps > 0) {
         mt_table_column(&t, "clearance_percent", "clearance_percent", MT_ALIGN_RIGHT);

@@ -11,6 +11,14 @@
 /* configuration, mode, name, original, recommended, target or limits, error, MAC with the
  * reference. */
 mt_table mt_report_frequencies(const mt_recommendation *r);
+/* text, unit, original, recommended of every objective. */
+mt_table mt_report_objectives(const mt_recommendation *r);
+/* In tables of designs: a column for each objective of the result ("mass [kg]", for machines
+ * "objective mass [kg]") and, if it is none of them, the size of the redesign ("change"); and
+ * their cells of one design. */
+void mt_report_objective_columns(mt_table *t, const mt_result *result);
+void mt_report_objective_cells(mt_table *t, const mt_result *result,
+                               const mt_recommendation *r);
 /* name, unit, original, recommended, change, bound. */
 mt_table mt_report_parameters(const mt_recommendation *r);
 /* How the change of a parameter counts, as a sentence; false (and nothing) where it is the

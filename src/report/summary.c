@@ -85,6 +85,11 @@ void mt_report_doubts(const mt_result *result, mt_text *out)
     print_doubts(result->n_facts, result->facts, false, out);
 }
 
+void mt_report_objectives_text(const mt_recommendation *r, mt_text *out)
+{
+    print_table(mt_report_objectives(r), "Objectives", out);
+}
+
 static void print_best(const mt_recommendation *r, mt_text *out)
 {
     if (r->n_parameters > 0) {
@@ -93,6 +98,9 @@ static void print_best(const mt_recommendation *r, mt_text *out)
                      r->grade == NULL ? "not graded" : r->grade,
                      mt_report_number(r->change, DIGITS, change),
                      r->singular ? ", a double solution: its parameters are sensitive" : "");
+    }
+    if (r->n_objectives != 1 || r->objectives[0].recommended != r->change) {
+        mt_report_objectives_text(r, out); /* else the size of the redesign is all */
     }
     print_table(mt_report_parameters(r), "Parameters", out);
     for (int i = 0; i < r->n_parameters; i++) {
@@ -140,6 +148,7 @@ void mt_report_summary(const mt_result *result, bool with_published, mt_text *ou
     if (result->n_recommendations > 0) {
         print_best(&result->recommendations[0], out);
     } else {
+        mt_report_objectives_text(&result->baseline, out);
         print_table(mt_report_frequencies(&result->baseline), "Frequencies as they are", out);
         print_table(mt_report_clearances(&result->baseline), "Clearances from bands", out);
         print_table(mt_report_goals(&result->baseline), "Goals", out);

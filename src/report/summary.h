@@ -9,6 +9,8 @@
  * alternatives, what stays undetermined, certificates and, where asked for, published against
  * computed. Memory running out shows in out->failed. */
 void mt_report_summary(const mt_result *result, bool with_published, mt_text *out);
+/* Of it, the objectives of a design with their values; nothing where there are none. */
+void mt_report_objectives_text(const mt_recommendation *r, mt_text *out);
 /* Of it, what the goals leave open: undetermined directions and the spread under other weights.
  * Nothing where there is neither. */
 void mt_report_uncertainty(const mt_result *result, mt_text *out);

@@ -6,6 +6,7 @@
 
 #include "base/format.h"
 #include "report/number.h"
+#include "report/result_tables.h"
 
 enum { VALUE_DIGITS = 6, PERCENT_DIGITS = 3, HEADING_TEXT = 160 };
 /* Layout of the curve in pixels. */
@@ -40,8 +41,7 @@ static void point_row(mt_table *t, const mt_result *result, const mt_trade_point
         mt_table_number(t, p->values[i], VALUE_DIGITS);
     }
     mt_table_text(t, mt_result_status_name(p->status));
-    mt_table_number(t, p->best.score, VALUE_DIGITS);
-    mt_table_number(t, p->best.change, PERCENT_DIGITS);
+    mt_report_objective_cells(t, result, &p->best);
     mt_table_number(t, p->best.clearance_percent, PERCENT_DIGITS);
     mt_table_percent(t, p->best.violation_percent, PERCENT_DIGITS);
     if (result->trade->n_objectives == 2) {
@@ -61,8 +61,7 @@ mt_table mt_report_trade(const mt_result *result)
     }
     vary_columns(&t, result->trade);
     mt_table_column(&t, "status", "status", MT_ALIGN_LEFT);
-    mt_table_column(&t, "score", "score", MT_ALIGN_POINT);
-    mt_table_column(&t, "change", "change", MT_ALIGN_POINT);
+    mt_report_objective_columns(&t, result);
     mt_table_column(&t, "clearance [%]", "clearance_percent", MT_ALIGN_POINT);
     mt_table_column(&t, "off by [%]", "violation_percent", MT_ALIGN_POINT);
     if (result->trade->n_objectives == 2) {

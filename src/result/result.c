@@ -163,6 +163,16 @@ static const mt_field GOAL_FIELDS[] = {
 static const mt_record GOAL = MT_F_RECORD_OF(GOAL_FIELDS);
 #undef THIS
 
+#define THIS mt_design_objective
+static const mt_field REACHED_FIELDS[] = {
+    MT_F_TEXT("text", text),
+    MT_F_TEXT_OR_NULL("unit", unit),
+    MT_F_NUMBER_OR_NULL("original", original),
+    MT_F_NUMBER_OR_NULL("recommended", recommended),
+};
+static const mt_record REACHED = MT_F_RECORD_OF(REACHED_FIELDS);
+#undef THIS
+
 #define THIS mt_recommendation
 static const char *const SURETIES[] = {"proven", "sampled"};
 static const mt_field DESIGN_FIELDS[] = {
@@ -170,7 +180,7 @@ static const mt_field DESIGN_FIELDS[] = {
     MT_F_FLAG("feasible", feasible),
     MT_F_TEXT_OR_NULL("grade", grade),
     MT_F_NUMBER_OR_NULL("score", score),
-    MT_F_TEXT_OR_NULL("score_unit", score_unit),
+    MT_F_LIST("objectives", objectives, n_objectives, mt_design_objective, REACHED),
     MT_F_NUMBER_OR_NULL("change", change),
     MT_F_NUMBER_OR_NULL("misfit", misfit),
     MT_F_NUMBER_OR_NULL("violation_percent", violation_percent),

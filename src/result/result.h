@@ -103,6 +103,14 @@ typedef struct mt_result_clearance {
     double worst_percent;
 } mt_result_clearance;
 
+/* The value of one objective, whether the goals are met or not; NaN: there is none. */
+typedef struct mt_design_objective {
+    const char *text; /* text and unit as in mt_result_objective */
+    const char *unit;
+    double original;
+    double recommended;
+} mt_design_objective;
+
 /* How many modes lie below a band: the kind of a design. */
 typedef struct mt_result_gap {
     /* of this band of this configuration, from 1: the same at all designs of a result */
@@ -164,8 +172,9 @@ typedef struct mt_recommendation {
     /* of a fresh analysis with what the search read, in words (not written: warnings and
      * reasons tell); NULL: none */
     const char *disagreement;
-    double score; /* first objective's value in its unit; NaN where infeasible */
-    const char *score_unit;
+    double score;     /* what it is ranked by: the first objective; NaN where infeasible */
+    int n_objectives; /* of the study */
+    mt_design_objective *objectives;
     double change; /* size of the redesign */
     double misfit; /* NaN: no weighted goals */
     double violation_percent;
@@ -340,7 +349,7 @@ typedef struct mt_result_run {
 /* What the designs are best in, first of all in the first. */
 typedef struct mt_result_objective {
     const char *type; /* as files call it: "mass" */
-    const char *text; /* the type, or the expression */
+    const char *text; /* the type, "mass of bar*", or the expression */
     const char *unit; /* "": none; NULL: the expression's own */
 } mt_result_objective;
 

@@ -123,7 +123,7 @@ static void least_mass__agrees_with_an_independent_optimum(mt_test *t)
         const mt_recommendation *const r = &c.result->recommendations[0];
         CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
         CHECK_NEAR(t, r->score, mass, MASS_TOL);
-        CHECK_STR(t, r->score_unit, "kg");
+        CHECK_STR(t, r->objectives[0].unit, "kg");
         CHECK_NEAR(t, study_value(&c, 1, "A1"), a1, AREA_TOL);
         CHECK_NEAR(t, study_value(&c, 1, "A2"), a2, AREA_TOL);
         CHECK_NEAR(t, study_frequency(&c, 1, "default", 1), LEAST_HZ, 1e-6);

@@ -104,7 +104,10 @@ static void bands__greatest_clearance_is_the_middle(mt_test *t)
     const double want = sqrt(0.25 * 0.42);
     CHECK_NEAR(t, r->parameters[0].recommended, SECOND / pow(2.0 * STUDY_PI * want, 2.0), 1e-6);
     CHECK_NEAR(t, r->score, 100.0 * (sqrt(0.42 / 0.25) - 1.0), 1e-6);
-    CHECK_STR(t, r->score_unit, "%");
+    CHECK_INT(t, r->n_objectives, 1);
+    CHECK_STR(t, r->objectives[0].text, "clearance");
+    CHECK_STR(t, r->objectives[0].unit, "%");
+    CHECK_NEAR(t, r->objectives[0].recommended, r->score, 0.0);
     CHECK_INT(t, c.result->n_warnings, 0); /* the fresh objective agrees */
     study_free(&c);
 }

@@ -141,6 +141,14 @@ def scores(run):
             change, score = float(q.change(x)[0]), float(q.objective(x)[0])
         if math.isfinite(change) and not near(rec["change"], change, 1e-6, 1e-3):
             yield f"rank {rec['rank']}: size of the redesign {rec['change']}, recomputed {change}"
+        if len(rec["objectives"]) != len(q.objectives):
+            yield f"rank {rec['rank']}: {len(rec['objectives'])} objectives, asked for {len(q.objectives)}"
+        for k, told in enumerate(rec["objectives"]):
+            for which, at in (("recommended", x), ("original", q.origin[None, :])):
+                with np.errstate(all="ignore"):
+                    value = float(q.objective(at, k)[0])
+                if told[which] is not None and math.isfinite(value) and not near(told[which], value, 1e-6, 1e-2):
+                    yield f"rank {rec['rank']}: {which} {told['text']} {told[which]}, recomputed {value}"
         if rec["score"] is not None and math.isfinite(score) and not near(rec["score"], score, 1e-6, 1e-2):
             yield f"rank {rec['rank']}: score {rec['score']}, recomputed {score}"
     ranks = [r["rank"] for r in result["recommendations"]]

@@ -66,6 +66,14 @@ def _score(run):
     return abs(best["score"]) > 1e-1
 
 
+def _second_objective(run):
+    best = _first(run.result)
+    if best is None or len(best["objectives"]) < 2 or not best["objectives"][1]["recommended"]:
+        return False
+    best["objectives"][1]["recommended"] *= 1.001
+    return abs(best["objectives"][1]["recommended"]) > 1.0
+
+
 def _ranks(run):
     good = [r for r in run.result["recommendations"] if r["feasible"] and r["score"] is not None]
     if len(good) < 2 or abs(good[0]["score"] - good[1]["score"]) < 1e-2 * abs(good[1]["score"]):
@@ -250,7 +258,7 @@ FAULTS = [
     (_frequency, ["limits", "bands"], "frequencies"), (_clearance, ["bands"], "clearances"), (_gap, ["bands"], "clearances"),
     (_least_clearance, ["bands"], "clearances"), (_violation, ["infeasible", "limits"], "goals"),
     (_called_feasible, ["infeasible", "limits"], "goals"), (_called_feasible, ["infeasible", "limits"], "consistent"),
-    (_score, ["limits", "bands"], "scores"), (_ranks, ["bands"], "scores"), (_bound, ["limits", "bands"], "bounds"), (_beside_mark, ["bands", "limits"], "marks"),
+    (_score, ["limits", "bands"], "scores"), (_second_objective, ["limits", "bands"], "scores"), (_ranks, ["bands"], "scores"), (_bound, ["limits", "bands"], "bounds"), (_beside_mark, ["bands", "limits"], "marks"),
     (_catalogue, ["catalogue"], "bounds"), (_slope, ["limits"], "slopes"), (_second_best, ["bands"], "optimum"),
     (_not_found, ["limits", "bands", "catalogue"], "optimum"), (_false_proof, ["limits", "bands"], "certificates"),
     (_false_proof, ["limits"], "consistent"), (_range, ["limits", "targets", "infeasible"], "certificates"),

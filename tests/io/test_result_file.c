@@ -66,6 +66,8 @@ static mt_relaxation RELAXATIONS[] = {{.kind = "bound",
                                        .change_percent = 100.0,
                                        .design = DESIGN,
                                        .text = "raise it"}};
+static mt_design_objective REACHED[] = {{"change", "", 0.0, 0.1 + 0.2},
+                                        {"k1 + k2", NULL, 7.5, -1.25}};
 static mt_result_objective OBJECTIVES[] = {{"change", "change", ""},
                                            {"expression", "a + b", NULL}};
 static const char *CONFIGURATIONS[] = {"installed"};
@@ -94,7 +96,8 @@ static void fill_design(sample *s, mt_recommendation *r)
     r->feasible = true;
     r->grade = "feasible";
     r->score = 0.1 + 0.2;
-    r->score_unit = "";
+    r->n_objectives = MT_COUNT(REACHED);
+    r->objectives = REACHED;
     r->change = 0.25;
     r->violation_percent = 0.0;
     r->n_parameters = MT_COUNT(PARAMETERS);

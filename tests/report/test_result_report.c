@@ -14,6 +14,10 @@ static mt_result_parameter parameters[2];
 static mt_result_frequency frequencies[2];
 static mt_recommendation recommendations[1];
 static mt_result_published published[3];
+static mt_result_objective objectives[] = {{"mass", "mass of <bar>*", "kg"},
+                                           {"change", "change", ""}};
+static mt_design_objective reached[] = {{"mass of <bar>*", "kg", 3.5, 1.25},
+                                        {"change", "", 0.0, 0.5}};
 
 /* Two variables, two frequencies, one recommendation; published values that hold, fail and
  * cannot be compared. */
@@ -47,6 +51,8 @@ static mt_result *make(mt_test *t)
     recommendations[0].n_parameters = 2;
     recommendations[0].frequencies = frequencies;
     recommendations[0].n_frequencies = 2;
+    recommendations[0].objectives = reached;
+    recommendations[0].n_objectives = 2;
     recommendations[0].reasons = reasons;
     recommendations[0].n_reasons = 1;
     for (int i = 0; i < 3; i++) {
@@ -64,6 +70,8 @@ static mt_result *make(mt_test *t)
     r->baseline.rank = 0;
     r->recommendations = recommendations;
     r->n_recommendations = 1;
+    r->objectives = objectives;
+    r->n_objectives = 2;
     r->variables = variables;
     r->n_variables = 2;
     r->published = published;
@@ -75,6 +83,7 @@ static void summary__says_status_numbers_and_reasons(mt_test *t)
 {
     static const char *const parts[] = {
         "A <study>\nSolved.\n",
+        "  mass of <bar>*  kg    3.50000  1.25000\n  change          -     0        0.500000\n",
         "  k<1>       N/m   50.0000   92.9420         +85.9  -\n",
         "  m          -      1.00000   0.500000       -50.0  lower\n",
         "  The change of k<1> counts as ln(new/original), below 0.0500000 N/m linearly.\n",
@@ -124,10 +133,10 @@ static void designs__have_the_baseline_first_and_one_column_per_variable(mt_test
     mt_table designs = mt_report_designs(r);
     mt_table_csv(&designs, &out);
     CHECK_STR(t, out.s,
-              "rank,feasible,grade,score,score_unit,change,misfit,violation_percent,k<1>,m,"
-              "held.mode_1_hz,held.mode_2_hz\r\n"
-              "0,true,feasible,,,,,,50,1,1,2\r\n"
-              "1,true,feasible,,,,,,92.941999999999993,0.5,1,2\r\n");
+              "rank,feasible,grade,score,objective mass of <bar>* [kg],change,misfit,"
+              "violation_percent,k<1>,m,held.mode_1_hz,held.mode_2_hz\r\n"
+              "0,true,feasible,,1.25,0.5,,,50,1,1,2\r\n"
+              "1,true,feasible,,1.25,0.5,,,92.941999999999993,0.5,1,2\r\n");
     mt_text_free(&out);
     mt_table_free(&designs);
     mt_result_delete(r);
@@ -187,7 +196,8 @@ static void designs__with_bands_have_clearance_and_assignment(mt_test *t)
     mt_table_csv(&designs, &out);
     CHECK(t, out.s != NULL && strstr(out.s, "violation_percent,clearance_percent,"
                                             "gap_assignment,k<1>") != NULL);
-    CHECK(t, out.s != NULL && strstr(out.s, "\r\n1,true,feasible,,,,,,-1.5,1 2,92.9") != NULL);
+    CHECK(t, out.s != NULL &&
+                 strstr(out.s, "\r\n1,true,feasible,,1.25,0.5,,,-1.5,1 2,92.9") != NULL);
     mt_text_free(&out);
     mt_table_free(&designs);
     mt_result_delete(r);
