@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/analysis.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,6 +11,7 @@
 #include "mechanics/redundant.h"
 
 enum { DIRECTION_TEXT = 300 };
+static const char NO_GRADIENT[] = "derivatives asked for after a solve without gradient";
 
 mt_analysis_options mt_analysis_options_default(void)
 {
@@ -192,30 +194,27 @@ mt_status mt_analysis_products(mt_analysis *a, int pos, mt_err *err)
 {
     const ptrdiff_t n = mt_linear_freedoms(a->lin);
     if (!a->with_gradient) {
-        return mt_fail(err, MT_E_INTERNAL,
-                       "derivatives asked for after a solve without gradient");
+        return mt_fail(err, MT_E_INTERNAL, "%s", NO_GRADIENT);
     }
     MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
     for (int p = 0; p < a->sys->n_inputs; p++) {
         MT_TRY(mt_linear_products(a->lin, p, 1, mt_modal_shape(&a->modes, pos),
-                                  a->dky + (p * n), a->dmy + (p * n), NULL, err));
+                                  a->dky + (p * n), a->dmy + (p * n), err));
     }
     return MT_OK;
 }
 
 mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_err *err)
 {
-    const ptrdiff_t n = mt_linear_freedoms(a->lin);
-    const double *const y = mt_modal_shape(&a->modes, pos);
     const size_t np = (size_t)a->sys->n_inputs;
-    const bool known = a->with_gradient && a->sloped[pos];
-    if (!known) {
-        MT_TRY(mt_analysis_products(a, pos, err));
+    if (!a->with_gradient) {
+        return mt_fail(err, MT_E_INTERNAL, "%s", NO_GRADIENT);
     }
     double *const slope = a->slopes + ((size_t)pos * np);
-    for (int p = 0; p < a->sys->n_inputs && !known; p++) {
-        slope[p] = mt_dot((int)n, y, a->dky + (p * n)) -
-                   (a->modes.lambda[pos] * mt_dot((int)n, y, a->dmy + (p * n)));
+    if (!a->sloped[pos]) {
+        MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
+        MT_TRY(mt_linear_slopes(a->lin, a->modes.lambda[pos], mt_modal_shape(&a->modes, pos),
+                                slope, err));
     }
     a->sloped[pos] = true;
     memcpy(dlambda, slope, np * sizeof *dlambda);
@@ -225,17 +224,14 @@ mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_e
 mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *repeated,
                               mt_err *err)
 {
-    const ptrdiff_t n = mt_linear_freedoms(a->lin);
-    bool any = false;
-    MT_TRY(mt_analysis_products(a, pos, err));
-    for (int p = 0; p < a->sys->n_inputs; p++) {
-        bool one = false;
-        mt_modal_dlambda(&a->modes, 1, &pos, a->dky + (p * n), a->dmy + (p * n), &dlambda[p],
-                         &one);
-        any = any || one;
+    int size = 1;
+    MT_TRY(mt_analysis_dlambda_raw(a, pos, dlambda, err));
+    (void)mt_modal_cluster(&a->modes, pos, &size);
+    for (int p = 0; p < a->sys->n_inputs && size > 1; p++) {
+        dlambda[p] = nan("");
     }
     if (repeated != NULL) {
-        *repeated = any;
+        *repeated = size > 1;
     }
     return MT_OK;
 }

@@ -27,8 +27,8 @@ static mt_status cluster_values(mt_analysis *a, int p, int first, int size, doub
     double *const dmy = mt_arena_f64(&a->mem, n, r);
     double *const matrix = mt_arena_f64(&a->mem, r, r);
     MT_TRY(mt_arena_check(&a->mem, err));
-    MT_TRY(mt_linear_products(a->lin, p, size, mt_modal_shape(&a->modes, first), dky, dmy, NULL,
-                              err));
+    MT_TRY(
+        mt_linear_products(a->lin, p, size, mt_modal_shape(&a->modes, first), dky, dmy, err));
     MT_TRY(mt_modal_dcluster(&a->modes, first, size, dky, dmy, matrix, &a->mem, err));
     MT_TRY(mt_eig_sym(size, matrix, dlambda, false, &a->mem, err));
     mt_arena_rewind(&a->mem, mark);

@@ -9,6 +9,7 @@
 #include "linalg/kernels.h"
 #include "linalg/qr.h"
 #include "linalg/solve.h"
+#include "linalg/sparse.h"
 #include "linalg/svd.h"
 
 /*

@@ -60,18 +60,15 @@ static mt_status list_entries(worker *k, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
-/* f . phi and |f| . w of a row over local freedoms. */
-static double row_part(const mt_system *sys, const mt_term *t, const double *row,
-                       const double *phi, const double *w, double *terms)
+/* f . phi and |f| . w of a row. */
+static double row_part(const mt_rows *rows, int row, const double *phi, const double *w,
+                       double *terms)
 {
     double s = 0.0;
     *terms = 0.0;
-    for (int k = 0; k < MT_LOCAL; k++) {
-        const int dof = mt_local_dof(sys, t->body, k);
-        if (dof >= 0) {
-            s += row[k] * phi[dof];
-            *terms += fabs(row[k]) * w[dof];
-        }
+    for (int k = rows->start[row]; k < rows->start[row + 1]; k++) {
+        s += rows->value[k] * phi[rows->index[k]];
+        *terms += fabs(rows->value[k]) * w[rows->index[k]];
     }
     return s;
 }
@@ -102,11 +99,10 @@ static bool add_term(const worker *k, int kind, const mt_term *t, const double *
     bool moves = false;
     for (int r = 0; r < t->count && c != 0.0; r++) {
         const int side = t->pair ? r : 0;
-        const double *const row = lin->rows[kind] + ((ptrdiff_t)(t->first + r) * MT_LOCAL);
-        if (lin->blocked[kind][t->first + r] && !t->pair) {
+        if (mt_rows_empty(&lin->entries[kind], t->first + r) && !t->pair) {
             continue; /* nothing but rounding */
         }
-        part[side] = row_part(lin->sys, t, row, phi, k->w, &terms[side]);
+        part[side] = row_part(&lin->full[kind], t->first + r, phi, k->w, &terms[side]);
         const bool moved = part[side] * part[side] > tiny * terms[side] * terms[side];
         moves = moves || moved;
         if (!t->pair) {

@@ -79,6 +79,8 @@ static mt_status evaluate_rows(mt_linear *lin, mt_err *err)
             lin->rows[kind][i] = creal(rows[i]);
         }
         mt_arena_rewind(&lin->scratch, mark);
+        mt_rows_over_states(lin->sys, list, lin->rows[kind], &lin->geometry, &lin->full[kind]);
+        MT_TRY(mt_arena_check(&lin->geometry, err));
     }
     MT_TRY(mt_reduce_basis(lin, err));
     MT_TRY(mt_idle_remove(lin, err));
@@ -143,18 +145,13 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
 /* out (n x n) += c times the term's rows, lower triangle. */
 static void add_term(const mt_linear *lin, int kind, const mt_term *t, double c, double *out)
 {
-    const int n = lin->n;
-    for (int r = 0; r < (t->pair ? 1 : t->count); r++) {
-        const double *const a = lin->reduced[kind] + ((ptrdiff_t)(t->first + r) * n);
-        const double *const b = t->pair ? a + n : a;
-        for (int col = 0; col < n; col++) {
-            double *const out_col = out + ((ptrdiff_t)col * n);
-            const double ca = 0.5 * c * a[col];
-            const double cb = 0.5 * c * b[col];
-            for (int row = col; row < n; row++) {
-                out_col[row] += (b[row] * ca) + (a[row] * cb);
-            }
-        }
+    const mt_rows *const rows = &lin->entries[kind];
+    if (t->pair) {
+        mt_rows_pair(rows, t->first, t->first + 1, c, lin->n, out);
+        return;
+    }
+    for (int r = t->first; r < t->first + t->count; r++) {
+        mt_rows_square(rows, r, c, lin->n, out);
     }
 }
 

@@ -37,8 +37,9 @@ struct mt_linear {
     bool *idle; /* [bodies] takes part in one */
     int n_pieces;                   /* of pieces */
     double *rows[MT_TERM_KINDS];    /* 12 x n_rows, local freedoms */
+    mt_rows full[MT_TERM_KINDS];    /* the same over the states, by local freedom */
     double *reduced[MT_TERM_KINDS]; /* n x n_rows: Z^T row, rounding made 0 (reduce.h) */
-    bool *blocked[MT_TERM_KINDS];   /* [n_rows]: the joints block it, the reduced row is 0 */
+    mt_rows entries[MT_TERM_KINDS]; /* of reduced; a row that the joints block has none */
     double *noise;    /* n x n_rows: bounds of the errors of reduced[MT_TERM_STIFFNESS] */
     double *kg;       /* nq x nq geometric stiffness; NULL where nothing loads */
     mt_piece *pieces; /* [n_pieces] of the forces that make kg */

@@ -7,6 +7,10 @@
  * and Z'^T w = -Z^T A'^T (A^+)^T w, where (A^+)^T w are the multipliers that balance w. Only
  * products with vectors are formed. Any other choice of Z' changes y' but no physical result
  * (phi' = Z y' + Z' y).
+ *
+ * The slope of an eigenvalue needs no Z': with w = (K - lambda M) phi = A^T mu, as Z^T w = 0,
+ *     lambda' = phi^T (K' - lambda M') phi + 2 z'^T w,    z'^T w = -(A' phi)^T mu,
+ * one mu for all inputs, and of K' and M' only the terms that an input touches.
  */
 #include "mechanics/products.h"
 
@@ -16,34 +20,17 @@
 
 #include "mechanics/tangent.h"
 
-/* f . phi for a row given over local freedoms. */
-static double row_dot(const mt_system *sys, const mt_term *t, const double *row,
-                      const double *phi)
-{
-    double s = 0.0;
-    for (int k = 0; k < MT_LOCAL; k++) {
-        const int dof = mt_local_dof(sys, t->body, k);
-        s += dof >= 0 ? row[k] * phi[dof] : 0.0;
-    }
-    return s;
-}
-
-static void row_axpy(const mt_system *sys, const mt_term *t, double alpha, const double *row,
-                     double *out)
-{
-    for (int k = 0; k < MT_LOCAL; k++) {
-        const int dof = mt_local_dof(sys, t->body, k);
-        if (dof >= 0) {
-            out[dof] += alpha * row[k];
-        }
-    }
-}
-
 /* A row that the joints block, r = Z^T f = 0, has no part in a derivative: (r r^T)' = r' r^T +
  * r r'^T = 0. */
 static bool is_blocked(const mt_linear *lin, int kind, int row, const mt_term *t)
 {
-    return lin->blocked[kind][row] && !t->pair;
+    return mt_rows_empty(&lin->entries[kind], row) && !t->pair;
+}
+
+/* The row that row i of a term is multiplied with. */
+static int partner(const mt_term *t, int i)
+{
+    return t->pair ? (2 * t->first) + 1 - i : i;
 }
 
 /* out += K phi (kind STIFFNESS) or M phi (MASS), full coordinates, without the geometric
@@ -51,16 +38,14 @@ static bool is_blocked(const mt_linear *lin, int kind, int row, const mt_term *t
 static void full_product(const mt_linear *lin, int kind, const double *phi, double *out)
 {
     const mt_term_list *const list = &lin->list[kind];
+    const mt_rows *const rows = &lin->full[kind];
     for (int i = 0; i < list->n_rows; i++) {
         const mt_term *const t = &list->terms[list->row_term[i]];
         if (is_blocked(lin, kind, i, t)) {
             continue;
         }
-        const int other = t->pair ? (2 * t->first) + 1 - i : i; /* the partner of a pair */
         const double c = lin->value[t->coefficient] * (t->pair ? 0.5 : 1.0);
-        const double s =
-            row_dot(lin->sys, t, lin->rows[kind] + ((ptrdiff_t)other * MT_LOCAL), phi);
-        row_axpy(lin->sys, t, c * s, lin->rows[kind] + ((ptrdiff_t)i * MT_LOCAL), out);
+        mt_rows_axpy(rows, i, c * mt_rows_dot(rows, partner(t, i), phi), out);
     }
 }
 
@@ -69,61 +54,66 @@ static void full_product_derivative(const mt_linear *lin, int kind, int p, const
                                     double *out)
 {
     const mt_term_list *const list = &lin->list[kind];
-    const mt_linear_tangent *const tangent = &lin->tangent[p];
+    const mt_rows *const rows = &lin->full[kind];
+    const mt_rows *const drows = &lin->tangent[p].rows[kind];
     for (int i = 0; i < list->n_rows; i++) {
         const mt_term *const t = &list->terms[list->row_term[i]];
         if (is_blocked(lin, kind, i, t)) {
             continue;
         }
-        const int other = t->pair ? (2 * t->first) + 1 - i : i;
+        const int other = partner(t, i);
         const double half = t->pair ? 0.5 : 1.0;
         const double c = lin->value[t->coefficient] * half;
-        const double dc =
-            lin->grad[((ptrdiff_t)t->coefficient * lin->sys->n_inputs) + p] * half;
-        if (dc == 0.0 && tangent->still[kind][i] && tangent->still[kind][other]) {
+        const double dc = mt_linear_slope(lin, t->coefficient, p) * half;
+        if (dc == 0.0 && mt_rows_empty(drows, i) && mt_rows_empty(drows, other)) {
             continue;
         }
-        const double *const row = lin->rows[kind] + ((ptrdiff_t)i * MT_LOCAL);
-        const double *const row_o = lin->rows[kind] + ((ptrdiff_t)other * MT_LOCAL);
-        const double s = row_dot(lin->sys, t, row_o, phi);
-        const double ds =
-            row_dot(lin->sys, t, tangent->rows[kind] + ((ptrdiff_t)other * MT_LOCAL), phi);
-        row_axpy(lin->sys, t, (dc * s) + (c * ds), row, out);
-        row_axpy(lin->sys, t, c * s, tangent->rows[kind] + ((ptrdiff_t)i * MT_LOCAL), out);
+        const double s = mt_rows_dot(rows, other, phi);
+        const double ds = mt_rows_dot(drows, other, phi);
+        mt_rows_axpy(rows, i, (dc * s) + (c * ds), out);
+        mt_rows_axpy(drows, i, c * s, out);
     }
 }
 
-/* Fixed geometry: the sum over terms whose coefficient depends on p, in reduced coordinates.
- * Returns whether any does. */
-static bool coefficient_products(const mt_linear *lin, int kind, int p, int cols,
+/* Fixed geometry: the sum over terms whose coefficient depends on p, in reduced coordinates. */
+static void coefficient_products(const mt_linear *lin, int kind, int p, int cols,
                                  const double *y, double *out)
 {
     const mt_term_list *const list = &lin->list[kind];
-    const int n = lin->n;
-    bool any = false;
+    const mt_rows *const rows = &lin->entries[kind];
+    const ptrdiff_t n = lin->n;
     memset(out, 0, (size_t)n * (size_t)cols * sizeof *out);
     for (int i = 0; i < list->n_terms; i++) {
         const mt_term *const t = &list->terms[i];
-        if (!t->varies) {
-            continue;
-        }
-        const double dc = lin->grad[((ptrdiff_t)t->coefficient * lin->sys->n_inputs) + p];
-        if (dc == 0.0) {
-            continue;
-        }
-        any = true;
-        for (int r = 0; r < t->count; r++) {
-            const int other = t->pair ? t->first + 1 - r : t->first + r;
-            const double *const a = lin->reduced[kind] + ((ptrdiff_t)(t->first + r) * n);
-            const double *const b = lin->reduced[kind] + ((ptrdiff_t)other * n);
+        const double dc = t->varies ? mt_linear_slope(lin, t->coefficient, p) : 0.0;
+        for (int r = t->first; r < t->first + t->count && dc != 0.0; r++) {
             for (int c = 0; c < cols; c++) {
                 const double s =
-                    dc * (t->pair ? 0.5 : 1.0) * mt_dot(n, b, y + ((ptrdiff_t)c * n));
-                mt_axpy(n, s, a, out + ((ptrdiff_t)c * n));
+                    dc * (t->pair ? 0.5 : 1.0) * mt_rows_dot(rows, partner(t, r), y + (c * n));
+                mt_rows_axpy(rows, r, s, out + (c * n));
             }
         }
     }
-    return any;
+}
+
+/* slope[p] += sign times the sum over terms of dc/dp (r . y)^2, of all inputs at once. */
+static void coefficient_slopes(const mt_linear *lin, int kind, double sign, const double *y,
+                               double *slope)
+{
+    const mt_term_list *const list = &lin->list[kind];
+    const mt_rows *const rows = &lin->entries[kind];
+    const int np = lin->sys->n_inputs;
+    for (int i = 0; i < list->n_terms; i++) {
+        const mt_term *const t = &list->terms[i];
+        double energy = 0.0;
+        for (int r = t->first; r < t->first + t->count && t->varies; r++) {
+            const double s = mt_rows_dot(rows, r, y);
+            energy += t->pair ? 0.5 * s * mt_rows_dot(rows, partner(t, r), y) : s * s;
+        }
+        for (int p = 0; p < np && energy != 0.0; p++) {
+            slope[p] += sign * energy * mt_linear_slope(lin, t->coefficient, p);
+        }
+    }
 }
 
 typedef struct moving {
@@ -182,15 +172,17 @@ static mt_status moving_product(mt_linear *lin, int kind, int p, moving *v, doub
     return MT_OK;
 }
 
-mt_status mt_linear_products(mt_linear *lin, int p, int cols, const double *y, double *dky,
-                             double *dmy, bool *dm_zero, mt_err *err)
+static bool is_moved(const mt_linear *lin, int p)
 {
-    if (lin->tangent == NULL || !lin->tangent[p].moves) {
-        (void)coefficient_products(lin, MT_TERM_STIFFNESS, p, cols, y, dky);
-        const bool any = coefficient_products(lin, MT_TERM_MASS, p, cols, y, dmy);
-        if (dm_zero != NULL) {
-            *dm_zero = !any;
-        }
+    return lin->tangent != NULL && lin->tangent[p].moves;
+}
+
+mt_status mt_linear_products(mt_linear *lin, int p, int cols, const double *y, double *dky,
+                             double *dmy, mt_err *err)
+{
+    if (!is_moved(lin, p)) {
+        coefficient_products(lin, MT_TERM_STIFFNESS, p, cols, y, dky);
+        coefficient_products(lin, MT_TERM_MASS, p, cols, y, dmy);
         return MT_OK;
     }
     moving v;
@@ -203,9 +195,71 @@ mt_status mt_linear_products(mt_linear *lin, int p, int cols, const double *y, d
         MT_TRY(moving_product(lin, MT_TERM_MASS, p, &v, dmy + at, err));
     }
     mt_arena_rewind(&lin->scratch, mark);
-    if (dm_zero != NULL) {
-        *dm_zero = false;
+    return MT_OK;
+}
+
+/* phi^T K' phi of rows that move, coefficients as they are. */
+static double row_slope(const mt_linear *lin, int kind, int p, const double *phi)
+{
+    const mt_term_list *const list = &lin->list[kind];
+    const mt_rows *const rows = &lin->full[kind];
+    const mt_rows *const drows = &lin->tangent[p].rows[kind];
+    double sum = 0.0;
+    for (int i = 0; i < list->n_rows; i++) {
+        const mt_term *const t = &list->terms[list->row_term[i]];
+        if (!mt_rows_empty(drows, i) && !is_blocked(lin, kind, i, t)) {
+            const double c = lin->value[t->coefficient] * (t->pair ? 1.0 : 2.0);
+            sum += c * mt_rows_dot(rows, partner(t, i), phi) * mt_rows_dot(drows, i, phi);
+        }
     }
+    return sum;
+}
+
+/* v->lambda := mu, A^T mu = (K - lambda M) phi: what the joints carry in the mode. */
+static mt_status joint_forces(mt_linear *lin, double lambda, moving *v, mt_err *err)
+{
+    const int nq = lin->sys->nq;
+    full_product(lin, MT_TERM_STIFFNESS, v->phi, v->w);
+    if (lin->kg != NULL) {
+        mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->phi, 1.0, v->w);
+    }
+    full_product(lin, MT_TERM_MASS, v->phi, v->kphi);
+    mt_axpy(nq, -lambda, v->kphi, v->w);
+    return mt_eliminate_multipliers(&lin->e, v->w, v->lambda, &lin->scratch, err);
+}
+
+mt_status mt_linear_slopes(mt_linear *lin, double lambda, const double *y, double *slope,
+                           mt_err *err)
+{
+    const int nq = lin->sys->nq;
+    const int np = lin->sys->n_inputs;
+    bool first = true;
+    moving v;
+    memset(slope, 0, (size_t)np * sizeof *slope);
+    coefficient_slopes(lin, MT_TERM_STIFFNESS, 1.0, y, slope);
+    coefficient_slopes(lin, MT_TERM_MASS, -lambda, y, slope);
+    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    for (int p = 0; p < np; p++) {
+        if (!is_moved(lin, p)) {
+            continue;
+        }
+        const mt_linear_tangent *const t = &lin->tangent[p];
+        if (first) {
+            MT_TRY(moving_init(&v, lin, &lin->scratch, err));
+            mt_eliminate_expand(&lin->e, y, v.phi);
+            MT_TRY(joint_forces(lin, lambda, &v, err));
+            first = false;
+        }
+        slope[p] += row_slope(lin, MT_TERM_STIFFNESS, p, v.phi) -
+                    (lambda * row_slope(lin, MT_TERM_MASS, p, v.phi));
+        if (lin->kg != NULL) {
+            mt_gemv(false, nq, nq, 1.0, t->kg, nq, v.phi, 0.0, v.z);
+            slope[p] += mt_dot(nq, v.phi, v.z);
+        }
+        mt_gemv(false, lin->m, nq, 1.0, t->a, lin->m, v.phi, 0.0, v.b);
+        slope[p] -= 2.0 * mt_dot(lin->m, v.lambda, v.b);
+    }
+    mt_arena_rewind(&lin->scratch, mark);
     return MT_OK;
 }
 
@@ -220,10 +274,9 @@ mt_status mt_linear_sense(mt_linear *lin, int ns, const int *channel, int cols, 
         mt_eliminate_expand(&lin->e, y + ((ptrdiff_t)c * lin->n), phi);
         for (int i = 0; i < ns; i++) {
             const mt_term *const t = &list->terms[channel[i]];
-            const double *const row =
-                lin->rows[MT_TERM_CHANNEL] + ((ptrdiff_t)t->first * MT_LOCAL);
-            const bool still = lin->blocked[MT_TERM_CHANNEL][t->first];
-            s[i + ((ptrdiff_t)c * ns)] = still ? 0.0 : row_dot(lin->sys, t, row, phi);
+            const bool still = mt_rows_empty(&lin->entries[MT_TERM_CHANNEL], t->first);
+            s[i + ((ptrdiff_t)c * ns)] =
+                still ? 0.0 : mt_rows_dot(&lin->full[MT_TERM_CHANNEL], t->first, phi);
         }
     }
     mt_arena_rewind(&lin->scratch, mark);
@@ -236,7 +289,7 @@ mt_status mt_linear_sense_derivative(mt_linear *lin, int p, int ns, const int *c
                                      int cols, const double *y, const double *dy, double *ds,
                                      mt_err *err)
 {
-    if (lin->tangent == NULL || !lin->tangent[p].moves) {
+    if (!is_moved(lin, p)) {
         return mt_linear_sense(lin, ns, channel, cols, dy, ds, err);
     }
     const mt_term_list *const list = &lin->list[MT_TERM_CHANNEL];
@@ -250,10 +303,9 @@ mt_status mt_linear_sense_derivative(mt_linear *lin, int p, int ns, const int *c
                 dy + ((ptrdiff_t)c * lin->n), 1.0, v.z); /* phi' */
         for (int i = 0; i < ns; i++) {
             const mt_term *const t = &list->terms[channel[i]];
-            const ptrdiff_t at = (ptrdiff_t)t->first * MT_LOCAL;
             ds[i + ((ptrdiff_t)c * ns)] =
-                row_dot(lin->sys, t, tangent->rows[MT_TERM_CHANNEL] + at, v.phi) +
-                row_dot(lin->sys, t, lin->rows[MT_TERM_CHANNEL] + at, v.z);
+                mt_rows_dot(&tangent->rows[MT_TERM_CHANNEL], t->first, v.phi) +
+                mt_rows_dot(&lin->full[MT_TERM_CHANNEL], t->first, v.z);
         }
     }
     mt_arena_rewind(&lin->scratch, mark);

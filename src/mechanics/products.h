@@ -8,10 +8,13 @@
  * their derivatives. */
 
 /* dky = (dK_r/dp) y and dmy = (dM_r/dp) y for input p, with all that depends on it (geometry,
- * constraints, equilibrium); n x cols. dm_zero (may be NULL): dmy is zero. After an update with
- * gradients. */
+ * constraints, equilibrium); n x cols. After an update with gradients. */
 mt_status mt_linear_products(mt_linear *lin, int p, int cols, const double *y, double *dky,
-                             double *dmy, bool *dm_zero, mt_err *err);
+                             double *dmy, mt_err *err);
+/* slope[n_inputs] = y^T (dK_r/dp - lambda dM_r/dp) y for every input p, of an eigenpair K_r y =
+ * lambda M_r y. O(entries of the terms that an input touches); cheaper than the products. */
+mt_status mt_linear_slopes(mt_linear *lin, double lambda, const double *y, double *slope,
+                           mt_err *err);
 /* Values of channels channel[ns] for shapes y (n x cols): s ns x cols. */
 mt_status mt_linear_sense(mt_linear *lin, int ns, const int *channel, int cols, const double *y,
                           double *s, mt_err *err);

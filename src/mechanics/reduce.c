@@ -76,11 +76,11 @@ static void project(const mt_linear *lin, const mt_term *t, const double *row, d
     const ptrdiff_t nq = lin->sys->nq;
     double most = 0.0; /* of the translations: what an arm stands on */
     for (int k = 0; k < MT_LOCAL; k++) {
-        most = fmax(most, k % 6 < 3 ? fabs(row[k]) : 0.0);
+        most = k % 6 < 3 && fabs(row[k]) > most ? fabs(row[k]) : most;
     }
     for (int k = 0; k < MT_LOCAL; k++) {
-        const int dof = mt_local_dof(lin->sys, t->body, k);
-        if (dof < 0 || row[k] == 0.0) {
+        const int dof = row[k] == 0.0 ? -1 : mt_local_dof(lin->sys, t->body, k);
+        if (dof < 0) {
             continue;
         }
         const double arm = k % 6 < 3 ? 0.0 : most * extent;
@@ -93,17 +93,31 @@ static void project(const mt_linear *lin, const mt_term *t, const double *row, d
     }
 }
 
+static void list_entries(size_t n, size_t rows, const double *dense, size_t count,
+                         mt_arena *mem, mt_rows *out)
+{
+    mt_rows_begin(out, (int)rows, count, mem);
+    for (size_t i = 0; i < rows && !mt_arena_failed(mem); i++) {
+        for (size_t c = 0; c < n; c++) {
+            if (dense[c + (i * n)] != 0.0) {
+                mt_rows_push(out, (int)i, (int)c, dense[c + (i * n)]);
+            }
+        }
+        mt_rows_end(out, (int)i);
+    }
+}
+
 static mt_status reduce_rows(mt_linear *lin, int kind, double extent, mt_err *err)
 {
     const mt_term_list *const list = &lin->list[kind];
     const size_t n = (size_t)lin->n;
     const size_t rows = (size_t)list->n_rows;
     const bool kept = kind == MT_TERM_STIFFNESS;
+    size_t entries = 0;
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     double *const error =
         mt_arena_f64(kept ? &lin->geometry : &lin->scratch, n, kept ? rows : 1);
     lin->reduced[kind] = mt_arena_f64(&lin->geometry, n, rows);
-    lin->blocked[kind] = mt_arena_alloc(&lin->geometry, rows, sizeof *lin->blocked[kind]);
     MT_TRY(mt_arena_check(kept ? &lin->geometry : &lin->scratch, err));
     MT_TRY(mt_arena_check(&lin->geometry, err));
     for (size_t i = 0; i < rows; i++) {
@@ -112,12 +126,13 @@ static mt_status reduce_rows(mt_linear *lin, int kind, double extent, mt_err *er
         memset(bound, 0, n * sizeof *bound);
         project(lin, &list->terms[list->row_term[i]], lin->rows[kind] + (i * MT_LOCAL), extent,
                 out, bound);
-        lin->blocked[kind][i] = true;
         for (size_t c = 0; c < n; c++) {
             out[c] = fabs(out[c]) <= bound[c] ? 0.0 : out[c];
-            lin->blocked[kind][i] = lin->blocked[kind][i] && out[c] == 0.0;
+            entries += out[c] != 0.0 ? 1 : 0;
         }
     }
+    list_entries(n, rows, lin->reduced[kind], entries, &lin->geometry, &lin->entries[kind]);
+    MT_TRY(mt_arena_check(&lin->geometry, err));
     if (kept) {
         lin->noise = error;
     }

@@ -8,6 +8,8 @@
 
 #include <string.h>
 
+#include "mechanics/lagrangian.h"
+
 static int inertia_rows(const mt_system *sys, const mt_inertia_def *def)
 {
     switch (def->kind) {
@@ -259,5 +261,29 @@ void mt_rows_eval(const mt_data *d, mt_term_kind kind, const mt_term_list *list,
         case MT_TERM_KINDS:
             break;
         }
+    }
+}
+
+void mt_rows_over_states(const mt_system *sys, const mt_term_list *list, const double *rows,
+                         mt_arena *mem, mt_rows *out)
+{
+    size_t most = 0;
+    for (ptrdiff_t i = 0; i < (ptrdiff_t)list->n_rows * MT_LOCAL; i++) {
+        most += rows[i] != 0.0 ? 1 : 0;
+    }
+    mt_rows_begin(out, list->n_rows, most, mem);
+    if (mt_arena_failed(mem)) {
+        return;
+    }
+    for (int i = 0; i < list->n_rows; i++) {
+        const int *const body = list->terms[list->row_term[i]].body;
+        const double *const row = rows + ((ptrdiff_t)i * MT_LOCAL);
+        for (int k = 0; k < MT_LOCAL; k++) {
+            const int dof = row[k] == 0.0 ? -1 : mt_local_dof(sys, body, k);
+            if (dof >= 0) {
+                mt_rows_push(out, i, dof, row[k]);
+            }
+        }
+        mt_rows_end(out, i);
     }
 }

@@ -2,6 +2,7 @@
 #ifndef MECHANICS_ROWS_H
 #define MECHANICS_ROWS_H
 
+#include "linalg/sparse.h"
 #include "mechanics/data.h"
 
 /*
@@ -43,5 +44,8 @@ mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists,
  * k of the term's bodies. */
 void mt_rows_eval(const mt_data *d, mt_term_kind kind, const mt_term_list *list,
                   const mt_pose *poses, mt_cx *rows);
+/* The entries of such rows (real) that are not 0, by state. A failure is the arena's. */
+void mt_rows_over_states(const mt_system *sys, const mt_term_list *list, const double *rows,
+                         mt_arena *mem, mt_rows *out);
 
 #endif

@@ -24,20 +24,17 @@ static mt_status tangent_rows(mt_linear *lin, const mt_pose *poses, mt_linear_ta
     for (int kind = 0; kind < MT_TERM_KINDS; kind++) {
         const mt_term_list *const list = &lin->list[kind];
         const size_t size = (size_t)list->n_rows * MT_LOCAL;
-        t->rows[kind] = mt_arena_f64(&lin->geometry, size, 1);
-        t->still[kind] = mt_arena_alloc(&lin->geometry, (size_t)list->n_rows, sizeof(bool));
         const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
         mt_cx *const rows = mt_arena_alloc(&lin->scratch, size, sizeof *rows);
-        MT_TRY(mt_arena_check(&lin->geometry, err));
+        double *const real = mt_arena_f64(&lin->scratch, size, 1);
         MT_TRY(mt_arena_check(&lin->scratch, err));
         mt_rows_eval(&lin->dual, (mt_term_kind)kind, list, poses, rows);
         for (size_t i = 0; i < size; i++) {
-            t->rows[kind][i] = cx_derivative(rows[i]);
+            real[i] = cx_derivative(rows[i]);
         }
-        for (int i = 0; i < list->n_rows; i++) {
-            t->still[kind][i] = all_zero(MT_LOCAL, t->rows[kind] + ((ptrdiff_t)i * MT_LOCAL));
-        }
-        t->moves = t->moves || !all_zero(size, t->rows[kind]);
+        mt_rows_over_states(lin->sys, list, real, &lin->geometry, &t->rows[kind]);
+        MT_TRY(mt_arena_check(&lin->geometry, err));
+        t->moves = t->moves || t->rows[kind].start[list->n_rows] > 0;
         mt_arena_rewind(&lin->scratch, mark);
     }
     return MT_OK;

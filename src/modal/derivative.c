@@ -33,26 +33,6 @@ static void fill_nan(ptrdiff_t count, double *x)
     }
 }
 
-void mt_modal_dlambda(const mt_modes *modes, int count, const int *list, const double *dky,
-                      const double *dmy, double *dlambda, bool *repeated)
-{
-    bool any = false;
-    for (int k = 0; k < count; k++) {
-        const ptrdiff_t at = (ptrdiff_t)k * modes->n;
-        const double *const y = modes->y + (ptrdiff_t)list[k] * modes->n;
-        int size = 0;
-        (void)mt_modal_cluster(modes, list[k], &size);
-        const double of_k = mt_dot(modes->n, y, dky + at);
-        const double of_m =
-            dmy == NULL ? 0.0 : modes->lambda[list[k]] * mt_dot(modes->n, y, dmy + at);
-        dlambda[k] = size > 1 ? nan("") : of_k - of_m;
-        any = any || size > 1;
-    }
-    if (repeated != NULL) {
-        *repeated = any;
-    }
-}
-
 mt_status mt_modal_dcluster(const mt_modes *modes, int first, int r, const double *dky,
                             const double *dmy, double *out, mt_arena *scratch, mt_err *err)
 {

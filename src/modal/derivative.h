@@ -10,11 +10,6 @@
  * (dK/dp) y_i, dmy = (dM/dp) y_i, columns n each, one column per listed mode. dmy may be NULL
  * everywhere: M does not depend on p.
  */
-/* dlambda_i/dp = y_i^T (dky_i - lambda_i dmy_i). For a mode inside a cluster of more than one:
- * *repeated is set and the value is NaN: no single-mode gradient exists. list[count]: positions
- * of modes. dlambda [count]. repeated may be NULL. */
-void mt_modal_dlambda(const mt_modes *modes, int count, const int *list, const double *dky,
-                      const double *dmy, double *dlambda, bool *repeated);
 /* For a cluster: the symmetric r x r matrix Y^T (dK - lambda dM) Y (lambda: mean of the
  * cluster), whose eigenvalues are the directional derivatives of the cluster. first: its first
  * position, r its size; dky, dmy n x r. Fails: MT_E_MEMORY. */

@@ -106,7 +106,7 @@ static mt_status slope_of(walk *w, const edge *e, int pos, double *slope, mt_err
     if (size > 1 || !(a->modes.lambda[pos] > 0.0)) {
         return MT_OK;
     }
-    MT_TRY(mt_linear_products(a->lin, w->ws->p->n, 1, y, a->dky, a->dmy, NULL, err));
+    MT_TRY(mt_linear_products(a->lin, w->ws->p->n, 1, y, a->dky, a->dmy, err));
     const double lambda = a->modes.lambda[pos];
     const double rate = mt_dot((int)n, y, a->dky) - (lambda * mt_dot((int)n, y, a->dmy));
     *slope = e->sign * rate / (2.0 * lambda);

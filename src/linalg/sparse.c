@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "linalg/sparse.h"
+
+void mt_rows_begin(mt_rows *s, int n_rows, size_t most, mt_arena *mem)
+{
+    *s = (mt_rows){.n_rows = n_rows};
+    s->start = mt_arena_int(mem, (size_t)n_rows + 1);
+    s->index = mt_arena_int(mem, most);
+    s->value = mt_arena_f64(mem, most, 1);
+}
+
+void mt_rows_square(const mt_rows *s, int a, double c, int n, double *out)
+{
+    for (int p = s->start[a]; p < s->start[a + 1]; p++) {
+        double *const column = out + ((ptrdiff_t)s->index[p] * n);
+        const double part = c * s->value[p];
+        for (int q = p; q < s->start[a + 1]; q++) {
+            column[s->index[q]] += s->value[q] * part;
+        }
+    }
+}
+
+/* out += c b a^T where that is in the lower triangle. */
+static void lower_product(const mt_rows *s, int a, int b, double c, int n, double *out)
+{
+    int first = s->start[b];
+    for (int p = s->start[a]; p < s->start[a + 1]; p++) {
+        double *const column = out + ((ptrdiff_t)s->index[p] * n);
+        const double part = c * s->value[p];
+        while (first < s->start[b + 1] && s->index[first] < s->index[p]) {
+            first++;
+        }
+        for (int q = first; q < s->start[b + 1]; q++) {
+            column[s->index[q]] += s->value[q] * part;
+        }
+    }
+}
+
+void mt_rows_pair(const mt_rows *s, int a, int b, double c, int n, double *out)
+{
+    lower_product(s, a, b, 0.5 * c, n, out);
+    lower_product(s, b, a, 0.5 * c, n, out);
+}

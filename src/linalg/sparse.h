@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef LINALG_SPARSE_H
+#define LINALG_SPARSE_H
+
+#include "base/arena.h"
+
+/*
+ * Sparse rows: of each row the entries that are not 0, by ascending index. Entries of row i are
+ * start[i] .. start[i + 1] - 1; a row without any is 0.
+ */
+typedef struct mt_rows {
+    int n_rows;
+    int *start; /* [n_rows + 1] */
+    int *index;
+    double *value;
+} mt_rows;
+
+/* Room for n_rows rows of at most `most` entries in all; then mt_rows_push and mt_rows_end for
+ * one row after the other. A failure is the arena's. */
+void mt_rows_begin(mt_rows *s, int n_rows, size_t most, mt_arena *mem);
+
+static inline void mt_rows_push(mt_rows *s, int row, int index, double value)
+{
+    const int at = s->start[row + 1]++;
+    s->index[at] = index;
+    s->value[at] = value;
+}
+
+/* Row `row` is whole. */
+static inline void mt_rows_end(mt_rows *s, int row)
+{
+    if (row + 1 < s->n_rows) {
+        s->start[row + 2] = s->start[row + 1];
+    }
+}
+
+static inline bool mt_rows_empty(const mt_rows *s, int row)
+{
+    return s->start[row] == s->start[row + 1];
+}
+
+static inline double mt_rows_dot(const mt_rows *s, int row, const double *x)
+{
+    double sum = 0.0;
+    for (int k = s->start[row]; k < s->start[row + 1]; k++) {
+        sum += s->value[k] * x[s->index[k]];
+    }
+    return sum;
+}
+
+/* y += alpha times the row. */
+static inline void mt_rows_axpy(const mt_rows *s, int row, double alpha, double *y)
+{
+    for (int k = s->start[row]; k < s->start[row + 1]; k++) {
+        y[s->index[k]] += alpha * s->value[k];
+    }
+}
+
+/* out (n x n, lower triangle) += c a a^T of row a. */
+void mt_rows_square(const mt_rows *s, int a, double c, int n, double *out);
+/* out (n x n, lower triangle) += c (a b^T + b a^T)/2 of rows a and b. */
+void mt_rows_pair(const mt_rows *s, int a, int b, double c, int n, double *out);
+
+#endif
