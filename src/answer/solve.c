@@ -40,7 +40,7 @@ static bool is_asked(const mt_answer *a, mt_phase which)
  * that it did not find? */
 static bool is_groundless(const mt_answer *a, mt_phase which)
 {
-    const mt_interrupt *const i = &a->interrupt;
+    const mt_interrupt *const i = a->interrupt;
     const bool cut = mt_interrupt_is_cut(i, MT_PHASE_SEARCH) ||
                      mt_interrupt_is_cut(i, MT_PHASE_RECOMMENDATIONS);
     if (which == MT_PHASE_RECOMMENDATIONS) {
@@ -118,25 +118,71 @@ static mt_status phase(mt_answer *a, mt_phase which, mt_err *err)
         return MT_OK;
     }
     if (is_groundless(a, which)) {
-        mt_interrupt_cut(&a->interrupt, (int)which);
+        mt_interrupt_cut(a->interrupt, (int)which);
         return MT_OK;
     }
     a->mark = mt_result_get_mark(a->result);
-    mt_interrupt_enter(&a->interrupt, (int)which, phases[which].makes_ready);
+    mt_interrupt_enter(a->interrupt, (int)which, phases[which].makes_ready);
     const mt_status rc = phases[which].work(a, &own);
-    const bool cut = mt_interrupt_is_cut(&a->interrupt, (int)which);
+    const bool cut = mt_interrupt_is_cut(a->interrupt, (int)which);
     if (rc != MT_OK && !(cut && !mt_is_final(rc))) {
         return mt_fail(err, rc, "%s", own.text);
     }
     return cut ? leave(a, which, err) : MT_OK;
 }
 
-/* One problem, and a workspace for each worker. */
-static mt_status open_problem(mt_answer *a, mt_err *err)
+/* The question, asked of a model that knows the interrupt. */
+static mt_status ask(mt_question *q, const mt_study *study, mt_err *err)
 {
-    const bool alone = a->threads < 1 || a->study->n_variables == 0;
-    const int n = alone ? 1 : a->threads < MT_WORKERS_MOST ? a->threads : MT_WORKERS_MOST;
-    MT_TRY(mt_problem_new(a->study, &a->p, err));
+    const size_t n = (size_t)study->n_references;
+    q->model = *study->model;
+    q->model.interrupt = &q->interrupt;
+    q->study = *study;
+    q->study.model = &q->model;
+    q->study.references = mt_arena_alloc(&q->mem, n, sizeof *study->references);
+    MT_TRY(mt_arena_check(&q->mem, err));
+    for (size_t i = 0; i < n; i++) {
+        mt_reference *const r = &q->study.references[i];
+        *r = study->references[i];
+        r->model = r->model == study->model ? &q->model : r->model;
+    }
+    return MT_OK;
+}
+
+/* The original design is needed for whatever there is to tell. */
+static mt_status end_at_once(const mt_question *q, mt_status rc, const mt_err *own, mt_err *err)
+{
+    if (mt_interrupt_is_cut(&q->interrupt, MT_PHASE_BASELINE) && !mt_is_final(rc)) {
+        return mt_fail(err, MT_E_INTERRUPTED,
+                       "interrupted before the original design was analysed");
+    }
+    return rc == MT_OK ? MT_OK : mt_fail(err, rc, "%s", own->text);
+}
+
+mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_solve_options *opt,
+                           mt_err *err)
+{
+    mt_err own = {.code = MT_OK};
+    MT_TRY(mt_arena_init(&q->mem, 0, err));
+    mt_interrupt_init(&q->interrupt, opt->stop, opt->stop_context, study->model->interrupt);
+    mt_interrupt_enter(&q->interrupt, MT_PHASE_BASELINE, true);
+    MT_TRY(ask(q, study, err));
+    const mt_status rc = mt_problem_new(&q->study, &q->p, &own);
+    return end_at_once(q, rc, &own, err);
+}
+
+void mt_question_free(mt_question *q)
+{
+    mt_problem_delete(q->p);
+    mt_arena_free(&q->mem);
+    q->p = NULL;
+}
+
+/* A workspace for each worker. */
+static mt_status open_workers(mt_answer *a, int threads, mt_err *err)
+{
+    const bool alone = threads < 1 || a->study->n_variables == 0;
+    const int n = alone ? 1 : threads < MT_WORKERS_MOST ? threads : MT_WORKERS_MOST;
     a->asked = a->p->whole;
     a->workers = mt_arena_alloc(&a->mem, (size_t)n, sizeof(mt_workspace *));
     MT_TRY(mt_arena_check(&a->mem, err));
@@ -144,27 +190,6 @@ static mt_status open_problem(mt_answer *a, mt_err *err)
         MT_TRY(mt_workspace_new(a->p, &a->workers[i], err));
         mt_workspace_back(a->workers[i], &a->asked);
         a->n_workers = i + 1;
-    }
-    return MT_OK;
-}
-
-/* The question, asked of a model that knows the interrupt. */
-static mt_status ask(mt_answer *a, const mt_study *study, const mt_solve_options *opt,
-                     mt_err *err)
-{
-    const size_t n = (size_t)study->n_references;
-    mt_interrupt_init(&a->interrupt, opt->stop, opt->stop_context, study->model->interrupt);
-    a->own_model = *study->model;
-    a->own_model.interrupt = &a->interrupt;
-    a->own_study = *study;
-    a->own_study.model = &a->own_model;
-    a->own_study.references = mt_arena_alloc(&a->mem, n, sizeof *study->references);
-    a->study = &a->own_study;
-    MT_TRY(mt_arena_check(&a->mem, err));
-    for (size_t i = 0; i < n; i++) {
-        mt_reference *const r = &a->own_study.references[i];
-        *r = study->references[i];
-        r->model = r->model == study->model ? &a->own_model : r->model;
     }
     return MT_OK;
 }
@@ -182,22 +207,14 @@ static mt_status take_hint(mt_answer *a, const double *hint, mt_err *err)
     return MT_OK;
 }
 
-/* The question made ready, and the original design, without which there is nothing to tell. */
-static mt_status begin(mt_answer *a, const mt_study *study, const mt_solve_options *opt,
-                       mt_err *err)
+/* Workers, and the original design, without which there is nothing to tell. */
+static mt_status begin(mt_answer *a, const mt_solve_options *opt, mt_err *err)
 {
     mt_err own = {.code = MT_OK};
-    MT_TRY(ask(a, study, opt, err));
-    mt_interrupt_enter(&a->interrupt, MT_PHASE_BASELINE, true);
-    mt_status rc = open_problem(a, &own);
+    mt_interrupt_enter(a->interrupt, MT_PHASE_BASELINE, true);
+    mt_status rc = open_workers(a, opt->threads, &own);
     rc = rc == MT_OK ? mt_answer_baseline(a, &own) : rc;
-    if (mt_interrupt_is_cut(&a->interrupt, MT_PHASE_BASELINE) && !mt_is_final(rc)) {
-        return mt_fail(err, MT_E_INTERRUPTED,
-                       "interrupted before the original design was analysed");
-    }
-    if (rc != MT_OK) {
-        return mt_fail(err, rc, "%s", own.text);
-    }
+    MT_TRY(end_at_once(a->q, rc, &own, err));
     a->workers[0]->progress = opt->progress; /* the first worker's: one line at a time */
     a->workers[0]->progress_context = opt->progress_context;
     a->searched = a->p->n > 0 && (a->p->n_demands > 0 || a->p->n_clears > 0);
@@ -207,7 +224,7 @@ static mt_status begin(mt_answer *a, const mt_study *study, const mt_solve_optio
 /* A list that a phase did not get to is NULL, one that it found nothing for is empty. */
 static void *kept(const mt_answer *a, mt_phase which, void *list, int n)
 {
-    const bool cut = mt_interrupt_is_cut(&a->interrupt, (int)which);
+    const bool cut = mt_interrupt_is_cut(a->interrupt, (int)which);
     if (list == NULL && !cut) {
         return mt_arena_alloc(&a->result->mem, 0, 1);
     }
@@ -246,28 +263,19 @@ static mt_status conduct(mt_answer *a, mt_err *err)
     return mt_answer_note_cuts(a, err);
 }
 
-mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_result **out,
-                         mt_err *err)
+mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt, mt_result **out,
+                             mt_err *err)
 {
-    mt_solve_options use;
-    MT_NOT_NULL(out, err);
+    mt_answer a = {.q = q, .study = &q->study, .p = q->p, .interrupt = &q->interrupt};
+    a.threads = opt->threads;
     *out = NULL;
-    MT_NOT_NULL(study, err);
-    MT_TRY(MT_OPTIONS_TAKE(opt, &use, err));
-    mt_answer a = {.threads = use.threads};
-    for (int i = 0; use.hint != NULL && i < study->n_variables; i++) {
-        if (!isfinite(use.hint[i])) {
-            return mt_fail(err, MT_E_USAGE, "mt_study_solve: hint[%d] is not finite", i);
-        }
-    }
     mt_status rc = mt_arena_init(&a.mem, 0, err);
     rc = rc == MT_OK ? mt_result_new(&a.result, err) : rc;
-    rc = rc == MT_OK ? begin(&a, study, &use, err) : rc;
+    rc = rc == MT_OK ? begin(&a, opt, err) : rc;
     rc = rc == MT_OK ? conduct(&a, err) : rc;
     for (int i = 0; i < a.n_workers; i++) {
         mt_workspace_delete(a.workers[i]);
     }
-    mt_problem_delete(a.p);
     mt_arena_free(&a.mem);
     if (rc != MT_OK) {
         mt_result_delete(a.result);
@@ -275,4 +283,24 @@ mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_
     }
     *out = a.result;
     return MT_OK;
+}
+
+mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_result **out,
+                         mt_err *err)
+{
+    mt_solve_options use;
+    mt_question q = {.p = NULL};
+    MT_NOT_NULL(out, err);
+    *out = NULL;
+    MT_NOT_NULL(study, err);
+    MT_TRY(MT_OPTIONS_TAKE(opt, &use, err));
+    for (int i = 0; use.hint != NULL && i < study->n_variables; i++) {
+        if (!isfinite(use.hint[i])) {
+            return mt_fail(err, MT_E_USAGE, "mt_study_solve: hint[%d] is not finite", i);
+        }
+    }
+    mt_status rc = mt_question_init(&q, study, &use, err);
+    rc = rc == MT_OK ? mt_question_answer(&q, &use, out, err) : rc;
+    mt_question_free(&q);
+    return rc;
 }

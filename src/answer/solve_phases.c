@@ -87,14 +87,14 @@ mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
                                   .found = &found->solutions[i],
                                   .stage = a->stage,
                                   .rank = i + 1,
-                                  .cut = mt_interrupt_is_cut(&a->interrupt, MT_PHASE_SEARCH),
+                                  .cut = mt_interrupt_is_cut(a->interrupt, MT_PHASE_SEARCH),
                                   .discrete = discrete ? &a->discrete : NULL,
                                   .gaps = kinds ? &a->gaps : NULL,
                                   .below = kinds ? a->gaps.solutions[i].below : NULL};
         mt_recommendation *const rec = &result->recommendations[i];
         MT_TRY(mt_describe_design(a->p, &design, &result->baseline, result, rec, err));
         MT_TRY(mt_describe_reasons(a->p, &design, found, result, rec, err));
-        if (mt_interrupt_is_cut(&a->interrupt, MT_PHASE_RECOMMENDATIONS)) {
+        if (mt_interrupt_is_cut(a->interrupt, MT_PHASE_RECOMMENDATIONS)) {
             return MT_OK;
         }
         result->n_recommendations++;

@@ -24,16 +24,37 @@
 typedef enum mt_phase { MT_PHASE_LIST(MT_PHASE_ENUM) MT_PHASE_COUNT } mt_phase;
 #undef MT_PHASE_ENUM
 
-/* One study being answered. */
-typedef struct mt_answer {
-    const mt_study *study; /* own_study */
-    /* what was asked, of a model that knows the interrupt; everything else is the caller's */
-    mt_study own_study;
-    mt_model own_model;
+/*
+ * What was asked, compiled, of a model that knows the interrupt; everything else is the
+ * caller's. It may be answered again (one answer at a time), and stays where it is: the problem
+ * points into it.
+ */
+typedef struct mt_question {
+    mt_study study;
+    mt_model model;
     mt_interrupt interrupt;
+    mt_arena mem;
+    mt_problem *p; /* owned */
+} mt_question;
+
+/* Zeroed before. An interrupt of the study's model is the whole of the question's own. Fails:
+ * as mt_problem_new. mt_question_free follows, whatever comes back. */
+mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_solve_options *opt,
+                           mt_err *err);
+/* Accepts a zeroed one. */
+void mt_question_free(mt_question *q);
+/* mt_study_solve of what was compiled. */
+mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt, mt_result **out,
+                             mt_err *err);
+
+/* One answer to it. */
+typedef struct mt_answer {
+    mt_question *q;
+    const mt_study *study; /* the question's, like the next two */
+    const mt_problem *p;
+    mt_interrupt *interrupt;
     mt_result_mark mark; /* of the result: what is complete */
     int threads;
-    mt_problem *p;          /* owned */
     mt_case asked;          /* the whole of it; with the caller's design to start from */
     mt_workspace **workers; /* [n_workers] owned, set to that */
     int n_workers;

@@ -112,7 +112,7 @@ static const char *doubt_text(const mt_recommendation *best, mt_arena *mem)
 /* Answers that do not depend on a search's success; NULL: it does. */
 static const char *early_text(const mt_answer *a, const mt_recommendation *best)
 {
-    const bool cut = mt_interrupt_is_cut(&a->interrupt, MT_PHASE_RECOMMENDATIONS);
+    const bool cut = mt_interrupt_is_cut(a->interrupt, MT_PHASE_RECOMMENDATIONS);
     if (cut && a->result->n_recommendations == 0 && a->found.n_solutions > 0) {
         return "Designs were found, but none was analysed anew (see the warnings).";
     }
@@ -284,13 +284,13 @@ mt_status mt_answer_note_cuts(const mt_answer *a, mt_err *err)
 #undef MT_PHASE_NAME
     mt_result *const result = a->result;
     mt_result_run *const run = &result->run;
-    if (!mt_interrupt_any(&a->interrupt)) {
+    if (!mt_interrupt_any(a->interrupt)) {
         return MT_OK;
     }
     run->incomplete = mt_arena_alloc(&result->mem, MT_PHASE_COUNT, sizeof *run->incomplete);
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int k = 0; k < MT_PHASE_COUNT; k++) {
-        if (mt_interrupt_is_cut(&a->interrupt, k)) {
+        if (mt_interrupt_is_cut(a->interrupt, k)) {
             run->incomplete[run->n_incomplete++] = names[k];
         }
     }

@@ -1,26 +1,37 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "answer/trade.h"
 
+#include "answer/solve_priv.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "base/interrupt.h"
 #include "base/workers.h"
 #include "nlp/merit.h"
 #include "search/discrete.h"
 
 typedef struct point {
     double values[MT_MAX_VARY];
+    mt_arena mem; /* of its study; while the question is there */
+    mt_question
+        *q; /* owned; answered once, or from better starts, too; NULL: not begun, or done
+                     * with */
     mt_result *first; /* of the first pass; owned */
     mt_result *again; /* of the second, where a neighbour knew better; owned, or NULL */
     double front[2];  /* what the front compares, less is better; NaN: does not take part */
     long evaluations;
 } point;
 
+/* Points that are compiled at a time: each has about a quarter of a megabyte, or what its model
+ * needs. */
+enum { BLOCK = 256 };
+
 typedef struct trade {
     const mt_study *study;
     int n;
     int size[MT_MAX_VARY]; /* values of each quantity; 1 where there is none */
+    int from;              /* point of the first task */
+    bool warm; /* a combination of catalogue values is reached from any start: no second pass */
     point *points;
 } trade;
 
@@ -50,34 +61,64 @@ static const char *point_text(const trade *t, int k, mt_arena *mem)
                            t->points[k].values[1]);
 }
 
-/* Answer point k, from hint[n_variables] too where that is not NULL. */
-static mt_status answer(const trade *t, int k, const double *hint, mt_result **out, mt_err *err)
+/* What happened at point k; that it was interrupted the interrupt knows. */
+static mt_status told(const trade *t, int k, mt_status rc, mt_err *err)
 {
-    mt_arena mem;
-    mt_study study;
-    MT_TRY(mt_arena_init(&mem, 0, err));
-    const mt_solve_options opt = {.size = sizeof opt, .threads = 1, .hint = hint};
-    mt_status rc = mt_trade_study(t->study, t->points[k].values, &mem, &study, err);
-    rc = rc == MT_OK ? mt_study_solve(&study, &opt, out, err) : rc;
-    if (rc != MT_OK && rc != MT_E_INTERRUPTED) {
-        const char *const where = point_text(t, k, &mem);
-        rc = mt_err_in(err, rc, "/trade: %s", where == NULL ? "?" : where);
+    if (rc == MT_OK || rc == MT_E_INTERRUPTED) {
+        return MT_OK;
     }
+    mt_arena mem;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    const char *const where = point_text(t, k, &mem);
+    rc = mt_err_in(err, rc, "/trade: %s", where == NULL ? "?" : where);
     mt_arena_free(&mem);
-    return rc == MT_E_INTERRUPTED ? MT_OK : rc; /* the interrupt knows */
+    return rc;
 }
 
-static mt_status solve_cold(void *context, int worker, int k, mt_err *err)
+/* The study of point k, compiled. */
+static mt_status ask(const trade *t, point *p, mt_err *err)
+{
+    static const mt_solve_options opt = {.size = sizeof opt};
+    mt_study study;
+    MT_TRY(mt_arena_init(&p->mem, 0, err));
+    p->q = mt_arena_alloc(&p->mem, 1, sizeof *p->q);
+    MT_TRY(mt_arena_check(&p->mem, err));
+    MT_TRY(mt_trade_study(t->study, p->values, &p->mem, &study, err));
+    return mt_question_init(p->q, &study, &opt, err);
+}
+
+static void forget(point *p)
+{
+    if (p->q != NULL) {
+        mt_question_free(p->q);
+    }
+    p->q = NULL;
+    mt_arena_free(&p->mem);
+}
+
+/* Answer it, from hint[n_variables] too where that is not NULL. */
+static mt_status answer(point *p, const double *hint, mt_result **out, mt_err *err)
+{
+    const mt_solve_options opt = {.size = sizeof opt, .threads = 1, .hint = hint};
+    return mt_question_answer(p->q, &opt, out, err);
+}
+
+static mt_status solve_cold(void *context, int worker, int task, mt_err *err)
 {
     const trade *const t = context;
+    const int k = t->from + task;
+    point *const p = &t->points[k];
     (void)worker;
     if (stopped(t)) {
         return MT_OK;
     }
-    MT_TRY(answer(t, k, NULL, &t->points[k].first, err));
-    const mt_result *const first = t->points[k].first;
-    t->points[k].evaluations = first != NULL ? first->run.evaluations : 0;
-    return MT_OK;
+    mt_status rc = ask(t, p, err);
+    rc = rc == MT_OK ? answer(p, NULL, &p->first, err) : rc;
+    p->evaluations = p->first != NULL ? p->first->run.evaluations : 0;
+    if (rc != MT_OK || !t->warm) {
+        forget(p);
+    }
+    return told(t, k, rc, err);
 }
 
 /* Neighbour `way` (0 to 3) of point k on the grid, -1 where there is none. */
@@ -126,7 +167,7 @@ static bool better(const mt_study *study, const mt_result *a, const mt_result *b
 
 /* From the neighbours' designs of the first pass, which are no longer changed: any order gives
  * the same. */
-static mt_status try_neighbours(const trade *t, int k, mt_trade_warm *warm, mt_arena *mem,
+static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, mt_arena *mem,
                                 mt_err *err)
 {
     point *const p = &t->points[k];
@@ -143,14 +184,15 @@ static mt_status try_neighbours(const trade *t, int k, mt_trade_warm *warm, mt_a
             continue;
         }
         MT_TRY(values_of(near, mem, &x, err));
-        MT_TRY(mt_trade_improves(warm, x, best_x, &gain, &p->evaluations, err));
+        mt_interrupt_enter(&p->q->interrupt, MT_PHASE_SEARCH, false);
+        MT_TRY(mt_trade_improves(w, x, best_x, &gain, &p->evaluations, err));
         if (!gain) {
             continue;
         }
         mt_result *fresh = NULL;
-        MT_TRY(answer(t, k, x, &fresh, err));
+        MT_TRY(answer(p, x, &fresh, err));
         p->evaluations += fresh != NULL ? fresh->run.evaluations : 0;
-        if (better(warm->study, fresh, answer_of(p))) {
+        if (better(&p->q->study, fresh, answer_of(p))) {
             mt_result_delete(p->again);
             p->again = fresh;
             MT_TRY(values_of(best_of(fresh), mem, &best_x, err));
@@ -161,22 +203,24 @@ static mt_status try_neighbours(const trade *t, int k, mt_trade_warm *warm, mt_a
     return MT_OK;
 }
 
-static mt_status solve_warm(void *context, int worker, int k, mt_err *err)
+static mt_status solve_warm(void *context, int worker, int task, mt_err *err)
 {
     const trade *const t = context;
+    const int k = t->from + task;
+    point *const p = &t->points[k];
+    mt_workspace *w = NULL;
     mt_arena mem;
-    mt_study study;
     (void)worker;
-    if (stopped(t)) {
+    if (stopped(t) || p->q == NULL) {
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&mem, 0, err));
-    mt_status rc = mt_trade_study(t->study, t->points[k].values, &mem, &study, err);
-    mt_trade_warm warm = {.study = &study};
-    rc = rc == MT_OK ? try_neighbours(t, k, &warm, &mem, err) : rc;
-    mt_trade_warm_free(&warm);
+    mt_status rc = mt_workspace_new(p->q->p, &w, err);
+    rc = rc == MT_OK ? try_neighbours(t, k, w, &mem, err) : rc;
+    mt_workspace_delete(w);
     mt_arena_free(&mem);
-    return rc;
+    forget(p);
+    return told(t, k, rc, err);
 }
 
 static mt_status begin(trade *t, mt_arena *mem, mt_err *err)
@@ -315,21 +359,38 @@ static mt_status describe(const trade *t, mt_result *result, mt_err *err)
     return MT_OK;
 }
 
+/* All points, and once more each whose neighbours are known. */
+static mt_status solve_all(trade *t, int threads, mt_err *err)
+{
+    int ready = 0;
+    for (int known = 0; known < t->n;) {
+        const int to = t->n - known > BLOCK ? known + BLOCK : t->n;
+        t->from = known;
+        MT_TRY(mt_workers_run(threads, to - known, solve_cold, t, err));
+        known = to;
+        t->from = ready;
+        ready = known == t->n ? known : known - t->size[1];
+        if (t->warm && ready > t->from) {
+            MT_TRY(mt_workers_run(threads, ready - t->from, solve_warm, t, err));
+        }
+        ready = ready > t->from ? ready : t->from;
+    }
+    return MT_OK;
+}
+
 mt_status mt_trade_solve(const mt_study *study, int threads, mt_result *result, mt_err *err)
 {
-    trade t = {.study = study};
+    trade t = {.study = study, .warm = study->n_objectives > 0 && !mt_study_is_discrete(study)};
     mt_arena mem;
     if (study->trade.n_vary == 0) {
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&mem, 0, err));
     mt_status rc = begin(&t, &mem, err);
-    /* a combination of catalogue values is reached from any start: no second pass */
-    const bool warm = study->n_objectives > 0 && !mt_study_is_discrete(study);
-    rc = rc == MT_OK ? mt_workers_run(threads, t.n, solve_cold, &t, err) : rc;
-    rc = rc == MT_OK && warm ? mt_workers_run(threads, t.n, solve_warm, &t, err) : rc;
+    rc = rc == MT_OK ? solve_all(&t, threads, err) : rc;
     rc = rc == MT_OK ? describe(&t, result, err) : rc;
     for (int k = 0; k < t.n && t.points != NULL; k++) {
+        forget(&t.points[k]);
         mt_result_delete(t.points[k].first);
         mt_result_delete(t.points[k].again);
     }

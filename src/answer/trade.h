@@ -23,16 +23,10 @@ mt_status mt_trade_solve(const mt_study *study, int threads, mt_result *result, 
  * value). */
 mt_status mt_trade_study(const mt_study *study, const double *values, mt_arena *mem,
                          mt_study *out, mt_err *err);
-/* trade_warm.c: one point's study, compiled when first asked. {.study = ...} before. */
-typedef struct mt_trade_warm {
-    const mt_study *study; /* must outlive it */
-    mt_problem *p;         /* owned */
-    mt_workspace *w;       /* owned */
-} mt_trade_warm;
-/* Does a local search from x[n_variables] find a design that is better than best_x (NULL: any
- * that meets all goals)? Adds to *evaluations. */
-mt_status mt_trade_improves(mt_trade_warm *warm, const double *x, const double *best_x,
+/* trade_warm.c: does a local search from x[n_variables] find a design of the point that w is of
+ * (set to the whole of it, and again afterwards) that is better than best_x (NULL: any that
+ * meets all goals)? Adds to *evaluations. */
+mt_status mt_trade_improves(mt_workspace *w, const double *x, const double *best_x,
                             bool *better, long *evaluations, mt_err *err);
-void mt_trade_warm_free(mt_trade_warm *warm);
 
 #endif

@@ -12,13 +12,6 @@
 
 enum { LOCAL_EVALUATIONS = 500 };
 
-void mt_trade_warm_free(mt_trade_warm *warm)
-{
-    mt_workspace_delete(warm->w);
-    mt_problem_delete(warm->p);
-    *warm = (mt_trade_warm){.study = warm->study};
-}
-
 static void to_t(const mt_case *c, const double *x, double *t)
 {
     for (int i = 0; i < c->p->n; i++) {
@@ -94,18 +87,14 @@ static mt_status compare(mt_workspace *w, const double *x, const double *best_x,
     return MT_OK;
 }
 
-mt_status mt_trade_improves(mt_trade_warm *warm, const double *x, const double *best_x,
+mt_status mt_trade_improves(mt_workspace *w, const double *x, const double *best_x,
                             bool *better, long *evaluations, mt_err *err)
 {
     mt_arena mem;
     mt_err why = {0};
     *better = false;
     MT_TRY(mt_arena_init(&mem, 0, err));
-    mt_status rc = warm->p == NULL ? mt_problem_new(warm->study, &warm->p, &why) : MT_OK;
-    if (rc == MT_OK && warm->w == NULL) {
-        rc = mt_workspace_new(warm->p, &warm->w, &why);
-    }
-    rc = rc == MT_OK ? compare(warm->w, x, best_x, &mem, better, evaluations, &why) : rc;
+    const mt_status rc = compare(w, x, best_x, &mem, better, evaluations, &why);
     mt_arena_free(&mem);
     /* a start without a value is no better start, and no failure */
     return mt_pass_final(rc, &why, err);

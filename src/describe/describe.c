@@ -68,16 +68,16 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
 
 /* The objective at this design. The fresh problem has no coordinate for the least clearance: it
  * is looked up among the modes. */
-static double aim_value(const mt_workspace *fresh, int k)
+static double aim_value(const mt_workspace *fresh, int k, double motion_room)
 {
     if (!mt_objective_is(fresh->c->aims[k].type, MT_BANDS)) {
         return mt_aim_value(fresh, k, NULL);
     }
     const double room = mt_clears_room(fresh);
-    return -(fresh->motion_room < room ? fresh->motion_room : room); /* NaN: unstable */
+    return -(motion_room < room ? motion_room : room); /* NaN: unstable */
 }
 
-static mt_status describe_objectives(const mt_workspace *fresh,
+static mt_status describe_objectives(const mt_workspace *fresh, double motion_room,
                                      const mt_recommendation *baseline, mt_result *result,
                                      mt_recommendation *rec, mt_err *err)
 {
@@ -85,7 +85,7 @@ static mt_status describe_objectives(const mt_workspace *fresh,
     rec->objectives = mt_arena_alloc(&result->mem, (size_t)n, sizeof *rec->objectives);
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int k = 0; k < n; k++) {
-        const double shown = mt_aim_shown(&fresh->c->aims[k], aim_value(fresh, k));
+        const double shown = mt_aim_shown(&fresh->c->aims[k], aim_value(fresh, k, motion_room));
         const double value = isfinite(shown) ? shown : nan("");
         rec->objectives[rec->n_objectives++] = (mt_design_objective){
             .text = result->objectives[k].text,
@@ -101,12 +101,12 @@ static mt_status describe_objectives(const mt_workspace *fresh,
 }
 
 /* Does the fresh objective agree with the one that the search ended with? */
-static mt_status compare(const mt_workspace *fresh, const mt_design *design, mt_result *result,
-                         mt_err *err)
+static mt_status compare(const mt_workspace *fresh, const mt_design *design, double motion_room,
+                         mt_result *result, mt_err *err)
 {
     const int k = design->stage;
     const bool bands = mt_objective_is(fresh->c->aims[k].type, MT_BANDS);
-    const double f = mt_aim_root(&fresh->c->aims[k], aim_value(fresh, k));
+    const double f = mt_aim_root(&fresh->c->aims[k], aim_value(fresh, k, motion_room));
     const double had = mt_aim_root(&fresh->c->aims[k], design->found->f);
     const bool searched_within = bands && fresh->c->robust != NULL && !mt_robust_proven(fresh);
     /* a clearance that is missed is that of the kind searched */
@@ -140,14 +140,15 @@ static mt_status describe(mt_workspace *fresh, const mt_design *design,
                           const mt_recommendation *baseline, mt_result *result,
                           mt_recommendation *rec, mt_err *err)
 {
+    double motion_room = HUGE_VAL;
     *rec = mt_recommendation_default();
     rec->rank = design->rank;
-    MT_TRY(mt_describe_goals(fresh, design, result, rec, err));
+    MT_TRY(mt_describe_goals(fresh, design, result, rec, &motion_room, err));
     MT_TRY(describe_parameters(fresh->p, fresh->x, design->t, result, rec, err));
     MT_TRY(mt_describe_frequencies(fresh, design, baseline, result, rec, err));
     MT_TRY(doubt(design, result, rec, err));
     MT_TRY(mt_describe_clearances(fresh, result, rec, err));
-    MT_TRY(describe_objectives(fresh, baseline, result, rec, err));
+    MT_TRY(describe_objectives(fresh, motion_room, baseline, result, rec, err));
     if (fresh->c->robust != NULL) {
         rec->worst_case = mt_robust_proven(fresh) ? "proven" : "sampled";
     }
@@ -163,7 +164,7 @@ static mt_status describe(mt_workspace *fresh, const mt_design *design,
     }
     rec->kkt_residual = design->found->kkt;
     rec->singular = design->found->singular;
-    return compare(fresh, design, result, err);
+    return compare(fresh, design, motion_room, result, err);
 }
 
 mt_status mt_describe_design(const mt_problem *p, const mt_design *design,

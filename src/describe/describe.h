@@ -35,9 +35,9 @@ mt_status mt_describe_design(const mt_problem *p, const mt_design *design,
                              const mt_recommendation *baseline, mt_result *result,
                              mt_recommendation *rec, mt_err *err);
 /* Parts of it. describe_goals.c: place and solve everything of fresh at t and judge every
- * goal. */
+ * goal. *motion_room: as mt_describe_motions. */
 mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_result *result,
-                            mt_recommendation *rec, mt_err *err);
+                            mt_recommendation *rec, double *motion_room, mt_err *err);
 /* describe_bands.c: how many goals the avoid goals are, one per configuration; judge them into
  * rec->goals[rec->n_goals...] once the views of fresh are solved. A goal's value is the
  * clearance that comes nearest to its margin (or falls short of it most), in percent of the
@@ -47,10 +47,10 @@ mt_status mt_describe_avoid_goals(mt_workspace *fresh, mt_result *result,
                                   mt_recommendation *rec, mt_err *err);
 /* describe_motion.c: how many families of positions of one drive keep clear of bands; each
  * judged over its motion as one more goal, and as a row of rec->motions. After the views of
- * fresh have been solved; sets fresh->motion_room. */
+ * fresh have been solved. *room: the least between their positions; HUGE_VAL: none. */
 int mt_describe_motion_count(const mt_problem *p);
 mt_status mt_describe_motions(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
-                              mt_err *err);
+                              double *room, mt_err *err);
 /* Clearance of each mode from its neighbouring bands, modes below each band, the least
  * clearance. Nothing of an unstable configuration. */
 mt_status mt_describe_clearances(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,

@@ -190,7 +190,7 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
 }
 
 mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_result *result,
-                            mt_recommendation *rec, mt_err *err)
+                            mt_recommendation *rec, double *motion_room, mt_err *err)
 {
     mt_nlp_values v;
     mt_err why = {.code = MT_OK};
@@ -209,7 +209,7 @@ mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_res
         rec->n_goals++;
     }
     MT_TRY(mt_describe_avoid_goals(fresh, result, rec, err));
-    MT_TRY(mt_describe_motions(fresh, result, rec, err));
+    MT_TRY(mt_describe_motions(fresh, result, rec, motion_room, err));
     for (int i = 0; i < rec->n_goals; i++) {
         const mt_result_goal *const g = &rec->goals[i];
         if (!g->weighted) {

@@ -34,6 +34,7 @@ typedef struct described {
     mt_motion motion;
     bool followed;
     double violation; /* ln; NaN: no value */
+    double *room;     /* the least of all families */
 } described;
 
 static const char *configuration_of(const described *d, const mt_clear *c)
@@ -120,7 +121,7 @@ static mt_status examine(described *d, mt_err *err)
         d->violation = d->motion.end == MT_MOTION_UNSTABLE ? nan("")
                        : d->motion.room >= -ON_EDGE        ? d->violation
                                                     : fmax(d->violation, -d->motion.room);
-        fresh->motion_room = fmin(fresh->motion_room, d->motion.room);
+        *d->room = fmin(*d->room, d->motion.room);
     }
     return MT_OK;
 }
@@ -267,9 +268,9 @@ static mt_status put_row(const described *d, const char *range, double from, dou
 }
 
 static mt_status describe_family(mt_workspace *fresh, const mt_family *f, mt_result *result,
-                                 mt_recommendation *rec, mt_err *err)
+                                 mt_recommendation *rec, double *room, mt_err *err)
 {
-    described d = {.fresh = fresh, .result = result, .family = f};
+    described d = {.fresh = fresh, .result = result, .family = f, .room = room};
     double from = HUGE_VAL;
     double to = -HUGE_VAL;
     d.motion.percent = nan("");
@@ -298,14 +299,15 @@ int mt_describe_motion_count(const mt_problem *p)
 }
 
 mt_status mt_describe_motions(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
-                              mt_err *err)
+                              double *room, mt_err *err)
 {
+    *room = HUGE_VAL;
     const int most = mt_describe_motion_count(fresh->p);
     rec->motions = mt_arena_alloc(&result->mem, (size_t)most, sizeof *rec->motions);
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < fresh->p->n_families; i++) {
         if (fresh->p->families[i].banded) {
-            MT_TRY(describe_family(fresh, &fresh->p->families[i], result, rec, err));
+            MT_TRY(describe_family(fresh, &fresh->p->families[i], result, rec, room, err));
         }
     }
     return MT_OK;

@@ -96,6 +96,7 @@ static mt_status run_task(void *context, int worker, int k, mt_err *err)
     } else if (s->begun && e.n_free > 0) {
         (job->task == APPROACH ? mt_nlp_local_approach : mt_nlp_local_finish)(&e, s);
     }
+    (void)mt_nlp_has_room(&e, &e.scratch); /* whoever left something out for want of it */
     slot->evals = e.evals;
     slot->stop = e.stop != MT_STOP_DONE ? e.stop : slot->stop;
     slot->fatal = e.fatal;
@@ -248,6 +249,7 @@ static void all_starts(mt_nlp_engine *e, mt_nlp_ends *all, mt_nlp_result *out)
 
 static mt_status finish(mt_nlp_engine *e, const mt_nlp_ends *all, mt_nlp_result *out)
 {
+    (void)mt_nlp_has_room(e, &e->scratch);
     out->evals = e->evals;
     out->stop = e->stop;
     if (e->fatal != MT_OK) {

@@ -68,8 +68,7 @@ mt_status mt_case_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cut
     c->n_next = 0;
     MT_TRY(mt_clear_lay_out(c, below, n_cuts, cuts, mem, err));
     MT_TRY(init_tolerances(c, mem, err));
-    MT_TRY(w != NULL ? mt_workspace_use(w, c, err) : MT_OK); /* analyses of the cuts */
-    MT_TRY(mt_robust_init(c, known, w, mem, err));
+    MT_TRY(mt_robust_init(c, known, mem, err));
     MT_TRY(mt_next_init(c, mem, err));
     return w != NULL ? mt_workspace_use(w, c, err) : MT_OK;
 }

@@ -79,8 +79,8 @@ mt_status mt_case_copy(const mt_case *from, mt_arena *mem, mt_case *out, mt_err 
 void mt_case_bound(mt_case *c, int i, double lower, double upper);
 /*
  * Rows of c within its bounds with a gap assignment below[n_bands of the problem] (NULL: none),
- * and cuts[n_cuts] of it (family.h) behind all other bands. w: set to this case afterwards,
- * whose analyses of the cuts are made here; NULL while the problem is compiled. Fails:
+ * and cuts[n_cuts] of it (family.h), which outlive it, behind all other bands. w: set to this
+ * case afterwards; NULL while the problem is compiled. Fails:
  * MT_E_INPUT where a goal cannot be judged over tolerances, MT_E_MEMORY, numerical failures.
  */
 mt_status mt_case_lay_out(mt_case *c, const int *below, int n_cuts, const struct mt_cut *cuts,

@@ -72,6 +72,59 @@ static mt_status gather(mt_problem *p, int first, mt_family *f, mt_err *err)
 
 static mt_status tie(mt_problem *p, mt_err *err);
 
+/* A view of the family's mechanism, counted as its positions are. */
+static mt_view view_of(const mt_problem *p, const mt_family *f)
+{
+    const mt_view *const like = &p->views[f->view[0]];
+    return (mt_view){
+        .configuration = f->configuration, .n_rigid = like->n_rigid, .n_most = like->n_most};
+}
+
+/* The mechanism whose positions are followed; that it does not exist is told where it is asked
+ * for. */
+static mt_status set_moving(mt_problem *p, mt_family *f, mt_err *err)
+{
+    const mt_system_drive drive = {.joint = f->joint, .spring = f->spring};
+    const size_t n = (size_t)p->n;
+    mt_err own = {.code = MT_OK};
+    f->moving = view_of(p, f);
+    f->moving_at = mt_arena_f64(&p->mem, n + 1, 1);
+    MT_TRY(mt_arena_check(&p->mem, err));
+    memcpy(f->moving_at, p->original, n * sizeof *f->moving_at);
+    f->moving_at[n] = mt_family_position(p->views[f->view[0]].original);
+    const mt_status rc =
+        mt_view_drive(p, &f->moving, &drive, f->moving_at, &f->moving.original, &own);
+    if (mt_is_final(rc) || rc == MT_E_INTERRUPTED) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    f->why = rc != MT_OK ? mt_arena_strdup(&p->mem, own.text) : NULL;
+    return mt_arena_check(&p->mem, err);
+}
+
+mt_status mt_cut_init(const mt_problem *p, int family, double position, mt_cut *out,
+                      mt_err *err)
+{
+    const mt_family *const f = &p->families[family];
+    const mt_view view = view_of(p, f);
+    const mt_system_drive drive = {
+        .joint = f->joint, .spring = f->spring, .fixed = true, .position = position};
+    *out = (mt_cut){.family = family, .position = position};
+    return mt_view_drive(p, &view, &drive, p->original, &out->original, err);
+}
+
+void mt_cut_free(mt_cut *cut)
+{
+    mt_analysis_delete(cut->original);
+    *cut = (mt_cut){.original = NULL};
+}
+
+void mt_families_free(mt_problem *p)
+{
+    for (int i = 0; i < p->n_families; i++) {
+        mt_analysis_delete(p->families[i].moving.original);
+    }
+}
+
 mt_status mt_families_init(mt_problem *p, mt_err *err)
 {
     p->families = mt_arena_alloc(&p->mem, (size_t)p->n_views, sizeof *p->families);
@@ -87,7 +140,11 @@ mt_status mt_families_init(mt_problem *p, mt_err *err)
             p->families[p->n_families++] = f;
         }
     }
-    return tie(p, err);
+    MT_TRY(tie(p, err));
+    for (int i = 0; i < p->n_families; i++) {
+        MT_TRY(p->families[i].banded ? set_moving(p, &p->families[i], err) : MT_OK);
+    }
+    return MT_OK;
 }
 
 /* Common frequencies, of the bases and, over more than a point, with the margins. */

@@ -22,17 +22,30 @@ struct mt_family {
     bool fixed;         /* the positions do not depend on the design */
     int configuration;  /* of a view with a drive */
     bool banded;        /* at least two views keep clear of bands */
+    /* where banded: the mechanism with the position as its last input, beside the variables;
+     * its original is owned by the problem, NULL where there is none: `why` */
+    mt_view moving;
+    double *moving_at; /* [n + 1] where that is solved */
+    const char *why;
 };
 
 /* One more position of a family where the bands between its positions are kept: a cutting plane
- * of a search. */
+ * of a search. Its analysis lends its system to all cases and workers that keep it, which it
+ * outlives. */
 typedef struct mt_cut {
     int family;
     double position;
+    mt_analysis *original; /* owned */
 } mt_cut;
 
-/* After views and clears: families, p->tie. Fails: MT_E_MEMORY. */
+/* After views and clears: families, p->tie. Fails: MT_E_MEMORY, MT_E_INTERRUPTED. */
 mt_status mt_families_init(mt_problem *p, mt_err *err);
+void mt_families_free(mt_problem *p);
+/* Fails: as mt_analysis_new_driven. */
+mt_status mt_cut_init(const mt_problem *p, int family, double position, mt_cut *out,
+                      mt_err *err);
+/* Accepts a zeroed one. */
+void mt_cut_free(mt_cut *cut);
 /* Does a family keep clear of bands in several positions? */
 bool mt_family_any(const mt_problem *p);
 /* Position of a view at its last solve [rad, m]. */

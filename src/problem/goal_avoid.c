@@ -108,7 +108,6 @@ static mt_status add_cut(mt_case *c, const mt_cut *cut, lists *l, mt_arena *mem,
 {
     const mt_problem *const p = c->p;
     const mt_family *const f = &p->families[cut->family];
-    const mt_view *const like = &p->views[f->view[0]];
     mt_clear *const clear = &l->clears[c->n_clears];
     mt_way_bands way = {0};
     double *const at = mt_arena_f64(mem, (size_t)f->n, 1);
@@ -143,9 +142,9 @@ static mt_status add_cut(mt_case *c, const mt_cut *cut, lists *l, mt_arena *mem,
         below[c->n_bands + i] = l->below[way.items[i].tie];
     }
     l->views[c->n_views++] = (mt_view){.configuration = f->configuration,
-                                       .n_rigid = like->n_rigid,
-                                       .n_most = like->n_most,
-                                       .cut = cut};
+                                       .original = cut->original,
+                                       .n_rigid = cut->original->n_rigid,
+                                       .n_most = cut->original->n_most};
     l->tie = tie;
     l->below = below;
     c->n_bands += n;
@@ -161,14 +160,11 @@ static mt_status add_cuts(mt_case *c, int n_cuts, const mt_cut *cuts, lists *l, 
     const size_t n_clears = (size_t)p->n_clears + (size_t)n_cuts;
     l->views = mt_arena_alloc(mem, n_views, sizeof *l->views);
     l->clears = mt_arena_alloc(mem, n_clears, sizeof *l->clears);
-    /* views point there */
-    mt_cut *const own = mt_arena_alloc(mem, (size_t)n_cuts, sizeof *own);
     MT_TRY(mt_arena_check(mem, err));
     memcpy(l->views, p->views, (size_t)p->n_views * sizeof *l->views);
     memcpy(l->clears, p->clears, (size_t)p->n_clears * sizeof *l->clears);
     for (int i = 0; i < n_cuts; i++) {
-        own[i] = cuts[i];
-        MT_TRY(add_cut(c, &own[i], l, mem, err));
+        MT_TRY(add_cut(c, &cuts[i], l, mem, err));
     }
     c->views = l->views;
     c->clears = l->clears;

@@ -4,14 +4,16 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "problem/family.h"
 #include "problem/goal_avoid.h"
 
 void mt_problem_delete(mt_problem *p)
 {
     if (p != NULL) {
         for (int i = 0; i < p->n_views; i++) {
-            mt_analysis_delete((mt_analysis *)p->views[i].original);
+            mt_analysis_delete(p->views[i].original);
         }
+        mt_families_free(p);
         if (p->references != NULL) {
             mt_reference_cache_free(p->references);
         }

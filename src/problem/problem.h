@@ -31,8 +31,8 @@
 /* A configuration that goals speak of; or, of a case, one more position of a drive. */
 typedef struct mt_view {
     int configuration;
-    /* owned by the problem; solved at the original design and never again: it is shared; NULL:
-     * of a cut */
+    /* owned by the problem (of a cut: by who made it, family.h); solved at the original design
+     * and never again: it is shared */
     mt_analysis *original;
     int n_rigid; /* modes are counted so at all designs (mt_analysis) */
     int n_most;
@@ -40,8 +40,6 @@ typedef struct mt_view {
     int *named;  /* [n_named] of the model */
     const double **shape; /* [n_named] weighed there (tracking.h) */
     bool needs_vectors;   /* a goal needs shapes even where no gradient is asked for */
-    /* NULL: as the configuration says; else at this position (family.h) */
-    const struct mt_cut *cut;
 } mt_view;
 
 typedef struct mt_family mt_family; /* positions of one drive (family.h) */
@@ -157,10 +155,12 @@ double mt_problem_stretch_at(const mt_problem *p, int i, double x);
  * the caller's. Fails as mt_analysis_new. */
 mt_status mt_problem_analyse(const mt_problem *p, int configuration, const double *x,
                              mt_analysis **out, mt_err *err);
-/* The same for a view, with the view's count (cheaper). like: an analysis of the view that
- * lends its system (mt_analysis_new_like); NULL: a system of its own. */
-mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const mt_analysis *like,
-                          const double *x, mt_analysis **out, mt_err *err);
+/* The same for a view, with its count and its system (mt_analysis_new_like): cheaper. */
+mt_status mt_view_analyse(const mt_view *view, const double *x, mt_analysis **out, mt_err *err);
+/* An analysis of the view's mechanism with a drive, counted as the view is, at the inputs of
+ * mt_analysis_new_driven. */
+mt_status mt_view_drive(const mt_problem *p, const mt_view *view, const mt_system_drive *drive,
+                        const double *at, mt_analysis **out, mt_err *err);
 /* View of a configuration, -1. */
 int mt_problem_view(const mt_problem *p, int configuration);
 /* The same, made where it is not there yet. While the problem is compiled. */

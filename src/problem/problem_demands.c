@@ -44,22 +44,10 @@ mt_status mt_problem_analyse(const mt_problem *p, int configuration, const doubl
     return MT_OK;
 }
 
-mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const mt_analysis *like,
-                          const double *x, mt_analysis **out, mt_err *err)
+/* With the view's count; *out is a, which goes where that fails. */
+static mt_status count_as(const mt_view *view, mt_analysis *a, const double *x,
+                          mt_analysis **out, mt_err *err)
 {
-    mt_analysis *a = NULL;
-    mt_system_drive drive = {.fixed = true};
-    *out = NULL;
-    if (view->cut != NULL) {
-        const mt_family *const f = &p->families[view->cut->family];
-        drive.joint = f->joint;
-        drive.spring = f->spring;
-        drive.position = view->cut->position;
-    }
-    MT_TRY(like != NULL ? mt_analysis_new_like(like, x, &a, err)
-                        : mt_analysis_new_driven(p->study->model, view->configuration,
-                                                 view->cut != NULL ? &drive : NULL, p->n,
-                                                 p->inputs, x, &a, err));
     a->n_rigid = view->n_rigid;
     a->n_most = view->n_most;
     const mt_status rc = solve_counted(a, a->n_null, x, err);
@@ -69,6 +57,24 @@ mt_status mt_view_analyse(const mt_problem *p, const mt_view *view, const mt_ana
     }
     *out = a;
     return MT_OK;
+}
+
+mt_status mt_view_analyse(const mt_view *view, const double *x, mt_analysis **out, mt_err *err)
+{
+    mt_analysis *a = NULL;
+    *out = NULL;
+    MT_TRY(mt_analysis_new_like(view->original, x, &a, err));
+    return count_as(view, a, x, out, err);
+}
+
+mt_status mt_view_drive(const mt_problem *p, const mt_view *view, const mt_system_drive *drive,
+                        const double *at, mt_analysis **out, mt_err *err)
+{
+    mt_analysis *a = NULL;
+    *out = NULL;
+    MT_TRY(mt_analysis_new_driven(p->study->model, view->configuration, drive, p->n, p->inputs,
+                                  at, &a, err));
+    return count_as(view, a, at, out, err);
 }
 
 /* Shape of each named mode of the configuration at the original design; of those that are

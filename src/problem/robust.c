@@ -170,8 +170,7 @@ static mt_status check_demand(const mt_demand *d, mt_err *err)
 
 /* Corners of the views that constraints or bands look at; those of the problem's own may be
  * known. */
-static mt_status init_views(mt_case *c, const mt_robust *known, const mt_workspace *w,
-                            mt_arena *mem, mt_err *err)
+static mt_status init_views(mt_case *c, const mt_robust *known, mt_arena *mem, mt_err *err)
 {
     const mt_problem *const p = c->p;
     int *const wanted = mt_arena_int(mem, (size_t)c->n_views + 1);
@@ -191,11 +190,9 @@ static mt_status init_views(mt_case *c, const mt_robust *known, const mt_workspa
         if (known != NULL && i < p->n_views) {
             c->robust->views[i] = known->views[i];
         } else if (wanted[i]) {
-            const bool cut = i >= p->n_views;
             int *const signs = mt_arena_int(mem, (size_t)p->n);
             MT_TRY(mt_arena_check(mem, err));
-            MT_TRY(signs_of_view(c, cut ? w->views[i].analysis : c->views[i].original, signs,
-                                 err));
+            MT_TRY(signs_of_view(c, c->views[i].original, signs, err));
             MT_TRY(make_corners(c, signs, has_range(p, i), mem, &c->robust->views[i], err));
         }
     }
@@ -310,8 +307,7 @@ static mt_status init_rows(mt_case *c, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
-mt_status mt_robust_init(mt_case *c, const mt_robust *known, const mt_workspace *w,
-                         mt_arena *mem, mt_err *err)
+mt_status mt_robust_init(mt_case *c, const mt_robust *known, mt_arena *mem, mt_err *err)
 {
     const size_t n = (size_t)c->p->n;
     c->n_corner_rows = 0;
@@ -329,7 +325,7 @@ mt_status mt_robust_init(mt_case *c, const mt_robust *known, const mt_workspace 
     MT_TRY(mt_arena_check(mem, err));
     c->robust = r;
     widen(c);
-    MT_TRY(init_views(c, known, w, mem, err));
+    MT_TRY(init_views(c, known, mem, err));
     MT_TRY(known != NULL ? MT_OK : init_limits(c, mem, err));
     return init_rows(c, mem, err);
 }

@@ -87,11 +87,10 @@ typedef struct mt_robust_work {
 } mt_robust_work;
 
 /* c->robust (NULL where no variable has a tolerance), in mem: adds rows to `in` behind those of
- * the bands. known: corners over the same bounds, of another assignment; NULL: none. w: with
- * analyses of the case's views; NULL: there are no cuts. Fails: MT_E_INPUT where a goal cannot
+ * the bands. known: corners over the same bounds, of another assignment; NULL: none. Fails:
+ * MT_E_INPUT where a goal cannot
  * be judged over tolerances, saying why; MT_E_MEMORY, numerical failures. */
-mt_status mt_robust_init(mt_case *c, const mt_robust *known, const mt_workspace *w,
-                         mt_arena *mem, mt_err *err);
+mt_status mt_robust_init(mt_case *c, const mt_robust *known, mt_arena *mem, mt_err *err);
 /* w->robust; stays NULL where no variable has a tolerance. */
 mt_status mt_robust_work_init(mt_workspace *w, mt_err *err);
 /* Half the width of variable i's tolerance, as a part of its value. */

@@ -130,7 +130,7 @@ static mt_status range_view(mt_workspace *w, int view, int modes, box *b, mt_err
 {
     mt_robust_work *const r = w->robust;
     mt_analysis *a = NULL;
-    mt_status rc = mt_view_analyse(w->p, w->views[view].of, NULL, w->x, &a, err);
+    mt_status rc = mt_view_analyse(w->views[view].of, w->x, &a, err);
     const int all = rc == MT_OK ? mt_modal_vibrations(&a->modes) : 0;
     r->hz[view] = mt_arena_alloc(&w->mem, (size_t)all, sizeof *r->hz[view]);
     r->n_ranges[view] = r->hz[view] == NULL ? 0 : all;

@@ -20,21 +20,21 @@
  * mechanism. */
 enum { PROGRESS_EVERY = 500, PROGRESS_TEXT = 80 };
 
-static void drop_corners(mt_view_work *view)
+static void close_view(mt_view_work *view)
 {
     for (int i = 0; i < view->n_corners; i++) {
         mt_analysis_delete(view->corners[i]);
     }
-    view->n_corners = 0;
+    mt_analysis_delete(view->scout);
+    mt_analysis_delete(view->analysis);
+    *view = (mt_view_work){.of = NULL};
 }
 
 void mt_workspace_delete(mt_workspace *w)
 {
     if (w != NULL) {
         for (int i = 0; i < w->n_views; i++) {
-            drop_corners(&w->views[i]); /* of the system of the analysis */
-            mt_analysis_delete(w->views[i].scout);
-            mt_analysis_delete(w->views[i].analysis);
+            close_view(&w->views[i]);
         }
         for (int i = 0; w->driven != NULL && i < w->p->n_families; i++) {
             mt_analysis_delete(w->driven[i]);
@@ -80,7 +80,6 @@ mt_status mt_workspace_new(const mt_problem *p, mt_workspace **out, mt_err *err)
         return mt_fail_memory(err);
     }
     w->p = p;
-    w->motion_room = HUGE_VAL;
     mt_status rc = mt_arena_init(&w->mem, 0, err);
     rc = rc == MT_OK ? claim(w, err) : rc;
     rc = rc == MT_OK ? mt_workspace_use(w, &p->whole, err) : rc;
@@ -108,26 +107,19 @@ static mt_status make_room(mt_workspace *w, int n, mt_err *err)
     return MT_OK;
 }
 
-/* An analysis of the view, which is there already unless it is of another cut. */
+/* An analysis of the view, unless it is there already. */
 static mt_status open_view(mt_workspace *w, mt_view_work *view, const mt_view *of, mt_err *err)
 {
-    const bool other = of->cut != NULL &&
-                       (view->family != of->cut->family || view->position != of->cut->position);
     view->of = of;
-    if (view->analysis != NULL && !other) {
+    if (view->analysis != NULL) {
         return MT_OK;
     }
-    drop_corners(view);
-    mt_analysis_delete(view->analysis);
-    view->analysis = NULL;
-    MT_TRY(mt_view_analyse(w->p, of, of->original, w->p->original, &view->analysis, err));
+    view->track = mt_arena_alloc(&w->mem, (size_t)of->n_named, sizeof *view->track);
+    MT_TRY(mt_arena_check(&w->mem, err));
+    MT_TRY(mt_view_analyse(of, w->p->original, &view->analysis, err));
     view->needs_vectors = of->needs_vectors;
     view->solved = true;
-    view->tracked = false;
-    view->family = of->cut != NULL ? of->cut->family : -1;
-    view->position = of->cut != NULL ? of->cut->position : 0.0;
-    view->track = mt_arena_alloc(&w->mem, (size_t)of->n_named, sizeof *view->track);
-    return mt_arena_check(&w->mem, err);
+    return MT_OK;
 }
 
 static mt_status open_corners(mt_workspace *w, mt_view_work *view, int n, mt_err *err)
@@ -142,8 +134,7 @@ static mt_status open_corners(mt_workspace *w, mt_view_work *view, int n, mt_err
     }
     view->corners = corners;
     for (; view->n_corners < n; view->n_corners++) {
-        MT_TRY(mt_view_analyse(w->p, view->of, view->analysis, w->p->original,
-                               &corners[view->n_corners], err));
+        MT_TRY(mt_view_analyse(view->of, w->p->original, &corners[view->n_corners], err));
     }
     return MT_OK;
 }
@@ -164,6 +155,9 @@ void mt_workspace_back(mt_workspace *w, const mt_case *c)
 {
     for (int i = 0; i < c->n_views; i++) {
         w->views[i].of = &c->views[i];
+    }
+    for (int i = c->n_views; i < w->n_views; i++) {
+        close_view(&w->views[i]);
     }
     w->c = c;
 }

@@ -17,8 +17,6 @@ typedef struct mt_view_work {
     bool needs_vectors;    /* shapes are needed even where no gradient is asked for */
     bool tracked;          /* track belongs to the last solve */
     bool solved;           /* the last solve succeeded */
-    int family;            /* of a cut: where the analysis is */
-    double position;
     int n_corners;         /* analyses that there are */
     mt_analysis **corners; /* owned; for corners of the tolerances (robust.h) */
 } mt_view_work;
@@ -29,7 +27,7 @@ typedef struct mt_workspace {
     mt_arena mem;
     int n_views; /* at least those of the case */
     mt_view_work *views;
-    /* [n_families] owned; with the position as last input; made when first needed (motion.h) */
+    /* [n_families] owned; of its `moving`, made when first needed (motion.h) */
     mt_analysis **driven;
     double *value;  /* [program.count] */
     double *grad;   /* program.count rows of n, after an evaluation with gradient */
@@ -43,9 +41,6 @@ typedef struct mt_workspace {
     double *dshape; /* max ns x n */
     struct mt_robust_work *robust; /* where variables have tolerances (robust.h); else NULL */
     long evaluations;
-    /* of a design that is described: the least between the positions of its drives; HUGE_VAL:
-     * none */
-    double motion_room;
     void (*progress)(void *context, const char *text); /* NULL, or called now and then */
     void *progress_context;
 } mt_workspace;
@@ -58,7 +53,8 @@ void mt_workspace_delete(mt_workspace *w);
 /* Set to a case, for which analyses are made where there are none yet (of cuts, of corners).
  * Fails likewise; then it is set to the case that it was set to. */
 mt_status mt_workspace_use(mt_workspace *w, const mt_case *c, mt_err *err);
-/* Back to a case that it was set to before, for which everything is there. */
+/* Back to a case that it was set to before, for which everything is there; analyses of the cuts
+ * that it has not go, so that the cuts may go too. */
 void mt_workspace_back(mt_workspace *w, const mt_case *c);
 /* dx_i/dt_i at the last evaluation. */
 double mt_workspace_stretch(const mt_workspace *w, int i);

@@ -27,8 +27,7 @@ static mt_status solve_at(void *context, double s, mt_analysis **out, mt_err *er
     }
     mt_case_x(w->w->c, w->t, w->x);
     if (w->view->scout == NULL) {
-        MT_TRY(mt_view_analyse(p, w->view->of, w->view->of->original, p->original,
-                               &w->view->scout, err));
+        MT_TRY(mt_view_analyse(w->view->of, p->original, &w->view->scout, err));
     }
     *out = w->view->scout;
     return mt_analysis_solve(w->view->scout, w->x, &opt, err);

@@ -29,7 +29,7 @@ typedef struct slot {
     long evals; /* of all rounds */
     int starts;
     int n_cuts;
-    mt_cut *cuts; /* [CUTS_MOST] */
+    mt_cut *cuts; /* [CUTS_MOST], owned */
 } slot;
 
 typedef struct job {
@@ -90,18 +90,19 @@ static void refuse(mt_nlp_solution *best, double short_of, double tolerance)
 }
 
 /* Where the motion of a family comes nearer than `room`, one more cut for each way between two
- * positions. */
-static int add_cuts(slot *s, const mt_problem *p, int family, const mt_motion *m, double room)
+ * positions: *added of them. */
+static mt_status add_cuts(slot *s, const mt_problem *p, int family, const mt_motion *m,
+                          double room, int *added, mt_err *err)
 {
-    int added = 0;
     for (int i = 0; i < m->n_ways && p->families[family].fixed; i++) {
         if (m->way_room[i] < room - m->tolerance && MT_HAS(m->way_at[i]) &&
             s->n_cuts < CUTS_MOST) {
-            s->cuts[s->n_cuts++] = (mt_cut){.family = family, .position = m->way_at[i]};
-            added++;
+            MT_TRY(mt_cut_init(p, family, m->way_at[i], &s->cuts[s->n_cuts], err));
+            s->n_cuts++;
+            (*added)++;
         }
     }
-    return added;
+    return MT_OK;
 }
 
 /* Follow the best design over the range of motion. *added: cuts to search again with; with none
@@ -123,7 +124,7 @@ static mt_status follow_best(slot *s, mt_workspace *w, bool last, int *added, mt
         }
         MT_TRY(mt_motion_follow(w, i, w->c->below, &s->mem, &m, err));
         s->evals += m.positions;
-        *added += last ? 0 : add_cuts(s, w->p, i, &m, wanted);
+        MT_TRY(last ? MT_OK : add_cuts(s, w->p, i, &m, wanted, added, err));
         if (m.end == MT_MOTION_UNSTABLE || m.room < -m.tolerance) {
             const double here = m.end == MT_MOTION_UNSTABLE ? 1.0 : -m.room;
             tolerance = here > short_of && m.tolerance > 0.0 ? m.tolerance : tolerance;
@@ -218,7 +219,10 @@ static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
         s->found.n_solutions = 0;
         s->found.stop = s->rc == MT_E_INTERRUPTED ? MT_STOP_USER : s->found.stop;
     }
-    mt_workspace_back(w, j->c); /* the candidate's case goes */
+    mt_workspace_back(w, j->c); /* the candidate's case goes, and its cuts */
+    for (int i = 0; i < s->n_cuts; i++) {
+        mt_cut_free(&s->cuts[i]);
+    }
     const bool fatal = mt_is_final(s->rc);
     return fatal ? mt_fail(err, s->rc, "%s", why.text) : MT_OK;
 }

@@ -70,27 +70,18 @@ static bool ends(mt_status rc)
     return mt_is_final(rc) || rc == MT_E_INTERRUPTED;
 }
 
-/* The family's mechanism with the position as its last input, made at the original design. */
+/* The worker's own analysis of the family's moving mechanism. */
 static mt_status open_drive(mt_workspace *ws, int family, mt_err *err)
 {
-    const mt_problem *const p = ws->p;
-    const mt_family *const f = &p->families[family];
-    const mt_view *const like = &p->views[f->view[0]];
-    const mt_system_drive drive = {.joint = f->joint, .spring = f->spring};
-    mt_analysis *a = NULL;
-    if (ws->driven[family] != NULL) {
-        return MT_OK;
+    const mt_family *const f = &ws->p->families[family];
+    if (f->moving.original == NULL) {
+        return mt_fail(err, MT_E_DOMAIN, "%s", f->why);
     }
-    double *const at = mt_arena_f64(&ws->mem, (size_t)p->n + 1, 1);
-    MT_TRY(mt_arena_check(&ws->mem, err));
-    memcpy(at, p->original, (size_t)p->n * sizeof *at);
-    at[p->n] = mt_family_position(like->original);
-    MT_TRY(mt_analysis_new_driven(p->study->model, f->configuration, &drive, p->n, p->inputs,
-                                  at, &a, err));
-    a->n_rigid = like->n_rigid; /* one count for all designs */
-    a->n_most = like->n_most;
-    mt_linear_first_input(a->lin, p->n); /* the only slope that is asked for */
-    ws->driven[family] = a;
+    if (ws->driven[family] == NULL) {
+        MT_TRY(mt_view_analyse(&f->moving, f->moving_at, &ws->driven[family], err));
+        /* the only slope that is asked for */
+        mt_linear_first_input(ws->driven[family]->lin, ws->p->n);
+    }
     return MT_OK;
 }
 

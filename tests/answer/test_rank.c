@@ -479,6 +479,7 @@ static void rank__a_fresh_analysis_decides(mt_test *t)
         opened o;
         mt_result *result = NULL;
         mt_recommendation rec = mt_recommendation_default();
+        double motion_room = 0.0;
         mt_err err = {0};
         mt_test_row(t, "%s", rows[i].name);
         if (open_problem(t, STUDY_TWO_MASSES("'m': 1, 'k1': 100, 'k2': 1000", ""),
@@ -487,7 +488,8 @@ static void rank__a_fresh_analysis_decides(mt_test *t)
                          &o) &&
             CHECK_INT(t, mt_result_new(&result, &err), MT_OK)) {
             const mt_design design = {.t = o.p->whole.origin_t};
-            CHECK_INT(t, mt_describe_goals(o.w, &design, result, &rec, &err), MT_OK);
+            CHECK_INT(t, mt_describe_goals(o.w, &design, result, &rec, &motion_room, &err),
+                      MT_OK);
             mt_modes *const modes = &o.w->views[0].analysis->modes;
             CHECK(t, rec.feasible);
             modes->lambda[0] *= rows[i].factor;

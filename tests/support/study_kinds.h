@@ -26,6 +26,23 @@
                                         "['ground', 'm'], 'at': [[0, 0, 1], [0, 0, "         \
                                         "0]], 'stiffness_n_per_m': 100}]}"
 
+/* An arm turns about the origin; a mass slides along it on k1, and k2 holds it in the global x:
+ *     f(theta) = sqrt((k1 + k2 cos(theta)^2) / m) / (2 pi)
+ * is greatest between positions on both sides of 0. */
+#define ARM                                                                                  \
+    "{'format': 'modetune-model/1', 'dimension': 2, 'parameters': {'k1': 40000, 'k2': "      \
+    "5000}, 'bodies': [{'name': 'arm', 'mass_kg': 1, 'inertia_kg_m2': 0.1, 'centre': [0.5, " \
+    "0]}, {'name': 'slider', 'mass_kg': 2, 'inertia_kg_m2': 0.01, 'centre': [1, 0]}], "      \
+    "'joints': [{'name': 'pivot', 'type': 'revolute', 'bodies': ['ground', 'arm'], 'at': "   \
+    "[0, 0]}, {'name': 'slide', 'type': 'prismatic', 'bodies': ['arm', 'slider'], 'at': "    \
+    "[1, 0], 'axis': [1, 0]}], 'springs': [{'name': 'along', 'type': 'bushing', 'bodies': "  \
+    "['arm', 'slider'], 'at': [1, 0], 'stiffness_n_per_m': ['k1', 0], "                      \
+    "'stiffness_n_m_per_rad': 0}, {'name': 'across', 'type': 'bushing', 'bodies': "          \
+    "['ground', 'slider'], 'at': [1, 0], 'stiffness_n_per_m': ['k2', 0], "                   \
+    "'stiffness_n_m_per_rad': 0}], 'configurations': {'left': {'drive': {'joint': 'pivot', " \
+    "'position_rad': -0.5, 'hold': 'lock'}}, 'right': {'drive': {'joint': 'pivot', "         \
+    "'position_rad': 0.5, 'hold': 'lock'}}}}"
+
 static const struct {
     const char *name;
     const char *model;
@@ -120,6 +137,14 @@ static const struct {
      "'variables': [{'parameter': 'k', 'lower': 20, 'upper': 80}]," QUICK
      "'goals': [{'type': 'avoid', 'configurations': ['sprung', 'trimmed'], 'bands_hz': [[1.5, "
      "1.6]]}]"},
+    {"bands over a motion", ARM,
+     "'variables': [{'parameter': 'k1', 'lower': 1000, 'upper': 60000}]," QUICK
+     "'goals': [{'type': 'avoid', 'configurations': ['left', 'right'], 'bands_hz': [[10, 11], "
+     "[23.7, 25]]}]"},
+    {"bands over a motion, with tolerances", ARM,
+     "'variables': [{'parameter': 'k1', 'lower': 1000, 'upper': 60000, 'tolerance_percent': "
+     "1}]," QUICK "'goals': [{'type': 'avoid', 'configurations': ['left', 'right'], "
+     "'bands_hz': [[23.7, 25]]}]"},
 };
 
 #endif
