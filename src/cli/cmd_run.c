@@ -166,6 +166,7 @@ static int compare_one(const job *j, mt_json_writer *w, mt_text *out)
     const mt_result *const r = j->result;
     const mt_recommendation *const best =
         r->n_recommendations > 0 ? &r->recommendations[0] : &r->baseline;
+    const mt_teller to = {out, false};
     mt_table t = mt_report_published(r);
     int judged = 0;
     const bool holds = mt_report_verified(r, &judged);
@@ -189,13 +190,13 @@ static int compare_one(const job *j, mt_json_writer *w, mt_text *out)
     case MT_FORMAT_TEXT:
         mt_text_addf(out, "%s: %s\n", r->study.name == NULL ? j->path : r->study.name,
                      mt_result_status_name(r->status));
-        if (mt_report_doubtful(r)) {
-            mt_report_doubts(r, out);
+        if (r->n_doubts > 0) {
+            mt_tell_doubts(&to, r);
             mt_text_add(out, "\n");
         }
         mt_table_print(&t, 2, out);
-        mt_report_objectives_text(best, out);
-        mt_report_uncertainty(r, out);
+        mt_tell_objectives(&to, best);
+        mt_tell_uncertainty(&to, r);
         mt_text_add(out, "\n");
         break;
     }

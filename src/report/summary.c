@@ -2,51 +2,125 @@
 #include "report/summary.h"
 
 #include <math.h>
+#include <string.h>
 
+#include "report/campbell.h"
 #include "report/number.h"
 #include "report/result_tables.h"
+#include "report/svg.h"
 #include "report/trade.h"
 
 enum { INDENT = 2, DIGITS = 4 };
 
-static void print_table(mt_table t, const char *title, mt_text *out)
+static void add_heading(const mt_teller *to, const char *title)
+{
+    if (to->html) {
+        mt_text_add(to->out, "<h2>");
+        mt_html_escape(title, to->out);
+        mt_text_add(to->out, "</h2>\n");
+    } else {
+        mt_text_addf(to->out, "\n%s\n", title);
+    }
+}
+
+static void add_table(const mt_teller *to, mt_table t, const char *title)
 {
     if (mt_table_rows(&t) > 0 || t.failed) {
-        mt_text_addf(out, "\n%s\n", title);
-        mt_table_print(&t, INDENT, out);
+        add_heading(to, title);
+        if (to->html) {
+            mt_table_html(&t, to->out);
+        } else {
+            mt_table_print(&t, INDENT, to->out);
+        }
     }
     mt_table_free(&t);
 }
 
-static void print_list(int n, const char *const *items, const char *title, mt_text *out)
+/* A paragraph, of which `line` is the text; freed. */
+static void add_line(const mt_teller *to, mt_text *line)
+{
+    const char *const text = line->s == NULL ? "" : line->s;
+    if (to->html) {
+        mt_text_add(to->out, "<p>");
+        mt_html_escape(text, to->out);
+        mt_text_add(to->out, "</p>\n");
+    } else {
+        mt_text_addf(to->out, "  %s\n", text);
+    }
+    to->out->failed = to->out->failed || line->failed;
+    mt_text_free(line);
+}
+
+/* Was it computed? A section that an interrupt left out says so. */
+static bool is_known(const mt_teller *to, const char *title, const void *items)
+{
+    if (items == NULL) {
+        mt_text line = {0};
+        mt_text_add(&line, "not computed: an interrupt came first");
+        add_heading(to, title);
+        add_line(to, &line);
+    }
+    return items != NULL;
+}
+
+/* The head of a list of n items; false where there are none. */
+static bool open_list(const mt_teller *to, const char *title, int n)
 {
     if (n > 0) {
-        mt_text_addf(out, "\n%s\n", title);
+        add_heading(to, title);
+        mt_text_add(to->out, to->html ? "<ul>\n" : "");
     }
-    for (int i = 0; i < n; i++) {
-        mt_text_addf(out, "  - %s\n", items[i]);
+    return n > 0;
+}
+
+static void close_list(const mt_teller *to)
+{
+    mt_text_add(to->out, to->html ? "</ul>\n" : "");
+}
+
+/* word: before the text, in bold; "": none */
+static void add_item(const mt_teller *to, const char *word, const char *text)
+{
+    const char *const colon = word[0] == '\0' ? "" : ": ";
+    if (to->html) {
+        mt_text_addf(to->out, word[0] == '\0' ? "<li>%s%s" : "<li><b>%s</b>%s", word, colon);
+        mt_html_escape(text, to->out);
+        mt_text_add(to->out, "</li>\n");
+    } else {
+        mt_text_addf(to->out, "  - %s%s%s\n", word, colon, text);
     }
 }
 
-/* "stick.json:12:9: " as far as it is known. */
-static void print_place(const mt_doubt *d, mt_text *out)
+/* One whose text was made for it; freed. */
+static void add_made(const mt_teller *to, mt_text *text)
 {
-    if (d->file != NULL) {
+    add_item(to, "", text->s == NULL ? "" : text->s);
+    to->out->failed = to->out->failed || text->failed;
+    mt_text_free(text);
+}
+
+static void add_sentences(const mt_teller *to, const char *title, int n,
+                          const char *const *items)
+{
+    if (open_list(to, title, n)) {
+        for (int i = 0; i < n; i++) {
+            add_item(to, "", items[i]);
+        }
+        close_list(to);
+    }
+}
+
+void mt_report_doubt(const mt_doubt *d, bool with_place, mt_text *out)
+{
+    if (with_place && d->file != NULL) { /* "stick.json:12:9: " as far as it is known */
         mt_text_addf(out, "%s", d->file);
         if (d->line > 0) {
             mt_text_addf(out, ":%d:%d", d->line, d->column);
         }
         mt_text_add(out, ": ");
     }
-    if (d->pointer != NULL && d->pointer[0] != '\0') {
+    if (with_place && d->pointer != NULL && d->pointer[0] != '\0') {
         mt_text_addf(out, "%s: ", d->pointer);
-    }
-}
-
-void mt_report_doubt(const mt_doubt *d, bool with_place, mt_text *out)
-{
-    if (with_place) {
-        print_place(d, out);
     }
     if (d->configuration != NULL) {
         mt_text_addf(out, "%s: ", d->configuration);
@@ -54,86 +128,168 @@ void mt_report_doubt(const mt_doubt *d, bool with_place, mt_text *out)
     mt_text_addf(out, "%s", d->text);
 }
 
-bool mt_report_doubtful(const mt_result *result)
+static void add_doubts(const mt_teller *to, const char *title, int n, const mt_doubt *items,
+                       bool with_place)
 {
-    return result->n_doubts > 0;
-}
-
-const char *mt_report_surety(bool proven, bool doubtful)
-{
-    if (!proven) {
-        return "sampled";
-    }
-    return doubtful ? "proven of the question as it stands, which is doubtful" : "proven";
-}
-
-static void print_doubts(int n, const mt_doubt *items, bool doubts, mt_text *out)
-{
-    if (n > 0) {
-        mt_text_add(out, doubts ? "\nDoubts\n" : "\nFacts of the model\n");
-    }
-    for (int i = 0; i < n; i++) {
-        mt_text_add(out, "  - ");
-        mt_report_doubt(&items[i], doubts, out);
-        mt_text_add(out, "\n");
+    if (open_list(to, title, n)) {
+        for (int i = 0; i < n; i++) {
+            mt_text text = {.s = NULL};
+            mt_report_doubt(&items[i], with_place, &text);
+            add_made(to, &text);
+        }
+        close_list(to);
     }
 }
 
-void mt_report_doubts(const mt_result *result, mt_text *out)
+void mt_tell_doubts(const mt_teller *to, const mt_result *result)
 {
-    print_doubts(result->n_doubts, result->doubts, true, out);
-    print_doubts(result->n_facts, result->facts, false, out);
+    if (result->n_doubts > 0 && to->html) {
+        mt_text_add(to->out, "<div class=\"doubts\">\n");
+    }
+    add_doubts(to, "Doubts", result->n_doubts, result->doubts, true);
+    if (result->n_doubts > 0 && to->html) {
+        mt_text_add(to->out, "</div>\n");
+    }
+    add_doubts(to, "Facts of the model", result->n_facts, result->facts, false);
 }
 
-void mt_report_objectives_text(const mt_recommendation *r, mt_text *out)
+void mt_tell_objectives(const mt_teller *to, const mt_recommendation *r)
 {
-    print_table(mt_report_objectives(r), "Objectives", out);
+    add_table(to, mt_report_objectives(r), "Objectives");
 }
 
-static void print_best(const mt_recommendation *r, mt_text *out)
+static void tell_parameters(const mt_teller *to, const mt_recommendation *r)
 {
-    if (r->n_parameters > 0) {
-        char change[MT_NUMBER_TEXT];
-        mt_text_addf(out, "\nRecommendation %d (%s), size of the redesign %s%s\n", r->rank,
-                     r->grade == NULL ? "not graded" : r->grade,
-                     mt_report_number(r->change, DIGITS, change),
-                     r->singular ? ", a double solution: its parameters are sensitive" : "");
-    }
-    if (r->n_objectives != 1 || r->objectives[0].recommended != r->change) {
-        mt_report_objectives_text(r, out); /* else the size of the redesign is all */
-    }
-    print_table(mt_report_parameters(r), "Parameters", out);
+    add_table(to, mt_report_parameters(r), "Parameters");
     for (int i = 0; i < r->n_parameters; i++) {
         mt_text line = {0};
         if (mt_report_measure(&r->parameters[i], &line)) {
-            mt_text_addf(out, "  %s\n", line.s == NULL ? "" : line.s);
+            add_line(to, &line);
         }
-        out->failed = out->failed || line.failed;
-        mt_text_free(&line);
     }
-    print_table(mt_report_frequencies(r), "Frequencies", out);
-    print_table(mt_report_clearances(r), "Clearances from bands", out);
-    print_table(mt_report_motions(r), "Over the range of motion", out);
-    print_table(mt_report_goals(r), "Goals", out);
-    print_list(r->n_reasons, r->reasons, "Why", out);
+    if (r->n_parameters > 0 && to->html) {
+        mt_report_svg_changes(r, to->out);
+    }
 }
 
-void mt_report_uncertainty(const mt_result *result, mt_text *out)
+/* The best design, or the original one where there is none. */
+static void tell_design(const mt_teller *to, const mt_result *result)
 {
-    if (result->n_undetermined > 0) {
-        mt_text_add(out, "\nUndetermined: the goals hardly change along\n");
+    const bool found = result->n_recommendations > 0;
+    const mt_recommendation *const r = found ? &result->recommendations[0] : &result->baseline;
+    bool told = false; /* the size of the redesign, and that is all that is asked for */
+    if (found && r->n_parameters > 0) {
+        char change[MT_NUMBER_TEXT];
+        mt_text title = {0};
+        mt_text_addf(&title, "Recommendation %d (%s), size of the redesign %s%s", r->rank,
+                     r->grade == NULL ? "not graded" : r->grade,
+                     mt_report_number(r->change, DIGITS, change),
+                     r->singular ? ", a double solution: its parameters are sensitive" : "");
+        add_heading(to, title.s == NULL ? "" : title.s);
+        to->out->failed = to->out->failed || title.failed;
+        mt_text_free(&title);
+        told = r->n_objectives == 1 && r->objectives[0].recommended == r->change;
     }
-    for (int i = 0; i < result->n_undetermined; i++) {
-        const mt_undetermined *const u = &result->undetermined[i];
-        mt_text_addf(out, "  - %s", u->text);
-        if (!isnan(u->effect_percent)) {
-            char effect[MT_NUMBER_TEXT];
-            mt_text_addf(out, " (at most %s %% from bound to bound)",
-                         mt_report_number(u->effect_percent, DIGITS, effect));
+    if (!told) {
+        mt_tell_objectives(to, r);
+    }
+    if (found) {
+        tell_parameters(to, r);
+    }
+    add_table(to, mt_report_frequencies(r), found ? "Frequencies" : "Frequencies as they are");
+    if (r->n_frequencies > 0 && to->html) {
+        mt_report_svg_frequencies(r, to->out);
+    }
+    if (to->html) {
+        add_table(to, mt_report_gaps(r), "Bands");
+    }
+    add_table(to, mt_report_clearances(r), "Clearances from bands");
+    add_table(to, mt_report_motions(r), "Over the range of motion");
+    add_table(to, mt_report_goals(r), "Goals");
+    add_sentences(to, "Why", r->n_reasons, r->reasons);
+}
+
+void mt_tell_uncertainty(const mt_teller *to, const mt_result *result)
+{
+    static const char undetermined[] = "Undetermined: the goals hardly change along";
+    static const char spread[] = "Spread under other weights";
+    if (is_known(to, undetermined, result->undetermined) &&
+        open_list(to, undetermined, result->n_undetermined)) {
+        for (int i = 0; i < result->n_undetermined; i++) {
+            const mt_undetermined *const u = &result->undetermined[i];
+            mt_text text = {0};
+            mt_text_addf(&text, "%s", u->text);
+            if (!isnan(u->effect_percent)) {
+                char effect[MT_NUMBER_TEXT];
+                mt_text_addf(&text, " (at most %s %% from bound to bound)",
+                             mt_report_number(u->effect_percent, DIGITS, effect));
+            }
+            add_made(to, &text);
         }
-        mt_text_add(out, "\n");
+        close_list(to);
     }
-    print_table(mt_report_spread(result), "Spread under other weights", out);
+    if (is_known(to, spread, result->spread)) {
+        add_table(to, mt_report_spread(result), spread);
+    }
+}
+
+/* While a doubt stands about the question nothing is called proven without saying so. */
+static void tell_certificates(const mt_teller *to, const mt_result *result)
+{
+    static const char title[] = "Certificates";
+    const char *const proven = result->n_doubts == 0
+                                   ? "proven"
+                                   : "proven of the question as it stands, which is doubtful";
+    if (is_known(to, title, result->certificates) &&
+        open_list(to, title, result->n_certificates)) {
+        for (int i = 0; i < result->n_certificates; i++) {
+            const mt_certificate *const c = &result->certificates[i];
+            add_item(to, c->proven ? proven : "sampled", c->text);
+        }
+        close_list(to);
+    }
+}
+
+static void tell_trade(const mt_teller *to, const mt_result *result)
+{
+    static const char title[] = "Trade study: the best design of each point";
+    for (int i = 0; i < result->run.n_incomplete && result->trade == NULL; i++) {
+        if (strcmp(result->run.incomplete[i], "trade") == 0) {
+            (void)is_known(to, title, result->trade);
+        }
+    }
+    add_table(to, mt_report_trade(result), title);
+    if (to->html) {
+        mt_report_svg_trade(result, to->out);
+    }
+}
+
+void mt_tell_answer(const mt_teller *to, const mt_result *result, bool with_published)
+{
+    static const char relaxed[] = "What would let a design exist, one change at a time";
+    static const char published[] = "Published against computed";
+    mt_tell_doubts(to, result);
+    tell_design(to, result);
+    if (to->html) {
+        mt_report_svg_campbell(result, to->out);
+    }
+    if (result->n_recommendations > 1) {
+        add_table(to, mt_report_alternatives(result), "All recommendations");
+    }
+    mt_tell_uncertainty(to, result);
+    tell_trade(to, result);
+    tell_certificates(to, result);
+    if (is_known(to, relaxed, result->relaxations) &&
+        open_list(to, relaxed, result->n_relaxations)) {
+        for (int i = 0; i < result->n_relaxations; i++) {
+            add_item(to, "", result->relaxations[i].text);
+        }
+        close_list(to);
+    }
+    if (with_published && is_known(to, published, result->published)) {
+        add_table(to, mt_report_published(result), published);
+    }
+    add_sentences(to, "Warnings", result->n_warnings, result->warnings);
 }
 
 void mt_report_summary(const mt_result *result, bool with_published, mt_text *out)
@@ -143,37 +299,5 @@ void mt_report_summary(const mt_result *result, bool with_published, mt_text *ou
     mt_text_addf(out, "%s\n%s\n", name == NULL ? "study" : name,
                  result->status_text == NULL ? mt_result_status_name(result->status)
                                              : result->status_text);
-    mt_report_doubts(result, out);
-    const bool doubtful = mt_report_doubtful(result);
-    if (result->n_recommendations > 0) {
-        print_best(&result->recommendations[0], out);
-    } else {
-        mt_report_objectives_text(&result->baseline, out);
-        print_table(mt_report_frequencies(&result->baseline), "Frequencies as they are", out);
-        print_table(mt_report_clearances(&result->baseline), "Clearances from bands", out);
-        print_table(mt_report_goals(&result->baseline), "Goals", out);
-        print_list(result->baseline.n_reasons, result->baseline.reasons, "Why", out);
-    }
-    if (result->n_recommendations > 1) {
-        print_table(mt_report_alternatives(result), "All recommendations", out);
-    }
-    mt_report_uncertainty(result, out);
-    print_table(mt_report_trade(result), "Trade study: the best design of each point", out);
-    if (result->n_certificates > 0) {
-        mt_text_add(out, "\nCertificates\n");
-    }
-    for (int i = 0; i < result->n_certificates; i++) {
-        const mt_certificate *const c = &result->certificates[i];
-        mt_text_addf(out, "  - %s: %s\n", mt_report_surety(c->proven, doubtful), c->text);
-    }
-    if (result->n_relaxations > 0) {
-        mt_text_add(out, "\nWhat would let a design exist, one change at a time\n");
-    }
-    for (int i = 0; i < result->n_relaxations; i++) {
-        mt_text_addf(out, "  - %s\n", result->relaxations[i].text);
-    }
-    if (with_published) {
-        print_table(mt_report_published(result), "Published against computed", out);
-    }
-    print_list(result->n_warnings, result->warnings, "Warnings", out);
+    mt_tell_answer(&(mt_teller){out, false}, result, with_published);
 }

@@ -5,24 +5,30 @@
 #include "base/text.h"
 #include "result/result.h"
 
-/* What a result says, as text for a terminal: status, goals, frequencies, parameters, reasons,
- * alternatives, what stays undetermined, certificates and, where asked for, published against
- * computed. Memory running out shows in out->failed. */
-void mt_report_summary(const mt_result *result, bool with_published, mt_text *out);
-/* Of it, the objectives of a design with their values; nothing where there are none. */
-void mt_report_objectives_text(const mt_recommendation *r, mt_text *out);
-/* Of it, what the goals leave open: undetermined directions and the spread under other weights.
- * Nothing where there is neither. */
-void mt_report_uncertainty(const mt_result *result, mt_text *out);
+/*
+ * What a result says, section by section in one order, as text for a terminal or as the body
+ * of a page. A section that has nothing to tell is left out, one that an interrupt cut says so.
+ * Memory running out shows in out->failed.
+ */
+typedef struct mt_teller {
+    mt_text *out;
+    bool html; /* a page: with bands and figures */
+} mt_teller;
 
-/* Doubts with their places, then facts, each list under its title; nothing where there are
- * none. */
-void mt_report_doubts(const mt_result *result, mt_text *out);
-/* One of them, in one line without its end: "stick.json:12:9: /goals/0: installed: ..." */
+/* Name of the study, status, all sections; published against computed where asked for. */
+void mt_report_summary(const mt_result *result, bool with_published, mt_text *out);
+
+/* Doubts, the best design (goals, frequencies, parameters, reasons), alternatives, what stays
+ * undetermined, certificates, relaxations, warnings. */
+void mt_tell_answer(const mt_teller *to, const mt_result *result, bool with_published);
+/* Of them: doubts with their places, then facts. */
+void mt_tell_doubts(const mt_teller *to, const mt_result *result);
+/* The objectives of a design with their values. */
+void mt_tell_objectives(const mt_teller *to, const mt_recommendation *r);
+/* What the goals leave open: undetermined directions and the spread under other weights. */
+void mt_tell_uncertainty(const mt_teller *to, const mt_result *result);
+
+/* A doubt in one line without its end: "stick.json:12:9: /goals/0: installed: ..." */
 void mt_report_doubt(const mt_doubt *d, bool with_place, mt_text *out);
-/* Does a doubt stand about the question? Then nothing is called proven without saying so: the
- * word for a certificate. */
-bool mt_report_doubtful(const mt_result *result);
-const char *mt_report_surety(bool proven, bool doubtful);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A result built by hand: what its summary, spreadsheet and page say. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "mt_test.h"
@@ -14,6 +15,10 @@ static mt_result_parameter parameters[2];
 static mt_result_frequency frequencies[2];
 static mt_recommendation recommendations[1];
 static mt_result_published published[3];
+static mt_undetermined undetermined;
+static mt_result_spread spread;
+static mt_certificate certificate;
+static mt_relaxation relaxation;
 static mt_result_objective objectives[] = {{"mass", "mass of <bar>*", "kg"},
                                            {"change", "change", ""}};
 static mt_design_objective reached[] = {{"mass of <bar>*", "kg", 3.5, 1.25},
@@ -76,6 +81,10 @@ static mt_result *make(mt_test *t)
     r->n_variables = 2;
     r->published = published;
     r->n_published = 3;
+    r->undetermined = &undetermined; /* computed, and there are none */
+    r->spread = &spread;
+    r->certificates = &certificate;
+    r->relaxations = &relaxation;
     return r;
 }
 
@@ -107,6 +116,57 @@ static void summary__says_status_numbers_and_reasons(mt_test *t)
     CHECK(t, out.s != NULL && strstr(out.s, "Published against computed") != NULL);
     CHECK(t, out.s != NULL && strstr(out.s, "FAILS") != NULL);
     mt_text_free(&out);
+    mt_result_delete(r);
+}
+
+static int count(const char *text, const char *part)
+{
+    int n = 0;
+    for (const char *s = text; s != NULL && (s = strstr(s, part)) != NULL; s++) {
+        n++;
+    }
+    return n;
+}
+
+static void check_missing(mt_test *t, const mt_result *r, const char *title, int wanted)
+{
+    char text[160];
+    char page[160];
+    mt_text told[2] = {{.s = NULL}, {.s = NULL}};
+    (void)snprintf(text, sizeof text, "\n%s\n  not computed: an interrupt came first\n", title);
+    (void)snprintf(page, sizeof page, "<h2>%s</h2>\n<p>not computed: an", title);
+    mt_report_summary(r, true, &told[0]);
+    mt_report_html(r, &told[1]);
+    mt_test_row(t, "%s, %d not computed", title, wanted);
+    CHECK(t, wanted == 0 || count(told[0].s, text) == 1);
+    CHECK(t, wanted == 0 || count(told[1].s, page) == 1);
+    CHECK_INT(t, count(told[0].s, "not computed"), wanted);
+    CHECK_INT(t, count(told[1].s, "not computed"), wanted);
+    mt_text_free(&told[0]);
+    mt_text_free(&told[1]);
+}
+
+/* Null is not computed, empty is none: of one list after the other, then of the trade study. */
+static void sections__that_an_interrupt_cut_say_so(mt_test *t)
+{
+    static const char *incomplete[] = {"spread", "trade"};
+    mt_result *const r = make(t);
+    REQUIRE(t, r != NULL);
+    check_missing(t, r, "Certificates", 0);
+    r->undetermined = NULL;
+    check_missing(t, r, "Undetermined: the goals hardly change along", 1);
+    r->spread = NULL;
+    check_missing(t, r, "Spread under other weights", 2);
+    r->certificates = NULL;
+    check_missing(t, r, "Certificates", 3);
+    r->relaxations = NULL;
+    check_missing(t, r, "What would let a design exist, one change at a time", 4);
+    r->published = NULL;
+    r->n_published = 0;
+    check_missing(t, r, "Published against computed", 5);
+    r->run.incomplete = incomplete;
+    r->run.n_incomplete = 2;
+    check_missing(t, r, "Trade study: the best design of each point", 6);
     mt_result_delete(r);
 }
 
@@ -279,7 +339,8 @@ static void figures__stand_without_any_finite_number(mt_test *t)
     mt_result_delete(r);
 }
 
-MT_TEST_MAIN(MT_TEST(summary__says_status_numbers_and_reasons),
+MT_TEST_MAIN(MT_TEST(sections__that_an_interrupt_cut_say_so),
+             MT_TEST(summary__says_status_numbers_and_reasons),
              MT_TEST(verification__ignores_only_what_is_not_comparable),
              MT_TEST(designs__have_the_baseline_first_and_one_column_per_variable),
              MT_TEST(clearances__stand_in_one_line_per_mode),
