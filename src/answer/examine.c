@@ -18,6 +18,7 @@
 #include "base/text.h"
 #include "model/judge.h"
 #include "model/values.h"
+#include "problem/beside.h"
 
 enum { TIMES_SIZE = 32 };
 
@@ -29,43 +30,25 @@ static const double FAR_BAND = 10.0;
 
 typedef struct reach {
     const mt_goal *goal;
-    int *above;     /* [bands] modes above each, at the first design looked at; -1: none yet */
-    double nearest; /* least factor between a mode and a band, >= 1 */
+    int *above;  /* [2 bands] modes above each, at the first design looked at (-1: none yet) */
+    double room; /* least of a mode beside a band (beside.h); 0 or less: one is inside */
 } reach;
-
-static double factor_to(const mt_band *band, double hz)
-{
-    if (hz < band->lower_hz) {
-        return hz > 0.0 ? band->lower_hz / hz : HUGE_VAL;
-    }
-    return hz > band->upper_hz ? hz / band->upper_hz : 1.0;
-}
-
-static int count_above(const mt_modes *modes, const mt_band *band)
-{
-    int n = 0;
-    for (int i = 0; i < modes->count; i++) {
-        n += modes->kind[i] == MT_MODE_FLEXIBLE && mt_modal_hz(modes, i) > band->upper_hz ? 1
-                                                                                          : 0;
-    }
-    return n;
-}
 
 static void look(reach *r, const mt_modes *modes)
 {
-    for (int k = 0; k < r->goal->avoid->bands.n; k++) {
-        const int above = count_above(modes, &r->goal->avoid->bands.items[k]);
-        if (r->above[k] >= 0 && above != r->above[k]) {
-            r->nearest = 1.0;
-        }
-        r->above[k] = above;
-    }
+    const mt_bands *const bands = &r->goal->avoid->bands;
+    int *const below = r->above + bands->n;
+    int vibrations = 0;
     for (int i = 0; i < modes->count; i++) {
-        const double hz = mt_modal_hz(modes, i);
-        for (int k = 0; k < r->goal->avoid->bands.n && modes->kind[i] == MT_MODE_FLEXIBLE;
-             k++) {
-            r->nearest = fmin(r->nearest, factor_to(&r->goal->avoid->bands.items[k], hz));
+        vibrations += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
+    }
+    r->room = fmin(r->room, mt_bands_look(bands, modes, below));
+    for (int b = 0; b < bands->n; b++) {
+        const int above = vibrations - below[b];
+        if (r->above[b] >= 0 && above != r->above[b]) {
+            r->room = fmin(r->room, 0.0);
         }
+        r->above[b] = above;
     }
 }
 
@@ -90,7 +73,7 @@ static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, 
     const int n = s->n_variables;
     int *const inputs = mt_arena_int(mem, (size_t)n);
     const size_t n_bands = (size_t)r->goal->avoid->bands.n;
-    r->above = mt_arena_int(mem, n_bands);
+    r->above = mt_arena_int(mem, 2 * n_bands);
     double *const x = mt_arena_f64(mem, (size_t)n, 1);
     mt_analysis_options opt = mt_analysis_options_default();
     mt_analysis *a = NULL;
@@ -108,7 +91,7 @@ static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, 
     if (rc == MT_OK) {
         a->recount = true; /* a spring that is 0 in the original has modes elsewhere */
     }
-    for (int k = 0; rc == MT_OK && k < (2 * n) + 3 && r->nearest > FAR_BAND; k++) {
+    for (int k = 0; rc == MT_OK && k < (2 * n) + 3 && r->room > log(FAR_BAND); k++) {
         mt_err ignored = {.code = MT_OK}; /* a design that has no modes has none in a band */
         set_design(s, k, x);
         const mt_status solved = mt_analysis_solve(a, x, &opt, &ignored);
@@ -124,7 +107,7 @@ static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, 
 static mt_status examine_bands(const mt_study *s, int g, mt_doubt_list *out, mt_err *err)
 {
     const mt_goal *const goal = &s->goals[g];
-    reach r = {.goal = goal, .nearest = HUGE_VAL};
+    reach r = {.goal = goal, .room = HUGE_VAL};
     mt_arena mem;
     MT_TRY(mt_arena_init(&mem, 0, err));
     mt_status rc = MT_OK;
@@ -133,16 +116,16 @@ static mt_status examine_bands(const mt_study *s, int g, mt_doubt_list *out, mt_
     }
     mt_arena_free(&mem);
     const mt_bands *const bands = &goal->avoid->bands;
-    if (rc == MT_OK && r.nearest > FAR_BAND && bands->n > 0) {
+    if (rc == MT_OK && r.room > log(FAR_BAND) && bands->n > 0) {
         const char *const which =
             mt_arena_printf(out->mem, "its bands, %.4g to %.4g Hz, have no effect",
                             bands->items[0].lower_hz, bands->items[bands->n - 1].upper_hz);
         mt_doubt *const d =
-            isfinite(r.nearest)
+            isfinite(r.room)
                 ? mt_doubt_add(out, MT_LEVEL_DOUBT, "no_effect",
                                "%s: within the bounds no mode comes nearer than a factor of "
                                "%.3g (sampled); are they in Hz?",
-                               which == NULL ? "" : which, r.nearest)
+                               which == NULL ? "" : which, exp(r.room))
                 : mt_doubt_add(out, MT_LEVEL_DOUBT, "no_effect",
                                "%s: within the bounds there is no vibration mode at all "
                                "(sampled)",

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "describe/describe.h"
+#include "problem/beside.h"
 #include "problem/goal_avoid.h"
 #include "problem/robust.h"
 
@@ -126,22 +127,21 @@ static tightest find_tightest(const mt_workspace *fresh, int view, const mt_band
 {
     const mt_modes *const modes = &fresh->views[view].analysis->modes;
     tightest t = {.has = nan(""), .asked = nan("")};
+    mt_beside p = mt_beside_all(modes, bands);
     double least = HUGE_VAL;
-    for (int b = 0; b < bands->n; b++) {
-        const mt_band *const band = &bands->items[b];
-        for (int k = 1; mt_modal_flexible(modes, k) >= 0; k++) {
-            const double *at = NULL;
-            double asked = 0.0;
-            double hz = mt_modal_hz(modes, mt_modal_flexible(modes, k));
-            hz = over_tolerances ? mt_describe_worst_hz(fresh, view, k, band, hz, &at) : hz;
-            const double has = standing(band, hz, &asked);
-            t.missing = fmax(t.missing, missing_percent(band, hz));
-            if (has - asked < least) {
-                least = has - asked;
-                t.has = has;
-                t.asked = asked;
-                t.at = at;
-            }
+    while (mt_beside_next(&p)) {
+        const double *at = NULL;
+        double asked = 0.0;
+        const double hz = over_tolerances
+                              ? mt_describe_worst_hz(fresh, view, p.mode, p.band, p.hz, &at)
+                              : p.hz;
+        const double has = standing(p.band, hz, &asked);
+        t.missing = fmax(t.missing, missing_percent(p.band, hz));
+        if (has - asked < least) {
+            least = has - asked;
+            t.has = has;
+            t.asked = asked;
+            t.at = at;
         }
     }
     return t;

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "problem/beside.h"
+
 static const mt_system *system_of(const mt_problem *p, int view)
 {
     return p->views[view].original->sys;
@@ -216,19 +218,6 @@ void mt_ties_settle(const mt_problem *p, bool most, int *below)
     }
 }
 
-/* Of one view: the room where k modes have to lie below the band. */
-static double room_with(const mt_modes *modes, const mt_band *band, int k)
-{
-    const int under = k > 0 ? mt_modal_flexible(modes, k) : -1;
-    const int over = mt_modal_flexible(modes, k + 1);
-    double room = HUGE_VAL;
-    if (under >= 0) {
-        room = band->lower_hz > 0.0 ? mt_log_ratio(band->lower_hz, mt_modal_hz(modes, under))
-                                    : -HUGE_VAL;
-    }
-    return over >= 0 ? fmin(room, log(mt_modal_hz(modes, over) / band->upper_hz)) : room;
-}
-
 static const mt_modes *modes_of(const mt_workspace *w, const mt_clear *c)
 {
     return &w->views[c->view].analysis->modes;
@@ -249,7 +238,7 @@ static double tie_room_with(const mt_workspace *w, int tie, int k, bool *stable,
             const int flexible = mt_modal_vibrations(modes);
             *stable = *stable && mt_modal_indexed(modes);
             *most = flexible > *most ? flexible : *most;
-            room = fmin(room, room_with(modes, &c->bands.items[b], k));
+            room = fmin(room, mt_band_room_with(modes, &c->bands.items[b], k));
         }
     }
     return room;
@@ -279,7 +268,8 @@ double mt_ties_violation(const mt_workspace *w, const int *below)
         const mt_clear *const c = &p->clears[i];
         const mt_modes *const modes = modes_of(w, c);
         for (int b = 0; b < c->bands.n; b++) {
-            const double room = room_with(modes, &c->bands.items[b], below[c->first + b]);
+            const double room =
+                mt_band_room_with(modes, &c->bands.items[b], below[c->first + b]);
             worst = fmax(worst, mt_modal_indexed(modes) ? -room : nan(""));
         }
     }

@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "analysis/count.h"
+#include "problem/beside.h"
 #include "problem/goal.h"
 #include "problem/goal_frequency.h"
 #include "problem/robust.h"
@@ -259,32 +260,9 @@ mt_status mt_clear_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
     return MT_OK;
 }
 
-double mt_band_room(const mt_band *band, double low_hz, double high_hz)
-{
-    const double below =
-        band->lower_hz > 0.0 ? mt_log_ratio(band->lower_hz, high_hz) : -HUGE_VAL;
-    return fmax(below, fmax(mt_log_ratio(low_hz, band->upper_hz), -MT_MOST_INSIDE));
-}
-
 double mt_clear_look(const mt_clear *c, const mt_modes *modes, int *below)
 {
-    double room = HUGE_VAL;
-    for (int b = 0; b < c->bands.n; b++) {
-        const mt_band *const band = &c->bands.items[b];
-        const bool from_zero = !(band->lower_hz > 0.0); /* 0 Hz is inside: nothing is below */
-        const double middle = sqrt(fmax(band->lower_hz, 0.0) * band->upper_hz);
-        int count = 0;
-        for (int i = 0; i < modes->count; i++) {
-            const double hz = mt_modal_hz(modes, i);
-            if (modes->kind[i] == MT_MODE_FLEXIBLE) {
-                room = fmin(room, mt_band_room(band, hz, hz));
-                count += hz <= middle && !from_zero ? 1 : 0;
-            }
-        }
-        if (below != NULL) {
-            below[b] = count;
-        }
-    }
+    const double room = mt_bands_look(&c->bands, modes, below);
     return mt_modal_indexed(modes) ? room : nan("");
 }
 

@@ -15,11 +15,7 @@ mt_status mt_clear_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cu
                            mt_arena *mem, mt_err *err);
 /* Fill the rows of all bands, after their views have been solved. */
 mt_status mt_clear_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out, mt_err *err);
-/* ln of the least ratio that a mode anywhere between low and high keeps from a band with its
- * margin; negative: it can be inside. */
-double mt_band_room(const mt_band *band, double low_hz, double high_hz);
-/* The least of that for any vibration mode of an analysis and any band; NaN where the
- * configuration is unstable. below[bands.n] (may be NULL): modes below the middle of each. */
+/* mt_bands_look (beside.h) of its bands; NaN where the configuration is unstable. */
 double mt_clear_look(const mt_clear *c, const mt_modes *modes, int *below);
 /* Which mode and edge does row `row` (0: the first of the bands, behind those of the demands)
  * of a search with an assignment below[n_bands] hold? false: there is no such row. */

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "analysis/count.h"
+#include "problem/beside.h"
 #include "problem/goal_avoid.h"
 #include "problem/goal_frequency.h"
 #include "problem/robust.h"
@@ -209,11 +210,12 @@ double mt_robust_room(const mt_workspace *w, const mt_clear *c)
         indexed = indexed && mt_modal_indexed(&w->views[c->view].corners[k]->modes);
     }
     double room = indexed ? HUGE_VAL : nan("");
-    for (int k = 1; MT_HAS(room) && span_of(w, c->view, k, &low, &high); k++) {
-        for (int b = 0; b < c->bands.n; b++) {
-            const double here = mt_band_room(&c->bands.items[b], low, high);
-            room = fmin(room, MT_HAS(low + high) ? here : -HUGE_VAL);
+    mt_beside p = mt_beside_all(modes, &c->bands);
+    while (MT_HAS(room) && mt_beside_next(&p)) {
+        if (p.b == 0 && !span_of(w, c->view, p.mode, &low, &high)) {
+            break;
         }
+        room = fmin(room, MT_HAS(low + high) ? mt_band_room(p.band, low, high) : -HUGE_VAL);
     }
     return room > -HUGE_VAL ? room : nan("");
 }

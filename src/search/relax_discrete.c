@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/workers.h"
+#include "problem/beside.h"
 #include "search/discrete.h"
 #include "search/relax.h"
 
@@ -61,15 +62,15 @@ static bool other_bands_hold(const mt_workspace *w, const mt_move *m)
 {
     for (int i = 0; i < w->c->n_clears; i++) {
         const mt_clear *const c = &w->c->clears[i];
-        for (int b = 0; b < c->bands.n; b++) {
-            const bool own = m->kind == MT_MOVE_EDGE && m->clear == i && m->band == b;
-            const mt_band *const band = &c->bands.items[b];
-            const double f = own ? 0.0 : let_through(band, modes_of(w, i), false);
-            const double inside =
-                f > 0.0 ? fmin(mt_log_ratio(f, band->lower_hz), log(band->upper_hz / f)) : 0.0;
-            if (!(f >= 0.0) || inside > c->tolerance) {
+        const int own = m->kind == MT_MOVE_EDGE && m->clear == i ? m->band : -1;
+        mt_beside p = mt_beside_all(modes_of(w, i), &c->bands);
+        while (mt_beside_next(&p)) {
+            if (p.b != own && mt_band_room(p.band, p.hz, p.hz) < -c->tolerance) {
                 return false;
             }
+        }
+        if (!mt_modal_indexed(p.modes)) {
+            return false;
         }
     }
     return true;

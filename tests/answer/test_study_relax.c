@@ -149,6 +149,35 @@ static void catalogue__goals_and_edges_can_move(mt_test *t)
     }
 }
 
+/* Two modes in one band: the upper one is out of it but for the tolerance, the lower one is in
+ * its middle whatever is chosen. That the other goal gives way alone is not enough. */
+static void catalogue__every_mode_of_a_band_counts(mt_test *t)
+{
+    char members[1024];
+    study_case c;
+    const double second = frequency(2000.0);
+    (void)snprintf(members, sizeof members,
+                   "'variables': [{'parameter': 'k', 'catalogue': [800, 1000, 1200]}],"
+                   "'goals': [{'type': 'avoid', 'bands_hz': [[3, %.17g]], 'tolerance_percent': "
+                   "1}, {'type': 'frequency', 'mode': 2, 'at_least_hz': 9}]",
+                   1.005 * second);
+    if (study_solve(t,
+                    "{'format': 'modetune-model/1', 'dimension': 2, 'parameters': {'k': 1000},"
+                    "'bodies': [{'name': 'm1', 'mass_kg': 1, 'centre': [1, 0]},"
+                    "{'name': 'm2', 'mass_kg': 1, 'centre': [2, 0]}],"
+                    "'joints': [{'name': 'r1', 'type': 'pin-in-slot', 'bodies': ['ground', "
+                    "'m1'], 'at': [1, 0], 'axis': [1, 0]}, {'name': 'r2', 'type': "
+                    "'pin-in-slot', 'bodies': ['ground', 'm2'], 'at': [2, 0], 'axis': [1, 0]}],"
+                    "'springs': [{'name': 's1', 'type': 'axial', 'bodies': ['ground', 'm1'], "
+                    "'at': [[0, 0], [1, 0]], 'stiffness_n_per_m': 'k'}, {'name': 's2', 'type': "
+                    "'axial', 'bodies': ['ground', 'm2'], 'at': [[0, 0], [2, 0]], "
+                    "'stiffness_n_per_m': 2000}]}",
+                    members, &c)) {
+        CHECK_INT(t, c.result->n_relaxations, 0);
+    }
+    study_free(&c);
+}
+
 /* One stiffness from a catalogue, one continuous: the greatest of both counts. */
 static void catalogue_and_continuous__both_kinds_of_move(mt_test *t)
 {
@@ -274,5 +303,6 @@ static void two_masses__moves_of_random_studies_are_least(mt_test *t)
 MT_TEST_MAIN(MT_TEST(one_mass__every_kind_of_move_is_exact), MT_TEST(solved__has_no_move),
              MT_TEST(contradiction__only_a_goal_can_move),
              MT_TEST(catalogue__goals_and_edges_can_move),
+             MT_TEST(catalogue__every_mode_of_a_band_counts),
              MT_TEST(catalogue_and_continuous__both_kinds_of_move),
              MT_TEST(two_masses__moves_of_random_studies_are_least))
