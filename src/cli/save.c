@@ -110,26 +110,34 @@ int mt_save_plan(const mt_args *args)
     return code;
 }
 
+/* A result on its way into its folder. */
+typedef struct saving {
+    const char *study_path; /* or file name: names the folder */
+    char *folder;
+    mt_text texts[MT_RESULT_FILE_COUNT];
+    char sha256[MT_SHA256_TEXT];
+    mt_err err;
+} saving;
+
 /* What may differ between runs of one result, which it names: result.json does not name it. */
-static mt_status write_timing(const mt_args *args, const char *study_path,
-                              const mt_result *result, double seconds,
-                              const char *result_sha256, mt_text *out, mt_err *err)
+static mt_status write_timing(const mt_args *args, const mt_result *result, double seconds,
+                              saving *s)
 {
-    mt_json_writer w = mt_json_writer_default(out);
-    char *const absolute = realpath(study_path, NULL);
+    mt_json_writer w = mt_json_writer_default(&s->texts[MT_RESULT_FILE_TIMING]);
+    char *const absolute = realpath(s->study_path, NULL);
     if (absolute == NULL && errno == ENOMEM) {
-        return mt_fail_memory(err);
+        return mt_fail_memory(&s->err);
     }
     mt_json_open(&w, NULL, '{');
     mt_json_put_string(&w, "format", "modetune-timing/1");
     mt_json_put_string(&w, "study_path", absolute);
-    mt_json_put_string(&w, "result_sha256", result_sha256);
+    mt_json_put_string(&w, "result_sha256", s->sha256);
     mt_json_put_number(&w, "solve_s", seconds);
     mt_json_put_integer(&w, "evaluations", result->run.evaluations);
     mt_json_put_integer(&w, "threads", args->threads);
     mt_json_close(&w);
     free(absolute);
-    return mt_json_done(&w) ? MT_OK : mt_fail_memory(err);
+    return mt_json_done(&w) ? MT_OK : mt_fail_memory(&s->err);
 }
 
 /* The tables and the page; empty where the result has none of the kind. */
@@ -180,42 +188,31 @@ void mt_save_print(const mt_args *args, const mt_result *result, mt_json_writer 
 }
 
 /* The files that result.json names, and itself with its digest. */
-static mt_status write_texts(mt_result *result, mt_text texts[MT_RESULT_FILE_COUNT],
-                             char sha256[MT_SHA256_TEXT], mt_err *err)
+static mt_status write_texts(mt_result *result, saving *s)
 {
     const char *names[MT_RESULT_FILE_COUNT] = {NULL};
     mt_text outputs[MT_RESULT_FILE_COUNT];
     int n = 0;
     for (int i = 0; i < MT_RESULT_FILE_TIMING; i++) {
         const mt_result_file which = (mt_result_file)i;
-        write_output(result, which, &texts[i]);
-        MT_TRY(texts[i].failed ? mt_fail_memory(err) : MT_OK);
-        if (texts[i].s != NULL) {
+        write_output(result, which, &s->texts[i]);
+        MT_TRY(s->texts[i].failed ? mt_fail_memory(&s->err) : MT_OK);
+        if (s->texts[i].s != NULL) {
             names[n] = mt_result_file_name(which);
-            outputs[n++] = texts[i];
+            outputs[n++] = s->texts[i];
         }
     }
-    MT_TRY(mt_result_note_outputs(result, n, names, outputs, err));
-    mt_text *const text = &texts[MT_RESULT_FILE_RESULT];
-    MT_TRY(mt_result_write(result, text, err));
-    mt_sha256(text->s, text->length, sha256);
+    MT_TRY(mt_result_note_outputs(result, n, names, outputs, &s->err));
+    mt_text *const text = &s->texts[MT_RESULT_FILE_RESULT];
+    MT_TRY(mt_result_write(result, text, &s->err));
+    mt_sha256(text->s, text->length, s->sha256);
     return MT_OK;
 }
-
-/* A result on its way into its folder. */
-typedef struct saving {
-    const char *study_path; /* or file name: names the folder */
-    char *folder;
-    mt_text texts[MT_RESULT_FILE_COUNT];
-    char sha256[MT_SHA256_TEXT];
-    mt_err err;
-} saving;
 
 static mt_status begin(const mt_args *args, mt_result *result, saving *s)
 {
     s->folder = folder_of(args, s->study_path);
-    return s->folder == NULL ? mt_fail_memory(&s->err)
-                             : write_texts(result, s->texts, s->sha256, &s->err);
+    return s->folder == NULL ? mt_fail_memory(&s->err) : write_texts(result, s);
 }
 
 static int end(const mt_args *args, mt_status rc, const char *told, saving *s)
@@ -243,10 +240,7 @@ int mt_save(const mt_args *args, const char *study_path, mt_result *result, doub
     saving s = {.study_path = study_path};
     mt_text told = {.s = NULL};
     mt_status rc = begin(args, result, &s);
-    if (rc == MT_OK) {
-        rc = write_timing(args, study_path, result, seconds, s.sha256,
-                          &s.texts[MT_RESULT_FILE_TIMING], &s.err);
-    }
+    rc = rc == MT_OK ? write_timing(args, result, seconds, &s) : rc;
     mt_text_addf(&told, "%s: %.3g s, %ld evaluations", study_path, seconds,
                  result->run.evaluations);
     rc = rc == MT_OK && told.failed ? mt_fail_memory(&s.err) : rc;

@@ -499,54 +499,15 @@ mt_status mt_result_own(mt_result *result, mt_err *err)
     return mt_arena_check(&result->mem, err);
 }
 
-mt_recommendation mt_recommendation_default(void)
-{
-    mt_recommendation r;
-    mt_record_clear(&mt_design_record, &r);
-    return r;
-}
-
-mt_result_goal mt_result_goal_default(void)
-{
-    mt_result_goal r;
-    mt_record_clear(&GOAL, &r);
-    return r;
-}
-
-mt_result_frequency mt_result_frequency_default(void)
-{
-    mt_result_frequency r;
-    mt_record_clear(&FREQUENCY, &r);
-    return r;
-}
-
-mt_result_published mt_result_published_default(void)
-{
-    mt_result_published r;
-    mt_record_clear(&PUBLISHED, &r);
-    return r;
-}
-
-mt_certificate mt_certificate_default(void)
-{
-    mt_certificate r;
-    mt_record_clear(&CERTIFICATE, &r);
-    return r;
-}
-
-mt_tolerance_box mt_tolerance_box_default(void)
-{
-    mt_tolerance_box r;
-    mt_record_clear(&TOLERANCE_BOX, &r);
-    return r;
-}
-
-mt_result_motion mt_result_motion_default(void)
-{
-    mt_result_motion r;
-    mt_record_clear(&MOTION, &r);
-    return r;
-}
+#define DEFAULT(of, record)             \
+    of of##_default(void)               \
+    {                                   \
+        of r;                           \
+        mt_record_clear(&(record), &r); \
+        return r;                       \
+    }
+MT_RESULT_DEFAULT_LIST(DEFAULT)
+#undef DEFAULT
 
 const char *mt_result_status_name(mt_result_status status)
 {

@@ -421,13 +421,18 @@ extern const mt_record mt_result_record;
 extern const mt_record mt_design_record; /* mt_recommendation */
 extern const mt_record mt_doubt_record;
 
-/* A recommendation whose numbers are all "not applicable"; the others likewise. */
-mt_recommendation mt_recommendation_default(void);
-mt_result_goal mt_result_goal_default(void);
-mt_result_frequency mt_result_frequency_default(void);
-mt_result_published mt_result_published_default(void);
-mt_certificate mt_certificate_default(void);
-mt_tolerance_box mt_tolerance_box_default(void);
-mt_result_motion mt_result_motion_default(void);
+/* mt_recommendation_default() and the like: all numbers are "not applicable". X(struct, its
+ * table in result.c) */
+#define MT_RESULT_DEFAULT_LIST(X)          \
+    X(mt_recommendation, mt_design_record) \
+    X(mt_result_goal, GOAL)                \
+    X(mt_result_frequency, FREQUENCY)      \
+    X(mt_result_published, PUBLISHED)      \
+    X(mt_certificate, CERTIFICATE)         \
+    X(mt_tolerance_box, TOLERANCE_BOX)     \
+    X(mt_result_motion, MOTION)
+#define MT_RESULT_DEFAULT(of, record) of of##_default(void);
+MT_RESULT_DEFAULT_LIST(MT_RESULT_DEFAULT)
+#undef MT_RESULT_DEFAULT
 
 #endif
