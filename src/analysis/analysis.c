@@ -16,7 +16,7 @@ static const char NO_GRADIENT[] = "derivatives asked for after a solve without g
 mt_analysis_options mt_analysis_options_default(void)
 {
     const mt_analysis_options opt = {
-        .gradient = false, .vectors = true, .accuracy = true, .check = true};
+        .gradient = false, .vectors = true, .accuracy = true, .check = true, .bounds = true};
     return opt;
 }
 
@@ -108,7 +108,7 @@ static mt_status refresh_mass(mt_analysis *a, mt_err *err)
 }
 
 static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
-                                 const mt_modal_options *options, mt_err *err)
+                                 const mt_modal_options *options, bool bounds, mt_err *err)
 {
     const mt_stiffness_factor factor = {.rows = r->rows,
                                         .b = r->b,
@@ -117,8 +117,8 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                                         .g = r->g,
                                         .interrupt = a->sys->model->interrupt};
     MT_TRY(mt_modal_solve_factored(r->k, &a->mass, &factor, options, &a->mem, &a->modes, err));
-    const bool asked = r->loaded || mt_modal_in_doubt(&a->modes);
-    if (a->modes.y == NULL || !asked) {
+    const bool doubt = r->loaded || mt_modal_in_doubt(&a->modes);
+    if (a->modes.y == NULL || !(doubt || bounds)) {
         return MT_OK;
     }
     const size_t count = (size_t)a->modes.count;
@@ -127,17 +127,21 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                           .mass = mt_arena_f64(&a->mem, count, 1),
                           .stiffness_noise = mt_arena_f64(&a->mem, count, 1),
                           .mass_noise = mt_arena_f64(&a->mem, count, 1),
-                          .load_noise = mt_arena_f64(&a->mem, count, 1),
+                          .given_noise = mt_arena_f64(&a->mem, count, 1),
                           .strained = mt_arena_alloc(&a->mem, count, sizeof(bool))};
     MT_TRY(mt_arena_check(&a->mem, err));
     const mt_energies out = {.stiffness = e.stiffness,
                              .mass = e.mass,
                              .stiffness_noise = e.stiffness_noise,
                              .mass_noise = e.mass_noise,
-                             .load_noise = e.load_noise,
+                             .given_noise = e.given_noise,
                              .strained = e.strained};
     MT_TRY(mt_linear_energies(a->lin, a->modes.count, a->modes.y, &out, err));
-    mt_modal_judge(&e, options->n_rigid, &a->modes);
+    if (doubt) {
+        mt_modal_judge(&e, options->n_rigid, &a->modes);
+    } else {
+        mt_modal_widen(&e, &a->modes);
+    }
     mt_arena_rewind(&a->mem, mark);
     return MT_OK;
 }
@@ -159,10 +163,10 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
     options.vectors = opt->vectors || opt->gradient || r.g != NULL;
     options.need_accuracy = opt->accuracy;
     options.check = opt->check;
-    mt_status rc = solve_and_judge(a, &r, &options, err);
+    mt_status rc = solve_and_judge(a, &r, &options, opt->bounds, err);
     if (rc == MT_OK && a->modes.n_held > 0 && a->recount) {
         options.n_rigid = -1;
-        rc = solve_and_judge(a, &r, &options, err);
+        rc = solve_and_judge(a, &r, &options, opt->bounds, err);
     }
     if (rc == MT_E_MASSLESS && a->modes.massless != NULL) {
         char text[DIRECTION_TEXT];

@@ -49,8 +49,12 @@ typedef struct mt_analysis_options {
     bool vectors;  /* shapes will be asked for */
     bool accuracy; /* use the stiffness factor where the plain method would lose digits */
     bool check;    /* residual and orthogonality of each mode */
+    /* the error of each mode is asked for (with vectors): without this it leaves out what
+     * rounding has made of the rows that K and M are sums of, which counts next to dead centres
+     * and where joints almost depend on each other */
+    bool bounds;
 } mt_analysis_options;
-/* Vectors, accuracy and check; no gradient. */
+/* Vectors, accuracy, check and bounds; no gradient. */
 mt_analysis_options mt_analysis_options_default(void);
 
 /*

@@ -105,6 +105,7 @@ static mt_status visit(void *context, int point, const double *inputs, mt_err *e
     mt_analysis_options opt = mt_analysis_options_default();
     opt.gradient = true; /* of the position */
     opt.check = false;
+    opt.bounds = false;
     MT_TRY(mt_analysis_solve(j->a, inputs, &opt, err));
     const mt_modes *const m = &j->a->modes;
     for (int i = 0; i < j->v.modes; i++) {

@@ -6,6 +6,8 @@
 #include <float.h>
 #include <math.h>
 
+#include "mechanics/reduce.h"
+
 /* p of the header: what the elimination, the eigensolution and Z y may do to an entry of a
  * shape, in eps of what is typical. */
 static const double SHAPE_ULPS = 16.0;
@@ -31,6 +33,8 @@ typedef struct worker {
     const mt_linear *lin;
     double *phi; /* nq x cols */
     double *w;   /* [nq] */
+    double *dz;  /* [nq] error of phi by that of the basis */
+    double extent;
     entry *load; /* lower triangle of Kg where it is not empty */
     int n_load;
     double unbalanced; /* relative error of the forces */
@@ -60,17 +64,28 @@ static mt_status list_entries(worker *k, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
-/* f . phi and |f| . w of a row. */
-static double row_part(const mt_rows *rows, int row, const double *phi, const double *w,
-                       double *terms)
+/* Of a row f over local freedoms. */
+typedef struct elongation {
+    double s;     /* f . phi */
+    double terms; /* |f| . w */
+    double open;  /* D */
+} elongation;
+
+static elongation row_part(const worker *w, const mt_term *t, const double *row,
+                           const double *phi)
 {
-    double s = 0.0;
-    *terms = 0.0;
-    for (int k = rows->start[row]; k < rows->start[row + 1]; k++) {
-        s += rows->value[k] * phi[rows->index[k]];
-        *terms += fabs(rows->value[k]) * w[rows->index[k]];
+    double df[MT_LOCAL];
+    elongation out = {0.0, 0.0, 0.0};
+    mt_reduce_row_error(row, w->extent, df);
+    for (int k = 0; k < MT_LOCAL; k++) {
+        const int dof = mt_local_dof(w->lin->sys, t->body, k);
+        if (dof >= 0) {
+            out.s += row[k] * phi[dof];
+            out.terms += fabs(row[k]) * w->w[dof];
+            out.open += (fabs(row[k]) * w->dz[dof]) + (df[k] * fabs(phi[dof]));
+        }
     }
-    return s;
+    return out;
 }
 
 /* Springs of one item of the model stand together. */
@@ -84,8 +99,20 @@ static int item_of(const mt_linear *lin, int kind, const mt_term *t)
 typedef struct sums {
     double energy;
     double noise;
+    double open; /* what is open of K_r or M_r as given */
     double size;
 } sums;
+
+/* c a b. */
+static void add_product(double c, const elongation *a, const elongation *b, bool moves,
+                        sums *out)
+{
+    out->energy += c * a->s * b->s;
+    out->noise += fabs(c) * ((fabs(a->s) * b->terms) + (fabs(b->s) * a->terms));
+    out->open +=
+        fabs(c) * ((fabs(a->s) * b->open) + (fabs(b->s) * a->open) + (a->open * b->open));
+    out->size += moves ? fabs(c * a->s * b->s) : 0.0;
+}
 
 /* Returns whether the energy of the term is more than rounding of what its row, without the
  * signs, would have. */
@@ -94,35 +121,30 @@ static bool add_term(const worker *k, int kind, const mt_term *t, const double *
     const mt_linear *const lin = k->lin;
     const double c = lin->value[t->coefficient];
     const double tiny = ENERGY_ULPS * (double)lin->sys->nq * DBL_EPSILON;
-    double part[2] = {0.0, 0.0};
-    double terms[2] = {0.0, 0.0};
+    elongation p[2] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
     bool moves = false;
     for (int r = 0; r < t->count && c != 0.0; r++) {
         const int side = t->pair ? r : 0;
         if (mt_rows_empty(&lin->entries[kind], t->first + r) && !t->pair) {
             continue; /* nothing but rounding */
         }
-        part[side] = row_part(&lin->full[kind], t->first + r, phi, k->w, &terms[side]);
-        const bool moved = part[side] * part[side] > tiny * terms[side] * terms[side];
+        const ptrdiff_t first = (ptrdiff_t)(t->first + r) * MT_LOCAL;
+        p[side] = row_part(k, t, lin->rows[kind] + first, phi);
+        const bool moved = p[side].s * p[side].s > tiny * p[side].terms * p[side].terms;
         moves = moves || moved;
         if (!t->pair) {
-            out->energy += c * part[0] * part[0];
-            out->noise += 2.0 * fabs(c * part[0]) * terms[0];
-            out->size += moved ? fabs(c * part[0] * part[0]) : 0.0;
+            add_product(c, &p[0], &p[0], moved, out);
         }
     }
     if (t->pair) {
-        out->energy += c * part[0] * part[1];
-        out->noise += fabs(c) * (fabs(part[0]) * terms[1] + fabs(part[1]) * terms[0]);
-        out->size += moves ? fabs(c * part[0] * part[1]) : 0.0;
+        add_product(c, &p[0], &p[1], moves, out);
     }
     return moves;
 }
 
 /* Energy and noise of all terms of a kind, and whether any spring is strained. A bushing that
  * couples directions is one spring, of which the terms may cancel. */
-static void sum_terms(const worker *k, int kind, const double *phi, double *energy,
-                      double *noise, bool *strained)
+static void sum_terms(const worker *k, int kind, const double *phi, sums *all, bool *strained)
 {
     const mt_linear *const lin = k->lin;
     const mt_term_list *const list = &lin->list[kind];
@@ -136,8 +158,9 @@ static void sum_terms(const worker *k, int kind, const double *phi, double *ener
             couples = couples || list->terms[i].pair;
             moves = add_term(k, kind, &list->terms[i], phi, &s) || moves;
         }
-        *energy += s.energy;
-        *noise += s.noise;
+        all->energy += s.energy;
+        all->noise += s.noise;
+        all->open += s.open;
         *strained = *strained || (moves && (!couples || fabs(s.energy) > tiny * s.size));
     }
 }
@@ -168,27 +191,35 @@ static void one(const worker *k, int col, const double *y, const mt_energies *ou
     const int nq = lin->sys->nq;
     const double *const phi = k->phi + ((ptrdiff_t)col * nq);
     const double typical = mt_norm2(lin->n, y) / sqrt((double)nq);
-    double energy[2] = {0.0, 0.0};
-    double noise[2] = {0.0, 0.0};
+    sums stiffness = {0};
+    sums mass = {0};
     bool strained = false;
     bool moves = false; /* masses do */
     double load = 0.0;
-    for (int j = 0; j < nq; j++) {
+    for (ptrdiff_t j = 0; j < nq; j++) {
         k->w[j] = fabs(phi[j]) + lin->e.dc[j] * typical;
+        k->dz[j] = 0.0;
+        for (ptrdiff_t c = 0; c < lin->n; c++) {
+            k->dz[j] += lin->z_error[j + (c * nq)] * fabs(y[c]);
+        }
     }
-    sum_terms(k, MT_TERM_STIFFNESS, phi, &energy[0], &noise[0], &strained);
-    sum_terms(k, MT_TERM_MASS, phi, &energy[1], &noise[1], &moves);
+    sum_terms(k, MT_TERM_STIFFNESS, phi, &stiffness, &strained);
+    sum_terms(k, MT_TERM_MASS, phi, &mass, &moves);
     for (int i = 0; i < k->n_load; i++) {
         const entry *const e = &k->load[i];
-        energy[0] += e->value * phi[e->row] * phi[e->col];
+        stiffness.energy += e->value * phi[e->row] * phi[e->col];
         load += e->terms *
                 ((fabs(phi[e->row]) * k->w[e->col]) + (fabs(phi[e->col]) * k->w[e->row]));
+        stiffness.open += e->terms * ((fabs(phi[e->row]) * k->dz[e->col]) +
+                                      (fabs(phi[e->col]) * k->dz[e->row]));
     }
-    out->stiffness[col] = energy[0];
-    out->mass[col] = energy[1];
-    out->load_noise[col] = (k->shape * load) + force_energies(k, phi);
-    out->stiffness_noise[col] = (k->shape * noise[0]) + out->load_noise[col];
-    out->mass_noise[col] = k->shape * noise[1];
+    const double loads = (k->shape * load) + force_energies(k, phi);
+    const double lambda = mass.energy > 0.0 ? fabs(stiffness.energy) / mass.energy : 0.0;
+    out->stiffness[col] = stiffness.energy;
+    out->mass[col] = mass.energy;
+    out->given_noise[col] = loads + stiffness.open + (lambda * mass.open);
+    out->stiffness_noise[col] = (k->shape * stiffness.noise) + loads + stiffness.open;
+    out->mass_noise[col] = (k->shape * mass.noise) + mass.open;
     out->strained[col] = strained;
 }
 
@@ -200,8 +231,10 @@ mt_status mt_linear_energies(mt_linear *lin, int cols, const double *y, const mt
     worker k = {.lin = lin};
     k.unbalanced = RESIDUALS * lin->position.equilibrium.residual;
     k.shape = SHAPE_ULPS * DBL_EPSILON / lin->e.qr.kept;
+    k.extent = mt_reduce_extent(lin);
     k.phi = mt_arena_f64(&lin->scratch, nq, (size_t)cols);
     k.w = mt_arena_f64(&lin->scratch, nq, 1);
+    k.dz = mt_arena_f64(&lin->scratch, nq, 1);
     mt_status rc = mt_arena_check(&lin->scratch, err);
     rc = rc == MT_OK ? list_entries(&k, &lin->scratch, err) : rc;
     if (rc == MT_OK) {

@@ -18,6 +18,12 @@
  *     p eps (sum_t 2 c_t |f_t . phi| |f_t| . w + 2 |phi|^T (terms of |Kg|) w):
  * terms count with their magnitudes, before they cancel. Positions satisfy the constraints to
  * eps; by the least pivot kept of their Jacobian, positions and shapes are known to eps / kept.
+ *     What any solution with K_r and M_r has wrong, however exact, is what their rows Z^T f
+ * have: by bounds dz of the basis and df of the rows (reduce.h) an elongation f . phi is open
+ * by
+ *     D = |f| . (dz |y|) + df . |phi|,   an energy by c (2 |f . phi| D + D^2),
+ * which counts where constraints almost depend on each other, or a spring acts almost across
+ * the motion that is left.
  *     At an equilibrium Newton's last step q is too small to be taken, as positions are
  *         rounded, but not too small for a stiff spring: by it forces change by k g . q
  *         (springs) and
@@ -32,8 +38,9 @@ typedef struct mt_energies {
     double *mass;            /* [cols] */
     double *stiffness_noise; /* [cols] */
     double *mass_noise;      /* [cols] */
-    double *load_noise;      /* [cols] the part of stiffness_noise that comes with Kg */
-    bool *strained;          /* [cols] by any spring */
+    double *given_noise; /* [cols] the part of stiffness_noise and lambda mass_noise that is in
+                                K_r and M_r as they are given */
+    bool *strained;      /* [cols] by any spring */
 } mt_energies;
 
 /* y n x cols. O(cols (rows + entries of Kg + nq n)). Fails MT_E_MEMORY. */

@@ -20,12 +20,10 @@
 
 #include "mechanics/local.h"
 
-/* Relative rounding of an entry of a row; coordinates far from the origin lose as many digits
- * more in the arms. */
+/* Relative rounding of an entry of a row. */
 static const double ROW_ULPS = 4.0;
 
-/* The largest coordinate, at least the model length [m]. */
-static double extent_of(const mt_linear *lin)
+double mt_reduce_extent(const mt_linear *lin)
 {
     double extent = lin->sys->length_m;
     for (int b = 0; b < lin->sys->n_bodies; b++) {
@@ -63,10 +61,22 @@ mt_status mt_reduce_basis(mt_linear *lin, mt_err *err)
     MT_TRY(mt_arena_check(&lin->scratch, err));
     MT_TRY(mt_arena_check(&lin->geometry, err));
     diagonal_mass(lin, mass);
-    MT_TRY(mt_eliminate_local(lin->a, mass, extent_of(lin), &lin->scratch, &lin->e,
+    MT_TRY(mt_eliminate_local(lin->a, mass, mt_reduce_extent(lin), &lin->scratch, &lin->e,
                               lin->z_error, err));
     mt_arena_rewind(&lin->scratch, mark);
     return MT_OK;
+}
+
+void mt_reduce_row_error(const double row[MT_LOCAL], double extent, double error[MT_LOCAL])
+{
+    double most = 0.0; /* of the translations: what an arm stands on */
+    for (int k = 0; k < MT_LOCAL; k++) {
+        most = k % 6 < 3 && fabs(row[k]) > most ? fabs(row[k]) : most;
+    }
+    for (int k = 0; k < MT_LOCAL; k++) {
+        const double arm = k % 6 < 3 ? 0.0 : most * extent;
+        error[k] = row[k] == 0.0 ? 0.0 : ROW_ULPS * DBL_EPSILON * (fabs(row[k]) + arm);
+    }
 }
 
 /* out[n] = Z^T row, error[n] its bound. */
@@ -74,21 +84,17 @@ static void project(const mt_linear *lin, const mt_term *t, const double *row, d
                     double *out, double *error)
 {
     const ptrdiff_t nq = lin->sys->nq;
-    double most = 0.0; /* of the translations: what an arm stands on */
-    for (int k = 0; k < MT_LOCAL; k++) {
-        most = k % 6 < 3 && fabs(row[k]) > most ? fabs(row[k]) : most;
-    }
+    double df[MT_LOCAL];
+    mt_reduce_row_error(row, extent, df);
     for (int k = 0; k < MT_LOCAL; k++) {
         const int dof = row[k] == 0.0 ? -1 : mt_local_dof(lin->sys, t->body, k);
         if (dof < 0) {
             continue;
         }
-        const double arm = k % 6 < 3 ? 0.0 : most * extent;
-        const double df = ROW_ULPS * DBL_EPSILON * (fabs(row[k]) + arm);
         for (int c = 0; c < lin->n; c++) {
             const ptrdiff_t at = dof + (c * nq);
             out[c] += row[k] * lin->e.z[at];
-            error[c] += (fabs(row[k]) * lin->z_error[at]) + (df * fabs(lin->e.z[at]));
+            error[c] += (fabs(row[k]) * lin->z_error[at]) + (df[k] * fabs(lin->e.z[at]));
         }
     }
 }
@@ -142,7 +148,7 @@ static mt_status reduce_rows(mt_linear *lin, int kind, double extent, mt_err *er
 
 mt_status mt_reduce_rows(mt_linear *lin, mt_err *err)
 {
-    const double extent = extent_of(lin);
+    const double extent = mt_reduce_extent(lin);
     for (int kind = 0; kind < MT_TERM_KINDS; kind++) {
         MT_TRY(reduce_rows(lin, kind, extent, err));
     }

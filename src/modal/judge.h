@@ -14,8 +14,9 @@ typedef struct mt_mode_energies {
     double *mass;            /* [count] y^T M y */
     double *stiffness_noise; /* [count] what rounding may have made of it, counted by terms */
     double *mass_noise;      /* [count] */
-    double *load_noise; /* [count] the part of stiffness_noise that is in K as it is given, and
-                           that no solution of K can be without */
+    double *given_noise; /* [count] the part of stiffness_noise, and of mass_noise times lambda,
+                            that is in K and M as they are given, and that no solution of them
+                            can be without */
     bool *strained; /* [count] does any spring move by more than the rounding of its terms? */
 } mt_mode_energies;
 /*
@@ -30,5 +31,7 @@ void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes);
 
 /* Is that worth its while: could a kind be wrong, or is an error above 1e-9 of its lambda? */
 bool mt_modal_in_doubt(const mt_modes *modes);
+/* Where it is not: errors alone, larger by what K and M have wrong as they are given. */
+void mt_modal_widen(const mt_mode_energies *e, mt_modes *modes);
 
 #endif

@@ -147,13 +147,13 @@ static void loaded__strained_zero_is_undecided(mt_test *t)
         double one[2] = {1.0, 1.0};
         double stiffness_noise[2] = {1e-15, 1e-3};
         double mass_noise[2] = {0.0, 0.0};
-        double load_noise[2] = {1e-15, 0.0};
+        double given_noise[2] = {1e-15, 0.0};
         bool moves[2] = {strained == 1, true};
         mt_mode_energies e = {.stiffness = zero,
                               .mass = one,
                               .stiffness_noise = stiffness_noise,
                               .mass_noise = mass_noise,
-                              .load_noise = load_noise,
+                              .given_noise = given_noise,
                               .strained = moves};
         const double k[4] = {0.0, 0.0, nan(""), 1e12};
         mt_modes modes;

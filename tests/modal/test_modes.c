@@ -423,9 +423,9 @@ static void modal__judged_modes_ascend(mt_test *t)
     double mass[] = {1.0, 1.0};
     double stiffness_noise[] = {60.0, 100.0};
     double mass_noise[] = {0.0, 0.0};
-    double load_noise[] = {60.0, 100.0};
+    double given_noise[] = {60.0, 100.0};
     bool strained[] = {true, false};
-    mt_mode_energies e = {stiffness, mass, stiffness_noise, mass_noise, load_noise, strained};
+    mt_mode_energies e = {stiffness, mass, stiffness_noise, mass_noise, given_noise, strained};
     mt_modes modes;
     REQUIRE(t, mt_modal_solve(2, k, m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
     mt_modal_judge(&e, -1, &modes);

@@ -1,0 +1,255 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Models at the limits of sixteen digits against an independent mechanics in eighty.
+
+    run.py [--seed S] [--count N] [--seconds T] [--only FAMILY] [--index I] [--far F] [--keep DIR]
+
+What the data determine is asked of the oracle: every number of the file is changed by a relative 1e-30 of random sign, every coordinate by that part of
+the mechanism's size, and what that changes in an eigenvalue, relative, over 1e-30, is its condition. Held are: counts and kinds; error <= bound for
+every mode; where the condition is at most 1e4, error <= 1e-10 of the eigenvalue. The table's last columns judge the bound: how much of it the error
+takes at worst, and how many times it exceeds what the data leave open, condition times 2^-53.
+"""
+import argparse
+import json
+import os
+import random
+import subprocess
+import sys
+import tempfile
+import time
+from decimal import Decimal
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+sys.path[:0] = [str(Path(__file__).resolve().parent), str(Path(__file__).resolve().parents[1] / "mechanisms")]
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import statics  # noqa: E402
+from exact import binary  # noqa: E402
+from extremes import FAMILIES  # noqa: E402
+from oracle import Oracle, Refused  # noqa: E402
+
+SOURCE = Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
+WANTED = Decimal("1e-10")   # of an eigenvalue that the data determine
+DETERMINED = Decimal("1e4")  # condition up to which they do: a hundred roundings of it are 1e-10
+OPEN = Decimal("1e6")        # from here on the position of rest itself may be lost, and the program says so
+UNIT = Decimal(2) ** -53
+STEP = Decimal("1e-30")
+PLACES = ("at", "centre", "from", "to")
+COUNTS = ("elements", "dimension", "index", "fraction")
+
+
+# what the data determine -----------------------------------------------------------------------------------------------------------------------------------
+def _size(model):
+    """Of the mechanism: its largest coordinate."""
+    def numbers(value):
+        if isinstance(value, list):
+            return max(map(numbers, value), default=Decimal(0))
+        return Decimal(0) if isinstance(value, str) else abs(binary(value))
+    lists = [model] + [item for key in ("bodies", "links", "joints", "springs", "loads") for item in model.get(key, [])]
+    return max((numbers(item[m]) for item in lists for m in PLACES if m in item), default=Decimal(0))
+
+
+def moved(model, sign, places):
+    """The same with every number changed; coordinates where `places` says how: (value) -> change."""
+    def change(value, place):
+        if isinstance(value, list):
+            return [change(v, place) for v in value]
+        if isinstance(value, (str, bool)) or value is None:
+            return value
+        x = binary(value)
+        return x + (places(x) if place else x * sign() * STEP)
+
+    def walk(value, place):
+        if isinstance(value, dict):
+            return {k: v if k in COUNTS or k.startswith("axis") or k == "hinge_axis" else walk(v, k in PLACES) for k, v in value.items()}
+        if isinstance(value, list) and value and isinstance(value[0], dict):
+            return [walk(v, False) for v in value]
+        return change(value, place)
+    return walk(model, False)
+
+
+def at_rest(model):
+    """Modes of the model's first configuration; what rests as drawn is not searched for."""
+    problem = statics.Problem(Oracle(model, read=binary))
+    if problem.loaded() and not problem.oracle.driven:
+        try:
+            return statics.Modes(problem, problem.polish([float(x) for x in problem.drawn], 0.0))
+        except Refused:
+            pass
+    return statics.Modes(problem)
+
+
+class Exact:
+    """Eigenvalues, counts and conditions of a model as the program reads it."""
+
+    def __init__(self, model, rng):
+        one = at_rest(model)
+        if one.dead_centre:
+            raise Refused("dead centre")
+        self.values, self.zero, self.kept = one.values, one.zero, {**one.counts(), "redundant": one.redundant}
+        size = _size(model) * STEP
+        sign = lambda: rng.choice([1, -1])
+        by_value = {}
+        ways = [lambda x: sign() * size,                                             # every place for itself
+                lambda x: by_value.setdefault(x, sign()) * size,                     # equal numbers together: what coincides stays so
+                lambda x: Decimal(0)]                                                # the drawing is exact: joints are redundant in it
+        self.condition = None
+        for places in ways:
+            try:
+                near = [at_rest(moved(model, sign, places)) for _ in range(2)]
+            except Refused:
+                continue
+            if all({**n.counts(), "redundant": n.redundant} == self.kept for n in near):
+                self.condition = [max(abs(n.values[i] - x) for n in near) / abs(x) / STEP if not z else Decimal(0) for i, (x, z) in enumerate(zip(self.values, self.zero))]
+                return
+        raise Refused("no neighbour")
+
+
+class Chain:
+    """A row of masses and springs by Sturm's sequence: its lowest eigenvalues, which sums of positive terms determine."""
+    MODES = 5
+
+    def __init__(self, model):
+        self.k = [binary(s["stiffness_n_per_m"]) for s in model["springs"]] + [Decimal(0)]
+        self.m = [binary(b["mass_kg"]) for b in model["bodies"]]
+        self.values = [self._value(i + 1) for i in range(self.MODES)]
+        self.zero, self.condition = [False] * self.MODES, [Decimal(1)] * self.MODES
+        self.kept = {"freedoms": len(self.m), "rigid": 0, "unstable": 0, "redundant": 0}
+
+    def _below(self, x):
+        count, before = 0, None
+        for i, m in enumerate(self.m):
+            d = self.k[i] + self.k[i + 1] - x * m - (self.k[i] ** 2 / before if before is not None else 0)
+            before = d or Decimal("1e-70")
+            count += before < 0
+        return count
+
+    def _value(self, i):
+        low, high = Decimal("1e-30"), Decimal("1e30")
+        while high / low > 4:
+            middle = (low * high).sqrt()
+            low, high = (low, middle) if self._below(middle) >= i else (middle, high)
+        while high - low > Decimal("1e-20") * low:
+            middle = (low + high) / 2
+            low, high = (low, middle) if self._below(middle) >= i else (middle, high)
+        return low
+
+
+# what the program says -------------------------------------------------------------------------------------------------------------------------------------
+class Row:
+    """A line of the table."""
+
+    def __init__(self, name):
+        self.name, self.cases, self.modes, self.determined, self.left_out = name, 0, 0, 0, {}
+        self.error = self.told = self.share = self.excess = Decimal(0)
+        self.seconds = 0.0
+
+    def text(self):
+        left = sum(self.left_out.values())
+        return f"{self.name:26}{self.cases:6}{left:6}{self.modes:7}{self.determined:7}{self.error:10.1e}{self.told:10.1e}{self.share:9.3f}{self.excess:10.1e}{self.seconds:8.1f}"
+
+
+HEAD = f"{'family':26}{'cases':>6}{'left':>6}{'modes':>7}{'determ.':>7}{'error':>10}{'bound':>10}{'err/bnd':>9}{'bnd/data':>10}{'time s':>8}"
+
+
+def ask(folder, model):
+    path = Path(folder) / "model.json"
+    path.write_text(json.dumps(model, indent=1))
+    started = time.monotonic()
+    done = subprocess.run([PROGRAM, "modes", str(path), "--format", "json", "--quiet"], capture_output=True, encoding="utf-8", timeout=120)
+    return done, time.monotonic() - started
+
+
+def judge(row, exact, said):
+    """Sentences on what is wrong; counts in the row what is right."""
+    counts = {"freedoms": said["freedoms"], "rigid": said["rigid_body_modes"], "unstable": said["unstable_modes"], "redundant": len(said["redundant_constraints"])}
+    if counts["freedoms"] != exact.kept["freedoms"] or counts["redundant"] != exact.kept["redundant"]:
+        yield "counts", f"counts {counts}, exact {exact.kept}"
+        return
+    for i, (mode, x, zero, condition) in enumerate(zip(said["modes"], exact.values, exact.zero, exact.condition)):
+        given, bound = binary(mode["omega_squared"]), binary(mode["omega_squared_error"])
+        error = abs(given - x)
+        row.modes += 1
+        if error > bound and not (zero and mode["kind"] == "rigid_body"):
+            yield "bound", f"mode {i + 1} ({mode['kind']}): omega^2 is {given:.17g} within {bound:.3g}, exact {x:.20g}: {error / bound if bound else error:.3g} times the bound off"
+        elif bound:
+            row.share = max(row.share, error / bound)
+        kind = "rigid_body" if zero else "unstable" if x < 0 else "flexible"
+        if mode["kind"] != kind and mode["kind"] != "undecided":
+            yield "kind", f"mode {i + 1} is called {mode['kind']}, omega^2 {given:.17g} within {bound:.3g}; exact {x:.20g}, {kind}"
+        if zero:
+            continue
+        open_ = max(condition, 1) * UNIT * abs(x)
+        row.excess = max(row.excess, bound / open_)
+        if condition > DETERMINED:
+            continue
+        row.determined += 1
+        row.error, row.told = max(row.error, error / abs(x)), max(row.told, bound / abs(x))
+        if mode["kind"] == "undecided":
+            yield "undecided", f"mode {i + 1} is undecided, omega^2 {given:.17g} within {bound:.3g}; exact {x:.20g}, condition {condition:.1e}"
+        if error > WANTED * abs(x):
+            yield "accuracy", f"mode {i + 1}: omega^2 is {given:.17g} within {bound:.3g}, exact {x:.20g}, {error / abs(x):.1e} off; condition {condition:.1e}"
+
+
+def stress(seed, names, indices, rows, seconds=None, far=None, keep=None):
+    """Yields (family, index, check, sentence)."""
+    started = time.monotonic()
+    with tempfile.TemporaryDirectory() as scratch:
+        for index in indices:
+            for name in names:
+                if seconds is not None and time.monotonic() - started > seconds:
+                    return
+                rng = random.Random(f"stress:{seed}:{name}:{index}")
+                model = FAMILIES[name](rng, rng.uniform(0, 1) if far is None else far)
+                row = rows.setdefault(name, Row(name))
+                try:
+                    exact = Chain(model) if name == "long chains" else Exact(model, rng)
+                except (Refused, ZeroDivisionError) as why:
+                    row.left_out[str(why)] = row.left_out.get(str(why), 0) + 1
+                    continue
+                done, time_ = ask(keep or scratch, model)
+                if done.returncode == 3 and max(exact.condition) > OPEN and "no equilibrium" in done.stderr:
+                    row.left_out["rests nowhere"] = row.left_out.get("rests nowhere", 0) + 1
+                    continue
+                row.cases += 1
+                row.seconds += time_
+                if done.returncode:
+                    yield name, index, "refused", f"exit code {done.returncode}: {done.stderr.strip()[-400:]}"
+                    continue
+                for check, text in judge(row, exact, json.loads(done.stdout)[0]):
+                    yield name, index, check, text
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seed", default="1")
+    parser.add_argument("--count", type=int, default=20, help="models of each family")
+    parser.add_argument("--seconds", type=float)
+    parser.add_argument("--only", choices=list(FAMILIES), action="append")
+    parser.add_argument("--index", type=int)
+    parser.add_argument("--far", type=float, help="0 to 1: how far all of them go; else each at random")
+    parser.add_argument("--rare", type=float, default=0.0, help="findings per model up to which the exit status is 0")
+    parser.add_argument("--keep", help="leave the last model here")
+    args = parser.parse_args()
+    rows, bad = {}, 0
+    indices = range(args.count) if args.index is None else [args.index]
+    for name, index, check, text in stress(args.seed, args.only or list(FAMILIES), indices, rows, args.seconds, args.far, args.keep):
+        bad += 1
+        far = f" --far {args.far}" if args.far is not None else ""
+        print(f"{check}: {text}\n    tests/stress/run.py --seed {args.seed} --only '{name}' --index {index}{far}", flush=True)
+    print(HEAD)
+    for row in rows.values():
+        print(row.text())
+    left = {}
+    for row in rows.values():
+        for why, n in row.left_out.items():
+            left[why] = left.get(why, 0) + n
+    cases = sum(row.cases for row in rows.values())
+    print(f"{cases} models of seed {args.seed} ({', '.join(f'{k}: {v}' for k, v in left.items()) or 'none'} left out): {bad} findings")
+    return 1 if bad > args.rare * cases else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

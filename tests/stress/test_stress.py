@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Some models of every family (run.py), and errors that must be found in what the program answers."""
+import json
+import os
+import random
+import tempfile
+import unittest
+
+import run  # first: it says where the others are
+import extremes  # noqa: E402
+
+COUNT = 2 if os.environ.get("MT_INSTRUMENTED") or os.environ.get("MT_TEST_LAUNCHED") else 4  # of each family
+
+
+class Stress(unittest.TestCase):
+    def test_families(self):
+        rows = {}
+        for name, index, check, text in run.stress("1", list(run.FAMILIES), range(COUNT), rows):
+            with self.subTest(family=name, check=check):
+                self.fail(f"{text}\n    tests/stress/run.py --seed 1 --only '{name}' --index {index}")
+        print("\n".join([run.HEAD, *(row.text() for row in rows.values())]))
+        for row in rows.values():
+            self.assertGreater(row.cases, sum(row.left_out.values()), row.name)
+            self.assertGreater(row.determined, 0, row.name)
+
+    def test_bounds_count_what_the_constraints_leave_open(self):
+        """Two ropes that are almost parallel: the circle that they leave is known to rounding over their angle."""
+        found = list(run.stress("1", ["nearly redundant joints"], [15, 64, 111], {}))
+        self.assertEqual(found, [])
+
+
+@unittest.skipIf("MT_INSTRUMENTED" in os.environ, "judges the reference, not the program")
+class Faults(unittest.TestCase):
+    """Wrong answers are told from right ones."""
+
+    def setUp(self):
+        rng = random.Random("faults")
+        model = run.FAMILIES["soft ground"](rng, 1.0)
+        self.exact = run.Exact(model, rng)
+        with tempfile.TemporaryDirectory() as folder:
+            self.said = json.loads(run.ask(folder, model)[0].stdout)[0]
+
+    def _found(self):
+        return {check for check, _ in run.judge(run.Row("fault"), self.exact, self.said)}
+
+    def test_right(self):
+        self.assertEqual(self._found(), set())
+
+    def test_wrong_eigenvalue(self):
+        self.said["modes"][0]["omega_squared"] *= 1 + 1e-9
+        self.assertEqual(self._found(), {"accuracy", "bound"})
+
+    def test_bound_too_small(self):
+        for mode in self.said["modes"]:
+            mode["omega_squared_error"] = 0.0
+        self.assertEqual(self._found(), {"bound"})
+
+    def test_wrong_kind(self):
+        self.said["modes"][0]["kind"] = "rigid_body"
+        self.assertEqual(self._found(), {"kind"})
+
+    def test_undecided(self):
+        self.said["modes"][0]["kind"] = "undecided"
+        self.assertEqual(self._found(), {"undecided"})
+
+    def test_wrong_count(self):
+        self.said["freedoms"] += 1
+        self.assertEqual(self._found(), {"counts"})
+
+
+@unittest.skipIf("MT_INSTRUMENTED" in os.environ, "judges the reference, not the program")
+class Reference(unittest.TestCase):
+    """Sturm's count of a row of masses against the mechanics in eighty digits, and the condition where it is known."""
+
+    def test_chain(self):
+        rng = random.Random("chain")
+        name = lambda i: f"b{i}" if i else "ground"
+        model = extremes.plain(2, [extremes.point(name(i + 1), 1.0 + i, [i + 1.0, 0.0]) for i in range(6)],
+                               [extremes.joint(f"g{i}", "pin-in-slot", "ground", name(i + 1), [i + 1.0, 0.0], axis=[1, 0]) for i in range(6)],
+                               [extremes.axial(f"s{i}", name(i), name(i + 1), [[float(i), 0.0], [i + 1.0, 0.0]], 10.0 ** (2 * i)) for i in range(6)])
+        for a, b in zip(run.Chain(model).values, run.Exact(model, rng).values):
+            self.assertLess(abs(a / b - 1), 1e-18)
+
+    def test_condition(self):
+        """omega^2 = (k - m g l)/(J + m l^2): of k - m g l = 2^-20 k each half is known to a unit."""
+        pendulum = extremes.plain(2, [extremes.solid("b", 1.0, 0.25, [0.0, 1.0])], [extremes.joint("j", "revolute", "ground", "b", [0.0, 0.0])],
+                                  [extremes.torsion("s", "j", 8.0 * (1 + 2.0 ** -20))], gravity_m_per_s2=[0, -8.0])
+        condition = max(run.Exact(pendulum, random.Random(str(i))).condition[0] for i in range(5))
+        self.assertTrue(2 ** 20 < condition < 6 * 2 ** 20, condition)
+
+
+if __name__ == "__main__":
+    unittest.main()
