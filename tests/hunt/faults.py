@@ -10,11 +10,11 @@ def _first(result):
 
 
 def _frequency(run):
-    for f in run.result["recommendations"][0]["frequencies"] if run.result["recommendations"] else []:
-        if f["recommended_hz"]:
-            f["recommended_hz"] *= 0.999999
-            return True
-    return False
+    """Of the highest: modes near 0 are compared in its measure."""
+    found = [f for f in run.result["recommendations"][0]["frequencies"] if f["recommended_hz"]] if run.result["recommendations"] else []
+    if found:
+        max(found, key=lambda f: f["recommended_hz"])["recommended_hz"] *= 0.999999
+    return bool(found)
 
 
 def _clearance(run):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a study asks, as arrays over many designs: rows of X are designs, columns the variables."""
+import itertools
 import math
 
 import numpy as np
@@ -103,10 +104,12 @@ class Question:
         self.origin = np.array([v.original for v in self.variables])
         self.tolerance = np.array([v.tolerance for v in self.variables])
         self.robust = bool(np.any(self.tolerance > 0.0))
+        self._changes = self._corners()
         self.goals = study.get("goals", [])
         self.objectives = study.get("objective", {"minimise": "change"})
         self.objectives = self.objectives if isinstance(self.objectives, list) else [self.objectives]
         self.demands = [(i, g, c) for i, g in enumerate(self.goals) for c in self._configurations(g)]
+        self.origin_t = self.t(self.origin[None, :]) if self.n else None
         self.configurations = list(dict.fromkeys(c for _, g, c in self.demands if c is not None))
         self.bands = {c: self._bands(c) for c in self.configurations}
         self._rigid = {}
@@ -237,15 +240,19 @@ class Question:
                 worst = np.maximum(worst, np.where(np.isnan(value), np.inf, value) / self.tolerance_of(self.goals[index]))
         return worst
 
-    def corners(self, x):
-        """Where the worst of the tolerances about one design x[n] is looked for: corners and points between; the design itself last."""
+    def _corners(self):
+        """Factors [K, n] of corners and, where they are few, points between; 1 last."""
         which = np.flatnonzero(self.tolerance > 0.0)
         steps = [-1.0, 0.0, 1.0] if len(which) <= 3 else [-1.0, 1.0]
-        signs = np.array(np.meshgrid(*[steps] * len(which))).reshape(len(which), -1).T if len(which) else np.zeros((0, 0))
-        out = np.tile(x, (len(signs) + 1, 1))
-        if len(which):
-            out[:-1, which] *= 1.0 + signs * self.tolerance[which]
+        signs = list(itertools.product(steps, repeat=len(which))) if len(which) else []
+        out = np.ones((len(signs) + 1, self.n))
+        if signs:
+            out[:-1, which] += np.array(signs) * self.tolerance[which]
         return out
+
+    def corners(self, x):
+        """[..., K, n]: where the worst of the tolerances about designs x[..., n] is looked for; the designs themselves last."""
+        return x[..., None, :] * self._changes
 
     def within_tolerances(self, x, count=150):
         """The corners, and points all over the tolerances: between two corners a mode may cross a band."""
@@ -256,9 +263,7 @@ class Question:
         """As missed, of the worst corner."""
         if not self.robust:
             return self.missed(x)
-        corners = [self.corners(row) for row in x]
-        size = len(corners[0])
-        return self.missed(np.concatenate(corners)).reshape(-1, size).max(axis=1)
+        return self.missed(self.corners(x).reshape(-1, self.n)).reshape(len(x), -1).max(axis=1)
 
     def kind(self, x, hz=None):
         """[B] tuples: the gap assignment of each design, bands of all configurations in order."""
@@ -268,7 +273,7 @@ class Question:
 
     # objectives
     def change(self, x):
-        d = self.t(x) - self.t(self.origin[None, :])
+        d = self.t(x) - self.origin_t
         return np.sqrt(np.sum(np.array([v.weight for v in self.variables]) * d * d, axis=1))
 
     def misfit(self, x):

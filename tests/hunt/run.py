@@ -119,8 +119,8 @@ def findings(name, model, study, answer):
     return out
 
 
-def hunt(seed, kinds, indices, tally, seconds=None, keep=None):
-    """Yields (kind, index, check, text) of findings; counts in tally what was done."""
+def hunt(seed, kinds, indices, tally, seconds=None, keep=None, kept=None):
+    """Yields (kind, index, check, text) of findings; counts in tally what was done, keeps (model, study, answer) of each in `kept`."""
     started = time.monotonic()
     todo = [(k, i) for i in indices for k in kinds]
     with tempfile.TemporaryDirectory() as scratch:
@@ -141,6 +141,8 @@ def hunt(seed, kinds, indices, tally, seconds=None, keep=None):
             for name, (kind, index, model, study) in batch.items():
                 tally["studies"] += 1
                 tally["refused"] += answers[name][2] is None
+                if kept is not None:
+                    kept[kind, index] = model, study, answers[name]
                 for check, text in findings(name, model, study, answers[name]):
                     yield kind, index, check, text
 

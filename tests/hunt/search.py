@@ -42,55 +42,46 @@ def combinations(question):
 class Local:
     """The rows of one local search: goals as they are, bands as the side that each mode has at the start."""
 
-    def __init__(self, question, start, held=None, ease=None):
+    def __init__(self, question, start):
         self.q, self.free = question, [i for i, v in enumerate(question.variables) if v.values is None]
-        self.base, self.held = start.copy(), held or []
-        self.ease = ease or {}  # row number: what the demand gives way by (relative)
+        self.base, self.base_t = start.copy(), question.t(start[None, :])
         self.lower, self.upper = (question.t(b[None, :])[0][self.free] for b in (question.lower, question.upper))
         self.below = question.kind(start[None, :])[0] if question.configurations else ()
         self._at = {}
 
     def designs(self, t):
-        x = np.tile(self.base, (len(t), 1))
-        x[:, self.free] = self.q.x(self._all(t))[:, self.free]
-        return x
-
-    def _all(self, t):
-        whole = np.tile(self.q.t(self.base[None, :]), (len(t), 1))
+        x, whole = np.repeat(self.base[None, :], len(t), axis=0), np.repeat(self.base_t, len(t), axis=0)
         whole[:, self.free] = t
-        return whole
+        x[:, self.free] = self.q.x(whole)[:, self.free]
+        return x
 
     def _values(self, t):
         """[B, 1 + equalities + inequalities], inequalities at least 0."""
         x = self.designs(t)
         q, equal, least = self.q, [], []
-        corners = [x] if not q.robust else [np.array([q.corners(row)[k] for row in x]) for k in range(len(q.corners(x[0])))]
-        for place in corners:
-            hz = q.all_frequencies(place)
-            for index, _, kind, value in q.rows(place, hz):
-                if "weight" in q.goals[index]:
-                    continue
-                if kind == "=":
-                    equal.append(value)
-                elif kind == "<":
-                    least.append(-value)
-            position = 0
-            for c in q.configurations:
-                for band in q.bands[c]:
-                    count, position = self.below[position], position + 1
-                    with np.errstate(divide="ignore"):
-                        if count > 0:
-                            least.append(np.log(band.lower / hz[c][:, count - 1]))
-                        if count < hz[c].shape[1] and np.isfinite(hz[c][:, count]).all():
-                            least.append(np.log(hz[c][:, count] / band.upper))
-        for k, limit in self.held:
-            least.append(limit - q.cost(x, k))
+        places = np.moveaxis(q.corners(x), -2, 0).reshape(-1, q.n) if q.robust else x
+        hz = q.all_frequencies(places)
+        for index, _, kind, value in q.rows(places, hz):
+            if "weight" in q.goals[index]:
+                continue
+            if kind == "=":
+                equal.extend(value.reshape(-1, len(x)))
+            elif kind == "<":
+                least.extend(-value.reshape(-1, len(x)))
+        position = 0
+        for c in q.configurations:
+            for band in q.bands[c]:
+                count, position = self.below[position], position + 1
+                with np.errstate(divide="ignore"):
+                    if count > 0:
+                        least.extend(np.log(band.lower / hz[c][:, count - 1]).reshape(-1, len(x)))
+                    if count < hz[c].shape[1]:
+                        least.extend(row for row in np.log(hz[c][:, count] / band.upper).reshape(-1, len(x)) if not np.isnan(row).any())
         return self.cost(x), np.array(equal).reshape(len(equal), len(x)).T, np.array(least).reshape(len(least), len(x)).T
 
     def cost(self, x):
-        what = self.q.objectives[len(self.held)]
-        value = self.q.cost(x, len(self.held))
-        return 0.5 * value * value if what.get("minimise") in ("change", "misfit") else value
+        value = self.q.cost(x)
+        return 0.5 * value * value if self.q.objectives[0].get("minimise") in ("change", "misfit") else value
 
     def at(self, t):
         """Values and their slopes at t, remembered."""
