@@ -94,7 +94,7 @@ class Case:
         if not any("omega_squared_error" in mode for mode in answer.said["modes"]):
             return
         try:
-            read = statics.modes(self.model, binary)
+            read = self.modes.shifted(read=binary)
         except Refused:
             return  # what is balanced in decimals may not be so in doubles
         if read.counts() != self.modes.counts():
@@ -122,20 +122,20 @@ class Case:
             yield "exit", f"sensitivity to {name}: exit code {answer.code}: {answer.words[-300:]}"
             return
         value = number(self.model["parameters"][name]["value"])
-        step = STEP * (abs(value) if value else 1)
+        step = STEP * (abs(value) if value else 1) * self.rng.choice([-1, 1])
         try:
-            near = [self.modes.shifted({name: value + s * step}) for s in (-1, 1)]
+            near = self.modes.shifted({name: value + step})
+            beside = near.hz()
+            if near.counts() != self.modes.counts():
+                yield from self._jammed(name, answer, beside, self.modes.shifted({name: value - step}).hz())
+                return
         except Refused:
             return  # nor is there rest beside this value
-        low, high = (m.hz() for m in near)
-        if any(m.counts() != self.modes.counts() for m in near):
-            yield from self._jammed(name, answer, low, high)
-            return
         for i, mode in enumerate(answer.said["modes"]):
             f = self.hz[i]
             if any(abs(g / f - 1) < APART for j, g in enumerate(self.hz) if j != i):
                 continue
-            exact = (high[i] - low[i]) / (2 * step)
+            exact = (beside[i] - f) / step  # to twenty digits
             given = next(s for s in mode["sensitivities"] if s["parameter"] == name)["hz_per_unit"]
             size = f / abs(value) if value else f
             if given is None or abs(number(given) - exact) > SLOPES * max(abs(exact), size):
@@ -154,9 +154,8 @@ class Case:
                 yield "no_slope", f"{name} jams mode {i + 1} ({self.hz[i]:.6g} Hz), and its derivative is {given}"
             return
 
-    def shapes(self):
+    def shapes(self, answer):
         """Mass-normalised, of modes that stand alone."""
-        answer = Answer(self.folder, "shapes", self.model, "modes", "--shapes")
         values = self.modes.values
         for i, mode in enumerate(answer.said["modes"] if answer.said else []):
             gap = min((abs(values[i] - x) for j, x in enumerate(values) if j != i), default=values[i])
@@ -186,7 +185,7 @@ class Case:
 
     def findings(self):
         """(check, sentence)."""
-        answer = Answer(self.folder, "as_made", self.model)
+        answer = Answer(self.folder, "as_made", self.model, "modes", "--shapes")
         found = list(self.agree(answer))
         yield from found
         if found:
@@ -199,7 +198,7 @@ class Case:
                 for check, text in self.agree(Answer(self.folder, name, changed[0]), changed[1]):
                     yield name if check in ("counts", "frequencies", "refused") else check, text
         if not self.modes.dead_centre:
-            yield from self.shapes()
+            yield from self.shapes(answer)
             yield from self.rest()
             yield from self.slopes()
 

@@ -218,10 +218,10 @@ class Problem:
             close = f.particular()
             if trim:
                 free = Frame(self.state(q, force, None))
-                m = [[dot(a, times(h, b)) for b in f.z] + [along(s.trim_slope, a)] for a in free.z]
+                m = [row + [along(s.trim_slope, a)] for row, a in zip(between(h, free.z, f.z), free.z)]
                 r = [-dot(a, [x + w for x, w in zip(s.gradient, times(h, close))]) for a in free.z]
             else:
-                m = [[dot(a, hb) for hb in [times(h, b) for b in f.z]] for a in f.z]
+                m = between(h, f.z, f.z)
                 pushed = [x + w for x, w in zip(s.gradient, times(h, close))]
                 r = [-dot(a, pushed) for a in f.z]
             size = max((abs(x) for row in h for x in row), default=Decimal(0)) + sum(f for _, _, e in s.parts for f, _, _ in e if f > 0)
@@ -243,9 +243,25 @@ class Problem:
             or any(any(s.tension) or any(r != m.at(self.drawn)[0] for m, r in zip(s.measures, s.rest)) for s in self.oracle.springs)
 
 
+def live(x):
+    return [(i, v) for i, v in enumerate(x) if v]
+
+
 def times(h, x):
-    live = [(i, v) for i, v in enumerate(x) if v]
-    return [sum((row[i] * v for i, v in live if row[i]), Decimal(0)) for row in h]
+    part = live(x)
+    return [sum((row[i] * v for i, v in part if row[i]), Decimal(0)) for row in h]
+
+
+def between(h, left, right):
+    """left' h right of lists of vectors; h is symmetric."""
+    rows, columns = [live(row) for row in h], []
+    for b in right:
+        hb = [Decimal(0)] * len(h)
+        for j, v in live(b):
+            for i, x in rows[j]:
+                hb[i] += x * v
+        columns.append(hb)
+    return [[sum((x * hb[i] for i, x in part if hb[i]), Decimal(0)) for hb in columns] for part in map(live, left)]
 
 
 def dot(a, b):
@@ -346,7 +362,7 @@ class Modes:
         for (i, j), x in problem.oracle.mass.items():
             m[i][j] = x
             m[j][i] = x
-        k, mm = ([[dot(a, w) for w in [times(matrix, b) for b in z]] for a in z] for matrix in (h, m))
+        k, mm = (between(matrix, z, z) for matrix in (h, m))
         self.massless = 0
         low, back = exact.cholesky(mm), None
         if low is None:
@@ -378,7 +394,7 @@ class Modes:
         nothing = exact.NOTHING * max(sizes, default=Decimal(0))
         t = [v for x, v in sorted(zip(sizes, t), key=lambda p: p[0])]
         self.massless = sum(x <= nothing for x in sizes)
-        k, m = ([[dot(a, b) for b in [times(matrix, v) for v in t]] for a in t] for matrix in (k, m))
+        k, m = (between(matrix, t, t) for matrix in (k, m))
         p = self.massless
         k00 = [row[:p] for row in k[:p]]
         size = max((abs(x) for row in k for x in row), default=Decimal(0))
@@ -393,10 +409,10 @@ class Modes:
             return [sum((w * b[i] for w, b in zip(full, t)), Decimal(0)) for i in range(len(k))]
         return reduced, [row[p:] for row in m[p:]], back
 
-    def shifted(self, values):
-        """The same with other values of parameters, at rest next to here."""
+    def shifted(self, values=None, read=None):
+        """The same with other values of parameters, or its numbers read otherwise, at rest next to here."""
         o = self.problem.oracle
-        near = Problem(Oracle(o.model, o.name, values, o.read))
+        near = Problem(Oracle(o.model, o.name, values, read or o.read))
         return Modes(near, near.polish(self.state.q, self.state.force) if self.loaded else None)
 
     def blocked(self):
