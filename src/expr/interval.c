@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Interval arithmetic by widening: an operation is rounded to nearest, so its exact result lies
- * no further than the neighbouring double (nextafter); where an error-free transformation
+ * no further than the neighbouring double; where an error-free transformation
  * proves the rounded result exact, it stands as it is. That keeps signs: [0, 1] + [0, 1] begins
  * at 0, not below, and its square root exists.
  */
@@ -9,6 +9,8 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 #include "expr/op.h"
 
@@ -37,14 +39,26 @@ mt_interval mt_interval_hull(mt_interval a, mt_interval b)
     return mt_interval_of(a.lo < b.lo ? a.lo : b.lo, a.hi > b.hi ? a.hi : b.hi);
 }
 
-static double down(double x)
-{
-    return nextafter(x, -HUGE_VAL);
-}
-
+/* The neighbour above, nextafter(x, HUGE_VAL): doubles of one sign follow each other as the
+ * integers do that have their bits. */
 static double up(double x)
 {
-    return nextafter(x, HUGE_VAL);
+    uint64_t bits = 0;
+    if (!(x < HUGE_VAL)) {
+        return x;
+    }
+    if (x == 0.0) {
+        return DBL_TRUE_MIN;
+    }
+    memcpy(&bits, &x, sizeof bits);
+    bits = x > 0.0 ? bits + 1 : bits - 1;
+    memcpy(&x, &bits, sizeof bits);
+    return x;
+}
+
+static double down(double x)
+{
+    return -up(-x);
 }
 
 /* Is s = fl(a + b) exact? The rounding error by Knuth's two-sum; NaN after an overflow says
@@ -172,10 +186,10 @@ mt_interval mt_interval_square(mt_interval a)
 /* pi rounded to a double lies below pi by 1.2e-16, its neighbour above. */
 static const double PI = 3.14159265358979323846;
 
-static double widened(double x, double towards)
+static double far_up(double x)
 {
     for (int i = 0; i < MT_INTERVAL_ULPS; i++) {
-        x = nextafter(x, towards);
+        x = up(x);
     }
     return x;
 }
@@ -183,8 +197,8 @@ static double widened(double x, double towards)
 /* [lo, hi] widened, but not beyond [least, most]. */
 static mt_interval widen(double lo, double hi, double least, double most)
 {
-    const double wide_lo = widened(lo, -HUGE_VAL);
-    const double wide_hi = widened(hi, HUGE_VAL);
+    const double wide_lo = -far_up(-lo);
+    const double wide_hi = far_up(hi);
     if (isnan(lo) || isnan(hi)) {
         return mt_interval_of(least, most);
     }

@@ -16,9 +16,9 @@
 
 enum { PLACES = 50, PATH_SIZE = 600 };
 /* Questions of one study that the short form goes through on its way to all its places
- * together, and the places that each has at least. Of the tree, a study that asks more than
- * LONG is interrupted once, after EARLY. */
-enum { QUESTIONS = 20000, PLACES_LEAST = 2, LONG = 5000, EARLY = 1500 };
+ * together, of a kind and of the tree, and the places that each has at least. Of the tree, a
+ * study that asks more than LONG is interrupted there alone. */
+enum { QUESTIONS = 20000, QUESTIONS_TREE = 4000, PLACES_LEAST = 2, LONG = 2000 };
 /* Numbers of one design, analysed twice. */
 static const double SAME = 1e-9;
 
@@ -213,10 +213,10 @@ static int places_wanted(void)
     return text != NULL ? (int)strtol(text, NULL, 10) : 0;
 }
 
-static int places_of(long questions)
+static int places_of(long questions, long most)
 {
     const int wanted = places_wanted();
-    const long n = questions > 0 ? 2L * QUESTIONS / questions : 0;
+    const long n = questions > 0 ? 2L * most / questions : 0;
     if (wanted > 0) {
         return questions < wanted ? (int)questions : wanted;
     }
@@ -249,33 +249,14 @@ static void count(tally *n, const mt_result *r)
     }
 }
 
-/* Does the study ask more than the short form goes through? */
-static bool is_long(mt_test *t, const mt_study *study)
+/* Interrupt a study, whose whole answer takes so many questions, at many places, on the way to
+ * which it asks `most`: to finish, at once, and to finish and a little later at once. */
+static void disturb(mt_test *t, const char *name, const mt_study *study, const mt_result *whole,
+                    long questions, long most, tally *n)
 {
-    moment m = {.at = LONG};
-    mt_result *r = NULL;
-    if (places_wanted() > 0) {
-        return false;
-    }
-    CHECK_INT(t, solve(study, &m, &r, NULL), MT_OK);
-    const bool ended = r != NULL && r->status == MT_RESULT_INTERRUPTED;
-    mt_result_delete(r);
-    return ended;
-}
-
-/* Interrupt a study at many places: to finish, at once, and to finish and a little later at
- * once. */
-static void disturb(mt_test *t, const char *name, const mt_study *study, tally *n)
-{
-    mt_result *whole = NULL;
     mt_err err = {.text = ""};
     moment m = {0};
-    if (!CHECK_INT(t, solve(study, &m, &whole, &err), MT_OK)) {
-        (void)fprintf(stderr, "%s: %s\n", name, err.text);
-        return;
-    }
-    const long questions = m.asked;
-    const int places = places_of(questions);
+    const int places = places_of(questions, most);
     CHECK(t, questions > 0);
     for (int i = 0; i < places; i++) {
         static const long later[] = {0, 1, 7};
@@ -294,7 +275,18 @@ static void disturb(mt_test *t, const char *name, const mt_study *study, tally *
         count(n, r);
         mt_result_delete(r);
     }
-    mt_result_delete(whole);
+}
+
+/* Of a study that is told to stop from one question on, or never. NULL: there is none, and why
+ * is said. */
+static mt_result *answer_of(mt_test *t, const char *name, const mt_study *study, moment *m)
+{
+    mt_err err = {.text = ""};
+    mt_result *r = NULL;
+    if (!CHECK_INT(t, solve(study, m, &r, &err), MT_OK)) {
+        (void)fprintf(stderr, "%s: %s\n", name, err.text);
+    }
+    return r;
 }
 
 static void every_kind__says_what_is_missing(mt_test *t)
@@ -304,7 +296,11 @@ static void every_kind__says_what_is_missing(mt_test *t)
         study_case c;
         mt_test_row(t, "%s", study_kinds[i].name);
         if (study_load(t, study_kinds[i].model, study_kinds[i].members, &c)) {
-            disturb(t, study_kinds[i].name, c.study, &n);
+            moment m = {0};
+            c.result = answer_of(t, study_kinds[i].name, c.study, &m);
+            if (c.result != NULL) {
+                disturb(t, study_kinds[i].name, c.study, c.result, m.asked, QUESTIONS, &n);
+            }
         }
         study_free(&c);
     }
@@ -316,19 +312,20 @@ static void every_kind__says_what_is_missing(mt_test *t)
     CHECK(t, n.none > 0);
 }
 
-/* The best so far, early in a search. */
-static void interrupt_early(mt_test *t, const mt_study *study, tally *n)
+/* Of a study that asks often, the best so far; others are disturbed. */
+static void disturb_one(mt_test *t, const char *name, const mt_study *study, tally *n)
 {
-    moment m = {.at = EARLY};
-    mt_result *r = NULL;
-    if (CHECK_INT(t, solve(study, &m, &r, NULL), MT_OK)) {
-        CHECK_INT(t, r->status, MT_RESULT_INTERRUPTED);
+    moment m = {.at = places_wanted() > 0 ? 0 : LONG};
+    mt_result *const r = answer_of(t, name, study, &m);
+    if (r != NULL && r->status == MT_RESULT_INTERRUPTED) {
         CHECK(t, !is_cut(r, "baseline"));
         if (is_cut(r, "search")) {
             designs_hold(t, study, r);
         }
+        count(n, r);
+    } else if (r != NULL) {
+        disturb(t, name, study, r, m.asked, QUESTIONS_TREE, n);
     }
-    count(n, r);
     mt_result_delete(r);
 }
 
@@ -344,12 +341,7 @@ static void every_study_of_the_tree__says_what_is_missing(mt_test *t)
         mt_err err = {.text = ""};
         mt_test_row(t, "%s", list.gl_pathv[i]);
         if (CHECK_INT(t, mt_study_read(list.gl_pathv[i], NULL, &study, &err), MT_OK)) {
-            const char *const name = strrchr(list.gl_pathv[i], '/') + 1;
-            if (is_long(t, study)) {
-                interrupt_early(t, study, &n);
-            } else {
-                disturb(t, name, study, &n);
-            }
+            disturb_one(t, strrchr(list.gl_pathv[i], '/') + 1, study, &n);
         }
         mt_study_delete(study);
     }

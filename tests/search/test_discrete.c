@@ -79,7 +79,7 @@ static void discrete__enumeration_agrees_with_brute_force(mt_test *t)
         six_catalogue(&s, i, VALUES, LN);
     }
     const int n = brute_force(&s, change);
-    mt_result *const r = six_solve(t, s.study, 2);
+    mt_result *const r = six_same_bytes(t, s.study);
     CHECK(t, n > 7);
     if (r != NULL && CHECK_INT(t, r->n_recommendations, 7)) {
         for (int i = 0; i < 7; i++) {
@@ -93,7 +93,6 @@ static void discrete__enumeration_agrees_with_brute_force(mt_test *t)
         CHECK_INT(t, r->status, MT_RESULT_SOLVED);
     }
     mt_result_delete(r);
-    six_same_bytes(t, s.study);
     six_end(&s);
 }
 
@@ -164,8 +163,7 @@ static void discrete__mixed_agrees_with_every_value_on_its_own(mt_test *t)
     six s;
     REQUIRE(t, six_begin(t, &s));
     six_catalogue(&s, 1, 2, LN + 1);
-    mt_result *const r = six_solve(t, s.study, 2);
-    six_same_bytes(t, s.study);
+    mt_result *const r = six_same_bytes(t, s.study);
     const double want = best_of_fixed(t, &s);
     six_catalogue(&s, 1, 2, LN + 1);
     if (r != NULL && CHECK(t, r->n_recommendations > 0)) {
@@ -185,7 +183,7 @@ static void discrete__mixed_agrees_with_every_value_on_its_own(mt_test *t)
  * do. */
 static void discrete__that_no_combination_with_others_beside_works_is_proven(mt_test *t)
 {
-    static const double near[] = {-0.05, -0.02, 0.0, 0.03, 0.05};
+    static const double near[] = {-0.05, 0.01, 0.05};
     six s;
     REQUIRE(t, six_begin(t, &s));
     for (int i = 0; i < SIX; i++) {
@@ -196,14 +194,13 @@ static void discrete__that_no_combination_with_others_beside_works_is_proven(mt_
             s.study->variables[i].upper = 1.05 * s.k[i];
         }
     }
-    mt_result *const r = six_solve(t, s.study, 1);
+    mt_result *const r = six_same_bytes(t, s.study);
     if (r != NULL) {
         CHECK_INT(t, r->status, MT_RESULT_INFEASIBLE);
         CHECK(t, proves(r, "infeasible"));
         CHECK(t, r->n_recommendations > 0 && !r->recommendations[0].feasible);
     }
     mt_result_delete(r);
-    six_same_bytes(t, s.study);
     six_end(&s);
 }
 
@@ -262,7 +259,8 @@ static void discrete__without_an_enclosure_nothing_is_proven(mt_test *t)
                     "'gravity_m_per_s2': [-9.81, 0]," STUDY_TWO_MASSES_ROW "}",
                     "'variables': [{'parameter': 'k1', 'catalogue': [1, 2, 3]},"
                     " {'parameter': 'k2', 'lower': 0.2, 'upper': 5}],"
-                    "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 1}]",
+                    "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 1}],"
+                    "'search': {'starts': 4}",
                     &c)) {
         CHECK_INT(t, c.result->status, MT_RESULT_COMPROMISE);
         const mt_certificate *const proof = certificate(c.result, "infeasible");
@@ -283,7 +281,7 @@ static void discrete__of_too_many_combinations_the_best_is_proven(mt_test *t)
     for (int i = 0; i < SIX; i++) {
         six_catalogue(&s, i, MT_COUNT(fine), fine);
     }
-    mt_result *const r = six_solve(t, s.study, 2);
+    mt_result *const r = six_same_bytes(t, s.study);
     if (r != NULL && CHECK(t, r->n_recommendations > 0)) {
         const mt_certificate *const c = enumeration(r);
         const mt_recommendation *const best = &r->recommendations[0];
@@ -301,7 +299,6 @@ static void discrete__of_too_many_combinations_the_best_is_proven(mt_test *t)
         CHECK(t, proves(r, "optimal"));
     }
     mt_result_delete(r);
-    six_same_bytes(t, s.study);
     six_end(&s);
 }
 

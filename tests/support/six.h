@@ -110,22 +110,24 @@ static inline mt_result *six_solve(mt_test *t, const mt_study *study, int thread
     return result;
 }
 
-/* The same bytes with 1, 2 and 8 workers. */
-static inline void six_same_bytes(mt_test *t, const mt_study *study)
+/* The same bytes with 1 and 8 workers; the answer of one, NULL without any. */
+static inline mt_result *six_same_bytes(mt_test *t, const mt_study *study)
 {
-    static const int workers[] = {1, 2, 8};
+    static const int workers[] = {1, 8};
+    mt_result *result[MT_COUNT(workers)];
     mt_text text[MT_COUNT(workers)] = {{.s = NULL}};
     for (int i = 0; i < MT_COUNT(workers); i++) {
         mt_err err = {.text = ""};
-        mt_result *const result = six_solve(t, study, workers[i]);
-        CHECK(t, result != NULL && mt_result_write(result, &text[i], &err) == MT_OK);
-        mt_result_delete(result);
+        result[i] = six_solve(t, study, workers[i]);
         mt_test_row(t, "%d workers", workers[i]);
+        CHECK(t, result[i] != NULL && mt_result_write(result[i], &text[i], &err) == MT_OK);
         CHECK(t, text[i].s != NULL && text[0].s != NULL && strcmp(text[i].s, text[0].s) == 0);
     }
     for (int i = 0; i < MT_COUNT(workers); i++) {
         mt_text_free(&text[i]);
     }
+    mt_result_delete(result[1]);
+    return result[0];
 }
 
 #endif
