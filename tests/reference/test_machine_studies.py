@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 MODETUNE = os.environ["MODETUNE"]
-SAMPLES = 6 if "MT_TEST_LAUNCHED" in os.environ else 60
+SAMPLES = 200 if "MT_EVERY" in os.environ else 30
 GUARD = 3e-6  # goals are met within 1e-4 % of an edge
 ORDERS = (0.125, 0.5, 1, 1.5, 2, 2.5, 3, 4, 6, 7.333)
 MODEL = {
@@ -111,6 +111,5 @@ with tempfile.TemporaryDirectory() as name:
         if sample.reach > 1e2 and change < 3:  # the bounds do nothing
             again = sample.solve(folder, True)["recommendations"][0]["change"]
             check(abs(again - change) <= 1e-8 * max(change, 1), f"sample {i}: {change} with lower bounds above 0, {again} with 0")
-check(unsolved > 0 or SAMPLES < 60, "some samples have no design")
-check(unsolved < SAMPLES, "some samples have one")
+check(0 < unsolved < SAMPLES, f"some samples have a design, some have none: {unsolved} of {SAMPLES}")
 sys.exit(1 if failures else 0)
