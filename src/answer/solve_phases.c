@@ -61,8 +61,8 @@ mt_status mt_answer_search(mt_answer *a, mt_err *err)
     if (a->p->n_clears > 0) {
         return search_gaps(a, err);
     }
-    MT_TRY(mt_search_designs(a->workers, a->n_workers, &a->mem, &a->found, &a->stage, &a->why,
-                             err));
+    MT_TRY(mt_search_over_tolerances(a->workers, a->n_workers, &a->mem, &a->found, &a->stage,
+                                     &a->why, err));
     a->result->run.distinct_designs = a->found.compromise ? 0 : a->found.n_found;
     a->result->run.found_once = a->found.compromise ? 0 : a->found.n_once;
     a->result->run.estimated_missing = a->found.missing;

@@ -108,7 +108,8 @@ static mt_status compare(const mt_workspace *fresh, const mt_design *design, dou
     const bool bands = mt_objective_is(fresh->c->aims[k].type, MT_BANDS);
     const double f = mt_aim_root(&fresh->c->aims[k], aim_value(fresh, k, motion_room));
     const double had = mt_aim_root(&fresh->c->aims[k], design->found->f);
-    const bool searched_within = bands && fresh->c->robust != NULL && !mt_robust_proven(fresh);
+    const bool searched_within =
+        bands && fresh->c->robust != NULL && !mt_ranges_proven(mt_robust_known(fresh));
     /* a clearance that is missed is that of the kind searched */
     const bool other_kind = bands && !design->found->feasible;
     if (other_kind || fabs(f - had) <= SAME_OBJECTIVE * fmax(fabs(f), 1.0) || searched_within) {
@@ -150,7 +151,7 @@ static mt_status describe(mt_workspace *fresh, const mt_design *design,
     MT_TRY(mt_describe_clearances(fresh, result, rec, err));
     MT_TRY(describe_objectives(fresh, motion_room, baseline, result, rec, err));
     if (fresh->c->robust != NULL) {
-        rec->worst_case = mt_robust_proven(fresh) ? "proven" : "sampled";
+        rec->worst_case = mt_ranges_proven(mt_robust_known(fresh)) ? "proven" : "sampled";
     }
     rec->grade = rec->disagreement != NULL ? "not verified"
                  : rec->feasible           ? "feasible"

@@ -55,8 +55,6 @@ mt_status mt_describe_motions(mt_workspace *fresh, mt_result *result, mt_recomme
  * clearance. Nothing of an unstable configuration. */
 mt_status mt_describe_clearances(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                  mt_err *err);
-/* Vibration modes of a view up to the first above its highest band; 0 without bands. */
-int mt_describe_modes_in_reach(const mt_workspace *fresh, int view);
 /* describe_robust.c, nothing without tolerances: what modes and expressions do over the
  * tolerances of fresh's design, once its views are solved. */
 mt_status mt_describe_ranges(mt_workspace *fresh, mt_err *err);

@@ -197,26 +197,6 @@ mt_status mt_describe_avoid_goals(mt_workspace *fresh, mt_result *result,
     return MT_OK;
 }
 
-int mt_describe_modes_in_reach(const mt_workspace *fresh, int view)
-{
-    const mt_modes *const modes = &fresh->views[view].analysis->modes;
-    int n = 0;
-    for (int c = 0; c < fresh->c->n_clears; c++) {
-        const mt_bands *const bands = &fresh->c->clears[c].bands;
-        if (fresh->c->clears[c].view != view || bands->n == 0) {
-            continue;
-        }
-        const double top = bands->items[bands->n - 1].upper_hz;
-        for (int i = 0; i < modes->count; i++) {
-            n += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
-            if (modes->kind[i] == MT_MODE_FLEXIBLE && mt_modal_hz(modes, i) > top) {
-                break; /* the first above all bands still says how far it stays away */
-            }
-        }
-    }
-    return n;
-}
-
 typedef struct listing {
     const mt_workspace *fresh;
     int view;
@@ -291,7 +271,7 @@ static mt_status list_clear(mt_workspace *fresh, const mt_clear *c, int *below,
 {
     const mt_view_work *const view = &fresh->views[c->view];
     const mt_modes *const modes = &view->analysis->modes;
-    const int count = mt_describe_modes_in_reach(fresh, c->view);
+    const int count = mt_clears_reach(fresh, c->view);
     const listing l = {.fresh = fresh,
                        .view = c->view,
                        .result = result,
@@ -316,7 +296,7 @@ mt_status mt_describe_clearances(mt_workspace *fresh, mt_result *result, mt_reco
     size_t most = 0;
     size_t bands = 0;
     for (int i = 0; i < fresh->c->n_clears; i++) {
-        most += 2 * (size_t)mt_describe_modes_in_reach(fresh, fresh->c->clears[i].view);
+        most += 2 * (size_t)mt_clears_reach(fresh, fresh->c->clears[i].view);
         bands += (size_t)fresh->c->clears[i].bands.n;
     }
     int *const below = mt_arena_int(&fresh->mem, bands);

@@ -72,7 +72,7 @@ static mt_status describe_mode(const listing *l, int index, mt_result_frequency 
     }
     f->recommended_hz = mt_modal_hz(&a->modes, pos);
     const mt_robust_range *const range =
-        mt_robust_hz(l->fresh, (int)(l->view - l->fresh->views), index);
+        mt_ranges_hz(mt_robust_known(l->fresh), (int)(l->view - l->fresh->views), index);
     f->lowest_hz = range != NULL ? range->value[MT_LOWEST] : nan("");
     f->highest_hz = range != NULL ? range->value[MT_HIGHEST] : nan("");
     f->residual = a->modes.residual[pos];
@@ -164,7 +164,7 @@ static mt_status count_modes(mt_workspace *fresh, int v, int *count, mt_err *err
         }
         wanted = index > wanted ? index : wanted;
     }
-    const int in_reach = mt_describe_modes_in_reach(fresh, v);
+    const int in_reach = mt_clears_reach(fresh, v);
     wanted = in_reach > wanted ? in_reach : wanted;
     *count = wanted < flexible ? wanted : flexible;
     return MT_OK;

@@ -7,8 +7,6 @@
 #include "problem/goal_frequency.h"
 #include "problem/robust.h"
 
-/* Modes of a configuration that the frequency table lists beyond those that goals name. */
-enum { LISTED_MODES = 4 };
 static const double PERCENT = 100.0;
 
 mt_status mt_describe_ranges(mt_workspace *fresh, mt_err *err)
@@ -16,22 +14,11 @@ mt_status mt_describe_ranges(mt_workspace *fresh, mt_err *err)
     if (fresh->c->robust == NULL) {
         return MT_OK;
     }
-    int *const modes = mt_arena_int(&fresh->mem, (size_t)fresh->c->n_views + 1);
+    mt_ranges *const ranges = mt_arena_alloc(&fresh->mem, 1, sizeof *ranges);
     MT_TRY(mt_arena_check(&fresh->mem, err));
-    for (int i = 0; i < fresh->p->n_demands; i++) {
-        const mt_demand *const d = &fresh->p->demands[i];
-        if (d->view >= 0) {
-            const int most = d->mode > LISTED_MODES ? d->mode : LISTED_MODES;
-            modes[d->view] = most > modes[d->view] ? most : modes[d->view];
-        }
-    }
-    for (int i = 0; i < fresh->c->n_clears; i++) {
-        const int view = fresh->c->clears[i].view;
-        const int reach = mt_describe_modes_in_reach(fresh, view) + 1;
-        const int most = reach > LISTED_MODES ? reach : LISTED_MODES;
-        modes[view] = most > modes[view] ? most : modes[view];
-    }
-    return mt_robust_ranges(fresh, modes, err);
+    MT_TRY(mt_robust_ranges(fresh, &fresh->mem, ranges, err));
+    fresh->robust->ranges = ranges;
+    return MT_OK;
 }
 
 /* How far a range falls short of a limit, relatively; negative: room is left. NaN where there
@@ -90,14 +77,14 @@ static verdict judge(const mt_demand *d, const mt_robust_range *r)
 mt_status mt_describe_worst(mt_workspace *fresh, const mt_demand *d, mt_result *result,
                             mt_result_goal *g, double *violation, double *percent, mt_err *err)
 {
-    if (fresh->robust == NULL || d->row_res >= 0) {
-        return MT_OK;
+    const mt_ranges *const known = mt_robust_known(fresh);
+    if (known == NULL || d->row_res >= 0) {
+        return MT_OK; /* without tolerances, or the design itself could not be evaluated */
     }
-    const mt_robust_range *const r = d->view >= 0
-                                         ? mt_robust_hz(fresh, d->view, d->mode)
-                                         : &fresh->robust->number[d - fresh->p->demands];
-    if (r == NULL || r->at[MT_LOWEST] == NULL) {
-        return MT_OK; /* the design itself could not be evaluated */
+    const mt_robust_range *const r = d->view >= 0 ? mt_ranges_hz(known, d->view, d->mode)
+                                                  : &known->number[d - fresh->p->demands];
+    if (r == NULL) {
+        return MT_OK;
     }
     const verdict v = judge(d, r);
     if (d->row_eq < 0) {
@@ -115,7 +102,7 @@ mt_status mt_describe_worst(mt_workspace *fresh, const mt_demand *d, mt_result *
 double mt_describe_worst_hz(const mt_workspace *fresh, int view, int mode, const mt_band *band,
                             double hz, const double **at)
 {
-    const mt_robust_range *const r = mt_robust_hz(fresh, view, mode);
+    const mt_robust_range *const r = mt_ranges_hz(mt_robust_known(fresh), view, mode);
     const double middle = sqrt(fmax(band->lower_hz, 0.0) * band->upper_hz);
     *at = NULL;
     if (r == NULL) {

@@ -49,8 +49,8 @@ static mt_status confirm_corners(mt_workspace *fresh, const mt_clear *c, mt_resu
 {
     mt_analysis *const a = fresh->views[c->view].analysis;
     const mt_analysis_options opt = mt_analysis_options_default();
-    const mt_robust_range *const range = mt_robust_hz(fresh, c->view, 1);
-    *confirmed = *confirmed && range != NULL && mt_robust_proven(fresh);
+    const mt_robust_range *const range = mt_ranges_hz(mt_robust_known(fresh), c->view, 1);
+    *confirmed = *confirmed && range != NULL && mt_ranges_proven(mt_robust_known(fresh));
     for (int side = 0; side < MT_ROBUST_SIDES && *confirmed; side++) {
         MT_TRY(mt_analysis_solve(a, range->at[side], &opt, err));
         MT_TRY(confirm_here(fresh, c, result, confirmed, err));

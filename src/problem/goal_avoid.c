@@ -314,3 +314,23 @@ double mt_clears_room(const mt_workspace *w)
     }
     return room;
 }
+
+int mt_clears_reach(const mt_workspace *w, int view)
+{
+    const mt_modes *const modes = &w->views[view].analysis->modes;
+    int n = 0;
+    for (int c = 0; c < w->c->n_clears; c++) {
+        const mt_bands *const bands = &w->c->clears[c].bands;
+        if (w->c->clears[c].view != view || bands->n == 0) {
+            continue;
+        }
+        const double top = bands->items[bands->n - 1].upper_hz;
+        for (int i = 0; i < modes->count; i++) {
+            n += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
+            if (modes->kind[i] == MT_MODE_FLEXIBLE && mt_modal_hz(modes, i) > top) {
+                break; /* the first above all bands still says how far it stays away */
+            }
+        }
+    }
+    return n;
+}

@@ -32,5 +32,8 @@ int mt_clear_row_count(const mt_case *c, const int *below);
 double mt_clear_room(const mt_workspace *w, const mt_clear *c);
 /* The least of all clears; infinite without bands, NaN where one of them has none. */
 double mt_clears_room(const mt_workspace *w);
+/* Vibration modes of a view, which has been solved, up to the first above its highest band; 0
+ * without bands. */
+int mt_clears_reach(const mt_workspace *w, int view);
 
 #endif

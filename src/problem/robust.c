@@ -334,20 +334,15 @@ mt_status mt_robust_work_init(mt_workspace *w, mt_err *err)
 {
     const size_t n = (size_t)w->p->n;
     const size_t count = (size_t)w->p->program.count;
-    const size_t views = (size_t)w->p->n_views;
     if (!any_tolerance(w->p)) {
         return MT_OK;
     }
     mt_robust_work *const r = mt_arena_alloc(&w->mem, 1, sizeof *r);
     MT_TRY(mt_arena_check(&w->mem, err));
-    *r = (mt_robust_work){
-        .x = mt_arena_f64(&w->mem, n, 1),
-        .slope = mt_arena_f64(&w->mem, n, 1),
-        .value = mt_arena_f64(&w->mem, count, 1),
-        .grad = mt_arena_f64(&w->mem, count, n),
-        .n_ranges = mt_arena_int(&w->mem, views),
-        .hz = mt_arena_alloc(&w->mem, views, sizeof(mt_robust_range *)),
-        .number = mt_arena_alloc(&w->mem, (size_t)w->p->n_demands, sizeof *r->number)};
+    *r = (mt_robust_work){.x = mt_arena_f64(&w->mem, n, 1),
+                          .slope = mt_arena_f64(&w->mem, n, 1),
+                          .value = mt_arena_f64(&w->mem, count, 1),
+                          .grad = mt_arena_f64(&w->mem, count, n)};
     w->robust = r;
     return mt_arena_check(&w->mem, err);
 }

@@ -21,11 +21,12 @@
  *         gravity loads the mechanism) stands at either end, in all
  *     combinations while there are few of them, and the design itself is judged as well.
  * Without any of the second kind the corners are the worst there is, at every design: two of
- * them, exact. Otherwise they are samples, and a worse point between them is told of the design
- * that the search ends with, not searched around.
+ * them, exact. Otherwise they are samples. Then a design that the search ends with is judged
+ * over its own tolerances (mt_robust_ranges): there more signs are proven, and where they are
+ * not, the worst is searched within. A point that is worse than the corners becomes one more of
+ * them, and the search goes on from there (robust_cut.h).
  *
- * What is reported of a design is found anew there (mt_robust_ranges): over its own tolerances
- * alone more signs are proven, and where they are not, the worst is searched within.
+ * What is reported of a design is found anew in the same way.
  *
  * The misfit and the objectives are those of the design itself, but the clearance. A target (or
  * "equals") is met by the design itself; with a "tolerance_percent" of its own it is a range,
@@ -75,15 +76,23 @@ typedef struct mt_robust {
     double *upper;
 } mt_robust;
 
+/* The same of all numbers. */
+typedef struct mt_ranges {
+    int n_views;             /* of the problem */
+    int n_limits;            /* n_demands */
+    int *n;                  /* [n_views] */
+    mt_robust_range **hz;    /* [n_views] of its vibration modes, [n]; of a view that matters */
+    mt_robust_range *number; /* [n_limits] of limits on expressions */
+    long evaluations;        /* analyses that it took */
+} mt_ranges;
+
 /* Of a workspace. */
 typedef struct mt_robust_work {
     double *x;               /* [n] work */
     double *slope;           /* [n] work */
     double *value;           /* [program.count] work */
     double *grad;            /* program.count rows of n: work */
-    int *n_ranges;           /* [n_views of the problem] after mt_robust_ranges */
-    mt_robust_range **hz;    /* [n_views] of its vibration modes, [n_ranges] */
-    mt_robust_range *number; /* [n_demands] of limits */
+    const mt_ranges *ranges; /* of the design that is described; NULL: not known */
 } mt_robust_work;
 
 /* c->robust (NULL where no variable has a tolerance), in mem: adds rows to `in` behind those of
@@ -112,21 +121,27 @@ bool mt_robust_at_corner(const mt_case *c, int i);
 /* The limit [Hz] that a row sets a frequency, of a band without the clearance; NaN: it is one
  * on an expression. */
 double mt_robust_limit_hz(const mt_case *c, const mt_robust_row *row);
+/* Room of the row where the number that it limits is `value`: relative, a logarithm of
+ * frequencies; negative: it falls short. Without the clearance. */
+double mt_robust_row_room(const mt_case *c, const mt_robust_row *row, double value);
 /* mt_clear_room over all corners, or over the ranges where they are known: modes are paired by
  * their index. */
 double mt_robust_room(const mt_workspace *w, const mt_clear *c);
 /*
- * robust_range.c: what the vibration modes of each view, and the expressions of all limits, do
- * over the tolerances of the design at w->x, from fresh analyses. Proven where enclosures over
- * these tolerances show every sign; else sampled: corners, points within, and for the first
- * modes[view] descent from the best of them (a view with 0 is left out). Into w->robust. Cost:
- * two analyses where proven, else some hundreds.
+ * robust_range.c: what the vibration modes of each view that goals or bands look at, and the
+ * expressions of all limits, do over the tolerances of the design at w->x, from fresh analyses;
+ * after the views have been solved there. Proven where enclosures over these tolerances show
+ * every sign; else sampled: corners, points within, and for the first modes (those that goals
+ * name, that bands reach, and four at least) descent from the best of them. In mem. Cost: two
+ * analyses where proven, else some hundreds.
  */
-mt_status mt_robust_ranges(mt_workspace *w, const int *modes, mt_err *err);
+mt_status mt_robust_ranges(mt_workspace *w, mt_arena *mem, mt_ranges *out, mt_err *err);
+/* Of vibration mode `mode` of a view; NULL: not computed. r may be NULL, as below. */
+const mt_robust_range *mt_ranges_hz(const mt_ranges *r, int view, int mode);
+/* Of the design that is described with w. */
+const mt_ranges *mt_robust_known(const mt_workspace *w);
 /* Are all ranges proven? */
-bool mt_robust_proven(const mt_workspace *w);
-/* Of vibration mode `mode` of a view; NULL: not computed. */
-const mt_robust_range *mt_robust_hz(const mt_workspace *w, int view, int mode);
+bool mt_ranges_proven(const mt_ranges *r);
 
 /* robust_sample.c: the least and greatest of m numbers over a box, sampled. */
 typedef struct mt_robust_probe {

@@ -125,6 +125,17 @@ double mt_robust_limit_hz(const mt_case *c, const mt_robust_row *row)
     return c->p->demands[row->demand].view >= 0 ? limit_of(c->p, row) : nan("");
 }
 
+double mt_robust_row_room(const mt_case *c, const mt_robust_row *row, double value)
+{
+    const double sign = row->side == MT_LOWEST ? 1.0 : -1.0;
+    const double limit_hz = mt_robust_limit_hz(c, row);
+    if (MT_HAS(limit_hz)) {
+        return sign * -mt_log_ratio(limit_hz, value);
+    }
+    const double limit = limit_of(c->p, row);
+    return sign * (value - limit) / mt_measure_unit(c->p->demands[row->demand].measure, limit);
+}
+
 static mt_status demand_value(mt_workspace *w, const mt_robust_row *row, bool with_gradient,
                               quantity *q, mt_err *err)
 {
@@ -175,13 +186,14 @@ mt_status mt_robust_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out
 static bool span_of(const mt_workspace *w, int view, int k, double *low, double *high)
 {
     const int n_corners = w->c->robust->views[view].n;
-    const mt_robust_range *const range = mt_robust_hz(w, view, k);
+    const mt_ranges *const known = mt_robust_known(w);
+    const mt_robust_range *const range = mt_ranges_hz(known, view, k);
     if (range != NULL) {
         *low = range->value[MT_LOWEST];
         *high = range->value[MT_HIGHEST];
         return true;
     }
-    if (w->robust->n_ranges[view] > 0) {
+    if (known != NULL && known->n[view] > 0) {
         return false;
     }
     *low = HUGE_VAL;

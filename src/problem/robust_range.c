@@ -6,24 +6,34 @@
 #include "problem/robust.h"
 #include "prove/enclosure.h"
 
+/* Modes of a view that are followed to their worst beside those that goals name: the frequency
+ * table lists them. */
+enum { FIRST_MODES = 4 };
+
 /* The tolerances of the design at w->x. */
 typedef struct box {
+    mt_workspace *w;
+    mt_arena *mem;
     double *lo; /* [n] */
     double *hi;
     double *soft; /* work */
     double *stiff;
     int *effects;
+    mt_ranges *out;
 } box;
 
-static mt_status make_box(mt_workspace *w, box *b, mt_err *err)
+static mt_status make_box(mt_workspace *w, mt_arena *mem, mt_ranges *out, box *b, mt_err *err)
 {
     const size_t n = (size_t)w->p->n;
-    *b = (box){.lo = mt_arena_f64(&w->mem, n, 1),
-               .hi = mt_arena_f64(&w->mem, n, 1),
-               .soft = mt_arena_f64(&w->mem, n, 1),
-               .stiff = mt_arena_f64(&w->mem, n, 1),
-               .effects = mt_arena_int(&w->mem, n)};
-    MT_TRY(mt_arena_check(&w->mem, err));
+    *b = (box){.w = w,
+               .mem = mem,
+               .lo = mt_arena_f64(mem, n, 1),
+               .hi = mt_arena_f64(mem, n, 1),
+               .soft = mt_arena_f64(mem, n, 1),
+               .stiff = mt_arena_f64(mem, n, 1),
+               .effects = mt_arena_int(mem, n),
+               .out = out};
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < w->p->n; i++) {
         const double half = mt_robust_tolerance(w->p, i) * fabs(w->x[i]);
         b->lo[i] = w->x[i] - half;
@@ -34,15 +44,16 @@ static mt_status make_box(mt_workspace *w, box *b, mt_err *err)
 
 /* The corners of the lowest and the highest value by what raising each input does; false: one
  * of them does both. */
-static bool find_corners(const mt_workspace *w, box *b)
+static bool find_corners(const box *b)
 {
-    for (int i = 0; i < w->p->n; i++) {
+    const double *const x = b->w->x;
+    for (int i = 0; i < b->w->p->n; i++) {
         if (b->effects[i] == (MT_STIFFENS | MT_SOFTENS) && b->lo[i] < b->hi[i]) {
             return false;
         }
         const bool falls = b->effects[i] == MT_SOFTENS;
-        b->soft[i] = b->effects[i] == 0 ? w->x[i] : falls ? b->hi[i] : b->lo[i];
-        b->stiff[i] = b->effects[i] == 0 ? w->x[i] : falls ? b->lo[i] : b->hi[i];
+        b->soft[i] = b->effects[i] == 0 ? x[i] : falls ? b->hi[i] : b->lo[i];
+        b->stiff[i] = b->effects[i] == 0 ? x[i] : falls ? b->lo[i] : b->hi[i];
     }
     return true;
 }
@@ -63,18 +74,18 @@ static mt_status settle(const mt_robust_probe *q, const box *b, double *value,
     return MT_OK;
 }
 
-static mt_status range_of(mt_workspace *w, mt_robust_probe *q, box *b, bool proven,
-                          mt_robust_range *out, mt_err *err)
+static mt_status range_of(const box *b, mt_robust_probe *q, bool proven, mt_robust_range *out,
+                          mt_err *err)
 {
-    double *const value = mt_arena_f64(&w->mem, (size_t)q->m, 1);
-    MT_TRY(mt_arena_check(&w->mem, err));
+    double *const value = mt_arena_f64(b->mem, (size_t)q->m, 1);
+    MT_TRY(mt_arena_check(b->mem, err));
     q->lo = b->lo;
     q->hi = b->hi;
     for (int k = 0; k < q->m; k++) {
-        MT_TRY(mt_robust_range_init(w->p->n, &w->mem, &out[k], err));
+        MT_TRY(mt_robust_range_init(b->w->p->n, b->mem, &out[k], err));
     }
-    return proven && find_corners(w, b) ? settle(q, b, value, out, err)
-                                        : mt_robust_sample(q, &w->mem, out, err);
+    return proven && find_corners(b) ? settle(q, b, value, out, err)
+                                     : mt_robust_sample(q, b->mem, out, err);
 }
 
 typedef struct modes_of {
@@ -104,14 +115,12 @@ static mt_status slope_modes(void *context, int k, double *slope, mt_err *err)
                     : mt_fail(err, MT_E_DOMAIN, "no such mode");
 }
 
-static mt_status range_of_modes(mt_workspace *w, int view, int modes, mt_analysis *a, box *b,
-                                mt_err *err)
+static mt_status range_of_modes(const box *b, int view, int modes, mt_analysis *a, mt_err *err)
 {
-    mt_robust_work *const r = w->robust;
     char reason[MT_REASON_SIZE] = "";
     mt_enclosure *e = NULL;
-    modes_of c = {.a = a, .m = r->n_ranges[view]};
-    mt_robust_probe q = {.n = w->p->n,
+    modes_of c = {.a = a, .m = b->out->n[view]};
+    mt_robust_probe q = {.n = b->w->p->n,
                          .m = c.m,
                          .n_descend = modes,
                          .context = &c,
@@ -123,19 +132,20 @@ static mt_status range_of_modes(mt_workspace *w, int view, int modes, mt_analysi
     }
     const bool enclosed = e != NULL;
     mt_enclosure_delete(e);
-    return range_of(w, &q, b, enclosed, r->hz[view], err);
+    return range_of(b, &q, enclosed, b->out->hz[view], err);
 }
 
-static mt_status range_view(mt_workspace *w, int view, int modes, box *b, mt_err *err)
+static mt_status range_view(const box *b, int view, int modes, mt_err *err)
 {
-    mt_robust_work *const r = w->robust;
+    mt_ranges *const r = b->out;
     mt_analysis *a = NULL;
-    mt_status rc = mt_view_analyse(w->views[view].of, w->x, &a, err);
+    mt_status rc = mt_view_analyse(b->w->views[view].of, b->w->x, &a, err);
     const int all = rc == MT_OK ? mt_modal_vibrations(&a->modes) : 0;
-    r->hz[view] = mt_arena_alloc(&w->mem, (size_t)all, sizeof *r->hz[view]);
-    r->n_ranges[view] = r->hz[view] == NULL ? 0 : all;
-    rc = rc == MT_OK ? mt_arena_check(&w->mem, err) : rc;
-    rc = rc == MT_OK ? range_of_modes(w, view, modes, a, b, err) : rc;
+    r->hz[view] = mt_arena_alloc(b->mem, (size_t)all, sizeof *r->hz[view]);
+    r->n[view] = r->hz[view] == NULL ? 0 : all;
+    rc = rc == MT_OK ? mt_arena_check(b->mem, err) : rc;
+    rc = rc == MT_OK ? range_of_modes(b, view, modes, a, err) : rc;
+    r->evaluations += a != NULL ? a->solves : 0;
     mt_analysis_delete(a);
     return rc;
 }
@@ -172,20 +182,21 @@ static mt_status slope_number(void *context, int k, double *slope, mt_err *err)
 }
 
 /* All limits on expressions, of which one interval evaluation encloses all slopes. */
-static mt_status range_numbers(mt_workspace *w, box *b, mt_err *err)
+static mt_status range_numbers(const box *b, mt_err *err)
 {
-    const size_t n = (size_t)w->p->n;
-    const size_t count = (size_t)w->p->program.count;
-    double *const lo = mt_arena_f64(&w->mem, count, 1);
-    double *const hi = mt_arena_f64(&w->mem, count, 1);
-    double *const dlo = mt_arena_f64(&w->mem, count, n);
-    double *const dhi = mt_arena_f64(&w->mem, count, n);
-    MT_TRY(mt_arena_check(&w->mem, err));
-    mt_program_interval_gradient(&w->p->program, b->lo, b->hi, lo, hi, dlo, dhi);
-    for (int k = 0; k < w->p->n_demands; k++) {
-        const mt_demand *const d = &w->p->demands[k];
-        number_of c = {.w = w, .node = d->node};
-        mt_robust_probe q = {.n = w->p->n,
+    const mt_problem *const p = b->w->p;
+    const size_t n = (size_t)p->n;
+    const size_t count = (size_t)p->program.count;
+    double *const lo = mt_arena_f64(b->mem, count, 1);
+    double *const hi = mt_arena_f64(b->mem, count, 1);
+    double *const dlo = mt_arena_f64(b->mem, count, n);
+    double *const dhi = mt_arena_f64(b->mem, count, n);
+    MT_TRY(mt_arena_check(b->mem, err));
+    mt_program_interval_gradient(&p->program, b->lo, b->hi, lo, hi, dlo, dhi);
+    for (int k = 0; k < p->n_demands; k++) {
+        const mt_demand *const d = &p->demands[k];
+        number_of c = {.w = b->w, .node = d->node};
+        mt_robust_probe q = {.n = p->n,
                              .m = 1,
                              .n_descend = 1,
                              .context = &c,
@@ -194,44 +205,77 @@ static mt_status range_numbers(mt_workspace *w, box *b, mt_err *err)
         if (d->quantity != MT_QUANTITY_EXPRESSION) {
             continue;
         }
-        for (int i = 0; i < w->p->n; i++) {
+        for (int i = 0; i < p->n; i++) {
             const size_t at = ((size_t)d->node * n) + (size_t)i;
             b->effects[i] =
                 (dhi[at] > 0.0 ? MT_STIFFENS : 0) | (dlo[at] < 0.0 ? MT_SOFTENS : 0);
         }
-        MT_TRY(range_of(w, &q, b, true, &w->robust->number[k], err));
+        MT_TRY(range_of(b, &q, true, &b->out->number[k], err));
     }
     return MT_OK;
 }
 
-mt_status mt_robust_ranges(mt_workspace *w, const int *modes, mt_err *err)
+/* Of each view; 0: nobody looks at it. */
+static void count_modes(const mt_workspace *w, int *modes)
 {
-    box b;
-    MT_TRY(make_box(w, &b, err));
-    for (int i = 0; i < w->p->n_views; i++) {
-        if (modes[i] > 0) {
-            MT_TRY(range_view(w, i, modes[i], &b, err));
+    const mt_problem *const p = w->p;
+    for (int i = 0; i < p->n_demands; i++) {
+        const mt_demand *const d = &p->demands[i];
+        if (d->view >= 0) {
+            const int most = d->mode > FIRST_MODES ? d->mode : FIRST_MODES;
+            modes[d->view] = most > modes[d->view] ? most : modes[d->view];
         }
     }
-    return range_numbers(w, &b, err);
+    for (int i = 0; i < p->n_clears; i++) {
+        const int view = p->clears[i].view;
+        const int reach = mt_clears_reach(w, view) + 1;
+        const int most = reach > FIRST_MODES ? reach : FIRST_MODES;
+        modes[view] = most > modes[view] ? most : modes[view];
+    }
 }
 
-bool mt_robust_proven(const mt_workspace *w)
+mt_status mt_robust_ranges(mt_workspace *w, mt_arena *mem, mt_ranges *out, mt_err *err)
 {
-    const mt_robust_work *const r = w->robust;
-    bool proven = true;
-    for (int i = 0; i < w->p->n_views; i++) {
-        proven = proven && (r->n_ranges[i] == 0 || r->hz[i][0].proven);
+    const mt_problem *const p = w->p;
+    const size_t n_views = (size_t)p->n_views;
+    box b;
+    int *const modes = mt_arena_int(mem, n_views);
+    *out =
+        (mt_ranges){.n_views = p->n_views,
+                    .n_limits = p->n_demands,
+                    .n = mt_arena_int(mem, n_views),
+                    .hz = mt_arena_alloc(mem, n_views, sizeof(mt_robust_range *)),
+                    .number = mt_arena_alloc(mem, (size_t)p->n_demands, sizeof *out->number)};
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(make_box(w, mem, out, &b, err));
+    count_modes(w, modes);
+    for (int i = 0; i < p->n_views; i++) {
+        if (modes[i] > 0) {
+            MT_TRY(range_view(&b, i, modes[i], err));
+        }
     }
-    for (int k = 0; k < w->p->n_demands; k++) {
-        const bool limit = w->p->demands[k].quantity == MT_QUANTITY_EXPRESSION;
-        proven = proven && (!limit || r->number[k].proven);
+    return range_numbers(&b, err);
+}
+
+bool mt_ranges_proven(const mt_ranges *r)
+{
+    bool proven = r != NULL;
+    for (int i = 0; proven && i < r->n_views; i++) {
+        proven = r->n[i] == 0 || r->hz[i][0].proven;
+    }
+    for (int k = 0; proven && k < r->n_limits; k++) {
+        const bool limit = r->number[k].at[MT_LOWEST] != NULL;
+        proven = !limit || r->number[k].proven;
     }
     return proven;
 }
 
-const mt_robust_range *mt_robust_hz(const mt_workspace *w, int view, int mode)
+const mt_ranges *mt_robust_known(const mt_workspace *w)
 {
-    const mt_robust_work *const r = w->robust;
-    return r != NULL && mode >= 1 && mode <= r->n_ranges[view] ? &r->hz[view][mode - 1] : NULL;
+    return w->robust != NULL ? w->robust->ranges : NULL;
+}
+
+const mt_robust_range *mt_ranges_hz(const mt_ranges *r, int view, int mode)
+{
+    return r != NULL && mode >= 1 && mode <= r->n[view] ? &r->hz[view][mode - 1] : NULL;
 }

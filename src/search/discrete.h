@@ -57,7 +57,8 @@ typedef struct mt_combination {
     bool judged;
     bool feasible;
     bool singular;
-    bool followed; /* from position to position of its drives, and judged by that too */
+    /* from position to position of its drives and over its tolerances, and judged by that */
+    bool followed;
     long evals;
     int starts;
     mt_stop stop;
@@ -102,7 +103,8 @@ mt_status mt_discrete_undetermined(mt_discrete *d, const mt_combination *best,
  * (nothing of c is changed); memory of out->undetermined is mem's. */
 mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_arena *mem,
                                  mt_nlp_result *out, mt_err *err);
-/* Judge a feasible combination over the range of motion (motion.h), once; nothing where it is
+/* Judge a feasible combination over the range of motion (motion.h) and over its tolerances
+ * (problem/robust_cut.h), once; nothing where it is
  * mixed (its own search has done so). It may be feasible no more. */
 mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err);
 /* Is a ahead of b? Feasible ones first, by the objectives; the others by squares. */

@@ -10,6 +10,7 @@
 #include "base/workers.h"
 #include "problem/goal_avoid.h"
 #include "problem/objective.h"
+#include "problem/robust_cut.h"
 #include "search/discrete.h"
 #include "search/gaps.h"
 #include "search/motion.h"
@@ -136,18 +137,41 @@ static mt_status follow(mt_workspace *w, mt_combination *c, mt_arena *mem, mt_er
     return MT_OK;
 }
 
+/* The worst within the tolerances of the design at c, where corners are samples. */
+static mt_status judge_tolerances(mt_workspace *w, mt_combination *c, mt_arena *mem,
+                                  mt_err *err)
+{
+    mt_robust_cuts cuts = {.n = 0};
+    MT_TRY(mt_robust_judge(w, c->t, mem, &cuts, err));
+    c->evals += cuts.evaluations;
+    if (!mt_is_met(cuts.missed.violation, 1.0)) {
+        const double more = cuts.missed.violation;
+        c->missed.squares += cuts.missed.squares;
+        c->missed.violation = c->missed.violation > more ? c->missed.violation : more;
+        c->feasible = false;
+    }
+    for (int k = 0; k < w->c->n_aims; k++) {
+        if (mt_objective_is(w->c->aims[k].type, MT_BANDS)) {
+            c->f[k] = fmax(c->f[k], -cuts.band_room);
+        }
+    }
+    return MT_OK;
+}
+
 mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err)
 {
     mt_workspace *const w = d->workers[0];
     mt_arena mem;
     mt_err own = {0};
-    if (d->mixed || !c->feasible || c->followed || !mt_family_any(w->p)) {
+    const bool sampled = mt_robust_is_sampled(w->c);
+    if (d->mixed || !c->feasible || c->followed || (!mt_family_any(w->p) && !sampled)) {
         return MT_OK;
     }
     c->followed = true;
     MT_TRY(mt_arena_init(&mem, 0, err));
     mt_status rc = mt_workspace_eval(w, c->t, false, &d->values[0], &own);
-    rc = rc == MT_OK ? follow(w, c, &mem, &own) : rc;
+    rc = rc == MT_OK && mt_family_any(w->p) ? follow(w, c, &mem, &own) : rc;
+    rc = rc == MT_OK && sampled ? judge_tolerances(w, c, &mem, &own) : rc;
     mt_arena_free(&mem);
     if (rc == MT_E_INTERRUPTED) {
         d->stop = MT_STOP_USER;
@@ -225,7 +249,7 @@ static mt_status search_closed(mt_workspace *w, mt_arena *mem, mt_combination *c
     int stage = 0;
     const bool bands = w->p->n_clears > 0;
     MT_TRY(bands ? mt_gaps_solve(&w, 1, mem, &gaps, err)
-                 : mt_search_designs(&w, 1, mem, &plain, &stage, &why, err));
+                 : mt_search_over_tolerances(&w, 1, mem, &plain, &stage, &why, err));
     const int n = bands ? gaps.n_solutions : plain.n_solutions;
     c->evals = bands ? gaps.evals : plain.evals;
     c->starts = bands ? gaps.starts : plain.starts;
@@ -262,7 +286,7 @@ mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_are
     const bool bands = d->p->n_clears > 0;
     if (rc == MT_OK) {
         rc = bands ? mt_gaps_solve(&w, 1, mem, &gaps, err)
-                   : mt_search_designs(&w, 1, mem, out, &stage, &why, err);
+                   : mt_search_over_tolerances(&w, 1, mem, out, &stage, &why, err);
     }
     if (bands) {
         *out = (mt_nlp_result){.evals = gaps.evals,

@@ -16,6 +16,7 @@
 #include "nlp/merit.h"
 #include "problem/goal_avoid.h"
 #include "problem/objective.h"
+#include "problem/robust_cut.h"
 #include "search/motion.h"
 #include "search/search.h"
 
@@ -30,6 +31,7 @@ typedef struct slot {
     int starts;
     int n_cuts;
     mt_cut *cuts; /* [CUTS_MOST], owned */
+    mt_robust_cuts corners;
 } slot;
 
 typedef struct job {
@@ -137,6 +139,24 @@ static mt_status follow_best(slot *s, mt_workspace *w, bool last, int *added, mt
     return MT_OK;
 }
 
+/* The best design over the range of motion and over its tolerances; *again: with one more cut
+ * at least. */
+static mt_status judge_best(slot *s, mt_workspace *w, bool last, bool *again, mt_err *err)
+{
+    mt_nlp_solution *const best = &s->found.solutions[0];
+    int added = 0;
+    bool worse = false;
+    if (best->feasible && mt_family_any(w->p)) {
+        MT_TRY(follow_best(s, w, last, &added, err));
+    }
+    if (best->feasible && mt_robust_is_sampled(w->c)) {
+        MT_TRY(mt_search_judge(w, last, &s->mem, &s->corners, best, &worse, err));
+        s->evals += s->corners.evaluations;
+    }
+    *again = added > 0 || worse;
+    return MT_OK;
+}
+
 /*
  * The least clearance z is free to be negative, so that a search can start anywhere; a design
  * that ends with z < 0 has a mode on the wrong side of an edge: it is not of this kind, and
@@ -166,9 +186,12 @@ static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int
     const int *const below = j->candidates->below + ((ptrdiff_t)k * j->p->n_bands);
     mt_nlp_options options = j->options;
     mt_case c;
-    int added = 0;
     *again = false;
-    MT_TRY(mt_case_in_gap(j->c, below, s->n_cuts, s->cuts, w, &s->mem, &c, why));
+    mt_case held = *j->c;
+    if (s->corners.n > 0) {
+        MT_TRY(mt_robust_add_cuts(j->c, &s->corners, &s->mem, &held.robust, why));
+    }
+    MT_TRY(mt_case_in_gap(&held, below, s->n_cuts, s->cuts, w, &s->mem, &c, why));
     options.starts =
         round > 1 && options.starts > CUT_STARTS ? (int)CUT_STARTS : options.starts;
     c.starts = options.starts;
@@ -190,11 +213,9 @@ static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int
     }
     s->evals += s->found.evals;
     s->starts += s->found.starts;
-    if (rc == MT_OK && s->found.n_solutions > 0 && s->found.solutions[0].feasible &&
-        s->found.stop != MT_STOP_USER && mt_family_any(j->p)) {
-        rc = follow_best(s, w, round + 1 == CUT_ROUNDS, &added, why);
+    if (rc == MT_OK && s->found.n_solutions > 0 && s->found.stop != MT_STOP_USER) {
+        rc = judge_best(s, w, round + 1 == CUT_ROUNDS, again, why);
     }
-    *again = added > 0;
     return rc;
 }
 

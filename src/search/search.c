@@ -24,10 +24,11 @@ static mt_nlp_options options_of(const mt_case *c)
     return opt;
 }
 
-static mt_status first_stage(mt_workspace *const *workers, int n_workers, mt_arena *mem,
-                             mt_nlp_result *out, mt_err *err)
+/* From many starts; from one design where `from` is not NULL. */
+static mt_status first_stage(mt_workspace *const *workers, int n_workers, const double *from,
+                             mt_arena *mem, mt_nlp_result *out, mt_err *err)
 {
-    const mt_nlp_options opt = options_of(workers[0]->c);
+    mt_nlp_options opt = options_of(workers[0]->c);
     mt_nlp nlp = mt_workspace_nlp(workers[0]);
     void **const contexts = mt_arena_alloc(mem, (size_t)n_workers, sizeof *contexts);
     MT_TRY(mt_arena_check(mem, err));
@@ -36,6 +37,11 @@ static mt_status first_stage(mt_workspace *const *workers, int n_workers, mt_are
     }
     nlp.n_workers = n_workers;
     nlp.contexts = contexts;
+    if (from != NULL) {
+        opt.starts = 1;
+        nlp.origin = from;
+        nlp.hint = NULL;
+    }
     return mt_nlp_solve(&nlp, &opt, mem, out, err);
 }
 
@@ -208,14 +214,30 @@ static mt_status later_stages(stages *s, int *stage, mt_err *err)
     return MT_OK;
 }
 
-mt_status mt_search_designs(mt_workspace *const *workers, int n_workers, mt_arena *mem,
-                            mt_nlp_result *out, int *stage, mt_err *why, mt_err *err)
+mt_status mt_search_rank(mt_workspace *ws, int stage, mt_arena *mem, mt_nlp_result *out,
+                         mt_err *err)
+{
+    const size_t n_aims = (size_t)ws->c->n_aims;
+    stages s = {.ws = ws, .first = ws->c, .mem = mem, .out = out};
+    s.f = mt_arena_f64(mem, n_aims, (size_t)out->n_solutions);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < out->n_solutions; i++) {
+        double *const f = s.f + ((size_t)i * n_aims);
+        MT_TRY(aims_at(&s, out->solutions[i].t, f, err));
+        out->solutions[i].f = f[stage];
+    }
+    rank(&s);
+    return MT_OK;
+}
+
+static mt_status search(mt_workspace *const *workers, int n_workers, const double *from,
+                        mt_arena *mem, mt_nlp_result *out, int *stage, mt_err *why, mt_err *err)
 {
     mt_workspace *const ws = workers[0];
     const mt_case *const c = ws->c;
     mt_err own = {.code = MT_OK};
     *stage = 0;
-    const mt_status rc = first_stage(workers, n_workers, mem, out, &own);
+    const mt_status rc = first_stage(workers, n_workers, from, mem, out, &own);
     if (mt_is_final(rc) || rc == MT_E_USAGE) {
         return mt_fail(err, rc, "%s", own.text);
     }
@@ -237,4 +259,17 @@ mt_status mt_search_designs(mt_workspace *const *workers, int n_workers, mt_aren
         return MT_OK;
     }
     return later == MT_OK ? mt_search_join_continua(ws, mem, out, err) : later;
+}
+
+mt_status mt_search_designs(mt_workspace *const *workers, int n_workers, mt_arena *mem,
+                            mt_nlp_result *out, int *stage, mt_err *why, mt_err *err)
+{
+    return search(workers, n_workers, NULL, mem, out, stage, why, err);
+}
+
+mt_status mt_search_from(mt_workspace *ws, const double *from, mt_arena *mem,
+                         mt_nlp_result *out, int *stage, mt_err *err)
+{
+    mt_err why = {.code = MT_OK};
+    return search(&ws, 1, from, mem, out, stage, &why, err);
 }

@@ -4,6 +4,8 @@
 
 #include "problem/workspace.h"
 
+struct mt_robust_cuts;
+
 /*
  * Search a problem for designs. The first objective from many starts (mt_nlp_solve); then, for
  * every design found, the next objective from there with the ones before it held (mt_aim_hold),
@@ -17,6 +19,28 @@
  */
 mt_status mt_search_designs(mt_workspace *const *workers, int n_workers, mt_arena *mem,
                             mt_nlp_result *out, int *stage, mt_err *why, mt_err *err);
+
+/*
+ * search_tolerances.c: the same, and every design is held over its tolerances where the corners
+ * of the case are samples (problem/robust_cut.h): what is worse within them becomes one more
+ * corner, and the search goes on from there, within its budget. A design that misses something
+ * even so is none where another one meets everything.
+ */
+mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers, mt_arena *mem,
+                                    mt_nlp_result *out, int *stage, mt_err *why, mt_err *err);
+/* Judge one design, in the case that w is set to: *again, where there are new cuts to go on
+ * with; without them, or the last time, a design that misses something is not feasible. */
+mt_status mt_search_judge(mt_workspace *w, bool last, mt_arena *mem,
+                          struct mt_robust_cuts *cuts, mt_nlp_solution *s, bool *again,
+                          mt_err *err);
+/* search.c: the stages of one search of the case that ws is set to, from the design at `from`
+ * alone. out->solutions[0] is what became of it, where there is any. */
+mt_status mt_search_from(mt_workspace *ws, const double *from, mt_arena *mem,
+                         mt_nlp_result *out, int *stage, mt_err *err);
+/* Rank designs by the objectives in their order, those that have become one once; `stage` is
+ * what their f becomes. */
+mt_status mt_search_rank(mt_workspace *ws, int stage, mt_arena *mem, mt_nlp_result *out,
+                         mt_err *err);
 
 /* Are designs at a[n] and b[n] one, as in the search itself? */
 bool mt_search_same(int n, const double *a, const double *b);

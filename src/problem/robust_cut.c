@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "problem/robust_cut.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/interrupt.h"
+
+/* Factors that differ by less are those of one corner: rounding of x (1 + tolerance) / x. */
+static const double SAME_FACTOR = 1e-12;
+
+/* View of what a row limits; -1: a limit on an expression. */
+static int view_of(const mt_case *c, const mt_robust_row *row)
+{
+    return row->demand >= 0 ? c->p->demands[row->demand].view : c->clears[row->at.clear].view;
+}
+
+static const mt_corner_set *set_of(const mt_case *c, int view, int demand)
+{
+    return view >= 0 ? &c->robust->views[view] : &c->robust->limits[demand];
+}
+
+/* Views of cuts of a motion are judged at their corners alone. */
+static bool is_judged(const mt_case *c, const mt_robust_row *row)
+{
+    const int view = view_of(c, row);
+    return view < c->p->n_views && !set_of(c, view, row->demand)->exact;
+}
+
+/* Do two rows hold one number on one side, at two corners? */
+static bool is_same(const mt_robust_row *a, const mt_robust_row *b)
+{
+    return a->demand == b->demand && a->side == b->side &&
+           (a->demand >= 0 || (a->at.clear == b->at.clear && a->at.band == b->at.band &&
+                               a->at.mode == b->at.mode));
+}
+
+bool mt_robust_is_sampled(const mt_case *c)
+{
+    for (int k = 0; c->robust != NULL && k < c->robust->n_rows; k++) {
+        if (is_judged(c, &c->robust->rows[k])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool same_factor(int n, const double *a, const double *b)
+{
+    for (int i = 0; i < n; i++) {
+        if (!(fabs(a[i] - b[i]) <= SAME_FACTOR)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* One more corner where the number of a row is worst, unless it is one already. */
+static mt_status add_cut(const mt_workspace *w, const mt_robust_row *row, const double *at,
+                         mt_arena *mem, mt_robust_cuts *cuts, mt_err *err)
+{
+    const mt_case *const c = w->c;
+    const int n = c->p->n;
+    const int view = view_of(c, row);
+    const mt_corner_set *const set = set_of(c, view, row->demand);
+    double *const factor = mt_arena_f64(mem, (size_t)n, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < n; i++) {
+        factor[i] = w->x[i] != 0.0 ? at[i] / w->x[i] : 1.0;
+    }
+    for (int k = 0; k < set->n; k++) {
+        const mt_corner *const known = &set->corners[k];
+        if (known->may[row->side] && same_factor(n, known->factor, factor)) {
+            return MT_OK;
+        }
+    }
+    for (int k = 0; k < cuts->n; k++) {
+        mt_robust_cut *const known = &cuts->items[k];
+        const bool own = known->view == view && (view >= 0 || known->demand == row->demand);
+        if (own && same_factor(n, known->factor, factor)) {
+            cuts->added += known->may[row->side] ? 0 : 1;
+            known->may[row->side] = true;
+            return MT_OK;
+        }
+    }
+    mt_robust_cut *const grown =
+        mt_arena_grow(mem, cuts->items, cuts->n, &cuts->room, sizeof *grown);
+    MT_TRY(mt_arena_check(mem, err));
+    cuts->items = grown;
+    grown[cuts->n] = (mt_robust_cut){.view = view, .demand = row->demand, .factor = factor};
+    grown[cuts->n++].may[row->side] = true;
+    cuts->added++;
+    return MT_OK;
+}
+
+/* The number that a row limits, over the tolerances; NULL: it is not there. */
+static const mt_robust_range *range_of(const mt_case *c, const mt_ranges *ranges,
+                                       const mt_robust_row *row)
+{
+    const int view = view_of(c, row);
+    const int mode = row->demand >= 0 ? c->p->demands[row->demand].mode : row->at.mode;
+    return view >= 0 ? mt_ranges_hz(ranges, view, mode) : &ranges->number[row->demand];
+}
+
+static mt_status judge(const mt_workspace *w, const mt_ranges *ranges, mt_arena *mem,
+                       mt_robust_cuts *cuts, mt_err *err)
+{
+    const mt_case *const c = w->c;
+    const mt_robust_row *before = NULL;
+    for (int k = 0; k < c->robust->n_rows; k++) {
+        const mt_robust_row *const row = &c->robust->rows[k];
+        const bool again = before != NULL && is_same(before, row);
+        before = row;
+        const mt_robust_range *const range =
+            again || !is_judged(c, row) ? NULL : range_of(c, ranges, row);
+        if (range == NULL) {
+            continue;
+        }
+        const double room = mt_robust_row_room(c, row, range->value[row->side]);
+        const double wanted = row->demand < 0 && c->clearance ? w->t[c->p->n] : 0.0;
+        mt_miss(&cuts->missed, mt_short_of(room), row->tolerance);
+        cuts->band_room = row->demand < 0 ? fmin(cuts->band_room, room) : cuts->band_room;
+        /* where it has no value no row leads on */
+        if (room - wanted < -row->tolerance) {
+            MT_TRY(add_cut(w, row, range->at[row->side], mem, cuts, err));
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_robust_judge(mt_workspace *w, const double *t, mt_arena *mem, mt_robust_cuts *cuts,
+                          mt_err *err)
+{
+    mt_arena own;
+    mt_ranges ranges;
+    mt_nlp_values v;
+    cuts->added = 0;
+    cuts->missed = (mt_missed){0.0, 0.0};
+    cuts->band_room = HUGE_VAL;
+    MT_TRY(mt_arena_init(&own, 0, err));
+    mt_status rc = mt_case_values_init(w->c, &own, &v, err);
+    rc = rc == MT_OK ? mt_workspace_eval(w, t, false, &v, err) : rc;
+    rc = rc == MT_OK ? mt_robust_ranges(w, &own, &ranges, err) : rc;
+    /* what is cut off has no value at some sample: nothing is known */
+    rc = rc == MT_OK ? mt_interrupt_check(w->p->study->model->interrupt, err) : rc;
+    rc = rc == MT_OK ? judge(w, &ranges, mem, cuts, err) : rc;
+    cuts->evaluations = rc == MT_OK ? 1 + ranges.evaluations : 1;
+    mt_arena_free(&own);
+    return rc;
+}
+
+/* The corners of one set, and those of its cuts. */
+static mt_status extend(const mt_case *c, const mt_robust_cuts *cuts, int view, int demand,
+                        mt_arena *mem, mt_corner_set *out, mt_err *err)
+{
+    const size_t n = (size_t)c->p->n;
+    const mt_corner_set *const set = set_of(c, view, demand);
+    *out = *set;
+    out->corners = mt_arena_alloc(mem, (size_t)set->n + (size_t)cuts->n, sizeof *out->corners);
+    MT_TRY(mt_arena_check(mem, err));
+    if (set->n > 0) {
+        memcpy(out->corners, set->corners, (size_t)set->n * sizeof *out->corners);
+    }
+    for (int k = 0; k < cuts->n; k++) {
+        const mt_robust_cut *const cut = &cuts->items[k];
+        if (cut->view != view || (view < 0 && cut->demand != demand)) {
+            continue;
+        }
+        mt_corner *const corner = &out->corners[out->n++];
+        *corner = (mt_corner){.factor = mt_arena_f64(mem, n, 1),
+                              .may = {cut->may[MT_LOWEST], cut->may[MT_HIGHEST]}};
+        MT_TRY(mt_arena_check(mem, err));
+        memcpy(corner->factor, cut->factor, n * sizeof *corner->factor);
+    }
+    return MT_OK;
+}
+
+mt_status mt_robust_add_cuts(const mt_case *c, const mt_robust_cuts *cuts, mt_arena *mem,
+                             mt_robust **out, mt_err *err)
+{
+    const size_t n_views = (size_t)c->p->n_views;
+    const size_t n_demands = (size_t)c->p->n_demands;
+    mt_robust *const r = mt_arena_alloc(mem, 1, sizeof *r);
+    MT_TRY(mt_arena_check(mem, err));
+    *r = (mt_robust){.views = mt_arena_alloc(mem, n_views, sizeof *r->views),
+                     .limits = mt_arena_alloc(mem, n_demands, sizeof *r->limits)};
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < c->p->n_views; i++) {
+        MT_TRY(extend(c, cuts, i, -1, mem, &r->views[i], err));
+    }
+    for (int i = 0; i < c->p->n_demands; i++) {
+        MT_TRY(extend(c, cuts, -1, i, mem, &r->limits[i], err));
+    }
+    *out = r;
+    return MT_OK;
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef PROBLEM_ROBUST_CUT_H
+#define PROBLEM_ROBUST_CUT_H
+
+#include "nlp/merit.h"
+#include "problem/robust.h"
+
+/*
+ * A design over its own tolerances, where the corners that a search holds are samples
+ * (robust.h): where something within them is worse, that point is one more corner. In the same
+ * proportion it lies within the tolerances of every design, and all have to keep it: a cutting
+ * plane of the search.
+ */
+typedef struct mt_robust_cut {
+    int view;   /* whose corner it is; -1: of a limit, that of */
+    int demand; /* this */
+    bool may[MT_ROBUST_SIDES];
+    const double *factor; /* [n] */
+} mt_robust_cut;
+
+/* Grown by who judges. */
+typedef struct mt_robust_cuts {
+    int n;
+    int room;
+    mt_robust_cut *items;
+    /* of the last design judged */
+    int added;
+    mt_missed missed; /* by the worst within its tolerances, of what is held at samples alone */
+    double band_room; /* least of the bands; HUGE_VAL: none is held so */
+    long evaluations;
+} mt_robust_cuts;
+
+/* Is anything that the case holds judged at samples? */
+bool mt_robust_is_sampled(const mt_case *c);
+/*
+ * Judge the design at t[c->n_t], and add what is worse there than the corners of the case and
+ * the cuts so far: cuts->added of them; lists in mem. w: set to the case. Cost: as
+ * mt_robust_ranges. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INTERRUPTED, as an evaluation.
+ */
+mt_status mt_robust_judge(mt_workspace *w, const double *t, mt_arena *mem, mt_robust_cuts *cuts,
+                          mt_err *err);
+/* The corners of a case with the cuts beside them, for mt_case_lay_out of a copy of it (as its
+ * `robust`), in mem. Fails: MT_E_MEMORY. */
+mt_status mt_robust_add_cuts(const mt_case *c, const mt_robust_cuts *cuts, mt_arena *mem,
+                             mt_robust **out, mt_err *err);
+
+#endif

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Designs over their tolerances, by cutting planes. Where the corners that a search holds are
+ * samples,
+ *     g(t, c) <= 0    for all corners c of C,
+ * its design t may miss a goal at some other point c' of its tolerances. With c' in C as well
+ * the search goes on from t. The worst within moves as t does, and where it lies inside, its
+ * value by the square of that: a few rounds end it. All designs are held at the same C.
+ */
+#include <math.h>
+
+#include "problem/robust_cut.h"
+#include "search/search.h"
+
+enum { ROUNDS = 8 };
+
+mt_status mt_search_judge(mt_workspace *w, bool last, mt_arena *mem, mt_robust_cuts *cuts,
+                          mt_nlp_solution *s, bool *again, mt_err *err)
+{
+    *again = false;
+    MT_TRY(mt_robust_judge(w, s->t, mem, cuts, err));
+    const mt_missed *const m = &cuts->missed;
+    *again = !last && cuts->added > 0;
+    if (!*again && !mt_is_met(m->violation, 1.0)) {
+        s->feasible = false;
+        s->squares += m->squares;
+        s->violation = s->violation > m->violation ? s->violation : m->violation;
+    }
+    return MT_OK;
+}
+
+typedef struct rounds {
+    mt_workspace *ws;
+    const mt_case *c; /* the caller's */
+    mt_arena *mem;
+    mt_nlp_result *out;
+    int *stage;
+    bool *open; /* [n_solutions] not judged, or missed at a point that is a cut since */
+    mt_robust_cuts cuts;
+    long budget;        /* evaluations that are left; where c has a limit */
+    const double *told; /* the design that undetermined directions are of */
+} rounds;
+
+/* Judge what is open; is any of it still? */
+static mt_status judge_open(rounds *r, bool last, bool *any, mt_err *err)
+{
+    *any = false;
+    for (int i = 0; i < r->out->n_solutions; i++) {
+        if (r->open[i]) {
+            MT_TRY(mt_search_judge(r->ws, last, r->mem, &r->cuts, &r->out->solutions[i],
+                                   &r->open[i], err));
+            r->out->evals += r->cuts.evaluations;
+            *any = *any || r->open[i];
+        }
+    }
+    return MT_OK;
+}
+
+/* Solution i from where it is, in the case with the cuts, which the workspace is set to. */
+static mt_status go_on(rounds *r, int i, mt_err *err)
+{
+    mt_nlp_solution *const s = &r->out->solutions[i];
+    mt_nlp_result next = {0};
+    int stage = 0;
+    const mt_status rc = mt_search_from(r->ws, s->t, r->mem, &next, &stage, err);
+    r->out->evals += next.evals;
+    r->out->stop = next.stop > r->out->stop ? next.stop : r->out->stop;
+    if (rc != MT_OK || next.n_solutions == 0 || next.compromise) {
+        return rc; /* it stands as it is, and is judged so */
+    }
+    const mt_nlp_solution old = *s;
+    *s = next.solutions[0];
+    s->singular = s->singular || old.singular;
+    s->continuum = old.continuum;
+    s->start = old.start;
+    s->hits = old.hits;
+    *r->stage = stage;
+    if (i == 0) {
+        r->told = s->t;
+        r->out->n_undetermined = next.n_undetermined;
+        r->out->undetermined = next.undetermined;
+        r->out->undetermined_effect = next.undetermined_effect;
+    }
+    return MT_OK;
+}
+
+/* All that is open once more, with the cuts so far. */
+static mt_status search_again(rounds *r, mt_err *err)
+{
+    const mt_case *const c = r->c;
+    mt_case held;
+    MT_TRY(mt_case_copy(c, r->mem, &held, err));
+    MT_TRY(mt_robust_add_cuts(c, &r->cuts, r->mem, &held.robust, err));
+    MT_TRY(mt_case_lay_out(&held, NULL, 0, NULL, r->ws, r->mem, err));
+    mt_status rc = MT_OK;
+    for (int i = 0; i < r->out->n_solutions && rc == MT_OK; i++) {
+        const long left = c->search.max_evaluations - r->out->evals;
+        held.search.max_evaluations = c->search.max_evaluations > 0 ? left : 0;
+        if (r->open[i] && held.search.max_evaluations >= 0) {
+            rc = go_on(r, i, err);
+        }
+    }
+    mt_workspace_back(r->ws, c);
+    return rc;
+}
+
+static bool is_spent(const rounds *r)
+{
+    const long most = r->c->search.max_evaluations;
+    return (most > 0 && r->out->evals >= most) || r->out->stop == MT_STOP_USER;
+}
+
+/* Where some design meets everything those that do not are none. */
+static mt_status sort_out(rounds *r, mt_err *err)
+{
+    mt_nlp_result *const out = r->out;
+    const int before = out->n_solutions;
+    int n = 0;
+    MT_TRY(mt_search_rank(r->ws, *r->stage, r->mem, out, err));
+    while (n < out->n_solutions && out->solutions[n].feasible) {
+        n++;
+    }
+    out->compromise = n == 0;
+    out->n_solutions = n > 0 ? n : out->n_solutions;
+    if (out->solutions[0].t != r->told) {
+        out->n_undetermined = 0;
+    }
+    if (out->n_solutions == before) {
+        return MT_OK;
+    }
+    out->n_found = out->n_solutions;
+    out->n_once = 0;
+    for (int i = 0; i < out->n_solutions; i++) {
+        out->n_once += out->solutions[i].hits == 1 ? 1 : 0;
+    }
+    out->missing = nan("");
+    return MT_OK;
+}
+
+mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers, mt_arena *mem,
+                                    mt_nlp_result *out, int *stage, mt_err *why, mt_err *err)
+{
+    rounds r = {.ws = workers[0], .c = workers[0]->c, .mem = mem, .out = out, .stage = stage};
+    MT_TRY(mt_search_designs(workers, n_workers, mem, out, stage, why, err));
+    if (!mt_robust_is_sampled(r.c) || out->n_solutions == 0 || out->compromise ||
+        out->stop == MT_STOP_USER) {
+        return MT_OK;
+    }
+    bool any = true;
+    bool cut = false;
+    r.told = out->solutions[0].t;
+    r.open = mt_arena_alloc(mem, (size_t)out->n_solutions, sizeof *r.open);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < out->n_solutions; i++) {
+        r.open[i] = true;
+    }
+    mt_status rc = MT_OK;
+    for (int round = 0; round < ROUNDS && any && rc == MT_OK; round++) {
+        rc = judge_open(&r, round + 1 == ROUNDS || is_spent(&r), &any, err);
+        cut = cut || r.cuts.n > 0;
+        rc = rc == MT_OK && any ? search_again(&r, err) : rc;
+    }
+    if (rc == MT_E_INTERRUPTED) {
+        out->stop = MT_STOP_USER;
+        return MT_OK;
+    }
+    bool missed = false;
+    for (int i = 0; i < out->n_solutions; i++) {
+        missed = missed || !out->solutions[i].feasible;
+    }
+    return rc == MT_OK && (cut || missed) ? sort_out(&r, err) : rc;
+}
