@@ -173,8 +173,6 @@ typedef struct mt_recommendation {
      * reasons tell); NULL: none */
     const char *disagreement;
     double score;     /* what it is ranked by: the first objective; NaN where infeasible */
-    int n_objectives; /* of the study */
-    mt_design_objective *objectives;
     double change; /* size of the redesign */
     double misfit; /* NaN: no weighted goals */
     double violation_percent;
@@ -186,6 +184,8 @@ typedef struct mt_recommendation {
     bool singular; /* a double solution: the Jacobian of the goals is singular here */
     int n_parameters;
     mt_result_parameter *parameters;
+    mt_design_objective *objectives; /* all of the study */
+    int n_objectives;
     int n_frequencies;
     mt_result_frequency *frequencies;
     int n_clearances;
