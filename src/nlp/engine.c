@@ -15,21 +15,6 @@ enum { SOLUTIONS_KEPT = 16 };
  * operations on t. */
 static const double ON_IT = 64 * DBL_EPSILON;
 
-static void fill_defaults(mt_nlp_engine *e)
-{
-    mt_nlp_options *const o = &e->opt;
-    if (o->starts <= 0) {
-        const int wanted = STARTS_BASE + STARTS_PER_VARIABLE * e->n_free;
-        o->starts = wanted < STARTS_MOST ? wanted : STARTS_MOST;
-    }
-    if (o->max_evals <= 0) {
-        o->max_evals = (long)EVALS_PER_START * o->starts;
-    }
-    if (o->max_solutions <= 0) {
-        o->max_solutions = SOLUTIONS_KEPT;
-    }
-}
-
 static mt_status check_problem(const mt_nlp *p, mt_err *err)
 {
     if (p->n < 0 || p->n_res < 0 || p->n_eq < 0 || p->n_in < 0 || p->eval == NULL) {
@@ -81,7 +66,13 @@ mt_status mt_nlp_engine_init(mt_nlp_engine *e, const mt_nlp *nlp, const mt_nlp_o
         e->eq_tol = fmax(e->eq_tol, nlp->eq_tol[i]);
     }
     e->open_starts = opt->starts <= 0;
-    fill_defaults(e);
+    mt_nlp_options *const o = &e->opt;
+    if (o->starts <= 0) {
+        const int wanted = STARTS_BASE + STARTS_PER_VARIABLE * e->n_free;
+        o->starts = wanted < STARTS_MOST ? wanted : STARTS_MOST;
+    }
+    o->max_evals = o->max_evals > 0 ? o->max_evals : (long)EVALS_PER_START * o->starts;
+    o->max_solutions = o->max_solutions > 0 ? o->max_solutions : SOLUTIONS_KEPT;
     return MT_OK;
 }
 

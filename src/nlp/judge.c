@@ -177,15 +177,6 @@ static void settle(mt_nlp_engine *e, mt_nlp_point *p)
     }
 }
 
-static void settle_all(mt_nlp_engine *e, mt_nlp_ends *all)
-{
-    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
-    for (int i = 0; i < all->count && !e->ended; i++) {
-        settle(e, all->at[i].p);
-        mt_arena_rewind(&e->scratch, mark);
-    }
-}
-
 /* Variables within rounding of a mark (the original, a bound) are put on it: "0", not
  * "1.1e-08". */
 static void put_on_marks(mt_nlp_engine *e, mt_nlp_point *p)
@@ -245,7 +236,11 @@ void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_resu
     rank(all);
     merge(e, all);
     if (out->compromise && e->n_free > 0) {
-        settle_all(e, all);
+        const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+        for (int i = 0; i < all->count && !e->ended; i++) {
+            settle(e, all->at[i].p);
+            mt_arena_rewind(&e->scratch, mark);
+        }
         rank(all);
         merge(e, all);
         rank_equals(all);

@@ -58,19 +58,6 @@ double mt_nlp_row_tol(const mt_nlp_engine *e, int i)
                           : q->in_tol[q->next_of[in - q->n_in]];
 }
 
-static void allocate(const mt_nlp_engine *e, mt_arena *mem, mt_nlp_active *a)
-{
-    const size_t n = (size_t)e->n;
-    const size_t k = (size_t)e->nlp->n_eq + (size_t)e->nlp->n_in + (size_t)e->nlp->n_next;
-    *a = (mt_nlp_active){.free = mt_arena_int(mem, n),
-                         .side = mt_arena_int(mem, n),
-                         .row = mt_arena_int(mem, k),
-                         .scale = mt_arena_f64(mem, k, 1),
-                         .lambda = mt_arena_f64(mem, k, 1),
-                         .c = mt_arena_f64(mem, k, 1),
-                         .z = mt_arena_f64(mem, n, 1)};
-}
-
 /* Has a row among those before it the same slopes? Of modes that stay together by symmetry one
  * is enough. */
 static bool is_twin(const mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_active *a,
@@ -222,7 +209,15 @@ static double gradient_norm(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nl
 bool mt_nlp_active_set(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim, mt_arena *mem,
                        mt_nlp_active *a)
 {
-    allocate(e, mem, a);
+    const size_t n = (size_t)e->n;
+    const size_t k = (size_t)e->nlp->n_eq + (size_t)e->nlp->n_in + (size_t)e->nlp->n_next;
+    *a = (mt_nlp_active){.free = mt_arena_int(mem, n),
+                         .side = mt_arena_int(mem, n),
+                         .row = mt_arena_int(mem, k),
+                         .scale = mt_arena_f64(mem, k, 1),
+                         .lambda = mt_arena_f64(mem, k, 1),
+                         .c = mt_arena_f64(mem, k, 1),
+                         .z = mt_arena_f64(mem, n, 1)};
     if (!mt_nlp_has_room(e, mem)) {
         return false;
     }

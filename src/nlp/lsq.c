@@ -55,21 +55,6 @@ typedef struct lsq {
     int *index; /* [n] */
 } lsq;
 
-static void allocate(lsq *w)
-{
-    mt_arena *const mem = &w->e->scratch;
-    const size_t n = (size_t)w->e->n;
-    const size_t m = (size_t)w->m;
-    w->R = mt_arena_f64(mem, m, 1);
-    w->J = mt_arena_f64(mem, m, n);
-    w->s = mt_arena_f64(mem, n, 1);
-    w->A = mt_arena_f64(mem, m + n, n);
-    w->b = mt_arena_f64(mem, m + n, 1);
-    w->x = mt_arena_f64(mem, n, 1);
-    w->free = mt_arena_alloc(mem, n, sizeof *w->free);
-    w->index = mt_arena_int(mem, n);
-}
-
 /* R and J of the aim at p; inequalities that hold count as zero rows. */
 static void linearise(lsq *w, const mt_nlp_point *p)
 {
@@ -180,14 +165,6 @@ static bool bounded_step(lsq *w, const mt_nlp_point *p, double mu)
     return true;
 }
 
-/* |R|^2/2 - |R + J s|^2/2 */
-static double predicted(lsq *w)
-{
-    memcpy(w->b, w->R, (size_t)w->m * sizeof *w->b);
-    mt_gemv(false, w->m, w->e->n, 1.0, w->J, w->m, w->s, 1.0, w->b);
-    return 0.5 * (mt_dot(w->m, w->R, w->R) - mt_dot(w->m, w->b, w->b));
-}
-
 /* Evaluate at p + s; the gain ratio, or -1 where there is no value. */
 static double try_step(lsq *w, const mt_nlp_point *p, mt_nlp_point *trial)
 {
@@ -197,7 +174,10 @@ static double try_step(lsq *w, const mt_nlp_point *p, mt_nlp_point *trial)
     if (!mt_nlp_evaluate(w->e, w->x, true, trial)) {
         return -1;
     }
-    const double model = predicted(w);
+    memcpy(w->b, w->R, (size_t)w->m * sizeof *w->b);
+    mt_gemv(false, w->m, w->e->n, 1.0, w->J, w->m, w->s, 1.0, w->b);
+    /* |R|^2/2 - |R + J s|^2/2 */
+    const double model = 0.5 * (mt_dot(w->m, w->R, w->R) - mt_dot(w->m, w->b, w->b));
     const double actual = half_squares(w, p) - half_squares(w, trial);
     return model > 0 ? actual / model : -1;
 }
@@ -242,13 +222,26 @@ static void iterate(lsq *w, mt_nlp_point *p, mt_nlp_point *a, mt_nlp_point *b)
 void mt_nlp_least_squares(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p)
 {
     const mt_nlp *const q = e->nlp;
-    lsq w = {.e = e, .aim = aim, .m = aim == MT_NLP_RESIDUALS ? q->n_res : q->n_eq + q->n_in};
-    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
-    mt_nlp_point *const a = mt_nlp_point_new(e, &e->scratch);
-    mt_nlp_point *const b = mt_nlp_point_new(e, &e->scratch);
-    allocate(&w);
-    if (w.m > 0 && e->n > 0 && mt_nlp_has_room(e, &e->scratch)) {
+    mt_arena *const mem = &e->scratch;
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    const int rows = aim == MT_NLP_RESIDUALS ? q->n_res : q->n_eq + q->n_in;
+    const size_t n = (size_t)e->n;
+    const size_t m = (size_t)rows;
+    lsq w = {.e = e,
+             .aim = aim,
+             .m = rows,
+             .R = mt_arena_f64(mem, m, 1),
+             .J = mt_arena_f64(mem, m, n),
+             .s = mt_arena_f64(mem, n, 1),
+             .A = mt_arena_f64(mem, m + n, n),
+             .b = mt_arena_f64(mem, m + n, 1),
+             .x = mt_arena_f64(mem, n, 1),
+             .free = mt_arena_alloc(mem, n, sizeof *w.free),
+             .index = mt_arena_int(mem, n)};
+    mt_nlp_point *const a = mt_nlp_point_new(e, mem);
+    mt_nlp_point *const b = mt_nlp_point_new(e, mem);
+    if (rows > 0 && e->n > 0 && mt_nlp_has_room(e, mem)) {
         iterate(&w, p, a, b);
     }
-    mt_arena_rewind(&e->scratch, mark);
+    mt_arena_rewind(mem, mark);
 }

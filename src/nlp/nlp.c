@@ -65,12 +65,6 @@ typedef struct start_job {
     atomic_int abort;
 } start_job;
 
-/* The budget of task k: an even share. */
-static long share(const start_job *job, int k)
-{
-    return (job->budget / job->n) + (k < job->budget % job->n ? 1 : 0);
-}
-
 static mt_status run_task(void *context, int worker, int k, mt_err *err)
 {
     start_job *const job = context;
@@ -81,7 +75,7 @@ static mt_status run_task(void *context, int worker, int k, mt_err *err)
     mt_nlp_options opt = all->opt;
     mt_nlp_engine e;
     nlp.context = nlp.contexts != NULL ? nlp.contexts[worker] : nlp.context;
-    opt.max_evals = share(job, k);
+    opt.max_evals = (job->budget / job->n) + (k < job->budget % job->n ? 1 : 0); /* even */
     if (opt.max_evals <= 0) {
         slot->stop = MT_STOP_MAX_EVALS;
         return MT_OK;
@@ -178,20 +172,6 @@ static bool add_starts(mt_nlp_engine *e, mt_nlp_ends *all, int n)
     return e->fatal == MT_OK;
 }
 
-static void finish_job(mt_nlp_engine *e, int n, mt_nlp_local **at)
-{
-    const long before = e->evals;
-    start_job job = {.e = e, .n = n, .at = at, .budget = e->opt.max_evals - before};
-    job.slots = mt_arena_alloc(&e->scratch, (size_t)n, sizeof *job.slots);
-    if (!mt_nlp_has_room(e, &e->scratch)) {
-        return;
-    }
-    run_job(e, &job, FINISH, before);
-    for (int k = 0; k < n; k++) {
-        at[k]->polished = true;
-    }
-}
-
 /*
  * Newton from the best end, where the undetermined directions are sought: ends that differ by
  * them only are one. Then from one end of each neighbourhood, until all that are left came to
@@ -212,7 +192,16 @@ static void finish_ends(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nl
         }
     }
     while (n > 0 && !e->ended) {
-        finish_job(e, n, chosen);
+        const long before = e->evals;
+        start_job job = {.e = e, .n = n, .at = chosen, .budget = e->opt.max_evals - before};
+        job.slots = mt_arena_alloc(&e->scratch, (size_t)n, sizeof *job.slots);
+        if (!mt_nlp_has_room(e, &e->scratch)) {
+            return;
+        }
+        run_job(e, &job, FINISH, before);
+        for (int k = 0; k < n; k++) {
+            chosen[k]->polished = true;
+        }
         if (all->directed == NULL && mt_nlp_came_to_rest(chosen[0])) {
             all->directed = chosen[0]->p;
             if (!mt_nlp_undetermined(e, all->directed, mem, out)) {
@@ -247,21 +236,6 @@ static void all_starts(mt_nlp_engine *e, mt_nlp_ends *all, mt_nlp_result *out)
     out->starts = all->starts;
 }
 
-static mt_status finish(mt_nlp_engine *e, const mt_nlp_ends *all, mt_nlp_result *out)
-{
-    (void)mt_nlp_has_room(e, &e->scratch);
-    out->evals = e->evals;
-    out->stop = e->stop;
-    if (e->fatal != MT_OK) {
-        return e->fatal;
-    }
-    if (all->count == 0 && e->stop == MT_STOP_DONE && e->refused != MT_OK) {
-        return mt_fail(e->err, e->refused, "no start of the search has a value: %s",
-                       e->refused_err.text);
-    }
-    return MT_OK;
-}
-
 mt_nlp_options mt_nlp_options_default(void)
 {
     return (mt_nlp_options){.seed = 1, .least_change = true};
@@ -277,7 +251,14 @@ mt_status mt_nlp_solve(const mt_nlp *nlp, const mt_nlp_options *opt, mt_arena *m
     all_starts(&e, &all, out);
     finish_ends(&e, &all, mem, out);
     mt_nlp_judge(&e, &all, mem, out);
-    const mt_status rc = finish(&e, &all, out);
+    (void)mt_nlp_has_room(&e, &e.scratch);
+    out->evals = e.evals;
+    out->stop = e.stop;
+    mt_status rc = e.fatal;
+    if (rc == MT_OK && all.count == 0 && e.stop == MT_STOP_DONE && e.refused != MT_OK) {
+        rc = mt_fail(err, e.refused, "no start of the search has a value: %s",
+                     e.refused_err.text);
+    }
     mt_nlp_engine_free(&e);
     return rc;
 }

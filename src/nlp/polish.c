@@ -89,18 +89,6 @@ static bool active_changed(polish *w)
     return changed;
 }
 
-static bool null_space(polish *w)
-{
-    mt_nlp_engine *const e = w->e;
-    mt_arena *const mem = &e->scratch;
-    const size_t nf = (size_t)w->a.n_free;
-    w->nz = w->a.n_free - w->a.qr.rank;
-    w->Z = mt_arena_f64(mem, nf, (size_t)w->nz);
-    w->H = mt_arena_f64(mem, (size_t)w->nz, (size_t)w->nz);
-    return mt_nlp_has_room(e, mem) &&
-           (w->nz == 0 || mt_nlp_ok(e, mt_qr_q(&w->a.qr, w->a.qr.rank, w->Z, mem, e->err)));
-}
-
 /* Gradient of the Lagrangian with the present multipliers at a point. */
 static void lagrangian(const polish *w, const mt_nlp_point *p, double *gl)
 {
@@ -305,16 +293,22 @@ static bool find_saddle(const polish *w, double *saddle)
 static void curvature(polish *w)
 {
     const int nf = w->a.n_free;
+    mt_nlp_engine *const e = w->e;
+    mt_arena *const mem = &e->scratch;
     w->n_v = -1;
-    if (!null_space(w)) {
+    w->nz = nf - w->a.qr.rank;
+    w->Z = mt_arena_f64(mem, (size_t)nf, (size_t)w->nz); /* the rows' null space */
+    w->H = mt_arena_f64(mem, (size_t)w->nz, (size_t)w->nz);
+    if (!mt_nlp_has_room(e, mem) ||
+        (w->nz > 0 && !mt_nlp_ok(e, mt_qr_q(&w->a.qr, w->a.qr.rank, w->Z, mem, e->err)))) {
         return;
     }
-    const long left = w->e->opt.max_evals - w->e->evals;
+    const long left = e->opt.max_evals - e->evals;
     const bool affordable = w->nz > 0 && w->nz <= HESSIAN_MOST && left > 2 * (long)w->nz;
     if (w->nz > 0 && !(affordable && reduced_hessian(w)) && !gauss_newton(w)) {
         return;
     }
-    if (!mt_nlp_ok(w->e, mt_eig_sym(w->nz, w->H, w->w, true, &w->e->scratch, w->e->err))) {
+    if (!mt_nlp_ok(e, mt_eig_sym(w->nz, w->H, w->w, true, mem, e->err))) {
         return;
     }
     w->n_v = w->nz;

@@ -14,16 +14,6 @@ static const double ON_BOUND = 1e-8;
  * this. */
 static const double DEPENDENT = 1e-6;
 
-static void allocate(const mt_nlp_engine *e, mt_arena *mem, mt_nlp_solution *s)
-{
-    const size_t n = (size_t)e->n;
-    s->t = mt_arena_f64(mem, n, 1);
-    s->bound = mt_arena_int(mem, n);
-    s->mult_bound = mt_arena_f64(mem, n, 1);
-    s->mult_eq = mt_arena_f64(mem, (size_t)e->nlp->n_eq, 1);
-    s->mult_in = mt_arena_f64(mem, (size_t)e->nlp->n_in, 1);
-}
-
 /* Multipliers of linearly dependent gradients are not unique: NaN. */
 static mt_status mark_dependent(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_active *a,
                                 mt_arena *mem)
@@ -84,7 +74,11 @@ bool mt_nlp_report(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem, mt_nl
                              .violation = p->violation,
                              .squares = p->squares,
                              .feasible = mt_nlp_feasible(p)};
-    allocate(e, mem, out);
+    out->t = mt_arena_f64(mem, (size_t)e->n, 1);
+    out->bound = mt_arena_int(mem, (size_t)e->n);
+    out->mult_bound = mt_arena_f64(mem, (size_t)e->n, 1);
+    out->mult_eq = mt_arena_f64(mem, (size_t)q->n_eq, 1);
+    out->mult_in = mt_arena_f64(mem, (size_t)q->n_in, 1);
     if (!mt_nlp_has_room(e, mem)) {
         return false;
     }

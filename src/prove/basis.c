@@ -272,21 +272,7 @@ static mt_status make_part(const double *dense, ptrdiff_t r, mt_arena *mem,
     return MT_OK;
 }
 
-/* The parts of coefficient i in both matrices. */
-static mt_status parts_of(mt_enclosure *e, const basis *b, int i, double *work, double *dense,
-                          mt_err *err)
-{
-    for (mt_matrix m = MT_STIFFNESS; m < MT_MATRICES; m++) {
-        mt_enclosure_part *const part = &e->coefficients[i].part[m];
-        part->count = 0;
-        if (add_pieces(e, b, m, i, work, dense)) {
-            MT_TRY(make_part(dense, b->r, &e->mem, part, err));
-        }
-        e->mass_varies = e->mass_varies || (m == MT_MASS && part->count > 0);
-    }
-    return MT_OK;
-}
-
+/* The parts of all coefficients in both matrices. */
 static mt_status make_parts(mt_enclosure *e, const basis *b, mt_err *err)
 {
     double *dense = NULL;
@@ -294,19 +280,16 @@ static mt_status make_parts(mt_enclosure *e, const basis *b, mt_err *err)
     MT_TRY(room(&e->scratch, (size_t)b->r, (size_t)b->r, &dense, err));
     MT_TRY(room(&e->scratch, (size_t)b->n, 4, &work, err));
     for (int i = 0; i < e->n_coefficients; i++) {
-        MT_TRY(parts_of(e, b, i, work, dense, err));
-    }
-    return MT_OK;
-}
-
-/* Mark coefficients of masses by a part of -1 entries, until make_parts fills them. */
-static void find_kinds(mt_enclosure *e)
-{
-    for (int i = 0; i < e->n_pieces; i++) {
-        if (e->pieces[i].matrix == MT_MASS) {
-            e->coefficients[e->pieces[i].coefficient].part[MT_MASS].count = -1;
+        for (mt_matrix m = MT_STIFFNESS; m < MT_MATRICES; m++) {
+            mt_enclosure_part *const part = &e->coefficients[i].part[m];
+            part->count = 0;
+            if (add_pieces(e, b, m, i, work, dense)) {
+                MT_TRY(make_part(dense, b->r, &e->mem, part, err));
+            }
+            e->mass_varies = e->mass_varies || (m == MT_MASS && part->count > 0);
         }
     }
+    return MT_OK;
 }
 
 static bool all_squares(const mt_linear *lin)
@@ -334,7 +317,11 @@ static const double ROUNDING_ULPS = 16.0;
 static mt_status reduce(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_err *err)
 {
     const mt_linear *const lin = b->lin;
-    find_kinds(e);
+    for (int i = 0; i < e->n_pieces; i++) { /* masses, until make_parts fills them */
+        if (e->pieces[i].matrix == MT_MASS) {
+            e->coefficients[e->pieces[i].coefficient].part[MT_MASS].count = -1;
+        }
+    }
     MT_TRY(low_matrix(e, lin, MT_STIFFNESS, &e->scratch, &b->k_low, err));
     MT_TRY(low_matrix(e, lin, MT_MASS, &e->scratch, &b->m_low, err));
     MT_TRY(choose(e, b, ok, reason, err));

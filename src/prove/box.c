@@ -66,19 +66,11 @@ static double least_mass_share(const mt_enclosure *e)
     return mu;
 }
 
-static bool within_bounds(const mt_enclosure *e)
-{
-    bool within = true;
-    for (int i = 0; i < e->n_coefficients; i++) {
-        within = within && e->value[MT_LOW][i] >= e->coefficients[i].least;
-    }
-    return within;
-}
-
 bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi)
 {
     double k_scale = e->fixed_norm;
     double m_scale = 0.0;
+    bool within = true; /* the bounds */
     if (mt_interrupted(e->interrupt)) {
         return false;
     }
@@ -90,10 +82,11 @@ bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi)
             !isfinite(e->value[MT_HIGH][i]) || (freed && !either)) {
             return false;
         }
+        within = within && e->value[MT_LOW][i] >= e->coefficients[i].least;
         k_scale += fmax(fabs(e->value[MT_LOW][i]), fabs(e->value[MT_HIGH][i])) *
                    e->coefficients[i].part[MT_STIFFNESS].trace;
     }
-    if (!e->squares && !within_bounds(e)) {
+    if (!e->squares && !within) {
         return false;
     }
     const double mu = least_mass_share(e);

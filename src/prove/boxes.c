@@ -102,14 +102,6 @@ void mt_boxes_start(mt_boxes *b, const double *lower, const double *upper)
     }
 }
 
-static double middle_of(bool logarithmic, double lo, double hi)
-{
-    if (logarithmic && lo > 0.0) {
-        return sqrt(lo) * sqrt(hi);
-    }
-    return lo + (0.5 * (hi - lo));
-}
-
 /* Where the box that was popped is halved. */
 static void find_middle(mt_boxes *b, int i)
 {
@@ -121,8 +113,11 @@ static void find_middle(mt_boxes *b, int i)
         b->beyond[i] = middle < last ? b->catalogue[i][middle + 1] : b->middle[i];
         return;
     }
-    const double m = middle_of(b->logarithmic[i], b->now_lo[i], b->now_hi[i]);
-    b->middle[i] = fmin(fmax(m, b->now_lo[i]), b->now_hi[i]);
+    const double lo = b->now_lo[i];
+    const double hi = b->now_hi[i];
+    const double m =
+        b->logarithmic[i] && lo > 0.0 ? sqrt(lo) * sqrt(hi) : lo + (0.5 * (hi - lo));
+    b->middle[i] = fmin(fmax(m, lo), hi);
     b->beyond[i] = b->middle[i];
 }
 

@@ -283,21 +283,16 @@ static bool limit_possible(const mt_certify *c, const mt_certify_limit *l)
                e, mt_enclosure_lambda(l->at_least_hz * (1.0 - l->tolerance))) < l->mode;
 }
 
-/* Modes that may lie below a band, or on its lower edge; below one that begins at 0 there are
- * none, a mode of 0 Hz is in it. */
-static int most_under(mt_enclosure *e, const mt_certify_band *b)
-{
-    const double lambda = mt_enclosure_lambda(b->lower_hz * (1.0 + b->tolerance));
-    return b->lower_hz > 0.0 ? mt_enclosure_most_below(e, lambda) : 0;
-}
-
 /* Assignments of one band in the box that is set, into least, most; false: none. */
 static bool band_possible(search *s, int i)
 {
     const mt_certify_band *const b = &s->c->bands[i];
     mt_enclosure *const e = s->c->views[b->view];
     const int *const only = s->only == NULL ? NULL : s->only + i;
-    s->most[i] = most_under(e, b);
+    /* that may lie below the band, or on its lower edge; below one that begins at 0 there are
+     * none, a mode of 0 Hz is in it */
+    const double lambda = mt_enclosure_lambda(b->lower_hz * (1.0 + b->tolerance));
+    s->most[i] = b->lower_hz > 0.0 ? mt_enclosure_most_below(e, lambda) : 0;
     if (only != NULL && s->most[i] < *only) {
         return false;
     }
@@ -437,15 +432,6 @@ static void drop_found(search *s)
 /* Bisections between one pass and the next: 64 times as many boxes at most. */
 enum { DEEPER = 6 };
 
-static int depth_of(const mt_boxes *b)
-{
-    int depth = 0;
-    for (int i = 0; i < b->n; i++) {
-        depth += b->now_depth[i];
-    }
-    return depth;
-}
-
 /* One box: settle it, or halve it, or leave it open. *deeper: a deeper pass may settle it. */
 static mt_status visit(search *s, bool *deeper)
 {
@@ -457,7 +443,11 @@ static mt_status visit(search *s, bool *deeper)
     if (left == 0) {
         return MT_OK;
     }
-    const bool cut = depth_of(&s->boxes) >= s->limit;
+    int depth = 0;
+    for (int i = 0; i < s->boxes.n; i++) {
+        depth += s->boxes.now_depth[i];
+    }
+    const bool cut = depth >= s->limit;
     if ((left == 1 || cut) && witnessed(s)) {
         MT_TRY(note_found(s));
         if (unknown(s) == 0) {

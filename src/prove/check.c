@@ -5,11 +5,6 @@
 
 #include "base/format.h"
 
-static const char *input_name(const mt_system *sys, int i)
-{
-    return sys->model->parameters[sys->inputs[i]].name.s;
-}
-
 /* First input that a node depends on; -1. */
 static int input_of(const mt_system *sys, mt_node node)
 {
@@ -99,7 +94,8 @@ bool mt_enclosure_admits(const mt_analysis *a, char *reason)
     }
     const int shaping = shaping_input(sys);
     if (shaping >= 0) {
-        return refuse(reason, "parameter", input_name(sys, shaping), "shapes the geometry");
+        return refuse(reason, "parameter", sys->model->parameters[sys->inputs[shaping]].name.s,
+                      "shapes the geometry");
     }
     return true;
 }

@@ -113,21 +113,6 @@ static void set_signs(mt_enclosure *e)
     }
 }
 
-static mt_status claim_work(mt_enclosure *e, mt_err *err)
-{
-    const size_t inputs = (size_t)e->n_inputs;
-    for (int s = 0; s < 2; s++) {
-        e->value[s] = mt_arena_f64(&e->mem, (size_t)e->n_coefficients, 1);
-        e->node[s] = mt_arena_f64(&e->mem, (size_t)e->program.count, 1);
-        e->dnode[s] = mt_arena_f64(&e->mem, (size_t)e->program.count, inputs);
-        e->corner_x[s] = mt_arena_f64(&e->mem, inputs, 1);
-    }
-    for (int i = 0; i < e->n_coefficients; i++) {
-        e->coefficients[i].sign = mt_arena_alloc(&e->mem, inputs, sizeof(signed char));
-    }
-    return mt_arena_check(&e->mem, err);
-}
-
 /* Sub-boxes of the bounds that one coefficient may cost. */
 enum { LEAST_BOXES = 512 };
 
@@ -228,7 +213,17 @@ mt_status mt_enclosure_collect(mt_enclosure *e, const mt_linear *lin, bool *ok, 
 {
     MT_TRY(mt_enclosure_list_terms(e, lin, err));
     MT_TRY(extract(e, &mt_linear_system(lin)->program, err));
-    MT_TRY(claim_work(e, err));
+    const size_t inputs = (size_t)e->n_inputs;
+    for (int s = 0; s < 2; s++) {
+        e->value[s] = mt_arena_f64(&e->mem, (size_t)e->n_coefficients, 1);
+        e->node[s] = mt_arena_f64(&e->mem, (size_t)e->program.count, 1);
+        e->dnode[s] = mt_arena_f64(&e->mem, (size_t)e->program.count, inputs);
+        e->corner_x[s] = mt_arena_f64(&e->mem, inputs, 1);
+    }
+    for (int i = 0; i < e->n_coefficients; i++) {
+        e->coefficients[i].sign = mt_arena_alloc(&e->mem, inputs, sizeof(signed char));
+    }
+    MT_TRY(mt_arena_check(&e->mem, err));
     MT_TRY(find_dependent(e, err));
     set_signs(e);
     *ok = true;

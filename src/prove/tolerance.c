@@ -32,25 +32,14 @@ typedef struct tolerance {
     int open;             /* the edge that it failed at */
 } tolerance;
 
-static double unit_of(const mt_tolerance_question *q, int i)
-{
-    return q->unit == NULL ? fabs(q->x[i]) : fabs(q->unit[i]);
-}
-
-/* Is every stiffness of the design still there all over the box that is set? */
-static bool keeps_held(const mt_certify *c)
-{
-    bool keeps = true;
-    for (int v = 0; v < c->n_views; v++) {
-        keeps = keeps && mt_enclosure_keeps_held(c->views[v]);
-    }
-    return keeps;
-}
-
 /* Is the box set and every edge kept over it? Notes why not. */
 static bool box_holds(tolerance *t, const double *lo, const double *hi)
 {
-    if (!mt_certify_set(t->c, lo, hi) || !keeps_held(t->c)) {
+    bool set = mt_certify_set(t->c, lo, hi);
+    for (int v = 0; v < t->c->n_views; v++) { /* every stiffness is still there all over it */
+        set = set && mt_enclosure_keeps_held(t->c->views[v]);
+    }
+    if (!set) {
         t->end = MT_TOLERANCE_DOMAIN;
         return false;
     }
@@ -64,7 +53,10 @@ static bool holds(tolerance *t, double percent, int alone)
     const mt_tolerance_question *const q = t->q;
     const long most = q->boxes_per_test > 0 ? q->boxes_per_test : DEFAULT_BOXES;
     for (int i = 0; i < t->c->n; i++) {
-        const double half = alone >= 0 && alone != i ? 0.0 : percent / 100.0 * unit_of(q, i);
+        const double half =
+            alone >= 0 && alone != i
+                ? 0.0
+                : percent / 100.0 * fabs(q->unit == NULL ? q->x[i] : q->unit[i]);
         t->lo[i] = q->x[i] - half;
         t->hi[i] = q->x[i] + half;
     }
