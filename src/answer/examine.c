@@ -176,14 +176,6 @@ static void doubt_target(mt_doubt_list *out, const mt_goal *goal, mt_goal_slot s
     }
 }
 
-/* Modes of the original design, counted as the study does. */
-static mt_status count_modes(const mt_study *s, mt_analysis *a, mt_err *err)
-{
-    const mt_analysis_options opt = mt_analysis_options_default();
-    MT_TRY(mt_analysis_count(a, &s->counted, NULL, 0.0, err));
-    return a->n_rigid == a->n_null ? MT_OK : mt_analysis_solve(a, NULL, &opt, err);
-}
-
 /* Goals ask for modes of a position that does not hold: said with them. */
 static void add_goals(const mt_study *s, int c, mt_doubt_list *of_model, int first)
 {
@@ -235,7 +227,12 @@ static mt_status examine_configuration(const mt_study *s, int c, mt_doubt_list *
     const int first = of_model->n;
     mt_status rc = mt_analysis_new(s->model, c, 0, NULL, NULL, &a, err);
     rc = rc == MT_OK ? mt_doubts_of_analysis(a, 0, NULL, NULL, of_model, err) : rc;
-    rc = rc == MT_OK ? count_modes(s, a, err) : rc;
+    /* modes are counted as the study does */
+    rc = rc == MT_OK ? mt_analysis_count(a, &s->counted, NULL, 0.0, err) : rc;
+    if (rc == MT_OK && a->n_rigid != a->n_null) {
+        const mt_analysis_options opt = mt_analysis_options_default();
+        rc = mt_analysis_solve(a, NULL, &opt, err);
+    }
     if (rc == MT_OK) {
         add_goals(s, c, of_model, first);
     }

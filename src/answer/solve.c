@@ -77,25 +77,20 @@ static mt_status tell_undescribed(const mt_answer *a, mt_err *err)
     return MT_OK;
 }
 
-/* Of a search that was cut nothing counts but the designs that it met: they are judged anew. */
-static void keep_designs_alone(mt_answer *a)
-{
-    a->found.stop = MT_STOP_USER;
-    a->found.n_undetermined = 0;
-    a->found.n_once = 0;
-    a->found.missing = nan("");
-    a->why = (mt_err){.code = MT_OK};
-    a->result->run.distinct_designs = -1;
-    a->result->run.found_once = -1;
-    a->result->run.estimated_missing = nan("");
-}
-
 /* What a phase leaves where it was cut. */
 static mt_status leave(mt_answer *a, mt_phase which, mt_err *err)
 {
     mt_result_take_back(a->result, &a->mark);
     if (which == MT_PHASE_SEARCH) {
-        keep_designs_alone(a);
+        /* nothing counts but the designs that it met: they are judged anew */
+        a->found.stop = MT_STOP_USER;
+        a->found.n_undetermined = 0;
+        a->found.n_once = 0;
+        a->found.missing = nan("");
+        a->why = (mt_err){.code = MT_OK};
+        a->result->run.distinct_designs = -1;
+        a->result->run.found_once = -1;
+        a->result->run.estimated_missing = nan("");
     } else if (which == MT_PHASE_RECOMMENDATIONS) {
         return tell_undescribed(a, err);
     } else if (which == MT_PHASE_CERTIFICATES) {

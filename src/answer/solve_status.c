@@ -30,20 +30,6 @@ static mt_status warn_of_missing(const mt_answer *a, mt_err *err)
                             more);
 }
 
-static mt_status warn_of_continua(const mt_answer *a, mt_err *err)
-{
-    for (int i = 0; i < a->result->n_recommendations; i++) {
-        if (a->found.solutions[i].continuum) {
-            MT_TRY(mt_describe_warn(a->result, err,
-                                    "recommendation %d: a continuum of designs is as good as "
-                                    "this one; a second objective, or one more goal, would "
-                                    "choose among them",
-                                    i + 1));
-        }
-    }
-    return MT_OK;
-}
-
 /* What the engineer should know of the search besides its answers. */
 mt_status mt_answer_warn(const mt_answer *a, mt_err *err)
 {
@@ -66,22 +52,19 @@ mt_status mt_answer_warn(const mt_answer *a, mt_err *err)
                                 a->found.evals));
     }
     MT_TRY(warn_of_missing(a, err));
-    MT_TRY(warn_of_continua(a, err));
+    for (int i = 0; i < a->result->n_recommendations; i++) {
+        if (a->found.solutions[i].continuum) {
+            MT_TRY(mt_describe_warn(a->result, err,
+                                    "recommendation %d: a continuum of designs is as good as "
+                                    "this one; a second objective, or one more goal, would "
+                                    "choose among them",
+                                    i + 1));
+        }
+    }
     if (a->why.code != MT_OK) {
         MT_TRY(mt_describe_warn(a->result, err, "%s", a->why.text));
     }
     return MT_OK;
-}
-
-static mt_result_status status_of(const mt_answer *a, const mt_recommendation *best)
-{
-    if (mt_describe_is_doubted(a->result)) {
-        return MT_RESULT_COMPROMISE;
-    }
-    if (a->infeasible) {
-        return MT_RESULT_INFEASIBLE;
-    }
-    return best->feasible ? MT_RESULT_SOLVED : MT_RESULT_COMPROMISE;
 }
 
 /* Is a named mode that cannot be told all that is wrong? */
@@ -96,17 +79,6 @@ static bool is_doubtful(const mt_recommendation *best)
         doubtful = doubtful || g->doubtful;
     }
     return doubtful;
-}
-
-/* Is a design of the search a local optimum, as far as its gradients tell? "" where it is. */
-static const char *doubt_text(const mt_recommendation *best, mt_arena *mem)
-{
-    return !mt_describe_is_optimum(best)
-               ? mt_arena_printf(mem,
-                                 " The best is not shown to be a local optimum (KKT residual "
-                                 "%.2g).",
-                                 best->kkt_residual)
-               : "";
 }
 
 /* Answers that do not depend on a search's success; NULL: it does. */
@@ -188,7 +160,12 @@ static const char *status_text(const mt_answer *a, const mt_recommendation *best
                    ? "The budget ended before any design was found."
                    : "No design was found within the bounds (sampled, not proven).";
     }
-    const char *const doubt = doubt_text(best, mem);
+    const char *const doubt =
+        mt_describe_is_optimum(best)
+            ? ""
+            : mt_arena_printf(
+                  mem, " The best is not shown to be a local optimum (KKT residual %.2g).",
+                  best->kkt_residual);
     if (doubt == NULL) {
         return NULL;
     }
@@ -257,24 +234,16 @@ mt_status mt_answer_set_status(const mt_answer *a, mt_err *err)
     const mt_recommendation *const best =
         result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline;
     const bool nothing = a->searched && result->n_recommendations == 0;
-    result->status = status_of(a, best);
+    result->status = mt_describe_is_doubted(result) ? MT_RESULT_COMPROMISE
+                     : a->infeasible                ? MT_RESULT_INFEASIBLE
+                     : best->feasible               ? MT_RESULT_SOLVED
+                                                    : MT_RESULT_COMPROMISE;
     if (nothing && result->status == MT_RESULT_SOLVED) {
         result->status = MT_RESULT_COMPROMISE; /* the baseline is no answer of the search */
     }
     result->status_text = status_text(a, best);
     MT_TRY(mt_arena_check(&result->mem, err));
     return qualify(result, err);
-}
-
-/* "search, certificates and trade" */
-static const char *list_text(const mt_result_run *run, mt_arena *mem)
-{
-    const char *text = run->incomplete[0];
-    for (int i = 1; i < run->n_incomplete && text != NULL; i++) {
-        const char *const link = i + 1 < run->n_incomplete ? ", " : " and ";
-        text = mt_arena_printf(mem, "%s%s%s", text, link, run->incomplete[i]);
-    }
-    return text;
 }
 
 mt_status mt_answer_note_cuts(const mt_answer *a, mt_err *err)
@@ -294,7 +263,11 @@ mt_status mt_answer_note_cuts(const mt_answer *a, mt_err *err)
             run->incomplete[run->n_incomplete++] = names[k];
         }
     }
-    const char *const list = list_text(run, &result->mem);
+    const char *list = run->incomplete[0]; /* "search, certificates and trade" */
+    for (int i = 1; i < run->n_incomplete && list != NULL; i++) {
+        const char *const link = i + 1 < run->n_incomplete ? ", " : " and ";
+        list = mt_arena_printf(&result->mem, "%s%s%s", list, link, run->incomplete[i]);
+    }
     result->status = MT_RESULT_INTERRUPTED;
     result->status_text = mt_arena_printf(&result->mem, "Interrupted (not complete: %s). %s",
                                           list, result->status_text);

@@ -146,27 +146,6 @@ static mt_status find_model(const mt_args *args, const mt_result *result, mt_fil
     return *path == NULL ? mt_fail_memory(err) : MT_OK;
 }
 
-static const mt_recommendation *choose(const mt_result *result, int rank)
-{
-    for (int i = 0; i < result->n_recommendations; i++) {
-        if (result->recommendations[i].rank == rank) {
-            return &result->recommendations[i];
-        }
-    }
-    return NULL;
-}
-
-/* Where the value of a parameter stands: the value itself, or member "value" of an object. */
-static mt_addr value_of(const mt_json *doc, const char *name)
-{
-    const mt_addr parameters = mt_json_member(doc, MT_JSON_ROOT, "parameters");
-    const mt_addr value =
-        parameters == MT_NO_ADDR ? MT_NO_ADDR : mt_json_member(doc, parameters, name);
-    return value == MT_NO_ADDR || mt_json_type_of(doc, value) != MT_JSON_OBJECT
-               ? value
-               : mt_json_member(doc, value, "value");
-}
-
 /* Ascending by begin. */
 static int by_place(const void *a, const void *b)
 {
@@ -180,9 +159,14 @@ static int by_place(const void *a, const void *b)
 static mt_status find_places(const mt_recommendation *r, const mt_json *doc, const char *path,
                              replacement *list, mt_err *err)
 {
+    const mt_addr parameters = mt_json_member(doc, MT_JSON_ROOT, "parameters");
     for (int i = 0; i < r->n_parameters; i++) {
         const mt_result_parameter *const p = &r->parameters[i];
-        const mt_addr value = value_of(doc, p->name);
+        mt_addr value =
+            parameters == MT_NO_ADDR ? MT_NO_ADDR : mt_json_member(doc, parameters, p->name);
+        if (value != MT_NO_ADDR && mt_json_type_of(doc, value) == MT_JSON_OBJECT) {
+            value = mt_json_member(doc, value, "value");
+        }
         list[i].value = p->recommended;
         if (value == MT_NO_ADDR || !mt_json_span(doc, value, &list[i].begin, &list[i].end)) {
             return mt_fail(err, MT_E_INPUT, "%s: there is no parameter \"%s\"", path, p->name);
@@ -230,7 +214,11 @@ static mt_status apply(const mt_args *args, const mt_result *result, mt_text *ou
 {
     const char *const path = args->operands[0];
     const int n = result->n_recommendations;
-    const mt_recommendation *const chosen = choose(result, args->rank);
+    const mt_recommendation *chosen = NULL;
+    for (int i = n - 1; i >= 0; i--) {
+        const mt_recommendation *const r = &result->recommendations[i];
+        chosen = r->rank == args->rank ? r : chosen;
+    }
     mt_file file = {.bytes = NULL};
     char *model_path = NULL;
     if (chosen == NULL) {

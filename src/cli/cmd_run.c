@@ -53,27 +53,19 @@ static int answer(job *j)
     return mt_cli_loaded(rc, &messages, &err);
 }
 
-/* Nothing to judge must not look like a success. */
-static int verdict(const job *j)
-{
-    int judged = 0;
-    const bool holds = mt_report_verified(j->result, &judged);
-    if (judged == 0) {
-        mt_terminal_error("%s: there are no published values to judge", j->path);
-        return MT_EXIT_INPUT;
-    }
-    return holds ? MT_EXIT_DONE : MT_EXIT_GOALS;
-}
-
 static int outcome(const job *j, bool verify)
 {
     if (j->result->status == MT_RESULT_INTERRUPTED) {
         return MT_EXIT_INTERRUPTED;
     }
-    if (verify) {
-        return verdict(j);
+    int judged = 0;
+    const bool holds =
+        verify ? mt_report_verified(j->result, &judged) : j->result->status == MT_RESULT_SOLVED;
+    if (verify && judged == 0) { /* nothing to judge must not look like a success */
+        mt_terminal_error("%s: there are no published values to judge", j->path);
+        return MT_EXIT_INPUT;
     }
-    return j->result->status == MT_RESULT_SOLVED ? MT_EXIT_DONE : MT_EXIT_GOALS;
+    return holds ? MT_EXIT_DONE : MT_EXIT_GOALS;
 }
 
 /* What a command does with an answer; its exit status. */

@@ -88,16 +88,6 @@ typedef struct job {
     mt_linear *lin;
 } job;
 
-static void job_free(job *j)
-{
-    if (j->a == NULL) {
-        mt_linear_delete(j->lin);
-        mt_system_delete(j->sys);
-    }
-    mt_analysis_delete(j->a);
-    mt_arena_free(&j->mem);
-}
-
 /* Modes at one point. */
 static mt_status visit(void *context, int point, const double *inputs, mt_err *err)
 {
@@ -135,17 +125,6 @@ static mt_status prepare_modes(job *j, int wanted, mt_err *err)
     return MT_OK;
 }
 
-/* Position of the caller's drive that is nearest to the reference position: every system is
- * made there. */
-static double nearest_position(const mt_sweep_request *r)
-{
-    double best = r->positions[0];
-    for (int i = 1; i < r->n; i++) {
-        best = fabs(r->positions[i]) < fabs(best) ? r->positions[i] : best;
-    }
-    return best;
-}
-
 /* The range of the command line lies within reach of the joint. */
 static mt_status check_reach(const mt_system *sys, const mt_sweep_request *r, mt_err *err)
 {
@@ -173,7 +152,10 @@ static mt_status run(const mt_args *args, const mt_subject *s, int c, job *j, mt
     for (size_t i = 0; i < n; i++) {
         at[i] = s->at[i];
     }
-    at[n] = nearest_position(r);
+    at[n] = r->positions[0]; /* the one nearest to the reference: every system is made there */
+    for (int i = 1; i < r->n; i++) {
+        at[n] = fabs(r->positions[i]) < fabs(at[n]) ? r->positions[i] : at[n];
+    }
     MT_TRY(
         mt_system_new_driven(s->model, c, &r->drive, s->n_inputs, s->inputs, at, &j->sys, err));
     MT_TRY(check_reach(j->sys, r, err));
@@ -307,7 +289,12 @@ static int one(sink *to, const mt_subject *s, int c, const mt_sweep_request *req
         mt_json_put_string(&to->w, "error", err.text);
         mt_json_close(&to->w);
     }
-    job_free(&j);
+    if (j.a == NULL) {
+        mt_linear_delete(j.lin);
+        mt_system_delete(j.sys);
+    }
+    mt_analysis_delete(j.a);
+    mt_arena_free(&j.mem);
     return rc == MT_OK ? code : mt_exit_worse(code, mt_cli_failed(rc, &err));
 }
 

@@ -17,16 +17,6 @@ static mt_status unknown(const char *what, const char *name, const char *const *
                                      what, name, nearest);
 }
 
-static const char **parameter_names(mt_subject *s)
-{
-    const int n = s->model->n_parameters;
-    const char **const names = mt_arena_alloc(&s->mem, (size_t)n, sizeof *names);
-    for (int i = 0; names != NULL && i < n; i++) {
-        names[i] = s->model->parameters[i].name.s;
-    }
-    return names;
-}
-
 static mt_status find_configuration(mt_subject *s, const char *name, mt_err *err)
 {
     const int n = s->model->n_configurations;
@@ -80,29 +70,21 @@ static mt_status read_set(mt_subject *s, const char *text, const char *const *na
     return MT_OK;
 }
 
-/* What --set makes of the model must be a mechanism still. */
-static mt_status judge(mt_subject *s, mt_err *err)
-{
-    for (int i = 0; i < s->n_configurations && s->n_inputs > 0; i++) {
-        const mt_status rc = mt_model_admit(s->model, s->configurations[i], s->n_inputs,
-                                            s->inputs, s->at, &s->mem, err);
-        MT_TRY(mt_err_in(err, rc, "--set"));
-    }
-    return MT_OK;
-}
-
 static mt_status choose(const mt_args *args, const char *configuration, mt_subject *s,
                         mt_err *err)
 {
     const size_t np = (size_t)s->model->n_parameters;
     const int nc = s->model->n_configurations;
-    const char **const names = parameter_names(s);
+    const char **const names = mt_arena_alloc(&s->mem, np, sizeof *names);
     s->original = mt_arena_f64(&s->mem, np, 1);
     s->values = mt_arena_f64(&s->mem, np, 1);
     s->inputs = mt_arena_int(&s->mem, np);
     s->at = mt_arena_f64(&s->mem, np, 1);
     s->configurations = mt_arena_int(&s->mem, (size_t)nc);
     MT_TRY(mt_arena_check(&s->mem, err));
+    for (size_t i = 0; i < np; i++) {
+        names[i] = s->model->parameters[i].name.s;
+    }
     if (configuration != NULL) {
         MT_TRY(find_configuration(s, configuration, err));
     } else {
@@ -120,7 +102,13 @@ static mt_status choose(const mt_args *args, const char *configuration, mt_subje
     rc = rc == MT_OK ? mt_model_parameters(s->model, s->n_inputs, s->inputs, s->at, &s->mem,
                                            s->values, err)
                      : rc;
-    return rc == MT_OK ? judge(s, err) : rc;
+    /* what --set makes of the model must be a mechanism still */
+    for (int i = 0; rc == MT_OK && i < s->n_configurations && s->n_inputs > 0; i++) {
+        rc = mt_model_admit(s->model, s->configurations[i], s->n_inputs, s->inputs, s->at,
+                            &s->mem, err);
+        rc = mt_err_in(err, rc, "--set");
+    }
+    return rc;
 }
 
 int mt_subject_load(const mt_args *args, const char *path, const char *configuration,

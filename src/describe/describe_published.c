@@ -91,31 +91,23 @@ static mt_status named_at(judge *j, const mt_published *pub, mt_analysis *a, int
     return MT_OK;
 }
 
-/* Position of the mode meant and its index at the original design. */
-static mt_status mode_at(judge *j, const mt_published *pub, mt_analysis *a, int *pos,
-                         int *index, mt_err *err)
-{
-    const bool by_index = pub->mode.index > 0;
-    *index = by_index ? pub->mode.index : j->p->study->model->modes[pub->mode.named].index;
-    *pos = by_index ? mt_modal_flexible(&a->modes, *index) : mt_analysis_named(a, *index);
-    if (by_index || pub->original) {
-        return MT_OK;
-    }
-    const mt_arena_mark mark = mt_arena_get_mark(&j->mem);
-    bool found = false;
-    mt_status rc = viewed_at(j, pub, a, pos, &found, err);
-    rc = rc == MT_OK && !found ? named_at(j, pub, a, pos, err) : rc;
-    mt_arena_rewind(&j->mem, mark);
-    return rc;
-}
-
 static mt_status compute_mode(judge *j, const mt_published *pub, double *value, mt_err *err)
 {
     mt_analysis *a = NULL;
-    int pos = -1;
-    int index = 0;
     MT_TRY(analysis_at(j, pub->configuration, pub->original ? ORIGINAL : RECOMMENDED, &a, err));
-    MT_TRY(mode_at(j, pub, a, &pos, &index, err));
+    /* the mode meant: its index at the original design, its position at this one */
+    const bool by_index = pub->mode.index > 0;
+    const int index =
+        by_index ? pub->mode.index : j->p->study->model->modes[pub->mode.named].index;
+    int pos = by_index ? mt_modal_flexible(&a->modes, index) : mt_analysis_named(a, index);
+    const mt_arena_mark mark = mt_arena_get_mark(&j->mem);
+    if (!by_index && !pub->original) {
+        bool found = false;
+        mt_status rc = viewed_at(j, pub, a, &pos, &found, err);
+        rc = rc == MT_OK && !found ? named_at(j, pub, a, &pos, err) : rc;
+        mt_arena_rewind(&j->mem, mark);
+        MT_TRY(rc);
+    }
     if (pos < 0) {
         return MT_OK;
     }
@@ -124,7 +116,6 @@ static mt_status compute_mode(judge *j, const mt_published *pub, double *value, 
         return MT_OK;
     }
     mt_reference_shape shape;
-    const mt_arena_mark mark = mt_arena_get_mark(&j->mem);
     mt_status rc = mt_reference_shape_init(
         j->p->references, pub->reference, pub->reference_mode > 0 ? pub->reference_mode : index,
         a->sys, &j->mem, &shape, err);

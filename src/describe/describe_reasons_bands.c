@@ -67,11 +67,6 @@ static void say_kinds(mt_sentences *s)
     }
 }
 
-static bool active(const mt_result_clearance *c)
-{
-    return fabs(c->percent - c->margin_percent) <= ACTIVE_PERCENT;
-}
-
 static void say_active(mt_sentences *s, const mt_result_clearance *c)
 {
     const char *const edge = strcmp(c->side, "above") == 0 ? "upper" : "lower";
@@ -102,7 +97,7 @@ static void say_clearances(mt_sentences *s)
     const mt_result_clearance *least = NULL;
     for (int i = 0; i < s->rec->n_clearances; i++) {
         const mt_result_clearance *const c = &s->rec->clearances[i];
-        if (active(c)) {
+        if (fabs(c->percent - c->margin_percent) <= ACTIVE_PERCENT) {
             say_active(s, c);
         } else if (c->percent < c->margin_percent) {
             say_short(s, c);

@@ -88,12 +88,6 @@ static void say_edges(mt_sentences *s)
     }
 }
 
-/* A round amount of a parameter: the power of ten from 1 to 10 % of its value. */
-static double amount_of(const mt_result_parameter *p)
-{
-    return pow(10.0, floor(log10(0.1 * fabs(p->recommended))));
-}
-
 /* "0.1 kg more allowed on M_SAU" */
 static const char *room_text(mt_sentences *s, const mt_result_parameter *p, double amount)
 {
@@ -138,7 +132,8 @@ static void say_bounds(mt_sentences *s)
 {
     for (int i = 0; i < s->rec->n_parameters; i++) {
         const mt_result_parameter *const p = &s->rec->parameters[i];
-        const double amount = amount_of(p);
+        /* a round amount: the power of ten from 1 to 10 % of the value */
+        const double amount = pow(10.0, floor(log10(0.1 * fabs(p->recommended))));
         if (p->at_bound == NULL || !(amount > 0.0) || !isfinite(amount)) {
             continue;
         }

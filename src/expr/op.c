@@ -33,17 +33,6 @@ static double quotient(double a, double b)
     return b == 0.0 ? nan("") : a / b;
 }
 
-/* The same for functions with a pole. */
-static double ln_value(double a)
-{
-    return a > 0.0 ? log(a) : nan("");
-}
-
-static double log10_value(double a)
-{
-    return a > 0.0 ? log10(a) : nan("");
-}
-
 static double pow_value(double a, double b)
 {
     return a == 0.0 && b < 0.0 ? nan("") : pow(a, b);
@@ -61,9 +50,9 @@ double mt_op_value(mt_op op, double a, double b)
     case MT_OP_EXP:
         return exp(a);
     case MT_OP_LN:
-        return ln_value(a);
+        return a > 0.0 ? log(a) : nan(""); /* at its pole, too */
     case MT_OP_LOG10:
-        return log10_value(a);
+        return a > 0.0 ? log10(a) : nan("");
     case MT_OP_SIN:
         return sin(a);
     case MT_OP_COS:

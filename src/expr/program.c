@@ -445,14 +445,6 @@ static choice chosen(mt_op op, mt_interval a, mt_interval b)
     return CHOICE_EITHER;
 }
 
-static mt_interval choice_derivative(choice c, mt_interval da, mt_interval db)
-{
-    if (c == CHOICE_EITHER) {
-        return mt_interval_hull(da, db);
-    }
-    return c == CHOICE_FIRST ? da : db;
-}
-
 /* Derivatives of one node with two operands (or one, doubled with a zero partial). */
 static void node_derivatives(const mt_program *p, int i, const double *lo, const double *hi,
                              double *dlo, double *dhi)
@@ -475,7 +467,7 @@ static void node_derivatives(const mt_program *p, int i, const double *lo, const
         const mt_interval db = {dlo[kb], dhi[kb]};
         mt_interval sum = {0.0, 0.0};
         if (chooses) {
-            sum = choice_derivative(c, da, db);
+            sum = c == CHOICE_EITHER ? mt_interval_hull(da, db) : c == CHOICE_FIRST ? da : db;
         } else {
             sum = p->active[n->a] ? mt_interval_mul(d.a, da) : sum;
             sum = b_active ? mt_interval_add(sum, mt_interval_mul(d.b, db)) : sum;

@@ -14,11 +14,6 @@ mt_json_writer mt_json_writer_default(mt_text *out)
     return (mt_json_writer){.out = out};
 }
 
-static bool is_number_char(char c)
-{
-    return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == 'e';
-}
-
 /* printf writes the decimal point of the locale, which may be several bytes: whatever is not a
  * digit, sign or exponent becomes one point. 17 digits identify a double (IEEE 754-2019,
  * 5.12.2). */
@@ -33,7 +28,7 @@ const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE]
     const int length = snprintf(raw, sizeof raw, "%.17g", value == 0.0 ? 0.0 : value);
     int n = 0;
     for (int i = 0; i < length && i < MT_JSON_NUMBER_SIZE - 1; i++) {
-        if (is_number_char(raw[i])) {
+        if (strchr("0123456789+-e", raw[i]) != NULL) {
             buffer[n++] = raw[i];
         } else if (n > 0 && buffer[n - 1] != '.') {
             buffer[n++] = '.';

@@ -272,7 +272,21 @@ static mt_status make_part(const double *dense, ptrdiff_t r, mt_arena *mem,
     return MT_OK;
 }
 
-/* The parts of all coefficients in both matrices. */
+/* The parts of coefficient i in both matrices. */
+static mt_status parts_of(mt_enclosure *e, const basis *b, int i, double *work, double *dense,
+                          mt_err *err)
+{
+    for (mt_matrix m = MT_STIFFNESS; m < MT_MATRICES; m++) {
+        mt_enclosure_part *const part = &e->coefficients[i].part[m];
+        part->count = 0;
+        if (add_pieces(e, b, m, i, work, dense)) {
+            MT_TRY(make_part(dense, b->r, &e->mem, part, err));
+        }
+        e->mass_varies = e->mass_varies || (m == MT_MASS && part->count > 0);
+    }
+    return MT_OK;
+}
+
 static mt_status make_parts(mt_enclosure *e, const basis *b, mt_err *err)
 {
     double *dense = NULL;
@@ -280,14 +294,7 @@ static mt_status make_parts(mt_enclosure *e, const basis *b, mt_err *err)
     MT_TRY(room(&e->scratch, (size_t)b->r, (size_t)b->r, &dense, err));
     MT_TRY(room(&e->scratch, (size_t)b->n, 4, &work, err));
     for (int i = 0; i < e->n_coefficients; i++) {
-        for (mt_matrix m = MT_STIFFNESS; m < MT_MATRICES; m++) {
-            mt_enclosure_part *const part = &e->coefficients[i].part[m];
-            part->count = 0;
-            if (add_pieces(e, b, m, i, work, dense)) {
-                MT_TRY(make_part(dense, b->r, &e->mem, part, err));
-            }
-            e->mass_varies = e->mass_varies || (m == MT_MASS && part->count > 0);
-        }
+        MT_TRY(parts_of(e, b, i, work, dense, err));
     }
     return MT_OK;
 }

@@ -232,13 +232,6 @@ mt_table mt_report_goals(const mt_recommendation *r)
     return t;
 }
 
-/* The clearance of the same mode on the other side: the lists have a mode's lower band
- * first. */
-static bool same_mode(const mt_result_clearance *a, const mt_result_clearance *b)
-{
-    return a->mode == b->mode && strcmp(a->configuration, b->configuration) == 0;
-}
-
 static void percent_cells(mt_table *t, const mt_recommendation *r, const mt_result_clearance *c)
 {
     mt_table_number(t, c != NULL ? c->percent : nan(""), PERCENT_DIGITS);
@@ -304,7 +297,9 @@ mt_table mt_report_clearances(const mt_recommendation *r)
         const mt_result_clearance *above = strcmp(c->side, "above") == 0 ? c : NULL;
         const mt_result_clearance *below = strcmp(c->side, "below") == 0 ? c : NULL;
         const bool inside = above == NULL && below == NULL;
-        if (above != NULL && i + 1 < r->n_clearances && same_mode(c, c + 1) &&
+        /* that of the same mode on the other side: the lists have its lower band first */
+        if (above != NULL && i + 1 < r->n_clearances && c->mode == c[1].mode &&
+            strcmp(c->configuration, c[1].configuration) == 0 &&
             strcmp(c[1].side, "below") == 0) {
             below = c + 1;
             i++;
@@ -399,15 +394,6 @@ mt_table mt_report_alternatives(const mt_result *result)
     return t;
 }
 
-/* "holds", "fails", "not comparable" */
-static const char *verdict(const mt_result_published *p)
-{
-    if (p->role != NULL && strcmp(p->role, "not_comparable") == 0) {
-        return "not comparable";
-    }
-    return p->holds ? "holds" : "FAILS";
-}
-
 bool mt_report_verified(const mt_result *result, int *judged)
 {
     int n = 0;
@@ -494,7 +480,10 @@ mt_table mt_report_published(const mt_result *result)
         mt_table_percent(&t, p->difference_percent, PERCENT_DIGITS);
         mt_table_text(&t, p->demand);
         mt_table_text(&t, p->role);
-        mt_table_text(&t, verdict(p));
+        mt_table_text(&t, p->role != NULL && strcmp(p->role, "not_comparable") == 0
+                              ? "not comparable"
+                          : p->holds ? "holds"
+                                     : "FAILS");
         mt_table_text(&t, p->source);
     }
     return t;

@@ -23,18 +23,6 @@ enum {
     LINE = 16
 };
 
-static void vary_columns(mt_table *t, const mt_trade_result *trade)
-{
-    for (int i = 0; i < trade->n_vary; i++) {
-        const mt_trade_vary *const v = &trade->vary[i];
-        char heading[HEADING_TEXT];
-        (void)mt_snprintf(heading, sizeof heading, "%.120s%s%.20s%s", v->text,
-                          v->unit != NULL ? " [" : "", v->unit != NULL ? v->unit : "",
-                          v->unit != NULL ? "]" : "");
-        mt_table_column(t, heading, v->text, MT_ALIGN_POINT);
-    }
-}
-
 static void point_row(mt_table *t, const mt_result *result, const mt_trade_point *p)
 {
     for (int i = 0; i < result->trade->n_vary; i++) {
@@ -59,7 +47,14 @@ mt_table mt_report_trade(const mt_result *result)
     if (result->trade == NULL) {
         return t;
     }
-    vary_columns(&t, result->trade);
+    for (int i = 0; i < result->trade->n_vary; i++) {
+        const mt_trade_vary *const v = &result->trade->vary[i];
+        const bool bare = v->unit == NULL;
+        char heading[HEADING_TEXT];
+        (void)mt_snprintf(heading, sizeof heading, "%.120s%s%.20s%s", v->text, bare ? "" : " [",
+                          bare ? "" : v->unit, bare ? "" : "]");
+        mt_table_column(&t, heading, v->text, MT_ALIGN_POINT);
+    }
     mt_table_column(&t, "status", "status", MT_ALIGN_LEFT);
     mt_report_objective_columns(&t, result);
     mt_table_column(&t, "clearance [%]", "clearance_percent", MT_ALIGN_POINT);

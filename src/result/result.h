@@ -172,7 +172,7 @@ typedef struct mt_recommendation {
     /* of a fresh analysis with what the search read, in words (not written: warnings and
      * reasons tell); NULL: none */
     const char *disagreement;
-    double score;     /* what it is ranked by: the first objective; NaN where infeasible */
+    double score;  /* what it is ranked by: the first objective; NaN where infeasible */
     double change; /* size of the redesign */
     double misfit; /* NaN: no weighted goals */
     double violation_percent;

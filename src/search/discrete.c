@@ -43,15 +43,6 @@ static mt_status begin(mt_discrete *d, mt_err *err)
     return MT_OK;
 }
 
-static double count_combinations(const mt_discrete *d)
-{
-    double n = 1.0;
-    for (int k = 0; k < d->n_discrete; k++) {
-        n *= (double)d->p->study->variables[d->variable[k]].n_catalogue;
-    }
-    return n;
-}
-
 void mt_discrete_set(const mt_discrete *d, mt_combination *c)
 {
     const mt_problem *const p = d->p;
@@ -93,12 +84,6 @@ static int by_change(const void *a, const void *b)
         return x->least < y->least ? -1 : 1;
     }
     return x->pick < y->pick ? -1 : x->pick > y->pick ? 1 : 0;
-}
-
-static int kept_at_most(const mt_discrete *d)
-{
-    const int asked = d->p->study->recommendations;
-    return asked > KEPT ? asked : KEPT;
 }
 
 /* The best `most` of list[n], ranked, into best[*n_best]: insertion, so that equal ones keep
@@ -249,10 +234,14 @@ mt_status mt_discrete_solve(mt_workspace *const *workers, int n_workers, mt_aren
                      .c = workers[0]->c,
                      .mem = mem};
     MT_TRY(begin(&d, err));
-    ranking r = {.most = kept_at_most(&d)};
+    const int asked = d.p->study->recommendations;
+    ranking r = {.most = asked > KEPT ? asked : KEPT};
     r.best = mt_arena_alloc(mem, (size_t)r.most, sizeof(mt_combination *));
     MT_TRY(mt_arena_check(mem, err));
-    const double n = count_combinations(&d);
+    double n = 1.0;
+    for (int k = 0; k < d.n_discrete; k++) {
+        n *= (double)d.p->study->variables[d.variable[k]].n_catalogue;
+    }
     mt_combination **all = NULL;
     int n_all = 0;
     *report = (mt_discrete_report){.mixed = d.mixed, .combinations = n, .best_within = nan("")};

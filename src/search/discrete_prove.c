@@ -62,15 +62,6 @@ static mt_status best_of(const prover *v, const mt_combination **out, mt_err *er
     return MT_OK;
 }
 
-static int index_of(const mt_variable *v, double x)
-{
-    int at = 0;
-    while (at + 1 < v->n_catalogue && v->catalogue[at] < x) {
-        at++;
-    }
-    return at;
-}
-
 /* The combination of x, which joins the list where it is not in it. */
 static mt_status combination_at(prover *v, const double *x, mt_combination **out, mt_err *err)
 {
@@ -78,7 +69,11 @@ static mt_status combination_at(prover *v, const double *x, mt_combination **out
     mt_combination *c = NULL;
     MT_TRY(mt_discrete_alloc(d, 1, &c, err));
     for (int k = 0; k < d->n_discrete; k++) {
-        c->pick[k] = index_of(&d->p->study->variables[d->variable[k]], x[d->variable[k]]);
+        const mt_variable *const own = &d->p->study->variables[d->variable[k]];
+        while (c->pick[k] + 1 < own->n_catalogue &&
+               own->catalogue[c->pick[k]] < x[d->variable[k]]) {
+            c->pick[k]++;
+        }
     }
     const size_t size = (size_t)d->n_discrete * sizeof *c->pick;
     for (int i = 0; i < v->n; i++) {

@@ -27,19 +27,6 @@ typedef struct crossing {
     mt_err err;
 } crossing;
 
-static mt_status claim(crossing *x, mt_err *err)
-{
-    const mt_problem *const p = x->d->p;
-    mt_arena *const mem = x->d->mem;
-    x->rows = p->n_eq + x->d->c->n_in + p->n_res + p->n_aims + p->n_clears;
-    x->at = mt_arena_f64(mem, (size_t)x->rows, 1);
-    x->now = mt_arena_f64(mem, (size_t)x->rows, 1);
-    x->below = mt_arena_int(mem, 2 * (size_t)p->n_bands + 1);
-    x->t = mt_arena_f64(mem, (size_t)p->n + 1, 1);
-    MT_TRY(mt_arena_check(mem, err));
-    return mt_case_values_init(x->d->c, mem, &x->v, err);
-}
-
 /* Rows divided by their tolerances at x->t; false where a goal has no value. */
 static bool measure(crossing *x, double *rows, int *below)
 {
@@ -140,8 +127,15 @@ mt_status mt_discrete_undetermined(mt_discrete *d, const mt_combination *best,
 {
     crossing x = {.d = d};
     mt_nlp_result continuous = {0};
-    MT_TRY(claim(&x, err));
-    memcpy(x.t, best->t, (size_t)d->p->n * sizeof *x.t);
+    const mt_problem *const p = d->p;
+    x.rows = p->n_eq + d->c->n_in + p->n_res + p->n_aims + p->n_clears;
+    x.at = mt_arena_f64(d->mem, (size_t)x.rows, 1);
+    x.now = mt_arena_f64(d->mem, (size_t)x.rows, 1);
+    x.below = mt_arena_int(d->mem, 2 * (size_t)p->n_bands + 1);
+    x.t = mt_arena_f64(d->mem, (size_t)p->n + 1, 1);
+    MT_TRY(mt_arena_check(d->mem, err));
+    MT_TRY(mt_case_values_init(d->c, d->mem, &x.v, err));
+    memcpy(x.t, best->t, (size_t)p->n * sizeof *x.t);
     if (d->mixed) {
         MT_TRY(mt_discrete_directions(d, best, d->mem, &continuous, err));
         d->evals += continuous.evals;

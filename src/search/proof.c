@@ -49,14 +49,6 @@ static void list_bands(mt_proof *proof, const mt_problem *p)
     proof->question.same_as = p->tie;
 }
 
-/* A limit on an expression, its tolerance granted. */
-static mt_certify_bound expression_bound(const mt_demand *d, double least, double most)
-{
-    return (mt_certify_bound){d->node,
-                              least - (d->tolerance * mt_measure_unit(d->measure, least)),
-                              most + (d->tolerance * mt_measure_unit(d->measure, most))};
-}
-
 /* Frequency goals by index that are constraints, and limits on expressions. */
 static void list_limits(mt_proof *proof, const mt_problem *p)
 {
@@ -74,7 +66,9 @@ static void list_limits(mt_proof *proof, const mt_problem *p)
             proof->limits[q->n_limits++] =
                 (mt_certify_limit){d->view, d->mode, least, most, d->tolerance};
         } else if (d->quantity == MT_QUANTITY_EXPRESSION) {
-            proof->bounds[q->n_bounds++] = expression_bound(d, least, most);
+            proof->bounds[q->n_bounds++] = (mt_certify_bound){
+                d->node, least - (d->tolerance * mt_measure_unit(d->measure, least)),
+                most + (d->tolerance * mt_measure_unit(d->measure, most))};
         } else {
             proof->covers = false;
         }

@@ -249,23 +249,18 @@ static mt_status search_move(void *context, int worker, int k, mt_err *err)
     return rc;
 }
 
-/* Of the study's budget, if it sets one, an equal share of what is left. */
-static long budget_of(const mt_case *c, long spent, int n_moves)
-{
-    const long most = c->search.max_evaluations;
-    return most > 0 && n_moves > 0 ? (most - spent) / n_moves : LONG_MAX;
-}
-
 mt_status mt_relax(mt_workspace *const *workers, int n_workers, const mt_nlp_result *search,
                    mt_arena *mem, mt_moves *out, mt_err *err)
 {
     const mt_case *const c = workers[0]->c;
     MT_TRY(mt_relax_moves(c, mem, out, err));
+    const long most = c->search.max_evaluations; /* if the study sets one: an equal share */
+    const long left = most - search->evals;
     job j = {.workers = workers,
              .c = c,
              .moves = out,
              .near = search->n_solutions > 0 ? search->solutions[0].t : NULL,
-             .budget = budget_of(c, search->evals, out->n),
+             .budget = most > 0 && out->n > 0 ? left / out->n : LONG_MAX,
              .results = mt_arena_alloc(mem, (size_t)out->n, sizeof *j.results)};
     const int n = out->n;
     const int least = c->n_clears > 0 ? BUDGET_LEAST + MT_GAP_SAMPLES_NEAR : BUDGET_LEAST;

@@ -71,13 +71,6 @@ static mt_status aims_at(const stages *s, const double *t, double *f, mt_err *er
     return rc;
 }
 
-static long budget_left(const stages *s)
-{
-    const long most = s->first->search.max_evaluations;
-    const long left = most - s->out->evals;
-    return most > 0 && left < STAGE_EVALUATIONS ? left : STAGE_EVALUATIONS;
-}
-
 /* Improve solution i in the present stage. */
 static mt_status refine(stages *s, int i, mt_err *err)
 {
@@ -86,7 +79,9 @@ static mt_status refine(stages *s, int i, mt_err *err)
     double *const f = s->f + ((ptrdiff_t)i * c->n_aims);
     double *const limit = s->limit + ((ptrdiff_t)i * c->n_aims);
     mt_nlp_result next = {0};
-    const long budget = budget_left(s);
+    const long most = s->first->search.max_evaluations;
+    const long left = most - s->out->evals;
+    const long budget = most > 0 && left < STAGE_EVALUATIONS ? left : STAGE_EVALUATIONS;
     if (budget <= 0) {
         s->out->stop = MT_STOP_MAX_EVALS;
         return MT_OK;
@@ -103,8 +98,7 @@ static mt_status refine(stages *s, int i, mt_err *err)
     opt.max_evals = budget;
     nlp.origin = old->t;
     MT_TRY(mt_nlp_solve(&nlp, &opt, s->mem, &next, err));
-    MT_TRY(mt_search_repeated(s->ws, s->first->search.max_evaluations > 0 ? budget : 0, s->mem,
-                              &next, err));
+    MT_TRY(mt_search_repeated(s->ws, most > 0 ? budget : 0, s->mem, &next, err));
     s->out->evals += next.evals;
     s->out->stop = next.stop;
     if (next.n_solutions == 0 || next.compromise) {

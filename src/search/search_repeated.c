@@ -56,14 +56,6 @@ static bool spent(const refine *w, long more)
     return w->evals + more > w->most;
 }
 
-static bool is_held(const mt_workspace *ws, const mt_nlp_values *v)
-{
-    const mt_case *const c = ws->c;
-    const mt_missed m = mt_missed_of(mt_case_rows_eq(c), v->eq, c->eq_tol, mt_case_rows_in(c),
-                                     v->in, c->in_tol);
-    return mt_is_held(m.violation);
-}
-
 /* Solve nlp from t, near it; a feasible design of the study that is better than f: into t,
  * f. */
 static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double *f,
@@ -102,7 +94,9 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
     rc = is && rc == MT_OK ? mt_workspace_eval(ws, found.solutions[0].t, false, &v, &own) : rc;
     if (is && rc == MT_OK) {
         w->evals++;
-        if (is_held(ws, &v) && v.f < *f - w->gain * fabs(*f)) {
+        const mt_missed m = mt_missed_of(mt_case_rows_eq(ws->c), v.eq, ws->c->eq_tol,
+                                         mt_case_rows_in(ws->c), v.in, ws->c->in_tol);
+        if (mt_is_held(m.violation) && v.f < *f - w->gain * fabs(*f)) {
             memcpy(t, found.solutions[0].t, (size_t)ws->c->n_t * sizeof *t);
             *f = v.f;
             *better = true;

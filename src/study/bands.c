@@ -141,24 +141,20 @@ static int by_frequency(const void *a, const void *b)
     return x->order - y->order;
 }
 
-/* "0.5E of engine to 1G of pinion (12 bands)" */
-static const char *short_label(parts *p, int first, int last)
-{
-    const part *const a = &p->items[first];
-    const part *const b = &p->items[last];
-    const bool named = a->of != NULL && a->of != b->of;
-    return mt_arena_printf(p->mem, "%s%s%s to %s%s%s (%d bands)", a->what, named ? " of " : "",
-                           named ? a->of : "", b->what, b->of != NULL ? " of " : "",
-                           b->of != NULL ? b->of : "", last - first + 1);
-}
-
 /* "8P + 1T of UH-60 + 1P of Lynx": an owner is named behind the last of its neighbours in the
  * list. */
 static const char *label_of(parts *p, int first, int last)
 {
     const char *label = "";
     if (last - first >= LISTED_MOST) {
-        return short_label(p, first, last);
+        /* "0.5E of engine to 1G of pinion (12 bands)" */
+        const part *const a = &p->items[first];
+        const part *const b = &p->items[last];
+        const bool named = a->of != NULL && a->of != b->of;
+        return mt_arena_printf(p->mem, "%s%s%s to %s%s%s (%d bands)", a->what,
+                               named ? " of " : "", named ? a->of : "", b->what,
+                               b->of != NULL ? " of " : "", b->of != NULL ? b->of : "",
+                               last - first + 1);
     }
     for (int i = first; i <= last; i++) {
         const part *const a = &p->items[i];

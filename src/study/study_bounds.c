@@ -31,15 +31,6 @@ typedef struct corners {
     mt_status rc; /* memory ran out */
 } corners;
 
-static bool is_met(corners *k, const mt_goal *goal)
-{
-    double v = 0.0;
-    const mt_status rc =
-        mt_model_expr_value(k->c->model, k->parameter, &goal->expression, &k->mem, &v, NULL);
-    k->rc = rc == MT_E_MEMORY ? rc : k->rc;
-    return rc == MT_OK && !(v < goal->at_least) && !(v > goal->at_most);
-}
-
 /* Does every limit of an expression hold at x? Equalities are the search's to find. */
 static bool is_allowed(corners *k)
 {
@@ -49,7 +40,14 @@ static bool is_allowed(corners *k)
         mt_model_parameters(k->c->model, k->n, k->inputs, k->x, &k->mem, k->parameter, NULL);
     k->rc = rc == MT_E_MEMORY ? rc : k->rc;
     for (int i = 0; rc == MT_OK && i < s->n_goals && allowed; i++) {
-        allowed = s->goals[i].expression_text == NULL || is_met(k, &s->goals[i]);
+        const mt_goal *const goal = &s->goals[i];
+        double v = 0.0;
+        if (goal->expression_text != NULL) {
+            const mt_status own = mt_model_expr_value(k->c->model, k->parameter,
+                                                      &goal->expression, &k->mem, &v, NULL);
+            k->rc = own == MT_E_MEMORY ? own : k->rc;
+            allowed = own == MT_OK && !(v < goal->at_least) && !(v > goal->at_most);
+        }
     }
     return rc == MT_OK && allowed;
 }

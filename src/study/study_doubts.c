@@ -122,33 +122,17 @@ static void doubt_avoid(mt_doubt_list *out, const mt_goal *goal)
     }
 }
 
-static void doubt_goal(mt_doubt_list *out, const mt_goal *goal)
-{
-    if (goal->tolerance_percent >= MOST_TOLERANCE_PERCENT) {
-        at(mt_doubt_add(out, MT_LEVEL_DOUBT, "tolerance",
-                        "tolerance_percent %g: within so much almost anything meets the goal",
-                        goal->tolerance_percent),
-           goal->tolerance_addr);
-    }
-    if (goal->avoid != NULL) {
-        doubt_avoid(out, goal);
-    }
-}
-
-static double decades(double lower, double upper)
-{
-    const double ratio = upper / lower;
-    return isfinite(ratio) ? log10(ratio) : log10(upper) - log10(lower);
-}
-
 static void doubt_variable(mt_doubt_list *out, const mt_variable *v)
 {
     const char *const name = v->parameter_name.s;
-    if (v->lower > 0.0 && v->upper / v->lower > MOST_SPAN) {
+    const double ratio = v->upper / v->lower;
+    if (v->lower > 0.0 && ratio > MOST_SPAN) {
+        const double decades =
+            isfinite(ratio) ? log10(ratio) : log10(v->upper) - log10(v->lower);
         at(mt_doubt_add(
                out, MT_LEVEL_DOUBT, "bounds",
                "the bounds of %s, %g to %g, span %.0f decades: is a power of ten wrong?", name,
-               v->lower, v->upper, floor(decades(v->lower, v->upper))),
+               v->lower, v->upper, floor(decades)),
            v->addr);
     }
     const bool below =
@@ -185,7 +169,17 @@ void mt_study_check_doubts(mt_study_check *c)
         doubt_variable(out, &s->variables[i]);
     }
     for (int i = 0; i < s->n_goals; i++) {
-        doubt_goal(out, &s->goals[i]);
+        const mt_goal *const goal = &s->goals[i];
+        if (goal->tolerance_percent >= MOST_TOLERANCE_PERCENT) {
+            at(mt_doubt_add(
+                   out, MT_LEVEL_DOUBT, "tolerance",
+                   "tolerance_percent %g: within so much almost anything meets the goal",
+                   goal->tolerance_percent),
+               goal->tolerance_addr);
+        }
+        if (goal->avoid != NULL) {
+            doubt_avoid(out, goal);
+        }
     }
     doubt_trade(out, &s->trade);
     for (int i = 0; i < out->n; i++) {

@@ -71,16 +71,6 @@ static void check_demands(mt_study_check *c, const mt_goal *goal, const mt_goal_
     }
 }
 
-/* A reference gives a value, where the goal can ask for one, else a shape. */
-static void check_reference(mt_study_check *c, mt_goal *goal, bool shape, int index)
-{
-    goal->reference = mt_check_reference(c, goal->reference_name);
-    mt_check_reference_mode(c, goal->reference, goal->reference_mode, index, shape, goal->addr);
-    if (shape) {
-        mt_check_common_sensors(c, goal->reference, goal->reference_name.addr);
-    }
-}
-
 /* Numbers of the goal within what their kind allows. */
 static void check_numbers(mt_study_check *c, const mt_goal *goal, const mt_goal_kind *kind)
 {
@@ -113,7 +103,13 @@ static void check_goal(mt_study_check *c, mt_goal *goal)
         index = mt_check_mode(c, &goal->mode);
     }
     if (mt_goal_member_at(kind, MT_SLOT_REFERENCE) >= 0) {
-        check_reference(c, goal, !values, index);
+        /* it gives a value, where the goal can ask for one, else a shape */
+        goal->reference = mt_check_reference(c, goal->reference_name);
+        mt_check_reference_mode(c, goal->reference, goal->reference_mode, index, !values,
+                                goal->addr);
+        if (!values) {
+            mt_check_common_sensors(c, goal->reference, goal->reference_name.addr);
+        }
     }
     if (values) {
         check_demands(c, goal, kind);

@@ -99,15 +99,6 @@ static void check_spread(mt_study_check *c)
     }
 }
 
-static void check_clearance(mt_study_check *c)
-{
-    const mt_objective *const clearance = find(c->study, MT_BANDS);
-    if (clearance != NULL && !mt_study_has_bands(c->study)) {
-        mt_diag_error(c->diags, clearance->addr,
-                      "the clearance needs a goal of type \"avoid\"");
-    }
-}
-
 void mt_study_check_objectives(mt_study_check *c)
 {
     mt_study *const s = c->study;
@@ -116,7 +107,11 @@ void mt_study_check_objectives(mt_study_check *c)
     }
     check_misfit(c);
     check_spread(c);
-    check_clearance(c);
+    const mt_objective *const clearance = find(s, MT_BANDS);
+    if (clearance != NULL && !mt_study_has_bands(s)) {
+        mt_diag_error(c->diags, clearance->addr,
+                      "the clearance needs a goal of type \"avoid\"");
+    }
     if (s->n_objectives > 0 || s->n_variables == 0) {
         return;
     }
