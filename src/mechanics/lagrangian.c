@@ -224,15 +224,15 @@ static mt_cx add_spring(const mt_data *d, int i, mt_cx k, mt_cx stretch, const m
 }
 
 /* What the step that is left makes of a measure. */
-static double left_open(const mt_lagrangian *l, const mt_system *sys, const int body[2],
-                        const mt_jet *jet)
+static double left_way(const mt_lagrangian *l, const mt_system *sys, const int body[2],
+                       const mt_jet *jet)
 {
     double way = 0.0;
     for (int k = 0; k < MT_LOCAL && l->left.q != NULL; k++) {
         const int dof = mt_local_dof(sys, body, k);
         way += dof >= 0 ? creal(jet->g[k]) * l->left.q[dof] : 0.0;
     }
-    return fabs(way);
+    return way;
 }
 
 static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature curvature,
@@ -245,13 +245,15 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
         const mt_measure_def *const first = &sys->measures[s->measure[0]];
         const bool coupling = s->measure[0] != s->measure[1];
         mt_cx stretch[2];
+        double way[2] = {0.0, 0.0};
         if (s->damper) {
             continue;
         }
         for (int side = 0; side < (coupling ? 2 : 1); side++) {
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
             mt_data_eval(d, def, at, curvature != MT_CURVATURE_NONE, &jet[side]);
-            stretch[side] = jet[side].value - d->rest[i][side];
+            way[side] = left_way(out, sys, def->body, &jet[side]);
+            stretch[side] = jet[side].value - d->rest[i][side] + way[side];
         }
         const mt_cx k = mt_data_scalar(d, s->stiffness, 0.0);
         note_noise(d, first, at->pose, &jet[0], creal(k), out);
@@ -259,16 +261,14 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
             add_coupling(sys, first->body, k, stretch, jet, curvature, out);
             for (int side = 0; side < 2; side++) {
                 const double force = 0.5 * fabs(creal(cx_mul(k, stretch[1 - side])));
-                const double way = left_open(out, sys, first->body, &jet[1 - side]);
                 note_terms(d, &sys->measures[s->measure[side]], at->pose, &jet[side], force,
-                           force, 0.5 * fabs(creal(k)) * way, out);
+                           force, 0.5 * fabs(creal(k) * way[1 - side]), out);
             }
         } else {
             const double force =
                 fabs(creal(add_spring(d, i, k, stretch[0], jet, curvature, out)));
-            const double way = left_open(out, sys, first->body, &jet[0]);
             note_terms(d, first, at->pose, &jet[0], force, force,
-                       i == sys->trim_spring ? fabs(out->left.trim) : fabs(creal(k)) * way,
+                       i == sys->trim_spring ? fabs(out->left.trim) : fabs(creal(k) * way[0]),
                        out);
         }
     }

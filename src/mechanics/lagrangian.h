@@ -32,8 +32,8 @@ typedef struct mt_piece {
 } mt_piece;
 
 /* The last step of Newton's method, too small to be taken: from the position, which is rounded,
- * to where the forces balance. By it a spring of stiffness k and gradient g is wrong by k g .
- * q. */
+ * to where the forces balance. There a spring of stiffness k and gradient g has k g . q more
+ * force, and that is what it counts with. */
 typedef struct mt_step_left {
     double *q;      /* [nq]; NULL: none */
     double *lambda; /* [m] */

@@ -100,6 +100,7 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     mt_lagrangian l;
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     const bool loaded = lin->position.equilibrium.active;
+    const mt_step_left *const left = &lin->position.equilibrium.left;
     const int all = sys->n_constraints;
     lin->m = sys->trim ? all - 1 : all;
     MT_TRY(mt_lagrangian_init(&l, sys, loaded, &lin->scratch, err));
@@ -108,12 +109,12 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     MT_TRY(mt_arena_check(&lin->scratch, err));
     MT_TRY(mt_arena_check(&lin->geometry, err));
     for (int i = 0; i < all && loaded; i++) {
-        lambda[i] = lin->position.equilibrium.lambda[i];
+        lambda[i] = lin->position.equilibrium.lambda[i] + left->lambda[i];
     }
-    l.trim_force = lin->position.equilibrium.trim_force;
+    l.trim_force = lin->position.equilibrium.trim_force + left->trim;
     if (loaded) {
         MT_TRY(mt_lagrangian_want_terms(&l, sys, &lin->geometry, err));
-        l.left = lin->position.equilibrium.left;
+        l.left = *left;
     }
     mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, &lin->position.at,
                        all, loaded ? lambda : NULL,

@@ -28,6 +28,11 @@ class Stress(unittest.TestCase):
         found = list(run.stress("1", ["nearly redundant joints"], [15, 64, 111], {}))
         self.assertEqual(found, [])
 
+    def test_forces_are_those_of_the_balance(self):
+        """Stiff springs under a little load: their forces are lost in the rounding of the position, and found by what is unbalanced there."""
+        found = list(run.stress("f", ["heavy on stiff feet"], [18, 43], {}, far=1.0))
+        self.assertEqual(found, [])
+
 
 @unittest.skipIf("MT_INSTRUMENTED" in os.environ, "judges the reference, not the program")
 class Faults(unittest.TestCase):
