@@ -29,15 +29,8 @@ double mt_doubts_work(const mt_model *model, int configuration)
     static const double PER_SQUARE = 700.0;
     static const double PER_NUMBER = 3000.0;
     const double states = model->dimension == 2 ? STATES_2D : STATES_3D;
-    double bodies = 0.0;
+    const double bodies = mt_lowest_bodies(model, configuration);
     double joints = 0.0;
-    for (int i = 0; i < model->n_bodies; i++) {
-        bodies += mt_model_present(&model->bodies[i].in, configuration) ? 1.0 : 0.0;
-    }
-    for (int i = 0; i < model->n_links; i++) {
-        const mt_link *const l = &model->links[i];
-        bodies += mt_model_present(&l->in, configuration) ? (double)l->elements + 1.0 : 0.0;
-    }
     for (int i = 0; i < model->n_joints; i++) {
         joints += mt_model_present(&model->joints[i].in, configuration) ? 1.0 : 0.0;
     }
@@ -240,23 +233,25 @@ static mt_status say_freedoms(const mt_analysis *a, mt_doubt_list *out, mt_err *
     return say_redundant(a->lin, out, err);
 }
 
-static mt_status doubt_scale(const mt_analysis *a, mt_doubt_list *out, mt_err *err)
+static void doubt_mass(double mass_kg, mt_doubt_list *out)
 {
-    mt_info info;
-    MT_TRY(mt_info_fill(a->lin, &info, err));
-    if (info.mass_kg > MOST_MASS_KG || (info.mass_kg > 0.0 && info.mass_kg < LEAST_MASS_KG)) {
+    if (mass_kg > MOST_MASS_KG || (mass_kg > 0.0 && mass_kg < LEAST_MASS_KG)) {
         char mass[NUMBER_SIZE] = "beyond 1.8e308"; /* masses that no double adds up */
-        if (isfinite(info.mass_kg)) {
-            (void)mt_snprintf(mass, sizeof mass, "%.3g", info.mass_kg);
+        if (isfinite(mass_kg)) {
+            (void)mt_snprintf(mass, sizeof mass, "%.3g", mass_kg);
         }
         (void)mt_doubt_add(out, MT_LEVEL_DOUBT, "mass",
                            "its mass is %s kg, which no mechanism has: is a length in "
                            "millimetres, a mass in grams, or a density in t/mm^3?",
                            mass);
     }
-    for (int i = 0; i < a->modes.count; i++) {
-        const double hz = mt_modal_hz(&a->modes, i);
-        if (a->modes.kind[i] != MT_MODE_FLEXIBLE) {
+}
+
+static void doubt_frequency(const mt_modes *modes, mt_doubt_list *out)
+{
+    for (int i = 0; i < modes->count; i++) {
+        const double hz = mt_modal_hz(modes, i);
+        if (modes->kind[i] != MT_MODE_FLEXIBLE) {
             continue;
         }
         if (hz > MOST_LOWEST_HZ || hz < LEAST_LOWEST_HZ) {
@@ -265,9 +260,30 @@ static mt_status doubt_scale(const mt_analysis *a, mt_doubt_list *out, mt_err *e
                                "length in millimetres, a mass in grams, or a modulus in MPa?",
                                hz);
         }
-        break;
+        return;
     }
-    return MT_OK;
+}
+
+/* What only an analysis of all modes can tell. */
+static mt_status say_analysis(mt_analysis *a, mt_doubt_list *out, mt_err *err)
+{
+    mt_info info;
+    MT_TRY(mt_info_fill(a->lin, &info, err));
+    doubt_mass(info.mass_kg, out);
+    doubt_frequency(&a->modes, out);
+    return say_freedoms(a, out, err);
+}
+
+static void say_lowest(const mt_lowest *l, mt_doubt_list *out)
+{
+    const mt_modes *const modes = &l->found.modes;
+    doubt_mass(mt_tree_mass(l->tree), out);
+    doubt_frequency(modes, out);
+    if (modes->n_rigid > 0) {
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion",
+                           "%d free motion%s: is a joint or a spring missing?", modes->n_rigid,
+                           modes->n_rigid == 1 ? "" : "s");
+    }
 }
 
 /* Into `out`; what is there already, of another configuration, belongs to no single one. */
@@ -284,16 +300,26 @@ static void merge(mt_doubt_list *out, const mt_doubt *d)
     mt_doubt_copy(out, d);
 }
 
-static mt_status gather(mt_analysis *a, int n_inputs, const int *inputs, const double *at,
+/* What is known of a configuration: the analysis, or its lowest modes. */
+typedef struct known {
+    const mt_system *sys;
+    mt_analysis *a;
+    const mt_lowest *l;
+} known;
+
+static mt_status gather(const known *k, int n_inputs, const int *inputs, const double *at,
                         mt_doubt_list *list, mt_err *err)
 {
-    const mt_model *const m = a->sys->model;
-    const int c = a->sys->configuration;
+    const mt_model *const m = k->sys->model;
+    const int c = k->sys->configuration;
     double *const value = mt_arena_f64(list->mem, (size_t)m->n_nums, 1);
     MT_TRY(mt_arena_check(list->mem, err));
     MT_TRY(mt_model_numbers(m, c, n_inputs, inputs, at, list->mem, value, err));
-    MT_TRY(doubt_scale(a, list, err));
-    MT_TRY(say_freedoms(a, list, err));
+    if (k->a != NULL) {
+        MT_TRY(say_analysis(k->a, list, err));
+    } else {
+        say_lowest(k->l, list);
+    }
     for (int i = 0; i < list->n; i++) {
         list->items[i].configuration = m->configurations[c].name.s;
         list->items[i].file = m->path;
@@ -301,9 +327,10 @@ static mt_status gather(mt_analysis *a, int n_inputs, const int *inputs, const d
     mt_model_judge(m, c, value, list);
     for (int i = 0; i < list->n; i++) {
         mt_doubt *const d = &list->items[i];
-        if (strcmp(d->kind, "gap") == 0) { /* the distance after closing, beside that before */
+        if (k->a != NULL && strcmp(d->kind, "gap") == 0) {
+            /* the distance after closing, beside that before */
             d->text = mt_arena_printf(list->mem, "%s (to %.1e m)", d->text,
-                                      mt_linear_position(a->lin)->gap_m);
+                                      mt_linear_position(k->a->lin)->gap_m);
         }
         if (d->level == MT_LEVEL_FAULT) {
             return mt_fail(err, MT_E_INPUT, "%s", d->text);
@@ -312,13 +339,13 @@ static mt_status gather(mt_analysis *a, int n_inputs, const int *inputs, const d
     return mt_arena_check(list->mem, err);
 }
 
-mt_status mt_doubts_of_analysis(mt_analysis *a, int n_inputs, const int *inputs,
-                                const double *at, mt_doubt_list *out, mt_err *err)
+static mt_status add_known(const known *k, int n_inputs, const int *inputs, const double *at,
+                           mt_doubt_list *out, mt_err *err)
 {
     mt_arena mem;
     MT_TRY(mt_arena_init(&mem, 0, err));
     mt_doubt_list list = mt_doubt_list_default(&mem);
-    const mt_status rc = gather(a, n_inputs, inputs, at, &list, err);
+    const mt_status rc = gather(k, n_inputs, inputs, at, &list, err);
     for (int level = MT_LEVEL_DOUBT; rc == MT_OK && level >= MT_LEVEL_FACT; level--) {
         for (int i = 0; i < list.n; i++) {
             if ((int)list.items[i].level == level) {
@@ -328,4 +355,18 @@ mt_status mt_doubts_of_analysis(mt_analysis *a, int n_inputs, const int *inputs,
     }
     mt_arena_free(&mem);
     return rc == MT_OK ? mt_arena_check(out->mem, err) : rc;
+}
+
+mt_status mt_doubts_of_analysis(mt_analysis *a, int n_inputs, const int *inputs,
+                                const double *at, mt_doubt_list *out, mt_err *err)
+{
+    const known k = {.sys = a->sys, .a = a};
+    return add_known(&k, n_inputs, inputs, at, out, err);
+}
+
+mt_status mt_doubts_of_lowest(const mt_lowest *l, int n_inputs, const int *inputs,
+                              const double *at, mt_doubt_list *out, mt_err *err)
+{
+    const known k = {.sys = l->sys, .l = l};
+    return add_known(&k, n_inputs, inputs, at, out, err);
 }

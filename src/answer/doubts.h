@@ -3,6 +3,7 @@
 #define ANSWER_DOUBTS_H
 
 #include "analysis/analysis.h"
+#include "analysis/lowest.h"
 #include "base/doubt.h"
 
 /**
@@ -17,6 +18,10 @@
  */
 mt_status mt_doubts_of_analysis(mt_analysis *a, int n_inputs, const int *inputs,
                                 const double *at, mt_doubt_list *out, mt_err *err);
+
+/* The same where the lowest modes of a tree are all that is known. */
+mt_status mt_doubts_of_lowest(const mt_lowest *l, int n_inputs, const int *inputs,
+                              const double *at, mt_doubt_list *out, mt_err *err);
 
 /* What looking at configurations may cost where nobody asked for an analysis (`check`), in
  * operations: some three seconds. */

@@ -19,10 +19,12 @@ static const double TOLD_ERROR = 1e-6;
 typedef struct view {
     const mt_subject *s;
     int c;
-    mt_analysis *a;
-    int shown;        /* positions of modes to write */
-    mt_shapes shapes; /* n 0: not asked for */
-    int count;        /* --count */
+    mt_analysis *a;    /* of all modes; NULL: */
+    mt_lowest *l;      /* of the lowest ones */
+    const mt_modes *m; /* of one of them */
+    int shown;         /* positions of modes to write */
+    mt_shapes shapes;  /* n 0: not asked for */
+    int count;         /* --count */
     bool with_damping;
     mt_damped_modes damped;
     mt_doubt_list doubts;
@@ -30,7 +32,7 @@ typedef struct view {
 
 static void json_mode(mt_json_writer *w, const view *v, int i)
 {
-    const mt_modes *const m = &v->a->modes;
+    const mt_modes *const m = v->m;
     const int index = mt_modes_index(m, i);
     int size = 1;
     (void)mt_modal_cluster(m, i, &size);
@@ -60,15 +62,28 @@ static void json_mode(mt_json_writer *w, const view *v, int i)
     mt_json_close(w);
 }
 
+/* Below this frequency no mode is missing. */
+static double complete_below_hz(const mt_lowest *l)
+{
+    return sqrt(l->found.tau) / (2.0 * 3.14159265358979323846);
+}
+
 static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
 {
-    const mt_modes *const m = &v->a->modes;
-    const mt_state *const at = mt_linear_position(v->a->lin);
+    static const mt_state unloaded = {.moved_m = 0.0};
+    const mt_modes *const m = v->m;
+    const mt_state *const at = v->a == NULL ? &unloaded : mt_linear_position(v->a->lin);
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
     mt_json_put_doubts(w, "doubts", &v->doubts, MT_LEVEL_DOUBT);
     mt_json_put_doubts(w, "facts", &v->doubts, MT_LEVEL_FACT);
-    mt_json_put_integer(w, "freedoms", mt_linear_freedoms(v->a->lin));
+    mt_json_put_string(w, "method", v->l == NULL ? "dense" : "tree");
+    if (v->l == NULL) {
+        mt_json_put_null(w, "complete_below_hz"); /* all modes are there */
+    } else {
+        mt_json_put_number(w, "complete_below_hz", complete_below_hz(v->l));
+    }
+    mt_json_put_integer(w, "freedoms", m->n);
     mt_json_put_integer(w, "rigid_body_modes", m->n_rigid);
     mt_json_put_integer(w, "unstable_modes", m->n_unstable + m->n_unstable_condensed);
     mt_json_put_integer(w, "undecided_modes", m->n_undecided);
@@ -81,7 +96,12 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     if (v->with_damping) {
         mt_damped_json(&v->damped, v->count, w);
     }
-    MT_TRY(mt_cli_json_redundant(w, v->a->lin, &v->a->mem, err));
+    if (v->a != NULL) {
+        MT_TRY(mt_cli_json_redundant(w, v->a->lin, &v->a->mem, err));
+    } else { /* no tree with any is answered */
+        mt_json_open(w, "redundant_constraints", '[');
+        mt_json_close(w);
+    }
     mt_json_open(w, "equilibrium", '{');
     mt_json_put_bool(w, "solved", at->equilibrium.active);
     mt_json_put_integer(w, "iterations", at->iterations);
@@ -105,7 +125,7 @@ static bool any_rough(const view *v)
 {
     bool rough = false;
     for (int i = 0; i < v->shown; i++) {
-        rough = rough || is_rough(&v->a->modes, i);
+        rough = rough || is_rough(v->m, i);
     }
     return rough;
 }
@@ -137,7 +157,7 @@ static mt_table table_new(bool with_configuration, bool with_error, int n_shapes
 
 static void fill_table(mt_table *t, const view *v, bool csv)
 {
-    const mt_modes *const m = &v->a->modes;
+    const mt_modes *const m = v->m;
     const bool with_error = csv || any_rough(v);
     for (int i = 0; i < v->shown; i++) {
         const int index = mt_modes_index(m, i);
@@ -178,7 +198,7 @@ static void print_shapes(const view *v, mt_text *out)
     mt_table_column(&t, v->shapes.sensors ? "sensor" : "body", "channel", MT_ALIGN_LEFT);
     for (int i = 0; i < v->shown; i++) {
         char heading[40];
-        const int index = mt_modes_index(&v->a->modes, i);
+        const int index = mt_modes_index(v->m, i);
         (void)mt_snprintf(heading, sizeof heading, index > 0 ? "mode %d" : "(%d)",
                           index > 0 ? index : i + 1);
         mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
@@ -197,9 +217,14 @@ static void print_shapes(const view *v, mt_text *out)
 
 static void tell(const view *v, mt_text *out)
 {
-    const mt_modes *const m = &v->a->modes;
-    const mt_state *const at = mt_linear_position(v->a->lin);
-    if (at->equilibrium.active) {
+    const mt_modes *const m = v->m;
+    const mt_state *const at = v->a == NULL ? NULL : mt_linear_position(v->a->lin);
+    if (v->l != NULL) {
+        mt_text_addf(out,
+                     "  The lowest modes of a tree of %d bodies (sparse): %d below %.6g Hz, by "
+                     "count, none missing.\n",
+                     v->l->tree->n, v->l->found.below, complete_below_hz(v->l));
+    } else if (at != NULL && at->equilibrium.active) {
         mt_text_addf(out, "  Equilibrium found in %d iterations, residual %.1e.\n",
                      at->iterations, at->equilibrium.residual);
     }
@@ -269,21 +294,54 @@ static mt_status csv_view(sink *to, const view *v)
     return MT_OK;
 }
 
+/* More bodies than this are not analysed as a whole: the matrices alone take gigabytes. */
+enum { MOST_BODIES = 5000 };
+
+/* The lowest modes alone where they are what is asked for, and where there is a short way. */
+static mt_status look(const mt_args *args, view *v, mt_err *err)
+{
+    const mt_subject *const s = v->s;
+    const double bodies = mt_lowest_bodies(s->model, v->c);
+    const bool all = args->count == 0 || args->given[MT_OPT_SHAPES] ||
+                     args->given[MT_OPT_DAMPED] || args->count > bodies / 2;
+    char why[MT_TREE_WHY] =
+        "ask for the lowest modes alone, without shapes and dampers (--count)";
+    if (!all && bodies >= MT_LOWEST_BODIES) {
+        MT_TRY(mt_lowest_new(s->model, v->c, s->n_inputs, s->inputs, s->at, args->count, &v->l,
+                             err));
+    }
+    if (v->l != NULL && v->l->tree != NULL) {
+        v->m = &v->l->found.modes;
+        return mt_doubts_of_lowest(v->l, s->n_inputs, s->inputs, s->at, &v->doubts, err);
+    }
+    if (v->l != NULL) {
+        (void)mt_snprintf(why, sizeof why, "the way for large trees is not open, as %s",
+                          v->l->why);
+        mt_lowest_delete(v->l);
+        v->l = NULL;
+    }
+    if (bodies > MOST_BODIES) {
+        return mt_fail(err, MT_E_USAGE,
+                       "%s: configuration \"%s\": %.0f bodies are too many for dense matrices; "
+                       "%s",
+                       s->path, mt_subject_configuration(s, v->c), bodies, why);
+    }
+    MT_TRY(mt_subject_analyse(s, v->c, &v->a, err));
+    v->m = &v->a->modes;
+    return mt_doubts_of_analysis(v->a, s->n_inputs, s->inputs, s->at, &v->doubts, err);
+}
+
 static mt_status one(sink *to, const mt_subject *s, int c, mt_err *err)
 {
     view v = {.s = s, .c = c, .count = to->args->count};
     mt_arena mem = {.first = NULL};
     mt_status rc = mt_arena_init(&mem, 0, err);
-    rc = rc == MT_OK ? mt_subject_analyse(s, c, &v.a, err) : rc;
-    if (rc != MT_OK) {
-        goto done;
-    }
     v.doubts = mt_doubt_list_default(&mem);
-    rc = mt_doubts_of_analysis(v.a, s->n_inputs, s->inputs, s->at, &v.doubts, err);
-    if (rc != MT_OK) {
+    rc = rc == MT_OK ? look(to->args, &v, err) : rc;
+    if (rc != MT_OK || v.m == NULL) {
         goto done;
     }
-    v.shown = mt_modes_shown(&v.a->modes, to->args->count);
+    v.shown = mt_modes_shown(v.m, to->args->count);
     if (to->args->given[MT_OPT_SHAPES]) {
         rc = mt_shapes_of(v.a, v.shown, &mem, &v.shapes, err);
     }
@@ -312,6 +370,7 @@ static mt_status one(sink *to, const mt_subject *s, int c, mt_err *err)
         break;
     }
 done:
+    mt_lowest_delete(v.l);
     mt_analysis_delete(v.a);
     mt_arena_free(&mem);
     return rc;

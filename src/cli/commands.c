@@ -21,9 +21,11 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_SET, '\0', "set", "NAME=VALUE", ON_MODELS,
            "give a parameter another value; an expression may use the model's own values "
            "(\"k=1.1*k\"); may be repeated"),
-    OPTION(MT_OPT_COUNT, '\0', "count", "N",
-           BIT(MT_CMD_MODES) | BIT(MT_CMD_MAC) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY),
-           "only the first N vibration modes"),
+    OPTION(
+        MT_OPT_COUNT, '\0', "count", "N",
+        BIT(MT_CMD_MODES) | BIT(MT_CMD_MAC) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY),
+        "only the first N vibration modes; `modes` finds them without the others where a large "
+        "mechanism is a tree, whatever its size"),
     OPTION(MT_OPT_SHAPES, '\0', "shapes", NULL, BIT(MT_CMD_MODES),
            "mode shapes at the sensors, or of the bodies where there are none"),
     OPTION(

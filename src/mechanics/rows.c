@@ -40,17 +40,45 @@ static void push(mt_term_list *list, const mt_program *p, mt_term term)
     list->terms[list->n_terms++] = term;
 }
 
+/* How many terms and rows each kind has. */
+static void count_terms(const mt_system *sys, int terms[MT_TERM_KINDS], int rows[MT_TERM_KINDS])
+{
+    for (int i = 0; i < sys->n_springs; i++) {
+        const mt_spring_def *const s = &sys->springs[i];
+        const int kind = s->damper ? MT_TERM_DAMPING : MT_TERM_STIFFNESS;
+        terms[kind]++;
+        rows[kind] += s->measure[0] != s->measure[1] ? 2 : 1;
+    }
+    for (int i = 0; i < sys->n_inertias; i++) {
+        terms[MT_TERM_MASS]++;
+        rows[MT_TERM_MASS] += inertia_rows(sys, &sys->inertias[i]);
+    }
+    terms[MT_TERM_CHANNEL] = sys->n_channels;
+    rows[MT_TERM_CHANNEL] = sys->n_channels;
+}
+
+mt_term mt_term_of_inertia(const mt_system *sys, int i)
+{
+    const mt_inertia_def *const def = &sys->inertias[i];
+    return (mt_term){.coefficient = def->coefficient,
+                     .count = inertia_rows(sys, def),
+                     .pair = def->kind == MT_INERTIA_ROTATION && def->dir[0] != def->dir[1],
+                     .body = {def->body[0], def->body[1]},
+                     .source = i};
+}
+
 mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists, mt_err *err)
 {
     const mt_program *const p = &sys->program;
-    const size_t most_terms =
-        (size_t)sys->n_springs + (size_t)sys->n_inertias + (size_t)sys->n_channels + 1;
+    int terms[MT_TERM_KINDS] = {0};
+    int rows[MT_TERM_KINDS] = {0};
+    count_terms(sys, terms, rows);
     for (int k = 0; k < MT_TERM_KINDS; k++) {
         lists[k] = (mt_term_list){0};
-        lists[k].terms = mt_arena_alloc(mem, most_terms, sizeof(mt_term));
-        lists[k].row_term = mt_arena_int(mem, most_terms * 12);
-        MT_TRY(mt_arena_check(mem, err));
+        lists[k].terms = mt_arena_alloc(mem, (size_t)terms[k], sizeof(mt_term));
+        lists[k].row_term = mt_arena_int(mem, (size_t)rows[k]);
     }
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < sys->n_springs; i++) {
         const mt_spring_def *const s = &sys->springs[i];
         const mt_measure_def *const m = &sys->measures[s->measure[0]];
@@ -63,13 +91,7 @@ mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists,
                        .source = i});
     }
     for (int i = 0; i < sys->n_inertias; i++) {
-        const mt_inertia_def *const def = &sys->inertias[i];
-        push(&lists[MT_TERM_MASS], p,
-             (mt_term){.coefficient = def->coefficient,
-                       .count = inertia_rows(sys, def),
-                       .pair = def->kind == MT_INERTIA_ROTATION && def->dir[0] != def->dir[1],
-                       .body = {def->body[0], def->body[1]},
-                       .source = i});
+        push(&lists[MT_TERM_MASS], p, mt_term_of_inertia(sys, i));
     }
     for (int i = 0; i < sys->n_channels; i++) {
         push(&lists[MT_TERM_CHANNEL], p,
@@ -240,27 +262,32 @@ static void channel_eval(const mt_data *d, const mt_channel_def *c, const mt_pos
     }
 }
 
+void mt_term_rows(const mt_data *d, mt_term_kind kind, const mt_term *t, const mt_pose *poses,
+                  mt_cx *rows)
+{
+    memset(rows, 0, (size_t)t->count * MT_LOCAL * sizeof *rows);
+    switch (kind) {
+    case MT_TERM_STIFFNESS:
+    case MT_TERM_DAMPING:
+        spring_rows(d, &d->sys->springs[t->source], poses, rows);
+        break;
+    case MT_TERM_MASS:
+        inertia_eval(d, &d->sys->inertias[t->source], poses, rows);
+        break;
+    case MT_TERM_CHANNEL:
+        channel_eval(d, &d->sys->channels[t->source], poses, rows);
+        break;
+    case MT_TERM_KINDS:
+        break;
+    }
+}
+
 void mt_rows_eval(const mt_data *d, mt_term_kind kind, const mt_term_list *list,
                   const mt_pose *poses, mt_cx *rows)
 {
-    memset(rows, 0, (size_t)list->n_rows * MT_LOCAL * sizeof *rows);
     for (int i = 0; i < list->n_terms; i++) {
         const mt_term *const t = &list->terms[i];
-        mt_cx *const at = rows + ((ptrdiff_t)t->first * MT_LOCAL);
-        switch (kind) {
-        case MT_TERM_STIFFNESS:
-        case MT_TERM_DAMPING:
-            spring_rows(d, &d->sys->springs[t->source], poses, at);
-            break;
-        case MT_TERM_MASS:
-            inertia_eval(d, &d->sys->inertias[t->source], poses, at);
-            break;
-        case MT_TERM_CHANNEL:
-            channel_eval(d, &d->sys->channels[t->source], poses, at);
-            break;
-        case MT_TERM_KINDS:
-            break;
-        }
+        mt_term_rows(d, kind, t, poses, rows + ((ptrdiff_t)t->first * MT_LOCAL));
     }
 }
 

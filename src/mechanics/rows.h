@@ -40,8 +40,12 @@ typedef struct mt_term_list {
 
 /* The terms of a system (topology only). lists[MT_TERM_KINDS]. */
 mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists, mt_err *err);
-/* Rows of one kind at given poses: rows[12 * n_rows], entry k of a row belongs to local freedom
- * k of the term's bodies. */
+/* The term of one inertia, without its place in a list. */
+mt_term mt_term_of_inertia(const mt_system *sys, int i);
+/* Rows of one term at given poses: rows[12 * count], entry k of a row belongs to local freedom
+ * k of the term's bodies; all rows of one kind: rows[12 * n_rows]. */
+void mt_term_rows(const mt_data *d, mt_term_kind kind, const mt_term *t, const mt_pose *poses,
+                  mt_cx *rows);
 void mt_rows_eval(const mt_data *d, mt_term_kind kind, const mt_term_list *list,
                   const mt_pose *poses, mt_cx *rows);
 /* The entries of such rows (real) that are not 0, by state. A failure is the arena's. */

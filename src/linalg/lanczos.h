@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef LINALG_LANCZOS_H
+#define LINALG_LANCZOS_H
+
+#include "base/arena.h"
+
+/*
+ * The largest eigenvalues of a symmetric operator A, positive semidefinite, of which only the
+ * product with a vector is known: Lanczos' method with full reorthogonalisation and thick
+ * restarts (Wu and Simon, SIAM J. Matrix Anal. Appl. 22, 2000), in the complement of vectors
+ * that are known already. A repeated eigenvalue may be found once only: who counts the
+ * eigenvalues by other means asks again with what was found locked.
+ */
+typedef struct mt_lanczos {
+    int n;
+    int wanted;
+    int seed; /* of the start: the same seed gives the same bytes */
+    /* y := A x; a failure ends the iteration */
+    mt_status (*apply)(void *context, const double *x, double *y, mt_err *err);
+    void *context;
+    int n_locked;
+    const double *locked; /* n x n_locked, orthonormal */
+} mt_lanczos;
+
+/**
+ * @param[out] x      n x wanted, orthonormal columns, of descending eigenvalues
+ * @param[out] found  how many: fewer than wanted where A has no more that are not 0
+ * An eigenvalue is found when the residual ||A x - theta x|| is below 1e-9 theta, and below 64
+ * eps times the largest one (or below 4 eps times that): the error of its Rayleigh quotient is
+ * then the square of that, over the gap.
+ * Scratch n (2 wanted + 24) from mem. Fails: MT_E_NO_CONVERGENCE, as apply, MT_E_MEMORY.
+ */
+mt_status mt_lanczos_largest(const mt_lanczos *problem, mt_arena *mem, double *x, int *found,
+                             mt_err *err);
+
+#endif

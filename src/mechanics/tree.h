@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_TREE_H
+#define MECHANICS_TREE_H
+
+#include "mechanics/system.h"
+
+/*
+ * A mechanism that is a tree, at rest without load, in coordinates of its edges. Every body has
+ * one body (or the ground) before it; joints, springs and masses that two bodies share stand
+ * between a body and the one before it. With v the motion of a body (dx, theta; absolute), X
+ * the rigid motion along with the body before it, and N the motions that the joints of its edge
+ * allow,
+ *     v_i = X_i v_before(i) + N_i (F_i y_i + R_i r_i):
+ * R spans what no spring of the edge resists, and F makes the energy of its springs |y_i|^2/2.
+ * Then
+ *     K = diag(I, 0) in (y, r),    M = T^T M_bodies T,
+ * T being the recursion from the ground to the leaves and T^T the one back: neither is ever
+ * written down. Nothing cancels: in coordinates of the ground the stiffness of a chain of n
+ * links has a condition that grows with n^4, here each spring stands in an entry of its own.
+ * All costs are O(bodies). (Featherstone, Rigid Body Dynamics Algorithms, 2008, for the
+ * recursions; the count is his articulated-body inertia with K - tau M in place of M.)
+ */
+typedef struct mt_tree {
+    const mt_system *sys;
+    int n;          /* bodies */
+    int s;          /* entries of v: (dx, dy, theta), or (dx, theta) in space */
+    int n_y;        /* y of all bodies */
+    int n_loose;    /* r of all bodies: rigid-body modes */
+    int depth;      /* bodies on the longest way to the ground */
+    int *body;      /* [n] of the system, each behind the one before it */
+    int *before;    /* [n] place in this order; -1: the ground, or nothing */
+    bool *point;    /* [n] a point mass: does not turn */
+    int *y_at;      /* [n + 1] */
+    int *loose_at;  /* [n + 1] */
+    double *arm;    /* 3 x n, to the centre from that of the body before it [m] */
+    double *basis;  /* N F, then N R, of body i from s (y_at[i] + loose_at[i]) on */
+    double *mass;   /* s x s of each body */
+    double *shared; /* s x s: v_before^T shared v_i; NULL: no mass is shared */
+} mt_tree;
+
+enum { MT_TREE_WHY = 200, MT_TREE_LOOSE = 64 };
+
+/**
+ * @param[in]  inputs  [n_inputs] of the system
+ * @param[out] out     in mem; NULL where the system is no such tree
+ * @param[out] why     then the reason: "joint \"a\" is part of a loop"
+ * Fails: MT_E_DOMAIN (a number has no value), MT_E_INTERRUPTED, MT_E_MEMORY.
+ */
+mt_status mt_tree_new(const mt_system *sys, const double *inputs, mt_arena *mem, mt_tree **out,
+                      char why[MT_TREE_WHY], mt_err *err);
+
+/* v[s n] := T (y, r); r may be NULL (0). */
+void mt_tree_motion(const mt_tree *t, const double *y, const double *r, double *v);
+/* y[n_y], r[n_loose] (may be NULL) := T^T M_bodies v; f[s n] is work. */
+void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *y, double *r);
+/* Mass of all bodies [kg]. */
+double mt_tree_mass(const mt_tree *t);
+/* How many eigenvalues of K - tau M are below 0, by Sylvester's law: *below counts
+ * the modes with lambda < tau, rigid-body modes included (tau > 0). *certain: no pivot is so
+ * small that rounding may have made its sign. Scratch s^2 n. Fails: MT_E_MEMORY. */
+mt_status mt_tree_count(const mt_tree *t, double tau, mt_arena *scratch, int *below,
+                        bool *certain, mt_err *err);
+
+#endif

@@ -1,0 +1,279 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The recursions. Rigid motion along with the body before it, a the arm between the centres:
+ *     dx = dx_p + theta_p x a,  theta = theta_p (a point mass: 0);  back, of forces:
+ *     force_p += force,  moment_p += moment + a x force.
+ *
+ * The count: K - tau M is a sum over bodies of v^T H v, H = -tau (mass), of -tau v_p^T C v and
+ * of |y|^2. From the leaves on, with B = [N F, N R], D = diag(I, 0), z = (y, r):
+ *     Delta = D + B^T H B,   W = B^T (H X + C^T),
+ *     H_p += X^T H X + C X + X^T C^T - W^T Delta^-1 W:
+ * what is left when z takes its stationary value. The signs of the pivots of all Delta are
+ * those of the eigenvalues.
+ */
+#include "mechanics/tree_priv.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { MOST = MT_TREE_MOTION, SQUARE = MOST * MOST };
+
+/* A pivot below this part of the terms that it is the sum of may have its sign from rounding.
+ * */
+static const double DOUBTFUL = 1e-10;
+
+/* v := X_i p. */
+static void carry(const mt_tree *t, int i, const double *p, double *v)
+{
+    const double *const a = t->arm + ((ptrdiff_t)3 * i);
+    const double turns = t->point[i] ? 0.0 : 1.0;
+    if (t->s == 3) {
+        v[0] = p[0] - (p[2] * a[1]);
+        v[1] = p[1] + (p[2] * a[0]);
+        v[2] = turns * p[2];
+        return;
+    }
+    const double *const w = p + 3;
+    v[0] = p[0] + ((w[1] * a[2]) - (w[2] * a[1]));
+    v[1] = p[1] + ((w[2] * a[0]) - (w[0] * a[2]));
+    v[2] = p[2] + ((w[0] * a[1]) - (w[1] * a[0]));
+    for (int k = 0; k < 3; k++) {
+        v[3 + k] = turns * w[k];
+    }
+}
+
+void mt_tree_carry_back(const mt_tree *t, int i, const double *f, double *p)
+{
+    const double *const a = t->arm + ((ptrdiff_t)3 * i);
+    const double turns = t->point[i] ? 0.0 : 1.0;
+    if (t->s == 3) {
+        p[0] += f[0];
+        p[1] += f[1];
+        p[2] += (turns * f[2]) + ((a[0] * f[1]) - (a[1] * f[0]));
+        return;
+    }
+    for (int k = 0; k < 3; k++) {
+        p[k] += f[k];
+    }
+    p[3] += (turns * f[3]) + ((a[1] * f[2]) - (a[2] * f[1]));
+    p[4] += (turns * f[4]) + ((a[2] * f[0]) - (a[0] * f[2]));
+    p[5] += (turns * f[5]) + ((a[0] * f[1]) - (a[1] * f[0]));
+}
+
+static const double *basis_of(const mt_tree *t, int i)
+{
+    return t->basis + ((ptrdiff_t)t->s * (t->y_at[i] + t->loose_at[i]));
+}
+
+void mt_tree_motion(const mt_tree *t, const double *y, const double *r, double *v)
+{
+    const int s = t->s;
+    for (int i = 0; i < t->n; i++) {
+        double *const own = v + ((ptrdiff_t)s * i);
+        const double *b = basis_of(t, i);
+        if (t->before[i] < 0) {
+            memset(own, 0, (size_t)s * sizeof *own);
+        } else {
+            carry(t, i, v + ((ptrdiff_t)s * t->before[i]), own);
+        }
+        for (int c = t->y_at[i]; c < t->y_at[i + 1]; c++, b += s) {
+            for (int k = 0; k < s; k++) {
+                own[k] += b[k] * y[c];
+            }
+        }
+        for (int c = t->loose_at[i]; c < t->loose_at[i + 1] && r != NULL; c++, b += s) {
+            for (int k = 0; k < s; k++) {
+                own[k] += b[k] * r[c];
+            }
+        }
+    }
+}
+
+/* f += A v, or A^T v, s x s. */
+static void add_product(int s, const double *a, bool transposed, const double *v, double *f)
+{
+    for (int c = 0; c < s; c++) {
+        for (int r = 0; r < s; r++) {
+            f[r] += a[transposed ? c + (r * s) : r + (c * s)] * v[c];
+        }
+    }
+}
+
+void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *y, double *r)
+{
+    const int s = t->s;
+    const ptrdiff_t square = (ptrdiff_t)s * s;
+    memset(f, 0, (size_t)t->n * (size_t)s * sizeof *f);
+    for (int i = t->n - 1; i >= 0; i--) {
+        const int p = t->before[i];
+        double *const own = f + ((ptrdiff_t)s * i);
+        double *const other = p < 0 ? NULL : f + ((ptrdiff_t)s * p);
+        const double *b = basis_of(t, i);
+        add_product(s, t->mass + (square * i), false, v + ((ptrdiff_t)s * i), own);
+        if (t->shared != NULL && p >= 0) {
+            add_product(s, t->shared + (square * i), true, v + ((ptrdiff_t)s * p), own);
+            add_product(s, t->shared + (square * i), false, v + ((ptrdiff_t)s * i), other);
+        }
+        for (int c = t->y_at[i]; c < t->y_at[i + 1]; c++, b += s) {
+            y[c] = 0.0;
+            for (int k = 0; k < s; k++) {
+                y[c] += b[k] * own[k];
+            }
+        }
+        for (int c = t->loose_at[i]; c < t->loose_at[i + 1] && r != NULL; c++, b += s) {
+            r[c] = 0.0;
+            for (int k = 0; k < s; k++) {
+                r[c] += b[k] * own[k];
+            }
+        }
+        if (p >= 0) {
+            mt_tree_carry_back(t, i, own, other);
+        }
+    }
+}
+
+/* Of a motion of 1 along x. */
+double mt_tree_mass(const mt_tree *t)
+{
+    const ptrdiff_t square = (ptrdiff_t)t->s * t->s;
+    double mass = 0.0;
+    for (int i = 0; i < t->n; i++) {
+        mass += t->mass[square * i] + (t->shared == NULL ? 0.0 : 2.0 * t->shared[square * i]);
+    }
+    return mass;
+}
+
+/* X_i, s x s. */
+static void carry_matrix(const mt_tree *t, int i, double *x)
+{
+    for (int c = 0; c < t->s; c++) {
+        double unit[MOST] = {0.0};
+        unit[c] = 1.0;
+        carry(t, i, unit, x + ((ptrdiff_t)c * t->s));
+    }
+}
+
+/* out (m x n) := op(A) B, A of inner size k. */
+static void product(bool transposed, int m, int n, int k, const double *a, const double *b,
+                    double *out)
+{
+    for (int c = 0; c < n; c++) {
+        for (int r = 0; r < m; r++) {
+            double sum = 0.0;
+            for (int l = 0; l < k; l++) {
+                sum += a[transposed ? l + (r * k) : r + (l * m)] * b[l + (c * k)];
+            }
+            out[r + (c * m)] = sum;
+        }
+    }
+}
+
+/* L D L^T = delta in place (d x d, lower); counts negative pivots; size: of the terms on the
+ * diagonal. */
+static void pivots(int d, double *delta, const double *size, int *below, bool *certain)
+{
+    for (int j = 0; j < d; j++) {
+        double most = size[j];
+        for (int k = 0; k < j; k++) {
+            const double taken = delta[j + (k * d)] * delta[j + (k * d)] * delta[k + (k * d)];
+            delta[j + (j * d)] -= taken;
+            most = fmax(most, fabs(taken));
+        }
+        const double pivot = delta[j + (j * d)];
+        *below += pivot < 0.0 ? 1 : 0;
+        *certain = *certain && fabs(pivot) > DOUBTFUL * most;
+        for (int i = j + 1; i < d; i++) {
+            for (int k = 0; k < j; k++) {
+                delta[i + (j * d)] -=
+                    delta[i + (k * d)] * delta[j + (k * d)] * delta[k + (k * d)];
+            }
+            delta[i + (j * d)] /= pivot;
+        }
+    }
+}
+
+/* w (d x s) := L^-1 w. */
+static void forward(int d, int s, const double *l, double *w)
+{
+    for (int c = 0; c < s; c++) {
+        for (int j = 0; j < d; j++) {
+            for (int k = 0; k < j; k++) {
+                w[j + (c * d)] -= l[j + (k * d)] * w[k + (c * d)];
+            }
+        }
+    }
+}
+
+/* Eliminate body i, whose H is complete; what is left goes to the one before it. */
+static void eliminate(const mt_tree *t, int i, double tau, double *h, int *below, bool *certain)
+{
+    const int s = t->s;
+    const ptrdiff_t square = (ptrdiff_t)s * s;
+    const int n_y = t->y_at[i + 1] - t->y_at[i];
+    const int d = n_y + t->loose_at[i + 1] - t->loose_at[i];
+    const double *const own = h + (square * i);
+    const double *const basis = basis_of(t, i);
+    double hb[SQUARE];
+    double delta[SQUARE];
+    double size[MOST];
+    product(false, s, d, s, own, basis, hb);
+    product(true, d, d, s, basis, hb, delta);
+    for (int k = 0; k < d; k++) {
+        size[k] = fmax(fabs(delta[k + (k * d)]), k < n_y ? 1.0 : 0.0);
+        delta[k + (k * d)] += k < n_y ? 1.0 : 0.0;
+    }
+    pivots(d, delta, size, below, certain);
+    if (t->before[i] < 0) {
+        return;
+    }
+    double x[SQUARE];
+    double g[SQUARE]; /* H X + C^T */
+    double w[SQUARE];
+    double add[SQUARE];
+    double *const other = h + (square * t->before[i]);
+    carry_matrix(t, i, x);
+    product(false, s, s, s, own, x, g);
+    product(true, s, s, s, x, g, add);
+    if (t->shared != NULL) {
+        const double *const c = t->shared + (square * i);
+        double cx[SQUARE];
+        product(false, s, s, s, c, x, cx);
+        for (int k = 0; k < s; k++) {
+            for (int l = 0; l < s; l++) {
+                g[k + (l * s)] -= tau * c[l + (k * s)];
+                add[k + (l * s)] -= tau * (cx[k + (l * s)] + cx[l + (k * s)]);
+            }
+        }
+    }
+    product(true, d, s, s, basis, g, w);
+    forward(d, s, delta, w);
+    for (int c = 0; c < s; c++) {
+        for (int r = 0; r < s; r++) {
+            double taken = 0.0;
+            for (int k = 0; k < d; k++) {
+                taken += w[k + (r * d)] * w[k + (c * d)] / delta[k + (k * d)];
+            }
+            other[r + (c * s)] += add[r + (c * s)] - taken;
+        }
+    }
+}
+
+mt_status mt_tree_count(const mt_tree *t, double tau, mt_arena *scratch, int *below,
+                        bool *certain, mt_err *err)
+{
+    const size_t size = (size_t)t->n * (size_t)t->s * (size_t)t->s;
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    double *const h = mt_arena_f64(scratch, size, 1);
+    MT_TRY(mt_arena_check(scratch, err));
+    *below = 0;
+    *certain = true;
+    for (size_t k = 0; k < size; k++) {
+        h[k] = -tau * t->mass[k];
+    }
+    for (int i = t->n - 1; i >= 0; i--) {
+        eliminate(t, i, tau, h, below, certain);
+    }
+    mt_arena_rewind(scratch, mark);
+    return MT_OK;
+}

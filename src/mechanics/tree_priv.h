@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_TREE_PRIV_H
+#define MECHANICS_TREE_PRIV_H
+
+#include "mechanics/data.h"
+#include "mechanics/tree.h"
+
+/* What the files tree*.c share while a tree is made. */
+
+enum { MT_TREE_MOTION = 6, MT_TREE_EDGE_ROWS = 64 };
+
+typedef struct mt_tree_maker {
+    mt_tree *t;
+    mt_data data;
+    mt_pose *pose;         /* [bodies] as drawn */
+    int *place;            /* [bodies] where in the order */
+    int *first_constraint; /* [n] of its edge; -1: none */
+    int *next_constraint;  /* [constraints] */
+    int *first_spring;     /* [n] */
+    int *next_spring;      /* [springs] */
+    char *why;
+} mt_tree_maker;
+
+/* Local freedom (0..5) of entry k of a body's motion. */
+static inline int mt_tree_freedom(const mt_tree *t, int k)
+{
+    return t->s == MT_TREE_MOTION || k < 2 ? k : MT_TREE_MOTION - 1;
+}
+/* p += X_i^T f, X the rigid motion along with the body before. */
+void mt_tree_carry_back(const mt_tree *t, int i, const double *f, double *p);
+/* Basis of the edge of body i into basis[s x s]: *n_y columns N F, then *n_loose columns N R.
+ * False with the reason in why: what is no tree. */
+bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_loose);
+/* Masses of all bodies; *is_tree false: the same. Fails: MT_E_MEMORY. */
+mt_status mt_tree_masses(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_err *err);
+
+#endif

@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "modal/lowest.h"
+
+#include "modal/modal_priv.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "linalg/dense.h"
+#include "linalg/lanczos.h"
+
+/* More are sought than are wanted: one for the gap behind the last, one if that is small. */
+enum { MORE = 2, ROUNDS = 12 };
+
+/* Neighbours closer than this (relative) are not separated by a count. */
+static const double NO_GAP = 1e-7;
+/* Roundings of a step of a recursion, and of all else together. */
+static const double STEP_ULPS = 4.0;
+static const double OTHER_ULPS = 64.0;
+
+typedef struct finding {
+    const mt_lowest_problem *p;
+    int n;          /* found */
+    int most;       /* room */
+    bool exhausted; /* there are no more: all other directions have no mass */
+    double *x;      /* p->n x most */
+    double *ax;     /* A x */
+    double *theta;  /* [most] Rayleigh quotients x^T A x = 1/lambda, descending */
+    double *rho;    /* [most] ||A x - theta x|| */
+} finding;
+
+static double *column(const finding *f, double *of, int i)
+{
+    return of + ((ptrdiff_t)i * f->p->n);
+}
+
+static void swap_columns(const finding *f, double *of, int i, int j)
+{
+    double *const a = column(f, of, i);
+    double *const b = column(f, of, j);
+    for (int k = 0; k < f->p->n; k++) {
+        const double x = a[k];
+        a[k] = b[k];
+        b[k] = x;
+    }
+}
+
+static void swap(const finding *f, int i, int j)
+{
+    const double theta = f->theta[i];
+    const double rho = f->rho[i];
+    f->theta[i] = f->theta[j];
+    f->theta[j] = theta;
+    f->rho[i] = f->rho[j];
+    f->rho[j] = rho;
+    swap_columns(f, f->x, i, j);
+    swap_columns(f, f->ax, i, j);
+}
+
+/* `more` in the complement of what was found. */
+static mt_status search(finding *f, int more, int round, mt_arena *mem, mt_err *err)
+{
+    const mt_lowest_problem *const p = f->p;
+    const int room = p->n - f->n < f->most - f->n ? p->n - f->n : f->most - f->n;
+    const int wanted = more < room ? more : room;
+    const mt_lanczos lanczos = {.n = p->n,
+                                .wanted = wanted,
+                                .seed = round,
+                                .apply = p->apply,
+                                .context = p->context,
+                                .n_locked = f->n,
+                                .locked = f->x};
+    int got = 0;
+    MT_TRY(mt_lanczos_largest(&lanczos, mem, column(f, f->x, f->n), &got, err));
+    f->exhausted = got < wanted || f->n + got == p->n;
+    for (int i = f->n; i < f->n + got; i++) {
+        double *const x = column(f, f->x, i);
+        double *const ax = column(f, f->ax, i);
+        MT_TRY(p->apply(p->context, x, ax, err));
+        const double square = mt_dot(p->n, x, x);
+        double rest = 0.0;
+        f->theta[i] = mt_dot(p->n, x, ax) / square;
+        for (int k = 0; k < p->n; k++) {
+            const double r = ax[k] - (f->theta[i] * x[k]);
+            rest += r * r;
+        }
+        f->rho[i] = sqrt(rest / square);
+        for (int at = i; at > 0 && f->theta[at] > f->theta[at - 1]; at--) {
+            swap(f, at, at - 1);
+        }
+    }
+    f->n += got;
+    return MT_OK;
+}
+
+/* Where to count: behind the mode, none before the last that is wanted, with the widest gap;
+ * *tau. */
+static int split(const finding *f, double *tau)
+{
+    const int least = f->n < f->p->count ? f->n : f->p->count;
+    int best = f->n;
+    double widest = f->exhausted || f->n == 0 ? HUGE_VAL : 0.0;
+    for (int j = least; j < f->n && j > 0; j++) {
+        const double gap = f->theta[j - 1] / f->theta[j];
+        if (gap > widest) {
+            widest = gap;
+            best = j;
+        }
+    }
+    if (best == f->n) {
+        *tau = f->n == 0 ? 0.0 : 2.0 / f->theta[f->n - 1];
+        return f->exhausted ? f->n : -1;
+    }
+    *tau = 1.0 / sqrt(f->theta[best - 1] * f->theta[best]);
+    return widest > 1.0 + NO_GAP ? best : -1;
+}
+
+/* Until the count says that nothing is missing below *tau; *upto of those found lie there. */
+static mt_status find(finding *f, mt_arena *mem, double *tau, int *upto, mt_err *err)
+{
+    const mt_lowest_problem *const p = f->p;
+    int more = p->count + MORE;
+    for (int round = 0; round < ROUNDS && p->n > 0; round++) {
+        MT_TRY(search(f, more, round, mem, err));
+        const int j = split(f, tau);
+        more = MORE;
+        if (j > 0) {
+            int below = 0;
+            bool certain = false;
+            MT_TRY(p->below(p->context, *tau, &below, &certain, err));
+            const int missing = below - p->n_rigid - j;
+            if (certain && missing == 0) {
+                *upto = j;
+                return MT_OK;
+            }
+            more = certain && missing > 0 ? missing + 1 : MORE;
+        } else if (f->exhausted && f->n == 0) {
+            *upto = 0;
+            return MT_OK;
+        }
+        if (f->n + more > f->most || f->exhausted) {
+            break;
+        }
+    }
+    *upto = 0;
+    return p->n == 0
+               ? MT_OK
+               : mt_fail(err, MT_E_NO_CONVERGENCE,
+                         "the count of modes below %g rad^2/s^2 does not agree with those "
+                         "that were found",
+                         *tau);
+}
+
+/* Error of theta: Kato and Temple where the neighbours are far enough. */
+static double theta_error(const finding *f, int i, int upto, double tau)
+{
+    const double rho = f->rho[i];
+    const double above = i > 0 ? f->theta[i - 1] - f->rho[i - 1] - f->theta[i] : HUGE_VAL;
+    const double next = i + 1 < upto ? f->theta[i + 1] + f->rho[i + 1] : 1.0 / tau;
+    const double gap = fmin(above, f->theta[i] - next);
+    return gap > rho ? rho * (rho / gap) : rho;
+}
+
+static void fill(const finding *f, int upto, double tau, mt_modes *m)
+{
+    const mt_lowest_problem *const p = f->p;
+    const double unit = (double)p->n * DBL_EPSILON;
+    m->error_relative = ((STEP_ULPS * (double)p->steps) + OTHER_ULPS) * DBL_EPSILON;
+    m->scale = f->n > 0 ? 1.0 / f->theta[0] : 0.0;
+    for (int i = 0; i < p->n_rigid; i++) {
+        m->kind[i] = MT_MODE_RIGID_BODY;
+    }
+    for (int i = 0; i < m->count - p->n_rigid; i++) {
+        const int at = p->n_rigid + i;
+        const double relative =
+            fmin(theta_error(f, i, upto, tau) / f->theta[i] + m->error_relative, 0.5);
+        m->kind[at] = MT_MODE_FLEXIBLE;
+        m->lambda[at] = 1.0 / f->theta[i];
+        m->error[at] = m->lambda[at] * relative / (1.0 - relative);
+        m->residual[at] = f->rho[i] / ((f->theta[0] + f->theta[i]) * unit);
+        for (int j = 0; j < m->count - p->n_rigid; j++) {
+            const double gram = mt_dot(p->n, column(f, f->x, i), column(f, f->ax, j)) /
+                                sqrt(f->theta[i] * f->theta[j]);
+            m->orthogonality[at] =
+                fmax(m->orthogonality[at], fabs(gram - (i == j ? 1.0 : 0.0)) / unit);
+        }
+    }
+    mt_modal_find_clusters(m);
+}
+
+mt_status mt_modal_lowest(const mt_lowest_problem *p, mt_arena *mem, mt_lowest_modes *out,
+                          mt_err *err)
+{
+    const int wanted = p->count < p->n ? p->count : p->n;
+    const size_t most = (size_t)wanted + (size_t)p->n_rigid;
+    finding f = {.p = p, .most = (2 * wanted) + (ROUNDS * MORE)};
+    mt_modes *const m = &out->modes;
+    *out = (mt_lowest_modes){.modes = {.n = p->n + p->n_rigid, .n_rigid = p->n_rigid}};
+    m->lambda = mt_arena_f64(mem, most, 1);
+    m->kind = mt_arena_alloc(mem, most, sizeof *m->kind);
+    m->cluster = mt_arena_int(mem, most);
+    m->residual = mt_arena_f64(mem, most, 1);
+    m->orthogonality = mt_arena_f64(mem, most, 1);
+    m->error = mt_arena_f64(mem, most, 1);
+    out->x = mt_arena_f64(mem, (size_t)p->n, (size_t)wanted);
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    f.x = mt_arena_f64(mem, (size_t)p->n, (size_t)f.most);
+    f.ax = mt_arena_f64(mem, (size_t)p->n, (size_t)f.most);
+    f.theta = mt_arena_f64(mem, (size_t)f.most, 1);
+    f.rho = mt_arena_f64(mem, (size_t)f.most, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    int upto = 0;
+    MT_TRY(find(&f, mem, &out->tau, &upto, err));
+    out->below = p->n_rigid + upto;
+    m->count = p->n_rigid + (upto < wanted ? upto : wanted);
+    fill(&f, upto, out->tau, m);
+    memcpy(out->x, f.x, (size_t)p->n * (size_t)(m->count - p->n_rigid) * sizeof *out->x);
+    mt_arena_rewind(mem, mark);
+    return MT_OK;
+}

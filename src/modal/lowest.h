@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MODAL_LOWEST_H
+#define MODAL_LOWEST_H
+
+#include "base/arena.h"
+#include "modal/modes.h"
+
+/*
+ * The lowest modes of a system too large for all of them, in coordinates x in which the energy
+ * of the springs is |x|^2/2, rigid-body motions being left free to follow: A x = x / lambda, A
+ * being the mass as x feels it. (Nothing is factored here: whoever knows such coordinates has
+ * no need of it.)
+ */
+typedef struct mt_lowest_problem {
+    int n;       /* coordinates, rigid-body modes not among them */
+    int n_rigid; /* of these */
+    int count;   /* vibration modes wanted */
+    int steps; /* roundings that a motion goes through on its way: the length of a recursion */
+    /* y := A x */
+    mt_status (*apply)(void *context, const double *x, double *y, mt_err *err);
+    /* modes below lambda = tau > 0, rigid-body ones included; *certain: not by rounding */
+    mt_status (*below)(void *context, double tau, int *below, bool *certain, mt_err *err);
+    void *context;
+} mt_lowest_problem;
+
+typedef struct mt_lowest_modes {
+    /* count: n_rigid, then as many of the lowest as there are, at most those wanted; y NULL;
+     * n: coordinates with the rigid-body ones */
+    mt_modes modes;
+    double *x;  /* n x (count - n_rigid), unit columns */
+    double tau; /* no mode below this was missed: they were counted [rad^2/s^2] */
+    int below;  /* how many that were, rigid-body ones included */
+} mt_lowest_modes;
+
+/**
+ * By Lanczos' method, one Rayleigh quotient each, and a count of the modes below a frequency
+ * behind the last: where some are missing (repeated ones) they are sought among what is
+ * orthogonal to those found. The error of lambda holds the residual rho (with the gap to the
+ * neighbours, rho^2/gap: Kato and Temple) and the rounding of `steps` steps.
+ * Results in mem, scratch is given back. Fails: MT_E_NO_CONVERGENCE, as apply and below,
+ * MT_E_MEMORY.
+ */
+mt_status mt_modal_lowest(const mt_lowest_problem *p, mt_arena *mem, mt_lowest_modes *out,
+                          mt_err *err);
+
+#endif
