@@ -7,6 +7,7 @@
 #include "linalg/eig.h"
 #include "linalg/inertia.h"
 #include "linalg/kernels.h"
+#include "linalg/ldl.h"
 #include "linalg/qr.h"
 #include "linalg/solve.h"
 #include "linalg/sparse.h"

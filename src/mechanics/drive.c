@@ -119,6 +119,7 @@ static mt_status eliminate_here(const walk *w, const mt_newton_problem *problem,
                                 mt_newton_work *work, mt_elimination *e, mt_err *err)
 {
     MT_TRY(mt_newton_work_init(work, problem, w->mem, err));
+    MT_TRY(mt_newton_dense(work, w->mem, err));
     mt_newton_evaluate(work, w->at, false);
     return mt_eliminate(w->sys, problem->m, work->a, w->mem, e, err);
 }

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "mechanics/constraint.h"
+
 mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessian,
                              mt_arena *mem, mt_err *err)
 {
@@ -17,6 +19,13 @@ mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessia
     l->a = mt_arena_f64(mem, m, nq);
     l->h = hessian ? mt_arena_f64(mem, nq, nq) : NULL;
     return mt_arena_check(mem, err);
+}
+
+void mt_lagrangian_want_rows(mt_lagrangian *l, const mt_system *sys, mt_arena *mem)
+{
+    l->layout = sys->layout;
+    l->row = mt_arena_alloc(mem, (size_t)sys->n_constraints, sizeof *l->row);
+    l->h = mt_arena_f64(mem, sys->layout->envelope.count, 1);
 }
 
 mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
@@ -55,6 +64,19 @@ static void add_gradient(const mt_system *sys, const int body[2], const mt_cx *g
     }
 }
 
+static void add_entry(mt_lagrangian *out, int nq, int r, int c, double value)
+{
+    if (out->layout == NULL) {
+        out->h[r + ((ptrdiff_t)c * nq)] += value;
+        return;
+    }
+    const int i = out->layout->state[r];
+    const int j = out->layout->state[c];
+    if (i >= j) {
+        out->h[out->layout->envelope.row[i] + j] += value;
+    }
+}
+
 /* h += scale * jet.h + outer * (ga gb^T + gb ga^T)/2. */
 static void add_hessian(const mt_system *sys, const int body[2], const mt_jet *jet, mt_cx scale,
                         mt_cx outer, const mt_jet *other, mt_lagrangian *out)
@@ -75,7 +97,7 @@ static void add_hessian(const mt_system *sys, const int body[2], const mt_jet *j
                     cx_mul(jet->g[r], other->g[c]) + cx_mul(other->g[r], jet->g[c]);
                 v += 0.5 * cx_mul(outer, product);
             }
-            out->h[dof[r] + ((ptrdiff_t)dof[c] * sys->nq)] += part_of(out, v);
+            add_entry(out, sys->nq, dof[r], dof[c], part_of(out, v));
         }
     }
 }
@@ -374,7 +396,7 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
             if (dof[k] >= 0) {
                 out->g[dof[k]] += part_of(out, poses[i].x[k] - drawn[i].x[k]);
                 if (hessian) {
-                    out->h[dof[k] + ((ptrdiff_t)dof[k] * sys->nq)] += part_of(out, 1.0);
+                    add_entry(out, sys->nq, dof[k], dof[k], part_of(out, 1.0));
                 }
             }
             /* -l^2/2 tr(R0^T R) */
@@ -390,21 +412,11 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
     }
 }
 
-/* An angle is known up to whole turns: take the turn nearest to the target; of a gear's two
- * angles the one without a ratio (term 0) may turn on, the other stays within half a turn. */
-static double surplus_turns(const mt_data *d, int i, double value)
-{
-    const double turn = 6.283185307179586477;
-    const mt_constraint_def *const c = &d->sys->constraints[i];
-    const bool angle = d->sys->measures[c->measure[0]].kind == MT_MEASURE_ANGLE;
-    return angle ? turn * round(value / turn) : 0.0;
-}
-
 /* All multipliers, before the first of them is used. */
 static void push_joints(const mt_data *d, int m, const mt_cx *lambda, mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
-    for (int i = 0; i < m && lambda != NULL && out->push != NULL; i++) {
+    for (int i = 0; i < m && out->push != NULL; i++) {
         for (int t = 0; t < sys->constraints[i].terms; t++) {
             const mt_measure_def *const def = &sys->measures[sys->constraints[i].measure[t]];
             const mt_cx factor = mt_data_scalar(d, sys->constraints[i].coefficient[t], 1.0);
@@ -429,78 +441,65 @@ static void note_joint(const mt_data *d, const mt_measure_def *def, const mt_pos
     note_terms(d, def, poses, jet, size, size, open, out); /* where they are asked for */
 }
 
-static void add_constraints(const mt_data *d, const mt_placement *at, int m,
-                            const mt_cx *lambda, bool hessian, mt_lagrangian *out)
+static void add_to_row(mt_sparse_row *row, int dof, double a)
+{
+    int at = 0;
+    while (at < row->n && row->dof[at] != dof) {
+        at++;
+    }
+    row->n = at < row->n ? row->n : at + 1;
+    row->dof[at] = dof;
+    row->a[at] += a;
+}
+
+static void add_constraints(const mt_data *d, const mt_placement *at, int m, mt_lagrangian *out)
+{
+    const mt_system *const sys = d->sys;
+    mt_jet jet;
+    for (int i = 0; i < m; i++) {
+        const mt_constraint_def *const c = &sys->constraints[i];
+        mt_cx value = -mt_data_target(d, i, at);
+        for (int t = 0; t < c->terms; t++) {
+            const mt_measure_def *const def = &sys->measures[c->measure[t]];
+            const mt_cx factor = mt_data_scalar(d, c->coefficient[t], 1.0);
+            mt_data_eval(d, def, at, false, &jet);
+            value += cx_mul(factor, jet.value);
+            for (int k = 0; k < MT_LOCAL; k++) {
+                const int dof = mt_local_dof(sys, def->body, k);
+                if (dof < 0) {
+                    continue;
+                }
+                const double a = part_of(out, cx_mul(factor, jet.g[k]));
+                if (out->a != NULL) {
+                    out->a[i + ((ptrdiff_t)dof * m)] += a;
+                }
+                if (out->row != NULL) {
+                    add_to_row(&out->row[i], dof, a);
+                }
+            }
+        }
+        out->c[i] = part_of(out, value - mt_constraint_turns(d, i, creal(value)));
+    }
+}
+
+void mt_lagrangian_curve(const mt_data *d, const mt_placement *at, int m, const mt_cx *lambda,
+                         mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
     mt_jet jet;
     push_joints(d, m, lambda, out);
     for (int i = 0; i < m; i++) {
         const mt_constraint_def *const c = &sys->constraints[i];
-        const bool curved = hessian && lambda != NULL;
-        mt_cx value = -mt_data_target(d, i, at);
         for (int t = 0; t < c->terms; t++) {
             const mt_measure_def *const def = &sys->measures[c->measure[t]];
             const mt_cx factor = mt_data_scalar(d, c->coefficient[t], 1.0);
-            mt_data_eval(d, def, at, curved, &jet);
-            value += cx_mul(factor, jet.value);
-            for (int k = 0; k < MT_LOCAL; k++) {
-                const int dof = mt_local_dof(sys, def->body, k);
-                if (dof >= 0) {
-                    out->a[i + ((ptrdiff_t)dof * m)] += part_of(out, cx_mul(factor, jet.g[k]));
-                }
-            }
-            if (curved) {
-                const mt_cx force = cx_mul(factor, lambda[i]);
-                add_hessian(sys, def->body, &jet, force, 0.0, NULL, out);
-                const double left = out->left.lambda != NULL ? out->left.lambda[i] : 0.0;
-                note_joint(d, def, at->pose, &jet, force, fabs(creal(factor) * left), out);
-            }
-        }
-        out->c[i] = part_of(out, value - surplus_turns(d, i, creal(value)));
-    }
-}
-
-void mt_constraint_values(const mt_data *d, const mt_placement *at, int m, double *c)
-{
-    const mt_system *const sys = d->sys;
-    for (int i = 0; i < m; i++) {
-        const mt_constraint_def *const def = &sys->constraints[i];
-        c[i] = -creal(mt_data_target(d, i, at));
-        for (int t = 0; t < def->terms; t++) {
-            const mt_measure_def *const measure = &sys->measures[def->measure[t]];
-            c[i] += creal(mt_data_scalar(d, def->coefficient[t], 1.0)) *
-                    creal(mt_data_value(d, measure, at));
-        }
-        c[i] -= surplus_turns(d, i, c[i]);
-    }
-}
-
-double mt_constraint_curve(const mt_data *d, const mt_pose *poses, int i, int t,
-                           const double *phi, const double *scale, double b[MT_LOCAL])
-{
-    const mt_system *const sys = d->sys;
-    const mt_constraint_def *const c = &sys->constraints[i];
-    const mt_measure_def *const def = &sys->measures[c->measure[t]];
-    const mt_measure_data measure = mt_data_measure(d, def);
-    const double factor = creal(mt_data_scalar(d, c->coefficient[t], 1.0));
-    double squares = 0.0;
-    mt_jet jet;
-    mt_measure_eval(&measure, mt_pose_of(poses, def->body[0]), mt_pose_of(poses, def->body[1]),
-                    true, &jet);
-    for (int r = 0; r < MT_LOCAL; r++) {
-        const int row = mt_local_dof(sys, def->body, r);
-        b[r] = 0.0;
-        for (int k = 0; k < MT_LOCAL && row >= 0; k++) {
-            const int dof = mt_local_dof(sys, def->body, k);
-            if (dof >= 0) {
-                const double h = factor * creal(jet.h[r + (MT_LOCAL * k)]);
-                b[r] += h * phi[dof];
-                squares += scale[row] * h * scale[dof] * scale[row] * h * scale[dof];
-            }
+            const mt_cx force = cx_mul(factor, lambda[i]);
+            const double left = out->left.lambda != NULL ? out->left.lambda[i] : 0.0;
+            mt_data_eval(d, def, at, true, &jet);
+            add_hessian(sys, def->body, &jet, force, 0.0, NULL, out);
+            note_joint(d, def, at->pose, &jet, force, fabs(creal(factor) * left), out);
         }
     }
-    return sqrt(squares);
 }
 
 void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,
@@ -511,9 +510,15 @@ void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn
     const size_t nq = (size_t)d->sys->nq;
     memset(out->g, 0, nq * sizeof *out->g);
     memset(out->trim, 0, nq * sizeof *out->trim);
-    memset(out->a, 0, (size_t)m * nq * sizeof *out->a);
+    if (out->a != NULL) {
+        memset(out->a, 0, (size_t)m * nq * sizeof *out->a);
+    }
+    if (out->row != NULL) {
+        memset(out->row, 0, (size_t)m * sizeof *out->row);
+    }
     if (hessian) {
-        memset(out->h, 0, nq * nq * sizeof *out->h);
+        const size_t entries = out->layout == NULL ? nq * nq : out->layout->envelope.count;
+        memset(out->h, 0, entries * sizeof *out->h);
     }
     out->force_scale = 0.0;
     out->n_pieces = 0;
@@ -524,7 +529,10 @@ void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn
     } else {
         add_anchor(d, drawn, at->pose, hessian, out);
     }
-    add_constraints(d, at, m, lambda, hessian, out);
+    add_constraints(d, at, m, out);
+    if (hessian && lambda != NULL) {
+        mt_lagrangian_curve(d, at, m, lambda, out);
+    }
 }
 
 double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_force)

@@ -3,6 +3,7 @@
 #define MECHANICS_LAGRANGIAN_H
 
 #include "mechanics/data.h"
+#include "mechanics/layout.h"
 
 /*
  * L = V + sum lambda_i c_i at given positions: gradient of V, constraints with their Jacobian,
@@ -40,14 +41,25 @@ typedef struct mt_step_left {
     double trim;    /* of the trimmed spring's force */
 } mt_step_left;
 
+/* A row of the constraints' Jacobian: its entries that may be other than 0. */
+typedef struct mt_sparse_row {
+    int n;
+    int dof[2 * MT_LOCAL];
+    double a[2 * MT_LOCAL];
+} mt_sparse_row;
+
 typedef struct mt_lagrangian {
     /* in: derivatives with respect to the input that the data carries instead of values, in g,
      * c, a, h and trim */
     bool slope;
-    double *g;    /* [nq] gradient of V (without lambda) */
-    double *c;    /* [m] */
-    double *a;    /* m x nq, column-major */
-    double *h;    /* nq x nq, Hessian of V + lambda c */
+    double *g;          /* [nq] gradient of V (without lambda) */
+    double *c;          /* [m] */
+    double *a;          /* m x nq, column-major; NULL: not asked for */
+    mt_sparse_row *row; /* [m] the same by rows; NULL: not asked for */
+    double *h;          /* nq x nq, Hessian of V + lambda c */
+    /* NULL, or h is sparse: a value for each entry of the layout's envelope, nothing in the
+     * rows of equations */
+    const mt_layout *layout;
     double *trim; /* [nq] gradient of the trimmed spring's measure (where the system has one) */
     /* sum over all loads and springs of |contribution to g|, largest entry; 0 where nothing
      * loads */
@@ -74,17 +86,15 @@ typedef struct mt_lagrangian {
 void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,
                         const mt_placement *at, int m, const mt_cx *lambda,
                         mt_curvature curvature, mt_lagrangian *out);
-/* c[m]: the constraints' values alone. */
-void mt_constraint_values(const mt_data *d, const mt_placement *at, int m, double *c);
-/* Term t of constraint i along the motion phi[nq]: b[12] = c'' phi over the local freedoms of
- * the term's bodies. Returns the Frobenius norm of c'' with rows and columns weighed by
- * scale[nq]. */
-double mt_constraint_curve(const mt_data *d, const mt_pose *poses, int i, int t,
-                           const double *phi, const double *scale, double b[MT_LOCAL]);
+/* h += curvature of lambda c, for an evaluation that was made without lambda. */
+void mt_lagrangian_curve(const mt_data *d, const mt_placement *at, int m, const mt_cx *lambda,
+                         mt_lagrangian *out);
 /* hessian: will h be asked for? Without, it has no memory and curvature is
  * MT_CURVATURE_NONE. */
 mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessian,
                              mt_arena *mem, mt_err *err);
+/* Rows and a sparse Hessian; a shortage is the arena's. */
+void mt_lagrangian_want_rows(mt_lagrangian *l, const mt_system *sys, mt_arena *mem);
 /* Have terms (and what comes with them) filled too, with the next evaluation. */
 mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
                                    mt_err *err);

@@ -30,7 +30,7 @@ static const double IN_THE_SET = 1e-6;
 
 /* What the step last found, w->step and trim, would change: with r = g + A^T lambda + t trim +
  * H step unbalanced, A^T lambda' = -r. */
-static mt_status keep_step(const mt_newton_work *w, const mt_elimination *e, double trim,
+static mt_status keep_step(const mt_newton_work *w, const mt_newton_solver *solver, double trim,
                            mt_arena *mem, mt_step_left *left, mt_err *err)
 {
     const int nq = w->sys->nq;
@@ -41,38 +41,91 @@ static mt_status keep_step(const mt_newton_work *w, const mt_elimination *e, dou
     double *const r = mt_arena_f64(mem, (size_t)nq, 1);
     MT_TRY(mt_arena_check(mem, err));
     memcpy(left->q, w->step, (size_t)nq * sizeof *left->q);
+    if (solver->sparse) {
+        memcpy(left->lambda, w->turn, (size_t)m * sizeof *left->lambda);
+        return MT_OK;
+    }
     for (ptrdiff_t j = 0; j < nq; j++) {
         r[j] = -w->g[j] - (left->trim * w->trim[j]) - mt_dot(m, w->a + (j * m), w->lambda);
     }
     mt_gemv(false, nq, nq, -1.0, w->h, nq, w->step, 1.0, r);
-    return mt_eliminate_multipliers(e, r, left->lambda, mem, err);
+    return mt_eliminate_multipliers(&solver->e, r, left->lambda, mem, err);
 }
 
 /* tau: of the trimmed spring, before the last step. */
-static mt_status keep(mt_newton_work *w, const mt_elimination *e, double *inverse, double tau,
+static mt_status keep(mt_newton_work *w, const mt_newton_solver *solver, double tau,
                       mt_arena *mem, mt_stage *stage, mt_err *err)
 {
-    MT_TRY(keep_step(w, e, w->tau - tau, mem, &stage->left, err));
+    MT_TRY(keep_step(w, solver, w->tau - tau, mem, &stage->left, err));
     w->tau = tau;
     const size_t nq = (size_t)w->sys->nq;
     const size_t m = (size_t)w->p->m;
     stage->active = true;
-    stage->e = *e;
-    stage->order = e->n + (w->p->trim ? 1 : 0);
-    stage->inverse = inverse;
+    stage->solver = *solver;
     stage->null_freedoms = w->null_freedoms;
     stage->lambda = mt_arena_f64(mem, m, 1);
-    stage->h = mt_arena_f64(mem, nq, nq);
-    stage->a = mt_arena_f64(mem, m, nq);
+    stage->h = solver->sparse ? NULL : mt_arena_f64(mem, nq, nq);
+    stage->a = solver->sparse ? NULL : mt_arena_f64(mem, m, nq);
     stage->trim = mt_arena_f64(mem, nq, 1);
     stage->d_lambda = mt_arena_f64(mem, m, 1);
     MT_TRY(mt_arena_check(mem, err));
     memcpy(stage->lambda, w->lambda, m * sizeof *stage->lambda);
-    memcpy(stage->h, w->h, nq * nq * sizeof *stage->h);
-    memcpy(stage->a, w->a, m * nq * sizeof *stage->a);
     memcpy(stage->trim, w->trim, nq * sizeof *stage->trim);
+    if (!solver->sparse) {
+        memcpy(stage->h, w->h, nq * nq * sizeof *stage->h);
+        memcpy(stage->a, w->a, m * nq * sizeof *stage->a);
+    }
     stage->residual = w->residual;
     stage->trim_force = w->tau;
+    return MT_OK;
+}
+
+/* Is a plain Newton iteration where it ends: the step is rounding, no longer shrinking or
+ * negligible, and the constraints are closed? */
+static bool rests(const mt_newton_work *w, double previous)
+{
+    const bool small = w->moved <= MT_STEP_DONE &&
+                       (w->moved >= 0.25 * previous || w->moved <= 8.0 * DBL_EPSILON);
+    return small && w->gap <= MT_STEP_DONE;
+}
+
+static bool balanced(const mt_newton_work *w)
+{
+    return w->residual <= MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise);
+}
+
+/*
+ * The equations at a place, sparse where they are regular beyond doubt, dense else. first: of
+ * the stage; then the dense way looks whether several ways lead on, and *falls tells whether
+ * energy leads elsewhere at once.
+ */
+static mt_status linearise(mt_newton_work *w, const mt_placement *at, bool first, mt_arena *mem,
+                           mt_newton_solver *solver, bool *falls, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    bool sure = false;
+    if (w->least != NULL) {
+        const bool physical = w->p->energy == MT_ENERGY_PHYSICAL;
+        MT_TRY(mt_newton_linearise_sparse(w, at, first && physical, mem, solver, &sure, err));
+        if (sure && w->gap <= MT_STEP_DONE && balanced(w)) { /* the step is rounding, or none */
+            MT_TRY(mt_newton_is_firm(solver, mem, &sure, err));
+        }
+    }
+    if (sure) {
+        return MT_OK;
+    }
+    mt_arena_rewind(mem, mark);
+    MT_TRY(mt_newton_dense(w, mem, err));
+    MT_TRY(mt_newton_linearise(w, at, mem, solver, err));
+    if (!first || w->gap > MT_STEP_DONE) {
+        return MT_OK;
+    }
+    if (w->p->energy == MT_ENERGY_PHYSICAL) {
+        MT_TRY(mt_singular_refuse(w->p->data, at, &solver->e, mem, err));
+    }
+    if (w->watch && w->moved > MT_DRAWN && !balanced(w)) {
+        MT_TRY(mt_newton_falls(w, &solver->e, w->step, falls, mem, err));
+    }
     return MT_OK;
 }
 
@@ -85,39 +138,31 @@ static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
     *done = false;
     for (int it = 0; it < NEWTON_LIMIT; it++) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
-        mt_elimination e;
-        double *inverse = NULL;
+        const bool dense = w->h != NULL;
+        mt_newton_solver solver;
         const double tau = w->tau;
-        MT_TRY(mt_newton_linearise(w, at, mem, &e, &inverse, err));
-        if (it == 0 && w->p->energy == MT_ENERGY_PHYSICAL && w->gap <= MT_STEP_DONE) {
-            MT_TRY(mt_singular_refuse(w->p->data, at, &e, mem, err)); /* several ways lead on */
-        }
+        bool falls = false;
+        MT_TRY(linearise(w, at, it == 0, mem, &solver, &falls, err));
         stage->iterations++;
-        if (it == 0 && w->watch && w->gap <= MT_STEP_DONE && w->moved > MT_DRAWN &&
-            w->residual > MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise)) {
-            bool falls = false;
-            MT_TRY(mt_newton_falls(w, &e, w->step, &falls, mem, err));
-            if (falls) {
-                return MT_OK;
-            }
+        if (falls) {
+            return MT_OK;
         }
-        /* stop where the step is rounding: small, and no longer shrinking or negligible */
-        const bool small = w->moved <= MT_STEP_DONE &&
-                           (w->moved >= 0.25 * previous || w->moved <= 8.0 * DBL_EPSILON);
-        const bool rests = small && w->gap <= MT_STEP_DONE;
-        if (rests && w->residual <= MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise)) {
-            const mt_status rc = keep(w, &e, inverse, tau, mem, stage, err);
+        const bool rest = rests(w, previous);
+        if (rest && balanced(w)) {
+            const mt_status rc = keep(w, &solver, tau, mem, stage, err);
             *done = rc == MT_OK;
             return rc;
         }
-        if (rests && (!w->p->trim || w->residual >= 0.25 * unbalanced)) {
+        if (rest && (!w->p->trim || w->residual >= 0.25 * unbalanced)) {
             return MT_OK; /* something pushes along a freedom without stiffness */
         }                 /* else the force of the trimmed spring is still settling */
         previous = w->moved;
         unbalanced = w->residual;
         mt_newton_take_step(w, at, MT_STEP_LIMIT);
         mt_newton_follow(w, at);
-        mt_arena_rewind(mem, mark);
+        if (dense == (w->h != NULL)) { /* else there is room for dense matrices from here on */
+            mt_arena_rewind(mem, mark);
+        }
         if (!(w->moved < HUGE_VAL)) {
             return MT_OK;
         }
@@ -173,17 +218,18 @@ static mt_status refuse(mt_newton_work *w, const mt_placement *at, bool closed, 
                         const mt_stage *stage, mt_err *err)
 {
     mt_elimination e;
-    double *inverse = NULL;
+    mt_newton_solver solver;
+    MT_TRY(mt_newton_dense(w, mem, err));
     memset(w->lambda, 0, (size_t)w->p->m * sizeof *w->lambda);
     mt_newton_evaluate(w, at, false);
     MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &e, err));
     if (!closed && !(mt_newton_gap_of(w) <= MT_STEP_DONE)) {
         return say_open(w, &e, mem, err);
     }
-    MT_TRY(mt_newton_linearise(w, at, mem, &e, &inverse, err));
+    MT_TRY(mt_newton_linearise(w, at, mem, &solver, err));
     char where[WHERE_SIZE];
-    mt_eliminate_project(&e, w->g, w->reduced);
-    mt_name_motion(w->sys, &e, w->reduced, where, sizeof where);
+    mt_eliminate_project(&solver.e, w->g, w->reduced);
+    mt_name_motion(w->sys, &solver.e, w->reduced, where, sizeof where);
     return mt_fail(err, MT_E_EQUILIBRIUM,
                    "no equilibrium found after %d iterations: %.3g of the forces at work stay "
                    "unbalanced on %s (free to move under load?)",
@@ -204,19 +250,27 @@ static mt_status judge(mt_newton_work *w, const mt_placement *start, const mt_pl
                        const mt_stage *stage, ending *end, mt_arena *mem, mt_err *err)
 {
     mt_elimination held;
-    const mt_elimination *e = &stage->e;
+    mt_newton_solver solver = stage->solver;
+    const mt_elimination *e = &solver.e;
     end->saddle = false;
     if (!end->done) {
         return MT_OK;
     }
+    end->energy = mt_energy_value(w->p->data, at, w->tau);
+    if (solver.sparse && mt_saddle_convex(&solver.saddle)) {
+        return MT_OK;
+    }
     double *const way = mt_arena_f64(mem, (size_t)w->sys->nq, 1);
     MT_TRY(mt_arena_check(mem, err));
+    if (solver.sparse) {
+        MT_TRY(mt_newton_dense(w, mem, err));
+        MT_TRY(mt_newton_linearise(w, at, mem, &solver, err));
+    }
     if (w->p->trim) {
         MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &held, err));
         e = &held;
     }
     mt_poses_way(w->sys, start->pose, at->pose, way);
-    end->energy = mt_energy_value(w->p->data, at, w->tau);
     return mt_newton_falls(w, e, way, &end->saddle, mem, err);
 }
 
@@ -310,25 +364,26 @@ mt_status mt_newton_solve(const mt_newton_problem *problem, mt_placement *at, mt
     mt_placement start;
     MT_TRY(mt_newton_work_init(&w, problem, mem, err));
     MT_TRY(note(&w, at, &start, mem, err));
-    mt_newton_evaluate(&w, at, false);
-    const bool closed = mt_newton_gap_of(&w) <= MT_STEP_DONE;
+    const bool closed = mt_newton_gap_at(&w, at) <= MT_STEP_DONE;
     end.before = mt_energy_value(problem->data, at, 0.0);
     w.watch = problem->energy == MT_ENERGY_PHYSICAL && !problem->trim;
     MT_TRY(attempt(&w, at, mem, stage, &end.done, err));
     if (problem->energy == MT_ENERGY_PHYSICAL) {
         MT_TRY(go_on(&w, &start, at, mem, stage, &end, err));
     }
+    stage->factors += w.factors;
     return end.done ? MT_OK : refuse(&w, at, closed, mem, stage, err);
 }
 
 mt_status mt_newton_gap(const mt_newton_problem *problem, const mt_placement *at, mt_arena *mem,
                         double *gap_m, mt_err *err)
 {
-    mt_newton_work w;
+    const mt_system *const sys = problem->data->sys;
+    mt_newton_work w = {.p = problem, .sys = sys};
     const mt_arena_mark mark = mt_arena_get_mark(mem);
-    MT_TRY(mt_newton_work_init(&w, problem, mem, err));
-    mt_newton_evaluate(&w, at, false);
-    *gap_m = mt_newton_gap_of(&w) * w.sys->length_m;
+    w.c = mt_arena_f64(mem, (size_t)sys->n_constraints, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    *gap_m = mt_newton_gap_at(&w, at) * sys->length_m;
     mt_arena_rewind(mem, mark);
     return MT_OK;
 }

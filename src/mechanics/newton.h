@@ -3,7 +3,7 @@
 #define MECHANICS_NEWTON_H
 
 #include "mechanics/eliminate.h"
-#include "mechanics/lagrangian.h"
+#include "mechanics/saddle.h"
 
 /* One stage of the position analysis: a stationary point of an energy under the first m
  * constraints. */
@@ -17,21 +17,33 @@ typedef struct mt_newton_problem {
     bool trim;
 } mt_newton_problem;
 
+/*
+ * How the equations of a step are solved. Sparse, as a saddle-point system, where that is
+ * regular beyond doubt; else in a basis of the freedoms, dense, with a pseudo-inverse:
+ * redundant equations, freedoms without stiffness and trimmed springs are seen to there.
+ */
+typedef struct mt_newton_solver {
+    bool sparse;
+    mt_saddle saddle;
+    mt_elimination e; /* (with trim: without the drive's row) */
+    /* pseudo-inverse of the (bordered) reduced Hessian, order n (+1 with trim) */
+    double *inverse;
+} mt_newton_solver;
+
 /* Its solution. */
 typedef struct mt_stage {
-    bool active;       /* did this stage run? */
-    int iterations;    /* also where it was not solved */
-    mt_elimination e;  /* at the solution (with trim: without the drive's row) */
-    double *lambda;    /* [m] multipliers: constraint force A^T lambda */
-    double *h;         /* nq x nq Hessian of the Lagrangian */
-    double *a;         /* m x nq */
-    int order;         /* n (+1 with trim) */
-    double *inverse;   /* order x order pseudo-inverse of the (bordered) reduced Hessian */
-    double *trim;      /* [nq] gradient of the trimmed spring's measure */
-    double trim_force; /* its force; physical energy [N, N m] */
-    double residual;   /* largest unbalanced force / largest force */
-    mt_step_left left; /* with the physical energy */
-    int null_freedoms; /* freedoms without stiffness at the solution */
+    bool active;             /* did this stage run? */
+    int iterations;          /* also where it was not solved */
+    int factors;             /* of matrices, in them */
+    mt_newton_solver solver; /* at the solution */
+    double *lambda;          /* [m] multipliers: constraint force A^T lambda */
+    double *h;               /* nq x nq Hessian of the Lagrangian; NULL: the solver is sparse */
+    double *a;               /* m x nq; likewise */
+    double *trim;            /* [nq] gradient of the trimmed spring's measure */
+    double trim_force;       /* its force; physical energy [N, N m] */
+    double residual;         /* largest unbalanced force / largest force */
+    mt_step_left left;       /* with the physical energy */
+    int null_freedoms;       /* freedoms without stiffness at the solution */
     /* derivatives with respect to one input, of the physical energy (newton_tangent.h) */
     double *d_lambda; /* [m] */
     double d_trim_force;

@@ -104,6 +104,7 @@ mt_status mt_newton_leave_saddle(mt_newton_work *w, mt_placement *at, bool *lowe
 {
     const int nq = w->sys->nq;
     double *const out = mt_arena_f64(mem, (size_t)nq, 1);
+    MT_TRY(mt_newton_dense(w, mem, err));
     double energy = mt_energy_value(w->p->data, at, w->tau);
     *lower = false;
     MT_TRY(mt_arena_check(mem, err));
@@ -122,19 +123,19 @@ mt_status mt_newton_leave_saddle(mt_newton_work *w, mt_placement *at, bool *lowe
 
 mt_status mt_newton_descend(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_err *err)
 {
+    MT_TRY(mt_newton_dense(w, mem, err));
     MT_TRY(restore(w, at, mem, err));
     double energy = mt_energy_value(w->p->data, at, w->tau);
     bool lower = true;
     for (int it = 0; it < DESCENT_LIMIT && lower; it++) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
         const double tau = w->tau;
-        mt_elimination e;
-        double *inverse = NULL;
-        MT_TRY(mt_newton_linearise(w, at, mem, &e, &inverse, err));
+        mt_newton_solver solver;
+        MT_TRY(mt_newton_linearise(w, at, mem, &solver, err));
         w->tau = tau; /* the force of the trimmed spring stands while the energy is compared */
         lower = w->residual > MT_FORCE_DONE + (MT_NOISE_ROOM * w->noise);
         if (lower) { /* not lower: as low as rounding lets us see, Newton decides */
-            MT_TRY(direction_of(w, &e, mem, err));
+            MT_TRY(direction_of(w, &solver.e, mem, err));
             MT_TRY(search_line(w, at, &energy, &lower, mem, err));
         }
         mt_arena_rewind(mem, mark);

@@ -7,6 +7,9 @@
  *     H       = Hessian of V + lambda c
  *     Z^T H Z eta = -Z^T (g + H v)                        towards equilibrium
  *     q      <- q (+) (v + Z eta).
+ * No basis Z is needed for that where the equations are regular: with r = g + A^T lambda
+ *     [ I A^T; A 0 ] [r; -lambda] = [g; 0],      [ H A^T; A 0 ] [v + Z eta; .] = [-r; -c]
+ * (I in scaled coordinates), which stay sparse (saddle.h).
  * Freedoms without stiffness (singular values of Z^T H Z below NO_STIFFNESS of H itself in
  * scaled coordinates) take no step; the residual test then decides whether something still
  * pushes along them. With `trim` the force tau of one spring is unknown and the drive's row
@@ -20,11 +23,17 @@
 #include <string.h>
 
 #include "base/interrupt.h"
+#include "mechanics/constraint.h"
 
 /* Singular values of the reduced Hessian below this fraction of the largest stiffness, be it
  * one that the joints hold, belong to freedoms without stiffness: rounding leaves about n eps ~
  * 1e-14 of them, and a real stiffness may be 1e12 times softer than its neighbour. */
 static const double NO_STIFFNESS = 1e-13;
+/* Of the inverse of the sparse equations, in scaled units. The first is that of a singular
+ * value of A of 1e-4, far above what singular.c looks at; the other a thousandth of
+ * 1/NO_STIFFNESS, for what the estimate of the norm and sums over many freedoms may be off. */
+static const double FAR_FROM_DEPENDENT = 1e8;
+static const double FIRM = 1e10;
 
 mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_arena *mem,
                               mt_err *err)
@@ -33,18 +42,60 @@ mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_
     const size_t nq = (size_t)sys->nq;
     const size_t m = (size_t)sys->n_constraints;
     *w = (mt_newton_work){.p = p, .sys = sys};
-    MT_TRY(mt_lagrangian_init(&w->l, sys, true, mem, err));
+    w->g = mt_arena_f64(mem, nq, 1);
+    w->c = mt_arena_f64(mem, m, 1);
+    w->trim = mt_arena_f64(mem, nq, 1);
+    if (!p->trim && mt_saddle_pays(sys)) {
+        w->sparse = (mt_lagrangian){.g = w->g, .c = w->c, .trim = w->trim};
+        mt_lagrangian_want_rows(&w->sparse, sys, mem);
+        w->least = mt_arena_f64(mem, sys->layout->envelope.count, 1);
+        w->turn = mt_arena_f64(mem, m, 1);
+    } else {
+        MT_TRY(mt_newton_dense(w, mem, err));
+    }
     w->lambda_cx = mt_arena_alloc(mem, m, sizeof *w->lambda_cx);
     w->lambda = mt_arena_f64(mem, m, 1);
-    w->g = w->l.g;
-    w->c = w->l.c;
-    w->a = w->l.a;
-    w->h = w->l.h;
-    w->trim = w->l.trim;
     w->v = mt_arena_f64(mem, nq, 1);
     w->step = mt_arena_f64(mem, nq, 1);
     w->reduced = mt_arena_f64(mem, nq + 1, 1);
     return mt_arena_check(mem, err);
+}
+
+mt_status mt_newton_dense(mt_newton_work *w, mt_arena *mem, mt_err *err)
+{
+    if (w->h != NULL) {
+        return MT_OK;
+    }
+    const size_t nq = (size_t)w->sys->nq;
+    w->a = mt_arena_f64(mem, (size_t)w->sys->n_constraints, nq);
+    w->h = mt_arena_f64(mem, nq, nq);
+    w->l = (mt_lagrangian){.g = w->g, .c = w->c, .trim = w->trim, .a = w->a, .h = w->h};
+    return mt_arena_check(mem, err);
+}
+
+double mt_newton_gap_at(mt_newton_work *w, const mt_placement *at)
+{
+    mt_constraint_values(w->p->data, at, w->p->m, w->c);
+    return mt_newton_gap_of(w);
+}
+
+/* What residuals are compared with: the anchor's own unit is a displacement of one model
+ * length. */
+static void weigh(mt_newton_work *w, const mt_lagrangian *l, double unbalanced)
+{
+    const bool anchor = w->p->energy == MT_ENERGY_ANCHOR;
+    const double force = anchor ? w->sys->length_m : l->force_scale;
+    const double scale = force > 0.0 ? force : 1.0;
+    w->gap = mt_newton_gap_of(w);
+    w->residual = unbalanced / scale;
+    w->noise = l->force_noise / scale;
+}
+
+static void load_multipliers(mt_newton_work *w)
+{
+    for (int i = 0; i < w->p->m; i++) {
+        w->lambda_cx[i] = w->lambda[i];
+    }
 }
 
 void mt_newton_evaluate(mt_newton_work *w, const mt_placement *at, bool hessian)
@@ -52,15 +103,9 @@ void mt_newton_evaluate(mt_newton_work *w, const mt_placement *at, bool hessian)
     const int m = w->p->m;
     w->l.trim_force = w->tau;
     w->l.trim_force_derivative = 0.0;
-    for (int i = 0; i < m; i++) {
-        w->lambda_cx[i] = w->lambda[i];
-    }
+    load_multipliers(w);
     mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, at, m, w->lambda_cx,
                        hessian ? MT_CURVATURE_FULL : MT_CURVATURE_NONE, &w->l);
-    if (w->p->energy == MT_ENERGY_ANCHOR) {
-        /* the anchor's own unit: a displacement of one model length */
-        w->l.force_scale = w->sys->length_m;
-    }
 }
 
 /* Elimination of the rows that carry a multiplier: with trim all but the last. */
@@ -225,20 +270,92 @@ static mt_status balance(mt_newton_work *w, const mt_placement *at, mt_arena *me
                          mt_elimination *e, mt_err *err)
 {
     memset(w->lambda, 0, (size_t)w->p->m * sizeof *w->lambda);
-    mt_newton_evaluate(w, at, false);
+    w->l.trim_force = w->tau;
+    w->l.trim_force_derivative = 0.0;
+    mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, at, w->p->m, NULL,
+                       MT_CURVATURE_FULL, &w->l);
     MT_TRY(eliminate(w, mem, e, err));
     for (int j = 0; j < w->sys->nq; j++) {
         w->v[j] = -w->g[j];
     }
     MT_TRY(mt_eliminate_multipliers(e, w->v, w->lambda, mem, err));
-    mt_newton_evaluate(w, at, true);
-    w->gap = mt_newton_gap_of(w);
+    load_multipliers(w);
+    mt_lagrangian_curve(w->p->data, at, w->p->m, w->lambda_cx, &w->l);
     mt_eliminate_project(e, w->g, w->reduced);
-    const double unbalanced = mt_max_abs(e->n, w->reduced);
-    const double scale = w->l.force_scale > 0.0 ? w->l.force_scale : 1.0;
-    w->residual = unbalanced / scale;
-    w->noise = w->l.force_noise / scale;
+    weigh(w, &w->l, mt_max_abs(e->n, w->reduced));
     return MT_OK;
+}
+
+/* g + A^T lambda into w->reduced [nq]; returns its largest entry in scaled coordinates. */
+static double unbalanced(mt_newton_work *w, const mt_saddle *s)
+{
+    const mt_layout *const o = w->sys->layout;
+    double most = 0.0;
+    memcpy(w->reduced, w->g, (size_t)w->sys->nq * sizeof *w->reduced);
+    for (int i = 0; i < w->p->m; i++) {
+        const mt_sparse_row *const row = &w->sparse.row[i];
+        for (int k = 0; k < row->n; k++) {
+            w->reduced[row->dof[k]] += row->a[k] * w->lambda[i];
+        }
+    }
+    for (int j = 0; j < w->sys->nq; j++) {
+        const double force = fabs(s->d[o->state[j]] * w->reduced[j]);
+        most = !(force <= most) ? force : most; /* NaN is kept */
+    }
+    return most;
+}
+
+mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, bool first,
+                                     mt_arena *mem, mt_newton_solver *solver, bool *sure,
+                                     mt_err *err)
+{
+    const mt_newton_problem *const p = w->p;
+    const int nq = w->sys->nq;
+    mt_saddle least;
+    *solver = (mt_newton_solver){.sparse = true};
+    MT_TRY(mt_interrupt_check(w->sys->model->interrupt, err));
+    mt_lagrangian_eval(p->data, p->energy, p->drawn, at, p->m, NULL, MT_CURVATURE_FULL,
+                       &w->sparse);
+    w->factors++;
+    MT_TRY(mt_saddle_factor(w->sys, p->m, &w->sparse, true, w->least, mem, &least, err));
+    *sure = least.whole;
+    if (*sure && first) {
+        MT_TRY(mt_saddle_below(&least, FAR_FROM_DEPENDENT, mem, sure, err));
+    }
+    if (!*sure) {
+        return MT_OK;
+    }
+    MT_TRY(mt_saddle_solve(&least, w->g, NULL, NULL, w->lambda, mem, err));
+    for (int i = 0; i < p->m; i++) {
+        w->lambda[i] = -w->lambda[i];
+    }
+    load_multipliers(w);
+    mt_lagrangian_curve(p->data, at, p->m, w->lambda_cx, &w->sparse);
+    weigh(w, &w->sparse, unbalanced(w, &least));
+    w->factors++;
+    MT_TRY(mt_saddle_factor(w->sys, p->m, &w->sparse, false, w->sparse.h, mem, &solver->saddle,
+                            err));
+    *sure = solver->saddle.whole && (!first || mt_saddle_convex(&solver->saddle));
+    if (!*sure) {
+        return MT_OK;
+    }
+    for (int j = 0; j < nq; j++) {
+        w->reduced[j] = -w->reduced[j];
+    }
+    for (int i = 0; i < p->m; i++) {
+        w->turn[i] = -w->c[i];
+    }
+    MT_TRY(mt_saddle_solve(&solver->saddle, w->reduced, w->turn, w->step, w->turn, mem, err));
+    w->moved = mt_newton_scaled_norm(w, w->step);
+    w->null_freedoms = 0;
+    *sure = w->moved <= MT_STEP_LIMIT;
+    return MT_OK;
+}
+
+mt_status mt_newton_is_firm(const mt_newton_solver *solver, mt_arena *scratch, bool *firm,
+                            mt_err *err)
+{
+    return mt_saddle_below(&solver->saddle, FIRM, scratch, firm, err);
 }
 
 /*
@@ -268,12 +385,15 @@ static mt_status shorten(mt_newton_work *w, const mt_elimination *e, double *eta
 }
 
 mt_status mt_newton_linearise(mt_newton_work *w, const mt_placement *at, mt_arena *mem,
-                              mt_elimination *e, double **inverse, mt_err *err)
+                              mt_newton_solver *solver, mt_err *err)
 {
     const int nq = w->sys->nq;
+    mt_elimination *const e = &solver->e;
+    *solver = (mt_newton_solver){.sparse = false};
     MT_TRY(mt_interrupt_check(w->sys->model->interrupt, err));
+    w->factors += 2;
     MT_TRY(balance(w, at, mem, e, err));
-    MT_TRY(mt_newton_invert(w, e, mem, inverse, err));
+    MT_TRY(mt_newton_invert(w, e, mem, &solver->inverse, err));
     double *const minus_c = mt_arena_f64(mem, (size_t)w->p->m, 1);
     double *const hv = mt_arena_f64(mem, (size_t)nq, 1);
     double *const eta = mt_arena_f64(mem, (size_t)e->n + 1, 1);
@@ -296,7 +416,7 @@ mt_status mt_newton_linearise(mt_newton_work *w, const mt_placement *at, mt_aren
         }
         w->reduced[e->n] = -row;
     }
-    mt_gemv(false, order, order, 1.0, *inverse, order, w->reduced, 0.0, eta);
+    mt_gemv(false, order, order, 1.0, solver->inverse, order, w->reduced, 0.0, eta);
     mt_eliminate_expand(e, eta, w->step);
     mt_axpy(nq, 1.0, w->v, w->step);
     w->moved = mt_newton_scaled_norm(w, w->step);

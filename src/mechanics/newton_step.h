@@ -9,16 +9,19 @@
 typedef struct mt_newton_work {
     const mt_newton_problem *p;
     const mt_system *sys;
-    mt_lagrangian l; /* at the present position; g, c, a, h and trim are its */
+    mt_lagrangian l;      /* dense, at the present position, of g, c, trim, a, h */
+    mt_lagrangian sparse; /* of g, c, trim, with rows and a sparse Hessian, where that pays */
+    double *least; /* entries of the sparse system of least squares; NULL: it does not pay */
     mt_cx *lambda_cx;
     double *lambda;  /* [m] */
     double *g;       /* [nq] gradient of the energy */
     double *c;       /* [m] */
-    double *a;       /* m x nq */
-    double *h;       /* nq x nq */
+    double *a;       /* m x nq; NULL until mt_newton_dense */
+    double *h;       /* nq x nq; likewise */
     double *trim;    /* [nq] gradient of the trimmed spring's measure */
     double *v;       /* [nq] step back to the constraints */
     double *step;    /* [nq] */
+    double *turn;    /* [m] what the step makes of the multipliers, where it was found sparse */
     double *reduced; /* [nq + 1] Z^T g, and the drive's equation with trim */
     double tau;      /* force of the trimmed spring */
     double residual; /* unbalanced force / force scale */
@@ -26,6 +29,7 @@ typedef struct mt_newton_work {
     double gap;      /* model lengths */
     double moved;    /* model lengths */
     int null_freedoms;
+    int factors; /* so far */
     /* leave plain Newton at once where the Hessian is indefinite and the start no
      * equilibrium */
     bool watch;
@@ -47,12 +51,26 @@ static const double MT_STEP_LIMIT = 0.3;
 
 mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_arena *mem,
                               mt_err *err);
+/* Room for dense matrices, once: what evaluates needs it, but mt_newton_linearise_sparse and
+ * mt_newton_gap_at. */
+mt_status mt_newton_dense(mt_newton_work *w, mt_arena *mem, mt_err *err);
 /* Lagrangian at a place with w->lambda and w->tau. */
 void mt_newton_evaluate(mt_newton_work *w, const mt_placement *at, bool hessian);
-/* Everything at a place: multipliers, Hessian, elimination, inverse (of order n, with trim n +
- * 1), and the step v + Z eta (unlimited); tau is advanced. */
+/* Everything at a place: multipliers, Hessian, elimination, inverse, and the step v + Z eta
+ * (unlimited); tau is advanced. */
 mt_status mt_newton_linearise(mt_newton_work *w, const mt_placement *at, mt_arena *mem,
-                              mt_elimination *e, double **inverse, mt_err *err);
+                              mt_newton_solver *solver, mt_err *err);
+/* The same sparse. *sure: the equations are regular by a margin, and the step is no longer than
+ * it may be; else nothing that was found means anything. first: also, by as much as says that
+ * no equation depends on others next to here, and that Z^T H Z is positive definite. */
+mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, bool first,
+                                     mt_arena *mem, mt_newton_solver *solver, bool *sure,
+                                     mt_err *err);
+/* Has the sparse Z^T H Z an inverse, beyond doubt? Before a solution is told. */
+mt_status mt_newton_is_firm(const mt_newton_solver *solver, mt_arena *scratch, bool *firm,
+                            mt_err *err);
+/* Largest violation of the constraints at a place, in model lengths. */
+double mt_newton_gap_at(mt_newton_work *w, const mt_placement *at);
 /* Z^T H Z, n x n with leading dimension ld. */
 mt_status mt_newton_reduce_hessian(const mt_newton_work *w, const mt_elimination *e, double *k,
                                    int ld, mt_arena *mem, mt_err *err);

@@ -19,35 +19,43 @@ static mt_status differentiate(mt_newton_work *w, const mt_placement *at, const 
                                const double *d, mt_arena *scratch, mt_err *err)
 {
     const int m = w->p->m;
+    mt_lagrangian *const l = stage->solver.sparse ? &w->sparse : &w->l;
     mt_placement moved = *at;
     moved.pose = mt_arena_alloc(scratch, (size_t)w->sys->n_bodies, sizeof *moved.pose);
     MT_TRY(mt_arena_check(scratch, err));
     mt_poses_tangent(w->sys, at->pose, d, moved.pose);
-    for (int i = 0; i < m; i++) {
-        w->lambda_cx[i] = stage->lambda[i];
+    l->slope = true;
+    l->trim_force = stage->trim_force;
+    mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, &moved, m, NULL,
+                       MT_CURVATURE_NONE, l);
+    for (int i = 0; i < m && l->row != NULL; i++) {
+        for (int k = 0; k < l->row[i].n; k++) {
+            w->g[l->row[i].dof[k]] += l->row[i].a[k] * stage->lambda[i];
+        }
     }
-    w->l.slope = true;
-    w->l.trim_force = stage->trim_force;
-    w->l.trim_force_derivative = 0.0;
-    mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, &moved, m, w->lambda_cx,
-                       MT_CURVATURE_NONE, &w->l);
-    mt_gemv(true, m, w->sys->nq, 1.0, w->a, m, stage->lambda, 1.0, w->g);
+    if (l->a != NULL) {
+        mt_gemv(true, m, w->sys->nq, 1.0, l->a, m, stage->lambda, 1.0, w->g);
+    }
     for (int i = 0; i < m; i++) {
         w->c[i] = -w->c[i];
     }
     return MT_OK;
 }
 
-/* v into w->v, Z eta into w->step; w->g becomes (grad L). + H (v + Z eta) + t tau'. */
-static mt_status respond(mt_newton_work *w, const mt_stage *stage, double *eta,
-                         mt_arena *scratch, mt_err *err)
+/* d += v + Z eta; d_lambda [m] and *d_trim follow. */
+static mt_status respond(mt_newton_work *w, const mt_stage *stage, double *d, double *d_lambda,
+                         double *d_trim, mt_arena *scratch, mt_err *err)
 {
     const int nq = w->sys->nq;
     const int m = w->p->m;
-    MT_TRY(mt_eliminate_particular(&stage->e, w->c, w->v, scratch, err));
+    const mt_elimination *const e = &stage->solver.e;
+    const int order = e->n + (w->p->trim ? 1 : 0);
+    double *const eta = mt_arena_f64(scratch, (size_t)order + 1, 1);
+    MT_TRY(mt_arena_check(scratch, err));
+    MT_TRY(mt_eliminate_particular(e, w->c, w->v, scratch, err));
     mt_gemv(false, nq, nq, 1.0, stage->h, nq, w->v, 1.0, w->g);
-    mt_eliminate_project(&stage->e, w->g, w->reduced);
-    for (int i = 0; i < stage->e.n; i++) {
+    mt_eliminate_project(e, w->g, w->reduced);
+    for (int i = 0; i < e->n; i++) {
         w->reduced[i] = -w->reduced[i];
     }
     if (w->p->trim) {
@@ -55,15 +63,33 @@ static mt_status respond(mt_newton_work *w, const mt_stage *stage, double *eta,
         for (int j = 0; j < nq; j++) {
             row -= stage->a[(m - 1) + ((ptrdiff_t)j * m)] * w->v[j];
         }
-        w->reduced[stage->e.n] = row;
+        w->reduced[e->n] = row;
     }
-    mt_gemv(false, stage->order, stage->order, 1.0, stage->inverse, stage->order, w->reduced,
-            0.0, eta);
-    mt_eliminate_expand(&stage->e, eta, w->step);
+    mt_gemv(false, order, order, 1.0, stage->solver.inverse, order, w->reduced, 0.0, eta);
+    mt_eliminate_expand(e, eta, w->step);
     mt_gemv(false, nq, nq, 1.0, stage->h, nq, w->step, 1.0, w->g);
     if (w->p->trim) {
-        mt_axpy(nq, eta[stage->e.n], stage->trim, w->g);
+        mt_axpy(nq, eta[e->n], stage->trim, w->g);
     }
+    for (int j = 0; j < nq; j++) {
+        w->g[j] = -w->g[j];
+    }
+    mt_axpy(nq, 1.0, w->v, d);
+    mt_axpy(nq, 1.0, w->step, d);
+    *d_trim = w->p->trim ? eta[e->n] : 0.0;
+    return mt_eliminate_multipliers(e, w->g, d_lambda, scratch, err);
+}
+
+/* The same at once: H x + A^T lambda' = -(grad L)., A x = -c. */
+static mt_status respond_sparse(mt_newton_work *w, const mt_stage *stage, double *d,
+                                double *d_lambda, mt_arena *scratch, mt_err *err)
+{
+    const int nq = w->sys->nq;
+    for (int j = 0; j < nq; j++) {
+        w->g[j] = -w->g[j];
+    }
+    MT_TRY(mt_saddle_solve(&stage->solver.saddle, w->g, w->c, w->step, d_lambda, scratch, err));
+    mt_axpy(nq, 1.0, w->step, d);
     return MT_OK;
 }
 
@@ -76,20 +102,18 @@ mt_status mt_newton_tangent(const mt_newton_problem *problem, const mt_placement
     mt_newton_work w;
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     MT_TRY(mt_newton_work_init(&w, problem, scratch, err));
-    double *const eta = mt_arena_f64(scratch, (size_t)stage->order + 1, 1);
+    double *const d_lambda = mt_arena_f64(scratch, (size_t)problem->m, 1);
+    double d_trim = 0.0;
+    if (!stage->solver.sparse) {
+        MT_TRY(mt_newton_dense(&w, scratch, err));
+    }
     MT_TRY(mt_arena_check(scratch, err));
     MT_TRY(differentiate(&w, at, stage, d, scratch, err));
-    MT_TRY(respond(&w, stage, eta, scratch, err));
-    const int nq = w.sys->nq;
-    mt_axpy(nq, 1.0, w.v, d);
-    mt_axpy(nq, 1.0, w.step, d);
+    MT_TRY(stage->solver.sparse ? respond_sparse(&w, stage, d, d_lambda, scratch, err)
+                                : respond(&w, stage, d, d_lambda, &d_trim, scratch, err));
     if (problem->energy == MT_ENERGY_PHYSICAL) {
-        for (int j = 0; j < nq; j++) {
-            w.g[j] = -w.g[j];
-        }
-        memset(stage->d_lambda, 0, (size_t)w.p->m * sizeof *stage->d_lambda);
-        MT_TRY(mt_eliminate_multipliers(&stage->e, w.g, stage->d_lambda, scratch, err));
-        stage->d_trim_force = problem->trim ? eta[stage->e.n] : 0.0;
+        memcpy(stage->d_lambda, d_lambda, (size_t)problem->m * sizeof *d_lambda);
+        stage->d_trim_force = d_trim;
     }
     mt_arena_rewind(scratch, mark);
     return MT_OK;

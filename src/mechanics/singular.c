@@ -30,6 +30,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "mechanics/constraint.h"
+
 enum { PROBES = 4, WALKS = 2, CHORDS = 60, HALVINGS = 6 };
 
 /* Relative diagonal entries of R below which an equation is looked at: to refuse (at a dead

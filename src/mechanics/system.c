@@ -7,6 +7,7 @@
 
 #include "mechanics/build.h"
 #include "mechanics/data.h"
+#include "mechanics/layout.h"
 #include "model/values.h"
 
 /* Give a list its first entry: where memory ends later, index 0 stands for what could not be
@@ -184,7 +185,8 @@ static mt_status settle(mt_system *sys, const double *at, mt_err *err)
     }
     sys->length_m = mt_system_length(sys, v);
     mt_arena_rewind(&sys->mem, mark);
-    return MT_OK;
+    sys->layout = mt_layout_new(sys, &sys->mem);
+    return mt_arena_check(&sys->mem, err);
 }
 
 static mt_status build_parts(mt_builder *b, const double *at)

@@ -146,6 +146,8 @@ typedef struct mt_item_def { /* what `mass` counts: bodies, links, bars */
     mt_node mass; /* MT_NO_NODE: none */
 } mt_item_def;
 
+typedef struct mt_layout mt_layout;
+
 typedef struct mt_system {
     mt_arena mem;
     const mt_model *model; /* not owned; must outlive the system */
@@ -180,6 +182,7 @@ typedef struct mt_system {
     /* the joints are closed as drawn, whatever the inputs: each has one point and no length of
      * its own */
     bool drawn_closed;
+    const mt_layout *layout; /* of states and equations (layout.h) */
 } mt_system;
 
 /*

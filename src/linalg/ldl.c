@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * One front that walks along the matrix. It holds, dense, the rows that are open: entered, but
+ * not eliminated. A row that has all its entries may be a pivot. With f the front, c a column
+ * of it and F_c its entries but the diagonal, a pivot
+ *     of order one    d = f_cc,            l = F_c / d,               f <- f - l F_c^T
+ *     of order two    D = [f_cc f_cr; f_cr f_rr],  [l_c l_r] = [F_c F_r] D^-1,
+ *                                          f <- f - [l_c l_r] [F_c F_r]^T
+ * is stable where |l| <= 1/THRESHOLD. Else it waits: later rows bring partners. In the last
+ * front all rows are whole, and the largest entry leads (Bunch and Parlett, SIAM J. Numer.
+ * Anal. 8 (1971) 639-655): nothing waits there but what is no larger than tol.
+ */
+#include "linalg/ldl.h"
+
+#include "linalg/lapack_priv.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "linalg/kernels.h"
+
+/* Entries of L stay below the inverse: MA27's and MUMPS's habit, between growth and delay. */
+static const double THRESHOLD = 0.1;
+/* Bunch and Parlett's (1 + sqrt 17)/8: the pivot that bounds growth in two steps of order one
+ * as in one of order two. */
+static const double ALPHA = 0.6403882032022076;
+
+typedef struct front {
+    int n;       /* open rows */
+    int room;    /* leading dimension */
+    int *row;    /* [room] of A */
+    bool *whole; /* [room] are all of its entries there? */
+    double *f;   /* room x room, both triangles */
+    int *place;  /* [n of A] in the front; -1: not there */
+    double *l[2];
+    int *head; /* [n of A] first column, + 1, of those whose last row this is; 0: none */
+    int *next; /* [n of A] the next one */
+} front;
+
+static double *column(const front *w, int c)
+{
+    return w->f + ((ptrdiff_t)c * w->room);
+}
+
+static void enter(front *w, const mt_envelope *p, const double *value, int row)
+{
+    const int at = w->n++;
+    double *const own = column(w, at);
+    memset(own, 0, (size_t)w->n * sizeof *own);
+    for (int c = 0; c < w->n; c++) {
+        column(w, c)[at] = 0.0;
+    }
+    w->row[at] = row;
+    w->whole[at] = false;
+    w->place[row] = at;
+    for (int j = p->first[row]; j <= row; j++) {
+        const double v = value[p->row[row] + j];
+        if (v != 0.0) {
+            own[w->place[j]] = v;
+            column(w, w->place[j])[at] = v;
+        }
+    }
+}
+
+/* The last row takes the place of one that leaves. */
+static void leave(front *w, int at)
+{
+    const int from = --w->n;
+    w->place[w->row[at]] = -1;
+    if (at == from) {
+        return;
+    }
+    w->row[at] = w->row[from];
+    w->whole[at] = w->whole[from];
+    w->place[w->row[at]] = at;
+    double *const to = column(w, at);
+    memcpy(to, column(w, from), (size_t)(from + 1) * sizeof *to);
+    to[at] = to[from];
+    for (int c = 0; c < w->n; c++) {
+        column(w, c)[at] = to[c];
+    }
+}
+
+/* Largest |entry| of a column but those at c and r (-1: none); *where: among whole rows. */
+static double largest(const front *w, int of, int c, int r, int *where)
+{
+    const double *const f = column(w, of);
+    double most = 0.0;
+    double most_whole = 0.0;
+    *where = -1;
+    for (int i = 0; i < w->n; i++) {
+        const double size = i == c || i == r ? 0.0 : fabs(f[i]);
+        most = fmax(most, size);
+        if (w->whole[i] && size > most_whole) {
+            most_whole = size;
+            *where = i;
+        }
+    }
+    return most;
+}
+
+/* Columns of L of the pivot (c, r) into w->l, r < 0: of order one; returns their largest entry.
+ * */
+static double multiply(const front *w, int c, int r, double d[3])
+{
+    const double *const x = column(w, c);
+    double most = 0.0;
+    d[0] = x[c];
+    if (r < 0) {
+        for (int i = 0; i < w->n; i++) {
+            w->l[0][i] = i == c ? 0.0 : x[i] / d[0];
+            most = fmax(most, fabs(w->l[0][i]));
+        }
+        return most;
+    }
+    const double *const y = column(w, r);
+    d[1] = x[r];
+    d[2] = y[r];
+    const double d11 = d[2] / d[1];
+    const double d22 = d[0] / d[1];
+    const double t = 1.0 / ((d11 * d22) - 1.0) / d[1];
+    for (int i = 0; i < w->n; i++) {
+        const bool own = i == c || i == r;
+        w->l[0][i] = own ? 0.0 : t * ((d11 * x[i]) - y[i]);
+        w->l[1][i] = own ? 0.0 : t * ((d22 * y[i]) - x[i]);
+        most = fmax(most, fmax(fabs(w->l[0][i]), fabs(w->l[1][i])));
+    }
+    return most;
+}
+
+static void keep(const front *w, int c, int r, const double d[3], mt_arena *mem, mt_ldl *out)
+{
+    mt_ldl_pivot *const p = &out->pivot[out->n_pivots++];
+    const int columns = r < 0 ? 1 : 2;
+    *p = (mt_ldl_pivot){.at = {w->row[c], r < 0 ? -1 : w->row[r]}};
+    p->index = mt_arena_int(mem, (size_t)w->n);
+    p->l[0] = mt_arena_f64(mem, (size_t)w->n, (size_t)columns);
+    p->l[1] = p->l[0] == NULL ? NULL : p->l[0] + (columns == 2 ? w->n : 0);
+    for (int i = 0; i < w->n && !mt_arena_failed(mem); i++) {
+        if (w->l[0][i] != 0.0 || (r >= 0 && w->l[1][i] != 0.0)) {
+            p->index[p->n] = w->row[i];
+            for (int k = 0; k < columns; k++) {
+                p->l[k][p->n] = w->l[k][i];
+            }
+            p->n++;
+        }
+    }
+    memcpy(p->d, d, sizeof p->d);
+    out->rank += columns;
+    if (r < 0) {
+        out->negative += d[0] < 0.0 ? 1 : 0;
+    } else if (d[2] / d[1] * (d[0] / d[1]) < 1.0) {
+        out->negative += 1;
+    } else {
+        out->negative += d[0] < 0.0 ? 2 : 0;
+    }
+}
+
+/* What multiply found is done. */
+static void eliminate(front *w, int c, int r, const double d[3], mt_arena *mem, mt_ldl *out)
+{
+    const double *const x = column(w, c);
+    const double *const y = r < 0 ? NULL : column(w, r);
+    keep(w, c, r, d, mem, out);
+    for (int j = 0; j < w->n; j++) {
+        double *const f = column(w, j);
+        if (j == c || j == r) {
+            continue;
+        }
+        if (x[j] != 0.0) {
+            mt_axpy(w->n, -x[j], w->l[0], f);
+        }
+        if (r >= 0 && y[j] != 0.0) {
+            mt_axpy(w->n, -y[j], w->l[1], f);
+        }
+    }
+    leave(w, c > r ? c : r);
+    if (r >= 0) {
+        leave(w, c < r ? c : r);
+    }
+}
+
+/* Eliminate the whole row c where that is stable: alone, or with the whole row that it is
+ * coupled with most. */
+static bool try_pivot(front *w, int c, double tol, mt_arena *mem, mt_ldl *out)
+{
+    double d[3] = {0.0, 0.0, 0.0};
+    int r = -1;
+    const double most = largest(w, c, c, -1, &r);
+    const double own = fabs(column(w, c)[c]);
+    if (own > tol && own >= THRESHOLD * most) {
+        (void)multiply(w, c, -1, d);
+        eliminate(w, c, -1, d, mem, out);
+        return true;
+    }
+    if (r < 0 || !(fabs(column(w, c)[r]) > tol) || !(multiply(w, c, r, d) * THRESHOLD <= 1.0)) {
+        return false;
+    }
+    eliminate(w, c, r, d, mem, out);
+    return true;
+}
+
+static void try_all(front *w, double tol, mt_arena *mem, mt_ldl *out)
+{
+    for (int c = w->n - 1; c >= 0; c--) {
+        if (c < w->n && w->whole[c] && try_pivot(w, c, tol, mem, out)) {
+            c = w->n; /* those that had to wait may go now */
+        }
+    }
+}
+
+/* The last front, by its largest entries. */
+static void finish(front *w, double tol, mt_arena *mem, mt_ldl *out)
+{
+    for (;;) {
+        double d[3] = {0.0, 0.0, 0.0};
+        double off = 0.0;
+        double diagonal = 0.0;
+        int at[3] = {-1, -1, -1};
+        for (int c = 0; c < w->n; c++) {
+            for (int r = 0; r <= c; r++) {
+                const double size = fabs(column(w, c)[r]);
+                if (r == c && size > diagonal) {
+                    diagonal = size;
+                    at[2] = c;
+                } else if (r < c && size > off) {
+                    off = size;
+                    at[0] = r;
+                    at[1] = c;
+                }
+            }
+        }
+        if (!(fmax(diagonal, off) > tol)) {
+            return;
+        }
+        const bool one = diagonal >= ALPHA * off;
+        const int c = one ? at[2] : at[0];
+        const int r = one ? -1 : at[1];
+        (void)multiply(w, c, r, d);
+        eliminate(w, c, r, d, mem, out);
+    }
+}
+
+mt_status mt_ldl_factor(const mt_envelope *p, const double *value, double tol, int room,
+                        mt_arena *mem, mt_ldl *out, mt_err *err)
+{
+    const size_t n = (size_t)p->n;
+    const size_t most = (size_t)(room < p->n ? room : p->n);
+    *out = (mt_ldl){.n = p->n};
+    front w = {.room = (int)most};
+    if (!mt_all_finite((ptrdiff_t)p->count, value)) {
+        return mt_lapack_not_finite("LDL", err);
+    }
+    out->pivot = mt_arena_alloc(mem, n, sizeof *out->pivot);
+    out->rest = mt_arena_int(mem, most);
+    w.row = mt_arena_int(mem, most);
+    w.whole = mt_arena_alloc(mem, most, sizeof *w.whole);
+    w.place = mt_arena_int(mem, n);
+    w.head = mt_arena_int(mem, n);
+    w.next = mt_arena_int(mem, n);
+    w.f = mt_arena_f64(mem, most, most);
+    w.l[0] = mt_arena_f64(mem, most, 1);
+    w.l[1] = mt_arena_f64(mem, most, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int j = p->n - 1; j >= 0; j--) { /* columns by their last row */
+        w.next[j] = w.head[p->last[j]];
+        w.head[p->last[j]] = j + 1;
+    }
+    for (int row = 0; row < p->n; row++) {
+        if (w.n == w.room) {
+            return MT_OK; /* not whole */
+        }
+        enter(&w, p, value, row);
+        for (int j = w.head[row]; j > 0; j = w.next[j - 1]) {
+            w.whole[w.place[j - 1]] = true;
+        }
+        if (w.head[row] > 0) {
+            try_all(&w, tol, mem, out);
+        }
+        MT_TRY(mt_arena_check(mem, err));
+    }
+    finish(&w, tol, mem, out);
+    MT_TRY(mt_arena_check(mem, err));
+    out->whole = true;
+    out->n_rest = w.n;
+    memcpy(out->rest, w.row, (size_t)w.n * sizeof *out->rest);
+    return MT_OK;
+}
+
+void mt_ldl_solve(const mt_ldl *f, double *x)
+{
+    for (int i = 0; i < f->n_pivots; i++) {
+        const mt_ldl_pivot *const p = &f->pivot[i];
+        const double a = x[p->at[0]];
+        const double b = p->at[1] < 0 ? 0.0 : x[p->at[1]];
+        for (int k = 0; k < p->n; k++) {
+            x[p->index[k]] -=
+                p->at[1] < 0 ? p->l[0][k] * a : (p->l[0][k] * a) + (p->l[1][k] * b);
+        }
+        if (p->at[1] < 0) {
+            x[p->at[0]] = a / p->d[0];
+            continue;
+        }
+        const double d11 = p->d[2] / p->d[1];
+        const double d22 = p->d[0] / p->d[1];
+        const double t = 1.0 / ((d11 * d22) - 1.0) / p->d[1];
+        x[p->at[0]] = t * ((d11 * a) - b);
+        x[p->at[1]] = t * ((d22 * b) - a);
+    }
+    for (int i = 0; i < f->n_rest; i++) {
+        x[f->rest[i]] = 0.0;
+    }
+    for (int i = f->n_pivots - 1; i >= 0; i--) {
+        const mt_ldl_pivot *const p = &f->pivot[i];
+        double a = 0.0;
+        double b = 0.0;
+        for (int k = 0; k < p->n; k++) {
+            a += p->l[0][k] * x[p->index[k]];
+            b += p->at[1] < 0 ? 0.0 : p->l[1][k] * x[p->index[k]];
+        }
+        x[p->at[0]] -= a;
+        if (p->at[1] >= 0) {
+            x[p->at[1]] -= b;
+        }
+    }
+}
+
+mt_status mt_ldl_inverse_norm(const mt_ldl *f, mt_arena *scratch, double *norm, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    double *const v = mt_arena_f64(scratch, (size_t)f->n, 1);
+    double *const x = mt_arena_f64(scratch, (size_t)f->n, 1);
+    lapack_int *const sign = mt_arena_alloc(scratch, (size_t)f->n, sizeof *sign);
+    MT_TRY(mt_arena_check(scratch, err));
+    lapack_int kase = 0;
+    lapack_int save[3] = {0, 0, 0};
+    *norm = f->rank < f->n ? HUGE_VAL : 0.0;
+    while (f->n > 0 && f->rank == f->n) {
+        (void)LAPACKE_dlacn2_work(f->n, v, x, sign, norm, &kase, save);
+        if (kase == 0) {
+            break;
+        }
+        mt_ldl_solve(f, x); /* A is its own transpose */
+    }
+    mt_arena_rewind(scratch, mark);
+    return MT_OK;
+}

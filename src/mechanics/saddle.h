@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_SADDLE_H
+#define MECHANICS_SADDLE_H
+
+#include "mechanics/lagrangian.h"
+
+/*
+ * Saddle-point systems of a stage,
+ *     [ H  A^T ] [x]   [f]
+ *     [ A   0  ] [y] = [b],
+ * factored as they stand, sparse, in the order of the mechanism (layout.h): no basis of the
+ * freedoms is made. With H = I in the elimination's coordinates (eliminate.h) they are least
+ * squares: b = 0 gives y with A^T y ~ f, f = 0 gives the least x with A x = b. Rows of A are
+ * equilibrated, rotations scaled by the model length, H by its largest entry, so that pivots
+ * and norms mean the same whatever the units.
+ */
+typedef struct mt_saddle {
+    const mt_system *sys;
+    int m;
+    double scale; /* largest entry of H in scaled coordinates [N/m]; 1 where there is none */
+    double *d;    /* [places] scale of each row and column */
+    mt_ldl f;
+    bool whole; /* regular, and factored */
+} mt_saddle;
+
+/* Is this way cheaper than the dense one (eliminate.h)? */
+bool mt_saddle_pays(const mt_system *sys);
+/* The system with H = l->h, or with H = I, and the first m rows of A = l->row. value: of all
+ * entries of the layout's envelope, overwritten; may be l->h where H is. Results in mem.
+ * Fails: MT_E_MEMORY, MT_E_DOMAIN. */
+mt_status mt_saddle_factor(const mt_system *sys, int m, const mt_lagrangian *l, bool identity,
+                           double *value, mt_arena *mem, mt_saddle *out, mt_err *err);
+/* f [nq] or NULL (0), b [m] or NULL (0); x [nq] and y [m], each may be NULL. */
+mt_status mt_saddle_solve(const mt_saddle *s, const double *f, const double *b, double *x,
+                          double *y, mt_arena *scratch, mt_err *err);
+/* Are all eigenvalues of H on the motions that A allows above 0? */
+bool mt_saddle_convex(const mt_saddle *s);
+/* Is the inverse, in scaled units, certainly below `most`? */
+mt_status mt_saddle_below(const mt_saddle *s, double most, mt_arena *scratch, bool *below,
+                          mt_err *err);
+
+#endif
