@@ -116,7 +116,7 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                                         .noise = r->noise,
                                         .g = r->g,
                                         .interrupt = a->sys->model->interrupt};
-    MT_TRY(mt_modal_solve_factored(r->k, &a->mass, &factor, options, &a->mem, &a->modes, err));
+    MT_TRY(mt_modal_solve(r->k, &a->mass, &factor, options, &a->mem, &a->modes, err));
     const bool doubt = r->loaded || mt_modal_in_doubt(&a->modes);
     if (a->modes.y == NULL || !(doubt || bounds)) {
         return MT_OK;

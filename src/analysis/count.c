@@ -74,7 +74,7 @@ mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor
     opt.vectors = false;
     opt.need_accuracy = true;
     const mt_status rc =
-        mt_modal_solve_factored(k, mass, squares ? &factor : NULL, &opt, scratch, &modes, err);
+        mt_modal_solve(k, mass, squares ? &factor : NULL, &opt, scratch, &modes, err);
     *n = rc == MT_OK ? modes.n_rigid : 0;
     mt_arena_rewind(scratch, mark);
     return rc;

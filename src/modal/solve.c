@@ -127,10 +127,9 @@ static mt_status compute(const double *k, const mt_mass_factor *mass,
     return out->residual == NULL ? MT_OK : mt_modal_check(k, mass, scratch, out, err);
 }
 
-mt_status mt_modal_solve_factored(const double *k, const mt_mass_factor *mass,
-                                  const mt_stiffness_factor *factor,
-                                  const mt_modal_options *opt, mt_arena *mem, mt_modes *out,
-                                  mt_err *err)
+mt_status mt_modal_solve(const double *k, const mt_mass_factor *mass,
+                         const mt_stiffness_factor *factor, const mt_modal_options *opt,
+                         mt_arena *mem, mt_modes *out, mt_err *err)
 {
     const mt_modal_options used = opt == NULL ? mt_modal_options_default() : *opt;
     MT_TRY(claim(mass, &used, mem, out, err));
@@ -141,14 +140,4 @@ mt_status mt_modal_solve_factored(const double *k, const mt_mass_factor *mass,
         out->massless = NULL;
     }
     return rc;
-}
-
-mt_status mt_modal_solve(int n, const double *k, const double *m,
-                         const mt_stiffness_factor *factor, const mt_modal_options *opt,
-                         mt_arena *mem, mt_modes *out, mt_err *err)
-{
-    mt_mass_factor mass;
-    *out = (mt_modes){.n = n};
-    MT_TRY(mt_modal_factor_mass(n, m, mem, &mass, err));
-    return mt_modal_solve_factored(k, &mass, factor, opt, mem, out, err);
 }

@@ -92,13 +92,6 @@ int mt_model_find_mode(const mt_model *model, const char *name)
 
 /* Bodies and links share a table: link i stands there as -1 - i, absent is -1, which would be
  * link 0. */
-int mt_model_find_body(const mt_model *model, const char *name)
-{
-    bool found = false;
-    const int i = mt_names_find(&model->tables->bodies, name, strlen(name), &found);
-    return found && i >= 0 ? i : MT_ABSENT;
-}
-
 int mt_model_find_link(const mt_model *model, const char *name)
 {
     bool found = false;

@@ -402,7 +402,6 @@ int mt_model_lookup(const void *model, const char *name, size_t length);
 int mt_model_find_parameter(const mt_model *model, const char *name);
 int mt_model_find_configuration(const mt_model *model, const char *name);
 int mt_model_find_mode(const mt_model *model, const char *name);
-int mt_model_find_body(const mt_model *model, const char *name);
 int mt_model_find_joint(const mt_model *model, const char *name);
 int mt_model_find_spring(const mt_model *model, const char *name);
 int mt_model_find_link(const mt_model *model, const char *name);

@@ -188,9 +188,8 @@ static mt_status choose(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_er
     opt.n_rigid = e->n_rigid;
     opt.check = false;
     mt_status rc = mt_modal_factor_mass(b->n, b->m_low, &e->scratch, &mass, err);
-    rc = rc == MT_OK
-             ? mt_modal_solve_factored(b->k_low, &mass, NULL, &opt, &e->scratch, &modes, err)
-             : rc;
+    rc = rc == MT_OK ? mt_modal_solve(b->k_low, &mass, NULL, &opt, &e->scratch, &modes, err)
+                     : rc;
     *ok = rc == MT_OK && mt_modal_indexed(&modes);
     if (rc == MT_E_NOT_SPD || rc == MT_E_MASSLESS || (rc == MT_OK && !*ok)) {
         say_lost(e, rc == MT_OK, reason);

@@ -235,8 +235,8 @@ static mt_status solve_corner(mt_enclosure *e, mt_side side_k, mt_side side_m, m
     opt.n_rigid = e->n_rigid;
     opt.vectors = false;
     opt.check = false;
-    return mt_modal_solve_factored(e->at[MT_STIFFNESS][side_k], &mass, NULL, &opt, &e->scratch,
-                                   modes, err);
+    return mt_modal_solve(e->at[MT_STIFFNESS][side_k], &mass, NULL, &opt, &e->scratch, modes,
+                          err);
 }
 
 static double hz_of(double lambda)

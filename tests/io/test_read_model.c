@@ -12,6 +12,17 @@
 static const char plane[] = MT_TEST_SOURCE_DIR "/tests/schema/plane.json";
 static const char space[] = MT_TEST_SOURCE_DIR "/tests/schema/space.json";
 
+/* Index of a body; MT_ABSENT. */
+static int find_body(const mt_model *m, const char *name)
+{
+    for (int i = 0; i < m->n_bodies; i++) {
+        if (strcmp(m->bodies[i].name.s, name) == 0) {
+            return i;
+        }
+    }
+    return MT_ABSENT;
+}
+
 /* The value of a number that is a constant; a NaN where it is not, so that checks fail. */
 static double constant(const mt_model *m, mt_num num)
 {
@@ -42,17 +53,17 @@ static void model__items_of_a_plane_model_are_read(mt_test *t)
     CHECK(t, !mt_model_place(m, MT_NO_ADDR, &line, &column));
     CHECK_INT(t, mt_model_find_parameter(m, "k"), 2);
     CHECK_INT(t, mt_model_find_parameter(m, "K"), MT_ABSENT);
-    const mt_body *const crank = &m->bodies[mt_model_find_body(m, "crank")];
+    const mt_body *const crank = &m->bodies[find_body(m, "crank")];
     CHECK(t, !crank->point_mass);
     CHECK_NEAR(t, constant(m, crank->inertia[0]), 1e-4, 0.0);
     CHECK_INT(t, crank->inertia[1], MT_ABSENT);
-    CHECK(t, m->bodies[mt_model_find_body(m, "bob")].point_mass);
+    CHECK(t, m->bodies[find_body(m, "bob")].point_mass);
     CHECK_INT(t, m->bodies[1].centre.point, 2);
     const mt_link *const beam = &m->links[mt_model_find_link(m, "beam")];
     CHECK_INT(t, beam->n_stiffness, 2);
     CHECK_INT(t, beam->n_element_inertia, 1);
     CHECK_INT(t, beam->elements, 3);
-    CHECK_INT(t, mt_model_find_body(m, "beam"), MT_ABSENT);
+    CHECK_INT(t, find_body(m, "beam"), MT_ABSENT);
     CHECK_INT(t, mt_model_find_link(m, "crank"), MT_ABSENT);
     const mt_section *const tube = &m->links[1].section;
     CHECK_INT(t, tube->shape, MT_SECTION_TUBE);

@@ -13,6 +13,7 @@
 #include "modal/chain.h"
 #include "modal/modal.h"
 #include "support/mt_test.h"
+#include "support/solve_pair.h"
 
 /* What is asked of the lowest mode, whatever the ratio. */
 static const double WANTED = 1e-10;
@@ -93,8 +94,7 @@ static void accuracy__spring_factors_keep_the_lowest_mode(mt_test *t)
         const mt_stiffness_factor factor = {.rows = s.springs, .b = s.b, .c = s.c};
         const double want = holzer(rows[r].k, masses);
         opt.need_accuracy = true;
-        if (!CHECK(t,
-                   mt_modal_solve(N, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK)) {
+        if (!CHECK(t, solve_pair(N, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK)) {
             continue;
         }
         CHECK_INT(t, modes.n_rigid, rows[r].rigid);
@@ -121,7 +121,7 @@ static void accuracy__the_plain_path_loses_it(mt_test *t)
         mt_test_row(t, "%s", rows[r].name);
         build(&s, rows[r].k, masses);
         const double want = holzer(rows[r].k, masses);
-        if (!CHECK(t, mt_modal_solve(N, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK)) {
+        if (!CHECK(t, solve_pair(N, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK)) {
             continue;
         }
         const double error = fabs(modes.lambda[rows[r].rigid] - want);
@@ -153,8 +153,7 @@ static void accuracy__rank_of_the_factor_counts_rigid_body_modes(mt_test *t)
         chain_factor(&s);
         const mt_stiffness_factor factor = {.rows = s.springs, .b = s.b, .c = s.c};
         opt.need_accuracy = true;
-        if (!CHECK(t,
-                   mt_modal_solve(6, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK)) {
+        if (!CHECK(t, solve_pair(6, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK)) {
             continue;
         }
         CHECK(t, modes.from_factor);
@@ -173,17 +172,17 @@ static void accuracy__factor_of_no_stiffness_is_all_rigid(mt_test *t)
     chain_factor(&s);
     mt_stiffness_factor factor = {.rows = 1, .b = s.b, .c = s.c};
     opt.need_accuracy = true;
-    REQUIRE(t, mt_modal_solve(3, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK);
+    REQUIRE(t, solve_pair(3, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK);
     CHECK_INT(t, modes.n_rigid, 3);
     for (int i = 0; i < 3; i++) {
         CHECK(t, modes.orthogonality[i] <= 10.0);
         CHECK(t, modes.residual[i] <= 10.0);
     }
     s.c[0] = -1.0;
-    CHECK_INT(t, mt_modal_solve(3, s.k, s.m, &factor, &opt, &mem, &modes, NULL), MT_E_DOMAIN);
+    CHECK_INT(t, solve_pair(3, s.k, s.m, &factor, &opt, &mem, &modes, NULL), MT_E_DOMAIN);
     s.c[0] = 1.0;
     s.b[1] = nan("");
-    CHECK_INT(t, mt_modal_solve(3, s.k, s.m, &factor, &opt, &mem, &modes, NULL), MT_E_DOMAIN);
+    CHECK_INT(t, solve_pair(3, s.k, s.m, &factor, &opt, &mem, &modes, NULL), MT_E_DOMAIN);
 }
 
 int main(void)

@@ -44,9 +44,8 @@ static bool damped_solve(mt_test *t, int n, const double *k, const double *c, co
     const mt_damped_problem p = {.n = n, .k = k, .c = c, .mass = &s->mass, .modes = &s->modes};
     mt_status rc = mt_arena_init(&s->mem, 0, &s->err);
     rc = rc == MT_OK ? mt_modal_factor_mass(n, m, &s->mem, &s->mass, &s->err) : rc;
-    rc = rc == MT_OK
-             ? mt_modal_solve_factored(k, &s->mass, NULL, NULL, &s->mem, &s->modes, &s->err)
-             : rc;
+    rc =
+        rc == MT_OK ? mt_modal_solve(k, &s->mass, NULL, NULL, &s->mem, &s->modes, &s->err) : rc;
     rc = rc == MT_OK ? mt_modal_damped(&p, &s->mem, &s->d, &s->err) : rc;
     if (!CHECK(t, rc == MT_OK)) {
         (void)fprintf(stderr, "%s\n", s->err.text);

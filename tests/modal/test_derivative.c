@@ -10,6 +10,7 @@
 #include "support/mt_random.h"
 #include "support/mt_slope.h"
 #include "support/mt_test.h"
+#include "support/solve_pair.h"
 
 enum { N = 6, P = 5 };
 
@@ -86,7 +87,7 @@ static double value(const void *ctx, int n, const double *x)
     (void)n;
     assemble(f, x, k, m);
     const mt_arena_mark mark = mt_arena_get_mark(&mem);
-    const bool ok = mt_modal_solve(N, k, m, NULL, NULL, &mem, &modes, NULL) == MT_OK;
+    const bool ok = solve_pair(N, k, m, NULL, NULL, &mem, &modes, NULL) == MT_OK;
     double result = nan("");
     if (ok) {
         const double *const y = modes.y + (ptrdiff_t)f->mode * N;
@@ -158,7 +159,7 @@ static void derivative__values_vectors_and_mac_follow_the_slope(mt_test *t)
         double x[P] = {1.0, 0.8, 1.2, 0.9, 1.1};
         random_family(&g, massless == 1, &f);
         assemble(&f, x, s.k, s.m);
-        REQUIRE(t, mt_modal_solve(N, s.k, s.m, NULL, NULL, &mem, &s.modes, NULL) == MT_OK);
+        REQUIRE(t, solve_pair(N, s.k, s.m, NULL, NULL, &mem, &s.modes, NULL) == MT_OK);
         CHECK_INT(t, s.modes.count, N - massless);
         for (int i = 0; i < s.modes.count; i++) {
             const mt_pencil pencil = {.n = N, .k = s.k, .m = s.m};
@@ -196,7 +197,7 @@ static void derivative__constant_mass_may_be_left_out(mt_test *t)
     double dlambda[P];
     random_family(&g, false, &f);
     assemble(&f, x, s.k, s.m);
-    REQUIRE(t, mt_modal_solve(N, s.k, s.m, NULL, NULL, &mem, &s.modes, NULL) == MT_OK);
+    REQUIRE(t, solve_pair(N, s.k, s.m, NULL, NULL, &mem, &s.modes, NULL) == MT_OK);
     const double *const y = s.modes.y + 2 * (ptrdiff_t)N;
     const mt_pencil pencil = {.n = N, .k = s.k, .m = s.m};
     products(&f, y, s.dky, s.dmy);
@@ -239,11 +240,11 @@ static void derivative__clusters_split_as_their_matrix_says(mt_test *t)
     mt_modes up;
     mt_modes down;
     ring(&s, 1e4);
-    REQUIRE(t, mt_modal_solve(R, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
+    REQUIRE(t, solve_pair(R, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
     ring(&s, 1e4 + h);
-    REQUIRE(t, mt_modal_solve(R, s.k, s.m, NULL, NULL, &mem, &up, NULL) == MT_OK);
+    REQUIRE(t, solve_pair(R, s.k, s.m, NULL, NULL, &mem, &up, NULL) == MT_OK);
     ring(&s, 1e4 - h);
-    REQUIRE(t, mt_modal_solve(R, s.k, s.m, NULL, NULL, &mem, &down, NULL) == MT_OK);
+    REQUIRE(t, solve_pair(R, s.k, s.m, NULL, NULL, &mem, &down, NULL) == MT_OK);
     for (int first = 1; first <= 3; first += 2) {
         double dky[R * 2];
         double split[4];
@@ -274,7 +275,7 @@ static void derivative__a_repeated_mode_has_none(mt_test *t)
     chain s;
     mt_modes modes;
     ring(&s, 1e4);
-    REQUIRE(t, mt_modal_solve(R, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
+    REQUIRE(t, solve_pair(R, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
     const mt_pencil pencil = {.n = R, .k = s.k, .m = s.m};
     for (int i = 0; i < R; i++) {
         const bool simple = i == 0 || i == 5;

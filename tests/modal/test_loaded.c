@@ -97,8 +97,7 @@ static void compare(mt_test *t, loaded *s)
     mt_modes modes;
     opt.need_accuracy = true;
     if (!CHECK(t, mt_modal_identity_mass(s->n, &mem, &mass, NULL) == MT_OK) ||
-        !CHECK(t, mt_modal_solve_factored(s->k, &mass, &factor, &opt, &mem, &modes, NULL) ==
-                      MT_OK)) {
+        !CHECK(t, mt_modal_solve(s->k, &mass, &factor, &opt, &mem, &modes, NULL) == MT_OK)) {
         return;
     }
     for (int i = 0; i < s->n; i++) {
@@ -160,7 +159,7 @@ static void loaded__strained_zero_is_undecided(mt_test *t)
         mt_mass_factor mass;
         mt_test_row(t, "strained: %d", strained);
         REQUIRE(t, mt_modal_identity_mass(2, &mem, &mass, NULL) == MT_OK);
-        REQUIRE(t, mt_modal_solve_factored(k, &mass, NULL, NULL, &mem, &modes, NULL) == MT_OK);
+        REQUIRE(t, mt_modal_solve(k, &mass, NULL, NULL, &mem, &modes, NULL) == MT_OK);
         CHECK(t, mt_modal_in_doubt(&modes));
         mt_modal_judge(&e, -1, &modes);
         CHECK_INT(t, modes.kind[0], strained ? MT_MODE_UNDECIDED : MT_MODE_RIGID_BODY);

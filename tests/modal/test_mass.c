@@ -9,6 +9,7 @@
 #include "modal/modal.h"
 #include "support/mt_random.h"
 #include "support/mt_test.h"
+#include "support/solve_pair.h"
 
 static const double TOL = 1e-12;
 static const double RATIO = 20.0;
@@ -28,7 +29,7 @@ static void check_two_masses(mt_test *t, const chain *s, double tol)
 {
     mt_modes modes;
     mt_err err = {.text = ""};
-    if (!CHECK(t, mt_modal_solve(s->n, s->k, s->m, NULL, NULL, &mem, &modes, &err) == MT_OK)) {
+    if (!CHECK(t, solve_pair(s->n, s->k, s->m, NULL, NULL, &mem, &modes, &err) == MT_OK)) {
         return;
     }
     CHECK_INT(t, modes.n_condensed, 2);
@@ -51,7 +52,7 @@ static void mass__coordinates_without_mass_are_condensed(mt_test *t)
     with_massless_joints(&s, 0.0);
     check_two_masses(t, &s, TOL);
     /* the massless point moves half as far as the mass behind it */
-    REQUIRE(t, mt_modal_solve(4, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
+    REQUIRE(t, solve_pair(4, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
     CHECK_NEAR(t, modes.y[0], 0.5 * modes.y[1], TOL);
     CHECK_NEAR(t, modes.y[2], 0.5 * (modes.y[1] + modes.y[3]), TOL);
     mt_test_row(t, "the square of rounding");
@@ -95,12 +96,12 @@ static void mass__light_masses_are_masses(mt_test *t)
     with_massless_joints(&s, 2e-9);
     chain_factor(&s);
     const mt_stiffness_factor factor = {.rows = s.springs, .b = s.b, .c = s.c};
-    REQUIRE(t, mt_modal_solve(4, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
+    REQUIRE(t, solve_pair(4, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
     CHECK_INT(t, modes.n_condensed, 0);
     CHECK_NEAR_ABS(t, modes.lambda[0], want, modes.error_bound + first_order * want);
     CHECK_NEAR(t, modes.lambda[3], 600.0 / 2e-9, first_order);
     opt.need_accuracy = true;
-    REQUIRE(t, mt_modal_solve(4, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK);
+    REQUIRE(t, solve_pair(4, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK);
     CHECK(t, modes.from_factor);
     CHECK_NEAR(t, modes.lambda[0], want, first_order);
 }
@@ -115,7 +116,7 @@ static void mass__no_mass_and_no_stiffness_names_the_direction(mt_test *t)
     chain_spring(&s, GROUND, 0, 10.0);
     chain_spring(&s, 0, 1, 10.0);
     s.m[8] = 0.0;
-    CHECK_INT(t, mt_modal_solve(3, s.k, s.m, NULL, NULL, &mem, &modes, &err), MT_E_MASSLESS);
+    CHECK_INT(t, solve_pair(3, s.k, s.m, NULL, NULL, &mem, &modes, &err), MT_E_MASSLESS);
     CHECK_STR(t, err.text, "a direction (mostly coordinate 3) has neither mass nor stiffness");
     REQUIRE(t, modes.massless != NULL);
     CHECK_NEAR_ABS(t, modes.massless[0], 0.0, 1e-15);
@@ -125,7 +126,7 @@ static void mass__no_mass_and_no_stiffness_names_the_direction(mt_test *t)
     double x[9];
     double back[3];
     oblique(&g, &s, x);
-    CHECK_INT(t, mt_modal_solve(3, s.k, s.m, NULL, NULL, &mem, &modes, &err), MT_E_MASSLESS);
+    CHECK_INT(t, solve_pair(3, s.k, s.m, NULL, NULL, &mem, &modes, &err), MT_E_MASSLESS);
     REQUIRE(t, modes.massless != NULL);
     mt_gemv(false, 3, 3, 1.0, x, 3, modes.massless, 0.0, back);
     CHECK_NEAR_ABS(t, back[0] / back[2], 0.0, 1e-13);
@@ -137,7 +138,7 @@ static void mass__no_mass_and_no_stiffness_names_the_direction(mt_test *t)
     chain_spring(&s, 1, 2, 10.0);
     s.m[4] = 0.0;
     s.m[8] = 0.0;
-    CHECK_INT(t, mt_modal_solve(3, s.k, s.m, NULL, NULL, &mem, &modes, &err), MT_E_MASSLESS);
+    CHECK_INT(t, solve_pair(3, s.k, s.m, NULL, NULL, &mem, &modes, &err), MT_E_MASSLESS);
     REQUIRE(t, modes.massless != NULL);
     CHECK_NEAR(t, modes.massless[1], 1.0, 1e-13);
     CHECK_NEAR(t, modes.massless[2], 1.0, 1e-13);
@@ -150,7 +151,7 @@ static void mass__negative_stiffness_without_mass_is_unstable(mt_test *t)
     chain_line(&s, 2, 1.0, 100.0, 0);
     s.m[3] = 0.0;
     s.k[3] = -50.0;
-    REQUIRE(t, mt_modal_solve(2, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
+    REQUIRE(t, solve_pair(2, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
     CHECK_INT(t, modes.count, 1);
     CHECK_INT(t, modes.n_unstable_condensed, 1);
     CHECK_INT(t, modes.n_unstable, 1);
@@ -163,7 +164,7 @@ static void mass__all_without_mass_leaves_no_mode(mt_test *t)
     chain s;
     mt_modes modes;
     chain_line(&s, 2, 0.0, 100.0, 2);
-    REQUIRE(t, mt_modal_solve(2, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
+    REQUIRE(t, solve_pair(2, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
     CHECK_INT(t, modes.count, 0);
     CHECK_INT(t, modes.n_condensed, 2);
     CHECK_INT(t, mt_modal_flexible(&modes, 1), -1);
@@ -187,7 +188,7 @@ static void mass__negative_masses_are_errors(mt_test *t)
         mt_modes modes;
         mt_err err;
         mt_test_row(t, "%s", texts[r]);
-        CHECK_INT(t, mt_modal_solve(2, k, m[r], NULL, NULL, &mem, &modes, &err), MT_E_NOT_SPD);
+        CHECK_INT(t, solve_pair(2, k, m[r], NULL, NULL, &mem, &modes, &err), MT_E_NOT_SPD);
         CHECK_STR(t, err.text, texts[r]);
     }
 }

@@ -8,6 +8,7 @@
 #include "support/mt_alloc.h"
 #include "support/mt_random.h"
 #include "support/mt_test.h"
+#include "support/solve_pair.h"
 
 /* Ratios of LAPACK's kind: one is perfect. */
 static const double RATIO = 10.0;
@@ -27,7 +28,7 @@ static void check_quality(mt_test *t, const mt_modes *modes)
 static bool solve(mt_test *t, const chain *s, const mt_modal_options *opt, mt_modes *modes)
 {
     mt_err err = {.text = ""};
-    return CHECK(t, mt_modal_solve(s->n, s->k, s->m, NULL, opt, &mem, modes, &err) == MT_OK);
+    return CHECK(t, solve_pair(s->n, s->k, s->m, NULL, opt, &mem, modes, &err) == MT_OK);
 }
 
 static void modal__two_masses_on_a_wall_match_closed_form(mt_test *t)
@@ -290,8 +291,7 @@ static void modal__factored_and_identity_masses_give_the_same(mt_test *t)
     CHECK_NEAR(t, mass.condition, 1.0, 1e-15);
     for (int k = 0; k < 2; k++) {
         mt_test_row(t, k == 0 ? "factored" : "identity");
-        CHECK_INT(t, mt_modal_solve_factored(s.k, &mass, NULL, NULL, &mem, &other, NULL),
-                  MT_OK);
+        CHECK_INT(t, mt_modal_solve(s.k, &mass, NULL, NULL, &mem, &other, NULL), MT_OK);
         for (int i = 0; i < 5; i++) {
             CHECK_NEAR(t, other.lambda[i], modes.lambda[i], TOL);
             for (int j = 0; j < 5; j++) {
@@ -326,14 +326,14 @@ static void modal__bad_matrices_are_errors(mt_test *t)
         mt_test_row(t, "%g", bad[r]);
         chain_line(&s, 3, 1.0, 1.0, 1);
         s.k[1] = bad[r];
-        CHECK_INT(t, mt_modal_solve(3, s.k, s.m, NULL, NULL, &mem, &modes, &err), MT_E_DOMAIN);
+        CHECK_INT(t, solve_pair(3, s.k, s.m, NULL, NULL, &mem, &modes, &err), MT_E_DOMAIN);
         CHECK_STR(t, err.text, "stiffness matrix: an entry is not a finite number");
         chain_line(&s, 3, 1.0, 1.0, 1);
         s.m[4] = bad[r];
-        CHECK_INT(t, mt_modal_solve(3, s.k, s.m, NULL, NULL, &mem, &modes, &err), MT_E_DOMAIN);
+        CHECK_INT(t, solve_pair(3, s.k, s.m, NULL, NULL, &mem, &modes, &err), MT_E_DOMAIN);
         CHECK_STR(t, err.text, "mass matrix: an entry is not a finite number");
     }
-    CHECK_INT(t, mt_modal_solve(0, NULL, NULL, NULL, NULL, &mem, &modes, &err), MT_OK);
+    CHECK_INT(t, solve_pair(0, NULL, NULL, NULL, NULL, &mem, &modes, &err), MT_OK);
     CHECK_INT(t, modes.count, 0);
 }
 
@@ -354,7 +354,7 @@ static void modal__repeated_solves_do_not_touch_the_heap(mt_test *t)
     long before = 0;
     for (int i = 0; i < 20; i++) {
         before = i == 1 ? mt_alloc_count() : before; /* the first call may fill the arena */
-        REQUIRE(t, mt_modal_solve(11, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK);
+        REQUIRE(t, solve_pair(11, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK);
         CHECK(t, modes.from_factor);
         mt_arena_rewind(&mem, mark);
     }
@@ -371,12 +371,12 @@ static mt_status all_calls(const chain *condensed, const chain *graded, mt_arena
     mt_modal_options opt = mt_modal_options_default();
     opt.need_accuracy = true;
     MT_TRY(mt_modal_identity_mass(4, tiny, &mass, NULL));
-    MT_TRY(mt_modal_solve(condensed->n, condensed->k, condensed->m, NULL, NULL, tiny, &modes,
-                          NULL));
-    MT_TRY(mt_modal_solve(graded->n, graded->k, graded->m, &factor, &opt, tiny, &modes, NULL));
+    MT_TRY(
+        solve_pair(condensed->n, condensed->k, condensed->m, NULL, NULL, tiny, &modes, NULL));
+    MT_TRY(solve_pair(graded->n, graded->k, graded->m, &factor, &opt, tiny, &modes, NULL));
     opt.vectors = false;
-    MT_TRY(mt_modal_solve(graded->n, graded->k, graded->m, NULL, &opt, tiny, &modes, NULL));
-    MT_TRY(mt_modal_solve(graded->n, graded->k, graded->m, &factor, NULL, tiny, &modes, NULL));
+    MT_TRY(solve_pair(graded->n, graded->k, graded->m, NULL, &opt, tiny, &modes, NULL));
+    MT_TRY(solve_pair(graded->n, graded->k, graded->m, &factor, NULL, tiny, &modes, NULL));
     const mt_pencil pencil = {.n = graded->n, .k = graded->k, .m = graded->m};
     const mt_directions dir = {.np = 1, .dky = modes.y};
     double dy[CHAIN_MOST];
@@ -427,7 +427,7 @@ static void modal__judged_modes_ascend(mt_test *t)
     bool strained[] = {true, false};
     mt_mode_energies e = {stiffness, mass, stiffness_noise, mass_noise, given_noise, strained};
     mt_modes modes;
-    REQUIRE(t, mt_modal_solve(2, k, m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
+    REQUIRE(t, solve_pair(2, k, m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
     mt_modal_judge(&e, -1, &modes);
     CHECK_INT(t, modes.kind[0], MT_MODE_RIGID_BODY);
     CHECK_INT(t, modes.kind[1], MT_MODE_UNDECIDED);

@@ -16,6 +16,7 @@
 #include "stress/quad.h"
 #include "support/mt_random.h"
 #include "support/mt_test.h"
+#include "support/solve_pair.h"
 
 enum { MOST = 14, ROWS = 28 };
 
@@ -429,7 +430,7 @@ static void eigensolver__springs_far_apart(mt_test *t)
             opt.need_accuracy = true;
             exact_springs(&s, want);
             const mt_arena_mark mark = mt_arena_get_mark(&mem);
-            if (CHECK_INT(t, mt_modal_solve(s.n, s.k, s.m, &factor, &opt, &mem, &modes, NULL),
+            if (CHECK_INT(t, solve_pair(s.n, s.k, s.m, &factor, &opt, &mem, &modes, NULL),
                           MT_OK)) {
                 judge_modes(t, &s, &modes, want, true, &l);
             }
@@ -462,8 +463,7 @@ static void eigensolver__loads_on_springs_far_apart(mt_test *t)
         opt.need_accuracy = true;
         exact_pencil(&s, want);
         const mt_arena_mark mark = mt_arena_get_mark(&mem);
-        if (CHECK_INT(t, mt_modal_solve(s.n, s.k, s.m, &factor, &opt, &mem, &modes, NULL),
-                      MT_OK)) {
+        if (CHECK_INT(t, solve_pair(s.n, s.k, s.m, &factor, &opt, &mem, &modes, NULL), MT_OK)) {
             judge_modes(t, &s, &modes, want, false, &l);
         }
         mt_arena_rewind(&mem, mark);
@@ -496,8 +496,7 @@ static void eigensolver__stiffness_as_a_matrix(mt_test *t)
         mt_test_row(t, "%s, case %d, n = %d", spectrum_names[k % SPECTRA], k, s.n);
         exact_pencil(&s, want);
         const mt_arena_mark mark = mt_arena_get_mark(&mem);
-        if (CHECK_INT(t, mt_modal_solve(s.n, s.k, s.m, NULL, NULL, &mem, &modes, NULL),
-                      MT_OK)) {
+        if (CHECK_INT(t, solve_pair(s.n, s.k, s.m, NULL, NULL, &mem, &modes, NULL), MT_OK)) {
             judge_modes(t, &s, &modes, want, false, &l);
         }
         mt_arena_rewind(&mem, mark);

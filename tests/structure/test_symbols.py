@@ -17,8 +17,6 @@ FOR_TESTS = {
     "mt_displaced_eval", "mt_linear_equations",  # the independent mechanics that the linearisation is held against
     "mt_enclosure_corners",  # the independent proof by corners
     "mt_model_key_tables", "mt_study_key_tables", "mt_aircraft_key_tables",  # what readers know, for schemas
-    "mt_modal_solve",  # a mass and its factor in one
-    "mt_model_find_body",  # as joints, springs and links are found
 }
 
 
