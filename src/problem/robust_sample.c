@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "nlp/starts.h"
 #include "problem/robust.h"
 
 enum {
@@ -21,9 +22,8 @@ enum {
     ROUNDS_MOST = 3,
     MOVES_MOST = 4,
     AROUND_PER_INPUT = 8,
-    HALVINGS = 9,    /* of the boxes about the best so far: to a thousandth */
-    ROOT_TURNS = 64, /* each more than halves the error of the root */
-    SECTIONS = 14    /* of a line: to some thousandth of its length */
+    HALVINGS = 9, /* of the boxes about the best so far: to a thousandth */
+    SECTIONS = 14 /* of a line: to some thousandth of its length */
 };
 /* A step that gains less, relatively, has arrived. */
 static const double GAIN = 1e-9;
@@ -63,8 +63,9 @@ typedef struct sampler {
     double *from;
     double *to;
     double *slope;
-    int n_free;  /* inputs whose interval is not a point */
-    double root; /* of the spread */
+    int n_free; /* inputs whose interval is not a point */
+    int n_spread;
+    const double *spread; /* n x n_spread, the first in the middle */
 } sampler;
 
 /* Values at x, noted; NaN where there are none. */
@@ -105,27 +106,24 @@ static mt_status visit_corners(sampler *s, mt_err *err)
     return MT_OK;
 }
 
-/* Point c of the additive recurrence of the golden ratio's generalisation: x^(n+1) = x + 1,
- * steps 1/x, 1/x^2, ...; point 0 is the middle. */
-static void spread(const sampler *s, int c, double *x)
+/* Points as those that searches start from. */
+static mt_status spread(sampler *s, mt_arena *mem, mt_err *err)
 {
     const mt_robust_probe *const q = s->q;
-    double step = 1.0;
+    const int wanted = SPREAD_PER_INPUT * s->n_free;
     for (int i = 0; i < q->n; i++) {
-        step /= is_free(q, i) ? s->root : 1.0;
-        const double whole = 0.5 + (step * (double)c);
-        const double part = is_free(q, i) ? whole - floor(whole) : 0.0;
-        x[i] = q->lo[i] + (part * (q->hi[i] - q->lo[i]));
+        s->x[i] = 0.5 * (q->lo[i] + q->hi[i]);
     }
+    const mt_nlp box = {.n = q->n, .lower = q->lo, .upper = q->hi, .origin = s->x};
+    s->n_spread = wanted < SPREAD_MOST ? wanted : SPREAD_MOST;
+    s->spread = mt_nlp_starts(&box, 0, s->n_spread, mem);
+    return mt_arena_check(mem, err);
 }
 
 static mt_status visit_spread(sampler *s, mt_err *err)
 {
-    const int wanted = SPREAD_PER_INPUT * s->n_free;
-    const int most = wanted < SPREAD_MOST ? wanted : SPREAD_MOST;
-    for (int c = 0; c < most; c++) {
-        spread(s, c, s->x);
-        MT_TRY(visit(s, s->x, false, err));
+    for (int c = 0; c < s->n_spread; c++) {
+        MT_TRY(visit(s, s->spread + ((ptrdiff_t)c * s->q->n), false, err));
     }
     return MT_OK;
 }
@@ -191,8 +189,8 @@ static mt_status step(sampler *s, int k, mt_robust_side side, mt_err *err)
     return s->out[k].value[side] == before ? search_line(s, k, side, err) : MT_OK;
 }
 
-/* Points of the same recurrence in boxes about the best of number k, each half as wide as the
- * one before: over ridges, where frequencies meet, no slope and no axis leads on. */
+/* Some of the same points in boxes about the best of number k, each half as wide as the one
+ * before: over ridges, where frequencies meet, no slope and no axis leads on. */
 static mt_status step_around(sampler *s, int k, mt_robust_side side, mt_err *err)
 {
     const mt_robust_probe *const q = s->q;
@@ -200,10 +198,10 @@ static mt_status step_around(sampler *s, int k, mt_robust_side side, mt_err *err
     for (int turn = 0; turn < HALVINGS; turn++) {
         part *= 0.5;
         memcpy(s->from, s->out[k].at[side], (size_t)q->n * sizeof *s->from);
-        for (int c = 1; c <= AROUND_PER_INPUT * s->n_free; c++) {
-            spread(s, c, s->to);
+        for (int c = 1; c <= AROUND_PER_INPUT * s->n_free && c < s->n_spread; c++) {
+            const double *const to = s->spread + ((ptrdiff_t)c * q->n);
             for (int i = 0; i < q->n; i++) {
-                const double x = s->from[i] + (part * (s->to[i] - s->from[i]));
+                const double x = s->from[i] + (part * (to[i] - s->from[i]));
                 s->x[i] = fmin(fmax(x, q->lo[i]), q->hi[i]);
             }
             MT_TRY(visit(s, s->x, false, err));
@@ -273,10 +271,7 @@ mt_status mt_robust_sample(const mt_robust_probe *q, mt_arena *mem, mt_robust_ra
     for (int i = 0; i < q->n; i++) {
         s.n_free += is_free(q, i) ? 1 : 0;
     }
-    s.root = 2.0;
-    for (int k = 0; k < ROOT_TURNS; k++) {
-        s.root = pow(1.0 + s.root, 1.0 / ((double)s.n_free + 1.0));
-    }
+    MT_TRY(spread(&s, mem, err));
     MT_TRY(visit_corners(&s, err));
     MT_TRY(visit_spread(&s, err));
     const int n_descend = q->m < q->n_descend ? q->m : q->n_descend;

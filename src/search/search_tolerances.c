@@ -37,7 +37,6 @@ typedef struct rounds {
     int *stage;
     bool *open; /* [n_solutions] not judged, or missed at a point that is a cut since */
     mt_robust_cuts cuts;
-    long budget;        /* evaluations that are left; where c has a limit */
     const double *told; /* the design that undetermined directions are of */
 } rounds;
 
@@ -84,6 +83,15 @@ static mt_status go_on(rounds *r, int i, mt_err *err)
     return MT_OK;
 }
 
+/* Nothing goes on when the budget is spent, or who asked wants no more. */
+static bool is_spent(rounds *r)
+{
+    const long most = r->c->search.max_evaluations;
+    const bool spent = most > 0 && r->out->evals >= most;
+    r->out->stop = spent && r->out->stop == MT_STOP_DONE ? MT_STOP_MAX_EVALS : r->out->stop;
+    return spent || r->out->stop == MT_STOP_USER;
+}
+
 /* All that is open once more, with the cuts so far. */
 static mt_status search_again(rounds *r, mt_err *err)
 {
@@ -94,20 +102,14 @@ static mt_status search_again(rounds *r, mt_err *err)
     MT_TRY(mt_case_lay_out(&held, NULL, 0, NULL, r->ws, r->mem, err));
     mt_status rc = MT_OK;
     for (int i = 0; i < r->out->n_solutions && rc == MT_OK; i++) {
-        const long left = c->search.max_evaluations - r->out->evals;
-        held.search.max_evaluations = c->search.max_evaluations > 0 ? left : 0;
-        if (r->open[i] && held.search.max_evaluations >= 0) {
+        if (r->open[i] && !is_spent(r)) {
+            held.search.max_evaluations =
+                c->search.max_evaluations > 0 ? c->search.max_evaluations - r->out->evals : 0;
             rc = go_on(r, i, err);
         }
     }
     mt_workspace_back(r->ws, c);
     return rc;
-}
-
-static bool is_spent(const rounds *r)
-{
-    const long most = r->c->search.max_evaluations;
-    return (most > 0 && r->out->evals >= most) || r->out->stop == MT_STOP_USER;
 }
 
 /* Where some design meets everything those that do not are none. */
