@@ -6,6 +6,7 @@
 #ifndef STRESS_QUAD_H
 #define STRESS_QUAD_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef __float128 quad;
@@ -22,10 +23,12 @@ static inline quad quad_root(quad x)
     if (!(x > 0)) {
         return 0;
     }
-    for (; x >= 4; x /= 4) {
+    while (x >= 4) {
+        x /= 4;
         size *= 2;
     }
-    for (; x < 1; x *= 4) {
+    while (x < 1) {
+        x *= 4;
         size /= 2;
     }
     quad y = (quad)1.5;

@@ -13,12 +13,11 @@
 
 #include "linalg/dense.h"
 #include "modal/modal.h"
-#include "stress/quad.h"
-#include "support/mt_random.h"
+#include "stress/matrices.h"
 #include "support/mt_test.h"
 #include "support/solve_pair.h"
 
-enum { MOST = 14, ROWS = 28 };
+enum { ROWS = 28 };
 
 /* Of n eps max |w|: "about n eps" in the promise of mt_eig_sym. */
 static const double PROMISED = 2.0;
@@ -26,104 +25,6 @@ static const double PROMISED = 2.0;
 static const double WANTED = 1e-10;
 
 static mt_arena mem;
-
-typedef enum spectrum {
-    ALL_EQUAL,  /* 1 1 1 ... */
-    ONE_LARGE,  /* 1 e e e ... */
-    ONE_SMALL,  /* 1 1 1 ... e */
-    GEOMETRIC,  /* 1 ... e */
-    ARITHMETIC, /* 1 ... e */
-    DECADES,    /* anything between, evenly in the logarithm */
-    UNIFORM,    /* anything in (-1, 1) */
-    PAIRS,      /* 1 and its neighbour, e and its neighbour */
-    SPECTRA
-} spectrum;
-
-static const char *const spectrum_names[SPECTRA] = {"all equal", "one large",  "one small",
-                                                    "geometric", "arithmetic", "decades",
-                                                    "uniform",   "pairs"};
-
-/* d[n], from 1 to e. */
-static void make_spectrum(spectrum kind, int n, double e, bool signs, mt_random *r, quad *d)
-{
-    const double last = n > 1 ? (double)(n - 1) : 1.0;
-    for (int i = 0; i < n; i++) {
-        const double part = (double)i / last;
-        double x = 1.0;
-        switch (kind) {
-        case ALL_EQUAL:
-            break;
-        case ONE_LARGE:
-            x = i == 0 ? 1.0 : e;
-            break;
-        case ONE_SMALL:
-            x = i == n - 1 ? e : 1.0;
-            break;
-        case GEOMETRIC:
-            x = pow(e, part);
-            break;
-        case ARITHMETIC:
-            x = 1.0 - (part * (1.0 - e));
-            break;
-        case DECADES:
-            x = pow(e, mt_random_in(r, 0.0, 1.0));
-            break;
-        case UNIFORM:
-            x = mt_random_in(r, -1.0, 1.0);
-            break;
-        case PAIRS:
-            x = (i < n / 2 ? 1.0 : e) * (1.0 + (DBL_EPSILON * (i % 2)));
-            break;
-        case SPECTRA:
-            break;
-        }
-        d[i] = (quad)(signs && mt_random_int(r, 2) == 0 ? -x : x);
-    }
-}
-
-/* x := H x H for random reflections H, as many as there are coordinates. */
-static void mix(int n, mt_random *r, quad *x)
-{
-    quad v[MOST];
-    for (int k = 0; k < n; k++) {
-        quad norm = 0;
-        for (int i = 0; i < n; i++) {
-            v[i] = (quad)mt_random_in(r, -1.0, 1.0);
-            norm += v[i] * v[i];
-        }
-        for (int side = 0; side < 2; side++) {
-            for (int j = 0; j < n; j++) {
-                const int step = side == 0 ? 1 : n;
-                quad *const at = x + (side == 0 ? j * n : j);
-                quad dot = 0;
-                for (int i = 0; i < n; i++) {
-                    dot += v[i] * at[i * step];
-                }
-                for (int i = 0; i < n; i++) {
-                    at[i * step] -= 2 * dot / norm * v[i];
-                }
-            }
-        }
-    }
-}
-
-/* a: the matrix of that spectrum, rounded to doubles, times scale; exact: the same. */
-static void make_matrix(int n, const quad *d, double scale, mt_random *r, double *a,
-                        quad *exact)
-{
-    quad x[MOST * MOST] = {0};
-    for (int i = 0; i < n; i++) {
-        x[i + (i * n)] = d[i];
-    }
-    mix(n, r, x);
-    for (int j = 0; j < n; j++) {
-        for (int i = 0; i < n; i++) {
-            const int at = i >= j ? i + (j * n) : j + (i * n);
-            a[i + (j * n)] = (double)x[at] * scale;
-            exact[i + (j * n)] = (quad)a[i + (j * n)];
-        }
-    }
-}
 
 /* A line of the table. */
 typedef struct line {
@@ -148,7 +49,7 @@ static void finish(const line *l)
 static int rounds(void)
 {
     const char *const text = getenv("MT_STRESS_ROUNDS");
-    return text != NULL ? atoi(text) : 1;
+    return text != NULL ? (int)strtol(text, NULL, 10) : 1;
 }
 
 /* The parts of n eps |w| that eigenvalues, equation and orthogonality are off. */
@@ -201,7 +102,7 @@ static void eigensolver__given_spectra(mt_test *t)
             const double e = ends[(k / MT_COUNT(orders)) % MT_COUNT(ends)];
             const double scale = scales[mt_random_int(&r, MT_COUNT(scales))];
             quad d[MOST];
-            quad want[MOST];
+            quad want[MOST] = {0};
             quad exact[MOST * MOST];
             double a[MOST * MOST];
             mt_test_row(t, "%s to %g, n = %d, times %g", spectrum_names[kind], e, n, scale);
@@ -214,48 +115,18 @@ static void eigensolver__given_spectra(mt_test *t)
     }
 }
 
-/* Entry i, j (i >= j) of matrices of a name. */
-static double named(int which, int n, int i, int j)
-{
-    const int far = i - j;
-    switch (which) {
-    case 0:
-        return 0.0; /* nothing */
-    case 1:
-        return far == 0 ? abs(n / 2 - i) : far == 1 ? 1.0 : 0.0; /* Wilkinson's W+ */
-    case 2:
-        return far == 0 ? 2.0 : far == 1 ? -1.0 : 0.0; /* second difference */
-    case 3:
-        return far == 1 ? sqrt((double)(i * (n - i))) : 0.0; /* Kac: -n+1 ... n-1 */
-    case 4:
-        return 1.0 / (i + j + 1); /* Hilbert */
-    case 5:
-        return far == 0 ? 1.0 : far == 1 ? 1e-9 : 0.0; /* almost equal */
-    case 6:
-        return pow(10.0, -i) * pow(10.0, -j) * (far == 0 ? 1.0 : 0.3); /* graded down */
-    case 7:
-        return pow(10.0, i - n) * pow(10.0, j - n) * (far == 0 ? 1 : .3); /* graded up */
-    case 8:                                                               /* glued W+ */
-        return far == 0   ? abs((n / 2) / 2 - (i % ((n / 2) + 1)))
-               : far == 1 ? (i == (n / 2) + 1 ? 1e-8 : 1.0)
-                          : 0.0;
-    default:
-        return (i == n - 1) != (j == n - 1) ? 1e-3 : far == 0 ? 1.0 : 0.0; /* arrow */
-    }
-}
-
 static void eigensolver__matrices_of_a_name(mt_test *t)
 {
     line l = start("matrices of a name");
-    for (int which = 0; which < 10; which++) {
+    for (int which = 0; which < MT_COUNT(named); which++) {
         for (int n = 1; n <= MOST; n++) {
             double a[MOST * MOST];
             quad exact[MOST * MOST];
-            quad want[MOST];
-            mt_test_row(t, "matrix %d, n = %d", which, n);
+            quad want[MOST] = {0};
+            mt_test_row(t, "%s, n = %d", named[which].name, n);
             for (int j = 0; j < n; j++) {
                 for (int i = 0; i < n; i++) {
-                    a[i + (j * n)] = i >= j ? named(which, n, i, j) : named(which, n, j, i);
+                    a[i + (j * n)] = named[which].entry(n, i >= j ? i : j, abs(i - j));
                     exact[i + (j * n)] = (quad)a[i + (j * n)];
                 }
             }
@@ -274,7 +145,7 @@ static void eigensolver__counts_of_eigenvalues(mt_test *t)
     for (int k = 0; k < 60 * rounds(); k++) {
         const int n = 2 + mt_random_int(&r, MOST - 2);
         quad d[MOST];
-        quad want[MOST];
+        quad want[MOST] = {0};
         quad exact[MOST * MOST];
         double a[MOST * MOST];
         make_spectrum((spectrum)(k % SPECTRA), n, 1e-8, true, &r, d);
@@ -421,7 +292,7 @@ static void eigensolver__springs_far_apart(mt_test *t)
         line l = start(names[which]);
         for (int k = 0; k < 40 * rounds(); k++) {
             static springs s;
-            quad want[MOST];
+            quad want[MOST] = {0};
             mt_modes modes;
             mt_modal_options opt = mt_modal_options_default();
             make_springs(&r, ranges[which][0], ranges[which][1], &s);
@@ -447,7 +318,7 @@ static void eigensolver__loads_on_springs_far_apart(mt_test *t)
     mt_random r = mt_random_seed(4);
     for (int k = 0; k < 60 * rounds(); k++) {
         static springs s;
-        quad want[MOST];
+        quad want[MOST] = {0};
         mt_modes modes;
         mt_modal_options opt = mt_modal_options_default();
         make_springs(&r, 12.0, 0.0, &s);
@@ -481,7 +352,7 @@ static void eigensolver__stiffness_as_a_matrix(mt_test *t)
         static springs s;
         quad d[MOST];
         quad exact[MOST * MOST];
-        quad want[MOST];
+        quad want[MOST] = {0};
         mt_modes modes;
         memset(&s, 0, sizeof s);
         s.n = 2 + mt_random_int(&r, 9);
@@ -502,6 +373,37 @@ static void eigensolver__stiffness_as_a_matrix(mt_test *t)
         mt_arena_rewind(&mem, mark);
     }
     finish(&l);
+}
+
+/* The checks themselves: an eigenvalue that is off by four times what is promised, and a bound
+ * of nothing, are seen. */
+static void eigensolver__wrong_answers_are_seen(mt_test *t)
+{
+    static springs s;
+    mt_random r = mt_random_seed(6);
+    quad want[MOST] = {0};
+    mt_modes modes;
+    line l = start("wrong");
+    mt_test wrong = mt_test_begin();
+    make_springs(&r, 2.0, 0.0, &s);
+    exact_pencil(&s, want);
+    want[0] += (quad)(4.0 * PROMISED * s.n * DBL_EPSILON) * want[s.n - 1];
+    for (int i = 0; i < s.n; i++) {
+        s.m[i + (i * s.n)] = 1.0;
+    }
+    wrong.quiet = true;
+    judge_solution(&wrong, s.n, s.k, want, &l);
+    CHECK(t, !mt_test_passed(&wrong));
+    wrong = mt_test_begin();
+    wrong.quiet = true;
+    exact_pencil(&s, want);
+    const mt_arena_mark mark = mt_arena_get_mark(&mem);
+    REQUIRE(t, solve_pair(s.n, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
+    judge_modes(t, &s, &modes, want, false, &l);
+    modes.lambda[0] += 2.0 * modes.error[0];
+    judge_modes(&wrong, &s, &modes, want, true, &l);
+    CHECK(t, !mt_test_passed(&wrong));
+    mt_arena_rewind(&mem, mark);
 }
 
 static int prepare(void **state)
@@ -526,6 +428,7 @@ int main(void)
         MT_TEST(eigensolver__springs_far_apart),
         MT_TEST(eigensolver__loads_on_springs_far_apart),
         MT_TEST(eigensolver__stiffness_as_a_matrix),
+        MT_TEST(eigensolver__wrong_answers_are_seen),
     };
     return cmocka_run_group_tests_name(__FILE__, tests, prepare, release) != 0;
 }
