@@ -207,32 +207,6 @@ static void say_idle(const mt_linear *lin, mt_doubt_list *out)
     }
 }
 
-static mt_status say_freedoms(const mt_analysis *a, mt_doubt_list *out, mt_err *err)
-{
-    const int unstable = a->modes.n_unstable + a->modes.n_unstable_condensed;
-    say_motion(a->lin, out);
-    say_free(a, out);
-    say_idle(a->lin, out);
-    if (unstable > 0) {
-        char name[NAME_SIZE];
-        name_motion(a, MT_MODE_UNSTABLE, name);
-        (void)mt_doubt_add(out, MT_LEVEL_FACT, "unstable",
-                           "unstable in %d direction%s: it falls over from here%s%s", unstable,
-                           unstable == 1 ? "" : "s", name[0] == '\0' ? "" : ", moving ", name);
-    }
-    if (a->modes.n_undecided > 0) {
-        char name[NAME_SIZE];
-        const int n = a->modes.n_undecided;
-        name_motion(a, MT_MODE_UNDECIDED, name);
-        (void)mt_doubt_add(out, MT_LEVEL_FACT, "undecided",
-                           "undecided in %d direction%s: springs and loads cancel to the last "
-                           "digit, and rounding hides whether it holds%s%s",
-                           n, n == 1 ? "" : "s", name[0] == '\0' ? "" : ", moving ", name);
-    }
-    MT_TRY(say_dead_centre(a->lin, out, err));
-    return say_redundant(a->lin, out, err);
-}
-
 static void doubt_mass(double mass_kg, mt_doubt_list *out)
 {
     if (mass_kg > MOST_MASS_KG || (mass_kg > 0.0 && mass_kg < LEAST_MASS_KG)) {
@@ -271,7 +245,28 @@ static mt_status say_analysis(mt_analysis *a, mt_doubt_list *out, mt_err *err)
     MT_TRY(mt_info_fill(a->lin, &info, err));
     doubt_mass(info.mass_kg, out);
     doubt_frequency(&a->modes, out);
-    return say_freedoms(a, out, err);
+    const int unstable = a->modes.n_unstable + a->modes.n_unstable_condensed;
+    say_motion(a->lin, out);
+    say_free(a, out);
+    say_idle(a->lin, out);
+    if (unstable > 0) {
+        char name[NAME_SIZE];
+        name_motion(a, MT_MODE_UNSTABLE, name);
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "unstable",
+                           "unstable in %d direction%s: it falls over from here%s%s", unstable,
+                           unstable == 1 ? "" : "s", name[0] == '\0' ? "" : ", moving ", name);
+    }
+    if (a->modes.n_undecided > 0) {
+        char name[NAME_SIZE];
+        const int n = a->modes.n_undecided;
+        name_motion(a, MT_MODE_UNDECIDED, name);
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "undecided",
+                           "undecided in %d direction%s: springs and loads cancel to the last "
+                           "digit, and rounding hides whether it holds%s%s",
+                           n, n == 1 ? "" : "s", name[0] == '\0' ? "" : ", moving ", name);
+    }
+    MT_TRY(say_dead_centre(a->lin, out, err));
+    return say_redundant(a->lin, out, err);
 }
 
 static void say_lowest(const mt_lowest *l, mt_doubt_list *out)

@@ -65,20 +65,6 @@ static int load(const mt_args *args, const char *text, comparison *c, side *x)
     return code;
 }
 
-static mt_status common_channels(comparison *c, mt_err *err)
-{
-    mt_common_channels common;
-    MT_TRY(mt_analysis_common_channels(c->a.a, c->b.a, &c->mem, &common, err));
-    c->ns = common.n;
-    c->a.channels = common.a;
-    c->b.channels = common.b;
-    return c->ns > 0 ? MT_OK
-                     : mt_fail(err, MT_E_INPUT,
-                               "the two have no sensor and direction in common (%d channels in "
-                               "A, %d in B)",
-                               c->a.a->sys->n_channels, c->b.a->sys->n_channels);
-}
-
 static mt_status choose_modes(comparison *c, side *x, int wanted, mt_err *err)
 {
     const mt_modes *const m = &x->a->modes;
@@ -98,7 +84,17 @@ static mt_status correlate(comparison *c, int count, mt_err *err)
 {
     MT_TRY(mt_subject_analyse(&c->a.s, c->a.s.configurations[0], &c->a.a, err));
     MT_TRY(mt_subject_analyse(&c->b.s, c->b.s.configurations[0], &c->b.a, err));
-    MT_TRY(common_channels(c, err));
+    mt_common_channels common;
+    MT_TRY(mt_analysis_common_channels(c->a.a, c->b.a, &c->mem, &common, err));
+    if (common.n == 0) {
+        return mt_fail(err, MT_E_INPUT,
+                       "the two have no sensor and direction in common (%d channels in A, %d "
+                       "in B)",
+                       c->a.a->sys->n_channels, c->b.a->sys->n_channels);
+    }
+    c->ns = common.n;
+    c->a.channels = common.a;
+    c->b.channels = common.b;
     const int wanted = count > 0 ? count : c->ns;
     MT_TRY(choose_modes(c, &c->a, wanted, err));
     MT_TRY(choose_modes(c, &c->b, wanted, err));

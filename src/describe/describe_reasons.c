@@ -149,16 +149,6 @@ static void limit_text(const mt_result_frequency *f, char *text)
     }
 }
 
-/* ", over the tolerances 7.9 to 8.1 Hz"; "" without tolerances. */
-static const char *range_text(mt_sentences *s, const mt_result_frequency *f)
-{
-    if (!MT_HAS(f->lowest_hz) || !MT_HAS(f->highest_hz)) {
-        return "";
-    }
-    return mt_arena_printf(&s->result->mem, ", over the tolerances %.6g to %.6g Hz",
-                           f->lowest_hz, f->highest_hz);
-}
-
 static void demand_text(const mt_result_frequency *f, char *text)
 {
     if (!MT_HAS(f->target_hz)) {
@@ -190,7 +180,11 @@ static void say_frequency(mt_sentences *s, const mt_result_frequency *f)
         return;
     }
     demand_text(f, demand);
-    const char *const range = range_text(s, f);
+    const char *const range =
+        MT_HAS(f->lowest_hz) && MT_HAS(f->highest_hz)
+            ? mt_arena_printf(&s->result->mem, ", over the tolerances %.6g to %.6g Hz",
+                              f->lowest_hz, f->highest_hz)
+            : "";
     (void)mt_snprintf(from, sizeof from, "%.6g", f->original_hz);
     (void)mt_snprintf(to, sizeof to, "%.6g", f->recommended_hz);
     const char *const lever = lever_text(s, f);

@@ -278,34 +278,28 @@ static void read_root(mt_study_reader *s)
     mt_read_study_published(s, o.found[STUDY_PUBLISHED]);
 }
 
-/* "beam" for "studies/beam.json": what an unnamed study is called. */
-static void name_by_file(mt_study_reader *s)
-{
-    mt_study *const study = s->study;
-    const char *const file = mt_text_base_name(study->path);
-    const char *const dot = strrchr(file, '.');
-    const size_t length = dot == NULL || dot == file ? strlen(file) : (size_t)(dot - file);
-    study->name = mt_arena_strndup(&study->mem, file, length);
-}
-
 static mt_status read_document(mt_study_reader *s, mt_err *err)
 {
+    mt_study *const study = s->study;
     read_root(s);
-    if (s->study->name == NULL) {
-        name_by_file(s);
+    if (study->name == NULL) { /* "beam" of "studies/beam.json" */
+        const char *const file = mt_text_base_name(study->path);
+        const char *const dot = strrchr(file, '.');
+        const size_t length = dot == NULL || dot == file ? strlen(file) : (size_t)(dot - file);
+        study->name = mt_arena_strndup(&study->mem, file, length);
     }
     MT_TRY(mt_arena_check(s->r.mem, err));
     if (s->failed != MT_OK && s->failed != MT_E_INPUT) {
         return mt_fail(err, s->failed, "%s", s->why.text);
     }
-    if (s->study->model != NULL) {
-        const mt_status rc = mt_study_finish(s->study, s->r.diags, err);
+    if (study->model != NULL) {
+        const mt_status rc = mt_study_finish(study, s->r.diags, err);
         if (rc != MT_OK && rc != MT_E_INPUT) {
             return rc;
         }
         note_places(s);
     }
-    const mt_status rc = mt_reader_status(&s->r, s->study->path, err);
+    const mt_status rc = mt_reader_status(&s->r, study->path, err);
     if (rc == MT_OK && s->failed != MT_OK) {
         return mt_fail(err, s->failed, "%s", s->why.text);
     }

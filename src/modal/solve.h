@@ -36,8 +36,8 @@ mt_modal_options mt_modal_options_default(void);
  * given back; repeated calls with mem rewound do not touch the heap. O(n^3), about 11 us for
  * n = 11 with vectors.
  * Method: Cholesky, dsyevd; dgejsv for the factor. On failure, memory taken from mem is the
- * caller's to rewind. Fails: MT_E_MASSLESS (out->massless);
- * MT_E_DOMAIN; MT_E_NO_CONVERGENCE; MT_E_MEMORY. */
+ * caller's to rewind. Fails: MT_E_MASSLESS (out->massless); MT_E_DOMAIN; MT_E_NO_CONVERGENCE;
+ * MT_E_MEMORY. */
 mt_status mt_modal_solve(const double *k, const mt_mass_factor *mass,
                          const mt_stiffness_factor *factor, const mt_modal_options *opt,
                          mt_arena *mem, mt_modes *out, mt_err *err);

@@ -97,13 +97,6 @@ static void vary_bound(mt_study_check *c, mt_vary *v)
     }
 }
 
-/* Limits on both sides must leave room, whichever of them varies; both: check_sides. */
-static bool leaves_room(mt_goal_slot slot, const mt_goal *goal, double value)
-{
-    return !(slot == MT_SLOT_AT_LEAST && value >= goal->at_most) &&
-           !(slot == MT_SLOT_AT_MOST && value <= goal->at_least);
-}
-
 /* The member of the goal that varies; NULL where the goal has none of this name, or no number
  * there to begin with. */
 static const mt_goal_member *member_of(const mt_goal *goal, const char *name)
@@ -131,8 +124,11 @@ static void vary_goal(mt_study_check *c, const mt_vary *v)
         return;
     }
     for (int i = 0; i < v->n_values; i++) {
+        /* limits on both sides must leave room, whichever of them varies; both: check_sides */
+        const bool crosses = (m->slot == MT_SLOT_AT_LEAST && v->values[i] >= goal->at_most) ||
+                             (m->slot == MT_SLOT_AT_MOST && v->values[i] <= goal->at_least);
         if (!mt_goal_in_range(m->range, v->values[i]) ||
-            (other_side(c, v) == NULL && !leaves_room(m->slot, goal, v->values[i]))) {
+            (crosses && other_side(c, v) == NULL)) {
             mt_diag_error(c->diags, v->values_addr, "%s cannot be %g", v->member, v->values[i]);
         }
     }
