@@ -146,27 +146,16 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
     return MT_OK;
 }
 
-mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
-                            const mt_analysis_options *opt, mt_err *err)
+/* Modes of K and M as they are, counted as a->n_rigid says or, where that does not hold,
+ * anew. */
+static mt_status find_modes(mt_analysis *a, const mt_reduced *r, mt_modal_options *options,
+                            bool bounds, mt_err *err)
 {
-    mt_arena_clear(&a->mem);
-    a->solves++;
-    a->with_gradient = false;
-    a->modes = (mt_modes){0}; /* where this fails there are none: not those of another design */
-    MT_TRY(mt_linear_update(a->lin, inputs, opt->gradient, err));
-    MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
     MT_TRY(refresh_mass(a, err));
-    const mt_reduced r = mt_linear_reduced(a->lin);
-    mt_modal_options options = mt_modal_options_default();
-    options.n_rigid = a->n_rigid;
-    /* where K is no sum of squares, shapes say what rounding leaves of its sign */
-    options.vectors = opt->vectors || opt->gradient || r.g != NULL;
-    options.need_accuracy = opt->accuracy;
-    options.check = opt->check;
-    mt_status rc = solve_and_judge(a, &r, &options, opt->bounds, err);
+    mt_status rc = solve_and_judge(a, r, options, bounds, err);
     if (rc == MT_OK && a->modes.n_held > 0 && a->recount) {
-        options.n_rigid = -1;
-        rc = solve_and_judge(a, &r, &options, opt->bounds, err);
+        options->n_rigid = -1;
+        rc = solve_and_judge(a, r, options, bounds, err);
     }
     if (rc == MT_E_MASSLESS && a->modes.massless != NULL) {
         char text[DIRECTION_TEXT];
@@ -182,9 +171,75 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
                        "modes: the count of vibration modes does not hold at this design",
                        a->modes.n_held, a->n_rigid);
     }
+    return MT_OK;
+}
+
+static bool is_same(const struct mt_modes_key *had, const struct mt_modes_key *now)
+{
+    return had->stiffness_version == now->stiffness_version &&
+           had->mass_version == now->mass_version && had->n_rigid == now->n_rigid &&
+           had->recount == now->recount && had->vectors == now->vectors &&
+           had->accuracy == now->accuracy && had->bounds == now->bounds &&
+           (had->check || !now->check);
+}
+
+/* The stage modes. Where it fails there are none: not those of another design. */
+static mt_status run_modes(mt_analysis *a, const mt_analysis_options *opt, const double *inputs,
+                           mt_err *err)
+{
+    mt_stages *const st = mt_linear_stages(a->lin);
+    const mt_reduced r = mt_linear_reduced(a->lin);
+    mt_modal_options options = mt_modal_options_default();
+    options.n_rigid = a->n_rigid;
+    /* where K is no sum of squares, shapes say what rounding leaves of its sign */
+    options.vectors = opt->vectors || opt->gradient || r.g != NULL;
+    options.need_accuracy = opt->accuracy;
+    options.check = opt->check;
+    const struct mt_modes_key key = {.stiffness_version = r.stiffness_version,
+                                     .mass_version = r.mass_version,
+                                     .n_rigid = a->n_rigid,
+                                     .recount = a->recount,
+                                     .vectors = options.vectors,
+                                     .accuracy = opt->accuracy,
+                                     .check = opt->check,
+                                     .bounds = opt->bounds};
+    st->valid[MT_STAGE_MODES] = st->valid[MT_STAGE_MODES] && is_same(&a->key, &key);
+    if (!mt_stages_begin(st, MT_STAGE_MODES, st->none, inputs)) {
+        mt_arena_rewind(&a->mem, a->after_modes);
+        return MT_OK;
+    }
+    mt_arena_clear(&a->mem);
+    a->modes = (mt_modes){0};
+    MT_TRY(find_modes(a, &r, &options, opt->bounds, err));
+    a->key = key;
+    a->after_modes = mt_arena_get_mark(&a->mem);
+    mt_stages_done(st, MT_STAGE_MODES, inputs);
+    return MT_OK;
+}
+
+/* Where an update or a count fails, no modes are left. */
+static mt_status solve(mt_analysis *a, const double *inputs, const mt_analysis_options *opt,
+                       mt_err *err)
+{
+    MT_TRY(mt_linear_update(a->lin, inputs, opt->gradient, err));
+    MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
+    return run_modes(a, opt, inputs, err);
+}
+
+mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
+                            const mt_analysis_options *opt, mt_err *err)
+{
+    a->solves++;
+    a->with_gradient = false;
+    const mt_status rc = solve(a, inputs, opt, err);
+    if (rc != MT_OK) {
+        a->modes = (mt_modes){0};
+        mt_linear_stages(a->lin)->valid[MT_STAGE_MODES] = false;
+        return rc;
+    }
     a->with_gradient = opt->gradient;
     if (opt->gradient) {
-        const size_t n = (size_t)r.n;
+        const size_t n = (size_t)mt_linear_freedoms(a->lin);
         a->dky = mt_arena_f64(&a->mem, n, (size_t)a->sys->n_inputs);
         a->dmy = mt_arena_f64(&a->mem, n, (size_t)a->sys->n_inputs);
         a->slopes = mt_arena_f64(&a->mem, (size_t)a->modes.count, (size_t)a->sys->n_inputs);

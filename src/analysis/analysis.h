@@ -21,10 +21,21 @@ typedef struct mt_analysis {
     mt_system *own_sys; /* owned; NULL: sys is that of another analysis */
     mt_linear *lin;     /* owned */
     mt_arena mass_mem;
-    mt_arena mem; /* of the last solve */
+    mt_arena mem;              /* of the last solve */
+    mt_arena_mark after_modes; /* in mem */
     mt_mass_factor mass;
     unsigned long mass_version; /* of the factor; 0: none */
     mt_modes modes;
+    struct mt_modes_key { /* what they were made of */
+        unsigned long stiffness_version;
+        unsigned long mass_version;
+        int n_rigid; /* as it was asked for */
+        bool recount;
+        bool vectors;
+        bool accuracy;
+        bool check;
+        bool bounds;
+    } key;
     /* rigid-body modes that are counted: those at the first design, unless mt_analysis_count
      * said otherwise; -1 before */
     int n_rigid;
@@ -80,7 +91,9 @@ mt_status mt_analysis_new_like(const mt_analysis *like, const double *at, mt_ana
 /* Accepts NULL. */
 void mt_analysis_delete(mt_analysis *a);
 /* Modes at inputs[n_inputs] [the parameters' units] into a->modes, valid until the next call;
- * opt is required. O(n^3); no heap after the first calls. Fails as above and with MT_E_DOMAIN
+ * opt is required. Nothing is done again that would give the same bits (base/profile.h): where
+ * no input moved that K and M depend on, a->modes stay. O(n^3); no heap after the first calls.
+ * Fails as above and with MT_E_DOMAIN
  * where stiffness holds a direction that is counted as free (unless a->recount); then a->modes
  * is void. */
 mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,

@@ -24,6 +24,7 @@ typedef enum mt_option_id {
     MT_OPT_OUTPUT,
     MT_OPT_VERIFY,
     MT_OPT_THREADS,
+    MT_OPT_PROFILE,
     MT_OPT_MAX_MEMORY,
     MT_OPT_RANK,
     MT_OPT_MODEL,

@@ -7,6 +7,7 @@
 #include "base/format.h"
 #include "cli/cli.h"
 #include "cli/damped.h"
+#include "cli/profile.h"
 #include "cli/shapes.h"
 #include "report/table.h"
 
@@ -404,10 +405,13 @@ int mt_cmd_modes(const mt_args *args, mt_text *out)
     mt_subject s = {.model = NULL};
     mt_json_writer w = mt_json_writer_default(out);
     sink to = {.args = args, .out = out, .w = args->format == MT_FORMAT_JSON ? &w : NULL};
+    mt_profile counts;
+    mt_profile *const profile = mt_cli_profile(args, &counts);
     int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
     if (code != MT_EXIT_DONE) {
         goto done;
     }
+    s.model->profile = profile;
     const bool list = to.w != NULL && !args->given[MT_OPT_CONFIGURATION];
     if (list) {
         mt_json_open(&w, NULL, '[');
@@ -422,6 +426,7 @@ int mt_cmd_modes(const mt_args *args, mt_text *out)
     if (args->format == MT_FORMAT_CSV) {
         mt_table_csv(&to.table, out);
     }
+    code = mt_exit_worse(code, mt_cli_profile_print(profile));
 done:
     mt_table_free(&to.table);
     mt_subject_free(&s);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
+#include "cli/profile.h"
 #include "cli/save.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
@@ -16,6 +17,8 @@ typedef struct job {
     mt_study *study;
     mt_result *result;
     double seconds;
+    mt_profile counts; /* --profile */
+    mt_profile *profile;
     bool stops; /* a signal ends the search, not the program */
 } job;
 
@@ -42,6 +45,8 @@ static int answer(job *j)
     opt.stop = j->stops ? mt_terminal_wish : NULL;
     opt.progress = progress;
     opt.progress_context = &progress_args;
+    j->profile = mt_cli_profile(j->args, &j->counts);
+    j->study->model->profile = j->profile;
     const double start = mt_terminal_seconds();
     if (j->stops) {
         mt_terminal_hold_signals();
@@ -75,7 +80,9 @@ static int run_one(const job *j, mt_json_writer *w, mt_text *out)
 {
     const bool verify = j->args->given[MT_OPT_VERIFY];
     mt_save_print(j->args, j->result, w, out);
-    return mt_exit_worse(outcome(j, verify), mt_save(j->args, j->path, j->result, j->seconds));
+    return mt_exit_worse(outcome(j, verify),
+                         mt_exit_worse(mt_save(j->args, j->path, j->result, j->seconds),
+                                       mt_cli_profile_print(j->profile)));
 }
 
 /* Which studies an interrupt leaves out from number `first` on, as an error; heap. NULL: out of

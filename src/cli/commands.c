@@ -49,6 +49,9 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_THREADS, '\0', "threads", "N", ON_STUDIES,
            "number of workers of the search, of which at most 64 are used; the result does not "
            "depend on it"),
+    OPTION(MT_OPT_PROFILE, '\0', "profile", NULL, BIT(MT_CMD_RUN) | BIT(MT_CMD_MODES),
+           "how often each stage of the evaluations was done or could be skipped, and the "
+           "seconds that all workers took, on standard error"),
     OPTION(MT_OPT_MAX_MEMORY, '\0', "max-memory", "SIZE", MT_ALL_COMMANDS,
            "most memory that files may make the program use: bytes, or with k, M, G or T (1024 "
            "each); what asks for more ends with exit status 4 (default: half of the memory of "

@@ -299,6 +299,13 @@ void mt_program_depends(const mt_program *p, mt_node node, bool *depends)
     }
 }
 
+void mt_program_include_inputs(const mt_program *p, mt_node node, uint64_t *set)
+{
+    for (int w = 0; node != MT_NO_NODE && w < p->words; w++) {
+        set[w] |= p->inputs_of[((ptrdiff_t)node * p->words) + w];
+    }
+}
+
 /*
  * Values and forward-mode derivatives. With v = op(a, b) and a prime for d/d(input i):
  *   v' = (dv/da) a' + (dv/db) b'

@@ -9,6 +9,25 @@ void mt_rows_begin(mt_rows *s, int n_rows, size_t most, mt_arena *mem)
     s->value = mt_arena_f64(mem, most, 1);
 }
 
+void mt_rows_of_columns(int n, int count, const double *dense, mt_arena *mem, mt_rows *out)
+{
+    const ptrdiff_t size = (ptrdiff_t)n * count;
+    size_t most = 0;
+    for (ptrdiff_t i = 0; i < size; i++) {
+        most += dense[i] != 0.0 ? 1 : 0;
+    }
+    mt_rows_begin(out, count, most, mem);
+    for (int c = 0; c < count && !mt_arena_failed(mem); c++) {
+        const double *const column = dense + ((ptrdiff_t)c * n);
+        for (int i = 0; i < n; i++) {
+            if (column[i] != 0.0) {
+                mt_rows_push(out, c, i, column[i]);
+            }
+        }
+        mt_rows_end(out, c);
+    }
+}
+
 void mt_rows_square(const mt_rows *s, int a, double c, int n, double *out)
 {
     for (int p = s->start[a]; p < s->start[a + 1]; p++) {

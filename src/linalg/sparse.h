@@ -56,6 +56,8 @@ static inline void mt_rows_axpy(const mt_rows *s, int row, double alpha, double 
     }
 }
 
+/* The columns of a dense matrix, n x count, as so many rows. A failure is the arena's. */
+void mt_rows_of_columns(int n, int count, const double *dense, mt_arena *mem, mt_rows *out);
 /* out (n x n, lower triangle) += c a a^T of row a. */
 void mt_rows_square(const mt_rows *s, int a, double c, int n, double *out);
 /* out (n x n, lower triangle) += c (a b^T + b a^T)/2 of rows a and b. */

@@ -64,6 +64,9 @@ mt_status mt_build_springs(mt_builder *b);
 mt_status mt_build_loads(mt_builder *b);
 mt_status mt_build_sensors(mt_builder *b, const double *original);
 mt_status mt_build_drive(mt_builder *b);
+/* shape, forces and geometry_fixed of a system whose program is finished
+ * (build_inputs.c). A failure is the arena's. */
+void mt_build_inputs(mt_system *sys);
 /* Equations of one joint between bodies at arms; used by joints and hinges. */
 void mt_build_joint_equations(mt_builder *b, mt_joint_type type, const int body[2],
                               const int arm[2], const int axis[2], mt_node length);

@@ -8,8 +8,8 @@
  * (qr.kept, qr.dropped). */
 static const double RANK_TOLERANCE = 1e-9;
 
-mt_status mt_eliminate(const mt_system *sys, int m, const double *a, mt_arena *mem,
-                       mt_elimination *out, mt_err *err)
+mt_status mt_eliminate_factor(const mt_system *sys, int m, const double *a, mt_arena *mem,
+                              mt_elimination *out, mt_err *err)
 {
     const int nq = sys->nq;
     double *const at = mt_arena_f64(mem, (size_t)nq, (size_t)m);
@@ -37,15 +37,27 @@ mt_status mt_eliminate(const mt_system *sys, int m, const double *a, mt_arena *m
     }
     MT_TRY(mt_qr_factor(nq, m, at, nq, RANK_TOLERANCE, mem, &out->qr, err));
     out->n = nq - out->qr.rank;
-    out->z = mt_arena_f64(mem, (size_t)nq, (size_t)out->n);
-    MT_TRY(mt_arena_check(mem, err));
-    MT_TRY(mt_qr_q(&out->qr, out->qr.rank, out->z, mem, err));
-    for (int c = 0; c < out->n; c++) {
-        for (int j = 0; j < nq; j++) {
-            out->z[j + ((ptrdiff_t)c * nq)] *= out->dc[j];
+    return MT_OK;
+}
+
+mt_status mt_eliminate_basis(mt_elimination *e, mt_arena *scratch, mt_err *err)
+{
+    MT_TRY(mt_qr_q(&e->qr, e->qr.rank, e->z, scratch, err));
+    for (int c = 0; c < e->n; c++) {
+        for (int j = 0; j < e->nq; j++) {
+            e->z[j + ((ptrdiff_t)c * e->nq)] *= e->dc[j];
         }
     }
     return MT_OK;
+}
+
+mt_status mt_eliminate(const mt_system *sys, int m, const double *a, mt_arena *mem,
+                       mt_elimination *out, mt_err *err)
+{
+    MT_TRY(mt_eliminate_factor(sys, m, a, mem, out, err));
+    out->z = mt_arena_f64(mem, (size_t)out->nq, (size_t)out->n);
+    MT_TRY(mt_arena_check(mem, err));
+    return mt_eliminate_basis(out, mem, err);
 }
 
 mt_status mt_eliminate_particular(const mt_elimination *e, const double *b, double *v,

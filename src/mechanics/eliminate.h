@@ -25,6 +25,10 @@ typedef struct mt_elimination {
 /* a: m x nq column-major. Results in mem. */
 mt_status mt_eliminate(const mt_system *sys, int m, const double *a, mt_arena *mem,
                        mt_elimination *out, mt_err *err);
+/* Its parts: all but z; the orthonormal basis into e->z (nq x n, which is there). */
+mt_status mt_eliminate_factor(const mt_system *sys, int m, const double *a, mt_arena *mem,
+                              mt_elimination *out, mt_err *err);
+mt_status mt_eliminate_basis(mt_elimination *e, mt_arena *scratch, mt_err *err);
 /* v = A^+ b (least norm in scaled coordinates; b in the range of A). */
 mt_status mt_eliminate_particular(const mt_elimination *e, const double *b, double *v,
                                   mt_arena *scratch, mt_err *err);

@@ -6,8 +6,6 @@
 #include <float.h>
 #include <math.h>
 
-#include "mechanics/reduce.h"
-
 /* p of the header: what the elimination, the eigensolution and Z y may do to an entry of a
  * shape, in eps of what is typical. */
 static const double SHAPE_ULPS = 16.0;
@@ -31,11 +29,11 @@ typedef struct entry {
 
 typedef struct worker {
     const mt_linear *lin;
-    double *phi; /* nq x cols */
-    double *w;   /* [nq] */
-    double *dz;  /* [nq] error of phi by that of the basis */
-    double extent;
-    entry *load; /* lower triangle of Kg where it is not empty */
+    double *phi;     /* nq x cols */
+    double *w;       /* [nq] */
+    double *dz;      /* [nq] error of phi by that of the basis */
+    mt_rows z_error; /* of the basis, column by column */
+    entry *load;     /* lower triangle of Kg where it is not empty */
     int n_load;
     double unbalanced; /* relative error of the forces */
     double shape;      /* p eps of the header */
@@ -64,26 +62,24 @@ static mt_status list_entries(worker *k, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
-/* Of a row f over local freedoms. */
+/* Of a row f over the states. */
 typedef struct elongation {
     double s;     /* f . phi */
     double terms; /* |f| . w */
     double open;  /* D */
 } elongation;
 
-static elongation row_part(const worker *w, const mt_term *t, const double *row,
-                           const double *phi)
+static elongation row_part(const worker *w, int kind, int row, const double *phi)
 {
-    double df[MT_LOCAL];
+    const mt_rows *const rows = &w->lin->full[kind];
+    const double *const df = w->lin->full_error[kind];
     elongation out = {0.0, 0.0, 0.0};
-    mt_reduce_row_error(row, w->extent, df);
-    for (int k = 0; k < MT_LOCAL; k++) {
-        const int dof = mt_local_dof(w->lin->sys, t->body, k);
-        if (dof >= 0) {
-            out.s += row[k] * phi[dof];
-            out.terms += fabs(row[k]) * w->w[dof];
-            out.open += (fabs(row[k]) * w->dz[dof]) + (df[k] * fabs(phi[dof]));
-        }
+    for (int k = rows->start[row]; k < rows->start[row + 1]; k++) {
+        const int dof = rows->index[k];
+        const double size = fabs(rows->value[k]);
+        out.s += rows->value[k] * phi[dof];
+        out.terms += size * w->w[dof];
+        out.open += (size * w->dz[dof]) + (df[k] * fabs(phi[dof]));
     }
     return out;
 }
@@ -128,8 +124,7 @@ static bool add_term(const worker *k, int kind, const mt_term *t, const double *
         if (mt_rows_empty(&lin->entries[kind], t->first + r) && !t->pair) {
             continue; /* nothing but rounding */
         }
-        const ptrdiff_t first = (ptrdiff_t)(t->first + r) * MT_LOCAL;
-        p[side] = row_part(k, t, lin->rows[kind] + first, phi);
+        p[side] = row_part(k, kind, t->first + r, phi);
         const bool moved = p[side].s * p[side].s > tiny * p[side].terms * p[side].terms;
         moves = moves || moved;
         if (!t->pair) {
@@ -199,9 +194,9 @@ static void one(const worker *k, int col, const double *y, const mt_energies *ou
     for (ptrdiff_t j = 0; j < nq; j++) {
         k->w[j] = fabs(phi[j]) + lin->e.dc[j] * typical;
         k->dz[j] = 0.0;
-        for (ptrdiff_t c = 0; c < lin->n; c++) {
-            k->dz[j] += lin->z_error[j + (c * nq)] * fabs(y[c]);
-        }
+    }
+    for (int c = 0; c < lin->n; c++) {
+        mt_rows_axpy(&k->z_error, c, fabs(y[c]), k->dz);
     }
     sum_terms(k, MT_TERM_STIFFNESS, phi, &stiffness, &strained);
     sum_terms(k, MT_TERM_MASS, phi, &mass, &moves);
@@ -231,12 +226,13 @@ mt_status mt_linear_energies(mt_linear *lin, int cols, const double *y, const mt
     worker k = {.lin = lin};
     k.unbalanced = RESIDUALS * lin->position.equilibrium.residual;
     k.shape = SHAPE_ULPS * DBL_EPSILON / lin->e.qr.kept;
-    k.extent = mt_reduce_extent(lin);
     k.phi = mt_arena_f64(&lin->scratch, nq, (size_t)cols);
     k.w = mt_arena_f64(&lin->scratch, nq, 1);
     k.dz = mt_arena_f64(&lin->scratch, nq, 1);
     mt_status rc = mt_arena_check(&lin->scratch, err);
     rc = rc == MT_OK ? list_entries(&k, &lin->scratch, err) : rc;
+    mt_rows_of_columns((int)nq, lin->n, lin->z_error, &lin->scratch, &k.z_error);
+    rc = rc == MT_OK ? mt_arena_check(&lin->scratch, err) : rc;
     if (rc == MT_OK) {
         mt_linear_expand(lin, cols, y, k.phi);
         for (int c = 0; c < cols; c++) {

@@ -330,8 +330,9 @@ mt_status mt_idle_remove(mt_linear *lin, mt_err *err)
     search s = {.lin = lin};
     lin->n_idle = 0;
     lin->idle_varies = false;
-    lin->idle = mt_arena_alloc(&lin->geometry, (size_t)lin->sys->n_bodies, sizeof *lin->idle);
-    MT_TRY(mt_arena_check(&lin->geometry, err));
+    lin->idle =
+        mt_arena_alloc(&lin->reduced_mem, (size_t)lin->sys->n_bodies, sizeof *lin->idle);
+    MT_TRY(mt_arena_check(&lin->reduced_mem, err));
     if (lin->sys->dimension == 3) {
         MT_TRY(find_candidates(&s, err));
     }

@@ -79,7 +79,7 @@ static void from_energy(const double g[MOTIONS][MOTIONS], int dimension, mt_info
 
 mt_status mt_info_fill(const mt_linear *lin, mt_info *out, mt_err *err)
 {
-    if (!lin->built) {
+    if (!lin->stages.valid[MT_STAGE_REDUCTION]) {
         return mt_fail(err, MT_E_INTERNAL, "mass properties asked for before an update");
     }
     double g[MOTIONS][MOTIONS] = {{0.0}};

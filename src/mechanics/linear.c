@@ -17,8 +17,10 @@ void mt_linear_delete(mt_linear *lin)
 {
     if (lin != NULL) {
         mt_arena_free(&lin->scratch);
-        mt_arena_free(&lin->geometry);
+        mt_arena_free(&lin->reduced_mem);
+        mt_arena_free(&lin->place);
         mt_arena_free(&lin->base);
+        mt_profile_add(lin->stages.profile, &lin->stages.counts);
         free(lin);
     }
 }
@@ -28,7 +30,8 @@ static mt_status init(mt_linear *lin, const mt_system *sys, mt_err *err)
     const size_t count = (size_t)sys->program.count;
     lin->sys = sys;
     MT_TRY(mt_arena_init(&lin->base, 0, err));
-    MT_TRY(mt_arena_init(&lin->geometry, 0, err));
+    MT_TRY(mt_arena_init(&lin->place, 0, err));
+    MT_TRY(mt_arena_init(&lin->reduced_mem, 0, err));
     MT_TRY(mt_arena_init(&lin->scratch, 0, err));
     lin->value = mt_arena_f64(&lin->base, count, 1);
     lin->grad = mt_arena_f64(&lin->base, count, (size_t)sys->n_inputs);
@@ -45,7 +48,9 @@ static mt_status init(mt_linear *lin, const mt_system *sys, mt_err *err)
     lin->squared = mt_arena_alloc(&lin->base, terms, sizeof *lin->squared);
     MT_TRY(mt_arena_check(&lin->base, err));
     mt_couplings_find(lin, lin->coupling);
-    return MT_OK;
+    mt_stages_init(&lin->stages, sys, lin->list, &lin->base);
+    lin->stages.profile = sys->model->profile;
+    return mt_arena_check(&lin->base, err);
 }
 
 mt_status mt_linear_new(const mt_system *sys, mt_linear **out, mt_err *err)
@@ -69,22 +74,20 @@ static mt_status evaluate_rows(mt_linear *lin, mt_err *err)
     for (int kind = 0; kind < MT_TERM_KINDS; kind++) {
         const mt_term_list *const list = &lin->list[kind];
         const size_t size = (size_t)list->n_rows * MT_LOCAL;
-        lin->rows[kind] = mt_arena_f64(&lin->geometry, size, 1);
+        lin->rows[kind] = mt_arena_f64(&lin->place, size, 1);
         const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
         mt_cx *const rows = mt_arena_alloc(&lin->scratch, size, sizeof *rows);
-        MT_TRY(mt_arena_check(&lin->geometry, err));
+        MT_TRY(mt_arena_check(&lin->place, err));
         MT_TRY(mt_arena_check(&lin->scratch, err));
         mt_rows_eval(&lin->data, (mt_term_kind)kind, list, lin->position.at.pose, rows);
         for (size_t i = 0; i < size; i++) {
             lin->rows[kind][i] = creal(rows[i]);
         }
         mt_arena_rewind(&lin->scratch, mark);
-        mt_rows_over_states(lin->sys, list, lin->rows[kind], &lin->geometry, &lin->full[kind]);
-        MT_TRY(mt_arena_check(&lin->geometry, err));
+        mt_rows_over_states(lin->sys, list, lin->rows[kind], &lin->place, &lin->full[kind]);
+        MT_TRY(mt_arena_check(&lin->place, err));
     }
-    MT_TRY(mt_reduce_basis(lin, err));
-    MT_TRY(mt_idle_remove(lin, err));
-    return mt_reduce_rows(lin, err);
+    return MT_OK;
 }
 
 /* Forces below this many times the rounding of the positions are none: what Newton leaves of a
@@ -105,15 +108,15 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     lin->m = sys->trim ? all - 1 : all;
     MT_TRY(mt_lagrangian_init(&l, sys, loaded, &lin->scratch, err));
     mt_cx *const lambda = mt_arena_alloc(&lin->scratch, (size_t)all, sizeof *lambda);
-    lin->a = mt_arena_f64(&lin->geometry, (size_t)lin->m, (size_t)nq);
+    lin->a = mt_arena_f64(&lin->place, (size_t)lin->m, (size_t)nq);
     MT_TRY(mt_arena_check(&lin->scratch, err));
-    MT_TRY(mt_arena_check(&lin->geometry, err));
+    MT_TRY(mt_arena_check(&lin->place, err));
     for (int i = 0; i < all && loaded; i++) {
         lambda[i] = lin->position.equilibrium.lambda[i] + left->lambda[i];
     }
     l.trim_force = lin->position.equilibrium.trim_force + left->trim;
     if (loaded) {
-        MT_TRY(mt_lagrangian_want_terms(&l, sys, &lin->geometry, err));
+        MT_TRY(mt_lagrangian_want_terms(&l, sys, &lin->place, err));
         l.left = *left;
     }
     mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, &lin->position.at,
@@ -133,13 +136,12 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     lin->pieces = l.pieces;
     lin->n_pieces = l.n_pieces;
     if (loaded && !lin->unstressed) {
-        lin->kg = mt_arena_f64(&lin->geometry, (size_t)nq, (size_t)nq);
-        MT_TRY(mt_arena_check(&lin->geometry, err));
+        lin->kg = mt_arena_f64(&lin->place, (size_t)nq, (size_t)nq);
+        MT_TRY(mt_arena_check(&lin->place, err));
         memcpy(lin->kg, l.h, (size_t)(nq * nq) * sizeof *lin->kg);
     }
     mt_arena_rewind(&lin->scratch, mark);
-    MT_TRY(mt_eliminate(sys, lin->m, lin->a, &lin->geometry, &lin->e, err));
-    lin->n = lin->e.n;
+    MT_TRY(mt_eliminate_factor(sys, lin->m, lin->a, &lin->place, &lin->e, err));
     return mt_singular_refuse(&lin->data, &lin->position.at, &lin->e, &lin->scratch, err);
 }
 
@@ -214,17 +216,17 @@ static mt_status fixed_parts(mt_linear *lin, mt_err *err)
 {
     const size_t n = (size_t)lin->n;
     const ptrdiff_t nq = lin->sys->nq;
-    lin->k = mt_arena_f64(&lin->geometry, n, n);
-    lin->m_r = mt_arena_f64(&lin->geometry, n, n);
-    lin->k_fixed = mt_arena_f64(&lin->geometry, n, n);
-    lin->m_fixed = mt_arena_f64(&lin->geometry, n, n);
+    lin->k = mt_arena_f64(&lin->reduced_mem, n, n);
+    lin->m_r = mt_arena_f64(&lin->reduced_mem, n, n);
+    lin->k_fixed = mt_arena_f64(&lin->reduced_mem, n, n);
+    lin->m_fixed = mt_arena_f64(&lin->reduced_mem, n, n);
     const size_t rows = (size_t)lin->list[MT_TERM_STIFFNESS].n_rows;
-    lin->factor_b = mt_arena_f64(&lin->geometry, rows, n);
-    lin->factor_c = mt_arena_f64(&lin->geometry, rows, 1);
-    lin->factor_noise = mt_arena_f64(&lin->geometry, rows, n);
-    lin->factor_g = mt_arena_f64(&lin->geometry, n, n);
-    lin->g_fixed = mt_arena_f64(&lin->geometry, n, n);
-    MT_TRY(mt_arena_check(&lin->geometry, err));
+    lin->factor_b = mt_arena_f64(&lin->reduced_mem, rows, n);
+    lin->factor_c = mt_arena_f64(&lin->reduced_mem, rows, 1);
+    lin->factor_noise = mt_arena_f64(&lin->reduced_mem, rows, n);
+    lin->factor_g = mt_arena_f64(&lin->reduced_mem, n, n);
+    lin->g_fixed = mt_arena_f64(&lin->reduced_mem, n, n);
+    MT_TRY(mt_arena_check(&lin->reduced_mem, err));
     if (lin->kg != NULL) {
         const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
         double *const kz = mt_arena_f64(&lin->scratch, (size_t)nq, n);
@@ -249,27 +251,24 @@ static mt_status fixed_parts(mt_linear *lin, mt_err *err)
     return MT_OK;
 }
 
-static void assemble(mt_linear *lin, bool geometry_new)
+static void assemble_mass(mt_linear *lin)
 {
-    const int n = lin->n;
-    const size_t size = (size_t)n * (size_t)n * sizeof(double);
+    const size_t n = (size_t)lin->n;
+    memcpy(lin->m_r, lin->m_fixed, n * n * sizeof *lin->m_r);
+    add_terms(lin, MT_TERM_MASS, 1, lin->m_r);
+    mt_symmetrise_lower(lin->n, lin->m_r);
+    lin->mass_version++;
+}
+
+static void assemble_stiffness(mt_linear *lin)
+{
+    const size_t n = (size_t)lin->n;
     const mt_term_list *const stiffness = &lin->list[MT_TERM_STIFFNESS];
-    const mt_term_list *const mass = &lin->list[MT_TERM_MASS];
-    bool mass_varies = geometry_new;
-    memcpy(lin->k, lin->k_fixed, size);
+    memcpy(lin->k, lin->k_fixed, n * n * sizeof *lin->k);
     add_terms(lin, MT_TERM_STIFFNESS, 1, lin->k);
-    mt_symmetrise_lower(n, lin->k);
-    for (int i = 0; i < mass->n_terms && !mass_varies; i++) {
-        mass_varies = mass->terms[i].varies;
-    }
-    if (mass_varies) {
-        memcpy(lin->m_r, lin->m_fixed, size);
-        add_terms(lin, MT_TERM_MASS, 1, lin->m_r);
-        mt_symmetrise_lower(n, lin->m_r);
-        lin->mass_version++;
-    }
+    mt_symmetrise_lower(lin->n, lin->k);
     square_couplings(lin, MT_COUPLING_VARIES);
-    memcpy(lin->factor_g, lin->g_fixed, size);
+    memcpy(lin->factor_g, lin->g_fixed, n * n * sizeof *lin->factor_g);
     lin->has_factor_g = lin->kg != NULL;
     for (int i = 0; i < stiffness->n_terms; i++) {
         const mt_term *const t = &stiffness->terms[i];
@@ -286,16 +285,19 @@ static void assemble(mt_linear *lin, bool geometry_new)
             lin->has_factor_g = true;
         }
     }
+    lin->stiffness_version++;
 }
 
-static mt_status rebuild(mt_linear *lin, mt_err *err)
+static mt_status place(mt_linear *lin, mt_err *err)
 {
-    lin->built = false;
-    mt_arena_clear(&lin->geometry);
+    lin->tangent = NULL;
+    lin->stages.valid[MT_STAGE_TANGENT] = false;
+    lin->stages.valid[MT_STAGE_REDUCTION] = false;
+    mt_arena_clear(&lin->place);
     mt_arena_clear(&lin->scratch); /* of what a failure left */
     mt_data_vecs(&lin->data);
     MT_TRY(mt_position_solve(lin->sys, &lin->data,
-                             lin->follow && lin->has_last ? &lin->last : NULL, &lin->geometry,
+                             lin->follow && lin->has_last ? &lin->last : NULL, &lin->place,
                              &lin->position, err));
     MT_TRY(constrain(lin, err));
     if (lin->sys->driven) { /* not from a dead centre: which way led on would be open */
@@ -304,11 +306,22 @@ static mt_status rebuild(mt_linear *lin, mt_err *err)
     }
     MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
     MT_TRY(evaluate_rows(lin, err));
+    lin->before_tangent = mt_arena_get_mark(&lin->place);
+    return mt_interrupt_check(lin->sys->model->interrupt, err);
+}
+
+static mt_status reduce(mt_linear *lin, mt_err *err)
+{
+    lin->stages.valid[MT_STAGE_STIFFNESS] = false;
+    lin->stages.valid[MT_STAGE_MASS] = false;
+    mt_arena_clear(&lin->reduced_mem);
+    mt_arena_clear(&lin->scratch);
+    MT_TRY(mt_reduce_basis(lin, err));
+    MT_TRY(mt_idle_remove(lin, err));
+    MT_TRY(mt_reduce_rows(lin, err));
     MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
     MT_TRY(fixed_parts(lin, err));
-    MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
-    lin->built = true;
-    return MT_OK;
+    return mt_interrupt_check(lin->sys->model->interrupt, err);
 }
 
 static mt_status where_in_model(const mt_linear *lin, mt_node bad, mt_status rc, mt_err *err)
@@ -322,46 +335,100 @@ static mt_status where_in_model(const mt_linear *lin, mt_node bad, mt_status rc,
     return rc;
 }
 
-mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradient,
-                           mt_err *err)
+static mt_status run_program(mt_linear *lin, const double *inputs, bool with_gradient,
+                             mt_err *err)
 {
-    const mt_system *const sys = lin->sys;
+    const mt_program *const p = &lin->sys->program;
+    mt_stages *const st = &lin->stages;
     mt_node bad = MT_NO_NODE;
-    MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
-    const mt_status rc =
-        with_gradient
-            ? mt_program_gradient(&sys->program, inputs, lin->value, lin->grad, &bad, err)
-            : mt_program_eval(&sys->program, inputs, lin->value, &bad, err);
+    st->valid[MT_STAGE_PROGRAM] =
+        st->valid[MT_STAGE_PROGRAM] && (lin->graded || !with_gradient);
+    if (!mt_stages_begin(st, MT_STAGE_PROGRAM, st->all, inputs)) {
+        return MT_OK;
+    }
+    lin->graded = with_gradient;
+    const mt_status rc = with_gradient
+                             ? mt_program_gradient(p, inputs, lin->value, lin->grad, &bad, err)
+                             : mt_program_eval(p, inputs, lin->value, &bad, err);
     if (rc != MT_OK) {
         return where_in_model(lin, bad, rc, err);
     }
-    const bool kept = lin->built && sys->geometry_fixed && !sys->loaded && !lin->idle_varies &&
-                      (!sys->driven || lin->unstressed);
-    if (!kept) {
-        MT_TRY(rebuild(lin, err));
+    mt_stages_done(st, MT_STAGE_PROGRAM, inputs);
+    return MT_OK;
+}
+
+/* The inputs that the geometry depends on. */
+static const uint64_t *moves_with(const mt_linear *lin)
+{
+    const mt_system *const sys = lin->sys;
+    const bool forced = sys->loaded || (sys->driven && !lin->unstressed);
+    return forced ? lin->stages.loaded : sys->shape;
+}
+
+/* Besides the geometry: pivots of a basis that has to be made again are chosen by the
+ * masses. */
+static const uint64_t *reduces_with(const mt_linear *lin)
+{
+    const bool once = mt_stages_empty(&lin->stages, moves_with(lin));
+    return lin->idle_varies ? lin->stages.all : (once ? lin->stages.none : lin->stages.mass);
+}
+
+static mt_status run_tangent(mt_linear *lin, const double *inputs, mt_err *err)
+{
+    mt_stages *const st = &lin->stages;
+    const uint64_t *const moves = moves_with(lin);
+    if (mt_stages_empty(st, moves)) {
+        lin->tangent = NULL;
+        return MT_OK;
     }
-    assemble(lin, !kept);
-    if (is_left(lin)) {
-        lin->built = false;
+    if (mt_stages_begin(st, MT_STAGE_TANGENT, moves, inputs)) {
+        mt_arena_rewind(&lin->place, lin->before_tangent);
+        MT_TRY(mt_tangent_update(lin, moves, err));
+        mt_stages_done(st, MT_STAGE_TANGENT, inputs);
+    }
+    return MT_OK;
+}
+
+mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradient,
+                           mt_err *err)
+{
+    mt_stages *const st = &lin->stages;
+    MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
+    MT_TRY(run_program(lin, inputs, with_gradient, err));
+    if (mt_stages_begin(st, MT_STAGE_GEOMETRY, moves_with(lin), inputs)) {
+        MT_TRY(place(lin, err));
+        mt_stages_done(st, MT_STAGE_GEOMETRY, inputs);
+    }
+    if (mt_stages_begin(st, MT_STAGE_REDUCTION, reduces_with(lin), inputs)) {
+        MT_TRY(reduce(lin, err));
+        mt_stages_done(st, MT_STAGE_REDUCTION, inputs);
+    }
+    if (mt_stages_begin(st, MT_STAGE_STIFFNESS, st->stiffness, inputs)) {
+        assemble_stiffness(lin);
+        mt_stages_done(st, MT_STAGE_STIFFNESS, inputs);
+    }
+    if (mt_stages_begin(st, MT_STAGE_MASS, st->mass, inputs)) {
+        assemble_mass(lin);
+        mt_stages_done(st, MT_STAGE_MASS, inputs);
+    }
+    if (is_left(lin)) { /* of a sum, too */
+        st->valid[MT_STAGE_REDUCTION] = false;
         return mt_fail(err, MT_E_INTERRUPTED, "interrupted");
     }
-    const bool still = !lin->position.equilibrium.active || lin->unstressed;
-    if (with_gradient && !(sys->geometry_fixed && still)) {
-        return mt_tangent_update(lin, err);
-    }
-    lin->tangent = NULL;
-    return MT_OK;
+    return with_gradient ? run_tangent(lin, inputs, err) : MT_OK;
 }
 
 void mt_linear_follow(mt_linear *lin, bool on)
 {
     lin->follow = on;
     lin->has_last = false;
+    lin->stages.valid[MT_STAGE_GEOMETRY] = false;
 }
 
 void mt_linear_first_input(mt_linear *lin, int first)
 {
     lin->first_input = first;
+    lin->stages.valid[MT_STAGE_TANGENT] = false;
 }
 
 const mt_system *mt_linear_system(const mt_linear *lin)
@@ -389,6 +456,7 @@ mt_reduced mt_linear_reduced(const mt_linear *lin)
     return (mt_reduced){.n = lin->n,
                         .k = lin->k,
                         .m = lin->m_r,
+                        .stiffness_version = lin->stiffness_version,
                         .mass_version = lin->mass_version,
                         .loaded = lin->kg != NULL,
                         .rows = lin->list[MT_TERM_STIFFNESS].n_rows,
@@ -412,6 +480,11 @@ const double *mt_linear_fixed(const mt_linear *lin, mt_term_kind kind)
 {
     assert(kind == MT_TERM_STIFFNESS || kind == MT_TERM_MASS);
     return kind == MT_TERM_STIFFNESS ? lin->k_fixed : lin->m_fixed;
+}
+
+mt_stages *mt_linear_stages(mt_linear *lin)
+{
+    return &lin->stages;
 }
 
 double mt_linear_value(const mt_linear *lin, mt_node node)

@@ -4,6 +4,7 @@
 
 #include "mechanics/position.h"
 #include "mechanics/rows.h"
+#include "mechanics/stages.h"
 
 /*
  * A system linearised at one design: positions, reduced stiffness and mass, exact derivatives
@@ -12,9 +13,10 @@
  *     q = Z y,  A Z = 0,   K_r = Z^T K Z,  M_r = Z^T M Z
  *         (n x n, column-major, both triangles filled)
  *
- * What does not change is not computed again: where the geometry is fixed and nothing loads the
- * mechanism, an update is the evaluation of the program and a sum of reduced terms; where no
- * mass depends on an input, M_r is left alone (mass_version tells).
+ * What does not change is not computed again: a stage (base/profile.h) is done where an input
+ * that it depends on has other bits than when it was done last, or where one before it was done
+ * (stages.h). Skipping is invisible: what an update leaves depends on the inputs alone, and on
+ * the first update, whose masses choose the basis of a geometry that no input moves.
  */
 typedef struct mt_linear mt_linear;
 
@@ -33,6 +35,8 @@ void mt_linear_first_input(mt_linear *lin, int first);
 
 /* What an update left, read-only and until the next one. */
 const mt_system *mt_linear_system(const mt_linear *lin);
+/* What was done of the stages, to which the caller adds those that follow (modes). */
+mt_stages *mt_linear_stages(mt_linear *lin);
 const mt_state *mt_linear_position(const mt_linear *lin);
 int mt_linear_freedoms(const mt_linear *lin);  /* n */
 int mt_linear_equations(const mt_linear *lin); /* m: constraints in force */
@@ -40,9 +44,11 @@ int mt_linear_equations(const mt_linear *lin); /* m: constraints in force */
 /* K_r and M_r, and K_r = B^T diag(c) B + G with the springs as squares where they are some. */
 typedef struct mt_reduced {
     int n;
-    const double *k;            /* n x n [N/m, N, N m] */
-    const double *m;            /* n x n [kg, kg m, kg m^2] */
-    unsigned long mass_version; /* changes when m does */
+    const double *k; /* n x n [N/m, N, N m] */
+    const double *m; /* n x n [kg, kg m, kg m^2] */
+    /* changes whenever k, or anything of its factor, is made again */
+    unsigned long stiffness_version;
+    unsigned long mass_version; /* likewise of m */
     bool loaded;                /* has K_r a geometric part? */
     int rows;
     const double *b;     /* rows x n */

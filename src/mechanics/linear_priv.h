@@ -11,11 +11,15 @@ typedef struct mt_linear_tangent mt_linear_tangent;
 
 struct mt_linear {
     const mt_system *sys;
-    mt_arena base;     /* lives as long as this */
-    mt_arena geometry; /* rewound when the geometry changes */
+    mt_arena base;        /* lives as long as this */
+    mt_arena place;       /* of the stage geometry and of the tangents on top of it */
+    mt_arena reduced_mem; /* of the stage reduction and of the matrices */
     mt_arena scratch;
-    double *value; /* [program.count] */
-    double *grad;  /* [program.count x n_inputs], after an update with gradients */
+    mt_stages stages;
+    bool graded;                  /* grad belongs to value */
+    mt_arena_mark before_tangent; /* in place */
+    double *value;                /* [program.count] */
+    double *grad; /* [program.count x n_inputs], after an update with gradients */
     mt_term_list list[MT_TERM_KINDS];
     mt_coupling *coupling; /* of the terms of K (couplings.h) */
     bool *squared; /* of the terms of K: their spring with couplings is a sum of squares */
@@ -35,11 +39,12 @@ struct mt_linear {
     int n;            /* freedoms */
     int n_idle; /* spins without mass, stiffness or joint, left out of the freedoms (idle.h) */
     bool *idle; /* [bodies] takes part in one */
-    int n_pieces;                   /* of pieces */
-    double *rows[MT_TERM_KINDS];    /* 12 x n_rows, local freedoms */
-    mt_rows full[MT_TERM_KINDS];    /* the same over the states, by local freedom */
-    double *reduced[MT_TERM_KINDS]; /* n x n_rows: Z^T row, rounding made 0 (reduce.h) */
-    mt_rows entries[MT_TERM_KINDS]; /* of reduced; a row that the joints block has none */
+    int n_pieces;                      /* of pieces */
+    double *rows[MT_TERM_KINDS];       /* 12 x n_rows, local freedoms */
+    mt_rows full[MT_TERM_KINDS];       /* the same over the states, by local freedom */
+    double *full_error[MT_TERM_KINDS]; /* bounds of the errors of their entries */
+    double *reduced[MT_TERM_KINDS];    /* n x n_rows: Z^T row, rounding made 0 (reduce.h) */
+    mt_rows entries[MT_TERM_KINDS];    /* of reduced; a row that the joints block has none */
     double *noise;    /* n x n_rows: bounds of the errors of reduced[MT_TERM_STIFFNESS] */
     double *kg;       /* nq x nq geometric stiffness; NULL where nothing loads */
     mt_piece *pieces; /* [n_pieces] of the forces that make kg */
@@ -55,11 +60,11 @@ struct mt_linear {
     /* n x n: what is no sum of squares: geometric stiffness, indefinite couplings, negative
      * coefficients; K_r = B^T diag(c) B + G */
     double *factor_g;
-    bool has_factor_g;          /* is there such a part? */
-    unsigned long mass_version; /* changes when M_r does */
+    bool has_factor_g;               /* is there such a part? */
+    unsigned long stiffness_version; /* changes when K_r is made again */
+    unsigned long mass_version;      /* when M_r is */
     bool unstressed;  /* driven to its place with no spring stretched: as good as unloaded */
     bool idle_varies; /* whether there are idle spins depends on inputs */
-    bool built;
     mt_linear_tangent *tangent; /* [n_inputs], where geometry or position depend on inputs */
 };
 

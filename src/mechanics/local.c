@@ -276,6 +276,7 @@ mt_status mt_eliminate_local(const double *a, const double *mass, double extent,
         substitute(&w);
         fill(&w, e, error);
     } else {
+        MT_TRY(mt_eliminate_basis(e, mem, err));
         bound_orthonormal(e, extent, error);
     }
     mt_arena_rewind(mem, mark);

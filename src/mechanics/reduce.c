@@ -20,10 +20,12 @@
 
 #include "mechanics/local.h"
 
-/* Relative rounding of an entry of a row. */
+/* Relative rounding of an entry of a row; coordinates far from the origin lose as many digits
+ * more in the arms. */
 static const double ROW_ULPS = 4.0;
 
-double mt_reduce_extent(const mt_linear *lin)
+/* The largest coordinate, at least the model length [m]. */
+static double extent_of(const mt_linear *lin)
 {
     double extent = lin->sys->length_m;
     for (int b = 0; b < lin->sys->n_bodies; b++) {
@@ -57,17 +59,21 @@ mt_status mt_reduce_basis(mt_linear *lin, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     double *const mass = mt_arena_f64(&lin->scratch, (size_t)lin->sys->nq, 1);
-    lin->z_error = mt_arena_f64(&lin->geometry, (size_t)lin->sys->nq, (size_t)lin->n);
+    lin->e.n = lin->sys->nq - lin->e.qr.rank; /* idle spins may have been left out of it */
+    lin->n = lin->e.n;
+    lin->e.z = mt_arena_f64(&lin->reduced_mem, (size_t)lin->sys->nq, (size_t)lin->n);
+    lin->z_error = mt_arena_f64(&lin->reduced_mem, (size_t)lin->sys->nq, (size_t)lin->n);
     MT_TRY(mt_arena_check(&lin->scratch, err));
-    MT_TRY(mt_arena_check(&lin->geometry, err));
+    MT_TRY(mt_arena_check(&lin->reduced_mem, err));
     diagonal_mass(lin, mass);
-    MT_TRY(mt_eliminate_local(lin->a, mass, mt_reduce_extent(lin), &lin->scratch, &lin->e,
+    MT_TRY(mt_eliminate_local(lin->a, mass, extent_of(lin), &lin->scratch, &lin->e,
                               lin->z_error, err));
     mt_arena_rewind(&lin->scratch, mark);
     return MT_OK;
 }
 
-void mt_reduce_row_error(const double row[MT_LOCAL], double extent, double error[MT_LOCAL])
+/* What rounding may have made of the entries of a row over local freedoms. */
+static void row_error(const double row[MT_LOCAL], double extent, double error[MT_LOCAL])
 {
     double most = 0.0; /* of the translations: what an arm stands on */
     for (int k = 0; k < MT_LOCAL; k++) {
@@ -75,70 +81,72 @@ void mt_reduce_row_error(const double row[MT_LOCAL], double extent, double error
     }
     for (int k = 0; k < MT_LOCAL; k++) {
         const double arm = k % 6 < 3 ? 0.0 : most * extent;
-        error[k] = row[k] == 0.0 ? 0.0 : ROW_ULPS * DBL_EPSILON * (fabs(row[k]) + arm);
+        error[k] = ROW_ULPS * DBL_EPSILON * (fabs(row[k]) + arm);
     }
+}
+
+/* Of the entries of the rows over the states. */
+static mt_status row_errors(mt_linear *lin, int kind, double extent, mt_err *err)
+{
+    const mt_term_list *const list = &lin->list[kind];
+    double *at =
+        mt_arena_f64(&lin->reduced_mem, (size_t)lin->full[kind].start[list->n_rows], 1);
+    lin->full_error[kind] = at;
+    MT_TRY(mt_arena_check(&lin->reduced_mem, err));
+    for (int i = 0; i < list->n_rows; i++) {
+        const int *const body = list->terms[list->row_term[i]].body;
+        const double *const row = lin->rows[kind] + ((ptrdiff_t)i * MT_LOCAL);
+        double error[MT_LOCAL];
+        row_error(row, extent, error);
+        for (int k = 0; k < MT_LOCAL; k++) {
+            if (row[k] != 0.0 && mt_local_dof(lin->sys, body, k) >= 0) {
+                *at++ = error[k];
+            }
+        }
+    }
+    return MT_OK;
 }
 
 /* out[n] = Z^T row, error[n] its bound. */
-static void project(const mt_linear *lin, const mt_term *t, const double *row, double extent,
-                    double *out, double *error)
+static void project(const mt_linear *lin, int kind, size_t row, double *out, double *error)
 {
+    const mt_rows *const rows = &lin->full[kind];
     const ptrdiff_t nq = lin->sys->nq;
-    double df[MT_LOCAL];
-    mt_reduce_row_error(row, extent, df);
-    for (int k = 0; k < MT_LOCAL; k++) {
-        const int dof = row[k] == 0.0 ? -1 : mt_local_dof(lin->sys, t->body, k);
-        if (dof < 0) {
-            continue;
-        }
+    for (int k = rows->start[row]; k < rows->start[row + 1]; k++) {
+        const double value = rows->value[k];
+        const double df = lin->full_error[kind][k];
         for (int c = 0; c < lin->n; c++) {
-            const ptrdiff_t at = dof + (c * nq);
-            out[c] += row[k] * lin->e.z[at];
-            error[c] += (fabs(row[k]) * lin->z_error[at]) + (df[k] * fabs(lin->e.z[at]));
+            const ptrdiff_t at = rows->index[k] + (c * nq);
+            out[c] += value * lin->e.z[at];
+            error[c] += (fabs(value) * lin->z_error[at]) + (df * fabs(lin->e.z[at]));
         }
     }
 }
 
-static void list_entries(size_t n, size_t rows, const double *dense, size_t count,
-                         mt_arena *mem, mt_rows *out)
-{
-    mt_rows_begin(out, (int)rows, count, mem);
-    for (size_t i = 0; i < rows && !mt_arena_failed(mem); i++) {
-        for (size_t c = 0; c < n; c++) {
-            if (dense[c + (i * n)] != 0.0) {
-                mt_rows_push(out, (int)i, (int)c, dense[c + (i * n)]);
-            }
-        }
-        mt_rows_end(out, (int)i);
-    }
-}
-
-static mt_status reduce_rows(mt_linear *lin, int kind, double extent, mt_err *err)
+static mt_status reduce_rows(mt_linear *lin, int kind, mt_err *err)
 {
     const mt_term_list *const list = &lin->list[kind];
     const size_t n = (size_t)lin->n;
     const size_t rows = (size_t)list->n_rows;
     const bool kept = kind == MT_TERM_STIFFNESS;
-    size_t entries = 0;
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     double *const error =
-        mt_arena_f64(kept ? &lin->geometry : &lin->scratch, n, kept ? rows : 1);
-    lin->reduced[kind] = mt_arena_f64(&lin->geometry, n, rows);
-    MT_TRY(mt_arena_check(kept ? &lin->geometry : &lin->scratch, err));
-    MT_TRY(mt_arena_check(&lin->geometry, err));
+        mt_arena_f64(kept ? &lin->reduced_mem : &lin->scratch, n, kept ? rows : 1);
+    lin->reduced[kind] = mt_arena_f64(&lin->reduced_mem, n, rows);
+    MT_TRY(mt_arena_check(kept ? &lin->reduced_mem : &lin->scratch, err));
+    MT_TRY(mt_arena_check(&lin->reduced_mem, err));
     for (size_t i = 0; i < rows; i++) {
         double *const out = lin->reduced[kind] + (i * n);
         double *const bound = error + (kept ? i * n : 0);
         memset(bound, 0, n * sizeof *bound);
-        project(lin, &list->terms[list->row_term[i]], lin->rows[kind] + (i * MT_LOCAL), extent,
-                out, bound);
+        project(lin, kind, i, out, bound);
         for (size_t c = 0; c < n; c++) {
             out[c] = fabs(out[c]) <= bound[c] ? 0.0 : out[c];
-            entries += out[c] != 0.0 ? 1 : 0;
         }
     }
-    list_entries(n, rows, lin->reduced[kind], entries, &lin->geometry, &lin->entries[kind]);
-    MT_TRY(mt_arena_check(&lin->geometry, err));
+    mt_rows_of_columns(lin->n, list->n_rows, lin->reduced[kind], &lin->reduced_mem,
+                       &lin->entries[kind]);
+    MT_TRY(mt_arena_check(&lin->reduced_mem, err));
     if (kept) {
         lin->noise = error;
     }
@@ -148,9 +156,10 @@ static mt_status reduce_rows(mt_linear *lin, int kind, double extent, mt_err *er
 
 mt_status mt_reduce_rows(mt_linear *lin, mt_err *err)
 {
-    const double extent = mt_reduce_extent(lin);
+    const double extent = extent_of(lin);
     for (int kind = 0; kind < MT_TERM_KINDS; kind++) {
-        MT_TRY(reduce_rows(lin, kind, extent, err));
+        MT_TRY(row_errors(lin, kind, extent, err));
+        MT_TRY(reduce_rows(lin, kind, err));
     }
     return MT_OK;
 }

@@ -7,11 +7,6 @@
 /* Replace the basis of the elimination by one local to the bodies (local.h), with bounds of its
  * errors. After the elimination and the rows. */
 mt_status mt_reduce_basis(mt_linear *lin, mt_err *err);
-/* The largest coordinate at the present position, at least the model length [m]. */
-double mt_reduce_extent(const mt_linear *lin);
-/* What rounding may have made of the entries of a row over local freedoms, extent from above:
- * coordinates far from the origin lose as many digits more in the arms. */
-void mt_reduce_row_error(const double row[MT_LOCAL], double extent, double error[MT_LOCAL]);
 /* reduced = Z^T row for all rows of all kinds at the present position, entries that are
  * rounding made exactly 0, and blocked where nothing is left. After the basis; the memory is
  * that of the geometry. O(rows n). */

@@ -312,11 +312,11 @@ static mt_status close(const near *v, walk *w, bool *closed, mt_arena *mem, mt_e
     return MT_OK;
 }
 
-/* The dependent equation that is furthest open after a finite motion; -1: none is. */
-static mt_status find_open(const near *v, uint64_t *state, walk *w, int *open, mt_arena *mem,
-                           mt_err *err)
+/* The dependent equation that is furthest open after a finite motion; -1: none is. e: with the
+ * orthonormal basis. */
+static mt_status find_open(const near *v, const mt_elimination *e, uint64_t *state, walk *w,
+                           int *open, mt_arena *mem, mt_err *err)
 {
-    const mt_elimination *const e = v->e;
     const mt_system *const sys = v->d->sys;
     double *const y = mt_arena_f64(mem, (size_t)e->n, 1);
     double *const direction = mt_arena_f64(mem, (size_t)e->nq, 1);
@@ -358,10 +358,13 @@ static mt_status walk_away(const near *v, mt_arena *mem, mt_err *err)
               .back = mt_arena_f64(mem, nq, 1),
               .c = mt_arena_f64(mem, (size_t)e->m, 1)};
     double *const null = mt_arena_f64(mem, (size_t)e->m, 1);
+    mt_elimination own = *e;
+    own.z = mt_arena_f64(mem, nq, (size_t)e->n);
     MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(mt_eliminate_basis(&own, mem, err));
     MT_TRY(mt_placement_init(&w.at, v->d->sys, mem, err));
     for (int i = 0; i < WALKS && open < 0; i++) {
-        MT_TRY(find_open(v, &state, &w, &open, mem, err));
+        MT_TRY(find_open(v, &own, &state, &w, &open, mem, err));
     }
     if (open < 0) {
         return MT_OK;

@@ -54,43 +54,6 @@ static mt_status prepare(mt_builder *b, mt_system *sys, mt_err *err)
     return MT_OK;
 }
 
-static bool node_fixed(const mt_program *p, mt_node node)
-{
-    return node == MT_NO_NODE || mt_program_is_constant(p, node);
-}
-
-/* Does any number that shapes the geometry depend on an input? */
-static bool geometry_is_fixed(const mt_system *sys)
-{
-    const mt_program *const p = &sys->program;
-    bool fixed = node_fixed(p, sys->drive);
-    for (int i = 0; i < sys->n_vecs && fixed; i++) {
-        for (int k = 0; k < 3; k++) {
-            fixed = fixed && node_fixed(p, sys->vecs[i].node[k]);
-        }
-    }
-    for (int i = 0; i < sys->n_measures && fixed && mt_system_beams_shape(sys); i++) {
-        for (int k = 0; k < MT_BEAM_NUMBERS; k++) {
-            fixed = fixed && node_fixed(p, sys->measures[i].beam[k]);
-        }
-    }
-    for (int i = 0; i < sys->n_constraints && fixed; i++) {
-        const mt_constraint_def *const c = &sys->constraints[i];
-        fixed = node_fixed(p, c->target) && node_fixed(p, c->coefficient[0]) &&
-                node_fixed(p, c->coefficient[1]);
-    }
-    for (int i = 0; i < sys->n_inertias && fixed; i++) {
-        fixed = node_fixed(p, sys->inertias[i].shape[0]) &&
-                node_fixed(p, sys->inertias[i].shape[1]);
-    }
-    for (int i = 0; i < sys->n_channels && fixed; i++) {
-        fixed = node_fixed(p, sys->channels[i].shape[0]) &&
-                node_fixed(p, sys->channels[i].shape[1]) &&
-                node_fixed(p, sys->channels[i].fraction);
-    }
-    return fixed;
-}
-
 /* Global axis least along v; in two dimensions z for a direction in the plane, so that the
  * perpendicular lies in the plane too. */
 static int helper_axis(const mt_system *sys, const double v[3])
@@ -226,7 +189,8 @@ static mt_status build(mt_system *sys, const mt_system_drive *drive, const doubl
     MT_TRY(mt_arena_check(&sys->mem, err)); /* whatever else the shortage led to */
     MT_TRY(rc);
     MT_TRY(mt_program_finish(&sys->program, err));
-    sys->geometry_fixed = geometry_is_fixed(sys);
+    mt_build_inputs(sys);
+    MT_TRY(mt_arena_check(&sys->mem, err));
     return settle(sys, at, err);
 }
 

@@ -177,8 +177,12 @@ typedef struct mt_system {
     int drive_joint;      /* of joints; -1 */
     /* hold by a spring: the drive's constraint is absent from the linearised system */
     bool trim;
-    int trim_spring;     /* of springs; -1 */
-    bool geometry_fixed; /* no vector, target or shape of a mass depends on an input */
+    int trim_spring; /* of springs; -1 */
+    /* inputs, as bits of the program's words: those that a vector, a target or a shape of a
+     * mass depends on; those that an equilibrium depends on besides */
+    uint64_t *shape;
+    uint64_t *forces;
+    bool geometry_fixed; /* nothing is in `shape` */
     /* the joints are closed as drawn, whatever the inputs: each has one point and no length of
      * its own */
     bool drawn_closed;

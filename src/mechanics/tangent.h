@@ -17,7 +17,7 @@ struct mt_linear_tangent {
     double *kg;    /* nq x nq; NULL where nothing loads */
 };
 
-/* Fill lin->tangent for all inputs. */
-mt_status mt_tangent_update(mt_linear *lin, mt_err *err);
+/* Fill lin->tangent, of the inputs in the set moves: nothing here depends on the others. */
+mt_status mt_tangent_update(mt_linear *lin, const uint64_t *moves, mt_err *err);
 
 #endif

@@ -8,9 +8,9 @@ from common_cli import COMMANDS, SOURCE, CliTest, main, options_in
 # Which options each command has: written down once more, so that a change is a decision.
 EVERYWHERE = {"max-memory", "root", "format", "quiet", "help"}
 OPTIONS = {
-    "run": {"output", "verify", "threads"},
+    "run": {"output", "verify", "threads", "profile"},
     "compare": {"threads"},
-    "modes": {"configuration", "set", "count", "shapes", "damped"},
+    "modes": {"configuration", "set", "count", "shapes", "damped", "profile"},
     "mac": {"count"},
     "sweep": {"configuration", "set", "count", "drive", "hold", "modes"},
     "sensitivity": {"configuration", "set", "count", "parameters"},

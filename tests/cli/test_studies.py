@@ -16,6 +16,40 @@ FAILS = ', "published": [ { "parameter": "k1", "value": 5, "tolerance_percent": 
 FILES = ["recommendations.csv", "report.html", "result.json", "timing.json"]
 
 
+STAGES = ["program", "geometry", "tangent", "reduction", "stiffness", "mass", "modes"]
+
+
+def stages(text):
+    """Of --profile: stage to how often it was done and skipped."""
+    rows = re.findall(r"^  (\w+) +(\d+) +(\d+) +\S+ +\w", text, re.M)
+    return {name: (int(done), int(skipped)) for name, done, skipped in rows}
+
+
+class Profile(CliTest):
+    def test_stages_of_modes_are_done_once(self):
+        done = self.expect(0, "modes", self.write("model.json", MODEL), "--profile", "--format", "json")
+        n = len(json.loads(done.stdout))  # configurations
+        counts = stages(done.stderr)
+        self.assertEqual(list(counts), STAGES)
+        self.assertEqual(counts, {stage: (0 if stage == "tangent" else n, 0) for stage in STAGES})
+
+    def test_stages_of_a_study_are_counted_and_change_nothing(self):
+        path = self.write("studies/two.json", study())
+        without = self.expect(0, "run", path, "-o", "a")
+        self.assertNotIn("geometry", without.stderr)
+        counts = [stages(self.expect(0, "run", path, "-o", str(n), "--profile", "--threads", str(n)).stderr) for n in (1, 2)]
+        for had in counts:
+            self.assertEqual(list(had), STAGES)
+            self.assertEqual(had["tangent"], (0, 0))  # springs alone vary: the geometry stands
+            self.assertGreater(had["program"][0], 10)
+            self.assertEqual(had["geometry"][0], had["reduction"][0])
+            self.assertLess(10 * had["geometry"][0], had["stiffness"][0] + 10)
+            self.assertEqual(had["mass"][0], had["geometry"][0])
+        files = [(self.folder / n / "two/result.json").read_bytes() for n in ("a", "1", "2")]
+        self.assertEqual(files[0], files[1])
+        self.assertEqual(files[0], files[2])
+
+
 class Run(CliTest):
     def test_both_solutions_are_found_written_and_summarised(self):
         path = self.write("studies/two.json", study(extra=HOLDS))

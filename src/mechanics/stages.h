@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MECHANICS_STAGES_H
+#define MECHANICS_STAGES_H
+
+#include "base/profile.h"
+#include "mechanics/rows.h"
+
+/*
+ * Which inputs each stage of a linearised system depends on, by the structure of its program,
+ * and with which values of them it was done last. Sets of inputs are bits, as the program has
+ * them.
+ */
+typedef struct mt_stages {
+    int n_inputs;
+    int words;
+    uint64_t *loaded;    /* shape and forces of the system (system.h) */
+    uint64_t *stiffness; /* coefficients of K */
+    uint64_t *mass;      /* coefficients of M */
+    uint64_t *all;
+    uint64_t *none;
+    double *at[MT_STAGES]; /* [n_inputs] */
+    bool valid[MT_STAGES]; /* what the stage left is there, of the inputs `at` */
+    mt_stage_counts counts;
+    double started_s;    /* of the stage that is being done */
+    mt_profile *profile; /* NULL: nobody asks; not owned */
+} mt_stages;
+
+/* lists[MT_TERM_KINDS]. Lives in mem; a failure is the arena's. */
+void mt_stages_init(mt_stages *s, const mt_system *sys, const mt_term_list *lists,
+                    mt_arena *mem);
+/* Has the stage to be done, where it depends on the inputs of `set` alone? Bits are compared.
+ * A stage that has is not valid until mt_stages_done, one that has not is counted as
+ * skipped. */
+bool mt_stages_begin(mt_stages *s, mt_stage_id stage, const uint64_t *set,
+                     const double *inputs);
+void mt_stages_done(mt_stages *s, mt_stage_id stage, const double *inputs);
+bool mt_stages_has(const uint64_t *set, int input);
+/* Is nothing in the set? */
+bool mt_stages_empty(const mt_stages *s, const uint64_t *set);
+
+#endif

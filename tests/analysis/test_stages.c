@@ -1,0 +1,300 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * What is not computed again: an analysis that has seen many designs against one that has seen
+ * none but the original, to the bit, for every model and configuration of the tests and random
+ * sequences of designs in which some inputs move and some come back; and how often each stage
+ * was done.
+ */
+#include <dirent.h>
+#include <stdlib.h>
+
+#include "mechanics/mech.h"
+#include "support/mt_random.h"
+
+enum { STEPS = 5, DESIGNS = 4 };
+
+/* Inputs move by at most this part of themselves. */
+static const double MOVES = 0.03;
+
+typedef struct session {
+    mech s;
+    const mt_model *model;
+    int configuration;
+    int parameter[MECH_INPUTS];
+    double design[DESIGNS][MECH_INPUTS]; /* seen so far */
+} session;
+
+/* MT_STAGE_STEPS: so many designs of each configuration. */
+static int steps(void)
+{
+    const char *const given = getenv("MT_STAGE_STEPS");
+    return given == NULL ? STEPS : (int)strtol(given, NULL, 10);
+}
+
+static bool same_bytes(const double *a, const double *b, size_t n)
+{
+    return memcmp(a, b, n * sizeof *a) == 0;
+}
+
+/* Everything that a solve left. */
+static void compare(mt_test *t, mt_analysis *a, mt_analysis *b, bool gradient, int n_inputs)
+{
+    const mt_reduced r = mt_linear_reduced(a->lin);
+    const mt_reduced q = mt_linear_reduced(b->lin);
+    const size_t n = (size_t)r.n;
+    const size_t c = (size_t)a->modes.count;
+    if (!CHECK_INT(t, r.n, q.n) || !CHECK_INT(t, a->modes.count, b->modes.count)) {
+        return;
+    }
+    CHECK(t, same_bytes(r.k, q.k, n * n));
+    CHECK(t, same_bytes(r.m, q.m, n * n));
+    CHECK(t, same_bytes(r.b, q.b, n * (size_t)r.rows));
+    CHECK(t, same_bytes(r.c, q.c, (size_t)r.rows));
+    CHECK(t, same_bytes(a->modes.lambda, b->modes.lambda, c));
+    CHECK(t, same_bytes(a->modes.error, b->modes.error, c));
+    CHECK(t, memcmp(a->modes.kind, b->modes.kind, c * sizeof *a->modes.kind) == 0);
+    CHECK(t, (a->modes.y == NULL) == (b->modes.y == NULL));
+    if (a->modes.y != NULL && b->modes.y != NULL) {
+        CHECK(t, same_bytes(a->modes.y, b->modes.y, n * c));
+    }
+    for (int i = 0; i < a->modes.count && gradient; i++) {
+        double sa[MECH_INPUTS] = {0.0};
+        double sb[MECH_INPUTS] = {0.0};
+        CHECK_INT(t, mt_analysis_dlambda_raw(a, i, sa, NULL), MT_OK);
+        CHECK_INT(t, mt_analysis_dlambda_raw(b, i, sb, NULL), MT_OK);
+        CHECK(t, same_bytes(sa, sb, (size_t)n_inputs));
+        CHECK_INT(t, mt_analysis_products(a, i, NULL), MT_OK);
+        CHECK_INT(t, mt_analysis_products(b, i, NULL), MT_OK);
+        CHECK(t, same_bytes(a->dky, b->dky, n * (size_t)n_inputs));
+        CHECK(t, same_bytes(a->dmy, b->dmy, n * (size_t)n_inputs));
+    }
+}
+
+/* Some inputs move, none does, or an earlier design comes back. */
+static void next_design(mt_random *g, session *s, double *x)
+{
+    const int kind = mt_random_int(g, 4);
+    if (kind == 0) {
+        memcpy(x, s->design[mt_random_int(g, DESIGNS)], sizeof s->design[0]);
+    } else if (kind < 3 && s->s.n > 0) {
+        for (int k = 0; k < kind; k++) {
+            const int i = mt_random_int(g, s->s.n);
+            x[i] = s->s.at[i] * (1.0 + (MOVES * mt_random_in(g, -1.0, 1.0)));
+        }
+    }
+    memcpy(s->design[mt_random_int(g, DESIGNS)], x, sizeof s->design[0]);
+}
+
+static void run(mt_test *t, mt_random *g, session *s)
+{
+    double x[MECH_INPUTS];
+    memcpy(x, s->s.at, sizeof x);
+    for (int i = 0; i < DESIGNS; i++) {
+        memcpy(s->design[i], x, sizeof x);
+    }
+    for (int step = 0; step < steps(); step++) {
+        mt_analysis_options opt = mt_analysis_options_default();
+        mt_analysis *fresh = NULL;
+        mt_err err = {.text = ""};
+        mt_err other = {.text = ""};
+        next_design(g, s, x);
+        opt.gradient = mt_random_int(g, 2) == 0;
+        opt.vectors = mt_random_int(g, 2) == 0;
+        opt.check = mt_random_int(g, 2) == 0;
+        mt_test_row(t, "%s, step %d", mt_analysis_configuration(s->s.a), step);
+        if (!CHECK_INT(t,
+                       mt_analysis_new(s->model, s->configuration, s->s.n, s->parameter,
+                                       s->s.at, &fresh, &err),
+                       MT_OK)) {
+            continue;
+        }
+        const mt_status had = mt_analysis_solve(s->s.a, x, &opt, &err);
+        if (CHECK_INT(t, mt_analysis_solve(fresh, x, &opt, &other), had) && had == MT_OK) {
+            compare(t, s->s.a, fresh, opt.gradient, s->s.n);
+        }
+        CHECK(t, had == MT_OK || strcmp(err.text, other.text) == 0);
+        mt_analysis_delete(fresh);
+    }
+}
+
+/* Inputs: the parameters that are plain numbers. False: not to be analysed at all. */
+static bool begin(const mt_model *model, int configuration, session *s)
+{
+    *s = (session){.model = model, .configuration = configuration};
+    for (int i = 0; i < model->n_parameters && s->s.n < MECH_INPUTS; i++) {
+        const double value = mech_value(model, i);
+        if (value == value) {
+            s->parameter[s->s.n] = i;
+            s->s.at[s->s.n++] = value;
+        }
+    }
+    return mt_analysis_new(model, configuration, s->s.n, s->parameter, s->s.at, &s->s.a,
+                           NULL) == MT_OK;
+}
+
+static void model_file(mt_test *t, const char *path, mt_random *g, long *solved)
+{
+    mt_model *model = NULL;
+    if (mt_model_load(path, NULL, &model, NULL, NULL) != MT_OK) {
+        return; /* no model: a catalogue, a reference */
+    }
+    for (int c = 0; c < model->n_configurations; c++) {
+        session s;
+        if (begin(model, c, &s)) {
+            run(t, g, &s);
+            (*solved)++;
+        }
+        mt_analysis_delete(s.s.a);
+    }
+    mt_model_delete(model);
+}
+
+static void stages__leave_the_same_bits_whatever_was_seen_before(mt_test *t)
+{
+    static const char *const folders[] = {"tests/models", "problems"};
+    mt_random g = mt_random_seed(5);
+    long solved = 0;
+    for (int f = 0; f < 2; f++) {
+        char path[MECH_PATH];
+        struct dirent **list = NULL;
+        (void)snprintf(path, sizeof path, "%s/%s", MT_TEST_SOURCE_DIR, folders[f]);
+        const int n = scandir(path, &list, NULL, alphasort);
+        for (int i = 0; i < n; i++) {
+            if (strstr(list[i]->d_name, ".json") != NULL) {
+                (void)snprintf(path, sizeof path, "%s/%s/%s", MT_TEST_SOURCE_DIR, folders[f],
+                               list[i]->d_name);
+                model_file(t, path, &g, &solved);
+            }
+            free(list[i]);
+        }
+        free((void *)list);
+    }
+    CHECK(t, solved > 40);
+}
+
+typedef struct want {
+    const char *what;
+    int moves; /* input; -1: none */
+    bool gradient;
+    long done[MT_STAGES]; /* in the order of the stages */
+} want;
+
+static void check_counts(mt_test *t, mech *s, const want *rows, int n)
+{
+    mt_stages *const st = mt_linear_stages(s->a->lin);
+    double x[MECH_INPUTS];
+    const mt_analysis_options first = mt_analysis_options_default();
+    memcpy(x, s->at, sizeof x);
+    CHECK_INT(t, mt_analysis_solve(s->a, x, &first, NULL), MT_OK); /* counted as it is now */
+    for (int i = 0; i < n; i++) {
+        const mt_stage_counts before = st->counts;
+        mt_analysis_options opt = mt_analysis_options_default();
+        opt.gradient = rows[i].gradient;
+        if (rows[i].moves >= 0) {
+            x[rows[i].moves] = (1.01 * x[rows[i].moves]) + 1e-3;
+        }
+        CHECK_INT(t, mt_analysis_solve(s->a, x, &opt, NULL), MT_OK);
+        for (int stage = 0; stage < MT_STAGES; stage++) {
+            const long done = st->counts.done[stage] - before.done[stage];
+            const long skipped = st->counts.skipped[stage] - before.skipped[stage];
+            mt_test_row(t, "%s, %s", rows[i].what, mt_stage_name((mt_stage_id)stage));
+            CHECK_INT(t, done, rows[i].done[stage]);
+            CHECK_INT(t, done + skipped, stage == MT_STAGE_TANGENT ? done + skipped : 1);
+        }
+    }
+}
+
+/* Geometry that no input moves: springs of a chain. */
+static void stages__of_a_fixed_geometry_are_sums_alone(mt_test *t)
+{
+    static const want rows[] = {
+        {"as it was", -1, false, {0, 0, 0, 0, 0, 0, 0}},
+        {"gradient", -1, true, {1, 0, 0, 0, 0, 0, 0}},
+        {"gradient again", -1, true, {0, 0, 0, 0, 0, 0, 0}},
+        {"a spring", 0, false, {1, 0, 0, 0, 1, 0, 1}},
+        {"another, with gradient", 1, true, {1, 0, 0, 0, 1, 0, 1}},
+    };
+    mech s;
+    if (mech_must(t, mech_load(t, "six_masses"), NULL, "x2 x5", &s)) {
+        check_counts(t, &s, rows, (int)(sizeof rows / sizeof *rows));
+    }
+    mech_free(&s);
+}
+
+/* a moves the joints, k is a spring, m_c a mass, by which pivots are chosen. */
+static void stages__of_a_loop_follow_what_moves(mt_test *t)
+{
+    static const want rows[] = {
+        {"as it was", -1, false, {0, 0, 0, 0, 0, 0, 0}},
+        {"gradient", -1, true, {1, 0, 1, 0, 0, 0, 0}},
+        {"gradient again", -1, true, {0, 0, 0, 0, 0, 0, 0}},
+        {"a spring", 1, true, {1, 0, 0, 0, 1, 0, 1}},
+        {"a mass", 2, true, {1, 0, 0, 1, 1, 1, 1}},
+        {"a length", 0, false, {1, 1, 0, 1, 1, 1, 1}},
+        {"a length, with gradient", 0, true, {1, 1, 1, 1, 1, 1, 1}},
+    };
+    mech s;
+    if (mech_must(t, mech_load(t, "four_bar"), "still", "a k m_c", &s)) {
+        check_counts(t, &s, rows, (int)(sizeof rows / sizeof *rows));
+    }
+    mech_free(&s);
+}
+
+/* The equilibrium moves with everything. */
+static void stages__of_a_loaded_loop_stand_still_only_where_all_does(mt_test *t)
+{
+    static const want rows[] = {
+        {"as it was", -1, false, {0, 0, 0, 0, 0, 0, 0}},
+        {"gradient", -1, true, {1, 0, 1, 0, 0, 0, 0}},
+        {"a spring", 1, true, {1, 1, 1, 1, 1, 1, 1}},
+        {"a mass", 2, false, {1, 1, 0, 1, 1, 1, 1}},
+    };
+    mech s;
+    if (mech_must(t, mech_load(t, "four_bar"), "loaded", "a k m_c", &s)) {
+        check_counts(t, &s, rows, (int)(sizeof rows / sizeof *rows));
+    }
+    mech_free(&s);
+}
+
+/* What evaluators did is added where somebody asks, when they go. */
+static double one_second(void)
+{
+    return 1.0;
+}
+
+static void stages__are_told_to_who_asks(mt_test *t)
+{
+    mech s;
+    mt_profile profile;
+    mt_profile_init(&profile, one_second);
+    mt_model *const model = mech_load(t, "six_masses");
+    if (model == NULL) {
+        return;
+    }
+    model->profile = &profile;
+    if (mech_must(t, model, NULL, "x2 x5", &s)) {
+        const mt_analysis_options opt = mt_analysis_options_default();
+        CHECK_INT(t, mt_analysis_solve(s.a, s.at, &opt, NULL), MT_OK);
+    }
+    mech_free(&s);
+    for (int stage = 0; stage < MT_STAGES; stage++) {
+        const bool none = stage == MT_STAGE_TANGENT;
+        mt_test_row(t, "%s", mt_stage_name((mt_stage_id)stage));
+        const bool twice = stage == MT_STAGE_MODES; /* the count was open the first time */
+        CHECK_INT(t, atomic_load(&profile.done[stage]), none ? 0 : 1 + (int)twice);
+        CHECK_INT(t, atomic_load(&profile.skipped[stage]), none || twice ? 0 : 1);
+        CHECK_INT(t, atomic_load(&profile.nanoseconds[stage]), 0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        MT_TEST(stages__leave_the_same_bits_whatever_was_seen_before),
+        MT_TEST(stages__of_a_fixed_geometry_are_sums_alone),
+        MT_TEST(stages__of_a_loop_follow_what_moves),
+        MT_TEST(stages__of_a_loaded_loop_stand_still_only_where_all_does),
+        MT_TEST(stages__are_told_to_who_asks),
+    };
+    return cmocka_run_group_tests_name(__FILE__, tests, NULL, NULL) != 0;
+}
