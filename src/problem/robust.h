@@ -83,7 +83,6 @@ typedef struct mt_ranges {
     int *n;                  /* [n_views] */
     mt_robust_range **hz;    /* [n_views] of its vibration modes, [n]; of a view that matters */
     mt_robust_range *number; /* [n_limits] of limits on expressions */
-    long evaluations;        /* analyses that it took */
 } mt_ranges;
 
 /* Of a workspace. */

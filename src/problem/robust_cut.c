@@ -102,8 +102,8 @@ static const mt_robust_range *range_of(const mt_case *c, const mt_ranges *ranges
     return view >= 0 ? mt_ranges_hz(ranges, view, mode) : &ranges->number[row->demand];
 }
 
-static mt_status judge(const mt_workspace *w, const mt_ranges *ranges, mt_arena *mem,
-                       mt_robust_cuts *cuts, mt_err *err)
+static mt_status judge(const mt_workspace *w, const mt_ranges *ranges, mt_nlp_values *v,
+                       mt_arena *mem, mt_robust_cuts *cuts, mt_err *err)
 {
     const mt_case *const c = w->c;
     const mt_robust_row *before = NULL;
@@ -120,6 +120,7 @@ static mt_status judge(const mt_workspace *w, const mt_ranges *ranges, mt_arena 
         const double wanted = row->demand < 0 && c->clearance ? w->t[c->p->n] : 0.0;
         mt_miss(&cuts->missed, mt_short_of(room), row->tolerance);
         cuts->band_room = row->demand < 0 ? fmin(cuts->band_room, room) : cuts->band_room;
+        v->in[row->row] = fmin(v->in[row->row], room - wanted);
         /* where it has no value no row leads on */
         if (room - wanted < -row->tolerance) {
             MT_TRY(add_cut(w, row, range->at[row->side], mem, cuts, err));
@@ -128,25 +129,33 @@ static mt_status judge(const mt_workspace *w, const mt_ranges *ranges, mt_arena 
     return MT_OK;
 }
 
-mt_status mt_robust_judge(mt_workspace *w, const double *t, mt_arena *mem, mt_robust_cuts *cuts,
-                          mt_err *err)
+mt_status mt_robust_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
+                          mt_robust_cuts *cuts, mt_err *err)
 {
     mt_arena own;
     mt_ranges ranges;
-    mt_nlp_values v;
     cuts->added = 0;
     cuts->missed = (mt_missed){0.0, 0.0};
     cuts->band_room = HUGE_VAL;
+    if (!mt_robust_is_sampled(w->c)) {
+        return MT_OK;
+    }
     MT_TRY(mt_arena_init(&own, 0, err));
-    mt_status rc = mt_case_values_init(w->c, &own, &v, err);
-    rc = rc == MT_OK ? mt_workspace_eval(w, t, false, &v, err) : rc;
-    rc = rc == MT_OK ? mt_robust_ranges(w, &own, &ranges, err) : rc;
+    mt_status rc = mt_robust_ranges(w, &own, &ranges, err);
     /* what is cut off has no value at some sample: nothing is known */
     rc = rc == MT_OK ? mt_interrupt_check(w->p->study->model->interrupt, err) : rc;
-    rc = rc == MT_OK ? judge(w, &ranges, mem, cuts, err) : rc;
-    cuts->evaluations = rc == MT_OK ? 1 + ranges.evaluations : 1;
+    rc = rc == MT_OK ? judge(w, &ranges, v, mem, cuts, err) : rc;
     mt_arena_free(&own);
     return rc;
+}
+
+mt_status mt_robust_judge(mt_workspace *w, const double *t, mt_arena *mem, mt_robust_cuts *cuts,
+                          mt_err *err)
+{
+    mt_nlp_values v;
+    MT_TRY(mt_case_values_init(w->c, mem, &v, err));
+    MT_TRY(mt_workspace_eval(w, t, false, &v, err));
+    return mt_robust_lower(w, &v, mem, cuts, err);
 }
 
 /* The corners of one set, and those of its cuts. */

@@ -27,7 +27,6 @@ typedef struct mt_robust_cuts {
     int added;
     mt_missed missed; /* by the worst within its tolerances, of what is held at samples alone */
     double band_room; /* least of the bands; HUGE_VAL: none is held so */
-    long evaluations;
 } mt_robust_cuts;
 
 /* Is anything that the case holds judged at samples? */
@@ -39,6 +38,10 @@ bool mt_robust_is_sampled(const mt_case *c);
  */
 mt_status mt_robust_judge(mt_workspace *w, const double *t, mt_arena *mem, mt_robust_cuts *cuts,
                           mt_err *err);
+/* The same of the design that w was evaluated at, whose rows at samples become those of the
+ * worst within: v->in is lowered. Nothing where nothing is sampled. */
+mt_status mt_robust_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
+                          mt_robust_cuts *cuts, mt_err *err);
 /* The corners of a case with the cuts beside them, for mt_case_lay_out of a copy of it (as its
  * `robust`), in mem. Fails: MT_E_MEMORY. */
 mt_status mt_robust_add_cuts(const mt_case *c, const mt_robust_cuts *cuts, mt_arena *mem,

@@ -145,7 +145,6 @@ static mt_status range_view(const box *b, int view, int modes, mt_err *err)
     r->n[view] = r->hz[view] == NULL ? 0 : all;
     rc = rc == MT_OK ? mt_arena_check(b->mem, err) : rc;
     rc = rc == MT_OK ? range_of_modes(b, view, modes, a, err) : rc;
-    r->evaluations += a != NULL ? a->solves : 0;
     mt_analysis_delete(a);
     return rc;
 }

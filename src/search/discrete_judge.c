@@ -143,7 +143,6 @@ static mt_status judge_tolerances(mt_workspace *w, mt_combination *c, mt_arena *
 {
     mt_robust_cuts cuts = {.n = 0};
     MT_TRY(mt_robust_judge(w, c->t, mem, &cuts, err));
-    c->evals += cuts.evaluations;
     if (!mt_is_met(cuts.missed.violation, 1.0)) {
         const double more = cuts.missed.violation;
         c->missed.squares += cuts.missed.squares;

@@ -151,7 +151,6 @@ static mt_status judge_best(slot *s, mt_workspace *w, bool last, bool *again, mt
     }
     if (best->feasible && mt_robust_is_sampled(w->c)) {
         MT_TRY(mt_search_judge(w, last, &s->mem, &s->corners, best, &worse, err));
-        s->evals += s->corners.evaluations;
     }
     *again = added > 0 || worse;
     return MT_OK;

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "base/workers.h"
+#include "problem/robust_cut.h"
 #include "search/gaps.h"
 #include "search/motion.h"
 
@@ -23,6 +24,10 @@ enum { BUDGET_LEAST = 2 * EVALUATIONS };
 /* A move smaller than this is none: then a design exists without it, and the search has missed
  * it. */
 static const double LEAST = 1e-9;
+/* Rounds of cuts of the tolerances, which end where a move that is needed is greater than the
+ * one found by no more than rows are kept to. */
+enum { ROUNDS = 8 };
+static const double ENOUGH = MT_DEFAULT_TOLERANCE_PERCENT / 100.0;
 
 typedef struct relaxed {
     mt_workspace *w;
@@ -104,55 +109,67 @@ static mt_status evaluate(void *context, const double *t, bool with_gradient,
     return MT_OK;
 }
 
-/* The number that the move needs at the design t, and its inputs x; NaN where that does not
- * do. */
-static mt_status confirm(mt_workspace *w, const mt_move *m, const double *t, mt_arena *mem,
-                         double *x, double *value, mt_err *err)
+/* A design found with the move: what a workspace made anew says of it. */
+typedef struct answer {
+    mt_arena *mem;
+    double *x;           /* [n] */
+    double value;        /* that the number must have there; NaN: it does not do */
+    mt_robust_cuts cuts; /* so far */
+} answer;
+
+/* The number that the move needs at the design t, over its tolerances, too. */
+static mt_status confirm(mt_workspace *w, const mt_move *m, const double *t, answer *a,
+                         mt_err *err)
 {
     mt_nlp_values v;
     mt_err own = {0};
-    *value = nan("");
-    MT_TRY(mt_case_values_init(w->c, mem, &v, err));
-    const mt_status rc = mt_workspace_eval(w, t, false, &v, &own);
+    MT_TRY(mt_case_values_init(w->c, a->mem, &v, err));
+    mt_status rc = mt_workspace_eval(w, t, false, &v, &own);
+    rc = rc == MT_OK ? mt_robust_lower(w, &v, a->mem, &a->cuts, &own) : rc;
     if (rc != MT_OK) {
         return mt_pass_final(rc, &own, err);
     }
-    *value = mt_relax_value(w, m, &v);
-    memcpy(x, w->x, (size_t)w->p->n * sizeof *x);
+    a->value = mt_relax_value(w, m, &v);
+    memcpy(a->x, w->x, (size_t)w->p->n * sizeof *a->x);
     /* Does the design hold between the positions of its drives, too? An edge is moved in one
      * position only, which says nothing of the others. */
     if (mt_family_any(w->p) && w->c->below != NULL) {
         bool kept = m->kind != MT_MOVE_EDGE;
-        MT_TRY(kept ? mt_motion_kept(w, w->c->below, mem, &kept, err) : MT_OK);
-        *value = kept ? *value : nan("");
+        MT_TRY(kept ? mt_motion_kept(w, w->c->below, a->mem, &kept, err) : MT_OK);
+        a->value = kept ? a->value : nan("");
     }
     return MT_OK;
 }
 
 /* Keep what was found in a case where it is the least move so far, and a workspace made anew
- * confirms it. */
-static mt_status keep(const mt_case *c, mt_move *m, const mt_nlp_solution *found, mt_arena *mem,
-                      mt_err *err)
+ * confirms it. *again: the move is not enough for what is worst within the tolerances, and
+ * there is a cut that says so. */
+static mt_status keep(const mt_case *c, mt_move *m, const mt_nlp_solution *found, answer *a,
+                      bool *again, mt_err *err)
 {
     const size_t n = (size_t)c->p->n;
     mt_workspace *fresh = NULL;
-    double *const x = mt_arena_f64(mem, n, 1);
-    double to = nan("");
-    MT_TRY(mt_arena_check(mem, err));
-    const double size = sqrt(2.0 * found->f);
+    double size = sqrt(2.0 * found->f);
     if (!found->feasible || !(size > LEAST) || (m->found && size >= m->size)) {
         return MT_OK;
     }
+    a->value = nan("");
+    a->cuts.added = 0;
     MT_TRY(mt_workspace_new(c->p, &fresh, err));
     mt_status rc = mt_workspace_use(fresh, c, err);
-    rc = rc == MT_OK ? confirm(fresh, m, found->t, mem, x, &to, err) : rc;
+    rc = rc == MT_OK ? confirm(fresh, m, found->t, a, err) : rc;
     mt_workspace_delete(fresh);
     MT_TRY(rc);
-    if (MT_HAS(to)) {
+    if (mt_robust_is_sampled(c)) {
+        const double needed = MT_HAS(a->value) ? mt_relax_size(c->p, m, a->value) : HUGE_VAL;
+        *again = a->cuts.added > 0 && !(needed <= size + ENOUGH);
+        size = fmax(size, needed);
+    }
+    if (MT_HAS(a->value) && !(m->found && size >= m->size)) {
         m->found = true;
-        m->to = to;
+        m->to = a->value;
         m->size = size;
-        memcpy(m->x, x, n * sizeof *x);
+        memcpy(m->x, a->x, n * sizeof *m->x);
     }
     return MT_OK;
 }
@@ -183,9 +200,9 @@ static mt_nlp nlp_of(relaxed *r, mt_case *c, const double *near, double *hint)
     return nlp;
 }
 
-/* In case c, to which w is set. */
-static mt_status search_in(const job *j, mt_case *c, mt_workspace *w, mt_move *m,
-                           task_result *out, mt_err *err)
+/* Once in case c, to which w is set. */
+static mt_status search_once(const job *j, mt_case *c, mt_workspace *w, mt_move *m,
+                             task_result *out, answer *a, bool *again, mt_err *err)
 {
     relaxed r = {.w = w, .move = m};
     mt_nlp_result found = {0};
@@ -197,6 +214,7 @@ static mt_status search_in(const job *j, mt_case *c, mt_workspace *w, mt_move *m
     if (j->budget - out->evals < opt.max_evals) {
         opt.max_evals = j->budget - out->evals;
     }
+    *again = false;
     if (opt.max_evals <= 0) {
         return MT_OK;
     }
@@ -210,8 +228,28 @@ static mt_status search_in(const job *j, mt_case *c, mt_workspace *w, mt_move *m
     out->starts += found.starts;
     out->stopped = out->stopped || found.stop == MT_STOP_USER;
     return own == MT_OK && found.n_solutions > 0
-               ? keep(c, m, &found.solutions[0], &out->mem, err)
+               ? keep(c, m, &found.solutions[0], a, again, err)
                : mt_pass_final(own, &why, err);
+}
+
+/* In case c, to which w is set; afterwards to that with cuts. */
+static mt_status search_in(const job *j, mt_case *c, mt_workspace *w, mt_move *m,
+                           task_result *out, mt_err *err)
+{
+    mt_arena *const mem = &out->mem;
+    answer a = {.mem = mem, .x = mt_arena_f64(mem, (size_t)c->p->n, 1)};
+    bool again = true;
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(search_once(j, c, w, m, out, &a, &again, err));
+    for (int round = 1; again && round < ROUNDS; round++) {
+        mt_case *const held = mt_arena_alloc(mem, 1, sizeof *held);
+        MT_TRY(mt_arena_check(mem, err));
+        MT_TRY(mt_case_copy(c, mem, held, err));
+        MT_TRY(mt_robust_add_cuts(c, &a.cuts, mem, &held->robust, err));
+        MT_TRY(mt_case_lay_out(held, c->below, 0, NULL, w, mem, err));
+        MT_TRY(search_once(j, held, w, m, out, &a, &again, err));
+    }
+    return MT_OK;
 }
 
 /* With bands: in each of the assignments that samples come nearest to. */

@@ -48,7 +48,6 @@ static mt_status judge_open(rounds *r, bool last, bool *any, mt_err *err)
         if (r->open[i]) {
             MT_TRY(mt_search_judge(r->ws, last, r->mem, &r->cuts, &r->out->solutions[i],
                                    &r->open[i], err));
-            r->out->evals += r->cuts.evaluations;
             *any = *any || r->open[i];
         }
     }

@@ -88,5 +88,28 @@ static void combination__is_judged_by_the_worst_within(mt_test *t)
     study_free(&c);
 }
 
+/* k2 may not be less than 1.35: with k1 = 9/4 the limit has to be 3.0375, or the bound 4/3. */
+static void move__is_enough_for_the_worst_within(mt_test *t)
+{
+    study_case c;
+    if (study_solve(t, MODEL,
+                    "'variables': [" A
+                    ", {'parameter': 'k2', 'lower': 1.35, 'upper': 3}]," LIMIT,
+                    &c)) {
+        double limit = nan("");
+        double bound = nan("");
+        for (int i = 0; i < c.result->n_relaxations; i++) {
+            const mt_relaxation *const r = &c.result->relaxations[i];
+            limit = strstr(r->pointer, "/goals/0") != NULL ? r->to : limit;
+            bound = strstr(r->pointer, "/variables/1") != NULL ? r->to : bound;
+        }
+        CHECK(t, c.result->status != MT_RESULT_SOLVED);
+        CHECK_NEAR(t, limit / (WORST_K1 * 1.35), 1.0, MET);
+        CHECK_NEAR(t, bound / (3.0 / WORST_K1), 1.0, MET);
+    }
+    study_free(&c);
+}
+
 MT_TEST_MAIN(MT_TEST(design__goes_to_the_worst_within),
-             MT_TEST(combination__is_judged_by_the_worst_within))
+             MT_TEST(combination__is_judged_by_the_worst_within),
+             MT_TEST(move__is_enough_for_the_worst_within))
