@@ -60,10 +60,13 @@ static void orthogonalise(const iteration *it, int j, double *w, double *h)
     }
 }
 
-/* A unit vector of its own direction, orthogonal to the first j; false where there is none. */
-static bool fresh(iteration *it, int j, uint32_t seed)
+/* A unit vector of its own direction, orthogonal to the first j; false where there is none. No
+ * direction is of another iteration, of another seed: of a repeated eigenvalue each gives but
+ * one vector, which then is locked. */
+static bool fresh(iteration *it, int j)
 {
     double *const w = column(it, j);
+    const uint32_t seed = ((uint32_t)it->p->seed << 20U) + (uint32_t)j;
     uint32_t state = (2654435769U * (seed + 1U)) | 1U;
     for (int i = 0; i < it->p->n; i++) {
         state = (state * 1664525U) + 1013904223U;
@@ -169,7 +172,7 @@ static mt_status extend(iteration *it, bool *more, mt_err *err)
         }
         return MT_OK;
     }
-    *more = it->j + it->p->n_locked < it->p->n && fresh(it, it->j, (uint32_t)(it->j + 1));
+    *more = it->j + it->p->n_locked < it->p->n && fresh(it, it->j);
     return MT_OK;
 }
 
@@ -193,7 +196,7 @@ static mt_status iterate(iteration *it, int *found, mt_err *err)
 {
     const mt_lanczos *const p = it->p;
     int restarts = 0;
-    bool more = it->most > 0 && fresh(it, 0, (uint32_t)p->seed);
+    bool more = it->most > 0 && fresh(it, 0);
     if (!more) {
         return MT_OK;
     }

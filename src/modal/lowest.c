@@ -12,6 +12,8 @@
 
 /* More are sought than are wanted: one for the gap behind the last, one if that is small. */
 enum { MORE = 2, ROUNDS = 12 };
+/* Equal frequencies, as of many arms on one hub, are all found, but no more than that. */
+enum { MOST_FOUND = 512 };
 
 /* Neighbours closer than this (relative) are not separated by a count. */
 static const double NO_GAP = 1e-7;
@@ -56,6 +58,27 @@ static void swap(const finding *f, int i, int j)
     f->rho[j] = rho;
     swap_columns(f, f->x, i, j);
     swap_columns(f, f->ax, i, j);
+}
+
+/* Room for n in all. */
+static mt_status grow(finding *f, int n, mt_arena *mem, mt_err *err)
+{
+    const finding old = *f;
+    const size_t found = (size_t)f->n;
+    const size_t size = (size_t)f->p->n * found;
+    f->most = n;
+    f->x = mt_arena_f64(mem, (size_t)f->p->n, (size_t)n);
+    f->ax = mt_arena_f64(mem, (size_t)f->p->n, (size_t)n);
+    f->theta = mt_arena_f64(mem, (size_t)n, 1);
+    f->rho = mt_arena_f64(mem, (size_t)n, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    if (found > 0) {
+        memcpy(f->x, old.x, size * sizeof *f->x);
+        memcpy(f->ax, old.ax, size * sizeof *f->ax);
+        memcpy(f->theta, old.theta, found * sizeof *f->theta);
+        memcpy(f->rho, old.rho, found * sizeof *f->rho);
+    }
+    return MT_OK;
 }
 
 /* `more` in the complement of what was found. */
@@ -124,7 +147,7 @@ static mt_status find(finding *f, mt_arena *mem, double *tau, int *upto, mt_err 
     for (int round = 0; round < ROUNDS && p->n > 0; round++) {
         MT_TRY(search(f, more, round, mem, err));
         const int j = split(f, tau);
-        more = MORE;
+        more = f->n > MORE ? f->n : MORE; /* no end of equal ones is in sight */
         if (j > 0) {
             int below = 0;
             bool certain = false;
@@ -139,8 +162,11 @@ static mt_status find(finding *f, mt_arena *mem, double *tau, int *upto, mt_err 
             *upto = 0;
             return MT_OK;
         }
-        if (f->n + more > f->most || f->exhausted) {
+        if (f->exhausted || f->n + more > MOST_FOUND + (2 * p->count)) {
             break;
+        }
+        if (f->n + more > f->most) {
+            MT_TRY(grow(f, f->n + more, mem, err));
         }
     }
     *upto = 0;
@@ -152,14 +178,31 @@ static mt_status find(finding *f, mt_arena *mem, double *tau, int *upto, mt_err 
                          *tau);
 }
 
-/* Error of theta: Kato and Temple where the neighbours are far enough. */
+/* Are the intervals of k and k + 1 apart? */
+static bool apart(const finding *f, int k)
+{
+    return f->theta[k] - f->rho[k] > f->theta[k + 1] + f->rho[k + 1];
+}
+
+/* Error of theta: Kato and Temple where the neighbours are far enough. Of several that are not
+ * apart, as many eigenvalues lie within the norm of all their residuals (Kahan; Parlett, The
+ * Symmetric Eigenvalue Problem, theorem 11-5-1). */
 static double theta_error(const finding *f, int i, int upto, double tau)
 {
-    const double rho = f->rho[i];
-    const double above = i > 0 ? f->theta[i - 1] - f->rho[i - 1] - f->theta[i] : HUGE_VAL;
-    const double next = i + 1 < upto ? f->theta[i + 1] + f->rho[i + 1] : 1.0 / tau;
+    int first = i;
+    int last = i;
+    while (first > 0 && !apart(f, first - 1)) {
+        first--;
+    }
+    while (last + 1 < upto && !apart(f, last)) {
+        last++;
+    }
+    const double rho = mt_norm2(last + 1 - first, f->rho + first);
+    const double above =
+        first > 0 ? f->theta[first - 1] - f->rho[first - 1] - f->theta[i] : HUGE_VAL;
+    const double next = last + 1 < upto ? f->theta[last + 1] + f->rho[last + 1] : 1.0 / tau;
     const double gap = fmin(above, f->theta[i] - next);
-    return gap > rho ? rho * (rho / gap) : rho;
+    return first == last && gap > rho ? rho * (rho / gap) : rho;
 }
 
 static void fill(const finding *f, int upto, double tau, mt_modes *m)
@@ -205,11 +248,7 @@ mt_status mt_modal_lowest(const mt_lowest_problem *p, mt_arena *mem, mt_lowest_m
     m->error = mt_arena_f64(mem, most, 1);
     out->x = mt_arena_f64(mem, (size_t)p->n, (size_t)wanted);
     const mt_arena_mark mark = mt_arena_get_mark(mem);
-    f.x = mt_arena_f64(mem, (size_t)p->n, (size_t)f.most);
-    f.ax = mt_arena_f64(mem, (size_t)p->n, (size_t)f.most);
-    f.theta = mt_arena_f64(mem, (size_t)f.most, 1);
-    f.rho = mt_arena_f64(mem, (size_t)f.most, 1);
-    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(grow(&f, f.most, mem, err));
     int upto = 0;
     MT_TRY(find(&f, mem, &out->tau, &upto, err));
     out->below = p->n_rigid + upto;

@@ -106,6 +106,33 @@ def chain(rng, far):
                  [axial(f"s{i}", name(i), name(i + 1), [[float(i), 0.0], [float(i + 1), 0.0]], k[i]) for i in range(n)])
 
 
+@family("large trees")
+def tree(rng, far):
+    """The same with each mass sliding on the one before: a tree, of which the program finds the lowest modes without the others."""
+    n = rng.randint(100, 160)
+    k = [decades(rng, 1, 10 ** (rng.choice([0, 12]) * far) + 1) for _ in range(n)]
+    m = [decades(rng, 1, 10 ** (rng.choice([0, 9]) * far) + 1) for _ in range(n)]
+    name = lambda i: f"b{i}" if i else "ground"
+    at = lambda i: [float(i), 0.0]
+    return plain(2, [solid(name(i + 1), m[i], m[i], at(i + 1)) for i in range(n)],
+                 [joint(f"g{i}", "prismatic", name(i), name(i + 1), at(i + 1), axis=[1, 0]) for i in range(n)],
+                 [axial(f"s{i}", name(i), name(i + 1), [at(i), at(i + 1)], k[i]) for i in range(n)])
+
+
+@family("large stars")
+def star(rng, far):
+    """Many arms on a hub, in groups of equal ones or of such that differ by a gap."""
+    n, group, gap = rng.randint(100, 120), rng.choice([1, 3, 7, 20, 200]), rng.choice([0.0, 10.0 ** -(2 + 12 * far)])
+    m, k = rng.randint(1, 9) / 4, float(rng.randint(100, 999))
+    hub = decades(rng, 1, 100)
+    slide = lambda a, b, at: joint(f"g{b}", "prismatic", a, b, at, axis=[1, 0])
+    arms = [f"b{i}" for i in range(n)]
+    return plain(2, [solid("hub", hub, hub, [0.0, 0.0])] + [solid(b, m, m, [1.0, 0.0]) for b in arms],
+                 [slide("ground", "hub", [0.0, 0.0])] + [slide("hub", b, [1.0, 0.0]) for b in arms],
+                 [axial("w", "ground", "hub", [[-1.0, 0.0], [0.0, 0.0]], decades(rng, 1, 1e6))]
+                 + [axial(f"s{i}", "hub", b, [[0.0, 0.0], [1.0, 0.0]], k * (1 + (i // group) * 2.0 ** -6) * (1 + (i % group) * gap)) for i, b in enumerate(arms)])
+
+
 # geometry ----------------------------------------------------------------------------------------------------------------------------------------------------
 def _small(far):
     """1e-1 to 1e-7, one digit and a power of two's worth of it."""

@@ -33,6 +33,11 @@ class Stress(unittest.TestCase):
         found = list(run.stress("f", ["heavy on stiff feet"], [18, 43], {}, far=1.0))
         self.assertEqual(found, [])
 
+    def test_many_equal_modes_of_a_tree_are_all_found(self):
+        """Arms on a hub: 120 equal ones; 104 that almost are; in groups of twenty, of which the errors add up."""
+        found = list(run.stress("2", ["large stars"], [0, 12, 11, 3], {}))
+        self.assertEqual(found, [])
+
 
 @unittest.skipIf("MT_INSTRUMENTED" in os.environ, "judges the reference, not the program")
 class Faults(unittest.TestCase):
