@@ -5,7 +5,8 @@
  *     v     = A^+ e_d                            the smallest motion that drives the joint
  *     dq/ds = v - Z (Z^T K Z)^+ Z^T K v          the one that strains the springs least (K:
  *                                                their elastic stiffness), so that what hangs
- *                                                on springs comes along;
+ *                                                on springs comes along, by
+ *     [K A^T; A 0] [dq/ds; .] = [0; e_d]         where that is regular beyond doubt;
  * a step h goes to q (+) h dq/ds and is closed again by Newton from there. The correction is of
  * order h^2 on a smooth branch; where it is not small beside the step, or Newton does not close
  * the mechanism, the step is halved, so that the way never leaves its branch. Towards a limit
@@ -114,14 +115,36 @@ static mt_newton_problem problem_here(const walk *w, int m)
                                .trim = false};
 }
 
-/* work and e live in w->mem, work as long as the problem. */
-static mt_status eliminate_here(const walk *w, const mt_newton_problem *problem,
-                                mt_newton_work *work, mt_elimination *e, mt_err *err)
+/* work->v := dq/ds, sparse; *sure: it is that. */
+static mt_status relax_sparse(walk *w, mt_newton_work *work, bool *sure, mt_err *err)
 {
-    MT_TRY(mt_newton_work_init(work, problem, w->mem, err));
+    const int m = work->p->m;
+    mt_saddle saddle;
+    mt_lagrangian_eval(w->data, MT_ENERGY_PHYSICAL, w->at->pose, w->at, m, NULL,
+                       MT_CURVATURE_ELASTIC, &work->sparse);
+    MT_TRY(mt_saddle_factor(w->sys, m, &work->sparse, false, work->sparse.h, w->mem, &saddle,
+                            err));
+    *sure = saddle.whole;
+    if (*sure) {
+        MT_TRY(mt_newton_is_firm(&saddle, w->mem, sure, err));
+    }
+    memset(work->c, 0, (size_t)m * sizeof *work->c);
+    work->c[w->row] = 1.0;
+    return *sure ? mt_saddle_solve(&saddle, NULL, work->c, work->v, NULL, w->mem, err) : MT_OK;
+}
+
+/* work->v := dq/ds in a basis of the freedoms, unless the other joints hold the driven one. */
+static mt_status relax_dense(walk *w, mt_newton_work *work, mt_err *err)
+{
+    mt_elimination e;
     MT_TRY(mt_newton_dense(work, w->mem, err));
     mt_newton_evaluate(work, w->at, false);
-    return mt_eliminate(w->sys, problem->m, work->a, w->mem, e, err);
+    MT_TRY(mt_eliminate(w->sys, work->p->m, work->a, w->mem, &e, err));
+    memset(work->c, 0, (size_t)work->p->m * sizeof *work->c);
+    work->c[w->row] = 1.0;
+    MT_TRY(mt_eliminate_particular(&e, work->c, work->v, w->mem, err));
+    w->held = !(misfit(&e, work->a, w->row, work->v) <= HELD);
+    return w->held ? MT_OK : relax(w, work, &e, err);
 }
 
 /* dq/ds where the walk stands, and its size in model lengths per unit of the coordinate. Held:
@@ -132,14 +155,16 @@ static mt_status find_rate(walk *w, double *size, mt_err *err)
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
     const mt_newton_problem problem = problem_here(w, sys->n_constraints);
     mt_newton_work work;
-    mt_elimination e;
-    MT_TRY(eliminate_here(w, &problem, &work, &e, err));
-    memset(work.c, 0, (size_t)problem.m * sizeof *work.c);
-    work.c[w->row] = 1.0;
-    MT_TRY(mt_eliminate_particular(&e, work.c, work.v, w->mem, err));
-    w->held = !(misfit(&e, work.a, w->row, work.v) <= HELD);
+    bool sure = false;
+    MT_TRY(mt_newton_work_init(&work, &problem, w->mem, err));
+    if (work.least != NULL) {
+        MT_TRY(relax_sparse(w, &work, &sure, err));
+    }
+    w->held = false;
+    if (!sure) {
+        MT_TRY(relax_dense(w, &work, err));
+    }
     if (!w->held) {
-        MT_TRY(relax(w, &work, &e, err));
         memcpy(w->rate, work.v, (size_t)sys->nq * sizeof *w->rate);
     }
     *size = mt_newton_scaled_norm(&work, w->rate) * w->unit;
@@ -269,7 +294,21 @@ static mt_status refuse_dead_centre(walk *w, mt_err *err)
     const mt_newton_problem problem = problem_here(w, sys->n_constraints - 1);
     mt_newton_work work;
     mt_elimination e;
-    MT_TRY(eliminate_here(w, &problem, &work, &e, err));
+    mt_saddle least;
+    bool apart = false;
+    MT_TRY(mt_newton_work_init(&work, &problem, w->mem, err));
+    if (work.least != NULL) {
+        mt_lagrangian_eval(w->data, MT_ENERGY_PHYSICAL, w->at->pose, w->at, problem.m, NULL,
+                           MT_CURVATURE_NONE, &work.sparse);
+        MT_TRY(mt_newton_least_squares(&work, true, w->mem, &least, &apart, err));
+    }
+    if (apart) {
+        mt_arena_rewind(w->mem, mark);
+        return MT_OK;
+    }
+    MT_TRY(mt_newton_dense(&work, w->mem, err));
+    mt_newton_evaluate(&work, w->at, false);
+    MT_TRY(mt_eliminate(w->sys, problem.m, work.a, w->mem, &e, err));
     const mt_status rc = mt_singular_refuse(w->data, w->at, &e, w->mem, err);
     MT_TRY(mt_err_in(err, rc, "the position that it is driven from"));
     mt_arena_rewind(w->mem, mark);

@@ -108,7 +108,7 @@ static mt_status linearise(mt_newton_work *w, const mt_placement *at, bool first
         const bool physical = w->p->energy == MT_ENERGY_PHYSICAL;
         MT_TRY(mt_newton_linearise_sparse(w, at, first && physical, mem, solver, &sure, err));
         if (sure && w->gap <= MT_STEP_DONE && balanced(w)) { /* the step is rounding, or none */
-            MT_TRY(mt_newton_is_firm(solver, mem, &sure, err));
+            MT_TRY(mt_newton_is_firm(&solver->saddle, mem, &sure, err));
         }
     }
     if (sure) {

@@ -34,6 +34,9 @@ static const double NO_STIFFNESS = 1e-13;
  * 1/NO_STIFFNESS, for what the estimate of the norm and sums over many freedoms may be off. */
 static const double FAR_FROM_DEPENDENT = 1e8;
 static const double FIRM = 1e10;
+/* A step downhill that is longer than it may be by no more than this is shortened as a whole.
+ * */
+static const double LITTLE_LONGER = 2.0;
 
 mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_arena *mem,
                               mt_err *err)
@@ -305,6 +308,15 @@ static double unbalanced(mt_newton_work *w, const mt_saddle *s)
     return most;
 }
 
+mt_status mt_newton_least_squares(mt_newton_work *w, bool apart, mt_arena *mem,
+                                  mt_saddle *least, bool *sure, mt_err *err)
+{
+    w->factors++;
+    MT_TRY(mt_saddle_factor(w->sys, w->p->m, &w->sparse, true, w->least, mem, least, err));
+    *sure = least->whole;
+    return *sure && apart ? mt_saddle_below(least, FAR_FROM_DEPENDENT, mem, sure, err) : MT_OK;
+}
+
 mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, bool first,
                                      mt_arena *mem, mt_newton_solver *solver, bool *sure,
                                      mt_err *err)
@@ -316,12 +328,7 @@ mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, 
     MT_TRY(mt_interrupt_check(w->sys->model->interrupt, err));
     mt_lagrangian_eval(p->data, p->energy, p->drawn, at, p->m, NULL, MT_CURVATURE_FULL,
                        &w->sparse);
-    w->factors++;
-    MT_TRY(mt_saddle_factor(w->sys, p->m, &w->sparse, true, w->least, mem, &least, err));
-    *sure = least.whole;
-    if (*sure && first) {
-        MT_TRY(mt_saddle_below(&least, FAR_FROM_DEPENDENT, mem, sure, err));
-    }
+    MT_TRY(mt_newton_least_squares(w, first, mem, &least, sure, err));
     if (!*sure) {
         return MT_OK;
     }
@@ -348,14 +355,14 @@ mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, 
     MT_TRY(mt_saddle_solve(&solver->saddle, w->reduced, w->turn, w->step, w->turn, mem, err));
     w->moved = mt_newton_scaled_norm(w, w->step);
     w->null_freedoms = 0;
-    *sure = w->moved <= MT_STEP_LIMIT;
+    const bool convex = mt_saddle_convex(&solver->saddle);
+    *sure = w->moved <= (convex ? LITTLE_LONGER : 1.0) * MT_STEP_LIMIT;
     return MT_OK;
 }
 
-mt_status mt_newton_is_firm(const mt_newton_solver *solver, mt_arena *scratch, bool *firm,
-                            mt_err *err)
+mt_status mt_newton_is_firm(const mt_saddle *saddle, mt_arena *scratch, bool *firm, mt_err *err)
 {
-    return mt_saddle_below(&solver->saddle, FIRM, scratch, firm, err);
+    return mt_saddle_below(saddle, FIRM, scratch, firm, err);
 }
 
 /*

@@ -60,15 +60,20 @@ void mt_newton_evaluate(mt_newton_work *w, const mt_placement *at, bool hessian)
  * (unlimited); tau is advanced. */
 mt_status mt_newton_linearise(mt_newton_work *w, const mt_placement *at, mt_arena *mem,
                               mt_newton_solver *solver, mt_err *err);
-/* The same sparse. *sure: the equations are regular by a margin, and the step is no longer than
- * it may be; else nothing that was found means anything. first: also, by as much as says that
- * no equation depends on others next to here, and that Z^T H Z is positive definite. */
+/* The same sparse. *sure: the equations are regular by a margin, and the step is not much
+ * longer than it may be; else nothing that was found means anything. first: also, by as much as
+ * says that no equation depends on others next to here, and that Z^T H Z is positive definite.
+ * */
 mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, bool first,
                                      mt_arena *mem, mt_newton_solver *solver, bool *sure,
                                      mt_err *err);
 /* Has the sparse Z^T H Z an inverse, beyond doubt? Before a solution is told. */
-mt_status mt_newton_is_firm(const mt_newton_solver *solver, mt_arena *scratch, bool *firm,
+mt_status mt_newton_is_firm(const mt_saddle *saddle, mt_arena *scratch, bool *firm,
                             mt_err *err);
+/* Least squares of the w->sparse last evaluated. *sure: the equations are independent; apart:
+ * and there is no place next to here where they are not. */
+mt_status mt_newton_least_squares(mt_newton_work *w, bool apart, mt_arena *mem,
+                                  mt_saddle *least, bool *sure, mt_err *err);
 /* Largest violation of the constraints at a place, in model lengths. */
 double mt_newton_gap_at(mt_newton_work *w, const mt_placement *at);
 /* Z^T H Z, n x n with leading dimension ld. */
