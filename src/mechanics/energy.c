@@ -69,7 +69,7 @@ typedef struct elongation {
     double open;  /* D */
 } elongation;
 
-static elongation row_part(const worker *w, int kind, int row, const double *phi)
+static inline elongation row_part(const worker *w, int kind, int row, const double *phi)
 {
     const mt_rows *const rows = &w->lin->full[kind];
     const double *const df = w->lin->full_error[kind];
@@ -110,6 +110,17 @@ static void add_product(double c, const elongation *a, const elongation *b, bool
     out->size += moves ? fabs(c * a->s * b->s) : 0.0;
 }
 
+/* c a^2, to the same bits. */
+static inline void add_square(double c, const elongation *a, bool moves, sums *out)
+{
+    const double size = fabs(a->s);
+    const double energy = c * a->s * a->s;
+    out->energy += energy;
+    out->noise += fabs(c) * (2.0 * (size * a->terms));
+    out->open += fabs(c) * ((2.0 * (size * a->open)) + (a->open * a->open));
+    out->size += moves ? fabs(energy) : 0.0;
+}
+
 /* Returns whether the energy of the term is more than rounding of what its row, without the
  * signs, would have. */
 static bool add_term(const worker *k, int kind, const mt_term *t, const double *phi, sums *out)
@@ -128,7 +139,7 @@ static bool add_term(const worker *k, int kind, const mt_term *t, const double *
         const bool moved = p[side].s * p[side].s > tiny * p[side].terms * p[side].terms;
         moves = moves || moved;
         if (!t->pair) {
-            add_product(c, &p[0], &p[0], moved, out);
+            add_square(c, &p[0], moved, out);
         }
     }
     if (t->pair) {

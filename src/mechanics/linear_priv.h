@@ -16,7 +16,6 @@ struct mt_linear {
     mt_arena reduced_mem; /* of the stage reduction and of the matrices */
     mt_arena scratch;
     mt_stages stages;
-    bool graded;                  /* grad belongs to value */
     mt_arena_mark before_tangent; /* in place */
     double *value;                /* [program.count] */
     double *grad; /* [program.count x n_inputs], after an update with gradients */
@@ -26,17 +25,13 @@ struct mt_linear {
     mt_data data;  /* real */
     mt_data dual;  /* with derivative */
     mt_state position;
-    /* a driven joint begins where the last update left it, instead of at the reference
-     * position: for sweeps */
-    bool follow;
     mt_placement last; /* where it left the driven joint */
-    bool has_last;
-    int first_input;  /* derivatives are asked for from this input on; 0: of all of them */
-    mt_elimination e; /* at the final position, constraints of the linearised system */
-    double *z_error;  /* nq x n: bounds of the errors of e.z */
-    int m;            /* constraints in force */
-    double *a;        /* m x nq */
-    int n;            /* freedoms */
+    int first_input;   /* derivatives are asked for from this input on; 0: of all of them */
+    mt_elimination e;  /* at the final position, constraints of the linearised system */
+    double *z_error;   /* nq x n: bounds of the errors of e.z */
+    int m;             /* constraints in force */
+    double *a;         /* m x nq */
+    int n;             /* freedoms */
     int n_idle; /* spins without mass, stiffness or joint, left out of the freedoms (idle.h) */
     bool *idle; /* [bodies] takes part in one */
     int n_pieces;                      /* of pieces */
@@ -60,11 +55,16 @@ struct mt_linear {
     /* n x n: what is no sum of squares: geometric stiffness, indefinite couplings, negative
      * coefficients; K_r = B^T diag(c) B + G */
     double *factor_g;
-    bool has_factor_g;               /* is there such a part? */
     unsigned long stiffness_version; /* changes when K_r is made again */
     unsigned long mass_version;      /* when M_r is */
-    bool unstressed;  /* driven to its place with no spring stretched: as good as unloaded */
-    bool idle_varies; /* whether there are idle spins depends on inputs */
+    bool unstressed;   /* driven to its place with no spring stretched: as good as unloaded */
+    bool has_factor_g; /* is there a factor_g? */
+    bool graded;       /* grad belongs to value */
+    /* a driven joint begins where the last update left it, instead of at the reference
+     * position: for sweeps */
+    bool follow;
+    bool has_last;              /* is last some place? */
+    bool idle_varies;           /* whether there are idle spins depends on inputs */
     mt_linear_tangent *tangent; /* [n_inputs], where geometry or position depend on inputs */
 };
 

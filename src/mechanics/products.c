@@ -110,8 +110,9 @@ static void coefficient_slopes(const mt_linear *lin, int kind, double sign, cons
             const double s = mt_rows_dot(rows, r, y);
             energy += t->pair ? 0.5 * s * mt_rows_dot(rows, partner(t, r), y) : s * s;
         }
+        const double *const dc = lin->grad + ((ptrdiff_t)t->coefficient * np);
         for (int p = 0; p < np && energy != 0.0; p++) {
-            slope[p] += sign * energy * mt_linear_slope(lin, t->coefficient, p);
+            slope[p] += sign * energy * dc[p];
         }
     }
 }
