@@ -15,10 +15,17 @@
 #include "study_kinds.h"
 
 enum { PLACES = 50, PATH_SIZE = 600 };
-/* Questions of one study that the short form goes through on its way to all its places
- * together, of a kind and of the tree, and the places that each has at least. Of the tree, a
- * study that asks more than LONG is interrupted there alone. */
-enum { QUESTIONS = 20000, QUESTIONS_TREE = 4000, PLACES_LEAST = 2, LONG = 2000 };
+/* The short form. A study that asks more than this is interrupted there alone; of others, so
+ * many questions are gone through on the way to all their places, of which each has
+ * PLACES_LEAST. */
+typedef struct effort {
+    long once_after; /* 0: never */
+    long questions;
+} effort;
+static const effort KINDS = {10000, 20000};
+static const effort KINDS_ALL = {0, 20000}; /* with MT_EVERY=1 */
+static const effort TREE = {2000, 4000};
+enum { PLACES_LEAST = 2 };
 /* Numbers of one design, analysed twice. */
 static const double SAME = 1e-9;
 
@@ -289,18 +296,33 @@ static mt_result *answer_of(mt_test *t, const char *name, const mt_study *study,
     return r;
 }
 
+/* Of a study that asks often, the best so far; others are disturbed. */
+static void disturb_one(mt_test *t, const char *name, const mt_study *study, effort most,
+                        tally *n)
+{
+    moment m = {.at = places_wanted() > 0 ? 0 : most.once_after};
+    mt_result *const r = answer_of(t, name, study, &m);
+    if (r != NULL && r->status == MT_RESULT_INTERRUPTED) {
+        CHECK(t, !is_cut(r, "baseline"));
+        if (is_cut(r, "search")) {
+            designs_hold(t, study, r);
+        }
+        count(n, r);
+    } else if (r != NULL) {
+        disturb(t, name, study, r, m.asked, most.questions, n);
+    }
+    mt_result_delete(r);
+}
+
 static void every_kind__says_what_is_missing(mt_test *t)
 {
+    const bool all = getenv("MT_EVERY") != NULL;
     tally n = {0};
     for (int i = 0; i < MT_COUNT(study_kinds); i++) {
         study_case c;
         mt_test_row(t, "%s", study_kinds[i].name);
         if (study_load(t, study_kinds[i].model, study_kinds[i].members, &c)) {
-            moment m = {0};
-            c.result = answer_of(t, study_kinds[i].name, c.study, &m);
-            if (c.result != NULL) {
-                disturb(t, study_kinds[i].name, c.study, c.result, m.asked, QUESTIONS, &n);
-            }
+            disturb_one(t, study_kinds[i].name, c.study, all ? KINDS_ALL : KINDS, &n);
         }
         study_free(&c);
     }
@@ -310,23 +332,6 @@ static void every_kind__says_what_is_missing(mt_test *t)
         CHECK(t, n.by_phase[k] > 0);
     }
     CHECK(t, n.none > 0);
-}
-
-/* Of a study that asks often, the best so far; others are disturbed. */
-static void disturb_one(mt_test *t, const char *name, const mt_study *study, tally *n)
-{
-    moment m = {.at = places_wanted() > 0 ? 0 : LONG};
-    mt_result *const r = answer_of(t, name, study, &m);
-    if (r != NULL && r->status == MT_RESULT_INTERRUPTED) {
-        CHECK(t, !is_cut(r, "baseline"));
-        if (is_cut(r, "search")) {
-            designs_hold(t, study, r);
-        }
-        count(n, r);
-    } else if (r != NULL) {
-        disturb(t, name, study, r, m.asked, QUESTIONS_TREE, n);
-    }
-    mt_result_delete(r);
 }
 
 static void every_study_of_the_tree__says_what_is_missing(mt_test *t)
@@ -341,7 +346,7 @@ static void every_study_of_the_tree__says_what_is_missing(mt_test *t)
         mt_err err = {.text = ""};
         mt_test_row(t, "%s", list.gl_pathv[i]);
         if (CHECK_INT(t, mt_study_read(list.gl_pathv[i], NULL, &study, &err), MT_OK)) {
-            disturb_one(t, strrchr(list.gl_pathv[i], '/') + 1, study, &n);
+            disturb_one(t, strrchr(list.gl_pathv[i], '/') + 1, study, TREE, &n);
         }
         mt_study_delete(study);
     }

@@ -52,7 +52,7 @@ void mt_sites_record(void)
 
 bool mt_sites_known(int i)
 {
-    return MT_SITES_CALLERS > 0 && is_among(&sites.place[i], sites.n_known, sites.known);
+    return is_among(&sites.place[i], sites.n_known, sites.known);
 }
 
 void mt_sites_fail(int i)

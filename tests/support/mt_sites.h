@@ -4,10 +4,10 @@
  * the system for it, so failing the k-th allocation of the system seldom meets a given check.
  * Here every function of base/arena.h that hands out memory is replaced by the linker (--wrap,
  * for programs named test_*_sites), which knows its caller by the return address: a first run
- * notes all places, then each is made to fail once. Where frames can be walked (instrumented
- * builds, MT_SITES_CALLERS) a place is known by the caller's callers, too, so that a refusal
- * also comes up every way that leads to it; and there, where runs are dear, what an earlier run
- * of the program had refused need not be refused again.
+ * notes all places, then each is made to fail once; what an earlier run of the program had
+ * refused need not be refused again. Where frames can be walked (instrumented builds,
+ * MT_SITES_CALLERS) a place is known by the caller's callers, too, so that a refusal also comes
+ * up every way that leads to it.
  *
  *     mt_sites_record();
  *     run();
@@ -33,7 +33,7 @@ enum { MT_SITES_MOST = 4096 };
 void mt_sites_ask(bool (*refuses)(const void *caller, size_t size));
 /* Forget all places and note those that ask from now on. One thread only. */
 void mt_sites_record(void);
-/* True where places are known by their callers, and this one has been refused before. */
+/* True where this place has been refused before. */
 bool mt_sites_known(int i);
 /* Let the first call from place i fail from now on. */
 void mt_sites_fail(int i);
