@@ -129,14 +129,21 @@ mt_table mt_report_objectives(const mt_recommendation *r)
  * least. */
 static const char CHANGE[] = "change";
 
-static bool has_change(const mt_result *result)
+static bool has_objective(const mt_result *result, const char *text)
 {
     for (int k = 0; k < result->n_objectives; k++) {
-        if (strcmp(result->objectives[k].text, CHANGE) == 0) {
+        if (strcmp(result->objectives[k].text, text) == 0) {
             return true;
         }
     }
     return false;
+}
+
+void mt_report_clearance_column(mt_table *t, const mt_result *result)
+{
+    mt_table_column(t,
+                    has_objective(result, "clearance") ? "without margin [%]" : "clearance [%]",
+                    "clearance_percent", MT_ALIGN_POINT);
 }
 
 void mt_report_objective_columns(mt_table *t, const mt_result *result)
@@ -152,7 +159,7 @@ void mt_report_objective_columns(mt_table *t, const mt_result *result)
         mt_table_column(t, heading, strcmp(heading, CHANGE) == 0 ? CHANGE : member,
                         MT_ALIGN_POINT);
     }
-    if (!has_change(result)) {
+    if (!has_objective(result, CHANGE)) {
         mt_table_column(t, CHANGE, CHANGE, MT_ALIGN_POINT);
     }
 }
@@ -163,7 +170,7 @@ void mt_report_objective_cells(mt_table *t, const mt_result *result, const mt_re
         mt_table_number(t, k < r->n_objectives ? r->objectives[k].recommended : nan(""),
                         VALUE_DIGITS);
     }
-    if (!has_change(result)) {
+    if (!has_objective(result, CHANGE)) {
         mt_table_number(t, r->change, VALUE_DIGITS);
     }
 }
@@ -369,7 +376,7 @@ mt_table mt_report_alternatives(const mt_result *result)
     const int n = result->n_variables;
     const bool bands = result->baseline.n_gaps > 0;
     if (bands) {
-        mt_table_column(&t, "clearance [%]", "clearance_percent", MT_ALIGN_POINT);
+        mt_report_clearance_column(&t, result);
         mt_table_column(&t, "modes below bands", "gap_assignment", MT_ALIGN_LEFT);
     }
     for (int k = 0; k < n; k++) {

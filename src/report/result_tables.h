@@ -19,6 +19,9 @@ mt_table mt_report_objectives(const mt_recommendation *r);
 void mt_report_objective_columns(mt_table *t, const mt_result *result);
 void mt_report_objective_cells(mt_table *t, const mt_result *result,
                                const mt_recommendation *r);
+/* The column of the least clearance from the bands without their margin, beside an objective
+ * that is the one with it. */
+void mt_report_clearance_column(mt_table *t, const mt_result *result);
 /* name, unit, original, recommended, change, bound. */
 mt_table mt_report_parameters(const mt_recommendation *r);
 /* How the change of a parameter counts, as a sentence; false (and nothing) where it is the

@@ -263,6 +263,31 @@ static void designs__with_bands_have_clearance_and_assignment(mt_test *t)
     mt_result_delete(r);
 }
 
+/* Of two clearances side by side each says which it is. */
+static void alternatives__tell_the_objective_from_the_bare_clearance(mt_test *t)
+{
+    static const char *const headings[] = {"  clearance [%]  modes below", "change  off by",
+                                           "clearance [%]  change",
+                                           "without margin [%]  modes"};
+    static mt_result_objective best[] = {{"clearance", "clearance", "%"}};
+    mt_result *const r = make_banded(t);
+    REQUIRE(t, r != NULL);
+    for (int i = 0; i < 2; i++) {
+        mt_text out = {.s = NULL};
+        mt_table table = mt_report_alternatives(r);
+        mt_table_print(&table, 0, &out);
+        for (int k = 0; k < 2; k++) {
+            mt_test_row(t, "%s", headings[2 * i + k]);
+            CHECK(t, out.s != NULL && strstr(out.s, headings[2 * i + k]) != NULL);
+        }
+        mt_text_free(&out);
+        mt_table_free(&table);
+        r->objectives = best;
+        r->n_objectives = 1;
+    }
+    mt_result_delete(r);
+}
+
 /* A design that lists fewer modes of the first configuration must not shift those of the
  * second. */
 static void designs__find_frequencies_by_configuration_and_mode(mt_test *t)
@@ -339,7 +364,8 @@ static void figures__stand_without_any_finite_number(mt_test *t)
     mt_result_delete(r);
 }
 
-MT_TEST_MAIN(MT_TEST(sections__that_an_interrupt_cut_say_so),
+MT_TEST_MAIN(MT_TEST(alternatives__tell_the_objective_from_the_bare_clearance),
+             MT_TEST(sections__that_an_interrupt_cut_say_so),
              MT_TEST(summary__says_status_numbers_and_reasons),
              MT_TEST(verification__ignores_only_what_is_not_comparable),
              MT_TEST(designs__have_the_baseline_first_and_one_column_per_variable),
