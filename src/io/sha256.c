@@ -2,97 +2,45 @@
 /*
  * SHA-256, FIPS 180-4 (2015), sections 4.1.2, 5.1.1, 6.2. The round constants are the first 32
  * bits of the fractional parts of the cube roots of the first 64 primes, the initial hash those
- * of the square roots of the first 8 (4.2.2, 5.3.3); they are computed here, exactly, by
- * integer roots, instead of being typed in.
+ * of the square roots of the first 8 (4.2.2, 5.3.3).
  */
 #include "io/sha256.h"
 
-#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
 enum { BLOCK = 64, ROUNDS = 64, WORDS = 8 };
 
-typedef struct sha {
-    uint32_t k[ROUNDS];
-    uint32_t h[WORDS];
-} sha;
+static const uint32_t round_constant[ROUNDS] = {
+    0x428a2f98U, 0x71374491U, 0xb5c0fbcfU, 0xe9b5dba5U, 0x3956c25bU, 0x59f111f1U, 0x923f82a4U,
+    0xab1c5ed5U, 0xd807aa98U, 0x12835b01U, 0x243185beU, 0x550c7dc3U, 0x72be5d74U, 0x80deb1feU,
+    0x9bdc06a7U, 0xc19bf174U, 0xe49b69c1U, 0xefbe4786U, 0x0fc19dc6U, 0x240ca1ccU, 0x2de92c6fU,
+    0x4a7484aaU, 0x5cb0a9dcU, 0x76f988daU, 0x983e5152U, 0xa831c66dU, 0xb00327c8U, 0xbf597fc7U,
+    0xc6e00bf3U, 0xd5a79147U, 0x06ca6351U, 0x14292967U, 0x27b70a85U, 0x2e1b2138U, 0x4d2c6dfcU,
+    0x53380d13U, 0x650a7354U, 0x766a0abbU, 0x81c2c92eU, 0x92722c85U, 0xa2bfe8a1U, 0xa81a664bU,
+    0xc24b8b70U, 0xc76c51a3U, 0xd192e819U, 0xd6990624U, 0xf40e3585U, 0x106aa070U, 0x19a4c116U,
+    0x1e376c08U, 0x2748774cU, 0x34b0bcb5U, 0x391c0cb3U, 0x4ed8aa4aU, 0x5b9cca4fU, 0x682e6ff3U,
+    0x748f82eeU, 0x78a5636fU, 0x84c87814U, 0x8cc70208U, 0x90befffaU, 0xa4506cebU, 0xbef9a3f7U,
+    0xc67178f2U,
+};
 
-/* Is x^power <= p * 2^(32 power)? x = 2^32 times a root below 8: compared in 32-bit limbs. */
-static bool root_at_most(uint64_t x, int power, uint32_t p)
-{
-    enum { LIMBS = 6, LIMB_BITS = 32 };
-    uint32_t product[LIMBS] = {1};
-    for (int step = 0; step < power; step++) {
-        uint32_t next[LIMBS + 2] = {0};
-        const uint32_t factor[2] = {(uint32_t)x, (uint32_t)(x >> LIMB_BITS)};
-        for (int f = 0; f < 2; f++) {
-            uint64_t carry = 0;
-            for (int i = 0; i + f < LIMBS; i++) {
-                carry += (uint64_t)product[i] * factor[f] + next[i + f];
-                next[i + f] = (uint32_t)carry;
-                carry >>= LIMB_BITS;
-            }
-        }
-        memcpy(product, next, sizeof product);
-    }
-    /* p * 2^(32 power) has p in limb `power` and nothing else */
-    for (int i = LIMBS - 1; i > power; i--) {
-        if (product[i] != 0) {
-            return false;
-        }
-    }
-    return product[power] < p; /* never equal: the root of a prime is irrational */
-}
-
-/* First 32 bits of the fractional part of the root of p. */
-static uint32_t root_fraction(int power, uint32_t p)
-{
-    uint64_t x = 0;
-    for (uint64_t bit = (uint64_t)1 << 36; bit != 0; bit >>= 1) {
-        if (root_at_most(x | bit, power, p)) {
-            x |= bit;
-        }
-    }
-    return (uint32_t)x;
-}
-
-static bool is_prime(uint32_t p)
-{
-    for (uint32_t d = 2; d * d <= p; d++) {
-        if (p % d == 0) {
-            return false;
-        }
-    }
-    return true;
-}
-
-static void start(sha *s)
-{
-    uint32_t p = 2;
-    for (int i = 0; i < ROUNDS; p++) {
-        if (is_prime(p)) {
-            s->k[i] = root_fraction(3, p);
-            if (i < WORDS) {
-                s->h[i] = root_fraction(2, p);
-            }
-            i++;
-        }
-    }
-}
+static const uint32_t initial_hash[WORDS] = {
+    0x6a09e667U, 0xbb67ae85U, 0x3c6ef372U, 0xa54ff53aU,
+    0x510e527fU, 0x9b05688cU, 0x1f83d9abU, 0x5be0cd19U,
+};
 
 static uint32_t rotate(uint32_t x, int n)
 {
     return (x >> n) | (x << (32 - n));
 }
 
-static void compress(sha *s, const unsigned char *block)
+static void compress(uint32_t hash[WORDS], const unsigned char *block)
 {
     uint32_t w[ROUNDS];
     for (size_t t = 0; t < 16; t++) {
-        const unsigned char *const b = block + 4 * t;
+        const unsigned char *const p = block + 4 * t;
         w[t] =
-            (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | (uint32_t)b[3];
+            (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | (uint32_t)p[3];
     }
     for (int t = 16; t < ROUNDS; t++) {
         const uint32_t x = w[t - 15];
@@ -100,21 +48,31 @@ static void compress(sha *s, const unsigned char *block)
         w[t] = w[t - 16] + (rotate(x, 7) ^ rotate(x, 18) ^ (x >> 3)) + w[t - 7] +
                (rotate(y, 17) ^ rotate(y, 19) ^ (y >> 10));
     }
-    uint32_t v[WORDS]; /* a b c d e f g h */
-    memcpy(v, s->h, sizeof v);
+    uint32_t a = hash[0];
+    uint32_t b = hash[1];
+    uint32_t c = hash[2];
+    uint32_t d = hash[3];
+    uint32_t e = hash[4];
+    uint32_t f = hash[5];
+    uint32_t g = hash[6];
+    uint32_t h = hash[7];
     for (int t = 0; t < ROUNDS; t++) {
-        const uint32_t e = v[4];
-        const uint32_t a = v[0];
-        const uint32_t t1 = v[7] + (rotate(e, 6) ^ rotate(e, 11) ^ rotate(e, 25)) +
-                            ((e & v[5]) ^ (~e & v[6])) + s->k[t] + w[t];
-        const uint32_t t2 = (rotate(a, 2) ^ rotate(a, 13) ^ rotate(a, 22)) +
-                            ((a & v[1]) ^ (a & v[2]) ^ (v[1] & v[2]));
-        memmove(v + 1, v, 7 * sizeof v[0]);
-        v[4] += t1;
-        v[0] = t1 + t2;
+        const uint32_t t1 = h + (rotate(e, 6) ^ rotate(e, 11) ^ rotate(e, 25)) +
+                            ((e & f) ^ (~e & g)) + round_constant[t] + w[t];
+        const uint32_t t2 =
+            (rotate(a, 2) ^ rotate(a, 13) ^ rotate(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
+        h = g;
+        g = f;
+        f = e;
+        e = d + t1;
+        d = c;
+        c = b;
+        b = a;
+        a = t1 + t2;
     }
+    const uint32_t after[WORDS] = {a, b, c, d, e, f, g, h};
     for (int i = 0; i < WORDS; i++) {
-        s->h[i] += v[i];
+        hash[i] += after[i];
     }
 }
 
@@ -123,10 +81,10 @@ void mt_sha256(const void *bytes, size_t length, char out[MT_SHA256_TEXT])
     static const char hex[] = "0123456789abcdef";
     const unsigned char *const p = bytes;
     const size_t whole = length / BLOCK * BLOCK;
-    sha s;
-    start(&s);
+    uint32_t hash[WORDS];
+    memcpy(hash, initial_hash, sizeof hash);
     for (size_t i = 0; i < whole; i += BLOCK) {
-        compress(&s, p + i);
+        compress(hash, p + i);
     }
     /* padding: a bit 1, zeros, the length in bits as 64 bits big-endian */
     unsigned char last[2 * BLOCK] = {0};
@@ -141,10 +99,10 @@ void mt_sha256(const void *bytes, size_t length, char out[MT_SHA256_TEXT])
         last[padded - 1 - i] = (unsigned char)(bits >> (8 * i));
     }
     for (size_t i = 0; i < padded; i += BLOCK) {
-        compress(&s, last + i);
+        compress(hash, last + i);
     }
     for (size_t i = 0; i < 64; i++) {
-        out[i] = hex[(s.h[i / 8] >> (28 - 4 * (i % 8))) & 0xFU];
+        out[i] = hex[(hash[i / 8] >> (28 - 4 * (i % 8))) & 0xFU];
     }
     out[64] = '\0';
 }
