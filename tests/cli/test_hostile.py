@@ -27,7 +27,7 @@ FILES = ["tests/schema/plane.json", "tests/schema/space.json", "tests/io/good/st
          "tests/io/good/aircraft.json", "problems/inceptor.json", "studies/engine_orders.json", "studies/inceptor_trade.json",
          "studies/six_masses_bands.json", "tests/models/space_couplings.json"]
 COMMANDS = {"model": [("modes",), ("info",), ("sensitivity", "--count", "2")], "study": [("run", "-o", "out", "--quiet")]}
-knobs = argparse.Namespace(size=500 if INSTRUMENTED else BASE, count=6 if INSTRUMENTED else 20, seed=20261122)
+knobs = argparse.Namespace(size=500 if INSTRUMENTED else 2000, count=6 if INSTRUMENTED else 20, seed=4)
 
 
 def seconds():

@@ -3,7 +3,7 @@
 
 Every shipped study and model is run as two twins that differ in their free texts only: harmless words in one, hostile ones in the other. What the program says of
 both must be the same but for these texts, which are shown escaped: no control character leaves the program, no line, no cell and no tag is made by a name.
-Each round takes every fourth file and shifts the hostile texts: --rounds 4 --seed S takes all.
+Each round takes every eighth file and shifts the hostile texts: --rounds 8 --seed S takes all.
 """
 import argparse
 import copy
@@ -32,7 +32,7 @@ HOSTILE = [
 FREE = {"description", "source", "label"}
 SLOW = {"inceptor_identification", "inceptor_rotor", "truss_72bar", "inceptor_trade"}  # more than half a second
 DROPPED = {"sha256", "study_path", "solve_s"}
-SHARE = 4
+SHARE = 8
 LONG = 400  # texts beyond it may be cut somewhere
 
 

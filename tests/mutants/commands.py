@@ -2,6 +2,7 @@
 """Every command on a case, within limits of time and memory, and what must hold of each answer whatever the files say."""
 import csv
 import json
+import math
 import os
 import re
 import resource
@@ -39,7 +40,8 @@ class Program:
 
     def _limits(self):
         patience, grace = self.patience, self.grace
-        resource.setrlimit(resource.RLIMIT_CPU, (patience + 2 * grace, patience + 2 * grace + 1))
+        most = math.ceil(patience + 2 * grace)
+        resource.setrlimit(resource.RLIMIT_CPU, (most, most + 1))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_FSIZE, (MOST_OUTPUT, MOST_OUTPUT))
         if not self.instrumented:

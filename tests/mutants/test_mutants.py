@@ -14,7 +14,7 @@ from corpus import Case, Corpus
 from known import reason
 
 SEED = "5"
-COUNT = 6 if os.environ.get("MT_INSTRUMENTED") or os.environ.get("MT_TEST_LAUNCHED") else 20
+COUNT = 6 if os.environ.get("MT_INSTRUMENTED") or os.environ.get("MT_TEST_LAUNCHED") else len(run.ROUND)
 CASES = Path(__file__).resolve().parent / "cases"
 
 # Programs that are wrong in one way: a shell script around the sound one, "$@" what it was asked.
@@ -67,7 +67,7 @@ class Faults(unittest.TestCase):
         path = folder / "modetune"
         path.write_text(f"#!/bin/bash\nSOUND={os.path.abspath(run.PROGRAM)}\n{script}\n", encoding="utf-8")
         path.chmod(0o755)
-        program = Program(path, patience=(1, 1) if fault == "stuck" else None)
+        program = Program(path, patience=(0.2, 0.2) if fault == "stuck" else None)
         if fault == "harmless":
             study = corpus.study("studies/inceptor_tuning_1.json")
             return {check for check, _ in run.harmless.compare(program, random.Random(1), study, "rename", folder, {"commands": 0})}
