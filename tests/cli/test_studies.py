@@ -151,6 +151,28 @@ class Compare(CliTest):
         self.write("studies/two.json", study())
         self.assertIn("no published values to judge", self.expect(2, "compare", path).stderr)
 
+    def test_every_objective_has_its_value_everywhere(self):
+        order = ', "objective": [ { "minimise": "k1 + k2" }, { "minimise": "change" } ]'
+        path = self.write("studies/two.json", study(extra=order + HOLDS.replace("3,", "2,")))
+        self.expect(0, "run", path, "-o", ".")
+        result = json.loads((self.folder / "two/result.json").read_text(encoding="utf-8"))
+        change = math.hypot(math.log(2 / 3), math.log(1.5))  # (3, 1), the original, and (2, 1.5) meet the goals
+        for design, wanted in [(result["baseline"], (4, 0)), *zip(result["recommendations"], ((3.5, change), (4, 0)), strict=True)]:
+            self.assertEqual([o["text"] for o in design["objectives"]], ["k1 + k2", "change"])
+            for told, value, original in zip(design["objectives"], wanted, (4, 0)):
+                self.assertAlmostEqual(told["recommended"], value, delta=1e-5)
+                self.assertAlmostEqual(told["original"], original, delta=1e-12)
+        self.assertEqual(self.json_of("compare", path)["objectives"], result["recommendations"][0]["objectives"])
+        row = r"k1 \+ k2 +- +4\.00000 +3\.50000\n +change +- +0 +0\.5734"
+        for args in (["run", path, "-o", "."], ["compare", path]):
+            self.assertRegex(self.expect(0, *args).stdout, row)
+        with open(self.folder / "two/recommendations.csv", encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([round(float(r["objective k1 + k2"]), 4) for r in rows], [4, 3.5, 4])
+        self.assertEqual([round(float(r["change"]), 4) for r in rows], [0, round(change, 4), 0])
+        page = (self.folder / "two/report.html").read_text(encoding="utf-8")
+        self.assertIn('<td>k1 + k2</td><td>-</td><td class="n">4.00000</td><td class="n">3.50000</td>', page)
+
 
 class Apply(CliTest):
     def setUp(self):
