@@ -11,8 +11,11 @@ static mt_status eig_sym(int n, double *a, double *w, char job, mt_arena *scratc
 {
     double query = 0.0;
     lapack_int iquery = 0;
-    lapack_int info =
-        LAPACKE_dsyevd_work(LAPACK_COL_MAJOR, job, 'L', n, a, n, w, &query, -1, &iquery, -1);
+    lapack_int info = 0;
+    if (n > MT_LAPACK_UNBLOCKED) {
+        info = LAPACKE_dsyevd_work(LAPACK_COL_MAJOR, job, 'L', n, a, n, w, &query, -1, &iquery,
+                                   -1);
+    }
     if (info != 0) {
         return mt_lapack_bug("dsyevd", info, err);
     }

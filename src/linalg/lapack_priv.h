@@ -6,6 +6,10 @@
 
 #include "linalg/dense.h"
 
+/* Up to this order LAPACK's blocks of 32 columns are never formed: the documented least
+ * workspace does for the same operations, and nobody has to ask how much would be best. */
+enum { MT_LAPACK_UNBLOCKED = 32 };
+
 /* LAPACK said info < 0: our bug. Names the argument. */
 mt_status mt_lapack_bug(const char *routine, lapack_int info, mt_err *err);
 /* An entry handed to the routine is NaN or infinite: MT_E_DOMAIN. */

@@ -34,8 +34,11 @@ static mt_status factor(mt_qr *f, mt_arena *scratch, mt_err *err)
     lapack_int *const jpvt = mt_arena_alloc(scratch, (size_t)f->n, sizeof *jpvt);
     MT_TRY(mt_arena_check(scratch, err));
     double query = 0.0;
-    lapack_int info = LAPACKE_dgeqp3_work(LAPACK_COL_MAJOR, f->m, f->n, f->qr, f->m, jpvt,
-                                          f->tau, &query, -1);
+    lapack_int info = 0;
+    if (least(f->m, f->n) > MT_LAPACK_UNBLOCKED) {
+        info = LAPACKE_dgeqp3_work(LAPACK_COL_MAJOR, f->m, f->n, f->qr, f->m, jpvt, f->tau,
+                                   &query, -1);
+    }
     if (info != 0) {
         return mt_lapack_bug("dgeqp3", info, err);
     }

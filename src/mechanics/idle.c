@@ -21,6 +21,8 @@
 
 /* A principal moment below this part of the terms that make it is rounding of theirs. */
 static const double NO_INERTIA = 1e-13;
+/* This many times that is no rounding, without a closer look. */
+static const double SURELY = 100.0;
 /* Entries of C W s below this are none: as the rank of the constraints is decided
  * (eliminate.c). */
 static const double NOT_HELD = 1e-9;
@@ -82,10 +84,26 @@ static void add_inertia(const mt_linear *lin, int row_at, tensor *list)
     }
 }
 
+/* Is the least principal moment certainly more than rounding? Of positive ones, by Sylvester,
+ * the least is at least det J / (trace/2)^2. */
+static bool is_regular(const tensor *own)
+{
+    const double *const j = own->j;
+    const double minor = (j[0] * j[4]) - (j[1] * j[1]);
+    const double det = (j[8] * minor) - (j[5] * ((j[0] * j[5]) - (j[1] * j[2]))) +
+                       (j[2] * ((j[1] * j[5]) - (j[4] * j[2])));
+    const double half = 0.5 * (j[0] + j[4] + j[8]);
+    const double sure = SURELY * NO_INERTIA * own->terms;
+    return j[0] > sure && minor > sure * half && det > sure * half * half;
+}
+
 static mt_status add_candidates(search *s, int body, tensor *own, mt_err *err)
 {
     mt_linear *const lin = s->lin;
     double w[3];
+    if (is_regular(own)) {
+        return MT_OK;
+    }
     MT_TRY(mt_eig_sym(3, own->j, w, true, &lin->scratch, err));
     for (int k = 0; k < 3; k++) {
         if (fabs(w[k]) <= NO_INERTIA * own->terms) {
