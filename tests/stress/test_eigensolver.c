@@ -19,8 +19,9 @@
 
 enum { ROWS = 28 };
 
-/* Of n eps max |w|: "about n eps" in the promise of mt_eig_sym. */
-static const double PROMISED = 2.0;
+/* Of n eps max |w|: a quarter of what modal counts on (MT_MODAL_NOISE_ULPS), which leaves the
+ * rest to how matrices are made. LAPACK's own tests allow 50. */
+static const double PROMISED = 4.0;
 /* Relative, of the lowest eigenvalue that the data determine. */
 static const double WANTED = 1e-10;
 
@@ -82,8 +83,8 @@ static void judge_solution(mt_test *t, int n, const double *a, const quad *want,
                 equation += (quad)a[k + (j * n)] * (quad)v[j + (i * n)];
                 product += (quad)v[j + (k * n)] * (quad)v[j + (i * n)];
             }
-            CHECK(t, (double)quad_abs(equation) <= 2.0 * PROMISED * unit);
-            CHECK(t, (double)quad_abs(product) <= 2.0 * PROMISED * n * DBL_EPSILON);
+            CHECK(t, (double)quad_abs(equation) <= PROMISED * unit);
+            CHECK(t, (double)quad_abs(product) <= PROMISED * n * DBL_EPSILON);
         }
     }
     l->cases++;
