@@ -135,7 +135,7 @@ static void every_kind__is_compiled_once(mt_test *t)
         int first_cuts = 0;
         mt_test_row(t, "%s", study_kinds[i].name);
         if (study_load(t, study_kinds[i].model, study_kinds[i].members, &c)) {
-            for (int threads = 1; threads <= THREADS; threads++) {
+            for (int threads = 1; threads <= THREADS; threads += THREADS - 1) {
                 mt_test_row(t, "%s, %d threads", study_kinds[i].name, threads);
                 check(t, c.study, threads, &first_systems, &first_cuts);
             }
