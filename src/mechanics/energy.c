@@ -178,13 +178,23 @@ static double force_energies(const worker *k, const double *phi)
     double sum = 0.0;
     for (int i = 0; i < lin->n_pieces && lin->kg != NULL; i++) {
         const mt_piece *const p = &lin->pieces[i];
+        double way[MT_LOCAL];
+        int at[MT_LOCAL]; /* local freedoms that there are */
+        int n = 0;
         double energy = 0.0;
-        for (int c = 0; c < MT_LOCAL; c++) {
-            double part = 0.0;
-            for (int r = 0; r < MT_LOCAL && p->dof[c] >= 0; r++) {
-                part += p->dof[r] >= 0 ? p->h[r + (MT_LOCAL * c)] * phi[p->dof[r]] : 0.0;
+        for (int r = 0; r < MT_LOCAL; r++) {
+            if (p->dof[r] >= 0) {
+                way[n] = phi[p->dof[r]];
+                at[n++] = r;
             }
-            energy += p->dof[c] >= 0 ? part * phi[p->dof[c]] : 0.0;
+        }
+        for (int c = 0; c < n; c++) {
+            const double *const h = p->h + ((ptrdiff_t)MT_LOCAL * at[c]);
+            double part = 0.0;
+            for (int r = 0; r < n; r++) {
+                part += h[at[r]] * way[r];
+            }
+            energy += part * way[c];
         }
         sum += ((k->unbalanced * p->size) + (STEPS * p->open)) * fabs(energy);
     }

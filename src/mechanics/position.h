@@ -15,6 +15,11 @@
  * Each stage solves grad V + A^T lambda = 0, c = 0 by Newton with multipliers and checks its
  * residual; a stage that does not converge is an error, never a result. The derivative of a
  * stage with respect to an input follows from the same equations (implicit function theorem).
+ *     Every design begins at its own drawing, none at the equilibrium of the design before:
+ * which of several equilibria is meant is said by the drawing, a start elsewhere may lead to
+ * another one (beyond a fold, across a saddle), and where it leads to the same, the last bits
+ * would tell which designs were evaluated before, and by which worker. It would save one or two
+ * of five steps.
  */
 typedef struct mt_state {
     const mt_system *sys;
