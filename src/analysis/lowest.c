@@ -31,8 +31,8 @@ typedef struct operation {
     const mt_tree *tree;
     double *v;    /* motion of all bodies */
     double *f;    /* work */
-    double *r;    /* [n_loose] */
-    double *m_yr; /* n_y x n_loose */
+    double *r;    /* [n_rigid] */
+    double *m_yr; /* n_x x n_rigid */
     double *m_rr; /* its Cholesky factor */
     mt_arena *scratch;
 } operation;
@@ -44,10 +44,10 @@ static mt_status apply(void *context, const double *x, double *y, mt_err *err)
     MT_TRY(mt_interrupt_check(t->sys->model->interrupt, err));
     mt_tree_motion(t, x, NULL, o->v);
     mt_tree_momentum(t, o->v, o->f, y, o->r);
-    if (t->n_loose > 0) {
-        mt_tri_solve(false, t->n_loose, 1, o->m_rr, o->r, t->n_loose);
-        mt_tri_solve(true, t->n_loose, 1, o->m_rr, o->r, t->n_loose);
-        mt_gemv(false, t->n_y, t->n_loose, -1.0, o->m_yr, t->n_y, o->r, 1.0, y);
+    if (t->n_rigid > 0) {
+        mt_tri_solve(false, t->n_rigid, 1, o->m_rr, o->r, t->n_rigid);
+        mt_tri_solve(true, t->n_rigid, 1, o->m_rr, o->r, t->n_rigid);
+        mt_gemv(false, t->n_x, t->n_rigid, -1.0, o->m_yr, t->n_x, o->r, 1.0, y);
     }
     return MT_OK;
 }
@@ -63,16 +63,16 @@ static mt_status below(void *context, double tau, int *count, bool *certain, mt_
 static mt_status free_motions(operation *o, bool *regular, mt_arena *mem, mt_err *err)
 {
     const mt_tree *const t = o->tree;
-    const size_t n = (size_t)t->n_loose;
-    o->m_yr = mt_arena_f64(mem, (size_t)t->n_y, n);
+    const size_t n = (size_t)t->n_rigid;
+    o->m_yr = mt_arena_f64(mem, (size_t)t->n_x, n);
     o->m_rr = mt_arena_f64(mem, n, n);
-    double *const none = mt_arena_f64(mem, (size_t)t->n_y, 1);
+    double *const none = mt_arena_f64(mem, (size_t)t->n_x, 1);
     double *const unit = mt_arena_f64(mem, n, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (size_t j = 0; j < n; j++) {
         unit[j] = 1.0;
         mt_tree_motion(t, none, unit, o->v);
-        mt_tree_momentum(t, o->v, o->f, o->m_yr + ((size_t)t->n_y * j), o->m_rr + (n * j));
+        mt_tree_momentum(t, o->v, o->f, o->m_yr + ((size_t)t->n_x * j), o->m_rr + (n * j));
         unit[j] = 0.0;
     }
     int bad = -1;
@@ -89,7 +89,7 @@ static mt_status solve(mt_lowest *l, int count, mt_err *err)
     bool regular = false;
     o.v = mt_arena_f64(&l->mem, motions, 1);
     o.f = mt_arena_f64(&l->mem, motions, 1);
-    o.r = mt_arena_f64(&l->mem, (size_t)t->n_loose, 1);
+    o.r = mt_arena_f64(&l->mem, (size_t)t->n_rigid, 1);
     MT_TRY(mt_arena_check(&l->mem, err));
     MT_TRY(free_motions(&o, &regular, &l->mem, err));
     if (!regular) {
@@ -97,8 +97,8 @@ static mt_status solve(mt_lowest *l, int count, mt_err *err)
         l->tree = NULL;
         return MT_OK;
     }
-    const mt_lowest_problem p = {.n = t->n_y,
-                                 .n_rigid = t->n_loose,
+    const mt_lowest_problem p = {.n = t->n_x,
+                                 .n_rigid = t->n_rigid,
                                  .count = count,
                                  .steps = t->depth,
                                  .apply = apply,

@@ -71,9 +71,10 @@ static double complete_below_hz(const mt_lowest *l)
 
 static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
 {
-    static const mt_state unloaded = {.moved_m = 0.0};
+    /* a tree is at rest as drawn */
+    const mt_state drawn = {.equilibrium.active = v->l != NULL && v->l->sys->loaded};
     const mt_modes *const m = v->m;
-    const mt_state *const at = v->a == NULL ? &unloaded : mt_linear_position(v->a->lin);
+    const mt_state *const at = v->a == NULL ? &drawn : mt_linear_position(v->a->lin);
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
     mt_json_put_doubts(w, "doubts", &v->doubts, MT_LEVEL_DOUBT);

@@ -43,7 +43,8 @@ static void add_tie(order *o, tie_kind kind, int which, const int body[2])
 static bool acts(const order *o, int spring)
 {
     const mt_spring_def *const s = &o->sys->springs[spring];
-    return !s->damper && o->value[s->stiffness] != 0.0;
+    return !s->damper &&
+           (o->value[s->stiffness] != 0.0 || s->free != MT_NO_NODE || s->preload != MT_NO_NODE);
 }
 
 static void collect(order *o)
@@ -202,11 +203,8 @@ static mt_status order_bodies(mt_tree_maker *m, mt_arena *mem, mt_arena *scratch
 static bool has_form(const mt_tree_maker *m)
 {
     const mt_system *const sys = m->t->sys;
-    if (sys->driven || sys->loaded) {
-        (void)mt_snprintf(m->why, MT_TREE_WHY, "%s",
-                          sys->driven
-                              ? "a joint is driven"
-                              : "it is loaded (gravity, a preload, a free length, a load)");
+    if (sys->driven) {
+        (void)mt_snprintf(m->why, MT_TREE_WHY, "a joint is driven");
         return false;
     }
     for (int i = 0; i < sys->n_constraints; i++) {
@@ -285,15 +283,40 @@ static mt_status make_edges(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_e
         depth[i] = 1 + (t->before[i] < 0 ? 0 : depth[t->before[i]]);
         t->depth = depth[i] > t->depth ? depth[i] : t->depth;
     }
-    t->n_y = t->y_at[t->n];
-    t->n_loose = t->loose_at[t->n];
-    if (*is_tree && t->n_loose > MT_TREE_LOOSE) {
+    return MT_OK;
+}
+
+/* Coordinates: the springs' own where nothing loads. */
+static mt_status choose_coordinates(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_err *err)
+{
+    mt_tree *const t = m->t;
+    const size_t n = (size_t)t->n;
+    const size_t s = (size_t)t->s;
+    const int n_y = t->y_at[t->n];
+    const int loose = t->loose_at[t->n];
+    t->n_x = t->curved == NULL ? n_y : n_y + loose;
+    t->n_rigid = n_y + loose - t->n_x;
+    if (t->n_rigid > MT_TREE_LOOSE) {
         *is_tree = false;
         (void)mt_snprintf(m->why, MT_TREE_WHY,
-                          "%d of its motions meet no stiffness, more than %d", t->n_loose,
+                          "%d of its motions meet no stiffness, more than %d", t->n_rigid,
                           (int)MT_TREE_LOOSE);
     }
-    return MT_OK;
+    if (t->curved == NULL) {
+        return MT_OK;
+    }
+    t->carried = mt_arena_f64(mem, n * s, s);
+    t->scaled = mt_arena_f64(mem, s, (size_t)t->n_x);
+    MT_TRY(mt_arena_check(mem, err));
+    mt_arena work = {.first = NULL};
+    MT_TRY(mt_arena_init(&work, 0, err));
+    const mt_status rc = mt_tree_factor(t, &work, is_tree, err);
+    mt_arena_free(&work);
+    if (rc == MT_OK && !*is_tree) {
+        (void)mt_snprintf(m->why, MT_TREE_WHY,
+                          "it is free to move, or not stable, under its load");
+    }
+    return rc;
 }
 
 static mt_status make(mt_tree_maker *m, const double *inputs, mt_arena *mem, mt_arena *scratch,
@@ -323,6 +346,12 @@ static mt_status make(mt_tree_maker *m, const double *inputs, mt_arena *mem, mt_
     MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
     if (*is_tree) {
         MT_TRY(mt_tree_masses(m, mem, is_tree, err));
+    }
+    if (*is_tree && sys->loaded) {
+        MT_TRY(mt_tree_loads(m, mem, scratch, is_tree, err));
+    }
+    if (*is_tree) {
+        MT_TRY(choose_coordinates(m, mem, is_tree, err));
     }
     return MT_OK;
 }

@@ -5,37 +5,47 @@
 #include "mechanics/system.h"
 
 /*
- * A mechanism that is a tree, at rest without load, in coordinates of its edges. Every body has
- * one body (or the ground) before it; joints, springs and masses that two bodies share stand
+ * A mechanism that is a tree, drawn at rest, in coordinates of its edges. Every body has one
+ * body (or the ground) before it; joints, springs and masses that two bodies share stand
  * between a body and the one before it. With v the motion of a body (dx, theta; absolute), X
  * the rigid motion along with the body before it, and N the motions that the joints of its edge
  * allow,
  *     v_i = X_i v_before(i) + N_i (F_i y_i + R_i r_i):
  * R spans what no spring of the edge resists, and F makes the energy of its springs |y_i|^2/2.
  * Then
- *     K = diag(I, 0) in (y, r),    M = T^T M_bodies T,
+ *     K = diag(I, 0) + T^T K_g T in (y, r),    M = T^T M_bodies T,
  * T being the recursion from the ground to the leaves and T^T the one back: neither is ever
- * written down. Nothing cancels: in coordinates of the ground the stiffness of a chain of n
- * links has a condition that grows with n^4, here each spring stands in an entry of its own.
- * All costs are O(bodies). (Featherstone, Rigid Body Dynamics Algorithms, 2008, for the
- * recursions; the count is his articulated-body inertia with K - tau M in place of M.)
+ * written down. K_g is the geometric stiffness of loads, in blocks as M_bodies. Nothing
+ * cancels: in coordinates of the ground the stiffness of a chain of n links has a condition
+ * that grows with n^4, here each spring stands in an entry of its own.
+ *
+ * The coordinates x are those in which K is the identity: y where nothing loads (r are then
+ * rigid-body motions); else K is eliminated body by body, from the leaves on, which makes
+ * v_i = X'_i v_before + N'_i x_i. All costs are O(bodies).
+ * (Featherstone, Rigid Body Dynamics Algorithms, 2008, for the recursions; elimination and
+ * count are his articulated-body inertia with K - tau M in place of M.)
  */
 typedef struct mt_tree {
     const mt_system *sys;
-    int n;          /* bodies */
-    int s;          /* entries of v: (dx, dy, theta), or (dx, theta) in space */
-    int n_y;        /* y of all bodies */
-    int n_loose;    /* r of all bodies: rigid-body modes */
-    int depth;      /* bodies on the longest way to the ground */
-    int *body;      /* [n] of the system, each behind the one before it */
-    int *before;    /* [n] place in this order; -1: the ground, or nothing */
-    bool *point;    /* [n] a point mass: does not turn */
-    int *y_at;      /* [n + 1] */
-    int *loose_at;  /* [n + 1] */
-    double *arm;    /* 3 x n, to the centre from that of the body before it [m] */
-    double *basis;  /* N F, then N R, of body i from s (y_at[i] + loose_at[i]) on */
-    double *mass;   /* s x s of each body */
-    double *shared; /* s x s: v_before^T shared v_i; NULL: no mass is shared */
+    int n;                 /* bodies */
+    int s;                 /* entries of v: (dx, dy, theta), or (dx, theta) in space */
+    int n_x;               /* coordinates */
+    int n_rigid;           /* rigid-body motions beside them: all r, where nothing loads */
+    int depth;             /* bodies on the longest way to the ground */
+    int *body;             /* [n] of the system, each behind the one before it */
+    int *before;           /* [n] place in this order; -1: the ground, or nothing */
+    bool *point;           /* [n] a point mass: does not turn */
+    int *y_at;             /* [n + 1] */
+    int *loose_at;         /* [n + 1] */
+    double *arm;           /* 3 x n, to the centre from that of the body before it [m] */
+    double *basis;         /* N F, then N R, of body i from s (y_at[i] + loose_at[i]) on */
+    double *mass;          /* s x s of each body */
+    double *shared;        /* s x s: v_before^T shared v_i; NULL: no mass is shared */
+    double *curved;        /* s x s of each body: geometric stiffness; NULL: nothing loads */
+    double *curved_shared; /* as shared */
+    double *force;         /* [n] sum of the sizes of all forces there, and beyond [N] */
+    double *carried;       /* X', s x s of each body, where something loads */
+    double *scaled;        /* N', as basis */
 } mt_tree;
 
 enum { MT_TREE_WHY = 200, MT_TREE_LOOSE = 64 };
@@ -49,10 +59,10 @@ enum { MT_TREE_WHY = 200, MT_TREE_LOOSE = 64 };
 mt_status mt_tree_new(const mt_system *sys, const double *inputs, mt_arena *mem, mt_tree **out,
                       char why[MT_TREE_WHY], mt_err *err);
 
-/* v[s n] := T (y, r); r may be NULL (0). */
-void mt_tree_motion(const mt_tree *t, const double *y, const double *r, double *v);
-/* y[n_y], r[n_loose] (may be NULL) := T^T M_bodies v; f[s n] is work. */
-void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *y, double *r);
+/* v[s n] := T (x, r); r may be NULL (0). */
+void mt_tree_motion(const mt_tree *t, const double *x, const double *r, double *v);
+/* x[n_x], r[n_rigid] (may be NULL) := T^T M_bodies v; f[s n] is work. */
+void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *x, double *r);
 /* Mass of all bodies [kg]. */
 double mt_tree_mass(const mt_tree *t);
 /* How many eigenvalues of K - tau M are below 0, by Sylvester's law: *below counts

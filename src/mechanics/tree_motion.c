@@ -63,31 +63,14 @@ void mt_tree_carry_back(const mt_tree *t, int i, const double *f, double *p)
 
 static const double *basis_of(const mt_tree *t, int i)
 {
-    return t->basis + ((ptrdiff_t)t->s * (t->y_at[i] + t->loose_at[i]));
+    return (t->scaled != NULL ? t->scaled : t->basis) +
+           ((ptrdiff_t)t->s * (t->y_at[i] + t->loose_at[i]));
 }
 
-void mt_tree_motion(const mt_tree *t, const double *y, const double *r, double *v)
+/* Coordinates of body i: from the first to before the end. */
+static int first_of(const mt_tree *t, int i)
 {
-    const int s = t->s;
-    for (int i = 0; i < t->n; i++) {
-        double *const own = v + ((ptrdiff_t)s * i);
-        const double *b = basis_of(t, i);
-        if (t->before[i] < 0) {
-            memset(own, 0, (size_t)s * sizeof *own);
-        } else {
-            carry(t, i, v + ((ptrdiff_t)s * t->before[i]), own);
-        }
-        for (int c = t->y_at[i]; c < t->y_at[i + 1]; c++, b += s) {
-            for (int k = 0; k < s; k++) {
-                own[k] += b[k] * y[c];
-            }
-        }
-        for (int c = t->loose_at[i]; c < t->loose_at[i + 1] && r != NULL; c++, b += s) {
-            for (int k = 0; k < s; k++) {
-                own[k] += b[k] * r[c];
-            }
-        }
-    }
+    return t->scaled != NULL ? t->y_at[i] + t->loose_at[i] : t->y_at[i];
 }
 
 /* f += A v, or A^T v, s x s. */
@@ -100,10 +83,41 @@ static void add_product(int s, const double *a, bool transposed, const double *v
     }
 }
 
-void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *y, double *r)
+void mt_tree_motion(const mt_tree *t, const double *x, const double *r, double *v)
 {
     const int s = t->s;
     const ptrdiff_t square = (ptrdiff_t)s * s;
+    const bool rigid = r != NULL && t->n_rigid > 0;
+    for (int i = 0; i < t->n; i++) {
+        double *const own = v + ((ptrdiff_t)s * i);
+        const double *const other = t->before[i] < 0 ? NULL : v + ((ptrdiff_t)s * t->before[i]);
+        const double *b = basis_of(t, i);
+        for (int k = 0; k < s; k++) {
+            own[k] = 0.0;
+        }
+        if (other != NULL && t->carried != NULL) {
+            add_product(s, t->carried + (square * i), false, other, own);
+        } else if (other != NULL) {
+            carry(t, i, other, own);
+        }
+        for (int c = first_of(t, i); c < first_of(t, i + 1); c++, b += s) {
+            for (int k = 0; k < s; k++) {
+                own[k] += b[k] * x[c];
+            }
+        }
+        for (int c = t->loose_at[i]; c < t->loose_at[i + 1] && rigid; c++, b += s) {
+            for (int k = 0; k < s; k++) {
+                own[k] += b[k] * r[c];
+            }
+        }
+    }
+}
+
+void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *x, double *r)
+{
+    const int s = t->s;
+    const ptrdiff_t square = (ptrdiff_t)s * s;
+    const bool rigid = r != NULL && t->n_rigid > 0;
     memset(f, 0, (size_t)t->n * (size_t)s * sizeof *f);
     for (int i = t->n - 1; i >= 0; i--) {
         const int p = t->before[i];
@@ -115,19 +129,21 @@ void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *y, d
             add_product(s, t->shared + (square * i), true, v + ((ptrdiff_t)s * p), own);
             add_product(s, t->shared + (square * i), false, v + ((ptrdiff_t)s * i), other);
         }
-        for (int c = t->y_at[i]; c < t->y_at[i + 1]; c++, b += s) {
-            y[c] = 0.0;
+        for (int c = first_of(t, i); c < first_of(t, i + 1); c++, b += s) {
+            x[c] = 0.0;
             for (int k = 0; k < s; k++) {
-                y[c] += b[k] * own[k];
+                x[c] += b[k] * own[k];
             }
         }
-        for (int c = t->loose_at[i]; c < t->loose_at[i + 1] && r != NULL; c++, b += s) {
+        for (int c = t->loose_at[i]; c < t->loose_at[i + 1] && rigid; c++, b += s) {
             r[c] = 0.0;
             for (int k = 0; k < s; k++) {
                 r[c] += b[k] * own[k];
             }
         }
-        if (p >= 0) {
+        if (p >= 0 && t->carried != NULL) {
+            add_product(s, t->carried + (square * i), true, own, other);
+        } else if (p >= 0) {
             mt_tree_carry_back(t, i, own, other);
         }
     }
@@ -180,9 +196,12 @@ static void pivots(int d, double *delta, const double *size, int *below, bool *c
             delta[j + (j * d)] -= taken;
             most = fmax(most, fabs(taken));
         }
+        *below += delta[j + (j * d)] < 0.0 ? 1 : 0;
+        *certain = *certain && fabs(delta[j + (j * d)]) > DOUBTFUL * most;
+        if (delta[j + (j * d)] == 0.0) {
+            delta[j + (j * d)] = 1.0; /* anything: the count is void */
+        }
         const double pivot = delta[j + (j * d)];
-        *below += pivot < 0.0 ? 1 : 0;
-        *certain = *certain && fabs(pivot) > DOUBTFUL * most;
         for (int i = j + 1; i < d; i++) {
             for (int k = 0; k < j; k++) {
                 delta[i + (j * d)] -=
@@ -205,75 +224,167 @@ static void forward(int d, int s, const double *l, double *w)
     }
 }
 
-/* Eliminate body i, whose H is complete; what is left goes to the one before it. */
-static void eliminate(const mt_tree *t, int i, double tau, double *h, int *below, bool *certain)
-{
-    const int s = t->s;
-    const ptrdiff_t square = (ptrdiff_t)s * s;
-    const int n_y = t->y_at[i + 1] - t->y_at[i];
-    const int d = n_y + t->loose_at[i + 1] - t->loose_at[i];
-    const double *const own = h + (square * i);
-    const double *const basis = basis_of(t, i);
-    double hb[SQUARE];
+/* What the elimination of one body leaves: Delta = L D L^T, w = L^-1 W, X. */
+typedef struct eliminated {
+    int d;
     double delta[SQUARE];
-    double size[MOST];
-    product(false, s, d, s, own, basis, hb);
-    product(true, d, d, s, basis, hb, delta);
-    for (int k = 0; k < d; k++) {
-        size[k] = fmax(fabs(delta[k + (k * d)]), k < n_y ? 1.0 : 0.0);
-        delta[k + (k * d)] += k < n_y ? 1.0 : 0.0;
-    }
-    pivots(d, delta, size, below, certain);
-    if (t->before[i] < 0) {
-        return;
-    }
-    double x[SQUARE];
-    double g[SQUARE]; /* H X + C^T */
     double w[SQUARE];
-    double add[SQUARE];
-    double *const other = h + (square * t->before[i]);
-    carry_matrix(t, i, x);
-    product(false, s, s, s, own, x, g);
-    product(true, s, s, s, x, g, add);
-    if (t->shared != NULL) {
-        const double *const c = t->shared + (square * i);
-        double cx[SQUARE];
-        product(false, s, s, s, c, x, cx);
-        for (int k = 0; k < s; k++) {
-            for (int l = 0; l < s; l++) {
-                g[k + (l * s)] -= tau * c[l + (k * s)];
-                add[k + (l * s)] -= tau * (cx[k + (l * s)] + cx[l + (k * s)]);
-            }
-        }
-    }
-    product(true, d, s, s, basis, g, w);
-    forward(d, s, delta, w);
+    double x[SQUARE];
+} eliminated;
+
+/* other (s x s) += add - W^T Delta^-1 W. */
+static void hand_on(int s, const eliminated *e, const double *add, double *other)
+{
+    const int d = e->d;
     for (int c = 0; c < s; c++) {
         for (int r = 0; r < s; r++) {
             double taken = 0.0;
             for (int k = 0; k < d; k++) {
-                taken += w[k + (r * d)] * w[k + (c * d)] / delta[k + (k * d)];
+                taken += e->w[k + (r * d)] * e->w[k + (c * d)] / e->delta[k + (k * d)];
             }
             other[r + (c * s)] += add[r + (c * s)] - taken;
         }
     }
 }
 
+/* What the forces on body i could make of the stiffness of column k of its basis: rounding of
+ * them is not less. */
+static double load_of(const mt_tree *t, int i, int k)
+{
+    const double *const b = t->basis + ((ptrdiff_t)t->s * (t->y_at[i] + t->loose_at[i] + k));
+    const double length = t->sys->length_m;
+    double most = 0.0;
+    for (int r = 0; r < t->s; r++) {
+        most = fmax(most, fabs(b[r]) / (mt_tree_freedom(t, r) >= 3 ? 1.0 : length));
+    }
+    return t->force == NULL ? 0.0 : t->force[i] * length * most * most;
+}
+
+/* Eliminate body i, whose H is complete; what is left goes to the one before it. */
+static void eliminate(const mt_tree *t, int i, double tau, double *h, int *below, bool *certain,
+                      eliminated *e)
+{
+    const int s = t->s;
+    const ptrdiff_t square = (ptrdiff_t)s * s;
+    const int n_y = t->y_at[i + 1] - t->y_at[i];
+    const int d = n_y + t->loose_at[i + 1] - t->loose_at[i];
+    const double *const own = h + (square * i);
+    const double *const basis = t->basis + ((ptrdiff_t)s * (t->y_at[i] + t->loose_at[i]));
+    double hb[SQUARE];
+    double size[MOST];
+    e->d = d;
+    product(false, s, d, s, own, basis, hb);
+    product(true, d, d, s, basis, hb, e->delta);
+    for (int k = 0; k < d; k++) {
+        size[k] = fmax(fabs(e->delta[k + (k * d)]), k < n_y ? 1.0 : load_of(t, i, k));
+        e->delta[k + (k * d)] += k < n_y ? 1.0 : 0.0;
+    }
+    pivots(d, e->delta, size, below, certain);
+    if (t->before[i] < 0) {
+        return;
+    }
+    double g[SQUARE] = {0.0}; /* H X + C^T */
+    double add[SQUARE] = {0.0};
+    carry_matrix(t, i, e->x);
+    product(false, s, s, s, own, e->x, g);
+    product(true, s, s, s, e->x, g, add);
+    if (t->shared != NULL || t->curved_shared != NULL) {
+        double c[SQUARE] = {0.0};
+        double cx[SQUARE] = {0.0};
+        for (int k = 0; k < s * s; k++) {
+            c[k] = (t->curved_shared == NULL ? 0.0 : t->curved_shared[k + (square * i)]) -
+                   (t->shared == NULL ? 0.0 : tau * t->shared[k + (square * i)]);
+        }
+        product(false, s, s, s, c, e->x, cx);
+        for (int k = 0; k < s; k++) {
+            for (int l = 0; l < s; l++) {
+                g[k + (l * s)] += c[l + (k * s)];
+                add[k + (l * s)] += cx[k + (l * s)] + cx[l + (k * s)];
+            }
+        }
+    }
+    product(true, d, s, s, basis, g, e->w);
+    forward(d, s, e->delta, e->w);
+    hand_on(s, e, add, h + (square * t->before[i]));
+}
+
+/* H = K_g - tau M, body by body, in scratch. */
+static double *blocks(const mt_tree *t, double tau, mt_arena *scratch)
+{
+    const size_t size = (size_t)t->n * (size_t)t->s * (size_t)t->s;
+    double *const h = mt_arena_f64(scratch, size, 1);
+    for (size_t k = 0; k < size && h != NULL; k++) {
+        h[k] = (t->curved == NULL ? 0.0 : t->curved[k]) - (tau * t->mass[k]);
+    }
+    return h;
+}
+
 mt_status mt_tree_count(const mt_tree *t, double tau, mt_arena *scratch, int *below,
                         bool *certain, mt_err *err)
 {
-    const size_t size = (size_t)t->n * (size_t)t->s * (size_t)t->s;
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    double *const h = mt_arena_f64(scratch, size, 1);
+    double *const h = blocks(t, tau, scratch);
+    eliminated e = {.d = 0};
     MT_TRY(mt_arena_check(scratch, err));
     *below = 0;
     *certain = true;
-    for (size_t k = 0; k < size; k++) {
-        h[k] = -tau * t->mass[k];
-    }
     for (int i = t->n - 1; i >= 0; i--) {
-        eliminate(t, i, tau, h, below, certain);
+        eliminate(t, i, tau, h, below, certain, &e);
     }
     mt_arena_rewind(scratch, mark);
+    return MT_OK;
+}
+
+/*
+ * K is the sum of x^T x, x = D^1/2 (L^T z + D^-1 w v_before): so
+ *     z = L^-T (D^-1/2 x - D^-1 w v_before),    N' = B L^-T D^-1/2,    X' = X - B L^-T D^-1 w.
+ */
+static void keep(mt_tree *t, int i, const eliminated *e)
+{
+    const int s = t->s;
+    const int d = e->d;
+    const ptrdiff_t first = (ptrdiff_t)s * (t->y_at[i] + t->loose_at[i]);
+    double *const scaled = t->scaled + first;
+    double *const carried = t->carried + ((ptrdiff_t)s * s * i);
+    memcpy(scaled, t->basis + first, (size_t)(s * d) * sizeof *scaled);
+    for (int j = 0; j < d; j++) { /* B L^-T */
+        for (int k = 0; k < j; k++) {
+            for (int r = 0; r < s; r++) {
+                scaled[r + (j * s)] -= scaled[r + (k * s)] * e->delta[j + (k * d)];
+            }
+        }
+    }
+    if (t->before[i] >= 0) {
+        memcpy(carried, e->x, (size_t)(s * s) * sizeof *carried);
+        for (int c = 0; c < s; c++) {
+            for (int j = 0; j < d; j++) {
+                const double share = e->w[j + (c * d)] / e->delta[j + (j * d)];
+                for (int r = 0; r < s; r++) {
+                    carried[r + (c * s)] -= scaled[r + (j * s)] * share;
+                }
+            }
+        }
+    }
+    for (int j = 0; j < d; j++) {
+        for (int r = 0; r < s; r++) {
+            scaled[r + (j * s)] /= sqrt(e->delta[j + (j * d)]);
+        }
+    }
+}
+
+mt_status mt_tree_factor(mt_tree *t, mt_arena *scratch, bool *positive, mt_err *err)
+{
+    double *const h = blocks(t, 0.0, scratch);
+    int below = 0;
+    MT_TRY(mt_arena_check(scratch, err));
+    *positive = true;
+    for (int i = t->n - 1; i >= 0 && *positive; i--) {
+        eliminated e = {.d = 0};
+        eliminate(t, i, 0.0, h, &below, positive, &e);
+        *positive = *positive && below == 0;
+        if (*positive) {
+            keep(t, i, &e);
+        }
+    }
     return MT_OK;
 }

@@ -33,5 +33,12 @@ void mt_tree_carry_back(const mt_tree *t, int i, const double *f, double *p);
 bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_loose);
 /* Masses of all bodies; *is_tree false: the same. Fails: MT_E_MEMORY. */
 mt_status mt_tree_masses(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_err *err);
+/* What loads it: geometric stiffness where it is drawn at rest; *is_tree false: the same.
+ * Fails: MT_E_MEMORY, MT_E_NOT_SPD. */
+mt_status mt_tree_loads(mt_tree_maker *m, mt_arena *mem, mt_arena *scratch, bool *is_tree,
+                        mt_err *err);
+/* After them: fill carried and scaled; *positive: K is, as its pivots tell. Fails: MT_E_MEMORY.
+ * */
+mt_status mt_tree_factor(mt_tree *t, mt_arena *scratch, bool *positive, mt_err *err);
 
 #endif

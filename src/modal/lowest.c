@@ -118,12 +118,12 @@ static mt_status search(finding *f, int more, int round, mt_arena *mem, mt_err *
 }
 
 /* Where to count: behind the mode, none before the last that is wanted, with the widest gap;
- * *tau. */
-static int split(const finding *f, double *tau)
+ * -1: there is none. */
+static int split(const finding *f)
 {
     const int least = f->n < f->p->count ? f->n : f->p->count;
-    int best = f->n;
-    double widest = f->exhausted || f->n == 0 ? HUGE_VAL : 0.0;
+    int best = f->exhausted ? f->n : -1;
+    double widest = f->exhausted ? HUGE_VAL : 1.0 + NO_GAP;
     for (int j = least; j < f->n && j > 0; j++) {
         const double gap = f->theta[j - 1] / f->theta[j];
         if (gap > widest) {
@@ -131,12 +131,22 @@ static int split(const finding *f, double *tau)
             best = j;
         }
     }
-    if (best == f->n) {
-        *tau = f->n == 0 ? 0.0 : 2.0 / f->theta[f->n - 1];
-        return f->exhausted ? f->n : -1;
+    return best;
+}
+
+/* Count behind j modes; where a pivot is in doubt, elsewhere in the gap. */
+static mt_status count_behind(const finding *f, int j, double *tau, int *below, bool *certain,
+                              mt_err *err)
+{
+    static const double places[] = {0.5, 0.37, 0.66, 0.21,
+                                    0.84}; /* of the gap, in logarithms */
+    *certain = false;
+    for (int k = 0; k < MT_COUNT(places) && !*certain; k++) {
+        const double end = j < f->n ? f->theta[j] : 0.25 * f->theta[j - 1];
+        *tau = pow(f->theta[j - 1] / end, places[k]) / f->theta[j - 1];
+        MT_TRY(f->p->below(f->p->context, *tau, below, certain, err));
     }
-    *tau = 1.0 / sqrt(f->theta[best - 1] * f->theta[best]);
-    return widest > 1.0 + NO_GAP ? best : -1;
+    return MT_OK;
 }
 
 /* Until the count says that nothing is missing below *tau; *upto of those found lie there. */
@@ -146,12 +156,12 @@ static mt_status find(finding *f, mt_arena *mem, double *tau, int *upto, mt_err 
     int more = p->count + MORE;
     for (int round = 0; round < ROUNDS && p->n > 0; round++) {
         MT_TRY(search(f, more, round, mem, err));
-        const int j = split(f, tau);
+        const int j = split(f);
         more = f->n > MORE ? f->n : MORE; /* no end of equal ones is in sight */
         if (j > 0) {
             int below = 0;
             bool certain = false;
-            MT_TRY(p->below(p->context, *tau, &below, &certain, err));
+            MT_TRY(count_behind(f, j, tau, &below, &certain, err));
             const int missing = below - p->n_rigid - j;
             if (certain && missing == 0) {
                 *upto = j;

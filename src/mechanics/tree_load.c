@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Loads on a tree that is drawn at rest. With g the gradient of the potential V, body by body,
+ * the forces of a body and of all that hangs on it balance in the directions that its edge
+ * leaves free, and the joints of the edge hold the rest:
+ *     N_i^T G_i = 0,    A_i^T lambda_i = -G_i,    G_before += X_i^T G_i.
+ * The geometric stiffness is that of V and of lambda times the equations: blocks of the same
+ * bodies as the masses have.
+ */
+#include "mechanics/tree_priv.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/format.h"
+#include "linalg/dense.h"
+
+enum { MOST = MT_TREE_MOTION };
+
+/* Forces that do not balance, relative to all those that meet there: beyond rounding, the
+ * drawing is not at rest. */
+static const double NOT_AT_REST = 1e-11;
+
+typedef struct loading {
+    mt_tree_maker *m;
+    double *g; /* s x n: G */
+} loading;
+
+static double along(const mt_tree *t, const mt_cx *local, int side, int k)
+{
+    return creal(local[(6 * side) + mt_tree_freedom(t, k)]);
+}
+
+static bool is_free(const mt_tree *t, int body, int k)
+{
+    return body != MT_GROUND && t->sys->bodies[body].dof[mt_tree_freedom(t, k)] >= 0;
+}
+
+/* += c times the Hessian of a measure of two bodies (MT_GROUND: the ground); false where both
+ * are bodies of no edge. */
+static bool add_curvature(const mt_tree_maker *m, const int body[2], double c,
+                          const mt_jet *jet)
+{
+    mt_tree *const t = m->t;
+    const ptrdiff_t square = (ptrdiff_t)t->s * t->s;
+    for (int side = 0; side < 2; side++) {
+        const int at = body[side] == MT_GROUND ? -1 : m->place[body[side]];
+        for (int k = 0; k < t->s * t->s && at >= 0; k++) {
+            const int row = k % t->s;
+            const int col = k / t->s;
+            if (is_free(t, body[side], row) && is_free(t, body[side], col)) {
+                t->curved[k + (square * at)] +=
+                    c * along(t,
+                              jet->h + ((ptrdiff_t)MT_LOCAL *
+                                        ((6 * side) + mt_tree_freedom(t, col))),
+                              side, row);
+            }
+        }
+    }
+    if (body[0] == MT_GROUND || body[1] == MT_GROUND) {
+        return true;
+    }
+    const int first = t->before[m->place[body[1]]] == m->place[body[0]] ? 0 : 1;
+    const int at = m->place[body[1 - first]];
+    if (t->before[at] != m->place[body[first]]) {
+        return false;
+    }
+    for (int k = 0; k < t->s * t->s; k++) {
+        const int row = k % t->s;
+        const int col = k / t->s;
+        if (is_free(t, body[first], row) && is_free(t, body[1 - first], col)) {
+            t->curved_shared[k + (square * at)] +=
+                c * along(t,
+                          jet->h + ((ptrdiff_t)MT_LOCAL *
+                                    ((6 * (1 - first)) + mt_tree_freedom(t, col))),
+                          first, row);
+        }
+    }
+    return true;
+}
+
+/* A force that a potential -c times the measure makes. */
+static bool add_force(const loading *l, const int body[2], double c, const mt_jet *jet)
+{
+    const mt_tree *const t = l->m->t;
+    for (int side = 0; side < 2; side++) {
+        const int at = body[side] == MT_GROUND ? -1 : l->m->place[body[side]];
+        for (int k = 0; k < t->s && at >= 0; k++) {
+            if (is_free(t, body[side], k)) {
+                const double f = c * along(t, jet->g, side, k);
+                l->g[k + ((ptrdiff_t)t->s * at)] += f;
+                l->m->t->force[at] +=
+                    fabs(f) / (mt_tree_freedom(t, k) >= 3 ? t->sys->length_m : 1.0);
+            }
+        }
+    }
+    return add_curvature(l->m, body, c, jet);
+}
+
+/* A measure with the force c; that of a spring from how far it is stretched. */
+static bool add_measure(const loading *l, const mt_measure_def *def,
+                        const mt_spring_def *spring, double c)
+{
+    const mt_data *const d = &l->m->data;
+    const mt_measure_data measure = mt_data_measure(d, def);
+    mt_jet jet;
+    mt_measure_eval(&measure, mt_pose_of(l->m->pose, def->body[0]),
+                    mt_pose_of(l->m->pose, def->body[1]), true, &jet);
+    if (spring != NULL && spring->free != MT_NO_NODE) {
+        c += d->value[spring->stiffness] * (creal(jet.value) - d->value[spring->free]);
+    }
+    return c == 0.0 || add_force(l, def->body, c, &jet);
+}
+
+static bool add_loads(const loading *l)
+{
+    const mt_data *const d = &l->m->data;
+    const mt_system *const sys = d->sys;
+    bool fits = true;
+    for (int i = 0; i < sys->n_loads && fits; i++) {
+        const mt_load_def *const load = &sys->loads[i];
+        if (load->measure >= 0) {
+            fits = add_measure(l, &sys->measures[load->measure], NULL, -d->value[load->size]);
+            continue;
+        }
+        mt_cx f[3];
+        mt_jet jet;
+        const int body[2] = {load->body, MT_GROUND};
+        for (int k = 0; k < 3; k++) {
+            f[k] = mt_data_scalar(d, load->force[k], 0.0);
+        }
+        mt_measure_point(load->point < 0 ? NULL : d->vec[load->point], f,
+                         mt_pose_of(l->m->pose, load->body), true, &jet);
+        fits = add_force(l, body, -1.0, &jet);
+    }
+    for (int i = 0; i < sys->n_springs && fits; i++) {
+        const mt_spring_def *const s = &sys->springs[i];
+        if (!s->damper && (s->free != MT_NO_NODE || s->preload != MT_NO_NODE)) {
+            const double preload = s->preload == MT_NO_NODE ? 0.0 : d->value[s->preload];
+            fits = add_measure(l, &sys->measures[s->measure[0]], s, preload);
+        }
+    }
+    if (!fits) {
+        (void)mt_snprintf(l->m->why, MT_TREE_WHY,
+                          "a load acts between bodies that hang on others");
+    }
+    return fits;
+}
+
+/* Does G_i balance where the edge is free? */
+static bool is_at_rest(const loading *l, int i)
+{
+    const mt_tree *const t = l->m->t;
+    const double *const g = l->g + ((ptrdiff_t)t->s * i);
+    const ptrdiff_t first = t->y_at[i] + t->loose_at[i];
+    const ptrdiff_t end = t->y_at[i + 1] + t->loose_at[i + 1];
+    for (ptrdiff_t c = first; c < end; c++) {
+        const double *const b = t->basis + (t->s * c);
+        double power = 0.0;
+        double most = 0.0;
+        for (int k = 0; k < t->s; k++) {
+            power += b[k] * g[k];
+            most =
+                fmax(most, fabs(b[k]) * (mt_tree_freedom(t, k) >= 3 ? t->sys->length_m : 1.0));
+        }
+        if (!(fabs(power) <= NOT_AT_REST * most * l->m->t->force[i])) {
+            (void)mt_snprintf(l->m->why, MT_TREE_WHY,
+                              "\"%s\" is not drawn at rest under its load",
+                              t->sys->bodies[t->body[i]].name);
+            return false;
+        }
+    }
+    return true;
+}
+
+/* lambda of the c equations of an edge, A^T lambda = -G, rows of A [c x s] by row: least
+ * squares through A A^T, scaled to a unit diagonal. Fails: MT_E_NOT_SPD (equations depend on
+ * each other). */
+static mt_status multipliers(const mt_tree *t, int c, const double *row, const double *g,
+                             double *lambda, mt_err *err)
+{
+    double gram[MOST * MOST];
+    double scale[MOST];
+    const double length = t->sys->length_m;
+    for (int i = 0; i < c; i++) {
+        for (int j = 0; j < c; j++) {
+            gram[i + (j * c)] = 0.0;
+            for (int k = 0; k < t->s; k++) {
+                const double unit = mt_tree_freedom(t, k) >= 3 ? length : 1.0;
+                gram[i + (j * c)] += row[k + (i * t->s)] / unit * row[k + (j * t->s)] / unit;
+            }
+        }
+        scale[i] = 1.0 / sqrt(gram[i + (i * c)]);
+        lambda[i] = 0.0;
+        for (int k = 0; k < t->s; k++) {
+            const double unit = mt_tree_freedom(t, k) >= 3 ? length : 1.0;
+            lambda[i] -= scale[i] * row[k + (i * t->s)] / unit * g[k] / unit;
+        }
+    }
+    for (int i = 0; i < c; i++) {
+        for (int j = 0; j < c; j++) {
+            gram[i + (j * c)] *= scale[i] * scale[j];
+        }
+    }
+    MT_TRY(mt_cholesky(c, gram, NULL, err));
+    mt_tri_solve(false, c, 1, gram, lambda, c);
+    mt_tri_solve(true, c, 1, gram, lambda, c);
+    for (int i = 0; i < c; i++) {
+        lambda[i] *= scale[i];
+    }
+    return MT_OK;
+}
+
+/* The joints of edge i hold G_i: their curvature, and G of the body before. */
+static mt_status hold(const loading *l, int i, mt_err *err)
+{
+    const mt_tree_maker *const m = l->m;
+    const mt_tree *const t = m->t;
+    const mt_system *const sys = t->sys;
+    double row[MOST * MOST];
+    double lambda[MOST] = {0.0};
+    mt_jet jet[MOST];
+    int c = 0;
+    const double *const g = l->g + ((ptrdiff_t)t->s * i);
+    for (int k = m->first_constraint[i]; k >= 0; k = m->next_constraint[k], c++) {
+        const mt_measure_def *const def = &sys->measures[sys->constraints[k].measure[0]];
+        const mt_measure_data measure = mt_data_measure(&m->data, def);
+        const int side = def->body[1] == t->body[i] ? 1 : 0;
+        mt_measure_eval(&measure, mt_pose_of(m->pose, def->body[0]),
+                        mt_pose_of(m->pose, def->body[1]), true, &jet[c]);
+        for (int r = 0; r < t->s; r++) {
+            row[r + (c * t->s)] = is_free(t, t->body[i], r) ? along(t, jet[c].g, side, r) : 0.0;
+        }
+    }
+    if (c > 0) {
+        MT_TRY(multipliers(t, c, row, g, lambda, err));
+    }
+    c = 0;
+    for (int k = m->first_constraint[i]; k >= 0; k = m->next_constraint[k], c++) {
+        const mt_measure_def *const def = &sys->measures[sys->constraints[k].measure[0]];
+        (void)add_curvature(m, def->body, lambda[c], &jet[c]);
+    }
+    if (t->before[i] >= 0) {
+        mt_tree_carry_back(t, i, g, l->g + ((ptrdiff_t)t->s * t->before[i]));
+        l->m->t->force[t->before[i]] += l->m->t->force[i];
+    }
+    return MT_OK;
+}
+
+mt_status mt_tree_loads(mt_tree_maker *m, mt_arena *mem, mt_arena *scratch, bool *is_tree,
+                        mt_err *err)
+{
+    mt_tree *const t = m->t;
+    const size_t n = (size_t)t->n;
+    const size_t s = (size_t)t->s;
+    const loading l = {.m = m, .g = mt_arena_f64(scratch, s, n)};
+    t->force = mt_arena_f64(mem, n, 1);
+    t->curved = mt_arena_f64(mem, n * s, s);
+    t->curved_shared = mt_arena_f64(mem, n * s, s);
+    MT_TRY(mt_arena_check(scratch, err));
+    MT_TRY(mt_arena_check(mem, err));
+    *is_tree = add_loads(&l);
+    for (int i = t->n - 1; i >= 0 && *is_tree; i--) {
+        *is_tree = is_at_rest(&l, i);
+        if (*is_tree) {
+            MT_TRY(hold(&l, i, err));
+        }
+    }
+    return MT_OK;
+}

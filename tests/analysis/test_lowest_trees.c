@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The lowest modes of random trees against the dense way, in the plane and in space: joints,
+ * springs and bushings of every kind that a tree may have, point masses, free parts,
+ * stiffnesses over decades; and hanging, or standing, along gravity.
+ */
+#include <stdlib.h>
+
+#include "analysis/lowest.h"
+#include "mechanics/mech.h"
+#include "mt_random.h"
+
+enum { TEXT = 40000, TREES = 300, MOST_BODIES = 9, COUNT = 6 };
+
+typedef struct writer {
+    char *text;
+    size_t used;
+} writer;
+
+#define ADD(w, ...) \
+    ((w)->used += (size_t)snprintf((w)->text + (w)->used, TEXT - (w)->used, __VA_ARGS__))
+
+typedef struct tree {
+    mt_random r;
+    int dimension;
+    bool hung; /* all on one line, which gravity lies along */
+    int n;
+    double at[MOST_BODIES + 1][3]; /* centres; the last one is the ground's */
+    bool point[MOST_BODIES + 1];
+    int on[MOST_BODIES];            /* body, n: the ground, -1: nothing */
+    const char *joint[MOST_BODIES]; /* NULL: springs alone */
+} tree;
+
+static void add_place(writer *w, const tree *m, const double *x)
+{
+    ADD(w, m->dimension == 2 ? "[%.17g, %.17g]" : "[%.17g, %.17g, %.17g]", x[0], x[1], x[2]);
+}
+
+static void add_name(writer *w, const tree *m, int body)
+{
+    if (body == m->n) {
+        ADD(w, "\"ground\"");
+    } else {
+        ADD(w, "\"b%d\"", body);
+    }
+}
+
+static double stiffness(tree *m)
+{
+    return pow(10.0, mt_random_in(&m->r, 0.0, 5.0));
+}
+
+static void choose(tree *m, uint64_t seed, bool hung)
+{
+    static const char *const plane[] = {"fixed", "revolute", "prismatic", "pin-in-slot",
+                                        "distance"};
+    static const char *const space[] = {
+        "fixed",  "revolute",      "prismatic", "cylindrical",    "spherical",  "universal",
+        "planar", "point-on-line", "distance",  "point-on-plane", "orientation"};
+    *m = (tree){.r = mt_random_seed(seed), .hung = hung};
+    m->dimension = 2 + mt_random_int(&m->r, 2);
+    m->n = 1 + mt_random_int(&m->r, MOST_BODIES);
+    for (int i = 0; i < m->n; i++) {
+        for (int k = 0; k < m->dimension; k++) {
+            const double x = mt_random_in(&m->r, -1.0, 1.0);
+            m->at[i][k] = m->hung && k + 1 < m->dimension ? 0.0 : x;
+        }
+        m->point[i] = mt_random_int(&m->r, 6) == 0;
+        const int dice = mt_random_int(&m->r, 5);
+        m->on[i] = i == 0      ? (dice == 0 ? -1 : m->n)
+                   : dice == 0 ? m->n
+                               : mt_random_int(&m->r, i);
+        /* what hangs rests as drawn where joints alone hold its weight */
+        m->point[i] = m->point[i] && !hung;
+        m->on[i] = hung && m->on[i] < 0 ? m->n : m->on[i];
+        const bool joined = m->on[i] >= 0 && !m->point[i] && !m->point[m->on[i]] &&
+                            (hung || mt_random_int(&m->r, 6) != 0);
+        m->joint[i] = !joined             ? NULL
+                      : m->dimension == 2 ? plane[mt_random_int(&m->r, hung ? 4 : 5)]
+                                          : space[mt_random_int(&m->r, hung ? 8 : 11)];
+    }
+}
+
+static void write_bodies(writer *w, tree *m)
+{
+    ADD(w, "\"bodies\": [");
+    for (int i = 0; i < m->n; i++) {
+        ADD(w, "%s{\"name\": \"b%d\", \"mass_kg\": %.17g, \"centre\": ", i == 0 ? "" : ", ", i,
+            mt_random_in(&m->r, 0.5, 3.0));
+        add_place(w, m, m->at[i]);
+        if (!m->point[i] && m->dimension == 2) {
+            ADD(w, ", \"inertia_kg_m2\": %.17g", mt_random_in(&m->r, 0.01, 0.5));
+        } else if (!m->point[i]) {
+            ADD(w, ", \"inertia_kg_m2\": [%.17g, %.17g, %.17g, %.17g, 0, 0.01]",
+                mt_random_in(&m->r, 0.2, 0.5), mt_random_in(&m->r, 0.2, 0.5),
+                mt_random_in(&m->r, 0.2, 0.5), mt_random_in(&m->r, -0.05, 0.05));
+        }
+        ADD(w, "}");
+    }
+    ADD(w, "]");
+}
+
+static void write_joints(writer *w, tree *m)
+{
+    const char *between = "";
+    ADD(w, ", \"joints\": [");
+    for (int i = 0; i < m->n; i++) {
+        const char *const type = m->joint[i];
+        double x[2][3] = {{0.0}};
+        if (type == NULL) {
+            continue;
+        }
+        for (int k = 0; k < m->dimension; k++) {
+            const bool off = m->hung && k + 1 < m->dimension;
+            x[0][k] = off ? 0.0 : mt_random_in(&m->r, -1.0, 1.0);
+            x[1][k] = off ? 0.0 : mt_random_in(&m->r, -1.0, 1.0);
+        }
+        ADD(w, "%s{\"name\": \"j%d\", \"type\": \"%s\", \"bodies\": [", between, i, type);
+        add_name(w, m, m->on[i]);
+        ADD(w, ", ");
+        add_name(w, m, i);
+        ADD(w, "]");
+        if (strcmp(type, "distance") == 0) {
+            ADD(w, ", \"at\": [");
+            add_place(w, m, x[0]);
+            ADD(w, ", ");
+            add_place(w, m, x[1]);
+            ADD(w, "]");
+        } else if (strcmp(type, "orientation") != 0) {
+            ADD(w, ", \"at\": ");
+            add_place(w, m, x[0]);
+        }
+        const bool turns = strcmp(type, "revolute") == 0;
+        const bool axis = strcmp(type, "fixed") != 0 && strcmp(type, "spherical") != 0 &&
+                          strcmp(type, "distance") != 0 && strcmp(type, "orientation") != 0 &&
+                          !(turns && m->dimension == 2);
+        const bool normal = strcmp(type, "planar") == 0;
+        if (axis && m->hung) {
+            ADD(w, ", \"axis\": %s",
+                m->dimension == 2 ? "[1, 0]"
+                : normal          ? "[0, 0, 1]"
+                                  : "[1, 0, 0]");
+        } else if (axis) {
+            ADD(w, ", \"axis\": ");
+            add_place(w, m,
+                      m->dimension == 2 ? (const double[3]){0.6, 0.8, 0.0}
+                                        : (const double[3]){0.6, 0.48, 0.64});
+        }
+        if (strcmp(type, "universal") == 0) {
+            ADD(w, ", \"axis_b\": %s", m->hung ? "[0, 1, 0]" : "[0.8, -0.36, -0.48]");
+        }
+        ADD(w, "}");
+        between = ", ";
+    }
+    ADD(w, "]");
+}
+
+/* Between body i and what it hangs on; a point mass is held at its centre. */
+static void write_axial(writer *w, tree *m, int i, int k, const char *between)
+{
+    static const double far[3][3] = {{0.7, -0.4, 0.1}, {-0.5, -0.6, 0.3}, {0.2, 0.5, 0.8}};
+    double from[3];
+    for (int c = 0; c < 3; c++) {
+        from[c] = m->point[m->on[i]] ? m->at[m->on[i]][c] : m->at[i][c] + far[k][c];
+    }
+    ADD(w, "%s{\"name\": \"s%d_%d\", \"type\": \"axial\", \"bodies\": [", between, i, k);
+    add_name(w, m, m->on[i]);
+    ADD(w, ", ");
+    add_name(w, m, i);
+    ADD(w, "], \"at\": [");
+    add_place(w, m, from);
+    ADD(w, ", ");
+    add_place(w, m, m->at[i]);
+    ADD(w, "], \"stiffness_n_per_m\": %.17g}", stiffness(m));
+}
+
+static void write_bushing(writer *w, tree *m, int i, const char *between)
+{
+    ADD(w, "%s{\"name\": \"u%d\", \"type\": \"bushing\", \"bodies\": [", between, i);
+    add_name(w, m, m->on[i]);
+    ADD(w, ", ");
+    add_name(w, m, i);
+    ADD(w, "], \"at\": ");
+    add_place(w, m, m->at[i]);
+    ADD(w, ", \"stiffness_n_per_m\": [%.17g, %.17g%s], \"stiffness_n_m_per_rad\": [%.17g%s]}",
+        stiffness(m), stiffness(m), m->dimension == 2 ? "" : ", 31.5", stiffness(m),
+        m->dimension == 2 ? "" : ", 70, 5.5");
+}
+
+static void write_springs(writer *w, tree *m)
+{
+    const char *between = "";
+    ADD(w, ", \"springs\": [");
+    for (int i = 0; i < m->n; i++) {
+        if (m->on[i] < 0) {
+            continue;
+        }
+        const bool turns = m->joint[i] != NULL && strcmp(m->joint[i], "revolute") == 0;
+        const bool point = m->point[i] || m->point[m->on[i]];
+        if (turns && mt_random_int(&m->r, 5) != 0) {
+            ADD(w,
+                "%s{\"name\": \"t%d\", \"type\": \"torsion\", \"joint\": \"j%d\", "
+                "\"stiffness_n_m_per_rad\": %.17g}",
+                between, i, i, stiffness(m));
+            between = ", ";
+        }
+        for (int k = 0; k < (m->point[m->on[i]] ? 1 : m->dimension); k++) {
+            if (point || mt_random_int(&m->r, 4) == 0) {
+                write_axial(w, m, i, k, between);
+                between = ", ";
+            }
+        }
+        if (!point && (m->joint[i] == NULL || mt_random_int(&m->r, 2) == 0)) {
+            write_bushing(w, m, i, between);
+            between = ", ";
+        }
+    }
+    ADD(w, "]");
+}
+
+/* Every mode is where the dense way has it, within the sum of the errors that both state. */
+static void compare(mt_test *t, const mt_modes *got, const mt_modes *want)
+{
+    const int count = want->n_rigid + COUNT < want->count ? want->n_rigid + COUNT : want->count;
+    CHECK_INT(t, got->n_rigid, want->n_rigid);
+    if (!CHECK_INT(t, got->count, count)) {
+        return;
+    }
+    for (int i = 0; i < count; i++) {
+        CHECK_INT(t, got->kind[i], want->kind[i]);
+        CHECK(t, fabs(got->lambda[i] - want->lambda[i]) <= got->error[i] + want->error[i]);
+        CHECK(t, got->error[i] <= 1e-9 * got->lambda[i]);
+        CHECK(t, got->residual[i] <= 10.0);
+    }
+}
+
+static void check_trees(mt_test *t, bool hung, int least)
+{
+    writer w = {.text = malloc(TEXT)};
+    int trees = 0;
+    REQUIRE(t, w.text != NULL);
+    for (int i = 0; i < TREES; i++) {
+        tree m;
+        mech dense;
+        mt_err err = {.text = ""};
+        mt_lowest *l = NULL;
+        choose(&m, (uint64_t)i + 1, hung);
+        w.used = 0;
+        ADD(&w, "{\"format\": \"modetune-model/1\", \"dimension\": %d, ", m.dimension);
+        if (hung) {
+            ADD(&w, "\"gravity_m_per_s2\": [0, %s], ", m.dimension == 2 ? "-3.7" : "0, -3.7");
+        }
+        write_bodies(&w, &m);
+        write_joints(&w, &m);
+        write_springs(&w, &m);
+        ADD(&w, "}");
+        mt_test_row(t, "seed %d", i + 1);
+        if (!mech_open(t, mech_parse(t, w.text), NULL, "", &dense)) {
+            mech_free(&dense);
+            continue; /* a mechanism that the dense way refuses: a dead centre */
+        }
+        CHECK_INT(t, mt_lowest_new(dense.model, 0, 0, NULL, NULL, COUNT, &l, &err), MT_OK);
+        if (l != NULL && l->tree != NULL) {
+            compare(t, &l->found.modes, &dense.a->modes);
+            trees++;
+        } else if (l != NULL) {
+            CHECK(t, hung);
+        }
+        mt_lowest_delete(l);
+        mech_free(&dense);
+    }
+    mt_test_row(t, "all");
+    CHECK(t, trees >= least);
+    free(w.text);
+}
+
+static void lowest__of_random_trees_are_those_of_the_dense_way(mt_test *t)
+{
+    check_trees(t, false, TREES * 8 / 10);
+}
+
+/* Of those whose springs let them rest as drawn, and hold them upright. */
+static void lowest__of_random_trees_under_gravity_likewise(mt_test *t)
+{
+    check_trees(t, true, TREES / 4);
+}
+
+MT_TEST_MAIN(MT_TEST(lowest__of_random_trees_are_those_of_the_dense_way),
+             MT_TEST(lowest__of_random_trees_under_gravity_likewise))
