@@ -23,6 +23,14 @@ def _best(run):
     return feasible[0] if feasible else None
 
 
+def _samples(run):
+    """Designs all over the bounds, and by how many tolerances each misses."""
+    if run.sampled is None:
+        x = search.samples(run.question, SAMPLES)
+        run.sampled = x, run.question.missed_robustly(x)
+    return run.sampled
+
+
 def _counterexamples(run):
     """Feasible designs found by brute force, with their cost: of the samples, and ends of local searches."""
     if run.found is None:
@@ -32,8 +40,8 @@ def _counterexamples(run):
             missed = q.missed_robustly(x)
             run.found = x[missed <= SURE], q.cost(x[missed <= SURE])
         else:
-            x = search.samples(q, SAMPLES)
-            starts, good, missed_there = search.least_missed(q, x, STARTS)
+            x, missed_there = _samples(run)
+            starts, good = search.least_missed(q, x, missed_there, STARTS)
             own = [design_of(q, r)[0] for r in run.result["recommendations"][:2]]
             good = good[missed_there[good] <= SURE]
             ends, missed, cost = search.descend(q, own + list(starts))
@@ -87,11 +95,10 @@ def certificates(run):
     proven = [c for c in result["certificates"] if c["proven"]]
     if not proven:
         return
-    x = search.samples(q, SAMPLES)
     for c in proven:
         reach = re.search(r"(\S+) mode (\d+) stays between ([-\d.e+]+) and ([-\d.e+]+|inf) Hz", c["text"])
         if reach:
-            hz = q.frequencies(x, reach[1])[:, int(reach[2]) - 1]
+            hz = q.frequencies(_samples(run)[0], reach[1])[:, int(reach[2]) - 1]
             low, high = float(reach[3]), float(reach[4])
             if c["reachable_lower_hz"] is not None:
                 low, high = c["reachable_lower_hz"], c["reachable_upper_hz"]
@@ -103,14 +110,15 @@ def certificates(run):
             if len(good):
                 yield f"\"{c['text']}\": {good[0].tolist()} meets all goals"
         elif c["kind"] == "gap_assignments":
-            yield from _assignments(run, c, x)
+            yield from _assignments(run, c)
 
 
-def _assignments(run, certificate, x):
+def _assignments(run, certificate):
     """Every kind of a feasible design that brute force finds is among those that can be met; alone, they are all listed."""
     q = run.question
     good, _ = _counterexamples(run)
-    feasible = np.concatenate([x[q.missed_robustly(x) <= SURE], good]) if len(good) else x[q.missed_robustly(x) <= SURE]
+    x, missed = _samples(run)
+    feasible = np.concatenate([x[missed <= SURE], good]) if len(good) else x[missed <= SURE]
     found = re.match(r"Of (\d+) gap assignments (\d+) can be met (within the bounds|by catalogue values)?", certificate["text"])
     if not found:
         return

@@ -71,7 +71,8 @@ def relaxations(run):
         less = _moved(run, item, LESS) if number == 0 and item["kind"] != "band" else None
         if less is not None:
             question = Question(run.model, less)
-            starts, good, _ = search.least_missed(question, search.samples(question, 500), 1)
+            x_less = search.samples(question, 500)
+            starts, good = search.least_missed(question, x_less, question.missed_robustly(x_less), 1)
             ends, missed, _ = search.descend(question, [np.clip(x[0], question.lower, question.upper), *starts])
             if len(good) or np.any(missed <= 1.0):
                 yield f"\"{item['text']}\": {LESS} of it is enough, {(starts if len(good) else ends[missed <= 1.0])[0].tolist()}"

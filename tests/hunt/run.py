@@ -54,6 +54,7 @@ class Run:
     def __init__(self, name, model, study, result, words):
         self.name, self.model, self.study, self.result, self.words = name, model, study, result, words
         self.question = Question(model, study)
+        self.sampled = None  # designs all over the bounds, and what each misses (check_claims.py)
         self.found = None  # what brute force found, once it has searched (check_claims.py)
         self.here = None   # the cost where rank 1 is, by a search of ours (check_words.py)
 

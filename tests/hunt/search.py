@@ -133,14 +133,13 @@ class Local:
         return t
 
 
-def least_missed(question, designs, count):
-    """The best `count` of designs: feasible ones by objective, else those that miss least."""
-    missed = question.missed_robustly(designs)
+def least_missed(question, designs, missed, count):
+    """The best `count` of designs that miss so much: feasible ones by objective, else those that miss least; and which are feasible."""
     cost = question.cost(designs)
     feasible = missed <= 1.0
     good = np.flatnonzero(feasible)[np.argsort(cost[feasible], kind="stable")]
     near = np.argsort(np.where(feasible, np.inf, missed), kind="stable")
-    return designs[(good if len(good) else near)[:count]], good, missed
+    return designs[(good if len(good) else near)[:count]], good
 
 
 def descend(question, starts):
