@@ -359,12 +359,14 @@ mt_status mt_program_eval(const mt_program *p, const double *inputs, double *val
     return MT_OK;
 }
 
-/* grad row of an active node from the rows of its operands; false: not finite. */
+/* grad row of an active node, whatever stood there, from the rows of its operands; false: not
+ * finite. */
 static bool node_gradient(const mt_program *p, int i, const double *value, double *grad)
 {
     const mt_program_node *const n = &p->nodes[i];
     const size_t inputs = (size_t)p->n_inputs;
     double *const row = grad + (size_t)i * inputs;
+    memset(row, 0, inputs * sizeof *row);
     if (n->op == MT_OP_PARAM) {
         row[n->input] = 1.0;
         return true;
@@ -389,11 +391,9 @@ static bool node_gradient(const mt_program *p, int i, const double *value, doubl
     return finite;
 }
 
-mt_status mt_program_gradient(const mt_program *p, const double *inputs, double *value,
-                              double *grad, mt_node *bad, mt_err *err)
+static mt_status active_gradients(const mt_program *p, const double *value, double *grad,
+                                  mt_node *bad, mt_err *err)
 {
-    MT_TRY(mt_program_eval(p, inputs, value, bad, err));
-    memset(grad, 0, (size_t)p->count * (size_t)p->n_inputs * sizeof *grad);
     for (int k = 0; k < p->n_active; k++) {
         const int i = p->active_nodes[k];
         if (!node_gradient(p, i, value, grad)) {
@@ -401,6 +401,27 @@ mt_status mt_program_gradient(const mt_program *p, const double *inputs, double 
         }
     }
     return MT_OK;
+}
+
+mt_status mt_program_gradient(const mt_program *p, const double *inputs, double *value,
+                              double *grad, mt_node *bad, mt_err *err)
+{
+    MT_TRY(mt_program_eval(p, inputs, value, bad, err));
+    memset(grad, 0, (size_t)p->count * (size_t)p->n_inputs * sizeof *grad);
+    return active_gradients(p, value, grad, bad, err);
+}
+
+mt_status mt_program_again(const mt_program *p, const double *inputs, double *value,
+                           double *grad, mt_node *bad, mt_err *err)
+{
+    for (int k = 0; k < p->n_active; k++) {
+        const int i = p->active_nodes[k];
+        value[i] = node_value(&p->nodes[i], inputs, value);
+        if (!isfinite(value[i])) {
+            return fail_at(p, i, value, "value", bad, err);
+        }
+    }
+    return grad == NULL ? MT_OK : active_gradients(p, value, grad, bad, err);
 }
 
 /*

@@ -79,6 +79,11 @@ mt_status mt_program_eval(const mt_program *p, const double *inputs, double *val
  * *bad. */
 mt_status mt_program_gradient(const mt_program *p, const double *inputs, double *value,
                               double *grad, mt_node *bad, mt_err *err);
+/* Either of them, to the same bits, where value is left from an evaluation of this program that
+ * succeeded, and grad (NULL: values alone) from one with gradient, or is all 0: nodes that
+ * depend on no input are not touched. Fails likewise; what depends on inputs is then void. */
+mt_status mt_program_again(const mt_program *p, const double *inputs, double *value,
+                           double *grad, mt_node *bad, mt_err *err);
 /* Enclosures: for all inputs within [lower, upper] (each [n_inputs], lower <= upper, infinite
  * allowed), where value[node] exists, lo[node] <= value[node] <= hi[node], lo and hi [count].
  * That holds for the exact values and for the rounded ones that mt_program_eval gives; what it

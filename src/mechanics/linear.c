@@ -347,9 +347,15 @@ static mt_status run_program(mt_linear *lin, const double *inputs, bool with_gra
         return MT_OK;
     }
     lin->graded = with_gradient;
-    const mt_status rc = with_gradient
-                             ? mt_program_gradient(p, inputs, lin->value, lin->grad, &bad, err)
-                             : mt_program_eval(p, inputs, lin->value, &bad, err);
+    double *const grad = with_gradient ? lin->grad : NULL;
+    mt_status rc = MT_OK;
+    if (!lin->started) {
+        rc = mt_program_eval(p, inputs, lin->value, &bad, err);
+        lin->started = rc == MT_OK;
+    }
+    if (rc == MT_OK) {
+        rc = mt_program_again(p, inputs, lin->value, grad, &bad, err);
+    }
     if (rc != MT_OK) {
         return where_in_model(lin, bad, rc, err);
     }

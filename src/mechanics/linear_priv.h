@@ -60,6 +60,7 @@ struct mt_linear {
     bool unstressed;   /* driven to its place with no spring stretched: as good as unloaded */
     bool has_factor_g; /* is there a factor_g? */
     bool graded;       /* grad belongs to value */
+    bool started;      /* value has what depends on no input */
     /* a driven joint begins where the last update left it, instead of at the reference
      * position: for sweeps */
     bool follow;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
+#include <string.h>
 
 #include "expr/op.h"
 #include "expr_fixture.h"
@@ -199,6 +200,39 @@ static void program__every_failing_allocation_is_reported(mt_test *t)
     }
 }
 
+/* Again: the same bits, whatever design and however far an evaluation went before. */
+static void program__does_again_only_what_depends_on_inputs(mt_test *t)
+{
+    static const char *const texts[] = {
+        "sqrt(x*y) + sin(z)^2 * ln(k_1) / atan2(x, y) + 2^3/7 + pi",
+        "min(x, y) + max(3, 4)*z - abs(k_1)", "x", "5", "x*x*x*x + hypot(y, 2)"};
+    static const double designs[][N_PARAMS] = {{1.0, 2.0, 3.0, 4.0},
+                                               {1.5, 2.0, -3.0, 4.5},
+                                               {-1.0, 2.0, 3.0, 4.0},
+                                               {0.5, 0.25, 2.0, 8.0}};
+    for (int i = 0; i < MT_COUNT(texts); i++) {
+        fixture f = {.root = 0};
+        fixture g = {.root = 0};
+        mt_err err;
+        if (fixture_init(&f, texts[i], &err) && fixture_init(&g, texts[i], &err) &&
+            CHECK_INT(t, mt_program_eval(&g.p, designs[0], g.value, NULL, &err), MT_OK)) {
+            const size_t n = (size_t)f.p.count;
+            for (int d = 0; d < 2 * MT_COUNT(designs); d++) {
+                const double *const at = designs[(3 * d) % MT_COUNT(designs)];
+                mt_test_row(t, "%s, design %d", texts[i], d);
+                const mt_status rc = mt_program_gradient(&f.p, at, f.value, f.grad, NULL, &err);
+                CHECK_INT(t, mt_program_again(&g.p, at, g.value, g.grad, NULL, &err), rc);
+                CHECK(t, rc != MT_OK || memcmp(f.value, g.value, n * sizeof *f.value) == 0);
+                CHECK(t, rc != MT_OK ||
+                             memcmp(f.grad, g.grad, n * N_PARAMS * sizeof *f.grad) == 0);
+                CHECK_INT(t, mt_program_again(&g.p, at, g.value, NULL, NULL, &err), rc);
+            }
+        }
+        fixture_free(&g);
+        fixture_free(&f);
+    }
+}
+
 static void program__evaluation_allocates_nothing(mt_test *t)
 {
     const double inputs[N_PARAMS] = {1.0, 2.0, 3.0, 4.0};
@@ -222,4 +256,5 @@ MT_TEST_MAIN(MT_TEST(program__equal_nodes_are_shared),
              MT_TEST(program__inputs_that_are_not_finite_are_errors),
              MT_TEST(program__knows_what_depends_on_what),
              MT_TEST(program__every_failing_allocation_is_reported),
+             MT_TEST(program__does_again_only_what_depends_on_inputs),
              MT_TEST(program__evaluation_allocates_nothing))
