@@ -21,12 +21,12 @@ mt_profile *mt_cli_profile(const mt_args *args, mt_profile *own)
 
 int mt_cli_profile_print(mt_profile *p)
 {
+    if (p == NULL) {
+        return MT_EXIT_DONE;
+    }
     mt_text text = {.s = NULL};
     mt_table t = mt_table_default();
     int code = MT_EXIT_DONE;
-    if (p == NULL) {
-        return code;
-    }
     mt_table_column(&t, "stage", "stage", MT_ALIGN_LEFT);
     mt_table_column(&t, "done", "done", MT_ALIGN_RIGHT);
     mt_table_column(&t, "skipped", "skipped", MT_ALIGN_RIGHT);
