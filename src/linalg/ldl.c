@@ -99,8 +99,8 @@ static double largest(const front *w, int of, int c, int r, int *where)
     return most;
 }
 
-/* Columns of L of the pivot (c, r) into w->l, r < 0: of order one; returns their largest entry.
- * */
+/* Columns of L of the pivot (c, r) into w->l, r < 0: of order one; returns their largest entry,
+ * infinite where the pivot is singular. */
 static double multiply(const front *w, int c, int r, double d[3])
 {
     const double *const x = column(w, c);
@@ -118,7 +118,11 @@ static double multiply(const front *w, int c, int r, double d[3])
     d[2] = y[r];
     const double d11 = d[2] / d[1];
     const double d22 = d[0] / d[1];
-    const double t = 1.0 / ((d11 * d22) - 1.0) / d[1];
+    const double det = (d11 * d22) - 1.0;
+    if (det == 0.0) {
+        return HUGE_VAL;
+    }
+    const double t = 1.0 / det / d[1];
     for (int i = 0; i < w->n; i++) {
         const bool own = i == c || i == r;
         w->l[0][i] = own ? 0.0 : t * ((d11 * x[i]) - y[i]);

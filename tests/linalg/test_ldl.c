@@ -169,6 +169,33 @@ static void ldl__dependent_rows_give_no_pivot(mt_test *t)
     }
 }
 
+/* Two rows that would be a singular pivot of order two while their partner is not yet whole. */
+static void ldl__a_singular_pair_waits_for_its_partner(mt_test *t)
+{
+    static chain c;
+    mt_ldl f;
+    double x[4] = {1.0, -2.0, 3.0, 0.5};
+    double b[4];
+    mt_arena_clear(&mem);
+    c = (chain){.n = 4};
+    set(&c, 0, 0, 0.05);
+    set(&c, 0, 1, 0.05);
+    set(&c, 1, 1, 0.05);
+    set(&c, 0, 2, 1.0);
+    set(&c, 1, 2, -1.0);
+    set(&c, 2, 2, 0.5);
+    set(&c, 2, 3, 1.0);
+    set(&c, 3, 3, 1.0);
+    seal(&c);
+    mt_gemv(false, 4, 4, 1.0, c.a, 4, x, 0.0, b);
+    CHECK_INT(t, mt_ldl_factor(&c.e, c.value, TOL, MOST, &mem, &f, NULL), MT_OK);
+    CHECK_INT(t, f.rank, 4);
+    mt_ldl_solve(&f, b);
+    for (int i = 0; i < 4; i++) {
+        CHECK_NEAR_ABS(t, b[i], x[i], 1e-13);
+    }
+}
+
 static void ldl__a_front_that_is_too_small_and_bad_entries_are_told(mt_test *t)
 {
     mt_random g = mt_random_seed(9);
@@ -192,6 +219,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         MT_TEST(ldl__solutions_and_inertia_are_those_of_the_dense_matrix),
         MT_TEST(ldl__dependent_rows_give_no_pivot),
+        MT_TEST(ldl__a_singular_pair_waits_for_its_partner),
         MT_TEST(ldl__a_front_that_is_too_small_and_bad_entries_are_told),
     };
     const int failed = mt_arena_init(&mem, 0, NULL) != MT_OK
