@@ -247,7 +247,7 @@ mt_status mt_modal_lowest(const mt_lowest_problem *p, mt_arena *mem, mt_lowest_m
 {
     const int wanted = p->count < p->n ? p->count : p->n;
     const size_t most = (size_t)wanted + (size_t)p->n_rigid;
-    finding f = {.p = p, .most = (2 * wanted) + (ROUNDS * MORE)};
+    finding f = {.p = p, .most = wanted + MORE};
     mt_modes *const m = &out->modes;
     *out = (mt_lowest_modes){.modes = {.n = p->n + p->n_rigid, .n_rigid = p->n_rigid}};
     m->lambda = mt_arena_f64(mem, most, 1);
