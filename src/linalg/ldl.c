@@ -81,16 +81,22 @@ static void leave(front *w, int at)
     }
 }
 
-/* Largest |entry| of a column but those at c and r (-1: none); *where: among whole rows. */
-static double largest(const front *w, int of, int c, int r, int *where)
+/* fmax of C asks for NaN, and took a tenth of a factorisation. */
+static double larger(double most, double x)
 {
-    const double *const f = column(w, of);
+    return fabs(x) > most ? fabs(x) : most;
+}
+
+/* Largest |entry| of a column but the diagonal; *where: among whole rows, -1: none. */
+static double largest(const front *w, int c, int *where)
+{
+    const double *const f = column(w, c);
     double most = 0.0;
     double most_whole = 0.0;
     *where = -1;
     for (int i = 0; i < w->n; i++) {
-        const double size = i == c || i == r ? 0.0 : fabs(f[i]);
-        most = fmax(most, size);
+        const double size = i == c ? 0.0 : fabs(f[i]);
+        most = larger(most, size);
         if (w->whole[i] && size > most_whole) {
             most_whole = size;
             *where = i;
@@ -109,7 +115,7 @@ static double multiply(const front *w, int c, int r, double d[3])
     if (r < 0) {
         for (int i = 0; i < w->n; i++) {
             w->l[0][i] = i == c ? 0.0 : x[i] / d[0];
-            most = fmax(most, fabs(w->l[0][i]));
+            most = larger(most, w->l[0][i]);
         }
         return most;
     }
@@ -127,7 +133,7 @@ static double multiply(const front *w, int c, int r, double d[3])
         const bool own = i == c || i == r;
         w->l[0][i] = own ? 0.0 : t * ((d11 * x[i]) - y[i]);
         w->l[1][i] = own ? 0.0 : t * ((d22 * y[i]) - x[i]);
-        most = fmax(most, fmax(fabs(w->l[0][i]), fabs(w->l[1][i])));
+        most = larger(larger(most, w->l[0][i]), w->l[1][i]);
     }
     return most;
 }
@@ -190,7 +196,7 @@ static bool try_pivot(front *w, int c, double tol, mt_arena *mem, mt_ldl *out)
 {
     double d[3] = {0.0, 0.0, 0.0};
     int r = -1;
-    const double most = largest(w, c, c, -1, &r);
+    const double most = largest(w, c, &r);
     const double own = fabs(column(w, c)[c]);
     if (own > tol && own >= THRESHOLD * most) {
         (void)multiply(w, c, -1, d);
