@@ -63,7 +63,8 @@ static void evaluation__takes_nothing_from_the_heap(mt_test *t)
     static const char *const studies[] = {
         "beam_identification",     "truss_10bar_E68_9",  "truss_72bar",    "six_masses_bands",
         "inceptor_identification", "inceptor_stick_mac", "inceptor_rotor", "engine_orders"};
-    for (int i = 0; i < MT_COUNT(studies) && mt_alloc_works(); i++) {
+    const bool counted = mt_alloc_works();
+    for (int i = 0; i < MT_COUNT(studies); i++) {
         compiled s;
         if (open_study(t, studies[i], &s)) {
             for (int call = 0; call < WARM; call++) {
@@ -73,7 +74,7 @@ static void evaluation__takes_nothing_from_the_heap(mt_test *t)
             for (int call = WARM; call < WARM + COUNTED; call++) {
                 mt_test_row(t, "%s, call %d", studies[i], call);
                 CHECK_INT(t, evaluate(&s, call, call % 2 == 0), MT_OK);
-                CHECK_INT(t, mt_alloc_count(), warm);
+                CHECK(t, !counted || mt_alloc_count() == warm);
             }
         }
         close_study(&s);
