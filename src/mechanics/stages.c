@@ -86,7 +86,9 @@ bool mt_stages_begin(mt_stages *s, mt_stage_id stage, const uint64_t *set, const
 
 void mt_stages_done(mt_stages *s, mt_stage_id stage, const double *inputs)
 {
-    memcpy(s->at[stage], inputs, (size_t)s->n_inputs * sizeof *inputs);
+    for (int i = 0; i < s->n_inputs; i++) {
+        s->at[stage][i] = inputs[i];
+    }
     s->valid[stage] = true;
     s->counts.done[stage]++;
     s->counts.seconds[stage] += mt_profile_now(s->profile) - s->started_s;
