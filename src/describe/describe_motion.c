@@ -34,7 +34,7 @@ typedef struct described {
     mt_motion motion;
     bool followed;
     double violation; /* ln; NaN: no value */
-    double *room;     /* the least of all families */
+    double room;      /* the least of its motion; HUGE_VAL: none */
 } described;
 
 static const char *configuration_of(const described *d, const mt_clear *c)
@@ -121,7 +121,7 @@ static mt_status examine(described *d, mt_err *err)
         d->violation = d->motion.end == MT_MOTION_UNSTABLE ? nan("")
                        : d->motion.room >= -ON_EDGE        ? d->violation
                                                     : fmax(d->violation, -d->motion.room);
-        *d->room = fmin(*d->room, d->motion.room);
+        d->room = fmin(d->room, d->motion.room);
     }
     return MT_OK;
 }
@@ -270,11 +270,12 @@ static mt_status put_row(const described *d, const char *range, double from, dou
 static mt_status describe_family(mt_workspace *fresh, const mt_family *f, mt_result *result,
                                  mt_recommendation *rec, double *room, mt_err *err)
 {
-    described d = {.fresh = fresh, .result = result, .family = f, .room = room};
+    described d = {.fresh = fresh, .result = result, .family = f, .room = HUGE_VAL};
     double from = HUGE_VAL;
     double to = -HUGE_VAL;
     d.motion.percent = nan("");
     MT_TRY(examine(&d, err));
+    *room = fmin(*room, d.room);
     for (int k = 0; k < f->n; k++) {
         from = fmin(from, mt_family_position(fresh->views[f->view[k]].analysis));
         to = fmax(to, mt_family_position(fresh->views[f->view[k]].analysis));

@@ -61,12 +61,18 @@ bool mt_stages_has(const uint64_t *set, int input)
     return (set[input / WORD] >> (unsigned)(input % WORD) & 1U) != 0;
 }
 
+static uint64_t bits_of(double x)
+{
+    uint64_t bits = 0;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
 static bool is_same(const mt_stages *s, mt_stage_id stage, const uint64_t *set,
                     const double *inputs)
 {
     for (int i = 0; i < s->n_inputs; i++) {
-        if (mt_stages_has(set, i) &&
-            memcmp(&s->at[stage][i], &inputs[i], sizeof *inputs) != 0) {
+        if (mt_stages_has(set, i) && bits_of(s->at[stage][i]) != bits_of(inputs[i])) {
             return false;
         }
     }

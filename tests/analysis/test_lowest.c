@@ -12,7 +12,7 @@
 #include "mt_quad.h"
 #include "mt_random.h"
 
-enum { TEXT = 400000, COUNT = 6 };
+enum { TEXT = 400000, COUNT = 6, LONGEST = 3000 };
 
 typedef struct writer {
     char *text;
@@ -127,14 +127,15 @@ static void lowest__of_chains_are_those_of_their_transfer_matrix(mt_test *t)
         {"3000, uniform", 3000, 0.0, 0.0, 1.0},      {"ten, hanging", 10, 2.0, 9.81, 1.0},
         {"200, hanging, soft", 200, 0.5, 9.81, 0.1}, {"3000, hanging", 3000, 0.5, 9.81, 0.1},
     };
+    static double k[LONGEST];
+    static double m[LONGEST];
+    static double length[LONGEST];
     writer w = {.text = malloc(TEXT)};
     REQUIRE(t, w.text != NULL);
     for (int row = 0; row < MT_COUNT(rows); row++) {
         const int n = rows[row].n;
         mt_random r = mt_random_seed((uint64_t)row + 7);
-        double *const lists = calloc((size_t)(3 * n), sizeof *lists);
-        REQUIRE(t, lists != NULL);
-        chain c = {.n = n, .g = rows[row].g, .k = lists, .m = lists + n, .l = lists + (2 * n)};
+        chain c = {.n = n, .g = rows[row].g, .k = k, .m = m, .l = length};
         double span = 0.0;
         for (int i = 0; i < n; i++) {
             c.k[i] = rows[row].k * n *
@@ -173,7 +174,6 @@ static void lowest__of_chains_are_those_of_their_transfer_matrix(mt_test *t)
         }
         mt_lowest_delete(l);
         mt_model_delete(model);
-        free(lists);
     }
     free(w.text);
 }

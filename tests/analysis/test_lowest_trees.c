@@ -50,13 +50,33 @@ static double stiffness(tree *m)
     return pow(10.0, mt_random_in(&m->r, 0.0, 5.0));
 }
 
-static void choose(tree *m, uint64_t seed, bool hung)
+/* What body i is on, by what joint (NULL: none). */
+static void join(tree *m, int i)
 {
     static const char *const plane[] = {"fixed", "revolute", "prismatic", "pin-in-slot",
                                         "distance"};
     static const char *const space[] = {
         "fixed",  "revolute",      "prismatic", "cylindrical",    "spherical",  "universal",
         "planar", "point-on-line", "distance",  "point-on-plane", "orientation"};
+    const bool hung = m->hung;
+    const int dice = mt_random_int(&m->r, 5);
+    if (i == 0 || dice == 0) {
+        m->on[i] = i == 0 && dice == 0 ? -1 : m->n;
+    } else {
+        m->on[i] = mt_random_int(&m->r, i);
+    }
+    /* what hangs rests as drawn where joints alone hold its weight */
+    m->point[i] = m->point[i] && !hung;
+    m->on[i] = hung && m->on[i] < 0 ? m->n : m->on[i];
+    const bool joined = m->on[i] >= 0 && !m->point[i] && !m->point[m->on[i]] &&
+                        (hung || mt_random_int(&m->r, 6) != 0);
+    m->joint[i] = !joined             ? NULL
+                  : m->dimension == 2 ? plane[mt_random_int(&m->r, hung ? 4 : 5)]
+                                      : space[mt_random_int(&m->r, hung ? 8 : 11)];
+}
+
+static void choose(tree *m, uint64_t seed, bool hung)
+{
     *m = (tree){.r = mt_random_seed(seed), .hung = hung};
     m->dimension = 2 + mt_random_int(&m->r, 2);
     m->n = 1 + mt_random_int(&m->r, MOST_BODIES);
@@ -66,18 +86,7 @@ static void choose(tree *m, uint64_t seed, bool hung)
             m->at[i][k] = m->hung && k + 1 < m->dimension ? 0.0 : x;
         }
         m->point[i] = mt_random_int(&m->r, 6) == 0;
-        const int dice = mt_random_int(&m->r, 5);
-        m->on[i] = i == 0      ? (dice == 0 ? -1 : m->n)
-                   : dice == 0 ? m->n
-                               : mt_random_int(&m->r, i);
-        /* what hangs rests as drawn where joints alone hold its weight */
-        m->point[i] = m->point[i] && !hung;
-        m->on[i] = hung && m->on[i] < 0 ? m->n : m->on[i];
-        const bool joined = m->on[i] >= 0 && !m->point[i] && !m->point[m->on[i]] &&
-                            (hung || mt_random_int(&m->r, 6) != 0);
-        m->joint[i] = !joined             ? NULL
-                      : m->dimension == 2 ? plane[mt_random_int(&m->r, hung ? 4 : 5)]
-                                          : space[mt_random_int(&m->r, hung ? 8 : 11)];
+        join(m, i);
     }
 }
 

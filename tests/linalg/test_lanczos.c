@@ -63,7 +63,8 @@ static double dense(int i, int n)
 static double twice(int i, int n)
 {
     (void)n;
-    return 1.0 / (double)(1 + (i / 2));
+    const int pair = i / 2;
+    return 1.0 / (1.0 + (double)pair);
 }
 
 static double low_rank(int i, int n)
@@ -114,19 +115,19 @@ static void lanczos__finds_the_largest(mt_test *t)
 {
     static const struct {
         const char *name;
-        int n;
         spectrum of;
+        int n;
         int found;
     } rows[] = {
-        {"falling", 300, falling, WANTED},
-        {"dense, restarted", 400, dense, WANTED},
-        {"smaller than room", 20, dense, WANTED},
-        {"as small as wanted", WANTED, falling, WANTED},
-        {"smaller than wanted", 5, falling, 5},
-        {"one", 1, falling, 1},
-        {"rank three", 100, low_rank, 3},
-        {"nothing at all", 50, none, 0},
-        {"order 0", 0, none, 0},
+        {"falling", falling, 300, WANTED},
+        {"dense, restarted", dense, 400, WANTED},
+        {"smaller than room", dense, 20, WANTED},
+        {"as small as wanted", falling, WANTED, WANTED},
+        {"smaller than wanted", falling, 5, 5},
+        {"one", falling, 1, 1},
+        {"rank three", low_rank, 100, 3},
+        {"nothing at all", none, 50, 0},
+        {"order 0", none, 0, 0},
     };
     static operator_ o;
     static double x[MOST * WANTED];

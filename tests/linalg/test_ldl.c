@@ -58,6 +58,28 @@ static void seal(chain *c)
     }
 }
 
+/* One link: its states with each other and with those of the link before, its equations. */
+static void add_link(mt_random *g, int at, int states, int rows, chain *c)
+{
+    const int before = at - states - rows; /* where the link before begins, if there is one */
+    for (int i = at; i < at + states; i++) {
+        for (int j = rows < states ? before : at; j <= i; j++) {
+            if (j >= at || (j >= 0 && j < at - rows)) {
+                set(c, i, j, mt_random_in(g, -1.0, 1.0));
+            }
+        }
+    }
+    for (int r = at + states; r < at + states + rows; r++) {
+        c->equations++;
+        for (int j = at; j < at + states; j++) {
+            set(c, r, j, mt_random_in(g, -1.0, 1.0));
+        }
+        for (int j = before; j < at - rows && j >= 0; j++) {
+            set(c, r, j, mt_random_in(g, -1.0, 1.0));
+        }
+    }
+}
+
 static void make(mt_random *g, bool redundant, chain *c)
 {
     const int states = 2 + mt_random_int(g, 2);
@@ -65,28 +87,10 @@ static void make(mt_random *g, bool redundant, chain *c)
     const int links = 1 + mt_random_int(g, MOST / (states + rows + 1) - 1);
     *c = (chain){.n = links * (states + rows) + (redundant ? 1 : 0)};
     for (int k = 0; k < links; k++) {
-        const int at = k * (states + rows);
-        for (int i = at; i < at + states; i++) {
-            for (int j = k > 0 && rows < states ? at - states - rows : at; j <= i; j++) {
-                if (j >= at || j < at - rows) {
-                    set(c, i, j, mt_random_in(g, -1.0, 1.0));
-                }
-            }
-        }
-        for (int r = at + states; r < at + states + rows; r++) {
-            c->equations++;
-            for (int j = at; j < at + states; j++) {
-                set(c, r, j, mt_random_in(g, -1.0, 1.0));
-            }
-            for (int j = at - states - rows; j < at - rows; j++) {
-                if (j >= 0) {
-                    set(c, r, j, mt_random_in(g, -1.0, 1.0));
-                }
-            }
-        }
+        add_link(g, k * (states + rows), states, rows, c);
     }
-    for (int j = 0; redundant && j < c->n - 1;
-         j++) { /* twice the row before, which has no diagonal */
+    /* twice the row before, which has no diagonal */
+    for (int j = 0; redundant && j < c->n - 1; j++) {
         const double v = c->a[c->n - 2 + (j * c->n)];
         set(c, c->n - 1, j, rows > 0 ? 2.0 * v : 0.0);
     }
