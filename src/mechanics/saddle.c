@@ -24,8 +24,6 @@ static const double NO_PIVOT = 1e-9;
 enum { ROOM = 24 };
 /* A multiplication here, in a loop over a short row, against one in a matrix product. */
 static const double SLOWER = 4.0;
-/* What calls of LAPACK on small matrices cost besides, in multiplications. */
-static const double CALLS = 1e5;
 
 bool mt_saddle_pays(const mt_system *sys)
 {
@@ -35,7 +33,7 @@ bool mt_saddle_pays(const mt_system *sys)
     /* pivoted QR, basis, reduced Hessian, its singular values */
     const double dense =
         (2.0 * m * m * nq) + (4.0 * nq * n * m) + (2.0 * nq * nq * n) + (30.0 * n * n * n);
-    return SLOWER * 2.0 * sys->layout->work <= dense + CALLS;
+    return SLOWER * 2.0 * sys->layout->work <= dense;
 }
 
 /* d[places]: D_c for states, D_r for equations. */
