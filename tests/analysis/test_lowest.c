@@ -52,8 +52,8 @@ static mt_quad determinant(const chain *c, mt_quad lambda)
             tension += (mt_quad)c->g * (mt_quad)c->m[i];
         }
         for (int i = 0; i < c->n; i++) {
-            const mt_quad l = c->l[i];
-            const mt_quad m = c->m[i];
+            const mt_quad l = (mt_quad)c->l[i];
+            const mt_quad m = (mt_quad)c->m[i];
             theta += moment / (mt_quad)c->k[i];
             const mt_quad next = force + lambda * m * (w + theta * l / 2);
             const mt_quad less = tension - (mt_quad)c->g * m;
@@ -72,8 +72,8 @@ static mt_quad determinant(const chain *c, mt_quad lambda)
 /* The root next to lambda, by secants. */
 static double exact(const chain *c, double lambda)
 {
-    mt_quad a = lambda * (1.0 - 1e-9);
-    mt_quad b = lambda * (1.0 + 1e-9);
+    mt_quad a = (mt_quad)(lambda * (1.0 - 1e-9));
+    mt_quad b = (mt_quad)(lambda * (1.0 + 1e-9));
     mt_quad fa = determinant(c, a);
     for (int i = 0; i < 12; i++) {
         const mt_quad fb = determinant(c, b);

@@ -23,8 +23,8 @@ static inline void exact_matrix(const mt_linear *lin, mt_term_kind kind, long do
     const double *const fixed = mt_linear_fixed(lin, kind);
     for (ptrdiff_t j = 0; j < n; j++) {
         for (ptrdiff_t i = j; i < n; i++) {
-            out[i + (j * n)] = fixed[i + (j * n)];
-            out[j + (i * n)] = fixed[i + (j * n)];
+            out[i + (j * n)] = (long double)fixed[i + (j * n)];
+            out[j + (i * n)] = (long double)fixed[i + (j * n)];
         }
     }
     for (int i = 0; i < list->n_rows; i++) {
