@@ -7,6 +7,7 @@ elements   a cantilever's first four frequencies by the number of its elements: 
            elements; errors against the closed form
 peers      the same cantilever of n beam elements from its file to its first four frequencies, beside SciPy (banded matrices,
            shift and invert) and CalculiX (B31, *FREQUENCY), each in a process of its own
+evaluation one evaluation of shipped studies beside a bare dsyevd (bench_evaluation)
 search     distance from the best known answer by evaluations and CPU time (bench_search)
 beam       the nine-element beam beside the paper's way in Octave (bench_beam.sh)
 Times are CPU seconds of processes without threads, the median of several runs with the spread (largest less smallest) beside it;
@@ -168,6 +169,10 @@ class Bench:
         self.show("peers", "cantilever of n beam elements, from the file to four frequencies", rows, ("cpu_s", "CPU s"),
                   ("error", "largest relative error"))
 
+    def evaluation(self):
+        subprocess.run([BUILD / "tests/bench/bench_evaluation"] + ["truss_10bar_E69_8"] * self.quick, env=ALONE, check=True)
+        print(flush=True)
+
     def search(self):
         path = self.out / "search.csv"
         subprocess.run([BUILD / "tests/bench/bench_search", "--csv", path] + (["--quick", "inceptor_tuning_1", "truss_10bar_E69_8"] if self.quick else []), env=ALONE, check=True)
@@ -220,12 +225,12 @@ def machine():
 def main():
     parser = argparse.ArgumentParser(description="run time against error")
     parser.add_argument("--quick", action="store_true", help="one short run of everything")
-    parser.add_argument("--only", choices=("elements", "peers", "search", "beam"), action="append")
+    parser.add_argument("--only", choices=("elements", "peers", "evaluation", "search", "beam"), action="append")
     parser.add_argument("--out", type=Path, default=BUILD / "bench")
     options = parser.parse_args()
     bench = Bench(options.out, options.quick)
     machine()
-    for name in options.only or ("beam", "elements", "peers", "search"):
+    for name in options.only or ("beam", "elements", "peers", "evaluation", "search"):
         getattr(bench, name)()
     print(f"tables and pictures: {options.out}")
 
