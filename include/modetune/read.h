@@ -44,7 +44,8 @@ typedef struct mt_diagnostics mt_diagnostics;
 MT_API mt_status mt_diagnostics_new(mt_diagnostics **out, mt_err *err);
 /* Accepts NULL. */
 MT_API void mt_diagnostics_delete(mt_diagnostics *d);
-/* How many are listed: a file has 200 at most; and how many more there are, which are not. */
+/* How many are listed: a file has 200 at most; and how many more there are, which are not.
+ * None where memory ran out while they were listed: the call has said so. */
 MT_API int mt_diagnostics_count(const mt_diagnostics *d);
 MT_API int mt_diagnostics_left_out(const mt_diagnostics *d);
 /* Number i, from 0. MT_SEVERITY_COUNT beyond the last. */

@@ -137,7 +137,7 @@ static const mt_diagnostic *item(const mt_diagnostics *d, int i)
 
 int mt_diagnostics_count(const mt_diagnostics *d)
 {
-    return d == NULL ? 0 : d->count;
+    return d == NULL || d->lines.failed ? 0 : d->count;
 }
 
 int mt_diagnostics_left_out(const mt_diagnostics *d)

@@ -196,8 +196,9 @@ static void put_problems(mt_json_writer *w, const char *path, const mt_diagnosti
 {
     static const char *const names[MT_SEVERITY_COUNT] = {"error", "warning", "note"};
     mt_json_open(w, "problems", '[');
-    const bool alone = failure != NULL && messages->count == 0;
-    for (int i = 0; i < messages->count || (alone && i == 0); i++) {
+    const int count = mt_diagnostics_count(messages);
+    const bool alone = failure != NULL && count == 0;
+    for (int i = 0; i < count || (alone && i == 0); i++) {
         const int line = mt_diagnostics_line(messages, i);
         mt_json_open(w, NULL, '{');
         mt_json_put_string(w, "severity",

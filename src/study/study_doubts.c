@@ -125,8 +125,8 @@ static void doubt_avoid(mt_doubt_list *out, const mt_goal *goal)
 static void doubt_variable(mt_doubt_list *out, const mt_variable *v)
 {
     const char *const name = v->parameter_name.s;
-    const double ratio = v->upper / v->lower;
-    if (v->lower > 0.0 && ratio > MOST_SPAN) {
+    const double ratio = v->lower > 0.0 ? v->upper / v->lower : 0.0;
+    if (ratio > MOST_SPAN) {
         const double decades =
             isfinite(ratio) ? log10(ratio) : log10(v->upper) - log10(v->lower);
         at(mt_doubt_add(
