@@ -178,8 +178,8 @@ static double force_energies(const worker *k, const double *phi)
     double sum = 0.0;
     for (int i = 0; i < lin->n_pieces && lin->kg != NULL; i++) {
         const mt_piece *const p = &lin->pieces[i];
-        double way[MT_LOCAL];
-        int at[MT_LOCAL]; /* local freedoms that there are */
+        double way[MT_LOCAL] = {0.0};
+        int at[MT_LOCAL] = {0}; /* local freedoms that there are */
         int n = 0;
         double energy = 0.0;
         for (int r = 0; r < MT_LOCAL; r++) {

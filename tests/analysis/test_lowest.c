@@ -27,9 +27,9 @@ typedef struct writer {
 typedef struct chain {
     int n;
     double g;
-    double *k; /* [n] spring before link i */
-    double *m;
-    double *l;
+    double k[LONGEST]; /* [n] spring before link i */
+    double m[LONGEST];
+    double l[LONGEST];
 } chain;
 
 /*
@@ -127,15 +127,14 @@ static void lowest__of_chains_are_those_of_their_transfer_matrix(mt_test *t)
         {"3000, uniform", 3000, 0.0, 0.0, 1.0},      {"ten, hanging", 10, 2.0, 9.81, 1.0},
         {"200, hanging, soft", 200, 0.5, 9.81, 0.1}, {"3000, hanging", 3000, 0.5, 9.81, 0.1},
     };
-    static double k[LONGEST];
-    static double m[LONGEST];
-    static double length[LONGEST];
+    static chain c;
     writer w = {.text = malloc(TEXT)};
     REQUIRE(t, w.text != NULL);
     for (int row = 0; row < MT_COUNT(rows); row++) {
         const int n = rows[row].n;
         mt_random r = mt_random_seed((uint64_t)row + 7);
-        chain c = {.n = n, .g = rows[row].g, .k = k, .m = m, .l = length};
+        c.n = n;
+        c.g = rows[row].g;
         double span = 0.0;
         for (int i = 0; i < n; i++) {
             c.k[i] = rows[row].k * n *

@@ -44,7 +44,7 @@ typedef void timed(void *context, int call);
 /* Median of the times of one call [s]. */
 static double time_calls(timed *run, void *context)
 {
-    double time[ROUNDS];
+    double time[ROUNDS] = {0.0};
     int calls = 1;
     for (int round = -1; round < ROUNDS;) {
         const double start = now_s();
@@ -52,17 +52,16 @@ static double time_calls(timed *run, void *context)
             run(context, call);
         }
         const double spent = now_s() - start;
-        if (round < 0 && spent < ROUND_S) {
-            calls *= 2;
+        if (round < 0) { /* how many calls make a round */
+            calls *= spent < ROUND_S ? 2 : 1;
+            round = spent < ROUND_S ? -1 : 0;
             continue;
         }
         int at = round;
         for (; at > 0 && time[at - 1] > spent; at--) {
             time[at] = time[at - 1];
         }
-        if (round >= 0) {
-            time[at] = spent;
-        }
+        time[at] = spent;
         round++;
     }
     return time[ROUNDS / 2] / calls;

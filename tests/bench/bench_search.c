@@ -380,7 +380,7 @@ static int compare(const void *a, const void *b)
 /* Median of the times (of the evaluations) at which runs reached a level. */
 static double median(const race *runs, int n, int level, bool time, int *of)
 {
-    double all[STARTS];
+    double all[STARTS] = {0.0};
     int count = 0;
     for (int i = 0; i < n; i++) {
         const reached *const at = &runs[i].level[level];
@@ -396,7 +396,7 @@ static double median(const race *runs, int n, int level, bool time, int *of)
 static void print_runs(const method *m, const race *runs, int n)
 {
     static const int LEVEL[] = {2, 4, 8};
-    double nearest[STARTS];
+    double nearest[STARTS] = {0.0};
     printf("  %-26s", m->name);
     for (size_t k = 0; k < sizeof LEVEL / sizeof LEVEL[0]; k++) {
         int of = 0;

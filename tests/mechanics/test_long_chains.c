@@ -80,10 +80,9 @@ static void newton__a_long_chain_takes_two_factorisations_a_step_and_no_memory(m
         const mt_stage *const stage = &mt_linear_position(s.a->lin)->equilibrium;
         const double length = sqrt((X * X) + (Y * Y)) / LINKS;
         double slope[1];
-        double at = s.at[0];
         for (int i = 0; i < 6; i++) {
             const long before = mt_alloc_count();
-            at = s.at[0] * (1.0 + (0.1 * (i % 2)));
+            const double at = s.at[0] * (1.0 + (0.1 * (i % 2)));
             CHECK_INT(t, mt_analysis_solve(s.a, &at, &opt, &s.err), MT_OK);
             const long after = mt_alloc_count();
             CHECK(t, i < 3 || after == before || !mt_alloc_works());

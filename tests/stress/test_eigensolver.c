@@ -128,7 +128,7 @@ static void eigensolver__matrices_of_a_name(mt_test *t)
     line l = start("matrices of a name");
     for (int which = 0; which < MT_COUNT(named); which++) {
         for (int n = 1; n <= MOST; n++) {
-            double a[MOST * MOST];
+            double a[MOST * MOST] = {0.0};
             quad exact[MOST * MOST];
             quad want[MOST] = {0};
             mt_test_row(t, "%s, n = %d", named[which].name, n);
