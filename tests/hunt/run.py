@@ -73,8 +73,11 @@ def write(folder, name, model, study):
 def solve(folder, names, threads=1, out="out"):
     """{name: (exit code, standard error, result or None)}; the exit code of a batch is the worst of its studies."""
     paths = [str(folder / n / f"{n}.json") for n in names]
-    done = subprocess.run([PROGRAM, "run", *paths, "-o", str(folder / out), "--quiet", "--threads", str(threads)],
-                          capture_output=True, encoding="utf-8", timeout=600)
+    command = [PROGRAM, "run", *paths, "-o", str(folder / out), "--quiet", "--threads", str(threads)]
+    try:
+        done = subprocess.run(command, capture_output=True, encoding="utf-8", timeout=600)
+    except subprocess.TimeoutExpired:
+        done = subprocess.CompletedProcess(command, -1, "", "not done in ten minutes")
     answers = {}
     for name in names:
         path = folder / out / name / "result.json"
@@ -129,7 +132,13 @@ def hunt(seed, kinds, indices, tally, seconds=None, keep=None, kept=None):
         for number, first in enumerate(range(0, len(todo), BATCH)):
             if seconds is not None and time.monotonic() - started > seconds:
                 return
-            batch = {f"{k}_{i}": (k, i, *make(seed, k, i)) for k, i in todo[first:first + BATCH]}
+            batch = {}
+            for kind, index in todo[first:first + BATCH]:
+                try:
+                    batch[f"{kind}_{index}"] = (kind, index, *make(seed, kind, index))
+                except Exception as fault:  # a fault of this reference ends one study, never the hunt
+                    tally["studies"] += 1
+                    yield kind, index, "reference", repr(fault)
             for name, (_, _, model, study) in batch.items():
                 write(folder, name, model, study)
             answers = solve(folder, list(batch))

@@ -3,6 +3,8 @@
 import copy
 from decimal import Decimal
 
+from oracle import Refused
+
 JOINTS = {2: ["revolute", "revolute", "prismatic", "pin-in-slot", "distance", "fixed", "orientation"],
           3: ["revolute", "revolute", "spherical", "prismatic", "cylindrical", "universal", "planar", "point-on-line", "distance", "fixed",
               "point-on-plane", "orientation"]}
@@ -109,7 +111,7 @@ class Maker:
             pair = [self.points[n] if not self.turns(n) else self.point(self.points.get(n), 0.5) for n in (a, b)]
             if sum((x - y) ** 2 for x, y in zip(*pair)) > 0.01:
                 return pair
-        raise ValueError("two point masses in one place")
+        raise Refused("two point masses in one place")
 
     def spring(self, a, b, kind=None, **more):
         kinds = ["axial", "axial", "bar", "bushing"] + (["torsion"] if self.dim == 2 else [])

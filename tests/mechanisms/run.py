@@ -214,15 +214,14 @@ def hunt(seed, kinds, indices, tally, seconds=None, keep=None):
                 folder = Path(keep or scratch) / f"{kind}_{index}"
                 folder.mkdir(parents=True, exist_ok=True)
                 rng = random.Random(f"{seed}:{kind}:{index}")
-                model = KINDS[kind](rng)
                 tally["mechanisms"] += 1
                 try:
-                    case = Case(folder, kind, rng, model)
-                except Refused as why:
-                    tally["left out"] += 1
-                    tally[str(why)] = tally.get(str(why), 0) + 1
-                    continue
-                try:
+                    try:
+                        case = Case(folder, kind, rng, KINDS[kind](rng))
+                    except Refused as why:
+                        tally["left out"] += 1
+                        tally[str(why)] = tally.get(str(why), 0) + 1
+                        continue
                     for check, text in case.findings():
                         yield kind, index, check, text, reason(check, case)
                 except Exception as fault:  # a fault of this reference ends one case, never the hunt

@@ -209,6 +209,27 @@ def judge(row, exact, said):
             yield "accuracy", f"mode {i + 1}: omega^2 is {given:.17g} within {bound:.3g}, exact {x:.20g}, {error / abs(x):.1e} off; condition {condition:.1e}"
 
 
+def one(row, rng, far, folder):
+    """Yields (check, sentence) of one model of the row's family."""
+    name = row.name
+    model = FAMILIES[name](rng, rng.uniform(0, 1) if far is None else far)
+    try:
+        exact = COUNTED[name](model) if name in COUNTED else Exact(model, rng)
+    except (Refused, ZeroDivisionError) as why:
+        row.left_out[str(why)] = row.left_out.get(str(why), 0) + 1
+        return
+    done, seconds = ask(folder, model, *(["--count", str(exact.MODES)] if name in COUNTED else []))
+    if done.returncode == 3 and max(exact.condition, default=0) > OPEN and any(w in done.stderr for w in ("no equilibrium", "dead centre")):
+        row.left_out["refused as undetermined"] = row.left_out.get("refused as undetermined", 0) + 1
+        return
+    row.cases += 1
+    row.seconds += seconds
+    if done.returncode:
+        yield "refused", f"exit code {done.returncode}: {done.stderr.strip()[-400:]}"
+        return
+    yield from judge(row, exact, json.loads(done.stdout)[0])
+
+
 def stress(seed, names, indices, rows, seconds=None, far=None, keep=None):
     """Yields (family, index, check, sentence)."""
     started = time.monotonic()
@@ -217,25 +238,12 @@ def stress(seed, names, indices, rows, seconds=None, far=None, keep=None):
             for name in names:
                 if seconds is not None and time.monotonic() - started > seconds:
                     return
-                rng = random.Random(f"stress:{seed}:{name}:{index}")
-                model = FAMILIES[name](rng, rng.uniform(0, 1) if far is None else far)
                 row = rows.setdefault(name, Row(name))
                 try:
-                    exact = COUNTED[name](model) if name in COUNTED else Exact(model, rng)
-                except (Refused, ZeroDivisionError) as why:
-                    row.left_out[str(why)] = row.left_out.get(str(why), 0) + 1
-                    continue
-                done, time_ = ask(keep or scratch, model, *(["--count", str(exact.MODES)] if name in COUNTED else []))
-                if done.returncode == 3 and max(exact.condition, default=0) > OPEN and any(w in done.stderr for w in ("no equilibrium", "dead centre")):
-                    row.left_out["refused as undetermined"] = row.left_out.get("refused as undetermined", 0) + 1
-                    continue
-                row.cases += 1
-                row.seconds += time_
-                if done.returncode:
-                    yield name, index, "refused", f"exit code {done.returncode}: {done.stderr.strip()[-400:]}"
-                    continue
-                for check, text in judge(row, exact, json.loads(done.stdout)[0]):
-                    yield name, index, check, text
+                    for check, text in one(row, random.Random(f"stress:{seed}:{name}:{index}"), far, keep or scratch):
+                        yield name, index, check, text
+                except Exception as fault:  # a fault of this reference ends one case, never the run
+                    yield name, index, "reference", repr(fault)
 
 
 def main():
