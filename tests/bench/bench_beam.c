@@ -1,55 +1,62 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * How long the nine-element beam takes, and how wrong the answer is, both against long double
- * (exact_beam.h).
- *     bench_beam          ours alone
- *     bench_beam FILE     beside the numbers that bench_beam.m printed into FILE
- * Evaluations are timed as the search makes them, springs moving from call to call; each time
- * is the best of several rounds, which is what the machine can do when nothing else disturbs
- * it.
+ * How long the nine-element beam takes, and how wrong the answer is, against long double
+ * (exact_beam.h), as CSV: what,way,cpu_s,spread_s,error,evaluations.
+ *     bench_beam [--quick]     ours, and a bare dsyevd
+ *     bench_beam FILE          what bench_beam.m printed into FILE
+ * Evaluations are timed as the search makes them, springs moving from call to call.
  */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "analysis/analysis.h"
+#include "exact.h"
 #include "exact_beam.h"
 #include "io/io.h"
+#include "linalg/eig.h"
 #include "result/result.h"
 #include "study/study.h"
-
-enum { ROUNDS = 15, CALLS = 400, SOLVES = 9, FULL_SOLVES = 3 };
+#include "timing.h"
 
 #define SYMMETRIC "tests/bench/beam_symmetric_study.json"
 #define STUDY     "studies/beam_identification.json"
 
-/* One side's numbers; NaN where it has none. */
+/* In the plane, along the beam too. */
+enum { ORDER = XB_N + 1, ENTRIES = ORDER * ORDER };
+
+typedef struct duration {
+    double median_s;
+    double spread_s;
+} duration;
+
+/* One side's numbers. */
 typedef struct figures {
-    double evaluation_s;     /* four frequencies */
-    double gradient_s;       /* and their derivatives with respect to eight springs */
-    double identification_s; /* four springs from four frequencies */
+    duration evaluation;     /* four frequencies */
+    duration gradient;       /* and their derivatives with respect to eight springs */
+    duration identification; /* four springs from four frequencies */
     double calls;            /* evaluations that this took */
     double hz[XB_MODES];
     double slope[XB_MODES * XB_SPRINGS]; /* row by row, one row per mode */
     double spring[XB_MODES];
 } figures;
 
-static double now_s(void)
-{
-    struct timespec t;
-    (void)clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + (1e-9 * (double)t.tv_nsec);
-}
+/* The design of a call, and the analysis that is asked. */
+typedef struct asked {
+    mt_analysis *analysis;
+    const double *k;
+    figures *out;
+    bool with_gradient;
+} asked;
 
-static void stop(const char *what, mt_status rc, const mt_err *err)
-{
-    if (rc != MT_OK) {
-        (void)fprintf(stderr, "bench_beam: %s: %s\n", what, err->text);
-        exit(EXIT_FAILURE);
-    }
-}
+/* What the least of answers by dense matrices takes: L^-1 K L^-T, rounded. */
+typedef struct bare {
+    double a[ENTRIES];
+    double work[ENTRIES];
+    double lambda[ORDER];
+    mt_arena mem;
+} bare;
 
 static void evaluate(mt_analysis *a, const double *k, bool with_gradient, figures *f)
 {
@@ -70,22 +77,25 @@ static void evaluate(mt_analysis *a, const double *k, bool with_gradient, figure
     }
 }
 
-/* Best time of one call; the last call is at k itself. */
-static double time_evaluation(mt_analysis *a, const double *k, bool with_gradient, figures *f)
+/* The first call of a round is at k itself, and so is the last that is made at all. */
+static void run_asked(void *context, int call)
 {
-    double best = HUGE_VAL;
-    for (int round = 0; round < ROUNDS; round++) {
-        const double start = now_s();
-        for (int call = CALLS - 1; call >= 0; call--) {
-            double moved[XB_SPRINGS];
-            for (int i = 0; i < XB_SPRINGS; i++) {
-                moved[i] = k[i] * (1.0 + (1e-4 * (double)call));
-            }
-            evaluate(a, moved, with_gradient, f);
-        }
-        best = fmin(best, (now_s() - start) / CALLS);
+    const asked *const q = context;
+    double moved[XB_SPRINGS];
+    for (int i = 0; i < XB_SPRINGS; i++) {
+        moved[i] = q->k[i] * (1.0 + (1e-4 * (double)(call % 1000)));
     }
-    return best;
+    evaluate(q->analysis, moved, q->with_gradient, q->out);
+}
+
+static void run_bare(void *context, int call)
+{
+    bare *const b = context;
+    mt_err err = {.text = ""};
+    (void)call;
+    mt_arena_clear(&b->mem);
+    memcpy(b->work, b->a, sizeof b->work);
+    stop("dsyevd", mt_eig_sym(ORDER, b->work, b->lambda, true, &b->mem, &err), &err);
 }
 
 /* A study of the source tree, which SOURCE_DIR names (absent: the current folder). */
@@ -102,50 +112,61 @@ static mt_study *load(const char *name)
     return study;
 }
 
-/* Best time to answer the study: baseline, search, each design recomputed from scratch. Leaves
- * the last result. */
-static double time_study(const mt_study *study, int solves, mt_result **result)
+/* A whole study: baseline, search, each design recomputed from scratch. The result stays. */
+typedef struct solved {
+    const mt_study *study;
+    mt_result *result;
+} solved;
+
+static void run_study(void *context, int call)
 {
-    double best = HUGE_VAL;
+    solved *const q = context;
     mt_err err = {.text = ""};
-    *result = NULL;
-    for (int i = 0; i < solves; i++) {
-        mt_result_delete(*result);
-        const double start = now_s();
-        stop("study", mt_study_solve(study, NULL, result, &err), &err);
-        best = fmin(best, now_s() - start);
-    }
-    return best;
+    (void)call;
+    mt_result_delete(q->result);
+    stop("study", mt_study_solve(q->study, NULL, &q->result, &err), &err);
 }
 
-static void time_modes(const mt_study *study, figures *f, double *k)
+static duration duration_of(const timed *t)
 {
-    int inputs[XB_SPRINGS];
-    mt_analysis *a = NULL;
-    mt_err err = {.text = ""};
-    for (int i = 0; i < XB_SPRINGS; i++) {
-        inputs[i] = study->variables[i].parameter;
-        k[i] = study->variables[i].original;
-    }
-    const int free_free = mt_model_find_configuration(study->model, "free_free");
-    stop("model", mt_analysis_new(study->model, free_free, XB_SPRINGS, inputs, k, &a, &err),
-         &err);
-    f->evaluation_s = time_evaluation(a, k, false, f);
-    f->gradient_s = time_evaluation(a, k, true, f);
-    mt_analysis_delete(a);
+    return (duration){t->median_s, t->spread_s};
 }
 
-static void time_springs(figures *f)
+static void print_row(const char *what, const char *way, duration d, double error,
+                      double evaluations)
 {
-    mt_study *const study = load(SYMMETRIC);
-    mt_result *result = NULL;
-    f->identification_s = time_study(study, SOLVES, &result);
-    f->calls = (double)result->run.evaluations;
-    for (int i = 0; i < XB_MODES; i++) {
-        f->spring[i] = result->recommendations[0].parameters[i].recommended;
+    printf("\"%s\",%s,%.4g,%.2g,%.2g,", what, way, d.median_s, d.spread_s, error);
+    printf(isnan(evaluations) ? "\n" : "%.0f\n", evaluations);
+}
+
+/* The least of answers by dense matrices, and how wrong its eigenvalues are. */
+static void open_bare(const mt_linear *lin, bare *b, long double *lambda)
+{
+    mt_err err = {.text = ""};
+    long double *const exact = exact_standard(lin);
+    if (exact == NULL || mt_linear_freedoms(lin) != ORDER) {
+        (void)fprintf(stderr, "bench_beam: no matrix of order %d\n", ORDER);
+        exit(EXIT_FAILURE);
     }
-    mt_result_delete(result);
-    mt_study_delete(study);
+    for (int i = 0; i < ENTRIES; i++) {
+        b->a[i] = (double)exact[i];
+    }
+    exact_eigenvalues(ORDER, exact);
+    for (int i = 0; i < ORDER; i++) {
+        lambda[i] = exact[(ptrdiff_t)i * (ORDER + 1)];
+    }
+    free(exact);
+    stop("dsyevd", mt_arena_init(&b->mem, 0, &err), &err);
+}
+
+/* Of the four lowest frequencies behind the three rigid-body motions. */
+static double bare_error(const bare *b, const long double *lambda)
+{
+    double worst = 0.0;
+    for (int i = ORDER - XB_SPRINGS; i < ORDER - XB_SPRINGS + XB_MODES; i++) {
+        worst = fmax(worst, (double)fabsl(sqrtl((long double)b->lambda[i] / lambda[i]) - 1.0L));
+    }
+    return worst;
 }
 
 /* "name value" lines, as bench_beam.m prints them; repeated names fill an array. */
@@ -163,11 +184,17 @@ static bool read_figures(const char *path, figures *f)
     while (fscanf(file, "%31s %39s", name, value) == 2) {
         const double x = strtod(value, NULL);
         if (strcmp(name, "evaluation_s") == 0) {
-            f->evaluation_s = x;
+            f->evaluation.median_s = x;
+        } else if (strcmp(name, "evaluation_spread_s") == 0) {
+            f->evaluation.spread_s = x;
         } else if (strcmp(name, "gradient_s") == 0) {
-            f->gradient_s = x;
+            f->gradient.median_s = x;
+        } else if (strcmp(name, "gradient_spread_s") == 0) {
+            f->gradient.spread_s = x;
         } else if (strcmp(name, "identification_s") == 0) {
-            f->identification_s = x;
+            f->identification.median_s = x;
+        } else if (strcmp(name, "identification_spread_s") == 0) {
+            f->identification.spread_s = x;
         } else if (strcmp(name, "calls") == 0) {
             f->calls = x;
         } else if (strcmp(name, "hz") == 0 && hz < XB_MODES) {
@@ -217,68 +244,100 @@ static errors errors_of(const figures *f, const double *k)
     return e;
 }
 
-/* Three digits, without an exponent. */
-static void print_time(double seconds, int width)
+/* Of the frequencies of a design, to their targets. */
+static double target_error(const mt_recommendation *r)
 {
-    const double us = seconds * 1e6;
-    printf(" %*.*f", width, us < 100.0 ? 1 : 0, us);
+    double worst = 0.0;
+    for (int i = 0; i < r->n_frequencies; i++) {
+        if (!isnan(r->frequencies[i].target_hz)) {
+            worst = fmax(
+                worst,
+                fabs(r->frequencies[i].recommended_hz / r->frequencies[i].target_hz - 1.0));
+        }
+    }
+    return worst;
 }
 
-static void print_row(const char *what, double ours, double our_error, double theirs,
-                      double their_error)
+static const char *const WHAT[] = {"four frequencies", "four frequencies, slopes for 8 springs",
+                                   "4 springs from 4 frequencies, one start"};
+
+static void print_figures(const char *way, const figures *f, const errors *e)
 {
-    printf("%-48s", what);
-    print_time(ours, 9);
-    printf(" %8.1e", our_error);
-    if (theirs == theirs) {
-        print_time(theirs, 9);
-        printf(" %8.1e %7.0f", their_error, theirs / ours);
-    }
-    printf("\n");
+    print_row(WHAT[0], way, f->evaluation, e->hz, nan(""));
+    print_row(WHAT[1], way, f->gradient, e->slope, nan(""));
+    print_row(WHAT[2], way, f->identification, e->spring, f->calls);
 }
 
-static void print_head(const char *what, bool both)
+static void print_ours(const timing *how, const mt_study *study, const double *k)
 {
-    printf("%-48s %9s %8s", what, "modetune", "error");
-    if (both) {
-        printf(" %9s %8s %7s", "Octave", "error", "ratio");
+    int inputs[XB_SPRINGS];
+    figures f = {.calls = 0.0};
+    bare b = {.lambda = {0.0}};
+    long double lambda[ORDER];
+    mt_analysis *a = NULL;
+    mt_err err = {.text = ""};
+    mt_study *const symmetric = load(SYMMETRIC);
+    solved one = {.study = symmetric};
+    solved whole = {.study = study};
+    for (int i = 0; i < XB_SPRINGS; i++) {
+        inputs[i] = study->variables[i].parameter;
     }
-    printf("\n");
+    const int free_free = mt_model_find_configuration(study->model, "free_free");
+    stop("model", mt_analysis_new(study->model, free_free, XB_SPRINGS, inputs, k, &a, &err),
+         &err);
+    open_bare(a->lin, &b, lambda);
+    asked values = {a, k, &f, false};
+    asked slopes = {a, k, &f, true};
+    timed t[] = {{.run = run_asked, .context = &values},
+                 {.run = run_asked, .context = &slopes},
+                 {.run = run_bare, .context = &b},
+                 {.run = run_study, .context = &one},
+                 {.run = run_study, .context = &whole}};
+    timing_side_by_side(how, t, (int)(sizeof t / sizeof *t));
+    run_asked(&slopes, 0);
+    f.evaluation = duration_of(&t[0]);
+    f.gradient = duration_of(&t[1]);
+    f.identification = duration_of(&t[3]);
+    f.calls = (double)one.result->run.evaluations;
+    for (int i = 0; i < XB_MODES; i++) {
+        f.spring[i] = one.result->recommendations[0].parameters[i].recommended;
+    }
+    const errors e = errors_of(&f, k);
+    print_figures("modetune", &f, &e);
+    print_row("a bare dsyevd with vectors of the same order", "LAPACK", duration_of(&t[2]),
+              bare_error(&b, lambda), nan(""));
+    print_row("8 springs, frequencies and shapes, whole study", "modetune", duration_of(&t[4]),
+              target_error(&whole.result->recommendations[0]),
+              (double)whole.result->run.evaluations);
+    mt_result_delete(one.result);
+    mt_result_delete(whole.result);
+    mt_study_delete(symmetric);
+    mt_arena_free(&b.mem);
+    mt_analysis_delete(a);
 }
 
 int main(int argc, char **argv)
 {
-    const bool both = argc > 1;
+    const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
     mt_study *const study = load(STUDY);
-    figures ours = {0};
-    figures theirs = {
-        .evaluation_s = nan(""), .gradient_s = nan(""), .identification_s = nan("")};
     double k[XB_SPRINGS];
-    mt_result *result = NULL;
-    if (both && !read_figures(argv[1], &theirs)) {
-        (void)fprintf(stderr, "bench_beam: %s does not hold what bench_beam.m prints\n",
-                      argv[1]);
-        return EXIT_FAILURE;
+    for (int i = 0; i < XB_SPRINGS; i++) {
+        k[i] = study->variables[i].original;
     }
-    time_modes(study, &ours, k);
-    time_springs(&ours);
-    const errors us = errors_of(&ours, k);
-    const errors them = errors_of(&theirs, k);
-    print_head("nine-element beam, times in microseconds", both);
-    print_row("four frequencies", ours.evaluation_s, us.hz, theirs.evaluation_s, them.hz);
-    print_row("four frequencies, gradient for 8 springs", ours.gradient_s, us.slope,
-              theirs.gradient_s, them.slope);
-    print_row("4 springs from 4 frequencies, one start", ours.identification_s, us.spring,
-              theirs.identification_s, them.spring);
-    printf("%-48s %9.0f", "  evaluations that this took", ours.calls);
-    if (both) {
-        printf(" %18.0f", theirs.calls);
+    printf("what,way,cpu_s,spread_s,error,evaluations\n");
+    if (argc > 1 && !quick) {
+        figures theirs = {.calls = 0.0};
+        if (!read_figures(argv[1], &theirs)) {
+            (void)fprintf(stderr, "bench_beam: %s does not hold what bench_beam.m prints\n",
+                          argv[1]);
+            mt_study_delete(study);
+            return EXIT_FAILURE;
+        }
+        const errors e = errors_of(&theirs, k);
+        print_figures("Octave", &theirs, &e);
+    } else {
+        print_ours(quick ? &TIMING_QUICK : &TIMING_FULL, study, k);
     }
-    const double full = time_study(study, FULL_SOLVES, &result);
-    printf("\n%-48s", "8 springs, frequencies and shapes, whole study");
-    print_time(full, 9);
-    printf("\n%-48s %9ld\n", "  evaluations that this took", result->run.evaluations);
-    mt_result_delete(result);
     mt_study_delete(study);
     return EXIT_SUCCESS;
 }

@@ -3,13 +3,15 @@
  * How near a search comes to the best known answer, against evaluations and CPU time: ours
  * beside NLopt's methods as they are and beside the paper's way, all on the same compiled
  * study, from the same starts, through one callback that counts and judges.
- *     bench_search [--csv FILE] [--quick] [STUDY...]
+ *     bench_search [--quick] [STUDY...]
+ * CSV, a line for each run and distance: study,method,start,distance,evaluations,cpu_s; cpu_s
+ * is nan where the run did not come so near.
  * The distance of a design from the best known answer f* is
  *     max(greatest violation of a row, |f - f*| / max(|f*|, 0.001)),  0 for f below f*;
  * with residuals r: sqrt((|r|^2 - |r*|^2) / n_res). Rows are relative (ln of a ratio): 1e-4 is
  * a hundredth of a per cent. In a study with bands all searches are told the gap that the best
  * answer lies in, which is most of the work. A run has reached a distance at its first design
- * that is so near; the table gives the median over the starts that reached it.
+ * that is so near.
  */
 #include <nlopt.h>
 
@@ -19,13 +21,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "io/io.h"
 #include "problem/problem.h"
 #include "problem/workspace.h"
 #include "result/result.h"
 #include "search/gaps.h"
+#include "timing.h"
 
 enum { LEVELS = 11, STARTS = 9, QUICK_STARTS = 2, MOST = 64 };
 
@@ -61,21 +63,6 @@ typedef struct method {
     bool global; /* one run, or few */
 } method;
 
-static double cpu_s(void)
-{
-    struct timespec t;
-    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + (1e-9 * (double)t.tv_nsec);
-}
-
-static void stop(const char *what, mt_status rc, const mt_err *err)
-{
-    if (rc != MT_OK) {
-        (void)fprintf(stderr, "bench_search: %s: %s\n", what, err->text);
-        exit(EXIT_FAILURE);
-    }
-}
-
 static double worst_row(const mt_nlp *nlp, const mt_nlp_values *v)
 {
     double worst = 0.0;
@@ -107,7 +94,7 @@ static double distance(const race *r, const mt_nlp_values *v)
 
 static bool spent(const race *r)
 {
-    return cpu_s() - r->began_s > r->most_s;
+    return timing_now_s() - r->began_s > r->most_s;
 }
 
 /* One evaluation: counted, and judged. */
@@ -119,7 +106,7 @@ static mt_status look(race *r, const double *t, bool slopes, mt_nlp_values *v, m
     r->nearest = d < r->nearest ? d : r->nearest;
     for (int k = 0; k < LEVELS; k++) {
         if (d <= pow(10.0, -k) && isnan(r->level[k].cpu_s)) {
-            r->level[k] = (reached){r->evaluations, cpu_s() - r->began_s};
+            r->level[k] = (reached){r->evaluations, timing_now_s() - r->began_s};
         }
     }
     return MT_OK;
@@ -360,7 +347,6 @@ static const method METHODS[] = {
 enum { N_METHODS = sizeof METHODS / sizeof METHODS[0] };
 
 typedef struct bench {
-    FILE *csv;
     bool quick;
     const char *study;
     race race; /* as each run finds it */
@@ -370,62 +356,16 @@ typedef struct bench {
     double *starts; /* n x STARTS */
 } bench;
 
-static int compare(const void *a, const void *b)
+static void print_runs(const bench *b, const method *m, const race *runs, int n)
 {
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* Median of the times (of the evaluations) at which runs reached a level. */
-static double median(const race *runs, int n, int level, bool time, int *of)
-{
-    double all[STARTS] = {0.0};
-    int count = 0;
     for (int i = 0; i < n; i++) {
-        const reached *const at = &runs[i].level[level];
-        if (!isnan(at->cpu_s)) {
-            all[count++] = time ? at->cpu_s : (double)at->evaluations;
-        }
-    }
-    qsort(all, (size_t)count, sizeof *all, compare);
-    *of = count;
-    return count == 0 ? nan("") : 0.5 * (all[(count - 1) / 2] + all[count / 2]);
-}
-
-static void print_runs(const method *m, const race *runs, int n)
-{
-    static const int LEVEL[] = {2, 4, 8};
-    double nearest[STARTS] = {0.0};
-    printf("  %-26s", m->name);
-    for (size_t k = 0; k < sizeof LEVEL / sizeof LEVEL[0]; k++) {
-        int of = 0;
-        const double count = median(runs, n, LEVEL[k], false, &of);
-        const double time = median(runs, n, LEVEL[k], true, &of);
-        if (of == 0) {
-            printf(" %4s %7s %9s", "0", "-", "-");
-        } else {
-            printf(" %2d/%d %7.0f %9.3g", of, n, count, 1e3 * time);
-        }
-    }
-    for (int i = 0; i < n; i++) {
-        nearest[i] = runs[i].nearest;
-    }
-    qsort(nearest, (size_t)n, sizeof *nearest, compare);
-    printf(" %9.1e\n", nearest[n / 2]);
-}
-
-static void write_runs(const bench *b, const method *m, const race *runs, int n)
-{
-    for (int i = 0; b->csv != NULL && i < n; i++) {
         for (int k = 0; k < LEVELS; k++) {
             const reached *const at = &runs[i].level[k];
-            if (!isnan(at->cpu_s)) {
-                (void)fprintf(b->csv, "%s,\"%s\",%d,1e-%02d,%ld,%.4g\n", b->study, m->name,
-                              i + 1, k, at->evaluations, at->cpu_s);
-            }
+            printf("%s,\"%s\",%d,1e-%02d,%ld,%.4g\n", b->study, m->name, i + 1, k,
+                   at->evaluations, at->cpu_s);
         }
     }
+    (void)fflush(stdout);
 }
 
 static void compete(bench *b, const method *m)
@@ -435,8 +375,7 @@ static void compete(bench *b, const method *m)
     const int n = m->global ? 1 : starts;
     race runs[STARTS];
     mt_err err = {.text = ""};
-    if (m->run == run_paper && p->n_res + p->n_eq < p->n) {
-        printf("  %-26s fewer equations than variables\n", m->name);
+    if (m->run == run_paper && p->n_res + p->n_eq < p->n) { /* which fsolve asks for */
         return;
     }
     for (int i = 0; i < n; i++) {
@@ -447,14 +386,13 @@ static void compete(bench *b, const method *m)
         for (int k = 0; k < LEVELS; k++) {
             r->level[k] = (reached){0, nan("")};
         }
-        r->began_s = cpu_s();
+        r->began_s = timing_now_s();
         const mt_status rc = m->run(r, m, b->starts + (ptrdiff_t)i * p->n, &err);
         if (rc != MT_E_INTERRUPTED) {
             stop(m->name, rc, &err);
         }
     }
-    print_runs(m, runs, n);
-    write_runs(b, m, runs, n);
+    print_runs(b, m, runs, n);
 }
 
 /* The best answer: what a whole run recommends, and what its objective is there. */
@@ -522,20 +460,9 @@ static void bench_study(bench *b)
     b->race = (race){.most_s = b->quick ? 0.1 : 5.0};
     best_answer(b, study);
     choose_starts(b);
-    printf("%s: %d variables, %d residuals, %d equalities, %d inequalities; f* = %.8g\n",
-           b->study, b->race.nlp.n, b->race.nlp.n_res, b->race.nlp.n_eq, b->race.nlp.n_in,
-           b->race.best_f);
-    printf("  %-26s %22s %22s %22s %9s\n", "", "within 1e-2", "within 1e-4", "within 1e-8",
-           "nearest");
-    printf("  %-26s", "");
-    for (int k = 0; k < 3; k++) {
-        printf(" %4s %7s %9s", "runs", "evals", "CPU ms");
-    }
-    printf(" %9s\n", "median");
     for (size_t i = 0; i < N_METHODS; i++) {
         compete(b, &METHODS[i]);
     }
-    printf("\n");
     mt_workspace_delete(b->ws);
     mt_problem_delete(p);
     mt_study_delete(study);
@@ -548,31 +475,17 @@ int main(int argc, char **argv)
                                           "inceptor_tuning_1",   "inceptor_tuning_2",
                                           "inceptor_rotor",      "six_masses_bands",
                                           "truss_10bar_E69_8",   "truss_72bar"};
-    bench b = {.csv = NULL};
-    bool named = false;
+    bench b = {.quick = argc > 1 && strcmp(argv[1], "--quick") == 0};
+    const int first = b.quick ? 2 : 1;
     gsl_set_error_handler_off();
-    for (int i = 1; i < argc; i++) {
-        if (strcmp(argv[i], "--quick") == 0) {
-            b.quick = true;
-        } else if (strcmp(argv[i], "--csv") == 0 && i + 1 < argc) {
-            b.csv = fopen(argv[++i], "w");
-        }
+    printf("study,method,start,distance,evaluations,cpu_s\n");
+    for (int i = first; i < argc; i++) {
+        b.study = argv[i];
+        bench_study(&b);
     }
-    if (b.csv != NULL) {
-        (void)fprintf(b.csv, "study,method,start,distance,evaluations,cpu_s\n");
-    }
-    for (int i = 1; i < argc; i++) {
-        if (strncmp(argv[i], "--", 2) != 0) {
-            named = true;
-            b.study = argv[i];
-            bench_study(&b);
-        } else if (strcmp(argv[i], "--csv") == 0) {
-            i++;
-        }
-    }
-    for (size_t i = 0; !named && i < sizeof STUDIES / sizeof STUDIES[0]; i++) {
+    for (size_t i = 0; first >= argc && i < sizeof STUDIES / sizeof STUDIES[0]; i++) {
         b.study = STUDIES[i];
         bench_study(&b);
     }
-    return b.csv != NULL && fclose(b.csv) != 0 ? EXIT_FAILURE : EXIT_SUCCESS;
+    return EXIT_SUCCESS;
 }

@@ -4,7 +4,8 @@ The README tells the truth. In a copy of problems/ and studies/:
 - a block ```json after <!-- file: NAME --> is written to NAME and must pass `modetune check`;
 - a block ```console holds commands after "$ " and their standard output, which must be what the program prints now, except
   that numbers may differ by two units of their last digit, rounding noise by itself, and columns by their width;
-- every path in the table "What is where" exists.
+- every path in the table "What is where" exists;
+- tables of measurements are headed by columns of the files that the text above them names (their values are of another day).
 MT_README_UPDATE=1 writes the present output into the README instead: read the difference before you commit it.
 """
 import os
@@ -20,9 +21,24 @@ from pathlib import Path
 TREE = Path(os.environ["SOURCE_DIR"])
 PROGRAM = Path(os.environ["MODETUNE"])
 README = TREE / "README.md"
+sys.path.append(str(TREE / "tests/bench"))
+from _tables import COLUMNS  # noqa: E402: where it is, is known now
+
 NOISE = 1e-9  # numbers below this are rounding: residuals of goals that are met
 BLOCK = re.compile(r"(?:<!-- file: (?P<file>\S+) -->\n)?^```(?P<kind>json|console)\n(?P<body>.*?)^```$", re.M | re.S)
 LAST_DIGITS = 2
+
+
+# A file that is named, or the head of a table.
+HEADS = re.compile(r"^\| (.*) \|\n\|(?: -+ \|)+$", re.M)
+
+
+def wrong_columns(text):
+    wrong = []
+    for head in HEADS.finditer(text):
+        name = re.findall(r"`(\w+)\.csv`", text[:head.start()])[-1]
+        wrong += [f"{name}.csv has no column {c}" for c in head[1].split(" | ") if c.strip("`") not in COLUMNS.get(name, ())]
+    return wrong
 
 
 def number(token):
@@ -113,6 +129,15 @@ class Readme(unittest.TestCase):
         links = re.findall(r"\]\(([^):]+)\)", self.text)
         for link in links:
             self.assertTrue((TREE / link).exists(), link)
+
+    def test_measurements_have_columns_of_their_files(self):
+        text = self.text[self.text.index("## How fast, how exact"):]
+        text = text[:text.index("\n## ", 1)]
+        self.assertEqual(wrong_columns(text), [])
+        self.assertEqual(set(re.findall(r"`(\w+)\.csv`", text)), set(COLUMNS))
+        self.assertGreaterEqual(len(HEADS.findall(text)), 4)
+        for name, column in (("beam", "`seconds`"), ("gone", "`cpu_s`")):
+            self.assertEqual(len(wrong_columns(f"see `{name}.csv`:\n\n| `way` | {column} |\n| --- | --- |\n")), 1 if name == "beam" else 2)
 
     def test_a_difference_is_noticed(self):
         for want, got, same in (("16.2892", "16.2893", True), ("16.2892", "16.2895", False), ("1.62e-12", "4e-13", True),

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is measured: the beam of problems/beam_reference.json in many ways, its closed forms, and its peers."""
+import json
+import math
+import re
+import sys
+from pathlib import Path
+
+from _tables import PROGRAM, run
+
+LENGTH, WIDTH, YOUNG, DENSITY, MASS = 2 * math.sqrt(2), 0.05, 70e9, 2710.0, 1.0
+HEIGHT = MASS / (DENSITY * WIDTH * LENGTH)
+BENDING = YOUNG * WIDTH * HEIGHT**3 / 12
+ROOTS = {  # beta L of the first four modes
+    "cantilever": (1.875104068711961167, 4.694091132974174576, 7.854757438237612565, 10.995540734875466991),  # cos x cosh x = -1
+    "free": (4.730040744862704026, 7.853204624095837556, 10.995607838001670907, 14.137165491257464177),  # cos x cosh x = 1
+    "pinned": tuple(math.pi * j for j in (1, 2, 3, 4))}
+EXACT = {where: [b * b / (2 * math.pi) * math.sqrt(BENDING / (MASS * LENGTH**3)) for b in roots] for where, roots in ROOTS.items()}
+
+
+def error(hz, exact):
+    """Largest relative error of the first frequencies, of as many as are told."""
+    hz = [x for x in hz or [] if x == x]
+    return max((abs(a / b - 1) for a, b in zip(hz, exact)), default=math.nan)
+
+
+def beam(elements, springs=None, rigid=False, sensors=()):
+    """The beam without supports ("free"), and on a pin and a sliding pin ("pinned"); its stiffness is the first parameter.
+    springs: of the hinges of rigid elements [N m/rad]."""
+    link = {"name": "beam", "from": "root", "to": "tip", "elements": elements}
+    if rigid:
+        link |= {"mass_kg": MASS, "stiffness_n_m_per_rad": f"EI*{elements}/L" if springs is None else [
+            s if isinstance(s, str) else f"{s!r}*EI/{BENDING!r}" for s in springs]}
+    else:
+        link |= {"kind": "beam", "youngs_modulus_pa": f"EI/{BENDING / YOUNG!r}", "density_kg_per_m3": DENSITY,
+                 "section": {"shape": "rectangle", "width_m": WIDTH, "height_m": HEIGHT}}
+    return {"format": "modetune-model/1", "name": f"beam of {elements} elements", "dimension": 2,
+            "parameters": {"EI": {"value": BENDING}, "L": {"value": LENGTH}},
+            "points": {"root": [0, 0], "tip": [LENGTH, 0]}, "links": [link],
+            "joints": [{"name": "pin", "type": "revolute", "bodies": ["ground", "beam.start"], "at": "root", "in": ["pinned"]},
+                       {"name": "slider", "type": "pin-in-slot", "bodies": ["ground", "beam.end"], "at": "tip", "axis": [1, 0],
+                        "in": ["pinned"]}],
+            "sensors": [{"name": f"c{i}", "on": "beam", "fraction": x, "directions": ["y"]} for i, x in enumerate(sensors)],
+            "configurations": {"free": {}, "pinned": {}}}
+
+
+def cantilever(elements, rigid=False):
+    """The same clamped at its root; of rigid elements, half of one before the first spring."""
+    model = beam(elements, rigid=rigid)
+    del model["configurations"], model["sensors"]
+    if rigid:
+        model["joints"] = [{"name": "clamp", "type": "revolute", "bodies": ["ground", "beam.start"], "at": "root"}]
+        model["springs"] = [{"name": "root", "type": "torsion", "joint": "clamp", "stiffness_n_m_per_rad": f"2*EI*{elements}/L"}]
+    else:
+        model["joints"] = [{"name": "clamp", "type": "fixed", "bodies": ["ground", "beam.start"], "at": "root"}]
+    return model
+
+
+def put(path, document):
+    Path(path).write_text(json.dumps(document), encoding="utf-8")
+    return path
+
+
+def identified(elements, folder):
+    """Springs of rigid elements, as the paper finds them: mirror-symmetric, with the free beam's first frequencies (so many as
+    there are springs, four at most; else as near to four as can be) and shapes as near to its shapes as can be. CPU seconds,
+    the springs; None: no design."""
+    unknown = elements // 2
+    modes = min(4, elements - 1)
+    centres = [f"{2 * i + 1}/{2 * elements}" for i in range(elements)]
+    names = [f"K{min(i, elements - 2 - i) + 1}" for i in range(elements - 1)]
+    model = beam(elements, springs=names, rigid=True, sensors=centres)
+    model["parameters"] |= {f"K{i + 1}": {"value": f"EI*{elements}/L"} for i in range(unknown)}
+    put(Path(folder) / "rigid.json", model)
+    put(Path(folder) / "reference.json", beam(4 * elements, sensors=centres))
+    physical = BENDING * elements / LENGTH
+    weight = {} if unknown >= modes else {"weight": 100}
+    study = {"format": "modetune-study/1", "name": "springs of rigid elements", "model": "rigid.json",
+             "variables": [{"parameter": f"K{i + 1}", "lower": physical / 20, "upper": 20 * physical} for i in range(unknown)],
+             "references": {"beam": {"model": "reference.json", "configuration": "free"}},
+             "goals": [{"type": "frequency", "configuration": "free", "mode": j + 1, "target_hz": EXACT["free"][j], **weight}
+                       for j in range(modes)] +
+                      [{"type": "shape", "configuration": "free", "mode": j + 1, "reference": "beam", "weight": 1} for j in range(modes)],
+             "objective": {"minimise": "misfit"}, "search": {"starts": 8}}
+    out = Path(folder) / "identified"
+    cpu, _, _ = run([PROGRAM, "run", put(Path(folder) / "study.json", study), "--quiet", "--threads", "1", "-o", out], folder)
+    result = out / "study/result.json"
+    if not result.exists():
+        return cpu, None
+    best = json.loads(result.read_text())["recommendations"][0]["parameters"]
+    value = {p["name"]: p["recommended"] for p in best}
+    return cpu, [value[name] for name in names]
+
+
+def rigid_reference(elements):
+    """First four frequencies of the cantilever of rigid elements in extended precision: inverse iteration, all by recursions
+    along the chain, frequencies as quotients of sums of squares."""
+    import numpy as np
+    x = np.longdouble
+    h, mass = x(LENGTH) / elements, x(MASS) / elements
+    inertia = mass * h * h / 12
+    spring = np.full(elements, x(BENDING) * elements / x(LENGTH))
+    spring[0] *= 2
+
+    def height(turn):
+        return h * (np.cumsum(turn) - turn / 2)
+
+    def inner(a, b):
+        return np.sum(mass * height(a) * height(b)) + inertia * np.sum(a * b)
+
+    found, hz = [], []
+    for mode in range(4):
+        turn = np.cos(x(mode) * np.pi * np.arange(elements) / elements)
+        for _ in range(40):
+            force = mass * height(turn)
+            behind = np.cumsum(force[::-1])[::-1] - force / 2
+            bend = np.cumsum((h * behind + inertia * turn)[::-1])[::-1] / spring
+            turn = np.cumsum(bend)
+            for other in found:
+                turn = turn - inner(turn, other) * other
+            turn = turn / np.sqrt(inner(turn, turn))
+        found.append(turn)
+        bend = np.diff(turn, prepend=x(0))
+        hz.append(np.sqrt(np.sum(spring * bend * bend)) / (2 * x(math.pi)))
+    return [float(f) for f in hz]
+
+
+def rigid_exact(elements):
+    """The same from a process of its own: ours stays small, as its size counts in that of those that it starts."""
+    return [float(x) for x in run([sys.executable, "-B", __file__, elements])[1].split()]
+
+
+SCIPY = """
+import sys, math
+import numpy as np, scipy.sparse as sp
+from scipy.sparse.linalg import eigsh
+n, length, bending, axial, mass = int(sys.argv[1]), *map(float, sys.argv[2:])
+h, rho = length / n, mass / length
+k = bending / h**3 * np.array([[12, 6*h, -12, 6*h], [6*h, 4*h*h, -6*h, 2*h*h], [-12, -6*h, 12, -6*h], [6*h, 2*h*h, -6*h, 4*h*h]])
+m = rho * h / 420 * np.array([[156, 22*h, 54, -13*h], [22*h, 4*h*h, 13*h, -3*h*h], [54, 13*h, 156, -22*h], [-13*h, -3*h*h, -22*h, 4*h*h]])
+at = 2 * np.arange(n)[:, None] + np.arange(4)
+rows, cols = np.repeat(at, 4, axis=1).ravel(), np.tile(at, (1, 4)).ravel()
+K, M = (sp.coo_matrix((np.tile(e.ravel(), n), (rows, cols))).tocsc()[2:, 2:] for e in (k, m))
+values = eigsh(K, 4, M, sigma=0, which="LM", return_eigenvectors=False)
+print(*np.sort(np.sqrt(values) / (2 * math.pi)))
+"""
+
+
+def ours(elements, folder):
+    path = Path(folder) / "model.json"
+    if not path.exists():
+        put(path, cantilever(elements))
+    cpu, text, peak = run([PROGRAM, "modes", path, "--count", "4", "--format", "json"])
+    return cpu, [m["frequency_hz"] for m in json.loads(text)[0]["modes"][:4]] if text else None, peak
+
+
+def scipy(elements, folder):
+    cpu, text, peak = run([sys.executable, "-c", SCIPY, elements, *map(repr, (LENGTH, BENDING, YOUNG * WIDTH * HEIGHT, MASS))], folder)
+    return cpu, [float(x) for x in text.split()] if text else None, peak
+
+
+def calculix(elements, folder):
+    deck = Path(folder) / "beam.inp"
+    if not deck.exists():
+        with open(deck, "w", encoding="ascii") as out:
+            out.write("*NODE,NSET=ALL\n")
+            out.writelines(f"{i + 1},{LENGTH * i / elements:.15g},0,0\n" for i in range(elements + 1))
+            out.write("*ELEMENT,TYPE=B31,ELSET=BEAM\n")
+            out.writelines(f"{i + 1},{i + 1},{i + 2}\n" for i in range(elements))
+            out.write(f"*MATERIAL,NAME=M\n*ELASTIC\n{YOUNG},0.\n*DENSITY\n{DENSITY}\n*BEAM SECTION,ELSET=BEAM,MATERIAL=M,SECTION=RECT\n"
+                      f"{WIDTH},{HEIGHT}\n0.,0.,1.\n*BOUNDARY\nALL,3\n1,1,6\n*STEP\n*FREQUENCY\n4\n*END STEP\n")
+    cpu, text, peak = run(["ccx", "beam"], folder)
+    found = re.findall(r"^ +\d+ +\S+ +\S+ +(\S+) +\S+$", (Path(folder) / "beam.dat").read_text(), re.M) if text else []
+    return cpu, [float(x) for x in found[:4]] or None, peak
+
+
+def affine(masses, folder):
+    """A study whose variables enter K affinely: a chain of masses on springs, the first frequency within a range."""
+    model = {"format": "modetune-model/1", "name": f"chain of {masses} masses", "dimension": 2,
+             "parameters": {f"k{i + 1}": {"value": 1000 * (i + 1)} for i in range(masses)},
+             "points": {f"p{i}": [i, 0] for i in range(masses + 1)},
+             "bodies": [{"name": f"m{i}", "mass_kg": i, "centre": f"p{i}"} for i in range(1, masses + 1)],
+             "joints": [{"name": f"guide{i}", "type": "pin-in-slot", "bodies": ["ground", f"m{i}"], "at": f"p{i}", "axis": [1, 0]}
+                        for i in range(1, masses + 1)],
+             "springs": [{"name": f"s{i}", "type": "axial", "bodies": [f"m{i - 1}" if i > 1 else "ground", f"m{i}"],
+                          "at": [f"p{i - 1}", f"p{i}"], "stiffness_n_per_m": f"k{i}"} for i in range(1, masses + 1)]}
+    study = {"format": "modetune-study/1", "name": model["name"], "model": f"chain_{masses}_model.json",
+             "variables": [{"parameter": f"k{i + 1}", "lower": 100, "upper": 10000} for i in range(masses)],
+             "goals": [{"type": "frequency", "mode": 1, "at_least_hz": 2, "at_most_hz": 9}]}
+    put(Path(folder) / study["model"], model)
+    return put(Path(folder) / f"chain_{masses}.json", study)
+
+
+def answer(result):
+    """Of a result.json: what its best design leaves of its goals, or is above the best known value of what it minimises."""
+    goals = [g["violation_percent"] / 100 for g in result["recommendations"][0]["goals"] if not g["weighted"]]
+    known = [p["computed"] / p["published"] - 1 for p in result["published"] if (p["label"] or "").startswith("mass")]
+    return {"status": result["status"], "evaluations": result["run"]["evaluations"], "error": max([0.0, *goals, *known])}
+
+
+if __name__ == "__main__":
+    print(*map(repr, rigid_reference(int(sys.argv[1]))))
