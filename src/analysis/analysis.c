@@ -15,8 +15,11 @@ static const char NO_GRADIENT[] = "derivatives asked for after a solve without g
 
 mt_analysis_options mt_analysis_options_default(void)
 {
-    const mt_analysis_options opt = {
-        .gradient = false, .vectors = true, .accuracy = true, .check = true, .bounds = true};
+    const mt_analysis_options opt = {.gradient = false,
+                                     .vectors = true,
+                                     .accuracy = MT_MODAL_ACCURACY,
+                                     .check = true,
+                                     .bounds = true};
     return opt;
 }
 
@@ -117,18 +120,20 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                                         .g = r->g,
                                         .interrupt = a->sys->model->interrupt};
     MT_TRY(mt_modal_solve(r->k, &a->mass, &factor, options, &a->mem, &a->modes, err));
-    const bool doubt = r->loaded || mt_modal_in_doubt(&a->modes);
-    if (a->modes.y == NULL || !(doubt || bounds)) {
+    const int all = a->modes.count;
+    const int doubtful = r->loaded ? all : mt_modal_doubtful(&a->modes);
+    if (a->modes.y == NULL || (doubtful == 0 && !bounds)) {
         return MT_OK;
     }
-    const size_t count = (size_t)a->modes.count;
+    const size_t count = (size_t)all;
     const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
     mt_mode_energies e = {.stiffness = mt_arena_f64(&a->mem, count, 1),
                           .mass = mt_arena_f64(&a->mem, count, 1),
                           .stiffness_noise = mt_arena_f64(&a->mem, count, 1),
                           .mass_noise = mt_arena_f64(&a->mem, count, 1),
                           .given_noise = mt_arena_f64(&a->mem, count, 1),
-                          .strained = mt_arena_alloc(&a->mem, count, sizeof(bool))};
+                          .strained = mt_arena_alloc(&a->mem, count, sizeof(bool)),
+                          .count = bounds ? all : doubtful};
     MT_TRY(mt_arena_check(&a->mem, err));
     const mt_energies out = {.stiffness = e.stiffness,
                              .mass = e.mass,
@@ -136,8 +141,8 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                              .mass_noise = e.mass_noise,
                              .given_noise = e.given_noise,
                              .strained = e.strained};
-    MT_TRY(mt_linear_energies(a->lin, a->modes.count, a->modes.y, &out, err));
-    if (doubt) {
+    MT_TRY(mt_linear_energies(a->lin, e.count, a->modes.y, &out, err));
+    if (doubtful > 0) {
         mt_modal_judge(&e, options->n_rigid, &a->modes);
     } else {
         mt_modal_widen(&e, &a->modes);
@@ -193,7 +198,7 @@ static mt_status run_modes(mt_analysis *a, const mt_analysis_options *opt, const
     options.n_rigid = a->n_rigid;
     /* where K is no sum of squares, shapes say what rounding leaves of its sign */
     options.vectors = opt->vectors || opt->gradient || r.g != NULL;
-    options.need_accuracy = opt->accuracy;
+    options.accuracy = opt->accuracy;
     options.check = opt->check;
     const struct mt_modes_key key = {.stiffness_version = r.stiffness_version,
                                      .mass_version = r.mass_version,

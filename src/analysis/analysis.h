@@ -32,7 +32,7 @@ typedef struct mt_analysis {
         int n_rigid; /* as it was asked for */
         bool recount;
         bool vectors;
-        bool accuracy;
+        double accuracy;
         bool check;
         bool bounds;
     } key;
@@ -56,10 +56,10 @@ typedef struct mt_analysis {
 } mt_analysis;
 
 typedef struct mt_analysis_options {
-    bool gradient; /* derivatives will be asked for (vectors come with them) */
-    bool vectors;  /* shapes will be asked for */
-    bool accuracy; /* use the stiffness factor where the plain method would lose digits */
-    bool check;    /* residual and orthogonality of each mode */
+    bool gradient;   /* derivatives will be asked for (vectors come with them) */
+    bool vectors;    /* shapes will be asked for */
+    double accuracy; /* mt_modal_options */
+    bool check;      /* residual and orthogonality of each mode */
     /* the error of each mode is asked for (with vectors): without this it leaves out what
      * rounding has made of the rows that K and M are sums of, which counts next to dead centres
      * and where joints almost depend on each other */

@@ -72,7 +72,7 @@ mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor
         add_pair(order, size, a, term->pair ? a + order : a, k);
     }
     opt.vectors = false;
-    opt.need_accuracy = true;
+    opt.accuracy = MT_MODAL_ACCURACY;
     const mt_status rc =
         mt_modal_solve(k, mass, squares ? &factor : NULL, &opt, scratch, &modes, err);
     *n = rc == MT_OK ? modes.n_rigid : 0;
@@ -159,7 +159,7 @@ static void place(const family *f, int k)
 
 static mt_status count_designs(family *f, int *n_rigid, mt_err *err)
 {
-    const mt_analysis_options opt = {.accuracy = true};
+    const mt_analysis_options opt = {.accuracy = MT_MODAL_ACCURACY};
     for (int k = 0; k < FIRST_DESIGNS + SPREAD_DESIGNS; k++) {
         mt_err ignored = {0};
         place(f, k);

@@ -173,6 +173,26 @@ void mt_question_free(mt_question *q)
     q->p = NULL;
 }
 
+/*
+ * What eigenvalues may lose while designs are looked for: nothing that a goal would feel. A
+ * polish takes second derivatives by differences of slopes and wants more than goals do.
+ * Numbers of a result are computed anew, to MT_MODAL_ACCURACY.
+ */
+static const double SEARCH_ACCURACY = 1e-10;
+static const double OF_TOLERANCE = 1e-3;
+
+static double search_accuracy(const mt_problem *p)
+{
+    double least = SEARCH_ACCURACY;
+    for (int i = 0; i < p->n_demands; i++) {
+        least = fmin(least, OF_TOLERANCE * p->demands[i].tolerance);
+    }
+    for (int i = 0; i < p->n_clears; i++) {
+        least = fmin(least, OF_TOLERANCE * p->clears[i].tolerance);
+    }
+    return fmax(least, MT_MODAL_ACCURACY);
+}
+
 /* A workspace for each worker. */
 static mt_status open_workers(mt_answer *a, int threads, mt_err *err)
 {
@@ -183,6 +203,7 @@ static mt_status open_workers(mt_answer *a, int threads, mt_err *err)
     MT_TRY(mt_arena_check(&a->mem, err));
     for (int i = 0; i < n; i++) {
         MT_TRY(mt_workspace_new(a->p, &a->workers[i], err));
+        a->workers[i]->accuracy = search_accuracy(a->p);
         mt_workspace_back(a->workers[i], &a->asked);
         a->n_workers = i + 1;
     }

@@ -88,21 +88,22 @@ static void sort(mt_modes *modes, bool *strained)
     }
 }
 
-bool mt_modal_in_doubt(const mt_modes *modes)
+int mt_modal_doubtful(const mt_modes *modes)
 {
-    bool doubt = false;
+    int count = 0;
     const bool exact = modes->from_factor && modes->error_bound == 0.0;
-    for (int i = 0; i < modes->count && !doubt; i++) {
-        doubt = modes->kind[i] == MT_MODE_FLEXIBLE
-                    ? modes->error[i] > FINE * fabs(modes->lambda[i])
-                    : !exact;
+    for (int i = 0; i < modes->count; i++) {
+        const bool doubt = modes->kind[i] == MT_MODE_FLEXIBLE
+                               ? modes->error[i] > FINE * fabs(modes->lambda[i])
+                               : !exact;
+        count = doubt ? i + 1 : count;
     }
-    return doubt;
+    return count;
 }
 
 void mt_modal_widen(const mt_mode_energies *e, mt_modes *modes)
 {
-    for (int i = 0; i < modes->count; i++) {
+    for (int i = 0; i < e->count; i++) {
         modes->error[i] += e->given_noise[i] / e->mass[i];
     }
 }
@@ -112,15 +113,18 @@ void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes)
     const bool exact = modes->from_factor && modes->error_bound == 0.0;
     const int held = modes->n_held;
     mt_modal_widen(e, modes);
-    for (int i = 0; i < modes->count; i++) {
+    for (int i = 0; i < e->count; i++) {
         const verdict v = quotient(modes, e, i);
         const bool surer = v.error < modes->error[i];
         e->stiffness[i] = surer ? v.lambda : modes->lambda[i];
         e->mass[i] = surer ? v.error : modes->error[i];
     }
-    for (int i = 0; i < modes->count; i++) {
+    for (int i = 0; i < e->count; i++) {
         modes->lambda[i] = e->stiffness[i];
         modes->error[i] = e->mass[i];
+    }
+    for (int i = e->count; i < modes->count; i++) {
+        e->strained[i] = true;
     }
     sort(modes, e->strained);
     for (int i = 0; i < modes->count; i++) {

@@ -18,6 +18,7 @@ typedef struct mt_mode_energies {
                             that is in K and M as they are given, and that no solution of them
                             can be without */
     bool *strained; /* [count] does any spring move by more than the rounding of its terms? */
+    int count;      /* the lowest modes; the others have no doubts to be judged */
 } mt_mode_energies;
 /*
  * Replace each lambda_i by the quotient of its energies where that is the surer one, and decide
@@ -25,12 +26,14 @@ typedef struct mt_mode_energies {
  * vectors). Now a rigid-body mode is one within its error in which no spring is strained, and
  * one that is strained is undecided. A shape whose error is at most r in the norm of the
  * residual changes the quotient by r min(1, r/gap) at most, gap: distance to the next lambda
- * (Parlett, The Symmetric Eigenvalue Problem, sec. 10-5 and 11-7). Overwrites e.
+ * (Parlett, The Symmetric Eigenvalue Problem, sec. 10-5 and 11-7). Overwrites e, whose
+ * arrays have room for all modes.
  */
 void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes);
 
-/* Is that worth its while: could a kind be wrong, or is an error above 1e-9 of its lambda? */
-bool mt_modal_in_doubt(const mt_modes *modes);
+/* Of how many, the lowest, that is worth its while: up to the last mode of which the kind could
+ * be wrong or the error is above 1e-9 of its lambda. */
+int mt_modal_doubtful(const mt_modes *modes);
 /* Where it is not: errors alone, larger by what K and M have wrong as they are given. */
 void mt_modal_widen(const mt_mode_energies *e, mt_modes *modes);
 

@@ -11,17 +11,9 @@
 #include <float.h>
 #include <math.h>
 
-/*
- * The plain path leaves an error of about eps s on every eigenvalue. Results are promised to a
- * relative 1e-9 or better; at FACTOR_SWITCH the lowest mode still has two digits to spare for
- * the moderate factors in that "about". The factor path costs about three times as much.
- */
-static const double FACTOR_SWITCH = 1e-11;
-
 mt_modal_options mt_modal_options_default(void)
 {
-    return (mt_modal_options){
-        .n_rigid = -1, .vectors = true, .need_accuracy = false, .check = true};
+    return (mt_modal_options){.n_rigid = -1, .vectors = true, .accuracy = 0.0, .check = true};
 }
 
 static mt_status claim(const mt_mass_factor *mass, const mt_modal_options *opt, mt_arena *mem,
@@ -57,7 +49,7 @@ static bool needs_factor(const mt_modes *modes, const mt_modal_options *opt)
         return true;
     }
     const int lowest = mt_modal_flexible(modes, 1);
-    return lowest >= 0 && DBL_EPSILON * modes->scale > FACTOR_SWITCH * modes->lambda[lowest];
+    return lowest >= 0 && DBL_EPSILON * modes->scale > opt->accuracy * modes->lambda[lowest];
 }
 
 /* n_held as the classification left it counts what is above the noise; say it for sure. */
@@ -113,7 +105,7 @@ static mt_status compute(const double *k, const mt_mass_factor *mass,
     int null_count = -1;
     MT_TRY(mt_modal_plain(k, mass, scratch, out, err));
     double rigid_most = kinds(out, opt->n_rigid);
-    const bool usable = factor != NULL && opt->need_accuracy && mass->rank == mass->n;
+    const bool usable = factor != NULL && opt->accuracy > 0.0 && mass->rank == mass->n;
     if (usable && needs_factor(out, opt)) {
         MT_TRY(by_factor(factor, mass, scratch, out, &null_count, err));
         const bool exact = opt->n_rigid < 0 && null_count >= 0;

@@ -19,7 +19,7 @@ static void move(const mt_workspace *w, const double *factor)
 mt_status mt_robust_solve(mt_workspace *w, bool with_gradient, mt_err *err)
 {
     const mt_analysis_options opt = {
-        .gradient = with_gradient, .vectors = with_gradient, .accuracy = true};
+        .gradient = with_gradient, .vectors = with_gradient, .accuracy = w->accuracy};
     for (int i = 0; w->c->robust != NULL && i < w->c->n_views; i++) {
         const mt_corner_set *const set = &w->c->robust->views[i];
         for (int k = 0; k < set->n; k++) {

@@ -98,7 +98,7 @@ static mt_status eval_modes(void *context, const double *x, bool with_gradient, 
 {
     const modes_of *const c = context;
     const mt_analysis_options opt = {
-        .gradient = with_gradient, .vectors = with_gradient, .accuracy = true};
+        .gradient = with_gradient, .vectors = with_gradient, .accuracy = MT_MODAL_ACCURACY};
     MT_TRY(mt_analysis_solve(c->a, x, &opt, err));
     for (int k = 0; k < c->m; k++) {
         const int pos = mt_modal_flexible(&c->a->modes, k + 1);

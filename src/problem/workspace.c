@@ -80,6 +80,7 @@ mt_status mt_workspace_new(const mt_problem *p, mt_workspace **out, mt_err *err)
         return mt_fail_memory(err);
     }
     w->p = p;
+    w->accuracy = MT_MODAL_ACCURACY;
     mt_status rc = mt_arena_init(&w->mem, 0, err);
     rc = rc == MT_OK ? claim(w, err) : rc;
     rc = rc == MT_OK ? mt_workspace_use(w, &p->whole, err) : rc;
@@ -209,7 +210,7 @@ mt_status mt_view_solve(mt_workspace *w, mt_view_work *view, bool with_gradient,
 {
     const mt_analysis_options opt = {.gradient = with_gradient,
                                      .vectors = with_gradient || view->needs_vectors,
-                                     .accuracy = true,
+                                     .accuracy = w->accuracy,
                                      .check = false};
     view->tracked = false;
     view->solved = false;

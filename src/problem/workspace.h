@@ -40,6 +40,7 @@ typedef struct mt_workspace {
     double *shape;  /* [max ns] */
     double *dshape; /* max ns x n */
     struct mt_robust_work *robust; /* where variables have tolerances (robust.h); else NULL */
+    double accuracy; /* of the modes (mt_modal_options); MT_MODAL_ACCURACY unless set */
     long evaluations;
     void (*progress)(void *context, const char *text); /* NULL, or called now and then */
     void *progress_context;

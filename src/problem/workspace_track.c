@@ -21,7 +21,7 @@ static mt_status solve_at(void *context, double s, mt_analysis **out, mt_err *er
     const way *const w = context;
     const mt_problem *const p = w->w->p;
     const double *const origin_t = p->whole.origin_t;
-    const mt_analysis_options opt = {.vectors = true, .accuracy = true};
+    const mt_analysis_options opt = {.vectors = true, .accuracy = MT_MODAL_ACCURACY};
     for (int i = 0; i < p->n; i++) {
         w->t[i] = origin_t[i] + (s * (w->to[i] - origin_t[i]));
     }

@@ -165,7 +165,8 @@ static mt_status measure(walk *w, sample *s, mt_err *err)
 /* Look at one more position; its place in the samples is w->n - 1. */
 static mt_status look(walk *w, double at, int next, mt_err *err)
 {
-    const mt_analysis_options opt = {.gradient = true, .vectors = true, .accuracy = true};
+    const mt_analysis_options opt = {
+        .gradient = true, .vectors = true, .accuracy = MT_MODAL_ACCURACY};
     sample *const s = &w->samples[w->n++];
     mt_err why = {.code = MT_OK};
     *s = (sample){.at = at,

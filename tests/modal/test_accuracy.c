@@ -93,7 +93,7 @@ static void accuracy__spring_factors_keep_the_lowest_mode(mt_test *t)
         build(&s, rows[r].k, masses);
         const mt_stiffness_factor factor = {.rows = s.springs, .b = s.b, .c = s.c};
         const double want = holzer(rows[r].k, masses);
-        opt.need_accuracy = true;
+        opt.accuracy = MT_MODAL_ACCURACY;
         if (!CHECK(t, solve_pair(N, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK)) {
             continue;
         }
@@ -130,6 +130,33 @@ static void accuracy__the_plain_path_loses_it(mt_test *t)
     }
 }
 
+/* The caller says what the lowest mode may lose: a soft spring at the wall, k1 of the stiffness
+ * of the others, makes eps s / lambda some eps 10 / k1. */
+static void accuracy__the_factor_is_used_from_there_on_only(mt_test *t)
+{
+    static const double soft[] = {1e-2, 3e-4, 1e-6};
+    static const double accuracies[] = {0.0, 1e-10, MT_MODAL_ACCURACY};
+    static const bool used[][MT_COUNT(accuracies)] = {
+        {false, false, false}, {false, false, true}, {false, true, true}};
+    for (int r = 0; r < MT_COUNT(soft); r++) {
+        const double k[N] = {soft[r], 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+        const double want = holzer(k, masses);
+        chain s;
+        build(&s, k, masses);
+        const mt_stiffness_factor factor = {.rows = s.springs, .b = s.b, .c = s.c};
+        for (int a = 0; a < MT_COUNT(accuracies); a++) {
+            mt_modes modes;
+            mt_modal_options opt = mt_modal_options_default();
+            mt_test_row(t, "spring of %g, accuracy %g", soft[r], accuracies[a]);
+            opt.accuracy = accuracies[a];
+            REQUIRE(t, solve_pair(N, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK);
+            CHECK_INT(t, modes.from_factor, used[r][a]);
+            CHECK(t, fabs(modes.lambda[0] - want) <= modes.error[0]);
+            CHECK(t, a == 0 || fabs(modes.lambda[0] - want) <= accuracies[a] * want);
+        }
+    }
+}
+
 /* Redundant springs in parallel, springs of no stiffness, more rows than freedoms: rank is that
  * of the active rows. */
 static void accuracy__rank_of_the_factor_counts_rigid_body_modes(mt_test *t)
@@ -152,7 +179,7 @@ static void accuracy__rank_of_the_factor_counts_rigid_body_modes(mt_test *t)
         chain_spring(&s, 0, 1, 1e4); /* parallel to the first */
         chain_factor(&s);
         const mt_stiffness_factor factor = {.rows = s.springs, .b = s.b, .c = s.c};
-        opt.need_accuracy = true;
+        opt.accuracy = MT_MODAL_ACCURACY;
         if (!CHECK(t, solve_pair(6, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK)) {
             continue;
         }
@@ -171,7 +198,7 @@ static void accuracy__factor_of_no_stiffness_is_all_rigid(mt_test *t)
     chain_spring(&s, GROUND, 0, 0.0);
     chain_factor(&s);
     mt_stiffness_factor factor = {.rows = 1, .b = s.b, .c = s.c};
-    opt.need_accuracy = true;
+    opt.accuracy = MT_MODAL_ACCURACY;
     REQUIRE(t, solve_pair(3, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK);
     CHECK_INT(t, modes.n_rigid, 3);
     for (int i = 0; i < 3; i++) {
@@ -190,6 +217,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         MT_TEST(accuracy__spring_factors_keep_the_lowest_mode),
         MT_TEST(accuracy__the_plain_path_loses_it),
+        MT_TEST(accuracy__the_factor_is_used_from_there_on_only),
         MT_TEST(accuracy__rank_of_the_factor_counts_rigid_body_modes),
         MT_TEST(accuracy__factor_of_no_stiffness_is_all_rigid),
     };

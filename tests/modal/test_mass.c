@@ -100,7 +100,7 @@ static void mass__light_masses_are_masses(mt_test *t)
     CHECK_INT(t, modes.n_condensed, 0);
     CHECK_NEAR_ABS(t, modes.lambda[0], want, modes.error_bound + first_order * want);
     CHECK_NEAR(t, modes.lambda[3], 600.0 / 2e-9, first_order);
-    opt.need_accuracy = true;
+    opt.accuracy = MT_MODAL_ACCURACY;
     REQUIRE(t, solve_pair(4, s.k, s.m, &factor, &opt, &mem, &modes, NULL) == MT_OK);
     CHECK(t, modes.from_factor);
     CHECK_NEAR(t, modes.lambda[0], want, first_order);

@@ -345,7 +345,7 @@ static void modal__repeated_solves_do_not_touch_the_heap(mt_test *t)
     chain_factor(&s);
     const mt_stiffness_factor factor = {.rows = s.springs, .b = s.b, .c = s.c};
     mt_modal_options opt = mt_modal_options_default();
-    opt.need_accuracy = true;
+    opt.accuracy = MT_MODAL_ACCURACY;
     if (!mt_alloc_works()) {
         CHECK(t, !mt_alloc_works()); /* a sanitizer has the allocator */
         return;
@@ -369,7 +369,7 @@ static mt_status all_calls(const chain *condensed, const chain *graded, mt_arena
     const mt_stiffness_factor factor = {
         .rows = graded->springs, .b = graded->b, .c = graded->c};
     mt_modal_options opt = mt_modal_options_default();
-    opt.need_accuracy = true;
+    opt.accuracy = MT_MODAL_ACCURACY;
     MT_TRY(mt_modal_identity_mass(4, tiny, &mass, NULL));
     MT_TRY(
         solve_pair(condensed->n, condensed->k, condensed->m, NULL, NULL, tiny, &modes, NULL));
@@ -425,7 +425,8 @@ static void modal__judged_modes_ascend(mt_test *t)
     double mass_noise[] = {0.0, 0.0};
     double given_noise[] = {60.0, 100.0};
     bool strained[] = {true, false};
-    mt_mode_energies e = {stiffness, mass, stiffness_noise, mass_noise, given_noise, strained};
+    mt_mode_energies e = {stiffness, mass, stiffness_noise, mass_noise, given_noise,
+                          strained,  2};
     mt_modes modes;
     REQUIRE(t, solve_pair(2, k, m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
     mt_modal_judge(&e, -1, &modes);
@@ -435,6 +436,35 @@ static void modal__judged_modes_ascend(mt_test *t)
     CHECK_NEAR(t, modes.lambda[1], 50.0, TOL);
     CHECK_NEAR_ABS(t, fabs(modes.y[0]), 0.0, TOL);
     CHECK_NEAR_ABS(t, fabs(modes.y[1]), 1.0, TOL);
+}
+
+/* Quotients are taken of the lowest modes, as many as there are energies of; the others stand
+ * as they are. */
+static void modal__modes_without_doubt_are_not_judged(mt_test *t)
+{
+    const double k[] = {1e-3, 0.0, 0.0, 0.0, 9e9, 0.0, 0.0, 0.0, 1e12};
+    const double m[] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+    double stiffness[] = {2e-3, nan(""), nan("")};
+    double mass[] = {1.0, nan(""), nan("")};
+    double stiffness_noise[] = {0.0, nan(""), nan("")};
+    double mass_noise[] = {0.0, nan(""), nan("")};
+    double given_noise[] = {0.0, nan(""), nan("")};
+    bool strained[] = {true, false, false};
+    mt_mode_energies e = {stiffness, mass, stiffness_noise, mass_noise, given_noise,
+                          strained,  0};
+    mt_modal_options opt = mt_modal_options_default();
+    mt_modes modes;
+    opt.n_rigid = 0;
+    REQUIRE(t, solve_pair(3, k, m, NULL, &opt, &mem, &modes, NULL) == MT_OK);
+    const double error = modes.error[1];
+    e.count = mt_modal_doubtful(&modes);
+    CHECK_INT(t, e.count, 1);
+    mt_modal_judge(&e, 0, &modes);
+    CHECK_NEAR(t, modes.lambda[0], 2e-3, TOL);
+    CHECK_NEAR(t, modes.lambda[1], 9e9, TOL);
+    CHECK_NEAR(t, modes.lambda[2], 1e12, TOL);
+    CHECK_NEAR(t, modes.error[1], error, TOL);
+    CHECK_INT(t, mt_modal_flexible(&modes, 3), 2);
 }
 
 int main(void)
@@ -451,6 +481,7 @@ int main(void)
         MT_TEST(modal__factored_and_identity_masses_give_the_same),
         MT_TEST(modal__sign_rule_is_stable_under_rounding),
         MT_TEST(modal__judged_modes_ascend),
+        MT_TEST(modal__modes_without_doubt_are_not_judged),
         MT_TEST(modal__bad_matrices_are_errors),
         MT_TEST(modal__repeated_solves_do_not_touch_the_heap),
         MT_TEST(modal__every_failing_allocation_is_reported),

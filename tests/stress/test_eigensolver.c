@@ -306,7 +306,7 @@ static void eigensolver__springs_far_apart(mt_test *t)
             make_springs(&r, ranges[which][0], ranges[which][1], &s);
             mt_test_row(t, "%s, case %d, n = %d", names[which], k, s.n);
             const mt_stiffness_factor factor = {.rows = s.rows, .b = s.b, .c = s.c};
-            opt.need_accuracy = true;
+            opt.accuracy = MT_MODAL_ACCURACY;
             exact_springs(&s, want);
             const mt_arena_mark mark = mt_arena_get_mark(&mem);
             if (CHECK_INT(t, solve_pair(s.n, s.k, s.m, &factor, &opt, &mem, &modes, NULL),
@@ -339,7 +339,7 @@ static void eigensolver__loads_on_springs_far_apart(mt_test *t)
         assemble(&s);
         mt_test_row(t, "case %d, n = %d", k, s.n);
         const mt_stiffness_factor factor = {.rows = s.rows, .b = s.b, .c = s.c, .g = s.g};
-        opt.need_accuracy = true;
+        opt.accuracy = MT_MODAL_ACCURACY;
         exact_pencil(&s, want);
         const mt_arena_mark mark = mt_arena_get_mark(&mem);
         if (CHECK_INT(t, solve_pair(s.n, s.k, s.m, &factor, &opt, &mem, &modes, NULL), MT_OK)) {
