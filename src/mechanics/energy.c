@@ -6,20 +6,13 @@
 #include <float.h>
 #include <math.h>
 
+#include "mechanics/rest_noise.h"
+
 /* p of the header: what the elimination, the eigensolution and Z y may do to an entry of a
  * shape, in eps of what is typical. */
 static const double SHAPE_ULPS = 16.0;
 /* An energy is nothing below 16 nq eps of its own terms, as in any matrix of these rooms. */
 static const double ENERGY_ULPS = 16.0;
-/* Forces of an equilibrium are known to a few times its residual, and so is its place, which
- * the springs' rows depend on: what an unbalanced force r moves, r/K, changes them by as much
- * as r changes Kg, with a moderate factor. */
-static const double RESIDUALS = 32.0;
-
-/* A step that is left is known to a few parts of itself: the residual that it comes from is
- * mostly rounding, the rounding of what was evaluated there. */
-static const double STEPS = 4.0;
-
 typedef struct entry {
     int row;
     int col;
@@ -35,8 +28,8 @@ typedef struct worker {
     mt_rows z_error; /* of the basis, column by column */
     entry *load;     /* lower triangle of Kg where it is not empty */
     int n_load;
-    double unbalanced; /* relative error of the forces */
-    double shape;      /* p eps of the header */
+    double shape; /* p eps of the header */
+    mt_rest_noise *rest;
 } worker;
 
 static mt_status list_entries(worker *k, mt_arena *mem, mt_err *err)
@@ -171,37 +164,8 @@ static void sum_terms(const worker *k, int kind, const double *phi, sums *all, b
     }
 }
 
-/* What is open of phi^T Kg phi by the forces: an error of a force scales its whole energy. */
-static double force_energies(const worker *k, const double *phi)
-{
-    const mt_linear *const lin = k->lin;
-    double sum = 0.0;
-    for (int i = 0; i < lin->n_pieces && lin->kg != NULL; i++) {
-        const mt_piece *const p = &lin->pieces[i];
-        double way[MT_LOCAL] = {0.0};
-        int at[MT_LOCAL] = {0}; /* local freedoms that there are */
-        int n = 0;
-        double energy = 0.0;
-        for (int r = 0; r < MT_LOCAL; r++) {
-            if (p->dof[r] >= 0) {
-                way[n] = phi[p->dof[r]];
-                at[n++] = r;
-            }
-        }
-        for (int c = 0; c < n; c++) {
-            const double *const h = p->h + ((ptrdiff_t)MT_LOCAL * at[c]);
-            double part = 0.0;
-            for (int r = 0; r < n; r++) {
-                part += h[at[r]] * way[r];
-            }
-            energy += part * way[c];
-        }
-        sum += ((k->unbalanced * p->size) + (STEPS * p->open)) * fabs(energy);
-    }
-    return sum;
-}
-
-static void one(const worker *k, int col, const double *y, const mt_energies *out)
+static mt_status one(const worker *k, int col, const double *y, const mt_energies *out,
+                     mt_err *err)
 {
     const mt_linear *const lin = k->lin;
     const int nq = lin->sys->nq;
@@ -229,14 +193,19 @@ static void one(const worker *k, int col, const double *y, const mt_energies *ou
         stiffness.open += e->terms * ((fabs(phi[e->row]) * k->dz[e->col]) +
                                       (fabs(phi[e->col]) * k->dz[e->row]));
     }
-    const double loads = (k->shape * load) + force_energies(k, phi);
-    const double lambda = mass.energy > 0.0 ? fabs(stiffness.energy) / mass.energy : 0.0;
+    const double lambda = mass.energy > 0.0 ? stiffness.energy / mass.energy : 0.0;
+    double rest = 0.0;
+    if (k->rest != NULL) {
+        MT_TRY(mt_rest_noise_of(k->rest, lambda, phi, &rest, err));
+    }
+    const double loads = (k->shape * load) + rest;
     out->stiffness[col] = stiffness.energy;
     out->mass[col] = mass.energy;
-    out->given_noise[col] = loads + stiffness.open + (lambda * mass.open);
+    out->given_noise[col] = loads + stiffness.open + (fabs(lambda) * mass.open);
     out->stiffness_noise[col] = (k->shape * stiffness.noise) + loads + stiffness.open;
     out->mass_noise[col] = (k->shape * mass.noise) + mass.open;
     out->strained[col] = strained;
+    return MT_OK;
 }
 
 mt_status mt_linear_energies(mt_linear *lin, int cols, const double *y, const mt_energies *out,
@@ -245,19 +214,19 @@ mt_status mt_linear_energies(mt_linear *lin, int cols, const double *y, const mt
     const size_t nq = (size_t)lin->sys->nq;
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     worker k = {.lin = lin};
-    k.unbalanced = RESIDUALS * lin->position.equilibrium.residual;
     k.shape = SHAPE_ULPS * DBL_EPSILON / lin->e.qr.kept;
     k.phi = mt_arena_f64(&lin->scratch, nq, (size_t)cols);
     k.w = mt_arena_f64(&lin->scratch, nq, 1);
     k.dz = mt_arena_f64(&lin->scratch, nq, 1);
     mt_status rc = mt_arena_check(&lin->scratch, err);
     rc = rc == MT_OK ? list_entries(&k, &lin->scratch, err) : rc;
+    rc = rc == MT_OK ? mt_rest_noise_new(lin, &k.rest, err) : rc;
     mt_rows_of_columns((int)nq, lin->n, lin->z_error, &lin->scratch, &k.z_error);
     rc = rc == MT_OK ? mt_arena_check(&lin->scratch, err) : rc;
     if (rc == MT_OK) {
         mt_linear_expand(lin, cols, y, k.phi);
-        for (int c = 0; c < cols; c++) {
-            one(&k, c, y + ((ptrdiff_t)c * lin->n), out);
+        for (int c = 0; c < cols && rc == MT_OK; c++) {
+            rc = one(&k, c, y + ((ptrdiff_t)c * lin->n), out, err);
         }
     }
     mt_arena_rewind(&lin->scratch, mark);

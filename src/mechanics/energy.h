@@ -27,10 +27,8 @@
  *     At an equilibrium Newton's last step q is too small to be taken, as positions are
  * rounded, but not too small for a stiff spring: forces are those at its end, by k g . q
  * (springs) and lambda' = -(A^T)^+ (r + H q) (joints, r what is unbalanced) others than at the
- * position, and some of that stays open, each with its own phi^T (Hessian of its measure) phi:
- * the step balances the forces, but not what stiff springs that hold each other have from
- * rounding. Places are known to the residual besides, each force with its whole share of phi^T
- * Kg phi. A spring is strained where its energy is more than 16 nq eps c (|f| . w)^2, the
+ * position. What rounding leaves open of place and forces is in rest_noise.h.
+ *     A spring is strained where its energy is more than 16 nq eps c (|f| . w)^2, the
  * rounding of its own terms.
  */
 typedef struct mt_energies {

@@ -102,63 +102,17 @@ static void add_hessian(const mt_system *sys, const int body[2], const mt_jet *j
     }
 }
 
-/* The slope of a beam element's chord: coordinates over its length. */
-static bool is_chord(const mt_measure_def *def)
+/* Returns the piece, or NULL where nobody asks. */
+static mt_piece *note_terms(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
+                            const mt_jet *jet, double size, double force, mt_lagrangian *out)
 {
-    return def->kind == MT_MEASURE_BEAM && def->component >= MT_BEAM_SWAY_2;
-}
-
-static bool is_angle(const mt_measure_def *def)
-{
-    return def->kind == MT_MEASURE_ANGLE || def->kind == MT_MEASURE_ROTATION ||
-           def->kind == MT_MEASURE_DOT ||
-           (def->kind == MT_MEASURE_BEAM && def->component != MT_BEAM_STRETCH &&
-            !is_chord(def));
-}
-
-/* Largest coordinate of the two bodies: what rounding of their positions is relative to. */
-static double extent_of(const mt_pose *poses, const int body[2])
-{
-    double extent = 0.0;
-    for (int side = 0; side < 2; side++) {
-        const mt_pose *const pose = mt_pose_of(poses, body[side]);
-        for (int k = 0; k < 3; k++) {
-            extent = fmax(extent, fabs(creal(pose->x[k])));
-        }
+    const double size_force[2] = {size, force};
+    if (out->terms == NULL) {
+        return NULL;
     }
-    return extent;
-}
-
-/* terms += size |jet.h|, and force times the coordinates' size: two lengths that cancel in an
- * entry between rotations have been the difference of coordinates. */
-static void note_terms(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
-                       const mt_jet *jet, double size, double force, double open,
-                       mt_lagrangian *out)
-{
-    int dof[MT_LOCAL];
-    if (out->terms == NULL || (size == 0.0 && open == 0.0)) {
-        return;
-    }
-    local_dofs(d->sys, def->body, dof);
     mt_piece *const piece = &out->pieces[out->n_pieces++];
-    memcpy(piece->dof, dof, sizeof dof);
-    piece->size = size;
-    piece->open = open;
-    double extent = is_angle(def) ? 0.0 : extent_of(poses, def->body);
-    if (is_chord(def)) {
-        extent /= creal(mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0));
-    }
-    for (int c = 0; c < MT_LOCAL; c++) {
-        for (int r = 0; r < MT_LOCAL; r++) {
-            piece->h[r + (MT_LOCAL * c)] = creal(jet->h[r + (MT_LOCAL * c)]);
-            if (dof[r] >= 0 && dof[c] >= 0) {
-                const bool turns = r % 6 >= 3 && c % 6 >= 3;
-                const double entry = fabs(creal(jet->h[r + (MT_LOCAL * c)]));
-                out->terms[dof[r] + ((ptrdiff_t)dof[c] * d->sys->nq)] +=
-                    (size * entry) + (turns ? force * extent : 0.0);
-            }
-        }
-    }
+    mt_piece_fill(d, def, poses, jet, size_force, out->terms, piece);
+    return piece;
 }
 
 /* Torques count as forces at the model length. */
@@ -189,17 +143,11 @@ static void note_force(const mt_system *sys, mt_lagrangian *out, const int body[
     note_push(body, size, out);
 }
 
-/* Positions are known to eps of the coordinates that they are the difference of, angles to eps,
- * the slope of a beam element's chord to eps of the coordinates over its length. */
 static void note_noise(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
                        const mt_jet *jet, double stiffness, mt_lagrangian *out)
 {
-    const bool angle = is_angle(def);
-    double extent = angle ? 1.0 : fmax(d->sys->length_m, extent_of(poses, def->body));
-    if (is_chord(def)) {
-        extent /= creal(mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0));
-    }
-    const double noise = DBL_EPSILON * extent * fabs(stiffness) * largest_push(d->sys, jet);
+    const double noise =
+        mt_piece_roundness(d, def, poses) * fabs(stiffness) * largest_push(d->sys, jet);
     out->force_noise = fmax(out->force_noise, noise);
 }
 
@@ -250,11 +198,30 @@ static double left_way(const mt_lagrangian *l, const mt_system *sys, const int b
                        const mt_jet *jet)
 {
     double way = 0.0;
-    for (int k = 0; k < MT_LOCAL && l->left.q != NULL; k++) {
+    for (int k = 0; k < MT_LOCAL && l->left != NULL; k++) {
         const int dof = mt_local_dof(sys, body, k);
-        way += dof >= 0 ? creal(jet->g[k]) * l->left.q[dof] : 0.0;
+        way += dof >= 0 ? creal(jet->g[k]) * l->left[dof] : 0.0;
     }
     return way;
+}
+
+static void note_spring(const mt_data *d, int i, int side, const mt_pose *poses,
+                        const mt_jet *jet, double force, mt_lagrangian *out)
+{
+    const mt_spring_def *const s = &d->sys->springs[i];
+    const mt_measure_def *const def = &d->sys->measures[s->measure[side]];
+    const bool coupling = s->measure[0] != s->measure[1];
+    const int other = coupling ? 1 - side : side;
+    const double k = creal(mt_data_scalar(d, s->stiffness, 0.0));
+    mt_piece *const piece = note_terms(d, def, poses, jet, fabs(force), fabs(force), out);
+    if (piece != NULL) {
+        piece->force = force;
+        piece->stiffness = coupling ? 0.5 * k : k;
+        piece->partner = other - side;
+        piece->trimmed = i == d->sys->trim_spring;
+        piece->roundness *=
+            s->free == MT_NO_NODE && mt_piece_is_still(def, poses, out->rest) ? 0.0 : 1.0;
+    }
 }
 
 static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature curvature,
@@ -266,7 +233,7 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
         const mt_spring_def *const s = &sys->springs[i];
         const mt_measure_def *const first = &sys->measures[s->measure[0]];
         const bool coupling = s->measure[0] != s->measure[1];
-        mt_cx stretch[2];
+        mt_cx stretch[2] = {0.0, 0.0};
         double way[2] = {0.0, 0.0};
         if (s->damper) {
             continue;
@@ -279,19 +246,14 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
         }
         const mt_cx k = mt_data_scalar(d, s->stiffness, 0.0);
         note_noise(d, first, at->pose, &jet[0], creal(k), out);
+        mt_cx force[2] = {0.5 * cx_mul(k, stretch[1]), 0.5 * cx_mul(k, stretch[0])};
         if (coupling) {
             add_coupling(sys, first->body, k, stretch, jet, curvature, out);
-            for (int side = 0; side < 2; side++) {
-                const double force = 0.5 * fabs(creal(cx_mul(k, stretch[1 - side])));
-                note_terms(d, &sys->measures[s->measure[side]], at->pose, &jet[side], force,
-                           force, 0.5 * fabs(creal(k) * way[1 - side]), out);
-            }
         } else {
-            const double force =
-                fabs(creal(add_spring(d, i, k, stretch[0], jet, curvature, out)));
-            note_terms(d, first, at->pose, &jet[0], force, force,
-                       i == sys->trim_spring ? fabs(out->left.trim) : fabs(creal(k) * way[0]),
-                       out);
+            force[0] = add_spring(d, i, k, stretch[0], jet, curvature, out);
+        }
+        for (int side = 0; side < (coupling ? 2 : 1); side++) {
+            note_spring(d, i, side, at->pose, &jet[side], creal(force[side]), out);
         }
     }
 }
@@ -326,11 +288,15 @@ static void note_load(const mt_data *d, const mt_load_def *load, const mt_pose *
                       const mt_jet *jet, mt_cx size, mt_lagrangian *out)
 {
     const mt_measure_def point = {.kind = MT_MEASURE_PLANE, .body = {load->body, MT_GROUND}};
+    mt_piece *piece = NULL;
     if (load->measure >= 0) {
         const double force = fabs(creal(size));
-        note_terms(d, &d->sys->measures[load->measure], poses, jet, force, force, 0.0, out);
+        piece = note_terms(d, &d->sys->measures[load->measure], poses, jet, force, force, out);
     } else if (load->point >= 0) { /* the jet has the force in it */
-        note_terms(d, &point, poses, jet, 1.0, largest_push(d->sys, jet), 0.0, out);
+        piece = note_terms(d, &point, poses, jet, 1.0, largest_push(d->sys, jet), out);
+    }
+    if (piece != NULL) {
+        piece->force = -creal(size);
     }
 }
 
@@ -420,7 +386,7 @@ static void push_joints(const mt_data *d, int m, const mt_cx *lambda, mt_lagrang
         for (int t = 0; t < sys->constraints[i].terms; t++) {
             const mt_measure_def *const def = &sys->measures[sys->constraints[i].measure[t]];
             const mt_cx factor = mt_data_scalar(d, sys->constraints[i].coefficient[t], 1.0);
-            const double arm = is_angle(def) ? sys->length_m : 1.0;
+            const double arm = mt_piece_is_angle(def) ? sys->length_m : 1.0;
             note_push(def->body, fabs(creal(factor) * creal(lambda[i])) / arm, out);
         }
     }
@@ -428,17 +394,17 @@ static void push_joints(const mt_data *d, int m, const mt_cx *lambda, mt_lagrang
 
 /* Forces that meet in a body are known to eps of the largest of them: so is a joint's force,
  * however small it is itself. */
-static void note_joint(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
-                       const mt_jet *jet, mt_cx force, double open, mt_lagrangian *out)
+static mt_piece *note_joint(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
+                            const mt_jet *jet, mt_cx force, mt_lagrangian *out)
 {
-    const double arm = is_angle(def) ? d->sys->length_m : 1.0;
+    const double arm = mt_piece_is_angle(def) ? d->sys->length_m : 1.0;
     double push = 0.0;
     for (int side = 0; side < 2 && out->terms != NULL; side++) {
         const int body = def->body[side];
         push = body == MT_GROUND ? push : fmax(push, out->push[body]);
     }
     const double size = fabs(creal(force)) + (arm * push);
-    note_terms(d, def, poses, jet, size, size, open, out); /* where they are asked for */
+    return note_terms(d, def, poses, jet, size, size, out);
 }
 
 static void add_to_row(mt_sparse_row *row, int dof, double a)
@@ -494,10 +460,17 @@ void mt_lagrangian_curve(const mt_data *d, const mt_placement *at, int m, const 
             const mt_measure_def *const def = &sys->measures[c->measure[t]];
             const mt_cx factor = mt_data_scalar(d, c->coefficient[t], 1.0);
             const mt_cx force = cx_mul(factor, lambda[i]);
-            const double left = out->left.lambda != NULL ? out->left.lambda[i] : 0.0;
             mt_data_eval(d, def, at, true, &jet);
             add_hessian(sys, def->body, &jet, force, 0.0, NULL, out);
-            note_joint(d, def, at->pose, &jet, force, fabs(creal(factor) * left), out);
+            mt_piece *const piece = note_joint(d, def, at->pose, &jet, force, out);
+            if (piece != NULL) {
+                piece->force = creal(force);
+                piece->equation = i;
+                piece->roundness *=
+                    sys->drawn_closed && mt_piece_is_still(def, at->pose, out->rest) ? 0.0
+                                                                                     : 1.0;
+                piece->factor = creal(factor);
+            }
         }
     }
 }
@@ -519,6 +492,9 @@ void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn
     if (hessian) {
         const size_t entries = out->layout == NULL ? nq * nq : out->layout->envelope.count;
         memset(out->h, 0, entries * sizeof *out->h);
+    }
+    if (out->push != NULL) {
+        memset(out->push, 0, (size_t)d->sys->n_bodies * sizeof *out->push);
     }
     out->force_scale = 0.0;
     out->n_pieces = 0;

@@ -4,6 +4,7 @@
 
 #include "mechanics/data.h"
 #include "mechanics/layout.h"
+#include "mechanics/pieces.h"
 
 /*
  * L = V + sum lambda_i c_i at given positions: gradient of V, constraints with their Jacobian,
@@ -24,19 +25,11 @@ typedef enum mt_curvature {
     MT_CURVATURE_ELASTIC
 } mt_curvature;
 
-/* The curvature of one force: the Hessian of its measure over the freedoms dof (-1: none). */
-typedef struct mt_piece {
-    int dof[MT_LOCAL];
-    double h[MT_LOCAL * MT_LOCAL];
-    double size; /* of the force */
-    double open; /* what the step that is left makes of it */
-} mt_piece;
-
 /* The last step of Newton's method, too small to be taken: from the position, which is rounded,
  * to where the forces balance. There a spring of stiffness k and gradient g has k g . q more
  * force, and that is what it counts with. */
 typedef struct mt_step_left {
-    double *q;      /* [nq]; NULL: none */
+    double *q;      /* [nq] */
     double *lambda; /* [m] */
     double trim;    /* of the trimmed spring's force */
 } mt_step_left;
@@ -70,9 +63,10 @@ typedef struct mt_lagrangian {
     /* nq x nq, or NULL where nobody asks: magnitudes of the terms whose sum the geometric part
      * of h is; rounding of the positions and of the multipliers counts by them */
     double *terms;
-    /* [n_pieces], with terms: the geometric part of h, force by force, without signs */
+    /* [n_pieces], with terms: all forces at work */
     mt_piece *pieces;
-    mt_step_left left; /* in, with terms */
+    const double *left;  /* in, [nq]: the step that is left, or NULL */
+    const mt_pose *rest; /* in, with terms: [bodies] where springs and joints are as drawn */
     int n_pieces;
     /* [bodies], with terms: sum of the magnitudes of all forces on a body, torques as forces at
      * the model length */
@@ -98,12 +92,6 @@ void mt_lagrangian_want_rows(mt_lagrangian *l, const mt_system *sys, mt_arena *m
 /* Have terms (and what comes with them) filled too, with the next evaluation. */
 mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
                                    mt_err *err);
-/* Column of q for local freedom k (0..11) of a pair of bodies; -1: none. */
-static inline int mt_local_dof(const mt_system *sys, const int body[2], int k)
-{
-    const int b = body[k / 6];
-    return b == MT_GROUND ? -1 : sys->bodies[b].dof[k % 6];
-}
 /* Energy alone. */
 double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_force);
 

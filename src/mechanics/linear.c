@@ -117,7 +117,8 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     l.trim_force = lin->position.equilibrium.trim_force + left->trim;
     if (loaded) {
         MT_TRY(mt_lagrangian_want_terms(&l, sys, &lin->place, err));
-        l.left = *left;
+        l.left = left->q;
+        l.rest = lin->position.reference.pose;
     }
     mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, &lin->position.at,
                        all, loaded ? lambda : NULL,
@@ -134,6 +135,7 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     lin->kg = NULL;
     lin->kg_terms = l.terms;
     lin->pieces = l.pieces;
+    lin->push = l.push;
     lin->n_pieces = l.n_pieces;
     if (loaded && !lin->unstressed) {
         lin->kg = mt_arena_f64(&lin->place, (size_t)nq, (size_t)nq);

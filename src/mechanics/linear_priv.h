@@ -42,7 +42,8 @@ struct mt_linear {
     mt_rows entries[MT_TERM_KINDS];    /* of reduced; a row that the joints block has none */
     double *noise;    /* n x n_rows: bounds of the errors of reduced[MT_TERM_STIFFNESS] */
     double *kg;       /* nq x nq geometric stiffness; NULL where nothing loads */
-    mt_piece *pieces; /* [n_pieces] of the forces that make kg */
+    mt_piece *pieces; /* [n_pieces] the forces at work; NULL where nothing loads */
+    double *push;     /* [bodies] magnitudes of all forces on each */
     double *kg_terms; /* nq x nq: magnitudes of the terms that kg is the sum of */
     double *k;        /* n x n */
     double *m_r;      /* n x n */

@@ -2,12 +2,13 @@
 /*
  * One stage of the position analysis from start to verdict. Plain Newton (newton_step.c) finds
  * any stationary point of the energy, a saddle as well as a minimum. What is drawn in
- * equilibrium stays there, stable or not. Else it settles: where Newton does not converge, ends
- * uphill, or in a saddle that the drawing lies beside (its distance has a part along directions
- * of negative curvature), the energy is followed downhill from the drawing and out of such
- * saddles, and Newton finishes. A saddle that the drawing lies straight above (a column beyond
- * its buckling load, compressed along its axis) is an equilibrium that does not say which way
- * it falls: it stands, and is told as unstable.
+ * equilibrium, to the rounding of its forces, stays there, stable or not, and though a step
+ * against what hardly holds it would lead far. Else it settles: where Newton does not converge,
+ * ends uphill, or in a saddle that the drawing lies beside (its distance has a part along
+ * directions of negative curvature), the energy is followed downhill from the drawing and out
+ * of such saddles, and Newton finishes. A saddle that the drawing lies straight above (a column
+ * beyond its buckling load, compressed along its axis) is an equilibrium that does not say
+ * which way it falls: it stands, and is told as unstable.
  */
 #include "mechanics/newton.h"
 
@@ -61,6 +62,7 @@ static mt_status keep(mt_newton_work *w, const mt_newton_solver *solver, double 
     const size_t nq = (size_t)w->sys->nq;
     const size_t m = (size_t)w->p->m;
     stage->active = true;
+    stage->m = w->p->m;
     stage->solver = *solver;
     stage->null_freedoms = w->null_freedoms;
     stage->lambda = mt_arena_f64(mem, m, 1);
@@ -146,6 +148,10 @@ static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
         stage->iterations++;
         if (falls) {
             return MT_OK;
+        }
+        if (it == 0 && w->watch && !solver.sparse && mt_newton_at_rest(w, &solver.e)) {
+            memset(w->step, 0, (size_t)w->sys->nq * sizeof *w->step);
+            w->moved = 0.0;
         }
         const bool rest = rests(w, previous);
         if (rest && balanced(w)) {

@@ -19,6 +19,7 @@
  */
 #include "mechanics/newton_step.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -34,6 +35,10 @@ static const double NO_STIFFNESS = 1e-13;
  * 1/NO_STIFFNESS, for what the estimate of the norm and sums over many freedoms may be off. */
 static const double FAR_FROM_DEPENDENT = 1e8;
 static const double FIRM = 1e10;
+/* Gaps up to here are rounding of the drawing [model lengths], and so is what is unbalanced up
+ * to this many eps of the forces on a body: their products with arms, and their sum. */
+static const double CLOSED = 64.0 * DBL_EPSILON;
+static const double FORCE_ULPS = 4.0;
 /* A step downhill that is longer than it may be by no more than this is shortened as a whole.
  * */
 static const double LITTLE_LONGER = 2.0;
@@ -73,6 +78,7 @@ mt_status mt_newton_dense(mt_newton_work *w, mt_arena *mem, mt_err *err)
     w->a = mt_arena_f64(mem, (size_t)w->sys->n_constraints, nq);
     w->h = mt_arena_f64(mem, nq, nq);
     w->l = (mt_lagrangian){.g = w->g, .c = w->c, .trim = w->trim, .a = w->a, .h = w->h};
+    w->l.push = mt_arena_f64(mem, (size_t)w->sys->n_bodies, 1);
     return mt_arena_check(mem, err);
 }
 
@@ -266,6 +272,26 @@ mt_status mt_newton_falls(mt_newton_work *w, const mt_elimination *e, const doub
         mt_eliminate_expand(e, down, w->step);
     }
     return MT_OK;
+}
+
+bool mt_newton_at_rest(mt_newton_work *w, const mt_elimination *e)
+{
+    const mt_system *const sys = w->sys;
+    bool rest = w->gap <= CLOSED;
+    mt_eliminate_project(e, w->g, w->reduced);
+    for (int i = 0; i < e->n && rest; i++) {
+        const double *const z = e->z + ((ptrdiff_t)i * e->nq);
+        double terms = 0.0;
+        for (int b = 0; b < sys->n_bodies; b++) {
+            for (int k = 0; k < 6; k++) {
+                const int dof = sys->bodies[b].dof[k];
+                const double arm = k < 3 ? 1.0 : sys->length_m;
+                terms += dof >= 0 ? arm * w->l.push[b] * fabs(z[dof]) : 0.0;
+            }
+        }
+        rest = fabs(w->reduced[i]) <= FORCE_ULPS * DBL_EPSILON * terms;
+    }
+    return rest;
 }
 
 /* Multipliers, then gradient, Hessian and residual with them. */

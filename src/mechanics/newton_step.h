@@ -83,6 +83,10 @@ mt_status mt_newton_reduce_hessian(const mt_newton_work *w, const mt_elimination
  * freedoms without stiffness into w. */
 mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
                            double **inverse, mt_err *err);
+/* Is what was last evaluated dense, with its elimination, at rest: closed, and nothing
+ * unbalanced but rounding of the forces that meet in each body? However little holds it, it
+ * then stays. */
+bool mt_newton_at_rest(mt_newton_work *w, const mt_elimination *e);
 /* Move the place along w->step, at most `limit` model lengths. */
 void mt_newton_take_step(mt_newton_work *w, mt_placement *at, double limit);
 /* Physical energy: note the whole turns of angles after a step (springs wind up); else they

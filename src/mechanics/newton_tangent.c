@@ -118,3 +118,40 @@ mt_status mt_newton_tangent(const mt_newton_problem *problem, const mt_placement
     mt_arena_rewind(scratch, mark);
     return MT_OK;
 }
+
+mt_status mt_newton_adjoint(const mt_stage *stage, const double *pull, const double *across,
+                            double pull_trim, double *x, double *y, mt_arena *scratch,
+                            mt_err *err)
+{
+    if (stage->solver.sparse) {
+        return mt_saddle_solve(&stage->solver.saddle, pull, across, x, y, scratch, err);
+    }
+    const mt_elimination *const e = &stage->solver.e;
+    const ptrdiff_t nq = e->nq;
+    const int m = stage->m;
+    const int order = e->n + (m - e->m);
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    double *const r = mt_arena_f64(scratch, (size_t)nq, 1);
+    double *const eta = mt_arena_f64(scratch, (size_t)order + 1, 1);
+    double *const b = mt_arena_f64(scratch, (size_t)order + 1, 1);
+    double *const way = mt_arena_f64(scratch, (size_t)nq, 1);
+    MT_TRY(mt_arena_check(scratch, err));
+    MT_TRY(mt_eliminate_particular(e, across, x, scratch, err));
+    memcpy(r, pull, (size_t)nq * sizeof *r);
+    mt_gemv(true, e->nq, e->nq, -1.0, stage->h, e->nq, x, 1.0, r);
+    mt_eliminate_project(e, r, b);
+    b[e->n] = pull_trim - mt_dot(e->nq, stage->trim, x);
+    mt_gemv(true, order, order, 1.0, stage->solver.inverse, order, b, 0.0, eta);
+    mt_eliminate_expand(e, eta, way);
+    mt_axpy(e->nq, 1.0, way, x);
+    mt_gemv(true, e->nq, e->nq, -1.0, stage->h, e->nq, way, 1.0, r);
+    for (int i = e->m; i < m; i++) { /* the drive's */
+        y[i] = eta[e->n];
+        for (ptrdiff_t j = 0; j < nq; j++) {
+            r[j] -= stage->a[i + (j * m)] * y[i];
+        }
+    }
+    MT_TRY(mt_eliminate_multipliers(e, r, y, scratch, err));
+    mt_arena_rewind(scratch, mark);
+    return MT_OK;
+}

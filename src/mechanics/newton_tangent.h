@@ -9,5 +9,13 @@
  * where the stage did not run. */
 mt_status mt_newton_tangent(const mt_newton_problem *problem, const mt_placement *at,
                             mt_stage *stage, double *d, mt_arena *scratch, mt_err *err);
+/* The other way: with x and y of the equations of such a stage turned about,
+ *     H x + A^T y = pull,  A x = across,  t . x = pull_trim
+ * (the last with a trimmed spring, where the drive's row is no equation of x), forces f and
+ * gaps c that come to it change pull . q + across . lambda + pull_trim tau by -(x . f + y . c).
+ * pull [nq], across [m], x [nq], y [m]. */
+mt_status mt_newton_adjoint(const mt_stage *stage, const double *pull, const double *across,
+                            double pull_trim, double *x, double *y, mt_arena *scratch,
+                            mt_err *err);
 
 #endif

@@ -33,9 +33,10 @@ static int partner(const mt_term *t, int i)
     return t->pair ? (2 * t->first) + 1 - i : i;
 }
 
-/* out += K phi (kind STIFFNESS) or M phi (MASS), full coordinates, without the geometric
+/* out += scale K phi (kind STIFFNESS) or M phi (MASS), full coordinates, without the geometric
  * part. */
-static void full_product(const mt_linear *lin, int kind, const double *phi, double *out)
+static void full_product(const mt_linear *lin, int kind, double scale, const double *phi,
+                         double *out)
 {
     const mt_term_list *const list = &lin->list[kind];
     const mt_rows *const rows = &lin->full[kind];
@@ -44,7 +45,7 @@ static void full_product(const mt_linear *lin, int kind, const double *phi, doub
         if (is_blocked(lin, kind, i, t)) {
             continue;
         }
-        const double c = lin->value[t->coefficient] * (t->pair ? 0.5 : 1.0);
+        const double c = scale * lin->value[t->coefficient] * (t->pair ? 0.5 : 1.0);
         mt_rows_axpy(rows, i, c * mt_rows_dot(rows, partner(t, i), phi), out);
     }
 }
@@ -160,8 +161,8 @@ static mt_status moving_product(mt_linear *lin, int kind, int p, moving *v, doub
     }
     if (lin->m > 0) { /* without constraints the basis stands still */
         memset(v->kphi, 0, (size_t)nq * sizeof *v->kphi);
-        full_product(lin, kind, v->phi, v->kphi);
-        full_product(lin, kind, v->z, v->w);
+        full_product(lin, kind, 1.0, v->phi, v->kphi);
+        full_product(lin, kind, 1.0, v->z, v->w);
         if (geometric) {
             mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->phi, 1.0, v->kphi);
             mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->z, 1.0, v->w);
@@ -216,16 +217,20 @@ static double row_slope(const mt_linear *lin, int kind, int p, const double *phi
     return sum;
 }
 
+void mt_linear_rows_product(const mt_linear *lin, double lambda, const double *phi, double *w)
+{
+    full_product(lin, MT_TERM_STIFFNESS, 1.0, phi, w);
+    full_product(lin, MT_TERM_MASS, -lambda, phi, w);
+}
+
 /* v->lambda := mu, A^T mu = (K - lambda M) phi: what the joints carry in the mode. */
 static mt_status joint_forces(mt_linear *lin, double lambda, moving *v, mt_err *err)
 {
     const int nq = lin->sys->nq;
-    full_product(lin, MT_TERM_STIFFNESS, v->phi, v->w);
+    mt_linear_rows_product(lin, lambda, v->phi, v->w);
     if (lin->kg != NULL) {
         mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->phi, 1.0, v->w);
     }
-    full_product(lin, MT_TERM_MASS, v->phi, v->kphi);
-    mt_axpy(nq, -lambda, v->kphi, v->w);
     return mt_eliminate_multipliers(&lin->e, v->w, v->lambda, &lin->scratch, err);
 }
 
@@ -321,7 +326,7 @@ mt_status mt_linear_mass_product(mt_linear *lin, const double *y, double *w, mt_
     MT_TRY(mt_arena_check(&lin->scratch, err));
     mt_linear_expand(lin, 1, y, phi);
     memset(w, 0, nq * sizeof *w);
-    full_product(lin, MT_TERM_MASS, phi, w);
+    full_product(lin, MT_TERM_MASS, 1.0, phi, w);
     mt_arena_rewind(&lin->scratch, mark);
     return MT_OK;
 }

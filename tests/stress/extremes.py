@@ -282,6 +282,28 @@ def sagging(rng, far):
     return m.done()
 
 
+@family("short levers")
+def levers(rng, far):
+    """Links on pins, each held by a spring whose line passes the pin at almost no distance: the softer its lever makes it, the stiffer it is. Weights and preloads move them."""
+    n, at, bodies, joints, springs = rng.randint(1, 3), [0.0, 0.0], [], [], []
+    name = lambda i: f"b{i}" if i >= 0 else "ground"
+    coarse = lambda low, high: rng.randint(low, high) / 16
+    for i in range(n):
+        turn = rng.uniform(0, 2 * math.pi)
+        lever, arm, length = 2.0 ** -rng.uniform(1, 2 + 6 * far), rng.uniform(0.25, 1), rng.uniform(0.25, 1)
+        c, s = math.cos(turn), math.sin(turn)
+        place = lambda along, across: [round(at[0] + along * c - across * s, 6), round(at[1] + along * s + across * c, 6)]
+        bodies.append(solid(name(i), coarse(4, 40), coarse(1, 8), [at[0] + coarse(-8, 8), at[1] + coarse(-8, 8)]))
+        joints.append(joint(f"j{i}", "revolute", name(i - 1), name(i), list(at)))
+        k = float(f"{rng.uniform(100, 1000) / lever ** 2:.3g}")
+        preload = {"preload_n": coarse(-32, 32)} if rng.random() < 0.5 else {}
+        springs.append(axial(f"s{i}", name(i - 1), name(i), [place(arm, lever), place(arm + length, lever)], k, **preload))
+        if rng.random() < 0.5:
+            springs.append(torsion(f"t{i}", f"j{i}", decades(rng, 1, 1e3)))
+        at = [at[0] + coarse(4, 16) * rng.choice([-1, 1]), at[1] + coarse(-8, 8)]
+    return plain(2, bodies, joints, springs, gravity_m_per_s2=[0, -9.75 / 256])
+
+
 # sizes -------------------------------------------------------------------------------------------------------------------------------------------------------
 def resized(model, power):
     """Every length times 2^power, masses as the cube of it, times as the length: materials stay, frequencies are 2^-power times as high."""

@@ -4,7 +4,7 @@
 
     run.py [--seed S] [--count N] [--seconds T] [--only FAMILY] [--index I] [--far F] [--keep DIR]
 
-What the data determine is asked of the oracle: every number of the file is changed by a relative 1e-30 of random sign, every coordinate by that part of
+What the data determine is asked of the oracle: every number of the file is changed by a relative 1e-30, more or less, of random sign, every coordinate by that part of
 the mechanism's size, and what that changes in an eigenvalue, relative, over 1e-30, is its condition. Held are: counts and kinds; error <= bound for
 every mode; where the condition is at most 1e4, error <= 1e-10 of the eigenvalue. The table's last columns judge the bound: how much of it the error
 takes at worst, and how many times it exceeds what the data leave open, condition times 2^-53.
@@ -35,6 +35,7 @@ WANTED = Decimal("1e-10")   # of an eigenvalue that the data determine
 DETERMINED = Decimal("1e4")  # condition up to which they do: a hundred roundings of it are 1e-10
 OPEN = Decimal("1e6")        # from here on rest, or which way a dead centre leads, may itself be lost, and the program says so
 UNIT = Decimal(2) ** -53
+NEAR = Decimal("1e-9")      # m and rad, of what rests as drawn
 STEP = Decimal("1e-30")
 PLACES = ("at", "centre", "from", "to")
 COUNTS = ("elements", "dimension", "index", "fraction")
@@ -75,7 +76,9 @@ def at_rest(model):
     problem = statics.Problem(Oracle(model, read=binary))
     if problem.loaded() and not problem.oracle.driven:
         try:
-            return statics.Modes(problem, problem.polish([float(x) for x in problem.drawn], 0.0))
+            state = problem.polish([float(x) for x in problem.drawn], 0.0)
+            if max(abs(a - b) for a, b in zip(state.q, problem.drawn)) <= NEAR:  # else Newton may have gone anywhere
+                return statics.Modes(problem, state)
         except Refused:
             pass
     return statics.Modes(problem)
@@ -90,7 +93,7 @@ class Exact:
             raise Refused("dead centre")
         self.values, self.zero, self.kept = one.values, one.zero, {**one.counts(), "redundant": one.redundant}
         size = _size(model) * STEP
-        sign = lambda: rng.choice([1, -1])
+        sign = lambda: rng.choice([1, -1]) * Decimal(rng.uniform(0.5, 1))  # of equal sizes some would cancel
         by_value = {}
         ways = [lambda x: sign() * size,                                             # every place for itself
                 lambda x: by_value.setdefault(x, sign()) * size,                     # equal numbers together: what coincides stays so

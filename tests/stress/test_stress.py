@@ -34,6 +34,18 @@ class Stress(unittest.TestCase):
         found = list(run.stress("f", ["heavy on stiff feet"], [18, 43], {}, far=1.0))
         self.assertEqual(found, [])
 
+    def test_places_of_rest_are_known_to_the_rounding_of_lengths(self):
+        """A stiff spring with a short lever under load: what rounding of its length turns its body by changes the lever."""
+        found = list(run.stress("fin2", ["heavy on stiff feet"], [5], {}, far=1.0)) + list(run.stress("1", ["short levers"], [5, 29, 32, 42], {}, far=1.0))
+        self.assertEqual(found, [])
+
+    def test_what_is_drawn_at_rest_stays_there(self):
+        """Columns short of their critical load by next to nothing, or beyond it: rounding of the balance, over the stiffness that is left, leads nowhere."""
+        rows = {}
+        found = list(run.stress("c1", ["nearly buckled"], [46, 111], rows)) + list(run.stress("g", ["nearly buckled"], range(20), rows))
+        self.assertEqual(found, [])
+        self.assertEqual(rows["nearly buckled"].left_out, {})
+
     def test_many_equal_modes_of_a_tree_are_all_found(self):
         """Arms on a hub: 120 equal ones; 104 that almost are; in groups of twenty, of which the errors add up."""
         found = list(run.stress("2", ["large stars"], [0, 12, 11, 3], {}))
