@@ -59,7 +59,7 @@ static mt_status open_at(mt_analysis *a, const double *at, mt_analysis **out, mt
     }
     a->n_rigid = a->modes.n_rigid;
     a->n_null = a->modes.n_rigid;
-    a->n_most = a->modes.count;
+    a->n_most = a->modes.all;
     *out = a;
     return MT_OK;
 }
@@ -151,6 +151,14 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
     return MT_OK;
 }
 
+/* Are vibration modes missing that were asked for and that there are? Judged, a mode may be
+ * no vibration any more. */
+static bool is_short(const mt_modes *modes, int first)
+{
+    return first > 0 && modes->count < modes->all && mt_modal_indexed(modes) &&
+           mt_modal_flexible(modes, first) < 0;
+}
+
 /* Modes of K and M as they are, counted as a->n_rigid says or, where that does not hold,
  * anew. */
 static mt_status find_modes(mt_analysis *a, const mt_reduced *r, mt_modal_options *options,
@@ -160,6 +168,10 @@ static mt_status find_modes(mt_analysis *a, const mt_reduced *r, mt_modal_option
     mt_status rc = solve_and_judge(a, r, options, bounds, err);
     if (rc == MT_OK && a->modes.n_held > 0 && a->recount) {
         options->n_rigid = -1;
+        rc = solve_and_judge(a, r, options, bounds, err);
+    }
+    if (rc == MT_OK && is_short(&a->modes, options->first)) {
+        options->first = 0;
         rc = solve_and_judge(a, r, options, bounds, err);
     }
     if (rc == MT_E_MASSLESS && a->modes.massless != NULL) {
@@ -183,9 +195,9 @@ static bool is_same(const struct mt_modes_key *had, const struct mt_modes_key *n
 {
     return had->stiffness_version == now->stiffness_version &&
            had->mass_version == now->mass_version && had->n_rigid == now->n_rigid &&
-           had->recount == now->recount && had->vectors == now->vectors &&
-           had->accuracy == now->accuracy && had->bounds == now->bounds &&
-           (had->check || !now->check);
+           had->first == now->first && had->recount == now->recount &&
+           had->vectors == now->vectors && had->accuracy == now->accuracy &&
+           had->bounds == now->bounds && (had->check || !now->check);
 }
 
 /* The stage modes. Where it fails there are none: not those of another design. */
@@ -196,6 +208,7 @@ static mt_status run_modes(mt_analysis *a, const mt_analysis_options *opt, const
     const mt_reduced r = mt_linear_reduced(a->lin);
     mt_modal_options options = mt_modal_options_default();
     options.n_rigid = a->n_rigid;
+    options.first = opt->first;
     /* where K is no sum of squares, shapes say what rounding leaves of its sign */
     options.vectors = opt->vectors || opt->gradient || r.g != NULL;
     options.accuracy = opt->accuracy;
@@ -203,6 +216,7 @@ static mt_status run_modes(mt_analysis *a, const mt_analysis_options *opt, const
     const struct mt_modes_key key = {.stiffness_version = r.stiffness_version,
                                      .mass_version = r.mass_version,
                                      .n_rigid = a->n_rigid,
+                                     .first = opt->first,
                                      .recount = a->recount,
                                      .vectors = options.vectors,
                                      .accuracy = opt->accuracy,
@@ -317,7 +331,7 @@ mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel,
     const mt_directions given = {.np = np, .dky = a->dky, .dmy = a->dmy};
     const mt_reduced r = mt_linear_reduced(a->lin);
     const mt_pencil pencil = {.n = r.n, .k = r.k, .m = r.m};
-    if (a->modes.n_condensed == 0) {
+    if (a->modes.n_condensed == 0 && a->modes.count == a->modes.all) {
         MT_TRY(mt_modal_dvector_by_modes(&a->modes, pos, &given, dy, NULL, &a->mem, err));
     } else {
         MT_TRY(

@@ -30,6 +30,7 @@ typedef struct mt_analysis {
         unsigned long stiffness_version;
         unsigned long mass_version;
         int n_rigid; /* as it was asked for */
+        int first;
         bool recount;
         bool vectors;
         double accuracy;
@@ -56,6 +57,7 @@ typedef struct mt_analysis {
 } mt_analysis;
 
 typedef struct mt_analysis_options {
+    int first;       /* how many vibration modes are asked for, the lowest; 0: all */
     bool gradient;   /* derivatives will be asked for (vectors come with them) */
     bool vectors;    /* shapes will be asked for */
     double accuracy; /* mt_modal_options */

@@ -48,7 +48,8 @@ static mt_status viewed_at(judge *j, const mt_published *pub, const mt_analysis 
         if (view->of->named[i] != pub->mode.named) {
             continue;
         }
-        view->needs_vectors = true;
+        view->ask.first = 0;
+        view->ask.vectors = true;
         MT_TRY(mt_workspace_place(w, t, false, err));
         MT_TRY(mt_view_solve(w, view, false, err));
         MT_TRY(mt_view_position(w, view, 0, i, pos, err));

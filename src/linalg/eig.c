@@ -6,6 +6,7 @@
 #include "linalg/lapack_priv.h"
 
 #include <limits.h>
+#include <string.h>
 
 static mt_status eig_sym(int n, double *a, double *w, char job, mt_arena *scratch, mt_err *err)
 {
@@ -51,6 +52,105 @@ mt_status mt_eig_sym(int n, double *a, double *w, bool vectors, mt_arena *scratc
     }
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     const mt_status rc = eig_sym(n, a, w, vectors ? 'V' : 'N', scratch, err);
+    mt_arena_rewind(scratch, mark);
+    return rc;
+}
+
+static mt_status eig_sym_values(const mt_tridiagonal *t, double *w, mt_arena *scratch,
+                                mt_err *err)
+{
+    const int n = t->n;
+    double query = 0.0;
+    lapack_int info =
+        LAPACKE_dsytrd_work(LAPACK_COL_MAJOR, 'L', n, t->a, n, t->d, t->e, t->tau, &query, -1);
+    if (info != 0) {
+        return mt_lapack_bug("dsytrd", info, err);
+    }
+    double *const beside = mt_arena_f64(scratch, (size_t)n, 1);
+    double *work = NULL;
+    lapack_int lwork = 0;
+    MT_TRY(mt_lapack_work(scratch, query, (double)n, &work, &lwork, err));
+    info =
+        LAPACKE_dsytrd_work(LAPACK_COL_MAJOR, 'L', n, t->a, n, t->d, t->e, t->tau, work, lwork);
+    if (info != 0) {
+        return mt_lapack_bug("dsytrd", info, err);
+    }
+    memcpy(w, t->d, (size_t)n * sizeof *w);
+    memcpy(beside, t->e, (size_t)n * sizeof *beside);
+    info = LAPACKE_dsterf_work(n, w, beside);
+    if (info < 0) {
+        return mt_lapack_bug("dsterf", info, err);
+    }
+    return info > 0 || !mt_all_finite(n, w)
+               ? mt_fail(err, MT_E_NO_CONVERGENCE, "dsterf: the eigenvalues did not converge")
+               : MT_OK;
+}
+
+mt_status mt_eig_sym_values(int n, double *a, double *w, mt_arena *mem, mt_tridiagonal *out,
+                            mt_err *err)
+{
+    const size_t size = (size_t)n;
+    *out = (mt_tridiagonal){.n = n, .a = a};
+    if (n == 0) {
+        return MT_OK;
+    }
+    if (!mt_lower_finite(n, a)) {
+        return mt_lapack_not_finite("dsytrd", err);
+    }
+    out->tau = mt_arena_f64(mem, size, 1);
+    out->d = mt_arena_f64(mem, size, 1);
+    out->e = mt_arena_f64(mem, size, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    const mt_status rc = eig_sym_values(out, w, mem, err);
+    mt_arena_rewind(mem, mark);
+    return rc;
+}
+
+static mt_status eig_sym_lowest(const mt_tridiagonal *t, int count, const double *w, double *z,
+                                mt_arena *scratch, mt_err *err)
+{
+    const int n = t->n;
+    const size_t size = (size_t)n;
+    double query = 0.0;
+    lapack_int info = LAPACKE_dormtr_work(LAPACK_COL_MAJOR, 'L', 'L', 'N', n, count, t->a, n,
+                                          t->tau, z, n, &query, -1);
+    if (info != 0) {
+        return mt_lapack_bug("dormtr", info, err);
+    }
+    int *const block = mt_arena_int(scratch, size);
+    int *const end = mt_arena_int(scratch, size);
+    int *const iwork = mt_arena_int(scratch, size);
+    int *const failed = mt_arena_int(scratch, (size_t)count);
+    double *work = NULL;
+    lapack_int lwork = 0;
+    MT_TRY(mt_lapack_work(scratch, query, 5.0 * n, &work, &lwork, err));
+    MT_TRY(mt_arena_check(scratch, err));
+    for (int i = 0; i < n; i++) {
+        block[i] = 1; /* all of T is one */
+    }
+    end[0] = n;
+    info = LAPACKE_dstein_work(LAPACK_COL_MAJOR, n, t->d, t->e, count, w, block, end, z, n,
+                               work, iwork, failed);
+    if (info < 0) {
+        return mt_lapack_bug("dstein", info, err);
+    }
+    if (info > 0) {
+        return mt_fail(err, MT_E_NO_CONVERGENCE, "dstein: %d vectors did not converge", info);
+    }
+    info = LAPACKE_dormtr_work(LAPACK_COL_MAJOR, 'L', 'L', 'N', n, count, t->a, n, t->tau, z, n,
+                               work, lwork);
+    return info == 0 ? MT_OK : mt_lapack_bug("dormtr", info, err);
+}
+
+mt_status mt_eig_sym_lowest(const mt_tridiagonal *t, int count, const double *w, double *z,
+                            mt_arena *scratch, mt_err *err)
+{
+    if (count == 0) {
+        return MT_OK;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    const mt_status rc = eig_sym_lowest(t, count, w, z, scratch, err);
     mt_arena_rewind(scratch, mark);
     return rc;
 }

@@ -236,7 +236,7 @@ static mt_status vectors(const graded *g, const mt_mass_factor *mass, mt_arena *
             q[g->place[i] + j * n] = column[i];
         }
     }
-    mt_modal_back(mass, q, y);
+    mt_modal_back(mass, n, q, y);
     return MT_OK;
 }
 

@@ -31,7 +31,7 @@ static double gap_of(const mt_modes *modes, int i)
     double gap = HUGE_VAL;
     for (int side = -1; side <= 1; side += 2) {
         const int k = i + side;
-        if (k >= 0 && k < modes->count) {
+        if (k >= 0 && k < modes->all) {
             const double far = fabs(modes->lambda[k] - modes->lambda[i]);
             gap = fmin(gap, far - modes->error[k] - modes->error[i]);
         }

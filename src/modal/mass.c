@@ -227,17 +227,17 @@ mt_status mt_modal_identity_mass(int n, mt_arena *mem, mt_mass_factor *out, mt_e
     return MT_OK;
 }
 
-void mt_modal_back(const mt_mass_factor *mass, const double *q, double *y)
+void mt_modal_back(const mt_mass_factor *mass, int count, const double *q, double *y)
 {
     const int n = mass->n;
     if (mass->t != NULL) {
-        mt_gemm(false, false, n, n, n, 1.0, mass->t, n, q, n, 0.0, y, n);
+        mt_gemm(false, false, n, count, n, 1.0, mass->t, n, q, n, 0.0, y, n);
         return;
     }
     if (y != q) {
-        memcpy(y, q, (size_t)n * (size_t)n * sizeof *y);
+        memcpy(y, q, (size_t)n * (size_t)count * sizeof *y);
     }
     if (mass->l != NULL) {
-        mt_tri_solve(true, n, n, mass->l, y, n);
+        mt_tri_solve(true, n, count, mass->l, y, n);
     }
 }

@@ -33,9 +33,13 @@ double mt_modal_tolerance(int n);
 double mt_modal_relative(int n);
 
 /* Fill lambda, y (when there), n_condensed..., scale from K restricted to what has mass. Kinds,
- * clusters, sign and checks come later. */
+ * clusters, sign and checks come later. later (may be NULL) is filled where y is left to
+ * mt_modal_plain_lowest, which makes what out->count says then; else later->n is 0. */
 mt_status mt_modal_plain(const double *k, const mt_mass_factor *mass, mt_arena *scratch,
-                         mt_modes *out, mt_err *err);
+                         mt_modes *out, mt_tridiagonal *later, mt_err *err);
+mt_status mt_modal_plain_lowest(const double *k, const mt_mass_factor *mass,
+                                const mt_tridiagonal *later, mt_arena *scratch, mt_modes *out,
+                                mt_err *err);
 /* The same with K = B^T diag(c) B and regular M: null_count eigenvalues are exactly zero. */
 mt_status mt_modal_by_factor(const mt_stiffness_factor *factor, const mt_mass_factor *mass,
                              mt_arena *scratch, mt_modes *out, int *null_count, mt_err *err);
@@ -53,9 +57,9 @@ typedef struct mt_graded {
     mt_interrupt *interrupt;
 } mt_graded;
 mt_status mt_modal_graded(mt_graded *g, mt_arena *mem, mt_err *err);
-/* Y := T1 Q: from the coordinates in which M is the identity back to the caller's. q, y n x n,
- * may be the same only where mass->t is NULL. Regular M only. */
-void mt_modal_back(const mt_mass_factor *mass, const double *q, double *y);
+/* Y := T1 Q: from the coordinates in which M is the identity back to the caller's. q, y n x
+ * count, may be the same only where mass->t is NULL. Regular M only. */
+void mt_modal_back(const mt_mass_factor *mass, int count, const double *q, double *y);
 /* After mt_modal_by_factor with y: the modes of B^T diag(c) B + G from those without G, n x n
  * symmetric G, lower read. */
 mt_status mt_modal_add_load(const double *g, const mt_mass_factor *mass, mt_arena *scratch,

@@ -37,7 +37,7 @@ bool mt_modal_indexed(const mt_modes *modes)
 
 int mt_modal_vibrations(const mt_modes *modes)
 {
-    return modes->count - modes->n_rigid;
+    return modes->all - modes->n_rigid;
 }
 
 int mt_modal_flexible(const mt_modes *modes, int index)

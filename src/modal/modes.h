@@ -13,7 +13,8 @@ typedef enum mt_mode_kind {
 
 typedef struct mt_modes {
     int n;           /* order of K, M */
-    int count;       /* modes: n - n_condensed */
+    int all;         /* modes that there are: n - n_condensed */
+    int count;       /* those that were asked for, the lowest */
     int n_condensed; /* directions without mass */
     int n_rigid;
     int n_held; /* of an n_rigid that was given: those that are no null directions of K */
@@ -21,8 +22,9 @@ typedef struct mt_modes {
     int n_undecided;
     int n_unstable_condensed; /* directions without mass and with negative stiffness: unstable,
                                  though no entry of lambda shows it */
-    double *lambda;           /* [count] ascending [rad^2/s^2] */
-    mt_mode_kind *kind;       /* [count] */
+    /* [all] ascending [rad^2/s^2]; beyond count as the matrices say, not judged */
+    double *lambda;
+    mt_mode_kind *kind; /* [count] */
     int *cluster; /* [count] number of the cluster of repeated modes that a mode belongs to
                      (from 0, ascending) */
     double *y; /* n x count, mass-normalised, sign by mt_modal_fix_sign; NULL without vectors */
@@ -30,7 +32,7 @@ typedef struct mt_modes {
                        * in coordinates scaled to m_ii = 1: O(1) is perfect; NULL without
                        * vectors and check */
     double *orthogonality; /* [count] max_j |y_i^T M y_j - delta_ij| / (n eps); NULL likewise */
-    double *error;         /* [count] |error of lambda_i| <= error_i: backward error, generously
+    double *error;         /* [all] |error of lambda_i| <= error_i: backward error, generously
                            counted, or what mt_modal_judge made of it */
     double error_bound; /* |error of lambda_i| <= error_bound + error_relative * |lambda_i|, for
                            certificates: backward error, generously counted */

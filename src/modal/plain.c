@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A = L^-1 K L^-T (or T^T K T, or the condensed matrix), A Q = Q Lambda by dsyevd, Y = L^-T Q
- * (or T1 Q). Absolute error of each lambda: about n eps s. */
+/* A = L^-1 K L^-T (or T^T K T, or the condensed matrix), A Q = Q Lambda by dsyevd, or by its
+ * parts where few columns of Q are wanted; Y = L^-T Q (or T1 Q). Absolute error of each lambda:
+ * about n eps s. */
 #include "modal/modal_priv.h"
 
 #include <float.h>
@@ -13,23 +14,18 @@
 static double stiffness_scale(const double *k, const mt_mass_factor *mass,
                               const mt_modes *modes)
 {
-    double s = mt_max_abs(modes->count, modes->lambda);
+    double s = mt_max_abs(modes->all, modes->lambda);
     for (int i = 0; i < mass->n; i++) {
         s = fmax(s, fabs(k[i + (ptrdiff_t)i * mass->n]) * mass->w[i]);
     }
     return s;
 }
 
-/* Regular M. a is n x n: A, then its eigenvectors, then Y. */
-static mt_status regular(const double *k, const mt_mass_factor *mass, double *a,
-                         mt_arena *scratch, mt_modes *out, mt_err *err)
+/* Regular M: q := A, lower; a and q n x n, the same where mass->t is NULL. */
+static void standard(const double *k, const mt_mass_factor *mass, double *a, double *q)
 {
     const int n = mass->n;
-    const bool vectors = out->y != NULL;
-    double *q = a;
     if (mass->t != NULL) {
-        q = mt_arena_f64(scratch, (size_t)n, (size_t)n);
-        MT_TRY(mt_arena_check(scratch, err));
         mt_symm(n, n, k, mass->t, a);
         mt_gemm(true, false, n, n, n, 1.0, mass->t, n, a, n, 0.0, q, n);
     } else {
@@ -41,10 +37,47 @@ static mt_status regular(const double *k, const mt_mass_factor *mass, double *a,
             mt_congruence_inverse(n, mass->l, a);
         }
     }
-    MT_TRY(mt_eig_sym(n, q, out->lambda, vectors, scratch, err));
-    if (vectors) {
-        mt_modal_back(mass, q, a);
+}
+
+/* a: n x n, of which Y is made where vectors are wanted at once. */
+static mt_status regular(const double *k, const mt_mass_factor *mass, double *a,
+                         mt_arena *scratch, mt_modes *out, mt_tridiagonal *later, mt_err *err)
+{
+    const int n = mass->n;
+    double *q = a;
+    if (mass->t != NULL) {
+        q = mt_arena_f64(scratch, (size_t)n, (size_t)n);
+        MT_TRY(mt_arena_check(scratch, err));
     }
+    standard(k, mass, a, q);
+    if (later != NULL) {
+        return mt_eig_sym_values(n, q, out->lambda, scratch, later, err);
+    }
+    MT_TRY(mt_eig_sym(n, q, out->lambda, out->y != NULL, scratch, err));
+    if (out->y != NULL) {
+        mt_modal_back(mass, n, q, a);
+    }
+    return MT_OK;
+}
+
+mt_status mt_modal_plain_lowest(const double *k, const mt_mass_factor *mass,
+                                const mt_tridiagonal *later, mt_arena *scratch, mt_modes *out,
+                                mt_err *err)
+{
+    const size_t n = (size_t)mass->n;
+    double *q = out->y;
+    if (mass->t != NULL) {
+        q = mt_arena_f64(scratch, n, n);
+        MT_TRY(mt_arena_check(scratch, err));
+    }
+    const mt_status rc = mt_eig_sym_lowest(later, out->count, out->lambda, q, scratch, NULL);
+    if (rc != MT_OK) { /* inverse iteration may fail where dsyevd does not */
+        double *const w = mt_arena_f64(scratch, n, 1);
+        MT_TRY(mt_arena_check(scratch, err));
+        standard(k, mass, out->y, q);
+        MT_TRY(mt_eig_sym(mass->n, q, w, true, scratch, err));
+    }
+    mt_modal_back(mass, out->count, q, out->y);
     return MT_OK;
 }
 
@@ -66,18 +99,21 @@ static mt_status condensed(const double *k, const mt_mass_factor *mass, mt_arena
 }
 
 mt_status mt_modal_plain(const double *k, const mt_mass_factor *mass, mt_arena *scratch,
-                         mt_modes *out, mt_err *err)
+                         mt_modes *out, mt_tridiagonal *later, mt_err *err)
 {
     const int n = mass->n;
+    mt_tridiagonal *const apart = later != NULL && mass->rank == n ? later : NULL;
     if (!mt_lower_finite(n, k)) {
         return mt_fail(err, MT_E_DOMAIN, "stiffness matrix: an entry is not a finite number");
     }
     if (mass->rank < n) {
         MT_TRY(condensed(k, mass, scratch, out, err));
     } else {
-        double *const a = out->y != NULL ? out->y : mt_arena_f64(scratch, (size_t)n, (size_t)n);
+        double *const a = out->y != NULL && apart == NULL
+                              ? out->y
+                              : mt_arena_f64(scratch, (size_t)n, (size_t)n);
         MT_TRY(mt_arena_check(scratch, err));
-        MT_TRY(regular(k, mass, a, scratch, out, err));
+        MT_TRY(regular(k, mass, a, scratch, out, apart, err));
     }
     out->scale = stiffness_scale(k, mass, out);
     out->error_bound = mt_modal_tolerance(n) * out->scale;

@@ -30,21 +30,25 @@ typedef struct mt_stiffness_factor {
 #define MT_MODAL_ACCURACY 1e-11
 
 typedef struct mt_modal_options {
-    int n_rigid;     /* -1: decide here; else the number of rigid-body modes */
+    int n_rigid; /* -1: decide here; else the number of rigid-body modes */
+    /* How many vibration modes are asked for, the lowest; 0: all. The answer holds these, with
+     * all of the cluster in which the last of them stands, and whatever is no vibration with an
+     * index: rigid-body, unstable and undecided modes. Without vectors they cost the same. */
+    int first;
     bool vectors;    /* compute y */
     double accuracy; /* > 0, with a factor: use it whenever eps * s / lambda_lowest_flexible
                            exceeds this, or signs and ranks are in doubt */
     bool check;      /* compute residual and orthogonality (with vectors) */
 } mt_modal_options;
-/* n_rigid -1, vectors and check on, accuracy 0. */
+/* n_rigid -1, all modes, vectors and check on, accuracy 0. */
 mt_modal_options mt_modal_options_default(void);
 
 /* Compute the modes. opt NULL: default; factor may be NULL. Results live in mem, scratch is
  * given back; repeated calls with mem rewound do not touch the heap. O(n^3), about 11 us for
  * n = 11 with vectors.
- * Method: Cholesky, dsyevd; dgejsv for the factor. On failure, memory taken from mem is the
- * caller's to rewind. Fails: MT_E_MASSLESS (out->massless); MT_E_DOMAIN; MT_E_NO_CONVERGENCE;
- * MT_E_MEMORY. */
+ * Method: Cholesky, dsyevd (dsterf and dstein for a few of many modes); dgejsv for the factor.
+ * On failure, memory taken from mem is the caller's to rewind. Fails: MT_E_MASSLESS
+ * (out->massless); MT_E_DOMAIN; MT_E_NO_CONVERGENCE; MT_E_MEMORY. */
 mt_status mt_modal_solve(const double *k, const mt_mass_factor *mass,
                          const mt_stiffness_factor *factor, const mt_modal_options *opt,
                          mt_arena *mem, mt_modes *out, mt_err *err);

@@ -15,7 +15,7 @@
  */
 typedef struct mt_goal_ops {
     mt_quantity quantity;
-    bool needs_vectors; /* shapes, even where no gradient is asked for */
+    bool needs_vectors; /* all shapes, even where no gradient is asked for */
     /* Look up what the goal is compared with, once view and mode are known. NULL: nothing. */
     mt_status (*compile)(mt_problem *p, mt_demand *d, mt_err *err);
     /* q of the mode at pos after its view has been solved (a mode at infinity: -1, of a

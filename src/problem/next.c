@@ -13,8 +13,6 @@
 #include "problem/goal_frequency.h"
 #include "problem/robust.h"
 
-enum { NEXT_MOST = 5 };
-
 /* One of them. */
 typedef struct mt_next {
     int view;
@@ -32,7 +30,7 @@ static int add(const mt_case *c, const mt_next *what, int row, mt_next *list, in
     const int most = mt_view_vibrations(&c->views[what->view]);
     const int step = what->sign > 0.0 ? 1 : -1;
     int more = 0;
-    for (; more < NEXT_MOST; more++) {
+    for (; more < MT_NEXT_MOST; more++) {
         const int mode = what->mode + ((more + 1) * step);
         if (mode < 1 || mode > most || !(what->limit_hz > 0.0)) {
             break;

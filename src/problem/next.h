@@ -4,6 +4,8 @@
 
 #include "problem/workspace.h"
 
+/* How many modes beyond one that is limited a search looks at. */
+enum { MT_NEXT_MOST = 5 };
 /* A limit on a mode holds for all that lie beyond it; where modes cross, those
  * tell the search what comes next. After all other rows of the case. */
 mt_status mt_next_init(mt_case *c, mt_arena *mem, mt_err *err);

@@ -130,6 +130,9 @@ mt_status mt_problem_new(const mt_study *study, mt_problem **out, mt_err *err)
     rc = rc == MT_OK ? init_variables(p, err) : rc;
     rc = rc == MT_OK ? mt_problem_init_demands(p, err) : rc;
     rc = rc == MT_OK ? mt_clears_compile(p, err) : rc;
+    if (rc == MT_OK) {
+        mt_problem_ask(p);
+    }
     rc = rc == MT_OK ? mt_problem_init_program(p, err) : rc;
     rc = rc == MT_OK ? init_whole(p, err) : rc;
     if (rc != MT_OK) {

@@ -38,8 +38,8 @@ typedef struct mt_view {
     int n_most;
     int n_named; /* named modes of this configuration that exist at the original design */
     int *named;  /* [n_named] of the model */
-    const double **shape; /* [n_named] weighed there (tracking.h) */
-    bool needs_vectors;   /* a goal needs shapes even where no gradient is asked for */
+    const double **shape;    /* [n_named] weighed there (tracking.h) */
+    mt_analysis_options ask; /* what its goals need of its modes: which, and their shapes */
 } mt_view;
 
 typedef struct mt_family mt_family; /* positions of one drive (family.h) */
@@ -172,6 +172,8 @@ const char *mt_view_name(const mt_problem *p, const mt_view *view);
 
 /* problem_demands.c: views, demands and their rows. */
 mt_status mt_problem_init_demands(mt_problem *p, mt_err *err);
+/* What each view is asked for; after demands and bands. */
+void mt_problem_ask(mt_problem *p);
 /* problem_program.c: the program of expressions, and the objectives. After the demands. */
 mt_status mt_problem_init_program(mt_problem *p, mt_err *err);
 

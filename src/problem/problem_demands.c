@@ -6,6 +6,7 @@
 #include "analysis/count.h"
 #include "problem/family.h"
 #include "problem/goal.h"
+#include "problem/next.h"
 #include "problem/robust.h"
 
 int mt_problem_view(const mt_problem *p, int configuration)
@@ -214,9 +215,8 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
     if (configuration != MT_ABSENT) {
         MT_TRY(mt_err_in(err, mt_problem_add_view(p, configuration, &d->view, err), "/goals/%d",
                          goal_index));
-        mt_view *const view = &p->views[d->view];
+        const mt_view *const view = &p->views[d->view];
         MT_TRY(d->mode > 0 ? resolve_index(view, d, err) : resolve_name(p, view, d, err));
-        view->needs_vectors = view->needs_vectors || d->ops->needs_vectors || d->named >= 0;
     }
     if (d->ops->compile != NULL) {
         MT_TRY(mt_err_in(err, d->ops->compile(p, d, err), "/goals/%d", goal_index));
@@ -224,6 +224,35 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
     number_rows(p, d);
     p->n_demands++;
     return MT_OK;
+}
+
+/* All modes where shapes are compared or followed, since shares of a shape and its derivatives
+ * are sums over all, and where bands are kept clear: whatever lies in one counts. */
+static void ask_view(const mt_problem *p, int index)
+{
+    mt_view *const view = &p->views[index];
+    bool all = false;
+    int first = 0;
+    for (int i = 0; i < p->n_demands; i++) {
+        const mt_demand *const d = &p->demands[i];
+        if (d->view == index) {
+            const bool shapes = d->ops->needs_vectors || d->named >= 0;
+            view->ask.vectors = view->ask.vectors || shapes;
+            first = d->mode > first ? d->mode : first;
+        }
+    }
+    for (int i = 0; i < p->n_clears; i++) {
+        all = all || p->clears[i].view == index;
+    }
+    all = all || view->ask.vectors || first == 0;
+    view->ask.first = all ? 0 : first + MT_NEXT_MOST;
+}
+
+void mt_problem_ask(mt_problem *p)
+{
+    for (int i = 0; i < p->n_views; i++) {
+        ask_view(p, i);
+    }
 }
 
 mt_status mt_problem_init_demands(mt_problem *p, mt_err *err)

@@ -118,7 +118,7 @@ static mt_status open_view(mt_workspace *w, mt_view_work *view, const mt_view *o
     view->track = mt_arena_alloc(&w->mem, (size_t)of->n_named, sizeof *view->track);
     MT_TRY(mt_arena_check(&w->mem, err));
     MT_TRY(mt_view_analyse(of, w->p->original, &view->analysis, err));
-    view->needs_vectors = of->needs_vectors;
+    view->ask = of->ask;
     view->solved = true;
     return MT_OK;
 }
@@ -208,10 +208,9 @@ mt_status mt_workspace_place(mt_workspace *w, const double *t, bool with_gradien
 
 mt_status mt_view_solve(mt_workspace *w, mt_view_work *view, bool with_gradient, mt_err *err)
 {
-    const mt_analysis_options opt = {.gradient = with_gradient,
-                                     .vectors = with_gradient || view->needs_vectors,
-                                     .accuracy = w->accuracy,
-                                     .check = false};
+    mt_analysis_options opt = view->ask;
+    opt.gradient = with_gradient;
+    opt.accuracy = w->accuracy;
     view->tracked = false;
     view->solved = false;
     MT_TRY(mt_err_in(err, mt_analysis_solve(view->analysis, w->x, &opt, err),

@@ -11,14 +11,14 @@
  */
 typedef struct mt_view_work {
     const mt_view *of;
-    mt_analysis *analysis; /* owned */
-    mt_track *track;       /* [n_named] after mt_view_track */
-    mt_analysis *scout;    /* owned; for designs on the way there, made when first needed */
-    bool needs_vectors;    /* shapes are needed even where no gradient is asked for */
-    bool tracked;          /* track belongs to the last solve */
-    bool solved;           /* the last solve succeeded */
-    int n_corners;         /* analyses that there are */
-    mt_analysis **corners; /* owned; for corners of the tolerances (robust.h) */
+    mt_analysis *analysis;   /* owned */
+    mt_track *track;         /* [n_named] after mt_view_track */
+    mt_analysis *scout;      /* owned; for designs on the way there, made when first needed */
+    mt_analysis_options ask; /* as the view's, or more (describe asks for all) */
+    bool tracked;            /* track belongs to the last solve */
+    bool solved;             /* the last solve succeeded */
+    int n_corners;           /* analyses that there are */
+    mt_analysis **corners;   /* owned; for corners of the tolerances (robust.h) */
 } mt_view_work;
 
 typedef struct mt_workspace {

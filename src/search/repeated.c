@@ -4,7 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { MODES_MOST = 6 };
+#include "problem/next.h"
+
+enum { MODES_MOST = 1 + MT_NEXT_MOST };
 /* Two limits nearer than this are one. */
 static const double SAME_LIMIT = 1e-9;
 /* Entries of B whose slopes depend on those of others up to this part are told by them: by

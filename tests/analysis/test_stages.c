@@ -2,8 +2,8 @@
 /*
  * What is not computed again: an analysis that has seen many designs against one that has seen
  * none but the original, to the bit, for every model and configuration of the tests and random
- * sequences of designs in which some inputs move and some come back; and how often each stage
- * was done.
+ * sequences of designs in which some inputs move and some come back; the first few modes, where
+ * no more are asked for, against these of all; and how often each stage was done.
  */
 #include <dirent.h>
 #include <stdlib.h>
@@ -70,6 +70,27 @@ static void compare(mt_test *t, mt_analysis *a, mt_analysis *b, bool gradient, i
     }
 }
 
+/* The first modes by themselves against these of all. */
+static void compare_part(mt_test *t, const mt_modes *part, const mt_modes *whole, int first)
+{
+    const int there = mt_modal_vibrations(whole);
+    CHECK_INT(t, mt_modal_vibrations(part), there);
+    CHECK_INT(t, part->n_rigid, whole->n_rigid);
+    CHECK_INT(t, part->n_unstable, whole->n_unstable);
+    CHECK_INT(t, part->n_undecided, whole->n_undecided);
+    for (int i = 1; i <= first && i <= there; i++) {
+        const int a = mt_modal_flexible(part, i);
+        const int b = mt_modal_flexible(whole, i);
+        int size[2] = {1, 1};
+        if (!CHECK_INT(t, a, b) || a < 0) {
+            break;
+        }
+        CHECK_NEAR_ABS(t, part->lambda[a], whole->lambda[b], part->error[a] + whole->error[b]);
+        CHECK_INT(t, mt_modal_cluster(part, a, &size[0]), mt_modal_cluster(whole, b, &size[1]));
+        CHECK_INT(t, size[0], size[1]);
+    }
+}
+
 /* Some inputs move, none does, or an earlier design comes back. */
 static void next_design(mt_random *g, session *s, double *x)
 {
@@ -101,6 +122,7 @@ static void run(mt_test *t, mt_random *g, session *s)
         opt.gradient = mt_random_int(g, 2) == 0;
         opt.vectors = mt_random_int(g, 2) == 0;
         opt.check = mt_random_int(g, 2) == 0;
+        opt.first = mt_random_int(g, 2) == 0 ? 0 : 1 + mt_random_int(g, 8);
         mt_test_row(t, "%s, step %d", mt_analysis_configuration(s->s.a), step);
         if (!CHECK_INT(t,
                        mt_analysis_new(s->model, s->configuration, s->s.n, s->parameter,
@@ -111,6 +133,11 @@ static void run(mt_test *t, mt_random *g, session *s)
         const mt_status had = mt_analysis_solve(s->s.a, x, &opt, &err);
         if (CHECK_INT(t, mt_analysis_solve(fresh, x, &opt, &other), had) && had == MT_OK) {
             compare(t, s->s.a, fresh, opt.gradient, s->s.n);
+            const int first = opt.first;
+            opt.first = 0;
+            if (CHECK_INT(t, mt_analysis_solve(fresh, x, &opt, &other), MT_OK)) {
+                compare_part(t, &s->s.a->modes, &fresh->modes, first);
+            }
         }
         CHECK(t, had == MT_OK || strcmp(err.text, other.text) == 0);
         mt_analysis_delete(fresh);

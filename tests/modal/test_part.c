@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * A part of the modes against all of them, for random systems of orders on both sides of the
+ * one where another method takes over: rigid-body modes, clusters and repeated modes of any
+ * place and size, systems that fall apart (matrices with rows of zeros), stiffnesses far apart,
+ * masses that are the identity, a diagonal, or full.
+ */
+#include <math.h>
+
+#include "linalg/dense.h"
+#include "modal/modal.h"
+#include "support/mt_random.h"
+#include "support/mt_test.h"
+
+enum { LEAST = 24, MOST = 60, TRIALS = 300 };
+
+/* A good solver stays below one, LAPACK's own tests ask for 30. */
+static const double RATIO = 5.0;
+
+static mt_arena mem;
+
+typedef struct system {
+    int n;
+    double k[MOST * MOST];
+    double m[MOST * MOST];
+    double q[MOST * MOST];
+    double work[MOST * MOST];
+} system;
+
+/* a := X^T a X, all of it. */
+static void turn(system *s, const double *x, double *a)
+{
+    mt_gemm(false, false, s->n, s->n, s->n, 1.0, a, s->n, x, s->n, 0.0, s->work, s->n);
+    mt_gemm(true, false, s->n, s->n, s->n, 1.0, x, s->n, s->work, s->n, 0.0, a, s->n);
+    for (int j = 0; j < s->n; j++) {
+        for (int i = j + 1; i < s->n; i++) {
+            a[j + (i * s->n)] = a[i + (j * s->n)];
+        }
+    }
+}
+
+/* Eigenvalues: some zero, then groups of equal ones, steps of any size. */
+static void spectrum(mt_random *g, system *s)
+{
+    double lambda = 0.0;
+    int left = mt_random_int(g, 4);
+    const double wide = mt_random_in(g, 0.0, 3.0);
+    for (int i = 0; i < s->n; i++) {
+        if (left == 0) {
+            left = 1 + (mt_random_int(g, 4) == 0 ? mt_random_int(g, 6) : 0);
+            lambda = (lambda + mt_random_in(g, 0.1, 1.0)) *
+                     pow(10.0, mt_random_in(g, 0.0, wide) / 8.0);
+        }
+        s->k[i + (i * s->n)] = lambda;
+        left--;
+    }
+}
+
+/* Householder's reflection of the coordinates from `from` on. */
+static void reflect(mt_random *g, system *s, int from)
+{
+    double v[MOST] = {0.0};
+    mt_random_fill(g, s->n - from, v + from);
+    const double norm = mt_norm2(s->n, v);
+    for (int j = 0; j < s->n; j++) {
+        for (int i = 0; i < s->n; i++) {
+            s->q[i + (j * s->n)] = (i == j ? 1.0 : 0.0) - (2.0 * v[i] * v[j] / (norm * norm));
+        }
+    }
+}
+
+static void make(mt_random *g, system *s)
+{
+    *s = (system){.n = LEAST + mt_random_int(g, MOST - LEAST + 1)};
+    spectrum(g, s);
+    for (int i = 0; i < s->n; i++) {
+        s->m[i + (i * s->n)] = 1.0;
+    }
+    /* up to three reflections; none, or of a part: the system falls apart */
+    for (int turns = mt_random_int(g, 4); turns > 0; turns--) {
+        reflect(g, s, mt_random_int(g, 2) * mt_random_int(g, LEAST - 1));
+        turn(s, s->q, s->k);
+    }
+    /* other coordinates: diagonal ones, or full */
+    const int kind = mt_random_int(g, 3);
+    for (int j = 0; j < s->n && kind > 0; j++) {
+        for (int i = 0; i < s->n; i++) {
+            const double beside =
+                kind > 1 ? 0.3 * mt_random_in(g, -1.0, 1.0) / sqrt(s->n) : 0.0;
+            s->q[i + (j * s->n)] = i == j ? mt_random_in(g, 0.5, 2.0) : beside;
+        }
+    }
+    if (kind > 0) {
+        turn(s, s->q, s->k);
+        turn(s, s->q, s->m);
+    }
+}
+
+static bool solve(mt_test *t, const system *s, int first, bool vectors, mt_modes *out)
+{
+    mt_modal_options opt = mt_modal_options_default();
+    mt_mass_factor mass;
+    mt_err err = {.text = ""};
+    opt.first = first;
+    opt.vectors = vectors;
+    return CHECK_INT(t, mt_modal_factor_mass(s->n, s->m, &mem, &mass, &err), MT_OK) &&
+           CHECK_INT(t, mt_modal_solve(s->k, &mass, NULL, &opt, &mem, out, &err), MT_OK);
+}
+
+static void compare(mt_test *t, const mt_modes *part, const mt_modes *whole, int first)
+{
+    int flexible = 0;
+    CHECK_INT(t, part->all, whole->count);
+    CHECK_INT(t, part->n_rigid, whole->n_rigid);
+    CHECK_INT(t, mt_modal_vibrations(part), mt_modal_vibrations(whole));
+    for (int i = 0; i < part->count; i++) {
+        CHECK_NEAR_ABS(t, part->lambda[i], whole->lambda[i], part->error[i] + whole->error[i]);
+        CHECK_INT(t, part->kind[i], whole->kind[i]);
+        CHECK_INT(t, part->cluster[i], whole->cluster[i]);
+        flexible += part->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
+        if (part->y != NULL) {
+            CHECK(t, part->residual[i] <= RATIO * t->tol_scale);
+            CHECK(t, part->orthogonality[i] <= RATIO * t->tol_scale);
+        }
+    }
+    const int there = mt_modal_vibrations(whole);
+    CHECK(t, flexible >= (first < there ? first : there));
+    /* no cluster is cut, and no more is given than was asked for */
+    const int end = part->count;
+    CHECK(t, end == whole->count || whole->cluster[end] != whole->cluster[end - 1]);
+    int size = 0;
+    const int last = mt_modal_flexible(whole, first);
+    const int begin = last < 0 ? 0 : mt_modal_cluster(whole, last, &size);
+    CHECK(t, last < 0 || end == begin + size);
+}
+
+static void modal__a_part_is_what_the_whole_has(mt_test *t)
+{
+    mt_random g = mt_random_seed(41);
+    static system s;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        mt_modes whole;
+        mt_modes part;
+        make(&g, &s);
+        const int first = 1 + mt_random_int(&g, mt_random_int(&g, 4) == 0 ? MOST : 12);
+        const bool vectors = mt_random_int(&g, 4) > 0;
+        const mt_arena_mark mark = mt_arena_get_mark(&mem);
+        mt_test_row(t, "trial %d, n = %d, first %d", trial, s.n, first);
+        if (solve(t, &s, 0, true, &whole) && solve(t, &s, first, vectors, &part)) {
+            CHECK(t, (part.y != NULL) == vectors);
+            compare(t, &part, &whole, first);
+        }
+        mt_arena_rewind(&mem, mark);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {MT_TEST(modal__a_part_is_what_the_whole_has)};
+    const int failed = mt_arena_init(&mem, 0, NULL) != MT_OK
+                           ? 1
+                           : cmocka_run_group_tests_name(__FILE__, tests, NULL, NULL);
+    mt_arena_free(&mem);
+    return failed != 0;
+}
