@@ -53,10 +53,11 @@ const mt_nlp_point *mt_nlp_local_stand(const mt_nlp_local *s)
                : s->p;
 }
 
-/* SLSQP from p; an end far from feasible is restored, if it can be. */
-static void descend(mt_nlp_engine *e, mt_nlp_local *s)
+/* SLSQP from p, close where Newton's method has been tried; an end far from feasible is
+ * restored, if it can be. */
+static void descend(mt_nlp_engine *e, bool close, mt_nlp_local *s)
 {
-    mt_nlp_slsqp(e, s->n_rows, s->rows, s->p, s->last);
+    mt_nlp_slsqp(e, s->n_rows, s->rows, close, s->p, s->last);
     s->restored = !mt_nlp_feasible(s->p) && !mt_nlp_nearly_feasible(s->last);
     if (s->restored) {
         mt_nlp_least_squares(e, MT_NLP_SQUARES, s->p);
@@ -118,7 +119,7 @@ static void finish_minimum(mt_nlp_engine *e, mt_nlp_local *s)
     }
     for (int round = 0; round < ROUNDS && !e->ended; round++) {
         if (round > 0) {
-            descend(e, s);
+            descend(e, true, s);
         }
         newton(e, s, saddle);
         if (round > 0 &&
@@ -138,7 +139,7 @@ static void finish_minimum(mt_nlp_engine *e, mt_nlp_local *s)
 void mt_nlp_minimise(mt_nlp_engine *e, mt_nlp_local *s)
 {
     s->aim = MT_NLP_OBJECTIVE;
-    descend(e, s);
+    descend(e, false, s);
     finish_minimum(e, s);
 }
 
@@ -155,7 +156,7 @@ static void find_root(mt_nlp_engine *e, mt_nlp_local *s)
         s->aim = MT_NLP_OBJECTIVE;
         s->n_rows = w.n_rows;
         memcpy(s->rows, w.rows, (size_t)w.n_rows * sizeof *s->rows);
-        descend(e, s);
+        descend(e, false, s);
     }
 }
 
@@ -173,7 +174,7 @@ static void approach(mt_nlp_engine *e, mt_nlp_local *s)
         mt_nlp_least_squares(e, MT_NLP_RESIDUALS, s->p);
     } else {
         s->aim = MT_NLP_OBJECTIVE;
-        descend(e, s);
+        descend(e, false, s);
     }
 }
 

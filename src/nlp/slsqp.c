@@ -22,9 +22,13 @@
  * goes with NLOPT_FAILURE: that there is some is known when a run begins. */
 enum { MESSAGE_ROOM = 1024 };
 enum { EVALS_BASE = 200, EVALS_PER_VARIABLE = 20, RESTARTS = 12 };
-/* Where SLSQP may stop: what is left, our Newton iteration does in a few steps. */
-static const double F_TOL_REL = 1e-10;
-static const double T_TOL_ABS = 1e-9;
+/* Where SLSQP may stop: what is left, our Newton iteration does in a few steps. (A hundredth
+ * takes a fifth more evaluations; with a hundred times as much ends of one optimum are no
+ * longer known for one, and take as many more.) */
+static const double F_TOL_REL = 1e-8;
+static const double T_TOL_ABS = 1e-7;
+/* ... and where it did not, SLSQP goes on to so much of these. */
+static const double CLOSE = 1e-2;
 /* Change of the box after a failed (half the failing step) and after a good run. */
 static const double BOX_SHRINK = 0.5;
 static const double BOX_GROW = 4.0;
@@ -46,6 +50,7 @@ typedef struct slsqp {
     mt_nlp_point *trial;
     mt_nlp_point *best;
     bool failed;
+    double nearer; /* multiplies the tolerances */
     nlopt_opt opt;
 } slsqp;
 
@@ -166,8 +171,8 @@ static mt_status set_up(slsqp *w)
     }
     MT_TRY(status_of(nlopt_set_lower_bounds(w->opt, w->lower)));
     MT_TRY(status_of(nlopt_set_upper_bounds(w->opt, w->upper)));
-    MT_TRY(status_of(nlopt_set_ftol_rel(w->opt, F_TOL_REL)));
-    MT_TRY(status_of(nlopt_set_xtol_abs1(w->opt, T_TOL_ABS)));
+    MT_TRY(status_of(nlopt_set_ftol_rel(w->opt, w->nearer * F_TOL_REL)));
+    MT_TRY(status_of(nlopt_set_xtol_abs1(w->opt, w->nearer * T_TOL_ABS)));
     /* one more than we allow: our own budget, not NLopt's, ends the search */
     return status_of(nlopt_set_maxeval(w->opt, left < most ? (int)left + 1 : most));
 }
@@ -256,10 +261,10 @@ static void allocate(slsqp *w)
     w->best = mt_nlp_point_new(e, mem);
 }
 
-void mt_nlp_slsqp(mt_nlp_engine *e, int n_rows, const int *rows, mt_nlp_point *p,
+void mt_nlp_slsqp(mt_nlp_engine *e, int n_rows, const int *rows, bool close, mt_nlp_point *p,
                   mt_nlp_point *last)
 {
-    slsqp w = {.e = e, .n_rows = n_rows, .rows = rows};
+    slsqp w = {.e = e, .n_rows = n_rows, .rows = rows, .nearer = close ? CLOSE : 1.0};
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     mt_nlp_point_copy(e, last, p);
     allocate(&w);
