@@ -32,7 +32,7 @@ static const double SETTLED_GAIN = 1e-6;
 /* A variable nearer to a mark than this, in widths of its bounds, stands there but for rounding
  * of the search. */
 static const double ON_MARK = 1e-12;
-/* Violation, in tolerances, that a goal is met with as well as by 0. */
+/* Violation, in tolerances, that counts as none, and as no more than it was. */
 static const double STILL_MET = 1e-4;
 
 static void swap(mt_nlp_ends *all, int i, int k)
@@ -200,7 +200,8 @@ static void put_on_marks(mt_nlp_engine *e, mt_nlp_point *p)
         }
     }
     if (moved && mt_nlp_evaluate(e, to->t, true, to) &&
-        to->violation <= fmax(p->violation, STILL_MET)) {
+        to->violation <= p->violation + STILL_MET &&
+        (mt_nlp_feasible(to) || !mt_nlp_feasible(p))) {
         to->kkt = p->kkt;
         mt_nlp_point_copy(e, p, to);
     }

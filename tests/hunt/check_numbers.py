@@ -24,6 +24,10 @@ def same_hz(told, own, most):
     return near(told, own, scale=FEW * most) or (own == 0.0 and told is not None and 0.0 <= told <= math.sqrt(RIGID) * most)
 
 
+def finite_max(hz):
+    return hz.max(where=np.isfinite(hz), initial=0.0)
+
+
 def design_of(question, recommendation):
     return np.array([[p["recommended"] for p in recommendation["parameters"]]], dtype=float)
 
@@ -60,7 +64,7 @@ def frequencies(run):
             if f["recommended_hz"] is None:
                 if math.isfinite(own):
                     yield f"rank {rec['rank']}: {f['configuration']} mode {f['mode']} has {own} Hz, not none"
-            elif not same_hz(f["recommended_hz"], own, hz.max()):
+            elif not same_hz(f["recommended_hz"], own, finite_max(hz)):
                 yield f"rank {rec['rank']}: {f['configuration']} mode {f['mode']}: {f['recommended_hz']} Hz, dense solve {own}"
 
 
@@ -81,7 +85,7 @@ def clearances(run):
         for item in rec["clearances"]:
             modes = hz[item["configuration"]]
             own = modes[item["mode"] - 1] if item["mode"] <= len(modes) else math.nan
-            if not same_hz(item["hz"], own, modes.max()):
+            if not same_hz(item["hz"], own, finite_max(modes)):
                 yield f"rank {rec['rank']}: mode {item['mode']} beside {item['band']}: {item['hz']} Hz, dense solve {own}"
             percents = [band.clearance_percent(own) for band in q.bands[item["configuration"]]]
             if not any(near(item["percent"], p, SLACK, 1.0) for p in percents):

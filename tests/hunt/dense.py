@@ -179,7 +179,7 @@ class Assembly:
         return self._sum(self.stiffness, values, count), self._sum(self.mass, values, count)
 
     def frequencies(self, design, count):
-        """[count, n] Hz of all modes, ascending; those without stiffness have 0. NaN: no positive mass, or unstable."""
+        """[count, n] Hz of all modes, ascending; those without stiffness have 0, those without mass (that stiffness holds) infinity. NaN: unstable, or neither."""
         stiffness, mass = self.matrices(design, count)
         try:
             return self._solved(stiffness, mass)
@@ -187,9 +187,11 @@ class Assembly:
             out = np.full((count, self.n), np.nan)
             for i in range(count):
                 try:
-                    out[i] = self._solved(stiffness[i:i + 1], mass[i:i + 1])[0]
+                    k, m = condensed(stiffness[i], mass[i])
+                    out[i] = np.inf
+                    out[i, :len(k)] = self._solved(k[None], m[None])[0]
                 except (np.linalg.LinAlgError, ValueError):
-                    pass
+                    out[i] = np.nan
             return out
 
     def _solved(self, stiffness, mass):
@@ -199,6 +201,19 @@ class Assembly:
         hz = np.where(squares > floor, np.sqrt(np.abs(squares)) / TWO_PI, 0.0)
         hz[np.any(~(squares >= -floor), axis=1)] = np.nan
         return hz
+
+
+def condensed(k, m):
+    """What has no mass follows the others statically."""
+    sizes, ways = np.linalg.eigh(m)
+    light = sizes <= 1e-14 * sizes.max(initial=0.0)
+    if not light.any():
+        return k, m
+    heavy, still = ways[:, ~light], ways[:, light]
+    held = still.T @ k @ still
+    np.linalg.cholesky(held)
+    ways = heavy - still @ np.linalg.solve(held, still.T @ k @ heavy)
+    return ways.T @ k @ ways, ways.T @ m @ ways
 
 
 class Plant:

@@ -10,6 +10,7 @@ from expressions import evaluate, parameters
 
 TOLERANCE_PERCENT = 1e-4  # of a goal that gives none
 POSITIONS = 13            # of a drive, between the first and the last that is named
+MANY_POSITIONS = 401      # between which no mode moves by a tolerance
 FLOOR_PART = 1e-3         # of the original: the change of a parameter that may become 0 is linear below
 
 
@@ -95,8 +96,8 @@ class Variable:
 
 
 class Question:
-    def __init__(self, model, study):
-        self.model, self.study, self.plant = model, study, Plant(model)
+    def __init__(self, model, study, positions=POSITIONS):
+        self.model, self.study, self.plant, self.positions = model, study, Plant(model), positions
         self.variables = [Variable(v, self.plant.original[v["parameter"]]) for v in study.get("variables", [])]
         self.n = len(self.variables)
         self.lower = np.array([v.lower for v in self.variables])
@@ -211,7 +212,7 @@ class Question:
             if len(places) < 2:
                 continue
             names = []
-            for k, angle in enumerate(np.linspace(min(a for a, _ in places), max(a for a, _ in places), POSITIONS)):
+            for k, angle in enumerate(np.linspace(min(a for a, _ in places), max(a for a, _ in places), self.positions)):
                 names.append(f"{joint} {k}")
                 settings = {**places[0][1], "drive": {**places[0][1]["drive"], "position_rad": float(angle)}}
                 self.plant.add(names[-1], settings)
