@@ -64,6 +64,11 @@ void mt_axpy(int n, double alpha, const double *x, double *y)
     cblas_daxpy(n, alpha, x, 1, y, 1);
 }
 
+int mt_max_index(int n, const double *x)
+{
+    return (int)cblas_idamax(n, x, 1);
+}
+
 double mt_max_abs(ptrdiff_t n, const double *x)
 {
     double most = 0.0;

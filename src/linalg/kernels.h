@@ -17,6 +17,8 @@ double mt_norm2(int n, const double *x);
 void mt_axpy(int n, double alpha, const double *x, double *y);
 /* Largest absolute entry; NaN if any entry is NaN. */
 double mt_max_abs(ptrdiff_t n, const double *x);
+/* Where the first entry of the largest size stands; n >= 1, finite. */
+int mt_max_index(int n, const double *x);
 /* Are all n entries (of the lower triangle of an n x n matrix) finite? */
 bool mt_all_finite(ptrdiff_t n, const double *x);
 bool mt_lower_finite(int n, const double *a);

@@ -44,22 +44,24 @@ static void swap_places(int a, int b, int *place)
 }
 
 /* x (n x columns) := L below the diagonal, U above it, for `rank` steps; fewer where the work
- * is interrupted. */
-static void eliminate(const mt_graded *g, int *column)
+ * is interrupted. most[columns]: where the largest entry of each column that is left stands,
+ * looked up while the column is in the cache. */
+static void eliminate(const mt_graded *g, int *column, ptrdiff_t *most)
 {
     const int n = g->n;
     const int columns = g->rows;
     double *const x = g->ct;
     int *const row = g->place;
+    for (ptrdiff_t j = 0; j < columns; j++) {
+        most[j] = j * n + mt_max_index(n, x + j * n);
+    }
     for (ptrdiff_t k = 0; k < g->rank; k++) {
         if (n >= MT_INTERRUPT_ORDER && mt_interrupted(g->interrupt)) {
             return;
         }
-        ptrdiff_t at = k + k * n;
-        for (ptrdiff_t j = k; j < columns; j++) {
-            for (ptrdiff_t i = k; i < n; i++) {
-                at = fabs(x[i + j * n]) > fabs(x[at]) ? i + j * n : at;
-            }
+        ptrdiff_t at = most[k];
+        for (ptrdiff_t j = k + 1; j < columns; j++) {
+            at = fabs(x[most[j]]) > fabs(x[at]) ? most[j] : at;
         }
         swap_places((int)k, (int)(at % n), row);
         swap_places((int)k, (int)(at / n), column);
@@ -69,11 +71,14 @@ static void eliminate(const mt_graded *g, int *column)
         for (ptrdiff_t i = k + 1; i < n; i++) {
             own[i] /= own[k];
         }
-        for (ptrdiff_t j = k + 1; j < columns; j++) {
+        const int left = n - 1 - (int)k;
+        for (ptrdiff_t j = k + 1; j < columns && left > 0; j++) {
             const double factor = x[k + j * n];
+            double *const rest = x + j * n + k + 1;
             if (factor != 0.0) {
-                mt_axpy(n - 1 - (int)k, -factor, own + k + 1, x + j * n + k + 1);
+                mt_axpy(left, -factor, own + k + 1, rest);
             }
+            most[j] = (rest - x) + mt_max_index(left, rest);
         }
     }
 }
@@ -117,6 +122,7 @@ mt_status mt_modal_graded(mt_graded *g, mt_arena *mem, mt_err *err)
     const ptrdiff_t rows = g->rows;
     const size_t rank = (size_t)g->rank;
     int *const column = mt_arena_int(mem, (size_t)rows);
+    ptrdiff_t *const most = mt_arena_alloc(mem, (size_t)rows, sizeof *most);
     double *const l = mt_arena_f64(mem, (size_t)n, rank);
     double *const y = mt_arena_f64(mem, (size_t)rows, rank);
     double *const size = mt_arena_f64(mem, (size_t)rows, 1);
@@ -125,7 +131,7 @@ mt_status mt_modal_graded(mt_graded *g, mt_arena *mem, mt_err *err)
     for (int j = 0; j < rows; j++) {
         column[j] = j;
     }
-    eliminate(g, column);
+    eliminate(g, column, most);
     MT_TRY(mt_interrupt_check(g->interrupt, err));
     for (ptrdiff_t k = 0; k < g->rank; k++) {
         l[k + k * n] = 1.0;

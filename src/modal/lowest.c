@@ -262,6 +262,7 @@ mt_status mt_modal_lowest(const mt_lowest_problem *p, mt_arena *mem, mt_lowest_m
     int upto = 0;
     MT_TRY(find(&f, mem, &out->tau, &upto, err));
     out->below = p->n_rigid + upto;
+    m->all = p->n_rigid + p->n;
     m->count = p->n_rigid + (upto < wanted ? upto : wanted);
     fill(&f, upto, out->tau, m);
     memcpy(out->x, f.x, (size_t)p->n * (size_t)(m->count - p->n_rigid) * sizeof *out->x);
