@@ -5,7 +5,9 @@
 
 #include "linalg/lapack_priv.h"
 
+#include <float.h>
 #include <limits.h>
+#include <math.h>
 #include <string.h>
 
 static mt_status eig_sym(int n, double *a, double *w, char job, mt_arena *scratch, mt_err *err)
@@ -56,6 +58,30 @@ mt_status mt_eig_sym(int n, double *a, double *w, bool vectors, mt_arena *scratc
     return rc;
 }
 
+/* Far from these, squares of entries leave the range of numbers. */
+static const double LEAST_SIZE = 1e-100;
+static const double MOST_SIZE = 1e100;
+
+/* a *= the power of 2 that makes its size 1, unless its size is a moderate one. */
+static double scale_lower(int n, double *a)
+{
+    double size = 0.0;
+    for (ptrdiff_t j = 0; j < n; j++) {
+        size = fmax(size, mt_max_abs(n - j, a + j + (j * n)));
+    }
+    if (size == 0.0 || (size >= LEAST_SIZE && size <= MOST_SIZE)) {
+        return 1.0;
+    }
+    const int least = DBL_MIN_EXP; /* of a subnormal size the inverse may have no number */
+    const double scale = ldexp(1.0, -(ilogb(size) > least ? ilogb(size) : least));
+    for (ptrdiff_t j = 0; j < n; j++) {
+        for (ptrdiff_t i = j; i < n; i++) {
+            a[i + (j * n)] *= scale;
+        }
+    }
+    return scale;
+}
+
 static mt_status eig_sym_values(const mt_tridiagonal *t, double *w, mt_arena *scratch,
                                 mt_err *err)
 {
@@ -81,6 +107,9 @@ static mt_status eig_sym_values(const mt_tridiagonal *t, double *w, mt_arena *sc
     if (info < 0) {
         return mt_lapack_bug("dsterf", info, err);
     }
+    for (int i = 0; i < n; i++) {
+        w[i] /= t->scale;
+    }
     return info > 0 || !mt_all_finite(n, w)
                ? mt_fail(err, MT_E_NO_CONVERGENCE, "dsterf: the eigenvalues did not converge")
                : MT_OK;
@@ -90,13 +119,14 @@ mt_status mt_eig_sym_values(int n, double *a, double *w, mt_arena *mem, mt_tridi
                             mt_err *err)
 {
     const size_t size = (size_t)n;
-    *out = (mt_tridiagonal){.n = n, .a = a};
+    *out = (mt_tridiagonal){.n = n, .scale = 1.0, .a = a};
     if (n == 0) {
         return MT_OK;
     }
     if (!mt_lower_finite(n, a)) {
         return mt_lapack_not_finite("dsytrd", err);
     }
+    out->scale = scale_lower(n, a);
     out->tau = mt_arena_f64(mem, size, 1);
     out->d = mt_arena_f64(mem, size, 1);
     out->e = mt_arena_f64(mem, size, 1);
@@ -105,6 +135,23 @@ mt_status mt_eig_sym_values(int n, double *a, double *w, mt_arena *mem, mt_tridi
     const mt_status rc = eig_sym_values(out, w, mem, err);
     mt_arena_rewind(mem, mark);
     return rc;
+}
+
+/* dstein makes vectors orthogonal whose eigenvalues lie within a thousandth of the norm of T;
+ * beyond, they are it to eps times the norm over the distance, up to a thousand eps. What is
+ * taken away changes the equation by that times the distance: by eps times the norm. */
+static void make_orthogonal(int n, int count, double *z)
+{
+    for (ptrdiff_t i = 0; i < count; i++) {
+        double *const own = z + (i * n);
+        for (ptrdiff_t j = 0; j < i; j++) {
+            mt_axpy(n, -mt_dot(n, z + (j * n), own), z + (j * n), own);
+        }
+        const double norm = mt_norm2(n, own);
+        for (ptrdiff_t k = 0; k < n; k++) {
+            own[k] /= norm;
+        }
+    }
 }
 
 static mt_status eig_sym_lowest(const mt_tridiagonal *t, int count, const double *w, double *z,
@@ -118,6 +165,7 @@ static mt_status eig_sym_lowest(const mt_tridiagonal *t, int count, const double
     if (info != 0) {
         return mt_lapack_bug("dormtr", info, err);
     }
+    double *const scaled = mt_arena_f64(scratch, (size_t)count, 1);
     int *const block = mt_arena_int(scratch, size);
     int *const end = mt_arena_int(scratch, size);
     int *const iwork = mt_arena_int(scratch, size);
@@ -129,8 +177,11 @@ static mt_status eig_sym_lowest(const mt_tridiagonal *t, int count, const double
     for (int i = 0; i < n; i++) {
         block[i] = 1; /* all of T is one */
     }
+    for (int i = 0; i < count; i++) {
+        scaled[i] = w[i] * t->scale;
+    }
     end[0] = n;
-    info = LAPACKE_dstein_work(LAPACK_COL_MAJOR, n, t->d, t->e, count, w, block, end, z, n,
+    info = LAPACKE_dstein_work(LAPACK_COL_MAJOR, n, t->d, t->e, count, scaled, block, end, z, n,
                                work, iwork, failed);
     if (info < 0) {
         return mt_lapack_bug("dstein", info, err);
@@ -138,6 +189,7 @@ static mt_status eig_sym_lowest(const mt_tridiagonal *t, int count, const double
     if (info > 0) {
         return mt_fail(err, MT_E_NO_CONVERGENCE, "dstein: %d vectors did not converge", info);
     }
+    make_orthogonal(n, count, z);
     info = LAPACKE_dormtr_work(LAPACK_COL_MAJOR, 'L', 'L', 'N', n, count, t->a, n, t->tau, z, n,
                                work, lwork);
     return info == 0 ? MT_OK : mt_lapack_bug("dormtr", info, err);

@@ -10,11 +10,12 @@
  * overwritten by orthonormal eigenvectors). dsyevd: 8 us for n = 11, about 9 n^3 flops. |error
  * of w| <= about n eps max|w|. Fails MT_E_NO_CONVERGENCE. */
 mt_status mt_eig_sym(int n, double *a, double *w, bool vectors, mt_arena *scratch, mt_err *err);
-/* The same in two steps, for who learns from the eigenvalues how many vectors are wanted: A = Q
- * T Q^T, T tridiagonal. dsytrd, dsterf; dstein, dormtr. */
+/* The same in two steps, for who learns from the eigenvalues how many vectors are wanted:
+ * scale A = Q T Q^T, T tridiagonal. dsytrd, dsterf; dstein, dormtr. */
 typedef struct mt_tridiagonal {
     int n;
-    double *a; /* n x n: reflectors of Q */
+    double scale; /* a power of 2: of size 1 where the range of numbers would not do */
+    double *a;    /* n x n: reflectors of Q */
     double *tau;
     double *d; /* [n] diagonal of T */
     double *e; /* [n] beside it */

@@ -70,8 +70,12 @@ mt_status mt_modal_plain_lowest(const double *k, const mt_mass_factor *mass,
         q = mt_arena_f64(scratch, n, n);
         MT_TRY(mt_arena_check(scratch, err));
     }
-    const mt_status rc = mt_eig_sym_lowest(later, out->count, out->lambda, q, scratch, NULL);
-    if (rc != MT_OK) { /* inverse iteration may fail where dsyevd does not */
+    mt_err why = {.text = ""};
+    const mt_status rc = mt_eig_sym_lowest(later, out->count, out->lambda, q, scratch, &why);
+    if (rc != MT_OK && rc != MT_E_NO_CONVERGENCE) {
+        return mt_fail(err, rc, "%s", why.text);
+    }
+    if (rc == MT_E_NO_CONVERGENCE) { /* inverse iteration may, where dsyevd does not */
         double *const w = mt_arena_f64(scratch, n, 1);
         MT_TRY(mt_arena_check(scratch, err));
         standard(k, mass, out->y, q);

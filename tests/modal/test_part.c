@@ -9,6 +9,7 @@
 
 #include "linalg/dense.h"
 #include "modal/modal.h"
+#include "support/mt_alloc.h"
 #include "support/mt_random.h"
 #include "support/mt_test.h"
 
@@ -154,9 +155,56 @@ static void modal__a_part_is_what_the_whole_has(mt_test *t)
     }
 }
 
+/* Solves of a part, memory failing at the nth request or never. */
+static mt_status solve_quietly(const system *s, mt_arena *from)
+{
+    mt_modal_options opt = mt_modal_options_default();
+    mt_mass_factor mass;
+    mt_modes modes;
+    opt.first = 5;
+    MT_TRY(mt_modal_factor_mass(s->n, s->m, from, &mass, NULL));
+    return mt_modal_solve(s->k, &mass, NULL, &opt, from, &modes, NULL);
+}
+
+static void modal__a_part_needs_no_heap_and_reports_failing_memory(mt_test *t)
+{
+    enum { BLOCK = 64, SOLVES = 5 }; /* blocks so small that nearly each request needs one */
+    mt_random g = mt_random_seed(42);
+    static system s;
+    do {
+        make(&g, &s);
+    } while (s.n < MOST - LEAST);
+    if (!mt_alloc_works()) {
+        CHECK(t, !mt_alloc_works()); /* a sanitizer has the allocator */
+        return;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(&mem);
+    long before = 0;
+    for (int i = 0; i < SOLVES; i++) {
+        before = i == 1 ? mt_alloc_count() : before; /* the first call may fill the arena */
+        CHECK_INT(t, solve_quietly(&s, &mem), MT_OK);
+        mt_arena_rewind(&mem, mark);
+    }
+    CHECK_INT(t, mt_alloc_count() - before, 0);
+    mt_status rc = MT_E_MEMORY;
+    for (long nth = 0; rc != MT_OK && nth < 1000; nth++) {
+        mt_arena tiny;
+        mt_test_row(t, "allocation %ld", nth);
+        REQUIRE(t, mt_arena_init(&tiny, BLOCK, NULL) == MT_OK);
+        mt_alloc_fail_after(nth);
+        rc = solve_quietly(&s, &tiny);
+        mt_alloc_fail_after(-1);
+        mt_arena_free(&tiny);
+        CHECK(t, rc == MT_E_MEMORY || (rc == MT_OK && nth > 10));
+    }
+    CHECK_INT(t, rc, MT_OK);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {MT_TEST(modal__a_part_is_what_the_whole_has)};
+    const struct CMUnitTest tests[] = {
+        MT_TEST(modal__a_part_is_what_the_whole_has),
+        MT_TEST(modal__a_part_needs_no_heap_and_reports_failing_memory)};
     const int failed = mt_arena_init(&mem, 0, NULL) != MT_OK
                            ? 1
                            : cmocka_run_group_tests_name(__FILE__, tests, NULL, NULL);
