@@ -105,30 +105,39 @@ static mt_status begin(const mt_model *model, int configuration, int n_inputs,
     return mt_emit_parameters(model, configuration, is_input, program, *nodes, mem, err);
 }
 
-static mt_status evaluate(const mt_model *model, int configuration, int n_inputs,
-                          const int *inputs, const double *at, mt_arena *mem, double *value,
-                          mt_err *err)
+/* NOLINTNEXTLINE(readability-function-size) */
+mt_status mt_numbers_new(const mt_model *model, int configuration, int n_inputs,
+                         const int *inputs, int n, const mt_number *numbers, mt_arena *mem,
+                         mt_numbers *out, mt_err *err)
 {
-    const size_t n_nums = (size_t)model->n_nums;
-    mt_node *const nodes = mt_arena_int(mem, n_nums);
     mt_node *parameters = NULL;
-    mt_program program;
-    MT_TRY(begin(model, configuration, n_inputs, inputs, mem, &program, &parameters, err));
-    for (size_t i = 0; i < n_nums; i++) {
-        const mt_number *const number = &model->nums[i];
-        nodes[i] = mt_program_expr(&program, &number->expr, parameters, number->addr);
+    mt_program *const program = &out->program;
+    *out = (mt_numbers){.n = n, .nodes = mt_arena_int(mem, (size_t)n)};
+    MT_TRY(begin(model, configuration, n_inputs, inputs, mem, program, &parameters, err));
+    for (int i = 0; i < n; i++) {
+        out->nodes[i] = mt_program_expr(program, &numbers[i].expr, parameters, numbers[i].addr);
     }
-    MT_TRY(mt_program_finish(&program, err));
-    double *const all = mt_arena_f64(mem, (size_t)program.count, 1);
-    mt_node bad = program.count;
-    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(mt_program_finish(program, err));
+    out->all = mt_arena_f64(mem, (size_t)program->count, 1);
+    return mt_arena_check(mem, err);
+}
+
+mt_status mt_numbers_at(const mt_numbers *numbers, const double *at, double *value, bool *whole,
+                        mt_err *err)
+{
+    const mt_program *const program = &numbers->program;
+    mt_node bad = program->count;
     mt_err ignored = {.code = MT_OK}; /* who evaluates the model says what has no value */
-    const mt_status rc = mt_program_eval(&program, at, all, &bad, &ignored);
+    const mt_status rc = mt_program_eval(program, at, numbers->all, &bad, &ignored);
     if (rc != MT_OK && rc != MT_E_DOMAIN) {
         return mt_fail(err, rc, "%s", ignored.text);
     }
-    for (size_t i = 0; i < n_nums; i++) {
-        value[i] = rc == MT_OK || nodes[i] < bad ? all[nodes[i]] : nan("");
+    for (int i = 0; i < numbers->n; i++) {
+        const mt_node node = numbers->nodes[i];
+        value[i] = rc == MT_OK || node < bad ? numbers->all[node] : nan("");
+    }
+    if (whole != NULL) {
+        *whole = rc == MT_OK;
     }
     return MT_OK;
 }
@@ -138,7 +147,10 @@ mt_status mt_model_numbers(const mt_model *model, int configuration, int n_input
                            mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
-    const mt_status rc = evaluate(model, configuration, n_inputs, inputs, at, mem, value, err);
+    mt_numbers numbers;
+    mt_status rc = mt_numbers_new(model, configuration, n_inputs, inputs, model->n_nums,
+                                  model->nums, mem, &numbers, err);
+    rc = rc == MT_OK ? mt_numbers_at(&numbers, at, value, NULL, err) : rc;
     mt_arena_rewind(mem, mark);
     return rc;
 }

@@ -45,14 +45,38 @@ mt_status mt_emit_parameters(const mt_model *model, int configuration, const int
 mt_status mt_model_parameters(const mt_model *model, int n_inputs, const int *inputs,
                               const double *at, mt_arena *mem, double *value, mt_err *err);
 
-/**
- * All numbers of the model as they are in a configuration, where some parameters are inputs.
- * @param[in]  inputs  [n_inputs] parameters; at[n_inputs] their values
- * @param[out] value   [n_nums]; NaN where a number has no finite value (or stands behind one
- *                     that has none)
- * Scratch from mem, given back. O(total length of the expressions).
- * Fails: MT_E_MEMORY, MT_E_INTERNAL.
+/*
+ * Numbers of a configuration (MT_ABSENT: of the file) as functions of some parameters: compiled
+ * once, for many designs.
  */
+typedef struct mt_numbers {
+    mt_program program;
+    int n;
+    mt_node *nodes; /* [n] */
+    double *all;    /* [program.count] of the last design */
+} mt_numbers;
+
+/**
+ * @param[in]  inputs   [n_inputs] parameters, others follow from them
+ * @param[in]  numbers  [n] of the model, or other expressions of its parameters
+ * Lives in mem, with the model. O(total length of the expressions). Fails: MT_E_MEMORY,
+ * MT_E_INTERNAL.
+ */
+mt_status mt_numbers_new(const mt_model *model, int configuration, int n_inputs,
+                         const int *inputs, int n, const mt_number *numbers, mt_arena *mem,
+                         mt_numbers *out, mt_err *err);
+/**
+ * @param[in]  at     [n_inputs]
+ * @param[out] value  [n]; NaN where a number has no finite value (or stands behind one that has
+ *                    none)
+ * @param[out] whole  may be NULL: have all of them, and all parameters, a finite value?
+ * Fails: MT_E_INTERNAL.
+ */
+mt_status mt_numbers_at(const mt_numbers *numbers, const double *at, double *value, bool *whole,
+                        mt_err *err);
+
+/* Both, for one design and all numbers of the model: value[n_nums]. Scratch from mem, given
+ * back. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
 mt_status mt_model_numbers(const mt_model *model, int configuration, int n_inputs,
                            const int *inputs, const double *at, mt_arena *mem, double *value,
                            mt_err *err);

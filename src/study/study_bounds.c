@@ -26,31 +26,13 @@ typedef struct corners {
     int *inputs;   /* [n] */
     double *x;     /* [n] */
     double *value; /* [n_nums] */
-    double *parameter;
+    mt_numbers limits;
+    const mt_goal **limited; /* [limits.n] the goals of these expressions */
+    double *limit_value;     /* [limits.n] */
+    mt_numbers *numbers;     /* [n_configurations], of those that count */
     mt_doubt_list told;
     mt_status rc; /* memory ran out */
 } corners;
-
-/* Does every limit of an expression hold at x? Equalities are the search's to find. */
-static bool is_allowed(corners *k)
-{
-    const mt_study *const s = k->c->study;
-    bool allowed = true;
-    const mt_status rc =
-        mt_model_parameters(k->c->model, k->n, k->inputs, k->x, &k->mem, k->parameter, NULL);
-    k->rc = rc == MT_E_MEMORY ? rc : k->rc;
-    for (int i = 0; rc == MT_OK && i < s->n_goals && allowed; i++) {
-        const mt_goal *const goal = &s->goals[i];
-        double v = 0.0;
-        if (goal->expression_text != NULL) {
-            const mt_status own = mt_model_expr_value(k->c->model, k->parameter,
-                                                      &goal->expression, &k->mem, &v, NULL);
-            k->rc = own == MT_E_MEMORY ? own : k->rc;
-            allowed = own == MT_OK && !(v < goal->at_least) && !(v > goal->at_most);
-        }
-    }
-    return rc == MT_OK && allowed;
-}
 
 static bool is_asked(const mt_study *s, int c)
 {
@@ -61,13 +43,61 @@ static bool is_asked(const mt_study *s, int c)
     return !any || mt_study_asks(s, c);
 }
 
+/* Expressions of the limits, compiled once. */
+static mt_status compile_limits(corners *k)
+{
+    const mt_study *const s = k->c->study;
+    const size_t n_goals = (size_t)s->n_goals;
+    mt_number *const list = mt_arena_alloc(&k->mem, n_goals, sizeof *list);
+    int n = 0;
+    k->limited = mt_arena_alloc(&k->mem, n_goals, sizeof(mt_goal *));
+    k->limit_value = mt_arena_f64(&k->mem, n_goals, 1);
+    MT_TRY(mt_arena_check(&k->mem, NULL));
+    for (int g = 0; g < s->n_goals; g++) {
+        if (s->goals[g].expression_text != NULL) {
+            k->limited[n] = &s->goals[g];
+            list[n++] = (mt_number){.expr = s->goals[g].expression, .addr = s->goals[g].addr};
+        }
+    }
+    return mt_numbers_new(k->c->model, MT_ABSENT, k->n, k->inputs, n, list, &k->mem, &k->limits,
+                          NULL);
+}
+
+/* ... and the numbers of every configuration that counts. */
+static mt_status compile(corners *k)
+{
+    const mt_model *const m = k->c->model;
+    MT_TRY(compile_limits(k));
+    k->numbers = mt_arena_alloc(&k->mem, (size_t)m->n_configurations, sizeof *k->numbers);
+    MT_TRY(mt_arena_check(&k->mem, NULL));
+    for (int c = 0; c < m->n_configurations; c++) {
+        if (is_asked(k->c->study, c)) {
+            MT_TRY(mt_numbers_new(m, c, k->n, k->inputs, m->n_nums, m->nums, &k->mem,
+                                  &k->numbers[c], NULL));
+        }
+    }
+    return MT_OK;
+}
+
+/* Does every limit of an expression hold at x? Equalities are the search's to find. */
+static bool is_allowed(corners *k)
+{
+    bool allowed = false;
+    k->rc = mt_numbers_at(&k->limits, k->x, k->limit_value, &allowed, NULL);
+    for (int i = 0; i < k->limits.n && allowed; i++) {
+        const double v = k->limit_value[i];
+        allowed = !(v < k->limited[i]->at_least) && !(v > k->limited[i]->at_most);
+    }
+    return k->rc == MT_OK && allowed;
+}
+
 /* All that is said of the design x, of every configuration that counts. */
 static void judge(corners *k, mt_doubt_list *out)
 {
     const mt_model *const m = k->c->model;
     for (int c = 0; c < m->n_configurations && k->rc == MT_OK; c++) {
         if (is_asked(k->c->study, c)) {
-            k->rc = mt_model_numbers(m, c, k->n, k->inputs, k->x, &k->mem, k->value, NULL);
+            k->rc = mt_numbers_at(&k->numbers[c], k->x, k->value, NULL, NULL);
             if (k->rc == MT_OK) {
                 mt_model_judge(m, c, k->value, out);
             }
@@ -200,6 +230,7 @@ static void look_at_all(corners *k)
         k->inputs[i] = s->variables[i].parameter;
         k->x[i] = s->variables[i].original;
     }
+    k->rc = compile(k);
     for (int i = 0; i < k->n && k->rc == MT_OK; i++) {
         one_variable(k, i, false);
         one_variable(k, i, true);
@@ -234,7 +265,6 @@ void mt_study_check_bounds(mt_study_check *c)
     k.inputs = mt_arena_int(&k.mem, n);
     k.x = mt_arena_f64(&k.mem, n, 1);
     k.value = mt_arena_f64(&k.mem, (size_t)m->n_nums, 1);
-    k.parameter = mt_arena_f64(&k.mem, (size_t)m->n_parameters, 1);
     k.rc = mt_arena_check(&k.mem, NULL);
     if (k.rc == MT_OK) {
         look_at_all(&k);
