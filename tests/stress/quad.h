@@ -98,10 +98,17 @@ static inline void quad_eigenvalues(int n, quad *a, quad *w)
 }
 
 /* s[n]: squares of the singular values of a (m x n, m >= n, destroyed), ascending, each to
- * 1e-28 of itself where columns of length one are independent to a few digits (Hestenes). */
+ * 1e-28 of itself where columns of length one are independent to a few digits (Hestenes), to
+ * 1e-33 of the largest where they are not. */
 static inline void quad_squares(int m, int n, quad *a, quad *s)
 {
     bool on = true;
+    quad most = 0;
+    for (ptrdiff_t k = 0; k < (ptrdiff_t)m * n; k++) {
+        most += a[k] * a[k];
+    }
+    /* what is left of a column that depends on others */
+    const quad nothing = most * (quad)1e-80;
     for (int sweep = 0; on && sweep < 60; sweep++) {
         on = false;
         for (ptrdiff_t p = 0; p < n; p++) {
@@ -114,7 +121,7 @@ static inline void quad_squares(int m, int n, quad *a, quad *s)
                     pq += a[k + (p * m)] * a[k + (q * m)];
                     qq += a[k + (q * m)] * a[k + (q * m)];
                 }
-                if (pq * pq <= pp * qq * (quad)1e-62) {
+                if (pq * pq <= pp * qq * (quad)1e-62 || pp <= nothing || qq <= nothing) {
                     continue;
                 }
                 on = true;
