@@ -457,7 +457,7 @@ static void bench_study(bench *b)
     stop(path, mt_problem_new(study, &p, &err), &err);
     stop(path, mt_workspace_new(p, &b->ws, &err), &err);
     stop(path, mt_arena_init(&b->mem, 0, &err), &err);
-    b->race = (race){.most_s = b->quick ? 0.1 : 5.0};
+    b->race = (race){.most_s = b->quick ? 0.1 : 1.0};
     best_answer(b, study);
     choose_starts(b);
     for (size_t i = 0; i < N_METHODS; i++) {
