@@ -30,22 +30,34 @@ static void add_channels(mt_builder *b, const mt_sensor *sensor, mt_channel_def 
     }
 }
 
-/* Values of all nodes made so far, at the original design. */
-static double *values_so_far(mt_builder *b, const double *at, mt_arena *scratch)
+/* Values of nodes at the original design, of those that were asked for so far. */
+typedef struct known {
+    const double *at;
+    double *value;
+    int count;
+    int capacity;
+    mt_arena mem;
+} known;
+
+/* ... and of all that were made since; NULL: no memory. */
+static const double *values_so_far(const mt_program *p, known *k)
 {
-    const mt_program *const p = &b->sys->program;
-    double *const v = mt_arena_f64(scratch, (size_t)p->count, 1);
-    for (int i = 0; v != NULL && i < p->count; i++) {
-        const mt_program_node *const n = &p->nodes[i];
+    for (; k->count < p->count; k->count++) {
+        const mt_program_node *const n = &p->nodes[k->count];
+        double *const v = mt_arena_grow(&k->mem, k->value, k->count, &k->capacity, sizeof *v);
+        if (v == NULL) {
+            return NULL;
+        }
+        k->value = v;
         if (n->op == MT_OP_CONST) {
-            v[i] = n->value;
+            v[k->count] = n->value;
         } else if (n->op == MT_OP_PARAM) {
-            v[i] = at[n->input];
+            v[k->count] = k->at[n->input];
         } else {
-            v[i] = mt_op_value(n->op, v[n->a], n->b == MT_NO_NODE ? 0.0 : v[n->b]);
+            v[k->count] = mt_op_value(n->op, v[n->a], n->b == MT_NO_NODE ? 0.0 : v[n->b]);
         }
     }
-    return v;
+    return k->value;
 }
 
 /* Point of the link at `fraction`: from + fraction (to - from). */
@@ -83,7 +95,7 @@ static int element_at(mt_builder *b, int first, int n, const mt_node at[3], cons
     return first + best;
 }
 
-static mt_status sensor_on_link(mt_builder *b, const mt_sensor *sensor, const double *original)
+static mt_status sensor_on_link(mt_builder *b, const mt_sensor *sensor, known *original)
 {
     mt_program *const p = &b->sys->program;
     const mt_link *const link = &b->model->links[sensor->on];
@@ -91,14 +103,13 @@ static mt_status sensor_on_link(mt_builder *b, const mt_sensor *sensor, const do
     const mt_node fraction = mt_build_num_or(b, sensor->fraction, b->zero);
     mt_node at[3];
     link_point(b, link, fraction, at);
-    const mt_arena_mark mark = mt_arena_get_mark(&b->sys->mem);
-    const double *const v = values_so_far(b, original, &b->sys->mem);
     MT_TRY(mt_arena_check(&b->sys->mem, b->err));
+    const double *const v = values_so_far(p, original);
+    MT_TRY(mt_arena_check(&original->mem, b->err));
     const double f = v[fraction];
     const bool inside = f >= 0.0 && f <= 1.0;
     const int rigid =
         link->kind == MT_LINK_LUMPED ? element_at(b, first, link->elements, at, v) : -1;
-    mt_arena_rewind(&b->sys->mem, mark);
     if (!inside) {
         return mt_fail(b->err, MT_E_INPUT, "sensor \"%s\": fraction %g is not between 0 and 1",
                        sensor->name.s, f);
@@ -151,7 +162,7 @@ static void sensor_on_body(mt_builder *b, const mt_sensor *sensor, int body)
     add_channels(b, sensor, def, false);
 }
 
-mt_status mt_build_sensors(mt_builder *b, const double *original)
+static mt_status build_sensors(mt_builder *b, known *original)
 {
     for (int i = 0; i < b->model->n_sensors; i++) {
         const mt_sensor *const s = &b->model->sensors[i];
@@ -171,4 +182,13 @@ mt_status mt_build_sensors(mt_builder *b, const double *original)
         MT_TRY(sensor_on_link(b, s, original));
     }
     return MT_OK;
+}
+
+mt_status mt_build_sensors(mt_builder *b, const double *original)
+{
+    known k = {.at = original};
+    MT_TRY(mt_arena_init(&k.mem, 0, b->err));
+    const mt_status rc = build_sensors(b, &k);
+    mt_arena_free(&k.mem);
+    return rc;
 }
