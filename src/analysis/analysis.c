@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/lowest.h"
 #include "base/interrupt.h"
 #include "mechanics/energy.h"
 #include "mechanics/products.h"
@@ -68,8 +69,16 @@ mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
                                  const mt_system_drive *drive, int n_inputs, const int *inputs,
                                  const double *at, mt_analysis **out, mt_err *err)
 {
-    mt_analysis *const a = calloc(1, sizeof *a);
+    const double bodies = mt_lowest_bodies(model, configuration);
     *out = NULL;
+    if (bodies > MT_ANALYSIS_BODIES) {
+        return mt_fail(
+            err, MT_E_INPUT,
+            "configuration \"%s\": %.0f bodies are too many for dense matrices, which "
+            "take %d",
+            model->configurations[configuration].name.s, bodies, (int)MT_ANALYSIS_BODIES);
+    }
+    mt_analysis *const a = calloc(1, sizeof *a);
     if (a == NULL) {
         return mt_fail_memory(err);
     }

@@ -70,13 +70,16 @@ typedef struct mt_analysis_options {
 /* Vectors, accuracy, check and bounds; no gradient. */
 mt_analysis_options mt_analysis_options_default(void);
 
+/* More bodies than this are not analysed as a whole: the matrices alone take gigabytes. */
+enum { MT_ANALYSIS_BODIES = 5000 };
+
 /*
  * Make the system of a configuration and solve it once, with default options, at the original
  * design at[n_inputs], which fixes the number of rigid-body modes (see mt_analysis_count) and
  * every discrete choice (helper axes, the model's length). The model must outlive the analysis;
  * *out is the caller's. Fails as mt_system_new, mt_linear_update and mt_modal_solve, the text
  * naming the configuration; MT_E_MASSLESS names the bodies that nothing holds. A configuration
- * with unstable modes is no failure.
+ * with unstable modes is no failure. MT_E_INPUT: it has too many bodies.
  */
 mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs,
                           const int *inputs, const double *at, mt_analysis **out, mt_err *err);

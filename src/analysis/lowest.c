@@ -13,6 +13,9 @@
 #include "base/format.h"
 #include "base/interrupt.h"
 #include "linalg/dense.h"
+#include "modal/sign.h"
+
+static const double PI = 3.14159265358979323846;
 
 double mt_lowest_bodies(const mt_model *model, int configuration)
 {
@@ -27,7 +30,7 @@ double mt_lowest_bodies(const mt_model *model, int configuration)
     return bodies;
 }
 
-typedef struct operation {
+typedef struct mt_lowest_operation {
     const mt_tree *tree;
     double *v;    /* motion of all bodies */
     double *f;    /* work */
@@ -85,13 +88,15 @@ static mt_status solve(mt_lowest *l, int count, mt_err *err)
 {
     const mt_tree *const t = l->tree;
     const size_t motions = (size_t)t->n * (size_t)t->s;
-    operation o = {.tree = t, .scratch = &l->mem};
+    operation *const o = mt_arena_alloc(&l->mem, 1, sizeof *o);
     bool regular = false;
-    o.v = mt_arena_f64(&l->mem, motions, 1);
-    o.f = mt_arena_f64(&l->mem, motions, 1);
-    o.r = mt_arena_f64(&l->mem, (size_t)t->n_rigid, 1);
+    double *const v = mt_arena_f64(&l->mem, motions, 1);
+    double *const f = mt_arena_f64(&l->mem, motions, 1);
+    double *const r = mt_arena_f64(&l->mem, (size_t)t->n_rigid, 1);
     MT_TRY(mt_arena_check(&l->mem, err));
-    MT_TRY(free_motions(&o, &regular, &l->mem, err));
+    *o = (operation){.tree = t, .v = v, .f = f, .r = r, .scratch = &l->mem};
+    l->operation = o;
+    MT_TRY(free_motions(o, &regular, &l->mem, err));
     if (!regular) {
         (void)mt_snprintf(l->why, sizeof l->why, "a motion without stiffness has no mass");
         l->tree = NULL;
@@ -103,7 +108,7 @@ static mt_status solve(mt_lowest *l, int count, mt_err *err)
                                  .steps = t->depth,
                                  .apply = apply,
                                  .below = below,
-                                 .context = &o};
+                                 .context = o};
     return mt_modal_lowest(&p, &l->mem, &l->found, err);
 }
 
@@ -117,6 +122,11 @@ mt_status mt_lowest_new(const mt_model *model, int configuration, int n_inputs,
         return mt_fail_memory(err);
     }
     mt_status rc = mt_arena_init(&l->mem, 0, err);
+    l->at = mt_arena_f64(&l->mem, (size_t)n_inputs, 1);
+    rc = rc == MT_OK ? mt_arena_check(&l->mem, err) : rc;
+    for (int i = 0; i < n_inputs && rc == MT_OK; i++) {
+        l->at[i] = at[i];
+    }
     rc = rc == MT_OK ? mt_system_new(model, configuration, n_inputs, inputs, at, &l->sys, err)
                      : rc;
     rc = rc == MT_OK ? mt_tree_new(l->sys, at, &l->mem, &l->tree, l->why, err) : rc;
@@ -127,6 +137,175 @@ mt_status mt_lowest_new(const mt_model *model, int configuration, int n_inputs,
                          model->configurations[configuration].name.s);
     }
     *out = l;
+    return MT_OK;
+}
+
+typedef struct motions {
+    double *x; /* n_x x n */
+    double *r; /* n_rigid x n */
+    double *v; /* s n x n */
+} motions;
+
+/* Room for n modes in mem. */
+static mt_status make_room(const mt_lowest *l, int n, motions *out, mt_arena *mem, mt_err *err)
+{
+    const mt_tree *const t = l->tree;
+    out->x = mt_arena_f64(mem, (size_t)t->n_x, (size_t)n);
+    out->r = mt_arena_f64(mem, (size_t)t->n_rigid, (size_t)n);
+    out->v = mt_arena_f64(mem, (size_t)t->n * (size_t)t->s, (size_t)n);
+    return mt_arena_check(mem, err);
+}
+
+/* The mode at a position as column i, of unit mass: of x = 0 that is r^T M_rr r; else x^T A x =
+ * 1/lambda, and r follows. */
+static mt_status move(const mt_lowest *l, int position, int i, const motions *to, mt_err *err)
+{
+    const mt_tree *const t = l->tree;
+    const operation *const o = l->operation;
+    const double lambda = l->found.modes.lambda[position];
+    double *const x = to->x + ((ptrdiff_t)t->n_x * i);
+    double *const r = to->r + ((ptrdiff_t)t->n_rigid * i);
+    double *const v = to->v + ((ptrdiff_t)t->n * t->s * i);
+    memset(x, 0, (size_t)t->n_x * sizeof *x);
+    memset(r, 0, (size_t)t->n_rigid * sizeof *r);
+    if (position < t->n_rigid) {
+        r[position] = 1.0;
+        mt_tri_solve(true, t->n_rigid, 1, o->m_rr, r, t->n_rigid);
+    } else {
+        MT_TRY(apply(l->operation, l->found.x + ((ptrdiff_t)t->n_x * (position - t->n_rigid)),
+                     x, err));
+        mt_axpy(t->n_rigid, -sqrt(lambda), o->r, r);
+        memset(x, 0, (size_t)t->n_x * sizeof *x);
+        mt_axpy(t->n_x, sqrt(lambda),
+                l->found.x + ((ptrdiff_t)t->n_x * (position - t->n_rigid)), x);
+    }
+    mt_tree_motion(t, x, r, v);
+    return MT_OK;
+}
+
+mt_status mt_lowest_shapes(mt_lowest *l, int n, double *phi, mt_err *err)
+{
+    const int nq = l->sys->nq;
+    const mt_arena_mark mark = mt_arena_get_mark(&l->mem);
+    motions m;
+    MT_TRY(make_room(l, 1, &m, &l->mem, err));
+    for (int i = 0; i < n; i++) {
+        MT_TRY(move(l, i, 0, &m, err));
+        mt_tree_states(l->tree, m.v, phi + ((ptrdiff_t)nq * i));
+    }
+    mt_modal_fix_sign(nq, n, phi);
+    mt_arena_rewind(&l->mem, mark);
+    return MT_OK;
+}
+
+mt_status mt_lowest_sense(mt_lowest *l, int n, double *value, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(&l->mem);
+    double *const phi = mt_arena_f64(&l->mem, (size_t)l->sys->nq, (size_t)n);
+    MT_TRY(mt_arena_check(&l->mem, err));
+    MT_TRY(mt_lowest_shapes(l, n, phi, err));
+    MT_TRY(mt_tree_sense(l->tree, l->at, n, phi, value, &l->mem, err));
+    mt_arena_rewind(&l->mem, mark);
+    return MT_OK;
+}
+
+/* Modes and their pairs within clusters, position n_rigid + i being mode i. */
+typedef struct pairs {
+    int n; /* modes: those asked for, and all that are repeated with the last of them */
+    int count;
+    int (*pair)[2];
+    double *lambda; /* [n] mean of the cluster */
+} pairs;
+
+static mt_status find_pairs(const mt_lowest *l, int n, pairs *p, mt_arena *mem, mt_err *err)
+{
+    const mt_modes *const m = &l->found.modes;
+    const int rigid = m->n_rigid;
+    for (int size = 0; p->n < n; p->n += size) {
+        (void)mt_modal_cluster(m, rigid + p->n, &size);
+        p->count += size * (size + 1) / 2;
+    }
+    p->pair = mt_arena_alloc(mem, (size_t)p->count, sizeof *p->pair);
+    p->lambda = mt_arena_f64(mem, (size_t)p->n, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    int at = 0;
+    for (int i = 0; i < p->n; i++) {
+        int size = 0;
+        const int first = mt_modal_cluster(m, rigid + i, &size);
+        for (int k = first; k < first + size; k++) {
+            p->lambda[i] += m->lambda[k] / size;
+        }
+        for (int k = i; k < first + size - rigid; k++, at++) {
+            p->pair[at][0] = i;
+            p->pair[at][1] = k;
+        }
+    }
+    return MT_OK;
+}
+
+/* Hz by one input of the modes of one cluster, from the forms of their pairs. */
+static mt_status split(int size, const double *form, double hz, double *slope,
+                       mt_arena *scratch, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    double *const matrix = mt_arena_f64(scratch, (size_t)size, (size_t)size);
+    MT_TRY(mt_arena_check(scratch, err));
+    for (int a = 0; a < size; a++) {
+        for (int b = a; b < size; b++) {
+            matrix[b + (size * a)] = *form++;
+        }
+    }
+    MT_TRY(mt_eig_sym(size, matrix, slope, false, scratch, err));
+    for (int a = 0; a < size; a++) { /* f = sqrt(lambda) / (2 pi) */
+        slope[a] /= 8.0 * PI * PI * hz;
+    }
+    mt_arena_rewind(scratch, mark);
+    return MT_OK;
+}
+
+static mt_status fill_slopes(const mt_lowest *l, const pairs *p, const double *form, int n,
+                             double *hz_per_unit, mt_arena *scratch, mt_err *err)
+{
+    const mt_modes *const m = &l->found.modes;
+    double *const slope = mt_arena_f64(scratch, (size_t)p->n, 1);
+    MT_TRY(mt_arena_check(scratch, err));
+    for (int k = 0; k < l->sys->n_inputs; k++) {
+        const double *at = form + ((ptrdiff_t)p->count * k);
+        for (int i = 0, size = 0; i < p->n; i += size) {
+            (void)mt_modal_cluster(m, m->n_rigid + i, &size);
+            MT_TRY(split(size, at, mt_modal_hz(m, m->n_rigid + i), slope + i, scratch, err));
+            at += (ptrdiff_t)size * (size + 1) / 2;
+        }
+        memcpy(hz_per_unit + ((ptrdiff_t)n * k), slope, (size_t)n * sizeof *slope);
+    }
+    return MT_OK;
+}
+
+mt_status mt_lowest_sensitivity(mt_lowest *l, int n, double *hz_per_unit, char why[MT_TREE_WHY],
+                                mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(&l->mem);
+    pairs p = {.n = 0};
+    motions m;
+    MT_TRY(find_pairs(l, n, &p, &l->mem, err));
+    MT_TRY(make_room(l, p.n, &m, &l->mem, err));
+    for (int i = 0; i < p.n; i++) {
+        MT_TRY(move(l, l->tree->n_rigid + i, i, &m, err));
+    }
+    const mt_tree_modes modes = {.n = p.n,
+                                 .x = m.x,
+                                 .r = m.r,
+                                 .v = m.v,
+                                 .lambda = p.lambda,
+                                 .n_pairs = p.count,
+                                 .pair = (const int(*)[2])p.pair};
+    double *const form = mt_arena_f64(&l->mem, (size_t)p.count, (size_t)l->sys->n_inputs);
+    MT_TRY(mt_arena_check(&l->mem, err));
+    MT_TRY(mt_tree_slopes(l->tree, l->at, &modes, form, why, &l->mem, err));
+    if (why[0] == '\0') {
+        MT_TRY(fill_slopes(l, &p, form, n, hz_per_unit, &l->mem, err));
+    }
+    mt_arena_rewind(&l->mem, mark);
     return MT_OK;
 }
 

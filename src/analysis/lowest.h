@@ -2,11 +2,11 @@
 #ifndef ANALYSIS_LOWEST_H
 #define ANALYSIS_LOWEST_H
 
-#include "mechanics/tree.h"
 #include "modal/lowest.h"
+#include "tree/tree.h"
 
 /*
- * The lowest modes of one configuration of a mechanism that is a tree (mechanics/tree.h), of
+ * The lowest modes of one configuration of a mechanism that is a tree (tree/tree.h), of
  * any size: O(bodies) in time and memory. One worker.
  */
 typedef struct mt_lowest {
@@ -15,6 +15,8 @@ typedef struct mt_lowest {
     mt_tree *tree;         /* NULL: the configuration is no such tree */
     char why[MT_TREE_WHY]; /* then the reason */
     mt_lowest_modes found;
+    double *at;                            /* [inputs of sys] */
+    struct mt_lowest_operation *operation; /* what Lanczos' method is given */
 } mt_lowest;
 
 /* From so many bodies on this is the way to go where only the lowest modes are wanted: all
@@ -33,6 +35,19 @@ double mt_lowest_bodies(const mt_model *model, int configuration);
 mt_status mt_lowest_new(const mt_model *model, int configuration, int n_inputs,
                         const int *inputs, const double *at, int count, mt_lowest **out,
                         mt_err *err);
+/* Shapes of the first n positions over all states (nq of the system), of unit mass, sign by
+ * mt_modal_fix_sign: phi nq x n, zeroed. Fails: MT_E_INTERRUPTED, MT_E_MEMORY. */
+mt_status mt_lowest_shapes(mt_lowest *l, int n, double *phi, mt_err *err);
+/* The same at its channels: value n_channels x n. */
+mt_status mt_lowest_sense(mt_lowest *l, int n, double *value, mt_err *err);
+/**
+ * How far every input moves the frequencies of the first n vibration modes.
+ * @param[out] hz_per_unit  n x n_inputs; of repeated modes as mt_analysis_sensitivity gives
+ * @param[out] why          "", or why there are none, as mt_tree_slopes says
+ * Fails: as mt_tree_slopes, MT_E_MEMORY.
+ */
+mt_status mt_lowest_sensitivity(mt_lowest *l, int n, double *hz_per_unit, char why[MT_TREE_WHY],
+                                mt_err *err);
 /* Accepts NULL. */
 void mt_lowest_delete(mt_lowest *l);
 

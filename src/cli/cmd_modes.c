@@ -296,37 +296,15 @@ static mt_status csv_view(sink *to, const view *v)
     return MT_OK;
 }
 
-/* More bodies than this are not analysed as a whole: the matrices alone take gigabytes. */
-enum { MOST_BODIES = 5000 };
-
 /* The lowest modes alone where they are what is asked for, and where there is a short way. */
 static mt_status look(const mt_args *args, view *v, mt_err *err)
 {
     const mt_subject *const s = v->s;
-    const double bodies = mt_lowest_bodies(s->model, v->c);
-    const bool all = args->count == 0 || args->given[MT_OPT_SHAPES] ||
-                     args->given[MT_OPT_DAMPED] || args->count > bodies / 2;
-    char why[MT_TREE_WHY] =
-        "ask for the lowest modes alone, without shapes and dampers (--count)";
-    if (!all && bodies >= MT_LOWEST_BODIES) {
-        MT_TRY(mt_lowest_new(s->model, v->c, s->n_inputs, s->inputs, s->at, args->count, &v->l,
-                             err));
-    }
-    if (v->l != NULL && v->l->tree != NULL) {
+    const int count = args->given[MT_OPT_DAMPED] ? 0 : args->count;
+    MT_TRY(mt_subject_lowest(s, v->c, s->n_inputs, s->inputs, s->at, count, &v->l, err));
+    if (v->l != NULL) {
         v->m = &v->l->found.modes;
         return mt_doubts_of_lowest(v->l, s->n_inputs, s->inputs, s->at, &v->doubts, err);
-    }
-    if (v->l != NULL) {
-        (void)mt_snprintf(why, sizeof why, "the way for large trees is not open, as %s",
-                          v->l->why);
-        mt_lowest_delete(v->l);
-        v->l = NULL;
-    }
-    if (bodies > MOST_BODIES) {
-        return mt_fail(err, MT_E_USAGE,
-                       "%s: configuration \"%s\": %.0f bodies are too many for dense matrices; "
-                       "%s",
-                       s->path, mt_subject_configuration(s, v->c), bodies, why);
     }
     MT_TRY(mt_subject_analyse(s, v->c, &v->a, err));
     v->m = &v->a->modes;
@@ -345,7 +323,8 @@ static mt_status one(sink *to, const mt_subject *s, int c, mt_err *err)
     }
     v.shown = mt_modes_shown(v.m, to->args->count);
     if (to->args->given[MT_OPT_SHAPES]) {
-        rc = mt_shapes_of(v.a, v.shown, &mem, &v.shapes, err);
+        rc = v.l != NULL ? mt_shapes_of_lowest(v.l, v.shown, &mem, &v.shapes, err)
+                         : mt_shapes_of(v.a, v.shown, &mem, &v.shapes, err);
     }
     if (rc == MT_OK && to->args->given[MT_OPT_DAMPED]) {
         v.with_damping = true;

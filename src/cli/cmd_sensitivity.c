@@ -42,6 +42,7 @@ static void write_json(mt_json_writer *w, const mt_survey *v)
 {
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
+    mt_json_put_string(w, "method", v->tree > 0 ? "tree" : "dense");
     mt_json_open(w, "modes", '[');
     for (int i = 0; i < v->modes; i++) {
         mt_json_open(w, NULL, '{');
@@ -145,14 +146,18 @@ static void write_text(mt_text *out, const mt_survey *v)
                     "  Parameters with a value of this configuration's own have no influence "
                     "here.\n");
     }
+    if (v->tree > 0) {
+        mt_text_addf(out, "  The lowest modes of a tree of %d bodies (sparse).\n", v->tree);
+    }
     if (v->unstable > 0) {
         mt_text_add(out, "  UNSTABLE: this position does not hold.\n");
     }
     mt_text_add(out, "\n");
 }
 
+/* *wrong: parameters were asked for that there are not. */
 static mt_status one(const mt_args *args, const mt_subject *s, int c, mt_json_writer *w,
-                     mt_table *t, mt_text *out, mt_err *err)
+                     mt_table *t, mt_text *out, bool *wrong, mt_err *err)
 {
     mt_survey v = {.s = NULL};
     const int modes = args->count > 0 ? args->count : DEFAULT_MODES;
@@ -171,6 +176,7 @@ static mt_status one(const mt_args *args, const mt_subject *s, int c, mt_json_wr
             break;
         }
     }
+    *wrong = rc == MT_E_USAGE && v.value == NULL;
     mt_survey_free(&v);
     return rc;
 }
@@ -192,11 +198,12 @@ int mt_cmd_sensitivity(const mt_args *args, mt_text *out)
     for (int i = 0; i < s.n_configurations; i++) {
         mt_err err = {.code = MT_OK};
         mt_subject_warn_overridden(&s, s.configurations[i]);
-        const mt_status rc = one(args, &s, s.configurations[i], &w, &t, out, &err);
+        bool wrong = false;
+        const mt_status rc = one(args, &s, s.configurations[i], &w, &t, out, &wrong, &err);
         if (rc != MT_OK) {
             code = mt_exit_worse(code, mt_cli_failed(rc, &err));
         }
-        if (rc == MT_E_USAGE) {
+        if (wrong) {
             break; /* the same for every configuration */
         }
         if (rc != MT_OK && json) {

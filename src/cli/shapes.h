@@ -3,6 +3,7 @@
 #define CLI_SHAPES_H
 
 #include "analysis/analysis.h"
+#include "analysis/lowest.h"
 
 /* Shapes of modes where they can be seen: at the sensors, or, without any, as motions of the
  * bodies. */
@@ -15,6 +16,8 @@ typedef struct mt_shapes {
 
 /* Shapes of the first `modes` positions, in mem. */
 mt_status mt_shapes_of(mt_analysis *a, int modes, mt_arena *mem, mt_shapes *out, mt_err *err);
+mt_status mt_shapes_of_lowest(mt_lowest *l, int modes, mt_arena *mem, mt_shapes *out,
+                              mt_err *err);
 /* Shapes at given channels of the given positions: value ns x n. */
 mt_status mt_shapes_at(mt_analysis *a, int ns, const int *channels, int n, const int *positions,
                        double *value, mt_err *err);

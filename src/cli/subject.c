@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "cli/cli.h"
 #include "model/judge.h"
 #include "model/values.h"
@@ -99,8 +100,8 @@ static mt_status choose(const mt_args *args, const char *configuration, mt_subje
             return mt_err_in(err, rc, "--set");
         }
     }
-    rc = rc == MT_OK ? mt_model_parameters(s->model, s->n_inputs, s->inputs, s->at, &s->mem,
-                                           s->values, err)
+    rc = rc == MT_OK ? mt_model_parameters(s->model, MT_ABSENT, s->n_inputs, s->inputs, s->at,
+                                           &s->mem, s->values, err)
                      : rc;
     /* what --set makes of the model must be a mechanism still */
     for (int i = 0; rc == MT_OK && i < s->n_configurations && s->n_inputs > 0; i++) {
@@ -142,6 +143,39 @@ mt_status mt_subject_analyse(const mt_subject *s, int c, mt_analysis **out, mt_e
 {
     const mt_status rc = mt_analysis_new(s->model, c, s->n_inputs, s->inputs, s->at, out, err);
     return rc == MT_OK ? rc : mt_err_in(err, rc, "%s", s->path);
+}
+
+mt_status mt_subject_admit_dense(const mt_subject *s, int c, const char *why, mt_err *err)
+{
+    const double bodies = mt_lowest_bodies(s->model, c);
+    return bodies <= MT_ANALYSIS_BODIES
+               ? MT_OK
+               : mt_fail(err, MT_E_USAGE,
+                         "%s: configuration \"%s\": %.0f bodies are too many for dense "
+                         "matrices; %s",
+                         s->path, mt_subject_configuration(s, c), bodies, why);
+}
+
+mt_status mt_subject_lowest(const mt_subject *s, int c, int n_inputs, const int *inputs,
+                            const double *at, int count, mt_lowest **out, mt_err *err)
+{
+    const double bodies = mt_lowest_bodies(s->model, c);
+    char why[2 * MT_TREE_WHY] = "ask for the lowest modes alone, without dampers (--count)";
+    *out = NULL;
+    if (count > 0 && count <= bodies / 2 && bodies >= MT_LOWEST_BODIES) {
+        const mt_status rc = mt_lowest_new(s->model, c, n_inputs, inputs, at, count, out, err);
+        if (rc != MT_OK) {
+            return mt_err_in(err, rc, "%s", s->path);
+        }
+        if ((*out)->tree != NULL) {
+            return MT_OK;
+        }
+        (void)mt_snprintf(why, sizeof why, "the way for large trees is not open, as %s",
+                          (*out)->why);
+        mt_lowest_delete(*out);
+        *out = NULL;
+    }
+    return mt_subject_admit_dense(s, c, why, err);
 }
 
 const char *mt_subject_configuration(const mt_subject *s, int c)

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "analysis/sensitivity.h"
+#include "model/values.h"
 
 static const double PER_CENT = 0.01;
 
@@ -102,61 +103,115 @@ static mt_status choose_modes(mt_survey *v, const mt_modes *m, int wanted, mt_er
     return MT_OK;
 }
 
-/* One analysis with the inputs of --set and the parameters entry[n] of the survey. */
-static mt_status analyse(mt_survey *v, int n, const int *entry, int wanted, mt_err *err)
+/* Parameters of the survey to look at together, beside the inputs of --set. */
+typedef struct question {
+    int wanted; /* modes */
+    int n;
+    const int *entry; /* [n] of the survey */
+    int *slot;        /* [n] input of each */
+    int count;        /* inputs */
+    int *inputs;
+    double *at;
+} question;
+
+static mt_status ask(mt_survey *v, question *q, mt_err *err)
 {
     const mt_subject *const s = v->s;
-    const size_t room = (size_t)s->n_inputs + (size_t)n;
-    int *const inputs = mt_arena_int(&v->mem, room);
-    int *const slot = mt_arena_int(&v->mem, room);
-    double *const at = mt_arena_f64(&v->mem, room, 1);
-    mt_analysis *a = NULL;
+    const size_t room = (size_t)s->n_inputs + (size_t)q->n;
+    q->inputs = mt_arena_int(&v->mem, room);
+    q->slot = mt_arena_int(&v->mem, room);
+    q->at = mt_arena_f64(&v->mem, room, 1);
     MT_TRY(mt_arena_check(&v->mem, err));
-    int count = 0;
     for (int i = 0; i < s->n_inputs; i++) {
-        inputs[count] = s->inputs[i];
-        at[count++] = s->at[i];
+        q->inputs[q->count] = s->inputs[i];
+        q->at[q->count++] = s->at[i];
     }
-    for (int i = 0; i < n; i++) {
-        const int parameter = v->parameter[entry[i]];
-        slot[i] = count;
+    for (int i = 0; i < q->n; i++) {
+        const int parameter = v->parameter[q->entry[i]];
+        q->slot[i] = q->count;
         for (int k = 0; k < s->n_inputs; k++) {
-            slot[i] = s->inputs[k] == parameter ? k : slot[i];
+            q->slot[i] = s->inputs[k] == parameter ? k : q->slot[i];
         }
-        if (slot[i] == count) {
-            inputs[count] = parameter;
-            at[count++] = v->value[entry[i]];
+        if (q->slot[i] == q->count) {
+            q->inputs[q->count] = parameter;
+            q->at[q->count++] = v->value[q->entry[i]];
         }
     }
+    return MT_OK;
+}
+
+static mt_status answer_by_all(mt_survey *v, const question *q, mt_err *err)
+{
+    mt_analysis *a = NULL;
     mt_analysis_options opt = mt_analysis_options_default();
     opt.gradient = true;
-    mt_status rc = mt_analysis_new(s->model, v->c, count, inputs, at, &a, err);
-    rc = rc == MT_OK ? mt_analysis_solve(a, at, &opt, err) : rc;
-    rc = rc == MT_OK ? choose_modes(v, &a->modes, wanted, err) : rc;
-    for (int i = 0; rc == MT_OK && i < n; i++) {
-        rc = mt_analysis_sensitivity(a, slot[i], v->modes, v->position, &v->mem,
-                                     v->per_unit + ((ptrdiff_t)entry[i] * v->room),
-                                     &v->independence[entry[i]], err);
+    mt_status rc = mt_analysis_new(v->s->model, v->c, q->count, q->inputs, q->at, &a, err);
+    rc = rc == MT_OK ? mt_analysis_solve(a, q->at, &opt, err) : rc;
+    rc = rc == MT_OK ? choose_modes(v, &a->modes, q->wanted, err) : rc;
+    for (int i = 0; rc == MT_OK && i < q->n; i++) {
+        rc = mt_analysis_sensitivity(a, q->slot[i], v->modes, v->position, &v->mem,
+                                     v->per_unit + ((ptrdiff_t)q->entry[i] * v->room),
+                                     &v->independence[q->entry[i]], err);
     }
     mt_analysis_delete(a);
-    return rc;
+    return mt_err_in(err, rc, "%s", v->s->path);
+}
+
+/* *done false: that way is not open. */
+static mt_status answer_by_lowest(mt_survey *v, const question *q, bool *done, mt_err *err)
+{
+    char why[MT_TREE_WHY] = "";
+    mt_lowest *l = NULL;
+    double *slope = NULL;
+    mt_status rc =
+        mt_subject_lowest(v->s, v->c, q->count, q->inputs, q->at, q->wanted, &l, err);
+    *done = rc == MT_OK && l != NULL;
+    if (!*done) {
+        return rc;
+    }
+    rc = choose_modes(v, &l->found.modes, q->wanted, err);
+    if (rc == MT_OK) {
+        slope = mt_arena_f64(&v->mem, (size_t)v->modes, (size_t)q->count);
+        rc = mt_arena_check(&v->mem, err);
+    }
+    rc = rc == MT_OK ? mt_lowest_sensitivity(l, v->modes, slope, why, err) : rc;
+    *done = why[0] == '\0';
+    v->tree = *done ? l->tree->n : 0;
+    for (int i = 0; rc == MT_OK && *done && i < q->n; i++) {
+        memcpy(v->per_unit + ((ptrdiff_t)q->entry[i] * v->room),
+               slope + ((ptrdiff_t)q->slot[i] * v->modes), (size_t)v->modes * sizeof *slope);
+    }
+    mt_lowest_delete(l);
+    rc = mt_err_in(err, rc, "%s", v->s->path);
+    return rc == MT_OK && !*done ? mt_subject_admit_dense(v->s, v->c, why, err) : rc;
+}
+
+static mt_status analyse(mt_survey *v, int n, const int *entry, int wanted, mt_err *err)
+{
+    question q = {.wanted = wanted, .n = n, .entry = entry};
+    bool done = false;
+    MT_TRY(ask(v, &q, err));
+    MT_TRY(answer_by_lowest(v, &q, &done, err));
+    return done ? MT_OK : answer_by_all(v, &q, err);
 }
 
 /* What the parameters are in this configuration, its own overrides included. */
 static mt_status find_values(mt_survey *v, mt_err *err)
 {
-    mt_analysis *a = NULL;
-    v->value = mt_arena_f64(&v->mem, (size_t)v->n, 1);
+    const mt_subject *const s = v->s;
+    double *const all = mt_arena_f64(&v->mem, (size_t)s->model->n_parameters, 1);
     v->overridden = mt_arena_alloc(&v->mem, (size_t)v->n, sizeof *v->overridden);
     v->independence = mt_arena_alloc(&v->mem, (size_t)v->n, sizeof *v->independence);
+    v->value = mt_arena_f64(&v->mem, (size_t)v->n, 1);
     MT_TRY(mt_arena_check(&v->mem, err));
-    MT_TRY(mt_subject_analyse(v->s, v->c, &a, err));
-    for (int k = 0; k < v->n; k++) {
-        v->value[k] = mt_linear_value(a->lin, a->sys->parameters[v->parameter[k]]);
+    const mt_status rc =
+        mt_model_parameters(s->model, v->c, s->n_inputs, s->inputs, s->at, &v->mem, all, err);
+    for (int k = 0; k < v->n && rc == MT_OK; k++) {
+        v->value[k] = all[v->parameter[k]];
         v->overridden[k] = is_overridden(v, v->parameter[k]);
     }
-    mt_analysis_delete(a);
-    return MT_OK;
+    return mt_err_in(err, rc, "%s: configuration \"%s\"", s->path,
+                     mt_subject_configuration(s, v->c));
 }
 
 static mt_status carry_out(mt_survey *v, int wanted, mt_err *err)
@@ -188,7 +243,7 @@ mt_status mt_survey_take(const mt_subject *s, int c, const char *parameters, int
     MT_TRY(mt_arena_init(&v->mem, 0, err));
     MT_TRY(choose_parameters(v, parameters, err));
     MT_TRY(find_values(v, err));
-    return mt_err_in(err, carry_out(v, modes, err), "%s", s->path);
+    return carry_out(v, modes, err);
 }
 
 void mt_survey_free(mt_survey *v)

@@ -14,9 +14,10 @@ typedef struct mt_survey {
     const mt_subject *s;
     int c;
     mt_arena mem;
-    int n;            /* parameters */
-    int *parameter;   /* [n] */
-    double *value;    /* [n] in this configuration */
+    int tree;       /* bodies, where the lowest modes of a tree were looked for alone; else 0 */
+    int n;          /* parameters */
+    int *parameter; /* [n] */
+    double *value;  /* [n] in this configuration */
     bool *overridden; /* [n] by the configuration: no influence there */
     int modes;        /* vibration modes looked at */
     int unstable;     /* of the configuration */

@@ -242,30 +242,49 @@ static void fill(const finding *f, int upto, double tau, mt_modes *m)
     mt_modal_find_clusters(m);
 }
 
-mt_status mt_modal_lowest(const mt_lowest_problem *p, mt_arena *mem, mt_lowest_modes *out,
-                          mt_err *err)
+/* Of those counted the ones that are wanted, and what is repeated with the last of them. */
+static int whole(const finding *f, int upto)
 {
-    const int wanted = p->count < p->n ? p->count : p->n;
-    const size_t most = (size_t)wanted + (size_t)p->n_rigid;
-    finding f = {.p = p, .most = wanted + MORE};
+    int n = upto < f->p->count ? upto : f->p->count;
+    while (n > 0 && n < upto && f->theta[n - 1] <= (1.0 + NO_GAP) * f->theta[n]) {
+        n++;
+    }
+    return n;
+}
+
+static mt_status answer(const mt_lowest_problem *p, mt_arena *scratch, mt_arena *mem,
+                        mt_lowest_modes *out, mt_err *err)
+{
+    finding f = {.p = p, .most = (p->count < p->n ? p->count : p->n) + MORE};
     mt_modes *const m = &out->modes;
-    *out = (mt_lowest_modes){.modes = {.n = p->n + p->n_rigid, .n_rigid = p->n_rigid}};
+    int upto = 0;
+    MT_TRY(grow(&f, f.most, scratch, err));
+    MT_TRY(find(&f, scratch, &out->tau, &upto, err));
+    const size_t n = (size_t)whole(&f, upto);
+    const size_t most = n + (size_t)p->n_rigid;
+    *m = (mt_modes){.n = p->n + p->n_rigid, .n_rigid = p->n_rigid, .count = (int)most};
     m->lambda = mt_arena_f64(mem, most, 1);
     m->kind = mt_arena_alloc(mem, most, sizeof *m->kind);
     m->cluster = mt_arena_int(mem, most);
     m->residual = mt_arena_f64(mem, most, 1);
     m->orthogonality = mt_arena_f64(mem, most, 1);
     m->error = mt_arena_f64(mem, most, 1);
-    out->x = mt_arena_f64(mem, (size_t)p->n, (size_t)wanted);
-    const mt_arena_mark mark = mt_arena_get_mark(mem);
-    MT_TRY(grow(&f, f.most, mem, err));
-    int upto = 0;
-    MT_TRY(find(&f, mem, &out->tau, &upto, err));
+    out->x = mt_arena_f64(mem, (size_t)p->n, n);
     out->below = p->n_rigid + upto;
     m->all = p->n_rigid + p->n;
-    m->count = p->n_rigid + (upto < wanted ? upto : wanted);
+    MT_TRY(mt_arena_check(mem, err));
     fill(&f, upto, out->tau, m);
-    memcpy(out->x, f.x, (size_t)p->n * (size_t)(m->count - p->n_rigid) * sizeof *out->x);
-    mt_arena_rewind(mem, mark);
+    memcpy(out->x, f.x, (size_t)p->n * n * sizeof *out->x);
     return MT_OK;
+}
+
+mt_status mt_modal_lowest(const mt_lowest_problem *p, mt_arena *mem, mt_lowest_modes *out,
+                          mt_err *err)
+{
+    mt_arena scratch = {.first = NULL};
+    *out = (mt_lowest_modes){.below = 0};
+    mt_status rc = mt_arena_init(&scratch, 0, err);
+    rc = rc == MT_OK ? answer(p, &scratch, mem, out, err) : rc;
+    mt_arena_free(&scratch);
+    return rc;
 }

@@ -24,8 +24,8 @@ typedef struct mt_lowest_problem {
 } mt_lowest_problem;
 
 typedef struct mt_lowest_modes {
-    /* count: n_rigid, then as many of the lowest as there are, at most those wanted; y NULL;
-     * n: coordinates with the rigid-body ones */
+    /* count: n_rigid, then as many of the lowest as there are, at most those wanted and what
+     * is repeated with the last of them; y NULL; n: coordinates with the rigid-body ones */
     mt_modes modes;
     double *x;  /* n x (count - n_rigid), unit columns */
     double tau; /* no mode below this was missed: they were counted [rad^2/s^2] */

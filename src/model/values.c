@@ -155,20 +155,28 @@ mt_status mt_model_numbers(const mt_model *model, int configuration, int n_input
     return rc;
 }
 
+/* What parameters are asked at: a configuration (MT_ABSENT: the file), and inputs. */
+typedef struct setting {
+    int configuration;
+    int n_inputs;
+    const int *inputs;
+    const double *at;
+} setting;
+
 /* *bad: where a value is not finite, the first parameter in order of evaluation that has
  * none. */
-static mt_status evaluate_parameters(const mt_model *model, int n_inputs, const int *inputs,
-                                     const double *at, mt_arena *mem, double *value, int *bad,
-                                     mt_err *err)
+static mt_status evaluate_parameters(const mt_model *model, const setting *set, mt_arena *mem,
+                                     double *value, int *bad, mt_err *err)
 {
     mt_node *nodes = NULL;
     mt_program program;
-    MT_TRY(begin(model, MT_ABSENT, n_inputs, inputs, mem, &program, &nodes, err));
+    MT_TRY(begin(model, set->configuration, set->n_inputs, set->inputs, mem, &program, &nodes,
+                 err));
     MT_TRY(mt_program_finish(&program, err));
     double *const all = mt_arena_f64(mem, (size_t)program.count, 1);
     MT_TRY(mt_arena_check(mem, err));
     mt_node without = MT_NO_NODE;
-    const mt_status rc = mt_program_eval(&program, at, all, &without, err);
+    const mt_status rc = mt_program_eval(&program, set->at, all, &without, err);
     for (int i = 0; rc == MT_OK && i < model->n_parameters; i++) {
         value[i] = all[nodes[i]];
     }
@@ -182,13 +190,14 @@ static mt_status evaluate_parameters(const mt_model *model, int n_inputs, const 
     return rc;
 }
 
-mt_status mt_model_parameters(const mt_model *model, int n_inputs, const int *inputs,
-                              const double *at, mt_arena *mem, double *value, mt_err *err)
+mt_status mt_model_parameters(const mt_model *model, int configuration, int n_inputs,
+                              const int *inputs, const double *at, mt_arena *mem, double *value,
+                              mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
+    const setting set = {configuration, n_inputs, inputs, at};
     int bad = MT_ABSENT;
-    const mt_status rc =
-        evaluate_parameters(model, n_inputs, inputs, at, mem, value, &bad, err);
+    const mt_status rc = evaluate_parameters(model, &set, mem, value, &bad, err);
     mt_arena_rewind(mem, mark);
     return rc;
 }
@@ -197,8 +206,9 @@ mt_status mt_model_original_values(const mt_model *model, mt_arena *mem, double 
                                    int *bad, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
+    const setting set = {MT_ABSENT, 0, NULL, NULL};
     int which = MT_ABSENT;
-    const mt_status rc = evaluate_parameters(model, 0, NULL, NULL, mem, values, &which, err);
+    const mt_status rc = evaluate_parameters(model, &set, mem, values, &which, err);
     mt_arena_rewind(mem, mark);
     if (bad != NULL) {
         *bad = which;

@@ -37,13 +37,14 @@ mt_status mt_emit_parameters(const mt_model *model, int configuration, const int
                              mt_program *program, mt_node *nodes, mt_arena *mem, mt_err *err);
 
 /**
- * Values of all parameters where some are inputs, those made of others following; no
- * configuration's overrides.
+ * Values of all parameters in a configuration (MT_ABSENT: in the file) where some are inputs,
+ * those made of others following.
  * @param[out] value  [n_parameters]
  * Scratch from mem, given back. Fails: MT_E_DOMAIN, MT_E_MEMORY, MT_E_INTERNAL.
  */
-mt_status mt_model_parameters(const mt_model *model, int n_inputs, const int *inputs,
-                              const double *at, mt_arena *mem, double *value, mt_err *err);
+mt_status mt_model_parameters(const mt_model *model, int configuration, int n_inputs,
+                              const int *inputs, const double *at, mt_arena *mem, double *value,
+                              mt_err *err);
 
 /*
  * Numbers of a configuration (MT_ABSENT: of the file) as functions of some parameters: compiled

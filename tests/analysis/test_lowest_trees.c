@@ -7,10 +7,22 @@
 #include <stdlib.h>
 
 #include "analysis/lowest.h"
+#include "analysis/sensitivity.h"
 #include "mechanics/mech.h"
 #include "mt_random.h"
 
-enum { TEXT = 40000, TREES = 300, MOST_BODIES = 9, COUNT = 6 };
+enum { TEXT = 80000, TREES = 300, MOST_BODIES = 9, COUNT = 6, INPUTS = 7 };
+
+/* Parameters of every tree: masses, an inertia, stiffnesses, lengths along gravity and across,
+ * where one joint sits, gravity. */
+static const struct {
+    const char *name;
+    double at;
+} INPUT[INPUTS] = {{"m", 1.0}, {"J", 1.0}, {"k", 1.0}, {"L", 1.0},
+                   {"W", 1.0}, {"a", 0.0}, {"g", 1.0}};
+
+/* Slopes of simple modes agree to this part of what scales them. */
+static const double SLOPE_TOL = 1e-8;
 
 typedef struct writer {
     char *text;
@@ -31,9 +43,24 @@ typedef struct tree {
     const char *joint[MOST_BODIES]; /* NULL: springs alone */
 } tree;
 
-static void add_place(writer *w, const tree *m, const double *x)
+static void add_direction(writer *w, const tree *m, const double *x)
 {
     ADD(w, m->dimension == 2 ? "[%.17g, %.17g]" : "[%.17g, %.17g, %.17g]", x[0], x[1], x[2]);
+}
+
+/* The last coordinate, which gravity lies along, by a parameter of its own; `more` on it. */
+static void add_place_and(writer *w, const tree *m, const double *x, const char *more)
+{
+    ADD(w, "[");
+    for (int k = 0; k < 3 && k < m->dimension; k++) {
+        const bool last = k + 1 == m->dimension;
+        ADD(w, "\"%.17g*%s%s\"%s", x[k], last ? "L" : "W", last ? more : "", last ? "]" : ", ");
+    }
+}
+
+static void add_place(writer *w, const tree *m, const double *x)
+{
+    add_place_and(w, m, x, "");
 }
 
 static void add_name(writer *w, const tree *m, int body)
@@ -94,19 +121,26 @@ static void write_bodies(writer *w, tree *m)
 {
     ADD(w, "\"bodies\": [");
     for (int i = 0; i < m->n; i++) {
-        ADD(w, "%s{\"name\": \"b%d\", \"mass_kg\": %.17g, \"centre\": ", i == 0 ? "" : ", ", i,
-            mt_random_in(&m->r, 0.5, 3.0));
+        ADD(w,
+            "%s{\"name\": \"b%d\", \"mass_kg\": \"%.17g*m\", \"centre\": ", i == 0 ? "" : ", ",
+            i, mt_random_in(&m->r, 0.5, 3.0));
         add_place(w, m, m->at[i]);
         if (!m->point[i] && m->dimension == 2) {
-            ADD(w, ", \"inertia_kg_m2\": %.17g", mt_random_in(&m->r, 0.01, 0.5));
+            ADD(w, ", \"inertia_kg_m2\": \"%.17g*J\"", mt_random_in(&m->r, 0.01, 0.5));
         } else if (!m->point[i]) {
-            ADD(w, ", \"inertia_kg_m2\": [%.17g, %.17g, %.17g, %.17g, 0, 0.01]",
+            ADD(w, ", \"inertia_kg_m2\": [\"%.17g*J\", %.17g, %.17g, %.17g, 0, 0.01]",
                 mt_random_in(&m->r, 0.2, 0.5), mt_random_in(&m->r, 0.2, 0.5),
                 mt_random_in(&m->r, 0.2, 0.5), mt_random_in(&m->r, -0.05, 0.05));
         }
         ADD(w, "}");
     }
     ADD(w, "]");
+}
+
+/* One joint sits where a parameter has it. */
+static const char *aside(int joint)
+{
+    return joint == 0 ? " + a" : "";
 }
 
 static void write_joints(writer *w, tree *m)
@@ -137,7 +171,7 @@ static void write_joints(writer *w, tree *m)
             ADD(w, "]");
         } else if (strcmp(type, "orientation") != 0) {
             ADD(w, ", \"at\": ");
-            add_place(w, m, x[0]);
+            add_place_and(w, m, x[0], aside(i));
         }
         const bool turns = strcmp(type, "revolute") == 0;
         const bool axis = strcmp(type, "fixed") != 0 && strcmp(type, "spherical") != 0 &&
@@ -151,9 +185,9 @@ static void write_joints(writer *w, tree *m)
                                   : "[1, 0, 0]");
         } else if (axis) {
             ADD(w, ", \"axis\": ");
-            add_place(w, m,
-                      m->dimension == 2 ? (const double[3]){0.6, 0.8, 0.0}
-                                        : (const double[3]){0.6, 0.48, 0.64});
+            add_direction(w, m,
+                          m->dimension == 2 ? (const double[3]){0.6, 0.8, 0.0}
+                                            : (const double[3]){0.6, 0.48, 0.64});
         }
         if (strcmp(type, "universal") == 0) {
             ADD(w, ", \"axis_b\": %s", m->hung ? "[0, 1, 0]" : "[0.8, -0.36, -0.48]");
@@ -180,7 +214,7 @@ static void write_axial(writer *w, tree *m, int i, int k, const char *between)
     add_place(w, m, from);
     ADD(w, ", ");
     add_place(w, m, m->at[i]);
-    ADD(w, "], \"stiffness_n_per_m\": %.17g}", stiffness(m));
+    ADD(w, "], \"stiffness_n_per_m\": \"%.17g*k\"}", stiffness(m));
 }
 
 static void write_bushing(writer *w, tree *m, int i, const char *between)
@@ -191,7 +225,9 @@ static void write_bushing(writer *w, tree *m, int i, const char *between)
     add_name(w, m, i);
     ADD(w, "], \"at\": ");
     add_place(w, m, m->at[i]);
-    ADD(w, ", \"stiffness_n_per_m\": [%.17g, %.17g%s], \"stiffness_n_m_per_rad\": [%.17g%s]}",
+    ADD(w,
+        ", \"stiffness_n_per_m\": [%.17g, \"%.17g*k\"%s], \"stiffness_n_m_per_rad\": "
+        "[%.17g%s]}",
         stiffness(m), stiffness(m), m->dimension == 2 ? "" : ", 31.5", stiffness(m),
         m->dimension == 2 ? "" : ", 70, 5.5");
 }
@@ -243,10 +279,48 @@ static void compare(mt_test *t, const mt_modes *got, const mt_modes *want)
     }
 }
 
+/* Slopes by every parameter; *told counts the trees that have some. */
+static void compare_slopes(mt_test *t, int seed, mt_lowest *l, mech *dense, int *told)
+{
+    double got[COUNT * INPUTS];
+    double want[COUNT];
+    int position[COUNT];
+    char why[MT_TREE_WHY];
+    mt_err err = {.text = ""};
+    mt_arena mem = {.first = NULL};
+    mt_analysis_options opt = mt_analysis_options_default();
+    const mt_modes *const m = &l->found.modes;
+    const int n = m->count - m->n_rigid < COUNT ? m->count - m->n_rigid : COUNT;
+    opt.gradient = true;
+    for (int i = 0; i < n; i++) {
+        position[i] = m->n_rigid + i;
+    }
+    CHECK_INT(t, mt_lowest_sensitivity(l, n, got, why, &err), MT_OK);
+    if (why[0] == '\0' && CHECK_INT(t, mt_arena_init(&mem, 0, &err), MT_OK) &&
+        CHECK_INT(t, mt_analysis_solve(dense->a, dense->at, &opt, &err), MT_OK)) {
+        *told += 1;
+        for (int k = 0; k < INPUTS; k++) {
+            mt_independence why_not;
+            mt_test_row(t, "seed %d, slope by %s", seed, INPUT[k].name);
+            CHECK_INT(
+                t,
+                mt_analysis_sensitivity(dense->a, k, n, position, &mem, want, &why_not, &err),
+                MT_OK);
+            for (int i = 0; i < n; i++) {
+                const double hz = mt_modal_hz(m, m->n_rigid + i);
+                CHECK_NEAR_ABS(t, got[i + (n * k)], want[i], SLOPE_TOL * (hz + fabs(want[i])));
+            }
+        }
+    }
+    mt_arena_free(&mem);
+}
+
 static void check_trees(mt_test *t, bool hung, int least)
 {
     writer w = {.text = malloc(TEXT)};
+    static const int input[INPUTS] = {0, 1, 2, 3, 4, 5, 6};
     int trees = 0;
+    int told = 0;
     REQUIRE(t, w.text != NULL);
     for (int i = 0; i < TREES; i++) {
         tree m;
@@ -257,20 +331,28 @@ static void check_trees(mt_test *t, bool hung, int least)
         w.used = 0;
         ADD(&w, "{\"format\": \"modetune-model/1\", \"dimension\": %d, ", m.dimension);
         if (hung) {
-            ADD(&w, "\"gravity_m_per_s2\": [0, %s], ", m.dimension == 2 ? "-3.7" : "0, -3.7");
+            ADD(&w, "\"gravity_m_per_s2\": [0, %s\"-3.7*g\"], ", m.dimension == 2 ? "" : "0, ");
         }
+        ADD(&w, "\"parameters\": {");
+        for (int k = 0; k < INPUTS; k++) {
+            ADD(&w, "%s\"%s\": {\"value\": %g}", k == 0 ? "" : ", ", INPUT[k].name,
+                INPUT[k].at);
+        }
+        ADD(&w, "}, ");
         write_bodies(&w, &m);
         write_joints(&w, &m);
         write_springs(&w, &m);
         ADD(&w, "}");
         mt_test_row(t, "seed %d", i + 1);
-        if (!mech_open(t, mech_parse(t, w.text), NULL, "", &dense)) {
+        if (!mech_open(t, mech_parse(t, w.text), NULL, "m J k L W a g", &dense)) {
             mech_free(&dense);
             continue; /* a mechanism that the dense way refuses: a dead centre */
         }
-        CHECK_INT(t, mt_lowest_new(dense.model, 0, 0, NULL, NULL, COUNT, &l, &err), MT_OK);
+        CHECK_INT(t, mt_lowest_new(dense.model, 0, INPUTS, input, dense.at, COUNT, &l, &err),
+                  MT_OK);
         if (l != NULL && l->tree != NULL) {
             compare(t, &l->found.modes, &dense.a->modes);
+            compare_slopes(t, i + 1, l, &dense, &told);
             trees++;
         } else if (l != NULL) {
             CHECK(t, hung);
@@ -280,6 +362,7 @@ static void check_trees(mt_test *t, bool hung, int least)
     }
     mt_test_row(t, "all");
     CHECK(t, trees >= least);
+    CHECK(t, told >= least - 10);
     free(w.text);
 }
 

@@ -68,10 +68,18 @@ class Large(CliTest):
 
     def test_what_is_too_large_is_refused_with_the_reason(self):
         model = large.link(6000)
-        for options, said in (((), "ask for the lowest modes alone, without shapes and dampers \\(--count\\)"),
-                              (("--count", "3", "--shapes"), "ask for the lowest modes alone"),):
+        for options, said in (((), "ask for the lowest modes alone, without dampers \\(--count\\)"),
+                              (("--count", "3", "--damped"), "ask for the lowest modes alone"),):
             done = self.expect(2, "modes", self.write("large.json", json.dumps(model)), *options)
             self.assertRegex(done.stderr, "6001 bodies are too many for dense matrices; " + said)
+        model["parameters"] = {"m": {"value": 1}}
+        model["links"][0]["mass_kg"] = "m"
+        whole = self.write("large.json", json.dumps(model))
+        study = self.write("study.json", json.dumps({
+            "format": "modetune-study/1", "name": "Too large", "model": "large.json", "variables": [{"parameter": "m", "lower": 0.5, "upper": 2}],
+            "goals": [{"type": "frequency", "configuration": "default", "mode": 1, "target_hz": 0.5}], "objective": {"minimise": "change"}}))
+        for command in (("run", study), ("info", whole), ("mac", f"{whole}:default", f"{whole}:default")):
+            self.assertIn("6001 bodies are too many for dense matrices, which take 5000", self.expect(2, *command).stderr)
         model["springs"].append({"name": "far", "type": "axial", "bodies": ["ground", "beam.end"], "at": [[1, 1], "tip"],
                                  "stiffness_n_per_m": 1})
         done = self.expect(2, "modes", self.write("loop.json", json.dumps(model)), "--count", "3")
@@ -80,16 +88,88 @@ class Large(CliTest):
         done = self.expect(2, "modes", self.write("loaded.json", json.dumps(model)), "--count", "3")
         self.assertRegex(done.stderr, r'as "beam\.\d+" is not drawn at rest under its load')
 
-    def test_a_chain_hangs(self):
-        model = {**large.link(20000), "gravity_m_per_s2": [-9.81, 0]}
-        model["points"]["tip"] = [-1, 0]
-        model["links"][0]["stiffness_n_m_per_rad"] = 0
+    def hanging(self, n):
+        model = {**large.link(n), "gravity_m_per_s2": ["-g", 0],
+                 "parameters": {name: {"value": value} for name, value in (("L", 1), ("m", 1), ("g", 9.81), ("aside", 0))}}
+        model["points"]["tip"] = ["-L", "aside"]
+        model["links"][0].update(stiffness_n_m_per_rad=0, mass_kg="m")
         del model["springs"]
-        got = self.modes(self.write("hangs.json", json.dumps(model)), "--count", "3")
+        return self.write("hangs.json", json.dumps(model))
+
+    def test_a_chain_hangs(self):
+        got = self.modes(self.hanging(20000), "--count", "3")
         self.assertEqual((got["method"], got["rigid_body_modes"]), ("tree", 0))
         self.assertEqual((got["equilibrium"]["solved"], got["equilibrium"]["iterations"]), (True, 0))
         for mode, zero in zip(got["modes"], (2.404825557695773, 5.520078110286311, 8.653727912911013)):  # of J0
             self.assertAlmostEqual(mode["frequency_hz"], zero / 2 * 9.81 ** 0.5 / 6.283185307179586, delta=1e-7)
+
+    def slopes(self, model, *options):
+        """{parameter: [d ln f / d ln p, or df/dp where p is 0, mode by mode]}"""
+        got = json.loads(self.expect(0, "sensitivity", model, "--format", "json", *options).stdout)[0]
+        out = {}
+        for mode in got["modes"]:
+            for s in mode["sensitivities"]:
+                out.setdefault(s["parameter"], []).append(s["hz_per_unit"] * (s["value"] / mode["frequency_hz"] if s["value"] else 1))
+        return got["method"], out, got["modes"]
+
+    def test_sensitivities_of_large_ones_are_powers(self):
+        model = large.beam(20000)
+        model["parameters"] = {name: {"value": value} for name, value in (("m", 1), ("E", 1e6), ("I", 1e-6), ("L", 1), ("unused", 3))}
+        model["points"]["tip"] = ["L", 0]
+        model["links"][0].update(mass_kg="m", youngs_modulus_pa="E", section={"shape": "general", "area_m2": 1, "second_moment_m4": "I"})
+        beam = self.write("beam.json", json.dumps(model))
+        for path, names, powers in ((beam, "m,E,I,L,unused", (-0.5, 0.5, 0.5, -1.5, 0)), (self.hanging(20000), "m,g,L", (0, 0.5, -0.5))):
+            method, slope, _ = self.slopes(path, "--parameters", names, "--count", "4")
+            self.assertEqual(method, "tree")
+            for name, power in zip(names.split(","), powers):
+                for got in slope[name]:
+                    self.assertAlmostEqual(got, power, delta=1e-9, msg=name)
+        self.assertIn("The lowest modes of a tree of 20001 bodies (sparse).", self.expect(0, "sensitivity", beam, "--count", "2").stdout)
+
+    def test_what_no_recursion_can_tell_is_left_to_the_dense_way(self):
+        chain = large.chain(150)
+        chain["parameters"]["gap"] = {"value": 0}
+        chain["joints"][70]["at"] = [[70 / 150, 0], [70 / 150, "gap"]]
+        for path, parameter in ((self.hanging(150), "aside"), (self.write("gap.json", json.dumps(chain)), "gap")):
+            self.assertEqual(self.slopes(path, "--parameters", parameter, "--count", "2")[0], "dense")
+            self.assertEqual(self.slopes(path, "--parameters", "m", "--count", "2")[0], "tree")
+        done = self.expect(2, "sensitivity", self.hanging(6000), "--parameters", "m,aside")
+        self.assertIn('6001 bodies are too many for dense matrices; by parameter "aside" the drawing comes to rest elsewhere', done.stderr)
+
+    def test_repeated_modes_of_many_have_directional_values(self):
+        n = 120
+        model = {"format": "modetune-model/1", "name": "Equal oscillators", "dimension": 2, "parameters": {
+            "m": {"value": 1}, "k": {"value": 1}, "stiffer": {"value": 0}, "heavier": {"value": 0}},
+            "bodies": [{"name": f"b{i}", "mass_kg": "m + heavier" if i == 7 else "m", "centre": [0, i]} for i in range(n)],
+            "springs": [{"name": f"s{i}{d}", "type": "axial", "bodies": ["ground", f"b{i}"], "at": [at, [0, i]],
+                         "stiffness_n_per_m": 1e3 if d == "y" else "k + stiffer" if i == 11 else "k"}
+                        for i in range(n) for d, at in (("x", [1, i]), ("y", [0, i - 0.5]))]}
+        method, slope, modes = self.slopes(self.write("equal.json", json.dumps(model)), "--count", "3")
+        self.assertEqual((method, [m["repeated"] for m in modes]), ("tree", [True] * 3))
+        f = 1 / 6.283185307179586
+        for name, want in (("m", [-0.5] * 3), ("k", [0.5] * 3), ("stiffer", [0] * 3), ("heavier", [-f / 2, 0, 0])):
+            for got, value in zip(slope[name], want):
+                self.assertAlmostEqual(got, value, delta=1e-9, msg=name)
+
+    def test_shapes_of_large_ones(self):
+        model = large.beam(20000)
+        model["sensors"] = [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]},
+                            {"name": "middle", "on": "beam", "fraction": 0.5, "directions": ["y", "rz"]}]
+        got = self.modes(self.write("seen.json", json.dumps(model)), "--count", "2", "--shapes")
+        self.assertEqual(got["method"], "tree")
+        first = got["modes"][0]["shape"]  # of unit mass: 2 at the tip of a cantilever, whatever the mode
+        self.assertAlmostEqual(abs(first["tip.y"]), 2, delta=1e-9)
+        self.assertAlmostEqual(first["middle.y"] / first["tip.y"], 0.339523, delta=1e-6)
+        for kind in ("link", "beam"):
+            small = self.model_of(kind, 100)
+            whole, lowest = self.modes(small, "--count", "60", "--shapes"), self.modes(small, "--count", "5", "--shapes")
+            self.assertEqual((whole["method"], lowest["method"]), ("dense", "tree"))
+            for one, other in zip(lowest["modes"], whole["modes"]):
+                self.assertEqual(one["shape"].keys(), other["shape"].keys())
+                most = max(abs(x) for x in other["shape"].values())
+                sign = 1 if sum(x * other["shape"][name] for name, x in one["shape"].items()) > 0 else -1
+                for name, x in one["shape"].items():
+                    self.assertAlmostEqual(sign * x, other["shape"][name], delta=1e-7 * most, msg=name)
 
 
 if __name__ == "__main__":

@@ -11,11 +11,13 @@
  * what is left when z takes its stationary value. The signs of the pivots of all Delta are
  * those of the eigenvalues.
  */
-#include "mechanics/tree_priv.h"
+#include "tree/tree_priv.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
+
+#include "linalg/dense.h"
 
 enum { MOST = MT_TREE_MOTION, SQUARE = MOST * MOST };
 
@@ -94,6 +96,17 @@ static inline void add_product(int s, const double *a, bool transposed, const do
     }
 }
 
+/* h (s x s) := curved - tau mass of body i; either may be NULL: none. */
+static void block(const mt_tree *t, const double *mass, const double *curved, double tau, int i,
+                  double *h)
+{
+    const ptrdiff_t square = (ptrdiff_t)t->s * t->s;
+    for (int k = 0; k < square; k++) {
+        h[k] = (curved == NULL ? 0.0 : curved[k + (square * i)]) -
+               (mass == NULL ? 0.0 : tau * mass[k + (square * i)]);
+    }
+}
+
 void mt_tree_motion(const mt_tree *t, const double *x, const double *r, double *v)
 {
     const int s = t->s;
@@ -157,6 +170,56 @@ void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *x, d
         } else if (p >= 0) {
             mt_tree_carry_back(t, i, own, other);
         }
+    }
+}
+
+void mt_tree_within(const mt_tree *t, const double *x, const double *r, const double *v,
+                    double *w)
+{
+    const int s = t->s;
+    for (int i = 0; i < t->n; i++) {
+        double *const own = w + ((ptrdiff_t)s * i);
+        if (t->carried != NULL) {
+            double along[MOST] = {0.0};
+            if (t->before[i] >= 0) {
+                carry(t, i, v + ((ptrdiff_t)s * t->before[i]), along);
+            }
+            for (int k = 0; k < s; k++) {
+                own[k] = v[k + ((ptrdiff_t)s * i)] - along[k];
+            }
+            continue;
+        }
+        const double *b = basis_of(t, i);
+        memset(own, 0, (size_t)s * sizeof *own);
+        for (int c = t->y_at[i]; c < t->y_at[i + 1]; c++, b += s) {
+            mt_axpy(s, x[c], b, own);
+        }
+        for (int c = t->loose_at[i]; c < t->loose_at[i + 1]; c++, b += s) {
+            mt_axpy(s, r[c], b, own);
+        }
+    }
+}
+
+void mt_tree_carried(const mt_tree *t, double lambda, const double *v, double *f)
+{
+    const int s = t->s;
+    memset(f, 0, (size_t)t->n * (size_t)s * sizeof *f);
+    for (int i = t->n - 1; i >= 0; i--) {
+        const int p = t->before[i];
+        const double *const shape = v + ((ptrdiff_t)s * i);
+        double *const own = f + ((ptrdiff_t)s * i);
+        double h[SQUARE];
+        block(t, t->mass, t->curved, lambda, i, h);
+        add_product(s, h, false, shape, own);
+        if (p < 0) {
+            continue;
+        }
+        if (t->shared != NULL || t->curved_shared != NULL) {
+            block(t, t->shared, t->curved_shared, lambda, i, h);
+            add_product(s, h, true, v + ((ptrdiff_t)s * p), own);
+            add_product(s, h, false, shape, f + ((ptrdiff_t)s * p));
+        }
+        mt_tree_carry_back(t, i, own, f + ((ptrdiff_t)s * p));
     }
 }
 
@@ -302,10 +365,7 @@ static void eliminate(const mt_tree *t, int i, double tau, double *h, int *below
     if (t->shared != NULL || t->curved_shared != NULL) {
         double c[SQUARE] = {0.0};
         double cx[SQUARE] = {0.0};
-        for (int k = 0; k < s * s; k++) {
-            c[k] = (t->curved_shared == NULL ? 0.0 : t->curved_shared[k + (square * i)]) -
-                   (t->shared == NULL ? 0.0 : tau * t->shared[k + (square * i)]);
-        }
+        block(t, t->shared, t->curved_shared, tau, i, c);
         product(false, s, s, s, c, e->x, cx);
         for (int k = 0; k < s; k++) {
             for (int l = 0; l < s; l++) {
@@ -322,10 +382,10 @@ static void eliminate(const mt_tree *t, int i, double tau, double *h, int *below
 /* H = K_g - tau M, body by body, in scratch. */
 static double *blocks(const mt_tree *t, double tau, mt_arena *scratch)
 {
-    const size_t size = (size_t)t->n * (size_t)t->s * (size_t)t->s;
-    double *const h = mt_arena_f64(scratch, size, 1);
-    for (size_t k = 0; k < size && h != NULL; k++) {
-        h[k] = (t->curved == NULL ? 0.0 : t->curved[k]) - (tau * t->mass[k]);
+    const ptrdiff_t square = (ptrdiff_t)t->s * t->s;
+    double *const h = mt_arena_f64(scratch, (size_t)t->n, (size_t)square);
+    for (int i = 0; i < t->n && h != NULL; i++) {
+        block(t, t->mass, t->curved, tau, i, h + (square * i));
     }
     return h;
 }

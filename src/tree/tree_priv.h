@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef MECHANICS_TREE_PRIV_H
-#define MECHANICS_TREE_PRIV_H
+#ifndef TREE_TREE_PRIV_H
+#define TREE_TREE_PRIV_H
 
 #include "mechanics/data.h"
-#include "mechanics/tree.h"
+#include "tree/tree.h"
 
 /* What the files tree*.c share while a tree is made. */
 
@@ -12,12 +12,7 @@ enum { MT_TREE_MOTION = 6, MT_TREE_EDGE_ROWS = 64 };
 typedef struct mt_tree_maker {
     mt_tree *t;
     mt_data data;
-    mt_pose *pose;         /* [bodies] as drawn */
-    int *place;            /* [bodies] where in the order */
-    int *first_constraint; /* [n] of its edge; -1: none */
-    int *next_constraint;  /* [constraints] */
-    int *first_spring;     /* [n] */
-    int *next_spring;      /* [springs] */
+    mt_pose *pose; /* [bodies] as drawn */
     char *why;
 } mt_tree_maker;
 
@@ -35,8 +30,20 @@ bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_loose
 mt_status mt_tree_masses(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_err *err);
 /* What loads it: geometric stiffness where it is drawn at rest; *is_tree false: the same.
  * Fails: MT_E_MEMORY, MT_E_NOT_SPD. */
-mt_status mt_tree_loads(mt_tree_maker *m, mt_arena *mem, mt_arena *scratch, bool *is_tree,
-                        mt_err *err);
+mt_status mt_tree_loads(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_err *err);
+/* The equations of an edge, rows of A, and the factor of A A^T scaled to a unit diagonal. */
+typedef struct mt_tree_held {
+    int c;
+    double row[MT_TREE_MOTION * MT_TREE_MOTION];
+    double gram[MT_TREE_MOTION * MT_TREE_MOTION];
+    double scale[MT_TREE_MOTION];
+} mt_tree_held;
+/* row: c x s, by row. Fails: MT_E_NOT_SPD (equations depend on each other). */
+mt_status mt_tree_hold(const mt_tree *t, int c, const double *row, mt_tree_held *h,
+                       mt_err *err);
+/* lambda[c]: A^T lambda = -g, least squares. */
+void mt_tree_multipliers(const mt_tree *t, const mt_tree_held *h, const double *g,
+                         double *lambda);
 /* After them: fill carried and scaled; *positive: K is, as its pivots tell. Fails: MT_E_MEMORY.
  * */
 mt_status mt_tree_factor(mt_tree *t, mt_arena *scratch, bool *positive, mt_err *err);

@@ -7,7 +7,7 @@
  * The geometric stiffness is that of V and of lambda times the equations: blocks of the same
  * bodies as the masses have.
  */
-#include "mechanics/tree_priv.h"
+#include "tree/tree_priv.h"
 
 #include <float.h>
 #include <math.h>
@@ -45,7 +45,7 @@ static bool add_curvature(const mt_tree_maker *m, const int body[2], double c,
     mt_tree *const t = m->t;
     const ptrdiff_t square = (ptrdiff_t)t->s * t->s;
     for (int side = 0; side < 2; side++) {
-        const int at = body[side] == MT_GROUND ? -1 : m->place[body[side]];
+        const int at = body[side] == MT_GROUND ? -1 : t->place[body[side]];
         for (int k = 0; k < t->s * t->s && at >= 0; k++) {
             const int row = k % t->s;
             const int col = k / t->s;
@@ -61,9 +61,9 @@ static bool add_curvature(const mt_tree_maker *m, const int body[2], double c,
     if (body[0] == MT_GROUND || body[1] == MT_GROUND) {
         return true;
     }
-    const int first = t->before[m->place[body[1]]] == m->place[body[0]] ? 0 : 1;
-    const int at = m->place[body[1 - first]];
-    if (t->before[at] != m->place[body[first]]) {
+    const int first = t->before[t->place[body[1]]] == t->place[body[0]] ? 0 : 1;
+    const int at = t->place[body[1 - first]];
+    if (t->before[at] != t->place[body[first]]) {
         return false;
     }
     for (int k = 0; k < t->s * t->s; k++) {
@@ -85,7 +85,7 @@ static bool add_force(const loading *l, const int body[2], double c, const mt_je
 {
     const mt_tree *const t = l->m->t;
     for (int side = 0; side < 2; side++) {
-        const int at = body[side] == MT_GROUND ? -1 : l->m->place[body[side]];
+        const int at = body[side] == MT_GROUND ? -1 : t->place[body[side]];
         for (int k = 0; k < t->s && at >= 0; k++) {
             if (is_free(t, body[side], k)) {
                 const double f = c * along(t, jet->g, side, k);
@@ -174,42 +174,51 @@ static bool is_at_rest(const loading *l, int i)
     return true;
 }
 
-/* lambda of the c equations of an edge, A^T lambda = -G, rows of A [c x s] by row: least
- * squares through A A^T, scaled to a unit diagonal. Fails: MT_E_NOT_SPD (equations depend on
- * each other). */
-static mt_status multipliers(const mt_tree *t, int c, const double *row, const double *g,
-                             double *lambda, mt_err *err)
+mt_status mt_tree_hold(const mt_tree *t, int c, const double *row, mt_tree_held *h, mt_err *err)
 {
-    double gram[MOST * MOST];
-    double scale[MOST];
     const double length = t->sys->length_m;
+    h->c = c;
+    for (int i = 0; i < c; i++) {
+        for (int k = 0; k < t->s; k++) {
+            h->row[k + (i * t->s)] =
+                row[k + (i * t->s)] / (mt_tree_freedom(t, k) >= 3 ? length : 1.0);
+        }
+        h->scale[i] = 1.0 / mt_norm2(t->s, h->row + ((ptrdiff_t)i * t->s));
+    }
     for (int i = 0; i < c; i++) {
         for (int j = 0; j < c; j++) {
-            gram[i + (j * c)] = 0.0;
-            for (int k = 0; k < t->s; k++) {
-                const double unit = mt_tree_freedom(t, k) >= 3 ? length : 1.0;
-                gram[i + (j * c)] += row[k + (i * t->s)] / unit * row[k + (j * t->s)] / unit;
-            }
+            h->gram[i + (j * c)] =
+                h->scale[i] * h->scale[j] *
+                mt_dot(t->s, h->row + ((ptrdiff_t)i * t->s), h->row + ((ptrdiff_t)j * t->s));
         }
-        scale[i] = 1.0 / sqrt(gram[i + (i * c)]);
+    }
+    return c == 0 ? MT_OK : mt_cholesky(c, h->gram, NULL, err);
+}
+
+void mt_tree_multipliers(const mt_tree *t, const mt_tree_held *h, const double *g,
+                         double *lambda)
+{
+    const double length = t->sys->length_m;
+    for (int i = 0; i < h->c; i++) {
         lambda[i] = 0.0;
         for (int k = 0; k < t->s; k++) {
-            const double unit = mt_tree_freedom(t, k) >= 3 ? length : 1.0;
-            lambda[i] -= scale[i] * row[k + (i * t->s)] / unit * g[k] / unit;
+            lambda[i] -= h->scale[i] * h->row[k + (i * t->s)] * g[k] /
+                         (mt_tree_freedom(t, k) >= 3 ? length : 1.0);
         }
-    }
-    for (int i = 0; i < c; i++) {
-        for (int j = 0; j < c; j++) {
-            gram[i + (j * c)] *= scale[i] * scale[j];
+        for (int j = 0; j < i; j++) { /* L^-1 */
+            lambda[i] -= h->gram[i + (j * h->c)] * lambda[j];
         }
+        lambda[i] /= h->gram[i + (i * h->c)];
     }
-    MT_TRY(mt_cholesky(c, gram, NULL, err));
-    mt_tri_solve(false, c, 1, gram, lambda, c);
-    mt_tri_solve(true, c, 1, gram, lambda, c);
-    for (int i = 0; i < c; i++) {
-        lambda[i] *= scale[i];
+    for (int i = h->c - 1; i >= 0; i--) { /* L^-T */
+        for (int j = i + 1; j < h->c; j++) {
+            lambda[i] -= h->gram[j + (i * h->c)] * lambda[j];
+        }
+        lambda[i] /= h->gram[i + (i * h->c)];
     }
-    return MT_OK;
+    for (int i = 0; i < h->c; i++) {
+        lambda[i] *= h->scale[i];
+    }
 }
 
 /* The joints of edge i hold G_i: their curvature, and G of the body before. */
@@ -220,10 +229,11 @@ static mt_status hold(const loading *l, int i, mt_err *err)
     const mt_system *const sys = t->sys;
     double row[MOST * MOST];
     double lambda[MOST] = {0.0};
+    mt_tree_held held;
     mt_jet jet[MOST];
     int c = 0;
     const double *const g = l->g + ((ptrdiff_t)t->s * i);
-    for (int k = m->first_constraint[i]; k >= 0; k = m->next_constraint[k], c++) {
+    for (int k = t->first_constraint[i]; k >= 0; k = t->next_constraint[k], c++) {
         const mt_measure_def *const def = &sys->measures[sys->constraints[k].measure[0]];
         const mt_measure_data measure = mt_data_measure(&m->data, def);
         const int side = def->body[1] == t->body[i] ? 1 : 0;
@@ -233,12 +243,12 @@ static mt_status hold(const loading *l, int i, mt_err *err)
             row[r + (c * t->s)] = is_free(t, t->body[i], r) ? along(t, jet[c].g, side, r) : 0.0;
         }
     }
-    if (c > 0) {
-        MT_TRY(multipliers(t, c, row, g, lambda, err));
-    }
+    MT_TRY(mt_tree_hold(t, c, row, &held, err));
+    mt_tree_multipliers(t, &held, g, lambda);
     c = 0;
-    for (int k = m->first_constraint[i]; k >= 0; k = m->next_constraint[k], c++) {
+    for (int k = t->first_constraint[i]; k >= 0; k = t->next_constraint[k], c++) {
         const mt_measure_def *const def = &sys->measures[sys->constraints[k].measure[0]];
+        t->held[k] = lambda[c];
         (void)add_curvature(m, def->body, lambda[c], &jet[c]);
     }
     if (t->before[i] >= 0) {
@@ -248,17 +258,17 @@ static mt_status hold(const loading *l, int i, mt_err *err)
     return MT_OK;
 }
 
-mt_status mt_tree_loads(mt_tree_maker *m, mt_arena *mem, mt_arena *scratch, bool *is_tree,
-                        mt_err *err)
+mt_status mt_tree_loads(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_err *err)
 {
     mt_tree *const t = m->t;
     const size_t n = (size_t)t->n;
     const size_t s = (size_t)t->s;
-    const loading l = {.m = m, .g = mt_arena_f64(scratch, s, n)};
+    t->pushed = mt_arena_f64(mem, s, n);
+    t->held = mt_arena_f64(mem, (size_t)t->sys->n_constraints, 1);
+    const loading l = {.m = m, .g = t->pushed};
     t->force = mt_arena_f64(mem, n, 1);
     t->curved = mt_arena_f64(mem, n * s, s);
     t->curved_shared = mt_arena_f64(mem, n * s, s);
-    MT_TRY(mt_arena_check(scratch, err));
     MT_TRY(mt_arena_check(mem, err));
     *is_tree = add_loads(&l);
     for (int i = t->n - 1; i >= 0 && *is_tree; i--) {

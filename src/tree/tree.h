@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef MECHANICS_TREE_H
-#define MECHANICS_TREE_H
+#ifndef TREE_TREE_H
+#define TREE_TREE_H
 
 #include "mechanics/system.h"
 
@@ -34,6 +34,11 @@ typedef struct mt_tree {
     int depth;             /* bodies on the longest way to the ground */
     int *body;             /* [n] of the system, each behind the one before it */
     int *before;           /* [n] place in this order; -1: the ground, or nothing */
+    int *place;            /* [bodies] of the system: where in this order */
+    int *first_constraint; /* [n] of its edge; -1: none; then next_constraint[constraints] */
+    int *next_constraint;
+    int *first_spring; /* [n] of those that act, likewise; next_spring[springs] */
+    int *next_spring;
     bool *point;           /* [n] a point mass: does not turn */
     int *y_at;             /* [n + 1] */
     int *loose_at;         /* [n + 1] */
@@ -44,6 +49,8 @@ typedef struct mt_tree {
     double *curved;        /* s x s of each body: geometric stiffness; NULL: nothing loads */
     double *curved_shared; /* as shared */
     double *force;         /* [n] sum of the sizes of all forces there, and beyond [N] */
+    double *pushed;        /* s x n: gradient of the loads' potential there, and beyond */
+    double *held;          /* [constraints] what each equation holds of them */
     double *carried;       /* X', s x s of each body, where something loads */
     double *scaled;        /* N', as basis */
 } mt_tree;
@@ -63,6 +70,18 @@ mt_status mt_tree_new(const mt_system *sys, const double *inputs, mt_arena *mem,
 void mt_tree_motion(const mt_tree *t, const double *x, const double *r, double *v);
 /* x[n_x], r[n_rigid] (may be NULL) := T^T M_bodies v; f[s n] is work. */
 void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *x, double *r);
+/* w[s n] := what each body does beyond moving along with the one before it: N (F y + R r). v
+ * from mt_tree_motion of the same (x, r). */
+void mt_tree_within(const mt_tree *t, const double *x, const double *r, const double *v,
+                    double *w);
+/* f[s n] := (K_g - lambda M_bodies) v of each body and all beyond it: what its edge carries. */
+void mt_tree_carried(const mt_tree *t, double lambda, const double *v, double *f);
+/* phi[nq] := v by states. */
+void mt_tree_states(const mt_tree *t, const double *v, double *phi);
+/* The system's channels for n such shapes, phi nq x n: value n_channels x n. Scratch is given
+ * back. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
+mt_status mt_tree_sense(const mt_tree *t, const double *inputs, int n, const double *phi,
+                        double *value, mt_arena *scratch, mt_err *err);
 /* Mass of all bodies [kg]. */
 double mt_tree_mass(const mt_tree *t);
 /* How many eigenvalues of K - tau M are below 0, by Sylvester's law: *below counts
@@ -70,5 +89,30 @@ double mt_tree_mass(const mt_tree *t);
  * small that rounding may have made its sign. Scratch s^2 n. Fails: MT_E_MEMORY. */
 mt_status mt_tree_count(const mt_tree *t, double tau, mt_arena *scratch, int *below,
                         bool *certain, mt_err *err);
+
+/* Modes of a tree, of unit mass. */
+typedef struct mt_tree_modes {
+    int n;
+    const double *x;      /* n_x x n */
+    const double *r;      /* n_rigid x n: what follows */
+    const double *v;      /* s n x n, T (x, r) */
+    const double *lambda; /* [n] of repeated ones their mean */
+    int n_pairs;
+    const int (*pair)[2]; /* modes of one lambda each */
+} mt_tree_modes;
+
+/**
+ * Slopes of eigenvalues by every input: exact, O(bodies) for an input that touches everything.
+ * @param[in]  inputs  [n_inputs] those that the tree was made with
+ * @param[out] slope   n_pairs x n_inputs, phi_a^T (K - lambda M)' phi_b in coordinates of the
+ *   freedoms: of a pair (a, a) lambda', of repeated modes the matrix whose eigenvalues are
+ *   their directional derivatives
+ * @param[out] why     "" or why there are none: "by parameter \"L\" the drawing comes to rest
+ *   elsewhere"
+ * Scratch is given back. Fails: MT_E_DOMAIN (a number has no derivative), MT_E_INTERRUPTED,
+ * MT_E_NOT_SPD, MT_E_MEMORY.
+ */
+mt_status mt_tree_slopes(const mt_tree *t, const double *inputs, const mt_tree_modes *modes,
+                         double *slope, char why[MT_TREE_WHY], mt_arena *scratch, mt_err *err);
 
 #endif

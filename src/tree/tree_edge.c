@@ -8,7 +8,7 @@
  * lie apart between the directions of an edge. Rotations are measured by the length that makes
  * the rows' halves alike.
  */
-#include "mechanics/tree_priv.h"
+#include "tree/tree_priv.h"
 
 #include <float.h>
 #include <math.h>
@@ -259,10 +259,11 @@ static void jacobi(const mt_tree *t, int n, int d, double *b, double *null)
 
 static bool collect(mt_tree_maker *m, int i, bool springs, edge *e)
 {
-    const mt_system *const sys = m->t->sys;
-    const int first = springs ? m->first_spring[i] : m->first_constraint[i];
+    const mt_tree *const t = m->t;
+    const mt_system *const sys = t->sys;
+    const int first = springs ? t->first_spring[i] : t->first_constraint[i];
     e->n = 0;
-    for (int k = first; k >= 0; k = springs ? m->next_spring[k] : m->next_constraint[k]) {
+    for (int k = first; k >= 0; k = springs ? t->next_spring[k] : t->next_constraint[k]) {
         const int measure =
             springs ? sys->springs[k].measure[0] : sys->constraints[k].measure[0];
         const double weight = springs ? sqrt(m->data.value[sys->springs[k].stiffness]) : 1.0;

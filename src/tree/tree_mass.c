@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Masses of the bodies of a tree: a block of each, and one with the body before it where they
  * share some (beam elements, bars). */
-#include "mechanics/tree_priv.h"
+#include "tree/tree_priv.h"
 
 #include <string.h>
 
@@ -47,15 +47,15 @@ static void add_term(mt_tree_maker *m, const mt_term *term, double c, const mt_c
             if (term->body[side] == MT_GROUND) {
                 continue;
             }
-            double *const own = t->mass + (square * m->place[term->body[side]]);
+            double *const own = t->mass + (square * t->place[term->body[side]]);
             add_block(t, 0.5 * c, a, side, b, side, own);
             add_block(t, 0.5 * c, b, side, a, side, own);
         }
         if (same || term->body[0] == MT_GROUND || term->body[1] == MT_GROUND) {
             continue;
         }
-        const int first = m->place[term->body[0]];
-        const int second = m->place[term->body[1]];
+        const int first = t->place[term->body[0]];
+        const int second = t->place[term->body[1]];
         const int before = t->before[second] == first ? 0 : 1; /* side of the body before */
         double *const shared = t->shared + (square * (before == 0 ? second : first));
         add_block(t, c, a, before, a, 1 - before, shared); /* no pair is of two bodies */

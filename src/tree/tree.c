@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Is a system a tree, and in what order do its bodies stand? Breadth first from the ground,
  * then from the first body of each part that nothing ties to it. */
-#include "mechanics/tree.h"
+#include "tree/tree.h"
 
-#include "mechanics/tree_priv.h"
+#include "tree/tree_priv.h"
 
 #include <math.h>
 #include <string.h>
@@ -147,21 +147,21 @@ static bool find_order(order *o, mt_tree *t, char *why)
 }
 
 /* The edges' own constraints and springs, as lists in order. */
-static void list_edges(mt_tree_maker *m, const order *o)
+static void list_edges(mt_tree *t, const order *o)
 {
-    memset(m->first_constraint, 0xFF, (size_t)m->t->n * sizeof(int)); /* -1 */
-    memset(m->first_spring, 0xFF, (size_t)m->t->n * sizeof(int));
+    memset(t->first_constraint, 0xFF, (size_t)t->n * sizeof(int)); /* -1 */
+    memset(t->first_spring, 0xFF, (size_t)t->n * sizeof(int));
     for (int i = o->n_ties - 1; i >= 0; i--) {
         const tie *const e = &o->ties[i];
         const int a = e->body[0];
         const int b = e->body[1];
         const int owner = o->place[b != MT_GROUND && o->above[b] == a ? b : a];
         if (e->kind == TIE_JOINT) {
-            m->next_constraint[e->which] = m->first_constraint[owner];
-            m->first_constraint[owner] = e->which;
+            t->next_constraint[e->which] = t->first_constraint[owner];
+            t->first_constraint[owner] = e->which;
         } else if (e->kind == TIE_SPRING) {
-            m->next_spring[e->which] = m->first_spring[owner];
-            m->first_spring[owner] = e->which;
+            t->next_spring[e->which] = t->first_spring[owner];
+            t->first_spring[owner] = e->which;
         }
     }
 }
@@ -179,11 +179,12 @@ static mt_status order_bodies(mt_tree_maker *m, mt_arena *mem, mt_arena *scratch
     o.first = mt_arena_int(scratch, nb + 2);
     o.list = mt_arena_int(scratch, 2 * most);
     o.above = mt_arena_int(scratch, nb);
-    o.place = mt_arena_int(scratch, nb);
-    m->first_constraint = mt_arena_int(scratch, nb);
-    m->first_spring = mt_arena_int(scratch, nb);
-    m->next_constraint = mt_arena_int(scratch, (size_t)sys->n_constraints);
-    m->next_spring = mt_arena_int(scratch, (size_t)sys->n_springs);
+    t->place = mt_arena_int(mem, nb);
+    t->first_constraint = mt_arena_int(mem, nb);
+    t->first_spring = mt_arena_int(mem, nb);
+    t->next_constraint = mt_arena_int(mem, (size_t)sys->n_constraints);
+    t->next_spring = mt_arena_int(mem, (size_t)sys->n_springs);
+    o.place = t->place;
     t->body = mt_arena_int(mem, nb);
     t->before = mt_arena_int(mem, nb);
     MT_TRY(mt_arena_check(scratch, err));
@@ -193,9 +194,8 @@ static mt_status order_bodies(mt_tree_maker *m, mt_arena *mem, mt_arena *scratch
     sort_ties(&o);
     *is_tree = find_order(&o, t, m->why);
     if (*is_tree) {
-        list_edges(m, &o);
+        list_edges(t, &o);
     }
-    m->place = o.place;
     return MT_OK;
 }
 
@@ -348,7 +348,7 @@ static mt_status make(mt_tree_maker *m, const double *inputs, mt_arena *mem, mt_
         MT_TRY(mt_tree_masses(m, mem, is_tree, err));
     }
     if (*is_tree && sys->loaded) {
-        MT_TRY(mt_tree_loads(m, mem, scratch, is_tree, err));
+        MT_TRY(mt_tree_loads(m, mem, is_tree, err));
     }
     if (*is_tree) {
         MT_TRY(choose_coordinates(m, mem, is_tree, err));

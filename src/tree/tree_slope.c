@@ -1,0 +1,583 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Slopes of eigenvalues, a dash being the derivative by an input. With constraints A phi = 0
+ * and K phi - lambda M phi + A^T mu = 0,
+ *     lambda' = phi^T (K' - lambda M') phi + 2 mu^T A' phi,    phi^T M phi = 1.
+ * A measure of an edge has the gradient f over the motion of its body and -X^T f over that of
+ * the body before, so with w_i = v_i - X_i v_before, which the recursion knows without
+ * cancellation,
+ *     f . w' = f' . w_i - f . X' v_before.
+ * All that an edge transmits, of springs (k s f, s = f . w) and joints (mu f), balances what
+ * is beyond it, P_i = sum of (K_g - lambda M) v: the last terms of an edge make P_i . X'
+ * v_before. An edge thus gives
+ *     sum over springs of k' s^2 + 2 k s f' . w,    over equations of 2 mu f' . w,
+ *     and 2 P . X' v_before,
+ * each a sum over what the input touches. Of repeated modes the same as a symmetric form.
+ */
+#include "tree/tree_slope_priv.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/format.h"
+#include "base/interrupt.h"
+#include "linalg/dense.h"
+
+enum { MOST = MT_TREE_MOTION, MOST_ROWS = 16 };
+
+/* Rounding of a row's product with the basis, in units of its terms. */
+static const double ROW_ULPS = 16.0;
+/* A gap's derivative below this part of the drawing's own is rounding. */
+static const double DRAWN_CLOSED = 1e-10;
+
+static bool vec_moves(const mt_tree_slope *w, int vec, int p)
+{
+    enum { BITS = 64 };
+    const ptrdiff_t words = w->sys->program.words;
+    return vec >= 0 && p >= 0 &&
+           ((w->vec_inputs[(words * vec) + (p / BITS)] >> (unsigned)(p % BITS)) & 1U) != 0U;
+}
+
+/* The inputs of each vector; operands come first. */
+static void find_inputs(mt_tree_slope *w)
+{
+    const mt_program *const program = &w->sys->program;
+    const ptrdiff_t words = program->words;
+    for (int i = 0; i < w->sys->n_vecs; i++) {
+        const mt_vec_def *const def = &w->sys->vecs[i];
+        uint64_t *const set = w->vec_inputs + (words * i);
+        const bool nodes = def->kind == MT_VEC_NODES || def->kind == MT_VEC_UNIT;
+        for (int k = 0; k < 3 && nodes; k++) {
+            mt_program_include_inputs(program, def->node[k], set);
+        }
+        for (ptrdiff_t k = 0; k < words && !nodes; k++) {
+            set[k] = w->vec_inputs[(words * def->axis) + k] |
+                     (def->kind == MT_VEC_CROSS ? w->vec_inputs[(words * def->helper) + k] : 0);
+        }
+    }
+}
+
+/* The data and poses along input p; -1: values alone. */
+static void turn_to(mt_tree_slope *w, int p)
+{
+    const int last = w->data.input;
+    w->data.input = p;
+    for (int i = 0; i < w->sys->n_vecs; i++) {
+        if (vec_moves(w, i, p) || vec_moves(w, i, last)) {
+            mt_data_vec(&w->data, i);
+        }
+    }
+    for (int b = 0; b < w->sys->n_bodies; b++) {
+        const int centre = w->sys->bodies[b].centre;
+        if (vec_moves(w, centre, p) || vec_moves(w, centre, last)) {
+            memcpy(w->pose[b].x, w->data.vec[centre], sizeof w->pose[b].x);
+        }
+    }
+}
+
+double mt_tree_slope_of(const mt_tree_slope *w, mt_node node)
+{
+    const int p = w->data.input;
+    return node == MT_NO_NODE || p < 0 ? 0.0
+                                       : w->data.grad[((ptrdiff_t)node * w->sys->n_inputs) + p];
+}
+
+bool mt_tree_slope_moves_vec(const mt_tree_slope *w, int vec)
+{
+    return vec_moves(w, vec, w->data.input);
+}
+
+static bool centre_moves(const mt_tree_slope *w, int body)
+{
+    return body != MT_GROUND && vec_moves(w, w->sys->bodies[body].centre, w->data.input);
+}
+
+bool mt_tree_slope_moves(const mt_tree_slope *w, const mt_measure_def *def)
+{
+    const int p = w->data.input;
+    bool moves = centre_moves(w, def->body[0]) || centre_moves(w, def->body[1]);
+    for (int k = 0; k < 2; k++) {
+        moves = moves || vec_moves(w, def->point[k], p);
+    }
+    for (int k = 0; k < 3; k++) {
+        moves = moves || vec_moves(w, def->dir[k], p);
+    }
+    for (int k = 0; k < MT_BEAM_NUMBERS && def->kind == MT_MEASURE_BEAM; k++) {
+        moves = moves || mt_tree_slope_of(w, def->beam[k]) != 0.0;
+    }
+    return moves;
+}
+
+void mt_tree_slope_jet(const mt_tree_slope *w, const mt_measure_def *def, bool second,
+                       mt_jet *jet)
+{
+    const mt_measure_data measure = mt_data_measure(&w->data, def);
+    mt_measure_eval(&measure, mt_pose_of(w->pose, def->body[0]),
+                    mt_pose_of(w->pose, def->body[1]), second, jet);
+}
+
+void mt_tree_slope_row(const mt_tree_slope *w, const mt_measure_def *def, int i,
+                       const mt_jet *jet, double *row, double *drow)
+{
+    const mt_tree *const t = w->t;
+    const int side = def->body[1] == t->body[i] ? 1 : 0;
+    for (int k = 0; k < t->s; k++) {
+        const int local = mt_tree_freedom(t, k);
+        const mt_cx g =
+            w->sys->bodies[t->body[i]].dof[local] >= 0 ? jet->g[(6 * side) + local] : 0.0;
+        row[k] = creal(g);
+        drow[k] = cx_derivative(g);
+    }
+}
+
+void mt_tree_slope_pair(const mt_tree_slope *w, int a, const int body[2], double *phi)
+{
+    const mt_tree *const t = w->t;
+    memset(phi, 0, MT_LOCAL * sizeof *phi);
+    for (int side = 0; side < 2; side++) {
+        if (body[side] == MT_GROUND) {
+            continue;
+        }
+        const double *const v = mt_tree_slope_at(w, w->modes->v, t->place[body[side]], a);
+        for (int k = 0; k < t->s; k++) {
+            const int local = mt_tree_freedom(t, k);
+            phi[(6 * side) + local] = w->sys->bodies[body[side]].dof[local] >= 0 ? v[k] : 0.0;
+        }
+    }
+}
+
+/* Slope by the present input += the symmetric form of left[a] and right[b]. */
+static void add_form(mt_tree_slope *w, const double *left, const double *right)
+{
+    const mt_tree_modes *const m = w->modes;
+    double *const slope = w->slope + ((ptrdiff_t)m->n_pairs * w->data.input);
+    for (int k = 0; k < m->n_pairs; k++) {
+        const int a = m->pair[k][0];
+        const int b = m->pair[k][1];
+        slope[k] += (left[a] * right[b]) + (left[b] * right[a]);
+    }
+}
+
+void mt_tree_slope_refuse(const mt_tree_slope *w, const char *text)
+{
+    const int parameter = w->sys->inputs[w->data.input];
+    (void)mt_snprintf(w->why, MT_TREE_WHY, "by %s%s%s %s",
+                      parameter < 0 ? "the driven position" : "parameter \"",
+                      parameter < 0 ? "" : w->sys->model->parameters[parameter].name.s,
+                      parameter < 0 ? "" : "\"", text);
+}
+
+/* Does any input move this node? */
+static bool varies(const mt_tree_slope *w, mt_node node)
+{
+    const double *const g = w->data.grad + ((ptrdiff_t)node * w->sys->n_inputs);
+    bool any = false;
+    for (int p = 0; p < w->sys->n_inputs; p++) {
+        any = any || g[p] != 0.0;
+    }
+    return any;
+}
+
+/* Slopes by all inputs += sign times their share of the coefficient times the energies. */
+static void add_energies(mt_tree_slope *w, double sign, mt_node coefficient)
+{
+    const int np = w->sys->n_inputs;
+    const double *const g = w->data.grad + ((ptrdiff_t)coefficient * np);
+    for (int p = 0; p < np; p++) {
+        if (g[p] != 0.0) {
+            mt_axpy(w->modes->n_pairs, sign * g[p], w->energy,
+                    w->slope + ((ptrdiff_t)w->modes->n_pairs * p));
+        }
+    }
+}
+
+/* energy += the form of rows projected[2 a], projected[2 a + 1] of each mode a. */
+static void add_products(mt_tree_slope *w, bool pair)
+{
+    const mt_tree_modes *const m = w->modes;
+    for (int k = 0; k < m->n_pairs; k++) {
+        const double *const a = w->projected + ((ptrdiff_t)2 * m->pair[k][0]);
+        const double *const b = w->projected + ((ptrdiff_t)2 * m->pair[k][1]);
+        w->energy[k] += pair ? 0.5 * ((a[0] * b[1]) + (a[1] * b[0])) : a[0] * b[0];
+    }
+}
+
+/* Energies of a term with rows over both bodies. */
+static void term_energies(mt_tree_slope *w, mt_term_kind kind, const mt_term *term)
+{
+    mt_cx rows[MOST_ROWS * MT_LOCAL];
+    mt_term_rows(&w->data, kind, term, w->pose, rows);
+    memset(w->energy, 0, (size_t)w->modes->n_pairs * sizeof *w->energy);
+    for (int r = 0; r < (term->pair ? 1 : term->count); r++) {
+        for (int a = 0; a < w->modes->n; a++) {
+            double phi[MT_LOCAL];
+            double sum[2] = {0.0, 0.0};
+            mt_tree_slope_pair(w, a, term->body, phi);
+            for (int k = 0; k < MT_LOCAL; k++) {
+                sum[0] += creal(rows[k + (MT_LOCAL * r)]) * phi[k];
+                sum[1] += term->pair ? creal(rows[k + MT_LOCAL]) * phi[k] : 0.0;
+            }
+            double *const projected = w->projected + ((ptrdiff_t)2 * a);
+            projected[0] = sum[0];
+            projected[1] = sum[1];
+        }
+        add_products(w, term->pair);
+    }
+}
+
+/* How far mode a stretches a spring of edge i: by coordinates, whose products with the row are
+ * rounding or clear, where the mode is told in these. */
+static double stretch(const mt_tree_slope *w, int i, int a, const double *row,
+                      const double *product)
+{
+    const mt_tree *const t = w->t;
+    if (t->carried != NULL) {
+        return mt_dot(t->s, row, mt_tree_slope_at(w, w->within, i, a));
+    }
+    const int n_y = t->y_at[i + 1] - t->y_at[i];
+    const int loose = t->loose_at[i + 1] - t->loose_at[i];
+    const double *const x = w->modes->x + ((ptrdiff_t)t->n_x * a) + t->y_at[i];
+    const double *const r = w->modes->r + ((ptrdiff_t)t->n_rigid * a) + t->loose_at[i];
+    return mt_dot(n_y, product, x) + mt_dot(loose, product + n_y, r);
+}
+
+static void spring_of_edge(mt_tree_slope *w, int q, int i)
+{
+    const mt_tree *const t = w->t;
+    const mt_spring_def *const def = &w->sys->springs[q];
+    const mt_measure_def *const measure = &w->sys->measures[def->measure[0]];
+    const double k = w->data.value[def->stiffness];
+    const int first = t->y_at[i] + t->loose_at[i];
+    const int d = t->y_at[i + 1] + t->loose_at[i + 1] - first;
+    double row[MOST];
+    double drow[MOST];
+    double product[MOST];
+    mt_jet jet;
+    mt_tree_slope_jet(w, measure, false, &jet);
+    mt_tree_slope_row(w, measure, i, &jet, row, drow);
+    for (int c = 0; c < d; c++) {
+        const double *const b = t->basis + ((ptrdiff_t)t->s * (first + c));
+        double size = 0.0;
+        product[c] = 0.0;
+        for (int l = 0; l < t->s; l++) {
+            product[c] += row[l] * b[l];
+            size += fabs(row[l] * b[l]);
+        }
+        product[c] = fabs(product[c]) <= ROW_ULPS * DBL_EPSILON * size ? 0.0 : product[c];
+    }
+    for (int a = 0; a < w->modes->n; a++) {
+        const double s = stretch(w, i, a, row, product);
+        w->projected[(ptrdiff_t)2 * a] = s;
+        w->force[q + ((ptrdiff_t)w->sys->n_springs * a)] = k * s;
+    }
+    if (varies(w, def->stiffness)) {
+        memset(w->energy, 0, (size_t)w->modes->n_pairs * sizeof *w->energy);
+        add_products(w, false);
+        add_energies(w, 1.0, def->stiffness);
+    }
+}
+
+/* Stiffnesses and masses, at the geometry that there is; forces of springs. */
+static void coefficients(mt_tree_slope *w)
+{
+    const mt_system *const sys = w->sys;
+    const mt_tree *const t = w->t;
+    for (int i = 0; i < t->n; i++) {
+        for (int q = t->first_spring[i]; q >= 0; q = t->next_spring[q]) {
+            if (w->data.value[sys->springs[q].stiffness] != 0.0) {
+                spring_of_edge(w, q, i);
+            }
+        }
+    }
+    for (int q = 0; q < sys->n_springs; q++) { /* no edge, as it has no stiffness yet */
+        const mt_spring_def *const s = &sys->springs[q];
+        if (!s->damper && w->data.value[s->stiffness] == 0.0 && varies(w, s->stiffness)) {
+            const bool pair = s->measure[0] != s->measure[1];
+            const int *const body = sys->measures[s->measure[0]].body;
+            const mt_term term = {.coefficient = s->stiffness,
+                                  .count = pair ? 2 : 1,
+                                  .pair = pair,
+                                  .body = {body[0], body[1]},
+                                  .source = q};
+            term_energies(w, MT_TERM_STIFFNESS, &term);
+            add_energies(w, 1.0, s->stiffness);
+        }
+    }
+    for (int i = 0; i < sys->n_inertias; i++) {
+        const mt_term term = mt_term_of_inertia(sys, i);
+        if (varies(w, term.coefficient)) {
+            term_energies(w, MT_TERM_MASS, &term);
+            for (int k = 0; k < w->modes->n_pairs; k++) {
+                w->energy[k] *= w->modes->lambda[w->modes->pair[k][0]];
+            }
+            add_energies(w, -1.0, term.coefficient);
+        }
+    }
+}
+
+/* What the mode makes of the joints of edge i: A^T mu = -(P + sum of k s f). */
+static mt_status hold(mt_tree_slope *w, int i, mt_err *err)
+{
+    const mt_tree *const t = w->t;
+    const mt_system *const sys = w->sys;
+    double row[MOST * MOST] = {0.0};
+    double drow[MOST];
+    double spring[MT_TREE_EDGE_ROWS * MOST];
+    double g[MOST];
+    double mu[MOST];
+    mt_jet jet;
+    mt_tree_held held;
+    int c = 0;
+    int n = 0;
+    for (int k = t->first_constraint[i]; k >= 0; k = t->next_constraint[k], c++) {
+        const mt_measure_def *const def = &sys->measures[sys->constraints[k].measure[0]];
+        mt_tree_slope_jet(w, def, w->curved != NULL, &jet);
+        mt_tree_slope_row(w, def, i, &jet, row + ((ptrdiff_t)t->s * c), drow);
+        if (w->curved != NULL) {
+            mt_tree_slope_form(w, def->body, &jet, false,
+                               w->curved + ((ptrdiff_t)w->modes->n_pairs * k));
+        }
+    }
+    for (int q = t->first_spring[i]; q >= 0 && c > 0; q = t->next_spring[q], n++) {
+        const mt_measure_def *const def = &sys->measures[sys->springs[q].measure[0]];
+        mt_tree_slope_jet(w, def, false, &jet);
+        mt_tree_slope_row(w, def, i, &jet, spring + ((ptrdiff_t)t->s * n), drow);
+    }
+    MT_TRY(mt_tree_hold(t, c, row, &held, err));
+    for (int a = 0; a < w->modes->n && c > 0; a++) {
+        memcpy(g, mt_tree_slope_at(w, w->carried, i, a), (size_t)t->s * sizeof *g);
+        n = 0;
+        for (int q = t->first_spring[i]; q >= 0; q = t->next_spring[q], n++) {
+            mt_axpy(t->s, w->force[q + ((ptrdiff_t)sys->n_springs * a)],
+                    spring + ((ptrdiff_t)t->s * n), g);
+        }
+        mt_tree_multipliers(t, &held, g, mu);
+        c = 0;
+        for (int k = t->first_constraint[i]; k >= 0; k = t->next_constraint[k], c++) {
+            w->mu[k + ((ptrdiff_t)sys->n_constraints * a)] = mu[c];
+        }
+    }
+    return MT_OK;
+}
+
+/* slope += f' . w of a measure of edge i times what it transmits, of[list a + which]. */
+static void add_row(mt_tree_slope *w, int i, const mt_measure_def *def, const double *of,
+                    ptrdiff_t list)
+{
+    double row[MOST];
+    double drow[MOST];
+    mt_jet jet;
+    if (!mt_tree_slope_moves(w, def)) {
+        return;
+    }
+    double *const moved = w->projected + w->modes->n;
+    mt_tree_slope_jet(w, def, false, &jet);
+    mt_tree_slope_row(w, def, i, &jet, row, drow);
+    for (int a = 0; a < w->modes->n; a++) {
+        w->projected[a] = of[list * a];
+        moved[a] = mt_dot(w->t->s, drow, mt_tree_slope_at(w, w->within, i, a));
+    }
+    add_form(w, w->projected, moved);
+}
+
+/* P . X' v_before: X' v = theta x a', a the arm. */
+static void add_arm(mt_tree_slope *w, int i)
+{
+    const mt_tree *const t = w->t;
+    const mt_tree_modes *const m = w->modes;
+    const int p = t->before[i];
+    if (p < 0 || !(centre_moves(w, t->body[i]) || centre_moves(w, t->body[p]))) {
+        return;
+    }
+    double a[3];
+    double *const slope = w->slope + ((ptrdiff_t)m->n_pairs * w->data.input);
+    for (int k = 0; k < 3; k++) {
+        a[k] = cx_derivative(w->pose[t->body[i]].x[k] - w->pose[t->body[p]].x[k]);
+    }
+    for (int k = 0; k < 2 * m->n_pairs; k++) {
+        const double *const f = mt_tree_slope_at(w, w->carried, i, m->pair[k / 2][k % 2]);
+        const double *const v = mt_tree_slope_at(w, m->v, p, m->pair[k / 2][1 - (k % 2)]);
+        if (t->s == 3) {
+            slope[k / 2] += v[2] * ((f[1] * a[0]) - (f[0] * a[1]));
+        } else {
+            const double *const u = v + 3;
+            slope[k / 2] += (f[0] * ((u[1] * a[2]) - (u[2] * a[1]))) +
+                            (f[1] * ((u[2] * a[0]) - (u[0] * a[2]))) +
+                            (f[2] * ((u[0] * a[1]) - (u[1] * a[0])));
+        }
+    }
+}
+
+static bool inertia_moves(const mt_tree_slope *w, const mt_inertia_def *def)
+{
+    const int p = w->data.input;
+    bool moves = centre_moves(w, def->body[0]) || centre_moves(w, def->body[1]);
+    for (int k = 0; k < 2; k++) {
+        moves = moves || vec_moves(w, def->point[k], p) ||
+                mt_tree_slope_of(w, def->shape[k]) != 0.0;
+    }
+    for (int k = 0; k < 3; k++) {
+        moves = moves || vec_moves(w, def->dir[k], p);
+    }
+    return moves;
+}
+
+/* slope -= lambda m (g . v)' of a mass whose rows move. */
+static void add_inertia(mt_tree_slope *w, int i)
+{
+    const mt_tree_modes *const m = w->modes;
+    const mt_term term = mt_term_of_inertia(w->sys, i);
+    const double c = w->data.value[term.coefficient];
+    double *const moved = w->projected + m->n;
+    mt_cx rows[MOST_ROWS * MT_LOCAL];
+    if (c == 0.0 || !inertia_moves(w, &w->sys->inertias[i])) {
+        return;
+    }
+    mt_term_rows(&w->data, MT_TERM_MASS, &term, w->pose, rows);
+    for (int r = 0; r < term.count; r++) {
+        const mt_cx *const row = rows + ((ptrdiff_t)MT_LOCAL * r);
+        const mt_cx *const other = term.pair ? rows + ((ptrdiff_t)MT_LOCAL * (1 - r)) : row;
+        for (int a = 0; a < m->n; a++) {
+            double phi[MT_LOCAL];
+            mt_tree_slope_pair(w, a, term.body, phi);
+            w->projected[a] = 0.0;
+            moved[a] = 0.0;
+            for (int k = 0; k < MT_LOCAL; k++) {
+                w->projected[a] += creal(other[k]) * phi[k];
+                moved[a] += cx_derivative(row[k]) * phi[k];
+            }
+            w->projected[a] *= -m->lambda[a] * c * (term.pair ? 0.5 : 1.0);
+        }
+        add_form(w, w->projected, moved);
+    }
+}
+
+/* Do the joints stay closed as drawn? */
+static bool stays_closed(mt_tree_slope *w)
+{
+    const mt_system *const sys = w->sys;
+    double most = 0.0;
+    if (sys->drawn_closed) {
+        return true;
+    }
+    mt_data_targets(&w->data);
+    for (int i = 0; i < sys->n_vecs; i++) {
+        for (int k = 0; k < 3; k++) {
+            most = fmax(most, fabs(cx_derivative(w->data.vec[i][k])));
+        }
+    }
+    for (int i = 0; i < sys->n_constraints; i++) {
+        const mt_measure_def *const def = &sys->measures[sys->constraints[i].measure[0]];
+        const mt_measure_data measure = mt_data_measure(&w->data, def);
+        const mt_cx value = mt_measure_value(&measure, mt_pose_of(w->pose, def->body[0]),
+                                             mt_pose_of(w->pose, def->body[1]));
+        if (!(fabs(cx_derivative(value - w->data.target[i])) <=
+              DRAWN_CLOSED * fmax(most, fabs(cx_derivative(w->data.target[i]))))) {
+            mt_tree_slope_refuse(w, "a joint opens that is closed as drawn");
+            return false;
+        }
+    }
+    return true;
+}
+
+/* What moves along the present input. */
+static void add_shape(mt_tree_slope *w)
+{
+    const mt_tree *const t = w->t;
+    const mt_system *const sys = w->sys;
+    for (int i = 0; i < t->n; i++) {
+        add_arm(w, i);
+        for (int k = t->first_constraint[i]; k >= 0; k = t->next_constraint[k]) {
+            add_row(w, i, &sys->measures[sys->constraints[k].measure[0]], w->mu + k,
+                    sys->n_constraints);
+        }
+        for (int q = t->first_spring[i]; q >= 0; q = t->next_spring[q]) {
+            add_row(w, i, &sys->measures[sys->springs[q].measure[0]], w->force + q,
+                    sys->n_springs);
+        }
+    }
+    for (int i = 0; i < sys->n_inertias; i++) {
+        add_inertia(w, i);
+    }
+}
+
+static mt_status init(mt_tree_slope *w, const double *inputs, mt_err *err)
+{
+    const mt_system *const sys = w->sys;
+    const size_t motions = (size_t)w->t->n * (size_t)w->t->s;
+    const size_t modes = (size_t)w->modes->n;
+    const size_t nodes = (size_t)sys->program.count;
+    mt_arena *const mem = w->scratch;
+    double *const value = mt_arena_f64(mem, nodes, 1);
+    double *const grad = mt_arena_f64(mem, nodes, (size_t)sys->n_inputs);
+    w->pose = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *w->pose);
+    w->vec_inputs = mt_arena_alloc(mem, (size_t)sys->n_vecs * (size_t)sys->program.words,
+                                   sizeof *w->vec_inputs);
+    w->within = mt_arena_f64(mem, motions, modes);
+    w->carried = mt_arena_f64(mem, motions, modes);
+    w->force = mt_arena_f64(mem, (size_t)sys->n_springs, modes);
+    w->mu = mt_arena_f64(mem, (size_t)sys->n_constraints, modes);
+    w->projected = mt_arena_f64(mem, 2, modes);
+    w->curved = w->t->curved == NULL
+                    ? NULL
+                    : mt_arena_f64(mem, (size_t)w->modes->n_pairs, (size_t)sys->n_constraints);
+    w->energy = mt_arena_f64(mem, (size_t)w->modes->n_pairs, 1);
+    MT_TRY(mt_data_init(&w->data, sys, mem, err));
+    MT_TRY(mt_program_gradient(&sys->program, inputs, value, grad, NULL, err));
+    w->data.value = value;
+    w->data.grad = grad;
+    find_inputs(w);
+    mt_data_vecs(&w->data);
+    mt_data_drawn(&w->data, w->pose);
+    return MT_OK;
+}
+
+static mt_status carry_out(mt_tree_slope *w, mt_err *err)
+{
+    const mt_tree *const t = w->t;
+    const mt_tree_modes *const m = w->modes;
+    const bool shaped = !w->sys->geometry_fixed || t->curved != NULL;
+    for (int a = 0; a < m->n; a++) {
+        const ptrdiff_t at = (ptrdiff_t)t->s * t->n * a;
+        mt_tree_within(t, m->x + ((ptrdiff_t)t->n_x * a), m->r + ((ptrdiff_t)t->n_rigid * a),
+                       m->v + at, w->within + at);
+        if (shaped) {
+            mt_tree_carried(t, m->lambda[a], m->v + at, w->carried + at);
+        }
+        MT_TRY(mt_interrupt_check(w->sys->model->interrupt, err));
+    }
+    coefficients(w);
+    for (int i = 0; i < t->n && shaped; i++) {
+        MT_TRY(hold(w, i, err));
+    }
+    for (int p = 0; p < w->sys->n_inputs && shaped; p++) {
+        MT_TRY(mt_interrupt_check(w->sys->model->interrupt, err));
+        turn_to(w, p);
+        if (!stays_closed(w)) {
+            return MT_OK;
+        }
+        add_shape(w);
+        if (t->curved != NULL) {
+            MT_TRY(mt_tree_slope_loads(w, err));
+        }
+        if (w->why[0] != '\0') {
+            return MT_OK;
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_tree_slopes(const mt_tree *t, const double *inputs, const mt_tree_modes *modes,
+                         double *slope, char why[MT_TREE_WHY], mt_arena *scratch, mt_err *err)
+{
+    mt_tree_slope w = {
+        .t = t, .sys = t->sys, .modes = modes, .slope = slope, .why = why, .scratch = scratch};
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    why[0] = '\0';
+    memset(slope, 0, (size_t)modes->n_pairs * (size_t)t->sys->n_inputs * sizeof *slope);
+    MT_TRY(init(&w, inputs, err));
+    MT_TRY(carry_out(&w, err));
+    mt_arena_rewind(scratch, mark);
+    return MT_OK;
+}
