@@ -94,7 +94,7 @@ int mt_modal_doubtful(const mt_modes *modes)
     const bool exact = modes->from_factor && modes->error_bound == 0.0;
     for (int i = 0; i < modes->count; i++) {
         const bool doubt = modes->kind[i] == MT_MODE_FLEXIBLE
-                               ? modes->error[i] > FINE * fabs(modes->lambda[i])
+                               ? !(modes->error[i] < FINE * fabs(modes->lambda[i]))
                                : !exact;
         count = doubt ? i + 1 : count;
     }

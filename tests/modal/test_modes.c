@@ -467,6 +467,21 @@ static void modal__modes_without_doubt_are_not_judged(mt_test *t)
     CHECK_INT(t, mt_modal_flexible(&modes, 3), 2);
 }
 
+/* A spring that has become 0 leaves a mode at 0 Hz with no error at all, where rigid-body modes
+ * were counted with the spring: whether it is strained is a question of energies. */
+static void modal__modes_at_zero_are_in_doubt(mt_test *t)
+{
+    double lambda[] = {0.0, 0.0, 4.0};
+    double error[] = {0.0, 0.0, 1e-12};
+    mt_mode_kind kind[] = {MT_MODE_RIGID_BODY, MT_MODE_FLEXIBLE, MT_MODE_FLEXIBLE};
+    const mt_modes modes = {.count = 3, .lambda = lambda, .error = error, .kind = kind};
+    CHECK_INT(t, mt_modal_doubtful(&modes), 2);
+    lambda[1] = 1.0;
+    CHECK_INT(t, mt_modal_doubtful(&modes), 1);
+    error[2] = nan("");
+    CHECK_INT(t, mt_modal_doubtful(&modes), 3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -482,6 +497,7 @@ int main(void)
         MT_TEST(modal__sign_rule_is_stable_under_rounding),
         MT_TEST(modal__judged_modes_ascend),
         MT_TEST(modal__modes_without_doubt_are_not_judged),
+        MT_TEST(modal__modes_at_zero_are_in_doubt),
         MT_TEST(modal__bad_matrices_are_errors),
         MT_TEST(modal__repeated_solves_do_not_touch_the_heap),
         MT_TEST(modal__every_failing_allocation_is_reported),

@@ -20,9 +20,11 @@ class Stress(unittest.TestCase):
                 self.fail(f"{text}\n    tests/stress/run.py --seed 1 --only '{name}' --index {index}")
         print("\n".join([run.HEAD, *(row.text() for row in rows.values())]))
         for row in rows.values():
-            self.assertGreater(row.cases, sum(row.left_out.values()), row.name)
-            if COUNT > 2:  # of two either may ask what the data do not determine
+            if COUNT > 2:  # of two either may ask what the data do not determine, or what the reference does not find
+                self.assertGreater(row.cases, sum(row.left_out.values()), row.name)
                 self.assertGreater(row.determined, 0, row.name)
+            else:
+                self.assertGreater(row.cases, 0, row.name)
 
     def test_bounds_count_what_the_constraints_leave_open(self):
         """Two ropes that are almost parallel: the circle that they leave is known to rounding over their angle."""
