@@ -208,10 +208,10 @@ static bool is_sideband(const mt_result_order *o)
     return strpbrk(o->label, "+-") != NULL;
 }
 
-/* Its end: at the right edge or at the top. */
+/* Its end: at the right edge or at the top. (A result file may hold an order of 0, too.) */
 static double end_of(const plot *p, const mt_result_order *o)
 {
-    return fmin(p->x_most, p->y_most / o->order);
+    return p->y_most < o->order * p->x_most ? p->y_most / o->order : p->x_most;
 }
 
 static void name_order(plot *p, const mt_result_order *o)
@@ -284,10 +284,12 @@ static void add_crossings(const plot *p, const mt_result_frequency *f, double hz
 {
     const mt_result_excitation *const e = p->e;
     for (int i = 0; i < e->n_orders && isfinite(hz); i++) {
-        const double speed = hz / e->orders[i].order;
-        if (speed < e->speed_lower_hz || speed > e->speed_upper_hz) {
+        const double order = e->orders[i].order;
+        if (!(order > 0.0) || hz < order * e->speed_lower_hz ||
+            hz > order * e->speed_upper_hz) {
             continue;
         }
+        const double speed = hz / order;
         mt_text_addf(p->out,
                      "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4.5\" fill=\"%s\" stroke=\"%s\" "
                      "stroke-width=\"1.5\"><title>",

@@ -136,5 +136,26 @@ static void campbell__is_there_without_a_design_and_absent_without_a_machine(mt_
     mt_result_delete(s.result);
 }
 
-MT_TEST_MAIN(MT_TEST(campbell__marks_what_crosses_in_the_range),
+/* A result file may say so: its line lies on the axis, or below it, and meets nothing. */
+static void campbell__an_order_of_0_meets_nothing(mt_test *t)
+{
+    mt_random random = mt_random_seed(14);
+    mt_text out = {.s = NULL};
+    sample s;
+    REQUIRE(t, begin(t, &random, &s));
+    for (int i = 0; i < ORDERS; i++) {
+        s.orders[i].order = i == 0 ? 1.0 : i == 1 ? 0.0 : -1.0;
+    }
+    s.frequencies[0].original_hz = 0.0;
+    s.frequencies[1].original_hz = 20.0;
+    mt_report_svg_campbell(s.result, &out);
+    CHECK_INT(t, count(out.s, "<svg"), 1);
+    CHECK(t, count(out.s, " before at ") <= MODES);
+    CHECK_INT(t, count(out.s, "=\"nan") + count(out.s, "nan,") + count(out.s, "inf"), 0);
+    mt_text_free(&out);
+    mt_result_delete(s.result);
+}
+
+MT_TEST_MAIN(MT_TEST(campbell__an_order_of_0_meets_nothing),
+             MT_TEST(campbell__marks_what_crosses_in_the_range),
              MT_TEST(campbell__is_there_without_a_design_and_absent_without_a_machine))
