@@ -40,6 +40,7 @@ class Program:
 
     def _limits(self):
         patience, grace = self.patience, self.grace
+        signal.signal(signal.SIGINT, signal.SIG_DFL)  # a hunt in the background of a shell has it ignored, and would hand that on
         most = math.ceil(patience + 2 * grace)
         resource.setrlimit(resource.RLIMIT_CPU, (most, most + 1))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

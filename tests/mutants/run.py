@@ -115,7 +115,7 @@ def main():
     parser.add_argument("--seconds", type=float)
     parser.add_argument("--only", choices=KINDS, action="append")
     parser.add_argument("--index", type=int)
-    parser.add_argument("--rare", type=float, default=0.0, help="findings per mutant up to which the exit status is 0")
+    parser.add_argument("--rare", type=float, default=0.0, help="findings per mutant up to which the exit status is 0 (but of one always, where not 0)")
     parser.add_argument("--known", action="store_true", help="show findings that wait for their mending, too")
     parser.add_argument("--keep", help="write files and outputs here")
     parser.add_argument("--shrink", help="make the first finding small, and write its files here")
@@ -135,7 +135,7 @@ def main():
             return 1
     more = ", ".join(f"{k}: {v}" for k, v in tally.items() if k != "mutants")
     print(f"{tally['mutants']} mutants of seed {args.seed} ({more}): {bad} findings, {waiting} known")
-    return 1 if bad > args.rare * tally["mutants"] else 0
+    return 1 if bad > max(args.rare > 0, args.rare * tally["mutants"]) else 0
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 import json
 import os
 import random
+import signal
 import tempfile
 import unittest
 from pathlib import Path
@@ -78,6 +79,19 @@ class Faults(unittest.TestCase):
         case.write(folder / "case")
         found = (check for draw in range(4) for check, _ in Answer(program, folder / "case", case, {"commands": 0}).findings(random.Random(draw)))
         return {next((check for check in found if check == fault.split(" ")[0]), None)}
+
+
+class Interrupts(unittest.TestCase):
+    def test_the_interrupt_arrives_where_it_is_ignored(self):
+        """As in a hunt that a shell has put in the background; bash, too, leaves what was ignored ignored."""
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+        self.addCleanup(signal.signal, signal.SIGINT, before)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "modetune"
+            path.write_text("#!/bin/bash\ntrap 'exit 130' INT\nwhile :; do :; done\n", encoding="utf-8")
+            path.chmod(0o755)
+            done = Program(path, patience=(0.2, 5)).run(Path(folder), ["run"])
+            self.assertEqual((done.code, done.slow), (130, "interrupted"))
 
 
 class Mutants(unittest.TestCase):

@@ -257,7 +257,7 @@ def main():
     parser.add_argument("--only", choices=list(FAMILIES), action="append")
     parser.add_argument("--index", type=int)
     parser.add_argument("--far", type=float, help="0 to 1: how far all of them go; else each at random")
-    parser.add_argument("--rare", type=float, default=0.0, help="findings per model up to which the exit status is 0")
+    parser.add_argument("--rare", type=float, default=0.0, help="findings per model up to which the exit status is 0 (but of one always, where not 0)")
     parser.add_argument("--keep", help="leave the last model here")
     args = parser.parse_args()
     rows, bad = {}, 0
@@ -275,7 +275,7 @@ def main():
             left[why] = left.get(why, 0) + n
     cases = sum(row.cases for row in rows.values())
     print(f"{cases} models of seed {args.seed} ({', '.join(f'{k}: {v}' for k, v in left.items()) or 'none'} left out): {bad} findings")
-    return 1 if bad > args.rare * cases else 0
+    return 1 if bad > max(args.rare > 0, args.rare * cases) else 0
 
 
 if __name__ == "__main__":
