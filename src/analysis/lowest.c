@@ -15,8 +15,6 @@
 #include "linalg/dense.h"
 #include "modal/sign.h"
 
-static const double PI = 3.14159265358979323846;
-
 double mt_lowest_bodies(const mt_model *model, int configuration)
 {
     double bodies = 0.0;
@@ -256,8 +254,8 @@ static mt_status split(int size, const double *form, double hz, double *slope,
         }
     }
     MT_TRY(mt_eig_sym(size, matrix, slope, false, scratch, err));
-    for (int a = 0; a < size; a++) { /* f = sqrt(lambda) / (2 pi) */
-        slope[a] /= 8.0 * PI * PI * hz;
+    for (int a = 0; a < size; a++) {
+        slope[a] = mt_modal_hz_slope(slope[a], hz);
     }
     mt_arena_rewind(scratch, mark);
     return MT_OK;

@@ -13,8 +13,6 @@
 #include "linalg/dense.h"
 #include "mechanics/products.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* Derivatives of the cluster that begins at position first: its directional values,
  * ascending. */
 static mt_status cluster_values(mt_analysis *a, int p, int first, int size, double *dlambda,
@@ -54,8 +52,7 @@ mt_status mt_analysis_sensitivity(mt_analysis *a, int p, int n, const int *posit
         }
         for (int j = 0; j < size && i < n; j++, i++) {
             const double hz = mt_modal_hz(modes, position[i]);
-            /* f^2 has a slope where f is 0, f has none */
-            hz_per_unit[i] = gone || !(hz > 0.0) ? nan("") : values[j] / (8.0 * PI * PI * hz);
+            hz_per_unit[i] = gone ? nan("") : mt_modal_hz_slope(values[j], hz);
         }
     }
     return MT_OK;

@@ -10,7 +10,6 @@
 
 /* Modes listed of a configuration beyond those that goals name. */
 enum { LISTED_MODES = 4, SLACK_TEXT = 200 };
-static const double PI = 3.14159265358979323846;
 
 /* One configuration while its modes are listed. */
 typedef struct listing {
@@ -78,10 +77,8 @@ static mt_status describe_mode(const listing *l, int index, mt_result_frequency 
     f->residual = a->modes.residual[pos];
     f->orthogonality = a->modes.orthogonality[pos];
     MT_TRY(mt_analysis_dlambda(a, pos, f->sensitivity, &f->repeated, err));
-    for (int i = 0; i < n; i++) { /* d Hz = d lambda / (8 pi^2 Hz): none at 0 Hz */
-        f->sensitivity[i] = f->recommended_hz > 0.0
-                                ? f->sensitivity[i] / (8.0 * PI * PI * f->recommended_hz)
-                                : nan("");
+    for (int i = 0; i < n; i++) {
+        f->sensitivity[i] = mt_modal_hz_slope(f->sensitivity[i], f->recommended_hz);
     }
     char slack[SLACK_TEXT];
     if (mt_analysis_slack(a, pos, slack, sizeof slack)) {

@@ -30,6 +30,11 @@ double mt_modal_error_hz(const mt_modes *modes, int i)
     return e < lambda ? e / (sqrt(lambda) + sqrt(lambda - e)) / TWO_PI : sqrt(e) / TWO_PI;
 }
 
+double mt_modal_hz_slope(double dlambda, double hz)
+{
+    return hz > 0.0 ? dlambda / (2.0 * TWO_PI * TWO_PI * hz) : nan("");
+}
+
 bool mt_modal_indexed(const mt_modes *modes)
 {
     return modes->n_unstable == 0 && modes->n_undecided == 0;

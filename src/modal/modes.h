@@ -54,6 +54,9 @@ bool mt_modal_indexed(const mt_modes *modes);
 double mt_modal_hz(const mt_modes *modes, int i);
 /* |error of mt_modal_hz| <= this [Hz], by error_i; NaN where the frequency is. */
 double mt_modal_error_hz(const mt_modes *modes, int i);
+/* d lambda -> d Hz of a mode at hz: d lambda/(8 pi^2 hz). NaN at 0 Hz, where the square of a
+ * frequency has a slope and the frequency has none. */
+double mt_modal_hz_slope(double dlambda, double hz);
 /* How many vibration modes there are: those that are no rigid-body modes. Where a mode is
  * unstable or undecided it is counted, and none has an index. */
 int mt_modal_vibrations(const mt_modes *modes);

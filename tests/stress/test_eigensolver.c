@@ -14,6 +14,7 @@
 #include "linalg/dense.h"
 #include "modal/modal.h"
 #include "stress/matrices.h"
+#include "stress/table.h"
 #include "support/mt_test.h"
 #include "support/solve_pair.h"
 
@@ -24,8 +25,6 @@ enum { ROWS = 28 };
 static const double PROMISED = 4.0;
 /* Relative, of the lowest eigenvalue that the data determine. */
 static const double WANTED = 1e-10;
-
-static mt_arena mem;
 
 /* A line of the table. */
 typedef struct line {
@@ -51,12 +50,6 @@ static void finish(const line *l)
 static bool plain_range(void)
 {
     return getenv("MT_TEST_LAUNCHED") != NULL;
-}
-
-static int rounds(void)
-{
-    const char *const text = getenv("MT_STRESS_ROUNDS");
-    return text != NULL ? (int)strtol(text, NULL, 10) : 1;
 }
 
 /* Equation and orthogonality of the first `count` vectors. */
@@ -85,16 +78,16 @@ static void judge_part(mt_test *t, int n, int count, const double *a, const doub
     double w[MOST];
     double low[MOST * MOST];
     mt_tridiagonal later;
-    const mt_arena_mark mark = mt_arena_get_mark(&mem);
+    const mt_arena_mark mark = mt_arena_get_mark(&table_mem);
     memcpy(low, a, (size_t)(n * n) * sizeof *low);
-    if (CHECK_INT(t, mt_eig_sym_values(n, low, w, &mem, &later, NULL), MT_OK) &&
-        CHECK_INT(t, mt_eig_sym_lowest(&later, count, w, v, &mem, NULL), MT_OK)) {
+    if (CHECK_INT(t, mt_eig_sym_values(n, low, w, &table_mem, &later, NULL), MT_OK) &&
+        CHECK_INT(t, mt_eig_sym_lowest(&later, count, w, v, &table_mem, NULL), MT_OK)) {
         for (int i = 0; i < n; i++) {
             CHECK(t, fabs(w[i] - whole[i]) <= PROMISED * unit);
         }
         judge_vectors(t, n, count, a, w, v, unit);
     }
-    mt_arena_rewind(&mem, mark);
+    mt_arena_rewind(&table_mem, mark);
 }
 
 /* The parts of n eps |w| that eigenvalues, equation and orthogonality are off. */
@@ -106,8 +99,8 @@ static void judge_solution(mt_test *t, int n, const double *a, const quad *want,
     double low[MOST * MOST];
     memcpy(v, a, (size_t)(n * n) * sizeof *v);
     memcpy(low, a, (size_t)(n * n) * sizeof *low);
-    if (!CHECK_INT(t, mt_eig_sym(n, v, w, true, &mem, NULL), MT_OK) ||
-        !CHECK_INT(t, mt_eig_sym(n, low, only, false, &mem, NULL), MT_OK)) {
+    if (!CHECK_INT(t, mt_eig_sym(n, v, w, true, &table_mem, NULL), MT_OK) ||
+        !CHECK_INT(t, mt_eig_sym(n, low, only, false, &table_mem, NULL), MT_OK)) {
         return;
     }
     const double largest =
@@ -199,7 +192,7 @@ static void eigensolver__counts_of_eigenvalues(mt_test *t)
                 continue;
             }
             mt_test_row(t, "%s, n = %d, above %d", spectrum_names[k % SPECTRA], n, i + 1);
-            CHECK_INT(t, mt_inertia(n, a, NULL, shift, count, NULL, &mem, NULL), MT_OK);
+            CHECK_INT(t, mt_inertia(n, a, NULL, shift, count, NULL, &table_mem, NULL), MT_OK);
             CHECK_INT(t, count[0], i + 1);
             CHECK_INT(t, count[2], n - 1 - i);
             l.cases++;
@@ -340,12 +333,12 @@ static void eigensolver__springs_far_apart(mt_test *t)
             const mt_stiffness_factor factor = {.rows = s.rows, .b = s.b, .c = s.c};
             opt.accuracy = MT_MODAL_ACCURACY;
             exact_springs(&s, want);
-            const mt_arena_mark mark = mt_arena_get_mark(&mem);
-            if (CHECK_INT(t, solve_pair(s.n, s.k, s.m, &factor, &opt, &mem, &modes, NULL),
+            const mt_arena_mark mark = mt_arena_get_mark(&table_mem);
+            if (CHECK_INT(t, solve_pair(s.n, s.k, s.m, &factor, &opt, &table_mem, &modes, NULL),
                           MT_OK)) {
                 judge_modes(t, &s, &modes, want, true, &l);
             }
-            mt_arena_rewind(&mem, mark);
+            mt_arena_rewind(&table_mem, mark);
         }
         finish(&l);
     }
@@ -373,11 +366,12 @@ static void eigensolver__loads_on_springs_far_apart(mt_test *t)
         const mt_stiffness_factor factor = {.rows = s.rows, .b = s.b, .c = s.c, .g = s.g};
         opt.accuracy = MT_MODAL_ACCURACY;
         exact_pencil(&s, want);
-        const mt_arena_mark mark = mt_arena_get_mark(&mem);
-        if (CHECK_INT(t, solve_pair(s.n, s.k, s.m, &factor, &opt, &mem, &modes, NULL), MT_OK)) {
+        const mt_arena_mark mark = mt_arena_get_mark(&table_mem);
+        if (CHECK_INT(t, solve_pair(s.n, s.k, s.m, &factor, &opt, &table_mem, &modes, NULL),
+                      MT_OK)) {
             judge_modes(t, &s, &modes, want, false, &l);
         }
-        mt_arena_rewind(&mem, mark);
+        mt_arena_rewind(&table_mem, mark);
     }
     finish(&l);
 }
@@ -407,11 +401,12 @@ static void eigensolver__stiffness_as_a_matrix(mt_test *t)
         }
         mt_test_row(t, "%s, case %d, n = %d", spectrum_names[k % SPECTRA], k, s.n);
         exact_pencil(&s, want);
-        const mt_arena_mark mark = mt_arena_get_mark(&mem);
-        if (CHECK_INT(t, solve_pair(s.n, s.k, s.m, NULL, NULL, &mem, &modes, NULL), MT_OK)) {
+        const mt_arena_mark mark = mt_arena_get_mark(&table_mem);
+        if (CHECK_INT(t, solve_pair(s.n, s.k, s.m, NULL, NULL, &table_mem, &modes, NULL),
+                      MT_OK)) {
             judge_modes(t, &s, &modes, want, false, &l);
         }
-        mt_arena_rewind(&mem, mark);
+        mt_arena_rewind(&table_mem, mark);
     }
     finish(&l);
 }
@@ -438,26 +433,13 @@ static void eigensolver__wrong_answers_are_seen(mt_test *t)
     wrong = mt_test_begin();
     wrong.quiet = true;
     exact_pencil(&s, want);
-    const mt_arena_mark mark = mt_arena_get_mark(&mem);
-    REQUIRE(t, solve_pair(s.n, s.k, s.m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
+    const mt_arena_mark mark = mt_arena_get_mark(&table_mem);
+    REQUIRE(t, solve_pair(s.n, s.k, s.m, NULL, NULL, &table_mem, &modes, NULL) == MT_OK);
     judge_modes(t, &s, &modes, want, false, &l);
     modes.lambda[0] += 2.0 * modes.error[0];
     judge_modes(&wrong, &s, &modes, want, true, &l);
     CHECK(t, !mt_test_passed(&wrong));
-    mt_arena_rewind(&mem, mark);
-}
-
-static int prepare(void **state)
-{
-    (void)state;
-    return mt_arena_init(&mem, (size_t)1 << 20, NULL) == MT_OK ? 0 : 1;
-}
-
-static int release(void **state)
-{
-    (void)state;
-    mt_arena_free(&mem);
-    return 0;
+    mt_arena_rewind(&table_mem, mark);
 }
 
 int main(void)

@@ -12,6 +12,7 @@
 
 #include "linalg/dense.h"
 #include "stress/matrices.h"
+#include "stress/table.h"
 #include "support/mt_test.h"
 
 /* Of the order times eps times the norm. LAPACK's own tests allow 50. */
@@ -20,8 +21,6 @@ static const double PROMISED = 4.0;
 static const double GRADED = 16.0;
 
 enum { PLACES = MOST * MOST, EMBEDDED = 4 * PLACES };
-
-static mt_arena mem;
 
 typedef struct line {
     const char *name;
@@ -32,12 +31,6 @@ typedef struct line {
 static void finish(const line *l)
 {
     printf("%-34s %5d cases  error/bound %8.1e\n", l->name, l->cases, l->share);
-}
-
-static int rounds(void)
-{
-    const char *const text = getenv("MT_STRESS_ROUNDS");
-    return text != NULL ? (int)strtol(text, NULL, 10) : 1;
 }
 
 static void within(mt_test *t, quad off, quad bound, line *l)
@@ -92,9 +85,9 @@ static void judge_svd(mt_test *t, int m, int n, const double *a, line *l)
     exact_values(m, n, a, want);
     const quad unit = (quad)(PROMISED * MOST * DBL_EPSILON) * want[0];
     memcpy(copy, a, sizeof copy);
-    REQUIRE(t, mt_svd(m, n, copy, only, NULL, NULL, &mem, NULL) == MT_OK);
+    REQUIRE(t, mt_svd(m, n, copy, only, NULL, NULL, &table_mem, NULL) == MT_OK);
     memcpy(copy, a, sizeof copy);
-    REQUIRE(t, mt_svd(m, n, copy, s, u, vt, &mem, NULL) == MT_OK);
+    REQUIRE(t, mt_svd(m, n, copy, s, u, vt, &table_mem, NULL) == MT_OK);
     for (int i = 0; i < r && want[0] > 0; i++) {
         within(t, (quad)s[i] - want[i], unit, l);
         within(t, (quad)only[i] - want[i], unit, l);
@@ -213,7 +206,7 @@ static void general__graded_singular_values_are_right_to_themselves(mt_test *t)
         }
         mt_test_row(t, "%d x %d, case %d", m, n, k);
         exact_values(m, n, a, want);
-        REQUIRE(t, mt_svd_jacobi(m, n, a, s, v, &mem, NULL) == MT_OK);
+        REQUIRE(t, mt_svd_jacobi(m, n, a, s, v, &table_mem, NULL) == MT_OK);
         for (int i = 0; i < n; i++) {
             within(t, (quad)s[i] - want[i], (quad)(GRADED * n * DBL_EPSILON) * want[i], &l);
         }
@@ -296,7 +289,7 @@ static void judge_general(mt_test *t, blocks *b, line *l)
     norm = quad_root(norm);
     const quad unit = (quad)(PROMISED * n * DBL_EPSILON) * norm;
     memcpy(copy, b->a, sizeof copy);
-    REQUIRE(t, mt_eig_general(n, copy, wr, wi, v, &mem, NULL) == MT_OK);
+    REQUIRE(t, mt_eig_general(n, copy, wr, wi, v, &table_mem, NULL) == MT_OK);
     for (int i = 0; i < n; i++) {
         quad least = norm;
         trace[0] += (quad)wr[i] - (quad)b->a[i + (i * n)];
@@ -403,19 +396,6 @@ static void general__wrong_answers_are_seen(mt_test *t)
     wrong.quiet = true;
     within(&wrong, (quad)nan(""), 1, &l);
     CHECK(t, !mt_test_passed(&wrong));
-}
-
-static int prepare(void **state)
-{
-    (void)state;
-    return mt_arena_init(&mem, (size_t)1 << 20, NULL) == MT_OK ? 0 : 1;
-}
-
-static int release(void **state)
-{
-    (void)state;
-    mt_arena_free(&mem);
-    return 0;
 }
 
 int main(void)
