@@ -304,7 +304,7 @@ static void say_kind_rank(mt_sentences *s, const char *first)
 static void say_only(mt_sentences *s, const mt_nlp_result *search, const char *first)
 {
     const char *const many = search->starts == 1 ? "" : "s";
-    if (MT_HAS(s->rec->kkt_residual)) {
+    if (MT_HAS(s->rec->kkt_residual) && mt_describe_is_optimum(s->rec)) {
         mt_say(s,
                "It is the only local optimum, by %s %s, that %d start%s found (sampled, not "
                "proven).",

@@ -15,7 +15,7 @@
 static const double PERCENT = 100.0;
 
 /* Of the objective, what a change df of its value f is called: "0.12 kg". NULL: not worth a
- * sentence, or out of memory. */
+ * sentence, not known (this is no optimum, or a corner of min and max), or out of memory. */
 static const char *price(mt_sentences *s, double df)
 {
     const mt_objective_ops *const ops = s->p->aims[s->design->stage].ops;
@@ -23,9 +23,9 @@ static const char *price(mt_sentences *s, double df)
                         .change = s->rec->change,
                         .score = s->rec->score,
                         .first = s->design->stage == 0};
-    return !(fabs(df) > 0.0) || !s->rec->feasible || ops->price == NULL
-               ? NULL
-               : ops->price(&q, &s->result->mem);
+    const bool known = s->rec->feasible && mt_describe_is_optimum(s->rec);
+    return !(fabs(df) > 0.0) || !known || ops->price == NULL ? NULL
+                                                             : ops->price(&q, &s->result->mem);
 }
 
 static const char *win(const mt_sentences *s)

@@ -107,18 +107,17 @@ static mt_status add_cuts(slot *s, const mt_problem *p, int family, const mt_mot
     return MT_OK;
 }
 
-/* Follow the best design over the range of motion. *added: cuts to search again with; with none
- * a design that crosses is refused. */
-static mt_status follow_best(slot *s, mt_workspace *w, bool last, int *added, mt_err *err)
+/* Follow the best design, which has been evaluated, over the range of motion. *added: cuts to
+ * search again with; with none a design that crosses is refused. *room: down to the least on
+ * the way. */
+static mt_status follow_best(slot *s, mt_workspace *w, bool last, int *added, double *room,
+                             mt_err *err)
 {
-    mt_nlp_values v;
     mt_nlp_solution *const best = &s->found.solutions[0];
     const double wanted = w->c->clearance ? best->t[w->p->n] : 0.0;
     double short_of = 0.0;
     double tolerance = 1.0;
     *added = 0;
-    MT_TRY(mt_case_values_init(w->c, &s->mem, &v, err));
-    MT_TRY(mt_workspace_eval(w, best->t, false, &v, err));
     for (int i = 0; i < w->p->n_families; i++) {
         mt_motion m = {.room = 0.0};
         if (!w->p->families[i].banded) {
@@ -126,6 +125,7 @@ static mt_status follow_best(slot *s, mt_workspace *w, bool last, int *added, mt
         }
         MT_TRY(mt_motion_follow(w, i, w->c->below, &s->mem, &m, err));
         s->evals += m.positions;
+        *room = fmin(*room, m.room);
         MT_TRY(last ? MT_OK : add_cuts(s, w->p, i, &m, wanted, added, err));
         if (m.end == MT_MOTION_UNSTABLE || m.room < -m.tolerance) {
             const double here = m.end == MT_MOTION_UNSTABLE ? 1.0 : -m.room;
@@ -139,15 +139,36 @@ static mt_status follow_best(slot *s, mt_workspace *w, bool last, int *added, mt
     return MT_OK;
 }
 
+/* What is asked of a search is z within the tolerance of a band, and that differs from kind to
+ * kind: the best design is ranked by what it has. */
+static void tell_clearance(slot *s, double room, int n_aims)
+{
+    if (n_aims == 1) {
+        s->found.solutions[0].f = -room;
+    } else if (s->aims != NULL) {
+        s->aims[0] = -room;
+    }
+}
+
 /* The best design over the range of motion and over its tolerances; *again: with one more cut
  * at least. */
 static mt_status judge_best(slot *s, mt_workspace *w, bool last, bool *again, mt_err *err)
 {
     mt_nlp_solution *const best = &s->found.solutions[0];
+    mt_nlp_values v;
     int added = 0;
     bool worse = false;
+    double room = HUGE_VAL;
+    if (best->feasible && (w->c->clearance || mt_family_any(w->p))) {
+        MT_TRY(mt_case_values_init(w->c, &s->mem, &v, err));
+        MT_TRY(mt_workspace_eval(w, best->t, false, &v, err));
+        room = mt_clears_room(w);
+    }
     if (best->feasible && mt_family_any(w->p)) {
-        MT_TRY(follow_best(s, w, last, &added, err));
+        MT_TRY(follow_best(s, w, last, &added, &room, err));
+    }
+    if (best->feasible && w->c->clearance && isfinite(room)) {
+        tell_clearance(s, room, w->c->n_aims);
     }
     if (best->feasible && mt_robust_is_sampled(w->c)) {
         MT_TRY(mt_search_judge(w, last, &s->mem, &s->corners, best, &worse, err));

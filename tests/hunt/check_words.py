@@ -3,6 +3,7 @@
 import copy
 import re
 import sys
+from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
@@ -142,6 +143,11 @@ def undetermined(run):
             yield f"{item['direction']} is called undetermined, but goals are missed along it"
 
 
+def _unit(text):
+    """Of the last digit of a number as it is written."""
+    return 10.0 ** Decimal(text).as_tuple().exponent
+
+
 def reasons(run):
     """Percentages of sentences against the numbers of the same design."""
     for rec in [run.result["baseline"]] + run.result["recommendations"]:
@@ -169,7 +175,9 @@ def reasons(run):
                 if over:  # the worst of them is what stands below or above
                     f = [{**g, "recommended_hz": float(over[1 if stands[4] == "below" else 2])} for g in f]
                 away = [100.0 * (g["recommended_hz"] / limit - 1.0) for g, limit in zip(f, limits) if limit]
-                if not any(near(abs(a), float(stands[3]), 6e-3, 0.02 if over else 1e-9) and (a > 0) == (stands[4] == "above") for a in away):
+                read = 0.5 * _unit(over[1 if stands[4] == "below" else 2]) if over else 0.0  # Hz that the written number leaves open
+                room = [6e-3 * max(abs(a), float(stands[3]), 1e-9) + 100.0 * read / limit for a, limit in zip(away, filter(None, limits))]
+                if not any(abs(abs(a) - float(stands[3])) <= r and (a > 0) == (stands[4] == "above") for a, r in zip(away, room)):
                     yield f"rank {rec['rank']}: \"{reason}\", but it is {away} % away"
 
 
