@@ -5,12 +5,13 @@
     run.py [--seed S] [--count N] [--seconds T] [--only FAMILY] [--index I] [--far F] [--keep DIR]
 
 What the data determine is asked of the oracle: every number of the file is changed by a relative 1e-30, more or less, of random sign, every coordinate by that part of
-the mechanism's size, and what that changes in an eigenvalue, relative, over 1e-30, is its condition. Held are: counts and kinds; error <= bound for
-every mode; where the condition is at most 1e4, error <= 1e-10 of the eigenvalue. The table's last columns judge the bound: how much of it the error
+the mechanism's size, and what that changes in an eigenvalue, relative, over 1e-30, is its condition. Held are: counts, and kinds unless
+roundings of the data leave it open whether the eigenvalue is 0; error <= bound for every mode; where the condition is at most 1e4, error <= 1e-10 of the eigenvalue. The table's last columns judge the bound: how much of it the error
 takes at worst, and how many times it exceeds what the data leave open, condition times 2^-53.
 """
 import argparse
 import json
+import math
 import os
 import random
 import subprocess
@@ -25,7 +26,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parent), str(Path(__file__).resolve
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import statics  # noqa: E402
-from exact import binary  # noqa: E402
+from exact import binary, cholesky  # noqa: E402
 from extremes import FAMILIES  # noqa: E402
 from oracle import Oracle, Refused  # noqa: E402
 
@@ -35,6 +36,7 @@ WANTED = Decimal("1e-10")   # of an eigenvalue that the data determine
 DETERMINED = Decimal("1e4")  # condition up to which they do: a hundred roundings of it are 1e-10
 OPEN = Decimal("1e6")        # from here on rest, or which way a dead centre leads, may itself be lost, and the program says so
 UNIT = Decimal(2) ** -53
+ROUNDINGS = 16              # of as many numbers: what a decimal drawing says is 0 is no more than this as it is read
 NEAR = Decimal("1e-9")      # m and rad, of what rests as drawn
 STEP = Decimal("1e-30")
 PLACES = ("at", "centre", "from", "to")
@@ -84,6 +86,13 @@ def at_rest(model):
     return statics.Modes(problem)
 
 
+def volume(modes, rows):
+    """The square of what these constraints span: 0 where they depend on each other."""
+    rows = [modes.state.rows[i] for i in rows]
+    low = cholesky([[statics.dot(a, b) for b in rows] for a in rows])
+    return math.prod((x[i] * x[i] for i, x in enumerate(low)), start=Decimal(1)) if low else Decimal(0)
+
+
 class Exact:
     """Eigenvalues, counts and conditions of a model as the program reads it."""
 
@@ -91,6 +100,7 @@ class Exact:
         one = at_rest(model)
         if one.dead_centre:
             raise Refused("dead centre")
+        self.one = one
         self.values, self.zero, self.kept = one.values, one.zero, {**one.counts(), "redundant": one.redundant}
         size = _size(model) * STEP
         sign = lambda: rng.choice([1, -1]) * Decimal(rng.uniform(0.5, 1))  # of equal sizes some would cancel
@@ -106,8 +116,15 @@ class Exact:
                 continue
             if all({**n.counts(), "redundant": n.redundant} == self.kept for n in near):
                 self.condition = [max(abs(n.values[i] - x) for n in near) / abs(x) / STEP if not z else Decimal(0) for i, (x, z) in enumerate(zip(self.values, self.zero))]
+                self.near = near
                 return
         raise Refused("no neighbour")
+
+    def open(self):
+        """The worst condition: of an eigenvalue, or of the joints' independence, which says whether there is a dead centre."""
+        rows = self.one.frame.chosen
+        here = volume(self.one, rows)
+        return max([abs(volume(n, rows) / here - 1) / STEP if here else 1 / STEP for n in self.near] + self.condition)
 
 
 class Chain:
@@ -120,6 +137,9 @@ class Chain:
         self.values = [self._value(i + 1) for i in range(self.MODES)]
         self.zero, self.condition = [False] * self.MODES, [Decimal(1)] * self.MODES
         self.kept = {"freedoms": len(self.m), "rigid": 0, "unstable": 0, "redundant": 0}
+
+    def open(self):
+        return max(self.condition)
 
     def _below(self, x):
         count, before = 0, None
@@ -196,7 +216,7 @@ def judge(row, exact, said):
         elif bound:
             row.share = max(row.share, error / bound)
         kind = "rigid_body" if zero else "unstable" if x < 0 else "flexible"
-        if mode["kind"] != kind and mode["kind"] != "undecided":
+        if mode["kind"] != kind and mode["kind"] != "undecided" and condition * ROUNDINGS * UNIT < 1:
             yield "kind", f"mode {i + 1} is called {mode['kind']}, omega^2 {given:.17g} within {bound:.3g}; exact {x:.20g}, {kind}"
         if zero:
             continue
@@ -222,7 +242,7 @@ def one(row, rng, far, folder):
         row.left_out[str(why)] = row.left_out.get(str(why), 0) + 1
         return
     done, seconds = ask(folder, model, *(["--count", str(exact.MODES)] if name in COUNTED else []))
-    if done.returncode == 3 and max(exact.condition, default=0) > OPEN and any(w in done.stderr for w in ("no equilibrium", "dead centre")):
+    if done.returncode == 3 and any(w in done.stderr for w in ("no equilibrium", "dead centre")) and exact.open() > OPEN:
         row.left_out["refused as undetermined"] = row.left_out.get("refused as undetermined", 0) + 1
         return
     row.cases += 1

@@ -12,6 +12,12 @@ import extremes  # noqa: E402
 COUNT = 2 if os.environ.get("MT_INSTRUMENTED") or os.environ.get("MT_TEST_LAUNCHED") else 4  # of each family
 
 
+def slide(beside):
+    """A body on a slide that a rod across it holds, the rod so much out of the perpendicular."""
+    return extremes.plain(2, [extremes.solid("b", 1.0, 0.25, [0.0, 0.0])],
+                          [extremes.joint("g", "prismatic", "ground", "b", [0.0, 0.0], axis=[1, 0]), extremes.joint("rod", "distance", "ground", "b", [[beside, 1.0], [0.0, 0.0]])])
+
+
 class Stress(unittest.TestCase):
     def test_families(self):
         rows = {}
@@ -47,6 +53,25 @@ class Stress(unittest.TestCase):
         found = list(run.stress("c1", ["nearly buckled"], [46, 111], rows)) + list(run.stress("g", ["nearly buckled"], range(20), rows))
         self.assertEqual(found, [])
         self.assertEqual(rows["nearly buckled"].left_out, {})
+
+    def test_what_is_0_in_decimals_is_not_told_from_it(self):
+        """A slide that a rod holds at its dead centre but for 4e-17 of the axis as it is read; a spring that is straight across a slot but for as much."""
+        rows = {}
+        found = list(run.stress("zz", ["both"], [22], rows)) + list(run.stress("1795386040.2", ["nanometres to kilometres"], [5], rows))
+        self.assertEqual(found, [])
+        self.assertEqual(rows["both"].left_out, {"refused as undetermined": 1})
+
+    def test_slides_beside_their_dead_centre_are_refused_next_to_it_only(self):
+        """Beside it by 2^-k: an answer down to 2^-20, a refusal from 2^-30 on, and what is refused is not determined."""
+        for k in (0, 10, 20, 30, 50):
+            model = slide(2.0 ** -k if k < 50 else 0.0)
+            with self.subTest(k=k), tempfile.TemporaryDirectory() as folder:
+                done, _ = run.ask(folder, model)
+                self.assertEqual(done.returncode, 0 if k < 30 else 3, done.stderr)
+                if k < 30:
+                    self.assertEqual(json.loads(done.stdout)[0]["freedoms"], 0)
+                else:
+                    self.assertIn("dead centre", done.stderr)
 
     def test_many_equal_modes_of_a_tree_are_all_found(self):
         """Arms on a hub: 120 equal ones; 104 that almost are; in groups of twenty, of which the errors add up."""
@@ -84,6 +109,12 @@ class Faults(unittest.TestCase):
         self.said["modes"][0]["kind"] = "rigid_body"
         self.assertEqual(self._found(), {"kind"})
 
+    def test_wrong_kind_of_what_the_data_leave_open(self):
+        """Sixteen roundings may make it 0: nothing is said of its kind, but of its bound."""
+        self.exact.condition[0] = 2 / (run.ROUNDINGS * run.UNIT)
+        self.said["modes"][0].update(kind="rigid_body", omega_squared=0.0, omega_squared_error=2 * float(self.exact.values[0]))
+        self.assertEqual(self._found(), set())
+
     def test_undecided(self):
         self.said["modes"][0]["kind"] = "undecided"
         self.assertEqual(self._found(), {"undecided"})
@@ -105,6 +136,12 @@ class Reference(unittest.TestCase):
                                [extremes.axial(f"s{i}", name(i), name(i + 1), [[float(i), 0.0], [i + 1.0, 0.0]], 10.0 ** (2 * i)) for i in range(6)])
         for a, b in zip(run.Chain(model).values, run.Exact(model, rng).values):
             self.assertLess(abs(a / b - 1), 1e-18)
+
+    def test_condition_of_joints(self):
+        """The slide's rod holds it by the sine of its angle, whose square the volume is: 2 over the sine, of what each coordinate is changed by."""
+        for k in (5, 20, 40):
+            opened = max(run.Exact(slide(2.0 ** -k), random.Random(str(i))).open() for i in range(5))
+            self.assertTrue(2 ** k / 4 < opened < 8 * 2 ** k, opened)
 
     def test_condition(self):
         """omega^2 = (k - m g l)/(J + m l^2): of k - m g l = 2^-20 k each half is known to a unit."""
