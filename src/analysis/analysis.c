@@ -130,8 +130,8 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                                         .interrupt = a->sys->model->interrupt};
     MT_TRY(mt_modal_solve(r->k, &a->mass, &factor, options, &a->mem, &a->modes, err));
     const int all = a->modes.count;
-    const int doubtful = r->loaded ? all : mt_modal_doubtful(&a->modes);
-    if (a->modes.y == NULL || (doubtful == 0 && !bounds)) {
+    const int judged = r->loaded || bounds ? all : mt_modal_doubtful(&a->modes);
+    if (a->modes.y == NULL || judged == 0) {
         return MT_OK;
     }
     const size_t count = (size_t)all;
@@ -142,7 +142,7 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                           .mass_noise = mt_arena_f64(&a->mem, count, 1),
                           .given_noise = mt_arena_f64(&a->mem, count, 1),
                           .strained = mt_arena_alloc(&a->mem, count, sizeof(bool)),
-                          .count = bounds ? all : doubtful};
+                          .count = judged};
     MT_TRY(mt_arena_check(&a->mem, err));
     const mt_energies out = {.stiffness = e.stiffness,
                              .mass = e.mass,
@@ -151,11 +151,7 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                              .given_noise = e.given_noise,
                              .strained = e.strained};
     MT_TRY(mt_linear_energies(a->lin, e.count, a->modes.y, &out, err));
-    if (doubtful > 0) {
-        mt_modal_judge(&e, options->n_rigid, &a->modes);
-    } else {
-        mt_modal_widen(&e, &a->modes);
-    }
+    mt_modal_judge(&e, options->n_rigid, &a->modes);
     mt_arena_rewind(&a->mem, mark);
     return MT_OK;
 }

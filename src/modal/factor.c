@@ -34,6 +34,7 @@ typedef struct graded {
     double *d;   /* [rows] sqrt(c) times the row's length, over that in ct */
     mt_qr qr;    /* of ct; of L where elimination takes over */
     double kept; /* smallest diagonal entry of R that counts, of the largest */
+    double most; /* max D where E of singular_values counts; else 0 */
     double *f;   /* rows x rank: D P R^T */
     double *s;   /* [rank] descending */
     double *v;   /* rank x rank */
@@ -165,20 +166,18 @@ static mt_status prepare(const mt_stiffness_factor *b, const mt_mass_factor *mas
 }
 
 /*
- * Householder's method leaves eps in every row of C. That is eps / kept of the singular values
- * of C, and as there may be more rows than freedoms, eps times the spread of D of those of D C.
- * Where less than this part of the digits would be left of either, elimination takes over; it
- * costs as much again.
+ * Householder's method leaves E, eps in every row of C. Of D E the part within the columns of
+ * D C is eps / kept of its singular values; where there are more rows than freedoms the rest is
+ * eps max D, whatever these are. Where less than this part of the digits would be left of
+ * either, elimination takes over; it costs as much again.
  */
 static const double GRADED = 1e-4;
 
-static bool is_graded(const graded *g)
+static bool is_graded(const graded *g, double most)
 {
     double least = HUGE_VAL;
-    double most = 0.0;
     for (int j = 0; j < g->rows; j++) {
         least = fmin(least, g->d[j]);
-        most = fmax(most, g->d[j]);
     }
     return g->qr.rank > 0 && g->kept * least < GRADED * most;
 }
@@ -191,7 +190,11 @@ static mt_status singular_values(graded *g, mt_arena *scratch, mt_err *err)
     g->v = mt_arena_f64(scratch, (size_t)r, (size_t)r);
     MT_TRY(mt_arena_check(scratch, err));
     g->kept = g->qr.kept;
-    if (is_graded(g)) {
+    for (int j = 0; j < g->rows; j++) {
+        g->most = fmax(g->most, g->d[j]);
+    }
+    if (is_graded(g, g->most)) {
+        g->most = 0.0;
         mt_graded e = {.n = g->n,
                        .rows = g->rows,
                        .rank = r,
@@ -211,6 +214,7 @@ static mt_status singular_values(graded *g, mt_arena *scratch, mt_err *err)
             g->f[row + (ptrdiff_t)i * g->rows] = g->d[row] * g->qr.qr[i + (ptrdiff_t)j * g->n];
         }
     }
+    g->most = g->rows > r ? g->most : 0.0;
     return mt_svd_jacobi(g->rows, r, g->f, g->s, g->v, scratch, err);
 }
 
@@ -260,7 +264,8 @@ mt_status mt_modal_by_factor(const mt_stiffness_factor *factor, const mt_mass_fa
     }
     out->from_factor = true;
     out->error_bound = 0.0;
+    const double beside = r > 0 && g.most > 0.0 ? 2.0 * g.most / g.s[r - 1] : 0.0;
     out->error_relative =
-        fmax(g.tol, mt_modal_relative(g.n)) * (mass->condition + 1.0 / g.kept);
+        fmax(g.tol, mt_modal_relative(g.n)) * (mass->condition + (1.0 / g.kept) + beside);
     return MT_OK;
 }

@@ -101,18 +101,13 @@ int mt_modal_doubtful(const mt_modes *modes)
     return count;
 }
 
-void mt_modal_widen(const mt_mode_energies *e, mt_modes *modes)
-{
-    for (int i = 0; i < e->count; i++) {
-        modes->error[i] += e->given_noise[i] / e->mass[i];
-    }
-}
-
 void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes)
 {
     const bool exact = modes->from_factor && modes->error_bound == 0.0;
     const int held = modes->n_held;
-    mt_modal_widen(e, modes);
+    for (int i = 0; i < e->count; i++) {
+        modes->error[i] += e->given_noise[i] / e->mass[i];
+    }
     for (int i = 0; i < e->count; i++) {
         const verdict v = quotient(modes, e, i);
         const bool surer = v.error < modes->error[i];

@@ -31,10 +31,8 @@ typedef struct mt_mode_energies {
  */
 void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes);
 
-/* Of how many, the lowest, that is worth its while: up to the last mode of which the kind could
- * be wrong or the error is above 1e-9 of its lambda. */
+/* Of how many, the lowest, that is worth its while where no errors are asked for: up to the
+ * last mode of which the kind could be wrong or the error is above 1e-9 of its lambda. */
 int mt_modal_doubtful(const mt_modes *modes);
-/* Where it is not: errors alone, larger by what K and M have wrong as they are given. */
-void mt_modal_widen(const mt_mode_energies *e, mt_modes *modes);
 
 #endif

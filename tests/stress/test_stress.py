@@ -73,6 +73,20 @@ class Stress(unittest.TestCase):
                 else:
                     self.assertIn("dead centre", done.stderr)
 
+    def test_springs_beyond_the_freedoms(self):
+        """They hold each other: what Householder's method leaves in the stiff ones counts beside the soft ones."""
+        found = list(run.stress("q1", ["redundant springs"], [6], {}))
+        self.assertEqual(found, [])
+
+    def test_bounds_follow_from_energies(self):
+        """Errors and bounds of what the data determine, of springs and masses far apart: a thousand times as good where quotients of energies are taken."""
+        rows = {}
+        found = list(run.stress("q1", ["stiffnesses 1:1e12", "masses 1:1e9", "both", "slender beams"], range(6), rows))
+        self.assertEqual(found, [])
+        for row in rows.values():
+            self.assertLess(row.told, 1e-11, row.name)
+            self.assertLess(row.error, 1e-13, row.name)
+
     def test_many_equal_modes_of_a_tree_are_all_found(self):
         """Arms on a hub: 120 equal ones; 104 that almost are; in groups of twenty, of which the errors add up."""
         found = list(run.stress("2", ["large stars"], [0, 12, 11, 3], {}))
