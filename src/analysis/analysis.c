@@ -119,6 +119,19 @@ static mt_status refresh_mass(mt_analysis *a, mt_err *err)
     return MT_OK;
 }
 
+/* Of `count` shapes y, from place `at` on. */
+static mt_status energies_of(mt_analysis *a, int at, int count, const double *y,
+                             mt_mode_energies *e, mt_err *err)
+{
+    const mt_energies out = {.stiffness = e->stiffness + at,
+                             .mass = e->mass + at,
+                             .stiffness_noise = e->stiffness_noise + at,
+                             .mass_noise = e->mass_noise + at,
+                             .given_noise = e->given_noise + at,
+                             .strained = e->strained + at};
+    return count > 0 ? mt_linear_energies(a->lin, count, y, &out, err) : MT_OK;
+}
+
 static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                                  const mt_modal_options *options, bool bounds, mt_err *err)
 {
@@ -134,23 +147,24 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
     if (a->modes.y == NULL || judged == 0) {
         return MT_OK;
     }
-    const size_t count = (size_t)all;
     const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
+    int *const group = mt_arena_int(&a->mem, (size_t)judged);
+    MT_TRY(mt_arena_check(&a->mem, err));
+    const int pairs = mt_modal_groups(&a->modes, judged, group);
+    const size_t count = (size_t)all + (size_t)pairs;
+    double *const pair_y = mt_arena_f64(&a->mem, (size_t)a->modes.n, (size_t)pairs);
     mt_mode_energies e = {.stiffness = mt_arena_f64(&a->mem, count, 1),
                           .mass = mt_arena_f64(&a->mem, count, 1),
                           .stiffness_noise = mt_arena_f64(&a->mem, count, 1),
                           .mass_noise = mt_arena_f64(&a->mem, count, 1),
                           .given_noise = mt_arena_f64(&a->mem, count, 1),
                           .strained = mt_arena_alloc(&a->mem, count, sizeof(bool)),
-                          .count = judged};
+                          .count = judged,
+                          .group = group};
     MT_TRY(mt_arena_check(&a->mem, err));
-    const mt_energies out = {.stiffness = e.stiffness,
-                             .mass = e.mass,
-                             .stiffness_noise = e.stiffness_noise,
-                             .mass_noise = e.mass_noise,
-                             .given_noise = e.given_noise,
-                             .strained = e.strained};
-    MT_TRY(mt_linear_energies(a->lin, e.count, a->modes.y, &out, err));
+    mt_modal_pair_shapes(&a->modes, judged, group, pair_y);
+    MT_TRY(energies_of(a, 0, judged, a->modes.y, &e, err));
+    MT_TRY(energies_of(a, judged, pairs, pair_y, &e, err));
     mt_modal_judge(&e, options->n_rigid, &a->modes);
     mt_arena_rewind(&a->mem, mark);
     return MT_OK;

@@ -24,35 +24,93 @@ static const double FINE = 1e-9;
 /* p of the above. */
 static const double SHAPE_ULPS = 16.0;
 
-/* Distance of lambda_i to its neighbours beyond their errors; at most 0: one of them may be the
- * same. */
-static double gap_of(const mt_modes *modes, int i)
+/* Of the error of either, gaps below this leave less than three digits of r^2 / gap. */
+static const double CLOSE = 1e3;
+enum { GROUP = 8 };
+
+/* Distance between neighbours beyond their errors; at most 0: they may be the same. */
+static double gap_between(const mt_modes *modes, int i, int k)
 {
-    double gap = HUGE_VAL;
-    for (int side = -1; side <= 1; side += 2) {
-        const int k = i + side;
-        if (k >= 0 && k < modes->all) {
-            const double far = fabs(modes->lambda[k] - modes->lambda[i]);
-            gap = fmin(gap, far - modes->error[k] - modes->error[i]);
-        }
-    }
-    return gap;
+    const double far = fabs(modes->lambda[k] - modes->lambda[i]);
+    return far - modes->error[k] - modes->error[i];
 }
 
-typedef struct verdict {
-    double lambda;
-    double error;
-} verdict;
-
-static verdict quotient(const mt_modes *modes, const mt_mode_energies *e, int i)
+static bool is_close(const mt_modes *modes, int i)
 {
-    const double lambda = e->stiffness[i] / e->mass[i];
-    const double r = modes->error[i];
-    const double gap = gap_of(modes, i);
+    return !(gap_between(modes, i, i + 1) > CLOSE * fmax(modes->error[i], modes->error[i + 1]));
+}
+
+int mt_modal_groups(const mt_modes *modes, int count, int *group)
+{
+    int pairs = 0;
+    for (int i = 0, end; i < count; i = end) {
+        for (end = i + 1; end < count && is_close(modes, end - 1); end++) {
+        }
+        const int size = end - i;
+        for (int k = i; k < end; k++) {
+            group[k] = size <= GROUP ? i : k;
+        }
+        pairs += size <= GROUP ? size * (size - 1) / 2 : 0;
+    }
+    return pairs;
+}
+
+void mt_modal_pair_shapes(const mt_modes *modes, int count, const int *group, double *y)
+{
+    const double half = sqrt(0.5);
+    for (int i = 0; i < count; i++) {
+        for (int k = i + 1; k < count && group[k] == group[i]; k++, y += modes->n) {
+            for (int j = 0; j < modes->n; j++) {
+                y[j] = half * (mt_modal_shape(modes, i)[j] + mt_modal_shape(modes, k)[j]);
+            }
+        }
+    }
+}
+
+/* |y_i^T (K - lambda M) y_k| at most, from the shape of the pair at `pair`. */
+static double coupling(const mt_mode_energies *e, double lambda, int i, int k, int pair)
+{
+    const double stiffness = e->stiffness[pair] - (0.5 * (e->stiffness[i] + e->stiffness[k]));
+    const double mass = e->mass[pair] - (0.5 * (e->mass[i] + e->mass[k]));
+    const double stiffness_noise =
+        e->stiffness_noise[pair] + (0.5 * (e->stiffness_noise[i] + e->stiffness_noise[k]));
+    const double mass_noise =
+        e->mass_noise[pair] + (0.5 * (e->mass_noise[i] + e->mass_noise[k]));
+    return fabs(stiffness - (lambda * mass)) + stiffness_noise + (fabs(lambda) * mass_noise);
+}
+
+/* lambda[end - first] of the modes first .. end - 1, whose pairs stand from *pair on; returns
+ * their error. */
+static double quotients(const mt_modes *modes, const mt_mode_energies *e, int first, int end,
+                        int *pair, double *lambda)
+{
     const double shape = SHAPE_ULPS * DBL_EPSILON;
-    const double noise = (e->stiffness_noise[i] + fabs(lambda) * e->mass_noise[i]) / e->mass[i];
+    double coupled[GROUP] = {0.0};
+    double noise = 0.0;
+    double r = 0.0;
+    double most = 0.0;
+    for (int i = first; i < end; i++) {
+        const double rho = e->stiffness[i] / e->mass[i];
+        const double own =
+            (e->stiffness_noise[i] + (fabs(rho) * e->mass_noise[i])) / e->mass[i];
+        lambda[i - first] = rho;
+        noise = fmax(noise, isfinite(rho + own) ? own : HUGE_VAL);
+        r = fmax(r, modes->error[i]);
+        for (int k = i + 1; k < end; k++, (*pair)++) {
+            const double c = coupling(e, rho, i, k, *pair) / fmin(e->mass[i], e->mass[k]);
+            coupled[i - first] += c;
+            coupled[k - first] += c;
+        }
+    }
+    for (int i = first; i < end; i++) {
+        most = fmax(most, coupled[i - first]);
+    }
+    r *= sqrt(end - first);
+    const double below = first > 0 ? gap_between(modes, first - 1, first) : HUGE_VAL;
+    const double above = end < modes->all ? gap_between(modes, end - 1, end) : HUGE_VAL;
+    const double gap = fmin(below, above);
     const double mixed = gap > r ? r * (r / gap) : r;
-    return (verdict){.lambda = lambda, .error = noise + mixed + shape * shape * modes->scale};
+    return noise + most + mixed + shape * shape * modes->scale;
 }
 
 static void swap(double *a, double *b)
@@ -101,23 +159,34 @@ int mt_modal_doubtful(const mt_modes *modes)
     return count;
 }
 
-void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes)
+/* Where they are surer: group by group, with the errors and gaps that were there before. */
+static void take_quotients(mt_mode_energies *e, mt_modes *modes)
 {
-    const bool exact = modes->from_factor && modes->error_bound == 0.0;
-    const int held = modes->n_held;
     for (int i = 0; i < e->count; i++) {
         modes->error[i] += e->given_noise[i] / e->mass[i];
     }
-    for (int i = 0; i < e->count; i++) {
-        const verdict v = quotient(modes, e, i);
-        const bool surer = v.error < modes->error[i];
-        e->stiffness[i] = surer ? v.lambda : modes->lambda[i];
-        e->mass[i] = surer ? v.error : modes->error[i];
+    for (int i = 0, end, pair = e->count; i < e->count; i = end) {
+        double lambda[GROUP];
+        for (end = i + 1; e->group != NULL && end < e->count && e->group[end] == i; end++) {
+        }
+        const double error = quotients(modes, e, i, end, &pair, lambda);
+        for (int k = i; k < end; k++) {
+            const bool surer = error < modes->error[k];
+            e->stiffness[k] = surer ? lambda[k - i] : modes->lambda[k];
+            e->mass[k] = surer ? error : modes->error[k];
+        }
     }
     for (int i = 0; i < e->count; i++) {
         modes->lambda[i] = e->stiffness[i];
         modes->error[i] = e->mass[i];
     }
+}
+
+void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes)
+{
+    const bool exact = modes->from_factor && modes->error_bound == 0.0;
+    const int held = modes->n_held;
+    take_quotients(e, modes);
     for (int i = e->count; i < modes->count; i++) {
         e->strained[i] = true;
     }

@@ -19,6 +19,9 @@ typedef struct mt_mode_energies {
                             can be without */
     bool *strained; /* [count] does any spring move by more than the rounding of its terms? */
     int count;      /* the lowest modes; the others have no doubts to be judged */
+    /* NULL, or mt_modal_groups: then stiffness, mass and their noises go on, behind count, with
+     * those of mt_modal_pair_shapes, and what they say of y_i^T (K - lambda M) y_k is known */
+    const int *group;
 } mt_mode_energies;
 /*
  * Replace each lambda_i by the quotient of its energies where that is the surer one, and decide
@@ -26,13 +29,22 @@ typedef struct mt_mode_energies {
  * vectors). Now a rigid-body mode is one within its error in which no spring is strained, and
  * one that is strained is undecided. A shape whose error is at most r in the norm of the
  * residual changes the quotient by r min(1, r/gap) at most, gap: distance to the next lambda
- * (Parlett, The Symmetric Eigenvalue Problem, sec. 10-5 and 11-7). Overwrites e, whose
- * arrays have room for all modes.
+ * (Parlett, The Symmetric Eigenvalue Problem, sec. 10-5 and 11-7). Modes of one group are
+ * judged together: their quotients are eigenvalues to the greatest sum of |y_i^T (K - lambda M)
+ * y_k| over the others (Weyl), and the gap is that to the modes beside the group. Overwrites e,
+ * whose arrays have room for all modes.
  */
 void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes);
 
 /* Of how many, the lowest, that is worth its while where no errors are asked for: up to the
  * last mode of which the kind could be wrong or the error is above 1e-9 of its lambda. */
 int mt_modal_doubtful(const mt_modes *modes);
+
+/* Neighbours that stand too close for a gap between them, up to eight: group[count], the first
+ * mode of the group that each belongs to. Returns how many pairs i < k of one group there are.
+ */
+int mt_modal_groups(const mt_modes *modes, int count, int *group);
+/* (y_i + y_k)/sqrt 2 of these pairs, y n x pairs. */
+void mt_modal_pair_shapes(const mt_modes *modes, int count, const int *group, double *y);
 
 #endif

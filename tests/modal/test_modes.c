@@ -425,8 +425,8 @@ static void modal__judged_modes_ascend(mt_test *t)
     double mass_noise[] = {0.0, 0.0};
     double given_noise[] = {60.0, 100.0};
     bool strained[] = {true, false};
-    mt_mode_energies e = {stiffness, mass, stiffness_noise, mass_noise, given_noise,
-                          strained,  2};
+    mt_mode_energies e = {stiffness, mass, stiffness_noise, mass_noise, given_noise, strained,
+                          2,         NULL};
     mt_modes modes;
     REQUIRE(t, solve_pair(2, k, m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
     mt_modal_judge(&e, -1, &modes);
@@ -450,8 +450,8 @@ static void modal__modes_without_doubt_are_not_judged(mt_test *t)
     double mass_noise[] = {0.0, nan(""), nan("")};
     double given_noise[] = {0.0, nan(""), nan("")};
     bool strained[] = {true, false, false};
-    mt_mode_energies e = {stiffness, mass, stiffness_noise, mass_noise, given_noise,
-                          strained,  0};
+    mt_mode_energies e = {stiffness, mass, stiffness_noise, mass_noise, given_noise, strained,
+                          0,         NULL};
     mt_modal_options opt = mt_modal_options_default();
     mt_modes modes;
     opt.n_rigid = 0;
@@ -465,6 +465,43 @@ static void modal__modes_without_doubt_are_not_judged(mt_test *t)
     CHECK_NEAR(t, modes.lambda[2], 1e12, TOL);
     CHECK_NEAR(t, modes.error[1], error, TOL);
     CHECK_INT(t, mt_modal_flexible(&modes, 3), 2);
+}
+
+/* Of two equal modes rounding may have turned the shapes: their quotients are eigenvalues up to
+ * what couples the shapes, here given, and to the gap that the two have to the third. */
+static void modal__equal_modes_are_known_to_their_coupling(mt_test *t)
+{
+    static const double couplings[] = {0.0, 1e-5, -1e-5, 1e-2};
+    static const double KNOWN = 1e-3;
+    const double k[] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 100.0};
+    const double m[] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+    for (int r = 0; r < MT_COUNT(couplings); r++) {
+        const double c = couplings[r];
+        double stiffness[] = {1.0, 1.0, 100.0, 1.0 + c};
+        double mass[] = {1.0, 1.0, 1.0, 1.0};
+        double none[] = {0.0, 0.0, 0.0, 0.0};
+        bool strained[] = {true, true, true, true};
+        double sum[3];
+        int group[3];
+        mt_modes modes;
+        mt_test_row(t, "coupled by %g", c);
+        REQUIRE(t, solve_pair(3, k, m, NULL, NULL, &mem, &modes, NULL) == MT_OK);
+        modes.error[0] = KNOWN;
+        modes.error[1] = KNOWN;
+        CHECK_INT(t, mt_modal_groups(&modes, 3, group), 1);
+        CHECK(t, group[0] == 0 && group[1] == 0 && group[2] == 2);
+        mt_modal_pair_shapes(&modes, 3, group, sum);
+        CHECK_NEAR(t, mt_dot(3, sum, sum), 1.0, TOL);
+        CHECK_NEAR(t, fabs(sum[0] * sum[1]), 0.5, TOL);
+        mt_mode_energies e = {stiffness, mass, none, none, none, strained, 3, group};
+        mt_modal_judge(&e, -1, &modes);
+        for (int i = 0; i < 2; i++) {
+            const double beside = 2.0 * KNOWN * KNOWN / (99.0 - KNOWN);
+            const double want = fabs(c) < KNOWN ? fabs(c) + beside : KNOWN;
+            CHECK_NEAR(t, modes.error[i], want, 1e-6);
+            CHECK_NEAR(t, modes.lambda[i], 1.0, TOL);
+        }
+    }
 }
 
 /* A spring that has become 0 leaves a mode at 0 Hz with no error at all, where rigid-body modes
@@ -500,6 +537,7 @@ int main(void)
         MT_TEST(modal__sign_rule_is_stable_under_rounding),
         MT_TEST(modal__judged_modes_ascend),
         MT_TEST(modal__modes_without_doubt_are_not_judged),
+        MT_TEST(modal__equal_modes_are_known_to_their_coupling),
         MT_TEST(modal__modes_at_zero_are_in_doubt),
         MT_TEST(modal__bad_matrices_are_errors),
         MT_TEST(modal__repeated_solves_do_not_touch_the_heap),
