@@ -174,6 +174,8 @@ mt_status mt_describe_limit_certificates(const mt_problem *p, mt_arena *mem, mt_
                    "That no design meets all goals is sampled, not proven: no certificate, %s.",
                    proof.reason);
     }
+    /* one budget for all questions: each limit alone, and all of them together */
+    proof.question.max_work = MT_CERTIFY_WORK / (1.0 + (double)proof.question.n_limits);
     for (int i = 0; rc == MT_OK && proof.possible && i < proof.question.n_limits; i++) {
         rc = reach(p, &proof, i, mem, result, infeasible, err);
     }

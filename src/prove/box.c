@@ -32,6 +32,9 @@ static const double HARMLESS = 1e-9;
 static const double SHARE_OF_DATA = 0.5;
 /* Below this share of n eps a pivot ratio says nothing (mt_inertia's gap). */
 static const double UNSURE_ULPS = 16.0;
+/* What an entry copied and a node enclosed cost, in multiplications of a factorisation. */
+static const double COPY = 1.0;
+static const double NODE = 50.0;
 
 double mt_enclosure_lambda(double hz)
 {
@@ -39,17 +42,53 @@ double mt_enclosure_lambda(double hz)
     return (TWO_PI * hz) * (TWO_PI * hz);
 }
 
-static void assemble(mt_enclosure *e, mt_matrix m, mt_side side)
+static void add_parts(mt_enclosure *e, mt_matrix m, mt_side side)
 {
     double *const out = e->at[m][side];
     memcpy(out, e->fixed[m], (size_t)e->n * (size_t)e->n * sizeof *out);
+    e->operations += COPY * (double)e->n * (double)e->n;
     for (int i = 0; i < e->n_coefficients; i++) {
         const mt_enclosure_part *const p = &e->coefficients[i].part[m];
         const double c = e->value[side][i];
         for (int k = 0; k < p->count; k++) {
             out[p->at[k]] += c * p->value[k];
         }
+        e->operations += p->count;
     }
+}
+
+static mt_side other(mt_side side)
+{
+    return side == MT_LOW ? MT_HIGH : MT_LOW;
+}
+
+/* Both matrices of a corner of the box that is set. */
+static void assemble(mt_enclosure *e, mt_side side)
+{
+    if (!e->assembled[side]) {
+        add_parts(e, MT_STIFFNESS, side);
+        if (e->mass_varies) {
+            add_parts(e, MT_MASS, other(side));
+        }
+        e->assembled[side] = true;
+    }
+}
+
+int mt_enclosure_corner_key(const mt_enclosure *e, mt_side side)
+{
+    uint64_t key = 1;
+    for (int i = 0; i < e->n_coefficients; i++) {
+        for (mt_matrix m = MT_STIFFNESS; m <= MT_MASS; m++) {
+            if (e->coefficients[i].part[m].count > 0) {
+                uint64_t bits = 0;
+                memcpy(&bits, &e->value[m == MT_STIFFNESS ? side : other(side)][i],
+                       sizeof bits);
+                key = (key ^ bits) * 0x9E3779B97F4A7C15U; /* 2^64 / golden ratio */
+                key ^= key >> 32;
+            }
+        }
+    }
+    return (int)(key >> 33);
 }
 
 /* mu: M at the box's low end is at least mu times M at that of the bounds (the identity); 0
@@ -75,6 +114,7 @@ bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi)
         return false;
     }
     mt_enclosure_bounds(e, lo, hi);
+    e->operations += NODE * (double)e->program.count;
     for (int i = 0; i < e->n_coefficients; i++) {
         const bool either = e->coefficients[i].required != MT_SIGN_POSITIVE;
         const bool freed = e->coefficients[i].most <= DBL_MIN && e->value[MT_HIGH][i] > DBL_MIN;
@@ -85,6 +125,7 @@ bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi)
         within = within && e->value[MT_LOW][i] >= e->coefficients[i].least;
         k_scale += fmax(fabs(e->value[MT_LOW][i]), fabs(e->value[MT_HIGH][i])) *
                    e->coefficients[i].part[MT_STIFFNESS].trace;
+        m_scale += e->value[MT_HIGH][i] * e->coefficients[i].part[MT_MASS].trace;
     }
     if (!e->squares && !within) {
         return false;
@@ -93,15 +134,11 @@ bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi)
     if (!(mu > 0.0)) {
         return false;
     }
-    for (mt_side s = MT_LOW; s <= MT_HIGH; s++) {
-        assemble(e, MT_STIFFNESS, s);
-        if (e->mass_varies) {
-            assemble(e, MT_MASS, s);
-        }
-    }
     for (ptrdiff_t i = 0; i < e->n; i++) {
-        m_scale += e->mass_varies ? e->at[MT_MASS][MT_HIGH][i * (e->n + 1)] : 0.0;
+        m_scale += e->mass_varies ? e->fixed[MT_MASS][i * (e->n + 1)] : 0.0;
     }
+    e->assembled[MT_LOW] = false;
+    e->assembled[MT_HIGH] = false;
     e->slack_k = e->roundoff * k_scale / mu;
     e->slack_m = e->roundoff * (e->mass_varies ? m_scale : 1.0) / mu;
     return true;
@@ -143,10 +180,11 @@ static void shifted(const mt_enclosure *e, const double *k, const double *m, dou
 
 /* Negative pivots of w (destroyed); growth: trace(|L||D||L|^T). A zero pivot counts as tiny and
  * negative; the growth then tells. */
-static int negative_pivots(ptrdiff_t n, double *w, double *growth)
+static int negative_pivots(ptrdiff_t n, double *w, double *growth, double *operations)
 {
     int negative = 0;
     double sum = 0.0;
+    ptrdiff_t done = 0;
     for (ptrdiff_t k = 0; k < n; k++) {
         double *const col = w + (k * n);
         const double d = col[k] == 0.0 ? -DBL_MIN : col[k];
@@ -160,6 +198,7 @@ static int negative_pivots(ptrdiff_t n, double *w, double *growth)
             const double l = col[j] * inverse;
             double *const target = w + (j * n);
             squares += col[j] * l;
+            done += n - j;
             for (ptrdiff_t i = j; i < n; i++) {
                 target[i] -= col[i] * l;
             }
@@ -167,27 +206,30 @@ static int negative_pivots(ptrdiff_t n, double *w, double *growth)
         sum += fabs(d) + fabs(squares);
     }
     *growth = sum;
+    *operations += (double)done;
     return negative;
 }
 
 /* Modes below sigma at a corner, rigid-body modes included; -1: unsure. room: how far E may
  * go. */
-static int count_below(mt_enclosure *e, mt_side side_k, mt_side side_m, double sigma,
-                       double room)
+static int count_below(mt_enclosure *e, mt_side side, double sigma, double room)
 {
-    const double *const k = e->at[MT_STIFFNESS][side_k];
-    const double *const m = e->mass_varies ? e->at[MT_MASS][side_m] : NULL;
+    const double *const k = e->at[MT_STIFFNESS][side];
+    const double *const m = e->mass_varies ? e->at[MT_MASS][other(side)] : NULL;
     const double g = (double)(e->n + 2) * DBL_EPSILON;
     double growth = 0.0;
     e->counts++;
+    assemble(e, side);
     shifted(e, k, m, sigma, e->work);
-    const int negative = negative_pivots(e->n, e->work, &growth);
+    e->operations += COPY * (double)e->n * (double)e->n;
+    const int negative = negative_pivots(e->n, e->work, &growth, &e->operations);
     if (g * growth <= room) { /* false for NaN */
         return negative;
     }
     int count[3];
     double gap = 0.0;
     e->fallbacks++;
+    e->operations += (double)e->n * (double)e->n * (double)e->n;
     const mt_status rc = mt_inertia(e->n, k, m, sigma, count, &gap, &e->scratch, NULL);
     const bool sure = rc == MT_OK && gap > UNSURE_ULPS * (double)e->n * DBL_EPSILON;
     return sure ? count[0] : -1;
@@ -207,7 +249,7 @@ static int vibrating(const mt_enclosure *e, int count)
 int mt_enclosure_most_below(mt_enclosure *e, double lambda)
 {
     const double shift = slack(e, lambda);
-    const int count = count_below(e, MT_LOW, MT_HIGH, lambda + shift, SHARE_OF_DATA * shift);
+    const int count = count_below(e, MT_LOW, lambda + shift, SHARE_OF_DATA * shift);
     return count < 0 ? e->n_modes : vibrating(e, count);
 }
 
@@ -217,25 +259,25 @@ int mt_enclosure_least_below(mt_enclosure *e, double lambda)
     if (!(lambda - shift > 0.0)) {
         return 0;
     }
-    const int count = count_below(e, MT_HIGH, MT_LOW, lambda - shift, SHARE_OF_DATA * shift);
+    const int count = count_below(e, MT_HIGH, lambda - shift, SHARE_OF_DATA * shift);
     return count < 0 ? 0 : vibrating(e, count);
 }
 
 /* Eigenvalues of a corner into lambda; *error: slack_k + slack_m |lambda| and the solver's
  * own. */
-static mt_status solve_corner(mt_enclosure *e, mt_side side_k, mt_side side_m, mt_modes *modes,
-                              mt_err *err)
+static mt_status solve_corner(mt_enclosure *e, mt_side side, mt_modes *modes, mt_err *err)
 {
     mt_mass_factor mass;
     *modes = (mt_modes){0};
-    MT_TRY(e->mass_varies
-               ? mt_modal_factor_mass(e->n, e->at[MT_MASS][side_m], &e->scratch, &mass, err)
-               : mt_modal_identity_mass(e->n, &e->scratch, &mass, err));
+    assemble(e, side);
+    MT_TRY(e->mass_varies ? mt_modal_factor_mass(e->n, e->at[MT_MASS][other(side)], &e->scratch,
+                                                 &mass, err)
+                          : mt_modal_identity_mass(e->n, &e->scratch, &mass, err));
     mt_modal_options opt = mt_modal_options_default();
     opt.n_rigid = e->n_rigid;
     opt.vectors = false;
     opt.check = false;
-    return mt_modal_solve(e->at[MT_STIFFNESS][side_k], &mass, NULL, &opt, &e->scratch, modes,
+    return mt_modal_solve(e->at[MT_STIFFNESS][side], &mass, NULL, &opt, &e->scratch, modes,
                           err);
 }
 
@@ -252,8 +294,7 @@ static mt_status ranges(mt_enclosure *e, double *low, double *high, mt_err *err)
 {
     mt_modes modes;
     for (mt_side s = MT_LOW; s <= MT_HIGH; s++) {
-        const mt_side other = s == MT_LOW ? MT_HIGH : MT_LOW;
-        MT_TRY(solve_corner(e, s, other, &modes, err));
+        MT_TRY(solve_corner(e, s, &modes, err));
         for (int k = 0; k < e->n_modes; k++) {
             const double lambda = modes.lambda[e->n_rigid + k];
             const double error = modes.error_bound + e->slack_k +

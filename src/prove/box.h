@@ -7,6 +7,10 @@
 /* Set the box lo <= x <= hi; it may leave the bounds. False where nothing is known over it: a
  * coefficient may be negative or is not enclosed, or the work is interrupted. No heap. */
 bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi);
+/* A number that tells corners apart: MT_LOW the soft one, MT_HIGH the stiff one. Where those of
+ * two boxes, one in the other, are equal, the corners are (but for one pair in 2^31: then what
+ * was counted at the outer one still bounds what the inner one has). At least 0. */
+int mt_enclosure_corner_key(const mt_enclosure *e, mt_side side);
 /* Note which stiffnesses are positive all over the box that is set; and are they so all over
  * the one that is set later? Where one is not, a design of that box may have one more
  * rigid-body mode. */

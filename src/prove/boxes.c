@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The stack of boxes, and edges tested over one. */
+/* The stack of boxes. */
 #include "prove/boxes.h"
 
 #include <math.h>
@@ -29,6 +29,8 @@ static mt_status claim(mt_boxes *b, mt_arena *mem, mt_err *err)
     b->depth = mt_arena_alloc(mem, most, n);
     b->active = mt_arena_alloc(mem, n, sizeof(bool));
     b->logarithmic = mt_arena_alloc(mem, n, sizeof(bool));
+    b->known = mt_arena_alloc(mem, most * ((size_t)b->n_known + 1), sizeof *b->known);
+    b->now_known = mt_arena_int(mem, (size_t)b->n_known + 1);
     b->now_lo = mt_arena_f64(mem, n, 1);
     b->now_hi = mt_arena_f64(mem, n, 1);
     b->now_depth = mt_arena_alloc(mem, n, sizeof(signed char));
@@ -37,11 +39,12 @@ static mt_status claim(mt_boxes *b, mt_arena *mem, mt_err *err)
     return mt_arena_check(mem, err);
 }
 
-mt_status mt_boxes_init(mt_boxes *b, const mt_certify *c, bool loose_only, mt_arena *mem,
-                        mt_err *err)
+mt_status mt_boxes_init(mt_boxes *b, const mt_certify *c, bool loose_only, int n_known,
+                        mt_arena *mem, mt_err *err)
 {
     *b = (mt_boxes){.n = c->n,
                     .capacity = (MOST_DEPTH * c->n) + 2,
+                    .n_known = n_known,
                     .n_catalogue = loose_only ? NULL : c->n_catalogue,
                     .catalogue = c->catalogue};
     MT_TRY(claim(b, mem, err));
@@ -85,9 +88,10 @@ static int rank_of(const mt_boxes *b, int i, double x, bool or_equal)
     return low;
 }
 
-void mt_boxes_start(mt_boxes *b, const double *lower, const double *upper)
+void mt_boxes_start(mt_boxes *b, const double *lower, const double *upper, const int *known)
 {
     b->count = 1;
+    memcpy(b->known, known, (size_t)b->n_known * sizeof *known);
     for (int i = 0; i < b->n; i++) {
         b->lo[i] = lower[i];
         b->hi[i] = upper[i];
@@ -121,6 +125,11 @@ static void find_middle(mt_boxes *b, int i)
     b->beyond[i] = b->middle[i];
 }
 
+static int *known_of(const mt_boxes *b, int box)
+{
+    return b->known + ((ptrdiff_t)box * b->n_known);
+}
+
 bool mt_boxes_pop(mt_boxes *b)
 {
     if (b->count == 0) {
@@ -129,6 +138,7 @@ bool mt_boxes_pop(mt_boxes *b)
     const size_t n = (size_t)b->n;
     b->count--;
     const size_t at = (size_t)b->count * n;
+    memcpy(b->now_known, known_of(b, b->count), (size_t)b->n_known * sizeof *b->known);
     if (n == 0) {
         return true;
     }
@@ -148,6 +158,7 @@ static void push(mt_boxes *b, int split, bool upper_half)
     memcpy(b->lo + at, b->now_lo, n * sizeof *b->lo);
     memcpy(b->hi + at, b->now_hi, n * sizeof *b->hi);
     memcpy(b->depth + at, b->now_depth, n);
+    memcpy(known_of(b, b->count), b->now_known, (size_t)b->n_known * sizeof *b->known);
     if (upper_half) {
         b->lo[at + (size_t)split] = b->beyond[split];
     } else {
@@ -176,40 +187,6 @@ bool mt_boxes_split(mt_boxes *b)
     return true;
 }
 
-static void add_edge(mt_certify_edge *out, int *n, const mt_certify_edge *edge)
-{
-    if (edge->mode >= 1 && !isnan(edge->hz)) {
-        out[(*n)++] = *edge;
-    }
-}
-
-int mt_certify_edges(const mt_certify *c, const int *assignment, bool granted,
-                     mt_certify_edge *out)
-{
-    int n = 0;
-    for (int i = 0; i < c->n_bands; i++) {
-        const mt_certify_band *const band = &c->bands[i];
-        const double room = granted ? band->tolerance : 0.0;
-        mt_certify_edge edge = {band->view, i, -1, assignment[i], band->lower_hz * (1.0 + room),
-                                false};
-        add_edge(out, &n, &edge);
-        edge.mode++;
-        edge.hz = band->upper_hz * (1.0 - room);
-        edge.above = true;
-        add_edge(out, &n, &edge);
-    }
-    for (int i = 0; i < c->n_limits; i++) {
-        const mt_certify_limit *const l = &c->limits[i];
-        const double room = granted ? l->tolerance : 0.0;
-        mt_certify_edge edge = {l->view, -1, i, l->mode, l->at_most_hz * (1.0 + room), false};
-        add_edge(out, &n, &edge);
-        edge.hz = l->at_least_hz * (1.0 - room);
-        edge.above = true;
-        add_edge(out, &n, &edge);
-    }
-    return n;
-}
-
 bool mt_certify_set(const mt_certify *c, const double *lo, const double *hi)
 {
     bool known = true;
@@ -217,19 +194,4 @@ bool mt_certify_set(const mt_certify *c, const double *lo, const double *hi)
         known = mt_enclosure_set(c->views[v], lo, hi);
     }
     return known;
-}
-
-int mt_certify_first_open(const mt_certify *c, int n_edges, const mt_certify_edge *edges)
-{
-    for (int i = 0; i < n_edges; i++) {
-        const mt_certify_edge *const edge = &edges[i];
-        mt_enclosure *const e = c->views[edge->view];
-        const double lambda = mt_enclosure_lambda(edge->hz);
-        const bool kept = edge->above ? mt_enclosure_most_below(e, lambda) < edge->mode
-                                      : mt_enclosure_least_below(e, lambda) >= edge->mode;
-        if (!kept) {
-            return i;
-        }
-    }
-    return -1;
 }

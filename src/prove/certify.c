@@ -4,11 +4,11 @@
  * the band at any design that keeps it lies in
  *     least_below(b) <= j <= most_below(a),
  * so the box is done with where for some band (or limit, or bound) nothing is left, or where
- * all assignments that are left are known. Else the box is halved. Where a single unknown
- * assignment is left, or a pass ends, the middle of the box is tried: a design that meets
- * everything makes its assignment known. Catalogues only thin the boxes out, and a cap cuts off
- * those whose designs are all too costly: with the objective of a known design as cap, "nothing
- * found, nothing open" proves that none is better.
+ * all assignments that are left are known. Else the box is halved; what is known of it holds in
+ * its halves (edges.h). Where a single unknown assignment is left, or a pass ends, the middle
+ * of the box is tried: a design that meets everything makes its assignment known. Catalogues
+ * only thin the boxes out, and a cap cuts off those whose designs are all too costly: with the
+ * objective of a known design as cap, "nothing found, nothing open" proves that none is better.
  *
  * Assignments have to be in order within a view, and equal where bands are the same (same_as).
  * Both are narrowed in before anything is listed: j(i) >= j(before i), j(i) = j(same as i).
@@ -24,6 +24,11 @@
 #include <string.h>
 
 #include "prove/boxes.h"
+#include "prove/edges.h"
+
+/* What a box costs beside its corners: bounds, the cap, the middle, the list of assignments; in
+ * multiplications of a factorisation. */
+static const double BOX = 500.0;
 
 typedef struct search {
     const mt_certify *c;
@@ -36,8 +41,8 @@ typedef struct search {
     int *most;
     int *tuple; /* [n_bands] work */
     int *single;
-    mt_certify_edge *edges; /* work */
-    double *node_lo;        /* [program.count] work */
+    mt_edges edges;
+    double *node_lo; /* [program.count] work */
     double *node_hi;
     mt_boxes boxes;
     int n_known;
@@ -48,7 +53,8 @@ typedef struct search {
     int *order;
     int cap_found;
     int cap_open;
-    int limit; /* bisections of a box in this pass */
+    double before; /* operations */
+    int limit;     /* bisections of a box in this pass */
     mt_certify_search *out;
 } search;
 
@@ -63,8 +69,6 @@ static mt_status claim(search *s, mt_arena *work)
     s->most = mt_arena_int(work, bands);
     s->tuple = mt_arena_int(work, bands);
     s->single = mt_arena_int(work, bands);
-    s->edges =
-        mt_arena_alloc(work, 2 * ((size_t)c->n_bands + (size_t)c->n_limits), sizeof *s->edges);
     s->node_lo = mt_arena_f64(work, nodes, 1);
     s->node_hi = mt_arena_f64(work, nodes, 1);
     MT_TRY(mt_arena_check(work, s->err));
@@ -74,7 +78,8 @@ static mt_status claim(search *s, mt_arena *work)
             s->previous[i] = c->bands[k].view == c->bands[i].view ? k : s->previous[i];
         }
     }
-    return mt_boxes_init(&s->boxes, c, false, work, s->err);
+    MT_TRY(mt_edges_init(&s->edges, c, work, s->err));
+    return mt_boxes_init(&s->boxes, c, false, s->edges.n_known, work, s->err);
 }
 
 /* Room for one more assignment behind the count in *list; its place. */
@@ -267,37 +272,26 @@ static bool bounds_met(search *s, const double *lo, const double *hi, bool all)
     return true;
 }
 
-static bool limit_possible(const mt_certify *c, const mt_certify_limit *l)
+/* Can limit i be met in the box? */
+static bool limit_possible(search *s, int i)
 {
-    mt_enclosure *const e = c->views[l->view];
-    if (l->mode > e->n_modes) {
-        return false;
-    }
-    if (!isnan(l->at_most_hz) &&
-        mt_enclosure_most_below(e, mt_enclosure_lambda(l->at_most_hz * (1.0 + l->tolerance))) <
-            l->mode) {
-        return false;
-    }
-    return isnan(l->at_least_hz) ||
-           mt_enclosure_least_below(
-               e, mt_enclosure_lambda(l->at_least_hz * (1.0 - l->tolerance))) < l->mode;
+    const mt_certify_limit *const l = &s->c->limits[i];
+    const int edge = 2 * (s->c->n_bands + i);
+    return l->mode <= s->c->views[l->view]->n_modes &&
+           (isnan(l->at_most_hz) || mt_edges_count(&s->edges, edge) >= l->mode) &&
+           (isnan(l->at_least_hz) || mt_edges_count(&s->edges, edge + 1) < l->mode);
 }
 
-/* Assignments of one band in the box that is set, into least, most; false: none. */
+/* Assignments of one band in the box, into least, most; false: none. */
 static bool band_possible(search *s, int i)
 {
-    const mt_certify_band *const b = &s->c->bands[i];
-    mt_enclosure *const e = s->c->views[b->view];
     const int *const only = s->only == NULL ? NULL : s->only + i;
-    /* that may lie below the band, or on its lower edge; below one that begins at 0 there are
-     * none, a mode of 0 Hz is in it */
-    const double lambda = mt_enclosure_lambda(b->lower_hz * (1.0 + b->tolerance));
-    s->most[i] = b->lower_hz > 0.0 ? mt_enclosure_most_below(e, lambda) : 0;
+    /* that may lie below the band, or on its lower edge */
+    s->most[i] = mt_edges_count(&s->edges, 2 * i);
     if (only != NULL && s->most[i] < *only) {
         return false;
     }
-    s->least[i] =
-        mt_enclosure_least_below(e, mt_enclosure_lambda(b->upper_hz * (1.0 - b->tolerance)));
+    s->least[i] = mt_edges_count(&s->edges, (2 * i) + 1);
     if (only != NULL) {
         const bool possible = s->least[i] <= *only;
         s->least[i] = *only;
@@ -331,8 +325,9 @@ static int examine(search *s)
         }
         return narrow(s) ? unknown(s) : 0;
     }
+    mt_edges_use(&s->edges, s->boxes.now_known);
     for (int i = 0; i < c->n_limits && possible; i++) {
-        possible = limit_possible(c, &c->limits[i]);
+        possible = limit_possible(s, i);
     }
     for (int i = 0; i < c->n_bands && possible; i++) {
         possible = band_possible(s, i);
@@ -351,27 +346,57 @@ static bool same_counts(const search *s, const int *tuple)
     return true;
 }
 
+/* Has the design that is set at least so many modes below the edge? Fewer? */
+static bool has_below(const search *s, int edge, int modes)
+{
+    const mt_edge *const g = &s->edges.edges[edge];
+    return isnan(g->lambda) || modes < 1 ||
+           mt_enclosure_least_below(s->c->views[g->view], g->lambda) >= modes;
+}
+
+static bool has_fewer_below(const search *s, int edge, int modes)
+{
+    const mt_edge *const g = &s->edges.edges[edge];
+    return isnan(g->lambda) || mt_enclosure_most_below(s->c->views[g->view], g->lambda) < modes;
+}
+
+/* Limits of the middle of the box, which is set. */
+static bool limits_met(const search *s)
+{
+    bool met = true;
+    for (int i = 0; i < s->c->n_limits && met; i++) {
+        const int mode = s->c->limits[i].mode;
+        const int edge = 2 * (s->c->n_bands + i);
+        met = has_below(s, edge, mode) && has_fewer_below(s, edge + 1, mode);
+    }
+    return met;
+}
+
+/* Bands likewise; its assignment goes to `single`. */
+static bool bands_met(search *s)
+{
+    bool met = true;
+    for (int i = 0; i < s->c->n_bands && met; i++) {
+        const mt_edge *const g = &s->edges.edges[2 * (ptrdiff_t)i];
+        if (s->only == NULL) {
+            s->single[i] = mt_enclosure_least_below(s->c->views[g->view], g->lambda);
+        } else {
+            s->single[i] = s->only[i];
+            met = has_below(s, 2 * i, s->only[i]);
+        }
+        met = met && has_fewer_below(s, (2 * i) + 1, s->single[i] + 1);
+    }
+    return met;
+}
+
 /* Does the middle of the box meet everything? Its assignment goes to `single` (in a search for
- * one: it must have that). */
+ * one: it must have that). Limits first: hardly a design is on a target. */
 static bool witnessed(search *s)
 {
     const mt_boxes *const b = &s->boxes;
-    if (!below_cap(s->c, b->middle, b->middle) || !bounds_met(s, b->middle, b->middle, true) ||
-        !mt_certify_set(s->c, b->middle, b->middle)) {
-        return false;
-    }
-    for (int i = 0; i < s->c->n_bands; i++) {
-        const mt_certify_band *const band = &s->c->bands[i];
-        const double lambda = mt_enclosure_lambda(band->lower_hz * (1.0 + band->tolerance));
-        s->single[i] = s->only != NULL
-                           ? s->only[i]
-                           : mt_enclosure_least_below(s->c->views[band->view], lambda);
-    }
-    if (!same_counts(s, s->single) || is_known(s, s->single)) {
-        return false;
-    }
-    const int n = mt_certify_edges(s->c, s->single, true, s->edges);
-    return mt_certify_first_open(s->c, n, s->edges) < 0;
+    return below_cap(s->c, b->middle, b->middle) && bounds_met(s, b->middle, b->middle, true) &&
+           mt_certify_set(s->c, b->middle, b->middle) && limits_met(s) && bands_met(s) &&
+           same_counts(s, s->single) && !is_known(s, s->single);
 }
 
 static mt_status note_found(search *s)
@@ -432,11 +457,26 @@ static void drop_found(search *s)
 /* Bisections between one pass and the next: 64 times as many boxes at most. */
 enum { DEEPER = 6 };
 
+/* Operations so far, of all questions to these enclosures. */
+static double operations(const search *s)
+{
+    double sum = BOX * (double)s->out->boxes;
+    for (int v = 0; v < s->c->n_views; v++) {
+        sum += s->c->views[v]->operations;
+    }
+    return sum;
+}
+
+static bool spent(const search *s)
+{
+    const double most = s->c->max_work > 0.0 ? s->c->max_work : MT_CERTIFY_WORK;
+    return s->out->stopped || operations(s) - s->before >= most;
+}
+
 /* One box: settle it, or halve it, or leave it open. *deeper: a deeper pass may settle it. */
 static mt_status visit(search *s, bool *deeper)
 {
     mt_certify_search *const out = s->out;
-    const long most = s->c->max_boxes > 0 ? s->c->max_boxes : MT_CERTIFY_BOXES;
     out->stopped = out->stopped || mt_interrupted(s->c->interrupt);
     const int left = examine(s);
     out->boxes++;
@@ -454,8 +494,7 @@ static mt_status visit(search *s, bool *deeper)
             return MT_OK;
         }
     }
-    const bool spent = out->stopped || out->boxes >= most;
-    if (!spent && !cut && mt_boxes_split(&s->boxes)) {
+    if (!spent(s) && !cut && mt_boxes_split(&s->boxes)) {
         return MT_OK;
     }
     *deeper = *deeper || cut;
@@ -465,7 +504,6 @@ static mt_status visit(search *s, bool *deeper)
 static mt_status run(search *s)
 {
     mt_certify_search *const out = s->out;
-    const long most = s->c->max_boxes > 0 ? s->c->max_boxes : MT_CERTIFY_BOXES;
     bool deeper = true;
     for (s->limit = DEEPER; deeper && !(s->only != NULL && out->n_found > 0);
          s->limit += DEEPER) {
@@ -473,14 +511,14 @@ static mt_status run(search *s)
         out->proven = true;
         out->n_open = 0;
         out->more = false;
-        mt_boxes_start(&s->boxes, s->c->lower, s->c->upper);
+        mt_boxes_start(&s->boxes, s->c->lower, s->c->upper, s->edges.root);
         while (mt_boxes_pop(&s->boxes) && !(s->only != NULL && out->n_found > 0)) {
             MT_TRY(visit(s, &deeper));
         }
         if (!out->proven) {
             drop_found(s);
         }
-        deeper = deeper && !out->proven && !out->stopped && out->boxes < most;
+        deeper = deeper && !out->proven && !spent(s);
     }
     return MT_OK;
 }
@@ -494,6 +532,7 @@ static mt_status search_all(const mt_certify *c, int n_known, const int *known, 
     for (int i = 0; i < n_known; i++) {
         MT_TRY(note_known(&s, known + ((ptrdiff_t)i * c->n_bands)));
     }
+    s.before = operations(&s);
     return run(&s);
 }
 

@@ -75,11 +75,14 @@ typedef struct mt_certify {
     const mt_certify_cap *cap;      /* NULL: any value of the objective */
     /* [n] NaN: bisected in ln x, else linearly; NULL: in ln x where lower > 0 */
     const double *scale;
-    long max_boxes;          /* 0: MT_CERTIFY_BOXES */
+    double max_work;         /* in multiplications, about; 0: MT_CERTIFY_WORK */
     mt_interrupt *interrupt; /* ends the search as an exhausted budget does; NULL: never */
 } mt_certify;
 
-enum { MT_CERTIFY_BOXES = 1000000, MT_CERTIFY_OPEN_MOST = 256 };
+/* A budget counts operations, so that the same designs are excluded wherever a proof runs: a
+ * second or two of one core. */
+#define MT_CERTIFY_WORK 5e9
+enum { MT_CERTIFY_OPEN_MOST = 256 };
 
 /* Assignments that designs of the box can have. */
 typedef struct mt_certify_search {
@@ -114,15 +117,5 @@ typedef enum mt_verdict {
  * be NULL): one that does, where POSSIBLE. boxes may be NULL. */
 mt_status mt_certify_possible(const mt_certify *c, const int *assignment, mt_arena *scratch,
                               mt_verdict *verdict, double *at, long *boxes, mt_err *err);
-
-/* One edge that a mode must keep: "mode 3 stays above 9.46 Hz". */
-typedef struct mt_certify_edge {
-    int view;
-    int band;  /* -1: a limit's */
-    int limit; /* -1: a band's */
-    int mode;
-    double hz;
-    bool above; /* the mode must stay above hz; else below */
-} mt_certify_edge;
 
 #endif

@@ -99,7 +99,8 @@ typedef struct mt_enclosure {
     mt_enclosure_coefficient *coefficients;
     bool bounded; /* least and most are known: they hold in every box within the bounds */
     bool mass_varies;
-    bool squares;               /* K0 and M0 are sums of squares: boxes may leave the bounds */
+    bool assembled[2]; /* corners of the box that is set: K at the side, M at the other */
+    bool squares;      /* K0 and M0 are sums of squares: boxes may leave the bounds */
     double *fixed[MT_MATRICES]; /* n x n, lower */
     double fixed_norm;          /* of K0 */
     double roundoff;            /* relative slack: see box.c */
@@ -115,6 +116,7 @@ typedef struct mt_enclosure {
     double slack_m;
     long counts;             /* inertia counts so far */
     long fallbacks;          /* of them by pivoting */
+    double operations;       /* multiplications of boxes and counts so far, about */
     mt_interrupt *interrupt; /* of the analysis' model */
 } mt_enclosure;
 

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "prove/box.h"
 #include "prove/boxes.h"
 
 enum { DEFAULT_BOXES = 64, MOST_STEPS = 40 };
@@ -32,6 +33,54 @@ typedef struct tolerance {
     int open;             /* the edge that it failed at */
 } tolerance;
 
+static void add_edge(mt_certify_edge *out, int *n, const mt_certify_edge *edge)
+{
+    if (edge->mode >= 1 && !isnan(edge->hz)) {
+        out[(*n)++] = *edge;
+    }
+}
+
+/* Edges of an assignment and of the limits, without their tolerances: out[2 (n_bands +
+ * n_limits)]. Returns their number. */
+static int list_edges(const mt_certify *c, const int *assignment, mt_certify_edge *out)
+{
+    int n = 0;
+    for (int i = 0; i < c->n_bands; i++) {
+        const mt_certify_band *const band = &c->bands[i];
+        mt_certify_edge edge = {band->view, i, -1, assignment[i], band->lower_hz, false};
+        add_edge(out, &n, &edge);
+        edge.mode++;
+        edge.hz = band->upper_hz;
+        edge.above = true;
+        add_edge(out, &n, &edge);
+    }
+    for (int i = 0; i < c->n_limits; i++) {
+        const mt_certify_limit *const l = &c->limits[i];
+        mt_certify_edge edge = {l->view, -1, i, l->mode, l->at_most_hz, false};
+        add_edge(out, &n, &edge);
+        edge.hz = l->at_least_hz;
+        edge.above = true;
+        add_edge(out, &n, &edge);
+    }
+    return n;
+}
+
+/* First edge that is not proven to be kept all over the box that is set; -1: all are. */
+static int first_open(const mt_certify *c, int n_edges, const mt_certify_edge *edges)
+{
+    for (int i = 0; i < n_edges; i++) {
+        const mt_certify_edge *const edge = &edges[i];
+        mt_enclosure *const e = c->views[edge->view];
+        const double lambda = mt_enclosure_lambda(edge->hz);
+        const bool kept = edge->above ? mt_enclosure_most_below(e, lambda) < edge->mode
+                                      : mt_enclosure_least_below(e, lambda) >= edge->mode;
+        if (!kept) {
+            return i;
+        }
+    }
+    return -1;
+}
+
 /* Is the box set and every edge kept over it? Notes why not. */
 static bool box_holds(tolerance *t, const double *lo, const double *hi)
 {
@@ -43,7 +92,7 @@ static bool box_holds(tolerance *t, const double *lo, const double *hi)
         t->end = MT_TOLERANCE_DOMAIN;
         return false;
     }
-    t->open = mt_certify_first_open(t->c, t->n_edges, t->edges);
+    t->open = first_open(t->c, t->n_edges, t->edges);
     t->end = MT_TOLERANCE_EDGE;
     return t->open < 0;
 }
@@ -66,7 +115,7 @@ static bool holds(tolerance *t, double percent, int alone)
     if (!t->loose || t->end != MT_TOLERANCE_EDGE) {
         return false;
     }
-    mt_boxes_start(&t->boxes, t->lo, t->hi);
+    mt_boxes_start(&t->boxes, t->lo, t->hi, t->boxes.now_known);
     for (long n = 0; mt_boxes_pop(&t->boxes); n++) {
         if (box_holds(t, t->boxes.now_lo, t->boxes.now_hi)) {
             continue;
@@ -123,8 +172,8 @@ static mt_status run(const mt_certify *c, const mt_tolerance_question *q, mt_are
     t.lo = mt_arena_f64(scratch, (size_t)c->n, 1);
     t.hi = mt_arena_f64(scratch, (size_t)c->n, 1);
     MT_TRY(mt_arena_check(scratch, err));
-    t.n_edges = mt_certify_edges(c, q->assignment, false, t.edges);
-    MT_TRY(mt_boxes_init(&t.boxes, c, true, scratch, err));
+    t.n_edges = list_edges(c, q->assignment, t.edges);
+    MT_TRY(mt_boxes_init(&t.boxes, c, true, 0, scratch, err));
     for (int i = 0; i < c->n; i++) {
         t.loose = t.loose || t.boxes.active[i];
     }

@@ -4,6 +4,16 @@
 
 #include "prove/certify.h"
 
+/* One edge that a mode must keep: "mode 3 stays above 9.46 Hz". */
+typedef struct mt_certify_edge {
+    int view;
+    int band;  /* -1: a limit's */
+    int limit; /* -1: a band's */
+    int mode;
+    double hz;
+    bool above; /* the mode must stay above hz; else below */
+} mt_certify_edge;
+
 typedef enum mt_tolerance_end {
     /* beyond, the mode of `edge` may cross it (or, where the enclosure is loose, cannot be
      * shown not to) */

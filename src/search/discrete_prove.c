@@ -16,14 +16,9 @@
 #include "search/gaps.h"
 #include "search/proof.h"
 
-enum {
-    BOXES_MOST = 100000, /* of one question */
-    BOXES_LEAST = 2000,
-    ROUNDS = 40 /* of a better design found and the cap moved */
-};
-/* A box costs a few factorisations, n^3 / 3 each: of large models it takes fewer to keep the
- * time. */
-static const double EFFORT = 3e9;
+enum { ROUNDS = 40 /* of a better design found and the cap moved */ };
+/* Multiplications of one question (certify.h). */
+static const double EFFORT = 1e9;
 /* Objectives that differ by less are equal: as they are ranked (discrete_judge.c), and more
  * than intervals lose. */
 static const double EQUAL = 1e-9;
@@ -165,16 +160,6 @@ static mt_status improve(prover *v, double share, mt_err *err)
     return MT_OK;
 }
 
-static long budget(const prover *v)
-{
-    double cost = 0.0;
-    for (int i = 0; i < v->d->p->n_views; i++) {
-        const double n = (double)v->proof.views[i]->n;
-        cost += n * n * n;
-    }
-    return (long)fmin(fmax(EFFORT / fmax(cost, 1.0), (double)BOXES_LEAST), (double)BOXES_MOST);
-}
-
 static mt_status prove(prover *v, mt_err *err)
 {
     mt_discrete *const d = v->d;
@@ -182,7 +167,7 @@ static mt_status prove(prover *v, mt_err *err)
     mt_certify_search found = {0};
     MT_TRY(mt_proof_use_catalogues(&v->proof, d->p, d->mem, err));
     MT_TRY(mt_proof_cap_init(&v->cap, d->p, d->mem, err));
-    v->proof.question.max_boxes = budget(v);
+    v->proof.question.max_work = EFFORT;
     MT_TRY(ask(v, &found, err));
     const mt_combination *best = NULL;
     MT_TRY(best_of(v, &best, err));

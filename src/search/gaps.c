@@ -390,7 +390,7 @@ static mt_status collect(const mt_problem *p, const job *j, mt_arena *mem, mt_ga
     return MT_OK;
 }
 
-/* Where the budget of boxes ended but left a list of open assignments, and the search met them
+/* Where the proof's budget ended but left a list of open assignments, and the search met them
  * all, nothing is open any more. */
 static bool is_settled(const job *j)
 {

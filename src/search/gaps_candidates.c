@@ -240,7 +240,7 @@ static mt_status keep_proven(const mt_problem *p, const mt_certify_search *found
     out->proven = found->proven;
     out->boxes = found->boxes;
     out->all = !found->more && !found->stopped;
-    out->reason = found->proven ? NULL : "the budget of boxes ended";
+    out->reason = found->proven ? NULL : "the budget of the proof ended";
     return MT_OK;
 }
 

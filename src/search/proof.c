@@ -104,7 +104,7 @@ mt_status mt_proof_init(mt_proof *proof, const mt_case *c, mt_arena *mem, mt_err
                                    .lower = proof->lower,
                                    .upper = proof->upper,
                                    .scale = p->scale,
-                                   .max_boxes = c->proof_boxes,
+                                   .max_work = c->proof_work,
                                    .interrupt = p->study->model->interrupt};
     MT_TRY(enclose(proof, p, err));
     /* what is possible for a design may not be over its tolerances */

@@ -127,7 +127,7 @@ static bool begin(mt_test *t, int seed, int continuous, rig *g)
                         .upper = g->upper,
                         .n_catalogue = g->n_catalogue,
                         .catalogue = g->catalogue,
-                        .max_boxes = 20000};
+                        .max_work = 4e7};
     return true;
 }
 

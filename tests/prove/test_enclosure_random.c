@@ -9,7 +9,8 @@
 #include <stdlib.h>
 
 #include "mechanics/mech.h"
-#include "prove/certify.h"
+#include "prove/boxes.h"
+#include "prove/edges.h"
 #include "prove/tolerance.h"
 #include "support/mt_random.h"
 
@@ -21,7 +22,8 @@ enum {
     SYSTEMS_ALL = 120, /* with MT_EVERY=1 */
     SAMPLES = 250,
     INSIDE = 60,
-    MODES = 8
+    MODES = 8,
+    HALVINGS = 24
 };
 
 typedef struct writer {
@@ -261,7 +263,7 @@ static bool begin(mt_test *t, int seed, rig *g)
                         .n = g->w.n,
                         .lower = g->lower,
                         .upper = g->upper,
-                        .max_boxes = 3000};
+                        .max_work = 1.2e7};
     choose_bands(g);
     return true;
 }
@@ -552,7 +554,45 @@ static void enclosure__no_design_in_a_tolerance_box_fails(mt_test *t)
     CHECK(t, launched() || n.tight > systems() / 6);
 }
 
-MT_TEST_MAIN(MT_TEST(enclosure__no_sample_has_what_is_excluded),
+/* A box in a box in a box has what it would have alone. *saved: counts not needed. */
+static void halve(mt_test *t, rig *g, long *saved)
+{
+    mt_edges d;
+    CHECK(t, mt_edges_init(&d, &g->c, &g->mem, NULL) == MT_OK);
+    for (int k = 0; k < HALVINGS; k++) {
+        const int i = mt_random_int(&g->w.r, g->c.n);
+        CHECK(t, mt_certify_set(&g->c, g->lower, g->upper));
+        mt_edges_use(&d, d.root);
+        for (int edge = 0; edge < d.n; edge++) {
+            const mt_edge *const at = &d.edges[edge];
+            mt_enclosure *const e = g->e[at->view];
+            *saved += e->counts + 1;
+            const int count = mt_edges_count(&d, edge);
+            *saved -= e->counts;
+            CHECK_INT(t, count,
+                      at->asked == MT_LOW ? mt_enclosure_most_below(e, at->lambda)
+                                          : mt_enclosure_least_below(e, at->lambda));
+        }
+        *(mt_random_int(&g->w.r, 2) == 0 ? &g->lower[i] : &g->upper[i]) =
+            0.5 * (g->lower[i] + g->upper[i]);
+    }
+}
+
+static void enclosure__what_a_box_inherits_is_what_it_has(mt_test *t)
+{
+    long saved = 0;
+    rig g;
+    for (int seed = 0; seed < systems(); seed++) {
+        if (begin(t, seed, &g)) {
+            halve(t, &g, &saved);
+        }
+        end(&g);
+    }
+    CHECK(t, saved > 20L * systems());
+}
+
+MT_TEST_MAIN(MT_TEST(enclosure__what_a_box_inherits_is_what_it_has),
+             MT_TEST(enclosure__no_sample_has_what_is_excluded),
              MT_TEST(enclosure__tied_bands_leave_what_agrees),
              MT_TEST(enclosure__every_sample_lies_in_the_ranges),
              MT_TEST(enclosure__no_design_in_a_tolerance_box_fails))

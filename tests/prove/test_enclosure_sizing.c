@@ -470,7 +470,7 @@ static void check_band(mt_test *t, rig *g, tally *n)
                           .n = g->w.n,
                           .lower = g->lower,
                           .upper = g->upper,
-                          .max_boxes = 400};
+                          .max_work = 3e6};
     mt_certify_search out;
     mt_err err = {.text = ""};
     double x[MECH_INPUTS];

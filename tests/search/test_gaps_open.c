@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where a proof's budget of boxes ends, what it left open is searched; only where a design was
+/* Where a proof's budget ends, what it left open is searched; only where a design was
  * found for all of that is the question settled. The row of six masses with springs within a
  * factor of two. */
 #include "search/gaps.h"
@@ -10,8 +10,8 @@
     "'lower': -0.7, 'upper': 0.7}, {'parameter': 'x3', 'lower': -0.7, 'upper': 0.7}],"     \
     "'search': {'starts': 4},"
 
-/* Gap assignments of the study with so many boxes for the proof; 0: all it needs. */
-static void solve(mt_test *t, const char *bands, long boxes, mt_gap_result *out)
+/* Gap assignments of the study with so much work for the proof; 0: all it needs. */
+static void solve(mt_test *t, const char *bands, double work, mt_gap_result *out)
 {
     study_case c;
     char members[1024];
@@ -25,7 +25,7 @@ static void solve(mt_test *t, const char *bands, long boxes, mt_gap_result *out)
     if (study_load(t, "six_masses", members, &c) &&
         CHECK_INT(t, mt_problem_new(c.study, &p, &c.err), MT_OK)) {
         mt_case few = p->whole;
-        few.proof_boxes = boxes;
+        few.proof_work = work;
         CHECK_INT(t, mt_workspace_new(p, &w, &c.err), MT_OK);
         CHECK_INT(t, mt_workspace_use(w, &few, &c.err), MT_OK);
         CHECK_INT(t, mt_gaps_solve(&w, 1, &mem, out, &c.err), MT_OK);
@@ -54,7 +54,7 @@ static void open_assignments__that_are_all_met_settle_the_question(mt_test *t)
     CHECK_INT(t, few.n_feasible, all.n_feasible);
 }
 
-/* Four bands: few boxes leave assignments open that have no design. */
+/* Four bands: little work leaves assignments open that have no design. */
 static void open_assignments__without_a_design_stay_open(mt_test *t)
 {
     mt_gap_result all;
