@@ -100,7 +100,10 @@ static mt_status solve(mt_lowest *l, int count, mt_err *err)
         l->tree = NULL;
         return MT_OK;
     }
+    l->way = MT_LOWEST_TREE;
+    l->mass_kg = mt_tree_mass(t);
     const mt_lowest_problem p = {.n = t->n_x,
+                                 .most = t->n_x,
                                  .n_rigid = t->n_rigid,
                                  .count = count,
                                  .steps = t->depth,
@@ -110,9 +113,54 @@ static mt_status solve(mt_lowest *l, int count, mt_err *err)
     return mt_modal_lowest(&p, &l->mem, &l->found, err);
 }
 
+static mt_status go_on(void *context, mt_err *err)
+{
+    const mt_system *const sys = context;
+    return mt_interrupt_check(sys->model->interrupt, err);
+}
+
+/* In coordinates of the bodies, where those of a tree are not to be had. */
+static mt_status solve_sparse(mt_lowest *l, mt_lowest_want want, mt_err *err)
+{
+    const size_t told = strlen(l->why);
+    char why[(int)MT_ABSOLUTE_WHY + (int)MT_SPARSE_WHY] = "";
+    mt_err own = {.code = MT_OK};
+    mt_absolute o = {.n = 0};
+    bool is = false;
+    if (want.shapes) {
+        (void)mt_snprintf(why, sizeof why, "that has no shapes and slopes");
+    } else {
+        MT_TRY(mt_absolute_new(l->sys, l->at, &l->mem, &o, &is, why, err));
+    }
+    if (is) {
+        const mt_sparse_problem p = {.n = o.n,
+                                     .k = o.k,
+                                     .m = o.m,
+                                     .a = o.a,
+                                     .unit = o.unit,
+                                     .count = want.count,
+                                     .check = go_on,
+                                     .context = l->sys};
+        const mt_status rc = mt_modal_sparse(&p, &l->mem, &l->found, &is, why, &own);
+        if (rc != MT_OK && rc != MT_E_NO_CONVERGENCE) {
+            return mt_fail(err, rc, "%s", own.text);
+        }
+        is = is && rc == MT_OK;
+    }
+    if (is) {
+        l->way = MT_LOWEST_SPARSE;
+        l->mass_kg = o.mass_kg;
+        l->equations = l->sys->n_constraints;
+        return MT_OK;
+    }
+    (void)mt_snprintf(l->why + told, sizeof l->why - told, "; nor the sparse one, as %s",
+                      own.code != MT_OK ? own.text : why);
+    return MT_OK;
+}
+
 mt_status mt_lowest_new(const mt_model *model, int configuration, int n_inputs,
-                        const int *inputs, const double *at, int count, mt_lowest **out,
-                        mt_err *err)
+                        const int *inputs, const double *at, mt_lowest_want want,
+                        mt_lowest **out, mt_err *err)
 {
     mt_lowest *const l = calloc(1, sizeof *l);
     *out = NULL;
@@ -128,7 +176,8 @@ mt_status mt_lowest_new(const mt_model *model, int configuration, int n_inputs,
     rc = rc == MT_OK ? mt_system_new(model, configuration, n_inputs, inputs, at, &l->sys, err)
                      : rc;
     rc = rc == MT_OK ? mt_tree_new(l->sys, at, &l->mem, &l->tree, l->why, err) : rc;
-    rc = rc == MT_OK && l->tree != NULL ? solve(l, count, err) : rc;
+    rc = rc == MT_OK && l->tree != NULL ? solve(l, want.count, err) : rc;
+    rc = rc == MT_OK && l->tree == NULL ? solve_sparse(l, want, err) : rc;
     if (rc != MT_OK) {
         mt_lowest_delete(l);
         return mt_err_in(err, rc, "configuration \"%s\"",

@@ -2,18 +2,32 @@
 #ifndef ANALYSIS_LOWEST_H
 #define ANALYSIS_LOWEST_H
 
-#include "modal/lowest.h"
+#include "mechanics/absolute.h"
+#include "modal/sparse.h"
 #include "tree/tree.h"
 
+/* Which way they were found; NONE: there is no way. */
+typedef enum mt_lowest_way { MT_LOWEST_NONE, MT_LOWEST_TREE, MT_LOWEST_SPARSE } mt_lowest_way;
+enum { MT_LOWEST_WHY = MT_TREE_WHY + MT_ABSOLUTE_WHY + 100 };
+
+typedef struct mt_lowest_want {
+    int count;   /* vibration modes, at least 1 */
+    bool shapes; /* or slopes of them, which trees alone have */
+} mt_lowest_want;
+
 /*
- * The lowest modes of one configuration of a mechanism that is a tree (tree/tree.h), of
- * any size: O(bodies) in time and memory. One worker.
+ * The lowest modes of one configuration of a mechanism of any size: of a tree (tree/tree.h) in
+ * coordinates of its joints, O(bodies) in time and memory; else in those of its bodies
+ * (modal/sparse.h), as the fill of a factor costs. One worker.
  */
 typedef struct mt_lowest {
     mt_arena mem;
-    mt_system *sys;        /* owned */
-    mt_tree *tree;         /* NULL: the configuration is no such tree */
-    char why[MT_TREE_WHY]; /* then the reason */
+    mt_system *sys; /* owned */
+    mt_lowest_way way;
+    mt_tree *tree;           /* NULL: the configuration is no such tree */
+    char why[MT_LOWEST_WHY]; /* why there is no way */
+    double mass_kg;
+    int equations; /* of joints, of which some may follow from others; 0: of a tree */
     mt_lowest_modes found;
     double *at;                            /* [inputs of sys] */
     struct mt_lowest_operation *operation; /* what Lanczos' method is given */
@@ -27,16 +41,17 @@ enum { MT_LOWEST_BODIES = 100 };
 double mt_lowest_bodies(const mt_model *model, int configuration);
 
 /**
- * @param[in]  count  vibration modes wanted, at least 1
- * @param[out] out    owned by the caller (mt_lowest_delete); NULL on failure
- * Inputs as of mt_analysis_new. Fails: as mt_system_new, mt_tree_new and mt_modal_lowest, the
- * text naming the configuration.
+ * @param[out] out  owned by the caller (mt_lowest_delete); NULL on failure
+ * Inputs as of mt_analysis_new. Fails: as mt_system_new, mt_tree_new, mt_absolute_new and
+ * mt_modal_sparse (but MT_E_NO_CONVERGENCE of that is no way), the text naming the
+ * configuration.
  */
 mt_status mt_lowest_new(const mt_model *model, int configuration, int n_inputs,
-                        const int *inputs, const double *at, int count, mt_lowest **out,
-                        mt_err *err);
-/* Shapes of the first n positions over all states (nq of the system), of unit mass, sign by
- * mt_modal_fix_sign: phi nq x n, zeroed. Fails: MT_E_INTERRUPTED, MT_E_MEMORY. */
+                        const int *inputs, const double *at, mt_lowest_want want,
+                        mt_lowest **out, mt_err *err);
+/* Of trees alone, as what follows: shapes of the first n positions over all states (nq of the
+ * system), of unit mass, sign by mt_modal_fix_sign: phi nq x n, zeroed. Fails:
+ * MT_E_INTERRUPTED, MT_E_MEMORY. */
 mt_status mt_lowest_shapes(mt_lowest *l, int n, double *phi, mt_err *err);
 /* The same at its channels: value n_channels x n. */
 mt_status mt_lowest_sense(mt_lowest *l, int n, double *value, mt_err *err);

@@ -272,7 +272,7 @@ static mt_status say_analysis(mt_analysis *a, mt_doubt_list *out, mt_err *err)
 static void say_lowest(const mt_lowest *l, mt_doubt_list *out)
 {
     const mt_modes *const modes = &l->found.modes;
-    doubt_mass(mt_tree_mass(l->tree), out);
+    doubt_mass(l->mass_kg, out);
     doubt_frequency(modes, out);
     if (modes->n_rigid > 0) {
         (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion",

@@ -69,9 +69,17 @@ static double complete_below_hz(const mt_lowest *l)
     return sqrt(l->found.tau) / (2.0 * 3.14159265358979323846);
 }
 
+/* Equations of joints that follow from others. */
+static int n_redundant(const mt_lowest *l)
+{
+    return l != NULL && l->way == MT_LOWEST_SPARSE
+               ? l->equations - (l->sys->nq - l->found.modes.n)
+               : 0;
+}
+
 static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
 {
-    /* a tree is at rest as drawn */
+    /* what is answered without an analysis is at rest as drawn */
     const mt_state drawn = {.equilibrium.active = v->l != NULL && v->l->sys->loaded};
     const mt_modes *const m = v->m;
     const mt_state *const at = v->a == NULL ? &drawn : mt_linear_position(v->a->lin);
@@ -79,7 +87,10 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
     mt_json_put_doubts(w, "doubts", &v->doubts, MT_LEVEL_DOUBT);
     mt_json_put_doubts(w, "facts", &v->doubts, MT_LEVEL_FACT);
-    mt_json_put_string(w, "method", v->l == NULL ? "dense" : "tree");
+    mt_json_put_string(w, "method",
+                       v->l == NULL                  ? "dense"
+                       : v->l->way == MT_LOWEST_TREE ? "tree"
+                                                     : "sparse");
     if (v->l == NULL) {
         mt_json_put_null(w, "complete_below_hz"); /* all modes are there */
     } else {
@@ -100,7 +111,9 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     }
     if (v->a != NULL) {
         MT_TRY(mt_cli_json_redundant(w, v->a->lin, &v->a->mem, err));
-    } else { /* no tree with any is answered */
+    } else if (n_redundant(v->l) > 0) { /* some there are; which, is not looked for */
+        mt_json_put_null(w, "redundant_constraints");
+    } else {
         mt_json_open(w, "redundant_constraints", '[');
         mt_json_close(w);
     }
@@ -222,10 +235,17 @@ static void tell(const view *v, mt_text *out)
     const mt_modes *const m = v->m;
     const mt_state *const at = v->a == NULL ? NULL : mt_linear_position(v->a->lin);
     if (v->l != NULL) {
+        const bool tree = v->l->way == MT_LOWEST_TREE;
         mt_text_addf(out,
-                     "  The lowest modes of a tree of %d bodies (sparse): %d below %.6g Hz, by "
-                     "count, none missing.\n",
-                     v->l->tree->n, v->l->found.below, complete_below_hz(v->l));
+                     "  The lowest modes of %s of %d bodies (%s): %d below %.6g Hz, by count, "
+                     "none missing.\n",
+                     tree ? "a tree" : "a mechanism", v->l->sys->n_bodies,
+                     tree ? "joint coordinates" : "sparse factor", v->l->found.below,
+                     complete_below_hz(v->l));
+        if (n_redundant(v->l) > 0) {
+            mt_text_addf(out, "  Of the joints' %d equations %d follow from others.\n",
+                         v->l->equations, n_redundant(v->l));
+        }
     } else if (at != NULL && at->equilibrium.active) {
         mt_text_addf(out, "  Equilibrium found in %d iterations, residual %.1e.\n",
                      at->iterations, at->equilibrium.residual);
@@ -300,8 +320,9 @@ static mt_status csv_view(sink *to, const view *v)
 static mt_status look(const mt_args *args, view *v, mt_err *err)
 {
     const mt_subject *const s = v->s;
-    const int count = args->given[MT_OPT_DAMPED] ? 0 : args->count;
-    MT_TRY(mt_subject_lowest(s, v->c, s->n_inputs, s->inputs, s->at, count, &v->l, err));
+    const mt_lowest_want want = {.count = args->given[MT_OPT_DAMPED] ? 0 : args->count,
+                                 .shapes = args->given[MT_OPT_SHAPES]};
+    MT_TRY(mt_subject_lowest(s, v->c, s->n_inputs, s->inputs, s->at, want, &v->l, err));
     if (v->l != NULL) {
         v->m = &v->l->found.modes;
         return mt_doubts_of_lowest(v->l, s->n_inputs, s->inputs, s->at, &v->doubts, err);

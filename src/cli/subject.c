@@ -157,17 +157,17 @@ mt_status mt_subject_admit_dense(const mt_subject *s, int c, const char *why, mt
 }
 
 mt_status mt_subject_lowest(const mt_subject *s, int c, int n_inputs, const int *inputs,
-                            const double *at, int count, mt_lowest **out, mt_err *err)
+                            const double *at, mt_lowest_want want, mt_lowest **out, mt_err *err)
 {
     const double bodies = mt_lowest_bodies(s->model, c);
-    char why[2 * MT_TREE_WHY] = "ask for the lowest modes alone, without dampers (--count)";
+    char why[MT_LOWEST_WHY + 50] = "ask for the lowest modes alone, without dampers (--count)";
     *out = NULL;
-    if (count > 0 && count <= bodies / 2 && bodies >= MT_LOWEST_BODIES) {
-        const mt_status rc = mt_lowest_new(s->model, c, n_inputs, inputs, at, count, out, err);
+    if (want.count > 0 && want.count <= bodies / 2 && bodies >= MT_LOWEST_BODIES) {
+        const mt_status rc = mt_lowest_new(s->model, c, n_inputs, inputs, at, want, out, err);
         if (rc != MT_OK) {
             return mt_err_in(err, rc, "%s", s->path);
         }
-        if ((*out)->tree != NULL) {
+        if ((*out)->way != MT_LOWEST_NONE) {
             return MT_OK;
         }
         (void)mt_snprintf(why, sizeof why, "the way for large trees is not open, as %s",

@@ -31,12 +31,13 @@ int mt_subject_load(const mt_args *args, const char *path, const char *configura
 void mt_subject_free(mt_subject *s);
 /* Analyse configuration c. A failure is left in err. */
 mt_status mt_subject_analyse(const mt_subject *s, int c, mt_analysis **out, mt_err *err);
-/* The lowest modes of configuration c where they are what is asked for (count; 0: they are not,
- * and no more than half of all) and there is a short way for a model of its size, at inputs of
- * its own. *out NULL: there is none, all modes are to be found; where these are too many,
- * MT_E_USAGE says why. */
+/* The lowest modes of configuration c where they are what is asked for (want.count; 0: they are
+ * not, and no more than half of all) and there is a short way for a model of its size, at
+ * inputs of its own. *out NULL: there is none, all modes are to be found; where these are too
+ * many, MT_E_USAGE says why. */
 mt_status mt_subject_lowest(const mt_subject *s, int c, int n_inputs, const int *inputs,
-                            const double *at, int count, mt_lowest **out, mt_err *err);
+                            const double *at, mt_lowest_want want, mt_lowest **out,
+                            mt_err *err);
 /* MT_E_USAGE where configuration c is too large for dense matrices, led by why there is no
  * other way. */
 mt_status mt_subject_admit_dense(const mt_subject *s, int c, const char *why, mt_err *err);

@@ -161,10 +161,10 @@ static mt_status answer_by_all(mt_survey *v, const question *q, mt_err *err)
 static mt_status answer_by_lowest(mt_survey *v, const question *q, bool *done, mt_err *err)
 {
     char why[MT_TREE_WHY] = "";
+    const mt_lowest_want want = {.count = q->wanted, .shapes = true};
     mt_lowest *l = NULL;
     double *slope = NULL;
-    mt_status rc =
-        mt_subject_lowest(v->s, v->c, q->count, q->inputs, q->at, q->wanted, &l, err);
+    mt_status rc = mt_subject_lowest(v->s, v->c, q->count, q->inputs, q->at, want, &l, err);
     *done = rc == MT_OK && l != NULL;
     if (!*done) {
         return rc;

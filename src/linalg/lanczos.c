@@ -34,6 +34,8 @@ typedef struct iteration {
     double *theta;       /* [j] ascending */
     double *coefficient; /* [most + 1 + locked] */
     double *row;         /* [most] of V */
+    double *mw;          /* [n] M w; NULL: M is the identity */
+    double *start;       /* [n] then */
     mt_arena *mem;
 } iteration;
 
@@ -42,17 +44,34 @@ static double *column(const iteration *it, int j)
     return it->v + ((ptrdiff_t)j * it->p->n);
 }
 
-/* w := w - V V^T w, locked vectors included; the coefficients of V are added to h[j]. */
+/* M w; w itself where M is the identity. */
+static const double *weigh(const iteration *it, const double *w)
+{
+    if (it->mw == NULL) {
+        return w;
+    }
+    it->p->metric(it->p->context, w, it->mw);
+    return it->mw;
+}
+
+static double norm(const iteration *it, const double *w)
+{
+    return it->mw == NULL ? mt_norm2(it->p->n, w)
+                          : sqrt(fmax(mt_dot(it->p->n, w, weigh(it, w)), 0.0));
+}
+
+/* w := w - V V^T M w, locked vectors included; the coefficients of V are added to h[j]. */
 static void orthogonalise(const iteration *it, int j, double *w, double *h)
 {
     const int n = it->p->n;
     double *const c = it->coefficient;
+    const double *const mw = weigh(it, w);
     if (it->p->n_locked > 0) {
-        mt_gemv(true, n, it->p->n_locked, 1.0, it->p->locked, n, w, 0.0, c);
+        mt_gemv(true, n, it->p->n_locked, 1.0, it->p->locked, n, mw, 0.0, c);
         mt_gemv(false, n, it->p->n_locked, -1.0, it->p->locked, n, c, 1.0, w);
     }
     if (j > 0) {
-        mt_gemv(true, n, j, 1.0, it->v, n, w, 0.0, c);
+        mt_gemv(true, n, j, 1.0, it->v, n, mw, 0.0, c);
         mt_gemv(false, n, j, -1.0, it->v, n, c, 1.0, w);
         for (int i = 0; i < j && h != NULL; i++) {
             h[i] += c[i];
@@ -60,26 +79,33 @@ static void orthogonalise(const iteration *it, int j, double *w, double *h)
     }
 }
 
-/* A unit vector of its own direction, orthogonal to the first j; false where there is none. No
- * direction is of another iteration, of another seed: of a repeated eigenvalue each gives but
- * one vector, which then is locked. */
-static bool fresh(iteration *it, int j)
+/* A unit vector of its own direction, orthogonal to the first j; *is false where there is none.
+ * No direction is of another iteration, of another seed: of a repeated eigenvalue each gives
+ * but one vector, which then is locked. Where M may be blind, the vector is one that A made:
+ * what M does not see of it would stay in all that follow (Nour-Omid, Parlett, Ericsson and
+ * Jensen, Math. Comp. 48, 1987). */
+static mt_status fresh(iteration *it, int j, bool *is, mt_err *err)
 {
     double *const w = column(it, j);
+    double *const random = it->mw == NULL ? w : it->start;
     const uint32_t seed = ((uint32_t)it->p->seed << 20U) + (uint32_t)j;
     uint32_t state = (2654435769U * (seed + 1U)) | 1U;
     for (int i = 0; i < it->p->n; i++) {
         state = (state * 1664525U) + 1013904223U;
-        w[i] = ((double)(state >> 8U) / 8388608.0) - 1.0;
+        random[i] = ((double)(state >> 8U) / 8388608.0) - 1.0;
     }
-    const double whole = mt_norm2(it->p->n, w);
+    if (it->mw != NULL) {
+        MT_TRY(it->p->apply(it->p->context, random, w, err));
+    }
+    const double whole = norm(it, w);
     orthogonalise(it, j, w, NULL);
     orthogonalise(it, j, w, NULL);
-    const double left = mt_norm2(it->p->n, w);
+    const double left = norm(it, w);
     for (int i = 0; i < it->p->n && left > 0.0; i++) {
         w[i] /= left;
     }
-    return left > sqrt(DBL_EPSILON) * whole;
+    *is = left > sqrt(DBL_EPSILON) * whole;
+    return MT_OK;
 }
 
 /* Eigenpairs of H, ascending. */
@@ -152,13 +178,13 @@ static mt_status extend(iteration *it, bool *more, mt_err *err)
     double *const h = it->h + ((ptrdiff_t)j * it->most);
     MT_TRY(it->p->apply(it->p->context, column(it, j), w, err));
     memset(h, 0, (size_t)it->most * sizeof *h);
-    const double whole = mt_norm2(it->p->n, w);
+    const double whole = norm(it, w);
     orthogonalise(it, j + 1, w, h);
     orthogonalise(it, j + 1, w, h);
     for (int i = 0; i < j; i++) {
         it->h[j + ((ptrdiff_t)i * it->most)] = h[i];
     }
-    const double beta = mt_norm2(it->p->n, w);
+    const double beta = norm(it, w);
     memset(it->b, 0, (size_t)it->most * sizeof *it->b);
     it->j = j + 1;
     *more = true;
@@ -172,8 +198,8 @@ static mt_status extend(iteration *it, bool *more, mt_err *err)
         }
         return MT_OK;
     }
-    *more = it->j + it->p->n_locked < it->p->n && fresh(it, it->j);
-    return MT_OK;
+    *more = false;
+    return it->j + it->p->n_locked < it->p->n ? fresh(it, it->j, more, err) : MT_OK;
 }
 
 static mt_status init(iteration *it, mt_err *err)
@@ -189,6 +215,10 @@ static mt_status init(iteration *it, mt_err *err)
     it->theta = mt_arena_f64(it->mem, most, 1);
     it->coefficient = mt_arena_f64(it->mem, most + 1 + (size_t)p->n_locked, 1);
     it->row = mt_arena_f64(it->mem, most, 1);
+    if (p->metric != NULL) {
+        it->mw = mt_arena_f64(it->mem, (size_t)p->n, 1);
+        it->start = mt_arena_f64(it->mem, (size_t)p->n, 1);
+    }
     return mt_arena_check(it->mem, err);
 }
 
@@ -196,7 +226,10 @@ static mt_status iterate(iteration *it, int *found, mt_err *err)
 {
     const mt_lanczos *const p = it->p;
     int restarts = 0;
-    bool more = it->most > 0 && fresh(it, 0);
+    bool more = false;
+    if (it->most > 0) {
+        MT_TRY(fresh(it, 0, &more, err));
+    }
     if (!more) {
         return MT_OK;
     }

@@ -5,8 +5,9 @@
 #include "base/arena.h"
 
 /*
- * The largest eigenvalues of a symmetric operator A, positive semidefinite, of which only the
- * product with a vector is known: Lanczos' method with full reorthogonalisation and thick
+ * The largest eigenvalues of an operator A, self-adjoint in an inner product x^T M y (M
+ * positive semidefinite, A x = 0 where M x = 0) and positive semidefinite there, of which only
+ * the product with a vector is known: Lanczos' method with full reorthogonalisation and thick
  * restarts (Wu and Simon, SIAM J. Matrix Anal. Appl. 22, 2000), in the complement of vectors
  * that are known already. A repeated eigenvalue may be found once only: who counts the
  * eigenvalues by other means asks again with what was found locked.
@@ -17,17 +18,19 @@ typedef struct mt_lanczos {
     int seed; /* of the start: the same seed gives the same bytes */
     /* y := A x; a failure ends the iteration */
     mt_status (*apply)(void *context, const double *x, double *y, mt_err *err);
+    /* y := M x; NULL: M is the identity */
+    void (*metric)(void *context, const double *x, double *y);
     void *context;
     int n_locked;
-    const double *locked; /* n x n_locked, orthonormal */
+    const double *locked; /* n x n_locked, M-orthonormal */
 } mt_lanczos;
 
 /**
- * @param[out] x      n x wanted, orthonormal columns, of descending eigenvalues
+ * @param[out] x      n x wanted, M-orthonormal columns, of descending eigenvalues
  * @param[out] found  how many: fewer than wanted where A has no more that are not 0
- * An eigenvalue is found when the residual ||A x - theta x|| is below 1e-9 theta, and below 64
- * eps times the largest one (or below 4 eps times that): the error of its Rayleigh quotient is
- * then the square of that, over the gap.
+ * An eigenvalue is found when the residual ||A x - theta x||, as M measures it, is below 1e-9
+ * theta, and below 64 eps times the largest one (or below 4 eps times that): the error of its
+ * Rayleigh quotient is then the square of that, over the gap.
  * Scratch n (2 wanted + 24) from mem. Fails: MT_E_NO_CONVERGENCE, as apply, MT_E_MEMORY.
  */
 mt_status mt_lanczos_largest(const mt_lanczos *problem, mt_arena *mem, double *x, int *found,

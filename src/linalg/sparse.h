@@ -15,6 +15,12 @@ typedef struct mt_rows {
     double *value;
 } mt_rows;
 
+/* sum_i c_i b_i b_i^T over the rows b_i. */
+typedef struct mt_squares {
+    mt_rows row;
+    const double *c; /* [row.n_rows] */
+} mt_squares;
+
 /* Room for n_rows rows of at most `most` entries in all; then mt_rows_push and mt_rows_end for
  * one row after the other. A failure is the arena's. */
 void mt_rows_begin(mt_rows *s, int n_rows, size_t most, mt_arena *mem);

@@ -12,6 +12,8 @@
 
 /* More are sought than are wanted: one for the gap behind the last, one if that is small. */
 enum { MORE = 2, ROUNDS = 12 };
+/* Motions of a free body, besides, where a shift holds them. */
+enum { FREE_BODY = 6 };
 /* Equal frequencies, as of many arms on one hub, are all found, but no more than that. */
 enum { MOST_FOUND = 512 };
 
@@ -23,13 +25,17 @@ static const double OTHER_ULPS = 64.0;
 
 typedef struct finding {
     const mt_lowest_problem *p;
-    int n;          /* found */
-    int most;       /* room */
-    bool exhausted; /* there are no more: all other directions have no mass */
-    double *x;      /* p->n x most */
-    double *ax;     /* A x */
-    double *theta;  /* [most] Rayleigh quotients x^T A x = 1/lambda, descending */
-    double *rho;    /* [most] ||A x - theta x|| */
+    int n;                   /* found */
+    int most;                /* room */
+    bool exhausted;          /* there are no more: all other directions have no mass */
+    double *x;               /* p->n x most */
+    double *ax;              /* A x */
+    double *theta;           /* [most] Rayleigh quotients x^T A x, descending */
+    double *rho;             /* [most] ||A x - theta x|| */
+    mt_lowest_quotient *own; /* [most] */
+    int n_free;              /* rigid ones among those found */
+    double *mx;              /* [n] M x; NULL: M is the identity */
+    double *difference;      /* [n] then */
 } finding;
 
 static double *column(const finding *f, double *of, int i)
@@ -48,6 +54,16 @@ static void swap_columns(const finding *f, double *of, int i, int j)
     }
 }
 
+/* x^T M y. */
+static double inner(const finding *f, const double *x, const double *y)
+{
+    if (f->mx == NULL) {
+        return mt_dot(f->p->n, x, y);
+    }
+    f->p->metric(f->p->context, x, f->mx);
+    return mt_dot(f->p->n, f->mx, y);
+}
+
 static void swap(const finding *f, int i, int j)
 {
     const double theta = f->theta[i];
@@ -56,6 +72,9 @@ static void swap(const finding *f, int i, int j)
     f->theta[j] = theta;
     f->rho[i] = f->rho[j];
     f->rho[j] = rho;
+    const mt_lowest_quotient own = f->own[i];
+    f->own[i] = f->own[j];
+    f->own[j] = own;
     swap_columns(f, f->x, i, j);
     swap_columns(f, f->ax, i, j);
 }
@@ -71,13 +90,49 @@ static mt_status grow(finding *f, int n, mt_arena *mem, mt_err *err)
     f->ax = mt_arena_f64(mem, (size_t)f->p->n, (size_t)n);
     f->theta = mt_arena_f64(mem, (size_t)n, 1);
     f->rho = mt_arena_f64(mem, (size_t)n, 1);
+    f->own = mt_arena_alloc(mem, (size_t)n, sizeof *f->own);
     MT_TRY(mt_arena_check(mem, err));
     if (found > 0) {
         memcpy(f->x, old.x, size * sizeof *f->x);
         memcpy(f->ax, old.ax, size * sizeof *f->ax);
         memcpy(f->theta, old.theta, found * sizeof *f->theta);
         memcpy(f->rho, old.rho, found * sizeof *f->rho);
+        memcpy(f->own, old.own, found * sizeof *f->own);
     }
+    return MT_OK;
+}
+
+/* Quotient, residual and own quotient of vector i. */
+static mt_status look_at(finding *f, int i, mt_err *err)
+{
+    const mt_lowest_problem *const p = f->p;
+    double *const x = column(f, f->x, i);
+    double *const ax = column(f, f->ax, i);
+    mt_lowest_quotient own = {.noise = 0.0};
+    MT_TRY(p->refine != NULL ? p->refine(p->context, x, ax, &own, err)
+                             : p->apply(p->context, x, ax, err));
+    const double square = inner(f, x, x);
+    f->theta[i] = inner(f, x, ax) / square;
+    double rest = 0.0;
+    if (f->mx == NULL) {
+        for (int k = 0; k < p->n; k++) {
+            const double r = ax[k] - (f->theta[i] * x[k]);
+            rest += r * r;
+        }
+    } else {
+        for (int k = 0; k < p->n; k++) {
+            f->difference[k] = ax[k] - (f->theta[i] * x[k]);
+        }
+        rest = fmax(inner(f, f->difference, f->difference), 0.0);
+    }
+    f->rho[i] = sqrt(rest / square);
+    if (p->refine == NULL) {
+        own = (mt_lowest_quotient){.lambda = 1.0 / f->theta[i],
+                                   .noise = ((STEP_ULPS * (double)p->steps) + OTHER_ULPS) *
+                                            DBL_EPSILON};
+    }
+    f->own[i] = own;
+    f->n_free += own.rigid ? 1 : 0;
     return MT_OK;
 }
 
@@ -85,30 +140,21 @@ static mt_status grow(finding *f, int n, mt_arena *mem, mt_err *err)
 static mt_status search(finding *f, int more, int round, mt_arena *mem, mt_err *err)
 {
     const mt_lowest_problem *const p = f->p;
-    const int room = p->n - f->n < f->most - f->n ? p->n - f->n : f->most - f->n;
+    const int room = (p->most < f->most ? p->most : f->most) - f->n;
     const int wanted = more < room ? more : room;
     const mt_lanczos lanczos = {.n = p->n,
                                 .wanted = wanted,
                                 .seed = round,
                                 .apply = p->apply,
+                                .metric = p->metric,
                                 .context = p->context,
                                 .n_locked = f->n,
                                 .locked = f->x};
     int got = 0;
     MT_TRY(mt_lanczos_largest(&lanczos, mem, column(f, f->x, f->n), &got, err));
-    f->exhausted = got < wanted || f->n + got == p->n;
+    f->exhausted = got < wanted || f->n + got == p->most;
     for (int i = f->n; i < f->n + got; i++) {
-        double *const x = column(f, f->x, i);
-        double *const ax = column(f, f->ax, i);
-        MT_TRY(p->apply(p->context, x, ax, err));
-        const double square = mt_dot(p->n, x, x);
-        double rest = 0.0;
-        f->theta[i] = mt_dot(p->n, x, ax) / square;
-        for (int k = 0; k < p->n; k++) {
-            const double r = ax[k] - (f->theta[i] * x[k]);
-            rest += r * r;
-        }
-        f->rho[i] = sqrt(rest / square);
+        MT_TRY(look_at(f, i, err));
         for (int at = i; at > 0 && f->theta[at] > f->theta[at - 1]; at--) {
             swap(f, at, at - 1);
         }
@@ -121,7 +167,8 @@ static mt_status search(finding *f, int more, int round, mt_arena *mem, mt_err *
  * -1: there is none. */
 static int split(const finding *f)
 {
-    const int least = f->n < f->p->count ? f->n : f->p->count;
+    const int wanted = f->p->count + f->n_free;
+    const int least = f->n < wanted ? f->n : wanted;
     int best = f->exhausted ? f->n : -1;
     double widest = f->exhausted ? HUGE_VAL : 1.0 + NO_GAP;
     for (int j = least; j < f->n && j > 0; j++) {
@@ -143,7 +190,7 @@ static mt_status count_behind(const finding *f, int j, double *tau, int *below, 
     *certain = false;
     for (int k = 0; k < MT_COUNT(places) && !*certain; k++) {
         const double end = j < f->n ? f->theta[j] : 0.25 * f->theta[j - 1];
-        *tau = pow(f->theta[j - 1] / end, places[k]) / f->theta[j - 1];
+        *tau = (pow(f->theta[j - 1] / end, places[k]) / f->theta[j - 1]) - f->p->shift;
         MT_TRY(f->p->below(f->p->context, *tau, below, certain, err));
     }
     return MT_OK;
@@ -153,8 +200,8 @@ static mt_status count_behind(const finding *f, int j, double *tau, int *below, 
 static mt_status find(finding *f, mt_arena *mem, double *tau, int *upto, mt_err *err)
 {
     const mt_lowest_problem *const p = f->p;
-    int more = p->count + MORE;
-    for (int round = 0; round < ROUNDS && p->n > 0; round++) {
+    int more = f->most;
+    for (int round = 0; round < ROUNDS && p->most > 0; round++) {
         MT_TRY(search(f, more, round, mem, err));
         const int j = split(f);
         more = f->n > MORE ? f->n : MORE; /* no end of equal ones is in sight */
@@ -180,7 +227,7 @@ static mt_status find(finding *f, mt_arena *mem, double *tau, int *upto, mt_err 
         }
     }
     *upto = 0;
-    return p->n == 0
+    return p->most == 0
                ? MT_OK
                : mt_fail(err, MT_E_NO_CONVERGENCE,
                          "the count of modes below %g rad^2/s^2 does not agree with those "
@@ -215,37 +262,59 @@ static double theta_error(const finding *f, int i, int upto, double tau)
     return first == last && gap > rho ? rho * (rho / gap) : rho;
 }
 
-static void fill(const finding *f, int upto, double tau, mt_modes *m)
+/* Error of lambda: of theta, of how x and its image differ, and of rounding. */
+static double lambda_error(const finding *f, int i, int upto, double tau)
+{
+    const mt_lowest_quotient *const own = &f->own[i];
+    const double shifted = own->lambda + f->p->shift;
+    const double relative =
+        fmin((theta_error(f, i, upto, tau) / f->theta[i]) + fabs((f->theta[i] * shifted) - 1.0),
+             0.5);
+    return (shifted * relative / (1.0 - relative)) +
+           (fabs(own->lambda) * fmin(own->noise, 1.0));
+}
+
+/* Rigid-body modes come first: those that are known, then those that were found. */
+static void fill(const finding *f, int upto, double tau, mt_lowest_modes *out)
 {
     const mt_lowest_problem *const p = f->p;
-    const double unit = (double)p->n * DBL_EPSILON;
-    m->error_relative = ((STEP_ULPS * (double)p->steps) + OTHER_ULPS) * DBL_EPSILON;
+    mt_modes *const m = &out->modes;
+    int at = p->n_rigid;
     m->scale = f->n > 0 ? 1.0 / f->theta[0] : 0.0;
     for (int i = 0; i < p->n_rigid; i++) {
         m->kind[i] = MT_MODE_RIGID_BODY;
     }
-    for (int i = 0; i < m->count - p->n_rigid; i++) {
-        const int at = p->n_rigid + i;
-        const double relative =
-            fmin(theta_error(f, i, upto, tau) / f->theta[i] + m->error_relative, 0.5);
-        m->kind[at] = MT_MODE_FLEXIBLE;
-        m->lambda[at] = 1.0 / f->theta[i];
-        m->error[at] = m->lambda[at] * relative / (1.0 - relative);
+    for (int i = 0; at < m->count; i++, at++) {
+        const mt_lowest_quotient *const own = &f->own[i];
+        const double unit =
+            ((double)p->n * DBL_EPSILON) + (p->refine == NULL ? 0.0 : fmin(own->noise, 1.0));
         m->residual[at] = f->rho[i] / ((f->theta[0] + f->theta[i]) * unit);
         for (int j = 0; j < m->count - p->n_rigid; j++) {
-            const double gram = mt_dot(p->n, column(f, f->x, i), column(f, f->ax, j)) /
+            const double gram = inner(f, column(f, f->x, i), column(f, f->ax, j)) /
                                 sqrt(f->theta[i] * f->theta[j]);
             m->orthogonality[at] =
                 fmax(m->orthogonality[at], fabs(gram - (i == j ? 1.0 : 0.0)) / unit);
         }
+        m->kind[at] = own->rigid ? MT_MODE_RIGID_BODY : MT_MODE_FLEXIBLE;
+        if (own->rigid) {
+            m->n_rigid++;
+            continue;
+        }
+        m->error_relative = fmax(m->error_relative, own->noise);
+        m->lambda[at] = own->lambda;
+        m->error[at] = lambda_error(f, i, upto, tau);
+        memcpy(out->x + ((ptrdiff_t)p->n * (at - m->n_rigid)), column(f, f->x, i),
+               (size_t)p->n * sizeof *out->x);
     }
     mt_modal_find_clusters(m);
 }
 
-/* Of those counted the ones that are wanted, and what is repeated with the last of them. */
+/* Of those counted the ones that are wanted beside the free ones, and what is repeated with the
+ * last of them. */
 static int whole(const finding *f, int upto)
 {
-    int n = upto < f->p->count ? upto : f->p->count;
+    const int wanted = f->p->count + f->n_free;
+    int n = upto < wanted ? upto : wanted;
     while (n > 0 && n < upto && f->theta[n - 1] <= (1.0 + NO_GAP) * f->theta[n]) {
         n++;
     }
@@ -255,14 +324,19 @@ static int whole(const finding *f, int upto)
 static mt_status answer(const mt_lowest_problem *p, mt_arena *scratch, mt_arena *mem,
                         mt_lowest_modes *out, mt_err *err)
 {
-    finding f = {.p = p, .most = (p->count < p->n ? p->count : p->n) + MORE};
+    finding f = {.p = p, .most = (p->count < p->most ? p->count : p->most) + MORE};
     mt_modes *const m = &out->modes;
     int upto = 0;
+    f.most += p->shift > 0.0 ? FREE_BODY : 0;
+    if (p->metric != NULL) {
+        f.mx = mt_arena_f64(scratch, (size_t)p->n, 1);
+        f.difference = mt_arena_f64(scratch, (size_t)p->n, 1);
+    }
     MT_TRY(grow(&f, f.most, scratch, err));
     MT_TRY(find(&f, scratch, &out->tau, &upto, err));
     const size_t n = (size_t)whole(&f, upto);
     const size_t most = n + (size_t)p->n_rigid;
-    *m = (mt_modes){.n = p->n + p->n_rigid, .n_rigid = p->n_rigid, .count = (int)most};
+    *m = (mt_modes){.n = p->most + p->n_rigid, .n_rigid = p->n_rigid, .count = (int)most};
     m->lambda = mt_arena_f64(mem, most, 1);
     m->kind = mt_arena_alloc(mem, most, sizeof *m->kind);
     m->cluster = mt_arena_int(mem, most);
@@ -271,10 +345,9 @@ static mt_status answer(const mt_lowest_problem *p, mt_arena *scratch, mt_arena 
     m->error = mt_arena_f64(mem, most, 1);
     out->x = mt_arena_f64(mem, (size_t)p->n, n);
     out->below = p->n_rigid + upto;
-    m->all = p->n_rigid + p->n;
+    m->all = p->n_rigid + p->most;
     MT_TRY(mt_arena_check(mem, err));
-    fill(&f, upto, out->tau, m);
-    memcpy(out->x, f.x, (size_t)p->n * n * sizeof *out->x);
+    fill(&f, upto, out->tau + p->shift, out);
     return MT_OK;
 }
 

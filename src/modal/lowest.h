@@ -5,19 +5,34 @@
 #include "base/arena.h"
 #include "modal/modes.h"
 
+/* What is said of one mode from its shape. */
+typedef struct mt_lowest_quotient {
+    double lambda; /* energy over mass, term by term */
+    double noise;  /* bound of what rounding makes of it, as a part of it */
+    bool rigid;    /* its strains are rounding */
+} mt_lowest_quotient;
+
 /*
- * The lowest modes of a system too large for all of them, in coordinates x in which the energy
- * of the springs is |x|^2/2, rigid-body motions being left free to follow: A x = x / lambda, A
- * being the mass as x feels it. (Nothing is factored here: whoever knows such coordinates has
- * no need of it.)
+ * The lowest modes of a system too large for all of them: A x = x / (lambda + shift).
+ *     In coordinates x in which the energy of the springs is |x|^2/2, rigid-body motions being
+ * left free to follow, A is the mass as x feels it, and nothing is factored; in those of the
+ * matrices, A = (K + shift M)^-1 M, and M is the metric in which it is self-adjoint.
  */
 typedef struct mt_lowest_problem {
     int n;       /* coordinates, rigid-body modes not among them */
-    int n_rigid; /* of these */
+    int most;    /* modes that there may be among them */
+    int n_rigid; /* rigid-body modes beside them */
     int count;   /* vibration modes wanted */
     int steps; /* roundings that a motion goes through on its way: the length of a recursion */
     /* y := A x */
     mt_status (*apply)(void *context, const double *x, double *y, mt_err *err);
+    double shift;
+    /* y := M x; NULL: the identity */
+    void (*metric)(void *context, const double *x, double *y);
+    /* y := A x as exactly as can be, and what y says of its mode; NULL: as apply, and the
+     * quotient x^T A x, with the roundings of `steps` */
+    mt_status (*refine)(void *context, const double *x, double *y, mt_lowest_quotient *quotient,
+                        mt_err *err);
     /* modes below lambda = tau > 0, rigid-body ones included; *certain: not by rounding */
     mt_status (*below)(void *context, double tau, int *below, bool *certain, mt_err *err);
     void *context;
@@ -27,7 +42,7 @@ typedef struct mt_lowest_modes {
     /* count: n_rigid, then as many of the lowest as there are, at most those wanted and what
      * is repeated with the last of them; y NULL; n: coordinates with the rigid-body ones */
     mt_modes modes;
-    double *x;  /* n x (count - n_rigid), unit columns */
+    double *x;  /* n x (count - n_rigid), columns of size 1 (in the metric) */
     double tau; /* no mode below this was missed: they were counted [rad^2/s^2] */
     int below;  /* how many that were, rigid-body ones included */
 } mt_lowest_modes;

@@ -106,8 +106,10 @@ static mt_lowest *lowest_of(mt_test *t, const char *text, int count, mt_model **
     mt_err err = {.text = ""};
     mt_lowest *l = NULL;
     *model = mech_parse(t, text);
-    if (*model != NULL &&
-        !CHECK_INT(t, mt_lowest_new(*model, 0, 0, NULL, NULL, count, &l, &err), MT_OK)) {
+    if (*model != NULL && !CHECK_INT(t,
+                                     mt_lowest_new(*model, 0, 0, NULL, NULL,
+                                                   (mt_lowest_want){.count = count}, &l, &err),
+                                     MT_OK)) {
         (void)fprintf(stderr, "%s\n", err.text);
     }
     return l;
@@ -285,16 +287,19 @@ static void lowest__say_what_is_no_tree(mt_test *t)
          "\"at\": [0, 0]}, {\"name\": \"k\", \"type\": \"revolute\", \"bodies\": [\"ground\", "
          "\"a\"], \"at\": [1, 0]}, {\"name\": \"l\", \"type\": \"pin-in-slot\", \"bodies\": "
          "[\"ground\", \"b\"], \"at\": [2, 0], \"axis\": [1, 0]}]",
-         "joint \"j\" is part of a loop"},
+         "joint \"j\" is part of a loop; nor the sparse one, as nothing in it has a "
+         "stiffness"},
         {"\"gravity_m_per_s2\": [0, -9.81], \"joints\": [{\"name\": \"j\", \"type\": "
          "\"revolute\", "
          "\"bodies\": [\"a\", \"b\"], \"at\": [0, 1]}, {\"name\": \"k\", \"type\": \"fixed\", "
          "\"bodies\": [\"ground\", \"a\"], \"at\": [1, 0]}]",
-         "\"b\" is not drawn at rest under its load"},
+         "\"b\" is not drawn at rest under its load; nor the sparse one, as something loads "
+         "it"},
         {"\"gravity_m_per_s2\": [0, 9.81], \"joints\": [{\"name\": \"j\", \"type\": "
          "\"revolute\", \"bodies\": [\"a\", \"b\"], \"at\": [1, 2]}, {\"name\": \"k\", "
          "\"type\": \"fixed\", \"bodies\": [\"ground\", \"a\"], \"at\": [1, 0]}]",
-         "it is free to move, or not stable, under its load"},
+         "it is free to move, or not stable, under its load; nor the sparse one, as something "
+         "loads it"},
         {"\"gravity_m_per_s2\": [0, -9.81], \"joints\": [{\"name\": \"j\", \"type\": "
          "\"revolute\", \"bodies\": [\"a\", \"b\"], \"at\": [1, 2]}, {\"name\": \"k\", "
          "\"type\": \"fixed\", \"bodies\": [\"ground\", \"a\"], \"at\": [1, 0]}]",
@@ -302,12 +307,13 @@ static void lowest__say_what_is_no_tree(mt_test *t)
         {"\"joints\": [{\"name\": \"j\", \"type\": \"revolute\", \"bodies\": [\"a\", \"b\"], "
          "\"at\": [0, 0]}], \"springs\": [{\"name\": \"s\", \"type\": \"torsion\", \"joint\": "
          "\"j\", \"stiffness_n_m_per_rad\": -1}]",
-         "spring \"s\" has a negative stiffness"},
+         "spring \"s\" has a negative stiffness; nor the sparse one, as a motion without "
+         "stiffness has no mass, or it is not stable"},
         {"\"joints\": [{\"name\": \"j\", \"type\": \"fixed\", \"bodies\": [\"a\", \"b\"], "
          "\"at\": [0, 0]}, {\"name\": \"k\", \"type\": \"revolute\", \"bodies\": [\"b\", "
          "\"a\"], "
          "\"at\": [1, 0]}]",
-         "joints of \"b\" hold it twice"},
+         "joints of \"b\" hold it twice; nor the sparse one, as nothing in it has a stiffness"},
         {"\"joints\": [{\"name\": \"j\", \"type\": \"fixed\", \"bodies\": [\"a\", \"b\"], "
          "\"at\": [0, 0]}], \"configurations\": {\"x\": {}}",
          ""},

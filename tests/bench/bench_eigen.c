@@ -127,9 +127,10 @@ static mt_lowest *solve_lowest(const bench *b)
     mt_lowest *l = NULL;
     mt_err err = {.text = ""};
     stop("lowest modes",
-         mt_lowest_new(b->model, b->configuration, 1, &b->input, &b->at, MODES, &l, &err),
+         mt_lowest_new(b->model, b->configuration, 1, &b->input, &b->at,
+                       (mt_lowest_want){.count = MODES}, &l, &err),
          &err);
-    if (l->tree == NULL) {
+    if (l->way == MT_LOWEST_NONE) {
         stop("lowest modes", mt_fail(&err, MT_E_INPUT, "%s", l->why), &err);
     }
     return l;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Large models are read, checked and, where they are trees, answered in time in proportion to their size. No time is measured: a million elements take hours where
+"""Large models are read, checked and, where they are trees or bear no load, answered in time in proportion to their size. No time is measured: a million elements take hours where
 time goes with the square of the size."""
 import json
 import os
@@ -51,7 +51,7 @@ class Large(CliTest):
 
     def test_large_ones_are_told_as_such(self):
         done = self.expect(0, "modes", self.model_of("link", 20000), "--count", "3")
-        self.assertRegex(done.stdout, r"The lowest modes of a tree of 20000 bodies \(sparse\): \d+ below [0-9.]+ Hz, by count, none missing\.")
+        self.assertRegex(done.stdout, r"The lowest modes of a tree of 20000 bodies \(joint coordinates\): \d+ below [0-9.]+ Hz, by count, none missing\.")
         self.assertRegex(done.stdout, r" 1  flexible +0\.559591 ")
         table = self.expect(0, "modes", self.model_of("beam", 20000), "--count", "3", "--format", "csv").stdout.splitlines()
         self.assertEqual(len(table), 4)
@@ -80,13 +80,55 @@ class Large(CliTest):
             "goals": [{"type": "frequency", "configuration": "default", "mode": 1, "target_hz": 0.5}], "objective": {"minimise": "change"}}))
         for command in (("run", study), ("info", whole), ("mac", f"{whole}:default", f"{whole}:default")):
             self.assertIn("6001 bodies are too many for dense matrices, which take 5000", self.expect(2, *command).stderr)
-        model["springs"].append({"name": "far", "type": "axial", "bodies": ["ground", "beam.end"], "at": [[1, 1], "tip"],
-                                 "stiffness_n_per_m": 1})
-        done = self.expect(2, "modes", self.write("loop.json", json.dumps(model)), "--count", "3")
-        self.assertRegex(done.stderr, r'the way for large trees is not open, as \w+ "[\w.]+" is part of a loop')
+        loop = {**model, "springs": model["springs"] + [{"name": "far", "type": "axial", "bodies": ["ground", "beam.end"], "at": [[1, 1], "tip"],
+                                                         "stiffness_n_per_m": 1}]}
+        loop = self.write("loop.json", json.dumps(loop))
+        for command in (("modes", loop, "--count", "3", "--shapes"), ("sensitivity", loop)):
+            self.assertRegex(self.expect(2, *command).stderr, r'the way for large trees is not open, as \w+ "[\w.]+" is part of a loop; '
+                             "nor the sparse one, as that has no shapes and slopes")
         model = {**large.link(6000), "gravity_m_per_s2": [0, -9.81]}
         done = self.expect(2, "modes", self.write("loaded.json", json.dumps(model)), "--count", "3")
-        self.assertRegex(done.stderr, r'as "beam\.\d+" is not drawn at rest under its load')
+        self.assertRegex(done.stderr, r'as "beam\.\d+" is not drawn at rest under its load; nor the sparse one, as something loads it')
+
+    def test_frames_and_loops_need_no_tree(self):
+        for name, model, rigid in (("frame", large.frame(3, 3, 3, 2), 0), ("free", large.frame(3, 3, 3, 2, clamped=False), 6)):
+            model = self.write(f"{name}.json", json.dumps(model))
+            whole, lowest = self.modes(model), self.modes(model, "--count", "8")
+            self.assertEqual((whole["method"], lowest["method"]), ("dense", "sparse"))
+            self.assertEqual([d["freedoms"] for d in (whole, lowest)], [whole["freedoms"]] * 2)
+            self.assertEqual((lowest["rigid_body_modes"], len(lowest["modes"])), (rigid, 8 + rigid))
+            for one, other in zip(lowest["modes"], whole["modes"]):
+                self.assertEqual(one["kind"], other["kind"])
+                if one["kind"] == "flexible":
+                    self.assertLessEqual(abs(one["frequency_hz"] - other["frequency_hz"]), one["frequency_error_hz"] + other["frequency_error_hz"])
+                    self.assertLess(one["frequency_error_hz"], 1e-10 * one["frequency_hz"])
+        chain = large.link(100)  # its end in a slot, and in the same once more: an equation follows from another
+        chain["joints"] += [{"name": f"tip{i}", "type": "pin-in-slot", "bodies": ["ground", "beam.end"], "at": "tip", "axis": [1, 0]} for i in range(2)]
+        model = self.write("loop.json", json.dumps(chain))
+        whole, lowest = self.modes(model), self.modes(model, "--count", "4")
+        self.assertEqual((lowest["method"], lowest["freedoms"], lowest["redundant_constraints"]), ("sparse", whole["freedoms"], None))
+        for one, other in zip(lowest["modes"], whole["modes"]):
+            self.assertLessEqual(abs(one["frequency_hz"] - other["frequency_hz"]), one["frequency_error_hz"] + other["frequency_error_hz"])
+
+    def test_joints_carry_what_springs_near_them_hold(self):
+        """Levers whose springs act close to the pivots, each held there once more: k a^2/(m l^2 + J). A joint's force is l/a of what moves the mass."""
+        for ratio, error in ((4, 1e-14), (64, 3e-13), (128, 6e-13)):
+            model = {"format": "modetune-model/1", "name": "Levers", "dimension": 2, "bodies": [], "joints": [], "springs": []}
+            want = []
+            for i in range(120):
+                length, k = 1 - i / 256, 1000 + i
+                arm = length / ratio
+                on = ["ground", f"b{i}"]
+                model["bodies"].append({"name": on[1], "mass_kg": 1.5, "inertia_kg_m2": 0.03125, "centre": [length, 0]})
+                model["joints"] += [{"name": f"j{i}", "type": "revolute", "bodies": on, "at": [0, 0]},
+                                    {"name": f"k{i}", "type": "distance", "bodies": on, "at": [[-1, 0], [0, 0]]}]
+                model["springs"].append({"name": f"s{i}", "type": "axial", "bodies": on, "at": [[arm, -1], [arm, 0]], "stiffness_n_per_m": k})
+                want.append((k * arm ** 2 / (1.5 * length ** 2 + 0.03125)) ** 0.5 / 6.283185307179586)
+            got = self.modes(self.write("levers.json", json.dumps(model)), "--count", "40")
+            self.assertEqual((got["method"], got["freedoms"]), ("sparse", 120))
+            for mode, f in zip(got["modes"], sorted(want)):
+                self.assertAlmostEqual(mode["frequency_hz"], f, delta=error * f)
+                self.assertLessEqual(abs(mode["frequency_hz"] - f), mode["frequency_error_hz"])
 
     def hanging(self, n):
         model = {**large.link(n), "gravity_m_per_s2": ["-g", 0],

@@ -40,7 +40,7 @@ OPEN = {
 PUBLIC = {"export": "base", "read": "base", "version": "base", "status": "base", "dynamics": "mechanics", "study": "study", "mechanism": "library"}
 # <system header> pattern: the rooms that may include it
 DOORS = [
-    (re.compile(r"lapacke|cblas|lapack|openblas"), {"linalg"}),
+    (re.compile(r"lapacke|cblas|lapack|openblas|(suitesparse/)?cholmod"), {"linalg"}),
     (re.compile(r"(cjson/)?cJSON"), {"io"}),
     (re.compile(r"nlopt|gsl/"), {"nlp"}),
     (re.compile(r"pthread\.h|threads\.h"), {"base"}),

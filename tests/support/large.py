@@ -4,7 +4,8 @@
 link     one link of N rigid elements with springs in its hinges, pinned to the ground through a spring
 beam     a clamped beam link of N elements
 chain    N bodies with a revolute joint and a torsional spring each, all written out
-points   the same with a named point for each joint"""
+points   the same with a named point for each joint
+tower    a space frame of 10 x 10 columns and N floors, an element for each of its beams: 280 to a floor, on clamped feet"""
 import json
 import sys
 
@@ -49,7 +50,32 @@ def points(n):
     return chain(n, named_points=True)
 
 
-KINDS = {"link": link, "beam": beam, "chain": chain, "points": points}
+def frame(nx, ny, nz, elements, clamped=True):
+    """A space frame of nx x ny x nz nodes, tubes between neighbours, its lowest nodes clamped or free."""
+    tube = {"shape": "tube", "outer_diameter_m": 0.2, "inner_diameter_m": 0.18}
+    model = {**_root(3), "points": {}, "links": [], "joints": []}
+    ends = {}
+    for node in ((i, j, k) for i in range(nx) for j in range(ny) for k in range(nz)):
+        model["points"]["p%d_%d_%d" % node] = [3.0 * node[0], 4.0 * node[1], 3.5 * node[2]]
+        for axis, n in enumerate((nx, ny, nz)):
+            if node[axis] + 1 < n:
+                name = f"L{len(model['links'])}"
+                other = tuple(x + (a == axis) for a, x in enumerate(node))
+                model["links"].append({"name": name, "kind": "beam", "from": "p%d_%d_%d" % node, "to": "p%d_%d_%d" % other, "elements": elements,
+                                       "youngs_modulus_pa": 2.1e11, "shear_modulus_pa": 8e10, "density_kg_per_m3": 7850, "section": tube})
+                ends.setdefault(node, []).append(f"{name}.start")
+                ends.setdefault(other, []).append(f"{name}.end")
+    for node, there in ends.items():
+        for end in (["ground"] if clamped and node[2] == 0 else []) + there[1:]:
+            model["joints"].append({"name": f"J{len(model['joints'])}", "type": "fixed", "bodies": [there[0], end], "at": "p%d_%d_%d" % node})
+    return model
+
+
+def tower(floors):
+    return frame(10, 10, floors, 1)
+
+
+KINDS = {"link": link, "beam": beam, "chain": chain, "points": points, "tower": tower}
 
 if __name__ == "__main__":
     json.dump(KINDS[sys.argv[1]](int(sys.argv[2])), sys.stdout)

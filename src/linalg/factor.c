@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Left-looking, supernode by supernode: columns J of L are H(:, J) less
+ *     sum over earlier supernodes K with rows in J of  L(:, K) D_K L(J, K)^T,
+ * each one product of dense blocks, scattered into place; then the block J itself is factored,
+ * L_JJ D_J L_JJ^T, and the rows below it divided by it. A supernode that has been used waits in
+ * the list of the next one that its rows reach.
+ */
+#include "linalg/factor.h"
+
+#include <cblas.h>
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+#include <suitesparse/cholmod.h>
+
+#include "linalg/kernels.h"
+
+/* Columns of a block that are eliminated one by one before the rest is brought up to date. */
+enum { PANEL = 32 };
+
+struct mt_factor_pattern {
+    int n;
+    int n_super;
+    int *to;          /* [n] place of a row in the order of P */
+    int *first;       /* [n_super + 1] column where a supernode begins */
+    int *row_at;      /* [n_super + 1] of its rows in `row`, its own columns first */
+    int *row;         /* ascending, in the order of P */
+    ptrdiff_t *at;    /* [n_super + 1] of its block in l: rows x columns */
+    int *super_of;    /* [n] supernode of a column */
+    size_t most_rows; /* of a supernode */
+    size_t most_columns;
+};
+
+static mt_status copy_pattern(const cholmod_factor *l, mt_arena *mem, mt_factor_pattern *p,
+                              mt_err *err)
+{
+    const size_t n = l->n;
+    const size_t ns = l->nsuper;
+    const int *const perm = l->Perm;
+    p->n = (int)n;
+    p->n_super = (int)ns;
+    p->to = mt_arena_int(mem, n);
+    p->first = mt_arena_int(mem, ns + 1);
+    p->row_at = mt_arena_int(mem, ns + 1);
+    p->row = mt_arena_int(mem, l->ssize);
+    p->at = mt_arena_alloc(mem, ns + 1, sizeof *p->at);
+    p->super_of = mt_arena_int(mem, n);
+    MT_TRY(mt_arena_check(mem, err));
+    memcpy(p->first, l->super, (ns + 1) * sizeof *p->first);
+    memcpy(p->row_at, l->pi, (ns + 1) * sizeof *p->row_at);
+    memcpy(p->row, l->s, l->ssize * sizeof *p->row);
+    for (size_t i = 0; i < n; i++) {
+        p->to[perm[i]] = (int)i;
+    }
+    for (size_t s = 0; s < ns; s++) {
+        const int columns = p->first[s + 1] - p->first[s];
+        const int rows = p->row_at[s + 1] - p->row_at[s];
+        p->at[s + 1] = p->at[s] + ((ptrdiff_t)rows * columns);
+        p->most_rows = p->most_rows > (size_t)rows ? p->most_rows : (size_t)rows;
+        p->most_columns = p->most_columns > (size_t)columns ? p->most_columns : (size_t)columns;
+        for (int j = p->first[s]; j < p->first[s + 1]; j++) {
+            p->super_of[j] = (int)s;
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_factor_analyse(const mt_lower *h, mt_arena *mem, mt_factor_pattern **out,
+                            mt_err *err)
+{
+    mt_factor_pattern *const p = mt_arena_alloc(mem, 1, sizeof *p);
+    cholmod_common c;
+    *out = NULL;
+    MT_TRY(mt_arena_check(mem, err));
+    *p = (mt_factor_pattern){.n = h->n};
+    if (!cholmod_start(&c)) {
+        return mt_fail_memory(err);
+    }
+    c.print = 0;
+    c.supernodal = CHOLMOD_SUPERNODAL;
+    cholmod_sparse a = {.nrow = (size_t)h->n,
+                        .ncol = (size_t)h->n,
+                        .nzmax = (size_t)h->start[h->n],
+                        .p = h->start,
+                        .i = h->row,
+                        .stype = -1,
+                        .itype = CHOLMOD_INT,
+                        .xtype = CHOLMOD_PATTERN,
+                        .dtype = CHOLMOD_DOUBLE,
+                        .sorted = 1,
+                        .packed = 1};
+    cholmod_factor *l = cholmod_analyze(&a, &c);
+    mt_status rc = MT_OK;
+    if (l == NULL || c.status != CHOLMOD_OK || !l->is_super) {
+        rc = c.status == CHOLMOD_OUT_OF_MEMORY || c.status == CHOLMOD_TOO_LARGE
+                 ? mt_fail_memory(err)
+                 : mt_fail(err, MT_E_INTERNAL, "cholmod_analyze: status %d", c.status);
+    } else {
+        rc = copy_pattern(l, mem, p, err);
+    }
+    cholmod_free_factor(&l, &c);
+    cholmod_finish(&c);
+    *out = rc == MT_OK ? p : NULL;
+    return rc;
+}
+
+void mt_factor_init(const mt_factor_pattern *p, mt_arena *mem, mt_factor *f)
+{
+    *f = (mt_factor){.pattern = p};
+    f->l = mt_arena_f64(mem, (size_t)p->at[p->n_super], 1);
+    f->d = mt_arena_f64(mem, (size_t)p->n, 1);
+    f->work = mt_arena_f64(mem, p->most_rows + (size_t)p->n, 1);
+}
+
+/* What a factorisation works with. */
+typedef struct making {
+    const mt_factor_pattern *p;
+    mt_factor *f;
+    int *place;    /* [n] of a row in the block that is made */
+    int *waiting;  /* [n_super] first supernode that waits for it; -1 */
+    int *next;     /* [n_super] that waits for the same */
+    int *used;     /* [n_super] rows of it that are behind */
+    double *right; /* most_columns x most_columns: D_K L(J, K)^T */
+    double *sum;   /* most_rows x most_columns */
+    double *size;  /* [n] of what each pivot is the rest of */
+} making;
+
+static void wait_for(const making *m, int k)
+{
+    const mt_factor_pattern *const p = m->p;
+    const int row = p->row_at[k] + m->used[k];
+    if (row < p->row_at[k + 1]) {
+        const int s = p->super_of[p->row[row]];
+        m->next[k] = m->waiting[s];
+        m->waiting[s] = k;
+    }
+}
+
+/* Entries of H into the blocks; an entry (i, j) stands in the column that comes first. */
+static void scatter(const mt_factor_pattern *p, const mt_lower *h, double *l)
+{
+    for (int j = 0; j < h->n; j++) {
+        for (int k = h->start[j]; k < h->start[j + 1]; k++) {
+            const int a = p->to[h->row[k]];
+            const int b = p->to[j];
+            const int column = a < b ? a : b;
+            const int row = a < b ? b : a;
+            const int s = p->super_of[column];
+            const int *const rows = p->row + p->row_at[s];
+            int low = row < p->first[s + 1] ? row - p->first[s] : 0;
+            int high = p->row_at[s + 1] - p->row_at[s] - 1;
+            while (low < high && rows[low] != row) { /* by halves: rows ascend */
+                const int middle = low + ((high - low) / 2);
+                if (rows[middle] < row) {
+                    low = middle + 1;
+                } else {
+                    high = middle;
+                }
+            }
+            const ptrdiff_t ld = p->row_at[s + 1] - p->row_at[s];
+            l[p->at[s] + low + ((column - p->first[s]) * ld)] += h->value[k];
+        }
+    }
+}
+
+/* Block s less what supernode k adds to it. */
+static void subtract(const making *m, int s, int k)
+{
+    const mt_factor_pattern *const p = m->p;
+    const int *const rows = p->row + p->row_at[k] + m->used[k];
+    const int n_rows = p->row_at[k + 1] - p->row_at[k] - m->used[k];
+    const int ld = p->row_at[k + 1] - p->row_at[k];
+    const int inner = p->first[k + 1] - p->first[k];
+    const double *const l = m->f->l + p->at[k] + m->used[k];
+    double *const out = m->f->l + p->at[s];
+    const ptrdiff_t ld_out = p->row_at[s + 1] - p->row_at[s];
+    int columns = 0;
+    while (columns < n_rows && rows[columns] < p->first[s + 1]) {
+        columns++;
+    }
+    for (int c = 0; c < inner; c++) {
+        const double d = m->f->d[p->first[k] + c];
+        for (int j = 0; j < columns; j++) {
+            m->right[c + ((ptrdiff_t)j * inner)] = d * l[j + ((ptrdiff_t)c * ld)];
+        }
+    }
+    mt_gemm(false, false, n_rows, columns, inner, 1.0, l, ld, m->right, inner, 0.0, m->sum,
+            n_rows);
+    for (int j = 0; j < columns; j++) {
+        double *const to = out + ((rows[j] - p->first[s]) * ld_out);
+        const double *const from = m->sum + ((ptrdiff_t)j * n_rows);
+        for (int i = j; i < n_rows; i++) {
+            to[m->place[rows[i]]] -= from[i];
+        }
+    }
+    m->used[k] += columns;
+}
+
+/* Columns first .. end - 1 of the block, one by one, all rows below. */
+static bool eliminate_panel(const making *m, int s, int first, int end)
+{
+    const mt_factor_pattern *const p = m->p;
+    const ptrdiff_t ld = p->row_at[s + 1] - p->row_at[s];
+    double *const l = m->f->l + p->at[s];
+    double *const d = m->f->d + p->first[s];
+    for (int j = first; j < end; j++) {
+        double *const column = l + (j * ld);
+        for (int k = first; k < j; k++) {
+            const double *const before = l + (k * ld);
+            const double c = before[j] * d[k];
+            for (ptrdiff_t i = j; i < ld && c != 0.0; i++) {
+                column[i] -= c * before[i];
+            }
+        }
+        d[j] = column[j];
+        if (d[j] == 0.0 || !isfinite(d[j])) {
+            return false;
+        }
+        column[j] = 1.0;
+        for (ptrdiff_t i = j + 1; i < ld; i++) {
+            column[i] /= d[j];
+        }
+    }
+    return true;
+}
+
+static bool eliminate(const making *m, int s)
+{
+    const mt_factor_pattern *const p = m->p;
+    const int ld = p->row_at[s + 1] - p->row_at[s];
+    const int n = p->first[s + 1] - p->first[s];
+    double *const l = m->f->l + p->at[s];
+    const double *const d = m->f->d + p->first[s];
+    for (int first = 0; first < n; first += PANEL) {
+        const int end = first + PANEL < n ? first + PANEL : n;
+        if (!eliminate_panel(m, s, first, end)) {
+            return false;
+        }
+        const int inner = end - first;
+        /* the other columns, a panel at a time: its rows from its own first one on */
+        for (int next = end; next < n; next += PANEL) {
+            const int columns = next + PANEL < n ? PANEL : n - next;
+            for (int j = 0; j < columns; j++) {
+                for (int c = 0; c < inner; c++) {
+                    m->right[c + ((ptrdiff_t)j * inner)] =
+                        d[first + c] * l[next + j + ((ptrdiff_t)(first + c) * ld)];
+                }
+            }
+            mt_gemm(false, false, ld - next, columns, inner, -1.0,
+                    l + next + ((ptrdiff_t)first * ld), ld, m->right, inner, 1.0,
+                    l + next + ((ptrdiff_t)next * ld), ld);
+        }
+    }
+    return true;
+}
+
+/* Of each pivot |d_i| + sum |l_ik|^2 |d_k|: what its terms amount to without their signs. */
+static void judge(const making *m)
+{
+    const mt_factor_pattern *const p = m->p;
+    mt_factor *const f = m->f;
+    for (int s = 0; s < p->n_super; s++) {
+        const int *const rows = p->row + p->row_at[s];
+        const ptrdiff_t ld = p->row_at[s + 1] - p->row_at[s];
+        for (int j = p->first[s]; j < p->first[s + 1]; j++) {
+            const double *const column = f->l + p->at[s] + ((j - p->first[s]) * ld);
+            const double d = fabs(f->d[j]);
+            for (ptrdiff_t i = j - p->first[s]; i < ld; i++) {
+                m->size[rows[i]] += column[i] * column[i] * d;
+            }
+        }
+    }
+    f->negative = 0;
+    f->least = 1.0;
+    for (int i = 0; i < p->n; i++) {
+        f->negative += f->d[i] < 0.0 ? 1 : 0;
+        f->least = fmin(f->least, fabs(f->d[i]) / m->size[i]);
+    }
+}
+
+mt_status mt_factor_make(mt_factor *f, const mt_lower *h, mt_arena *mem, mt_err *err)
+{
+    const mt_factor_pattern *const p = f->pattern;
+    const size_t n = (size_t)p->n;
+    const size_t ns = (size_t)p->n_super;
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    making m = {.p = p, .f = f};
+    m.place = mt_arena_int(mem, n);
+    m.waiting = mt_arena_int(mem, ns);
+    m.next = mt_arena_int(mem, ns);
+    m.used = mt_arena_int(mem, ns);
+    m.right = mt_arena_f64(mem, p->most_columns + PANEL, p->most_columns + PANEL);
+    m.sum = mt_arena_f64(mem, p->most_rows, p->most_columns);
+    m.size = mt_arena_f64(mem, n, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    memset(f->l, 0, (size_t)p->at[ns] * sizeof *f->l);
+    memset(m.waiting, 0xFF, ns * sizeof *m.waiting); /* -1 */
+    scatter(p, h, f->l);
+    bool regular = true;
+    for (int s = 0; s < p->n_super && regular; s++) {
+        for (int i = p->row_at[s]; i < p->row_at[s + 1]; i++) {
+            m.place[p->row[i]] = i - p->row_at[s];
+        }
+        for (int k = m.waiting[s]; k >= 0;) {
+            const int next = m.next[k];
+            subtract(&m, s, k);
+            wait_for(&m, k);
+            k = next;
+        }
+        regular = eliminate(&m, s);
+        m.used[s] = p->first[s + 1] - p->first[s];
+        wait_for(&m, s);
+    }
+    if (regular) {
+        judge(&m);
+    }
+    mt_arena_rewind(mem, mark);
+    return regular ? MT_OK : mt_fail(err, MT_E_DOMAIN, "a pivot is 0 or not finite");
+}
+
+void mt_factor_solve(const mt_factor *f, double *x)
+{
+    const mt_factor_pattern *const p = f->pattern;
+    double *const y = f->work + p->most_rows;
+    for (int i = 0; i < p->n; i++) {
+        y[p->to[i]] = x[i];
+    }
+    for (int s = 0; s < p->n_super; s++) {
+        const int columns = p->first[s + 1] - p->first[s];
+        const int ld = p->row_at[s + 1] - p->row_at[s];
+        const int *const rows = p->row + p->row_at[s] + columns;
+        const double *const l = f->l + p->at[s];
+        double *const own = y + p->first[s];
+        cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasUnit, columns, l, ld, own, 1);
+        mt_gemv(false, ld - columns, columns, 1.0, l + columns, ld, own, 0.0, f->work);
+        for (int i = 0; i < ld - columns; i++) {
+            y[rows[i]] -= f->work[i];
+        }
+    }
+    for (int i = 0; i < p->n; i++) {
+        y[i] /= f->d[i];
+    }
+    for (int s = p->n_super - 1; s >= 0; s--) {
+        const int columns = p->first[s + 1] - p->first[s];
+        const int ld = p->row_at[s + 1] - p->row_at[s];
+        const int *const rows = p->row + p->row_at[s] + columns;
+        const double *const l = f->l + p->at[s];
+        double *const own = y + p->first[s];
+        for (int i = 0; i < ld - columns; i++) {
+            f->work[i] = y[rows[i]];
+        }
+        mt_gemv(true, ld - columns, columns, -1.0, l + columns, ld, f->work, 1.0, own);
+        cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasUnit, columns, l, ld, own, 1);
+    }
+    for (int i = 0; i < p->n; i++) {
+        x[i] = y[p->to[i]];
+    }
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MODAL_SPARSE_H
+#define MODAL_SPARSE_H
+
+#include "linalg/factor.h"
+#include "linalg/sparse.h"
+#include "modal/lowest.h"
+
+/*
+ * K phi + A^T mu = lambda M phi, A phi = 0: a mechanism in coordinates of its bodies, of any
+ * size and form. K and M are sums of squares of sparse rows, with whatever is no such sum
+ * (geometric stiffness) as a matrix of its own.
+ */
+typedef struct mt_sparse_problem {
+    int n;
+    mt_squares k;
+    const mt_lower *g; /* K has this besides; NULL: nothing */
+    mt_squares m;
+    mt_rows a;          /* may depend on each other */
+    const double *unit; /* [n] a state times this is a displacement: 1, or 1/length of a turn */
+    int count;          /* vibration modes wanted, at least 1 */
+    mt_status (*check)(void *context, mt_err *err); /* asked before each product: go on? */
+    void *context;
+} mt_sparse_problem;
+
+enum { MT_SPARSE_WHY = 200 };
+
+/**
+ * The lowest modes by Lanczos' method on (K + shift M)^-1 M, on whose factor (linalg/factor.h)
+ * the constraints stand as stiff springs, their forces found by iteration; shift 0 where K
+ * allows it. Rigid-body modes are those whose strains are rounding. What cancels in strains, as
+ * in a long slender chain, is in the errors.
+ * @param[out] out       in mem; modes.n: freedoms
+ * @param[out] why       the reason where *answered is false: free or unstable without mass
+ * Fails: as mt_modal_lowest and mt_factor_make, MT_E_MEMORY, what `check` fails with.
+ */
+mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_modes *out,
+                          bool *answered, char why[MT_SPARSE_WHY], mt_err *err);
+
+#endif
