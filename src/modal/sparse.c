@@ -331,7 +331,8 @@ static mt_status refine(void *context, const double *x, double *y, mt_lowest_quo
     q->lambda = k / m;
     q->rigid = fabs(k) <= RIGID * ((RIGID * k_noise) + other) ||
                fabs(q->lambda) <= DBL_EPSILON * s->shift;
-    q->noise = (2.0 * sqrt(k_noise / fabs(k))) + ((k_noise + other) / fabs(k)) +
+    const double size = fmax(fabs(k), DBL_MIN);
+    q->noise = (2.0 * sqrt(k_noise / size)) + ((k_noise + other) / size) +
                (2.0 * sqrt(m_noise / m)) + (OTHER_ULPS * DBL_EPSILON);
     return MT_OK;
 }
@@ -531,8 +532,8 @@ mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_m
     *out = (mt_lowest_modes){.below = 0};
     MT_TRY(mt_arena_init(&work, 0, err));
     mt_status rc = prepare(&s, err);
-    rc = rc == MT_OK ? count_freedoms(&s, err) : rc;
     rc = rc == MT_OK ? hold(&s, answered, why, err) : rc;
+    rc = rc == MT_OK && *answered ? count_freedoms(&s, err) : rc;
     if (rc == MT_OK && *answered) {
         rc = find(&s, mem, out, answered, err);
         if (!*answered) {
