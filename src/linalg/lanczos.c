@@ -94,7 +94,8 @@ static mt_status fresh(iteration *it, int j, bool *is, mt_err *err)
         state = (state * 1664525U) + 1013904223U;
         random[i] = ((double)(state >> 8U) / 8388608.0) - 1.0;
     }
-    if (it->mw != NULL) {
+    if (it->mw != NULL) { /* a small eigenvalue would drown in the largest */
+        orthogonalise(it, j, random, NULL);
         MT_TRY(it->p->apply(it->p->context, random, w, err));
     }
     const double whole = norm(it, w);
@@ -191,7 +192,7 @@ static mt_status extend(iteration *it, bool *more, mt_err *err)
     if (!isfinite(whole)) {
         return mt_fail(err, MT_E_DOMAIN, "a vector of Lanczos' method is not finite");
     }
-    if (beta > DBL_EPSILON * whole && beta > 0.0) {
+    if (beta > ROUNDING * DBL_EPSILON * whole && beta > 0.0) {
         it->b[j] = beta;
         for (int i = 0; i < it->p->n; i++) {
             w[i] /= beta;

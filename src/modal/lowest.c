@@ -219,7 +219,7 @@ static mt_status find(finding *f, mt_arena *mem, double *tau, int *upto, mt_err 
             *upto = 0;
             return MT_OK;
         }
-        if (f->exhausted || f->n + more > MOST_FOUND + (2 * p->count)) {
+        if (f->n == p->most || f->n + more > MOST_FOUND + (2 * p->count)) {
             break;
         }
         if (f->n + more > f->most) {

@@ -26,20 +26,24 @@
 /* gamma over the largest stiffness: a constraint's own flexibility is gone after two or three
  * iterations, and eps times this times the condition of K is still well below 1. */
 static const double STIFFER = 1e6;
-/* Relative pivots: below the first K may be singular, below the second a matrix is; below the
- * third the sign of one is by chance. */
-static const double FIRM = 1e-12;
+/* Relative pivots: below the first a matrix is singular; below the second the sign of one is
+ * by chance. */
 static const double REGULAR = 1e-15;
 static const double CERTAIN = 64.0 * DBL_EPSILON;
 /* Below this the factor's rounding is refined away in each product. */
 static const double WELL = 1e-7;
-/* The first shift, in the largest K_ii/M_ii; and it should be no more than this times the
- * lowest mode. */
+/* The first shift, in the largest K_ii/M_ii; and it should be within this factor of the lowest
+ * mode: far above it the modes stand close together in what is iterated, and far below it a
+ * rigid-body mode's rounding there is large against all that the others are. */
 static const double FIRST_SHIFT = 1e-8;
 static const double MOST_SHIFT = 100.0;
 /* Steps of a solution: most of them, and when it is one. */
 enum { MOST_STEPS = 30, SHIFTS = 2, ROUNDS = 4 };
 static const double SOLVED = 1e-16;
+/* A factor that leaves more than this of a solution is not that of its matrix: where that is
+ * singular but for rounding, no step comes nearer. */
+static const double SOUND = 1e-6;
+static const double GOLDEN = 0.61803398874989485;
 static const double EXACT = 1e-16;
 /* Roundings of a strain, and strains so many times their rounding that are none. */
 static const double STRAIN_ULPS = 4.0;
@@ -62,6 +66,7 @@ typedef struct sparse {
     mt_factor count;           /* of counts */
     int freedoms;              /* states less independent rows of A */
     bool refined;              /* is a product refined? */
+    bool sound;                /* was the last step of a solution a small part of it? */
     double *x, *f, *r, *s, *w; /* [n] */
     double *mu;                /* [rows of A] */
     double *gap;               /* A x + A dx */
@@ -248,6 +253,7 @@ static mt_status solve(sparse *s, const double *f, double close, double *x, mt_e
         mt_factor_solve(&s->held, s->s);
         const double change = sqrt(fmax(mt_dot(p->n, s->s, s->r), 0.0));
         const double whole = sqrt(fmax(mt_dot(p->n, x, f), 0.0));
+        s->sound = step > 0 && change <= SOUND * whole;
         if (step > 1 && !(change < 0.5 * before)) {
             return MT_OK; /* what is left is rounding */
         }
@@ -356,13 +362,25 @@ static mt_status below(void *context, double tau, int *n, bool *certain, mt_err 
     return rc == MT_E_DOMAIN ? MT_OK : (rc == MT_OK ? MT_OK : mt_fail(err, rc, "count"));
 }
 
-static mt_status factor(sparse *s, double shift, bool *positive, mt_err *err)
+/* H with this shift; *sound: positive, and it solves. */
+static mt_status factor(sparse *s, double shift, bool *sound, mt_err *err)
 {
     s->shift = shift;
     combine(s, shift);
     const mt_status rc = mt_factor_make(&s->held, &s->h, s->mem, NULL);
-    *positive = rc == MT_OK && s->held.negative == 0;
-    return rc == MT_OK || rc == MT_E_DOMAIN ? MT_OK : mt_fail(err, rc, "factor");
+    *sound = rc == MT_OK && s->held.negative == 0 && s->held.least > REGULAR;
+    if (rc != MT_OK && rc != MT_E_DOMAIN) {
+        return mt_fail(err, rc, "factor");
+    }
+    if (*sound) { /* some motion of everything */
+        for (int j = 0; j < s->p->n; j++) {
+            s->x[j] = (1.0 + fmod(GOLDEN * (j + 1), 1.0)) * s->p->unit[j];
+        }
+        metric(s, s->x, s->f);
+        MT_TRY(solve(s, s->f, SOLVED, s->x, err));
+        *sound = s->sound;
+    }
+    return MT_OK;
 }
 
 /* Constraints in units of the largest stiffness: gamma[rows of A]. */
@@ -444,17 +462,11 @@ static mt_status hold(sparse *s, bool *held, char *why, mt_err *err)
         return MT_OK;
     }
     MT_TRY(factor(s, 0.0, held, err));
-    if (*held && s->held.least > FIRM) {
-        return MT_OK;
-    }
-    bool positive = false;
-    for (int i = 0; i < SHIFTS && !positive && shift > 0.0; i++) {
-        MT_TRY(factor(s, shift, &positive, err));
-        positive = positive && s->held.least > REGULAR;
+    for (int i = 0; i < SHIFTS && !*held && shift > 0.0; i++) {
+        MT_TRY(factor(s, shift, held, err));
         shift *= 100.0;
     }
-    *held = positive;
-    if (!positive) {
+    if (!*held) {
         (void)mt_snprintf(why, MT_SPARSE_WHY,
                           "a motion without stiffness has no mass, or it is not stable");
     }
@@ -485,14 +497,15 @@ static mt_status find(sparse *s, mt_arena *mem, mt_lowest_modes *out, bool *stab
         MT_TRY(mt_modal_lowest(&problem, mem, out, err));
         const double first = first_lambda(&out->modes);
         *stable = first >= 0.0;
-        if (round == ROUNDS || !(first > 0.0 && s->shift > MOST_SHIFT * first)) {
+        const bool apart = s->shift > MOST_SHIFT * first || MOST_SHIFT * s->shift < first;
+        if (round == ROUNDS || s->shift == 0.0 || !(first > 0.0 && apart)) {
             return MT_OK;
         }
         const double was = s->shift;
-        bool positive = false;
-        MT_TRY(factor(s, first, &positive, err));
-        if (!positive || s->held.least < REGULAR) {
-            return factor(s, was, &positive, err);
+        bool sound = false;
+        MT_TRY(factor(s, first, &sound, err));
+        if (!sound) {
+            return factor(s, was, &sound, err);
         }
         mt_arena_rewind(mem, mark);
     }
