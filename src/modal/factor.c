@@ -34,10 +34,11 @@ typedef struct graded {
     double *d;   /* [rows] sqrt(c) times the row's length, over that in ct */
     mt_qr qr;    /* of ct; of L where elimination takes over */
     double kept; /* smallest diagonal entry of R that counts, of the largest */
-    double most; /* max D where E of singular_values counts; else 0 */
-    double *f;   /* rows x rank: D P R^T */
-    double *s;   /* [rank] descending */
-    double *v;   /* rank x rank */
+    double most; /* max D */
+    bool eliminated;
+    double *f; /* rows x rank: D P R^T */
+    double *s; /* [rank] descending */
+    double *v; /* rank x rank */
     mt_interrupt *interrupt;
 } graded;
 
@@ -193,8 +194,8 @@ static mt_status singular_values(graded *g, mt_arena *scratch, mt_err *err)
     for (int j = 0; j < g->rows; j++) {
         g->most = fmax(g->most, g->d[j]);
     }
-    if (is_graded(g, g->most)) {
-        g->most = 0.0;
+    g->eliminated = is_graded(g, g->most);
+    if (g->eliminated) {
         mt_graded e = {.n = g->n,
                        .rows = g->rows,
                        .rank = r,
@@ -214,7 +215,6 @@ static mt_status singular_values(graded *g, mt_arena *scratch, mt_err *err)
             g->f[row + (ptrdiff_t)i * g->rows] = g->d[row] * g->qr.qr[i + (ptrdiff_t)j * g->n];
         }
     }
-    g->most = g->rows > r ? g->most : 0.0;
     return mt_svd_jacobi(g->rows, r, g->f, g->s, g->v, scratch, err);
 }
 
@@ -244,6 +244,65 @@ static mt_status vectors(const graded *g, const mt_mass_factor *mass, mt_arena *
     return MT_OK;
 }
 
+/*
+ * What eps in every entry of B makes of the eigenvalues, in eps of the one that has most of it:
+ *     sum_j 2 c_j |b_j . y| |b_j| . |y| / lambda.
+ * As many springs as freedoms have no more of it than 1 / kept; elimination has it of all.
+ */
+static mt_status find_entry_condition(const mt_stiffness_factor *b, const mt_modes *modes,
+                                      int first, mt_arena *scratch, double *most, mt_err *err)
+{
+    const int n = modes->n;
+    const int columns = n - first;
+    const size_t rows = (size_t)b->rows;
+    const double *const y = mt_modal_shape(modes, first);
+    double *const abs_b = mt_arena_f64(scratch, rows, (size_t)n);
+    double *const abs_y = mt_arena_f64(scratch, (size_t)n, (size_t)columns);
+    double *const moved = mt_arena_f64(scratch, rows, (size_t)columns);
+    double *const terms = mt_arena_f64(scratch, rows, (size_t)columns);
+    MT_TRY(mt_arena_check(scratch, err));
+    for (size_t i = 0; i < rows * (size_t)n; i++) {
+        abs_b[i] = fabs(b->b[i]);
+    }
+    for (size_t i = 0; i < (size_t)n * (size_t)columns; i++) {
+        abs_y[i] = fabs(y[i]);
+    }
+    mt_gemm(false, false, b->rows, columns, n, 1.0, b->b, b->rows, y, n, 0.0, moved, b->rows);
+    mt_gemm(false, false, b->rows, columns, n, 1.0, abs_b, b->rows, abs_y, n, 0.0, terms,
+            b->rows);
+    for (int i = 0; i < columns; i++) {
+        double sum = 0.0;
+        for (size_t j = 0; j < rows; j++) {
+            const size_t at = j + ((size_t)i * rows);
+            sum += 2.0 * b->c[j] * fabs(moved[at]) * terms[at];
+        }
+        *most = fmax(*most, sum / modes->lambda[first + i]);
+    }
+    return MT_OK;
+}
+
+/* The relative error that rows beside those that hold each mode leave. */
+static mt_status find_error_beside(const graded *g, const mt_stiffness_factor *b,
+                                   const mt_modes *modes, mt_arena *scratch, double *beside,
+                                   mt_err *err)
+{
+    const int r = g->qr.rank;
+    *beside = 0.0;
+    if (r == 0 || g->rows == r) {
+        return MT_OK;
+    }
+    if (!g->eliminated) {
+        *beside = 2.0 * g->most / g->s[r - 1] * fmax(g->tol, mt_modal_relative(g->n));
+        return MT_OK;
+    }
+    double most = 0.0;
+    if (modes->y != NULL) {
+        MT_TRY(find_entry_condition(b, modes, g->n - r, scratch, &most, err));
+    }
+    *beside = MT_MODAL_NOISE_ULPS * DBL_EPSILON * most;
+    return MT_OK;
+}
+
 mt_status mt_modal_by_factor(const mt_stiffness_factor *factor, const mt_mass_factor *mass,
                              mt_arena *scratch, mt_modes *out, int *null_count, mt_err *err)
 {
@@ -264,8 +323,9 @@ mt_status mt_modal_by_factor(const mt_stiffness_factor *factor, const mt_mass_fa
     }
     out->from_factor = true;
     out->error_bound = 0.0;
-    const double beside = r > 0 && g.most > 0.0 ? 2.0 * g.most / g.s[r - 1] : 0.0;
+    double beside = 0.0;
+    MT_TRY(find_error_beside(&g, factor, out, scratch, &beside, err));
     out->error_relative =
-        fmax(g.tol, mt_modal_relative(g.n)) * (mass->condition + (1.0 / g.kept) + beside);
+        (fmax(g.tol, mt_modal_relative(g.n)) * (mass->condition + (1.0 / g.kept))) + beside;
     return MT_OK;
 }
