@@ -208,6 +208,10 @@ static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int
     mt_case c;
     *again = false;
     mt_case held = *j->c;
+    if (options.max_evals > 0) {
+        options.max_evals -= s->evals < options.max_evals ? s->evals : options.max_evals - 1;
+        held.search.max_evaluations = options.max_evals;
+    }
     if (s->corners.n > 0) {
         MT_TRY(mt_robust_add_cuts(j->c, &s->corners, &s->mem, &held.robust, why));
     }
@@ -434,7 +438,11 @@ mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, mt_arena *m
              .options = mt_nlp_options_default()};
     j.options.seed = c->search.seed;
     j.options.starts = c->search.starts > 0 ? c->search.starts : STARTS_PER_CANDIDATE + p->n;
-    j.options.max_evals = c->search.max_evaluations;
+    if (c->search.max_evaluations > 0) { /* an equal share of what the samples left */
+        const long left = c->search.max_evaluations - candidates.evals;
+        const long share = left / (candidates.n > 0 ? candidates.n : 1);
+        j.options.max_evals = share > 1 ? share : 1;
+    }
     j.options.max_solutions = SOLUTIONS_PER_CANDIDATE;
     j.options.least_change = c->aims[0].type == MT_OBJECTIVE_CHANGE;
     if (c->hint != NULL) {

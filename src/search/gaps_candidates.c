@@ -19,7 +19,12 @@
 #include "search/gaps.h"
 #include "search/proof.h"
 
-enum { SAMPLES_PER_VARIABLE = 256, SAMPLES_MOST = 4096, CANDIDATES_MOST = 256 };
+enum {
+    SAMPLES_PER_VARIABLE = 256,
+    SAMPLES_MOST = 4096,
+    CANDIDATES_MOST = 256,
+    EVALUATIONS_LEAST = 30 /* of a candidate's search, or it is not worth one */
+};
 
 typedef struct sampled {
     int *below;
@@ -167,13 +172,23 @@ static void insert_agreeing(const mt_workspace *w, sampled *list, int *n, const 
     }
 }
 
-/* The assignments of n designs spread over the bounds, at most `most` of them. */
+static int least_of(int a, long b)
+{
+    return b < a ? (int)b : a;
+}
+
+/* The assignments of n designs spread over the bounds, at most `most` of them. Where the study
+ * says how often it may be evaluated, half of that is for samples, and the other half for the
+ * searches of those nearest. */
 static mt_status sample(mt_workspace *w, int n, int most, mt_arena *mem, mt_gap_candidates *out,
                         mt_err *err)
 {
     const mt_problem *const p = w->p;
+    const long half = w->c->search.max_evaluations / 2;
     mt_nlp nlp = mt_workspace_nlp(w);
     nlp.n = p->n;
+    n = half > 0 ? least_of(n, half) : n;
+    most = half > 0 ? least_of(most, 1 + (half / EVALUATIONS_LEAST)) : most;
     sampled *const list = mt_arena_alloc(mem, CANDIDATES_MOST, sizeof *list);
     int *const below = mt_arena_int(mem, (size_t)p->n_bands);
     int *const work = mt_arena_int(mem, (size_t)p->n_bands);

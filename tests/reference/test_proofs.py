@@ -4,6 +4,7 @@ numpy; and that a proof ends where no reasonable one decides: a target and a ban
 import json
 import math
 import random
+import re
 import sys
 import unittest
 from pathlib import Path
@@ -66,14 +67,14 @@ def on_target(r):
 
 
 class Dense(CliTest):
-    def answer(self, band, status=0):
-        self.write("model.json", json.dumps(model()))
+    def answer(self, band, status=0, loaded=False, **search):
+        self.write("model.json", json.dumps(model() | ({"gravity_m_per_s2": [0, -9.81]} if loaded else {})))
         path = self.write("study.json", json.dumps({
             "format": "modetune-study/1", "model": "model.json",
             "variables": [{"parameter": name, "lower": value / WITHIN, "upper": value * WITHIN} for name, value in NOMINAL.items()],
             "goals": [{"type": "frequency", "mode": 1, "target_hz": TARGET_HZ}, {"type": "avoid", "bands_hz": [band]}],
-            "objective": {"minimise": "change"}, "search": {"starts": 4}}))
-        self.expect(status, "run", path, "-o", "out")
+            "objective": {"minimise": "change"}, "search": {"starts": 4} | search}))
+        self.said = self.expect(status, "run", path, "-o", "out").stderr
         return json.loads(Path(self.folder, "out/study/result.json").read_text())
 
     def below(self, band):
@@ -105,6 +106,12 @@ class Dense(CliTest):
                     self.assertFalse(any(band[0] * (1 + 2e-6) < f < band[1] * (1 - 2e-6) for f in hz), hz)
                     found.add(sum(f < (band[0] + band[1]) / 2 for f in hz))
             self.assertEqual(found, expected, band)
+
+    def test_samples_are_within_the_budget(self):
+        """A model under gravity has no proof; 1024 designs would be sampled."""
+        result = self.answer([11.5, 12.0], loaded=True, max_evaluations=200)
+        self.assertIn("no proof: gravity", result["certificates"][0]["text"].replace('configuration "default": ', ""))
+        self.assertLess(int(re.search(r"(\d+) evaluations", self.said).group(1)), 300)
 
     def test_a_proof_ends(self):
         result = self.answer([11.034765625, 15.0], 1)

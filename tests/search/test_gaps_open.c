@@ -10,8 +10,10 @@
     "'lower': -0.7, 'upper': 0.7}, {'parameter': 'x3', 'lower': -0.7, 'upper': 0.7}],"     \
     "'search': {'starts': 4},"
 
-/* Gap assignments of the study with so much work for the proof; 0: all it needs. */
-static void solve(mt_test *t, const char *bands, double work, mt_gap_result *out)
+/* Gap assignments of the study with so much work for the proof, and so many evaluations; 0: all
+ * that is needed. */
+static void solve(mt_test *t, const char *bands, double work, long evaluations,
+                  mt_gap_result *out)
 {
     study_case c;
     char members[1024];
@@ -26,6 +28,7 @@ static void solve(mt_test *t, const char *bands, double work, mt_gap_result *out
         CHECK_INT(t, mt_problem_new(c.study, &p, &c.err), MT_OK)) {
         mt_case few = p->whole;
         few.proof_work = work;
+        few.search.max_evaluations = evaluations;
         CHECK_INT(t, mt_workspace_new(p, &w, &c.err), MT_OK);
         CHECK_INT(t, mt_workspace_use(w, &few, &c.err), MT_OK);
         CHECK_INT(t, mt_gaps_solve(&w, 1, &mem, out, &c.err), MT_OK);
@@ -44,10 +47,10 @@ static void open_assignments__that_are_all_met_settle_the_question(mt_test *t)
     mt_gap_result all;
     mt_gap_result few;
     static const char bands[] = "[[16.2, 16.6]]";
-    solve(t, bands, 0, &all);
+    solve(t, bands, 0.0, 0, &all);
     CHECK(t, all.proven && all.n_candidates > 0);
     CHECK_INT(t, all.n_candidates, all.n_feasible);
-    solve(t, bands, 1, &few);
+    solve(t, bands, 1.0, 0, &few);
     CHECK(t, few.boxes < all.boxes && few.reason != NULL); /* the budget ended */
     CHECK(t, few.proven);
     CHECK_INT(t, few.n_candidates, few.n_feasible);
@@ -60,14 +63,27 @@ static void open_assignments__without_a_design_stay_open(mt_test *t)
     mt_gap_result all;
     mt_gap_result few;
     static const char bands[] = "[[3.87, 4.73], [7.74, 9.46], [15.48, 18.92], [30.96, 37.84]]";
-    solve(t, bands, 0, &all);
+    solve(t, bands, 0.0, 0, &all);
     CHECK(t, all.proven);
     CHECK_INT(t, all.n_candidates, all.n_feasible);
-    solve(t, bands, 2, &few);
+    solve(t, bands, 2.0, 0, &few);
     CHECK(t, few.n_candidates > few.n_feasible);
     CHECK(t, few.boxes < all.boxes && !few.proven && few.reason != NULL);
     CHECK_INT(t, few.n_feasible, all.n_feasible); /* the search finds the same kinds */
 }
 
-MT_TEST_MAIN(MT_TEST(open_assignments__that_are_all_met_settle_the_question),
+/* The budget of evaluations is one for all assignments: seven of them here. */
+static void evaluations__are_shared_by_the_assignments(mt_test *t)
+{
+    static const char bands[] = "[[3.87, 4.73], [7.74, 9.46], [15.48, 18.92], [30.96, 37.84]]";
+    for (long most = 50; most <= 400; most *= 2) {
+        mt_gap_result out;
+        mt_test_row(t, "%ld evaluations", most);
+        solve(t, bands, 0.0, most, &out);
+        CHECK(t, out.evals > 0 && out.evals <= most);
+    }
+}
+
+MT_TEST_MAIN(MT_TEST(evaluations__are_shared_by_the_assignments),
+             MT_TEST(open_assignments__that_are_all_met_settle_the_question),
              MT_TEST(open_assignments__without_a_design_stay_open))
