@@ -286,6 +286,19 @@ mt_status mt_repeated_find(mt_workspace *ws, const double *t, double near, mt_ar
     return number_rows(out, mem, err);
 }
 
+bool mt_repeated_same(const mt_repeated *a, const mt_repeated *b)
+{
+    bool same = a->n_blocks == b->n_blocks;
+    for (int k = 0; k < a->n_blocks && same; k++) {
+        const mt_repeated_block *const x = &a->blocks[k];
+        const mt_repeated_block *const y = &b->blocks[k];
+        same = x->index == y->index && x->r == y->r && x->both == y->both &&
+               x->row_most == y->row_most && x->side.row == y->side.row &&
+               alike(&x->side, &y->side);
+    }
+    return same;
+}
+
 /* The problem's own rows at its last evaluation. */
 static void own_rows(const mt_repeated *m, mt_nlp_values *out)
 {

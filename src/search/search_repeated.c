@@ -46,8 +46,6 @@ typedef struct refine {
     long evals;
     long most;
     mt_stop stop;
-    /* a design counts as better from this gain on, relative; below 0: it may lose so much */
-    double gain;
 } refine;
 
 /* Would `more` evaluations be too many? */
@@ -56,21 +54,20 @@ static bool spent(const refine *w, long more)
     return w->evals + more > w->most;
 }
 
-/* Solve nlp from t, near it; a feasible design of the study that is better than f: into t,
- * f. */
+/* Solve nlp from t, near it; a feasible design of the study: into t, f. */
 static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double *f,
-                           bool *better, mt_err *err)
+                           bool *found, mt_err *err)
 {
     mt_workspace *const ws = w->ws;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
     double *const lower = mt_arena_f64(w->mem, (size_t)ws->c->n_t, 1);
     double *const upper = mt_arena_f64(w->mem, (size_t)ws->c->n_t, 1);
     mt_nlp_options opt = mt_nlp_options_default();
-    mt_nlp_result found = {0};
+    mt_nlp_result end = {0};
     mt_nlp_values v;
     mt_err own = {0};
     const long left = w->most - w->evals - RESERVED;
-    *better = false;
+    *found = false;
     MT_TRY(mt_arena_check(w->mem, err));
     if (left <= 0) {
         return MT_OK;
@@ -86,20 +83,20 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
     opt.max_solutions = 1;
     opt.least_change = false;
     opt.max_evals = left < SOLVE_EVALUATIONS ? left : SOLVE_EVALUATIONS;
-    mt_status rc = mt_nlp_solve(nlp, &opt, w->mem, &found, &own);
-    w->evals += found.evals;
-    w->stop = found.stop == MT_STOP_USER ? MT_STOP_USER : w->stop;
-    const bool is = rc == MT_OK && found.n_solutions > 0 && !found.compromise;
+    mt_status rc = mt_nlp_solve(nlp, &opt, w->mem, &end, &own);
+    w->evals += end.evals;
+    w->stop = end.stop == MT_STOP_USER ? MT_STOP_USER : w->stop;
+    const bool is = rc == MT_OK && end.n_solutions > 0 && !end.compromise;
     rc = is ? mt_case_values_init(ws->c, w->mem, &v, &own) : rc;
-    rc = is && rc == MT_OK ? mt_workspace_eval(ws, found.solutions[0].t, false, &v, &own) : rc;
+    rc = is && rc == MT_OK ? mt_workspace_eval(ws, end.solutions[0].t, false, &v, &own) : rc;
     if (is && rc == MT_OK) {
         w->evals++;
         const mt_missed m = mt_missed_of(mt_case_rows_eq(ws->c), v.eq, ws->c->eq_tol,
                                          mt_case_rows_in(ws->c), v.in, ws->c->in_tol);
-        if (mt_is_held(m.violation) && v.f < *f - w->gain * fabs(*f)) {
-            memcpy(t, found.solutions[0].t, (size_t)ws->c->n_t * sizeof *t);
+        if (mt_is_held(m.violation)) {
+            memcpy(t, end.solutions[0].t, (size_t)ws->c->n_t * sizeof *t);
             *f = v.f;
-            *better = true;
+            *found = true;
         }
     }
     mt_arena_rewind(w->mem, mark);
@@ -107,24 +104,30 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
     return fatal ? mt_fail(err, rc, "%s", own.text) : MT_OK;
 }
 
-/* The smooth problem of the clusters near t. */
-static mt_status keep_together(refine *w, double near, double *t, double *f, bool *better,
-                               mt_err *err)
+/* Is f a gain? Then the design goes into s. */
+static bool take_better(const refine *w, const double *t, double f, mt_nlp_solution *s)
 {
-    const mt_arena_mark mark = mt_arena_get_mark(w->mem);
-    mt_repeated m;
-    *better = false;
-    if (spent(w, 1 + RESERVED)) {
+    const bool better = f < s->f - GAIN * fabs(s->f);
+    if (better) {
+        memcpy(s->t, t, (size_t)w->ws->c->n_t * sizeof *t);
+        s->f = f;
+    }
+    return better;
+}
+
+/* The smooth problem of the clusters near t, unless they are those of `before` (may be NULL),
+ * from t as well; they are told in m. */
+static mt_status keep_together(refine *w, double near, const mt_repeated *before,
+                               mt_repeated *m, double *t, double *f, bool *found, mt_err *err)
+{
+    *found = false;
+    MT_TRY(mt_repeated_find(w->ws, t, near, w->mem, m, err));
+    w->evals++;
+    if (m->n_blocks == 0 || m->n_rows == 0 || (before != NULL && mt_repeated_same(before, m))) {
         return MT_OK;
     }
-    MT_TRY(mt_repeated_find(w->ws, t, near, w->mem, &m, err));
-    w->evals++;
-    if (m.n_blocks > 0 && m.n_rows > 0) {
-        mt_nlp nlp = mt_repeated_nlp(&m);
-        MT_TRY(try_solve(w, &nlp, BOX, t, f, better, err));
-    }
-    mt_arena_rewind(w->mem, mark);
-    return MT_OK;
+    mt_nlp nlp = mt_repeated_nlp(m);
+    return try_solve(w, &nlp, BOX, t, f, found, err);
 }
 
 /* Rows of the balance of gradients: equalities, active inequalities that no block stands for,
@@ -268,62 +271,77 @@ static mt_status judge(refine *w, const double *t, double *kkt, double *z, mt_nl
     return MT_OK;
 }
 
-/* A step down along -z, and the search from there. */
-static mt_status step_down(refine *w, const double *z, double *t, double *f, bool *better,
+/* A step down along -z, and the search from there: a better design into s. */
+static mt_status step_down(refine *w, const double *z, mt_nlp_solution *s, bool *better,
                            mt_err *err)
 {
     mt_workspace *const ws = w->ws;
     double *const from = mt_arena_f64(w->mem, (size_t)ws->c->n_t, 1);
-    double size = 0.0;
+    const double size = mt_max_abs(ws->c->n_t, z);
     *better = false;
     MT_TRY(mt_arena_check(w->mem, err));
-    for (int j = 0; j < ws->c->n_t; j++) {
-        size = fmax(size, fabs(z[j]));
-    }
     double step = STEP;
     for (int k = 0; k < STEPS && !*better && size > 0.0 && w->stop == MT_STOP_DONE; k++) {
         for (int j = 0; j < ws->c->n_t; j++) {
-            const double to = t[j] - (step * z[j] / size);
+            const double to = s->t[j] - (step * z[j] / size);
             from[j] = fmin(fmax(to, ws->c->lower_t[j]), ws->c->upper_t[j]);
         }
         mt_nlp nlp = mt_workspace_nlp(ws);
         nlp.hint = NULL;
-        MT_TRY(try_solve(w, &nlp, HUGE_VAL, from, f, better, err));
+        double f = s->f;
+        bool found = false;
+        MT_TRY(try_solve(w, &nlp, HUGE_VAL, from, &f, &found, err));
+        *better = found && take_better(w, from, f, s);
         step *= SHORTER;
-    }
-    if (*better) {
-        memcpy(t, from, (size_t)ws->c->n_t * sizeof *t);
     }
     return MT_OK;
 }
 
-/* Where nothing is to be gained any more: the same design exactly, if that is nearer to a
- * stationary one. */
-static mt_status settle(refine *w, double near, double *kkt, double *z, mt_nlp_solution *s,
-                        mt_err *err)
+/* The same design exactly, if that is nearer to a stationary one: into s, kkt, z. */
+static mt_status settle(refine *w, const double *t, double f, double *kkt, double *z,
+                        mt_nlp_solution *s, mt_err *err)
 {
     const size_t n = (size_t)w->ws->c->n_t;
-    double *const t = mt_arena_f64(w->mem, n, 1);
     double *const z_after = mt_arena_f64(w->mem, n, 1);
-    double f = s->f;
     double after = *kkt;
-    bool found = false;
     MT_TRY(mt_arena_check(w->mem, err));
-    memcpy(t, s->t, n * sizeof *t);
-    w->gain = -TOLERANCES_BUY;
-    const mt_status rc = keep_together(w, near, t, &f, &found, err);
-    w->gain = GAIN;
-    MT_TRY(rc);
-    found = found && !spent(w, RESERVED);
-    if (found) {
-        MT_TRY(judge(w, t, &after, z_after, NULL, err));
-    }
-    if (found && after < *kkt) {
+    MT_TRY(judge(w, t, &after, z_after, NULL, err));
+    if (after < *kkt) {
         memcpy(s->t, t, n * sizeof *t);
         memcpy(z, z_after, n * sizeof *z);
         s->f = f;
         *kkt = after;
     }
+    return MT_OK;
+}
+
+/* The clusters near s kept together, the widest first and none twice, until that is better.
+ * Where none is, the local optimum is settled before a step could leave it for another. */
+static mt_status hold_clusters(refine *w, double *kkt, double *z, mt_nlp_solution *s,
+                               bool *better, mt_err *err)
+{
+    const size_t n = (size_t)w->ws->c->n_t;
+    const mt_arena_mark mark = mt_arena_get_mark(w->mem);
+    double *const t = mt_arena_f64(w->mem, n, MT_COUNT(NEAR));
+    double f[MT_COUNT(NEAR)] = {0};
+    bool found[MT_COUNT(NEAR)] = {false};
+    mt_repeated m[MT_COUNT(NEAR)];
+    const double f_from = s->f;
+    *better = false;
+    MT_TRY(mt_arena_check(w->mem, err));
+    for (int k = 0; k < MT_COUNT(NEAR) && !*better && !spent(w, 1 + RESERVED); k++) {
+        double *const at = t + ((size_t)k * n);
+        memcpy(at, s->t, n * sizeof *at);
+        MT_TRY(keep_together(w, NEAR[k], k > 0 ? &m[k - 1] : NULL, &m[k], at, &f[k], &found[k],
+                             err));
+        *better = found[k] && take_better(w, at, f[k], s);
+    }
+    for (int k = 0; k < MT_COUNT(NEAR) && !*better && *kkt > STATIONARY; k++) {
+        if (found[k] && f[k] < f_from + TOLERANCES_BUY * fabs(f_from) && !spent(w, RESERVED)) {
+            MT_TRY(settle(w, t + ((size_t)k * n), f[k], kkt, z, s, err));
+        }
+    }
+    mt_arena_rewind(w->mem, mark);
     return MT_OK;
 }
 
@@ -344,15 +362,9 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
         if (kkt <= STATIONARY) {
             break;
         }
-        for (int k = 0; k < MT_COUNT(NEAR) && !better; k++) {
-            MT_TRY(keep_together(w, NEAR[k], s->t, &s->f, &better, err));
-        }
-        /* a local optimum is settled before a step could leave it for another */
-        for (int k = 0; k < MT_COUNT(NEAR) && !better && kkt > STATIONARY; k++) {
-            MT_TRY(settle(w, NEAR[k], &kkt, z, s, err));
-        }
+        MT_TRY(hold_clusters(w, &kkt, z, s, &better, err));
         if (!better && kkt > STATIONARY) {
-            MT_TRY(step_down(w, z, s->t, &s->f, &better, err));
+            MT_TRY(step_down(w, z, s, &better, err));
         }
         if (!better) {
             break;
@@ -405,7 +417,7 @@ static void rank(const mt_workspace *ws, mt_nlp_result *out)
 mt_status mt_search_repeated(mt_workspace *ws, long most, mt_arena *mem, mt_nlp_result *out,
                              mt_err *err)
 {
-    refine w = {.ws = ws, .mem = mem, .evals = out->evals, .stop = MT_STOP_DONE, .gain = GAIN};
+    refine w = {.ws = ws, .mem = mem, .evals = out->evals, .stop = MT_STOP_DONE};
     bool any = false;
     const bool smooth = out->compromise || out->stop == MT_STOP_USER ||
                         mt_objective_is(ws->c->aims[ws->c->stage].type, MT_RESIDUALS);
