@@ -125,23 +125,20 @@ static mt_status solve_sparse(mt_lowest *l, mt_lowest_want want, mt_err *err)
     const size_t told = strlen(l->why);
     char why[(int)MT_ABSOLUTE_WHY + (int)MT_SPARSE_WHY] = "";
     mt_err own = {.code = MT_OK};
-    mt_absolute o = {.n = 0};
+    mt_absolute *const o = &l->bodies;
     bool is = false;
-    if (want.shapes) {
-        (void)mt_snprintf(why, sizeof why, "that has no shapes and slopes");
-    } else {
-        MT_TRY(mt_absolute_new(l->sys, l->at, &l->mem, &o, &is, why, err));
-    }
+    MT_TRY(mt_absolute_new(l->sys, l->at, &l->mem, o, &is, why, err));
     if (is) {
-        const mt_sparse_problem p = {.n = o.n,
-                                     .k = o.k,
-                                     .m = o.m,
-                                     .a = o.a,
-                                     .unit = o.unit,
+        const mt_sparse_problem p = {.n = o->n,
+                                     .k = o->k,
+                                     .m = o->m,
+                                     .a = o->a,
+                                     .unit = o->unit,
                                      .count = want.count,
+                                     .shapes = want.shapes,
                                      .check = go_on,
                                      .context = l->sys};
-        const mt_status rc = mt_modal_sparse(&p, &l->mem, &l->found, &is, why, &own);
+        const mt_status rc = mt_modal_sparse(&p, &l->mem, &l->found, &l->mu, &is, why, &own);
         if (rc != MT_OK && rc != MT_E_NO_CONVERGENCE) {
             return mt_fail(err, rc, "%s", own.text);
         }
@@ -149,7 +146,7 @@ static mt_status solve_sparse(mt_lowest *l, mt_lowest_want want, mt_err *err)
     }
     if (is) {
         l->way = MT_LOWEST_SPARSE;
-        l->mass_kg = o.mass_kg;
+        l->mass_kg = o->mass_kg;
         l->equations = l->sys->n_constraints;
         return MT_OK;
     }
@@ -235,10 +232,17 @@ mt_status mt_lowest_shapes(mt_lowest *l, int n, double *phi, mt_err *err)
     const int nq = l->sys->nq;
     const mt_arena_mark mark = mt_arena_get_mark(&l->mem);
     motions m;
-    MT_TRY(make_room(l, 1, &m, &l->mem, err));
+    if (l->way == MT_LOWEST_TREE) {
+        MT_TRY(make_room(l, 1, &m, &l->mem, err));
+    }
     for (int i = 0; i < n; i++) {
-        MT_TRY(move(l, i, 0, &m, err));
-        mt_tree_states(l->tree, m.v, phi + ((ptrdiff_t)nq * i));
+        double *const to = phi + ((ptrdiff_t)nq * i);
+        if (l->way == MT_LOWEST_TREE) {
+            MT_TRY(move(l, i, 0, &m, err));
+            mt_tree_states(l->tree, m.v, to);
+        } else {
+            mt_absolute_shape(&l->bodies, l->found.x + ((ptrdiff_t)l->bodies.n * i), to);
+        }
     }
     mt_modal_fix_sign(nq, n, phi);
     mt_arena_rewind(&l->mem, mark);
@@ -251,7 +255,7 @@ mt_status mt_lowest_sense(mt_lowest *l, int n, double *value, mt_err *err)
     double *const phi = mt_arena_f64(&l->mem, (size_t)l->sys->nq, (size_t)n);
     MT_TRY(mt_arena_check(&l->mem, err));
     MT_TRY(mt_lowest_shapes(l, n, phi, err));
-    MT_TRY(mt_tree_sense(l->tree, l->at, n, phi, value, &l->mem, err));
+    MT_TRY(mt_drawn_sense(l->sys, l->at, n, phi, value, &l->mem, err));
     mt_arena_rewind(&l->mem, mark);
     return MT_OK;
 }
@@ -328,27 +332,50 @@ static mt_status fill_slopes(const mt_lowest *l, const pairs *p, const double *f
     return MT_OK;
 }
 
+/* Forms of the pairs by every input. */
+static mt_status forms_of_tree(const mt_lowest *l, const pairs *p, double *form, char *why,
+                               mt_arena *mem, mt_err *err)
+{
+    motions m;
+    MT_TRY(make_room(l, p->n, &m, mem, err));
+    for (int i = 0; i < p->n; i++) {
+        MT_TRY(move(l, l->tree->n_rigid + i, i, &m, err));
+    }
+    const mt_tree_modes modes = {.n = p->n,
+                                 .x = m.x,
+                                 .r = m.r,
+                                 .v = m.v,
+                                 .lambda = p->lambda,
+                                 .n_pairs = p->count,
+                                 .pair = (const int(*)[2])p->pair};
+    return mt_tree_slopes(l->tree, l->at, &modes, form, why, mem, err);
+}
+
+static mt_status forms_of_bodies(const mt_lowest *l, const pairs *p, double *form, char *why,
+                                 mt_arena *mem, mt_err *err)
+{
+    const mt_absolute *const o = &l->bodies;
+    const ptrdiff_t rigid = l->found.modes.n_rigid;
+    const mt_absolute_modes modes = {.n = p->n,
+                                     .x = l->found.x + (rigid * o->n),
+                                     .mu = l->mu + (rigid * o->a.n_rows),
+                                     .lambda = p->lambda,
+                                     .n_pairs = p->count,
+                                     .pair = (const int(*)[2])p->pair,
+                                     .dependent = o->n - o->a.n_rows < l->found.modes.n};
+    return mt_absolute_slopes(o, l->at, &modes, form, why, mem, err);
+}
+
 mt_status mt_lowest_sensitivity(mt_lowest *l, int n, double *hz_per_unit, char why[MT_TREE_WHY],
                                 mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(&l->mem);
     pairs p = {.n = 0};
-    motions m;
     MT_TRY(find_pairs(l, n, &p, &l->mem, err));
-    MT_TRY(make_room(l, p.n, &m, &l->mem, err));
-    for (int i = 0; i < p.n; i++) {
-        MT_TRY(move(l, l->tree->n_rigid + i, i, &m, err));
-    }
-    const mt_tree_modes modes = {.n = p.n,
-                                 .x = m.x,
-                                 .r = m.r,
-                                 .v = m.v,
-                                 .lambda = p.lambda,
-                                 .n_pairs = p.count,
-                                 .pair = (const int(*)[2])p.pair};
     double *const form = mt_arena_f64(&l->mem, (size_t)p.count, (size_t)l->sys->n_inputs);
     MT_TRY(mt_arena_check(&l->mem, err));
-    MT_TRY(mt_tree_slopes(l->tree, l->at, &modes, form, why, &l->mem, err));
+    MT_TRY((l->way == MT_LOWEST_TREE ? forms_of_tree : forms_of_bodies)(l, &p, form, why,
+                                                                        &l->mem, err));
     if (why[0] == '\0') {
         MT_TRY(fill_slopes(l, &p, form, n, hz_per_unit, &l->mem, err));
     }

@@ -12,7 +12,7 @@ enum { MT_LOWEST_WHY = MT_TREE_WHY + MT_ABSOLUTE_WHY + 100 };
 
 typedef struct mt_lowest_want {
     int count;   /* vibration modes, at least 1 */
-    bool shapes; /* or slopes of them, which trees alone have */
+    bool shapes; /* or slopes of them */
 } mt_lowest_want;
 
 /*
@@ -25,6 +25,8 @@ typedef struct mt_lowest {
     mt_system *sys; /* owned */
     mt_lowest_way way;
     mt_tree *tree;           /* NULL: the configuration is no such tree */
+    mt_absolute bodies;      /* of the sparse way */
+    double *mu;              /* of that, forces of its constraints: mt_modal_sparse */
     char why[MT_LOWEST_WHY]; /* why there is no way */
     double mass_kg;
     int equations; /* of joints, of which some may follow from others; 0: of a tree */
@@ -49,8 +51,8 @@ double mt_lowest_bodies(const mt_model *model, int configuration);
 mt_status mt_lowest_new(const mt_model *model, int configuration, int n_inputs,
                         const int *inputs, const double *at, mt_lowest_want want,
                         mt_lowest **out, mt_err *err);
-/* Of trees alone, as what follows: shapes of the first n positions over all states (nq of the
- * system), of unit mass, sign by mt_modal_fix_sign: phi nq x n, zeroed. Fails:
+/* Where shapes were wanted, as what follows: those of the first n positions over all states (nq
+ * of the system), of unit mass, sign by mt_modal_fix_sign: phi nq x n, zeroed. Fails:
  * MT_E_INTERRUPTED, MT_E_MEMORY. */
 mt_status mt_lowest_shapes(mt_lowest *l, int n, double *phi, mt_err *err);
 /* The same at its channels: value n_channels x n. */
@@ -58,8 +60,9 @@ mt_status mt_lowest_sense(mt_lowest *l, int n, double *value, mt_err *err);
 /**
  * How far every input moves the frequencies of the first n vibration modes.
  * @param[out] hz_per_unit  n x n_inputs; of repeated modes as mt_analysis_sensitivity gives
- * @param[out] why          "", or why there are none, as mt_tree_slopes says
- * Fails: as mt_tree_slopes, MT_E_MEMORY.
+ * @param[out] why          "", or why there are none, as mt_tree_slopes and
+ *   mt_absolute_slopes say
+ * Fails: as these.
  */
 mt_status mt_lowest_sensitivity(mt_lowest *l, int n, double *hz_per_unit, char why[MT_TREE_WHY],
                                 mt_err *err);

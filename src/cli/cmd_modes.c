@@ -87,10 +87,7 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
     mt_json_put_doubts(w, "doubts", &v->doubts, MT_LEVEL_DOUBT);
     mt_json_put_doubts(w, "facts", &v->doubts, MT_LEVEL_FACT);
-    mt_json_put_string(w, "method",
-                       v->l == NULL                  ? "dense"
-                       : v->l->way == MT_LOWEST_TREE ? "tree"
-                                                     : "sparse");
+    mt_json_put_string(w, "method", mt_cli_method(v->l == NULL ? MT_LOWEST_NONE : v->l->way));
     if (v->l == NULL) {
         mt_json_put_null(w, "complete_below_hz"); /* all modes are there */
     } else {

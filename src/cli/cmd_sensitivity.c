@@ -42,7 +42,7 @@ static void write_json(mt_json_writer *w, const mt_survey *v)
 {
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
-    mt_json_put_string(w, "method", v->tree > 0 ? "tree" : "dense");
+    mt_json_put_string(w, "method", mt_cli_method(v->way));
     mt_json_open(w, "modes", '[');
     for (int i = 0; i < v->modes; i++) {
         mt_json_open(w, NULL, '{');
@@ -146,8 +146,10 @@ static void write_text(mt_text *out, const mt_survey *v)
                     "  Parameters with a value of this configuration's own have no influence "
                     "here.\n");
     }
-    if (v->tree > 0) {
-        mt_text_addf(out, "  The lowest modes of a tree of %d bodies (sparse).\n", v->tree);
+    if (v->way != MT_LOWEST_NONE) {
+        mt_text_addf(out, "  The lowest modes of %s of %d bodies (%s).\n",
+                     v->way == MT_LOWEST_TREE ? "a tree" : "a mechanism", v->bodies,
+                     v->way == MT_LOWEST_TREE ? "joint coordinates" : "sparse factor");
     }
     if (v->unstable > 0) {
         mt_text_add(out, "  UNSTABLE: this position does not hold.\n");

@@ -25,7 +25,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
         MT_OPT_COUNT, '\0', "count", "N",
         BIT(MT_CMD_MODES) | BIT(MT_CMD_MAC) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY),
         "only the first N vibration modes; of large mechanisms that are trees, or that nothing "
-        "loads, `modes` finds them without the others"),
+        "loads, `modes` and `sensitivity` find them without the others"),
     OPTION(MT_OPT_SHAPES, '\0', "shapes", NULL, BIT(MT_CMD_MODES),
            "mode shapes at the sensors, or of the bodies where there are none"),
     OPTION(

@@ -239,3 +239,10 @@ int mt_modes_shown(const mt_modes *modes, int count)
     }
     return modes->count;
 }
+
+const char *mt_cli_method(mt_lowest_way way)
+{
+    static const char *const names[] = {
+        [MT_LOWEST_NONE] = "dense", [MT_LOWEST_TREE] = "tree", [MT_LOWEST_SPARSE] = "sparse"};
+    return names[way];
+}

@@ -38,6 +38,8 @@ mt_status mt_subject_analyse(const mt_subject *s, int c, mt_analysis **out, mt_e
 mt_status mt_subject_lowest(const mt_subject *s, int c, int n_inputs, const int *inputs,
                             const double *at, mt_lowest_want want, mt_lowest **out,
                             mt_err *err);
+/* "dense", "tree", "sparse": what JSON calls the way of an answer. */
+const char *mt_cli_method(mt_lowest_way way);
 /* MT_E_USAGE where configuration c is too large for dense matrices, led by why there is no
  * other way. */
 mt_status mt_subject_admit_dense(const mt_subject *s, int c, const char *why, mt_err *err);

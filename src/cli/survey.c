@@ -176,7 +176,8 @@ static mt_status answer_by_lowest(mt_survey *v, const question *q, bool *done, m
     }
     rc = rc == MT_OK ? mt_lowest_sensitivity(l, v->modes, slope, why, err) : rc;
     *done = why[0] == '\0';
-    v->tree = *done ? l->tree->n : 0;
+    v->way = *done ? l->way : MT_LOWEST_NONE;
+    v->bodies = l->sys->n_bodies;
     for (int i = 0; rc == MT_OK && *done && i < q->n; i++) {
         memcpy(v->per_unit + ((ptrdiff_t)q->entry[i] * v->room),
                slope + ((ptrdiff_t)q->slot[i] * v->modes), (size_t)v->modes * sizeof *slope);

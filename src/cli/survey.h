@@ -14,17 +14,18 @@ typedef struct mt_survey {
     const mt_subject *s;
     int c;
     mt_arena mem;
-    int tree;       /* bodies, where the lowest modes of a tree were looked for alone; else 0 */
-    int n;          /* parameters */
-    int *parameter; /* [n] */
-    double *value;  /* [n] in this configuration */
-    bool *overridden; /* [n] by the configuration: no influence there */
-    int modes;        /* vibration modes looked at */
-    int unstable;     /* of the configuration */
-    int *position;    /* [modes] */
-    double *hz;       /* [modes] */
-    bool *repeated;   /* [modes] */
-    int room;         /* leading dimension of per_unit */
+    mt_lowest_way way; /* NONE: by all modes */
+    int bodies;        /* else */
+    int n;             /* parameters */
+    int *parameter;    /* [n] */
+    double *value;     /* [n] in this configuration */
+    bool *overridden;  /* [n] by the configuration: no influence there */
+    int modes;         /* vibration modes looked at */
+    int unstable;      /* of the configuration */
+    int *position;     /* [modes] */
+    double *hz;        /* [modes] */
+    bool *repeated;    /* [modes] */
+    int room;          /* leading dimension of per_unit */
     /* room x n: Hz per unit of the parameter; NaN where it has no derivative */
     double *per_unit;
     mt_independence *independence; /* [n] why not */

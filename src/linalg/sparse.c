@@ -60,3 +60,30 @@ void mt_rows_pair(const mt_rows *s, int a, int b, double c, int n, double *out)
     lower_product(s, a, b, 0.5 * c, n, out);
     lower_product(s, b, a, 0.5 * c, n, out);
 }
+
+void mt_rows_transpose(const mt_rows *a, int n, mt_arena *mem, mt_rows *out)
+{
+    const int size = a->n_rows > 0 ? a->start[a->n_rows] : 0;
+    mt_rows_begin(out, n, (size_t)size, mem);
+    if (mt_arena_failed(mem)) {
+        return;
+    }
+    for (int i = 0; i < size; i++) {
+        out->start[a->index[i] + 1]++;
+    }
+    for (int j = 0; j < n; j++) {
+        out->start[j + 1] += out->start[j];
+    }
+    for (int r = a->n_rows - 1; r >= 0; r--) { /* fills from the ends, so rows ascend */
+        for (int i = a->start[r]; i < a->start[r + 1]; i++) {
+            const int at = --out->start[a->index[i] + 1];
+            out->index[at] = r;
+            out->value[at] = a->value[i];
+        }
+    }
+    /* the ends have become starts, one place too far */
+    for (int j = 0; j < n; j++) {
+        out->start[j] = out->start[j + 1];
+    }
+    out->start[n] = size;
+}

@@ -62,6 +62,8 @@ static inline void mt_rows_axpy(const mt_rows *s, int row, double alpha, double 
     }
 }
 
+/* The n columns of a as rows. A failure is the arena's. */
+void mt_rows_transpose(const mt_rows *a, int n, mt_arena *mem, mt_rows *out);
 /* The columns of a dense matrix, n x count, as so many rows. A failure is the arena's. */
 void mt_rows_of_columns(int n, int count, const double *dense, mt_arena *mem, mt_rows *out);
 /* out (n x n, lower triangle) += c a a^T of row a. */

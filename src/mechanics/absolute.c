@@ -19,10 +19,11 @@ enum { MOST_ROWS = 16 };
 typedef struct groups {
     const mt_system *sys;
     const mt_placement *at;
-    int *with;  /* [bodies] body that it moves with, itself, or MT_GROUND */
-    int *body;  /* [nq] of a state */
-    int *which; /* [nq] 0 .. 5 */
-    int *place; /* [nq] coordinate of a state; -1: it moves with another body's */
+    double *arm; /* 3 x bodies */
+    int *with;   /* [bodies] as of mt_absolute */
+    int *body;   /* [nq] of a state */
+    int *which;  /* [nq] 0 .. 5 */
+    int *place;  /* [nq] */
     int n;
 } groups;
 
@@ -42,15 +43,16 @@ static bool turns(const mt_system *sys, int b)
     return b == MT_GROUND || sys->bodies[b].dof[5] >= 0;
 }
 
-static mt_status group(groups *g, mt_arena *mem, mt_err *err)
+static mt_status group(groups *g, mt_arena *mem, mt_arena *scratch, mt_err *err)
 {
     const mt_system *const sys = g->sys;
     const size_t nq = (size_t)sys->nq;
     g->with = mt_arena_int(mem, (size_t)sys->n_bodies);
-    g->body = mt_arena_int(mem, nq);
-    g->which = mt_arena_int(mem, nq);
     g->place = mt_arena_int(mem, nq);
+    g->body = mt_arena_int(scratch, nq);
+    g->which = mt_arena_int(scratch, nq);
     MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(mt_arena_check(scratch, err));
     for (int b = 0; b < sys->n_bodies; b++) {
         g->with[b] = b;
     }
@@ -78,6 +80,20 @@ static mt_status group(groups *g, mt_arena *mem, mt_err *err)
             }
         }
         g->with[b] = first;
+    }
+    return MT_OK;
+}
+
+/* To each body from the one that it moves with. */
+static mt_status measure_arms(groups *g, mt_arena *mem, mt_err *err)
+{
+    g->arm = mt_arena_f64(mem, 3, (size_t)g->sys->n_bodies);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int b = 0; b < g->sys->n_bodies; b++) {
+        for (int k = 0; k < 3 && g->with[b] != MT_GROUND; k++) {
+            g->arm[(3 * b) + k] =
+                creal(g->at->pose[b].x[k]) - creal(g->at->pose[g->with[b]].x[k]);
+        }
     }
     return MT_OK;
 }
@@ -111,22 +127,19 @@ static void add_motion(const groups *g, int dof, double value, mt_sparse_row *ro
     const int *const to = g->sys->bodies[first].dof;
     add_entry(g, to[k], value, row);
     if (k < 3 && first != b) {
+        const double *const r = g->arm + ((ptrdiff_t)3 * b);
         const int next = (k + 1) % 3;
         const int last = (k + 2) % 3;
-        double r[3];
-        for (int c = 0; c < 3; c++) {
-            r[c] = creal(g->at->pose[b].x[c]) - creal(g->at->pose[first].x[c]);
-        }
         add_entry(g, to[3 + next], value * r[last], row);
         add_entry(g, to[3 + last], -value * r[next], row);
     }
 }
 
-static bool together(const groups *g, const int *body, int n)
+bool mt_absolute_together(const mt_absolute *o, const int *body, int n)
 {
-    const int first = body[0] == MT_GROUND ? MT_GROUND : g->with[body[0]];
+    const int first = body[0] == MT_GROUND ? MT_GROUND : o->with[body[0]];
     for (int i = 1; i < n; i++) {
-        if ((body[i] == MT_GROUND ? MT_GROUND : g->with[body[i]]) != first) {
+        if ((body[i] == MT_GROUND ? MT_GROUND : o->with[body[i]]) != first) {
             return false;
         }
     }
@@ -159,9 +172,9 @@ static void push_term(const groups *g, const mt_term *t, const mt_cx *x, const m
 }
 
 /* c (x y^T + y x^T)/2 = c/4 ((x + y)(x + y)^T - (x - y)(x - y)^T). */
-static mt_status squares_of(const mt_data *d, const groups *g, mt_term_kind kind,
-                            const mt_term_list *list, mt_arena *mem, mt_squares *out,
-                            mt_err *err)
+static mt_status squares_of(const mt_data *d, const mt_absolute *o, const groups *g,
+                            mt_term_kind kind, const mt_term_list *list, mt_arena *mem,
+                            mt_squares *out, mt_err *err)
 {
     mt_cx rows[MOST_ROWS * MT_LOCAL];
     double *const c = mt_arena_f64(mem, (size_t)list->n_rows, 1);
@@ -171,7 +184,7 @@ static mt_status squares_of(const mt_data *d, const groups *g, mt_term_kind kind
     for (int i = 0; i < list->n_terms; i++) {
         const mt_term *const t = &list->terms[i];
         /* a spring between bodies that move together has no strain but rounding */
-        const bool inner = kind == MT_TERM_STIFFNESS && together(g, t->body, 2);
+        const bool inner = kind == MT_TERM_STIFFNESS && mt_absolute_together(o, t->body, 2);
         const double value = inner ? 0.0 : d->value[t->coefficient];
         if (t->count > MOST_ROWS) {
             return mt_fail(err, MT_E_INTERNAL, "a term of %d rows", t->count);
@@ -188,20 +201,19 @@ static mt_status squares_of(const mt_data *d, const groups *g, mt_term_kind kind
     return MT_OK;
 }
 
-/* Does constraint i hold bodies that move together? */
-static bool holds_already(const groups *g, int i)
+bool mt_absolute_holds_already(const mt_absolute *o, int i)
 {
-    const mt_constraint_def *const c = &g->sys->constraints[i];
+    const mt_constraint_def *const c = &o->sys->constraints[i];
     int body[4] = {MT_GROUND, MT_GROUND, MT_GROUND, MT_GROUND};
     for (int k = 0; k < 2 * c->terms; k++) {
-        body[k] = g->sys->measures[c->measure[k / 2]].body[k % 2];
+        body[k] = o->sys->measures[c->measure[k / 2]].body[k % 2];
     }
-    return together(g, body, 2 * c->terms);
+    return mt_absolute_together(o, body, 2 * c->terms);
 }
 
 /* Rows of the constraints' Jacobian; *closed: they hold as drawn. */
-static mt_status constrain(const mt_data *d, const groups *g, mt_arena *mem, mt_arena *scratch,
-                           mt_rows *out, bool *closed, char *why, mt_err *err)
+static mt_status constrain(const mt_data *d, mt_absolute *o, const groups *g, mt_arena *mem,
+                           mt_arena *scratch, bool *closed, char *why, mt_err *err)
 {
     const mt_system *const sys = d->sys;
     const size_t nq = (size_t)sys->nq;
@@ -216,14 +228,14 @@ static mt_status constrain(const mt_data *d, const groups *g, mt_arena *mem, mt_
                        MT_CURVATURE_NONE, &l);
     *closed = true;
     for (size_t i = 0; i < m && *closed; i++) {
-        n += holds_already(g, (int)i) ? 0 : 1;
+        n += mt_absolute_holds_already(o, (int)i) ? 0 : 1;
         *closed = fabs(l.c[i]) <= DRAWN_CLOSED * sys->length_m;
         if (!*closed) {
             (void)mt_snprintf(why, MT_ABSOLUTE_WHY, "joint \"%s\" is not closed as drawn",
                               sys->joints[sys->constraints[i].joint].name);
         }
     }
-    mt_rows_begin(out, n, (size_t)n * 2 * MT_LOCAL, mem);
+    mt_rows_begin(&o->a, n, (size_t)n * 2 * MT_LOCAL, mem);
     MT_TRY(mt_arena_check(mem, err));
     n = 0;
     for (int i = 0; i < (int)m && *closed; i++) {
@@ -231,8 +243,8 @@ static mt_status constrain(const mt_data *d, const groups *g, mt_arena *mem, mt_
         for (int k = 0; k < l.row[i].n; k++) {
             add_motion(g, l.row[i].dof[k], l.row[i].a[k], &row);
         }
-        if (!holds_already(g, i)) {
-            push_row(&row, n++, out);
+        if (!mt_absolute_holds_already(o, i)) {
+            push_row(&row, n++, &o->a);
         }
     }
     return MT_OK;
@@ -285,15 +297,19 @@ static mt_status make(mt_absolute *o, const double *inputs, mt_arena *mem, mt_ar
     mt_data_drawn(&data, at.pose);
     mt_data_rest(&data, at.pose);
     groups g = {.sys = sys, .at = &at};
-    MT_TRY(group(&g, scratch, err));
+    MT_TRY(group(&g, mem, scratch, err));
+    MT_TRY(measure_arms(&g, mem, err));
     o->n = g.n;
-    MT_TRY(constrain(&data, &g, mem, scratch, &o->a, is, why, err));
+    o->with = g.with;
+    o->place = g.place;
+    o->arm = g.arm;
+    MT_TRY(constrain(&data, o, &g, mem, scratch, is, why, err));
     MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
     if (*is) {
-        MT_TRY(squares_of(&data, &g, MT_TERM_STIFFNESS, &list[MT_TERM_STIFFNESS], mem, &o->k,
+        MT_TRY(squares_of(&data, o, &g, MT_TERM_STIFFNESS, &list[MT_TERM_STIFFNESS], mem, &o->k,
                           err));
         MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
-        MT_TRY(squares_of(&data, &g, MT_TERM_MASS, &list[MT_TERM_MASS], mem, &o->m, err));
+        MT_TRY(squares_of(&data, o, &g, MT_TERM_MASS, &list[MT_TERM_MASS], mem, &o->m, err));
         MT_TRY(measure(o, &g, mem, scratch, err));
     }
     return mt_interrupt_check(sys->model->interrupt, err);

@@ -18,6 +18,9 @@ typedef struct mt_absolute {
     mt_squares m;
     mt_rows a;
     double *unit; /* [n] 1, or 1/length_m of a turn [1, 1/m] */
+    int *with;    /* [bodies] body that it moves with, itself, or MT_GROUND */
+    int *place;   /* [nq] coordinate of a state; -1: it moves with another body's */
+    double *arm;  /* 3 x bodies, from the centre of that other body [m] */
     double mass_kg;
 } mt_absolute;
 
@@ -31,5 +34,40 @@ enum { MT_ABSOLUTE_WHY = 200 };
  */
 mt_status mt_absolute_new(const mt_system *sys, const double *inputs, mt_arena *mem,
                           mt_absolute *out, bool *is, char why[MT_ABSOLUTE_WHY], mt_err *err);
+
+/* Do these bodies (n, or MT_GROUND) move together? */
+bool mt_absolute_together(const mt_absolute *o, const int *body, int n);
+/* Does constraint i of the system hold bodies that do? Then it is none of the rows of a. */
+bool mt_absolute_holds_already(const mt_absolute *o, int i);
+/* phi[nq] := x[n] by states. */
+void mt_absolute_shape(const mt_absolute *o, const double *x, double *phi);
+/* The system's channels, as drawn, for n such shapes, phi nq x n: value n_channels x n. Scratch
+ * is given back. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
+mt_status mt_drawn_sense(const mt_system *sys, const double *inputs, int n, const double *phi,
+                         double *value, mt_arena *scratch, mt_err *err);
+
+/* Modes, of unit mass. */
+typedef struct mt_absolute_modes {
+    int n;
+    const double *x;      /* n x n of the modes */
+    const double *mu;     /* rows of a x n: K x + A^T mu = lambda M x */
+    const double *lambda; /* [n] above 0, of repeated ones their mean */
+    int n_pairs;
+    const int (*pair)[2]; /* modes of one lambda each */
+    bool dependent;       /* rows of a depend on each other */
+} mt_absolute_modes;
+
+/**
+ * Slopes of eigenvalues by every input: exact; an input costs O(bodies) where it moves what is
+ * drawn, else what it touches.
+ * @param[in]  inputs  [n_inputs] those that o was made with
+ * @param[out] slope   n_pairs x n_inputs, as mt_tree_slopes
+ * @param[out] why     "" or why there are none: a joint opens, or equations that follow from
+ *   others may cease to
+ * Scratch is given back. Fails: MT_E_DOMAIN, MT_E_INTERRUPTED, MT_E_MEMORY.
+ */
+mt_status mt_absolute_slopes(const mt_absolute *o, const double *inputs,
+                             const mt_absolute_modes *modes, double *slope,
+                             char why[MT_ABSOLUTE_WHY], mt_arena *scratch, mt_err *err);
 
 #endif

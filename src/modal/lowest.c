@@ -296,6 +296,7 @@ static void fill(const finding *f, int upto, double tau, mt_lowest_modes *out)
                 fmax(m->orthogonality[at], fabs(gram - (i == j ? 1.0 : 0.0)) / unit);
         }
         m->kind[at] = own->rigid ? MT_MODE_RIGID_BODY : MT_MODE_FLEXIBLE;
+        memcpy(column(f, out->x, i), column(f, f->x, i), (size_t)p->n * sizeof *out->x);
         if (own->rigid) {
             m->n_rigid++;
             continue;
@@ -303,8 +304,6 @@ static void fill(const finding *f, int upto, double tau, mt_lowest_modes *out)
         m->error_relative = fmax(m->error_relative, own->noise);
         m->lambda[at] = own->lambda;
         m->error[at] = lambda_error(f, i, upto, tau);
-        memcpy(out->x + ((ptrdiff_t)p->n * (at - m->n_rigid)), column(f, f->x, i),
-               (size_t)p->n * sizeof *out->x);
     }
     mt_modal_find_clusters(m);
 }

@@ -42,7 +42,8 @@ typedef struct mt_lowest_modes {
     /* count: n_rigid, then as many of the lowest as there are, at most those wanted and what
      * is repeated with the last of them; y NULL; n: coordinates with the rigid-body ones */
     mt_modes modes;
-    double *x;  /* n x (count - n_rigid), columns of size 1 (in the metric) */
+    /* n x (count - the problem's n_rigid), of those found, columns of size 1 (in the metric) */
+    double *x;
     double tau; /* no mode below this was missed: they were counted [rad^2/s^2] */
     int below;  /* how many that were, rigid-body ones included */
 } mt_lowest_modes;

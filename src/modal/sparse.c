@@ -21,6 +21,7 @@
 #include <string.h>
 
 #include "base/format.h"
+#include "linalg/dense.h"
 #include "linalg/kernels.h"
 
 /* gamma over the largest stiffness: a constraint's own flexibility is gone after two or three
@@ -32,11 +33,12 @@ static const double REGULAR = 1e-15;
 static const double CERTAIN = 64.0 * DBL_EPSILON;
 /* Below this the factor's rounding is refined away in each product. */
 static const double WELL = 1e-7;
-/* The first shift, in the largest K_ii/M_ii; and it should be within this factor of the lowest
- * mode: far above it the modes stand close together in what is iterated, and far below it a
+/* The first shift, in the largest K_ii/M_ii; and the least and most that it should be of the
+ * lowest mode: far above it the modes stand close together in what is iterated, and below it a
  * rigid-body mode's rounding there is large against all that the others are. */
 static const double FIRST_SHIFT = 1e-8;
 static const double MOST_SHIFT = 100.0;
+static const double LEAST_SHIFT = 0.25;
 /* Steps of a solution: most of them, and when it is one. */
 enum { MOST_STEPS = 30, SHIFTS = 2, ROUNDS = 4 };
 static const double SOLVED = 1e-16;
@@ -72,33 +74,6 @@ typedef struct sparse {
     double *gap;               /* A x + A dx */
     mt_arena *mem;
 } sparse;
-
-static void transpose(const mt_rows *a, int n, mt_arena *mem, mt_rows *out)
-{
-    const int size = a->n_rows > 0 ? a->start[a->n_rows] : 0;
-    mt_rows_begin(out, n, (size_t)size, mem);
-    if (mt_arena_failed(mem)) {
-        return;
-    }
-    for (int i = 0; i < size; i++) {
-        out->start[a->index[i] + 1]++;
-    }
-    for (int j = 0; j < n; j++) {
-        out->start[j + 1] += out->start[j];
-    }
-    for (int r = a->n_rows - 1; r >= 0; r--) { /* fills from the ends, so rows ascend */
-        for (int i = a->start[r]; i < a->start[r + 1]; i++) {
-            const int at = --out->start[a->index[i] + 1];
-            out->index[at] = r;
-            out->value[at] = a->value[i];
-        }
-    }
-    /* the ends have become starts, one place too far */
-    for (int j = 0; j < n; j++) {
-        out->start[j] = out->start[j + 1];
-    }
-    out->start[n] = size;
-}
 
 /* One column of the lower triangles that is being summed. */
 typedef struct column {
@@ -497,7 +472,7 @@ static mt_status find(sparse *s, mt_arena *mem, mt_lowest_modes *out, bool *stab
         MT_TRY(mt_modal_lowest(&problem, mem, out, err));
         const double first = first_lambda(&out->modes);
         *stable = first >= 0.0;
-        const bool apart = s->shift > MOST_SHIFT * first || MOST_SHIFT * s->shift < first;
+        const bool apart = s->shift > MOST_SHIFT * first || s->shift < LEAST_SHIFT * first;
         if (round == ROUNDS || s->shift == 0.0 || !(first > 0.0 && apart)) {
             return MT_OK;
         }
@@ -523,9 +498,9 @@ static mt_status prepare(sparse *s, mt_err *err)
     s->gamma = mt_arena_f64(s->mem, m, 1);
     s->mu = mt_arena_f64(s->mem, m, 1);
     s->gap = mt_arena_f64(s->mem, m, 1);
-    transpose(&p->k.row, p->n, s->mem, &s->columns[0]);
-    transpose(&p->m.row, p->n, s->mem, &s->columns[1]);
-    transpose(&p->a, p->n, s->mem, &s->columns[2]);
+    mt_rows_transpose(&p->k.row, p->n, s->mem, &s->columns[0]);
+    mt_rows_transpose(&p->m.row, p->n, s->mem, &s->columns[1]);
+    mt_rows_transpose(&p->a, p->n, s->mem, &s->columns[2]);
     MT_TRY(mt_arena_check(s->mem, err));
     scale_constraints(s);
     MT_TRY(assemble(s, err));
@@ -536,12 +511,71 @@ static mt_status prepare(sparse *s, mt_err *err)
     return mt_arena_check(s->mem, err);
 }
 
+/* v := v Q, n x count. */
+static void turn(int n, int count, const double *q, double *v, double *row)
+{
+    for (ptrdiff_t i = 0; i < n; i++) {
+        for (int k = 0; k < count; k++) {
+            row[k] = v[i + ((ptrdiff_t)n * k)];
+        }
+        for (int k = 0; k < count; k++) {
+            v[i + ((ptrdiff_t)n * k)] = mt_dot(count, row, q + ((ptrdiff_t)count * k));
+        }
+    }
+}
+
+/* One more step of inverse iteration, (K + s M) Y + A^T N = M X, and among the vibration modes
+ * the Ritz vectors: of X^T M Y, X being orthonormal. x := y, mu := nu, both over the size of
+ * y. */
+static mt_status shape(sparse *s, mt_arena *mem, const mt_lowest_modes *out, double **mu,
+                       mt_err *err)
+{
+    const int n = s->p->n;
+    const int rows = s->p->a.n_rows;
+    const int first = out->modes.n_rigid;
+    const int count = out->modes.count - first;
+    double *const x = out->x + ((ptrdiff_t)n * first);
+    double *const y = mt_arena_f64(s->mem, (size_t)n, (size_t)count);
+    double *const h = mt_arena_f64(s->mem, (size_t)count, (size_t)count);
+    double *const theta = mt_arena_f64(s->mem, (size_t)count, 1);
+    *mu = mt_arena_f64(mem, (size_t)rows, (size_t)out->modes.count);
+    double *const force = *mu + ((ptrdiff_t)rows * first);
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(mt_arena_check(s->mem, err));
+    for (int i = 0; i < count; i++) {
+        double *const to = y + ((ptrdiff_t)n * i);
+        metric(s, x + ((ptrdiff_t)n * i), s->f);
+        MT_TRY(solve(s, s->f, EXACT, to, err));
+        memcpy(force + ((ptrdiff_t)rows * i), s->mu, (size_t)rows * sizeof *force);
+        metric(s, to, s->f);
+        for (int k = 0; k < count; k++) {
+            h[k + ((ptrdiff_t)count * i)] = -mt_dot(n, x + ((ptrdiff_t)n * k), s->f);
+        }
+    }
+    MT_TRY(mt_eig_sym(count, h, theta, true, s->mem, err)); /* of -A: lowest modes first */
+    turn(n, count, h, y, theta);
+    turn(rows, count, h, force, theta);
+    for (int i = 0; i < count; i++) {
+        double *const from = y + ((ptrdiff_t)n * i);
+        metric(s, from, s->f);
+        const double size = sqrt(mt_dot(n, from, s->f));
+        for (int j = 0; j < n; j++) {
+            x[j + ((ptrdiff_t)n * i)] = from[j] / size;
+        }
+        for (int j = 0; j < rows; j++) {
+            force[j + ((ptrdiff_t)rows * i)] /= size;
+        }
+    }
+    return MT_OK;
+}
+
 mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_modes *out,
-                          bool *answered, char why[MT_SPARSE_WHY], mt_err *err)
+                          double **mu, bool *answered, char why[MT_SPARSE_WHY], mt_err *err)
 {
     mt_arena work = {.first = NULL};
     sparse s = {.p = p, .mem = &work};
     *answered = false;
+    *mu = NULL;
     *out = (mt_lowest_modes){.below = 0};
     MT_TRY(mt_arena_init(&work, 0, err));
     mt_status rc = prepare(&s, err);
@@ -552,6 +586,7 @@ mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_m
         if (!*answered) {
             (void)mt_snprintf(why, MT_SPARSE_WHY, "it is not stable");
         }
+        rc = rc == MT_OK && *answered && p->shapes ? shape(&s, mem, out, mu, err) : rc;
     }
     mt_arena_free(&work);
     return rc;

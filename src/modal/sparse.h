@@ -19,6 +19,7 @@ typedef struct mt_sparse_problem {
     mt_rows a;          /* may depend on each other */
     const double *unit; /* [n] a state times this is a displacement: 1, or 1/length of a turn */
     int count;          /* vibration modes wanted, at least 1 */
+    bool shapes;        /* x as exactly as can be, and the constraints' forces */
     mt_status (*check)(void *context, mt_err *err); /* asked before each product: go on? */
     void *context;
 } mt_sparse_problem;
@@ -31,10 +32,12 @@ enum { MT_SPARSE_WHY = 200 };
  * allows it. Rigid-body modes are those whose strains are rounding. What cancels in strains, as
  * in a long slender chain, is in the errors.
  * @param[out] out       in mem; modes.n: freedoms
+ * @param[out] mu        rows of A x modes.count, with shapes: K x + A^T mu = lambda M x of each
+ *   vibration mode, in mem; else NULL
  * @param[out] why       the reason where *answered is false: free or unstable without mass
  * Fails: as mt_modal_lowest and mt_factor_make, MT_E_MEMORY, what `check` fails with.
  */
 mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_modes *out,
-                          bool *answered, char why[MT_SPARSE_WHY], mt_err *err);
+                          double **mu, bool *answered, char why[MT_SPARSE_WHY], mt_err *err);
 
 #endif

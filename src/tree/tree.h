@@ -78,10 +78,6 @@ void mt_tree_within(const mt_tree *t, const double *x, const double *r, const do
 void mt_tree_carried(const mt_tree *t, double lambda, const double *v, double *f);
 /* phi[nq] := v by states. */
 void mt_tree_states(const mt_tree *t, const double *v, double *phi);
-/* The system's channels for n such shapes, phi nq x n: value n_channels x n. Scratch is given
- * back. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
-mt_status mt_tree_sense(const mt_tree *t, const double *inputs, int n, const double *phi,
-                        double *value, mt_arena *scratch, mt_err *err);
 /* Mass of all bodies [kg]. */
 double mt_tree_mass(const mt_tree *t);
 /* How many eigenvalues of K - tau M are below 0, by Sylvester's law: *below counts

@@ -459,3 +459,16 @@ mt_status mt_tree_factor(mt_tree *t, mt_arena *scratch, bool *positive, mt_err *
     }
     return MT_OK;
 }
+
+void mt_tree_states(const mt_tree *t, const double *v, double *phi)
+{
+    for (int i = 0; i < t->n; i++) {
+        const int *const dof = t->sys->bodies[t->body[i]].dof;
+        for (int k = 0; k < t->s; k++) {
+            const int q = dof[mt_tree_freedom(t, k)];
+            if (q >= 0) {
+                phi[q] = v[k + ((ptrdiff_t)t->s * i)];
+            }
+        }
+    }
+}
