@@ -27,6 +27,11 @@ enum { ROUNDS = 3 };
 static const double STATIONARY = 1e-6;
 /* Length of the first step away from a saddle. */
 static const double SADDLE_STEP = 0.05;
+/* Rows and those that follow from them are one within this: there rows have no slopes of their
+ * own, and Newton's method comes to rest by chance only. */
+static const double TOGETHER = 1e-4;
+/* A smaller gain of a round, relative to the objective, is what tolerances buy. */
+static const double GAIN = 1e-5;
 /* Violation (in tolerances) below which an end is worth a Newton polish before a
  * restoration. */
 static const double NEARLY = 1e4;
@@ -108,6 +113,18 @@ static bool step_off(mt_nlp_engine *e, const double *saddle, mt_nlp_point *p)
     return moved;
 }
 
+/* Do rows change places at p, on their limit? */
+static bool is_crossing(const mt_nlp_engine *e, const mt_nlp_point *p)
+{
+    for (int i = 0; i < e->nlp->n_next; i++) {
+        const double row = p->in[e->nlp->next_of[i]];
+        if (fabs(row) <= TOGETHER && fabs(p->next[i] - row) <= TOGETHER) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* From where SLSQP ended: Newton, and SLSQP again while that is no minimum; never for the
  * worse. */
 static void finish_minimum(mt_nlp_engine *e, mt_nlp_local *s)
@@ -127,8 +144,11 @@ static void finish_minimum(mt_nlp_engine *e, mt_nlp_local *s)
             mt_nlp_point_copy(e, s->p, before);
             return;
         }
+        const bool idle = round > 0 && mt_nlp_feasible(before) && s->p->kkt > STATIONARY &&
+                          is_crossing(e, s->p) &&
+                          s->p->f >= before->f - (GAIN * fabs(before->f));
         mt_nlp_point_copy(e, before, s->p);
-        const bool last = round + 1 == ROUNDS || !mt_nlp_feasible(s->p);
+        const bool last = round + 1 == ROUNDS || idle || !mt_nlp_feasible(s->p);
         if (last || (!step_off(e, saddle, s->p) && s->p->kkt <= STATIONARY)) {
             return;
         }
