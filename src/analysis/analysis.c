@@ -43,14 +43,16 @@ void mt_analysis_delete(mt_analysis *a)
 mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs,
                           const int *inputs, const double *at, mt_analysis **out, mt_err *err)
 {
-    return mt_analysis_new_driven(model, configuration, NULL, n_inputs, inputs, at, out, err);
+    return mt_analysis_new_lowest(model, configuration, n_inputs, inputs, at, 0, out, err);
 }
 
 /* Solve for the first time; *out is a, which goes where that fails. */
-static mt_status open_at(mt_analysis *a, const double *at, mt_analysis **out, mt_err *err)
+static mt_status open_at(mt_analysis *a, const double *at, int first, mt_analysis **out,
+                         mt_err *err)
 {
-    const mt_analysis_options opt = mt_analysis_options_default();
+    mt_analysis_options opt = mt_analysis_options_default();
     const char *const name = mt_analysis_configuration(a);
+    opt.first = first;
     a->n_rigid = -1;
     mt_status rc = mt_linear_new(a->sys, &a->lin, err);
     rc = rc == MT_OK ? mt_analysis_solve(a, at, &opt, err) : rc;
@@ -65,32 +67,67 @@ static mt_status open_at(mt_analysis *a, const double *at, mt_analysis **out, mt
     return MT_OK;
 }
 
-mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
-                                 const mt_system_drive *drive, int n_inputs, const int *inputs,
-                                 const double *at, mt_analysis **out, mt_err *err)
+/* What a new analysis is of, and the vibration modes that are asked for at once. */
+typedef struct origin {
+    const mt_model *model;
+    int configuration;
+    const mt_system_drive *drive;
+    int n_inputs;
+    const int *inputs;
+    const double *at;
+    int first;
+} origin;
+
+static mt_status begin(const origin *o, mt_analysis **out, mt_err *err)
 {
-    const double bodies = mt_lowest_bodies(model, configuration);
+    const double bodies = mt_lowest_bodies(o->model, o->configuration);
+    const char *const name = o->model->configurations[o->configuration].name.s;
     *out = NULL;
     if (bodies > MT_ANALYSIS_BODIES) {
         return mt_fail(
             err, MT_E_INPUT,
             "configuration \"%s\": %.0f bodies are too many for dense matrices, which "
             "take %d",
-            model->configurations[configuration].name.s, bodies, (int)MT_ANALYSIS_BODIES);
+            name, bodies, (int)MT_ANALYSIS_BODIES);
     }
     mt_analysis *const a = calloc(1, sizeof *a);
     if (a == NULL) {
         return mt_fail_memory(err);
     }
-    const mt_status rc = mt_system_new_driven(model, configuration, drive, n_inputs, inputs, at,
-                                              &a->own_sys, err);
+    const mt_status rc = mt_system_new_driven(o->model, o->configuration, o->drive, o->n_inputs,
+                                              o->inputs, o->at, &a->own_sys, err);
     if (rc != MT_OK) {
         mt_analysis_delete(a);
-        return mt_err_in(err, rc, "configuration \"%s\"",
-                         model->configurations[configuration].name.s);
+        return mt_err_in(err, rc, "configuration \"%s\"", name);
     }
     a->sys = a->own_sys;
-    return open_at(a, at, out, err);
+    return open_at(a, o->at, o->first, out, err);
+}
+
+mt_status mt_analysis_new_lowest(const mt_model *model, int configuration, int n_inputs,
+                                 const int *inputs, const double *at, int first,
+                                 mt_analysis **out, mt_err *err)
+{
+    const origin o = {.model = model,
+                      .configuration = configuration,
+                      .n_inputs = n_inputs,
+                      .inputs = inputs,
+                      .at = at,
+                      .first = first};
+    return begin(&o, out, err);
+}
+
+mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
+                                 const mt_system_drive *drive, int n_inputs, const int *inputs,
+                                 const double *at, mt_analysis **out, mt_err *err)
+{
+    const origin o = {.model = model,
+                      .configuration = configuration,
+                      .drive = drive,
+                      .n_inputs = n_inputs,
+                      .inputs = inputs,
+                      .at = at};
+    return begin(&o, out, err);
 }
 
 mt_status mt_analysis_new_like(const mt_analysis *like, const double *at, mt_analysis **out,
@@ -102,7 +139,7 @@ mt_status mt_analysis_new_like(const mt_analysis *like, const double *at, mt_ana
         return mt_fail_memory(err);
     }
     a->sys = like->sys;
-    return open_at(a, at, out, err);
+    return open_at(a, at, 0, out, err);
 }
 
 /* Factor the reduced mass again where it has changed. */

@@ -83,6 +83,11 @@ enum { MT_ANALYSIS_BODIES = 5000 };
  */
 mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs,
                           const int *inputs, const double *at, mt_analysis **out, mt_err *err);
+/* The same, and only the `first` lowest vibration modes are asked for (mt_analysis_options): an
+ * analysis that is solved once. */
+mt_status mt_analysis_new_lowest(const mt_model *model, int configuration, int n_inputs,
+                                 const int *inputs, const double *at, int first,
+                                 mt_analysis **out, mt_err *err);
 /* The same with a drive whose position is one more input, the last (mt_system_new_driven):
  * at[n_inputs + 1]. drive NULL: mt_analysis_new. */
 mt_status mt_analysis_new_driven(const mt_model *model, int configuration,

@@ -92,7 +92,7 @@ static mt_status examine_model(const mt_model *model, mt_doubt_list *found, mt_e
             continue;
         }
         work += takes;
-        mt_status rc = mt_analysis_new(model, c, 0, NULL, NULL, &a, err);
+        mt_status rc = mt_analysis_new_lowest(model, c, 0, NULL, NULL, 1, &a, err);
         rc = rc == MT_OK ? mt_doubts_of_analysis(a, 0, NULL, NULL, found, err) : rc;
         mt_analysis_delete(a);
         MT_TRY(rc);

@@ -138,7 +138,7 @@ static void fill_table(mt_table *t, const view *v)
 static mt_status one(const mt_args *args, view *v, mt_json_writer *w, mt_table *t, mt_text *out,
                      mt_err *err)
 {
-    MT_TRY(mt_subject_analyse(v->s, v->c, &v->a, err));
+    MT_TRY(mt_subject_analyse(v->s, v->c, 1, &v->a, err));
     MT_TRY(mt_info_fill(v->a->lin, &v->info, err));
     MT_TRY(mt_arena_init(&v->mem, 0, err));
     MT_TRY(mt_linear_nearness(v->a->lin, &v->mem, &v->nearness, err));

@@ -82,8 +82,8 @@ static mt_status choose_modes(comparison *c, side *x, int wanted, mt_err *err)
 
 static mt_status correlate(comparison *c, int count, mt_err *err)
 {
-    MT_TRY(mt_subject_analyse(&c->a.s, c->a.s.configurations[0], &c->a.a, err));
-    MT_TRY(mt_subject_analyse(&c->b.s, c->b.s.configurations[0], &c->b.a, err));
+    MT_TRY(mt_subject_analyse(&c->a.s, c->a.s.configurations[0], count, &c->a.a, err));
+    MT_TRY(mt_subject_analyse(&c->b.s, c->b.s.configurations[0], count, &c->b.a, err));
     mt_common_channels common;
     MT_TRY(mt_analysis_common_channels(c->a.a, c->b.a, &c->mem, &common, err));
     if (common.n == 0) {

@@ -20,7 +20,7 @@ static const double TOLD_ERROR = 1e-6;
 typedef struct view {
     const mt_subject *s;
     int c;
-    mt_analysis *a;    /* of all modes; NULL: */
+    mt_analysis *a;    /* by dense matrices; NULL: */
     mt_lowest *l;      /* of the lowest ones */
     const mt_modes *m; /* of one of them */
     int shown;         /* positions of modes to write */
@@ -89,7 +89,7 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     mt_json_put_doubts(w, "facts", &v->doubts, MT_LEVEL_FACT);
     mt_json_put_string(w, "method", mt_cli_method(v->l == NULL ? MT_LOWEST_NONE : v->l->way));
     if (v->l == NULL) {
-        mt_json_put_null(w, "complete_below_hz"); /* all modes are there */
+        mt_json_put_null(w, "complete_below_hz"); /* no mode is missing */
     } else {
         mt_json_put_number(w, "complete_below_hz", complete_below_hz(v->l));
     }
@@ -324,7 +324,8 @@ static mt_status look(const mt_args *args, view *v, mt_err *err)
         v->m = &v->l->found.modes;
         return mt_doubts_of_lowest(v->l, s->n_inputs, s->inputs, s->at, &v->doubts, err);
     }
-    MT_TRY(mt_subject_analyse(s, v->c, &v->a, err));
+    /* damped modes are sought among all others */
+    MT_TRY(mt_subject_analyse(s, v->c, want.count, &v->a, err));
     v->m = &v->a->modes;
     return mt_doubts_of_analysis(v->a, s->n_inputs, s->inputs, s->at, &v->doubts, err);
 }

@@ -139,9 +139,11 @@ void mt_subject_free(mt_subject *s)
     memset(s, 0, sizeof *s);
 }
 
-mt_status mt_subject_analyse(const mt_subject *s, int c, mt_analysis **out, mt_err *err)
+mt_status mt_subject_analyse(const mt_subject *s, int c, int first, mt_analysis **out,
+                             mt_err *err)
 {
-    const mt_status rc = mt_analysis_new(s->model, c, s->n_inputs, s->inputs, s->at, out, err);
+    const mt_status rc =
+        mt_analysis_new_lowest(s->model, c, s->n_inputs, s->inputs, s->at, first, out, err);
     return rc == MT_OK ? rc : mt_err_in(err, rc, "%s", s->path);
 }
 

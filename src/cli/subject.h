@@ -29,8 +29,10 @@ typedef struct mt_subject {
 int mt_subject_load(const mt_args *args, const char *path, const char *configuration,
                     mt_subject *out);
 void mt_subject_free(mt_subject *s);
-/* Analyse configuration c. A failure is left in err. */
-mt_status mt_subject_analyse(const mt_subject *s, int c, mt_analysis **out, mt_err *err);
+/* Analyse configuration c for its `first` lowest vibration modes (0: all). A failure is left in
+ * err. */
+mt_status mt_subject_analyse(const mt_subject *s, int c, int first, mt_analysis **out,
+                             mt_err *err);
 /* The lowest modes of configuration c where they are what is asked for (want.count; 0: they are
  * not, and no more than half of all) and there is a short way for a model of its size, at
  * inputs of its own. *out NULL: there is none, all modes are to be found; where these are too
