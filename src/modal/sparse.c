@@ -25,8 +25,8 @@
 #include "linalg/kernels.h"
 
 /* gamma over the largest stiffness: a constraint's own flexibility is gone after two or three
- * iterations, and eps times this times the condition of K is still well below 1. */
-static const double STIFFER = 1e6;
+ * iterations (of loops of thousands with the second), and eps gamma cond K is well below 1. */
+static const double STIFFER[] = {1e6, 1e8};
 /* Relative pivots: below the first a matrix is singular; below the second the sign of one is
  * by chance. */
 static const double REGULAR = 1e-15;
@@ -46,7 +46,6 @@ static const double SOLVED = 1e-16;
  * singular but for rounding, no step comes nearer. */
 static const double SOUND = 1e-6;
 static const double GOLDEN = 0.61803398874989485;
-static const double EXACT = 1e-16;
 /* Roundings of a strain, and strains so many times their rounding that are none. */
 static const double STRAIN_ULPS = 4.0;
 static const double RIGID = 1e3;
@@ -59,7 +58,8 @@ typedef struct sparse {
     const mt_sparse_problem *p;
     double shift;
     double *gamma;      /* [rows of A] */
-    double stiffest;    /* STIFFER times the largest stiffness */
+    double stiffer;     /* one of STIFFER */
+    double stiffest;    /* that times the largest stiffness */
     mt_rows columns[3]; /* of K's, M's and A's rows: by state, (row, value) */
     mt_lower h;         /* pattern of all, values of what is factored */
     double *k;          /* values in that pattern: K + A^T Gamma A */
@@ -285,7 +285,7 @@ static mt_status refine(void *context, const double *x, double *y, mt_lowest_quo
     double k_noise = 0.0;
     double m_noise = 0.0;
     metric(s, x, s->f);
-    MT_TRY(solve(s, s->f, EXACT, y, err));
+    MT_TRY(solve(s, s->f, SOLVED, y, err));
     double k = energy(&p->k, y, &k_noise);
     const double m = energy(&p->m, y, &m_noise);
     double other = 0.0;
@@ -377,7 +377,7 @@ static void scale_constraints(sparse *s)
     for (int j = 0; j < p->n; j++) {
         most = fmax(most, s->x[j] * p->unit[j] * p->unit[j]);
     }
-    s->stiffest = STIFFER * most;
+    s->stiffest = s->stiffer * most;
     for (int r = 0; r < p->a.n_rows; r++) {
         double square = 0.0;
         for (int q = p->a.start[r]; q < p->a.start[r + 1]; q++) {
@@ -443,7 +443,8 @@ static mt_status hold(sparse *s, bool *held, char *why, mt_err *err)
     }
     if (!*held) {
         (void)mt_snprintf(why, MT_SPARSE_WHY,
-                          "a motion without stiffness has no mass, or it is not stable");
+                          "a motion without stiffness has no mass, it is not stable, or "
+                          "sixteen digits do not hold all of its motions");
     }
     return MT_OK;
 }
@@ -545,7 +546,7 @@ static mt_status shape(sparse *s, mt_arena *mem, const mt_lowest_modes *out, dou
     for (int i = 0; i < count; i++) {
         double *const to = y + ((ptrdiff_t)n * i);
         metric(s, x + ((ptrdiff_t)n * i), s->f);
-        MT_TRY(solve(s, s->f, EXACT, to, err));
+        MT_TRY(solve(s, s->f, SOLVED, to, err));
         memcpy(force + ((ptrdiff_t)rows * i), s->mu, (size_t)rows * sizeof *force);
         metric(s, to, s->f);
         for (int k = 0; k < count; k++) {
@@ -573,13 +574,17 @@ mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_m
                           double **mu, bool *answered, char why[MT_SPARSE_WHY], mt_err *err)
 {
     mt_arena work = {.first = NULL};
-    sparse s = {.p = p, .mem = &work};
+    sparse s = {.p = p};
     *answered = false;
     *mu = NULL;
     *out = (mt_lowest_modes){.below = 0};
-    MT_TRY(mt_arena_init(&work, 0, err));
-    mt_status rc = prepare(&s, err);
-    rc = rc == MT_OK ? hold(&s, answered, why, err) : rc;
+    mt_status rc = mt_arena_init(&work, 0, err);
+    for (int i = 0; i < MT_COUNT(STIFFER) && rc == MT_OK && !*answered; i++) {
+        mt_arena_clear(&work);
+        s = (sparse){.p = p, .mem = &work, .stiffer = STIFFER[i]};
+        rc = prepare(&s, err);
+        rc = rc == MT_OK ? hold(&s, answered, why, err) : rc;
+    }
     rc = rc == MT_OK && *answered ? count_freedoms(&s, err) : rc;
     if (rc == MT_OK && *answered) {
         rc = find(&s, mem, out, answered, err);

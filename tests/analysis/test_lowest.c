@@ -308,7 +308,8 @@ static void lowest__say_what_is_no_tree(mt_test *t)
          "\"at\": [0, 0]}], \"springs\": [{\"name\": \"s\", \"type\": \"torsion\", \"joint\": "
          "\"j\", \"stiffness_n_m_per_rad\": -1}]",
          "spring \"s\" has a negative stiffness; nor the sparse one, as a motion without "
-         "stiffness has no mass, or it is not stable"},
+         "stiffness has no mass, it is not stable, or sixteen digits do not hold all "
+         "of its motions"},
         {"\"joints\": [{\"name\": \"j\", \"type\": \"fixed\", \"bodies\": [\"a\", \"b\"], "
          "\"at\": [0, 0]}, {\"name\": \"k\", \"type\": \"revolute\", \"bodies\": [\"b\", "
          "\"a\"], "

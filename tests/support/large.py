@@ -5,8 +5,10 @@ link     one link of N rigid elements with springs in its hinges, pinned to the 
 beam     a clamped beam link of N elements
 chain    N bodies with a revolute joint and a torsional spring each, all written out
 points   the same with a named point for each joint
+ring     N bodies in a circle of unit radius, hinged with torsional springs, free
 tower    a space frame of 10 x 10 columns and N floors, an element for each of its beams: 280 to a floor, on clamped feet"""
 import json
+import math
 import sys
 
 
@@ -71,11 +73,23 @@ def frame(nx, ny, nz, elements, clamped=True):
     return model
 
 
+def ring(n, bending_stiffness=1000.0):
+    """Unit mass to a metre; the last hinge closes the loop."""
+    at = [[math.cos(2 * math.pi * i / n), math.sin(2 * math.pi * i / n)] for i in range(n)]
+    length = math.dist(at[0], at[1])
+    middle = [[(a + b) / 2 for a, b in zip(at[i], at[(i + 1) % n])] for i in range(n)]
+    return {**_root(),
+            "bodies": [{"name": f"b{i}", "mass_kg": length, "inertia_kg_m2": length ** 3 / 12, "centre": middle[i]} for i in range(n)],
+            "joints": [{"name": f"j{i}", "type": "revolute", "bodies": [f"b{(i - 1) % n}", f"b{i}"], "at": at[i]} for i in range(n)],
+            "springs": [{"name": f"s{i}", "type": "torsion", "joint": f"j{i}", "stiffness_n_m_per_rad": bending_stiffness / length}
+                        for i in range(n)]}
+
+
 def tower(floors):
     return frame(10, 10, floors, 1)
 
 
-KINDS = {"link": link, "beam": beam, "chain": chain, "points": points, "tower": tower}
+KINDS = {"link": link, "beam": beam, "chain": chain, "points": points, "ring": ring, "tower": tower}
 
 if __name__ == "__main__":
     json.dump(KINDS[sys.argv[1]](int(sys.argv[2])), sys.stdout)
