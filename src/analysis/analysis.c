@@ -185,9 +185,10 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
         return MT_OK;
     }
     const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
-    int *const group = mt_arena_int(&a->mem, (size_t)judged);
+    /* of a group whose errors nobody asks for, eigenvalues are good enough as they are */
+    int *const group = bounds ? mt_arena_int(&a->mem, (size_t)judged) : NULL;
     MT_TRY(mt_arena_check(&a->mem, err));
-    const int pairs = mt_modal_groups(&a->modes, judged, group);
+    const int pairs = bounds ? mt_modal_groups(&a->modes, judged, group) : 0;
     const size_t count = (size_t)all + (size_t)pairs;
     double *const pair_y = mt_arena_f64(&a->mem, (size_t)a->modes.n, (size_t)pairs);
     mt_mode_energies e = {.stiffness = mt_arena_f64(&a->mem, count, 1),
@@ -199,7 +200,9 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                           .count = judged,
                           .group = group};
     MT_TRY(mt_arena_check(&a->mem, err));
-    mt_modal_pair_shapes(&a->modes, judged, group, pair_y);
+    if (pairs > 0) {
+        mt_modal_pair_shapes(&a->modes, judged, group, pair_y);
+    }
     MT_TRY(energies_of(a, 0, judged, a->modes.y, &e, err));
     MT_TRY(energies_of(a, judged, pairs, pair_y, &e, err));
     mt_modal_judge(&e, options->n_rigid, &a->modes);
