@@ -13,6 +13,7 @@
 #include "base/format.h"
 #include "base/interrupt.h"
 #include "linalg/dense.h"
+#include "modal/balance.h"
 #include "modal/sign.h"
 
 double mt_lowest_bodies(const mt_model *model, int configuration)
@@ -30,13 +31,25 @@ double mt_lowest_bodies(const mt_model *model, int configuration)
 
 typedef struct mt_lowest_operation {
     const mt_tree *tree;
-    double *v;    /* motion of all bodies */
-    double *f;    /* work */
-    double *r;    /* [n_rigid] */
-    double *m_yr; /* n_x x n_rigid */
-    double *m_rr; /* its Cholesky factor */
+    double *v;     /* motion of all bodies */
+    double *f;     /* work */
+    double *r;     /* [n_rigid] */
+    double *along; /* [n_rigid] what follows a motion x */
+    double *left;  /* [n_rigid] work */
+    double *m_yr;  /* n_x x n_rigid */
+    double *m_rr;  /* its Cholesky factor */
     mt_arena *scratch;
 } operation;
+
+/* What follows a motion is solved for, and what that leaves once more. */
+enum { SOLUTIONS = 2 };
+
+/* r[n_rigid] := M_rr^-1 r. */
+static void solve_free(const operation *o)
+{
+    mt_tri_solve(false, o->tree->n_rigid, 1, o->m_rr, o->r, o->tree->n_rigid);
+    mt_tri_solve(true, o->tree->n_rigid, 1, o->m_rr, o->r, o->tree->n_rigid);
+}
 
 static mt_status apply(void *context, const double *x, double *y, mt_err *err)
 {
@@ -46,10 +59,39 @@ static mt_status apply(void *context, const double *x, double *y, mt_err *err)
     mt_tree_motion(t, x, NULL, o->v);
     mt_tree_momentum(t, o->v, o->f, y, o->r);
     if (t->n_rigid > 0) {
-        mt_tri_solve(false, t->n_rigid, 1, o->m_rr, o->r, t->n_rigid);
-        mt_tri_solve(true, t->n_rigid, 1, o->m_rr, o->r, t->n_rigid);
+        solve_free(o);
         mt_gemv(false, t->n_x, t->n_rigid, -1.0, o->m_yr, t->n_x, o->r, 1.0, y);
     }
+    return MT_OK;
+}
+
+/* As apply, but as the momentum of the whole motion (x, along): where what leads and what
+ * follows cancel, they do so in the motion. *open: the mass of what `along` is still off by. */
+static void follow(const operation *o, const double *x, double *y, double *open)
+{
+    const mt_tree *const t = o->tree;
+    const int n = t->n_rigid;
+    memset(o->along, 0, (size_t)n * sizeof *o->along);
+    for (int step = 0; step <= (n > 0 ? SOLUTIONS : 0); step++) {
+        mt_tree_motion(t, x, o->along, o->v);
+        mt_tree_momentum(t, o->v, o->f, y, o->r);
+        memcpy(o->left, o->r, (size_t)n * sizeof *o->left);
+        solve_free(o);
+        mt_axpy(n, step < SOLUTIONS ? -1.0 : 0.0, o->r, o->along);
+    }
+    *open = mt_dot(n, o->left, o->r);
+}
+
+static mt_status refine(void *context, const double *x, double *y, mt_lowest_quotient *own,
+                        mt_err *err)
+{
+    const operation *const o = context;
+    mt_tree_quotient q;
+    double open = 0.0;
+    MT_TRY(mt_interrupt_check(o->tree->sys->model->interrupt, err));
+    follow(o, x, y, &open);
+    mt_tree_rate(o->tree, x, o->along, o->v, o->f, &q);
+    *own = (mt_lowest_quotient){.lambda = q.lambda, .noise = q.noise + fabs(open / q.mass)};
     return MT_OK;
 }
 
@@ -90,9 +132,15 @@ static mt_status solve(mt_lowest *l, int count, mt_err *err)
     bool regular = false;
     double *const v = mt_arena_f64(&l->mem, motions, 1);
     double *const f = mt_arena_f64(&l->mem, motions, 1);
-    double *const r = mt_arena_f64(&l->mem, (size_t)t->n_rigid, 1);
+    double *const r = mt_arena_f64(&l->mem, (size_t)t->n_rigid, 3);
     MT_TRY(mt_arena_check(&l->mem, err));
-    *o = (operation){.tree = t, .v = v, .f = f, .r = r, .scratch = &l->mem};
+    *o = (operation){.tree = t,
+                     .v = v,
+                     .f = f,
+                     .r = r,
+                     .along = r + t->n_rigid,
+                     .left = r + ((ptrdiff_t)2 * t->n_rigid),
+                     .scratch = &l->mem};
     l->operation = o;
     MT_TRY(free_motions(o, &regular, &l->mem, err));
     if (!regular) {
@@ -106,8 +154,8 @@ static mt_status solve(mt_lowest *l, int count, mt_err *err)
                                  .most = t->n_x,
                                  .n_rigid = t->n_rigid,
                                  .count = count,
-                                 .steps = t->depth,
                                  .apply = apply,
+                                 .refine = refine,
                                  .below = below,
                                  .context = o};
     return mt_modal_lowest(&p, &l->mem, &l->found, err);
@@ -119,9 +167,44 @@ static mt_status go_on(void *context, mt_err *err)
     return mt_interrupt_check(sys->model->interrupt, err);
 }
 
+/* What loads make of the bodies' stiffness, where they rest as drawn. */
+static mt_status load_bodies(mt_lowest *l, const mt_sparse_problem *p, mt_absolute_load *load,
+                             bool *is, char *why, mt_err *err)
+{
+    const size_t rows = (size_t)p->a.n_rows;
+    double *const f = mt_arena_f64(&l->mem, (size_t)p->n, 1);
+    load->mu = mt_arena_f64(&l->mem, rows, 1);
+    load->open = mt_arena_f64(&l->mem, rows, 1);
+    MT_TRY(mt_arena_check(&l->mem, err));
+    MT_TRY(mt_absolute_forces(&l->bodies, l->at, f, &l->mem, err));
+    MT_TRY(mt_modal_balance(p, f, load->mu, load->open, is, err));
+    if (!*is) {
+        (void)mt_snprintf(why, MT_ABSOLUTE_WHY,
+                          "sixteen digits do not hold its joints' forces");
+        return MT_OK;
+    }
+    return mt_absolute_load_new(&l->bodies, l->at, &l->mem, load, is, why, err);
+}
+
+/* What small motions under load do not tell: whether equations that follow from others do so
+ * beside the drawing, and how far it goes where nothing holds it. */
+static bool is_held(const mt_lowest *l, char *why)
+{
+    const mt_absolute *const o = &l->bodies;
+    const mt_modes *const m = &l->found.modes;
+    const bool dependent = o->n - o->a.n_rows < m->n;
+    if (dependent || m->n_rigid > 0) {
+        (void)mt_snprintf(why, MT_SPARSE_WHY, "%s",
+                          dependent ? "equations of loaded joints follow from others"
+                                    : "it is free to move under its load");
+    }
+    return !dependent && m->n_rigid == 0;
+}
+
 /* In coordinates of the bodies, where those of a tree are not to be had. */
 static mt_status solve_sparse(mt_lowest *l, mt_lowest_want want, mt_err *err)
 {
+    mt_absolute_load load = {.mu = NULL};
     const size_t told = strlen(l->why);
     char why[(int)MT_ABSOLUTE_WHY + (int)MT_SPARSE_WHY] = "";
     mt_err own = {.code = MT_OK};
@@ -129,20 +212,26 @@ static mt_status solve_sparse(mt_lowest *l, mt_lowest_want want, mt_err *err)
     bool is = false;
     MT_TRY(mt_absolute_new(l->sys, l->at, &l->mem, o, &is, why, err));
     if (is) {
-        const mt_sparse_problem p = {.n = o->n,
-                                     .k = o->k,
-                                     .m = o->m,
-                                     .a = o->a,
-                                     .unit = o->unit,
-                                     .count = want.count,
-                                     .shapes = want.shapes,
-                                     .check = go_on,
-                                     .context = l->sys};
-        const mt_status rc = mt_modal_sparse(&p, &l->mem, &l->found, &l->mu, &is, why, &own);
+        mt_sparse_problem p = {.n = o->n,
+                               .k = o->k,
+                               .m = o->m,
+                               .a = o->a,
+                               .unit = o->unit,
+                               .count = want.count,
+                               .shapes = want.shapes,
+                               .check = go_on,
+                               .context = l->sys};
+        if (l->sys->loaded) {
+            MT_TRY(load_bodies(l, &p, &load, &is, why, err));
+            p.g = &load.g;
+            p.g_noise = load.noise;
+        }
+        const mt_status rc =
+            is ? mt_modal_sparse(&p, &l->mem, &l->found, &l->mu, &is, why, &own) : MT_OK;
         if (rc != MT_OK && rc != MT_E_NO_CONVERGENCE) {
             return mt_fail(err, rc, "%s", own.text);
         }
-        is = is && rc == MT_OK;
+        is = is && rc == MT_OK && (!l->sys->loaded || is_held(l, why));
     }
     if (is) {
         l->way = MT_LOWEST_SPARSE;
@@ -202,7 +291,7 @@ static mt_status make_room(const mt_lowest *l, int n, motions *out, mt_arena *me
 
 /* The mode at a position as column i, of unit mass: of x = 0 that is r^T M_rr r; else x^T A x =
  * 1/lambda, and r follows. */
-static mt_status move(const mt_lowest *l, int position, int i, const motions *to, mt_err *err)
+static void move(const mt_lowest *l, int position, int i, const motions *to)
 {
     const mt_tree *const t = l->tree;
     const operation *const o = l->operation;
@@ -216,15 +305,14 @@ static mt_status move(const mt_lowest *l, int position, int i, const motions *to
         r[position] = 1.0;
         mt_tri_solve(true, t->n_rigid, 1, o->m_rr, r, t->n_rigid);
     } else {
-        MT_TRY(apply(l->operation, l->found.x + ((ptrdiff_t)t->n_x * (position - t->n_rigid)),
-                     x, err));
-        mt_axpy(t->n_rigid, -sqrt(lambda), o->r, r);
+        double open = 0.0;
+        follow(o, l->found.x + ((ptrdiff_t)t->n_x * (position - t->n_rigid)), x, &open);
+        mt_axpy(t->n_rigid, sqrt(lambda), o->along, r);
         memset(x, 0, (size_t)t->n_x * sizeof *x);
         mt_axpy(t->n_x, sqrt(lambda),
                 l->found.x + ((ptrdiff_t)t->n_x * (position - t->n_rigid)), x);
     }
     mt_tree_motion(t, x, r, v);
-    return MT_OK;
 }
 
 mt_status mt_lowest_shapes(mt_lowest *l, int n, double *phi, mt_err *err)
@@ -238,7 +326,7 @@ mt_status mt_lowest_shapes(mt_lowest *l, int n, double *phi, mt_err *err)
     for (int i = 0; i < n; i++) {
         double *const to = phi + ((ptrdiff_t)nq * i);
         if (l->way == MT_LOWEST_TREE) {
-            MT_TRY(move(l, i, 0, &m, err));
+            move(l, i, 0, &m);
             mt_tree_states(l->tree, m.v, to);
         } else {
             mt_absolute_shape(&l->bodies, l->found.x + ((ptrdiff_t)l->bodies.n * i), to);
@@ -339,7 +427,7 @@ static mt_status forms_of_tree(const mt_lowest *l, const pairs *p, double *form,
     motions m;
     MT_TRY(make_room(l, p->n, &m, mem, err));
     for (int i = 0; i < p->n; i++) {
-        MT_TRY(move(l, l->tree->n_rigid + i, i, &m, err));
+        move(l, l->tree->n_rigid + i, i, &m);
     }
     const mt_tree_modes modes = {.n = p->n,
                                  .x = m.x,

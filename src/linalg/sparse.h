@@ -2,6 +2,8 @@
 #ifndef LINALG_SPARSE_H
 #define LINALG_SPARSE_H
 
+#include <math.h>
+
 #include "base/arena.h"
 
 /*
@@ -50,6 +52,19 @@ static inline double mt_rows_dot(const mt_rows *s, int row, const double *x)
     double sum = 0.0;
     for (int k = s->start[row]; k < s->start[row + 1]; k++) {
         sum += s->value[k] * x[s->index[k]];
+    }
+    return sum;
+}
+
+/* The same; *size: the sum of the magnitudes of its terms. */
+static inline double mt_rows_dot_size(const mt_rows *s, int row, const double *x, double *size)
+{
+    double sum = 0.0;
+    *size = 0.0;
+    for (int q = s->start[row]; q < s->start[row + 1]; q++) {
+        const double part = s->value[q] * x[s->index[q]];
+        sum += part;
+        *size += fabs(part);
     }
     return sum;
 }

@@ -285,10 +285,9 @@ static mt_status make(mt_absolute *o, const double *inputs, mt_arena *mem, mt_ar
     MT_TRY(mt_terms_new(sys, scratch, list, err));
     MT_TRY(mt_program_eval(&sys->program, inputs, value, NULL, err));
     MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
-    *is = !sys->driven && !sys->loaded;
+    *is = !sys->driven;
     if (!*is) {
-        (void)mt_snprintf(why, MT_ABSOLUTE_WHY, "%s",
-                          sys->driven ? "a joint is driven" : "something loads it");
+        (void)mt_snprintf(why, MT_ABSOLUTE_WHY, "a joint is driven");
         return MT_OK;
     }
     data.value = value;

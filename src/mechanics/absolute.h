@@ -2,11 +2,12 @@
 #ifndef MECHANICS_ABSOLUTE_H
 #define MECHANICS_ABSOLUTE_H
 
+#include "linalg/factor.h"
 #include "linalg/sparse.h"
 #include "mechanics/position.h"
 
 /*
- * A mechanism of any size and form, drawn at rest, in the coordinates of its bodies, those that
+ * A mechanism of any size and form, as drawn, in the coordinates of its bodies, those that
  * fixed joints hold together being one: K and M as sums of squares of sparse rows, one for each
  * spring and each part of a mass, and the rows of the Jacobian A of the constraints that are
  * left. All costs are O(bodies).
@@ -29,7 +30,7 @@ enum { MT_ABSOLUTE_WHY = 200 };
 /**
  * @param[in]  inputs  [n_inputs] of the system
  * @param[out] out     its arrays in mem
- * @param[out] why     the reason where *is false: driven, loaded, or not closed as drawn
+ * @param[out] why     the reason where *is false: driven, or not closed as drawn
  * Fails: MT_E_DOMAIN (a number has no value), MT_E_INTERRUPTED, MT_E_MEMORY.
  */
 mt_status mt_absolute_new(const mt_system *sys, const double *inputs, mt_arena *mem,
@@ -45,6 +46,29 @@ void mt_absolute_shape(const mt_absolute *o, const double *x, double *phi);
  * is given back. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
 mt_status mt_drawn_sense(const mt_system *sys, const double *inputs, int n, const double *phi,
                          double *value, mt_arena *scratch, mt_err *err);
+
+/* f[n] := the forces of loads and springs that the constraints have to hold, at the drawing.
+ * Scratch is given back. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
+mt_status mt_absolute_forces(const mt_absolute *o, const double *inputs, double *f,
+                             mt_arena *scratch, mt_err *err);
+
+/* Geometric stiffness, lower triangle, and bounds of the errors of its entries. */
+typedef struct mt_absolute_load {
+    double *mu;   /* [rows of a] forces with A^T mu = f */
+    double *open; /* [rows of a] what is open of each */
+    mt_lower g;
+    double *noise; /* [entries of g] */
+} mt_absolute_load;
+
+/**
+ * That of the loads and of the constraints that hold them. O(bodies log bodies).
+ * @param[out] out  mu and open given; the other arrays in mem
+ * @param[out] why  the body where *at_rest is false: f - A^T mu is more than rounding
+ * Fails: MT_E_DOMAIN, MT_E_INTERRUPTED, MT_E_MEMORY.
+ */
+mt_status mt_absolute_load_new(const mt_absolute *o, const double *inputs, mt_arena *mem,
+                               mt_absolute_load *out, bool *at_rest, char why[MT_ABSOLUTE_WHY],
+                               mt_err *err);
 
 /* Modes, of unit mass. */
 typedef struct mt_absolute_modes {
@@ -62,8 +86,8 @@ typedef struct mt_absolute_modes {
  * drawn, else what it touches.
  * @param[in]  inputs  [n_inputs] those that o was made with
  * @param[out] slope   n_pairs x n_inputs, as mt_tree_slopes
- * @param[out] why     "" or why there are none: a joint opens, or equations that follow from
- *   others may cease to
+ * @param[out] why     "" or why there are none: loaded, a joint opens, or equations that follow
+ *   from others may cease to
  * Scratch is given back. Fails: MT_E_DOMAIN, MT_E_INTERRUPTED, MT_E_MEMORY.
  */
 mt_status mt_absolute_slopes(const mt_absolute *o, const double *inputs,

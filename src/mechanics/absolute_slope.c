@@ -301,6 +301,12 @@ mt_status mt_absolute_slopes(const mt_absolute *o, const double *inputs,
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     work w = {.o = o, .modes = modes};
     why[0] = '\0';
+    if (sys->loaded) {
+        (void)mt_snprintf(
+            why, MT_ABSOLUTE_WHY,
+            "the forces of its joints change with it, which is done for trees alone");
+        return MT_OK;
+    }
     memset(slope, 0, (size_t)modes->n_pairs * (size_t)sys->n_inputs * sizeof *slope);
     MT_TRY(init(&w, inputs, scratch, err));
     for (int p = 0; p < sys->n_inputs && why[0] == '\0'; p++) {

@@ -19,9 +19,6 @@ enum { MOST_FOUND = 512 };
 
 /* Neighbours closer than this (relative) are not separated by a count. */
 static const double NO_GAP = 1e-7;
-/* Roundings of a step of a recursion, and of all else together. */
-static const double STEP_ULPS = 4.0;
-static const double OTHER_ULPS = 64.0;
 
 typedef struct finding {
     const mt_lowest_problem *p;
@@ -109,8 +106,7 @@ static mt_status look_at(finding *f, int i, mt_err *err)
     double *const x = column(f, f->x, i);
     double *const ax = column(f, f->ax, i);
     mt_lowest_quotient own = {.noise = 0.0};
-    MT_TRY(p->refine != NULL ? p->refine(p->context, x, ax, &own, err)
-                             : p->apply(p->context, x, ax, err));
+    MT_TRY(p->refine(p->context, x, ax, &own, err));
     const double square = inner(f, x, x);
     f->theta[i] = inner(f, x, ax) / square;
     double rest = 0.0;
@@ -126,11 +122,6 @@ static mt_status look_at(finding *f, int i, mt_err *err)
         rest = fmax(inner(f, f->difference, f->difference), 0.0);
     }
     f->rho[i] = sqrt(rest / square);
-    if (p->refine == NULL) {
-        own = (mt_lowest_quotient){.lambda = 1.0 / f->theta[i],
-                                   .noise = ((STEP_ULPS * (double)p->steps) + OTHER_ULPS) *
-                                            DBL_EPSILON};
-    }
     f->own[i] = own;
     f->n_free += own.rigid ? 1 : 0;
     return MT_OK;
@@ -286,8 +277,7 @@ static void fill(const finding *f, int upto, double tau, mt_lowest_modes *out)
     }
     for (int i = 0; at < m->count; i++, at++) {
         const mt_lowest_quotient *const own = &f->own[i];
-        const double unit =
-            ((double)p->n * DBL_EPSILON) + (p->refine == NULL ? 0.0 : fmin(own->noise, 1.0));
+        const double unit = ((double)p->n * DBL_EPSILON) + fmin(own->noise, 1.0);
         m->residual[at] = f->rho[i] / ((f->theta[0] + f->theta[i]) * unit);
         for (int j = 0; j < m->count - p->n_rigid; j++) {
             const double gram = inner(f, column(f, f->x, i), column(f, f->ax, j)) /

@@ -23,14 +23,12 @@ typedef struct mt_lowest_problem {
     int most;    /* modes that there may be among them */
     int n_rigid; /* rigid-body modes beside them */
     int count;   /* vibration modes wanted */
-    int steps; /* roundings that a motion goes through on its way: the length of a recursion */
     /* y := A x */
     mt_status (*apply)(void *context, const double *x, double *y, mt_err *err);
     double shift;
     /* y := M x; NULL: the identity */
     void (*metric)(void *context, const double *x, double *y);
-    /* y := A x as exactly as can be, and what y says of its mode; NULL: as apply, and the
-     * quotient x^T A x, with the roundings of `steps` */
+    /* y := A x as exactly as can be, and what x and y say of their mode */
     mt_status (*refine)(void *context, const double *x, double *y, mt_lowest_quotient *quotient,
                         mt_err *err);
     /* modes below lambda = tau > 0, rigid-body ones included; *certain: not by rounding */
@@ -52,7 +50,7 @@ typedef struct mt_lowest_modes {
  * By Lanczos' method, one Rayleigh quotient each, and a count of the modes below a frequency
  * behind the last: where some are missing (repeated ones) they are sought among what is
  * orthogonal to those found. The error of lambda holds the residual rho (with the gap to the
- * neighbours, rho^2/gap: Kato and Temple) and the rounding of `steps` steps.
+ * neighbours, rho^2/gap: Kato and Temple) and the quotient's noise.
  * Results in mem, scratch is given back. Fails: MT_E_NO_CONVERGENCE, as apply and below,
  * MT_E_MEMORY.
  */

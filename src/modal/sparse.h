@@ -14,7 +14,8 @@
 typedef struct mt_sparse_problem {
     int n;
     mt_squares k;
-    const mt_lower *g; /* K has this besides; NULL: nothing */
+    const mt_lower *g;     /* K has this besides; NULL: nothing */
+    const double *g_noise; /* bounds of the errors of its entries */
     mt_squares m;
     mt_rows a;          /* may depend on each other */
     const double *unit; /* [n] a state times this is a displacement: 1, or 1/length of a turn */

@@ -262,6 +262,9 @@ static mt_status make_edges(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_e
     t->arm = mt_arena_f64(mem, 3, n);
     t->mass = mt_arena_f64(mem, n * s, s);
     t->basis = mt_arena_f64(mem, s, (size_t)t->sys->nq);
+    t->length = mt_arena_f64(mem, n, 1);
+    t->doubt = mt_arena_f64(mem, n, 1);
+    t->lost = mt_arena_f64(mem, (size_t)t->sys->nq, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < t->n && *is_tree; i++) {
         const mt_state_body *const body = &t->sys->bodies[t->body[i]];
@@ -306,6 +309,7 @@ static mt_status choose_coordinates(mt_tree_maker *m, mt_arena *mem, bool *is_tr
         return MT_OK;
     }
     t->carried = mt_arena_f64(mem, n * s, s);
+    t->settled = mt_arena_f64(mem, n * s, s);
     t->scaled = mt_arena_f64(mem, s, (size_t)t->n_x);
     MT_TRY(mt_arena_check(mem, err));
     mt_arena work = {.first = NULL};

@@ -39,11 +39,16 @@ typedef struct mt_tree {
     int *next_constraint;
     int *first_spring; /* [n] of those that act, likewise; next_spring[springs] */
     int *next_spring;
-    bool *point;           /* [n] a point mass: does not turn */
-    int *y_at;             /* [n + 1] */
-    int *loose_at;         /* [n + 1] */
-    double *arm;           /* 3 x n, to the centre from that of the body before it [m] */
-    double *basis;         /* N F, then N R, of body i from s (y_at[i] + loose_at[i]) on */
+    bool *point;    /* [n] a point mass: does not turn */
+    int *y_at;      /* [n + 1] */
+    int *loose_at;  /* [n + 1] */
+    double *arm;    /* 3 x n, to the centre from that of the body before it [m] */
+    double *basis;  /* N F, then N R, of body i from s (y_at[i] + loose_at[i]) on */
+    double *length; /* [n] of its edge: makes translations and rotations alike [m] */
+    /* [n] what rounding may turn a column of its edge by, as a part of the column's size, in
+     * roundings: 1 over how far its equations are from dependent ones */
+    double *doubt;
+    double *lost;          /* by y: likewise of the energy of each, for what cancels in it */
     double *mass;          /* s x s of each body */
     double *shared;        /* s x s: v_before^T shared v_i; NULL: no mass is shared */
     double *curved;        /* s x s of each body: geometric stiffness; NULL: nothing loads */
@@ -53,6 +58,7 @@ typedef struct mt_tree {
     double *held;          /* [constraints] what each equation holds of them */
     double *carried;       /* X', s x s of each body, where something loads */
     double *scaled;        /* N', as basis */
+    double *settled;       /* sizes of all that made the stiffness of each, s x s, likewise */
 } mt_tree;
 
 enum { MT_TREE_WHY = 200, MT_TREE_LOOSE = 64 };
@@ -76,6 +82,16 @@ void mt_tree_within(const mt_tree *t, const double *x, const double *r, const do
                     double *w);
 /* f[s n] := (K_g - lambda M_bodies) v of each body and all beyond it: what its edge carries. */
 void mt_tree_carried(const mt_tree *t, double lambda, const double *v, double *f);
+/* What a motion says of its mode: lambda = energy / mass, and the part of it that rounding may
+ * have made. */
+typedef struct mt_tree_quotient {
+    double lambda;
+    double mass; /* of the motion: v^T M_bodies v */
+    double noise;
+} mt_tree_quotient;
+/* v from mt_tree_motion of (x, r), f from mt_tree_momentum of v; r may be NULL (0). */
+void mt_tree_rate(const mt_tree *t, const double *x, const double *r, const double *v,
+                  const double *f, mt_tree_quotient *q);
 /* phi[nq] := v by states. */
 void mt_tree_states(const mt_tree *t, const double *v, double *phi);
 /* Mass of all bodies [kg]. */

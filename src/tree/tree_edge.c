@@ -35,6 +35,7 @@ typedef struct edge {
     int n;                            /* rows */
     double row[(ROWS + MOST) * MOST]; /* row i from s i on, over the motion of the body */
     double weight[ROWS];              /* sqrt(k); 1 */
+    double size[ROWS];                /* of springs: of the terms of a strain of unit motion */
 } edge;
 
 /* One measure's gradient as a row of the edge; false where it is no measure of two bodies'
@@ -165,11 +166,12 @@ static void eliminate(int s, int rank, int best, double length, edge *e, double 
 }
 
 /* The null space of the rows: Householder QR of A^T, the longest row first. null (s x s), *d
- * its columns. False where the rank is in doubt. */
-static bool null_space(int s, edge *e, double *null, int *d)
+ * its columns. *least: what was left of the last row. False where the rank is in doubt. */
+static bool null_space(int s, edge *e, double *null, int *d, double *least)
 {
     double u[SQUARE];
     int rank = 0;
+    *least = 1.0;
     normalise(s, e);
     for (; rank < s; rank++) {
         double length = 0.0;
@@ -180,6 +182,7 @@ static bool null_space(int s, edge *e, double *null, int *d)
         if (length < INDEPENDENT) {
             return false;
         }
+        *least = fmin(*least, length);
         eliminate(s, rank, best, length, e, u + ((ptrdiff_t)s * rank));
     }
     *d = s - rank;
@@ -194,11 +197,11 @@ static bool null_space(int s, edge *e, double *null, int *d)
     return true;
 }
 
-/* b (ROWS x d) := weight f^T N, what is rounding made 0. */
-static void stiffness_rows(const mt_tree *t, const edge *e, const double *null, int d,
-                           double *b)
+/* b (ROWS x d) := weight f^T N, what is rounding made 0; fills e->size. */
+static void stiffness_rows(const mt_tree *t, edge *e, const double *null, int d, double *b)
 {
     for (int r = 0; r < e->n; r++) {
+        e->size[r] = e->weight[r] * mt_norm2(t->s, e->row + ((ptrdiff_t)t->s * r));
         for (int c = 0; c < d; c++) {
             double sum = 0.0;
             double size = 0.0;
@@ -285,32 +288,48 @@ static bool collect(mt_tree_maker *m, int i, bool springs, edge *e)
     return true;
 }
 
-/* Columns with stiffness first, each over its own; false where one is in doubt. */
-static bool sort_columns(const mt_tree *t, int n, int d, const double *b, const double *null,
-                         double *basis, int *n_y)
+/* What cancels in the energy of column c: a strain has the rounding of its terms. */
+static double lost_of(const edge *e, const double *b, int c, double sigma)
+{
+    double sum = 0.0;
+    for (int r = 0; r < e->n; r++) {
+        sum += fabs(b[r + (c * ROWS)] / sigma) * (e->size[r] / sigma);
+    }
+    return sum;
+}
+
+/* Columns with stiffness first, each over its own; false where one is in doubt. lost[n_y]. */
+static bool sort_columns(const mt_tree *t, const edge *e, int d, const double *b,
+                         const double *null, double *basis, int *n_y, double *lost)
 {
     double sigma[MOST];
+    int order[MOST] = {0};
     double most = 0.0;
+    int at = 0;
     for (int c = 0; c < d; c++) {
-        sigma[c] = sqrt(column_dot(n, b, c, c));
+        sigma[c] = sqrt(column_dot(e->n, b, c, c));
         most = fmax(most, sigma[c]);
     }
-    int at = 0;
-    for (int loose = 0; loose < 2; loose++) {
-        for (int c = 0; c < d; c++) {
-            const bool none = !(sigma[c] > NO_STIFFNESS * most);
-            if (!none && sigma[c] < A_STIFFNESS * most) {
+    for (int c = 0; c < d; c++) {
+        if (sigma[c] > NO_STIFFNESS * most) {
+            if (sigma[c] < A_STIFFNESS * most) {
                 return false;
             }
-            if (none != (loose == 1)) {
-                continue;
-            }
-            for (int k = 0; k < t->s; k++) {
-                basis[k + (t->s * at)] = null[k + (t->s * c)] / (none ? 1.0 : sigma[c]);
-            }
-            at++;
+            lost[at] = lost_of(e, b, c, sigma[c]);
+            order[at++] = c;
         }
-        *n_y = loose == 0 ? at : *n_y;
+    }
+    *n_y = at;
+    for (int c = 0; c < d; c++) {
+        if (!(sigma[c] > NO_STIFFNESS * most)) {
+            order[at++] = c;
+        }
+    }
+    for (int c = 0; c < d; c++) {
+        const int from = order[c];
+        for (int k = 0; k < t->s; k++) {
+            basis[k + (t->s * c)] = null[k + (t->s * from)] / (c < *n_y ? sigma[from] : 1.0);
+        }
     }
     return true;
 }
@@ -322,6 +341,7 @@ bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_loose
     edge springs;
     double null[SQUARE];
     double b[ROWS * MOST];
+    double least = 1.0;
     int d = 0;
     if (!collect(m, i, false, &joints) || !collect(m, i, true, &springs)) {
         return false;
@@ -336,7 +356,7 @@ bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_loose
             row[k] = 1.0;
         }
     }
-    const bool clear = null_space(t->s, &joints, null, &d);
+    const bool clear = null_space(t->s, &joints, null, &d, &least);
     if (clear && d > t->s - joints.n) {
         (void)mt_snprintf(m->why, MT_TREE_WHY, "joints of \"%s\" hold it twice",
                           t->sys->bodies[t->body[i]].name);
@@ -346,7 +366,9 @@ bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_loose
         stiffness_rows(t, &springs, null, d, b);
         jacobi(t, springs.n, d, b, null);
     }
-    if (!clear || !sort_columns(t, springs.n, d, b, null, basis, n_y)) {
+    t->length[i] = length;
+    t->doubt[i] = 1.0 / least;
+    if (!clear || !sort_columns(t, &springs, d, b, null, basis, n_y, t->lost + t->y_at[i])) {
         (void)mt_snprintf(m->why, MT_TREE_WHY,
                           "what holds \"%s\" is too near to the edge of holding it not",
                           t->sys->bodies[t->body[i]].name);

@@ -15,6 +15,7 @@
 
 #include "base/format.h"
 #include "linalg/dense.h"
+#include "mechanics/forces.h"
 
 enum { MOST = MT_TREE_MOTION };
 
@@ -81,8 +82,9 @@ static bool add_curvature(const mt_tree_maker *m, const int body[2], double c,
 }
 
 /* A force that a potential -c times the measure makes. */
-static bool add_force(const loading *l, const int body[2], double c, const mt_jet *jet)
+static bool add_force(void *context, const int body[2], double c, const mt_jet *jet)
 {
+    const loading *const l = context;
     const mt_tree *const t = l->m->t;
     for (int side = 0; side < 2; side++) {
         const int at = body[side] == MT_GROUND ? -1 : t->place[body[side]];
@@ -96,56 +98,6 @@ static bool add_force(const loading *l, const int body[2], double c, const mt_je
         }
     }
     return add_curvature(l->m, body, c, jet);
-}
-
-/* A measure with the force c; that of a spring from how far it is stretched. */
-static bool add_measure(const loading *l, const mt_measure_def *def,
-                        const mt_spring_def *spring, double c)
-{
-    const mt_data *const d = &l->m->data;
-    const mt_measure_data measure = mt_data_measure(d, def);
-    mt_jet jet;
-    mt_measure_eval(&measure, mt_pose_of(l->m->pose, def->body[0]),
-                    mt_pose_of(l->m->pose, def->body[1]), true, &jet);
-    if (spring != NULL && spring->free != MT_NO_NODE) {
-        c += d->value[spring->stiffness] * (creal(jet.value) - d->value[spring->free]);
-    }
-    return c == 0.0 || add_force(l, def->body, c, &jet);
-}
-
-static bool add_loads(const loading *l)
-{
-    const mt_data *const d = &l->m->data;
-    const mt_system *const sys = d->sys;
-    bool fits = true;
-    for (int i = 0; i < sys->n_loads && fits; i++) {
-        const mt_load_def *const load = &sys->loads[i];
-        if (load->measure >= 0) {
-            fits = add_measure(l, &sys->measures[load->measure], NULL, -d->value[load->size]);
-            continue;
-        }
-        mt_cx f[3];
-        mt_jet jet;
-        const int body[2] = {load->body, MT_GROUND};
-        for (int k = 0; k < 3; k++) {
-            f[k] = mt_data_scalar(d, load->force[k], 0.0);
-        }
-        mt_measure_point(load->point < 0 ? NULL : d->vec[load->point], f,
-                         mt_pose_of(l->m->pose, load->body), true, &jet);
-        fits = add_force(l, body, -1.0, &jet);
-    }
-    for (int i = 0; i < sys->n_springs && fits; i++) {
-        const mt_spring_def *const s = &sys->springs[i];
-        if (!s->damper && (s->free != MT_NO_NODE || s->preload != MT_NO_NODE)) {
-            const double preload = s->preload == MT_NO_NODE ? 0.0 : d->value[s->preload];
-            fits = add_measure(l, &sys->measures[s->measure[0]], s, preload);
-        }
-    }
-    if (!fits) {
-        (void)mt_snprintf(l->m->why, MT_TREE_WHY,
-                          "a load acts between bodies that hang on others");
-    }
-    return fits;
 }
 
 /* Does G_i balance where the edge is free? */
@@ -265,12 +217,16 @@ mt_status mt_tree_loads(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_err *
     const size_t s = (size_t)t->s;
     t->pushed = mt_arena_f64(mem, s, n);
     t->held = mt_arena_f64(mem, (size_t)t->sys->n_constraints, 1);
-    const loading l = {.m = m, .g = t->pushed};
+    loading l = {.m = m, .g = t->pushed};
     t->force = mt_arena_f64(mem, n, 1);
     t->curved = mt_arena_f64(mem, n * s, s);
     t->curved_shared = mt_arena_f64(mem, n * s, s);
     MT_TRY(mt_arena_check(mem, err));
-    *is_tree = add_loads(&l);
+    *is_tree = mt_forces_each(&m->data, m->pose, add_force, &l);
+    if (!*is_tree) {
+        (void)mt_snprintf(m->why, MT_TREE_WHY,
+                          "a load acts between bodies that hang on others");
+    }
     for (int i = t->n - 1; i >= 0 && *is_tree; i--) {
         *is_tree = is_at_rest(&l, i);
         if (*is_tree) {

@@ -25,8 +25,7 @@ enum { MOST = MT_TREE_MOTION, SQUARE = MOST * MOST };
  * */
 static const double DOUBTFUL = 1e-10;
 
-/* v := X_i p. */
-static void carry(const mt_tree *t, int i, const double *p, double *v)
+void mt_tree_carry(const mt_tree *t, int i, const double *p, double *v)
 {
     const double *const a = t->arm + ((ptrdiff_t)3 * i);
     const double turns = t->point[i] ? 0.0 : 1.0;
@@ -61,18 +60,6 @@ void mt_tree_carry_back(const mt_tree *t, int i, const double *f, double *p)
     p[3] += (turns * f[3]) + ((a[1] * f[2]) - (a[2] * f[1]));
     p[4] += (turns * f[4]) + ((a[2] * f[0]) - (a[0] * f[2]));
     p[5] += (turns * f[5]) + ((a[0] * f[1]) - (a[1] * f[0]));
-}
-
-static const double *basis_of(const mt_tree *t, int i)
-{
-    return (t->scaled != NULL ? t->scaled : t->basis) +
-           ((ptrdiff_t)t->s * (t->y_at[i] + t->loose_at[i]));
-}
-
-/* Coordinates of body i: from the first to before the end. */
-static int first_of(const mt_tree *t, int i)
-{
-    return t->scaled != NULL ? t->y_at[i] + t->loose_at[i] : t->y_at[i];
 }
 
 static inline void add_product_of(int s, const double *a, bool transposed, const double *v,
@@ -115,16 +102,16 @@ void mt_tree_motion(const mt_tree *t, const double *x, const double *r, double *
     for (int i = 0; i < t->n; i++) {
         double *const own = v + ((ptrdiff_t)s * i);
         const double *const other = t->before[i] < 0 ? NULL : v + ((ptrdiff_t)s * t->before[i]);
-        const double *b = basis_of(t, i);
+        const double *b = mt_tree_basis(t, i);
         for (int k = 0; k < s; k++) {
             own[k] = 0.0;
         }
         if (other != NULL && t->carried != NULL) {
             add_product(s, t->carried + (square * i), false, other, own);
         } else if (other != NULL) {
-            carry(t, i, other, own);
+            mt_tree_carry(t, i, other, own);
         }
-        for (int c = first_of(t, i); c < first_of(t, i + 1); c++, b += s) {
+        for (int c = mt_tree_first(t, i); c < mt_tree_first(t, i + 1); c++, b += s) {
             for (int k = 0; k < s; k++) {
                 own[k] += b[k] * x[c];
             }
@@ -147,13 +134,13 @@ void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *x, d
         const int p = t->before[i];
         double *const own = f + ((ptrdiff_t)s * i);
         double *const other = p < 0 ? NULL : f + ((ptrdiff_t)s * p);
-        const double *b = basis_of(t, i);
+        const double *b = mt_tree_basis(t, i);
         add_product(s, t->mass + (square * i), false, v + ((ptrdiff_t)s * i), own);
         if (t->shared != NULL && p >= 0) {
             add_product(s, t->shared + (square * i), true, v + ((ptrdiff_t)s * p), own);
             add_product(s, t->shared + (square * i), false, v + ((ptrdiff_t)s * i), other);
         }
-        for (int c = first_of(t, i); c < first_of(t, i + 1); c++, b += s) {
+        for (int c = mt_tree_first(t, i); c < mt_tree_first(t, i + 1); c++, b += s) {
             x[c] = 0.0;
             for (int k = 0; k < s; k++) {
                 x[c] += b[k] * own[k];
@@ -182,14 +169,14 @@ void mt_tree_within(const mt_tree *t, const double *x, const double *r, const do
         if (t->carried != NULL) {
             double along[MOST] = {0.0};
             if (t->before[i] >= 0) {
-                carry(t, i, v + ((ptrdiff_t)s * t->before[i]), along);
+                mt_tree_carry(t, i, v + ((ptrdiff_t)s * t->before[i]), along);
             }
             for (int k = 0; k < s; k++) {
                 own[k] = v[k + ((ptrdiff_t)s * i)] - along[k];
             }
             continue;
         }
-        const double *b = basis_of(t, i);
+        const double *b = mt_tree_basis(t, i);
         memset(own, 0, (size_t)s * sizeof *own);
         for (int c = t->y_at[i]; c < t->y_at[i + 1]; c++, b += s) {
             mt_axpy(s, x[c], b, own);
@@ -240,7 +227,7 @@ static void carry_matrix(const mt_tree *t, int i, double *x)
     for (int c = 0; c < t->s; c++) {
         double unit[MOST] = {0.0};
         unit[c] = 1.0;
-        carry(t, i, unit, x + ((ptrdiff_t)c * t->s));
+        mt_tree_carry(t, i, unit, x + ((ptrdiff_t)c * t->s));
     }
 }
 
@@ -260,8 +247,8 @@ static void product(bool transposed, int m, int n, int k, const double *a, const
 }
 
 /* L D L^T = delta in place (d x d, lower); counts negative pivots; size: of the terms on the
- * diagonal. */
-static void pivots(int d, double *delta, const double *size, int *below, bool *certain)
+ * diagonal. *least: of a pivot as a part of the terms that it is the sum of. */
+static void pivots(int d, double *delta, const double *size, int *below, double *least)
 {
     for (int j = 0; j < d; j++) {
         double most = size[j];
@@ -271,7 +258,8 @@ static void pivots(int d, double *delta, const double *size, int *below, bool *c
             most = fmax(most, fabs(taken));
         }
         *below += delta[j + (j * d)] < 0.0 ? 1 : 0;
-        *certain = *certain && fabs(delta[j + (j * d)]) > DOUBTFUL * most;
+        const double part = fabs(delta[j + (j * d)]) / most;
+        *least = part >= *least ? *least : (part >= 0.0 ? part : 0.0);
         if (delta[j + (j * d)] == 0.0) {
             delta[j + (j * d)] = 1.0; /* anything: the count is void */
         }
@@ -306,17 +294,24 @@ typedef struct eliminated {
     double x[SQUARE];
 } eliminated;
 
-/* other (s x s) += add - W^T Delta^-1 W. */
-static void hand_on(int s, const eliminated *e, const double *add, double *other)
+/* other (s x s) += add - W^T Delta^-1 W; sizes likewise, of the terms (NULL: not asked). */
+static void hand_on(int s, const eliminated *e, const double *add, double *other, double *sizes)
 {
     const int d = e->d;
     for (int c = 0; c < s; c++) {
         for (int r = 0; r < s; r++) {
             double taken = 0.0;
+            double size = fabs(add[r + (c * s)]);
             for (int k = 0; k < d; k++) {
-                taken += e->w[k + (r * d)] * e->w[k + (c * d)] / e->delta[k + (k * d)];
+                const double term =
+                    e->w[k + (r * d)] * e->w[k + (c * d)] / e->delta[k + (k * d)];
+                taken += term;
+                size += fabs(term);
             }
             other[r + (c * s)] += add[r + (c * s)] - taken;
+            if (sizes != NULL) {
+                sizes[r + (c * s)] += size;
+            }
         }
     }
 }
@@ -334,9 +329,10 @@ static double load_of(const mt_tree *t, int i, int k)
     return t->force == NULL ? 0.0 : t->force[i] * length * most * most;
 }
 
-/* Eliminate body i, whose H is complete; what is left goes to the one before it. */
-static void eliminate(const mt_tree *t, int i, double tau, double *h, int *below, bool *certain,
-                      eliminated *e)
+/* Eliminate body i, whose H is complete; what is left goes to the one before it. sizes: of what
+ * was summed into each H (NULL: not asked). */
+static void eliminate(const mt_tree *t, int i, double tau, double *h, double *sizes, int *below,
+                      double *least, eliminated *e)
 {
     const int s = t->s;
     const ptrdiff_t square = (ptrdiff_t)s * s;
@@ -353,7 +349,7 @@ static void eliminate(const mt_tree *t, int i, double tau, double *h, int *below
         size[k] = fmax(fabs(e->delta[k + (k * d)]), k < n_y ? 1.0 : load_of(t, i, k));
         e->delta[k + (k * d)] += k < n_y ? 1.0 : 0.0;
     }
-    pivots(d, e->delta, size, below, certain);
+    pivots(d, e->delta, size, below, least);
     if (t->before[i] < 0) {
         return;
     }
@@ -376,7 +372,8 @@ static void eliminate(const mt_tree *t, int i, double tau, double *h, int *below
     }
     product(true, d, s, s, basis, g, e->w);
     forward(d, s, e->delta, e->w);
-    hand_on(s, e, add, h + (square * t->before[i]));
+    const ptrdiff_t other = square * t->before[i];
+    hand_on(s, e, add, h + other, sizes == NULL ? NULL : sizes + other);
 }
 
 /* H = K_g - tau M, body by body, in scratch. */
@@ -397,11 +394,12 @@ mt_status mt_tree_count(const mt_tree *t, double tau, mt_arena *scratch, int *be
     double *const h = blocks(t, tau, scratch);
     eliminated e = {.d = 0};
     MT_TRY(mt_arena_check(scratch, err));
+    double least = 1.0;
     *below = 0;
-    *certain = true;
     for (int i = t->n - 1; i >= 0; i--) {
-        eliminate(t, i, tau, h, below, certain, &e);
+        eliminate(t, i, tau, h, NULL, below, &least, &e);
     }
+    *certain = least > DOUBTFUL;
     mt_arena_rewind(scratch, mark);
     return MT_OK;
 }
@@ -445,14 +443,19 @@ static void keep(mt_tree *t, int i, const eliminated *e)
 
 mt_status mt_tree_factor(mt_tree *t, mt_arena *scratch, bool *positive, mt_err *err)
 {
+    const ptrdiff_t size = (ptrdiff_t)t->n * t->s * t->s;
     double *const h = blocks(t, 0.0, scratch);
     int below = 0;
     MT_TRY(mt_arena_check(scratch, err));
+    for (ptrdiff_t k = 0; k < size; k++) {
+        t->settled[k] = fabs(h[k]);
+    }
     *positive = true;
     for (int i = t->n - 1; i >= 0 && *positive; i--) {
         eliminated e = {.d = 0};
-        eliminate(t, i, 0.0, h, &below, positive, &e);
-        *positive = *positive && below == 0;
+        double least = 1.0;
+        eliminate(t, i, 0.0, h, t->settled, &below, &least, &e);
+        *positive = least > DOUBTFUL && below == 0;
         if (*positive) {
             keep(t, i, &e);
         }

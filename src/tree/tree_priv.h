@@ -21,10 +21,25 @@ static inline int mt_tree_freedom(const mt_tree *t, int k)
 {
     return t->s == MT_TREE_MOTION || k < 2 ? k : MT_TREE_MOTION - 1;
 }
-/* p += X_i^T f, X the rigid motion along with the body before. */
+/* v := X_i p, X the rigid motion along with the body before. */
+void mt_tree_carry(const mt_tree *t, int i, const double *p, double *v);
+/* p += X_i^T f. */
 void mt_tree_carry_back(const mt_tree *t, int i, const double *f, double *p);
-/* Basis of the edge of body i into basis[s x s]: *n_y columns N F, then *n_loose columns N R.
- * False with the reason in why: what is no tree. */
+/* Columns N F, then N R of body i; N' where something loads. */
+static inline const double *mt_tree_basis(const mt_tree *t, int i)
+{
+    return (t->scaled != NULL ? t->scaled : t->basis) +
+           ((ptrdiff_t)t->s * (t->y_at[i] + t->loose_at[i]));
+}
+
+/* Coordinates x of body i: from the first to before the end. */
+static inline int mt_tree_first(const mt_tree *t, int i)
+{
+    return t->scaled != NULL ? t->y_at[i] + t->loose_at[i] : t->y_at[i];
+}
+
+/* Basis of the edge of body i into basis[s x s]: *n_y columns N F, then *n_loose columns N R;
+ * its length, doubt and lost. False with the reason in why: what is no tree. */
 bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_loose);
 /* Masses of all bodies; *is_tree false: the same. Fails: MT_E_MEMORY. */
 mt_status mt_tree_masses(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_err *err);
@@ -44,8 +59,8 @@ mt_status mt_tree_hold(const mt_tree *t, int c, const double *row, mt_tree_held 
 /* lambda[c]: A^T lambda = -g, least squares. */
 void mt_tree_multipliers(const mt_tree *t, const mt_tree_held *h, const double *g,
                          double *lambda);
-/* After them: fill carried and scaled; *positive: K is, as its pivots tell. Fails: MT_E_MEMORY.
- * */
+/* After them: fill carried, scaled and settled; *positive: K is, as its pivots tell. Fails:
+ * MT_E_MEMORY. */
 mt_status mt_tree_factor(mt_tree *t, mt_arena *scratch, bool *positive, mt_err *err);
 
 #endif

@@ -293,13 +293,15 @@ static void lowest__say_what_is_no_tree(mt_test *t)
          "\"revolute\", "
          "\"bodies\": [\"a\", \"b\"], \"at\": [0, 1]}, {\"name\": \"k\", \"type\": \"fixed\", "
          "\"bodies\": [\"ground\", \"a\"], \"at\": [1, 0]}]",
-         "\"b\" is not drawn at rest under its load; nor the sparse one, as something loads "
-         "it"},
+         "\"b\" is not drawn at rest under its load; nor the sparse one, as \"b\" is not drawn "
+         "at "
+         "rest under its load"},
         {"\"gravity_m_per_s2\": [0, 9.81], \"joints\": [{\"name\": \"j\", \"type\": "
          "\"revolute\", \"bodies\": [\"a\", \"b\"], \"at\": [1, 2]}, {\"name\": \"k\", "
          "\"type\": \"fixed\", \"bodies\": [\"ground\", \"a\"], \"at\": [1, 0]}]",
-         "it is free to move, or not stable, under its load; nor the sparse one, as something "
-         "loads it"},
+         "it is free to move, or not stable, under its load; nor the sparse one, as a motion "
+         "without stiffness has no mass, it is not stable, or sixteen digits do not hold all "
+         "of its motions"},
         {"\"gravity_m_per_s2\": [0, -9.81], \"joints\": [{\"name\": \"j\", \"type\": "
          "\"revolute\", \"bodies\": [\"a\", \"b\"], \"at\": [1, 2]}, {\"name\": \"k\", "
          "\"type\": \"fixed\", \"bodies\": [\"ground\", \"a\"], \"at\": [1, 0]}]",

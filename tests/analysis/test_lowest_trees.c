@@ -4,15 +4,18 @@
  * springs and bushings of every kind that a tree may have, point masses, free parts,
  * stiffnesses over decades; and hanging, or standing, along gravity. The same with loops: more
  * springs, and joints, between any two of the bodies, redundant ones among them.
+ * MT_STRESS_ROUNDS=N: N times as many.
  */
+#include <float.h>
 #include <stdlib.h>
 
 #include "analysis/lowest.h"
 #include "analysis/sensitivity.h"
 #include "mechanics/mech.h"
 #include "mt_random.h"
+#include "stress/table.h"
 
-enum { TEXT = 80000, TREES = 300, LOOPED = 1200, MOST_BODIES = 9, COUNT = 6, INPUTS = 7 };
+enum { TEXT = 80000, TREES = 500, LOOPED = 1200, MOST_BODIES = 9, COUNT = 6, INPUTS = 7 };
 
 /* Parameters of every tree: masses, an inertia, stiffnesses, lengths along gravity and across,
  * where one joint sits, gravity. */
@@ -22,8 +25,10 @@ static const struct {
 } INPUT[INPUTS] = {{"m", 1.0}, {"J", 1.0}, {"k", 1.0}, {"L", 1.0},
                    {"W", 1.0}, {"a", 0.0}, {"g", 1.0}};
 
-/* Slopes of simple modes agree to this part of what scales them. */
+/* Slopes of simple modes agree to this part of what scales them, */
 static const double SLOPE_TOL = 1e-8;
+/* and to the rounding of the dense way's shapes: of its stiffest mode, beside a soft one. */
+static const double SHAPE_ULPS = 4.0;
 
 typedef struct writer {
     char *text;
@@ -317,11 +322,13 @@ static void write_springs(writer *w, tree *m)
     ADD(w, "]");
 }
 
-/* Every mode is where the dense way has it, within the sum of the errors that both state. */
-static void compare(mt_test *t, const mt_lowest *l, const mt_modes *want)
+/* Every mode is where the dense way has it, within the sum of the errors that both state.
+ * *rough counts the trees whose residuals are far above rounding: where motions cancel. */
+static void compare(mt_test *t, const mt_lowest *l, const mt_modes *want, int *rough)
 {
     const mt_modes *const got = &l->found.modes;
     const bool edges = l->way == MT_LOWEST_TREE;
+    double most = 0.0;
     const int count = want->n_rigid + COUNT < want->count ? want->n_rigid + COUNT : want->count;
     CHECK_INT(t, got->n_rigid, want->n_rigid);
     if (!CHECK_INT(t, got->count, count)) {
@@ -331,12 +338,15 @@ static void compare(mt_test *t, const mt_lowest *l, const mt_modes *want)
         CHECK_INT(t, got->kind[i], want->kind[i]);
         CHECK(t, fabs(got->lambda[i] - want->lambda[i]) <= got->error[i] + want->error[i]);
         CHECK(t, got->error[i] <= (edges ? 1e-9 : 1e-6) * got->lambda[i]);
-        CHECK(t, !edges || got->residual[i] <= 10.0);
+        most = !(got->residual[i] <= most) ? got->residual[i] : most;
     }
+    *rough += edges && !(most <= 10.0) ? 1 : 0;
 }
 
-/* Slopes by every parameter; *told counts the trees that have some. */
-static void compare_slopes(mt_test *t, int seed, mt_lowest *l, mech *dense, int *told)
+/* Slopes by every parameter; stiffest: lambda of the dense way's last mode; *told counts the
+ * trees that have some. */
+static void compare_slopes(mt_test *t, int seed, mt_lowest *l, mech *dense, double stiffest,
+                           int *told)
 {
     double got[COUNT * INPUTS];
     double want[COUNT];
@@ -364,7 +374,9 @@ static void compare_slopes(mt_test *t, int seed, mt_lowest *l, mech *dense, int 
                 MT_OK);
             for (int i = 0; i < n; i++) {
                 const double hz = mt_modal_hz(m, m->n_rigid + i);
-                CHECK_NEAR_ABS(t, got[i + (n * k)], want[i], SLOPE_TOL * (hz + fabs(want[i])));
+                const double stiffer = stiffest / m->lambda[m->n_rigid + i];
+                const double part = SLOPE_TOL + (SHAPE_ULPS * DBL_EPSILON * stiffer);
+                CHECK_NEAR_ABS(t, got[i + (n * k)], want[i], part * (hz + fabs(want[i])));
             }
         }
     }
@@ -375,10 +387,11 @@ static void check_trees(mt_test *t, bool hung, bool looped, int least)
 {
     writer w = {.text = malloc(TEXT)};
     static const int input[INPUTS] = {0, 1, 2, 3, 4, 5, 6};
-    const int trees = looped ? LOOPED : TREES;
+    const int trees = rounds() * (looped ? LOOPED : TREES);
     int found = 0;
     int refused = 0;
     int told = 0;
+    int rough = 0;
     REQUIRE(t, w.text != NULL);
     for (int i = 0; i < trees; i++) {
         tree m;
@@ -412,39 +425,42 @@ static void check_trees(mt_test *t, bool hung, bool looped, int least)
                   MT_OK);
         if (l != NULL && l->way != MT_LOWEST_NONE) {
             CHECK_INT(t, l->found.modes.n, dense.a->modes.n);
-            compare(t, l, &dense.a->modes);
+            compare(t, l, &dense.a->modes, &rough);
             found += (l->way == MT_LOWEST_SPARSE) == looped ? 1 : 0;
         } else if (l != NULL) { /* with few freedoms and all of them asked for, some */
             refused += hung ? 0 : 1;
         }
         if (l != NULL && l->way != MT_LOWEST_NONE) {
-            compare_slopes(t, i + 1, l, &dense, &told);
+            const mt_modes *const all = &dense.a->modes;
+            const double stiffest = all->count > 0 ? all->lambda[all->count - 1] : 0.0;
+            compare_slopes(t, i + 1, l, &dense, stiffest, &told);
         }
         mt_lowest_delete(l);
         mech_free(&dense);
     }
     mt_test_row(t, "all");
     CHECK(t, found >= least);
+    CHECK(t, rough <= trees / 1000);
     CHECK(t, refused <= (looped ? trees / 200 : 0));
-    CHECK(t, told >= least - 10);
+    CHECK(t, told >= least - (10 * rounds()));
     free(w.text);
 }
 
 static void lowest__of_random_trees_are_those_of_the_dense_way(mt_test *t)
 {
-    check_trees(t, false, false, TREES * 8 / 10);
+    check_trees(t, false, false, rounds() * TREES * 8 / 10);
 }
 
 /* Of those whose springs let them rest as drawn, and hold them upright. */
 static void lowest__of_random_trees_under_gravity_likewise(mt_test *t)
 {
-    check_trees(t, true, false, TREES / 4);
+    check_trees(t, true, false, rounds() * TREES / 4);
 }
 
 /* Where they are no trees, in coordinates of their bodies. */
 static void lowest__of_random_mechanisms_with_loops_likewise(mt_test *t)
 {
-    check_trees(t, false, true, LOOPED / 2);
+    check_trees(t, false, true, rounds() * LOOPED / 2);
 }
 
 MT_TEST_MAIN(MT_TEST(lowest__of_random_trees_are_those_of_the_dense_way),

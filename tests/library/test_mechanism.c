@@ -346,8 +346,9 @@ typedef struct share {
     double hz[TASKS];
 } share;
 
-static mt_status one_task(void *context, int worker, int task, mt_err *err)
+static mt_status one_task(void *context, int worker, int task, mt_scope *own, mt_err *err)
 {
+    (void)own;
     share *const s = context;
     const double at[] = {1.0 + (0.1 * task)};
     const mt_status rc = mt_mechanism_evaluate(s->of[worker], at, err);
@@ -365,8 +366,10 @@ static void mechanism__threads_share_a_model(mt_test *t)
         REQUIRE(t, mt_mechanism_new(model, NULL, 1, names, &s[0].of[i], NULL) == MT_OK);
         s[1].of[i] = s[0].of[i];
     }
-    CHECK_INT(t, mt_workers_run(THREADS, TASKS, one_task, &s[0], NULL), MT_OK);
-    CHECK_INT(t, mt_workers_run(1, TASKS, one_task, &s[1], NULL), MT_OK);
+    const mt_tasks many = {TASKS, one_task, NULL, &s[0]};
+    const mt_tasks alone = {TASKS, one_task, NULL, &s[1]};
+    CHECK_INT(t, mt_workers_run(THREADS, NULL, &many, NULL), MT_OK);
+    CHECK_INT(t, mt_workers_run(1, NULL, &alone, NULL), MT_OK);
     for (int k = 0; k < TASKS; k++) {
         CHECK(t, s[0].hz[k] == s[1].hz[k]);
     }
