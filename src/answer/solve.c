@@ -5,6 +5,8 @@
  * hands it up, so none can forget to. What a phase that was cut has written is taken back, and
  * those that need what it would have found are not begun.
  */
+#include "answer/solve.h"
+
 #include "answer/solve_priv.h"
 
 #include <math.h>
@@ -102,8 +104,9 @@ static mt_status leave(mt_answer *a, mt_phase which, mt_err *err)
 
 static mt_status phase(mt_answer *a, mt_phase which, mt_err *err)
 {
-#define MT_PHASE_WORK(id, name, makes_ready, work) {makes_ready, work},
+#define MT_PHASE_WORK(id, name, makes_ready, work) {name, makes_ready, work},
     static const struct {
+        const char *name;
         bool makes_ready;
         mt_status (*work)(mt_answer *a, mt_err *err);
     } phases[] = {MT_PHASE_LIST(MT_PHASE_WORK)};
@@ -117,6 +120,7 @@ static mt_status phase(mt_answer *a, mt_phase which, mt_err *err)
         return MT_OK;
     }
     a->mark = mt_result_get_mark(a->result);
+    a->scope = mt_scope_in(a->whole, phases[which].name);
     mt_interrupt_enter(a->interrupt, (int)which, phases[which].makes_ready);
     const mt_status rc = phases[which].work(a, &own);
     const bool cut = mt_interrupt_is_cut(a->interrupt, (int)which);
@@ -204,6 +208,7 @@ static mt_status open_workers(mt_answer *a, int threads, mt_err *err)
     for (int i = 0; i < n; i++) {
         MT_TRY(mt_workspace_new(a->p, &a->workers[i], err));
         a->workers[i]->accuracy = search_accuracy(a->p);
+        a->workers[i]->scope = i == 0 ? &a->scope : NULL; /* tasks have places of their own */
         mt_workspace_back(a->workers[i], &a->asked);
         a->n_workers = i + 1;
     }
@@ -258,8 +263,27 @@ static mt_status tell_cut_lists(mt_answer *a, mt_err *err)
     return mt_arena_check(&r->mem, err);
 }
 
+/* A part of the work: the lists of tasks that wait for none of what other parts do. What they
+ * leave is in the ledger; the answer, of what is known, is cut. */
+static mt_status conduct_part(mt_answer *a, mt_err *err)
+{
+    static const mt_phase lists[] = {MT_PHASE_SEARCH, MT_PHASE_TRADE};
+    for (int i = 0; i < MT_COUNT(lists) && !mt_interrupt_any(a->interrupt); i++) {
+        mt_err own = {.code = MT_OK};
+        const mt_status rc = phase(a, lists[i], &own);
+        if (rc != MT_OK && rc != MT_E_INTERRUPTED) {
+            return mt_fail(err, rc, "%s", own.text);
+        }
+    }
+    return MT_OK;
+}
+
 static mt_status conduct(mt_answer *a, mt_err *err)
 {
+    if (a->whole != NULL && a->whole->ledger != NULL && a->whole->ledger->parts > 0 &&
+        !a->whole->inner) {
+        return conduct_part(a, err);
+    }
     MT_TRY(phase(a, MT_PHASE_SEARCH, err));
     MT_TRY(phase(a, MT_PHASE_RECOMMENDATIONS, err));
     MT_TRY(phase(a, MT_PHASE_SPREAD, err));
@@ -279,11 +303,12 @@ static mt_status conduct(mt_answer *a, mt_err *err)
     return mt_answer_note_cuts(a, err);
 }
 
-mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt, mt_result **out,
-                             mt_err *err)
+mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt, const mt_scope *scope,
+                             mt_result **out, mt_err *err)
 {
     mt_answer a = {.q = q, .study = &q->study, .p = q->p, .interrupt = &q->interrupt};
     a.threads = opt->threads;
+    a.whole = scope;
     *out = NULL;
     mt_status rc = mt_arena_init(&a.mem, 0, err);
     rc = rc == MT_OK ? mt_result_new(&a.result, err) : rc;
@@ -304,6 +329,12 @@ mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt, mt_res
 mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_result **out,
                          mt_err *err)
 {
+    return mt_study_solve_with(study, opt, NULL, out, err);
+}
+
+mt_status mt_study_solve_with(const mt_study *study, const mt_solve_options *opt,
+                              mt_ledger *ledger, mt_result **out, mt_err *err)
+{
     mt_solve_options use;
     mt_question q = {.p = NULL};
     MT_NOT_NULL(out, err);
@@ -316,7 +347,8 @@ mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_
         }
     }
     mt_status rc = mt_question_init(&q, study, &use, err);
-    rc = rc == MT_OK ? mt_question_answer(&q, &use, out, err) : rc;
+    const mt_scope whole = {.ledger = ledger, .interrupt = &q.interrupt};
+    rc = rc == MT_OK ? mt_question_answer(&q, &use, &whole, out, err) : rc;
     mt_question_free(&q);
     return rc;
 }

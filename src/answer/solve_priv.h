@@ -2,7 +2,7 @@
 #ifndef ANSWER_SOLVE_PRIV_H
 #define ANSWER_SOLVE_PRIV_H
 
-#include "base/interrupt.h"
+#include "base/workers.h"
 #include "search/discrete.h"
 #include "search/gaps.h"
 
@@ -43,9 +43,9 @@ mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_solve
                            mt_err *err);
 /* Accepts a zeroed one. */
 void mt_question_free(mt_question *q);
-/* mt_study_solve of what was compiled. */
-mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt, mt_result **out,
-                             mt_err *err);
+/* mt_study_solve of what was compiled, in its place (NULL: nowhere). */
+mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt, const mt_scope *scope,
+                             mt_result **out, mt_err *err);
 
 /* One answer to it. */
 typedef struct mt_answer {
@@ -55,6 +55,8 @@ typedef struct mt_answer {
     mt_interrupt *interrupt;
     mt_result_mark mark; /* of the result: what is complete */
     int threads;
+    const mt_scope *whole;  /* its place in the work, or NULL */
+    mt_scope scope;         /* that of the present phase */
     mt_case asked;          /* the whole of it; with the caller's design to start from */
     mt_workspace **workers; /* [n_workers] owned, set to that */
     int n_workers;

@@ -3,6 +3,7 @@
 
 #include "answer/solve_priv.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -97,13 +98,14 @@ static void forget(point *p)
 }
 
 /* Answer it, from hint[n_variables] too where that is not NULL. */
-static mt_status answer(point *p, const double *hint, mt_result **out, mt_err *err)
+static mt_status answer(point *p, const double *hint, const mt_scope *own, mt_result **out,
+                        mt_err *err)
 {
     const mt_solve_options opt = {.size = sizeof opt, .threads = 1, .hint = hint};
-    return mt_question_answer(p->q, &opt, out, err);
+    return mt_question_answer(p->q, &opt, own, out, err);
 }
 
-static mt_status solve_cold(void *context, int worker, int task, mt_err *err)
+static mt_status solve_cold(void *context, int worker, int task, mt_scope *own, mt_err *err)
 {
     const trade *const t = context;
     const int k = t->from + task;
@@ -113,7 +115,7 @@ static mt_status solve_cold(void *context, int worker, int task, mt_err *err)
         return MT_OK;
     }
     mt_status rc = ask(t, p, err);
-    rc = rc == MT_OK ? answer(p, NULL, &p->first, err) : rc;
+    rc = rc == MT_OK ? answer(p, NULL, own, &p->first, err) : rc;
     p->evaluations = p->first != NULL ? p->first->run.evaluations : 0;
     if (rc != MT_OK || !t->warm) {
         forget(p);
@@ -167,8 +169,8 @@ static bool better(const mt_study *study, const mt_result *a, const mt_result *b
 
 /* From the neighbours' designs of the first pass, which are no longer changed: any order gives
  * the same. */
-static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, mt_arena *mem,
-                                mt_err *err)
+static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt_scope *own,
+                                mt_arena *mem, mt_err *err)
 {
     point *const p = &t->points[k];
     const mt_recommendation *const best = best_of(p->first);
@@ -190,7 +192,7 @@ static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, mt_arena
             continue;
         }
         mt_result *fresh = NULL;
-        MT_TRY(answer(p, x, &fresh, err));
+        MT_TRY(answer(p, x, own, &fresh, err));
         p->evaluations += fresh != NULL ? fresh->run.evaluations : 0;
         if (better(&p->q->study, fresh, answer_of(p))) {
             mt_result_delete(p->again);
@@ -203,7 +205,7 @@ static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, mt_arena
     return MT_OK;
 }
 
-static mt_status solve_warm(void *context, int worker, int task, mt_err *err)
+static mt_status solve_warm(void *context, int worker, int task, mt_scope *own, mt_err *err)
 {
     const trade *const t = context;
     const int k = t->from + task;
@@ -211,16 +213,79 @@ static mt_status solve_warm(void *context, int worker, int task, mt_err *err)
     mt_workspace *w = NULL;
     mt_arena mem;
     (void)worker;
-    if (stopped(t) || p->q == NULL) {
+    if (stopped(t) || p->first == NULL) {
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&mem, 0, err));
-    mt_status rc = mt_workspace_new(p->q->p, &w, err);
-    rc = rc == MT_OK ? try_neighbours(t, k, w, &mem, err) : rc;
+    mt_status rc = p->q == NULL ? ask(t, p, err) : MT_OK; /* where its record was read */
+    rc = rc == MT_OK ? mt_workspace_new(p->q->p, &w, err) : rc;
+    rc = rc == MT_OK ? try_neighbours(t, k, w, own, &mem, err) : rc;
     mt_workspace_delete(w);
     mt_arena_free(&mem);
     forget(p);
     return told(t, k, rc, err);
+}
+
+/* What the front, the neighbours and the result want of an answer. */
+static void tape_answer(const trade *t, mt_result *r, mt_tape *tape)
+{
+    const int n = t->study->n_variables;
+    int status = (int)r->status;
+    mt_tape_int(tape, &status, 0, MT_RESULT_STATUS_COUNT - 1);
+    mt_tape_text(tape, &r->status_text, &r->mem);
+    r->status = (mt_result_status)status;
+    int best = r->n_recommendations > 0 ? 1 : 0;
+    mt_tape_int(tape, &best, 0, 1);
+    if (tape->reads && best > 0 && !tape->failed) {
+        r->recommendations = mt_arena_alloc(&r->mem, 1, sizeof *r->recommendations);
+        tape->failed = r->recommendations == NULL;
+    }
+    if (best > 0 && !tape->failed) {
+        mt_record_tape(&mt_design_record, &r->recommendations[0], n, tape, &r->mem);
+        tape->failed = tape->failed || r->recommendations[0].n_parameters != n;
+        r->n_recommendations = tape->reads ? 1 : r->n_recommendations;
+    }
+}
+
+/* An answer that there need not be. */
+static void tape_result(const trade *t, mt_result **r, mt_tape *tape)
+{
+    bool there = *r != NULL;
+    mt_tape_flag(tape, &there);
+    if (there && tape->reads) {
+        tape->failed = tape->failed || mt_result_new(r, NULL) != MT_OK;
+    }
+    if (*r != NULL && !tape->failed) {
+        tape_answer(t, *r, tape);
+    }
+}
+
+/* Either pass: its answer, and what the point has cost so far. */
+static void tape_point(const trade *t, int task, bool warm, mt_tape *tape)
+{
+    point *const p = &t->points[t->from + task];
+    mt_result **const r = warm ? &p->again : &p->first;
+    const long before = p->evaluations;
+    mt_tape_long(tape, &p->evaluations, 0, LONG_MAX);
+    tape_result(t, r, tape);
+    tape->failed = tape->failed || (!warm && *r == NULL);
+    if (tape->reads && !mt_tape_is_read(tape)) {
+        mt_result_delete(*r);
+        *r = NULL;
+        p->evaluations = before;
+    } else if (tape->reads && warm) {
+        forget(p);
+    }
+}
+
+static void tape_cold(void *context, int task, mt_tape *tape)
+{
+    tape_point(context, task, false, tape);
+}
+
+static void tape_warm(void *context, int task, mt_tape *tape)
+{
+    tape_point(context, task, true, tape);
 }
 
 static mt_status begin(trade *t, mt_arena *mem, mt_err *err)
@@ -359,26 +424,35 @@ static mt_status describe(const trade *t, mt_result *result, mt_err *err)
     return MT_OK;
 }
 
-/* All points, and once more each whose neighbours are known. */
-static mt_status solve_all(trade *t, int threads, mt_err *err)
+/* All points, and once more each whose neighbours are known: what is left to other parts of the
+ * work is not. */
+static mt_status solve_all(trade *t, int threads, const mt_scope *scope, mt_err *err)
 {
+    mt_scope first = mt_scope_in(scope, "first");
+    mt_scope again = mt_scope_in(scope, "again");
+    mt_status part = MT_OK;
     int ready = 0;
     for (int known = 0; known < t->n;) {
         const int to = t->n - known > BLOCK ? known + BLOCK : t->n;
         t->from = known;
-        MT_TRY(mt_workers_run(threads, to - known, solve_cold, t, err));
+        const mt_tasks cold = {to - known, solve_cold, tape_cold, t};
+        const mt_status rc = mt_workers_run(threads, &first, &cold, err);
+        MT_TRY(rc == MT_E_INTERRUPTED ? MT_OK : rc);
+        part = rc == MT_OK ? part : rc;
         known = to;
         t->from = ready;
         ready = known == t->n ? known : known - t->size[1];
-        if (t->warm && ready > t->from) {
-            MT_TRY(mt_workers_run(threads, ready - t->from, solve_warm, t, err));
+        if (t->warm && part == MT_OK && ready > t->from) {
+            const mt_tasks warm = {ready - t->from, solve_warm, tape_warm, t};
+            MT_TRY(mt_workers_run(threads, &again, &warm, err));
         }
         ready = ready > t->from ? ready : t->from;
     }
-    return MT_OK;
+    return part;
 }
 
-mt_status mt_trade_solve(const mt_study *study, int threads, mt_result *result, mt_err *err)
+mt_status mt_trade_solve(const mt_study *study, int threads, const mt_scope *scope,
+                         mt_result *result, mt_err *err)
 {
     trade t = {.study = study, .warm = study->n_objectives > 0 && !mt_study_is_discrete(study)};
     mt_arena mem;
@@ -387,7 +461,7 @@ mt_status mt_trade_solve(const mt_study *study, int threads, mt_result *result, 
     }
     MT_TRY(mt_arena_init(&mem, 0, err));
     mt_status rc = begin(&t, &mem, err);
-    rc = rc == MT_OK ? solve_all(&t, threads, err) : rc;
+    rc = rc == MT_OK ? solve_all(&t, threads, scope, err) : rc;
     rc = rc == MT_OK ? describe(&t, result, err) : rc;
     for (int k = 0; k < t.n && t.points != NULL; k++) {
         forget(&t.points[k]);

@@ -2,6 +2,7 @@
 #ifndef ANSWER_TRADE_H
 #define ANSWER_TRADE_H
 
+#include "base/workers.h"
 #include "problem/workspace.h"
 #include "result/result.h"
 #include "study/study.h"
@@ -13,10 +14,11 @@
  * what is better: a curve without gaps, and the same for any number of workers. Fills
  * result->trade; adds to its evaluations and warnings. Nothing where the study has no trade
  * part. Cost: that of the study times the number of points. An interrupt of the study's model
- * leaves points without an answer, which say so. Fails: as mt_study_solve; the text names the
- * point.
+ * leaves points without an answer, which say so. scope: the place of its points; a part of the
+ * work does its points and is interrupted. Fails: as mt_study_solve; the text names the point.
  */
-mt_status mt_trade_solve(const mt_study *study, int threads, mt_result *result, mt_err *err);
+mt_status mt_trade_solve(const mt_study *study, int threads, const mt_scope *scope,
+                         mt_result *result, mt_err *err);
 
 /* trade_study.c: the study of one point, values[n_vary] put in. It borrows all that is not
  * replaced; what is lives in mem. Fails: MT_E_MEMORY, MT_E_DOMAIN (a parameter without a

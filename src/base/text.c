@@ -54,6 +54,19 @@ void mt_text_add_n(mt_text *t, const char *s, size_t n)
     t->s[t->length] = '\0';
 }
 
+void mt_text_add_uri(mt_text *t, const char *path)
+{
+    static const char plain[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~/";
+    static const char digits[] = "0123456789ABCDEF";
+    for (const char *c = path; *c != '\0'; c++) {
+        const unsigned byte = (unsigned char)*c;
+        const char escape[] = {'%', digits[byte >> 4U], digits[byte & 15U]};
+        const bool as_it_is = strchr(plain, *c) != NULL;
+        mt_text_add_n(t, as_it_is ? c : escape, as_it_is ? 1 : sizeof escape);
+    }
+}
+
 void mt_text_addf(mt_text *t, const char *fmt, ...)
 {
     va_list args;

@@ -23,6 +23,10 @@ void mt_text_add_n(mt_text *t, const char *s, size_t n);
  * mt_text_add. */
 void mt_text_addf(mt_text *t, const char *fmt, ...) MT_PRINTF(2, 3);
 
+/* A path as a URI has it (RFC 3986): every byte that is neither unreserved nor a slash as
+ * %XX. */
+void mt_text_add_uri(mt_text *t, const char *path);
+
 /* Names longer than this (bytes) are compared for equality only. */
 enum { MT_TEXT_DISTANCE_MAX = 255 };
 

@@ -7,8 +7,7 @@
 
 #include "base/arena.h"
 
-/* A path without "." and "a/.." and doubled slashes; heap, NULL when out of memory. */
-static char *normal(const char *path)
+char *mt_files_normal(const char *path)
 {
     char *const out = malloc(strlen(path) + 2);
     if (out == NULL) {
@@ -48,9 +47,9 @@ static const char *find(const mt_files *files, const char *path, mt_status *rc)
     if (files == NULL || files->n == 0) {
         return NULL;
     }
-    char *const wanted = normal(path);
+    char *const wanted = mt_files_normal(path);
     for (int i = 0; i < files->n && found == NULL && wanted != NULL; i++) {
-        char *const name = normal(files->given[i].path);
+        char *const name = mt_files_normal(files->given[i].path);
         if (name == NULL) {
             *rc = MT_E_MEMORY;
             break;

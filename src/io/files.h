@@ -17,6 +17,9 @@ typedef struct mt_files {
 /* As mt_file_read, from there; files may be NULL. What is given has no root. O(n) paths. */
 mt_status mt_files_read(const mt_files *files, const char *path, const char *root, size_t limit,
                         mt_file *out, mt_err *err);
+/* A path without "." and "a/.." and doubled slashes, by its text alone; heap, NULL when out of
+ * memory. */
+char *mt_files_normal(const char *path);
 /* Is it sure that the path leads to nothing there? */
 bool mt_files_lack(const mt_files *files, const char *path);
 

@@ -334,8 +334,7 @@ static mt_status make_folder(const char *path, mt_err *err)
     return MT_OK;
 }
 
-/* A folder and those above it. */
-static mt_status make_folders(const char *path, mt_err *err)
+mt_status mt_folder_make(const char *path, mt_err *err)
 {
     mt_text t = {.s = NULL};
     mt_status rc = MT_OK;
@@ -410,7 +409,7 @@ mt_status mt_folder_replace(const char *folder, const mt_folder_file *files, int
     replacement r = {.folder = folder, .fd = -1, .files = files, .n = n, .err = err};
     for (int i = 0; i < TIMES; i++) {
         mt_folder_unlock(r.fd);
-        MT_TRY(make_folders(folder, err));
+        MT_TRY(mt_folder_make(folder, err));
         MT_TRY(mt_folder_lock(folder, false, MT_FOLDER_PATIENCE_MS, &r.fd, err));
         if (still_there(r.fd, folder)) {
             break;

@@ -16,6 +16,10 @@ typedef struct mt_folder_file {
 
 enum { MT_FOLDER_NAME = 128, MT_FOLDER_PATIENCE_MS = 60000 };
 
+/* Make a folder and those above it, as far as they are not there. Fails: MT_E_SYSTEM,
+ * MT_E_MEMORY. */
+mt_status mt_folder_make(const char *path, mt_err *err);
+
 /**
  * Replace n files of a folder as one, others in it are left alone; the folder and those above
  * it are made. The last file decides: until it has been renamed the old files can be had back,

@@ -386,17 +386,25 @@ static void check_outputs(result_reader *s, mt_addr list)
     }
 }
 
-static void read_root(result_reader *s)
+bool mt_result_check_format(mt_reader *r)
 {
     static const char *const formats[] = {"modetune-result/1"};
-    if (!mt_reader_type(&s->r, MT_JSON_ROOT, MT_KEY_OBJECT)) {
+    if (!mt_reader_type(r, MT_JSON_ROOT, MT_KEY_OBJECT)) {
+        return false;
+    }
+    const mt_addr format = mt_json_member(r->doc, MT_JSON_ROOT, FORMAT);
+    if (format == MT_NO_ADDR) {
+        mt_diag_structure(r->diags, MT_JSON_ROOT, "member \"%s\" is missing", FORMAT);
+    }
+    (void)mt_reader_choice(r, format, FORMAT, formats, MT_COUNT(formats));
+    return true;
+}
+
+static void read_root(result_reader *s)
+{
+    if (!mt_result_check_format(&s->r)) {
         return;
     }
-    const mt_addr format = member(s, MT_JSON_ROOT, FORMAT);
-    if (format == MT_NO_ADDR) {
-        mt_diag_structure(s->r.diags, MT_JSON_ROOT, "member \"%s\" is missing", FORMAT);
-    }
-    (void)mt_reader_choice(&s->r, format, FORMAT, formats, MT_COUNT(formats));
     list_variables(s);
     read_members(s, MT_JSON_ROOT, &mt_result_record, s->result);
     check_design(s, member(s, MT_JSON_ROOT, "baseline"));

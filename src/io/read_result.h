@@ -4,6 +4,7 @@
 
 #include "base/diagnostics.h"
 #include "io/options.h"
+#include "io/reader.h"
 #include "result/result.h"
 
 /**
@@ -14,5 +15,8 @@
  */
 mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result **out,
                          mt_diagnostics *messages, mt_err *err);
+
+/* Is the document an object? Where it does not say that it is a result, that is noted. */
+bool mt_result_check_format(mt_reader *r);
 
 #endif

@@ -7,8 +7,10 @@
  */
 #include "io/result_folder.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "io/file.h"
 #include "io/folder.h"
@@ -27,6 +29,28 @@ const char *mt_result_file_name(mt_result_file which)
     static const char *const names[MT_RESULT_FILE_COUNT] = {MT_RESULT_FILE_LIST(FILE_NAME)};
 #undef FILE_NAME
     return names[which];
+}
+
+mt_status mt_result_path(const char *path, char **out, mt_err *err)
+{
+    struct stat st;
+    mt_text t = {.s = NULL};
+    const bool there = stat(path, &st) == 0;
+    *out = NULL;
+    if (!there && !mt_file_absent(path)) {
+        return mt_file_failed(path, errno, err);
+    }
+    mt_text_add(&t, path);
+    if (there && S_ISDIR(st.st_mode)) {
+        mt_text_add(&t, "/");
+        mt_text_add(&t, RESULT);
+    }
+    if (t.failed) {
+        mt_text_free(&t);
+        return mt_fail_memory(err);
+    }
+    *out = t.s;
+    return MT_OK;
 }
 
 mt_status mt_result_note_outputs(mt_result *result, int n, const char *const *names,

@@ -19,6 +19,9 @@ typedef enum mt_result_file {
 } mt_result_file;
 #undef MT_RESULT_FILE_ENUM
 const char *mt_result_file_name(mt_result_file which);
+/* The result that a path leads to: of a folder its result.json, else itself (also where it
+ * leads nowhere). *out: heap, the caller's. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
+mt_status mt_result_path(const char *path, char **out, mt_err *err);
 /* Note in result->run the n files that are to stand beside it, with the digests of their texts.
  * Fails: MT_E_MEMORY. */
 mt_status mt_result_note_outputs(mt_result *result, int n, const char *const *names,

@@ -2,6 +2,7 @@
 #ifndef NLP_LOCAL_H
 #define NLP_LOCAL_H
 
+#include "base/tape.h"
 #include "nlp/engine.h"
 
 /* One local search, and where it ended. */
@@ -30,6 +31,10 @@ void mt_nlp_local_approach(mt_nlp_engine *e, mt_nlp_local *s);
 void mt_nlp_local_finish(mt_nlp_engine *e, mt_nlp_local *s);
 /* Both for the objective under the constraints, the equalities being rows[n_rows]. */
 void mt_nlp_minimise(mt_nlp_engine *e, mt_nlp_local *s);
+/* local_tape.c: where it stands, on tape. Values and slopes are made anew at the designs that
+ * are read, and the record is taken only where they are those that it was written with. False:
+ * it is not, and s is as it was. */
+bool mt_nlp_local_tape(mt_nlp_engine *e, mt_nlp_local *s, mt_tape *tape);
 /* Is it worth Newton's method before a restoration? */
 bool mt_nlp_nearly_feasible(const mt_nlp_point *p);
 /* The point of it that counts. */

@@ -12,6 +12,7 @@
  */
 #include "nlp/nlp.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -55,7 +56,7 @@ typedef enum job_task { BEGIN, APPROACH, FINISH } job_task;
 
 /* The same done with n local searches. */
 typedef struct start_job {
-    const mt_nlp_engine *e; /* the search's own; read only while workers run */
+    mt_nlp_engine *e; /* the search's own; not changed while workers run */
     job_task task;
     mt_nlp_local **at; /* [n] */
     double *t;         /* n x n, the starts where they begin */
@@ -65,8 +66,9 @@ typedef struct start_job {
     atomic_int abort;
 } start_job;
 
-static mt_status run_task(void *context, int worker, int k, mt_err *err)
+static mt_status run_task(void *context, int worker, int k, mt_scope *own, mt_err *err)
 {
+    (void)own;
     start_job *const job = context;
     const mt_nlp_engine *const all = job->e;
     job_slot *const slot = &job->slots[k];
@@ -125,10 +127,39 @@ static void collect(mt_nlp_engine *e, const start_job *job, long before)
     e->ended = e->ended || e->stop == MT_STOP_USER;
 }
 
+/* What a task leaves: what it used, and where its local search stands. */
+static void tape_task(void *context, int k, mt_tape *tape)
+{
+    start_job *const job = context;
+    job_slot *const slot = &job->slots[k];
+    job_slot got = *slot;
+    int stop = (int)slot->stop;
+    int refused = (int)slot->refused;
+    const char *text = slot->refused_err.text;
+    mt_arena *const mem = &job->e->scratch; /* while it is written: of nobody's use */
+    tape->failed = !tape->reads && atomic_load(&job->abort) != 0;
+    mt_tape_long(tape, &got.evals, 0, LONG_MAX);
+    mt_tape_int(tape, &stop, MT_STOP_DONE, MT_STOP_MAX_EVALS);
+    mt_tape_int(tape, &refused, MT_OK, MT_STATUS_COUNT - 1);
+    mt_tape_text(tape, &text, mem);
+    if (!mt_nlp_local_tape(job->e, job->at[k], tape) || !tape->reads) {
+        return;
+    }
+    got.stop = (mt_stop)stop;
+    got.refused = (mt_status)refused;
+    if (refused != MT_OK) {
+        (void)mt_fail(&got.refused_err, got.refused, "%s", text == NULL ? "" : text);
+    }
+    *slot = got;
+}
+
+/* The first values are nothing to be kept; searches are. */
 static void run_job(mt_nlp_engine *e, start_job *job, job_task task, long before)
 {
+    const mt_tasks tasks = {job->n, run_task, tape_task, job};
     job->task = task;
-    (void)mt_nlp_ok(e, mt_workers_run(e->nlp->n_workers, job->n, run_task, job, e->err));
+    (void)mt_nlp_ok(e, mt_workers_run(e->nlp->n_workers, task == BEGIN ? NULL : e->nlp->scope,
+                                      &tasks, e->err));
     collect(e, job, before);
 }
 

@@ -63,6 +63,7 @@ typedef struct mt_nlp {
     int n_workers; /* starts run on so many threads; 0 or 1: the caller's own */
     /* [n_workers] a context for each, contexts[0] == context; NULL with one worker */
     void *const *contexts;
+    struct mt_scope *scope; /* the place of its local searches (base/workers.h), or NULL */
 } mt_nlp;
 
 typedef struct mt_nlp_options {

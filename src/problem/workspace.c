@@ -184,7 +184,8 @@ mt_nlp mt_workspace_nlp(mt_workspace *w)
                         .n_next = c->n_next,
                         .next_of = c->next_of,
                         .eval = mt_workspace_eval,
-                        .context = w};
+                        .context = w,
+                        .scope = w->scope};
     return nlp;
 }
 

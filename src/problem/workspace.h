@@ -44,6 +44,7 @@ typedef struct mt_workspace {
     long evaluations;
     void (*progress)(void *context, const char *text); /* NULL, or called now and then */
     void *progress_context;
+    struct mt_scope *scope; /* the place of its searches (base/workers.h); NULL: nowhere */
 } mt_workspace;
 
 /* Set to p->whole, its views solved at the original design. Fails as mt_analysis_new,

@@ -452,6 +452,7 @@ static void drop_found(search *s)
     }
     out->n_open = kept;
     out->proven = kept == 0 && !out->more;
+    out->undecided = out->proven ? 0.0 : out->undecided;
 }
 
 /* Bisections between one pass and the next: 64 times as many boxes at most. */
@@ -498,6 +499,7 @@ static mt_status visit(search *s, bool *deeper)
         return MT_OK;
     }
     *deeper = *deeper || cut;
+    out->undecided += ldexp(1.0, -depth);
     return note_open(s);
 }
 
@@ -511,6 +513,7 @@ static mt_status run(search *s)
         out->proven = true;
         out->n_open = 0;
         out->more = false;
+        out->undecided = 0.0;
         mt_boxes_start(&s->boxes, s->c->lower, s->c->upper, s->edges.root);
         while (mt_boxes_pop(&s->boxes) && !(s->only != NULL && out->n_found > 0)) {
             MT_TRY(visit(s, &deeper));

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "result/record.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -101,5 +102,110 @@ void mt_record_own(const mt_record *record, void *item, int n_variables, mt_aren
         case MT_FIELD_TYPE_COUNT:
             break;
         }
+    }
+}
+
+/* Numbers, texts or structs that a member points to, `size` bytes each; NULL is kept as NULL,
+ * and there are none of it. */
+static void *tape_items(void *at, int *n, size_t size, mt_tape *tape, mt_arena *mem)
+{
+    bool there = mt_record_get_pointer(at) != NULL;
+    mt_tape_flag(tape, &there);
+    if (!there) {
+        mt_record_set_pointer(at, NULL);
+        *n = 0;
+        return NULL;
+    }
+    void *const items = mt_tape_items(tape, n, size, mt_record_get_pointer(at), mem);
+    mt_record_set_pointer(at, items);
+    return items;
+}
+
+static void tape_list(const mt_record *record, void *at, int *n, int n_variables, mt_tape *tape,
+                      mt_arena *mem)
+{
+    char *const items = tape_items(at, n, record->size, tape, mem);
+    for (int i = 0; i < *n && items != NULL && !tape->failed; i++) {
+        mt_record_tape(record, items + ((size_t)i * record->size), n_variables, tape, mem);
+    }
+}
+
+static void tape_numbers(void *at, int *n, mt_tape *tape, mt_arena *mem)
+{
+    double *const numbers = tape_items(at, n, sizeof *numbers, tape, mem);
+    if (numbers != NULL) {
+        mt_tape_numbers(tape, (size_t)*n, numbers);
+    }
+}
+
+static void tape_texts(void *at, int *n, mt_tape *tape, mt_arena *mem)
+{
+    const char **const texts = tape_items(at, n, sizeof *texts, tape, mem);
+    for (int i = 0; i < *n && texts != NULL && !tape->failed; i++) {
+        mt_tape_text(tape, &texts[i], mem);
+    }
+}
+
+static void tape_field(const mt_field *f, void *at, void *other, int n_variables, mt_tape *tape,
+                       mt_arena *mem)
+{
+    int one = 1;
+    int size = n_variables;
+    switch (f->type) {
+    case MT_FIELD_TEXT:
+    case MT_FIELD_CHOICE:
+        mt_tape_text(tape, at, mem);
+        break;
+    case MT_FIELD_VALUE:
+        mt_tape_numbers(tape, 1, at);
+        mt_tape_text(tape, other, mem);
+        break;
+    case MT_FIELD_NUMBER:
+        mt_tape_numbers(tape, 1, at);
+        break;
+    case MT_FIELD_ENUM:
+        mt_tape_int(tape, at, 0, f->n_choices - 1);
+        break;
+    case MT_FIELD_COUNT:
+        mt_tape_int(tape, at, INT_MIN, INT_MAX);
+        break;
+    case MT_FIELD_LONG:
+        mt_tape_long(tape, at, LONG_MIN, LONG_MAX);
+        break;
+    case MT_FIELD_FLAG:
+        mt_tape_flag(tape, at);
+        break;
+    case MT_FIELD_RECORD:
+        mt_record_tape(f->record, at, n_variables, tape, mem);
+        break;
+    case MT_FIELD_OPTION:
+        tape_list(f->record, at, &one, n_variables, tape, mem);
+        tape->failed = tape->failed || one > 1;
+        break;
+    case MT_FIELD_LIST:
+        tape_list(f->record, at, other, n_variables, tape, mem);
+        break;
+    case MT_FIELD_TEXTS:
+        tape_texts(at, other, tape, mem);
+        break;
+    case MT_FIELD_NUMBERS:
+        tape_numbers(at, other, tape, mem);
+        break;
+    case MT_FIELD_BY_VARIABLE:
+        tape_numbers(at, &size, tape, mem);
+        tape->failed = tape->failed || (size != 0 && size != n_variables);
+        break;
+    case MT_FIELD_TYPE_COUNT:
+        break;
+    }
+}
+
+void mt_record_tape(const mt_record *record, void *item, int n_variables, mt_tape *tape,
+                    mt_arena *mem)
+{
+    for (int i = 0; i < record->n && !tape->failed; i++) {
+        const mt_field *const f = &record->fields[i];
+        tape_field(f, (char *)item + f->offset, (char *)item + f->other, n_variables, tape,
+                   mem);
     }
 }

@@ -7,6 +7,7 @@
 
 #include "base/arena.h"
 #include "base/base.h"
+#include "base/tape.h"
 
 /*
  * What a struct holds, as a table: whoever writes, reads, copies or checks results walks these
@@ -172,6 +173,10 @@ void mt_record_clear(const mt_record *record, void *item);
 /* Every text and list of a struct replaced by a copy in mem, which is asked about shortages at
  * the end; n_variables: of the study. */
 void mt_record_own(const mt_record *record, void *item, int n_variables, mt_arena *mem);
+/* All of a struct on tape; what is read lies in mem, and the struct is of no use where the tape
+ * failed. */
+void mt_record_tape(const mt_record *record, void *item, int n_variables, mt_tape *tape,
+                    mt_arena *mem);
 /* The pointer that lies at a member, whatever it points to. */
 void *mt_record_get_pointer(const void *at);
 void mt_record_set_pointer(void *at, const void *pointer);

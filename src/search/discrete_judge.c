@@ -183,8 +183,9 @@ mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err)
     return mt_pass_final(rc, &own, err);
 }
 
-static mt_status judge_designs(void *context, int worker, int task, mt_err *err)
+static mt_status judge_designs(void *context, int worker, int task, mt_scope *own, mt_err *err)
 {
+    (void)own;
     const judging *const j = context;
     const int end = (task + 1) * PER_TASK < j->n ? (task + 1) * PER_TASK : j->n;
     for (int i = task * PER_TASK; i < end; i++) {
@@ -297,16 +298,19 @@ mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_are
     return rc;
 }
 
-static mt_status judge_mixed(void *context, int worker, int task, mt_err *err)
+static mt_status judge_mixed(void *context, int worker, int task, mt_scope *own, mt_err *err)
 {
     const judging *const j = context;
     mt_workspace *const w = j->d->workers[worker];
     mt_combination *const c = &j->list[task];
+    mt_scope *const before = w->scope;
     mt_arena mem;
     mt_case closed;
     MT_TRY(mt_arena_init(&mem, 0, err));
+    w->scope = own;
     mt_status rc = close_on(j->d, c, j->budget, w, &mem, &closed, err);
     rc = rc == MT_OK ? search_closed(w, &mem, c, err) : rc;
+    w->scope = before;
     mt_workspace_back(w, j->d->c);
     mt_arena_free(&mem);
     if (rc == MT_E_INTERRUPTED) {
@@ -317,13 +321,39 @@ static mt_status judge_mixed(void *context, int worker, int task, mt_err *err)
     return rc;
 }
 
+/* What is known of a combination that is a design. */
+static void tape_designs(void *context, int task, mt_tape *tape)
+{
+    const judging *const j = context;
+    const int end = (task + 1) * PER_TASK < j->n ? (task + 1) * PER_TASK : j->n;
+    for (int i = task * PER_TASK; i < end; i++) {
+        mt_combination *const c = &j->list[i];
+        mt_tape_numbers(tape, (size_t)j->d->p->n_aims, c->f);
+        mt_tape_numbers(tape, 1, &c->missed.violation);
+        mt_tape_numbers(tape, 1, &c->missed.squares);
+        mt_tape_long(tape, &c->evals, 0, 1);
+        mt_tape_flag(tape, &c->judged);
+        mt_tape_flag(tape, &c->feasible);
+        tape->failed = tape->failed || (c->feasible && !mt_is_held(c->missed.violation));
+    }
+    for (int i = task * PER_TASK; i < end && tape->reads && !mt_tape_is_read(tape); i++) {
+        mt_combination *const c = &j->list[i]; /* as if nothing had been read */
+        memset(c->f, 0, (size_t)j->d->p->n_aims * sizeof *c->f);
+        c->missed = (mt_missed){nan(""), HUGE_VAL};
+        c->evals = 0;
+        c->judged = false;
+        c->feasible = false;
+    }
+}
+
 mt_status mt_discrete_judge(mt_discrete *d, int n, mt_combination *list, long budget,
                             mt_err *err)
 {
     judging j = {.d = d, .n = n, .list = list, .budget = budget};
-    const int tasks = d->mixed ? n : (n + PER_TASK - 1) / PER_TASK;
-    MT_TRY(
-        mt_workers_run(d->n_workers, tasks, d->mixed ? judge_mixed : judge_designs, &j, err));
+    const mt_tasks searches = {n, judge_mixed, NULL, &j};
+    const mt_tasks designs = {(n + PER_TASK - 1) / PER_TASK, judge_designs, tape_designs, &j};
+    MT_TRY(mt_workers_run(d->n_workers, d->workers[0]->scope, d->mixed ? &searches : &designs,
+                          err));
     for (int i = 0; i < n; i++) {
         d->evals += list[i].evals;
         d->starts += list[i].starts;

@@ -32,6 +32,7 @@ typedef struct slot {
     int n_cuts;
     mt_cut *cuts; /* [CUTS_MOST], owned */
     mt_robust_cuts corners;
+    bool carried; /* searched before the proof */
 } slot;
 
 typedef struct job {
@@ -46,6 +47,8 @@ typedef struct job {
 
 enum { STARTS_PER_CANDIDATE = 24, SOLUTIONS_PER_CANDIDATE = 4, NEAREST = 6 };
 /* Rounds of cuts, and starts of the later ones, which begin next to their answer. */
+/* Of the evaluations that are left, one in so many for what is searched before the proof. */
+enum { FIRST_PART = 4 };
 enum { CUT_ROUNDS = 8, CUTS_MOST = 32, CUT_STARTS = 6 };
 
 /* The caller's design where it is of this kind, else the one that the candidate comes with;
@@ -245,16 +248,21 @@ static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int
 
 /* A candidate that cannot even be evaluated anywhere is no failure of the study: it has no
  * solution. */
-static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
+static mt_status search_candidate(void *context, int worker, int k, mt_scope *own, mt_err *err)
 {
     job *const j = context;
     slot *const s = &j->slots[k];
     mt_workspace *const w = j->workers[worker];
+    mt_scope *const before = w->scope;
     mt_err why = {0};
     bool again = true;
+    if (s->carried || mt_interrupted(j->p->study->model->interrupt)) {
+        return MT_OK;
+    }
     MT_TRY(mt_arena_init(&s->mem, 0, err));
     s->cuts = mt_arena_alloc(&s->mem, CUTS_MOST, sizeof *s->cuts);
     MT_TRY(mt_arena_check(&s->mem, err));
+    w->scope = own;
     for (int round = 0; again && round < CUT_ROUNDS; round++) {
         const bool known = round > 0 && s->found.n_solutions > 0;
         s->rc = search_round(j, w, s, k, round, known ? s->found.solutions[0].t : hint_of(j, k),
@@ -264,12 +272,18 @@ static mt_status search_candidate(void *context, int worker, int k, mt_err *err)
         s->found.n_solutions = 0;
         s->found.stop = s->rc == MT_E_INTERRUPTED ? MT_STOP_USER : s->found.stop;
     }
+    w->scope = before;
     mt_workspace_back(w, j->c); /* the candidate's case goes, and its cuts */
     for (int i = 0; i < s->n_cuts; i++) {
         mt_cut_free(&s->cuts[i]);
     }
     const bool fatal = mt_is_final(s->rc);
     return fatal ? mt_fail(err, s->rc, "%s", why.text) : MT_OK;
+}
+
+static bool is_met(const slot *s)
+{
+    return s->found.n_solutions > 0 && s->found.solutions[0].feasible;
 }
 
 /* One design for each assignment: its best. Its other local optima come after (see rank). */
@@ -280,8 +294,7 @@ static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem
     out->solutions = mt_arena_alloc(mem, (size_t)n, sizeof *out->solutions);
     MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < n; k++) {
-        const mt_nlp_result *const found = &j->slots[k].found;
-        out->n_feasible += found->n_solutions > 0 && found->solutions[0].feasible ? 1 : 0;
+        out->n_feasible += is_met(&j->slots[k]) ? 1 : 0;
     }
     out->compromise = out->n_feasible == 0;
     for (int k = 0; k < n; k++) {
@@ -400,10 +413,136 @@ static bool is_settled(const job *j)
 {
     bool met = j->candidates->all;
     for (int k = 0; k < j->candidates->n && met; k++) {
-        const mt_nlp_result *const found = &j->slots[k].found;
-        met = found->n_solutions > 0 && found->solutions[0].feasible;
+        met = is_met(&j->slots[k]);
     }
     return met;
+}
+
+/* How often each of the candidates may be evaluated: an equal share of a part of what is left;
+ * 0: as often as it takes. */
+static long share_of(const job *j, long spent, int part)
+{
+    const long most = j->c->search.max_evaluations;
+    const long share = (most - spent) / part / (j->candidates->n > 0 ? j->candidates->n : 1);
+    return most <= 0 ? 0 : share > 1 ? share : 1;
+}
+
+static mt_status claim_slots(job *j, mt_arena *mem, mt_err *err)
+{
+    j->slots = mt_arena_alloc(mem, (size_t)j->candidates->n, sizeof *j->slots);
+    return mt_arena_check(mem, err);
+}
+
+static void free_slots(const job *j)
+{
+    for (int k = 0; j->slots != NULL && k < j->candidates->n; k++) {
+        mt_arena_free(&j->slots[k].mem);
+    }
+}
+
+static int place_of(const mt_gap_candidates *c, const int *below, int n_bands)
+{
+    int k = 0;
+    while (k < c->n && memcmp(c->below + ((ptrdiff_t)k * n_bands), below,
+                              (size_t)n_bands * sizeof *below) != 0) {
+        k++;
+    }
+    return k;
+}
+
+/* Assignments that were met first and are not listed (the proof ended before it came to them)
+ * come after those that are. */
+static mt_status list_met(const job *first, mt_gap_candidates *c, mt_arena *mem, mt_err *err)
+{
+    const int m = first->p->n_bands;
+    const size_t row = (size_t)m;
+    int *const below = mt_arena_int(mem, (size_t)(c->n + first->candidates->n) * row);
+    MT_TRY(mt_arena_check(mem, err));
+    if (c->n > 0) {
+        memcpy(below, c->below, (size_t)c->n * row * sizeof *below);
+    }
+    c->below = below;
+    for (int k = 0; k < first->candidates->n; k++) {
+        const int *const own = first->candidates->below + ((ptrdiff_t)k * m);
+        if (is_met(&first->slots[k]) && place_of(c, own, m) == c->n) {
+            memcpy(c->below + ((ptrdiff_t)c->n * m), own, row * sizeof *own);
+            c->n++;
+        }
+    }
+    return MT_OK;
+}
+
+/* What was searched first is not searched again, unless it was missed and the proof knows a
+ * design. */
+static void carry(const job *first, job *j, long *evals)
+{
+    const int m = j->p->n_bands;
+    for (int k = 0; k < first->candidates->n; k++) {
+        slot *const s = &first->slots[k];
+        const int at =
+            place_of(j->candidates, first->candidates->below + ((ptrdiff_t)k * m), m);
+        if (at < j->candidates->n && (is_met(s) || at >= j->candidates->n_proven)) {
+            j->slots[at] = *s;
+            j->slots[at].carried = true;
+            s->mem = (mt_arena){0};
+        } else {
+            *evals += s->evals;
+        }
+    }
+}
+
+/* All candidates, of which the first ones have been searched. */
+static mt_status search_rest(const job *first, job *j, long spent, int n_workers, mt_arena *mem,
+                             mt_gap_result *out, mt_err *err)
+{
+    MT_TRY(claim_slots(j, mem, err));
+    out->evals = first->candidates->evals + j->candidates->evals;
+    carry(first, j, &out->evals);
+    j->options.max_evals = share_of(j, spent + j->candidates->evals, 1);
+    const mt_tasks tasks = {j->candidates->n, search_candidate, NULL, j};
+    MT_TRY(mt_workers_run(n_workers, j->workers[0]->scope, &tasks, err));
+    MT_TRY(collect(j->p, j, mem, out, err));
+    out->proven = out->proven || is_settled(j);
+    return MT_OK;
+}
+
+/* Designs before proofs: what little work meets is searched, then the proof says what else
+ * there is to search. */
+static mt_status search_and_prove(job *first, job *j, int n_workers, mt_proof *proof,
+                                  mt_arena *mem, mt_gap_result *out, mt_err *err)
+{
+    mt_workspace *const w = j->workers[0];
+    mt_gap_candidates *const begin = mt_arena_alloc(mem, 1, sizeof *begin);
+    mt_gap_candidates *const all = mt_arena_alloc(mem, 1, sizeof *all);
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(mt_gap_candidates_first(w, proof, mem, all, begin, err));
+    first->candidates = begin;
+    j->candidates = all;
+    if (begin->n > 0) {
+        MT_TRY(claim_slots(first, mem, err));
+        first->options.max_evals = share_of(first, begin->evals, FIRST_PART);
+        const mt_tasks tasks = {begin->n, search_candidate, NULL, first};
+        MT_TRY(mt_workers_run(n_workers, w->scope, &tasks, err));
+    }
+    /* what they were given, not what they took: parts of a run agree on the rest */
+    const long spent = begin->evals + (first->options.max_evals * begin->n);
+    if (!all->proven && mt_interrupted(j->p->study->model->interrupt)) {
+        *all = *begin;
+        all->evals = 0; /* counted with the first */
+        all->reason = "interrupted before it";
+    } else if (!all->proven) {
+        MT_TRY(mt_gap_candidates_find(w, proof, spent, mem, all, err));
+        MT_TRY(list_met(first, all, mem, err));
+    }
+    out->n_candidates = all->n;
+    out->n_possible = all->possible;
+    out->proven = all->proven;
+    out->reason = all->reason;
+    out->boxes = all->boxes;
+    if (all->proven && all->n == 0) { /* then the nearest designs are wanted */
+        MT_TRY(mt_gap_candidates_near(w, NEAREST, spent, mem, all, err));
+    }
+    return search_rest(first, j, spent, n_workers, mem, out, err);
 }
 
 mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, mt_arena *mem,
@@ -412,37 +551,20 @@ mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, mt_arena *m
     mt_workspace *const w = workers[0];
     const mt_case *const c = w->c;
     const mt_problem *const p = w->p;
-    mt_gap_candidates candidates = {0};
-    *out = (mt_gap_result){.stop = MT_STOP_DONE};
-    MT_TRY(mt_gap_candidates_find(w, mem, &candidates, err));
-    out->n_candidates = candidates.n;
-    out->n_possible = candidates.possible;
-    out->proven = candidates.proven;
-    out->tolerances = c->robust != NULL;
-    if (candidates.proven && candidates.n == 0) { /* then the nearest designs are wanted */
-        const long boxes = candidates.boxes;
-        MT_TRY(mt_gap_candidates_near(w, NEAREST, mem, &candidates, err));
-        candidates.boxes = boxes;
-    }
-    for (int i = 0; i < p->n_clears; i++) {
-        out->driven = out->driven || p->views[p->clears[i].view].original->sys->driven;
-    }
-    out->motion = mt_family_any(p);
-    out->reason = candidates.reason;
-    out->boxes = candidates.boxes;
-    out->evals = candidates.evals;
+    static const mt_gap_candidates none = {0};
+    mt_proof proof;
     job j = {.workers = workers,
              .c = c,
              .p = p,
-             .candidates = &candidates,
+             .candidates = &none,
              .options = mt_nlp_options_default()};
+    *out = (mt_gap_result){
+        .stop = MT_STOP_DONE, .tolerances = c->robust != NULL, .motion = mt_family_any(p)};
+    for (int i = 0; i < p->n_clears; i++) {
+        out->driven = out->driven || p->views[p->clears[i].view].original->sys->driven;
+    }
     j.options.seed = c->search.seed;
     j.options.starts = c->search.starts > 0 ? c->search.starts : STARTS_PER_CANDIDATE + p->n;
-    if (c->search.max_evaluations > 0) { /* an equal share of what the samples left */
-        const long left = c->search.max_evaluations - candidates.evals;
-        const long share = left / (candidates.n > 0 ? candidates.n : 1);
-        j.options.max_evals = share > 1 ? share : 1;
-    }
     j.options.max_solutions = SOLUTIONS_PER_CANDIDATE;
     j.options.least_change = c->aims[0].type == MT_OBJECTIVE_CHANGE;
     if (c->hint != NULL) {
@@ -452,13 +574,11 @@ mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, mt_arena *m
         MT_TRY(mt_gap_assignment(w, c->hint, below, &violation, err));
         j.hint_below = MT_HAS(violation) ? below : NULL;
     }
-    j.slots = mt_arena_alloc(mem, (size_t)candidates.n, sizeof *j.slots);
-    MT_TRY(mt_arena_check(mem, err));
-    mt_status rc = mt_workers_run(n_workers, candidates.n, search_candidate, &j, err);
-    rc = rc == MT_OK ? collect(p, &j, mem, out, err) : rc;
-    out->proven = out->proven || is_settled(&j);
-    for (int k = 0; k < candidates.n; k++) {
-        mt_arena_free(&j.slots[k].mem);
-    }
+    job first = j;
+    mt_status rc = mt_proof_init(&proof, c, mem, err);
+    rc = rc == MT_OK ? search_and_prove(&first, &j, n_workers, &proof, mem, out, err) : rc;
+    free_slots(&first);
+    free_slots(&j);
+    mt_proof_free(&proof);
     return rc;
 }

@@ -4,13 +4,15 @@
 
 #include "problem/workspace.h"
 #include "result/result.h"
+#include "search/proof.h"
 
 /*
  * Search over gap assignments: every qualitatively different way to keep clear of the bands is
- * a search of its own. Candidates come from a proof where one is possible (branch and bound
- * over the bounds: what it excludes is proven infeasible), else from samples; each is searched
- * by the bound formulation from several starts, on workers. Results are ranked by the objective
- * and do not depend on the number of workers.
+ * a search of its own. What a short proof or a few samples meet is searched before anything
+ * long begins, so that an interrupt finds a design. All candidates come from a proof where one
+ * is possible (branch and bound over the bounds: what it excludes is proven infeasible), else
+ * from samples; each is searched once, by the bound formulation from several starts, on
+ * workers. Results are ranked by the objective and do not depend on the number of workers.
  */
 typedef struct mt_gap_solution {
     /* its t has problem->n_t entries; the first n are the design */
@@ -74,10 +76,19 @@ double mt_gap_count_possible(const mt_problem *p);
  * be evaluated. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
 mt_status mt_gap_assignment(mt_workspace *w, const double *t, int *below, double *violation,
                             mt_err *err);
-mt_status mt_gap_candidates_find(mt_workspace *w, mt_arena *mem, mt_gap_candidates *out,
-                                 mt_err *err);
+/*
+ * What to search before a proof: where a little of its work settles the question, that is `all`
+ * (proven) and there is no first; else `first` are the assignments that it met, or the one that
+ * a few samples come nearest to. proof: of w's case.
+ */
+mt_status mt_gap_candidates_first(mt_workspace *w, mt_proof *proof, mt_arena *mem,
+                                  mt_gap_candidates *all, mt_gap_candidates *first,
+                                  mt_err *err);
+/* With all the work that the case allows; spent: evaluations so far. */
+mt_status mt_gap_candidates_find(mt_workspace *w, mt_proof *proof, long spent, mt_arena *mem,
+                                 mt_gap_candidates *out, mt_err *err);
 /* The (at most) `most` assignments that samples over the bounds come nearest to. */
-mt_status mt_gap_candidates_near(mt_workspace *w, int most, mt_arena *mem,
+mt_status mt_gap_candidates_near(mt_workspace *w, int most, long spent, mt_arena *mem,
                                  mt_gap_candidates *out, mt_err *err);
 
 #endif

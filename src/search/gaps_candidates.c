@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Which gap assignments are worth a search. Where the modes can be enclosed (proof.h), branch
- * and bound over the bounds finds every assignment that some design has, with such a design,
- * and proves that there is no other. Elsewhere, sampled: designs spread over the bounds; each
- * says how many modes lie below the middle of each band, and its assignment becomes a
- * candidate. A design clear of all bands has the same assignment as the samples around it, so a
- * kind of design is only missed where it is smaller than the samples are apart. That is
- * labelled as sampled.
+ * Which gap assignments are worth a search, first and in all. Where the modes can be
+ * enclosed (proof.h), branch and bound over the bounds finds every assignment that some
+ * design has, with such a design, and proves that there is no other. Elsewhere, sampled:
+ * designs spread over the bounds; each says how many modes lie below the middle of each
+ * band, and its assignment becomes a candidate. A design clear of all bands has the same
+ * assignment as the samples around it, so a kind of design is only missed where it is
+ * smaller than the samples are apart. That is labelled as sampled.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -23,8 +23,12 @@ enum {
     SAMPLES_PER_VARIABLE = 256,
     SAMPLES_MOST = 4096,
     CANDIDATES_MOST = 256,
+    SAMPLES_FIRST = 32,
     EVALUATIONS_LEAST = 30 /* of a candidate's search, or it is not worth one */
 };
+/* Of a proof before the first search: tens of milliseconds. Most are settled by then, and what
+ * is hopeless is told at once. */
+static const double FIRST_WORK = 2e8;
 
 typedef struct sampled {
     int *below;
@@ -180,11 +184,13 @@ static int least_of(int a, long b)
 /* The assignments of n designs spread over the bounds, at most `most` of them. Where the study
  * says how often it may be evaluated, half of that is for samples, and the other half for the
  * searches of those nearest. */
-static mt_status sample(mt_workspace *w, int n, int most, mt_arena *mem, mt_gap_candidates *out,
-                        mt_err *err)
+static mt_status sample(mt_workspace *w, int n, int most, long spent, mt_arena *mem,
+                        mt_gap_candidates *out, mt_err *err)
 {
     const mt_problem *const p = w->p;
-    const long half = w->c->search.max_evaluations / 2;
+    const long most_evals = w->c->search.max_evaluations;
+    const long left = (most_evals - spent) / 2;
+    const long half = most_evals <= 0 ? 0 : left > 1 ? left : 1;
     mt_nlp nlp = mt_workspace_nlp(w);
     nlp.n = p->n;
     n = half > 0 ? least_of(n, half) : n;
@@ -199,7 +205,8 @@ static mt_status sample(mt_workspace *w, int n, int most, mt_arena *mem, mt_gap_
     }
     const double *const t = mt_nlp_starts(&nlp, w->c->search.seed, n, mem);
     mt_status rc = mt_arena_check(mem, err);
-    for (int k = 0; rc == MT_OK && k < n; k++) {
+    bool enough = false; /* nothing comes nearer than a design that is clear */
+    for (int k = 0; rc == MT_OK && k < n && !enough; k++) {
         double violation = 0.0;
         if (mt_interrupted(p->study->model->interrupt)) {
             break;
@@ -207,6 +214,7 @@ static mt_status sample(mt_workspace *w, int n, int most, mt_arena *mem, mt_gap_
         rc = mt_gap_assignment(w, t + ((ptrdiff_t)k * p->n), below, &violation, err);
         if (rc == MT_OK && MT_HAS(violation)) {
             insert_agreeing(w, list, &out->n, below, violation, work);
+            enough = most == 1 && violation <= 0.0 && mt_ties_agree(p, below);
         }
         out->evals++;
     }
@@ -255,35 +263,62 @@ static mt_status keep_proven(const mt_problem *p, const mt_certify_search *found
     out->proven = found->proven;
     out->boxes = found->boxes;
     out->all = !found->more && !found->stopped;
-    out->reason = found->proven ? NULL : "the budget of the proof ended";
-    return MT_OK;
+    out->reason =
+        found->proven
+            ? NULL
+            : mt_arena_printf(mem,
+                              "the budget of the proof ended after %ld boxes, with %.2g %% "
+                              "of the designs within the bounds undecided",
+                              found->boxes, 100.0 * found->undecided);
+    return mt_arena_check(mem, err);
 }
 
-mt_status mt_gap_candidates_find(mt_workspace *w, mt_arena *mem, mt_gap_candidates *out,
-                                 mt_err *err)
+/* What the proof says with so much work. */
+static mt_status prove(const mt_workspace *w, mt_proof *proof, double work, mt_arena *mem,
+                       mt_gap_candidates *out, mt_err *err)
 {
-    mt_proof proof;
     mt_certify_search found = {0};
-    *out = (mt_gap_candidates){.possible = mt_gap_count_possible(w->p)};
-    mt_status rc = mt_proof_init(&proof, w->c, mem, err);
-    if (rc == MT_OK && proof.possible) {
-        rc = mt_certify_assignments(&proof.question, 0, NULL, mem, &found, err);
-        rc = rc == MT_OK ? keep_proven(w->p, &found, mem, out, err) : rc;
-    }
-    const bool by_samples = !proof.possible || (!out->proven && out->n == 0);
-    if (rc == MT_OK && by_samples) {
-        out->reason = mt_arena_strdup(mem, proof.reason);
-        const int wanted = SAMPLES_PER_VARIABLE * (w->p->n + 1);
-        const int n = wanted < SAMPLES_MOST ? wanted : SAMPLES_MOST;
-        rc = sample(w, n, CANDIDATES_MOST, mem, out, err);
-    }
-    mt_proof_free(&proof);
-    return rc;
+    proof->question.max_work = work;
+    MT_TRY(mt_certify_assignments(&proof->question, 0, NULL, mem, &found, err));
+    return keep_proven(w->p, &found, mem, out, err);
 }
 
-mt_status mt_gap_candidates_near(mt_workspace *w, int most, mt_arena *mem,
+mt_status mt_gap_candidates_first(mt_workspace *w, mt_proof *proof, mt_arena *mem,
+                                  mt_gap_candidates *all, mt_gap_candidates *first, mt_err *err)
+{
+    *all = (mt_gap_candidates){.possible = mt_gap_count_possible(w->p)};
+    *first = (mt_gap_candidates){.possible = all->possible};
+    if (proof->possible) {
+        const double most = w->c->proof_work > 0.0 ? w->c->proof_work : MT_CERTIFY_WORK;
+        MT_TRY(prove(w, proof, fmin(most, FIRST_WORK), mem, all, err));
+    }
+    if (all->proven) {
+        return MT_OK;
+    }
+    *first = *all;
+    first->n = all->n_proven;
+    return first->n > 0 ? MT_OK : sample(w, SAMPLES_FIRST, 1, 0, mem, first, err);
+}
+
+mt_status mt_gap_candidates_find(mt_workspace *w, mt_proof *proof, long spent, mt_arena *mem,
                                  mt_gap_candidates *out, mt_err *err)
 {
     *out = (mt_gap_candidates){.possible = mt_gap_count_possible(w->p)};
-    return sample(w, MT_GAP_SAMPLES_NEAR, most, mem, out, err);
+    if (proof->possible) {
+        MT_TRY(prove(w, proof, w->c->proof_work, mem, out, err));
+    }
+    if (proof->possible && (out->proven || out->n > 0)) {
+        return MT_OK;
+    }
+    const int wanted = SAMPLES_PER_VARIABLE * (w->p->n + 1);
+    out->reason = mt_arena_strdup(mem, proof->reason);
+    return sample(w, wanted < SAMPLES_MOST ? wanted : SAMPLES_MOST, CANDIDATES_MOST, spent, mem,
+                  out, err);
+}
+
+mt_status mt_gap_candidates_near(mt_workspace *w, int most, long spent, mt_arena *mem,
+                                 mt_gap_candidates *out, mt_err *err)
+{
+    *out = (mt_gap_candidates){.possible = mt_gap_count_possible(w->p)};
+    return sample(w, MT_GAP_SAMPLES_NEAR, most, spent, mem, out, err);
 }

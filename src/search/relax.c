@@ -257,7 +257,7 @@ static mt_status search_gaps(const job *j, const mt_case *plain, mt_workspace *w
                              task_result *out, mt_err *err)
 {
     mt_gap_candidates near = {0};
-    mt_status rc = mt_gap_candidates_near(w, ASSIGNMENTS, &out->mem, &near, err);
+    mt_status rc = mt_gap_candidates_near(w, ASSIGNMENTS, 0, &out->mem, &near, err);
     out->evals += near.evals;
     for (int k = 0; k < near.n && rc == MT_OK && !out->stopped; k++) {
         mt_case c;
@@ -269,20 +269,23 @@ static mt_status search_gaps(const job *j, const mt_case *plain, mt_workspace *w
     return rc;
 }
 
-static mt_status search_move(void *context, int worker, int k, mt_err *err)
+static mt_status search_move(void *context, int worker, int k, mt_scope *own, mt_err *err)
 {
     const job *const j = context;
     mt_workspace *const w = j->workers[worker];
+    mt_scope *const before = w->scope;
     mt_move *const m = &j->moves->items[k];
     task_result *const out = &j->results[k];
     mt_case c;
     bool useful = false;
     MT_TRY(mt_arena_init(&out->mem, 0, err));
+    w->scope = own;
     mt_status rc = mt_relax_case(j->c, m, w, &out->mem, &c, &useful, err);
     if (rc == MT_OK && useful) {
         rc = w->p->n_clears > 0 ? search_gaps(j, &c, w, m, out, err)
                                 : search_in(j, &c, w, m, out, err);
     }
+    w->scope = before;
     mt_workspace_back(w, j->c);
     return rc;
 }
@@ -308,7 +311,8 @@ mt_status mt_relax(mt_workspace *const *workers, int n_workers, const mt_nlp_res
         out->n = 0;
         return MT_OK;
     }
-    const mt_status rc = mt_workers_run(n_workers, n, search_move, &j, err);
+    const mt_tasks tasks = {n, search_move, NULL, &j};
+    const mt_status rc = mt_workers_run(n_workers, workers[0]->scope, &tasks, err);
     for (int k = 0; k < n; k++) {
         out->evals += j.results[k].evals;
         out->starts += j.results[k].starts;

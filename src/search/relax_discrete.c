@@ -110,8 +110,9 @@ static void look(const mt_workspace *w, const mt_nlp_values *v, mt_moves *moves)
     }
 }
 
-static mt_status look_at_some(void *context, int worker, int task, mt_err *err)
+static mt_status look_at_some(void *context, int worker, int task, mt_scope *place, mt_err *err)
 {
+    (void)place;
     const enumeration *const e = context;
     mt_workspace *const w = e->workers[worker];
     const int end = (task + 1) * PER_TASK < e->total ? (task + 1) * PER_TASK : e->total;
@@ -157,7 +158,8 @@ static mt_status enumerate(mt_workspace *const *workers, int n_workers, int tota
             own->items[k].x = x + ((((size_t)i * n_moves) + k) * n);
         }
     }
-    MT_TRY(mt_workers_run(n_workers, n_tasks, look_at_some, &e, err));
+    const mt_tasks tasks = {n_tasks, look_at_some, NULL, &e};
+    MT_TRY(mt_workers_run(n_workers, workers[0]->scope, &tasks, err));
     for (int i = 0; i < n_tasks; i++) {
         out->stopped = out->stopped || e.stopped[i];
         mt_relax_merge(out, &e.tasks[i], workers[0]->p->n);

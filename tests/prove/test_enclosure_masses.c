@@ -188,6 +188,8 @@ static void enclosure__a_spent_budget_says_what_is_open(mt_test *t)
         CHECK(t, mt_certify_assignments(&r.c, 1, original, &r.mem, &out, &err) == MT_OK);
         CHECK(t, !out.proven);
         CHECK(t, out.n_open > 0);
+        const double undecided = out.undecided;
+        CHECK(t, undecided > 0.0 && undecided < 1.0);
         /* what is on the stack is still looked at */
         const double work = r.e->operations - before;
         CHECK(t, work > 1e5 && work < 6e5); /* the rest is for boxes as such */
@@ -197,7 +199,10 @@ static void enclosure__a_spent_budget_says_what_is_open(mt_test *t)
         r.c.interrupt = &interrupt;
         CHECK(t, mt_certify_assignments(&r.c, 0, NULL, &r.mem, &out, &err) == MT_OK);
         CHECK(t, !out.proven && out.stopped);
-        CHECK(t, out.boxes == 1);
+        CHECK(t, out.boxes == 1 && out.undecided == 1.0);
+        r.c.interrupt = NULL;
+        CHECK(t, mt_certify_assignments(&r.c, 0, NULL, &r.mem, &out, &err) == MT_OK);
+        CHECK(t, out.proven && out.undecided == 0.0);
     }
     end(&r);
 }

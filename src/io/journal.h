@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef IO_JOURNAL_H
+#define IO_JOURNAL_H
+
+#include <stdbool.h>
+
+#include "base/workers.h"
+
+/*
+ * A ledger in files. A journal is text:
+ *
+ *     modetune-journal/1 SHA-256 of the identity
+ *     | the identity, line by line: everything that the records follow from
+ *     CHECK KEY WORD WORD ...
+ *
+ * with one line for each record: its words in hexadecimal digits, before them the first 16
+ * digits of the SHA-256 of identity and the rest of the line. Lines are appended whole, so a
+ * process that is killed at any moment leaves at most a last line that is not; a line that does
+ * not check is no record, wherever it comes from. Records need not come in any order; of one
+ * key that has two different records none counts.
+ */
+typedef struct mt_journal mt_journal;
+
+/* What a journal did. */
+typedef struct mt_journal_counts {
+    long known;   /* records that were read */
+    long used;    /* of them, those that were asked for */
+    long made;    /* new ones */
+    long written; /* of them, into the file */
+    long ignored; /* lines that are no record */
+} mt_journal_counts;
+
+/* identity: lines of text, kept until the end. Fails: MT_E_MEMORY. */
+mt_status mt_journal_new(const char *identity, mt_journal **out, mt_err *err);
+/* Accepts NULL. */
+void mt_journal_delete(mt_journal *j);
+/* The records of a file join; one that ends within its head has none. Fails: MT_E_INPUT (no
+ * journal; one of another question: what differs), MT_E_SYSTEM, MT_E_MEMORY. */
+mt_status mt_journal_read(mt_journal *j, const char *path, mt_err *err);
+/* New records go to `path`, whose folder is made; the file is made with the first one. adds:
+ * behind what is there, which has been read and has its head; else what is there goes. Fails:
+ * MT_E_MEMORY. */
+mt_status mt_journal_write_to(mt_journal *j, const char *path, bool adds, mt_err *err);
+/* All of it, or (of parts) one part. Lives as long as the journal; not before everything has
+ * been read. */
+mt_ledger *mt_journal_ledger(mt_journal *j, int part, int parts);
+mt_journal_counts mt_journal_count(const mt_journal *j);
+/* No more records: everything is written, and with `remove` the file that they were to go to
+ * goes. That of a part is there in any case. Fails: MT_E_SYSTEM: what of them could not be
+ * written, or removed. */
+mt_status mt_journal_end(mt_journal *j, bool remove, mt_err *err);
+
+#endif

@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * A journal gives back what was put, or nothing. Every byte of one is changed and it is cut
+ * behind every byte: no record may come back with other words. MT_EVERY=1: every bit of every
+ * byte.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "io/file.h"
+#include "io/journal.h"
+#include "mt_test.h"
+
+enum { KEYS = 12, WORDS = 5 };
+
+static const char IDENTITY[] = "{\n  \"seed\": 1,\n  \"inputs\": \"abc\"\n}\n";
+static char path[64];
+
+static uint64_t word_of(int key, int i)
+{
+    return i == 0 ? UINT64_MAX - (uint64_t)key : (uint64_t)(key * 1000 + i) >> (key % 3 * 8);
+}
+
+static void key_of(int k, char *out)
+{
+    (void)snprintf(out, MT_KEY_SIZE, "search/%d/%d", k / 5, k);
+}
+
+static mt_journal *opened(mt_test *t, const char *identity)
+{
+    mt_journal *j = NULL;
+    CHECK_INT(t, mt_journal_new(identity, &j, NULL), MT_OK);
+    return j;
+}
+
+static void put(mt_journal *j, int key, int changed)
+{
+    uint64_t words[WORDS];
+    char name[MT_KEY_SIZE];
+    mt_ledger *const ledger = mt_journal_ledger(j, 0, 0);
+    for (int i = 0; i < WORDS; i++) {
+        words[i] = word_of(key, i) + (uint64_t)changed;
+    }
+    key_of(key, name);
+    ledger->put(ledger->context, name, words, (size_t)(key % (WORDS + 1)));
+}
+
+static void write_keys(mt_test *t, int from, int to, bool adds)
+{
+    mt_journal *const j = opened(t, IDENTITY);
+    REQUIRE(t, !adds || mt_journal_read(j, path, NULL) == MT_OK);
+    REQUIRE(t, mt_journal_write_to(j, path, adds, NULL) == MT_OK);
+    for (int k = from; k < to; k++) {
+        put(j, k, 0);
+    }
+    CHECK_INT(t, mt_journal_count(j).written, to - from);
+    CHECK_INT(t, mt_journal_end(j, false, NULL), MT_OK);
+    mt_journal_delete(j);
+}
+
+/* How many records come back as they were put; -1 where one is another. */
+static int intact(mt_journal *j)
+{
+    const mt_ledger *const ledger = mt_journal_ledger(j, 0, 0);
+    int found = 0;
+    for (int k = 0; k < KEYS; k++) {
+        char name[MT_KEY_SIZE];
+        size_t n = 0;
+        key_of(k, name);
+        const uint64_t *const words = ledger->find(ledger->context, name, &n);
+        if (words == NULL) {
+            continue;
+        }
+        if (n != (size_t)(k % (WORDS + 1))) {
+            return -1;
+        }
+        for (size_t i = 0; i < n; i++) {
+            if (words[i] != word_of(k, (int)i)) {
+                return -1;
+            }
+        }
+        found++;
+    }
+    return found;
+}
+
+static void overwrite(mt_test *t, const char *bytes, size_t n)
+{
+    FILE *const f = fopen(path, "wb");
+    REQUIRE(t, f != NULL);
+    CHECK_INT(t, (long)fwrite(bytes, 1, n, f), (long)n);
+    CHECK_INT(t, fclose(f), 0);
+}
+
+static void begin(mt_test *t)
+{
+    (void)snprintf(path, sizeof path, "/tmp/journal_%ld.d/a.journal", (long)getpid());
+    write_keys(t, 0, KEYS, false);
+}
+
+static void end(void)
+{
+    (void)unlink(path);
+    *strrchr(path, '/') = '\0';
+    (void)rmdir(path);
+}
+
+static void journal__gives_back_what_was_put(mt_test *t)
+{
+    begin(t);
+    mt_journal *j = opened(t, IDENTITY);
+    CHECK_INT(t, mt_journal_read(j, path, NULL), MT_OK);
+    CHECK_INT(t, intact(j), KEYS);
+    CHECK_INT(t, mt_journal_count(j).ignored, 0);
+    CHECK_INT(t, mt_journal_count(j).used, KEYS);
+    mt_journal_delete(j);
+    write_keys(t, 0, 4, false); /* begins anew */
+    write_keys(t, 4, KEYS, true);
+    j = opened(t, IDENTITY);
+    CHECK_INT(t, mt_journal_read(j, path, NULL), MT_OK);
+    CHECK_INT(t, mt_journal_read(j, path, NULL), MT_OK); /* twice the same is the same */
+    CHECK_INT(t, intact(j), KEYS);
+    CHECK_INT(t, mt_journal_count(j).known, KEYS);
+    CHECK_INT(t, mt_journal_write_to(j, path, true, NULL), MT_OK);
+    CHECK_INT(t, mt_journal_end(j, true, NULL), MT_OK);
+    CHECK(t, mt_file_absent(path));
+    mt_journal_delete(j);
+    end();
+}
+
+static void journal__of_another_question_is_refused(mt_test *t)
+{
+    static const struct {
+        const char *name;
+        const char *identity;
+        const char *says;
+    } rows[] = {
+        {"another file", "{\n  \"seed\": 1,\n  \"inputs\": \"abd\"\n}\n",
+         "it has `  \"inputs\": \"abc\"` where this run has `  \"inputs\": \"abd\"`"},
+        {"one line less", "{\n  \"seed\": 1,\n}\n",
+         "it has `  \"inputs\": \"abc\"` where this run has `}`"},
+    };
+    begin(t);
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        mt_err err = {.code = MT_OK};
+        mt_test_row(t, "%s", rows[i].name);
+        mt_journal *const j = opened(t, rows[i].identity);
+        CHECK_INT(t, mt_journal_read(j, path, &err), MT_E_INPUT);
+        CHECK(t, strstr(err.text, rows[i].says) != NULL);
+        mt_journal_delete(j);
+    }
+    end();
+}
+
+/* Of two records of one key neither can be believed. */
+static void journal__contradictions_count_for_nothing(mt_test *t)
+{
+    begin(t);
+    mt_journal *j = opened(t, IDENTITY);
+    CHECK_INT(t, mt_journal_read(j, path, NULL), MT_OK);
+    CHECK_INT(t, mt_journal_write_to(j, path, true, NULL), MT_OK);
+    put(j, 4, 1);
+    CHECK_INT(t, mt_journal_end(j, false, NULL), MT_OK);
+    mt_journal_delete(j);
+    j = opened(t, IDENTITY);
+    CHECK_INT(t, mt_journal_read(j, path, NULL), MT_OK);
+    CHECK_INT(t, intact(j), KEYS - 1);
+    CHECK_INT(t, mt_journal_count(j).ignored, 1);
+    mt_journal_delete(j);
+    end();
+}
+
+static void look(mt_test *t, const char *bytes, size_t n, bool head, int least)
+{
+    mt_journal *const j = opened(t, IDENTITY);
+    overwrite(t, bytes, n);
+    const mt_status rc = mt_journal_read(j, path, NULL);
+    const int found = rc == MT_OK ? intact(j) : 0;
+    CHECK(t, rc == MT_OK || (head && rc == MT_E_INPUT));
+    CHECK(t, found >= (rc == MT_OK ? least : 0));
+    mt_journal_delete(j);
+}
+
+static void journal__damage_loses_records_and_changes_none(mt_test *t)
+{
+    mt_file whole = {.bytes = NULL};
+    const bool every = getenv("MT_EVERY") != NULL;
+    begin(t);
+    REQUIRE(t, mt_file_read(path, NULL, 1 << 20, &whole, NULL) == MT_OK);
+    const size_t head = (size_t)(strstr(whole.bytes, "| }\n") - whole.bytes) + 4;
+    char *const bytes = malloc(whole.length);
+    REQUIRE(t, bytes != NULL);
+    for (size_t i = 0; i < whole.length; i++) {
+        for (int bit = every ? 0 : (int)(i % 8); bit < (every ? 8 : (int)(i % 8) + 1); bit++) {
+            memcpy(bytes, whole.bytes, whole.length);
+            bytes[i] = (char)(bytes[i] ^ (1 << bit));
+            look(t, bytes, whole.length, i < head, KEYS - 2);
+        }
+        look(t, whole.bytes, i, false, 0);
+        if (i == head - 1 || i == head || every) { /* and what is added to it can be read */
+            write_keys(t, 0, 2, true);
+            mt_journal *const j = opened(t, IDENTITY);
+            CHECK_INT(t, mt_journal_read(j, path, NULL), MT_OK);
+            CHECK(t, intact(j) >= 2);
+            mt_journal_delete(j);
+        }
+    }
+    free(bytes);
+    mt_file_free(&whole);
+    end();
+}
+
+MT_TEST_MAIN(MT_TEST(journal__gives_back_what_was_put),
+             MT_TEST(journal__of_another_question_is_refused),
+             MT_TEST(journal__contradictions_count_for_nothing),
+             MT_TEST(journal__damage_loses_records_and_changes_none))
