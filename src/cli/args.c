@@ -74,20 +74,98 @@ static mt_status read_count(const char *s, const char *option, int most, int *ou
     return MT_OK;
 }
 
+/* A number from 0 up to 1. */
+static mt_status read_tolerance(const char *s, const char *option, double *out, mt_err *err)
+{
+    char *end = NULL;
+    const double value = strtod(s, &end);
+    if (s[0] == '\0' || strspn(s, "0123456789.eE+-") != strlen(s) || *end != '\0' ||
+        !(value >= 0.0 && value < 1.0)) {
+        return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not a number from 0 up to 1", option,
+                       s);
+    }
+    *out = value;
+    return MT_OK;
+}
+
+/* Seconds: more than 0. */
+static mt_status read_seconds(const char *s, const char *option, double *out, mt_err *err)
+{
+    char *end = NULL;
+    const double value = strtod(s, &end);
+    if (strspn(s, "0123456789.eE+-") != strlen(s) || *end != '\0' ||
+        !(value > 0.0 && value <= MT_SECONDS_MOST)) {
+        return mt_fail(err, MT_E_USAGE,
+                       "--%s: \"%s\" is not a number of seconds above 0, at most %g", option, s,
+                       MT_SECONDS_MOST);
+    }
+    *out = value;
+    return MT_OK;
+}
+
+/* As a study's. */
+static mt_status read_seed(const char *s, const char *option, unsigned long *out, mt_err *err)
+{
+    char *end = NULL;
+    errno = 0;
+    const unsigned long value = strtoul(s, &end, 10);
+    if (s[0] < '0' || s[0] > '9' || *end != '\0' || errno != 0 || value > INT_MAX) {
+        return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not a whole number from 0 to %d",
+                       option, s, INT_MAX);
+    }
+    *out = value;
+    return MT_OK;
+}
+
+/* "2/8": part 2 of 8. */
+static mt_status read_part(const char *s, const char *option, mt_args *out, mt_err *err)
+{
+    char *end = NULL;
+    errno = 0;
+    const long part = strtol(s, &end, 10);
+    const char *const second = *end == '/' ? end + 1 : s;
+    const long parts = strtol(second, &end, 10);
+    if (s[0] < '0' || s[0] > '9' || second == s || second[0] < '0' || second[0] > '9' ||
+        *end != '\0' || errno != 0 || part < 1 || part > parts || parts > INT_MAX) {
+        return mt_fail(
+            err, MT_E_USAGE,
+            "--%s: \"%s\" is not PART/PARTS, two whole numbers from 1/1 on with PART "
+            "not above PARTS",
+            option, s);
+    }
+    out->part = (int)part;
+    out->parts = (int)parts;
+    return MT_OK;
+}
+
 static mt_status read_format(const char *s, int command, mt_format *out, mt_err *err)
 {
-    static const char *const names[] = {"text", "json", "csv", "html"};
-    const bool html = command == MT_CMD_REPORT;
-    const int n = html ? MT_COUNT(names) : MT_COUNT(names) - 1;
+    static const char *const known[] = {"text", "json", "csv", "html", "sarif"};
+    static const int of[] = {MT_CMD_NONE, MT_CMD_NONE, MT_CMD_NONE, MT_CMD_REPORT,
+                             MT_CMD_CHECK}; /* MT_CMD_NONE: of all */
+    const char *names[MT_COUNT(known)];
     char suggestion[SUGGESTION_TEXT];
-    for (int i = 0; i < n; i++) {
-        if (strcmp(s, names[i]) == 0) {
+    mt_text list = {.s = NULL};
+    int n = 0;
+    for (int i = 0; i < MT_COUNT(known); i++) {
+        if (of[i] != MT_CMD_NONE && of[i] != command) {
+            continue;
+        }
+        if (strcmp(s, known[i]) == 0) {
             *out = (mt_format)i;
+            mt_text_free(&list);
             return MT_OK;
         }
+        mt_text_add(&list, n == 0 ? "" : ", ");
+        mt_text_add(&list, known[i]);
+        names[n++] = known[i];
     }
-    return mt_fail(err, MT_E_USAGE, "--format: \"%s\" is none of text, json, csv%s%s", s,
-                   html ? ", html" : "", did_you_mean(s, names, n, "", suggestion));
+    const mt_status rc = list.failed
+                             ? mt_fail(err, MT_E_MEMORY, "out of memory")
+                             : mt_fail(err, MT_E_USAGE, "--format: \"%s\" is none of %s%s", s,
+                                       list.s, did_you_mean(s, names, n, "", suggestion));
+    mt_text_free(&list);
+    return rc;
 }
 
 static mt_status store(mt_args *args, int option, const char *value, mt_err *err)
@@ -116,6 +194,14 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
         MT_TRY(read_count(value, o->name, MAX_THREADS, &args->threads, err));
         args->threads = args->threads < MT_WORKERS_MOST ? args->threads : MT_WORKERS_MOST;
         return MT_OK;
+    case MT_OPT_TIME:
+        return read_seconds(value, o->name, &args->time_s, err);
+    case MT_OPT_SEED:
+        return read_seed(value, o->name, &args->seed, err);
+    case MT_OPT_REL_TOL:
+        return read_tolerance(value, o->name, &args->rel_tol, err);
+    case MT_OPT_SHARD:
+        return read_part(value, o->name, args, err);
     case MT_OPT_MAX_MEMORY:
         return mt_limits_read_size(value, &args->max_memory, err);
     case MT_OPT_FORMAT:

@@ -24,10 +24,15 @@ typedef enum mt_option_id {
     MT_OPT_OUTPUT,
     MT_OPT_VERIFY,
     MT_OPT_THREADS,
+    MT_OPT_TIME,
+    MT_OPT_SEED,
+    MT_OPT_RESUME,
+    MT_OPT_SHARD,
     MT_OPT_PROFILE,
     MT_OPT_MAX_MEMORY,
     MT_OPT_RANK,
     MT_OPT_MODEL,
+    MT_OPT_REL_TOL,
     MT_OPT_ROOT,
     MT_OPT_FORMAT,
     MT_OPT_QUIET,
@@ -39,6 +44,7 @@ typedef enum mt_option_id {
 
 typedef enum mt_command_id {
     MT_CMD_RUN,
+    MT_CMD_MERGE,
     MT_CMD_COMPARE,
     MT_CMD_MODES,
     MT_CMD_MAC,
@@ -47,6 +53,7 @@ typedef enum mt_command_id {
     MT_CMD_INFO,
     MT_CMD_REPORT,
     MT_CMD_APPLY,
+    MT_CMD_DIFF,
     MT_CMD_CHECK,
     MT_CMD_IDS
 } mt_command_id;
@@ -84,12 +91,13 @@ extern const mt_exit mt_exits[MT_EXITS];
 /* Does the command take the option, or the program where it is MT_CMD_NONE? */
 bool mt_option_is_of(int option, int command);
 
-/* MT_FORMAT_HTML: of MT_CMD_REPORT alone. */
+/* MT_FORMAT_HTML: of MT_CMD_REPORT alone, MT_FORMAT_SARIF of MT_CMD_CHECK. */
 typedef enum mt_format {
     MT_FORMAT_TEXT,
     MT_FORMAT_JSON,
     MT_FORMAT_CSV,
-    MT_FORMAT_HTML
+    MT_FORMAT_HTML,
+    MT_FORMAT_SARIF
 } mt_format;
 
 typedef struct mt_args {
@@ -99,10 +107,17 @@ typedef struct mt_args {
     const char *value[MT_OPT_IDS]; /* of the last one */
     int count;                     /* --count, 0: not given */
     int rank;                      /* --rank, default 1 */
-    int threads;                   /* --threads, default 1, at most MT_WORKERS_MOST */
-    uint64_t max_memory;           /* --max-memory in bytes, 0: not given */
+    int threads;         /* --threads, at most MT_WORKERS_MOST; else of mt_limits_set */
+    double rel_tol;      /* --rel-tol, default 0 */
+    double time_s;       /* --time, 0: not given */
+    unsigned long seed;  /* --seed; read it where it is given */
+    uint64_t max_memory; /* --max-memory in bytes, 0: not given */
     int n_sets;
     const char **sets; /* --set, in order; [argc] */
+    int part;          /* --shard PART/PARTS; 0: all of it */
+    int parts;
+    int n_journals; /* of merge */
+    const char *const *journals;
     int n_operands;
     const char **operands; /* [argc] */
 } mt_args;

@@ -16,6 +16,7 @@
  * standard error itself, and returns the exit status.
  */
 int mt_cmd_run(const mt_args *args, mt_text *out);
+int mt_cmd_merge(const mt_args *args, mt_text *out);
 int mt_cmd_compare(const mt_args *args, mt_text *out);
 int mt_cmd_modes(const mt_args *args, mt_text *out);
 int mt_cmd_mac(const mt_args *args, mt_text *out);
@@ -24,6 +25,7 @@ int mt_cmd_sensitivity(const mt_args *args, mt_text *out);
 int mt_cmd_info(const mt_args *args, mt_text *out);
 int mt_cmd_report(const mt_args *args, mt_text *out);
 int mt_cmd_apply(const mt_args *args, mt_text *out);
+int mt_cmd_diff(const mt_args *args, mt_text *out);
 int mt_cmd_check(const mt_args *args, mt_text *out);
 
 /* The whole program but for its process-wide settings: parse, run, print. */

@@ -5,6 +5,7 @@
 #include "answer/doubts.h"
 #include "answer/examine.h"
 #include "cli/cli.h"
+#include "cli/sarif.h"
 #include "io/file.h"
 #include "io/json_print.h"
 #include "problem/problem.h"
@@ -190,33 +191,96 @@ static mt_status load(int kind, mt_json *doc, const char *path, const mt_io_opti
     return rc;
 }
 
-/* What was told, each with its place; or the failure, where that is all there is. */
-static void put_problems(mt_json_writer *w, const char *path, const mt_diagnostics *messages,
-                         const char *failure)
+/* What goes to standard output, whatever its form. */
+typedef struct output {
+    mt_format format;
+    mt_json_writer w;
+    mt_table table;
+    mt_text *text;
+    int left_out; /* problems of all files that are not told */
+} output;
+
+static void put_problem(output *to, const mt_file_problem *p)
 {
     static const char *const names[MT_SEVERITY_COUNT] = {"error", "warning", "note"};
-    mt_json_open(w, "problems", '[');
-    const int count = mt_diagnostics_count(messages);
-    const bool alone = failure != NULL && count == 0;
-    for (int i = 0; i < count || (alone && i == 0); i++) {
-        const int line = mt_diagnostics_line(messages, i);
-        mt_json_open(w, NULL, '{');
-        mt_json_put_string(w, "severity",
-                           alone ? names[0] : names[mt_diagnostics_severity(messages, i)]);
-        mt_json_put_string(w, "file", alone ? path : mt_diagnostics_file(messages, i));
-        if (line > 0) {
-            mt_json_put_integer(w, "line", line);
-            mt_json_put_integer(w, "column", mt_diagnostics_column(messages, i));
-            mt_json_put_string(w, "pointer", mt_diagnostics_pointer(messages, i));
-        }
-        mt_json_put_string(w, "message", alone ? failure : mt_diagnostics_message(messages, i));
-        mt_json_close(w);
+    mt_json_writer *const w = &to->w;
+    if (to->format == MT_FORMAT_SARIF) {
+        mt_sarif_put(w, p);
+        return;
     }
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "file", p->file);
+    if (p->line > 0) {
+        mt_json_put_integer(w, "line", p->line);
+        mt_json_put_integer(w, "column", p->column);
+    } else {
+        mt_json_put_null(w, "line");
+        mt_json_put_null(w, "column");
+    }
+    mt_json_put_string(w, "pointer", p->pointer);
+    mt_json_put_string(w, "severity", names[p->severity]);
+    mt_json_put_string(w, "message", p->message);
     mt_json_close(w);
 }
 
-static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_table *t,
-                 mt_text *out)
+/* What was told, each with its place; or the failure, where that is all there is. */
+static void put_problems(output *to, const char *path, const mt_diagnostics *messages,
+                         const char *failure)
+{
+    const int count = mt_diagnostics_count(messages);
+    for (int i = 0; i < count; i++) {
+        const mt_file_problem p = {.severity = mt_diagnostics_severity(messages, i),
+                                   .file = mt_diagnostics_file(messages, i),
+                                   .line = mt_diagnostics_line(messages, i),
+                                   .column = mt_diagnostics_column(messages, i),
+                                   .pointer = mt_diagnostics_pointer(messages, i),
+                                   .message = mt_diagnostics_message(messages, i)};
+        put_problem(to, &p);
+    }
+    if (failure != NULL && mt_diagnostics_first_error(messages) < 0) {
+        const mt_file_problem p = {.unread = true, .file = path, .message = failure};
+        put_problem(to, &p);
+    }
+    to->left_out += mt_diagnostics_left_out(messages);
+}
+
+/* What is said of one file. */
+static void put_file(output *to, const char *path, const char *kind,
+                     const mt_diagnostics *messages, const mt_doubt_list *found,
+                     const char *failure)
+{
+    switch (to->format) {
+    case MT_FORMAT_JSON:
+        mt_json_open(&to->w, NULL, '{');
+        mt_json_put_string(&to->w, "file", path);
+        mt_json_put_string(&to->w, "kind", kind);
+        mt_json_put_bool(&to->w, "ok", failure == NULL);
+        mt_json_open(&to->w, "problems", '[');
+        put_problems(to, path, messages, failure);
+        mt_json_close(&to->w);
+        mt_json_put_integer(&to->w, "left_out", mt_diagnostics_left_out(messages));
+        mt_json_put_doubts(&to->w, "doubts", found, MT_LEVEL_DOUBT);
+        mt_json_put_doubts(&to->w, "facts", found, MT_LEVEL_FACT);
+        mt_json_close(&to->w);
+        break;
+    case MT_FORMAT_SARIF:
+        put_problems(to, path, messages, failure);
+        break;
+    case MT_FORMAT_CSV:
+        mt_table_text(&to->table, path);
+        mt_table_text(&to->table, kind);
+        mt_table_text(&to->table, failure == NULL ? "true" : "false");
+        break;
+    case MT_FORMAT_HTML: /* of report alone */
+    case MT_FORMAT_TEXT:
+        if (failure == NULL) {
+            mt_text_addf(to->text, "%s: ok (%s)\n", path, kind);
+        }
+        break;
+    }
+}
+
+static int check(const mt_args *args, const char *path, output *to)
 {
     const mt_io_options opt = mt_cli_io(args);
     mt_diagnostics messages = {.count = 0};
@@ -231,23 +295,8 @@ static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_ta
     rc = rc == MT_OK ? mt_arena_init(&mem, 0, &err) : rc;
     rc = rc == MT_OK ? examine(&read, path, &messages, &found, &err) : rc;
     add_messages(&found, path, &messages);
-    const char *const name = kind == KIND_COUNT ? NULL : kinds[kind];
-    if (args->format == MT_FORMAT_JSON) {
-        mt_json_open(w, NULL, '{');
-        mt_json_put_string(w, "file", path);
-        mt_json_put_string(w, "kind", name);
-        mt_json_put_bool(w, "ok", rc == MT_OK);
-        put_problems(w, path, &messages, rc == MT_OK ? NULL : err.text);
-        mt_json_put_doubts(w, "doubts", &found, MT_LEVEL_DOUBT);
-        mt_json_put_doubts(w, "facts", &found, MT_LEVEL_FACT);
-        mt_json_close(w);
-    } else if (args->format == MT_FORMAT_CSV) {
-        mt_table_text(t, path);
-        mt_table_text(t, name);
-        mt_table_text(t, rc == MT_OK ? "true" : "false");
-    } else if (rc == MT_OK) {
-        mt_text_addf(out, "%s: ok (%s)\n", path, name);
-    }
+    put_file(to, path, kind == KIND_COUNT ? NULL : kinds[kind], &messages, &found,
+             rc == MT_OK ? NULL : err.text);
     mt_arena_free(&read.mem);
     mt_model_delete(read.model);
     mt_study_delete(read.study);
@@ -258,25 +307,35 @@ static int check(const mt_args *args, const char *path, mt_json_writer *w, mt_ta
 
 int mt_cmd_check(const mt_args *args, mt_text *out)
 {
-    mt_json_writer w = mt_json_writer_default(out);
-    mt_table t = mt_table_default();
+    const bool sarif = args->format == MT_FORMAT_SARIF;
+    const bool json = args->format == MT_FORMAT_JSON;
+    output to = {.format = args->format,
+                 .w = mt_json_writer_default(out),
+                 .table = mt_table_default(),
+                 .text = out};
     int code = MT_EXIT_DONE;
-    mt_table_column(&t, "file", "file", MT_ALIGN_LEFT);
-    mt_table_column(&t, "kind", "kind", MT_ALIGN_LEFT);
-    mt_table_column(&t, "ok", "ok", MT_ALIGN_LEFT);
-    if (args->format == MT_FORMAT_JSON) {
-        mt_json_open(&w, NULL, '[');
+    mt_table_column(&to.table, "file", "file", MT_ALIGN_LEFT);
+    mt_table_column(&to.table, "kind", "kind", MT_ALIGN_LEFT);
+    mt_table_column(&to.table, "ok", "ok", MT_ALIGN_LEFT);
+    if (json) {
+        mt_json_open(&to.w, NULL, '[');
+    } else if (sarif) {
+        mt_sarif_begin(&to.w);
     }
     for (int i = 0; i < args->n_operands; i++) {
-        code = mt_exit_worse(code, check(args, args->operands[i], &w, &t, out));
+        code = mt_exit_worse(code, check(args, args->operands[i], &to));
     }
-    if (args->format == MT_FORMAT_JSON) {
-        mt_json_close(&w);
-        code = mt_exit_worse(code, mt_cli_json_done(&w));
+    if (json) {
+        mt_json_close(&to.w);
+    } else if (sarif) {
+        mt_sarif_end(&to.w, code, to.left_out);
+    }
+    if (json || sarif) {
+        code = mt_exit_worse(code, mt_cli_json_done(&to.w));
     }
     if (args->format == MT_FORMAT_CSV) {
-        mt_table_csv(&t, out);
+        mt_table_csv(&to.table, out);
     }
-    mt_table_free(&t);
+    mt_table_free(&to.table);
     return code;
 }

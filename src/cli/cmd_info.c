@@ -151,7 +151,8 @@ static mt_status one(const mt_args *args, view *v, mt_json_writer *w, mt_table *
     case MT_FORMAT_CSV:
         fill_table(t, v);
         return MT_OK;
-    case MT_FORMAT_HTML: /* of report alone */
+    case MT_FORMAT_HTML:  /* of report alone */
+    case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
         write_text(out, v);
         break;

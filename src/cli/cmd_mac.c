@@ -339,7 +339,8 @@ static mt_status write_out(comparison *c, mt_format format, mt_text *out, mt_err
         mt_table_csv(&t, out);
         mt_table_free(&t);
         return MT_OK;
-    case MT_FORMAT_HTML: /* of report alone */
+    case MT_FORMAT_HTML:  /* of report alone */
+    case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
         break;
     }

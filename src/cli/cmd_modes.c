@@ -364,7 +364,8 @@ static mt_status one(sink *to, const mt_subject *s, int c, mt_err *err)
                           "choose one with -c");
         }
         break;
-    case MT_FORMAT_HTML: /* of report alone */
+    case MT_FORMAT_HTML:  /* of report alone */
+    case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
         text_view(&v, to->out);
         break;

@@ -2,9 +2,12 @@
 /* modetune run and compare: answer studies, write what was found, judge published values. */
 #include <stdlib.h>
 
+#include "answer/solve.h"
+#include "cli/batch.h"
 #include "cli/cli.h"
 #include "cli/profile.h"
 #include "cli/save.h"
+#include "cli/work.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
 #include "result/result.h"
@@ -19,7 +22,12 @@ typedef struct job {
     double seconds;
     mt_profile counts; /* --profile */
     mt_profile *profile;
-    bool stops; /* a signal ends the search, not the program */
+    bool stops;                  /* a signal ends the search, not the program */
+    char sha256[MT_SHA256_TEXT]; /* of result.json, "" as long as it is not written */
+    mt_err err;
+    mt_journal *journal; /* of a command that writes its result; else NULL */
+    bool complete;       /* nothing is left to be resumed */
+    bool stopped;        /* by a signal or the end of its time */
 } job;
 
 static void progress(void *context, const char *text)
@@ -33,11 +41,13 @@ static int answer(job *j)
 {
     mt_io_options io = mt_cli_io(j->args);
     mt_diagnostics messages = {.count = 0};
-    mt_err err = {.code = MT_OK};
-    mt_status rc = mt_study_load(j->path, &io, &j->study, &messages, &err);
-    const int code = mt_cli_loaded(rc, &messages, &err);
+    mt_status rc = mt_study_load(j->path, &io, &j->study, &messages, &j->err);
+    const int code = mt_cli_loaded(rc, &messages, &j->err);
     if (rc != MT_OK) {
         return code;
+    }
+    if (j->args->given[MT_OPT_SEED]) {
+        j->study->search.seed = j->args->seed;
     }
     mt_solve_options opt = {.size = sizeof opt};
     mt_args progress_args = *j->args;
@@ -47,15 +57,32 @@ static int answer(job *j)
     opt.progress_context = &progress_args;
     j->profile = mt_cli_profile(j->args, &j->counts);
     j->study->model->profile = j->profile;
+    mt_ledger *ledger = NULL;
+    if (j->args->command != MT_CMD_COMPARE) {
+        const int begun = mt_work_begin(j->args, j->path, j->study, &j->journal);
+        if (begun != MT_EXIT_DONE) {
+            return begun;
+        }
+        ledger = mt_journal_ledger(j->journal, j->args->part, j->args->parts);
+    }
     const double start = mt_terminal_seconds();
     if (j->stops) {
         mt_terminal_hold_signals();
+        mt_terminal_limit(j->args->time_s);
     }
-    rc = mt_study_solve(j->study, &opt, &j->result, &err);
+    rc = mt_study_solve_with(j->study, &opt, ledger, &j->result, &j->err);
     j->seconds = mt_terminal_seconds() - start;
+    j->stopped = mt_terminal_wish(NULL) != MT_WISH_NONE;
+    mt_terminal_limit(0.0);
     mt_terminal_progress(j->args->given[MT_OPT_QUIET], NULL);
-    mt_cli_place(j->study, j->path, rc, &err, &messages);
-    return mt_cli_loaded(rc, &messages, &err);
+    if (j->stopped && !mt_terminal_is_stopped() &&
+        (rc == MT_E_INTERRUPTED || j->args->part > 0 ||
+         (rc == MT_OK && j->result->status == MT_RESULT_INTERRUPTED))) {
+        mt_terminal_talk(j->args->given[MT_OPT_QUIET], "%s: stopped at the time limit of %s s",
+                         j->path, j->args->value[MT_OPT_TIME]);
+    }
+    mt_cli_place(j->study, j->path, rc, &j->err, &messages);
+    return mt_cli_loaded(rc, &messages, &j->err);
 }
 
 static int outcome(const job *j, bool verify)
@@ -74,15 +101,19 @@ static int outcome(const job *j, bool verify)
 }
 
 /* What a command does with an answer; its exit status. */
-typedef int (*use_answer)(const job *j, mt_json_writer *w, mt_text *out);
+typedef int (*use_answer)(job *j, mt_json_writer *w, mt_text *out);
 
-static int run_one(const job *j, mt_json_writer *w, mt_text *out)
+static int run_one(job *j, mt_json_writer *w, mt_text *out)
 {
     const bool verify = j->args->given[MT_OPT_VERIFY];
+    if (j->args->part > 0) { /* its journal is what it leaves */
+        return j->stopped ? MT_EXIT_INTERRUPTED : MT_EXIT_DONE;
+    }
     mt_save_print(j->args, j->result, w, out);
+    const int saved = mt_save(j->args, j->path, j->result, j->seconds, j->sha256);
+    j->complete = saved == MT_EXIT_DONE && j->result->status != MT_RESULT_INTERRUPTED;
     return mt_exit_worse(outcome(j, verify),
-                         mt_exit_worse(mt_save(j->args, j->path, j->result, j->seconds),
-                                       mt_cli_profile_print(j->profile)));
+                         mt_exit_worse(saved, mt_cli_profile_print(j->profile)));
 }
 
 /* Which studies an interrupt leaves out from number `first` on, as an error; heap. NULL: out of
@@ -101,13 +132,22 @@ static char *words_about(const mt_args *args, int first)
     return t.s;
 }
 
+/* Studies on their way. */
+typedef struct round_of {
+    const mt_args *args;
+    use_answer use;
+    bool stops;      /* a signal ends a search, not the program */
+    mt_batch *batch; /* NULL: no index */
+    mt_json_writer w;
+    mt_text *out;
+} round_of;
+
 /* One study: read (a signal then ends the program), solved and used (where it may, a signal
  * ends the search), told. */
-static int one_study(const mt_args *args, int i, bool stops, mt_json_writer *w, mt_text *out,
-                     use_answer use)
+static int one_study(round_of *all, int i)
 {
-    const bool json = args->format == MT_FORMAT_JSON;
-    job j = {.args = args, .path = args->operands[i], .stops = stops};
+    const mt_args *const args = all->args;
+    job j = {.args = args, .path = args->operands[i], .stops = all->stops};
     char *const words = words_about(args, i);
     if (words == NULL) {
         return MT_EXIT_SYSTEM;
@@ -115,35 +155,50 @@ static int one_study(const mt_args *args, int i, bool stops, mt_json_writer *w, 
     mt_terminal_last_words(words);
     int code = answer(&j);
     if (code == MT_EXIT_DONE) {
-        code = use(&j, w, out);
+        code = all->use(&j, &all->w, all->out);
+    }
+    if (j.journal != NULL) {
+        code = mt_work_end(args, j.path, code, j.complete, j.journal);
     }
     mt_terminal_release_signals();
+    mt_journal_delete(j.journal);
     free(words);
+    if (args->format != MT_FORMAT_JSON) {
+        code = mt_exit_worse(code, mt_terminal_put(all->out));
+    }
+    if (all->batch != NULL) {
+        const mt_batch_end end = {.result = j.result,
+                                  .sha256 = j.sha256,
+                                  .message = j.err.text,
+                                  .exit_status = code,
+                                  .seconds = j.seconds};
+        code = mt_exit_worse(code, mt_batch_note(all->batch, i, &end));
+    }
     mt_result_delete(j.result);
     mt_study_delete(j.study);
-    return mt_exit_worse(code, json ? MT_EXIT_DONE : mt_terminal_put(out));
+    return code;
 }
 
 /* All studies in turn. Text leaves as it comes; JSON is one document (a list where several
  * studies are given). */
-static int for_each_study(const mt_args *args, mt_text *out, bool stops, use_answer use)
+static int for_each_study(round_of *all)
 {
+    const mt_args *const args = all->args;
     const bool json = args->format == MT_FORMAT_JSON;
     const bool list = json && args->n_operands > 1;
-    mt_json_writer w = mt_json_writer_default(out);
     int code = MT_EXIT_DONE;
     int i = 0;
     if (list) {
-        mt_json_open(&w, NULL, '[');
+        mt_json_open(&all->w, NULL, '[');
     }
     for (; i < args->n_operands && !mt_terminal_is_stopped(); i++) {
-        code = mt_exit_worse(code, one_study(args, i, stops, &w, out, use));
+        code = mt_exit_worse(code, one_study(all, i));
     }
     if (list) {
-        mt_json_close(&w);
+        mt_json_close(&all->w);
     }
-    if (json && out->length > 0) {
-        code = mt_exit_worse(code, mt_cli_json_done(&w));
+    if (json && all->out->length > 0) {
+        code = mt_exit_worse(code, mt_cli_json_done(&all->w));
     }
     if (i < args->n_operands) {
         char *const words = words_about(args, i);
@@ -156,11 +211,35 @@ static int for_each_study(const mt_args *args, mt_text *out, bool stops, use_ans
 
 int mt_cmd_run(const mt_args *args, mt_text *out)
 {
-    const int code = mt_save_plan(args);
-    return code == MT_EXIT_DONE ? for_each_study(args, out, true, run_one) : code;
+    mt_batch batch = {.args = args};
+    round_of all = {.args = args,
+                    .use = run_one,
+                    .stops = true,
+                    .batch = args->n_operands > 1 && args->part == 0 ? &batch : NULL,
+                    .w = mt_json_writer_default(out),
+                    .out = out};
+    int code = mt_save_plan(args);
+    if (code == MT_EXIT_DONE && all.batch != NULL) {
+        code = mt_batch_begin(args, &batch);
+    }
+    if (code == MT_EXIT_DONE) {
+        code = for_each_study(&all);
+        code = all.batch == NULL ? code : mt_exit_worse(code, mt_batch_close(&batch, out));
+    }
+    mt_batch_free(&batch);
+    return code;
 }
 
-static int compare_one(const job *j, mt_json_writer *w, mt_text *out)
+int mt_cmd_merge(const mt_args *args, mt_text *out)
+{
+    mt_args one = *args; /* the first operand is the study */
+    one.n_operands = 1;
+    one.n_journals = args->n_operands - 1;
+    one.journals = args->operands + 1;
+    return mt_cmd_run(&one, out);
+}
+
+static int compare_one(job *j, mt_json_writer *w, mt_text *out)
 {
     const mt_result *const r = j->result;
     const mt_recommendation *const best =
@@ -186,6 +265,7 @@ static int compare_one(const job *j, mt_json_writer *w, mt_text *out)
         mt_table_csv(&t, out);
         break;
     case MT_FORMAT_HTML: /* of report alone */
+    case MT_FORMAT_SARIF:
     case MT_FORMAT_TEXT:
         mt_text_addf(out, "%s: %s\n", r->study.name == NULL ? j->path : r->study.name,
                      mt_result_status_name(r->status));
@@ -205,5 +285,7 @@ static int compare_one(const job *j, mt_json_writer *w, mt_text *out)
 
 int mt_cmd_compare(const mt_args *args, mt_text *out)
 {
-    return for_each_study(args, out, false, compare_one);
+    round_of all = {
+        .args = args, .use = compare_one, .w = mt_json_writer_default(out), .out = out};
+    return for_each_study(&all);
 }

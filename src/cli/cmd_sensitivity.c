@@ -172,7 +172,8 @@ static mt_status one(const mt_args *args, const mt_subject *s, int c, mt_json_wr
         case MT_FORMAT_CSV:
             fill_csv(t, &v);
             break;
-        case MT_FORMAT_HTML: /* of report alone */
+        case MT_FORMAT_HTML:  /* of report alone */
+        case MT_FORMAT_SARIF: /* of check alone */
         case MT_FORMAT_TEXT:
             write_text(out, &v);
             break;

@@ -278,7 +278,8 @@ static int one(sink *to, const mt_subject *s, int c, const mt_sweep_request *req
         case MT_FORMAT_CSV:
             rc = add_csv(to, &j.v, &err);
             break;
-        case MT_FORMAT_HTML: /* of report alone */
+        case MT_FORMAT_HTML:  /* of report alone */
+        case MT_FORMAT_SARIF: /* of check alone */
         case MT_FORMAT_TEXT:
             mt_sweep_print(&j.v, to->out);
             break;

@@ -6,7 +6,8 @@
 #define BIT(command) (1U << (unsigned)(command))
 #define ON_MODELS \
     (BIT(MT_CMD_MODES) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY) | BIT(MT_CMD_INFO))
-#define ON_STUDIES (BIT(MT_CMD_RUN) | BIT(MT_CMD_COMPARE))
+#define SOLVES     (BIT(MT_CMD_RUN) | BIT(MT_CMD_MERGE))
+#define ON_STUDIES (SOLVES | BIT(MT_CMD_COMPARE))
 
 #define OPTION(id, letter_, name_, value_, commands_, help_) \
     [id] = {.letter = (letter_),                             \
@@ -41,15 +42,28 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "natural frequencies at each position"),
     OPTION(MT_OPT_PARAMETERS, '\0', "parameters", "A,B", BIT(MT_CMD_SENSITIVITY),
            "parameters to vary (default: all that are not made of others)"),
-    OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR", BIT(MT_CMD_RUN) | BIT(MT_CMD_REPORT),
+    OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR", SOLVES | BIT(MT_CMD_REPORT),
            "folder for the results (default of run: results, in the current one; of report: "
            "nothing is written)"),
-    OPTION(MT_OPT_VERIFY, '\0', "verify", NULL, BIT(MT_CMD_RUN) | BIT(MT_CMD_REPORT),
+    OPTION(MT_OPT_VERIFY, '\0', "verify", NULL, SOLVES | BIT(MT_CMD_REPORT),
            "show the study's published values, too; of run, they alone decide the exit status"),
     OPTION(MT_OPT_THREADS, '\0', "threads", "N", ON_STUDIES,
-           "number of workers of the search, of which at most 64 are used; the result does not "
-           "depend on it"),
-    OPTION(MT_OPT_PROFILE, '\0', "profile", NULL, BIT(MT_CMD_RUN) | BIT(MT_CMD_MODES),
+           "number of workers of the search, of which at most 64 are used (default: as many as "
+           "there "
+           "are processors); the result does not depend on it"),
+    OPTION(
+        MT_OPT_TIME, '\0', "time", "SECONDS", SOLVES,
+        "most time for the answer to each study once its files are read; then it ends with the "
+        "best so far, as after an interrupt"),
+    OPTION(MT_OPT_SEED, '\0', "seed", "N", SOLVES,
+           "seed of the starting points instead of the study's"),
+    OPTION(
+        MT_OPT_RESUME, '\0', "resume", NULL, BIT(MT_CMD_RUN),
+        "go on from the journal of a run that was killed or interrupted, if there is one; the "
+        "result is that of a run without a break"),
+    OPTION(MT_OPT_SHARD, '\0', "shard", "PART/PARTS", BIT(MT_CMD_RUN),
+           "do one part of the work only, and leave a journal for `merge`"),
+    OPTION(MT_OPT_PROFILE, '\0', "profile", NULL, SOLVES | BIT(MT_CMD_MODES),
            "how often each stage of the evaluations was done or could be skipped, and the "
            "seconds that all workers took, on standard error"),
     OPTION(MT_OPT_MAX_MEMORY, '\0', "max-memory", "SIZE", MT_ALL_COMMANDS,
@@ -60,11 +74,15 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "which recommendation (default: 1, the best)"),
     OPTION(MT_OPT_MODEL, '\0', "model", "MODEL", BIT(MT_CMD_APPLY),
            "the model file, where it is not found from the result"),
+    OPTION(MT_OPT_REL_TOL, '\0', "rel-tol", "X", BIT(MT_CMD_DIFF),
+           "numbers that differ by no more than this part of them are the same (default: 0; "
+           "1e-6 passes over what another machine or compiler rounds differently)"),
     OPTION(MT_OPT_ROOT, '\0', "root", "DIR", MT_ALL_COMMANDS,
            "files named by other files must lie beneath DIR (default: the parent of the "
            "study's folder)"),
     OPTION(MT_OPT_FORMAT, '\0', "format", "text|json|csv", MT_ALL_COMMANDS,
-           "form of what goes to standard output (default: text; of report also html)"),
+           "form of what goes to standard output (default: text; of report also html, of check "
+           "sarif)"),
     OPTION(MT_OPT_QUIET, '\0', "quiet", NULL, MT_ALL_COMMANDS,
            "no talk on standard error; errors and warnings stay"),
     OPTION(MT_OPT_HELP, 'h', "help", NULL, MT_ALL_COMMANDS,
@@ -92,8 +110,22 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "SHA-256, and a run that fails or is killed leaves the old result, or one that the "
         "next "
         "run mends.\n"
+        "Of several studies each is answered, whatever becomes of the others; a table at the "
+        "end, and index.json and index.html in DIR, say of each what became of it (answered, "
+        "not answered, not run), its status, grade and size of the redesign. Two studies "
+        "whose results would go into one folder, be it by a link or where capital letters are "
+        "not told apart, are refused before anything is run. The worst exit status counts.\n"
         "An interrupt (Ctrl-C) ends the search; the best design so far is written, and which "
-        "parts of the answer are missing. A second one ends the program."),
+        "parts of the answer are missing. A second one ends the program.\n"
+        "While it works, a run appends what it knows to DIR/<study file name without "
+        ".json>.journal, which goes when the answer is complete; after an interrupt or a kill "
+        "--resume goes on from it."),
+    COMMAND(
+        MT_CMD_MERGE, "merge", "STUDY JOURNAL...", 2, -1, "join the parts of a study's work",
+        "Reads the journals that `run --shard PART/PARTS` left in DIR/<study file name without "
+        ".json>.PART-of-PARTS.journal, does what no journal knows, and writes and prints what "
+        "`run` does: the same bytes. A journal of another study, model, program or machine's "
+        "libraries is refused; a damaged line is done again."),
     COMMAND(MT_CMD_COMPARE, "compare", "STUDY...", 1, -1, "published against computed values",
             "Solves each study and prints its published values beside the computed ones, with "
             "differences, roles and sources. Writes no files. Exit status 0 when all hold, "
@@ -146,10 +178,26 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "files beside it are of another run or were changed; a copy that stands alone is "
         "read."),
     COMMAND(
+        MT_CMD_DIFF, "diff", "RESULT RESULT", 2, 2, "what two results say differently",
+        "Compares two results (each a result.json, or the folder that holds it), also of "
+        "different studies or written by different versions of the program: status, designs "
+        "with their parameters, objectives, frequencies, MAC and goals, certificates and all "
+        "else. Parameters are matched by their names, frequencies by configuration and mode, "
+        "goals by their places in the study; what only one of the results has is told. How "
+        "the answers were made (versions, seed, evaluations, digests of the files read) is "
+        "told too, but is no difference of the answers; sentences and measures of rounding "
+        "are not compared.\n"
+        "The text leaves out what follows from what it shows (errors, slopes, changes); JSON "
+        "and CSV have all, with JSON pointers into both files. Exit status 0 when the answers "
+        "are the same, 1 when they differ, 2 or more when they cannot be compared."),
+    COMMAND(
         MT_CMD_CHECK, "check", "FILE...", 1, -1,
         "validate model, study, result and aircraft files",
         "Reads each file as its \"format\" says, and prints every problem found as "
         "file:line:column: error: /json/pointer: message.\n"
+        "JSON has all of this by members (file, line, column, pointer, severity, message), "
+        "SARIF 2.1.0 as code hosts and editors show it; paths are relative to the current "
+        "folder, which should be that of the repository.\n"
         "Then says what is hardly meant (warning: values that look like other units, joints "
         "off their links, bands that no mode comes near) and what to know of every "
         "configuration, or of those that a study names (note: free motions, unstable "
@@ -158,7 +206,7 @@ const mt_command mt_commands[MT_CMD_IDS] = {
 
 const mt_exit mt_exits[MT_EXITS] = {
     {MT_EXIT_DONE, "done, all goals met (with --verify: all published values hold)"},
-    {MT_EXIT_GOALS, "done, goals not met"},
+    {MT_EXIT_GOALS, "done, goals not met (of diff: the answers differ)"},
     {MT_EXIT_INPUT, "bad input or usage"},
     {MT_EXIT_NUMERICAL, "numerical failure"},
     {MT_EXIT_SYSTEM, "system failure: file, disk, memory"},

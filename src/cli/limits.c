@@ -5,15 +5,20 @@
  * as MT_E_MEMORY. What is there already does not count: the buffers of OpenBLAS are address
  * space above all.
  */
+/* Which processors are the process's own is not in POSIX. */
+#define _GNU_SOURCE /* NOLINT(cert-dcl37-c,cert-dcl51-cpp): for the system, not ours */
+
 #include "cli/limits.h"
 
 #include <inttypes.h>
+#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "base/workers.h"
 #include "linalg/blas.h"
 
 /* The runtimes of sanitizers claim more than any limit. */
@@ -113,8 +118,23 @@ static bool lower_limit(uint64_t bytes)
 }
 #endif
 
-mt_status mt_limits_set(const mt_args *args, mt_err *err)
+/* Processors that the process may use, which a batch system may have made fewer. */
+static int processors(void)
 {
+    cpu_set_t set;
+    const long online = sysconf(_SC_NPROCESSORS_ONLN);
+    const long n = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : online;
+    return n < 1 ? 1 : n < MT_WORKERS_MOST ? (int)n : MT_WORKERS_MOST;
+}
+
+mt_status mt_limits_set(mt_args *args, mt_err *err)
+{
+    const bool free =
+        !args->given[MT_OPT_THREADS] && mt_option_is_of(MT_OPT_THREADS, args->command);
+    args->threads = free ? processors() : args->threads;
+    if (free && mt_blas_claim(args->threads, NULL) != MT_OK) {
+        args->threads = 1;
+    }
     MT_TRY(mt_blas_claim(args->threads, err));
 #ifndef WITH_SANITIZER
     const uint64_t share = args->max_memory > 0 ? args->max_memory : share_of_machine();

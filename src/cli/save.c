@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 #include "cli/cli.h"
@@ -20,6 +21,7 @@
 #include "report/trade.h"
 
 static const char DEFAULT_FOLDER[] = "results";
+const char *const mt_index_names[MT_INDEX_FILES] = {"index.html", "index.json"};
 
 /* How much of the file name names the folder: all but ".json", unless that would leave no name,
  * or one that leads out of the folder for results. */
@@ -35,28 +37,22 @@ static size_t name_length(const char *name)
     return dots ? length : left;
 }
 
-/* Where the result of a study goes; heap, NULL when out of memory. */
-static char *folder_of(const mt_args *args, const char *study_path)
+const char *mt_save_base(const mt_args *args)
 {
-    const char *const base =
-        args->given[MT_OPT_OUTPUT] ? args->value[MT_OPT_OUTPUT] : DEFAULT_FOLDER;
+    return args->given[MT_OPT_OUTPUT] ? args->value[MT_OPT_OUTPUT] : DEFAULT_FOLDER;
+}
+
+char *mt_save_folder(const mt_args *args, const char *study_path)
+{
     const char *const name = mt_text_base_name(study_path);
     mt_text t = {.s = NULL};
-    mt_text_add(&t, base);
+    mt_text_add(&t, mt_save_base(args));
     mt_text_add(&t, "/");
     mt_text_add_n(&t, name, name_length(name));
     if (t.failed) {
         mt_text_free(&t);
     }
     return t.s;
-}
-
-static bool is_same_folder(const char *a, const char *b)
-{
-    struct stat x;
-    struct stat y;
-    return strcmp(a, b) == 0 || (stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev &&
-                                 x.st_ino == y.st_ino);
 }
 
 /* Names of folders, not files: they cannot be studies, and their results would have no folder
@@ -67,46 +63,118 @@ static bool is_no_file(const char *path)
     return name[0] == '\0' || strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
 }
 
-/* Of each pair of studies with one folder the second would silently replace the first. */
-static bool is_taken(const mt_args *args, char *const *folders, int i)
+/* Where the result of one study goes. */
+typedef struct place {
+    const char *study;
+    int order; /* as given */
+    char *folder;
+    struct stat st;
+    bool there;
+} place;
+
+/* By name, capital letters or not: file systems may not tell them apart, nor may the next one
+ * that the results are copied to. */
+static int by_name(const void *a, const void *b)
 {
-    bool taken = false;
-    for (int k = 0; k < i; k++) {
-        if (is_same_folder(folders[k], folders[i])) {
-            mt_terminal_error("%s and %s would both be written to \"%s\": run one of them "
-                              "apart, with another -o",
-                              args->operands[k], args->operands[i], folders[i]);
-            taken = true;
+    const place *const x = a;
+    const place *const y = b;
+    const int order = strcasecmp(x->folder, y->folder);
+    return order != 0 ? order : x->order - y->order;
+}
+
+/* By what is there already, first; links lead to one folder. */
+static int by_inode(const void *a, const void *b)
+{
+    const place *const x = a;
+    const place *const y = b;
+    const int there = (int)y->there - (int)x->there;
+    const int device = (x->st.st_dev > y->st.st_dev) - (x->st.st_dev < y->st.st_dev);
+    const int node = (x->st.st_ino > y->st.st_ino) - (x->st.st_ino < y->st.st_ino);
+    return there != 0 ? there : device != 0 ? device : node != 0 ? node : x->order - y->order;
+}
+
+static bool is_same_folder(const place *a, const place *b)
+{
+    return strcasecmp(a->folder, b->folder) == 0 ||
+           (a->there && b->there && a->st.st_dev == b->st.st_dev &&
+            a->st.st_ino == b->st.st_ino);
+}
+
+static int clash(const place *a, const place *b)
+{
+    const place *const first = a->order < b->order ? a : b;
+    const place *const second = first == a ? b : a;
+    mt_terminal_error("%s and %s would both be written to \"%s\": run one of them apart, with "
+                      "another -o",
+                      first->study, second->study, second->folder);
+    return MT_EXIT_INPUT;
+}
+
+/* Can a result be written there, beside an index where there are several? */
+static int check_place(place *p, bool index)
+{
+    struct stat link;
+    if (is_no_file(p->study)) {
+        mt_terminal_error("\"%s\" is not the name of a file", p->study);
+        return MT_EXIT_INPUT;
+    }
+    for (int i = 0; i < MT_INDEX_FILES && index; i++) {
+        if (strcasecmp(mt_text_base_name(p->folder), mt_index_names[i]) == 0) {
+            mt_terminal_error("%s would be written to \"%s\", where the index of all studies "
+                              "goes: run it apart",
+                              p->study, p->folder);
+            return MT_EXIT_INPUT;
         }
     }
-    return taken;
+    p->there = stat(p->folder, &p->st) == 0;
+    if (!p->there && lstat(p->folder, &link) == 0 && S_ISLNK(link.st_mode)) {
+        mt_terminal_error("%s would be written to \"%s\", a link that leads nowhere", p->study,
+                          p->folder);
+        return MT_EXIT_INPUT;
+    }
+    return MT_EXIT_DONE;
+}
+
+/* Of studies with one folder each would silently replace the one before. */
+static int check_places(place *places, int n)
+{
+    int code = MT_EXIT_DONE;
+    for (int i = 0; i < n; i++) {
+        code = mt_exit_worse(code, check_place(&places[i], n > 1));
+    }
+    int (*const orders[])(const void *, const void *) = {by_name, by_inode};
+    for (int k = 0; k < MT_COUNT(orders) && code == MT_EXIT_DONE; k++) {
+        qsort(places, (size_t)n, sizeof *places, orders[k]);
+        for (int i = 1; i < n; i++) {
+            if (is_same_folder(&places[i - 1], &places[i])) {
+                code = clash(&places[i - 1], &places[i]);
+            }
+        }
+    }
+    return code;
 }
 
 int mt_save_plan(const mt_args *args)
 {
-    int code = MT_EXIT_DONE;
-    char **const folders = calloc((size_t)args->n_operands, sizeof *folders);
-    for (int i = 0; folders != NULL && i < args->n_operands; i++) {
-        const char *const path = args->operands[i];
-        folders[i] = folder_of(args, path);
-        if (folders[i] == NULL) {
-            code = MT_EXIT_SYSTEM;
-            break;
-        }
-        if (is_no_file(path)) {
-            mt_terminal_error("\"%s\" is not the name of a file", path);
-            code = MT_EXIT_INPUT;
-        }
-        code = is_taken(args, folders, i) ? MT_EXIT_INPUT : code;
+    const int n = args->n_operands;
+    place *const places = calloc((size_t)n, sizeof *places);
+    bool whole = places != NULL;
+    for (int i = 0; i < n && whole; i++) {
+        places[i].study = args->operands[i];
+        places[i].order = i;
+        places[i].folder = mt_save_folder(args, args->operands[i]);
+        whole = places[i].folder != NULL;
     }
-    for (int i = 0; folders != NULL && i < args->n_operands; i++) {
-        free(folders[i]);
-    }
-    if (folders == NULL || code == MT_EXIT_SYSTEM) {
+    int code = MT_EXIT_SYSTEM;
+    if (whole) {
+        code = check_places(places, n);
+    } else {
         mt_terminal_error("out of memory");
-        code = MT_EXIT_SYSTEM;
     }
-    free(folders);
+    for (int i = 0; i < n && places != NULL; i++) {
+        free(places[i].folder);
+    }
+    free(places);
     return code;
 }
 
@@ -180,6 +248,7 @@ void mt_save_print(const mt_args *args, const mt_result *result, mt_json_writer 
     case MT_FORMAT_HTML:
         write_output(result, MT_RESULT_FILE_REPORT, out);
         break;
+    case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
         mt_report_summary(result, args->given[MT_OPT_VERIFY], out);
         mt_text_add(out, "\n");
@@ -211,7 +280,7 @@ static mt_status write_texts(mt_result *result, saving *s)
 
 static mt_status begin(const mt_args *args, mt_result *result, saving *s)
 {
-    s->folder = folder_of(args, s->study_path);
+    s->folder = mt_save_folder(args, s->study_path);
     return s->folder == NULL ? mt_fail_memory(&s->err) : write_texts(result, s);
 }
 
@@ -235,7 +304,8 @@ static int end(const mt_args *args, mt_status rc, const char *told, saving *s)
     return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &s->err);
 }
 
-int mt_save(const mt_args *args, const char *study_path, mt_result *result, double seconds)
+int mt_save(const mt_args *args, const char *study_path, mt_result *result, double seconds,
+            char sha256[MT_SHA256_TEXT])
 {
     saving s = {.study_path = study_path};
     mt_text told = {.s = NULL};
@@ -245,6 +315,8 @@ int mt_save(const mt_args *args, const char *study_path, mt_result *result, doub
                  result->run.evaluations);
     rc = rc == MT_OK && told.failed ? mt_fail_memory(&s.err) : rc;
     const int code = end(args, rc, told.s, &s);
+    memcpy(sha256, code == MT_EXIT_DONE ? s.sha256 : "",
+           code == MT_EXIT_DONE ? MT_SHA256_TEXT : 1);
     mt_text_free(&told);
     return code;
 }

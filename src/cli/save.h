@@ -4,15 +4,25 @@
 
 #include "cli/args.h"
 #include "io/io.h"
+#include "io/sha256.h"
 #include "result/result.h"
 
 /* Before anything is run: has every study a folder of its own? Returns MT_EXIT_DONE, or the
  * exit status, everything said. */
 int mt_save_plan(const mt_args *args);
 
+/* The folder for the results of all studies, and that for the result of one of them (heap, NULL
+ * when out of memory). */
+const char *mt_save_base(const mt_args *args);
+char *mt_save_folder(const mt_args *args, const char *study_path);
+/* What stands beside them where there are several, the last one deciding. */
+enum { MT_INDEX_FILES = 2 };
+extern const char *const mt_index_names[MT_INDEX_FILES];
+
 /* Write all files of a result into its folder, as one; notes them in result->run. Returns the
- * exit status, everything said. */
-int mt_save(const mt_args *args, const char *study_path, mt_result *result, double seconds);
+ * exit status, everything said; sha256: of result.json, "" where it was not written. */
+int mt_save(const mt_args *args, const char *study_path, mt_result *result, double seconds,
+            char sha256[MT_SHA256_TEXT]);
 /* The same of a result that was read; timing.json is taken over where the one beside
  * result_path names what is written. */
 int mt_save_again(const mt_args *args, const char *result_path, mt_result *result);

@@ -32,7 +32,8 @@ static const char PLAIN[] = "\033[0m";
  * most. */
 #define MAKE_READY_NS (NS_PER_S / 4)
 
-static atomic_llong stop_ns; /* when the first signal was noted; 0: none */
+static atomic_llong stop_ns;   /* when the first signal was noted; 0: none */
+static long long limit_ns = 0; /* when the time is over; 0: never */
 static char last_words[LAST_WORDS_SIZE];
 static size_t last_words_length = 0;
 static bool dropped = false; /* what is being collected */
@@ -342,14 +343,26 @@ bool mt_terminal_is_stopped(void)
     return atomic_load(&stop_ns) != 0;
 }
 
+void mt_terminal_limit(double seconds)
+{
+    limit_ns = seconds > 0.0 ? now_ns() + (long long)(seconds * (double)NS_PER_S) : 0;
+}
+
 int mt_terminal_wish(void *unused)
 {
-    const long long since = atomic_load(&stop_ns);
+    long long since = atomic_load(&stop_ns);
     (void)unused;
-    if (since == 0) {
+    if (since == 0 && limit_ns == 0) {
         return MT_WISH_NONE;
     }
-    return now_ns() - since < MAKE_READY_NS ? MT_WISH_FINISH : MT_WISH_END;
+    const long long now = now_ns();
+    if (limit_ns != 0 && (since == 0 || limit_ns < since)) {
+        since = limit_ns;
+    }
+    if (now < since) {
+        return MT_WISH_NONE;
+    }
+    return now - since < MAKE_READY_NS ? MT_WISH_FINISH : MT_WISH_END;
 }
 
 void mt_terminal_last_words(const char *text)

@@ -62,8 +62,12 @@ void mt_terminal_hold_signals(void);
 void mt_terminal_release_signals(void);
 /* Has one been noted since the program began? */
 bool mt_terminal_is_stopped(void);
-/* An mt_wish, the stop of a solve: to finish, and, a moment after the signal, to end. Any
- * thread. */
+/* After so many seconds from now (0: never, at most MT_SECONDS_MOST) mt_terminal_wish wishes as
+ * after a signal. While no worker runs. */
+#define MT_SECONDS_MOST 1e9
+void mt_terminal_limit(double seconds);
+/* An mt_wish, the stop of a solve: to finish, and, a moment after the signal or the end of the
+ * time, to end. Any thread. */
 int mt_terminal_wish(void *unused);
 /* One line (cut where it is too long) that is written to standard error when a signal ends the
  * program from now on; NULL: none any more. Not while signals are held. */

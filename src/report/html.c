@@ -38,21 +38,32 @@ static void add_footer(const mt_result_run *run, mt_text *out)
     mt_text_add(out, "</footer>\n");
 }
 
+void mt_html_begin(const char *title, mt_text *out)
+{
+    mt_text_add(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                     "<meta name=\"viewport\" content=\"width=device-width\">\n<title>");
+    mt_html_escape(title, out);
+    mt_text_addf(out, "</title>\n<style>%s</style>\n</head>\n<body>\n<h1>", STYLE);
+    mt_html_escape(title, out);
+    mt_text_add(out, "</h1>\n");
+}
+
+void mt_html_end(mt_text *out)
+{
+    mt_text_add(out, "</body>\n</html>\n");
+}
+
 void mt_report_html(const mt_result *result, mt_text *out)
 {
     const char *const name = result->study.name != NULL   ? result->study.name
                              : result->study.file != NULL ? result->study.file
                                                           : "study";
     const char *const status = mt_result_status_name(result->status);
-    mt_text_add(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                     "<meta name=\"viewport\" content=\"width=device-width\">\n<title>");
-    mt_html_escape(name, out);
-    mt_text_addf(out, "</title>\n<style>%s</style>\n</head>\n<body>\n<h1>", STYLE);
-    mt_html_escape(name, out);
-    mt_text_addf(out, "</h1>\n<p class=\"status %s\"><b>%s</b>. ", status, status);
+    mt_html_begin(name, out);
+    mt_text_addf(out, "<p class=\"status %s\"><b>%s</b>. ", status, status);
     mt_html_escape(result->status_text == NULL ? "" : result->status_text, out);
     mt_text_add(out, "</p>\n");
     mt_tell_answer(&(mt_teller){out, true}, result, true);
     add_footer(&result->run, out);
-    mt_text_add(out, "</body>\n</html>\n");
+    mt_html_end(out);
 }

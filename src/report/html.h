@@ -5,6 +5,10 @@
 #include "base/text.h"
 #include "result/result.h"
 
+/* A page up to its heading, and its end. */
+void mt_html_begin(const char *title, mt_text *out);
+void mt_html_end(mt_text *out);
+
 /* What a result says as one self-contained HTML page (no scripts, nothing loaded from
  * elsewhere, figures as inline SVG), light and printable. Memory running out shows in
  * out->failed. */

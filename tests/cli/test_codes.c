@@ -74,6 +74,18 @@ static const struct {
     {"run -o @ %/fast.json %/ghost_study.json studies/engine_orders.json", MT_EXIT_NUMERICAL,
      AS_IT_IS},
 
+    {"run -o % --quiet --shard 1/1 studies/engine_orders.json", MT_EXIT_DONE, AS_IT_IS},
+    {"run -o % --quiet --shard 1/1 %/fast.json", MT_EXIT_DONE, AS_IT_IS},
+    {"run -o % --quiet --shard 1/1 %/ghost_study.json", MT_EXIT_NUMERICAL, AS_IT_IS},
+    {"merge -o @ studies/engine_orders.json %/engine_orders.1-of-1.journal", MT_EXIT_DONE,
+     AS_IT_IS},
+    {"merge -o @ %/fast.json %/fast.1-of-1.journal", MT_EXIT_GOALS, AS_IT_IS},
+    {"merge -o @ %/fast.json %/engine_orders.1-of-1.journal", MT_EXIT_INPUT, AS_IT_IS},
+    {"merge -o @ %/ghost_study.json %/ghost_study.1-of-1.journal", MT_EXIT_NUMERICAL, AS_IT_IS},
+    {"merge -o @ %/fast.json %/none.journal", MT_EXIT_SYSTEM, AS_IT_IS},
+    {"merge -o @ %/fast.json %/fast.1-of-1.journal", MT_EXIT_SYSTEM, SHORT},
+    {"merge -o @ %/fast.json %/fast.1-of-1.journal", MT_EXIT_INTERRUPTED, STOPPED},
+
     {"compare studies/beam_table_3.json", MT_EXIT_DONE, AS_IT_IS},
     {"compare %/fast.json", MT_EXIT_GOALS, AS_IT_IS},
     {"compare tests/io/wrong/study_bounds.json", MT_EXIT_INPUT, AS_IT_IS},
@@ -126,6 +138,13 @@ static const struct {
     {"apply --root / %/engine_orders/result.json", MT_EXIT_SYSTEM, SHORT},
     {"apply --root / %/engine_orders/result.json", MT_EXIT_SYSTEM, FULL},
 
+    {"diff %/engine_orders %/engine_orders/result.json", MT_EXIT_DONE, AS_IT_IS},
+    {"diff %/engine_orders %/bare.json", MT_EXIT_GOALS, AS_IT_IS},
+    {"diff %/engine_orders %/fast.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"diff %/engine_orders %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
+    {"diff %/engine_orders %/bare.json", MT_EXIT_SYSTEM, SHORT},
+    {"diff %/engine_orders %/bare.json", MT_EXIT_SYSTEM, FULL},
+
     {"check " MODELS "ring.json", MT_EXIT_DONE, AS_IT_IS},
     {"check tests/io/wrong/dampers.json", MT_EXIT_INPUT, AS_IT_IS},
     {"check %/ghost.json", MT_EXIT_NUMERICAL, AS_IT_IS},
@@ -143,6 +162,7 @@ static const struct {
     bool can[MT_COUNT(CODES)];
 } able[MT_CMD_IDS] = {
     [MT_CMD_RUN] = {"run", {true, true, true, true, true, true}},
+    [MT_CMD_MERGE] = {"merge", {true, true, true, true, true, true}},
     [MT_CMD_COMPARE] = {"compare", {true, true, true, true, true, false}},
     [MT_CMD_MODES] = {"modes", {true, false, true, true, true, false}},
     [MT_CMD_MAC] = {"mac", {true, false, true, true, true, false}},
@@ -151,6 +171,7 @@ static const struct {
     [MT_CMD_INFO] = {"info", {true, false, true, true, true, false}},
     [MT_CMD_REPORT] = {"report", {true, false, true, false, true, false}},
     [MT_CMD_APPLY] = {"apply", {true, false, true, false, true, false}},
+    [MT_CMD_DIFF] = {"diff", {true, true, true, false, true, false}},
     [MT_CMD_CHECK] = {"check", {true, false, true, true, true, false}},
 };
 
@@ -227,6 +248,7 @@ static void codes__each_is_seen(mt_test *t)
     CHECK(t, mt_child_write("ghost.json", GHOST) &&
                  mt_child_write("ghost_study.json", GHOST_STUDY) &&
                  mt_child_write("fast.json", FAST_STUDY) &&
+                 mt_child_write("bare.json", "{ \"format\": \"modetune-result/1\" }") &&
                  mt_child_write("pendulum.json", PENDULUM));
     mt_child_left kept = run("run -o % --quiet studies/engine_orders.json", AS_IT_IS);
     CHECK_INT(t, kept.code, MT_EXIT_DONE);

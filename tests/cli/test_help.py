@@ -8,7 +8,8 @@ from common_cli import COMMANDS, SOURCE, CliTest, main, options_in
 # Which options each command has: written down once more, so that a change is a decision.
 EVERYWHERE = {"max-memory", "root", "format", "quiet", "help"}
 OPTIONS = {
-    "run": {"output", "verify", "threads", "profile"},
+    "run": {"output", "verify", "threads", "time", "seed", "resume", "shard", "profile"},
+    "merge": {"output", "verify", "threads", "time", "seed", "profile"},
     "compare": {"threads"},
     "modes": {"configuration", "set", "count", "shapes", "damped", "profile"},
     "mac": {"count"},
@@ -17,6 +18,7 @@ OPTIONS = {
     "info": {"configuration", "set"},
     "report": {"output", "verify"},
     "apply": {"rank", "model"},
+    "diff": {"rel-tol"},
     "check": set(),
 }
 

@@ -330,7 +330,8 @@ class Hunt:
         shapes = [["{}"], ["run", "{}"], ["modes", model, "-c", "{}"], ["modes", model, "--set", "{}=1"], ["modes", model, "--set", "m={}"],
                   ["sweep", model, "--drive", "{}"], ["sweep", model, "--drive", "{}=0:1:2"], ["mac", model + ":{}", model], ["modes", "--{}", model],
                   ["modes", model, "--format", "{}"], ["modes", model, "--count", "{}"], ["check", "{}.json"], ["apply", "{}", "--model", "{}"],
-                  ["modes", model, "--root", "{}"], ["sensitivity", model, "--parameters", "{}"]]
+                  ["modes", model, "--root", "{}"], ["sensitivity", model, "--parameters", "{}"], ["diff", "{}", "{}"],
+                  ["diff", model, model, "--rel-tol", "{}"]]
         for i, word in enumerate(HOSTILE):
             for shape in (shapes[i % len(shapes)], shapes[(3 * i + 1) % len(shapes)]):
                 args = [a.format(word) for a in shape]
@@ -367,7 +368,17 @@ class Hunt:
                 csv_out = self.program(folder, "check", "--format", "csv", name + b".json").stdout
                 for problem in list(raw_characters(csv_out, crlf=True)) + list(cells(csv_out.decode())):
                     self.say(name, problem)
-                for data in (done.stdout, done.stderr, self.program(top, "check", kept).stdout, self.program(top, "check", folder + b"/none").stderr):
+                twin = os.path.join(folder, b"twin" + name + b".json")
+                shutil.copy(os.path.join(folder, name + b".json"), twin)
+                both = self.program(top, "run", os.path.join(folder, name + b".json"), twin, os.path.join(folder, b"none" + name), "-o", out)
+                index = Path(os.fsdecode(out)) / "index.html"
+                for problem in Page(index.read_text(encoding="utf-8")).problems if index.exists() else ["no index"]:
+                    self.say(name, f"index.html: {problem}")
+                told = self.program(top, "diff", kept, os.path.join(out, b"twin" + name))
+                log = self.program(folder, "check", "--format", "sarif", b"none" + name).stdout
+                if len(json.loads((index.parent / "index.json").read_text(encoding="utf-8"))["studies"]) != 3 or not json.loads(log)["runs"][0]["results"]:
+                    self.say(name, "is not told")
+                for data in (both.stdout, both.stderr, told.stdout, log, done.stdout, done.stderr, self.program(top, "check", kept).stdout, self.program(top, "check", folder + b"/none").stderr):
                     for problem in raw_characters(data):
                         self.say(name, problem)
                     if data.count(b"\nb") > 0:

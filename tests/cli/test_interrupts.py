@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """SIGINT and SIGTERM: run ends with the best so far, every other command ends by the signal. Signals are sent when the program is seen to be at work, never after a time."""
 import json
-import math
 import os
 import pty
 import signal
 import subprocess
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -125,7 +125,21 @@ class Run(CliTest):
         self.assertEqual(code, 130)
         self.assertIn("interrupted; not answered: studies/other.json\r\n", running.said)
         self.assertEqual([r["status"] for r in json.loads(out)], ["interrupted"])
-        self.assertEqual(sorted(p.name for p in (self.folder / "results").iterdir()), ["long"])
+        self.assertEqual(sorted(p.name for p in (self.folder / "results").iterdir()), ["index.html", "index.json", "long", "long.journal"])
+
+    def test_the_index_says_what_was_not_run(self):
+        quick = self.write("studies/quick.json", LONG.replace("5000", "4"))
+        running = self.at_work(quick, self.long, self.other)
+        running.send(signal.SIGINT)
+        code, out = running.end()
+        self.assertEqual(code, 130, running.said)
+        index = json.loads((self.folder / "results/index.json").read_text(encoding="utf-8"))
+        self.assertEqual([(s["file"], s["state"], s["status"], s["exit_status"]) for s in index["studies"]],
+                         [("quick.json", "answered", "solved", 0), ("long.json", "answered", "interrupted", 130),
+                          ("other.json", "not run", None, None)])
+        self.assertRegex(out, r"\n  studies/other\.json +not run +- +- +-\n$")
+        self.assertIn("modetune: error: interrupted; not answered: studies/other.json", running.said)
+        self.assertFalse((self.folder / "results/other").exists())
 
     def test_what_cannot_be_written_is_4(self):
         running = self.at_work(self.long, "-o", self.write("taken", ""))
@@ -139,7 +153,7 @@ class Run(CliTest):
         code, out = running.end()
         self.assertIn(code, ENDS, running.said)
         self.assertEqual(out, "")
-        self.assertFalse((self.folder / "results").exists())
+        self.assertEqual([p.name for p in self.folder.glob("results/*")], ["long.journal"])
 
     def test_what_the_caller_ignores_is_ignored(self):
         running = self.at_work(self.long, before=ignoring)
@@ -157,30 +171,42 @@ class Commands(CliTest):
 
     @classmethod
     def setUpClass(cls):
-        """What is read before the program begins, a sanitizer's two hundred thousand bytes of /proc among it; less what that varies by."""
+        """
+        What is read before the program begins, a sanitizer's two hundred thousand bytes of /proc among it; less what that
+        varies by. Looked at while it waits for its reader: of what it reads at its end (a build that counts lines adds them
+        to files) nothing has been read.
+        """
         super().setUpClass()
-        with subprocess.Popen([PROGRAM, "--version"], stdout=subprocess.DEVNULL) as process:
-            cls.before = max(0, cls.until(process, math.inf) - 4096)
+        with subprocess.Popen([PROGRAM, "--manual"], stdout=subprocess.PIPE, pipesize=4096, bufsize=0) as process:
+            process.stdout.read(1)
+            cls.before = max(0, cls.read_by(process) - 4096)
+            if not len(process.stdout.read()) > 4096:
+                raise AssertionError("the text fits into the pipe: it did not wait")
 
     @staticmethod
-    def until(process, due):
-        """Bytes read, when they are `due` or the program has ended."""
+    def read_by(process):
+        return int(Path(f"/proc/{process.pid}/io").read_text(encoding="ascii").split("rchar: ")[1].split()[0])
+
+    @classmethod
+    def until(cls, process, due):
+        """Wait until so many bytes are read, or the program has ended."""
         read = 0
         while process.poll() is None and read < due:
             try:
-                read = int(Path(f"/proc/{process.pid}/io").read_text(encoding="ascii").split("rchar: ")[1].split()[0])
+                read = cls.read_by(process)
             except (OSError, IndexError):  # it has just ended
                 break
-        return read
 
     def ended(self, due, number, *args):
         """Send the signal when so many bytes of files have been read; the exit status."""
         before = sorted(p for p in self.folder.rglob("*"))
-        with subprocess.Popen([PROGRAM, *args], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                              encoding="utf-8", preexec_fn=at_default) as process:
-            self.until(process, self.before + due)
-            process.send_signal(number)
-            _, self.said = process.communicate(timeout=300)
+        with tempfile.TemporaryFile("w+", encoding="utf-8") as said:  # no pipe, which might be full
+            with subprocess.Popen([PROGRAM, *args], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=said, preexec_fn=at_default) as process:
+                self.until(process, self.before + due)
+                process.send_signal(number)
+                process.wait(timeout=300)
+            said.seek(0)
+            self.said = said.read()
         if process.returncode == -number:
             self.assertEqual(sorted(p for p in self.folder.rglob("*")), before)  # nothing is left behind
         return process.returncode

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/work.h"
+
+#include <stdlib.h>
+
+#include "cli/cli.h"
+#include "cli/save.h"
+#include "describe/describe.h"
+#include "io/file.h"
+
+/* What a result says of its own making before anything is computed: program, libraries, files
+ * and settings. Where it is the same, every task leaves the same. */
+static mt_status identity_of(const mt_study *study, mt_text *out, mt_err *err)
+{
+    mt_result *result = NULL;
+    MT_TRY(mt_result_new(&result, err));
+    mt_status rc = mt_describe_run(study, result, err);
+    if (rc == MT_OK) {
+        mt_json_writer w = mt_json_writer_default(out);
+        mt_json_open(&w, NULL, '{');
+        mt_result_put_member(&w, "run", result);
+        mt_json_close(&w);
+        rc = mt_json_done(&w) ? MT_OK : mt_fail_memory(err);
+    }
+    mt_result_delete(result);
+    return rc;
+}
+
+/* Beside the folder of the result; of a part its own. Heap, NULL when out of memory. */
+static char *journal_of(const mt_args *args, const char *study_path)
+{
+    mt_text t = {.s = NULL};
+    char *const folder = mt_save_folder(args, study_path);
+    if (folder == NULL) {
+        return NULL;
+    }
+    mt_text_add(&t, folder);
+    if (args->part > 0) {
+        mt_text_addf(&t, ".%d-of-%d", args->part, args->parts);
+    }
+    mt_text_add(&t, ".journal");
+    free(folder);
+    if (t.failed) {
+        mt_text_free(&t);
+    }
+    return t.s;
+}
+
+/* The journals that are read, and where new records go. */
+static mt_status open_files(const mt_args *args, const char *study_path, mt_journal *j,
+                            mt_err *err)
+{
+    char *const path = journal_of(args, study_path);
+    if (path == NULL) {
+        return mt_fail_memory(err);
+    }
+    const bool absent = mt_file_absent(path);
+    const bool adds = args->given[MT_OPT_RESUME] && !absent;
+    const bool quiet = args->given[MT_OPT_QUIET];
+    mt_status rc = MT_OK;
+    for (int i = 0; i < args->n_journals && rc == MT_OK; i++) {
+        rc = mt_journal_read(j, args->journals[i], err);
+    }
+    if (adds && rc == MT_OK) {
+        rc = mt_journal_read(j, path, err);
+    } else if (args->given[MT_OPT_RESUME]) {
+        mt_terminal_talk(quiet, "%s: there is no %s to resume: all of it is done", study_path,
+                         path);
+    } else if (!absent && args->command == MT_CMD_RUN) {
+        mt_terminal_talk(quiet,
+                         "%s: the journal of a run that was not finished, %s, is "
+                         "replaced; --resume would go on from it",
+                         study_path, path);
+    }
+    if (args->command == MT_CMD_RUN && rc == MT_OK) {
+        rc = mt_journal_write_to(j, path, adds, err);
+    }
+    free(path);
+    return rc;
+}
+
+int mt_work_begin(const mt_args *args, const char *study_path, const mt_study *study,
+                  mt_journal **out)
+{
+    mt_err err = {.code = MT_OK};
+    mt_text identity = {.s = NULL};
+    *out = NULL;
+    mt_status rc = identity_of(study, &identity, &err);
+    rc = rc == MT_OK ? mt_journal_new(identity.s, out, &err) : rc;
+    mt_text_free(&identity);
+    rc = rc == MT_OK ? open_files(args, study_path, *out, &err) : rc;
+    if (rc == MT_OK) {
+        return MT_EXIT_DONE;
+    }
+    mt_journal_delete(*out);
+    *out = NULL;
+    return mt_cli_failed(rc, &err);
+}
+
+/* What came of the records that were read; and of the part, where only that was asked for. */
+static void tell(const mt_args *args, const char *study_path, bool complete,
+                 const mt_journal *j)
+{
+    const mt_journal_counts n = mt_journal_count(j);
+    const bool quiet = args->given[MT_OPT_QUIET];
+    if (n.ignored > 0) {
+        mt_terminal_warning("%s: %ld lines of the journals are damaged or contradict each "
+                            "other: what they held was done again",
+                            study_path, n.ignored);
+    }
+    if (args->command == MT_CMD_MERGE || args->given[MT_OPT_RESUME]) {
+        mt_terminal_talk(quiet, "%s: %ld tasks known of %ld in journals, %ld done now",
+                         study_path, n.used, n.known, n.made);
+    } else if (args->given[MT_OPT_SHARD] || (!complete && n.written > 0)) {
+        mt_terminal_talk(quiet, "%s: %ld tasks are in the journal", study_path, n.written);
+    }
+}
+
+int mt_work_end(const mt_args *args, const char *study_path, int code, bool complete,
+                mt_journal *j)
+{
+    mt_err err = {.code = MT_OK};
+    const bool part = args->given[MT_OPT_SHARD];
+    const mt_status rc = mt_journal_end(j, complete && !part, &err);
+    tell(args, study_path, complete, j);
+    if (rc != MT_OK && part) {
+        return mt_exit_worse(code, mt_cli_failed(rc, &err));
+    }
+    if (rc != MT_OK && code != MT_EXIT_SYSTEM) { /* else the same is told of the result */
+        mt_terminal_warning("%s: the journal: %s", study_path, err.text);
+    }
+    return code;
+}

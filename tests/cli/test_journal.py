@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A run that is killed and resumed, or shared out and merged, writes the bytes of one that was left alone.
+MT_KILLS=100: so many kills at random moments (MT_EVERY=1: 30; else 8), MT_KILLS_SEED=S."""
+import hashlib
+import json
+import os
+import random
+import subprocess
+import time
+
+from common_cli import PROGRAM, CliTest, main
+
+EVERY = os.environ.get("MT_EVERY", "0") != "0"
+KILLS = int(os.environ.get("MT_KILLS", "30" if EVERY else "8"))
+SEED = int(os.environ.get("MT_KILLS_SEED", "1"))
+# Eight masses in a row between the ground and nothing, their springs the variables.
+N = 8
+CHAIN = {
+    "format": "modetune-model/1", "dimension": 2,
+    "parameters": {f"k{i}": 10.0 + i for i in range(N)},
+    "bodies": [{"name": f"b{i}", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [i + 1, 0]} for i in range(N)],
+    "joints": [{"name": f"j{i}", "type": "prismatic", "bodies": ["ground", f"b{i}"], "at": [i + 1, 0], "axis": [1, 0]} for i in range(N)],
+    "springs": [{"name": f"s{i}", "type": "axial", "bodies": ["ground" if i == 0 else f"b{i - 1}", f"b{i}"],
+                 **({"at": [[0, 0], [1, 0]]} if i == 0 else {}), "stiffness_n_per_m": f"k{i}"} for i in range(N)],
+    "configurations": {"held": {}},
+}
+
+
+def variables(n, catalogue=0):
+    return [{"parameter": f"k{i}", "catalogue": [5.0, 8.0, 10.0, 12.0, 20.0, 30.0]} if i < catalogue else
+            {"parameter": f"k{i}", "lower": 1, "upper": 100} for i in range(n)]
+
+
+def frequency(mode, hz):
+    return {"type": "frequency", "configuration": "held", "mode": mode, "target_hz": hz}
+
+
+AVOID = {"type": "avoid", "configurations": ["held"], "bands_hz": [[0.25, 0.3], [0.5, 0.6]], "up_to_hz": 1}
+# One of every way that work is shared: starts, gap assignments, combinations with and without a search, relaxations, trade points.
+STUDIES = {
+    "starts": {"variables": variables(8), "goals": [frequency(1, 0.1), frequency(2, 0.33)], "search": {"starts": 60}},
+    "gaps": {"variables": variables(4), "goals": [AVOID], "search": {"starts": 6}},
+    "mixed": {"variables": variables(4, 2), "goals": [frequency(1, 0.1)], "search": {"starts": 3}},
+    "catalogue": {"variables": variables(4, 4), "goals": [AVOID]},
+    "none": {"variables": [dict(v, lower=9, upper=14) for v in variables(3)], "goals": [dict(AVOID, bands_hz=[[0.2, 0.9]])], "search": {"starts": 4}},
+    "trade": {"variables": variables(4), "goals": [frequency(1, 0.1)], "search": {"starts": 4},
+              "trade": {"vary": [{"parameter": "k7", "values": [2.0 + i for i in range(24)]}]}},
+}
+
+
+class Journal(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("problems/chain.json", json.dumps(CHAIN))
+        for name, asked in STUDIES.items():
+            self.write(f"studies/{name}.json", json.dumps({"format": "modetune-study/1", "model": "../problems/chain.json", **asked}))
+
+    def run_study(self, name, folder, *more, command="run", expect=None):
+        done = self.run_program(command, f"studies/{name}.json", *more, "-o", folder)
+        self.assertIn(done.returncode, (0, 1) if expect is None else expect, f"{name} {more}: {done.stderr}")
+        return done.stderr
+
+    def result(self, name, folder):
+        return (self.folder / folder / name / "result.json").read_bytes()
+
+    def journal(self, name, folder, part=""):
+        return self.folder / folder / f"{name}{part}.journal"
+
+    def test_any_number_of_workers_and_shards(self):
+        for name in STUDIES:
+            self.run_study(name, "whole", "--threads", "1")
+            self.assertEqual(os.listdir(self.folder / "whole").count(f"{name}.journal"), 0)
+            for threads in (range(2, 9) if EVERY else (3, 8)):
+                self.run_study(name, "many", "--threads", str(threads))
+                self.assertEqual(self.result(name, "whole"), self.result(name, "many"), f"{name}: {threads} workers")
+            for parts in (1, 3, 7):
+                folder = f"parts{parts}"
+                for part in range(1, parts + 1):
+                    self.run_study(name, folder, "--shard", f"{part}/{parts}", "--threads", "2", expect=(0,))
+                    self.assertFalse((self.folder / folder / name).exists())
+                journals = [str(self.journal(name, folder, f".{k}-of-{parts}")) for k in range(1, parts + 1)]
+                said = self.run_study(name, folder, *reversed(journals), command="merge")
+                self.assertEqual(self.result(name, "whole"), self.result(name, folder), f"{name}: {parts} parts")
+                if parts > 1:  # what is missing is done, and said
+                    short = self.run_study(name, "short", *journals[1:], command="merge")
+                    self.assertEqual(self.result(name, "whole"), self.result(name, "short"), name)
+                    known, more = (int(s.split(" tasks known of ")[0].split()[-1]) for s in (short, said))
+                    self.assertLessEqual(known, more)
+
+    def kill_at(self, name, seconds):
+        """Whether there was a journal that was not whole."""
+        run = subprocess.Popen([PROGRAM, "run", f"studies/{name}.json", "-o", "killed", "--threads", "2"], cwd=self.folder,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        time.sleep(seconds)
+        run.kill()
+        run.wait()
+        return self.journal(name, "killed").exists()
+
+    def test_kill_and_resume(self):
+        names = ["starts", "mixed", "trade", "none", "gaps", "catalogue"]
+        seconds = {}
+        for name in names:
+            begun = time.monotonic()
+            self.run_study(name, "whole", "--threads", "2")
+            seconds[name] = time.monotonic() - begun
+        moments = random.Random(SEED)
+        for kill in range(KILLS):
+            name = names[kill % len(names)]
+            for _ in range(moments.randint(1, 2)):  # perhaps of the resumed run, too
+                self.kill_at(name, moments.random() * seconds[name])
+            self.run_study(name, "killed", "--resume", "--threads", str(moments.randint(1, 3)))
+            self.assertEqual(self.result(name, "whole"), self.result(name, "killed"), f"{name}, kill {kill}")
+            self.assertFalse(self.journal(name, "killed").exists())
+            (self.folder / "killed" / name / "result.json").unlink()
+
+    def test_cut_behind_every_line(self):
+        """What a kill leaves, without a clock: a journal of so many lines, and half of the next one."""
+        for name in STUDIES:
+            self.run_study(name, "whole")
+            self.run_study(name, "part", "--shard", "1/1")
+            lines = self.journal(name, "part", ".1-of-1").read_bytes().splitlines(keepends=True)
+            first = next(i for i, line in enumerate(lines) if i > 0 and not line.startswith(b"|"))
+            for head in (b"", lines[0][:30], lines[0], b"".join(lines[:first])[:-1]):  # killed while it was begun
+                self.journal(name, "whole").write_bytes(head)
+                before = self.result(name, "whole")
+                self.assertIn(" 0 tasks known of 0 in journals", self.run_study(name, "whole", "--resume"))
+                self.assertEqual(before, self.result(name, "whole"), f"{name}, {len(head)} bytes")
+            for cut in sorted({first, first + 1, (first + len(lines)) // 2, len(lines) - 1}):
+                torn = lines[cut][: len(lines[cut]) // 2] if cut < len(lines) else b""
+                self.journal(name, "whole").write_bytes(b"".join(lines[:cut]) + torn)
+                before = self.result(name, "whole")
+                said = self.run_study(name, "whole", "--resume")
+                self.assertIn(f" {cut - first} tasks known of {cut - first} in journals", said)
+                self.assertEqual("damaged" in said, torn != b"", said)
+                self.assertEqual(before, self.result(name, "whole"), f"{name}, {cut} lines")
+
+    def test_wrong_numbers_are_not_believed(self):
+        """Records of a local search whose line checks but whose design has other values are done again."""
+        self.run_study("starts", "whole")
+        self.run_study("starts", "part", "--shard", "1/1")
+        lines = self.journal("starts", "part", ".1-of-1").read_text().splitlines()
+        identity = lines[0].split()[1]
+        first = next(i for i, line in enumerate(lines) if i > 0 and not line.startswith("|"))
+        for word in range(2, 30):
+            forged = lines[:first]
+            for line in lines[first:]:
+                parts = line.split()[1:]
+                if len(parts) > word:
+                    parts[word] = format(int(parts[word], 16) ^ (1 << 51), "x")
+                rest = " ".join(parts)
+                forged.append(hashlib.sha256((identity + rest).encode()).hexdigest()[:16] + " " + rest)
+            self.write("forged.journal", "\n".join(forged) + "\n")
+            self.run_study("starts", "forged", "forged.journal", command="merge")
+            whole, got = (json.loads(self.result("starts", f))["recommendations"] for f in ("whole", "forged"))
+            self.assertEqual([r["feasible"] for r in whole], [r["feasible"] for r in got])
+            for a, b in zip(whole, got):
+                for p, q in zip(a["parameters"], b["parameters"]):
+                    self.assertAlmostEqual(p["recommended"], q["recommended"], delta=1e-6 * p["recommended"], msg=f"word {word}")
+
+    def test_other_questions_are_refused(self):
+        self.run_study("starts", "part", "--shard", "1/2")
+        journal = str(self.journal("starts", "part", ".1-of-2"))
+        said = self.run_study("gaps", "other", journal, command="merge", expect=(2,))
+        self.assertIn("the journal of another question or program", said)
+        self.write("studies/starts.json", (self.folder / "studies/starts.json").read_text() + " ")
+        said = self.run_study("starts", "other", journal, command="merge", expect=(2,))
+        self.assertIn("sha256", said)
+        self.write("nothing.journal", "{}\n")
+        self.assertIn("not a journal", self.run_study("starts", "other", "nothing.journal", command="merge", expect=(2,)))
+        self.run_study("starts", "other", "missing.journal", command="merge", expect=(4,))
+        self.assertFalse((self.folder / "other").exists())
+
+    def test_words(self):
+        said = self.run_study("gaps", "out", "--resume")
+        self.assertIn("there is no out/gaps.journal to resume", said)
+        self.journal("gaps", "out").write_text("left")
+        said = self.run_study("gaps", "out")
+        self.assertIn("--resume would go on from it", said)
+        self.assertFalse(self.journal("gaps", "out").exists())
+        for wrong in ("0/3", "4/3", "3", "1/", "/2", "1/2/3", "-1/2", "1/x", "1 /2"):
+            done = self.run_program("run", "studies/gaps.json", "--shard", wrong)
+            self.assertEqual(done.returncode, 2, wrong)
+            self.assertIn("is not PART/PARTS", done.stderr)
+
+    def test_a_journal_that_cannot_be_written_is_no_failure(self):
+        (self.folder / "out" / "gaps.journal").mkdir(parents=True)
+        said = self.run_study("gaps", "out")
+        self.assertIn("warning: studies/gaps.json: the journal: ", said)
+        self.assertTrue((self.folder / "out" / "gaps" / "result.json").exists())
+        (self.folder / "out" / "gaps.1-of-2.journal").mkdir()
+        self.run_study("gaps", "out", "--shard", "1/2", expect=(4,))
+
+
+if __name__ == "__main__":
+    main()
