@@ -12,6 +12,7 @@ from question import MANY_POSITIONS, Question
 
 BETTER = 1e-4      # a design is better that much, relative (of at least FLOOR)
 FLOOR = 2e-2
+HELD = 1.01e-6     # of its value, or of one unit, an objective gives up for those behind it
 SURE = 0.05        # of the tolerance: what a counterexample may miss
 EXACT = 1e-3       # of the tolerance: a design that misses less gains nothing by it
 SAMPLES = 1500
@@ -66,7 +67,8 @@ def optimum(run):
         yield f"{result['status']}, but {x[at].tolist()} meets all goals"
         return
     own = float(q.cost(design_of(q, best))[0])
-    enough = own - BETTER * max(abs(own), FLOOR)
+    unit = 100.0 if "clearance" in q.objectives[0].values() else 1.0
+    enough = own - BETTER * max(abs(own), FLOOR) - (HELD * max(abs(own), unit) if len(q.objectives) > 1 else 0.0)
     better, its = x[at], cost[at]
     if its < enough and q.missed_robustly(better[None, :])[0] > EXACT and any(v.values is None for v in q.variables):
         # a goal that the variables hardly move: the part of its tolerance that is missed buys much

@@ -10,6 +10,7 @@ NEAR = 1e-7       # relative: frequencies of well-conditioned models of a few ma
 FEW = 1.0         # of the greatest frequency: what a mode near 0 is compared at (the root of rounding)
 SLACK = 1e-5      # relative, of what has a tolerance of its own
 MARK = 3e-13      # of the bounds: nearer to the original value than this is rounding of a search
+ROUNDING = 2e-16  # of the greatest eigenvalue: what the dense solve leaves open of each
 SLOPE = 1e-4      # of a slope by differences, of the greatest slope of the mode
 
 
@@ -185,7 +186,8 @@ def slopes(run):
             slope = (hz[:q.n, f["mode"] - 1] - hz[q.n:, f["mode"] - 1]) / (2.0 * step)
             told = np.array([np.nan if v is None else v for v in f["sensitivity"].values()])
             scaled, scale = np.abs((slope - told) * x), max(np.abs(slope * x).max(), 1e-3 * here[f["mode"] - 1])
-            if np.any(scaled > SLOPE * scale) and not _kinked(q, x):
+            rounding = ROUNDING * finite_max(here) ** 2 / here[f["mode"] - 1] * np.abs(x) / step
+            if np.any(scaled > SLOPE * scale + rounding) and not _kinked(q, x):
                 yield f"{f['configuration']} mode {f['mode']}: slopes {told.tolist()}, differences {slope.tolist()}"
 
 
