@@ -9,6 +9,7 @@
 #include "base/format.h"
 #include "base/workers.h"
 #include "cli/limits.h"
+#include "study/study.h"
 
 enum { SUGGESTION_TEXT = 64, MAX_THREADS = 1024 };
 
@@ -190,6 +191,10 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
         return read_count(value, o->name, INT_MAX, &args->count, err);
     case MT_OPT_RANK:
         return read_count(value, o->name, INT_MAX, &args->rank, err);
+    case MT_OPT_STARTS:
+        return read_count(value, o->name, MT_STARTS_MOST, &args->starts, err);
+    case MT_OPT_MAX_EVALUATIONS:
+        return read_count(value, o->name, INT_MAX, &args->max_evaluations, err);
     case MT_OPT_THREADS:
         MT_TRY(read_count(value, o->name, MAX_THREADS, &args->threads, err));
         args->threads = args->threads < MT_WORKERS_MOST ? args->threads : MT_WORKERS_MOST;

@@ -26,6 +26,8 @@ typedef enum mt_option_id {
     MT_OPT_THREADS,
     MT_OPT_TIME,
     MT_OPT_SEED,
+    MT_OPT_STARTS,
+    MT_OPT_MAX_EVALUATIONS,
     MT_OPT_RESUME,
     MT_OPT_SHARD,
     MT_OPT_PROFILE,
@@ -107,6 +109,8 @@ typedef struct mt_args {
     const char *value[MT_OPT_IDS]; /* of the last one */
     int count;                     /* --count, 0: not given */
     int rank;                      /* --rank, default 1 */
+    int starts;                    /* --starts, 0: not given */
+    int max_evaluations;           /* --max-evaluations, 0: not given */
     int threads;         /* --threads, at most MT_WORKERS_MOST; else of mt_limits_set */
     double rel_tol;      /* --rel-tol, default 0 */
     double time_s;       /* --time, 0: not given */

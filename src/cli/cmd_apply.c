@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * modetune apply: the model's own text with the recommended numbers put in.
+ * modetune apply: the model's own text with the recommended numbers put in, and those that the
+ * study was asked with instead of the model's own.
  *
  * A result names its model relative to the study's folder and holds its SHA-256, but no path of
  * this machine. So the model is looked for where it may be: from the study that timing.json
@@ -154,37 +155,58 @@ static int by_place(const void *a, const void *b)
     return (x->begin > y->begin) - (x->begin < y->begin);
 }
 
-/* Where each value goes. The result is a file, too: it may name what is not there (that it
- * names nothing twice its reader has seen). */
-static mt_status find_places(const mt_recommendation *r, const mt_json *doc, const char *path,
-                             replacement *list, mt_err *err)
+/* The text of a parameter's value in the model. The result is a file, too: it may name what is
+ * not there (that it names nothing twice its reader has seen). */
+static mt_status find_place(const mt_json *doc, const char *path, const char *name,
+                            double value, replacement *out, mt_err *err)
 {
     const mt_addr parameters = mt_json_member(doc, MT_JSON_ROOT, "parameters");
+    mt_addr at = parameters == MT_NO_ADDR ? MT_NO_ADDR : mt_json_member(doc, parameters, name);
+    if (at != MT_NO_ADDR && mt_json_type_of(doc, at) == MT_JSON_OBJECT) {
+        at = mt_json_member(doc, at, "value");
+    }
+    out->value = value;
+    if (at == MT_NO_ADDR || !mt_json_span(doc, at, &out->begin, &out->end)) {
+        return mt_fail(err, MT_E_INPUT, "%s: there is no parameter \"%s\"", path, name);
+    }
+    return isfinite(value)
+               ? MT_OK
+               : mt_fail(err, MT_E_INPUT, "the result recommends no value of \"%s\"", name);
+}
+
+/* Where what is recommended goes, and what the study was asked with. */
+static mt_status find_places(const mt_recommendation *r, const mt_result_run *run,
+                             const mt_json *doc, const char *path, replacement *list, int *n,
+                             mt_err *err)
+{
+    *n = 0;
     for (int i = 0; i < r->n_parameters; i++) {
         const mt_result_parameter *const p = &r->parameters[i];
-        mt_addr value =
-            parameters == MT_NO_ADDR ? MT_NO_ADDR : mt_json_member(doc, parameters, p->name);
-        if (value != MT_NO_ADDR && mt_json_type_of(doc, value) == MT_JSON_OBJECT) {
-            value = mt_json_member(doc, value, "value");
-        }
-        list[i].value = p->recommended;
-        if (value == MT_NO_ADDR || !mt_json_span(doc, value, &list[i].begin, &list[i].end)) {
-            return mt_fail(err, MT_E_INPUT, "%s: there is no parameter \"%s\"", path, p->name);
-        }
-        if (!isfinite(p->recommended)) {
-            return mt_fail(err, MT_E_INPUT, "the result recommends no value of \"%s\"",
-                           p->name);
+        MT_TRY(find_place(doc, path, p->name, p->recommended, &list[(*n)++], err));
+    }
+    for (int i = 0; i < run->n_overrides; i++) {
+        const mt_result_override *const o = &run->overrides[i];
+        if (strcmp(o->kind, "parameter") == 0) {
+            MT_TRY(find_place(doc, path, o->name, o->value, &list[(*n)++], err));
         }
     }
-    qsort(list, (size_t)r->n_parameters, sizeof *list, by_place);
+    qsort(list, (size_t)*n, sizeof *list, by_place);
+    for (int i = 1; i < *n; i++) {
+        if (list[i].begin == list[i - 1].begin) {
+            return mt_fail(err, MT_E_INPUT,
+                           "the result has a parameter both recommended and set");
+        }
+    }
     return MT_OK;
 }
 
-static mt_status substitute(const mt_recommendation *r, const mt_file *file, const char *path,
-                            mt_text *out, mt_err *err)
+static mt_status substitute(const mt_recommendation *r, const mt_result_run *run,
+                            const mt_file *file, const char *path, mt_text *out, mt_err *err)
 {
     mt_json *doc = NULL;
-    replacement *const list = calloc((size_t)r->n_parameters + 1, sizeof *list);
+    replacement *const list =
+        calloc((size_t)r->n_parameters + (size_t)run->n_overrides + 1, sizeof *list);
+    int n = 0;
     if (list == NULL) {
         return mt_fail_memory(err);
     }
@@ -193,9 +215,9 @@ static mt_status substitute(const mt_recommendation *r, const mt_file *file, con
         (void)mt_err_in(err, rc, "%s", path);
         goto done;
     }
-    rc = find_places(r, doc, path, list, err);
+    rc = find_places(r, run, doc, path, list, &n, err);
     size_t at = 0;
-    for (int i = 0; rc == MT_OK && i < r->n_parameters; i++) {
+    for (int i = 0; rc == MT_OK && i < n; i++) {
         char number[MT_JSON_NUMBER_SIZE];
         mt_text_add_n(out, file->bytes + at, list[i].begin - at);
         mt_text_add(out, mt_json_format_number(list[i].value, number));
@@ -227,7 +249,7 @@ static mt_status apply(const mt_args *args, const mt_result *result, mt_text *ou
     }
     mt_status rc = find_model(args, result, &file, &model_path, err);
     if (rc == MT_OK) {
-        rc = substitute(chosen, &file, model_path, out, err);
+        rc = substitute(chosen, &result->run, &file, model_path, out, err);
     }
     const char *const version = result->run.modetune_version;
     if (rc == MT_OK && (version == NULL || strcmp(version, MT_VERSION_STRING) != 0)) {

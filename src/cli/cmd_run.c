@@ -39,15 +39,19 @@ static void progress(void *context, const char *text)
 /* Load and solve; everything that went wrong is said. */
 static int answer(job *j)
 {
-    mt_io_options io = mt_cli_io(j->args);
+    const mt_args *const args = j->args;
+    const mt_asked asked = {.n_sets = args->n_sets,
+                            .sets = args->sets,
+                            .seed = args->given[MT_OPT_SEED] ? (long)args->seed : -1,
+                            .starts = args->starts,
+                            .max_evaluations = args->max_evaluations};
+    mt_io_options io = mt_cli_io(args);
+    io.asked = &asked;
     mt_diagnostics messages = {.count = 0};
     mt_status rc = mt_study_load(j->path, &io, &j->study, &messages, &j->err);
     const int code = mt_cli_loaded(rc, &messages, &j->err);
     if (rc != MT_OK) {
         return code;
-    }
-    if (j->args->given[MT_OPT_SEED]) {
-        j->study->search.seed = j->args->seed;
     }
     mt_solve_options opt = {.size = sizeof opt};
     mt_args progress_args = *j->args;
@@ -269,6 +273,7 @@ static int compare_one(job *j, mt_json_writer *w, mt_text *out)
     case MT_FORMAT_TEXT:
         mt_text_addf(out, "%s: %s\n", r->study.name == NULL ? j->path : r->study.name,
                      mt_result_status_name(r->status));
+        mt_tell_overrides(&to, &r->run);
         if (r->n_doubts > 0) {
             mt_tell_doubts(&to, r);
             mt_text_add(out, "\n");

@@ -19,9 +19,9 @@
 const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_CONFIGURATION, 'c', "configuration", "CONFIGURATION", ON_MODELS,
            "only this configuration (default: all)"),
-    OPTION(MT_OPT_SET, '\0', "set", "NAME=VALUE", ON_MODELS,
+    OPTION(MT_OPT_SET, '\0', "set", "NAME=VALUE", ON_MODELS | ON_STUDIES,
            "give a parameter another value; an expression may use the model's own values "
-           "(\"k=1.1*k\"); may be repeated"),
+           "(\"k=1.1*k\"); may be repeated; of a study: one that it does not vary"),
     OPTION(
         MT_OPT_COUNT, '\0', "count", "N",
         BIT(MT_CMD_MODES) | BIT(MT_CMD_MAC) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY),
@@ -55,8 +55,12 @@ const mt_option mt_options[MT_OPT_IDS] = {
         MT_OPT_TIME, '\0', "time", "SECONDS", SOLVES,
         "most time for the answer to each study once its files are read; then it ends with the "
         "best so far, as after an interrupt"),
-    OPTION(MT_OPT_SEED, '\0', "seed", "N", SOLVES,
+    OPTION(MT_OPT_SEED, '\0', "seed", "N", ON_STUDIES,
            "seed of the starting points instead of the study's"),
+    OPTION(MT_OPT_STARTS, '\0', "starts", "N", ON_STUDIES,
+           "number of local searches instead of the study's \"starts\""),
+    OPTION(MT_OPT_MAX_EVALUATIONS, '\0', "max-evaluations", "N", ON_STUDIES,
+           "most evaluations of the search instead of the study's \"max_evaluations\""),
     OPTION(
         MT_OPT_RESUME, '\0', "resume", NULL, BIT(MT_CMD_RUN),
         "go on from the journal of a run that was killed or interrupted, if there is one; the "

@@ -7,6 +7,7 @@
 #include "base/format.h"
 #include "cli/cli.h"
 #include "model/judge.h"
+#include "model/setting.h"
 #include "model/values.h"
 
 static mt_status unknown(const char *what, const char *name, const char *const *names, int n,
@@ -35,40 +36,16 @@ static mt_status find_configuration(mt_subject *s, const char *name, mt_err *err
     return unknown("configuration", name, names, n, err);
 }
 
-/* "k=1.1*k": the expression is evaluated at the file's own values, so that order does not
- * matter. */
-static mt_status read_set(mt_subject *s, const char *text, const char *const *names,
-                          mt_err *err)
+static mt_status take_settings(const mt_args *args, mt_subject *s, mt_err *err)
 {
-    const char *const equals = strchr(text, '=');
-    if (equals == NULL || equals == text) {
-        return mt_fail(err, MT_E_USAGE, "\"%s\" is not NAME=VALUE", text);
+    mt_setting *settings = NULL;
+    const mt_status rc = mt_model_read_settings(s->model, s->original, args->n_sets, args->sets,
+                                                &s->mem, &settings, err);
+    for (int i = 0; rc == MT_OK && i < args->n_sets; i++) {
+        s->inputs[s->n_inputs] = settings[i].parameter;
+        s->at[s->n_inputs++] = settings[i].value;
     }
-    const char *const name = mt_arena_strndup(&s->mem, text, (size_t)(equals - text));
-    MT_TRY(mt_arena_check(&s->mem, err));
-    const int parameter = mt_model_find_parameter(s->model, name);
-    if (parameter == MT_ABSENT) {
-        return unknown("parameter", name, names, s->model->n_parameters, err);
-    }
-    for (int i = 0; i < s->n_inputs; i++) {
-        if (s->inputs[i] == parameter) {
-            return mt_fail(err, MT_E_USAGE, "parameter \"%s\" is set twice", name);
-        }
-    }
-    mt_expr e;
-    double value = 0.0;
-    const int n = s->model->n_parameters;
-    mt_status rc =
-        mt_expr_parse(equals + 1, mt_model_lookup, s->model, names, n, &s->mem, &e, err);
-    if (rc == MT_OK) {
-        rc = mt_model_expr_value(s->model, s->original, &e, &s->mem, &value, err);
-    }
-    if (rc != MT_OK) {
-        return mt_err_in(err, rc == MT_E_MEMORY ? rc : MT_E_USAGE, "%s", text);
-    }
-    s->inputs[s->n_inputs] = parameter;
-    s->at[s->n_inputs++] = value;
-    return MT_OK;
+    return rc == MT_OK ? rc : mt_err_in(err, rc, "--set");
 }
 
 static mt_status choose(const mt_args *args, const char *configuration, mt_subject *s,
@@ -76,16 +53,12 @@ static mt_status choose(const mt_args *args, const char *configuration, mt_subje
 {
     const size_t np = (size_t)s->model->n_parameters;
     const int nc = s->model->n_configurations;
-    const char **const names = mt_arena_alloc(&s->mem, np, sizeof *names);
     s->original = mt_arena_f64(&s->mem, np, 1);
     s->values = mt_arena_f64(&s->mem, np, 1);
     s->inputs = mt_arena_int(&s->mem, np);
     s->at = mt_arena_f64(&s->mem, np, 1);
     s->configurations = mt_arena_int(&s->mem, (size_t)nc);
     MT_TRY(mt_arena_check(&s->mem, err));
-    for (size_t i = 0; i < np; i++) {
-        names[i] = s->model->parameters[i].name.s;
-    }
     if (configuration != NULL) {
         MT_TRY(find_configuration(s, configuration, err));
     } else {
@@ -94,12 +67,7 @@ static mt_status choose(const mt_args *args, const char *configuration, mt_subje
         }
     }
     mt_status rc = mt_model_original_values(s->model, &s->mem, s->original, NULL, err);
-    for (int i = 0; rc == MT_OK && i < args->n_sets; i++) {
-        rc = read_set(s, args->sets[i], names, err);
-        if (rc != MT_OK) {
-            return mt_err_in(err, rc, "--set");
-        }
-    }
+    rc = rc == MT_OK ? take_settings(args, s, err) : rc;
     rc = rc == MT_OK ? mt_model_parameters(s->model, MT_ABSENT, s->n_inputs, s->inputs, s->at,
                                            &s->mem, s->values, err)
                      : rc;

@@ -53,11 +53,18 @@ mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err)
     run->gsl_version = mt_arena_strdup(mem, mt_gsl_version());
     run->seed = (long)study->search.seed;
     run->inputs = mt_arena_alloc(mem, (size_t)study->n_inputs, sizeof *run->inputs);
+    run->overrides = mt_arena_alloc(mem, (size_t)study->n_asked, sizeof *run->overrides);
     result->variables = mt_arena_alloc(mem, n, sizeof *result->variables);
     MT_TRY(mt_arena_check(mem, err));
     run->n_inputs = study->n_inputs;
     for (int i = 0; i < study->n_inputs; i++) {
         run->inputs[i] = (mt_result_digest){study->inputs[i].name, study->inputs[i].sha256};
+    }
+    run->n_overrides = study->n_asked;
+    for (int i = 0; i < study->n_asked; i++) {
+        const mt_asked_number *const a = &study->asked[i];
+        run->overrides[i] =
+            (mt_result_override){a->kind, a->name, a->unit, a->value, a->original};
     }
     result->n_variables = study->n_variables;
     for (int i = 0; i < study->n_variables; i++) {

@@ -4,6 +4,15 @@
 
 #include "io/files.h"
 
+/* What is asked for instead of what the files say. */
+typedef struct mt_asked {
+    int n_sets;
+    const char *const *sets; /* NAME=VALUE (model/setting.h), of a study's own model */
+    long seed;               /* -1: as the study says */
+    long starts;             /* 0: likewise */
+    long max_evaluations;    /* 0: likewise */
+} mt_asked;
+
 /* What every reader of files takes. */
 typedef struct mt_io_options {
     /* folder that files named by other files must lie in; NULL: for a study the parent of its
@@ -11,6 +20,7 @@ typedef struct mt_io_options {
     const char *root;
     mt_files files;   /* where models, studies and catalogues come from; zeroed: the disk */
     size_t max_bytes; /* of one file; 0: MT_JSON_MAX_BYTES */
+    const mt_asked *asked; /* NULL: nothing else than the files say */
     /* [out] number of errors that a JSON Schema of the file sees as well; NULL: not wanted */
     int *structural;
 } mt_io_options;

@@ -14,6 +14,8 @@
 #include "io/json_print.h"
 #include "model/finish.h"
 #include "model/names.h"
+#include "model/setting.h"
+#include "model/values.h"
 
 #define MODEL_KEYS(X)                                 \
     X(MODEL_SCHEMA, "$schema", TEXT, false)           \
@@ -247,7 +249,45 @@ static void note_places(mt_model_reader *mr)
     mt_arena_rewind(&m->mem, mark);
 }
 
-mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_err *err)
+/* The model as if its file gave these parameters these values. */
+static void set(mt_model_reader *mr, int n, const mt_setting *settings)
+{
+    mt_model *const m = mr->m;
+    m->settings = mt_arena_alloc(&m->mem, (size_t)n, sizeof *settings);
+    for (int i = 0; i < n && !mt_arena_failed(&m->mem); i++) {
+        const mt_num value = m->parameters[settings[i].parameter].value;
+        (void)mt_expr_number(settings[i].value, &m->mem, &m->nums[value].expr, NULL);
+        m->settings[m->n_settings++] = settings[i];
+    }
+}
+
+/* Where such a value has no effect; and what it was where the model is wrong with it. */
+static void tell_settings(mt_model_reader *mr)
+{
+    const mt_model *const m = mr->m;
+    const bool wrong = mr->r.diags->errors > 0;
+    for (int i = 0; i < m->n_settings; i++) {
+        const mt_parameter *const p = &m->parameters[m->settings[i].parameter];
+        if (wrong) {
+            mt_diag_warning(mr->r.diags, m->nums[p->value].addr, "is set to %.17g",
+                            m->settings[i].value);
+        }
+        for (int c = 0; c < m->n_configurations; c++) {
+            const mt_configuration *const own = &m->configurations[c];
+            for (int k = 0; k < own->n_overrides; k++) {
+                if (own->overrides[k].parameter == m->settings[i].parameter) {
+                    mt_diag_warning(mr->r.diags, own->overrides[k].parameter_name.addr,
+                                    "configuration \"%s\" has its own value of \"%s\": to "
+                                    "set it changes nothing there",
+                                    own->name.s, p->name.s);
+                }
+            }
+        }
+    }
+}
+
+static mt_status from_json(mt_json *doc, const char *file, int n, const mt_setting *settings,
+                           mt_model **out, mt_err *err)
 {
     mt_model *m = NULL;
     *out = NULL;
@@ -262,7 +302,9 @@ mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_
     if (mt_reader_format(&mr.r, "modetune-model/1", "model file") &&
         mt_reader_object(&mr.r, MT_JSON_ROOT, &mt_model_keys, at)) {
         read_root(&mr, at);
+        set(&mr, n, settings);
         (void)mt_model_finish(m, mr.r.diags, NULL); /* the arenas remember a shortage */
+        tell_settings(&mr);
         note_places(&mr);
         m->path = mt_arena_strdup(&m->mem, file);
     }
@@ -273,6 +315,51 @@ mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_
     }
     *out = m;
     return MT_OK;
+}
+
+mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_err *err)
+{
+    return from_json(doc, file, 0, NULL, out, err);
+}
+
+static int by_parameter(const void *a, const void *b)
+{
+    const mt_setting *const x = a;
+    const mt_setting *const y = b;
+    return (x->parameter > y->parameter) - (x->parameter < y->parameter);
+}
+
+/* What is asked for instead of values of this model, by their parameters. */
+static mt_status read_settings(mt_model *m, const mt_asked *asked, mt_setting **out,
+                               mt_err *err)
+{
+    double *const original = mt_arena_f64(&m->mem, (size_t)m->n_parameters, 1);
+    MT_TRY(mt_arena_check(&m->mem, err));
+    MT_TRY(mt_model_original_values(m, &m->mem, original, NULL, err));
+    const mt_status rc =
+        mt_model_read_settings(m, original, asked->n_sets, asked->sets, &m->mem, out, err);
+    if (rc == MT_OK) {
+        qsort(*out, (size_t)asked->n_sets, sizeof **out, by_parameter);
+    }
+    return rc;
+}
+
+/* The file once more, as if it gave the values that are asked for; *doc is another then. */
+static mt_status read_with_settings(const mt_file *file, const char *path,
+                                    const mt_asked *asked, mt_json **doc, mt_model **model,
+                                    mt_err *err)
+{
+    mt_model *const plain = *model;
+    mt_setting *settings = NULL;
+    mt_status rc = read_settings(plain, asked, &settings, err);
+    if (rc == MT_OK) {
+        mt_json_delete(*doc);
+        rc = mt_json_parse(file->bytes, file->length, doc, err);
+        *model = NULL;
+        rc = rc == MT_OK ? from_json(*doc, path, asked->n_sets, settings, model, err) : rc;
+        mt_model_delete(plain);
+    }
+    return rc == MT_OK ? rc : mt_err_in(err, rc, "--set");
 }
 
 mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **out,
@@ -290,6 +377,10 @@ mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **o
         rc = mt_model_from_json(doc, path, out, err);
     } else if (rc == MT_E_INPUT) {
         rc = mt_json_status(doc, path, err);
+    }
+    const mt_asked *const asked = opt == NULL ? NULL : opt->asked;
+    if (rc == MT_OK && *out != NULL && asked != NULL && asked->n_sets > 0) {
+        rc = read_with_settings(&file, path, asked, &doc, out, err);
     }
     if (rc == MT_OK && *out != NULL) {
         (*out)->sha256 = mt_arena_strdup(&(*out)->mem, file.sha256);

@@ -4,6 +4,7 @@
 #include "io/read_study_priv.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,7 +51,7 @@ enum { SPREAD_KEYS(MT_STUDY_KEY_ENUM) SPREAD_KEY_COUNT };
 static const mt_key SPREAD[] = {SPREAD_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_spread_keys = {"spread", SPREAD, SPREAD_KEY_COUNT};
 
-enum { MAX_RECOMMENDATIONS = 1000, MAX_STARTS = 100000 };
+enum { MAX_RECOMMENDATIONS = 1000 };
 
 const mt_key_table *const *mt_study_key_tables(int *n)
 {
@@ -114,8 +115,12 @@ void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *fi
     }
 }
 
+/* What is asked for instead of values of a model is of the study's own. */
 static mt_model *load_model(mt_study_reader *s, mt_name path)
 {
+    const mt_name own = s->study->model_path;
+    mt_io_options opt = s->files;
+    opt.asked = own.s != NULL && strcmp(own.s, path.s) == 0 ? opt.asked : NULL;
     mt_err why = {.code = MT_OK};
     mt_model *model = NULL;
     const int told = s->model_messages->count;
@@ -124,9 +129,12 @@ static mt_model *load_model(mt_study_reader *s, mt_name path)
         mt_arena_fail(s->r.mem);
         return NULL;
     }
-    const mt_status rc = mt_model_load(joined, &s->files, &model, s->model_messages, &why);
+    const mt_status rc = mt_model_load(joined, &opt, &model, s->model_messages, &why);
     if (rc == MT_OK) {
         mt_read_study_note_input(s, path.s, model->sha256);
+    } else if (rc == MT_E_USAGE) { /* of what is asked for: of no file */
+        s->failed = rc;
+        s->why = why;
     } else {
         mt_read_study_note_failure(s, path, joined, rc, &why, s->model_messages->count > told);
     }
@@ -185,6 +193,57 @@ static void read_model(mt_study_reader *s, mt_addr value)
     study->original = rc == MT_OK ? values : NULL; /* mt_study_finish says what is wrong */
 }
 
+static void note_asked(mt_study_reader *s, const mt_asked_number *number)
+{
+    mt_study *const study = s->study;
+    mt_asked_number *const all = mt_arena_grow(&study->mem, study->asked, study->n_asked,
+                                               &study->cap_asked, sizeof *all);
+    if (all != NULL) {
+        all[study->n_asked++] = *number;
+        study->asked = all;
+    }
+}
+
+static void note_settings(mt_study_reader *s)
+{
+    const mt_model *const m = s->study->model;
+    for (int i = 0; m != NULL && i < m->n_settings; i++) {
+        const mt_setting *const set = &m->settings[i];
+        const mt_parameter *const p = &m->parameters[set->parameter];
+        note_asked(s, &(mt_asked_number){.kind = "parameter",
+                                         .name = p->name.s,
+                                         .unit = p->unit,
+                                         .value = set->value,
+                                         .original = set->original});
+    }
+}
+
+/* A member of the search as the study says, or as it is asked for; `none`: not said, not asked
+ * for. */
+static long ask(mt_study_reader *s, const char *name, long said, long asked, long none)
+{
+    if (asked == none) {
+        return said;
+    }
+    note_asked(s, &(mt_asked_number){.kind = "search",
+                                     .name = name,
+                                     .value = (double)asked,
+                                     .original = said == none ? nan("") : (double)said});
+    return asked;
+}
+
+static void ask_search(mt_study_reader *s)
+{
+    const mt_asked *const asked = s->files.asked;
+    mt_search *const search = &s->study->search;
+    if (asked != NULL) {
+        search->seed = (unsigned long)ask(s, "seed", (long)search->seed, asked->seed, -1);
+        search->starts = (int)ask(s, "starts", search->starts, asked->starts, 0);
+        search->max_evaluations =
+            ask(s, "max_evaluations", search->max_evaluations, asked->max_evaluations, 0);
+    }
+}
+
 static void read_search(mt_study_reader *s, mt_addr value)
 {
     mt_search *const search = &s->study->search;
@@ -194,7 +253,7 @@ static void read_search(mt_study_reader *s, mt_addr value)
     }
     search->seed = (unsigned long)mt_reader_count(&s->r, o.found[SEARCH_SEED], 0, INT_MAX,
                                                   (int)search->seed);
-    search->starts = mt_reader_count(&s->r, o.found[SEARCH_STARTS], 1, MAX_STARTS, 0);
+    search->starts = mt_reader_count(&s->r, o.found[SEARCH_STARTS], 1, MT_STARTS_MOST, 0);
     search->max_evaluations =
         mt_reader_count(&s->r, o.found[SEARCH_MAX_EVALUATIONS], 1, INT_MAX, 0);
 }
@@ -268,6 +327,8 @@ static void read_root(mt_study_reader *s)
                                              MAX_RECOMMENDATIONS, study->recommendations);
     read_search(s, o.found[STUDY_SEARCH]);
     read_model(s, o.found[STUDY_MODEL]);
+    note_settings(s);
+    ask_search(s);
     mt_read_study_variables(s, o.found[STUDY_VARIABLES]);
     mt_read_study_references(s, o.found[STUDY_REFERENCES]);
     mt_read_study_goals(s, o.found[STUDY_GOALS]);

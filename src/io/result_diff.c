@@ -39,6 +39,7 @@ static const list_rule RULES[] = {
     {"motion", "motion", {"goal", "drive"}, NULL},
     {"objectives", "objective", {"text"}, NULL},
     {"orders", "order", {"label"}, NULL},
+    {"overrides", "override", {"kind", "name"}, "name"},
     {"parameters", "parameter", {"name"}, NULL},
     {"per_variable", "variable", {"name"}, NULL},
     {"points", "point", {NULL}, NULL},

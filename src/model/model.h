@@ -353,6 +353,13 @@ typedef struct mt_place {
     int column;
 } mt_place;
 
+/* A parameter that has another value than the file gives it (model/setting.h). */
+typedef struct mt_setting {
+    int parameter;
+    double value;
+    double original; /* the file's */
+} mt_setting;
+
 #define MT_LIST_OF(type, name) \
     type *name;                \
     int n_##name;              \
@@ -379,6 +386,8 @@ typedef struct mt_model {
     MT_LIST_OF(mt_named_mode, modes);
     /* never empty after finish: "default" is made where none is given */
     MT_LIST_OF(mt_configuration, configurations);
+    /* by their parameters; the model is as if its file said so */
+    MT_LIST_OF(mt_setting, settings);
     const char *sha256; /* of the file's bytes, hexadecimal; NULL: not read from a file */
     int n_places;       /* one per number, sorted by address; 0: not read from a file */
     mt_place *places;

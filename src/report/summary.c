@@ -37,7 +37,7 @@ static void add_table(const mt_teller *to, mt_table t, const char *title)
 }
 
 /* A paragraph, of which `line` is the text; freed. */
-static void add_line(const mt_teller *to, mt_text *line)
+static void add_paragraph(const mt_teller *to, const char *indent, mt_text *line)
 {
     const char *const text = line->s == NULL ? "" : line->s;
     if (to->html) {
@@ -45,10 +45,15 @@ static void add_line(const mt_teller *to, mt_text *line)
         mt_html_escape(text, to->out);
         mt_text_add(to->out, "</p>\n");
     } else {
-        mt_text_addf(to->out, "  %s\n", text);
+        mt_text_addf(to->out, "%s%s\n", indent, text);
     }
     to->out->failed = to->out->failed || line->failed;
     mt_text_free(line);
+}
+
+static void add_line(const mt_teller *to, mt_text *line)
+{
+    add_paragraph(to, "  ", line);
 }
 
 /* Was it computed? A section that an interrupt left out says so. */
@@ -264,10 +269,31 @@ static void tell_trade(const mt_teller *to, const mt_result *result)
     }
 }
 
+void mt_tell_overrides(const mt_teller *to, const mt_result_run *run)
+{
+    mt_text line = {.s = NULL};
+    for (int i = 0; i < run->n_overrides; i++) {
+        const mt_result_override *const o = &run->overrides[i];
+        const bool parameter = strcmp(o->kind, "parameter") == 0;
+        mt_text_addf(&line, "%s%s%s = %.10g", i == 0 ? "Asked with " : ", ",
+                     parameter ? "" : "search ", o->name, o->value);
+        mt_text_addf(&line, parameter && o->unit != NULL ? " %s" : "%s",
+                     parameter && o->unit != NULL ? o->unit : "");
+        if (!isnan(o->original)) {
+            mt_text_addf(&line, " (%s: %.10g)", parameter ? "model" : "study", o->original);
+        }
+    }
+    if (run->n_overrides > 0) {
+        mt_text_add(&line, ".");
+        add_paragraph(to, "", &line);
+    }
+}
+
 void mt_tell_answer(const mt_teller *to, const mt_result *result, bool with_published)
 {
     static const char relaxed[] = "What would let a design exist, one change at a time";
     static const char published[] = "Published against computed";
+    mt_tell_overrides(to, &result->run);
     mt_tell_doubts(to, result);
     tell_design(to, result);
     if (to->html) {

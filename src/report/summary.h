@@ -25,6 +25,8 @@ void mt_tell_answer(const mt_teller *to, const mt_result *result, bool with_publ
 void mt_tell_doubts(const mt_teller *to, const mt_result *result);
 /* The objectives of a design with their values. */
 void mt_tell_objectives(const mt_teller *to, const mt_recommendation *r);
+/* What was asked for instead of what the files say, in one line; nothing where nothing was. */
+void mt_tell_overrides(const mt_teller *to, const mt_result_run *run);
 /* What the goals leave open: undetermined directions and the spread under other weights. */
 void mt_tell_uncertainty(const mt_teller *to, const mt_result *result);
 

@@ -354,6 +354,16 @@ static const mt_field BUILD_FIELDS[] = {
 static const mt_record BUILD = MT_F_RECORD_OF(BUILD_FIELDS);
 #undef THIS
 
+#define THIS mt_result_override
+static const char *const OVERRIDES[] = {"parameter", "search"};
+static const mt_field OVERRIDE_FIELDS[] = {
+    MT_F_CHOICE("kind", kind, OVERRIDES),      MT_F_TEXT("name", name),
+    MT_F_TEXT_OR_NULL("unit", unit),           MT_F_NUMBER("value", value),
+    MT_F_NUMBER_OR_NULL("original", original),
+};
+static const mt_record OVERRIDE = MT_F_RECORD_OF(OVERRIDE_FIELDS);
+#undef THIS
+
 #define THIS mt_result_run
 static const char *const PHASES[] = {"search",      "recommendations", "spread", "certificates",
                                      "relaxations", "published",       "trade"};
@@ -370,6 +380,7 @@ static const mt_field RUN_FIELDS[] = {
     MT_F_NUMBER_OR_NULL("estimated_missing", estimated_missing),
     MT_F_LONG("evaluations", evaluations),
     MT_F_CHOICES("incomplete", incomplete, n_incomplete, PHASES),
+    MT_F_LIST("overrides", overrides, n_overrides, mt_result_override, OVERRIDE),
     MT_F_LIST("inputs", inputs, n_inputs, mt_result_digest, DIGEST),
     MT_F_LIST("outputs", outputs, n_outputs, mt_result_digest, DIGEST),
 };

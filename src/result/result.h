@@ -323,6 +323,15 @@ typedef struct mt_result_build {
     const char *compiler;
 } mt_result_build;
 
+/* A number that was asked for instead of what the files say. */
+typedef struct mt_result_override {
+    const char *kind; /* "parameter" of the model, "search": member of the study's search */
+    const char *name;
+    const char *unit; /* NULL: none given */
+    double value;
+    double original; /* what the files say; NaN: nothing */
+} mt_result_override;
+
 typedef struct mt_result_run {
     const char *modetune_version;
     mt_result_build build;
@@ -336,6 +345,8 @@ typedef struct mt_result_run {
     int distinct_designs;
     int found_once;           /* of them, by one start only */
     double estimated_missing; /* isolated designs that no start met, at least */
+    int n_overrides;
+    mt_result_override *overrides;
     int n_inputs;
     mt_result_digest *inputs;
     int n_outputs; /* files written beside the result; 0: it is written alone */

@@ -220,6 +220,7 @@ typedef struct mt_trade {
     mt_addr objectives_addr; /* addr where not given */
 } mt_trade;
 
+enum { MT_STARTS_MOST = 100000 };
 typedef struct mt_search {
     unsigned long seed;
     int starts;           /* 0: chosen by the number of variables */
@@ -246,6 +247,15 @@ typedef struct mt_study_place {
     int column;
     const char *pointer;
 } mt_study_place;
+
+/* A number that is asked for instead of what files say. */
+typedef struct mt_asked_number {
+    const char *kind; /* "parameter": of the model; "search": member of the study's search */
+    const char *name;
+    const char *unit; /* of a parameter; NULL */
+    double value;
+    double original; /* what the files say; NaN: nothing */
+} mt_asked_number;
 
 typedef struct mt_study {
     mt_arena mem; /* owns everything but the models' own memory */
@@ -282,7 +292,8 @@ typedef struct mt_study {
     mt_addr recommendations_addr;
     mt_search search;
     mt_spread spread;
-    int n_inputs; /* files read: study, models */
+    MT_LIST_OF(mt_asked_number, asked); /* by the reader; model and search have them */
+    int n_inputs;                       /* files read: study, models */
     mt_input_file *inputs;
 } mt_study;
 

@@ -51,6 +51,17 @@ int mt_check_parameter(mt_study_check *c, mt_name name)
     return found;
 }
 
+void mt_check_unset(mt_study_check *c, mt_name name, int parameter)
+{
+    for (int i = 0; i < c->model->n_settings; i++) {
+        if (c->model->settings[i].parameter == parameter) {
+            mt_diag_error(c->diags, name.addr,
+                          "the study varies \"%s\" itself: it cannot be set to %.17g", name.s,
+                          c->model->settings[i].value);
+        }
+    }
+}
+
 int mt_check_configuration(mt_study_check *c, const mt_model *model, mt_name name)
 {
     if (name.s == NULL) {

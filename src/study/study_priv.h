@@ -29,6 +29,8 @@ void mt_study_check_doubts(mt_study_check *c);
 /* Shared: names to indices, with "did you mean". An absent name gives MT_ABSENT without a
  * message. */
 int mt_check_parameter(mt_study_check *c, mt_name name);
+/* A parameter that the study varies may not be set from outside. */
+void mt_check_unset(mt_study_check *c, mt_name name, int parameter);
 int mt_check_configuration(mt_study_check *c, const mt_model *model, mt_name name);
 int mt_check_reference(mt_study_check *c, mt_name name);
 /* NULL where the name is absent or unknown (noted, unless the catalogue itself could not be

@@ -137,6 +137,7 @@ static void vary_goal(mt_study_check *c, const mt_vary *v)
 static void vary_parameter(mt_study_check *c, mt_vary *v)
 {
     v->parameter = mt_check_parameter(c, v->name);
+    mt_check_unset(c, v->name, v->parameter);
     for (int i = 0; i < c->study->n_variables; i++) {
         if (v->parameter != MT_ABSENT && c->study->variables[i].parameter == v->parameter) {
             mt_diag_error(c->diags, v->name.addr,

@@ -105,6 +105,7 @@ void mt_study_check_variables(mt_study_check *c)
             mt_diag_error(c->diags, v->parameter_name.addr, "\"%s\" is a variable already",
                           v->parameter_name.s);
         }
+        mt_check_unset(c, v->parameter_name, v->parameter);
         check_original(c, v);
     }
 }

@@ -55,6 +55,7 @@ static const struct {
     {"run --threads 1 -o @ --quiet studies/engine_orders.json", MT_EXIT_DONE},
     {"run --threads 1 -o @ --quiet studies/inceptor_tuning_2.json", MT_EXIT_DONE},
     {"compare --threads 1 --format json studies/inceptor_catalogue.json", MT_EXIT_DONE},
+    {"compare --threads 1 --set m_raft=21 --starts 4 studies/engine_orders.json", MT_EXIT_DONE},
     {"check @/engine_orders/result.json", MT_EXIT_DONE},
     {"diff @/engine_orders @/inceptor_tuning_2", MT_EXIT_GOALS},
     {"diff --format json @/engine_orders @/inceptor_tuning_2", MT_EXIT_GOALS},

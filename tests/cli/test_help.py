@@ -8,9 +8,9 @@ from common_cli import COMMANDS, SOURCE, CliTest, main, options_in
 # Which options each command has: written down once more, so that a change is a decision.
 EVERYWHERE = {"max-memory", "root", "format", "quiet", "help"}
 OPTIONS = {
-    "run": {"output", "verify", "threads", "time", "seed", "resume", "shard", "profile"},
-    "merge": {"output", "verify", "threads", "time", "seed", "profile"},
-    "compare": {"threads"},
+    "run": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "resume", "shard", "profile"},
+    "merge": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "profile"},
+    "compare": {"threads", "set", "seed", "starts", "max-evaluations"},
     "modes": {"configuration", "set", "count", "shapes", "damped", "profile"},
     "mac": {"count"},
     "sweep": {"configuration", "set", "count", "drive", "hold", "modes"},

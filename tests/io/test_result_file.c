@@ -47,6 +47,7 @@ static double DIRECTION[] = {0.0, 1.0};
 static const char *INCOMPLETE[] = {"trade"};
 static const char SHA256[] = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
 static mt_result_digest INPUTS[] = {{"study.json", SHA256}};
+static mt_result_override OVERRIDES[] = {{"parameter", "M_SAU", "kg", 0.5, 0.25}};
 static mt_result_digest OUTPUTS[] = {{"report.html", SHA256}};
 static mt_doubt DOUBTS[] = {{.kind = "margin",
                              .text = "a margin of 0.1 %",
@@ -202,6 +203,8 @@ static void fill_run(mt_result *r)
                              .distinct_designs = 9,
                              .found_once = 3,
                              .estimated_missing = 1.5,
+                             .n_overrides = MT_COUNT(OVERRIDES),
+                             .overrides = OVERRIDES,
                              .n_inputs = MT_COUNT(INPUTS),
                              .inputs = INPUTS,
                              .n_outputs = MT_COUNT(OUTPUTS),

@@ -22,7 +22,7 @@ MODEL = {
     "springs": [{"name": "s", "type": "axial", "bodies": ["ground", "m"], "at": [[0, 0], [1, 0]], "stiffness_n_per_m": "k"}],
 }
 VARIABLES = [{"parameter": "k", "lower": 800, "upper": 1200}]
-# What the shipped studies do not show: an answer that there is none.
+# What the shipped studies do not show: an answer that there is none, and a number that is asked for instead of the study's.
 EXTRA = {
     "none": {"variables": VARIABLES, "goals": [{"type": "frequency", "mode": 1, "at_least_hz": 6}]},
 }
@@ -116,7 +116,8 @@ def main():
         folder = Path(name)
         for study in studies(folder):
             verify = [] if study.stem in EXTRA else ["--verify"]
-            ran = run("run", study, "-o", folder, *verify)
+            asked = ["--starts", "3"] if study.stem in EXTRA else []
+            ran = run("run", study, "-o", folder, *verify, *asked)
             path = folder / study.stem / "result.json"
             if ran.returncode != (0 if verify else 1) or not path.exists():
                 problems.append(f"{study.name}: exit {ran.returncode}: {ran.stderr.decode()}{ran.stdout.decode()[-2000:]}")
