@@ -124,7 +124,7 @@ static mt_status free_motions(operation *o, bool *regular, mt_arena *mem, mt_err
     return rc == MT_OK || rc == MT_E_NOT_SPD ? MT_OK : mt_fail(err, rc, "free motions");
 }
 
-static mt_status solve(mt_lowest *l, int count, mt_err *err)
+static mt_status solve(mt_lowest *l, mt_lowest_want want, mt_err *err)
 {
     const mt_tree *const t = l->tree;
     const size_t motions = (size_t)t->n * (size_t)t->s;
@@ -153,7 +153,8 @@ static mt_status solve(mt_lowest *l, int count, mt_err *err)
     const mt_lowest_problem p = {.n = t->n_x,
                                  .most = t->n_x,
                                  .n_rigid = t->n_rigid,
-                                 .count = count,
+                                 .count = want.count,
+                                 .shapes = want.shapes,
                                  .apply = apply,
                                  .refine = refine,
                                  .below = below,
@@ -262,7 +263,7 @@ mt_status mt_lowest_new(const mt_model *model, int configuration, int n_inputs,
     rc = rc == MT_OK ? mt_system_new(model, configuration, n_inputs, inputs, at, &l->sys, err)
                      : rc;
     rc = rc == MT_OK ? mt_tree_new(l->sys, at, &l->mem, &l->tree, l->why, err) : rc;
-    rc = rc == MT_OK && l->tree != NULL ? solve(l, want.count, err) : rc;
+    rc = rc == MT_OK && l->tree != NULL ? solve(l, want, err) : rc;
     rc = rc == MT_OK && l->tree == NULL ? solve_sparse(l, want, err) : rc;
     if (rc != MT_OK) {
         mt_lowest_delete(l);

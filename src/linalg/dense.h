@@ -5,6 +5,7 @@
 #include "linalg/assign.h"
 #include "linalg/cholesky.h"
 #include "linalg/eig.h"
+#include "linalg/graded.h"
 #include "linalg/inertia.h"
 #include "linalg/kernels.h"
 #include "linalg/ldl.h"

@@ -106,6 +106,20 @@ bool mt_lower_finite(int n, const double *a)
     return sum == 0.0;
 }
 
+/* NOLINTNEXTLINE(readability-function-size): as a product's */
+void mt_turn_columns(ptrdiff_t n, int m, int count, const double *q, ptrdiff_t step, double *v,
+                     double *row)
+{
+    for (ptrdiff_t i = 0; i < n; i++) {
+        for (int k = 0; k < m; k++) {
+            row[k] = v[i + (n * k)];
+        }
+        for (int k = 0; k < count; k++) {
+            v[i + (n * k)] = mt_dot(m, row, q + (step * k));
+        }
+    }
+}
+
 void mt_transpose(int m, int n, const double *a, double *b)
 {
     for (int j = 0; j < n; j++) {

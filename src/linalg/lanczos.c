@@ -138,20 +138,11 @@ static int count_found(const iteration *it)
     return k;
 }
 
-/* V := V Q for the `keep` largest, row by row. */
+/* V := V Q for the `keep` largest. */
 static void rotate(iteration *it, int keep)
 {
-    const ptrdiff_t n = it->p->n;
-    double *const row = it->row;
-    for (ptrdiff_t i = 0; i < n; i++) {
-        for (int c = 0; c < it->j; c++) {
-            row[c] = it->v[i + (c * n)];
-        }
-        for (int k = 0; k < keep; k++) {
-            it->v[i + (k * n)] =
-                mt_dot(it->j, row, it->q + ((ptrdiff_t)(it->j - 1 - k) * it->j));
-        }
-    }
+    const ptrdiff_t j = it->j;
+    mt_turn_columns(it->p->n, it->j, keep, it->q + ((j - 1) * j), -j, it->v, it->row);
 }
 
 /* Keep the largest; v_(j+1) comes behind them. */

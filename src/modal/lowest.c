@@ -19,6 +19,9 @@ enum { MOST_FOUND = 512 };
 
 /* Neighbours closer than this (relative) are not separated by a count. */
 static const double NO_GAP = 1e-7;
+/* A residual, in what it is the residual of, that says nothing of a frequency (its square does)
+ * but is seen in slopes. */
+static const double ROUGH = 1e-10;
 
 typedef struct finding {
     const mt_lowest_problem *p;
@@ -51,14 +54,20 @@ static void swap_columns(const finding *f, double *of, int i, int j)
     }
 }
 
+/* M x. */
+static const double *weigh(const finding *f, const double *x)
+{
+    if (f->mx == NULL) {
+        return x;
+    }
+    f->p->metric(f->p->context, x, f->mx);
+    return f->mx;
+}
+
 /* x^T M y. */
 static double inner(const finding *f, const double *x, const double *y)
 {
-    if (f->mx == NULL) {
-        return mt_dot(f->p->n, x, y);
-    }
-    f->p->metric(f->p->context, x, f->mx);
-    return mt_dot(f->p->n, f->mx, y);
+    return mt_dot(f->p->n, weigh(f, x), y);
 }
 
 static void swap(const finding *f, int i, int j)
@@ -310,6 +319,63 @@ static int whole(const finding *f, int upto)
     return n;
 }
 
+/* The images of the first n, orthonormal, instead of them: what has no mass, of which the metric
+ * sees nothing, is in them no more. */
+static void purify(const finding *f, int n, double *x)
+{
+    for (int i = 0; i < n; i++) {
+        double *const to = column(f, x, i);
+        memcpy(to, column(f, f->ax, i), (size_t)f->p->n * sizeof *to);
+        const double *const weighed = weigh(f, to);
+        for (int j = 0; j < i; j++) {
+            const double *const softer = column(f, x, j);
+            mt_axpy(f->p->n, -mt_dot(f->p->n, weighed, softer), softer, to);
+        }
+        const double size = sqrt(inner(f, to, to));
+        for (int k = 0; k < f->p->n; k++) {
+            to[k] /= size;
+        }
+    }
+}
+
+static bool rough(const finding *f, int n)
+{
+    bool is = false;
+    for (int i = 0; i < n; i++) {
+        is = is || (!f->own[i].rigid && !(f->rho[i] <= ROUGH * f->theta[i]));
+    }
+    return is;
+}
+
+/* The Ritz vectors of all that were found instead of them, the first n looked at again. What is
+ * left in one of the others comes of the method's vectors without mass, in which rounding is as
+ * large as they are. */
+static mt_status settle(finding *f, int n, mt_arena *scratch, mt_err *err)
+{
+    const ptrdiff_t found = f->n;
+    double *const h = mt_arena_f64(scratch, (size_t)found, (size_t)found);
+    double *const theta = mt_arena_f64(scratch, (size_t)found, 1);
+    MT_TRY(mt_arena_check(scratch, err));
+    for (ptrdiff_t i = 0; i < found; i++) {
+        const double *const weighed = weigh(f, column(f, f->ax, (int)i));
+        for (ptrdiff_t k = 0; k <= i; k++) { /* the smaller image: its rounding is smaller */
+            h[i + (found * k)] = mt_dot(f->p->n, weighed, column(f, f->x, (int)k));
+        }
+    }
+    const mt_status rc = mt_eig_graded(f->n, h, theta, scratch, err);
+    if (rc == MT_E_NOT_SPD) {
+        return MT_OK; /* the last ones are rounding */
+    }
+    MT_TRY(rc);
+    mt_turn_columns(f->p->n, f->n, f->n, h, found, f->x, theta);
+    mt_turn_columns(f->p->n, f->n, f->n, h, found, f->ax, theta);
+    f->n_free = 0;
+    for (int i = 0; i < n; i++) {
+        MT_TRY(look_at(f, i, err));
+    }
+    return MT_OK;
+}
+
 static mt_status answer(const mt_lowest_problem *p, mt_arena *scratch, mt_arena *mem,
                         mt_lowest_modes *out, mt_err *err)
 {
@@ -323,7 +389,11 @@ static mt_status answer(const mt_lowest_problem *p, mt_arena *scratch, mt_arena 
     }
     MT_TRY(grow(&f, f.most, scratch, err));
     MT_TRY(find(&f, scratch, &out->tau, &upto, err));
-    const size_t n = (size_t)whole(&f, upto);
+    const int few = whole(&f, upto);
+    if (p->shapes && rough(&f, few)) {
+        MT_TRY(settle(&f, few, scratch, err));
+    }
+    const size_t n = (size_t)few;
     const size_t most = n + (size_t)p->n_rigid;
     *m = (mt_modes){.n = p->most + p->n_rigid, .n_rigid = p->n_rigid, .count = (int)most};
     m->lambda = mt_arena_f64(mem, most, 1);
@@ -337,6 +407,9 @@ static mt_status answer(const mt_lowest_problem *p, mt_arena *scratch, mt_arena 
     m->all = p->n_rigid + p->most;
     MT_TRY(mt_arena_check(mem, err));
     fill(&f, upto, out->tau + p->shift, out);
+    if (p->shapes && p->metric != NULL) {
+        purify(&f, few, out->x);
+    }
     return MT_OK;
 }
 

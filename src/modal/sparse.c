@@ -168,6 +168,7 @@ static mt_status find(mt_sparse *s, mt_arena *mem, mt_lowest_modes *out, bool *s
                                            .most = s->freedoms,
                                            .count = p->count,
                                            .shift = s->shift,
+                                           .shapes = p->shapes,
                                            .apply = apply,
                                            .metric = mt_sparse_metric,
                                            .refine = refine,
@@ -191,16 +192,20 @@ static mt_status find(mt_sparse *s, mt_arena *mem, mt_lowest_modes *out, bool *s
     }
 }
 
-/* v := v Q, n x count. */
-static void turn(int n, int count, const double *q, double *v, double *row)
+/* y := y - X X^T M y with the first i columns, and its forces nu with theirs (rigid-body modes
+ * have none): inverse iteration has made the rounding of M y larger by the quotient of their
+ * eigenvalues. */
+static void clear_of_softer(mt_sparse *s, int i, const double *x, const double *forces,
+                            double *y, double *nu)
 {
-    for (ptrdiff_t i = 0; i < n; i++) {
-        for (int k = 0; k < count; k++) {
-            row[k] = v[i + ((ptrdiff_t)n * k)];
-        }
-        for (int k = 0; k < count; k++) {
-            v[i + ((ptrdiff_t)n * k)] = mt_dot(count, row, q + ((ptrdiff_t)count * k));
-        }
+    const int n = s->p->n;
+    const int rows = s->p->a.n_rows;
+    mt_sparse_metric(s, y, s->f);
+    for (int j = 0; j < i; j++) {
+        const double *const softer = x + ((ptrdiff_t)n * j);
+        const double part = -mt_dot(n, softer, s->f);
+        mt_axpy(n, part, softer, y);
+        mt_axpy(rows, part, forces + ((ptrdiff_t)rows * j), nu);
     }
 }
 
@@ -228,22 +233,24 @@ static mt_status shape(mt_sparse *s, mt_arena *mem, const mt_lowest_modes *out, 
         MT_TRY(mt_sparse_solve(s, s->f, MT_SPARSE_SOLVED, to, err));
         memcpy(force + ((ptrdiff_t)rows * i), s->mu, (size_t)rows * sizeof *force);
         mt_sparse_metric(s, to, s->f);
-        for (int k = 0; k < count; k++) {
-            h[k + ((ptrdiff_t)count * i)] = -mt_dot(n, x + ((ptrdiff_t)n * k), s->f);
+        for (int k = 0; k <= i; k++) { /* the smaller image: its rounding is the smaller one */
+            h[i + ((ptrdiff_t)count * k)] = mt_dot(n, x + ((ptrdiff_t)n * k), s->f);
         }
     }
-    MT_TRY(mt_eig_sym(count, h, theta, true, s->mem, err)); /* of -A: lowest modes first */
-    turn(n, count, h, y, theta);
-    turn(rows, count, h, force, theta);
+    MT_TRY(mt_eig_graded(count, h, theta, s->mem, err));
+    mt_turn_columns(n, count, count, h, count, y, theta);
+    mt_turn_columns(rows, count, count, h, count, force, theta);
     for (int i = 0; i < count; i++) {
-        double *const from = y + ((ptrdiff_t)n * i);
-        mt_sparse_metric(s, from, s->f);
-        const double size = sqrt(mt_dot(n, from, s->f));
+        double *const to = y + ((ptrdiff_t)n * i);
+        double *const nu = force + ((ptrdiff_t)rows * i);
+        clear_of_softer(s, first + i, out->x, *mu, to, nu);
+        mt_sparse_metric(s, to, s->f);
+        const double size = sqrt(mt_dot(n, to, s->f));
         for (int j = 0; j < n; j++) {
-            x[j + ((ptrdiff_t)n * i)] = from[j] / size;
+            x[j + ((ptrdiff_t)n * i)] = to[j] / size;
         }
         for (int j = 0; j < rows; j++) {
-            force[j + ((ptrdiff_t)rows * i)] /= size;
+            nu[j] /= size;
         }
     }
     return MT_OK;

@@ -47,6 +47,52 @@ static double orthogonality(int n, const double *v)
     return mt_max_abs((ptrdiff_t)n * n, g) / (n * DBL_EPSILON);
 }
 
+/* D C D with D over many decades and C = Q Q^T + I of Q random: its small eigenvalues are those
+ * of the Schur complements, whatever is large beside them. */
+static void eig__graded_solutions_have_small_residuals_in_each_scale(mt_test *t)
+{
+    static const double step[] = {1.0, 0.5, 1e-2, 1e-3};
+    enum { N = 12 };
+    static double c[N * N];
+    static double a[N * N];
+    static double v[N * N];
+    double d[N];
+    double w[N];
+    mt_random r = mt_random_seed(7);
+    for (int k = 0; k < MT_COUNT(step); k++) {
+        mt_test_row(t, "step %g", step[k]);
+        mt_random_fill(&r, N * N, v);
+        mt_gemm(false, true, N, N, N, 1.0, v, N, v, N, 0.0, c, N);
+        for (int i = 0; i < N; i++) {
+            d[i] = pow(step[k], i);
+            c[i + i * N] += 1.0;
+        }
+        for (int j = 0; j < N; j++) {
+            for (int i = 0; i < N; i++) {
+                a[i + j * N] = i < j ? nan("") : d[i] * c[i + j * N] * d[j];
+            }
+        }
+        memcpy(v, a, sizeof a);
+        REQUIRE(t, mt_eig_graded(N, v, w, &mem, NULL) == MT_OK);
+        mt_symmetrise_lower(N, a);
+        CHECK(t, orthogonality(N, v) <= RATIO);
+        REQUIRE(t, mt_eig_sym(N, c, d, false, &mem, NULL) == MT_OK);
+        const double unit = RATIO * N * N * DBL_EPSILON * (d[N - 1] / d[0]);
+        for (int j = 0; j < N; j++) { /* v_i^T A v_j in the size of both */
+            double av[N];
+            mt_symm(N, 1, a, v + (ptrdiff_t)j * N, av);
+            CHECK(t, j == 0 || w[j] <= w[j - 1]);
+            for (int i = 0; i <= j; i++) {
+                const double sum = mt_dot(N, v + (ptrdiff_t)i * N, av);
+                CHECK_NEAR_ABS(t, sum / sqrt(w[i] * w[j]), i == j ? 1.0 : 0.0, unit);
+            }
+        }
+    }
+    v[0] = -1.0;
+    CHECK_INT(t, mt_eig_graded(1, v, w, &mem, NULL), MT_E_NOT_SPD);
+    CHECK_INT(t, mt_eig_graded(0, v, w, &mem, NULL), MT_OK);
+}
+
 static void eig__symmetric_solutions_have_small_residuals(mt_test *t)
 {
     static const int orders[] = {1, 2, 3, 11, 26, 33, MOST};
@@ -247,6 +293,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         MT_TEST(eig__symmetric_solutions_have_small_residuals),
         MT_TEST(eig__second_difference_matches_closed_form),
+        MT_TEST(eig__graded_solutions_have_small_residuals_in_each_scale),
         MT_TEST(eig__general_finds_real_and_complex_roots),
         MT_TEST(eig__cholesky_reproduces_and_names_the_pivot),
         MT_TEST(eig__inertia_counts_eigenvalues_below_the_shift),
