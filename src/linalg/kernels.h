@@ -24,8 +24,8 @@ bool mt_all_finite(ptrdiff_t n, const double *x);
 bool mt_lower_finite(int n, const double *a);
 /* C := A B with symmetric A (n x n, lower read), B and C n x nrhs. */
 void mt_symm(int n, int nrhs, const double *a, const double *b, double *c);
-/* V := V Q in place, V n x m and Q m x count, count <= m; column k of Q stands at q + k step; row:
- * room for m. */
+/* V := V Q in place, V n x m and Q m x count, count <= m; column k of Q stands at q + k step;
+ * row: room for m. */
 void mt_turn_columns(ptrdiff_t n, int m, int count, const double *q, ptrdiff_t step, double *v,
                      double *row);
 /* B := A^T, A m x n, B n x m. */

@@ -319,8 +319,8 @@ static int whole(const finding *f, int upto)
     return n;
 }
 
-/* The images of the first n, orthonormal, instead of them: what has no mass, of which the metric
- * sees nothing, is in them no more. */
+/* The images of the first n, orthonormal, instead of them: what has no mass, of which the
+ * metric sees nothing, is in them no more. */
 static void purify(const finding *f, int n, double *x)
 {
     for (int i = 0; i < n; i++) {

@@ -383,11 +383,13 @@ static void compare_slopes(mt_test *t, int seed, mt_lowest *l, mech *dense, doub
     mt_arena_free(&mem);
 }
 
+/* least: parts of a hundred that are answered. */
 static void check_trees(mt_test *t, bool hung, bool looped, int least)
 {
     writer w = {.text = malloc(TEXT)};
     static const int input[INPUTS] = {0, 1, 2, 3, 4, 5, 6};
-    const int trees = rounds() * (looped ? LOOPED : TREES);
+    const int number = rounds() * (looped ? LOOPED : TREES);
+    const int trees = getenv("MT_TEST_LAUNCHED") != NULL ? number / 10 : number;
     int found = 0;
     int refused = 0;
     int told = 0;
@@ -439,28 +441,28 @@ static void check_trees(mt_test *t, bool hung, bool looped, int least)
         mech_free(&dense);
     }
     mt_test_row(t, "all");
-    CHECK(t, found >= least);
+    CHECK(t, 100 * found >= least * trees);
     CHECK(t, rough <= trees / 1000);
     CHECK(t, refused <= (looped ? trees / 200 : 0));
-    CHECK(t, told >= least - (10 * rounds()));
+    CHECK(t, told >= (least * trees / 100) - (10 * rounds()));
     free(w.text);
 }
 
 static void lowest__of_random_trees_are_those_of_the_dense_way(mt_test *t)
 {
-    check_trees(t, false, false, rounds() * TREES * 8 / 10);
+    check_trees(t, false, false, 80);
 }
 
 /* Of those whose springs let them rest as drawn, and hold them upright. */
 static void lowest__of_random_trees_under_gravity_likewise(mt_test *t)
 {
-    check_trees(t, true, false, rounds() * TREES / 4);
+    check_trees(t, true, false, 25);
 }
 
 /* Where they are no trees, in coordinates of their bodies. */
 static void lowest__of_random_mechanisms_with_loops_likewise(mt_test *t)
 {
-    check_trees(t, false, true, rounds() * LOOPED / 2);
+    check_trees(t, false, true, 50);
 }
 
 MT_TEST_MAIN(MT_TEST(lowest__of_random_trees_are_those_of_the_dense_way),
