@@ -14,6 +14,11 @@
  *   - no pivot is small in its own equation, whatever the masses;
  *   - what is left of a difference is 0 where it is within the rounding of its terms, which are
  *     carried along (running error analysis).
+ *
+ * Errors carried along grow with the sizes of all steps, whatever their signs: from one storey
+ * of a long stack to the next as |T| |T| |T| ... does, which may be 1e30 where T T T ... is 1.
+ * Where they have grown, nothing is made 0 by them; they only chose what follows, and Z and
+ * what is open of it come from A_d^-1 (follow.h).
  * See Golub and Van Loan, Matrix Computations, 3.4 (complete pivoting); Demmel et al., Linear
  * Algebra Appl. 299 (1999) (elimination of graded matrices keeps relative accuracy).
  */
@@ -22,6 +27,9 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "mechanics/follow.h"
 
 /* A pivot is at least this part of the largest entry of its equation: errors grow by no more
  * than its inverse. */
@@ -31,12 +39,18 @@ static const double ENTRY_ULPS = 4.0;
 /* A coordinate without mass counts as this part of the heaviest one: it follows whenever it
  * can. */
 static const double MASSLESS = 1e-60;
+/* Errors that are carried along have grown where they are this many times those of the entries
+ * of A. Those of a few dozen bodies have not. */
+static const double GROWN = 1e3;
 
 typedef struct work {
     int rank;
     int nq;
     double *g;      /* rank x nq, row-major: the independent equations, equilibrated */
     double *e;      /* bounds of the errors of g */
+    double entry;   /* the largest of the entries of A */
+    double most;    /* the largest of all so far */
+    bool carried;   /* errors are carried along */
     double *weight; /* [nq] 1 / sqrt(mass) */
     int *pivot;     /* [rank] column of the equation's pivot; -1: to come */
     int *order;     /* [rank] equations in the order of elimination */
@@ -97,6 +111,7 @@ static void look(work *w, int i)
 
 static void load(work *w, const mt_elimination *e, const double *a, double extent)
 {
+    w->entry = 0.0;
     for (int i = 0; i < w->rank; i++) {
         const int row = e->qr.perm[i];
         for (ptrdiff_t j = 0; j < w->nq; j++) {
@@ -105,6 +120,7 @@ static void load(work *w, const mt_elimination *e, const double *a, double exten
             const double arm = e->dc[j] == 1.0 ? 0.0 : e->dr[row] * extent * e->dc[j];
             w->e[at] =
                 w->g[at] == 0.0 ? 0.0 : ENTRY_ULPS * DBL_EPSILON * (fabs(w->g[at]) + arm);
+            w->entry = fmax(w->entry, w->e[at]);
             if (fabs(w->g[at]) <= w->e[at]) {
                 w->g[at] = 0.0;
             }
@@ -112,10 +128,16 @@ static void load(work *w, const mt_elimination *e, const double *a, double exten
         w->pivot[i] = -1;
         look(w, i);
     }
+    w->most = w->entry;
+}
+
+static bool is_grown(const work *w)
+{
+    return w->most > GROWN * w->entry;
 }
 
 /* to -= factor * from at the n columns listed. */
-static void subtract(const work *w, int n, double factor, double factor_error, int from, int to)
+static void subtract(work *w, int n, double factor, double factor_error, int from, int to)
 {
     const double *const g = w->g + ((ptrdiff_t)from * w->nq);
     const double *const e = w->e + ((ptrdiff_t)from * w->nq);
@@ -124,10 +146,13 @@ static void subtract(const work *w, int n, double factor, double factor_error, i
     for (int k = 0; k < n; k++) {
         const int j = w->list[k];
         const double part = factor * g[j];
-        et[j] += (fabs(factor) * e[j]) + (factor_error * fabs(g[j])) +
-                 (DBL_EPSILON * (fabs(gt[j]) + fabs(part)));
+        const double rounding = DBL_EPSILON * (fabs(gt[j]) + fabs(part));
+        if (w->carried) {
+            et[j] += (fabs(factor) * e[j]) + (factor_error * fabs(g[j])) + rounding;
+            w->most = fmax(w->most, et[j]);
+        }
         gt[j] -= part;
-        if (fabs(gt[j]) <= et[j]) {
+        if (fabs(gt[j]) <= (w->carried ? et[j] : ENTRY_ULPS * rounding)) {
             gt[j] = 0.0;
         }
     }
@@ -159,11 +184,12 @@ static int next_equation(const work *w)
     return row;
 }
 
-/* Forward elimination; false where an equation has nothing left that is more than rounding. */
+/* Forward elimination; false where an equation has nothing left that is more than rounding, or
+ * errors have grown. */
 static bool eliminate(work *w)
 {
     const ptrdiff_t nq = w->nq;
-    for (int step = 0; step < w->rank; step++) {
+    for (int step = 0; step < w->rank && !is_grown(w); step++) {
         const int row = next_equation(w);
         const int column = w->best[row];
         if (column < 0) {
@@ -195,7 +221,7 @@ static bool eliminate(work *w)
             }
         }
     }
-    return true;
+    return !is_grown(w);
 }
 
 /* Back substitution: each equation in its pivot and free columns alone. */
@@ -252,6 +278,52 @@ static void fill(const work *w, mt_elimination *e, double *error)
     }
 }
 
+/* As fill, from X and what is open of it: an entry within that is 0. */
+static void fill_found(const mt_follow *f, mt_elimination *e, double *error)
+{
+    const ptrdiff_t nq = f->nq;
+    const ptrdiff_t n = f->nq - f->rank;
+    ptrdiff_t row = 0;
+    ptrdiff_t free = 0;
+    for (ptrdiff_t k = 0; k < nq; k++) {
+        for (ptrdiff_t c = 0; c < n; c++) {
+            e->z[k + (c * nq)] = 0.0;
+            error[k + (c * nq)] = 0.0;
+        }
+        if (!f->follows[k]) {
+            e->z[k + (free++ * nq)] = e->dc[k];
+            continue;
+        }
+        for (ptrdiff_t c = 0; c < n; c++) {
+            const double x = f->x[c + (row * n)];
+            const double dx = f->dx[c + (row * n)];
+            e->z[k + (c * nq)] = fabs(x) <= dx ? 0.0 : -x * e->dc[k];
+            error[k + (c * nq)] = dx * e->dc[k];
+        }
+        row++;
+    }
+}
+
+/* Choose again what follows, without errors, and find how; false where that is not known. */
+static mt_status choose_and_find(work *w, const double *a, double extent, mt_arena *mem,
+                                 mt_elimination *e, double *error, bool *found, mt_err *err)
+{
+    mt_follow f = {.rank = w->rank, .nq = w->nq, .g = w->g, .e = w->e, .follows = w->follows};
+    memset(w->follows, 0, (size_t)w->nq * sizeof *w->follows);
+    load(w, e, a, extent);
+    memset(w->e, 0, (size_t)w->rank * (size_t)w->nq * sizeof *w->e);
+    w->carried = false;
+    *found = eliminate(w);
+    if (*found) {
+        load(w, e, a, extent);
+        MT_TRY(mt_follow_find(&f, mem, found, err));
+    }
+    if (*found) {
+        fill_found(&f, e, error);
+    }
+    return MT_OK;
+}
+
 /* The orthonormal basis is known to about nq eps / kept, all its columns alike. */
 static void bound_orthonormal(const mt_elimination *e, double extent, double *error)
 {
@@ -267,15 +339,22 @@ static void bound_orthonormal(const mt_elimination *e, double extent, double *er
 mt_status mt_eliminate_local(const double *a, const double *mass, double extent, mt_arena *mem,
                              mt_elimination *e, double *error, mt_err *err)
 {
-    work w = {.rank = e->qr.rank, .nq = e->nq};
+    work w = {.rank = e->qr.rank, .nq = e->nq, .carried = true};
+    bool found = false;
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     MT_TRY(claim(&w, mem, err));
     weigh(&w, e, mass);
     load(&w, e, a, extent);
     if (eliminate(&w)) {
         substitute(&w);
+        found = !is_grown(&w);
+    }
+    if (found) {
         fill(&w, e, error);
-    } else {
+    } else if (is_grown(&w)) {
+        MT_TRY(choose_and_find(&w, a, extent, mem, e, error, &found, err));
+    }
+    if (!found) {
         MT_TRY(mt_eliminate_basis(e, mem, err));
         bound_orthonormal(e, extent, error);
     }
