@@ -168,15 +168,17 @@ static void add_coupling(const mt_system *sys, const int body[2], mt_cx k,
     }
 }
 
-/* Returns the spring's force. */
-static mt_cx add_spring(const mt_data *d, int i, mt_cx k, mt_cx stretch, const mt_jet *jet,
+/* Returns the spring's force. What the step that is left adds to it (way) would drown in the
+ * stretch of one whose preload all but takes that back. */
+static mt_cx add_spring(const mt_data *d, int i, mt_cx stretch, double way, const mt_jet *jet,
                         mt_curvature curvature, mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
     const mt_spring_def *const s = &sys->springs[i];
     const int *const body = sys->measures[s->measure[0]].body;
     const bool trimmed = i == sys->trim_spring;
-    mt_cx force = cx_mul(k, stretch) + mt_data_scalar(d, s->preload, 0.0);
+    const mt_cx k = mt_data_scalar(d, s->stiffness, 0.0);
+    mt_cx force = cx_mul(k, stretch) + mt_data_scalar(d, s->preload, 0.0) + (way * k);
     if (trimmed) {
         force = cx_make(out->trim_force, out->trim_force_derivative);
         add_gradient(sys, body, jet->g, 1.0, out, out->trim);
@@ -242,15 +244,19 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
             mt_data_eval(d, def, at, curvature != MT_CURVATURE_NONE, &jet[side]);
             way[side] = left_way(out, sys, def->body, &jet[side]);
-            stretch[side] = jet[side].value - d->rest[i][side] + way[side];
+            stretch[side] = jet[side].value - d->rest[i][side];
         }
         const mt_cx k = mt_data_scalar(d, s->stiffness, 0.0);
         note_noise(d, first, at->pose, &jet[0], creal(k), out);
-        mt_cx force[2] = {0.5 * cx_mul(k, stretch[1]), 0.5 * cx_mul(k, stretch[0])};
+        mt_cx force[2] = {0.0, 0.0};
         if (coupling) {
+            stretch[0] += way[0];
+            stretch[1] += way[1];
+            force[0] = 0.5 * cx_mul(k, stretch[1]);
+            force[1] = 0.5 * cx_mul(k, stretch[0]);
             add_coupling(sys, first->body, k, stretch, jet, curvature, out);
         } else {
-            force[0] = add_spring(d, i, k, stretch[0], jet, curvature, out);
+            force[0] = add_spring(d, i, stretch[0], way[0], jet, curvature, out);
         }
         for (int side = 0; side < (coupling ? 2 : 1); side++) {
             note_spring(d, i, side, at->pose, &jet[side], creal(force[side]), out);

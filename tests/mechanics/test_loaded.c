@@ -17,6 +17,8 @@ enum { TEXT = 16000, LINKS = 10 };
 
 /* What is promised of the lowest modes. */
 static const double PROMISED = 1e-9;
+/* Where nothing is lost but last digits. */
+static const double FINE = 1e-13;
 
 static mt_quad_pencil exact;
 
@@ -460,9 +462,37 @@ static void loaded__buckling_load_is_undecided(mt_test *t)
     }
 }
 
+/* A weight on a stiff spring whose preload takes all but the weight back swings at g / L, L its
+ * length there: the force that is left is the weight, not what a rounding of L makes of it. */
+static void loaded__preload_that_all_but_cancels_costs_nothing(mt_test *t)
+{
+    static const double k = 2.86e7;
+    static const double preload = -1.14e6;
+    static const double g = 1.625;
+    for (int i = 0; i < 8; i++) {
+        char text[TEXT];
+        mech s;
+        const double m = 0.03 * (i + 1);
+        (void)snprintf(text, TEXT,
+                       "{\"format\": \"modetune-model/1\", \"dimension\": 2, "
+                       "\"gravity_m_per_s2\": [0, %.17g], \"bodies\": [{\"name\": \"b\", "
+                       "\"mass_kg\": %.17g, \"centre\": [0, -1]}], \"springs\": [{\"name\": "
+                       "\"s\", \"type\": \"axial\", \"bodies\": [\"ground\", \"b\"], \"at\": "
+                       "[[0, 0], [0, -1]], \"stiffness_n_per_m\": %.17g, \"preload_n\": "
+                       "%.17g}]}",
+                       -g, m, k, preload);
+        mt_test_row(t, "%g kg", m);
+        if (mech_must(t, mech_parse(t, text), NULL, "", &s)) {
+            check_mode(t, &s.a->modes, g / (1.0 + (((m * g) - preload) / k)), FINE);
+        }
+        mech_free(&s);
+    }
+}
+
 MT_TEST_MAIN(MT_TEST(loaded__hundred_links_to_forty_digits),
              MT_TEST(loaded__hanging_chain_of_stiff_links_swings),
              MT_TEST(loaded__preloaded_string_elsewhere_costs_a_strip_nothing),
+             MT_TEST(loaded__preload_that_all_but_cancels_costs_nothing),
              MT_TEST(loaded__errors_of_random_chains_hold),
              MT_TEST(loaded__balanced_arms_are_neutral),
              MT_TEST(loaded__arms_out_of_balance_are_not_neutral),
