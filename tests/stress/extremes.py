@@ -4,6 +4,7 @@ import math
 import random
 
 from changes import MEMBERS, OTHERS, UNITS, each, items
+import hanging
 from families import four_bar
 from makers import KINDS, Maker
 
@@ -131,6 +132,9 @@ def star(rng, far):
                  [slide("ground", "hub", [0.0, 0.0])] + [slide("hub", b, [1.0, 0.0]) for b in arms],
                  [axial("w", "ground", "hub", [[-1.0, 0.0], [0.0, 0.0]], decades(rng, 1, 1e6))]
                  + [axial(f"s{i}", "hub", b, [[0.0, 0.0], [1.0, 0.0]], k * (1 + (i // group) * 2.0 ** -6) * (1 + (i % group) * gap)) for i, b in enumerate(arms)])
+
+
+FAMILIES.update({"hanging chains": hanging.chain, "hanging stacks": hanging.stack, "hanging swings": hanging.swing})
 
 
 # geometry ----------------------------------------------------------------------------------------------------------------------------------------------------

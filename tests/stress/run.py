@@ -28,6 +28,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import statics  # noqa: E402
 from exact import binary, cholesky  # noqa: E402
 from extremes import FAMILIES  # noqa: E402
+from hanging import Hanging  # noqa: E402
 from oracle import Oracle, Refused  # noqa: E402
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -101,6 +102,7 @@ class Exact:
         if one.dead_centre:
             raise Refused("dead centre")
         self.one = one
+        self.asked = []
         self.values, self.zero, self.kept = one.values, one.zero, {**one.counts(), "redundant": one.redundant}
         size = _size(model) * STEP
         sign = lambda: rng.choice([1, -1]) * Decimal(rng.uniform(0.5, 1))  # of equal sizes some would cancel
@@ -120,6 +122,9 @@ class Exact:
                 return
         raise Refused("no neighbour")
 
+    def judge(self, row, said):
+        return judge(row, self, said)
+
     def open(self):
         """The worst condition: of an eigenvalue, or of the joints' independence, which says whether there is a dead centre."""
         rows = self.one.frame.chosen
@@ -137,6 +142,10 @@ class Chain:
         self.values = [self._value(i + 1) for i in range(self.MODES)]
         self.zero, self.condition = [False] * self.MODES, [Decimal(1)] * self.MODES
         self.kept = {"freedoms": len(self.m), "rigid": 0, "unstable": 0, "redundant": 0}
+        self.asked = ["--count", str(self.MODES)]
+
+    def judge(self, row, said):
+        return judge(row, self, said)
 
     def open(self):
         return max(self.condition)
@@ -173,7 +182,7 @@ class Star(Chain):
         return count + (hub < 0)
 
 
-COUNTED = {"long chains": Chain, "large trees": Chain, "large stars": Star}
+COUNTED = {"long chains": Chain, "large trees": Chain, "large stars": Star, "hanging chains": Hanging, "hanging stacks": Hanging, "hanging swings": Hanging}
 
 
 # what the program says -------------------------------------------------------------------------------------------------------------------------------------
@@ -241,7 +250,7 @@ def one(row, rng, far, folder):
     except (Refused, ZeroDivisionError) as why:
         row.left_out[str(why)] = row.left_out.get(str(why), 0) + 1
         return
-    done, seconds = ask(folder, model, *(["--count", str(exact.MODES)] if name in COUNTED else []))
+    done, seconds = ask(folder, model, *exact.asked)
     if done.returncode == 3 and any(w in done.stderr for w in ("no equilibrium", "dead centre")) and exact.open() > OPEN:
         row.left_out["refused as undetermined"] = row.left_out.get("refused as undetermined", 0) + 1
         return
@@ -250,7 +259,7 @@ def one(row, rng, far, folder):
     if done.returncode:
         yield "refused", f"exit code {done.returncode}: {done.stderr.strip()[-400:]}"
         return
-    yield from judge(row, exact, json.loads(done.stdout)[0])
+    yield from exact.judge(row, json.loads(done.stdout)[0])
 
 
 def stress(seed, names, indices, rows, seconds=None, far=None, keep=None):
