@@ -278,13 +278,9 @@ static mt_status conduct_part(mt_answer *a, mt_err *err)
     return MT_OK;
 }
 
-static mt_status conduct(mt_answer *a, mt_err *err)
+/* All that follows a search. */
+static mt_status conclude(mt_answer *a, mt_err *err)
 {
-    if (a->whole != NULL && a->whole->ledger != NULL && a->whole->ledger->parts > 0 &&
-        !a->whole->inner) {
-        return conduct_part(a, err);
-    }
-    MT_TRY(phase(a, MT_PHASE_SEARCH, err));
     MT_TRY(phase(a, MT_PHASE_RECOMMENDATIONS, err));
     MT_TRY(phase(a, MT_PHASE_SPREAD, err));
     MT_TRY(phase(a, MT_PHASE_CERTIFICATES, err));
@@ -303,12 +299,57 @@ static mt_status conduct(mt_answer *a, mt_err *err)
     return mt_answer_note_cuts(a, err);
 }
 
+static mt_status early_result(mt_answer *now, mt_err *err)
+{
+    MT_TRY(mt_answer_baseline(now, err));
+    MT_TRY(mt_answer_take_gaps(now, err));
+    now->found.n_solutions = 1;
+    now->mark = mt_result_get_mark(now->result);
+    mt_interrupt_cut(now->interrupt, MT_PHASE_SEARCH);
+    MT_TRY(leave(now, MT_PHASE_SEARCH, err));
+    return conclude(now, err);
+}
+
+mt_status mt_answer_early(void *answer, const mt_gap_result *found, mt_err *err)
+{
+    const mt_answer *const a = answer;
+    mt_interrupt own; /* the whole is not cut by what this leaves out */
+    mt_answer now = *a;
+    mt_interrupt_init(&own, a->interrupt->wish, a->interrupt->context, NULL);
+    now.interrupt = &own;
+    now.mem = (mt_arena){.first = NULL};
+    now.gaps = *found;
+    now.result = NULL;
+    mt_status rc = mt_arena_init(&now.mem, 0, err);
+    rc = rc == MT_OK ? mt_result_new(&now.result, err) : rc;
+    rc = rc == MT_OK ? early_result(&now, err) : rc;
+    if (!mt_interrupted(a->interrupt)) { /* else that brings it about */
+        rc = rc == MT_OK ? a->early->tell(a->early->context, now.result, err) : rc;
+    } else if (!mt_is_final(rc)) {
+        rc = MT_OK;
+    }
+    mt_result_delete(now.result);
+    mt_arena_free(&now.mem);
+    return rc;
+}
+
+static mt_status conduct(mt_answer *a, mt_err *err)
+{
+    if (a->whole != NULL && a->whole->ledger != NULL && a->whole->ledger->parts > 0 &&
+        !a->whole->inner) {
+        return conduct_part(a, err);
+    }
+    MT_TRY(phase(a, MT_PHASE_SEARCH, err));
+    return conclude(a, err);
+}
+
 mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt, const mt_scope *scope,
-                             mt_result **out, mt_err *err)
+                             const mt_early *early, mt_result **out, mt_err *err)
 {
     mt_answer a = {.q = q, .study = &q->study, .p = q->p, .interrupt = &q->interrupt};
     a.threads = opt->threads;
     a.whole = scope;
+    a.early = early;
     *out = NULL;
     mt_status rc = mt_arena_init(&a.mem, 0, err);
     rc = rc == MT_OK ? mt_result_new(&a.result, err) : rc;
@@ -329,11 +370,12 @@ mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt, const 
 mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_result **out,
                          mt_err *err)
 {
-    return mt_study_solve_with(study, opt, NULL, out, err);
+    return mt_study_solve_with(study, opt, NULL, NULL, out, err);
 }
 
 mt_status mt_study_solve_with(const mt_study *study, const mt_solve_options *opt,
-                              mt_ledger *ledger, mt_result **out, mt_err *err)
+                              mt_ledger *ledger, const mt_early *early, mt_result **out,
+                              mt_err *err)
 {
     mt_solve_options use;
     mt_question q = {.p = NULL};
@@ -348,7 +390,7 @@ mt_status mt_study_solve_with(const mt_study *study, const mt_solve_options *opt
     }
     mt_status rc = mt_question_init(&q, study, &use, err);
     const mt_scope whole = {.ledger = ledger, .interrupt = &q.interrupt};
-    rc = rc == MT_OK ? mt_question_answer(&q, &use, &whole, out, err) : rc;
+    rc = rc == MT_OK ? mt_question_answer(&q, &use, &whole, early, out, err) : rc;
     mt_question_free(&q);
     return rc;
 }

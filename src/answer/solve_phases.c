@@ -29,11 +29,10 @@ mt_status mt_answer_baseline(mt_answer *a, mt_err *err)
     return mt_describe_baseline_reasons(p, result, err);
 }
 
-/* The search over gap assignments, its solutions in the form of any other search. */
-static mt_status search_gaps(mt_answer *a, mt_err *err)
+/* Solutions of the search over gap assignments in the form of any other search. */
+mt_status mt_answer_take_gaps(mt_answer *a, mt_err *err)
 {
-    mt_gap_result *const g = &a->gaps;
-    MT_TRY(mt_gaps_solve(a->workers, a->n_workers, &a->mem, g, err));
+    const mt_gap_result *const g = &a->gaps;
     a->found.solutions =
         mt_arena_alloc(&a->mem, (size_t)g->n_solutions, sizeof *a->found.solutions);
     MT_TRY(mt_arena_check(&a->mem, err));
@@ -50,6 +49,14 @@ static mt_status search_gaps(mt_answer *a, mt_err *err)
     a->found.starts = g->starts;
     a->found.stop = g->stop;
     return MT_OK;
+}
+
+static mt_status search_gaps(mt_answer *a, mt_err *err)
+{
+    const mt_gap_early early = {mt_answer_early, a};
+    MT_TRY(mt_gaps_solve(a->workers, a->n_workers, a->early != NULL ? &early : NULL, &a->mem,
+                         &a->gaps, err));
+    return mt_answer_take_gaps(a, err);
 }
 
 mt_status mt_answer_search(mt_answer *a, mt_err *err)

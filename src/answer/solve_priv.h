@@ -2,6 +2,7 @@
 #ifndef ANSWER_SOLVE_PRIV_H
 #define ANSWER_SOLVE_PRIV_H
 
+#include "answer/solve.h"
 #include "base/workers.h"
 #include "search/discrete.h"
 #include "search/gaps.h"
@@ -45,7 +46,7 @@ mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_solve
 void mt_question_free(mt_question *q);
 /* mt_study_solve of what was compiled, in its place (NULL: nowhere). */
 mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt, const mt_scope *scope,
-                             mt_result **out, mt_err *err);
+                             const mt_early *early, mt_result **out, mt_err *err);
 
 /* One answer to it. */
 typedef struct mt_answer {
@@ -55,6 +56,7 @@ typedef struct mt_answer {
     mt_interrupt *interrupt;
     mt_result_mark mark; /* of the result: what is complete */
     int threads;
+    const mt_early *early;  /* NULL: nobody asks */
     const mt_scope *whole;  /* its place in the work, or NULL */
     mt_scope scope;         /* that of the present phase */
     mt_case asked;          /* the whole of it; with the caller's design to start from */
@@ -76,6 +78,12 @@ typedef struct mt_answer {
 #define MT_PHASE_DECLARE(id, name, makes_ready, work) mt_status work(mt_answer *a, mt_err *err);
 MT_PHASE_LIST(MT_PHASE_DECLARE)
 #undef MT_PHASE_DECLARE
+
+/* Result.found of result.gaps. */
+mt_status mt_answer_take_gaps(mt_answer *a, mt_err *err);
+/* What is known before a long proof, a mt_gap_result, as the answer that an interrupt would
+ * leave: for a->early. Of its designs the best. */
+mt_status mt_answer_early(void *answer, const mt_gap_result *found, mt_err *err);
 
 /* solve_status.c: warnings about the search, then status and its sentence. */
 mt_status mt_answer_warn(const mt_answer *a, mt_err *err);

@@ -102,7 +102,7 @@ static mt_status answer(point *p, const double *hint, const mt_scope *own, mt_re
                         mt_err *err)
 {
     const mt_solve_options opt = {.size = sizeof opt, .threads = 1, .hint = hint};
-    return mt_question_answer(p->q, &opt, own, out, err);
+    return mt_question_answer(p->q, &opt, own, NULL, out, err);
 }
 
 static mt_status solve_cold(void *context, int worker, int task, mt_scope *own, mt_err *err)

@@ -19,6 +19,7 @@ typedef struct job {
     const char *path;
     mt_study *study;
     mt_result *result;
+    double start;
     double seconds;
     mt_profile counts; /* --profile */
     mt_profile *profile;
@@ -34,6 +35,17 @@ static void progress(void *context, const char *text)
 {
     const mt_args *const args = context;
     mt_terminal_progress(args->given[MT_OPT_QUIET], text);
+}
+
+/* A design is safe before a long proof begins. What cannot be written is said, and again where
+ * the whole answer cannot be. */
+static mt_status keep(void *context, mt_result *so_far, mt_err *err)
+{
+    const job *const j = context;
+    char sha256[MT_SHA256_TEXT] = "";
+    (void)err;
+    (void)mt_save(j->args, j->path, so_far, mt_terminal_seconds() - j->start, sha256);
+    return MT_OK;
 }
 
 /* Load and solve; everything that went wrong is said. */
@@ -69,13 +81,15 @@ static int answer(job *j)
         }
         ledger = mt_journal_ledger(j->journal, j->args->part, j->args->parts);
     }
-    const double start = mt_terminal_seconds();
+    const mt_early early = {keep, j};
+    const bool kept = j->args->command != MT_CMD_COMPARE && j->args->part == 0;
+    j->start = mt_terminal_seconds();
     if (j->stops) {
         mt_terminal_hold_signals();
         mt_terminal_limit(j->args->time_s);
     }
-    rc = mt_study_solve_with(j->study, &opt, ledger, &j->result, &j->err);
-    j->seconds = mt_terminal_seconds() - start;
+    rc = mt_study_solve_with(j->study, &opt, ledger, kept ? &early : NULL, &j->result, &j->err);
+    j->seconds = mt_terminal_seconds() - j->start;
     j->stopped = mt_terminal_wish(NULL) != MT_WISH_NONE;
     mt_terminal_limit(0.0);
     mt_terminal_progress(j->args->given[MT_OPT_QUIET], NULL);

@@ -120,7 +120,9 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "whose results would go into one folder, be it by a link or where capital letters are "
         "not told apart, are refused before anything is run. The worst exit status counts.\n"
         "An interrupt (Ctrl-C) ends the search; the best design so far is written, and which "
-        "parts of the answer are missing. A second one ends the program.\n"
+        "parts of the answer are missing. A second one ends the program. Before a proof that "
+        "may "
+        "take long the best design so far is written likewise.\n"
         "While it works, a run appends what it knows to DIR/<study file name without "
         ".json>.journal, which goes when the answer is complete; after an interrupt or a kill "
         "--resume goes on from it."),

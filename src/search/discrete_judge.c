@@ -248,7 +248,7 @@ static mt_status search_closed(mt_workspace *w, mt_arena *mem, mt_combination *c
     mt_err why = {0};
     int stage = 0;
     const bool bands = w->p->n_clears > 0;
-    MT_TRY(bands ? mt_gaps_solve(&w, 1, mem, &gaps, err)
+    MT_TRY(bands ? mt_gaps_solve(&w, 1, NULL, mem, &gaps, err)
                  : mt_search_over_tolerances(&w, 1, mem, &plain, &stage, &why, err));
     const int n = bands ? gaps.n_solutions : plain.n_solutions;
     c->evals = bands ? gaps.evals : plain.evals;
@@ -285,7 +285,7 @@ mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_are
     closed.hint = NULL;
     const bool bands = d->p->n_clears > 0;
     if (rc == MT_OK) {
-        rc = bands ? mt_gaps_solve(&w, 1, mem, &gaps, err)
+        rc = bands ? mt_gaps_solve(&w, 1, NULL, mem, &gaps, err)
                    : mt_search_over_tolerances(&w, 1, mem, out, &stage, &why, err);
     }
     if (bands) {

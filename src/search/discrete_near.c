@@ -163,7 +163,7 @@ static mt_status round_relaxed(walk *w, mt_err *err)
     mt_err why = {0};
     int stage = 0;
     MT_TRY(
-        bands ? mt_gaps_solve(d->workers, d->n_workers, d->mem, &gaps, err)
+        bands ? mt_gaps_solve(d->workers, d->n_workers, NULL, d->mem, &gaps, err)
               : mt_search_designs(d->workers, d->n_workers, d->mem, &plain, &stage, &why, err));
     const int found = bands ? gaps.n_solutions : plain.n_solutions;
     const int n = found < RELAXED_MOST ? found : RELAXED_MOST;

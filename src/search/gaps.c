@@ -332,40 +332,6 @@ static void rank(mt_gap_result *r)
     }
 }
 
-/* Solutions outlive the slots: copy what is kept. */
-static mt_status copy_solution(const mt_case *c, const int *below, const mt_nlp_solution *from,
-                               mt_arena *mem, const mt_nlp_solution **out, mt_err *err)
-{
-    const mt_problem *const p = c->p;
-    const size_t n_eq = (size_t)p->n_eq;
-    const size_t n_in = (size_t)c->n_in + (size_t)mt_clear_row_count(c, below);
-    const size_t n = (size_t)p->n + 1;
-    mt_nlp_solution *const s = mt_arena_alloc(mem, 1, sizeof *s);
-    double *const t = mt_arena_f64(mem, n, 1);
-    int *const bound = mt_arena_int(mem, n);
-    double *const mult = mt_arena_f64(mem, n, 1);
-    double *const mult_eq = mt_arena_f64(mem, n_eq, 1);
-    double *const mult_in = mt_arena_f64(mem, n_in, 1);
-    MT_TRY(mt_arena_check(mem, err));
-    memcpy(t, from->t, (size_t)p->n * sizeof *t);
-    memcpy(bound, from->bound, (size_t)p->n * sizeof *bound);
-    memcpy(mult, from->mult_bound, (size_t)p->n * sizeof *mult);
-    if (n_eq > 0) {
-        memcpy(mult_eq, from->mult_eq, n_eq * sizeof *mult_eq);
-    }
-    if (n_in > 0) {
-        memcpy(mult_in, from->mult_in, n_in * sizeof *mult_in);
-    }
-    *s = *from;
-    s->t = t;
-    s->bound = bound;
-    s->mult_bound = mult;
-    s->mult_eq = mult_eq;
-    s->mult_in = mult_in;
-    *out = s;
-    return MT_OK;
-}
-
 /* Of the best solution's search; without the coordinate for the clearance, which no goal leaves
  * free. */
 static mt_status keep_undetermined(const mt_problem *p, const slot *s, mt_arena *mem,
@@ -393,8 +359,8 @@ static mt_status collect(const mt_problem *p, const job *j, mt_arena *mem, mt_ga
         MT_TRY(keep_undetermined(p, &j->slots[out->solutions[0].candidate], mem, out, err));
     }
     for (int i = 0; i < out->n_solutions; i++) {
-        MT_TRY(copy_solution(j->c, out->solutions[i].below, out->solutions[i].found, mem,
-                             &out->solutions[i].found, err));
+        MT_TRY(mt_gap_copy(j->c, out->solutions[i].below, out->solutions[i].found, mem,
+                           &out->solutions[i].found, err));
         out->solutions[i].aims = NULL; /* the slots' memory goes */
         out->stage = out->solutions[i].n_aims > 0 ? j->c->n_aims - 1 : 0;
     }
@@ -506,10 +472,31 @@ static mt_status search_rest(const job *first, job *j, long spent, int n_workers
     return MT_OK;
 }
 
+/* What was found before the proof, for who asks for it. */
+static mt_status tell_early(const job *first, const mt_gap_early *early, mt_arena *mem,
+                            const mt_gap_result *out, mt_err *err)
+{
+    mt_gap_result now = *out;
+    bool met = false;
+    for (int k = 0; early != NULL && k < first->candidates->n; k++) {
+        met = met || is_met(&first->slots[k]);
+    }
+    if (!met || mt_interrupted(first->p->study->model->interrupt)) {
+        return MT_OK;
+    }
+    now.n_candidates = first->candidates->n;
+    now.n_possible = first->candidates->possible;
+    now.reason = "not begun";
+    now.evals = first->candidates->evals;
+    MT_TRY(collect(first->p, first, mem, &now, err));
+    return early->tell(early->context, &now, err);
+}
+
 /* Designs before proofs: what little work meets is searched, then the proof says what else
  * there is to search. */
-static mt_status search_and_prove(job *first, job *j, int n_workers, mt_proof *proof,
-                                  mt_arena *mem, mt_gap_result *out, mt_err *err)
+static mt_status search_and_prove(job *first, job *j, int n_workers, const mt_gap_early *early,
+                                  mt_proof *proof, mt_arena *mem, mt_gap_result *out,
+                                  mt_err *err)
 {
     mt_workspace *const w = j->workers[0];
     mt_gap_candidates *const begin = mt_arena_alloc(mem, 1, sizeof *begin);
@@ -526,6 +513,7 @@ static mt_status search_and_prove(job *first, job *j, int n_workers, mt_proof *p
     }
     /* what they were given, not what they took: parts of a run agree on the rest */
     const long spent = begin->evals + (first->options.max_evals * begin->n);
+    MT_TRY(all->proven ? MT_OK : tell_early(first, early, mem, out, err));
     if (!all->proven && mt_interrupted(j->p->study->model->interrupt)) {
         *all = *begin;
         all->evals = 0; /* counted with the first */
@@ -545,8 +533,8 @@ static mt_status search_and_prove(job *first, job *j, int n_workers, mt_proof *p
     return search_rest(first, j, spent, n_workers, mem, out, err);
 }
 
-mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, mt_arena *mem,
-                        mt_gap_result *out, mt_err *err)
+mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, const mt_gap_early *early,
+                        mt_arena *mem, mt_gap_result *out, mt_err *err)
 {
     mt_workspace *const w = workers[0];
     const mt_case *const c = w->c;
@@ -576,7 +564,8 @@ mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, mt_arena *m
     }
     job first = j;
     mt_status rc = mt_proof_init(&proof, c, mem, err);
-    rc = rc == MT_OK ? search_and_prove(&first, &j, n_workers, &proof, mem, out, err) : rc;
+    rc = rc == MT_OK ? search_and_prove(&first, &j, n_workers, early, &proof, mem, out, err)
+                     : rc;
     free_slots(&first);
     free_slots(&j);
     mt_proof_free(&proof);

@@ -50,10 +50,21 @@ typedef struct mt_gap_result {
     mt_stop stop;
 } mt_gap_result;
 
+/* Is called before a long proof or many samples, with what was found before them, if that meets
+ * all goals; what it finds is of that moment. */
+typedef struct mt_gap_early {
+    mt_status (*tell)(void *context, const mt_gap_result *found, mt_err *err);
+    void *context;
+} mt_gap_early;
 /* workers[n_workers], set to one case without an assignment, and set to it again afterwards.
- * Results in mem. */
-mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, mt_arena *mem,
-                        mt_gap_result *out, mt_err *err);
+ * early may be NULL. Results in mem. Fails also: as early->tell. */
+mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, const mt_gap_early *early,
+                        mt_arena *mem, mt_gap_result *out, mt_err *err);
+
+/* gaps_copy.c: a copy in mem of a solution of assignment below[n_bands]: its search's memory
+ * goes. Fails: MT_E_MEMORY. */
+mt_status mt_gap_copy(const mt_case *c, const int *below, const mt_nlp_solution *from,
+                      mt_arena *mem, const mt_nlp_solution **out, mt_err *err);
 
 enum { MT_GAP_SAMPLES_NEAR = 512 };
 /* gaps_candidates.c: the assignments worth searching, n rows of n_bands. */

@@ -113,6 +113,25 @@ class Journal(CliTest):
             self.assertFalse(self.journal(name, "killed").exists())
             (self.folder / "killed" / name / "result.json").unlink()
 
+    def test_design_is_safe_before_a_long_proof(self):
+        asked = {"variables": variables(8), "goals": [AVOID], "search": {"starts": 2}}
+        self.write("studies/long.json", json.dumps({"format": "modetune-study/1", "model": "../problems/chain.json", **asked}))
+        self.run_study("long", "whole")
+        early = self.folder / "killed" / "long" / "result.json"
+        run = subprocess.Popen([PROGRAM, "run", "studies/long.json", "-o", "killed"], cwd=self.folder,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while run.poll() is None and not early.exists():
+            time.sleep(0.001)
+        run.kill()
+        self.assertEqual(run.wait(), -9, "there was no result before the end")
+        said = json.loads(early.read_bytes())
+        self.assertEqual(said["status"], "interrupted")
+        self.assertEqual(said["run"]["incomplete"][0], "search")
+        self.assertEqual(len(said["recommendations"]), 1)
+        self.assertTrue(all(goal["met"] for goal in said["recommendations"][0]["goals"]))
+        self.run_study("long", "killed", "--resume")
+        self.assertEqual(self.result("long", "whole"), self.result("long", "killed"))
+
     def test_cut_behind_every_line(self):
         """What a kill leaves, without a clock: a journal of so many lines, and half of the next one."""
         for name in STUDIES:

@@ -74,7 +74,7 @@ static void solve(mt_test *t, row *s, int workers, double work, mt_gap_result *o
     for (int i = 0; i < workers; i++) {
         CHECK_INT(t, mt_workspace_use(s->workers[i], c, &s->c.err), MT_OK);
     }
-    CHECK_INT(t, mt_gaps_solve(s->workers, workers, &s->mem, out, &s->c.err), MT_OK);
+    CHECK_INT(t, mt_gaps_solve(s->workers, workers, NULL, &s->mem, out, &s->c.err), MT_OK);
 }
 
 static const mt_gap_solution *kind_of(const mt_gap_result *g, const int *below)

@@ -31,7 +31,7 @@ static void solve(mt_test *t, const char *bands, double work, long evaluations,
         few.search.max_evaluations = evaluations;
         CHECK_INT(t, mt_workspace_new(p, &w, &c.err), MT_OK);
         CHECK_INT(t, mt_workspace_use(w, &few, &c.err), MT_OK);
-        CHECK_INT(t, mt_gaps_solve(&w, 1, &mem, out, &c.err), MT_OK);
+        CHECK_INT(t, mt_gaps_solve(&w, 1, NULL, &mem, out, &c.err), MT_OK);
         CHECK(t, out->boxes > 0);
     }
     out->solutions = NULL; /* the arena goes */
