@@ -10,6 +10,7 @@ void mt_profile_init(mt_profile *p, double (*clock_s)(void))
     p->clock_s = clock_s;
     for (int i = 0; i < MT_STAGES; i++) {
         atomic_init(&p->done[i], 0);
+        atomic_init(&p->shared[i], 0);
         atomic_init(&p->skipped[i], 0);
         atomic_init(&p->nanoseconds[i], 0);
     }
@@ -19,6 +20,7 @@ void mt_profile_add(mt_profile *p, const mt_stage_counts *counts)
 {
     for (int i = 0; i < MT_STAGES && p != NULL; i++) {
         (void)atomic_fetch_add(&p->done[i], counts->done[i]);
+        (void)atomic_fetch_add(&p->shared[i], counts->shared[i]);
         (void)atomic_fetch_add(&p->skipped[i], counts->skipped[i]);
         (void)atomic_fetch_add(&p->nanoseconds[i],
                                (long long)(NANOSECONDS * counts->seconds[i]));

@@ -25,6 +25,7 @@ typedef enum mt_stage_id { MT_STAGE_LIST(MT_STAGE_ID) MT_STAGES } mt_stage_id;
 /* What one evaluator did. */
 typedef struct mt_stage_counts {
     long done[MT_STAGES];
+    long shared[MT_STAGES]; /* taken from another evaluator of the same worker */
     long skipped[MT_STAGES];
     double seconds[MT_STAGES]; /* where somebody has a clock */
 } mt_stage_counts;
@@ -33,6 +34,7 @@ typedef struct mt_stage_counts {
 typedef struct mt_profile {
     double (*clock_s)(void); /* CPU time of the thread [s] */
     atomic_long done[MT_STAGES];
+    atomic_long shared[MT_STAGES];
     atomic_long skipped[MT_STAGES];
     atomic_llong nanoseconds[MT_STAGES];
 } mt_profile;

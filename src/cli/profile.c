@@ -29,12 +29,14 @@ int mt_cli_profile_print(mt_profile *p)
     int code = MT_EXIT_DONE;
     mt_table_column(&t, "stage", "stage", MT_ALIGN_LEFT);
     mt_table_column(&t, "done", "done", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "shared", "shared", MT_ALIGN_RIGHT);
     mt_table_column(&t, "skipped", "skipped", MT_ALIGN_RIGHT);
     mt_table_column(&t, "time [s]", "time_s", MT_ALIGN_POINT);
     mt_table_column(&t, "what it is", "what", MT_ALIGN_LEFT);
     for (int i = 0; i < MT_STAGES; i++) {
         mt_table_text(&t, mt_stage_name((mt_stage_id)i));
         mt_table_integer(&t, atomic_load(&p->done[i]));
+        mt_table_integer(&t, atomic_load(&p->shared[i]));
         mt_table_integer(&t, atomic_load(&p->skipped[i]));
         mt_table_number(&t, NANOSECOND * (double)atomic_load(&p->nanoseconds[i]), DIGITS);
         mt_table_text(&t, mt_stage_text((mt_stage_id)i));

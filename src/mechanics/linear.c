@@ -18,7 +18,7 @@ void mt_linear_delete(mt_linear *lin)
     if (lin != NULL) {
         mt_arena_free(&lin->scratch);
         mt_arena_free(&lin->reduced_mem);
-        mt_arena_free(&lin->place);
+        mt_geometry_leave(lin);
         mt_arena_free(&lin->base);
         mt_profile_add(lin->stages.profile, &lin->stages.counts);
         free(lin);
@@ -30,7 +30,7 @@ static mt_status init(mt_linear *lin, const mt_system *sys, mt_err *err)
     const size_t count = (size_t)sys->program.count;
     lin->sys = sys;
     MT_TRY(mt_arena_init(&lin->base, 0, err));
-    MT_TRY(mt_arena_init(&lin->place, 0, err));
+    MT_TRY(mt_geometry_open(lin, err));
     MT_TRY(mt_arena_init(&lin->reduced_mem, 0, err));
     MT_TRY(mt_arena_init(&lin->scratch, 0, err));
     lin->value = mt_arena_f64(&lin->base, count, 1);
@@ -74,18 +74,19 @@ static mt_status evaluate_rows(mt_linear *lin, mt_err *err)
     for (int kind = 0; kind < MT_TERM_KINDS; kind++) {
         const mt_term_list *const list = &lin->list[kind];
         const size_t size = (size_t)list->n_rows * MT_LOCAL;
-        lin->rows[kind] = mt_arena_f64(&lin->place, size, 1);
+        lin->rows[kind] = mt_arena_f64(&lin->geometry->mem, size, 1);
         const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
         mt_cx *const rows = mt_arena_alloc(&lin->scratch, size, sizeof *rows);
-        MT_TRY(mt_arena_check(&lin->place, err));
+        MT_TRY(mt_arena_check(&lin->geometry->mem, err));
         MT_TRY(mt_arena_check(&lin->scratch, err));
         mt_rows_eval(&lin->data, (mt_term_kind)kind, list, lin->position.at.pose, rows);
         for (size_t i = 0; i < size; i++) {
             lin->rows[kind][i] = creal(rows[i]);
         }
         mt_arena_rewind(&lin->scratch, mark);
-        mt_rows_over_states(lin->sys, list, lin->rows[kind], &lin->place, &lin->full[kind]);
-        MT_TRY(mt_arena_check(&lin->place, err));
+        mt_rows_over_states(lin->sys, list, lin->rows[kind], &lin->geometry->mem,
+                            &lin->full[kind]);
+        MT_TRY(mt_arena_check(&lin->geometry->mem, err));
     }
     return MT_OK;
 }
@@ -108,15 +109,15 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     lin->m = sys->trim ? all - 1 : all;
     MT_TRY(mt_lagrangian_init(&l, sys, loaded, &lin->scratch, err));
     mt_cx *const lambda = mt_arena_alloc(&lin->scratch, (size_t)all, sizeof *lambda);
-    lin->a = mt_arena_f64(&lin->place, (size_t)lin->m, (size_t)nq);
+    lin->a = mt_arena_f64(&lin->geometry->mem, (size_t)lin->m, (size_t)nq);
     MT_TRY(mt_arena_check(&lin->scratch, err));
-    MT_TRY(mt_arena_check(&lin->place, err));
+    MT_TRY(mt_arena_check(&lin->geometry->mem, err));
     for (int i = 0; i < all && loaded; i++) {
         lambda[i] = lin->position.equilibrium.lambda[i] + left->lambda[i];
     }
     l.trim_force = lin->position.equilibrium.trim_force + left->trim;
     if (loaded) {
-        MT_TRY(mt_lagrangian_want_terms(&l, sys, &lin->place, err));
+        MT_TRY(mt_lagrangian_want_terms(&l, sys, &lin->geometry->mem, err));
         l.left = left->q;
         l.rest = lin->position.reference.pose;
     }
@@ -138,12 +139,12 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     lin->push = l.push;
     lin->n_pieces = l.n_pieces;
     if (loaded && !lin->unstressed) {
-        lin->kg = mt_arena_f64(&lin->place, (size_t)nq, (size_t)nq);
-        MT_TRY(mt_arena_check(&lin->place, err));
+        lin->kg = mt_arena_f64(&lin->geometry->mem, (size_t)nq, (size_t)nq);
+        MT_TRY(mt_arena_check(&lin->geometry->mem, err));
         memcpy(lin->kg, l.h, (size_t)(nq * nq) * sizeof *lin->kg);
     }
     mt_arena_rewind(&lin->scratch, mark);
-    MT_TRY(mt_eliminate_factor(sys, lin->m, lin->a, &lin->place, &lin->e, err));
+    MT_TRY(mt_eliminate_factor(sys, lin->m, lin->a, &lin->geometry->mem, &lin->e, err));
     return mt_singular_refuse(&lin->data, &lin->position.at, &lin->e, &lin->scratch, err);
 }
 
@@ -292,15 +293,12 @@ static void assemble_stiffness(mt_linear *lin)
 
 static mt_status place(mt_linear *lin, mt_err *err)
 {
-    lin->tangent = NULL;
-    lin->stages.valid[MT_STAGE_TANGENT] = false;
-    lin->stages.valid[MT_STAGE_REDUCTION] = false;
-    mt_arena_clear(&lin->place);
+    mt_geometry_renew(lin);
     mt_arena_clear(&lin->scratch); /* of what a failure left */
     mt_data_vecs(&lin->data);
     MT_TRY(mt_position_solve(lin->sys, &lin->data,
-                             lin->follow && lin->has_last ? &lin->last : NULL, &lin->place,
-                             &lin->position, err));
+                             lin->follow && lin->has_last ? &lin->last : NULL,
+                             &lin->geometry->mem, &lin->position, err));
     MT_TRY(constrain(lin, err));
     if (lin->sys->driven) { /* not from a dead centre: which way led on would be open */
         mt_placement_copy(lin->sys, &lin->position.driven, &lin->last);
@@ -308,7 +306,6 @@ static mt_status place(mt_linear *lin, mt_err *err)
     }
     MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
     MT_TRY(evaluate_rows(lin, err));
-    lin->before_tangent = mt_arena_get_mark(&lin->place);
     return mt_interrupt_check(lin->sys->model->interrupt, err);
 }
 
@@ -373,6 +370,26 @@ static const uint64_t *moves_with(const mt_linear *lin)
     return forced ? lin->stages.loaded : sys->shape;
 }
 
+static mt_status run_geometry(mt_linear *lin, const double *inputs, mt_err *err)
+{
+    mt_stages *const st = &lin->stages;
+    const uint64_t *const moves = moves_with(lin);
+    if (!mt_stages_begin(st, MT_STAGE_GEOMETRY, moves, inputs)) {
+        return MT_OK;
+    }
+    lin->tangent = NULL;
+    st->valid[MT_STAGE_TANGENT] = false;
+    st->valid[MT_STAGE_REDUCTION] = false;
+    if (mt_geometry_take(lin, moves, inputs)) {
+        mt_stages_shared(st, MT_STAGE_GEOMETRY, inputs);
+        return MT_OK;
+    }
+    MT_TRY(place(lin, err));
+    mt_geometry_made(lin, inputs);
+    mt_stages_done(st, MT_STAGE_GEOMETRY, inputs);
+    return MT_OK;
+}
+
 /* Besides the geometry: pivots of a basis that has to be made again are chosen by the
  * masses. */
 static const uint64_t *reduces_with(const mt_linear *lin)
@@ -389,9 +406,17 @@ static mt_status run_tangent(mt_linear *lin, const double *inputs, mt_err *err)
         lin->tangent = NULL;
         return MT_OK;
     }
+    mt_geometry *const g = lin->geometry;
     if (mt_stages_begin(st, MT_STAGE_TANGENT, moves, inputs)) {
-        mt_arena_rewind(&lin->place, lin->before_tangent);
+        if (g->sloped && lin->pool->n > 1) {
+            lin->tangent = g->tangent;
+            mt_stages_shared(st, MT_STAGE_TANGENT, inputs);
+            return MT_OK;
+        }
+        mt_arena_rewind(&g->mem, g->before_tangent);
         MT_TRY(mt_tangent_update(lin, moves, err));
+        g->tangent = lin->tangent;
+        g->sloped = true;
         mt_stages_done(st, MT_STAGE_TANGENT, inputs);
     }
     return MT_OK;
@@ -403,10 +428,7 @@ mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradi
     mt_stages *const st = &lin->stages;
     MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
     MT_TRY(run_program(lin, inputs, with_gradient, err));
-    if (mt_stages_begin(st, MT_STAGE_GEOMETRY, moves_with(lin), inputs)) {
-        MT_TRY(place(lin, err));
-        mt_stages_done(st, MT_STAGE_GEOMETRY, inputs);
-    }
+    MT_TRY(run_geometry(lin, inputs, err));
     if (mt_stages_begin(st, MT_STAGE_REDUCTION, reduces_with(lin), inputs)) {
         MT_TRY(reduce(lin, err));
         mt_stages_done(st, MT_STAGE_REDUCTION, inputs);
@@ -435,6 +457,7 @@ void mt_linear_follow(mt_linear *lin, bool on)
 
 void mt_linear_first_input(mt_linear *lin, int first)
 {
+    assert(lin->pool->n == 1);
     lin->first_input = first;
     lin->stages.valid[MT_STAGE_TANGENT] = false;
 }

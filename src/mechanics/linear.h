@@ -30,8 +30,15 @@ mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradi
  * position: for sweeps. The first update after this call begins at the reference position; so
  * do all of them after `on` false. */
 void mt_linear_follow(mt_linear *lin, bool on);
-/* Derivatives will be asked for from this input on alone; 0: of all of them. */
+/* Derivatives will be asked for from this input on alone; 0: of all of them. Not of a system
+ * that shares. */
 void mt_linear_first_input(mt_linear *lin, int first);
+
+/* From now on lin, which shares with none yet, and `with`, of the same worker, make the stages
+ * geometry and tangent once for designs that both are updated at: what an update leaves is the
+ * same to the bit. *shared false: they are not of one shape (mt_system_same_shape), or loaded,
+ * driven, or none of their inputs moves it. Either may be deleted first. Fails: MT_E_MEMORY. */
+mt_status mt_linear_share(mt_linear *lin, mt_linear *with, bool *shared, mt_err *err);
 
 /* What an update left, read-only and until the next one. */
 const mt_system *mt_linear_system(const mt_linear *lin);

@@ -3,22 +3,21 @@
 #define MECHANICS_LINEAR_PRIV_H
 
 #include "mechanics/couplings.h"
+#include "mechanics/geometry.h"
 #include "mechanics/linear.h"
 
 /* What the files of this room share of a linearised system. */
 
-typedef struct mt_linear_tangent mt_linear_tangent;
-
 struct mt_linear {
     const mt_system *sys;
-    mt_arena base;        /* lives as long as this */
-    mt_arena place;       /* of the stage geometry and of the tangents on top of it */
-    mt_arena reduced_mem; /* of the stage reduction and of the matrices */
+    mt_arena base;         /* lives as long as this */
+    mt_geometries *pool;   /* those of the systems that share; owned by all of these */
+    mt_geometry *geometry; /* of the stage geometry and of the tangents on top of it */
+    mt_arena reduced_mem;  /* of the stage reduction and of the matrices */
     mt_arena scratch;
     mt_stages stages;
-    mt_arena_mark before_tangent; /* in place */
-    double *value;                /* [program.count] */
-    double *grad; /* [program.count x n_inputs], after an update with gradients */
+    double *value; /* [program.count] */
+    double *grad;  /* [program.count x n_inputs], after an update with gradients */
     mt_term_list list[MT_TERM_KINDS];
     mt_coupling *coupling; /* of the terms of K (couplings.h) */
     bool *squared; /* of the terms of K: their spring with couplings is a sum of squares */

@@ -68,11 +68,11 @@ static uint64_t bits_of(double x)
     return bits;
 }
 
-static bool is_same(const mt_stages *s, mt_stage_id stage, const uint64_t *set,
+bool mt_stages_same(const mt_stages *s, const uint64_t *set, const double *at,
                     const double *inputs)
 {
     for (int i = 0; i < s->n_inputs; i++) {
-        if (mt_stages_has(set, i) && bits_of(s->at[stage][i]) != bits_of(inputs[i])) {
+        if (mt_stages_has(set, i) && bits_of(at[i]) != bits_of(inputs[i])) {
             return false;
         }
     }
@@ -81,7 +81,7 @@ static bool is_same(const mt_stages *s, mt_stage_id stage, const uint64_t *set,
 
 bool mt_stages_begin(mt_stages *s, mt_stage_id stage, const uint64_t *set, const double *inputs)
 {
-    if (s->valid[stage] && is_same(s, stage, set, inputs)) {
+    if (s->valid[stage] && mt_stages_same(s, set, s->at[stage], inputs)) {
         s->counts.skipped[stage]++;
         return false;
     }
@@ -90,12 +90,23 @@ bool mt_stages_begin(mt_stages *s, mt_stage_id stage, const uint64_t *set, const
     return true;
 }
 
-void mt_stages_done(mt_stages *s, mt_stage_id stage, const double *inputs)
+static void note(mt_stages *s, mt_stage_id stage, const double *inputs)
 {
     for (int i = 0; i < s->n_inputs; i++) {
         s->at[stage][i] = inputs[i];
     }
     s->valid[stage] = true;
+}
+
+void mt_stages_shared(mt_stages *s, mt_stage_id stage, const double *inputs)
+{
+    note(s, stage, inputs);
+    s->counts.shared[stage]++;
+}
+
+void mt_stages_done(mt_stages *s, mt_stage_id stage, const double *inputs)
+{
+    note(s, stage, inputs);
     s->counts.done[stage]++;
     s->counts.seconds[stage] += mt_profile_now(s->profile) - s->started_s;
 }

@@ -34,6 +34,11 @@ void mt_stages_init(mt_stages *s, const mt_system *sys, const mt_term_list *list
 bool mt_stages_begin(mt_stages *s, mt_stage_id stage, const uint64_t *set,
                      const double *inputs);
 void mt_stages_done(mt_stages *s, mt_stage_id stage, const double *inputs);
+/* Instead of done: what it would make was taken from another system. */
+void mt_stages_shared(mt_stages *s, mt_stage_id stage, const double *inputs);
+/* Have the inputs of the set the same bits? */
+bool mt_stages_same(const mt_stages *s, const uint64_t *set, const double *at,
+                    const double *inputs);
 bool mt_stages_has(const uint64_t *set, int input);
 /* Is nothing in the set? */
 bool mt_stages_empty(const mt_stages *s, const uint64_t *set);

@@ -223,6 +223,13 @@ void mt_system_delete(mt_system *sys);
  */
 mt_status mt_system_same_drive(const mt_system *a, const mt_system *b, bool *same, mt_err *err);
 
+/*
+ * Do two configurations of one model have the same geometry at every design, and rows of K, C,
+ * M and the sensors in the same places? As above, but for the coefficients of springs, dampers
+ * and inertias, preload and free lengths; without drive and loads. Fails: MT_E_MEMORY.
+ */
+mt_status mt_system_same_shape(const mt_system *a, const mt_system *b, bool *same, mt_err *err);
+
 /* Do the numbers of the beams' strains shape the stiffness of the unloaded system? Straight,
  * without force, a beam's strains change with none of them. */
 bool mt_system_beams_shape(const mt_system *sys);

@@ -112,30 +112,48 @@ static bool same_constraints(pair *p)
     return true;
 }
 
-static bool same_springs(pair *p)
+/* sizes: with their numbers, not only where they act. */
+static bool same_springs(pair *p, bool sizes)
 {
     for (int i = 0; i < p->a->n_springs; i++) {
         const mt_spring_def *const x = &p->a->springs[i];
         const mt_spring_def *const y = &p->b->springs[i];
         if (strcmp(x->name, y->name) != 0 || x->damper != y->damper ||
-            !same_ints(2, x->measure, y->measure) ||
-            !same_node(p, x->stiffness, y->stiffness) || !same_node(p, x->free, y->free) ||
-            !same_node(p, x->preload, y->preload)) {
+            !same_ints(2, x->measure, y->measure)) {
+            return false;
+        }
+        if (sizes &&
+            (!same_node(p, x->stiffness, y->stiffness) || !same_node(p, x->free, y->free) ||
+             !same_node(p, x->preload, y->preload))) {
             return false;
         }
     }
     return true;
 }
 
-static bool same_inertias(pair *p)
+static bool same_inertias(pair *p, bool sizes)
 {
     for (int i = 0; i < p->a->n_inertias; i++) {
         const mt_inertia_def *const x = &p->a->inertias[i];
         const mt_inertia_def *const y = &p->b->inertias[i];
         if (x->kind != y->kind || x->bending != y->bending || !same_ints(2, x->body, y->body) ||
             !same_ints(2, x->point, y->point) || !same_ints(3, x->dir, y->dir) ||
-            !same_node(p, x->coefficient, y->coefficient) ||
+            (sizes && !same_node(p, x->coefficient, y->coefficient)) ||
             !same_nodes(p, 2, x->shape, y->shape)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool same_channels(pair *p)
+{
+    for (int i = 0; i < p->a->n_channels; i++) {
+        const mt_channel_def *const x = &p->a->channels[i];
+        const mt_channel_def *const y = &p->b->channels[i];
+        if (x->kind != y->kind || x->axis != y->axis || x->point != y->point ||
+            !same_ints(2, x->body, y->body) || !same_ints(3, x->dir, y->dir) ||
+            !same_nodes(p, 2, x->shape, y->shape) || !same_node(p, x->fraction, y->fraction)) {
             return false;
         }
     }
@@ -175,22 +193,53 @@ static bool one_drive(const mt_system *a, const mt_system *b)
     return a->driven != b->driven && (a->driven ? a : b)->trim && !(a->driven ? b : a)->loaded;
 }
 
+/* Fails: MT_E_MEMORY. */
+static mt_status pair_of(const mt_system *a, const mt_system *b, pair *p, mt_err *err)
+{
+    *p = (pair){.a = a, .b = b};
+    p->map = malloc(((size_t)a->program.count + 1) * sizeof *p->map);
+    if (p->map == NULL) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < a->program.count; i++) {
+        p->map[i] = MT_NO_NODE;
+    }
+    return MT_OK;
+}
+
+/* Places and directions, and what is measured and closed there. */
+static bool same_geometry(pair *p)
+{
+    return same_vecs(p) && same_measures(p) && same_bodies(p) && same_constraints(p);
+}
+
+mt_status mt_system_same_shape(const mt_system *a, const mt_system *b, bool *same, mt_err *err)
+{
+    pair p;
+    *same = false;
+    if (!same_counts(a, b) || a->n_channels != b->n_channels || a->dimension != b->dimension ||
+        a->driven || b->driven || a->n_loads > 0 || a->drawn_closed != b->drawn_closed ||
+        a->geometry_fixed != b->geometry_fixed || a->length_m != b->length_m ||
+        memcmp(a->shape, b->shape, (size_t)a->program.words * sizeof *a->shape) != 0) {
+        return MT_OK;
+    }
+    MT_TRY(pair_of(a, b, &p, err));
+    *same = same_geometry(&p) && same_springs(&p, false) && same_inertias(&p, false) &&
+            same_channels(&p);
+    free(p.map);
+    return MT_OK;
+}
+
 mt_status mt_system_same_drive(const mt_system *a, const mt_system *b, bool *same, mt_err *err)
 {
-    pair p = {.a = a, .b = b};
+    pair p;
     *same = false;
     if (!one_drive(a, b) || !same_counts(a, b)) {
         return MT_OK;
     }
-    p.map = malloc(((size_t)a->program.count + 1) * sizeof *p.map);
-    if (p.map == NULL) {
-        return mt_fail_memory(err);
-    }
-    for (int i = 0; i < a->program.count; i++) {
-        p.map[i] = MT_NO_NODE;
-    }
-    *same = same_vecs(&p) && same_measures(&p) && same_bodies(&p) && same_constraints(&p) &&
-            same_springs(&p) && same_inertias(&p) && same_loads(&p);
+    MT_TRY(pair_of(a, b, &p, err));
+    *same = same_geometry(&p) && same_springs(&p, true) && same_inertias(&p, true) &&
+            same_loads(&p);
     free(p.map);
     return MT_OK;
 }

@@ -32,8 +32,8 @@ static mt_status tangent_rows(mt_linear *lin, const mt_pose *poses, mt_linear_ta
         for (size_t i = 0; i < size; i++) {
             real[i] = cx_derivative(rows[i]);
         }
-        mt_rows_over_states(lin->sys, list, real, &lin->place, &t->rows[kind]);
-        MT_TRY(mt_arena_check(&lin->place, err));
+        mt_rows_over_states(lin->sys, list, real, &lin->geometry->mem, &t->rows[kind]);
+        MT_TRY(mt_arena_check(&lin->geometry->mem, err));
         t->moves = t->moves || t->rows[kind].start[list->n_rows] > 0;
         mt_arena_rewind(&lin->scratch, mark);
     }
@@ -75,11 +75,11 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_placement *at,
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     MT_TRY(mt_lagrangian_init(&l, sys, loaded, &lin->scratch, err));
     mt_cx *const lambda = mt_arena_alloc(&lin->scratch, (size_t)all, sizeof *lambda);
-    t->a = mt_arena_f64(&lin->place, (size_t)lin->m, (size_t)nq);
-    t->c = mt_arena_f64(&lin->place, (size_t)lin->m, 1);
-    t->kg = loaded ? mt_arena_f64(&lin->place, (size_t)nq, (size_t)nq) : NULL;
+    t->a = mt_arena_f64(&lin->geometry->mem, (size_t)lin->m, (size_t)nq);
+    t->c = mt_arena_f64(&lin->geometry->mem, (size_t)lin->m, 1);
+    t->kg = loaded ? mt_arena_f64(&lin->geometry->mem, (size_t)nq, (size_t)nq) : NULL;
     MT_TRY(mt_arena_check(&lin->scratch, err));
-    MT_TRY(mt_arena_check(&lin->place, err));
+    MT_TRY(mt_arena_check(&lin->geometry->mem, err));
     for (int i = 0; i < all && loaded; i++) {
         lambda[i] = cx_make(equilibrium->lambda[i], equilibrium->d_lambda[i]);
     }
@@ -107,10 +107,11 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_placement *at,
 mt_status mt_tangent_update(mt_linear *lin, const uint64_t *moves, mt_err *err)
 {
     const mt_system *const sys = lin->sys;
-    lin->tangent = mt_arena_alloc(&lin->place, (size_t)sys->n_inputs, sizeof *lin->tangent);
+    mt_arena *const mem = &lin->geometry->mem;
+    lin->tangent = mt_arena_alloc(mem, (size_t)sys->n_inputs, sizeof *lin->tangent);
     mt_placement at = lin->position.at;
-    at.pose = mt_arena_alloc(&lin->place, (size_t)sys->n_bodies, sizeof *at.pose);
-    MT_TRY(mt_arena_check(&lin->place, err));
+    at.pose = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *at.pose);
+    MT_TRY(mt_arena_check(mem, err));
     for (int p = lin->first_input; p < sys->n_inputs; p++) {
         if (!mt_stages_has(moves, p)) {
             continue;

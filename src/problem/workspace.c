@@ -108,6 +108,19 @@ static mt_status make_room(mt_workspace *w, int n, mt_err *err)
     return MT_OK;
 }
 
+/* Views of one geometry make it once. */
+static mt_status share_view(mt_workspace *w, const mt_view_work *view, mt_err *err)
+{
+    bool shared = false;
+    for (int i = 0; i < w->n_views && !shared; i++) {
+        const mt_analysis *const other = w->views[i].analysis;
+        if (other != NULL && other != view->analysis) {
+            MT_TRY(mt_linear_share(view->analysis->lin, other->lin, &shared, err));
+        }
+    }
+    return MT_OK;
+}
+
 /* An analysis of the view, unless it is there already. */
 static mt_status open_view(mt_workspace *w, mt_view_work *view, const mt_view *of, mt_err *err)
 {
@@ -120,7 +133,7 @@ static mt_status open_view(mt_workspace *w, mt_view_work *view, const mt_view *o
     MT_TRY(mt_view_analyse(of, w->p->original, &view->analysis, err));
     view->ask = of->ask;
     view->solved = true;
-    return MT_OK;
+    return share_view(w, view, err);
 }
 
 static mt_status open_corners(mt_workspace *w, mt_view_work *view, int n, mt_err *err)

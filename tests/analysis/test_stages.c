@@ -3,7 +3,8 @@
  * What is not computed again: an analysis that has seen many designs against one that has seen
  * none but the original, to the bit, for every model and configuration of the tests and random
  * sequences of designs in which some inputs move and some come back; the first few modes, where
- * no more are asked for, against these of all; and how often each stage was done.
+ * no more are asked for, against these of all; configurations that share a geometry against
+ * these by themselves; and how often each stage was done.
  */
 #include <dirent.h>
 #include <stdlib.h>
@@ -106,14 +107,11 @@ static void next_design(mt_random *g, session *s, double *x)
     memcpy(s->design[mt_random_int(g, DESIGNS)], x, sizeof s->design[0]);
 }
 
-static void run(mt_test *t, mt_random *g, session *s)
+static void run(mt_test *t, mt_random *g, session *s, int n_steps)
 {
     double x[MECH_INPUTS];
     memcpy(x, s->s.at, sizeof x);
-    for (int i = 0; i < DESIGNS; i++) {
-        memcpy(s->design[i], x, sizeof x);
-    }
-    for (int step = 0; step < steps(); step++) {
+    for (int step = 0; step < n_steps; step++) {
         mt_analysis_options opt = mt_analysis_options_default();
         mt_analysis *fresh = NULL;
         mt_err err = {.text = ""};
@@ -198,7 +196,10 @@ static void model_file(mt_test *t, const char *path, mt_random *g, long *solved,
             for (int first = 1; first <= 9; first += 4) {
                 ask_for_few(t, &s, first, fewer);
             }
-            run(t, g, &s);
+            for (int i = 0; i < DESIGNS; i++) {
+                memcpy(s.design[i], s.s.at, sizeof s.s.at);
+            }
+            run(t, g, &s, steps());
             (*solved)++;
         }
         mt_analysis_delete(s.s.a);
@@ -206,12 +207,11 @@ static void model_file(mt_test *t, const char *path, mt_random *g, long *solved,
     mt_model_delete(model);
 }
 
-static void stages__leave_the_same_bits_whatever_was_seen_before(mt_test *t)
+typedef void each_model(mt_test *t, const char *path, mt_random *g, long *first, long *second);
+
+static void all_models(mt_test *t, each_model *look, mt_random *g, long *first, long *second)
 {
     static const char *const folders[] = {"tests/models", "problems"};
-    mt_random g = mt_random_seed(5);
-    long solved = 0;
-    long fewer = 0;
     for (int f = 0; f < 2; f++) {
         char path[MECH_PATH];
         struct dirent **list = NULL;
@@ -221,14 +221,101 @@ static void stages__leave_the_same_bits_whatever_was_seen_before(mt_test *t)
             if (strstr(list[i]->d_name, ".json") != NULL) {
                 (void)snprintf(path, sizeof path, "%s/%s/%s", MT_TEST_SOURCE_DIR, folders[f],
                                list[i]->d_name);
-                model_file(t, path, &g, &solved, &fewer);
+                look(t, path, g, first, second);
             }
             free(list[i]);
         }
         free((void *)list);
     }
+}
+
+static void stages__leave_the_same_bits_whatever_was_seen_before(mt_test *t)
+{
+    mt_random g = mt_random_seed(5);
+    long solved = 0;
+    long fewer = 0;
+    all_models(t, model_file, &g, &solved, &fewer);
     CHECK(t, solved > 40);
     CHECK(t, fewer > solved);
+}
+
+/* With the first of the n sessions that has the same shape. */
+static bool share_one(mt_test *t, const session *s, const session *with, int n)
+{
+    bool shared = false;
+    for (int i = 0; i < n && !shared && s->s.a != NULL; i++) {
+        if (with[i].s.a != NULL) {
+            CHECK_INT(t, mt_linear_share(s->s.a->lin, with[i].s.a->lin, &shared, NULL), MT_OK);
+        }
+    }
+    return shared;
+}
+
+static long shared_stages(const session *s)
+{
+    const mt_stage_counts *const counts = &mt_linear_stages(s->s.a->lin)->counts;
+    return counts->shared[MT_STAGE_GEOMETRY] + counts->shared[MT_STAGE_TANGENT];
+}
+
+enum { SHARING = 12 };
+
+/* All of them at designs of their own and at those that another one was at, in any order; half
+ * way the first one goes. *had: how often something was taken from another one. */
+static void walk_together(mt_test *t, mt_random *g, session *all, int n, long *had)
+{
+    for (int round = 0; round < steps(); round++) {
+        for (int k = 0; k < n; k++) {
+            session *const s = &all[mt_random_int(g, n)];
+            if (s->s.a != NULL) {
+                memcpy(s->design, all[0].design, sizeof s->design);
+                const long before = shared_stages(s);
+                run(t, g, s, 2);
+                memcpy(all[0].design, s->design, sizeof s->design);
+                *had += shared_stages(s) - before;
+            }
+        }
+        if (round == steps() / 2) {
+            mt_analysis_delete(all[0].s.a);
+            all[0].s.a = NULL;
+        }
+    }
+}
+
+static void model_together(mt_test *t, const char *path, mt_random *g, long *joined, long *had)
+{
+    mt_model *model = NULL;
+    session all[SHARING];
+    int n = 0;
+    long here = 0;
+    if (mt_model_load(path, NULL, &model, NULL, NULL) != MT_OK) {
+        return;
+    }
+    for (int c = 0; c < model->n_configurations && n < SHARING; c++) {
+        (void)begin(model, c, &all[n]);
+        here += share_one(t, &all[n], all, n) ? 1 : 0;
+        n++;
+    }
+    for (int i = 0; i < DESIGNS && n > 0; i++) {
+        memcpy(all[0].design[i], all[0].s.at, sizeof all[0].s.at);
+    }
+    if (here > 0) {
+        walk_together(t, g, all, n, had);
+    }
+    *joined += here;
+    for (int i = 0; i < n; i++) {
+        mt_analysis_delete(all[i].s.a);
+    }
+    mt_model_delete(model);
+}
+
+static void stages__that_are_shared_leave_the_same_bits(mt_test *t)
+{
+    mt_random g = mt_random_seed(7);
+    long joined = 0;
+    long had = 0;
+    all_models(t, model_together, &g, &joined, &had);
+    CHECK(t, joined >= 5);
+    CHECK(t, had > 2 * joined);
 }
 
 typedef struct want {
@@ -299,6 +386,76 @@ static void stages__of_a_loop_follow_what_moves(mt_test *t)
     mech_free(&s);
 }
 
+/* An arm on a spring. */
+static const char ARM[] =
+    "{\"format\": \"modetune-model/1\", \"name\": \"arm\", \"dimension\": 2,"
+    "\"parameters\": {\"a\": 0.3, \"k\": 20, \"m\": 2, \"b\": 0.1},"
+    "\"bodies\": [{\"name\": \"arm\", \"mass_kg\": \"m\", \"inertia_kg_m2\": 0.01,"
+    "\"centre\": [\"a\", 0]}],"
+    "\"joints\": [{\"name\": \"pin\", \"type\": \"revolute\", \"bodies\": [\"ground\", "
+    "\"arm\"],"
+    "\"at\": [\"b\", 0]}],"
+    "\"springs\": [{\"name\": \"coil\", \"type\": \"torsion\", \"joint\": \"pin\","
+    "\"stiffness_n_m_per_rad\": \"k\"}],"
+    "\"configurations\": {\"soft\": {}, \"stiff\": {\"parameters\": {\"k\": 80, \"m\": 1}},"
+    "\"moved\": {\"parameters\": {\"b\": 0.2}},"
+    "\"heavy\": {\"gravity_m_per_s2\": [0, -9.81]}}}";
+
+typedef struct pair_want {
+    const char *what;
+    int moves[2]; /* input of each; -1: none */
+    long done[2]; /* how often each made the geometry */
+    long shared[2];
+} pair_want;
+
+/* One degree of freedom: omega^2 = k/(J + m (a - b)^2), of both, whoever made the geometry. */
+static void stages__of_one_geometry_are_done_once(mt_test *t)
+{
+    static const pair_want rows[] = {
+        {"as they were", {-1, -1}, {0, 0}, {0, 0}},
+        {"a length", {0, 0}, {1, 0}, {0, 1}},
+        {"a spring", {1, 1}, {0, 0}, {0, 0}},
+        {"a length of the second", {-1, 0}, {0, 1}, {0, 0}},
+        {"the first comes after", {0, -1}, {0, 0}, {1, 0}},
+    };
+    static const int parameters[] = {0, 1, 2};
+    static const double at[] = {0.3, 20.0, 2.0};
+    double x[2][3] = {{0.3, 20.0, 2.0}, {0.3, 20.0, 2.0}};
+    mt_model *const model = mech_parse(t, ARM);
+    mt_analysis *a[4] = {NULL};
+    bool shared[4] = {false};
+    for (int c = 0; c < 4; c++) {
+        CHECK_INT(t, mt_analysis_new(model, c, 3, parameters, at, &a[c], NULL), MT_OK);
+        if (c > 0) {
+            CHECK_INT(t, mt_linear_share(a[c]->lin, a[0]->lin, &shared[c], NULL), MT_OK);
+        }
+    }
+    CHECK(t, shared[1] && !shared[2] && !shared[3]);
+    for (int i = 0; i < (int)(sizeof rows / sizeof *rows); i++) {
+        mt_test_row(t, "%s", rows[i].what);
+        for (int k = 0; k < 2; k++) {
+            const mt_stage_counts *const now = &mt_linear_stages(a[k]->lin)->counts;
+            const mt_stage_counts before = *now;
+            const mt_analysis_options opt = mt_analysis_options_default();
+            if (rows[i].moves[k] >= 0) {
+                x[k][rows[i].moves[k]] *= 1.25;
+            }
+            CHECK_INT(t, mt_analysis_solve(a[k], x[k], &opt, NULL), MT_OK);
+            const int g = MT_STAGE_GEOMETRY;
+            CHECK_INT(t, now->done[g] - before.done[g], rows[i].done[k]);
+            CHECK_INT(t, now->shared[g] - before.shared[g], rows[i].shared[k]);
+            const double m = k == 0 ? x[k][2] : 1.0;
+            const double arm = x[k][0] - 0.1;
+            const double lambda = (k == 0 ? x[k][1] : 80.0) / (0.01 + (m * arm * arm));
+            CHECK_NEAR_ABS(t, a[k]->modes.lambda[0], lambda, 1e-13 * lambda);
+        }
+    }
+    for (int c = 0; c < 4; c++) {
+        mt_analysis_delete(a[c]);
+    }
+    mt_model_delete(model);
+}
+
 /* The equilibrium moves with everything. */
 static void stages__of_a_loaded_loop_stand_still_only_where_all_does(mt_test *t)
 {
@@ -350,6 +507,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         MT_TEST(stages__leave_the_same_bits_whatever_was_seen_before),
+        MT_TEST(stages__that_are_shared_leave_the_same_bits),
+        MT_TEST(stages__of_one_geometry_are_done_once),
         MT_TEST(stages__of_a_fixed_geometry_are_sums_alone),
         MT_TEST(stages__of_a_loop_follow_what_moves),
         MT_TEST(stages__of_a_loaded_loop_stand_still_only_where_all_does),

@@ -20,9 +20,9 @@ STAGES = ["program", "geometry", "tangent", "reduction", "stiffness", "mass", "m
 
 
 def stages(text):
-    """Of --profile: stage to how often it was done and skipped."""
-    rows = re.findall(r"^  (\w+) +(\d+) +(\d+) +\S+ +\w", text, re.M)
-    return {name: (int(done), int(skipped)) for name, done, skipped in rows}
+    """Of --profile: stage to how often it was done, shared and skipped."""
+    rows = re.findall(r"^  (\w+) +(\d+) +(\d+) +(\d+) +\S+ +\w", text, re.M)
+    return {name: tuple(map(int, counts)) for name, *counts in rows}
 
 
 class Profile(CliTest):
@@ -31,7 +31,7 @@ class Profile(CliTest):
         n = len(json.loads(done.stdout))  # configurations
         counts = stages(done.stderr)
         self.assertEqual(list(counts), STAGES)
-        self.assertEqual(counts, {stage: (0 if stage == "tangent" else n, 0) for stage in STAGES})
+        self.assertEqual(counts, {stage: (0 if stage == "tangent" else n, 0, 0) for stage in STAGES})
 
     def test_stages_of_a_study_are_counted_and_change_nothing(self):
         path = self.write("studies/two.json", study())
@@ -40,7 +40,7 @@ class Profile(CliTest):
         counts = [stages(self.expect(0, "run", path, "-o", str(n), "--profile", "--threads", str(n)).stderr) for n in (1, 2)]
         for had in counts:
             self.assertEqual(list(had), STAGES)
-            self.assertEqual(had["tangent"], (0, 0))  # springs alone vary: the geometry stands
+            self.assertEqual(had["tangent"], (0, 0, 0))  # springs alone vary: the geometry stands
             self.assertGreater(had["program"][0], 10)
             self.assertEqual(had["geometry"][0], had["reduction"][0])
             self.assertLess(10 * had["geometry"][0], had["stiffness"][0] + 10)
