@@ -57,7 +57,11 @@ typedef struct work {
     bool *follows;  /* [nq] chosen as a pivot */
     int *best;      /* [rank] column of the best pivot in sight */
     double *score;  /* [rank] its size */
-    int *list;      /* [nq] columns of one row */
+    int n_open;
+    int *open;    /* [n_open] columns that are no pivots yet, ascending */
+    int *list;    /* [nq] columns of one row */
+    int *found;   /* rank x (nq - rank): those of the rows that are substituted */
+    int *n_found; /* [rank] how many */
 } work;
 
 static mt_status claim(work *w, mt_arena *mem, mt_err *err)
@@ -72,7 +76,10 @@ static mt_status claim(work *w, mt_arena *mem, mt_err *err)
     w->follows = mt_arena_alloc(mem, nq, sizeof *w->follows);
     w->best = mt_arena_int(mem, rank);
     w->score = mt_arena_f64(mem, rank, 1);
+    w->open = mt_arena_int(mem, nq);
     w->list = mt_arena_int(mem, nq);
+    w->found = mt_arena_int(mem, rank * (nq - rank));
+    w->n_found = mt_arena_int(mem, rank);
     return mt_arena_check(mem, err);
 }
 
@@ -96,15 +103,26 @@ static void look(work *w, int i)
     double most = 0.0;
     w->best[i] = -1;
     w->score[i] = 0.0;
-    for (int j = 0; j < w->nq; j++) {
-        most = fmax(most, w->follows[j] ? 0.0 : fabs(g[j]));
+    for (int k = 0; k < w->n_open; k++) {
+        const double size = fabs(g[w->open[k]]);
+        most = size > most ? size : most;
     }
-    for (int j = 0; j < w->nq; j++) {
+    for (int k = 0; k < w->n_open; k++) {
+        const int j = w->open[k];
         const double size = fabs(g[j]);
-        if (!w->follows[j] && size > 0.0 && size >= SMALLEST_PIVOT * most &&
-            size * w->weight[j] > w->score[i]) {
+        if (size > 0.0 && size >= SMALLEST_PIVOT * most && size * w->weight[j] > w->score[i]) {
             w->score[i] = size * w->weight[j];
             w->best[i] = j;
+        }
+    }
+}
+
+static void open_columns(work *w)
+{
+    w->n_open = 0;
+    for (int j = 0; j < w->nq; j++) {
+        if (!w->follows[j]) {
+            w->open[w->n_open++] = j;
         }
     }
 }
@@ -112,15 +130,19 @@ static void look(work *w, int i)
 static void load(work *w, const mt_elimination *e, const double *a, double extent)
 {
     w->entry = 0.0;
+    open_columns(w);
     for (int i = 0; i < w->rank; i++) {
         const int row = e->qr.perm[i];
         for (ptrdiff_t j = 0; j < w->nq; j++) {
             const ptrdiff_t at = j + ((ptrdiff_t)i * w->nq);
             w->g[at] = e->dr[row] * a[row + (j * e->m)] * e->dc[j];
+            w->e[at] = 0.0;
+            if (w->g[at] == 0.0) {
+                continue;
+            }
             const double arm = e->dc[j] == 1.0 ? 0.0 : e->dr[row] * extent * e->dc[j];
-            w->e[at] =
-                w->g[at] == 0.0 ? 0.0 : ENTRY_ULPS * DBL_EPSILON * (fabs(w->g[at]) + arm);
-            w->entry = fmax(w->entry, w->e[at]);
+            w->e[at] = ENTRY_ULPS * DBL_EPSILON * (fabs(w->g[at]) + arm);
+            w->entry = w->e[at] > w->entry ? w->e[at] : w->entry;
             if (fabs(w->g[at]) <= w->e[at]) {
                 w->g[at] = 0.0;
             }
@@ -137,19 +159,20 @@ static bool is_grown(const work *w)
 }
 
 /* to -= factor * from at the n columns listed. */
-static void subtract(work *w, int n, double factor, double factor_error, int from, int to)
+static void subtract(work *w, int n, const int *list, double factor, double factor_error,
+                     int from, int to)
 {
     const double *const g = w->g + ((ptrdiff_t)from * w->nq);
     const double *const e = w->e + ((ptrdiff_t)from * w->nq);
     double *const gt = w->g + ((ptrdiff_t)to * w->nq);
     double *const et = w->e + ((ptrdiff_t)to * w->nq);
     for (int k = 0; k < n; k++) {
-        const int j = w->list[k];
+        const int j = list[k];
         const double part = factor * g[j];
         const double rounding = DBL_EPSILON * (fabs(gt[j]) + fabs(part));
         if (w->carried) {
             et[j] += (fabs(factor) * e[j]) + (factor_error * fabs(g[j])) + rounding;
-            w->most = fmax(w->most, et[j]);
+            w->most = et[j] > w->most ? et[j] : w->most;
         }
         gt[j] -= part;
         if (fabs(gt[j]) <= (w->carried ? et[j] : ENTRY_ULPS * rounding)) {
@@ -159,14 +182,15 @@ static void subtract(work *w, int n, double factor, double factor_error, int fro
 }
 
 /* Columns with an entry in equation i that are no pivots yet, into list; how many. */
-static int list_open(work *w, int i)
+static int list_open(const work *w, int i, int *list)
 {
     const double *const g = w->g + ((ptrdiff_t)i * w->nq);
     const double *const e = w->e + ((ptrdiff_t)i * w->nq);
     int n = 0;
-    for (int j = 0; j < w->nq; j++) {
-        if (!w->follows[j] && (g[j] != 0.0 || e[j] != 0.0)) {
-            w->list[n++] = j;
+    for (int k = 0; k < w->n_open; k++) {
+        const int j = w->open[k];
+        if (g[j] != 0.0 || e[j] != 0.0) {
+            list[n++] = j;
         }
     }
     return n;
@@ -198,7 +222,8 @@ static bool eliminate(work *w)
         w->pivot[row] = column;
         w->order[step] = row;
         w->follows[column] = true;
-        const int n = list_open(w, row);
+        open_columns(w);
+        const int n = list_open(w, row, w->list);
         const double p = w->g[column + (row * nq)];
         const double dp = w->e[column + (row * nq)] / fabs(p);
         for (int i = 0; i < w->rank; i++) {
@@ -211,7 +236,7 @@ static bool eliminate(work *w)
             w->g[column + (i * nq)] = 0.0;
             w->e[column + (i * nq)] = 0.0;
             if (x != 0.0) {
-                subtract(w, n, factor, error, row, i);
+                subtract(w, n, w->list, factor, error, row, i);
             }
             look(w, i);
         }
@@ -228,6 +253,7 @@ static bool eliminate(work *w)
 static void substitute(work *w)
 {
     const ptrdiff_t nq = w->nq;
+    const ptrdiff_t free = nq - w->rank;
     for (int step = w->rank - 1; step >= 0; step--) {
         const int i = w->order[step];
         for (int later = step + 1; later < w->rank; later++) {
@@ -237,15 +263,16 @@ static void substitute(work *w)
             if (x != 0.0) {
                 const double error = w->e[column + (i * nq)];
                 w->g[column + (i * nq)] = 0.0;
-                subtract(w, list_open(w, from), x, error, from, i);
+                subtract(w, w->n_found[from], w->found + (from * free), x, error, from, i);
             }
         }
         const double p = w->g[w->pivot[i] + (i * nq)];
         const double dp = w->e[w->pivot[i] + (i * nq)] / fabs(p);
-        const int n = list_open(w, i);
-        for (int k = 0; k < n; k++) {
-            double *const x = &w->g[w->list[k] + (i * nq)];
-            double *const ex = &w->e[w->list[k] + (i * nq)];
+        int *const found = w->found + (i * free);
+        w->n_found[i] = list_open(w, i, found);
+        for (int k = 0; k < w->n_found[i]; k++) {
+            double *const x = &w->g[found[k] + (i * nq)];
+            double *const ex = &w->e[found[k] + (i * nq)];
             *x /= p;
             *ex = (*ex / fabs(p)) + (fabs(*x) * (dp + DBL_EPSILON));
         }
