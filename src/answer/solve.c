@@ -122,6 +122,7 @@ static mt_status phase(mt_answer *a, mt_phase which, mt_err *err)
     a->mark = mt_result_get_mark(a->result);
     a->scope = mt_scope_in(a->whole, phases[which].name);
     mt_interrupt_enter(a->interrupt, (int)which, phases[which].makes_ready);
+    a->spent->phase = (int)which;
     const mt_status rc = phases[which].work(a, &own);
     const bool cut = mt_interrupt_is_cut(a->interrupt, (int)which);
     if (rc != MT_OK && !(cut && !mt_is_final(rc))) {
@@ -136,6 +137,7 @@ static mt_status ask(mt_question *q, const mt_study *study, mt_err *err)
     const size_t n = (size_t)study->n_references;
     q->model = *study->model;
     q->model.interrupt = &q->interrupt;
+    q->model.spent = &q->spent;
     q->study = *study;
     q->study.model = &q->model;
     q->study.references = mt_arena_alloc(&q->mem, n, sizeof *study->references);
@@ -165,6 +167,7 @@ mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_solve
     MT_TRY(mt_arena_init(&q->mem, 0, err));
     mt_interrupt_init(&q->interrupt, opt->stop, opt->stop_context, study->model->interrupt);
     mt_interrupt_enter(&q->interrupt, MT_PHASE_BASELINE, true);
+    mt_spent_init(&q->spent);
     MT_TRY(ask(q, study, err));
     const mt_status rc = mt_problem_new(&q->study, &q->p, &own);
     return end_at_once(q, rc, &own, err);
@@ -233,6 +236,7 @@ static mt_status begin(mt_answer *a, const mt_solve_options *opt, mt_err *err)
 {
     mt_err own = {.code = MT_OK};
     mt_interrupt_enter(a->interrupt, MT_PHASE_BASELINE, true);
+    a->spent->phase = MT_PHASE_BASELINE;
     mt_status rc = open_workers(a, opt->threads, &own);
     rc = rc == MT_OK ? mt_answer_baseline(a, &own) : rc;
     MT_TRY(end_at_once(a->q, rc, &own, err));
@@ -289,18 +293,19 @@ static mt_status conclude(mt_answer *a, mt_err *err)
     }
     MT_TRY(phase(a, MT_PHASE_RELAXATIONS, err));
     MT_TRY(mt_answer_warn(a, err));
-    a->result->run.evaluations = a->found.evals;
     a->result->run.starts = a->found.starts;
     MT_TRY(mt_answer_set_status(a, err));
     MT_TRY(phase(a, MT_PHASE_PUBLISHED, err));
     MT_TRY(tell_cut_lists(a, err));
     MT_TRY(mt_describe_own(a->study, a->result, err));
     MT_TRY(phase(a, MT_PHASE_TRADE, err));
+    mt_answer_note_spent(a);
     return mt_answer_note_cuts(a, err);
 }
 
 static mt_status early_result(mt_answer *now, mt_err *err)
 {
+    now->spent->phase = MT_PHASE_BASELINE;
     MT_TRY(mt_answer_baseline(now, err));
     MT_TRY(mt_answer_take_gaps(now, err));
     now->found.n_solutions = 1;
@@ -314,15 +319,20 @@ mt_status mt_answer_early(void *answer, const mt_gap_result *found, mt_err *err)
 {
     const mt_answer *const a = answer;
     mt_interrupt own; /* the whole is not cut by what this leaves out */
+    mt_spent spent;   /* nor does it pay for what is told early */
     mt_answer now = *a;
     mt_interrupt_init(&own, a->interrupt->wish, a->interrupt->context, NULL);
     now.interrupt = &own;
+    mt_spent_copy(a->spent, &spent);
+    now.spent = &spent;
+    a->q->model.spent = &spent;
     now.mem = (mt_arena){.first = NULL};
     now.gaps = *found;
     now.result = NULL;
     mt_status rc = mt_arena_init(&now.mem, 0, err);
     rc = rc == MT_OK ? mt_result_new(&now.result, err) : rc;
     rc = rc == MT_OK ? early_result(&now, err) : rc;
+    a->q->model.spent = a->spent;
     if (!mt_interrupted(a->interrupt)) { /* else that brings it about */
         rc = rc == MT_OK ? a->early->tell(a->early->context, now.result, err) : rc;
     } else if (!mt_is_final(rc)) {
@@ -347,6 +357,7 @@ mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt, const 
                              const mt_early *early, mt_result **out, mt_err *err)
 {
     mt_answer a = {.q = q, .study = &q->study, .p = q->p, .interrupt = &q->interrupt};
+    a.spent = &q->spent;
     a.threads = opt->threads;
     a.whole = scope;
     a.early = early;

@@ -3,6 +3,7 @@
 #define ANSWER_SOLVE_PRIV_H
 
 #include "answer/solve.h"
+#include "base/spent.h"
 #include "base/workers.h"
 #include "search/discrete.h"
 #include "search/gaps.h"
@@ -34,6 +35,7 @@ typedef struct mt_question {
     mt_study study;
     mt_model model;
     mt_interrupt interrupt;
+    mt_spent spent; /* on all answers to it */
     mt_arena mem;
     mt_problem *p; /* owned */
 } mt_question;
@@ -54,6 +56,7 @@ typedef struct mt_answer {
     const mt_study *study; /* the question's, like the next two */
     const mt_problem *p;
     mt_interrupt *interrupt;
+    mt_spent *spent; /* where its work is noted: the question's, but of what is told early */
     mt_result_mark mark; /* of the result: what is complete */
     int threads;
     const mt_early *early;  /* NULL: nobody asks */
@@ -90,6 +93,8 @@ mt_status mt_answer_warn(const mt_answer *a, mt_err *err);
 mt_status mt_answer_set_status(const mt_answer *a, mt_err *err);
 /* After everything: where something was cut the status says so, and the result what. */
 mt_status mt_answer_note_cuts(const mt_answer *a, mt_err *err);
+/* What all of it has cost, but for the points of a trade study, which are told already. */
+void mt_answer_note_spent(const mt_answer *a);
 /* Doubts about the question concern the points of its trade study, too. */
 void mt_answer_qualify_trade(mt_result *result);
 

@@ -246,6 +246,28 @@ mt_status mt_answer_set_status(const mt_answer *a, mt_err *err)
     return qualify(result, err);
 }
 
+void mt_answer_note_spent(const mt_answer *a)
+{
+    const mt_spent *const s = a->spent;
+    mt_result_run *const run = &a->result->run;
+    mt_result_spent *const to = &run->spent;
+    long *const designs[MT_PHASE_COUNT] = {[MT_PHASE_BASELINE] = &to->descriptions,
+                                           [MT_PHASE_SEARCH] = &to->search,
+                                           [MT_PHASE_RECOMMENDATIONS] = &to->descriptions,
+                                           [MT_PHASE_SPREAD] = &to->spread,
+                                           [MT_PHASE_CERTIFICATES] = &to->search,
+                                           [MT_PHASE_RELAXATIONS] = &to->relaxations,
+                                           [MT_PHASE_PUBLISHED] = &to->descriptions,
+                                           [MT_PHASE_TRADE] = &to->trade};
+    for (int k = 0; k < MT_PHASE_COUNT; k++) {
+        *designs[k] += mt_spent_in(s, k, MT_SPENT_DESIGNS);
+    }
+    to->positions += mt_spent_of(s, MT_SPENT_POSITIONS);
+    to->multiplications += mt_spent_of(s, MT_SPENT_MULTIPLICATIONS);
+    run->evaluations = to->search + to->positions + to->descriptions + to->spread +
+                       to->relaxations + to->trade;
+}
+
 mt_status mt_answer_note_cuts(const mt_answer *a, mt_err *err)
 {
 #define MT_PHASE_NAME(id, name, makes_ready, work) name,

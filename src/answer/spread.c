@@ -70,7 +70,7 @@ static mt_status search_again(spread *s, int goal, double factor, mt_arena *mem,
     nlp.origin = s->best->t;
     options.starts = 1;
     scale_weight(s->w->p, s->weight, goal, factor);
-    const mt_status rc = mt_nlp_solve(&nlp, &options, mem, &found, err);
+    const mt_status rc = mt_workspace_solve(s->w, &nlp, &options, mem, &found, err);
     scale_weight(s->w->p, s->weight, goal, 1.0);
     s->evaluations += found.evals;
     if (rc != MT_OK) {

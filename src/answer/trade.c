@@ -21,6 +21,7 @@ typedef struct point {
     mt_result *again; /* of the second, where a neighbour knew better; owned, or NULL */
     double front[2];  /* what the front compares, less is better; NaN: does not take part */
     long evaluations;
+    long multiplications;
 } point;
 
 /* Points that are compiled at a time: each has about a quarter of a megabyte, or what its model
@@ -105,6 +106,17 @@ static mt_status answer(point *p, const double *hint, const mt_scope *own, mt_re
     return mt_question_answer(p->q, &opt, own, NULL, out, err);
 }
 
+/* What its question has cost so far, added or (sign -1) taken off. */
+static void note_spent(point *p, int sign)
+{
+    if (p->q != NULL) {
+        const mt_spent *const s = &p->q->spent;
+        p->evaluations +=
+            sign * (mt_spent_of(s, MT_SPENT_DESIGNS) + mt_spent_of(s, MT_SPENT_POSITIONS));
+        p->multiplications += sign * mt_spent_of(s, MT_SPENT_MULTIPLICATIONS);
+    }
+}
+
 static mt_status solve_cold(void *context, int worker, int task, mt_scope *own, mt_err *err)
 {
     const trade *const t = context;
@@ -116,7 +128,7 @@ static mt_status solve_cold(void *context, int worker, int task, mt_scope *own, 
     }
     mt_status rc = ask(t, p, err);
     rc = rc == MT_OK ? answer(p, NULL, own, &p->first, err) : rc;
-    p->evaluations = p->first != NULL ? p->first->run.evaluations : 0;
+    note_spent(p, 1);
     if (rc != MT_OK || !t->warm) {
         forget(p);
     }
@@ -187,13 +199,13 @@ static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt
         }
         MT_TRY(values_of(near, mem, &x, err));
         mt_interrupt_enter(&p->q->interrupt, MT_PHASE_SEARCH, false);
-        MT_TRY(mt_trade_improves(w, x, best_x, &gain, &p->evaluations, err));
+        p->q->spent.phase = MT_PHASE_SEARCH;
+        MT_TRY(mt_trade_improves(w, x, best_x, &gain, err));
         if (!gain) {
             continue;
         }
         mt_result *fresh = NULL;
         MT_TRY(answer(p, x, own, &fresh, err));
-        p->evaluations += fresh != NULL ? fresh->run.evaluations : 0;
         if (better(&p->q->study, fresh, answer_of(p))) {
             mt_result_delete(p->again);
             p->again = fresh;
@@ -218,10 +230,12 @@ static mt_status solve_warm(void *context, int worker, int task, mt_scope *own, 
     }
     MT_TRY(mt_arena_init(&mem, 0, err));
     mt_status rc = p->q == NULL ? ask(t, p, err) : MT_OK; /* where its record was read */
+    note_spent(p, -1); /* of the first pass: it is noted already */
     rc = rc == MT_OK ? mt_workspace_new(p->q->p, &w, err) : rc;
     rc = rc == MT_OK ? try_neighbours(t, k, w, own, &mem, err) : rc;
     mt_workspace_delete(w);
     mt_arena_free(&mem);
+    note_spent(p, 1);
     forget(p);
     return told(t, k, rc, err);
 }
@@ -265,14 +279,16 @@ static void tape_point(const trade *t, int task, bool warm, mt_tape *tape)
 {
     point *const p = &t->points[t->from + task];
     mt_result **const r = warm ? &p->again : &p->first;
-    const long before = p->evaluations;
+    const long before[] = {p->evaluations, p->multiplications};
     mt_tape_long(tape, &p->evaluations, 0, LONG_MAX);
+    mt_tape_long(tape, &p->multiplications, 0, LONG_MAX);
     tape_result(t, r, tape);
     tape->failed = tape->failed || (!warm && *r == NULL);
     if (tape->reads && !mt_tape_is_read(tape)) {
         mt_result_delete(*r);
         *r = NULL;
-        p->evaluations = before;
+        p->evaluations = before[0];
+        p->multiplications = before[1];
     } else if (tape->reads && warm) {
         forget(p);
     }
@@ -417,7 +433,8 @@ static mt_status describe(const trade *t, mt_result *result, mt_err *err)
         if (best != NULL) {
             MT_TRY(mt_recommendation_copy(best, mem, &told->best, err));
         }
-        result->run.evaluations += p->evaluations;
+        result->run.spent.trade += p->evaluations;
+        result->run.spent.multiplications += p->multiplications;
     }
     mark_front(t, out);
     result->trade = out;

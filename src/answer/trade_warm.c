@@ -54,7 +54,7 @@ static mt_status open_gap(mt_workspace *w, const double *t, mt_arena *mem, mt_ca
 }
 
 static mt_status compare(mt_workspace *w, const double *x, const double *best_x, mt_arena *mem,
-                         bool *better, long *evaluations, mt_err *err)
+                         bool *better, mt_err *err)
 {
     const mt_problem *const p = w->p;
     double *const t = mt_arena_f64(mem, (size_t)p->n + 1, 1);
@@ -75,11 +75,10 @@ static mt_status compare(mt_workspace *w, const double *x, const double *best_x,
         nlp.origin = t; /* its last entry, where there is a clearance, is 0: on the edges */
         opt.starts = 1;
         opt.max_evals = LOCAL_EVALUATIONS;
-        rc = mt_nlp_solve(&nlp, &opt, mem, &found, err);
+        rc = mt_workspace_solve(w, &nlp, &opt, mem, &found, err);
     }
     mt_workspace_back(w, &p->whole);
     MT_TRY(rc);
-    *evaluations += found.evals;
     if (found.n_solutions > 0 && found.solutions[0].feasible) {
         *better =
             best_x == NULL || mt_compare(found.solutions[0].f, best_f, MT_EQUAL_FOUND) < 0;
@@ -88,13 +87,13 @@ static mt_status compare(mt_workspace *w, const double *x, const double *best_x,
 }
 
 mt_status mt_trade_improves(mt_workspace *w, const double *x, const double *best_x,
-                            bool *better, long *evaluations, mt_err *err)
+                            bool *better, mt_err *err)
 {
     mt_arena mem;
     mt_err why = {0};
     *better = false;
     MT_TRY(mt_arena_init(&mem, 0, err));
-    const mt_status rc = compare(w, x, best_x, &mem, better, evaluations, &why);
+    const mt_status rc = compare(w, x, best_x, &mem, better, &why);
     mt_arena_free(&mem);
     /* a start without a value is no better start, and no failure */
     return mt_pass_final(rc, &why, err);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdarg.h>
 
+#include "base/spent.h"
 #include "problem/goal_avoid.h"
 #include "problem/objective.h"
 #include "problem/robust.h"
@@ -16,6 +17,8 @@ static const double SAME_OBJECTIVE = 1e-8;
  * is left, of at most a few in ln x, it costs less than a thousandth of the objective; Newton's
  * iteration reaches 1e-9 wherever the modes are simple. */
 static const double KKT_TOLD = 1e-4;
+/* Of a design that is described: as the study reads it, and by systems that are made anew. */
+enum { ANALYSES = 2 };
 
 mt_status mt_describe_warn(mt_result *result, mt_err *err, const char *fmt, ...)
 {
@@ -174,6 +177,7 @@ mt_status mt_describe_design(const mt_problem *p, const mt_design *design,
 {
     mt_workspace *fresh = NULL;
     MT_TRY(mt_workspace_new(p, &fresh, err));
+    mt_spent_note(p->study->model->spent, MT_SPENT_DESIGNS, ANALYSES);
     const mt_status rc = describe(fresh, design, baseline, result, rec, err);
     mt_workspace_delete(fresh);
     return rc;

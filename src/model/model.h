@@ -397,6 +397,7 @@ typedef struct mt_model {
      * then no work on the model can be begun without passing by it. */
     struct mt_interrupt *interrupt;
     struct mt_profile *profile; /* NULL: nobody asks what evaluations do (base/profile.h) */
+    struct mt_spent *spent;     /* NULL: nobody asks what the work costs (base/spent.h) */
 } mt_model;
 
 /* An empty model (dimension 0). Fails: MT_E_MEMORY. */

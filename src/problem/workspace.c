@@ -9,6 +9,7 @@
 
 #include "base/format.h"
 #include "base/interrupt.h"
+#include "base/spent.h"
 #include "problem/demand.h"
 #include "problem/family.h"
 #include "problem/goal_avoid.h"
@@ -196,7 +197,7 @@ mt_nlp mt_workspace_nlp(mt_workspace *w)
                         .in_tol = c->in_tol,
                         .n_next = c->n_next,
                         .next_of = c->next_of,
-                        .eval = mt_workspace_eval,
+                        .eval = mt_workspace_eval_uncounted,
                         .context = w,
                         .scope = w->scope};
     return nlp;
@@ -261,6 +262,23 @@ static void say_progress(const mt_workspace *w)
 
 mt_status mt_workspace_eval(void *context, const double *t, bool with_gradient,
                             mt_nlp_values *out, mt_err *err)
+{
+    const mt_workspace *const w = context;
+    mt_spent_note(w->p->study->model->spent, MT_SPENT_DESIGNS, 1);
+    return mt_workspace_eval_uncounted(context, t, with_gradient, out, err);
+}
+
+mt_status mt_workspace_solve(const mt_workspace *w, const mt_nlp *nlp,
+                             const mt_nlp_options *opt, mt_arena *mem, mt_nlp_result *out,
+                             mt_err *err)
+{
+    const mt_status rc = mt_nlp_solve(nlp, opt, mem, out, err);
+    mt_spent_note(w->p->study->model->spent, MT_SPENT_DESIGNS, out->evals);
+    return rc;
+}
+
+mt_status mt_workspace_eval_uncounted(void *context, const double *t, bool with_gradient,
+                                      mt_nlp_values *out, mt_err *err)
 {
     mt_workspace *const w = context;
     const mt_problem *const p = w->p;

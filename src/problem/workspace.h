@@ -60,12 +60,20 @@ mt_status mt_workspace_use(mt_workspace *w, const mt_case *c, mt_err *err);
 void mt_workspace_back(mt_workspace *w, const mt_case *c);
 /* dx_i/dt_i at the last evaluation. */
 double mt_workspace_stretch(const mt_workspace *w, int i);
-/* The present stage of the case as a search problem (arrays belong to the case). */
+/* The present stage of the case as a search problem (arrays belong to the case), for
+ * mt_workspace_solve. */
 mt_nlp mt_workspace_nlp(mt_workspace *w);
 /* The nlp's callback: context is the workspace. Fails: MT_E_INTERRUPTED, and as its parts
  * do. */
 mt_status mt_workspace_eval(void *context, const double *t, bool with_gradient,
                             mt_nlp_values *out, mt_err *err);
+/* The same for who counts his evaluations himself, or has mt_workspace_solve do it. */
+mt_status mt_workspace_eval_uncounted(void *context, const double *t, bool with_gradient,
+                                      mt_nlp_values *out, mt_err *err);
+/* mt_nlp_solve of an nlp whose callback does not count; its evaluations are (base/spent.h). */
+mt_status mt_workspace_solve(const mt_workspace *w, const mt_nlp *nlp,
+                             const mt_nlp_options *opt, mt_arena *mem, mt_nlp_result *out,
+                             mt_err *err);
 /* The first half of an evaluation: parameters, expressions. The views follow with
  * mt_view_solve. */
 mt_status mt_workspace_place(mt_workspace *w, const double *t, bool with_gradient, mt_err *err);

@@ -27,8 +27,9 @@ static void add_footer(const mt_result_run *run, mt_text *out)
     mt_html_escape(run->modetune_version == NULL ? "" : run->modetune_version, out);
     mt_text_add(out, " (");
     mt_html_escape(run->build.commit == NULL ? "" : run->build.commit, out);
-    mt_text_addf(out, "), seed %ld, %ld evaluations from %d starts.", run->seed,
-                 run->evaluations, run->starts);
+    mt_text_addf(out, "), seed %ld, %d starts, ", run->seed, run->starts);
+    mt_report_spent(run, out);
+    mt_text_add(out, ".");
     for (int i = 0; i < run->n_inputs; i++) {
         mt_text_add(out, "<br>");
         mt_html_escape(run->inputs[i].file, out);

@@ -289,6 +289,33 @@ void mt_tell_overrides(const mt_teller *to, const mt_result_run *run)
     }
 }
 
+void mt_report_spent(const mt_result_run *run, mt_text *out)
+{
+    const mt_result_spent *const s = &run->spent;
+    const struct {
+        const char *name;
+        long n;
+    } parts[] = {{"search", s->search},
+                 {"positions", s->positions},
+                 {"descriptions", s->descriptions},
+                 {"spread", s->spread},
+                 {"relaxations", s->relaxations},
+                 {"trade", s->trade}};
+    int told = 0;
+    mt_text_addf(out, "%ld evaluations", run->evaluations);
+    for (int i = 0; i < MT_COUNT(parts); i++) {
+        if (parts[i].n > 0) {
+            mt_text_addf(out, "%s%s %ld", told++ == 0 ? " (" : ", ", parts[i].name, parts[i].n);
+        }
+    }
+    mt_text_add(out, told > 0 ? ")" : "");
+    if (s->multiplications > 0) {
+        char work[MT_NUMBER_TEXT];
+        mt_text_addf(out, ", %s multiplications of proofs",
+                     mt_report_number((double)s->multiplications, 2, work));
+    }
+}
+
 void mt_tell_answer(const mt_teller *to, const mt_result *result, bool with_published)
 {
     static const char relaxed[] = "What would let a design exist, one change at a time";

@@ -354,6 +354,19 @@ static const mt_field BUILD_FIELDS[] = {
 static const mt_record BUILD = MT_F_RECORD_OF(BUILD_FIELDS);
 #undef THIS
 
+#define THIS mt_result_spent
+static const mt_field SPENT_FIELDS[] = {
+    MT_F_LONG("search", search),
+    MT_F_LONG("positions", positions),
+    MT_F_LONG("descriptions", descriptions),
+    MT_F_LONG("spread", spread),
+    MT_F_LONG("relaxations", relaxations),
+    MT_F_LONG("trade", trade),
+    MT_F_LONG("multiplications", multiplications),
+};
+static const mt_record SPENT = MT_F_RECORD_OF(SPENT_FIELDS);
+#undef THIS
+
 #define THIS mt_result_override
 static const char *const OVERRIDES[] = {"parameter", "search"};
 static const mt_field OVERRIDE_FIELDS[] = {
@@ -379,6 +392,7 @@ static const mt_field RUN_FIELDS[] = {
     MT_F_COUNT_OR_NULL("found_once", found_once, 0),
     MT_F_NUMBER_OR_NULL("estimated_missing", estimated_missing),
     MT_F_LONG("evaluations", evaluations),
+    MT_F_RECORD("spent", spent, mt_result_spent, SPENT),
     MT_F_CHOICES("incomplete", incomplete, n_incomplete, PHASES),
     MT_F_LIST("overrides", overrides, n_overrides, mt_result_override, OVERRIDE),
     MT_F_LIST("inputs", inputs, n_inputs, mt_result_digest, DIGEST),

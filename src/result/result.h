@@ -332,6 +332,18 @@ typedef struct mt_result_override {
     double original; /* what the files say; NaN: nothing */
 } mt_result_override;
 
+/* What an answer cost: evaluations of a design in all configurations, or of one more position
+ * of a drive, by what they were for; run.evaluations is their sum. */
+typedef struct mt_result_spent {
+    long search;
+    long positions;    /* of drives, wherever a design was followed */
+    long descriptions; /* analyses anew of the original design and of those recommended */
+    long spread;
+    long relaxations;
+    long trade;           /* all points, with all of this */
+    long multiplications; /* of proofs, about */
+} mt_result_spent;
+
 typedef struct mt_result_run {
     const char *modetune_version;
     mt_result_build build;
@@ -340,6 +352,7 @@ typedef struct mt_result_run {
     const char *gsl_version;
     long seed;
     long evaluations;
+    mt_result_spent spent;
     int starts;
     /* of a search from starts; -1, NaN: not applicable */
     int distinct_designs;

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/spent.h"
 #include "base/workers.h"
 #include "problem/goal_avoid.h"
 #include "problem/objective.h"
@@ -94,7 +95,7 @@ static mt_status judge_design(const mt_discrete *d, int worker, mt_combination *
     mt_nlp_values *const v = &d->values[worker];
     mt_err own = {0};
     c->evals = 1;
-    const mt_status rc = mt_workspace_eval(w, c->t, false, v, &own);
+    const mt_status rc = mt_workspace_eval_uncounted(w, c->t, false, v, &own);
     if (rc != MT_OK) {
         c->stop = rc == MT_E_INTERRUPTED ? MT_STOP_USER : MT_STOP_DONE;
         c->judged = rc != MT_E_INTERRUPTED;
@@ -354,10 +355,13 @@ mt_status mt_discrete_judge(mt_discrete *d, int n, mt_combination *list, long bu
     const mt_tasks designs = {(n + PER_TASK - 1) / PER_TASK, judge_designs, tape_designs, &j};
     MT_TRY(mt_workers_run(d->n_workers, d->workers[0]->scope, d->mixed ? &searches : &designs,
                           err));
+    long n_designs = 0; /* those on record among them; what is mixed counts where it searches */
     for (int i = 0; i < n; i++) {
+        n_designs += d->mixed ? 0 : list[i].evals;
         d->evals += list[i].evals;
         d->starts += list[i].starts;
         d->stop = list[i].stop > d->stop ? list[i].stop : d->stop;
     }
+    mt_spent_note(d->p->study->model->spent, MT_SPENT_DESIGNS, n_designs);
     return MT_OK;
 }

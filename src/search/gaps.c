@@ -230,8 +230,9 @@ static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int
     }
     c.hint = from != NULL ? hint : NULL;
     const mt_nlp nlp = mt_workspace_nlp(w);
-    mt_status rc = c.n_aims > 1 ? search_in_order(w, s, why)
-                                : mt_nlp_solve(&nlp, &options, &s->mem, &s->found, why);
+    mt_status rc = c.n_aims > 1
+                       ? search_in_order(w, s, why)
+                       : mt_workspace_solve(w, &nlp, &options, &s->mem, &s->found, why);
     if (rc == MT_OK && c.n_aims == 1) {
         rc = mt_search_repeated(w, options.max_evals, &s->mem, &s->found, why);
     }

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/spent.h"
 #include "nlp/merit.h"
 #include "nlp/starts.h"
 #include "problem/family.h"
@@ -217,6 +218,7 @@ static mt_status sample(mt_workspace *w, int n, int most, long spent, mt_arena *
             enough = most == 1 && violation <= 0.0 && mt_ties_agree(p, below);
         }
         out->evals++;
+        mt_spent_note(p->study->model->spent, MT_SPENT_DESIGNS, 1);
     }
     MT_TRY(rc);
     bool kept[CANDIDATES_MOST] = {false};

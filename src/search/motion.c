@@ -18,6 +18,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/spent.h"
 #include "mechanics/products.h"
 
 static const double PART = 0.1;     /* of a clearance, between two positions */
@@ -175,6 +176,7 @@ static mt_status look(walk *w, double at, int next, mt_err *err)
                   .slope = mt_arena_f64(w->mem, (size_t)w->n_edges, 1)};
     MT_TRY(mt_arena_check(w->mem, err));
     w->out->positions++;
+    mt_spent_note(w->ws->p->study->model->spent, MT_SPENT_POSITIONS, 1);
     w->inputs[w->ws->p->n] = at;
     mt_status rc = mt_analysis_solve(w->a, w->inputs, &opt, &why);
     if (rc == MT_OK && w->a->modes.n_unstable > 0) {

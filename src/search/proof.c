@@ -4,14 +4,18 @@
 #include <math.h>
 
 #include "base/format.h"
+#include "base/spent.h"
 #include "problem/demand.h"
 
 void mt_proof_free(mt_proof *proof)
 {
+    double work = 0.0;
     for (int i = 0; proof->views != NULL && i < proof->question.n_views; i++) {
+        work += proof->views[i] != NULL ? proof->views[i]->operations : 0.0;
         mt_enclosure_delete(proof->views[i]);
         proof->views[i] = NULL;
     }
+    mt_spent_note(proof->spent, MT_SPENT_MULTIPLICATIONS, (long)work);
 }
 
 static mt_status enclose(mt_proof *proof, const mt_problem *p, mt_err *err)
@@ -84,7 +88,7 @@ mt_status mt_proof_init(mt_proof *proof, const mt_case *c, mt_arena *mem, mt_err
     const size_t n = (size_t)p->n;
     const size_t n_demands = (size_t)p->n_demands;
     const size_t n_bands = (size_t)p->n_bands;
-    *proof = (mt_proof){.possible = false};
+    *proof = (mt_proof){.spent = p->study->model->spent};
     proof->views = mt_arena_alloc(mem, (size_t)p->n_views, sizeof(mt_enclosure *));
     proof->bands = mt_arena_alloc(mem, n_bands, sizeof *proof->bands);
     proof->bases = mt_arena_alloc(mem, n_bands, sizeof *proof->bases);

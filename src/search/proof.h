@@ -25,6 +25,7 @@ typedef struct mt_proof {
     bool covers;
     char reason[MT_REASON_SIZE]; /* why there is no certificate; empty: there can be */
     bool possible;
+    struct mt_spent *spent; /* where its work is noted; NULL */
 } mt_proof;
 
 /* Results in mem but the enclosures, which mt_proof_free gives back. `possible` false, with the

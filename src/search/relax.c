@@ -100,7 +100,7 @@ static mt_status evaluate(void *context, const double *t, bool with_gradient,
                           mt_nlp_values *out, mt_err *err)
 {
     const relaxed *const r = context;
-    MT_TRY(mt_workspace_eval(r->w, t, with_gradient, out, err));
+    MT_TRY(mt_workspace_eval_uncounted(r->w, t, with_gradient, out, err));
     if (r->move->kind == MT_MOVE_BOUND) {
         beyond_bound(r, t, with_gradient, out);
     } else {
@@ -223,7 +223,7 @@ static mt_status search_once(const job *j, mt_case *c, mt_workspace *w, mt_move 
     double *const hint = mt_arena_f64(&out->mem, (size_t)c->p->n + 1, 1);
     MT_TRY(mt_arena_check(&out->mem, err));
     const mt_nlp nlp = nlp_of(&r, c, j->near, hint);
-    const mt_status own = mt_nlp_solve(&nlp, &opt, &out->mem, &found, &why);
+    const mt_status own = mt_workspace_solve(w, &nlp, &opt, &out->mem, &found, &why);
     out->evals += found.evals;
     out->starts += found.starts;
     out->stopped = out->stopped || found.stop == MT_STOP_USER;

@@ -335,7 +335,7 @@ static mt_status evaluate(void *context, const double *t, bool with_gradient,
     mt_workspace *const ws = m->ws;
     const int rows = m->n_kept + m->n_rows;
     (void)with_gradient; /* the matrices need the vectors anyhow */
-    MT_TRY(mt_workspace_eval(ws, t, true, &m->values, err));
+    MT_TRY(mt_workspace_eval_uncounted(ws, t, true, &m->values, err));
     MT_TRY(matrices(m, true, err));
     out->f = m->values.f;
     memcpy(out->df, m->values.df, (size_t)ws->c->n_t * sizeof *out->df);

@@ -42,7 +42,7 @@ static mt_status first_stage(mt_workspace *const *workers, int n_workers, const 
         nlp.origin = from;
         nlp.hint = NULL;
     }
-    return mt_nlp_solve(&nlp, &opt, mem, out, err);
+    return mt_workspace_solve(workers[0], &nlp, &opt, mem, out, err);
 }
 
 /* The stages of one search after the first. */
@@ -63,6 +63,7 @@ static mt_status aims_at(const stages *s, const double *t, double *f, mt_err *er
     const mt_arena_mark mark = mt_arena_get_mark(s->mem);
     mt_workspace_back(s->ws, s->first);
     mt_status rc = mt_case_values_init(s->first, s->mem, &v, err);
+    s->out->evals++;
     rc = rc == MT_OK ? mt_workspace_eval(s->ws, t, false, &v, err) : rc;
     for (int k = 0; k < s->first->n_aims && rc == MT_OK; k++) {
         f[k] = mt_aim_value(s->ws, k, NULL);
@@ -80,7 +81,7 @@ static mt_status refine(stages *s, int i, mt_err *err)
     double *const limit = s->limit + ((ptrdiff_t)i * c->n_aims);
     mt_nlp_result next = {0};
     const long most = s->first->search.max_evaluations;
-    const long left = most - s->out->evals;
+    const long left = most - s->out->evals - 2; /* its objectives before and behind it */
     const long budget = most > 0 && left < STAGE_EVALUATIONS ? left : STAGE_EVALUATIONS;
     if (budget <= 0) {
         s->out->stop = MT_STOP_MAX_EVALS;
@@ -97,7 +98,7 @@ static mt_status refine(stages *s, int i, mt_err *err)
     opt.starts = 1;
     opt.max_evals = budget;
     nlp.origin = old->t;
-    MT_TRY(mt_nlp_solve(&nlp, &opt, s->mem, &next, err));
+    MT_TRY(mt_workspace_solve(s->ws, &nlp, &opt, s->mem, &next, err));
     MT_TRY(mt_search_repeated(s->ws, most > 0 ? budget : 0, s->mem, &next, err));
     s->out->evals += next.evals;
     s->out->stop = next.stop;
@@ -243,6 +244,11 @@ static mt_status search(mt_workspace *const *workers, int n_workers, const doubl
     MT_TRY(mt_search_repeated(ws, c->search.max_evaluations, mem, out, err));
     if (c->n_aims == 1 || out->compromise || out->n_solutions == 0 ||
         out->stop != MT_STOP_DONE) {
+        return mt_search_join_continua(ws, mem, out, err);
+    }
+    const long most = c->search.max_evaluations;
+    if (most > 0 && most - out->evals < out->n_solutions) { /* nothing for their objectives */
+        out->stop = MT_STOP_MAX_EVALS;
         return mt_search_join_continua(ws, mem, out, err);
     }
     stages s = {.ws = ws, .first = c, .mem = mem, .out = out};

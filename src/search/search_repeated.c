@@ -83,7 +83,7 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
     opt.max_solutions = 1;
     opt.least_change = false;
     opt.max_evals = left < SOLVE_EVALUATIONS ? left : SOLVE_EVALUATIONS;
-    mt_status rc = mt_nlp_solve(nlp, &opt, w->mem, &end, &own);
+    mt_status rc = mt_workspace_solve(ws, nlp, &opt, w->mem, &end, &own);
     w->evals += end.evals;
     w->stop = end.stop == MT_STOP_USER ? MT_STOP_USER : w->stop;
     const bool is = rc == MT_OK && end.n_solutions > 0 && !end.compromise;

@@ -111,6 +111,20 @@ class Budget(CliTest):
         self.expect(0, "run", "studies/two.json", "-o", "plain")
         self.assertRegex(self.expect(1, "diff", "results/two", "plain/two").stdout, "override m +")
 
+    def test_a_trade_study_spends_what_its_points_spend_alone(self):
+        """Of catalogues: points are not searched again from their neighbours. They tell their best designs alone."""
+        self.two_masses()
+        ends = '"lower": 0.1, "upper": 100'
+        self.assertIn(ends, study())
+        catalogue = lambda extra="": study(extra=', "recommendations": 1' + extra).replace(ends, '"catalogue": [1, 1.5, 2, 3, 4, 6, 8, 12]')
+        self.write("studies/trade.json", catalogue(', "trade": {"vary": [{"parameter": "m", "values": [1, 2, 4]}]}'))
+        self.write("studies/two.json", catalogue())
+        spent = json.loads(self.expect(0, "run", "studies/trade.json", "--format", "json").stdout)["run"]["spent"]
+        alone = [json.loads(self.expect(0, "run", "studies/two.json", "--set", f"m={m}", "--format", "json").stdout)["run"]
+                 for m in (1, 2, 4)]
+        self.assertEqual(spent["trade"], sum(r["evaluations"] for r in alone))
+        self.assertEqual(spent["search"], alone[0]["spent"]["search"])
+
     def test_apply_writes_what_was_solved(self):
         """The model that apply writes has the frequencies that were asked for."""
         self.two_masses()

@@ -199,6 +199,7 @@ static void fill_run(mt_result *r)
                              .gsl_version = "2.7.1",
                              .seed = 1,
                              .evaluations = 1234,
+                             .spent = {1000, 100, 14, 20, 30, 70, 123456789},
                              .starts = 16,
                              .distinct_designs = 9,
                              .found_once = 3,

@@ -59,6 +59,17 @@ def members_of(value, path=()):
             yield from members_of(value[i], path + (i,))
 
 
+def accounted(study, result):
+    """What was spent adds up, and has room for all that the result shows."""
+    spent = dict(result["run"]["spent"])
+    designs = [result["baseline"], *result["recommendations"]]
+    positions = sum(m["positions"] for d in designs for m in d["motion"])
+    spent.pop("multiplications")
+    good = (sum(spent.values()) == result["run"]["evaluations"] and spent["descriptions"] >= 2 * len(designs) and spent["positions"] >= positions
+            and (spent["trade"] > 0) == (result["trade"] is not None))
+    return [] if good else [f"{study.name}: does not add up: {result['run']}"]
+
+
 def seen_in(schema, root, value, seen, where="#"):
     """Note which objects of the schema the value has an example of."""
     while "$ref" in schema:
@@ -126,6 +137,7 @@ def main():
             problems += [f"{study.name}: {e.json_path}: {e.message}" for e in schema.errors_of_original(result)]
             problems += reported(study, path, ran, verify)
             seen_in(schema.text, schema.text, result, seen)
+            problems += accounted(study, result)
             checked += 1
             problems += required(study, schema, result, dropped)
     problems += [f"{where}: no result has one" for where, _ in objects(schema.text) if where not in seen]
