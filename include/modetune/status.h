@@ -52,6 +52,9 @@ typedef enum mt_wish {
     MT_WISH_END     /* at once, also where what was found is being made ready */
 } mt_wish;
 
+/* Why he wants it to end, which the answer says. */
+typedef enum mt_cause { MT_CAUSE_INTERRUPT, MT_CAUSE_TIME_LIMIT } mt_cause;
+
 enum { MT_ERR_TEXT_SIZE = 1024 };
 
 /* The caller's record of a failure: fixed size, no heap, NULL allowed wherever a `mt_err *` is

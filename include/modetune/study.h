@@ -56,6 +56,8 @@ typedef struct mt_solve_options {
     /* NULL, or called now and then from the caller's thread with one line of text */
     void (*progress)(void *context, const char *text);
     void *progress_context;
+    /* NULL, or asked, with stop_context, of an answer that was cut: an mt_cause */
+    int (*cause)(void *context);
 } mt_solve_options;
 
 /**

@@ -166,6 +166,7 @@ mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_solve
     mt_err own = {.code = MT_OK};
     MT_TRY(mt_arena_init(&q->mem, 0, err));
     mt_interrupt_init(&q->interrupt, opt->stop, opt->stop_context, study->model->interrupt);
+    q->interrupt.cause = opt->cause;
     mt_interrupt_enter(&q->interrupt, MT_PHASE_BASELINE, true);
     mt_spent_init(&q->spent);
     MT_TRY(ask(q, study, err));

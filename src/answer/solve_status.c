@@ -291,7 +291,10 @@ mt_status mt_answer_note_cuts(const mt_answer *a, mt_err *err)
         list = mt_arena_printf(&result->mem, "%s%s%s", list, link, run->incomplete[i]);
     }
     result->status = MT_RESULT_INTERRUPTED;
-    result->status_text = mt_arena_printf(&result->mem, "Interrupted (not complete: %s). %s",
+    const bool late = mt_interrupt_cause(a->interrupt) == MT_CAUSE_TIME_LIMIT;
+    run->cut_by = late ? "time limit" : "interrupt";
+    result->status_text = mt_arena_printf(&result->mem, "%s (not complete: %s). %s",
+                                          late ? "Stopped at the time limit" : "Interrupted",
                                           list, result->status_text);
     return mt_arena_check(&result->mem, err);
 }

@@ -414,6 +414,10 @@ static mt_status describe(const trade *t, mt_result *result, mt_err *err)
     MT_TRY(mt_arena_check(mem, err));
     *out = (mt_trade_result){.n_points = t->n};
     MT_TRY(describe_what(t, mem, out, err));
+    const char *const unanswered =
+        mt_interrupt_cause(t->study->model->interrupt) == MT_CAUSE_TIME_LIMIT
+            ? "Not answered: the time limit came first."
+            : "Interrupted before it was answered.";
     out->points = mt_arena_alloc(mem, (size_t)t->n, sizeof *out->points);
     MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < t->n; k++) {
@@ -425,9 +429,8 @@ static mt_status describe(const trade *t, mt_result *result, mt_err *err)
                                  .values = mt_arena_f64(mem, MT_MAX_VARY, 1),
                                  .status = r != NULL ? r->status : MT_RESULT_INTERRUPTED,
                                  .best = mt_recommendation_default()};
-        told->status_text = mt_arena_strdup(mem, r != NULL && r->status_text != NULL
-                                                     ? r->status_text
-                                                     : "Interrupted before it was answered.");
+        told->status_text = mt_arena_strdup(
+            mem, r != NULL && r->status_text != NULL ? r->status_text : unanswered);
         MT_TRY(mt_arena_check(mem, err));
         memcpy(told->values, p->values, sizeof p->values);
         if (best != NULL) {

@@ -5,6 +5,7 @@ void mt_interrupt_init(mt_interrupt *i, int (*wish)(void *context), void *contex
                        mt_interrupt *whole)
 {
     i->wish = wish;
+    i->cause = NULL;
     i->context = context;
     i->whole = whole;
     i->phase = 0;
@@ -60,6 +61,14 @@ void mt_interrupt_cut(mt_interrupt *i, int phase)
 bool mt_interrupt_is_cut(const mt_interrupt *i, int phase)
 {
     return (atomic_load(&i->cut) & (1U << (unsigned)phase)) != 0U;
+}
+
+int mt_interrupt_cause(const mt_interrupt *i)
+{
+    while (i != NULL && i->whole != NULL) {
+        i = i->whole;
+    }
+    return i != NULL && i->cause != NULL ? i->cause(i->context) : MT_CAUSE_INTERRUPT;
 }
 
 bool mt_interrupt_any(const mt_interrupt *i)

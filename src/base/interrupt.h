@@ -23,7 +23,9 @@ enum { MT_INTERRUPT_ORDER = 128 };
 
 typedef struct mt_interrupt {
     int (*wish)(void *context); /* an mt_wish; called by all workers; NULL: none ever */
-    void *context;
+    /* an mt_cause, asked by one thread after a wish; NULL: MT_CAUSE_INTERRUPT */
+    int (*cause)(void *context);
+    void *context; /* of both */
     /* NULL, or of the work that this is a part of: its wish is this one's, and where this is
      * cut it is */
     struct mt_interrupt *whole;
@@ -46,6 +48,9 @@ mt_status mt_interrupt_check(mt_interrupt *i, mt_err *err);
 /* Note that a phase is not complete (one that was not even begun). */
 void mt_interrupt_cut(mt_interrupt *i, int phase);
 bool mt_interrupt_is_cut(const mt_interrupt *i, int phase);
+/* Why anything is cut, an mt_cause: of the outermost work. NULL:
+ * MT_CAUSE_INTERRUPT. */
+int mt_interrupt_cause(const mt_interrupt *i);
 /* Is any phase cut? */
 bool mt_interrupt_any(const mt_interrupt *i);
 

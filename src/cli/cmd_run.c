@@ -69,6 +69,7 @@ static int answer(job *j)
     mt_args progress_args = *j->args;
     opt.threads = j->args->threads;
     opt.stop = j->stops ? mt_terminal_wish : NULL;
+    opt.cause = j->stops ? mt_terminal_cause : NULL;
     opt.progress = progress;
     opt.progress_context = &progress_args;
     j->profile = mt_cli_profile(j->args, &j->counts);

@@ -365,6 +365,12 @@ int mt_terminal_wish(void *unused)
     return now - since < MAKE_READY_NS ? MT_WISH_FINISH : MT_WISH_END;
 }
 
+int mt_terminal_cause(void *unused)
+{
+    (void)unused;
+    return mt_terminal_is_stopped() ? MT_CAUSE_INTERRUPT : MT_CAUSE_TIME_LIMIT;
+}
+
 void mt_terminal_last_words(const char *text)
 {
     set_actions(SIG_DFL);

@@ -69,6 +69,8 @@ void mt_terminal_limit(double seconds);
 /* An mt_wish, the stop of a solve: to finish, and, a moment after the signal or the end of the
  * time, to end. Any thread. */
 int mt_terminal_wish(void *unused);
+/* An mt_cause, why it wishes so: a signal, or the end of the time. */
+int mt_terminal_cause(void *unused);
 /* One line (cut where it is too long) that is written to standard error when a signal ends the
  * program from now on; NULL: none any more. Not while signals are held. */
 void mt_terminal_last_words(const char *text);

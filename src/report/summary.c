@@ -56,12 +56,12 @@ static void add_line(const mt_teller *to, mt_text *line)
     add_paragraph(to, "  ", line);
 }
 
-/* Was it computed? A section that an interrupt left out says so. */
+/* Was it computed? A section that a stopped run left out says so. */
 static bool is_known(const mt_teller *to, const char *title, const void *items)
 {
     if (items == NULL) {
         mt_text line = {0};
-        mt_text_add(&line, "not computed: an interrupt came first");
+        mt_text_add(&line, "not computed: the run was stopped before");
         add_heading(to, title);
         add_line(to, &line);
     }

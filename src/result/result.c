@@ -378,6 +378,7 @@ static const mt_record OVERRIDE = MT_F_RECORD_OF(OVERRIDE_FIELDS);
 #undef THIS
 
 #define THIS mt_result_run
+static const char *const CAUSES[] = {"interrupt", "time limit"};
 static const char *const PHASES[] = {"search",      "recommendations", "spread", "certificates",
                                      "relaxations", "published",       "trade"};
 static const mt_field RUN_FIELDS[] = {
@@ -394,6 +395,7 @@ static const mt_field RUN_FIELDS[] = {
     MT_F_LONG("evaluations", evaluations),
     MT_F_RECORD("spent", spent, mt_result_spent, SPENT),
     MT_F_CHOICES("incomplete", incomplete, n_incomplete, PHASES),
+    MT_F_CHOICE_OR_NULL("cut_by", cut_by, CAUSES),
     MT_F_LIST("overrides", overrides, n_overrides, mt_result_override, OVERRIDE),
     MT_F_LIST("inputs", inputs, n_inputs, mt_result_digest, DIGEST),
     MT_F_LIST("outputs", outputs, n_outputs, mt_result_digest, DIGEST),

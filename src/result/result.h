@@ -368,6 +368,7 @@ typedef struct mt_result_run {
      * they write ("search", "spread", ...) */
     int n_incomplete;
     const char **incomplete;
+    const char *cut_by; /* "interrupt" | "time limit"; NULL: nothing was cut */
 } mt_result_run;
 
 /* What the designs are best in, first of all in the first. */

@@ -28,6 +28,9 @@ class Budget(CliTest):
             found = json.loads(self.result(name="long"))
             self.assertEqual(found["status"], "interrupted")
             self.assertIn("search", found["run"]["incomplete"])
+            self.assertEqual(found["run"]["cut_by"], "time limit")
+            self.assertRegex(found["status_text"], r"^Stopped at the time limit \(not complete: search.*\)\. ")
+            self.assertIn(found["status_text"], done.stdout)
             self.expect(0, "check", "results/long/result.json")
             self.assertTrue((self.folder / "results/short/result.json").exists())  # a signal leaves the rest undone
 
@@ -116,7 +119,10 @@ class Budget(CliTest):
         self.two_masses()
         ends = '"lower": 0.1, "upper": 100'
         self.assertIn(ends, study())
-        catalogue = lambda extra="": study(extra=', "recommendations": 1' + extra).replace(ends, '"catalogue": [1, 1.5, 2, 3, 4, 6, 8, 12]')
+
+        def catalogue(extra=""):
+            return study(extra=', "recommendations": 1' + extra).replace(ends, '"catalogue": [1, 1.5, 2, 3, 4, 6, 8, 12]')
+
         self.write("studies/trade.json", catalogue(', "trade": {"vary": [{"parameter": "m", "values": [1, 2, 4]}]}'))
         self.write("studies/two.json", catalogue())
         spent = json.loads(self.expect(0, "run", "studies/trade.json", "--format", "json").stdout)["run"]["spent"]

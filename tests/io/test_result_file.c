@@ -211,7 +211,8 @@ static void fill_run(mt_result *r)
                              .n_outputs = MT_COUNT(OUTPUTS),
                              .outputs = OUTPUTS,
                              .n_incomplete = MT_COUNT(INCOMPLETE),
-                             .incomplete = INCOMPLETE};
+                             .incomplete = INCOMPLETE,
+                             .cut_by = "time limit"};
 }
 
 static bool make_sample(sample *s)

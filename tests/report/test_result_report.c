@@ -133,8 +133,9 @@ static void check_missing(mt_test *t, const mt_result *r, const char *title, int
     char text[160];
     char page[160];
     mt_text told[2] = {{.s = NULL}, {.s = NULL}};
-    (void)snprintf(text, sizeof text, "\n%s\n  not computed: an interrupt came first\n", title);
-    (void)snprintf(page, sizeof page, "<h2>%s</h2>\n<p>not computed: an", title);
+    (void)snprintf(text, sizeof text, "\n%s\n  not computed: the run was stopped before\n",
+                   title);
+    (void)snprintf(page, sizeof page, "<h2>%s</h2>\n<p>not computed: the run", title);
     mt_report_summary(r, true, &told[0]);
     mt_report_html(r, &told[1]);
     mt_test_row(t, "%s, %d not computed", title, wanted);
