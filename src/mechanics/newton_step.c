@@ -294,6 +294,16 @@ bool mt_newton_at_rest(mt_newton_work *w, const mt_elimination *e)
     return rest;
 }
 
+/* out[nq] = g + A^T lambda: as Z^T g, but forces cancel where they act, not in a sum over all
+ * freedoms, whose rounding would move what is soft. */
+static void find_unbalanced(const mt_newton_work *w, double *out)
+{
+    for (int j = 0; j < w->sys->nq; j++) {
+        const double *const column = w->a + ((ptrdiff_t)j * w->p->m);
+        out[j] = w->g[j] + mt_dot(w->p->m, column, w->lambda);
+    }
+}
+
 /* Multipliers, then gradient, Hessian and residual with them. */
 static mt_status balance(mt_newton_work *w, const mt_placement *at, mt_arena *mem,
                          mt_elimination *e, mt_err *err)
@@ -310,7 +320,8 @@ static mt_status balance(mt_newton_work *w, const mt_placement *at, mt_arena *me
     MT_TRY(mt_eliminate_multipliers(e, w->v, w->lambda, mem, err));
     load_multipliers(w);
     mt_lagrangian_curve(w->p->data, at, w->p->m, w->lambda_cx, &w->l);
-    mt_eliminate_project(e, w->g, w->reduced);
+    find_unbalanced(w, w->v);
+    mt_eliminate_project(e, w->v, w->reduced);
     weigh(w, &w->l, mt_max_abs(e->n, w->reduced));
     return MT_OK;
 }
@@ -435,7 +446,7 @@ mt_status mt_newton_linearise(mt_newton_work *w, const mt_placement *at, mt_aren
         minus_c[i] = -w->c[i];
     }
     MT_TRY(mt_eliminate_particular(e, minus_c, w->v, mem, err));
-    memcpy(hv, w->g, (size_t)nq * sizeof *hv);
+    find_unbalanced(w, hv);
     mt_gemv(false, nq, nq, 1.0, w->h, nq, w->v, 1.0, hv);
     mt_eliminate_project(e, hv, w->reduced);
     const int order = e->n + (w->p->trim ? 1 : 0);
