@@ -131,6 +131,23 @@ static mt_status phase(mt_answer *a, mt_phase which, mt_err *err)
     return cut ? leave(a, which, err) : MT_OK;
 }
 
+/* A design may take so much of a budget on its way along one drive. */
+enum { OF_BUDGET = 10 };
+
+static int positions_of(long most)
+{
+    const long part = most / OF_BUDGET;
+    return most <= 0 ? 0 : part < 1 ? 1 : part < INT_MAX ? (int)part : INT_MAX;
+}
+
+long mt_question_left(const mt_question *q)
+{
+    const long most = q->study.search.max_evaluations;
+    const long spent =
+        mt_spent_of(&q->spent, MT_SPENT_DESIGNS) + mt_spent_of(&q->spent, MT_SPENT_POSITIONS);
+    return most <= 0 ? LONG_MAX : spent < most ? most - spent : 0;
+}
+
 /* The question, asked of a model that knows the interrupt. */
 static mt_status ask(mt_question *q, const mt_study *study, mt_err *err)
 {
@@ -140,6 +157,7 @@ static mt_status ask(mt_question *q, const mt_study *study, mt_err *err)
     q->model.spent = &q->spent;
     q->study = *study;
     q->study.model = &q->model;
+    q->study.search.max_positions = positions_of(study->search.max_evaluations);
     q->study.references = mt_arena_alloc(&q->mem, n, sizeof *study->references);
     MT_TRY(mt_arena_check(&q->mem, err));
     for (size_t i = 0; i < n; i++) {

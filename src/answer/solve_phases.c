@@ -10,6 +10,7 @@
 #include "describe/certificates.h"
 #include "describe/describe_discrete.h"
 #include "describe/describe_relax.h"
+#include "search/motion.h"
 #include "search/search.h"
 
 /* The original design, without which there is nothing to tell. */
@@ -27,6 +28,37 @@ mt_status mt_answer_baseline(mt_answer *a, mt_err *err)
     }
     MT_TRY(mt_describe_design(p, &original, NULL, result, &result->baseline, err));
     return mt_describe_baseline_reasons(p, result, err);
+}
+
+/* Evaluations to describe one design: mt_describe_design, and its motions. */
+static long description(const mt_answer *a)
+{
+    return 2 + mt_motion_most(&a->asked);
+}
+
+static int limited(long n, int least, int most)
+{
+    return n < least ? least : n > most ? most : (int)n;
+}
+
+/*
+ * A budget is of the whole answer. The search has what is left of it but for a quarter at most,
+ * which describes its designs (one in any case), and another one where other weights are asked
+ * for; what it leaves is there for all that follows.
+ */
+enum { PART_AFTER = 4 };
+
+static void allow_search(mt_answer *a)
+{
+    const long left = mt_question_left(a->q);
+    if (left == LONG_MAX) {
+        return;
+    }
+    const long part = left / PART_AFTER;
+    const long n = limited(part / description(a), 1, a->study->recommendations);
+    const long rest = left - (n * description(a)) - (a->study->n_published > 0 ? 2 : 0) -
+                      (mt_spread_is_asked(a->p) ? part : 0);
+    a->asked.search.max_evaluations = rest > 1 ? rest : 1;
 }
 
 /* Solutions of the search over gap assignments in the form of any other search. */
@@ -61,6 +93,7 @@ static mt_status search_gaps(mt_answer *a, mt_err *err)
 
 mt_status mt_answer_search(mt_answer *a, mt_err *err)
 {
+    allow_search(a);
     if (mt_study_is_discrete(a->study)) {
         return mt_discrete_solve(a->workers, a->n_workers, &a->mem, &a->found, &a->discrete,
                                  err);
@@ -82,7 +115,8 @@ mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
     mt_result *const result = a->result;
     const bool discrete = mt_study_is_discrete(a->study);
     const bool kinds = a->gaps.n_solutions > 0;
-    const int most = a->study->recommendations;
+    const int asked = a->study->recommendations;
+    const int most = limited(mt_question_left(a->q) / description(a), 1, asked);
     const int n = found->n_solutions < most ? found->n_solutions : most;
     result->recommendations =
         mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->recommendations);
@@ -108,10 +142,11 @@ mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
     }
     a->mark = mt_result_get_mark(result);
     if (found->n_solutions > n) {
-        MT_TRY(mt_describe_warn(result, err,
-                                "%d more distinct designs were found; \"recommendations\" in "
-                                "the study says how many to report",
-                                found->n_solutions - n));
+        MT_TRY(mt_describe_warn(result, err, "%d more distinct designs were found; %s",
+                                found->n_solutions - n,
+                                n < asked ? "\"max_evaluations\" leaves nothing to analyse them"
+                                          : "\"recommendations\" in the study says how many to "
+                                            "report"));
     }
     return MT_OK;
 }
@@ -121,7 +156,7 @@ mt_status mt_answer_spread(mt_answer *a, mt_err *err)
     return a->result->n_recommendations == 0
                ? MT_OK
                : mt_spread_solve(a->workers[0], &a->found.solutions[0], &a->mem,
-                                 &a->found.evals, a->result, err);
+                                 mt_question_left(a->q), &a->found.evals, a->result, err);
 }
 
 mt_status mt_answer_certify(mt_answer *a, mt_err *err)
@@ -150,6 +185,10 @@ mt_status mt_answer_relax(mt_answer *a, mt_err *err)
     mt_moves moves = {0};
     if (!a->infeasible && !a->impossible && !a->found.compromise) {
         return MT_OK;
+    }
+    const long left = mt_question_left(a->q);
+    if (left < LONG_MAX) { /* beside what is counted as the search's */
+        a->asked.search.max_evaluations = a->found.evals + left;
     }
     MT_TRY(mt_study_is_discrete(a->study)
                ? mt_relax_discrete(a->workers, a->n_workers, &a->found, &a->mem, &moves, err)

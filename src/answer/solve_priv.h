@@ -2,6 +2,8 @@
 #ifndef ANSWER_SOLVE_PRIV_H
 #define ANSWER_SOLVE_PRIV_H
 
+#include <limits.h>
+
 #include "answer/solve.h"
 #include "base/spent.h"
 #include "base/workers.h"
@@ -40,6 +42,8 @@ typedef struct mt_question {
     mt_problem *p; /* owned */
 } mt_question;
 
+/* Evaluations that are left to the question; LONG_MAX: the study sets no budget. */
+long mt_question_left(const mt_question *q);
 /* Zeroed before. An interrupt of the study's model is the whole of the question's own. Fails:
  * as mt_problem_new. mt_question_free follows, whatever comes back. */
 mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_solve_options *opt,

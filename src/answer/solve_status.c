@@ -46,10 +46,12 @@ mt_status mt_answer_warn(const mt_answer *a, mt_err *err)
         }
     }
     if (a->found.stop == MT_STOP_MAX_EVALS) {
-        MT_TRY(mt_describe_warn(a->result, err,
-                                "the budget of evaluations ran out after %ld: a larger "
-                                "\"max_evaluations\" may find more",
-                                a->found.evals));
+        MT_TRY(
+            mt_describe_warn(a->result, err,
+                             "the budget of evaluations ran out (%ld of %ld were made in the "
+                             "search): a larger \"max_evaluations\" may find more",
+                             mt_spent_in(&a->q->spent, MT_PHASE_SEARCH, MT_SPENT_DESIGNS),
+                             a->study->search.max_evaluations));
     }
     MT_TRY(warn_of_missing(a, err));
     for (int i = 0; i < a->result->n_recommendations; i++) {

@@ -10,10 +10,14 @@
  */
 #include "answer/spread.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
 #include "search/discrete.h"
+
+/* Of a search without which none is begun. */
+enum { EVALUATIONS_LEAST = 20 };
 
 typedef struct spread {
     mt_workspace *w; /* set to c */
@@ -23,6 +27,7 @@ typedef struct spread {
     const mt_nlp_solution *best;
     double *x; /* [n] */
     long evaluations;
+    long most; /* of each search; 0: no limit */
 } spread;
 
 static mt_status start(spread *s, mt_err *err)
@@ -69,6 +74,7 @@ static mt_status search_again(spread *s, int goal, double factor, mt_arena *mem,
     mt_nlp_result found = {0};
     nlp.origin = s->best->t;
     options.starts = 1;
+    options.max_evals = s->most;
     scale_weight(s->w->p, s->weight, goal, factor);
     const mt_status rc = mt_workspace_solve(s->w, &nlp, &options, mem, &found, err);
     scale_weight(s->w->p, s->weight, goal, 1.0);
@@ -123,6 +129,16 @@ static mt_status search_all(spread *s, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
+/* Searches that there are; one at least. */
+static long count(const mt_study *study)
+{
+    long n = 0;
+    for (int g = 0; g < study->n_goals; g++) {
+        n += MT_HAS(study->goals[g].weight) ? 2 : 0;
+    }
+    return n > 0 ? n : 1;
+}
+
 bool mt_spread_is_asked(const mt_problem *p)
 {
     return MT_HAS(p->study->spread.factor) && mt_objective_is(p->aims[0].type, MT_RESIDUALS) &&
@@ -130,7 +146,7 @@ bool mt_spread_is_asked(const mt_problem *p)
 }
 
 mt_status mt_spread_solve(mt_workspace *w, const mt_nlp_solution *best, mt_arena *mem,
-                          long *evaluations, mt_result *result, mt_err *err)
+                          long most, long *evaluations, mt_result *result, mt_err *err)
 {
     const mt_case *const asked = w->c;
     const size_t n = (size_t)w->p->n_demands;
@@ -143,6 +159,14 @@ mt_status mt_spread_solve(mt_workspace *w, const mt_nlp_solution *best, mt_arena
     memcpy(s.weight, asked->weight, n * sizeof *s.weight);
     s.c.weight = s.weight;
     MT_TRY(start(&s, err));
+    if (most < LONG_MAX) {
+        s.most = most / count(w->p->study);
+    }
+    if (most < LONG_MAX && s.most < EVALUATIONS_LEAST) {
+        result->n_spread = 0;
+        return mt_describe_warn(result, err,
+                                "spread: \"max_evaluations\" leaves nothing for it");
+    }
     mt_workspace_back(w, &s.c);
     const mt_status rc = search_all(&s, mem, err);
     mt_workspace_back(w, asked);

@@ -13,6 +13,6 @@
 /* Does the study ask for it? */
 bool mt_spread_is_asked(const mt_problem *p);
 mt_status mt_spread_solve(mt_workspace *w, const mt_nlp_solution *best, mt_arena *mem,
-                          long *evaluations, mt_result *result, mt_err *err);
+                          long most, long *evaluations, mt_result *result, mt_err *err);
 
 #endif

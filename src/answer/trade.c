@@ -27,6 +27,9 @@ typedef struct point {
 /* Points that are compiled at a time: each has about a quarter of a megabyte, or what its model
  * needs. */
 enum { BLOCK = 256 };
+/* Evaluations beside one local search that asks whether a neighbour knows better; and without
+ * which a point is not searched again. */
+enum { LOOKS = 3, WARM_LEAST = 30 };
 
 typedef struct trade {
     const mt_study *study;
@@ -194,14 +197,15 @@ static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt
             other < 0 ? NULL : best_of(t->points[other].first);
         const double *x = NULL;
         bool gain = false;
-        if (near == NULL || !near->feasible || stopped(t)) {
+        const long left = mt_question_left(p->q) - LOOKS;
+        if (near == NULL || !near->feasible || stopped(t) || left < WARM_LEAST) {
             continue;
         }
         MT_TRY(values_of(near, mem, &x, err));
         mt_interrupt_enter(&p->q->interrupt, MT_PHASE_SEARCH, false);
         p->q->spent.phase = MT_PHASE_SEARCH;
-        MT_TRY(mt_trade_improves(w, x, best_x, &gain, err));
-        if (!gain) {
+        MT_TRY(mt_trade_improves(w, x, best_x, &gain, left, err));
+        if (!gain || mt_question_left(p->q) < WARM_LEAST) {
             continue;
         }
         mt_result *fresh = NULL;
@@ -229,7 +233,12 @@ static mt_status solve_warm(void *context, int worker, int task, mt_scope *own, 
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&mem, 0, err));
-    mt_status rc = p->q == NULL ? ask(t, p, err) : MT_OK; /* where its record was read */
+    const bool known = p->q == NULL; /* its record was read */
+    mt_status rc = known ? ask(t, p, err) : MT_OK;
+    if (known && rc == MT_OK) { /* a budget is of both passes */
+        mt_spent_note(&p->q->spent, MT_SPENT_DESIGNS, p->evaluations);
+        mt_spent_note(&p->q->spent, MT_SPENT_MULTIPLICATIONS, p->multiplications);
+    }
     note_spent(p, -1); /* of the first pass: it is noted already */
     rc = rc == MT_OK ? mt_workspace_new(p->q->p, &w, err) : rc;
     rc = rc == MT_OK ? try_neighbours(t, k, w, own, &mem, err) : rc;

@@ -27,8 +27,8 @@ mt_status mt_trade_study(const mt_study *study, const double *values, mt_arena *
                          mt_study *out, mt_err *err);
 /* trade_warm.c: does a local search from x[n_variables] find a design of the point that w is of
  * (set to the whole of it, and again afterwards) that is better than best_x (NULL: any that
- * meets all goals)? */
+ * meets all goals)? In `most` evaluations at most, about. */
 mt_status mt_trade_improves(mt_workspace *w, const double *x, const double *best_x,
-                            bool *better, mt_err *err);
+                            bool *better, long most, mt_err *err);
 
 #endif

@@ -54,7 +54,7 @@ static mt_status open_gap(mt_workspace *w, const double *t, mt_arena *mem, mt_ca
 }
 
 static mt_status compare(mt_workspace *w, const double *x, const double *best_x, mt_arena *mem,
-                         bool *better, mt_err *err)
+                         bool *better, long most, mt_err *err)
 {
     const mt_problem *const p = w->p;
     double *const t = mt_arena_f64(mem, (size_t)p->n + 1, 1);
@@ -74,7 +74,7 @@ static mt_status compare(mt_workspace *w, const double *x, const double *best_x,
         mt_nlp nlp = mt_workspace_nlp(w);
         nlp.origin = t; /* its last entry, where there is a clearance, is 0: on the edges */
         opt.starts = 1;
-        opt.max_evals = LOCAL_EVALUATIONS;
+        opt.max_evals = most < LOCAL_EVALUATIONS ? most : LOCAL_EVALUATIONS;
         rc = mt_workspace_solve(w, &nlp, &opt, mem, &found, err);
     }
     mt_workspace_back(w, &p->whole);
@@ -87,13 +87,13 @@ static mt_status compare(mt_workspace *w, const double *x, const double *best_x,
 }
 
 mt_status mt_trade_improves(mt_workspace *w, const double *x, const double *best_x,
-                            bool *better, mt_err *err)
+                            bool *better, long most, mt_err *err)
 {
     mt_arena mem;
     mt_err why = {0};
     *better = false;
     MT_TRY(mt_arena_init(&mem, 0, err));
-    const mt_status rc = compare(w, x, best_x, &mem, better, &why);
+    const mt_status rc = compare(w, x, best_x, &mem, better, most, &why);
     mt_arena_free(&mem);
     /* a start without a value is no better start, and no failure */
     return mt_pass_final(rc, &why, err);

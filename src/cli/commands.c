@@ -60,7 +60,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_STARTS, '\0', "starts", "N", ON_STUDIES,
            "number of local searches instead of the study's \"starts\""),
     OPTION(MT_OPT_MAX_EVALUATIONS, '\0', "max-evaluations", "N", ON_STUDIES,
-           "most evaluations of the search instead of the study's \"max_evaluations\""),
+           "most evaluations of the answer instead of the study's \"max_evaluations\""),
     OPTION(
         MT_OPT_RESUME, '\0', "resume", NULL, BIT(MT_CMD_RUN),
         "go on from the journal of a run that was killed or interrupted, if there is one; the "

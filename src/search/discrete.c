@@ -120,16 +120,21 @@ static bool settled(const mt_discrete *d, const mt_combination *next, int most,
            best[most - 1]->feasible && next->least > best[most - 1]->f[0];
 }
 
-/* Evaluations that each combination of the next batch may use; 0: no limit; -1: the budget is
- * spent. */
-static long share_of_budget(const mt_discrete *d, int batch)
+/* Of the next n combinations so many as the budget has evaluations for, beside those that judge
+ * what might rank; *share: of each, 0: no limit. */
+static int affordable(const mt_discrete *d, int n, long *share)
 {
     const long most = d->c->search.max_evaluations;
-    const long left = (most - d->evals) / batch;
+    const long kept = KEPT * mt_discrete_judgement(d);
+    const long left = most - d->evals - (kept < most / 2 ? kept : most / 2);
+    const long least = d->mixed ? LEAST_BUDGET : 1;
+    *share = 0;
     if (most <= 0) {
-        return 0;
+        return n;
     }
-    return left >= (d->mixed ? LEAST_BUDGET : 1) ? left : -1;
+    n = left / least < n ? (int)(left > 0 ? left / least : 0) : n;
+    *share = n > 0 ? left / n : 0;
+    return n;
 }
 
 typedef struct ranking {
@@ -153,16 +158,20 @@ static mt_status enumerate(mt_discrete *d, int n, ranking *r, mt_discrete_report
     }
     for (int first = 0; first < n; first += batch) {
         const int size = n - first < batch ? n - first : batch;
-        const long budget = share_of_budget(d, size);
+        long share = 0;
+        const int now = affordable(d, size, &share);
         if (settled(d, &list[first], r->most, r->best, r->n)) {
             break;
         }
-        if (budget < 0 || d->stop == MT_STOP_USER) {
+        if (d->stop == MT_STOP_USER) {
+            break;
+        }
+        MT_TRY(mt_discrete_judge(d, now, list + first, share, err));
+        MT_TRY(rank(d, *all + first, now, r->most, r->best, &r->n, err));
+        if (now < size) {
             d->stop = d->stop == MT_STOP_USER ? MT_STOP_USER : MT_STOP_MAX_EVALS;
             break;
         }
-        MT_TRY(mt_discrete_judge(d, size, list + first, budget, err));
-        MT_TRY(rank(d, *all + first, size, r->most, r->best, &r->n, err));
     }
     report->all = d->stop == MT_STOP_DONE;
     return MT_OK;

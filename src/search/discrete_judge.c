@@ -144,6 +144,7 @@ static mt_status judge_tolerances(mt_workspace *w, mt_combination *c, mt_arena *
 {
     mt_robust_cuts cuts = {.n = 0};
     MT_TRY(mt_robust_judge(w, c->t, mem, &cuts, err));
+    c->evals++;
     if (!mt_is_met(cuts.missed.violation, 1.0)) {
         const double more = cuts.missed.violation;
         c->missed.squares += cuts.missed.squares;
@@ -158,6 +159,14 @@ static mt_status judge_tolerances(mt_workspace *w, mt_combination *c, mt_arena *
     return MT_OK;
 }
 
+long mt_discrete_judgement(const mt_discrete *d)
+{
+    const bool sampled = mt_robust_is_sampled(d->c);
+    return d->mixed || (!mt_family_any(d->p) && !sampled)
+               ? 0
+               : 1 + (sampled ? 1 : 0) + mt_motion_most(d->c);
+}
+
 mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err)
 {
     mt_workspace *const w = d->workers[0];
@@ -165,6 +174,13 @@ mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err)
     mt_err own = {0};
     const bool sampled = mt_robust_is_sampled(w->c);
     if (d->mixed || !c->feasible || c->followed || (!mt_family_any(w->p) && !sampled)) {
+        return MT_OK;
+    }
+    const long most = d->c->search.max_evaluations;
+    if (most > 0 && most - d->evals < mt_discrete_judgement(d)) {
+        d->stop = d->stop == MT_STOP_USER ? MT_STOP_USER : MT_STOP_MAX_EVALS;
+        c->feasible = false; /* not known */
+        c->judged = false;
         return MT_OK;
     }
     c->followed = true;
@@ -179,7 +195,7 @@ mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err)
         c->judged = false;
         return MT_OK;
     }
-    d->evals += c->evals - 1;
+    d->evals += c->evals; /* of which one, counted before, stands for the evaluation here */
     c->feasible = c->feasible && rc == MT_OK;
     return mt_pass_final(rc, &own, err);
 }
@@ -222,7 +238,7 @@ static mt_status close_on(const mt_discrete *d, const mt_combination *c, long bu
     if (out->search.starts <= 0) {
         out->search.starts = STARTS_BASE + (STARTS_PER_VARIABLE * (p->n - d->n_discrete));
     }
-    out->search.max_evaluations = budget;
+    out->search.max_evaluations = budget > 1 ? budget - 1 : budget; /* its objectives */
     out->hint = c->from;
     return MT_OK;
 }
@@ -282,7 +298,8 @@ mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_are
     mt_err why = {0};
     int stage = 0;
     *out = (mt_nlp_result){.n_undetermined = 0};
-    mt_status rc = close_on(d, c, 0, w, mem, &closed, err);
+    const long most = d->c->search.max_evaluations;
+    mt_status rc = close_on(d, c, most > 0 ? most - d->evals : 0, w, mem, &closed, err);
     closed.hint = NULL;
     const bool bands = d->p->n_clears > 0;
     if (rc == MT_OK) {

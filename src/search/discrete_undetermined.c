@@ -14,6 +14,8 @@
 
 /* Residuals and objectives carry no tolerance: relative to their size, as elsewhere (nlp.h). */
 static const double VALUE_TOL = 1e-6;
+/* Evaluations without which the search of a best combination is not begun once more. */
+enum { SEARCH_LEAST = 50 };
 
 typedef struct crossing {
     mt_discrete *d;
@@ -122,10 +124,25 @@ static mt_status cross(crossing *x, const mt_nlp_result *continuous, mt_nlp_resu
     return MT_OK;
 }
 
+/* Evaluations that they take at most: every value of each catalogue, and a search. */
+static long questions(const mt_discrete *d)
+{
+    long n = d->mixed ? SEARCH_LEAST : 1;
+    for (int k = 0; k < d->n_discrete; k++) {
+        n += d->p->study->variables[d->variable[k]].n_catalogue;
+    }
+    return n;
+}
+
 mt_status mt_discrete_undetermined(mt_discrete *d, const mt_combination *best,
                                    mt_nlp_result *out, mt_err *err)
 {
     crossing x = {.d = d};
+    const long most = d->c->search.max_evaluations;
+    if (most > 0 && most - d->evals < questions(d)) {
+        out->stop = out->stop == MT_STOP_USER ? MT_STOP_USER : MT_STOP_MAX_EVALS;
+        return MT_OK;
+    }
     mt_nlp_result continuous = {0};
     const mt_problem *const p = d->p;
     x.rows = p->n_eq + d->c->n_in + p->n_res + p->n_aims + p->n_clears;

@@ -43,6 +43,7 @@ typedef struct job {
     slot *slots;
     mt_nlp_options options;
     const int *hint_below; /* [n_bands] assignment of c->hint; NULL: none */
+    int most;              /* so many candidates are searched: the budget has no more */
 } job;
 
 enum { STARTS_PER_CANDIDATE = 24, SOLUTIONS_PER_CANDIDATE = 4, NEAREST = 6 };
@@ -78,6 +79,7 @@ static mt_status search_in_order(mt_workspace *w, slot *s, mt_err *err)
     MT_TRY(mt_arena_check(&s->mem, err));
     MT_TRY(mt_case_values_init(w->c, &s->mem, &v, err));
     MT_TRY(mt_workspace_eval(w, s->found.solutions[0].t, false, &v, err));
+    s->evals++;
     for (int k = 0; k < w->c->n_aims; k++) {
         s->aims[k] = mt_aim_value(w, k, NULL);
     }
@@ -165,6 +167,7 @@ static mt_status judge_best(slot *s, mt_workspace *w, bool last, bool *again, mt
     if (best->feasible && (w->c->clearance || mt_family_any(w->p))) {
         MT_TRY(mt_case_values_init(w->c, &s->mem, &v, err));
         MT_TRY(mt_workspace_eval(w, best->t, false, &v, err));
+        s->evals++;
         room = mt_clears_room(w);
     }
     if (best->feasible && mt_family_any(w->p)) {
@@ -175,6 +178,7 @@ static mt_status judge_best(slot *s, mt_workspace *w, bool last, bool *again, mt
     }
     if (best->feasible && mt_robust_is_sampled(w->c)) {
         MT_TRY(mt_search_judge(w, last, &s->mem, &s->corners, best, &worse, err));
+        s->evals++;
     }
     *again = added > 0 || worse;
     return MT_OK;
@@ -201,6 +205,13 @@ static void judge_clearance(const mt_case *c, mt_nlp_result *found)
     found->compromise = found->n_solutions > 0 && !found->solutions[0].feasible;
 }
 
+/* Is there something left of a candidate's share for one more round? */
+static bool has_round(const job *j, long evals)
+{
+    const long most = j->options.max_evals;
+    return most <= 0 || most - evals >= mt_gap_judgement(j->c) + MT_GAP_SEARCH_LEAST;
+}
+
 /* One search of candidate k with the cuts so far, from `from` (NULL: no hint). *again: a cut
  * was added. */
 static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int round,
@@ -212,7 +223,8 @@ static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int
     *again = false;
     mt_case held = *j->c;
     if (options.max_evals > 0) {
-        options.max_evals -= s->evals < options.max_evals ? s->evals : options.max_evals - 1;
+        const long left = options.max_evals - s->evals - mt_gap_judgement(j->c);
+        options.max_evals = left > 1 ? left : 1;
         held.search.max_evaluations = options.max_evals;
     }
     if (s->corners.n > 0) {
@@ -242,13 +254,14 @@ static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int
     s->evals += s->found.evals;
     s->starts += s->found.starts;
     if (rc == MT_OK && s->found.n_solutions > 0 && s->found.stop != MT_STOP_USER) {
-        rc = judge_best(s, w, round + 1 == CUT_ROUNDS, again, why);
+        const long judged = s->evals + mt_gap_judgement(j->c); /* at most */
+        const bool last = round + 1 == CUT_ROUNDS || !has_round(j, judged);
+        rc = judge_best(s, w, last, again, why);
     }
     return rc;
 }
 
-/* A candidate that cannot even be evaluated anywhere is no failure of the study: it has no
- * solution. */
+/* A candidate without a value anywhere is no failure of the study: it has no solution. */
 static mt_status search_candidate(void *context, int worker, int k, mt_scope *own, mt_err *err)
 {
     job *const j = context;
@@ -257,7 +270,8 @@ static mt_status search_candidate(void *context, int worker, int k, mt_scope *ow
     mt_scope *const before = w->scope;
     mt_err why = {0};
     bool again = true;
-    if (s->carried || mt_interrupted(j->p->study->model->interrupt)) {
+    if (s->carried || k >= j->most || mt_interrupted(j->p->study->model->interrupt)) {
+        s->found.stop = !s->carried && k >= j->most ? MT_STOP_MAX_EVALS : s->found.stop;
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&s->mem, 0, err));
@@ -385,13 +399,12 @@ static bool is_settled(const job *j)
     return met;
 }
 
-/* How often each of the candidates may be evaluated: an equal share of a part of what is left;
- * 0: as often as it takes. */
-static long share_of(const job *j, long spent, int part)
+/* Of a part of what is left. */
+static void share_out(job *j, long spent, int part)
 {
-    const long most = j->c->search.max_evaluations;
-    const long share = (most - spent) / part / (j->candidates->n > 0 ? j->candidates->n : 1);
-    return most <= 0 ? 0 : share > 1 ? share : 1;
+    const long left = (j->c->search.max_evaluations - spent) / part;
+    j->most = mt_gap_affordable(j->c, j->candidates->n, left);
+    j->options.max_evals = mt_gap_share(j->c, j->most, left);
 }
 
 static mt_status claim_slots(job *j, mt_arena *mem, mt_err *err)
@@ -465,7 +478,7 @@ static mt_status search_rest(const job *first, job *j, long spent, int n_workers
     MT_TRY(claim_slots(j, mem, err));
     out->evals = first->candidates->evals + j->candidates->evals;
     carry(first, j, &out->evals);
-    j->options.max_evals = share_of(j, spent + j->candidates->evals, 1);
+    share_out(j, spent + j->candidates->evals, 1);
     const mt_tasks tasks = {j->candidates->n, search_candidate, NULL, j};
     MT_TRY(mt_workers_run(n_workers, j->workers[0]->scope, &tasks, err));
     MT_TRY(collect(j->p, j, mem, out, err));
@@ -508,12 +521,12 @@ static mt_status search_and_prove(job *first, job *j, int n_workers, const mt_ga
     j->candidates = all;
     if (begin->n > 0) {
         MT_TRY(claim_slots(first, mem, err));
-        first->options.max_evals = share_of(first, begin->evals, FIRST_PART);
+        share_out(first, begin->evals, FIRST_PART);
         const mt_tasks tasks = {begin->n, search_candidate, NULL, first};
         MT_TRY(mt_workers_run(n_workers, w->scope, &tasks, err));
     }
     /* what they were given, not what they took: parts of a run agree on the rest */
-    const long spent = begin->evals + (first->options.max_evals * begin->n);
+    const long spent = begin->evals + (first->options.max_evals * first->most);
     MT_TRY(all->proven ? MT_OK : tell_early(first, early, mem, out, err));
     if (!all->proven && mt_interrupted(j->p->study->model->interrupt)) {
         *all = *begin;

@@ -66,6 +66,16 @@ mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, const mt_ga
 mt_status mt_gap_copy(const mt_case *c, const int *below, const mt_nlp_solution *from,
                       mt_arena *mem, const mt_nlp_solution **out, mt_err *err);
 
+/* gaps_budget.c: what a budget of evaluations has for candidates, of which `left` are left. A
+ * search of fewer than so many is not begun. */
+enum { MT_GAP_SEARCH_LEAST = 10 };
+/* To judge one design, with its objectives, at most. */
+long mt_gap_judgement(const mt_case *c);
+/* How many of n candidates are searched: one in any case; all, where there is no budget. */
+int mt_gap_affordable(const mt_case *c, int n, long left);
+/* How often each of n may be evaluated; 0: as often as it takes. */
+long mt_gap_share(const mt_case *c, int n, long left);
+
 enum { MT_GAP_SAMPLES_NEAR = 512 };
 /* gaps_candidates.c: the assignments worth searching, n rows of n_bands. */
 typedef struct mt_gap_candidates {

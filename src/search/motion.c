@@ -33,6 +33,8 @@ static const double SAME = 1e-12; /* positions nearer than this [rad, model leng
 /* A clearance of less, in percent, is none: rounding. */
 static const double ON_EDGE_PERCENT = 1e-9;
 enum { INTERVALS_AT_FIRST = 8, INTERVALS_MOST_AT_FIRST = 64, POSITIONS_MOST = 2000 };
+/* Of a way whatever the budget: its ends and one between. */
+enum { POSITIONS_LEAST = 3 };
 
 typedef struct edge {
     int mode;
@@ -62,6 +64,7 @@ typedef struct walk {
     edge *edges;
     sample *samples; /* of one way */
     int n;
+    int most; /* positions of one way */
     mt_motion *out;
     int way;
 } walk;
@@ -275,7 +278,7 @@ static mt_status refine(walk *w, mt_err *err)
             i = next;
             continue;
         }
-        if (w->n >= POSITIONS_MOST) {
+        if (w->n >= w->most) {
             w->out->end = w->out->end == MT_MOTION_WHOLE ? MT_MOTION_CAPPED : w->out->end;
             return MT_OK;
         }
@@ -310,7 +313,8 @@ static mt_status spread(walk *w, double left, double right, mt_err *err)
 {
     const double way = right - left;
     const double wanted = ceil(way / (STEP * w->unit));
-    const int pieces = (int)fmin(fmax(wanted, INTERVALS_AT_FIRST), INTERVALS_MOST_AT_FIRST);
+    const double asked = fmin(fmax(wanted, INTERVALS_AT_FIRST), INTERVALS_MOST_AT_FIRST);
+    const int pieces = (int)fmin(asked, w->most - 1);
     w->n = 0;
     w->samples = mt_arena_alloc(w->mem, POSITIONS_MOST, sizeof *w->samples);
     MT_TRY(mt_arena_check(w->mem, err));
@@ -349,6 +353,24 @@ static int list_positions(const mt_family *f, const double *positions, double un
     return n;
 }
 
+/* Positions of each of n ways. */
+static int most_of_way(const mt_case *c, int n)
+{
+    const int share = c->search.max_positions / (n > 0 ? n : 1);
+    const int least = share > POSITIONS_LEAST ? share : POSITIONS_LEAST;
+    return c->search.max_positions <= 0 || least > POSITIONS_MOST ? POSITIONS_MOST : least;
+}
+
+long mt_motion_most(const mt_case *c)
+{
+    long sum = 0;
+    for (int i = 0; i < c->p->n_families && c->search.max_positions > 0; i++) {
+        const mt_family *const f = &c->p->families[i];
+        sum += f->banded ? (long)(f->n - 1) * most_of_way(c, f->n - 1) : 0;
+    }
+    return sum;
+}
+
 static mt_status follow(walk *w, const mt_family *f, const int *below, mt_err *err)
 {
     double *const list = mt_arena_f64(w->mem, (size_t)f->n, 1);
@@ -365,6 +387,7 @@ static mt_status follow(walk *w, const mt_family *f, const int *below, mt_err *e
     out->way_room = mt_arena_f64(w->mem, (size_t)n, 1);
     MT_TRY(mt_arena_check(w->mem, err));
     w->shortest = SHORTEST * (out->to - out->from);
+    w->most = most_of_way(w->ws->c, n - 1);
     for (int i = 0; i + 1 < n; i++) {
         mt_way_bands bands = {0};
         MT_TRY(
@@ -413,13 +436,14 @@ mt_status mt_motion_follow(mt_workspace *ws, int family, const int *below, mt_ar
 }
 
 mt_status mt_motion_kept(mt_workspace *ws, const int *below, mt_arena *mem, bool *kept,
-                         mt_err *err)
+                         long *positions, mt_err *err)
 {
     *kept = true;
     for (int i = 0; i < ws->p->n_families && *kept; i++) {
         mt_motion m = {.room = 0.0};
         if (ws->p->families[i].banded) {
             MT_TRY(mt_motion_follow(ws, i, below, mem, &m, err));
+            *positions += m.positions;
             *kept = m.end != MT_MOTION_UNSTABLE && m.room >= -m.tolerance;
         }
     }

@@ -56,9 +56,13 @@ typedef struct mt_motion {
 mt_status mt_motion_follow(mt_workspace *ws, int family, const int *below, mt_arena *mem,
                            mt_motion *out, mt_err *err);
 
+/* Evaluations that it takes at most to follow a design over all motions; 0: there are none, or
+ * there is no limit. */
+long mt_motion_most(const mt_case *c);
+
 /* *kept: all families keep their bands over the motion, within their tolerance, and are stable.
- * As above. */
+ * *positions grows. As above. */
 mt_status mt_motion_kept(mt_workspace *ws, const int *below, mt_arena *mem, bool *kept,
-                         mt_err *err);
+                         long *positions, mt_err *err);
 
 #endif

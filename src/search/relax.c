@@ -114,6 +114,7 @@ typedef struct answer {
     mt_arena *mem;
     double *x;           /* [n] */
     double value;        /* that the number must have there; NaN: it does not do */
+    long evals;          /* of its confirmations */
     mt_robust_cuts cuts; /* so far */
 } answer;
 
@@ -125,6 +126,7 @@ static mt_status confirm(mt_workspace *w, const mt_move *m, const double *t, ans
     mt_err own = {0};
     MT_TRY(mt_case_values_init(w->c, a->mem, &v, err));
     mt_status rc = mt_workspace_eval(w, t, false, &v, &own);
+    a->evals++;
     rc = rc == MT_OK ? mt_robust_lower(w, &v, a->mem, &a->cuts, &own) : rc;
     if (rc != MT_OK) {
         return mt_pass_final(rc, &own, err);
@@ -135,7 +137,7 @@ static mt_status confirm(mt_workspace *w, const mt_move *m, const double *t, ans
      * position only, which says nothing of the others. */
     if (mt_family_any(w->p) && w->c->below != NULL) {
         bool kept = m->kind != MT_MOVE_EDGE;
-        MT_TRY(kept ? mt_motion_kept(w, w->c->below, a->mem, &kept, err) : MT_OK);
+        MT_TRY(kept ? mt_motion_kept(w, w->c->below, a->mem, &kept, &a->evals, err) : MT_OK);
         a->value = kept ? a->value : nan("");
     }
     return MT_OK;
@@ -211,9 +213,8 @@ static mt_status search_once(const job *j, mt_case *c, mt_workspace *w, mt_move 
     opt.seed = c->search.seed;
     opt.starts = STARTS;
     opt.max_evals = (long)STARTS * EVALUATIONS;
-    if (j->budget - out->evals < opt.max_evals) {
-        opt.max_evals = j->budget - out->evals;
-    }
+    const long left = j->budget - out->evals - a->evals - 1 - mt_motion_most(c);
+    opt.max_evals = left < opt.max_evals ? left : opt.max_evals; /* and its confirmation */
     *again = false;
     if (opt.max_evals <= 0) {
         return MT_OK;
@@ -240,16 +241,17 @@ static mt_status search_in(const job *j, mt_case *c, mt_workspace *w, mt_move *m
     answer a = {.mem = mem, .x = mt_arena_f64(mem, (size_t)c->p->n, 1)};
     bool again = true;
     MT_TRY(mt_arena_check(mem, err));
-    MT_TRY(search_once(j, c, w, m, out, &a, &again, err));
-    for (int round = 1; again && round < ROUNDS; round++) {
+    mt_status rc = search_once(j, c, w, m, out, &a, &again, err);
+    for (int round = 1; again && round < ROUNDS && rc == MT_OK; round++) {
         mt_case *const held = mt_arena_alloc(mem, 1, sizeof *held);
         MT_TRY(mt_arena_check(mem, err));
         MT_TRY(mt_case_copy(c, mem, held, err));
         MT_TRY(mt_robust_add_cuts(c, &a.cuts, mem, &held->robust, err));
         MT_TRY(mt_case_lay_out(held, c->below, 0, NULL, w, mem, err));
-        MT_TRY(search_once(j, held, w, m, out, &a, &again, err));
+        rc = search_once(j, held, w, m, out, &a, &again, err);
     }
-    return MT_OK;
+    out->evals += a.evals;
+    return rc;
 }
 
 /* With bands: in each of the assignments that samples come nearest to. */

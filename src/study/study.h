@@ -224,7 +224,10 @@ enum { MT_STARTS_MOST = 100000 };
 typedef struct mt_search {
     unsigned long seed;
     int starts;           /* 0: chosen by the number of variables */
-    long max_evaluations; /* 0: default */
+    long max_evaluations; /* of everything that the answer takes; 0: no limit */
+    /* of them, positions that a design may be followed over on its way along one drive; 0: as
+     * many as it takes. By who answers */
+    int max_positions;
 } mt_search;
 
 /* How far the best design of a misfit moves when single weights are changed: the uncertainty

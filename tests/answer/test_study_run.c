@@ -54,12 +54,13 @@ static void spent_budget__is_said(mt_test *t)
     study_case c;
     if (study_solve(t, MODEL,
                     SPRINGS TARGETS ", 'search': {'starts': 4, 'max_evaluations': 12}", &c)) {
-        CHECK(t, study_warns(&c, "the budget of evaluations ran out after 12"));
-        CHECK_INT(t, (int)c.result->run.spent.search, 12);
+        CHECK(t,
+              study_warns(
+                  &c, "the budget of evaluations ran out (8 of 12 were made in the search)"));
+        CHECK_INT(t, (int)c.result->run.spent.search, 8);
         CHECK_INT(t, (int)c.result->run.spent.descriptions,
                   2 + 2 * c.result->n_recommendations);
-        CHECK_INT(t, (int)c.result->run.evaluations,
-                  12 + (int)c.result->run.spent.descriptions);
+        CHECK_INT(t, (int)c.result->run.evaluations, 12);
     }
     study_free(&c);
 }
@@ -73,7 +74,7 @@ static void spent_budget__ends_the_list_of_objectives(mt_test *t)
                             "'objective': [{'minimise': 'change'}, {'minimise': 'k1'}],"
                             "'search': {'starts': 2, 'max_evaluations': 60}",
                     &c)) {
-        CHECK(t, c.result->run.spent.search <= 60);
+        CHECK(t, c.result->run.evaluations <= 60);
     }
     study_free(&c);
 }

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * A budget is shared out evenly, and before anything is begun: parts of a run agree on it,
+ * whatever each of them takes. A candidate has a search and at least one judgement of what that
+ * finds; where there is not that much for all, the first ones have it.
+ */
+#include "problem/robust_cut.h"
+#include "search/gaps.h"
+#include "search/motion.h"
+
+long mt_gap_judgement(const mt_case *c)
+{
+    return (c->n_aims > 1 ? 1 : 0) + (c->clearance || mt_family_any(c->p) ? 1 : 0) +
+           (mt_robust_is_sampled(c) ? 1 : 0) + mt_motion_most(c);
+}
+
+int mt_gap_affordable(const mt_case *c, int n, long left)
+{
+    const long most = left / (mt_gap_judgement(c) + MT_GAP_SEARCH_LEAST);
+    return c->search.max_evaluations <= 0 || most >= n ? n : most > 1 ? (int)most : 1;
+}
+
+long mt_gap_share(const mt_case *c, int n, long left)
+{
+    const long share = left / (n > 0 ? n : 1);
+    return c->search.max_evaluations <= 0 ? 0 : share > 1 ? share : 1;
+}

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""max_evaluations is of everything: searches, positions of drives, analyses anew, other weights, relaxations, each point of a trade study. What does not fit is
+left out and said; one that suffices changes no design."""
+import json
+import math
+
+from common_cli import MODEL, CliTest, main, study
+
+# A pedal that is driven and held, a pushrod to a bellcrank, and an actuator on the crank's other arm, whose length is free.
+PEDAL = {
+    "format": "modetune-model/1", "name": "Pedal", "dimension": 2,
+    "parameters": {"arm": 0.1, "k_rod": 2e4, "k_act": 3e4, "m": 0.8},
+    "points": {"pedal": [0, 0], "crank": [0.5, 0]},
+    "bodies": [{"name": "pedal", "mass_kg": 2, "inertia_kg_m2": 0.05, "centre": [0, 0.2]},
+               {"name": "crank", "mass_kg": "m", "inertia_kg_m2": 0.004, "centre": [0.5, 0.05]}],
+    "joints": [{"name": "pedal", "type": "revolute", "bodies": ["ground", "pedal"], "at": "pedal"},
+               {"name": "crank", "type": "revolute", "bodies": ["ground", "crank"], "at": "crank"}],
+    "springs": [{"name": "pushrod", "type": "axial", "bodies": ["pedal", "crank"], "at": [[0, 0.25], [0.5, 0.15]], "stiffness_n_per_m": "k_rod"},
+                {"name": "actuator", "type": "axial", "bodies": ["ground", "crank"], "at": [[0.9, "-arm"], [0.5, "-arm"]], "stiffness_n_per_m": "k_act"}],
+    "configurations": {name: {"drive": {"joint": "pedal", "position_rad": angle, "hold": "lock"}}
+                       for name, angle in (("left", -0.3), ("mid", 0), ("right", 0.3))},
+}
+
+
+def pedal(variables, **more):
+    return {"format": "modetune-study/1", "name": "Pedal", "model": "../problems/pedal.json", "variables": variables,
+            "goals": [{"type": "avoid", "configurations": ["left", "mid", "right"], "bands_hz": [[52, 58], [100, 110]], "margin_percent": 2}],
+            "objective": {"minimise": "change"}, **more}
+
+
+def masses(**more):
+    return {**json.loads(study()), **more}
+
+
+FREE = [{"parameter": "arm", "lower": 0.05, "upper": 0.2}, {"parameter": "m", "lower": 0.4, "upper": 1.6}]
+CHOICES = [1, 1.5, 2, 3, 4, 6, 8, 12]
+CATALOGUES = [{"parameter": p, "catalogue": CHOICES} for p in ("k1", "k2")]
+HIGH = [{"type": "frequency", "configuration": "held", "mode": 1, "at_least_hz": 0.15}]
+WEIGHTED = [{"type": "frequency", "configuration": "held", "mode": i, "target_hz": hz, "weight": 1} for i, hz in ((1, 0.14), (2, 0.34))]
+WEIGHTED += [{"type": "frequency", "configuration": "twice", "mode": 1, "target_hz": 0.12, "weight": 2}]
+KINDS = {
+    "pedal": pedal(FREE),
+    "pedal_clearance": pedal(FREE, objective={"maximise": "clearance"}),
+    "pedal_catalogue": pedal([{"parameter": "arm", "catalogue": [0.05 + 0.01 * i for i in range(16)]}, {"parameter": "m", "catalogue": [0.4, 0.8, 1.2, 1.6]}]),
+    "pedal_mixed": pedal([{"parameter": "arm", "catalogue": [0.05 + 0.01 * i for i in range(16)]}, FREE[1]]),
+    "pedal_tolerances": pedal([{**FREE[0], "tolerance_percent": 2}, FREE[1]]),
+    "targets": masses(),
+    "stages": masses(goals=HIGH, objective=[{"minimise": "change"}, {"minimise": "k1"}]),
+    "spread": masses(goals=WEIGHTED, objective={"minimise": "misfit"}, spread={"factor": 4}),
+    "infeasible": masses(goals=[{**HIGH[0], "at_least_hz": 5}]),
+    "bands": masses(goals=[{"type": "avoid", "configurations": ["held"], "bands_hz": [[0.1, 0.2], [0.3, 0.4]], "margin_percent": 2}]),
+    "catalogue": masses(variables=CATALOGUES),
+    "catalogue_infeasible": masses(variables=CATALOGUES, goals=[{**HIGH[0], "at_least_hz": 5}]),
+    "mixed": masses(variables=[CATALOGUES[0], {"parameter": "k2", "lower": 0.1, "upper": 100}]),
+    "trade": masses(goals=HIGH, objective={"minimise": "change"}, trade={"vary": [{"goal": 0, "member": "at_least_hz", "values": [0.12, 0.15, 0.2]}]}),
+}
+
+
+class Binds(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("problems/model.json", MODEL)
+        self.write("problems/pedal.json", json.dumps(PEDAL))
+
+    def answer(self, kind, *options, folder="out"):
+        self.write(f"studies/{kind}.json", json.dumps(KINDS[kind]))
+        done = self.run_program("run", f"studies/{kind}.json", "-o", folder, "--starts", "4", *options)
+        self.assertIn(done.returncode, (0, 1), done.stderr)
+        return json.loads((self.folder / folder / kind / "result.json").read_text(encoding="utf-8"))
+
+    def test_no_answer_takes_more_than_its_budget(self):
+        for kind in KINDS:
+            for most in (20, 60, 100, 300, 1000):
+                with self.subTest(kind, most=most):
+                    found = self.answer(kind, "--max-evaluations", str(most))
+                    spent = found["run"]["spent"]
+                    self.assertLessEqual(found["run"]["evaluations"] - spent["trade"], most, spent)
+                    points = found["trade"]["points"] if found["trade"] else []
+                    self.assertLessEqual(spent["trade"], most * len(points), spent)
+                    for design in found["recommendations"]:  # all that is told was analysed anew
+                        self.assertTrue(all(math.isfinite(f["recommended_hz"]) for f in design["frequencies"]))
+                    self.assertGreaterEqual(spent["descriptions"], 2 + 2 * len(found["recommendations"]))
+
+    def test_one_that_suffices_changes_no_design(self):
+        for kind in KINDS:
+            with self.subTest(kind):
+                free = self.answer(kind)
+                bound = self.answer(kind, "--max-evaluations", "1000000")
+                self.assertEqual(free["run"]["spent"], bound["run"]["spent"])
+                for r in (free, bound):
+                    r.pop("run")
+                self.assertEqual(free, bound)
+
+    def test_it_is_the_same_for_all_workers_and_parts(self):
+        for kind in ("pedal", "pedal_catalogue", "mixed", "trade", "spread"):
+            with self.subTest(kind):
+                budget = ("--max-evaluations", "300")
+                self.answer(kind, *budget, "--threads", "1", folder="whole")
+                self.answer(kind, *budget, "--threads", "3", folder="many")
+                whole = (self.folder / "whole" / kind / "result.json").read_bytes()
+                self.assertEqual(whole, (self.folder / "many" / kind / "result.json").read_bytes())
+                journals = [f"parts/{kind}.{part}-of-2.journal" for part in (1, 2)]
+                for part in (1, 2):
+                    self.expect(0, "run", f"studies/{kind}.json", "-o", "parts", "--shard", f"{part}/2", "--starts", "4", *budget)
+                joined = self.run_program("merge", f"studies/{kind}.json", *journals, "-o", "joined", "--starts", "4", *budget)
+                self.assertIn(joined.returncode, (0, 1), joined.stderr)
+                self.assertEqual(whole, (self.folder / "joined" / kind / "result.json").read_bytes())
+
+    def test_what_does_not_fit_is_said(self):
+        warned = " ".join(self.answer("spread", "--max-evaluations", "60")["warnings"])
+        self.assertIn('spread: "max_evaluations" leaves nothing for it', warned)
+        few = self.answer("pedal", "--max-evaluations", "300")
+        self.assertIn("the budget of evaluations ran out (", " ".join(few["warnings"]))
+        self.assertIn("of 300 were made in the search)", " ".join(few["warnings"]))
+        coarse = [m["grade"] for r in few["recommendations"] for m in r["motion"]]
+        self.assertTrue(coarse and set(coarse) <= {"sampled", "sampled coarsely", "not followed"}, coarse)
+
+
+if __name__ == "__main__":
+    main()
