@@ -12,6 +12,7 @@
 
 #include "base/format.h"
 #include "base/interrupt.h"
+#include "base/progress.h"
 #include "linalg/dense.h"
 #include "modal/balance.h"
 #include "modal/sign.h"
@@ -29,8 +30,12 @@ double mt_lowest_bodies(const mt_model *model, int configuration)
     return bodies;
 }
 
+/* What the search for modes consists of, where the progress is told. */
+static const char ITERATIONS[] = "iterations";
+
 typedef struct mt_lowest_operation {
     const mt_tree *tree;
+    bool told;     /* where the progress is */
     double *v;     /* motion of all bodies */
     double *f;     /* work */
     double *r;     /* [n_rigid] */
@@ -56,6 +61,7 @@ static mt_status apply(void *context, const double *x, double *y, mt_err *err)
     const operation *const o = context;
     const mt_tree *const t = o->tree;
     MT_TRY(mt_interrupt_check(t->sys->model->interrupt, err));
+    mt_progress_done(t->sys->model->progress, o->told);
     mt_tree_motion(t, x, NULL, o->v);
     mt_tree_momentum(t, o->v, o->f, y, o->r);
     if (t->n_rigid > 0) {
@@ -159,13 +165,24 @@ static mt_status solve(mt_lowest *l, mt_lowest_want want, mt_err *err)
                                  .refine = refine,
                                  .below = below,
                                  .context = o};
-    return mt_modal_lowest(&p, &l->mem, &l->found, err);
+    mt_progress *const progress = t->sys->model->progress;
+    o->told = mt_progress_begin(progress, ITERATIONS, 0);
+    const mt_status rc = mt_modal_lowest(&p, &l->mem, &l->found, err);
+    mt_progress_end(progress, o->told);
+    return rc;
 }
+
+/* The iterations in coordinates of the bodies. */
+typedef struct turns {
+    const mt_model *model;
+    bool told; /* where the progress is */
+} turns;
 
 static mt_status go_on(void *context, mt_err *err)
 {
-    const mt_system *const sys = context;
-    return mt_interrupt_check(sys->model->interrupt, err);
+    const turns *const t = context;
+    mt_progress_done(t->model->progress, t->told);
+    return mt_interrupt_check(t->model->interrupt, err);
 }
 
 /* What loads make of the bodies' stiffness, where they rest as drawn. */
@@ -206,12 +223,16 @@ static bool is_held(const mt_lowest *l, char *why)
 static mt_status solve_sparse(mt_lowest *l, mt_lowest_want want, mt_err *err)
 {
     mt_absolute_load load = {.mu = NULL};
+    turns t = {.model = l->sys->model};
     const size_t told = strlen(l->why);
     char why[(int)MT_ABSOLUTE_WHY + (int)MT_SPARSE_WHY] = "";
     mt_err own = {.code = MT_OK};
     mt_absolute *const o = &l->bodies;
     bool is = false;
-    MT_TRY(mt_absolute_new(l->sys, l->at, &l->mem, o, &is, why, err));
+    t.told = mt_progress_begin(t.model->progress, "matrices of the bodies", 0);
+    const mt_status made = mt_absolute_new(l->sys, l->at, &l->mem, o, &is, why, err);
+    mt_progress_end(t.model->progress, t.told);
+    MT_TRY(made);
     if (is) {
         mt_sparse_problem p = {.n = o->n,
                                .k = o->k,
@@ -221,14 +242,16 @@ static mt_status solve_sparse(mt_lowest *l, mt_lowest_want want, mt_err *err)
                                .count = want.count,
                                .shapes = want.shapes,
                                .check = go_on,
-                               .context = l->sys};
+                               .context = &t};
         if (l->sys->loaded) {
             MT_TRY(load_bodies(l, &p, &load, &is, why, err));
             p.g = &load.g;
             p.g_noise = load.noise;
         }
+        t.told = mt_progress_begin(t.model->progress, ITERATIONS, 0);
         const mt_status rc =
             is ? mt_modal_sparse(&p, &l->mem, &l->found, &l->mu, &is, why, &own) : MT_OK;
+        mt_progress_end(t.model->progress, t.told);
         if (rc != MT_OK && rc != MT_E_NO_CONVERGENCE) {
             return mt_fail(err, rc, "%s", own.text);
         }
@@ -260,9 +283,13 @@ mt_status mt_lowest_new(const mt_model *model, int configuration, int n_inputs,
     for (int i = 0; i < n_inputs && rc == MT_OK; i++) {
         l->at[i] = at[i];
     }
+    bool told = mt_progress_begin(model->progress, "equations", 0);
     rc = rc == MT_OK ? mt_system_new(model, configuration, n_inputs, inputs, at, &l->sys, err)
                      : rc;
+    mt_progress_end(model->progress, told);
+    told = mt_progress_begin(model->progress, "order of the bodies", 0);
     rc = rc == MT_OK ? mt_tree_new(l->sys, at, &l->mem, &l->tree, l->why, err) : rc;
+    mt_progress_end(model->progress, told);
     rc = rc == MT_OK && l->tree != NULL ? solve(l, want, err) : rc;
     rc = rc == MT_OK && l->tree == NULL ? solve_sparse(l, want, err) : rc;
     if (rc != MT_OK) {

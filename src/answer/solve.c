@@ -123,6 +123,7 @@ static mt_status phase(mt_answer *a, mt_phase which, mt_err *err)
     a->scope = mt_scope_in(a->whole, phases[which].name);
     mt_interrupt_enter(a->interrupt, (int)which, phases[which].makes_ready);
     a->spent->phase = (int)which;
+    mt_progress_phase(a->study->model->progress, phases[which].name, which == MT_PHASE_SEARCH);
     const mt_status rc = phases[which].work(a, &own);
     const bool cut = mt_interrupt_is_cut(a->interrupt, (int)which);
     if (rc != MT_OK && !(cut && !mt_is_final(rc))) {
@@ -413,13 +414,15 @@ mt_status mt_study_solve_with(const mt_study *study, const mt_solve_options *opt
     *out = NULL;
     MT_NOT_NULL(study, err);
     MT_TRY(MT_OPTIONS_TAKE(opt, &use, err));
+    mt_progress_phase(study->model->progress, "baseline", false);
     for (int i = 0; use.hint != NULL && i < study->n_variables; i++) {
         if (!isfinite(use.hint[i])) {
             return mt_fail(err, MT_E_USAGE, "mt_study_solve: hint[%d] is not finite", i);
         }
     }
     mt_status rc = mt_question_init(&q, study, &use, err);
-    const mt_scope whole = {.ledger = ledger, .interrupt = &q.interrupt};
+    const mt_scope whole = {
+        .ledger = ledger, .interrupt = &q.interrupt, .progress = study->model->progress};
     rc = rc == MT_OK ? mt_question_answer(&q, &use, &whole, early, out, err) : rc;
     mt_question_free(&q);
     return rc;

@@ -109,36 +109,54 @@ mt_status mt_answer_search(mt_answer *a, mt_err *err)
     return MT_OK;
 }
 
+static bool is_cut(const mt_answer *a, mt_phase which)
+{
+    return mt_interrupt_is_cut(a->interrupt, (int)which);
+}
+
+/* Solution i, described. */
+static mt_status recommend(mt_answer *a, int i, mt_err *err)
+{
+    mt_result *const result = a->result;
+    const bool discrete = mt_study_is_discrete(a->study);
+    const bool kinds = a->gaps.n_solutions > 0;
+    const mt_design design = {.t = a->found.solutions[i].t,
+                              .found = &a->found.solutions[i],
+                              .stage = a->stage,
+                              .rank = i + 1,
+                              .cut = is_cut(a, MT_PHASE_SEARCH),
+                              .discrete = discrete ? &a->discrete : NULL,
+                              .gaps = kinds ? &a->gaps : NULL,
+                              .below = kinds ? a->gaps.solutions[i].below : NULL};
+    mt_recommendation *const rec = &result->recommendations[i];
+    a->mark = mt_result_get_mark(result);
+    MT_TRY(mt_describe_design(a->p, &design, &result->baseline, result, rec, err));
+    MT_TRY(mt_describe_reasons(a->p, &design, &a->found, result, rec, err));
+    result->n_recommendations += is_cut(a, MT_PHASE_RECOMMENDATIONS) ? 0 : 1;
+    return MT_OK;
+}
+
 mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
 {
     const mt_nlp_result *const found = &a->found;
     mt_result *const result = a->result;
-    const bool discrete = mt_study_is_discrete(a->study);
-    const bool kinds = a->gaps.n_solutions > 0;
     const int asked = a->study->recommendations;
     const int most = limited(mt_question_left(a->q) / description(a), 1, asked);
     const int n = found->n_solutions < most ? found->n_solutions : most;
+    mt_progress *const progress = a->study->model->progress;
     result->recommendations =
         mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->recommendations);
     MT_TRY(mt_arena_check(&result->mem, err));
     MT_TRY(mt_describe_undetermined(a->p, found, result, err));
-    for (int i = 0; i < n; i++) {
-        a->mark = mt_result_get_mark(result);
-        const mt_design design = {.t = found->solutions[i].t,
-                                  .found = &found->solutions[i],
-                                  .stage = a->stage,
-                                  .rank = i + 1,
-                                  .cut = mt_interrupt_is_cut(a->interrupt, MT_PHASE_SEARCH),
-                                  .discrete = discrete ? &a->discrete : NULL,
-                                  .gaps = kinds ? &a->gaps : NULL,
-                                  .below = kinds ? a->gaps.solutions[i].below : NULL};
-        mt_recommendation *const rec = &result->recommendations[i];
-        MT_TRY(mt_describe_design(a->p, &design, &result->baseline, result, rec, err));
-        MT_TRY(mt_describe_reasons(a->p, &design, found, result, rec, err));
-        if (mt_interrupt_is_cut(a->interrupt, MT_PHASE_RECOMMENDATIONS)) {
-            return MT_OK;
-        }
-        result->n_recommendations++;
+    const bool told = mt_progress_begin(progress, "designs", n);
+    mt_status rc = MT_OK;
+    for (int i = 0; i < n && rc == MT_OK && !is_cut(a, MT_PHASE_RECOMMENDATIONS); i++) {
+        rc = recommend(a, i, err);
+        mt_progress_done(progress, told);
+    }
+    mt_progress_end(progress, told);
+    if (rc != MT_OK || is_cut(a, MT_PHASE_RECOMMENDATIONS)) {
+        return rc;
     }
     a->mark = mt_result_get_mark(result);
     if (found->n_solutions > n) {

@@ -464,7 +464,7 @@ static mt_status solve_all(trade *t, int threads, const mt_scope *scope, mt_err 
     for (int known = 0; known < t->n;) {
         const int to = t->n - known > BLOCK ? known + BLOCK : t->n;
         t->from = known;
-        const mt_tasks cold = {to - known, solve_cold, tape_cold, t};
+        const mt_tasks cold = {to - known, solve_cold, tape_cold, t, "points"};
         const mt_status rc = mt_workers_run(threads, &first, &cold, err);
         MT_TRY(rc == MT_E_INTERRUPTED ? MT_OK : rc);
         part = rc == MT_OK ? part : rc;
@@ -472,7 +472,7 @@ static mt_status solve_all(trade *t, int threads, const mt_scope *scope, mt_err 
         t->from = ready;
         ready = known == t->n ? known : known - t->size[1];
         if (t->warm && part == MT_OK && ready > t->from) {
-            const mt_tasks warm = {ready - t->from, solve_warm, tape_warm, t};
+            const mt_tasks warm = {ready - t->from, solve_warm, tape_warm, t, "points again"};
             MT_TRY(mt_workers_run(threads, &again, &warm, err));
         }
         ready = ready > t->from ? ready : t->from;

@@ -10,8 +10,10 @@ typedef struct pool {
     int next; /* first task not taken yet */
     const mt_tasks *tasks;
     const mt_scope *scope; /* of the list; NULL: nowhere */
-    bool *left;            /* [n] not to be done, or NULL: none */
-    int failed;            /* lowest task that failed; n: none */
+    mt_progress *progress;
+    bool told;  /* the list is a step of it */
+    bool *left; /* [n] not to be done, or NULL: none */
+    int failed; /* lowest task that failed; n: none */
     mt_status rc;
     mt_err err;
 } pool;
@@ -59,11 +61,17 @@ static void put(mt_ledger *ledger, const char *key, const mt_tape *tape)
 mt_scope mt_scope_in(const mt_scope *whole, const char *name)
 {
     mt_scope s = {.ledger = NULL};
-    if (whole == NULL || whole->ledger == NULL) {
+    if (whole == NULL) {
+        return s;
+    }
+    s.progress = whole->progress;
+    if (whole->ledger == NULL) {
         return s;
     }
     const char *const slash = whole->path[0] == '\0' ? "" : "/";
-    s = (mt_scope){whole->ledger, whole->interrupt, .inner = whole->inner};
+    s.ledger = whole->ledger;
+    s.interrupt = whole->interrupt;
+    s.inner = whole->inner;
     const int n = mt_snprintf(s.path, sizeof s.path, "%s%s%s", whole->path, slash, name);
     s.ledger = n >= 0 && n < MT_KEY_SIZE ? s.ledger : NULL;
     return s;
@@ -82,6 +90,7 @@ static int take(pool *p)
 {
     (void)pthread_mutex_lock(&p->lock);
     while (p->next < p->tasks->n && p->left != NULL && p->left[p->next]) {
+        mt_progress_done(p->progress, p->told);
         p->next++;
     }
     const int task = p->next < p->tasks->n ? p->next++ : -1;
@@ -129,6 +138,7 @@ static void *work(void *argument)
         } else if (kept) {
             keep(tasks, task, &own);
         }
+        mt_progress_done(w->pool->progress, w->pool->told);
     }
     return NULL;
 }
@@ -193,7 +203,10 @@ mt_status mt_workers_run(int workers, mt_scope *scope, const mt_tasks *tasks, mt
     }
     mt_status rc = make_lock(&p.lock, err);
     if (rc == MT_OK) {
+        p.progress = scope == NULL ? NULL : scope->progress;
+        p.told = mt_progress_begin(p.progress, tasks->unit, tasks->n);
         run_all(workers, &p);
+        mt_progress_end(p.progress, p.told);
         (void)pthread_mutex_destroy(&p.lock);
         rc = p.rc;
         if (rc != MT_OK && err != NULL) {

@@ -5,6 +5,7 @@
 #include <pthread.h>
 
 #include "base/interrupt.h"
+#include "base/progress.h"
 #include "base/tape.h"
 
 enum { MT_WORKERS_MOST = 64, MT_KEY_SIZE = 128 };
@@ -37,6 +38,7 @@ typedef struct mt_scope {
     /* of the whole work: once anything of it is cut no task is kept, for the ones that follow
      * rest on what is missing */
     const mt_interrupt *interrupt;
+    mt_progress *progress; /* of the whole work; NULL: nobody listens */
     char path[MT_KEY_SIZE];
     int lists;  /* begun so far */
     bool inner; /* of a task: whoever does that does all of it */
@@ -62,6 +64,7 @@ typedef struct mt_tasks {
      * be run as if it had not been tried. */
     void (*tape)(void *context, int task, mt_tape *tape);
     void *context;
+    const char *unit; /* what tasks are called where the progress is told */
 } mt_tasks;
 
 /* Do all tasks on `workers` threads (at least 1; the caller's own thread is worker 0), but for

@@ -169,6 +169,21 @@ static mt_status read_format(const char *s, int command, mt_format *out, mt_err 
     return rc;
 }
 
+static mt_status read_progress(const char *s, const char *option, mt_progress_form *out,
+                               mt_err *err)
+{
+    static const char *const names[] = {"auto", "line", "json", "none"};
+    char suggestion[SUGGESTION_TEXT];
+    for (int i = 0; i < MT_COUNT(names); i++) {
+        if (strcmp(s, names[i]) == 0) {
+            *out = (mt_progress_form)i;
+            return MT_OK;
+        }
+    }
+    return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is none of auto, line, json, none%s", option,
+                   s, did_you_mean(s, names, MT_COUNT(names), "", suggestion));
+}
+
 static mt_status store(mt_args *args, int option, const char *value, mt_err *err)
 {
     const mt_option *const o = &mt_options[option];
@@ -209,6 +224,8 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
         return read_part(value, o->name, args, err);
     case MT_OPT_MAX_MEMORY:
         return mt_limits_read_size(value, &args->max_memory, err);
+    case MT_OPT_PROGRESS:
+        return read_progress(value, o->name, &args->progress, err);
     case MT_OPT_FORMAT:
         return read_format(value, args->command, &args->format, err);
     default:

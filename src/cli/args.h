@@ -31,6 +31,7 @@ typedef enum mt_option_id {
     MT_OPT_RESUME,
     MT_OPT_SHARD,
     MT_OPT_PROFILE,
+    MT_OPT_PROGRESS,
     MT_OPT_MAX_MEMORY,
     MT_OPT_RANK,
     MT_OPT_MODEL,
@@ -102,9 +103,18 @@ typedef enum mt_format {
     MT_FORMAT_SARIF
 } mt_format;
 
+/* The first: a line on a terminal, else now and then a plain one. */
+typedef enum mt_progress_form {
+    MT_PROGRESS_AUTO,
+    MT_PROGRESS_LINE,
+    MT_PROGRESS_JSON,
+    MT_PROGRESS_NONE
+} mt_progress_form;
+
 typedef struct mt_args {
     int command; /* mt_command_id, MT_CMD_NONE */
     mt_format format;
+    mt_progress_form progress;
     bool given[MT_OPT_IDS];
     const char *value[MT_OPT_IDS]; /* of the last one */
     int count;                     /* --count, 0: not given */

@@ -9,6 +9,7 @@
 #include "cli/damped.h"
 #include "cli/profile.h"
 #include "cli/shapes.h"
+#include "cli/watch.h"
 #include "report/table.h"
 
 enum { HZ_DIGITS = 6, RATIO_DIGITS = 2 };
@@ -336,7 +337,10 @@ static mt_status one(sink *to, const mt_subject *s, int c, mt_err *err)
     mt_arena mem = {.first = NULL};
     mt_status rc = mt_arena_init(&mem, 0, err);
     v.doubts = mt_doubt_list_default(&mem);
+    s->model->progress = mt_watch_begin(to->args, 0, "modes");
     rc = rc == MT_OK ? look(to->args, &v, err) : rc;
+    s->model->progress = NULL;
+    mt_watch_end(rc == MT_OK);
     if (rc != MT_OK || v.m == NULL) {
         goto done;
     }

@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "cli/profile.h"
 #include "cli/save.h"
+#include "cli/watch.h"
 #include "cli/work.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
@@ -16,6 +17,7 @@
 /* One study on its way. */
 typedef struct job {
     const mt_args *args;
+    int operand;
     const char *path;
     mt_study *study;
     mt_result *result;
@@ -31,12 +33,6 @@ typedef struct job {
     bool stopped;        /* by a signal or the end of its time */
 } job;
 
-static void progress(void *context, const char *text)
-{
-    const mt_args *const args = context;
-    mt_terminal_progress(args->given[MT_OPT_QUIET], text);
-}
-
 /* A design is safe before a long proof begins. What cannot be written is said, and again where
  * the whole answer cannot be. */
 static mt_status keep(void *context, mt_result *so_far, mt_err *err)
@@ -44,7 +40,9 @@ static mt_status keep(void *context, mt_result *so_far, mt_err *err)
     const job *const j = context;
     char sha256[MT_SHA256_TEXT] = "";
     (void)err;
+    mt_watch_hold();
     (void)mt_save(j->args, j->path, so_far, mt_terminal_seconds() - j->start, sha256);
+    mt_watch_go_on();
     return MT_OK;
 }
 
@@ -60,18 +58,17 @@ static int answer(job *j)
     mt_io_options io = mt_cli_io(args);
     io.asked = &asked;
     mt_diagnostics messages = {.count = 0};
+    (void)mt_watch_begin(j->args, j->operand, "reading");
     mt_status rc = mt_study_load(j->path, &io, &j->study, &messages, &j->err);
+    mt_watch_end(rc == MT_OK);
     const int code = mt_cli_loaded(rc, &messages, &j->err);
     if (rc != MT_OK) {
         return code;
     }
     mt_solve_options opt = {.size = sizeof opt};
-    mt_args progress_args = *j->args;
     opt.threads = j->args->threads;
     opt.stop = j->stops ? mt_terminal_wish : NULL;
     opt.cause = j->stops ? mt_terminal_cause : NULL;
-    opt.progress = progress;
-    opt.progress_context = &progress_args;
     j->profile = mt_cli_profile(j->args, &j->counts);
     j->study->model->profile = j->profile;
     mt_ledger *ledger = NULL;
@@ -89,11 +86,13 @@ static int answer(job *j)
         mt_terminal_hold_signals();
         mt_terminal_limit(j->args->time_s);
     }
+    j->study->model->progress = mt_watch_begin(j->args, j->operand, "baseline");
     rc = mt_study_solve_with(j->study, &opt, ledger, kept ? &early : NULL, &j->result, &j->err);
     j->seconds = mt_terminal_seconds() - j->start;
     j->stopped = mt_terminal_wish(NULL) != MT_WISH_NONE;
     mt_terminal_limit(0.0);
-    mt_terminal_progress(j->args->given[MT_OPT_QUIET], NULL);
+    j->study->model->progress = NULL;
+    mt_watch_end(rc == MT_OK && j->result->status != MT_RESULT_INTERRUPTED);
     if (j->stopped && !mt_terminal_is_stopped() &&
         (rc == MT_E_INTERRUPTED || j->args->part > 0 ||
          (rc == MT_OK && j->result->status == MT_RESULT_INTERRUPTED))) {
@@ -166,7 +165,7 @@ typedef struct round_of {
 static int one_study(round_of *all, int i)
 {
     const mt_args *const args = all->args;
-    job j = {.args = args, .path = args->operands[i], .stops = all->stops};
+    job j = {.args = args, .operand = i, .path = args->operands[i], .stops = all->stops};
     char *const words = words_about(args, i);
     if (words == NULL) {
         return MT_EXIT_SYSTEM;

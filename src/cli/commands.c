@@ -70,6 +70,13 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_PROFILE, '\0', "profile", NULL, SOLVES | BIT(MT_CMD_MODES),
            "how often each stage of the evaluations was done or could be skipped, and the "
            "seconds that all workers took, on standard error"),
+    OPTION(MT_OPT_PROGRESS, '\0', "progress", "auto|line|json|none",
+           ON_STUDIES | BIT(MT_CMD_MODES),
+           "how far it is, on standard error: phase, share done, best objective so far, time "
+           "left; "
+           "line: a line every ten seconds, json: an object a line for programs "
+           "(schemas/progress.schema.json), auto: one line that is rewritten on a terminal, "
+           "elsewhere as line (default: auto, or with --quiet none)"),
     OPTION(MT_OPT_MAX_MEMORY, '\0', "max-memory", "SIZE", MT_ALL_COMMANDS,
            "most memory that files may make the program use: bytes, or with k, M, G or T (1024 "
            "each); what asks for more ends with exit status 4 (default: half of the memory of "

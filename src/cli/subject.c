@@ -6,6 +6,7 @@
 
 #include "base/format.h"
 #include "cli/cli.h"
+#include "cli/watch.h"
 #include "model/judge.h"
 #include "model/setting.h"
 #include "model/values.h"
@@ -91,7 +92,9 @@ int mt_subject_load(const mt_args *args, const char *path, const char *configura
     if (rc != MT_OK) {
         return mt_cli_failed(rc, &err);
     }
+    (void)mt_watch_begin(args, 0, "reading");
     rc = mt_model_load(path, &opt, &out->model, &messages, &err);
+    mt_watch_end(rc == MT_OK);
     const int code = mt_cli_loaded(rc, &messages, &err);
     if (code != MT_EXIT_DONE) {
         return code;

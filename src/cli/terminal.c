@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -19,20 +20,23 @@
 
 enum {
     LINE_SIZE = 8192, /* longer lines of talk are cut */
-    PROGRESS_SIZE = 101,
+    PROGRESS_SIZE = 512,
+    DEFAULT_WIDTH = 80,
     LAST_WORDS_SIZE = 512
 };
 
 static const char RED[] = "\033[1;31m";
 static const char YELLOW[] = "\033[1;33m";
 static const char PLAIN[] = "\033[0m";
+static const char WIPE[] = "\r\033[K"; /* the line of progress */
 
 #define NS_PER_S 1000000000LL
 /* How long what was found may be made ready after the signal; a user waits half a second at
  * most. */
 #define MAKE_READY_NS (NS_PER_S / 4)
 
-static atomic_llong stop_ns;   /* when the first signal was noted; 0: none */
+static atomic_llong stop_ns; /* when the first signal was noted; 0: none */
+static atomic_bool line_is_shown;
 static long long limit_ns = 0; /* when the time is over; 0: never */
 static char last_words[LAST_WORDS_SIZE];
 static size_t last_words_length = 0;
@@ -263,15 +267,33 @@ void mt_terminal_talk(bool quiet, const char *fmt, ...)
     }
 }
 
-void mt_terminal_progress(bool quiet, const char *text)
+bool mt_terminal_is_watched(void)
 {
-    if (!quiet && isatty(STDERR_FILENO) == 1) {
-        char shown[PROGRESS_SIZE];
-        (void)mt_snprintf(shown, sizeof shown, "%s", text == NULL ? "" : text);
-        (void)fputs("\r\033[K", stderr);
-        (void)show(stderr, shown, strlen(shown), false);
-        (void)fflush(stderr);
-    }
+    return isatty(STDERR_FILENO) == 1;
+}
+
+void mt_terminal_say(const char *text, size_t length)
+{
+    (void)show(stderr, text, length, true);
+}
+
+/* What fits beside the cursor: a line that is broken would not be wiped. */
+static size_t line_width(void)
+{
+    struct winsize w = {0};
+    const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &w) == 0 && w.ws_col > 1;
+    const size_t width = known ? (size_t)w.ws_col : DEFAULT_WIDTH;
+    return width < PROGRESS_SIZE ? width : PROGRESS_SIZE;
+}
+
+void mt_terminal_line(const char *text)
+{
+    char shown[PROGRESS_SIZE];
+    (void)mt_snprintf(shown, line_width(), "%s", text == NULL ? "" : text);
+    atomic_store(&line_is_shown, text != NULL);
+    (void)fputs(WIPE, stderr);
+    (void)show(stderr, shown, strlen(shown), false);
+    (void)fflush(stderr);
 }
 
 static long long now_ns(void)
@@ -281,18 +303,28 @@ static long long now_ns(void)
     return ((long long)now.tv_sec * NS_PER_S) + (long long)now.tv_nsec;
 }
 
+static void wipe_at_once(void)
+{
+    if (atomic_load(&line_is_shown)) {
+        const ssize_t said = write(STDERR_FILENO, WIPE, sizeof WIPE - 1);
+        (void)said;
+    }
+}
+
 /* These call only what a signal handler may. SA_RESETHAND: a signal raised in them is the
  * system's to answer, once they return. */
 static void note(int number)
 {
     long long none = 0;
     if (!atomic_compare_exchange_strong(&stop_ns, &none, now_ns())) {
+        wipe_at_once();
         (void)raise(number); /* the second one */
     }
 }
 
 static void say_and_end(int number)
 {
+    wipe_at_once();
     const ssize_t said = write(STDERR_FILENO, last_words, last_words_length);
     (void)said;
     (void)raise(number);

@@ -47,8 +47,13 @@ void mt_terminal_warning(const char *fmt, ...) MT_PRINTF(1, 2);
 void mt_terminal_diagnostics(const char *lines);
 /* Talk: a line to standard error unless quiet. */
 void mt_terminal_talk(bool quiet, const char *fmt, ...) MT_PRINTF(2, 3);
-/* One line that is written over again and again, on a terminal only. Text NULL: wipe it. */
-void mt_terminal_progress(bool quiet, const char *text);
+/* Is standard error a terminal? */
+bool mt_terminal_is_watched(void);
+/* Lines to standard error as they are. */
+void mt_terminal_say(const char *text, size_t length);
+/* One line of a terminal that is written over again and again. Text NULL: wipe it. A signal
+ * that ends the program wipes it, too. */
+void mt_terminal_line(const char *text);
 
 /* SIGPIPE and SIGXFSZ become errors of writing. SIGINT and SIGTERM stay as the system has them,
  * and end the program, but while they are held. */

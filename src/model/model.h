@@ -396,8 +396,9 @@ typedef struct mt_model {
      * asks it of a copy of this record that has the interrupt (and borrows everything else):
      * then no work on the model can be begun without passing by it. */
     struct mt_interrupt *interrupt;
-    struct mt_profile *profile; /* NULL: nobody asks what evaluations do (base/profile.h) */
-    struct mt_spent *spent;     /* NULL: nobody asks what the work costs (base/spent.h) */
+    struct mt_profile *profile;   /* NULL: nobody asks what evaluations do (base/profile.h) */
+    struct mt_spent *spent;       /* NULL: nobody asks what the work costs (base/spent.h) */
+    struct mt_progress *progress; /* NULL: nobody asks how far it is (base/progress.h) */
 } mt_model;
 
 /* An empty model (dimension 0). Fails: MT_E_MEMORY. */

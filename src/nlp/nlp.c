@@ -64,6 +64,8 @@ typedef struct start_job {
     int n;
     long budget; /* of all of them */
     atomic_int abort;
+    mt_progress *progress; /* of first values */
+    bool told;             /* there */
 } start_job;
 
 static mt_status run_task(void *context, int worker, int k, mt_scope *own, mt_err *err)
@@ -77,6 +79,7 @@ static mt_status run_task(void *context, int worker, int k, mt_scope *own, mt_er
     mt_nlp_options opt = all->opt;
     mt_nlp_engine e;
     nlp.context = nlp.contexts != NULL ? nlp.contexts[worker] : nlp.context;
+    mt_progress_done(job->progress, job->told);
     opt.max_evals = (job->budget / job->n) + (k < job->budget % job->n ? 1 : 0); /* even */
     if (opt.max_evals <= 0) {
         slot->stop = MT_STOP_MAX_EVALS;
@@ -156,10 +159,15 @@ static void tape_task(void *context, int k, mt_tape *tape)
 /* The first values are nothing to be kept; searches are. */
 static void run_job(mt_nlp_engine *e, start_job *job, job_task task, long before)
 {
-    const mt_tasks tasks = {job->n, run_task, tape_task, job};
+    mt_scope *const place = e->nlp->scope;
+    const bool first = task == BEGIN;
+    const mt_tasks tasks = {job->n, run_task, tape_task, job,
+                            task == FINISH ? "ends of searches" : "starts"};
     job->task = task;
-    (void)mt_nlp_ok(e, mt_workers_run(e->nlp->n_workers, task == BEGIN ? NULL : e->nlp->scope,
-                                      &tasks, e->err));
+    job->progress = place != NULL && first ? place->progress : NULL;
+    job->told = mt_progress_begin(job->progress, "first values", job->n);
+    (void)mt_nlp_ok(e, mt_workers_run(e->nlp->n_workers, first ? NULL : place, &tasks, e->err));
+    mt_progress_end(job->progress, job->told);
     collect(e, job, before);
 }
 

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "analysis/count.h"
+#include "base/progress.h"
 #include "problem/family.h"
 #include "problem/goal.h"
 #include "problem/next.h"
@@ -255,6 +256,21 @@ void mt_problem_ask(mt_problem *p)
     }
 }
 
+/* Demands and views of goal i. */
+static mt_status add_goal(mt_problem *p, int i, mt_err *err)
+{
+    const mt_goal *const g = &p->study->goals[i];
+    if (g->n_configurations == 0) {
+        MT_TRY(add_demand(p, i, MT_ABSENT, err));
+    }
+    for (int k = 0; k < g->n_configurations; k++) {
+        int view = -1;
+        MT_TRY(g->avoid != NULL ? mt_problem_add_view(p, g->configurations[k], &view, err)
+                                : add_demand(p, i, g->configurations[k], err));
+    }
+    return MT_OK;
+}
+
 mt_status mt_problem_init_demands(mt_problem *p, mt_err *err)
 {
     const mt_study *const s = p->study;
@@ -265,16 +281,13 @@ mt_status mt_problem_init_demands(mt_problem *p, mt_err *err)
     p->demands = mt_arena_alloc(&p->mem, most, sizeof *p->demands);
     p->views = mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations, sizeof *p->views);
     MT_TRY(mt_arena_check(&p->mem, err));
-    for (int i = 0; i < s->n_goals; i++) {
-        const mt_goal *const g = &s->goals[i];
-        if (g->n_configurations == 0) {
-            MT_TRY(add_demand(p, i, MT_ABSENT, err));
-        }
-        for (int k = 0; k < g->n_configurations; k++) {
-            int view = -1;
-            MT_TRY(g->avoid != NULL ? mt_problem_add_view(p, g->configurations[k], &view, err)
-                                    : add_demand(p, i, g->configurations[k], err));
-        }
+    mt_progress *const progress = s->model->progress;
+    const bool told = mt_progress_begin(progress, "goals", s->n_goals);
+    mt_status rc = MT_OK;
+    for (int i = 0; i < s->n_goals && rc == MT_OK; i++) {
+        rc = add_goal(p, i, err);
+        mt_progress_done(progress, told);
     }
-    return MT_OK;
+    mt_progress_end(progress, told);
+    return rc;
 }

@@ -9,13 +9,16 @@
 
 #include "base/format.h"
 #include "base/interrupt.h"
+#include "base/progress.h"
 #include "base/spent.h"
+#include "nlp/merit.h"
 #include "problem/demand.h"
 #include "problem/family.h"
 #include "problem/goal_avoid.h"
 #include "problem/next.h"
 #include "problem/objective.h"
 #include "problem/robust.h"
+#include "problem/robust_cut.h"
 
 /* Evaluations between two lines of progress: a tenth of a second or so for a small
  * mechanism. */
@@ -260,6 +263,26 @@ static void say_progress(const mt_workspace *w)
     }
 }
 
+/* Values that are known; what is judged over tolerances or positions of a drive later may not
+ * hold. */
+static void say_found(const mt_workspace *w, const mt_nlp_values *v)
+{
+    const mt_case *const c = w->c;
+    mt_progress *const progress = w->p->study->model->progress;
+    mt_progress_evaluated(progress);
+    if (!mt_progress_seeks(progress) || c->n_aims == 0 || c->aims[0].ops->value == NULL ||
+        mt_family_any(w->p) || mt_robust_is_sampled(c)) {
+        return;
+    }
+    const mt_missed missed = mt_missed_of(mt_case_rows_eq(c), v->eq, c->eq_tol,
+                                          mt_case_rows_in(c), v->in, c->in_tol);
+    if (mt_is_met(missed.violation, 1.0)) {
+        const double f = mt_aim_value(w, 0, NULL);
+        mt_progress_found(progress, mt_objective_kind_of(c->aims[0].type)->name, f,
+                          mt_aim_shown(&c->aims[0], f));
+    }
+}
+
 mt_status mt_workspace_eval(void *context, const double *t, bool with_gradient,
                             mt_nlp_values *out, mt_err *err)
 {
@@ -305,5 +328,6 @@ mt_status mt_workspace_eval_uncounted(void *context, const double *t, bool with_
     }
     out->f = mt_aim_value(w, w->c->stage, with_gradient ? out->df : NULL);
     mt_aim_hold_rows(w, with_gradient, out);
+    say_found(w, out);
     return MT_OK;
 }

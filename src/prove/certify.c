@@ -53,8 +53,10 @@ typedef struct search {
     int *order;
     int cap_found;
     int cap_open;
-    double before; /* operations */
-    int limit;     /* bisections of a box in this pass */
+    double before;  /* operations */
+    double decided; /* of the box, in this pass */
+    bool told;      /* where the progress is */
+    int limit;      /* bisections of a box in this pass */
     mt_certify_search *out;
 } search;
 
@@ -474,24 +476,34 @@ static bool spent(const search *s)
     return s->out->stopped || operations(s) - s->before >= most;
 }
 
+/* A box of so many bisections needs no further look: of all designs these are decided. */
+static void settle(search *s, int depth)
+{
+    s->decided += ldexp(1.0, -depth);
+    mt_progress_share(s->c->progress, s->told, s->decided);
+}
+
 /* One box: settle it, or halve it, or leave it open. *deeper: a deeper pass may settle it. */
 static mt_status visit(search *s, bool *deeper)
 {
     mt_certify_search *const out = s->out;
     out->stopped = out->stopped || mt_interrupted(s->c->interrupt);
     const int left = examine(s);
-    out->boxes++;
-    if (left == 0) {
-        return MT_OK;
-    }
     int depth = 0;
     for (int i = 0; i < s->boxes.n; i++) {
         depth += s->boxes.now_depth[i];
+    }
+    out->boxes++;
+    mt_progress_boxed(s->c->progress);
+    if (left == 0) {
+        settle(s, depth);
+        return MT_OK;
     }
     const bool cut = depth >= s->limit;
     if ((left == 1 || cut) && witnessed(s)) {
         MT_TRY(note_found(s));
         if (unknown(s) == 0) {
+            settle(s, depth);
             return MT_OK;
         }
     }
@@ -514,6 +526,7 @@ static mt_status run(search *s)
         out->n_open = 0;
         out->more = false;
         out->undecided = 0.0;
+        s->decided = 0.0;
         mt_boxes_start(&s->boxes, s->c->lower, s->c->upper, s->edges.root);
         while (mt_boxes_pop(&s->boxes) && !(s->only != NULL && out->n_found > 0)) {
             MT_TRY(visit(s, &deeper));
@@ -536,7 +549,10 @@ static mt_status search_all(const mt_certify *c, int n_known, const int *known, 
         MT_TRY(note_known(&s, known + ((ptrdiff_t)i * c->n_bands)));
     }
     s.before = operations(&s);
-    return run(&s);
+    s.told = mt_progress_begin(c->progress, "designs decided", 0);
+    const mt_status rc = run(&s);
+    mt_progress_end(c->progress, s.told);
+    return rc;
 }
 
 mt_status mt_certify_assignments(const mt_certify *c, int n_known, const int *known,

@@ -3,6 +3,7 @@
 #define PROVE_CERTIFY_H
 
 #include "base/interrupt.h"
+#include "base/progress.h"
 #include "prove/box.h"
 
 /*
@@ -77,6 +78,7 @@ typedef struct mt_certify {
     const double *scale;
     double max_work;         /* in multiplications, about; 0: MT_CERTIFY_WORK */
     mt_interrupt *interrupt; /* ends the search as an exhausted budget does; NULL: never */
+    mt_progress *progress;   /* NULL: nobody listens */
 } mt_certify;
 
 /* A budget counts operations, so that the same designs are excluded wherever a proof runs: a

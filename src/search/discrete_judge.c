@@ -368,8 +368,9 @@ mt_status mt_discrete_judge(mt_discrete *d, int n, mt_combination *list, long bu
                             mt_err *err)
 {
     judging j = {.d = d, .n = n, .list = list, .budget = budget};
-    const mt_tasks searches = {n, judge_mixed, NULL, &j};
-    const mt_tasks designs = {(n + PER_TASK - 1) / PER_TASK, judge_designs, tape_designs, &j};
+    const mt_tasks searches = {n, judge_mixed, NULL, &j, "combinations"};
+    const mt_tasks designs = {(n + PER_TASK - 1) / PER_TASK, judge_designs, tape_designs, &j,
+                              "lots of combinations"};
     MT_TRY(mt_workers_run(d->n_workers, d->workers[0]->scope, d->mixed ? &searches : &designs,
                           err));
     long n_designs = 0; /* those on record among them; what is mixed counts where it searches */

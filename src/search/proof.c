@@ -109,7 +109,8 @@ mt_status mt_proof_init(mt_proof *proof, const mt_case *c, mt_arena *mem, mt_err
                                    .upper = proof->upper,
                                    .scale = p->scale,
                                    .max_work = c->proof_work,
-                                   .interrupt = p->study->model->interrupt};
+                                   .interrupt = p->study->model->interrupt,
+                                   .progress = p->study->model->progress};
     MT_TRY(enclose(proof, p, err));
     /* what is possible for a design may not be over its tolerances */
     proof->covers = c->robust == NULL;

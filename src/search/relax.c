@@ -313,7 +313,7 @@ mt_status mt_relax(mt_workspace *const *workers, int n_workers, const mt_nlp_res
         out->n = 0;
         return MT_OK;
     }
-    const mt_tasks tasks = {n, search_move, NULL, &j};
+    const mt_tasks tasks = {n, search_move, NULL, &j, "changes of the question"};
     const mt_status rc = mt_workers_run(n_workers, workers[0]->scope, &tasks, err);
     for (int k = 0; k < n; k++) {
         out->evals += j.results[k].evals;

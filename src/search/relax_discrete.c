@@ -158,7 +158,7 @@ static mt_status enumerate(mt_workspace *const *workers, int n_workers, int tota
             own->items[k].x = x + ((((size_t)i * n_moves) + k) * n);
         }
     }
-    const mt_tasks tasks = {n_tasks, look_at_some, NULL, &e};
+    const mt_tasks tasks = {n_tasks, look_at_some, NULL, &e, "lots of combinations"};
     MT_TRY(mt_workers_run(n_workers, workers[0]->scope, &tasks, err));
     for (int i = 0; i < n_tasks; i++) {
         out->stopped = out->stopped || e.stopped[i];

@@ -40,7 +40,7 @@ static mt_status square(void *context, int worker, int task, mt_scope *own, mt_e
     }
     if (j->inner) {
         job below = {.fail_from = 0};
-        const mt_tasks tasks = {2, square, tape_square, &below};
+        const mt_tasks tasks = {2, square, tape_square, &below, "tasks"};
         MT_TRY(mt_workers_run(1, own, &tasks, err));
         MT_TRY(mt_workers_run(1, own, &tasks, err));
     }
@@ -101,7 +101,7 @@ static void workers__every_task_is_done_once_whatever_their_number(mt_test *t)
     static const int counts[] = {1, 2, 8, 64, 1000};
     for (int c = 0; c < MT_COUNT(counts); c++) {
         job j = {0};
-        const mt_tasks tasks = {TASKS, square, NULL, &j};
+        const mt_tasks tasks = {TASKS, square, NULL, &j, "tasks"};
         int wrong = 0;
         mt_test_row(t, c == 0 ? "one" : "several");
         CHECK_INT(t, mt_workers_run(counts[c], NULL, &tasks, NULL), MT_OK);
@@ -116,7 +116,7 @@ static void workers__the_lowest_failing_task_is_reported(mt_test *t)
 {
     for (int round = 0; round < 20; round++) {
         job j = {.fail_from = 17};
-        const mt_tasks tasks = {TASKS, square, NULL, &j};
+        const mt_tasks tasks = {TASKS, square, NULL, &j, "tasks"};
         mt_err err = {0};
         CHECK_INT(t, mt_workers_run(4, NULL, &tasks, &err), MT_E_DOMAIN);
         CHECK_STR(t, err.text, "task 17");
@@ -127,7 +127,7 @@ static void workers__the_lowest_failing_task_is_reported(mt_test *t)
 static void workers__no_task_is_fine(mt_test *t)
 {
     job j = {0};
-    const mt_tasks tasks = {0, square, NULL, &j};
+    const mt_tasks tasks = {0, square, NULL, &j, "tasks"};
     CHECK_INT(t, mt_workers_run(4, NULL, &tasks, NULL), MT_OK);
 }
 
@@ -140,7 +140,7 @@ static void workers__what_is_known_is_not_done_again(mt_test *t)
     static job second;
     first = second = (job){.fail_from = 0};
     mt_scope scope = open_book(t, &b);
-    const mt_tasks tasks = {8, square, tape_square, &first};
+    const mt_tasks tasks = {8, square, tape_square, &first, "tasks"};
     CHECK_INT(t, mt_workers_run(3, &scope, &tasks, NULL), MT_OK);
     CHECK_INT(t, mt_workers_run(3, &scope, &tasks, NULL), MT_OK);
     CHECK_INT(t, b.n, 16);
@@ -149,7 +149,7 @@ static void workers__what_is_known_is_not_done_again(mt_test *t)
     b.counts[at(&b, "all/0/3")] = 2;                   /* too long */
     b.counts[at(&b, "all/0/4")] = 0;                   /* too short */
     mt_scope again = {.ledger = &b.ledger, .path = "all"};
-    const mt_tasks same = {8, square, tape_square, &second};
+    const mt_tasks same = {8, square, tape_square, &second, "tasks"};
     CHECK_INT(t, mt_workers_run(2, &again, &same, NULL), MT_OK);
     for (int k = 0; k < 8; k++) {
         CHECK_INT(t, second.done[k], k * k);
@@ -166,7 +166,7 @@ static void workers__parts_of_a_task_have_keys_below_its_own(mt_test *t)
     for (int whole = 0; whole < 2; whole++) {
         j = (job){.inner = true};
         mt_scope scope = open_book(t, &b);
-        const mt_tasks tasks = {2, square, whole ? tape_square : NULL, &j};
+        const mt_tasks tasks = {2, square, whole ? tape_square : NULL, &j, "tasks"};
         CHECK_INT(t, mt_workers_run(1, &scope, &tasks, NULL), MT_OK);
         CHECK_INT(t, b.n, whole ? 2 : 8);
         CHECK(t, (at(&b, "all/0/1/1/0") < b.n) == (whole == 0));
@@ -184,7 +184,7 @@ static void workers__parts_share_the_tasks(mt_test *t)
         mt_scope scope = open_book(t, &b);
         b.ledger.parts = parts;
         for (int part = 1; part <= parts; part++) {
-            const mt_tasks tasks = {8, square, NULL, &j};
+            const mt_tasks tasks = {8, square, NULL, &j, "tasks"};
             b.ledger.part = part;
             CHECK_INT(t, mt_workers_run(2, &scope, &tasks, NULL),
                       parts == 1 ? MT_OK : MT_E_INTERRUPTED);
@@ -206,7 +206,7 @@ static void workers__nothing_is_kept_after_a_cut(mt_test *t)
     j = (job){.cut_at_5 = &interrupt};
     mt_scope scope = open_book(t, &b);
     scope.interrupt = &interrupt;
-    const mt_tasks tasks = {8, square, tape_square, &j};
+    const mt_tasks tasks = {8, square, tape_square, &j, "tasks"};
     CHECK_INT(t, mt_workers_run(1, &scope, &tasks, NULL), MT_OK);
     CHECK_INT(t, b.n, 5);
     mt_ledger_free(&b.ledger);
@@ -219,7 +219,7 @@ static void workers__a_key_that_is_too_long_is_none(mt_test *t)
     static job j;
     mt_scope scope = open_book(t, &b);
     j = (job){.fail_from = 0};
-    const mt_tasks tasks = {8, square, tape_square, &j};
+    const mt_tasks tasks = {8, square, tape_square, &j, "tasks"};
     for (int length = MT_KEY_SIZE - 4; length < MT_KEY_SIZE; length++) {
         memset(scope.path, 'x', (size_t)length);
         scope.path[length] = '\0';

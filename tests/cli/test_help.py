@@ -8,10 +8,10 @@ from common_cli import COMMANDS, SOURCE, CliTest, main, options_in
 # Which options each command has: written down once more, so that a change is a decision.
 EVERYWHERE = {"max-memory", "root", "format", "quiet", "help"}
 OPTIONS = {
-    "run": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "resume", "shard", "profile"},
-    "merge": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "profile"},
-    "compare": {"threads", "set", "seed", "starts", "max-evaluations"},
-    "modes": {"configuration", "set", "count", "shapes", "damped", "profile"},
+    "run": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "resume", "shard", "profile", "progress"},
+    "merge": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "profile", "progress"},
+    "compare": {"threads", "set", "seed", "starts", "max-evaluations", "progress"},
+    "modes": {"configuration", "set", "count", "shapes", "damped", "profile", "progress"},
     "mac": {"count"},
     "sweep": {"configuration", "set", "count", "drive", "hold", "modes"},
     "sensitivity": {"configuration", "set", "count", "parameters"},

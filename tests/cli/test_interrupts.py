@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """SIGINT and SIGTERM: run ends with the best so far, every other command ends by the signal. Signals are sent when the program is seen to be at work, never after a time."""
+import fcntl
 import json
 import os
 import pty
+import re
 import signal
+import struct
 import subprocess
 import tempfile
+import termios
 import unittest
 from pathlib import Path
 
@@ -44,8 +48,9 @@ def ignoring():
 class Running:
     """A run of the program whose standard error is a terminal, where it tells how far it is."""
 
-    def __init__(self, folder, *args, before=at_default):
+    def __init__(self, folder, *args, before=at_default, columns=200):
         self.master, slave = pty.openpty()
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("4H", 24, columns, 0, 0))
         self.process = subprocess.Popen([PROGRAM, *args], cwd=folder, stdout=subprocess.PIPE, stderr=slave,
                                         encoding="utf-8", preexec_fn=before)
         os.close(slave)
@@ -63,6 +68,13 @@ class Running:
         """Until it is said once more than so far; False where the program ends before."""
         count = self.said.count(text)
         while self.said.count(text) == count:
+            if not self.read():
+                return False
+        return True
+
+    def wait_for_designs(self, count):
+        """Until a search says that it has evaluated so many."""
+        while not any(int(n) >= count for n in re.findall(r"search: [^\r]*?(\d+) designs evaluated", self.said[-400:])):
             if not self.read():
                 return False
         return True
@@ -92,7 +104,7 @@ class Run(CliTest):
 
     def at_work(self, *args, **options):
         running = Running(self.folder, "run", *args, **options)
-        self.assertTrue(running.wait_for("searching: more than 6000 "), running.said)  # the starts, and searches from some
+        self.assertTrue(running.wait_for_designs(6000), running.said)  # the starts, and searches from some
         return running
 
     def test_the_best_so_far_is_written_and_130(self):
@@ -159,7 +171,7 @@ class Run(CliTest):
         running = self.at_work(self.long, before=ignoring)
         running.send(signal.SIGINT)
         for _ in range(3):
-            self.assertTrue(running.wait_for("searching: more than"), running.said)
+            self.assertTrue(running.wait_for("designs evaluated"), running.said)
         running.send(signal.SIGTERM)
         self.assertEqual(running.end()[0], 130)
 

@@ -366,8 +366,8 @@ static void mechanism__threads_share_a_model(mt_test *t)
         REQUIRE(t, mt_mechanism_new(model, NULL, 1, names, &s[0].of[i], NULL) == MT_OK);
         s[1].of[i] = s[0].of[i];
     }
-    const mt_tasks many = {TASKS, one_task, NULL, &s[0]};
-    const mt_tasks alone = {TASKS, one_task, NULL, &s[1]};
+    const mt_tasks many = {TASKS, one_task, NULL, &s[0], "tasks"};
+    const mt_tasks alone = {TASKS, one_task, NULL, &s[1], "tasks"};
     CHECK_INT(t, mt_workers_run(THREADS, NULL, &many, NULL), MT_OK);
     CHECK_INT(t, mt_workers_run(1, NULL, &alone, NULL), MT_OK);
     for (int k = 0; k < TASKS; k++) {

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""--progress: what standard error says while a command is at work, on a terminal, in a pipe and for programs; results do not depend on it."""
+import json
+import re
+import signal
+
+import jsonschema
+
+from common_cli import SOURCE, CliTest, main
+from test_interrupts import BEAM, LONG, Running
+
+SCHEMA = json.loads((SOURCE / "schemas/progress.schema.json").read_text(encoding="utf-8"))
+WIPE = "\r\x1b[K"
+SHORT = LONG.replace("5000", "40").replace("1000000000", "40000")
+# Two equal targets for one mode: impossible, which a proof and changes of the question are about.
+TORN = SHORT.replace('"target_hz": 5 }', '"target_hz": 5 }, { "type": "frequency", "mode": 1, "target_hz": 6 }')
+
+
+class Progress(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("problems/beam.json", BEAM % 4)
+        self.short = self.write("studies/short.json", SHORT)
+        self.write("problems/slender.json", BEAM % 16)
+        self.long = self.write("studies/long.json", LONG.replace("beam.json", "slender.json").replace("5000", "50000"))
+        self.torn = self.write("studies/torn.json", TORN)
+
+    def objects(self, text):
+        """The lines for programs, each held against the schema."""
+        found = [json.loads(line) for line in text.splitlines() if line.startswith("{")]
+        validator = jsonschema.Draft7Validator(SCHEMA)
+        for one in found:
+            self.assertEqual([e.message for e in validator.iter_errors(one)], [], one)
+        return found
+
+    def check_steps(self, found):
+        """In a step nothing goes back; the last word is of all of it."""
+        self.assertEqual(found[-1]["state"], "done")
+        self.assertEqual(found[-1]["share"], 1)
+        for a, b in zip(found, found[1:]):
+            if a["state"] != "running" or b["state"] != "running":
+                continue
+            self.assertGreaterEqual(b["evaluations"], a["evaluations"])
+            self.assertGreaterEqual(b["boxes"], a["boxes"])
+            if (a["phase"], a["step"]) == (b["phase"], b["step"]):
+                self.assertEqual((a["unit"], a["total"]), (b["unit"], b["total"]))
+                self.assertGreaterEqual(b["done"], a["done"])
+                self.assertGreaterEqual(b["share"] or 0, a["share"] or 0)
+                self.assertTrue(a["best"] is None or b["best"] <= a["best"])
+
+    def test_objects_for_programs(self):
+        done = self.expect(1, "run", self.short, self.torn, "--progress", "json", "--threads", "2")
+        found = self.objects(done.stderr)
+        self.assertEqual([(f["number"], f["phase"]) for f in found if f["state"] == "done" and f["phase"] == "reading"],
+                         [(1, "reading"), (2, "reading")])
+        for number, name in ((1, "short"), (2, "torn")):
+            own = [f for f in found if f["number"] == number]
+            self.assertEqual({f["file"] for f in own}, {f"studies/{name}.json"})
+            self.check_steps(own)
+            result = json.loads((self.folder / f"results/{name}/result.json").read_text(encoding="utf-8"))
+            self.assertGreaterEqual(own[-1]["evaluations"], result["run"]["spent"]["search"])
+        best = [f for f in found if f["number"] == 1][-1]
+        result = json.loads((self.folder / "results/short/result.json").read_text(encoding="utf-8"))
+        self.assertEqual(best["objective"], "change")
+        self.assertAlmostEqual(best["best"], result["recommendations"][0]["change"], delta=1e-4)
+        self.assertIsNone(found[-1]["best"])  # no design meets both targets
+
+    def test_a_long_search_and_its_end(self):
+        running = Running(self.folder, "run", self.long, "--progress", "json")
+        self.assertTrue(running.wait_for('"unit": "starts"'), running.said)
+        for _ in range(2):
+            self.assertTrue(running.wait_for('"unit": "starts"'), running.said)
+        running.send(signal.SIGINT)
+        self.assertEqual(running.end()[0], 130)
+        found = self.objects(running.said)
+        self.assertEqual(found[-1]["state"], "ended")
+        starts = [f for f in found if f["unit"] == "starts"]
+        self.assertGreaterEqual(len(starts), 2)
+        for f in starts:
+            self.assertEqual(f["total"], 50000)
+            self.assertAlmostEqual(f["share"], f["done"] / 50000, delta=1e-12)
+
+    def test_a_line_of_a_terminal_goes(self):
+        for columns in (200, 40):
+            running = Running(self.folder, "run", self.long, "--time", "2", "--threads", "1", columns=columns)
+            code, out = running.end()
+            self.assertEqual(code, 130)
+            lines = running.said.split(WIPE)
+            told = [re.sub(r"[\r\n].*", "", line, flags=re.S) for line in lines[1:]]
+            self.assertTrue(any(re.match(r"search: \d+ of 50000 (first values|starts)", line) for line in told), running.said)
+            self.assertTrue(all(len(line) < columns for line in told if line.startswith("search")), told)
+            self.assertLessEqual(len(told), 2 * 11 + 10)  # ten a second; some more while the answer is written down
+            self.assertRegex(lines[-1], r"^studies/long\.json: ")  # the last line is wiped before anything else is said
+            self.assertNotIn("\x1b", out)
+            if columns == 200:
+                self.assertRegex(running.said, r"\d s left of --time")
+
+    def test_a_second_signal_wipes_the_line(self):
+        running = Running(self.folder, "run", self.long)
+        self.assertTrue(running.wait_for("first values"), running.said)
+        running.send(signal.SIGSTOP, signal.SIGINT, signal.SIGTERM, signal.SIGCONT)
+        self.assertIn(running.end()[0], (-signal.SIGINT, -signal.SIGTERM))
+        self.assertTrue(running.said.endswith(WIPE), running.said)
+
+    def test_several_studies_are_told_apart(self):
+        running = Running(self.folder, "run", self.short, self.long, "--time", "2", "--threads", "1")
+        running.end()
+        self.assertIn("long.json (2 of 2): search: ", running.said)
+
+    def test_short_runs_say_nothing_in_pipes(self):
+        done = self.expect(0, "run", self.short)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)  # where the result is
+        self.assertEqual(self.expect(0, "modes", "problems/beam.json").stderr, "")
+
+    def test_a_pipe_gets_a_line_every_ten_seconds(self):
+        done = self.expect(130, "run", self.long, "--time", "11", "--threads", "1")
+        told = [line for line in done.stderr.splitlines() if line.startswith("search")]
+        self.assertEqual(len(told), 1, done.stderr)
+        self.assertRegex(told[0], r"^search: \d+ of 50000 (first values|starts), \d+ %, (best change 0\.\d+, )?(about .* left of this step, )?"
+                                  r"\d s left of --time, 1\d s, \d+ designs evaluated$")
+
+    def test_nothing_where_nothing_is_asked_for(self):
+        for option in (("--progress", "none"), ("--quiet",)):
+            running = Running(self.folder, "run", self.long, "--time", "0.5", *option)
+            self.assertEqual(running.end()[0], 130)
+            self.assertNotIn(WIPE, running.said)
+
+    def test_results_do_not_depend_on_it(self):
+        bytes_of = []
+        for form in ("none", "line", "json", "auto"):
+            done = self.expect(1, "run", self.short, self.torn, "--progress", form, "-o", form)
+            told = re.sub(r" [\d.e-]+\n", "\n", done.stdout)  # the table of studies has their times
+            bytes_of.append((told, *((self.folder / form / name / "result.json").read_bytes() for name in ("short", "torn"))))
+        self.assertEqual(len(set(bytes_of)), 1)
+
+    def test_modes_tell_reading_and_iterations(self):
+        found = self.objects(self.expect(0, "modes", self.write("problems/long.json", BEAM % 20000), "--count", "3", "--progress", "json").stderr)
+        self.check_steps(found)
+        self.assertEqual([f["phase"] for f in found if f["state"] == "done"], ["reading", "modes"])
+        self.assertEqual(found[-1]["unit"], "iterations")
+        self.assertGreater(found[-1]["done"], 0)
+
+    def test_values_that_are_none(self):
+        done = self.expect(2, "run", self.short, "--progress", "lines")
+        self.assertIn('--progress: "lines" is none of auto, line, json, none; did you mean "line"?', done.stderr)
+        self.assertIn('"check" has no option "--progress"', self.expect(2, "check", self.short, "--progress", "json").stderr)
+
+
+if __name__ == "__main__":
+    main()
