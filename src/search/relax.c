@@ -212,13 +212,14 @@ static mt_status search_once(const job *j, mt_case *c, mt_workspace *w, mt_move 
     mt_nlp_options opt = mt_nlp_options_default();
     opt.seed = c->search.seed;
     opt.starts = STARTS;
-    opt.max_evals = (long)STARTS * EVALUATIONS;
+    const long most = (long)STARTS * EVALUATIONS;
+    /* without its confirmation's, and its place's along a motion */
     const long left = j->budget - out->evals - a->evals - 1 - mt_motion_most(c);
-    opt.max_evals = left < opt.max_evals ? left : opt.max_evals; /* and its confirmation */
     *again = false;
-    if (opt.max_evals <= 0) {
+    if (left <= 0) {
         return MT_OK;
     }
+    opt.max_evals = left < most ? left : most;
     opt.max_solutions = 1;
     opt.least_change = false;
     double *const hint = mt_arena_f64(&out->mem, (size_t)c->p->n + 1, 1);
