@@ -199,8 +199,8 @@ static left run(const char *line, refusal r)
         .main = mt_cli_main, .begin = begin, .context = &r, .seconds = SECONDS_MOST};
     char words[1024];
     const bool tells = strncmp(line, "modes ", 6) == 0 || strncmp(line, "compare ", 8) == 0;
-    (void)snprintf(words, sizeof words, "%s%s", line,
-                   alone && tells ? " --progress none" : ""); /* a thread draws it */
+    /* a thread draws it */
+    (void)snprintf(words, sizeof words, "%s%s", line, alone && tells ? " --progress none" : "");
     if (r.k < 0) {
         heard->n = 0;
     }
