@@ -89,16 +89,18 @@ static mt_status read_tolerance(const char *s, const char *option, double *out, 
     return MT_OK;
 }
 
-/* Seconds: more than 0. */
-static mt_status read_seconds(const char *s, const char *option, double *out, mt_err *err)
+/* Seconds: more than 0, or 0 where that means something. */
+static mt_status read_seconds(const char *s, const char *option, bool zero, double most,
+                              double *out, mt_err *err)
 {
     char *end = NULL;
     const double value = strtod(s, &end);
-    if (strspn(s, "0123456789.eE+-") != strlen(s) || *end != '\0' ||
-        !(value > 0.0 && value <= MT_SECONDS_MOST)) {
+    const bool is_number = strspn(s, "0123456789.eE+-") == strlen(s) && *end == '\0';
+    const bool is_enough = zero ? value >= 0.0 : value > 0.0;
+    if (!is_number || !is_enough || !(value <= most)) {
         return mt_fail(err, MT_E_USAGE,
-                       "--%s: \"%s\" is not a number of seconds above 0, at most %g", option, s,
-                       MT_SECONDS_MOST);
+                       "--%s: \"%s\" is not a number of seconds %s, at most %g", option, s,
+                       zero ? "from 0" : "above 0", most);
     }
     *out = value;
     return MT_OK;
@@ -215,7 +217,9 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
         args->threads = args->threads < MT_WORKERS_MOST ? args->threads : MT_WORKERS_MOST;
         return MT_OK;
     case MT_OPT_TIME:
-        return read_seconds(value, o->name, &args->time_s, err);
+        return read_seconds(value, o->name, false, MT_SECONDS_MOST, &args->time_s, err);
+    case MT_OPT_PROOF:
+        return read_seconds(value, o->name, true, MT_PROOF_S_MOST, &args->proof_s, err);
     case MT_OPT_SEED:
         return read_seed(value, o->name, &args->seed, err);
     case MT_OPT_REL_TOL:

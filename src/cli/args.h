@@ -28,6 +28,7 @@ typedef enum mt_option_id {
     MT_OPT_SEED,
     MT_OPT_STARTS,
     MT_OPT_MAX_EVALUATIONS,
+    MT_OPT_PROOF,
     MT_OPT_RESUME,
     MT_OPT_SHARD,
     MT_OPT_PROFILE,
@@ -124,6 +125,7 @@ typedef struct mt_args {
     int threads;         /* --threads, at most MT_WORKERS_MOST; else of mt_limits_set */
     double rel_tol;      /* --rel-tol, default 0 */
     double time_s;       /* --time, 0: not given */
+    double proof_s;      /* --proof; read it where it is given */
     unsigned long seed;  /* --seed; read it where it is given */
     uint64_t max_memory; /* --max-memory in bytes, 0: not given */
     int n_sets;

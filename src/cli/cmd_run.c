@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune run and compare: answer studies, write what was found, judge published values. */
+#include <math.h>
 #include <stdlib.h>
 
 #include "answer/solve.h"
@@ -54,7 +55,8 @@ static int answer(job *j)
                             .sets = args->sets,
                             .seed = args->given[MT_OPT_SEED] ? (long)args->seed : -1,
                             .starts = args->starts,
-                            .max_evaluations = args->max_evaluations};
+                            .max_evaluations = args->max_evaluations,
+                            .proof_s = args->given[MT_OPT_PROOF] ? args->proof_s : nan("")};
     mt_io_options io = mt_cli_io(args);
     io.asked = &asked;
     mt_diagnostics messages = {.count = 0};

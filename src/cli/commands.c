@@ -62,6 +62,10 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_MAX_EVALUATIONS, '\0', "max-evaluations", "N", ON_STUDIES,
            "most evaluations of the answer instead of the study's \"max_evaluations\""),
     OPTION(
+        MT_OPT_PROOF, '\0', "proof", "SECONDS", ON_STUDIES,
+        "most nominal seconds of each proof instead of the study's \"proof_s\" (default: 5): "
+        "1e9 multiplications are one, on any machine; 0: no proof"),
+    OPTION(
         MT_OPT_RESUME, '\0', "resume", NULL, BIT(MT_CMD_RUN),
         "go on from the journal of a run that was killed or interrupted, if there is one; the "
         "result is that of a run without a break"),

@@ -153,8 +153,16 @@ static mt_status jointly(const mt_proof *proof, mt_arena *mem, mt_result *result
     mt_certify_search found = {0};
     q.n_bands = 0;
     MT_TRY(mt_certify_assignments(&q, 0, NULL, mem, &found, err));
-    if (!found.proven || found.n_found > 0) {
+    if (found.n_found > 0 || found.stopped) {
         return MT_OK;
+    }
+    if (!found.proven) {
+        return state(result, "infeasible", false, err,
+                     "That no design meets all limits together is sampled, not proven: the "
+                     "budget of the "
+                     "proof ended after %ld boxes, with %.2g %% of the designs within the "
+                     "bounds undecided.",
+                     found.boxes, 100.0 * found.undecided);
     }
     *infeasible = true;
     return state(result, "infeasible", true, err,
@@ -175,7 +183,7 @@ mt_status mt_describe_limit_certificates(const mt_problem *p, mt_arena *mem, mt_
                    proof.reason);
     }
     /* one budget for all questions: each limit alone, and all of them together */
-    proof.question.max_work = MT_CERTIFY_WORK / (1.0 + (double)proof.question.n_limits);
+    proof.question.max_work = proof.left / (1.0 + (double)proof.question.n_limits);
     for (int i = 0; rc == MT_OK && proof.possible && i < proof.question.n_limits; i++) {
         rc = reach(p, &proof, i, mem, result, infeasible, err);
     }

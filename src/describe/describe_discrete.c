@@ -143,6 +143,17 @@ mt_status mt_describe_discrete_certificate(const mt_discrete_report *report,
     if (report->asked) {
         MT_TRY(describe_kinds(report, result, err));
     }
+    if (report->cut && isnan(report->best_within)) {
+        return mt_describe_certificate(
+            result, "optimal", false,
+            mt_arena_printf(
+                &result->mem,
+                "That no combination of catalogue values%s is better in the first "
+                "objective is sampled, not proven: the budget of branch and bound ended "
+                "after %ld boxes.",
+                with_others(report), report->boxes),
+            err);
+    }
     return MT_HAS(report->best_within) ? describe_best(report, result, err) : MT_OK;
 }
 

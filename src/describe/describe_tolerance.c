@@ -76,7 +76,8 @@ static mt_status edge_text(const mt_problem *p, const mt_recommendation *rec,
                            const mt_tolerance *t, mt_arena *mem, const char **text, mt_err *err)
 {
     *text = t->end == MT_TOLERANCE_DOMAIN ? "a stiffness or a mass would no longer be positive"
-                                          : NULL;
+            : t->end == MT_TOLERANCE_BUDGET ? "the budget of the proof ended"
+                                            : NULL;
     if (t->end != MT_TOLERANCE_EDGE) {
         return MT_OK;
     }

@@ -11,6 +11,7 @@ typedef struct mt_asked {
     long seed;               /* -1: as the study says */
     long starts;             /* 0: likewise */
     long max_evaluations;    /* 0: likewise */
+    double proof_s;          /* NaN: likewise */
 } mt_asked;
 
 /* What every reader of files takes. */

@@ -37,6 +37,7 @@ const mt_key_table mt_study_keys = {"", KEYS, STUDY_KEY_COUNT};
     X(SEARCH_SEED, "seed", MT_KEY_COUNT, false)                       \
     X(SEARCH_STARTS, "starts", MT_KEY_COUNT, false)                   \
     X(SEARCH_MAX_EVALUATIONS, "max_evaluations", MT_KEY_COUNT, false) \
+    X(SEARCH_PROOF, "proof_s", MT_KEY_NUMBER, false)                  \
     X(SEARCH_DESCRIPTION, "description", MT_KEY_TEXT, false)          \
     X(SEARCH_SOURCE, "source", MT_KEY_TEXT, false)
 enum { SEARCH_KEYS(MT_STUDY_KEY_ENUM) SEARCH_KEY_COUNT };
@@ -241,6 +242,13 @@ static void ask_search(mt_study_reader *s)
         search->starts = (int)ask(s, "starts", search->starts, asked->starts, 0);
         search->max_evaluations =
             ask(s, "max_evaluations", search->max_evaluations, asked->max_evaluations, 0);
+        if (MT_HAS(asked->proof_s)) {
+            note_asked(s, &(mt_asked_number){.kind = "search",
+                                             .name = "proof_s",
+                                             .value = asked->proof_s,
+                                             .original = search->proof_s});
+            search->proof_s = asked->proof_s;
+        }
     }
 }
 
@@ -256,6 +264,7 @@ static void read_search(mt_study_reader *s, mt_addr value)
     search->starts = mt_reader_count(&s->r, o.found[SEARCH_STARTS], 1, MT_STARTS_MOST, 0);
     search->max_evaluations =
         mt_reader_count(&s->r, o.found[SEARCH_MAX_EVALUATIONS], 1, INT_MAX, 0);
+    search->proof_s = mt_read_study_member(s, &o, SEARCH_PROOF, &search->proof_addr);
 }
 
 static void read_spread(mt_study_reader *s, mt_addr value)
@@ -325,9 +334,9 @@ static void read_root(mt_study_reader *s)
     study->recommendations_addr = mt_read_study_place(s, &o, STUDY_RECOMMENDATIONS);
     study->recommendations = mt_reader_count(&s->r, o.found[STUDY_RECOMMENDATIONS], 1,
                                              MAX_RECOMMENDATIONS, study->recommendations);
-    read_search(s, o.found[STUDY_SEARCH]);
     read_model(s, o.found[STUDY_MODEL]);
     note_settings(s);
+    read_search(s, o.found[STUDY_SEARCH]);
     ask_search(s);
     mt_read_study_variables(s, o.found[STUDY_VARIABLES]);
     mt_read_study_references(s, o.found[STUDY_REFERENCES]);

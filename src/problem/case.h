@@ -55,7 +55,7 @@ typedef struct mt_case {
     const int *next_of;
     const double *hint; /* [n + 1] coordinates of one more design to start from; NULL: none */
     mt_search search;   /* the study's; a part of its budget */
-    double proof_work;  /* budget of a proof; 0: as certify.h has it */
+    double proof_work;  /* multiplications of each proof (prove/certify.h), about; 0: none */
     /* local solves of a search where the study does not say; 0: by the number of variables */
     int starts;
     int n_t; /* n, or n + 1 */

@@ -6,6 +6,7 @@
 
 #include "problem/family.h"
 #include "problem/goal_avoid.h"
+#include "prove/certify.h"
 
 void mt_problem_delete(mt_problem *p)
 {
@@ -88,6 +89,11 @@ static mt_status init_references(mt_problem *p, mt_err *err)
     return mt_reference_cache_init(p->references, p->study, &p->mem, err);
 }
 
+static double proof_work(const mt_search *s)
+{
+    return MT_HAS(s->proof_s) ? s->proof_s * MT_CERTIFY_WORK_PER_S : MT_CERTIFY_WORK;
+}
+
 /* The study as it is asked. */
 static mt_status init_whole(mt_problem *p, mt_err *err)
 {
@@ -103,7 +109,8 @@ static mt_status init_whole(mt_problem *p, mt_err *err)
                    .n_aims = p->n_aims,
                    .aims = p->aims,
                    .weight = weight,
-                   .search = p->study->search};
+                   .search = p->study->search,
+                   .proof_work = proof_work(&p->study->search)};
     MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < p->n; i++) {
         const mt_variable *const v = &p->study->variables[i];

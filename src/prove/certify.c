@@ -551,6 +551,7 @@ static mt_status search_all(const mt_certify *c, int n_known, const int *known, 
     s.before = operations(&s);
     s.told = mt_progress_begin(c->progress, "designs decided", 0);
     const mt_status rc = run(&s);
+    out->work = operations(&s) - s.before;
     mt_progress_end(c->progress, s.told);
     return rc;
 }

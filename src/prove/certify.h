@@ -81,9 +81,10 @@ typedef struct mt_certify {
     mt_progress *progress;   /* NULL: nobody listens */
 } mt_certify;
 
-/* A budget counts operations, so that the same designs are excluded wherever a proof runs: a
- * second or two of one core. */
-#define MT_CERTIFY_WORK 5e9
+/* A budget counts operations, so that the same designs are excluded wherever a proof runs. A
+ * nominal second of it is about one of a core; what nobody asks otherwise has five. */
+#define MT_CERTIFY_WORK_PER_S 1e9
+#define MT_CERTIFY_WORK       (5.0 * MT_CERTIFY_WORK_PER_S)
 enum { MT_CERTIFY_OPEN_MOST = 256 };
 
 /* Assignments that designs of the box can have. */
@@ -100,6 +101,7 @@ typedef struct mt_certify_search {
     bool more;  /* open was cut at MT_CERTIFY_OPEN_MOST */
     bool stopped;
     long boxes;
+    double work; /* as max_work counts it */
     /* of the box (in the coordinates that it is halved in), at most: 0 where proven */
     double undecided;
 } mt_certify_search;

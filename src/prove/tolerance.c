@@ -31,6 +31,7 @@ typedef struct tolerance {
     mt_boxes boxes;
     mt_tolerance_end end; /* why the last test failed */
     int open;             /* the edge that it failed at */
+    double before;        /* operations */
 } tolerance;
 
 static void add_edge(mt_certify_edge *out, int *n, const mt_certify_edge *edge)
@@ -81,9 +82,28 @@ static int first_open(const mt_certify *c, int n_edges, const mt_certify_edge *e
     return -1;
 }
 
+static double operations(const mt_certify *c)
+{
+    double sum = 0.0;
+    for (int v = 0; v < c->n_views; v++) {
+        sum += c->views[v]->operations;
+    }
+    return sum;
+}
+
+static bool spent(const tolerance *t)
+{
+    const double most = t->c->max_work > 0.0 ? t->c->max_work : MT_CERTIFY_WORK;
+    return operations(t->c) - t->before >= most;
+}
+
 /* Is the box set and every edge kept over it? Notes why not. */
 static bool box_holds(tolerance *t, const double *lo, const double *hi)
 {
+    if (spent(t)) {
+        t->end = MT_TOLERANCE_BUDGET;
+        return false;
+    }
     bool set = mt_certify_set(t->c, lo, hi);
     for (int v = 0; v < t->c->n_views; v++) { /* every stiffness is still there all over it */
         set = set && mt_enclosure_keeps_held(t->c->views[v]);
@@ -166,7 +186,7 @@ static mt_tolerance search(tolerance *t, int alone)
 static mt_status run(const mt_certify *c, const mt_tolerance_question *q, mt_arena *scratch,
                      mt_tolerance *all, mt_tolerance *each, mt_err *err)
 {
-    tolerance t = {.c = c, .q = q, .open = -1};
+    tolerance t = {.c = c, .q = q, .open = -1, .before = operations(c)};
     t.edges = mt_arena_alloc(scratch, 2 * ((size_t)c->n_bands + (size_t)c->n_limits) + 1,
                              sizeof *t.edges);
     t.lo = mt_arena_f64(scratch, (size_t)c->n, 1);

@@ -19,6 +19,7 @@ typedef enum mt_tolerance_end {
      * shown not to) */
     MT_TOLERANCE_EDGE,
     MT_TOLERANCE_DOMAIN, /* beyond, a stiffness or mass may be negative */
+    MT_TOLERANCE_BUDGET, /* beyond, nothing was proven: max_work ended */
     MT_TOLERANCE_MOST    /* the largest percentage that was asked about */
 } mt_tolerance_end;
 
@@ -36,7 +37,8 @@ typedef struct mt_tolerance {
  * of the enclosures. Tolerances of bands and limits are not granted here: a design on an edge
  * (to 5e-10 of it) has 0 percent and the edge. Where an input enters K and M, up to
  * boxes_per_test sub-boxes (0: 64) tighten each of the some 30 tests of a box.
- * assignment[n_bands] is that of x. c->lower, upper, bounds, catalogues and cap are not used.
+ * assignment[n_bands] is that of x. c->lower, upper, bounds, catalogues and cap are not used;
+ * c->max_work is of all of them, *all first.
  */
 typedef struct mt_tolerance_question {
     const double *x;

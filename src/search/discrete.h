@@ -41,6 +41,7 @@ typedef struct mt_discrete_report {
     /* proven: no design's objective is less by more than this share of the best one's; NaN: not
      * proven */
     double best_within;
+    bool cut; /* its budget ended before it was known whether one is better */
     long boxes;
     const char *reason; /* why there is no proof; NULL */
 } mt_discrete_report;

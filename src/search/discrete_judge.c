@@ -12,6 +12,7 @@
 #include "problem/goal_avoid.h"
 #include "problem/objective.h"
 #include "problem/robust_cut.h"
+#include "prove/certify.h"
 #include "search/discrete.h"
 #include "search/gaps.h"
 #include "search/motion.h"
@@ -239,6 +240,7 @@ static mt_status close_on(const mt_discrete *d, const mt_combination *c, long bu
         out->search.starts = STARTS_BASE + (STARTS_PER_VARIABLE * (p->n - d->n_discrete));
     }
     out->search.max_evaluations = budget > 1 ? budget - 1 : budget; /* its objectives */
+    out->proof_work = fmin(out->proof_work, MT_CERTIFY_WORK);       /* there are many */
     out->hint = c->from;
     return MT_OK;
 }

@@ -17,8 +17,8 @@
 #include "search/proof.h"
 
 enum { ROUNDS = 40 /* of a better design found and the cap moved */ };
-/* Multiplications of one question (certify.h). */
-static const double EFFORT = 1e9;
+/* What one question may take of the budget of all. */
+static const double PART = 0.2;
 /* Objectives that differ by less are equal: as they are ranked (discrete_judge.c), and more
  * than intervals lose. */
 static const double EQUAL = 1e-9;
@@ -118,7 +118,7 @@ static mt_status judge(prover *v, const double *x, mt_err *err)
 /* Ask, and judge what is found. */
 static mt_status ask(prover *v, mt_certify_search *found, mt_err *err)
 {
-    MT_TRY(mt_certify_assignments(&v->proof.question, 0, NULL, v->d->mem, found, err));
+    MT_TRY(mt_proof_ask(&v->proof, PART * v->d->c->proof_work, v->d->mem, found, err));
     v->report->boxes += found->boxes;
     for (int k = 0; k < found->n_found && v->d->stop != MT_STOP_USER; k++) {
         MT_TRY(judge(v, found->at + ((ptrdiff_t)k * v->d->p->n), err));
@@ -152,6 +152,7 @@ static mt_status improve(prover *v, double share, mt_err *err)
             v->report->best_within = share;
             return MT_OK;
         }
+        v->report->cut = v->report->cut || (!found.proven && !found.stopped);
         MT_TRY(best_of(v, &best, err));
         if (best == NULL || !(best->f[0] < f) || v->d->stop == MT_STOP_USER) {
             return MT_OK;
@@ -167,7 +168,6 @@ static mt_status prove(prover *v, mt_err *err)
     mt_certify_search found = {0};
     MT_TRY(mt_proof_use_catalogues(&v->proof, d->p, d->mem, err));
     MT_TRY(mt_proof_cap_init(&v->cap, d->p, d->mem, err));
-    v->proof.question.max_work = EFFORT;
     MT_TRY(ask(v, &found, err));
     const mt_combination *best = NULL;
     MT_TRY(best_of(v, &best, err));

@@ -30,6 +30,8 @@ enum {
 /* Of a proof before the first search: tens of milliseconds. Most are settled by then, and what
  * is hopeless is told at once. */
 static const double FIRST_WORK = 2e8;
+/* Of a smaller budget, so that the proof after it has more. */
+static const double FIRST_SHARE = 0.04;
 
 typedef struct sampled {
     int *below;
@@ -280,8 +282,7 @@ static mt_status prove(const mt_workspace *w, mt_proof *proof, double work, mt_a
                        mt_gap_candidates *out, mt_err *err)
 {
     mt_certify_search found = {0};
-    proof->question.max_work = work;
-    MT_TRY(mt_certify_assignments(&proof->question, 0, NULL, mem, &found, err));
+    MT_TRY(mt_proof_ask(proof, work, mem, &found, err));
     return keep_proven(w->p, &found, mem, out, err);
 }
 
@@ -291,8 +292,8 @@ mt_status mt_gap_candidates_first(mt_workspace *w, mt_proof *proof, mt_arena *me
     *all = (mt_gap_candidates){.possible = mt_gap_count_possible(w->p)};
     *first = (mt_gap_candidates){.possible = all->possible};
     if (proof->possible) {
-        const double most = w->c->proof_work > 0.0 ? w->c->proof_work : MT_CERTIFY_WORK;
-        MT_TRY(prove(w, proof, fmin(most, FIRST_WORK), mem, all, err));
+        const double most = fmin(FIRST_WORK, FIRST_SHARE * w->c->proof_work);
+        MT_TRY(prove(w, proof, most, mem, all, err));
     }
     if (all->proven) {
         return MT_OK;
@@ -307,7 +308,7 @@ mt_status mt_gap_candidates_find(mt_workspace *w, mt_proof *proof, long spent, m
 {
     *out = (mt_gap_candidates){.possible = mt_gap_count_possible(w->p)};
     if (proof->possible) {
-        MT_TRY(prove(w, proof, w->c->proof_work, mem, out, err));
+        MT_TRY(prove(w, proof, w->c->proof_work, mem, out, err)); /* all that is left */
     }
     if (proof->possible && (out->proven || out->n > 0)) {
         return MT_OK;

@@ -7,6 +7,9 @@
 #include "base/spent.h"
 #include "problem/demand.h"
 
+/* Spent with the first box. 0 would be the default of certify.h. */
+static const double LEAST_WORK = 1.0;
+
 void mt_proof_free(mt_proof *proof)
 {
     double work = 0.0;
@@ -32,6 +35,15 @@ static mt_status enclose(mt_proof *proof, const mt_problem *p, mt_err *err)
                               mt_analysis_configuration(p->views[i].original), why);
         }
     }
+    return MT_OK;
+}
+
+mt_status mt_proof_ask(mt_proof *proof, double most, mt_arena *mem, mt_certify_search *out,
+                       mt_err *err)
+{
+    proof->question.max_work = fmax(fmin(most, proof->left), LEAST_WORK);
+    MT_TRY(mt_certify_assignments(&proof->question, 0, NULL, mem, out, err));
+    proof->left = fmax(proof->left - out->work, 0.0);
     return MT_OK;
 }
 
@@ -88,7 +100,7 @@ mt_status mt_proof_init(mt_proof *proof, const mt_case *c, mt_arena *mem, mt_err
     const size_t n = (size_t)p->n;
     const size_t n_demands = (size_t)p->n_demands;
     const size_t n_bands = (size_t)p->n_bands;
-    *proof = (mt_proof){.spent = p->study->model->spent};
+    *proof = (mt_proof){.left = c->proof_work, .spent = p->study->model->spent};
     proof->views = mt_arena_alloc(mem, (size_t)p->n_views, sizeof(mt_enclosure *));
     proof->bands = mt_arena_alloc(mem, n_bands, sizeof *proof->bands);
     proof->bases = mt_arena_alloc(mem, n_bands, sizeof *proof->bases);
@@ -111,7 +123,11 @@ mt_status mt_proof_init(mt_proof *proof, const mt_case *c, mt_arena *mem, mt_err
                                    .max_work = c->proof_work,
                                    .interrupt = p->study->model->interrupt,
                                    .progress = p->study->model->progress};
-    MT_TRY(enclose(proof, p, err));
+    if (c->proof_work > 0.0) {
+        MT_TRY(enclose(proof, p, err));
+    } else {
+        (void)mt_snprintf(proof->reason, sizeof proof->reason, "\"proof_s\" is 0");
+    }
     /* what is possible for a design may not be over its tolerances */
     proof->covers = c->robust == NULL;
     list_bands(proof, p);

@@ -25,12 +25,17 @@ typedef struct mt_proof {
     bool covers;
     char reason[MT_REASON_SIZE]; /* why there is no certificate; empty: there can be */
     bool possible;
+    double left;            /* of its budget, in multiplications */
     struct mt_spent *spent; /* where its work is noted; NULL */
 } mt_proof;
 
 /* Results in mem but the enclosures, which mt_proof_free gives back. `possible` false, with the
  * reason, is a success. */
 mt_status mt_proof_init(mt_proof *proof, const mt_case *c, mt_arena *mem, mt_err *err);
+/* mt_certify_assignments of the question with `most` of what is left of the budget at most: all
+ * that is asked of one proof has it together. Where nothing is left one box is looked at. */
+mt_status mt_proof_ask(mt_proof *proof, double most, mt_arena *mem, mt_certify_search *out,
+                       mt_err *err);
 /* Accepts a zeroed proof. */
 void mt_proof_free(mt_proof *proof);
 /* Variables with a catalogue take values of it only, instead of all between its ends. Arrays in

@@ -20,7 +20,8 @@ mt_status mt_study_new(mt_study **out, mt_err *err)
         return rc;
     }
     study->recommendations = DEFAULT_RECOMMENDATIONS;
-    study->search.seed = DEFAULT_SEED;
+    study->search =
+        (mt_search){.seed = DEFAULT_SEED, .proof_s = nan(""), .proof_addr = MT_NO_ADDR};
     study->spread = (mt_spread){.factor = nan(""), .factor_addr = MT_NO_ADDR};
     *out = study;
     return MT_OK;

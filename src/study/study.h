@@ -228,7 +228,13 @@ typedef struct mt_search {
     /* of them, positions that a design may be followed over on its way along one drive; 0: as
      * many as it takes. By who answers */
     int max_positions;
+    /* nominal seconds of each proof (prove/certify.h); 0: none; NaN: not said */
+    double proof_s;
+    mt_addr proof_addr;
 } mt_search;
+
+/* Of proof_s. */
+#define MT_PROOF_S_MOST 1e6
 
 /* How far the best design of a misfit moves when single weights are changed: the uncertainty
  * that a choice of weights hides. */

@@ -99,6 +99,16 @@ static void check_spread(mt_study_check *c)
     }
 }
 
+static void check_proof(mt_study_check *c)
+{
+    const mt_search *const search = &c->study->search;
+    if (MT_HAS(search->proof_s) &&
+        !(search->proof_s >= 0.0 && search->proof_s <= MT_PROOF_S_MOST)) {
+        mt_diag_error(c->diags, search->proof_addr, "proof_s (%g) must be from 0 to %g",
+                      search->proof_s, MT_PROOF_S_MOST);
+    }
+}
+
 void mt_study_check_objectives(mt_study_check *c)
 {
     mt_study *const s = c->study;
@@ -107,6 +117,7 @@ void mt_study_check_objectives(mt_study_check *c)
     }
     check_misfit(c);
     check_spread(c);
+    check_proof(c);
     const mt_objective *const clearance = find(s, MT_BANDS);
     if (clearance != NULL && !mt_study_has_bands(s)) {
         mt_diag_error(c->diags, clearance->addr,

@@ -187,7 +187,8 @@ class Budget(CliTest):
 
     def test_values_that_are_none(self):
         for option, values in {"--time": ("0", "-1", "nan", "inf", "1s", "2e9", "0x5"), "--seed": ("-1", "1.5", "x", "2147483648"),
-                               "--starts": ("0", "1.5", "100001"), "--max-evaluations": ("0", "x", "2147483648")}.items():
+                               "--starts": ("0", "1.5", "100001"), "--max-evaluations": ("0", "x", "2147483648"),
+                               "--proof": ("-1", "nan", "inf", "5s", "1.1e6", "0x5")}.items():
             for value in values:
                 done = self.expect(2, "run", "studies/short.json", f"{option}={value}")
                 self.assertIn(f'{option}: "{value}" is not', done.stderr)

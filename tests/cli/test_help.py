@@ -8,9 +8,9 @@ from common_cli import COMMANDS, SOURCE, CliTest, main, options_in
 # Which options each command has: written down once more, so that a change is a decision.
 EVERYWHERE = {"max-memory", "root", "format", "quiet", "help"}
 OPTIONS = {
-    "run": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "resume", "shard", "profile", "progress"},
-    "merge": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "profile", "progress"},
-    "compare": {"threads", "set", "seed", "starts", "max-evaluations", "progress"},
+    "run": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "proof", "resume", "shard", "profile", "progress"},
+    "merge": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "proof", "profile", "progress"},
+    "compare": {"threads", "set", "seed", "starts", "max-evaluations", "proof", "progress"},
     "modes": {"configuration", "set", "count", "shapes", "damped", "profile", "progress"},
     "mac": {"count"},
     "sweep": {"configuration", "set", "count", "drive", "hold", "modes"},

@@ -6,6 +6,7 @@
  * interrupts the proof has a design.
  */
 #include "nlp/starts.h"
+#include "prove/certify.h"
 #include "search/gaps.h"
 #include "study_fixture.h"
 #include "support/mt_random.h"
@@ -143,7 +144,7 @@ static void kinds__are_those_of_samples(mt_test *t)
             solve(t, &s, 1, LITTLE, &few);
             solve(t, &s, WORKERS, LITTLE, &many);
             same(t, &s, &few, &many);
-            solve(t, &s, 1, 0.0, &all);
+            solve(t, &s, 1, MT_CERTIFY_WORK, &all);
             CHECK(t, all.proven && few.boxes <= all.boxes);
             shorter += few.boxes < all.boxes ? 1 : 0;
             CHECK(t, few.compromise || few.n_solutions <= all.n_solutions);
