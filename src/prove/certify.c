@@ -515,12 +515,17 @@ static mt_status visit(search *s, bool *deeper)
     return note_open(s);
 }
 
+/* Is what was found all that is asked for? */
+static bool satisfied(const search *s)
+{
+    return (s->only != NULL || s->c->any) && s->out->n_found > 0;
+}
+
 static mt_status run(search *s)
 {
     mt_certify_search *const out = s->out;
     bool deeper = true;
-    for (s->limit = DEEPER; deeper && !(s->only != NULL && out->n_found > 0);
-         s->limit += DEEPER) {
+    for (s->limit = DEEPER; deeper && !satisfied(s); s->limit += DEEPER) {
         deeper = false;
         out->proven = true;
         out->n_open = 0;
@@ -528,7 +533,7 @@ static mt_status run(search *s)
         out->undecided = 0.0;
         s->decided = 0.0;
         mt_boxes_start(&s->boxes, s->c->lower, s->c->upper, s->edges.root);
-        while (mt_boxes_pop(&s->boxes) && !(s->only != NULL && out->n_found > 0)) {
+        while (mt_boxes_pop(&s->boxes) && !satisfied(s)) {
             MT_TRY(visit(s, &deeper));
         }
         if (!out->proven) {
@@ -536,6 +541,7 @@ static mt_status run(search *s)
         }
         deeper = deeper && !out->proven && !spent(s);
     }
+    out->proven = out->proven && !(s->c->any && out->n_found > 0);
     return MT_OK;
 }
 

@@ -74,6 +74,9 @@ typedef struct mt_certify {
     const int *n_catalogue;         /* [n] 0: continuous; NULL: all are */
     const double *const *catalogue; /* [n] ascending values */
     const mt_certify_cap *cap;      /* NULL: any value of the objective */
+    /* one design will do: the search ends with the first that it finds, and proves nothing
+     * then */
+    bool any;
     /* [n] NaN: bisected in ln x, else linearly; NULL: in ln x where lower > 0 */
     const double *scale;
     double max_work;         /* in multiplications, about; 0: MT_CERTIFY_WORK */
