@@ -19,6 +19,36 @@ static bool excluded(const mt_discrete_report *report)
     return report->settled && report->n_kinds == 0 && report->feasible == 0;
 }
 
+/* How far branch and bound came beside continuous variables. */
+static const char *branched_text(const mt_discrete_report *r, mt_arena *mem, const char *rest)
+{
+    if (r->all) {
+        return mt_arena_printf(mem,
+                               "Of %.6g combinations of catalogue values %d were judged, and "
+                               "branch and bound excludes all others: none of them meets all "
+                               "goals%s.%s",
+                               r->combinations, r->judged,
+                               r->feasible > 0 ? " and is better in the first objective than "
+                                                 "the best design"
+                                               : "",
+                               rest);
+    }
+    const double share = 100.0 * (r->combinations - r->open) / r->combinations;
+    const char *const gap = MT_HAS(r->open_within)
+                                ? mt_arena_printf(mem, ", which are better by %.3g %% at most",
+                                                  100.0 * r->open_within)
+                                : "";
+    return mt_arena_printf(
+        mem,
+        "Of %.6g combinations of catalogue values %d were judged; with those "
+        "that branch and bound excludes this settles %.3g %%, and its effort "
+        "ended before the other %.6g%s%s%s",
+        r->combinations, r->judged, share, r->open, gap,
+        excluded(r) || MT_HAS(r->best_within) ? " (what is proven of all of them follows)."
+                                              : " (heuristic): a better one may exist.",
+        rest);
+}
+
 static const char *certificate_text(const mt_discrete_report *r, const mt_nlp_result *found,
                                     mt_arena *mem)
 {
@@ -27,6 +57,9 @@ static const char *certificate_text(const mt_discrete_report *r, const mt_nlp_re
             ? " The other variables were searched from several starts for each of them, "
               "which is sampled, not proven."
             : "";
+    if (r->branched) {
+        return branched_text(r, mem, rest);
+    }
     if (!r->all) {
         return mt_arena_printf(mem,
                                "Of %.6g combinations of catalogue values %d were judged, near "
@@ -167,6 +200,9 @@ static const char *certainty(const mt_discrete_report *r, mt_arena *mem)
         return r->mixed ? mt_arena_printf(mem, "proven: none is better by more than %.3g %%",
                                           100.0 * r->best_within)
                         : "proven: none is better than the first";
+    }
+    if (r->branched && r->all) {
+        return "branch and bound; the other variables sampled";
     }
     return r->all ? "enumerated; the other variables sampled"
                   : "heuristic: a better one may exist";

@@ -256,6 +256,9 @@ mt_status mt_discrete_solve(mt_workspace *const *workers, int n_workers, mt_aren
     *report = (mt_discrete_report){.mixed = d.mixed, .combinations = n, .best_within = nan("")};
     if (n > (double)(d.mixed ? MT_DISCRETE_MOST_MIXED : MT_DISCRETE_MOST)) {
         MT_TRY(mt_discrete_near(&d, &all, &n_all, err));
+        if (d.mixed && d.stop == MT_STOP_DONE) {
+            MT_TRY(unless_interrupted(&d, mt_discrete_branch(&d, &all, &n_all, report, err)));
+        }
     } else {
         n_all = (int)n;
         MT_TRY(enumerate(&d, n_all, &r, report, &all, err));

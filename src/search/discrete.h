@@ -16,9 +16,11 @@
  * those that are kept. Beyond MT_DISCRETE_MOST combinations (MT_DISCRETE_MOST_MIXED where
  * continuous variables remain) the search is a heuristic: the relaxed problem (every catalogue
  * as the interval that it spans), roundings of its designs, then steps to neighbouring values
- * while these help. What neither settles, branch and bound does where the modes can be enclosed
- * (discrete_prove.c): which gap assignments some combination has, that none meets all goals,
- * that none is better than the best found.
+ * while these help. Where continuous variables remain branch and bound follows
+ * (discrete_branch.c): combinations are excluded, many at once, or searched, until none is left
+ * or its effort is spent (not for objectives that boxes do not bound). What neither settles, a
+ * proof does where the modes can be enclosed (discrete_prove.c): which gap assignments some
+ * combination has, that none meets all goals, that none is better than the best found.
  */
 enum { MT_DISCRETE_MOST = 200000, MT_DISCRETE_MOST_MIXED = 400 };
 
@@ -27,6 +29,11 @@ typedef struct mt_discrete_report {
     bool all;            /* every combination was judged, or shown not to rank */
     double combinations; /* how many there are */
     int judged;
+    bool branched; /* by branch and bound (discrete_branch.c) */
+    double open;   /* combinations that this has neither excluded nor searched */
+    /* by what share of the best one's objective one of these may be less, at most, by bounds of
+     * the objective alone; NaN: not known */
+    double open_within;
     /* several positions of one drive: only combinations that might rank were followed between
      * them */
     bool driven;
@@ -124,6 +131,12 @@ void mt_discrete_set(const mt_discrete *d, mt_combination *c);
  * finds join (*all)[*n], judged. */
 mt_status mt_discrete_prove(mt_discrete *d, mt_combination ***all, int *n,
                             mt_discrete_report *report, mt_err *err);
+/* discrete_branch.c: search or exclude all combinations, as far as the effort goes: beside
+ * continuous variables, after the heuristic. (*all)[*n] are the combinations judged so far;
+ * those that are searched join them. Into the report: branched, open, all. Cost: at most 1000
+ * searches and some seconds of certificates. */
+mt_status mt_discrete_branch(mt_discrete *d, mt_combination ***all, int *n,
+                             mt_discrete_report *report, mt_err *err);
 /* discrete_near.c: the heuristic. (*list)[*n] are the combinations that it has judged. */
 mt_status mt_discrete_near(mt_discrete *d, mt_combination ***list, int *n, mt_err *err);
 

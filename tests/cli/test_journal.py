@@ -36,11 +36,13 @@ def frequency(mode, hz):
 
 
 AVOID = {"type": "avoid", "configurations": ["held"], "bands_hz": [[0.25, 0.3], [0.5, 0.6]], "up_to_hz": 1}
-# One of every way that work is shared: starts, gap assignments, combinations with and without a search, relaxations, trade points.
+MANY = [5.0, 8.0, 9.0, 10.0, 11.0, 12.0, 14.0, 20.0, 30.0]
+# One of every way that work is shared: starts, gap assignments, combinations with and without a search, boxes of them, relaxations, trade points.
 STUDIES = {
     "starts": {"variables": variables(8), "goals": [frequency(1, 0.1), frequency(2, 0.33)], "search": {"starts": 60}},
     "gaps": {"variables": variables(4), "goals": [AVOID], "search": {"starts": 6}},
     "mixed": {"variables": variables(4, 2), "goals": [frequency(1, 0.1)], "search": {"starts": 3}},
+    "branched": {"variables": [dict(v, catalogue=MANY) for v in variables(3, 3)] + variables(4)[3:], "goals": [AVOID], "search": {"starts": 2}},
     "catalogue": {"variables": variables(4, 4), "goals": [AVOID]},
     "none": {"variables": [dict(v, lower=9, upper=14) for v in variables(3)], "goals": [dict(AVOID, bands_hz=[[0.2, 0.9]])], "search": {"starts": 4}},
     "trade": {"variables": variables(4), "goals": [frequency(1, 0.1)], "search": {"starts": 4},
@@ -97,7 +99,7 @@ class Journal(CliTest):
         return self.journal(name, "killed").exists()
 
     def test_kill_and_resume(self):
-        names = ["starts", "mixed", "trade", "none", "gaps", "catalogue"]
+        names = ["starts", "mixed", "trade", "none", "gaps", "catalogue", "branched"]
         seconds = {}
         for name in names:
             begun = time.monotonic()

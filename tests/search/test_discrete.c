@@ -249,6 +249,67 @@ static void discrete__the_best_of_an_expression_is_proven_within_one_per_cent(mt
     study_free(&c);
 }
 
+#define MANY                                                                                 \
+    "'variables': [{'parameter': 'k1', 'catalogue': {'series': 'E24', 'lower': 1, 'upper': " \
+    "9.5}}, {'parameter': 'm', 'catalogue': {'series': 'E24', 'lower': 0.5, 'upper': 5}}, "  \
+    "{'parameter': 'k2', 'lower': 0.2, 'upper': 5}], 'search': {'starts': 2},"
+#define MANY_LOADED                                                    \
+    "{'format': 'modetune-model/1', 'name': 'loaded', 'dimension': 2," \
+    "'parameters': {'k1': 2, 'k2': 1, 'm': 1}, "                       \
+    "'gravity_m_per_s2': [-9.81, 0]," STUDY_TWO_MASSES_ROW "}"
+
+static bool says(const study_case *c, const char *text)
+{
+    const mt_certificate *const e = enumeration(c->result);
+    return e != NULL && strstr(e->text, text) != NULL;
+}
+
+/* 600 combinations beside a continuous variable. Gravity along the row changes no mode, but
+ * forbids certificates: what the change alone excludes leaves the same best design. */
+static void discrete__branch_and_bound_excludes_with_certificates_and_without(mt_test *t)
+{
+    static const char goal[] =
+        MANY "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.15}]";
+    study_case c;
+    study_case loaded;
+    const bool solved =
+        study_solve(t, STUDY_TWO_MASSES("'k1': 2, 'k2': 1, 'm': 1", ""), goal, &c);
+    if (study_solve(t, MANY_LOADED, goal, &loaded) && solved) {
+        CHECK(t, says(&c, "branch and bound excludes all others"));
+        CHECK(t, says(&loaded, "branch and bound excludes all others"));
+        CHECK_NEAR(t, loaded.result->recommendations[0].change,
+                   c.result->recommendations[0].change, SAME_OPTIMUM);
+        for (int i = 0; i < 3; i++) {
+            const char *const name = c.result->recommendations[0].parameters[i].name;
+            mt_test_row(t, "%s", name);
+            CHECK_NEAR(t, study_value(&loaded, 1, name), study_value(&c, 1, name), 1e-4);
+        }
+    }
+    study_free(&loaded);
+    study_free(&c);
+}
+
+/* No design meets the goal: with certificates one look says so, without them 400 combinations
+ * are searched, and the answer tells how many are left. */
+static void discrete__branch_and_bound_says_how_far_it_came(mt_test *t)
+{
+    static const char goal[] =
+        MANY "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 2}]";
+    study_case c;
+    if (study_solve(t, STUDY_TWO_MASSES("'k1': 2, 'k2': 1, 'm': 1", ""), goal, &c)) {
+        CHECK(t, proves(c.result, "infeasible"));
+        CHECK(t,
+              says(&c, "branch and bound excludes all others: none of them meets all goals."));
+    }
+    study_free(&c);
+    if (study_solve(t, MANY_LOADED, goal, &c)) {
+        CHECK_INT(t, c.result->status, MT_RESULT_COMPROMISE);
+        CHECK(t, !proves(c.result, "infeasible") && !proves(c.result, "enumeration"));
+        CHECK(t, says(&c, "this settles ") && says(&c, "its effort ended before the other "));
+    }
+    study_free(&c);
+}
+
 /* Nothing is claimed where the modes cannot be enclosed, and it is said why. */
 static void discrete__without_an_enclosure_nothing_is_proven(mt_test *t)
 {
@@ -343,6 +404,8 @@ MT_TEST_MAIN(MT_TEST(discrete__enumeration_agrees_with_brute_force),
              MT_TEST(discrete__that_no_combination_with_others_beside_works_is_proven),
              MT_TEST(discrete__that_none_of_too_many_combinations_works_is_proven),
              MT_TEST(discrete__the_best_of_an_expression_is_proven_within_one_per_cent),
+             MT_TEST(discrete__branch_and_bound_excludes_with_certificates_and_without),
+             MT_TEST(discrete__branch_and_bound_says_how_far_it_came),
              MT_TEST(discrete__without_an_enclosure_nothing_is_proven),
              MT_TEST(discrete__of_too_many_combinations_the_best_is_proven),
              MT_TEST(discrete__the_rank_says_least_of_what_begins_like_clearance),

@@ -127,6 +127,11 @@ static const struct {
      "{'parameter': 'k2', 'catalogue': {'series': 'E96', 'lower': 0.5, 'upper': 5}}]," QUICK
      "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.12}, {'type': 'frequency', "
      "'mode': 2, 'at_most_hz': 0.3}]"},
+    {"more combinations beside a continuous variable than are enumerated", ROW(""),
+     "'variables': [{'parameter': 'k1', 'catalogue': {'series': 'E24', 'lower': 1, 'upper': "
+     "9.5}}, {'parameter': 'm', 'catalogue': {'series': 'E24', 'lower': 0.5, 'upper': 5}}, "
+     "{'parameter': 'k2', 'lower': 0.2, 'upper': 5}]," QUICK
+     "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.15}]"},
     {"tolerances of what bends stiffness both ways",
      STUDY_TWO_MASSES("'a': 1, 'k1': '2 + a*(3 - a)', 'k2': 1, 'm': 1, 'n': '2*m'", ""),
      "'variables': [{'parameter': 'a', 'lower': 0.5, 'upper': 2.5, 'tolerance_percent': 3}, "

@@ -1,0 +1,513 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Branch and bound over catalogues that have continuous variables beside them. A box holds
+ * values of each catalogue from one to another and all values of the other variables. It is
+ * done with where
+ *     no design of it has an objective below that of the best one found: least(box) >= cap, or
+ *     none has one and meets the goals: a short certificate (prove/certify.h) over the box, in
+ *     which catalogues are open between their ends and thinned out as they are halved.
+ * What is not done with is halved, until a box is one combination, which is searched like any
+ * other. Boxes of the least bound come first. A design that a certificate meets on its way, and
+ * that is better, has its combination searched from there at once: the cap falls.
+ *
+ * So each combination is excluded, by proof, or searched, by samples in its continuous
+ * variables. Boxes are looked at in rounds of a fixed number, with one cap for all of a round:
+ * nothing depends on the workers.
+ */
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/spent.h"
+#include "base/workers.h"
+#include "problem/objective.h"
+#include "search/discrete.h"
+#include "search/proof.h"
+
+enum {
+    ROUND = 32,           /* boxes */
+    SEARCHED_MOST = 1000, /* combinations; MT_DISCRETE_MOST_MIXED without certificates */
+    LOOKED_MOST = 20000,  /* boxes */
+    LEAST_BUDGET = 20     /* evaluations of each combination, where there is a budget */
+};
+/* Multiplications of all certificates: a second or two. */
+static const double EFFORT = 5e9;
+/* What the certificate of a box may cost, in boxes of its own (with some factorisations each);
+ * that of a single combination saves a search, and may cost more. */
+static const double LOOK = 200.0;
+static const double LOOK_SINGLE = 1000.0;
+/* A box beside its factorisations, in multiplications, as in certify.c. */
+static const double BOX = 500.0;
+/* First objectives that differ by less are equal where others decide between them, as in
+ * discrete_prove.c. */
+static const double EQUAL = 1e-9;
+
+typedef struct box {
+    int *first; /* [n_discrete] index in each catalogue */
+    int *last;
+    double combinations;
+    double least; /* no objective in it is less */
+    int number;   /* in the order that they are made in */
+} box;
+
+/* What is known of a box after a look at it. */
+typedef struct look {
+    bool excluded;
+    bool met;  /* a design meets everything, with an objective below the cap */
+    double *x; /* [n] that one */
+    long work; /* multiplications */
+} look;
+
+typedef struct branching {
+    mt_discrete *d;
+    bool enclosed;      /* the certificates can be had */
+    mt_proof *proofs;   /* [n_workers] their bounds are those of a worker's box */
+    mt_proof_cap *caps; /* [n_workers] */
+    double unit;        /* multiplications of one box of a certificate, about */
+    box *open;
+    int n_open;
+    int capacity;
+    int made;
+    double work;    /* multiplications of all looks */
+    box now[ROUND]; /* of the round */
+    look looks[ROUND];
+    int n_now;
+    mt_combination *fresh; /* [2 ROUND] to be searched */
+    int n_fresh;
+    mt_combination **all;
+    int n;
+    int n_capacity;
+} branching;
+
+/* Values of a box, the others within their bounds. */
+static void bound(const mt_discrete *d, const box *b, double *lower, double *upper)
+{
+    for (int i = 0; i < d->p->n; i++) {
+        lower[i] = d->c->lower[i];
+        upper[i] = d->c->upper[i];
+    }
+    for (int k = 0; k < d->n_discrete; k++) {
+        const int i = d->variable[k];
+        lower[i] = d->p->study->variables[i].catalogue[b->first[k]];
+        upper[i] = d->p->study->variables[i].catalogue[b->last[k]];
+    }
+}
+
+static mt_status certify(const branching *v, int worker, const box *b, look *out, mt_arena *mem,
+                         mt_err *err)
+{
+    mt_proof *const proof = &v->proofs[worker];
+    mt_certify_search found = {0};
+    bound(v->d, b, proof->lower, proof->upper);
+    proof->question.max_work = v->unit * (b->combinations > 1.0 ? LOOK : LOOK_SINGLE);
+    for (int i = 0; i < proof->question.n_views; i++) {
+        proof->views[i]->operations = 0.0;
+    }
+    MT_TRY(mt_certify_assignments(&proof->question, 0, NULL, mem, &found, err));
+    out->met = found.n_found > 0;
+    out->excluded = !out->met && found.proven;
+    if (out->met) {
+        memcpy(out->x, found.at, (size_t)v->d->p->n * sizeof *out->x);
+    }
+    double work = 0.0;
+    for (int i = 0; i < proof->question.n_views; i++) {
+        work += proof->views[i]->operations;
+    }
+    out->work = (long)work;
+    return MT_OK;
+}
+
+static mt_status examine(void *context, int worker, int task, mt_scope *own, mt_err *err)
+{
+    (void)own;
+    branching *const v = context;
+    mt_arena mem = {0};
+    mt_status rc = mt_arena_init(&mem, 0, err);
+    if (rc == MT_OK) {
+        rc = certify(v, worker, &v->now[task], &v->looks[task], &mem, err);
+    }
+    mt_arena_free(&mem);
+    return rc;
+}
+
+static void tape_look(void *context, int task, mt_tape *tape)
+{
+    branching *const v = context;
+    const mt_discrete *const d = v->d;
+    look *const l = &v->looks[task];
+    mt_tape_flag(tape, &l->excluded);
+    mt_tape_flag(tape, &l->met);
+    mt_tape_long(tape, &l->work, 0, LONG_MAX);
+    mt_tape_numbers(tape, (size_t)d->p->n, l->x);
+    tape->failed = tape->failed || (l->excluded && l->met);
+    for (int i = 0; i < d->p->n && l->met; i++) {
+        const bool within = l->x[i] >= d->c->lower[i] && l->x[i] <= d->c->upper[i];
+        tape->failed = tape->failed || !within;
+    }
+    if (tape->reads && !mt_tape_is_read(tape)) { /* as if nothing had been read */
+        memset(l->x, 0, (size_t)d->p->n * sizeof *l->x);
+        *l = (look){.x = l->x};
+    }
+}
+
+static mt_status begin(branching *v, mt_err *err)
+{
+    mt_discrete *const d = v->d;
+    const size_t n_workers = (size_t)d->n_workers;
+    v->proofs = mt_arena_alloc(d->mem, n_workers, sizeof *v->proofs);
+    v->caps = mt_arena_alloc(d->mem, n_workers, sizeof *v->caps);
+    double *const x = mt_arena_f64(d->mem, (size_t)d->p->n, ROUND);
+    MT_TRY(mt_arena_check(d->mem, err));
+    for (int i = 0; i < ROUND; i++) {
+        v->looks[i].x = x + ((ptrdiff_t)i * d->p->n);
+    }
+    v->enclosed = true;
+    for (int i = 0; i < d->n_workers; i++) {
+        mt_proof *const proof = &v->proofs[i];
+        MT_TRY(mt_proof_init(proof, d->c, d->mem, err));
+        MT_TRY(mt_proof_use_catalogues(proof, d->p, d->mem, err));
+        MT_TRY(mt_proof_cap_init(&v->caps[i], d->p, d->mem, err));
+        proof->spent = NULL; /* noted box by box */
+        proof->question.progress = NULL;
+        proof->question.any = true;
+        v->enclosed = v->enclosed && proof->possible;
+    }
+    v->unit = BOX;
+    for (int i = 0; i < v->proofs[0].question.n_views && v->enclosed; i++) {
+        const double order = v->proofs[0].views[i]->n;
+        v->unit += order * order * order;
+    }
+    return MT_OK;
+}
+
+static void end(const branching *v)
+{
+    for (int i = 0; i < v->d->n_workers && v->proofs != NULL; i++) {
+        mt_proof_free(&v->proofs[i]);
+    }
+}
+
+/* One more box, its ranges those of b but for catalogue k (-1: all are b's). */
+static mt_status push(branching *v, const box *b, int k, int first, int last, mt_err *err)
+{
+    mt_discrete *const d = v->d;
+    const size_t n = (size_t)d->n_discrete;
+    const mt_proof_cap *const cap = &v->caps[0];
+    box made = {.first = mt_arena_int(d->mem, n),
+                .last = mt_arena_int(d->mem, n),
+                .combinations = 1.0,
+                .number = v->made++};
+    box *const grown = mt_arena_grow(d->mem, v->open, v->n_open, &v->capacity, sizeof *v->open);
+    MT_TRY(mt_arena_check(d->mem, err));
+    for (int i = 0; i < d->n_discrete; i++) {
+        made.first[i] = i == k ? first : b->first[i];
+        made.last[i] = i == k ? last : b->last[i];
+        made.combinations *= (double)(made.last[i] - made.first[i]) + 1.0;
+    }
+    bound(d, &made, v->proofs[0].lower, v->proofs[0].upper);
+    made.least = cap->cap.least(cap->cap.context, v->proofs[0].lower, v->proofs[0].upper);
+    v->open = grown;
+    v->open[v->n_open++] = made;
+    return MT_OK;
+}
+
+static mt_status push_all(branching *v, mt_err *err)
+{
+    mt_discrete *const d = v->d;
+    box whole = {.first = mt_arena_int(d->mem, (size_t)d->n_discrete),
+                 .last = mt_arena_int(d->mem, (size_t)d->n_discrete)};
+    MT_TRY(mt_arena_check(d->mem, err));
+    for (int k = 0; k < d->n_discrete; k++) {
+        whole.last[k] = d->p->study->variables[d->variable[k]].n_catalogue - 1;
+    }
+    return push(v, &whole, -1, 0, 0, err);
+}
+
+/* Both halves of a box, at the catalogue of which it has the greatest share. */
+static mt_status halve(branching *v, const box *b, mt_err *err)
+{
+    const mt_discrete *const d = v->d;
+    int widest = 0;
+    double most = -1.0;
+    for (int k = 0; k < d->n_discrete; k++) {
+        const int values = d->p->study->variables[d->variable[k]].n_catalogue;
+        const int beyond = b->last[k] - b->first[k];
+        const double share = (double)beyond / (double)values;
+        if (beyond > 0 && share > most) {
+            most = share;
+            widest = k;
+        }
+    }
+    const int middle = b->first[widest] + ((b->last[widest] - b->first[widest]) / 2);
+    MT_TRY(push(v, b, widest, b->first[widest], middle, err));
+    return push(v, b, widest, middle + 1, b->last[widest], err);
+}
+
+static const mt_combination *best_of(const branching *v)
+{
+    const mt_combination *best = NULL;
+    for (int i = 0; i < v->n; i++) {
+        const mt_combination *const c = v->all[i];
+        if (c->judged && c->feasible && (best == NULL || mt_discrete_before(v->d, c, best))) {
+            best = c;
+        }
+    }
+    return best;
+}
+
+/* The combination of these values among those that are known; NULL: it is not. */
+static mt_combination *known(const branching *v, const int *pick)
+{
+    const size_t size = (size_t)v->d->n_discrete * sizeof *pick;
+    for (int i = 0; i < v->n; i++) {
+        if (memcmp(v->all[i]->pick, pick, size) == 0) {
+            return v->all[i];
+        }
+    }
+    return NULL;
+}
+
+/* Designs of the first objective below this are asked for: better than the best one by more
+ * than searches differ, or as good where other objectives follow. Infinite: no best one. */
+static double cap_of(const branching *v)
+{
+    const mt_combination *const best = best_of(v);
+    if (best == NULL) {
+        return HUGE_VAL;
+    }
+    const double f = best->f[0];
+    return v->d->p->n_aims > 1 ? f + (EQUAL * fabs(f)) : f - (MT_EQUAL_FOUND * fabs(f));
+}
+
+static int by_bound(const void *a, const void *b)
+{
+    const box *const x = a;
+    const box *const y = b;
+    if (x->least != y->least) {
+        return x->least < y->least ? 1 : -1; /* the next one last */
+    }
+    return x->number < y->number ? 1 : -1;
+}
+
+/* The boxes of the next round; those that cannot be better leave the list with it. */
+static void take(branching *v, double cap)
+{
+    int kept = 0;
+    for (int i = 0; i < v->n_open; i++) {
+        if (v->open[i].least < cap) {
+            v->open[kept++] = v->open[i];
+        }
+    }
+    v->n_open = kept;
+    qsort(v->open, (size_t)v->n_open, sizeof *v->open, by_bound);
+    v->n_now = 0;
+    while (v->n_now < ROUND && v->n_open > 0) {
+        look *const l = &v->looks[v->n_now];
+        *l = (look){.x = l->x};
+        v->now[v->n_now++] = v->open[--v->n_open];
+    }
+}
+
+/* To be searched next, where that has not been done; from x (NULL: from nowhere), where it has
+ * been done, too. */
+static mt_status propose(branching *v, const int *pick, const double *x, mt_err *err)
+{
+    mt_discrete *const d = v->d;
+    const size_t size = (size_t)d->n_discrete * sizeof *pick;
+    const mt_combination *const before = known(v, pick);
+    bool there = before != NULL && before->judged && x == NULL;
+    for (int i = 0; i < v->n_fresh; i++) {
+        there = there || memcmp(v->fresh[i].pick, pick, size) == 0;
+    }
+    if (there) {
+        return MT_OK;
+    }
+    mt_combination *const c = &v->fresh[v->n_fresh++];
+    memcpy(c->pick, pick, size);
+    mt_discrete_set(d, c);
+    if (x != NULL) {
+        double *const from = mt_arena_f64(d->mem, (size_t)d->p->n + 1, 1);
+        MT_TRY(mt_arena_check(d->mem, err));
+        for (int i = 0; i < d->p->n; i++) {
+            from[i] = mt_problem_t(d->p, i, x[i]);
+        }
+        c->from = from;
+    }
+    return MT_OK;
+}
+
+/* The combination of a design, which is in the box. */
+static void pick_of(const mt_discrete *d, const box *b, const double *x, int *pick)
+{
+    for (int k = 0; k < d->n_discrete; k++) {
+        const double *const values = d->p->study->variables[d->variable[k]].catalogue;
+        pick[k] = b->first[k];
+        while (pick[k] < b->last[k] && values[pick[k]] < x[d->variable[k]]) {
+            pick[k]++;
+        }
+    }
+}
+
+/* What follows from the looks: boxes are gone, halved, or searched. */
+static mt_status follow_up(branching *v, mt_err *err)
+{
+    mt_discrete *const d = v->d;
+    int *const pick = mt_arena_int(d->mem, (size_t)d->n_discrete);
+    v->n_fresh = 0;
+    MT_TRY(mt_discrete_alloc(d, 2 * ROUND, &v->fresh, err));
+    for (int i = 0; i < v->n_now; i++) {
+        const box *const b = &v->now[i];
+        const look *const l = &v->looks[i];
+        if (l->excluded) {
+            continue;
+        }
+        if (l->met) {
+            pick_of(d, b, l->x, pick);
+            MT_TRY(propose(v, pick, l->x, err));
+        }
+        if (b->combinations > 1.0) {
+            MT_TRY(halve(v, b, err));
+        } else {
+            MT_TRY(propose(v, b->first, NULL, err));
+        }
+    }
+    return MT_OK;
+}
+
+/* A combination that was searched joins the others, or takes the place of itself. */
+static mt_status join(branching *v, mt_combination *c, mt_err *err)
+{
+    mt_discrete *const d = v->d;
+    mt_combination *const before = known(v, c->pick);
+    if (before != NULL) {
+        const bool better = c->judged && (!before->judged || mt_discrete_before(d, c, before));
+        if (better) {
+            *before = *c;
+        }
+        return MT_OK;
+    }
+    mt_combination **const grown =
+        mt_arena_grow(d->mem, v->all, v->n, &v->n_capacity, sizeof(mt_combination *));
+    MT_TRY(mt_arena_check(d->mem, err));
+    v->all = grown;
+    v->all[v->n++] = c;
+    return MT_OK;
+}
+
+static mt_status search_fresh(branching *v, mt_err *err)
+{
+    mt_discrete *const d = v->d;
+    const long most = d->c->search.max_evaluations;
+    const long left = most - d->evals;
+    int n = v->n_fresh;
+    if (most > 0 && left / LEAST_BUDGET < n) {
+        n = left > 0 ? (int)(left / LEAST_BUDGET) : 0;
+    }
+    if (n > 0) {
+        MT_TRY(mt_discrete_judge(d, n, v->fresh, most > 0 ? left / n : 0, err));
+    }
+    for (int i = 0; i < n; i++) {
+        MT_TRY(join(v, &v->fresh[i], err));
+    }
+    if (n < v->n_fresh && d->stop != MT_STOP_USER) {
+        d->stop = MT_STOP_MAX_EVALS;
+    }
+    return MT_OK;
+}
+
+/* One round; boxes whose combination has not been searched stay open. */
+static mt_status round_of(branching *v, double cap, mt_err *err)
+{
+    mt_discrete *const d = v->d;
+    const mt_tasks tasks = {v->n_now, examine, tape_look, v, "boxes of combinations"};
+    for (int i = 0; i < d->n_workers; i++) {
+        v->caps[i].cap.below = cap;
+        v->proofs[i].question.cap = cap < HUGE_VAL ? &v->caps[i].cap : NULL;
+    }
+    if (v->enclosed) {
+        MT_TRY(mt_workers_run(d->n_workers, d->workers[0]->scope, &tasks, err));
+    }
+    long work = 0;
+    for (int i = 0; i < v->n_now; i++) {
+        work += v->looks[i].work;
+    }
+    v->work += (double)work;
+    mt_spent_note(d->p->study->model->spent, MT_SPENT_MULTIPLICATIONS, work);
+    MT_TRY(follow_up(v, err));
+    MT_TRY(search_fresh(v, err));
+    for (int i = 0; i < v->n_now; i++) {
+        const box *const b = &v->now[i];
+        if (b->combinations > 1.0 || v->looks[i].excluded) {
+            continue;
+        }
+        const mt_combination *const c = known(v, b->first);
+        if (c == NULL || !c->judged) {
+            MT_TRY(push(v, b, -1, 0, 0, err));
+        }
+    }
+    return MT_OK;
+}
+
+/* Before a round: how much is left to look at, and how much better that may be. */
+static void note_open(const branching *v, mt_discrete_report *report)
+{
+    const mt_combination *const best = best_of(v);
+    double least = HUGE_VAL;
+    report->open = 0.0;
+    for (int i = 0; i < v->n_open + v->n_now; i++) {
+        const box *const b = i < v->n_open ? &v->open[i] : &v->now[i - v->n_open];
+        report->open += b->combinations;
+        least = fmin(least, b->least);
+    }
+    report->open_within = nan("");
+    if (best != NULL && best->f[0] > 0.0 && report->open > 0.0) {
+        /* half the square of the change */
+        const bool squares = mt_objective_is(v->d->p->aims[0].type, MT_HALF_SQUARE);
+        const double share = fmax(least, 0.0) / best->f[0];
+        report->open_within = 1.0 - (squares ? sqrt(share) : share);
+    }
+}
+
+static bool goes_on(const branching *v, int searched, long looked)
+{
+    const int most = v->enclosed ? SEARCHED_MOST : MT_DISCRETE_MOST_MIXED;
+    return v->n_now > 0 && v->d->stop == MT_STOP_DONE && searched < most &&
+           looked < LOOKED_MOST && v->work < EFFORT;
+}
+
+static mt_status run(branching *v, mt_discrete_report *report, mt_err *err)
+{
+    const mt_discrete *const d = v->d;
+    const int before = v->n;
+    long looked = 0;
+    MT_TRY(begin(v, err));
+    if (!v->caps[0].known) {
+        return MT_OK; /* no combination can be told from a better one */
+    }
+    report->branched = true;
+    MT_TRY(push_all(v, err));
+    double cap = cap_of(v);
+    take(v, cap);
+    note_open(v, report);
+    while (goes_on(v, v->n - before, looked)) {
+        looked += v->n_now;
+        MT_TRY(round_of(v, cap, err));
+        cap = cap_of(v);
+        take(v, cap);
+        note_open(v, report);
+    }
+    report->all = report->open == 0.0 && d->stop == MT_STOP_DONE;
+    return MT_OK;
+}
+
+mt_status mt_discrete_branch(mt_discrete *d, mt_combination ***all, int *n,
+                             mt_discrete_report *report, mt_err *err)
+{
+    branching v = {.d = d, .all = *all, .n = *n, .n_capacity = *n};
+    const mt_status rc = run(&v, report, err);
+    end(&v);
+    *all = v.all;
+    *n = v.n;
+    return rc;
+}

@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Catalogues beside continuous variables by branch and bound, against all combinations one by one.
+
+Random rows of masses with two or three catalogues and one or two continuous variables, bands, targets and limits, for the least change or the least of an
+expression. What branch and bound says is the best of all must be: each value of the first catalogue is made a study of its own, whose combinations the program
+enumerates (search/test_discrete has that against brute force). MT_EVERY=1: many more; MT_MIXED=N: so many; MT_MIXED_SEED=S.
+"""
+import json
+import math
+import os
+import random
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+PROGRAM = os.environ["MODETUNE"]
+SOURCE = Path(os.environ["SOURCE_DIR"])
+COUNT = int(os.environ.get("MT_MIXED", "200" if os.environ.get("MT_EVERY", "0") != "0" else "8"))
+SEED = os.environ.get("MT_MIXED_SEED", "1")
+SAME = 1e-5  # of the objectives of two searches that end at the same design
+
+
+def chain(stiffness):
+    """Masses of 1 kg in a row, the first one on the ground, moving in x."""
+    n = len(stiffness)
+    return {
+        "format": "modetune-model/1", "dimension": 2,
+        "parameters": {f"k{i}": k for i, k in enumerate(stiffness)},
+        "bodies": [{"name": f"b{i}", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [i + 1, 0]} for i in range(n)],
+        "joints": [{"name": f"j{i}", "type": "prismatic", "bodies": ["ground", f"b{i}"], "at": [i + 1, 0], "axis": [1, 0]} for i in range(n)],
+        "springs": [{"name": f"s{i}", "type": "axial", "bodies": ["ground" if i == 0 else f"b{i - 1}", f"b{i}"],
+                     **({"at": [[0, 0], [1, 0]]} if i == 0 else {}), "stiffness_n_per_m": f"k{i}"} for i in range(n)],
+        "configurations": {"held": {}},
+    }
+
+
+def frequencies(stiffness):
+    n = len(stiffness)
+    k = np.zeros((n, n))
+    for i, s in enumerate(stiffness):
+        k[i, i] += s
+        if i > 0:
+            k[i - 1, i - 1] += s
+            k[i - 1, i] -= s
+            k[i, i - 1] -= s
+    return np.sqrt(np.linalg.eigvalsh(k)) / (2 * math.pi)
+
+
+def bands(rng, hz):
+    middles = rng.sample(list(hz), rng.randint(1, 2))
+    wide = rng.choice([0.03, 0.08, 0.15])
+    return {"type": "avoid", "configurations": ["held"], "margin_percent": rng.choice([0, 5]),
+            "bands_hz": sorted([round(m * (1 - wide), 6), round(m * (1 + wide), 6)] for m in middles)}
+
+
+def question(rng):
+    """(model, study): more combinations than are enumerated, most of the time."""
+    n = rng.randint(3, 6)
+    stiffness = [round(math.exp(rng.uniform(-0.7, 0.7)) * 100, 3) for _ in range(n)]
+    order = rng.sample(range(n), n)
+    catalogues = rng.randint(2, min(3, n - 1))
+    free = rng.randint(1, min(2, n - catalogues))
+    variables, inside = [], list(stiffness)
+    for place, i in enumerate(order[:catalogues + free]):
+        low, high = stiffness[i] * rng.uniform(0.3, 0.9), stiffness[i] * rng.uniform(1.1, 3.0)
+        if place < catalogues:
+            count = rng.randint(20, 26) if catalogues == 2 else rng.randint(7, 12)
+            values = sorted({round(rng.uniform(low, high), 3) for _ in range(count)})
+            variables.append({"parameter": f"k{i}", "catalogue": values})
+            inside[i] = rng.choice(values)
+        else:
+            variables.append({"parameter": f"k{i}", "lower": round(low, 3), "upper": round(high, 3)})
+            inside[i] = rng.uniform(low, high)
+    now, there = frequencies(stiffness), frequencies(inside)
+    mode = rng.randint(1, n)
+    goal = {"type": "frequency", "configuration": "held", "mode": mode}
+    kind = rng.choice(["bands", "bands", "target", "limit", "limits"])
+    if kind == "bands":
+        goals = [bands(rng, now)]
+    elif kind == "target":
+        goals = [goal | {"target_hz": round(there[mode - 1], 6)}]
+    elif kind == "limit":
+        goals = [goal | {"at_least_hz" if there[mode - 1] > now[mode - 1] else "at_most_hz": round(there[mode - 1], 6)}]
+    else:  # not all of these can be met
+        goals = [goal | {"mode": 1, "at_least_hz": round(there[0], 6)}, goal | {"mode": n, "at_most_hz": round(there[-1], 6)}]
+    study = {"format": "modetune-study/1", "model": "model.json", "variables": variables, "goals": goals}
+    aim = rng.choice(["change", "sum", "weighted"])
+    names = [v["parameter"] for v in variables]
+    if aim != "change":
+        study["objective"] = {"minimise": " + ".join(names if aim == "sum" else [f"{rng.randint(1, 9)}*{name}" for name in names])}
+    return chain(stiffness), study
+
+
+def run(model, studies, *options):
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, "model.json").write_text(json.dumps(model), encoding="utf-8")
+        for i, study in enumerate(studies):
+            Path(folder, f"s{i}.json").write_text(json.dumps(study), encoding="utf-8")
+        names = [f"s{i}.json" for i in range(len(studies))]
+        done = subprocess.run([PROGRAM, "run", "--quiet", "-o", "out", *options, *names], cwd=folder, capture_output=True, text=True, check=False)
+        assert done.returncode in (0, 1), done.stderr
+        return [json.loads(Path(folder, f"out/s{i}/result.json").read_text(encoding="utf-8")) for i in range(len(studies))]
+
+
+def objective(study, result):
+    """Of the best design; infinite where none meets the goals."""
+    best = result["recommendations"][0] if result["recommendations"] else None
+    if best is None or not all(g["met"] for g in best["goals"]):
+        return math.inf
+    if "objective" not in study:
+        return best["change"]
+    values = {p["name"]: p["recommended"] for p in best["parameters"]}
+    return eval(study["objective"]["minimise"], {"__builtins__": {}}, values)
+
+
+def pieces(study):
+    first, rest = study["variables"][0], study["variables"][1:]
+    return [dict(study, variables=[dict(first, catalogue=[value]), *rest]) for value in first["catalogue"]]
+
+
+def combinations(study):
+    return math.prod(len(v.get("catalogue", [0])) for v in study["variables"])
+
+
+class Mixed(unittest.TestCase):
+    def test_a_design_between_the_roundings(self):
+        """Ten sizes each of three of six springs beside a fourth: steps to neighbours end 0.58 % above the best, which has its own values of two of them."""
+        model = json.loads((SOURCE / "problems/six_masses.json").read_text(encoding="utf-8"))
+        study = {
+            "format": "modetune-study/1", "model": "model.json",
+            "variables": [
+                {"parameter": "k_1", "catalogue": [36000, 38000, 40000, 41000, 42500, 52000, 53000, 55000, 64000, 84000]},
+                {"parameter": "k_2", "catalogue": [11000, 14000, 19000, 20500, 26500, 29000, 31000, 33000, 36500, 48500]},
+                {"parameter": "k_3", "catalogue": [8000, 12000, 27500, 28000, 29500, 30500, 38500, 45000, 45500, 46000]},
+                {"parameter": "k_4", "lower": 8000, "upper": 47000},
+            ],
+            "goals": [{"type": "avoid", "bands_hz": [[11.847732400984942, 14.347732400984942], [28.72538349812248, 33.72538349812248]], "margin_percent": 5, "up_to_hz": 60}],
+            "objective": {"minimise": "k_1 + k_2 + k_3 + k_4"},
+        }
+        result, *others = run(model, [study, *pieces(study)])
+        self.assertLess(objective(study, result), 88660)
+        self.assertLessEqual(objective(study, result), min(objective(study, other) for other in others) * (1 + SAME))
+
+    def test_the_best_of_all_is_found(self):
+        branched = complete = 0
+        for index in range(COUNT):
+            model, study = question(random.Random(f"{SEED}:{index}"))
+            with self.subTest(seed=SEED, index=index):
+                result, *others = run(model, [study, *pieces(study)])
+                found = objective(study, result)
+                want = min(objective(study, other) for other in others)
+                text = next(c["text"] for c in result["certificates"] if c["kind"] == "enumeration")
+                branched += "branch and bound excludes" in text
+                complete += "excludes all others" in text
+                if os.environ.get("MT_MIXED_SHOW"):
+                    print(index, combinations(study), found, want, text[:90], flush=True)
+                self.assertTrue(found <= want * (1 + SAME), f"{found} found, {want} exists: {text}")
+        self.assertGreater(branched, COUNT // 2)
+        self.assertGreater(complete, COUNT // 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
