@@ -3,6 +3,7 @@
 left out and said; one that suffices changes no design."""
 import json
 import math
+import os
 
 from common_cli import MODEL, CliTest, main, study
 
@@ -32,6 +33,7 @@ def masses(**more):
     return {**json.loads(study()), **more}
 
 
+FEWER = "MT_INSTRUMENTED" in os.environ  # a sanitizer looks at the same lines with fewer budgets
 FREE = [{"parameter": "arm", "lower": 0.05, "upper": 0.2}, {"parameter": "m", "lower": 0.4, "upper": 1.6}]
 CHOICES = [1, 1.5, 2, 3, 4, 6, 8, 12]
 CATALOGUES = [{"parameter": p, "catalogue": CHOICES} for p in ("k1", "k2")]
@@ -70,7 +72,7 @@ class Binds(CliTest):
 
     def test_no_answer_takes_more_than_its_budget(self):
         for kind in KINDS:
-            for most in (20, 60, 100, 300, 1000):
+            for most in (60, 300) if FEWER else (20, 60, 100, 300, 1000):
                 with self.subTest(kind, most=most):
                     found = self.answer(kind, "--max-evaluations", str(most))
                     spent = found["run"]["spent"]
@@ -82,7 +84,7 @@ class Binds(CliTest):
                     self.assertGreaterEqual(spent["descriptions"], 2 + 2 * len(found["recommendations"]))
 
     def test_one_that_suffices_changes_no_design(self):
-        for kind in KINDS:
+        for kind in list(KINDS)[:: 3 if FEWER else 1]:
             with self.subTest(kind):
                 free = self.answer(kind)
                 bound = self.answer(kind, "--max-evaluations", "1000000")
