@@ -117,7 +117,7 @@ class Journal(CliTest):
             (self.folder / "killed" / name / "result.json").unlink()
 
     def test_design_is_safe_before_a_long_proof(self):
-        asked = {"variables": variables(7 if FEWER else 8), "goals": [AVOID], "search": {"starts": 2}}
+        asked = {"variables": variables(8), "goals": [AVOID], "search": {"starts": 2}}
         self.write("studies/long.json", json.dumps({"format": "modetune-study/1", "model": "../problems/chain.json", **asked}))
         self.run_study("long", "whole")
         early = self.folder / "killed" / "long" / "result.json"
