@@ -210,7 +210,8 @@ mt_status mt_answer_relax(mt_answer *a, mt_err *err)
     }
     MT_TRY(mt_study_is_discrete(a->study)
                ? mt_relax_discrete(a->workers, a->n_workers, &a->found, &a->mem, &moves, err)
-               : mt_relax(a->workers, a->n_workers, &a->found, &a->mem, &moves, err));
+               : mt_relax(a->workers, a->n_workers, &a->found,
+                          a->p->n_clears > 0 ? &a->gaps : NULL, &a->mem, &moves, err));
     a->found.evals += moves.evals;
     a->found.starts += moves.starts;
     if (moves.short_of_budget && a->found.stop != MT_STOP_MAX_EVALS) {

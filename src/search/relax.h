@@ -4,6 +4,7 @@
 
 #include "problem/workspace.h"
 #include "result/result.h"
+#include "search/gaps.h"
 
 /*
  * Where no design meets all goals: which single number of the question, moved by how little and
@@ -12,7 +13,8 @@
  *     minimise s  subject to
  *         all bounds and rows of the study, those of the moved number relaxed by s,
  * s being the logarithm of the move (its part of the limit, where that has no logarithm), by
- * local searches from several starts; with bands in the gap assignments that come nearest. What
+ * local searches from several starts; with bands in the gap assignments that come nearest, for
+ * bounds and for what the miss that the search found there presses against (relax_near.c). What
  * is found is a design, so a move that is reported suffices for certain; that a smaller one
  * would not is sampled.
  */
@@ -48,12 +50,33 @@ typedef struct mt_moves {
  *                      afterwards
  * @param[in]  search  what the search found (a compromise to start from, where it has one) and
  *                     spent of the study's budget
+ * @param[in]  gaps    the same with the gap assignments, or NULL
  * @param[out] out lists in mem Every move reported has been confirmed by a new workspace at its
  *   design. Deterministic for any number of workers. Cost: some 1000 evaluations for each move.
  *   Fails: MT_E_MEMORY, MT_E_INTERNAL.
  */
 mt_status mt_relax(mt_workspace *const *workers, int n_workers, const mt_nlp_result *search,
-                   mt_arena *mem, mt_moves *out, mt_err *err);
+                   const mt_gap_result *gaps, mt_arena *mem, mt_moves *out, mt_err *err);
+
+/* relax_near.c: what misses one gap assignment by the least, as far as that is known. */
+typedef struct mt_near_miss {
+    const int *below;
+    const double *t;
+    bool *presses; /* [moves] against its number: else its move changes nothing there */
+} mt_near_miss;
+
+typedef struct mt_near_misses {
+    int n_bands;
+    int n;
+    mt_near_miss *items;
+} mt_near_misses;
+
+/* w: set to a case without an assignment. gaps may be NULL: then there are none. One evaluation
+ * each. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
+mt_status mt_relax_misses(mt_workspace *w, const mt_gap_result *gaps, const mt_moves *moves,
+                          mt_arena *mem, mt_near_misses *out, mt_err *err);
+/* NULL: none is known in this assignment. */
+const mt_near_miss *mt_relax_miss(const mt_near_misses *misses, const int *below);
 
 /* relax_discrete.c: the same for a study with catalogues. Without continuous variables all
  * combinations are looked at (short_of_budget where those are too many). */

@@ -185,7 +185,7 @@ static mt_status relax_near(mt_workspace *const *workers, int n_workers,
     for (int i = 1; i < n_workers && rc == MT_OK; i++) {
         rc = mt_workspace_use(workers[i], &closed, err);
     }
-    rc = rc == MT_OK ? mt_relax(workers, n_workers, &from, mem, &found, err) : rc;
+    rc = rc == MT_OK ? mt_relax(workers, n_workers, &from, NULL, mem, &found, err) : rc;
     for (int i = 0; i < n_workers; i++) {
         mt_workspace_back(workers[i], whole);
     }
