@@ -259,9 +259,9 @@ static mt_status search_in(const job *j, mt_case *c, mt_workspace *w, mt_move *m
 }
 
 /* With bands: in each of the assignments that samples come nearest to, but those whose known
- * miss the move cannot help. (A bound that no miss stands at may still open a way to others: of
- * 56 random studies with an answer five have it by such a bound.) Samples within the study's own
- * bounds are the same for all moves. */
+ * miss the move cannot help. (A bound that no miss stands at may still open a way to others:
+ * of 56 random studies with an answer five have it by such a bound.) Samples within the study's
+ * own bounds are the same for all moves. */
 static mt_status search_gaps(const job *j, const mt_case *plain, mt_workspace *w, int move,
                              task_result *out, mt_err *err)
 {
