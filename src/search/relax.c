@@ -114,6 +114,7 @@ static mt_status evaluate(void *context, const double *t, bool with_gradient,
 /* A design found with the move: what a workspace made anew says of it. */
 typedef struct answer {
     mt_arena *mem;
+    const double *near;  /* [n] where the search begins; NULL: nowhere */
     double *x;           /* [n] */
     double value;        /* that the number must have there; NaN: it does not do */
     long evals;          /* of its confirmations */
@@ -206,8 +207,7 @@ static mt_nlp nlp_of(relaxed *r, mt_case *c, const double *near, double *hint)
 
 /* Once in case c, to which w is set. */
 static mt_status search_once(const job *j, mt_case *c, mt_workspace *w, mt_move *m,
-                             const double *near, task_result *out, answer *a, bool *again,
-                             mt_err *err)
+                             task_result *out, answer *a, bool *again, mt_err *err)
 {
     relaxed r = {.w = w, .move = m};
     mt_nlp_result found = {0};
@@ -227,7 +227,7 @@ static mt_status search_once(const job *j, mt_case *c, mt_workspace *w, mt_move 
     opt.least_change = false;
     double *const hint = mt_arena_f64(&out->mem, (size_t)c->p->n + 1, 1);
     MT_TRY(mt_arena_check(&out->mem, err));
-    const mt_nlp nlp = nlp_of(&r, c, near, hint);
+    const mt_nlp nlp = nlp_of(&r, c, a->near, hint);
     const mt_status own = mt_workspace_solve(w, &nlp, &opt, &out->mem, &found, &why);
     out->evals += found.evals;
     out->starts += found.starts;
@@ -242,17 +242,17 @@ static mt_status search_in(const job *j, mt_case *c, mt_workspace *w, mt_move *m
                            const double *near, task_result *out, mt_err *err)
 {
     mt_arena *const mem = &out->mem;
-    answer a = {.mem = mem, .x = mt_arena_f64(mem, (size_t)c->p->n, 1)};
+    answer a = {.mem = mem, .near = near, .x = mt_arena_f64(mem, (size_t)c->p->n, 1)};
     bool again = true;
     MT_TRY(mt_arena_check(mem, err));
-    mt_status rc = search_once(j, c, w, m, near, out, &a, &again, err);
+    mt_status rc = search_once(j, c, w, m, out, &a, &again, err);
     for (int round = 1; again && round < ROUNDS && rc == MT_OK; round++) {
         mt_case *const held = mt_arena_alloc(mem, 1, sizeof *held);
         MT_TRY(mt_arena_check(mem, err));
         MT_TRY(mt_case_copy(c, mem, held, err));
         MT_TRY(mt_robust_add_cuts(c, &a.cuts, mem, &held->robust, err));
         MT_TRY(mt_case_lay_out(held, c->below, 0, NULL, w, mem, err));
-        rc = search_once(j, held, w, m, near, out, &a, &again, err);
+        rc = search_once(j, held, w, m, out, &a, &again, err);
     }
     out->evals += a.evals;
     return rc;
