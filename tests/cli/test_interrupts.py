@@ -95,7 +95,7 @@ class Running:
 class Run(CliTest):
     def setUp(self):
         super().setUp()
-        self.write("problems/beam.json", BEAM % 2)
+        self.write("problems/beam.json", BEAM % 5)  # of two links the search is over before a third line of its progress
         self.long = self.write("studies/long.json", LONG)
         self.other = self.write("studies/other.json", LONG)
 
