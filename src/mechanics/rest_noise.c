@@ -66,19 +66,28 @@ static double along(const mt_piece *p, const double *way)
     return sum;
 }
 
-/* out[MT_LOCAL] = H phi; returns phi^T H phi. */
+/* out[MT_LOCAL] = H phi, where there are states: six of twelve in the plane; returns
+ * phi^T H phi. */
 static double bend(const mt_piece *p, const double *phi, double *out)
 {
+    int own[MT_LOCAL];
+    int n = 0;
     double energy = 0.0;
-    memset(out, 0, MT_LOCAL * sizeof *out);
-    for (int c = 0; c < MT_LOCAL; c++) {
-        const double way = p->dof[c] >= 0 ? phi[p->dof[c]] : 0.0;
-        for (int r = 0; r < MT_LOCAL && way != 0.0; r++) {
-            out[r] += p->h[r + (MT_LOCAL * c)] * way;
+    for (int k = 0; k < MT_LOCAL; k++) {
+        out[k] = 0.0;
+        if (p->dof[k] >= 0) {
+            own[n++] = k;
         }
     }
-    for (int r = 0; r < MT_LOCAL; r++) {
-        energy += p->dof[r] >= 0 ? phi[p->dof[r]] * out[r] : 0.0;
+    for (int c = 0; c < n; c++) {
+        const double way = phi[p->dof[own[c]]];
+        const double *const h = p->h + ((ptrdiff_t)MT_LOCAL * own[c]);
+        for (int r = 0; r < n && way != 0.0; r++) {
+            out[own[r]] += h[own[r]] * way;
+        }
+    }
+    for (int r = 0; r < n; r++) {
+        energy += phi[p->dof[own[r]]] * out[own[r]];
     }
     return energy;
 }
