@@ -74,6 +74,7 @@ mt_measure_data mt_data_measure(const mt_data *d, const mt_measure_def *def)
         .point = {vec_or_null(d, def->point[0]), vec_or_null(d, def->point[1])},
         .dir = {vec_or_null(d, def->dir[0]), vec_or_null(d, def->dir[1]),
                 vec_or_null(d, def->dir[2])},
+        .plane = d->sys->dimension == 2,
     };
     if (def->kind == MT_MEASURE_BEAM) {
         m.beam.length = mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0);

@@ -82,15 +82,17 @@ static void add_hessian(const mt_system *sys, const int body[2], const mt_jet *j
                         mt_cx outer, const mt_jet *other, mt_lagrangian *out)
 {
     int dof[MT_LOCAL];
+    int moves[MT_LOCAL];
+    int n = 0;
     local_dofs(sys, body, dof);
-    for (int c = 0; c < MT_LOCAL; c++) {
-        if (dof[c] < 0) {
-            continue;
-        }
-        for (int r = 0; r < MT_LOCAL; r++) {
-            if (dof[r] < 0) {
-                continue;
-            }
+    for (int k = 0; k < MT_LOCAL; k++) {
+        moves[n] = k;
+        n += dof[k] >= 0 ? 1 : 0;
+    }
+    for (int i = 0; i < n; i++) {
+        const int c = moves[i];
+        for (int k = 0; k < n; k++) {
+            const int r = moves[k];
             mt_cx v = cx_mul(scale, jet->h[r + (MT_LOCAL * c)]);
             if (other != NULL) {
                 const mt_cx product =
@@ -374,7 +376,8 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
             /* -l^2/2 tr(R0^T R) */
             mt_cx e[3] = {0.0, 0.0, 0.0};
             e[k] = 1.0;
-            const mt_measure_data m = {.kind = MT_MEASURE_DOT, .dir = {e, e, NULL}};
+            const mt_measure_data m = {
+                .kind = MT_MEASURE_DOT, .dir = {e, e, NULL}, .plane = sys->dimension == 2};
             mt_measure_eval(&m, anchor, &poses[i], hessian, &jet);
             add_gradient(sys, body, jet.g, -0.5 * l2, out, out->g);
             if (hessian) {

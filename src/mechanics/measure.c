@@ -19,7 +19,17 @@
 static const double TURN = 6.283185307179586477; /* 2 pi */
 static const mt_cx ZERO3[3] = {0.0, 0.0, 0.0};
 
-void mt_jet_clear(mt_jet *j, bool second)
+const mt_jet_list *mt_jet_filled(mt_second second)
+{
+    static const mt_jet_list lists[] = {
+        [MT_SECOND_NONE] = {0, {0}},
+        [MT_SECOND_PLANE] = {6, {0, 1, 5, 6, 7, 11}},
+        [MT_SECOND_ALL] = {MT_LOCAL, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}},
+    };
+    return &lists[second];
+}
+
+void mt_jet_clear(mt_jet *j, mt_second second)
 {
     j->value = 0.0;
     memset(j->g, 0, sizeof j->g);
@@ -29,13 +39,14 @@ void mt_jet_clear(mt_jet *j, bool second)
     j->second = second;
 }
 
-/* h[block (p, q)] += scale (alpha I + beta s t^T); with `mirror` also its transpose in block
- * (q, p). */
+/* h[block (p, q), both rotations] += scale (alpha I + beta s t^T); with `mirror` also its
+ * transpose in block (q, p). */
 static void add_block(mt_jet *j, const int at[2], mt_cx alpha, mt_cx beta, const mt_cx *s,
                       const mt_cx *t)
 {
-    for (int c = 0; c < 3; c++) {
-        for (int r = 0; r < 3; r++) {
+    const int first = j->second == MT_SECOND_PLANE ? 2 : 0; /* about z alone */
+    for (int c = first; c < 3; c++) {
+        for (int r = first; r < 3; r++) {
             mt_cx v = cx_mul(beta, cx_mul(s[r], t[c]));
             if (r == c) {
                 v += alpha;
@@ -61,8 +72,9 @@ void mt_jet_add_rotation_block(mt_jet *j, int at, mt_cx scale, const mt_cx *n, c
 void mt_jet_add_cross_block(mt_jet *j, int p, int q, mt_cx scale, const mt_cx *u)
 {
     const mt_cx m[9] = {0.0, u[2], -u[1], -u[2], 0.0, u[0], u[1], -u[0], 0.0};
-    for (int c = 0; c < 3; c++) {
-        for (int r = 0; r < 3; r++) {
+    const bool plane = j->second == MT_SECOND_PLANE; /* theta about z, dx in x and y */
+    for (int c = 0; c < (plane ? 2 : 3); c++) {
+        for (int r = plane ? 2 : 0; r < 3; r++) {
             const mt_cx v = cx_mul(scale, m[r + (3 * c)]);
             j->h[p + r + (MT_LOCAL * (q + c))] += v;
             j->h[q + c + (MT_LOCAL * (p + r))] += v;
@@ -127,13 +139,13 @@ void mt_jet_chain(const mt_chain2 *c, const mt_jet *p, const mt_jet *q, mt_jet *
     for (int i = 0; i < MT_LOCAL; i++) {
         out->g[i] = cx_mul(c->fp, p->g[i]) + cx_mul(c->fq, q->g[i]);
     }
-    if (!p->second) {
-        return;
-    }
-    for (int k = 0; k < MT_LOCAL; k++) {
+    const mt_jet_list *const l = mt_jet_filled(p->second);
+    for (int kk = 0; kk < l->n; kk++) {
+        const int k = l->at[kk];
         const mt_cx a = cx_mul(c->fpp, p->g[k]) + cx_mul(c->fpq, q->g[k]);
         const mt_cx b = cx_mul(c->fpq, p->g[k]) + cx_mul(c->fqq, q->g[k]);
-        for (int i = 0; i < MT_LOCAL; i++) {
+        for (int ii = 0; ii < l->n; ii++) {
+            const int i = l->at[ii];
             const int at = i + (MT_LOCAL * k);
             out->h[at] = cx_mul(c->fp, p->h[at]) + cx_mul(c->fq, q->h[at]) +
                          cx_mul(a, p->g[i]) + cx_mul(b, q->g[i]);
@@ -142,7 +154,7 @@ void mt_jet_chain(const mt_chain2 *c, const mt_jet *p, const mt_jet *q, mt_jet *
 }
 
 /* A distance of 0 has no direction: its value, without derivatives. */
-static void distance_none(double value, bool second, mt_jet *out)
+static void distance_none(double value, mt_second second, mt_jet *out)
 {
     const mt_cx none = cx_pair(nan(""), nan(""));
     out->value = cx_pair(value, nan(""));
@@ -155,7 +167,8 @@ static void distance_none(double value, bool second, mt_jet *out)
 }
 
 /* |r| with r = Q - P, u = r / |r|: gradient u^T J, Hessian (J^T J - g g^T) / |r| + u . d2r. */
-void mt_jet_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, bool second, mt_jet *out)
+void mt_jet_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, mt_second second,
+                     mt_jet *out)
 {
     mt_cx r[3];
     mt_cx u[3];
@@ -194,8 +207,11 @@ void mt_jet_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, bool second
         cx_cross3(s, e, jac[3 + k]); /* -(e x s) */
         cx_cross3(e, t, jac[9 + k]);
     }
-    for (int k = 0; k < MT_LOCAL; k++) {
-        for (int i = 0; i < MT_LOCAL; i++) {
+    const mt_jet_list *const l = mt_jet_filled(second);
+    for (int kk = 0; kk < l->n; kk++) {
+        const int k = l->at[kk];
+        for (int ii = 0; ii < l->n; ii++) {
+            const int i = l->at[ii];
             const mt_cx v = cx_dot3(jac[i], jac[k]) - cx_mul(out->g[i], out->g[k]);
             out->h[i + (MT_LOCAL * k)] = cx_div(v, length);
         }
@@ -223,7 +239,7 @@ static void atan2_jet(const mt_jet *p, const mt_jet *q, mt_jet *out)
 }
 
 /* p = c_a . b_b, q = b_a . b_b. */
-static void angle_jet(const mt_cx *b_a, const mt_cx *c_a, const mt_cx *b_b, bool second,
+static void angle_jet(const mt_cx *b_a, const mt_cx *c_a, const mt_cx *b_b, mt_second second,
                       mt_jet *out)
 {
     mt_jet p;
@@ -237,7 +253,7 @@ static void angle_jet(const mt_cx *b_a, const mt_cx *c_a, const mt_cx *b_b, bool
 
 /* p = e3 . f2 - e2 . f3, q = e2 . f2 + e3 . f3: of the quaternion of the turn from e to f, p =
  * 4 q0 q1, q = 2 (q0^2 - q1^2). */
-void mt_jet_twist(mt_cx (*e)[3], mt_cx (*f)[3], bool second, mt_jet *out)
+void mt_jet_twist(mt_cx (*e)[3], mt_cx (*f)[3], mt_second second, mt_jet *out)
 {
     mt_jet p;
     mt_jet q;
@@ -287,7 +303,7 @@ void mt_angle_over_sine(mt_cx c, mt_cx g[3])
 
 /* xi_k = g(cos) psi_k with psi_k = sin * axis_k from the skew part of Q_ij = e_i(a) . e_j(b),
  * cos from its trace. */
-void mt_jet_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, bool second, mt_jet *out)
+void mt_jet_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, mt_second second, mt_jet *out)
 {
     mt_jet psi;
     mt_jet cosine;
@@ -314,9 +330,12 @@ void mt_jet_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, bool second, mt_jet *o
     mt_jet_chain(&c, &psi, &cosine, out);
 }
 
-void mt_measure_eval(const mt_measure_data *m, const mt_pose *a, const mt_pose *b, bool second,
-                     mt_jet *out)
+void mt_measure_eval(const mt_measure_data *m, const mt_pose *a, const mt_pose *b,
+                     bool with_second, mt_jet *out)
 {
+    const mt_second second = !with_second ? MT_SECOND_NONE
+                             : m->plane   ? MT_SECOND_PLANE
+                                          : MT_SECOND_ALL;
     mt_cx p[4][3]; /* -, s, t, d */
     mt_cx e[3][3];
     mt_cx f[3][3];
@@ -360,9 +379,10 @@ mt_cx mt_measure_value(const mt_measure_data *m, const mt_pose *a, const mt_pose
     return j.value;
 }
 
-void mt_measure_point(const mt_cx *s, const mt_cx *f, const mt_pose *a, bool second,
+void mt_measure_point(const mt_cx *s, const mt_cx *f, const mt_pose *a, bool with_second,
                       mt_jet *out)
 {
+    const mt_second second = with_second ? MT_SECOND_ALL : MT_SECOND_NONE;
     mt_cx w[3];
     mt_cx n[3];
     mt_jet_clear(out, second);

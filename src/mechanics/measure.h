@@ -72,15 +72,20 @@ typedef struct mt_measure_data {
     const mt_cx *dir[3];
     mt_beam_numbers beam;
     double near; /* ANGLE: of all whole turns the value nearest to this is meant [rad] */
+    bool plane;  /* two dimensions: nobody asks for the Hessian out of the plane */
 } mt_measure_data;
+
+/* How much of a Hessian is filled: in the plane the entries of x, y and the turn about z alone,
+ * a fourth of all. */
+typedef enum mt_second { MT_SECOND_NONE, MT_SECOND_PLANE, MT_SECOND_ALL } mt_second;
 
 /* Value, gradient and (when asked for) Hessian of a scalar function of the twelve local
  * freedoms. */
 typedef struct mt_jet {
     mt_cx value;
     mt_cx g[MT_LOCAL];
-    mt_cx h[MT_LOCAL * MT_LOCAL]; /* full symmetric */
-    bool second;                  /* is h filled? */
+    mt_cx h[MT_LOCAL * MT_LOCAL]; /* full symmetric; 0 where it is not filled */
+    mt_second second;
 } mt_jet;
 
 /* Evaluate. No heap. A distance of zero has no direction: its gradient is then NaN. */

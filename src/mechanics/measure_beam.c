@@ -43,7 +43,7 @@
 #include <string.h>
 
 /* out = u . d, u fixed to body a (side 0) or b (side 1), d = x_b - x_a. */
-static void reach_jet(int side, const mt_cx *u, const mt_cx *d, bool second, mt_jet *out)
+static void reach_jet(int side, const mt_cx *u, const mt_cx *d, mt_second second, mt_jet *out)
 {
     const int turn = (6 * side) + 3;
     mt_cx n[3];
@@ -67,8 +67,12 @@ static void add_jet(mt_jet *out, mt_cx scale, const mt_jet *p)
     for (int i = 0; i < MT_LOCAL; i++) {
         out->g[i] += cx_mul(scale, p->g[i]);
     }
-    for (int i = 0; i < MT_LOCAL * MT_LOCAL && out->second; i++) {
-        out->h[i] += cx_mul(scale, p->h[i]);
+    const mt_jet_list *const l = mt_jet_filled(out->second);
+    for (int k = 0; k < l->n; k++) {
+        for (int i = 0; i < l->n; i++) {
+            const int at = l->at[i] + (MT_LOCAL * l->at[k]);
+            out->h[at] += cx_mul(scale, p->h[at]);
+        }
     }
 }
 
@@ -81,10 +85,13 @@ static void add_product(mt_jet *out, mt_cx scale, const mt_jet *p, const mt_jet 
     for (int i = 0; i < MT_LOCAL; i++) {
         out->g[i] += cx_mul(sq, p->g[i]) + cx_mul(sp, q->g[i]);
     }
-    for (int k = 0; k < MT_LOCAL && out->second; k++) {
+    const mt_jet_list *const l = mt_jet_filled(out->second);
+    for (int kk = 0; kk < l->n; kk++) {
+        const int k = l->at[kk];
         const mt_cx pk = cx_mul(scale, p->g[k]);
         const mt_cx qk = cx_mul(scale, q->g[k]);
-        for (int i = 0; i < MT_LOCAL; i++) {
+        for (int ii = 0; ii < l->n; ii++) {
+            const int i = l->at[ii];
             const int at = i + (MT_LOCAL * k);
             out->h[at] += cx_mul(sq, p->h[at]) + cx_mul(sp, q->h[at]) + cx_mul(pk, q->g[i]) +
                           cx_mul(qk, p->g[i]);
@@ -112,7 +119,7 @@ static void quotient_jet(const mt_jet *p, const mt_jet *q, mt_jet *out)
 static void add_end(int side, mt_cx (*e)[3], const mt_cx *d, const mt_jet *length, bool plane,
                     mt_jet s[2])
 {
-    const bool second = length->second;
+    const mt_second second = length->second;
     mt_jet reach;
     mt_jet cosine;
     mt_jet sine;
@@ -143,7 +150,7 @@ typedef struct beam_parts {
 } beam_parts;
 
 static void make_parts(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[3], const mt_cx *d,
-                       bool second, beam_parts *out)
+                       mt_second second, beam_parts *out)
 {
     static const mt_cx zero[3] = {0.0, 0.0, 0.0};
     const bool plane = m->beam.plane;
@@ -189,7 +196,7 @@ static void twist_bow(const mt_beam_numbers *b, const beam_parts *p, mt_jet *out
 }
 
 void mt_jet_beam(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[3], const mt_cx *d,
-                 bool second, mt_jet *out)
+                 mt_second second, mt_jet *out)
 {
     const mt_beam_numbers *const b = &m->beam;
     const int k = m->component == MT_BEAM_BEND_2 || m->component == MT_BEAM_SWAY_2 ? 0 : 1;

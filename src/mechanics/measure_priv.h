@@ -16,7 +16,14 @@ typedef struct mt_chain2 {
     mt_cx fqq;
 } mt_chain2;
 
-void mt_jet_clear(mt_jet *j, bool second);
+/* The local freedoms of which a Hessian is filled. */
+typedef struct mt_jet_list {
+    int n;
+    int at[MT_LOCAL];
+} mt_jet_list;
+const mt_jet_list *mt_jet_filled(mt_second second);
+
+void mt_jet_clear(mt_jet *j, mt_second second);
 /* g[0..2] += scale v. */
 void mt_jet_add_vec(mt_cx *g, mt_cx scale, const mt_cx *v);
 /* Diagonal block, theta at `at`, of scale n . w (w turns): scale [1/2 (n w^T + w n^T) - (n . w)
@@ -28,16 +35,17 @@ void mt_jet_add_cross_block(mt_jet *j, int p, int q, mt_cx scale, const mt_cx *u
 /* out = f(p, q); out is neither. */
 void mt_jet_chain(const mt_chain2 *c, const mt_jet *p, const mt_jet *q, mt_jet *out);
 /* |d + t - s|. */
-void mt_jet_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, bool second, mt_jet *out);
+void mt_jet_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, mt_second second,
+                     mt_jet *out);
 /* Component k of the rotation vector from triad e (on a) to triad f (on b). */
-void mt_jet_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, bool second, mt_jet *out);
+void mt_jet_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, mt_second second, mt_jet *out);
 /* Twist from triad e (on a) to triad f (on b): the turn about e1 that is left when the shortest
  * turn from e1 to f1 has been taken off. */
-void mt_jet_twist(mt_cx (*e)[3], mt_cx (*f)[3], bool second, mt_jet *out);
+void mt_jet_twist(mt_cx (*e)[3], mt_cx (*f)[3], mt_second second, mt_jet *out);
 /* g(c) = acos(c)/sqrt(1 - c^2), g', g''. */
 void mt_angle_over_sine(mt_cx c, mt_cx g[3]);
 /* Strain m->component of the beam element with triads e (on a), f (on b) and d = x_b - x_a. */
 void mt_jet_beam(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[3], const mt_cx *d,
-                 bool second, mt_jet *out);
+                 mt_second second, mt_jet *out);
 
 #endif

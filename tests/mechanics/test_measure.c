@@ -243,6 +243,33 @@ static void measure__diagonal_of_the_hessian_agrees_with_second_differences(mt_t
     }
 }
 
+/* In two dimensions a fourth of the entries is made, and these are those of three. */
+static void measure__the_plane_has_the_entries_of_space(mt_test *t)
+{
+    mt_random r = mt_random_seed(10);
+    for (int kind = 0; kind < KINDS; kind++) {
+        scene s;
+        mt_jet space;
+        mt_jet plane;
+        make(&r, kind, 0.9, &s);
+        mt_measure_eval(&s.m, &s.pose[0], &s.pose[1], true, &space);
+        memset(&plane, 0xff, sizeof plane); /* NaN */
+        s.m.plane = true;
+        mt_measure_eval(&s.m, &s.pose[0], &s.pose[1], true, &plane);
+        for (int k = 0; k < MT_LOCAL * MT_LOCAL; k++) {
+            const int row = (k % MT_LOCAL) % 6;
+            const int column = (k / MT_LOCAL) % 6;
+            const bool in = (row < 2 || row == 5) && (column < 2 || column == 5);
+            mt_test_row(t, "%s, entry %d", NAMES[kind], k);
+            CHECK(t, plane.h[k] == (in ? space.h[k] : 0.0));
+        }
+        for (int k = 0; k < MT_LOCAL; k++) {
+            CHECK(t, plane.g[k] == space.g[k]);
+        }
+        CHECK(t, plane.value == space.value);
+    }
+}
+
 static void measure__a_wrong_gradient_is_caught(mt_test *t)
 {
     mt_random r = mt_random_seed(9);
@@ -386,6 +413,7 @@ static void measure__values_match_plane_geometry(mt_test *t)
 
 MT_TEST_MAIN(MT_TEST(measure__gradient_and_hessian_agree_with_slopes),
              MT_TEST(measure__diagonal_of_the_hessian_agrees_with_second_differences),
+             MT_TEST(measure__the_plane_has_the_entries_of_space),
              MT_TEST(measure__a_wrong_gradient_is_caught),
              MT_TEST(measure__complex_step_carries_derivatives),
              MT_TEST(measure__rotation_vector_is_that_of_the_turn),
