@@ -134,7 +134,7 @@ mt_status mt_discrete_prove(mt_discrete *d, mt_combination ***all, int *n,
 /* discrete_branch.c: search or exclude all combinations, as far as the effort goes: beside
  * continuous variables, after the heuristic. (*all)[*n] are the combinations judged so far;
  * those that are searched join them. Into the report: branched, open, all. Cost: at most 1000
- * searches and some seconds of certificates. */
+ * searches, and certificates up to the budget of a proof. */
 mt_status mt_discrete_branch(mt_discrete *d, mt_combination ***all, int *n,
                              mt_discrete_report *report, mt_err *err);
 /* discrete_near.c: the heuristic. (*list)[*n] are the combinations that it has judged. */

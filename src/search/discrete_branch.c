@@ -31,12 +31,10 @@ enum {
     LOOKED_MOST = 20000,  /* boxes */
     LEAST_BUDGET = 20     /* evaluations of each combination, where there is a budget */
 };
-/* Multiplications of all certificates: a second or two. */
-static const double EFFORT = 5e9;
 /* What the certificate of a box may cost, in boxes of its own (with some factorisations each);
  * that of a single combination saves a search, and may cost more. */
-static const double LOOK = 200.0;
-static const double LOOK_SINGLE = 1000.0;
+static const double LOOK = 50.0;
+static const double LOOK_SINGLE = 4000.0;
 /* A box beside its factorisations, in multiplications, as in certify.c. */
 static const double BOX = 500.0;
 /* First objectives that differ by less are equal where others decide between them, as in
@@ -56,12 +54,13 @@ typedef struct look {
     bool excluded;
     bool met;  /* a design meets everything, with an objective below the cap */
     double *x; /* [n] that one */
-    long work; /* multiplications */
+    long work; /* as certificates count it */
+    long multiplications;
 } look;
 
 typedef struct branching {
     mt_discrete *d;
-    bool enclosed;      /* the certificates can be had */
+    bool enclosed;      /* certificates can be had, and have not spent their budget */
     mt_proof *proofs;   /* [n_workers] their bounds are those of a worker's box */
     mt_proof_cap *caps; /* [n_workers] */
     double unit;        /* multiplications of one box of a certificate, about */
@@ -69,7 +68,7 @@ typedef struct branching {
     int n_open;
     int capacity;
     int made;
-    double work;    /* multiplications of all looks */
+    double work;    /* of all looks, as certificates count it */
     box now[ROUND]; /* of the round */
     look looks[ROUND];
     int n_now;
@@ -110,11 +109,12 @@ static mt_status certify(const branching *v, int worker, const box *b, look *out
     if (out->met) {
         memcpy(out->x, found.at, (size_t)v->d->p->n * sizeof *out->x);
     }
-    double work = 0.0;
+    double multiplications = 0.0;
     for (int i = 0; i < proof->question.n_views; i++) {
-        work += proof->views[i]->operations;
+        multiplications += proof->views[i]->operations;
     }
-    out->work = (long)work;
+    out->multiplications = (long)multiplications;
+    out->work = (long)found.work;
     return MT_OK;
 }
 
@@ -139,6 +139,7 @@ static void tape_look(void *context, int task, mt_tape *tape)
     mt_tape_flag(tape, &l->excluded);
     mt_tape_flag(tape, &l->met);
     mt_tape_long(tape, &l->work, 0, LONG_MAX);
+    mt_tape_long(tape, &l->multiplications, 0, LONG_MAX);
     mt_tape_numbers(tape, (size_t)d->p->n, l->x);
     tape->failed = tape->failed || (l->excluded && l->met);
     for (int i = 0; i < d->p->n && l->met; i++) {
@@ -428,12 +429,12 @@ static mt_status round_of(branching *v, double cap, mt_err *err)
     if (v->enclosed) {
         MT_TRY(mt_workers_run(d->n_workers, d->workers[0]->scope, &tasks, err));
     }
-    long work = 0;
     for (int i = 0; i < v->n_now; i++) {
-        work += v->looks[i].work;
+        v->work += (double)v->looks[i].work;
+        mt_spent_note(d->p->study->model->spent, MT_SPENT_MULTIPLICATIONS,
+                      v->looks[i].multiplications);
     }
-    v->work += (double)work;
-    mt_spent_note(d->p->study->model->spent, MT_SPENT_MULTIPLICATIONS, work);
+    v->enclosed = v->enclosed && v->work < d->c->proof_work;
     MT_TRY(follow_up(v, err));
     MT_TRY(search_fresh(v, err));
     for (int i = 0; i < v->n_now; i++) {
@@ -473,7 +474,7 @@ static bool goes_on(const branching *v, int searched, long looked)
 {
     const int most = v->enclosed ? SEARCHED_MOST : MT_DISCRETE_MOST_MIXED;
     return v->n_now > 0 && v->d->stop == MT_STOP_DONE && searched < most &&
-           looked < LOOKED_MOST && v->work < EFFORT;
+           looked < LOOKED_MOST;
 }
 
 static mt_status run(branching *v, mt_discrete_report *report, mt_err *err)

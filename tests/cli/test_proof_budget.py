@@ -16,6 +16,8 @@ PROVEN = {
     **{kind: KINDS[kind] for kind in ("pedal", "pedal_tolerances", "stages", "infeasible", "bands", "catalogue", "catalogue_infeasible")},
     "mixed": masses(variables=[{"parameter": "k1", "catalogue": CHOICES}, {"parameter": "k2", "lower": 0.1, "upper": 100}],
                     goals=[{**HIGH[0], "at_most_hz": 0.2}]),
+    "branched": masses(variables=[{"parameter": "k1", "catalogue": MANY}, {"parameter": "k2", "lower": 0.1, "upper": 100}],
+                       goals=[{**HIGH[0], "at_most_hz": 0.2}]),
     "many": masses(variables=[{"parameter": p, "catalogue": MANY} for p in ("k1", "k2")], goals=[{**HIGH[0], "at_most_hz": 0.2}]),
     "too_high": masses(goals=TOO_HIGH),
     "apart": masses(goals=APART),
@@ -97,7 +99,7 @@ class ProofBudget(CliTest):
         self.assertEqual(self.answer("apart", "--proof", "1000")["run"]["spent"]["multiplications"], worked)
 
     def test_the_same_for_any_number_of_workers(self):
-        for kind in ("bands", "mixed", "pedal"):
+        for kind in ("bands", "mixed", "branched", "pedal"):
             for budget in ("1e-6", "1e-5"):
                 alone = self.answer(kind, "--proof", budget, "--threads", "1", folder="one")
                 self.assertEqual(alone, self.answer(kind, "--proof", budget, "--threads", "3", folder="three"))
