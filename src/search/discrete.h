@@ -25,30 +25,30 @@
 enum { MT_DISCRETE_MOST = 200000, MT_DISCRETE_MOST_MIXED = 400 };
 
 typedef struct mt_discrete_report {
-    bool mixed;          /* continuous variables remain */
-    bool all;            /* every combination was judged, or shown not to rank */
-    double combinations; /* how many there are */
-    int judged;
+    bool mixed;    /* continuous variables remain */
+    bool all;      /* every combination was judged, or shown not to rank */
     bool branched; /* by branch and bound (discrete_branch.c) */
-    double open;   /* combinations that this has neither excluded nor searched */
-    /* by what share of the best one's objective one of these may be less, at most, by bounds of
-     * the objective alone; NaN: not known */
-    double open_within;
     /* several positions of one drive: only combinations that might rank were followed between
      * them */
     bool driven;
+    int judged;
+    double combinations; /* how many there are */
+    double open;         /* of these it has neither excluded nor searched */
+    /* by what share of the best one's objective one of these may be less, at most, by bounds of
+     * the objective alone; NaN: not known */
+    double open_within;
     int followed; /* of the feasible ones */
     int feasible; /* of those judged: combinations with a design that meets all goals */
-    /* branch and bound */
+    /* branch and bound with proofs alone (discrete_prove.c) */
     bool asked;        /* it was tried */
     bool settled;      /* every gap assignment but n_kinds is proven impossible */
+    bool complete;     /* no goal was left out of the question */
+    bool cut;          /* its budget ended before it was known whether one is better */
     int n_kinds;       /* assignments that a combination has */
     double n_possible; /* monotone assignments there are; 1 without bands */
-    bool complete;     /* no goal was left out of the question */
     /* proven: no design's objective is less by more than this share of the best one's; NaN: not
      * proven */
     double best_within;
-    bool cut; /* its budget ended before it was known whether one is better */
     long boxes;
     const char *reason; /* why there is no proof; NULL */
 } mt_discrete_report;
