@@ -204,6 +204,21 @@ def mixed(rng):
     return model, _study(model, variables, goals)
 
 
+def branched(rng):
+    """Catalogues beside continuous variables, with more combinations than are enumerated."""
+    model = models.MAKERS[rng.choice(models.UNLOADED)](rng)
+    variables = _variables(rng, model, 4, "inside")
+    while sum(v["parameter"] != "a" for v in variables) < 2:
+        variables = _variables(rng, model, 4, "inside")
+    chosen = [v for v in variables if v["parameter"] != "a"][:-1][:3]
+    each = {1: 401, 2: 21, 3: 8}[len(chosen)]
+    for item in chosen:
+        low, high = item.pop("lower"), item.pop("upper")
+        item["catalogue"] = sorted({_round(low * (high / low) ** (i / (each + 1)), 5) for i in range(each + 2)})
+    goals = [_bands(rng, model, variables)] if rng.random() < 0.4 else _frequency_goals(rng, model, variables, ["target", "least", "most"])[:1]
+    return model, _study(model, variables, goals, _objective(rng, model, variables))
+
+
 def _without_kinks(rng, model):
     """min and max put the worst between the corners, where brute force does not look."""
     for item in model["bodies"] + model.get("springs", []):
@@ -316,4 +331,4 @@ def zero(rng):
     return model, _study(model, variables, goals)
 
 
-KINDS = {f.__name__: f for f in (targets, limits, corner, bands, catalogue, mixed, tolerance, trade, misfit, driven, infeasible, zero)}
+KINDS = {f.__name__: f for f in (targets, limits, corner, bands, catalogue, mixed, branched, tolerance, trade, misfit, driven, infeasible, zero)}
