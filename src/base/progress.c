@@ -4,10 +4,17 @@
 #include <math.h>
 
 static const double MILLION = 1e6;
+/* What makes the best better by a smaller share are its last digits, which later starts still
+ * turn over. */
+static const double LAST_DIGITS = 1e-6;
 
 mt_status mt_progress_init(mt_progress *p, mt_err *err)
 {
+    const mt_progress_mark never = {nan(""), 0};
     *p = (mt_progress){.best_f = HUGE_VAL};
+    p->now.first = never;
+    p->now.best_at = never;
+    p->now.proof = never;
     atomic_init(&p->done, 0);
     atomic_init(&p->evaluations, 0);
     atomic_init(&p->boxes, 0);
@@ -111,6 +118,12 @@ bool mt_progress_seeks(mt_progress *p)
     return p != NULL && atomic_load_explicit(&p->designs, memory_order_relaxed);
 }
 
+static mt_progress_mark mark(const mt_progress *p)
+{
+    return (mt_progress_mark){p->clock == NULL ? nan("") : p->clock(),
+                              atomic_load_explicit(&p->evaluations, memory_order_relaxed)};
+}
+
 void mt_progress_found(mt_progress *p, const char *what, double f, double value)
 {
     if (p == NULL) {
@@ -118,11 +131,26 @@ void mt_progress_found(mt_progress *p, const char *what, double f, double value)
     }
     (void)pthread_mutex_lock(&p->lock);
     if (f < p->best_f) {
+        const bool first = p->now.what == NULL;
         p->best_f = f;
         p->now.what = what;
         p->now.best = value;
+        if (first || fabs(value - p->marked) > LAST_DIGITS * fabs(value)) {
+            p->marked = value;
+            p->now.best_at = mark(p);
+        }
+        p->now.first = first ? p->now.best_at : p->now.first;
     }
     (void)pthread_mutex_unlock(&p->lock);
+}
+
+void mt_progress_proved(mt_progress *p)
+{
+    if (p != NULL) {
+        (void)pthread_mutex_lock(&p->lock);
+        p->now.proof = mark(p);
+        (void)pthread_mutex_unlock(&p->lock);
+    }
 }
 
 /* 1 where the step has ended; else never 1 before it has. */

@@ -17,6 +17,11 @@
  * and to end what may be outermost. What only counts is told wherever it happens. All functions
  * accept NULL: nobody listens.
  */
+typedef struct mt_progress_mark {
+    double cpu_s;     /* of who looks (mt_progress.clock); NaN: it has not happened */
+    long evaluations; /* of designs until then */
+} mt_progress_mark;
+
 typedef struct mt_progress_view {
     const char *phase; /* NULL: none yet */
     int step;          /* of the phase, from 1; 0: none yet */
@@ -29,6 +34,9 @@ typedef struct mt_progress_view {
     long boxes;        /* of proofs */
     const char *what;  /* the objective that `best` is the value of; NULL: none yet */
     double best;
+    mt_progress_mark first;   /* a design was known that meets all goals */
+    mt_progress_mark best_at; /* the best so far was, but for its last digits */
+    mt_progress_mark proof;   /* the last proof that has settled its question so far did */
     /* how often a phase or a step has begun: the time of the present step counts from where
      * this changed */
     long changes;
@@ -37,7 +45,11 @@ typedef struct mt_progress_view {
 typedef struct mt_progress {
     pthread_mutex_t lock; /* of `now`, but for what is counted */
     mt_progress_view now;
+    /* CPU seconds so far, by who looks, who sets it before the work begins; asked when a mark
+     * is made, by any thread. NULL: marks have no time */
+    double (*clock)(void);
     double best_f;       /* what makes a design better is less */
+    double marked;       /* the best at its mark */
     bool open;           /* a step is */
     atomic_bool designs; /* the phase looks for them */
     atomic_long done;
@@ -69,6 +81,8 @@ bool mt_progress_seeks(mt_progress *p);
 /* A design that meets all goals has the value f, which is made least, of an objective, shown
  * as `value`. */
 void mt_progress_found(mt_progress *p, const char *what, double f, double value);
+/* A proof settled its question. */
+void mt_progress_proved(mt_progress *p);
 
 /* What is known now. */
 mt_progress_view mt_progress_look(mt_progress *p);

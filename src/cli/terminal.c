@@ -417,9 +417,19 @@ void mt_terminal_last_words(const char *text)
     set_actions(say_and_end);
 }
 
-double mt_terminal_seconds(void)
+static double seconds_of(clockid_t clock)
 {
     struct timespec now = {0};
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    (void)clock_gettime(clock, &now);
     return (double)now.tv_sec + ((double)now.tv_nsec * 1e-9);
+}
+
+double mt_terminal_seconds(void)
+{
+    return seconds_of(CLOCK_MONOTONIC);
+}
+
+double mt_terminal_cpu_seconds(void)
+{
+    return seconds_of(CLOCK_PROCESS_CPUTIME_ID);
 }

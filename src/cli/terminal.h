@@ -81,5 +81,7 @@ int mt_terminal_cause(void *unused);
 void mt_terminal_last_words(const char *text);
 /* Seconds of a clock that only runs forward. */
 double mt_terminal_seconds(void);
+/* CPU seconds of the process so far, of all its threads. */
+double mt_terminal_cpu_seconds(void);
 
 #endif

@@ -37,6 +37,7 @@ typedef struct watch {
     bool has_ticker;
     /* of the watching thread, then of mt_watch_end */
     double begun_s;
+    double begun_cpu_s;
     double step_s; /* when the present step began */
     double told_s; /* when the last word was said */
     mt_progress_view last;
@@ -144,6 +145,17 @@ static void words(const mt_progress_view *v, double now, char text[TEXT])
     }
 }
 
+static void put_mark(mt_json_writer *w, const char *time, const char *evaluations,
+                     const mt_progress_mark *m)
+{
+    mt_json_put_number(w, time, m->cpu_s - it.begun_cpu_s);
+    if (isnan(m->cpu_s)) {
+        mt_json_put_null(w, evaluations);
+    } else {
+        mt_json_put_integer(w, evaluations, m->evaluations);
+    }
+}
+
 /* schemas/progress.schema.json. What finds no memory is left out. */
 static void put_json(const mt_progress_view *v, const char *state, double now)
 {
@@ -171,6 +183,10 @@ static void put_json(const mt_progress_view *v, const char *state, double now)
     mt_json_put_integer(&w, "boxes", v->boxes);
     mt_json_put_string(&w, "objective", v->what);
     mt_json_put_number(&w, "best", v->what == NULL ? nan("") : v->best);
+    put_mark(&w, "first_cpu_s", "first_evaluations", &v->first);
+    put_mark(&w, "best_cpu_s", "best_evaluations", &v->best_at);
+    mt_json_put_number(&w, "proof_cpu_s", v->proof.cpu_s - it.begun_cpu_s);
+    mt_json_put_number(&w, "cpu_s", mt_terminal_cpu_seconds() - it.begun_cpu_s);
     mt_json_put_number(&w, "elapsed_s", now - it.begun_s);
     mt_json_put_number(&w, "left_s", isfinite(step) ? fmin(step, limit) : limit);
     mt_json_close(&w);
@@ -256,12 +272,14 @@ mt_progress *mt_watch_begin(const mt_args *args, int i, const char *phase)
         return NULL;
     }
     it.begun_s = mt_terminal_seconds();
+    it.begun_cpu_s = mt_terminal_cpu_seconds();
     it.step_s = it.begun_s;
     it.told_s = it.begun_s;
     it.has_progress = mt_progress_init(&it.progress, NULL) == MT_OK;
     if (!it.has_progress) {
         return NULL;
     }
+    it.progress.clock = mt_terminal_cpu_seconds;
     mt_progress_phase(&it.progress, phase, false);
     if (it.reader == READER_PROGRAM) {
         look();

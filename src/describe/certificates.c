@@ -190,6 +190,9 @@ mt_status mt_describe_limit_certificates(const mt_problem *p, mt_arena *mem, mt_
     if (rc == MT_OK && proof.possible && !*infeasible && proof.question.n_limits > 0) {
         rc = jointly(&proof, mem, result, infeasible, err);
     }
+    if (rc == MT_OK && *infeasible) {
+        mt_progress_proved(p->study->model->progress);
+    }
     mt_proof_free(&proof);
     return rc;
 }

@@ -265,21 +265,44 @@ static void say_progress(const mt_workspace *w)
 
 /* Values that are known; what is judged over tolerances or positions of a drive later may not
  * hold. */
+static bool judged_later(const mt_workspace *w)
+{
+    return mt_family_any(w->p) || mt_robust_is_sampled(w->c);
+}
+
+/* Does anybody want to know of a design that meets all goals, and can be told its value? */
+static bool is_wanted(const mt_workspace *w)
+{
+    const mt_case *const c = w->c;
+    return mt_progress_seeks(w->p->study->model->progress) && c->n_aims > 0 &&
+           c->aims[0].ops->value != NULL;
+}
+
+static void tell_found(const mt_workspace *w, double f)
+{
+    const mt_aim *const aim = &w->c->aims[0];
+    mt_progress_found(w->p->study->model->progress, mt_objective_kind_of(aim->type)->name, f,
+                      mt_aim_shown(aim, f));
+}
+
+void mt_workspace_judged(const mt_workspace *w, double f)
+{
+    if (is_wanted(w) && judged_later(w)) {
+        tell_found(w, f);
+    }
+}
+
 static void say_found(const mt_workspace *w, const mt_nlp_values *v)
 {
     const mt_case *const c = w->c;
-    mt_progress *const progress = w->p->study->model->progress;
-    mt_progress_evaluated(progress);
-    if (!mt_progress_seeks(progress) || c->n_aims == 0 || c->aims[0].ops->value == NULL ||
-        mt_family_any(w->p) || mt_robust_is_sampled(c)) {
+    mt_progress_evaluated(w->p->study->model->progress);
+    if (!is_wanted(w) || judged_later(w)) {
         return;
     }
     const mt_missed missed = mt_missed_of(mt_case_rows_eq(c), v->eq, c->eq_tol,
                                           mt_case_rows_in(c), v->in, c->in_tol);
     if (mt_is_met(missed.violation, 1.0)) {
-        const double f = mt_aim_value(w, 0, NULL);
-        mt_progress_found(progress, mt_objective_kind_of(c->aims[0].type)->name, f,
-                          mt_aim_shown(&c->aims[0], f));
+        tell_found(w, mt_aim_value(w, 0, NULL));
     }
 }
 

@@ -60,6 +60,9 @@ mt_status mt_workspace_use(mt_workspace *w, const mt_case *c, mt_err *err);
 void mt_workspace_back(mt_workspace *w, const mt_case *c);
 /* dx_i/dt_i at the last evaluation. */
 double mt_workspace_stretch(const mt_workspace *w, int i);
+/* A design that was judged over tolerances and positions of a drive, where they are asked for,
+ * meets all goals with the value f of the first objective: word of it to who watches. */
+void mt_workspace_judged(const mt_workspace *w, double f);
 /* The present stage of the case as a search problem (arrays belong to the case), for
  * mt_workspace_solve. */
 mt_nlp mt_workspace_nlp(mt_workspace *w);

@@ -198,6 +198,9 @@ mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err)
     }
     d->evals += c->evals; /* of which one, counted before, stands for the evaluation here */
     c->feasible = c->feasible && rc == MT_OK;
+    if (c->feasible) {
+        mt_workspace_judged(w, c->f[0]);
+    }
     return mt_pass_final(rc, &own, err);
 }
 

@@ -261,6 +261,11 @@ static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int
     return rc;
 }
 
+static bool is_met(const slot *s)
+{
+    return s->found.n_solutions > 0 && s->found.solutions[0].feasible;
+}
+
 /* A candidate without a value anywhere is no failure of the study: it has no solution. */
 static mt_status search_candidate(void *context, int worker, int k, mt_scope *own, mt_err *err)
 {
@@ -289,16 +294,14 @@ static mt_status search_candidate(void *context, int worker, int k, mt_scope *ow
     }
     w->scope = before;
     mt_workspace_back(w, j->c); /* the candidate's case goes, and its cuts */
+    if (is_met(s)) {
+        mt_workspace_judged(w, s->aims != NULL ? s->aims[0] : s->found.solutions[0].f);
+    }
     for (int i = 0; i < s->n_cuts; i++) {
         mt_cut_free(&s->cuts[i]);
     }
     const bool fatal = mt_is_final(s->rc);
     return fatal ? mt_fail(err, s->rc, "%s", why.text) : MT_OK;
-}
-
-static bool is_met(const slot *s)
-{
-    return s->found.n_solutions > 0 && s->found.solutions[0].feasible;
 }
 
 /* One design for each assignment: its best. Its other local optima come after (see rank). */

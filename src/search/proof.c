@@ -44,6 +44,9 @@ mt_status mt_proof_ask(mt_proof *proof, double most, mt_arena *mem, mt_certify_s
     proof->question.max_work = fmax(fmin(most, proof->left), LEAST_WORK);
     MT_TRY(mt_certify_assignments(&proof->question, 0, NULL, mem, out, err));
     proof->left = fmax(proof->left - out->work, 0.0);
+    if (out->proven) {
+        mt_progress_proved(proof->question.progress);
+    }
     return MT_OK;
 }
 

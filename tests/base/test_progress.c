@@ -18,6 +18,7 @@ static void progress__nobody_listens(mt_test *t)
     mt_progress_evaluated(NULL);
     mt_progress_boxed(NULL);
     mt_progress_found(NULL, "change", 1.0, 1.0);
+    mt_progress_proved(NULL);
     CHECK(t, !mt_progress_seeks(NULL));
 }
 
@@ -86,6 +87,48 @@ static void progress__the_best_is_the_least(mt_test *t)
     mt_progress_free(&p);
 }
 
+static double now_s;
+
+static double watch(void)
+{
+    return now_s;
+}
+
+/* When a first design was known, and the best but for its last digits; a proof. */
+static void progress__marks_say_when(mt_test *t)
+{
+    static const struct {
+        double value;
+        double first_s;
+        double best_s;
+    } rows[] = {
+        /* nothing is found */
+        {0, 0, 0},   {5.0, 2, 2}, {5.0 - 4e-6, 2, 2}, {5.0 - 8e-6, 2, 4},
+        {6.0, 2, 4}, {4.0, 2, 6}, {4.0 - 3e-6, 2, 6}, {4.0 - 3e-6, 2, 6},
+    };
+    mt_progress p;
+    CHECK_INT(t, mt_progress_init(&p, NULL), MT_OK);
+    p.clock = watch;
+    mt_progress_phase(&p, "search", true);
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        now_s = (double)i + 1.0;
+        mt_progress_evaluated(&p);
+        if (i > 0) {
+            mt_progress_found(&p, "change", rows[i].value, rows[i].value);
+        }
+        const mt_progress_view v = mt_progress_look(&p);
+        mt_test_row(t, "row %d", i);
+        CHECK(t, i == 0
+                     ? isnan(v.first.cpu_s) && isnan(v.best_at.cpu_s)
+                     : v.first.cpu_s == rows[i].first_s && v.best_at.cpu_s == rows[i].best_s);
+        CHECK(t, i == 0 || v.best_at.evaluations == (long)rows[i].best_s);
+        CHECK(t, isnan(v.proof.cpu_s));
+    }
+    mt_progress_proved(&p);
+    CHECK(t, mt_progress_look(&p).proof.cpu_s == now_s);
+    mt_progress_free(&p);
+}
+
 static mt_status count(void *context, int worker, int task, mt_scope *own, mt_err *err)
 {
     mt_progress *const p = context;
@@ -116,5 +159,5 @@ static void progress__a_list_of_tasks_is_a_step(mt_test *t)
 MT_TEST_MAIN(MT_TEST(progress__nobody_listens),
              MT_TEST(progress__counts_the_outermost_step_only),
              MT_TEST(progress__a_share_never_becomes_less),
-             MT_TEST(progress__the_best_is_the_least),
+             MT_TEST(progress__the_best_is_the_least), MT_TEST(progress__marks_say_when),
              MT_TEST(progress__a_list_of_tasks_is_a_step))

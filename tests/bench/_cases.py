@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -196,6 +197,20 @@ def answer(result):
     goals = [g["violation_percent"] / 100 for g in result["recommendations"][0]["goals"] if not g["weighted"]]
     known = [p["computed"] / p["published"] - 1 for p in result["published"] if (p["label"] or "").startswith("mass")]
     return {"status": result["status"], "evaluations": result["run"]["evaluations"], "error": max([0.0, *goals, *known])}
+
+
+def watched(study, folder):
+    """A study as `side_by_side` has it: its marks count from where its file is opened."""
+    command = [PROGRAM, "run", study, "--quiet", "--progress", "json", "--threads", "1", "-o", folder]
+    cpu, text, peak = run(command, fine=(0, 1), errors=subprocess.STDOUT)
+    said = [json.loads(line) for line in text.splitlines() if line.startswith('{"format"')]
+    ends = [s for s in said if s["state"] == "done"]
+    reading = sum(s["cpu_s"] for s in ends[:-1])
+    result = json.loads((Path(folder) / Path(study).stem / "result.json").read_text(encoding="utf-8"))
+    marks = {of: math.nan if ends[-1][of] is None else reading + ends[-1][of] for of in ("first_cpu_s", "best_cpu_s", "proof_cpu_s")}
+    proven = " ".join(sorted({c["kind"] for c in result["certificates"] if c["proven"]}))
+    return cpu, {**answer(result), **marks, "first_evaluations": ends[-1]["first_evaluations"], "best_evaluations": ends[-1]["best_evaluations"],
+                 "variables": len(result["variables"]), "multiplications": result["run"]["spent"]["multiplications"], "proven": proven}, peak
 
 
 if __name__ == "__main__":

@@ -27,17 +27,19 @@ COLUMNS = {
     "evaluation": ("study", "variables", "configurations", "freedoms", "way", "cpu_s", "spread_s", "per_second", "ratio", "error"),
     "search": ("study", "method", "distance", "runs", "reached", "evaluations", "cpu_s", "spread_s"),
     "studies": ("study", "runs", "cpu_s", "spread_s", "peak_mib", "evaluations", "error", "status"),
+    "designs": ("study", "variables", "runs", "first_cpu_s", "best_cpu_s", "proof_cpu_s", "cpu_s", "spread_s", "peak_mib", "first_evaluations",
+                "best_evaluations", "evaluations", "multiplications", "status", "proven", "error"),
     "asked": ("what", "asked", "measured", "unit", "reached", "error"),
 }
 
 
-def run(command, folder=None):
-    """CPU seconds and output of a process; output None where it failed; its greatest memory [MiB]."""
-    with subprocess.Popen(list(map(str, command)), cwd=folder, env=ALONE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+def run(command, folder=None, fine=(0,), errors=subprocess.DEVNULL):
+    """CPU seconds and output of a process; output None where its exit status is not fine; its greatest memory [MiB]."""
+    with subprocess.Popen(list(map(str, command)), cwd=folder, env=ALONE, stdout=subprocess.PIPE, stderr=errors) as process:
         text = process.stdout.read().decode()
         _, status, used = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
-    return used.ru_utime + used.ru_stime, text if process.returncode == 0 else None, used.ru_maxrss / 1024
+    return used.ru_utime + used.ru_stime, text if process.returncode in fine else None, used.ru_maxrss / 1024
 
 
 def rows_of(command):
@@ -59,13 +61,15 @@ def middle(times):
     return {"cpu_s": statistics.median(times), "spread_s": max(times) - min(times)}
 
 
-def side_by_side(solvers, runs):
-    """All in turn, so many times: name -> medians, peak memory and the last answer. A solver gives CPU seconds, answer, MiB."""
+def side_by_side(solvers, runs, also=()):
+    """All in turn, so many times: name -> medians, peak memory and the last answer. A solver gives CPU seconds, answer, MiB; what of
+    its answer is a time, too (also), gets its median."""
     done = {name: [] for name in solvers}
     for _ in range(runs):
         for name, solve in solvers.items():
             done[name].append(solve())
-    return {name: (middle([d[0] for d in all_of]) | {"peak_mib": max(d[2] for d in all_of)}, all_of[-1][1])
+    return {name: (middle([d[0] for d in all_of]) | {"peak_mib": max(d[2] for d in all_of)},
+                   all_of[-1][1] if not also else all_of[-1][1] | {of: statistics.median(d[1][of] for d in all_of) for of in also})
             for name, all_of in done.items()}
 
 

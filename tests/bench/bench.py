@@ -13,6 +13,8 @@ peers       a cantilever of n beam elements from its file to its first four freq
 evaluation  designs per second and core: one evaluation of studies beside a bare dsyevd (bench_evaluation)
 search      distance from the best known answer by evaluations and CPU time (bench_search)
 studies     whole studies, from their files to their answers
+designs     studies of tests/bench/studies and shipped ones: CPU time to the first design that meets all goals, to the best, to what is
+            proven of them, to the answer
 asked       what was to be reached beside what the other tables measured
 Times are CPU seconds of one thread, what is compared runs in turn, and each gets the median of its runs with the spread
 (largest less smallest) beside it. What is not installed is left out and named. SOURCE_DIR, BUILD_DIR and MODETUNE as in the tests.
@@ -192,6 +194,23 @@ class Bench:
     def study(self, name, folder):
         cpu, _, peak = run([PROGRAM, "run", SOURCE / "studies" / f"{name}.json", "--quiet", "--threads", "1", "-o", folder])
         return cpu, cases.answer(json.loads((Path(folder) / name / "result.json").read_text(encoding="utf-8"))), peak
+
+    def designs(self):
+        shipped = ("engine_orders", "inceptor_catalogue", "truss_10bar_E69_8", "six_masses_bands") if self.quick else (
+            "truss_10bar_E68_9", "truss_10bar_E69_8", "truss_72bar", "beam_identification", "inceptor_identification", "inceptor_prediction",
+            "inceptor_tuning_1", "inceptor_tuning_2", "inceptor_tuning_3", "inceptor_stick", "inceptor_stick_mac", "inceptor_catalogue",
+            "inceptor_rotor", "inceptor_trade", "engine_orders", "six_masses_bands", "six_masses_infeasible")
+        paths = {name: SOURCE / "studies" / f"{name}.json" for name in shipped}
+        if not self.quick:
+            paths |= {path.stem: path for path in sorted((SOURCE / "tests/bench/studies").glob("*.json"))}
+        runs = 1 if self.quick else 5
+        with tempfile.TemporaryDirectory() as folder:
+            done = side_by_side({name: partial(cases.watched, path, folder) for name, path in paths.items()}, runs,
+                                ("first_cpu_s", "best_cpu_s", "proof_cpu_s"))
+        self.tell("designs", "studies on one thread, from the file: to the first design that meets all goals, to the best one (but for its "
+                  "last digits), to the last proof that settled its question, to the answer with its report; error as in `studies`",
+                  [{k: v for k, v in {"study": name, "runs": runs, **times, **answer}.items() if v is not None and v == v}
+                   for name, (times, answer) in done.items()])
 
     def asked(self):
         def of(table, column, **want):

@@ -9,6 +9,7 @@ import unittest
 import jsonschema
 
 from common_cli import SOURCE, CliTest, main
+from test_budget_binds import KINDS, PEDAL
 from test_interrupts import BEAM, LONG, Running
 
 SCHEMA = json.loads((SOURCE / "schemas/progress.schema.json").read_text(encoding="utf-8"))
@@ -50,6 +51,16 @@ class Progress(CliTest):
                 self.assertGreaterEqual(b["done"], a["done"])
                 self.assertGreaterEqual(b["share"] or 0, a["share"] or 0)
                 self.assertTrue(a["best"] is None or b["best"] <= a["best"])
+            self.assertTrue(a["first_cpu_s"] is None or b["first_cpu_s"] == a["first_cpu_s"])
+            for of in ("best_cpu_s", "best_evaluations", "proof_cpu_s", "cpu_s"):
+                self.assertTrue(a[of] is None or b[of] >= a[of], (a, b))
+        for f in found:
+            self.assertEqual(f["first_cpu_s"] is None, f["best"] is None)
+            if f["best"] is not None:
+                self.assertLessEqual(f["first_cpu_s"], f["best_cpu_s"])
+                self.assertLessEqual(f["best_cpu_s"], f["cpu_s"])
+                self.assertLessEqual(f["first_evaluations"], f["best_evaluations"])
+                self.assertLessEqual(f["best_evaluations"], f["evaluations"])
 
     def test_objects_for_programs(self):
         done = self.expect(1, "run", self.short, self.torn, "--progress", "json", "--threads", "2")
@@ -66,7 +77,22 @@ class Progress(CliTest):
         result = json.loads((self.folder / "results/short/result.json").read_text(encoding="utf-8"))
         self.assertEqual(best["objective"], "change")
         self.assertAlmostEqual(best["best"], result["recommendations"][0]["change"], delta=1e-4)
+        self.assertIsNone(best["proof_cpu_s"])
         self.assertIsNone(found[-1]["best"])  # no design meets both targets
+        self.assertLessEqual(found[-1]["proof_cpu_s"], found[-1]["cpu_s"])
+
+    def test_the_best_of_designs_that_are_judged_anew(self):
+        """Over positions of a drive and tolerances: what is told last is the answer's."""
+        self.write("problems/pedal.json", json.dumps(PEDAL))
+        for kind in ("pedal", "pedal_catalogue", "pedal_tolerances"):
+            with self.subTest(kind):
+                self.write(f"studies/{kind}.json", json.dumps(KINDS[kind]))
+                done = self.expect(0, "run", f"studies/{kind}.json", "--starts", "4", "--progress", "json")
+                found = self.objects(done.stderr)
+                self.check_steps(found)
+                result = json.loads((self.folder / f"results/{kind}/result.json").read_text(encoding="utf-8"))
+                self.assertAlmostEqual(found[-1]["best"], result["recommendations"][0]["change"], delta=1e-6)
+                self.assertGreater(found[-1]["best_evaluations"], 0)
 
     def test_a_long_search_and_its_end(self):
         fewer = self.write("studies/fewer.json", LONG.replace("beam.json", "slender.json"))
