@@ -152,17 +152,18 @@ static bool holds(tolerance *t, double percent, int alone)
     return true;
 }
 
-static mt_tolerance search(tolerance *t, int alone)
+/* known: a percentage that is proven already. */
+static mt_tolerance search(tolerance *t, int alone, double known)
 {
     mt_tolerance out = {.percent = t->q->most_percent, .end = MT_TOLERANCE_MOST};
-    if (holds(t, t->q->most_percent, alone)) {
+    if (known >= t->q->most_percent || holds(t, t->q->most_percent, alone)) {
         return out;
     }
     double low = 0.0;
     double high = t->q->most_percent;
     out.end = t->end;
     out.edge = t->end == MT_TOLERANCE_EDGE ? t->edges[t->open] : out.edge;
-    bool at_all = holds(t, 0.0, alone);
+    bool at_all = known > 0.0 || holds(t, 0.0, alone);
     if (!at_all) {
         high = 0.0;
         out.end = t->end;
@@ -171,7 +172,7 @@ static mt_tolerance search(tolerance *t, int alone)
     for (int i = 0; i < MOST_STEPS && high - low > RESOLUTION * high && high > NEARLY_NOTHING;
          i++) {
         const double middle = 0.5 * (low + high);
-        if (holds(t, middle, alone)) {
+        if (middle <= known || holds(t, middle, alone)) {
             low = middle;
             continue;
         }
@@ -202,9 +203,9 @@ static mt_status run(const mt_certify *c, const mt_tolerance_question *q, mt_are
             mt_enclosure_note_held(c->views[v]);
         }
     }
-    *all = search(&t, -1);
+    *all = search(&t, -1, 0.0);
     for (int i = 0; i < c->n && each != NULL; i++) {
-        each[i] = search(&t, i);
+        each[i] = search(&t, i, all->percent); /* its box lies in that of all */
     }
     return MT_OK;
 }
