@@ -10,6 +10,7 @@
 #include "describe/certificates.h"
 #include "describe/describe_discrete.h"
 #include "describe/describe_relax.h"
+#include "search/hopeless.h"
 #include "search/motion.h"
 #include "search/search.h"
 
@@ -91,9 +92,28 @@ static mt_status search_gaps(mt_answer *a, mt_err *err)
     return mt_answer_take_gaps(a, err);
 }
 
+/* What little work shows to be impossible is told before the search, to who watches: so that
+ * nothing of the answer, nor of its price, depends on that. */
+static mt_status tell_hopeless(mt_answer *a, mt_err *err)
+{
+    mt_progress *const progress = a->study->model->progress;
+    const mt_hopeless_question q = {.c = &a->asked, .but = -1, .bands = true};
+    mt_err own = {.code = MT_OK};
+    bool hopeless = false;
+    if (progress == NULL || mt_describe_is_doubted(a->result)) {
+        return MT_OK;
+    }
+    const mt_status rc = mt_hopeless(&q, &a->mem, &hopeless, &own);
+    if (rc == MT_OK && hopeless) {
+        mt_progress_impossible(progress);
+    }
+    return mt_pass_final(rc, &own, err);
+}
+
 mt_status mt_answer_search(mt_answer *a, mt_err *err)
 {
     allow_search(a);
+    MT_TRY(tell_hopeless(a, err));
     if (mt_study_is_discrete(a->study)) {
         return mt_discrete_solve(a->workers, a->n_workers, &a->mem, &a->found, &a->discrete,
                                  err);

@@ -153,6 +153,15 @@ void mt_progress_proved(mt_progress *p)
     }
 }
 
+void mt_progress_impossible(mt_progress *p)
+{
+    if (p != NULL) {
+        (void)pthread_mutex_lock(&p->lock);
+        p->now.impossible = true;
+        (void)pthread_mutex_unlock(&p->lock);
+    }
+}
+
 /* 1 where the step has ended; else never 1 before it has. */
 static double share_of(const mt_progress_view *v, int ppm)
 {

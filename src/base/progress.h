@@ -36,6 +36,7 @@ typedef struct mt_progress_view {
     double best;
     mt_progress_mark first;   /* a design was known that meets all goals */
     mt_progress_mark best_at; /* the best so far was, but for its last digits */
+    bool impossible;          /* it is proven that no design meets all goals */
     mt_progress_mark proof;   /* the last proof that has settled its question so far did */
     /* how often a phase or a step has begun: the time of the present step counts from where
      * this changed */
@@ -81,8 +82,9 @@ bool mt_progress_seeks(mt_progress *p);
 /* A design that meets all goals has the value f, which is made least, of an objective, shown
  * as `value`. */
 void mt_progress_found(mt_progress *p, const char *what, double f, double value);
-/* A proof settled its question. */
+/* A proof settled its question; no design meets all goals, which is proven. */
 void mt_progress_proved(mt_progress *p);
+void mt_progress_impossible(mt_progress *p);
 
 /* What is known now. */
 mt_progress_view mt_progress_look(mt_progress *p);

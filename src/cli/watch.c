@@ -40,6 +40,7 @@ typedef struct watch {
     double begun_cpu_s;
     double step_s; /* when the present step began */
     double told_s; /* when the last word was said */
+    bool told_impossible;
     mt_progress_view last;
 } watch;
 
@@ -130,6 +131,9 @@ static void words(const mt_progress_view *v, double now, char text[TEXT])
     if (v->what != NULL) {
         add(text, &n, ", best %s %.4g", v->what, v->best);
     }
+    if (v->impossible) {
+        add(text, &n, ", no design meets all goals (proven): the nearest is sought");
+    }
     if (isfinite(step)) {
         add(text, &n, ", about %s left of this step", duration(step, time));
     }
@@ -183,6 +187,7 @@ static void put_json(const mt_progress_view *v, const char *state, double now)
     mt_json_put_integer(&w, "boxes", v->boxes);
     mt_json_put_string(&w, "objective", v->what);
     mt_json_put_number(&w, "best", v->what == NULL ? nan("") : v->best);
+    mt_json_put_bool(&w, "impossible", v->impossible);
     put_mark(&w, "first_cpu_s", "first_evaluations", &v->first);
     put_mark(&w, "best_cpu_s", "best_evaluations", &v->best_at);
     mt_json_put_number(&w, "proof_cpu_s", v->proof.cpu_s - it.begun_cpu_s);
@@ -202,6 +207,7 @@ static void look(void)
     const mt_progress_view v = mt_progress_look(&it.progress);
     const double now = mt_terminal_seconds();
     const bool changed = v.changes != it.last.changes;
+    const bool news = v.impossible && !it.told_impossible && now - it.begun_s >= TIME_LEAST;
     char text[TEXT];
     it.step_s = changed ? now : it.step_s;
     it.last = v;
@@ -211,14 +217,16 @@ static void look(void)
         mt_terminal_line(text);
         break;
     case READER_LOG:
-        if (now - it.told_s >= PLAIN_S) {
+        if (news || now - it.told_s >= PLAIN_S) {
+            it.told_impossible = v.impossible;
             words(&v, now, text);
             mt_terminal_talk(false, "%s", text);
             it.told_s = now;
         }
         break;
     case READER_PROGRAM:
-        if (changed || now - it.told_s >= JSON_S) {
+        if (changed || v.impossible != it.told_impossible || now - it.told_s >= JSON_S) {
+            it.told_impossible = v.impossible;
             put_json(&v, "running", now);
             it.told_s = now;
         }

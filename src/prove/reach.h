@@ -16,5 +16,10 @@ typedef struct mt_certify_reach {
 } mt_certify_reach;
 mt_status mt_certify_reach_of(const mt_certify *c, int limit, mt_arena *scratch,
                               mt_certify_reach *out, mt_err *err);
+/* Is any limit of c alone out of reach of its whole box, by such ranges without branch and
+ * bound? True is proven. Cost: two eigensolves for each view that has limits. Fails:
+ * MT_E_MEMORY, numerical failures of LAPACK. */
+mt_status mt_certify_out_of_reach(const mt_certify *c, mt_arena *scratch, bool *out,
+                                  mt_err *err);
 
 #endif

@@ -15,6 +15,7 @@
 #include "base/workers.h"
 #include "problem/robust_cut.h"
 #include "search/gaps.h"
+#include "search/hopeless.h"
 #include "search/motion.h"
 
 /* Local searches of one move in one assignment, and what each of them may cost. */
@@ -299,6 +300,15 @@ static mt_status search_move(void *context, int worker, int k, mt_scope *own, mt
     MT_TRY(mt_arena_init(&out->mem, 0, err));
     w->scope = own;
     mt_status rc = mt_relax_case(j->c, m, w, &out->mem, &c, &useful, err);
+    if (rc == MT_OK && useful) { /* what no such move makes possible is not searched */
+        const mt_hopeless_question q = {.c = &c,
+                                        .but = m->kind == MT_MOVE_GOAL ? m->demand : -1,
+                                        .bands = m->kind != MT_MOVE_EDGE,
+                                        .counted = true};
+        bool hopeless = false;
+        rc = mt_hopeless(&q, &out->mem, &hopeless, err);
+        useful = !hopeless;
+    }
     if (rc == MT_OK && useful) {
         rc = w->p->n_clears > 0 ? search_gaps(j, &c, w, k, out, err)
                                 : search_in(j, &c, w, m, j->near, out, err);

@@ -78,6 +78,8 @@ class Progress(CliTest):
         self.assertEqual(best["objective"], "change")
         self.assertAlmostEqual(best["best"], result["recommendations"][0]["change"], delta=1e-4)
         self.assertIsNone(best["proof_cpu_s"])
+        self.assertIs(best["impossible"], False)
+        self.assertIs(found[-1]["impossible"], True)
         self.assertIsNone(found[-1]["best"])  # no design meets both targets
         self.assertLessEqual(found[-1]["proof_cpu_s"], found[-1]["cpu_s"])
 

@@ -3,6 +3,7 @@
 what settles them. What is proven with little is proven with all; no time is measured."""
 import json
 import math
+import random
 import re
 
 from common_cli import MODEL, CliTest, main, study
@@ -19,6 +20,8 @@ PROVEN = {
     "branched": masses(variables=[{"parameter": "k1", "catalogue": MANY}, {"parameter": "k2", "lower": 0.1, "upper": 100}],
                        goals=[{**HIGH[0], "at_most_hz": 0.2}]),
     "many": masses(variables=[{"parameter": p, "catalogue": MANY} for p in ("k1", "k2")], goals=[{**HIGH[0], "at_most_hz": 0.2}]),
+    "many_mixed": masses(variables=[{"parameter": "k1", "catalogue": MANY}, {"parameter": "k2", "lower": 0.1, "upper": 100}],
+                         goals=[{**HIGH[0], "at_most_hz": 0.2}]),
     "too_high": masses(goals=TOO_HIGH),
     "apart": masses(goals=APART),
     "trade": KINDS["trade"],
@@ -85,6 +88,26 @@ class ProofBudget(CliTest):
                     if {k for k, _ in missing} - {"range"}:
                         self.assertRegex(told, NOT_PROVEN)
         self.assertGreater(ended, 15)
+
+    def test_changes_that_are_not_searched_have_no_design(self):
+        """What little work proves of a change of the question spares its search; without proofs all are searched: random limits and bands."""
+        draw, spared, found = random.Random(5), 0, 0
+        for row in range(12):
+            first, second = (f(0.05, 0.4) for f in (draw.uniform, draw.uniform))
+            goals = [{"type": "frequency", "configuration": "held", "mode": 1, "at_least_hz": first, "at_most_hz": 1.1 * first},
+                     {"type": "frequency", "configuration": "held", "mode": 2, "at_least_hz": second, "at_most_hz": 1.2 * second}]
+            if row % 3 == 2:
+                goals[0] = {"type": "avoid", "configurations": ["held"], "bands_hz": [[first / 2, first * 3]]}
+            bounds = {"lower": 1, "upper": draw.uniform(2, 5)}
+            PROVEN["drawn"] = masses(goals=goals, variables=[{"parameter": p, **bounds} for p in ("k1", "k2")])
+            with self.subTest(goals=goals, bounds=bounds):
+                little, none = self.answer("drawn"), self.answer("drawn", "--proof", "0")
+                self.assertEqual(little["relaxations"], none["relaxations"])
+                self.assertLessEqual(little["run"]["spent"]["relaxations"], none["run"]["spent"]["relaxations"])
+                spared += little["run"]["spent"]["relaxations"] < none["run"]["spent"]["relaxations"]
+                found += len(little["relaxations"]) > 0
+        PROVEN.pop("drawn")
+        self.assertGreater(min(spared, found), 2)
 
     def test_the_work_of_one_proof_is_within_its_budget(self):
         """One question without a tolerance box: the proof that no design meets both limits, to a box or two."""
