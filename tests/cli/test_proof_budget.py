@@ -3,6 +3,7 @@
 what settles them. What is proven with little is proven with all; no time is measured."""
 import json
 import math
+import os
 import random
 import re
 
@@ -17,8 +18,6 @@ PROVEN = {
     **{kind: KINDS[kind] for kind in ("pedal", "pedal_tolerances", "stages", "infeasible", "bands", "catalogue", "catalogue_infeasible")},
     "mixed": masses(variables=[{"parameter": "k1", "catalogue": CHOICES}, {"parameter": "k2", "lower": 0.1, "upper": 100}],
                     goals=[{**HIGH[0], "at_most_hz": 0.2}]),
-    "branched": masses(variables=[{"parameter": "k1", "catalogue": MANY}, {"parameter": "k2", "lower": 0.1, "upper": 100}],
-                       goals=[{**HIGH[0], "at_most_hz": 0.2}]),
     "many": masses(variables=[{"parameter": p, "catalogue": MANY} for p in ("k1", "k2")], goals=[{**HIGH[0], "at_most_hz": 0.2}]),
     "many_mixed": masses(variables=[{"parameter": "k1", "catalogue": MANY}, {"parameter": "k2", "lower": 0.1, "upper": 100}],
                          goals=[{**HIGH[0], "at_most_hz": 0.2}]),
@@ -26,7 +25,7 @@ PROVEN = {
     "apart": masses(goals=APART),
     "trade": KINDS["trade"],
 }
-BUDGETS = ("0", "1e-12", "1e-6", "1e-5", "1e-4")
+BUDGETS = ("0", "1e-6") if "MT_INSTRUMENTED" in os.environ else ("0", "1e-12", "1e-6", "1e-5", "1e-4")
 NOT_PROVEN = '"proof_s" is 0|budget of (the proof|branch and bound) ended|heuristic|sampled, not proven'
 BY_BOXES = re.compile(r" \([^()]*\d+ boxes[^()]*\)")
 
@@ -87,7 +86,7 @@ class ProofBudget(CliTest):
                     told = " ".join(c["text"] for c in few["certificates"] or ())
                     if {k for k, _ in missing} - {"range"}:
                         self.assertRegex(told, NOT_PROVEN)
-        self.assertGreater(ended, 15)
+        self.assertGreater(ended, 5 if len(BUDGETS) == 2 else 15)
 
     def test_changes_that_are_not_searched_have_no_design(self):
         """What little work proves of a change of the question spares its search; without proofs all are searched: random limits and bands."""
@@ -122,7 +121,7 @@ class ProofBudget(CliTest):
         self.assertEqual(self.answer("apart", "--proof", "1000")["run"]["spent"]["multiplications"], worked)
 
     def test_the_same_for_any_number_of_workers(self):
-        for kind in ("bands", "mixed", "branched", "pedal"):
+        for kind in ("bands", "mixed", "many_mixed", "pedal"):
             for budget in ("1e-6", "1e-5"):
                 alone = self.answer(kind, "--proof", budget, "--threads", "1", folder="one")
                 self.assertEqual(alone, self.answer(kind, "--proof", budget, "--threads", "3", folder="three"))
