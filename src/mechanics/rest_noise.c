@@ -70,7 +70,7 @@ static double along(const mt_piece *p, const double *way)
  * phi^T H phi. */
 static double bend(const mt_piece *p, const double *phi, double *out)
 {
-    int own[MT_LOCAL];
+    int own[MT_LOCAL] = {0};
     int n = 0;
     double energy = 0.0;
     for (int k = 0; k < MT_LOCAL; k++) {
