@@ -31,13 +31,12 @@ void mt_progress_free(mt_progress *p)
 }
 
 /* What begins has nothing done yet. */
-static void start(mt_progress *p, int step, const char *unit, long total)
+static void start(mt_progress *p, const char *unit, long total)
 {
-    p->now.step = step;
+    p->now.step++;
     p->now.unit = unit;
     p->now.total = total;
     p->now.ended = false;
-    p->now.changes++;
     atomic_store(&p->done, 0);
     atomic_store(&p->ppm, -1);
 }
@@ -51,7 +50,7 @@ void mt_progress_phase(mt_progress *p, const char *name, bool designs)
     if (!p->open) {
         p->now.phase = name;
         atomic_store(&p->designs, designs);
-        start(p, 0, NULL, 0);
+        start(p, NULL, 0);
     }
     (void)pthread_mutex_unlock(&p->lock);
 }
@@ -65,7 +64,7 @@ bool mt_progress_begin(mt_progress *p, const char *unit, long total)
     const bool outermost = !p->open;
     if (outermost) {
         p->open = true;
-        start(p, p->now.step + 1, unit, total);
+        start(p, unit, total);
     }
     (void)pthread_mutex_unlock(&p->lock);
     return outermost;

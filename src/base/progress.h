@@ -24,23 +24,22 @@ typedef struct mt_progress_mark {
 
 typedef struct mt_progress_view {
     const char *phase; /* NULL: none yet */
-    int step;          /* of the phase, from 1; 0: none yet */
-    const char *unit;  /* of what the step consists: "starts"; NULL: not in parts */
-    long done;         /* of them */
-    long total;        /* 0: not known */
-    double share;      /* of the step, 0 to 1; NaN: not known */
-    bool ended;        /* the step has */
-    long evaluations;  /* of designs */
-    long boxes;        /* of proofs */
-    const char *what;  /* the objective that `best` is the value of; NULL: none yet */
+    /* counts what has begun, phases and steps of them, from 1; 0: none yet. A phase may come
+     * again, a step does not: its time counts from where this changed. */
+    long step;
+    const char *unit; /* of what the step consists: "starts"; NULL: not in parts */
+    long done;        /* of them */
+    long total;       /* 0: not known */
+    double share;     /* of the step, 0 to 1; NaN: not known */
+    bool ended;       /* the step has */
+    long evaluations; /* of designs */
+    long boxes;       /* of proofs */
+    const char *what; /* the objective that `best` is the value of; NULL: none yet */
     double best;
     mt_progress_mark first;   /* a design was known that meets all goals */
     mt_progress_mark best_at; /* the best so far was, but for its last digits */
     bool impossible;          /* it is proven that no design meets all goals */
     mt_progress_mark proof;   /* the last proof that has settled its question so far did */
-    /* how often a phase or a step has begun: the time of the present step counts from where
-     * this changed */
-    long changes;
 } mt_progress_view;
 
 typedef struct mt_progress {

@@ -206,7 +206,7 @@ static void look(void)
 {
     const mt_progress_view v = mt_progress_look(&it.progress);
     const double now = mt_terminal_seconds();
-    const bool changed = v.changes != it.last.changes;
+    const bool changed = v.step != it.last.step;
     const bool news = v.impossible && !it.told_impossible && now - it.begun_s >= TIME_LEAST;
     char text[TEXT];
     it.step_s = changed ? now : it.step_s;

@@ -41,7 +41,7 @@ static void progress__counts_the_outermost_step_only(mt_test *t)
     mt_progress_evaluated(&p);
     v = mt_progress_look(&p);
     CHECK(t, strcmp(v.phase, "search") == 0 && strcmp(v.unit, "starts") == 0);
-    CHECK(t, v.step == 1 && v.done == 1 && v.total == 4 && !v.ended);
+    CHECK(t, v.step == 2 && v.done == 1 && v.total == 4 && !v.ended);
     CHECK(t, v.share == 0.25);
     CHECK(t, v.boxes == 1 && v.evaluations == 1);
     mt_progress_end(&p, outer);
@@ -50,8 +50,26 @@ static void progress__counts_the_outermost_step_only(mt_test *t)
     CHECK(t, v.share == 1.0);
     mt_progress_phase(&p, "trade", false);
     v = mt_progress_look(&p);
-    CHECK(t, strcmp(v.phase, "trade") == 0 && v.step == 0 && v.unit == NULL && v.done == 0);
+    CHECK(t, strcmp(v.phase, "trade") == 0 && v.step == 3 && v.unit == NULL && v.done == 0);
     CHECK(t, isnan(v.share) && v.evaluations == 1 && !mt_progress_seeks(&p));
+    mt_progress_free(&p);
+}
+
+/* Who looks seldom may see the first step of a phase, and next the first of the same phase
+ * where it comes again. */
+static void progress__a_step_never_comes_again(mt_test *t)
+{
+    mt_progress p;
+    long last = 0;
+    CHECK_INT(t, mt_progress_init(&p, NULL), MT_OK);
+    for (int round = 1; round <= 3; round++) {
+        mt_progress_phase(&p, "recommendations", false);
+        const bool told = mt_progress_begin(&p, "designs", round);
+        const mt_progress_view v = mt_progress_look(&p);
+        CHECK(t, v.total == round && v.step > last);
+        last = v.step;
+        mt_progress_end(&p, told);
+    }
     mt_progress_free(&p);
 }
 
@@ -158,6 +176,7 @@ static void progress__a_list_of_tasks_is_a_step(mt_test *t)
 
 MT_TEST_MAIN(MT_TEST(progress__nobody_listens),
              MT_TEST(progress__counts_the_outermost_step_only),
+             MT_TEST(progress__a_step_never_comes_again),
              MT_TEST(progress__a_share_never_becomes_less),
              MT_TEST(progress__the_best_is_the_least), MT_TEST(progress__marks_say_when),
              MT_TEST(progress__a_list_of_tasks_is_a_step))
