@@ -179,18 +179,14 @@ static mt_band merge(parts *p, int first, int last)
     return band;
 }
 
-/* What lies above the limit is forgotten; false: all of it. */
-static bool cut_off(mt_band *band, double up_to_hz)
+/* What of a band lies above the limit is forgotten. */
+static void cut_off(mt_band *band, double up_to_hz)
 {
-    if (band->lower_hz >= up_to_hz) {
-        return false;
-    }
     if (band->upper_hz > up_to_hz) {
         band->upper_hz = up_to_hz;
         band->base_upper_hz = fmin(band->base_upper_hz, up_to_hz);
         band->base_lower_hz = fmin(band->base_lower_hz, up_to_hz);
     }
-    return true;
 }
 
 static void note_merger(parts *p, const mt_band *band, mt_bands *out)
@@ -214,15 +210,17 @@ static mt_status merge_all(parts *p, double up_to_hz, mt_bands *out, mt_err *err
     out->notes = mt_arena_alloc(p->mem, (size_t)p->n, sizeof *out->notes);
     MT_TRY(mt_arena_check(p->mem, err));
     qsort(p->items, (size_t)p->n, sizeof *p->items, by_frequency);
+    /* what begins above the limit is not avoided, and no part of what it overlaps */
+    while (p->n > 0 && p->items[p->n - 1].band.lower_hz >= up_to_hz) {
+        p->n--;
+    }
     for (int first = 0, last = 0; first < p->n; first = ++last) {
         double upper = p->items[first].band.upper_hz;
         while (last + 1 < p->n && p->items[last + 1].band.lower_hz <= upper) {
             upper = fmax(upper, p->items[++last].band.upper_hz);
         }
         mt_band band = merge(p, first, last);
-        if (!cut_off(&band, up_to_hz)) {
-            continue;
-        }
+        cut_off(&band, up_to_hz);
         out->items[out->n++] = band;
         if (last > first) {
             note_merger(p, &band, out);

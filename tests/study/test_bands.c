@@ -206,6 +206,33 @@ static void bands__are_cut_off_at_the_limit(mt_test *t)
     mt_arena_free(&s.mem);
 }
 
+/* A band that begins above the limit is not avoided: one that it overlaps above is itself. */
+static void bands__above_the_limit_change_none_below(mt_test *t)
+{
+    sample s;
+    if (!begin(t, &s)) {
+        return;
+    }
+    s.intervals[0] = (mt_band_hz){118.0, 130.0, MT_NO_ADDR};
+    s.intervals[1] = (mt_band_hz){95.0, 100.0, MT_NO_ADDR};
+    s.source.n_intervals = 2;
+    s.source.margin_percent = 10.0;
+    s.source.up_to_hz = 105.0;
+    make(t, &s, nan(""));
+    if (CHECK_INT(t, s.bands.n, 1)) {
+        check_band(t, &s.bands.items[0], (const double[]){85.5, 95.0, 100.0, 105.0},
+                   "95 to 100 Hz");
+    }
+    CHECK_INT(t, s.bands.n_notes, 0);
+    s.source.up_to_hz = 107.0;
+    make(t, &s, nan(""));
+    if (CHECK_INT(t, s.bands.n, 1)) {
+        check_band(t, &s.bands.items[0], (const double[]){85.5, 95.0, 107.0, 107.0},
+                   "95 to 100 Hz + 118 to 130 Hz");
+    }
+    mt_arena_free(&s.mem);
+}
+
 static void bands__margins_can_be_replaced(mt_test *t)
 {
     static const char *const harmonics[] = {"1P"};
@@ -326,7 +353,9 @@ MT_TEST_MAIN(MT_TEST(bands__harmonics_are_read_as_written),
              MT_TEST(bands__of_a_rotor_have_range_and_margin),
              MT_TEST(bands__that_overlap_are_merged_and_said_so),
              MT_TEST(bands__of_several_rotors_and_lists_keep_their_names),
-             MT_TEST(bands__are_cut_off_at_the_limit), MT_TEST(bands__margins_can_be_replaced),
+             MT_TEST(bands__are_cut_off_at_the_limit),
+             MT_TEST(bands__above_the_limit_change_none_below),
+             MT_TEST(bands__margins_can_be_replaced),
              MT_TEST(bands__what_is_not_known_is_left_out),
              MT_TEST(bands__of_several_goals_are_united),
              MT_TEST(bands__clearance_is_a_percentage_of_the_nearest_edge),
