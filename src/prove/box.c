@@ -105,12 +105,21 @@ static double least_mass_share(const mt_enclosure *e)
     return mu;
 }
 
+static bool moves_geometry(const mt_enclosure *e, const double *lo, const double *hi)
+{
+    bool moved = false;
+    for (int i = 0; i < e->n_inputs; i++) {
+        moved = moved || (e->frozen[i] && (lo[i] != e->lower[i] || hi[i] != e->upper[i]));
+    }
+    return moved;
+}
+
 bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi)
 {
     double k_scale = e->fixed_norm;
     double m_scale = 0.0;
     bool within = true; /* the bounds */
-    if (mt_interrupted(e->interrupt)) {
+    if (mt_interrupted(e->interrupt) || moves_geometry(e, lo, hi)) {
         return false;
     }
     mt_enclosure_bounds(e, lo, hi);

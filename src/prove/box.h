@@ -5,7 +5,8 @@
 #include "prove/enclosure.h"
 
 /* Set the box lo <= x <= hi; it may leave the bounds. False where nothing is known over it: a
- * coefficient may be negative or is not enclosed, or the work is interrupted. No heap. */
+ * coefficient may be negative or is not enclosed, the geometry would move, or the work is
+ * interrupted. No heap. */
 bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi);
 /* A number that tells corners apart: MT_LOW the soft one, MT_HIGH the stiff one. Where those of
  * two boxes, one in the other, are equal, the corners are (but for one pair in 2^31: then what

@@ -4,56 +4,7 @@
 #include "prove/check.h"
 
 #include "base/format.h"
-
-/* First input that a node depends on; -1. */
-static int input_of(const mt_system *sys, mt_node node)
-{
-    const mt_program *const p = &sys->program;
-    if (node == MT_NO_NODE || mt_program_is_constant(p, node)) {
-        return -1;
-    }
-    for (int i = 0; i < p->n_inputs; i++) {
-        const uint64_t word =
-            p->inputs_of[((size_t)node * (size_t)p->words) + (size_t)(i / 64)];
-        if (((word >> (i % 64)) & 1U) != 0) {
-            return i;
-        }
-    }
-    return -1;
-}
-
-static void keep(const mt_system *sys, mt_node node, int *found)
-{
-    *found = *found >= 0 ? *found : input_of(sys, node);
-}
-
-/* An input that shapes the geometry of stiffness and mass; -1 where none does (where a sensor
- * stands moves no mode). */
-static int shaping_input(const mt_system *sys)
-{
-    int found = -1;
-    keep(sys, sys->drive, &found);
-    for (int i = 0; i < sys->n_vecs; i++) {
-        for (int k = 0; k < 3; k++) {
-            keep(sys, sys->vecs[i].node[k], &found);
-        }
-    }
-    for (int i = 0; i < sys->n_measures && mt_system_beams_shape(sys); i++) {
-        for (int k = 0; k < MT_BEAM_NUMBERS; k++) {
-            keep(sys, sys->measures[i].beam[k], &found);
-        }
-    }
-    for (int i = 0; i < sys->n_constraints; i++) {
-        keep(sys, sys->constraints[i].target, &found);
-        keep(sys, sys->constraints[i].coefficient[0], &found);
-        keep(sys, sys->constraints[i].coefficient[1], &found);
-    }
-    for (int i = 0; i < sys->n_inertias; i++) {
-        keep(sys, sys->inertias[i].shape[0], &found);
-        keep(sys, sys->inertias[i].shape[1], &found);
-    }
-    return found;
-}
+#include "prove/shaping.h"
 
 static bool refuse(char *reason, const char *what, const char *name, const char *does)
 {
@@ -81,7 +32,20 @@ static bool loads_refused(const mt_system *sys, char *reason)
     return false;
 }
 
-bool mt_enclosure_admits(const mt_analysis *a, char *reason)
+/* Does the analysis stand where the input has this value? */
+static bool stands_at(const mt_analysis *a, int input, double value)
+{
+    const mt_program *const p = &a->sys->program;
+    for (int i = 0; i < p->count; i++) {
+        if (p->nodes[i].op == MT_OP_PARAM && p->nodes[i].input == input) {
+            return mt_linear_value(a->lin, i) == value;
+        }
+    }
+    return false;
+}
+
+bool mt_enclosure_admits(const mt_analysis *a, const double *lower, const double *upper,
+                         bool *frozen, char *reason)
 {
     const mt_system *const sys = a->sys;
     if (!loads_refused(sys, reason)) {
@@ -92,10 +56,13 @@ bool mt_enclosure_admits(const mt_analysis *a, char *reason)
                           "a driven joint or an equilibrium places the mechanism");
         return false;
     }
-    const int shaping = shaping_input(sys);
-    if (shaping >= 0) {
-        return refuse(reason, "parameter", sys->model->parameters[sys->inputs[shaping]].name.s,
-                      "shapes the geometry");
+    mt_enclosure_shaping(a, frozen);
+    for (int i = 0; i < sys->n_inputs; i++) {
+        const bool fixed = lower[i] == upper[i] && stands_at(a, i, lower[i]);
+        if (frozen[i] && !fixed) {
+            return refuse(reason, "parameter", sys->model->parameters[sys->inputs[i]].name.s,
+                          "shapes the geometry");
+        }
     }
     return true;
 }

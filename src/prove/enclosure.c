@@ -27,6 +27,7 @@ static mt_status keep_bounds(mt_enclosure *e, const double *lower, const double 
     const size_t n = (size_t)e->n_inputs;
     e->lower = mt_arena_f64(&e->mem, n, 1);
     e->upper = mt_arena_f64(&e->mem, n, 1);
+    e->frozen = mt_arena_alloc(&e->mem, n, sizeof(bool));
     e->in[MT_STIFFNESS] = mt_arena_alloc(&e->mem, n, sizeof(bool));
     e->in[MT_MASS] = mt_arena_alloc(&e->mem, n, sizeof(bool));
     MT_TRY(mt_arena_check(&e->mem, err));
@@ -85,7 +86,11 @@ static mt_status build(mt_enclosure *e, const mt_analysis *a, const double *lowe
                        const double *upper, bool *ok, char *reason, mt_err *err)
 {
     *ok = false;
-    if (!mt_enclosure_admits(a, reason)) {
+    MT_TRY(mt_arena_init(&e->mem, 0, err));
+    MT_TRY(mt_arena_init(&e->scratch, 0, err));
+    e->n_inputs = a->sys->n_inputs;
+    MT_TRY(keep_bounds(e, lower, upper, err));
+    if (!mt_enclosure_admits(a, lower, upper, e->frozen, reason)) {
         return MT_OK;
     }
     if (a->modes.n_unstable > 0) {
@@ -97,13 +102,9 @@ static mt_status build(mt_enclosure *e, const mt_analysis *a, const double *lowe
                           "rounding hides whether the mechanism is stable");
         return MT_OK;
     }
-    MT_TRY(mt_arena_init(&e->mem, 0, err));
-    MT_TRY(mt_arena_init(&e->scratch, 0, err));
-    e->n_inputs = a->sys->n_inputs;
     e->interrupt = a->sys->model->interrupt;
     MT_TRY(mt_interrupt_check(e->interrupt, err));
     e->n_rigid = a->n_rigid;
-    MT_TRY(keep_bounds(e, lower, upper, err));
     MT_TRY(mt_enclosure_collect(e, a->lin, ok, reason, err));
     if (*ok && a->n_rigid > 0) {
         MT_TRY(check_count(e, a, ok, reason, err));

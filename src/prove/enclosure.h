@@ -21,9 +21,10 @@
  * between theirs (Courant and Fischer). Exact where each input enters K alone or M alone, valid
  * but not tight for an input in both (a bar's area).
  *
- * That is only so under conditions, and mt_enclosure_new checks them. One enclosure, one
- * worker: boxes are set in it. The rows of K and M are taken as the program has computed them;
- * their rounding is within the slack.
+ * That is only so under conditions, and mt_enclosure_new checks them. An input that shapes the
+ * geometry moves the rows that P_i and Q_i are made of: modes are enclosed where each of these
+ * stands still, over the others. One enclosure, one worker: boxes are set in it. The rows of K
+ * and M are taken as the program has computed them; their rounding is within the slack.
  */
 enum { MT_REASON_SIZE = 256 };
 
@@ -82,6 +83,7 @@ typedef struct mt_enclosure {
     int n_inputs;
     double *lower; /* [n_inputs] bounds that the conditions were checked for */
     double *upper;
+    bool *frozen; /* [n_inputs] shapes the geometry: of no other value is anything known */
     int n; /* order of the matrices below, in which M at the bounds' low end is the identity */
     /* rigid-body modes that the analysis counts: every design of the bounds has as many null
      * directions at least */
@@ -122,10 +124,11 @@ typedef struct mt_enclosure {
 
 /*
  * Enclose the modes of an analysis (which has been solved at least once) over lower <= x <=
- * upper [n_inputs]. *out is NULL, and the call a success, where a condition fails:
- * reason[MT_REASON_SIZE] then says which, as a sentence after "no certificate: ". Nothing of
- * the analysis is kept but names, which belong to the model. Fails: MT_E_MEMORY, numerical
- * failures of LAPACK.
+ * upper [n_inputs]. An input that shapes the geometry must have lower = upper, and the analysis
+ * must have been solved last at that value. *out is NULL, and the call a success, where a
+ * condition fails: reason[MT_REASON_SIZE] then says which, as a sentence after "no
+ * certificate: ". Nothing of the analysis is kept but names, which belong to the model. Fails:
+ * MT_E_MEMORY, numerical failures of LAPACK.
  */
 mt_status mt_enclosure_new(const mt_analysis *a, const double *lower, const double *upper,
                            mt_enclosure **out, char *reason, mt_err *err);

@@ -6,6 +6,7 @@
 #include "base/format.h"
 #include "base/spent.h"
 #include "problem/demand.h"
+#include "prove/shaping.h"
 
 /* Spent with the first box. 0 would be the default of certify.h. */
 static const double LEAST_WORK = 1.0;
@@ -21,13 +22,56 @@ void mt_proof_free(mt_proof *proof)
     mt_spent_note(proof->spent, MT_SPENT_MULTIPLICATIONS, (long)work);
 }
 
-static mt_status enclose(mt_proof *proof, const mt_problem *p, mt_err *err)
+/* The view of the geometry that the question is about, where its bounds leave no other than one
+ * beside the original; NULL: the original's. *ok is false, with the reason, where there is no
+ * such mechanism. */
+static mt_status shape(const mt_proof *proof, const mt_problem *p, int view, mt_arena *mem,
+                       mt_analysis **out, bool *ok, char *why, mt_err *err)
+{
+    const size_t n = (size_t)p->n;
+    const mt_analysis *const original = p->views[view].original;
+    bool *const shapes = mt_arena_alloc(mem, n, sizeof *shapes);
+    double *const x = mt_arena_f64(mem, n, 1);
+    mt_err own = {.code = MT_OK};
+    bool moved = false;
+    *out = NULL;
+    *ok = true;
+    MT_TRY(mt_arena_check(mem, err));
+    mt_enclosure_shaping(original, shapes);
+    for (int i = 0; i < p->n; i++) {
+        const bool other = shapes[i] && proof->lower[i] == proof->upper[i];
+        x[i] = other ? proof->lower[i] : p->original[i];
+        moved = moved || x[i] != p->original[i];
+    }
+    if (!moved) {
+        return MT_OK;
+    }
+    const mt_status rc = mt_view_analyse(&p->views[view], x, out, &own);
+    *ok = rc == MT_OK;
+    (void)mt_snprintf(why, MT_REASON_SIZE, "%s", own.text);
+    return mt_pass_final(rc, &own, err);
+}
+
+static mt_status enclose_view(mt_proof *proof, const mt_problem *p, int view, mt_arena *mem,
+                              char *why, mt_err *err)
+{
+    mt_analysis *own = NULL;
+    bool ok = false;
+    MT_TRY(shape(proof, p, view, mem, &own, &ok, why, err));
+    const mt_analysis *const a = own != NULL ? own : p->views[view].original;
+    const mt_status rc =
+        ok ? mt_enclosure_new(a, proof->lower, proof->upper, &proof->views[view], why, err)
+           : MT_OK;
+    mt_analysis_delete(own);
+    return rc;
+}
+
+static mt_status enclose(mt_proof *proof, const mt_problem *p, mt_arena *mem, mt_err *err)
 {
     proof->possible = p->n_views > 0 && p->n > 0;
     for (int i = 0; i < p->n_views && proof->possible; i++) {
         char why[MT_REASON_SIZE] = "";
-        MT_TRY(mt_enclosure_new(p->views[i].original, proof->lower, proof->upper,
-                                &proof->views[i], why, err));
+        MT_TRY(enclose_view(proof, p, i, mem, why, err));
         if (proof->views[i] == NULL) {
             proof->possible = false;
             (void)mt_snprintf(proof->reason, sizeof proof->reason,
@@ -127,7 +171,7 @@ mt_status mt_proof_init(mt_proof *proof, const mt_case *c, mt_arena *mem, mt_err
                                    .interrupt = p->study->model->interrupt,
                                    .progress = p->study->model->progress};
     if (c->proof_work > 0.0) {
-        MT_TRY(enclose(proof, p, err));
+        MT_TRY(enclose(proof, p, mem, err));
     } else {
         (void)mt_snprintf(proof->reason, sizeof proof->reason, "\"proof_s\" is 0");
     }
