@@ -10,6 +10,9 @@
  * other. Boxes of the least bound come first. A design that a certificate meets on its way, and
  * that is better, has its combination searched from there at once: the cap falls.
  *
+ * Over values of a catalogue that shapes the geometry no modes are enclosed: those are halved
+ * first, unseen, until each box has one geometry (discrete_proofs.h).
+ *
  * So each combination is excluded, by proof, or searched, by samples in its continuous
  * variables. Boxes are looked at in rounds of a fixed number, with one cap for all of a round:
  * nothing depends on the workers.
@@ -23,7 +26,7 @@
 #include "base/workers.h"
 #include "problem/objective.h"
 #include "search/discrete.h"
-#include "search/proof.h"
+#include "search/discrete_proofs.h"
 
 enum {
     ROUND = 32,           /* boxes */
@@ -60,10 +63,13 @@ typedef struct look {
 
 typedef struct branching {
     mt_discrete *d;
-    bool enclosed;      /* certificates can be had, and have not spent their budget */
-    mt_proof *proofs;   /* [n_workers] their bounds are those of a worker's box */
-    mt_proof_cap *caps; /* [n_workers] */
-    double unit;        /* multiplications of one box of a certificate, about */
+    bool enclosed;              /* certificates can be had, and have not spent their budget */
+    mt_discrete_proofs *proofs; /* [n_workers] */
+    mt_proof_cap *caps;         /* [n_workers] */
+    double cap;                 /* of the round */
+    double *lower;              /* [n_workers x n] a worker's box */
+    double *upper;
+    double unit; /* multiplications of one box of a certificate, about */
     box *open;
     int n_open;
     int capacity;
@@ -96,9 +102,18 @@ static void bound(const mt_discrete *d, const box *b, double *lower, double *upp
 static mt_status certify(const branching *v, int worker, const box *b, look *out, mt_arena *mem,
                          mt_err *err)
 {
-    mt_proof *const proof = &v->proofs[worker];
+    const ptrdiff_t at = (ptrdiff_t)worker * v->d->p->n;
+    mt_proof *proof = NULL;
     mt_certify_search found = {0};
-    bound(v->d, b, proof->lower, proof->upper);
+    bound(v->d, b, v->lower + at, v->upper + at);
+    MT_TRY(mt_discrete_proof_of(&v->proofs[worker], v->lower + at, v->upper + at, &proof, err));
+    if (proof == NULL) {
+        return MT_OK;
+    }
+    proof->spent = NULL; /* noted box by box */
+    proof->question.progress = NULL;
+    proof->question.any = true;
+    proof->question.cap = v->cap < HUGE_VAL ? &v->caps[worker].cap : NULL;
     proof->question.max_work = v->unit * (b->combinations > 1.0 ? LOOK : LOOK_SINGLE);
     for (int i = 0; i < proof->question.n_views; i++) {
         proof->views[i]->operations = 0.0;
@@ -152,40 +167,59 @@ static void tape_look(void *context, int task, mt_tape *tape)
     }
 }
 
+/* Is there a certificate for the geometry of a combination that has been judged? Then there is
+ * for others. */
+static mt_status probe(branching *v, mt_err *err)
+{
+    const mt_discrete *const d = v->d;
+    const size_t n = (size_t)d->n_discrete;
+    mt_proof *proof = NULL;
+    box one = {.first = mt_arena_int(d->mem, n), .last = NULL};
+    MT_TRY(mt_arena_check(d->mem, err));
+    if (v->n > 0) {
+        memcpy(one.first, v->all[0]->pick, n * sizeof *one.first);
+    }
+    one.last = one.first;
+    bound(d, &one, v->lower, v->upper);
+    for (int i = 0; i < d->p->n; i++) {
+        const bool shapes = mt_discrete_shapes(&v->proofs[0], i);
+        v->lower[i] = shapes ? v->lower[i] : d->c->lower[i];
+        v->upper[i] = shapes ? v->upper[i] : d->c->upper[i];
+    }
+    MT_TRY(mt_discrete_proof_of(&v->proofs[0], v->lower, v->upper, &proof, err));
+    v->enclosed = proof != NULL;
+    v->unit = BOX;
+    for (int i = 0; v->enclosed && i < proof->question.n_views; i++) {
+        const double order = proof->views[i]->n;
+        v->unit += order * order * order;
+    }
+    return MT_OK;
+}
+
 static mt_status begin(branching *v, mt_err *err)
 {
     mt_discrete *const d = v->d;
     const size_t n_workers = (size_t)d->n_workers;
     v->proofs = mt_arena_alloc(d->mem, n_workers, sizeof *v->proofs);
     v->caps = mt_arena_alloc(d->mem, n_workers, sizeof *v->caps);
+    v->lower = mt_arena_f64(d->mem, (size_t)d->p->n, n_workers);
+    v->upper = mt_arena_f64(d->mem, (size_t)d->p->n, n_workers);
     double *const x = mt_arena_f64(d->mem, (size_t)d->p->n, ROUND);
     MT_TRY(mt_arena_check(d->mem, err));
     for (int i = 0; i < ROUND; i++) {
         v->looks[i].x = x + ((ptrdiff_t)i * d->p->n);
     }
-    v->enclosed = true;
     for (int i = 0; i < d->n_workers; i++) {
-        mt_proof *const proof = &v->proofs[i];
-        MT_TRY(mt_proof_init(proof, d->c, d->mem, err));
-        MT_TRY(mt_proof_use_catalogues(proof, d->p, d->mem, err));
+        MT_TRY(mt_discrete_proofs_init(&v->proofs[i], d->c, d->mem, err));
         MT_TRY(mt_proof_cap_init(&v->caps[i], d->p, d->mem, err));
-        proof->spent = NULL; /* noted box by box */
-        proof->question.progress = NULL;
-        proof->question.any = true;
-        v->enclosed = v->enclosed && proof->possible;
     }
-    v->unit = BOX;
-    for (int i = 0; i < v->proofs[0].question.n_views && v->enclosed; i++) {
-        const double order = v->proofs[0].views[i]->n;
-        v->unit += order * order * order;
-    }
-    return MT_OK;
+    return probe(v, err);
 }
 
 static void end(const branching *v)
 {
     for (int i = 0; i < v->d->n_workers && v->proofs != NULL; i++) {
-        mt_proof_free(&v->proofs[i]);
+        mt_discrete_proofs_free(&v->proofs[i]);
     }
 }
 
@@ -206,8 +240,8 @@ static mt_status push(branching *v, const box *b, int k, int first, int last, mt
         made.last[i] = i == k ? last : b->last[i];
         made.combinations *= (double)(made.last[i] - made.first[i]) + 1.0;
     }
-    bound(d, &made, v->proofs[0].lower, v->proofs[0].upper);
-    made.least = cap->cap.least(cap->cap.context, v->proofs[0].lower, v->proofs[0].upper);
+    bound(d, &made, v->lower, v->upper);
+    made.least = cap->cap.least(cap->cap.context, v->lower, v->upper);
     v->open = grown;
     v->open[v->n_open++] = made;
     return MT_OK;
@@ -225,7 +259,8 @@ static mt_status push_all(branching *v, mt_err *err)
     return push(v, &whole, -1, 0, 0, err);
 }
 
-/* Both halves of a box, at the catalogue of which it has the greatest share. */
+/* Both halves of a box, at the catalogue of which it has the greatest share: among those that
+ * shape the geometry, if there are certificates to be had. */
 static mt_status halve(branching *v, const box *b, mt_err *err)
 {
     const mt_discrete *const d = v->d;
@@ -234,7 +269,8 @@ static mt_status halve(branching *v, const box *b, mt_err *err)
     for (int k = 0; k < d->n_discrete; k++) {
         const int values = d->p->study->variables[d->variable[k]].n_catalogue;
         const int beyond = b->last[k] - b->first[k];
-        const double share = (double)beyond / (double)values;
+        const bool first = v->enclosed && mt_discrete_shapes(&v->proofs[0], d->variable[k]);
+        const double share = ((double)beyond / (double)values) + (first ? 1.0 : 0.0);
         if (beyond > 0 && share > most) {
             most = share;
             widest = k;
@@ -422,9 +458,9 @@ static mt_status round_of(branching *v, double cap, mt_err *err)
 {
     mt_discrete *const d = v->d;
     const mt_tasks tasks = {v->n_now, examine, tape_look, v, "boxes of combinations"};
+    v->cap = cap;
     for (int i = 0; i < d->n_workers; i++) {
         v->caps[i].cap.below = cap;
-        v->proofs[i].question.cap = cap < HUGE_VAL ? &v->caps[i].cap : NULL;
     }
     if (v->enclosed) {
         MT_TRY(mt_workers_run(d->n_workers, d->workers[0]->scope, &tasks, err));

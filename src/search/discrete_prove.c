@@ -6,17 +6,22 @@
  * the gaps between values out, and a box of single values is a combination. First: which gap
  * assignments can be met; their designs are judged like any other combination. Then, with the
  * objective of the best as a cap: is there a better one? What is found moves the cap, until
- * nothing is left, which proves the best to be the best, or an effort is spent.
+ * nothing is left, which proves the best to be the best, or an effort is spent. Where
+ * catalogues shape the geometry each of their combinations is asked by itself, if they are not
+ * too many.
  */
 #include <math.h>
 #include <string.h>
 
 #include "problem/family.h"
 #include "search/discrete.h"
+#include "search/discrete_proofs.h"
 #include "search/gaps.h"
-#include "search/proof.h"
 
-enum { ROUNDS = 40 /* of a better design found and the cap moved */ };
+enum {
+    ROUNDS = 40, /* of a better design found and the cap moved */
+    GEOMETRIES_MOST = 64
+};
 /* What one question may take of the budget of all. */
 static const double PART = 0.2;
 /* Objectives that differ by less are equal: as they are ranked (discrete_judge.c), and more
@@ -26,11 +31,28 @@ static const double EQUAL = 1e-9;
  * else by more than the second. */
 static const double WITHIN[] = {1e-2, 1e-1};
 
+/* What all geometries say. */
+typedef struct outcome {
+    bool proven;
+    bool stopped;
+    int n_found;
+} outcome;
+
 typedef struct prover {
     mt_discrete *d;
     mt_discrete_report *report;
-    mt_proof proof;
+    mt_proof whole; /* where nothing shapes the geometry */
+    mt_discrete_proofs proofs;
+    int n_geometries;
+    double *lower; /* [n] of one of them */
+    double *upper;
+    double left; /* of the budget, in multiplications */
     mt_proof_cap cap;
+    bool capped; /* only better designs are asked for */
+    bool covers; /* no goal is left out of the question */
+    int n_kinds; /* gap assignments that were found */
+    int *kinds;  /* [n_kinds x n_bands] */
+    int cap_kinds;
     mt_combination **all;
     int n;
     int capacity;
@@ -115,14 +137,79 @@ static mt_status judge(prover *v, const double *x, mt_err *err)
     return mt_discrete_judge(d, 1, c, most > 0 ? left : 0, err);
 }
 
-/* Ask, and judge what is found. */
-static mt_status ask(prover *v, mt_certify_search *found, mt_err *err)
+/* The proof of a geometry; NULL: there is none. */
+static mt_status proof_of(prover *v, int geometry, mt_proof **out, mt_err *err)
 {
-    MT_TRY(mt_proof_ask(&v->proof, PART * v->d->c->proof_work, v->d->mem, found, err));
-    v->report->boxes += found->boxes;
-    for (int k = 0; k < found->n_found && v->d->stop != MT_STOP_USER; k++) {
-        MT_TRY(judge(v, found->at + ((ptrdiff_t)k * v->d->p->n), err));
+    *out = v->whole.possible ? &v->whole : NULL;
+    if (*out == NULL) {
+        mt_discrete_geometry(&v->proofs, geometry, v->lower, v->upper);
+        MT_TRY(mt_discrete_proof_of(&v->proofs, v->lower, v->upper, out, err));
     }
+    if (*out != NULL) {
+        (*out)->left = v->left;
+        (*out)->question.cap = v->capped ? &v->cap.cap : NULL;
+        v->covers = v->covers && (*out)->covers;
+    }
+    return MT_OK;
+}
+
+static bool is_among(const int *rows, int n, const int *row, int n_bands)
+{
+    for (int i = 0; i < n; i++) {
+        if (memcmp(rows + ((ptrdiff_t)i * n_bands), row, (size_t)n_bands * sizeof *row) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Kinds that one geometry has and none before it had. */
+static mt_status note_kinds(prover *v, const mt_certify_search *found, mt_err *err)
+{
+    const int m = v->d->p->n_bands;
+    for (int k = 0; k < found->n_found; k++) {
+        const int *const row = found->found + ((ptrdiff_t)k * m);
+        if (is_among(v->kinds, v->n_kinds, row, m)) {
+            continue;
+        }
+        int *const grown = mt_arena_grow(v->d->mem, v->kinds, v->n_kinds, &v->cap_kinds,
+                                         ((size_t)m + 1) * sizeof *grown);
+        MT_TRY(mt_arena_check(v->d->mem, err));
+        v->kinds = grown;
+        memcpy(v->kinds + ((ptrdiff_t)v->n_kinds * m), row, (size_t)m * sizeof *row);
+        v->n_kinds++;
+    }
+    return MT_OK;
+}
+
+/* Ask each geometry with its share of `most`, and judge what is found. */
+static mt_status ask(prover *v, outcome *out, mt_err *err)
+{
+    double most = fmin(PART * v->d->c->proof_work, v->left);
+    *out = (outcome){.proven = true};
+    for (int g = 0; g < v->n_geometries && !out->stopped; g++) {
+        mt_certify_search found = {0};
+        mt_proof *proof = NULL;
+        MT_TRY(proof_of(v, g, &proof, err));
+        out->proven = out->proven && proof != NULL;
+        if (proof == NULL) {
+            continue;
+        }
+        const double before = v->left;
+        MT_TRY(
+            mt_proof_ask(proof, most / (double)(v->n_geometries - g), v->d->mem, &found, err));
+        v->left = proof->left;
+        most -= before - v->left;
+        out->proven = out->proven && found.proven;
+        out->stopped = found.stopped;
+        out->n_found += found.n_found;
+        v->report->boxes += found.boxes;
+        MT_TRY(note_kinds(v, &found, err));
+        for (int k = 0; k < found.n_found && v->d->stop != MT_STOP_USER; k++) {
+            MT_TRY(judge(v, found.at + ((ptrdiff_t)k * v->d->p->n), err));
+        }
+    }
+    out->proven = out->proven && !out->stopped;
     return MT_OK;
 }
 
@@ -144,9 +231,9 @@ static mt_status improve(prover *v, double share, mt_err *err)
             return MT_OK;
         }
         const double f = best->f[0];
-        mt_certify_search found = {0};
+        outcome found = {0};
         v->cap.cap.below = cap_of(v->d->p, f, share);
-        v->proof.question.cap = &v->cap.cap;
+        v->capped = true;
         MT_TRY(ask(v, &found, err));
         if (found.proven && found.n_found == 0) {
             v->report->best_within = share;
@@ -165,15 +252,16 @@ static mt_status prove(prover *v, mt_err *err)
 {
     mt_discrete *const d = v->d;
     mt_discrete_report *const report = v->report;
-    mt_certify_search found = {0};
-    MT_TRY(mt_proof_use_catalogues(&v->proof, d->p, d->mem, err));
+    outcome found = {0};
+    v->left = d->c->proof_work;
+    v->covers = true;
     MT_TRY(mt_proof_cap_init(&v->cap, d->p, d->mem, err));
     MT_TRY(ask(v, &found, err));
+    report->n_kinds = v->n_kinds;
     const mt_combination *best = NULL;
     MT_TRY(best_of(v, &best, err));
-    report->complete = v->proof.covers && !mt_family_any(d->p);
+    report->complete = v->covers && !mt_family_any(d->p);
     report->n_possible = mt_gap_count_possible(d->p);
-    report->n_kinds = found.n_found;
     report->settled = found.proven && (found.n_found > 0 || best == NULL);
     if (best == NULL || !v->cap.known) {
         return MT_OK;
@@ -185,19 +273,43 @@ static mt_status prove(prover *v, mt_err *err)
     return MT_OK;
 }
 
+/* The whole question where nothing shapes the geometry; else one for each geometry, if they are
+ * not too many: 0 geometries, and the reason, where there is no proof. */
+static mt_status begin(prover *v, mt_err *err)
+{
+    mt_discrete *const d = v->d;
+    v->lower = mt_arena_f64(d->mem, (size_t)d->p->n, 1);
+    v->upper = mt_arena_f64(d->mem, (size_t)d->p->n, 1);
+    MT_TRY(mt_arena_check(d->mem, err));
+    MT_TRY(mt_discrete_proofs_init(&v->proofs, d->c, d->mem, err));
+    MT_TRY(mt_proof_init(&v->whole, d->c, d->mem, err));
+    if (v->whole.possible) {
+        v->n_geometries = 1;
+        return mt_proof_use_catalogues(&v->whole, d->p, d->mem, err);
+    }
+    mt_proof *first = NULL;
+    const double n = mt_discrete_geometries(&v->proofs);
+    if (v->proofs.n_shaping > 0 && n > 0.0 && n <= (double)GEOMETRIES_MOST) {
+        MT_TRY(proof_of(v, 0, &first, err));
+        v->n_geometries = first != NULL ? (int)n : 0;
+    }
+    if (v->n_geometries == 0) {
+        v->report->reason = mt_arena_strdup(d->mem, v->whole.reason);
+    }
+    return mt_arena_check(d->mem, err);
+}
+
 mt_status mt_discrete_prove(mt_discrete *d, mt_combination ***all, int *n,
                             mt_discrete_report *report, mt_err *err)
 {
     prover v = {.d = d, .report = report, .all = *all, .n = *n, .capacity = *n};
     report->asked = true;
-    mt_status rc = mt_proof_init(&v.proof, d->c, d->mem, err);
-    if (rc == MT_OK && v.proof.possible) {
+    mt_status rc = begin(&v, err);
+    if (rc == MT_OK && v.n_geometries > 0) {
         rc = prove(&v, err);
-    } else if (rc == MT_OK) {
-        report->reason = mt_arena_strdup(d->mem, v.proof.reason);
-        rc = mt_arena_check(d->mem, err);
     }
-    mt_proof_free(&v.proof);
+    mt_proof_free(&v.whole);
+    mt_discrete_proofs_free(&v.proofs);
     *all = v.all;
     *n = v.n;
     return rc;

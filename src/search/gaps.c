@@ -61,7 +61,9 @@ static const double *hint_of(const job *j, int k)
     if (j->hint_below != NULL && memcmp(below, j->hint_below, size) == 0) {
         return j->c->hint;
     }
-    return j->candidates->at == NULL ? NULL : j->candidates->at + ((ptrdiff_t)k * j->p->n);
+    const double *const at =
+        j->candidates->at == NULL ? NULL : j->candidates->at + ((ptrdiff_t)k * j->p->n);
+    return at == NULL || j->p->n == 0 || isnan(at[0]) ? NULL : at;
 }
 
 /* The objectives in order, each with those before it held (search.h). */

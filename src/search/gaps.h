@@ -81,7 +81,7 @@ enum { MT_GAP_SAMPLES_NEAR = 512 };
 typedef struct mt_gap_candidates {
     int n;
     int *below;
-    double *at;   /* n rows of p->n: a design t to start from; NULL: none */
+    double *at;   /* n rows of p->n: a design t to start from, NaN: none; NULL: none at all */
     int n_proven; /* the first ones: a design that has them is known */
     double possible;
     bool proven; /* all assignments that are not listed are proven infeasible */

@@ -6,7 +6,8 @@
  * designs spread over the bounds; each says how many modes lie below the middle of each
  * band, and its assignment becomes a candidate. A design clear of all bands has the same
  * assignment as the samples around it, so a kind of design is only missed where it is
- * smaller than the samples are apart. That is labelled as sampled.
+ * smaller than the samples are apart. That is labelled as sampled. What stands in the way of
+ * an enclosure may be held at samples, each proven in the other variables (slices.h).
  */
 #include <math.h>
 #include <stdlib.h>
@@ -19,6 +20,7 @@
 #include "problem/goal_avoid.h"
 #include "search/gaps.h"
 #include "search/proof.h"
+#include "search/slices.h"
 
 enum {
     SAMPLES_PER_VARIABLE = 256,
@@ -33,9 +35,13 @@ static const double FIRST_WORK = 2e8;
 /* Of a smaller budget, so that the proof after it has more. */
 static const double FIRST_SHARE = 0.04;
 
+/* Of what a proof has a design for: less than of any sample. */
+static const double KNOWN = -HUGE_VAL;
+
 typedef struct sampled {
     int *below;
     double violation;
+    const double *at; /* [n] a design of a slice; NULL */
 } sampled;
 
 static int compare_below(const int *a, const int *b, int n)
@@ -69,9 +75,10 @@ mt_status mt_gap_assignment(mt_workspace *w, const double *t, int *below, double
     return MT_OK;
 }
 
-/* Insert into the sorted list, keeping the least violation of equal ones. */
+/* Insert into the sorted list, keeping the least violation of equal ones. at: a design t[n] to
+ * start from, which stays; NULL: none. */
 static void insert(const mt_problem *p, sampled *list, int *n, const int *below,
-                   double violation)
+                   double violation, const double *at_t)
 {
     int at = 0;
     while (at < *n && compare_below(list[at].below, below, p->n_bands) < 0) {
@@ -93,7 +100,7 @@ static void insert(const mt_problem *p, sampled *list, int *n, const int *below,
     } else {
         (*n)++;
     }
-    const sampled fresh = {list[victim].below, violation};
+    const sampled fresh = {list[victim].below, violation, at_t};
     if (victim < at) {
         at--;
         memmove(&list[victim], &list[victim + 1], (size_t)(at - victim) * sizeof *list);
@@ -169,13 +176,13 @@ static void insert_agreeing(const mt_workspace *w, sampled *list, int *n, const 
     const mt_problem *const p = w->p;
     const size_t size = (size_t)p->n_bands * sizeof *below;
     if (mt_ties_agree(p, below)) {
-        insert(p, list, n, below, violation);
+        insert(p, list, n, below, violation, NULL);
         return;
     }
     for (int most = 0; most < 2; most++) {
         memcpy(work, below, size);
         mt_ties_settle(p, most == 1, work);
-        insert(p, list, n, work, mt_ties_violation(w, work));
+        insert(p, list, n, work, mt_ties_violation(w, work), NULL);
     }
 }
 
@@ -184,11 +191,33 @@ static int least_of(int a, long b)
     return b < a ? (int)b : a;
 }
 
-/* The assignments of n designs spread over the bounds, at most `most` of them. Where the study
- * says how often it may be evaluated, half of that is for samples, and the other half for the
- * searches of those nearest. */
-static mt_status sample(mt_workspace *w, int n, int most, long spent, mt_arena *mem,
-                        mt_gap_candidates *out, mt_err *err)
+/* The rows of those that are kept, and where their searches start. */
+static mt_status keep(const mt_problem *p, const sampled *list, const bool *kept, mt_arena *mem,
+                      mt_gap_candidates *out, mt_err *err)
+{
+    const size_t row = (size_t)p->n_bands;
+    const size_t n = (size_t)p->n;
+    out->below = mt_arena_int(mem, (size_t)out->n * row);
+    out->at = mt_arena_f64(mem, n, (size_t)out->n);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0, k = 0; k < out->n; i++) {
+        if (!kept[i]) {
+            continue;
+        }
+        memcpy(out->below + ((size_t)k * row), list[i].below, row * sizeof *out->below);
+        for (size_t j = 0; j < n; j++) {
+            out->at[((size_t)k * n) + j] = list[i].at == NULL ? nan("") : list[i].at[j];
+        }
+        k++;
+    }
+    return MT_OK;
+}
+
+/* The assignments of n designs spread over the bounds, and those of slices, at most `most` of
+ * them. Where the study says how often it may be evaluated, half of that is for samples, and
+ * the other half for the searches of those nearest. */
+static mt_status sample(mt_workspace *w, int n, int most, long spent, const mt_slices *slices,
+                        mt_arena *mem, mt_gap_candidates *out, mt_err *err)
 {
     const mt_problem *const p = w->p;
     const long most_evals = w->c->search.max_evaluations;
@@ -205,6 +234,10 @@ static mt_status sample(mt_workspace *w, int n, int most, long spent, mt_arena *
     for (int i = 0; i < CANDIDATES_MOST; i++) {
         list[i].below = mt_arena_int(mem, (size_t)p->n_bands);
         MT_TRY(mt_arena_check(mem, err));
+    }
+    for (int k = 0; k < slices->n_found; k++) {
+        insert(p, list, &out->n, slices->found + ((ptrdiff_t)k * p->n_bands), KNOWN,
+               slices->at + ((ptrdiff_t)k * p->n));
     }
     const double *const t = mt_nlp_starts(&nlp, w->c->search.seed, n, mem);
     mt_status rc = mt_arena_check(mem, err);
@@ -226,16 +259,7 @@ static mt_status sample(mt_workspace *w, int n, int most, long spent, mt_arena *
     bool kept[CANDIDATES_MOST] = {false};
     const int n_found = out->n;
     out->n = keep_nearest(list, n_found, most, kept);
-    out->below = mt_arena_int(mem, (size_t)out->n * (size_t)p->n_bands);
-    MT_TRY(mt_arena_check(mem, err));
-    int *row = out->below;
-    for (int i = 0; i < n_found; i++) {
-        if (kept[i]) {
-            memcpy(row, list[i].below, (size_t)p->n_bands * sizeof *below);
-            row += p->n_bands;
-        }
-    }
-    return MT_OK;
+    return keep(p, list, kept, mem, out, err);
 }
 
 /* What branch and bound found feasible, each with a design, and what it left open when its
@@ -286,6 +310,8 @@ static mt_status prove(const mt_workspace *w, mt_proof *proof, double work, mt_a
     return keep_proven(w->p, &found, mem, out, err);
 }
 
+static const mt_slices no_slices = {.n = 0};
+
 mt_status mt_gap_candidates_first(mt_workspace *w, mt_proof *proof, mt_arena *mem,
                                   mt_gap_candidates *all, mt_gap_candidates *first, mt_err *err)
 {
@@ -300,7 +326,7 @@ mt_status mt_gap_candidates_first(mt_workspace *w, mt_proof *proof, mt_arena *me
     }
     *first = *all;
     first->n = all->n_proven;
-    return first->n > 0 ? MT_OK : sample(w, SAMPLES_FIRST, 1, 0, mem, first, err);
+    return first->n > 0 ? MT_OK : sample(w, SAMPLES_FIRST, 1, 0, &no_slices, mem, first, err);
 }
 
 mt_status mt_gap_candidates_find(mt_workspace *w, mt_proof *proof, long spent, mt_arena *mem,
@@ -314,14 +340,22 @@ mt_status mt_gap_candidates_find(mt_workspace *w, mt_proof *proof, long spent, m
         return MT_OK;
     }
     const int wanted = SAMPLES_PER_VARIABLE * (w->p->n + 1);
-    out->reason = mt_arena_strdup(mem, proof->reason);
-    return sample(w, wanted < SAMPLES_MOST ? wanted : SAMPLES_MOST, CANDIDATES_MOST, spent, mem,
-                  out, err);
+    mt_slices slices = no_slices;
+    MT_TRY(proof->possible ? MT_OK : mt_slices_search(w, mem, &slices, err));
+    out->reason =
+        slices.n == 0
+            ? mt_arena_strdup(mem, proof->reason)
+            : mt_arena_printf(mem,
+                              "%s; with the geometry held, at %d of %d samples of it, all "
+                              "other assignments are proven infeasible",
+                              proof->reason, slices.n_settled, slices.n);
+    return sample(w, wanted < SAMPLES_MOST ? wanted : SAMPLES_MOST, CANDIDATES_MOST, spent,
+                  &slices, mem, out, err);
 }
 
 mt_status mt_gap_candidates_near(mt_workspace *w, int most, long spent, mt_arena *mem,
                                  mt_gap_candidates *out, mt_err *err)
 {
     *out = (mt_gap_candidates){.possible = mt_gap_count_possible(w->p)};
-    return sample(w, MT_GAP_SAMPLES_NEAR, most, spent, mem, out, err);
+    return sample(w, MT_GAP_SAMPLES_NEAR, most, spent, &no_slices, mem, out, err);
 }

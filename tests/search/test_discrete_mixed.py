@@ -24,10 +24,14 @@ SEED = os.environ.get("MT_MIXED_SEED", "1")
 SAME = 1e-5  # of the objectives of two searches that end at the same design
 
 
-def chain(stiffness):
-    """Masses of 1 kg in a row, the first one on the ground, moving in x."""
+# A lever on the ground: its twist [N m/rad], its inertia [kg m^2], and a spring [N/m] at its arm to the first mass.
+TWIST, INERTIA, ROD = 2.0, 0.02, 150.0
+
+
+def chain(stiffness, arm=None):
+    """Masses of 1 kg in a row, the first one on the ground, moving in x; with an arm, a lever beside it."""
     n = len(stiffness)
-    return {
+    model = {
         "format": "modetune-model/1", "dimension": 2,
         "parameters": {f"k{i}": k for i, k in enumerate(stiffness)},
         "bodies": [{"name": f"b{i}", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [i + 1, 0]} for i in range(n)],
@@ -36,17 +40,31 @@ def chain(stiffness):
                      **({"at": [[0, 0], [1, 0]]} if i == 0 else {}), "stiffness_n_per_m": f"k{i}"} for i in range(n)],
         "configurations": {"held": {}},
     }
+    if arm is not None:
+        model["parameters"]["arm"] = arm
+        model["bodies"].append({"name": "lever", "mass_kg": 1, "inertia_kg_m2": INERTIA, "centre": [0, 0]})
+        model["joints"].append({"name": "hinge", "type": "revolute", "bodies": ["ground", "lever"], "at": [0, 0]})
+        model["springs"] += [{"name": "twist", "type": "torsion", "bodies": ["ground", "lever"], "stiffness_n_m_per_rad": TWIST},
+                             {"name": "rod", "type": "axial", "bodies": ["lever", "b0"], "at": [[0, "arm"], [1, "arm"]], "stiffness_n_per_m": ROD}]
+    return model
 
 
-def frequencies(stiffness):
+def frequencies(stiffness, arm=None):
     n = len(stiffness)
-    k = np.zeros((n, n))
+    size = n if arm is None else n + 1
+    k = np.zeros((size, size))
     for i, s in enumerate(stiffness):
         k[i, i] += s
         if i > 0:
             k[i - 1, i - 1] += s
             k[i - 1, i] -= s
             k[i, i - 1] -= s
+    if arm is not None:
+        turn = 1 / math.sqrt(INERTIA)  # the lever's coordinate, with a mass of 1
+        longer = np.zeros(size)
+        longer[0], longer[n] = 1, arm * turn
+        k += ROD * np.outer(longer, longer)
+        k[n, n] += TWIST * turn**2
     return np.sqrt(np.linalg.eigvalsh(k)) / (2 * math.pi)
 
 
@@ -57,9 +75,10 @@ def bands(rng, hz):
             "bands_hz": sorted([round(m * (1 - wide), 6), round(m * (1 + wide), 6)] for m in middles)}
 
 
-def question(rng):
-    """(model, study): more combinations than are enumerated, most of the time."""
+def question(rng, lever=False):
+    """(model, study): more combinations than are enumerated, most of the time. With a lever the length of its arm has a catalogue, too."""
     n = rng.randint(3, 6)
+    arm, arms = (round(rng.uniform(0.08, 0.3), 4), sorted({round(rng.uniform(0.05, 0.5), 4) for _ in range(rng.randint(4, 8))})) if lever else (None, [])
     stiffness = [round(math.exp(rng.uniform(-0.7, 0.7)) * 100, 3) for _ in range(n)]
     order = rng.sample(range(n), n)
     catalogues = rng.randint(2, min(3, n - 1))
@@ -75,8 +94,10 @@ def question(rng):
         else:
             variables.append({"parameter": f"k{i}", "lower": round(low, 3), "upper": round(high, 3)})
             inside[i] = rng.uniform(low, high)
-    now, there = frequencies(stiffness), frequencies(inside)
-    mode = rng.randint(1, n)
+    if lever:
+        variables.insert(rng.randint(0, 1), {"parameter": "arm", "catalogue": arms})
+    now, there = frequencies(stiffness, arm), frequencies(inside, rng.choice(arms) if lever else None)
+    mode = rng.randint(1, len(now))
     goal = {"type": "frequency", "configuration": "held", "mode": mode}
     kind = rng.choice(["bands", "bands", "target", "limit", "limits"])
     if kind == "bands":
@@ -86,13 +107,13 @@ def question(rng):
     elif kind == "limit":
         goals = [goal | {"at_least_hz" if there[mode - 1] > now[mode - 1] else "at_most_hz": round(there[mode - 1], 6)}]
     else:  # not all of these can be met
-        goals = [goal | {"mode": 1, "at_least_hz": round(there[0], 6)}, goal | {"mode": n, "at_most_hz": round(there[-1], 6)}]
+        goals = [goal | {"mode": 1, "at_least_hz": round(there[0], 6)}, goal | {"mode": len(now), "at_most_hz": round(there[-1], 6)}]
     study = {"format": "modetune-study/1", "model": "model.json", "variables": variables, "goals": goals}
     aim = rng.choice(["change", "sum", "weighted"])
     names = [v["parameter"] for v in variables]
     if aim != "change":
         study["objective"] = {"minimise": " + ".join(names if aim == "sum" else [f"{rng.randint(1, 9)}*{name}" for name in names])}
-    return chain(stiffness), study
+    return chain(stiffness, arm), study
 
 
 def run(model, studies, *options):
@@ -145,10 +166,10 @@ class Mixed(unittest.TestCase):
         self.assertLess(objective(study, result), 88660)
         self.assertLessEqual(objective(study, result), min(objective(study, other) for other in others) * (1 + SAME))
 
-    def test_the_best_of_all_is_found(self):
+    def check_all(self, count, lever):
         branched = complete = 0
-        for index in range(COUNT):
-            model, study = question(random.Random(f"{SEED}:{index}"))
+        for index in range(count):
+            model, study = question(random.Random(f"{SEED}:{index}"), lever)
             with self.subTest(seed=SEED, index=index):
                 result, *others = run(model, [study, *pieces(study)])
                 found = objective(study, result)
@@ -159,8 +180,15 @@ class Mixed(unittest.TestCase):
                 if os.environ.get("MT_MIXED_SHOW"):
                     print(index, combinations(study), found, want, text[:90], flush=True)
                 self.assertTrue(found <= want * (1 + SAME), f"{found} found, {want} exists: {text}")
-        self.assertGreater(branched, COUNT // 2)
-        self.assertGreater(complete, COUNT // 2)
+        self.assertGreater(branched, count // 2)
+        self.assertGreater(complete, count // 2)
+
+    def test_the_best_of_all_is_found(self):
+        self.check_all(COUNT, False)
+
+    def test_lengths_of_a_catalogue(self):
+        """What shapes the geometry is divided first, until each box has one."""
+        self.check_all(COUNT // 2 + 1, True)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "search/discrete_proofs.h"
+
+#include <string.h>
+
+#include "prove/shaping.h"
+
+mt_status mt_discrete_proofs_init(mt_discrete_proofs *s, const mt_case *c, mt_arena *mem,
+                                  mt_err *err)
+{
+    const mt_problem *const p = c->p;
+    bool *const one = mt_arena_alloc(mem, (size_t)p->n, sizeof *one);
+    *s = (mt_discrete_proofs){.c = c};
+    s->shaping = mt_arena_int(mem, (size_t)p->n);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int v = 0; v < p->n_views; v++) {
+        mt_enclosure_shaping(p->views[v].original, one);
+        for (int i = 0; i < p->n; i++) {
+            const bool free = one[i] && c->lower[i] < c->upper[i];
+            const bool listed = p->study->variables[i].n_catalogue > 0;
+            s->shaped = s->shaped || (free && !listed);
+            if (free && listed && !mt_discrete_shapes(s, i)) {
+                s->shaping[s->n_shaping++] = i;
+            }
+        }
+    }
+    return MT_OK;
+}
+
+static void drop(mt_discrete_proofs *s, int slot)
+{
+    mt_proof_free(&s->proof[slot]);
+    mt_arena_free(&s->mem[slot]);
+    s->proof[slot] = (mt_proof){.possible = false};
+}
+
+void mt_discrete_proofs_free(mt_discrete_proofs *s)
+{
+    for (int i = 0; i < MT_DISCRETE_PROOFS_KEPT; i++) {
+        drop(s, i);
+    }
+}
+
+bool mt_discrete_shapes(const mt_discrete_proofs *s, int i)
+{
+    for (int k = 0; k < s->n_shaping; k++) {
+        if (s->shaping[k] == i) {
+            return true;
+        }
+    }
+    return false;
+}
+
+double mt_discrete_geometries(const mt_discrete_proofs *s)
+{
+    double n = s->shaped ? 0.0 : 1.0;
+    for (int k = 0; k < s->n_shaping; k++) {
+        n *= (double)s->c->p->study->variables[s->shaping[k]].n_catalogue;
+    }
+    return n;
+}
+
+void mt_discrete_geometry(const mt_discrete_proofs *s, int which, double *lower, double *upper)
+{
+    for (int i = 0; i < s->c->p->n; i++) {
+        lower[i] = s->c->lower[i];
+        upper[i] = s->c->upper[i];
+    }
+    for (int k = 0; k < s->n_shaping; k++) {
+        const int i = s->shaping[k];
+        const mt_variable *const v = &s->c->p->study->variables[i];
+        lower[i] = v->catalogue[which % v->n_catalogue];
+        upper[i] = lower[i];
+        which /= v->n_catalogue;
+    }
+}
+
+/* Of the geometry of the box? */
+static bool is_of(const mt_discrete_proofs *s, int slot, const double *lower)
+{
+    for (int k = 0; k < s->n_shaping; k++) {
+        if (s->held[slot].lower[s->shaping[k]] != lower[s->shaping[k]]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static mt_status make(mt_discrete_proofs *s, int slot, const double *lower, mt_err *err)
+{
+    mt_case *const held = &s->held[slot];
+    mt_proof *const proof = &s->proof[slot];
+    mt_arena *const mem = &s->mem[slot];
+    drop(s, slot);
+    MT_TRY(mt_arena_init(mem, 0, err));
+    MT_TRY(mt_case_copy(s->c, mem, held, err));
+    for (int k = 0; k < s->n_shaping; k++) {
+        const int i = s->shaping[k];
+        held->lower[i] = lower[i];
+        held->upper[i] = lower[i];
+    }
+    MT_TRY(mt_proof_init(proof, held, mem, err));
+    return mt_proof_use_catalogues(proof, s->c->p, mem, err);
+}
+
+mt_status mt_discrete_proof_of(mt_discrete_proofs *s, const double *lower, const double *upper,
+                               mt_proof **out, mt_err *err)
+{
+    const size_t size = (size_t)s->c->p->n * sizeof *lower;
+    const int kept = s->n < MT_DISCRETE_PROOFS_KEPT ? s->n : MT_DISCRETE_PROOFS_KEPT;
+    bool one = !s->shaped;
+    int slot = 0;
+    *out = NULL;
+    for (int k = 0; k < s->n_shaping; k++) {
+        one = one && lower[s->shaping[k]] == upper[s->shaping[k]];
+    }
+    if (!one) {
+        return MT_OK;
+    }
+    while (slot < kept && !is_of(s, slot, lower)) {
+        slot++;
+    }
+    if (slot == kept) {
+        slot = s->n % MT_DISCRETE_PROOFS_KEPT;
+        MT_TRY(make(s, slot, lower, err));
+        s->n++;
+    }
+    if (s->proof[slot].possible) {
+        *out = &s->proof[slot];
+        memcpy((*out)->lower, lower, size);
+        memcpy((*out)->upper, upper, size);
+    }
+    return MT_OK;
+}

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SEARCH_DISCRETE_PROOFS_H
+#define SEARCH_DISCRETE_PROOFS_H
+
+#include "search/proof.h"
+
+/*
+ * What can be proven of boxes of combinations. Where a catalogue shapes the geometry nothing
+ * encloses modes over several of its values, but over boxes with one of them: each geometry has
+ * a proof of its own, made when it is first asked for, of which the last few are kept. One set,
+ * one worker; what a box is told does not depend on those before it.
+ */
+enum { MT_DISCRETE_PROOFS_KEPT = 16 };
+
+typedef struct mt_discrete_proofs {
+    const mt_case *c; /* the relaxed problem; must outlive this */
+    int n_shaping;
+    int *shaping; /* [n_shaping] variables with a catalogue that shape the geometry */
+    /* a variable without a catalogue does: no box has a proof */
+    bool shaped;
+    mt_proof proof[MT_DISCRETE_PROOFS_KEPT];
+    mt_case held[MT_DISCRETE_PROOFS_KEPT];
+    mt_arena mem[MT_DISCRETE_PROOFS_KEPT]; /* of these */
+    int n; /* made so far; number i lies at i % MT_DISCRETE_PROOFS_KEPT */
+} mt_discrete_proofs;
+
+/* Arrays in mem. */
+mt_status mt_discrete_proofs_init(mt_discrete_proofs *s, const mt_case *c, mt_arena *mem,
+                                  mt_err *err);
+/* Accepts a zeroed set. */
+void mt_discrete_proofs_free(mt_discrete_proofs *s);
+/* Is variable i a catalogue that shapes the geometry? */
+bool mt_discrete_shapes(const mt_discrete_proofs *s, int i);
+/* How many geometries there are; 0: a variable without a catalogue shapes it. The relaxed
+ * problem at number `which` of them: lower[n], upper[n]. */
+double mt_discrete_geometries(const mt_discrete_proofs *s);
+void mt_discrete_geometry(const mt_discrete_proofs *s, int which, double *lower, double *upper);
+/* The proof of the box lower <= x <= upper [n], its bounds set to it, until the next call;
+ * NULL: there is none. Fails as mt_proof_init. */
+mt_status mt_discrete_proof_of(mt_discrete_proofs *s, const double *lower, const double *upper,
+                               mt_proof **out, mt_err *err);
+
+#endif

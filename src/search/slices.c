@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "search/slices.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "nlp/starts.h"
+#include "prove/shaping.h"
+#include "search/proof.h"
+
+/* Slices for each variable that shapes the geometry, and in all. */
+enum { SLICES_PER_SHAPE = 16, SLICES_MOST = 32 };
+/* Multiplications of one: tens of milliseconds. */
+static const double SLICE_WORK = 5e7;
+
+/* Which variables shape the geometry of any view, and are not held by the case. */
+static int list_shaping(const mt_case *c, bool *one, bool *shapes)
+{
+    const mt_problem *const p = c->p;
+    int n = 0;
+    for (int v = 0; v < p->n_views; v++) {
+        mt_enclosure_shaping(p->views[v].original, one);
+        for (int i = 0; i < p->n; i++) {
+            shapes[i] = shapes[i] || (one[i] && c->lower[i] < c->upper[i]);
+        }
+    }
+    for (int i = 0; i < p->n; i++) {
+        n += shapes[i] ? 1 : 0;
+    }
+    return n;
+}
+
+/* What one slice found that was not known joins the list. */
+static mt_status note(const mt_problem *p, const mt_certify_search *slice, mt_arena *mem,
+                      mt_slices *out, mt_err *err)
+{
+    const size_t row = (size_t)p->n_bands;
+    const size_t had = (size_t)out->n_found;
+    const size_t n = had + (size_t)slice->n_found;
+    if (slice->n_found == 0) {
+        return MT_OK;
+    }
+    int *const found = mt_arena_int(mem, n * row);
+    double *const at = mt_arena_f64(mem, n, (size_t)p->n);
+    MT_TRY(mt_arena_check(mem, err));
+    if (had > 0) {
+        memcpy(found, out->found, had * row * sizeof *found);
+        memcpy(at, out->at, had * (size_t)p->n * sizeof *at);
+    }
+    memcpy(found + (had * row), slice->found, (n - had) * row * sizeof *found);
+    for (size_t k = 0; k < n - had; k++) {
+        for (int i = 0; i < p->n; i++) {
+            const size_t own = (k * (size_t)p->n) + (size_t)i;
+            at[(had * (size_t)p->n) + own] = mt_problem_t(p, i, slice->at[own]);
+        }
+    }
+    out->found = found;
+    out->at = at;
+    out->n_found = (int)n;
+    return MT_OK;
+}
+
+/* *possible: the others can be enclosed there. */
+static mt_status ask(const mt_case *c, mt_arena *mem, mt_slices *out, bool *possible,
+                     mt_err *err)
+{
+    mt_proof proof;
+    mt_certify_search found = {0};
+    mt_status rc = mt_proof_init(&proof, c, mem, err);
+    *possible = rc == MT_OK && proof.possible;
+    if (*possible) {
+        proof.question.max_work = c->proof_work;
+        rc =
+            mt_certify_assignments(&proof.question, out->n_found, out->found, mem, &found, err);
+        rc = rc == MT_OK ? note(c->p, &found, mem, out, err) : rc;
+        out->n_settled += rc == MT_OK && found.proven ? 1 : 0;
+    }
+    mt_proof_free(&proof);
+    return rc;
+}
+
+static mt_status search(const mt_workspace *w, const bool *shapes, const double *t,
+                        mt_arena *mem, mt_slices *out, mt_err *err)
+{
+    const mt_problem *const p = w->p;
+    mt_case c;
+    double *const x = mt_arena_f64(mem, (size_t)p->n, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(mt_case_copy(w->c, mem, &c, err));
+    c.proof_work = fmin(SLICE_WORK, w->c->proof_work / (double)out->n);
+    for (int k = 0; k < out->n && !mt_interrupted(p->study->model->interrupt); k++) {
+        bool possible = false;
+        mt_case_x(w->c, t + ((ptrdiff_t)k * p->n), x);
+        for (int i = 0; i < p->n; i++) {
+            if (shapes[i]) {
+                mt_case_bound(&c, i, x[i], x[i]);
+            }
+        }
+        MT_TRY(ask(&c, mem, out, &possible, err));
+        if (k == 0 && !possible) { /* the original geometry: more is in the way */
+            out->n = 0;
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_slices_search(mt_workspace *w, mt_arena *mem, mt_slices *out, mt_err *err)
+{
+    const mt_problem *const p = w->p;
+    bool *const one = mt_arena_alloc(mem, (size_t)p->n, sizeof *one);
+    bool *const shapes = mt_arena_alloc(mem, (size_t)p->n, sizeof *shapes);
+    *out = (mt_slices){.n = 0};
+    MT_TRY(mt_arena_check(mem, err));
+    const int m = list_shaping(w->c, one, shapes);
+    if (m == 0 || !(w->c->proof_work > 0.0)) {
+        return MT_OK;
+    }
+    mt_nlp nlp = mt_workspace_nlp(w);
+    nlp.n = p->n;
+    out->n = m * SLICES_PER_SHAPE < SLICES_MOST ? m * SLICES_PER_SHAPE : SLICES_MOST;
+    const double *const t = mt_nlp_starts(&nlp, w->c->search.seed, out->n, mem);
+    MT_TRY(mt_arena_check(mem, err));
+    return search(w, shapes, t, mem, out, err);
+}
