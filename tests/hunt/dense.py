@@ -145,6 +145,9 @@ class Assembly:
             angle = self._turn(b) - self._turn(a)
             self.stiffness.append((spring["stiffness_n_m_per_rad"], np.outer(angle, angle)))
             return
+        if spring["type"] == "axial" and isinstance(spring["at"][0], list) and isinstance(spring["at"][0][1], str):
+            self._rod(spring)
+            return
         (motion_a, place_a), (motion_b, place_b) = (
             self._motion(n, self._point(p)) for n, p in zip(spring["bodies"], spring["at"]))
         apart, length = motion_b - motion_a, np.linalg.norm(place_b - place_a)
@@ -160,6 +163,15 @@ class Assembly:
                 self.mass.append((f"({spring['density_kg_per_m3']})*({spring['area_m2']})*{length!r}", consistent))
         if "preload_n" in spring:
             self.stiffness.append((f"({spring['preload_n']})/{length!r}", np.outer(across, across)))
+
+    def _rod(self, spring):
+        """Along x at a height that is a length of the model: with e = u + height v, k e e^T = k u u^T + k height (u v^T + v u^T) + k height^2 v v^T."""
+        height = spring["at"][0][1]
+        assert spring["at"][1][1] == height
+        at_0, at_1 = (sum(sign * self._motion(n, np.array([float(p[0]), y]))[0][0] for n, p, sign in zip(spring["bodies"], spring["at"], (-1.0, 1.0)))
+                      for y in (0.0, 1.0))
+        u, v, k = at_0, at_1 - at_0, f"({spring['stiffness_n_per_m']})"
+        self.stiffness += [(k, np.outer(u, u)), (f"{k}*({height})", np.outer(u, v) + np.outer(v, u)), (f"{k}*({height})^2", np.outer(v, v))]
 
     def _free(self, rows):
         if rows.shape[0] == 0:

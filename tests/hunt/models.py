@@ -181,5 +181,23 @@ def arm(rng):
                            for i, a in enumerate(angles)}}
 
 
-MAKERS = {"chain": chain, "loaded": loaded, "shaft": shaft, "truss": truss, "beads": beads, "hanging": hanging, "arm": arm}
-UNLOADED = ["chain", "shaft", "truss"]
+def levers(rng):
+    """Levers on hinges, rods between them at heights that are parameters: lengths where nothing loads the mechanism."""
+    n = rng.randint(1, 3)
+    ls, ks = _parameters(rng, rng.randint(1, n), "l", "m", 0.05, 0.5), _parameters(rng, rng.randint(1, n), "k", "N/m", 1e3, 1e5)
+    js, ts = _parameters(rng, rng.randint(1, n), "J", "kg m^2", 0.01, 0.3), _parameters(rng, 1, "t", "N m/rad", 1e2, 1e3)
+    height, stiffness, inertia = _each(rng, list(ls), n), _each(rng, list(ks), n), _each(rng, list(js), n)
+    body = lambda i: f"b{i}" if i < n else "ground"
+    model = {
+        "format": "modetune-model/1", "name": "Levers and rods", "dimension": 2, "parameters": {**ls, **ks, **js, **ts},
+        "bodies": [{"name": f"b{i}", "mass_kg": 1, "inertia_kg_m2": inertia[i], "centre": [i, 0]} for i in range(n)],
+        "joints": [{"name": f"h{i}", "type": "revolute", "bodies": ["ground", f"b{i}"], "at": [i, 0]} for i in range(n)],
+        "springs": [{"name": f"r{i}", "type": "axial", "bodies": [body(i), body(i + 1)], "at": [[i, height[i]], [i + 1, height[i]]],
+                     "stiffness_n_per_m": stiffness[i]} for i in range(n)]
+        + [{"name": f"t{i}", "type": "torsion", "bodies": ["ground", f"b{i}"], "stiffness_n_m_per_rad": "t_1"} for i in range(n) if i == 0 or rng.random() < 0.5]}
+    _configurations(rng, model)
+    return model
+
+
+MAKERS = {"chain": chain, "loaded": loaded, "shaft": shaft, "truss": truss, "beads": beads, "hanging": hanging, "arm": arm, "levers": levers}
+UNLOADED = ["chain", "shaft", "truss", "levers"]
