@@ -19,7 +19,7 @@ from common_cli import COMMANDS, PROGRAM, SOURCE, CliTest, main, study
 FAULTY = os.environ.get("MODETUNE_FAULTS", os.path.join(os.path.dirname(PROGRAM), "tests/modetune_faults"))
 EVERY = os.environ.get("MT_FAULTS_EVERY", "0") != "0"
 SEED = int(os.environ.get("MT_FAULTS_SEED", "1"))
-STRIDE = 1 if EVERY else 12 if os.environ.get("MT_INSTRUMENTED") else 4  # of a command's calls
+STRIDE = 1 if EVERY else 30 if os.environ.get("MT_INSTRUMENTED") else 4  # of a command's calls
 ERRORS = [errno.EIO, errno.ENOSPC, errno.EMFILE, errno.EDQUOT, errno.EINTR]
 FILES = ["recommendations.csv", "report.html", "result.json", "timing.json"]
 ONE_START = ', "search": { "starts": 1 }'

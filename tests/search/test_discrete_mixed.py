@@ -19,7 +19,7 @@ import numpy as np
 
 PROGRAM = os.environ["MODETUNE"]
 SOURCE = Path(os.environ["SOURCE_DIR"])
-COUNT = int(os.environ.get("MT_MIXED", "200" if os.environ.get("MT_EVERY", "0") != "0" else "3" if "MT_INSTRUMENTED" in os.environ else "8"))
+COUNT = int(os.environ.get("MT_MIXED", "200" if os.environ.get("MT_EVERY", "0") != "0" else "2" if "MT_INSTRUMENTED" in os.environ else "8"))
 SEED = os.environ.get("MT_MIXED_SEED", "1")
 SAME = 1e-5  # of the objectives of two searches that end at the same design
 
