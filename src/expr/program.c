@@ -291,11 +291,16 @@ bool mt_program_is_constant(const mt_program *p, mt_node node)
     return !p->active[node];
 }
 
+bool mt_program_has_input(const uint64_t *set, int input)
+{
+    return ((set[input / BITS] >> (input % BITS)) & 1U) != 0;
+}
+
 void mt_program_depends(const mt_program *p, mt_node node, bool *depends)
 {
     const uint64_t *const set = p->inputs_of + (size_t)node * (size_t)p->words;
     for (int i = 0; i < p->n_inputs; i++) {
-        depends[i] = ((set[i / BITS] >> (i % BITS)) & 1U) != 0;
+        depends[i] = mt_program_has_input(set, i);
     }
 }
 

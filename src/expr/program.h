@@ -65,6 +65,8 @@ bool mt_program_is_constant(const mt_program *p, mt_node node);
 void mt_program_depends(const mt_program *p, mt_node node, bool *depends);
 /* The same added to a set of bits, set[p->words]. MT_NO_NODE adds nothing. */
 void mt_program_include_inputs(const mt_program *p, mt_node node, uint64_t *set);
+/* Is the input in such a set? */
+bool mt_program_has_input(const uint64_t *set, int input);
 
 /* value[count]: values of all nodes at inputs[n_inputs]. O(count). Fails MT_E_DOMAIN where a
  * value is not finite ("sqrt(-3) has no finite value"); *bad (may be NULL) is then that node,

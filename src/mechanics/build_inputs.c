@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <string.h>
+
 #include "mechanics/build.h"
 
-/* All numbers that shape the geometry: vectors, joints, drive, what is cut out of a beam. */
-static void include_shape(const mt_system *sys, uint64_t *set)
+/* All numbers that shape the geometry of stiffness and mass: vectors, joints, drive, what is
+ * cut out of a beam. */
+static void include_frame(const mt_system *sys, uint64_t *set)
 {
     const mt_program *const p = &sys->program;
     mt_program_include_inputs(p, sys->drive, set);
@@ -25,6 +28,11 @@ static void include_shape(const mt_system *sys, uint64_t *set)
         mt_program_include_inputs(p, sys->inertias[i].shape[0], set);
         mt_program_include_inputs(p, sys->inertias[i].shape[1], set);
     }
+}
+
+static void include_sensors(const mt_system *sys, uint64_t *set)
+{
+    const mt_program *const p = &sys->program;
     for (int i = 0; i < sys->n_channels; i++) {
         mt_program_include_inputs(p, sys->channels[i].shape[0], set);
         mt_program_include_inputs(p, sys->channels[i].shape[1], set);
@@ -57,12 +65,15 @@ static void include_forces(const mt_system *sys, uint64_t *set)
 void mt_build_inputs(mt_system *sys)
 {
     const size_t words = (size_t)sys->program.words;
+    sys->frame = mt_arena_alloc(&sys->mem, words, sizeof *sys->frame);
     sys->shape = mt_arena_alloc(&sys->mem, words, sizeof *sys->shape);
     sys->forces = mt_arena_alloc(&sys->mem, words, sizeof *sys->forces);
     if (mt_arena_failed(&sys->mem)) {
         return;
     }
-    include_shape(sys, sys->shape);
+    include_frame(sys, sys->frame);
+    memcpy(sys->shape, sys->frame, words * sizeof *sys->shape);
+    include_sensors(sys, sys->shape);
     include_forces(sys, sys->forces);
     sys->geometry_fixed = true;
     for (size_t w = 0; w < words; w++) {

@@ -179,7 +179,9 @@ typedef struct mt_system {
     bool trim;
     int trim_spring; /* of springs; -1 */
     /* inputs, as bits of the program's words: those that a vector, a target or a shape of a
-     * mass depends on; those that an equilibrium depends on besides */
+     * mass depends on; those and where sensors stand; those that an equilibrium depends on
+     * besides */
+    uint64_t *frame;
     uint64_t *shape;
     uint64_t *forces;
     bool geometry_fixed; /* nothing is in `shape` */

@@ -101,15 +101,14 @@ static void copy(const search *s, int *to, const int *from)
     memcpy(to, from, (size_t)s->c->n_bands * sizeof *to);
 }
 
-static bool listed(const search *s, const int *list, int count, const int *tuple)
+int mt_certify_place(const int *rows, int n, const int *row, int n_bands)
 {
-    const size_t n = (size_t)s->c->n_bands;
-    for (int i = 0; i < count; i++) {
-        if (memcmp(list + ((size_t)i * n), tuple, n * sizeof *tuple) == 0) {
-            return true;
-        }
+    int k = 0;
+    while (k < n &&
+           memcmp(rows + ((ptrdiff_t)k * n_bands), row, (size_t)n_bands * sizeof *row) != 0) {
+        k++;
     }
-    return false;
+    return k;
 }
 
 /* How many known assignments come before the tuple in s->order; *there: the next one is it. */
@@ -425,7 +424,8 @@ static mt_status note_open(search *s)
     mt_certify_search *const out = s->out;
     out->proven = false;
     for (bool more = fill(s, 0); more && !out->more; more = next(s)) {
-        if (is_known(s, s->tuple) || listed(s, out->open, out->n_open, s->tuple)) {
+        if (is_known(s, s->tuple) ||
+            mt_certify_place(out->open, out->n_open, s->tuple, s->c->n_bands) < out->n_open) {
             continue;
         }
         out->more = out->n_open == MT_CERTIFY_OPEN_MOST; /* there is one more */

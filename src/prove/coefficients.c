@@ -122,13 +122,12 @@ static int widest_input(const mt_enclosure *e, const mt_enclosure_coefficient *c
                         const double *lo, const double *hi)
 {
     const mt_program *const p = &e->program;
+    const uint64_t *const of_node = p->inputs_of + ((size_t)c->node * (size_t)p->words);
     int widest = -1;
     double most = 0.0;
     for (int k = 0; k < e->n_inputs; k++) {
-        const uint64_t word =
-            p->inputs_of[((size_t)c->node * (size_t)p->words) + (size_t)(k / 64)];
         const double share = (hi[k] - lo[k]) / (e->upper[k] - e->lower[k]);
-        if (((word >> (k % 64)) & 1U) != 0 && share > most) {
+        if (mt_program_has_input(of_node, k) && share > most) {
             most = share;
             widest = k;
         }

@@ -3,25 +3,18 @@
 
 #include <string.h>
 
-#include "prove/shaping.h"
-
 mt_status mt_discrete_proofs_init(mt_discrete_proofs *s, const mt_case *c, mt_arena *mem,
                                   mt_err *err)
 {
-    const mt_problem *const p = c->p;
-    bool *const one = mt_arena_alloc(mem, (size_t)p->n, sizeof *one);
+    bool *shapes = NULL;
+    int n = 0;
     *s = (mt_discrete_proofs){.c = c};
-    s->shaping = mt_arena_int(mem, (size_t)p->n);
+    s->shaping = mt_arena_int(mem, (size_t)c->p->n);
     MT_TRY(mt_arena_check(mem, err));
-    for (int v = 0; v < p->n_views; v++) {
-        mt_enclosure_shaping(p->views[v].original, one);
-        for (int i = 0; i < p->n; i++) {
-            const bool free = one[i] && c->lower[i] < c->upper[i];
-            const bool listed = p->study->variables[i].n_catalogue > 0;
-            s->shaped = s->shaped || (free && !listed);
-            if (free && listed && !mt_discrete_shapes(s, i)) {
-                s->shaping[s->n_shaping++] = i;
-            }
+    MT_TRY(mt_proof_shaping(c, mem, &shapes, &n, err));
+    for (int i = 0; i < c->p->n; i++) {
+        if (shapes[i] && c->p->study->variables[i].n_catalogue > 0) {
+            s->shaping[s->n_shaping++] = i;
         }
     }
     return MT_OK;
@@ -53,7 +46,7 @@ bool mt_discrete_shapes(const mt_discrete_proofs *s, int i)
 
 double mt_discrete_geometries(const mt_discrete_proofs *s)
 {
-    double n = s->shaped ? 0.0 : 1.0;
+    double n = 1.0;
     for (int k = 0; k < s->n_shaping; k++) {
         n *= (double)s->c->p->study->variables[s->shaping[k]].n_catalogue;
     }
@@ -79,7 +72,7 @@ void mt_discrete_geometry(const mt_discrete_proofs *s, int which, double *lower,
 static bool is_of(const mt_discrete_proofs *s, int slot, const double *lower)
 {
     for (int k = 0; k < s->n_shaping; k++) {
-        if (s->held[slot].lower[s->shaping[k]] != lower[s->shaping[k]]) {
+        if (s->proof[slot].lower[s->shaping[k]] != lower[s->shaping[k]]) {
             return false;
         }
     }
@@ -88,18 +81,18 @@ static bool is_of(const mt_discrete_proofs *s, int slot, const double *lower)
 
 static mt_status make(mt_discrete_proofs *s, int slot, const double *lower, mt_err *err)
 {
-    mt_case *const held = &s->held[slot];
+    mt_case held;
     mt_proof *const proof = &s->proof[slot];
     mt_arena *const mem = &s->mem[slot];
     drop(s, slot);
     MT_TRY(mt_arena_init(mem, 0, err));
-    MT_TRY(mt_case_copy(s->c, mem, held, err));
+    MT_TRY(mt_case_copy(s->c, mem, &held, err));
     for (int k = 0; k < s->n_shaping; k++) {
         const int i = s->shaping[k];
-        held->lower[i] = lower[i];
-        held->upper[i] = lower[i];
+        held.lower[i] = lower[i];
+        held.upper[i] = lower[i];
     }
-    MT_TRY(mt_proof_init(proof, held, mem, err));
+    MT_TRY(mt_proof_init(proof, &held, mem, err));
     return mt_proof_use_catalogues(proof, s->c->p, mem, err);
 }
 
@@ -108,7 +101,7 @@ mt_status mt_discrete_proof_of(mt_discrete_proofs *s, const double *lower, const
 {
     const size_t size = (size_t)s->c->p->n * sizeof *lower;
     const int kept = s->n < MT_DISCRETE_PROOFS_KEPT ? s->n : MT_DISCRETE_PROOFS_KEPT;
-    bool one = !s->shaped;
+    bool one = true;
     int slot = 0;
     *out = NULL;
     for (int k = 0; k < s->n_shaping; k++) {

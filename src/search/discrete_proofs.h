@@ -16,10 +16,7 @@ typedef struct mt_discrete_proofs {
     const mt_case *c; /* the relaxed problem; must outlive this */
     int n_shaping;
     int *shaping; /* [n_shaping] variables with a catalogue that shape the geometry */
-    /* a variable without a catalogue does: no box has a proof */
-    bool shaped;
     mt_proof proof[MT_DISCRETE_PROOFS_KEPT];
-    mt_case held[MT_DISCRETE_PROOFS_KEPT];
     mt_arena mem[MT_DISCRETE_PROOFS_KEPT]; /* of these */
     int n; /* made so far; number i lies at i % MT_DISCRETE_PROOFS_KEPT */
 } mt_discrete_proofs;
@@ -31,8 +28,8 @@ mt_status mt_discrete_proofs_init(mt_discrete_proofs *s, const mt_case *c, mt_ar
 void mt_discrete_proofs_free(mt_discrete_proofs *s);
 /* Is variable i a catalogue that shapes the geometry? */
 bool mt_discrete_shapes(const mt_discrete_proofs *s, int i);
-/* How many geometries there are; 0: a variable without a catalogue shapes it. The relaxed
- * problem at number `which` of them: lower[n], upper[n]. */
+/* How many geometries the catalogues have. The relaxed problem at number `which` of them:
+ * lower[n], upper[n]. */
 double mt_discrete_geometries(const mt_discrete_proofs *s);
 void mt_discrete_geometry(const mt_discrete_proofs *s, int which, double *lower, double *upper);
 /* The proof of the box lower <= x <= upper [n], its bounds set to it, until the next call;

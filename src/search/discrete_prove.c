@@ -41,7 +41,6 @@ typedef struct outcome {
 typedef struct prover {
     mt_discrete *d;
     mt_discrete_report *report;
-    mt_proof whole; /* where nothing shapes the geometry */
     mt_discrete_proofs proofs;
     int n_geometries;
     double *lower; /* [n] of one of them */
@@ -140,11 +139,8 @@ static mt_status judge(prover *v, const double *x, mt_err *err)
 /* The proof of a geometry; NULL: there is none. */
 static mt_status proof_of(prover *v, int geometry, mt_proof **out, mt_err *err)
 {
-    *out = v->whole.possible ? &v->whole : NULL;
-    if (*out == NULL) {
-        mt_discrete_geometry(&v->proofs, geometry, v->lower, v->upper);
-        MT_TRY(mt_discrete_proof_of(&v->proofs, v->lower, v->upper, out, err));
-    }
+    mt_discrete_geometry(&v->proofs, geometry, v->lower, v->upper);
+    MT_TRY(mt_discrete_proof_of(&v->proofs, v->lower, v->upper, out, err));
     if (*out != NULL) {
         (*out)->left = v->left;
         (*out)->question.cap = v->capped ? &v->cap.cap : NULL;
@@ -153,23 +149,13 @@ static mt_status proof_of(prover *v, int geometry, mt_proof **out, mt_err *err)
     return MT_OK;
 }
 
-static bool is_among(const int *rows, int n, const int *row, int n_bands)
-{
-    for (int i = 0; i < n; i++) {
-        if (memcmp(rows + ((ptrdiff_t)i * n_bands), row, (size_t)n_bands * sizeof *row) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /* Kinds that one geometry has and none before it had. */
 static mt_status note_kinds(prover *v, const mt_certify_search *found, mt_err *err)
 {
     const int m = v->d->p->n_bands;
     for (int k = 0; k < found->n_found; k++) {
         const int *const row = found->found + ((ptrdiff_t)k * m);
-        if (is_among(v->kinds, v->n_kinds, row, m)) {
+        if (mt_certify_place(v->kinds, v->n_kinds, row, m) < v->n_kinds) {
             continue;
         }
         int *const grown = mt_arena_grow(v->d->mem, v->kinds, v->n_kinds, &v->cap_kinds,
@@ -273,30 +259,33 @@ static mt_status prove(prover *v, mt_err *err)
     return MT_OK;
 }
 
-/* The whole question where nothing shapes the geometry; else one for each geometry, if they are
- * not too many: 0 geometries, and the reason, where there is no proof. */
+/* Why the question as a whole cannot be asked. */
+static mt_status give_reason(const prover *v, mt_err *err)
+{
+    mt_discrete *const d = v->d;
+    mt_proof whole;
+    const mt_status rc = mt_proof_init(&whole, d->c, d->mem, err);
+    v->report->reason = mt_arena_strdup(d->mem, whole.reason);
+    mt_proof_free(&whole);
+    return rc == MT_OK ? mt_arena_check(d->mem, err) : rc;
+}
+
+/* One question for each geometry, if they are not too many: 0 geometries, and the reason, where
+ * there is no proof. */
 static mt_status begin(prover *v, mt_err *err)
 {
     mt_discrete *const d = v->d;
+    mt_proof *first = NULL;
     v->lower = mt_arena_f64(d->mem, (size_t)d->p->n, 1);
     v->upper = mt_arena_f64(d->mem, (size_t)d->p->n, 1);
     MT_TRY(mt_arena_check(d->mem, err));
     MT_TRY(mt_discrete_proofs_init(&v->proofs, d->c, d->mem, err));
-    MT_TRY(mt_proof_init(&v->whole, d->c, d->mem, err));
-    if (v->whole.possible) {
-        v->n_geometries = 1;
-        return mt_proof_use_catalogues(&v->whole, d->p, d->mem, err);
-    }
-    mt_proof *first = NULL;
     const double n = mt_discrete_geometries(&v->proofs);
-    if (v->proofs.n_shaping > 0 && n > 0.0 && n <= (double)GEOMETRIES_MOST) {
+    if (n <= (double)GEOMETRIES_MOST) {
         MT_TRY(proof_of(v, 0, &first, err));
-        v->n_geometries = first != NULL ? (int)n : 0;
     }
-    if (v->n_geometries == 0) {
-        v->report->reason = mt_arena_strdup(d->mem, v->whole.reason);
-    }
-    return mt_arena_check(d->mem, err);
+    v->n_geometries = first != NULL ? (int)n : 0;
+    return v->n_geometries > 0 ? MT_OK : give_reason(v, err);
 }
 
 mt_status mt_discrete_prove(mt_discrete *d, mt_combination ***all, int *n,
@@ -308,7 +297,6 @@ mt_status mt_discrete_prove(mt_discrete *d, mt_combination ***all, int *n,
     if (rc == MT_OK && v.n_geometries > 0) {
         rc = prove(&v, err);
     }
-    mt_proof_free(&v.whole);
     mt_discrete_proofs_free(&v.proofs);
     *all = v.all;
     *n = v.n;

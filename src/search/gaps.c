@@ -425,16 +425,6 @@ static void free_slots(const job *j)
     }
 }
 
-static int place_of(const mt_gap_candidates *c, const int *below, int n_bands)
-{
-    int k = 0;
-    while (k < c->n && memcmp(c->below + ((ptrdiff_t)k * n_bands), below,
-                              (size_t)n_bands * sizeof *below) != 0) {
-        k++;
-    }
-    return k;
-}
-
 /* Assignments that were met first and are not listed (the proof ended before it came to them)
  * come after those that are. */
 static mt_status list_met(const job *first, mt_gap_candidates *c, mt_arena *mem, mt_err *err)
@@ -449,7 +439,7 @@ static mt_status list_met(const job *first, mt_gap_candidates *c, mt_arena *mem,
     c->below = below;
     for (int k = 0; k < first->candidates->n; k++) {
         const int *const own = first->candidates->below + ((ptrdiff_t)k * m);
-        if (is_met(&first->slots[k]) && place_of(c, own, m) == c->n) {
+        if (is_met(&first->slots[k]) && mt_certify_place(c->below, c->n, own, m) == c->n) {
             memcpy(c->below + ((ptrdiff_t)c->n * m), own, row * sizeof *own);
             c->n++;
         }
@@ -464,8 +454,8 @@ static void carry(const job *first, job *j, long *evals)
     const int m = j->p->n_bands;
     for (int k = 0; k < first->candidates->n; k++) {
         slot *const s = &first->slots[k];
-        const int at =
-            place_of(j->candidates, first->candidates->below + ((ptrdiff_t)k * m), m);
+        const int *const own = first->candidates->below + ((ptrdiff_t)k * m);
+        const int at = mt_certify_place(j->candidates->below, j->candidates->n, own, m);
         if (at < j->candidates->n && (is_met(s) || at >= j->candidates->n_proven)) {
             j->slots[at] = *s;
             j->slots[at].carried = true;

@@ -22,6 +22,25 @@ void mt_proof_free(mt_proof *proof)
     mt_spent_note(proof->spent, MT_SPENT_MULTIPLICATIONS, (long)work);
 }
 
+mt_status mt_proof_shaping(const mt_case *c, mt_arena *mem, bool **shapes, int *count,
+                           mt_err *err)
+{
+    const mt_problem *const p = c->p;
+    bool *const one = mt_arena_alloc(mem, (size_t)p->n, sizeof *one);
+    *shapes = mt_arena_alloc(mem, (size_t)p->n, sizeof **shapes);
+    *count = 0;
+    MT_TRY(mt_arena_check(mem, err));
+    for (int v = 0; v < p->n_views; v++) {
+        mt_enclosure_shaping(p->views[v].original, one);
+        for (int i = 0; i < p->n; i++) {
+            const bool first = one[i] && !(*shapes)[i] && c->lower[i] < c->upper[i];
+            (*shapes)[i] = (*shapes)[i] || first;
+            *count += first ? 1 : 0;
+        }
+    }
+    return MT_OK;
+}
+
 /* The view of the geometry that the question is about, where its bounds leave no other than one
  * beside the original; NULL: the original's. *ok is false, with the reason, where there is no
  * such mechanism. */

@@ -29,6 +29,10 @@ typedef struct mt_proof {
     struct mt_spent *spent; /* where its work is noted; NULL */
 } mt_proof;
 
+/* shapes[n] in mem: which variables shape the geometry of any view, and are not held by the
+ * case; how many. Fails: MT_E_MEMORY. */
+mt_status mt_proof_shaping(const mt_case *c, mt_arena *mem, bool **shapes, int *count,
+                           mt_err *err);
 /* Results in mem but the enclosures, which mt_proof_free gives back. `possible` false, with the
  * reason, is a success. */
 mt_status mt_proof_init(mt_proof *proof, const mt_case *c, mt_arena *mem, mt_err *err);

@@ -5,30 +5,12 @@
 #include <string.h>
 
 #include "nlp/starts.h"
-#include "prove/shaping.h"
 #include "search/proof.h"
 
 /* Slices for each variable that shapes the geometry, and in all. */
 enum { SLICES_PER_SHAPE = 16, SLICES_MOST = 32 };
 /* Multiplications of one: tens of milliseconds. */
 static const double SLICE_WORK = 5e7;
-
-/* Which variables shape the geometry of any view, and are not held by the case. */
-static int list_shaping(const mt_case *c, bool *one, bool *shapes)
-{
-    const mt_problem *const p = c->p;
-    int n = 0;
-    for (int v = 0; v < p->n_views; v++) {
-        mt_enclosure_shaping(p->views[v].original, one);
-        for (int i = 0; i < p->n; i++) {
-            shapes[i] = shapes[i] || (one[i] && c->lower[i] < c->upper[i]);
-        }
-    }
-    for (int i = 0; i < p->n; i++) {
-        n += shapes[i] ? 1 : 0;
-    }
-    return n;
-}
 
 /* What one slice found that was not known joins the list. */
 static mt_status note(const mt_problem *p, const mt_certify_search *slice, mt_arena *mem,
@@ -107,11 +89,10 @@ static mt_status search(const mt_workspace *w, const bool *shapes, const double 
 mt_status mt_slices_search(mt_workspace *w, mt_arena *mem, mt_slices *out, mt_err *err)
 {
     const mt_problem *const p = w->p;
-    bool *const one = mt_arena_alloc(mem, (size_t)p->n, sizeof *one);
-    bool *const shapes = mt_arena_alloc(mem, (size_t)p->n, sizeof *shapes);
+    bool *shapes = NULL;
+    int m = 0;
     *out = (mt_slices){.n = 0};
-    MT_TRY(mt_arena_check(mem, err));
-    const int m = list_shaping(w->c, one, shapes);
+    MT_TRY(mt_proof_shaping(w->c, mem, &shapes, &m, err));
     if (m == 0 || !(w->c->proof_work > 0.0)) {
         return MT_OK;
     }
