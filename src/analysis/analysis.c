@@ -13,6 +13,7 @@
 
 enum { DIRECTION_TEXT = 300 };
 static const char NO_GRADIENT[] = "derivatives asked for after a solve without gradient";
+static const char NO_SHAPE[] = "the shape of mode %d was not asked for";
 
 mt_analysis_options mt_analysis_options_default(void)
 {
@@ -52,7 +53,7 @@ static mt_status open_at(mt_analysis *a, const double *at, int first, mt_analysi
 {
     mt_analysis_options opt = mt_analysis_options_default();
     const char *const name = mt_analysis_configuration(a);
-    opt.first = first;
+    opt.modes.first = first;
     a->n_rigid = -1;
     mt_status rc = mt_linear_new(a->sys, &a->lin, err);
     rc = rc == MT_OK ? mt_analysis_solve(a, at, &opt, err) : rc;
@@ -180,8 +181,9 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                                         .interrupt = a->sys->model->interrupt};
     MT_TRY(mt_modal_solve(r->k, &a->mass, &factor, options, &a->mem, &a->modes, err));
     const int all = a->modes.count;
-    const int judged = r->loaded || bounds ? all : mt_modal_doubtful(&a->modes);
-    if (a->modes.y == NULL || judged == 0) {
+    const int worth = r->loaded || bounds ? all : mt_modal_doubtful(&a->modes);
+    const int judged = worth < a->modes.shaped ? worth : a->modes.shaped;
+    if (judged == 0) {
         return MT_OK;
     }
     const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
@@ -229,8 +231,8 @@ static mt_status find_modes(mt_analysis *a, const mt_reduced *r, mt_modal_option
         options->n_rigid = -1;
         rc = solve_and_judge(a, r, options, bounds, err);
     }
-    if (rc == MT_OK && is_short(&a->modes, options->first)) {
-        options->first = 0;
+    if (rc == MT_OK && is_short(&a->modes, options->modes.first)) {
+        options->modes = (mt_modal_part){.first = 0};
         rc = solve_and_judge(a, r, options, bounds, err);
     }
     if (rc == MT_E_MASSLESS && a->modes.massless != NULL) {
@@ -250,11 +252,17 @@ static mt_status find_modes(mt_analysis *a, const mt_reduced *r, mt_modal_option
     return MT_OK;
 }
 
+static bool same_part(const mt_modal_part *a, const mt_modal_part *b)
+{
+    return a->first == b->first && a->up_to == b->up_to;
+}
+
 static bool is_same(const struct mt_modes_key *had, const struct mt_modes_key *now)
 {
     return had->stiffness_version == now->stiffness_version &&
            had->mass_version == now->mass_version && had->n_rigid == now->n_rigid &&
-           had->first == now->first && had->recount == now->recount &&
+           same_part(&had->modes, &now->modes) && same_part(&had->shapes, &now->shapes) &&
+           had->recount == now->recount &&
            had->vectors == now->vectors && had->accuracy == now->accuracy &&
            had->bounds == now->bounds && (had->check || !now->check);
 }
@@ -267,7 +275,8 @@ static mt_status run_modes(mt_analysis *a, const mt_analysis_options *opt, const
     const mt_reduced r = mt_linear_reduced(a->lin);
     mt_modal_options options = mt_modal_options_default();
     options.n_rigid = a->n_rigid;
-    options.first = opt->first;
+    options.modes = opt->modes;
+    options.shapes = opt->shapes;
     /* where K is no sum of squares, shapes say what rounding leaves of its sign */
     options.vectors = opt->vectors || opt->gradient || r.g != NULL;
     options.accuracy = opt->accuracy;
@@ -275,7 +284,8 @@ static mt_status run_modes(mt_analysis *a, const mt_analysis_options *opt, const
     const struct mt_modes_key key = {.stiffness_version = r.stiffness_version,
                                      .mass_version = r.mass_version,
                                      .n_rigid = a->n_rigid,
-                                     .first = opt->first,
+                                     .modes = opt->modes,
+                                     .shapes = opt->shapes,
                                      .recount = a->recount,
                                      .vectors = options.vectors,
                                      .accuracy = opt->accuracy,
@@ -327,12 +337,19 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
     return MT_OK;
 }
 
-mt_status mt_analysis_products(mt_analysis *a, int pos, mt_err *err)
+/* Are there derivatives of the mode at pos? */
+static mt_status has_slopes(const mt_analysis *a, int pos, mt_err *err)
 {
-    const ptrdiff_t n = mt_linear_freedoms(a->lin);
     if (!a->with_gradient) {
         return mt_fail(err, MT_E_INTERNAL, "%s", NO_GRADIENT);
     }
+    return pos < a->modes.shaped ? MT_OK : mt_fail(err, MT_E_INTERNAL, NO_SHAPE, pos + 1);
+}
+
+mt_status mt_analysis_products(mt_analysis *a, int pos, mt_err *err)
+{
+    const ptrdiff_t n = mt_linear_freedoms(a->lin);
+    MT_TRY(has_slopes(a, pos, err));
     MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
     for (int p = 0; p < a->sys->n_inputs; p++) {
         MT_TRY(mt_linear_products(a->lin, p, 1, mt_modal_shape(&a->modes, pos),
@@ -344,9 +361,7 @@ mt_status mt_analysis_products(mt_analysis *a, int pos, mt_err *err)
 mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_err *err)
 {
     const size_t np = (size_t)a->sys->n_inputs;
-    if (!a->with_gradient) {
-        return mt_fail(err, MT_E_INTERNAL, "%s", NO_GRADIENT);
-    }
+    MT_TRY(has_slopes(a, pos, err));
     double *const slope = a->slopes + ((size_t)pos * np);
     if (!a->sloped[pos]) {
         MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
@@ -379,6 +394,9 @@ mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel,
     const ptrdiff_t n = mt_linear_freedoms(a->lin);
     const int np = a->sys->n_inputs;
     const double *const y = mt_modal_shape(&a->modes, pos);
+    if (y == NULL) {
+        return mt_fail(err, MT_E_INTERNAL, NO_SHAPE, pos + 1);
+    }
     MT_TRY(mt_linear_sense(a->lin, ns, channel, 1, y, s, err));
     if (ds == NULL || np == 0) {
         return MT_OK;
@@ -390,7 +408,7 @@ mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel,
     const mt_directions given = {.np = np, .dky = a->dky, .dmy = a->dmy};
     const mt_reduced r = mt_linear_reduced(a->lin);
     const mt_pencil pencil = {.n = r.n, .k = r.k, .m = r.m};
-    if (a->modes.n_condensed == 0 && a->modes.count == a->modes.all) {
+    if (a->modes.n_condensed == 0 && a->modes.shaped == a->modes.all) {
         MT_TRY(mt_modal_dvector_by_modes(&a->modes, pos, &given, dy, NULL, &a->mem, err));
     } else {
         MT_TRY(

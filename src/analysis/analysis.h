@@ -30,7 +30,8 @@ typedef struct mt_analysis {
         unsigned long stiffness_version;
         unsigned long mass_version;
         int n_rigid; /* as it was asked for */
-        int first;
+        mt_modal_part modes;
+        mt_modal_part shapes;
         bool recount;
         bool vectors;
         double accuracy;
@@ -57,10 +58,11 @@ typedef struct mt_analysis {
 } mt_analysis;
 
 typedef struct mt_analysis_options {
-    int first;       /* how many vibration modes are asked for, the lowest; 0: all */
-    bool gradient;   /* derivatives will be asked for (vectors come with them) */
-    bool vectors;    /* shapes will be asked for */
-    double accuracy; /* mt_modal_options */
+    mt_modal_part modes;  /* which are asked for */
+    mt_modal_part shapes; /* of which shapes and slopes are, or frequencies to the last digit */
+    bool gradient;        /* derivatives will be asked for (vectors come with them) */
+    bool vectors;         /* shapes will be asked for */
+    double accuracy;      /* mt_modal_options */
     bool check;      /* residual and orthogonality of each mode */
     /* the error of each mode is asked for (with vectors): without this it leaves out what
      * rounding has made of the rows that K and M are sums of, which counts next to dead centres
@@ -111,8 +113,8 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
 /*
  * After a solve with gradient, of the mode at position pos of a->modes [rad^2/s^2 per unit of
  * the input], dlambda[n_inputs]: its derivative; NaN, and *repeated (may be NULL), where it
- * belongs to a cluster, which has none for a single mode. Fails: MT_E_INTERNAL (no gradient),
- * as mt_linear_products.
+ * belongs to a cluster, which has none for a single mode. Fails: MT_E_INTERNAL (no gradient, or
+ * its shape was not asked for), as mt_linear_products.
  */
 mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *repeated,
                               mt_err *err);

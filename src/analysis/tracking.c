@@ -71,7 +71,7 @@ mt_status mt_track_match(mt_analysis *a, int n, const double *const *w, mt_track
     if (!mt_modal_indexed(&a->modes) || n == 0) {
         return MT_OK;
     }
-    if (a->modes.y == NULL) {
+    if (a->modes.shaped < a->modes.count) {
         return mt_fail(err, MT_E_INTERNAL,
                        "named modes asked for after a solve without shapes");
     }

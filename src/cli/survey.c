@@ -145,7 +145,7 @@ static mt_status answer_by_all(mt_survey *v, const question *q, mt_err *err)
     mt_analysis *a = NULL;
     mt_analysis_options opt = mt_analysis_options_default();
     opt.gradient = true;
-    opt.first = q->wanted;
+    opt.modes.first = q->wanted;
     mt_status rc = mt_analysis_new_lowest(v->s->model, v->c, q->count, q->inputs, q->at,
                                           q->wanted, &a, err);
     rc = rc == MT_OK ? mt_analysis_solve(a, q->at, &opt, err) : rc;

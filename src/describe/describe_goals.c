@@ -107,7 +107,7 @@ static mt_status solve_views(mt_workspace *fresh, mt_err *why, mt_err *err)
     for (int i = 0; i < fresh->c->n_views; i++) {
         mt_view_work *const view = &fresh->views[i];
         mt_err own = {0};
-        view->ask.first = 0;
+        mt_view_ask_all(view);
         view->ask.vectors = view->ask.vectors || view->of->n_named > 0;
         const mt_status rc = mt_view_solve(fresh, view, false, &own);
         if (mt_is_final(rc)) {

@@ -48,7 +48,7 @@ static mt_status viewed_at(judge *j, const mt_published *pub, const mt_analysis 
         if (view->of->named[i] != pub->mode.named) {
             continue;
         }
-        view->ask.first = 0;
+        mt_view_ask_all(view);
         view->ask.vectors = true;
         MT_TRY(mt_workspace_place(w, t, false, err));
         MT_TRY(mt_view_solve(w, view, false, err));

@@ -62,7 +62,7 @@ static double residual(const checker *c, const mt_modes *modes, int i)
 
 static void orthogonality(const checker *c, double *gram, mt_modes *modes)
 {
-    const int r = modes->count;
+    const int r = modes->shaped;
     mt_gemm(true, false, r, r, c->n, 1.0, modes->y, c->n, c->my, c->n, 0.0, gram, r);
     for (int i = 0; i < r; i++) {
         gram[i + (ptrdiff_t)i * r] -= 1.0;
@@ -75,7 +75,7 @@ mt_status mt_modal_check(const double *k, const mt_mass_factor *mass, mt_arena *
                          mt_modes *modes, mt_err *err)
 {
     const int n = mass->n;
-    const size_t r = (size_t)modes->count;
+    const size_t r = (size_t)modes->shaped;
     checker c = {.n = n};
     c.d = mt_arena_f64(scratch, (size_t)n, 1);
     c.ky = mt_arena_f64(scratch, (size_t)n, r);
@@ -90,11 +90,11 @@ mt_status mt_modal_check(const double *k, const mt_mass_factor *mass, mt_arena *
     }
     c.k_norm = scaled_norm(n, k, c.d);
     c.m_norm = scaled_norm(n, mass->m, c.d);
-    mt_symm(n, modes->count, k, modes->y, c.ky);
+    mt_symm(n, modes->shaped, k, modes->y, c.ky);
     if (mass->m != NULL) {
-        mt_symm(n, modes->count, mass->m, modes->y, c.my);
+        mt_symm(n, modes->shaped, mass->m, modes->y, c.my);
     }
-    for (int i = 0; i < modes->count; i++) {
+    for (int i = 0; i < modes->shaped; i++) {
         modes->residual[i] = residual(&c, modes, i);
     }
     orthogonality(&c, gram, modes);

@@ -330,7 +330,7 @@ mt_status mt_modal_damped(const mt_damped_problem *p, mt_arena *mem, mt_damped_m
                .z = p->n - p->mass->rank,
                .tol = mt_modal_tolerance(p->n)};
     *out = (mt_damped_modes){.n = p->n};
-    if (p->modes->y == NULL) {
+    if (p->modes->shaped < p->modes->all) {
         return mt_fail(err, MT_E_USAGE, "damped modes need the undamped shapes");
     }
     MT_TRY(prepare(&s, err));

@@ -93,7 +93,7 @@ mt_status mt_modal_dvector_by_modes(const mt_modes *modes, int i, const mt_direc
                                     double *dy, double *dlambda, mt_arena *scratch, mt_err *err)
 {
     const int n = modes->n;
-    if (modes->y == NULL || modes->n_condensed > 0 || modes->count < modes->all) {
+    if (modes->y == NULL || modes->n_condensed > 0 || modes->shaped < modes->all) {
         return mt_fail(err, MT_E_USAGE,
                        "mt_modal_dvector_by_modes: needs all modes with vectors");
     }

@@ -134,11 +134,11 @@ static void sort(mt_modes *modes, bool *strained)
             modes->kind[k - 1] = kind;
             swap(&modes->lambda[k], &modes->lambda[k - 1]);
             swap(&modes->error[k], &modes->error[k - 1]);
-            if (modes->residual != NULL) {
+            if (modes->residual != NULL && k < modes->shaped) {
                 swap(&modes->residual[k], &modes->residual[k - 1]);
                 swap(&modes->orthogonality[k], &modes->orthogonality[k - 1]);
             }
-            for (int j = 0; j < modes->n; j++) {
+            for (int j = 0; j < modes->n && k < modes->shaped; j++) {
                 double *const at = modes->y + j + (ptrdiff_t)k * modes->n;
                 swap(at, at - modes->n);
             }
@@ -176,9 +176,12 @@ static void take_quotients(mt_mode_energies *e, mt_modes *modes)
             e->mass[k] = surer ? error : modes->error[k];
         }
     }
+    /* those that have no shape stay behind those that have one */
+    const double next = modes->shaped < modes->count ? modes->lambda[modes->shaped] : HUGE_VAL;
     for (int i = 0; i < e->count; i++) {
-        modes->lambda[i] = e->stiffness[i];
-        modes->error[i] = e->mass[i];
+        const double beyond = fmax(e->stiffness[i] - next, 0.0);
+        modes->lambda[i] = beyond > 0.0 ? next : e->stiffness[i];
+        modes->error[i] = e->mass[i] + beyond;
     }
 }
 

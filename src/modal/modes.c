@@ -8,7 +8,7 @@ static const double TWO_PI = 6.283185307179586476925;
 
 const double *mt_modal_shape(const mt_modes *modes, int i)
 {
-    return modes->y + ((ptrdiff_t)i * modes->n);
+    return i < modes->shaped ? modes->y + ((ptrdiff_t)i * modes->n) : NULL;
 }
 
 double mt_modal_hz(const mt_modes *modes, int i)

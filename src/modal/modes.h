@@ -15,6 +15,7 @@ typedef struct mt_modes {
     int n;           /* order of K, M */
     int all;         /* modes that there are: n - n_condensed */
     int count;       /* those that were asked for, the lowest */
+    int shaped;      /* those of them whose shape is in y, the lowest; 0 without vectors */
     int n_condensed; /* directions without mass */
     int n_rigid;
     int n_held; /* of an n_rigid that was given: those that are no null directions of K */
@@ -27,11 +28,12 @@ typedef struct mt_modes {
     mt_mode_kind *kind; /* [count] */
     int *cluster; /* [count] number of the cluster of repeated modes that a mode belongs to
                      (from 0, ascending) */
-    double *y; /* n x count, mass-normalised, sign by mt_modal_fix_sign; NULL without vectors */
-    double *residual; /* [count] ||K y - lambda M y|| / ((||K|| + |lambda| ||M||) ||y|| n eps)
+    double *y; /* n x shaped, mass-normalised, sign by mt_modal_fix_sign; NULL without
+                  vectors */
+    double *residual; /* [shaped] ||K y - lambda M y|| / ((||K|| + |lambda| ||M||) ||y|| n eps)
                        * in coordinates scaled to m_ii = 1: O(1) is perfect; NULL without
                        * vectors and check */
-    double *orthogonality; /* [count] max_j |y_i^T M y_j - delta_ij| / (n eps); NULL likewise */
+    double *orthogonality; /* [shaped] max_j |y_i^T M y_j - delta_ij| / (n eps); NULL likewise */
     double *error;         /* [all] |error of lambda_i| <= error_i: backward error, generously
                            counted, or what mt_modal_judge made of it */
     double error_bound; /* |error of lambda_i| <= error_bound + error_relative * |lambda_i|, for
@@ -43,8 +45,8 @@ typedef struct mt_modes {
                          NULL */
 } mt_modes;
 
-/* Shape y of the mode at position i, [n]; those of the modes behind it follow. After a solve
- * with vectors. */
+/* Shape y of the mode at position i, [n]; those of the modes behind it follow. NULL where
+ * nobody asked for it (modes->shaped). */
 const double *mt_modal_shape(const mt_modes *modes, int i);
 
 /* Has each flexible mode an index: is no mode unstable or undecided? */

@@ -71,17 +71,20 @@ mt_status mt_modal_plain_lowest(const double *k, const mt_mass_factor *mass,
         MT_TRY(mt_arena_check(scratch, err));
     }
     mt_err why = {.text = ""};
-    const mt_status rc = mt_eig_sym_lowest(later, out->count, out->lambda, q, scratch, &why);
+    const bool few = out->shaped <= mass->rank / MT_MODAL_PART;
+    const mt_status rc =
+        few ? mt_eig_sym_lowest(later, out->shaped, out->lambda, q, scratch, &why)
+            : MT_E_NO_CONVERGENCE;
     if (rc != MT_OK && rc != MT_E_NO_CONVERGENCE) {
         return mt_fail(err, rc, "%s", why.text);
     }
-    if (rc == MT_E_NO_CONVERGENCE) { /* inverse iteration may, where dsyevd does not */
+    if (rc == MT_E_NO_CONVERGENCE) { /* more than a few, or inverse iteration failed */
         double *const w = mt_arena_f64(scratch, n, 1);
         MT_TRY(mt_arena_check(scratch, err));
         standard(k, mass, out->y, q);
         MT_TRY(mt_eig_sym(mass->n, q, w, true, scratch, err));
     }
-    mt_modal_back(mass, out->count, q, out->y);
+    mt_modal_back(mass, out->shaped, q, out->y);
     return MT_OK;
 }
 

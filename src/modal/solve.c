@@ -25,6 +25,7 @@ static mt_status claim(const mt_mass_factor *mass, const mt_modal_options *opt, 
     *out =
         (mt_modes){.n = mass->n, .all = count, .count = count, .n_condensed = mass->n - count};
     out->lambda = mt_arena_f64(mem, c, 1);
+    out->shaped = opt->vectors ? count : 0;
     out->kind = mt_arena_alloc(mem, c, sizeof *out->kind);
     out->cluster = mt_arena_int(mem, c);
     out->error = mt_arena_f64(mem, c, 1);
@@ -100,31 +101,41 @@ static double kinds(mt_modes *out, int n_rigid)
     return most;
 }
 
-/*
- * Vectors of a part cost less than those of all from this order on, where the part is so small:
- * medians of one core with 8 vectors, dsyevd against dsytrd + dsterf + dstein + dormtr [us]:
- * n = 11: 5.7, 10.9; 24: 28, 26; 48: 103, 73; 100: 416, 237; 300: 4546, 2138.
- */
-enum { PART_ORDER = 32, PART = 3 };
-
+/* May fewer shapes than all be wanted, and be had for less? Of modes up to a frequency nobody
+ * knows before. */
 static bool is_part(const mt_mass_factor *mass, const mt_modal_options *opt)
 {
-    return opt->vectors && opt->first > 0 && mass->rank >= PART_ORDER &&
-           opt->first <= mass->rank / PART;
+    const int modes = opt->modes.first > 0 ? opt->modes.first : mass->rank;
+    const int shapes = opt->shapes.first > 0 ? opt->shapes.first : modes;
+    const bool part = opt->shapes.up_to > 0.0 || opt->modes.up_to > 0.0;
+    const int least = part && opt->shapes.first == 0 ? 0 : shapes < modes ? shapes : modes;
+    return opt->vectors && mass->rank >= MT_MODAL_PART_ORDER &&
+           least <= mass->rank / MT_MODAL_PART;
+}
+
+/* How many of the lowest modes hold all of a part; doubts: and all that may be 0. */
+static int end_of(const mt_modes *out, const mt_modal_part *part, bool doubts)
+{
+    const bool all = part->first <= 0 && !(part->up_to > 0.0);
+    int seen = 0;
+    int end = 0;
+    for (int i = 0; i < out->count; i++) {
+        const bool flexible = out->kind[i] == MT_MODE_FLEXIBLE;
+        seen += flexible ? 1 : 0;
+        const bool asked =
+            seen <= part->first || (part->up_to > 0.0 && out->lambda[i] <= part->up_to);
+        const bool repeated = i > 0 && end == i && out->cluster[i] == out->cluster[i - 1];
+        const bool doubt = doubts && out->lambda[i] <= out->error[i];
+        end = all || !flexible || asked || repeated || doubt ? i + 1 : end;
+    }
+    return end;
 }
 
 /* Leave out what was not asked for. */
-static void keep(mt_modes *out, int first)
+static void keep(mt_modes *out, const mt_modal_options *opt)
 {
-    int seen = 0;
-    int end = 0;
-    for (int i = 0; i < out->all && first > 0; i++) {
-        const bool flexible = out->kind[i] == MT_MODE_FLEXIBLE;
-        seen += flexible ? 1 : 0;
-        const bool repeated = i > 0 && end == i && out->cluster[i] == out->cluster[i - 1];
-        end = !flexible || seen <= first || repeated ? i + 1 : end;
-    }
-    out->count = first > 0 ? end : out->all;
+    out->count = end_of(out, &opt->modes, false);
+    out->shaped = opt->vectors ? end_of(out, &opt->shapes, true) : 0;
 }
 
 static mt_status compute(const double *k, const mt_mass_factor *mass,
@@ -143,12 +154,12 @@ static mt_status compute(const double *k, const mt_mass_factor *mass,
     }
     judge_held(out, opt, rigid_most, null_count);
     mt_modal_find_clusters(out);
-    keep(out, opt->first);
+    keep(out, opt);
     if (later.n > 0 && !out->from_factor) {
         MT_TRY(mt_modal_plain_lowest(k, mass, &later, scratch, out, err));
     }
     if (opt->vectors) {
-        mt_modal_fix_sign(out->n, out->count, out->y);
+        mt_modal_fix_sign(out->n, out->shaped, out->y);
     }
     return out->residual == NULL ? MT_OK : mt_modal_check(k, mass, scratch, out, err);
 }

@@ -29,13 +29,19 @@ typedef struct mt_stiffness_factor {
  */
 #define MT_MODAL_ACCURACY 1e-11
 
-typedef struct mt_modal_options {
-    int n_rigid; /* -1: decide here; else the number of rigid-body modes */
-    /* How many vibration modes are asked for, the lowest; 0: all. The answer holds these, with
-     * all of the cluster in which the last of them stands, and whatever is no vibration with an
-     * index: rigid-body, unstable and undecided modes. Without vectors they cost the same. */
+/* A part of the spectrum: the `first` lowest vibration modes and all those up to `up_to`; 0
+ * and 0: all. With them all of the cluster in which the last of them stands, and whatever is no
+ * vibration with an index: rigid-body, unstable and undecided modes. */
+typedef struct mt_modal_part {
     int first;
-    bool vectors;    /* compute y */
+    double up_to; /* [rad^2/s^2] */
+} mt_modal_part;
+
+typedef struct mt_modal_options {
+    int n_rigid;          /* -1: decide here; else the number of rigid-body modes */
+    mt_modal_part modes;  /* what is asked for; frequencies alone cost the same for all */
+    bool vectors;         /* compute y */
+    mt_modal_part shapes; /* of those: whose; and of all whose sign is in doubt */
     double accuracy; /* > 0, with a factor: use it whenever eps * s / lambda_lowest_flexible
                            exceeds this, or signs and ranks are in doubt */
     bool check;      /* compute residual and orthogonality (with vectors) */

@@ -18,11 +18,14 @@
 #include "problem/beside.h"
 #include "problem/goal.h"
 #include "problem/goal_frequency.h"
+#include "problem/next.h"
 #include "problem/robust.h"
 
 /* Range of the extra coordinate: a clearance of -95 % to +2000 %. */
 static const double CLEARANCE_LOWER = -3.0;
 static const double CLEARANCE_UPPER = 3.0;
+
+static const double TWO_PI = 6.283185307179586476925;
 
 /* Rows of one band: modes k, k-1, ... below and k+1, k+2, ... above, as many as there are and
  * at most the cluster. */
@@ -313,6 +316,22 @@ double mt_clears_room(const mt_workspace *w)
         room = here < room || !MT_HAS(here) ? here : room;
     }
     return room;
+}
+
+void mt_clears_ask(const mt_case *c, int view, mt_modal_part *shapes)
+{
+    const int flexible = mt_view_vibrations(&c->views[view]);
+    for (int i = 0; i < c->n_clears; i++) {
+        const mt_clear *const clear = &c->clears[i];
+        for (int b = 0; b < clear->bands.n && clear->view == view; b++) {
+            const int below = c->below != NULL ? c->below[clear->first + b] : 0;
+            const int rows = c->below != NULL ? below + rows_above(clear, below, flexible) : 0;
+            const double omega = TWO_PI * clear->bands.items[b].upper_hz;
+            const int most = rows > 0 ? rows + MT_NEXT_MOST : 0;
+            shapes->first = most > shapes->first ? most : shapes->first;
+            shapes->up_to = fmax(shapes->up_to, omega * omega);
+        }
+    }
 }
 
 int mt_clears_reach(const mt_workspace *w, int view)

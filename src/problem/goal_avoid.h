@@ -32,6 +32,10 @@ int mt_clear_row_count(const mt_case *c, const int *below);
 double mt_clear_room(const mt_workspace *w, const mt_clear *c);
 /* The least of all clears; infinite without bands, NaN where one of them has none. */
 double mt_clears_room(const mt_workspace *w);
+/* Add to the shapes that are asked of a view (nothing else: those of its rows alone) those of
+ * the modes that rows of its bands look at, and of all up to the highest band: there a
+ * frequency counts to its last digit. */
+void mt_clears_ask(const mt_case *c, int view, mt_modal_part *shapes);
 /* Vibration modes of a view, which has been solved, up to the first above its highest band; 0
  * without bands. */
 int mt_clears_reach(const mt_workspace *w, int view);

@@ -227,8 +227,9 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
     return MT_OK;
 }
 
-/* All modes where shapes are compared or followed, since shares of a shape and its derivatives
- * are sums over all, and where bands are kept clear: whatever lies in one counts. */
+/* All modes where bands are kept clear, since whatever lies in one counts, but the shapes of
+ * those alone that rows look at (mt_view_solve adds those of the bands); and all shapes where
+ * shapes are compared or followed: shares of a shape and its derivatives are sums over all. */
 static void ask_view(const mt_problem *p, int index)
 {
     mt_view *const view = &p->views[index];
@@ -245,8 +246,9 @@ static void ask_view(const mt_problem *p, int index)
     for (int i = 0; i < p->n_clears; i++) {
         all = all || p->clears[i].view == index;
     }
-    all = all || view->ask.vectors || first == 0;
-    view->ask.first = all ? 0 : first + MT_NEXT_MOST;
+    const mt_modal_part part = {.first = first > 0 ? first + MT_NEXT_MOST : 0};
+    view->ask.shapes = view->ask.vectors ? (mt_modal_part){.first = 0} : part;
+    view->ask.modes = all ? (mt_modal_part){.first = 0} : view->ask.shapes;
 }
 
 void mt_problem_ask(mt_problem *p)

@@ -20,9 +20,7 @@ mt_status mt_robust_solve(mt_workspace *w, bool with_gradient, mt_err *err)
 {
     for (int i = 0; w->c->robust != NULL && i < w->c->n_views; i++) {
         const mt_corner_set *const set = &w->c->robust->views[i];
-        mt_analysis_options opt = w->views[i].ask;
-        opt.gradient = with_gradient;
-        opt.accuracy = w->accuracy;
+        const mt_analysis_options opt = mt_view_asks(w, &w->views[i], with_gradient);
         for (int k = 0; k < set->n; k++) {
             mt_analysis *const a = w->views[i].corners[k];
             move(w, set->corners[k].factor);

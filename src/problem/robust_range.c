@@ -91,14 +91,17 @@ static mt_status range_of(const box *b, mt_robust_probe *q, bool proven, mt_robu
 typedef struct modes_of {
     mt_analysis *a;
     int m;
+    int sloped; /* of which slopes are asked for */
 } modes_of;
 
 static mt_status eval_modes(void *context, const double *x, bool with_gradient, double *value,
                             mt_err *err)
 {
     const modes_of *const c = context;
-    const mt_analysis_options opt = {
-        .gradient = with_gradient, .vectors = with_gradient, .accuracy = MT_MODAL_ACCURACY};
+    const mt_analysis_options opt = {.shapes = {.first = c->sloped},
+                                     .gradient = with_gradient,
+                                     .vectors = with_gradient,
+                                     .accuracy = MT_MODAL_ACCURACY};
     MT_TRY(mt_analysis_solve(c->a, x, &opt, err));
     for (int k = 0; k < c->m; k++) {
         const int pos = mt_modal_flexible(&c->a->modes, k + 1);
@@ -119,7 +122,7 @@ static mt_status range_of_modes(const box *b, int view, int modes, mt_analysis *
 {
     char reason[MT_REASON_SIZE] = "";
     mt_enclosure *e = NULL;
-    modes_of c = {.a = a, .m = b->out->n[view]};
+    modes_of c = {.a = a, .m = b->out->n[view], .sloped = modes};
     mt_robust_probe q = {.n = b->w->p->n,
                          .m = c.m,
                          .n_descend = modes,

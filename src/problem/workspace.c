@@ -224,11 +224,28 @@ mt_status mt_workspace_place(mt_workspace *w, const double *t, bool with_gradien
                : mt_fail(err, rc, "%s", own.text);
 }
 
-mt_status mt_view_solve(mt_workspace *w, mt_view_work *view, bool with_gradient, mt_err *err)
+mt_analysis_options mt_view_asks(const mt_workspace *w, const mt_view_work *view,
+                                 bool with_gradient)
 {
     mt_analysis_options opt = view->ask;
     opt.gradient = with_gradient;
     opt.accuracy = w->accuracy;
+    if (!view->all && !opt.vectors) {
+        mt_clears_ask(w->c, (int)(view - w->views), &opt.shapes);
+    }
+    return opt;
+}
+
+void mt_view_ask_all(mt_view_work *view)
+{
+    view->all = true;
+    view->ask.modes = (mt_modal_part){.first = 0};
+    view->ask.shapes = view->ask.modes;
+}
+
+mt_status mt_view_solve(mt_workspace *w, mt_view_work *view, bool with_gradient, mt_err *err)
+{
+    const mt_analysis_options opt = mt_view_asks(w, view, with_gradient);
     view->tracked = false;
     view->solved = false;
     MT_TRY(mt_err_in(err, mt_analysis_solve(view->analysis, w->x, &opt, err),

@@ -15,6 +15,7 @@ typedef struct mt_view_work {
     mt_track *track;         /* [n_named] after mt_view_track */
     mt_analysis *scout;      /* owned; for designs on the way there, made when first needed */
     mt_analysis_options ask; /* as the view's, or more (describe asks for all) */
+    bool all;                /* it asks for all modes (mt_view_ask_all) */
     bool tracked;            /* track belongs to the last solve */
     bool solved;             /* the last solve succeeded */
     int n_corners;           /* analyses that there are */
@@ -81,6 +82,11 @@ mt_status mt_workspace_solve(const mt_workspace *w, const mt_nlp *nlp,
  * mt_view_solve. */
 mt_status mt_workspace_place(mt_workspace *w, const double *t, bool with_gradient, mt_err *err);
 mt_status mt_view_solve(mt_workspace *w, mt_view_work *view, bool with_gradient, mt_err *err);
+/* What an evaluation asks of the view's modes at the present case. */
+mt_analysis_options mt_view_asks(const mt_workspace *w, const mt_view_work *view,
+                                 bool with_gradient);
+/* From now on it asks for all modes and, where it asks for shapes, for all of them. */
+void mt_view_ask_all(mt_view_work *view);
 /* *pos: position of a mode (by index, or by place in the view's list of named ones where mode
  * is 0) in the view's modes; -1: there is none, or the configuration is unstable. */
 mt_status mt_view_position(mt_workspace *w, mt_view_work *view, int mode, int named, int *pos,

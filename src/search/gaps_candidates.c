@@ -62,8 +62,9 @@ mt_status mt_gap_assignment(mt_workspace *w, const double *t, int *below, double
     for (int i = 0; i < w->c->n_clears; i++) {
         const mt_clear *const c = &w->c->clears[i];
         mt_analysis *const a = w->views[c->view].analysis;
-        const mt_analysis_options opt = {.accuracy = 0.0};
+        mt_analysis_options opt = {.accuracy = 0.0};
         mt_err own = {0};
+        mt_clears_ask(&w->p->whole, c->view, &opt.shapes);
         const mt_status rc = mt_analysis_solve(a, w->x, &opt, &own);
         if (rc != MT_OK) {
             *violation = nan("");

@@ -62,6 +62,7 @@ typedef struct walk {
     double shortest;
     int n_edges;
     edge *edges;
+    int highest;     /* mode of an edge */
     sample *samples; /* of one way */
     int n;
     int most; /* positions of one way */
@@ -169,8 +170,10 @@ static mt_status measure(walk *w, sample *s, mt_err *err)
 /* Look at one more position; its place in the samples is w->n - 1. */
 static mt_status look(walk *w, double at, int next, mt_err *err)
 {
-    const mt_analysis_options opt = {
-        .gradient = true, .vectors = true, .accuracy = MT_MODAL_ACCURACY};
+    const mt_analysis_options opt = {.shapes = {.first = w->highest},
+                                     .gradient = true,
+                                     .vectors = true,
+                                     .accuracy = MT_MODAL_ACCURACY};
     sample *const s = &w->samples[w->n++];
     mt_err why = {.code = MT_OK};
     *s = (sample){.at = at,
@@ -293,11 +296,13 @@ static mt_status list_edges(walk *w, const int *below, const mt_way_band *bands,
                             mt_err *err)
 {
     w->n_edges = 0;
+    w->highest = 0;
     w->edges = mt_arena_alloc(w->mem, 2 * (size_t)n, sizeof *w->edges);
     MT_TRY(mt_arena_check(w->mem, err));
     for (int i = 0; i < n; i++) {
         const mt_band *const b = &bands[i].band;
         const int k = below[bands[i].tie];
+        w->highest = k + 1 > w->highest ? k + 1 : w->highest;
         if (k > 0 && b->lower_hz > 0.0) {
             w->edges[w->n_edges++] =
                 (edge){k, false, -1.0, log(b->lower_hz), log(b->base_lower_hz), &bands[i]};

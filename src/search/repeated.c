@@ -22,7 +22,7 @@ static bool alike(const mt_repeated_side *a, const mt_repeated_side *b)
 
 static bool vibrates(const mt_modes *modes, int pos)
 {
-    return pos >= 0 && pos < modes->count && modes->kind[pos] == MT_MODE_FLEXIBLE;
+    return pos >= 0 && pos < modes->shaped && modes->kind[pos] == MT_MODE_FLEXIBLE;
 }
 
 static bool known(const mt_repeated *m, const mt_repeated_side *s)
@@ -175,7 +175,7 @@ static mt_status block_matrices(mt_repeated *m, mt_repeated_block *b, bool turn,
     const int low = mt_modal_flexible(&a->modes, b->index);
     const double z = b->side.moves ? ws->t[ws->p->n] : 0.0;
     const double w0 = 6.283185307179586 * b->side.limit_hz * exp(b->side.sign * z);
-    if (low < 0 || low + r > a->modes.count) {
+    if (low < 0 || low + r > a->modes.shaped) {
         return mt_fail(err, MT_E_DOMAIN, "repeated modes: they are not all there");
     }
     memset(b->b, 0, (size_t)r * (size_t)r * sizeof *b->b);

@@ -7,13 +7,18 @@
  * these by themselves; and how often each stage was done.
  */
 #include <dirent.h>
+#include <math.h>
 #include <stdlib.h>
 
+#include "linalg/kernels.h"
 #include "mechanics/mech.h"
 #include "support/mt_random.h"
 
 enum { STEPS = 5, DESIGNS = 4 };
 
+/* Of slopes: of their terms, and in errors over gaps. */
+static const double FINE = 1e-10;
+static const double SHAPES = 10.0;
 /* Inputs move by at most this part of themselves. */
 static const double MOVES = 0.03;
 
@@ -44,7 +49,8 @@ static void compare(mt_test *t, mt_analysis *a, mt_analysis *b, bool gradient, i
     const mt_reduced q = mt_linear_reduced(b->lin);
     const size_t n = (size_t)r.n;
     const size_t c = (size_t)a->modes.count;
-    if (!CHECK_INT(t, r.n, q.n) || !CHECK_INT(t, a->modes.count, b->modes.count)) {
+    if (!CHECK_INT(t, r.n, q.n) || !CHECK_INT(t, a->modes.count, b->modes.count) ||
+        !CHECK_INT(t, a->modes.shaped, b->modes.shaped)) {
         return;
     }
     CHECK(t, same_bytes(r.k, q.k, n * n));
@@ -56,9 +62,14 @@ static void compare(mt_test *t, mt_analysis *a, mt_analysis *b, bool gradient, i
     CHECK(t, memcmp(a->modes.kind, b->modes.kind, c * sizeof *a->modes.kind) == 0);
     CHECK(t, (a->modes.y == NULL) == (b->modes.y == NULL));
     if (a->modes.y != NULL && b->modes.y != NULL) {
-        CHECK(t, same_bytes(a->modes.y, b->modes.y, n * c));
+        CHECK(t, same_bytes(a->modes.y, b->modes.y, n * (size_t)a->modes.shaped));
     }
-    for (int i = 0; i < a->modes.count && gradient; i++) {
+    for (int i = a->modes.shaped; i < a->modes.count && gradient; i++) {
+        double ignored[MECH_INPUTS];
+        CHECK_INT(t, mt_analysis_dlambda_raw(a, i, ignored, NULL), MT_E_INTERNAL);
+        CHECK_INT(t, mt_analysis_products(a, i, NULL), MT_E_INTERNAL);
+    }
+    for (int i = 0; i < a->modes.shaped && gradient; i++) {
         double sa[MECH_INPUTS] = {0.0};
         double sb[MECH_INPUTS] = {0.0};
         CHECK_INT(t, mt_analysis_dlambda_raw(a, i, sa, NULL), MT_OK);
@@ -92,6 +103,50 @@ static void compare_part(mt_test *t, const mt_modes *part, const mt_modes *whole
     }
 }
 
+/* Distance of a mode to its neighbours. */
+static double gap_beside(const mt_modes *modes, int i)
+{
+    const double below =
+        i > 0 ? modes->lambda[i] - modes->lambda[i - 1] - modes->error[i - 1] : HUGE_VAL;
+    const double above = i + 1 < modes->count
+                             ? modes->lambda[i + 1] - modes->lambda[i] - modes->error[i + 1]
+                             : HUGE_VAL;
+    return fmax(fmin(below, above), 0.0);
+}
+
+/* Slopes of simple modes whose shapes were asked for, where those of all were: to the part of
+ * their terms that the shapes' errors make, error / gap. */
+static void compare_slopes(mt_test *t, mt_analysis *part, mt_analysis *whole, int first,
+                           int n_inputs)
+{
+    for (int i = 1; i <= first && part->with_gradient; i++) {
+        const int a = mt_modal_flexible(&part->modes, i);
+        const int b = mt_modal_flexible(&whole->modes, i);
+        double sa[MECH_INPUTS] = {0.0};
+        double sb[MECH_INPUTS] = {0.0};
+        int size = 1;
+        if (a < 0 || b < 0) {
+            break;
+        }
+        (void)mt_modal_cluster(&whole->modes, b, &size);
+        if (!CHECK_INT(t, mt_analysis_dlambda_raw(part, a, sa, NULL), MT_OK) || size > 1) {
+            continue;
+        }
+        CHECK_INT(t, mt_analysis_dlambda_raw(whole, b, sb, NULL), MT_OK);
+        CHECK_INT(t, mt_analysis_products(whole, b, NULL), MT_OK);
+        const int n = whole->modes.n;
+        const double size_y = mt_norm2(n, mt_modal_shape(&whole->modes, b));
+        const double error = part->modes.error[a] + whole->modes.error[b];
+        const double share = FINE + (SHAPES * error / gap_beside(&whole->modes, b));
+        for (int k = 0; k < n_inputs; k++) {
+            const double terms =
+                mt_norm2(n, whole->dky + ((ptrdiff_t)k * n)) +
+                (whole->modes.lambda[b] * mt_norm2(n, whole->dmy + ((ptrdiff_t)k * n)));
+            CHECK_NEAR_ABS(t, sa[k], sb[k], share * size_y * terms);
+        }
+    }
+}
+
 /* Some inputs move, none does, or an earlier design comes back. */
 static void next_design(mt_random *g, session *s, double *x)
 {
@@ -120,7 +175,8 @@ static void run(mt_test *t, mt_random *g, session *s, int n_steps)
         opt.gradient = mt_random_int(g, 2) == 0;
         opt.vectors = mt_random_int(g, 2) == 0;
         opt.check = mt_random_int(g, 2) == 0;
-        opt.first = mt_random_int(g, 2) == 0 ? 0 : 1 + mt_random_int(g, 8);
+        opt.modes.first = mt_random_int(g, 2) == 0 ? 0 : 1 + mt_random_int(g, 8);
+        opt.shapes.first = mt_random_int(g, 2) == 0 ? 0 : 1 + mt_random_int(g, 8);
         mt_test_row(t, "%s, step %d", mt_analysis_configuration(s->s.a), step);
         if (!CHECK_INT(t,
                        mt_analysis_new(s->model, s->configuration, s->s.n, s->parameter,
@@ -131,10 +187,13 @@ static void run(mt_test *t, mt_random *g, session *s, int n_steps)
         const mt_status had = mt_analysis_solve(s->s.a, x, &opt, &err);
         if (CHECK_INT(t, mt_analysis_solve(fresh, x, &opt, &other), had) && had == MT_OK) {
             compare(t, s->s.a, fresh, opt.gradient, s->s.n);
-            const int first = opt.first;
-            opt.first = 0;
+            const int first = opt.modes.first;
+            const int shaped = opt.shapes.first;
+            opt.modes.first = 0;
+            opt.shapes.first = 0;
             if (CHECK_INT(t, mt_analysis_solve(fresh, x, &opt, &other), MT_OK)) {
                 compare_part(t, &s->s.a->modes, &fresh->modes, first);
+                compare_slopes(t, s->s.a, fresh, shaped > 0 ? shaped : first, s->s.n);
             }
         }
         CHECK(t, had == MT_OK || strcmp(err.text, other.text) == 0);

@@ -62,7 +62,7 @@ static void evaluate(mt_analysis *a, const double *k, bool with_gradient, figure
 {
     mt_err err = {.text = ""};
     const mt_analysis_options opt = {
-        .first = XB_MODES, .gradient = with_gradient, .accuracy = MT_MODAL_ACCURACY};
+        .modes.first = XB_MODES, .gradient = with_gradient, .accuracy = MT_MODAL_ACCURACY};
     stop("solve", mt_analysis_solve(a, k, &opt, &err), &err);
     for (int mode = 0; mode < XB_MODES; mode++) {
         const int pos = mt_modal_flexible(&a->modes, mode + 1);

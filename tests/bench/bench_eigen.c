@@ -50,7 +50,7 @@ static void read_modes(const mt_modes *modes, double *hz)
 static void run_evaluation(void *context, int call)
 {
     const bench *const b = context;
-    const mt_analysis_options opt = {.first = MODES, .accuracy = MT_MODAL_ACCURACY};
+    const mt_analysis_options opt = {.modes.first = MODES, .accuracy = MT_MODAL_ACCURACY};
     const double at = b->at * (1.0 + (1e-4 * (double)(call % 1000)));
     mt_err err = {.text = ""};
     stop("evaluation", mt_analysis_solve(b->a, &at, &opt, &err), &err);
@@ -71,7 +71,7 @@ static void solve_dense(bench *b, bool accurate, int first, mt_modes *modes)
     mt_mass_factor mass;
     mt_err err = {.text = ""};
     opt.n_rigid = b->a->n_rigid;
-    opt.first = first;
+    opt.modes.first = first;
     opt.accuracy = accurate ? MT_MODAL_ACCURACY : 0.0;
     mt_arena_clear(&b->mem);
     stop("mass", mt_modal_factor_mass(r.n, r.m, &b->mem, &mass, &err), &err);

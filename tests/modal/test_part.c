@@ -97,15 +97,20 @@ static void make(mt_random *g, system *s)
     }
 }
 
+static bool solve_with(mt_test *t, const system *s, const mt_modal_options *opt, mt_modes *out)
+{
+    mt_mass_factor mass;
+    mt_err err = {.text = ""};
+    return CHECK_INT(t, mt_modal_factor_mass(s->n, s->m, &mem, &mass, &err), MT_OK) &&
+           CHECK_INT(t, mt_modal_solve(s->k, &mass, NULL, opt, &mem, out, &err), MT_OK);
+}
+
 static bool solve(mt_test *t, const system *s, int first, bool vectors, mt_modes *out)
 {
     mt_modal_options opt = mt_modal_options_default();
-    mt_mass_factor mass;
-    mt_err err = {.text = ""};
-    opt.first = first;
+    opt.modes.first = first;
     opt.vectors = vectors;
-    return CHECK_INT(t, mt_modal_factor_mass(s->n, s->m, &mem, &mass, &err), MT_OK) &&
-           CHECK_INT(t, mt_modal_solve(s->k, &mass, NULL, &opt, &mem, out, &err), MT_OK);
+    return solve_with(t, s, &opt, out);
 }
 
 static void compare(mt_test *t, const mt_modes *part, const mt_modes *whole, int first)
@@ -155,13 +160,79 @@ static void modal__a_part_is_what_the_whole_has(mt_test *t)
     }
 }
 
+/* How many of the lowest hold all of a part: with all of its last cluster. */
+static int end_of(const mt_modes *whole, mt_modal_part part)
+{
+    int end = 0;
+    for (int i = 0, seen = 0; i < whole->count; i++) {
+        const bool flexible = whole->kind[i] == MT_MODE_FLEXIBLE;
+        seen += flexible ? 1 : 0;
+        const bool asked = seen <= part.first || whole->lambda[i] <= part.up_to;
+        end = !flexible || asked ? i + 1 : end;
+    }
+    while (end > 0 && end < whole->count && whole->cluster[end] == whole->cluster[end - 1]) {
+        end++;
+    }
+    return end;
+}
+
+/* None, or one between modes that are not repeated: which side each is on is sure. */
+static double any_frequency(mt_random *g, const mt_modes *whole)
+{
+    int i = mt_random_int(g, whole->count);
+    while (i + 1 < whole->count && whole->cluster[i + 1] == whole->cluster[i]) {
+        i++;
+    }
+    const double next = i + 1 < whole->count ? whole->lambda[i + 1] : 2.0 * whole->lambda[i];
+    return mt_random_int(g, 4) == 0 ? 0.0 : 0.5 * (whole->lambda[i] + next);
+}
+
+static void modal__shapes_of_a_part_stand_beside_all_frequencies(mt_test *t)
+{
+    mt_random g = mt_random_seed(43);
+    static system s;
+    long fewer = 0;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        mt_modal_options opt = mt_modal_options_default();
+        mt_modes whole;
+        mt_modes part;
+        make(&g, &s);
+        const mt_arena_mark mark = mt_arena_get_mark(&mem);
+        mt_test_row(t, "trial %d, n = %d", trial, s.n);
+        if (!solve_with(t, &s, &opt, &whole)) {
+            continue;
+        }
+        opt.shapes.first = mt_random_int(&g, 2) * mt_random_int(&g, MOST / 2);
+        opt.shapes.up_to = any_frequency(&g, &whole);
+        const bool all = opt.shapes.first == 0 && opt.shapes.up_to == 0.0;
+        if (solve_with(t, &s, &opt, &part)) {
+            const int end = all ? whole.count : end_of(&whole, opt.shapes);
+            CHECK_INT(t, part.count, whole.count);
+            CHECK_INT(t, part.shaped, end);
+            CHECK(t, part.shaped == part.count || mt_modal_shape(&part, part.shaped) == NULL);
+            for (int i = 0; i < part.count; i++) {
+                CHECK_NEAR_ABS(t, part.lambda[i], whole.lambda[i],
+                               part.error[i] + whole.error[i]);
+                CHECK_INT(t, part.kind[i], whole.kind[i]);
+            }
+            for (int i = 0; i < part.shaped; i++) {
+                CHECK(t, part.residual[i] <= RATIO * t->tol_scale);
+                CHECK(t, part.orthogonality[i] <= RATIO * t->tol_scale);
+            }
+            fewer += part.shaped < part.count ? 1 : 0;
+        }
+        mt_arena_rewind(&mem, mark);
+    }
+    CHECK(t, fewer > TRIALS / 2);
+}
+
 /* Solves of a part, memory failing at the nth request or never. */
 static mt_status solve_quietly(const system *s, mt_arena *from)
 {
     mt_modal_options opt = mt_modal_options_default();
     mt_mass_factor mass;
     mt_modes modes;
-    opt.first = 5;
+    opt.modes.first = 5;
     MT_TRY(mt_modal_factor_mass(s->n, s->m, from, &mass, NULL));
     return mt_modal_solve(s->k, &mass, NULL, &opt, from, &modes, NULL);
 }
@@ -204,6 +275,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         MT_TEST(modal__a_part_is_what_the_whole_has),
+        MT_TEST(modal__shapes_of_a_part_stand_beside_all_frequencies),
         MT_TEST(modal__a_part_needs_no_heap_and_reports_failing_memory)};
     const int failed = mt_arena_init(&mem, 0, NULL) != MT_OK
                            ? 1
