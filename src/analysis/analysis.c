@@ -64,6 +64,7 @@ static mt_status open_at(mt_analysis *a, const double *at, int first, mt_analysi
     a->n_rigid = a->modes.n_rigid;
     a->n_null = a->modes.n_rigid;
     a->n_most = a->modes.all;
+    a->graded = a->modes.from_factor;
     *out = a;
     return MT_OK;
 }
@@ -181,7 +182,8 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                                         .interrupt = a->sys->model->interrupt};
     MT_TRY(mt_modal_solve(r->k, &a->mass, &factor, options, &a->mem, &a->modes, err));
     const int all = a->modes.count;
-    const int worth = r->loaded || bounds ? all : mt_modal_doubtful(&a->modes);
+    const bool whole = r->loaded || bounds || options->judged;
+    const int worth = whole ? all : mt_modal_doubtful(&a->modes);
     const int judged = worth < a->modes.shaped ? worth : a->modes.shaped;
     if (judged == 0) {
         return MT_OK;
@@ -227,6 +229,10 @@ static mt_status find_modes(mt_analysis *a, const mt_reduced *r, mt_modal_option
 {
     MT_TRY(refresh_mass(a, err));
     mt_status rc = solve_and_judge(a, r, options, bounds, err);
+    if (rc == MT_OK && options->judged && !a->modes.from_factor && mt_modal_rough(&a->modes)) {
+        options->judged = false;
+        rc = solve_and_judge(a, r, options, bounds, err);
+    }
     if (rc == MT_OK && a->modes.n_held > 0 && a->recount) {
         options->n_rigid = -1;
         rc = solve_and_judge(a, r, options, bounds, err);
@@ -262,9 +268,24 @@ static bool is_same(const struct mt_modes_key *had, const struct mt_modes_key *n
     return had->stiffness_version == now->stiffness_version &&
            had->mass_version == now->mass_version && had->n_rigid == now->n_rigid &&
            same_part(&had->modes, &now->modes) && same_part(&had->shapes, &now->shapes) &&
-           had->recount == now->recount &&
-           had->vectors == now->vectors && had->accuracy == now->accuracy &&
-           had->bounds == now->bounds && (had->check || !now->check);
+           had->recount == now->recount && had->vectors == now->vectors &&
+           had->accuracy == now->accuracy && had->bounds == now->bounds &&
+           (had->check || !now->check);
+}
+
+static bool is_part(const mt_modal_part *part)
+{
+    return part->first > 0 || part->up_to > 0.0;
+}
+
+/*
+ * Where the matrices alone are not enough, a few lowest modes are had for less than by the
+ * factor of all of them: from their shapes, by energies.
+ */
+static bool is_judged(const mt_analysis *a, const mt_analysis_options *opt, int n)
+{
+    const bool few = is_part(&opt->modes) || is_part(&opt->shapes);
+    return few && a->graded && opt->accuracy > 0.0 && !opt->bounds && n >= MT_MODAL_PART_ORDER;
 }
 
 /* The stage modes. Where it fails there are none: not those of another design. */
@@ -278,8 +299,9 @@ static mt_status run_modes(mt_analysis *a, const mt_analysis_options *opt, const
     options.modes = opt->modes;
     options.shapes = opt->shapes;
     /* where K is no sum of squares, shapes say what rounding leaves of its sign */
-    options.vectors = opt->vectors || opt->gradient || r.g != NULL;
     options.accuracy = opt->accuracy;
+    options.judged = is_judged(a, opt, r.n);
+    options.vectors = opt->vectors || opt->gradient || r.g != NULL || options.judged;
     options.check = opt->check;
     const struct mt_modes_key key = {.stiffness_version = r.stiffness_version,
                                      .mass_version = r.mass_version,

@@ -48,6 +48,9 @@ typedef struct mt_analysis {
     /* where fewer directions are free than n_rigid says, count that design by itself; else that
      * is MT_E_DOMAIN */
     bool recount;
+    /* the matrices alone were not enough at the first design: some stiffness lies far above the
+     * lowest modes */
+    bool graded;
     bool with_gradient;
     double *dky; /* work, n x n_inputs, after a solve with gradient */
     double *dmy;
@@ -63,7 +66,7 @@ typedef struct mt_analysis_options {
     bool gradient;        /* derivatives will be asked for (vectors come with them) */
     bool vectors;         /* shapes will be asked for */
     double accuracy;      /* mt_modal_options */
-    bool check;      /* residual and orthogonality of each mode */
+    bool check;           /* residual and orthogonality of each mode */
     /* the error of each mode is asked for (with vectors): without this it leaves out what
      * rounding has made of the rows that K and M are sums of, which counts next to dead centres
      * and where joints almost depend on each other */

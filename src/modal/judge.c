@@ -159,6 +159,16 @@ int mt_modal_doubtful(const mt_modes *modes)
     return count;
 }
 
+bool mt_modal_rough(const mt_modes *modes)
+{
+    bool rough = false;
+    for (int i = 0; i < modes->shaped; i++) {
+        rough = rough || (modes->kind[i] == MT_MODE_FLEXIBLE &&
+                          !(modes->error[i] < FINE * modes->lambda[i]));
+    }
+    return rough;
+}
+
 /* Where they are surer: group by group, with the errors and gaps that were there before. */
 static void take_quotients(mt_mode_energies *e, mt_modes *modes)
 {

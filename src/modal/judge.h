@@ -40,6 +40,9 @@ void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes);
  * last mode of which the kind could be wrong or the error is above 1e-9 of its lambda. */
 int mt_modal_doubtful(const mt_modes *modes);
 
+/* Is the error of a vibration that has a shape above 1e-9 of its lambda? */
+bool mt_modal_rough(const mt_modes *modes);
+
 /* Neighbours that stand too close for a gap between them, up to eight: group[count], the first
  * mode of the group that each belongs to. Returns how many pairs i < k of one group there are.
  */

@@ -32,13 +32,6 @@ double mt_modal_tolerance(int n);
  * mechanisms. */
 double mt_modal_relative(int n);
 
-/*
- * Vectors of a part cost less than those of all from this order on, where the part is so small:
- * medians of one core with 8 vectors, dsyevd against dsytrd + dsterf + dstein + dormtr [us]:
- * n = 11: 5.7, 10.9; 24: 28, 26; 48: 103, 73; 100: 416, 237; 300: 4546, 2138.
- */
-enum { MT_MODAL_PART_ORDER = 32, MT_MODAL_PART = 3 };
-
 /* Fill lambda, y (when there), n_condensed..., scale from K restricted to what has mass. Kinds,
  * clusters, sign and checks come later. later (may be NULL) is filled where y is left to
  * mt_modal_plain_lowest, which makes what out->shaped says then; else later->n is 0. */

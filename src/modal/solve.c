@@ -42,6 +42,9 @@ static mt_status claim(const mt_mass_factor *mass, const mt_modal_options *opt, 
     return mt_arena_check(mem, err);
 }
 
+/* Errors of eigenvalues that quotients make the 1e-9 of mt_modal_rough of, by the square. */
+static const double SHAPES = 3e-5;
+
 /* Is the plain result good enough? Signs and ranks are in doubt where a factor (K semidefinite
  * by construction) shows instability, rigid-body modes that nobody announced, or announced ones
  * that stiffness seems to hold. */
@@ -52,6 +55,9 @@ static bool needs_factor(const mt_modes *modes, const mt_modal_options *opt)
         return true;
     }
     const int lowest = mt_modal_flexible(modes, 1);
+    if (lowest >= 0 && opt->judged) {
+        return modes->error_bound > SHAPES * modes->lambda[lowest];
+    }
     return lowest >= 0 && DBL_EPSILON * modes->scale > opt->accuracy * modes->lambda[lowest];
 }
 

@@ -37,6 +37,13 @@ typedef struct mt_modal_part {
     double up_to; /* [rad^2/s^2] */
 } mt_modal_part;
 
+/*
+ * Vectors of a part cost less than those of all from this order on, where the part is so small:
+ * medians of one core with 8 vectors, dsyevd against dsytrd + dsterf + dstein + dormtr [us]:
+ * n = 11: 5.7, 10.9; 24: 28, 26; 48: 103, 73; 100: 416, 237; 300: 4546, 2138.
+ */
+enum { MT_MODAL_PART_ORDER = 32, MT_MODAL_PART = 3 };
+
 typedef struct mt_modal_options {
     int n_rigid;          /* -1: decide here; else the number of rigid-body modes */
     mt_modal_part modes;  /* what is asked for; frequencies alone cost the same for all */
@@ -44,6 +51,8 @@ typedef struct mt_modal_options {
     mt_modal_part shapes; /* of those: whose; and of all whose sign is in doubt */
     double accuracy; /* > 0, with a factor: use it whenever eps * s / lambda_lowest_flexible
                            exceeds this, or signs and ranks are in doubt */
+    bool judged;     /* mt_modal_judge follows, to which shapes are enough: their errors,
+                        error_i / gap, enter the quotients with their square */
     bool check;      /* compute residual and orthogonality (with vectors) */
 } mt_modal_options;
 /* n_rigid -1, all modes, vectors and check on, accuracy 0. */
