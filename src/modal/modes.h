@@ -26,17 +26,19 @@ typedef struct mt_modes {
     /* [all] ascending [rad^2/s^2]; beyond count as the matrices say, not judged */
     double *lambda;
     mt_mode_kind *kind; /* [count] */
-    int *cluster;     /* [count] number of the cluster of repeated modes that a mode belongs to
-                     (from 0, ascending) */
-    double *y;        /* n x shaped, mass-normalised, sign by mt_modal_fix_sign; NULL without
-                  vectors */
-    double *residual; /* [shaped] ||K y - lambda M y|| / ((||K|| + |lambda| ||M||) ||y|| n eps)
-                       * in coordinates scaled to m_ii = 1: O(1) is perfect; NULL without
-                       * vectors and check */
-    double
-        *orthogonality; /* [shaped] max_j |y_i^T M y_j - delta_ij| / (n eps); NULL likewise */
-    double *error;      /* [all] |error of lambda_i| <= error_i: backward error, generously
-                           counted, or what mt_modal_judge made of it */
+    /* [count] number of the cluster of repeated modes that a mode belongs to (from 0,
+     * ascending) */
+    int *cluster;
+    /* n x shaped, mass-normalised, sign by mt_modal_fix_sign; NULL without vectors */
+    double *y;
+    /* [shaped] ||K y - lambda M y|| / ((||K|| + |lambda| ||M||) ||y|| n eps) in coordinates
+     * scaled to m_ii = 1: O(1) is perfect; NULL without vectors and check */
+    double *residual;
+    /* [shaped] max_j |y_i^T M y_j - delta_ij| / (n eps); NULL likewise */
+    double *orthogonality;
+    /* [all] |error of lambda_i| <= error_i: backward error, generously counted, or what
+     * mt_modal_judge made of it */
+    double *error;
     double error_bound; /* |error of lambda_i| <= error_bound + error_relative * |lambda_i|, for
                            certificates: backward error, generously counted */
     double error_relative;
