@@ -10,6 +10,7 @@
 #include "nlp/judge.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "nlp/polish.h"
@@ -32,6 +33,8 @@ static const double SETTLED_GAIN = 1e-6;
 /* A variable nearer to a mark than this, in widths of its bounds, stands there but for rounding
  * of the search. */
 static const double ON_MARK = 1e-12;
+/* Ends of a search that was ended. */
+enum { ENDED_MOST = 1000 };
 /* Violation, in tolerances, that counts as none, and as no more than it was. */
 static const double STILL_MET = 1e-4;
 
@@ -60,17 +63,41 @@ static void count_roots(const mt_nlp_engine *e, const mt_nlp_ends *all, mt_nlp_r
     out->missing = isolated ? 0.5 * out->n_once * (out->n_once - 1) / (f2 + 1.0) : nan("");
 }
 
-/* Insertion sort, stable: what is equal keeps the order of the starts. */
-static void rank(mt_nlp_ends *all)
+typedef struct ranked {
+    mt_nlp_local end;
+    int at; /* its place before */
+} ranked;
+
+static int compare_ranked(const void *a, const void *b)
 {
-    for (int i = 1; i < all->count; i++) {
-        const mt_nlp_local end = all->at[i];
-        int k = i;
-        for (; k > 0 && mt_nlp_better(end.p, all->at[k - 1].p); k--) {
-            all->at[k] = all->at[k - 1];
-        }
-        all->at[k] = end;
+    const ranked *const x = a;
+    const ranked *const y = b;
+    return mt_nlp_better(x->end.p, y->end.p)   ? -1
+           : mt_nlp_better(y->end.p, x->end.p) ? 1
+                                               : (x->at > y->at) - (x->at < y->at);
+}
+
+/* The best first; what is equal keeps the order of the starts. Of a search that was ended, in
+ * which thousands of starts may have values and no more, the best: nobody waits for the rest.
+ */
+static void rank(mt_nlp_engine *e, mt_nlp_ends *all)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    ranked *const list = mt_arena_alloc(&e->scratch, (size_t)all->count, sizeof *list);
+    if (!mt_nlp_has_room(e, &e->scratch)) {
+        return;
     }
+    for (int i = 0; i < all->count; i++) {
+        list[i] = (ranked){all->at[i], i};
+    }
+    if (all->count > 1) {
+        qsort(list, (size_t)all->count, sizeof *list, compare_ranked);
+    }
+    all->count = e->ended && all->count > ENDED_MOST ? ENDED_MOST : all->count;
+    for (int i = 0; i < all->count; i++) {
+        all->at[i] = list[i].end;
+    }
+    mt_arena_rewind(&e->scratch, mark);
 }
 
 /* Ranked compromises: among equally good ones the objective decides. */
@@ -224,7 +251,7 @@ static bool is_singular(mt_nlp_engine *e, const mt_nlp_point *p, bool merged)
 
 void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_result *out)
 {
-    rank(all);
+    rank(e, all);
     drop_useless(all);
     out->compromise = all->count > 0 && !mt_nlp_feasible(all->at[0].p);
     if (all->count > 0 && all->at[0].p != all->directed &&
@@ -234,7 +261,7 @@ void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_resu
     for (int i = 0; i < all->count && out->n_undetermined > 0; i++) {
         mt_nlp_pull_back(e, out, all->at[i].p);
     }
-    rank(all);
+    rank(e, all);
     merge(e, all);
     if (out->compromise && e->n_free > 0) {
         const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
@@ -242,7 +269,7 @@ void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_resu
             settle(e, all->at[i].p);
             mt_arena_rewind(&e->scratch, mark);
         }
-        rank(all);
+        rank(e, all);
         merge(e, all);
         rank_equals(all);
     }

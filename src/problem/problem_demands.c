@@ -246,9 +246,9 @@ static void ask_view(const mt_problem *p, int index)
     for (int i = 0; i < p->n_clears; i++) {
         all = all || p->clears[i].view == index;
     }
-    const mt_modal_part part = {.first = first > 0 ? first + MT_NEXT_MOST : 0};
-    view->ask.shapes = view->ask.vectors ? (mt_modal_part){.first = 0} : part;
-    view->ask.modes = all ? (mt_modal_part){.first = 0} : view->ask.shapes;
+    const int part = first > 0 && !view->ask.vectors ? first + MT_NEXT_MOST : 0;
+    view->ask.shapes = (mt_modal_part){.first = part};
+    view->ask.modes = (mt_modal_part){.first = all ? 0 : part};
 }
 
 void mt_problem_ask(mt_problem *p)
