@@ -7,11 +7,12 @@
  *                                                their elastic stiffness), so that what hangs
  *                                                on springs comes along, by
  *     [K A^T; A 0] [dq/ds; .] = [0; e_d]         where that is regular beyond doubt;
- * a step h goes to q (+) h dq/ds and is closed again by Newton from there. The correction is of
- * order h^2 on a smooth branch; where it is not small beside the step, or Newton does not close
- * the mechanism, the step is halved, so that the way never leaves its branch. Towards a limit
- * position (a toggle) s -> s*, |dq/ds| grows as (s* - s)^-1/2: no step closes beyond it, and
- * halving closes in on it geometrically.
+ * a step h goes to q (+) h dq/ds and is closed again by Newton from there (briefly: by the
+ * smallest steps, where they converge as they should, newton_close.c). The correction is of
+ * order h^2 on a smooth branch; where it is not small beside the step, or Newton does not
+ * close the mechanism, the step is halved, so that the way never leaves its branch. Towards a
+ * limit position (a toggle) s -> s*, |dq/ds| grows as (s* - s)^-1/2: no step closes beyond it,
+ * and halving closes in on it geometrically.
  */
 #include "mechanics/drive.h"
 
@@ -28,6 +29,9 @@ static const double BODY_STEP = 0.3;
 /* A step is taken where the way back to the constraints is at most this part of it: on one
  * branch it is about h |q''| / (2 |q'|) of it. */
 static const double CORRECTION = 0.3;
+/* Gap [model lengths] that may be left where the walk only passes: far below the corrections
+ * that tell a branch, and the next closure takes it away. */
+static const double PASSING = 1e-6;
 /* Steps shorter than this part of DRIVE_STEP are not tried: the limit is then known to 1e-8
  * rad. */
 static const double SHORTEST = 1e-7;
@@ -46,6 +50,7 @@ typedef struct walk {
     const mt_system *sys;
     const mt_data *data;
     mt_placement *at; /* where it stands */
+    bool brief;       /* closures by the smallest steps */
     int iterations;
     mt_arena *mem;
     int row;        /* of the drive */
@@ -186,7 +191,16 @@ static mt_status try_step(walk *w, double to, double length, bool *good, mt_err 
                                        .drawn = w->guess,
                                        .m = sys->n_constraints,
                                        .trim = false};
-    const mt_status rc = mt_newton_solve(&problem, &trial, w->mem, &stage, &w->why);
+    bool closed = false;
+    mt_status rc = MT_OK;
+    if (w->brief) {
+        rc = mt_newton_close(&problem, to == w->goal ? 0.0 : PASSING, &trial, &w->iterations,
+                             &closed, w->mem, &w->why);
+    }
+    if (!closed && !mt_is_final(rc)) {
+        memcpy(w->trial, w->guess, (size_t)sys->n_bodies * sizeof *w->trial);
+        rc = mt_newton_solve(&problem, &trial, w->mem, &stage, &w->why);
+    }
     w->iterations += stage.iterations;
     mt_arena_rewind(w->mem, mark);
     if (mt_is_final(rc)) {
@@ -343,10 +357,10 @@ static mt_status refuse_far(const walk *w, mt_err *err)
                    joint->angle ? "rad" : "m");
 }
 
-mt_status mt_drive_solve(const mt_data *data, mt_placement *at, int *iterations, mt_arena *mem,
-                         mt_err *err)
+mt_status mt_drive_solve(const mt_data *data, bool brief, mt_placement *at, int *iterations,
+                         mt_arena *mem, mt_err *err)
 {
-    walk w = {.sys = data->sys, .data = data, .at = at, .mem = mem};
+    walk w = {.sys = data->sys, .data = data, .at = at, .brief = brief, .mem = mem};
     MT_TRY(walk_init(&w, err));
     if (!(fabs(w.goal) <= mt_drive_reach(w.sys))) {
         return refuse_far(&w, err);

@@ -12,9 +12,12 @@
  * MOST_STEPS (drive.c) do not get there, at a limit position, in a position that the other
  * joints hold, and where they do not stay closed; MT_E_DEAD_CENTRE from where the drawing is
  * one; MT_E_MEMORY.
+ *     brief: the mechanism is closed where that takes the smallest steps, instead of next to
+ * where each step led: another place to second order, on the same branch, for a quarter of the
+ * work.
  */
-mt_status mt_drive_solve(const mt_data *data, mt_placement *at, int *iterations, mt_arena *mem,
-                         mt_err *err);
+mt_status mt_drive_solve(const mt_data *data, bool brief, mt_placement *at, int *iterations,
+                         mt_arena *mem, mt_err *err);
 
 /* The farthest position that the driven joint is brought to: MT_DRIVE_REACH rad, or model
  * lengths [m]. */

@@ -58,5 +58,11 @@ mt_status mt_newton_gap(const mt_newton_problem *problem, const mt_placement *at
  * MT_E_DEAD_CENTRE, MT_E_MEMORY, MT_E_INTERRUPTED. */
 mt_status mt_newton_solve(const mt_newton_problem *problem, mt_placement *at, mt_arena *mem,
                           mt_stage *stage, mt_err *err);
+/* Close the first m constraints by the smallest steps from `at`, which is moved: to a gap of
+ * `enough` model lengths, 0: to rounding. *closed false: the steps do not converge as they do
+ * beside a regular position, equations depend on others, or sparse equations do not pay; `at`
+ * is then anywhere. *iterations grows. (newton_close.c) Fails: MT_E_MEMORY. */
+mt_status mt_newton_close(const mt_newton_problem *problem, double enough, mt_placement *at,
+                          int *iterations, bool *closed, mt_arena *mem, mt_err *err);
 
 #endif

@@ -76,6 +76,55 @@ static mt_status anchor_loose_freedoms(mt_state *p, const mt_data *data, mt_aren
     return rc == MT_E_MEMORY ? mt_fail_memory(err) : MT_OK;
 }
 
+/* Of an equilibrium that does not depend on where exactly the walk came to: plain Newton finds
+ * it in so few iterations, no further than one of its steps may be from there [model lengths,
+ * rad]. */
+enum { DIRECT_ITERATIONS = 8 };
+static const double DIRECT = 0.3;
+
+/* A minimum of the energy that stands by itself, straight from where the drive came to? */
+static bool is_direct(const mt_state *p)
+{
+    const mt_stage *const stage = &p->equilibrium;
+    return stage->active && stage->solver.sparse && stage->null_freedoms == 0 &&
+           mt_saddle_convex(&stage->solver.saddle) && stage->iterations <= DIRECT_ITERATIONS &&
+           mt_poses_distance(p->sys, p->driven.pose, p->at.pose) <= DIRECT;
+}
+
+/* From `from` to the driven position, and to the equilibrium beside it. */
+static mt_status drive(mt_state *p, const mt_data *data, const mt_placement *from, bool brief,
+                       mt_arena *mem, mt_err *err)
+{
+    mt_placement_copy(p->sys, from, &p->driven);
+    MT_TRY(mt_drive_solve(data, brief, &p->driven, &p->iterations, mem, err));
+    mt_placement_copy(p->sys, &p->driven, &p->at);
+    return balance(p, data, mem, err);
+}
+
+/*
+ * Of walks to the same place on the same branch the brief one is enough where the equilibrium
+ * is direct: then it is the same one, from wherever beside it Newton begins. All else (saddles,
+ * freedoms without stiffness, energies that are followed downhill, and whatever fails) may
+ * depend on the place, and is found with the exact one.
+ */
+static mt_status drive_from_reference(mt_state *p, const mt_data *data, mt_arena *mem,
+                                      mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    mt_err own = {0};
+    const mt_status rc = drive(p, data, &p->reference, true, mem, &own);
+    if (rc == MT_OK && is_direct(p)) {
+        return MT_OK;
+    }
+    if (rc == MT_E_INTERRUPTED || mt_is_final(rc)) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    mt_arena_rewind(mem, mark);
+    p->iterations = 0;
+    p->equilibrium = (mt_stage){.active = false};
+    return drive(p, data, &p->reference, false, mem, err);
+}
+
 /* Angle of R0^T R: sin from its skew part, cos from its trace. */
 static double turn_between(const mt_pose *from, const mt_pose *to)
 {
@@ -137,11 +186,9 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placem
     mt_data_rest(data, out->reference.pose);
     mt_placement_copy(sys, &out->reference, &out->at);
     if (sys->driven) {
-        mt_placement_copy(sys, start != NULL ? start : &out->reference, &out->driven);
-        MT_TRY(mt_drive_solve(data, &out->driven, &out->iterations, mem, err));
-        mt_placement_copy(sys, &out->driven, &out->at);
-    }
-    if (sys->loaded || sys->driven) {
+        MT_TRY(start != NULL ? drive(out, data, start, false, mem, err)
+                             : drive_from_reference(out, data, mem, err));
+    } else if (sys->loaded) {
         MT_TRY(balance(out, data, mem, err));
     }
     if (sys->driven && out->equilibrium.null_freedoms > 0) {
