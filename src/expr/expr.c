@@ -15,10 +15,13 @@
 #include "base/text.h"
 #include "expr/names.h"
 #include "expr/op.h"
+#include "expr/unit_words.h"
 
 typedef struct parser {
     const char *text;
-    size_t at; /* next byte */
+    size_t at;         /* next byte */
+    size_t number;     /* of the last number */
+    size_t number_end; /* 0: none yet */
     int depth;
     int length; /* of code */
     mt_expr_lookup lookup;
@@ -281,6 +284,8 @@ static mt_status parse_number(parser *p)
     if (!isfinite(value)) {
         return bad_number(p, from, "is too large for a number");
     }
+    p->number = from;
+    p->number_end = p->at;
     return emit(p, MT_OP_CONST, -1, value);
 }
 
@@ -345,6 +350,28 @@ static mt_status parse_sum(parser *p)
     return MT_OK;
 }
 
+/* What is left is no part of the expression: the unit of a number, perhaps. */
+static mt_status left_over(parser *p)
+{
+    char meant[2 * SHOWN];
+    size_t end = p->at;
+    bool apart = p->number_end > 0;
+    for (size_t i = p->number_end; i < p->at; i++) {
+        apart = apart && p->text[i] == ' ';
+    }
+    while (is_name_part(p->text[end])) {
+        end++;
+    }
+    if (apart && p->number_end - p->number < SHOWN &&
+        mt_unit_meant(p->text + p->number, p->number_end - p->number, p->text + p->at,
+                      end - p->at, meant, sizeof meant)) {
+        return mt_fail(p->err, MT_E_INPUT,
+                       "at character %d: \"%.*s\" is no part of a number; did you mean %s?",
+                       character(p, p->at), shown(end - p->at), p->text + p->at, meant);
+    }
+    return expected(p, "an operator or the end");
+}
+
 mt_status mt_expr_parse(const char *text, mt_expr_lookup lookup, const void *context,
                         const char *const *names, int n_names, mt_arena *mem, mt_expr *out,
                         mt_err *err)
@@ -356,6 +383,8 @@ mt_status mt_expr_parse(const char *text, mt_expr_lookup lookup, const void *con
     parser p;
     p.text = text;
     p.at = 0;
+    p.number = 0;
+    p.number_end = 0;
     p.depth = 0;
     p.length = 0;
     p.lookup = lookup;
@@ -365,7 +394,7 @@ mt_status mt_expr_parse(const char *text, mt_expr_lookup lookup, const void *con
     p.err = err;
     MT_TRY(parse_sum(&p));
     if (peek(&p) != '\0') {
-        return expected(&p, "an operator or the end");
+        return left_over(&p);
     }
     mt_code *const code = mt_arena_alloc(mem, (size_t)p.length, sizeof *code);
     MT_TRY(mt_arena_check(mem, err));

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "io/json_print.h"
+#include "io/synonyms.h"
 
 static const char *const KEY_TEXTS[] = {
 #define MT_KEY_TYPE_TEXT(id, types, text) text,
@@ -33,7 +34,7 @@ bool mt_reader_type(mt_reader *r, mt_addr value, mt_key_type type)
 }
 
 /* The nearest key; else one that only adds a unit or the like to the name ("mass" for
- * "mass_kg"). */
+ * "mass_kg"), or for which it is another word. */
 static const char *nearest_key(const char *name, const char *const *names, int n)
 {
     const char *const near = mt_text_nearest(name, names, n);
@@ -43,7 +44,7 @@ static const char *nearest_key(const char *name, const char *const *names, int n
             return names[i];
         }
     }
-    return near;
+    return near != NULL ? near : mt_synonym(name, names, n);
 }
 
 static void unknown_member(mt_reader *r, mt_addr member, const mt_key_table *table)
@@ -291,8 +292,9 @@ int mt_reader_choice(mt_reader *r, mt_addr value, const char *what, const char *
             return i;
         }
     }
-    const char *const near =
-        mt_diag_may_suggest(r->diags) ? mt_text_nearest(s, names, n) : NULL;
+    const bool may = mt_diag_may_suggest(r->diags);
+    const char *const other = may ? mt_synonym(s, names, n) : NULL;
+    const char *const near = other == NULL && may ? mt_text_nearest(s, names, n) : other;
     if (near != NULL) {
         mt_diag_structure(r->diags, value, "unknown %s \"%s\"; did you mean \"%s\"?", what, s,
                           near);

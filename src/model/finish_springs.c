@@ -70,8 +70,10 @@ static void check_torsion(mt_finish *f, const mt_spring *s)
     if (bodies == joint || (bodies && f->m->dimension == 3)) {
         mt_diag_error(f->d, s->name.addr, "a torsion %s needs %s",
                       s->damper ? "damper" : "spring",
-                      f->m->dimension == 3 ? "\"joint\", not \"bodies\""
-                                           : "either \"joint\" or \"bodies\"");
+                      f->m->dimension == 3
+                          ? "\"joint\", not \"bodies\": in three dimensions it acts about the "
+                            "axis of a revolute joint; without one, a bushing holds two bodies"
+                          : "either \"joint\" or \"bodies\"");
     }
     check_torsion_joint(f, s);
 }

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef EXPR_UNIT_WORDS_H
+#define EXPR_UNIT_WORDS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* What a number with a unit behind it, as "15 deg" or "2 mm", may have meant: "15*deg",
+ * "2*1e-3 (m)", in out[size]. number and word with their lengths in bytes. False: the word is
+ * no unit. */
+bool mt_unit_meant(const char *number, size_t n_number, const char *word, size_t n_word,
+                   char *out, size_t size);
+
+#endif
