@@ -186,6 +186,20 @@ static mt_status read_progress(const char *s, const char *option, mt_progress_fo
                    s, did_you_mean(s, names, MT_COUNT(names), "", suggestion));
 }
 
+static mt_status read_shell(const char *s, const char *option, mt_shell *out, mt_err *err)
+{
+    static const char *const names[] = {"bash", "zsh"};
+    char suggestion[SUGGESTION_TEXT];
+    for (int i = 0; i < MT_SHELL_COUNT; i++) {
+        if (strcmp(s, names[i]) == 0) {
+            *out = (mt_shell)i;
+            return MT_OK;
+        }
+    }
+    return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is none of bash, zsh%s", option, s,
+                   did_you_mean(s, names, MT_COUNT(names), "", suggestion));
+}
+
 static mt_status store(mt_args *args, int option, const char *value, mt_err *err)
 {
     const mt_option *const o = &mt_options[option];
@@ -230,6 +244,8 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
         return mt_limits_read_size(value, &args->max_memory, err);
     case MT_OPT_PROGRESS:
         return read_progress(value, o->name, &args->progress, err);
+    case MT_OPT_COMPLETION:
+        return read_shell(value, o->name, &args->shell, err);
     case MT_OPT_FORMAT:
         return read_format(value, args->command, &args->format, err);
     default:
@@ -303,7 +319,8 @@ static mt_status read_command(mt_args *args, const char *name, mt_err *err)
 
 static mt_status check_operands(const mt_args *args, mt_err *err)
 {
-    if (args->given[MT_OPT_HELP] || args->given[MT_OPT_MANUAL] || args->given[MT_OPT_VERSION]) {
+    if (args->given[MT_OPT_HELP] || args->given[MT_OPT_MANUAL] ||
+        args->given[MT_OPT_COMPLETION] || args->given[MT_OPT_VERSION]) {
         return MT_OK;
     }
     if (args->command == MT_CMD_NONE) {

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "base/text.h"
+#include "cli/completion.h"
 
 /*
  * The command line, described once: commands, options and exit statuses in tables (commands.c),
@@ -42,6 +43,7 @@ typedef enum mt_option_id {
     MT_OPT_QUIET,
     MT_OPT_HELP,
     MT_OPT_MANUAL,
+    MT_OPT_COMPLETION,
     MT_OPT_VERSION,
     MT_OPT_IDS
 } mt_option_id;
@@ -116,6 +118,7 @@ typedef struct mt_args {
     int command; /* mt_command_id, MT_CMD_NONE */
     mt_format format;
     mt_progress_form progress;
+    mt_shell shell; /* --completion; read it where it is given */
     bool given[MT_OPT_IDS];
     const char *value[MT_OPT_IDS]; /* of the last one */
     int count;                     /* --count, 0: not given */

@@ -103,6 +103,8 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_HELP, 'h', "help", NULL, MT_ALL_COMMANDS,
            "explain the program, or a command"),
     OPTION(MT_OPT_MANUAL, '\0', "manual", NULL, 0U, "print the manual page, as man reads it"),
+    OPTION(MT_OPT_COMPLETION, '\0', "completion", "bash|zsh", 0U,
+           "print a script that completes commands, options and files in that shell"),
     OPTION(MT_OPT_VERSION, '\0', "version", NULL, 0U, "print the version"),
 };
 

@@ -48,6 +48,8 @@ int mt_cli_main(int argc, char *const argv[])
                      mt_build_commit(), mt_build_compiler());
     } else if (args.given[MT_OPT_MANUAL]) {
         mt_manual(&out);
+    } else if (args.given[MT_OPT_COMPLETION]) {
+        mt_completion(args.shell, &out);
     } else if (args.given[MT_OPT_HELP]) {
         mt_help(args.command, &out);
     } else {

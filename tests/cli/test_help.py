@@ -7,6 +7,7 @@ from common_cli import COMMANDS, SOURCE, CliTest, main, options_in
 
 # Which options each command has: written down once more, so that a change is a decision.
 EVERYWHERE = {"max-memory", "root", "format", "quiet", "help"}
+ALONE = {"manual", "completion", "version"}
 OPTIONS = {
     "run": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "proof", "resume", "shard", "profile", "progress"},
     "merge": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "proof", "profile", "progress"},
@@ -54,7 +55,7 @@ class Help(CliTest):
     def test_the_whole_lists_all_commands(self):
         text = self.expect(0, "--help").stdout
         self.assertEqual(re.findall(r"^  ([a-z]+)  +\S", text, re.M), COMMANDS)
-        self.assertEqual(listed(text), EVERYWHERE | {"manual", "version"})
+        self.assertEqual(listed(text), EVERYWHERE | ALONE)
         self.assertEqual(re.findall(r"^  (\d+) +\S", text, re.M), ["0", "1", "2", "3", "4", "130"])
 
     def test_version_is_that_of_the_header(self):
@@ -82,7 +83,42 @@ class Help(CliTest):
                     owners = [c for c in COMMANDS if options_in(f"-{form}") & OPTIONS[c]]
                     of = ", ".join(owners) + ": " if owners else ""
                     self.assertTrue(f"-{form} {of}{' '.join(text.split())}" in words, form)
-        self.assertEqual(options_in(words), set().union(*OPTIONS.values()) | EVERYWHERE | {"manual", "version"})
+        self.assertEqual(options_in(words), set().union(*OPTIONS.values()) | EVERYWHERE | ALONE)
+
+    def completed(self, *words):
+        """What bash offers for the last word."""
+        script = self.folder / self.write("completion.bash", self.expect(0, "--completion", "bash").stdout)
+        done = subprocess.run(["bash", "-c", 'source "$0"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _modetune; printf "%s\\n" "${COMPREPLY[@]}"',
+                               script, "modetune", *words], capture_output=True, text=True, check=True, cwd=self.folder)
+        self.assertEqual(done.stderr, "")
+        return set(done.stdout.split())
+
+    def test_completion_offers_commands_options_values_and_files(self):
+        self.assertLessEqual(set(COMMANDS), self.completed(""))
+        self.assertEqual(self.completed("sens"), {"sensitivity"})
+        for command in COMMANDS:
+            with self.subTest(command):
+                self.assertEqual({word.removeprefix("--") for word in self.completed(command, "--")}, OPTIONS[command] | EVERYWHERE)
+        self.assertEqual(self.completed("run", "--progress", ""), {"auto", "line", "json", "none"})
+        self.assertEqual(self.completed("run", "--seed", ""), set())
+        self.write("study.json", "{}")
+        self.write("notes.txt", "")
+        (self.folder / "models").mkdir()
+        self.assertEqual(self.completed("run", "") & {"study.json", "notes.txt", "models"}, {"study.json", "models"})
+        self.assertEqual(self.completed("run", "-o", "m"), {"models"})
+        self.assertEqual(self.completed("apply", "result.json", "--model", "study."), {"study.json"})
+
+    def test_completion_of_zsh_is_well_formed_and_has_all(self):
+        script = self.expect(0, "--completion=zsh").stdout
+        path = self.folder / self.write("_modetune", script)
+        done = subprocess.run(["zsh", "-n", path], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(subprocess.run(["zsh", "-n", self.folder / self.write("wrong", script.replace("case", "cas", 1))],
+                                        capture_output=True, check=False).returncode, 1)
+        for command in COMMANDS:
+            with self.subTest(command):
+                own = re.search(rf"^        {command}\) _arguments(.*?);;$", script, re.M | re.S).group(1)
+                self.assertEqual(set(re.findall(r"'\*?--([a-z-]+)=?\[", own)), OPTIONS[command] | EVERYWHERE)
 
     def test_readme_names_real_commands_and_options(self):
         text = (SOURCE / "README.md").read_text(encoding="utf-8")
