@@ -61,6 +61,9 @@ typedef enum mt_command_id {
     MT_CMD_APPLY,
     MT_CMD_DIFF,
     MT_CMD_CHECK,
+    MT_CMD_INIT,
+    MT_CMD_EXAMPLES,
+    MT_CMD_SCHEMA,
     MT_CMD_IDS
 } mt_command_id;
 

@@ -27,6 +27,9 @@ int mt_cmd_report(const mt_args *args, mt_text *out);
 int mt_cmd_apply(const mt_args *args, mt_text *out);
 int mt_cmd_diff(const mt_args *args, mt_text *out);
 int mt_cmd_check(const mt_args *args, mt_text *out);
+int mt_cmd_init(const mt_args *args, mt_text *out);
+int mt_cmd_examples(const mt_args *args, mt_text *out);
+int mt_cmd_schema(const mt_args *args, mt_text *out);
 
 /* The whole program but for its process-wide settings: parse, run, print. */
 int mt_cli_main(int argc, char *const argv[]);

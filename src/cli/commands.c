@@ -42,9 +42,10 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "natural frequencies at each position"),
     OPTION(MT_OPT_PARAMETERS, '\0', "parameters", "A,B", BIT(MT_CMD_SENSITIVITY),
            "parameters to vary (default: all that are not made of others)"),
-    OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR", SOLVES | BIT(MT_CMD_REPORT),
+    OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR",
+           SOLVES | BIT(MT_CMD_REPORT) | BIT(MT_CMD_EXAMPLES),
            "folder for the results (default of run: results, in the current one; of report: "
-           "nothing is written)"),
+           "nothing is written; of examples: the current one)"),
     OPTION(MT_OPT_VERIFY, '\0', "verify", NULL, SOLVES | BIT(MT_CMD_REPORT),
            "show the study's published values, too; of run, they alone decide the exit status"),
     OPTION(MT_OPT_THREADS, '\0', "threads", "N", ON_STUDIES,
@@ -221,6 +222,19 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "off their links, bands that no mode comes near) and what to know of every "
         "configuration, or of those that a study names (note: free motions, unstable "
         "directions, redundant joints)."),
+    COMMAND(MT_CMD_INIT, "init", "[DIR]", 0, 1, "a model and a study to begin with",
+            "Writes model.json, study.json and the schemas that editors complete them by into "
+            "the folder (default: the current one), which is made. The model is a lever on a "
+            "servo, each part described; the study keeps it clear of a rotor. A file that is "
+            "there already is left alone, and then none is written."),
+    COMMAND(MT_CMD_EXAMPLES, "examples", "[NAME...]", 0, -1,
+            "the studies that are part of the program",
+            "Without a name: lists them. With names: writes these studies, into DIR/studies, "
+            "and all that they name, models, references, schemas, beside it, and prints the "
+            "paths. A file that is there with other contents is left alone, and then none is "
+            "written."),
+    COMMAND(MT_CMD_SCHEMA, "schema", "[NAME]", 0, 1, "the JSON Schemas of all files",
+            "Without a name: lists them. With one (model, study, result, ...): prints it."),
 };
 
 const mt_exit mt_exits[MT_EXITS] = {

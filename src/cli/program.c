@@ -21,6 +21,9 @@ static const command_function functions[MT_CMD_IDS] = {
     [MT_CMD_APPLY] = mt_cmd_apply,
     [MT_CMD_DIFF] = mt_cmd_diff,
     [MT_CMD_CHECK] = mt_cmd_check,
+    [MT_CMD_INIT] = mt_cmd_init,
+    [MT_CMD_EXAMPLES] = mt_cmd_examples,
+    [MT_CMD_SCHEMA] = mt_cmd_schema,
 };
 
 static int wrong_use(const mt_args *args, mt_status rc, const mt_err *err)

@@ -77,7 +77,7 @@ void mt_read_study_goals(mt_study_reader *s, mt_addr list);
 void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor);
 void mt_read_study_machine(mt_study_reader *s, mt_addr value, mt_machine *machine);
 /* The catalogue of aircraft: the one named, else, where a goal needs one, the one beside the
- * model. After the goals. */
+ * model, else the one that is part of the program. After the goals. */
 void mt_read_study_aircraft(mt_study_reader *s, mt_addr value);
 /* After variables and goals; goals: the list of goals, whose indices it uses. */
 void mt_read_study_trade(mt_study_reader *s, mt_addr value, mt_addr goals);

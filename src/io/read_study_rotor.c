@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "io/file.h"
+#include "io/shipped.h"
 
 #define ROTOR_KEYS(X)                                       \
     X(ROTOR_AIRCRAFT, "aircraft", MT_KEY_TEXT, false)       \
@@ -130,14 +131,14 @@ static bool needs_catalogue(const mt_study *study)
     return false;
 }
 
-static void load(mt_study_reader *s, mt_name path, const char *file)
+static void load(mt_study_reader *s, mt_name path, const char *file, const mt_io_options *opt)
 {
     mt_study *const study = s->study;
     mt_err why = {.code = MT_OK};
     const int told = s->model_messages->count;
     study->aircraft_path = path;
-    const mt_status rc = mt_aircraft_load(file, &s->files, &study->mem, &study->aircraft,
-                                          s->model_messages, &why);
+    const mt_status rc =
+        mt_aircraft_load(file, opt, &study->mem, &study->aircraft, s->model_messages, &why);
     if (rc == MT_OK) {
         mt_read_study_note_input(s, path.s, study->aircraft.sha256);
     } else {
@@ -160,6 +161,17 @@ static mt_name beside_model(mt_study_reader *s)
     return path;
 }
 
+/* The one that is part of the program. */
+static void load_own(mt_study_reader *s)
+{
+    static const char name[] = "aircraft.json of modetune";
+    const mt_shipped *const own = mt_shipped_find("problems/aircraft.json");
+    const mt_file_text text = {.path = name, .text = own->bytes};
+    const mt_io_options opt = {.files = {.given = &text, .n = 1, .only = true}};
+    const mt_name path = {.s = name, .addr = s->study->model_path.addr};
+    load(s, path, name, &opt);
+}
+
 void mt_read_study_aircraft(mt_study_reader *s, mt_addr value)
 {
     const bool named = value != MT_NO_ADDR;
@@ -170,8 +182,10 @@ void mt_read_study_aircraft(mt_study_reader *s, mt_addr value)
     char *const file = path.s == NULL ? NULL : mt_file_join(s->study->path, path.s);
     if (path.s != NULL && file == NULL) {
         mt_arena_fail(s->r.mem);
-    } else if (file != NULL && (named || !mt_files_lack(&s->files.files, file))) {
-        load(s, path, file);
+    } else if (file != NULL && !named && mt_files_lack(&s->files.files, file)) {
+        load_own(s);
+    } else if (file != NULL) {
+        load(s, path, file, &s->files);
     }
     free(file);
 }

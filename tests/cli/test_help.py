@@ -21,6 +21,9 @@ OPTIONS = {
     "apply": {"rank", "model"},
     "diff": {"rel-tol"},
     "check": set(),
+    "init": set(),
+    "examples": {"output"},
+    "schema": set(),
 }
 
 

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef IO_SHIPPED_H
+#define IO_SHIPPED_H
+
+#include <stddef.h>
+
+/* Files of the source distribution that are part of the program, whole: schemas/, problems/,
+ * studies/, and what `init` begins with, init/. */
+typedef struct mt_shipped {
+    const char *path;  /* "schemas/model.schema.json" */
+    const char *bytes; /* size bytes and a NUL */
+    size_t size;
+} mt_shipped;
+
+/* All of them, by path; *n their number. */
+const mt_shipped *mt_shipped_all(int *n);
+/* NULL: there is none. */
+const mt_shipped *mt_shipped_find(const char *path);
+
+#endif

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From an empty folder to an answer: init, examples, schema, and the catalogue of aircraft that is found without a path."""
+import json
+
+import jsonschema
+from common_cli import SOURCE, CliTest, main
+
+STUDY = """{ "format": "modetune-study/1", "name": "x", "model": "../mine/model.json",
+  "variables": [ { "parameter": "servo", "lower": 200, "upper": 5000 } ],
+  "goals": [ { "type": "avoid", "configuration": "held", "up_to_hz": 100,
+               "rotor": { "aircraft": "UH-60", "harmonics": ["4P"], "margin_percent": 5 } } ] }
+"""
+
+
+class FirstHour(CliTest):
+    def text(self, path):
+        return (self.folder / path).read_text(encoding="utf-8")
+
+    def test_init_makes_a_model_and_a_study_that_is_answered(self):
+        done = self.expect(0, "init", "mine")
+        self.assertEqual(done.stdout, "")
+        self.assertEqual({str(p.relative_to(self.folder / "mine")) for p in (self.folder / "mine").rglob("*") if p.is_file()},
+                         {"model.json", "study.json", "schemas/model.schema.json", "schemas/study.schema.json"})
+        for name in ("model", "study"):
+            document = json.loads(self.text(f"mine/{name}.json"))
+            schema = json.loads(self.text(f"mine/{document['$schema']}"))
+            self.assertEqual([e.message for e in jsonschema.Draft7Validator(schema).iter_errors(document)], [])
+            self.assertEqual(self.expect(0, "check", f"mine/{name}.json").stderr, "")
+        modes = json.loads(self.expect(0, "modes", "mine/model.json", "-c", "held", "--format", "json").stdout)
+        self.assertEqual(modes["redundant_constraints"], [])
+        band = (258 / 60 * 4 * 0.95 * 0.9, 258 / 60 * 4 * 1.05 * 1.1)  # 4P of the study's rotor: the model has to change
+        self.assertTrue(any(band[0] < m["frequency_hz"] < band[1] for m in modes["modes"]))
+        self.expect(0, "run", "mine/study.json")
+        result = json.loads(self.text("results/study/result.json"))
+        self.assertEqual(result["status"], "solved")
+        self.assertTrue(all(r["feasible"] for r in result["recommendations"]))
+
+    def test_init_leaves_alone_what_is_there(self):
+        self.expect(0, "init", "mine")
+        again = self.text("mine/model.json")
+        self.expect(0, "init", "mine")  # the same bytes: nothing to be lost
+        self.assertEqual(self.text("mine/model.json"), again)
+        self.write("mine/study.json", "{}")
+        (self.folder / "mine/model.json").unlink()
+        done = self.expect(2, "init", "mine")
+        self.assertEqual(done.stderr, "modetune: error: mine/study.json: is there already, and is left alone\n")
+        self.assertEqual(self.text("mine/study.json"), "{}")
+        self.assertFalse((self.folder / "mine/model.json").exists())
+
+    def test_every_example_comes_with_all_that_it_names(self):
+        listed = json.loads(self.expect(0, "examples", "--format", "json").stdout)
+        studies = {p.stem: json.loads(p.read_text(encoding="utf-8"))["name"] for p in (SOURCE / "studies").glob("*.json")}
+        self.assertEqual({e["name"]: e["title"] for e in listed}, studies)
+        for name in studies:
+            with self.subTest(name):
+                written = self.expect(0, "examples", name, "-o", name).stdout.splitlines()
+                for path in written:
+                    self.assertEqual(self.text(path), (SOURCE / path.removeprefix(name + "/")).read_text(encoding="utf-8"))
+                self.expect(0, "check", f"{name}/studies/{name}.json")
+        done = self.expect(2, "examples", "inceptor_roter")
+        self.assertIn('no example is called "inceptor_roter"; did you mean "inceptor_rotor"?', done.stderr)
+
+    def test_schemas_are_those_of_the_sources(self):
+        listed = {e["name"] for e in json.loads(self.expect(0, "schema", "--format", "json").stdout)}
+        self.assertEqual(listed, {p.name.removesuffix(".schema.json") for p in (SOURCE / "schemas").iterdir()})
+        for name in listed:
+            self.assertEqual(self.expect(0, "schema", name).stdout, (SOURCE / f"schemas/{name}.schema.json").read_text(encoding="utf-8"))
+        self.assertIn('no schema is called "modle"; did you mean "model"?', self.expect(2, "schema", "modle").stderr)
+
+    def test_the_catalogue_of_aircraft_is_found_without_a_path(self):
+        self.expect(0, "init", "mine")
+        self.write("mine/study.json", STUDY.replace("../mine/", ""))
+        self.expect(0, "run", "mine/study.json")
+        result = json.loads(self.text("results/study/result.json"))
+        self.assertIn("aircraft.json of modetune", [i["file"] for i in result["run"]["inputs"]])
+        # one that is there wins
+        self.write("mine/aircraft.json", (SOURCE / "problems/aircraft.json").read_text(encoding="utf-8").replace("UH-60", "XY-1"))
+        self.assertIn("UH-60", self.expect(2, "check", "mine/study.json").stderr)
+
+
+if __name__ == "__main__":
+    main()
