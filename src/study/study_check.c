@@ -104,11 +104,6 @@ const mt_aircraft *mt_check_aircraft(mt_study_check *c, mt_name name)
     if (list->n > 0) {
         unknown(c, name, "aircraft",
                 nearest(c, name.s, list->items, list->n, sizeof *list->items));
-    } else if (c->study->aircraft_path.s == NULL) {
-        mt_diag_error(c->diags, name.addr,
-                      "there is no catalogue to look up \"%s\" in: the study names none "
-                      "(\"aircraft\") and no aircraft.json lies beside the model",
-                      name.s);
     }
     return NULL;
 }
