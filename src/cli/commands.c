@@ -222,11 +222,13 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "off their links, bands that no mode comes near) and what to know of every "
         "configuration, or of those that a study names (note: free motions, unstable "
         "directions, redundant joints)."),
-    COMMAND(MT_CMD_INIT, "init", "[DIR]", 0, 1, "a model and a study to begin with",
-            "Writes model.json, study.json and the schemas that editors complete them by into "
-            "the folder (default: the current one), which is made. The model is a lever on a "
-            "servo, each part described; the study keeps it clear of a rotor. A file that is "
-            "there already is left alone, and then none is written."),
+    COMMAND(
+        MT_CMD_INIT, "init", "[DIR]", 0, 1, "a model and a study to begin with",
+        "Writes model.json, study.json and the schemas that editors complete them by into "
+        "the folder (default: the current one), which is made. The model is a lever on a "
+        "servo, each part described; the study keeps it clear of a rotor. Prints the paths. "
+        "A file that is there with other contents is left alone, and then none is "
+        "written."),
     COMMAND(MT_CMD_EXAMPLES, "examples", "[NAME...]", 0, -1,
             "the studies that are part of the program",
             "Without a name: lists them. With names: writes these studies, into DIR/studies, "

@@ -152,6 +152,25 @@ static const struct {
     {"check tests/io/wrong/dampers.json %/ghost.json %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
     {"check " MODELS "ring.json", MT_EXIT_SYSTEM, SHORT},
     {"check " MODELS "ring.json", MT_EXIT_SYSTEM, FULL},
+
+    {"init @", MT_EXIT_DONE, AS_IT_IS},
+    {"init @ @", MT_EXIT_INPUT, AS_IT_IS},
+    {"init /dev/null/x", MT_EXIT_SYSTEM, AS_IT_IS},
+    {"init @", MT_EXIT_SYSTEM, SHORT},
+    {"init @", MT_EXIT_SYSTEM, FULL},
+
+    {"examples", MT_EXIT_DONE, AS_IT_IS},
+    {"examples -o @ engine_orders", MT_EXIT_DONE, AS_IT_IS},
+    {"examples engine_ordres", MT_EXIT_INPUT, AS_IT_IS},
+    {"examples -o /dev/null/x engine_orders", MT_EXIT_SYSTEM, AS_IT_IS},
+    {"examples", MT_EXIT_SYSTEM, SHORT},
+    {"examples", MT_EXIT_SYSTEM, FULL},
+
+    {"schema", MT_EXIT_DONE, AS_IT_IS},
+    {"schema model", MT_EXIT_DONE, AS_IT_IS},
+    {"schema modle", MT_EXIT_INPUT, AS_IT_IS},
+    {"schema model", MT_EXIT_SYSTEM, SHORT},
+    {"schema model", MT_EXIT_SYSTEM, FULL},
 };
 
 /* What each command can end with. */
@@ -173,6 +192,9 @@ static const struct {
     [MT_CMD_APPLY] = {"apply", {true, false, true, false, true, false}},
     [MT_CMD_DIFF] = {"diff", {true, true, true, false, true, false}},
     [MT_CMD_CHECK] = {"check", {true, false, true, true, true, false}},
+    [MT_CMD_INIT] = {"init", {true, false, true, false, true, false}},
+    [MT_CMD_EXAMPLES] = {"examples", {true, false, true, false, true, false}},
+    [MT_CMD_SCHEMA] = {"schema", {true, false, true, false, true, false}},
 };
 
 static void begin(void *context)

@@ -18,7 +18,9 @@ class FirstHour(CliTest):
 
     def test_init_makes_a_model_and_a_study_that_is_answered(self):
         done = self.expect(0, "init", "mine")
-        self.assertEqual(done.stdout, "")
+        self.assertEqual(done.stdout, "mine/model.json\nmine/study.json\nmine/schemas/model.schema.json\nmine/schemas/study.schema.json\n")
+        self.assertIn('"modetune run study.json"', done.stderr)
+        self.assertEqual(self.expect(0, "init", "other", "--quiet").stderr, "")
         self.assertEqual({str(p.relative_to(self.folder / "mine")) for p in (self.folder / "mine").rglob("*") if p.is_file()},
                          {"model.json", "study.json", "schemas/model.schema.json", "schemas/study.schema.json"})
         for name in ("model", "study"):

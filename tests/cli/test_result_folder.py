@@ -38,6 +38,9 @@ LINES = {
     "apply --model": ["apply", "results/two/result.json", "--model", "problems/model.json", "--root", "problems"],
     "diff": ["diff", "results/two", "results/two/result.json", "--format", "csv"],
     "compare": ["compare", "studies/judged.json"],
+    "init": ["init", "mine", "--quiet"],
+    "examples": ["examples", "truss_72bar", "-o", "shipped"],
+    "schema": ["schema", "model"],
     "run": ["run", "studies/two.json", "--format", "csv"],
     "run two": ["run", "studies/two.json", "studies/judged.json", "--format", "csv"],
     "merge": ["merge", "studies/two.json", "results/two.1-of-1.journal", "--format", "csv"],
@@ -210,6 +213,8 @@ class EveryCall(FolderTest):
 
     def test_every_command_says_so_with_4_or_does_without(self):
         self.assertEqual(set(COMMANDS) - set(LINES), set())
+        for name in ("init", "examples"):  # what they write is there then, in every call
+            self.expect(0, *LINES[name])
         self.expect(0, "run", "studies/two.json", "--shard", "1/1")
         self.expect(0, "run", "studies/two.json")
         for name, line in LINES.items():
