@@ -57,6 +57,8 @@ static const struct {
     {"compare --threads 1 --format json studies/inceptor_catalogue.json", MT_EXIT_DONE},
     {"compare --threads 1 --set m_raft=21 --starts 4 studies/engine_orders.json", MT_EXIT_DONE},
     {"check @/engine_orders/result.json", MT_EXIT_DONE},
+    {"examples", MT_EXIT_DONE},
+    {"schema --format json", MT_EXIT_DONE},
     {"diff @/engine_orders @/inceptor_tuning_2", MT_EXIT_GOALS},
     {"diff --format json @/engine_orders @/inceptor_tuning_2", MT_EXIT_GOALS},
     {"diff --rel-tol 0.1 --format csv @/engine_orders @/inceptor_tuning_2", MT_EXIT_GOALS},
