@@ -85,7 +85,7 @@ static bool plain(const char *word, char *out)
     }
     for (size_t i = 0; i <= n; i++) {
         const bool between = word[i] == ' ' || word[i] == '-';
-        out[i] = between ? '_' : (char)tolower((unsigned char)word[i]);
+        out[i] = (char)(between ? '_' : tolower((unsigned char)word[i]));
     }
     return true;
 }
