@@ -1,15 +1,31 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/shipped.h"
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/format.h"
+#include "cli/cli.h"
 #include "io/file.h"
 #include "io/folder.h"
-#include "io/io.h"
-#include "io/write_json.h"
+#include "report/table.h"
 
-void mt_shipped_say(const mt_shipped *file, const char *member, mt_text *out)
+/* The file's name, in name[size]; false: it is none of them. */
+static bool name_of(const mt_shipped_kind *kind, const mt_shipped *file, char *name,
+                    size_t size)
+{
+    const size_t before = strlen(kind->folder);
+    const size_t behind = strlen(kind->ending);
+    const size_t length = strlen(file->path);
+    if (strncmp(file->path, kind->folder, before) != 0 || length <= before + behind ||
+        strcmp(file->path + length - behind, kind->ending) != 0) {
+        return false;
+    }
+    (void)mt_snprintf(name, size, "%.*s", (int)(length - before - behind), file->path + before);
+    return true;
+}
+
+/* The first sentence of a member of the root; nothing where it has none. */
+static void say(const mt_shipped *file, const char *member, mt_text *out)
 {
     mt_json *doc = NULL;
     if (mt_json_parse(file->bytes, file->size, &doc, NULL) != MT_OK) {
@@ -25,7 +41,7 @@ void mt_shipped_say(const mt_shipped *file, const char *member, mt_text *out)
     mt_json_delete(doc);
 }
 
-static void print_json(const mt_table *t, mt_text *out)
+static int print_json(const mt_table *t, mt_text *out)
 {
     mt_json_writer w = mt_json_writer_default(out);
     mt_json_open(&w, NULL, '[');
@@ -38,31 +54,65 @@ static void print_json(const mt_table *t, mt_text *out)
         mt_json_close(&w);
     }
     mt_json_close(&w);
-    (void)mt_json_done(&w);
     out->failed = out->failed || t->failed;
+    return mt_cli_json_done(&w);
 }
 
-void mt_shipped_print(const mt_args *args, const mt_table *t, mt_text *out)
+int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *out)
 {
-    if (args->format == MT_FORMAT_JSON) {
-        print_json(t, out);
-    } else if (args->format == MT_FORMAT_CSV) {
-        mt_table_csv(t, out);
-    } else {
-        mt_table_print(t, 0, out);
+    mt_table t = mt_table_default();
+    int n = 0;
+    int code = MT_EXIT_DONE;
+    const mt_shipped *const files = mt_shipped_all(&n);
+    mt_table_column(&t, kind->what, "name", MT_ALIGN_LEFT);
+    mt_table_column(&t, kind->heading, "text", MT_ALIGN_LEFT);
+    for (int i = 0; i < n; i++) {
+        char name[MT_SHIPPED_NAME];
+        mt_text said = {.s = NULL};
+        if (name_of(kind, &files[i], name, sizeof name)) {
+            say(&files[i], kind->says, &said);
+            mt_table_text(&t, name);
+            mt_table_text(&t, said.s);
+        }
+        t.failed = t.failed || said.failed;
+        mt_text_free(&said);
     }
+    if (args->format == MT_FORMAT_JSON) {
+        code = print_json(&t, out);
+    } else if (args->format == MT_FORMAT_CSV) {
+        mt_table_csv(&t, out);
+    } else {
+        mt_table_print(&t, 0, out);
+    }
+    mt_table_free(&t);
+    return code;
 }
 
-mt_status mt_shipped_unknown(const char *what, const char *name, const char *const *names,
-                             int n, mt_err *err)
+mt_status mt_shipped_named(const mt_shipped_kind *kind, const char *name,
+                           const mt_shipped **out, mt_err *err)
 {
-    const char *const near = mt_text_nearest(name, names, n);
+    const char *known[MT_SHIPPED_MOST];
+    char text[MT_SHIPPED_MOST][MT_SHIPPED_NAME];
+    int n = 0;
+    int count = 0;
+    const mt_shipped *const files = mt_shipped_all(&count);
+    for (int i = 0; i < count && n < MT_SHIPPED_MOST; i++) {
+        if (!name_of(kind, &files[i], text[n], MT_SHIPPED_NAME)) {
+            continue;
+        }
+        if (strcmp(text[n], name) == 0) {
+            *out = &files[i];
+            return MT_OK;
+        }
+        known[n] = text[n];
+        n++;
+    }
+    const char *const near = mt_text_nearest(name, known, n);
     return near == NULL
-               ? mt_fail(err, MT_E_USAGE,
-                         "no %s is called \"%s\": \"modetune %s%s\" lists them", what, name,
-                         what, strcmp(what, "example") == 0 ? "s" : "")
-               : mt_fail(err, MT_E_USAGE, "no %s is called \"%s\"; did you mean \"%s\"?", what,
-                         name, near);
+               ? mt_fail(err, MT_E_USAGE, "no %s is called \"%s\": \"modetune %s\" lists them",
+                         kind->what, name, kind->command)
+               : mt_fail(err, MT_E_USAGE, "no %s is called \"%s\"; did you mean \"%s\"?",
+                         kind->what, name, near);
 }
 
 /* Is there something else under the path? *same: the very bytes. */

@@ -4,19 +4,25 @@
 
 #include "cli/args.h"
 #include "io/shipped.h"
-#include "report/table.h"
 
 enum { MT_SHIPPED_NAME = 64, MT_SHIPPED_MOST = 100 };
 
-/* The first sentence of what a file says of itself in a member of its root, added to out;
- * nothing where it has none. */
-void mt_shipped_say(const mt_shipped *file, const char *member, mt_text *out);
-/* A list of files in the form asked for; as JSON a list of objects of texts. */
-void mt_shipped_print(const mt_args *args, const mt_table *t, mt_text *out);
-/* MT_E_USAGE: no `what` ("schema") is called so; with the nearest of the n that there are, or
- * where to see them. */
-mt_status mt_shipped_unknown(const char *what, const char *name, const char *const *names,
-                             int n, mt_err *err);
+/* Files of one folder and ending, which between them have a name. */
+typedef struct mt_shipped_kind {
+    const char *command; /* that lists them */
+    const char *what;    /* one of them is called so */
+    const char *folder;
+    const char *ending;
+    const char *says; /* member of their root that says what they are, and what it is called */
+    const char *heading;
+} mt_shipped_kind;
+
+/* A list of them, with the first sentence of what they say, in the form asked for: as JSON a
+ * list of objects of texts. Returns the exit status. */
+int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *out);
+/* The one of a name. Fails: MT_E_USAGE, with the nearest name or where to see them all. */
+mt_status mt_shipped_named(const mt_shipped_kind *kind, const char *name,
+                           const mt_shipped **out, mt_err *err);
 /**
  * Write n files of the distribution beneath a folder, which is made, under names of theirs
  * there. A file that is there and holds other bytes is left alone, and none is written.

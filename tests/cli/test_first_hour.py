@@ -52,7 +52,7 @@ class FirstHour(CliTest):
     def test_every_example_comes_with_all_that_it_names(self):
         listed = json.loads(self.expect(0, "examples", "--format", "json").stdout)
         studies = {p.stem: json.loads(p.read_text(encoding="utf-8"))["name"] for p in (SOURCE / "studies").glob("*.json")}
-        self.assertEqual({e["name"]: e["title"] for e in listed}, studies)
+        self.assertEqual({e["name"]: e["text"] for e in listed}, studies)
         for name in studies:
             with self.subTest(name):
                 written = self.expect(0, "examples", name, "-o", name).stdout.splitlines()
