@@ -261,7 +261,7 @@ static int by_distance(const void *a, const void *b)
     const mt_scene_off *const y = b;
     const double dx = x->joint->distance;
     const double dy = y->joint->distance;
-    return dx != dy ? (dx < dy ? 1 : -1) : (x->joint > y->joint) - (x->joint < y->joint);
+    return dx != dy ? (dx < dy ? 1 : -1) : x->order - y->order;
 }
 
 /* Of the first design; equal distances as configurations and joints stand. */
@@ -279,7 +279,8 @@ static mt_status list_joints(mt_scene *scene, mt_err *err)
         for (int k = 0; k < v->n_joints; k++) {
             const mt_scene_joint *const j = &v->joints[k];
             const char *const body = j->far == MT_ABSENT ? NULL : v->bodies[j->far].name;
-            scene->joints[scene->n_joints++] = (mt_scene_off){v->name, body, j};
+            scene->joints[scene->n_joints] = (mt_scene_off){v->name, body, j, scene->n_joints};
+            scene->n_joints++;
         }
     }
     if (scene->n_joints > 0) {

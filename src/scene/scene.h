@@ -162,6 +162,7 @@ typedef struct mt_scene_off {
     const char *configuration;
     const char *body; /* NULL where the distance is 0 */
     const mt_scene_joint *joint;
+    int order; /* as configurations and joints stand */
 } mt_scene_off;
 
 typedef struct mt_scene {
