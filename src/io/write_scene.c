@@ -1,17 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/write_scene.h"
 
+#include <math.h>
 #include <stddef.h>
 
-/* Significant digits: of a place a picture of ten thousand pixels has fewer; shares of energies
- * and motions; frequencies as tables have them, and some. */
-enum { PLACE = 6, SHARE = 5, HZ = 9, VALUE = 9 };
+/* Significant digits: of a place a picture of ten thousand pixels has fewer; motions;
+ * frequencies as tables have them, and some. */
+enum { PLACE = 6, MOTION = 5, HZ = 9, VALUE = 9 };
+static const double SHARE_STEP = 1e-6;
 
 static void put_numbers(mt_json_writer *w, const char *name, int n, const double *x, int digits)
 {
     mt_json_open_flat(w, name, '[');
     for (int i = 0; i < n; i++) {
         mt_json_put_rounded(w, NULL, x[i], digits);
+    }
+    mt_json_close(w);
+}
+
+/* Rounded down, so that what adds up to 1 never adds up to more. */
+static void put_shares(mt_json_writer *w, const char *name, int n, const double *x)
+{
+    mt_json_open_flat(w, name, '[');
+    for (int i = 0; i < n; i++) {
+        mt_json_put_rounded(w, NULL, floor(x[i] / SHARE_STEP) * SHARE_STEP, PLACE);
     }
     mt_json_close(w);
 }
@@ -117,12 +129,12 @@ static void put_mode(mt_json_writer *w, const mt_scene_view *v, const mt_scene_m
     mt_json_put_string(w, "note", m->note);
     mt_json_open_flat(w, "motion", '[');
     for (int b = 0; b < v->n_bodies; b++) {
-        put_numbers(w, NULL, 6, m->motion + ((ptrdiff_t)6 * b), SHARE);
+        put_numbers(w, NULL, 6, m->motion + ((ptrdiff_t)6 * b), MOTION);
     }
     mt_json_close(w);
     mt_json_open(w, "energy", '{');
-    put_numbers(w, "springs", v->n_springs, m->spring_share, SHARE);
-    put_numbers(w, "bodies", v->n_bodies, m->body_share, SHARE);
+    put_shares(w, "springs", v->n_springs, m->spring_share);
+    put_shares(w, "bodies", v->n_bodies, m->body_share);
     mt_json_close(w);
     mt_json_close(w);
 }

@@ -289,7 +289,7 @@ static mt_status list_joints(mt_scene *scene, mt_err *err)
     return MT_OK;
 }
 
-/* That of the first configuration which has any, at the first design. */
+/* That of the first configuration which has any but 0, at the first design. */
 static mt_status find_gravity(const question *q, const mt_scene_ask *ask, mt_scene *scene,
                               mt_arena *work, mt_err *err)
 {
@@ -304,7 +304,9 @@ static mt_status find_gravity(const question *q, const mt_scene_ask *ask, mt_sce
                                   &q->model->nums[c->gravity[k]], work, &numbers, err));
             MT_TRY(mt_numbers_at(&numbers, ask->at, &scene->gravity[k], NULL, err));
         }
-        scene->has_gravity = c->has_gravity;
+        for (int k = 0; k < 3; k++) {
+            scene->has_gravity = scene->has_gravity || fabs(scene->gravity[k]) > 0.0;
+        }
     }
     return MT_OK;
 }
