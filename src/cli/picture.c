@@ -14,7 +14,18 @@
 #include "report/table.h"
 
 /* Layout in pixels. */
-enum { WIDTH = 900, HEIGHT = 640, MARGIN = 70, TITLE = 24, SYMBOL = 5, TEETH = 8 };
+enum {
+    WIDTH = 900,
+    HEIGHT = 640,
+    MARGIN = 70,
+    TITLE = 24,
+    SYMBOL = 5,
+    TEETH = 8,
+    LINE = 12, /* of text */
+    NAMES_MOST = 200
+};
+/* Of a letter, on average; a little generous. */
+static const double LETTER = 6.5;
 /* Of the picture's size: how far a mode moves what moves most. */
 static const double AMPLITUDE = 0.08;
 static const double TURN = 6.283185307179586;
@@ -33,6 +44,9 @@ typedef struct picture {
     double low[2]; /* of what is drawn, before it is scaled [m] */
     double high[2];
     double scale; /* px/m */
+    int n_names;  /* that are placed */
+    double name_at[NAMES_MOST][2];
+    double name_width[NAMES_MOST];
     mt_text *out;
 } picture;
 
@@ -162,12 +176,32 @@ static void put_line(const picture *p, const double a[2], const double b[2], con
                  a[0], a[1], b[0], b[1], colour, width);
 }
 
-static void put_name(const picture *p, const double at[2], const char *name, const char *colour)
+/* Would a name there lie on another one? */
+static bool is_taken(const picture *p, double x, double y, double width)
 {
-    if (name == NULL) {
+    bool taken = false;
+    for (int i = 0; i < p->n_names && !taken; i++) {
+        taken = fabs(y - p->name_at[i][1]) < LINE && x < p->name_at[i][0] + p->name_width[i] &&
+                p->name_at[i][0] < x + width;
+    }
+    return taken;
+}
+
+/* A name at a place, or below it where others stand already. */
+static void put_name(picture *p, const double at[2], const char *name, const char *colour)
+{
+    if (name == NULL || p->n_names == NAMES_MOST) {
         return;
     }
-    mt_text_addf(p->out, "<text x=\"%.1f\" y=\"%.1f\" fill=\"%s\">", at[0], at[1], colour);
+    const double width = LETTER * mt_text_width(name);
+    double y = at[1];
+    while (is_taken(p, at[0], y, width)) { /* ends: below all of them is room */
+        y += LINE;
+    }
+    p->name_at[p->n_names][0] = at[0];
+    p->name_at[p->n_names][1] = y;
+    p->name_width[p->n_names++] = width;
+    mt_text_addf(p->out, "<text x=\"%.1f\" y=\"%.1f\" fill=\"%s\">", at[0], y, colour);
     mt_html_escape(name, p->out);
     mt_text_add(p->out, "</text>\n");
 }
@@ -295,7 +329,7 @@ static void put_polygon(const picture *p, int n, const double at[2], double phas
 
 /* A circle turns, a square slides, a diamond is a ball, a cross is fixed, a triangle is any
  * other. */
-static void put_joint(const picture *p, const mt_scene_joint *j)
+static void put_joint(picture *p, const mt_scene_joint *j)
 {
     double at[2];
     project(p, j->body[1], j->at, at);
@@ -319,7 +353,7 @@ static void put_joint(const picture *p, const mt_scene_joint *j)
 }
 
 /* Names of bodies, and of links once, in their middle. */
-static void put_names(const picture *p)
+static void put_names(picture *p)
 {
     const mt_scene_view *const v = p->view;
     for (int i = 1; i < v->n_bodies; i++) {

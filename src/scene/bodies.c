@@ -119,6 +119,7 @@ mt_status mt_scene_bodies(mt_scene_frame *f, mt_err *err)
         for (int k = 0; k < 3; k++) {
             b->at[k] = creal(p->x[k]);
         }
+        mt_scene_clean(sys->length_m, b->at);
     }
     add_masses(f, bodies);
     for (int i = 0; i < f->model->n_bodies; i++) {

@@ -3,6 +3,9 @@
  * stands: x + R (p - c) for a point p of a body with its centre drawn at c. */
 #include "scene/scene_priv.h"
 
+/* Coordinates below this part of their vector, or of the model's length, are rounding. */
+static const double ROUNDING = 1e-13;
+
 #include <math.h>
 #include <stddef.h>
 
@@ -121,6 +124,13 @@ void mt_scene_centre(const mt_scene_frame *f, int body, double out[3])
     }
 }
 
+void mt_scene_clean(double size, double x[3])
+{
+    for (int k = 0; k < 3; k++) {
+        x[k] = fabs(x[k]) > ROUNDING * size ? x[k] : 0.0;
+    }
+}
+
 void mt_scene_turn(const mt_scene_frame *f, int body, const double drawn[3], double out[3])
 {
     const mt_pose *const p = mt_pose_of(f->pose, body);
@@ -130,6 +140,7 @@ void mt_scene_turn(const mt_scene_frame *f, int body, const double drawn[3], dou
             out[i] += creal(p->r[i + (3 * k)]) * drawn[k];
         }
     }
+    mt_scene_clean(hypot(hypot(drawn[0], drawn[1]), drawn[2]), out);
 }
 
 void mt_scene_place(const mt_scene_frame *f, int body, const double drawn[3], double out[3])
@@ -145,4 +156,5 @@ void mt_scene_place(const mt_scene_frame *f, int body, const double drawn[3], do
     for (int k = 0; k < 3; k++) {
         out[k] = creal(p->x[k]) + turned[k];
     }
+    mt_scene_clean(f->sys->length_m, out);
 }

@@ -289,24 +289,34 @@ static mt_status list_joints(mt_scene *scene, mt_err *err)
     return MT_OK;
 }
 
-/* That of the first configuration which has any but 0, at the first design. */
+/* That of one configuration at a design. */
+static mt_status gravity_in(const mt_model *model, int configuration, const mt_scene_ask *ask,
+                            mt_scene *scene, mt_arena *work, mt_err *err)
+{
+    const mt_configuration *const c = &model->configurations[configuration];
+    for (int k = 0; k < 3 && c->has_gravity; k++) {
+        mt_numbers numbers;
+        if (c->gravity[k] == MT_ABSENT) {
+            continue;
+        }
+        MT_TRY(mt_numbers_new(model, configuration, ask->n_inputs, ask->inputs, 1,
+                              &model->nums[c->gravity[k]], work, &numbers, err));
+        MT_TRY(mt_numbers_at(&numbers, ask->at, &scene->gravity[k], NULL, err));
+        scene->has_gravity = scene->has_gravity || fabs(scene->gravity[k]) > 0.0;
+    }
+    return MT_OK;
+}
+
+/* That of the first configuration which has any but 0, at the first design; of those that are
+ * shown, else of all: which way is up should not depend on what is shown. */
 static mt_status find_gravity(const question *q, const mt_scene_ask *ask, mt_scene *scene,
                               mt_arena *work, mt_err *err)
 {
-    for (int i = 0; i < q->n_configurations && !scene->has_gravity; i++) {
-        const mt_configuration *const c = &q->model->configurations[q->configurations[i]];
-        for (int k = 0; k < 3 && c->has_gravity; k++) {
-            mt_numbers numbers;
-            if (c->gravity[k] == MT_ABSENT) {
-                continue;
-            }
-            MT_TRY(mt_numbers_new(q->model, q->configurations[i], ask->n_inputs, ask->inputs, 1,
-                                  &q->model->nums[c->gravity[k]], work, &numbers, err));
-            MT_TRY(mt_numbers_at(&numbers, ask->at, &scene->gravity[k], NULL, err));
-        }
-        for (int k = 0; k < 3; k++) {
-            scene->has_gravity = scene->has_gravity || fabs(scene->gravity[k]) > 0.0;
-        }
+    const int all = q->model->n_configurations;
+    for (int i = 0; i < q->n_configurations + all && !scene->has_gravity; i++) {
+        const int c = i < q->n_configurations ? q->configurations[i] : i - q->n_configurations;
+        mt_arena_clear(work);
+        MT_TRY(gravity_in(q->model, c, ask, scene, work, err));
     }
     return MT_OK;
 }

@@ -169,8 +169,8 @@ typedef struct mt_scene {
     mt_arena mem;
     const char *name;
     int dimension;
-    double size; /* diagonal of the box around all that is drawn [m] */
-    bool has_gravity;
+    double size;      /* diagonal of the box around all that is drawn [m] */
+    bool has_gravity; /* of any configuration */
     double gravity[3];
     int n_designs;
     mt_scene_design *designs;

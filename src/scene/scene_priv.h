@@ -40,6 +40,8 @@ void mt_scene_centre(const mt_scene_frame *f, int body, double out[3]);
 /* Where a point that is drawn there on this body, or such a direction, is in the pose. */
 void mt_scene_place(const mt_scene_frame *f, int body, const double drawn[3], double out[3]);
 void mt_scene_turn(const mt_scene_frame *f, int body, const double drawn[3], double out[3]);
+/* What is rounding of a vector of this size becomes 0. */
+void mt_scene_clean(double size, double x[3]);
 
 /* bodies.c: bodies of the view, with their ellipsoids. Fails: MT_E_MEMORY,
  * MT_E_NO_CONVERGENCE. */
