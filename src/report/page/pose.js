@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where everything of a configuration is: as it stands, moved by a mode, or at another position
+// of its drive.
+//
+// A mode moves a point p of the body whose mass centre is c by s (t + r x (p - c)), to first
+// order in s as the mode itself is: points that a joint holds together stay together. Bodies
+// are stretched a little by it, which at the amplitudes drawn nobody sees.
+(function () {
+    'use strict';
+    const { add, sub, cross, middle } = window.mt.space;
+
+    // Rows r00 r01 r02 r10 ... of a rotation, times v.
+    function turned(r, v) {
+        return [r[3] * v[0] + r[4] * v[1] + r[5] * v[2], r[6] * v[0] + r[7] * v[1] + r[8] * v[2],
+            r[9] * v[0] + r[10] * v[1] + r[11] * v[2]];
+    }
+
+    function mover(configuration, state) {
+        const bodies = configuration.bodies;
+        const mode = state.mode === null ? null : configuration.modes[state.mode];
+        const drive = configuration.drive;
+        const position = drive && state.position !== null ? drive.positions[state.position] : null;
+        const poses = position && position.poses;
+        const s = state.displacement;
+
+        function direction(i, v) {
+            const w = poses ? turned(poses[i], v) : v;
+            if (poses || !mode || !mode.motion[i]) {
+                return w;
+            }
+            return add(w, cross(mode.motion[i].slice(3), w), s);
+        }
+
+        function point(i, p) {
+            const centre = bodies[i].at;
+            const lever = direction(i, sub(p, centre));
+            const moved = poses ? poses[i].slice(0, 3)
+                : mode && mode.motion[i] ? add(centre, mode.motion[i], s) : centre;
+            return add(moved, lever, 1);
+        }
+        return { point, direction };
+    }
+
+    // The same lists as the configuration has, each with its places as they are in this state:
+    // {mode: index or null, position: index or null, displacement: m}.
+    function pose(configuration, state) {
+        const { point, direction } = mover(configuration, state);
+        const alive = (list) => list || [];
+        const moved = (i, v) => (v ? direction(i, v) : null);
+
+        // a point that two bodies share is where they have it, in the mean: they may slide
+        const shared = (pair, p) => middle(point(pair[0], p), point(pair[1], p));
+        const carrier = (pair) => (pair[0] === 0 ? pair[1] : pair[0]);
+        const between = (list) => alive(list).map((item) => ({ item,
+            from: point(item.bodies[0], item.from), to: point(item.bodies[1], item.to),
+            axis: moved(item.bodies[0], item.axis) }));
+        return {
+            bodies: configuration.bodies.map((item, i) => ({ item, at: point(i, item.at),
+                axes: item.ellipsoid
+                    ? item.ellipsoid.axes.map((axis, k) =>
+                        direction(i, axis.map((x) => x * item.ellipsoid.radii[k])))
+                    : null })),
+            lines: alive(configuration.lines).map((item) => ({ item,
+                from: point(item.body, item.from), to: point(item.body, item.to) })),
+            points: alive(configuration.points).map((item) => ({ item,
+                at: point(item.body, item.at) })),
+            joints: alive(configuration.joints).filter((item) => item.at).map((item) => ({ item,
+                at: shared(item.bodies, item.at), axis: moved(carrier(item.bodies), item.axis) })),
+            springs: between(configuration.springs),
+            dampers: between(configuration.dampers),
+            sensors: alive(configuration.sensors).map((item) => ({ item,
+                at: point(item.body, item.at), axis: moved(item.body, item.axis) })),
+            rotors: alive(configuration.rotors).map((item) => ({ item, axis: item.axis })),
+            loads: alive(configuration.loads)
+                .filter((item) => item.at && item.axis && item.body !== undefined)
+                .map((item) => ({ item, at: point(item.body, item.at), axis: item.axis }))
+        };
+    }
+
+    // All places that a picture of this has to show.
+    function extent(posed) {
+        const all = [];
+        posed.bodies.forEach((body) => {
+            if (body.axes) {
+                body.axes.forEach((axis) => all.push(add(body.at, axis, 1), add(body.at, axis, -1)));
+            } else if (body.item.kind !== 'ground') {
+                all.push(body.at);
+            }
+        });
+        [posed.lines, posed.springs, posed.dampers].forEach((list) =>
+            list.forEach((line) => all.push(line.from, line.to)));
+        [posed.joints, posed.sensors].forEach((list) => list.forEach((item) => all.push(item.at)));
+        return all;
+    }
+
+    window.mt.pose = pose;
+    window.mt.poseExtent = extent;
+})();
