@@ -171,19 +171,33 @@
     function furniture(scene, rotors, lens, width, height) {
         const items = [];
         const front = 10 * scene.size;
-        const at = [34, height - 34];
-        const arm = (axis, name, colour, length) => {
+        const inset = rotors.length > 0 ? 56 : 34;
+        const at = [inset, height - inset];
+
+        function label(text, x, y, fill) {
+            const half = 3.5 * text.length; // about, and it has to stay in the picture
+            items.push({ text, at: [Math.max(x, half + 4), Math.min(y, height - 5)],
+                anchor: 'middle', fill, depth: front });
+        }
+
+        function arm(axis, name, colour, length) {
             const d = lens.direction(unit(axis));
-            const to = [at[0] + length * d[0], at[1] + length * d[1]];
             if (Math.hypot(d[0], d[1]) < 0.2) {
-                return; // towards the eye
+                if (colour === 'rotor') { // towards the eye
+                    items.push({ ellipse: [at[0], at[1], 6, 6, 0], fill: null, stroke: colour,
+                        width: 1.6, depth: front });
+                    label(name, at[0], at[1] + 20, colour);
+                }
+                return;
             }
-            symbols.arrow(at, to, colour, 5).forEach((item) => items.push({ ...item, depth: front }));
-            items.push({ text: name, at: [at[0] + (length + 9) * d[0], at[1] + (length + 9) * d[1] + 4],
-                anchor: 'middle', fill: colour, depth: front });
-        };
+            const to = [at[0] + length * d[0], at[1] + length * d[1]];
+            symbols.arrow(at, to, colour, 5).forEach((item) =>
+                items.push({ ...item, depth: front }));
+            label(name, at[0] + (length + 9) * d[0], at[1] + (length + 9) * d[1] + 4, colour);
+        }
+
         [[1, 0, 0], [0, 1, 0], [0, 0, 1]].forEach((axis, k) => arm(axis, 'xyz'[k], 'soft', 18));
-        rotors.forEach(({ item, axis }) => arm(axis, item.name, 'rotor', 32));
+        rotors.forEach(({ item, axis }) => arm(axis, item.name.slice(0, 20), 'rotor', 34));
         const whole = 90 / lens.scale;
         const power = Math.pow(10, Math.floor(Math.log10(whole)));
         const length = [5, 2, 1].map((lead) => lead * power).find((x) => x <= whole) || power;

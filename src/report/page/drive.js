@@ -140,7 +140,12 @@
             const size = () => ({ width: Math.max(280, Math.min(container.clientWidth || 600, 900)),
                 height: 220 });
             let chosen = null;
-            const paint = () => picture.replaceChildren(chart(drives, labels, chosen, size()));
+            let painted = 0; // width of the chart that is there
+
+            function paint() {
+                painted = size().width;
+                picture.replaceChildren(chart(drives, labels, chosen, size()));
+            }
 
             function set(k) {
                 chosen = k;
@@ -158,7 +163,7 @@
             container.append(make('h2', {}, 'Drive: ' + drives[0].joint),
                 make('div', { class: 'controls' }, slider, out, back), told, picture);
             new window.ResizeObserver(() => {
-                if (Math.abs(size().width - picture.firstChild.clientWidth) > 4) {
+                if (size().width !== painted) {
                     paint();
                 }
             }).observe(container);

@@ -37,7 +37,8 @@
         const icon = (items, name) => make('li', {},
             mt.paint.toSvg(items, mt.paint.palette(document.body), 2 * LEGEND, 22), name);
         const element = (draw, type, what) => icon(
-            type === 'torsion' ? draw(type, at, at, null, 4, lens) : draw(type, ...ends, null, 4, lens),
+            ['torsion', 'bushing'].includes(type) ? draw(type, at, at, null, type === 'torsion' ? 3 : 4, lens)
+                : draw(type, ...ends, null, 4, lens),
             type + ' ' + what);
         const list = [
             ...kinds(configuration.joints).map((type) => icon(mt.symbols.joint(type, at, 5.5), type + ' joint')),

@@ -93,9 +93,9 @@
         const [e, f] = across(unit(axis || lens.frame.towards)).map((v) => lens.direction(v));
         const path = [];
         const turns = 2.25;
-        for (let k = 0; k <= 54; k++) {
-            const a = TURN * turns * k / 54;
-            const s = r * (1.1 + 1.3 * k / 54);
+        for (let k = 0; k <= 72; k++) {
+            const a = TURN * turns * k / 72;
+            const s = r * (1 + 2.4 * k / 72);
             path.push([at[0] + s * (Math.cos(a) * e[0] + Math.sin(a) * f[0]),
                 at[1] + s * (Math.cos(a) * e[1] + Math.sin(a) * f[1])]);
         }

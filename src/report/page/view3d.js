@@ -85,7 +85,7 @@
             'aria-keyshortcuts': 'ArrowLeft ArrowRight ArrowUp ArrowDown + - 0 x y z' });
         const caption = make('figcaption', {}, given.caption || '');
         const trouble = make('p', { class: 'trouble', '.hidden': true });
-        const figure = make('figure', { class: 'view3d' }, canvas, trouble, caption);
+        const figure = make('figure', { class: 'view3d' }, canvas, caption, trouble);
         const tip = makeTip(figure);
         const view = { camera, clock, figure, canvas };
         let drawn = { items: [], finds: [] };
@@ -257,8 +257,8 @@
             button('Fit', 'fit all into the view', () => camera.fit()),
             button('Home', 'the view as it was at first', () => camera.home()), along,
             make('label', {}, perspective, ' perspective'),
-            button('PNG', 'save the picture as PNG', all('savePng')),
-            button('SVG', 'save the picture as SVG', all('saveSvg')));
+            button('Save PNG', 'save the picture as PNG', all('savePng')),
+            button('Save SVG', 'save the picture as SVG', all('saveSvg')));
     }
 
     window.mt.view3d = view3d;
