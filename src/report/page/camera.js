@@ -9,7 +9,7 @@
 // e3 is up in the scene: against gravity, where there is any.
 (function () {
     'use strict';
-    const { add, sub, dot, cross } = window.mt.space;
+    const { add, sub, scaled, dot, cross } = window.mt.space;
 
     const STEP = Math.PI / 36; // of an arrow key
     const ZOOM = 1.2;          // of the keys + and -
@@ -49,7 +49,8 @@
             const sy = Math.sin(camera.yaw);
             const cp = Math.cos(camera.pitch);
             const sp = Math.sin(camera.pitch);
-            const sum = (a, b, c) => add(add(basis[0].map((x) => a * x), basis[1], b), basis[2], c);
+            const sum = (a, b, c) =>
+                add(add(scaled(basis[0], a), basis[1], b), basis[2], c);
             const towards = sum(cp * cy, cp * sy, sp);
             const right = sum(-sy, cy, 0);
             return { towards, right, up: cross(towards, right) };
@@ -62,7 +63,8 @@
             const scale = MARGIN * camera.zoom * fit;
             const far = DISTANCE * size;
             const near = 0.1 * far; // nothing comes closer to the eye, or it would turn over
-            const grow = (depth) => (camera.perspective ? far / Math.max(far - depth, near) : 1);
+            const grow = (depth) =>
+                (camera.perspective ? far / Math.max(far - depth, near) : 1);
             const lens = { scale, frame: f };
             lens.project = function (p) {
                 const q = sub(p, camera.centre);
@@ -93,20 +95,22 @@
             const points = [...shown.values()].flat();
             const range = [f.right, f.up, f.towards].map((axis) => {
                 const at = points.map((p) => dot(p, axis));
-                return at.length > 0 ? [Math.min(...at), Math.max(...at)] : [-size / 2, size / 2];
+                return at.reduce(([low, high], x) => [Math.min(low, x), Math.max(high, x)],
+                    at.length > 0 ? [Infinity, -Infinity] : [-size / 2, size / 2]);
             });
             camera.centre = [0, 0, 0];
             [f.right, f.up, f.towards].forEach((axis, i) => {
                 camera.centre = add(camera.centre, axis, (range[i][0] + range[i][1]) / 2);
             });
             const least = 0.05 * size; // a row seen from its end has no extent of its own
-            camera.half = range.slice(0, 2).map(([low, high]) => Math.max((high - low) / 2, least));
+            camera.half = range.slice(0, 2)
+                .map(([low, high]) => Math.max((high - low) / 2, least));
             camera.zoom = 1;
             camera.changed();
         };
 
-        // The view along an axis of the scene: 0 is x, 1 is y, 2 is z; x is seen from its far end,
-        // as z is, y from the front.
+        // The view along an axis of the scene: 0 is x, 1 is y, 2 is z; x and z are seen from
+        // their far ends, y from the front.
         camera.lookAlong = function (axis) {
             const eye = AXES[axis].map((x) => (axis === 1 ? -x : x));
             const upward = dot(eye, basis[2]);
@@ -181,7 +185,8 @@
 
         function spread() {
             const [a, b] = [...held.values()];
-            return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, d: Math.hypot(a.x - b.x, a.y - b.y) };
+            return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2,
+                d: Math.hypot(a.x - b.x, a.y - b.y) };
         }
 
         canvas.addEventListener('pointerdown', (event) => {

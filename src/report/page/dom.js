@@ -4,7 +4,8 @@
     'use strict';
 
     // make('td', {class: 'number'}, 'text', child, ...): attributes that are null are left out,
-    // functions listen ({click: f}), properties of the element begin with a dot ({'.value': 3}).
+    // functions listen ({click: f}), properties of the element begin with a dot
+    // ({'.value': 3}).
     function make(name, attributes, ...children) {
         const made = document.createElement(name);
         Object.entries(attributes || {}).forEach(([key, value]) => {
@@ -24,18 +25,16 @@
         return made;
     }
 
-    // A table with its caption and header; rows are lists of cells (or of texts). Columns named
+    // A table with its header; rows are lists of cells (or of texts). Columns named
     // in `numbers` are aligned to the right.
-    function table(caption, header, rows, numbers) {
+    function table(header, rows, numbers) {
         const kind = (k) => (numbers && numbers.includes(k) ? 'number' : null);
         const cell = (name) => (content, k) =>
-            (content instanceof HTMLTableCellElement ? content
-                : make(name, { class: kind(k), scope: name === 'th' ? 'col' : null }, content));
-        return make('div', { class: 'wide' }, make('table', {},
-            caption ? make('caption', {}, caption) : null,
+            make(name, { class: kind(k), scope: name === 'th' ? 'col' : null }, content);
+        return make('table', {},
             make('thead', {}, make('tr', {}, header.map(cell('th')))),
             make('tbody', {}, rows.map((row) => (row instanceof HTMLTableRowElement ? row
-                : make('tr', {}, row.map(cell('td'))))))));
+                : make('tr', {}, row.map(cell('td')))))));
     }
 
     // A number with six digits that count; the page is read by people.

@@ -3,12 +3,14 @@
 // the pointer finds: [{at | from, to | ellipse, rank, text}], texts as lists of lines.
 (function () {
     'use strict';
-    const { add, middle, unit, scaled } = window.mt.space;
+    const { add, unit, scaled } = window.mt.space;
     const symbols = window.mt.symbols;
 
     const SYMBOL = 5.5;     // radius of a symbol, px
     const CROWDED = 40;     // more symbols than these are drawn smaller
     const PIECES = 6;       // of a long line, each at its own depth
+    const PREFIXES = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'µ'],
+        [1e-9, 'n']];
     const IN_FRONT = 0.004; // of the size: what a symbol comes before the line that it lies on
 
     // Four digits that count, with a prefix, so that lengths and stiffnesses can be read.
@@ -17,16 +19,18 @@
             return '–';
         }
         const size = Math.abs(value);
-        const prefixes = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'µ'], [1e-9, 'n']];
-        const [factor, prefix] = prefixes.find(([f]) => size >= f) || [1, ''];
+        const [factor, prefix] = PREFIXES.find(([f]) => size >= f) || [1, ''];
         return Number((value / factor).toPrecision(4)) + ' ' + prefix + unitName;
     }
 
     const STIFFNESS = { torsion: 'N·m/rad', axial: 'N/m', bar: 'N/m' };
     const DAMPING = { torsion: 'N·m·s/rad', axial: 'N·s/m' };
 
+    const circle = (at, r) => ({ ellipse: [at[0], at[1], r, r, 0] });
+
     function between(configuration, pair) {
-        return pair.map((i) => (configuration.bodies[i] ? configuration.bodies[i].name : '?')).join(' – ');
+        const name = (i) => (configuration.bodies[i] ? configuration.bodies[i].name : '?');
+        return pair.map(name).join(' – ');
     }
 
     function makeDrawing(configuration, posed, lens, options) {
@@ -34,9 +38,14 @@
         const finds = [];
         const size = options.size;
         const count = posed.joints.length + posed.springs.length + posed.sensors.length;
-        const r = SYMBOL * options.symbol * Math.max(0.55, Math.min(1, Math.sqrt(CROWDED / (count + 1))));
-        const put = (list, depth, front) =>
-            list.forEach((item) => items.push({ ...item, depth: depth + (front || 0) * IN_FRONT * size }));
+        const crowd = Math.max(0.55, Math.min(1, Math.sqrt(CROWDED / (count + 1))));
+        const r = SYMBOL * options.symbol * crowd;
+
+        function put(list, depth, front) {
+            const before = (front || 0) * IN_FRONT * size;
+            list.forEach((item) => items.push({ ...item, depth: depth + before }));
+        }
+
 
         function line(from, to, look, front) {
             for (let k = 0; k < PIECES; k++) {
@@ -44,7 +53,7 @@
                 const b = add(scaled(from, 1 - (k + 1) / PIECES), to, (k + 1) / PIECES);
                 const p = lens.project(a);
                 const q = lens.project(b);
-                put([{ path: [p, q], closed: false, fill: null, ...look }], (p[2] + q[2]) / 2, front);
+                put([{ path: [p, q], ...look }], (p[2] + q[2]) / 2, front);
             }
         }
 
@@ -60,18 +69,21 @@
             const p = lens.project(at);
             const told = item.mass > 0 ? 'mass ' + quantity(item.mass * 1000, 'g') : null;
             if (!axes) {
-                if (item.mass > 0) {
-                    put([{ ellipse: [p[0], p[1], 0.6 * r, 0.6 * r, 0], fill: 'body', stroke: 'paper', width: 1 }],
-                        p[2], 1);
+                if (item.mass > 0 && item.kind !== 'link') {
+                    const look = { fill: 'body', stroke: 'paper', width: 1 };
+                    put([{ ...circle(p, 0.6 * r), ...look }], p[2], 1);
                 }
                 find({ at: p, r: r }, 2, item.name, told);
                 return;
             }
             const outline = symbols.ellipsoid(at, axes, lens);
-            put([{ ellipse: outline, fill: 'body', alpha: 0.16, stroke: 'body', width: 1.3 }], p[2]);
-            [0, 1, 2].forEach((k) => symbols.section(at, axes, k, lens).forEach((path) =>
-                put([{ path, closed: false, fill: null, stroke: 'body', width: 0.8, faint: 0.45 }], p[2], 0.5)));
-            find({ ellipse: outline }, 4, item.name, told, 'drawn as an ellipsoid of its mass and inertia');
+            const round = { stroke: 'body', width: 0.8, faint: 0.45 };
+            put([{ ellipse: outline, fill: 'body', alpha: 0.16, stroke: 'body', width: 1.3 }],
+                p[2]);
+            [0, 1, 2].forEach((k) => symbols.section(at, axes, k, lens)
+                .forEach((path) => put([{ path, ...round }], p[2], 0.5)));
+            find({ ellipse: outline }, 4, item.name, told,
+                'drawn as an ellipsoid of its mass and inertia');
         }
 
         function drawGround() {
@@ -99,12 +111,13 @@
             const p = lens.project(at);
             put(symbols.joint(item.type, p, r), p[2], 3);
             if (options.isFar(item)) {
-                put([{ ellipse: [p[0], p[1], 2.1 * r, 2.1 * r, 0], fill: null, stroke: 'far', width: 1.6,
-                    dash: [3, 3] }], p[2], 3);
+                const look = { stroke: 'far', width: 1.6, dash: [3, 3] };
+                put([{ ...circle(p, 2.1 * r), ...look }], p[2], 3);
             }
             find({ at: p, r: 1.3 * r }, 0, item.name, item.type + ' joint',
                 between(configuration, item.bodies),
-                item.distance > 0 ? quantity(item.distance, 'm') + ' from ' + item.far : null);
+                item.distance > 0 && item.far
+                    ? quantity(item.distance, 'm') + ' from ' + item.far : null);
         }
 
         function drawElement(make, units, kind) {
@@ -115,7 +128,8 @@
                 put(drawn, (a[2] + b[2]) / 2, 2);
                 const value = kind === 'spring' ? item.stiffness : item.damping;
                 const known = units[item.type] && typeof value === 'number' && value !== 0;
-                const text = [item.name, item.type + ' ' + kind, between(configuration, item.bodies),
+                const text = [item.name, item.type + ' ' + kind,
+                    between(configuration, item.bodies),
                     known ? quantity(value, units[item.type]) : null];
                 if (Math.hypot(a[0] - b[0], a[1] - b[1]) < 3 * r) {
                     find({ at: a, r: 2.4 * r }, 1, ...text);
@@ -137,7 +151,7 @@
         posed.lines.forEach(({ item, from, to }) => {
             const body = configuration.bodies[item.body];
             const ground = !body || body.kind === 'ground';
-            line(from, to, ground ? { stroke: 'soft', width: 1.2 } : { stroke: 'ink', width: 2.4 });
+            line(from, to, { stroke: ground ? 'soft' : 'ink', width: ground ? 1.2 : 2.4 });
             find({ from: lens.project(from), to: lens.project(to) }, 3, body ? body.name : '',
                 body && body.mass > 0 ? 'mass ' + quantity(body.mass * 1000, 'g') : null);
         });
@@ -158,17 +172,17 @@
 
     // The configuration at rest, as grey lines behind what moves.
     function ghost(posed, lens, size) {
-        const lines = [...posed.lines, ...posed.springs.filter(({ item }) => item.type === 'bar')];
-        return lines.map(({ from, to }) => {
+        const bars = posed.springs.filter(({ item }) => item.type === 'bar');
+        return [...posed.lines, ...bars].map(({ from, to }) => {
             const p = lens.project(from);
             const q = lens.project(to);
-            return { path: [p, q], closed: false, fill: null, stroke: 'ghost', width: 1.2, dash: [4, 3],
+            return { path: [p, q], stroke: 'ghost', width: 1.2, dash: [4, 3],
                 depth: (p[2] + q[2]) / 2 - 2 * size };
         });
     }
 
     // Axes of the scene (and of rotors) in the lower left corner, a length in the lower right.
-    function furniture(scene, rotors, lens, width, height) {
+    function furniture(scene, rotors, lens, { width, height }) {
         const items = [];
         const front = 10 * scene.size;
         const inset = rotors.length > 0 ? 56 : 34;
@@ -184,8 +198,7 @@
             const d = lens.direction(unit(axis));
             if (Math.hypot(d[0], d[1]) < 0.2) {
                 if (colour === 'rotor') { // towards the eye
-                    items.push({ ellipse: [at[0], at[1], 6, 6, 0], fill: null, stroke: colour,
-                        width: 1.6, depth: front });
+                    items.push({ ...circle(at, 6), stroke: colour, width: 1.6, depth: front });
                     label(name, at[0], at[1] + 20, colour);
                 }
                 return;
@@ -204,10 +217,10 @@
         const right = width - 14;
         const left = right - length * lens.scale;
         const y = height - 16;
-        items.push({ path: [[left, y - 4], [left, y], [right, y], [right, y - 4]], closed: false, fill: null,
+        items.push({ path: [[left, y - 4], [left, y], [right, y], [right, y - 4]],
             stroke: 'soft', width: 1.2, depth: front });
-        items.push({ text: quantity(length, 'm'), at: [(left + right) / 2, y - 6], anchor: 'middle',
-            fill: 'soft', depth: front });
+        items.push({ text: quantity(length, 'm'), at: [(left + right) / 2, y - 6],
+            anchor: 'middle', fill: 'soft', depth: front });
         return items;
     }
 
@@ -224,8 +237,8 @@
         const dx = what.to[0] - what.from[0];
         const dy = what.to[1] - what.from[1];
         const square = dx * dx + dy * dy;
-        const along = square > 0 ? ((x - what.from[0]) * dx + (y - what.from[1]) * dy) / square : 0;
-        const t = Math.max(0, Math.min(1, along));
+        const along = (x - what.from[0]) * dx + (y - what.from[1]) * dy;
+        const t = square > 0 ? Math.max(0, Math.min(1, along / square)) : 0;
         return Math.hypot(x - what.from[0] - t * dx, y - what.from[1] - t * dy);
     }
 
@@ -238,5 +251,5 @@
         return found.length > 0 ? found[0].what : null;
     }
 
-    window.mt.drawing = { make: makeDrawing, ghost, furniture, pick, quantity, middle };
+    window.mt.drawing = { make: makeDrawing, ghost, furniture, pick, quantity };
 })();

@@ -26,6 +26,7 @@
     }
 
     const shownAt = (drive, value) => (drive.unit === 'rad' ? value * 180 / Math.PI : value);
+    const listOf = (position) => position.hz || [];
     const unitOf = (drive) => (drive.unit === 'rad' ? '°' : ' ' + drive.unit);
 
     function svg(name, attributes, text) {
@@ -37,17 +38,18 @@
         return made;
     }
 
-    // Frequencies over the range: one line per mode, the first design dashed where there are two.
+    // Frequencies over the range: one line per mode; of two designs the first one is dashed.
     function chart(drives, labels, k, size) {
         const { width, height } = size;
         const at = drives[0].positions.map((position) => shownAt(drives[0], position.at));
-        const all = drives.flatMap((drive) => drive.positions.flatMap((position) => position.hz || []))
+        const all = drives.flatMap((drive) => drive.positions.flatMap(listOf))
             .filter((hz) => isFinite(hz));
         const top = Math.max(...all, 0) * 1.05 || 1;
         const low = Math.min(...at);
         const high = Math.max(...at) > low ? Math.max(...at) : low + 1;
         const x = (value) => LEFT + (value - low) / (high - low) * (width - LEFT - 12);
         const y = (hz) => height - BOTTOM - hz / top * (height - BOTTOM - TOP);
+        const degree = drives[0].unit === 'rad' ? '°' : '';
         const root = svg('svg', { viewBox: `0 0 ${width} ${height}`, width, height, role: 'img',
             class: 'chart' });
         root.append(svg('title', {}, `frequencies over the range of ${drives[0].joint}`));
@@ -59,18 +61,17 @@
             text(digits(hz), LEFT - 6, y(hz) + 4, 'end');
         });
         marks(low, high).forEach((value) =>
-            text(digits(value) + (drives[0].unit === 'rad' ? '°' : ''), x(value), height - BOTTOM + 15,
-                'middle'));
+            text(digits(value) + degree, x(value), height - BOTTOM + 15, 'middle'));
         text('Hz', 4, TOP + 2, 'start');
         text(drives[0].joint + (drives[0].unit === 'rad' ? '' : ', ' + drives[0].unit),
             (LEFT + width - 12) / 2, height - 4, 'middle');
         drives.forEach((drive, d) => {
-            const count = Math.max(...drive.positions.map((position) => (position.hz || []).length), 0);
+            const count = Math.max(...drive.positions.map((at) => listOf(at).length), 0);
             for (let j = 0; j < count; j++) {
                 let path = '';
                 let pen = false; // a position without modes leaves a gap
                 drive.positions.forEach((position) => {
-                    const hz = position.hz ? position.hz[j] : undefined;
+                    const hz = listOf(position)[j];
                     if (hz === undefined || hz === null) {
                         pen = false;
                         return;
@@ -79,8 +80,8 @@
                         + y(hz).toFixed(1);
                     pen = true;
                 });
-                const line = svg('path', { d: path || 'M0 0', fill: 'none', class: 'line' + (d + 1),
-                    'stroke-width': 1.6 });
+                const line = svg('path', { d: path || 'M0 0', fill: 'none',
+                    class: 'line' + (d + 1), 'stroke-width': 1.6 });
                 if (d === 0 && drives.length > 1) {
                     line.setAttribute('stroke-dasharray', '5 3');
                 }
@@ -104,8 +105,8 @@
         }
         return drives.map((drive, d) => {
             const position = drive.positions[k];
-            const found = !position ? 'no position'
-                : position.error || (position.hz || []).slice(0, 6).map((hz) => digits(hz, 5)).join(', ') + ' Hz';
+            const found = !position ? 'no position' : position.error
+                || listOf(position).slice(0, 6).map((hz) => digits(hz, 5)).join(', ') + ' Hz';
             return (drives.length > 1 ? labels[d] + ': ' : '') + found;
         }).join('; ');
     }
@@ -125,20 +126,21 @@
             const labels = kept.map(({ label }) => label);
             const positions = drives[0].positions;
             const value = drives[0].at === null ? positions[0].at : drives[0].at;
-            const nearest = positions.reduce((best, position, i) =>
-                (Math.abs(position.at - value) < Math.abs(positions[best].at - value) ? i : best), 0);
+            const off = (i) => Math.abs(positions[i].at - value);
+            const nearest = positions.reduce((k, _, i) => (off(i) < off(k) ? i : k), 0);
             const out = make('output', { class: 'place' });
             const told = make('p', { class: 'note', 'aria-live': 'polite' });
             const picture = make('div', { class: 'figure' });
-            const slider = make('input', { type: 'range', id: 'drive', min: 0, max: positions.length - 1,
-                step: 1, '.value': nearest, 'aria-label': 'position of ' + drives[0].joint,
+            const slider = make('input', { type: 'range', id: 'drive', min: 0,
+                max: positions.length - 1, step: 1, '.value': nearest,
+                'aria-label': 'position of ' + drives[0].joint,
                 input: () => set(Number(slider.value)) });
             const back = make('button', { type: 'button', click: () => {
                 slider.value = nearest;
                 set(null);
             } }, 'As drawn');
-            const size = () => ({ width: Math.max(280, Math.min(container.clientWidth || 600, 900)),
-                height: 220 });
+            const size = () => ({ height: 220,
+                width: Math.max(280, Math.min(container.clientWidth || 600, 900)) });
             let chosen = null;
             let painted = 0; // width of the chart that is there
 
@@ -149,9 +151,10 @@
 
             function set(k) {
                 chosen = k;
-                const text = k === null ? (drives[0].at === null ? 'as drawn'
-                    : digits(shownAt(drives[0], drives[0].at), 4) + unitOf(drives[0]) + ' (as drawn)')
-                    : digits(shownAt(drives[0], positions[k].at), 4) + unitOf(drives[0]);
+                const here = k === null ? drives[0].at : positions[k].at;
+                const text = here === null ? 'as drawn'
+                    : digits(shownAt(drives[0], here), 4) + unitOf(drives[0])
+                        + (k === null ? ' (as drawn)' : '');
                 out.textContent = text;
                 slider.setAttribute('aria-valuetext', text);
                 told.textContent = k === null ? 'Modes move at the position that is drawn.'

@@ -8,17 +8,16 @@
 
     const SHOWN = 8; // bars; the rest is summed up
 
-    // One row per mode: its places in the lists of the designs. Modes that have names are paired
-    // by them, others by their index, rigid-body and unstable ones in their order.
+    // One row per mode: its places in the lists of the designs. Modes that have names are
+    // paired by them, others by their index, rigid-body and unstable ones in their order.
     function pairs(lists) {
         const key = (list, j) => {
             const mode = list[j];
             if (mode.name) {
                 return 'name ' + mode.name;
             }
-            const kind = mode.note || 'mode';
-            const before = list.slice(0, j).filter((other) => (other.note || 'mode') === kind).length;
-            return kind + ' ' + (mode.mode > 0 ? mode.mode : before);
+            const before = list.slice(0, j).filter((other) => other.note === mode.note).length;
+            return mode.note + ' ' + (mode.mode > 0 ? mode.mode : before);
         };
         const rows = new Map();
         lists.forEach((list, d) => list.forEach((mode, j) => {
@@ -39,7 +38,7 @@
         if (!mode) {
             return '–';
         }
-        return mode.note === 'unstable' ? 'unstable' : digits(mode.hz);
+        return digits(mode.hz);
     }
 
     function change(a, b) {
@@ -53,13 +52,14 @@
 
     // Shares of the energy of the chosen mode: names down, one bar per design, largest first.
     function bars(title, names, shares, labels) {
-        const rows = names.map((name, i) => ({ name, shares: shares.map((list) => list[i] || 0) }))
+        const rows = names
+            .map((name, i) => ({ name, shares: shares.map((list) => list[i] || 0) }))
             .sort((a, b) => Math.max(...b.shares) - Math.max(...a.shares));
         const rest = rows.slice(SHOWN);
         const shown = rows.slice(0, SHOWN).filter((row) => Math.max(...row.shares) > 0.0005);
         if (rest.some((row) => Math.max(...row.shares) > 0.0005)) {
-            shown.push({ name: rest.length + ' others',
-                shares: shares.map((_, d) => rest.reduce((sum, row) => sum + row.shares[d], 0)) });
+            const sum = (_, d) => rest.reduce((all, row) => all + row.shares[d], 0);
+            shown.push({ name: rest.length + ' others', shares: shares.map(sum) });
         }
         if (shown.length === 0) {
             return make('div', {}, make('h3', {}, title), make('p', { class: 'note' }, 'none'));
@@ -95,12 +95,14 @@
             const first = configurations[0];
             const names = (items) => (items || []).map((item) => item.name);
             energy.replaceChildren(
-                bars('Potential energy in springs', names(first.springs), of('springs'), labels),
+                bars('Potential energy in springs', names(first.springs), of('springs'),
+                    labels),
                 bars('Kinetic energy of bodies', names(first.bodies), of('bodies'), labels));
             if (labels.length > 1) {
+                const swatch = (d) =>
+                    make('span', { class: d === 0 ? 'swatch' : 'swatch second' });
                 energy.prepend(make('p', { class: 'key' },
-                    labels.map((label, d) => make('span', {},
-                        make('span', { class: d === 0 ? 'swatch first' : 'swatch second' }), label))));
+                    labels.map((label, d) => make('span', {}, swatch(d), label))));
             }
         }
 
@@ -110,7 +112,8 @@
                 return;
             }
             input.checked = true;
-            list.querySelectorAll('tbody tr').forEach((row, i) => row.classList.toggle('chosen', i === k));
+            list.querySelectorAll('tbody tr')
+                .forEach((row, i) => row.classList.toggle('chosen', i === k));
             showEnergy(shown.rows[k]);
             choose(shown.rows[k]);
         }
@@ -131,11 +134,12 @@
                 return make('tr', { click: () => select(k) },
                     make('td', {}, make('label', {}, input, ' ', indexOf(first))),
                     make('td', { class: 'name' }, told),
-                    modes.map((mode) => make('td', { class: 'number',
-                        'data-hz': mode && mode.note !== 'unstable' ? mode.hz : null }, hertz(mode))),
+                    modes.map((mode) => make('td',
+                        { class: 'number', 'data-hz': mode && mode.hz }, hertz(mode))),
                     two ? make('td', { class: 'number' }, change(modes[0], modes[1])) : null);
             });
-            const heads = two ? [...designs.map((design) => design.label + ', Hz'), 'change'] : ['Hz'];
+            const heads = two
+                ? [...designs.map(({ label }) => label + ', Hz'), 'change'] : ['Hz'];
             if (rows.length === 0) {
                 const why = configurations.map((c) => c.error).find((error) => error);
                 list.replaceChildren(make('p', { class: 'note' }, why || 'no modes'));
@@ -143,7 +147,7 @@
                 choose(designs.map(() => null));
                 return;
             }
-            list.replaceChildren(table(null, ['mode', 'name', ...heads], cells, [2, 3, 4]));
+            list.replaceChildren(table(['mode', 'name', ...heads], cells, [2, 3, 4]));
             const start = rows.findIndex((row) => {
                 const mode = configurations[0].modes[row[0]];
                 return mode && mode.mode > 0;

@@ -6,13 +6,13 @@
     const SVG = 'http://www.w3.org/2000/svg';
     const FONT = '12px system-ui, sans-serif';
 
-    // Colours by name: of Okabe and Ito, a little darker or lighter where the paper asks for it.
+    // Colours by name: of Okabe and Ito, darker or lighter where the paper asks for it.
     const LIGHT = { ink: '#1a1a1a', paper: '#ffffff', soft: '#8a8a8a', body: '#0072b2',
-        spring: '#00735a', damper: '#8a4a78', sensor: '#b04a00', rotor: '#8a6100', far: '#c04000',
-        ghost: '#a8a8a8' };
+        spring: '#00735a', damper: '#8a4a78', sensor: '#b04a00', rotor: '#8a6100',
+        far: '#c04000', ghost: '#a8a8a8' };
     const DARK = { ink: '#eaeaea', paper: '#15181c', soft: '#8f979f', body: '#56b4e9',
-        spring: '#2cc79d', damper: '#dd9cc3', sensor: '#ff8c42', rotor: '#e8b03a', far: '#ff8c42',
-        ghost: '#5a6168' };
+        spring: '#2cc79d', damper: '#dd9cc3', sensor: '#ff8c42', rotor: '#e8b03a',
+        far: '#ff8c42', ghost: '#5a6168' };
 
     // The palette of the page as it is: its own ink and paper, and whichever set suits them.
     function palette(element) {
@@ -40,7 +40,7 @@
             context.ellipse(x, y, Math.max(a, 0.1), Math.max(b, 0.1), angle, 0, 2 * Math.PI);
             return;
         }
-        item.path.forEach((p, k) => (k === 0 ? context.moveTo(p[0], p[1]) : context.lineTo(p[0], p[1])));
+        item.path.forEach((p) => context.lineTo(p[0], p[1])); // the first one begins
         if (item.closed) {
             context.closePath();
         }
@@ -53,7 +53,7 @@
             if (item.text !== undefined) {
                 context.font = FONT;
                 context.fillStyle = colours[item.fill];
-                context.textAlign = item.anchor === 'middle' ? 'center' : item.anchor || 'start';
+                context.textAlign = item.anchor === 'middle' ? 'center' : 'start';
                 context.fillText(item.text, item.at[0], item.at[1]);
                 return;
             }
@@ -104,8 +104,9 @@
             'stroke-dasharray': item.dash ? item.dash.join(' ') : null };
         if (item.ellipse) {
             const [x, y, a, b, angle] = item.ellipse;
-            return element('ellipse', { ...look, cx: short(x), cy: short(y), rx: short(a), ry: short(b),
-                transform: angle ? `rotate(${short(angle * 180 / Math.PI)} ${short(x)} ${short(y)})` : null });
+            const turn = `rotate(${short(angle * 180 / Math.PI)} ${short(x)} ${short(y)})`;
+            return element('ellipse', { ...look, cx: short(x), cy: short(y), rx: short(a),
+                ry: short(b), transform: angle ? turn : null });
         }
         const points = item.path.map((p) => short(p[0]) + ',' + short(p[1])).join(' ');
         return element(item.closed ? 'polygon' : 'polyline', { ...look, points });
@@ -113,7 +114,7 @@
 
     // An <svg> of the items; with a paper behind them unless colours has none.
     function toSvg(items, colours, width, height) {
-        const svg = element('svg', { xmlns: SVG, viewBox: `0 0 ${width} ${height}`, width, height,
+        const svg = element('svg', { viewBox: `0 0 ${width} ${height}`, width, height,
             'stroke-linejoin': 'round', 'stroke-linecap': 'round' });
         if (colours.behind) {
             svg.append(element('rect', { width, height, fill: colours.behind }));
@@ -122,18 +123,12 @@
         return svg;
     }
 
-    function save(blob, name) {
-        const link = document.createElement('a');
-        link.href = URL.createObjectURL(blob);
-        link.download = name.replace(/[^A-Za-z0-9._-]+/g, '_').slice(0, 100);
-        link.click();
-        setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-    }
+    const fileName = (name) => name.replace(/[^A-Za-z0-9._-]+/g, '_').slice(0, 100);
 
     function saveSvg(items, width, height, name) {
         const svg = toSvg(items, { ...LIGHT, behind: LIGHT.paper }, width, height);
-        save(new Blob([new XMLSerializer().serializeToString(svg)], { type: 'image/svg+xml' }),
-            name + '.svg');
+        window.mt.save(fileName(name) + '.svg', new XMLSerializer().serializeToString(svg),
+            'image/svg+xml');
     }
 
     function savePng(items, width, height, name) {
@@ -146,7 +141,8 @@
         context.fillStyle = LIGHT.paper;
         context.fillRect(0, 0, width, height);
         toCanvas(context, items, LIGHT);
-        canvas.toBlob((blob) => save(blob, name + '.png'), 'image/png');
+        canvas.toBlob((blob) => window.mt.save(fileName(name) + '.png', blob, 'image/png'),
+            'image/png');
     }
 
     window.mt.paint = { LIGHT, palette, toCanvas, toSvg, saveSvg, savePng };

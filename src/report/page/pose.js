@@ -9,17 +9,17 @@
     'use strict';
     const { add, sub, cross, middle } = window.mt.space;
 
-    // Rows r00 r01 r02 r10 ... of a rotation, times v.
+    // The rotation of a pose (x y z, then its rows r00 r01 r02 r10 ...) times v.
     function turned(r, v) {
-        return [r[3] * v[0] + r[4] * v[1] + r[5] * v[2], r[6] * v[0] + r[7] * v[1] + r[8] * v[2],
-            r[9] * v[0] + r[10] * v[1] + r[11] * v[2]];
+        return [3, 6, 9].map((k) => r[k] * v[0] + r[k + 1] * v[1] + r[k + 2] * v[2]);
     }
 
     function mover(configuration, state) {
         const bodies = configuration.bodies;
         const mode = state.mode === null ? null : configuration.modes[state.mode];
         const drive = configuration.drive;
-        const position = drive && state.position !== null ? drive.positions[state.position] : null;
+        const position = drive && state.position !== null
+            ? drive.positions[state.position] : null;
         const poses = position && position.poses;
         const s = state.displacement;
 
@@ -65,7 +65,8 @@
             points: alive(configuration.points).map((item) => ({ item,
                 at: point(item.body, item.at) })),
             joints: alive(configuration.joints).filter((item) => item.at).map((item) => ({ item,
-                at: shared(item.bodies, item.at), axis: moved(carrier(item.bodies), item.axis) })),
+                at: shared(item.bodies, item.at),
+                axis: moved(carrier(item.bodies), item.axis) })),
             springs: between(configuration.springs),
             dampers: between(configuration.dampers),
             sensors: alive(configuration.sensors).map((item) => ({ item,
@@ -82,14 +83,16 @@
         const all = [];
         posed.bodies.forEach((body) => {
             if (body.axes) {
-                body.axes.forEach((axis) => all.push(add(body.at, axis, 1), add(body.at, axis, -1)));
+                body.axes.forEach((axis) =>
+                    all.push(add(body.at, axis, 1), add(body.at, axis, -1)));
             } else if (body.item.kind !== 'ground') {
                 all.push(body.at);
             }
         });
         [posed.lines, posed.springs, posed.dampers].forEach((list) =>
             list.forEach((line) => all.push(line.from, line.to)));
-        [posed.joints, posed.sensors].forEach((list) => list.forEach((item) => all.push(item.at)));
+        [posed.joints, posed.sensors].forEach((list) =>
+            list.forEach((item) => all.push(item.at)));
         return all;
     }
 

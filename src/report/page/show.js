@@ -14,7 +14,7 @@
 
     function choice(label, names, chosen, change) {
         const select = make('select', { change: () => change(Number(select.value)) },
-            names.map((name, i) => make('option', { value: i, '.selected': i === chosen }, name)));
+            names.map((name, i) => make('option', { value: i, selected: i === chosen }, name)));
         return make('label', { class: 'choice' }, label + ' ', select);
     }
 
@@ -23,7 +23,8 @@
         const dampers = (configuration.dampers || []).length;
         const bodies = configuration.bodies.filter((body) => body.kind !== 'ground');
         const mass = bodies.reduce((sum, body) => sum + (body.mass || 0), 0);
-        return [count(bodies.length, 'body', 'bodies') + (mass > 0 ? ` of ${quantity(1000 * mass, 'g')}` : ''),
+        const weight = mass > 0 ? ` of ${quantity(1000 * mass, 'g')}` : '';
+        return [count(bodies.length, 'body', 'bodies') + weight,
             count((configuration.joints || []).length, 'joint'), count(springs, 'spring'),
             dampers > 0 ? count(dampers, 'damper') : null].filter((part) => part).join(', ');
     }
@@ -37,19 +38,24 @@
         const icon = (items, name) => make('li', {},
             mt.paint.toSvg(items, mt.paint.palette(document.body), 2 * LEGEND, 22), name);
         const element = (draw, type, what) => icon(
-            ['torsion', 'bushing'].includes(type) ? draw(type, at, at, null, type === 'torsion' ? 3 : 4, lens)
-                : draw(type, ...ends, null, 4, lens),
+            ...(type === 'torsion' ? [draw(type, at, at, null, 3, lens)]
+                : type === 'bushing' ? [draw(type, at, at, null, 4, lens)]
+                    : [draw(type, ...ends, null, 4, lens)]),
             type + ' ' + what);
         const list = [
-            ...kinds(configuration.joints).map((type) => icon(mt.symbols.joint(type, at, 5.5), type + ' joint')),
-            ...kinds(configuration.springs).map((type) => element(mt.symbols.spring, type, 'spring')),
-            ...kinds(configuration.dampers).map((type) => element(mt.symbols.damper, type, 'damper'))];
+            ...kinds(configuration.joints).map((type) =>
+                icon(mt.symbols.joint(type, at, 5.5), type + ' joint')),
+            ...kinds(configuration.springs).map((type) =>
+                element(mt.symbols.spring, type, 'spring')),
+            ...kinds(configuration.dampers).map((type) =>
+                element(mt.symbols.damper, type, 'damper'))];
         if ((configuration.sensors || []).length > 0) {
             list.push(icon(mt.symbols.arrow([6, 11], [26, 11], 'sensor', 5), 'sensor'));
         }
         if (configuration.bodies.some((body) => body.ellipsoid)) {
-            list.push(icon([{ ellipse: [LEGEND, 11, 12, 7, 0], fill: 'body', alpha: 0.16, stroke: 'body',
-                width: 1.3 }], 'body, as an ellipsoid of equal mass and inertia'));
+            list.push(icon([{ ellipse: [LEGEND, 11, 12, 7, 0], fill: 'body', alpha: 0.16,
+                stroke: 'body', width: 1.3 }],
+            'body, as an ellipsoid of equal mass and inertia'));
         }
         return make('ul', { class: 'legend', 'aria-label': 'symbols' }, list);
     }
@@ -62,13 +68,15 @@
         }
         const rows = lists[0].map((parameter, i) => {
             const other = second && lists[1][i];
-            const percent = other && parameter.value ? 100 * (other.value / parameter.value - 1) : null;
-            return [parameter.name, digits(parameter.value), ...(second ? [other ? digits(other.value) : '–',
-                percent === null ? '–' : digits(percent, 3) + ' %'] : []), parameter.unit || ''];
+            const percent = other && parameter.value
+                ? digits(100 * (other.value / parameter.value - 1), 3) + ' %' : '–';
+            return [parameter.name, digits(parameter.value),
+                ...(second ? [other ? digits(other.value) : '–', percent] : []),
+                parameter.unit || ''];
         });
         const heads = second ? [first.label, second.label, 'change'] : ['value'];
         return make('section', {}, make('h2', {}, 'Parameters'),
-            table(null, ['parameter', ...heads, 'unit'], rows, second ? [1, 2, 3] : [1]));
+            table(['parameter', ...heads, 'unit'], rows, second ? [1, 2, 3] : [1]));
     }
 
     function jointTable(scene) {
@@ -79,15 +87,21 @@
         }
         const rows = list.map((joint) => {
             const marked = joint.distance > far;
-            return make('tr', { class: marked ? 'far' : null }, make('td', {}, joint.configuration),
-                make('th', { scope: 'row' }, joint.joint), make('td', {}, joint.type), make('td', {}, joint.body || '–'),
-                make('td', { class: 'number' }, joint.distance > 0 ? quantity(joint.distance, 'm') : '0'),
+            const distance = joint.distance > 0 ? quantity(joint.distance, 'm') : '0';
+            return make('tr', { class: marked ? 'far' : null },
+                make('td', {}, joint.configuration),
+                make('th', { scope: 'row' }, joint.joint),
+                make('td', {}, joint.type),
+                make('td', {}, joint.body || '–'),
+                make('td', { class: 'number' }, distance),
                 make('td', {}, marked ? '\u25B2 far' : ''));
         });
-        return make('section', {}, make('h2', {}, 'Joints, by their distance from what they join'),
-            make('p', { class: 'note' }, 'The distance is that of the joint\u2019s point from the drawn '
-                + `body that is farther. More than ${quantity(far, 'm')} is marked: often a coordinate is wrong there.`),
-            table(null, ['configuration', 'joint', 'type', 'from body', 'distance', ''], rows, [4]));
+        return make('section', {},
+            make('h2', {}, 'Joints, by their distance from what they join'),
+            make('p', { class: 'note' }, 'The distance is that of the joint\u2019s point from '
+                + 'what is drawn of the body that is farther. More than '
+                + `${quantity(far, 'm')} is marked: often a coordinate is wrong there.`),
+            table(['configuration', 'joint', 'type', 'from body', 'distance', ''], rows, [4]));
     }
 
     function show(container, scene) {
@@ -96,8 +110,9 @@
         const state = { configuration: 0, second: scene.designs.length > 1 ? 1 : null };
         const ids = () => (state.second === null ? [0] : [0, state.second]);
         const designs = () => ids().map((i) => scene.designs[i]);
-        const configurations = () => designs().map((design) => design.configurations[state.configuration]);
-        const names = scene.designs[0].configurations.map((configuration) => configuration.name);
+        const configurations = () =>
+            designs().map((design) => design.configurations[state.configuration]);
+        const names = scene.designs[0].configurations.map(({ name }) => name);
         const facts = make('p', { class: 'note' });
         const place = make('div', { class: 'views' });
         const key = make('div', {});
@@ -113,19 +128,20 @@
             }));
         }
         if (scene.designs.length > 2) {
-            selects.append(choice('Compared with', scene.designs.slice(1).map((design) => design.label), 0,
-                (i) => {
-                    state.second = i + 1;
-                    update(false);
-                }));
+            const labels = scene.designs.slice(1).map((design) => design.label);
+            selects.append(choice('Compared with', labels, 0, (i) => {
+                state.second = i + 1;
+                update(false);
+            }));
         }
         container.append(facts, selects, place);
         const views = ids().map((i) => mt.view3d(place, scene,
             { camera, clock, design: i, caption: scene.designs[i].label }));
         place.classList.toggle('two', views.length > 1);
-        container.append(mt.viewControls(views, { still: names.length === 0 }), key, drive,
+        container.append(mt.viewControls(views), key, drive,
             make('h2', {}, 'Modes'), modes, parameters);
-        const panel = mt.modesPanel(modes, (row) => views.forEach((view, d) => view.setMode(row[d])));
+        const panel = mt.modesPanel(modes,
+            (row) => views.forEach((view, d) => view.setMode(row[d])));
         const drives = mt.drivePanel(drive, (k) => views.forEach((view) => view.setDrive(k)));
 
         function update(fit) {
@@ -133,7 +149,8 @@
             views.forEach((view, d) => {
                 view.setDesign(ids()[d]);
                 view.setConfiguration(state.configuration);
-                view.setCaption(scene.designs.length > 1 ? designs()[d].label : names[state.configuration]);
+                view.setCaption(views.length > 1 ? designs()[d].label
+                    : names[state.configuration]);
             });
             key.replaceChildren(legend(configurations()[0]));
             drives.show(designs(), configurations());

@@ -5,7 +5,7 @@
 // own: colour says nothing that the shape does not.
 (function () {
     'use strict';
-    const { add, sub, scaled, dot, cross, unit, across } = window.mt.space;
+    const { add, scaled, dot, unit, across } = window.mt.space;
 
     const TURN = 2 * Math.PI;
 
@@ -26,7 +26,8 @@
         const path = [];
         for (let k = 0; k < 32; k++) {
             const tooth = k % 4 < 2 ? 1.15 : 0.8;
-            path.push([x + tooth * r * Math.cos(TURN * k / 32), y + tooth * r * Math.sin(TURN * k / 32)]);
+            const a = TURN * k / 32;
+            path.push([x + tooth * r * Math.cos(a), y + tooth * r * Math.sin(a)]);
         }
         return path;
     }
@@ -41,20 +42,22 @@
 
     const circle = (x, y, r) => ({ ellipse: [x, y, r, r, 0] });
     const shape = (path) => ({ path, closed: true });
-    const stroke = (...path) => ({ path, closed: false, fill: null });
+    const stroke = (...path) => ({ path, fill: null });
 
     // Of each type of joint, around x, y with radius r.
     const JOINTS = {
         revolute: (x, y, r) => [circle(x, y, r)],
         prismatic: (x, y, r) => [shape(box(x, y, 0.9 * r, 0.9 * r))],
         spherical: (x, y, r) => [shape(polygon(4, x, y, 1.3 * r, 0))],
-        fixed: (x, y, r) => [stroke([x - r, y - r], [x + r, y + r]), stroke([x - r, y + r], [x + r, y - r])],
+        fixed: (x, y, r) => [stroke([x - r, y - r], [x + r, y + r]),
+            stroke([x - r, y + r], [x + r, y - r])],
         cylindrical: (x, y, r) => [shape(box(x, y, r, r)), circle(x, y, 0.6 * r)],
         universal: (x, y, r) => [circle(x, y, r), stroke([x - r, y], [x + r, y]),
             stroke([x, y - r], [x, y + r])],
         planar: (x, y, r) => [shape(box(x, y, 1.4 * r, 0.5 * r))],
         'pin-in-slot': (x, y, r) => [shape(box(x, y, 1.5 * r, 0.8 * r)), circle(x, y, 0.5 * r)],
-        distance: (x, y, r) => [shape(polygon(3, x, y, 0.9 * r, 0)), stroke([x - 1.3 * r, y], [x + 1.3 * r, y])],
+        distance: (x, y, r) => [shape(polygon(3, x, y, 0.9 * r, 0)),
+            stroke([x - 1.3 * r, y], [x + 1.3 * r, y])],
         'point-on-line': (x, y, r) => [shape(polygon(3, x, y, 1.2 * r, -TURN / 4)),
             stroke([x - 1.4 * r, y + r], [x + 1.4 * r, y + r])],
         'point-on-plane': (x, y, r) => [shape(polygon(3, x, y, 1.2 * r, -TURN / 4))],
@@ -64,8 +67,9 @@
     };
 
     function joint(type, at, r) {
-        const make = JOINTS[type] || ((x, y, s) => [shape(polygon(5, x, y, 1.1 * s, -TURN / 4))]);
-        return make(at[0], at[1], r).map((item) => ({ fill: 'paper', stroke: 'ink', width: 1.6, ...item }));
+        const other = (x, y, s) => [shape(polygon(5, x, y, 1.1 * s, -TURN / 4))];
+        const look = { fill: 'paper', stroke: 'ink', width: 1.6 };
+        return (JOINTS[type] || other)(at[0], at[1], r).map((item) => ({ ...look, ...item }));
     }
 
     // Places along the line from a to b (in pixels), and beside it.
@@ -79,7 +83,8 @@
     function zigzag(a, b, r) {
         const line = ruler(a, b);
         const lead = Math.min(0.2 * line.length, 3 * r);
-        const teeth = Math.max(4, Math.min(12, 2 * Math.round((line.length - 2 * lead) / (2.4 * r))));
+        const room = Math.round((line.length - 2 * lead) / (2.4 * r));
+        const teeth = Math.max(4, Math.min(12, 2 * room));
         const path = [a, line.at(lead, 0)];
         for (let k = 0; k < teeth; k++) {
             const along = lead + (line.length - 2 * lead) * (k + 0.5) / teeth;
@@ -88,29 +93,35 @@
         return path.concat([line.at(line.length - lead, 0), b]);
     }
 
-    // A spiral around the axis (a direction of the scene), as the eye sees it.
-    function spiral(at, axis, r, lens) {
+    // Places by angle and distance around an axis of the scene, as the eye sees it.
+    function around(at, axis, lens) {
         const [e, f] = across(unit(axis || lens.frame.towards)).map((v) => lens.direction(v));
+        return (angle, s) => [0, 1].map((k) =>
+            at[k] + s * (Math.cos(angle) * e[k] + Math.sin(angle) * f[k]));
+    }
+
+    // A spiral around the axis.
+    function spiral(at, axis, r, lens) {
+        const on = around(at, axis, lens);
         const path = [];
         const turns = 2.25;
         for (let k = 0; k <= 72; k++) {
             const a = TURN * turns * k / 72;
-            const s = r * (1 + 2.4 * k / 72);
-            path.push([at[0] + s * (Math.cos(a) * e[0] + Math.sin(a) * f[0]),
-                at[1] + s * (Math.cos(a) * e[1] + Math.sin(a) * f[1])]);
+            path.push(on(a, r * (1 + 2.4 * k / 72)));
         }
         return path;
     }
 
     function spring(type, a, b, axis, r, lens) {
-        const look = { fill: null, stroke: 'spring', width: 1.7 };
+        const look = { stroke: 'spring', width: 1.7 };
         const near = Math.hypot(b[0] - a[0], b[1] - a[1]) < 3 * r;
-        const open = (path) => ({ ...look, path, closed: false });
+        const open = (path) => ({ ...look, path });
         if (type === 'torsion') {
             return [open(spiral(a, axis, r, lens))];
         }
         if (type === 'bar') {
-            return [{ ...open([a, b]), width: 3.4 }, { ...open([a, b]), stroke: 'paper', width: 1 }];
+            return [{ ...open([a, b]), width: 3.4 },
+                { ...open([a, b]), stroke: 'paper', width: 1 }];
         }
         if (type === 'bushing') {
             const rings = (at) => [{ ...look, ...circle(at[0], at[1], 1.9 * r) },
@@ -122,31 +133,33 @@
     }
 
     function damper(type, a, b, axis, r, lens) {
-        const look = { fill: null, stroke: 'damper', width: 1.6, closed: false };
+        const look = { stroke: 'damper', width: 1.6 };
         if (type === 'torsion') {
-            const [e, f] = across(unit(axis || lens.frame.towards)).map((v) => lens.direction(v));
-            const on = (angle, s) => [a[0] + s * r * (Math.cos(angle) * e[0] + Math.sin(angle) * f[0]),
-                a[1] + s * r * (Math.cos(angle) * e[1] + Math.sin(angle) * f[1])];
+            const on = around(a, axis, lens);
             const arc = [];
             for (let k = 0; k <= 24; k++) {
-                arc.push(on(0.4 + 5.4 * k / 24, 2.8));
+                arc.push(on(0.4 + 5.4 * k / 24, 2.8 * r));
             }
-            return [{ ...look, path: arc }, { ...look, path: [on(5.8, 2.3), on(5.8, 3.3)] }];
+            const end = [on(5.8, 2.3 * r), on(5.8, 3.3 * r)];
+            return [arc, end].map((path) => ({ ...look, path }));
         }
         const near = Math.hypot(b[0] - a[0], b[1] - a[1]) < 3 * r;
         const line = near ? ruler([a[0] - 3 * r, a[1]], [a[0] + 3 * r, a[1]]) : ruler(a, b);
         const m = line.length / 2;
-        return [[line.at(0, 0), line.at(m - r, 0)], [line.at(m + 1.3 * r, -r), line.at(m - r, -r),
-            line.at(m - r, r), line.at(m + 1.3 * r, r)], [line.at(m + 0.4 * r, -0.7 * r),
-            line.at(m + 0.4 * r, 0.7 * r)], [line.at(m + 0.4 * r, 0), line.at(line.length, 0)]]
-            .map((path) => ({ ...look, path }));
+        const cup = [[1.3, -1], [-1, -1], [-1, 1], [1.3, 1]];
+        const piston = m + 0.4 * r;
+        return [[line.at(0, 0), line.at(m - r, 0)],
+            cup.map(([along, beside]) => line.at(m + along * r, beside * r)),
+            [line.at(piston, -0.7 * r), line.at(piston, 0.7 * r)],
+            [line.at(piston, 0), line.at(line.length, 0)]].map((path) => ({ ...look, path }));
     }
 
     function arrow(a, b, colour, r) {
         const line = ruler(a, b);
         const head = Math.min(1.2 * r, line.length);
-        return [{ path: [a, b], closed: false, fill: null, stroke: colour, width: 1.7 },
-            { path: [b, line.at(line.length - head, 0.45 * head), line.at(line.length - head, -0.45 * head)],
+        const base = line.length - head;
+        return [{ path: [a, b], stroke: colour, width: 1.7 },
+            { path: [b, line.at(base, 0.45 * head), line.at(base, -0.45 * head)],
                 closed: true, fill: colour, stroke: colour, width: 1 }];
     }
 
@@ -160,7 +173,7 @@
         for (let k = -2; k <= 2; k++) {
             lines.push([on(k * 0.9 + 0.3, 1.2), on(k * 0.9 - 0.5, 2.2)]);
         }
-        return lines.map((path) => ({ path, closed: false, fill: null, stroke: 'ink', width: 1.2 }));
+        return lines.map((path) => ({ path, stroke: 'ink', width: 1.2 }));
     }
 
     // The ellipsoid at + sum of axes a_k times the unit sphere: its outline is the ellipse of
@@ -204,5 +217,5 @@
         return paths.filter((p) => p.length > 1);
     }
 
-    window.mt.symbols = { joint, spring, damper, arrow, ground, ellipsoid, section, sub, cross };
+    window.mt.symbols = { joint, spring, damper, arrow, ground, ellipsoid, section };
 })();

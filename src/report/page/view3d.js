@@ -14,6 +14,7 @@
     const { paint, drawing } = window.mt;
 
     const PERIOD = 2000; // milliseconds that one swing of any mode takes
+    const REST = { mode: null, position: null, displacement: 0 };
     const FAR = 0.05;    // of the size: a joint that far from its body is worth a look
 
     const still = () => window.matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -67,7 +68,8 @@
             if (!found) {
                 return;
             }
-            tip.replaceChildren(...found.text.map((line, k) => make(k === 0 ? 'b' : 'span', {}, line)));
+            tip.replaceChildren(...found.text
+                .map((line, k) => make(k === 0 ? 'b' : 'span', {}, line)));
             const left = Math.max(0, Math.min(x + 14, width - tip.offsetWidth - 4));
             tip.style.left = left + 'px';
             tip.style.top = y + 14 + 'px';
@@ -78,8 +80,8 @@
         const given = options || {};
         const camera = given.camera || window.mt.camera(scene);
         const clock = given.clock || makeClock();
-        const state = { design: given.design || 0, configuration: given.configuration || 0, mode: null,
-            position: null };
+        const state = { design: given.design || 0, configuration: given.configuration || 0,
+            mode: null, position: null };
         const canvas = make('canvas', { tabindex: 0, role: 'application',
             'aria-roledescription': 'view of a mechanism',
             'aria-keyshortcuts': 'ArrowLeft ArrowRight ArrowUp ArrowDown + - 0 x y z' });
@@ -92,7 +94,8 @@
         let size = { width: 0, height: 0 };
         let asked = false;
 
-        const configuration = () => scene.designs[state.design].configurations[state.configuration];
+        const design = () => scene.designs[state.design];
+        const configuration = () => design().configurations[state.configuration];
         const lens = () => camera.lens(size.width, size.height);
 
         function moved() {
@@ -110,10 +113,10 @@
                 symbol: Math.max(0.8, Math.min(1.3, size.width / 600)),
                 isFar: (joint) => joint.distance > FAR * scene.size });
             if (now.mode !== null || now.position !== null) {
-                const rest = window.mt.pose(here, { mode: null, position: null, displacement: 0 });
+                const rest = window.mt.pose(here, REST);
                 made.items.push(...drawing.ghost(rest, through, scene.size));
             }
-            made.items.push(...drawing.furniture(scene, posed.rotors, through, size.width, size.height));
+            made.items.push(...drawing.furniture(scene, posed.rotors, through, size));
             return made;
         }
 
@@ -127,7 +130,8 @@
             context.setTransform(ratio, 0, 0, ratio, 0, 0);
             context.clearRect(0, 0, size.width, size.height);
             drawn = compose();
-            paint.toCanvas(context, drawn.items, view.printing ? paint.LIGHT : paint.palette(figure));
+            const colours = view.printing ? paint.LIGHT : paint.palette(figure);
+            paint.toCanvas(context, drawn.items, colours);
         }
 
         function redraw() {
@@ -156,7 +160,7 @@
             const positions = here.drive ? here.drive.positions : [];
             const states = [null, ...positions.map((at, k) => (at.poses ? k : null))];
             const points = [...new Set(states)].flatMap((position) => window.mt.poseExtent(
-                window.mt.pose(here, { mode: null, position, displacement: 0 })));
+                window.mt.pose(here, { ...REST, position })));
             camera.cover(view, points);
         }
 
@@ -166,7 +170,7 @@
             const error = here.error || (position && position.error);
             trouble.textContent = error || '';
             trouble.hidden = !error;
-            canvas.setAttribute('aria-label', `${scene.model}, ${scene.designs[state.design].label}, `
+            canvas.setAttribute('aria-label', `${scene.model}, ${design().label}, `
                 + `configuration ${here.name}; drag or arrow keys turn it, plus and minus zoom, `
                 + '0 fits, x, y and z look along an axis');
             redraw();
@@ -199,7 +203,7 @@
         view.play = clock.play;
         view.pause = clock.pause;
         view.setAmplitude = clock.setAmplitude;
-        const name = () => `${scene.model} ${scene.designs[state.design].label} ${configuration().name}`;
+        const name = () => `${scene.model} ${design().label} ${configuration().name}`;
         view.savePng = () => paint.savePng(compose().items, size.width, size.height, name());
         view.saveSvg = () => paint.saveSvg(compose().items, size.width, size.height, name());
         view.svg = () => paint.toSvg(compose().items, paint.LIGHT, size.width, size.height);
@@ -234,7 +238,7 @@
     }
 
     // Buttons for views that share a camera and a clock.
-    function controls(views, options) {
+    function controls(views) {
         const { camera, clock } = views[0];
         const button = (text, label, click) =>
             make('button', { type: 'button', 'aria-label': label, title: label, click }, text);
@@ -253,7 +257,7 @@
         const along = ['x', 'y', 'z'].map((axis, k) =>
             button(axis, 'look along ' + axis, () => camera.lookAlong(k)));
         return make('div', { class: 'controls', role: 'toolbar', 'aria-label': 'view' },
-            options && options.still ? null : [play, make('label', {}, 'amplitude ', amplitude)],
+            play, make('label', {}, 'amplitude ', amplitude),
             button('Fit', 'fit all into the view', () => camera.fit()),
             button('Home', 'the view as it was at first', () => camera.home()), along,
             make('label', {}, perspective, ' perspective'),
