@@ -114,12 +114,18 @@
     // Tells choose(k or null) which position was chosen; null: as drawn.
     function drivePanel(container, choose) {
         function show(designs, configurations) {
-            const kept = configurations.map((configuration) => configuration.drive)
-                .map((drive, d) => ({ drive, label: designs[d].label })).filter(({ drive }) =>
-                    drive && drive.positions.length > 0);
+            const all = configurations.map((configuration) => configuration.drive);
+            const driven = all.find((drive) => drive);
+            const kept = all.map((drive, d) => ({ drive, label: designs[d].label }))
+                .filter(({ drive }) => drive && drive.positions.length > 0);
             container.replaceChildren();
-            container.hidden = kept.length === 0;
+            container.hidden = !driven;
+            if (driven) {
+                container.append(make('h2', {}, 'Drive: ' + driven.joint));
+            }
             if (kept.length === 0) {
+                container.append(make('p', { class: 'note' }, (driven && driven.error) || ''));
+                choose(null);
                 return;
             }
             const drives = kept.map(({ drive }) => drive);
@@ -163,7 +169,7 @@
                 choose(k);
             }
 
-            container.append(make('h2', {}, 'Drive: ' + drives[0].joint),
+            container.append(
                 make('div', { class: 'controls' }, slider, out, back), told, picture);
             new window.ResizeObserver(() => {
                 if (size().width !== painted) {

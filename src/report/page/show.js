@@ -45,7 +45,7 @@
         const list = [
             ...kinds(configuration.joints).map((type) =>
                 icon(mt.symbols.joint(type, at, 5.5), type + ' joint')),
-            ...kinds(configuration.springs).map((type) =>
+            ...kinds(configuration.springs).filter((type) => type !== 'link').map((type) =>
                 element(mt.symbols.spring, type, 'spring')),
             ...kinds(configuration.dampers).map((type) =>
                 element(mt.symbols.damper, type, 'damper'))];

@@ -116,6 +116,9 @@
         const look = { stroke: 'spring', width: 1.7 };
         const near = Math.hypot(b[0] - a[0], b[1] - a[1]) < 3 * r;
         const open = (path) => ({ ...look, path });
+        if (type === 'link') {
+            return []; // its line is drawn
+        }
         if (type === 'torsion') {
             return [open(spiral(a, axis, r, lens))];
         }

@@ -171,8 +171,8 @@
             trouble.textContent = error || '';
             trouble.hidden = !error;
             canvas.setAttribute('aria-label', `${scene.model}, ${design().label}, `
-                + `configuration ${here.name}; drag or arrow keys turn it, plus and minus zoom, `
-                + '0 fits, x, y and z look along an axis');
+                + `configuration ${here.name}; drag or arrow keys turn it, `
+                + 'plus and minus zoom, 0 fits, x, y and z look along an axis');
             redraw();
         }
 
