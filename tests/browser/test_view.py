@@ -75,16 +75,16 @@ return lens.project(here.joints.find((j) => j.item.name === arguments[0]).at);
 """
 
 
-class Pages(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.browser = Browser()
+def setUpModule():
+    Pages.folder = tempfile.TemporaryDirectory()
+    Pages.browser = Browser()
+    unittest.addModuleCleanup(Pages.folder.cleanup)
+    unittest.addModuleCleanup(Pages.browser.close)
 
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
-        cls.folder.cleanup()
+
+class Pages(unittest.TestCase):
+    folder = None
+    browser = None
 
     def show(self, data=None, name="scene", **wishes):
         path = Path(self.folder.name) / f"{name}.html"
