@@ -16,7 +16,7 @@
     const PER_PIXEL = 0.008;   // radians of a drag
     const PER_NOTCH = 0.0015;  // logarithm of the zoom per pixel of the wheel
     const DISTANCE = 2.5;      // of the eye of a perspective, in sizes of the scene
-    const MARGIN = 0.8;        // of the picture that a fitted scene takes
+    const MARGIN = 0.86;       // of the picture that a fitted scene takes
     const AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
     function upOf(scene) {

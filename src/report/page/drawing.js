@@ -18,9 +18,15 @@
         if (typeof value !== 'number' || !isFinite(value)) {
             return '–';
         }
-        const size = Math.abs(value);
+        const rounded = Number(value.toPrecision(4));
+        const size = Math.abs(rounded);
         const [factor, prefix] = PREFIXES.find(([f]) => size >= f) || [1, ''];
-        return Number((value / factor).toPrecision(4)) + ' ' + prefix + unitName;
+        return Number((rounded / factor).toPrecision(4)) + ' ' + prefix + unitName;
+    }
+
+    function weight(mass) {
+        const rounded = Number(mass.toPrecision(4));
+        return rounded >= 1 ? rounded + ' kg' : quantity(1000 * mass, 'g');
     }
 
     const STIFFNESS = { torsion: 'N·m/rad', axial: 'N/m', bar: 'N/m' };
@@ -67,7 +73,7 @@
                 return;
             }
             const p = lens.project(at);
-            const told = item.mass > 0 ? 'mass ' + quantity(item.mass * 1000, 'g') : null;
+            const told = item.mass > 0 ? 'mass ' + weight(item.mass) : null;
             if (!axes) {
                 if (item.mass > 0 && item.kind !== 'link') {
                     const look = { fill: 'body', stroke: 'paper', width: 1 };
@@ -153,7 +159,7 @@
             const ground = !body || body.kind === 'ground';
             line(from, to, { stroke: ground ? 'soft' : 'ink', width: ground ? 1.2 : 2.4 });
             find({ from: lens.project(from), to: lens.project(to) }, 3, body ? body.name : '',
-                body && body.mass > 0 ? 'mass ' + quantity(body.mass * 1000, 'g') : null);
+                body && body.mass > 0 ? 'mass ' + weight(body.mass) : null);
         });
         posed.bodies.forEach(drawBody);
         drawGround();
@@ -170,15 +176,19 @@
         return { items, finds };
     }
 
-    // The configuration at rest, as grey lines behind what moves.
+    // The configuration at rest, as grey lines and dots behind what moves.
     function ghost(posed, lens, size) {
         const bars = posed.springs.filter(({ item }) => item.type === 'bar');
-        return [...posed.lines, ...bars].map(({ from, to }) => {
+        const masses = posed.bodies.filter(({ item, axes }) =>
+            !axes && item.kind === 'body' && item.mass > 0);
+        const dots = masses.map(({ at }) => ({ ...circle(lens.project(at), 0.7 * SYMBOL),
+            stroke: 'ghost', width: 1.2, depth: -3 * size }));
+        return dots.concat([...posed.lines, ...bars].map(({ from, to }) => {
             const p = lens.project(from);
             const q = lens.project(to);
             return { path: [p, q], stroke: 'ghost', width: 1.2, dash: [4, 3],
                 depth: (p[2] + q[2]) / 2 - 2 * size };
-        });
+        }));
     }
 
     // Axes of the scene (and of rotors) in the lower left corner, a length in the lower right.
@@ -251,5 +261,5 @@
         return found.length > 0 ? found[0].what : null;
     }
 
-    window.mt.drawing = { make: makeDrawing, ghost, furniture, pick, quantity };
+    window.mt.drawing = { make: makeDrawing, ghost, furniture, pick, quantity, weight };
 })();

@@ -6,7 +6,8 @@
     'use strict';
     const { make, table, digits } = window.mt.dom;
 
-    const SHOWN = 8; // bars; the rest is summed up
+    const SHOWN = 8;   // bars; the rest is summed up
+    const PIECES = 16; // of links: where there are more, each link is one
 
     // One row per mode: its places in the lists of the designs. Modes that have names are
     // paired by them, others by their index, rigid-body and unstable ones in their order.
@@ -52,8 +53,12 @@
 
     // Shares of the energy of the chosen mode: names down, one bar per design, largest first.
     function bars(title, names, shares, labels) {
-        const rows = names
-            .map((name, i) => ({ name, shares: shares.map((list) => list[i] || 0) }))
+        const sums = new Map(); // pieces of one link have one name
+        names.forEach((name, i) => {
+            const before = sums.get(name) || shares.map(() => 0);
+            sums.set(name, shares.map((list, d) => before[d] + (list[i] || 0)));
+        });
+        const rows = [...sums].map(([name, all]) => ({ name, shares: all }))
             .sort((a, b) => Math.max(...b.shares) - Math.max(...a.shares));
         const rest = rows.slice(SHOWN);
         const shown = rows.slice(0, SHOWN).filter((row) => Math.max(...row.shares) > 0.0005);
@@ -67,6 +72,7 @@
         const bar = (share, d) => {
             const fill = make('span', { class: d === 0 ? 'bar first' : 'bar second' });
             fill.style.width = Math.max(0, Math.min(100, 100 * share)) + '%';
+            fill.toggleAttribute('data-none', !(share > 0.0005));
             return make('div', { class: 'share' }, make('span', { class: 'track' }, fill),
                 make('span', { class: 'percent', 'aria-label': labels[d] },
                     (100 * share).toFixed(1) + ' %'));
@@ -93,7 +99,10 @@
             });
             const labels = designs.map((design) => design.label);
             const first = configurations[0];
-            const names = (items) => (items || []).map((item) => item.name);
+            const many = first.bodies.filter((body) => body.kind === 'link').length > PIECES;
+            const whole = (body) => (many && body.kind === 'link'
+                ? body.name.replace(/\.[^.]*$/, '') : body.name);
+            const names = (items) => (items || []).map(whole);
             energy.replaceChildren(
                 bars('Potential energy in springs', names(first.springs), of('springs'),
                     labels),
@@ -123,6 +132,7 @@
             shown = { designs, configurations, rows };
             group += 1;
             const two = designs.length > 1;
+            const named = configurations.some((c) => c.modes.some((m) => m.name || m.note));
             const cells = rows.map((row, k) => {
                 const modes = configurations.map((configuration, d) =>
                     (row[d] === null ? null : configuration.modes[row[d]]));
@@ -133,7 +143,7 @@
                     change: () => select(k) });
                 return make('tr', { click: () => select(k) },
                     make('td', {}, make('label', {}, input, ' ', indexOf(first))),
-                    make('td', { class: 'name' }, told),
+                    named ? make('td', { class: 'name' }, told) : null,
                     modes.map((mode) => make('td',
                         { class: 'number', 'data-hz': mode && mode.hz }, hertz(mode))),
                     two ? make('td', { class: 'number' }, change(modes[0], modes[1])) : null);
@@ -147,7 +157,8 @@
                 choose(designs.map(() => null));
                 return;
             }
-            list.replaceChildren(table(['mode', 'name', ...heads], cells, [2, 3, 4]));
+            list.replaceChildren(table(['mode', ...(named ? ['name'] : []), ...heads], cells,
+                named ? [2, 3, 4] : [1, 2, 3]));
             const start = rows.findIndex((row) => {
                 const mode = configurations[0].modes[row[0]];
                 return mode && mode.mode > 0;

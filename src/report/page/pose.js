@@ -7,7 +7,7 @@
 // are stretched a little by it, which at the amplitudes drawn nobody sees.
 (function () {
     'use strict';
-    const { add, sub, cross, middle } = window.mt.space;
+    const { add, sub, cross } = window.mt.space;
 
     // The rotation of a pose (x y z, then its rows r00 r01 r02 r10 ...) times v.
     function turned(r, v) {
@@ -48,9 +48,6 @@
         const alive = (list) => list || [];
         const moved = (i, v) => (v ? direction(i, v) : null);
 
-        // a point that two bodies share is where they have it, in the mean: they may slide
-        const shared = (pair, p) => middle(point(pair[0], p), point(pair[1], p));
-        const carrier = (pair) => (pair[0] === 0 ? pair[1] : pair[0]);
         const between = (list) => alive(list).map((item) => ({ item,
             from: point(item.bodies[0], item.from), to: point(item.bodies[1], item.to),
             axis: moved(item.bodies[0], item.axis) }));
@@ -64,9 +61,9 @@
                 from: point(item.body, item.from), to: point(item.body, item.to) })),
             points: alive(configuration.points).map((item) => ({ item,
                 at: point(item.body, item.at) })),
+            // the point of a joint is one of its second body, its axis one of its first
             joints: alive(configuration.joints).filter((item) => item.at).map((item) => ({ item,
-                at: shared(item.bodies, item.at),
-                axis: moved(carrier(item.bodies), item.axis) })),
+                at: point(item.bodies[1], item.at), axis: moved(item.bodies[0], item.axis) })),
             springs: between(configuration.springs),
             dampers: between(configuration.dampers),
             sensors: alive(configuration.sensors).map((item) => ({ item,

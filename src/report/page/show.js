@@ -4,7 +4,7 @@
     'use strict';
     const mt = window.mt;
     const { make, table, digits } = mt.dom;
-    const { quantity } = mt.drawing;
+    const { quantity, weight } = mt.drawing;
 
     const LEGEND = 16; // half of the width of a symbol of the legend, px
 
@@ -23,8 +23,8 @@
         const dampers = (configuration.dampers || []).length;
         const bodies = configuration.bodies.filter((body) => body.kind !== 'ground');
         const mass = bodies.reduce((sum, body) => sum + (body.mass || 0), 0);
-        const weight = mass > 0 ? ` of ${quantity(1000 * mass, 'g')}` : '';
-        return [count(bodies.length, 'body', 'bodies') + weight,
+        const all = mass > 0 ? ' of ' + weight(mass) : '';
+        return [count(bodies.length, 'body', 'bodies') + all,
             count((configuration.joints || []).length, 'joint'), count(springs, 'spring'),
             dampers > 0 ? count(dampers, 'damper') : null].filter((part) => part).join(', ');
     }
@@ -81,7 +81,15 @@
 
     function jointTable(scene) {
         const far = mt.farShare * scene.size;
-        const list = [...(scene.joints || [])].sort((a, b) => b.distance - a.distance);
+        const all = scene.designs[0].configurations.length;
+        const alike = new Map(); // the same in several configurations is told once
+        (scene.joints || []).forEach((joint) => {
+            const key = JSON.stringify([joint.joint, joint.type, joint.body, joint.distance]);
+            alike.set(key, [...(alike.get(key) || []), joint]);
+        });
+        const list = [...alike.values()].map((same) => ({ ...same[0], configuration:
+            same.length === all && all > 1 ? 'all' : same.map((j) => j.configuration).join(', ') }))
+            .sort((a, b) => b.distance - a.distance);
         if (list.length === 0) {
             return null;
         }
@@ -89,19 +97,19 @@
             const marked = joint.distance > far;
             const distance = joint.distance > 0 ? quantity(joint.distance, 'm') : '0';
             return make('tr', { class: marked ? 'far' : null },
-                make('td', {}, joint.configuration),
                 make('th', { scope: 'row' }, joint.joint),
                 make('td', {}, joint.type),
                 make('td', {}, joint.body || '–'),
                 make('td', { class: 'number' }, distance),
-                make('td', {}, marked ? '\u25B2 far' : ''));
+                make('td', {}, marked ? '\u25B2 far' : ''),
+                make('td', {}, joint.configuration));
         });
         return make('section', {},
             make('h2', {}, 'Joints, by their distance from what they join'),
             make('p', { class: 'note' }, 'The distance is that of the joint\u2019s point from '
                 + 'what is drawn of the body that is farther. More than '
-                + `${quantity(far, 'm')} is marked: often a coordinate is wrong there.`),
-            table(['configuration', 'joint', 'type', 'from body', 'distance', ''], rows, [4]));
+                + `${quantity(far, 'm')} is marked: a coordinate may be wrong there.`),
+            table(['joint', 'type', 'from body', 'distance', '', 'configurations'], rows, [3]));
     }
 
     function show(container, scene) {

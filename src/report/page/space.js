@@ -38,10 +38,6 @@
         return [first, cross(unit(a), first)];
     }
 
-    function middle(a, b) {
-        return scaled(add(a, b, 1), 0.5);
-    }
-
     window.mt = window.mt || {};
-    window.mt.space = { add, sub, scaled, dot, cross, unit, across, middle };
+    window.mt.space = { add, sub, scaled, dot, cross, unit, across };
 })();

@@ -15,7 +15,9 @@
 
     const PERIOD = 2000; // milliseconds that one swing of any mode takes
     const REST = { mode: null, position: null, displacement: 0 };
-    const FAR = 0.05;    // of the size: a joint that far from its body is worth a look
+    const AMPLITUDE = 0.08; // of the motion at first, in sizes of the scene
+    const MANY = 300;    // bodies: of more than these only the lowest mode is made room for
+    const FAR = 0.1;     // of the size: a joint that far from its body is worth a look
 
     const still = () => window.matchMedia('(prefers-reduced-motion: reduce)').matches;
 
@@ -23,7 +25,7 @@
     // quarter of a swing, where a mode is seen best.
     function makeClock() {
         const listeners = [];
-        const clock = { playing: false, amplitude: 0.1, phase: Math.PI / 2 };
+        const clock = { playing: false, amplitude: AMPLITUDE, phase: Math.PI / 2 };
         let last = null;
         const tell = () => listeners.forEach((listener) => listener(clock));
 
@@ -154,14 +156,19 @@
             draw();
         }
 
-        // What the camera is to show: the configuration as drawn, and where its drive takes it.
+        // What the camera is to show: the configuration as drawn, where its modes take it, and
+        // its drive.
         function cover() {
             const here = configuration();
-            const positions = here.drive ? here.drive.positions : [];
-            const states = [null, ...positions.map((at, k) => (at.poses ? k : null))];
-            const points = [...new Set(states)].flatMap((position) => window.mt.poseExtent(
-                window.mt.pose(here, { ...REST, position })));
-            camera.cover(view, points);
+            const states = [REST];
+            (here.drive ? here.drive.positions : []).forEach((at, position) =>
+                at.poses && states.push({ ...REST, position }));
+            here.modes.map((mode, k) => k).filter((k) => here.modes[k].mode > 0)
+                .slice(0, here.bodies.length > MANY ? 1 : Infinity)
+                .forEach((mode) => [AMPLITUDE, -AMPLITUDE].forEach((amplitude) =>
+                    states.push({ ...REST, mode, displacement: amplitude * scene.size })));
+            camera.cover(view, states.flatMap((state) =>
+                window.mt.poseExtent(window.mt.pose(here, state))));
         }
 
         function update() {
@@ -248,7 +255,7 @@
             play.textContent = clock.playing ? 'Pause' : 'Play';
         });
         const amplitude = make('input', { type: 'range', min: 0, max: 0.3, step: 0.01,
-            '.value': clock.amplitude, 'aria-label': 'amplitude of the motion',
+            value: clock.amplitude, 'aria-label': 'amplitude of the motion',
             input: (event) => clock.setAmplitude(Number(event.target.value)) });
         const perspective = make('input', { type: 'checkbox',
             change: (event) => camera.setPerspective(event.target.checked) });
