@@ -8,6 +8,7 @@
     const LEFT = 52;
     const TOP = 12;
     const BOTTOM = 34;
+    const WIDE = 15; // of the highest frequency and the lowest: more is shown by logarithms
 
     // 1, 2 or 5 times a power of ten, so that the length has about six of it.
     function step(length) {
@@ -38,27 +39,44 @@
         return made;
     }
 
+    // Where frequencies stand and which of them are marked; by their logarithms where the
+    // highest would flatten the others.
+    function heights(all, height) {
+        const high = Math.max(...all, 0) * 1.05 || 1;
+        const low = Math.min(...all);
+        const room = height - BOTTOM - TOP;
+        if (!(low > 0) || high / low < WIDE) {
+            return { marks: marks(0, high), of: (hz) => height - BOTTOM - hz / high * room };
+        }
+        const first = Math.floor(Math.log10(low));
+        const span = Math.log10(high) - first;
+        const powers = Array.from({ length: Math.floor(span) + 1 }, (_, k) => first + k);
+        const leads = span < 2 ? [1, 2, 5] : [1];
+        return { marks: powers.flatMap((k) => leads.map((lead) => lead * Math.pow(10, k)))
+            .filter((hz) => hz <= high),
+        of: (hz) => height - BOTTOM - (Math.log10(hz) - first) / span * room };
+    }
+
     // Frequencies over the range: one line per mode; of two designs the first one is dashed.
     function chart(drives, labels, k, size) {
         const { width, height } = size;
         const at = drives[0].positions.map((position) => shownAt(drives[0], position.at));
         const all = drives.flatMap((drive) => drive.positions.flatMap(listOf))
             .filter((hz) => isFinite(hz));
-        const top = Math.max(...all, 0) * 1.05 || 1;
+        const y = heights(all, height);
         const low = Math.min(...at);
         const high = Math.max(...at) > low ? Math.max(...at) : low + 1;
         const x = (value) => LEFT + (value - low) / (high - low) * (width - LEFT - 12);
-        const y = (hz) => height - BOTTOM - hz / top * (height - BOTTOM - TOP);
         const degree = drives[0].unit === 'rad' ? '°' : '';
         const root = svg('svg', { viewBox: `0 0 ${width} ${height}`, width, height, role: 'img',
             class: 'chart' });
         root.append(svg('title', {}, `frequencies over the range of ${drives[0].joint}`));
         const text = (content, px, py, anchor) => root.append(svg('text', { x: px, y: py,
             'text-anchor': anchor, 'font-size': 11, fill: 'currentColor' }, content));
-        marks(0, top).forEach((hz) => {
-            root.append(svg('line', { x1: LEFT, x2: width - 12, y1: y(hz), y2: y(hz),
+        y.marks.forEach((hz) => {
+            root.append(svg('line', { x1: LEFT, x2: width - 12, y1: y.of(hz), y2: y.of(hz),
                 stroke: 'currentColor', 'stroke-opacity': 0.15 }));
-            text(digits(hz), LEFT - 6, y(hz) + 4, 'end');
+            text(digits(hz), LEFT - 6, y.of(hz) + 4, 'end');
         });
         marks(low, high).forEach((value) =>
             text(digits(value) + degree, x(value), height - BOTTOM + 15, 'middle'));
@@ -77,12 +95,13 @@
                         return;
                     }
                     path += `${pen ? 'L' : 'M'}${x(shownAt(drive, position.at)).toFixed(1)} `
-                        + y(hz).toFixed(1);
+                        + y.of(hz).toFixed(1);
                     pen = true;
                 });
+                const before = drives.length > 1 && d === 0;
                 const line = svg('path', { d: path || 'M0 0', fill: 'none',
-                    class: 'line' + (d + 1), 'stroke-width': 1.6 });
-                if (d === 0 && drives.length > 1) {
+                    class: before ? 'line1' : 'line2', 'stroke-width': 1.6 });
+                if (before) {
                     line.setAttribute('stroke-dasharray', '5 3');
                 }
                 root.append(line);
@@ -131,8 +150,7 @@
             const drives = kept.map(({ drive }) => drive);
             const labels = kept.map(({ label }) => label);
             const positions = drives[0].positions;
-            const value = drives[0].at === null ? positions[0].at : drives[0].at;
-            const off = (i) => Math.abs(positions[i].at - value);
+            const off = (i) => Math.abs(positions[i].at - (drives[0].at || 0));
             const nearest = positions.reduce((k, _, i) => (off(i) < off(k) ? i : k), 0);
             const out = make('output', { class: 'place' });
             const told = make('p', { class: 'note', 'aria-live': 'polite' });

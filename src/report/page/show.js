@@ -6,6 +6,8 @@
     const { make, table, digits } = mt.dom;
     const { quantity, weight } = mt.drawing;
 
+    const LISTED = 3;   // configurations that a row names
+    const LONG = 12;    // parameters that are shown without asking
     const LEGEND = 16; // half of the width of a symbol of the legend, px
 
     function count(n, one, many) {
@@ -75,7 +77,8 @@
                 parameter.unit || ''];
         });
         const heads = second ? [first.label, second.label, 'change'] : ['value'];
-        return make('section', {}, make('h2', {}, 'Parameters'),
+        return make('details', { open: rows.length <= LONG },
+            make('summary', {}, make('h2', {}, 'Parameters')),
             table(['parameter', ...heads, 'unit'], rows, second ? [1, 2, 3] : [1]));
     }
 
@@ -87,13 +90,19 @@
             const key = JSON.stringify([joint.joint, joint.type, joint.body, joint.distance]);
             alike.set(key, [...(alike.get(key) || []), joint]);
         });
-        const list = [...alike.values()].map((same) => ({ ...same[0], configuration:
-            same.length === all && all > 1 ? 'all' : same.map((j) => j.configuration).join(', ') }))
-            .sort((a, b) => b.distance - a.distance);
+        const list = [...alike.values()].sort((a, b) => b[0].distance - a[0].distance);
         if (list.length === 0) {
             return null;
         }
-        const rows = list.map((joint) => {
+        const where = (same) => {
+            const names = same.map((joint) => joint.configuration);
+            const few = names.length <= LISTED ? names.join(', ')
+                : `${names[0]} and ${names.length - 1} others`;
+            return make('td', { title: names.join(', ') },
+                names.length === all && all > 1 ? 'all' : few);
+        };
+        const rows = list.map((same) => {
+            const joint = same[0];
             const marked = joint.distance > far;
             const distance = joint.distance > 0 ? quantity(joint.distance, 'm') : '0';
             return make('tr', { class: marked ? 'far' : null },
@@ -102,7 +111,7 @@
                 make('td', {}, joint.body || '–'),
                 make('td', { class: 'number' }, distance),
                 make('td', {}, marked ? '\u25B2 far' : ''),
-                make('td', {}, joint.configuration));
+                where(same));
         });
         return make('section', {},
             make('h2', {}, 'Joints, by their distance from what they join'),
@@ -147,7 +156,8 @@
             { camera, clock, design: i, caption: scene.designs[i].label }));
         place.classList.toggle('two', views.length > 1);
         container.append(mt.viewControls(views), key, drive,
-            make('h2', {}, 'Modes'), modes, parameters);
+            make('h2', {}, 'Modes'), modes, ...[jointTable(scene)].filter((part) => part),
+            parameters);
         const panel = mt.modesPanel(modes,
             (row) => views.forEach((view, d) => view.setMode(row[d])));
         const drives = mt.drivePanel(drive, (k) => views.forEach((view) => view.setDrive(k)));
@@ -169,10 +179,6 @@
             }
         }
 
-        const joints = jointTable(scene);
-        if (joints) {
-            container.append(joints);
-        }
         update(true);
         clock.startUnlessStill();
         window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change',
