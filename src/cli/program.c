@@ -18,6 +18,7 @@ static const command_function functions[MT_CMD_IDS] = {
     [MT_CMD_SENSITIVITY] = mt_cmd_sensitivity,
     [MT_CMD_INFO] = mt_cmd_info,
     [MT_CMD_REPORT] = mt_cmd_report,
+    [MT_CMD_EXPLAIN] = mt_cmd_explain,
     [MT_CMD_APPLY] = mt_cmd_apply,
     [MT_CMD_DIFF] = mt_cmd_diff,
     [MT_CMD_CHECK] = mt_cmd_check,

@@ -32,7 +32,7 @@ void mt_report_html_told(const mt_result *result, mt_text *out)
     mt_text_addf(out, "<p class=\"status %s\"><b>%s</b>. ", status, status);
     mt_html_escape(result->status_text == NULL ? "" : result->status_text, out);
     mt_text_add(out, "</p>\n<div id=\"figures\"></div>\n<div id=\"told\">\n");
-    mt_tell_answer(&(mt_teller){out, true}, result, true);
+    mt_tell_answer(&(mt_teller){.out = out, .html = true}, result, true);
     add_footer(&result->run, out);
     mt_text_add(out, "</div>\n");
 }

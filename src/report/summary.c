@@ -7,6 +7,7 @@
 #include "report/campbell.h"
 #include "report/number.h"
 #include "report/result_tables.h"
+#include "report/ruler.h"
 #include "report/svg.h"
 #include "report/trade.h"
 
@@ -30,7 +31,7 @@ static void add_table(const mt_teller *to, mt_table t, const char *title)
         if (to->html) {
             mt_table_html(&t, to->out);
         } else {
-            mt_table_print(&t, INDENT, to->out);
+            mt_table_print(&t, INDENT, to->width, to->out);
         }
     }
     mt_table_free(&t);
@@ -94,6 +95,18 @@ static void add_item(const mt_teller *to, const char *word, const char *text)
     } else {
         mt_text_addf(to->out, "  - %s%s%s\n", word, colon, text);
     }
+}
+
+static void tell_ruler(const mt_teller *to, const mt_recommendation *r)
+{
+    mt_text ruler = {.s = NULL};
+    mt_report_ruler(r, to->width, &ruler);
+    if (ruler.s != NULL) {
+        add_heading(to, "Frequency ruler");
+        mt_text_add(to->out, ruler.s);
+    }
+    to->out->failed = to->out->failed || ruler.failed;
+    mt_text_free(&ruler);
 }
 
 /* Why a design is what it is. */
@@ -228,6 +241,9 @@ static void tell_design(const mt_teller *to, const mt_result *result)
     add_table(to, mt_report_frequencies(r), found ? "Frequencies" : "Frequencies as they are");
     if (r->n_frequencies > 0 && to->html) {
         mt_report_svg_frequencies(r, to->out);
+    }
+    if (!to->html) {
+        tell_ruler(to, r);
     }
     if (to->html) {
         add_table(to, mt_report_gaps(r), "Bands");
@@ -369,12 +385,12 @@ void mt_tell_answer(const mt_teller *to, const mt_result *result, bool with_publ
     add_sentences(to, "Warnings", result->n_warnings, result->warnings);
 }
 
-void mt_report_summary(const mt_result *result, bool with_published, mt_text *out)
+void mt_report_summary(const mt_result *result, bool with_published, int width, mt_text *out)
 {
     const char *const name =
         result->study.name == NULL ? result->study.file : result->study.name;
     mt_text_addf(out, "%s\n%s\n", name == NULL ? "study" : name,
                  result->status_text == NULL ? mt_result_status_name(result->status)
                                              : result->status_text);
-    mt_tell_answer(&(mt_teller){out, false}, result, with_published);
+    mt_tell_answer(&(mt_teller){.out = out, .width = width}, result, with_published);
 }

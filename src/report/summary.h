@@ -13,10 +13,12 @@
 typedef struct mt_teller {
     mt_text *out;
     bool html; /* a page: with bands and figures */
+    int width; /* that tables of text fold to; 0: as wide as they are */
 } mt_teller;
 
-/* Name of the study, status, all sections; published against computed where asked for. */
-void mt_report_summary(const mt_result *result, bool with_published, mt_text *out);
+/* Name of the study, status, all sections; published against computed where asked for;
+ * width as in mt_teller. */
+void mt_report_summary(const mt_result *result, bool with_published, int width, mt_text *out);
 
 /* Doubts, the best design (goals, frequencies, parameters, reasons), alternatives, what stays
  * undetermined, certificates, relaxations, warnings. */
