@@ -13,7 +13,11 @@ enum { HASH_TEXT = 45 }; /* 32 bytes in base 64, and the terminator */
 
 /* What the script of a page is made of, in this order; the last one begins to draw. */
 static const char *const report_scripts[] = {"d3.js", "base.js", NULL};
-static const char *const show_scripts[] = {"base.js", NULL};
+static const char *const show_scripts[] = {
+    "base.js",    "space.js",  "camera.js", "pose.js",  "symbols.js", "paint.js", "dom.js",
+    "drawing.js", "view3d.js", "modes.js",  "drive.js", "show.js",    NULL};
+static const char *const plain_styles[] = {"page.css", NULL};
+static const char *const show_styles[] = {"page.css", "view.css", NULL};
 
 static const struct {
     const char *name;
@@ -41,6 +45,14 @@ static void add_script(mt_page_kind kind, mt_text *out)
     for (int i = 0; list != NULL && list[i] != NULL; i++) {
         mt_text_add(out, file(list[i]));
         mt_text_add(out, "\n");
+    }
+}
+
+static void add_style(mt_page_kind kind, mt_text *out)
+{
+    static const char *const *const lists[] = {plain_styles, plain_styles, show_styles};
+    for (const char *const *name = lists[kind]; *name != NULL; name++) {
+        mt_text_add(out, file(*name));
     }
 }
 
@@ -73,12 +85,16 @@ static void hash(const char *text, size_t length, char out[HASH_TEXT])
     out[n] = '\0';
 }
 
-static void add_policy(mt_page_kind kind, const char *style, mt_text *out)
+static void add_policy(mt_page_kind kind, mt_text *out)
 {
-    char digest[HASH_TEXT];
+    char digest[HASH_TEXT] = "";
     mt_text script = {.s = NULL};
+    mt_text style = {.s = NULL};
     add_script(kind, &script);
-    hash(style, strlen(style), digest);
+    add_style(kind, &style);
+    if (style.s != NULL) {
+        hash(style.s, style.length, digest);
+    }
     mt_text_addf(out,
                  "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
                  "style-src 'sha256-%s'; img-src data: blob:; base-uri 'none'; form-action "
@@ -89,20 +105,20 @@ static void add_policy(mt_page_kind kind, const char *style, mt_text *out)
         mt_text_addf(out, "; script-src 'sha256-%s'", digest);
     }
     mt_text_add(out, "\">\n");
-    out->failed = out->failed || script.failed;
+    out->failed = out->failed || script.failed || style.failed;
     mt_text_free(&script);
+    mt_text_free(&style);
 }
 
 void mt_page_begin(mt_page_kind kind, const char *title, mt_text *out)
 {
-    const char *const style = file("page.css");
     mt_text_add(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
-    add_policy(kind, style, out);
+    add_policy(kind, out);
     mt_text_add(out, "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
                      "\n<link rel=\"icon\" href=\"data:,\">\n<title>");
     mt_html_escape(title, out);
     mt_text_add(out, "</title>\n<style>");
-    mt_text_add(out, style);
+    add_style(kind, out);
     mt_text_add(out, "</style>\n</head>\n<body>\n<main>\n<h1>");
     mt_html_escape(title, out);
     mt_text_add(out, "</h1>\n");
