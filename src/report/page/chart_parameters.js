@@ -9,7 +9,9 @@
     const D = mt.design;
     const C = F.colour;
 
+    const HEAD = 16; /* titles of the columns */
     const ROW = 44;
+    const LINE = 14; /* a row whose bar is short has its values in a line of their own */
     const BAR = 10;
 
     const hasBounds = (p) => T.isNumber(p.lower) && T.isNumber(p.upper) && p.upper > p.lower;
@@ -35,6 +37,14 @@
         return { from: null, to: null, before: changes(0), after: changes(p.change_percent ?? 0) };
     }
 
+    const isSame = (p) => T.short(p.original) === T.short(p.recommended);
+    const valueWords = (p, changed) => changed && !isSame(p)
+        ? T.short(p.original) + ' \u2192 ' + T.short(p.recommended) : T.short(p.recommended);
+
+    /* Is there room for the values between the bounds' numbers? */
+    const isTight = (p, box) => hasBounds(p) && T.width(valueWords(p, box.changed), 11) +
+        T.width(T.short(p.lower), 11) + T.width(T.short(p.upper), 11) + 16 > box.right - box.left;
+
     function drawRow(g, p, y, box, changes) {
         const m = marksOf(p, [box.left, box.right], changes);
         const middle = y + 14;
@@ -56,17 +66,17 @@
                 .append('title').text('originally ' + T.sig(p.original, 6));
         }
         F.mark(g, 'diamond', m.after, middle).append('title').text(T.sig(p.recommended, 6));
-        const same = T.short(p.original) === T.short(p.recommended);
-        const values = box.changed && !same ? T.short(p.original) + ' \u2192 ' + T.short(p.recommended)
-            : T.short(p.recommended);
-        const inner = m.from === null ? 0 : Math.max(T.width(T.short(p.lower), 11),
+        const values = valueWords(p, box.changed);
+        const tight = isTight(p, box);
+        const inner = m.from === null || tight ? 0 : Math.max(T.width(T.short(p.lower), 11),
             T.width(T.short(p.upper), 11)) + 8;
         const need = T.width(values, 11) / 2;
         const from = m.from === null ? box.left : m.from;
         const to = m.from === null ? box.right : m.to;
         const x = Math.max(from + inner + need, Math.min(to - inner - need, m.after));
-        F.text(g, x, y + 35, values, { anchor: 'middle', size: 11, halo: true })
-            .attr('data-parameter', p.name);
+        F.text(g, x, y + 35 + (tight ? LINE : 0), values, { anchor: 'middle', size: 11,
+            halo: true }).attr('data-parameter', p.name);
+        return y + ROW + (tight ? LINE : 0);
     }
 
     function drawWords(g, p, y, box) {
@@ -91,19 +101,20 @@
         const box = { left: Math.min(Math.max(...names) + 14, w * 0.3), right: w - words - 4,
             changed };
         const changes = changeScale(parameters, [box.left + 8, box.right - 8]);
-        parameters.forEach((p, i) => {
-            drawRow(g, p, i * ROW, box, changes);
-            drawWords(g, p, i * ROW, box);
-        });
-        const y = parameters.length * ROW + 4;
-        const some = parameters.some(hasBounds);
-        const title = some ? 'from lower to upper bound, each on its own scale'
-            : 'change [%]; no bounds in the result';
-        F.text(g, (box.left + box.right) / 2, y + 12,
-            T.fit(title, Math.max(box.right - box.left, w * 0.6)), { anchor: 'middle' });
         if (changed) {
-            F.text(g, box.right + 12, y + 12, 'change [%]', {});
+            F.text(g, box.right + 12, 11, 'change [%]', { size: 11, colour: C.soft });
         }
+        F.text(g, 0, 11, 'parameter [unit]', { size: 11, colour: C.soft });
+        let y = HEAD;
+        for (const p of parameters) {
+            drawWords(g, p, y, box);
+            y = drawRow(g, p, y, box, changes);
+        }
+        const title = parameters.some(hasBounds) ? 'from lower to upper bound, each on its own scale'
+            : 'change [%]; no bounds in the result';
+        const half = T.width(title) / 2;
+        const middle = Math.max(half, Math.min(w - half, (box.left + box.right) / 2));
+        F.text(g, middle, y + 12, title, { anchor: 'middle' });
         return y + 22 + F.legend(g, items(parameters, changed), 0, y + 20, w);
     }
 
