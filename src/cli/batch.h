@@ -2,8 +2,8 @@
 #ifndef CLI_BATCH_H
 #define CLI_BATCH_H
 
+#include "base/sha256.h"
 #include "cli/args.h"
-#include "io/sha256.h"
 #include "report/index.h"
 #include "result/result.h"
 

@@ -2,9 +2,9 @@
 #ifndef CLI_SAVE_H
 #define CLI_SAVE_H
 
+#include "base/sha256.h"
 #include "cli/args.h"
 #include "io/io.h"
-#include "io/sha256.h"
 #include "result/result.h"
 
 /* Before anything is run: has every study a folder of its own? Returns MT_EXIT_DONE, or the

@@ -58,6 +58,8 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
             .at_bound = x[i] == v->lower   ? "lower"
                         : x[i] == v->upper ? "upper"
                                            : NULL,
+            .lower = v->lower,
+            .upper = v->upper,
             .measure = MT_HAS(p->scale[i]) ? "linear"
                        : p->floor[i] > 0.0 ? "logarithmic with floor"
                                            : "logarithmic",
@@ -178,7 +180,8 @@ mt_status mt_describe_design(const mt_problem *p, const mt_design *design,
     mt_workspace *fresh = NULL;
     MT_TRY(mt_workspace_new(p, &fresh, err));
     mt_spent_note(p->study->model->spent, MT_SPENT_DESIGNS, ANALYSES);
-    const mt_status rc = describe(fresh, design, baseline, result, rec, err);
+    mt_status rc = describe(fresh, design, baseline, result, rec, err);
+    rc = rc == MT_OK ? mt_describe_slopes(fresh, design, result, rec, err) : rc;
     mt_workspace_delete(fresh);
     return rc;
 }

@@ -94,6 +94,10 @@ mt_status mt_describe_tolerance(mt_workspace *fresh, mt_result *result, mt_recom
 /* describe_undetermined.c: directions that the goals do not settle. */
 mt_status mt_describe_undetermined(const mt_problem *p, const mt_nlp_result *found,
                                    mt_result *result, mt_err *err);
+/* Slopes of the values of goals at the design, the last that is asked of `fresh`; NULL where
+ * there are none (describe_slopes.c). Fails: MT_E_MEMORY, MT_E_INTERRUPTED. */
+mt_status mt_describe_slopes(mt_workspace *fresh, const mt_design *design, mt_result *result,
+                             mt_recommendation *rec, mt_err *err);
 /* What is wrong with the original design, in sentences. */
 mt_status mt_describe_baseline_reasons(const mt_problem *p, mt_result *result, mt_err *err);
 /* Sentences why a recommendation is what it is; after mt_describe_undetermined

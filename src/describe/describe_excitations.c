@@ -62,6 +62,7 @@ static mt_status describe_goal(const mt_study *study, int goal, mt_result *resul
         const mt_machine *const m = machine ? &source->machines[i - source->n_rotors] : NULL;
         *e = (mt_result_excitation){
             .pointer = mt_arena_printf(mem, "/goals/%d", goal),
+            .up_to_hz = source->up_to_hz,
             .configurations = mt_arena_alloc(mem, (size_t)g->n_configurations, sizeof(char *))};
         MT_TRY(mt_arena_check(mem, err));
         for (int k = 0; k < g->n_configurations; k++) {

@@ -16,17 +16,23 @@
 static const double WORTH_SAYING_PERCENT = 1e-4;
 enum { NUMBER_SIZE = 32, DEMAND_SIZE = 128 };
 
+void mt_say_of(mt_sentences *s, const char *kind, const char *about)
+{
+    s->of = (mt_reason){.kind = kind, .about = about};
+}
+
 void mt_say(mt_sentences *s, const char *fmt, ...)
 {
     va_list args;
     va_start(args, fmt);
     const char *const text = mt_arena_vprintf(&s->result->mem, fmt, args);
     va_end(args);
-    const char **const grown = mt_arena_grow(&s->result->mem, s->rec->reasons,
-                                             s->rec->n_reasons, &s->capacity, sizeof *grown);
+    mt_reason *const grown = mt_arena_grow(&s->result->mem, s->rec->reasons, s->rec->n_reasons,
+                                           &s->capacity, sizeof *grown);
     if (grown != NULL) {
         s->rec->reasons = grown;
-        s->rec->reasons[s->rec->n_reasons++] = text;
+        grown[s->rec->n_reasons] = s->of;
+        grown[s->rec->n_reasons++].text = text;
     }
 }
 
@@ -39,6 +45,7 @@ static void say_change(mt_sentences *s, const mt_result_parameter *p)
 {
     const char *const unit = p->unit != NULL ? p->unit : "";
     const char *const space = p->unit != NULL ? " " : "";
+    mt_say_of(s, "change", p->name);
     if (isfinite(p->change_percent)) { /* not of what was 0, or next to it */
         mt_say(s, "%s %s by %.3g %%, from %.6g to %.6g%s%s.", p->name,
                p->recommended > p->original ? "rises" : "falls", fabs(p->change_percent),
@@ -48,6 +55,7 @@ static void say_change(mt_sentences *s, const mt_result_parameter *p)
                unit);
     }
     if (p->at_bound != NULL) {
+        mt_say_of(s, "hold", p->name);
         mt_say(s, "%s stands at its %s bound: a wider bound may give a better design.", p->name,
                p->at_bound);
     }
@@ -68,6 +76,7 @@ static void say_kept(mt_sentences *s, int kept)
             mt_arena_printf(&s->result->mem, "%s%s%s", text, p->name, left == 1 ? "" : after);
         left--;
     }
+    mt_say_of(s, "change", NULL);
     if (kept > 0 && kept == s->rec->n_parameters) {
         mt_say(s, "The original design stays as it is.");
     } else if (kept > 0) {
@@ -206,6 +215,7 @@ static void say_frequency(mt_sentences *s, const mt_result_frequency *f)
 static void say_doubt(mt_sentences *s)
 {
     if (s->rec->disagreement != NULL) {
+        mt_say_of(s, "change", NULL);
         mt_say(s, "NOT VERIFIED, do not use: %s.", s->rec->disagreement);
     }
 }
@@ -213,6 +223,7 @@ static void say_doubt(mt_sentences *s)
 /* Vibrations of 0 Hz. */
 static void say_slack(mt_sentences *s)
 {
+    mt_say_of(s, "hold", NULL);
     for (int i = 0; i < s->rec->n_frequencies; i++) {
         const mt_result_frequency *const f = &s->rec->frequencies[i];
         const bool some = f->slack != NULL && f->slack[0] != '\0';
@@ -226,6 +237,7 @@ static void say_slack(mt_sentences *s)
 
 static void say_frequencies(mt_sentences *s)
 {
+    mt_say_of(s, "change", NULL);
     for (int i = 0; i < s->rec->n_frequencies; i++) {
         const mt_result_frequency *const f = &s->rec->frequencies[i];
         if (MT_HAS(f->target_hz) || MT_HAS(f->at_least_hz) || MT_HAS(f->at_most_hz)) {
@@ -238,6 +250,7 @@ static void say_violations(mt_sentences *s)
 {
     for (int i = 0; i < s->rec->n_goals; i++) {
         const mt_result_goal *const g = &s->rec->goals[i];
+        mt_say_of(s, "hold", g->pointer);
         if (g->doubtful && !g->weighted) {
             mt_say(s, "Goal %s (%s) does not count as met: it is not certain which mode it is.",
                    g->pointer, g->text);
@@ -266,6 +279,7 @@ static void say_misfit(mt_sentences *s)
             sum += s->p->demands[i].goal->weight * g->violation_percent * g->violation_percent;
         }
     }
+    mt_say_of(s, "rank", NULL);
     if (weighted > 0 && MT_HAS(s->rec->misfit) && isfinite(sum)) {
         mt_say(s, "The %d weighted goal%s off by %.3g %% rms.", weighted,
                weighted == 1 ? " is" : "s are", sqrt(sum / s->p->weights));
@@ -317,6 +331,7 @@ static void say_only(mt_sentences *s, const mt_nlp_result *search, const char *f
 
 static void say_optimality(mt_sentences *s)
 {
+    mt_say_of(s, "rank", NULL);
     if (s->rec->feasible && !mt_describe_is_optimum(s->rec)) {
         mt_say(
             s,
@@ -329,6 +344,7 @@ static void say_optimality(mt_sentences *s)
 static void say_rank(mt_sentences *s, const mt_nlp_result *search)
 {
     const char *const first = aim_text(&s->p->aims[0]);
+    mt_say_of(s, "rank", NULL);
     if (s->design->discrete != NULL) {
         mt_arena *const mem = &s->result->mem;
         const char *const by = mt_arena_printf(mem, "%s %s", best_of(&s->p->aims[0]), first);
@@ -393,6 +409,7 @@ mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
     say_violations(&s);
     mt_say_bands(&s);
     if (design->cut) {
+        mt_say_of(&s, "rank", NULL);
         mt_say(&s, "The search was interrupted: better designs may exist.");
         return mt_arena_check(&result->mem, err);
     }

@@ -115,6 +115,7 @@ static void say_clearances(mt_sentences *s)
 
 void mt_say_bands(mt_sentences *s)
 {
+    mt_say_of(s, "hold", NULL);
     say_kinds(s);
     say_clearances(s);
     for (int i = 0; i < s->rec->n_motions; i++) {

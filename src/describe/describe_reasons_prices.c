@@ -41,6 +41,7 @@ static void say_demands(mt_sentences *s)
     for (int i = 0; i < s->p->n_demands; i++) {
         const mt_demand *const d = &s->p->demands[i];
         const mt_result_goal *const g = &s->rec->goals[i];
+        mt_say_of(s, "cost", g->pointer);
         for (int k = 0; k < d->n_in && found->mult_in != NULL; k++) {
             const double mult = found->mult_in[d->row_in + k];
             const char *const saved = mult > 0.0 ? price(s, mult / PERCENT) : NULL;
@@ -72,6 +73,7 @@ static void say_edges(mt_sentences *s)
 {
     const mt_nlp_solution *const found = s->design->found;
     mt_clear_row row;
+    mt_say_of(s, "cost", NULL);
     for (int i = 0; s->design->below != NULL && found->mult_in != NULL &&
                     mt_clear_row_at(&s->p->whole, s->design->below, i, &row);
          i++) {
@@ -137,6 +139,7 @@ static void say_bounds(mt_sentences *s)
         if (p->at_bound == NULL || !(amount > 0.0) || !isfinite(amount)) {
             continue;
         }
+        mt_say_of(s, "cost", p->name);
         say_bound_price(s, i, amount);
         for (int k = 0; k < s->rec->n_frequencies && !s->rec->feasible; k++) {
             say_bound_frequency(s, i, amount, &s->rec->frequencies[k]);

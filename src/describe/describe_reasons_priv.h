@@ -11,8 +11,11 @@ typedef struct mt_sentences {
     mt_result *result;
     mt_recommendation *rec;
     int capacity;
+    mt_reason of; /* kind of what is said from now on, and what it is about */
 } mt_sentences;
 
+/* From now on sentences are of this kind, about a parameter, a goal (its pointer) or NULL. */
+void mt_say_of(mt_sentences *s, const char *kind, const char *about);
 /* Add a sentence. */
 void mt_say(mt_sentences *s, const char *fmt, ...) MT_PRINTF(2, 3);
 

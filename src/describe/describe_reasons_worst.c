@@ -22,6 +22,7 @@ void mt_say_worst(mt_sentences *s)
                                 s->p->study->variables[i].parameter_name.s, percent);
         }
     }
+    mt_say_of(s, "hold", NULL);
     if (strcmp(s->rec->worst_case, "proven") == 0) {
         mt_say(s,
                "Over the tolerances (%s) goals are judged at their worst corner, which is "

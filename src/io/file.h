@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 #include "base/base.h"
-#include "io/sha256.h"
+#include "base/sha256.h"
 
 /* A whole file in memory (heap). */
 typedef struct mt_file {

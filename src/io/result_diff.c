@@ -45,6 +45,7 @@ static const list_rule RULES[] = {
     {"points", "point", {NULL}, NULL},
     {"published", "value", {"pointer"}, "label"},
     {"recommendations", "recommendation", {NULL}, NULL},
+    {"reasons", "reason", {NULL}, NULL},
     {"relaxations", "relaxation", {"kind", "pointer", "what"}, NULL},
     {"spread", "spread", {"parameter"}, NULL},
     {"undetermined", "direction", {NULL}, NULL},

@@ -196,8 +196,8 @@ static void add_text(const plot *p, double x, double y, const char *anchor, cons
                      const char *text)
 {
     mt_text_addf(p->out,
-                 "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" style=\"fill:%s;stroke:#fff;"
-                 "stroke-width:3px;paint-order:stroke\">",
+                 "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" fill=\"%s\" "
+                 "stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\">",
                  x, y, anchor, colour);
     mt_html_escape(text, p->out);
     mt_text_add(p->out, "</text>\n");

@@ -3,23 +3,10 @@
  * it. */
 #include "report/html.h"
 
+#include "base/base.h"
+#include "report/page.h"
 #include "report/summary.h"
 #include "report/table.h"
-
-static const char STYLE[] =
-    "body{font:15px/1.45 system-ui,sans-serif;color:#1a1a1a;background:#fff;max-width:60em;"
-    "margin:2em auto;padding:0 1em}"
-    "h1{font-size:1.5em;margin-bottom:.2em}h2{font-size:1.1em;margin:1.6em 0 .4em}"
-    ".status{padding:.5em .8em;border-left:5px solid #888;background:#f4f4f4}"
-    ".solved{border-color:#1b7837}.compromise,.interrupted{border-color:#b8860b}"
-    ".infeasible{border-color:#b2182b}.doubts{padding:.1em .8em;background:#fff3cd}"
-    "table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:.4em 0}"
-    "th,td{padding:.2em .7em;text-align:left;border-bottom:1px solid #ddd}"
-    "th{border-bottom:2px solid #888}.n{text-align:right}"
-    "svg{max-width:100%;height:auto}svg text{font:12px system-ui,sans-serif;fill:#333}"
-    "footer{margin-top:2em;color:#666;font-size:.85em}"
-    "@media "
-    "print{body{margin:0;max-width:none}h2{break-after:avoid}table,svg{break-inside:avoid}}";
 
 static void add_footer(const mt_result_run *run, mt_text *out)
 {
@@ -39,32 +26,24 @@ static void add_footer(const mt_result_run *run, mt_text *out)
     mt_text_add(out, "</footer>\n");
 }
 
-void mt_html_begin(const char *title, mt_text *out)
+void mt_report_html_told(const mt_result *result, mt_text *out)
 {
-    mt_text_add(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                     "<meta name=\"viewport\" content=\"width=device-width\">\n<title>");
-    mt_html_escape(title, out);
-    mt_text_addf(out, "</title>\n<style>%s</style>\n</head>\n<body>\n<h1>", STYLE);
-    mt_html_escape(title, out);
-    mt_text_add(out, "</h1>\n");
+    const char *const status = mt_result_status_name(result->status);
+    mt_text_addf(out, "<p class=\"status %s\"><b>%s</b>. ", status, status);
+    mt_html_escape(result->status_text == NULL ? "" : result->status_text, out);
+    mt_text_add(out, "</p>\n<div id=\"figures\"></div>\n<div id=\"told\">\n");
+    mt_tell_answer(&(mt_teller){out, true}, result, true);
+    add_footer(&result->run, out);
+    mt_text_add(out, "</div>\n");
 }
 
-void mt_html_end(mt_text *out)
+void mt_report_html(const mt_result *result, const char *json, const char *scene, mt_text *out)
 {
-    mt_text_add(out, "</body>\n</html>\n");
-}
-
-void mt_report_html(const mt_result *result, mt_text *out)
-{
+    const mt_page_data data[] = {{"data", json}, {"scene", scene}};
     const char *const name = result->study.name != NULL   ? result->study.name
                              : result->study.file != NULL ? result->study.file
                                                           : "study";
-    const char *const status = mt_result_status_name(result->status);
-    mt_html_begin(name, out);
-    mt_text_addf(out, "<p class=\"status %s\"><b>%s</b>. ", status, status);
-    mt_html_escape(result->status_text == NULL ? "" : result->status_text, out);
-    mt_text_add(out, "</p>\n");
-    mt_tell_answer(&(mt_teller){out, true}, result, true);
-    add_footer(&result->run, out);
-    mt_html_end(out);
+    mt_page_begin(MT_PAGE_REPORT, name, out);
+    mt_report_html_told(result, out);
+    mt_page_end(MT_PAGE_REPORT, MT_COUNT(data), data, out);
 }

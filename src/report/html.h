@@ -5,13 +5,11 @@
 #include "base/text.h"
 #include "result/result.h"
 
-/* A page up to its heading, and its end. */
-void mt_html_begin(const char *title, mt_text *out);
-void mt_html_end(mt_text *out);
-
-/* What a result says as one self-contained HTML page (no scripts, nothing loaded from
- * elsewhere, figures as inline SVG), light and printable. Memory running out shows in
- * out->failed. */
-void mt_report_html(const mt_result *result, mt_text *out);
+/* What a result says as one self-contained HTML page: told in words and tables, and drawn by
+ * its script from `json`, the same result as a file holds it, and from `scene`, its mechanism
+ * (NULL: none). Memory running out shows in out->failed. */
+void mt_report_html(const mt_result *result, const char *json, const char *scene, mt_text *out);
+/* Of it what is told: words and tables, and the place of the figures. */
+void mt_report_html_told(const mt_result *result, mt_text *out);
 
 #endif

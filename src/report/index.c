@@ -2,8 +2,8 @@
 /* Several studies in one table. */
 #include "report/index.h"
 
-#include "report/html.h"
 #include "report/number.h"
+#include "report/page.h"
 
 enum { CHANGE_DIGITS = 4, TIME_DIGITS = 3 };
 
@@ -56,7 +56,7 @@ static void add_study(const mt_index_study *s, mt_text *out)
 
 void mt_report_index_html(const mt_index_study *studies, int n, mt_text *out)
 {
-    mt_html_begin("Studies", out);
+    mt_page_begin(MT_PAGE_PLAIN, "Studies", out);
     mt_text_add(out, "<table>\n<thead><tr><th>study</th><th>name</th><th>status</th>"
                      "<th>grade</th><th class=\"n\">change</th><th></th></tr></thead>\n"
                      "<tbody>\n");
@@ -64,5 +64,5 @@ void mt_report_index_html(const mt_index_study *studies, int n, mt_text *out)
         add_study(&studies[i], out);
     }
     mt_text_add(out, "</tbody>\n</table>\n");
-    mt_html_end(out);
+    mt_page_end(MT_PAGE_PLAIN, 0, NULL, out);
 }

@@ -96,6 +96,30 @@ static void add_item(const mt_teller *to, const char *word, const char *text)
     }
 }
 
+/* Why a design is what it is. */
+static void tell_reasons(const mt_teller *to, const mt_recommendation *r)
+{
+    static const struct {
+        const char *kind;
+        const char *title;
+    } parts[] = {{"change", "Why: what changes"},
+                 {"hold", "Why: what holds it"},
+                 {"cost", "Why: what it costs"},
+                 {"rank", "Why: how it stands"}};
+    for (int k = 0; k < MT_COUNT(parts); k++) {
+        bool open = false;
+        for (int i = 0; i < r->n_reasons; i++) {
+            if (strcmp(r->reasons[i].kind, parts[k].kind) == 0) {
+                open = open || open_list(to, parts[k].title, 1);
+                add_item(to, "", r->reasons[i].text);
+            }
+        }
+        if (open) {
+            close_list(to);
+        }
+    }
+}
+
 /* One whose text was made for it; freed. */
 static void add_made(const mt_teller *to, mt_text *text)
 {
@@ -211,7 +235,7 @@ static void tell_design(const mt_teller *to, const mt_result *result)
     add_table(to, mt_report_clearances(r), "Clearances from bands");
     add_table(to, mt_report_motions(r), "Over the range of motion");
     add_table(to, mt_report_goals(r), "Goals");
-    add_sentences(to, "Why", r->n_reasons, r->reasons);
+    tell_reasons(to, r);
 }
 
 void mt_tell_uncertainty(const mt_teller *to, const mt_result *result)

@@ -200,9 +200,8 @@ void mt_report_svg_trade(const mt_result *result, mt_text *out)
         const char *const colour = colours[curves % COLOURS];
         curve(&f, trade, first, n, colour, out);
         if (trade->n_vary == 2) {
-            mt_text_addf(out, "<text x=\"%d\" y=\"%d\" style=\"fill:%s\">%.6g</text>\n",
-                         RIGHT + 24, TOP + 12 + (curves * LINE), colour,
-                         trade->points[first].values[0]);
+            mt_text_addf(out, "<text x=\"%d\" y=\"%d\" fill=\"%s\">%.6g</text>\n", RIGHT + 24,
+                         TOP + 12 + (curves * LINE), colour, trade->points[first].values[0]);
         }
     }
     mt_text_add(out, "</svg>\n");

@@ -23,6 +23,8 @@ static const mt_field PARAMETER_FIELDS[] = {
     MT_F_NUMBER_OR_NULL("recommended", recommended),
     MT_F_NUMBER_OR_NULL("change_percent", change_percent),
     MT_F_CHOICE_OR_NULL("at_bound", at_bound, BOUNDS),
+    MT_F_NUMBER_OR_NULL("lower", lower),
+    MT_F_NUMBER_OR_NULL("upper", upper),
     MT_F_CHOICE("measure", measure, MEASURES),
     MT_F_NUMBER_OR_NULL("measure_floor", measure_floor),
     MT_F_NUMBER_OR_NULL("measure_scale", measure_scale),
@@ -155,6 +157,7 @@ static const mt_field GOAL_FIELDS[] = {
     MT_F_NUMBER_OR_NULL("tolerance_percent", tolerance_percent),
     MT_F_NUMBER_OR_NULL("worst", worst),
     MT_F_BY_VARIABLE_OR_NULL("worst_at", worst_at),
+    MT_F_BY_VARIABLE_OR_NULL("sensitivity", sensitivity),
     MT_F_NUMBER_OR_NULL("violation_percent", violation_percent),
     MT_F_FLAG("met", met),
     MT_F_FLAG("weighted", weighted),
@@ -171,6 +174,16 @@ static const mt_field REACHED_FIELDS[] = {
     MT_F_NUMBER_OR_NULL("recommended", recommended),
 };
 static const mt_record REACHED = MT_F_RECORD_OF(REACHED_FIELDS);
+#undef THIS
+
+#define THIS mt_reason
+static const char *const REASON_KINDS[] = {"change", "hold", "cost", "rank"};
+static const mt_field REASON_FIELDS[] = {
+    MT_F_CHOICE("kind", kind, REASON_KINDS),
+    MT_F_TEXT_OR_NULL("about", about),
+    MT_F_TEXT("text", text),
+};
+static const mt_record REASON = MT_F_RECORD_OF(REASON_FIELDS);
 #undef THIS
 
 #define THIS mt_recommendation
@@ -195,7 +208,7 @@ static const mt_field DESIGN_FIELDS[] = {
     MT_F_LIST("motion", motions, n_motions, mt_result_motion, MOTION),
     MT_F_OPTION("tolerance_box", tolerance_box, mt_tolerance_box, TOLERANCE_BOX),
     MT_F_LIST("goals", goals, n_goals, mt_result_goal, GOAL),
-    MT_F_TEXTS("reasons", reasons, n_reasons),
+    MT_F_LIST("reasons", reasons, n_reasons, mt_reason, REASON),
     MT_F_UNWRITTEN_TEXT(disagreement),
 };
 const mt_record mt_design_record = MT_F_RECORD_OF(DESIGN_FIELDS);
@@ -299,6 +312,7 @@ static const mt_field EXCITATION_FIELDS[] = {
     MT_F_NUMBER("speed_lower_hz", speed_lower_hz),
     MT_F_NUMBER("speed_upper_hz", speed_upper_hz),
     MT_F_NUMBER("margin_percent", margin_percent),
+    MT_F_NUMBER_OR_NULL("up_to_hz", up_to_hz),
     MT_F_TEXTS("configurations", configurations, n_configurations),
     MT_F_LIST("orders", orders, n_orders, mt_result_order, ORDER),
 };

@@ -23,6 +23,8 @@ typedef struct mt_result_parameter {
     double recommended;
     double change_percent; /* NaN where original is 0 */
     const char *at_bound;  /* NULL, "lower", "upper" */
+    double lower;          /* its bounds; of a catalogue its ends */
+    double upper;
     /* how a change counts: by ln(new/original), "logarithmic"; the same with a floor;
      * "linear" */
     const char *measure;
@@ -85,6 +87,9 @@ typedef struct mt_result_goal {
      * none */
     double worst;
     double *worst_at; /* [n_parameters] where that is; NULL: none */
+    /* [n_parameters] of the value, per unit of each variable; NULL: it has none, as a mode that
+     * repeats, or a distance */
+    double *sensitivity;
 } mt_result_goal;
 
 /* A mode beside a band. */
@@ -164,6 +169,13 @@ typedef struct mt_tolerance_box {
     mt_result_tolerance *variables; /* in the study's order */
 } mt_tolerance_box;
 
+/* One sentence of why a design is what it is. */
+typedef struct mt_reason {
+    const char *kind;  /* "change" | "hold" | "cost" | "rank" */
+    const char *about; /* the parameter's name, or the goal's pointer; NULL: neither */
+    const char *text;
+} mt_reason;
+
 typedef struct mt_recommendation {
     int rank;
     bool feasible;
@@ -198,7 +210,7 @@ typedef struct mt_recommendation {
     int n_goals;
     mt_result_goal *goals;
     int n_reasons;
-    const char **reasons; /* sentences */
+    mt_reason *reasons;
 } mt_recommendation;
 
 /* A direction in the space of the variables along which the goals do not change. */
@@ -305,6 +317,7 @@ typedef struct mt_result_excitation {
     double speed_lower_hz; /* range of its speed [1/s] */
     double speed_upper_hz;
     double margin_percent;
+    double up_to_hz;      /* nothing beyond counts; NaN: all does */
     int n_configurations; /* that are kept clear of it */
     const char **configurations;
     int n_orders;

@@ -71,5 +71,5 @@ int mt_result_reasons(const mt_result *result, int rank)
 const char *mt_result_reason(const mt_result *result, int rank, int i)
 {
     const mt_recommendation *const r = design(result, rank);
-    return r != NULL && i >= 0 && i < r->n_reasons ? r->reasons[i] : NULL;
+    return r != NULL && i >= 0 && i < r->n_reasons ? r->reasons[i].text : NULL;
 }

@@ -96,7 +96,7 @@ static double number_after(const study_case *c, const char *phrase)
 {
     const mt_recommendation *const r = &c->result->recommendations[0];
     for (int i = 0; i < r->n_reasons; i++) {
-        const char *const at = strstr(r->reasons[i], phrase);
+        const char *const at = strstr(r->reasons[i].text, phrase);
         if (at != NULL) {
             return strtod(at + strlen(phrase), NULL);
         }

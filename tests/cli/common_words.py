@@ -9,9 +9,17 @@ NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?")
 # A cell of a table may hold the word for what overflows (a percent of 5e-324); a sentence finds better ones.
 CELL = re.compile(r"(?<=  )[-+]?infinite(?=  |\n)|(?<=>)[-+]?infinite(?=<)")
 
+# Of a page: data, and the program that draws them, whose own words are not the answer's.
+DATA = re.compile(r'<script type="application/json" id="\w+">(.*?)</script>', re.S)
+SCRIPT = re.compile(r"<script>.*?</script>", re.S)
+
 
 def problems_of(text, form):
     """What is wrong with one output."""
+    if form == "html":
+        for block in DATA.findall(text):
+            yield from problems_of(block, "json")
+        text = SCRIPT.sub("", DATA.sub("", text))
     for match in WORD.finditer(CELL.sub("", text)):
         yield f"\"{match[0]}\" in {match.string[max(0, match.start() - 90):match.end() + 40]!r}"
     if form == "json" and text:

@@ -18,7 +18,7 @@ KEYS = {"certificates": ["kind", "pointer"], "clearances": ["configuration", "mo
         "inputs": ["file"], "motion": ["goal", "drive"], "objectives": ["text"], "orders": ["label"], "overrides": ["kind", "name"], "parameters": ["name"],
         "per_variable": ["name"], "published": ["pointer"], "relaxations": ["kind", "pointer", "what"], "spread": ["parameter"], "vary": ["pointer"]}
 EVERY = os.environ.get("MT_EVERY", "0") != "0"
-BY_PLACE = {"points", "recommendations", "undetermined", "outputs"}
+BY_PLACE = {"points", "reasons", "recommendations", "undetermined", "outputs"}
 MADE_BY = ("study", "model", "run")
 HOLDS = """, "published": [
     { "label": "spring", "parameter": "k1", "value": 3, "tolerance_percent": 0.1, "source": "a" }, { "status": "solved" } ],

@@ -128,7 +128,7 @@ class Run(CliTest):
                 for best in result["recommendations"][:1]:
                     self.assertTrue(best["feasible"])
                     self.assertAlmostEqual(best["frequencies"][0]["recommended_hz"], 5, delta=1e-4)
-                    self.assertIn("The search was interrupted: better designs may exist.", best["reasons"])
+                    self.assertIn("The search was interrupted: better designs may exist.", [r["text"] for r in best["reasons"]])
 
     def test_what_was_not_begun_is_said(self):
         running = self.at_work(self.long, self.other, "--format", "json")

@@ -95,7 +95,7 @@ class Motion(unittest.TestCase):
         self.assertFalse(result["baseline"]["feasible"])
         self.assertTrue(result["baseline"]["motion"][0]["crosses"])
         self.assertIn('mode 1 crosses 11 to 12.5 Hz between "down" and "up"', " ".join(
-            result["baseline"]["reasons"]))
+            r["text"] for r in result["baseline"]["reasons"]))
         found = sorted(r["parameters"][0]["recommended"] for r in result["recommendations"])
         wanted = [k1_for(11, 0.1), k1_for(12.5, 1.3)]
         self.assertEqual(len(found), 2)

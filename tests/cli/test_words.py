@@ -175,8 +175,9 @@ class Hunt:
 
 def self_test():
     bad = [("off by nan %", "text"), ("a,inf\r\n", "csv"), ('{"a": NaN}', "json"), ('{"a": -Infinity}', "json"), ('<rect x="1" width="nan"/>', "html"),
-           ('<path d="M1 2L-1e9 3"/>', "html"), ("goes to undefined", "text"), ("-inf Hz", "text")]
-    good = [("information about nancy, inf_x", "text"), ('<path d="M1 2L3.5 -4"/>', "html"), ('{"a": null}', "json")]
+           ('<path d="M1 2L-1e9 3"/>', "html"), ("goes to undefined", "text"), ("-inf Hz", "text"),
+           ("<p>nan Hz</p><script>NaN</script>", "html"), ('<script type="application/json" id="data">[NaN]</script>', "html")]
+    good = [("information about nancy, inf_x", "text"), ('<path d="M1 2L3.5 -4"/>', "html"), ('{"a": null}', "json"), ("<p>1 Hz</p><script>x = NaN</script>", "html")]
     return [f"self-test: {text} passed" for text, form in bad if not list(problems_of(text, form))] + \
            [f"self-test: {text} was refused" for text, form in good if list(problems_of(text, form))]
 

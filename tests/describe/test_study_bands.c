@@ -44,8 +44,8 @@ static void bands__are_goals_with_clearance_and_margin(mt_test *t)
 static const char *reason_with(const mt_recommendation *r, const char *part)
 {
     for (int i = 0; i < r->n_reasons; i++) {
-        if (strstr(r->reasons[i], part) != NULL) {
-            return r->reasons[i];
+        if (strstr(r->reasons[i].text, part) != NULL) {
+            return r->reasons[i].text;
         }
     }
     return NULL;

@@ -100,9 +100,9 @@ static bool told(const study_case *c, const char *part, double *percent, double 
 {
     const mt_recommendation *const r = &c->result->recommendations[0];
     for (int i = 0; i < r->n_reasons; i++) {
-        const char *const at = strstr(r->reasons[i], part);
+        const char *const at = strstr(r->reasons[i].text, part);
         const char *number = at;
-        while (number != NULL && number > r->reasons[i] && number[-1] != ',') {
+        while (number != NULL && number > r->reasons[i].text && number[-1] != ',') {
             number--;
         }
         if (number != NULL) {
@@ -184,7 +184,7 @@ static int count_said(const study_case *c, const char *text)
     for (int i = 0; i < c->result->n_recommendations; i++) {
         const mt_recommendation *const rec = &c->result->recommendations[i];
         for (int k = 0; k < rec->n_reasons; k++) {
-            n += strstr(rec->reasons[k], text) != NULL;
+            n += strstr(rec->reasons[k].text, text) != NULL;
         }
     }
     for (int i = 0; i < c->result->n_warnings; i++) {

@@ -20,7 +20,7 @@ static void show(const mt_result *r)
     mt_table_csv(&designs, &said);
     mt_table_free(&designs);
     mt_report_summary(r, true, &said);
-    mt_report_html(r, &said);
+    mt_report_html_told(r, &said);
     DEMAND(!said.failed);
     mt_text_free(&said);
     DEMAND(mt_result_write(r, &said, &err) == MT_OK);

@@ -152,7 +152,7 @@ static void demand_told(const mt_result *r, const uint8_t *data, size_t size)
     DEMAND(!said.failed);
     fuzz_demand_finite_words(&said, data, size);
     mt_text_free(&said);
-    mt_report_html(r, &said);
+    mt_report_html_told(r, &said);
     DEMAND(!said.failed);
     fuzz_demand_finite_words(&said, data, size);
     mt_text_free(&said);

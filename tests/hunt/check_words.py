@@ -79,7 +79,7 @@ def prices(run):
     if best is None or run.study.get("trade") or any(v.values is not None for v in q.variables) or len(q.objectives) > 1 or q.robust:
         return
     start, told_of = design_of(q, best)[0], 0
-    for reason in best["reasons"]:
+    for reason in (r["text"] for r in best["reasons"]):
         if told_of == PRICES:
             return
         goal = re.match(r"Goal /goals/(\d+) \(.*\) has a price: (?:giving way by|asking for) 1 % ?(less|more|)\s?would (?:save|gain) " + NUMBER, reason)
@@ -153,7 +153,7 @@ def reasons(run):
     for rec in [run.result["baseline"]] + run.result["recommendations"]:
         by_name = {p["name"]: p for p in rec["parameters"]}
         goals = {g["pointer"]: [h for h in rec["goals"] if h["pointer"] == g["pointer"]] for g in rec["goals"]}
-        for reason in rec["reasons"]:
+        for reason in (r["text"] for r in rec["reasons"]):
             moved = re.match(r"(\w+) (rises|falls) by " + NUMBER + " %", reason)
             if moved and moved[1] in by_name:
                 change = by_name[moved[1]]["change_percent"]
@@ -198,7 +198,7 @@ def consistent(run):
     if status == "infeasible" and not impossible and not any(
             c["proven"] and ("one of the" in c["text"] or "None of" in c["text"]) for c in result["certificates"]):
         yield f"infeasible without a certificate: {[c['text'] for c in result['certificates']]}"
-    words = [text] + [s for r in result["recommendations"] for s in r["reasons"]] + [c["text"] for c in result["certificates"] if not c["proven"]]
+    words = [text] + [s["text"] for r in result["recommendations"] for s in r["reasons"]] + [c["text"] for c in result["certificates"] if not c["proven"]]
     for sentence in words:
         if sentence.startswith(("Over the tolerances", "Positions of one drive")):  # how the worst of one design is known
             continue
@@ -210,7 +210,7 @@ def consistent(run):
         if (rec["grade"] or "").startswith("feasible") != rec["feasible"]:
             yield f"rank {rec['rank']}: feasible {rec['feasible']}, grade \"{rec['grade']}\""
         if impossible and rec["grade"] == "compromise" and any(
-                "not proven" in s and not s.startswith("Over the tolerances") for s in rec["reasons"]):
+                "not proven" in s["text"] and not s["text"].startswith("Over the tolerances") for s in rec["reasons"]):
             yield f"rank {rec['rank']}: {rec['reasons']}"
     found = re.match(r"Solved: (\d+) ", text)
     if found and int(found[1]) < len(feasible):

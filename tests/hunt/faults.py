@@ -170,10 +170,10 @@ def _box(run):
 
 def _price(run):
     best = _first(run.result)
-    for i, reason in enumerate(best["reasons"] if best else []):
+    for i, reason in enumerate([r["text"] for r in best["reasons"]] if best else []):
         found = re.match(r"(Goal .* has a price: (?:giving way by|asking for) 1 % ?(?:less|more|)\s?would save )(\d[\d.]*)( .*)", reason)
         if found and float(found[2]) > 1e-3 and "from" not in found[1]:
-            best["reasons"][i] = f"{found[1]}{1.2 * float(found[2]):.3g}{found[3]}"
+            best["reasons"][i]["text"] = f"{found[1]}{1.2 * float(found[2]):.3g}{found[3]}"
             return True
     return False
 
@@ -188,10 +188,10 @@ def _free_direction(run):
 
 def _sentence(run):
     best = run.result["recommendations"][0] if run.result["recommendations"] else None
-    for i, reason in enumerate(best["reasons"] if best else []):
+    for i, reason in enumerate([r["text"] for r in best["reasons"]] if best else []):
         found = re.match(r"(\w+ (?:rises|falls) by )(\d[\d.]*)( %.*)", reason)
         if found and float(found[2]) > 1.0:
-            best["reasons"][i] = f"{found[1]}{1.05 * float(found[2]):.3g}{found[3]}"
+            best["reasons"][i]["text"] = f"{found[1]}{1.05 * float(found[2]):.3g}{found[3]}"
             return True
     return False
 

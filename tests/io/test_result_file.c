@@ -26,6 +26,8 @@ static mt_result_parameter PARAMETERS[] = {
      .original = 0.0,
      .recommended = 0.2,
      .at_bound = "lower",
+     .lower = 0.2,
+     .upper = 0.5,
      .measure = "linear",
      .measure_scale = 10.0},
 };
@@ -40,8 +42,11 @@ static mt_result_goal GOALS[] = {{.text = "installed mode 1 at 18 Hz",
                                   .target = 18.0,
                                   .tolerance_percent = 1e-4,
                                   .met = true,
-                                  .worst = 17.5}};
-static const char *REASONS[] = {"K_T1 rises by 1.5 %."};
+                                  .worst = 17.5,
+                                  .sensitivity = SENSITIVITY}};
+static mt_reason REASONS[] = {{"change", "K_T1", "K_T1 rises by 1.5 %."},
+                              {"rank", NULL, "It is the only one."}};
+static const char *WARNINGS[] = {"It is hot."};
 static const char *VARIABLES[] = {"K_T1", "M_SAU"};
 static double DIRECTION[] = {0.0, 1.0};
 static const char *INCOMPLETE[] = {"trade"};
@@ -73,7 +78,7 @@ static mt_result_objective OBJECTIVES[] = {{"change", "change", ""},
                                            {"expression", "a + b", NULL}};
 static const char *CONFIGURATIONS[] = {"installed"};
 static mt_result_order ORDERS[] = {{"4P", 4.0}};
-static mt_result_excitation EXCITATIONS[] = {{"/goals/1", "UH-60", 4.0, 4.5, 10.0,
+static mt_result_excitation EXCITATIONS[] = {{"/goals/1", "UH-60", 4.0, 4.5, 10.0, 60.0,
                                               MT_COUNT(CONFIGURATIONS), CONFIGURATIONS,
                                               MT_COUNT(ORDERS), ORDERS}};
 
@@ -281,7 +286,7 @@ static bool make_sample(sample *s)
     r->n_published = 2;
     r->published = s->published;
     r->n_warnings = 1;
-    r->warnings = REASONS;
+    r->warnings = WARNINGS;
     fill_run(r);
     return true;
 }

@@ -29,15 +29,17 @@ static mt_design_objective reached[] = {{"mass of <bar>*", "kg", 3.5, 1.25},
 static mt_result *make(mt_test *t)
 {
     static const char *variables[] = {"k<1>", "m"};
-    static const char *reasons[] = {"k<1> rises & m falls."};
+    static mt_reason reasons[] = {{"change", "k<1>", "k<1> rises & m falls."},
+                                  {"rank", NULL, "It is the only one."}};
     mt_result *r = NULL;
     if (!CHECK(t, mt_result_new(&r, NULL) == MT_OK)) {
         return NULL;
     }
     parameters[0] = (mt_result_parameter){
-        "k<1>", "N/m", 50.0, 92.942, 85.884, NULL, "logarithmic with floor", 0.05, nan("")};
-    parameters[1] =
-        (mt_result_parameter){"m", NULL, 1.0, 0.5, -50.0, "lower", "linear", nan(""), 2.0};
+        "k<1>", "N/m",  50.0, 92.942, 85.884, NULL, 10.0, 100.0, "logarithmic with floor",
+        0.05,   nan("")};
+    parameters[1] = (mt_result_parameter){"m", NULL, 1.0,      0.5,     -50.0, "lower",
+                                          0.5, 2.0,  "linear", nan(""), 2.0};
     for (int i = 0; i < 2; i++) {
         frequencies[i] = mt_result_frequency_default();
         frequencies[i].configuration = "held";
@@ -59,7 +61,7 @@ static mt_result *make(mt_test *t)
     recommendations[0].objectives = reached;
     recommendations[0].n_objectives = 2;
     recommendations[0].reasons = reasons;
-    recommendations[0].n_reasons = 1;
+    recommendations[0].n_reasons = 2;
     for (int i = 0; i < 3; i++) {
         published[i] = mt_result_published_default();
         published[i].label = i == 0 ? "good" : i == 1 ? "bad" : "other";
@@ -99,7 +101,8 @@ static void summary__says_status_numbers_and_reasons(mt_test *t)
         "  The change of m counts linearly, 2.00000 as 1.\n",
         "  1  -        0.750000     1.00000           1.00000          0    -\n",
         "at least 1.90000",
-        "  - k<1> rises & m falls.\n",
+        "\nWhy: what changes\n  - k<1> rises & m falls.\n\nWhy: how it stands\n  - It is the "
+        "only one.\n",
     };
     mt_result *const r = make(t);
     REQUIRE(t, r != NULL);
@@ -137,7 +140,7 @@ static void check_missing(mt_test *t, const mt_result *r, const char *title, int
                    title);
     (void)snprintf(page, sizeof page, "<h2>%s</h2>\n<p>not computed: the run", title);
     mt_report_summary(r, true, &told[0]);
-    mt_report_html(r, &told[1]);
+    mt_report_html_told(r, &told[1]);
     mt_test_row(t, "%s, %d not computed", title, wanted);
     CHECK(t, wanted == 0 || count(told[0].s, text) == 1);
     CHECK(t, wanted == 0 || count(told[1].s, page) == 1);
@@ -334,15 +337,26 @@ static void page__is_self_contained_and_escaped(mt_test *t)
     mt_result *const r = make(t);
     mt_text out = {.s = NULL};
     REQUIRE(t, r != NULL);
-    mt_report_html(r, &out);
+    mt_report_html(r, "{\"name\": \"</script><img>\"}", NULL, &out);
     CHECK(t, !out.failed);
     if (CHECK(t, out.s != NULL)) {
+        static const char data[] = "<script type=\"application/json\" id=\"data\">";
         CHECK(t, strstr(out.s, "<title>A &lt;study&gt;</title>") != NULL);
-        CHECK(t, strstr(out.s, "k<1>") == NULL);
-        CHECK(t, strstr(out.s, "<script") == NULL);
-        CHECK(t, strstr(out.s, "src=") == NULL && strstr(out.s, "href=") == NULL);
+        CHECK_INT(t, count(out.s, "<script"), 2);
+        CHECK_INT(t, count(out.s, "</script>"), 2);
+        CHECK(t, strstr(out.s, "{\"name\": \"\\u003c/script>\\u003cimg>\"}</script>") != NULL);
+        CHECK(t, strstr(out.s, "default-src 'none'") != NULL);
+        CHECK(t, strstr(out.s, "; script-src 'sha256-") != NULL);
+        CHECK(t, strstr(out.s, "</html>") != NULL);
+        char *const script = strstr(out.s, data);
+        if (CHECK(t, script != NULL)) {
+            *script = '\0'; /* what is markup */
+        }
+        CHECK(t, strstr(out.s, "k<1>") == NULL && strstr(out.s, "style=") == NULL);
+        CHECK(t, strstr(out.s, "src=") == NULL);
+        CHECK_INT(t, count(out.s, "href="), count(out.s, "href=\"data:,\""));
         CHECK(t, strstr(out.s, "k&lt;1&gt; rises &amp; m falls.") != NULL);
-        CHECK(t, strstr(out.s, "<svg") != NULL && strstr(out.s, "</html>") != NULL);
+        CHECK(t, strstr(out.s, "<svg") != NULL);
         CHECK(t, strstr(out.s, "nan") == NULL && strstr(out.s, "inf\"") == NULL);
     }
     mt_text_free(&out);

@@ -17,6 +17,11 @@ def c_files(*folders):
     return sorted(p for folder in folders for p in Path(folder).rglob("*.[ch]"))
 
 
+def page_files():
+    """The scripts and styles of pages, in a fixed order."""
+    return sorted(p for kind in ("js", "css") for p in (ROOT / "src").rglob("*." + kind))
+
+
 def code_only(text):
     """The text with comments and the inside of literals blanked; line numbers stay."""
     def blank(match):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Code and comments of C files keep to the same columns, and no declaration is broken across lines to make room for its comment."""
+"""Code and comments of C files, and pages, keep to the same columns, and no declaration is broken across lines to make room for its comment."""
 import re
 
-from common import ROOT, c_files, code_only, verdict, without_comments
+from common import ROOT, c_files, page_files, code_only, verdict, without_comments
 
 COLUMNS = 96  # as .clang-format has it, which leaves comments alone
 UNBREAKABLE = re.compile(r"NOLINT|https?://")  # what means something else on two lines
@@ -63,4 +63,7 @@ if __name__ == "__main__":
     for path in files:
         source, where = path.read_text(encoding="utf-8"), path.relative_to(ROOT)
         faults += [*long_lines(where, source), *broken_for_comment(where, source)]
-    verdict("columns", len(files), faults + self_test())
+    pages = page_files()
+    for path in pages:
+        faults += long_lines(path.relative_to(ROOT), path.read_text(encoding="utf-8"))
+    verdict("columns", len(files) + len(pages), faults + self_test())

@@ -2,17 +2,18 @@
 """The top level holds the agreed names, tests follow the rooms, files are short, C files name their licence."""
 import subprocess
 
-from common import ROOMS, ROOT, c_files, verdict
+from common import ROOMS, ROOT, c_files, page_files, verdict
 
 AGREED = {".ci", ".clang-format", ".clang-tidy", ".editorconfig", ".gitignore", "CHANGELOG.md", "CMakeLists.txt",
           "CMakePresets.json", "CONTRIBUTING.md", "LICENSE", "README.md", "bootstrap", "include", "problems",
           "schemas", "src", "studies", "tests"}
 # Folders of tests besides those of the rooms: what judges the whole program, or the tree itself.
-BESIDES = {"bench", "fuzz", "hunt", "install", "mechanisms", "models", "mutants", "races", "reference", "schema", "stress", "structure",
+BESIDES = {"bench", "browser", "fuzz", "hunt", "install", "mechanisms", "models", "mutants", "races", "reference", "schema", "stress", "structure",
            "support"}
 IGNORED = {".git", "build", "results"}
 MAX_LINES = 600
 LICENCE = "/* SPDX-License-Identifier: GPL-3.0-or-later */"
+LICENCE_JS = "// SPDX-License-Identifier: GPL-3.0-or-later"
 
 
 def top_level():
@@ -37,7 +38,7 @@ def file_problems(name, text):
     lines = text.split("\n")
     if len(lines) >= MAX_LINES:
         yield f"{name}: {len(lines)} lines, {MAX_LINES} or more"
-    if lines[0] != LICENCE:
+    if lines[0] != (LICENCE_JS if str(name).endswith(".js") else LICENCE):
         yield f"{name}: first line is not the SPDX line"
 
 
@@ -56,7 +57,7 @@ def self_test():
 
 
 if __name__ == "__main__":
-    files = c_files(ROOT / "src", ROOT / "include", ROOT / "tests")
+    files = c_files(ROOT / "src", ROOT / "include", ROOT / "tests") + page_files()
     faults = tree_problems(top_level())
     faults += folder_problems({path.relative_to(ROOT / "tests").parts[0] for path in (ROOT / "tests").glob("*/*") if path.is_file()})
     for path in files:

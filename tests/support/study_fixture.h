@@ -206,11 +206,21 @@ static inline bool study_warns(const study_case *c, const char *part)
     return study_says(c->result->n_warnings, c->result->warnings, part);
 }
 
+/* Does one of the reasons of a design hold `part`? */
+static inline bool study_gives(const mt_recommendation *r, const char *part)
+{
+    for (int i = 0; i < r->n_reasons; i++) {
+        if (strstr(r->reasons[i].text, part) != NULL) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static inline bool study_reasons(const study_case *c, int rank, const char *part)
 {
     return rank <= c->result->n_recommendations &&
-           study_says(c->result->recommendations[rank - 1].n_reasons,
-                      c->result->recommendations[rank - 1].reasons, part);
+           study_gives(&c->result->recommendations[rank - 1], part);
 }
 
 /* For a failing test: everything that was said. */
@@ -224,7 +234,7 @@ static inline void study_print(const study_case *c)
                           r->parameters[i].recommended);
         }
         for (int i = 0; i < r->n_reasons; i++) {
-            (void)fprintf(stderr, "  %d: %s\n", r->rank, r->reasons[i]);
+            (void)fprintf(stderr, "  %d: %s\n", r->rank, r->reasons[i].text);
         }
     }
     for (int i = 0; i < c->result->n_warnings; i++) {

@@ -4,7 +4,7 @@
  * bits of the fractional parts of the cube roots of the first 64 primes, the initial hash those
  * of the square roots of the first 8 (4.2.2, 5.3.3).
  */
-#include "io/sha256.h"
+#include "base/sha256.h"
 
 #include <stdint.h>
 #include <string.h>

@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The bytes of style and scripts are written by the build (CMakeLists.txt). */
+#include "report/page.h"
+
+#include <string.h>
+
+#include "base/base.h"
+#include "base/sha256.h"
+#include "report/page_data.h"
+#include "report/table.h"
+
+enum { HASH_TEXT = 45 }; /* 32 bytes in base 64, and the terminator */
+
+/* What the script of a page is made of, in this order; the last one begins to draw. */
+static const char *const report_scripts[] = {"d3.js", "base.js", NULL};
+static const char *const show_scripts[] = {"base.js", NULL};
+
+static const struct {
+    const char *name;
+    const char *text;
+} files[] = {
+#define PAGE(number, name) {name, (const char *)file_##number},
+    PAGE_LIST(PAGE)
+#undef PAGE
+};
+
+static const char *file(const char *name)
+{
+    for (int i = 0; i < MT_COUNT(files); i++) {
+        if (strcmp(files[i].name, name) == 0) {
+            return files[i].text;
+        }
+    }
+    return "";
+}
+
+static void add_script(mt_page_kind kind, mt_text *out)
+{
+    static const char *const *const lists[] = {NULL, report_scripts, show_scripts};
+    const char *const *const list = lists[kind];
+    for (int i = 0; list != NULL && list[i] != NULL; i++) {
+        mt_text_add(out, file(list[i]));
+        mt_text_add(out, "\n");
+    }
+}
+
+static int digit(char hexadecimal)
+{
+    return hexadecimal <= '9' ? hexadecimal - '0' : hexadecimal - 'a' + 10;
+}
+
+/* The digest as the policy wants it: base 64 (RFC 4648) of its bytes. */
+static void hash(const char *text, size_t length, char out[HASH_TEXT])
+{
+    static const char letters[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    char hex[MT_SHA256_TEXT];
+    unsigned bits = 0;
+    int have = 0;
+    int n = 0;
+    mt_sha256(text, length, hex);
+    for (int i = 0; hex[i] != '\0'; i++) {
+        bits = (bits << 4U) | (unsigned)digit(hex[i]);
+        have += 4;
+        if (have >= 6) {
+            have -= 6;
+            out[n++] = letters[(bits >> (unsigned)have) & 63U];
+        }
+    }
+    /* 256 bits are 42 letters and four bits more */
+    out[n++] = letters[(bits << 2U) & 63U];
+    out[n++] = '=';
+    out[n] = '\0';
+}
+
+static void add_policy(mt_page_kind kind, const char *style, mt_text *out)
+{
+    char digest[HASH_TEXT];
+    mt_text script = {.s = NULL};
+    add_script(kind, &script);
+    hash(style, strlen(style), digest);
+    mt_text_addf(out,
+                 "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+                 "style-src 'sha256-%s'; img-src data: blob:; base-uri 'none'; form-action "
+                 "'none'",
+                 digest);
+    if (script.s != NULL) {
+        hash(script.s, script.length, digest);
+        mt_text_addf(out, "; script-src 'sha256-%s'", digest);
+    }
+    mt_text_add(out, "\">\n");
+    out->failed = out->failed || script.failed;
+    mt_text_free(&script);
+}
+
+void mt_page_begin(mt_page_kind kind, const char *title, mt_text *out)
+{
+    const char *const style = file("page.css");
+    mt_text_add(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    add_policy(kind, style, out);
+    mt_text_add(out, "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
+                     "\n<link rel=\"icon\" href=\"data:,\">\n<title>");
+    mt_html_escape(title, out);
+    mt_text_add(out, "</title>\n<style>");
+    mt_text_add(out, style);
+    mt_text_add(out, "</style>\n</head>\n<body>\n<main>\n<h1>");
+    mt_html_escape(title, out);
+    mt_text_add(out, "</h1>\n");
+}
+
+/* JSON in which nothing can end the element: a "<" stands only in strings, where it may be
+ * written as its number. */
+static void add_json(const char *json, mt_text *out)
+{
+    while (*json != '\0') {
+        const size_t plain = strcspn(json, "<");
+        mt_text_add_n(out, json, plain);
+        json += plain;
+        if (*json == '<') {
+            mt_text_add(out, "\\u003c");
+            json++;
+        }
+    }
+}
+
+void mt_page_end(mt_page_kind kind, int n, const mt_page_data *data, mt_text *out)
+{
+    mt_text_add(out, "</main>\n");
+    for (int i = 0; i < n; i++) {
+        if (data[i].json != NULL) {
+            mt_text_addf(out, "<script type=\"application/json\" id=\"%s\">", data[i].id);
+            add_json(data[i].json, out);
+            mt_text_add(out, "</script>\n");
+        }
+    }
+    if (kind != MT_PAGE_PLAIN) {
+        mt_text_add(out, "<script>");
+        add_script(kind, out);
+        mt_text_add(out, "</script>\n");
+    }
+    mt_text_add(out, "</body>\n</html>\n");
+}
