@@ -1,39 +1,39 @@
-/* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The figures of a report in their order. A figure goes to the place of the page that is kept
- * for it (an element with the id "place-<figure>"), the others follow at "figures". */
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The figures of a report in their order. A figure goes to the place of the page that is kept
+// for it (an element with the id "place-<figure>"), the others follow at "figures".
 (function () {
-    'use strict';
-    const mt = window.mt;
+  'use strict';
+  const mt = window.mt;
 
-    const ORDER = ['chartFrequencies', 'chartParameters', 'chartRotor', 'chartDrive', 'chartTrade',
-        'chartFront', 'chartParallel', 'chartTolerance', 'chartSensitivity', 'chartMac',
-        'chartPublished', 'chartStarts', 'chartSpent'];
+  const ORDER = ['chartFrequencies', 'chartParameters', 'chartRotor', 'chartDrive',
+    'chartTrade', 'chartFront', 'chartParallel', 'chartTolerance', 'chartSensitivity',
+    'chartMac', 'chartPublished', 'chartStarts', 'chartSpent'];
 
-    function place(id) {
-        return document.getElementById('place-' + id) || document.getElementById('figures');
+  function place(id) {
+    return document.getElementById('place-' + id) || document.getElementById('figures');
+  }
+
+  function start() {
+    const data = mt.data();
+    if (!data || !data.baseline || !document.getElementById('figures')) {
+      return;
     }
-
-    function start() {
-        const data = mt.data();
-        if (!data || !data.baseline || !document.getElementById('figures')) {
-            return;
+    mt.openResult(data);
+    mt.alternatives.bar(place('choice'));
+    mt.alternatives.table(place('alternatives'));
+    for (const name of ORDER) {
+      const charts = typeof mt[name] === 'function' ? mt[name]() : [mt[name]];
+      for (const chart of charts) {
+        if (chart) {
+          mt.figure.add(chart, place(chart.place || chart.id));
         }
-        mt.openResult(data);
-        mt.alternatives.bar(place('choice'));
-        mt.alternatives.table(place('alternatives'));
-        for (const name of ORDER) {
-            const charts = typeof mt[name] === 'function' ? mt[name]() : [mt[name]];
-            for (const chart of charts) {
-                if (chart) {
-                    mt.figure.add(chart, place(chart.place || chart.id));
-                }
-            }
-        }
-        if (mt.provenance) {
-            mt.provenance(place('provenance'));
-        }
-        mt.onChoice(mt.figure.updateAll);
+      }
     }
+    if (mt.provenance) {
+      mt.provenance(place('provenance'));
+    }
+    mt.onChoice(mt.figure.updateAll);
+  }
 
-    start();
-}());
+  start();
+})();
