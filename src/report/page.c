@@ -12,7 +12,26 @@
 enum { HASH_TEXT = 45 }; /* 32 bytes in base 64, and the terminator */
 
 /* What the script of a page is made of, in this order; the last one begins to draw. */
-static const char *const report_scripts[] = {"d3.js", "base.js", NULL};
+static const char *const report_scripts[] = {"d3.js",
+                                             "base.js",
+                                             "text.js",
+                                             "figure.js",
+                                             "designs.js",
+                                             "alternatives.js",
+                                             "chart_frequencies.js",
+                                             "chart_parameters.js",
+                                             "chart_rotor.js",
+                                             "chart_drive.js",
+                                             "chart_trade.js",
+                                             "chart_front.js",
+                                             "chart_parallel.js",
+                                             "chart_tolerance.js",
+                                             "chart_maps.js",
+                                             "chart_published.js",
+                                             "chart_search.js",
+                                             "origin.js",
+                                             "report.js",
+                                             NULL};
 static const char *const show_scripts[] = {"base.js", NULL};
 
 static const struct {
@@ -73,12 +92,20 @@ static void hash(const char *text, size_t length, char out[HASH_TEXT])
     out[n] = '\0';
 }
 
-static void add_policy(mt_page_kind kind, const char *style, mt_text *out)
+static void add_style(mt_page_kind kind, mt_text *out)
+{
+    mt_text_add(out, file("page.css"));
+    mt_text_add(out, kind == MT_PAGE_REPORT ? file("report.css") : "");
+}
+
+static void add_policy(mt_page_kind kind, mt_text *out)
 {
     char digest[HASH_TEXT];
+    mt_text style = {.s = NULL};
     mt_text script = {.s = NULL};
     add_script(kind, &script);
-    hash(style, strlen(style), digest);
+    add_style(kind, &style);
+    hash(style.s == NULL ? "" : style.s, style.length, digest);
     mt_text_addf(out,
                  "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
                  "style-src 'sha256-%s'; img-src data: blob:; base-uri 'none'; form-action "
@@ -89,37 +116,45 @@ static void add_policy(mt_page_kind kind, const char *style, mt_text *out)
         mt_text_addf(out, "; script-src 'sha256-%s'", digest);
     }
     mt_text_add(out, "\">\n");
-    out->failed = out->failed || script.failed;
+    out->failed = out->failed || script.failed || style.failed;
     mt_text_free(&script);
+    mt_text_free(&style);
 }
 
 void mt_page_begin(mt_page_kind kind, const char *title, mt_text *out)
 {
-    const char *const style = file("page.css");
     mt_text_add(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
-    add_policy(kind, style, out);
+    add_policy(kind, out);
     mt_text_add(out, "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
                      "\n<link rel=\"icon\" href=\"data:,\">\n<title>");
     mt_html_escape(title, out);
     mt_text_add(out, "</title>\n<style>");
-    mt_text_add(out, style);
+    add_style(kind, out);
     mt_text_add(out, "</style>\n</head>\n<body>\n<main>\n<h1>");
     mt_html_escape(title, out);
     mt_text_add(out, "</h1>\n");
 }
 
 /* JSON in which nothing can end the element: a "<" stands only in strings, where it may be
- * written as its number. */
+ * written as its number. White space is left out: nobody reads it here, and it is a third of a
+ * large result. */
 static void add_json(const char *json, mt_text *out)
 {
+    bool in_string = false;
     while (*json != '\0') {
-        const size_t plain = strcspn(json, "<");
+        const size_t plain = strcspn(json, in_string ? "<\\\"" : "< \n\"");
         mt_text_add_n(out, json, plain);
         json += plain;
         if (*json == '<') {
             mt_text_add(out, "\\u003c");
+        } else if (*json == '"') {
+            mt_text_add(out, "\"");
+            in_string = !in_string;
+        } else if (*json == '\\' && json[1] != '\0') { /* and what it escapes */
+            mt_text_add_n(out, json, 2);
             json++;
         }
+        json += *json == '\0' ? 0 : 1;
     }
 }
 

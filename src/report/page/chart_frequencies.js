@@ -345,7 +345,9 @@
       const worst = asked.reduce((a, b) =>
         Math.abs(b.error_percent) > Math.abs(a.error_percent) ? b : a);
       const miss = Math.abs(worst.error_percent);
-      parts.push(miss < 5e-4 ? 'All ' + asked.length + ' frequencies asked for are met.'
+      const all = asked.length === 1 ? 'The frequency asked for is met.'
+        : 'All ' + asked.length + ' frequencies asked for are met.';
+      parts.push(miss < 5e-4 ? all
         : 'Of ' + asked.length + ' frequencies asked for, ' + worst.configuration +
           ' mode ' + worst.mode + ' is off most, by ' + T.short(miss, 2) + ' %.');
     }

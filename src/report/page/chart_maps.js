@@ -88,8 +88,9 @@
     for (let i = 0; i < panels; i++) {
       y = panel(g, list.slice(i * size, (i + 1) * size), rows, y, w, colours, left);
     }
-    return y + F.legend(g, [{ words: `% of frequency per % of parameter, ${shown(-most)} (blue)` +
-      ` to ${shown(most)} (red)`, draw: (k, a, b) => {
+    const range = `${shown(-most)} (blue) to ${shown(most)} (red)`;
+    return y + F.legend(g, [{ words: '% of frequency per % of parameter, ' + range,
+      draw: (k, a, b) => {
       for (let i = 0; i < 8; i++) {
         F.rect(k, a - 12 + i * 3, b - 6, 3.3, 12, colours(most * (i - 3.5) / 3.5));
       }

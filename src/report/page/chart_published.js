@@ -9,7 +9,7 @@
   const C = F.colour;
 
   const ROW = 20;
-  const LINEAR = 1e-3; // per cent; differences are drawn linearly up to it, logarithmically beyond
+  const LINEAR = 1e-3; // per cent; differences up to it are drawn linearly, then by logarithm
 
   const all = () => D.clean(mt.result().published);
   const comparable = () => all().filter((p) => p.role !== 'not_comparable' &&
@@ -65,7 +65,8 @@
   function lead() {
     const judged = all().filter((p) => p.role !== 'not_comparable');
     const held = judged.filter((p) => p.holds).length;
-    return held === judged.length ? `All ${held} published values that can be compared hold.`
+    return held === judged.length ? (held === 1 ? 'The published value holds.'
+      : `All ${held} published values that can be compared hold.`)
       : `${held} of ${judged.length} published values that can be compared hold.`;
   }
 

@@ -17,7 +17,8 @@
     const most = Math.max(1, ...list.map((b) => b.value));
     const x = d3.scaleLinear([0, most], [left, right]);
     const bottom = list.length * ROW;
-    const whole = x.ticks(Math.max(2, Math.round((right - left) / 90))).filter(Number.isInteger);
+    const whole = x.ticks(Math.max(2, Math.round((right - left) / 90)))
+      .filter(Number.isInteger);
     F.axisBelow(g, x, [left, right], title, { top: 0, bottom, ticks: whole });
     list.forEach((b, i) => {
       const y = i * ROW;
@@ -42,7 +43,7 @@
     const r = run();
     const n = T.isNumber(r.distinct_designs) ? `${r.starts} local searches ended at ` +
       `${r.distinct_designs} distinct design${r.distinct_designs === 1 ? '' : 's'}` +
-      (T.isNumber(r.found_once) ? `, ${r.found_once} of them found once` : '') + '.' : '';
+      (r.found_once > 0 ? `, ${r.found_once} of them found once` : '') + '.' : '';
     const missing = T.isNumber(r.estimated_missing)
       ? ` At least ${T.short(r.estimated_missing, 2)} more are to be expected.` : '';
     return n + missing;
@@ -51,7 +52,8 @@
   mt.chartStarts = {
     id: 'starts', title: 'The search', lead: leadStarts,
     draw: (g, w) => bars(g, w, starts(), 'number', C.after),
-    table: () => ({ columns: ['what', 'number'], rows: starts().map((b) => [b.name, b.value]) }),
+    table: () => ({ columns: ['what', 'number'],
+      rows: starts().map((b) => [b.name, b.value]) }),
     has: () => starts().length > 1,
   };
 

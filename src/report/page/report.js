@@ -29,10 +29,23 @@
         }
       }
     }
-    if (mt.provenance) {
-      mt.provenance(place('provenance'));
+    if (mt.origin) {
+      mt.origin(place('origin'));
     }
     mt.onChoice(mt.figure.updateAll);
+    mt.onChoice(tell);
+    tell();
+  }
+
+  // What the page tells of single designs follows the choice, too; what is drawn is not told.
+  function tell() {
+    const rank = String(mt.choice().rank);
+    for (const part of document.querySelectorAll('[data-rank]')) {
+      part.hidden = part.dataset.rank !== rank;
+    }
+    for (const part of document.querySelectorAll('.drawn')) {
+      part.hidden = true;
+    }
   }
 
   start();

@@ -47,9 +47,9 @@
     return rows.filter((row) => row[1]);
   }
 
-  mt.provenance = function (into) {
-    const section = d3.select(into).append('section').attr('class', 'provenance')
-      .attr('id', 'figure-provenance');
+  mt.origin = function (into) {
+    const section = d3.select(into).append('section').attr('class', 'origin')
+      .attr('id', 'figure-origin');
     section.append('h2').text('Where this comes from');
     const table = section.append('div').attr('class', 'wide').append('table').append('tbody');
     const follow = () => {
