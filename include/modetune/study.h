@@ -89,6 +89,11 @@ MT_API double mt_study_variable_original(const mt_study *study, int variable);
 MT_API double mt_study_variable_lower(const mt_study *study, int variable);
 MT_API double mt_study_variable_upper(const mt_study *study, int variable);
 
+/* A `stop` whose stop_context is an int, an mt_wish that any thread, or a handler of a signal,
+ * may set there meanwhile. For who has no C function to give, or a slow one: it is asked
+ * often. NULL: MT_WISH_NONE. */
+MT_API int mt_wish_at(void *wish);
+
 /**
  * Answer a study: the original design described, searched for better ones, each recommendation
  * analysed anew at its design, published values judged.

@@ -37,6 +37,7 @@ static mt_diagnostics *list;
 static mt_diagnostics *wrong; /* of a file that is */
 static mt_err said;
 static const double one[1] = {1.0};
+static int finish = MT_WISH_FINISH;
 
 /* Argument number k of a call where pointer number `null` is to be NULL. */
 #define ARG(k, pointer) (null == (k) ? NULL : (pointer))
@@ -224,6 +225,7 @@ TELLS(study_variable_name, mt_study_variable_name(ARG(0, study), 0) != NULL)
 TELLS(study_variable_original, isfinite(mt_study_variable_original(ARG(0, study), 0)))
 TELLS(study_variable_lower, isfinite(mt_study_variable_lower(ARG(0, study), 0)))
 TELLS(study_variable_upper, isfinite(mt_study_variable_upper(ARG(0, study), 0)))
+TELLS(wish_at, mt_wish_at(ARG(0, &finish)) == (null == 0 ? MT_WISH_NONE : MT_WISH_FINISH))
 static mt_status call_study_solve(int null)
 {
     mt_result *out = null == 0 ? result : NULL;
@@ -405,6 +407,7 @@ static const struct {
     ROW(study_variable_original, "n"),
     ROW(study_variable_lower, "n"),
     ROW(study_variable_upper, "n"),
+    ROW(wish_at, "a"),
     ROW(study_solve, "rara"),
     ROW(result_delete, "a"),
     ROW(result_outcome, "n"),
