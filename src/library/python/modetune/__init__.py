@@ -171,6 +171,15 @@ def _matrix(rows: list[list[float]], columns: int) -> Any:
     return made_of if isinstance(made_of, list) else made_of.reshape(len(rows), columns)
 
 
+def _doubts(listed: Sequence[Diagnostic], configuration: str) -> list[Diagnostic]:
+    """Those that are not about other configurations."""
+    def is_meant(pointer: Optional[str]) -> bool:
+        parts = (pointer or "").split("/")
+        return parts[1:2] != ["configurations"] or parts[2:3] == [configuration]
+
+    return [item for item in listed if item.severity == "warning" and is_meant(item.pointer)]
+
+
 def _parameters(model: c_void_p, wanted: Optional[Sequence[str]]) -> list[bytes]:
     """Names; of all parameters those that do not follow others."""
     if wanted is not None:
@@ -251,11 +260,11 @@ def modes(model: Union[PathLike, Mapping[str, Any]], configuration: Optional[str
     with Files(given, _sets(set), None) as read, one_thread:
         with made("mt_model_read", "mt_model_delete", path, byref(read.options),
                   listed=read.diagnostics) as loaded:
-            if any(item.severity == "warning" for item in read.diagnostics.all()):
-                warnings.warn(read.diagnostics.text().rstrip("\n"), Doubt, stacklevel=2)
-            names = _parameters(loaded, parameters)
             which = lib.mt_model_configuration_name(loaded, 0) if configuration is None \
                 else encoded(configuration)
+            for doubt in _doubts(read.diagnostics.all(), which.decode()):
+                warnings.warn(str(doubt), Doubt, stacklevel=2)
+            names = _parameters(loaded, parameters)
             with made("mt_mechanism_new", "mt_mechanism_delete", loaded, which, len(names),
                       (c_char_p * len(names))(*names)) as mechanism:
                 return {"configuration": which.decode(), "units": _units(loaded, names),

@@ -25,6 +25,12 @@ class Diagnostic(NamedTuple):
     severity: str
     message: str
 
+    def __str__(self) -> str:
+        """As a compiler writes it."""
+        place = ":".join(str(part) for part in (self.file, self.line, self.column) if part)
+        said = f"{self.pointer}: {self.message}" if self.pointer else self.message
+        return f"{place}: {self.severity}: {said}" if place else f"{self.severity}: {said}"
+
 
 class Error(Exception):
     """A question that has no answer: a wrong file or argument, or a failure of the numerics.
