@@ -108,18 +108,22 @@ static void tell_reasons(const mt_teller *to, const mt_recommendation *r)
                  {"hold", "Why: what holds it"},
                  {"cost", "Why: what it costs"},
                  {"rank", "Why: how it stands"}};
+    mt_text_add(to->out, to->html && r->n_reasons > 0 ? "<div class=\"parts\">\n" : "");
     for (int k = 0; k < MT_COUNT(parts); k++) {
         bool open = false;
         for (int i = 0; i < r->n_reasons; i++) {
             if (strcmp(r->reasons[i].kind, parts[k].kind) == 0) {
+                mt_text_add(to->out, to->html && !open ? "<div>" : "");
                 open = open || open_list(to, parts[k].title, 1);
                 add_item(to, "", r->reasons[i].text);
             }
         }
         if (open) {
             close_list(to);
+            mt_text_add(to->out, to->html ? "</div>\n" : "");
         }
     }
+    mt_text_add(to->out, to->html && r->n_reasons > 0 ? "</div>\n" : "");
 }
 
 /* One whose text was made for it; freed. */
@@ -431,7 +435,7 @@ void mt_tell_page(mt_text *out, const mt_result *result)
     tell_certificates(&to, result);
     add_sentences(&to, "Warnings", result->n_warnings, result->warnings);
     keep_place(&to, "figures");
-    mt_text_add(out, "<div id=\"told\">\n");
+    mt_text_add(out, "<details id=\"told\">\n<summary>All numbers as tables</summary>\n");
     tell_each(&to, result, tell_numbers);
     if (result->n_recommendations > 1) {
         mt_text_add(out, "<div class=\"drawn\">\n");
@@ -440,8 +444,8 @@ void mt_tell_page(mt_text *out, const mt_result *result)
     }
     tell_trade(&to, result);
     tell_published(&to, result);
+    mt_text_add(out, "</details>\n");
     keep_place(&to, "place-origin");
-    mt_text_add(out, "</div>\n");
 }
 
 void mt_report_summary(const mt_result *result, bool with_published, mt_text *out)
