@@ -196,8 +196,7 @@ static void fill_table(mt_table *t, const view *v, bool csv)
         if (csv) {
             mt_table_number(t, m->lambda[i], HZ_DIGITS);
             for (int k = 0; k < v->shapes.n; k++) {
-                mt_table_number(t, v->shapes.value[k + ((ptrdiff_t)i * v->shapes.n)],
-                                HZ_DIGITS);
+                mt_table_number(t, mt_shapes_shown(&v->shapes, k, i), HZ_DIGITS);
             }
         }
     }
@@ -219,12 +218,12 @@ static void print_shapes(const view *v, mt_text *out)
     for (int k = 0; k < v->shapes.n; k++) {
         mt_table_text(&t, v->shapes.name[k]);
         for (int i = 0; i < v->shown; i++) {
-            mt_table_number(&t, v->shapes.value[k + ((ptrdiff_t)i * v->shapes.n)], 4);
+            mt_table_number(&t, mt_shapes_shown(&v->shapes, k, i), 4);
         }
     }
     mt_text_add(out, "\n  Mass-normalised shapes (numbers in parentheses: modes without "
                      "an index, by position) [1/sqrt(kg) and rad/(m sqrt(kg))]\n");
-    mt_table_print(&t, 2, out);
+    mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
 }
 
@@ -272,7 +271,7 @@ static void text_view(const view *v, mt_text *out)
     fill_table(&t, v, false);
     mt_text_addf(out, "%s\n", mt_subject_configuration(v->s, v->c));
     mt_cli_print_doubts(&v->doubts, out);
-    mt_table_print(&t, 2, out);
+    mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
     tell(v, out);
     if (v->shapes.n > 0) {

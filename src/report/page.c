@@ -32,7 +32,12 @@ static const char *const report_scripts[] = {"d3.js",
                                              "origin.js",
                                              "report.js",
                                              NULL};
-static const char *const show_scripts[] = {"base.js", NULL};
+static const char *const show_scripts[] = {
+    "base.js",    "space.js",  "camera.js", "pose.js",  "symbols.js", "paint.js", "dom.js",
+    "drawing.js", "view3d.js", "modes.js",  "drive.js", "show.js",    NULL};
+static const char *const report_styles[] = {"page.css", "report.css", NULL};
+static const char *const plain_styles[] = {"page.css", NULL};
+static const char *const show_styles[] = {"page.css", "view.css", NULL};
 
 static const struct {
     const char *name;
@@ -82,6 +87,14 @@ static void add_script(mt_page_kind kind, mt_text *out)
     }
 }
 
+static void add_style(mt_page_kind kind, mt_text *out)
+{
+    static const char *const *const lists[] = {plain_styles, report_styles, show_styles};
+    for (const char *const *name = lists[kind]; *name != NULL; name++) {
+        mt_text_add(out, file(*name));
+    }
+}
+
 static int digit(char hexadecimal)
 {
     return hexadecimal <= '9' ? hexadecimal - '0' : hexadecimal - 'a' + 10;
@@ -111,20 +124,16 @@ static void hash(const char *text, size_t length, char out[HASH_TEXT])
     out[n] = '\0';
 }
 
-static void add_style(mt_page_kind kind, mt_text *out)
-{
-    mt_text_add(out, file("page.css"));
-    mt_text_add(out, kind == MT_PAGE_REPORT ? file("report.css") : "");
-}
-
 static void add_policy(mt_page_kind kind, mt_text *out)
 {
-    char digest[HASH_TEXT];
-    mt_text style = {.s = NULL};
+    char digest[HASH_TEXT] = "";
     mt_text script = {.s = NULL};
+    mt_text style = {.s = NULL};
     add_script(kind, &script);
     add_style(kind, &style);
-    hash(style.s == NULL ? "" : style.s, style.length, digest);
+    if (style.s != NULL) {
+        hash(style.s, style.length, digest);
+    }
     mt_text_addf(out,
                  "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
                  "style-src 'sha256-%s'; img-src data: blob:; base-uri 'none'; form-action "

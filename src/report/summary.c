@@ -6,6 +6,7 @@
 
 #include "report/number.h"
 #include "report/result_tables.h"
+#include "report/ruler.h"
 #include "report/trade.h"
 
 enum {
@@ -32,7 +33,7 @@ static void add_table(const mt_teller *to, mt_table t, const char *title)
         if (to->html) {
             mt_table_html(&t, to->out);
         } else {
-            mt_table_print(&t, INDENT, to->out);
+            mt_table_print(&t, INDENT, to->width, to->out);
         }
     }
     mt_table_free(&t);
@@ -96,6 +97,18 @@ static void add_item(const mt_teller *to, const char *word, const char *text)
     } else {
         mt_text_addf(to->out, "  - %s%s%s\n", word, colon, text);
     }
+}
+
+static void tell_ruler(const mt_teller *to, const mt_recommendation *r)
+{
+    mt_text ruler = {.s = NULL};
+    mt_report_ruler(r, to->width, &ruler);
+    if (ruler.s != NULL) {
+        add_heading(to, "Frequency ruler");
+        mt_text_add(to->out, ruler.s);
+    }
+    to->out->failed = to->out->failed || ruler.failed;
+    mt_text_free(&ruler);
 }
 
 /* Why a design is what it is. */
@@ -230,6 +243,9 @@ static void tell_numbers(const mt_teller *to, const mt_recommendation *r)
         tell_parameters(to, r);
     }
     add_table(to, mt_report_frequencies(r), found ? "Frequencies" : "Frequencies as they are");
+    if (!to->html) {
+        tell_ruler(to, r);
+    }
     if (to->html) {
         add_table(to, mt_report_gaps(r), "Bands");
     }
@@ -423,7 +439,7 @@ void mt_tell_page(mt_text *out, const mt_result *result)
 {
     static const char *const first[] = {"place-choice", "place-alternatives",
                                         "place-frequencies", "place-parameters"};
-    const mt_teller to = {out, true};
+    const mt_teller to = {.out = out, .html = true};
     mt_tell_overrides(&to, &result->run);
     mt_tell_doubts(&to, result);
     for (int i = 0; i < MT_COUNT(first); i++) {
@@ -448,12 +464,12 @@ void mt_tell_page(mt_text *out, const mt_result *result)
     keep_place(&to, "place-origin");
 }
 
-void mt_report_summary(const mt_result *result, bool with_published, mt_text *out)
+void mt_report_summary(const mt_result *result, bool with_published, int width, mt_text *out)
 {
     const char *const name =
         result->study.name == NULL ? result->study.file : result->study.name;
     mt_text_addf(out, "%s\n%s\n", name == NULL ? "study" : name,
                  result->status_text == NULL ? mt_result_status_name(result->status)
                                              : result->status_text);
-    tell_answer(&(mt_teller){out, false}, result, with_published);
+    tell_answer(&(mt_teller){.out = out, .width = width}, result, with_published);
 }

@@ -18,6 +18,7 @@ OPTIONS = {
     "sensitivity": {"configuration", "set", "count", "parameters"},
     "info": {"configuration", "set"},
     "report": {"output", "verify"},
+    "explain": {"rank"},
     "apply": {"rank", "model"},
     "diff": {"rel-tol"},
     "check": set(),
