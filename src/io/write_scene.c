@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "io/write_json.h"
+
 /* Significant digits: of a place a picture of ten thousand pixels has fewer; motions;
  * frequencies as tables have them, and some. */
 enum { PLACE = 6, MOTION = 5, HZ = 9, VALUE = 9 };
@@ -251,9 +253,9 @@ static void put_design(mt_json_writer *w, const mt_scene_design *d)
     mt_json_close(w);
 }
 
-void mt_scene_put(mt_json_writer *w, const char *name, const mt_scene *scene)
+static void put_scene(mt_json_writer *w, const mt_scene *scene)
 {
-    mt_json_open(w, name, '{');
+    mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "format", "modetune-scene/1");
     mt_json_put_string(w, "model", scene->name);
     mt_json_put_integer(w, "dimension", scene->dimension);
@@ -286,7 +288,7 @@ void mt_scene_put(mt_json_writer *w, const char *name, const mt_scene *scene)
 mt_status mt_scene_write(const mt_scene *scene, mt_text *out, mt_err *err)
 {
     mt_json_writer w = mt_json_writer_default(out);
-    mt_scene_put(&w, NULL, scene);
+    put_scene(&w, scene);
     if (mt_json_done(&w)) {
         return MT_OK;
     }

@@ -3,13 +3,11 @@
 #define IO_WRITE_SCENE_H
 
 #include "base/text.h"
-#include "io/write_json.h"
 #include "scene/scene.h"
 
-/* Append a scene as JSON (format "modetune-scene/1"), for pages and other pictures: places with
- * six digits, frequencies with nine. The same scene gives the same bytes. Fails: MT_E_MEMORY. */
+/* Append a scene as JSON (format "modetune-scene/1"), for pages and other pictures: places
+ * with six digits, frequencies with nine. The same scene gives the same bytes. Fails:
+ * MT_E_MEMORY. */
 mt_status mt_scene_write(const mt_scene *scene, mt_text *out, mt_err *err);
-/* The same as a value within a larger document (name NULL: in a list, or the whole). */
-void mt_scene_put(mt_json_writer *w, const char *name, const mt_scene *scene);
 
 #endif

@@ -30,8 +30,19 @@ static const char *const report_scripts[] = {"d3.js",
                                              "chart_published.js",
                                              "chart_search.js",
                                              "origin.js",
+                                             "space.js",
+                                             "camera.js",
+                                             "pose.js",
+                                             "symbols.js",
+                                             "paint.js",
+                                             "dom.js",
+                                             "drawing.js",
+                                             "view3d.js",
+                                             "modes.js",
+                                             "drive.js",
                                              "report.js",
                                              NULL};
+static const char *const report_styles[] = {"page.css", "view.css", "report.css", NULL};
 static const char *const show_scripts[] = {
     "base.js",    "space.js",  "camera.js", "pose.js",  "symbols.js", "paint.js", "dom.js",
     "drawing.js", "view3d.js", "modes.js",  "drive.js", "show.js",    NULL};

@@ -153,16 +153,15 @@ static void add_line(ruler *u, const mt_recommendation *r, const char *of)
     mt_text_add(u->out, "\n");
 }
 
-/* Distance of the marks of an axis of this length: 1, 2 or 5 times a power of ten, about six
- * marks. */
+/* Distance of marks on a scale of this length: 1, 2 or 5 times a power of ten, about six. */
 static double step_of(double length)
 {
     const double raw = length / 6.0;
     const double power = pow(10.0, floor(log10(raw)));
+    const double lead = raw / power;
     if (!(power > 0.0)) {
         return length; /* next to nothing: one mark */
     }
-    const double lead = raw / power;
     return power * (lead <= 1.0 ? 1.0 : lead <= 2.0 ? 2.0 : lead <= 5.0 ? 5.0 : 10.0);
 }
 

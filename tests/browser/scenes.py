@@ -139,5 +139,5 @@ def page(data):
     block = json.dumps(data).replace("<", "\\u003c")
     return (f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><link rel="icon" href="data:,">'
             f'<meta name="viewport" content="width=device-width, initial-scale=1"><style>{style}</style></head>'
-            f'<body><main><h1>Linkage</h1></main><script type="application/json" id="data">{block}</script>'
+            f'<body><main><h1>Linkage</h1></main><script type="application/json" id="scene">{block}</script>'
             f'<script>{script}</script></body></html>')

@@ -333,7 +333,8 @@
     if (c.side === 'inside') {
       return where + 'inside ' + D.bandName(c) + '.';
     }
-    const asked = c.margin_percent > 0 ? T.short(c.margin_percent, 3) + ' % are asked for.' : '';
+    const asked = c.margin_percent > 0
+      ? T.short(c.margin_percent, 3) + ' % are asked for.' : '';
     return 'Nearest to a band: ' + where + (c.percent > 1e-6 ? T.short(c.percent, 3) + ' % ' +
       c.side + ' ' : 'at the edge of ') + D.bandName(c) + (asked ? '; ' + asked : '.');
   }

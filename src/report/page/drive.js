@@ -7,7 +7,9 @@
     const SVG = 'http://www.w3.org/2000/svg';
     const LEFT = 52;
     const TOP = 12;
+    const RIGHT = 26;
     const BOTTOM = 34;
+    const NEAR = 11; // px: numbers of modes that are closer hide each other
     const WIDE = 15; // of the highest frequency and the lowest: more is shown by logarithms
 
     // 1, 2 or 5 times a power of ten, so that the length has about six of it.
@@ -66,7 +68,7 @@
         const y = heights(all, height);
         const low = Math.min(...at);
         const high = Math.max(...at) > low ? Math.max(...at) : low + 1;
-        const x = (value) => LEFT + (value - low) / (high - low) * (width - LEFT - 12);
+        const x = (value) => LEFT + (value - low) / (high - low) * (width - LEFT - RIGHT);
         const degree = drives[0].unit === 'rad' ? '°' : '';
         const root = svg('svg', { viewBox: `0 0 ${width} ${height}`, width, height, role: 'img',
             class: 'chart' });
@@ -74,7 +76,7 @@
         const text = (content, px, py, anchor) => root.append(svg('text', { x: px, y: py,
             'text-anchor': anchor, 'font-size': 11, fill: 'currentColor' }, content));
         y.marks.forEach((hz) => {
-            root.append(svg('line', { x1: LEFT, x2: width - 12, y1: y.of(hz), y2: y.of(hz),
+            root.append(svg('line', { x1: LEFT, x2: width - RIGHT, y1: y.of(hz), y2: y.of(hz),
                 stroke: 'currentColor', 'stroke-opacity': 0.15 }));
             text(digits(hz), LEFT - 6, y.of(hz) + 4, 'end');
         });
@@ -82,7 +84,7 @@
             text(digits(value) + degree, x(value), height - BOTTOM + 15, 'middle'));
         text('Hz', 4, TOP + 2, 'start');
         text(drives[0].joint + (drives[0].unit === 'rad' ? '' : ', ' + drives[0].unit),
-            (LEFT + width - 12) / 2, height - 4, 'middle');
+            (LEFT + width - RIGHT) / 2, height - 4, 'middle');
         drives.forEach((drive, d) => {
             const count = Math.max(...drive.positions.map((at) => listOf(at).length), 0);
             for (let j = 0; j < count; j++) {
@@ -105,6 +107,15 @@
                     line.setAttribute('stroke-dasharray', '5 3');
                 }
                 root.append(line);
+            }
+        });
+        const last = drives[drives.length - 1].positions[at.length - 1];
+        let below = Infinity;
+        (last ? listOf(last) : []).forEach((hz, j) => {
+            const here = y.of(hz);
+            if (below - here >= NEAR) {
+                text(String(j + 1), width - RIGHT + 6, here + 4, 'start');
+                below = here;
             }
         });
         if (k !== null) {

@@ -187,9 +187,8 @@
     }
 
     mt.show = show;
-    const block = document.getElementById('data');
-    if (block && document.body.dataset.page !== 'report') {
-        const main = document.querySelector('main') || document.body;
-        mt.shown = show(main, mt.data());
+    const given = mt.scene();
+    if (given) {
+        mt.shown = show(document.querySelector('main'), given);
     }
 })();
