@@ -121,18 +121,22 @@ static void tell_reasons(const mt_teller *to, const mt_recommendation *r)
                  {"hold", "Why: what holds it"},
                  {"cost", "Why: what it costs"},
                  {"rank", "Why: how it stands"}};
+    mt_text_add(to->out, to->html && r->n_reasons > 0 ? "<div class=\"parts\">\n" : "");
     for (int k = 0; k < MT_COUNT(parts); k++) {
         bool open = false;
         for (int i = 0; i < r->n_reasons; i++) {
             if (strcmp(r->reasons[i].kind, parts[k].kind) == 0) {
+                mt_text_add(to->out, to->html && !open ? "<div>" : "");
                 open = open || open_list(to, parts[k].title, 1);
                 add_item(to, "", r->reasons[i].text);
             }
         }
         if (open) {
             close_list(to);
+            mt_text_add(to->out, to->html ? "</div>\n" : "");
         }
     }
+    mt_text_add(to->out, to->html && r->n_reasons > 0 ? "</div>\n" : "");
 }
 
 /* One whose text was made for it; freed. */

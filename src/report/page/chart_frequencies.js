@@ -263,6 +263,8 @@
     if (blocks.some((b) => b.bands.length > 0)) {
       items.push({ words: 'forbidden band', draw: (g, x, y) =>
         F.rect(g, x - 11, y - 6, 22, 12, C.band) });
+    }
+    if (blocks.some((b) => b.bands.some((k) => k.margin_upper_hz > k.upper_hz))) {
       items.push({ words: 'its margin', draw: (g, x, y) =>
         F.rect(g, x - 11, y - 6, 22, 12, C.margin) });
     }
@@ -328,9 +330,13 @@
     }
     const c = all.reduce((a, b) => beyond(b) < beyond(a) ? b : a);
     const where = c.configuration + ' mode ' + c.mode + ' (' + T.sig(c.hz) + ' Hz), ';
-    return c.side === 'inside' ? where + 'inside ' + D.bandName(c) + '.'
-      : 'Nearest to a band: ' + where + T.short(c.percent, 3) + ' % ' + c.side + ' ' +
-        D.bandName(c) + '; ' + T.short(c.margin_percent, 3) + ' % are asked for.';
+    if (c.side === 'inside') {
+      return where + 'inside ' + D.bandName(c) + '.';
+    }
+    const asked = c.margin_percent > 0
+      ? T.short(c.margin_percent, 3) + ' % are asked for.' : '';
+    return 'Nearest to a band: ' + where + (c.percent > 1e-6 ? T.short(c.percent, 3) + ' % ' +
+      c.side + ' ' : 'at the edge of ') + D.bandName(c) + (asked ? '; ' + asked : '.');
   }
 
   function lead() {

@@ -14,7 +14,8 @@
     margin: '#fae3d3', range: '#dfedf7', other: '#a0527f', amber: '#b37400',
   };
   const LEAST_WIDTH = 260;
-  const MOST_WIDTH = 1060;
+  const MOST_WIDTH = 1184;
+  const PAPER_WIDTH = 680; // of A4 without its margins
   const TITLE_SIZE = 15;
   const PNG_SCALE = 2;
   const figures = [];
@@ -232,8 +233,13 @@
 
   // --- the frame ---
 
+  let printing = false;
+
+  const widthOf = (f) => printing ? PAPER_WIDTH
+    : Math.max(LEAST_WIDTH, Math.min(MOST_WIDTH, f.box.node().clientWidth));
+
   function redraw(f) {
-    const w = Math.max(LEAST_WIDTH, Math.min(MOST_WIDTH, f.box.node().clientWidth));
+    const w = widthOf(f);
     f.width = w;
     f.svg.selectAll('*').remove();
     f.svg.append('title').text(f.title());
@@ -285,13 +291,25 @@
     figures.push(f);
     update(f);
     new ResizeObserver(() => {
-      const now = f.box.node().clientWidth;
-      if (now > 0 && Math.abs(Math.min(MOST_WIDTH, Math.max(LEAST_WIDTH, now)) - f.width) > 1) {
+      if (f.box.node().clientWidth > 0 && Math.abs(widthOf(f) - f.width) > 1) {
         redraw(f);
       }
     }).observe(f.box.node());
     return f;
   }
+
+  // Paper has its own width, and shows what is folded on a screen.
+  function print(now) {
+    printing = now;
+    const told = document.getElementById('told');
+    if (told) {
+      told.open = now;
+    }
+    figures.forEach(update);
+  }
+
+  window.addEventListener('beforeprint', () => print(true));
+  window.addEventListener('afterprint', () => print(false));
 
   mt.figure = {
     colour, mark, line, rect, text, arrow, axisBelow, axisLeft, legend, add, csv, on, fillTable,
