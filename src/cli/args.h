@@ -61,6 +61,7 @@ typedef enum mt_command_id {
     MT_CMD_INFO,
     MT_CMD_SHOW,
     MT_CMD_REPORT,
+    MT_CMD_EXPLAIN,
     MT_CMD_APPLY,
     MT_CMD_DIFF,
     MT_CMD_CHECK,

@@ -141,7 +141,7 @@ int mt_batch_close(mt_batch *batch, mt_text *out)
     if (batch->args->format == MT_FORMAT_TEXT) {
         mt_table t = mt_report_index(batch->studies, n);
         mt_text_add(out, "Studies\n");
-        mt_table_print(&t, 2, out);
+        mt_table_print(&t, 2, mt_terminal_width(), out);
         mt_table_free(&t);
     }
     const int code = write_index(batch);

@@ -103,3 +103,17 @@ mt_status mt_cli_json_redundant(mt_json_writer *w, mt_linear *lin, mt_arena *mem
     mt_json_close(w);
     return MT_OK;
 }
+
+mt_status mt_cli_recommendation(const mt_args *args, const mt_result *result,
+                                const mt_recommendation **out, mt_err *err)
+{
+    const int n = result->n_recommendations;
+    for (int i = 0; i < n; i++) {
+        if (result->recommendations[i].rank == args->rank) {
+            *out = &result->recommendations[i];
+            return MT_OK;
+        }
+    }
+    return mt_fail(err, MT_E_USAGE, "%s has %d recommendation%s: there is no rank %d",
+                   args->operands[0], n, n == 1 ? "" : "s", args->rank);
+}

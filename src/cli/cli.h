@@ -25,6 +25,7 @@ int mt_cmd_sensitivity(const mt_args *args, mt_text *out);
 int mt_cmd_info(const mt_args *args, mt_text *out);
 int mt_cmd_show(const mt_args *args, mt_text *out);
 int mt_cmd_report(const mt_args *args, mt_text *out);
+int mt_cmd_explain(const mt_args *args, mt_text *out);
 int mt_cmd_apply(const mt_args *args, mt_text *out);
 int mt_cmd_diff(const mt_args *args, mt_text *out);
 int mt_cmd_check(const mt_args *args, mt_text *out);
@@ -45,6 +46,9 @@ void mt_cli_place(const mt_study *study, const char *path, mt_status rc, mt_err 
 /* Report err and return the exit status of rc. */
 int mt_cli_failed(mt_status rc, const mt_err *err);
 mt_io_options mt_cli_io(const mt_args *args);
+/* The recommendation that --rank asks for. Fails: MT_E_USAGE. */
+mt_status mt_cli_recommendation(const mt_args *args, const mt_result *result,
+                                const mt_recommendation **out, mt_err *err);
 /* Close a JSON output: MT_EXIT_DONE, or a complaint and its exit status. */
 int mt_cli_json_done(mt_json_writer *w);
 /* Doubts and facts of a configuration, one line each, before its table. */

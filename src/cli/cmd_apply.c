@@ -106,18 +106,10 @@ done:
 static mt_status apply(const mt_args *args, const mt_result *result, mt_text *out, mt_err *err)
 {
     const char *const path = args->operands[0];
-    const int n = result->n_recommendations;
     const mt_recommendation *chosen = NULL;
-    for (int i = n - 1; i >= 0; i--) {
-        const mt_recommendation *const r = &result->recommendations[i];
-        chosen = r->rank == args->rank ? r : chosen;
-    }
     mt_file file = {.bytes = NULL};
     char *model_path = NULL;
-    if (chosen == NULL) {
-        return mt_fail(err, MT_E_USAGE, "%s has %d recommendation%s: there is no rank %d", path,
-                       n, n == 1 ? "" : "s", args->rank);
-    }
+    MT_TRY(mt_cli_recommendation(args, result, &chosen, err));
     mt_status rc = mt_find_model(args, result, &file, &model_path, err);
     if (rc == MT_OK) {
         rc = substitute(chosen, &result->run, &file, model_path, out, err);

@@ -101,7 +101,7 @@ static int print_part(const mt_difference *items, int first, int last, bool prov
     }
     if (mt_table_rows(&t) > 0) {
         mt_text_addf(out, "\n%s\n", provenance ? "made by" : items[first].part);
-        mt_table_print(&t, 2, out);
+        mt_table_print(&t, 2, mt_terminal_width(), out);
     }
     out->failed = out->failed || t.failed;
     mt_table_free(&t);

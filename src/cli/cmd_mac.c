@@ -299,7 +299,7 @@ static void text_matrix(const comparison *c, mt_text *out)
         }
     }
     mt_text_add(out, "\nMAC matrix\n");
-    mt_table_print(&t, 2, out);
+    mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
 }
 
@@ -308,7 +308,7 @@ static mt_status write_text(comparison *c, mt_text *out, mt_err *err)
     mt_text_addf(out, "A: %s, %s\nB: %s, %s\n%d common sensor channels\n\n", c->a.s.path,
                  name_of(&c->a), c->b.s.path, name_of(&c->b), c->ns);
     mt_table t = pairs_table(c);
-    mt_table_print(&t, 2, out);
+    mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
     text_matrix(c, out);
     subspace s = {.size = 1};

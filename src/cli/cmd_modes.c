@@ -223,7 +223,7 @@ static void print_shapes(const view *v, mt_text *out)
     }
     mt_text_add(out, "\n  Mass-normalised shapes (numbers in parentheses: modes without "
                      "an index, by position) [1/sqrt(kg) and rad/(m sqrt(kg))]\n");
-    mt_table_print(&t, 2, out);
+    mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
 }
 
@@ -271,7 +271,7 @@ static void text_view(const view *v, mt_text *out)
     fill_table(&t, v, false);
     mt_text_addf(out, "%s\n", mt_subject_configuration(v->s, v->c));
     mt_cli_print_doubts(&v->doubts, out);
-    mt_table_print(&t, 2, out);
+    mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
     tell(v, out);
     if (v->shapes.n > 0) {

@@ -264,7 +264,7 @@ static int compare_one(job *j, mt_json_writer *w, mt_text *out)
     const mt_result *const r = j->result;
     const mt_recommendation *const best =
         r->n_recommendations > 0 ? &r->recommendations[0] : &r->baseline;
-    const mt_teller to = {out, false};
+    const mt_teller to = {.out = out, .width = mt_terminal_width()};
     mt_table t = mt_report_published(r);
     int judged = 0;
     const bool holds = mt_report_verified(r, &judged);
@@ -294,7 +294,7 @@ static int compare_one(job *j, mt_json_writer *w, mt_text *out)
             mt_tell_doubts(&to, r);
             mt_text_add(out, "\n");
         }
-        mt_table_print(&t, 2, out);
+        mt_table_print(&t, 2, mt_terminal_width(), out);
         mt_tell_objectives(&to, best);
         mt_tell_uncertainty(&to, r);
         mt_text_add(out, "\n");

@@ -123,7 +123,7 @@ static void write_text(mt_text *out, const mt_survey *v)
     }
     mt_text_addf(out, "%s: Hz for one per cent more of each parameter, by mode\n",
                  mt_subject_configuration(v->s, v->c));
-    mt_table_print(&t, 2, out);
+    mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
     if (repeated) {
         mt_text_add(out,

@@ -92,7 +92,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "most memory that files may make the program use: bytes, or with k, M, G or T (1024 "
            "each); what asks for more ends with exit status 4 (default: half of the memory of "
            "the machine or its container)"),
-    OPTION(MT_OPT_RANK, '\0', "rank", "N", BIT(MT_CMD_APPLY),
+    OPTION(MT_OPT_RANK, '\0', "rank", "N", BIT(MT_CMD_APPLY) | BIT(MT_CMD_EXPLAIN),
            "which recommendation (default: 1, the best)"),
     OPTION(MT_OPT_MODEL, '\0', "model", "MODEL", BIT(MT_CMD_APPLY) | BIT(MT_CMD_SHOW),
            "the model file, where it is not found from the result"),
@@ -209,6 +209,15 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "not known to a result, so timing.json is only taken over where it stands beside it. "
         "A result.json is refused where the files beside it are of another run or were "
         "changed; a copy that stands alone is read."),
+    COMMAND(
+        MT_CMD_EXPLAIN, "explain", "RESULT.json", 1, 1,
+        "what moves each goal, what holds it, what it costs",
+        "Prints for each goal of a recommendation the parameters that move it, the most first, "
+        "with what 1 % more of each does and how far it may still go within its bounds; then "
+        "the "
+        "bounds, bands and limits that hold the design, and what they cost. From the result "
+        "alone: "
+        "nothing is solved. --format csv: one row per goal and parameter."),
     COMMAND(
         MT_CMD_APPLY, "apply", "RESULT.json", 1, 1, "the model with the recommended values",
         "Prints the model file with the recommended values put in; everything else of its text "

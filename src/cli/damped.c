@@ -101,7 +101,7 @@ void mt_damped_print(const mt_damped_modes *d, int count, mt_text *out)
     mt_damped_columns(&t, false);
     mt_damped_rows(&t, d, count, NULL);
     mt_text_add(out, "\n");
-    mt_table_print(&t, 2, out);
+    mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
     for (int i = 0; i < d->count; i++) {
         overdamped += d->kind[i] == MT_DAMPED_OVERDAMPED ? 1 : 0;

@@ -41,7 +41,7 @@ int mt_cli_profile_print(mt_profile *p)
         mt_table_number(&t, NANOSECOND * (double)atomic_load(&p->nanoseconds[i]), DIGITS);
         mt_table_text(&t, mt_stage_text((mt_stage_id)i));
     }
-    mt_table_print(&t, 2, &text);
+    mt_table_print(&t, 2, mt_terminal_width(), &text);
     if (text.failed) {
         mt_err err;
         code = mt_cli_failed(mt_fail_memory(&err), &err);

@@ -19,6 +19,7 @@ static const command_function functions[MT_CMD_IDS] = {
     [MT_CMD_INFO] = mt_cmd_info,
     [MT_CMD_SHOW] = mt_cmd_show,
     [MT_CMD_REPORT] = mt_cmd_report,
+    [MT_CMD_EXPLAIN] = mt_cmd_explain,
     [MT_CMD_APPLY] = mt_cmd_apply,
     [MT_CMD_DIFF] = mt_cmd_diff,
     [MT_CMD_CHECK] = mt_cmd_check,

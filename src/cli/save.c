@@ -261,7 +261,7 @@ void mt_save_print(const mt_args *args, const mt_result *result, mt_json_writer 
         break;
     case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
-        mt_report_summary(result, args->given[MT_OPT_VERIFY], out);
+        mt_report_summary(result, args->given[MT_OPT_VERIFY], mt_terminal_width(), out);
         mt_text_add(out, "\n");
         break;
     }

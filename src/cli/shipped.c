@@ -82,7 +82,7 @@ int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *o
     } else if (args->format == MT_FORMAT_CSV) {
         mt_table_csv(&t, out);
     } else {
-        mt_table_print(&t, 0, out);
+        mt_table_print(&t, 0, mt_terminal_width(), out);
     }
     mt_table_free(&t);
     return code;

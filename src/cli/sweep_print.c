@@ -163,7 +163,7 @@ void mt_sweep_print(const mt_sweep_view *v, mt_text *out)
     }
     mt_text_addf(out, "%s\n", v->configuration);
     if (v->sweep.n_reached > 0) {
-        mt_table_print(&t, 2, out);
+        mt_table_print(&t, 2, mt_terminal_width(), out);
         mt_text_addf(out, "  Largest gap of a joint %.1e m.\n", gap);
         tell_dead_centre(v, out);
     }

@@ -277,6 +277,13 @@ void mt_terminal_say(const char *text, size_t length)
     (void)show(stderr, text, length, true);
 }
 
+int mt_terminal_width(void)
+{
+    struct winsize w = {0};
+    const bool known = isatty(STDOUT_FILENO) == 1 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &w) == 0;
+    return known && w.ws_col > 1 ? w.ws_col : 0;
+}
+
 /* What fits beside the cursor: a line that is broken would not be wiped. */
 static size_t line_width(void)
 {

@@ -47,6 +47,8 @@ void mt_terminal_warning(const char *fmt, ...) MT_PRINTF(1, 2);
 void mt_terminal_diagnostics(const char *lines);
 /* Talk: a line to standard error unless quiet. */
 void mt_terminal_talk(bool quiet, const char *fmt, ...) MT_PRINTF(2, 3);
+/* Columns of the terminal that standard output is; 0: it is none, or does not say. */
+int mt_terminal_width(void);
 /* Is standard error a terminal? */
 bool mt_terminal_is_watched(void);
 /* Lines to standard error as they are. */

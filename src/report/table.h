@@ -55,8 +55,9 @@ void mt_table_percent(mt_table *t, double value, int digits);
 int mt_table_rows(const mt_table *t);
 
 /* Heading, rule, rows; two blanks between columns, `indent` before the first, none behind the
- * last. */
-void mt_table_print(const mt_table *t, int indent, mt_text *out);
+ * last. Columns that hold nothing (but the first) are left out; what does not fit into `width`
+ * (0: everything does) follows below, behind the same first columns. */
+void mt_table_print(const mt_table *t, int indent, int width, mt_text *out);
 /* Header line and rows, each ended by CR LF. */
 void mt_table_csv(const mt_table *t, mt_text *out);
 /* <table>...</table>, every text escaped. */

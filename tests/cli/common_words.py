@@ -14,12 +14,17 @@ DATA = re.compile(r'<script type="application/json" id="\w+">(.*?)</script>', re
 SCRIPT = re.compile(r"<script>.*?</script>", re.S)
 
 
+def without_program(page):
+    """A page with its data, without the script that draws them."""
+    return SCRIPT.sub("", page)
+
+
 def problems_of(text, form):
     """What is wrong with one output."""
     if form == "html":
         for block in DATA.findall(text):
             yield from problems_of(block, "json")
-        text = SCRIPT.sub("", DATA.sub("", text))
+        text = without_program(DATA.sub("", text))
     for match in WORD.finditer(CELL.sub("", text)):
         yield f"\"{match[0]}\" in {match.string[max(0, match.start() - 90):match.end() + 40]!r}"
     if form == "json" and text:

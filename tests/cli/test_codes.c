@@ -140,6 +140,12 @@ static const struct {
     {"report %/engine_orders/result.json", MT_EXIT_SYSTEM, SHORT},
     {"report %/engine_orders/result.json", MT_EXIT_SYSTEM, FULL},
 
+    {"explain %/engine_orders/result.json", MT_EXIT_DONE, AS_IT_IS},
+    {"explain --rank 99 %/engine_orders/result.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"explain %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
+    {"explain %/engine_orders/result.json", MT_EXIT_SYSTEM, SHORT},
+    {"explain %/engine_orders/result.json", MT_EXIT_SYSTEM, FULL},
+
     {"apply --root / %/engine_orders/result.json", MT_EXIT_DONE, AS_IT_IS},
     {"apply --rank 99 %/engine_orders/result.json", MT_EXIT_INPUT, AS_IT_IS},
     {"apply %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
@@ -198,6 +204,7 @@ static const struct {
     [MT_CMD_INFO] = {"info", {true, false, true, true, true, false}},
     [MT_CMD_SHOW] = {"show", {true, false, true, false, true, false}},
     [MT_CMD_REPORT] = {"report", {true, false, true, false, true, false}},
+    [MT_CMD_EXPLAIN] = {"explain", {true, false, true, false, true, false}},
     [MT_CMD_APPLY] = {"apply", {true, false, true, false, true, false}},
     [MT_CMD_DIFF] = {"diff", {true, true, true, false, true, false}},
     [MT_CMD_CHECK] = {"check", {true, false, true, true, true, false}},

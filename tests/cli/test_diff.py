@@ -208,8 +208,8 @@ class Diff(CliTest):
         done = self.expect(0, "diff", "results/two/", self.put(changed))
         self.assertEqual(done.stderr, "")
         self.assertIn("\nmade by\n", done.stdout)
-        self.assertRegex(done.stdout, r"\n  - +modetune +- +\S+ +9\.9\.9 +-\n")
-        self.assertRegex(done.stdout, r"\n  - +seed +- +1 +77 +-\n")
+        self.assertRegex(done.stdout, r"\n  - +modetune +\S+ +9\.9\.9\n")
+        self.assertRegex(done.stdout, r"\n  - +seed +1 +77\n")
         self.assertTrue(done.stdout.endswith("\nThe answers are the same.\n"))
 
     def test_text_and_csv(self):

@@ -19,6 +19,7 @@ OPTIONS = {
     "info": {"configuration", "set"},
     "show": {"configuration", "set", "output", "svg", "mode", "model"},
     "report": {"output", "verify"},
+    "explain": {"rank"},
     "apply": {"rank", "model"},
     "diff": {"rel-tol"},
     "check": set(),

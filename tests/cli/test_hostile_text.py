@@ -85,7 +85,7 @@ def cells(text):
 
 
 class Page(html.parser.HTMLParser):
-    VOID = {"meta", "br"}
+    VOID = {"meta", "br", "link"}
 
     def __init__(self, text):
         super().__init__(convert_charrefs=True)

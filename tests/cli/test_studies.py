@@ -163,7 +163,7 @@ class Compare(CliTest):
                 self.assertAlmostEqual(told["recommended"], value, delta=1e-5)
                 self.assertAlmostEqual(told["original"], original, delta=1e-12)
         self.assertEqual(self.json_of("compare", path)["objectives"], result["recommendations"][0]["objectives"])
-        row = r"k1 \+ k2 +- +4\.00000 +3\.50000\n +change +- +0 +0\.5734"
+        row = r"k1 \+ k2 +4\.00000 +3\.50000\n +change +0 +0\.5734"
         for args in (["run", path, "-o", "."], ["compare", path]):
             self.assertRegex(self.expect(0, *args).stdout, row)
         with open(self.folder / "two/recommendations.csv", encoding="utf-8", newline="") as file:

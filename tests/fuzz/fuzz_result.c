@@ -19,7 +19,7 @@ static void show(const mt_result *r)
     mt_json *doc = NULL;
     mt_table_csv(&designs, &said);
     mt_table_free(&designs);
-    mt_report_summary(r, true, &said);
+    mt_report_summary(r, true, 0, &said);
     mt_report_html_told(r, &said);
     DEMAND(!said.failed);
     mt_text_free(&said);

@@ -127,7 +127,7 @@ static void compile(const mt_study *study)
 static void demand_table(mt_table t, const uint8_t *data, size_t size)
 {
     mt_text said = {0};
-    mt_table_print(&t, 0, &said);
+    mt_table_print(&t, 0, 0, &said);
     mt_table_csv(&t, &said);
     DEMAND(!t.failed && !said.failed);
     fuzz_demand_finite_words(&said, data, size);
@@ -148,7 +148,7 @@ static void demand_told(const mt_result *r, const uint8_t *data, size_t size)
     mt_result_delete(again);
     mt_diagnostics_free(&messages);
     mt_text_free(&said);
-    mt_report_summary(r, true, &said);
+    mt_report_summary(r, true, 0, &said);
     DEMAND(!said.failed);
     fuzz_demand_finite_words(&said, data, size);
     mt_text_free(&said);

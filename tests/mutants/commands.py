@@ -8,10 +8,13 @@ import re
 import resource
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "cli"))  # where outputs are looked at
 import document
+from common_words import without_program
 
 # How a change in a file may end. Nothing here is about the answer's numbers.
 CODES = {0: "done", 1: "goals not met", 2: "bad input", 3: "numerical failure", 4: "system", 130: "interrupted"}
@@ -262,7 +265,7 @@ class Answer:
         for name in ("result.json", "recommendations.csv", "report.html", "trade.csv"):
             path = out / name
             if path.exists():
-                yield from self._words(name, path.read_text(encoding="utf-8", errors="replace"))
+                yield from self._words(name, without_program(path.read_text(encoding="utf-8", errors="replace")))
             elif name != "trade.csv":
                 yield "left", f"{name} is missing"
                 return

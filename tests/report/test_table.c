@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "mt_test.h"
 #include "report/number.h"
@@ -51,7 +53,7 @@ static void table__aligns_decimal_points_and_counts_characters_not_bytes(mt_test
     mt_table_number(&table, 1.0, 3);
     mt_table_text(&table, NULL);
     mt_table_number(&table, nan(""), 3);
-    mt_table_print(&table, 1, &out);
+    mt_table_print(&table, 1, 0, &out);
     CHECK_STR(t, out.s,
               " name    f [Hz]\n"
               " -----  -------\n"
@@ -73,7 +75,7 @@ static void table__keeps_rows_in_lines_and_counts_columns_of_the_terminal(mt_tes
     mt_table_number(&table, 2.0, 2);
     mt_table_text(&table, "e\xCC\x81"); /* e and an accent: one */
     mt_table_number(&table, 3.0, 2);
-    mt_table_print(&table, 0, &out);
+    mt_table_print(&table, 0, 0, &out);
     CHECK_STR(t, out.s,
               "name               f [Hz]\n"
               "-----------------  ------\n"
@@ -92,7 +94,7 @@ static void table__puts_numbers_below_the_end_of_a_wide_heading(mt_test *t)
     mt_table_column(&table, "n", "n", MT_ALIGN_RIGHT);
     mt_table_number(&table, 1.5, 2);
     mt_table_integer(&table, 12);
-    mt_table_print(&table, 0, &out);
+    mt_table_print(&table, 0, 0, &out);
     CHECK_STR(t, out.s,
               "frequency [Hz]   n\n"
               "--------------  --\n"
@@ -196,7 +198,75 @@ static void html__escapes_every_special_character(mt_test *t)
     mt_table_free(&table);
 }
 
+/* A column that holds nothing is left out, the first one never. */
+static void print__leaves_out_what_is_empty(mt_test *t)
+{
+    mt_text out = {.s = NULL};
+    mt_table table = mt_table_default();
+    mt_table_column(&table, "name", "name", MT_ALIGN_LEFT);
+    mt_table_column(&table, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_column(&table, "value", "value", MT_ALIGN_POINT);
+    for (int i = 0; i < 2; i++) {
+        mt_table_text(&table, NULL);
+        mt_table_text(&table, NULL);
+        mt_table_number(&table, i == 0 ? 1.5 : nan(""), 2);
+    }
+    mt_table_print(&table, 0, 0, &out);
+    CHECK_STR(t, out.s, "name  value\n----  -----\n-       1.5\n-       -\n");
+    mt_text_free(&out);
+    mt_table_csv(&table, &out);
+    CHECK_STR(t, out.s, "name,unit,value\r\n,,1.5\r\n,,\r\n");
+    mt_text_free(&out);
+    mt_table_free(&table);
+}
+
+/* What does not fit follows below, behind the same first columns; nothing is lost, and no line
+ * is longer than it has to be. */
+static void print__folds_to_the_width(mt_test *t)
+{
+    enum { COLUMNS = 9, ROWS = 3 };
+    mt_table table = mt_table_default();
+    char text[16];
+    mt_table_column(&table, "where", "where", MT_ALIGN_LEFT);
+    mt_table_column(&table, "mode", "mode", MT_ALIGN_RIGHT);
+    for (int c = 0; c < COLUMNS; c++) {
+        (void)snprintf(text, sizeof text, "head%d", c);
+        mt_table_column(&table, text, text, MT_ALIGN_POINT);
+    }
+    for (int i = 0; i < ROWS; i++) {
+        mt_table_text(&table, "installed");
+        mt_table_integer(&table, i + 1);
+        for (int c = 0; c < COLUMNS; c++) {
+            mt_table_number(&table, 1000.0 + (100.0 * i) + c, 4);
+        }
+    }
+    for (int width = 1; width < 100; width++) {
+        mt_text out = {.s = NULL};
+        mt_table_print(&table, 2, width, &out);
+        mt_test_row(t, "width %d", width);
+        REQUIRE(t, out.s != NULL && !out.failed);
+        for (int i = 0; i < ROWS; i++) {
+            for (int c = 0; c < COLUMNS; c++) {
+                (void)snprintf(text, sizeof text, "%d", 1000 + (100 * i) + c);
+                const char *const at = strstr(out.s, text);
+                CHECK(t, at != NULL && strstr(at + 1, text) == NULL);
+            }
+        }
+        for (const char *line = out.s; *line != '\0';) {
+            const int length = (int)strcspn(line, "\n");
+            /* keys and one column may need more */
+            CHECK(t, length <= (width > 24 ? width : 24));
+            CHECK(t, length == 0 || strncmp(line, "  inst", 6) == 0 ||
+                         strncmp(line, "  wher", 6) == 0 || strncmp(line, "  ----", 6) == 0);
+            line += length + 1;
+        }
+        mt_text_free(&out);
+    }
+    mt_table_free(&table);
+}
+
 MT_TEST_MAIN(MT_TEST(number__shows_significant_digits),
+             MT_TEST(print__leaves_out_what_is_empty), MT_TEST(print__folds_to_the_width),
              MT_TEST(table__aligns_decimal_points_and_counts_characters_not_bytes),
              MT_TEST(table__keeps_rows_in_lines_and_counts_columns_of_the_terminal),
              MT_TEST(table__puts_numbers_below_the_end_of_a_wide_heading),

@@ -27,7 +27,7 @@ ALLOWED = {
     "search": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem"},
     "describe": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem", "search"},
     "answer": ENGINE | {"tree", "analysis", "nlp", "study", "result", "prove", "problem", "search", "describe"},
-    "library": set(ROOMS) - {"library", "report", "cli"},
+    "library": set(ROOMS) - {"library", "cli"},
     "io": {"base", "expr", "model", "study", "result", "scene"},
     "report": {"base", "result"},
     "cli": set(ROOMS),

@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which parameter moves a goal, by how much, and how much of it is left. */
+#include "report/explain.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "report/number.h"
+
+enum { VALUE_DIGITS = 6, SHORT_DIGITS = 3, INDENT = 2 };
+static const double PERCENT = 0.01;
+
+/* A number that variables move: a goal's value, or the frequency nearest to a band. */
+typedef struct moved {
+    const char *text;
+    const char *unit; /* NULL, "": none */
+    const double *slopes;
+} moved;
+
+/* What 1 % more of variable k adds to it. */
+static double move(const mt_recommendation *r, const moved *m, int k)
+{
+    return m->slopes[k] * PERCENT * fabs(r->parameters[k].recommended);
+}
+
+/* The variable that moves it most among those not taken yet; -1: none does. */
+static int next_mover(const mt_recommendation *r, const moved *g, const bool *taken)
+{
+    int best = -1;
+    for (int k = 0; k < r->n_parameters; k++) {
+        const double own = fabs(move(r, g, k));
+        if (!taken[k] && own > 0.0 && isfinite(own) &&
+            (best < 0 || own > fabs(move(r, g, best)))) {
+            best = k;
+        }
+    }
+    return best;
+}
+
+/* "7.1 % down, 40 % up": how far the variable is from its bounds. */
+static void add_room(const mt_result_parameter *p, mt_text *out)
+{
+    char number[MT_NUMBER_TEXT];
+    const double size = PERCENT * fabs(p->recommended);
+    if (!isfinite(p->lower) || !isfinite(p->upper) || !(size > 0.0)) {
+        mt_text_add(out, "-");
+        return;
+    }
+    mt_text_addf(
+        out, "%s %% down, ",
+        mt_report_number(fmax(p->recommended - p->lower, 0.0) / size, SHORT_DIGITS, number));
+    mt_text_addf(
+        out, "%s %% up",
+        mt_report_number(fmax(p->upper - p->recommended, 0.0) / size, SHORT_DIGITS, number));
+}
+
+static void add_row(mt_table *t, const mt_recommendation *r, const moved *g, int k)
+{
+    const mt_result_parameter *const p = &r->parameters[k];
+    mt_text room = {.s = NULL};
+    add_room(p, &room);
+    mt_table_text(t, g->text);
+    mt_table_text(t, p->name);
+    mt_table_change(t, move(r, g, k), SHORT_DIGITS);
+    mt_table_text(t, g->unit != NULL && g->unit[0] != '\0' ? g->unit : NULL);
+    mt_table_number(t, p->recommended, VALUE_DIGITS);
+    mt_table_text(t, p->unit);
+    mt_table_text(t, p->at_bound);
+    mt_table_text(t, room.s);
+    t->failed = t->failed || room.failed;
+    mt_text_free(&room);
+}
+
+static void add_moved(mt_table *t, const mt_recommendation *r, const moved *g)
+{
+    bool *const taken = mt_arena_alloc(&t->mem, (size_t)r->n_parameters, sizeof *taken);
+    if (taken == NULL) {
+        t->failed = true;
+        return;
+    }
+    for (int k = 0; k < r->n_parameters; k++) {
+        taken[k] = false;
+    }
+    for (int k = next_mover(r, g, taken); k >= 0; k = next_mover(r, g, taken)) {
+        taken[k] = true;
+        add_row(t, r, g, k);
+    }
+}
+
+static bool same(const char *a, const char *b)
+{
+    return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
+}
+
+/* Of bands: the mode that has least room beside its margin. NULL: none. */
+static const mt_result_clearance *nearest(const mt_recommendation *r, const char *configuration)
+{
+    const mt_result_clearance *best = NULL;
+    for (int i = 0; i < r->n_clearances; i++) {
+        const mt_result_clearance *const c = &r->clearances[i];
+        const double room = c->percent - c->margin_percent;
+        if (same(c->configuration, configuration) && isfinite(room) &&
+            (best == NULL || room < best->percent - best->margin_percent)) {
+            best = c;
+        }
+    }
+    return best;
+}
+
+static void add_nearest(mt_table *t, const mt_recommendation *r, const mt_result_goal *g)
+{
+    const mt_result_clearance *const c = nearest(r, g->configuration);
+    for (int i = 0; c != NULL && i < r->n_frequencies; i++) {
+        const mt_result_frequency *const f = &r->frequencies[i];
+        if (f->mode == c->mode && same(f->configuration, c->configuration) && !f->repeated &&
+            f->sensitivity != NULL) {
+            const char *const text = mt_arena_printf(
+                &t->mem, "%s mode %d, %s %s", c->configuration, c->mode, c->side, c->band);
+            const moved m = {text, "Hz", f->sensitivity};
+            t->failed = t->failed || text == NULL;
+            if (!t->failed) {
+                add_moved(t, r, &m);
+            }
+            return;
+        }
+    }
+}
+
+mt_table mt_report_movers(const mt_recommendation *r)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "goal", "goal", MT_ALIGN_LEFT);
+    mt_table_column(&t, "parameter", "parameter", MT_ALIGN_LEFT);
+    mt_table_column(&t, "1 % more moves it by", "change_per_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "in", "unit", MT_ALIGN_LEFT);
+    mt_table_column(&t, "value", "value", MT_ALIGN_POINT);
+    mt_table_column(&t, "unit", "parameter_unit", MT_ALIGN_LEFT);
+    mt_table_column(&t, "at bound", "at_bound", MT_ALIGN_LEFT);
+    mt_table_column(&t, "room to its bounds", "room", MT_ALIGN_LEFT);
+    for (int i = 0; !t.failed && i < r->n_goals; i++) {
+        const mt_result_goal *const g = &r->goals[i];
+        if (g->sensitivity != NULL) {
+            add_moved(&t, r, &(moved){g->text, g->unit, g->sensitivity});
+        } else if (strcmp(g->type, "avoid") == 0) {
+            add_nearest(&t, r, g);
+        }
+    }
+    return t;
+}
+
+/* "met", "missed by 2.1 %", and that nothing is known of what moves it. */
+static void add_goal_line(const mt_result_goal *g, mt_text *out)
+{
+    char number[MT_NUMBER_TEXT];
+    mt_text_addf(out, "  - %s: ", g->text);
+    if (isfinite(g->value)) {
+        mt_text_addf(out, "%s%s%s, ", mt_report_number(g->value, VALUE_DIGITS, number),
+                     g->unit != NULL && g->unit[0] != '\0' ? " " : "",
+                     g->unit != NULL ? g->unit : "");
+    }
+    if (g->met) {
+        mt_text_add(out, "met");
+    } else if (isfinite(g->violation_percent)) {
+        mt_text_addf(out, "missed by %s %%",
+                     mt_report_number(g->violation_percent, SHORT_DIGITS, number));
+    } else {
+        mt_text_add(out, "not met");
+    }
+    if (g->sensitivity == NULL && strcmp(g->type, "avoid") != 0) {
+        mt_text_add(out, "; what moves it is not known (a mode that repeats, or a distance)");
+    }
+    mt_text_add(out, "\n");
+}
+
+static void add_reasons(const mt_recommendation *r, const char *kind, const char *title,
+                        const char *none, mt_text *out)
+{
+    int n = 0;
+    mt_text_addf(out, "\n%s\n", title);
+    for (int i = 0; i < r->n_reasons; i++) {
+        if (strcmp(r->reasons[i].kind, kind) == 0) {
+            mt_text_addf(out, "  - %s\n", r->reasons[i].text);
+            n++;
+        }
+    }
+    if (n == 0) {
+        mt_text_addf(out, "  %s\n", none);
+    }
+}
+
+void mt_report_explain(const mt_result *result, const mt_recommendation *r, int width,
+                       mt_text *out)
+{
+    mt_table t = mt_report_movers(r);
+    const char *const name =
+        result->study.name != NULL ? result->study.name : result->study.file;
+    mt_text_addf(out, "%s\n", name != NULL ? name : "");
+    if (r->rank == 0) {
+        mt_text_add(out, "The original design: nothing is recommended\n");
+    } else {
+        mt_text_addf(out, "Recommendation %d (%s)\n", r->rank, r->grade);
+    }
+    mt_text_add(out, "\nGoals\n");
+    for (int i = 0; i < r->n_goals; i++) {
+        add_goal_line(&r->goals[i], out);
+    }
+    if (mt_table_rows(&t) > 0 || t.failed) {
+        mt_text_add(out, "\nWhat moves each goal, the most first\n");
+        mt_table_print(&t, INDENT, width, out);
+    }
+    add_reasons(r, "hold", "What holds it",
+                "nothing: no bound, band or limit stands in its way", out);
+    add_reasons(r, "cost", "What it costs", "nothing is told: no demand has a price here", out);
+    mt_table_free(&t);
+}

@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/ruler.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/format.h"
+
+enum { INDENT = 2, LEAST = 30, USUAL = 64, MOST = 96, ROOM = MOST + 16, NUMBER = 24 };
+static const double ABOVE = 1.12; /* what is shown above the last thing asked for */
+static const double NEAR = 1.6;   /* a band that begins farther above the modes is not shown */
+
+typedef struct ruler {
+    double top;    /* Hz at its end */
+    int length;    /* columns */
+    int label;     /* of the longest name */
+    bool has[256]; /* marks that were drawn */
+    mt_text *out;
+} ruler;
+
+static void widen(double *top, double hz)
+{
+    *top = isfinite(hz) && hz > *top ? hz : *top;
+}
+
+/* The highest mode that no band lies wholly below; 0: none. */
+static double highest_mode(const mt_recommendation *r)
+{
+    double bands = 0.0;
+    double top = 0.0;
+    for (int i = 0; i < r->n_gaps; i++) {
+        widen(&bands, r->gaps[i].margin_upper_hz);
+    }
+    for (int i = 0; i < r->n_frequencies; i++) {
+        const mt_result_frequency *const f = &r->frequencies[i];
+        widen(&top, f->original_hz <= bands ? f->original_hz : 0.0);
+        widen(&top, f->recommended_hz <= bands ? f->recommended_hz : 0.0);
+    }
+    return top;
+}
+
+/* The highest frequency of interest: what is asked for, and the bands beside modes; 0: none. */
+static double highest(const mt_recommendation *r)
+{
+    double top = highest_mode(r);
+    for (int i = 0; i < r->n_frequencies; i++) {
+        widen(&top, r->frequencies[i].target_hz);
+        widen(&top, r->frequencies[i].at_least_hz);
+        widen(&top, r->frequencies[i].at_most_hz);
+    }
+    const double near = top > 0.0 ? NEAR * top : HUGE_VAL;
+    for (int i = 0; i < r->n_gaps; i++) {
+        if (r->gaps[i].margin_lower_hz <= near) {
+            widen(&top, fmin(r->gaps[i].margin_upper_hz, near));
+        }
+    }
+    return top;
+}
+
+static int place(const ruler *u, double hz)
+{
+    return (int)lround(hz / u->top * (u->length - 1));
+}
+
+/* A mark on the line, if it lies there and nothing of more weight does. */
+static void mark(ruler *u, char *line, double hz, char sign, const char *over)
+{
+    if (!(hz >= 0.0) || hz > u->top) {
+        return;
+    }
+    char *const at = &line[place(u, hz)];
+    if (strchr(over, *at) != NULL) {
+        *at = sign;
+        u->has[(unsigned char)sign] = true;
+    }
+}
+
+static void shade(ruler *u, char *line, double from, double to, char sign)
+{
+    if (!(from <= to) || to < 0.0 || from > u->top) {
+        return;
+    }
+    const int last = place(u, fmin(to, u->top));
+    for (int i = place(u, fmax(from, 0.0)); i <= last; i++) {
+        line[i] = sign;
+        u->has[(unsigned char)sign] = true;
+    }
+}
+
+static bool same(const char *a, const char *b)
+{
+    return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
+}
+
+static void draw_bands(ruler *u, const mt_recommendation *r, const char *of, char *line)
+{
+    for (int i = 0; i < r->n_gaps; i++) {
+        if (same(r->gaps[i].configuration, of)) {
+            shade(u, line, r->gaps[i].margin_lower_hz, r->gaps[i].margin_upper_hz, '-');
+        }
+    }
+    for (int i = 0; i < r->n_gaps; i++) {
+        if (same(r->gaps[i].configuration, of)) {
+            shade(u, line, r->gaps[i].lower_hz, r->gaps[i].upper_hz, '#');
+        }
+    }
+}
+
+/* What is asked for, then what was, then what is: each over the one before. */
+static int draw_modes(ruler *u, const mt_recommendation *r, const char *of, char *line)
+{
+    static const char digits[] = "0123456789";
+    int beyond = 0;
+    for (int i = 0; i < r->n_frequencies; i++) {
+        const mt_result_frequency *const f = &r->frequencies[i];
+        if (same(f->configuration, of)) {
+            mark(u, line, f->at_least_hz, '[', " -#");
+            mark(u, line, f->at_most_hz, ']', " -#");
+            mark(u, line, f->target_hz, '|', " -#[]");
+        }
+    }
+    for (int i = 0; i < r->n_frequencies; i++) {
+        const mt_result_frequency *const f = &r->frequencies[i];
+        if (same(f->configuration, of) && r->rank > 0) {
+            mark(u, line, f->original_hz, 'o', " -#[]|");
+        }
+    }
+    for (int i = 0; i < r->n_frequencies; i++) {
+        const mt_result_frequency *const f = &r->frequencies[i];
+        if (same(f->configuration, of)) {
+            beyond += f->recommended_hz > u->top ? 1 : 0;
+            mark(u, line, f->recommended_hz, f->mode < 10 ? digits[f->mode] : '+', " -#[]|o");
+        }
+    }
+    return beyond;
+}
+
+static void add_line(ruler *u, const mt_recommendation *r, const char *of)
+{
+    char line[ROOM];
+    const char *const name = of == NULL ? "" : of;
+    memset(line, ' ', (size_t)u->length);
+    line[u->length] = '\0';
+    draw_bands(u, r, of, line);
+    const int beyond = draw_modes(u, r, of, line);
+    mt_text_addf(u->out, "  %s%*s  %s", name, u->label - mt_text_width(name), "", line);
+    if (beyond > 0) {
+        mt_text_addf(u->out, " >%d", beyond);
+    }
+    while (!u->out->failed && u->out->s[u->out->length - 1] == ' ') {
+        u->out->s[--u->out->length] = '\0';
+    }
+    mt_text_add(u->out, "\n");
+}
+
+/* Distance of marks on a scale of this length: 1, 2 or 5 times a power of ten, about six. */
+static double step_of(double length)
+{
+    const double raw = length / 6.0;
+    const double power = pow(10.0, floor(log10(raw)));
+    const double lead = raw / power;
+    if (!(power > 0.0)) {
+        return length; /* next to nothing: one mark */
+    }
+    return power * (lead <= 1.0 ? 1.0 : lead <= 2.0 ? 2.0 : lead <= 5.0 ? 5.0 : 10.0);
+}
+
+static void add_scale(const ruler *u)
+{
+    char line[ROOM];
+    char number[NUMBER];
+    const double step = step_of(u->top);
+    int end = 0; /* of what stands there so far */
+    memset(line, ' ', sizeof line);
+    for (int k = 0; k * step <= u->top; k++) {
+        (void)mt_snprintf(number, sizeof number, "%.6g", k * step);
+        const int length = (int)strlen(number);
+        const int at = place(u, k * step);
+        if (at >= end && at + length < ROOM) {
+            memcpy(line + at, number, (size_t)length);
+            end = at + length + 1;
+        }
+    }
+    line[end > 0 ? end - 1 : 0] = '\0';
+    mt_text_addf(u->out, "  %*s  %s Hz\n", u->label, "", line);
+}
+
+static void add_legend(const ruler *u)
+{
+    static const struct {
+        char sign;
+        const char *text;
+    } signs[] = {{'o', "o: before"},    {'#', "#: band"},        {'-', "-: its margin"},
+                 {'|', "|: target"},    {'[', "[: lower limit"}, {']', "]: upper limit"},
+                 {'+', "+: from 10 on"}};
+    mt_text_add(u->out, "  digits: modes");
+    for (int i = 0; i < MT_COUNT(signs); i++) {
+        if (u->has[(unsigned char)signs[i].sign]) {
+            mt_text_addf(u->out, ", %s", signs[i].text);
+        }
+    }
+    mt_text_add(u->out, "\n");
+}
+
+/* The first row of its configuration? */
+static bool is_first(const mt_recommendation *r, int i)
+{
+    for (int k = 0; k < i; k++) {
+        if (same(r->frequencies[k].configuration, r->frequencies[i].configuration)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void mt_report_ruler(const mt_recommendation *r, int width, mt_text *out)
+{
+    ruler u = {.top = highest(r) * ABOVE, .length = USUAL, .out = out};
+    if (!(u.top > 0.0) || !isfinite(u.top)) {
+        return;
+    }
+    for (int i = 0; i < r->n_frequencies; i++) {
+        const char *const name = r->frequencies[i].configuration;
+        const int own = name == NULL ? 0 : mt_text_width(name);
+        u.label = own > u.label ? own : u.label;
+    }
+    if (width > 0) {
+        const int room = width - u.label - (2 * INDENT) - (int)sizeof " >99";
+        u.length = room < LEAST ? LEAST : room > MOST ? MOST : room;
+    }
+    for (int i = 0; i < r->n_frequencies; i++) {
+        if (is_first(r, i)) {
+            add_line(&u, r, r->frequencies[i].configuration);
+        }
+    }
+    add_scale(&u);
+    add_legend(&u);
+}

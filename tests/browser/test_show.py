@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pages of `modetune show`, of every shipped model and of what every shipped study answers, as a browser has them."""
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from browser import Browser
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.select import Select
+
+SOURCE = Path(os.environ.get("SOURCE_DIR", Path(__file__).resolve().parents[2]))
+PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
+MODELS = sorted(path for path in (SOURCE / "problems").glob("*.json") if path.name != "aircraft.json")
+STUDIES = sorted((SOURCE / "studies").glob("*.json"))
+SIZES = [(390, 844), (1280, 900), (1920, 1080)]
+DIGITS = 1e-7  # a page has nine, of a design with seventeen
+# All that a page says of the modes of the chosen configuration: one list per design, null where it says nothing.
+HERTZ = """
+return [...document.querySelectorAll('.modes tbody tr')].map((row) => [row.querySelector('label').textContent.trim(),
+    [...row.querySelectorAll('td.number')].map((cell) => [cell.dataset.hz === undefined ? null : Number(cell.dataset.hz),
+        cell.textContent])]);
+"""
+
+
+def program(*arguments):
+    """What the program prints; a study that is not solved is an answer, too."""
+    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+    if done.returncode > 1:
+        raise RuntimeError(f"{arguments}: exit status {done.returncode}\n{done.stderr}")
+    return done.stdout
+
+
+def frequencies(model):
+    """Configuration to the frequencies of its vibration modes, by their index."""
+    told = json.loads(program("modes", model, "--format", "json"))
+    return {one["configuration"]: {mode["index"]: mode["frequency_hz"] for mode in one.get("modes", []) if mode["index"]}
+            for one in (told if isinstance(told, list) else [told])}
+
+
+class Show(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(holder.cleanup)
+        cls.folder = Path(holder.name)
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
+        with ThreadPoolExecutor(2) as pool:
+            cls.pages = dict(pool.map(cls.of_model, MODELS)) | dict(pool.map(cls.of_study, STUDIES))
+
+    @classmethod
+    def of_model(cls, model):
+        page = cls.folder / f"{model.stem}.html"
+        page.write_text(program("show", model), encoding="utf-8")
+        return page, [frequencies(model)]
+
+    @classmethod
+    def of_study(cls, study):
+        """The page of its result, and the frequencies of the designs that it may show: original, then by rank."""
+        program("run", study, "--quiet", "-o", cls.folder / "results")
+        result = cls.folder / "results" / study.stem / "result.json"
+        page = cls.folder / f"{study.stem}.html"
+        model = (study.parent / json.loads(study.read_text(encoding="utf-8"))["model"]).resolve()
+        page.write_text(program("show", result, "--model", model), encoding="utf-8")
+        designs = [frequencies(model)]
+        for ranked in json.loads(result.read_text(encoding="utf-8"))["recommendations"]:
+            applied = cls.folder / f"{study.stem}_{ranked['rank']}.json"
+            applied.write_text(program("apply", result, "--rank", ranked["rank"], "--model", model), encoding="utf-8")
+            designs.append(frequencies(applied))
+        return page, designs
+
+    def compare(self, configuration, wanted):
+        """The panel's numbers, in every column that has a design."""
+        rows = self.browser.run(HERTZ)
+        told = 0
+        for label, cells in rows:
+            for (hz, text), design in zip(cells, wanted):
+                if label.isdigit() and hz is not None:
+                    right = design[configuration][int(label)]
+                    self.assertLessEqual(abs(hz - right), DIGITS * right, f"{configuration} mode {label}")
+                    self.assertAlmostEqual(float(text) / right, 1, places=5)
+                    told += 1
+        expected = sum(min(len(design[configuration]), 12) for design in wanted)
+        # a mode that has its name in both designs stands in one row, wherever it is
+        self.assertEqual(told, expected, f"{configuration}: {rows}")
+
+    def layouts(self):
+        for width, height in SIZES:
+            for dark in (False, True):
+                self.browser.screen(width, height, dark)
+                self.browser.settle()
+                self.assertEqual(self.browser.problems(), [], f"{width} {'dark' if dark else 'light'}")
+
+    def handle(self):
+        """Every mode, the whole drive and the keys of the view, as hands would."""
+        self.browser.run("document.querySelectorAll('.modes input').forEach((input) => input.click())")
+        self.browser.settle()
+        if self.browser.all("#drive"):
+            slider = self.browser.one("#drive")
+            for key in (Keys.HOME, Keys.ARROW_RIGHT, Keys.END):
+                slider.send_keys(key)
+                self.browser.settle()
+        self.browser.one("canvas").send_keys(Keys.ARROW_LEFT, "+", "x", "y", "z", "0")
+
+    def page(self, path, designs):
+        scene_of = "return mt.scene()"
+        self.browser.screen()
+        self.browser.open(path)
+        scene = self.browser.run(scene_of)
+        shown = [designs[design["rank"]] for design in scene["designs"][:2]]
+        names = [one["name"] for one in scene["designs"][0]["configurations"]]
+        for place, name in enumerate(names):
+            if len(names) > 1:
+                Select(self.browser.one("select")).select_by_index(place)
+                self.browser.settle()
+            self.compare(name, shown)
+        self.handle()
+        self.layouts()
+
+    def test_every_model_and_every_answer(self):
+        self.assertGreaterEqual(len(self.pages), 25)
+        for path, designs in self.pages.items():
+            with self.subTest(page=path.stem):
+                self.page(path, designs)
+
+    def test_it_is_printed(self):
+        path = next(iter(self.pages))
+        self.browser.screen(dark=True)
+        self.browser.open(path)
+        self.assertTrue(self.browser.pdf().startswith(b"%PDF"))
+
+
+if __name__ == "__main__":
+    unittest.main()
