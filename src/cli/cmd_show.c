@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune show: a mechanism as a page that moves, as JSON, or as a still picture. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/cli.h"
 #include "cli/find_model.h"
 #include "cli/picture.h"
+#include "cli/scene_designs.h"
 #include "io/file.h"
 #include "io/folder.h"
 #include "io/write_scene.h"
-#include "model/judge.h"
 #include "report/page.h"
 #include "scene/scene.h"
 
@@ -42,21 +41,6 @@ static mt_status is_result(const char *path, bool *is)
     return rc == MT_E_MEMORY ? rc : MT_OK;
 }
 
-/* Names that the model gives to modes, of the design in its file. */
-static mt_status name_modes(subject *o, mt_scene_ask *ask, mt_err *err)
-{
-    const mt_model *const m = o->s.model;
-    mt_scene_name *const names = mt_arena_alloc(&o->s.mem, (size_t)m->n_modes, sizeof *names);
-    MT_TRY(mt_arena_check(&o->s.mem, err));
-    for (int i = 0; i < m->n_modes; i++) {
-        names[i] =
-            (mt_scene_name){m->modes[i].configuration, m->modes[i].index, m->modes[i].name.s};
-    }
-    ask->names = names;
-    ask->n_names = m->n_modes;
-    return MT_OK;
-}
-
 static mt_status of_model(const mt_args *args, subject *o, mt_err *err)
 {
     o->asks = mt_arena_alloc(&o->s.mem, 1, sizeof *o->asks);
@@ -67,99 +51,8 @@ static mt_status of_model(const mt_args *args, subject *o, mt_err *err)
                                 .at = o->s.at,
                                 .n_shown = -1};
     o->n = 1;
-    return args->n_sets == 0 ? name_modes(o, &o->asks[0], err) : MT_OK;
-}
-
-/* A parameter of the model by its name in the result, with a value that is one. */
-static mt_status take(const subject *o, const char *name, double value, int *inputs, double *at,
-                      int *n, mt_err *err)
-{
-    const int p = mt_model_find_parameter(o->s.model, name);
-    if (p == MT_ABSENT) {
-        return mt_fail(err, MT_E_INPUT, "%s: there is no parameter \"%s\"", o->s.path, name);
-    }
-    if (!isfinite(value)) {
-        return mt_fail(err, MT_E_INPUT, "the result has no value of \"%s\"", name);
-    }
-    for (int i = 0; i < *n; i++) {
-        if (inputs[i] == p) {
-            return mt_fail(err, MT_E_INPUT, "the result has a value of \"%s\" twice", name);
-        }
-    }
-    inputs[*n] = p;
-    at[(*n)++] = value;
-    return MT_OK;
-}
-
-/* Modes that the result names at a recommended design. */
-static mt_status name_tracked(subject *o, const mt_recommendation *r, mt_scene_ask *ask,
-                              mt_err *err)
-{
-    mt_scene_name *const names =
-        mt_arena_alloc(&o->s.mem, (size_t)r->n_frequencies, sizeof *names);
-    MT_TRY(mt_arena_check(&o->s.mem, err));
-    for (int i = 0; i < r->n_frequencies; i++) {
-        const mt_result_frequency *const f = &r->frequencies[i];
-        if (f->name != NULL && f->identity != NULL && strcmp(f->identity, "tracked") == 0) {
-            const int c = mt_model_find_configuration(o->s.model, f->configuration);
-            names[ask->n_names++] = (mt_scene_name){c, f->mode, f->name};
-        }
-    }
-    ask->names = names;
-    return MT_OK;
-}
-
-/* What was set when the study was asked, then the variables at this design; `original`: as they
- * were before. */
-static mt_status design(subject *o, const mt_recommendation *r, bool original,
-                        mt_scene_ask *ask, mt_err *err)
-{
-    const mt_result_run *const run = &o->result->run;
-    const size_t most = (size_t)r->n_parameters + (size_t)run->n_overrides;
-    int *const inputs = mt_arena_int(&o->s.mem, most);
-    double *const at = mt_arena_f64(&o->s.mem, most, 1);
-    MT_TRY(mt_arena_check(&o->s.mem, err));
-    *ask = (mt_scene_ask){.label = original ? "original" : "recommended",
-                          .rank = original ? 0 : r->rank,
-                          .inputs = inputs,
-                          .at = at,
-                          .shown = inputs};
-    for (int i = 0; i < r->n_parameters; i++) {
-        const mt_result_parameter *const p = &r->parameters[i];
-        MT_TRY(take(o, p->name, original ? p->original : p->recommended, inputs, at,
-                    &ask->n_inputs, err));
-    }
-    ask->n_shown = ask->n_inputs;
-    bool set = false;
-    for (int i = 0; i < run->n_overrides; i++) {
-        const mt_result_override *const v = &run->overrides[i];
-        if (strcmp(v->kind, "parameter") == 0) {
-            set = true;
-            MT_TRY(take(o, v->name, v->value, inputs, at, &ask->n_inputs, err));
-        }
-    }
-    for (int i = 0; i < o->s.n_configurations; i++) {
-        MT_TRY(mt_model_admit(o->s.model, o->s.configurations[i], ask->n_inputs, inputs, at,
-                              &o->s.mem, err));
-    }
-    if (original) {
-        return set ? MT_OK : name_modes(o, ask, err);
-    }
-    return name_tracked(o, r, ask, err);
-}
-
-static mt_status of_result(subject *o, mt_err *err)
-{
-    static const mt_recommendation none = {.rank = 0};
-    const mt_result *const r = o->result;
-    const int n = r->n_recommendations;
-    o->asks = mt_arena_alloc(&o->s.mem, (size_t)n + 1, sizeof *o->asks);
-    MT_TRY(mt_arena_check(&o->s.mem, err));
-    MT_TRY(design(o, n > 0 ? &r->recommendations[0] : &none, true, &o->asks[o->n++], err));
-    for (int i = 0; i < n; i++) {
-        MT_TRY(design(o, &r->recommendations[i], false, &o->asks[o->n++], err));
-    }
-    return MT_OK;
+    return args->n_sets == 0 ? mt_scene_name_modes(o->s.model, &o->s.mem, &o->asks[0], err)
+                             : MT_OK;
 }
 
 /* Load what the operand names. Returns the exit status, everything said. */
@@ -203,7 +96,9 @@ static int load(const mt_args *args, subject *o)
         return mt_cli_failed(rc, &err);
     }
     code = mt_subject_load(args, o->path, configuration, &o->s);
-    rc = code == MT_EXIT_DONE ? of_result(o, &err) : MT_OK;
+    rc = code == MT_EXIT_DONE
+             ? mt_scene_designs(o->s.model, o->result, &o->s.mem, &o->asks, &o->n, &err)
+             : MT_OK;
     (void)mt_err_in(&err, rc, "%s", operand);
     return rc == MT_OK ? code : mt_cli_failed(rc, &err);
 }
