@@ -103,15 +103,27 @@ static int load(const mt_args *args, subject *o)
     return rc == MT_OK ? code : mt_cli_failed(rc, &err);
 }
 
+/* Each reason once, with the first configuration that it stands in. */
 static void warn(const mt_scene *scene, const char *path)
 {
+    const mt_scene_view *last = NULL;
+    int more = 0;
     for (int d = 0; d < scene->n_designs; d++) {
         for (int i = 0; i < scene->designs[d].n_views; i++) {
             const mt_scene_view *const v = &scene->designs[d].views[i];
-            if (v->error != NULL) {
-                mt_terminal_warning("%s: configuration \"%s\": %s", path, v->name, v->error);
+            if (v->error == NULL) {
+                continue;
             }
+            if (last != NULL && strcmp(last->error, v->error) == 0) {
+                more++;
+                continue;
+            }
+            mt_terminal_warning("%s: configuration \"%s\": %s", path, v->name, v->error);
+            last = v;
         }
+    }
+    if (more > 0) {
+        mt_terminal_warning("%s: %d more like these: choose what to show with -c", path, more);
     }
 }
 

@@ -16,12 +16,14 @@
 /* Vibration modes of a configuration at most, and as many rigid-body and unstable ones; and the
  * positions of a driven joint. */
 enum { MT_SCENE_MODES = 12, MT_SCENE_POSITIONS = 21 };
-/* What a page can show: bodies of one configuration; those of all configurations and designs;
- * and times the positions of their drives. What exceeds this is left out, and says so. */
-enum { MT_SCENE_BODIES = 2000, MT_SCENE_ALL_BODIES = 20000, MT_SCENE_POSES = 40000 };
-/* Of more bodies than these not all modes are sought, only the lowest where there is a short
- * way to them; and no drive is followed. */
-enum { MT_SCENE_DENSE = 400, MT_SCENE_DRIVEN = 200 };
+/* What a page can show: items (bodies, and four joints, springs, sensors or the like as one) of
+ * one configuration; those of all configurations and designs; and bodies times the positions of
+ * their drives. What exceeds this is left out, and says so. */
+enum { MT_SCENE_ITEMS = 3000, MT_SCENE_ALL_ITEMS = 9000, MT_SCENE_POSES = 40000 };
+/* What looking may cost in all, in operations: about a minute. Beyond it drives are not
+ * followed, and of large mechanisms without a short way to their lowest modes no modes are
+ * sought. */
+#define MT_SCENE_WORK 2e11
 
 typedef enum mt_scene_kind { MT_SCENE_GROUND, MT_SCENE_BODY, MT_SCENE_LINK } mt_scene_kind;
 
