@@ -7,9 +7,12 @@ import unittest
 import xml.etree.ElementTree as ET
 from html.parser import HTMLParser
 
+import jsonschema
+
 from common_cli import MODEL, SOURCE, CliTest, study
 
 HOSTILE = "</script><img src=x onerror=alert(1)>"
+SCHEMA = jsonschema.Draft7Validator(json.loads((SOURCE / "schemas/scene.schema.json").read_text(encoding="utf-8")))
 MODES, POSITIONS = 12, range(15, 26)
 SAME = 2e-5  # of the size: places have six digits
 MODELS = sorted(path for path in (SOURCE / "problems").glob("*.json") if '"modetune-model/' in path.read_text(encoding="utf-8"))
@@ -160,6 +163,7 @@ class Show(CliTest):
                 scene = parse(done.stdout)
                 self.assertTrue(all(math.isfinite(x) for x in numbers(scene)))
                 self.assertEqual(list(faults(scene)), [])
+                self.assertEqual([error.message for error in SCHEMA.iter_errors(scene)], [])
                 self.assertEqual([v["error"] for v in scene["designs"][0]["configurations"] if v["error"]], [])
                 self.assertEqual(scene["designs"][0]["label"], "original")
 
@@ -221,6 +225,7 @@ class Show(CliTest):
         self.expect(0, "run", "--quiet", "studies/two.json")
         result = json.loads((self.folder / "results/two/result.json").read_text(encoding="utf-8"))
         scene = parse(self.expect(0, "show", "--format", "json", "-c", "held", "results/two/result.json").stdout)
+        self.assertEqual([error.message for error in SCHEMA.iter_errors(scene)], [])
         ranks = [r["rank"] for r in result["recommendations"]]
         self.assertEqual([(d["label"], d["rank"]) for d in scene["designs"]], [("original", 0)] + [("recommended", r) for r in ranks])
         self.assertEqual(list(faults(scene)), [])
@@ -241,6 +246,7 @@ class Show(CliTest):
         path = self.write("ghost.json", '{"format": "modetune-model/1", "dimension": 2, "bodies": '
                                         '[{"name": "ghost", "mass_kg": 0, "inertia_kg_m2": 0, "centre": [1, 2]}]}')
         done = self.expect(0, "show", "--format", "json", path)
+        self.assertEqual([error.message for error in SCHEMA.iter_errors(parse(done.stdout))], [])
         view = parse(done.stdout)["designs"][0]["configurations"][0]
         self.assertIn("neither mass nor stiffness", view["error"])
         self.assertIn(view["error"], done.stderr)
