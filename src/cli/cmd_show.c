@@ -22,15 +22,16 @@ typedef struct subject {
     mt_scene_ask *asks;
 } subject;
 
-/* Does the file say that it is a result? What cannot be read is told by who reads it. */
-static mt_status is_result(const char *path, bool *is)
+/* Does the file say that it is a result? What is wrong with its text is told by who reads it
+ * whole. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
+static mt_status is_result(const char *path, bool *is, mt_err *err)
 {
     static const char format[] = "modetune-result/";
     mt_file file = {.bytes = NULL};
     mt_json *doc = NULL;
-    mt_status rc = mt_file_read(path, NULL, MT_JSON_MAX_BYTES, &file, NULL);
-    rc = rc == MT_OK ? mt_json_parse(file.bytes, file.length, &doc, NULL) : rc;
     *is = false;
+    mt_status rc = mt_file_read(path, NULL, MT_JSON_MAX_BYTES, &file, err);
+    rc = rc == MT_OK ? mt_json_parse(file.bytes, file.length, &doc, err) : rc;
     if (rc == MT_OK) {
         const mt_addr member = mt_json_member(doc, MT_JSON_ROOT, "format");
         *is = member != MT_NO_ADDR && mt_json_type_of(doc, member) == MT_JSON_STRING &&
@@ -38,7 +39,7 @@ static mt_status is_result(const char *path, bool *is)
     }
     mt_json_delete(doc);
     mt_file_free(&file);
-    return rc == MT_E_MEMORY ? rc : MT_OK;
+    return rc == MT_E_MEMORY || rc == MT_E_SYSTEM ? rc : MT_OK;
 }
 
 static mt_status of_model(const mt_args *args, subject *o, mt_err *err)
@@ -65,9 +66,9 @@ static int load(const mt_args *args, subject *o)
     mt_err err = {.code = MT_OK};
     mt_file file = {.bytes = NULL};
     bool result = false;
-    mt_status rc = is_result(operand, &result);
+    mt_status rc = is_result(operand, &result, &err);
     if (rc != MT_OK) {
-        return mt_cli_failed(mt_fail_memory(&err), &err);
+        return mt_cli_failed(rc, &err);
     }
     if (!result && args->given[MT_OPT_MODEL]) {
         return mt_cli_failed(

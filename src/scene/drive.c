@@ -108,7 +108,7 @@ static void fill_pose(const walk *w, double *pose)
                 }
                 out[3 + (3 * i) + k] = sum;
             }
-            mt_scene_clean(1.0, out + 3 + (3 * i));
+            mt_scene_clean(1.0, out + 3 + ((ptrdiff_t)3 * i));
         }
         mt_scene_clean(f->sys->length_m, out);
     }

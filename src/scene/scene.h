@@ -122,26 +122,26 @@ typedef struct mt_scene_drive {
 /* One configuration at one design. */
 typedef struct mt_scene_view {
     const char *name;
-    const char *error; /* why there are no modes; NULL */
-    int n_bodies;      /* 0: not even a drawing; else the ground first */
-    mt_scene_body *bodies;
-    int n_points;
+    const char *error;     /* why there are no modes; NULL */
+    mt_scene_body *bodies; /* the ground first */
     mt_scene_point *points;
-    int n_lines;
     mt_scene_line *lines;
-    int n_joints;
     mt_scene_joint *joints;
-    int n_springs;
     mt_scene_spring *springs;
-    int n_dampers;
     mt_scene_spring *dampers;
-    int n_sensors;
     mt_scene_arrow *sensors;
-    int n_loads;
     mt_scene_arrow *loads;
-    int n_modes;
     mt_scene_mode *modes;
     mt_scene_drive *drive; /* NULL: none */
+    int n_bodies;          /* 0: not even a drawing */
+    int n_points;
+    int n_lines;
+    int n_joints;
+    int n_springs;
+    int n_dampers;
+    int n_sensors;
+    int n_loads;
+    int n_modes;
 } mt_scene_view;
 
 typedef struct mt_scene_parameter {
