@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune show: a mechanism as a page that moves, as JSON, or as a still picture. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/cli.h"
 #include "cli/find_model.h"
 #include "cli/picture.h"
+#include "cli/scene_designs.h"
 #include "io/file.h"
 #include "io/folder.h"
 #include "io/write_scene.h"
-#include "model/judge.h"
 #include "report/page.h"
 #include "scene/scene.h"
 
@@ -23,15 +22,16 @@ typedef struct subject {
     mt_scene_ask *asks;
 } subject;
 
-/* Does the file say that it is a result? What cannot be read is told by who reads it. */
-static mt_status is_result(const char *path, bool *is)
+/* Does the file say that it is a result? What is wrong with its text is told by who reads it
+ * whole. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
+static mt_status is_result(const char *path, bool *is, mt_err *err)
 {
     static const char format[] = "modetune-result/";
     mt_file file = {.bytes = NULL};
     mt_json *doc = NULL;
-    mt_status rc = mt_file_read(path, NULL, MT_JSON_MAX_BYTES, &file, NULL);
-    rc = rc == MT_OK ? mt_json_parse(file.bytes, file.length, &doc, NULL) : rc;
     *is = false;
+    mt_status rc = mt_file_read(path, NULL, MT_JSON_MAX_BYTES, &file, err);
+    rc = rc == MT_OK ? mt_json_parse(file.bytes, file.length, &doc, err) : rc;
     if (rc == MT_OK) {
         const mt_addr member = mt_json_member(doc, MT_JSON_ROOT, "format");
         *is = member != MT_NO_ADDR && mt_json_type_of(doc, member) == MT_JSON_STRING &&
@@ -39,22 +39,7 @@ static mt_status is_result(const char *path, bool *is)
     }
     mt_json_delete(doc);
     mt_file_free(&file);
-    return rc == MT_E_MEMORY ? rc : MT_OK;
-}
-
-/* Names that the model gives to modes, of the design in its file. */
-static mt_status name_modes(subject *o, mt_scene_ask *ask, mt_err *err)
-{
-    const mt_model *const m = o->s.model;
-    mt_scene_name *const names = mt_arena_alloc(&o->s.mem, (size_t)m->n_modes, sizeof *names);
-    MT_TRY(mt_arena_check(&o->s.mem, err));
-    for (int i = 0; i < m->n_modes; i++) {
-        names[i] =
-            (mt_scene_name){m->modes[i].configuration, m->modes[i].index, m->modes[i].name.s};
-    }
-    ask->names = names;
-    ask->n_names = m->n_modes;
-    return MT_OK;
+    return rc == MT_E_MEMORY || rc == MT_E_SYSTEM ? rc : MT_OK;
 }
 
 static mt_status of_model(const mt_args *args, subject *o, mt_err *err)
@@ -67,99 +52,8 @@ static mt_status of_model(const mt_args *args, subject *o, mt_err *err)
                                 .at = o->s.at,
                                 .n_shown = -1};
     o->n = 1;
-    return args->n_sets == 0 ? name_modes(o, &o->asks[0], err) : MT_OK;
-}
-
-/* A parameter of the model by its name in the result, with a value that is one. */
-static mt_status take(const subject *o, const char *name, double value, int *inputs, double *at,
-                      int *n, mt_err *err)
-{
-    const int p = mt_model_find_parameter(o->s.model, name);
-    if (p == MT_ABSENT) {
-        return mt_fail(err, MT_E_INPUT, "%s: there is no parameter \"%s\"", o->s.path, name);
-    }
-    if (!isfinite(value)) {
-        return mt_fail(err, MT_E_INPUT, "the result has no value of \"%s\"", name);
-    }
-    for (int i = 0; i < *n; i++) {
-        if (inputs[i] == p) {
-            return mt_fail(err, MT_E_INPUT, "the result has a value of \"%s\" twice", name);
-        }
-    }
-    inputs[*n] = p;
-    at[(*n)++] = value;
-    return MT_OK;
-}
-
-/* Modes that the result names at a recommended design. */
-static mt_status name_tracked(subject *o, const mt_recommendation *r, mt_scene_ask *ask,
-                              mt_err *err)
-{
-    mt_scene_name *const names =
-        mt_arena_alloc(&o->s.mem, (size_t)r->n_frequencies, sizeof *names);
-    MT_TRY(mt_arena_check(&o->s.mem, err));
-    for (int i = 0; i < r->n_frequencies; i++) {
-        const mt_result_frequency *const f = &r->frequencies[i];
-        if (f->name != NULL && f->identity != NULL && strcmp(f->identity, "tracked") == 0) {
-            const int c = mt_model_find_configuration(o->s.model, f->configuration);
-            names[ask->n_names++] = (mt_scene_name){c, f->mode, f->name};
-        }
-    }
-    ask->names = names;
-    return MT_OK;
-}
-
-/* What was set when the study was asked, then the variables at this design; `original`: as they
- * were before. */
-static mt_status design(subject *o, const mt_recommendation *r, bool original,
-                        mt_scene_ask *ask, mt_err *err)
-{
-    const mt_result_run *const run = &o->result->run;
-    const size_t most = (size_t)r->n_parameters + (size_t)run->n_overrides;
-    int *const inputs = mt_arena_int(&o->s.mem, most);
-    double *const at = mt_arena_f64(&o->s.mem, most, 1);
-    MT_TRY(mt_arena_check(&o->s.mem, err));
-    *ask = (mt_scene_ask){.label = original ? "original" : "recommended",
-                          .rank = original ? 0 : r->rank,
-                          .inputs = inputs,
-                          .at = at,
-                          .shown = inputs};
-    for (int i = 0; i < r->n_parameters; i++) {
-        const mt_result_parameter *const p = &r->parameters[i];
-        MT_TRY(take(o, p->name, original ? p->original : p->recommended, inputs, at,
-                    &ask->n_inputs, err));
-    }
-    ask->n_shown = ask->n_inputs;
-    bool set = false;
-    for (int i = 0; i < run->n_overrides; i++) {
-        const mt_result_override *const v = &run->overrides[i];
-        if (strcmp(v->kind, "parameter") == 0) {
-            set = true;
-            MT_TRY(take(o, v->name, v->value, inputs, at, &ask->n_inputs, err));
-        }
-    }
-    for (int i = 0; i < o->s.n_configurations; i++) {
-        MT_TRY(mt_model_admit(o->s.model, o->s.configurations[i], ask->n_inputs, inputs, at,
-                              &o->s.mem, err));
-    }
-    if (original) {
-        return set ? MT_OK : name_modes(o, ask, err);
-    }
-    return name_tracked(o, r, ask, err);
-}
-
-static mt_status of_result(subject *o, mt_err *err)
-{
-    static const mt_recommendation none = {.rank = 0};
-    const mt_result *const r = o->result;
-    const int n = r->n_recommendations;
-    o->asks = mt_arena_alloc(&o->s.mem, (size_t)n + 1, sizeof *o->asks);
-    MT_TRY(mt_arena_check(&o->s.mem, err));
-    MT_TRY(design(o, n > 0 ? &r->recommendations[0] : &none, true, &o->asks[o->n++], err));
-    for (int i = 0; i < n; i++) {
-        MT_TRY(design(o, &r->recommendations[i], false, &o->asks[o->n++], err));
-    }
-    return MT_OK;
+    return args->n_sets == 0 ? mt_scene_name_modes(o->s.model, &o->s.mem, &o->asks[0], err)
+                             : MT_OK;
 }
 
 /* Load what the operand names. Returns the exit status, everything said. */
@@ -172,9 +66,9 @@ static int load(const mt_args *args, subject *o)
     mt_err err = {.code = MT_OK};
     mt_file file = {.bytes = NULL};
     bool result = false;
-    mt_status rc = is_result(operand, &result);
+    mt_status rc = is_result(operand, &result, &err);
     if (rc != MT_OK) {
-        return mt_cli_failed(mt_fail_memory(&err), &err);
+        return mt_cli_failed(rc, &err);
     }
     if (!result && args->given[MT_OPT_MODEL]) {
         return mt_cli_failed(
@@ -203,20 +97,34 @@ static int load(const mt_args *args, subject *o)
         return mt_cli_failed(rc, &err);
     }
     code = mt_subject_load(args, o->path, configuration, &o->s);
-    rc = code == MT_EXIT_DONE ? of_result(o, &err) : MT_OK;
+    rc = code == MT_EXIT_DONE
+             ? mt_scene_designs(o->s.model, o->result, &o->s.mem, &o->asks, &o->n, &err)
+             : MT_OK;
     (void)mt_err_in(&err, rc, "%s", operand);
     return rc == MT_OK ? code : mt_cli_failed(rc, &err);
 }
 
+/* Each reason once, with the first configuration that it stands in. */
 static void warn(const mt_scene *scene, const char *path)
 {
+    const mt_scene_view *last = NULL;
+    int more = 0;
     for (int d = 0; d < scene->n_designs; d++) {
         for (int i = 0; i < scene->designs[d].n_views; i++) {
             const mt_scene_view *const v = &scene->designs[d].views[i];
-            if (v->error != NULL) {
-                mt_terminal_warning("%s: configuration \"%s\": %s", path, v->name, v->error);
+            if (v->error == NULL) {
+                continue;
             }
+            if (last != NULL && strcmp(last->error, v->error) == 0) {
+                more++;
+                continue;
+            }
+            mt_terminal_warning("%s: configuration \"%s\": %s", path, v->name, v->error);
+            last = v;
         }
+    }
+    if (more > 0) {
+        mt_terminal_warning("%s: %d more like these: choose what to show with -c", path, more);
     }
 }
 

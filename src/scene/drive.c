@@ -108,7 +108,7 @@ static void fill_pose(const walk *w, double *pose)
                 }
                 out[3 + (3 * i) + k] = sum;
             }
-            mt_scene_clean(1.0, out + 3 + (3 * i));
+            mt_scene_clean(1.0, out + 3 + ((ptrdiff_t)3 * i));
         }
         mt_scene_clean(f->sys->length_m, out);
     }
@@ -183,7 +183,7 @@ static mt_status sweep(walk *w, const range *r, mt_err *err)
     return mt_arena_check(f->mem, err);
 }
 
-mt_status mt_scene_follow(mt_scene_frame *f, long *poses, mt_err *err)
+mt_status mt_scene_follow(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
 {
     range r;
     mt_scene_view *const v = f->view;
@@ -198,12 +198,14 @@ mt_status mt_scene_follow(mt_scene_frame *f, long *poses, mt_err *err)
     out->angle = r.drive->position_is_angle;
     out->at = r.own;
     const int n = r.low < r.high ? MT_SCENE_POSITIONS : 1;
-    const long needed = (long)n * v->n_bodies;
-    if (v->n_bodies - 1 > MT_SCENE_DRIVEN || needed > *poses) {
-        out->why = "too many bodies to show them in every position";
+    const double poses = (double)n * v->n_bodies;
+    const double work = n * mt_scene_work(f->sys->nq);
+    if (poses > left->poses || work > left->work) {
+        out->why = "too many bodies to show all of them in every position";
         return MT_OK;
     }
-    *poses -= needed;
+    left->poses -= poses;
+    left->work -= work;
     out->positions = mt_arena_alloc(f->mem, (size_t)n, sizeof *out->positions);
     MT_TRY(mt_arena_check(f->mem, err));
     out->n_positions = n;

@@ -10,6 +10,7 @@
  */
 #include "scene/scene_priv.h"
 
+#include <float.h>
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -22,6 +23,8 @@ static const double SAME = 1e-9;
 static const double FAR_RADII = 0.5;
 /* Lines of one body, and points that are compared for being the same. */
 enum { MOST_LINES = 200 };
+/* What is kept of a distance. */
+enum { DISTANCE_BITS = 30 };
 
 /* A place that a body holds. */
 typedef struct hold {
@@ -274,6 +277,9 @@ static void judge(const holds *h, const hold *it)
         off = distance_to_body(h, it->body, it->joint, it->at);
         break;
     }
+    /* rounded, so that configurations of one shape have one distance */
+    const double step = ldexp(1.0, ilogb(fmax(off, DBL_MIN)) - DISTANCE_BITS);
+    off = step * rint(off / step);
     if (off > SAME * size_of(h) && off > joint->distance) {
         joint->distance = off;
         joint->far = it->body;

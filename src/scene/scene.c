@@ -10,11 +10,19 @@
 #include "model/values.h"
 #include "scene/distance.h"
 
-/* What is left of what a page can show. */
-typedef struct room {
-    long bodies;
-    long poses;
-} room;
+double mt_scene_work(double coordinates)
+{
+    /* of a reduction to tridiagonal form and back, and of what comes before */
+    return 20.0 * coordinates * coordinates * coordinates;
+}
+
+/* About how much there is to show in a configuration. */
+static double items_of(const mt_model *m, int configuration)
+{
+    const double others = (double)m->n_joints + (double)m->n_springs + (double)m->n_sensors +
+                          (double)m->n_loads + (double)m->n_points;
+    return mt_lowest_bodies(m, configuration) + (others / 4.0);
+}
 
 /* Positions of modes to show: those before the vibration mode that is one too many. */
 static int shown_of(const mt_modes *modes)
@@ -80,10 +88,11 @@ static mt_status as_drawn(mt_scene_frame *f, mt_err *err)
     return rc;
 }
 
-static mt_status look(mt_scene_frame *f, room *left, mt_err *err)
+static mt_status look(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
 {
     const mt_scene_ask *const a = f->ask;
     const double bodies = mt_lowest_bodies(f->model, f->configuration);
+    const double work = mt_scene_work(bodies * (f->model->dimension == 2 ? 3.0 : 6.0));
     const mt_lowest_want want = {.count = MT_SCENE_MODES, .shapes = true};
     mt_lowest *l = NULL;
     mt_analysis *by = NULL;
@@ -94,35 +103,38 @@ static mt_status look(mt_scene_frame *f, room *left, mt_err *err)
     }
     if (rc == MT_OK && l != NULL && l->way != MT_LOWEST_NONE) {
         rc = by_lowest(f, l, err);
-    } else if (rc == MT_OK && bodies > MT_SCENE_DENSE) {
-        rc = mt_fail(err, MT_E_INPUT, "its %.0f bodies are too many for all modes: %s", bodies,
-                     l->why);
+    } else if (rc == MT_OK && work > left->work) {
+        rc = mt_fail(err, MT_E_INPUT, "%.0f bodies are too many for all modes%s%s", bodies,
+                     l == NULL ? "" : ": ", l == NULL ? "" : l->why);
     } else if (rc == MT_OK) {
+        left->work -= work;
         rc = mt_analysis_new_lowest(f->model, f->configuration, a->n_inputs, a->inputs, a->at,
                                     MT_SCENE_MODES, &by, err);
         rc = rc == MT_OK ? by_analysis(f, by, err) : rc;
     }
-    rc = rc == MT_OK ? mt_scene_follow(f, &left->poses, err) : rc;
+    rc = rc == MT_OK ? mt_scene_follow(f, left, err) : rc;
     mt_analysis_delete(by);
     mt_lowest_delete(l);
     return rc;
 }
 
 /* One configuration of a design; what it fails with is said there. */
-static mt_status view_new(mt_scene_frame *f, room *left, mt_err *err)
+static mt_status view_new(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
 {
     const char *const name = f->model->configurations[f->configuration].name.s;
-    const double bodies = mt_lowest_bodies(f->model, f->configuration);
+    const double items = items_of(f->model, f->configuration);
     mt_err why = {.code = MT_OK};
     *f->view = (mt_scene_view){.name = mt_arena_strdup(f->mem, name)};
-    if (bodies > MT_SCENE_BODIES || bodies > (double)left->bodies) {
-        f->view->error =
-            bodies > MT_SCENE_BODIES
-                ? mt_arena_printf(f->mem, "%.0f bodies are more than can be shown", bodies)
-                : "left out: what is shown before it fills the page";
+    if (items > MT_SCENE_ITEMS || items > left->items) {
+        f->view->error = items > MT_SCENE_ITEMS
+                             ? mt_arena_printf(f->mem,
+                                               "%.0f bodies, with all that they hold, are more "
+                                               "than can be shown",
+                                               mt_lowest_bodies(f->model, f->configuration))
+                             : "left out, as others fill the page";
         return mt_arena_check(f->mem, err);
     }
-    left->bodies -= (long)bodies;
+    left->items -= items;
     mt_status rc = look(f, left, &why);
     if (rc == MT_OK) {
         return mt_arena_check(f->mem, err);
@@ -184,7 +196,7 @@ typedef struct question {
     const mt_model *model;
     int n_configurations;
     const int *configurations;
-    room left;
+    mt_scene_room left;
     mt_arena work;
 } question;
 
@@ -349,7 +361,7 @@ mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_ask 
     question q = {.model = model,
                   .n_configurations = n_configurations,
                   .configurations = configurations,
-                  .left = {MT_SCENE_ALL_BODIES, MT_SCENE_POSES}};
+                  .left = {MT_SCENE_ALL_ITEMS, MT_SCENE_POSES, MT_SCENE_WORK}};
     mt_scene *const scene = calloc(1, sizeof *scene);
     *out = NULL;
     if (scene == NULL) {

@@ -16,12 +16,14 @@
 /* Vibration modes of a configuration at most, and as many rigid-body and unstable ones; and the
  * positions of a driven joint. */
 enum { MT_SCENE_MODES = 12, MT_SCENE_POSITIONS = 21 };
-/* What a page can show: bodies of one configuration; those of all configurations and designs;
- * and times the positions of their drives. What exceeds this is left out, and says so. */
-enum { MT_SCENE_BODIES = 2000, MT_SCENE_ALL_BODIES = 20000, MT_SCENE_POSES = 40000 };
-/* Of more bodies than these not all modes are sought, only the lowest where there is a short
- * way to them; and no drive is followed. */
-enum { MT_SCENE_DENSE = 400, MT_SCENE_DRIVEN = 200 };
+/* What a page can show: items (bodies, and four joints, springs, sensors or the like as one) of
+ * one configuration; those of all configurations and designs; and bodies times the positions of
+ * their drives. What exceeds this is left out, and says so. */
+enum { MT_SCENE_ITEMS = 3000, MT_SCENE_ALL_ITEMS = 9000, MT_SCENE_POSES = 40000 };
+/* What looking may cost in all, in operations: about a minute. Beyond it drives are not
+ * followed, and of large mechanisms without a short way to their lowest modes no modes are
+ * sought. */
+#define MT_SCENE_WORK 2e11
 
 typedef enum mt_scene_kind { MT_SCENE_GROUND, MT_SCENE_BODY, MT_SCENE_LINK } mt_scene_kind;
 
@@ -120,26 +122,26 @@ typedef struct mt_scene_drive {
 /* One configuration at one design. */
 typedef struct mt_scene_view {
     const char *name;
-    const char *error; /* why there are no modes; NULL */
-    int n_bodies;      /* 0: not even a drawing; else the ground first */
-    mt_scene_body *bodies;
-    int n_points;
+    const char *error;     /* why there are no modes; NULL */
+    mt_scene_body *bodies; /* the ground first */
     mt_scene_point *points;
-    int n_lines;
     mt_scene_line *lines;
-    int n_joints;
     mt_scene_joint *joints;
-    int n_springs;
     mt_scene_spring *springs;
-    int n_dampers;
     mt_scene_spring *dampers;
-    int n_sensors;
     mt_scene_arrow *sensors;
-    int n_loads;
     mt_scene_arrow *loads;
-    int n_modes;
     mt_scene_mode *modes;
     mt_scene_drive *drive; /* NULL: none */
+    int n_bodies;          /* 0: not even a drawing */
+    int n_points;
+    int n_lines;
+    int n_joints;
+    int n_springs;
+    int n_dampers;
+    int n_sensors;
+    int n_loads;
+    int n_modes;
 } mt_scene_view;
 
 typedef struct mt_scene_parameter {

@@ -26,6 +26,17 @@ typedef struct mt_scene_frame {
     mt_scene_view *view;
 } mt_scene_frame;
 
+/* What is left of what a page can show. */
+typedef struct mt_scene_room {
+    double items;
+    double poses;
+    double work;
+} mt_scene_room;
+
+/* scene.c: about what the modes of a configuration of so many coordinates cost, in
+ * operations. */
+double mt_scene_work(double coordinates);
+
 /* frame.c: values of the design and who is who; sys, ask, model, configuration, mem, work and
  * view are given. Fails: MT_E_DOMAIN, MT_E_MEMORY, MT_E_INTERNAL. */
 mt_status mt_scene_frame_new(mt_scene_frame *f, mt_err *err);
@@ -62,8 +73,7 @@ mt_status mt_scene_energy_new(const mt_scene_frame *f, mt_scene_energy **out, mt
 void mt_scene_energy_of(const mt_scene_energy *e, double lambda, const double *phi,
                         double *spring, double *body);
 
-/* drive.c: the range of the driven joint, where there is one. *poses: how many positions of
- * bodies may still be kept. */
-mt_status mt_scene_follow(mt_scene_frame *f, long *poses, mt_err *err);
+/* drive.c: the range of the driven joint, where there is one and room for it. */
+mt_status mt_scene_follow(mt_scene_frame *f, mt_scene_room *left, mt_err *err);
 
 #endif

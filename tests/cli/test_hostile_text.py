@@ -278,6 +278,7 @@ class Hunt:
             if (folders[0] / result).exists() and (folders[1] / result).exists():
                 self.both(path.name, folders, twins, ["check", result], next(forms))
                 self.both(path.name, folders, twins, ["report", result], next(forms))
+                self.both(path.name, folders, twins, ["show", result], "json")
                 self.both(path.name, folders, twins, ["apply", result], "text")
 
     def lay_out(self, top, documents, twins):
@@ -297,6 +298,7 @@ class Hunt:
             configurations = list(json.loads((folders[0] / given).read_text(encoding="utf-8")).get("configurations", {}))
             for command in ("check", "info", "modes", "sensitivity"):
                 self.both(path.name, folders, twins, [command, given], next(forms))
+            self.both(path.name, folders, twins, ["show", given], "json")
             joints = [j["name"] for j in document.get("joints", []) if j["type"] in ("revolute", "prismatic")]
             if joints and configurations:
                 self.both(path.name, folders, twins, ["sweep", given, "--drive", f"{joints[0]}=0:0.001:2", "-c", configurations[0]], next(forms))

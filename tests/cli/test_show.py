@@ -7,9 +7,12 @@ import unittest
 import xml.etree.ElementTree as ET
 from html.parser import HTMLParser
 
+import jsonschema
+
 from common_cli import MODEL, SOURCE, CliTest, study
 
 HOSTILE = "</script><img src=x onerror=alert(1)>"
+SCHEMA = jsonschema.Draft7Validator(json.loads((SOURCE / "schemas/scene.schema.json").read_text(encoding="utf-8")))
 MODES, POSITIONS = 12, range(15, 26)
 SAME = 2e-5  # of the size: places have six digits
 MODELS = sorted(path for path in (SOURCE / "problems").glob("*.json") if '"modetune-model/' in path.read_text(encoding="utf-8"))
@@ -160,6 +163,7 @@ class Show(CliTest):
                 scene = parse(done.stdout)
                 self.assertTrue(all(math.isfinite(x) for x in numbers(scene)))
                 self.assertEqual(list(faults(scene)), [])
+                self.assertEqual([error.message for error in SCHEMA.iter_errors(scene)], [])
                 self.assertEqual([v["error"] for v in scene["designs"][0]["configurations"] if v["error"]], [])
                 self.assertEqual(scene["designs"][0]["label"], "original")
 
@@ -221,6 +225,7 @@ class Show(CliTest):
         self.expect(0, "run", "--quiet", "studies/two.json")
         result = json.loads((self.folder / "results/two/result.json").read_text(encoding="utf-8"))
         scene = parse(self.expect(0, "show", "--format", "json", "-c", "held", "results/two/result.json").stdout)
+        self.assertEqual([error.message for error in SCHEMA.iter_errors(scene)], [])
         ranks = [r["rank"] for r in result["recommendations"]]
         self.assertEqual([(d["label"], d["rank"]) for d in scene["designs"]], [("original", 0)] + [("recommended", r) for r in ranks])
         self.assertEqual(list(faults(scene)), [])
@@ -241,10 +246,31 @@ class Show(CliTest):
         path = self.write("ghost.json", '{"format": "modetune-model/1", "dimension": 2, "bodies": '
                                         '[{"name": "ghost", "mass_kg": 0, "inertia_kg_m2": 0, "centre": [1, 2]}]}')
         done = self.expect(0, "show", "--format", "json", path)
+        self.assertEqual([error.message for error in SCHEMA.iter_errors(parse(done.stdout))], [])
         view = parse(done.stdout)["designs"][0]["configurations"][0]
         self.assertIn("neither mass nor stiffness", view["error"])
         self.assertIn(view["error"], done.stderr)
         self.assertEqual((len(view["bodies"]), view["modes"]), (2, []))
+
+    def test_what_is_too_large_is_left_out_and_told(self):
+        def chain(count, configurations):
+            return self.write(f"problems/chain{count}.json", json.dumps({
+                "format": "modetune-model/1", "dimension": 2, "configurations": {f"c{i}": {} for i in range(configurations)},
+                "bodies": [{"name": f"b{i}", "mass_kg": 1, "inertia_kg_m2": 1e-5, "centre": [0.01 * i + 0.005, 0]} for i in range(count)],
+                "joints": [{"name": f"j{i}", "type": "revolute", "bodies": [f"b{i - 1}" if i else "ground", f"b{i}"], "at": [0.01 * i, 0]} for i in range(count)],
+                "springs": [{"name": f"k{i}", "type": "torsion", "joint": f"j{i}", "stiffness_n_m_per_rad": 1000} for i in range(count)]}))
+        done = self.expect(0, "show", "--format", "json", chain(3000, 1))
+        view = parse(done.stdout)["designs"][0]["configurations"][0]
+        self.assertEqual(view["bodies"], [])
+        self.assertIn("more than can be shown", view["error"])
+        self.assertIn(view["error"], done.stderr)
+        done = self.expect(0, "show", "--format", "json", chain(1000, 8))
+        scene = parse(done.stdout)
+        self.assertEqual(list(faults({**scene, "designs": [{"configurations": [v for v in scene["designs"][0]["configurations"] if not v["error"]]}]})), [])
+        self.assertEqual([bool(v["error"]) for v in scene["designs"][0]["configurations"]], [False] * 6 + [True] * 2)
+        self.assertIn("left out", scene["designs"][0]["configurations"][-1]["error"])
+        self.assertIn("1 more like these", done.stderr)
+        self.assertLess(len(done.stdout), 20e6)
 
     def test_a_joint_far_off_comes_first(self):
         text = MODEL.replace('"at": [2, 0], "axis": [1, 0] }', '"at": [7, 0], "axis": [1, 0] }', 1)

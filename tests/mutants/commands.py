@@ -116,6 +116,7 @@ def commands(rng, case):
     if case.kind == "result":
         yield ["report", file, "--format", rng.choice(("text", "html", "json", "csv"))]
         yield ["apply", file, "--root", "."]
+        yield ["show", file, "--root", ".", *rng.choice((["--svg"], ["--format", "json"]))]
         yield ["apply", file, "--root", ".", "--rank", str(rng.choice((1, 2, 7)))]
         return
     if case.kind == "model":
@@ -126,6 +127,7 @@ def commands(rng, case):
         joints = _moving(case.original)
         if joints:
             yield ["sweep", file, "-c", rng.choice(configurations), "--drive", f"{rng.choice(joints)}=-0.1:0.1:3", *form(), *rng.choice(([], ["--modes"]))]
+        yield ["show", file, *rng.choice((["--svg"], ["--format", "json"], ["--format", "json"]))]
         yield ["mac", f"{file}:{rng.choice(configurations)}", f"{file}:{rng.choice(configurations)}", *form()]
     yield ["run", study, "-o", "out", *workers, *form()]
     yield ["compare", study, *workers, *form()]

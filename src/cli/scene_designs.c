@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/scene_designs.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "model/judge.h"
+
+mt_status mt_scene_name_modes(const mt_model *m, mt_arena *mem, mt_scene_ask *ask, mt_err *err)
+{
+    mt_scene_name *const names = mt_arena_alloc(mem, (size_t)m->n_modes, sizeof *names);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < m->n_modes; i++) {
+        names[i] =
+            (mt_scene_name){m->modes[i].configuration, m->modes[i].index, m->modes[i].name.s};
+    }
+    ask->names = names;
+    ask->n_names = m->n_modes;
+    return MT_OK;
+}
+
+/* A parameter of the model by its name in the result, with a value that is one. */
+static mt_status take(const mt_model *model, const char *name, double value, int *inputs,
+                      double *at, int *n, mt_err *err)
+{
+    const int p = mt_model_find_parameter(model, name);
+    if (p == MT_ABSENT) {
+        return mt_fail(err, MT_E_INPUT, "the model has no parameter \"%s\"", name);
+    }
+    if (!isfinite(value)) {
+        return mt_fail(err, MT_E_INPUT, "the result has no value of \"%s\"", name);
+    }
+    for (int i = 0; i < *n; i++) {
+        if (inputs[i] == p) {
+            return mt_fail(err, MT_E_INPUT, "the result has a value of \"%s\" twice", name);
+        }
+    }
+    inputs[*n] = p;
+    at[(*n)++] = value;
+    return MT_OK;
+}
+
+/* Modes that the result names at a recommended design. */
+static mt_status name_tracked(const mt_model *model, const mt_recommendation *r, mt_arena *mem,
+                              mt_scene_ask *ask, mt_err *err)
+{
+    mt_scene_name *const names = mt_arena_alloc(mem, (size_t)r->n_frequencies, sizeof *names);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < r->n_frequencies; i++) {
+        const mt_result_frequency *const f = &r->frequencies[i];
+        if (f->name != NULL && f->identity != NULL && strcmp(f->identity, "tracked") == 0) {
+            const int c = mt_model_find_configuration(model, f->configuration);
+            names[ask->n_names++] = (mt_scene_name){c, f->mode, f->name};
+        }
+    }
+    ask->names = names;
+    return MT_OK;
+}
+
+typedef struct source {
+    const mt_model *model;
+    const mt_result *result;
+    mt_arena *mem;
+} source;
+
+/* What was set when the study was asked, then the variables at this design; `original`: as they
+ * were before. */
+static mt_status fill(const source *s, const mt_recommendation *r, bool original,
+                      mt_scene_ask *ask, mt_err *err)
+{
+    const mt_model *const model = s->model;
+    const mt_result_run *const run = &s->result->run;
+    mt_arena *const mem = s->mem;
+    const size_t most = (size_t)r->n_parameters + (size_t)run->n_overrides;
+    int *const inputs = mt_arena_int(mem, most);
+    double *const at = mt_arena_f64(mem, most, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    *ask = (mt_scene_ask){.label = original ? "original" : "recommended",
+                          .rank = original ? 0 : r->rank,
+                          .inputs = inputs,
+                          .at = at,
+                          .shown = inputs};
+    for (int i = 0; i < r->n_parameters; i++) {
+        const mt_result_parameter *const p = &r->parameters[i];
+        MT_TRY(take(model, p->name, original ? p->original : p->recommended, inputs, at,
+                    &ask->n_inputs, err));
+    }
+    ask->n_shown = ask->n_inputs;
+    bool set = false;
+    for (int i = 0; i < run->n_overrides; i++) {
+        const mt_result_override *const v = &run->overrides[i];
+        if (strcmp(v->kind, "parameter") == 0) {
+            set = true;
+            MT_TRY(take(model, v->name, v->value, inputs, at, &ask->n_inputs, err));
+        }
+    }
+    for (int i = 0; i < model->n_configurations; i++) {
+        MT_TRY(mt_model_admit(model, i, ask->n_inputs, inputs, at, mem, err));
+    }
+    if (original) {
+        return set ? MT_OK : mt_scene_name_modes(model, mem, ask, err);
+    }
+    return name_tracked(model, r, mem, ask, err);
+}
+
+mt_status mt_scene_designs(const mt_model *model, const mt_result *result, mt_arena *mem,
+                           mt_scene_ask **asks, int *n, mt_err *err)
+{
+    static const mt_recommendation none = {.rank = 0};
+    const source s = {model, result, mem};
+    const int count = result->n_recommendations;
+    *n = 0;
+    *asks = mt_arena_alloc(mem, (size_t)count + 1, sizeof **asks);
+    MT_TRY(mt_arena_check(mem, err));
+    const mt_recommendation *const first = count > 0 ? &result->recommendations[0] : &none;
+    MT_TRY(fill(&s, first, true, *asks, err));
+    for (*n = 1; *n <= count; (*n)++) {
+        MT_TRY(fill(&s, &result->recommendations[*n - 1], false, *asks + *n, err));
+    }
+    return MT_OK;
+}
