@@ -79,6 +79,13 @@ typedef struct mt_read_options {
     int files_only; /* 1: no other files are there, the disk is left alone */
     /* emptied, then filled with every error and warning, also where the call succeeds; NULL */
     mt_diagnostics *diagnostics;
+    /* [n_sets] "NAME=VALUE" each: what parameters get instead of their values, of a study
+     * those of its own model that it does not vary. A value may be an expression of the
+     * file's values ("k=1.1*k"). NULL with 0 */
+    const char *const *sets;
+    int n_sets;
+    /* what a study's search draws its starts from instead of what it says, at least 0; NULL */
+    const int *seed;
 } mt_read_options;
 
 #ifdef __cplusplus

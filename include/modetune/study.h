@@ -89,6 +89,11 @@ MT_API double mt_study_variable_original(const mt_study *study, int variable);
 MT_API double mt_study_variable_lower(const mt_study *study, int variable);
 MT_API double mt_study_variable_upper(const mt_study *study, int variable);
 
+/* A `stop` whose stop_context is an int, an mt_wish that any thread, or a handler of a signal,
+ * may set there meanwhile. For who has no C function to give, or a slow one: it is asked
+ * often. NULL: MT_WISH_NONE. */
+MT_API int mt_wish_at(void *wish);
+
 /**
  * Answer a study: the original design described, searched for better ones, each recommendation
  * analysed anew at its design, published values judged.
@@ -138,6 +143,24 @@ MT_API const char *mt_result_reason(const mt_result *result, int rank, int i);
  * Fails: MT_E_MEMORY.
  */
 MT_API mt_status mt_result_json(const mt_result *result, char **text, mt_err *err);
+/**
+ * A result that was written before, by mt_result_json or as result.json by the program: whole,
+ * so that all functions say of it what they said then.
+ * @param[in]  path  regular file, or one that opt gives by its text. One of the disk that is
+ *   called result.json must belong to the files that were written beside it
+ * @param[in]  opt   NULL: defaults; root, sets and seed are of no meaning here
+ * @param[out] out   the result, owned by the caller; NULL on failure
+ * Fails: MT_E_INPUT (as mt_study_read), MT_E_SYSTEM, MT_E_USAGE (opt), MT_E_MEMORY.
+ */
+MT_API mt_status mt_result_read(const char *path, const mt_read_options *opt, mt_result **out,
+                                mt_err *err);
+/**
+ * What people should see of it, as one HTML page: nothing is loaded from elsewhere, no script
+ * is in it, and no text of a file becomes markup.
+ * @param[out] text  UTF-8, NUL-terminated, to be given to mt_string_delete; NULL on failure
+ * Fails: MT_E_MEMORY.
+ */
+MT_API mt_status mt_result_html(const mt_result *result, char **text, mt_err *err);
 /* Accepts NULL. */
 MT_API void mt_string_delete(char *text);
 

@@ -144,14 +144,16 @@ static mt_status read_part(const char *s, const char *option, mt_args *out, mt_e
 static mt_status read_format(const char *s, int command, mt_format *out, mt_err *err)
 {
     static const char *const known[] = {"text", "json", "csv", "html", "sarif"};
-    static const int of[] = {MT_CMD_NONE, MT_CMD_NONE, MT_CMD_NONE, MT_CMD_REPORT,
-                             MT_CMD_CHECK}; /* MT_CMD_NONE: of all */
+    static const unsigned of[] = {MT_ALL_COMMANDS, MT_ALL_COMMANDS, MT_ALL_COMMANDS,
+                                  1U << (unsigned)MT_CMD_REPORT | 1U << (unsigned)MT_CMD_SHOW,
+                                  1U << (unsigned)MT_CMD_CHECK};
     const char *names[MT_COUNT(known)];
     char suggestion[SUGGESTION_TEXT];
     mt_text list = {.s = NULL};
     int n = 0;
     for (int i = 0; i < MT_COUNT(known); i++) {
-        if (of[i] != MT_CMD_NONE && of[i] != command) {
+        if (i >= MT_FORMAT_HTML &&
+            (command == MT_CMD_NONE || (of[i] & (1U << (unsigned)command)) == 0U)) {
             continue;
         }
         if (strcmp(s, known[i]) == 0) {
@@ -222,6 +224,8 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
         return read_count(value, o->name, INT_MAX, &args->count, err);
     case MT_OPT_RANK:
         return read_count(value, o->name, INT_MAX, &args->rank, err);
+    case MT_OPT_MODE:
+        return read_count(value, o->name, INT_MAX, &args->mode, err);
     case MT_OPT_STARTS:
         return read_count(value, o->name, MT_STARTS_MOST, &args->starts, err);
     case MT_OPT_MAX_EVALUATIONS:

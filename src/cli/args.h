@@ -21,6 +21,8 @@ typedef enum mt_option_id {
     MT_OPT_DRIVE,
     MT_OPT_HOLD,
     MT_OPT_MODES,
+    MT_OPT_SVG,
+    MT_OPT_MODE,
     MT_OPT_PARAMETERS,
     MT_OPT_OUTPUT,
     MT_OPT_VERIFY,
@@ -57,6 +59,7 @@ typedef enum mt_command_id {
     MT_CMD_SWEEP,
     MT_CMD_SENSITIVITY,
     MT_CMD_INFO,
+    MT_CMD_SHOW,
     MT_CMD_REPORT,
     MT_CMD_EXPLAIN,
     MT_CMD_APPLY,
@@ -101,7 +104,7 @@ extern const mt_exit mt_exits[MT_EXITS];
 /* Does the command take the option, or the program where it is MT_CMD_NONE? */
 bool mt_option_is_of(int option, int command);
 
-/* MT_FORMAT_HTML: of MT_CMD_REPORT alone, MT_FORMAT_SARIF of MT_CMD_CHECK. */
+/* MT_FORMAT_HTML: of MT_CMD_REPORT and MT_CMD_SHOW, MT_FORMAT_SARIF of MT_CMD_CHECK. */
 typedef enum mt_format {
     MT_FORMAT_TEXT,
     MT_FORMAT_JSON,
@@ -127,6 +130,7 @@ typedef struct mt_args {
     const char *value[MT_OPT_IDS]; /* of the last one */
     int count;                     /* --count, 0: not given */
     int rank;                      /* --rank, default 1 */
+    int mode;                      /* --mode, 0: not given */
     int starts;                    /* --starts, 0: not given */
     int max_evaluations;           /* --max-evaluations, 0: not given */
     int threads;         /* --threads, at most MT_WORKERS_MOST; else of mt_limits_set */

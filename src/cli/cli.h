@@ -23,6 +23,7 @@ int mt_cmd_mac(const mt_args *args, mt_text *out);
 int mt_cmd_sweep(const mt_args *args, mt_text *out);
 int mt_cmd_sensitivity(const mt_args *args, mt_text *out);
 int mt_cmd_info(const mt_args *args, mt_text *out);
+int mt_cmd_show(const mt_args *args, mt_text *out);
 int mt_cmd_report(const mt_args *args, mt_text *out);
 int mt_cmd_explain(const mt_args *args, mt_text *out);
 int mt_cmd_apply(const mt_args *args, mt_text *out);

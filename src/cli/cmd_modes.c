@@ -196,8 +196,7 @@ static void fill_table(mt_table *t, const view *v, bool csv)
         if (csv) {
             mt_table_number(t, m->lambda[i], HZ_DIGITS);
             for (int k = 0; k < v->shapes.n; k++) {
-                mt_table_number(t, v->shapes.value[k + ((ptrdiff_t)i * v->shapes.n)],
-                                HZ_DIGITS);
+                mt_table_number(t, mt_shapes_shown(&v->shapes, k, i), HZ_DIGITS);
             }
         }
     }
@@ -219,7 +218,7 @@ static void print_shapes(const view *v, mt_text *out)
     for (int k = 0; k < v->shapes.n; k++) {
         mt_table_text(&t, v->shapes.name[k]);
         for (int i = 0; i < v->shown; i++) {
-            mt_table_number(&t, v->shapes.value[k + ((ptrdiff_t)i * v->shapes.n)], 4);
+            mt_table_number(&t, mt_shapes_shown(&v->shapes, k, i), 4);
         }
     }
     mt_text_add(out, "\n  Mass-normalised shapes (numbers in parentheses: modes without "

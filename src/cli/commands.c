@@ -4,8 +4,9 @@
 #include "cli/terminal.h"
 
 #define BIT(command) (1U << (unsigned)(command))
-#define ON_MODELS \
-    (BIT(MT_CMD_MODES) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY) | BIT(MT_CMD_INFO))
+#define ON_MODELS                                                                         \
+    (BIT(MT_CMD_MODES) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY) | BIT(MT_CMD_INFO) | \
+     BIT(MT_CMD_SHOW))
 #define SOLVES     (BIT(MT_CMD_RUN) | BIT(MT_CMD_MERGE))
 #define ON_STUDIES (SOLVES | BIT(MT_CMD_COMPARE))
 
@@ -40,12 +41,17 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "trim this spring so that it holds the joint (default: the joint is locked)"),
     OPTION(MT_OPT_MODES, '\0', "modes", NULL, BIT(MT_CMD_SWEEP),
            "natural frequencies at each position"),
+    OPTION(MT_OPT_SVG, '\0', "svg", NULL, BIT(MT_CMD_SHOW),
+           "one still picture of one configuration (default: the first), as SVG"),
+    OPTION(MT_OPT_MODE, '\0', "mode", "N", BIT(MT_CMD_SHOW),
+           "with --svg: vibration mode N beside the shape at rest"),
     OPTION(MT_OPT_PARAMETERS, '\0', "parameters", "A,B", BIT(MT_CMD_SENSITIVITY),
            "parameters to vary (default: all that are not made of others)"),
     OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR",
-           SOLVES | BIT(MT_CMD_REPORT) | BIT(MT_CMD_EXAMPLES),
+           SOLVES | BIT(MT_CMD_REPORT) | BIT(MT_CMD_EXAMPLES) | BIT(MT_CMD_SHOW),
            "folder for the results (default of run: results, in the current one; of report: "
-           "nothing is written; of examples: the current one)"),
+           "nothing is written; of examples: the current one); of show: the file that is "
+           "written instead of standard output"),
     OPTION(MT_OPT_VERIFY, '\0', "verify", NULL, SOLVES | BIT(MT_CMD_REPORT),
            "show the study's published values, too; of run, they alone decide the exit status"),
     OPTION(MT_OPT_THREADS, '\0', "threads", "N", ON_STUDIES,
@@ -88,7 +94,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "the machine or its container)"),
     OPTION(MT_OPT_RANK, '\0', "rank", "N", BIT(MT_CMD_APPLY) | BIT(MT_CMD_EXPLAIN),
            "which recommendation (default: 1, the best)"),
-    OPTION(MT_OPT_MODEL, '\0', "model", "MODEL", BIT(MT_CMD_APPLY),
+    OPTION(MT_OPT_MODEL, '\0', "model", "MODEL", BIT(MT_CMD_APPLY) | BIT(MT_CMD_SHOW),
            "the model file, where it is not found from the result"),
     OPTION(MT_OPT_REL_TOL, '\0', "rel-tol", "X", BIT(MT_CMD_DIFF),
            "numbers that differ by no more than this part of them are the same (default: 0; "
@@ -98,7 +104,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "study's folder)"),
     OPTION(MT_OPT_FORMAT, '\0', "format", "text|json|csv", MT_ALL_COMMANDS,
            "form of what goes to standard output (default: text; of report also html, of check "
-           "sarif)"),
+           "sarif; of show html or json, default html)"),
     OPTION(MT_OPT_QUIET, '\0', "quiet", NULL, MT_ALL_COMMANDS,
            "no talk on standard error; errors and warnings stay"),
     OPTION(MT_OPT_HELP, 'h', "help", NULL, MT_ALL_COMMANDS,
@@ -180,6 +186,19 @@ const mt_command mt_commands[MT_CMD_IDS] = {
             "masses, mobility and redundancies of each configuration",
             "Prints the total mass, its centre and inertia, the freedoms, and the sets of "
             "redundant joints of each configuration, in the position where it is linearised."),
+    COMMAND(
+        MT_CMD_SHOW, "show", "MODEL|RESULT.json", 1, 1, "the mechanism, in three dimensions",
+        "Prints a page that shows the mechanism: bodies with their ellipsoids of inertia, "
+        "links, "
+        "joints with their axes and how far off their bodies they lie, springs, dampers and "
+        "sensors; its lowest 12 vibration modes as they move, with what share of the energy "
+        "every spring and body has; and where a joint is driven, the range of its positions. "
+        "Of "
+        "a result: the original design and the recommended ones, with the model found as apply "
+        "finds it. The page needs nothing else and opens in any browser.\n"
+        "--format json prints what the page draws, --svg a still picture. A configuration that "
+        "cannot be analysed is drawn as far as it can be and says why, on standard error, "
+        "too."),
     COMMAND(
         MT_CMD_REPORT, "report", "RESULT.json", 1, 1,
         "what a result says, as text, CSV or HTML",

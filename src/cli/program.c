@@ -17,6 +17,7 @@ static const command_function functions[MT_CMD_IDS] = {
     [MT_CMD_SWEEP] = mt_cmd_sweep,
     [MT_CMD_SENSITIVITY] = mt_cmd_sensitivity,
     [MT_CMD_INFO] = mt_cmd_info,
+    [MT_CMD_SHOW] = mt_cmd_show,
     [MT_CMD_REPORT] = mt_cmd_report,
     [MT_CMD_EXPLAIN] = mt_cmd_explain,
     [MT_CMD_APPLY] = mt_cmd_apply,

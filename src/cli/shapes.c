@@ -1,6 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/shapes.h"
 
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* Parts of the largest component of a mode: what sixteen digits leave of a sum of a few dozen
+ * terms of that size; and what nobody sees in a table. */
+static const double ROUNDING = 64.0 * DBL_EPSILON;
+static const double UNSEEN = 1e-12;
+
 mt_status mt_shapes_at(mt_analysis *a, int ns, const int *channels, int n, const int *positions,
                        double *value, mt_err *err)
 {
@@ -20,8 +29,13 @@ static mt_status name_them(const mt_system *sys, int modes, mt_arena *mem, mt_sh
     out->n = out->sensors ? sys->n_channels : sys->nq;
     out->name = mt_arena_alloc(mem, (size_t)out->n, sizeof *out->name);
     out->value = mt_arena_f64(mem, (size_t)out->n, (size_t)modes);
+    out->turns = mt_arena_alloc(mem, (size_t)out->n, sizeof *out->turns);
+    out->largest = mt_arena_f64(mem, (size_t)modes, 1);
+    out->length_m = sys->length_m;
     for (int k = 0; k < sys->n_channels && !mt_arena_failed(mem); k++) {
+        const mt_channel_kind kind = sys->channels[k].kind;
         out->name[k] = mt_arena_strdup(mem, sys->channels[k].name);
+        out->turns[k] = kind == MT_CHANNEL_ROTATION || kind == MT_CHANNEL_BEAM_ROTATION;
     }
     for (int b = 0; b < sys->n_bodies && !out->sensors && !mt_arena_failed(mem); b++) {
         for (int d = 0; d < MT_COUNT(directions); d++) {
@@ -29,6 +43,7 @@ static mt_status name_them(const mt_system *sys, int modes, mt_arena *mem, mt_sh
             if (q >= 0) {
                 out->name[q] =
                     mt_arena_printf(mem, "%s.%s", sys->bodies[b].name, directions[d]);
+                out->turns[q] = d >= 3;
             }
         }
     }
@@ -50,20 +65,77 @@ static mt_status at_sensors(mt_analysis *a, int modes, mt_arena *mem, mt_shapes 
     return mt_shapes_at(a, out->n, channels, modes, positions, out->value, err);
 }
 
+/* Size of component k of column i, an angle times the model's length. */
+static double size_of(const mt_shapes *s, int k, int i)
+{
+    return fabs(s->value[k + ((ptrdiff_t)i * s->n)]) * (s->turns[k] ? s->length_m : 1.0);
+}
+
+/* phi nq x modes, over all states. What is rounding of the largest displacement becomes 0. */
+static void clean(const mt_system *sys, int modes, const double *phi, const mt_shapes *s)
+{
+    for (int i = 0; i < modes; i++) {
+        const double *const x = phi + ((ptrdiff_t)i * sys->nq);
+        double most = 0.0;
+        for (int k = 0; k < s->n; k++) {
+            most = fmax(most, size_of(s, k, i));
+        }
+        for (int k = 0; k < 6 * sys->n_bodies; k++) {
+            const int dof = sys->bodies[k / 6].dof[k % 6];
+            const double size = dof < 0 ? 0.0 : fabs(x[dof]);
+            most = fmax(most, size * (k % 6 >= 3 ? sys->length_m : 1.0));
+        }
+        s->largest[i] = most;
+        for (int k = 0; k < s->n; k++) {
+            if (size_of(s, k, i) <= ROUNDING * most) {
+                s->value[k + ((ptrdiff_t)i * s->n)] = 0.0;
+            }
+        }
+    }
+}
+
+double mt_shapes_shown(const mt_shapes *shapes, int k, int i)
+{
+    return size_of(shapes, k, i) <= UNSEEN * shapes->largest[i]
+               ? 0.0
+               : shapes->value[k + ((ptrdiff_t)i * shapes->n)];
+}
+
+/* Room for the motions of all bodies. */
+static mt_status room_for(const mt_system *sys, int modes, mt_arena *mem, double **phi,
+                          mt_err *err)
+{
+    *phi = mt_arena_f64(mem, (size_t)sys->nq, (size_t)modes);
+    return mt_arena_check(mem, err);
+}
+
 mt_status mt_shapes_of(mt_analysis *a, int modes, mt_arena *mem, mt_shapes *out, mt_err *err)
 {
+    double *phi = NULL;
     MT_TRY(name_them(a->sys, modes, mem, out, err));
+    MT_TRY(room_for(a->sys, modes, mem, &phi, err));
+    mt_linear_expand(a->lin, modes, a->modes.y, phi);
     if (out->sensors) {
-        return at_sensors(a, modes, mem, out, err);
+        MT_TRY(at_sensors(a, modes, mem, out, err));
+    } else {
+        memcpy(out->value, phi, (size_t)a->sys->nq * (size_t)modes * sizeof *phi);
     }
-    mt_linear_expand(a->lin, modes, a->modes.y, out->value);
+    clean(a->sys, modes, phi, out);
     return MT_OK;
 }
 
 mt_status mt_shapes_of_lowest(mt_lowest *l, int modes, mt_arena *mem, mt_shapes *out,
                               mt_err *err)
 {
+    double *phi = NULL;
     MT_TRY(name_them(l->sys, modes, mem, out, err));
-    return out->sensors ? mt_lowest_sense(l, modes, out->value, err)
-                        : mt_lowest_shapes(l, modes, out->value, err);
+    MT_TRY(room_for(l->sys, modes, mem, &phi, err));
+    MT_TRY(mt_lowest_shapes(l, modes, phi, err));
+    if (out->sensors) {
+        MT_TRY(mt_lowest_sense(l, modes, out->value, err));
+    } else {
+        memcpy(out->value, phi, (size_t)l->sys->nq * (size_t)modes * sizeof *phi);
+    }
+    clean(l->sys, modes, phi, out);
+    return MT_OK;
 }

@@ -11,10 +11,18 @@ typedef struct mt_shapes {
     bool sensors;
     int n;             /* channels; 0: nothing */
     const char **name; /* [n] "c1.y", "crank.rz" */
+    bool *turns;       /* [n] is it an angle? */
     double *value;     /* n x modes, mass-normalised */
+    double length_m;   /* what an angle is compared with a displacement by */
+    double *largest;   /* [modes] displacement of any body, or what a sensor reads */
 } mt_shapes;
 
-/* Shapes of the first `modes` positions, in mem. */
+/* A component of column i as a table of a few digits shows it: 0 where it is nothing beside the
+ * largest of its mode. */
+double mt_shapes_shown(const mt_shapes *shapes, int k, int i);
+
+/* Shapes of the first `modes` positions, in mem. What is rounding of the largest component is
+ * 0. */
 mt_status mt_shapes_of(mt_analysis *a, int modes, mt_arena *mem, mt_shapes *out, mt_err *err);
 mt_status mt_shapes_of_lowest(mt_lowest *l, int modes, mt_arena *mem, mt_shapes *out,
                               mt_err *err);

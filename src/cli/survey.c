@@ -12,12 +12,6 @@
 
 static const double PER_CENT = 0.01;
 
-static bool depends_on_others(const mt_model *model, int parameter)
-{
-    double value = 0.0;
-    return !mt_expr_is_constant(&model->nums[model->parameters[parameter].value].expr, &value);
-}
-
 static bool is_overridden(const mt_survey *v, int parameter)
 {
     const mt_configuration *const conf = &v->s->model->configurations[v->c];
@@ -60,7 +54,7 @@ static mt_status choose_parameters(mt_survey *v, const char *list, mt_err *err)
     v->parameter = mt_arena_int(&v->mem, (size_t)model->n_parameters);
     MT_TRY(mt_arena_check(&v->mem, err));
     for (int i = 0; list == NULL && i < model->n_parameters; i++) {
-        if (!depends_on_others(model, i)) {
+        if (mt_model_parameter_follows(model, i) == 0) {
             v->parameter[v->n++] = i;
         }
     }
@@ -223,7 +217,7 @@ static mt_status carry_out(mt_survey *v, int wanted, mt_err *err)
     int n = 0;
     MT_TRY(mt_arena_check(&v->mem, err));
     for (int k = 0; k < v->n; k++) {
-        if (!depends_on_others(v->s->model, v->parameter[k])) {
+        if (mt_model_parameter_follows(v->s->model, v->parameter[k]) == 0) {
             together[n++] = k;
         }
     }
@@ -231,7 +225,7 @@ static mt_status carry_out(mt_survey *v, int wanted, mt_err *err)
         MT_TRY(analyse(v, n, together, wanted, err));
     }
     for (int k = 0; k < v->n; k++) {
-        if (depends_on_others(v->s->model, v->parameter[k])) {
+        if (mt_model_parameter_follows(v->s->model, v->parameter[k]) != 0) {
             MT_TRY(analyse(v, 1, &k, wanted, err));
         }
     }

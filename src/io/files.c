@@ -91,6 +91,13 @@ mt_status mt_files_read(const mt_files *files, const char *path, const char *roo
     return MT_OK;
 }
 
+mt_status mt_files_give(const mt_files *files, const char *path, bool *out, mt_err *err)
+{
+    mt_status rc = MT_OK;
+    *out = find(files, path, &rc) != NULL;
+    return rc == MT_OK ? rc : mt_fail_memory(err);
+}
+
 bool mt_files_lack(const mt_files *files, const char *path)
 {
     mt_status rc = MT_OK;

@@ -444,6 +444,11 @@ static mt_status read_text(result_reader *s, const char *path, const mt_file *fi
     return rc;
 }
 
+static const mt_files *files_of(const mt_io_options *opt)
+{
+    return opt == NULL ? NULL : &opt->files;
+}
+
 /* The file by itself; sha256 of its bytes. */
 static mt_status load_alone(const char *path, const mt_io_options *opt, mt_result **out,
                             char sha256[MT_SHA256_TEXT], mt_diagnostics *messages, mt_err *err)
@@ -455,7 +460,7 @@ static mt_status load_alone(const char *path, const mt_io_options *opt, mt_resul
     *out = NULL;
     mt_status rc = mt_result_new(&s.result, err);
     if (rc == MT_OK) {
-        rc = mt_file_read(path, NULL, limit, &file, err);
+        rc = mt_files_read(files_of(opt), path, NULL, limit, &file, err);
     }
     if (rc == MT_OK) {
         memcpy(sha256, file.sha256, MT_SHA256_TEXT);
@@ -494,8 +499,11 @@ mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result *
                          mt_diagnostics *messages, mt_err *err)
 {
     char sha256[MT_SHA256_TEXT];
+    bool given = false; /* by its text, which has no folder */
+    *out = NULL;
+    MT_TRY(mt_files_give(files_of(opt), path, &given, err));
     mt_status rc = load_alone(path, opt, out, sha256, messages, err);
-    if (rc == MT_OK && mt_result_has_folder(path, *out)) {
+    if (rc == MT_OK && !given && mt_result_has_folder(path, *out)) {
         rc = mt_result_check_folder(path, sha256, *out, err);
         if (rc == MT_E_INPUT) {
             mt_result_delete(*out);

@@ -8,6 +8,8 @@
 #include "base/visible.h"
 
 enum { LONGEST_CHARACTER = 4 }; /* in bytes of UTF-8 */
+/* Digits that identify a double (IEEE 754-2019, 5.12.2). */
+enum { EXACT = 17 };
 
 mt_json_writer mt_json_writer_default(mt_text *out)
 {
@@ -15,9 +17,8 @@ mt_json_writer mt_json_writer_default(mt_text *out)
 }
 
 /* printf writes the decimal point of the locale, which may be several bytes: whatever is not a
- * digit, sign or exponent becomes one point. 17 digits identify a double (IEEE 754-2019,
- * 5.12.2). */
-const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE])
+ * digit, sign or exponent becomes one point. */
+static const char *format_number(double value, int digits, char buffer[MT_JSON_NUMBER_SIZE])
 {
     if (!isfinite(value)) {
         memcpy(buffer, "null", sizeof "null");
@@ -25,7 +26,7 @@ const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE]
     }
     char raw[MT_JSON_NUMBER_SIZE];
     /* -0 is 0 */
-    const int length = snprintf(raw, sizeof raw, "%.17g", value == 0.0 ? 0.0 : value);
+    const int length = snprintf(raw, sizeof raw, "%.*g", digits, value == 0.0 ? 0.0 : value);
     int n = 0;
     for (int i = 0; i < length && i < MT_JSON_NUMBER_SIZE - 1; i++) {
         if (strchr("0123456789+-e", raw[i]) != NULL) {
@@ -36,6 +37,11 @@ const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE]
     }
     buffer[n] = '\0';
     return buffer;
+}
+
+const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE])
+{
+    return format_number(value, EXACT, buffer);
 }
 
 /* One character at s as JSON text; returns how many bytes of s it took. What cannot be seen is
@@ -162,6 +168,12 @@ void mt_json_put_number(mt_json_writer *w, const char *name, double value)
 {
     char buffer[MT_JSON_NUMBER_SIZE];
     put_raw(w, name, mt_json_format_number(value, buffer));
+}
+
+void mt_json_put_rounded(mt_json_writer *w, const char *name, double value, int digits)
+{
+    char buffer[MT_JSON_NUMBER_SIZE];
+    put_raw(w, name, format_number(value, digits, buffer));
 }
 
 void mt_json_put_integer(mt_json_writer *w, const char *name, long long value)

@@ -41,6 +41,8 @@ void mt_json_close(mt_json_writer *w);
 /* A number with 17 significant digits, so that reading it gives the same double; NaN and
  * infinities become null. */
 void mt_json_put_number(mt_json_writer *w, const char *name, double value);
+/* The same with so many significant digits, 1 to 17: of numbers that are for pictures. */
+void mt_json_put_rounded(mt_json_writer *w, const char *name, double value, int digits);
 void mt_json_put_integer(mt_json_writer *w, const char *name, long long value);
 void mt_json_put_bool(mt_json_writer *w, const char *name, bool value);
 /* Text, escaped; NULL becomes null. Bytes are taken as UTF-8; ill-formed ones become U+FFFD. */

@@ -3,16 +3,24 @@
 #include "modetune/model.h"
 #include "modetune/study.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/options.h"
 #include "io/io.h"
+#include "report/html.h"
 
 /* What a study is called that comes as a text. */
 static const char STUDY_PATH[] = "study.json";
 
-/* Options of the library as those of the rooms; empties the diagnostics. */
-static mt_status take(const mt_read_options *opt, mt_io_options *out, mt_err *err)
+/* What a caller asks for, as the rooms take it: io has the address of asked. */
+typedef struct request {
+    mt_read_options own;
+    mt_io_options io;
+    mt_asked asked;
+} request;
+
+static mt_status check_files(const mt_read_options *opt, mt_err *err)
 {
     for (int i = 0; i < opt->n_files; i++) {
         if (opt->files == NULL || opt->files[i].path == NULL || opt->files[i].text == NULL) {
@@ -20,42 +28,93 @@ static mt_status take(const mt_read_options *opt, mt_io_options *out, mt_err *er
                            opt->files == NULL || opt->files[i].path == NULL ? "path" : "text");
         }
     }
-    if (opt->n_files < 0) {
-        return mt_fail(err, MT_E_USAGE, "n_files of the options is negative");
+    return opt->n_files < 0 ? mt_fail(err, MT_E_USAGE, "n_files of the options is negative")
+                            : MT_OK;
+}
+
+static mt_status check_asked(const mt_read_options *opt, mt_err *err)
+{
+    for (int i = 0; i < opt->n_sets; i++) {
+        if (opt->sets == NULL || opt->sets[i] == NULL) {
+            return mt_fail(err, MT_E_USAGE, "sets[%d] of the options is NULL", i);
+        }
     }
-    if (opt->diagnostics != NULL) {
-        mt_diagnostics_free(opt->diagnostics);
+    if (opt->n_sets < 0) {
+        return mt_fail(err, MT_E_USAGE, "n_sets of the options is negative");
     }
-    *out = (mt_io_options){
-        .root = opt->root,
-        .files = {.given = opt->files, .n = opt->n_files, .only = opt->files_only != 0}};
+    return opt->seed != NULL && *opt->seed < 0
+               ? mt_fail(err, MT_E_USAGE, "the seed of the options is negative")
+               : MT_OK;
+}
+
+/* Options of the library as those of the rooms; empties the diagnostics. */
+static mt_status take(const char *function, const mt_read_options *opt, request *out,
+                      mt_err *err)
+{
+    mt_read_options *const own = &out->own;
+    MT_TRY(mt_options_take(function, opt, sizeof *own, own, err));
+    MT_TRY(mt_err_in(err, check_files(own, err), "%s", function));
+    MT_TRY(mt_err_in(err, check_asked(own, err), "%s", function));
+    if (own->diagnostics != NULL) {
+        mt_diagnostics_free(own->diagnostics);
+    }
+    out->asked = (mt_asked){.n_sets = own->n_sets,
+                            .sets = own->sets,
+                            .seed = own->seed == NULL ? -1 : *own->seed,
+                            .proof_s = nan("")};
+    out->io = (mt_io_options){
+        .root = own->root,
+        .files = {.given = own->files, .n = own->n_files, .only = own->files_only != 0},
+        .asked = &out->asked};
     return MT_OK;
 }
 
 mt_status mt_model_read(const char *path, const mt_read_options *opt, mt_model **out,
                         mt_err *err)
 {
-    mt_read_options own;
-    mt_io_options io = {.root = NULL};
+    request asked;
     MT_NOT_NULL(out, err);
     *out = NULL;
     MT_NOT_NULL(path, err);
-    MT_TRY(MT_OPTIONS_TAKE(opt, &own, err));
-    MT_TRY(mt_err_in(err, take(&own, &io, err), "%s", __func__));
-    return mt_model_load(path, &io, out, own.diagnostics, err);
+    MT_TRY(take(__func__, opt, &asked, err));
+    return mt_model_load(path, &asked.io, out, asked.own.diagnostics, err);
 }
 
 mt_status mt_study_read(const char *path, const mt_read_options *opt, mt_study **out,
                         mt_err *err)
 {
-    mt_read_options own;
-    mt_io_options io = {.root = NULL};
+    request asked;
     MT_NOT_NULL(out, err);
     *out = NULL;
     MT_NOT_NULL(path, err);
-    MT_TRY(MT_OPTIONS_TAKE(opt, &own, err));
-    MT_TRY(mt_err_in(err, take(&own, &io, err), "%s", __func__));
-    return mt_study_load(path, &io, out, own.diagnostics, err);
+    MT_TRY(take(__func__, opt, &asked, err));
+    return mt_study_load(path, &asked.io, out, asked.own.diagnostics, err);
+}
+
+mt_status mt_result_read(const char *path, const mt_read_options *opt, mt_result **out,
+                         mt_err *err)
+{
+    request asked;
+    MT_NOT_NULL(out, err);
+    *out = NULL;
+    MT_NOT_NULL(path, err);
+    MT_TRY(take(__func__, opt, &asked, err));
+    return mt_result_load(path, &asked.io, out, asked.own.diagnostics, err);
+}
+
+mt_status mt_result_html(const mt_result *result, char **text, mt_err *err)
+{
+    mt_text out = {0};
+    MT_NOT_NULL(text, err);
+    *text = NULL;
+    MT_NOT_NULL(result, err);
+    mt_report_html(result, &out);
+    if (out.failed) {
+        mt_text_free(&out);
+        return mt_fail_memory(err);
+    }
+    *text = out.s; /* from malloc */
+    return MT_OK;
 }
 
 mt_status mt_result_json(const mt_result *result, char **text, mt_err *err)
@@ -97,26 +156,24 @@ static mt_file_text *with_study(const char *study, const mt_read_options *read, 
 mt_status mt_solve_json(const char *study, const mt_read_options *read,
                         const mt_solve_options *solve, char **result, mt_err *err)
 {
-    mt_read_options own;
-    mt_io_options io = {.root = NULL};
-    mt_study *asked = NULL;
+    request asked;
+    mt_study *question = NULL;
     mt_result *answer = NULL;
     MT_NOT_NULL(result, err);
     *result = NULL;
     MT_NOT_NULL(study, err);
-    MT_TRY(MT_OPTIONS_TAKE(read, &own, err));
-    MT_TRY(mt_err_in(err, take(&own, &io, err), "%s", __func__));
-    mt_file_text *const files = with_study(study, &own, err);
+    MT_TRY(take(__func__, read, &asked, err));
+    mt_file_text *const files = with_study(study, &asked.own, err);
     if (files == NULL) {
         return MT_E_MEMORY;
     }
-    io.files.given = files;
-    io.files.n++;
-    mt_status rc = mt_study_load(STUDY_PATH, &io, &asked, own.diagnostics, err);
+    asked.io.files.given = files;
+    asked.io.files.n++;
+    mt_status rc = mt_study_load(STUDY_PATH, &asked.io, &question, asked.own.diagnostics, err);
     free(files);
-    rc = rc == MT_OK ? mt_study_solve(asked, solve, &answer, err) : rc;
+    rc = rc == MT_OK ? mt_study_solve(question, solve, &answer, err) : rc;
     rc = rc == MT_OK ? mt_result_json(answer, result, err) : rc;
     mt_result_delete(answer);
-    mt_study_delete(asked);
+    mt_study_delete(question);
     return rc;
 }

@@ -197,6 +197,20 @@ const char *mt_model_parameter_name(const mt_model *model, int parameter)
                : NULL;
 }
 
+const char *mt_model_parameter_unit(const mt_model *model, int parameter)
+{
+    return mt_model_parameter_name(model, parameter) == NULL
+               ? NULL
+               : model->parameters[parameter].unit;
+}
+
+int mt_model_parameter_follows(const mt_model *model, int parameter)
+{
+    double value = 0.0;
+    return mt_model_parameter_name(model, parameter) != NULL &&
+           !mt_expr_is_constant(&model->nums[model->parameters[parameter].value].expr, &value);
+}
+
 int mt_model_configuration_count(const mt_model *model)
 {
     return model == NULL ? 0 : model->n_configurations;

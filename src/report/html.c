@@ -10,7 +10,7 @@
 
 static void add_footer(const mt_result_run *run, mt_text *out)
 {
-    mt_text_add(out, "<footer>modetune ");
+    mt_text_add(out, "<footer class=\"drawn\">modetune ");
     mt_html_escape(run->modetune_version == NULL ? "" : run->modetune_version, out);
     mt_text_add(out, " (");
     mt_html_escape(run->build.commit == NULL ? "" : run->build.commit, out);
@@ -31,10 +31,10 @@ void mt_report_html_told(const mt_result *result, mt_text *out)
     const char *const status = mt_result_status_name(result->status);
     mt_text_addf(out, "<p class=\"status %s\"><b>%s</b>. ", status, status);
     mt_html_escape(result->status_text == NULL ? "" : result->status_text, out);
-    mt_text_add(out, "</p>\n<div id=\"figures\"></div>\n<div id=\"told\">\n");
-    mt_tell_answer(&(mt_teller){.out = out, .html = true}, result, true);
+    mt_text_add(out, "</p>\n<noscript><p>Figures are drawn by the page's own script, which is "
+                     "switched off here.</p></noscript>\n");
+    mt_tell_page(out, result);
     add_footer(&result->run, out);
-    mt_text_add(out, "</div>\n");
 }
 
 void mt_report_html(const mt_result *result, const char *json, const char *scene, mt_text *out)

@@ -12,10 +12,41 @@
 enum { HASH_TEXT = 45 }; /* 32 bytes in base 64, and the terminator */
 
 /* What the script of a page is made of, in this order; the last one begins to draw. */
-static const char *const report_scripts[] = {"d3.js", "base.js", NULL};
+static const char *const report_scripts[] = {"d3.js",
+                                             "base.js",
+                                             "text.js",
+                                             "figure.js",
+                                             "designs.js",
+                                             "alternatives.js",
+                                             "chart_frequencies.js",
+                                             "chart_parameters.js",
+                                             "chart_rotor.js",
+                                             "chart_drive.js",
+                                             "chart_trade.js",
+                                             "chart_front.js",
+                                             "chart_parallel.js",
+                                             "chart_tolerance.js",
+                                             "chart_maps.js",
+                                             "chart_published.js",
+                                             "chart_search.js",
+                                             "origin.js",
+                                             "space.js",
+                                             "camera.js",
+                                             "pose.js",
+                                             "symbols.js",
+                                             "paint.js",
+                                             "dom.js",
+                                             "drawing.js",
+                                             "view3d.js",
+                                             "modes.js",
+                                             "drive.js",
+                                             "report.js",
+                                             NULL};
+static const char *const report_styles[] = {"page.css", "view.css", "report.css", NULL};
 static const char *const show_scripts[] = {
     "base.js",    "space.js",  "camera.js", "pose.js",  "symbols.js", "paint.js", "dom.js",
     "drawing.js", "view3d.js", "modes.js",  "drive.js", "show.js",    NULL};
+static const char *const report_styles[] = {"page.css", "report.css", NULL};
 static const char *const plain_styles[] = {"page.css", NULL};
 static const char *const show_styles[] = {"page.css", "view.css", NULL};
 
@@ -38,19 +69,38 @@ static const char *file(const char *name)
     return "";
 }
 
+/* A file of ours without indents and lines of comment, which are a quarter of it. (None of
+ * them has a text of several lines.) */
+static void add_code(const char *code, mt_text *out)
+{
+    while (*code != '\0') {
+        code += strspn(code, " \n");
+        const size_t line = strcspn(code, "\n");
+        if (strncmp(code, "//", 2) != 0) {
+            mt_text_add_n(out, code, line);
+            mt_text_add(out, "\n");
+        }
+        code += line;
+    }
+}
+
 static void add_script(mt_page_kind kind, mt_text *out)
 {
     static const char *const *const lists[] = {NULL, report_scripts, show_scripts};
     const char *const *const list = lists[kind];
     for (int i = 0; list != NULL && list[i] != NULL; i++) {
-        mt_text_add(out, file(list[i]));
-        mt_text_add(out, "\n");
+        if (strcmp(list[i], "d3.js") == 0) {
+            mt_text_add(out, file(list[i])); /* with its notice of copyright */
+            mt_text_add(out, "\n");
+        } else {
+            add_code(file(list[i]), out);
+        }
     }
 }
 
 static void add_style(mt_page_kind kind, mt_text *out)
 {
-    static const char *const *const lists[] = {plain_styles, plain_styles, show_styles};
+    static const char *const *const lists[] = {plain_styles, report_styles, show_styles};
     for (const char *const *name = lists[kind]; *name != NULL; name++) {
         mt_text_add(out, file(*name));
     }
@@ -125,17 +175,25 @@ void mt_page_begin(mt_page_kind kind, const char *title, mt_text *out)
 }
 
 /* JSON in which nothing can end the element: a "<" stands only in strings, where it may be
- * written as its number. */
+ * written as its number. White space is left out: nobody reads it here, and it is a third of a
+ * large result. */
 static void add_json(const char *json, mt_text *out)
 {
+    bool in_string = false;
     while (*json != '\0') {
-        const size_t plain = strcspn(json, "<");
+        const size_t plain = strcspn(json, in_string ? "<\\\"" : "< \n\"");
         mt_text_add_n(out, json, plain);
         json += plain;
         if (*json == '<') {
             mt_text_add(out, "\\u003c");
+        } else if (*json == '"') {
+            mt_text_add(out, "\"");
+            in_string = !in_string;
+        } else if (*json == '\\' && json[1] != '\0') { /* and what it escapes */
+            mt_text_add_n(out, json, 2);
             json++;
         }
+        json += *json == '\0' ? 0 : 1;
     }
 }
 

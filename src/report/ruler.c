@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "report/svg.h"
 
 enum { INDENT = 2, LEAST = 30, USUAL = 64, MOST = 96, ROOM = MOST + 16, NUMBER = 24 };
 static const double ABOVE = 1.12; /* what is shown above the last thing asked for */
@@ -154,11 +153,23 @@ static void add_line(ruler *u, const mt_recommendation *r, const char *of)
     mt_text_add(u->out, "\n");
 }
 
+/* Distance of marks on a scale of this length: 1, 2 or 5 times a power of ten, about six. */
+static double step_of(double length)
+{
+    const double raw = length / 6.0;
+    const double power = pow(10.0, floor(log10(raw)));
+    const double lead = raw / power;
+    if (!(power > 0.0)) {
+        return length; /* next to nothing: one mark */
+    }
+    return power * (lead <= 1.0 ? 1.0 : lead <= 2.0 ? 2.0 : lead <= 5.0 ? 5.0 : 10.0);
+}
+
 static void add_scale(const ruler *u)
 {
     char line[ROOM];
     char number[NUMBER];
-    const double step = mt_svg_step(u->top);
+    const double step = step_of(u->top);
     int end = 0; /* of what stands there so far */
     memset(line, ' ', sizeof line);
     for (int k = 0; k * step <= u->top; k++) {

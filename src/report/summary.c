@@ -4,14 +4,16 @@
 #include <math.h>
 #include <string.h>
 
-#include "report/campbell.h"
 #include "report/number.h"
 #include "report/result_tables.h"
 #include "report/ruler.h"
-#include "report/svg.h"
 #include "report/trade.h"
 
-enum { INDENT = 2, DIGITS = 4 };
+enum {
+    INDENT = 2,
+    DIGITS = 4,
+    SHOWN = 20 /* of more designs a page draws figures only */
+};
 
 static void add_heading(const mt_teller *to, const char *title)
 {
@@ -119,18 +121,22 @@ static void tell_reasons(const mt_teller *to, const mt_recommendation *r)
                  {"hold", "Why: what holds it"},
                  {"cost", "Why: what it costs"},
                  {"rank", "Why: how it stands"}};
+    mt_text_add(to->out, to->html && r->n_reasons > 0 ? "<div class=\"parts\">\n" : "");
     for (int k = 0; k < MT_COUNT(parts); k++) {
         bool open = false;
         for (int i = 0; i < r->n_reasons; i++) {
             if (strcmp(r->reasons[i].kind, parts[k].kind) == 0) {
+                mt_text_add(to->out, to->html && !open ? "<div>" : "");
                 open = open || open_list(to, parts[k].title, 1);
                 add_item(to, "", r->reasons[i].text);
             }
         }
         if (open) {
             close_list(to);
+            mt_text_add(to->out, to->html ? "</div>\n" : "");
         }
     }
+    mt_text_add(to->out, to->html && r->n_reasons > 0 ? "</div>\n" : "");
 }
 
 /* One whose text was made for it; freed. */
@@ -209,39 +215,34 @@ static void tell_parameters(const mt_teller *to, const mt_recommendation *r)
             add_line(to, &line);
         }
     }
-    if (r->n_parameters > 0 && to->html) {
-        mt_report_svg_changes(r, to->out);
-    }
 }
 
-/* The best design, or the original one where there is none. */
-static void tell_design(const mt_teller *to, const mt_result *result)
+/* "Recommendation 1 (feasible), size of the redesign 0.0828" */
+static void tell_rank(const mt_teller *to, const mt_recommendation *r)
 {
-    const bool found = result->n_recommendations > 0;
-    const mt_recommendation *const r = found ? &result->recommendations[0] : &result->baseline;
-    bool told = false; /* the size of the redesign, and that is all that is asked for */
-    if (found && r->n_parameters > 0) {
-        char change[MT_NUMBER_TEXT];
-        mt_text title = {0};
-        mt_text_addf(&title, "Recommendation %d (%s), size of the redesign %s%s", r->rank,
-                     r->grade == NULL ? "not graded" : r->grade,
-                     mt_report_number(r->change, DIGITS, change),
-                     r->singular ? ", a double solution: its parameters are sensitive" : "");
-        add_heading(to, title.s == NULL ? "" : title.s);
-        to->out->failed = to->out->failed || title.failed;
-        mt_text_free(&title);
-        told = r->n_objectives == 1 && r->objectives[0].recommended == r->change;
-    }
-    if (!told) {
+    char change[MT_NUMBER_TEXT];
+    mt_text title = {0};
+    mt_text_addf(&title, "Recommendation %d (%s), size of the redesign %s%s", r->rank,
+                 r->grade == NULL ? "not graded" : r->grade,
+                 mt_report_number(r->change, DIGITS, change),
+                 r->singular ? ", a double solution: its parameters are sensitive" : "");
+    add_heading(to, title.s == NULL ? "" : title.s);
+    to->out->failed = to->out->failed || title.failed;
+    mt_text_free(&title);
+}
+
+/* Its numbers; the original design has no parameters to tell. */
+static void tell_numbers(const mt_teller *to, const mt_recommendation *r)
+{
+    const bool found = r->rank > 0;
+    if (!(found && r->n_parameters > 0 && r->n_objectives == 1 &&
+          r->objectives[0].recommended == r->change)) { /* else its heading has it */
         mt_tell_objectives(to, r);
     }
     if (found) {
         tell_parameters(to, r);
     }
     add_table(to, mt_report_frequencies(r), found ? "Frequencies" : "Frequencies as they are");
-    if (r->n_frequencies > 0 && to->html) {
-        mt_report_svg_frequencies(r, to->out);
-    }
     if (!to->html) {
         tell_ruler(to, r);
     }
@@ -251,6 +252,14 @@ static void tell_design(const mt_teller *to, const mt_result *result)
     add_table(to, mt_report_clearances(r), "Clearances from bands");
     add_table(to, mt_report_motions(r), "Over the range of motion");
     add_table(to, mt_report_goals(r), "Goals");
+}
+
+static void tell_design(const mt_teller *to, const mt_recommendation *r)
+{
+    if (r->rank > 0 && r->n_parameters > 0) {
+        tell_rank(to, r);
+    }
+    tell_numbers(to, r);
     tell_reasons(to, r);
 }
 
@@ -304,9 +313,6 @@ static void tell_trade(const mt_teller *to, const mt_result *result)
         }
     }
     add_table(to, mt_report_trade(result), title);
-    if (to->html) {
-        mt_report_svg_trade(result, to->out);
-    }
 }
 
 void mt_tell_overrides(const mt_teller *to, const mt_result_run *run)
@@ -356,33 +362,106 @@ void mt_report_spent(const mt_result_run *run, mt_text *out)
     }
 }
 
-void mt_tell_answer(const mt_teller *to, const mt_result *result, bool with_published)
+static void tell_relaxations(const mt_teller *to, const mt_result *result)
 {
-    static const char relaxed[] = "What would let a design exist, one change at a time";
-    static const char published[] = "Published against computed";
+    static const char title[] = "What would let a design exist, one change at a time";
+    if (is_known(to, title, result->relaxations) &&
+        open_list(to, title, result->n_relaxations)) {
+        for (int i = 0; i < result->n_relaxations; i++) {
+            add_item(to, "", result->relaxations[i].text);
+        }
+        close_list(to);
+    }
+}
+
+static void tell_published(const mt_teller *to, const mt_result *result)
+{
+    static const char title[] = "Published against computed";
+    if (is_known(to, title, result->published)) {
+        add_table(to, mt_report_published(result), title);
+    }
+}
+
+/* The best design (goals, frequencies, parameters, reasons), or the original one where there
+ * is none; alternatives, what stays undetermined, certificates, relaxations, warnings. */
+static void tell_answer(const mt_teller *to, const mt_result *result, bool with_published)
+{
     mt_tell_overrides(to, &result->run);
     mt_tell_doubts(to, result);
-    tell_design(to, result);
-    if (to->html) {
-        mt_report_svg_campbell(result, to->out);
-    }
+    tell_design(to, result->n_recommendations > 0 ? &result->recommendations[0]
+                                                  : &result->baseline);
     if (result->n_recommendations > 1) {
         add_table(to, mt_report_alternatives(result), "All recommendations");
     }
     mt_tell_uncertainty(to, result);
     tell_trade(to, result);
     tell_certificates(to, result);
-    if (is_known(to, relaxed, result->relaxations) &&
-        open_list(to, relaxed, result->n_relaxations)) {
-        for (int i = 0; i < result->n_relaxations; i++) {
-            add_item(to, "", result->relaxations[i].text);
-        }
-        close_list(to);
-    }
-    if (with_published && is_known(to, published, result->published)) {
-        add_table(to, mt_report_published(result), published);
+    tell_relaxations(to, result);
+    if (with_published) {
+        tell_published(to, result);
     }
     add_sentences(to, "Warnings", result->n_warnings, result->warnings);
+}
+
+/* A place that the page's script draws into. */
+static void keep_place(const mt_teller *to, const char *id)
+{
+    mt_text_addf(to->out, "<div id=\"%s\"></div>\n", id);
+}
+
+/* A part of the page for each design, the first of which is shown until another is chosen. */
+static void tell_each(const mt_teller *to, const mt_result *result,
+                      void (*tell)(const mt_teller *, const mt_recommendation *))
+{
+    const int n = result->n_recommendations < SHOWN ? result->n_recommendations : SHOWN;
+    for (int i = 0; i < n; i++) {
+        mt_text_addf(to->out, "<section data-rank=\"%d\"%s>\n", result->recommendations[i].rank,
+                     i == 0 ? "" : " hidden");
+        tell(to, &result->recommendations[i]);
+        mt_text_add(to->out, "</section>\n");
+    }
+    if (n == 0) {
+        mt_text_add(to->out, "<section data-rank=\"0\">\n");
+        tell(to, &result->baseline);
+        mt_text_add(to->out, "</section>\n");
+    }
+}
+
+static void tell_why(const mt_teller *to, const mt_recommendation *r)
+{
+    if (r->rank > 0 && r->n_parameters > 0) {
+        tell_rank(to, r);
+    }
+    tell_reasons(to, r);
+}
+
+void mt_tell_page(mt_text *out, const mt_result *result)
+{
+    static const char *const first[] = {"place-choice", "place-alternatives",
+                                        "place-frequencies", "place-parameters"};
+    const mt_teller to = {.out = out, .html = true};
+    mt_tell_overrides(&to, &result->run);
+    mt_tell_doubts(&to, result);
+    for (int i = 0; i < MT_COUNT(first); i++) {
+        keep_place(&to, first[i]);
+    }
+    tell_each(&to, result, tell_why);
+    tell_relaxations(&to, result);
+    mt_tell_uncertainty(&to, result);
+    tell_certificates(&to, result);
+    add_sentences(&to, "Warnings", result->n_warnings, result->warnings);
+    keep_place(&to, "figures");
+    mt_text_add(out, "<details id=\"told\">\n<summary>All numbers as tables</summary>\n");
+    tell_each(&to, result, tell_numbers);
+    if (result->n_recommendations > 1) {
+        mt_text_add(out, "<div class=\"drawn\">\n");
+        add_table(&to, mt_report_alternatives(result), "All recommendations");
+        mt_text_add(out, "</div>\n");
+    }
+    tell_trade(&to, result);
+    tell_published(&to, result);
+    mt_text_add(out, "</details>\n");
+    keep_place(&to, "place-origin");
 }
 
 void mt_report_summary(const mt_result *result, bool with_published, int width, mt_text *out)
@@ -392,5 +471,5 @@ void mt_report_summary(const mt_result *result, bool with_published, int width, 
     mt_text_addf(out, "%s\n%s\n", name == NULL ? "study" : name,
                  result->status_text == NULL ? mt_result_status_name(result->status)
                                              : result->status_text);
-    mt_tell_answer(&(mt_teller){.out = out, .width = width}, result, with_published);
+    tell_answer(&(mt_teller){.out = out, .width = width}, result, with_published);
 }

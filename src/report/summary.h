@@ -12,7 +12,7 @@
  */
 typedef struct mt_teller {
     mt_text *out;
-    bool html; /* a page: with bands and figures */
+    bool html; /* a page: with bands */
     int width; /* that tables of text fold to; 0: as wide as they are */
 } mt_teller;
 
@@ -20,9 +20,9 @@ typedef struct mt_teller {
  * width as in mt_teller. */
 void mt_report_summary(const mt_result *result, bool with_published, int width, mt_text *out);
 
-/* Doubts, the best design (goals, frequencies, parameters, reasons), alternatives, what stays
- * undetermined, certificates, relaxations, warnings. */
-void mt_tell_answer(const mt_teller *to, const mt_result *result, bool with_published);
+/* The same as the body of a page that a script draws figures into: what is said first, tables
+ * last, each recommendation in parts of its own. */
+void mt_tell_page(mt_text *out, const mt_result *result);
 /* Of them: doubts with their places, then facts. */
 void mt_tell_doubts(const mt_teller *to, const mt_result *result);
 /* The objectives of a design with their values. */

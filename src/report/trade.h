@@ -8,7 +8,5 @@
 /* One line per point of the trade study: what varies, status, objectives, change, clearance,
  * parameters; the caller frees it. No columns where there is none. */
 mt_table mt_report_trade(const mt_result *result);
-/* Its figure; only where there is one and some point meets its goals. */
-void mt_report_svg_trade(const mt_result *result, mt_text *out);
 
 #endif

@@ -126,6 +126,14 @@ static const struct {
     {"info " MODELS "ring.json", MT_EXIT_SYSTEM, SHORT},
     {"info " MODELS "ring.json", MT_EXIT_SYSTEM, FULL},
 
+    {"show " MODELS "ring.json", MT_EXIT_DONE, AS_IT_IS},
+    {"show %/ghost.json", MT_EXIT_DONE, AS_IT_IS}, /* drawn, with a warning */
+    {"show --root / --svg %/engine_orders/result.json", MT_EXIT_DONE, AS_IT_IS},
+    {"show --format csv " MODELS "ring.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"show %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
+    {"show " MODELS "ring.json", MT_EXIT_SYSTEM, SHORT},
+    {"show " MODELS "ring.json", MT_EXIT_SYSTEM, FULL},
+
     {"report %/engine_orders/result.json", MT_EXIT_DONE, AS_IT_IS},
     {"report --format htm %/engine_orders/result.json", MT_EXIT_INPUT, AS_IT_IS},
     {"report %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
@@ -194,6 +202,7 @@ static const struct {
     [MT_CMD_SWEEP] = {"sweep", {true, false, true, true, true, false}},
     [MT_CMD_SENSITIVITY] = {"sensitivity", {true, false, true, true, true, false}},
     [MT_CMD_INFO] = {"info", {true, false, true, true, true, false}},
+    [MT_CMD_SHOW] = {"show", {true, false, true, false, true, false}},
     [MT_CMD_REPORT] = {"report", {true, false, true, false, true, false}},
     [MT_CMD_EXPLAIN] = {"explain", {true, false, true, false, true, false}},
     [MT_CMD_APPLY] = {"apply", {true, false, true, false, true, false}},

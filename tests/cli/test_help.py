@@ -17,6 +17,7 @@ OPTIONS = {
     "sweep": {"configuration", "set", "count", "drive", "hold", "modes"},
     "sensitivity": {"configuration", "set", "count", "parameters"},
     "info": {"configuration", "set"},
+    "show": {"configuration", "set", "output", "svg", "mode", "model"},
     "report": {"output", "verify"},
     "explain": {"rank"},
     "apply": {"rank", "model"},

@@ -34,6 +34,7 @@ class Examples(unittest.TestCase):
         subprocess.run(["cmake", "--install", BUILD, "--prefix", prefix], check=True, capture_output=True)
         (libraries,) = {p.parent for p in prefix.rglob("libmodetune.so")}
         cls.environment = dict(os.environ, PKG_CONFIG_PATH=str(libraries / "pkgconfig"), LD_LIBRARY_PATH=str(libraries),
+                               PYTHONPATH=str(SOURCE / "src/library/python"),
                                OPENBLAS_NUM_THREADS="1")
         cls.blocks = {}
         for name, kind, body, text in FILE.findall(README.read_text(encoding="utf-8")):
@@ -74,7 +75,7 @@ class Examples(unittest.TestCase):
 
     def test_python_script_says_what_the_command_line_says(self):
         first = self.said("example.py").splitlines()[0]
-        self.run_in_folder("prefix/bin/modetune", "run", "studies/stick.json", "--quiet")
+        self.run_in_folder("prefix/bin/modetune", "run", "studies/stick.json", "--quiet", "--set", "d=0.18")
         result = json.loads((self.folder / "results/stick/result.json").read_text())
         for p in result["recommendations"][0]["parameters"]:
             value = float(re.search(rf"{p['name']} ([0-9.e+-]+)", first).group(1))

@@ -37,6 +37,7 @@ static mt_diagnostics *list;
 static mt_diagnostics *wrong; /* of a file that is */
 static mt_err said;
 static const double one[1] = {1.0};
+static int finish = MT_WISH_FINISH;
 
 /* Argument number k of a call where pointer number `null` is to be NULL. */
 #define ARG(k, pointer) (null == (k) ? NULL : (pointer))
@@ -135,6 +136,8 @@ TELLS(model_title, mt_model_title(ARG(0, model)) != NULL)
 TELLS(model_dimension, mt_model_dimension(ARG(0, model)) == 2)
 TELLS(model_parameter_count, mt_model_parameter_count(ARG(0, model)) > 0)
 TELLS(model_parameter_name, mt_model_parameter_name(ARG(0, model), 0) != NULL)
+TELLS(model_parameter_unit, mt_model_parameter_unit(ARG(0, model), 0) != NULL)
+TELLS(model_parameter_follows, mt_model_parameter_follows(ARG(0, model), 0) == 0)
 TELLS(model_configuration_count, mt_model_configuration_count(ARG(0, model)) > 0)
 TELLS(model_configuration_name, mt_model_configuration_name(ARG(0, model), 0) != NULL)
 static mt_status call_mechanism_new(int null)
@@ -222,6 +225,7 @@ TELLS(study_variable_name, mt_study_variable_name(ARG(0, study), 0) != NULL)
 TELLS(study_variable_original, isfinite(mt_study_variable_original(ARG(0, study), 0)))
 TELLS(study_variable_lower, isfinite(mt_study_variable_lower(ARG(0, study), 0)))
 TELLS(study_variable_upper, isfinite(mt_study_variable_upper(ARG(0, study), 0)))
+TELLS(wish_at, mt_wish_at(ARG(0, &finish)) == (null == 0 ? MT_WISH_NONE : MT_WISH_FINISH))
 static mt_status call_study_solve(int null)
 {
     mt_result *out = null == 0 ? result : NULL;
@@ -300,6 +304,33 @@ static mt_status call_result_json(int null)
     return null < 0 && !owned ? MT_E_INTERNAL : rc;
 }
 
+static mt_status call_result_read(int null)
+{
+    char *text = NULL;
+    MT_TRY(mt_result_json(result, &text, &said));
+    const mt_file_text file = {"r.json", text};
+    const mt_read_options opt = {.size = sizeof opt, .files = &file, .n_files = 1};
+    mt_result *out = null == 2 ? result : NULL;
+    /* without options it is looked for on the disk, where it is not */
+    const mt_status rc =
+        mt_result_read(ARG(0, "r.json"), ARG(1, &opt), ARG(2, &out), ARG(3, &said));
+    const bool owned = out != NULL && null != 2;
+    if (null != 2) {
+        mt_result_delete(out);
+    }
+    mt_string_delete(text);
+    return (rc == MT_OK) != owned ? MT_E_INTERNAL : null == 1 && rc == MT_E_SYSTEM ? MT_OK : rc;
+}
+
+static mt_status call_result_html(int null)
+{
+    char *out = NULL;
+    const mt_status rc = mt_result_html(ARG(0, result), ARG(1, &out), ARG(2, &said));
+    const bool owned = out != NULL;
+    mt_string_delete(out);
+    return null < 0 && !owned ? MT_E_INTERNAL : rc;
+}
+
 static mt_status call_udwadia_kalaba(int null)
 {
     double xdd[1];
@@ -347,6 +378,8 @@ static const struct {
     ROW(model_dimension, "n"),
     ROW(model_parameter_count, "n"),
     ROW(model_parameter_name, "n"),
+    ROW(model_parameter_unit, "n"),
+    ROW(model_parameter_follows, "a"),
     ROW(model_configuration_count, "n"),
     ROW(model_configuration_name, "n"),
     ROW(mechanism_new, "rarra"),
@@ -374,6 +407,7 @@ static const struct {
     ROW(study_variable_original, "n"),
     ROW(study_variable_lower, "n"),
     ROW(study_variable_upper, "n"),
+    ROW(wish_at, "a"),
     ROW(study_solve, "rara"),
     ROW(result_delete, "a"),
     ROW(result_outcome, "n"),
@@ -386,6 +420,8 @@ static const struct {
     ROW(result_reasons, "n"),
     ROW(result_reason, "n"),
     ROW(result_json, "rra"),
+    ROW(result_read, "rara"),
+    ROW(result_html, "rra"),
     ROW(string_delete, "a"),
     ROW(solve_json, "raara"),
     ROW(udwadia_kalaba, "rrrrra"),
@@ -505,6 +541,8 @@ static void public__wrong_numbers_are_refused(mt_test *t)
     REQUIRE(t, mt_model_read(MODEL, NULL, &m, NULL) == MT_OK);
     CHECK(t, mt_model_parameter_name(m, -1) == NULL);
     CHECK(t, mt_model_parameter_name(m, mt_model_parameter_count(m)) == NULL);
+    CHECK(t, mt_model_parameter_unit(m, -1) == NULL);
+    CHECK_INT(t, mt_model_parameter_follows(m, mt_model_parameter_count(m)), 0);
     CHECK(t, mt_model_configuration_name(m, -1) == NULL);
     CHECK(t, mt_model_configuration_name(m, mt_model_configuration_count(m)) == NULL);
     mt_model_delete(m);

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that are given by their texts, options that grow, and every diagnostic. */
+#include "modetune/mechanism.h"
 #include "modetune/model.h"
 #include "modetune/study.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/base.h"
@@ -164,11 +166,78 @@ static void read__options_may_grow(mt_test *t)
     CHECK_STR(t, err.text, "mt_model_read: the size of the options is not set");
 }
 
+static double hz_of(const mt_model *model)
+{
+    mt_mechanism *mechanism = NULL;
+    (void)mt_mechanism_new(model, NULL, 0, NULL, &mechanism, NULL);
+    const double hz = mt_mechanism_hz(mechanism, 1);
+    mt_mechanism_delete(mechanism);
+    return hz;
+}
+
+static void read__values_are_set_instead_of_the_files(mt_test *t)
+{
+    static const char *const sets[] = {"w=2*w"};
+    static const char *const odd[] = {"W=1"};
+    static const int seed = 7;
+    const mt_file_text files[] = {
+        {"box/studies/q.json", QUESTION},
+        {"box/models/p.json",
+         "{\"format\": \"modetune-model/1\", \"dimension\": 2,\n"
+         " \"gravity_m_per_s2\": [0, \"-g\"],\n"
+         " \"parameters\": {\"L\": 1, \"w\": {\"value\": 9.81, \"unit\": \"m/s^2\"},"
+         " \"g\": \"w\"},\n"
+         " \"bodies\": [{\"name\": \"bob\", \"mass_kg\": 1, \"inertia_kg_m2\": 0,"
+         " \"centre\": [0, \"-L\"]}],\n"
+         " \"joints\": [{\"name\": \"pin\", \"type\": \"revolute\","
+         " \"bodies\": [\"ground\", \"bob\"], \"at\": [0, 0]}]}\n"}};
+    mt_read_options opt = {.size = sizeof opt, .files = files, .n_files = 2, .files_only = 1};
+    mt_model *model = NULL;
+    mt_study *study = NULL;
+    mt_result *result = NULL;
+    char *text = NULL;
+    mt_err err = {MT_OK, ""};
+    CHECK_INT(t, mt_model_read("box/models/p.json", &opt, &model, &err), MT_OK);
+    CHECK_STR(t, err.text, "");
+    const double hz = hz_of(model);
+    CHECK_STR(t, mt_model_parameter_unit(model, 1), "m/s^2");
+    CHECK(t, mt_model_parameter_unit(model, 2) == NULL);
+    CHECK_INT(t, mt_model_parameter_follows(model, 1), 0);
+    CHECK_INT(t, mt_model_parameter_follows(model, 2), 1);
+    mt_model_delete(model);
+    opt.sets = sets;
+    opt.n_sets = 1;
+    opt.seed = &seed;
+    CHECK_INT(t, mt_model_read("box/models/p.json", &opt, &model, &err), MT_OK);
+    CHECK_NEAR(t, hz_of(model), hz * sqrt(2.0), 1e-12); /* (1/2 pi) sqrt(g/L) */
+    mt_model_delete(model);
+    /* a study says what it was asked for */
+    REQUIRE(t, mt_study_read("box/studies/q.json", &opt, &study, &err) == MT_OK);
+    CHECK_INT(t, mt_study_solve(study, NULL, &result, &err), MT_OK);
+    CHECK_INT(t, mt_result_json(result, &text, NULL), MT_OK);
+    CHECK(t, text != NULL && strstr(text, "\"seed\": 7") != NULL &&
+                 strstr(text, "\"overrides\": [\n") != NULL);
+    mt_string_delete(text);
+    mt_result_delete(result);
+    mt_study_delete(study);
+    opt.sets = odd;
+    CHECK_INT(t, mt_study_read("box/studies/q.json", &opt, &study, &err), MT_E_USAGE);
+    CHECK(t, study == NULL && strstr(err.text, "\"W\"") != NULL);
+    CHECK_INT(t, mt_model_read("box/models/p.json", &opt, &model, &err), MT_E_USAGE);
+    CHECK(t, model == NULL);
+}
+
 static void read__wrong_options_are_refused(mt_test *t)
 {
     static const mt_file_text no_text = {"a", NULL};
     static const mt_file_text no_path = {NULL, "a"};
+    static const char *const no_set[] = {NULL};
+    static const int below = -1;
     const mt_read_options rows[] = {
+        {.size = sizeof rows[0], .sets = NULL, .n_sets = 1},
+        {.size = sizeof rows[0], .sets = no_set, .n_sets = 1},
+        {.size = sizeof rows[0], .n_sets = -1},
+        {.size = sizeof rows[0], .seed = &below},
         {.size = sizeof rows[0], .files = NULL, .n_files = 1},
         {.size = sizeof rows[0], .files = &no_text, .n_files = 1},
         {.size = sizeof rows[0], .files = &no_path, .n_files = 1},
@@ -186,4 +255,6 @@ MT_TEST_MAIN(MT_TEST(read__a_study_and_its_model_come_from_memory),
              MT_TEST(read__what_is_not_given_is_not_there),
              MT_TEST(read__paths_are_compared_by_their_words),
              MT_TEST(read__every_problem_is_listed_with_its_place),
-             MT_TEST(read__options_may_grow), MT_TEST(read__wrong_options_are_refused))
+             MT_TEST(read__options_may_grow),
+             MT_TEST(read__values_are_set_instead_of_the_files),
+             MT_TEST(read__wrong_options_are_refused))

@@ -103,6 +103,50 @@ static void study__is_text_in_and_text_out(mt_test *t)
     mt_diagnostics_delete(read.diagnostics);
 }
 
+/* Written and read back, a result says the same, to the byte. */
+static void study__result_is_read_back(mt_test *t)
+{
+    mt_study *study = NULL;
+    mt_result *result = NULL;
+    mt_result *again = NULL;
+    char *text[2] = {NULL, NULL};
+    char *page[2] = {NULL, NULL};
+    mt_err err = {MT_OK, ""};
+    REQUIRE(t, mt_study_read(STUDIES "pendulum_study.json", NULL, &study, &err) == MT_OK);
+    REQUIRE(t, mt_study_solve(study, NULL, &result, &err) == MT_OK);
+    CHECK_INT(t, mt_result_json(result, &text[0], &err), MT_OK);
+    CHECK_INT(t, mt_result_html(result, &page[0], &err), MT_OK);
+    /* its name is that of a result in its folder, but it is no file */
+    const mt_file_text file = {"somewhere/result.json", text[0]};
+    mt_read_options opt = {.size = sizeof opt, .files = &file, .n_files = 1, .files_only = 1};
+    CHECK_INT(t, mt_result_read("somewhere/result.json", &opt, &again, &err), MT_OK);
+    CHECK_STR(t, err.text, "");
+    CHECK_INT(t, mt_result_outcome(again), mt_result_outcome(result));
+    CHECK_STR(t, mt_result_summary(again), mt_result_summary(result));
+    CHECK_NEAR(t, mt_result_value(again, 1, "L"), mt_result_value(result, 1, "L"), 0.0);
+    CHECK_INT(t, mt_result_json(again, &text[1], &err), MT_OK);
+    CHECK_INT(t, mt_result_html(again, &page[1], &err), MT_OK);
+    CHECK_STR(t, text[1], text[0]);
+    CHECK_STR(t, page[1], page[0]);
+    CHECK(t, page[0] != NULL && strncmp(page[0], "<!DOCTYPE html>", 15) == 0);
+    mt_result_delete(again);
+    /* what is no result is said with its place */
+    const mt_file_text wrong = {"r.json", "{\n \"status\": \"merry\"}"};
+    opt.files = &wrong;
+    REQUIRE(t, mt_diagnostics_new(&opt.diagnostics, NULL) == MT_OK);
+    CHECK_INT(t, mt_result_read("r.json", &opt, &again, &err), MT_E_INPUT);
+    CHECK(t, again == NULL && mt_diagnostics_count(opt.diagnostics) > 0);
+    CHECK_STR(t, mt_diagnostics_file(opt.diagnostics, 0), "r.json");
+    CHECK_INT(t, mt_result_read("other.json", &opt, &again, &err), MT_E_SYSTEM);
+    mt_diagnostics_delete(opt.diagnostics);
+    for (int i = 0; i < 2; i++) {
+        mt_string_delete(text[i]);
+        mt_string_delete(page[i]);
+    }
+    mt_result_delete(result);
+    mt_study_delete(study);
+}
+
 static void missing_study__is_said(mt_test *t)
 {
     mt_study *study = NULL;
@@ -115,4 +159,4 @@ static void missing_study__is_said(mt_test *t)
 }
 
 MT_TEST_MAIN(MT_TEST(study__is_read_solved_and_told), MT_TEST(study__is_text_in_and_text_out),
-             MT_TEST(missing_study__is_said))
+             MT_TEST(study__result_is_read_back), MT_TEST(missing_study__is_said))

@@ -1,0 +1,335 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* modetune show: a mechanism as a page that moves, as JSON, or as a still picture. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "cli/find_model.h"
+#include "cli/picture.h"
+#include "io/file.h"
+#include "io/folder.h"
+#include "io/write_scene.h"
+#include "model/judge.h"
+#include "report/page.h"
+#include "scene/scene.h"
+
+/* What is looked at: a model, at the design of its file and --set, or at those of a result. */
+typedef struct subject {
+    mt_subject s;      /* its designs are those below where there is a result */
+    mt_result *result; /* NULL: a model was given */
+    char *path;        /* heap: of the model of the result */
+    int n;
+    mt_scene_ask *asks;
+} subject;
+
+/* Does the file say that it is a result? What cannot be read is told by who reads it. */
+static mt_status is_result(const char *path, bool *is)
+{
+    static const char format[] = "modetune-result/";
+    mt_file file = {.bytes = NULL};
+    mt_json *doc = NULL;
+    mt_status rc = mt_file_read(path, NULL, MT_JSON_MAX_BYTES, &file, NULL);
+    rc = rc == MT_OK ? mt_json_parse(file.bytes, file.length, &doc, NULL) : rc;
+    *is = false;
+    if (rc == MT_OK) {
+        const mt_addr member = mt_json_member(doc, MT_JSON_ROOT, "format");
+        *is = member != MT_NO_ADDR && mt_json_type_of(doc, member) == MT_JSON_STRING &&
+              strncmp(mt_json_string(doc, member), format, sizeof format - 1) == 0;
+    }
+    mt_json_delete(doc);
+    mt_file_free(&file);
+    return rc == MT_E_MEMORY ? rc : MT_OK;
+}
+
+/* Names that the model gives to modes, of the design in its file. */
+static mt_status name_modes(subject *o, mt_scene_ask *ask, mt_err *err)
+{
+    const mt_model *const m = o->s.model;
+    mt_scene_name *const names = mt_arena_alloc(&o->s.mem, (size_t)m->n_modes, sizeof *names);
+    MT_TRY(mt_arena_check(&o->s.mem, err));
+    for (int i = 0; i < m->n_modes; i++) {
+        names[i] =
+            (mt_scene_name){m->modes[i].configuration, m->modes[i].index, m->modes[i].name.s};
+    }
+    ask->names = names;
+    ask->n_names = m->n_modes;
+    return MT_OK;
+}
+
+static mt_status of_model(const mt_args *args, subject *o, mt_err *err)
+{
+    o->asks = mt_arena_alloc(&o->s.mem, 1, sizeof *o->asks);
+    MT_TRY(mt_arena_check(&o->s.mem, err));
+    o->asks[0] = (mt_scene_ask){.label = args->n_sets == 0 ? "original" : "as set",
+                                .n_inputs = o->s.n_inputs,
+                                .inputs = o->s.inputs,
+                                .at = o->s.at,
+                                .n_shown = -1};
+    o->n = 1;
+    return args->n_sets == 0 ? name_modes(o, &o->asks[0], err) : MT_OK;
+}
+
+/* A parameter of the model by its name in the result, with a value that is one. */
+static mt_status take(const subject *o, const char *name, double value, int *inputs, double *at,
+                      int *n, mt_err *err)
+{
+    const int p = mt_model_find_parameter(o->s.model, name);
+    if (p == MT_ABSENT) {
+        return mt_fail(err, MT_E_INPUT, "%s: there is no parameter \"%s\"", o->s.path, name);
+    }
+    if (!isfinite(value)) {
+        return mt_fail(err, MT_E_INPUT, "the result has no value of \"%s\"", name);
+    }
+    for (int i = 0; i < *n; i++) {
+        if (inputs[i] == p) {
+            return mt_fail(err, MT_E_INPUT, "the result has a value of \"%s\" twice", name);
+        }
+    }
+    inputs[*n] = p;
+    at[(*n)++] = value;
+    return MT_OK;
+}
+
+/* Modes that the result names at a recommended design. */
+static mt_status name_tracked(subject *o, const mt_recommendation *r, mt_scene_ask *ask,
+                              mt_err *err)
+{
+    mt_scene_name *const names =
+        mt_arena_alloc(&o->s.mem, (size_t)r->n_frequencies, sizeof *names);
+    MT_TRY(mt_arena_check(&o->s.mem, err));
+    for (int i = 0; i < r->n_frequencies; i++) {
+        const mt_result_frequency *const f = &r->frequencies[i];
+        if (f->name != NULL && f->identity != NULL && strcmp(f->identity, "tracked") == 0) {
+            const int c = mt_model_find_configuration(o->s.model, f->configuration);
+            names[ask->n_names++] = (mt_scene_name){c, f->mode, f->name};
+        }
+    }
+    ask->names = names;
+    return MT_OK;
+}
+
+/* What was set when the study was asked, then the variables at this design; `original`: as they
+ * were before. */
+static mt_status design(subject *o, const mt_recommendation *r, bool original,
+                        mt_scene_ask *ask, mt_err *err)
+{
+    const mt_result_run *const run = &o->result->run;
+    const size_t most = (size_t)r->n_parameters + (size_t)run->n_overrides;
+    int *const inputs = mt_arena_int(&o->s.mem, most);
+    double *const at = mt_arena_f64(&o->s.mem, most, 1);
+    MT_TRY(mt_arena_check(&o->s.mem, err));
+    *ask = (mt_scene_ask){.label = original ? "original" : "recommended",
+                          .rank = original ? 0 : r->rank,
+                          .inputs = inputs,
+                          .at = at,
+                          .shown = inputs};
+    for (int i = 0; i < r->n_parameters; i++) {
+        const mt_result_parameter *const p = &r->parameters[i];
+        MT_TRY(take(o, p->name, original ? p->original : p->recommended, inputs, at,
+                    &ask->n_inputs, err));
+    }
+    ask->n_shown = ask->n_inputs;
+    bool set = false;
+    for (int i = 0; i < run->n_overrides; i++) {
+        const mt_result_override *const v = &run->overrides[i];
+        if (strcmp(v->kind, "parameter") == 0) {
+            set = true;
+            MT_TRY(take(o, v->name, v->value, inputs, at, &ask->n_inputs, err));
+        }
+    }
+    for (int i = 0; i < o->s.n_configurations; i++) {
+        MT_TRY(mt_model_admit(o->s.model, o->s.configurations[i], ask->n_inputs, inputs, at,
+                              &o->s.mem, err));
+    }
+    if (original) {
+        return set ? MT_OK : name_modes(o, ask, err);
+    }
+    return name_tracked(o, r, ask, err);
+}
+
+static mt_status of_result(subject *o, mt_err *err)
+{
+    static const mt_recommendation none = {.rank = 0};
+    const mt_result *const r = o->result;
+    const int n = r->n_recommendations;
+    o->asks = mt_arena_alloc(&o->s.mem, (size_t)n + 1, sizeof *o->asks);
+    MT_TRY(mt_arena_check(&o->s.mem, err));
+    MT_TRY(design(o, n > 0 ? &r->recommendations[0] : &none, true, &o->asks[o->n++], err));
+    for (int i = 0; i < n; i++) {
+        MT_TRY(design(o, &r->recommendations[i], false, &o->asks[o->n++], err));
+    }
+    return MT_OK;
+}
+
+/* Load what the operand names. Returns the exit status, everything said. */
+static int load(const mt_args *args, subject *o)
+{
+    const mt_io_options opt = mt_cli_io(args);
+    const char *const operand = args->operands[0];
+    const char *const configuration = args->value[MT_OPT_CONFIGURATION];
+    mt_diagnostics messages = {.count = 0};
+    mt_err err = {.code = MT_OK};
+    mt_file file = {.bytes = NULL};
+    bool result = false;
+    mt_status rc = is_result(operand, &result);
+    if (rc != MT_OK) {
+        return mt_cli_failed(mt_fail_memory(&err), &err);
+    }
+    if (!result && args->given[MT_OPT_MODEL]) {
+        return mt_cli_failed(
+            mt_fail(&err, MT_E_USAGE, "--model is of a result, and %s is none", operand), &err);
+    }
+    if (result && args->n_sets > 0) {
+        return mt_cli_failed(
+            mt_fail(&err, MT_E_USAGE, "--set is of a model: a result has its own values"),
+            &err);
+    }
+    if (!result) {
+        const int code = mt_subject_load(args, operand, configuration, &o->s);
+        rc = code == MT_EXIT_DONE ? of_model(args, o, &err) : MT_OK;
+        return code != MT_EXIT_DONE ? code
+               : rc == MT_OK        ? MT_EXIT_DONE
+                                    : mt_cli_failed(rc, &err);
+    }
+    rc = mt_result_load(operand, &opt, &o->result, &messages, &err);
+    int code = mt_cli_loaded(rc, &messages, &err);
+    if (rc != MT_OK) {
+        return code;
+    }
+    rc = mt_find_model(args, o->result, &file, &o->path, &err);
+    mt_file_free(&file);
+    if (rc != MT_OK) {
+        return mt_cli_failed(rc, &err);
+    }
+    code = mt_subject_load(args, o->path, configuration, &o->s);
+    rc = code == MT_EXIT_DONE ? of_result(o, &err) : MT_OK;
+    (void)mt_err_in(&err, rc, "%s", operand);
+    return rc == MT_OK ? code : mt_cli_failed(rc, &err);
+}
+
+static void warn(const mt_scene *scene, const char *path)
+{
+    for (int d = 0; d < scene->n_designs; d++) {
+        for (int i = 0; i < scene->designs[d].n_views; i++) {
+            const mt_scene_view *const v = &scene->designs[d].views[i];
+            if (v->error != NULL) {
+                mt_terminal_warning("%s: configuration \"%s\": %s", path, v->name, v->error);
+            }
+        }
+    }
+}
+
+static mt_status page(const mt_scene *scene, const char *title, mt_text *out, mt_err *err)
+{
+    mt_text json = {.s = NULL};
+    const mt_status rc = mt_scene_write(scene, &json, err);
+    if (rc == MT_OK) {
+        const mt_page_data data[] = {{"scene", json.s}};
+        mt_page_begin(MT_PAGE_SHOW, title, out);
+        mt_page_end(MT_PAGE_SHOW, MT_COUNT(data), data, out);
+    }
+    mt_text_free(&json);
+    return rc;
+}
+
+/* The last design that is asked for, in the configuration that is: of a result the best
+ * recommended one. */
+static mt_status still(const mt_args *args, const mt_scene *scene, mt_text *out, mt_err *err)
+{
+    const mt_scene_design *const d = &scene->designs[scene->n_designs > 1 ? 1 : 0];
+    const mt_scene_view *const v = &d->views[0];
+    const mt_scene_mode *mode = NULL;
+    for (int i = 0; i < v->n_modes; i++) {
+        mode = args->mode > 0 && v->modes[i].index == args->mode ? &v->modes[i] : mode;
+    }
+    if (args->mode > 0 && mode == NULL) {
+        return mt_fail(err, MT_E_USAGE,
+                       "--mode: configuration \"%s\" shows no vibration mode %d", v->name,
+                       args->mode);
+    }
+    mt_picture(scene, v, mode, out);
+    return MT_OK;
+}
+
+/* The file that --output names, whole or not at all. */
+static mt_status keep(const char *path, const mt_text *text, mt_err *err)
+{
+    const char *const name = mt_text_base_name(path);
+    if (name[0] == '\0' || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
+        return mt_fail(err, MT_E_USAGE, "--output: \"%s\" is not the name of a file", path);
+    }
+    if (strlen(name) >= MT_FOLDER_NAME) {
+        return mt_fail(err, MT_E_USAGE, "--output: the name \"%s\" is too long", name);
+    }
+    char *const folder = mt_file_folder(path);
+    if (folder == NULL) {
+        return mt_fail_memory(err);
+    }
+    const mt_folder_file file = {name, text->s, text->length};
+    const mt_status rc = mt_folder_replace(folder, &file, 1, err);
+    free(folder);
+    return rc;
+}
+
+static mt_status check_use(const mt_args *args, mt_err *err)
+{
+    if (args->given[MT_OPT_MODE] && !args->given[MT_OPT_SVG]) {
+        return mt_fail(err, MT_E_USAGE, "--mode is of --svg: the page shows all modes");
+    }
+    if (args->given[MT_OPT_FORMAT] && args->given[MT_OPT_SVG]) {
+        return mt_fail(err, MT_E_USAGE, "--svg and --format exclude each other");
+    }
+    const bool other = args->format != MT_FORMAT_HTML && args->format != MT_FORMAT_JSON;
+    return args->given[MT_OPT_FORMAT] && other
+               ? mt_fail(err, MT_E_USAGE, "a mechanism is shown as html or json (--format)")
+               : MT_OK;
+}
+
+static mt_status write(const mt_args *args, const subject *o, const mt_scene *scene,
+                       mt_text *out, mt_err *err)
+{
+    const char *const title =
+        scene->name[0] != '\0' ? scene->name : mt_text_base_name(o->s.path);
+    mt_text own = {.s = NULL};
+    mt_text *const to = args->given[MT_OPT_OUTPUT] ? &own : out;
+    mt_status rc = args->given[MT_OPT_SVG]          ? still(args, scene, to, err)
+                   : args->format == MT_FORMAT_JSON ? mt_scene_write(scene, to, err)
+                                                    : page(scene, title, to, err);
+    rc = rc == MT_OK && to->failed ? mt_fail_memory(err) : rc;
+    if (rc == MT_OK && to == &own) {
+        rc = keep(args->value[MT_OPT_OUTPUT], &own, err);
+    }
+    if (rc == MT_OK && to == &own) {
+        mt_terminal_talk(args->given[MT_OPT_QUIET], "%s: written to %s", args->operands[0],
+                         args->value[MT_OPT_OUTPUT]);
+    }
+    mt_text_free(&own);
+    return rc;
+}
+
+int mt_cmd_show(const mt_args *args, mt_text *out)
+{
+    subject o = {.result = NULL};
+    mt_scene *scene = NULL;
+    mt_err err = {.code = MT_OK};
+    mt_status rc = check_use(args, &err);
+    int code = rc == MT_OK ? load(args, &o) : mt_cli_failed(rc, &err);
+    if (code != MT_EXIT_DONE) {
+        goto done;
+    }
+    /* a picture is of one configuration and one design */
+    const int n = args->given[MT_OPT_SVG] ? 1 : o.s.n_configurations;
+    rc = mt_scene_new(o.s.model, o.n, o.asks, n, o.s.configurations, &scene, &err);
+    if (rc == MT_OK) {
+        warn(scene, o.s.path);
+        rc = write(args, &o, scene, out, &err);
+    }
+    code = rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
+done:
+    mt_scene_delete(scene);
+    mt_result_delete(o.result);
+    mt_subject_free(&o.s);
+    free(o.path);
+    return code;
+}

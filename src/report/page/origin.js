@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the numbers come from: program, libraries, files, seed, and how exact the design is.
+(function () {
+  'use strict';
+  const mt = window.mt;
+  const T = mt.text;
+  const D = mt.design;
+
+  const greatest = (list) => list.filter(T.isNumber).reduce((a, b) => Math.max(a, b), 0);
+
+  // The design's own numbers: they follow the choice.
+  function exactness(design) {
+    const rows = [];
+    const f = D.clean(design.frequencies);
+    if (f.some((m) => T.isNumber(m.residual))) {
+      rows.push(['backward error of modes, at most',
+        T.short(greatest(f.map((m) => m.residual)), 3) + ' (a few units are perfect)']);
+    }
+    if (f.some((m) => T.isNumber(m.orthogonality))) {
+      rows.push(['loss of orthogonality, at most',
+        T.short(greatest(f.map((m) => m.orthogonality)), 3)]);
+    }
+    if (T.isNumber(design.kkt_residual)) {
+      rows.push(['optimality conditions missed by', T.short(design.kkt_residual, 3)]);
+    }
+    return rows;
+  }
+
+  function origin(result) {
+    const r = result.run;
+    const rows = [
+      ['modetune', `${r.modetune || ''}, sources ${r.build ? r.build.commit : 'unknown'}`],
+      ['compiler', r.build ? r.build.compiler : null],
+      ['libraries', [r.blas, r.nlopt && 'NLopt ' + r.nlopt, r.gsl && 'GSL ' + r.gsl]
+        .filter(Boolean).join('; ')],
+      ['command', r.command],
+      ['seed, local searches', `${r.seed}, ${r.starts}`],
+      ['evaluations', String(r.evaluations)],
+      ['cut by', r.cut_by],
+    ];
+    for (const o of D.clean(r.overrides)) {
+      rows.push(['asked with', `${o.name} = ${T.withUnit(T.short(o.value, 10), o.unit)}`]);
+    }
+    for (const f of D.clean(r.inputs)) {
+      rows.push([f.file, 'SHA-256 ' + f.sha256]);
+    }
+    return rows.filter((row) => row[1]);
+  }
+
+  mt.origin = function (into) {
+    const section = d3.select(into).append('section').attr('class', 'origin')
+      .attr('id', 'figure-origin');
+    section.append('h2').text('Where this comes from');
+    const table = section.append('div').attr('class', 'wide').append('table').append('tbody');
+    const follow = () => {
+      const rows = origin(mt.result()).concat(exactness(mt.choice().design));
+      const tr = table.selectAll('tr').data(rows).join('tr');
+      tr.selectAll('*').remove();
+      tr.append('th').attr('scope', 'row').text((d) => d[0]);
+      tr.append('td').text((d) => d[1]);
+    };
+    mt.onChoice(follow);
+    follow();
+  };
+})();

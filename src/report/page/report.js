@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The figures of a report in their order. A figure goes to the place of the page that is kept
+// for it (an element with the id "place-<figure>"), the others follow at "figures".
+(function () {
+  'use strict';
+  const mt = window.mt;
+
+  const ORDER = ['chartFrequencies', 'chartParameters', 'chartRotor', 'chartDrive',
+    'chartTrade', 'chartFront', 'chartParallel', 'chartTolerance', 'chartSensitivity',
+    'chartMac', 'chartPublished', 'chartStarts', 'chartSpent'];
+
+  function place(id) {
+    return document.getElementById('place-' + id) || document.getElementById('figures');
+  }
+
+  function start() {
+    const data = mt.data();
+    if (!data || !data.baseline || !document.getElementById('figures')) {
+      return;
+    }
+    mt.openResult(data);
+    mt.alternatives.bar(place('choice'));
+    mt.alternatives.table(place('alternatives'));
+    for (const name of ORDER) {
+      const charts = typeof mt[name] === 'function' ? mt[name]() : [mt[name]];
+      for (const chart of charts) {
+        if (chart) {
+          mt.figure.add(chart, place(chart.place || chart.id));
+        }
+      }
+    }
+    if (mt.origin) {
+      mt.origin(place('origin'));
+    }
+    mt.onChoice(mt.figure.updateAll);
+    mt.onChoice(tell);
+    tell();
+  }
+
+  // What the page tells of single designs follows the choice, too; what is drawn is not told.
+  function tell() {
+    const rank = String(mt.choice().rank);
+    for (const part of document.querySelectorAll('[data-rank]')) {
+      part.hidden = part.dataset.rank !== rank;
+    }
+    for (const part of document.querySelectorAll('.drawn')) {
+      part.hidden = true;
+    }
+  }
+
+  start();
+})();

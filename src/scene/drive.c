@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The range of a driven joint: from the lowest to the highest position that any configuration
+ * of the model drives it to; where there is one alone, from the reference position to that. A
+ * configuration that drives nothing, but has the joint that others drive, shows their range.
+ */
+#include "mechanics/drive.h"
+
+#include "scene/scene_priv.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#include "mechanics/sweep.h"
+#include "model/values.h"
+
+/* A drive of the model that concerns this configuration. */
+typedef struct range {
+    const mt_drive *drive; /* how it is held; NULL: none */
+    double low;
+    double high;
+    double own; /* NaN: the configuration drives nothing */
+} range;
+
+/* The configuration's own drive, else the first of another one whose joint, and whose spring,
+ * it has. */
+static const mt_drive *drive_of(const mt_scene_frame *f)
+{
+    const mt_model *const m = f->model;
+    const mt_drive *const own = &m->configurations[f->configuration].drive;
+    const mt_drive *found = own->given ? own : NULL;
+    for (int c = 0; c < m->n_configurations && found == NULL; c++) {
+        const mt_drive *const d = &m->configurations[c].drive;
+        if (d->given && mt_model_present(&m->joints[d->joint].in, f->configuration) &&
+            (!d->trim || mt_model_present(&m->springs[d->trim_spring].in, f->configuration))) {
+            found = d;
+        }
+    }
+    return found;
+}
+
+static mt_status position_in(const mt_scene_frame *f, int c, double *out, mt_err *err)
+{
+    const mt_model *const m = f->model;
+    const mt_scene_ask *const a = f->ask;
+    const mt_num position = m->configurations[c].drive.position;
+    const mt_arena_mark mark = mt_arena_get_mark(f->work);
+    mt_numbers numbers;
+    *out = 0.0;
+    if (position != MT_ABSENT) {
+        MT_TRY(mt_numbers_new(m, c, a->n_inputs, a->inputs, 1, &m->nums[position], f->work,
+                              &numbers, err));
+        MT_TRY(mt_numbers_at(&numbers, a->at, out, NULL, err));
+    }
+    mt_arena_rewind(f->work, mark);
+    return MT_OK;
+}
+
+static mt_status find_range(const mt_scene_frame *f, range *r, mt_err *err)
+{
+    const mt_model *const m = f->model;
+    int n = 0;
+    *r = (range){.drive = drive_of(f), .low = HUGE_VAL, .high = -HUGE_VAL, .own = nan("")};
+    for (int c = 0; c < m->n_configurations && r->drive != NULL; c++) {
+        const mt_drive *const d = &m->configurations[c].drive;
+        double at = 0.0;
+        if (!d->given || d->joint != r->drive->joint) {
+            continue;
+        }
+        MT_TRY(position_in(f, c, &at, err));
+        r->own = c == f->configuration ? at : r->own;
+        if (isfinite(at)) {
+            r->low = fmin(r->low, at);
+            r->high = fmax(r->high, at);
+            n++;
+        }
+    }
+    if (n > 0 && r->low == r->high) {
+        r->low = fmin(r->low, 0.0);
+        r->high = fmax(r->high, 0.0);
+    }
+    r->drive = n > 0 ? r->drive : NULL;
+    return MT_OK;
+}
+
+/* At work on one range. */
+typedef struct walk {
+    mt_scene_frame *f;
+    mt_analysis *a;
+    mt_scene_drive *out;
+} walk;
+
+/* pose := the poses of all bodies, turned against those of the frame: R R0^T. */
+static void fill_pose(const walk *w, double *pose)
+{
+    const mt_scene_frame *const f = w->f;
+    const mt_pose *const now = mt_linear_position(w->a->lin)->at.pose;
+    for (int b = 0; b < f->view->n_bodies; b++) {
+        const mt_pose *const p = mt_pose_of(now, b - 1);
+        const mt_pose *const rest = mt_pose_of(f->pose, b - 1);
+        double *const out = pose + ((ptrdiff_t)12 * b);
+        for (int i = 0; i < 3; i++) {
+            out[i] = creal(p->x[i]);
+            for (int k = 0; k < 3; k++) {
+                double sum = 0.0;
+                for (int c = 0; c < 3; c++) {
+                    sum += creal(p->r[i + (3 * c)]) * creal(rest->r[k + (3 * c)]);
+                }
+                out[3 + (3 * i) + k] = sum;
+            }
+            mt_scene_clean(1.0, out + 3 + (3 * i));
+        }
+        mt_scene_clean(f->sys->length_m, out);
+    }
+}
+
+static mt_status visit(void *context, int point, const double *inputs, mt_err *err)
+{
+    const walk *const w = context;
+    mt_scene_position *const p = &w->out->positions[point];
+    mt_analysis_options opt = mt_analysis_options_default();
+    opt.gradient = true; /* of the position */
+    opt.check = false;
+    opt.bounds = false;
+    MT_TRY(mt_analysis_solve(w->a, inputs, &opt, err));
+    p->pose = mt_arena_f64(w->f->mem, 12, (size_t)w->f->view->n_bodies);
+    p->hz = mt_arena_f64(w->f->mem, MT_SCENE_MODES, 1);
+    MT_TRY(mt_arena_check(w->f->mem, err));
+    fill_pose(w, p->pose);
+    for (int i = 0; i < MT_SCENE_MODES; i++) {
+        const int at = mt_modal_flexible(&w->a->modes, i + 1);
+        if (at >= 0) {
+            p->hz[p->n_hz++] = mt_modal_hz(&w->a->modes, at);
+        }
+    }
+    return MT_OK;
+}
+
+/* The position nearest to the reference: every system is made there. */
+static double nearest_of(int n, const double *positions)
+{
+    double least = positions[0];
+    for (int i = 1; i < n; i++) {
+        least = fabs(positions[i]) < fabs(least) ? positions[i] : least;
+    }
+    return least;
+}
+
+static mt_status sweep(walk *w, const range *r, mt_err *err)
+{
+    mt_scene_frame *const f = w->f;
+    const mt_model *const m = f->model;
+    const mt_scene_ask *const ask = f->ask;
+    const int n = w->out->n_positions;
+    const mt_system_drive drive = {
+        .joint = m->joints[r->drive->joint].name.s,
+        .spring = r->drive->trim ? m->springs[r->drive->trim_spring].name.s : NULL};
+    const mt_sweep_visitor visitor = {visit, w};
+    double *const at = mt_arena_f64(f->work, (size_t)ask->n_inputs + 1, 1);
+    double *const positions = mt_arena_f64(f->work, (size_t)n, 1);
+    mt_sweep found;
+    MT_TRY(mt_arena_check(f->work, err));
+    mt_sweep_range(r->low, r->high, n, positions);
+    for (int i = 0; i < ask->n_inputs; i++) {
+        at[i] = ask->at[i];
+    }
+    for (int i = 0; i < n; i++) {
+        w->out->positions[i].at = positions[i];
+    }
+    at[ask->n_inputs] = nearest_of(n, positions);
+    MT_TRY(mt_analysis_new_driven(m, f->configuration, &drive, ask->n_inputs, ask->inputs, at,
+                                  &w->a, err));
+    w->a->recount = true; /* a spring may get hold of a direction on the way */
+    MT_TRY(mt_sweep_run(w->a->lin, at, n, positions, &visitor, f->work, &found, err));
+    for (int i = 0; i < n; i++) {
+        mt_scene_position *const p = &w->out->positions[i];
+        if (found.points[i].status != MT_OK) {
+            p->why = mt_arena_strdup(f->mem, found.points[i].why);
+            p->pose = NULL;
+            p->n_hz = 0;
+        }
+    }
+    return mt_arena_check(f->mem, err);
+}
+
+mt_status mt_scene_follow(mt_scene_frame *f, long *poses, mt_err *err)
+{
+    range r;
+    mt_scene_view *const v = f->view;
+    MT_TRY(find_range(f, &r, err));
+    if (r.drive == NULL) {
+        return MT_OK;
+    }
+    mt_scene_drive *const out = mt_arena_alloc(f->mem, 1, sizeof *out);
+    MT_TRY(mt_arena_check(f->mem, err));
+    v->drive = out;
+    out->joint = mt_arena_strdup(f->mem, f->model->joints[r.drive->joint].name.s);
+    out->angle = r.drive->position_is_angle;
+    out->at = r.own;
+    const int n = r.low < r.high ? MT_SCENE_POSITIONS : 1;
+    const long needed = (long)n * v->n_bodies;
+    if (v->n_bodies - 1 > MT_SCENE_DRIVEN || needed > *poses) {
+        out->why = "too many bodies to show them in every position";
+        return MT_OK;
+    }
+    *poses -= needed;
+    out->positions = mt_arena_alloc(f->mem, (size_t)n, sizeof *out->positions);
+    MT_TRY(mt_arena_check(f->mem, err));
+    out->n_positions = n;
+    walk w = {.f = f, .out = out};
+    mt_err why = {.code = MT_OK};
+    const mt_status rc = sweep(&w, &r, &why);
+    mt_analysis_delete(w.a);
+    if (rc == MT_OK) {
+        return MT_OK;
+    }
+    out->n_positions = 0;
+    out->why = mt_arena_strdup(f->mem, why.text);
+    return rc == MT_E_INTERRUPTED ? mt_fail(err, rc, "%s", why.text)
+                                  : mt_pass_final(rc, &why, err);
+}

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SCENE_SCENE_PRIV_H
+#define SCENE_SCENE_PRIV_H
+
+#include "analysis/analysis.h"
+#include "analysis/lowest.h"
+#include "scene/scene.h"
+
+/* What the files of this room share while one configuration of one design is looked at. */
+typedef struct mt_scene_frame {
+    const mt_model *model;
+    int configuration;
+    const mt_scene_ask *ask;
+    const mt_system *sys;
+    const double *number; /* [numbers of the model] */
+    const double *value;  /* [nodes of the system's program] */
+    const mt_pose *drawn; /* [bodies of the system] */
+    const mt_pose *pose;
+    int *body_of;    /* [model bodies] body of the system; MT_ABSENT */
+    int *link_first; /* [model links] likewise */
+    int *link_of;    /* [bodies of the system] link; MT_ABSENT */
+    int *joint_of;   /* [model joints] joint of the view; -1 (items.c) */
+    int *spring_of;  /* [springs of the system] spring of the view; -1 (springs.c) */
+    mt_arena *mem;   /* of the scene */
+    mt_arena *work;
+    mt_scene_view *view;
+} mt_scene_frame;
+
+/* frame.c: values of the design and who is who; sys, ask, model, configuration, mem, work and
+ * view are given. Fails: MT_E_DOMAIN, MT_E_MEMORY, MT_E_INTERNAL. */
+mt_status mt_scene_frame_new(mt_scene_frame *f, mt_err *err);
+/* A position of the model as drawn. */
+void mt_scene_drawn(const mt_scene_frame *f, const mt_position *p, double out[3]);
+/* Body of the system that an attachment means. */
+int mt_scene_body_of(const mt_scene_frame *f, const mt_attach *a);
+/* Where a link's first `count` elements end, as drawn; half: and half of the next one. */
+void mt_scene_link_at(const mt_scene_frame *f, int link, int count, bool half, double out[3]);
+/* Where a body of the system has its centre, as drawn; of the ground the origin. */
+void mt_scene_centre(const mt_scene_frame *f, int body, double out[3]);
+/* Where a point that is drawn there on this body, or such a direction, is in the pose. */
+void mt_scene_place(const mt_scene_frame *f, int body, const double drawn[3], double out[3]);
+void mt_scene_turn(const mt_scene_frame *f, int body, const double drawn[3], double out[3]);
+/* What is rounding of a vector of this size becomes 0. */
+void mt_scene_clean(double size, double x[3]);
+
+/* bodies.c: bodies of the view, with their ellipsoids. Fails: MT_E_MEMORY,
+ * MT_E_NO_CONVERGENCE. */
+mt_status mt_scene_bodies(mt_scene_frame *f, mt_err *err);
+/* items.c, springs.c: all else that stands still. */
+mt_status mt_scene_items(mt_scene_frame *f, mt_err *err);
+mt_status mt_scene_springs(mt_scene_frame *f, mt_err *err);
+/* lines.c: the lines of bodies, points with names, and distances of joints. */
+mt_status mt_scene_lines(mt_scene_frame *f, mt_err *err);
+
+/* modes.c: of the first positions of modes, with shapes phi over the states of the system. */
+mt_status mt_scene_modes(mt_scene_frame *f, const mt_modes *modes, int shown, const double *phi,
+                         mt_err *err);
+/* energy.c: shares of one mode of eigenvalue lambda. spring[springs of the view],
+ * body[bodies of the view]. */
+typedef struct mt_scene_energy mt_scene_energy;
+mt_status mt_scene_energy_new(const mt_scene_frame *f, mt_scene_energy **out, mt_err *err);
+void mt_scene_energy_of(const mt_scene_energy *e, double lambda, const double *phi,
+                        double *spring, double *body);
+
+/* drive.c: the range of the driven joint, where there is one. *poses: how many positions of
+ * bodies may still be kept. */
+mt_status mt_scene_follow(mt_scene_frame *f, long *poses, mt_err *err);
+
+#endif
