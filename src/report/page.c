@@ -46,7 +46,6 @@ static const char *const report_styles[] = {"page.css", "view.css", "report.css"
 static const char *const show_scripts[] = {
     "base.js",    "space.js",  "camera.js", "pose.js",  "symbols.js", "paint.js", "dom.js",
     "drawing.js", "view3d.js", "modes.js",  "drive.js", "show.js",    NULL};
-static const char *const report_styles[] = {"page.css", "report.css", NULL};
 static const char *const plain_styles[] = {"page.css", NULL};
 static const char *const show_styles[] = {"page.css", "view.css", NULL};
 
