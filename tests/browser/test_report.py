@@ -30,7 +30,7 @@ FIGURES = "return [...document.querySelectorAll('.figure')].filter((f) => !f.hid
 # What is saved, instead of files: names and contents.
 SAVED = """
 window.kept = []; mt.save = (name, content) => window.kept.push([name, content]);
-document.querySelectorAll('.figure:not([hidden]) .save button').forEach((b) => b.click());
+document.querySelectorAll('.figure:not([hidden]) .export button').forEach((b) => b.click());
 """
 KEPT = "return window.kept.map(([name, content]) => [name, content instanceof Blob ? content.size : content])"
 

@@ -283,7 +283,7 @@
         fillTable(f.data, f.table());
       }
     });
-    const buttons = bar.append('div').attr('class', 'save');
+    const buttons = bar.append('div').attr('class', 'export');
     for (const [name, how] of SAVERS) {
       on(buttons.append('button').attr('type', 'button').text(name)
         .attr('aria-label', 'Save ' + f.title() + ' as ' + name), 'click', () => how(f));
