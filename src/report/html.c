@@ -43,7 +43,8 @@ void mt_report_html(const mt_result *result, const char *json, const char *scene
     const char *const name = result->study.name != NULL   ? result->study.name
                              : result->study.file != NULL ? result->study.file
                                                           : "study";
-    mt_page_begin(MT_PAGE_REPORT, name, out);
+    const mt_page_kind kind = scene == NULL ? MT_PAGE_REPORT : MT_PAGE_REPORT_SCENE;
+    mt_page_begin(kind, name, out);
     mt_report_html_told(result, out);
-    mt_page_end(MT_PAGE_REPORT, MT_COUNT(data), data, out);
+    mt_page_end(kind, MT_COUNT(data), data, out);
 }

@@ -40,13 +40,13 @@ static const char *const report_scripts[] = {"d3.js",
                                              "view3d.js",
                                              "modes.js",
                                              "drive.js",
+                                             "show.js",
                                              "report.js",
                                              NULL};
 static const char *const report_styles[] = {"page.css", "view.css", "report.css", NULL};
 static const char *const show_scripts[] = {
     "base.js",    "space.js",  "camera.js", "pose.js",  "symbols.js", "paint.js", "dom.js",
     "drawing.js", "view3d.js", "modes.js",  "drive.js", "show.js",    NULL};
-static const char *const report_styles[] = {"page.css", "report.css", NULL};
 static const char *const plain_styles[] = {"page.css", NULL};
 static const char *const show_styles[] = {"page.css", "view.css", NULL};
 
@@ -84,11 +84,26 @@ static void add_code(const char *code, mt_text *out)
     }
 }
 
+/* What a report without a scene has no use for: all that shows one, but for what is shared. */
+static bool is_view(const char *name)
+{
+    for (int i = 1; show_scripts[i] != NULL; i++) {
+        if (strcmp(show_scripts[i], name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void add_script(mt_page_kind kind, mt_text *out)
 {
-    static const char *const *const lists[] = {NULL, report_scripts, show_scripts};
+    static const char *const *const lists[] = {NULL, report_scripts, report_scripts,
+                                               show_scripts};
     const char *const *const list = lists[kind];
     for (int i = 0; list != NULL && list[i] != NULL; i++) {
+        if (kind == MT_PAGE_REPORT && is_view(list[i])) {
+            continue;
+        }
         if (strcmp(list[i], "d3.js") == 0) {
             mt_text_add(out, file(list[i])); /* with its notice of copyright */
             mt_text_add(out, "\n");
@@ -100,7 +115,8 @@ static void add_script(mt_page_kind kind, mt_text *out)
 
 static void add_style(mt_page_kind kind, mt_text *out)
 {
-    static const char *const *const lists[] = {plain_styles, report_styles, show_styles};
+    static const char *const *const lists[] = {plain_styles, report_styles, report_styles,
+                                               show_styles};
     for (const char *const *name = lists[kind]; *name != NULL; name++) {
         mt_text_add(out, file(*name));
     }

@@ -13,6 +13,7 @@
 typedef enum mt_page_kind {
     MT_PAGE_PLAIN, /* no script */
     MT_PAGE_REPORT,
+    MT_PAGE_REPORT_SCENE, /* one that shows the mechanism, too */
     MT_PAGE_SHOW
 } mt_page_kind;
 

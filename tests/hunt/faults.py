@@ -239,8 +239,8 @@ def _word(run):
     return _written(run, "result.json", "null", "nan")
 
 
-def _figure(run):
-    return _written(run, "report.html", 'cx="', 'cx="-1e9')
+def _cell(run):
+    return _written(run, "report.html", '<td class="n">', '<td class="n">nan ')
 
 
 def _beside_mark(run):
@@ -253,7 +253,7 @@ def _beside_mark(run):
 
 
 FAULTS = [
-    (_word, ["limits"], "numbers"), (_figure, ["limits"], "numbers"),
+    (_word, ["limits"], "numbers"), (_cell, ["limits"], "numbers"),
     (_doubt, ["limits"], "undoubted"),
     (_frequency, ["limits", "bands"], "frequencies"), (_clearance, ["bands"], "clearances"), (_gap, ["bands"], "clearances"),
     (_least_clearance, ["bands"], "clearances"), (_violation, ["infeasible", "limits"], "goals"),

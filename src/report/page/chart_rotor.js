@@ -137,7 +137,11 @@
       }
     }
     T.spread(labels, 13, box.top + 7, box.bottom - 5);
-    labels.forEach((l) => F.text(g, column, l.at + 4, l.words, { size: 11, halo: true }));
+    for (const l of labels) { // lines pass behind them
+      F.rect(g, column - 2, l.at - 6, T.width(l.words, 11) + 4, 13, C.paper)
+        .attr('fill-opacity', 0.85);
+      F.text(g, column, l.at + 4, l.words, { size: 11 });
+    }
     return shown.filter((f) => f.recommended_hz > high);
   }
 

@@ -203,8 +203,8 @@
     const svg = d3.select(copy).attr('xmlns', 'http://www.w3.org/2000/svg')
       .attr('viewBox', `0 ${-head} ${w} ${f.height + head}`).attr('width', w)
       .attr('height', f.height + head).attr('class', null);
-    svg.selectAll('[tabindex],[role=button]').attr('tabindex', null).attr('role', null)
-      .attr('style', null);
+    svg.selectAll('.brush').remove();
+    svg.selectAll('*').attr('tabindex', null).attr('role', null).attr('style', null);
     svg.insert('rect', ':first-child').attr('x', 0).attr('y', -head).attr('width', w)
       .attr('height', f.height + head).attr('fill', colour.paper);
     lines.forEach((words, i) => text(svg, 4, i * 20 - head + 18, words,
@@ -283,7 +283,7 @@
         fillTable(f.data, f.table());
       }
     });
-    const buttons = bar.append('div').attr('class', 'save');
+    const buttons = bar.append('div').attr('class', 'export');
     for (const [name, how] of SAVERS) {
       on(buttons.append('button').attr('type', 'button').text(name)
         .attr('aria-label', 'Save ' + f.title() + ' as ' + name), 'click', () => how(f));

@@ -29,12 +29,21 @@
         }
       }
     }
-    if (mt.origin) {
-      mt.origin(place('origin'));
-    }
+    mechanism(place('mechanism'));
+    mt.origin(place('origin'));
     mt.onChoice(mt.figure.updateAll);
     mt.onChoice(tell);
     tell();
+  }
+
+  // The mechanism and its modes, where the page has them.
+  function mechanism(into) {
+    const scene = mt.scene();
+    if (scene && mt.show) {
+      const section = mt.element(into, 'section', { id: 'figure-mechanism' });
+      mt.element(section, 'h2', {}, 'The mechanism');
+      mt.shown = mt.show(section, scene);
+    }
   }
 
   // What the page tells of single designs follows the choice, too; what is drawn is not told.

@@ -188,7 +188,7 @@
 
     mt.show = show;
     const given = mt.scene();
-    if (given) {
+    if (given && !document.getElementById('figures')) { // a report shows it in its place
         mt.shown = show(document.querySelector('main'), given);
     }
 })();

@@ -21,11 +21,12 @@
       return '0';
     }
     const size = Math.abs(x);
-    let text = size >= 1e6 || size < 1e-4 ? x.toExponential(n - 1) : x.toPrecision(n);
-    if (size < 1e6 && text.includes('e')) {
+    const power = size >= 1e6 || size < 1e-4;
+    let text = power ? x.toExponential(n - 1) : x.toPrecision(n);
+    if (power) {
+      text = text.replace(/\.?0*e/, 'e').replace('e+', 'e');
+    } else if (text.includes('e')) { // a whole number of more digits
       text = x.toFixed(0);
-    } else if (text.includes('e')) {
-      text = text.replace(/\.?0+e/, 'e').replace('e+', 'e');
     }
     return text.replace(/-/g, MINUS);
   }

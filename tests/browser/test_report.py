@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reports of all shipped studies, as a browser has them: their figures carry the result's numbers and follow the choice."""
+import json
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from browser import Browser
+
+SOURCE = Path(os.environ.get("SOURCE_DIR", Path(__file__).resolve().parents[2]))
+PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
+STUDIES = sorted((SOURCE / "studies").glob("*.json"))
+SIZES = [(390, 844), (1280, 900), (1920, 1080)]
+MOST_BYTES = 700_000
+HALF = 0.6e-3  # of the fourth digit, and a little
+# Words of the frequency chart's lanes by configuration and mode; values of the chart of parameters by name.
+LANES = """
+return Object.fromEntries([...document.querySelectorAll('#figure-frequencies text[data-mode]')]
+    .map((t) => [t.dataset.mode, t.textContent]));
+"""
+VALUES = """
+return Object.fromEntries([...document.querySelectorAll('#figure-parameters text[data-parameter]')]
+    .map((t) => [t.dataset.parameter, t.textContent]));
+"""
+FIGURES = "return [...document.querySelectorAll('.figure')].filter((f) => !f.hidden).map((f) => f.id.slice(7))"
+# What is saved, instead of files: names and contents.
+SAVED = """
+window.kept = []; mt.save = (name, content) => window.kept.push([name, content]);
+document.querySelectorAll('.figure:not([hidden]) .export button').forEach((b) => b.click());
+"""
+KEPT = "return window.kept.map(([name, content]) => [name, content instanceof Blob ? content.size : content])"
+
+
+def number(text):
+    return float(text.replace("\u2212", "-"))
+
+
+def run(study, folder):
+    subprocess.run([PROGRAM, "run", study, "--quiet", "-o", folder], capture_output=True, timeout=300, check=False)
+    return folder / study.stem
+
+
+class Report(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(holder.cleanup)
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
+        with ThreadPoolExecutor(2) as pool:
+            folders = list(pool.map(lambda study: run(study, Path(holder.name)), STUDIES))
+        cls.reports = {f.name: (f / "report.html", json.loads((f / "result.json").read_text(encoding="utf-8"))) for f in folders}
+
+    def open(self, name, **wishes):
+        path, result = self.reports[name]
+        self.browser.screen(**wishes)
+        self.browser.open(path)
+        return result
+
+    def near(self, text, value, where):
+        self.assertLessEqual(abs(number(text) - value), HALF * abs(value) + 1e-12, f"{where}: {text} for {value}")
+
+    def check_frequencies(self, design):
+        """Every lane ends with the recommended frequency, and there is a lane or the words "above the scale" for each."""
+        lanes = self.browser.run(LANES)
+        for f in design["frequencies"]:
+            key = f"{f['configuration']} {f['mode']}"
+            if key in lanes:
+                found = re.search(r"([\d.e\u2212]+) Hz", lanes[key])
+                self.near(found[1], f["recommended_hz"], key)
+                if " \u2192 " in lanes[key]:
+                    self.near(lanes[key].split(" ")[0], f["original_hz"], key)
+            elif f["recommended_hz"] is not None:
+                figure = self.browser.one("#figure-frequencies svg").text
+                self.assertIn("above the scale", figure, key)
+
+    def check_parameters(self, design):
+        values = self.browser.run(VALUES)
+        self.assertEqual(set(values), {p["name"] for p in design["parameters"]})
+        for p in design["parameters"]:
+            self.near(values[p["name"]].split(" ")[-1], p["recommended"], p["name"])
+
+    def check_told(self, rank):
+        ranks = self.browser.run("return [...document.querySelectorAll('[data-rank]')].filter((s) => !s.hidden)"
+                                 ".map((s) => Number(s.dataset.rank))")
+        self.assertEqual(set(ranks) - {rank}, set())
+
+    def test_every_report_in_every_window(self):
+        for name, (path, _) in self.reports.items():
+            self.assertLess(path.stat().st_size, MOST_BYTES, name)
+            for width, height in SIZES:
+                for dark in (False, True):
+                    with self.subTest(report=name, width=width, dark=dark):
+                        self.open(name, width=width, height=height, dark=dark)
+                        self.assertEqual(self.browser.problems(), [])
+
+    def test_figures_carry_the_numbers_of_the_design_that_is_chosen(self):
+        for name, (_, result) in self.reports.items():
+            with self.subTest(report=name):
+                self.open(name)
+                designs = result["recommendations"]
+                radios = self.browser.all(".alternatives input")
+                self.assertEqual(len(radios), len(designs) if len(designs) > 1 else 0)
+                for place, design in enumerate(designs):
+                    if radios:
+                        radios[place].click()
+                    self.browser.settle()
+                    self.check_frequencies(design)
+                    self.check_parameters(design)
+                    self.check_told(design["rank"])
+                self.assertEqual(self.browser.problems(), [])
+
+    def test_there_is_a_figure_of_all_that_a_result_has(self):
+        wanted = {
+            "inceptor_rotor": {"frequencies", "parameters", "rotor-1", "parallel", "tolerance", "sensitivity", "spent"},
+            "inceptor_trade": {"trade", "front", "parallel", "tolerance", "rotor-1"},
+            "beam_identification": {"mac", "published", "starts", "sensitivity"},
+            "beam_reference": {"published"}, "engine_orders": {"rotor-1", "frequencies"},
+        }
+        for name, figures in wanted.items():
+            self.open(name)
+            self.assertLessEqual(figures, set(self.browser.run(FIGURES)), name)
+
+    def test_a_point_of_the_trade_study_is_shown_everywhere(self):
+        result = self.open("inceptor_trade")
+        cells = self.browser.all("#figure-trade [data-at]")
+        self.assertEqual(len(cells), len(result["trade"]["points"]))
+        for place in (0, 17, len(cells) - 1):
+            self.browser.all("#figure-trade [data-at]")[place].send_keys("\ue007")
+            self.browser.settle()
+            best = result["trade"]["points"][place]["best"]
+            self.check_frequencies(best)
+            self.check_parameters(best)
+
+    def test_figures_are_saved(self):
+        result = self.open("inceptor_rotor")
+        figures = self.browser.run(FIGURES)
+        self.browser.run(SAVED)
+        self.browser.driver.execute_async_script("setTimeout(arguments[0], 1500)")
+        kept = dict(self.browser.run(KEPT))
+        for figure in figures:
+            for ending in ("svg", "png", "csv"):
+                self.assertIn(f"modetune_{figure}.{ending}", kept)
+            self.assertGreater(kept[f"modetune_{figure}.png"], 2000, figure)
+            svg = kept[f"modetune_{figure}.svg"]
+            self.assertTrue(svg.startswith("<svg") and "style=" not in svg, figure)
+        rows = kept["modetune_frequencies.csv"].split("\r\n")
+        hz = [float(row.split(",")[5]) for row in rows if row.startswith("mode,")]
+        self.assertEqual(hz, [f["recommended_hz"] for f in result["recommendations"][0]["frequencies"]])
+
+    def test_arrow_keys_choose(self):
+        self.open("six_masses_bands")
+        first = self.browser.run(VALUES)
+        self.browser.all(".alternatives input")[0].send_keys("\ue015")
+        self.browser.settle()
+        self.assertNotEqual(self.browser.run(VALUES), first)
+        self.assertTrue(self.browser.run("return document.querySelectorAll('.alternatives input')[1].checked"))
+
+    def test_reports_are_printed(self):
+        for name in ("inceptor_trade", "beam_identification"):
+            self.open(name, dark=True)
+            self.assertTrue(self.browser.pdf().startswith(b"%PDF"))
+
+
+if __name__ == "__main__":
+    unittest.main()
