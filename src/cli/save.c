@@ -208,13 +208,10 @@ static mt_status write_timing(const mt_args *args, const mt_result *result, doub
     return mt_json_done(&w) ? MT_OK : mt_fail_memory(&s->err);
 }
 
-/* The page with the result as data, but for the files beside it: it is one of them. */
 static void write_page(const mt_result *result, mt_text *out)
 {
-    mt_result alone = *result;
     mt_text json = {.s = NULL};
-    alone.run.n_outputs = 0;
-    out->failed = mt_result_write(&alone, &json, NULL) != MT_OK || out->failed;
+    out->failed = mt_result_write_alone(result, &json, NULL) != MT_OK || out->failed;
     mt_report_html(result, json.s, NULL, out);
     mt_text_free(&json);
 }

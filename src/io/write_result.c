@@ -189,3 +189,10 @@ mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err)
     return writer.misused ? mt_fail(err, MT_E_INTERNAL, "the result cannot be written as JSON")
                           : mt_fail_memory(err);
 }
+
+mt_status mt_result_write_alone(const mt_result *result, mt_text *out, mt_err *err)
+{
+    mt_result alone = *result;
+    alone.run.n_outputs = 0;
+    return mt_result_write(&alone, out, err);
+}

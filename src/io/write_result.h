@@ -10,6 +10,8 @@
 /* Append a result as JSON (format "modetune-result/1"): the same result gives the same bytes.
  * Fails: MT_E_MEMORY. */
 mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err);
+/* The same but for the files beside it, as one of them holds it. */
+mt_status mt_result_write_alone(const mt_result *result, mt_text *out, mt_err *err);
 /* The same as a value within a larger document (name NULL: in a list, or the whole). */
 void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result);
 /* The items of one level as a list of objects. */

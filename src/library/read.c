@@ -105,18 +105,19 @@ mt_status mt_result_read(const char *path, const mt_read_options *opt, mt_result
 mt_status mt_result_html(const mt_result *result, char **text, mt_err *err)
 {
     mt_text out = {0};
-    mt_text json = {0};
     MT_NOT_NULL(text, err);
     *text = NULL;
     MT_NOT_NULL(result, err);
-    mt_result alone = *result;
-    alone.run.n_outputs = 0; /* the page may be one of them */
-    out.failed = mt_result_write(&alone, &json, NULL) != MT_OK;
-    mt_report_html(result, json.s, NULL, &out);
+    mt_text json = {0};
+    mt_status rc = mt_result_write_alone(result, &json, err);
+    if (rc == MT_OK) {
+        mt_report_html(result, json.s, NULL, &out);
+        rc = out.failed ? mt_fail_memory(err) : MT_OK;
+    }
     mt_text_free(&json);
-    if (out.failed) {
+    if (rc != MT_OK) {
         mt_text_free(&out);
-        return mt_fail_memory(err);
+        return rc;
     }
     *text = out.s; /* from malloc */
     return MT_OK;

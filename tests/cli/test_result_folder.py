@@ -36,6 +36,8 @@ LINES = {
     "report": ["report", "results/two/result.json", "--format", "html"],
     "apply": ["apply", "results/two/result.json"],
     "apply --model": ["apply", "results/two/result.json", "--model", "problems/model.json", "--root", "problems"],
+    "explain": ["explain", "results/two/result.json"],
+    "show": ["show", "results/two/result.json"],
     "diff": ["diff", "results/two", "results/two/result.json", "--format", "csv"],
     "compare": ["compare", "studies/judged.json"],
     "init": ["init", "mine", "--quiet"],
