@@ -374,5 +374,6 @@ void mt_args_free(mt_args *args)
 {
     free((void *)args->operands);
     free((void *)args->sets);
+    free(args->result_path);
     *args = (mt_args){.command = MT_CMD_NONE};
 }

@@ -147,6 +147,7 @@ typedef struct mt_args {
     const char *const *journals;
     int n_operands;
     const char **operands; /* [argc] */
+    char *result_path;     /* heap: the first operand, where that is the folder of a result */
 } mt_args;
 
 /**

@@ -91,7 +91,7 @@ static mt_status substitute(const mt_recommendation *r, const mt_result_run *run
     for (int i = 0; rc == MT_OK && i < n; i++) {
         char number[MT_JSON_NUMBER_SIZE];
         mt_text_add_n(out, file->bytes + at, list[i].begin - at);
-        mt_text_add(out, mt_json_format_number(list[i].value, number));
+        mt_text_add(out, mt_json_format_shortest(list[i].value, number));
         at = list[i].end;
     }
     if (rc == MT_OK) {

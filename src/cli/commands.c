@@ -194,7 +194,8 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "sensors; its lowest 12 vibration modes as they move, with what share of the energy "
         "every spring and body has; and where a joint is driven, the range of its positions. "
         "Of "
-        "a result: the original design and the recommended ones, with the model found as apply "
+        "a result, or the folder that holds one: the original design and the recommended ones, "
+        "with the model found as apply "
         "finds it. The page needs nothing else and opens in any browser.\n"
         "--format json prints what the page draws, --svg a still picture. A configuration that "
         "cannot be analysed is drawn as far as it can be and says why, on standard error, "
@@ -203,8 +204,9 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         MT_CMD_REPORT, "report", "RESULT.json", 1, 1,
         "what a result says, as text, CSV or HTML",
         "Prints the summary that run printed (--format csv: recommendations.csv, html: "
-        "report.html, json: the result), from the result alone: neither study nor model is "
-        "looked for, and nothing is solved. With --output the files are written anew into "
+        "report.html, json: the result), from the result, or the folder that holds it, alone: "
+        "neither study nor model is looked for, and nothing is solved. With --output the files "
+        "are written anew into "
         "DIR/<study file name without .json>/, as run does; how long the solution took is "
         "not known to a result, so timing.json is only taken over where it stands beside it. "
         "A result.json is refused where the files beside it are of another run or were "
@@ -215,13 +217,14 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "Prints for each goal of a recommendation the parameters that move it, the most first, "
         "with what 1 % more of each does and how far it may still go within its bounds; then "
         "the "
-        "bounds, bands and limits that hold the design, and what they cost. From the result "
-        "alone: "
-        "nothing is solved. --format csv: one row per goal and parameter."),
+        "bounds, bands and limits that hold the design, and what they cost. From the result, "
+        "or the folder that holds it, alone: nothing is solved. --format csv: one row per goal "
+        "and parameter."),
     COMMAND(
         MT_CMD_APPLY, "apply", "RESULT.json", 1, 1, "the model with the recommended values",
         "Prints the model file with the recommended values put in; everything else of its text "
-        "stays as it is. The model is found from the result's folder, and must be the one that "
+        "stays as it is. The result may be named by the folder that holds it. The model is "
+        "found from there, and must be the one that "
         "was solved (same SHA-256) unless --model names it. A result.json is refused where the "
         "files beside it are of another run or were changed; a copy that stands alone is "
         "read."),

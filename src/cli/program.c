@@ -5,6 +5,7 @@
 #include "cli/help.h"
 #include "cli/limits.h"
 #include "cli/manual.h"
+#include "io/result_folder.h"
 
 typedef int (*command_function)(const mt_args *args, mt_text *out);
 
@@ -39,6 +40,19 @@ static int wrong_use(const mt_args *args, mt_status rc, const mt_err *err)
     return mt_exit_of(rc);
 }
 
+/* Who reads one result takes the folder that holds it, too. */
+static mt_status find_result(mt_args *args, mt_err *err)
+{
+    static const unsigned READERS =
+        1U << MT_CMD_REPORT | 1U << MT_CMD_EXPLAIN | 1U << MT_CMD_APPLY | 1U << MT_CMD_SHOW;
+    if ((READERS >> (unsigned)args->command & 1U) == 0) {
+        return MT_OK;
+    }
+    MT_TRY(mt_result_path(args->operands[0], &args->result_path, err));
+    args->operands[0] = args->result_path;
+    return MT_OK;
+}
+
 int mt_cli_main(int argc, char *const argv[])
 {
     mt_args args;
@@ -58,8 +72,10 @@ int mt_cli_main(int argc, char *const argv[])
     } else if (args.given[MT_OPT_HELP]) {
         mt_help(args.command, &out);
     } else {
-        const mt_status room = mt_limits_set(&args, &err);
-        code = room == MT_OK ? functions[args.command](&args, &out) : mt_cli_failed(room, &err);
+        mt_status ready = mt_limits_set(&args, &err);
+        ready = ready == MT_OK ? find_result(&args, &err) : ready;
+        code =
+            ready == MT_OK ? functions[args.command](&args, &out) : mt_cli_failed(ready, &err);
     }
     code = mt_exit_worse(code, mt_terminal_put(&out));
     if (mt_exit_without_memory()) {

@@ -33,18 +33,36 @@ bool mt_reader_type(mt_reader *r, mt_addr value, mt_key_type type)
     return false;
 }
 
-/* The nearest key; else one that only adds a unit or the like to the name ("mass" for
- * "mass_kg"), or for which it is another word. */
-static const char *nearest_key(const char *name, const char *const *names, int n)
+enum { MEANT_MOST = 3 };
+
+/* The keys that may be meant, most of them first: for which the name is another word ("joint"
+ * for "bodies", "k" for either stiffness), or the nearest one, or those that only add a unit or
+ * the like to the name ("mass" for "mass_kg"). Returns how many. */
+static int keys_meant(const char *name, const char *const *names, int n,
+                      const char *meant[MEANT_MOST])
 {
-    const char *const near = mt_text_nearest(name, names, n);
     const size_t length = strlen(name);
-    for (int i = 0; i < n && near == NULL && length > 0; i++) {
-        if (strncmp(names[i], name, length) == 0 && names[i][length] == '_') {
-            return names[i];
+    int count = 0;
+    for (int i = 0; i < n && count < MEANT_MOST; i++) {
+        if (mt_synonym(name, &names[i], 1) != NULL) {
+            meant[count++] = names[i];
         }
     }
-    return near != NULL ? near : mt_synonym(name, names, n);
+    if (count == 0) {
+        meant[0] = mt_text_nearest(name, names, n);
+        count = meant[0] != NULL ? 1 : 0;
+    }
+    for (int i = 0; i < n && count < MEANT_MOST && length > 0; i++) {
+        const bool adds = strncmp(names[i], name, length) == 0 && names[i][length] == '_';
+        bool said = false;
+        for (int k = 0; k < count; k++) {
+            said = said || meant[k] == names[i];
+        }
+        if (adds && !said) {
+            meant[count++] = names[i];
+        }
+    }
+    return count;
 }
 
 static void unknown_member(mt_reader *r, mt_addr member, const mt_key_table *table)
@@ -54,15 +72,13 @@ static void unknown_member(mt_reader *r, mt_addr member, const mt_key_table *tab
         names[i] = table->keys[i].name;
     }
     const char *const name = mt_json_name(r->doc, member);
-    const char *const near =
-        mt_diag_may_suggest(r->diags) ? nearest_key(name, names, table->n) : NULL;
-    const mt_addr at = mt_json_name_addr(r->doc, member);
-    if (near != NULL) {
-        mt_diag_structure(r->diags, at, "unknown member \"%s\"; did you mean \"%s\"?", name,
-                          near);
-    } else {
-        mt_diag_structure(r->diags, at, "unknown member \"%s\"", name);
-    }
+    const char *meant[MEANT_MOST] = {NULL};
+    const int n = mt_diag_may_suggest(r->diags) ? keys_meant(name, names, table->n, meant) : 0;
+    mt_diag_structure(r->diags, mt_json_name_addr(r->doc, member),
+                      "unknown member \"%s\"%s%s%s%s%s%s%s", name,
+                      n > 0 ? "; did you mean \"" : "", n > 0 ? meant[0] : "",
+                      n > 1 ? "\" or \"" : "", n > 1 ? meant[1] : "", n > 2 ? "\" or \"" : "",
+                      n > 2 ? meant[2] : "", n > 0 ? "\"?" : "");
 }
 
 static int find_key(const mt_key_table *table, const char *name)
@@ -75,6 +91,26 @@ static int find_key(const mt_key_table *table, const char *name)
     return MT_ABSENT;
 }
 
+/* What a file of another format is, and what to do with it; NULL: not known. */
+static const char *what_it_is(const char *format)
+{
+    static const struct {
+        const char *format;
+        const char *text;
+    } kinds[] = {{"modetune-model/1", "it is a model, of which a study asks something"},
+                 {"modetune-study/1",
+                  "it is a study, which \"modetune run\" answers; its \"model\" names "
+                  "the model"},
+                 {"modetune-result/1", "it is a result, which \"modetune report\" tells"},
+                 {"modetune-aircraft/1", "it is a catalogue of aircraft, which a study names"}};
+    for (int i = 0; i < MT_COUNT(kinds); i++) {
+        if (strcmp(kinds[i].format, format) == 0) {
+            return kinds[i].text;
+        }
+    }
+    return NULL;
+}
+
 bool mt_reader_format(mt_reader *r, const char *format, const char *not_this)
 {
     const mt_addr at = mt_json_member(r->doc, MT_JSON_ROOT, "format");
@@ -82,8 +118,9 @@ bool mt_reader_format(mt_reader *r, const char *format, const char *not_this)
         strcmp(mt_json_string(r->doc, at), format) == 0) {
         return true;
     }
-    mt_diag_structure(r->diags, at, "the format is not \"%s\": this is no %s", format,
-                      not_this);
+    const char *const other = what_it_is(mt_json_string(r->doc, at));
+    mt_diag_structure(r->diags, at, "the format is not \"%s\": this is no %s%s%s", format,
+                      not_this, other == NULL ? "" : "; ", other == NULL ? "" : other);
     return false;
 }
 

@@ -42,7 +42,7 @@ mt_status mt_result_path(const char *path, char **out, mt_err *err)
     }
     mt_text_add(&t, path);
     if (there && S_ISDIR(st.st_mode)) {
-        mt_text_add(&t, "/");
+        mt_text_add(&t, path[0] != '\0' && path[strlen(path) - 1] == '/' ? "" : "/");
         mt_text_add(&t, RESULT);
     }
     if (t.failed) {

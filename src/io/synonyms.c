@@ -33,6 +33,9 @@ static const synonym table[] = {
     {"axial", " linear translational translation tension compression coil helical straight "},
     {"bar", " rod truss strut "},
     {"bushing", " bush mount rubber elastomer 6dof six_dof matrix "},
+    {"circle", " round rod cylinder solid disc disk "},
+    {"tube", " pipe hollow ring annulus "},
+    {"rectangle", " rect box square flat rectangular "},
     {"beam", " euler_bernoulli bernoulli flexible fe "},
     /* members of models */
     {"centre", " center cg com cog centre_of_mass center_of_mass centre_of_gravity "
@@ -40,7 +43,9 @@ static const synonym table[] = {
     {"mass_kg", " m weight weight_kg "},
     {"inertia_kg_m2", " i j moment_of_inertia inertia_tensor "},
     {"at", " position location point points place between ends "},
-    {"bodies", " connects joins connect links between body_1 body1 parts "},
+    {"bodies",
+     " connects joins connect links between joint body body_1 body_2 body1 body2 body_a body_b "
+     "parts "},
     {"axis", " direction normal "},
     {"stiffness_n_per_m", " k stiffness rate spring_rate spring_constant constant "},
     {"stiffness_n_m_per_rad", " k stiffness rate spring_rate spring_constant constant kt k_t "},
@@ -102,12 +107,23 @@ static bool has(const char *words, const char *word)
     return false;
 }
 
-const char *mt_synonym(const char *word, const char *const *names, int n)
+/* "pin_joint" says no more than "pin". Is there something to leave out? */
+static bool shorten(char *word)
 {
-    char said[WORD_MOST];
-    if (!plain(word, said)) {
-        return NULL;
+    static const char *const of[] = {"_joint", "_spring", "_section"};
+    const size_t n = strlen(word);
+    for (int i = 0; i < MT_COUNT(of); i++) {
+        const size_t more = strlen(of[i]);
+        if (n > more && strcmp(word + n - more, of[i]) == 0) {
+            word[n - more] = '\0';
+            return true;
+        }
     }
+    return false;
+}
+
+static const char *find(const char *said, const char *const *names, int n)
+{
     for (int i = 0; i < n; i++) {
         char name[WORD_MOST];
         if (plain(names[i], name) && strcmp(said, name) == 0) {
@@ -120,4 +136,14 @@ const char *mt_synonym(const char *word, const char *const *names, int n)
         }
     }
     return NULL;
+}
+
+const char *mt_synonym(const char *word, const char *const *names, int n)
+{
+    char said[WORD_MOST];
+    if (!plain(word, said)) {
+        return NULL;
+    }
+    const char *const found = find(said, names, n);
+    return found == NULL && shorten(said) ? find(said, names, n) : found;
 }

@@ -3,13 +3,15 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/visible.h"
 
 enum { LONGEST_CHARACTER = 4 }; /* in bytes of UTF-8 */
-/* Digits that identify a double (IEEE 754-2019, 5.12.2). */
-enum { EXACT = 17 };
+/* Digits that identify a double, and those that a double keeps of any decimal number
+ * (IEEE 754-2019, 5.12.2). */
+enum { EXACT = 17, CERTAIN = 15 };
 
 mt_json_writer mt_json_writer_default(mt_text *out)
 {
@@ -42,6 +44,19 @@ static const char *format_number(double value, int digits, char buffer[MT_JSON_N
 const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE])
 {
     return format_number(value, EXACT, buffer);
+}
+
+const char *mt_json_format_shortest(double value, char buffer[MT_JSON_NUMBER_SIZE])
+{
+    char raw[MT_JSON_NUMBER_SIZE];
+    int digits = CERTAIN;
+    for (; digits < EXACT; digits++) { /* read as it is written here, in the locale */
+        (void)snprintf(raw, sizeof raw, "%.*g", digits, value);
+        if (strtod(raw, NULL) == value) {
+            break;
+        }
+    }
+    return format_number(value, digits, buffer);
 }
 
 /* One character at s as JSON text; returns how many bytes of s it took. What cannot be seen is

@@ -53,5 +53,7 @@ bool mt_json_done(mt_json_writer *w);
 
 /* The number as mt_json_put_number writes it; "null" where it is not finite. Returns buffer. */
 const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE]);
+/* The same number with as few digits as still are that number: for people to read. */
+const char *mt_json_format_shortest(double value, char buffer[MT_JSON_NUMBER_SIZE]);
 
 #endif

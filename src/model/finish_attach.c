@@ -74,6 +74,20 @@ static void attach_link(mt_finish *f, mt_attach *a, int link, const char *part)
     }
 }
 
+/* What others call the ground. */
+static bool is_ground(const char *word)
+{
+    static const char *const words[] = {"world", "World",    "base",  "Base",
+                                        "frame", "Frame",    "earth", "chassis",
+                                        "fixed", "inertial", "wall",  "0"};
+    for (int i = 0; i < MT_COUNT(words); i++) {
+        if (strcmp(word, words[i]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void mt_finish_attach(mt_finish *f, mt_attach *a)
 {
     const mt_names *const table = &f->m->tables->bodies;
@@ -93,7 +107,10 @@ void mt_finish_attach(mt_finish *f, mt_attach *a)
         static const char *const more[] = {"ground"};
         const char *const stem = mt_arena_strndup(&f->m->mem, s, length);
         const mt_name name = {.s = stem, .addr = a->name.addr};
-        if (stem != NULL) {
+        if (stem != NULL && dot == NULL && is_ground(stem)) {
+            mt_diag_error(f->d, name.addr, "unknown body \"%s\"; did you mean \"ground\"?",
+                          stem);
+        } else if (stem != NULL) {
             mt_finish_unknown(f, name, table, dot == NULL ? "body" : "link", more,
                               dot == NULL ? 1 : 0);
         }

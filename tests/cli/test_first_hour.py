@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From an empty folder to an answer: init, examples, schema, and the catalogue of aircraft that is found without a path."""
 import json
+import re
 
 import jsonschema
 from common_cli import SOURCE, CliTest, main
@@ -61,6 +62,25 @@ class FirstHour(CliTest):
                 self.expect(0, "check", f"{name}/studies/{name}.json")
         done = self.expect(2, "examples", "inceptor_roter")
         self.assertIn('no example is called "inceptor_roter"; did you mean "inceptor_rotor"?', done.stderr)
+
+    def test_a_result_is_read_by_its_folder_too(self):
+        self.expect(0, "init", "mine")
+        self.expect(0, "run", "mine/study.json")
+        for command in ("report", "explain", "apply", "show"):
+            with self.subTest(command):
+                self.assertEqual(self.expect(0, command, "results/study").stdout,
+                                 self.expect(0, command, "results/study/result.json").stdout)
+        self.assertIn("error: results/result.json: No such file", self.expect(4, "explain", "results/").stderr)
+
+    def test_apply_writes_no_digit_more_than_the_number_has(self):
+        self.expect(0, "init", "mine")
+        self.expect(0, "run", "mine/study.json")
+        applied = self.expect(0, "apply", "results/study").stdout
+        result = json.loads(self.text("results/study/result.json"))
+        for p in result["recommendations"][0]["parameters"]:
+            said = re.search(rf'"{p["name"]}": {{ "value": ([^ ,]+)', applied)[1]
+            self.assertEqual(float(said), p["recommended"])
+            self.assertLessEqual(len(re.sub("[-.]", "", said).lstrip("0")), len(re.sub("[-.]", "", repr(p["recommended"])).lstrip("0")))
 
     def test_schemas_are_those_of_the_sources(self):
         listed = {e["name"] for e in json.loads(self.expect(0, "schema", "--format", "json").stdout)}
