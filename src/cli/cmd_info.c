@@ -85,8 +85,9 @@ static void write_text(mt_text *out, const view *v)
                      point_text(i->inertia_kg_m2, 3, a, sizeof a),
                      point_text(i->inertia_kg_m2 + 3, 3, b, sizeof b));
     }
-    mt_text_addf(out, "  mobility    %d freedoms = %d states - %d independent of %d equations",
-                 i->freedoms, i->states, i->equations - i->redundant, i->equations);
+    mt_text_addf(out, "  mobility    %d freedom%s = %d states - %d independent of %d equations",
+                 i->freedoms, i->freedoms == 1 ? "" : "s", i->states,
+                 i->equations - i->redundant, i->equations);
     if (i->idle > 0) {
         mt_text_addf(out, " - %d idle spin%s", i->idle, i->idle == 1 ? "" : "s");
     }

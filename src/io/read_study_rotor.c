@@ -3,7 +3,9 @@
  * from. */
 #include "io/read_study_priv.h"
 
+#include <ctype.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "io/file.h"
 #include "io/shipped.h"
@@ -36,6 +38,40 @@ const mt_key_table mt_study_tail_keys = {"tail_rotor", TAIL, TAIL_KEY_COUNT};
 
 static const double RPM_PER_HZ = 60.0;
 
+/* Does the text multiply by rpm, as speeds in Hz do ("258*rpm", or meant so: "258 rpm")? */
+static bool times_rpm(const char *text)
+{
+    static const char RPM[] = "rpm";
+    const size_t n = strlen(RPM);
+    for (const char *at = strstr(text, RPM); at != NULL; at = strstr(at + 1, RPM)) {
+        const char *before = at;
+        while (before > text && before[-1] == ' ') {
+            before--;
+        }
+        const char last = before > text ? before[-1] : ' ';
+        const bool word = last != '_' && (before < at || isalnum((unsigned char)last) == 0) &&
+                          at[n] != '_' && isalnum((unsigned char)at[n]) == 0;
+        if (word && last != '/') {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A speed per minute [Hz]. One that is turned into Hz there would be a sixtieth of what is
+ * meant, and be answered. */
+static double read_rpm(mt_study_reader *s, const mt_study_object *o, int key, mt_addr *place)
+{
+    const mt_addr at = o->found[key];
+    if (at != MT_NO_ADDR && mt_json_type_of(s->r.doc, at) == MT_JSON_STRING &&
+        times_rpm(mt_json_string(s->r.doc, at))) {
+        mt_diag_error(s->r.diags, at,
+                      "is per minute as it is: leave out \"rpm\", or write it as \"speed_hz\"");
+        return mt_read_study_number(s, MT_NO_ADDR);
+    }
+    return mt_read_study_member(s, o, key, place) / RPM_PER_HZ;
+}
+
 /* One of two members, neighbours in the table: speed_hz or speed_rpm [Hz]. */
 static double read_speed(mt_study_reader *s, const mt_study_object *o, int hz, mt_addr *place)
 {
@@ -44,7 +80,7 @@ static double read_speed(mt_study_reader *s, const mt_study_object *o, int hz, m
         return mt_read_study_member(s, o, hz, place);
     }
     if (mt_read_study_has(s, o, hz + 1)) {
-        return mt_read_study_member(s, o, hz + 1, place) / RPM_PER_HZ;
+        return read_rpm(s, o, hz + 1, place);
     }
     return mt_read_study_number(s, MT_NO_ADDR);
 }

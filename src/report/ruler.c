@@ -39,6 +39,20 @@ static double highest_mode(const mt_recommendation *r)
     return top;
 }
 
+/* Modes of which something is asked, as they are and as they were: where they are not far above
+ * what is asked of all. */
+static void widen_asked(double *top, const mt_recommendation *r)
+{
+    const double near = NEAR * *top;
+    for (int i = 0; i < r->n_frequencies; i++) {
+        const mt_result_frequency *const f = &r->frequencies[i];
+        const bool asked =
+            isfinite(f->target_hz) || isfinite(f->at_least_hz) || isfinite(f->at_most_hz);
+        widen(top, asked && f->original_hz <= near ? f->original_hz : 0.0);
+        widen(top, asked && f->recommended_hz <= near ? f->recommended_hz : 0.0);
+    }
+}
+
 /* The highest frequency of interest: what is asked for, and the bands beside modes; 0: none. */
 static double highest(const mt_recommendation *r)
 {
@@ -48,6 +62,7 @@ static double highest(const mt_recommendation *r)
         widen(&top, r->frequencies[i].at_least_hz);
         widen(&top, r->frequencies[i].at_most_hz);
     }
+    widen_asked(&top, r);
     const double near = top > 0.0 ? NEAR * top : HUGE_VAL;
     for (int i = 0; i < r->n_gaps; i++) {
         if (r->gaps[i].margin_lower_hz <= near) {

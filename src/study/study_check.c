@@ -7,34 +7,44 @@
 #include "base/text.h"
 #include "model/values.h"
 
-/* Every record that a name can mean begins with its mt_name: the nearest of n records of `size`
- * bytes, for "did you mean". */
-static const char *nearest(mt_study_check *c, const char *name, const void *records, int n,
-                           size_t size)
+enum { KNOWN_MOST = 20 }; /* names that a message lists */
+
+/* "a, b, c" in the study's arena; NULL: out of memory, which its owner asks. */
+static const char *joined(mt_study_check *c, const char *const *names, int n)
 {
-    if (!mt_diag_may_suggest(c->diags)) {
-        return NULL;
+    const char *text = "";
+    for (int i = 0; i < n && text != NULL; i++) {
+        text = mt_arena_printf(&c->study->mem, "%s%s%s", text, i == 0 ? "" : ", ", names[i]);
     }
+    return text;
+}
+
+/* Every record that a name can mean begins with its mt_name. Told with the nearest of the n
+ * records of `size` bytes; where none is near and there are few, with all of them. */
+static void unknown(mt_study_check *c, mt_name name, const char *what, const void *records,
+                    int n, size_t size)
+{
+    const bool may = mt_diag_may_suggest(c->diags);
     const mt_arena_mark mark = mt_arena_get_mark(&c->study->mem);
-    const char **const names = mt_arena_alloc(&c->study->mem, (size_t)n, sizeof *names);
-    const char *found = NULL;
+    const char **const names =
+        may ? mt_arena_alloc(&c->study->mem, (size_t)n, sizeof *names) : NULL;
     for (int i = 0; names != NULL && i < n; i++) {
         const void *const record = (const char *)records + (size_t)i * size;
         names[i] = ((const mt_name *)record)->s;
     }
-    found = names == NULL ? NULL : mt_text_nearest(name, names, n);
-    mt_arena_rewind(&c->study->mem, mark);
-    return found;
-}
-
-static void unknown(mt_study_check *c, mt_name name, const char *what, const char *guess)
-{
-    if (guess == NULL) {
-        mt_diag_error(c->diags, name.addr, "unknown %s \"%s\"", what, name.s);
-    } else {
+    const char *const near = names == NULL ? NULL : mt_text_nearest(name.s, names, n);
+    const bool few = names != NULL && near == NULL && n > 0 && n <= KNOWN_MOST;
+    const char *const known = few ? joined(c, names, n) : NULL;
+    if (near != NULL) {
         mt_diag_error(c->diags, name.addr, "unknown %s \"%s\"; did you mean \"%s\"?", what,
-                      name.s, guess);
+                      name.s, near);
+    } else if (known != NULL) {
+        mt_diag_error(c->diags, name.addr, "unknown %s \"%s\" (known: %s)", what, name.s,
+                      known);
+    } else {
+        mt_diag_error(c->diags, name.addr, "unknown %s \"%s\"", what, name.s);
     }
+    mt_arena_rewind(&c->study->mem, mark);
 }
 
 int mt_check_parameter(mt_study_check *c, mt_name name)
@@ -45,8 +55,7 @@ int mt_check_parameter(mt_study_check *c, mt_name name)
     }
     const int found = mt_model_find_parameter(m, name.s);
     if (found == MT_ABSENT) {
-        unknown(c, name, "parameter",
-                nearest(c, name.s, m->parameters, m->n_parameters, sizeof *m->parameters));
+        unknown(c, name, "parameter", m->parameters, m->n_parameters, sizeof *m->parameters);
     }
     return found;
 }
@@ -69,9 +78,8 @@ int mt_check_configuration(mt_study_check *c, const mt_model *model, mt_name nam
     }
     const int found = mt_model_find_configuration(model, name.s);
     if (found == MT_ABSENT) {
-        unknown(c, name, "configuration",
-                nearest(c, name.s, model->configurations, model->n_configurations,
-                        sizeof *model->configurations));
+        unknown(c, name, "configuration", model->configurations, model->n_configurations,
+                sizeof *model->configurations);
     }
     return found;
 }
@@ -84,8 +92,7 @@ int mt_check_reference(mt_study_check *c, mt_name name)
     }
     const int found = mt_study_find_reference(s, name.s);
     if (found == MT_ABSENT) {
-        unknown(c, name, "reference",
-                nearest(c, name.s, s->references, s->n_references, sizeof *s->references));
+        unknown(c, name, "reference", s->references, s->n_references, sizeof *s->references);
     }
     return found;
 }
@@ -102,8 +109,7 @@ const mt_aircraft *mt_check_aircraft(mt_study_check *c, mt_name name)
         }
     }
     if (list->n > 0) {
-        unknown(c, name, "aircraft",
-                nearest(c, name.s, list->items, list->n, sizeof *list->items));
+        unknown(c, name, "aircraft", list->items, list->n, sizeof *list->items);
     }
     return NULL;
 }
@@ -140,8 +146,7 @@ int mt_check_mode(mt_study_check *c, mt_mode_ref *mode)
     }
     mode->named = mt_model_find_mode(m, mode->mode_name.s);
     if (mode->named == MT_ABSENT) {
-        unknown(c, mode->mode_name, "mode",
-                nearest(c, mode->mode_name.s, m->modes, m->n_modes, sizeof *m->modes));
+        unknown(c, mode->mode_name, "mode", m->modes, m->n_modes, sizeof *m->modes);
         return 0;
     }
     return m->modes[mode->named].index;
