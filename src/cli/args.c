@@ -141,29 +141,46 @@ static mt_status read_part(const char *s, const char *option, mt_args *out, mt_e
     return MT_OK;
 }
 
+const char *mt_format_of(int format, int command)
+{
+    enum {
+        SHOW = 1 << MT_CMD_SHOW,
+        PAGES = SHOW | 1 << MT_CMD_REPORT,
+        MODEL = 1 << MT_CMD_APPLY
+    };
+    static const struct {
+        const char *name;
+        unsigned commands;
+    } formats[MT_FORMATS] = {
+        [MT_FORMAT_TEXT] = {"text", MT_ALL_COMMANDS & ~(unsigned)SHOW},
+        [MT_FORMAT_JSON] = {"json", MT_ALL_COMMANDS},
+        [MT_FORMAT_CSV] = {"csv", MT_ALL_COMMANDS & ~(unsigned)(SHOW | MODEL)},
+        [MT_FORMAT_HTML] = {"html", PAGES},
+        [MT_FORMAT_SARIF] = {"sarif", 1U << (unsigned)MT_CMD_CHECK}};
+    const bool of = command == MT_CMD_NONE ? format <= MT_FORMAT_CSV
+                                           : (formats[format].commands >> command & 1U) != 0U;
+    return of ? formats[format].name : NULL;
+}
+
 static mt_status read_format(const char *s, int command, mt_format *out, mt_err *err)
 {
-    static const char *const known[] = {"text", "json", "csv", "html", "sarif"};
-    static const unsigned of[] = {MT_ALL_COMMANDS, MT_ALL_COMMANDS, MT_ALL_COMMANDS,
-                                  1U << (unsigned)MT_CMD_REPORT | 1U << (unsigned)MT_CMD_SHOW,
-                                  1U << (unsigned)MT_CMD_CHECK};
-    const char *names[MT_COUNT(known)];
+    const char *names[MT_FORMATS];
     char suggestion[SUGGESTION_TEXT];
     mt_text list = {.s = NULL};
     int n = 0;
-    for (int i = 0; i < MT_COUNT(known); i++) {
-        if (i >= MT_FORMAT_HTML &&
-            (command == MT_CMD_NONE || (of[i] & (1U << (unsigned)command)) == 0U)) {
+    for (int i = 0; i < MT_FORMATS; i++) {
+        const char *const known = mt_format_of(i, command);
+        if (known == NULL) {
             continue;
         }
-        if (strcmp(s, known[i]) == 0) {
+        if (strcmp(s, known) == 0) {
             *out = (mt_format)i;
             mt_text_free(&list);
             return MT_OK;
         }
         mt_text_add(&list, n == 0 ? "" : ", ");
-        mt_text_add(&list, known[i]);
-        names[n++] = known[i];
+        mt_text_add(&list, known);
+        names[n++] = known;
     }
     const mt_status rc = list.failed
                              ? mt_fail(err, MT_E_MEMORY, "out of memory")

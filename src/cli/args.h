@@ -104,7 +104,7 @@ extern const mt_exit mt_exits[MT_EXITS];
 /* Does the command take the option, or the program where it is MT_CMD_NONE? */
 bool mt_option_is_of(int option, int command);
 
-/* MT_FORMAT_HTML: of MT_CMD_REPORT and MT_CMD_SHOW, MT_FORMAT_SARIF of MT_CMD_CHECK. */
+/* Which of them a command takes says mt_format_of. */
 typedef enum mt_format {
     MT_FORMAT_TEXT,
     MT_FORMAT_JSON,
@@ -112,6 +112,9 @@ typedef enum mt_format {
     MT_FORMAT_HTML,
     MT_FORMAT_SARIF
 } mt_format;
+enum { MT_FORMATS = MT_FORMAT_SARIF + 1 };
+/* The word of --format for it; NULL where the command does not take it. */
+const char *mt_format_of(int format, int command);
 
 /* The first: a line on a terminal, else now and then a plain one. */
 typedef enum mt_progress_form {

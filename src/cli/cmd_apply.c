@@ -135,9 +135,6 @@ int mt_cmd_apply(const mt_args *args, mt_text *out)
     mt_diagnostics messages = {.count = 0};
     mt_err err = {.code = MT_OK};
     mt_result *result = NULL;
-    if (args->format == MT_FORMAT_CSV) {
-        return mt_cli_failed(mt_fail(&err, MT_E_USAGE, "a model has no CSV form"), &err);
-    }
     mt_status rc = mt_result_load(args->operands[0], &opt, &result, &messages, &err);
     int code = mt_cli_loaded(rc, &messages, &err);
     if (rc == MT_OK) {

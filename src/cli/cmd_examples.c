@@ -6,13 +6,6 @@
 #include "cli/cli.h"
 #include "cli/shipped.h"
 
-static const mt_shipped_kind examples = {.command = "examples",
-                                         .what = "example",
-                                         .folder = "studies/",
-                                         .ending = ".json",
-                                         .says = "name",
-                                         .heading = "what it is"};
-
 /* Does the text of a file name the other one, be it by its path from its own folder, or, a
  * catalogue of aircraft, by one of these? */
 static bool names(const mt_shipped *file, const mt_shipped *other)
@@ -32,7 +25,8 @@ static int add_named(mt_shipped_copy *copies, int n)
     const mt_shipped *const files = mt_shipped_all(&count);
     for (int i = 0; i < n; i++) {
         for (int k = 0; k < count && n < MT_SHIPPED_MOST; k++) {
-            bool has = strncmp(files[k].path, examples.folder, strlen(examples.folder)) == 0;
+            bool has = strncmp(files[k].path, mt_shipped_examples.folder,
+                               strlen(mt_shipped_examples.folder)) == 0;
             for (int j = 0; j < n; j++) {
                 has = has || copies[j].file == &files[k];
             }
@@ -51,12 +45,12 @@ int mt_cmd_examples(const mt_args *args, mt_text *out)
     mt_err err = {.code = MT_OK};
     int n = 0;
     if (args->n_operands == 0) {
-        return mt_shipped_list(args, &examples, out);
+        return mt_shipped_list(args, &mt_shipped_examples, out);
     }
     mt_status rc = MT_OK;
     for (int i = 0; i < args->n_operands && i < MT_SHIPPED_MOST && rc == MT_OK; i++) {
         const mt_shipped *file = NULL;
-        rc = mt_shipped_named(&examples, args->operands[i], &file, &err);
+        rc = mt_shipped_named(&mt_shipped_examples, args->operands[i], &file, &err);
         if (rc == MT_OK) {
             copies[n++] = (mt_shipped_copy){file, file->path};
         }

@@ -3,21 +3,14 @@
 #include "cli/cli.h"
 #include "cli/shipped.h"
 
-static const mt_shipped_kind schemas = {.command = "schema",
-                                        .what = "schema",
-                                        .folder = "schemas/",
-                                        .ending = ".schema.json",
-                                        .says = "description",
-                                        .heading = "of"};
-
 int mt_cmd_schema(const mt_args *args, mt_text *out)
 {
     mt_err err = {.code = MT_OK};
     const mt_shipped *file = NULL;
     if (args->n_operands == 0) {
-        return mt_shipped_list(args, &schemas, out);
+        return mt_shipped_list(args, &mt_shipped_schemas, out);
     }
-    const mt_status rc = mt_shipped_named(&schemas, args->operands[0], &file, &err);
+    const mt_status rc = mt_shipped_named(&mt_shipped_schemas, args->operands[0], &file, &err);
     if (rc != MT_OK) {
         return mt_cli_failed(rc, &err);
     }

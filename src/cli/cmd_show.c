@@ -188,10 +188,7 @@ static mt_status check_use(const mt_args *args, mt_err *err)
     if (args->given[MT_OPT_FORMAT] && args->given[MT_OPT_SVG]) {
         return mt_fail(err, MT_E_USAGE, "--svg and --format exclude each other");
     }
-    const bool other = args->format != MT_FORMAT_HTML && args->format != MT_FORMAT_JSON;
-    return args->given[MT_OPT_FORMAT] && other
-               ? mt_fail(err, MT_E_USAGE, "a mechanism is shown as html or json (--format)")
-               : MT_OK;
+    return MT_OK;
 }
 
 static mt_status write(const mt_args *args, const subject *o, const mt_scene *scene,

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "cli/args.h"
+#include "cli/shipped.h"
 
 static const char separators[] = "|";
 
@@ -49,6 +50,27 @@ static void bash_options(int command, mt_text *out)
     }
 }
 
+/* What the program has of the command's operands by name; NULL: they are files. */
+static const mt_shipped_kind *shipped_of(int command)
+{
+    return command == MT_CMD_EXAMPLES ? &mt_shipped_examples
+           : command == MT_CMD_SCHEMA ? &mt_shipped_schemas
+                                      : NULL;
+}
+
+/* The words of --format, a blank between them. */
+static void add_formats(int command, mt_text *out)
+{
+    const char *between = "";
+    for (int i = 0; i < MT_FORMATS; i++) {
+        const char *const name = mt_format_of(i, command);
+        if (name != NULL) {
+            mt_text_addf(out, "%s%s", between, name);
+            between = " ";
+        }
+    }
+}
+
 /* What stands behind an option that takes a value. */
 static void bash_values(mt_text *out)
 {
@@ -60,7 +82,10 @@ static void bash_values(mt_text *out)
         }
         mt_text_add(out, "    ");
         add_pattern(o, out);
-        if (is_choice(o)) {
+        if (i == MT_OPT_FORMAT) {
+            mt_text_add(out, ") COMPREPLY=($(compgen -W \"$formats\" -- \"$current\")); "
+                             "return ;;\n");
+        } else if (is_choice(o)) {
             mt_text_add(out, ") COMPREPLY=($(compgen -W '");
             add_choice(o->value, out);
             mt_text_add(out, "' -- \"$current\")); return ;;\n");
@@ -77,17 +102,17 @@ static void bash_values(mt_text *out)
 
 static void bash(mt_text *out)
 {
-    mt_text_add(out, "# modetune(1) in bash: commands, options, values, JSON files\n"
-                     "_modetune() {\n"
-                     "    local current=${COMP_WORDS[COMP_CWORD]} "
-                     "previous=${COMP_WORDS[COMP_CWORD-1]} command= words= word\n"
-                     "    for word in \"${COMP_WORDS[@]:1:COMP_CWORD-1}\"; do\n"
-                     "        case $word in\n        ");
+    mt_text_add(out,
+                "# modetune(1) in bash: commands, options, values, JSON files\n"
+                "_modetune() {\n"
+                "    local current=${COMP_WORDS[COMP_CWORD]} "
+                "previous=${COMP_WORDS[COMP_CWORD-1]} command= words= formats= names= word\n"
+                "    for word in \"${COMP_WORDS[@]:1:COMP_CWORD-1}\"; do\n"
+                "        case $word in\n        ");
     for (int i = 0; i < MT_CMD_IDS; i++) {
         mt_text_addf(out, "%s%s", i == 0 ? "" : "|", mt_commands[i].name);
     }
     mt_text_add(out, ") command=$word; break ;;\n        esac\n    done\n    COMPREPLY=()\n");
-    bash_values(out);
     mt_text_add(out, "    case $command in\n    '') words='");
     for (int i = 0; i < MT_CMD_IDS; i++) {
         mt_text_addf(out, "%s%s", i == 0 ? "" : " ", mt_commands[i].name);
@@ -97,11 +122,20 @@ static void bash(mt_text *out)
     for (int i = 0; i < MT_CMD_IDS; i++) {
         mt_text_addf(out, "    %s) words='", mt_commands[i].name);
         bash_options(i, out);
+        mt_text_add(out, "' formats='");
+        add_formats(i, out);
+        if (shipped_of(i) != NULL) {
+            mt_text_add(out, "' names='");
+            mt_shipped_names(shipped_of(i), out);
+        }
         mt_text_add(out, "' ;;\n");
     }
-    mt_text_add(out, "    esac\n"
-                     "    if [[ -z $command || $current == -* ]]; then\n"
+    mt_text_add(out, "    esac\n");
+    bash_values(out);
+    mt_text_add(out, "    if [[ -z $command || $current == -* ]]; then\n"
                      "        COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n"
+                     "    elif [[ -n $names ]]; then\n"
+                     "        COMPREPLY=($(compgen -W \"$names\" -- \"$current\"))\n"
                      "    else\n"
                      "        COMPREPLY=($(compgen -f -X '!*.json' -- \"$current\") "
                      "$(compgen -d -- \"$current\"))\n"
@@ -123,15 +157,20 @@ static void zsh_text(const char *text, mt_text *out)
     }
 }
 
-static void zsh_option(const mt_option *o, bool repeated, mt_text *out)
+static void zsh_option(const mt_option *o, int command, mt_text *out)
 {
+    const bool repeated = o == &mt_options[MT_OPT_SET];
     mt_text_addf(out, " \\\n            '%s--%s%s[", repeated ? "*" : "", o->name,
                  o->value == NULL ? "" : "=");
     zsh_text(o->help, out);
     mt_text_add(out, "]");
     if (is_choice(o)) {
         mt_text_addf(out, ":%s:(", o->name);
-        add_choice(o->value, out);
+        if (o == &mt_options[MT_OPT_FORMAT]) {
+            add_formats(command, out);
+        } else {
+            add_choice(o->value, out);
+        }
         mt_text_add(out, ")");
     } else if (o->value != NULL) {
         const char *const how = is_called(o, "DIR")     ? "_files -/"
@@ -146,7 +185,7 @@ static void zsh_options(int command, mt_text *out)
 {
     for (int i = 0; i < MT_OPT_IDS; i++) {
         if (mt_option_is_of(i, command)) {
-            zsh_option(&mt_options[i], i == MT_OPT_SET, out);
+            zsh_option(&mt_options[i], command, out);
         }
     }
 }
@@ -172,7 +211,13 @@ static void zsh(mt_text *out)
     for (int i = 0; i < MT_CMD_IDS; i++) {
         mt_text_addf(out, "        %s) _arguments", mt_commands[i].name);
         zsh_options(i, out);
-        mt_text_add(out, " \\\n            '*:file:_files -g \"*.json\"' ;;\n");
+        if (shipped_of(i) != NULL) {
+            mt_text_addf(out, " \\\n            '*:%s:(", shipped_of(i)->what);
+            mt_shipped_names(shipped_of(i), out);
+            mt_text_add(out, ")' ;;\n");
+        } else {
+            mt_text_add(out, " \\\n            '*:file:_files -g \"*.json\"' ;;\n");
+        }
     }
     mt_text_add(out, "        esac ;;\n    esac\n}\n_modetune \"$@\"\n");
 }

@@ -9,6 +9,19 @@
 #include "io/folder.h"
 #include "report/table.h"
 
+const mt_shipped_kind mt_shipped_examples = {.command = "examples",
+                                             .what = "example",
+                                             .folder = "studies/",
+                                             .ending = ".json",
+                                             .says = "name",
+                                             .heading = "what it is"};
+const mt_shipped_kind mt_shipped_schemas = {.command = "schema",
+                                            .what = "schema",
+                                            .folder = "schemas/",
+                                            .ending = ".schema.json",
+                                            .says = "description",
+                                            .heading = "of"};
+
 /* The file's name, in name[size]; false: it is none of them. */
 static bool name_of(const mt_shipped_kind *kind, const mt_shipped *file, char *name,
                     size_t size)
@@ -56,6 +69,20 @@ static int print_json(const mt_table *t, mt_text *out)
     mt_json_close(&w);
     out->failed = out->failed || t->failed;
     return mt_cli_json_done(&w);
+}
+
+void mt_shipped_names(const mt_shipped_kind *kind, mt_text *out)
+{
+    int n = 0;
+    const mt_shipped *const files = mt_shipped_all(&n);
+    const char *between = "";
+    for (int i = 0; i < n; i++) {
+        char name[MT_SHIPPED_NAME];
+        if (name_of(kind, &files[i], name, sizeof name)) {
+            mt_text_addf(out, "%s%s", between, name);
+            between = " ";
+        }
+    }
 }
 
 int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *out)

@@ -17,6 +17,11 @@ typedef struct mt_shipped_kind {
     const char *heading;
 } mt_shipped_kind;
 
+extern const mt_shipped_kind mt_shipped_examples;
+extern const mt_shipped_kind mt_shipped_schemas;
+
+/* Append their names, a blank between them. */
+void mt_shipped_names(const mt_shipped_kind *kind, mt_text *out);
 /* A list of them, with the first sentence of what they say, in the form asked for: as JSON a
  * list of objects of texts. Returns the exit status. */
 int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *out);

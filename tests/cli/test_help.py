@@ -106,6 +106,13 @@ class Help(CliTest):
                 self.assertEqual({word.removeprefix("--") for word in self.completed(command, "--")}, OPTIONS[command] | EVERYWHERE)
         self.assertEqual(self.completed("run", "--progress", ""), {"auto", "line", "json", "none"})
         self.assertEqual(self.completed("run", "--seed", ""), set())
+        for command, forms in (("run", "text json csv"), ("report", "text json csv html"), ("check", "text json csv sarif"),
+                               ("show", "json html"), ("apply", "text json")):
+            self.assertEqual(self.completed(command, "--format", ""), set(forms.split()))
+            for form in {"text", "json", "csv", "html", "sarif"} - set(forms.split()):
+                self.assertIn(f'--format: "{form}" is none of', self.expect(2, command, "--format", form, "x").stderr)
+        self.assertEqual(self.completed("schema", "s"), {"study", "scene"})
+        self.assertEqual(self.completed("examples", ""), {p.stem for p in (SOURCE / "studies").glob("*.json")})
         self.write("study.json", "{}")
         self.write("notes.txt", "")
         (self.folder / "models").mkdir()
