@@ -146,6 +146,9 @@ static void include_all(picture *p)
     }
     for (int i = 0; i < v->n_joints; i++) {
         include(p, v->joints[i].body[1], v->joints[i].at);
+        if (v->joints[i].rod) {
+            include(p, v->joints[i].body[0], v->joints[i].end[0]);
+        }
     }
     include_springs(p, v->n_springs, v->springs);
     include_springs(p, v->n_dampers, v->dampers);
@@ -403,6 +406,16 @@ static void put_still(const picture *p, const char *colour, const char *springs,
 {
     const mt_scene_view *const v = p->view;
     put_bodies(p, colour, width);
+    for (int i = 0; i < v->n_joints; i++) {
+        const mt_scene_joint *const j = &v->joints[i];
+        if (j->rod) {
+            double a[2];
+            double b[2];
+            project(p, j->body[0], j->end[0], a);
+            project(p, j->body[1], j->end[1], b);
+            put_line(p, a, b, colour, width);
+        }
+    }
     for (int i = 0; i < v->n_springs; i++) {
         put_spring(p, &v->springs[i], springs);
     }

@@ -82,6 +82,11 @@ static void put_joint(mt_json_writer *w, const mt_scene_view *v, const mt_scene_
     mt_json_put_string(w, "name", j->name);
     mt_json_put_string(w, "type", j->type);
     put_pair(w, j->body);
+    if (j->rod) {
+        put_place(w, "from", j->end[0]);
+    } else {
+        mt_json_put_null(w, "from");
+    }
     put_place(w, "at", j->at);
     put_axis(w, j->has_axis, j->axis);
     mt_json_put_rounded(w, "distance", j->distance, PLACE);

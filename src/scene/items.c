@@ -102,6 +102,7 @@ static mt_status joints(mt_scene_frame *f, mt_err *err)
             out->name = mt_arena_strdup(f->mem, joint->name.s);
             out->type = mt_joint_type_name(joint->type);
             out->far = MT_ABSENT;
+            out->rod = joint->type == MT_JOINT_DISTANCE;
             if (couples) {
                 joint_of_joints(v, joint_of, joint, out);
             } else {

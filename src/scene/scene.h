@@ -62,6 +62,7 @@ typedef struct mt_scene_joint {
     int body[2];
     double end[2][3]; /* its point on each body */
     double at[3];     /* the second of these */
+    bool rod;         /* from one end to the other: a distance joint is drawn so */
     bool has_axis;
     double axis[3];
     /* of its point to what is drawn of the body that is farther: 0 where it lies on a link, or

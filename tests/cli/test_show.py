@@ -242,6 +242,35 @@ class Show(CliTest):
         changed = self.expect(0, "show", "--format", "json", "--model", self.model, "results/two/result.json")
         self.assertIn("has changed since", changed.stderr)
 
+    def test_a_rod_is_drawn_and_keeps_its_length(self):
+        path = self.write("rod.json", json.dumps({
+            "format": "modetune-model/1", "dimension": 2,
+            "bodies": [{"name": "a", "mass_kg": 1, "inertia_kg_m2": 0.1, "centre": [0, 0.3]},
+                       {"name": "b", "mass_kg": 1, "inertia_kg_m2": 0.1, "centre": [1, 0.5]}],
+            "joints": [{"name": "pa", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0]},
+                       {"name": "pb", "type": "revolute", "bodies": ["ground", "b"], "at": [1, 0]},
+                       {"name": "rod", "type": "distance", "bodies": ["a", "b"], "at": [[0.1, 0.4], [1.1, 0.7]]}],
+            "springs": [{"name": "k", "type": "torsion", "joint": "pa", "stiffness_n_m_per_rad": 50}],
+            "configurations": {"c": {}, "d": {"like": "c", "drive": {"joint": "pa", "position_rad": 0.2, "hold": {"trim": "k"}}}}}))
+        scene = parse(self.expect(0, "show", "--format", "json", path).stdout)
+        self.assertEqual([error.message for error in SCHEMA.iter_errors(scene)], [])
+        self.assertEqual(list(faults(scene)), [])
+        view = scene["designs"][0]["configurations"][0]
+        self.assertEqual([j["from"] for j in view["joints"]], [None, None, [0.1, 0.4, 0]])
+        rod = view["joints"][2]
+        length = distance(rod["from"], rod["at"])
+
+        def moved(mode, body, x):
+            t, w, r = mode["motion"][body][:3], mode["motion"][body][5], [p - c for p, c in zip(x, view["bodies"][body]["at"])]
+            return [t[0] - w * r[1], t[1] + w * r[0]]
+        for mode in view["modes"]:
+            v = [q - p for p, q in zip(moved(mode, rod["bodies"][0], rod["from"]), moved(mode, rod["bodies"][1], rod["at"]))]
+            along = sum(a * (q - p) for a, p, q in zip(v, rod["from"], rod["at"])) / length
+            self.assertLess(abs(along), 5e-5)  # motions of at most 1 have five digits, and four of them meet here
+        self.assertGreaterEqual(len(view["modes"]), 1)
+        # each body from its centre to its two joints, and the rod
+        self.assertEqual(self.expect(0, "show", "--svg", path).stdout.count("<line"), 5)
+
     def test_what_cannot_be_analysed_is_told(self):
         path = self.write("ghost.json", '{"format": "modetune-model/1", "dimension": 2, "bodies": '
                                         '[{"name": "ghost", "mass_kg": 0, "inertia_kg_m2": 0, "centre": [1, 2]}]}')

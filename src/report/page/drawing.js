@@ -113,8 +113,12 @@
                 .forEach(({ at }) => mark(lens.project(at), [0, -1]));
         }
 
-        function drawJoint({ item, at }) {
+        function drawJoint({ item, from, at }) {
             const p = lens.project(at);
+            if (from) {
+                line(from, at, { stroke: 'ink', width: 2.4 });
+                find({ from: lens.project(from), to: p }, 3, item.name, 'rod');
+            }
             put(symbols.joint(item.type, p, r), p[2], 3);
             if (options.isFar(item)) {
                 const look = { stroke: 'far', width: 1.6, dash: [3, 3] };

@@ -63,6 +63,7 @@
                 at: point(item.body, item.at) })),
             // the point of a joint is one of its second body, its axis one of its first
             joints: alive(configuration.joints).filter((item) => item.at).map((item) => ({ item,
+                from: item.from ? point(item.bodies[0], item.from) : null,
                 at: point(item.bodies[1], item.at), axis: moved(item.bodies[0], item.axis) })),
             springs: between(configuration.springs),
             dampers: between(configuration.dampers),
@@ -89,7 +90,7 @@
         [posed.lines, posed.springs, posed.dampers].forEach((list) =>
             list.forEach((line) => all.push(line.from, line.to)));
         [posed.joints, posed.sensors].forEach((list) =>
-            list.forEach((item) => all.push(item.at)));
+            list.forEach((item) => all.push(item.at, ...(item.from ? [item.from] : []))));
         return all;
     }
 
