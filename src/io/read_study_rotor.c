@@ -48,7 +48,7 @@ static bool times_rpm(const char *text)
         while (before > text && before[-1] == ' ') {
             before--;
         }
-        const char last = before > text ? before[-1] : ' ';
+        const char last = (char)(before > text ? before[-1] : ' ');
         const bool word = last != '_' && (before < at || isalnum((unsigned char)last) == 0) &&
                           at[n] != '_' && isalnum((unsigned char)at[n]) == 0;
         if (word && last != '/') {

@@ -144,7 +144,8 @@ static int draw_modes(ruler *u, const mt_recommendation *r, const char *of, char
         const mt_result_frequency *const f = &r->frequencies[i];
         if (same(f->configuration, of)) {
             beyond += f->recommended_hz > u->top ? 1 : 0;
-            mark(u, line, f->recommended_hz, f->mode < 10 ? digits[f->mode] : '+', " -#[]|o");
+            const char sign = (char)(f->mode < 10 ? digits[f->mode] : '+');
+            mark(u, line, f->recommended_hz, sign, " -#[]|o");
         }
     }
     return beyond;
