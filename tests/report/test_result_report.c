@@ -100,8 +100,8 @@ static void summary__says_status_numbers_and_reasons(mt_test *t)
         "  The change of m counts linearly, 2.00000 as 1.\n",
         "     1     0.750000     1.00000           1.00000          0\n",
         "at least 1.90000",
-        "\nWhy: what changes\n  - k<1> rises & m falls.\n\nWhy: how it stands\n  - It is the "
-        "only one.\n",
+        ("\nWhy: what changes\n  - k<1> rises & m falls.\n\nWhy: how it stands\n  - It is the "
+         "only one.\n"),
     };
     mt_result *const r = make(t);
     REQUIRE(t, r != NULL);
